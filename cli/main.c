@@ -27,11 +27,11 @@ const cli_command *cli_find_command(const char *name, cw_error *err)
     }
     const char *nearest = cli_nearest(name, names);
     if (nearest)
-        cw_fail(err, CW_ERR_ARGUMENT, "'%s' is not a command; did you mean '%s'?", name,
-                nearest);
+        cwi_fail(err, CW_ERR_ARGUMENT, "'%s' is not a command; did you mean '%s'?", name,
+                 nearest);
     else
-        cw_fail(err, CW_ERR_ARGUMENT, "'%s' is not a command; 'cubewright help' lists them",
-                name);
+        cwi_fail(err, CW_ERR_ARGUMENT, "'%s' is not a command; 'cubewright help' lists them",
+                 name);
     return NULL;
 }
 
@@ -64,8 +64,8 @@ static void explain_memory(cw_error *err)
         return;
     cwi_print_memory(asked, asked_text);
     cwi_print_memory(left, left_text);
-    cw_fail(err, said.status, "%.400s; %s were needed, and --memory leaves %s", said.message,
-            asked_text, left_text);
+    cwi_fail(err, said.status, "%.400s; %s were needed, and --memory leaves %s", said.message,
+             asked_text, left_text);
 }
 
 static cw_status run_command(const cli_command *command, int count, char **words, cw_error *err)
@@ -87,7 +87,7 @@ static cw_status run_command(const cli_command *command, int count, char **words
         if (st == CW_ERR_NO_MEMORY)
             explain_memory(err);
     } else {
-        cw_fail(err, st, "no memory for the arguments");
+        cwi_fail(err, st, "no memory for the arguments");
     }
     cli_progress_end();
     free(args);
@@ -128,7 +128,7 @@ int main(int argc, char **argv)
     if (command)
         st = run_command(command, argc > 1 ? argc - 2 : 0, argv + (argc > 1 ? 2 : 1), &err);
     if (st == CW_OK && (fflush(stdout) != 0 || ferror(stdout)))
-        st = cw_fail(&err, CW_ERR_OUTPUT, "the standard output cannot be written");
+        st = cwi_fail(&err, CW_ERR_OUTPUT, "the standard output cannot be written");
     if (st != CW_OK)
         cli_say_error(err.message);
     is_running = false;

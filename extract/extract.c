@@ -19,9 +19,9 @@ static cw_status check_snap(const cw_extract_desc *d, cw_error *err)
 {
     if (d->snap >= 0 && d->snap <= CW_EXTRACT_MAX_SNAP)
         return CW_OK;
-    return cw_fail(err, CW_ERR_ARGUMENT,
-                   "snap is a fraction of an edge from 0 (off) to %g, not %g",
-                   CW_EXTRACT_MAX_SNAP, d->snap);
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "snap is a fraction of an edge from 0 (off) to %g, not %g",
+                    CW_EXTRACT_MAX_SNAP, d->snap);
 }
 
 cw_status cwi_plan_init(cwi_plan *p, const cwi_engine *engine, const cw_volume *volume,
@@ -175,7 +175,7 @@ cw_status cwi_extractor_new_with(const cwi_engine *engine, size_t leaf_bytes,
     cw_extractor *e = cwi_alloc_array(1, sizeof *e);
     *out = NULL;
     if (!e)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for an extractor");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for an extractor");
     cw_status st = cwi_plan_init(e, engine, volume, err);
     if (st == CW_OK && cwi_plan_is_dense(e))
         st = cwi_octree_init(&e->tree, &e->grid, err);

@@ -140,7 +140,7 @@ static cw_status write_slabs(cwi_plan *p, const cw_extract_desc *d, size_t trian
         return st;
     uint8_t *seam = cwi_alloc_array(most.vertices, 1);
     if (!seam)
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", most.vertices);
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", most.vertices);
     memcpy(mesh.affine, p->grid.volume.affine, sizeof mesh.affine);
     cwi_writing w = {.plan = p,
                      .emission = cwi_make_emission(&p->grid.volume, d->simple_topology),
@@ -166,8 +166,8 @@ static cw_status give_whole(cwi_plan *p, const cw_extract_desc *d, cw_slab_sink 
         slab.seam = seam = cwi_alloc_zeroed(mesh.vertex_count, 1);
         slab.triangles = mesh.triangle_count;
         st = seam ? sink.take(sink.user, &slab, err)
-                  : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices",
-                            mesh.vertex_count);
+                  : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices",
+                             mesh.vertex_count);
     }
     cwi_free(seam);
     cw_mesh_free(&mesh);
@@ -185,8 +185,8 @@ cw_status cw_extract_slabs(const cw_volume *volume, const cw_extract_desc *desc,
     d.max_bytes = 0; /* the limit is for slabs, not for the whole surface */
     cw_status st = d.snap == 0
                        ? cwi_plan_init(&p, cwi_engine_best(), volume, err)
-                       : cw_fail(err, CW_ERR_ARGUMENT,
-                                 "snap is %g; a surface made by slabs is not snapped", d.snap);
+                       : cwi_fail(err, CW_ERR_ARGUMENT,
+                                  "snap is %g; a surface made by slabs is not snapped", d.snap);
     if (st == CW_OK && cwi_plan_is_dense(&p))
         st = cwi_plan_make(&p, &d, err);
     d.max_bytes = max_bytes;

@@ -28,8 +28,8 @@ static cw_status find_by_name(const char *name, const cwi_format_driver **found,
     *found = cwi_find_format(name);
     if (*found && (*found)->mesh.read)
         return CW_OK;
-    return cw_fail(err, CW_ERR_ARGUMENT, "there is no mesh reader '%s'; there are %s", name,
-                   list_readers(names));
+    return cwi_fail(err, CW_ERR_ARGUMENT, "there is no mesh reader '%s'; there are %s", name,
+                    list_readers(names));
 }
 
 static const cwi_format_driver *find_by_content(const unsigned char *head, size_t size,
@@ -81,17 +81,17 @@ static cw_status find_by_file(const cwi_input *in, const cwi_format_driver **fou
     if (*found)
         return CW_OK;
     if (cwi_pvd_sniff(head, size))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "this is a list of the files of a time series (pvd); here one of the "
-                       "meshes that it lists is expected");
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "this is a list of the files of a time series (pvd); here one of the "
+                        "meshes that it lists is expected");
     const char *volume = cwi_volume_format_of(in);
     if (volume)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "this is a volume (%s), not a mesh; 'extract' makes a mesh of it",
-                       volume);
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "neither content nor extension is of a mesh format that is read (%s)",
-                   list_readers(names));
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "this is a volume (%s), not a mesh; 'extract' makes a mesh of it",
+                        volume);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "neither content nor extension is of a mesh format that is read (%s)",
+                    list_readers(names));
 }
 
 static cw_mesh_read_desc resolve_desc(const cw_mesh_read_desc *desc)

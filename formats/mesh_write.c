@@ -48,10 +48,10 @@ static cw_status fail_unknown(const char *name, cw_error *err)
 {
     char list[CWI_FORMAT_LIST];
     if (name)
-        return cw_fail(err, CW_ERR_ARGUMENT, "no mesh format is named '%s'; there are %s", name,
-                       cwi_list_formats(writer_name, " ", list));
-    return cw_fail(err, CW_ERR_ARGUMENT, "its extension is of no mesh format; there are %s",
-                   cwi_list_formats(writer_extensions, " ", list));
+        return cwi_fail(err, CW_ERR_ARGUMENT, "no mesh format is named '%s'; there are %s",
+                        name, cwi_list_formats(writer_name, " ", list));
+    return cwi_fail(err, CW_ERR_ARGUMENT, "its extension is of no mesh format; there are %s",
+                    cwi_list_formats(writer_extensions, " ", list));
 }
 
 /* Checks the axes. For glTF the axes that it always has may be requested. */
@@ -59,11 +59,11 @@ static cw_status check_axes(const cwi_format_driver *f, const cw_axes *axes, cw_
 {
     const bool metres = axes->unit == CW_UNIT_MM || axes->unit == CW_UNIT_M;
     if (axes->unit >= CW_UNIT_COUNT)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%d is not a unit", (int)axes->unit);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a unit", (int)axes->unit);
     if (f->write.own_axes && (!metres || axes->ras))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "%s is in metres, +Y up and facing +Z: it has no other unit or frame",
-                       f->name);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "%s is in metres, +Y up and facing +Z: it has no other unit or frame",
+                        f->name);
     return CW_OK;
 }
 
@@ -72,8 +72,9 @@ static cw_status check_text(const cwi_format_driver *f, const cw_write_desc *d, 
     char list[CWI_FORMAT_LIST];
     return !d->text || f->write.text
                ? CW_OK
-               : cw_fail(err, CW_ERR_ARGUMENT, "%s has no form as text; those that have are %s",
-                         f->name, cwi_list_formats(text_writer_name, " ", list));
+               : cwi_fail(err, CW_ERR_ARGUMENT,
+                          "%s has no form as text; those that have are %s", f->name,
+                          cwi_list_formats(text_writer_name, " ", list));
 }
 
 static cw_status check_compression(const cwi_format_driver *f, const cw_write_desc *d,
@@ -81,15 +82,15 @@ static cw_status check_compression(const cwi_format_driver *f, const cw_write_de
 {
     cw_write_desc as_written = *d;
     if (f->write.only && d->compression && d->compression != f->write.only)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%s has one form only, Draco's", f->name);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%s has one form only, Draco's", f->name);
     if (f->write.only)
         as_written.compression = f->write.only;
     if (as_written.compression == CW_COMPRESS_NONE)
         return CW_OK;
     if (f->write.compresses || f->write.only)
         return cwi_gltf_prepare_codec(&as_written, err);
-    return cw_fail(err, CW_ERR_ARGUMENT, "%s has no compressed form; glTF (.glb, .gltf) has",
-                   f->name);
+    return cwi_fail(err, CW_ERR_ARGUMENT, "%s has no compressed form; glTF (.glb, .gltf) has",
+                    f->name);
 }
 
 static cw_status check_animation(const cwi_format_driver *f, const cw_write_desc *d,
@@ -97,8 +98,8 @@ static cw_status check_animation(const cwi_format_driver *f, const cw_write_desc
 {
     return !d->animated || f->write.animates
                ? CW_OK
-               : cw_fail(err, CW_ERR_ARGUMENT, "%s has no animation; glTF (.glb, .gltf) has",
-                         f->name);
+               : cwi_fail(err, CW_ERR_ARGUMENT, "%s has no animation; glTF (.glb, .gltf) has",
+                          f->name);
 }
 
 /* Finds the format and writer of a path, loads its modules, and checks that it supports the
@@ -127,15 +128,15 @@ static cw_status check_levels(const cwi_format_driver *f, const cw_part *parts, 
         if (level == 0)
             continue;
         if (!f->write.levels)
-            return cw_fail(err, CW_ERR_ARGUMENT,
-                           "%s has no levels of detail; glTF (.glb, .gltf) has", f->name);
+            return cwi_fail(err, CW_ERR_ARGUMENT,
+                            "%s has no levels of detail; glTF (.glb, .gltf) has", f->name);
         if (i == 0 || parts[i - 1].level != level - 1)
-            return cw_fail(err, CW_ERR_ARGUMENT,
-                           "part %zu is of level %zu: one of level %zu must be "
-                           "in front of it",
-                           i, level, level - 1);
+            return cwi_fail(err, CW_ERR_ARGUMENT,
+                            "part %zu is of level %zu: one of level %zu must be "
+                            "in front of it",
+                            i, level, level - 1);
         if (!parts[i].mesh->triangle_count || !parts[i - 1].mesh->triangle_count)
-            return cw_fail(err, CW_ERR_ARGUMENT, "a level of detail has no triangles");
+            return cwi_fail(err, CW_ERR_ARGUMENT, "a level of detail has no triangles");
     }
     return CW_OK;
 }

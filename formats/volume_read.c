@@ -34,11 +34,11 @@ static cw_status find_by_name(const char *name, const driver **found, cw_error *
     char names[CWI_FORMAT_LIST];
     *found = cwi_find_format(name);
     if (*found == &cwi_format_raw)
-        return cw_fail(err, CW_ERR_ARGUMENT, "the reader 'raw' needs a layout");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the reader 'raw' needs a layout");
     if (*found && cwi_reads_volume(*found))
         return CW_OK;
-    return cw_fail(err, CW_ERR_ARGUMENT, "there is no reader '%s'; there are %s", name,
-                   list_readers(names));
+    return cwi_fail(err, CW_ERR_ARGUMENT, "there is no reader '%s'; there are %s", name,
+                    list_readers(names));
 }
 
 /* Reads the first bytes of a file. A gzip file that is damaged from the start has no content to
@@ -95,8 +95,9 @@ const char *cwi_volume_format_of(const cwi_input *in)
 
 static cw_status fail_mesh(const char *format, cw_error *err)
 {
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "this is a mesh (%s), not a volume; use check, convert or simplify", format);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "this is a mesh (%s), not a volume; use check, convert or simplify",
+                    format);
 }
 
 static cw_status find_by_file(const cwi_input *in, const driver **found, cw_error *err)
@@ -115,12 +116,12 @@ static cw_status find_by_file(const cwi_input *in, const driver **found, cw_erro
     if (*found)
         return CW_OK;
     if (cwi_pvd_sniff(head, size))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "this is a list of the files of a time series (pvd); here one of the "
-                       "volumes that it lists is expected");
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "this is a list of the files of a time series (pvd); here one of the "
+                        "volumes that it lists is expected");
     if (mesh || (mesh = cwi_mesh_format_by_extension(in->path)))
         return fail_mesh(mesh, err);
-    return cw_fail(
+    return cwi_fail(
         err, CW_ERR_FORMAT,
         "neither content nor extension is of a format that is read (%s); a headerless "
         "file needs its layout stated (--raw)",
@@ -149,12 +150,12 @@ static cw_status open_names(opened *o, const char *path, const cw_read_desc *des
 {
     cw_status st = cwi_files_find(&o->in, path, !desc->raw, &o->names, &o->links, err);
     if (st == CW_OK && o->names.count == 0 && o->links)
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_IO,
             "the folder holds no file, only %zu links; --allow-external follows them",
             o->links);
     if (st == CW_OK && o->names.count == 0)
-        return cw_fail(err, CW_ERR_IO, "the folder holds no file");
+        return cwi_fail(err, CW_ERR_IO, "the folder holds no file");
     if (st == CW_OK)
         cwi_note_links(desc, o->links);
     return st;
@@ -195,15 +196,17 @@ static cw_status fail_no_slice(const opened *o, cw_error *err)
                      ", or the steps of a series by a pattern in quotes, '%.200s%s*%.16s'",
                      o->in.path, o->in.path[length - 1] == '/' ? "" : "/", strrchr(last, '.'));
         if (count > 0)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "none of its %zu files is a slice; volumes by themselves: %zu (%s), "
-                           "name one of them%s%s",
-                           o->names.count, count, cwi_format_at(r)->name, all, links);
+            return cwi_fail(
+                err, CW_ERR_FORMAT,
+                "none of its %zu files is a slice; volumes by themselves: %zu (%s), "
+                "name one of them%s%s",
+                o->names.count, count, cwi_format_at(r)->name, all, links);
     }
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "none of its %zu files is a slice in a format that is read (DICOM, TIFF)%s; "
-                   "headerless slices need their layout stated (--raw)",
-                   o->names.count, links);
+    return cwi_fail(
+        err, CW_ERR_FORMAT,
+        "none of its %zu files is a slice in a format that is read (DICOM, TIFF)%s; "
+        "headerless slices need their layout stated (--raw)",
+        o->names.count, links);
 }
 
 static cw_status find_by_files(opened *o, cw_error *err)
@@ -233,9 +236,9 @@ static cw_status find_reader(opened *o, const cw_read_desc *desc, cw_error *err)
                    : o->many ? find_by_files(o, err)
                              : find_by_file(&o->in, &o->reader, err);
     if (st == CW_OK && o->many && !o->reader->volume.read_slices)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "the reader '%s' reads one file, and these are %zu", o->reader->name,
-                       o->names.count);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "the reader '%s' reads one file, and these are %zu", o->reader->name,
+                        o->names.count);
     return st;
 }
 
@@ -257,14 +260,15 @@ static cw_status check_shares(const cw_volume *v, size_t files, cw_error *err)
     const size_t slices = v->dim[2] * v->steps;
     return slices % files == 0
                ? CW_OK
-               : cw_fail(err, CW_ERR_FORMAT, "'dims' asks for %zu slices; there are %zu files",
-                         slices, files);
+               : cwi_fail(err, CW_ERR_FORMAT, "'dims' asks for %zu slices; there are %zu files",
+                          slices, files);
 }
 
 static cw_status refuse_array(const char *array, cw_error *err)
 {
-    return cw_fail(err, CW_ERR_ARGUMENT,
-                   "'%s' was asked for; files of this format have no arrays with names", array);
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "'%s' was asked for; files of this format have no arrays with names",
+                    array);
 }
 
 /* Reads headers that become a source, and layouts. */
@@ -310,8 +314,8 @@ static cw_status check_spacing(const double *s, cw_error *err)
         return CW_OK;
     for (int a = 0; a < 3; a++)
         if (!(s[a] > 0) || !isfinite(s[a]))
-            return cw_fail(err, CW_ERR_ARGUMENT, "a spacing of %g mm; it must be above 0",
-                           s[a]);
+            return cwi_fail(err, CW_ERR_ARGUMENT, "a spacing of %g mm; it must be above 0",
+                            s[a]);
     return CW_OK;
 }
 
@@ -357,7 +361,7 @@ cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *
     memset(volume, 0, sizeof *volume);
     cw_status st = check_spacing(d.spacing_mm, err);
     if (st == CW_OK && d.spacing_mm[0] > 0 && d.claim.has_unit)
-        st = cw_fail(
+        st = cwi_fail(
             err, CW_ERR_ARGUMENT,
             "its spacing in mm and its unit are both said (--spacing, --input-unit): one "
             "was expected");
@@ -397,7 +401,7 @@ cw_status cw_arrays_list(const char *path, const cw_read_desc *desc, cw_array **
     if (st == CW_OK && !(o.reader && o.reader->volume.read_slices))
         st = read_opened(&o, &d, &shape, err);
     if (st == CW_OK && list.starved)
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a list of arrays");
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a list of arrays");
     cw_volume_free(&shape);
     close_path(&o);
     if (st != CW_OK)
@@ -486,13 +490,13 @@ static cw_status refuse_slices(const cwi_names *names, const cw_read_desc *desc,
     static const char hint[] = "slices in files of their own are one argument: name their "
                                "folder, or put quotes around a pattern";
     if (desc->raw)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%zu files with one layout: %s", names->count,
-                       hint);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%zu files with one layout: %s", names->count,
+                        hint);
     for (size_t i = 0; i < names->count; i++)
         if (kind_of(names->items[i], desc) == SLICE)
-            return cw_fail(err, CW_ERR_ARGUMENT,
-                           "%s: is a slice, and of several files each must be a volume; %s",
-                           names->items[i], hint);
+            return cwi_fail(err, CW_ERR_ARGUMENT,
+                            "%s: is a slice, and of several files each must be a volume; %s",
+                            names->items[i], hint);
     return CW_OK;
 }
 
@@ -537,7 +541,7 @@ static cw_status add_below(const char *folder, const cwi_names *found, cwi_names
         const size_t room = strlen(folder) + strlen(found->items[i]) + 2;
         char *path = cwi_alloc_array(room, 1);
         if (!path)
-            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the files of a folder");
+            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the files of a folder");
         const bool slash = folder[strlen(folder) - 1] == '/';
         snprintf(path, room, "%s%s%s", folder, slash ? "" : "/", found->items[i]);
         st = cwi_names_add(names, path, err);
@@ -588,10 +592,10 @@ static cw_status list_pvd(const char *path, const cw_read_desc *desc, cwi_names 
     cw_status st = cw_pvd_read(path, desc, &entries, &count, err);
     for (size_t n = 0; n < count && st == CW_OK; n++) {
         const char *mesh = mesh_format_of(entries[n].path);
-        st = mesh ? cw_fail(err, CW_ERR_FORMAT,
-                            "%s: lists meshes, such as '%s' (%s), and not volumes: check, "
-                            "convert and simplify take them, one at a time",
-                            path, entries[n].path, mesh)
+        st = mesh ? cwi_fail(err, CW_ERR_FORMAT,
+                             "%s: lists meshes, such as '%s' (%s), and not volumes: check, "
+                             "convert and simplify take them, one at a time",
+                             path, entries[n].path, mesh)
                   : cwi_names_add(names, entries[n].path, err);
     }
     cw_pvd_free(entries, count);
@@ -605,12 +609,13 @@ static cw_status list_paths(const char *const *paths, size_t path_count,
     const bool several = path_count > 1;
     cw_status st = CW_OK;
     for (size_t i = 0; i < path_count && st == CW_OK; i++)
-        st = cw_pvd_is(paths[i])
-                 ? cw_fail(err, CW_ERR_ARGUMENT,
+        st =
+            cw_pvd_is(paths[i])
+                ? cwi_fail(err, CW_ERR_ARGUMENT,
                            "%s: a list of files (pvd) is a series by itself, and these are %zu "
                            "arguments",
                            paths[i], path_count)
-                 : add_path(paths[i], names, err);
+                : add_path(paths[i], names, err);
     if (!several && (st != CW_OK || !is_series(names, desc))) {
         cwi_names_free(names);
         return CW_OK;

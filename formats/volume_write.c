@@ -32,21 +32,21 @@ static cw_status find_writer(const char *path, const char *format, const driver 
     for (size_t n = 0; (*found = cwi_format_at(n)) != NULL; n++)
         if (is_wanted(*found, path, format))
             return CW_OK;
-    return format ? cw_fail(err, CW_ERR_ARGUMENT,
-                            "there is no writer '%s' of volumes; there are %s", format,
-                            cwi_list_formats(writer_name, " ", list))
-                  : cw_fail(err, CW_ERR_ARGUMENT,
-                            "no writer of volumes has this extension; there are %s",
-                            cwi_list_formats(writer_extensions, " ", list));
+    return format ? cwi_fail(err, CW_ERR_ARGUMENT,
+                             "there is no writer '%s' of volumes; there are %s", format,
+                             cwi_list_formats(writer_name, " ", list))
+                  : cwi_fail(err, CW_ERR_ARGUMENT,
+                             "no writer of volumes has this extension; there are %s",
+                             cwi_list_formats(writer_extensions, " ", list));
 }
 
 static cw_status check_scaling(const driver *f, const cw_volume *v, cw_error *err)
 {
     if (f->save.has_scaling || (v->slope == 1 && v->intercept == 0))
         return CW_OK;
-    return cw_fail(err, CW_ERR_ARGUMENT,
-                   "%s has no place for slope %g and intercept %g; .nii has", f->name, v->slope,
-                   v->intercept);
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "%s has no place for slope %g and intercept %g; .nii has", f->name,
+                    v->slope, v->intercept);
 }
 
 /* Makes the name one short line; without a name from the caller it is the stem of the path. */
@@ -95,9 +95,9 @@ cw_status cw_volume_write(const char *path, const cw_volume *volume, const cw_wr
         desc = &defaults;
     cw_status st = find_writer(path, desc->format, &f, err);
     if (st == CW_OK && desc->local)
-        st = cw_fail(err, CW_ERR_ARGUMENT, "a volume has no local form: its frame stays");
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "a volume has no local form: its frame stays");
     if (st == CW_OK && (desc->text || desc->axes.unit || desc->axes.ras || desc->axes.y_up))
-        st = cw_fail(err, CW_ERR_ARGUMENT, "text, unit and frame are chosen for meshes only");
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "text, unit and frame are chosen for meshes only");
     if (st == CW_OK)
         st = cw_volume_resolve(volume, &v, err);
     if (st == CW_OK)

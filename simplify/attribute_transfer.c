@@ -79,7 +79,7 @@ cw_status cwi_carry(const cw_mesh *from, int threads, const cw_progress *progres
     if (!from->normals && !from->scalars && !from->colors && !from->labels)
         return CW_OK;
     if (!alloc_carried(from, to))
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", to->vertex_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", to->vertex_count);
     cw_status st = cwi_closest_build(from, &c.tree, err);
     if (st == CW_OK)
         st = cwi_each_layer((to->vertex_count + CHUNK - 1) / CHUNK, CHUNK * 64, threads,

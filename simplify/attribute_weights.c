@@ -25,11 +25,11 @@ cw_status cwi_attributes_check(const cw_mesh *mesh, const cw_simplify_desc *d, c
                 {"scalar", d->scalar_weight, mesh->scalars}};
     for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
         if (!(rows[n].weight >= 0) || !isfinite(rows[n].weight))
-            return cw_fail(err, CW_ERR_ARGUMENT, "%s_weight is %g; it must be 0 or more",
-                           rows[n].name, (double)rows[n].weight);
+            return cwi_fail(err, CW_ERR_ARGUMENT, "%s_weight is %g; it must be 0 or more",
+                            rows[n].name, (double)rows[n].weight);
         if (rows[n].weight > 0 && mesh->vertex_count && !rows[n].array)
-            return cw_fail(err, CW_ERR_ARGUMENT, "%s_weight is %g; the mesh has no %ss",
-                           rows[n].name, (double)rows[n].weight, rows[n].name);
+            return cwi_fail(err, CW_ERR_ARGUMENT, "%s_weight is %g; the mesh has no %ss",
+                            rows[n].name, (double)rows[n].weight, rows[n].name);
     }
     return CW_OK;
 }

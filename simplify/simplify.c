@@ -22,9 +22,9 @@ bool cw_simplify_available(void)
 static cw_status check_desc(const cw_mesh *mesh, const cw_simplify_desc *d, cw_error *err)
 {
     if (mesh->triangle_count > MOST || mesh->vertex_count > MOST)
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "%zu triangles and %zu vertices; at most 2^30 of either are simplified",
-                       mesh->triangle_count, mesh->vertex_count);
+        return cwi_fail(err, CW_ERR_LIMIT,
+                        "%zu triangles and %zu vertices; at most 2^30 of either are simplified",
+                        mesh->triangle_count, mesh->vertex_count);
     cw_status st = cw_mesh_check(mesh, err);
     return st == CW_OK ? cwi_attributes_check(mesh, d, err) : st;
 }
@@ -60,8 +60,8 @@ static cw_status scale_mesh(const cw_mesh *mesh, double *scale, cw_mesh *scaled,
     memset(scaled->origin, 0, sizeof scaled->origin);
     scaled->positions = cwi_alloc_array(3 * mesh->vertex_count, sizeof(float));
     if (!scaled->positions)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify %zu triangles",
-                       mesh->triangle_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify %zu triangles",
+                        mesh->triangle_count);
     cwi_scale_points(mesh->positions, mesh->vertex_count, *scale, scaled->positions);
     return CW_OK;
 }
@@ -74,8 +74,8 @@ static cw_status weigh_attributes(const cw_mesh *m, const cw_simplify_desc *d,
         return CW_OK;
     w->values = cwi_alloc_array(w->attributes * w->vertices, sizeof *w->values);
     if (!w->values)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for attributes of %zu vertices",
-                       w->vertices);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for attributes of %zu vertices",
+                        w->vertices);
     cwi_attributes_weigh(m, d, w->values);
     return CW_OK;
 }
@@ -88,8 +88,8 @@ static cw_status begin_block(const cw_mesh *m, cwi_mesh_block *w, cw_error *err)
     w->names = cwi_alloc_array(w->vertices, sizeof *w->names);
     w->corners = cwi_alloc_array(3 * m->triangle_count, sizeof *w->corners);
     if (!w->points || !w->names || !w->corners)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify %zu triangles",
-                       m->triangle_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify %zu triangles",
+                        m->triangle_count);
     if (w->vertices)
         memcpy(w->points, m->positions, 3 * w->vertices * sizeof *w->points);
     for (size_t v = 0; v < w->vertices; v++)
@@ -147,7 +147,7 @@ static cw_status simplify_levels(const cw_mesh *mesh, const cw_simplify_desc *de
     cwi_mesh_block *left = cwi_alloc_zeroed(levels, sizeof *left);
     size_t cut = 0;
     cw_status st = left ? check_desc(mesh, desc, err)
-                        : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu levels", levels);
+                        : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu levels", levels);
     if (st == CW_OK)
         st = cwi_passes_init(&p, desc, err);
     if (st == CW_OK)
@@ -192,8 +192,8 @@ cw_status cw_simplify(const cw_mesh *mesh, const cw_simplify_desc *desc, cw_mesh
     const size_t target = cwi_simplify_target(desc, mesh->triangle_count);
     *out = (cw_mesh){0};
     if (desc->error_mm == 0 && desc->ratio == 0 && desc->triangles == 0)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "simplification needs an error, a number of triangles or a ratio");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "simplification needs an error, a number of triangles or a ratio");
     return simplify_levels(mesh, desc, &target, 1, out, facts, err);
 }
 
@@ -205,12 +205,12 @@ cw_status cw_simplify_levels(const cw_mesh *mesh, const cw_simplify_desc *desc,
         out[n] = (cw_mesh){0};
     for (size_t n = 0; n < levels; n++)
         if (triangles[n] == 0 || (n && triangles[n] >= triangles[n - 1]))
-            return cw_fail(err, CW_ERR_ARGUMENT,
-                           "level %zu has %zu triangles; each must have some, and fewer than "
-                           "the one before",
-                           n, triangles[n]);
+            return cwi_fail(err, CW_ERR_ARGUMENT,
+                            "level %zu has %zu triangles; each must have some, and fewer than "
+                            "the one before",
+                            n, triangles[n]);
     if (levels == 0 || desc->triangles || desc->ratio > 0 || desc->error_mm > 0)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "levels need their own numbers of triangles, and nothing else");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "levels need their own numbers of triangles, and nothing else");
     return simplify_levels(mesh, desc, triangles, levels, out, facts, err);
 }

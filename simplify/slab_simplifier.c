@@ -121,8 +121,8 @@ cw_status cwi_slab_block_init(cwi_slab_block *s, const cw_slab *from, double sca
     set_planes(b, from, scale);
     s->longest = ok ? longest_edge(b) : 0;
     return ok ? CW_OK
-              : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify a slab of %zu triangles",
-                        m->triangle_count);
+              : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify a slab of %zu triangles",
+                         m->triangle_count);
 }
 
 /* --- down to a number of triangles -------------------------------------------------------- */
@@ -134,7 +134,7 @@ static cw_status name_seams(cw_simplifier *s, const cwi_slab_block *slab, cwi_me
     const size_t first[3] = {0, s->below, s->names};
     b->held = cwi_alloc_array(b->vertices, sizeof *b->held);
     if (!b->held)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", b->vertices);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", b->vertices);
     for (size_t v = 0; v < b->vertices; v++) {
         const uint32_t n = b->names[v];
         b->held[v] = slab->seam[n];
@@ -151,7 +151,7 @@ static cw_status add_slab(cw_simplifier *s, cwi_slab_block *slab, cw_error *err)
         const size_t room = 2 * s->room + 8;
         cwi_mesh_block *slabs = cwi_realloc_array(s->slabs, room, sizeof *slabs);
         if (!slabs)
-            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slabs", room);
+            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slabs", room);
         s->slabs = slabs;
         s->room = room;
     }
@@ -189,15 +189,15 @@ cw_status cw_simplifier_new(const cw_simplify_desc *desc, cw_simplifier **out, c
 {
     *out = NULL;
     if ((desc->error_mm == 0) == (desc->ratio == 0 && desc->triangles == 0))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "slabs are simplified to an error, or to a number of triangles or a "
-                       "ratio: one of these");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "slabs are simplified to an error, or to a number of triangles or a "
+                        "ratio: one of these");
     if (desc->normal_weight != 0 || desc->color_weight != 0 || desc->scalar_weight != 0)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "slabs have neither normals, nor colours or scalars to weigh");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "slabs have neither normals, nor colours or scalars to weigh");
     cw_simplifier *s = cwi_alloc_zeroed(1, sizeof *s);
     if (!s)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a simplifier");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a simplifier");
     s->desc = *desc;
     cw_status st = cwi_passes_init(&s->passes, &s->desc, err);
     if (st != CW_OK)
@@ -225,7 +225,7 @@ cw_status cw_simplifier_take(void *simplifier, const cw_slab *from, cw_error *er
     cwi_slab_block slab;
     cwi_stop_init(&s->passes.stop, &s->desc.progress); /* this thread may be another one */
     if (s->ended)
-        return cw_fail(err, CW_ERR_ARGUMENT, "a slab after the last");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a slab after the last");
     memcpy(s->frame.origin, from->mesh->origin, sizeof s->frame.origin);
     memcpy(s->frame.affine, from->mesh->affine, sizeof s->frame.affine);
     s->triangles = from->triangles;
@@ -269,7 +269,7 @@ cw_status cw_simplifier_finish(cw_simplifier *s, cw_mesh *out, cw_simplify_facts
     *out = (cw_mesh){0};
     cwi_stop_init(&s->passes.stop, &s->desc.progress);
     if (s->scale > 0 && !s->ended)
-        return cw_fail(err, CW_ERR_ARGUMENT, "slabs are missing: there was no last one");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "slabs are missing: there was no last one");
     if (s->scale > 0)
         st = finish_mesh(s, out, &cut, err);
     if (st == CW_OK && facts)

@@ -24,7 +24,7 @@ void cwi_window_free(cwi_slab_window *w)
 
 static cw_status no_memory(cw_error *err)
 {
-    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify across slabs");
+    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify across slabs");
 }
 
 static double height_along(const float along[3], const float x[3])

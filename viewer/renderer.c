@@ -31,11 +31,11 @@ cw_status cw_renderer_new(cw_backend backend, cw_renderer **renderer, cw_error *
 {
     *renderer = NULL;
     if ((unsigned)backend >= CW_BACKEND_COUNT)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%d is not a backend (0 to %d)", (int)backend,
-                       CW_BACKEND_COUNT - 1);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a backend (0 to %d)", (int)backend,
+                        CW_BACKEND_COUNT - 1);
     cw_renderer *r = cwi_alloc_zeroed(1, sizeof *r);
     if (!r)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a renderer");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a renderer");
     r->backend = backend;
     cw_status st = backend == CW_BACKEND_EGL ? need_gl(r, err) : CW_OK;
     if (st == CW_OK)

@@ -33,7 +33,7 @@ static cw_status measure_by_field(const cli_bench *b, const cw_mesh *mesh, cli_b
     float *mm = cwi_alloc_array(mesh->vertex_count, sizeof *mm);
     cw_distance d;
     if (!mm)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the errors of vertices");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the errors of vertices");
     cw_status st = cw_distance_to_field(mesh, &b->volume.view, &desc, &d, mm, err);
     for (size_t v = 0; v < mesh->vertex_count && st == CW_OK; v++) {
         const double off = fabs((double)mm[v]);

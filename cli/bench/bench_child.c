@@ -66,7 +66,7 @@ cw_status cli_child_start(cli_child *c, const char *const *argv, const char *fol
     close(c->in);
     close(c->out);
     *c = (cli_child){0};
-    return cw_fail(err, CW_ERR_BACKEND, "no process could be started: %s", strerror(why));
+    return cwi_fail(err, CW_ERR_BACKEND, "no process could be started: %s", strerror(why));
 }
 
 void cli_child_stop(cli_child *c)
@@ -127,18 +127,18 @@ static cw_status how_it_ended(cli_child *c, cw_error *err)
     if (status == 0)
         return CW_OK;
     if (status == -1)
-        return cw_fail(err, CW_ERR_BACKEND, "it closed its output but did not end");
+        return cwi_fail(err, CW_ERR_BACKEND, "it closed its output but did not end");
     if (WIFSIGNALED(status))
-        return cw_fail(err, CW_ERR_BACKEND, "it was ended by signal %d (%s)%s",
-                       WTERMSIG(status), strsignal(WTERMSIG(status)), words);
-    return cw_fail(err, CW_ERR_BACKEND, "it ended with exit code %d%s", WEXITSTATUS(status),
-                   words);
+        return cwi_fail(err, CW_ERR_BACKEND, "it was ended by signal %d (%s)%s",
+                        WTERMSIG(status), strsignal(WTERMSIG(status)), words);
+    return cwi_fail(err, CW_ERR_BACKEND, "it ended with exit code %d%s", WEXITSTATUS(status),
+                    words);
 }
 
 static cw_status fail_ended(cli_child *c, cw_error *err)
 {
     const cw_status st = how_it_ended(c, err);
-    return st == CW_OK ? cw_fail(err, CW_ERR_BACKEND, "it ended without an answer") : st;
+    return st == CW_OK ? cwi_fail(err, CW_ERR_BACKEND, "it ended without an answer") : st;
 }
 
 /* Waits for bytes of it. count  how many; 0: it has closed its output */
@@ -152,8 +152,8 @@ static cw_status wait_for_bytes(cli_child *c, double deadline, char *bytes, size
         if (cli_interrupted() || cli_seconds() >= deadline) {
             cli_child_stop(c);
             return cli_interrupted()
-                       ? cw_fail(err, CW_ERR_CANCELLED, "interrupted")
-                       : cw_fail(err, CW_ERR_BACKEND, "it gave no answer in %g s", limit);
+                       ? cwi_fail(err, CW_ERR_CANCELLED, "interrupted")
+                       : cwi_fail(err, CW_ERR_BACKEND, "it gave no answer in %g s", limit);
         }
         ready = poll(&p, 1, 50);
     }
@@ -184,7 +184,7 @@ cw_status cli_child_ask(cli_child *c, const char *line, char *answer, size_t roo
         }
         if (have + 1 == room) {
             cli_child_stop(c);
-            return cw_fail(err, CW_ERR_BACKEND, "its answer is not understood");
+            return cwi_fail(err, CW_ERR_BACKEND, "its answer is not understood");
         }
     }
 }

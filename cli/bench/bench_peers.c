@@ -40,7 +40,7 @@ static cw_status start_python(const cli_peers *p, cli_peer *peer, const char *ow
     char threads[16], *text = NULL;
     snprintf(threads, sizeof threads, "%d", p->threads);
     if (asprintf(&text, "%s%s", cli_python_peer, own) < 0)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a program");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a program");
     const char *const argv[] = {peer->path, "-c", text, threads, NULL};
     cw_status st = cli_child_start(&peer->child, argv, p->folder, p->limit_s, err);
     free(text);
@@ -138,7 +138,7 @@ static cw_status restart_peer(const cli_peers *p, cli_peer *peer, cw_error *err)
         start_python(p, peer, rows[peer - p->of].program, answer, sizeof answer, err);
     if (st == CW_OK && strncmp(answer, "ready ", 6) != 0) {
         cli_child_stop(&peer->child);
-        return cw_fail(err, CW_ERR_BACKEND, "it did not start again");
+        return cwi_fail(err, CW_ERR_BACKEND, "it did not start again");
     }
     return st;
 }
@@ -156,7 +156,7 @@ static cw_status close_file(FILE *f, bool good, cw_error *err)
 {
     if (f && fclose(f) == 0 && good)
         return CW_OK;
-    return cw_fail(err, CW_ERR_OUTPUT, "the files that peers read cannot be written");
+    return cwi_fail(err, CW_ERR_OUTPUT, "the files that peers read cannot be written");
 }
 
 static bool put_row(FILE *f, const cw_volume *v, size_t j, size_t k)
@@ -210,7 +210,7 @@ static cw_status ask_peer(cli_peer *peer, const char *line, double *numbers, siz
     if (good && *at == '\0')
         return CW_OK;
     cli_child_stop(&peer->child);
-    return cw_fail(err, CW_ERR_BACKEND, "its answer is not understood");
+    return cwi_fail(err, CW_ERR_BACKEND, "its answer is not understood");
 }
 
 /* What a voxel outside the surface may hold, in the file's numbers. */
@@ -278,7 +278,7 @@ static cw_status read_result(const cli_peers *p, const double n[3], cw_mesh *mes
                 n[0] < UINT32_MAX && n[0] == floor(n[0]) && n[1] == floor(n[1]);
     if (good && n[1] < 1) {
         fclose(f);
-        return cw_fail(err, CW_ERR_BACKEND, "it made no triangles");
+        return cwi_fail(err, CW_ERR_BACKEND, "it made no triangles");
     }
     if (good) {
         mesh->vertex_count = (size_t)n[0];
@@ -292,7 +292,7 @@ static cw_status read_result(const cli_peers *p, const double n[3], cw_mesh *mes
     if (f)
         fclose(f);
     if (!good || cw_mesh_check(mesh, NULL) != CW_OK)
-        return cw_fail(err, CW_ERR_BACKEND, "its output is not a mesh");
+        return cwi_fail(err, CW_ERR_BACKEND, "its output is not a mesh");
     return CW_OK;
 }
 

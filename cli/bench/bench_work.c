@@ -188,7 +188,7 @@ static cw_status simplify_meshopt(cli_bench *b, const cli_bench_kind *kind, cli_
     const stopwatch watch = start_watch();
     b->made.triangles = cwi_alloc_array(3 * b->surface.triangle_count, sizeof(uint32_t));
     if (!b->made.triangles)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for triangles");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for triangles");
     b->made.triangle_count = meshopt->simplify(&b->surface, target_of(b), b->made.triangles);
     *spent = stop_watch(&watch);
     return CW_OK;
@@ -208,13 +208,13 @@ static cw_status take_meshopt(cli_bench *b, const cli_bench_kind *kind, cw_mesh 
     const size_t point_bytes = 3 * sizeof(float) * in->vertex_count;
     cw_status st = take_made(b, kind, mesh, bytes, err);
     if (mesh->triangle_count == 0)
-        return cw_fail(err, CW_ERR_BACKEND, "it left no triangles");
+        return cwi_fail(err, CW_ERR_BACKEND, "it left no triangles");
     memcpy(mesh->origin, in->origin, sizeof mesh->origin);
     mesh->vertex_count = in->vertex_count;
     mesh->positions = copy_of(in->positions, point_bytes);
     mesh->normals = copy_of(in->normals, point_bytes);
     if (!mesh->positions || !mesh->normals)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for vertices");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for vertices");
     return st == CW_OK ? cw_mesh_drop_components(mesh, 0, NULL, NULL, err) : st;
 }
 
@@ -267,9 +267,9 @@ static cw_status take_draco(cli_bench *b, const cli_bench_kind *kind, cw_mesh *m
     (void)kind;
     *bytes = size_of(b, "mesh.drc");
     if (!*bytes)
-        return cw_fail(err, CW_ERR_BACKEND, "it wrote nothing");
+        return cwi_fail(err, CW_ERR_BACKEND, "it wrote nothing");
     if (!cli_find_program("draco_decoder", 0, decoder, sizeof decoder))
-        return cw_fail(err, CW_ERR_BACKEND, "there is no draco_decoder to read what it wrote");
+        return cwi_fail(err, CW_ERR_BACKEND, "there is no draco_decoder to read what it wrote");
     remove(path_of(b, "back.ply"));
     cw_status st = run_to_end(b, argv, err);
     if (st == CW_OK)

@@ -67,13 +67,13 @@ static cw_status take_field(const char *name, bool wanted[CW_FIELD_COUNT], cw_er
     if (found)
         wanted[field] = true;
     else if (nearest)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--fields: '%s' is not a field; did you mean '%s'?", name, nearest);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--fields: '%s' is not a field; did you mean '%s'?", name, nearest);
     return found ? CW_OK
-                 : cw_fail(err, CW_ERR_ARGUMENT,
-                           "--fields: '%s' is not a field with a known surface; 'cubewright "
-                           "make --list' lists those first",
-                           name);
+                 : cwi_fail(err, CW_ERR_ARGUMENT,
+                            "--fields: '%s' is not a field with a known surface; 'cubewright "
+                            "make --list' lists those first",
+                            name);
 }
 
 static cw_status choose_fields(const bench_args *args, bool wanted[CW_FIELD_COUNT],
@@ -116,8 +116,8 @@ static cw_status check_outputs(const bench_args *args, cw_error *err)
     if (st != CW_OK || !args->json || !args->csv)
         return st;
     if (strcmp(args->json, "-") == 0 && strcmp(args->csv, "-") == 0)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--json and --csv: only one of them can use the standard output");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--json and --csv: only one of them can use the standard output");
     return cli_check_apart(args->json, args->csv, err);
 }
 
@@ -125,17 +125,17 @@ static cw_status check_args(const bench_args *args, cw_error *err)
 {
     for (size_t n = 0; n < args->sizes.count; n++)
         if (args->sizes.n[n] < LEAST_SIZE || args->sizes.n[n] > MOST_SIZE)
-            return cw_fail(err, CW_ERR_ARGUMENT, "--sizes: %d to %d were expected, not %zu",
-                           LEAST_SIZE, MOST_SIZE, args->sizes.n[n]);
+            return cwi_fail(err, CW_ERR_ARGUMENT, "--sizes: %d to %d were expected, not %zu",
+                            LEAST_SIZE, MOST_SIZE, args->sizes.n[n]);
     if (args->repeat < 1 || args->repeat > CLI_BENCH_MOST_RUNS)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--repeat: 1 to %d was expected, not %zu",
-                       CLI_BENCH_MOST_RUNS, args->repeat);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--repeat: 1 to %d was expected, not %zu",
+                        CLI_BENCH_MOST_RUNS, args->repeat);
     if (args->peer_timeout < 1 || args->peer_timeout > 86400)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--peer-timeout: 1 to 86400 seconds were expected, not %zu",
-                       args->peer_timeout);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--peer-timeout: 1 to 86400 seconds were expected, not %zu",
+                        args->peer_timeout);
     if (args->iso.given && !args->common.input_count)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--iso is for files; fields have their own");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--iso is for files; fields have their own");
     return check_outputs(args, err);
 }
 
@@ -162,7 +162,7 @@ static cw_status list_cases(const bench_args *args, cli_bench *b, cw_error *err)
     b->cases =
         calloc(args->common.input_count + CW_FIELD_COUNT * args->sizes.count, sizeof *b->cases);
     if (!b->cases)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for what is measured");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for what is measured");
     for (size_t n = 0; n < args->common.input_count; n++) {
         const char *path = args->common.inputs[n];
         b->cases[b->case_count++] =
@@ -199,7 +199,7 @@ static cw_status run_bench(void *p, cw_error *err)
     bench_args *args = p;
     cli_bench *b = calloc(1, sizeof *b);
     if (!b)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a bench");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a bench");
     b->input = &args->input;
     b->iso = args->iso;
     b->inside = args->inside;

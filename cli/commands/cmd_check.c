@@ -154,9 +154,9 @@ static cw_status check_defects_path(const check_args *args, cw_error *err)
     const bool colored = dot && (strcmp(dot, ".ply") == 0 || strcmp(dot, ".glb") == 0 ||
                                  strcmp(dot, ".gltf") == 0);
     if (!colored)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "%s: --defects needs colours, which .ply, .glb and .gltf hold",
-                       args->defects);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "%s: --defects needs colours, which .ply, .glb and .gltf hold",
+                        args->defects);
     cw_status st = check_against_inputs(args, args->defects, err);
     if (st == CW_OK && args->json)
         st = cli_check_apart(args->json, args->defects, err);
@@ -174,18 +174,18 @@ static cw_status check_args_of(run_state *s, cw_error *err)
         return st;
     s->report.path = args->json;
     if (args->source && !args->iso.given)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--source needs the isovalue of its surface: --iso V");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--source needs the isovalue of its surface: --iso V");
     if (args->iso.given && !args->source)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--iso needs a volume: --source VOLUME");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--iso needs a volume: --source VOLUME");
     if (args->least.given && !args->source)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--min-volume needs a volume: --source VOLUME");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--min-volume needs a volume: --source VOLUME");
     if (args->tolerance.given && !args->source && !args->reference)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--tolerance needs something to measure from: --source or --reference");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--tolerance needs something to measure from: --source or --reference");
     if (args->tolerance.unit == CLI_VOXELS && !args->source)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--tolerance in voxels needs a volume: --source VOLUME");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--tolerance in voxels needs a volume: --source VOLUME");
     return args->defects ? check_defects_path(args, err) : CW_OK;
 }
 
@@ -270,8 +270,8 @@ static cw_status part_missing(run_state *s, cw_mesh *surface, const cw_mesh_dist
     float *distance = calloc(surface->vertex_count + 1, sizeof *distance);
     cw_drop_counts missing = {0};
     cw_status st = distance ? CW_OK
-                            : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu distances",
-                                      surface->vertex_count);
+                            : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu distances",
+                                       surface->vertex_count);
     if (st == CW_OK)
         st = cw_distance_to_mesh(surface, &s->mesh.mesh, back, &s->from_field, distance, err);
     for (size_t v = 0; st == CW_OK && v < surface->vertex_count; v++)
@@ -382,8 +382,8 @@ static cw_status measure_all(run_state *s, cw_error *err)
         if (args->source || args->reference)
             s->distances = cwi_alloc_zeroed(mesh->vertex_count + 1, sizeof *s->distances);
         if (!s->defects || ((args->source || args->reference) && !s->distances))
-            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to paint %zu triangles",
-                           mesh->triangle_count);
+            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to paint %zu triangles",
+                            mesh->triangle_count);
     }
     s->findings.quality = &s->quality;
     s->findings.tolerance_mm = tolerance_mm(s);
@@ -458,8 +458,8 @@ static cw_status hold_to_profile(const run_state *s, cw_error *err)
             const size_t used = strlen(names);
             snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", v->name);
         }
-    return cw_fail(err, CW_ERR_CHECK, "%s: does not meet profile %s: %s", s->mesh.path,
-                   profiles[s->args->profile], names);
+    return cwi_fail(err, CW_ERR_CHECK, "%s: does not meet profile %s: %s", s->mesh.path,
+                    profiles[s->args->profile], names);
 }
 
 static cw_status judge_mesh(run_state *s, cw_error *err)

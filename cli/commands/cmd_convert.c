@@ -99,9 +99,9 @@ static cw_status check_args(run_state *s, cw_error *err)
     if (st != CW_OK)
         return st;
     if (!args->output)
-        return cw_fail(err, CW_ERR_ARGUMENT, "convert needs an output: -o FILE");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "convert needs an output: -o FILE");
     if (args->merge && args->split)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--merge and --split exclude each other");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--merge and --split exclude each other");
     if (args->split)
         return CW_OK;
     st = cli_name_output(&s->outputs, args->output, input[0], err);
@@ -125,7 +125,7 @@ static cw_status read_input(run_state *s, cw_error *err)
     cli_report_end(&s->report, "read", 1, cli_mesh_triangles(&s->mesh));
     return cli_mesh_triangles(&s->mesh)
                ? CW_OK
-               : cw_fail(err, CW_ERR_EMPTY, "%s: it has no triangles", path);
+               : cwi_fail(err, CW_ERR_EMPTY, "%s: it has no triangles", path);
 }
 
 static cw_status convert_file(run_state *s, size_t n, const cw_part *parts, size_t count,

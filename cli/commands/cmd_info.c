@@ -139,7 +139,7 @@ static cw_status find_arrays(const info_args *args, facts *f, cw_error *err)
     }
     f->ranges = calloc(f->array_count * MOST_COMPONENTS, sizeof *f->ranges);
     if (!f->ranges)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the ranges of arrays");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the ranges of arrays");
     for (size_t n = 0; n < f->array_count && st == CW_OK; n++)
         if (is_reached(f, n))
             st = find_ranges(args, f->arrays[n].name, f->ranges + n * MOST_COMPONENTS, err);
@@ -538,8 +538,8 @@ static cw_status print_files(const info_args *args, char *const *files, size_t c
     cli_json j = {.out = stdout};
     cw_error finding = {0};
     if (args->histogram || args->levels)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--histogram and --levels need a single file; there are %zu", count);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--histogram and --levels need a single file; there are %zu", count);
     open_list(args, count, &j);
     cw_status st = list_files(args, files, count, &j, &finding, err);
     close_list(args, st == CW_OK ? &finding : err, &j);

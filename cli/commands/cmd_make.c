@@ -91,10 +91,10 @@ static cw_status unknown_subject(const char *name, cw_error *err)
         names[n] = s.name;
     const char *nearest = cli_nearest(name, names);
     if (nearest)
-        return cw_fail(err, CW_ERR_ARGUMENT, "'%s' is not a field; did you mean '%s'?", name,
-                       nearest);
-    return cw_fail(err, CW_ERR_ARGUMENT,
-                   "'%s' is not a field; 'cubewright make --list' lists them", name);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "'%s' is not a field; did you mean '%s'?", name,
+                        nearest);
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "'%s' is not a field; 'cubewright make --list' lists them", name);
 }
 
 static double mega_voxels(const make_args *args)
@@ -165,14 +165,14 @@ static cw_status run_make(void *p, cw_error *err)
     if (args->list)
         return list_subjects();
     if (args->common.input_count == 0)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "make needs a field; 'cubewright make --list' lists them");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "make needs a field; 'cubewright make --list' lists them");
     if (!find_subject(args->common.inputs[0], &s))
         return unknown_subject(args->common.inputs[0], err);
     if (!args->output)
-        return cw_fail(err, CW_ERR_ARGUMENT, "make needs an output: -o FILE");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "make needs an output: -o FILE");
     if (args->dims.count == 2)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--dims takes one number or three, not two");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--dims takes one number or three, not two");
     if (args->dims.count == 1)
         args->dims.n[1] = args->dims.n[2] = args->dims.n[0];
     return make_field(args, &s, err);

@@ -69,15 +69,15 @@ static cw_status check_lod(const cli_simplify_args *args, cw_error *err)
 {
     const cli_counts *lod = &args->lod;
     if (args->error.given || args->triangles || args->ratio.given)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--lod has its own targets; --error, --triangles and --ratio are for a "
-                       "single mesh");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--lod has its own targets; --error, --triangles and --ratio are for a "
+                        "single mesh");
     for (size_t n = 0; n < lod->count; n++)
         if (!lod->n[n] || (n && lod->n[n] >= lod->n[n - 1]))
-            return cw_fail(err, CW_ERR_ARGUMENT,
-                           "--lod lists %zu triangles%s; each level needs at least 1, and "
-                           "fewer than the one before",
-                           lod->n[n], n ? " after a level with as many or fewer" : "");
+            return cwi_fail(err, CW_ERR_ARGUMENT,
+                            "--lod lists %zu triangles%s; each level needs at least 1, and "
+                            "fewer than the one before",
+                            lod->n[n], n ? " after a level with as many or fewer" : "");
     return CW_OK;
 }
 
@@ -86,27 +86,27 @@ static cw_status check_targets(const cli_simplify_args *args, cw_error *err)
     if (args->lod.count)
         return check_lod(args, err);
     if (!args->error.given && !args->triangles && !args->ratio.given)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "simplify needs a target: --error 0.1mm, --triangles 50k, --ratio 0.25 "
-                       "or --lod 50k,12k,3k");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "simplify needs a target: --error 0.1mm, --triangles 50k, --ratio 0.25 "
+                        "or --lod 50k,12k,3k");
     return CW_OK;
 }
 
 static cw_status check_values(const cli_simplify_args *args, cw_error *err)
 {
     if (args->error.unit == CLI_VOXELS || args->drop.unit == CLI_VOXELS)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--%s: a mesh has no voxels; give mm, or %% of its box's diagonal",
-                       args->error.unit == CLI_VOXELS ? "error" : "drop-components");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--%s: a mesh has no voxels; give mm, or %% of its box's diagonal",
+                        args->error.unit == CLI_VOXELS ? "error" : "drop-components");
     if (args->ratio.given && !(args->ratio.value > 0 && args->ratio.value < 1))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--ratio %g: a fraction above 0 and below 1 was expected",
-                       args->ratio.value);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--ratio %g: a fraction above 0 and below 1 was expected",
+                        args->ratio.value);
     if (args->iso.given && !args->source)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--iso needs a volume: --source VOLUME");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--iso needs a volume: --source VOLUME");
     if (args->iso.given && !args->measure)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--iso is for measuring; it cannot be combined with --no-measure");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--iso is for measuring; it cannot be combined with --no-measure");
     return CW_OK;
 }
 
@@ -118,7 +118,7 @@ cw_status cli_check_simplify_args(const cli_simplify_args *args, cw_error *err)
     if (st == CW_OK)
         st = cli_check_compress(&args->compress, false, err);
     if (st == CW_OK && !args->output)
-        st = cw_fail(err, CW_ERR_ARGUMENT, "simplify needs an output: -o FILE");
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "simplify needs an output: -o FILE");
     return st;
 }
 

@@ -127,10 +127,10 @@ static cw_status parse_length(const char *option, const char *text, cli_length *
 {
     if (cli_parse_length(text, out) && out->unit != CLI_VOXELS)
         return CW_OK;
-    return cw_fail(err, CW_ERR_ARGUMENT,
-                   "%s '%s': expected a length above 0 such as 0.1mm, or 0.05%% of the box's "
-                   "diagonal",
-                   option, text);
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "%s '%s': expected a length above 0 such as 0.1mm, or 0.05%% of the box's "
+                    "diagonal",
+                    option, text);
 }
 
 /* "4mm@-z" */
@@ -147,7 +147,7 @@ static cw_status parse_drain(const char *text, cli_length *wide, cw_drain *drain
             return parse_length("--drain", copy, wide, err);
         }
     }
-    return cw_fail(
+    return cwi_fail(
         err, CW_ERR_ARGUMENT,
         "--drain '%s': expected a diameter and a direction, +x to -z, such as 4mm@-z", text);
 }
@@ -156,7 +156,7 @@ static cw_status parse_drains(const char *text, wishes *w, cw_error *err)
 {
     char *copy = malloc(strlen(text) + 1), *next = copy;
     if (!copy)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for drains");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for drains");
     strcpy(copy, text);
     cw_status st = CW_OK;
     while (next && st == CW_OK) {
@@ -166,7 +166,7 @@ static cw_status parse_drains(const char *text, wishes *w, cw_error *err)
             *next++ = '\0';
         st = w->drain_count < MOST_DRAINS
                  ? parse_drain(here, &w->drain[w->drain_count], &w->drains[w->drain_count], err)
-                 : cw_fail(err, CW_ERR_ARGUMENT, "--drain: more than %d", MOST_DRAINS);
+                 : cwi_fail(err, CW_ERR_ARGUMENT, "--drain: more than %d", MOST_DRAINS);
         w->drain_count++;
     }
     free(copy);
@@ -184,22 +184,22 @@ static cw_status parse_by(const char *text, wishes *w, cw_error *err)
     if (*rest != '+' && *rest != '-' && cli_parse_length(rest, &w->by) &&
         w->by.unit != CLI_VOXELS)
         return CW_OK;
-    return cw_fail(err, CW_ERR_ARGUMENT,
-                   "--by '%s': expected a length such as 1mm, -0.5mm, 0 or 0.5%% of the box's "
-                   "diagonal",
-                   text);
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "--by '%s': expected a length such as 1mm, -0.5mm, 0 or 0.5%% of the box's "
+                    "diagonal",
+                    text);
 }
 
 static cw_status parse_wishes(const cli_solid_args *args, bool hollow, wishes *w, cw_error *err)
 {
     cw_status st = CW_OK;
     if (hollow && !args->wall.given)
-        return cw_fail(err, CW_ERR_ARGUMENT, "hollow needs a wall thickness: --wall 2mm");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "hollow needs a wall thickness: --wall 2mm");
     if (hollow && args->wall.unit == CLI_VOXELS)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--wall: a mesh has no voxels; give mm, or %% of its box's diagonal");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--wall: a mesh has no voxels; give mm, or %% of its box's diagonal");
     if (!hollow && !args->by)
-        return cw_fail(err, CW_ERR_ARGUMENT, "offset needs a distance: --by 1mm");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "offset needs a distance: --by 1mm");
     if (args->drain)
         st = parse_drains(args->drain, w, err);
     if (st == CW_OK && args->by)
@@ -207,8 +207,8 @@ static cw_status parse_wishes(const cli_solid_args *args, bool hollow, wishes *w
     if (st == CW_OK && args->voxel && strcmp(args->voxel, "auto") != 0)
         st = parse_length("--voxel", args->voxel, &w->voxel, err);
     if (st == CW_OK && !args->output)
-        st = cw_fail(err, CW_ERR_ARGUMENT, "%s needs an output: -o FILE",
-                     hollow ? "hollow" : "offset");
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "%s needs an output: -o FILE",
+                      hollow ? "hollow" : "offset");
     return st;
 }
 
@@ -225,7 +225,7 @@ static cw_status check_args(run_state *s, cw_error *err)
     if (st == CW_OK)
         st = cli_check_compress(&args->compress, false, err);
     if (st == CW_OK && !cw_level_set_available())
-        st = cw_fail(
+        st = cwi_fail(
             err, CW_ERR_UNSUPPORTED,
             "%s needs OpenVDB, which this build lacks: install libopenvdb-dev and build again",
             s->report.command);
@@ -357,7 +357,7 @@ static cw_status measure_offset(run_state *s, cw_error *err)
     cw_distance d;
     float *each = cwi_alloc_array(p->out.vertex_count, sizeof *each);
     cw_status st = each ? cw_distance_to_mesh(&p->out, &p->input, &desc, &d, each, err)
-                        : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for distances");
+                        : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for distances");
     if (st == CW_OK) {
         double least = d.max_mm;
         for (size_t n = 0; n < p->out.vertex_count; n++)
@@ -393,10 +393,10 @@ static cw_status hold_bound(const run_state *s, cw_error *err)
     cw_quality q;
     cw_status st = cw_quality_measure(&s->pieces.piece->out, &desc, &q, err);
     if (st == CW_OK && (q.open_edges || q.nonmanifold_edges || q.misoriented_edges))
-        st = cw_fail(err, CW_ERR_CHECK,
-                     "the result is not as promised: %zu open, %zu non-manifold, %zu "
-                     "misoriented edges; nothing is written",
-                     q.open_edges, q.nonmanifold_edges, q.misoriented_edges);
+        st = cwi_fail(err, CW_ERR_CHECK,
+                      "the result is not as promised: %zu open, %zu non-manifold, %zu "
+                      "misoriented edges; nothing is written",
+                      q.open_edges, q.nonmanifold_edges, q.misoriented_edges);
     return st;
 }
 
@@ -419,10 +419,10 @@ static cw_status hold_to_input(const run_state *s, cw_error *err)
 {
     if (!s->offset.is_astray)
         return CW_OK;
-    return cw_fail(err, CW_ERR_CHECK,
-                   "%s: written, but not within half a voxel of %.4g mm of the input both "
-                   "ways: some parts are too thin; smaller voxels help",
-                   s->mesh.path, s->offset.asked_mm);
+    return cwi_fail(err, CW_ERR_CHECK,
+                    "%s: written, but not within half a voxel of %.4g mm of the input both "
+                    "ways: some parts are too thin; smaller voxels help",
+                    s->mesh.path, s->offset.asked_mm);
 }
 
 static cw_status make_mesh(run_state *s, cli_made *made, cw_error *err)

@@ -130,9 +130,9 @@ static cw_status check_args(run_state *s, cw_error *err)
     if (st != CW_OK)
         return st;
     if (!cw_simplify_available())
-        return cw_fail(err, CW_ERR_UNSUPPORTED,
-                       "simplify needs OpenMesh, which this build lacks: install "
-                       "libopenmesh-dev and build again");
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "simplify needs OpenMesh, which this build lacks: install "
+                        "libopenmesh-dev and build again");
     st = args->lod.count
              ? cli_name_lod_outputs(&s->outputs, args->output, args->common.inputs[0],
                                     args->lod.count, is_gltf(args), err)
@@ -165,9 +165,9 @@ static cw_status check_attributes(const run_state *s, cw_error *err)
         const void *const array[3] = {m->normals, m->colors, m->scalars};
         for (int k = 0; k < 3; k++)
             if (s->args->attributes.of[k] > 0 && !array[k])
-                return cw_fail(err, CW_ERR_ARGUMENT, "%s: --attributes: it has no %ss%s",
-                               s->mesh.path, attribute_names[k],
-                               s->pieces.count > 1 ? " in one of its parts" : "");
+                return cwi_fail(err, CW_ERR_ARGUMENT, "%s: --attributes: it has no %ss%s",
+                                s->mesh.path, attribute_names[k],
+                                s->pieces.count > 1 ? " in one of its parts" : "");
     }
     return CW_OK;
 }
@@ -348,7 +348,7 @@ static cw_status order_for_drawing(run_state *s, cw_error *err)
         s->unordered = true;
         return CW_OK;
     }
-    return st == CW_OK ? CW_OK : cw_fail(err, st, "%s: %s", s->mesh.path, why.message);
+    return st == CW_OK ? CW_OK : cwi_fail(err, st, "%s: %s", s->mesh.path, why.message);
 }
 
 static cw_status deliver_parts(run_state *s, const cw_part *parts, size_t count, bool levels,
@@ -370,7 +370,7 @@ static cw_status deliver_result(run_state *s, cw_error *err)
 {
     cw_part *parts = calloc(s->pieces.count, sizeof *parts);
     if (!parts)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", s->pieces.count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", s->pieces.count);
     for (size_t n = 0; n < s->pieces.count; n++)
         parts[n] = (cw_part){.mesh = &s->pieces.piece[n].out, .name = s->pieces.piece[n].name};
     cw_status st = deliver_parts(s, parts, s->pieces.count, false, err);
@@ -406,7 +406,7 @@ static cw_status deliver_levels(run_state *s, cw_error *err)
     cli_made *made = cli_report_next(&s->report, path, 0);
     made->name = "all";
     if (!stem)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for names");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for names");
     for (size_t n = 0; n < count; n++) {
         const cli_comparison *c = &s->report.made[n].compared;
         snprintf(names[n], sizeof names[n], "%.200s-lod%zu", stem, n);

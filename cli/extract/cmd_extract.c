@@ -132,7 +132,7 @@ static void name_step(const cli_extract_run *s, const cli_moment *moment, cw_err
 {
     const cw_error why = *err;
     if (s->series.given)
-        cw_fail(err, why.status, "step %zu: %s", moment->number, why.message);
+        cwi_fail(err, why.status, "step %zu: %s", moment->number, why.message);
 }
 
 static cli_delivery describe_delivery(const cli_extract_run *s)
@@ -271,8 +271,8 @@ static cw_status fail_empty(const cli_extract_run *s, size_t empty, size_t count
     const char *what = s->series.count == 1      ? "isovalues"
                        : s->args->iso.count == 1 ? "steps"
                                                  : "surfaces";
-    return cw_fail(err, CW_ERR_EMPTY, "%s: %zu of %zu %s are empty", s->args->common.inputs[0],
-                   empty, count, what);
+    return cwi_fail(err, CW_ERR_EMPTY, "%s: %zu of %zu %s are empty", s->args->common.inputs[0],
+                    empty, count, what);
 }
 
 static cw_status make_steps(cli_extract_run *s, size_t *empty, cw_error *err)
@@ -313,9 +313,9 @@ static cw_status plan_frames(cli_extract_run *s, cw_error *err)
     if (!args->animate)
         return CW_OK;
     if (s->series.count < 2)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "%s: --animate needs several time steps; there is 1",
-                       args->common.inputs[0]);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "%s: --animate needs several time steps; there is 1",
+                        args->common.inputs[0]);
     s->fps = args->fps.given ? args->fps.value : s->series.timed ? 0 : DEFAULT_FPS;
     if (!args->fps.given && !s->series.timed)
         cli_say("%s: the steps have no times; the animation shows %d a second (--fps)",

@@ -36,7 +36,7 @@ static cw_status check_pvd(const cli_extract_run *s, const char *const *inputs, 
     if (!args->pvd)
         return CW_OK;
     if (!s->series.given)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--pvd is for the steps of a series: --steps");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--pvd is for the steps of a series: --steps");
     if (args->json)
         st = cli_check_apart(args->pvd, args->json, err);
     return st == CW_OK ? cli_check_pvd(args->pvd, &s->outputs, inputs, count, &desc, err) : st;
@@ -62,15 +62,15 @@ cw_status cli_extract_check_outputs(cli_extract_run *s, cw_error *err)
 static cw_status check_animation(const cli_extract_args *args, cw_error *err)
 {
     if (args->pvd && args->animate)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--pvd lists files, and --animate writes only one");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--pvd lists files, and --animate writes only one");
     if (args->fps.given && !args->animate)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--fps is for --animate");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--fps is for --animate");
     if (args->fps.given && !(args->fps.value > 0))
-        return cw_fail(err, CW_ERR_ARGUMENT, "--fps %g: it must be above 0", args->fps.value);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--fps %g: it must be above 0", args->fps.value);
     if (args->animate && args->iso.count > 1)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--animate shows one level; --iso lists %zu",
-                       args->iso.count);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--animate shows one level; --iso lists %zu",
+                        args->iso.count);
     return CW_OK;
 }
 
@@ -90,7 +90,7 @@ static cw_status check_pixels(cli_extract_run *s, cw_error *err)
         return st;
     if ((args->pixel.camera || args->pixel.most.given) &&
         (args->simplify.error.given || args->simplify.triangles))
-        return cw_fail(err, CW_ERR_ARGUMENT, "%s or --simplify, not both", name_reducer(args));
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%s or --simplify, not both", name_reducer(args));
     return CW_OK;
 }
 
@@ -100,10 +100,10 @@ static cw_status check_crop(const cli_extract_args *args, cw_error *err)
     if (!args->prove_crop)
         return CW_OK;
     if (!input->crop.given)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--prove-crop needs --crop");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--prove-crop needs --crop");
     if (input->preview || input->coarsen || args->snap.value > 0)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--prove-crop cannot be combined with %s",
-                       args->snap.value > 0 ? "--snap" : "a preview");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--prove-crop cannot be combined with %s",
+                        args->snap.value > 0 ? "--snap" : "a preview");
     return CW_OK;
 }
 
@@ -117,30 +117,31 @@ cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err)
     if (st != CW_OK)
         return st;
     if (!args->output)
-        return cw_fail(err, CW_ERR_ARGUMENT, "extract needs an output: -o FILE");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "extract needs an output: -o FILE");
     if (!args->iso.count)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "extract needs an isovalue: --iso V; 'cubewright info %s' suggests some",
-                       input[0]);
+        return cwi_fail(
+            err, CW_ERR_ARGUMENT,
+            "extract needs an isovalue: --iso V; 'cubewright info %s' suggests some", input[0]);
     if (!(args->snap.value >= 0 && args->snap.value <= CW_EXTRACT_MAX_SNAP))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--snap is a fraction of an edge from 0 to %g, not %g",
-                       CW_EXTRACT_MAX_SNAP, args->snap.value);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--snap is a fraction of an edge from 0 to %g, not %g",
+                        CW_EXTRACT_MAX_SNAP, args->snap.value);
     st = check_pixels(s, err);
     if (st == CW_OK)
         st = check_crop(args, err);
     if (st != CW_OK)
         return st;
     if (args->pixel.cull && args->snap.value > 0)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--cull cannot be combined with --snap");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--cull cannot be combined with --snap");
     if (cli_extract_is_simplified(args) && args->snap.value > 0)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--snap or %s, not both: each removes thin triangles",
-                       name_reducer(args));
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--snap or %s, not both: each removes thin triangles",
+                        name_reducer(args));
     if (cli_extract_is_simplified(args) && !cw_simplify_available())
-        return cw_fail(err, CW_ERR_UNSUPPORTED,
-                       "%s needs OpenMesh, which this build lacks: install libopenmesh-dev and "
-                       "build again",
-                       name_reducer(args));
+        return cwi_fail(
+            err, CW_ERR_UNSUPPORTED,
+            "%s needs OpenMesh, which this build lacks: install libopenmesh-dev and "
+            "build again",
+            name_reducer(args));
     return check_animation(args, err);
 }

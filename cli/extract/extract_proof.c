@@ -64,7 +64,7 @@ cw_status cli_prove_error(const cli_volume *volume, const cli_wanted *wanted,
     proof->mm = cw_mesh_comparison_max(&compared->with_input);
     if (proof->mm <= promised || promised == 0)
         return CW_OK;
-    return cw_fail(
+    return cwi_fail(
         err, CW_ERR_CHECK,
         "%s: not as promised: %.6g mm from the full surface, not %.6g; nothing is written",
         volume->path, proof->mm, promised);
@@ -117,9 +117,9 @@ static cw_status compare_parts(const cw_volume *v, const cw_mesh *part, const cw
         next += inside;
     }
     if (next != part->triangle_count)
-        return cw_fail(err, CW_ERR_CHECK,
-                       "not as promised: %zu triangles, and %zu of the whole surface there",
-                       part->triangle_count, next);
+        return cwi_fail(err, CW_ERR_CHECK,
+                        "not as promised: %zu triangles, and %zu of the whole surface there",
+                        part->triangle_count, next);
     return CW_OK;
 }
 
@@ -169,7 +169,7 @@ cw_status cli_prove_crop(const cli_volume *part, const cli_input *input,
     if (st == CW_OK) {
         st = compare_parts(&part->view, &some, &all, proof, err);
         if (st == CW_OK && proof->apart_mm > rounding_of(&some, &all))
-            st = cw_fail(
+            st = cwi_fail(
                 err, CW_ERR_CHECK,
                 "not as promised: a vertex is %.4g mm from where the whole surface has it",
                 proof->apart_mm);

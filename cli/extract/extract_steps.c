@@ -222,11 +222,11 @@ static cw_status hold_to_pixels(const cli_extract_run *s, const cli_proof *p, cw
                 100 * p->views[n].apart);
     for (size_t n = 0; n < p->count; n++)
         if (p->views[n].pixels > 1.01 * p->promised_pixels)
-            return cw_fail(err, CW_ERR_CHECK,
-                           "%s: not as promised: %.4g pixels off for camera %zu",
-                           s->volume.path, p->views[n].pixels, n + 1);
+            return cwi_fail(err, CW_ERR_CHECK,
+                            "%s: not as promised: %.4g pixels off for camera %zu",
+                            s->volume.path, p->views[n].pixels, n + 1);
         else if (p->promised_pixels == 0 && p->views[n].apart > SAME_PICTURE)
-            return cw_fail(
+            return cwi_fail(
                 err, CW_ERR_CHECK,
                 "%s: not as promised: without what is left out %.3g %% of the pixels "
                 "of camera %zu differ",

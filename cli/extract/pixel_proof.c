@@ -20,25 +20,25 @@ static cw_status check_arguments(const cli_pixel_args *a, cw_error *err)
 {
     const size_t *n = a->size.n;
     if (!a->camera && (a->pixels.given || a->shading.given || a->size.count || a->cull))
-        return cw_fail(err, CW_ERR_ARGUMENT, "%s is for the pictures of --camera",
-                       a->pixels.given    ? "--pixel-error"
-                       : a->shading.given ? "--shading"
-                       : a->cull          ? "--cull"
-                                          : "--size");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%s is for the pictures of --camera",
+                        a->pixels.given    ? "--pixel-error"
+                        : a->shading.given ? "--shading"
+                        : a->cull          ? "--cull"
+                                           : "--size");
     if (a->camera && !a->pixels.given && (!a->cull || a->shading.given || a->most.given))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--camera needs --pixel-error: how many pixels the surface may move%s",
-                       a->cull ? "" : "; or --cull");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--camera needs --pixel-error: how many pixels the surface may move%s",
+                        a->cull ? "" : "; or --cull");
     if (a->pixels.given && !(isfinite(a->pixels.value) && a->pixels.value > 0))
-        return cw_fail(err, CW_ERR_ARGUMENT, "--pixel-error %g: it must be above 0",
-                       a->pixels.value);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--pixel-error %g: it must be above 0",
+                        a->pixels.value);
     if (a->shading.given && !(a->shading.value > 0 && a->shading.value <= 180))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--shading %g: above 0 and up to 180 degrees were expected",
-                       a->shading.value);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--shading %g: above 0 and up to 180 degrees were expected",
+                        a->shading.value);
     if (a->size.count && (a->size.count != 2 || n[0] > MOST_SIDE || n[1] > MOST_SIDE))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--size takes two numbers up to %d, such as 1280x720", MOST_SIDE);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--size takes two numbers up to %d, such as 1280x720", MOST_SIDE);
     return CW_OK;
 }
 
@@ -50,11 +50,11 @@ static cw_status read_files(const char *list, cw_simplify_view *views, size_t *c
     for (const char *p = list; st == CW_OK && p; (*count)++) {
         const size_t length = strcspn(p, ",");
         if (length == 0 || length >= sizeof path)
-            return cw_fail(err, CW_ERR_ARGUMENT,
-                           "--camera '%s': .json files by comma were expected", list);
+            return cwi_fail(err, CW_ERR_ARGUMENT,
+                            "--camera '%s': .json files by comma were expected", list);
         if (*count == CLI_MOST_VIEWS)
-            return cw_fail(err, CW_ERR_ARGUMENT, "--camera takes up to %d files",
-                           CLI_MOST_VIEWS);
+            return cwi_fail(err, CW_ERR_ARGUMENT, "--camera takes up to %d files",
+                            CLI_MOST_VIEWS);
         memcpy(path, p, length);
         path[length] = '\0';
         st = cw_camera_read(path, &views[*count].camera, err);
@@ -157,7 +157,7 @@ cw_status cli_cull(const cli_volume *volume, const cw_simplify_view *views, size
 {
     cw_status st = cw_simplify_cull(mesh, views, count, pixels, margin_mm, dropped, err);
     if (st == CW_OK && !mesh->triangle_count)
-        st = cw_fail(err, CW_ERR_EMPTY, "no camera sees anything of the surface");
+        st = cwi_fail(err, CW_ERR_EMPTY, "no camera sees anything of the surface");
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
 }
 
@@ -172,8 +172,8 @@ static cw_status measure_distance(const cw_mesh *from, const cw_mesh *to,
     const cw_mesh_distance_desc how = {
         .worst = worst, .threads = d->threads, .tolerance_mm = d->error_mm};
     cw_status st = worst ? cw_distance_to_mesh(from, to, &how, &distance, NULL, err)
-                         : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu vertices",
-                                   from->vertex_count);
+                         : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu vertices",
+                                    from->vertex_count);
     for (size_t n = 0; n < d->view_count && st == CW_OK; n++) {
         double pixels;
         st = cw_simplify_view_distance(d->views + n, from, worst, &pixels, err);

@@ -17,9 +17,9 @@ static cw_status unknown_part(const char *text, const char *name, size_t length,
     for (size_t p = 0; p < part_count && used < sizeof names; p++)
         used += (size_t)snprintf(names + used, sizeof names - used, "%s{%s}", p ? ", " : "",
                                  parts[p].name);
-    return cw_fail(err, CW_ERR_ARGUMENT,
-                   "%s: {%.*s} is unknown; known are %s, and {{ for a brace", text, (int)length,
-                   name, names);
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "%s: {%.*s} is unknown; known are %s, and {{ for a brace", text,
+                    (int)length, name, names);
 }
 
 /* Up to the brace: nothing, or ":04d", as many digits as that; -1 for anything else. */
@@ -37,8 +37,8 @@ static cw_status put_value(FILE *out, const char *text, const char *width, cli_p
 {
     const int digits = width_of(width, part->number);
     if (digits < 0)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%s: after {%s a } was expected%s", text,
-                       part->name, part->number ? ", or a width as in {step:04d}" : "");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%s: after {%s a } was expected%s", text,
+                        part->name, part->number ? ", or a width as in {step:04d}" : "");
     for (int length = (int)strlen(part->value); length < digits; length++)
         fputc('0', out);
     fputs(part->value, out);
@@ -69,8 +69,9 @@ static cw_status fill_template(FILE *out, const char *text, cli_part *parts, siz
         } else {
             const char *end = strchr(c, '}');
             if (!end)
-                return cw_fail(err, CW_ERR_ARGUMENT,
-                               "%s: '%s' has no closing brace; {{ stands for a brace", text, c);
+                return cwi_fail(err, CW_ERR_ARGUMENT,
+                                "%s: '%s' has no closing brace; {{ stands for a brace", text,
+                                c);
             st = put_part(out, text, c + 1, (size_t)(end - c - 1), parts, part_count, err);
             c = end;
         }
@@ -85,7 +86,7 @@ cw_status cli_fill_template(const char *text, cli_part *parts, size_t part_count
     FILE *stream = cwi_text_open(out, &size);
     cw_status st = stream ? fill_template(stream, text, parts, part_count, err) : CW_OK;
     if (!cwi_text_close(stream, out) && st == CW_OK)
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
     if (st != CW_OK) {
         free(*out);
         *out = NULL;

@@ -97,10 +97,11 @@ static cw_status unknown_option(const cli_command *command, const char *name, si
             names[count++] = o->name;
     const char *nearest = cli_nearest(word, names);
     if (nearest)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%s has no option --%s; did you mean --%s?",
-                       command->name, word, nearest);
-    return cw_fail(err, CW_ERR_ARGUMENT, "%s has no option --%s; 'cubewright %s -h' lists them",
-                   command->name, word, command->name);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%s has no option --%s; did you mean --%s?",
+                        command->name, word, nearest);
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "%s has no option --%s; 'cubewright %s -h' lists them", command->name, word,
+                    command->name);
 }
 
 bool cli_is_given(const cli_command *command, const cli_common *args, const char *name)
@@ -365,14 +366,14 @@ static cw_status take_option(parser *p, const cli_option *o, const char *value, 
     if (o->kind == CLI_FLAG)
         *(bool *)field = !off;
     if (!takes_value(o))
-        return value ? cw_fail(err, CW_ERR_ARGUMENT, "--%s takes no value", o->name) : CW_OK;
+        return value ? cwi_fail(err, CW_ERR_ARGUMENT, "--%s takes no value", o->name) : CW_OK;
     if (!value && p->next == p->count)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--%s needs a value: %s", o->name,
-                       describe_expected(o));
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--%s needs a value: %s", o->name,
+                        describe_expected(o));
     value = value ? value : p->words[p->next++];
     if (!store_value(o, value, field))
-        return cw_fail(err, CW_ERR_ARGUMENT, "--%s '%s': expected %s", o->name, value,
-                       describe_expected(o));
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--%s '%s': expected %s", o->name, value,
+                        describe_expected(o));
     return CW_OK;
 }
 
@@ -398,9 +399,9 @@ static cw_status take_short(parser *p, const char *word, cw_error *err)
     for (const char *c = word + 1; *c; c++) {
         const cli_option *o = find_short(p->command, *c);
         if (!o)
-            return cw_fail(err, CW_ERR_ARGUMENT,
-                           "%s has no option -%c; 'cubewright %s -h' lists them",
-                           p->command->name, *c, p->command->name);
+            return cwi_fail(err, CW_ERR_ARGUMENT,
+                            "%s has no option -%c; 'cubewright %s -h' lists them",
+                            p->command->name, *c, p->command->name);
         if (takes_value(o))
             return take_option(p, o, c[1] ? c + 1 : NULL, false, err);
         cw_status st = take_option(p, o, NULL, false, err);
@@ -416,15 +417,15 @@ static cw_status check_inputs(const cli_command *c, const cli_common *args, cw_e
         (args->input_count >= c->min_inputs && args->input_count <= c->max_inputs))
         return CW_OK;
     if (args->input_count < c->min_inputs)
-        return cw_fail(err, CW_ERR_ARGUMENT, "too few arguments; usage: cubewright %s %s",
-                       c->name, c->usage);
-    return cw_fail(err, CW_ERR_ARGUMENT,
-                   "'%s' is one argument too many%s; usage: cubewright %s %s",
-                   args->inputs[c->max_inputs],
-                   c->slices ? " (for slices in separate files, name their folder or put "
-                               "quotes around a pattern)"
-                             : "",
-                   c->name, c->usage);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "too few arguments; usage: cubewright %s %s",
+                        c->name, c->usage);
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "'%s' is one argument too many%s; usage: cubewright %s %s",
+                    args->inputs[c->max_inputs],
+                    c->slices ? " (for slices in separate files, name their folder or put "
+                                "quotes around a pattern)"
+                              : "",
+                    c->name, c->usage);
 }
 
 cw_status cli_parse(const cli_command *command, int count, char **words, void *args,

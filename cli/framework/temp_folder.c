@@ -16,10 +16,10 @@ cw_status cli_scratch_make(char **folder, cw_error *err)
     char path[4000];
     snprintf(path, sizeof path, "%s/cubewright-XXXXXX", base && *base ? base : "/tmp");
     if (!mkdtemp(path))
-        return cw_fail(err, CW_ERR_OUTPUT, "a temporary folder cannot be made in %s",
-                       base && *base ? base : "/tmp");
+        return cwi_fail(err, CW_ERR_OUTPUT, "a temporary folder cannot be made in %s",
+                        base && *base ? base : "/tmp");
     *folder = strdup(path);
-    return *folder ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a path");
+    return *folder ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a path");
 }
 
 void cli_scratch_remove(char *folder)

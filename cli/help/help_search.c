@@ -278,8 +278,8 @@ cw_status cli_search(const char *text, cw_error *err)
     found += search_verbs(&q);
     found += search_pages(&q);
     return found ? CW_OK
-                 : cw_fail(err, CW_ERR_ARGUMENT,
-                           "nothing in the help mentions '%s'; 'cubewright help' lists the "
-                           "commands",
-                           text);
+                 : cwi_fail(err, CW_ERR_ARGUMENT,
+                            "nothing in the help mentions '%s'; 'cubewright help' lists the "
+                            "commands",
+                            text);
 }

@@ -13,12 +13,12 @@ static cw_status explain_empty(const cli_volume *volume, const cw_extract_desc *
     if (st != CW_OK)
         return st;
     if (!range.finite)
-        return cw_fail(err, CW_ERR_EMPTY, "no voxel has a finite value");
-    return cw_fail(err, CW_ERR_EMPTY,
-                   "no surface at isovalue %g: values%s are %g to %g, and it must be above the "
-                   "lowest and at most the highest",
-                   desc->isovalue, cli_is_preview(volume) ? " of the preview" : "", range.min,
-                   range.max);
+        return cwi_fail(err, CW_ERR_EMPTY, "no voxel has a finite value");
+    return cwi_fail(
+        err, CW_ERR_EMPTY,
+        "no surface at isovalue %g: values%s are %g to %g, and it must be above the "
+        "lowest and at most the highest",
+        desc->isovalue, cli_is_preview(volume) ? " of the preview" : "", range.min, range.max);
 }
 
 /* Of the limit to voxels and surface, and of that to the whole process. */
@@ -51,9 +51,9 @@ cw_status cli_extract_surface(const cli_volume *volume, cw_extractor *extractor,
 static cw_status explain_dropped(const cli_wanted *wanted, const cw_drop_counts *dropped,
                                  cw_error *err)
 {
-    return cw_fail(err, CW_ERR_EMPTY,
-                   "no component encloses %.6g mm3: the largest of %zu encloses %.6g",
-                   wanted->least_mm3, dropped->dropped, dropped->largest_mm3);
+    return cwi_fail(err, CW_ERR_EMPTY,
+                    "no component encloses %.6g mm3: the largest of %zu encloses %.6g",
+                    wanted->least_mm3, dropped->dropped, dropped->largest_mm3);
 }
 
 cw_status cli_extract_wanted(const cli_volume *volume, cw_extractor *extractor,
@@ -148,6 +148,6 @@ cw_status cli_find_level(const cli_volume *volume, int threads, double *iso, con
     const bool found = cw_statistics_otsu(&statistics, 1, iso);
     cw_statistics_free(&statistics);
     return found ? CW_OK
-                 : cw_fail(err, CW_ERR_EMPTY,
-                           "%s: no isovalue separates its values; give --iso V", volume->path);
+                 : cwi_fail(err, CW_ERR_EMPTY,
+                            "%s: no isovalue separates its values; give --iso V", volume->path);
 }

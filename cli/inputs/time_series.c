@@ -6,7 +6,7 @@
 
 static cw_status fail_memory(cw_error *err)
 {
-    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the steps of a series");
+    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the steps of a series");
 }
 
 static cw_status check_known(const cw_volume *first, const char *first_path,
@@ -16,9 +16,10 @@ static cw_status check_known(const cw_volume *first, const char *first_path,
     const bool said = first->known & flag;
     if (said == (bool)(other->known & flag))
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "%s and %s are not of one series: the first names %s %s, the second %s",
-                   first_path, other_path, said ? "a" : "no", what, said ? "does not" : "does");
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "%s and %s are not of one series: the first names %s %s, the second %s",
+                    first_path, other_path, said ? "a" : "no", what,
+                    said ? "does not" : "does");
 }
 
 cw_status cli_agree(const cw_volume *first, const char *first_path, const cw_volume *other,
@@ -26,11 +27,11 @@ cw_status cli_agree(const cw_volume *first, const char *first_path, const cw_vol
 {
     const cw_volume *several = first->steps > 1 ? first : other;
     if (several->steps > 1)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "%s: holds %zu time steps; a file of a series of files holds one",
-                       several == first ? first_path : other_path, several->steps);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "%s: holds %zu time steps; a file of a series of files holds one",
+                        several == first ? first_path : other_path, several->steps);
     if (other->components != first->components)
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_FORMAT,
             "%s and %s are not of one series: the first has %zu value%s a voxel, the "
             "second %zu",
@@ -73,8 +74,8 @@ static cw_status choose_steps(cli_series *series, const cli_steps *asked, size_t
     }
     const size_t last = steps.rows[steps.count - 1].last;
     if (last >= total)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--steps asks for step %zu; there are 0 to %zu",
-                       last, total - 1);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--steps asks for step %zu; there are 0 to %zu",
+                        last, total - 1);
     series->moments = calloc(total, sizeof *series->moments);
     if (!series->moments)
         return fail_memory(err);
@@ -104,9 +105,9 @@ static cw_status find_in_files(cli_series *series, const char *path, const cli_i
                                const cli_steps *steps, cw_error *err)
 {
     if (input->step)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--step is for the steps of one file; of files --steps %zu takes one",
-                       input->step);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--step is for the steps of one file; of files --steps %zu takes one",
+                        input->step);
     cw_status st = check_files(series, input, err);
     if (st == CW_OK)
         st = choose_steps(series, steps, series->files.count, err);
@@ -120,7 +121,7 @@ static cw_status find_in_file(cli_series *series, const char *path, const cli_in
 {
     cw_volume shape;
     if (input->step)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--step or --steps, not both");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--step or --steps, not both");
     cw_status st = cli_read_shape(path, input, &shape, err);
     if (st != CW_OK)
         return st;

@@ -134,15 +134,15 @@ static cw_status check_choice(const cli_input *input, const cw_volume *v, cw_err
 {
     const cli_component *c = &input->component;
     if (c->magnitude && v->components < 2)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--component mag needs vectors; the volume has one value a voxel");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--component mag needs vectors; the volume has one value a voxel");
     if (!c->magnitude && c->number >= v->components)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--component %zu: the volume has %zu, counted from 0", c->number,
-                       v->components);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--component %zu: the volume has %zu, counted from 0", c->number,
+                        v->components);
     if (input->step >= v->steps)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--step %zu: the volume has %zu, counted from 0",
-                       input->step, v->steps);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--step %zu: the volume has %zu, counted from 0",
+                        input->step, v->steps);
     return CW_OK;
 }
 
@@ -188,10 +188,10 @@ static cw_status find_box(const cli_input *input, const cw_volume *v, cw_box *bo
     for (int a = 0; st == CW_OK && a < 3; a++) {
         const size_t size = v->dim[a];
         if (!clip_range(r.low[a], r.high[a], size, &box->first[a], &box->count[a]))
-            return cw_fail(err, CW_ERR_ARGUMENT,
-                           "--crop leaves no voxel along %c: the volume has voxels 0 to %zu; "
-                           "%.6g to %.6g were requested",
-                           "xyz"[a], size - 1, r.low[a], r.high[a]);
+            return cwi_fail(err, CW_ERR_ARGUMENT,
+                            "--crop leaves no voxel along %c: the volume has voxels 0 to %zu; "
+                            "%.6g to %.6g were requested",
+                            "xyz"[a], size - 1, r.low[a], r.high[a]);
     }
     if (st == CW_OK)
         cli_say("using voxels %zu:%zu,%zu:%zu,%zu:%zu", box->first[0],
@@ -329,10 +329,10 @@ static cw_status make_magnitude(const cli_input *input, size_t step, cli_volume 
     const size_t *n = volume->voxels.dim, bytes = n[0] * n[1] * n[2] * sizeof(float);
     const bool first = !volume->magnitude.data;
     if (first && volume->memory_left <= bytes)
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "--component mag takes %zu bytes beside the voxels; %zu are left of "
-                       "--memory",
-                       bytes, volume->memory_left);
+        return cwi_fail(err, CW_ERR_LIMIT,
+                        "--component mag takes %zu bytes beside the voxels; %zu are left of "
+                        "--memory",
+                        bytes, volume->memory_left);
     volume->memory_left -= first ? bytes : 0;
     cw_volume_free(&volume->magnitude);
     return cw_volume_magnitude(&volume->voxels, step, (int)input->threads, &volume->magnitude,

@@ -67,11 +67,11 @@ double cli_turn_angle(const cli_turns *turns, size_t n)
 static cw_status check_turns(const cli_turns *turns, cw_error *err)
 {
     if (turns->orbit.given && turns->count < 2)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--orbit is for the pictures of --turntable N, 2 or more");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--orbit is for the pictures of --turntable N, 2 or more");
     if (turns->count > 100000)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--turntable %zu: at most 100000 were expected",
-                       turns->count);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--turntable %zu: at most 100000 were expected",
+                        turns->count);
     return CW_OK;
 }
 
@@ -83,16 +83,16 @@ cw_status cli_check_camera(const cli_scene *args, const cli_turns *turns, cw_err
     if (st != CW_OK)
         return st;
     if (args->zoom.given && !(isnormal(args->zoom.value) && args->zoom.value > 0))
-        return cw_fail(err, CW_ERR_ARGUMENT, "--zoom %g: above 0 was expected",
-                       args->zoom.value);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--zoom %g: above 0 was expected",
+                        args->zoom.value);
     if (args->ortho && args->fov.given)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--ortho or --fov, not both");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--ortho or --fov, not both");
     if (args->fov.given && !(args->fov.value > 0 && args->fov.value < 180))
-        return cw_fail(err, CW_ERR_ARGUMENT, "--fov %g: 0 to 180 degrees were expected",
-                       args->fov.value);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--fov %g: 0 to 180 degrees were expected",
+                        args->fov.value);
     if (is_whole(args->camera) && (args->ortho || args->fov.given))
-        return cw_fail(err, CW_ERR_ARGUMENT, "%s is a complete camera; %s cannot change it",
-                       cli_camera_title(args), args->ortho ? "--ortho" : "--fov");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%s is a complete camera; %s cannot change it",
+                        cli_camera_title(args), args->ortho ? "--ortho" : "--fov");
     if (is_whole(args->camera))
         return is_json(args->camera) ? read_camera(args->camera, &camera, err) : CW_OK;
     fit.max[0] = fit.max[1] = fit.max[2] = 1;

@@ -26,15 +26,15 @@ static cw_status add_word(char **words, int *count, const char *item, cw_error *
     const char *bare = strncmp(name, "no-", 3) == 0 ? name + 3 : name;
     const bool mode = *count == 0 && is_mode(item);
     if (!mode && !cli_is_setting(bare))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--compare: '%s' is neither a mode nor an option of pictures, such as "
-                       "step-length=2 or no-lit",
-                       item);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--compare: '%s' is neither a mode nor an option of pictures, such as "
+                        "step-length=2 or no-lit",
+                        item);
     if (*count == MOST_WORDS)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--compare: at most %d settings a side",
-                       MOST_WORDS);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--compare: at most %d settings a side",
+                        MOST_WORDS);
     if (asprintf(&words[*count], "--%s%s", mode ? "mode=" : "", item) < 0)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a comparison");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a comparison");
     ++*count;
     return CW_OK;
 }
@@ -45,7 +45,7 @@ static cw_status parse_side(const cli_command *command, const render_args *args,
 {
     const char *nothing[MOST_WORDS + 2] = {0};
     char *copy = strndup(text, length), *next = copy;
-    cw_status st = copy ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a comparison");
+    cw_status st = copy ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a comparison");
     while (st == CW_OK && next) {
         const char *item = strsep(&next, ",");
         st = add_word(side->words, &side->word_count, item, err);
@@ -64,7 +64,7 @@ static cw_status parse_side(const cli_command *command, const render_args *args,
     side->mode =
         side->args.scene.mode ? (cw_mode)(side->args.scene.mode - 1) : CW_MODE_COMPOSITE;
     if (st == CW_OK && side->mode == CW_MODE_MESH)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--compare is for the modes of volumes");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--compare is for the modes of volumes");
     return st;
 }
 
@@ -74,10 +74,10 @@ cw_status cli_parse_split(const cli_command *command, const render_args *args, c
     const char *text = args->compare, *bar = strchr(text, '|');
     const bool has_mesh = args->iso.given || args->mesh;
     if (!bar || strchr(bar + 1, '|'))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--compare '%s': two sides were expected, such as "
-                       "'texture,step-length=2|reference'",
-                       text);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--compare '%s': two sides were expected, such as "
+                        "'texture,step-length=2|reference'",
+                        text);
     cw_status st = parse_side(command, args, text, (size_t)(bar - text), &split->sides[0], err);
     if (st == CW_OK)
         st = parse_side(command, args, bar + 1, strlen(bar + 1), &split->sides[1], err);

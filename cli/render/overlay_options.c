@@ -33,7 +33,7 @@ cw_status cli_mark(const cli_marks *marks, const cw_scene *scene, cw_image *imag
     if (!marks->histogram)
         return draw_slices(marks, scene, NULL, image, err);
     if (!scene->volume)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--histogram is for volumes");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--histogram is for volumes");
     cw_status st = cw_volume_statistics(scene->volume, BINS, scene->threads, &statistics, err);
     if (st == CW_OK)
         st = draw_slices(marks, scene, &statistics, image, err);

@@ -160,7 +160,7 @@ cw_status cli_render_report_write(const char *path, const cli_render_report *rep
         put_report(out, report, status, err);
     cw_status st = cwi_text_close(out, &text)
                        ? cli_report_save(path, text, size, &why)
-                       : cw_fail(&why, CW_ERR_NO_MEMORY, "no memory for the report");
+                       : cwi_fail(&why, CW_ERR_NO_MEMORY, "no memory for the report");
     free(text);
     if (status != CW_OK)
         return status;

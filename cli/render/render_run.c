@@ -29,27 +29,27 @@ cw_status cli_check_pictures(const render_args *args, cw_error *err)
 {
     const char *dot = args->output ? strrchr(args->output, '.') : NULL;
     if (!args->output)
-        return cw_fail(err, CW_ERR_ARGUMENT, "render needs an output: -o FILE");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "render needs an output: -o FILE");
     if (!dot || strcmp(dot, ".png") != 0)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%s: render writes .png", args->output);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%s: render writes .png", args->output);
     if (args->size.count != 2)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--size takes two numbers, such as 1280x720");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--size takes two numbers, such as 1280x720");
     if (args->samples > 4)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--samples %zu: expected 1 to 4", args->samples);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--samples %zu: expected 1 to 4", args->samples);
     if (args->mesh && args->iso.given)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--iso or --mesh, not both");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--iso or --mesh, not both");
     if (args->difference.given && !args->compare)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--difference is for --compare");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--difference is for --compare");
     if (args->difference.given && cli_has_marks(&args->marks))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--difference cannot be combined with marks on the picture");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--difference cannot be combined with marks on the picture");
     if (args->marks.layout == CLI_LAYOUT_QUAD && args->compare)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--layout quad or --compare, not both");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--layout quad or --compare, not both");
     if (args->marks.layout == CLI_LAYOUT_QUAD && (args->size.n[0] < 2 || args->size.n[1] < 2))
-        return cw_fail(err, CW_ERR_ARGUMENT, "--layout quad needs 2 x 2 pixels");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--layout quad needs 2 x 2 pixels");
     if (args->difference.given && !(args->difference.value > 0))
-        return cw_fail(err, CW_ERR_ARGUMENT, "--difference %g: above 0 was expected",
-                       args->difference.value);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--difference %g: above 0 was expected",
+                        args->difference.value);
     cw_status st = cli_check_camera(&args->scene, &args->turns, err);
     if (st == CW_OK)
         st = check_side_output(args->json, args, err);
@@ -89,10 +89,10 @@ static cw_status check_hidden(cli_pictures *p, cw_error *err)
         (args->iso.given || args->mesh || p->source.is_mesh))
         p->mode = CW_MODE_MESH;
     else if (args->scene.hide == CLI_HIDE_VOLUME)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--hide volume leaves nothing to draw");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--hide volume leaves nothing to draw");
     if (args->scene.hide == CLI_HIDE_MESH && p->mode == CW_MODE_MESH)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--hide mesh leaves nothing to draw in the mode mesh");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--hide mesh leaves nothing to draw in the mode mesh");
     return CW_OK;
 }
 
@@ -108,10 +108,10 @@ static cw_status plan_split(cli_pictures *p, cw_error *err)
 {
     const render_args *args = p->args;
     if (p->source.is_mesh || args->scene.hide == CLI_HIDE_VOLUME)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--compare is for the modes of volumes");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--compare is for the modes of volumes");
     p->split = calloc(1, sizeof *p->split);
     if (!p->split)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a comparison");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a comparison");
     cw_status st = cli_parse_split(p->command, args, p->split, err);
     p->mode = p->split->sides[0].mode;
     return st;
@@ -127,23 +127,23 @@ static cw_status check_mode(cli_pictures *p, cw_error *err)
     if (args->compare)
         return plan_split(p, err);
     if (p->source.is_mesh && p->mode != CW_MODE_MESH)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%s is a mesh; the mode %s draws volumes",
-                       args->common.inputs[0], cw_mode_name(p->mode));
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%s is a mesh; the mode %s draws volumes",
+                        args->common.inputs[0], cw_mode_name(p->mode));
     if (args->marks.layout == CLI_LAYOUT_QUAD && p->source.is_mesh)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%s is a mesh; --layout quad is for volumes",
-                       args->common.inputs[0]);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%s is a mesh; --layout quad is for volumes",
+                        args->common.inputs[0]);
     if (p->source.is_mesh && (args->mesh || args->scene.hide))
-        return cw_fail(err, CW_ERR_ARGUMENT, "%s is a mesh; --%s is for volumes",
-                       args->common.inputs[0], args->mesh ? "mesh" : "hide");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%s is a mesh; --%s is for volumes",
+                        args->common.inputs[0], args->mesh ? "mesh" : "hide");
     if (p->mode == CW_MODE_MESH && !p->source.is_mesh && !args->mesh && !args->iso.given &&
         !p->source.is_level_set)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "the surface of a volume needs an isovalue: --iso V; 'cubewright info "
-                       "%s' suggests some",
-                       args->common.inputs[0]);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "the surface of a volume needs an isovalue: --iso V; 'cubewright info "
+                        "%s' suggests some",
+                        args->common.inputs[0]);
     if (p->mode == CW_MODE_MESH && args->backend == CW_BACKEND_CPU && gl)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--%s is drawn by OpenGL alone: --backend auto or egl", gl);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--%s is drawn by OpenGL alone: --backend auto or egl", gl);
     return cli_check_scene(p->command, &args->common, p->mode, has_mesh(p), err);
 }
 
@@ -158,15 +158,16 @@ static cw_status fill_name(const cli_pictures *p, const cli_moment *moment, size
                         {"turn", numbers[1], true, false},
                         {"stem", stem, false, false}};
     cw_status st = stem ? cli_fill_template(p->args->output, parts, 3, name, err)
-                        : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
+                        : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
     free(stem);
     if (st == CW_OK && p->args->turns.count > 1 && !parts[1].used)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--turntable: the output must hold {turn}, as in 'turn-{turn:03d}.png'");
+        return cwi_fail(
+            err, CW_ERR_ARGUMENT,
+            "--turntable: the output must hold {turn}, as in 'turn-{turn:03d}.png'");
     if (st == CW_OK && p->source.series.count > 1 && !parts[0].used &&
         !(p->source.series.files.count && parts[2].used))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "several steps: the output must hold {step}, as in '{step:04d}.png'");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "several steps: the output must hold {step}, as in '{step:04d}.png'");
     return st;
 }
 
@@ -190,8 +191,8 @@ static cw_status plan_pictures(cli_pictures *p, cw_error *err)
     const size_t turns = p->args->turns.count > 1 ? p->args->turns.count : 1;
     p->shots = calloc(p->source.series.count * turns, sizeof *p->shots);
     if (!p->shots)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu pictures",
-                       p->source.series.count * turns);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu pictures",
+                        p->source.series.count * turns);
     cw_status st = CW_OK;
     for (size_t s = 0; s < p->source.series.count; s++)
         for (size_t n = 0; n < turns && st == CW_OK; n++) {

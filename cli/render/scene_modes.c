@@ -80,14 +80,14 @@ static cw_status refuse_option(int row, cw_mode mode, cw_error *err)
     char list[256];
     list_modes(rows[row].modes, list, sizeof list);
     if (!rows[row].modes)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--%s is for meshes, and there is none: --iso V or --mesh FILE",
-                       rows[row].name);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--%s is for meshes, and there is none: --iso V or --mesh FILE",
+                        rows[row].name);
     if (mode == CW_MODE_MESH)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--%s does nothing to a mesh; it is for %s",
-                       rows[row].name, rows[row].modes == VOLUMES ? "volumes" : list);
-    return cw_fail(err, CW_ERR_ARGUMENT, "--%s does nothing in the mode %s; it is for %s",
-                   rows[row].name, cw_mode_name(mode), list);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--%s does nothing to a mesh; it is for %s",
+                        rows[row].name, rows[row].modes == VOLUMES ? "volumes" : list);
+    return cwi_fail(err, CW_ERR_ARGUMENT, "--%s does nothing in the mode %s; it is for %s",
+                    rows[row].name, cw_mode_name(mode), list);
 }
 
 cw_status cli_check_scene(const cli_command *command, const cli_common *common, cw_mode mode,

@@ -39,9 +39,9 @@ bool cli_parse_color(const char *text, uint8_t rgba[4])
 
 static cw_status fail_color(const char *option, const char *text, cw_error *err)
 {
-    return cw_fail(err, CW_ERR_ARGUMENT,
-                   "--%s '%s': expected a colour such as #ffeedd, #fed, white, black or grey",
-                   option, text);
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "--%s '%s': expected a colour such as #ffeedd, #fed, white, black or grey",
+                    option, text);
 }
 
 /* Two colours by comma, or one for both. */
@@ -76,10 +76,10 @@ cw_status cli_background(const cli_scene *args, cw_mode mode, uint8_t background
     if (text && strcmp(text, "none") == 0)
         memcpy(background, none, sizeof none);
     else if (text && !parse_background(text, background))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--background '%s': expected a colour such as #ffeedd, two by comma "
-                       "(top, bottom), or none",
-                       text);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--background '%s': expected a colour such as #ffeedd, two by comma "
+                        "(top, bottom), or none",
+                        text);
     return CW_OK;
 }
 
@@ -134,8 +134,8 @@ cw_status cli_change_transfer(const cli_scene *args, cw_transfer *t, cw_error *e
 {
     const double factor = args->opacity.given ? args->opacity.value : 1;
     if (!(factor >= 0))
-        return cw_fail(err, CW_ERR_ARGUMENT, "--opacity %g: a factor of 0 or more was expected",
-                       factor);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--opacity %g: a factor of 0 or more was expected", factor);
     for (size_t n = 0; n < t->color_count; n++)
         t->colors[n].value += args->shift.value;
     for (size_t n = 0; n < t->opacity_count; n++) {
@@ -207,14 +207,14 @@ static cw_status parse_planes(const char *option, const char *text, size_t most,
     for (const char *at = text; at && *at;) {
         double p[4];
         if (parse_tuple(&at, p, 4) != 4 || (p[0] == 0 && p[1] == 0 && p[2] == 0))
-            return cw_fail(err, CW_ERR_ARGUMENT,
-                           "--%s '%s': expected planes nx,ny,nz,d parted by ';': all points p "
-                           "with n . p = d, in mm",
-                           option, text);
+            return cwi_fail(err, CW_ERR_ARGUMENT,
+                            "--%s '%s': expected planes nx,ny,nz,d parted by ';': all points p "
+                            "with n . p = d, in mm",
+                            option, text);
         if (*count == most)
-            return cw_fail(err, CW_ERR_ARGUMENT,
-                           "--%s: %zu planes at most, with those of a --clip-box", option,
-                           most);
+            return cwi_fail(err, CW_ERR_ARGUMENT,
+                            "--%s: %zu planes at most, with those of a --clip-box", option,
+                            most);
         const double length = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
         out[(*count)++] =
             (cw_clip){{p[0] / length, p[1] / length, p[2] / length}, p[3] / length};
@@ -229,8 +229,8 @@ static cw_status add_clip_box(const cli_ranges *box, const cw_volume *whole, cw_
     double at_zero[3] = {0}, at[3] = {0}, zero[3] = {0};
     cw_status st = CW_OK;
     if (!box->world && !whole)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--clip-box of a mesh is in mm, such as -30mm:30mm,0mm:50mm,0mm:9mm");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--clip-box of a mesh is in mm, such as -30mm:30mm,0mm:50mm,0mm:9mm");
     if (!box->world)
         st = cw_volume_to_index(whole, zero, at_zero, err);
     for (int a = 0; a < 3 && st == CW_OK; a++) {
@@ -258,8 +258,8 @@ static cw_status add_clips(const cli_scene *args, const cli_subject *subject, cw
     if (st == CW_OK)
         st = parse_planes("clip", args->clips, CW_MAX_CLIPS, s->clips, &s->clip_count, err);
     if (st == CW_OK && args->cut_away && s->clip_count == 0)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--cut-away needs something to be cut: --clip-box or --clip");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--cut-away needs something to be cut: --clip-box or --clip");
     s->cut_away = args->cut_away;
     return st;
 }
@@ -270,17 +270,17 @@ static cw_status add_lights(const char *text, cw_scene *s, cw_error *err)
         double p[6] = {0, 0, 0, 1, 1, 1};
         const int count = parse_tuple(&at, p, 6);
         if ((count != 3 && count != 6) || (p[0] == 0 && p[1] == 0 && p[2] == 0))
-            return cw_fail(err, CW_ERR_ARGUMENT,
-                           "--light '%s': expected x,y,z or x,y,z,r,g,b parted by ';'", text);
+            return cwi_fail(err, CW_ERR_ARGUMENT,
+                            "--light '%s': expected x,y,z or x,y,z,r,g,b parted by ';'", text);
         if (s->light_count == CW_MAX_LIGHTS)
-            return cw_fail(err, CW_ERR_ARGUMENT, "--light: %d at most", CW_MAX_LIGHTS);
+            return cwi_fail(err, CW_ERR_ARGUMENT, "--light: %d at most", CW_MAX_LIGHTS);
         cw_light *light = &s->lights[s->light_count++];
         for (int c = 0; c < 3; c++) {
             light->direction[c] = p[c];
             light->color[c] = (float)p[3 + c];
             if (!(p[3 + c] >= 0))
-                return cw_fail(err, CW_ERR_ARGUMENT, "--light '%s': a colour is 0 or more",
-                               text);
+                return cwi_fail(err, CW_ERR_ARGUMENT, "--light '%s': a colour is 0 or more",
+                                text);
         }
     }
     return CW_OK;
@@ -290,8 +290,8 @@ static cw_status take_share(const char *name, const cli_number *n, double most, 
                             cw_error *err)
 {
     if (n->given && !(n->value >= 0 && n->value <= most))
-        return cw_fail(err, CW_ERR_ARGUMENT, "--%s %g: 0 to %g was expected", name, n->value,
-                       most);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--%s %g: 0 to %g was expected", name, n->value,
+                        most);
     if (n->given)
         *out = (float)n->value;
     return CW_OK;
@@ -315,8 +315,8 @@ static cw_status add_material(const cli_scene *args, cw_scene *s, cw_error *err)
     if (st == CW_OK)
         st = take_share("depth-cue", &args->depth_cue, 1, &s->depth_cue, err);
     if (st == CW_OK && given && m->ambient + m->diffuse + m->specular == 0)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--ambient, --diffuse and --specular are all 0: nothing is lit");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--ambient, --diffuse and --specular are all 0: nothing is lit");
     return st == CW_OK ? add_lights(args->lights, s, err) : st;
 }
 
@@ -333,7 +333,7 @@ static cw_status space_slices(const cli_scene *args, const cw_volume *v, cw_scen
     if (args->slices == 0)
         return CW_OK;
     if (args->step.given)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--slices or --step-length, not both");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--slices or --step-length, not both");
     cw_status st = cw_camera_axes(&s->camera, axes[0], axes[1], axes[2], err);
     for (int n = 0; n < 8 && st == CW_OK; n++) {
         double index[3], p[3], depth = 0;
@@ -355,14 +355,14 @@ static cw_status add_steps(const cli_scene *args, const cw_volume *v, cw_scene *
                            cw_error *err)
 {
     if (args->step.given && !(args->step.value >= 1e-3 && args->step.value <= 1e3))
-        return cw_fail(err, CW_ERR_ARGUMENT, "--step-length %g: 0.001 to 1000 was expected",
-                       args->step.value);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--step-length %g: 0.001 to 1000 was expected",
+                        args->step.value);
     if (args->tree_error.given && !(args->tree_error.value >= 0 && args->tree_error.value <= 1))
-        return cw_fail(err, CW_ERR_ARGUMENT, "--tree-error %g: 0 to 1 was expected",
-                       args->tree_error.value);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--tree-error %g: 0 to 1 was expected",
+                        args->tree_error.value);
     if (args->stop_opacity.given && !(args->stop_opacity.value > 0))
-        return cw_fail(err, CW_ERR_ARGUMENT, "--stop-opacity %g: above 0 was expected",
-                       args->stop_opacity.value);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--stop-opacity %g: above 0 was expected",
+                        args->stop_opacity.value);
     s->step_vox = args->step.given                         ? args->step.value
                   : s->lit && s->mode == CW_MODE_COMPOSITE ? LIT_STEP_VOX
                                                            : STEP_VOX;
@@ -394,9 +394,9 @@ static cw_status add_mesh(const cli_scene *args, cw_scene *s, cw_error *err)
     for (int c = 0; c < 4 && args->color; c++)
         s->color[c] = (float)rgba[c] / 255;
     if (range->count && (range->count != 2 || !(range->value[0] < range->value[1])))
-        return cw_fail(err, CW_ERR_ARGUMENT, "--tint-range takes two rising numbers");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--tint-range takes two rising numbers");
     if (range->count && args->tint != CW_TINT_SCALARS)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--tint-range is for --tint scalars");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--tint-range is for --tint scalars");
     s->tint = (cw_tint)args->tint;
     s->tint_low = range->count ? range->value[0] : 0;
     s->tint_high = range->count ? range->value[1] : 0;

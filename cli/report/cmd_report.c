@@ -76,8 +76,9 @@ static cw_status parse_budget(const char *text, double *seconds, cw_error *err)
                                                                        : 0;
     *seconds *= unit;
     if (!number || unit == 0 || !(*seconds > 0) || !isfinite(*seconds))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--budget '%s': a time above 0 was expected, such as 60s or 5min", text);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--budget '%s': a time above 0 was expected, such as 60s or 5min",
+                        text);
     return CW_OK;
 }
 
@@ -85,15 +86,15 @@ static cw_status check_dims(report_args *args, cw_error *err)
 {
     size_t *n = args->dims.n;
     if (args->dims.count == 2)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--dims takes one number or three, not two");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--dims takes one number or three, not two");
     if (args->dims.count == 0)
         n[0] = DEFAULT_DIMS;
     if (args->dims.count < 2)
         n[1] = n[2] = n[0];
     for (int a = 0; a < 3; a++)
         if (n[a] < 8 || n[a] > MOST_DIMS)
-            return cw_fail(err, CW_ERR_ARGUMENT,
-                           "--dims: 8 to %d samples were expected, not %zu", MOST_DIMS, n[a]);
+            return cwi_fail(err, CW_ERR_ARGUMENT,
+                            "--dims: 8 to %d samples were expected, not %zu", MOST_DIMS, n[a]);
     return CW_OK;
 }
 
@@ -111,8 +112,8 @@ static cw_status check_outputs(const report_args *args, cw_error *err)
     }
     if (st == CW_OK && args->json && args->csv && strcmp(args->json, "-") == 0 &&
         strcmp(args->csv, "-") == 0)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--json and --csv: only one of them can use the standard output");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--json and --csv: only one of them can use the standard output");
     return st;
 }
 
@@ -120,9 +121,9 @@ static cw_status check_outputs(const report_args *args, cw_error *err)
 static cw_status check_name(const char *name, cw_error *err)
 {
     const char *nearest = cli_nearest_field(name);
-    return nearest ? cw_fail(err, CW_ERR_ARGUMENT,
-                             "'%s' is neither a file nor a field; did you mean '%s'?", name,
-                             nearest)
+    return nearest ? cwi_fail(err, CW_ERR_ARGUMENT,
+                              "'%s' is neither a file nor a field; did you mean '%s'?", name,
+                              nearest)
                    : CW_OK;
 }
 
@@ -137,15 +138,15 @@ static cw_status check_args(run_state *s, cw_error *err)
     if (st != CW_OK)
         return st;
     if (!args->output)
-        return cw_fail(err, CW_ERR_ARGUMENT, "report needs an output: -o FILE");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "report needs an output: -o FILE");
     if (strcmp(args->output, "-") == 0 && args->json && strcmp(args->json, "-") == 0)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "-o and --json: only one of them can use the standard output");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "-o and --json: only one of them can use the standard output");
     if (s->study.is_field && args->input.coarsen)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--coarsen is for files; --dims samples fewer");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--coarsen is for files; --dims samples fewer");
     if (!s->study.is_field && args->dims.count)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--dims is for fields, and %s is a file",
-                       args->common.inputs[0]);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--dims is for fields, and %s is a file",
+                        args->common.inputs[0]);
     st = s->study.is_field ? check_dims(args, err) : CW_OK;
     return st == CW_OK ? check_outputs(args, err) : st;
 }
@@ -185,7 +186,7 @@ static cw_status tell_input(run_state *s, const char *path, cw_error *err)
     const bool good = cwi_text_close(out, &text) && word;
     free(word);
     s->input_words = text;
-    return good ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a command");
+    return good ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a command");
 }
 
 static cw_status make_field(run_state *s, cw_error *err)
@@ -201,7 +202,7 @@ static cw_status make_field(run_state *s, cw_error *err)
     v->path = s->field_path;
     s->make_words = malloc(256);
     if (!s->make_words)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a command");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a command");
     snprintf(s->make_words, 256, "cubewright make %s --dims %zux%zux%zu -o %s",
              cw_field_name(field), n[0], n[1], n[2], s->field_path);
     return CW_OK;
@@ -300,7 +301,7 @@ static cw_status run_report_command(void *p, cw_error *err)
     report_args *args = p;
     run_state *s = calloc(1, sizeof *s);
     if (!s)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a report");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a report");
     s->args = args;
     /* a file of that name is meant, if there is one */
     s->study.is_field = access(args->common.inputs[0], F_OK) != 0 &&

@@ -106,7 +106,7 @@ static cw_status tell_commands(cli_study *s, cw_error *err)
     for (size_t n = 0; n < s->point_count; n++) {
         s->points[n].command = cli_point_command(s, &s->points[n]);
         if (!s->points[n].command)
-            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a command");
+            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a command");
     }
     return CW_OK;
 }

@@ -67,7 +67,7 @@ static cw_status load_file(const char *path, char **bytes, size_t *size, cw_erro
         fclose(f);
     return *size && *size == (size_t)length
                ? CW_OK
-               : cw_fail(err, CW_ERR_OUTPUT, "%s cannot be read back", path);
+               : cwi_fail(err, CW_ERR_OUTPUT, "%s cannot be read back", path);
 }
 
 static cw_status save_and_load(cli_study *s, const cw_image *image, char **png, size_t *size,
@@ -91,7 +91,7 @@ cw_status cli_draw_errors(cli_study *s, const cw_mesh *around, const cw_mesh *me
     cw_image image = {0};
     colored.colors = cwi_alloc_array(mesh->vertex_count, 4);
     if (!colored.colors)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a picture");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a picture");
     for (size_t v = 0; v < mesh->vertex_count; v++) {
         cli_error_color(share_of((double)mm[v], s->voxel_mm), colored.colors + 4 * v);
         colored.colors[4 * v + 3] = 255;

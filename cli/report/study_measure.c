@@ -128,7 +128,7 @@ static cw_status measure_middles(cli_study *s, cli_point *p, const cw_mesh *mesh
         find_middles(mesh, points.positions);
         st = cw_distance_to_field(&points, &volume_of(s, p)->view, &desc, &d, mm, err);
     } else {
-        cw_fail(err, st, "no memory for the errors of triangles");
+        cwi_fail(err, st, "no memory for the errors of triangles");
     }
     for (size_t n = 0; n < 3 * count && st == CW_OK; n++) {
         float *at = &worst[mesh->triangles[n]];
@@ -160,7 +160,7 @@ cw_status cli_measure_mesh(cli_study *s, cli_point *p, const cw_mesh *mesh, cw_e
     cli_sample sample = {0};
     cw_status st = CW_OK;
     if (p->shown && !worst)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the errors of vertices");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the errors of vertices");
     p->triangles = mesh->triangle_count;
     if (!p->file_bytes)
         st = cli_weigh_mesh(s, mesh, NULL, &p->file_bytes, NULL, err);

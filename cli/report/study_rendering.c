@@ -75,7 +75,7 @@ static cw_status need_reference(cli_study *s, const cli_scene *args, cw_error *e
         return CW_OK;
     const char *kind = cwi_volume_kind(&s->drawn);
     if (kind)
-        return cw_fail(err, CW_ERR_UNSUPPORTED, "%s is not drawn", kind);
+        return cwi_fail(err, CW_ERR_UNSUPPORTED, "%s is not drawn", kind);
     if (!s->cpu)
         st = cw_renderer_new(CW_BACKEND_CPU, &s->cpu, err);
     if (st == CW_OK)

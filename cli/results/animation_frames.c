@@ -12,7 +12,7 @@ cw_status cli_frames_reserve(cli_frames *f, size_t count, cw_error *err)
     f->room = count;
     return f->frames && f->parts
                ? CW_OK
-               : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu frames", count);
+               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu frames", count);
 }
 
 void cli_frames_free(cli_frames *f)

@@ -19,18 +19,18 @@ cw_status cli_check_compress(const cli_compress *c, bool voxels, cw_error *err)
                          : c->level           ? "level"
                                               : NULL;
     if (lonely)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--%s is for --compress", lonely);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--%s is for --compress", lonely);
     if (c->bits && c->tolerance.given)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--bits or --tolerance, not both");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--bits or --tolerance, not both");
     if (c->level && (c->kind != CW_COMPRESS_DRACO || c->level > 10))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--level %zu: 1 to 10 was expected, with --compress draco", c->level);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--level %zu: 1 to 10 was expected, with --compress draco", c->level);
     if (c->bits > 30)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--bits %zu: 1 to 30 was expected", c->bits);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--bits %zu: 1 to 30 was expected", c->bits);
     if (c->tolerance.given && !(c->tolerance.value > 0))
-        return cw_fail(err, CW_ERR_ARGUMENT, "--tolerance: it must be above 0");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--tolerance: it must be above 0");
     if (c->tolerance.unit == CLI_VOXELS && !voxels)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--tolerance: a mesh has no voxels");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--tolerance: a mesh has no voxels");
     return CW_OK;
 }
 

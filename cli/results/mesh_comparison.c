@@ -47,10 +47,11 @@ cw_status cli_check_place(const cli_volume *volume, const cw_mesh *mesh, cw_erro
             to = fmax(to, corners[n][a]);
         }
         if (low[a] > to || high[a] < from)
-            return cw_fail(err, CW_ERR_ARGUMENT,
-                           "%s: the mesh is not in this volume: along %c it is at %g to %g mm, "
-                           "the volume at %g to %g",
-                           volume->path, "xyz"[a], low[a], high[a], from, to);
+            return cwi_fail(
+                err, CW_ERR_ARGUMENT,
+                "%s: the mesh is not in this volume: along %c it is at %g to %g mm, "
+                "the volume at %g to %g",
+                volume->path, "xyz"[a], low[a], high[a], from, to);
     }
     return CW_OK;
 }

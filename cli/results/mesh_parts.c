@@ -34,7 +34,7 @@ static cw_status weld_parts(cli_pieces *p, const cli_mesh *m, cw_error *err)
     cw_status st = CW_OK;
     p->piece = calloc(count ? count : 1, sizeof *p->piece);
     if (!p->piece)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", count);
     for (size_t n = 0; n < count && st == CW_OK; n++) {
         size_t merged;
         cli_piece *piece = &p->piece[p->count];
@@ -55,7 +55,7 @@ cw_status cli_weld_pieces(cli_pieces *p, const cli_mesh *mesh, cw_error *err)
         cli_say("%s: %s vertices at the position of another were merged", p->path,
                 cli_count(p->merged));
     if (st == CW_OK && !p->count)
-        st = cw_fail(err, CW_ERR_EMPTY, "it has no triangles");
+        st = cwi_fail(err, CW_ERR_EMPTY, "it has no triangles");
     if (st == CW_OK)
         measure_box(p);
     return in_file(p, st, err);
@@ -77,8 +77,8 @@ cw_status cli_drop_from_pieces(cli_pieces *p, double diagonal_mm, cw_error *err)
         p->count += kept > 0;
     }
     if (st == CW_OK && !p->count)
-        st = cw_fail(err, CW_ERR_EMPTY,
-                     "no component has a diagonal of %.6g mm: nothing is left", diagonal_mm);
+        st = cwi_fail(err, CW_ERR_EMPTY,
+                      "no component has a diagonal of %.6g mm: nothing is left", diagonal_mm);
     if (st == CW_OK)
         cli_say("%s: %s component%s kept, %s dropped (< %.6g mm)", p->path, cli_count(all_kept),
                 all_kept == 1 ? "" : "s", cli_count(p->dropped), diagonal_mm);
@@ -120,9 +120,9 @@ cw_status cli_compare_pieces(const cli_pieces *p, int threads, cli_comparison *c
                          err);
     const double most = cw_mesh_comparison_max(&c->with_input);
     if (st == CW_OK && c->promised_mm > 0 && most > c->promised_mm)
-        st = cw_fail(err, CW_ERR_CHECK,
-                     "not as promised: %.6g mm from the input, not %.6g; nothing is written",
-                     most, c->promised_mm);
+        st = cwi_fail(err, CW_ERR_CHECK,
+                      "not as promised: %.6g mm from the input, not %.6g; nothing is written",
+                      most, c->promised_mm);
     return in_file(p, st, err);
 }
 

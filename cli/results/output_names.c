@@ -41,16 +41,16 @@ cw_status cli_check_output(const char *output, const char *const *inputs, size_t
 {
     for (size_t i = 0; i < input_count; i++)
         if (same_file(output, inputs[i]))
-            return cw_fail(err, CW_ERR_OUTPUT,
-                           "%s: is the input; inputs are never overwritten, give another -o",
-                           output);
+            return cwi_fail(err, CW_ERR_OUTPUT,
+                            "%s: is the input; inputs are never overwritten, give another -o",
+                            output);
     return CW_OK;
 }
 
 static cw_status fail_same(const char *a, const char *b, cw_error *err)
 {
-    return cw_fail(err, CW_ERR_ARGUMENT,
-                   "%s and %s are the same file; each output needs its own", a, b);
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "%s and %s are the same file; each output needs its own", a, b);
 }
 
 cw_status cli_check_apart(const char *a, const char *b, cw_error *err)
@@ -63,8 +63,8 @@ static cw_status check_levels(const cli_numbers *levels, cw_error *err)
     for (size_t n = 0; n < levels->count; n++)
         for (size_t m = 0; m < n; m++)
             if (levels->value[m] == levels->value[n])
-                return cw_fail(err, CW_ERR_ARGUMENT, "--iso lists %s twice",
-                               cli_number_text(levels->value[n]));
+                return cwi_fail(err, CW_ERR_ARGUMENT, "--iso lists %s twice",
+                                cli_number_text(levels->value[n]));
     return CW_OK;
 }
 
@@ -79,8 +79,9 @@ static const char *end_of_name(const char *text)
 static cw_status ask_for(const char *what, const char *text, const char *why, cw_error *err)
 {
     const char *end = end_of_name(text), *width = strcmp(what, "step") == 0 ? ":04d" : "";
-    return cw_fail(err, CW_ERR_ARGUMENT, "%s: the output must hold {%s}, as in '%.*s-{%s%s}%s'",
-                   why, what, (int)(end - text), text, what, width, end);
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "%s: the output must hold {%s}, as in '%.*s-{%s%s}%s'", why, what,
+                    (int)(end - text), text, what, width, end);
 }
 
 static cw_status reserve_names(cli_outputs *outputs, size_t count, char **stem,
@@ -90,7 +91,7 @@ static cw_status reserve_names(cli_outputs *outputs, size_t count, char **stem,
     *stem = cli_stem(input);
     if (outputs->path && *stem)
         return CW_OK;
-    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
+    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
 }
 
 /* The next name, of the parts as they are now. */
@@ -106,7 +107,7 @@ static cw_status name_levels(cli_outputs *outputs, const char *text, const cli_m
                              const cli_numbers *levels, cli_part parts[PARTS], cw_error *err)
 {
     char number[24], *stem = cli_stem(moment->path);
-    cw_status st = stem ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
+    cw_status st = stem ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
     snprintf(number, sizeof number, "%zu", moment->number);
     parts[STEM].value = stem;
     parts[STEP].value = number;
@@ -144,7 +145,7 @@ cw_status cli_name_outputs(cli_outputs *outputs, const char *text, const cli_ser
     cw_status st = check_levels(levels, err);
     outputs->path = calloc(levels->count * series->count + 1, sizeof *outputs->path);
     if (st == CW_OK && !outputs->path)
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the names of outputs");
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the names of outputs");
     for (size_t n = 0; n < series->count && st == CW_OK; n++)
         st = name_levels(outputs, text, &series->moments[n], levels, parts, err);
     return st == CW_OK ? check_told_apart(text, series, levels, parts, err) : st;
@@ -203,7 +204,7 @@ cw_status cli_name_lod_outputs(cli_outputs *outputs, const char *text, const cha
         st = cli_fill_template(text, parts, 2, &plain, err);
     const bool apart = parts[1].used;
     if (st == CW_OK && !apart && !(made = with_lod(text)))
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
     for (size_t n = 0; n < levels && st == CW_OK; n++) {
         snprintf(number, sizeof number, "%zu", n);
         st = add_output(outputs, apart ? text : made, parts, 2, err);
@@ -241,8 +242,8 @@ static cw_status check_all_apart(const cli_outputs *outputs, cw_error *err)
     cw_status st = CW_OK;
     place *places = calloc(outputs->count ? outputs->count : 1, sizeof *places);
     if (!places)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu outputs",
-                       outputs->count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu outputs",
+                        outputs->count);
     for (size_t n = 0; n < outputs->count && st == CW_OK; n++) {
         places[n] = find_place(outputs->path[n]);
         for (size_t m = 0; m < n && st == CW_OK; m++)

@@ -14,8 +14,8 @@ cw_status cli_check_pvd(const char *path, const cli_outputs *outputs, const char
     for (size_t n = 0; n < outputs->count && st == CW_OK; n++) {
         const cw_format *format = cw_mesh_format(outputs->path[n], desc->format);
         if (!format || strcmp(format->name, "vtp") != 0)
-            return cw_fail(err, CW_ERR_ARGUMENT, "--pvd lists .vtp files; %s is not one",
-                           outputs->path[n]);
+            return cwi_fail(err, CW_ERR_ARGUMENT, "--pvd lists .vtp files; %s is not one",
+                            outputs->path[n]);
         st = cli_check_apart(path, outputs->path[n], err);
     }
     here.format = "vtp"; /* for the folder, and what is in the way, it is the same */
@@ -37,7 +37,7 @@ cw_status cli_write_pvd(cli_report *report, const char *path, const cw_write_des
 {
     cw_pvd_entry *entries = calloc(report->made_count + 1, sizeof *entries);
     if (!entries)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the list of files");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the list of files");
     const size_t count = list_written(report, entries);
     cw_status st = count ? cw_pvd_write(path, entries, count, desc, err) : CW_OK;
     if (st == CW_OK && count) {

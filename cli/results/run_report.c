@@ -34,7 +34,8 @@ cw_status cli_report_reserve(cli_report *report, size_t meshes, cw_error *err)
     cli_step *step = reallocarray(report->steps, steps, sizeof *step);
     report->steps = step ? step : report->steps;
     if (!made || !step)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the report of %zu meshes", meshes);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the report of %zu meshes",
+                        meshes);
     report->step_room = steps;
     return CW_OK;
 }
@@ -381,7 +382,7 @@ cw_status cli_report_save(const char *path, const char *text, size_t size, cw_er
     if (strcmp(path, "-") == 0)
         return fwrite(text, 1, size, stdout) == size
                    ? CW_OK
-                   : cw_fail(err, CW_ERR_OUTPUT, "the standard output cannot be written");
+                   : cwi_fail(err, CW_ERR_OUTPUT, "the standard output cannot be written");
     return cwi_outfile_save(path, text, size, err);
 }
 
@@ -397,7 +398,7 @@ cw_status cli_report_make(const char *path, void (*put)(FILE *out, const void *w
         put(out, what);
     cw_status st = cwi_text_close(out, &text)
                        ? cli_report_save(path, text, size, err)
-                       : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the report");
+                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the report");
     free(text);
     return st;
 }
@@ -415,7 +416,7 @@ static cw_status write_report(const cli_report *report, cw_status status, cw_err
         put_report(out, report, status, err);
     cw_status st = cwi_text_close(out, &text)
                        ? cli_report_save(report->path, text, size, &why)
-                       : cw_fail(&why, CW_ERR_NO_MEMORY, "no memory for the report");
+                       : cwi_fail(&why, CW_ERR_NO_MEMORY, "no memory for the report");
     free(text);
     if (status != CW_OK)
         return status;

@@ -36,12 +36,12 @@ static cw_status hold_to_promise(const cli_delivery *how, const cli_made *made, 
         (!q->nonmanifold_edges && !q->nonmanifold_vertices && !q->misoriented_edges &&
          !q->degenerate && (!q->open_edges || how->open)))
         return CW_OK;
-    return cw_fail(err, CW_ERR_CHECK,
-                   "%s: the surface at %g is not as promised: %zu open, %zu non-manifold, %zu "
-                   "misoriented edges, %zu non-manifold vertices, %zu degenerate triangles; "
-                   "nothing is written (--no-check writes it)",
-                   how->input, made->iso, q->open_edges, q->nonmanifold_edges,
-                   q->misoriented_edges, q->nonmanifold_vertices, q->degenerate);
+    return cwi_fail(err, CW_ERR_CHECK,
+                    "%s: the surface at %g is not as promised: %zu open, %zu non-manifold, %zu "
+                    "misoriented edges, %zu non-manifold vertices, %zu degenerate triangles; "
+                    "nothing is written (--no-check writes it)",
+                    how->input, made->iso, q->open_edges, q->nonmanifold_edges,
+                    q->misoriented_edges, q->nonmanifold_vertices, q->degenerate);
 }
 
 /* Parts share no vertices, so what is counted adds up. */
@@ -365,11 +365,11 @@ static cw_status hold_to_shape(const cli_made *made, cw_error *err)
     const cw_compressed *c = &made->compressed;
     if (!c->merged && !c->flat)
         return CW_OK;
-    return cw_fail(err, CW_ERR_CHECK,
-                   "%s: with %d bits %s vertices fall onto others and %s triangles lose their "
-                   "area; without --bits enough bits are chosen",
-                   cli_shown_path(made->path), c->bits, cli_count(c->merged),
-                   cli_count(c->flat));
+    return cwi_fail(err, CW_ERR_CHECK,
+                    "%s: with %d bits %s vertices fall onto others and %s triangles lose their "
+                    "area; without --bits enough bits are chosen",
+                    cli_shown_path(made->path), c->bits, cli_count(c->merged),
+                    cli_count(c->flat));
 }
 
 cw_status cli_deliver(cli_report *report, const cli_delivery *how, const cw_part *parts,

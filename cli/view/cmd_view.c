@@ -68,12 +68,12 @@ static cw_status check_arguments(const render_args *args, cw_error *err)
 {
     const char *dot = args->output ? strrchr(args->output, '.') : NULL;
     if (args->size.count != 2 || args->size.n[0] > 8192 || args->size.n[1] > 8192)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--size takes two numbers up to 8192, such as 1280x800");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--size takes two numbers up to 8192, such as 1280x800");
     if (args->output && (!dot || strcmp(dot, ".png") != 0))
-        return cw_fail(err, CW_ERR_ARGUMENT, "%s: view writes .png", args->output);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%s: view writes .png", args->output);
     if (args->common.input_count == 0 && args->output && !args->exec && !args->run)
-        return cw_fail(err, CW_ERR_ARGUMENT, "view -o needs a file to draw");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "view -o needs a file to draw");
     return CW_OK;
 }
 
@@ -102,7 +102,7 @@ static cw_status open_first(view *v, const render_args *args, cw_error *err)
     if (st == CW_OK)
         return CW_OK;
     if (v->is_hidden)
-        return cw_fail(err, st, "%s", why.message);
+        return cwi_fail(err, st, "%s", why.message);
     cli_say_error(why.message);
     view_say(v, true, why.message);
     return CW_OK;
@@ -194,7 +194,7 @@ static cw_status run_view(void *p, cw_error *err)
         return st;
     view *v = calloc(1, sizeof *v);
     if (!v)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a session");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a session");
     v->start = start;
     st = open_window(v, args, err);
     if (st == CW_OK)

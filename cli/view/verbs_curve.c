@@ -28,8 +28,8 @@ static cw_status need_point(const char *verb, double n, size_t count, cw_error *
 {
     return n >= 0 && n < (double)count && n == floor(n)
                ? CW_OK
-               : cw_fail(err, CW_ERR_ARGUMENT, "%s %g: there are points 0 to %zu", verb, n,
-                         count ? count - 1 : 0);
+               : cwi_fail(err, CW_ERR_ARGUMENT, "%s %g: there are points 0 to %zu", verb, n,
+                          count ? count - 1 : 0);
 }
 
 static cw_status run_point(view *v, int count, char **args, cw_error *err)
@@ -57,8 +57,8 @@ static cw_status run_add_point(view *v, int count, char **args, cw_error *err)
         st = start_edit(v, err);
     if (st == CW_OK &&
         cwi_transfer_insert_opacity(&v->state.curve, n[0], n[1]) == CWI_TRANSFER_NONE)
-        st = cw_fail(err, CW_ERR_LIMIT, "a transfer function has %d points at most",
-                     CW_TRANSFER_POINTS);
+        st = cwi_fail(err, CW_ERR_LIMIT, "a transfer function has %d points at most",
+                      CW_TRANSFER_POINTS);
     return st;
 }
 
@@ -79,8 +79,8 @@ static cw_status take_color(const char *text, float out[3], cw_error *err)
 {
     uint8_t rgba[4];
     if (!cli_parse_color(text, rgba))
-        return cw_fail(err, CW_ERR_ARGUMENT, "'%s': a colour such as #ffeedd was expected",
-                       text);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "'%s': a colour such as #ffeedd was expected",
+                        text);
     for (int c = 0; c < 3; c++)
         out[c] = (float)rgba[c] / 255;
     return CW_OK;
@@ -130,8 +130,8 @@ static cw_status run_add_color(view *v, int count, char **args, cw_error *err)
         return st;
     const size_t at = cwi_transfer_insert_color(&v->state.curve, n);
     if (at == CWI_TRANSFER_NONE)
-        return cw_fail(err, CW_ERR_LIMIT, "a transfer function has %d points at most",
-                       CW_TRANSFER_POINTS);
+        return cwi_fail(err, CW_ERR_LIMIT, "a transfer function has %d points at most",
+                        CW_TRANSFER_POINTS);
     memcpy(v->state.curve.colors[at].color, color, sizeof color);
     return CW_OK;
 }

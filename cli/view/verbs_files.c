@@ -38,7 +38,7 @@ static cw_status open_near(view *v, int by, cw_error *err)
     int at = 0;
     while (at < count && strcmp(list[at]->d_name, own) != 0)
         at++;
-    st = cw_fail(err, CW_ERR_ARGUMENT, "%s: its folder has no other file to open", v->path);
+    st = cwi_fail(err, CW_ERR_ARGUMENT, "%s: its folder has no other file to open", v->path);
     for (int n = 1; n < count && at < count && st != CW_OK; n++) {
         struct stat info;
         cw_volume shape = {0};
@@ -75,7 +75,7 @@ static cw_status run_step(view *v, int count, char **args, cw_error *err)
     (void)count;
     cw_status st = view_need_open(v, err);
     if (st != CW_OK || steps < 2)
-        return st == CW_OK ? cw_fail(err, CW_ERR_ARGUMENT, "%s has no other steps", v->path)
+        return st == CW_OK ? cwi_fail(err, CW_ERR_ARGUMENT, "%s has no other steps", v->path)
                            : st;
     if (strcmp(args[0], "next") == 0)
         n = (double)((v->state.step + 1) % steps);
@@ -84,7 +84,8 @@ static cw_status run_step(view *v, int count, char **args, cw_error *err)
     else
         st = view_take("step", args, 1, &n, err);
     if (st == CW_OK && (n < 0 || n != floor(n)))
-        return cw_fail(err, CW_ERR_ARGUMENT, "step '%s': a whole number was expected", args[0]);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "step '%s': a whole number was expected",
+                        args[0]);
     return st == CW_OK ? view_go_to_step(v, (size_t)n, err) : st;
 }
 

@@ -13,7 +13,7 @@
 static cw_status go_back(view *v, int by, cw_error *err)
 {
     if (!view_undo(v, by))
-        return cw_fail(err, CW_ERR_ARGUMENT, by < 0 ? "nothing to undo" : "nothing to redo");
+        return cwi_fail(err, CW_ERR_ARGUMENT, by < 0 ? "nothing to undo" : "nothing to redo");
     v->transfer_is_old = true;
     view_touch(v, VIEW_ALL);
     return view_choose_mode(v, err);
@@ -55,7 +55,7 @@ static cw_status need_png(const char *path, cw_error *err)
     const char *dot = strrchr(path, '.');
     return dot && strcmp(dot, ".png") == 0
                ? CW_OK
-               : cw_fail(err, CW_ERR_ARGUMENT, "%s: pictures are written as .png", path);
+               : cwi_fail(err, CW_ERR_ARGUMENT, "%s: pictures are written as .png", path);
 }
 
 static cw_status run_screenshot(view *v, int count, char **args, cw_error *err)
@@ -92,7 +92,7 @@ static cw_status run_turntable(view *v, int count, char **args, cw_error *err)
     (void)count;
     cw_status st = view_take("turntable", args, 1, &turns, err);
     if (st == CW_OK && !(turns >= 2 && turns <= 100000 && turns == floor(turns)))
-        st = cw_fail(err, CW_ERR_ARGUMENT, "turntable %s: 2 to 100000 was expected", args[0]);
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "turntable %s: 2 to 100000 was expected", args[0]);
     if (st == CW_OK)
         st = need_png(args[1], err);
     if (st == CW_OK)
@@ -107,7 +107,7 @@ static cw_status run_turntable(view *v, int count, char **args, cw_error *err)
         cli_part part = {"turn", number, true, false};
         st = cli_fill_template(args[1], &part, 1, &path, err);
         if (st == CW_OK && !part.used)
-            st = cw_fail(
+            st = cwi_fail(
                 err, CW_ERR_ARGUMENT,
                 "turntable '%s': the name must hold {turn}, as in 'turn-{turn:03d}.png'",
                 args[1]);
@@ -153,8 +153,8 @@ static cw_status run_run(view *v, int count, char **args, cw_error *err)
 {
     (void)count; /* a file may run others, but not itself for ever */
     if (v->depth >= 8)
-        return cw_fail(err, CW_ERR_LIMIT, "run %s: files run each other more than 8 deep",
-                       args[0]);
+        return cwi_fail(err, CW_ERR_LIMIT, "run %s: files run each other more than 8 deep",
+                        args[0]);
     v->depth++;
     cw_status st = view_exec_file(v, args[0], err);
     v->depth--;
@@ -166,7 +166,7 @@ static cw_status run_copy_command(view *v, int count, char **args, cw_error *err
     char *line = view_command_line(v);
     (void)count, (void)args;
     if (!line)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a command line");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a command line");
     v->ui->set_clipboard(v->window, line);
     free(line);
     view_say(v, false, "the command line is in the clipboard");

@@ -57,7 +57,7 @@ static cw_status run_iso_by(view *v, int count, char **args, cw_error *err)
     (void)count;
     cw_status st = view_need_open(v, err);
     if (st == CW_OK && v->source.is_mesh)
-        st = cw_fail(err, CW_ERR_ARGUMENT, "a mesh has no isovalue");
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "a mesh has no isovalue");
     if (st == CW_OK)
         st = view_take("iso-by", args, 1, &share, err);
     if (st != CW_OK)
@@ -75,10 +75,10 @@ static cw_status run_toggle(view *v, int count, char **args, cw_error *err)
     bool on;
     bool *shown = view_shown_flag(v, args[0]);
     if (!view_find_flag(v, args[0], &on))
-        return cw_fail(err, CW_ERR_ARGUMENT, "toggle '%s': not a setting that is on or off",
-                       args[0]);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "toggle '%s': not a setting that is on or off",
+                        args[0]);
     if (count == 2 && strcmp(args[1], "on") != 0 && strcmp(args[1], "off") != 0)
-        return cw_fail(err, CW_ERR_ARGUMENT, "toggle '%s': on or off was expected", args[1]);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "toggle '%s': on or off was expected", args[1]);
     const bool wanted = count == 2 ? strcmp(args[1], "on") == 0 : !on;
     if (strcmp(args[0], "quad") == 0)
         return view_set(v, "layout", wanted ? "quad" : "single", err);
@@ -157,7 +157,7 @@ static cw_status run_face(view *v, int count, char **args, cw_error *err)
     if (st != CW_OK)
         return st;
     if (!(n[0] >= 0 && n[0] <= 5 && n[0] == floor(n[0])))
-        return cw_fail(err, CW_ERR_ARGUMENT, "clip-face '%s': 0 to 5 was expected", args[0]);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "clip-face '%s': 0 to 5 was expected", args[0]);
     start_box(v);
     cli_ranges *box = &v->state.args.scene.clip_box;
     const int axis = (int)n[0] / 2;
@@ -194,7 +194,7 @@ static cw_status run_cut(view *v, int count, char **args, cw_error *err)
     const int axis = axis_of(args[0]) - 1;
     (void)count;
     if (axis < 0)
-        return cw_fail(err, CW_ERR_ARGUMENT, "cut '%s': x, y or z was expected", args[0]);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "cut '%s': x, y or z was expected", args[0]);
     cw_status st = view_take("cut", args + 1, 1, &voxels, err);
     if (st == CW_OK)
         st = view_need_open(v, err);
@@ -213,8 +213,8 @@ static cw_status run_wheel_cuts(view *v, int count, char **args, cw_error *err)
     const int axis = axis_of(args[0]);
     (void)count;
     if (!axis)
-        return cw_fail(err, CW_ERR_ARGUMENT, "wheel-cuts '%s': x, y or z was expected",
-                       args[0]);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "wheel-cuts '%s': x, y or z was expected",
+                        args[0]);
     v->shown.cut = v->shown.cut == axis ? 0 : axis;
     return CW_OK;
 }
@@ -243,7 +243,7 @@ static cw_status run_cross_by(view *v, int count, char **args, cw_error *err)
     const int axis = axis_of(args[0]) - 1;
     (void)count;
     if (axis < 0)
-        return cw_fail(err, CW_ERR_ARGUMENT, "cross-by '%s': x, y or z was expected", args[0]);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "cross-by '%s': x, y or z was expected", args[0]);
     cw_status st = view_take("cross-by", args + 1, 1, &voxels, err);
     if (st == CW_OK)
         st = view_need_open(v, err);
@@ -281,8 +281,8 @@ static cw_status run_window(view *v, int count, char **args, cw_error *err)
     double n[2];
     cw_status st = view_take("window", args, count, n, err);
     if (st == CW_OK && !(n[0] < n[1]))
-        st = cw_fail(err, CW_ERR_ARGUMENT, "window %s %s: rising values were expected", args[0],
-                     args[1]);
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "window %s %s: rising values were expected",
+                      args[0], args[1]);
     if (st == CW_OK)
         memcpy(v->state.window, n, sizeof n);
     view_touch(v, VIEW_SLICES);
@@ -295,7 +295,7 @@ static cw_status run_zoom_slices(view *v, int count, char **args, cw_error *err)
     (void)count;
     cw_status st = view_take("zoom-slices", args, 1, &n, err);
     if (st == CW_OK && !(n > 0))
-        st = cw_fail(err, CW_ERR_ARGUMENT, "zoom-slices %s: above 0 was expected", args[0]);
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "zoom-slices %s: above 0 was expected", args[0]);
     if (st == CW_OK)
         v->state.slice_zoom = fmin(fmax(n, 0.1), 100);
     view_touch(v, VIEW_SLICES);
@@ -308,7 +308,7 @@ static cw_status run_split(view *v, int count, char **args, cw_error *err)
     (void)count;
     cw_status st = view_take("split", args, 1, &n, err);
     if (st == CW_OK && !(n >= 0 && n <= 1))
-        st = cw_fail(err, CW_ERR_ARGUMENT, "split %s: 0 to 1 was expected", args[0]);
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "split %s: 0 to 1 was expected", args[0]);
     if (st == CW_OK)
         v->state.share = n;
     if (st == CW_OK && v->state.args.compare)

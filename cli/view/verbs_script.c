@@ -52,7 +52,7 @@ static cw_status run_print(view *v, int count, char **args, cw_error *err)
     else if (strcmp(what, "command") == 0) {
         char *line = view_command_line(v);
         if (!line)
-            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a command line");
+            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a command line");
         puts(line);
         free(line);
     } else if (strcmp(what, "camera") == 0 && s->is_placed &&
@@ -64,7 +64,7 @@ static cw_status run_print(view *v, int count, char **args, cw_error *err)
     else if (view_find_option(v, what) || view_find_flag(v, what, &on))
         print_setting(v, what);
     else
-        return cw_fail(err, CW_ERR_ARGUMENT, "print '%s': nothing has that name", what);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "print '%s': nothing has that name", what);
     return CW_OK;
 }
 
@@ -144,8 +144,8 @@ static cw_status run_resize(view *v, int count, char **args, cw_error *err)
     double n[2];
     cw_status st = view_take("resize", args, count, n, err);
     if (st == CW_OK && !(n[0] >= 1 && n[1] >= 1 && n[0] <= 8192 && n[1] <= 8192))
-        st = cw_fail(err, CW_ERR_ARGUMENT, "resize %s %s: 1 to 8192 was expected", args[0],
-                     args[1]);
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "resize %s %s: 1 to 8192 was expected", args[0],
+                      args[1]);
     return st == CW_OK
                ? feed_event(v, &(cwi_ui_event){.kind = CWI_UI_RESIZE, .x = n[0], .y = n[1]},
                             err)
@@ -185,7 +185,7 @@ static cw_status find_widget(view *v, const char *label, cwi_ui_rect *r, cw_erro
             return CW_OK;
         before = *r;
     }
-    return is_there ? CW_OK : cw_fail(err, CW_ERR_ARGUMENT, "nothing is labelled '%s'", label);
+    return is_there ? CW_OK : cwi_fail(err, CW_ERR_ARGUMENT, "nothing is labelled '%s'", label);
 }
 
 static cw_status run_place(view *v, int count, char **args, cw_error *err)
@@ -232,8 +232,8 @@ static cw_status run_monkey(view *v, int count, char **args, cw_error *err)
     double n[2] = {0};
     cw_status st = view_take("monkey", args, count, n, err);
     if (st == CW_OK && !(n[0] >= 0 && n[0] <= 1e15 && n[1] >= 0 && n[1] <= 1e9))
-        st = cw_fail(err, CW_ERR_ARGUMENT, "monkey %s %s: a seed and a number were expected",
-                     args[0], args[1]);
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "monkey %s %s: a seed and a number were expected",
+                      args[0], args[1]);
     uint64_t seed = st == CW_OK ? (uint64_t)n[0] : 0;
     v->is_monkey = true;
     for (size_t k = 0; st == CW_OK && k < (size_t)n[1] && !v->quits; k++)

@@ -12,21 +12,21 @@ cw_status view_take(const char *verb, char **args, int count, double *numbers, c
     for (int n = 0; n < count; n++) {
         const char *text = args[n];
         if (!cwi_parse_double(&text, &numbers[n]) || *text || !isfinite(numbers[n]))
-            return cw_fail(err, CW_ERR_ARGUMENT, "%s '%s': a number was expected", verb,
-                           args[n]);
+            return cwi_fail(err, CW_ERR_ARGUMENT, "%s '%s': a number was expected", verb,
+                            args[n]);
     }
     return CW_OK;
 }
 
 cw_status view_need_open(const view *v, cw_error *err)
 {
-    return v->path ? CW_OK : cw_fail(err, CW_ERR_ARGUMENT, "nothing is open");
+    return v->path ? CW_OK : cwi_fail(err, CW_ERR_ARGUMENT, "nothing is open");
 }
 
 cw_status view_need_volume(const view *v, cw_error *err)
 {
     return v->has_volume ? CW_OK
-                         : cw_fail(err, CW_ERR_ARGUMENT, "no volume on an even grid is open");
+                         : cwi_fail(err, CW_ERR_ARGUMENT, "no volume on an even grid is open");
 }
 
 cw_status view_need_camera(view *v, cw_error *err)
@@ -79,10 +79,10 @@ static cw_status fail_unknown(const view *v, const char *name, cw_error *err)
         if (view_find_option(v, v->command->options[n].name))
             names[count++] = v->command->options[n].name;
     const char *nearest = cli_nearest(name, names);
-    return nearest ? cw_fail(err, CW_ERR_ARGUMENT, "'%s' is not a command; did you mean '%s'?",
-                             name, nearest)
-                   : cw_fail(err, CW_ERR_ARGUMENT,
-                             "'%s' is not a command; 'cubewright help view' lists them", name);
+    return nearest ? cwi_fail(err, CW_ERR_ARGUMENT, "'%s' is not a command; did you mean '%s'?",
+                              name, nearest)
+                   : cwi_fail(err, CW_ERR_ARGUMENT,
+                              "'%s' is not a command; 'cubewright help view' lists them", name);
 }
 
 cw_status view_run(view *v, int count, char **words, cw_error *err)
@@ -93,8 +93,8 @@ cw_status view_run(view *v, int count, char **words, cw_error *err)
         return fail_unknown(v, words[0], err);
     const int least = verb ? verb->least : 0, most = verb ? verb->most : 1;
     if (count - 1 < least || count - 1 > most)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%s takes %s, not %d words", words[0],
-                       verb ? verb->takes : "one value", count - 1);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%s takes %s, not %d words", words[0],
+                        verb ? verb->takes : "one value", count - 1);
     if (!may_run(v, words[0]))
         return CW_OK;
     cw_status st = verb ? verb->run(v, count - 1, words + 1, err)

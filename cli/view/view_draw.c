@@ -370,7 +370,7 @@ cw_status view_picture(view *v, const char *path, cw_error *err)
 {
     cw_image image = {0};
     if (!v->path)
-        return cw_fail(err, CW_ERR_ARGUMENT, "no file is open to draw");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "no file is open to draw");
     v->is_saving = true;
     cw_status st = draw_part(v, VIEW_SPACE, VIEW_FINAL, false, &image, err);
     v->is_saving = false;

@@ -84,7 +84,7 @@ static cw_status draw_session(view *v, cw_error *err)
     cw_status st = view_draw(v, is_stale ? VIEW_ROUGH : lowest + 1, !is_stale, &why);
     if (st != CW_OK)
         view_say(v, true, why.message);
-    return v->is_monkey && st == CW_ERR_BACKEND ? cw_fail(err, st, "%s", why.message) : CW_OK;
+    return v->is_monkey && st == CW_ERR_BACKEND ? cwi_fail(err, st, "%s", why.message) : CW_OK;
 }
 
 /* With -v: how long people waited for something to see. */

@@ -58,10 +58,10 @@ static cw_status run_first(view *v, const char **text, char *room, cw_error *err
         room += strlen(room) + 1;
     }
     if (bad)
-        return cw_fail(err, CW_ERR_ARGUMENT, "a quote is not closed: %.60s", *text);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a quote is not closed: %.60s", *text);
     if (count == MOST_WORDS)
-        return cw_fail(err, CW_ERR_ARGUMENT, "'%s' has more than %d words", words[0],
-                       MOST_WORDS - 1);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "'%s' has more than %d words", words[0],
+                        MOST_WORDS - 1);
     if (**text == '#')
         *text += strcspn(*text, "\n");
     *text += **text != '\0';
@@ -71,7 +71,7 @@ static cw_status run_first(view *v, const char **text, char *room, cw_error *err
 cw_status view_exec(view *v, const char *text, cw_error *err)
 {
     char *room = malloc(2 * strlen(text) + 2);
-    cw_status st = room ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for commands");
+    cw_status st = room ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for commands");
     while (st == CW_OK && *text)
         st = run_first(v, &text, room, err);
     free(room);
@@ -85,14 +85,14 @@ static cw_status read_text(const char *path, char **text, cw_error *err)
     if (!*text) {
         if (in)
             fclose(in);
-        return cw_fail(err, CW_ERR_IO, "%s: cannot be read", path);
+        return cwi_fail(err, CW_ERR_IO, "%s: cannot be read", path);
     }
     const size_t size = fread(*text, 1, MOST_BYTES + 1, in);
     const bool whole = !ferror(in) && size <= MOST_BYTES && strlen(*text) == size;
     fclose(in);
     return whole ? CW_OK
-                 : cw_fail(err, CW_ERR_FORMAT,
-                           "%s: commands in a text of up to 1 MiB were expected", path);
+                 : cwi_fail(err, CW_ERR_FORMAT,
+                            "%s: commands in a text of up to 1 MiB were expected", path);
 }
 
 cw_status view_exec_file(view *v, const char *path, cw_error *err)

@@ -94,9 +94,10 @@ cw_status view_choose_mode(view *v, cw_error *err)
     if (args->scene.hide == CLI_HIDE_VOLUME)
         v->mode = CW_MODE_MESH;
     if (v->path && v->mode != CW_MODE_MESH && !v->has_volume)
-        return cw_fail(err, CW_ERR_ARGUMENT, "the mode %s draws volumes on even grids; %s",
-                       cw_mode_name(v->mode),
-                       v->source.is_mesh ? "this is a mesh" : "this grid is shown as surfaces");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the mode %s draws volumes on even grids; %s",
+                        cw_mode_name(v->mode),
+                        v->source.is_mesh ? "this is a mesh"
+                                          : "this grid is shown as surfaces");
     if (v->mode != CW_MODE_MESH && v->state.iso_is_ours) {
         args->iso = (cli_number){0};
         v->state.iso_is_ours = false;
@@ -221,7 +222,7 @@ static cw_status open_path(view *v, const char *path, cw_error *err)
 {
     v->path = strdup(path);
     if (!v->path)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
     v->opening = v->path;
     const char *series = v->state.args.input.series;
     choose_series(v);
@@ -280,7 +281,7 @@ cw_status view_open(view *v, const char *path, cw_error *err)
         return st;
     char *copy = strdup(path); /* it may be the path that is closed */
     if (!copy)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
     v->message[0] = '\0'; /* it was of another file */
     view_close(v);
     forget_look(v);
@@ -304,8 +305,8 @@ cw_status view_open(view *v, const char *path, cw_error *err)
 cw_status view_go_to_step(view *v, size_t step, cw_error *err)
 {
     if (!v->path || step >= v->source.series.count)
-        return cw_fail(err, CW_ERR_ARGUMENT, "step %zu: there are 0 to %zu", step,
-                       v->source.series.count ? v->source.series.count - 1 : 0);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "step %zu: there are 0 to %zu", step,
+                        v->source.series.count ? v->source.series.count - 1 : 0);
     cw_status st = read_step(v, step, err);
     if (st == CW_OK)
         v->state.step = step;

@@ -101,13 +101,14 @@ static cw_status parse_setting(view *v, const cli_option *o, const char *value, 
         return CW_OK;
     }
     if (flag && value && !off && strcmp(value, "on") != 0)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%s '%s': on or off was expected", o->name, value);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%s '%s': on or off was expected", o->name,
+                        value);
     if (!flag && !value)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%s needs a value: %s", o->name,
-                       o->value ? o->value : "a text");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%s needs a value: %s", o->name,
+                        o->value ? o->value : "a text");
     char *word = malloc(strlen(o->name) + (value ? strlen(value) : 0) + 8);
     if (!word)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a setting");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a setting");
     if (flag)
         sprintf(word, off ? "--no-%s" : "--%s", o->name);
     else
@@ -115,7 +116,7 @@ static cw_status parse_setting(view *v, const cli_option *o, const char *value, 
     words[0] = (char *)view_keep_text(v, word);
     free(word);
     if (!words[0])
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a setting");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a setting");
     const size_t count = args->common.input_count;
     const char **before = args->common.inputs;
     args->common.input_count = 0;
@@ -167,10 +168,10 @@ static cw_status try_scene(view *v, cw_error *err)
         .whole = v->source.is_mesh || !v->path ? NULL : &v->source.volume.whole};
     cli_split split = {0};
     if (args->samples > 4)
-        return cw_fail(err, CW_ERR_ARGUMENT, "samples %zu: expected 1 to 4", args->samples);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "samples %zu: expected 1 to 4", args->samples);
     if (args->difference.given && !(args->difference.value > 0))
-        return cw_fail(err, CW_ERR_ARGUMENT, "difference %g: above 0 was expected",
-                       args->difference.value);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "difference %g: above 0 was expected",
+                        args->difference.value);
     cw_status st = cli_check_camera(&args->scene, &one, err);
     if (st == CW_OK)
         st = cli_background(&args->scene, v->mode, background, err);
@@ -191,7 +192,7 @@ cw_status view_set(view *v, const char *name, const char *value, cw_error *err)
     const view_state before = v->state;
     const cw_mode mode = v->mode;
     if (!o)
-        return cw_fail(err, CW_ERR_ARGUMENT, "'%s' is not a setting", name);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "'%s' is not a setting", name);
     if (v->is_configuring && v->state.args.common.given[o - v->command->options])
         return CW_OK; /* the command line outdoes it */
     cw_status st = parse_setting(v, o, value, err);
@@ -317,7 +318,7 @@ cw_status view_write_state(const view *v, const char *path, cw_error *err)
     size_t size;
     FILE *out = cwi_text_open(&text, &size);
     if (!out)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a state");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a state");
     fputs("# cubewright view: a state; 'cubewright view --run' this file\n", out);
     put_options(v, out, false, true);
     if (v->path) {
@@ -328,7 +329,7 @@ cw_status view_write_state(const view *v, const char *path, cw_error *err)
     put_settings(v, out, false);
     put_rest(v, out, "\n");
     if (!cwi_text_close(out, &text))
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a state");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a state");
     cw_status st = cwi_outfile_save(path, text, size, err);
     free(text);
     return st;

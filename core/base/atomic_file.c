@@ -76,7 +76,7 @@ void cwi_outfile_remove_all(void)
 
 static cw_status fail_system(cw_error *err, const char *what, int number)
 {
-    return cw_fail(err, CW_ERR_OUTPUT, "%s: %s", what, strerror(number));
+    return cwi_fail(err, CW_ERR_OUTPUT, "%s: %s", what, strerror(number));
 }
 
 /* Decides by the target that exists: nothing (exists false), a regular file, or an error. */
@@ -88,13 +88,13 @@ static cw_status inspect_target(const char *path, bool no_clobber, bool *exists,
     if (!*exists)
         return CW_OK; /* a missing folder is reported when it is opened */
     if (no_clobber)
-        return cw_fail(err, CW_ERR_OUTPUT, "it exists, and is not to be replaced");
+        return cwi_fail(err, CW_ERR_OUTPUT, "it exists, and is not to be replaced");
     if (stat(path, &info) != 0)
-        return cw_fail(err, CW_ERR_OUTPUT, "it is a link that leads nowhere");
+        return cwi_fail(err, CW_ERR_OUTPUT, "it is a link that leads nowhere");
     if (S_ISDIR(info.st_mode))
-        return cw_fail(err, CW_ERR_OUTPUT, "it is a folder");
+        return cwi_fail(err, CW_ERR_OUTPUT, "it is a folder");
     if (!S_ISREG(info.st_mode))
-        return cw_fail(err, CW_ERR_OUTPUT, "it is a device, pipe or socket, not a file");
+        return cwi_fail(err, CW_ERR_OUTPUT, "it is a device, pipe or socket, not a file");
     *mode = info.st_mode & 0777;
     return CW_OK;
 }
@@ -105,7 +105,7 @@ static cw_status open_folder(cwi_outfile *f, char *path, cw_error *err)
     char *slash = strrchr(path, '/');
     const char *name = slash ? slash + 1 : path;
     if (!*name)
-        return cw_fail(err, CW_ERR_OUTPUT, "it names no file");
+        return cwi_fail(err, CW_ERR_OUTPUT, "it names no file");
     if (strlen(name) > NAME_MAX)
         return fail_system(err, "it cannot be made", ENAMETOOLONG);
     strcpy(f->name, name);
@@ -116,10 +116,10 @@ static cw_status open_folder(cwi_outfile *f, char *path, cw_error *err)
     if (f->folder < 0 && errno == EACCES) /* a folder with write but no list permission */
         f->folder = open(folder, O_PATH | O_DIRECTORY | O_CLOEXEC);
     if (f->folder < 0 && errno == ENOENT)
-        return cw_fail(err, CW_ERR_OUTPUT, "the folder '%s' does not exist", folder);
+        return cwi_fail(err, CW_ERR_OUTPUT, "the folder '%s' does not exist", folder);
     if (f->folder < 0)
-        return cw_fail(err, CW_ERR_OUTPUT, "the folder '%s' cannot be opened: %s", folder,
-                       strerror(errno));
+        return cwi_fail(err, CW_ERR_OUTPUT, "the folder '%s' cannot be opened: %s", folder,
+                        strerror(errno));
     return CW_OK;
 }
 
@@ -184,7 +184,7 @@ static cw_status open_beside(cwi_outfile *f, const char *path, cw_error *err)
         return st;
     char *real = exists ? realpath(path, NULL) : cwi_strdup(path);
     if (!real)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for its name");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for its name");
     st = open_folder(f, real, err);
     free(real); /* realpath allocates with malloc, and so does cwi_strdup */
     if (st == CW_OK)
@@ -198,13 +198,13 @@ cw_status cwi_outfile_open(cwi_outfile **out, const char *path, bool no_clobber,
     *out = NULL;
     if (!f || !path) { /* no memory for the name */
         cwi_free(f);
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to write a file");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to write a file");
     }
     f->fd = f->folder = f->slot = -1;
     f->no_clobber = no_clobber;
     f->buffer = cwi_alloc_array(BUFFER_BYTES, 1);
     cw_status st = f->buffer ? open_beside(f, path, err)
-                             : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to write a file");
+                             : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to write a file");
     if (st != CW_OK)
         close_and_free(&f);
     *out = f;
@@ -289,7 +289,7 @@ static cw_status print_args(cwi_outfile *f, cw_error *err, const char *format, v
         if (text)
             vsnprintf(text, (size_t)length + 1, format, again);
         st = text ? cwi_outfile_write(f, text, (size_t)length, err)
-                  : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %d bytes of text", length);
+                  : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %d bytes of text", length);
         cwi_free(text);
     }
     va_end(again);
@@ -352,7 +352,7 @@ static cw_status put_in_place(cwi_outfile *f, cw_error *err)
     const int renamed =
         f->no_clobber ? rename_new(f) : renameat(f->folder, f->temporary, f->folder, f->name);
     if (renamed != 0 && f->no_clobber && errno == EEXIST)
-        return cw_fail(err, CW_ERR_OUTPUT, "it exists, and is not to be replaced");
+        return cwi_fail(err, CW_ERR_OUTPUT, "it exists, and is not to be replaced");
     if (renamed != 0)
         return fail_system(err, "it cannot be put in its place", errno);
     f->temporary[0] = '\0';

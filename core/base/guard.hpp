@@ -45,13 +45,13 @@ cw_status guard(cw_error *err, const char *library, Body &&body) noexcept
     try {
         return body();
     } catch (const std::bad_alloc &) {
-        return cw_fail(err, CW_ERR_NO_MEMORY, "memory ran out in %s", library);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "memory ran out in %s", library);
     } catch (const Cancelled &) {
-        return cw_fail(err, CW_ERR_CANCELLED, "interrupted in %s", library);
+        return cwi_fail(err, CW_ERR_CANCELLED, "interrupted in %s", library);
     } catch (const std::exception &e) {
-        return cw_fail(err, CW_ERR_BACKEND, "%s failed: %s", library, e.what());
+        return cwi_fail(err, CW_ERR_BACKEND, "%s failed: %s", library, e.what());
     } catch (...) {
-        return cw_fail(err, CW_ERR_BACKEND, "%s failed without saying why", library);
+        return cwi_fail(err, CW_ERR_BACKEND, "%s failed without saying why", library);
     }
 }
 

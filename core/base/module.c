@@ -87,8 +87,8 @@ static bool tells_of_memory(const char *words)
 
 static cw_status fail_memory(const char *name, cw_error *err)
 {
-    return cw_fail(err, CW_ERR_NO_MEMORY, "memory ran out while the %s module was loaded",
-                   name);
+    return cwi_fail(err, CW_ERR_NO_MEMORY, "memory ran out while the %s module was loaded",
+                    name);
 }
 
 static cw_status fail_load(const char *name, const char *packages, cw_error *err)
@@ -96,8 +96,8 @@ static cw_status fail_load(const char *name, const char *packages, cw_error *err
     const char *words = dlerror();
     if (words && tells_of_memory(words))
         return fail_memory(name, err);
-    return cw_fail(err, CW_ERR_UNSUPPORTED, "the %s module cannot be loaded: %s (Debian: %s)",
-                   name, words ? words : "unknown error", packages);
+    return cwi_fail(err, CW_ERR_UNSUPPORTED, "the %s module cannot be loaded: %s (Debian: %s)",
+                    name, words ? words : "unknown error", packages);
 }
 
 /* Finds the path of a module that this build has. */
@@ -106,14 +106,14 @@ static cw_status find_module(const char *name, char *path, size_t size,
 {
     *row = cwi_find_module_row(name);
     if (!*row)
-        return cw_fail(err, CW_ERR_UNSUPPORTED, "there is no module '%s'", name);
+        return cwi_fail(err, CW_ERR_UNSUPPORTED, "there is no module '%s'", name);
     if (!module_path(name, path, size))
-        return cw_fail(err, CW_ERR_UNSUPPORTED,
-                       "the %s module is not in this build (%s); configure with -D%s=ON and "
-                       "the Debian package%s %s",
-                       name, *(*row)->reason ? (*row)->reason : "its file was removed",
-                       (*row)->option, strchr((*row)->packages, ' ') ? "s" : "",
-                       (*row)->packages);
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "the %s module is not in this build (%s); configure with -D%s=ON and "
+                        "the Debian package%s %s",
+                        name, *(*row)->reason ? (*row)->reason : "its file was removed",
+                        (*row)->option, strchr((*row)->packages, ' ') ? "s" : "",
+                        (*row)->packages);
     return CW_OK;
 }
 

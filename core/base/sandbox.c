@@ -25,8 +25,8 @@
 
 enum { POLL_MS = 100, LAST_STDIO = 2, CHILD_FILES = 64 };
 
-/* Bytes of address space that the child needs for itself, beyond those of the library: the
- * seccomp filter, and the stack and heap of its loop. A limit of a few bytes would leave none. */
+/* Bytes of address space that the child needs for itself, beyond those of the library: for the
+ * seccomp filter, and for the stack and heap of its loop. */
 enum { CHILD_OVERHEAD = 4 << 20 };
 
 typedef struct answer {
@@ -208,10 +208,10 @@ static cw_status shut_in(const cwi_sandbox_desc *d, cw_error *err)
     set_limits(d);
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 || prctl(PR_SET_DUMPABLE, 0) != 0 ||
         !lock_system_calls())
-        return cw_fail(err, CW_ERR_BACKEND,
-                       "the process that is to read with %s cannot be sandboxed (seccomp); "
-                       "--no-sandbox reads in this one",
-                       d->library);
+        return cwi_fail(err, CW_ERR_BACKEND,
+                        "the process that is to read with %s cannot be sandboxed (seccomp); "
+                        "--no-sandbox reads in this one",
+                        d->library);
     return CW_OK;
 }
 
@@ -252,10 +252,11 @@ static cw_status wait_for_answer(const cwi_sandbox *box, cw_error *err)
         if (st != CW_OK)
             return st;
         if (cwi_now_s() - start > timeout_s(box))
-            return cw_fail(err, CW_ERR_BACKEND,
-                           "%s was stopped after %.6g s without a result; the file is damaged, "
-                           "or needs a longer --timeout",
-                           box->desc.library, timeout_s(box));
+            return cwi_fail(
+                err, CW_ERR_BACKEND,
+                "%s was stopped after %.6g s without a result; the file is damaged, "
+                "or needs a longer --timeout",
+                box->desc.library, timeout_s(box));
     }
     return CW_OK;
 }
@@ -266,13 +267,14 @@ static cw_status fail_dead(cwi_sandbox *box, cw_error *err)
     const pid_t child = waitpid(box->child, &how, 0);
     box->child = 0;
     if (child > 0 && WIFSIGNALED(how))
-        return cw_fail(err, CW_ERR_BACKEND,
-                       "%s crashed on it (signal %d, %s), in a process of its own; the file is "
-                       "damaged or hostile%s",
-                       box->desc.library, WTERMSIG(how), strsignal(WTERMSIG(how)),
-                       cwi_memory_is_limited() ? ", or memory is short (ulimit -v)" : "");
-    return cw_fail(err, CW_ERR_BACKEND, "the process that reads with %s ended",
-                   box->desc.library);
+        return cwi_fail(
+            err, CW_ERR_BACKEND,
+            "%s crashed on it (signal %d, %s), in a process of its own; the file is "
+            "damaged or hostile%s",
+            box->desc.library, WTERMSIG(how), strsignal(WTERMSIG(how)),
+            cwi_memory_is_limited() ? ", or memory is short (ulimit -v)" : "");
+    return cwi_fail(err, CW_ERR_BACKEND, "the process that reads with %s ended",
+                    box->desc.library);
 }
 
 /* Checks an answer, which is untrusted: cuts its text off and makes it printable. */
@@ -285,7 +287,7 @@ static cw_status take_answer(answer *a, cw_error *err)
     for (char *s = text; *s; s++)
         if ((unsigned char)*s < ' ' || *s == 0x7f)
             *s = '?';
-    return a->status == CW_OK ? CW_OK : cw_fail(err, a->status, "%s", text);
+    return a->status == CW_OK ? CW_OK : cwi_fail(err, a->status, "%s", text);
 }
 
 /* Reports a child that ended before its first answer: it ran only the library's
@@ -296,7 +298,7 @@ static cw_status fail_unprepared(cwi_sandbox *box, cw_error *err)
     const pid_t child = waitpid(box->child, &how, 0);
     box->child = 0;
     cwi_sandbox_close(box);
-    return cw_fail(
+    return cwi_fail(
         err, CW_ERR_NO_MEMORY,
         "%s cannot be loaded: its process ended (signal %d); memory is short, or the "
         "library is damaged",
@@ -318,7 +320,7 @@ cw_status cwi_sandbox_run(cwi_sandbox *box, int fd, const void *request, size_t 
     char copy[CWI_SANDBOX_REQUEST] = {0};
     answer a = {.status = CW_OK};
     if (!box->open)
-        return cw_fail(err, CW_ERR_BACKEND, "%s is no longer running", box->desc.library);
+        return cwi_fail(err, CW_ERR_BACKEND, "%s is no longer running", box->desc.library);
     memcpy(copy, request, size);
     if (box->desc.inside)
         return box->desc.work(box->desc.state, fd < 0 ? -1 : fcntl(fd, F_DUPFD_CLOEXEC, 0),
@@ -338,8 +340,8 @@ static cw_status fail_start(cwi_sandbox *box, const char *what, cw_error *err)
 {
     const char *why = strerrordesc_np(errno);
     cwi_sandbox_close(box);
-    return cw_fail(err, CW_ERR_BACKEND, "no process for %s: %s: %s", box->desc.library, what,
-                   why ? why : "unknown error");
+    return cwi_fail(err, CW_ERR_BACKEND, "no process for %s: %s: %s", box->desc.library, what,
+                    why ? why : "unknown error");
 }
 
 /* Maps memory into which the child writes its results, so that this side reads them without a
@@ -361,8 +363,8 @@ cw_status cwi_sandbox_open(cwi_sandbox *box, const cwi_sandbox_desc *desc, cw_er
     *box = (cwi_sandbox){.desc = *desc, .socket = -1, .open = true};
     if (!share_memory(box)) {
         box->open = false;
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes to share with %s",
-                       desc->shared_bytes, desc->library);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes to share with %s",
+                        desc->shared_bytes, desc->library);
     }
     if (desc->inside) {
         st = desc->prepare ? desc->prepare(desc->state, err) : CW_OK;

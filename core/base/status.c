@@ -40,7 +40,7 @@ const char *cw_status_text(cw_status status)
     return table[clamp_status(status)].text;
 }
 
-cw_status cw_fail(cw_error *err, cw_status status, const char *format, ...)
+cw_status cwi_fail(cw_error *err, cw_status status, const char *format, ...)
 {
     if (err) {
         va_list args;
@@ -56,7 +56,7 @@ cw_status cwi_fail_in(cw_error *err, cw_status status, const char *subject)
 {
     if (err) {
         const cw_error inner = *err;
-        cw_fail(err, status, "%s: %s", subject, inner.message);
+        cwi_fail(err, status, "%s: %s", subject, inner.message);
     }
     return status;
 }
@@ -65,7 +65,7 @@ cw_status cwi_progress(const cw_progress *progress, const char *step, double don
                        cw_error *err)
 {
     if (progress->report && !progress->report(progress->user, step, done))
-        return cw_fail(err, CW_ERR_CANCELLED, "interrupted while %s", step);
+        return cwi_fail(err, CW_ERR_CANCELLED, "interrupted while %s", step);
     return CW_OK;
 }
 

@@ -10,7 +10,7 @@ extern "C" {
 
 /* Writes the message (err may be NULL) and returns the status, so that a function can report an
  * error and return in one line. */
-cw_status cw_fail(cw_error *err, cw_status status, const char *format, ...) CW_PRINTF(3, 4);
+cw_status cwi_fail(cw_error *err, cw_status status, const char *format, ...) CW_PRINTF(3, 4);
 
 /* Puts "subject: " in front of the message, for a caller that knows the file's name. Returns
  * the same status, so that it can be passed through. */

@@ -33,17 +33,17 @@ cw_status cw_camera_axes(const cw_camera *camera, double right[3], double up[3],
     for (int a = 0; a < 3; a++)
         forward[a] = camera->target[a] - camera->eye[a];
     if (!cwi_to_unit(forward))
-        return cw_fail(err, CW_ERR_ARGUMENT, "the camera's eye and target must be apart");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the camera's eye and target must be apart");
     cwi_cross(forward, camera->up, right);
     if (!cwi_to_unit(right))
-        return cw_fail(err, CW_ERR_ARGUMENT, "the camera's up is along its line of sight");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the camera's up is along its line of sight");
     cwi_cross(right, forward, up);
     if (!(camera->fov_deg >= 0 && camera->fov_deg < 180))
-        return cw_fail(err, CW_ERR_ARGUMENT, "the camera opens %g degrees, not 0 to 180",
-                       camera->fov_deg);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the camera opens %g degrees, not 0 to 180",
+                        camera->fov_deg);
     if (camera->fov_deg == 0 && !(isnormal(camera->height_mm) && camera->height_mm > 0))
-        return cw_fail(err, CW_ERR_ARGUMENT, "the camera's picture is %g mm high",
-                       camera->height_mm);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the camera's picture is %g mm high",
+                        camera->height_mm);
     return CW_OK;
 }
 
@@ -56,7 +56,7 @@ static cw_status find_view(const char *name, int *view, cw_error *err)
             return CW_OK;
         used += (size_t)snprintf(list + used, sizeof list - used, " %s", views[*view].name);
     }
-    return cw_fail(err, CW_ERR_ARGUMENT, "no view is named '%s'; there are%s", name, list);
+    return cwi_fail(err, CW_ERR_ARGUMENT, "no view is named '%s'; there are%s", name, list);
 }
 
 /* Returns half the extent of the box along an axis; a box is symmetric. */
@@ -120,10 +120,10 @@ static cw_status turn_view(const cw_fit_desc *d, double forward[3], double up[3]
 {
     double right[3];
     if (!isfinite(d->azimuth_deg))
-        return cw_fail(err, CW_ERR_ARGUMENT, "an azimuth of %g is no angle", d->azimuth_deg);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "an azimuth of %g is no angle", d->azimuth_deg);
     if (!(d->elevation_deg >= -90 && d->elevation_deg <= 90))
-        return cw_fail(err, CW_ERR_ARGUMENT, "an elevation of %g degrees, not -90 to 90",
-                       d->elevation_deg);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "an elevation of %g degrees, not -90 to 90",
+                        d->elevation_deg);
     cwi_cross(forward, up, right); /* the up of some views is not perpendicular */
     cwi_cross(right, forward, up);
     cwi_to_unit(up);
@@ -140,8 +140,8 @@ cw_status cw_camera_turn(cw_camera *camera, const double axis[3], double degrees
     double unit[3], arm[3];
     memcpy(unit, axis, sizeof unit);
     if (!cwi_to_unit(unit) || !isfinite(degrees))
-        return cw_fail(err, CW_ERR_ARGUMENT, "a turn of %g degrees about (%g, %g, %g)", degrees,
-                       axis[0], axis[1], axis[2]);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a turn of %g degrees about (%g, %g, %g)",
+                        degrees, axis[0], axis[1], axis[2]);
     for (int a = 0; a < 3; a++)
         arm[a] = camera->eye[a] - camera->target[a];
     rotate_vector(arm, unit, degrees);
@@ -155,7 +155,7 @@ cw_status cw_camera_zoom(cw_camera *camera, double factor, cw_error *err)
 {
     const double half = CWI_PI / 360;
     if (!(isnormal(factor) && factor > 0))
-        return cw_fail(err, CW_ERR_ARGUMENT, "a zoom of %g: above 0 was expected", factor);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a zoom of %g: above 0 was expected", factor);
     camera->fov_deg = atan(tan(camera->fov_deg * half) / factor) / half;
     camera->height_mm /= factor;
     return CW_OK;
@@ -170,7 +170,7 @@ cw_status cw_camera_fit(const cw_fit_desc *desc, cw_camera *camera, cw_error *er
     if (st != CW_OK)
         return st;
     if (!(desc->margin >= 0 && desc->margin < 0.5))
-        return cw_fail(err, CW_ERR_ARGUMENT, "a margin of %g leaves no picture", desc->margin);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a margin of %g leaves no picture", desc->margin);
     memcpy(c.target, views[view].forward, sizeof c.target);
     memcpy(c.up, views[view].up, sizeof c.up);
     if (desc->azimuth_deg != 0 || desc->elevation_deg != 0)

@@ -53,8 +53,8 @@ static cw_status check_size(size_t width, size_t height, cw_error *err)
 {
     return width > 0 && height > 0
                ? CW_OK
-               : cw_fail(err, CW_ERR_ARGUMENT, "a picture of %zu x %zu pixels has no inside",
-                         width, height);
+               : cwi_fail(err, CW_ERR_ARGUMENT, "a picture of %zu x %zu pixels has no inside",
+                          width, height);
 }
 
 cw_status cw_camera_ray(const cw_camera *camera, size_t width, size_t height,
@@ -86,7 +86,7 @@ cw_status cw_camera_pan(cw_camera *camera, size_t height, double right_px, doubl
     axes a;
     cw_status st = check_size(1, height, err);
     if (st == CW_OK && !(isfinite(right_px) && isfinite(down_px)))
-        st = cw_fail(err, CW_ERR_ARGUMENT, "a way of %g, %g pixels", right_px, down_px);
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "a way of %g, %g pixels", right_px, down_px);
     if (st == CW_OK)
         st = find_axes(camera, &a, err);
     if (st != CW_OK)
@@ -134,7 +134,7 @@ cw_status cw_camera_orbit(cw_camera *camera, double right_deg, double up_deg, cw
     cw_camera c = *camera;
     cw_status st = find_axes(camera, &a, err);
     if (st == CW_OK && !(isfinite(right_deg) && isfinite(up_deg)))
-        st = cw_fail(err, CW_ERR_ARGUMENT, "an orbit of %g and %g degrees", right_deg, up_deg);
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "an orbit of %g and %g degrees", right_deg, up_deg);
     if (st != CW_OK || (right_deg == 0 && up_deg == 0))
         return st;
     find_turning_axis(&c, &a, axis);
@@ -154,7 +154,7 @@ cw_status cw_camera_roll(cw_camera *camera, double degrees, cw_error *err)
     const double angle = degrees * CWI_PI / 180;
     cw_status st = find_axes(camera, &a, err);
     if (st == CW_OK && !isfinite(degrees))
-        st = cw_fail(err, CW_ERR_ARGUMENT, "a roll of %g degrees", degrees);
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "a roll of %g degrees", degrees);
     for (int i = 0; i < 3 && st == CW_OK; i++)
         camera->up[i] = cos(angle) * a.up[i] - sin(angle) * a.right[i];
     return st;
@@ -163,7 +163,7 @@ cw_status cw_camera_roll(cw_camera *camera, double degrees, cw_error *err)
 cw_status cw_camera_dolly(cw_camera *camera, double factor, cw_error *err)
 {
     if (!(isnormal(factor) && factor > 0))
-        return cw_fail(err, CW_ERR_ARGUMENT, "%g times as near: above 0 was expected", factor);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%g times as near: above 0 was expected", factor);
     if (camera->fov_deg == 0) {
         camera->height_mm /= factor;
         return CW_OK;

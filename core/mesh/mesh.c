@@ -22,9 +22,9 @@ cw_status cwi_mesh_renew(cw_mesh *mesh, size_t vertices, size_t triangles, bool 
     cw_mesh_free(mesh);
     if (!made.positions || !made.triangles || (normals && !made.normals)) {
         cw_mesh_free(&made);
-        return cw_fail(err, CW_ERR_NO_MEMORY,
-                       "no memory for a mesh of %zu vertices, %zu triangles", vertices,
-                       triangles);
+        return cwi_fail(err, CW_ERR_NO_MEMORY,
+                        "no memory for a mesh of %zu vertices, %zu triangles", vertices,
+                        triangles);
     }
     *mesh = made;
     return CW_OK;
@@ -51,19 +51,19 @@ void cw_mesh_free(cw_mesh *mesh)
 cw_status cw_mesh_check(const cw_mesh *mesh, cw_error *err)
 {
     if ((mesh->vertex_count && !mesh->positions) || (mesh->triangle_count && !mesh->triangles))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "a mesh with elements needs positions and triangles");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "a mesh with elements needs positions and triangles");
     for (int a = 0; a < 3; a++)
         if (!isfinite(mesh->origin[a]))
-            return cw_fail(err, CW_ERR_ARGUMENT, "the mesh's origin is not finite");
+            return cwi_fail(err, CW_ERR_ARGUMENT, "the mesh's origin is not finite");
     for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
         if (!isfinite(mesh->positions[i]))
-            return cw_fail(err, CW_ERR_ARGUMENT, "the position of vertex %zu is not finite",
-                           i / 3);
+            return cwi_fail(err, CW_ERR_ARGUMENT, "the position of vertex %zu is not finite",
+                            i / 3);
     for (size_t i = 0; i < 3 * mesh->triangle_count; i++)
         if (mesh->triangles[i] >= mesh->vertex_count)
-            return cw_fail(err, CW_ERR_ARGUMENT, "triangle %zu names vertex %u of %zu", i / 3,
-                           mesh->triangles[i], mesh->vertex_count);
+            return cwi_fail(err, CW_ERR_ARGUMENT, "triangle %zu names vertex %u of %zu", i / 3,
+                            mesh->triangles[i], mesh->vertex_count);
     return CW_OK;
 }
 

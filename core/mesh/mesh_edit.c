@@ -52,8 +52,8 @@ cw_status cwi_mesh_drop_marked(cw_mesh *mesh, const bool *marked, cw_error *err)
     uint32_t *number = cwi_alloc_array(mesh->vertex_count, sizeof *number);
     size_t kept = 0;
     if (!number)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to number %zu vertices",
-                       mesh->vertex_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to number %zu vertices",
+                        mesh->vertex_count);
     for (size_t t = 0; t < mesh->triangle_count; t++)
         if (!marked[t])
             memmove(mesh->triangles + 3 * kept++, mesh->triangles + 3 * t,
@@ -72,8 +72,8 @@ cw_status cw_mesh_weld(cw_mesh *mesh, size_t *merged, cw_error *err)
     uint32_t *map = cwi_alloc_array(mesh->vertex_count, sizeof *map);
     if (!map || !cwi_weld(mesh->positions, mesh->vertex_count, map)) {
         cwi_free(map);
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to weld %zu vertices",
-                       mesh->vertex_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to weld %zu vertices",
+                        mesh->vertex_count);
     }
     size_t count = 0, kept = 0;
     for (size_t v = 0; v < mesh->vertex_count; v++)
@@ -120,8 +120,8 @@ static cw_status find_components(const cw_mesh *m, components *c, cw_error *err)
     c->dropped = cwi_alloc_zeroed(m->vertex_count, sizeof *c->dropped);
     c->met = cwi_alloc_zeroed(m->vertex_count, sizeof *c->met);
     if (!c->sets || !c->boxes || !c->sizes || !c->dropped || !c->met)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the components of %zu vertices",
-                       m->vertex_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the components of %zu vertices",
+                        m->vertex_count);
     for (size_t t = 0; t < m->triangle_count; t++)
         for (size_t k = 1; k < 3; k++)
             cwi_sets_join(c->sets, m->triangles[3 * t], m->triangles[3 * t + k]);
@@ -221,8 +221,8 @@ cw_status cw_mesh_drop_components(cw_mesh *mesh, double diagonal_mm, size_t *dro
     cw_drop_counts counts;
     cw_status st = cw_mesh_check(mesh, err);
     if (st == CW_OK && !(diagonal_mm >= 0))
-        st = cw_fail(err, CW_ERR_ARGUMENT, "diagonal_mm is %g; it must be 0 or more",
-                     diagonal_mm);
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "diagonal_mm is %g; it must be 0 or more",
+                      diagonal_mm);
     if (st == CW_OK)
         st = drop_smaller(mesh, diagonal_mm, measure_diagonals, &counts, err);
     if (st == CW_OK && dropped)
@@ -238,7 +238,7 @@ cw_status cw_mesh_drop_volumes(cw_mesh *mesh, double least_mm3, cw_drop_counts *
     cw_drop_counts own;
     cw_status st = cw_mesh_check(mesh, err);
     if (st == CW_OK && !(least_mm3 >= 0))
-        st = cw_fail(err, CW_ERR_ARGUMENT, "least_mm3 is %g; it must be 0 or more", least_mm3);
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "least_mm3 is %g; it must be 0 or more", least_mm3);
     return st == CW_OK
                ? drop_smaller(mesh, least_mm3, measure_volumes, counts ? counts : &own, err)
                : st;
@@ -252,7 +252,7 @@ cw_status cw_mesh_drop_distant(cw_mesh *mesh, const float *distance_mm, double l
     double farthest = 0;
     cw_status st = cw_mesh_check(mesh, err);
     if (st == CW_OK && !(limit_mm >= 0))
-        st = cw_fail(err, CW_ERR_ARGUMENT, "limit_mm is %g; it must be 0 or more", limit_mm);
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "limit_mm is %g; it must be 0 or more", limit_mm);
     if (st == CW_OK)
         st = find_components(mesh, &c, err);
     if (st == CW_OK) {

@@ -110,12 +110,12 @@ static cw_status check_arguments(cw_field field, double isovalue, double voxel_m
                                  const cw_mesh *mesh, cw_error *err)
 {
     if ((unsigned)field >= CW_FIELD_COUNT)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%d is not a field", (int)field);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a field", (int)field);
     if (!isfinite(isovalue))
-        return cw_fail(err, CW_ERR_ARGUMENT, "isovalue %g; a finite one was expected",
-                       isovalue);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "isovalue %g; a finite one was expected",
+                        isovalue);
     if (!(voxel_mm > 0 && isfinite(voxel_mm)))
-        return cw_fail(err, CW_ERR_ARGUMENT, "voxel_mm is %g; it must be above 0", voxel_mm);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "voxel_mm is %g; it must be above 0", voxel_mm);
     return cw_mesh_check(mesh, err);
 }
 
@@ -128,7 +128,7 @@ cw_status cw_field_measure(cw_field field, double isovalue, double voxel_mm,
         return st;
     sum *s = cwi_alloc_zeroed(1, sizeof *s);
     if (!s)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to measure a mesh");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to measure a mesh");
     for (size_t t = 0; t < mesh->triangle_count; t++)
         add_triangle(s, field, isovalue, voxel_mm, mesh, t);
     out->samples = s->samples;
@@ -159,7 +159,7 @@ cw_status cw_field_measure_vertices(cw_field field, double isovalue, double voxe
     *out = e;
     cw_status st = check_arguments(field, isovalue, voxel_mm, mesh, err);
     if (st == CW_OK && every == 0)
-        st = cw_fail(err, CW_ERR_ARGUMENT, "every 0th vertex; 1 or more was expected");
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "every 0th vertex; 1 or more was expected");
     for (size_t v = 0; v < mesh->vertex_count && st == CW_OK; v += every) {
         double p[3], g[3];
         vertex_of(mesh, v, p);

@@ -173,9 +173,9 @@ cw_status cw_field_sample(const cw_field_desc *desc, cw_volume *volume, cw_error
     cw_field_desc d = *desc;
     size_t longest = 0;
     if (!is_known_field(d.field))
-        return cw_fail(err, CW_ERR_ARGUMENT, "%d is not a field", (int)d.field);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a field", (int)d.field);
     if (!(d.noise >= 0) || !isfinite(d.noise))
-        return cw_fail(err, CW_ERR_ARGUMENT, "noise %g must be 0 or more", d.noise);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "noise %g must be 0 or more", d.noise);
     for (int a = 0; a < 3; a++) {
         d.dim[a] = d.dim[a] ? d.dim[a] : 64;
         longest = d.dim[a] > longest ? d.dim[a] : longest;

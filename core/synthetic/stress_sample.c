@@ -75,13 +75,13 @@ static cw_status check_desc(const cw_hard_desc *d, cw_error *err)
     const cw_hard *hard = cw_hard_at(d->number);
     double low, high;
     if (!hard)
-        return cw_fail(err, CW_ERR_ARGUMENT, "there is no hard case %zu", d->number);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "there is no hard case %zu", d->number);
     if (!(d->noise >= 0) || !isfinite(d->noise))
-        return cw_fail(err, CW_ERR_ARGUMENT, "noise %g must be 0 or more", d->noise);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "noise %g must be 0 or more", d->noise);
     if (hard->scale == 0 && (unsigned)d->type < CW_TYPE_COUNT &&
         cwi_fill_range(d->type, &low, &high))
-        return cw_fail(err, CW_ERR_ARGUMENT, "%s is made of floats, f32 or f64, not %s",
-                       hard->name, cw_type_name(d->type));
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%s is made of floats, f32 or f64, not %s",
+                        hard->name, cw_type_name(d->type));
     return CW_OK;
 }
 

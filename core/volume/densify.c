@@ -66,9 +66,9 @@ cw_status cw_volume_densify(const cw_volume *sparse, size_t max_voxels, cw_volum
     const size_t *n = sparse->dim;
     *dense = (cw_volume){0};
     if (!sparse->sparse)
-        return cw_fail(err, CW_ERR_ARGUMENT, "a sparse grid was expected; this one is not");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a sparse grid was expected; this one is not");
     if ((double)n[0] * (double)n[1] * (double)n[2] > (double)max_voxels)
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_LIMIT,
             "the box around the sparse grid has %zu x %zu x %zu voxels; the limit is "
             "%zu",

@@ -109,7 +109,7 @@ static cw_status each_row(const cw_volume *v, int threads, bool bins, cw_statist
         cwi_free(values);
         cwi_free(s.bins);
     }
-    return starved ? cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a histogram") : CW_OK;
+    return starved ? cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a histogram") : CW_OK;
 }
 
 /* Returns true for types with so few numbers that the frequency of each can be counted. */
@@ -211,7 +211,7 @@ static cw_status gather_histogram(const cw_volume *v, size_t bin_count, int thre
     cw_status st = CW_OK;
     uint64_t *counts = NULL;
     if (is_short(v->type) && !(counts = count_all_shorts(v, threads)))
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a histogram");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a histogram");
     if (counts)
         scan_shorts(v, counts, s);
     else
@@ -222,7 +222,7 @@ static cw_status gather_histogram(const cw_volume *v, size_t bin_count, int thre
         set_bins(s, bin_count);
         s->bins = cwi_alloc_zeroed(s->bin_count, sizeof *s->bins);
         if (!s->bins)
-            st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bins", s->bin_count);
+            st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bins", s->bin_count);
         else if (counts)
             bin_shorts(v, counts, s);
         else

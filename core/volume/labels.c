@@ -118,7 +118,7 @@ cw_status cw_volume_labels(const cw_volume *volume, cw_labels *out, cw_error *er
         return st;
     c.pairs = cwi_alloc_zeroed(CW_LABELS_MOST, sizeof *c.pairs);
     if (!c.pairs)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to count labels");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to count labels");
     count_rows(&v, &c);
     out->found = known || (!c.too_many && c.count >= FEWEST_LABELS && looks_so(&c));
     out->more = known && c.too_many;

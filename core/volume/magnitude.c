@@ -20,12 +20,12 @@ static float magnitude_at(const cw_volume *v, const char *voxel)
 static cw_status check_components(const cw_volume *v, size_t step, cw_error *err)
 {
     if (step >= v->steps)
-        return cw_fail(err, CW_ERR_ARGUMENT, "step %zu: the volume has %zu steps", step,
-                       v->steps);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "step %zu: the volume has %zu steps", step,
+                        v->steps);
     if (v->components < 2)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "a magnitude is of several components, and the volume has one");
-    return v->sparse ? cw_fail(err, CW_ERR_UNSUPPORTED, "magnitudes on a sparse grid") : CW_OK;
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "a magnitude is of several components, and the volume has one");
+    return v->sparse ? cwi_fail(err, CW_ERR_UNSUPPORTED, "magnitudes on a sparse grid") : CW_OK;
 }
 
 cw_status cw_volume_magnitude(const cw_volume *in, size_t step, int threads, cw_volume *out,

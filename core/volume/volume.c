@@ -80,17 +80,17 @@ cw_status cw_volume_alloc(cw_volume *volume, cw_type type, const size_t dim[3],
                    .slope = 1};
     memset(volume, 0, sizeof *volume);
     if (!cw_type_size(type) || !dim[0] || !dim[1] || !dim[2])
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_ARGUMENT,
             "a volume needs a voxel type and sizes of at least 1; got type %d, %zu x "
             "%zu x %zu",
             (int)type, dim[0], dim[1], dim[2]);
     if (!packed_bytes(&v, &bytes))
-        return cw_fail(err, CW_ERR_LIMIT, "%zu x %zu x %zu voxels do not fit an address space",
-                       dim[0], dim[1], dim[2]);
+        return cwi_fail(err, CW_ERR_LIMIT, "%zu x %zu x %zu voxels do not fit an address space",
+                        dim[0], dim[1], dim[2]);
     v.owned = cwi_alloc_zeroed(bytes, 1);
     if (!v.owned)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of voxels", bytes);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of voxels", bytes);
     v.data = v.owned;
     set_packed_strides(&v);
     set_identity(v.affine);
@@ -115,13 +115,13 @@ static cw_status check_numbers(const cw_volume *v, cw_error *err)
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 4; c++)
             if (!isfinite(v->affine[r][c]))
-                return cw_fail(err, CW_ERR_ARGUMENT, "the volume's affine is not finite");
+                return cwi_fail(err, CW_ERR_ARGUMENT, "the volume's affine is not finite");
     const double det = cwi_affine_determinant(v->affine[0]);
     if (!isnormal(det))
-        return cw_fail(err, CW_ERR_ARGUMENT, "the volume's affine has determinant %g", det);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the volume's affine has determinant %g", det);
     if (!isfinite(v->slope) || !isfinite(v->intercept))
-        return cw_fail(err, CW_ERR_ARGUMENT, "slope %g and intercept %g must be finite",
-                       v->slope, v->intercept);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "slope %g and intercept %g must be finite",
+                        v->slope, v->intercept);
     return CW_OK;
 }
 
@@ -130,14 +130,14 @@ static cw_status check_coordinates(const cw_volume *v, cw_error *err)
     for (int a = 0; a < 3; a++) {
         const double *at = v->coordinates[a];
         if (!at != !v->coordinates[0])
-            return cw_fail(err, CW_ERR_ARGUMENT, "coordinates along %c are missing",
-                           "xyz"[at ? 0 : a]);
+            return cwi_fail(err, CW_ERR_ARGUMENT, "coordinates along %c are missing",
+                            "xyz"[at ? 0 : a]);
         for (size_t i = 0; at && i < v->dim[a]; i++)
             if (!isfinite(at[i]) || (i && !(at[i] > at[i - 1])))
-                return cw_fail(err, CW_ERR_ARGUMENT,
-                               "coordinate %zu along %c is %g; finite, rising ones were "
-                               "expected",
-                               i, "xyz"[a], at[i]);
+                return cwi_fail(err, CW_ERR_ARGUMENT,
+                                "coordinate %zu along %c is %g; finite, rising ones were "
+                                "expected",
+                                i, "xyz"[a], at[i]);
     }
     return CW_OK;
 }
@@ -148,19 +148,19 @@ static cw_status check_grid(const cw_volume *v, cw_error *err)
     const cw_cells *c = v->cells;
     const cw_sparse *s = v->sparse;
     if ((c != NULL) + (s != NULL) + cwi_is_rectilinear(v) > 1)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "the volume has more than one of coordinates, cells and leaves");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "the volume has more than one of coordinates, cells and leaves");
     if (c && (v->dim[1] != 1 || v->dim[2] != 1 || v->dim[0] > UINT32_MAX))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "an irregular grid has size %zu x %zu x %zu; samples x 1 x 1 was "
-                       "expected, at most 2^32 - 1 of them",
-                       v->dim[0], v->dim[1], v->dim[2]);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "an irregular grid has size %zu x %zu x %zu; samples x 1 x 1 was "
+                        "expected, at most 2^32 - 1 of them",
+                        v->dim[0], v->dim[1], v->dim[2]);
     if (c && (!c->points || (c->count && (!c->shapes || !c->corners))))
-        return cw_fail(err, CW_ERR_ARGUMENT, "an irregular grid lacks points or cells");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "an irregular grid lacks points or cells");
     if (s && ((s->leaf_count && !s->leaves) || (s->tile_count && !s->tiles)))
-        return cw_fail(err, CW_ERR_ARGUMENT, "a sparse grid lacks its leaves or tiles");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a sparse grid lacks its leaves or tiles");
     if (s && (v->components > 1 || v->steps > 1))
-        return cw_fail(err, CW_ERR_ARGUMENT, "a sparse grid has one component and one step");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a sparse grid has one component and one step");
     return check_coordinates(v, err);
 }
 
@@ -173,9 +173,9 @@ static cw_status check_strides(const cw_volume *v, cw_error *err)
     for (int a = 0; a < 5; a++)
         aligned = aligned && all[a] % size == 0;
     if (!aligned)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "data and strides must be multiples of %d bytes (%s)", (int)size,
-                       cw_type_name(v->type));
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "data and strides must be multiples of %d bytes (%s)", (int)size,
+                        cw_type_name(v->type));
     return CW_OK;
 }
 
@@ -184,16 +184,16 @@ cw_status cw_volume_resolve(const cw_volume *in, cw_volume *out, cw_error *err)
     cw_volume v = *in;
     size_t bytes;
     if (!cw_type_size(v.type))
-        return cw_fail(err, CW_ERR_ARGUMENT, "%d is not a voxel type", (int)v.type);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a voxel type", (int)v.type);
     if (!v.dim[0] || !v.dim[1] || !v.dim[2])
-        return cw_fail(err, CW_ERR_ARGUMENT, "the volume is empty: %zu x %zu x %zu", v.dim[0],
-                       v.dim[1], v.dim[2]);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the volume is empty: %zu x %zu x %zu", v.dim[0],
+                        v.dim[1], v.dim[2]);
     if (!v.data && !(v.sparse && !v.sparse->leaf_count))
-        return cw_fail(err, CW_ERR_ARGUMENT, "the volume has no voxels");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the volume has no voxels");
     v.components = v.components ? v.components : 1;
     v.steps = v.steps ? v.steps : 1;
     if (!packed_bytes(&v, &bytes))
-        return cw_fail(err, CW_ERR_ARGUMENT, "the volume is larger than an address space");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the volume is larger than an address space");
     if (!v.stride[0] && !v.stride[1] && !v.stride[2])
         set_packed_strides(&v);
     if (is_zero(v.affine[0]))
@@ -216,7 +216,7 @@ cw_status cwi_volume_own_coordinates(cw_volume *v, cw_error *err)
         return CW_OK;
     double *all = cwi_alloc_array(v->dim[0] + v->dim[1] + v->dim[2], sizeof *all), *to = all;
     if (!all)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for coordinates");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for coordinates");
     for (int a = 0; a < 3; to += v->dim[a++]) {
         memcpy(to, v->coordinates[a], v->dim[a] * sizeof *to);
         v->coordinates[a] = to;
@@ -235,9 +235,9 @@ const char *cwi_volume_kind(const cw_volume *v)
 
 static cw_status refuse_kind(const cw_volume *v, const char *what, cw_error *err)
 {
-    return cw_fail(err, CW_ERR_UNSUPPORTED,
-                   "%s on %s is not supported: an even one was expected", what,
-                   cwi_volume_kind(v));
+    return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                    "%s on %s is not supported: an even one was expected", what,
+                    cwi_volume_kind(v));
 }
 
 cw_status cwi_volume_expect_even(const cw_volume *v, const char *what, cw_error *err)
@@ -276,9 +276,9 @@ cw_status cw_volume_select(const cw_volume *in, size_t component, size_t step, c
     if (st != CW_OK)
         return st;
     if (component >= v.components || step >= v.steps)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "component %zu of step %zu: the volume has %zu components, %zu steps",
-                       component, step, v.components, v.steps);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "component %zu of step %zu: the volume has %zu components, %zu steps",
+                        component, step, v.components, v.steps);
     if (v.data)
         v.data = (const char *)v.data + (ptrdiff_t)component * v.component_stride +
                  (ptrdiff_t)step * v.step_stride;
@@ -293,9 +293,9 @@ cw_status cwi_volume_shrink(cw_volume *v, const cw_box *box, cw_error *err)
     for (int a = 0; a < 3; a++)
         if (!box->count[a] || box->first[a] >= v->dim[a] ||
             box->count[a] > v->dim[a] - box->first[a])
-            return cw_fail(err, CW_ERR_ARGUMENT,
-                           "box %zu+%zu leaves the volume's %zu voxels along %c", box->first[a],
-                           box->count[a], v->dim[a], "xyz"[a]);
+            return cwi_fail(err, CW_ERR_ARGUMENT,
+                            "box %zu+%zu leaves the volume's %zu voxels along %c",
+                            box->first[a], box->count[a], v->dim[a], "xyz"[a]);
     const double corner[3] = {(double)box->first[0], (double)box->first[1],
                               (double)box->first[2]};
     double world[3];
@@ -333,7 +333,7 @@ cw_status cwi_volume_thin(cw_volume *v, const size_t step[3], cw_error *err)
         st = cwi_volume_expect_even(v, "a preview", err);
     for (int a = 0; a < 3 && st == CW_OK; a++) {
         if (!step[a] || (step[a] > 1 && step[a] >= v->dim[a]))
-            return cw_fail(
+            return cwi_fail(
                 err, CW_ERR_ARGUMENT,
                 "a step of %zu along %c: expected 1, or less than the %zu voxels there",
                 step[a], "xyz"[a], v -> dim[a]);
@@ -426,7 +426,7 @@ cw_status cw_volume_to_index(const cw_volume *volume, const double world[3], dou
         memcpy(a, volume->affine, sizeof a);
     const double det = cwi_affine_determinant(a[0]);
     if (!isnormal(det))
-        return cw_fail(err, CW_ERR_ARGUMENT, "the volume's affine has determinant %g", det);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the volume's affine has determinant %g", det);
     cwi_affine_cofactor(a[0], cofactor);
     for (int c = 0; c < 3; c++) {
         index[c] = 0;

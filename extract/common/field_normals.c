@@ -73,7 +73,7 @@ cw_status cwi_mend_normals(cw_mesh *mesh, double scale, cw_error *err)
         return CW_OK;
     bool *missing = cwi_alloc_zeroed(mesh->vertex_count, sizeof *missing);
     if (!missing)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to repair %zu normals", count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to repair %zu normals", count);
     for (size_t v = 0; v < mesh->vertex_count; v++) {
         const float *n = mesh->normals + 3 * v;
         missing[v] = n[0] == 0 && n[1] == 0 && n[2] == 0;
@@ -233,9 +233,9 @@ static cw_status begin_shading(shading *s, const cw_volume *volume, const cw_nor
         st = cwi_volume_expect_dense(v, "shading by the field", err);
     for (int a = 0; a < 3 && st == CW_OK; a++)
         if (v->dim[a] < 2)
-            st = cw_fail(err, CW_ERR_ARGUMENT,
-                         "the volume has %zu voxel along %c; a gradient needs 2", v->dim[a],
-                         "xyz"[a]);
+            st = cwi_fail(err, CW_ERR_ARGUMENT,
+                          "the volume has %zu voxel along %c; a gradient needs 2", v->dim[a],
+                          "xyz"[a]);
     if (st == CW_OK)
         st = cw_mesh_check(mesh, err);
     if (st != CW_OK)
@@ -249,7 +249,7 @@ static cw_status begin_shading(shading *s, const cw_volume *volume, const cw_nor
     const size_t bytes = mesh->vertex_count * 3 * sizeof *s->normals;
     s->normals = cwi_alloc_zeroed(mesh->vertex_count, 3 * sizeof *s->normals);
     if (!s->normals)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu normals", mesh->vertex_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu normals", mesh->vertex_count);
     if (mesh->normals)
         memcpy(s->normals, mesh->normals, bytes);
     return CW_OK;

@@ -28,9 +28,9 @@ uint64_t *cwi_grid_plane(const cwi_bit_grid *g)
 static cw_status no_memory(const cwi_bit_grid *g, cw_error *err)
 {
     const size_t *dim = g->volume.dim;
-    return cw_fail(err, CW_ERR_NO_MEMORY,
-                   "no memory for the bit planes of %zu x %zu x %zu voxels", dim[0], dim[1],
-                   dim[2]);
+    return cwi_fail(err, CW_ERR_NO_MEMORY,
+                    "no memory for the bit planes of %zu x %zu x %zu voxels", dim[0], dim[1],
+                    dim[2]);
 }
 
 static cw_status allocate_planes(cwi_bit_grid *g, cw_error *err)
@@ -62,9 +62,9 @@ cw_status cwi_extract_check_range(const cw_volume *v, cw_error *err)
     for (int a = 0; a < 3; a++)
         if (spacing[a] < (double)FLT_MIN ||
             spacing[a] * (double)v->dim[a] > 0.5 * (double)FLT_MAX)
-            return cw_fail(err, CW_ERR_ARGUMENT,
-                           "%zu voxels of %g mm along %c are beyond what positions can hold",
-                           v->dim[a], spacing[a], "xyz"[a]);
+            return cwi_fail(err, CW_ERR_ARGUMENT,
+                            "%zu voxels of %g mm along %c are beyond what positions can hold",
+                            v->dim[a], spacing[a], "xyz"[a]);
     return CW_OK;
 }
 
@@ -76,9 +76,9 @@ cw_status cwi_grid_init(cwi_bit_grid *g, const cw_volume *volume, cw_error *err)
         st = cwi_volume_expect_dense(&g->volume, "extraction", err);
     for (int a = 0; a < 3 && st == CW_OK; a++)
         if (g->volume.dim[a] < 2)
-            st = cw_fail(err, CW_ERR_ARGUMENT,
-                         "the volume has %zu voxel along %c; a surface needs 2",
-                         g->volume.dim[a], "xyz"[a]);
+            st = cwi_fail(err, CW_ERR_ARGUMENT,
+                          "the volume has %zu voxel along %c; a surface needs 2",
+                          g->volume.dim[a], "xyz"[a]);
     if (st == CW_OK)
         st = cwi_extract_check_range(&g->volume, err);
     return st == CW_OK ? allocate_planes(g, err) : st;
@@ -170,9 +170,9 @@ cw_status cwi_level_find(const cw_volume *v, const cw_extract_desc *desc, cwi_le
     level->strict = v->slope < 0;
     level->invert = (v->slope < 0) != desc->inside_is_low;
     if (!isfinite(desc->isovalue) || !isfinite(level->at))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "isovalue %g is not finite, or not after slope %g and intercept %g",
-                       desc->isovalue, v->slope, v->intercept);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "isovalue %g is not finite, or not after slope %g and intercept %g",
+                        desc->isovalue, v->slope, v->intercept);
     return CW_OK;
 }
 

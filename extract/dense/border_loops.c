@@ -241,8 +241,8 @@ cw_status cwi_grid_border_loops(const cwi_bit_grid *grid, size_t *loops, cw_erro
     if (!any)
         return CW_OK;
     if (samples >= UINT32_MAX)
-        return cw_fail(err, CW_ERR_LIMIT, "the volume's border has %zu voxels, more than %u",
-                       samples, UINT32_MAX);
+        return cwi_fail(err, CW_ERR_LIMIT, "the volume's border has %zu voxels, more than %u",
+                        samples, UINT32_MAX);
     b.words = (n[0] > n[1] ? n[0] : n[1]) / 64 + 1;
     b.lines = cwi_alloc_array(b.words + 1, 2 * sizeof *b.lines);
     b.parent = cwi_alloc_zeroed(samples, sizeof *b.parent);
@@ -258,5 +258,5 @@ cw_status cwi_grid_border_loops(const cwi_bit_grid *grid, size_t *loops, cw_erro
     cwi_free(b.lines);
     cwi_free(b.parent);
     return room ? CW_OK
-                : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu border voxels", samples);
+                : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu border voxels", samples);
 }

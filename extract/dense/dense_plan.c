@@ -46,8 +46,8 @@ static cw_status number_rows(cwi_plan *p, int threads, cw_error *err)
     p->counts.vertices = v;
     p->counts.triangles = t;
     if (v > UINT32_MAX)
-        return cw_fail(err, CW_ERR_LIMIT, "the surface has %zu vertices; a mesh holds %u", v,
-                       UINT32_MAX);
+        return cwi_fail(err, CW_ERR_LIMIT, "the surface has %zu vertices; a mesh holds %u", v,
+                        UINT32_MAX);
     return cwi_each_layer(g->rows_z, g->rows_y * g->words * 64, threads, &(cw_progress){0},
                           "numbering", number_layer, p, err);
 }
@@ -58,7 +58,7 @@ cw_status cwi_plan_count(cwi_plan *p, int threads, const cw_progress *progress, 
     if (!p->rows)
         p->rows = cwi_alloc_large(g->rows + 1, sizeof *p->rows);
     if (!p->rows)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu rows", g->rows);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu rows", g->rows);
     cw_status st = cwi_each_layer(g->rows_z, g->rows_y * g->words * 64, threads, progress,
                                   "counting", count_layer, p, err);
     return st == CW_OK ? number_rows(p, threads, err) : st;

@@ -70,8 +70,8 @@ static cw_status set_frame(cwi_cells *g, const sampling *s, cw_error *err)
     for (int i = 0; i < 9; i++)
         far = fmax(far, fabs(g->volume.affine[i / 3][i % 3]) * g->reach * 3);
     if (far > (double)FLT_MAX || (g->reach > 0 && far < (double)FLT_MIN))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "a grid %g mm wide is beyond what positions can hold", far / 3);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "a grid %g mm wide is beyond what positions can hold", far / 3);
     return CW_OK;
 }
 
@@ -84,13 +84,13 @@ static cw_status compare_samples(cwi_cells *g, cw_error *err)
                   .bad = SIZE_MAX};
     g->sides = cwi_alloc_array(samples, sizeof *g->sides);
     if (!g->sides)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the sides of %zu samples",
-                       samples);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the sides of %zu samples",
+                        samples);
     cw_status st = cwi_each_layer((samples + SAMPLE_CHUNK - 1) / SAMPLE_CHUNK, SAMPLE_CHUNK,
                                   g->desc->threads, &g->desc->progress, "classifying",
                                   look_at_samples, &s, err);
     if (st == CW_OK && s.bad != SIZE_MAX)
-        st = cw_fail(err, CW_ERR_ARGUMENT, "the point of sample %zu is not finite", s.bad);
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "the point of sample %zu is not finite", s.bad);
     return st == CW_OK ? set_frame(g, &s, err) : st;
 }
 
@@ -105,13 +105,13 @@ static cw_status find_chunks(cwi_cells *g, cw_error *err)
     g->chunks = (cells->count + CWI_CELL_CHUNK - 1) / CWI_CELL_CHUNK;
     g->chunk_corners = cwi_alloc_array(g->chunks + 1, sizeof *g->chunk_corners);
     if (!g->chunk_corners)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu chunks of cells", g->chunks);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu chunks of cells", g->chunks);
     for (size_t n = 0; n < cells->count; n++) {
         if (n % CWI_CELL_CHUNK == 0)
             g->chunk_corners[n / CWI_CELL_CHUNK] = corner;
         if (cells->shapes[n] >= CW_SHAPE_COUNT)
-            return cw_fail(err, CW_ERR_ARGUMENT, "cell %zu has shape %u; the last is %d", n,
-                           cells->shapes[n], CW_SHAPE_COUNT - 1);
+            return cwi_fail(err, CW_ERR_ARGUMENT, "cell %zu has shape %u; the last is %d", n,
+                            cells->shapes[n], CW_SHAPE_COUNT - 1);
         corner += cwi_shapes[cells->shapes[n]].corner_count;
     }
     return CW_OK;
@@ -227,8 +227,8 @@ static cw_status refuse_corners(const cwi_cells *g, size_t bad, cw_error *err)
         corners += cwi_shapes[cells->shapes[n]].corner_count;
     while (*corners < g->volume.dim[0])
         corners++;
-    return cw_fail(err, CW_ERR_ARGUMENT, "cell %zu has a corner at sample %u of %zu", bad,
-                   *corners, g->volume.dim[0]);
+    return cwi_fail(err, CW_ERR_ARGUMENT, "cell %zu has a corner at sample %u of %zu", bad,
+                    *corners, g->volume.dim[0]);
 }
 
 static cw_status place_elements(gathering *w, cw_error *err)
@@ -240,11 +240,11 @@ static cw_status place_elements(gathering *w, cw_error *err)
         g->count += count;
     }
     if (g->count > INT32_MAX / CWI_CELL_FACES) /* a bit of a face's number is needed */
-        return cw_fail(err, CW_ERR_LIMIT, "the surface meets %zu cells; at most %d can be",
-                       g->count, INT32_MAX / CWI_CELL_FACES);
+        return cwi_fail(err, CW_ERR_LIMIT, "the surface meets %zu cells; at most %d can be",
+                        g->count, INT32_MAX / CWI_CELL_FACES);
     g->elements = cwi_alloc_large(g->count, sizeof *g->elements);
     if (!g->elements)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu cells", g->count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu cells", g->count);
     return cwi_each_layer(g->chunks, CWI_CELL_CHUNK * 16, g->desc->threads, &g->desc->progress,
                           "gathering", keep_chunk, w, err);
 }
@@ -257,7 +257,7 @@ cw_status cwi_cells_gather(cwi_cells *g, cw_error *err)
         return st;
     w.elements = cwi_alloc_array(g->chunks, sizeof *w.elements);
     if (!w.elements)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu chunks of cells", g->chunks);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu chunks of cells", g->chunks);
     st = cwi_each_layer(g->chunks, CWI_CELL_CHUNK * 16, g->desc->threads, &g->desc->progress,
                         "counting", count_chunk, &w, err);
     if (st == CW_OK && w.bad != SIZE_MAX)

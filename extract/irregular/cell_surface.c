@@ -90,11 +90,12 @@ static cw_status place_crossings(cwi_cells *g, cw_error *err)
         g->crossing_count += (size_t)__builtin_popcount(g->elements[n].crossed);
     }
     if (g->crossing_count > UINT32_MAX)
-        return cw_fail(err, CW_ERR_LIMIT, "the surface crosses %zu edges of cells; %u can be",
-                       g->crossing_count, UINT32_MAX);
+        return cwi_fail(err, CW_ERR_LIMIT, "the surface crosses %zu edges of cells; %u can be",
+                        g->crossing_count, UINT32_MAX);
     g->crossings = cwi_sets_alloc(g->crossing_count);
     if (!g->crossings)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu crossings", g->crossing_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu crossings",
+                        g->crossing_count);
     for (uint32_t face = 0; face < g->count * CWI_CELL_FACES; face++)
         if (g->elements[face / CWI_CELL_FACES].crossed)
             join_crossings(g, face);
@@ -155,8 +156,8 @@ static cw_status finish_counts(cwi_cells *g, cw_error *err)
 {
     g->counts.vertices = g->edge_vertices + g->inner_vertices + g->cap_vertices;
     if (g->counts.vertices > UINT32_MAX)
-        return cw_fail(err, CW_ERR_LIMIT, "the surface has %zu vertices; a mesh holds %u",
-                       g->counts.vertices, UINT32_MAX);
+        return cwi_fail(err, CW_ERR_LIMIT, "the surface has %zu vertices; a mesh holds %u",
+                        g->counts.vertices, UINT32_MAX);
     g->counts.bytes =
         cwi_extract_mesh_bytes(&g->counts, !g->desc->no_normals) + working_bytes(g);
     return cwi_extract_check_limits(g->desc, &g->counts, err);

@@ -222,7 +222,7 @@ static size_t place_buckets(pairing *p)
 
 static cw_status no_memory(const cwi_cells *g, cw_error *err)
 {
-    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the faces of %zu cells", g->count);
+    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the faces of %zu cells", g->count);
 }
 
 static cw_status pair_faces(pairing *p, cw_error *err)
@@ -403,7 +403,7 @@ cw_status cwi_cells_orient(cwi_cells *g, cw_error *err)
     cw_status st =
         o.parent && o.turned && o.volume
             ? orient_elements(&o, err)
-            : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to orient %zu cells", g->count);
+            : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to orient %zu cells", g->count);
     cwi_free(o.parent);
     cwi_free(o.turned);
     cwi_free(o.volume);

@@ -133,7 +133,7 @@ cw_status cwi_cells_gradients(const cwi_cells *g, cwi_gradients *out, cw_error *
         solve_equations(&f.equations[n], out->at[n]);
     cwi_free(f.equations);
     return enough ? CW_OK
-                  : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu gradients", count);
+                  : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu gradients", count);
 }
 
 void cwi_gradients_free(cwi_gradients *gradients)

@@ -272,7 +272,7 @@ static cw_status hand_over(const build *b, cw_volume *grid, cw_error *err)
                                        b->corner_count * sizeof(uint32_t) + b->count,
                                    1);
     if (!memory)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu cells", b->count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu cells", b->count);
     double *points = (double *)(void *)(memory + sizeof(cw_cells));
     uint32_t *corners = (uint32_t *)(void *)(points + 3 * samples);
     uint8_t *shapes = (uint8_t *)(void *)(corners + b->corner_count);
@@ -304,8 +304,8 @@ static cw_status check_fits(const build *b, cw_error *err)
                          2 * sizeof *b->corners * (double)b->corner_count;
     if (!a->desc->max_bytes || bytes <= (double)a->desc->max_bytes)
         return CW_OK;
-    return cw_fail(err, CW_ERR_LIMIT, "finer cells would need %.0f MB; the limit is %.0f MB",
-                   bytes / 1e6, (double)a->desc->max_bytes / 1e6);
+    return cwi_fail(err, CW_ERR_LIMIT, "finer cells would need %.0f MB; the limit is %.0f MB",
+                    bytes / 1e6, (double)a->desc->max_bytes / 1e6);
 }
 
 static cw_status build_grid(build *b, cw_error *err)
@@ -318,7 +318,7 @@ static cw_status build_grid(build *b, cw_error *err)
     if (st == CW_OK && !b->out_of_memory)
         each_leaf(b, add_leaf);
     if (st == CW_OK && b->out_of_memory)
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for finer cells");
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for finer cells");
     if (st == CW_OK)
         st = check_fits(b, err);
     return st == CW_OK ? cwi_adaptive_measure(b->a, err) : st;

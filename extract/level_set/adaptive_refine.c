@@ -122,8 +122,8 @@ static cw_status find_beyond(const cwi_adaptive *a, const cw_mesh *from, const c
 {
     *beyond = cwi_alloc_array(from->triangle_count, sizeof **beyond);
     if (!*beyond)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu triangles",
-                       from->triangle_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu triangles",
+                        from->triangle_count);
     memset(*beyond, 1, from->triangle_count);
     if (!from->triangle_count || !to->triangle_count)
         return CW_OK;
@@ -144,7 +144,7 @@ static cw_status find_pieces(pieces *p, const cw_mesh *from, const cw_mesh *to, 
     }
     cwi_free(beyond);
     return st == CW_OK && p->out_of_memory
-               ? cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu pieces", p->count)
+               ? cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu pieces", p->count)
                : st;
 }
 
@@ -157,7 +157,7 @@ static cw_status divide_cells(const pieces *p, const uint8_t *beyond, cwi_beyond
         if (!beyond[n] || cwi_adaptive_is_divided(p->a, c->size, c->at))
             continue;
         if (!cwi_adaptive_put(p->a, c->size, c->at))
-            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for finer cells");
+            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for finer cells");
         found->divided++;
     }
     return CW_OK;
@@ -177,7 +177,7 @@ static cw_status divide_far_cells(pieces *p, const cw_mesh *to, double limit_mm,
         triangles[n] = (uint32_t)n;
     cw_status st = triangles
                        ? CW_OK
-                       : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu pieces", p->count);
+                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu pieces", p->count);
     if (st == CW_OK)
         st = find_beyond(p->a, &m, to, limit_mm, &beyond, err);
     if (st == CW_OK)

@@ -222,7 +222,7 @@ static cw_status find_places(settling *s, cw_error *err)
         box_of_ways(s->motion, t, boxes[t]);
     const cw_status st =
         ok ? cwi_boxes_build(&s->tree, (const float(*)[6])boxes, count, err)
-           : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to move %zu triangles", count);
+           : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to move %zu triangles", count);
     cwi_free(boxes);
     return st;
 }
@@ -366,8 +366,8 @@ cw_status cwi_unwarp(const cwi_warp *w, const cw_mesh *mesh, int threads,
     motion m = {.mesh = mesh, .surface = surface, .voxel = w->voxel};
     cw_status st = make_room(&m)
                        ? cwi_closest_build(mesh, &m.tree, err)
-                       : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to move %zu vertices",
-                                 surface->vertex_count);
+                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to move %zu vertices",
+                                  surface->vertex_count);
     if (st == CW_OK) {
         follow_samples(w, &m);
         st = settle_vertices(&m, threads, progress, err);

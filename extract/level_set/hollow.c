@@ -47,24 +47,24 @@ static double find_narrowest(const cw_hollow_desc *d)
 static cw_status check_desc(const cw_hollow_desc *d, cw_error *err)
 {
     if (!(d->wall_mm > 0 && isfinite(d->wall_mm) && d->voxel_mm >= 0 && isfinite(d->voxel_mm)))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "a wall of %g mm with voxels of %g mm: a wall above 0 was expected, "
-                       "voxels not below",
-                       d->wall_mm, d->voxel_mm);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "a wall of %g mm with voxels of %g mm: a wall above 0 was expected, "
+                        "voxels not below",
+                        d->wall_mm, d->voxel_mm);
     for (size_t n = 0; n < d->drain_count; n++) {
         const double length = sqrt(cwi_dot(d->drains[n].direction, d->drains[n].direction)),
                      width = d->drains[n].diameter_mm;
         if (!(width > 0 && isfinite(width) && length > 0 && isfinite(length)))
-            return cw_fail(err, CW_ERR_ARGUMENT,
-                           "drain %zu has a diameter of %g mm and a direction of length %g; "
-                           "both above 0 were expected",
-                           n + 1, width, length);
+            return cwi_fail(err, CW_ERR_ARGUMENT,
+                            "drain %zu has a diameter of %g mm and a direction of length %g; "
+                            "both above 0 were expected",
+                            n + 1, width, length);
     }
     if (d->voxel_mm > 0 && find_narrowest(d) < 2 * d->voxel_mm)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "voxels of %g mm are too large for %s of %g mm: at most half of that",
-                       d->voxel_mm, find_narrowest(d) < d->wall_mm ? "a drain" : "a wall",
-                       find_narrowest(d));
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "voxels of %g mm are too large for %s of %g mm: at most half of that",
+                        d->voxel_mm, find_narrowest(d) < d->wall_mm ? "a drain" : "a wall",
+                        find_narrowest(d));
     return CW_OK;
 }
 
@@ -116,7 +116,7 @@ static cw_status find_cavities(hollowing *h, cw_error *err)
     h->set = cwi_sets_alloc(m->vertex_count);
     h->size = cwi_alloc_zeroed(m->vertex_count, sizeof *h->size);
     if (!h->set || !h->size)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", m->vertex_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", m->vertex_count);
     for (const uint32_t *c = m->triangles; c < m->triangles + 3 * m->triangle_count; c += 3) {
         cwi_sets_join(h->set, c[0], c[1]);
         cwi_sets_join(h->set, c[0], c[2]);
@@ -232,7 +232,8 @@ static cw_status place_rays(hollowing *h, cw_error *err)
 {
     h->rays = cwi_alloc_array(h->desc->drain_count, sizeof *h->rays);
     if (!h->rays)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu drains", h->desc->drain_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu drains",
+                        h->desc->drain_count);
     for (size_t n = 0; n < h->desc->drain_count; n++)
         place_ray(h, &h->desc->drains[n], &h->rays[n]);
     count_sealed(h);
@@ -247,8 +248,8 @@ static cw_status join_surfaces(const hollowing *h, cw_mesh *out, cw_error *err)
     const cw_mesh *m = h->mesh, *in = &h->inner;
     const size_t v = m->vertex_count, t = m->triangle_count;
     if (v + in->vertex_count > UINT32_MAX)
-        return cw_fail(err, CW_ERR_LIMIT, "the result has %zu vertices; a mesh holds %u",
-                       v + in->vertex_count, UINT32_MAX);
+        return cwi_fail(err, CW_ERR_LIMIT, "the result has %zu vertices; a mesh holds %u",
+                        v + in->vertex_count, UINT32_MAX);
     cw_status st =
         cwi_mesh_alloc(out, v + in->vertex_count, t + in->triangle_count, m->normals, err);
     if (st != CW_OK)
@@ -279,7 +280,7 @@ static cw_status measure_wall(hollowing *h, const cw_mesh *outer, cw_error *err)
     cw_distance d;
     float *each = cwi_alloc_array(h->inner.vertex_count, sizeof *each);
     cw_status st = each ? cw_distance_to_mesh(&h->inner, outer, &desc, &d, each, err)
-                        : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for distances");
+                        : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for distances");
     if (st == CW_OK) {
         h->facts.wall_max_mm = d.max_mm;
         h->facts.wall_min_mm = d.max_mm;
@@ -308,7 +309,7 @@ static cw_status drain_cavity(hollowing *h, cw_mesh *out, cw_error *err)
     st = take_surface(h, 0, h->mesh->normals, out, err);
     memcpy(out->affine, h->mesh->affine, sizeof out->affine);
     if (st == CW_OK && !out->triangle_count)
-        st = cw_fail(err, CW_ERR_EMPTY, "nothing is left of the wall: the drains take it all");
+        st = cwi_fail(err, CW_ERR_EMPTY, "nothing is left of the wall: the drains take it all");
     return st;
 }
 
@@ -354,9 +355,9 @@ cw_status cw_mesh_hollow(const cw_mesh *mesh, const cw_hollow_desc *desc, cw_mes
     if (st == CW_OK)
         st = take_surface(&h, -desc->wall_mm, mesh->normals, &h.inner, err);
     if (st == CW_OK && !h.inner.triangle_count)
-        st = cw_fail(err, CW_ERR_EMPTY,
-                     "a wall of %g mm leaves no cavity: no point is that deep inside",
-                     desc->wall_mm);
+        st = cwi_fail(err, CW_ERR_EMPTY,
+                      "a wall of %g mm leaves no cavity: no point is that deep inside",
+                      desc->wall_mm);
     if (st == CW_OK)
         st = find_cavities(&h, err);
     if (st == CW_OK)

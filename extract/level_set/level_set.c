@@ -31,16 +31,16 @@ cw_status cwi_level_set_check(const cw_mesh *mesh, int threads, cw_quality *q, c
     if (st != CW_OK)
         return st;
     if (!q->triangles)
-        return cw_fail(err, CW_ERR_ARGUMENT, "the mesh has no triangles");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the mesh has no triangles");
     if (q->open_edges || q->nonmanifold_edges || q->misoriented_edges)
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_ARGUMENT,
             "the mesh does not enclose a solid: %zu open edges, %zu of more than two "
             "triangles, %zu between triangles that face opposite ways",
             q->open_edges, q->nonmanifold_edges, q->misoriented_edges);
     if (!(q->volume_mm3 > 0))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "the mesh encloses %g mm3: it faces inward, or is flat", q->volume_mm3);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "the mesh encloses %g mm3: it faces inward, or is flat", q->volume_mm3);
     return CW_OK;
 }
 
@@ -85,10 +85,10 @@ static cw_status check_fits(const cw_quality *q, const cw_level_set_desc *d, dou
     while (!cwi_level_set_fits(q, voxel, reach_mm, d->max_bytes) && voxel < 1e30)
         voxel *= 1.05;
     if (!d->max_bytes || cwi_level_set_bytes(q, d->voxel_mm, reach_mm) <= (double)d->max_bytes)
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "voxels of %.3g mm are more than %d along an axis; %.2g mm would do",
-                       d->voxel_mm, CWI_WINDING_MOST, voxel);
-    return cw_fail(
+        return cwi_fail(err, CW_ERR_LIMIT,
+                        "voxels of %.3g mm are more than %d along an axis; %.2g mm would do",
+                        d->voxel_mm, CWI_WINDING_MOST, voxel);
+    return cwi_fail(
         err, CW_ERR_LIMIT,
         "a level set with voxels of %.3g mm needs some %.3g MB, the limit is %.3g MB; "
         "voxels of %.2g mm would do",
@@ -137,7 +137,7 @@ static cw_status take_leaves(build *b, cw_error *err)
     b->leaves = cwi_alloc_array(b->leaf_count, sizeof *b->leaves);
     b->voxels = cwi_alloc_large(b->leaf_count, CWI_LEAF_VOXELS * sizeof *b->voxels);
     if (!b->leaves || !b->voxels)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", b->leaf_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", b->leaf_count);
 #pragma omp parallel for schedule(static) num_threads(cwi_threads(b->desc->threads))
     for (size_t n = 0; n < b->leaf_count; n++) {
         int32_t at[3];
@@ -211,7 +211,7 @@ static cw_status make_exact(build *b, cw_error *err)
                   .voxels = cwi_alloc_array(room, sizeof *list.voxels)};
     cw_status st = list.points && list.distances && list.voxels
                        ? CW_OK
-                       : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu voxels", room);
+                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu voxels", room);
     for (size_t n = 0; n < b->leaf_count && st == CW_OK; n++) {
         add_leaf(b, n, &list);
         if (n + 1 == b->leaf_count || list.count + CWI_LEAF_VOXELS > room)
@@ -272,7 +272,7 @@ static cw_status make_tiles(build *b, cw_error *err)
     b->tiles = cwi_alloc_array(b->leaf_count, sizeof *b->tiles);
     if (!rows || !b->tiles) {
         cwi_free(rows);
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", b->leaf_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", b->leaf_count);
     }
     memcpy(rows, b->leaves, b->leaf_count * sizeof *rows);
     qsort(rows, b->leaf_count, sizeof *rows, compare_places);
@@ -303,7 +303,7 @@ static cw_status hand_over(build *b, cw_volume *v, cw_error *err)
                                        b->leaf_count * sizeof *b->leaves,
                                    1);
     if (!memory)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", b->leaf_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", b->leaf_count);
     cw_tile *tiles = (cw_tile *)(void *)(memory + sizeof(cw_sparse));
     uint32_t(*leaves)[3] = (uint32_t(*)[3])(void *)(tiles + b->tile_count);
     memcpy(tiles, b->tiles, b->tile_count * sizeof *tiles);
@@ -427,7 +427,7 @@ cw_status cw_level_set_from_mesh(const cw_mesh *mesh, const cw_level_set_desc *d
     *volume = (cw_volume){0};
     if (!(d.voxel_mm > 0 && d.inside_mm >= 0 && d.outside_mm >= 0 && isfinite(d.voxel_mm) &&
           isfinite(d.inside_mm) && isfinite(d.outside_mm)))
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_ARGUMENT,
             "a level set needs voxels of more than 0 mm, and distances of 0 or more; "
             "not %g mm, %g and %g mm",

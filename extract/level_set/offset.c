@@ -102,10 +102,11 @@ static cw_status find_beyond(const making *m, const cw_mesh *from, const cw_mesh
                              double limit_mm, bool *any, cw_error *err)
 {
     uint8_t *beyond = cwi_alloc_array(from->triangle_count, sizeof *beyond);
-    cw_status st = beyond ? cwi_mesh_within(from, to, limit_mm, NULL, m->desc->threads,
-                                            &m->desc->progress, beyond, err)
-                          : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu triangles",
-                                    from->triangle_count);
+    cw_status st = beyond
+                       ? cwi_mesh_within(from, to, limit_mm, NULL, m->desc->threads,
+                                         &m->desc->progress, beyond, err)
+                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu triangles",
+                                  from->triangle_count);
     *any = false;
     for (size_t t = 0; t < from->triangle_count && st == CW_OK; t++)
         *any |= beyond[t];
@@ -244,8 +245,8 @@ static cw_status mend_normals(cw_mesh *mesh, cw_error *err)
     float *gradients = mesh->normals;
     mesh->normals = cwi_alloc_zeroed(3 * mesh->vertex_count, sizeof *mesh->normals);
     cw_status st = mesh->normals ? cwi_mend_normals(mesh, 1, err)
-                                 : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu normals",
-                                           mesh->vertex_count);
+                                 : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu normals",
+                                            mesh->vertex_count);
     for (size_t v = 0; v < mesh->vertex_count && st == CW_OK; v++) {
         const float *g = gradients + 3 * v;
         float *n = mesh->normals + 3 * v;
@@ -345,10 +346,10 @@ cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mes
     cw_offset_facts found = {0};
     *out = (cw_mesh){0};
     if (!isfinite(desc->offset_mm) || !isfinite(desc->voxel_mm) || desc->voxel_mm < 0)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "an offset of %g mm with voxels of %g mm: both are finite, and voxels "
-                       "not below 0",
-                       desc->offset_mm, desc->voxel_mm);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "an offset of %g mm with voxels of %g mm: both are finite, and voxels "
+                        "not below 0",
+                        desc->offset_mm, desc->voxel_mm);
     cw_status st = cwi_level_set_check(mesh, desc->threads, &m.before, err);
     if (st != CW_OK)
         return st;
@@ -357,8 +358,8 @@ cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mes
                                                    : make_plain(&m, out, err);
     cw_volume_free(&m.volume);
     if (st == CW_OK && !out->triangle_count)
-        st = cw_fail(err, CW_ERR_EMPTY, "nothing is left: no point is %g mm inside",
-                     desc->offset_mm < 0 ? -desc->offset_mm : sqrt(0.75) * m.voxel);
+        st = cwi_fail(err, CW_ERR_EMPTY, "nothing is left: no point is %g mm inside",
+                      desc->offset_mm < 0 ? -desc->offset_mm : sqrt(0.75) * m.voxel);
     if (st == CW_OK) /* not of the grid in between */
         memcpy(out->affine, mesh->affine, sizeof out->affine);
     found.voxel_mm = m.voxel;

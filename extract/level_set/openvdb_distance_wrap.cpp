@@ -82,7 +82,7 @@ cw_status open(const cwi_distances_desc *desc, cwi_distances **out, cw_error *er
             stop.interrupter(), mesh, *transform, reach, reach,
             openvdb::tools::UNSIGNED_DISTANCE_FIELD);
         if (stop.cancelled)
-            return cw_fail(err, CW_ERR_CANCELLED, "interrupted while distances were found");
+            return cwi_fail(err, CW_ERR_CANCELLED, "interrupted while distances were found");
         for (auto leaf = made->grid->tree().cbeginLeaf(); leaf; ++leaf)
             made->leaves.push_back(&*leaf);
         *out = made.release();

@@ -45,7 +45,7 @@ static cw_status check_region(const cw_volume *v, size_t n, cw_error *err)
     const bool leaf = n < v->sparse->leaf_count;
     for (int a = 0; a < 3; a++)
         if (r.size[a] == 0 || ((uint64_t)r.at[a] + r.size[a]) * CWI_LEAF > v->dim[a])
-            return cw_fail(
+            return cwi_fail(
                 err, CW_ERR_ARGUMENT,
                 "%s %zu, of size %u at %u along %c, is beyond the volume's %zu voxels",
                 leaf ? "leaf" : "tile", leaf ? n : n - v->sparse->leaf_count, r.size[a],
@@ -70,9 +70,9 @@ static cw_status check_values(const cw_volume *v, cw_error *err)
     for (size_t n = 0; n < s->tile_count; n++)
         fits = fits && type_holds(v->type, s->tiles[n].value);
     return fits ? CW_OK
-                : cw_fail(err, CW_ERR_ARGUMENT,
-                          "the background or a tile has a value that %s cannot hold",
-                          cw_type_name(v->type));
+                : cwi_fail(err, CW_ERR_ARGUMENT,
+                           "the background or a tile has a value that %s cannot hold",
+                           cw_type_name(v->type));
 }
 
 static cw_status check_volume(const cw_volume *v, cw_error *err)
@@ -80,14 +80,14 @@ static cw_status check_volume(const cw_volume *v, cw_error *err)
     cw_status st = check_values(v, err);
     for (int a = 0; a < 3 && st == CW_OK; a++)
         if (v->dim[a] > (size_t)UINT32_MAX + 1)
-            st = cw_fail(err, CW_ERR_ARGUMENT,
-                         "the sparse volume is %zu voxels wide; at most 2^32 were expected",
-                         v->dim[a]);
+            st = cwi_fail(err, CW_ERR_ARGUMENT,
+                          "the sparse volume is %zu voxels wide; at most 2^32 were expected",
+                          v->dim[a]);
     if (st == CW_OK && region_count(v->sparse) > UINT32_MAX)
-        st = cw_fail(err, CW_ERR_LIMIT,
-                     "the sparse volume has %zu leaves and tiles; at most "
-                     "2^32 - 1 were expected",
-                     region_count(v->sparse));
+        st = cwi_fail(err, CW_ERR_LIMIT,
+                      "the sparse volume has %zu leaves and tiles; at most "
+                      "2^32 - 1 were expected",
+                      region_count(v->sparse));
     for (size_t n = 0; n < region_count(v->sparse) && st == CW_OK; n++)
         st = check_region(v, n, err);
     return st;
@@ -183,19 +183,19 @@ static cw_status grow_blocks(cwi_leaf_blocks *b, size_t max_bytes, cw_error *err
         char needed[CWI_MEMORY_TEXT], left[CWI_MEMORY_TEXT];
         cwi_print_memory(bytes, needed);
         cwi_print_memory(max_bytes ? max_bytes : UINT32_MAX / 2 * sizeof *b->block, left);
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_LIMIT,
             "blocks around leaves and tiles need %s and more; %s are left (--memory)", needed,
             left);
     }
     cwi_leaf_block *more = cwi_realloc_array(b->block, room, sizeof *more);
     if (!more)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu blocks", room);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu blocks", room);
     b->block = more;
     b->room = room;
     return make_table(b, 2 * room)
                ? CW_OK
-               : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu blocks", room);
+               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu blocks", room);
 }
 
 static cw_status find_or_add(cwi_leaf_blocks *b, const uint32_t at[3], size_t max_bytes,
@@ -324,7 +324,7 @@ static cw_status keep_crossed(sorting *s, cw_error *err)
         qsort(b->block, kept, sizeof *b->block, by_place);
     return make_table(b, b->slots ? b->slots : 2)
                ? CW_OK
-               : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu blocks", kept);
+               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu blocks", kept);
 }
 
 static cw_status note_touch(sorting *s, size_t n, const reach along[3], const uint32_t at[3],
@@ -339,7 +339,7 @@ static cw_status note_touch(sorting *s, size_t n, const reach along[3], const ui
             s->touch_room ? 2 * s->touch_room : 4 * region_count(s->blocks->volume->sparse);
         touch *more = cwi_realloc_array(s->touches, s->touch_room, sizeof *more);
         if (!more)
-            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", s->touch_room);
+            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", s->touch_room);
         s->touches = more;
     }
     s->touches[s->touch_count++] = (touch){block - 1, (uint32_t)n};
@@ -357,7 +357,7 @@ static cw_status list_regions(sorting *s, cw_error *err)
         return st;
     b->region = cwi_alloc_array(s->touch_count, sizeof *b->region);
     if (!b->region)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", s->touch_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", s->touch_count);
     for (size_t n = 0; n < b->count; n++) {
         b->block[n].first = total;
         total += b->block[n].count;
@@ -383,7 +383,7 @@ cw_status cwi_blocks_init(cwi_leaf_blocks *b, const cwi_engine *engine,
     st = b->sides ? cwi_each_layer((count + TOGETHER - 1) / TOGETHER,
                                    TOGETHER * CWI_LEAF_VOXELS, desc->threads, &desc->progress,
                                    "classifying", find_sides, &s, err)
-                  : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", count);
+                  : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", count);
     if (st == CW_OK)
         st = visit_all(&s, 0, note_sides, err);
     if (st == CW_OK)

@@ -137,7 +137,7 @@ static cw_status alloc_piece(const worker *w, bool normals, cwi_block_mesh *piec
     *piece = (cwi_block_mesh){
         .memory = memory, .vertex_count = v, .triangle_count = t, .stranger_count = strangers};
     if (!memory)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu triangles", t);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu triangles", t);
     piece->positions = take_memory(&memory, v, 3 * sizeof *piece->positions);
     piece->normals = normals ? take_memory(&memory, v, 3 * sizeof *piece->normals) : NULL;
     piece->triangles = take_memory(&memory, t, 3 * sizeof *piece->triangles);
@@ -151,7 +151,7 @@ static cw_status keep_seam(const worker *w, cwi_leaf_block *b, cw_error *err)
     b->seam_count = w->seam_count;
     b->seam = cwi_alloc_array(w->seam_count, sizeof *b->seam);
     if (!b->seam)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for seams");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for seams");
     memcpy(b->seam, w->seam, w->seam_count * sizeof *b->seam);
     return CW_OK;
 }
@@ -198,15 +198,16 @@ static cw_status check_made(sparse_plan *p, const cwi_leaf_block *b, cw_error *e
         bytes = p->bytes;
     }
     if (d->max_triangles && made > d->max_triangles)
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "the surface has more triangles than the limit of %zu (--max-triangles)",
-                       d->max_triangles);
+        return cwi_fail(
+            err, CW_ERR_LIMIT,
+            "the surface has more triangles than the limit of %zu (--max-triangles)",
+            d->max_triangles);
     bytes += d->extra_bytes * made;
     if (d->max_bytes && bytes > d->max_bytes) {
         char left[CWI_MEMORY_TEXT];
         cwi_print_memory(d->max_bytes, left);
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "extraction needs more than the %s that are left (--memory)", left);
+        return cwi_fail(err, CW_ERR_LIMIT,
+                        "extraction needs more than the %s that are left (--memory)", left);
     }
     return CW_OK;
 }
@@ -282,10 +283,10 @@ static cw_status join_block(sparse_plan *p, cwi_leaf_block *b, worker *w, cw_err
         w->number = cwi_alloc_array(w->number_room, sizeof *w->number);
     }
     if (!w->number)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices",
-                       piece->vertex_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices",
+                        piece->vertex_count);
     if (!place_vertices(p, b, w->number))
-        return cw_fail(err, CW_ERR_ARGUMENT, "leaves or tiles of the sparse grid overlap");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "leaves or tiles of the sparse grid overlap");
     uint32_t *to = p->mesh->triangles + 3 * b->triangles;
     for (size_t n = 0; n < 3 * piece->triangle_count; n++)
         to[n] = w->number[piece->triangles[n]];
@@ -314,7 +315,7 @@ static cw_status set_window(cwi_bit_grid *g, size_t first, cw_error *err)
     g->live = cwi_grid_plane(g);
     if (!g->live || !window) {
         cwi_free(window);
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a block");
     }
     set_live(g, first);
     for (size_t row = 0; row < g->rows; row++) {
@@ -352,7 +353,7 @@ static cw_status init_grid(const sparse_plan *p, worker *w, cw_error *err)
     memset(g->inside, 0, g->rows * g->words * sizeof *g->inside);
     g->find_values = view.has_nodata;
     if (g->find_values && !(g->has = cwi_grid_plane(g)))
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a block");
     return set_window(g, from->halo + 1, err);
 }
 
@@ -364,7 +365,7 @@ static cw_status init_worker(const sparse_plan *p, worker *w, cw_error *err)
     w->seam = cwi_alloc_array(room, sizeof *w->seam);
     w->strangers = cwi_alloc_array(room, sizeof *w->strangers);
     if (!w->seam || !w->strangers)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a block");
     cw_status st =
         cwi_gathering_init(&w->gathering, &p->blocks, p->engine, p->desc->cubic_placement, err);
     return st == CW_OK ? init_grid(p, w, err) : st;
@@ -392,7 +393,7 @@ static cw_status init_workers(sparse_plan *p, cw_error *err)
     p->threads = cwi_threads(p->desc->threads);
     p->workers = cwi_alloc_zeroed((size_t)p->threads, sizeof *p->workers);
     if (!p->workers)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %d threads", p->threads);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %d threads", p->threads);
     cw_status st = CW_OK;
     for (int n = 0; n < p->threads && st == CW_OK; n++)
         st = init_worker(p, &p->workers[n], err);
@@ -426,7 +427,7 @@ static cw_status each_block(sparse_plan *p, const char *step,
     for (int n = 0; n < p->threads && st == CW_OK; n++)
         if (p->workers[n].status != CW_OK) {
             st = p->workers[n].status;
-            cw_fail(err, st, "%s", p->workers[n].error.message);
+            cwi_fail(err, st, "%s", p->workers[n].error.message);
         }
     return st;
 }
@@ -448,8 +449,8 @@ static cw_status number_blocks(sparse_plan *p, cw_extract_counts *c, cw_error *e
     c->bytes = 2 * cwi_extract_mesh_bytes(c, !p->desc->no_normals) + seam * sizeof(cwi_seam) +
                p->blocks.room * sizeof *p->blocks.block; /* as pieces, and joined */
     if (v > UINT32_MAX)
-        return cw_fail(err, CW_ERR_LIMIT, "the surface has %zu vertices; a mesh holds %u", v,
-                       UINT32_MAX);
+        return cwi_fail(err, CW_ERR_LIMIT, "the surface has %zu vertices; a mesh holds %u", v,
+                        UINT32_MAX);
     return cwi_extract_check_limits(p->desc, c, err);
 }
 

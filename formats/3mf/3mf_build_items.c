@@ -42,7 +42,7 @@ static cw_status add_instance(placing *p, size_t index, const double *place, cw_
     const cwi_3mf_object *o = &p->m->objects[index];
     p->drawn += o->end_point - o->first_point + o->end_triangle - o->first_triangle;
     if (p->drawn > p->most)
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_LIMIT,
             "objects are placed so often that their points and triangles are more than "
             "%llu; state a limit if that is meant (--max-triangles)",
@@ -77,18 +77,18 @@ static cw_status visit_component(placing *p, const cwi_3mf_component *c, const d
     double place[12];
     const cwi_3mf_resource *r = cwi_3mf_find(p->m, c->model, c->id);
     if (!r || r->is_group)
-        return cw_fail(err, CW_ERR_FORMAT, "'%s' places object %u, which is not there",
-                       p->m->models[c->model], c->id);
+        return cwi_fail(err, CW_ERR_FORMAT, "'%s' places object %u, which is not there",
+                        p->m->models[c->model], c->id);
     if (depth == DEEPEST)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "components are nested deeper than %d, or hold themselves", DEEPEST);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "components are nested deeper than %d, or hold themselves", DEEPEST);
     if (p->visits++ == MOST_PLACINGS)
-        return cw_fail(err, CW_ERR_LIMIT, "objects are placed more than %d times",
-                       MOST_PLACINGS);
+        return cwi_fail(err, CW_ERR_LIMIT, "objects are placed more than %d times",
+                        MOST_PLACINGS);
     multiply_transforms(parent, c->place, place);
     for (int i = 0; i < 12; i++)
         if (!isfinite(place[i]))
-            return cw_fail(err, CW_ERR_FORMAT, "a transform is not finite");
+            return cwi_fail(err, CW_ERR_FORMAT, "a transform is not finite");
     const cwi_3mf_object *o = &p->m->objects[r->object];
     cw_status st = CW_OK;
     if (type == CWI_3MF_SHAPE) {
@@ -112,11 +112,11 @@ static cw_status check_left_out(const placing *p, cw_error *err)
     const cw_mesh_file *said = p->m->said;
     if (p->count || !(said->supports + said->others))
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "it builds only what is left out: %zu objects for support (%zu triangles) "
-                   "and %zu of type 'other' (%zu triangles)",
-                   said->supports, said->support_triangles, said->others,
-                   said->other_triangles);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "it builds only what is left out: %zu objects for support (%zu triangles) "
+                    "and %zu of type 'other' (%zu triangles)",
+                    said->supports, said->support_triangles, said->others,
+                    said->other_triangles);
 }
 
 static cw_status find_instances(placing *p, cw_error *err)
@@ -303,7 +303,7 @@ cw_status cwi_3mf_place(cwi_3mf *m, cw_error *err)
     placing p = {.m = m, .most = stated ? UINT64_MAX : FREE_COUNT + m->in->file.size};
     cw_status st = m->has_build
                        ? find_instances(&p, err)
-                       : cw_fail(err, CW_ERR_FORMAT, "'%s' has no 'build'", m->models[0]);
+                       : cwi_fail(err, CW_ERR_FORMAT, "'%s' has no 'build'", m->models[0]);
     if (st == CW_OK)
         st = check_left_out(&p, err);
     if (st == CW_OK)

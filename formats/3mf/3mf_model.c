@@ -36,8 +36,8 @@ typedef struct parsing {
 static cw_status fail_attribute(const parsing *p, cw_error *err, const char *what,
                                 const char *value)
 {
-    return cw_fail(err, CW_ERR_FORMAT, "'%s', line %lu: %s is '%.40s'", p->m->models[p->model],
-                   cwi_xml_line(p->xml), what, value ? value : "");
+    return cwi_fail(err, CW_ERR_FORMAT, "'%s', line %lu: %s is '%.40s'", p->m->models[p->model],
+                    cwi_xml_line(p->xml), what, value ? value : "");
 }
 
 static cw_status read_number(const parsing *p, const char *what, const char *value, double *to,
@@ -115,7 +115,7 @@ static cw_status make_slots(parsing *p, cw_error *err)
         return st;
     cwi_3mf_resource *more = cwi_alloc_zeroed(slots, sizeof *more);
     if (!more)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu resources", slots);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu resources", slots);
     for (size_t i = 0; i < m->slots; i++)
         if (m->resources[i].key)
             *find_slot(more, slots, m->resources[i].key) = m->resources[i];
@@ -130,15 +130,15 @@ static cw_status add_resource(parsing *p, uint32_t id, cwi_3mf_resource **added,
 {
     cwi_3mf *m = p->m;
     if (m->resource_count == CWI_3MF_RESOURCES)
-        return cw_fail(err, CW_ERR_LIMIT, "more than %d objects and groups of colours",
-                       CWI_3MF_RESOURCES);
+        return cwi_fail(err, CW_ERR_LIMIT, "more than %d objects and groups of colours",
+                        CWI_3MF_RESOURCES);
     cw_status st = make_slots(p, err);
     if (st != CW_OK)
         return st;
     cwi_3mf_resource *r = find_slot(m->resources, m->slots, key_of(p->model, id));
     if (r->key)
-        return cw_fail(err, CW_ERR_FORMAT, "'%s', line %lu: the id %u is there twice",
-                       m->models[p->model], cwi_xml_line(p->xml), id);
+        return cwi_fail(err, CW_ERR_FORMAT, "'%s', line %lu: the id %u is there twice",
+                        m->models[p->model], cwi_xml_line(p->xml), id);
     m->resource_count++;
     r->key = key_of(p->model, id);
     *added = r;
@@ -156,9 +156,9 @@ static cw_status find_color(parsing *p, uint32_t group, uint32_t index, uint32_t
     if (!p->used || !p->used->is_group)
         return CW_OK;
     if (index >= p->used->end - p->used->first)
-        return cw_fail(err, CW_ERR_FORMAT, "'%s', line %lu: colour %u of %zu is named",
-                       p->m->models[p->model], cwi_xml_line(p->xml), index,
-                       p->used->end - p->used->first);
+        return cwi_fail(err, CW_ERR_FORMAT, "'%s', line %lu: colour %u of %zu is named",
+                        p->m->models[p->model], cwi_xml_line(p->xml), index,
+                        p->used->end - p->used->first);
     *color = (uint32_t)(p->used->first + index);
     return CW_OK;
 }
@@ -385,9 +385,9 @@ static cw_status start_triangle(void *user, cwi_xml *x, cwi_attributes a, cw_err
         uint32_t vertex = 0;
         st = read_whole(p, what[c], values[c], &vertex, err);
         if (st == CW_OK && vertex >= count)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "'%s', line %lu: a triangle names vertex %u of %zu",
-                           p->m->models[p->model], cwi_xml_line(p->xml), vertex, count);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "'%s', line %lu: a triangle names vertex %u of %zu",
+                            p->m->models[p->model], cwi_xml_line(p->xml), vertex, count);
         corners[c] = first + vertex;
         if (st == CW_OK)
             st = cwi_build_corner(b, (int64_t)corners[c], err);
@@ -412,9 +412,9 @@ static cw_status find_model(const parsing *p, const char *path, uint32_t *model,
             *model = (uint32_t)i;
             return CW_OK;
         }
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "'%s', line %lu: no relationship of the package names '%.200s'",
-                   m->models[p->model], cwi_xml_line(p->xml), path);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "'%s', line %lu: no relationship of the package names '%.200s'",
+                    m->models[p->model], cwi_xml_line(p->xml), path);
 }
 
 static cw_status add_component(parsing *p, cwi_attributes a, cwi_3mf_component **list,
@@ -485,8 +485,8 @@ static cw_status check_extensions(cwi_attributes a, cw_error *err)
                 memcmp(n[0] + 6, at, length) == 0)
                 name = n[1];
         if (!is_known_extension(name))
-            return cw_fail(err, CW_ERR_UNSUPPORTED, "it needs the extension '%.80s' of 3MF",
-                           name ? name : at);
+            return cwi_fail(err, CW_ERR_UNSUPPORTED, "it needs the extension '%.80s' of 3MF",
+                            name ? name : at);
         at += length;
     }
     return CW_OK;

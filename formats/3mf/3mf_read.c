@@ -22,7 +22,7 @@ bool cwi_3mf_sniff(const unsigned char *head, size_t size, uint64_t file_size)
 static cw_status take_text(cwi_3mf *m, const cwi_unzip_entry *entry, cw_error *err)
 {
     if (entry->size > m->text_left)
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_LIMIT,
             "'%s' has %llu bytes of text in an archive of %llu; state a limit if that "
             "is meant (--max-triangles)",
@@ -75,13 +75,13 @@ static cw_status start_relationship(void *user, cwi_xml *x, cwi_attributes a, cw
     if (length < strlen(model) || strcmp(type + length - strlen(model), model) != 0 || !target)
         return CW_OK;
     if (mode && strcmp(mode, "External") == 0)
-        return cw_fail(err, CW_ERR_UNSAFE, "its model '%.80s' is outside the package", target);
+        return cwi_fail(err, CW_ERR_UNSAFE, "its model '%.80s' is outside the package", target);
     if (m->model_count == CWI_3MF_MODELS)
-        return cw_fail(err, CW_ERR_LIMIT, "the package names more than %d models",
-                       CWI_3MF_MODELS);
+        return cwi_fail(err, CW_ERR_LIMIT, "the package names more than %d models",
+                        CWI_3MF_MODELS);
     m->models[m->model_count] = cwi_strdup(target + (*target == '/'));
     if (!m->models[m->model_count])
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the names of models");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the names of models");
     m->model_count++;
     return CW_OK;
 }
@@ -112,12 +112,12 @@ static cw_status read_models(cwi_3mf *m, cw_error *err)
 {
     cw_status st = cwi_3mf_read_xml(m, "_rels/.rels", &rules, m, err);
     if (st == CW_OK && m->model_count == 0)
-        return cw_fail(err, CW_ERR_FORMAT, "the package has no model");
+        return cwi_fail(err, CW_ERR_FORMAT, "the package has no model");
     if (st == CW_OK && m->model_count > 1)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "the package names %zu models to build, '%.80s' and '%.80s'; one was "
-                       "expected",
-                       m->model_count, m->models[0], m->models[1]);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the package names %zu models to build, '%.80s' and '%.80s'; one was "
+                        "expected",
+                        m->model_count, m->models[0], m->models[1]);
     if (st == CW_OK)
         st = add_related(m, m->models[0], err);
     if (st == CW_OK)
@@ -149,7 +149,7 @@ cw_status cwi_3mf_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
     const bool stated = in->desc.max_triangles < UINT32_MAX;
     cwi_3mf *m = cwi_alloc_zeroed(1, sizeof *m);
     if (!m)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a package");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a package");
     m->in = m->build.in = in;
     m->mesh = mesh;
     m->said = said;

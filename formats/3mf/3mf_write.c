@@ -90,7 +90,7 @@ static cw_status write_colors(model *m, const cw_mesh *mesh, size_t id, uint32_t
 {
     uint32_t *colors = cwi_alloc_array(mesh->vertex_count, sizeof *colors);
     if (!colors)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for its colours");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for its colours");
     const size_t count = list_colors(mesh, colors);
     for (size_t v = 0; v < mesh->vertex_count; v++) {
         const uint32_t color = color_of(mesh, v);
@@ -162,7 +162,7 @@ static cw_status write_object(model *m, const cwi_part *given, size_t id, cw_err
         snprintf(group, sizeof group, " pid=\"%zu\" pindex=\"0\"", id - 1);
         part.numbers = numbers = cwi_alloc_array(part.mesh.vertex_count, sizeof *numbers);
         st = numbers ? write_colors(m, &part.mesh, id - 1, numbers, err)
-                     : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for its colours");
+                     : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for its colours");
     }
     cwi_xml_escape(part.name, name, sizeof name);
     if (st == CW_OK)
@@ -240,9 +240,9 @@ static cw_status check_numbers(const cwi_parts *parts, cw_error *err)
 {
     for (size_t i = 0; i < parts->count; i++)
         if (parts->items[i].mesh.vertex_count > INT32_MAX)
-            return cw_fail(err, CW_ERR_LIMIT,
-                           "3MF counts at most %d vertices in an object; '%s' has %zu",
-                           INT32_MAX, parts->items[i].name, parts->items[i].mesh.vertex_count);
+            return cwi_fail(err, CW_ERR_LIMIT,
+                            "3MF counts at most %d vertices in an object; '%s' has %zu",
+                            INT32_MAX, parts->items[i].name, parts->items[i].mesh.vertex_count);
     return CW_OK;
 }
 

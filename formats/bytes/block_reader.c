@@ -42,19 +42,19 @@ static cw_status check_head(cwi_packed_blocks *b, const unsigned char *head, uin
     if (count < 1 || bytes < 1 || last > bytes ||
         __builtin_mul_overflow(last ? count - 1 : count, bytes, &total) ||
         __builtin_add_overflow(total, last, &total) || total != wanted)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "the table of compressed blocks lists %llu blocks of %llu bytes, the "
-                       "last of %llu; %llu bytes are needed in all",
-                       (unsigned long long)count, (unsigned long long)bytes,
-                       (unsigned long long)(last ? last : bytes), (unsigned long long)wanted);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the table of compressed blocks lists %llu blocks of %llu bytes, the "
+                        "last of %llu; %llu bytes are needed in all",
+                        (unsigned long long)count, (unsigned long long)bytes,
+                        (unsigned long long)(last ? last : bytes), (unsigned long long)wanted);
     if (bytes > INT_MAX)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "the compressed blocks have %llu bytes each; at most %d are read",
-                       (unsigned long long)bytes, INT_MAX);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the compressed blocks have %llu bytes each; at most %d are read",
+                        (unsigned long long)bytes, INT_MAX);
     if (count > there / b->form.word_bytes)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "the table of compressed blocks lists %llu; the file holds %llu bytes",
-                       (unsigned long long)count, (unsigned long long)there);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the table of compressed blocks lists %llu; the file holds %llu bytes",
+                        (unsigned long long)count, (unsigned long long)there);
     b->count = (size_t)count;
     b->bytes = (size_t)bytes;
     b->last = (size_t)(last ? last : bytes);
@@ -71,15 +71,16 @@ static cw_status check_table(const cwi_packed_blocks *b, uint64_t there, uint64_
     for (size_t i = 0; i < b->count; i++) {
         const uint64_t packed = word_at(b, b->table, i);
         if (__builtin_add_overflow(sum, packed, &sum) || sum > there)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "compressed block %zu of %zu has %llu bytes; the file ends before",
-                           i, b->count, (unsigned long long)packed);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "compressed block %zu of %zu has %llu bytes; the file ends before",
+                            i, b->count, (unsigned long long)packed);
         if (block_bytes(b, i) > packed * ratio + besides)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "block %zu of %zu has %zu bytes, compressed %llu; %s data cannot be "
-                           "packed so closely",
-                           i, b->count, block_bytes(b, i), (unsigned long long)packed,
-                           codecs[b->form.codec].name);
+            return cwi_fail(
+                err, CW_ERR_FORMAT,
+                "block %zu of %zu has %zu bytes, compressed %llu; %s data cannot be "
+                "packed so closely",
+                i, b->count, block_bytes(b, i), (unsigned long long)packed,
+                codecs[b->form.codec].name);
         *most = packed > *most ? packed : *most;
     }
     return CW_OK;
@@ -97,14 +98,14 @@ cw_status cwi_blocks_open(cwi_packed_blocks *b, cwi_stream *stream, const cwi_bl
     if (st == CW_OK)
         st = check_head(b, head, wanted, there, err);
     if (st == CW_OK && !(b->table = cwi_alloc_array(b->count, form->word_bytes)))
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a table of %zu blocks", b->count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a table of %zu blocks", b->count);
     if (st == CW_OK)
         st = cwi_stream_read(stream, b->table, b->count * form->word_bytes, err);
     if (st == CW_OK)
         st = check_table(b, there, &most, err);
     if (st == CW_OK && !(b->packed = cwi_alloc_array((size_t)most, 1)))
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %llu bytes",
-                     (unsigned long long)most);
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %llu bytes",
+                      (unsigned long long)most);
     return st;
 }
 
@@ -127,12 +128,12 @@ static cw_status inflate_block(const cwi_packed_blocks *b, size_t packed, unsign
     if (packed > UINT_MAX)
         return CW_OK;
     if (inflateInit(&z) != Z_OK)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
     const int code = inflate(&z, Z_FINISH);
     *whole = code == Z_STREAM_END && z.avail_out == 0 && z.avail_in == 0;
     inflateEnd(&z);
     if (code == Z_MEM_ERROR)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
     return CW_OK;
 }
 
@@ -148,11 +149,11 @@ static cw_status decode_block(cwi_packed_blocks *b, unsigned char *to, cw_error 
     else if (st == CW_OK)
         whole = cwi_lz4_decode(b->packed, packed, to, size);
     if (st == CW_OK && !whole)
-        st =
-            cw_fail(err, CW_ERR_FORMAT,
-                    "compressed block %zu of %zu is damaged: its %zu bytes are not %s data for "
-                    "%zu",
-                    index, b->count, packed, codecs[b->form.codec].name, size);
+        st = cwi_fail(
+            err, CW_ERR_FORMAT,
+            "compressed block %zu of %zu is damaged: its %zu bytes are not %s data for "
+            "%zu",
+            index, b->count, packed, codecs[b->form.codec].name, size);
     return st;
 }
 
@@ -160,8 +161,8 @@ static cw_status decode_block(cwi_packed_blocks *b, unsigned char *to, cw_error 
 static cw_status hold_block(cwi_packed_blocks *b, cw_error *err)
 {
     if (!b->held && !(b->held = cwi_alloc_array(block_bytes(b, 0), 1)))
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu bytes",
-                       block_bytes(b, 0));
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu bytes",
+                        block_bytes(b, 0));
     b->held_next = 0;
     b->held_bytes = block_bytes(b, b->next);
     return decode_block(b, b->held, err);

@@ -153,8 +153,8 @@ static cw_status take_entry(listing *l, int folder, const char *prefix, const ch
     l->links += S_ISLNK(info.st_mode);
     const int length = snprintf(path, sizeof path, "%s%s", prefix, name);
     if (length >= (int)sizeof path - 1)
-        return cw_fail(err, CW_ERR_LIMIT, "a path in it is longer than %zu bytes",
-                       sizeof path - 2);
+        return cwi_fail(err, CW_ERR_LIMIT, "a path in it is longer than %zu bytes",
+                        sizeof path - 2);
     if (S_ISREG(info.st_mode))
         return cwi_names_add(l->names, path, err);
     if (!S_ISDIR(info.st_mode) || !l->deep)
@@ -169,15 +169,15 @@ static cw_status list_folder(listing *l, const char *prefix, int depth, cw_error
 {
     const int flags = O_RDONLY | O_DIRECTORY | O_CLOEXEC;
     if (depth > DEEPEST)
-        return cw_fail(err, CW_ERR_LIMIT, "its folders are nested deeper than %d", DEEPEST);
+        return cwi_fail(err, CW_ERR_LIMIT, "its folders are nested deeper than %d", DEEPEST);
     const int fd = openat(l->in->folder, *prefix ? prefix : ".", flags);
     DIR *folder = fd >= 0 ? fdopendir(fd) : NULL;
     if (!folder) {
         const char *why = strerrordesc_np(errno);
         if (fd >= 0)
             close(fd);
-        return cw_fail(err, CW_ERR_IO, "the folder '%s' cannot be listed: %s",
-                       *prefix ? prefix : ".", why ? why : "unknown error");
+        return cwi_fail(err, CW_ERR_IO, "the folder '%s' cannot be listed: %s",
+                        *prefix ? prefix : ".", why ? why : "unknown error");
     }
     cw_status st = CW_OK;
     for (const struct dirent *e; st == CW_OK && (e = readdir(folder));)
@@ -210,13 +210,13 @@ static cw_status match_names(const char *pattern, cwi_names *names, cw_error *er
     const int code = glob(pattern, GLOB_NOSORT, NULL, &found);
     cw_status st = CW_OK;
     if (code == GLOB_NOSPACE)
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the names that match");
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the names that match");
     for (size_t i = 0; st == CW_OK && code == 0 && i < found.gl_pathc; i++)
         if (stat(found.gl_pathv[i], &info) == 0 && S_ISREG(info.st_mode))
             st = cwi_names_add(names, found.gl_pathv[i], err);
     globfree(&found);
     if (st == CW_OK && names->count == 0)
-        return cw_fail(err, CW_ERR_IO, "no file matches");
+        return cwi_fail(err, CW_ERR_IO, "no file matches");
     cwi_files_sort(names);
     return st;
 }

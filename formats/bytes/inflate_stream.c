@@ -45,22 +45,22 @@ cw_status cwi_stream_open(cwi_stream *s, int fd, uint64_t offset, bool deflated,
     if (s->deflated)
         return CW_OK;
     cwi_stream_close(s);
-    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
+    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
 }
 
 cw_status cwi_stream_open_bzip2(cwi_stream *s, int fd, uint64_t offset, cw_error *err)
 {
     *s = (cwi_stream){.fd = fd, .offset = offset, .end = UINT64_MAX};
     if (!cwi_bzip2_present())
-        return cw_fail(err, CW_ERR_UNSUPPORTED,
-                       "the data are compressed with bzip2; this build has no libbz2 "
-                       "(libbz2-dev, CUBEWRIGHT_BZIP2)");
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "the data are compressed with bzip2; this build has no libbz2 "
+                        "(libbz2-dev, CUBEWRIGHT_BZIP2)");
     s->z.next_in = s->buffer = cwi_alloc_array(BUFFER_BYTES, 1);
     s->deflated = s->buffer && cwi_bzip2_open(&s->bzip2);
     if (s->deflated)
         return CW_OK;
     cwi_stream_close(s);
-    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to decompress with");
+    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to decompress with");
 }
 
 void cwi_stream_end_at(cwi_stream *s, uint64_t end)
@@ -71,14 +71,14 @@ void cwi_stream_end_at(cwi_stream *s, uint64_t end)
 cw_status cwi_stream_from_base64(cwi_stream *s, cw_error *err)
 {
     s->text = cwi_alloc_array(BUFFER_BYTES, 1);
-    return s->text ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to decode base64 with");
+    return s->text ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to decode base64 with");
 }
 
 cw_status cwi_stream_from_hex(cwi_stream *s, cw_error *err)
 {
     s->text = cwi_alloc_array(BUFFER_BYTES, 1);
     s->is_hex = true;
-    return s->text ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to decode text with");
+    return s->text ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to decode text with");
 }
 
 void cwi_stream_close(cwi_stream *s)
@@ -119,8 +119,8 @@ static cw_status fetch_base64(cwi_stream *s, unsigned char *to, size_t size, siz
                                   s->text_size - s->text_next, &used, to + *got, size - *got);
         s->text_next += used;
         if (s->base64.wrong)
-            st = cw_fail(err, CW_ERR_FORMAT, "byte %llu of the file is not base64",
-                         (unsigned long long)(s->offset - s->text_size + s->text_next));
+            st = cwi_fail(err, CW_ERR_FORMAT, "byte %llu of the file is not base64",
+                          (unsigned long long)(s->offset - s->text_size + s->text_next));
     }
     return st;
 }
@@ -159,7 +159,8 @@ static cw_status fetch_hex(cwi_stream *s, unsigned char *to, size_t size, size_t
                 break;
         }
         if (!take_hex(s, s->text[s->text_next++], to, got))
-            st = cw_fail(err, CW_ERR_FORMAT, "byte %llu of the file is not a hexadecimal digit",
+            st =
+                cwi_fail(err, CW_ERR_FORMAT, "byte %llu of the file is not a hexadecimal digit",
                          (unsigned long long)(s->offset - s->text_size + s->text_next - 1));
     }
     return st;
@@ -194,10 +195,11 @@ static cw_status check_padding(cwi_stream *s, cw_error *err)
     while (st == CW_OK && got > 0) {
         for (; s->z.avail_in > 0; s->z.avail_in--, s->z.next_in++)
             if (*s->z.next_in)
-                return cw_fail(err, CW_ERR_FORMAT,
-                               "byte %llu of the file is behind the end of the compressed data "
-                               "and not zero",
-                               (unsigned long long)(s->offset - s->z.avail_in));
+                return cwi_fail(
+                    err, CW_ERR_FORMAT,
+                    "byte %llu of the file is behind the end of the compressed data "
+                    "and not zero",
+                    (unsigned long long)(s->offset - s->z.avail_in));
         st = refill_input(s, &got, err);
     }
     return st;
@@ -221,12 +223,12 @@ static cw_status start_next_member(cwi_stream *s, cw_error *err)
 static cw_status fail_inflate(const cwi_stream *s, int code, cw_error *err)
 {
     if (code == Z_MEM_ERROR)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
-    return cw_fail(err, CW_ERR_FORMAT, "the compressed data are damaged after %llu bytes: %s",
-                   (unsigned long long)(s->given),
-                   s->z.msg              ? s->z.msg
-                   : code == Z_NEED_DICT ? "a dictionary is asked for"
-                                         : "no progress");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
+    return cwi_fail(err, CW_ERR_FORMAT, "the compressed data are damaged after %llu bytes: %s",
+                    (unsigned long long)(s->given),
+                    s->z.msg              ? s->z.msg
+                    : code == Z_NEED_DICT ? "a dictionary is asked for"
+                                          : "no progress");
 }
 
 /* Calls inflate once. zlib's own totals are not used: they wrap at 4 GiB on some systems. */
@@ -284,10 +286,10 @@ cw_status cwi_stream_read(cwi_stream *s, void *to, size_t size, cw_error *err)
     size_t got;
     cw_status st = cwi_stream_some(s, to, size, &got, err);
     if (st == CW_OK && got < size)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "%s: wanted %zu bytes from byte %llu on, there were %zu",
-                       s->truncated ? "the compressed data break off" : "the data end early",
-                       size, (unsigned long long)start, got);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "%s: wanted %zu bytes from byte %llu on, there were %zu",
+                        s->truncated ? "the compressed data break off" : "the data end early",
+                        size, (unsigned long long)start, got);
     return st;
 }
 
@@ -319,9 +321,9 @@ cw_status cwi_stream_finish(cwi_stream *s, cw_error *err)
     while (st == CW_OK && !s->ended && s->given < enough)
         st = cwi_stream_some(s, waste, sizeof waste, &got, err);
     if (st == CW_OK && s->truncated)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "the compressed data break off after %llu bytes, before their checksum",
-                       (unsigned long long)s->given);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the compressed data break off after %llu bytes, before their checksum",
+                        (unsigned long long)s->given);
     return st == CW_OK && s->ended ? check_padding(s, err) : st;
 }
 

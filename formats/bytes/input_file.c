@@ -19,7 +19,7 @@ enum { MOST_NAMES = 65536, LONGEST_NAME = 1023 };
 static cw_status fail_system(cw_error *err, const char *what)
 {
     const char *why = strerrordesc_np(errno);
-    return cw_fail(err, CW_ERR_IO, "%s: %s", what, why ? why : "unknown error");
+    return cwi_fail(err, CW_ERR_IO, "%s: %s", what, why ? why : "unknown error");
 }
 
 static const char *kind_of_file(mode_t mode)
@@ -38,16 +38,16 @@ static cw_status open_regular(int folder, const char *name, int flags, int *fd, 
     struct stat info;
     *fd = openat(folder, name, O_RDONLY | O_NONBLOCK | O_CLOEXEC | flags);
     if (*fd < 0 && errno == ELOOP && flags & O_NOFOLLOW)
-        return cw_fail(err, CW_ERR_UNSAFE, "a symbolic link, which a data file must not be");
+        return cwi_fail(err, CW_ERR_UNSAFE, "a symbolic link, which a data file must not be");
     if (*fd < 0)
         return fail_system(err, "cannot be opened");
     cw_status st = CW_OK;
     if (fstat(*fd, &info) != 0)
         st = fail_system(err, "cannot be looked at");
     else if (!S_ISREG(info.st_mode))
-        st = cw_fail(err, CW_ERR_IO, "%s, not a file", kind_of_file(info.st_mode));
+        st = cwi_fail(err, CW_ERR_IO, "%s, not a file", kind_of_file(info.st_mode));
     else if (info.st_size == 0)
-        st = cw_fail(err, CW_ERR_IO, "the file is empty");
+        st = cwi_fail(err, CW_ERR_IO, "the file is empty");
     else if (fcntl(*fd, F_SETFL, 0) != 0)
         st = fail_system(err, "cannot be set to blocking");
     if (st == CW_OK) {
@@ -118,10 +118,10 @@ static cw_status check_name(const char *name, cw_error *err)
                       : strlen(name) > LONGEST_NAME ? "a name of more than 1023 bytes"
                                                     : NULL;
     if (why)
-        return cw_fail(err, CW_ERR_UNSAFE,
-                       "%s; a data file must lie in its header's folder unless external files "
-                       "are allowed",
-                       why);
+        return cwi_fail(err, CW_ERR_UNSAFE,
+                        "%s; a data file must lie in its header's folder unless external files "
+                        "are allowed",
+                        why);
     return CW_OK;
 }
 
@@ -188,16 +188,16 @@ cw_status cwi_names_add(cwi_names *names, const char *name, cw_error *err)
 {
     const size_t n = names->count;
     if (n >= MOST_NAMES)
-        return cw_fail(err, CW_ERR_LIMIT, "more than %d data files", MOST_NAMES);
+        return cwi_fail(err, CW_ERR_LIMIT, "more than %d data files", MOST_NAMES);
     if ((n & (n - 1)) == 0) { /* the capacity is reached at every power of two */
         char **items = cwi_realloc_array(names->items, n ? 2 * n : 1, sizeof *items);
         if (!items)
-            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu file names", n + 1);
+            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu file names", n + 1);
         names->items = items;
     }
     names->items[n] = cwi_strdup(name);
     if (!names->items[n])
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu file names", n + 1);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu file names", n + 1);
     names->count = n + 1;
     return CW_OK;
 }
@@ -254,16 +254,16 @@ cw_status cwi_names_expand(cwi_names *names, const char *text, int64_t *depth, c
     int64_t first, last, step;
     const char *s = text + strcspn(text, " \t");
     if (!take_apart(text, (size_t)(s - text), &p))
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_FORMAT,
             "the pattern '%.64s' needs one %%d, with a width up to 9 and without blanks", text);
     if (!cwi_parse_int(&s, &first) || !cwi_parse_int(&s, &last) || !cwi_parse_int(&s, &step) ||
         (cwi_parse_int(&s, depth), *s))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "the pattern '%.64s' needs three numbers behind it: first, last, step",
-                       text);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the pattern '%.64s' needs three numbers behind it: first, last, step",
+                        text);
     if (step < 1 || first < 0 || last < first)
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_FORMAT,
             "the pattern counts from %lld to %lld by %lld; it must count up from 0 or "
             "more",

@@ -26,7 +26,7 @@ static uint64_t read_number(const unsigned char *at, size_t size)
 
 static cw_status fail_damaged(const char *what, cw_error *err)
 {
-    return cw_fail(err, CW_ERR_FORMAT, "the zip archive is damaged: %s", what);
+    return cwi_fail(err, CW_ERR_FORMAT, "the zip archive is damaged: %s", what);
 }
 
 /* Reads exactly `size` bytes. */
@@ -48,7 +48,7 @@ static cw_status find_end(const cwi_input *in, uint64_t *end, unsigned char reco
     const size_t size = in->size < most ? (size_t)in->size : most;
     unsigned char *tail = cwi_alloc_array(size, 1);
     if (!tail)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to read an archive with");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to read an archive with");
     cw_status st = read_at(in, in->size - size, tail, size, "its end cannot be read", err);
     size_t at = size >= END ? size - END + 1 : 0;
     bool found = false;
@@ -105,12 +105,12 @@ cw_status cwi_unzip_open(cwi_unzip *z, const cwi_input *in, cw_error *err)
     if (st == CW_OK && (start > end || bytes > end - start))
         return fail_damaged("its directory does not fit into the file", err);
     if (st == CW_OK && (bytes > MOST_BYTES || count > UINT16_MAX || count > bytes / CENTRAL))
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_FORMAT,
             "the zip archive has %llu entries in %llu bytes; at most %d in %d are read",
             (unsigned long long)count, (unsigned long long)bytes, UINT16_MAX, MOST_BYTES);
     if (st == CW_OK && !(z->directory = cwi_alloc_array((size_t)bytes, 1)))
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for an archive's directory");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for an archive's directory");
     z->start = start;
     z->bytes = (size_t)bytes;
     z->count = (size_t)count;
@@ -214,7 +214,7 @@ cw_status cwi_unzip_find(const cwi_unzip *z, const char *name, cwi_unzip_entry *
     if (!whole)
         return fail_damaged("its directory breaks off", err);
     if (!at)
-        return cw_fail(err, CW_ERR_FORMAT, "the zip archive has no '%.200s'", name);
+        return cwi_fail(err, CW_ERR_FORMAT, "the zip archive has no '%.200s'", name);
     const uint64_t method = read_number(at + 10, 2);
     *entry = (cwi_unzip_entry){.deflated = method == DEFLATED,
                                .crc = (uint32_t)read_number(at + 16, 4),
@@ -223,17 +223,18 @@ cw_status cwi_unzip_find(const cwi_unzip *z, const char *name, cwi_unzip_entry *
                                .start = read_number(at + 42, 4)};
     memcpy(entry->name, at + CENTRAL, length);
     if (read_number(at + 8, 2) & ENCRYPTED)
-        return cw_fail(err, CW_ERR_FORMAT, "'%s' in the zip archive is encrypted", entry->name);
+        return cwi_fail(err, CW_ERR_FORMAT, "'%s' in the zip archive is encrypted",
+                        entry->name);
     if (method != STORED && method != DEFLATED)
-        return cw_fail(err, CW_ERR_FORMAT, "'%s' is packed by method %u; deflate is read",
-                       entry->name, (unsigned)method);
+        return cwi_fail(err, CW_ERR_FORMAT, "'%s' is packed by method %u; deflate is read",
+                        entry->name, (unsigned)method);
     if (!read_extra(at + CENTRAL + length, (size_t)read_number(at + 30, 2), entry))
         return fail_damaged("sizes of 64 bits are missing", err);
     if (entry->deflated ? entry->size / MOST_RATIO > entry->packed
                         : entry->size != entry->packed)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'%s' cannot have %llu bytes; %llu are in the archive", entry->name,
-                       (unsigned long long)entry->size, (unsigned long long)entry->packed);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'%s' cannot have %llu bytes; %llu are in the archive", entry->name,
+                        (unsigned long long)entry->size, (unsigned long long)entry->packed);
     return check_local(z, entry, err);
 }
 
@@ -251,7 +252,7 @@ cw_status cwi_unzip_start(cwi_unzip_stream *s, const cwi_unzip *z, const cwi_unz
     if (s->inflates)
         return CW_OK;
     cwi_unzip_end(s);
-    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
+    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
 }
 
 void cwi_unzip_end(cwi_unzip_stream *s)
@@ -277,8 +278,8 @@ static cw_status fetch_bytes(cwi_unzip_stream *s, void *to, size_t size, size_t 
 
 static cw_status fail_entry(const cwi_unzip_stream *s, const char *what, cw_error *err)
 {
-    return cw_fail(err, CW_ERR_FORMAT, "'%s' in the zip archive is damaged: %s", s->entry.name,
-                   what);
+    return cwi_fail(err, CW_ERR_FORMAT, "'%s' in the zip archive is damaged: %s", s->entry.name,
+                    what);
 }
 
 static cw_status inflate_some(cwi_unzip_stream *s, void *to, size_t size, size_t *got,
@@ -300,7 +301,7 @@ static cw_status inflate_some(cwi_unzip_stream *s, void *to, size_t size, size_t
         const int code = inflate(&s->z, Z_NO_FLUSH);
         s->ended = code == Z_STREAM_END;
         if (code == Z_MEM_ERROR)
-            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
+            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
         if (code != Z_OK && code != Z_STREAM_END && code != Z_BUF_ERROR)
             return fail_entry(s, s->z.msg ? s->z.msg : "it is no deflated data", err);
         if (!s->ended && s->z.avail_out == before && s->z.avail_in == input)

@@ -134,7 +134,7 @@ cw_status cwi_zip_end(cwi_zip *z, cw_error *err)
     e->packed = z->sink.written;
     cwi_sink_close(&z->sink);
     if (st == CW_OK && !e->huge && (e->size >= FULL || e->packed >= FULL))
-        st = cw_fail(err, CW_ERR_LIMIT, "'%s' in the archive has more than 4 GiB", e->name);
+        st = cwi_fail(err, CW_ERR_LIMIT, "'%s' in the archive has more than 4 GiB", e->name);
     if (st != CW_OK)
         return st;
     const unsigned char *end = put_local(head, e);

@@ -20,11 +20,11 @@ cw_status cwi_grid_check_bits(const cw_write_desc *desc, cw_error *err)
 {
     const cw_compression kind = desc->compression;
     if ((size_t)kind >= sizeof kinds / sizeof *kinds)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%d is not a compression", (int)kind);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a compression", (int)kind);
     if (desc->bits < 0 || desc->bits > kinds[kind].most_bits)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "%d bits a coordinate; there may be 1 to %d with %s", desc->bits,
-                       kinds[kind].most_bits, kinds[kind].name);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "%d bits a coordinate; there may be 1 to %d with %s", desc->bits,
+                        kinds[kind].most_bits, kinds[kind].name);
     return CW_OK;
 }
 
@@ -45,12 +45,12 @@ static cw_status fail_shape(const cwi_quantization_grid *grid, const cwi_grid_ha
                             double tolerance, cw_error *err)
 {
     if (cwi_grid_error(grid) > tolerance)
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_CHECK,
             "%d bits a coordinate, the most there are, move vertices by up to %.3g mm; "
             "%.3g mm are allowed",
             grid->bits, cwi_grid_error(grid), tolerance);
-    return cw_fail(
+    return cwi_fail(
         err, CW_ERR_CHECK,
         "with %d bits a coordinate, the most there are, %zu vertices fall onto others "
         "and %zu triangles lose their area%s",
@@ -113,7 +113,7 @@ cw_status cwi_grid_choose(cwi_quantization_grid *grid, const cwi_parts *parts,
     cw_status st;
     *grid = cwi_grid_around(parts);
     if (!isfinite(grid->range))
-        return cw_fail(err, CW_ERR_LIMIT, "the box is too large to be divided into steps");
+        return cwi_fail(err, CW_ERR_LIMIT, "the box is too large to be divided into steps");
     const double tolerance =
         desc->tolerance_mm > 0 ? desc->tolerance_mm : default_tolerance(parts, grid);
     if (desc->bits) {

@@ -28,7 +28,7 @@ const char COMMENT[] = "cubewright";
 cw_status fail_draco(cw_error *err, cw_status status, const char *what,
                      const draco::Status &said)
 {
-    return cw_fail(err, status, "Draco could not %s: %.200s", what, said.error_msg());
+    return cwi_fail(err, status, "Draco could not %s: %.200s", what, said.error_msg());
 }
 
 // --- encoding ------------------------------------------------------------------------------
@@ -125,7 +125,7 @@ cw_status encode(const cwi_arrays *from, const cwi_draco_settings *settings,
         *size = buffer.size();
         *bytes = static_cast<unsigned char *>(cwi_alloc_array(buffer.size(), 1));
         if (!*bytes)
-            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes", buffer.size());
+            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes", buffer.size());
         std::memcpy(*bytes, buffer.data(), buffer.size());
         return CW_OK;
     });
@@ -227,9 +227,10 @@ cw_status copy_mesh(const draco::Mesh &mesh, const cwi_draco_ids &ids,
     const size_t count = mesh.num_points();
     if (!positions || (ids.normal >= 0 && !normals) || (ids.color >= 0 && !colors) ||
         (colors && colors->num_components() > 4))
-        return cw_fail(err, CW_ERR_FORMAT, "the Draco data lack an attribute that is named");
+        return cwi_fail(err, CW_ERR_FORMAT, "the Draco data lack an attribute that is named");
     if (grid && !is_on_grid(*positions, *grid))
-        return cw_fail(err, CW_ERR_CHECK, "Draco encoded positions on another grid than asked");
+        return cwi_fail(err, CW_ERR_CHECK,
+                        "Draco encoded positions on another grid than asked");
     std::string comment;
     if (mesh.GetMetadata() && mesh.GetMetadata()->GetEntryString(COMMENT, &comment))
         snprintf(to.comment, sizeof to.comment, "%s", comment.c_str());
@@ -239,13 +240,13 @@ cw_status copy_mesh(const draco::Mesh &mesh, const cwi_draco_ids &ids,
         !allocate(to.triangles, to.triangle_count, 3) ||
         (normals && !allocate(to.normals, count, 3)) ||
         (colors && !allocate(to.colors, count, 4)))
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", count);
     if (!(grid ? copy_triples(*positions, count, to.places)
                : copy_triples(*positions, count, to.positions)) ||
         !copy_faces(mesh, to.triangles) ||
         (normals && !copy_triples(*normals, count, to.normals)) ||
         (colors && !copy_colors(*colors, count, to.colors)))
-        return cw_fail(err, CW_ERR_FORMAT, "the Draco data name points that are not there");
+        return cwi_fail(err, CW_ERR_FORMAT, "the Draco data name points that are not there");
     return CW_OK;
 }
 
@@ -257,7 +258,7 @@ cw_status decode(const void *bytes, size_t size, const cwi_draco_ids *ids, size_
         buffer.Init(static_cast<const char *>(bytes), size);
         const auto kind = draco::Decoder::GetEncodedGeometryType(&buffer);
         if (kind.ok() && kind.value() == draco::POINT_CLOUD)
-            return cw_fail(err, CW_ERR_FORMAT, "the Draco data are a point cloud, not a mesh");
+            return cwi_fail(err, CW_ERR_FORMAT, "the Draco data are a point cloud, not a mesh");
         draco::Decoder decoder;
         if (grid)
             decoder.SetSkipAttributeTransform(draco::GeometryAttribute::POSITION);
@@ -266,8 +267,8 @@ cw_status decode(const void *bytes, size_t size, const cwi_draco_ids *ids, size_
             return fail_draco(err, CW_ERR_FORMAT, "decode the data", decoded.status());
         const std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
         if (mesh->num_points() > most || mesh->num_faces() > most)
-            return cw_fail(err, CW_ERR_LIMIT, "the Draco data hold %u triangles",
-                           mesh->num_faces());
+            return cwi_fail(err, CW_ERR_LIMIT, "the Draco data hold %u triangles",
+                            mesh->num_faces());
         return copy_mesh(*mesh, ids ? *ids : find_all(*mesh), grid, *arrays, err);
     });
 }

@@ -10,7 +10,7 @@
 
 static cw_status fail_memory(cw_error *err)
 {
-    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to compress with");
+    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to compress with");
 }
 
 static cw_status reorder_mesh(uint32_t *triangles, size_t triangle_count, size_t vertex_count,
@@ -72,8 +72,8 @@ static cw_status encode_triangles(const uint32_t *triangles, size_t triangle_cou
 static cw_status fail_unless_zero(int code, const char *what, cw_error *err)
 {
     return code == 0 ? CW_OK
-                     : cw_fail(err, CW_ERR_FORMAT, "the %s that meshopt compressed are damaged",
-                               what);
+                     : cwi_fail(err, CW_ERR_FORMAT,
+                                "the %s that meshopt compressed are damaged", what);
 }
 
 static cw_status decode_vertices(void *to, size_t count, size_t stride, const void *bytes,

@@ -88,7 +88,7 @@ static cw_status compare_arrays(const cw_mesh *mesh, const cwi_decoded *d, const
     for (size_t v = 0; v < d->vertex_count; v++) {
         const uint32_t original = map[count + v];
         if (original >= count)
-            return cw_fail(err, CW_ERR_CHECK, "decoded vertex %zu stands where none was", v);
+            return cwi_fail(err, CW_ERR_CHECK, "decoded vertex %zu stands where none was", v);
         if (d->normals && mesh->normals && !shared[original])
             *normal_degrees =
                 fmax(*normal_degrees,
@@ -97,7 +97,7 @@ static cw_status compare_arrays(const cw_mesh *mesh, const cwi_decoded *d, const
     const sums was = sum_triangles(mesh->triangles, mesh->triangle_count, map);
     const sums is = sum_triangles(d->triangles, d->triangle_count, map + count);
     if (was.a != is.a || was.b != is.b)
-        return cw_fail(err, CW_ERR_CHECK, "the decoded triangles are not those encoded");
+        return cwi_fail(err, CW_ERR_CHECK, "the decoded triangles are not those encoded");
     return CW_OK;
 }
 
@@ -106,14 +106,14 @@ cw_status cwi_verify(const cw_mesh *mesh, const cwi_quantization_grid *grid,
 {
     const size_t count = mesh->vertex_count + decoded->vertex_count;
     if (decoded->triangle_count != mesh->triangle_count)
-        return cw_fail(err, CW_ERR_CHECK, "%zu triangles were encoded, and %zu decoded",
-                       mesh->triangle_count, decoded->triangle_count);
+        return cwi_fail(err, CW_ERR_CHECK, "%zu triangles were encoded, and %zu decoded",
+                        mesh->triangle_count, decoded->triangle_count);
     float *places = cwi_alloc_array(count, 3 * sizeof *places);
     uint32_t *map = cwi_alloc_array(count, sizeof *map);
     bool *shared = cwi_alloc_zeroed(mesh->vertex_count, sizeof *shared);
     if (places)
         put_places(mesh, grid, decoded, places);
-    cw_status st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu vertices", count);
+    cw_status st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu vertices", count);
     if (places && map && shared && cwi_weld(places, count, map)) {
         mark_shared(map, mesh->vertex_count, shared);
         st = compare_arrays(mesh, decoded, map, shared, normal_degrees, err);

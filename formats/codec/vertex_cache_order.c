@@ -24,8 +24,8 @@ cw_status cwi_mesh_reorder(cw_mesh *mesh, const cwi_meshopt_functions *meshopt, 
     uint32_t *remap = cwi_alloc_array(count, sizeof *remap);
     void *copy = cwi_alloc_array(count, 3 * sizeof *mesh->positions);
     cw_status st = remap && copy ? CW_OK
-                                 : cw_fail(err, CW_ERR_NO_MEMORY,
-                                           "no memory to order %zu vertices", count);
+                                 : cwi_fail(err, CW_ERR_NO_MEMORY,
+                                            "no memory to order %zu vertices", count);
     if (st == CW_OK)
         st = meshopt->reorder(mesh->triangles, mesh->triangle_count, count, draw, remap, err);
     if (st == CW_OK) {

@@ -464,8 +464,8 @@ cw_status open_dicom(DicomFile &d, int fd, uint64_t size, cw_error *err)
     const OFCondition read = d.file->read(*d.stream, EXS_Unknown, EGL_noChange, 1 << 16);
     d.file->transferEnd();
     if (read.bad())
-        return cw_fail(err, CW_ERR_FORMAT, "its elements are damaged or cut off: %s",
-                       read.text());
+        return cwi_fail(err, CW_ERR_FORMAT, "its elements are damaged or cut off: %s",
+                        read.text());
     return CW_OK;
 }
 
@@ -533,8 +533,8 @@ cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t room, cw_error *er
         text_of(data, DCM_SegmentationType) == "FRACTIONAL")
         refuse(f, "it is a segmentation of type FRACTIONAL, which is not read");
     if (l.frames > (room - sizeof *f) / sizeof(cwi_dicom_frame))
-        return cw_fail(err, CW_ERR_LIMIT, "'NumberOfFrames' is %u; at most %zu are read",
-                       l.frames, (room - sizeof *f) / sizeof(cwi_dicom_frame));
+        return cwi_fail(err, CW_ERR_LIMIT, "'NumberOfFrames' is %u; at most %zu are read",
+                        l.frames, (room - sizeof *f) / sizeof(cwi_dicom_frame));
     f->frame_count = l.frames;
     take_padding(data, l, f);
     take_frames(data, f);
@@ -550,8 +550,8 @@ cw_status copy_rows(DicomFile &d, const cwi_plane_request *q, void *shared, cw_e
     const uint32_t rows = l.rows / m.across, frame = unfolded ? 0 : q->plane;
     if (!d.file || (unfolded ? q->plane >= m.count : q->plane >= l.frames) ||
         q->first_row > rows || q->row_count > rows - q->first_row)
-        return cw_fail(err, CW_ERR_FORMAT, "frame %u has no rows %u to %u", q->plane,
-                       q->first_row, q->first_row + q->row_count);
+        return cwi_fail(err, CW_ERR_FORMAT, "frame %u has no rows %u to %u", q->plane,
+                        q->first_row, q->first_row + q->row_count);
     cw_status st = frame == d.decoded ? CW_OK : decode_frame(d, frame, err);
     if (st != CW_OK)
         return st;

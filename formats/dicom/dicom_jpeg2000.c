@@ -63,8 +63,8 @@ static void keep_first_message(const char *text, void *user)
 
 static cw_status fail_image(const cwi_dicom_image *m, const char *why, cw_error *err)
 {
-    return cw_fail(err, CW_ERR_FORMAT, "its JPEG 2000 image of %u x %u cannot be read: %s",
-                   m->columns, m->rows, why[0] ? why : "no reason given");
+    return cwi_fail(err, CW_ERR_FORMAT, "its JPEG 2000 image of %u x %u cannot be read: %s",
+                    m->columns, m->rows, why[0] ? why : "no reason given");
 }
 
 /* Checks the header against DICOM's before memory is allocated for pixels. */
@@ -131,7 +131,7 @@ cw_status cwi_dicom_jpeg2000(const void *data, size_t size, const cwi_dicom_imag
     opj_codec_t *codec = opj_create_decompress(jp2 ? OPJ_CODEC_JP2 : OPJ_CODEC_J2K);
     opj_stream_t *stream = open_stream(&b);
     cw_status st = codec && stream ? decode_codestream(codec, stream, m, why, pixels, err)
-                                   : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for OpenJPEG");
+                                   : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for OpenJPEG");
     opj_stream_destroy(stream);
     opj_destroy_codec(codec);
     return st;

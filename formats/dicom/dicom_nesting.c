@@ -154,9 +154,9 @@ static cw_status walk_elements(walk *w, cw_error *err)
     element e;
     for (int count = 0;; count++) {
         if (count == MOST_ELEMENTS)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "it has more than %d elements; it is damaged or hostile",
-                           MOST_ELEMENTS);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "it has more than %d elements; it is damaged or hostile",
+                            MOST_ELEMENTS);
         while (w->depth > 0 && w->at >= w->levels[w->depth].end)
             w->depth--;
         pixels = pixels > w->depth ? 0 : pixels;
@@ -173,9 +173,9 @@ static cw_status walk_elements(walk *w, cw_error *err)
             continue;
         }
         if (w->depth == CWI_DICOM_DEEPEST)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "sequences are nested deeper than %d at byte %llu",
-                           CWI_DICOM_DEEPEST, (unsigned long long)e.value);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "sequences are nested deeper than %d at byte %llu",
+                            CWI_DICOM_DEEPEST, (unsigned long long)e.value);
         const bool unknown = strcmp(e.vr, "UN") == 0; /* their content is implicit */
         w->levels[++w->depth] =
             (level){.end = e.length == UNDEFINED ? UINT64_MAX : e.value + e.length,
@@ -228,7 +228,7 @@ cw_status cwi_dicom_check_depth(int fd, uint64_t size, cw_error *err)
     if (w.deflated)
         inflateEnd(&w.inflater);
     if (st == CW_OK && w.deflated && w.at > MOST_INFLATED)
-        st = cw_fail(err, CW_ERR_LIMIT, "its data inflate to more than %llu bytes",
-                     (unsigned long long)MOST_INFLATED);
+        st = cwi_fail(err, CW_ERR_LIMIT, "its data inflate to more than %llu bytes",
+                      (unsigned long long)MOST_INFLATED);
     return st;
 }

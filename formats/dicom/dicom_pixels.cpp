@@ -51,8 +51,8 @@ void interleave(const PixelLayout &l, std::vector<unsigned char> &pixels)
 
 cw_status fail_frame(uint32_t frame, const char *why, cw_error *err)
 {
-    return cw_fail(err, CW_ERR_FORMAT, "the pixels of frame %u cannot be read: %s", frame + 1,
-                   why);
+    return cwi_fail(err, CW_ERR_FORMAT, "the pixels of frame %u cannot be read: %s", frame + 1,
+                    why);
 }
 
 cw_status fail_short(uint32_t frame, cw_error *err)

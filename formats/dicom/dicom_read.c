@@ -25,10 +25,10 @@ static cw_status facts_of_file(const cwi_input *in, cwi_planes *planes, cwi_dico
     memcpy(f, shared, sizeof *f);
     f->series[sizeof f->series - 1] = f->refusal[sizeof f->refusal - 1] = '\0';
     if (f->refusal[0])
-        return cw_fail(err, CW_ERR_FORMAT, "%s", f->refusal);
+        return cwi_fail(err, CW_ERR_FORMAT, "%s", f->refusal);
     if (f->kind == CWI_DICOM_NO_IMAGE)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "DICOM without an image; to read a series, name its folder");
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "DICOM without an image; to read a series, name its folder");
     return CW_OK;
 }
 
@@ -129,7 +129,7 @@ static cw_status list_found(cwi_dicom_scan *found, const cw_read_desc *desc, cw_
 {
     cw_series *all = cwi_alloc_zeroed(found->series_count, sizeof *all);
     if (!all)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu series", found->series_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu series", found->series_count);
     for (size_t n = 0; n < found->series_count; n++)
         describe_series(found, n, desc, &all[n]);
     *series = all;

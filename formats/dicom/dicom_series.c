@@ -84,12 +84,12 @@ static cw_status check_claim(const cwi_dicom_facts *f, uint64_t file_bytes, cw_e
     if (have / (f->deflated ? MOST_DEFLATION : 1) <= file_bytes &&
         !__builtin_mul_overflow(frame, f->frame_count, &wanted) && (wanted + 7) / 8 <= most)
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "'Rows', 'Columns' and 'NumberOfFrames' ask for %u frames of %llu bytes; "
-                   "'PixelData' holds %llu bytes%s, the file %llu",
-                   f->frame_count, (unsigned long long)(frame + 7) / 8,
-                   (unsigned long long)have, f->pixel_bytes ? "" : " at most, compressed",
-                   (unsigned long long)file_bytes);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "'Rows', 'Columns' and 'NumberOfFrames' ask for %u frames of %llu bytes; "
+                    "'PixelData' holds %llu bytes%s, the file %llu",
+                    f->frame_count, (unsigned long long)(frame + 7) / 8,
+                    (unsigned long long)have, f->pixel_bytes ? "" : " at most, compressed",
+                    (unsigned long long)file_bytes);
 }
 
 /* Checks the facts, which are untrusted: DCMTK's process may have been taken over. */
@@ -97,19 +97,19 @@ static cw_status check_facts(const cwi_dicom_facts *f, uint64_t file_bytes, cw_e
 {
     if (!IS_TERMINATED(f->series) || !IS_TERMINATED(f->instance) ||
         !IS_TERMINATED(f->modality) || !IS_TERMINATED(f->refusal))
-        return cw_fail(err, CW_ERR_BACKEND, "DCMTK's answer is not valid");
+        return cwi_fail(err, CW_ERR_BACKEND, "DCMTK's answer is not valid");
     if (f->kind == CWI_DICOM_NO_IMAGE)
         return CW_OK;
     if (f->refusal[0])
-        return cw_fail(err, CW_ERR_FORMAT, "%s", f->refusal);
+        return cwi_fail(err, CW_ERR_FORMAT, "%s", f->refusal);
     const size_t room = (CWI_PLANES_SHARED - sizeof *f) / sizeof(cwi_dicom_frame);
     if (f->columns < 1 || f->columns > UINT16_MAX || f->rows < 1 || f->rows > UINT16_MAX ||
         f->samples < 1 || f->samples > 16 || f->frame_count < 1 || f->frame_count > room ||
         !cw_type_size(f->type))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'Columns' %u, 'Rows' %u, 'SamplesPerPixel' %u and 'NumberOfFrames' %u "
-                       "are not valid image sizes",
-                       f->columns, f->rows, f->samples, f->frame_count);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'Columns' %u, 'Rows' %u, 'SamplesPerPixel' %u and 'NumberOfFrames' %u "
+                        "are not valid image sizes",
+                        f->columns, f->rows, f->samples, f->frame_count);
     return check_claim(f, file_bytes, err);
 }
 
@@ -134,7 +134,7 @@ static cw_status keep_file(cwi_dicom_scan *scan, const char *name, const cwi_dic
     cwi_dicom_facts *copy = cwi_alloc_array(1, sizeof *copy);
     cw_status st = copy && grow_planes(scan, facts->frame_count)
                        ? cwi_names_add(&scan->files, name, err)
-                       : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the facts of a file");
+                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the facts of a file");
     if (st != CW_OK) {
         cwi_free(copy);
         return st;
@@ -306,7 +306,7 @@ static cw_status sort_into_series(cwi_dicom_scan *scan, const cwi_input *in, cw_
             cwi_dicom_series *more =
                 cwi_realloc_array(scan->series, scan->series_count + 1, sizeof *scan->series);
             if (!more)
-                return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu series", p->series);
+                return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu series", p->series);
             scan->series = more;
             scan->series[scan->series_count++] = (cwi_dicom_series){.sample = p};
         }
@@ -339,7 +339,7 @@ cw_status cwi_dicom_scan_files(cwi_dicom_scan *scan, const cwi_input *in, cwi_na
     cw_status st = CW_OK;
     scan->facts = cwi_alloc_zeroed(names->count, sizeof(cwi_dicom_facts *));
     if (!scan->facts)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu files", names->count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu files", names->count);
     for (size_t i = 0; st == CW_OK && i < names->count; i++) {
         uint64_t size;
         int fd;
@@ -367,8 +367,8 @@ static cw_status fail_several(const cwi_dicom_scan *scan, cw_error *err)
                                  s ? ", " : "", me->label, me->sample->file->modality,
                                  me->count, me->sample->file->columns, me->sample->file->rows);
     }
-    return cw_fail(err, CW_ERR_UNSAFE, "it holds %zu series: %s%s; choose one by --series",
-                   scan->series_count, list, used < sizeof list - 64 ? "" : ", ...");
+    return cwi_fail(err, CW_ERR_UNSAFE, "it holds %zu series: %s%s; choose one by --series",
+                    scan->series_count, list, used < sizeof list - 64 ? "" : ", ...");
 }
 
 cw_status cwi_dicom_choose(const cwi_dicom_scan *scan, const char *name, size_t *series,
@@ -376,7 +376,7 @@ cw_status cwi_dicom_choose(const cwi_dicom_scan *scan, const char *name, size_t 
 {
     size_t matches = 0;
     if (scan->series_count == 0)
-        return cw_fail(err, CW_ERR_FORMAT, "it holds no DICOM image");
+        return cwi_fail(err, CW_ERR_FORMAT, "it holds no DICOM image");
     for (size_t s = 0; s < scan->series_count; s++) {
         const cwi_dicom_series *me = &scan->series[s];
         if (name && strcmp(name, me->label) != 0 && strcmp(name, me->sample->file->series) != 0)
@@ -385,7 +385,7 @@ cw_status cwi_dicom_choose(const cwi_dicom_scan *scan, const char *name, size_t 
         matches++;
     }
     if (matches == 0)
-        return cw_fail(err, CW_ERR_ARGUMENT, "there is no series '%.64s'; 'info' lists them",
-                       name);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "there is no series '%.64s'; 'info' lists them",
+                        name);
     return matches == 1 ? CW_OK : fail_several(scan, err);
 }

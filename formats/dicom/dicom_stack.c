@@ -39,10 +39,10 @@ static cw_status check_has(const sorting *s, unsigned flag, const char *field, c
         missing += !(s->planes[i].frame.has & flag);
     if (missing == 0)
         return CW_OK;
-    return cw_fail(err, CW_ERR_UNSAFE,
-                   "%zu of %zu images have no '%s', so where they lie is not known; --spacing "
-                   "X,Y,Z takes them in the order of their numbers, at that distance",
-                   missing, s->count, field);
+    return cwi_fail(err, CW_ERR_UNSAFE,
+                    "%zu of %zu images have no '%s', so where they lie is not known; --spacing "
+                    "X,Y,Z takes them in the order of their numbers, at that distance",
+                    missing, s->count, field);
 }
 
 static bool is_placed(const sorting *s)
@@ -66,9 +66,10 @@ static cw_status check_geometry(const sorting *s, cw_error *err)
         return st;
     if (fabs(cwi_dot(x, x) - 1) > 1e-2 || fabs(cwi_dot(y, y) - 1) > 1e-2 ||
         fabs(cwi_dot(x, y)) > 1e-2)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'ImageOrientationPatient' gives no two directions of length 1 at right "
-                       "angles");
+        return cwi_fail(
+            err, CW_ERR_FORMAT,
+            "'ImageOrientationPatient' gives no two directions of length 1 at right "
+            "angles");
     return CW_OK;
 }
 
@@ -161,10 +162,11 @@ static cw_status fail_duplicates(const sorting *s, cw_error *err)
         first = n > 1 && places == 0 ? i : first;
         places += n > 1;
     }
-    return cw_fail(err, CW_ERR_UNSAFE,
-                   "%zu of %zu places hold more than one image, the first at %.6g mm along the "
-                   "normal, and not as many as others do; --gaps allow takes the first of each",
-                   places, s->places, s->planes[first].distance);
+    return cwi_fail(
+        err, CW_ERR_UNSAFE,
+        "%zu of %zu places hold more than one image, the first at %.6g mm along the "
+        "normal, and not as many as others do; --gaps allow takes the first of each",
+        places, s->places, s->planes[first].distance);
 }
 
 static void keep_first_of_each(sorting *s)
@@ -248,7 +250,7 @@ static cw_status find_tilt(sorting *s, double along[3], cw_error *err)
     if (s->desc->tilt == CW_TILT_KEEP) {
         memcpy(along, s->normal, sizeof s->normal);
     } else if (worst > 0.1 * smaller_spacing(s)) {
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_UNSAFE,
             "slices are shifted against each other, unevenly, by up to %.6g mm; --tilt "
             "keep stacks them up as if they were not",
@@ -261,7 +263,7 @@ static cw_status lay_slices(const sorting *s, cwi_slices *slices, cw_error *err)
 {
     double *places = cwi_alloc_array(s->places, sizeof *places);
     if (!places)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu places", s->places);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu places", s->places);
     for (size_t i = 0; i < s->places; i++)
         places[i] = s->planes[i * s->steps].distance;
     cw_status st =
@@ -289,8 +291,8 @@ static cw_status check_scaling(const sorting *s, cw_error *err)
     for (size_t i = 0; i < s->count; i++) {
         const cwi_dicom_frame *f = &s->planes[i].frame;
         if (!isfinite(f->slope) || !isfinite(f->intercept) || f->slope == 0)
-            return cw_fail(err, CW_ERR_FORMAT, "'RescaleSlope' is %g, 'RescaleIntercept' %g",
-                           f->slope, f->intercept);
+            return cwi_fail(err, CW_ERR_FORMAT, "'RescaleSlope' is %g, 'RescaleIntercept' %g",
+                            f->slope, f->intercept);
     }
     return CW_OK;
 }
@@ -349,7 +351,7 @@ static cw_status make_room(const sorting *s, size_t slots, cwi_stack *stack, cw_
     stack->planes = cwi_alloc_array(s->count, sizeof *stack->planes);
     stack->slots = cwi_alloc_array(slots, sizeof *stack->slots);
     if (!stack->planes || !stack->slots)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu planes", s->count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu planes", s->count);
     stack->plane_count = s->count;
     stack->slot_count = slots;
     for (size_t i = 0; i < s->count; i++) {
@@ -451,10 +453,10 @@ static cw_status find_segment_places(sorting *s, double step, size_t *slices, cw
         const double at = (s->planes[i].distance - s->planes[0].distance) / step;
         const double nearest = nearbyint(at);
         if (fabs(at - nearest) > 0.05 || nearest >= 65536)
-            return cw_fail(err, CW_ERR_UNSAFE,
-                           "the frame at %.6g mm along the normal is not on a row of slices "
-                           "%.6g mm apart",
-                           s->planes[i].distance, step);
+            return cwi_fail(err, CW_ERR_UNSAFE,
+                            "the frame at %.6g mm along the normal is not on a row of slices "
+                            "%.6g mm apart",
+                            s->planes[i].distance, step);
         s->planes[i].place = (size_t)nearest;
         *slices = s->planes[i].place + 1;
     }
@@ -484,9 +486,10 @@ static cw_status fill_labels(const sorting *s, cwi_stack *stack, cw_error *err)
     for (size_t i = 0; st == CW_OK && i < s->count; i++) {
         const cwi_dicom_plane *p = &s->planes[i];
         if (p->frame.segment < 1 || p->frame.segment > UINT16_MAX)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "'ReferencedSegmentNumber' of frame %u is %u; it must be 1 to 65535",
-                           p->number + 1, p->frame.segment);
+            return cwi_fail(
+                err, CW_ERR_FORMAT,
+                "'ReferencedSegmentNumber' of frame %u is %u; it must be 1 to 65535",
+                p->number + 1, p->frame.segment);
         stack->slots[i] =
             (cwi_slot){.place = p->place, .low = i, .high = i, .label = p->frame.segment};
     }
@@ -502,10 +505,11 @@ static cw_status fill_maps(const sorting *s, cwi_stack *stack, cw_error *err)
     for (size_t i = 0; st == CW_OK && i < s->count; i++) {
         const cwi_dicom_plane *p = &s->planes[i];
         if (i > 0 && p->place == s->planes[i - 1].place)
-            return cw_fail(err, CW_ERR_UNSAFE,
-                           "two frames of the label map stand at %.6g mm along the normal; one "
-                           "was expected at each place",
-                           p->distance);
+            return cwi_fail(
+                err, CW_ERR_UNSAFE,
+                "two frames of the label map stand at %.6g mm along the normal; one "
+                "was expected at each place",
+                p->distance);
         stack->slots[i] = (cwi_slot){.place = p->place, .low = i, .high = i};
     }
     if (st == CW_OK)
@@ -550,9 +554,10 @@ static cw_status stack_numbered(sorting *s, cwi_stack *stack, cw_error *err)
     for (size_t i = 1; i < s->count; i++) /* the scan has sorted the planes */
         if (s->planes[i].file->instance_number == s->planes[i - 1].file->instance_number &&
             s->planes[i].number == s->planes[i - 1].number)
-            return cw_fail(err, CW_ERR_UNSAFE,
-                           "images have neither place nor 'InstanceNumber': their order is not "
-                           "known");
+            return cwi_fail(
+                err, CW_ERR_UNSAFE,
+                "images have neither place nor 'InstanceNumber': their order is not "
+                "known");
     s->steps = 1;
     s->places = s->count;
     set_values(s, stack);
@@ -570,7 +575,7 @@ static cw_status gather_planes(cwi_dicom_scan *scan, size_t series, sorting *s, 
 {
     s->planes = cwi_alloc_array(scan->series[series].count, sizeof *s->planes);
     if (!s->planes)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu planes", s->count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu planes", s->count);
     for (size_t i = 0; i < scan->plane_count; i++)
         if (scan->planes[i].series == series) {
             cwi_dicom_frame *f = &s->planes[s->count].frame;

@@ -103,7 +103,7 @@ static cw_status read_file(const cwi_mesh_input *in, cwi_sandbox *box, cw_error 
                 in->file.fd, at, to + at,
                 (size_t)(in->file.size - at < WINDOW ? in->file.size - at : WINDOW), &got, err);
         if (st == CW_OK && got == 0)
-            return cw_fail(err, CW_ERR_IO, "the file became shorter while it was read");
+            return cwi_fail(err, CW_ERR_IO, "the file became shorter while it was read");
     }
     return st;
 }
@@ -125,10 +125,10 @@ static cw_status copy_array(cwi_sandbox *box, operation op, void *to, size_t byt
 static cw_status check_counts(cwi_mesh_input *in, const counts *c, cw_error *err)
 {
     if (c->vertices / MOST_GAIN > in->file.size || c->triangles / MOST_GAIN > in->file.size)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "%llu bytes cannot stand for %llu vertices and %llu triangles",
-                       (unsigned long long)in->file.size, (unsigned long long)c->vertices,
-                       (unsigned long long)c->triangles);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "%llu bytes cannot stand for %llu vertices and %llu triangles",
+                        (unsigned long long)in->file.size, (unsigned long long)c->vertices,
+                        (unsigned long long)c->triangles);
     cw_status st = cwi_mesh_limit_triangles(in, c->triangles, err);
     const uint64_t vertex = 12 + (c->normals ? 12u : 0) + (c->colors ? 4u : 0);
     return st == CW_OK ? cwi_mesh_take_bytes(in, vertex * c->vertices + 12 * c->triangles, err)
@@ -139,12 +139,12 @@ static cw_status check_arrays(const cw_mesh *m, cw_error *err)
 {
     for (size_t i = 0; i < 3 * m->vertex_count; i++)
         if (!isfinite(m->positions[i]))
-            return cw_fail(err, CW_ERR_FORMAT, "vertex %zu has a coordinate that is not finite",
-                           i / 3);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "vertex %zu has a coordinate that is not finite", i / 3);
     for (size_t i = 0; i < 3 * m->triangle_count; i++)
         if (m->triangles[i] >= m->vertex_count)
-            return cw_fail(err, CW_ERR_FORMAT, "triangle %zu names vertex %u; there are %zu",
-                           i / 3, m->triangles[i], m->vertex_count);
+            return cwi_fail(err, CW_ERR_FORMAT, "triangle %zu names vertex %u; there are %zu",
+                            i / 3, m->triangles[i], m->vertex_count);
     return CW_OK;
 }
 
@@ -172,7 +172,7 @@ static cw_status take_mesh(cwi_mesh_input *in, cwi_sandbox *box, cw_mesh *mesh,
     if (st == CW_OK)
         take_comment(c.comment, mesh, said);
     if (st == CW_OK && c.colors && !(mesh->colors = cwi_alloc_array(mesh->vertex_count, 4)))
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", mesh->vertex_count);
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", mesh->vertex_count);
     if (st == CW_OK)
         st = copy_array(box, COPY_POSITIONS, mesh->positions, 12 * mesh->vertex_count, err);
     if (st == CW_OK && mesh->normals)

@@ -9,7 +9,7 @@
 
 static cw_status fail_memory(cw_error *err)
 {
-    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to compress the mesh");
+    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to compress the mesh");
 }
 
 /* Appends a part's vertices and triangles to those of the parts before it, as the file has
@@ -36,8 +36,8 @@ static cw_status join_parts(const cwi_parts *parts, cw_mesh *whole, cw_error *er
 {
     const cw_mesh *first = &parts->items[0].mesh; /* all have the same arrays */
     if (parts->vertices >= UINT32_MAX || parts->triangles >= UINT32_MAX)
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "Draco holds at most 4294967294 vertices and triangles");
+        return cwi_fail(err, CW_ERR_LIMIT,
+                        "Draco holds at most 4294967294 vertices and triangles");
     cw_status st = cwi_check_single(parts, err);
     if (st == CW_OK)
         st = cwi_mesh_alloc(whole, (size_t)parts->vertices, (size_t)parts->triangles,

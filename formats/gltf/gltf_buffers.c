@@ -45,8 +45,8 @@ static cw_status decode_base64(const char *digits, uint64_t offset, uint64_t siz
         const int high = decode_sextet(at[0]), low = decode_sextet(at[1]);
         const int shift = 2 * (int)(i % 3);
         if (high < 0 || low < 0)
-            return cw_fail(err, CW_ERR_FORMAT, "byte %llu of a data: URI is not base64",
-                           (unsigned long long)i);
+            return cwi_fail(err, CW_ERR_FORMAT, "byte %llu of a data: URI is not base64",
+                            (unsigned long long)i);
         to[i - offset] = (unsigned char)(high << (2 + shift) | low >> (4 - shift));
     }
     return CW_OK;
@@ -58,8 +58,8 @@ static cw_status find_digits(const char *uri, uint64_t buffer, place *p, cw_erro
     static const char marker[] = ";base64,";
     const char *digits = strstr(uri, marker);
     if (!digits)
-        return cw_fail(err, CW_ERR_FORMAT, "the URI of buffer %llu is not base64",
-                       (unsigned long long)buffer);
+        return cwi_fail(err, CW_ERR_FORMAT, "the URI of buffer %llu is not base64",
+                        (unsigned long long)buffer);
     p->digits = digits + strlen(marker);
     size_t length = strlen(p->digits);
     while (length && p->digits[length - 1] == '=')
@@ -76,7 +76,7 @@ static cw_status read_exactly(int fd, uint64_t offset, uint64_t size, unsigned c
     size_t got;
     cw_status st = cwi_input_read_at(fd, offset, to, (size_t)size, &got, err);
     if (st == CW_OK && got < size)
-        return cw_fail(err, CW_ERR_IO, "a file became shorter while it was read");
+        return cwi_fail(err, CW_ERR_IO, "a file became shorter while it was read");
     return st;
 }
 
@@ -97,8 +97,8 @@ static cw_status decode_name(const char *uri, char name[1024], cw_error *err)
         const char c = low >= 0 ? (char)(16 * high + low) : *s;
         s += low >= 0 ? 2 : 0;
         if (used == 1023 || !c)
-            return cw_fail(err, CW_ERR_UNSAFE,
-                           "a buffer's name of more than 1023 bytes, or with a zero in it");
+            return cwi_fail(err, CW_ERR_UNSAFE,
+                            "a buffer's name of more than 1023 bytes, or with a zero in it");
         name[used++] = c;
     }
     name[used] = '\0';
@@ -133,7 +133,7 @@ static cw_status find_place(const cwi_gltf_bytes *from, const cwi_gltf_buffer *b
     if (b->uri)
         return open_file(from->in, b->uri, p, err);
     if (index > 0)
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_FORMAT,
             "buffers[%llu]: there is no 'uri'; only buffer 0 of a .glb file needs none",
             (unsigned long long)index);
@@ -155,8 +155,8 @@ static cw_status load_range(const place *p, uint64_t offset, uint64_t size,
 {
     *bytes = cwi_alloc_array((size_t)size, 1);
     if (!*bytes)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %llu bytes of a buffer",
-                       (unsigned long long)size);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %llu bytes of a buffer",
+                        (unsigned long long)size);
     cw_status st = p->digits ? decode_base64(p->digits, offset, size, *bytes, err)
                              : read_exactly(p->fd, p->start + offset, size, *bytes, err);
     if (st != CW_OK) {
@@ -172,20 +172,20 @@ cw_status cwi_gltf_load(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
 {
     place p;
     if (buffer >= scene->buffer_count)
-        return cw_fail(err, CW_ERR_FORMAT, "a bufferView names buffer %lld; there are %zu",
-                       (long long)buffer, scene->buffer_count);
+        return cwi_fail(err, CW_ERR_FORMAT, "a bufferView names buffer %lld; there are %zu",
+                        (long long)buffer, scene->buffer_count);
     const cwi_gltf_buffer *b = &scene->buffers[buffer];
     cw_status st = find_place(from, b, buffer, &p, err);
     if (st == CW_OK && b->bytes > p.held)
-        st = cw_fail(err, CW_ERR_FORMAT,
-                     "buffers[%llu].byteLength: %llu bytes are more than the %llu there are",
-                     (unsigned long long)buffer, (unsigned long long)b->bytes,
-                     (unsigned long long)p.held);
+        st = cwi_fail(err, CW_ERR_FORMAT,
+                      "buffers[%llu].byteLength: %llu bytes are more than the %llu there are",
+                      (unsigned long long)buffer, (unsigned long long)b->bytes,
+                      (unsigned long long)p.held);
     if (st == CW_OK && !range_fits(offset, size, p.held))
-        st = cw_fail(err, CW_ERR_FORMAT,
-                     "buffer %llu has %llu bytes; %llu from byte %llu on were expected",
-                     (unsigned long long)buffer, (unsigned long long)p.held,
-                     (unsigned long long)size, (unsigned long long)offset);
+        st = cwi_fail(err, CW_ERR_FORMAT,
+                      "buffer %llu has %llu bytes; %llu from byte %llu on were expected",
+                      (unsigned long long)buffer, (unsigned long long)p.held,
+                      (unsigned long long)size, (unsigned long long)offset);
     if (st == CW_OK)
         st = load_range(&p, offset, size, bytes, err);
     close_place(&p);
@@ -215,17 +215,17 @@ static cw_status check_accessor(const cwi_gltf_scene *scene, int accessor, const
                                 cw_error *err)
 {
     if (accessor < 0 || (size_t)accessor >= scene->accessor_count)
-        return cw_fail(err, CW_ERR_FORMAT, "%s names accessor %d; there are %zu", what,
-                       accessor, scene->accessor_count);
+        return cwi_fail(err, CW_ERR_FORMAT, "%s names accessor %d; there are %zu", what,
+                        accessor, scene->accessor_count);
     const cwi_gltf_accessor *a = &scene->accessors[accessor];
     if (!component_size(a->component) || !a->numbers)
-        return cw_fail(err, CW_ERR_FORMAT, "%s (accessor %d) has a type that is not read", what,
-                       accessor);
+        return cwi_fail(err, CW_ERR_FORMAT, "%s (accessor %d) has a type that is not read",
+                        what, accessor);
     const bool is_zero = a->view < 0 && a->sparse.count > 0;
     if (!is_zero && (a->view < 0 || (uint64_t)a->view >= scene->view_count))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "%s (accessor %d) names bufferView %lld; there are %zu", what, accessor,
-                       (long long)a->view, scene->view_count);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "%s (accessor %d) names bufferView %lld; there are %zu", what, accessor,
+                        (long long)a->view, scene->view_count);
     return CW_OK;
 }
 
@@ -251,11 +251,11 @@ static cw_status open_unpacked(const cwi_gltf_bytes *from, const cwi_gltf_access
                                                : 3,
                            .normalized = colors};
     if (!array || numbers->count != a->count)
-        return cw_fail(err, CW_ERR_FORMAT, "the Draco data are not what accessor %d says",
-                       accessor);
+        return cwi_fail(err, CW_ERR_FORMAT, "the Draco data are not what accessor %d says",
+                        accessor);
     numbers->bytes = cwi_alloc_array(numbers->count, numbers->stride);
     if (!numbers->bytes)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu elements", numbers->count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu elements", numbers->count);
     memcpy(numbers->bytes, array, numbers->count * numbers->stride);
     return CW_OK;
 }
@@ -277,8 +277,8 @@ static cw_status load_view(const cwi_gltf_bytes *from, const cwi_gltf_scene *sce
     if (st == CW_OK && !range_fits(offset, size, v->packed_count * v->packed_stride)) {
         cwi_free(*bytes);
         *bytes = NULL;
-        return cw_fail(err, CW_ERR_FORMAT, "an accessor needs %llu bytes of a compressed view",
-                       (unsigned long long)(offset + size));
+        return cwi_fail(err, CW_ERR_FORMAT, "an accessor needs %llu bytes of a compressed view",
+                        (unsigned long long)(offset + size));
     }
     if (st == CW_OK)
         memmove(*bytes, *bytes + offset, (size_t)size);
@@ -293,9 +293,9 @@ static cw_status load_elements(const cwi_gltf_bytes *from, const cwi_gltf_scene 
                                unsigned char **bytes, cw_error *err)
 {
     if (view < 0 || (uint64_t)view >= scene->view_count)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "%s (accessor %d) names bufferView %lld; there are %zu", what, accessor,
-                       (long long)view, scene->view_count);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "%s (accessor %d) names bufferView %lld; there are %zu", what, accessor,
+                        (long long)view, scene->view_count);
     const cwi_gltf_view *v = &scene->views[view];
     const uint64_t step = stride ? stride : element;
     uint64_t size = 0, unused;
@@ -303,12 +303,12 @@ static cw_status load_elements(const cwi_gltf_bytes *from, const cwi_gltf_scene 
                           __builtin_add_overflow(size, count ? element : 0, &size) ||
                           __builtin_add_overflow(v->offset, offset, &unused);
     if (overflow || step < element || !range_fits(offset, size, v->bytes))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "accessors[%d] (%s): %llu elements do not fit into bufferViews[%lld], "
-                       "which has %llu "
-                       "bytes",
-                       accessor, what, (unsigned long long)count, (long long)view,
-                       (unsigned long long)v->bytes);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "accessors[%d] (%s): %llu elements do not fit into bufferViews[%lld], "
+                        "which has %llu "
+                        "bytes",
+                        accessor, what, (unsigned long long)count, (long long)view,
+                        (unsigned long long)v->bytes);
     return load_view(from, scene, v, offset, size, bytes, err);
 }
 
@@ -322,14 +322,14 @@ static cw_status make_zeros(const cwi_gltf_accessor *a, const char *what, int ac
                             uint64_t element, unsigned char **bytes, cw_error *err)
 {
     if (a->count > FREE_ZEROS + ZEROS_EACH * a->sparse.count)
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "%s (accessor %d) has %llu elements, but a file holds only %llu of them",
-                       what, accessor, (unsigned long long)a->count,
-                       (unsigned long long)a->sparse.count);
+        return cwi_fail(
+            err, CW_ERR_LIMIT,
+            "%s (accessor %d) has %llu elements, but a file holds only %llu of them", what,
+            accessor, (unsigned long long)a->count, (unsigned long long)a->sparse.count);
     *bytes = cwi_alloc_zeroed((size_t)a->count, (size_t)element);
     return *bytes ? CW_OK
-                  : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %llu elements",
-                            (unsigned long long)a->count);
+                  : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %llu elements",
+                             (unsigned long long)a->count);
 }
 
 /* Puts values at their indices; the indices must rise. */
@@ -347,10 +347,10 @@ static cw_status replace_elements(const cwi_gltf_sparse *s, const unsigned char 
     for (size_t i = 0; i < count; i++) {
         const double at = cwi_gltf_number(&list, i, 0);
         if (!(at > before) || !(at < (double)numbers->count))
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "accessors[%d].sparse.indices: index %zu is %.0f; from %.0f to %zu "
-                           "was expected",
-                           accessor, i, at, before + 1, numbers->count - 1);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "accessors[%d].sparse.indices: index %zu is %.0f; from %.0f to %zu "
+                            "was expected",
+                            accessor, i, at, before + 1, numbers->count - 1);
         memcpy(numbers->bytes + (size_t)at * numbers->stride, values + i * element, element);
         before = at;
     }
@@ -365,9 +365,9 @@ static cw_status apply_sparse(const cwi_gltf_bytes *from, const cwi_gltf_scene *
     const size_t index_size = component_size(s->index_component);
     unsigned char *indices = NULL, *values = NULL;
     if (s->count > numbers->count || !index_size)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "accessors[%d].sparse.count: %llu is more than the %zu elements",
-                       accessor, (unsigned long long)s->count, numbers->count);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "accessors[%d].sparse.count: %llu is more than the %zu elements",
+                        accessor, (unsigned long long)s->count, numbers->count);
     cw_status st = load_elements(from, scene, s->index_view, s->index_offset, s->count,
                                  index_size, 0, what, accessor, &indices, err);
     if (st == CW_OK)

@@ -16,7 +16,7 @@
 
 static cw_status fail_memory(cw_error *err)
 {
-    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to compress the mesh");
+    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to compress the mesh");
 }
 
 cw_status cwi_gltf_prepare_codec(const cw_write_desc *desc, cw_error *err)
@@ -188,7 +188,7 @@ static cw_status check_packed(const cwi_meshopt_functions *meshopt, const cwi_gl
     if (same && a->exponential)
         same = are_stored(meshopt, plan, positions, back, (size_t)a->count);
     if (st == CW_OK && !same)
-        st = cw_fail(err, CW_ERR_CHECK, "the decoded vertices are not those encoded");
+        st = cwi_fail(err, CW_ERR_CHECK, "the decoded vertices are not those encoded");
     cwi_free(back);
     return st;
 }
@@ -208,8 +208,8 @@ static cw_status check_triangles(const cwi_meshopt_functions *meshopt, const cw_
                          back[t + 2] != was[(k + 2) % 3]))
             k++;
         if (k == 3)
-            st = cw_fail(err, CW_ERR_CHECK, "decoded triangle %zu is not the one encoded",
-                         t / 3);
+            st = cwi_fail(err, CW_ERR_CHECK, "decoded triangle %zu is not the one encoded",
+                          t / 3);
     }
     cwi_free(back);
     return st;

@@ -58,7 +58,7 @@ static cw_status unpack_draco(const cwi_gltf_unpacker *u, const job *j, char *sh
     const size_t most = j->count > j->corners ? j->count : j->corners;
     cw_status st = u->draco->decode(shared, j->packed, &j->ids, most, NULL, &a, err);
     if (st == CW_OK && (a.vertex_count != j->count || 3 * a.triangle_count != j->corners))
-        st = cw_fail(
+        st = cwi_fail(
             err, CW_ERR_FORMAT,
             "the Draco data have %zu vertices and %zu corners; their accessors say %llu "
             "and %llu",
@@ -122,9 +122,9 @@ static cw_status run_job(cwi_gltf_unpacker *u, const job *j, const void *packed,
 
 static cw_status fail_claim(uint64_t claimed, uint64_t packed, cw_error *err)
 {
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "%llu bytes of compressed data cannot stand for %llu elements",
-                   (unsigned long long)packed, (unsigned long long)claimed);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "%llu bytes of compressed data cannot stand for %llu elements",
+                    (unsigned long long)packed, (unsigned long long)claimed);
 }
 
 static bool is_view(const cwi_gltf_view *v)
@@ -149,7 +149,7 @@ cw_status cwi_gltf_unpack_view(cwi_gltf_unpacker *u, const cwi_gltf_view *v,
                    .packed = v->packed_bytes,
                    .count = v->packed_count};
     if (!is_view(v))
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_FORMAT,
             "EXT_meshopt_compression states a byteStride of %llu and a count of %llu",
             (unsigned long long)v->packed_stride, (unsigned long long)v->packed_count);
@@ -163,7 +163,7 @@ cw_status cwi_gltf_unpack_view(cwi_gltf_unpacker *u, const cwi_gltf_view *v,
         return st;
     *bytes = cwi_alloc_array(size, 1);
     if (!*bytes)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of a buffer", size);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of a buffer", size);
     memcpy(*bytes, (char *)u->box.shared + align_size(j.packed), size);
     return CW_OK;
 }
@@ -206,5 +206,5 @@ cw_status cwi_gltf_unpack_draco(cwi_gltf_unpacker *u, const cwi_draco_ids *ids,
         from += align_size(12 * points);
     if (good && ids->color >= 0)
         good = take_array(&from, &arrays->colors, 4 * points);
-    return good ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", points);
+    return good ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", points);
 }

@@ -364,7 +364,7 @@ void name_extensions(std::string &json)
 cw_status check_packed(const cwi_gltf_document &document, cw_error *err)
 {
     if (document.unpacked && document.bytes > INT32_MAX)
-        return cw_fail(err, CW_ERR_LIMIT, "meshopt's bytes are more than 2 GiB");
+        return cwi_fail(err, CW_ERR_LIMIT, "meshopt's bytes are more than 2 GiB");
     return CW_OK;
 }
 
@@ -380,13 +380,13 @@ cw_status cwi_gltf_document_make(const cwi_gltf_document *document, char **json,
         const tinygltf::Model model = make_model(*document);
         std::ostringstream stream;
         if (!tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, stream, false, false))
-            return cw_fail(err, CW_ERR_BACKEND, "tinygltf could not write the scene");
+            return cwi_fail(err, CW_ERR_BACKEND, "tinygltf could not write the scene");
         std::string words = stream.str();
         while (!words.empty() && words.back() != '}')
             words.pop_back();
         name_extensions(words);
         *size = words.size();
         *json = cwi_strdup(words.c_str());
-        return *json ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the JSON");
+        return *json ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the JSON");
     });
 }

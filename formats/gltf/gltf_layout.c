@@ -212,8 +212,9 @@ static cw_status lay_out(cwi_gltf_plan *plan, cw_error *err)
         d->bytes = at;
     return d->bytes <= MOST_BYTES
                ? CW_OK
-               : cw_fail(err, CW_ERR_LIMIT, "glTF holds at most 4 GiB; the mesh needs %.1f GiB",
-                         (double)d->bytes / 1073741824.0);
+               : cwi_fail(err, CW_ERR_LIMIT,
+                          "glTF holds at most 4 GiB; the mesh needs %.1f GiB",
+                          (double)d->bytes / 1073741824.0);
 }
 
 /* Returns true if positions or normals are integers; glTF without extensions requires
@@ -235,7 +236,7 @@ static cw_status make_pieces(cwi_gltf_plan *plan, const cwi_parts *parts, cw_err
     plan->parts = *parts;
     plan->parts.items = cwi_alloc_array(parts->count, sizeof *parts->items);
     if (!plan->pieces || !plan->parts.items)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", parts->count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", parts->count);
     memcpy(plan->parts.items, parts->items, parts->count * sizeof *parts->items);
     for (size_t p = 0; p < parts->count; p++)
         plan->pieces[p].part = &plan->parts.items[p];
@@ -248,9 +249,9 @@ static cw_status check_vertices(const cwi_parts *parts, cw_error *err)
 {
     for (size_t p = 0; p < parts->count; p++)
         if (parts->items[p].mesh.vertex_count >= UINT32_MAX)
-            return cw_fail(err, CW_ERR_LIMIT,
-                           "glTF holds at most 4294967294 vertices in a mesh; this has %zu",
-                           parts->items[p].mesh.vertex_count);
+            return cwi_fail(err, CW_ERR_LIMIT,
+                            "glTF holds at most 4294967294 vertices in a mesh; this has %zu",
+                            parts->items[p].mesh.vertex_count);
     return CW_OK;
 }
 

@@ -61,7 +61,7 @@ static cw_status set_place(cwi_gltf_instance *at, const double *world, cw_mesh_f
     multiply_matrices(to_lps, world, place);
     for (int i = 0; i < 12; i++)
         if (!isfinite(place[i]))
-            return cw_fail(err, CW_ERR_FORMAT, "a node's matrix is not finite");
+            return cwi_fail(err, CW_ERR_FORMAT, "a node's matrix is not finite");
     at->unturned = is_unturned(place);
     if (!at->unturned)
         return CW_OK;
@@ -95,13 +95,13 @@ static cw_status enter_node(cwi_gltf_reader *r, visit v, bool *visited, cw_mesh_
     static const double unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     const cwi_gltf_scene *scene = &r->scene;
     if (v.node < 0 || (size_t)v.node >= scene->node_count)
-        return cw_fail(err, CW_ERR_FORMAT, "node %d is named; there are %zu", v.node,
-                       scene->node_count);
+        return cwi_fail(err, CW_ERR_FORMAT, "node %d is named; there are %zu", v.node,
+                        scene->node_count);
     if (visited[v.node])
-        return cw_fail(err, CW_ERR_FORMAT, "node %d is reached in two ways, or holds itself",
-                       v.node);
+        return cwi_fail(err, CW_ERR_FORMAT, "node %d is reached in two ways, or holds itself",
+                        v.node);
     if (v.depth > DEEPEST_NODE)
-        return cw_fail(err, CW_ERR_FORMAT, "nodes are nested deeper than %d", DEEPEST_NODE);
+        return cwi_fail(err, CW_ERR_FORMAT, "nodes are nested deeper than %d", DEEPEST_NODE);
     visited[v.node] = true;
     const cwi_gltf_node *n = &scene->nodes[v.node];
     said->levels = n->levels > said->levels ? n->levels : said->levels;
@@ -109,8 +109,8 @@ static cw_status enter_node(cwi_gltf_reader *r, visit v, bool *visited, cw_mesh_
     if (n->mesh < 0)
         return CW_OK;
     if ((size_t)n->mesh >= scene->mesh_count)
-        return cw_fail(err, CW_ERR_FORMAT, "node %d names mesh %d; there are %zu", v.node,
-                       n->mesh, scene->mesh_count);
+        return cwi_fail(err, CW_ERR_FORMAT, "node %d names mesh %d; there are %zu", v.node,
+                        n->mesh, scene->mesh_count);
     if (is_hidden(r->world[v.node])) {
         said->hidden++;
         return CW_OK;
@@ -137,7 +137,7 @@ static cw_status walk_nodes(cwi_gltf_reader *r, visit *stack, size_t room, bool 
             break;
         const cwi_gltf_node *n = &scene->nodes[v.node];
         if (n->end - n->first > room - count)
-            return cw_fail(err, CW_ERR_FORMAT, "the nodes are no tree");
+            return cwi_fail(err, CW_ERR_FORMAT, "the nodes are no tree");
         for (size_t i = n->end; i > n->first; i--)
             stack[count++] = (visit){scene->children[i - 1], v.node, v.depth + 1};
     }
@@ -153,7 +153,7 @@ cw_status cwi_gltf_find_instances(cwi_gltf_reader *r, cw_mesh_file *said, cw_err
     r->instances = cwi_alloc_array(count, sizeof *r->instances);
     cw_status st = stack && visited && r->world && r->instances
                        ? walk_nodes(r, stack, room, visited, said, err)
-                       : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu nodes", count);
+                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu nodes", count);
     cwi_free(stack);
     cwi_free(visited);
     return st;

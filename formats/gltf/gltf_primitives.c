@@ -14,10 +14,11 @@ cw_status cwi_gltf_limit(const cwi_gltf_reader *r, uint64_t count, cw_error *err
 {
     if (count <= r->most)
         return CW_OK;
-    return cw_fail(err, CW_ERR_LIMIT,
-                   "the scene draws its triangles so often that they are more than %llu; state "
-                   "a limit if that is meant (--max-triangles)",
-                   (unsigned long long)r->most);
+    return cwi_fail(
+        err, CW_ERR_LIMIT,
+        "the scene draws its triangles so often that they are more than %llu; state "
+        "a limit if that is meant (--max-triangles)",
+        (unsigned long long)r->most);
 }
 
 static cw_status open_attribute(const cwi_gltf_reader *r, int accessor, const char *what,
@@ -28,12 +29,12 @@ static cw_status open_attribute(const cwi_gltf_reader *r, int accessor, const ch
     if (st != CW_OK)
         return st;
     if (numbers->numbers < least || numbers->numbers > most)
-        return cw_fail(err, CW_ERR_FORMAT, "%s (accessor %d) has elements of %d numbers", what,
-                       accessor, numbers->numbers);
+        return cwi_fail(err, CW_ERR_FORMAT, "%s (accessor %d) has elements of %d numbers", what,
+                        accessor, numbers->numbers);
     if (numbers->count != count)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "%s (accessor %d) has %zu elements; POSITION has %zu", what, accessor,
-                       numbers->count, count);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "%s (accessor %d) has %zu elements; POSITION has %zu", what, accessor,
+                        numbers->count, count);
     return CW_OK;
 }
 
@@ -155,8 +156,8 @@ static cw_status add_vertices(cwi_gltf_reader *r, const cwi_gltf_instance *at,
     cw_status st =
         cwi_gltf_open_numbers(&r->bytes, &r->scene, p->position, "POSITION", &numbers, err);
     if (st == CW_OK && numbers.numbers != 3)
-        st = cw_fail(err, CW_ERR_FORMAT, "POSITION (accessor %d) has elements of %d numbers",
-                     p->position, numbers.numbers);
+        st = cwi_fail(err, CW_ERR_FORMAT, "POSITION (accessor %d) has elements of %d numbers",
+                      p->position, numbers.numbers);
     if (st == CW_OK)
         st = add_points(r, at, &numbers, err);
     cwi_free(numbers.bytes);
@@ -193,8 +194,8 @@ static cw_status corner_vertex(const corners *c, size_t i, int64_t *vertex, cw_e
 {
     const double index = c->listed ? cwi_gltf_number(&c->numbers, i, 0) : (double)i;
     if (!(index < (double)c->vertices))
-        return cw_fail(err, CW_ERR_FORMAT, "index %zu of a primitive names vertex %.0f of %zu",
-                       i, index, c->vertices);
+        return cwi_fail(err, CW_ERR_FORMAT, "index %zu of a primitive names vertex %.0f of %zu",
+                        i, index, c->vertices);
     *vertex = (int64_t)(c->first + (size_t)index);
     return CW_OK;
 }
@@ -236,8 +237,8 @@ static cw_status open_corners(const cwi_gltf_reader *r, const cwi_gltf_primitive
     const int component = c->numbers.component;
     if (st == CW_OK && (c->numbers.numbers != 1 ||
                         (component != 5121 && component != 5123 && component != 5125)))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "indices (accessor %d) are of a type that is not read", p->indices);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "indices (accessor %d) are of a type that is not read", p->indices);
     return st;
 }
 
@@ -260,7 +261,7 @@ static cw_status add_corners(cwi_gltf_reader *r, const cwi_gltf_instance *at,
     corners c;
     cw_status st = open_corners(r, p, first, &c, err);
     if (st == CW_OK && p->mode == TRIANGLES && c.count % 3)
-        st = cw_fail(err, CW_ERR_FORMAT, "a primitive of triangles has %zu corners", c.count);
+        st = cwi_fail(err, CW_ERR_FORMAT, "a primitive of triangles has %zu corners", c.count);
     if (st == CW_OK)
         st = add_triangles(r, &c, p->mode, mirrored, err);
     cwi_free(c.numbers.bytes);
@@ -295,8 +296,8 @@ static cw_status unpack_primitive(cwi_gltf_reader *r, const cwi_gltf_primitive *
         scene->accessors[p->position].view >= 0)
         return CW_OK;
     if ((size_t)p->draco >= scene->view_count)
-        return cw_fail(err, CW_ERR_FORMAT, "a primitive names bufferView %d; there are %zu",
-                       p->draco, scene->view_count);
+        return cwi_fail(err, CW_ERR_FORMAT, "a primitive names bufferView %d; there are %zu",
+                        p->draco, scene->view_count);
     const cwi_gltf_view *v = &scene->views[p->draco];
     cw_status st =
         cwi_gltf_load(&r->bytes, scene, (uint64_t)v->buffer, v->offset, v->bytes, &packed, err);
@@ -321,13 +322,13 @@ cw_status cwi_gltf_add_instance(cwi_gltf_reader *r, const cwi_gltf_instance *at,
     for (size_t i = mesh->first; i < mesh->end && st == CW_OK; i++) {
         const cwi_gltf_primitive *p = &r->scene.primitives[i];
         if (p->mode < POINTS || p->mode > FAN)
-            return cw_fail(err, CW_ERR_FORMAT, "a primitive has the mode %d", p->mode);
+            return cwi_fail(err, CW_ERR_FORMAT, "a primitive has the mode %d", p->mode);
         if (p->mode < TRIANGLES) {
             said->skipped += count_skipped(&r->scene, p);
             continue;
         }
         if (p->position < 0)
-            return cw_fail(err, CW_ERR_FORMAT, "a primitive has no POSITION");
+            return cwi_fail(err, CW_ERR_FORMAT, "a primitive has no POSITION");
         st = unpack_primitive(r, p, err);
         if (st == CW_OK && (!before || p->draco >= 0 || !same_vertices(before, p))) {
             first = r->build.point_count;

@@ -59,9 +59,9 @@ static cw_status find_chunk(const cwi_input *in, uint64_t at, uint64_t end, cons
         return st;
     *size = got == sizeof head ? u32_at(head) : 0;
     if (got < sizeof head || memcmp(head + 4, kind, 4) != 0 || *size > end - at - CHUNK_HEADER)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "the chunk at byte %llu is not a whole one of kind %.4s",
-                       (unsigned long long)at, kind);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the chunk at byte %llu is not a whole one of kind %.4s",
+                        (unsigned long long)at, kind);
     return CW_OK;
 }
 
@@ -76,14 +76,14 @@ static cw_status find_chunks(cwi_gltf_reader *r, uint64_t *json, uint64_t *json_
     if (st != CW_OK)
         return st;
     if (got < sizeof head || memcmp(head, "glTF", 4) != 0)
-        return cw_fail(err, CW_ERR_FORMAT, "the file does not begin with 'glTF'");
+        return cwi_fail(err, CW_ERR_FORMAT, "the file does not begin with 'glTF'");
     const uint64_t end = u32_at(head + 8);
     if (u32_at(head + 4) != 2)
-        return cw_fail(err, CW_ERR_FORMAT, "it is of version %u; version 2 is read",
-                       u32_at(head + 4));
+        return cwi_fail(err, CW_ERR_FORMAT, "it is of version %u; version 2 is read",
+                        u32_at(head + 4));
     if (end > in->size || end < GLB_HEADER + CHUNK_HEADER)
-        return cw_fail(err, CW_ERR_FORMAT, "the header says %llu bytes; the file has %llu",
-                       (unsigned long long)end, (unsigned long long)in->size);
+        return cwi_fail(err, CW_ERR_FORMAT, "the header says %llu bytes; the file has %llu",
+                        (unsigned long long)end, (unsigned long long)in->size);
     st = find_chunk(in, GLB_HEADER, end, "JSON", json_size, err);
     *json = GLB_HEADER + CHUNK_HEADER;
     if (st != CW_OK || *json + *json_size + CHUNK_HEADER > end)
@@ -97,16 +97,17 @@ static cw_status check_range(const cwi_gltf_scene *scene, size_t view, const cha
                              int64_t buffer, uint64_t offset, uint64_t bytes, cw_error *err)
 {
     if (buffer < 0 || (uint64_t)buffer >= scene->buffer_count)
-        return cw_fail(err, CW_ERR_FORMAT, "bufferViews[%zu]%s: there is no buffer %lld", view,
-                       member, (long long)buffer);
+        return cwi_fail(err, CW_ERR_FORMAT, "bufferViews[%zu]%s: there is no buffer %lld", view,
+                        member, (long long)buffer);
     const uint64_t held = scene->buffers[buffer].bytes;
     if (offset <= held && bytes <= held - offset)
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "bufferViews[%zu]%s: %llu bytes from byte %llu on are more than the %llu of "
-                   "buffers[%lld]",
-                   view, member, (unsigned long long)bytes, (unsigned long long)offset,
-                   (unsigned long long)held, (long long)buffer);
+    return cwi_fail(
+        err, CW_ERR_FORMAT,
+        "bufferViews[%zu]%s: %llu bytes from byte %llu on are more than the %llu of "
+        "buffers[%lld]",
+        view, member, (unsigned long long)bytes, (unsigned long long)offset,
+        (unsigned long long)held, (long long)buffer);
 }
 
 static cw_status check_views(const cwi_gltf_scene *scene, cw_error *err)
@@ -126,10 +127,10 @@ static cw_status parse_json(cwi_gltf_reader *r, uint64_t at, uint64_t size, cw_e
 {
     size_t got;
     if (size > UINT32_MAX)
-        return cw_fail(err, CW_ERR_LIMIT, "the JSON has more than 4 GiB");
+        return cwi_fail(err, CW_ERR_LIMIT, "the JSON has more than 4 GiB");
     char *json = cwi_alloc_array((size_t)size + 1, 1);
     if (!json)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the JSON");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the JSON");
     cw_status st = cwi_input_read_at(r->in->file.fd, at, json, (size_t)size, &got, err);
     if (st == CW_OK)
         st = cwi_gltf_check(json, got, err);
@@ -224,10 +225,11 @@ static cw_status check_memory(const cwi_gltf_reader *r, const drawing *sum, cw_e
         return CW_OK;
     char text[CWI_MEMORY_TEXT];
     cwi_print_memory(limit, text);
-    return cw_fail(err, CW_ERR_LIMIT,
-                   "the scene draws its triangles so often that they need more memory than the "
-                   "%s allowed (--memory)",
-                   text);
+    return cwi_fail(
+        err, CW_ERR_LIMIT,
+        "the scene draws its triangles so often that they need more memory than the "
+        "%s allowed (--memory)",
+        text);
 }
 
 /* Adds up meshes that are drawn repeatedly, before the first one is drawn. */
@@ -236,7 +238,7 @@ static cw_status check_repeats(const cwi_gltf_reader *r, cw_error *err)
     const size_t count = r->scene.mesh_count;
     drawing *each = cwi_alloc_zeroed(count, sizeof *each), sum = {0};
     cw_status st =
-        each ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu meshes", count);
+        each ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu meshes", count);
     for (size_t i = 0; i < r->instance_count && st == CW_OK; i++) {
         const int mesh = r->instances[i].mesh;
         sum.vertices += each[mesh].vertices;

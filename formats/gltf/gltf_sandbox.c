@@ -112,7 +112,8 @@ static cw_status work_on_request(void *state, int fd, const void *request, void 
     cw_status st = j->functions->parse(shared, j->json, &scene, err);
     if (st == CW_OK &&
         !cwi_gltf_put_scene(&scene, (char *)shared + j->json, j->shared - j->json))
-        st = cw_fail(err, CW_ERR_LIMIT, "the scene takes more memory than its JSON allows for");
+        st =
+            cwi_fail(err, CW_ERR_LIMIT, "the scene takes more memory than its JSON allows for");
     cwi_gltf_scene_free(&scene);
     return st;
 }
@@ -125,12 +126,12 @@ static cw_status take_uri(tape *t, char **uri, cw_error *err)
     *uri = NULL;
     if (!take_bytes(t, &size, sizeof size) ||
         (size != NO_URI && size > (size_t)(t->end - t->at)))
-        return cw_fail(err, CW_ERR_BACKEND, "tinygltf's answer is not valid");
+        return cwi_fail(err, CW_ERR_BACKEND, "tinygltf's answer is not valid");
     if (size == NO_URI)
         return CW_OK;
     *uri = cwi_alloc_array((size_t)size + 1, 1);
     if (!*uri)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the scene");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the scene");
     take_bytes(t, *uri, (size_t)size);
     (*uri)[size] = '\0';
     return CW_OK;
@@ -140,10 +141,10 @@ static cw_status take_column(tape *t, const column *c, cwi_gltf_scene *s, cw_err
 {
     uint64_t count;
     if (!take_bytes(t, &count, sizeof count) || count > (size_t)(t->end - t->at) / c->size)
-        return cw_fail(err, CW_ERR_BACKEND, "tinygltf's answer is not valid");
+        return cwi_fail(err, CW_ERR_BACKEND, "tinygltf's answer is not valid");
     void *array = cwi_alloc_array((size_t)count, c->size);
     if (!array)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the scene");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the scene");
     take_bytes(t, array, (size_t)count * c->size);
     memcpy((char *)s + c->array, &array, sizeof array);
     *(size_t *)(void *)((char *)s + c->count) = (size_t)count;
@@ -194,7 +195,7 @@ cw_status cwi_gltf_take_scene(const void *from, size_t size, cwi_gltf_scene *s, 
     for (size_t i = 0; st == CW_OK && i < s->buffer_count; i++)
         st = take_uri(t, &s->buffers[i].uri, err);
     if (st == CW_OK && !mend_scene(s))
-        return cw_fail(err, CW_ERR_BACKEND, "tinygltf's answer is not valid");
+        return cwi_fail(err, CW_ERR_BACKEND, "tinygltf's answer is not valid");
     return st;
 }
 
@@ -249,7 +250,7 @@ static cw_status make_json(void *state, int fd, const void *request, void *share
     cw_status st = w->functions->document(w->document, &json, &size, err);
     tape t = {.at = shared, .end = (char *)shared + w->room};
     if (st == CW_OK && (!put_bytes(&t, &size, sizeof size) || !put_bytes(&t, json, size)))
-        st = cw_fail(err, CW_ERR_LIMIT, "the JSON takes more than %zu bytes", w->room);
+        st = cwi_fail(err, CW_ERR_LIMIT, "the JSON takes more than %zu bytes", w->room);
     cwi_free(json);
     return st;
 }
@@ -269,7 +270,7 @@ static cw_status take_json(const void *shared, char **json, size_t *size, cw_err
     memcpy(size, shared, sizeof *size);
     *json = cwi_alloc_array(*size, 1);
     if (!*json)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the JSON");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the JSON");
     memcpy(*json, (const char *)shared + sizeof *size, *size);
     return CW_OK;
 }
@@ -295,7 +296,7 @@ cw_status cwi_gltf_make_json(const cwi_gltf_document *document, char **json, siz
         return st;
     st = cwi_sandbox_run(&box, -1, "", 1, err);
     if (st == CW_ERR_BACKEND && !box.open)
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "memory ran out while tinygltf made the JSON");
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "memory ran out while tinygltf made the JSON");
     if (st == CW_OK)
         st = take_json(box.shared, json, size, err);
     cwi_sandbox_close(&box);

@@ -82,11 +82,11 @@ cw_status cwi_gltf_blind(char *json, size_t size, cw_error *err)
             depth -= depth && (json[i] == '}' || json[i] == ']');
         }
         if (depth > MOST_DEPTH)
-            return cw_fail(err, CW_ERR_FORMAT, "the JSON nests deeper than %d", MOST_DEPTH);
+            return cwi_fail(err, CW_ERR_FORMAT, "the JSON nests deeper than %d", MOST_DEPTH);
         if (++structure > MOST_STRUCTURE)
-            return cw_fail(err, CW_ERR_LIMIT,
-                           "the JSON has more than %d MiB beside its strings",
-                           MOST_STRUCTURE >> 20);
+            return cwi_fail(err, CW_ERR_LIMIT,
+                            "the JSON has more than %d MiB beside its strings",
+                            MOST_STRUCTURE >> 20);
     }
     return CW_OK;
 }

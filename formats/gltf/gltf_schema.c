@@ -176,8 +176,8 @@ typedef struct place {
 
 static cw_status fail_broken(const walker *w)
 {
-    return cw_fail(w->err, CW_ERR_FORMAT,
-                   "the glTF is not valid: its JSON is broken at byte %zu", w->at);
+    return cwi_fail(w->err, CW_ERR_FORMAT,
+                    "the glTF is not valid: its JSON is broken at byte %zu", w->at);
 }
 
 /* Returns the next character that is not a blank; 0 at the end. */
@@ -282,7 +282,7 @@ static cw_status fail_value(walker *w, size_t start, const place *p, const char 
         return fail_broken(w);
     put_path(p, path);
     show_value(from, w->json + w->at, shown);
-    return cw_fail(w->err, CW_ERR_FORMAT, "%s: %s is not %s", path, shown, wanted);
+    return cwi_fail(w->err, CW_ERR_FORMAT, "%s: %s is not %s", path, shown, wanted);
 }
 
 static cw_status fail_index(walker *w, size_t start, const rule *r, const place *p)
@@ -433,8 +433,8 @@ static cw_status check_list(walker *w, const rule *r, value_kind one, const plac
     if (st == CW_OK && r->kind == NUMBERS && at.index != r->most) {
         char path[PATH_BYTES] = "";
         put_path(p, path);
-        return cw_fail(w->err, CW_ERR_FORMAT, "%s: %zu numbers; %llu were expected", path,
-                       at.index, (unsigned long long)r->most);
+        return cwi_fail(w->err, CW_ERR_FORMAT, "%s: %zu numbers; %llu were expected", path,
+                        at.index, (unsigned long long)r->most);
     }
     return st;
 }
@@ -476,7 +476,7 @@ static cw_status check_required(const walker *w, const rule *rules, unsigned see
     for (size_t i = 0; rules && rules[i].key; i++)
         if (rules[i].required && !(seen & 1u << i)) {
             put_path(p, path);
-            return cw_fail(w->err, CW_ERR_FORMAT, "%s: there is no '%s'", path, rules[i].key);
+            return cwi_fail(w->err, CW_ERR_FORMAT, "%s: there is no '%s'", path, rules[i].key);
         }
     return CW_OK;
 }
@@ -493,7 +493,7 @@ static cw_status check_member(walker *w, const rule *r, bool escaped, const plac
         return skip_value(w) ? CW_OK : fail_broken(w);
     put_path(&at, path);
     if (escaped)
-        return cw_fail(w->err, CW_ERR_FORMAT, "%s: the name is written with an escape", path);
+        return cwi_fail(w->err, CW_ERR_FORMAT, "%s: the name is written with an escape", path);
     return check_value(w, r, &at);
 }
 

@@ -17,13 +17,13 @@ template <typename T> cw_status allocate(T *&array, size_t &count, size_t wanted
 {
     array = static_cast<T *>(cwi_alloc_zeroed(wanted, sizeof(T)));
     count = array ? wanted : 0;
-    return array ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the scene");
+    return array ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the scene");
 }
 
 cw_status fail_model(cw_error *err, std::string words)
 {
     std::replace(words.begin(), words.end(), '\n', ' ');
-    return cw_fail(err, CW_ERR_FORMAT, "the glTF is not valid: %.400s", words.c_str());
+    return cwi_fail(err, CW_ERR_FORMAT, "the glTF is not valid: %.400s", words.c_str());
 }
 
 // Returns a member of a value, which may not be an object.
@@ -47,7 +47,7 @@ cw_status copy_buffers(const tinygltf::Value &list, cwi_gltf_scene &scene, cw_er
             continue;
         scene.buffers[i].uri = cwi_strdup(uri.Get<std::string>().c_str());
         if (!scene.buffers[i].uri)
-            st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the scene");
+            st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the scene");
     }
     return st;
 }
@@ -248,13 +248,13 @@ cw_status copy_node(const tinygltf::Node &from, size_t index, cwi_gltf_node &to,
     const bool is_plain = has_length(from.matrix, 16) && has_length(from.translation, 3) &&
                           has_length(from.rotation, 4) && has_length(from.scale, 3);
     if (!is_plain)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'matrix', 'translation', 'rotation' or 'scale' of node %zu has not as "
-                       "many numbers as it must",
-                       index);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'matrix', 'translation', 'rotation' or 'scale' of node %zu has not as "
+                        "many numbers as it must",
+                        index);
     if (!from.matrix.empty() && (from.matrix[3] != 0 || from.matrix[7] != 0 ||
                                  from.matrix[11] != 0 || from.matrix[15] != 1))
-        return cw_fail(err, CW_ERR_FORMAT, "nodes[%zu].matrix is not affine", index);
+        return cwi_fail(err, CW_ERR_FORMAT, "nodes[%zu].matrix is not affine", index);
     to.mesh = from.mesh;
     set_matrix(from, to.local);
     to.levels = count_levels(from);
@@ -290,8 +290,8 @@ cw_status copy_roots(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_err
     if (size_t(shown) < model.scenes.size()) {
         roots = model.scenes[size_t(shown)].nodes;
     } else if (model.defaultScene >= 0 || !model.scenes.empty()) {
-        return cw_fail(err, CW_ERR_FORMAT, "'scene' is %d; there are %zu scenes", shown,
-                       model.scenes.size());
+        return cwi_fail(err, CW_ERR_FORMAT, "'scene' is %d; there are %zu scenes", shown,
+                        model.scenes.size());
     } else {
         std::vector<bool> is_child(model.nodes.size());
         for (size_t i = 0; i < scene.child_count; i++)
@@ -317,9 +317,9 @@ cw_status check_extensions(const tinygltf::Model &model, cw_error *err)
     for (const std::string &name : model.extensionsRequired)
         if (name.compare(0, 14, "KHR_materials_") != 0 &&
             std::find(harmless.begin(), harmless.end(), name) == harmless.end())
-            return cw_fail(err, CW_ERR_UNSUPPORTED,
-                           "the file requires the extension '%.100s', which is not read",
-                           name.c_str());
+            return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                            "the file requires the extension '%.100s', which is not read",
+                            name.c_str());
     return CW_OK;
 }
 
@@ -386,8 +386,8 @@ cw_status check_usage(const tinygltf::Model &model, const std::string &path, int
     if (accessor < 0 || size_t(accessor) >= model.accessors.size() ||
         usage.fits(model.accessors[size_t(accessor)], quantized))
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT, "%s.%s: accessors[%d] is not %s", path.c_str(),
-                   usage.name, accessor, usage.wanted);
+    return cwi_fail(err, CW_ERR_FORMAT, "%s.%s: accessors[%d] is not %s", path.c_str(),
+                    usage.name, accessor, usage.wanted);
 }
 
 // Checks the types of accessors. Points and lines are left out, with any content.
@@ -403,8 +403,8 @@ cw_status check_usages(const tinygltf::Model &model, const cwi_gltf_scene &scene
             const std::string path = "meshes[" + std::to_string(m) + "].primitives[" +
                                      std::to_string(i - scene.meshes[m].first) + "]";
             if (p.mode >= TINYGLTF_MODE_TRIANGLES && p.position < 0)
-                return cw_fail(err, CW_ERR_FORMAT, "%s.attributes: there is no POSITION",
-                               path.c_str());
+                return cwi_fail(err, CW_ERR_FORMAT, "%s.attributes: there is no POSITION",
+                                path.c_str());
             for (size_t n = 0; n < 4 && p.mode >= TINYGLTF_MODE_TRIANGLES; n++) {
                 const cw_status st =
                     check_usage(model, path, accessors[n], usages[n], quantized, err);
@@ -436,8 +436,8 @@ cw_status parse_scene(const char *json, size_t size, cwi_gltf_scene *scene,
         if (!done || !words.empty()) // it may omit broken parts and go on
             return fail_model(err, words);
         if (model.asset.version.compare(0, 2, "2.") != 0)
-            return cw_fail(err, CW_ERR_FORMAT, "'asset.version' is '%.20s'; 2.0 was expected",
-                           model.asset.version.c_str());
+            return cwi_fail(err, CW_ERR_FORMAT, "'asset.version' is '%.20s'; 2.0 was expected",
+                            model.asset.version.c_str());
         cw_status st = check_extensions(model, err);
         if (st == CW_OK)
             st = copy_nodes(model, *scene, err);

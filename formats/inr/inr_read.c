@@ -73,9 +73,9 @@ static cw_status find_end(inr *n, size_t got, cw_error *err)
     for (n->size = BLOCK; n->size <= got; n->size += BLOCK)
         if (memcmp(n->text + n->size - 4, closing, 4) == 0)
             return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "the header does not end with '##}' at a multiple of %d bytes, within %zu",
-                   BLOCK, got);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "the header does not end with '##}' at a multiple of %d bytes, within %zu",
+                    BLOCK, got);
 }
 
 static cw_status read_text(const cwi_input *in, inr *n, cw_error *err)
@@ -83,14 +83,14 @@ static cw_status read_text(const cwi_input *in, inr *n, cw_error *err)
     size_t got;
     n->text = cwi_alloc_array(MOST_HEADER, 1);
     if (!n->text)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the header");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the header");
     cw_status st = cwi_stream_head(in->fd, n->text, MOST_HEADER, &got, &n->gzipped, err);
     if (st == CW_OK && !cwi_inr_sniff((const unsigned char *)n->text, got))
-        return cw_fail(err, CW_ERR_FORMAT, "the first line is not '%s'", magic);
+        return cwi_fail(err, CW_ERR_FORMAT, "the first line is not '%s'", magic);
     if (st == CW_OK)
         st = find_end(n, got, err);
     if (st == CW_OK && memchr(n->text, '\0', n->size))
-        return cw_fail(err, CW_ERR_FORMAT, "the header holds a zero byte");
+        return cwi_fail(err, CW_ERR_FORMAT, "the header holds a zero byte");
     return st;
 }
 
@@ -102,14 +102,14 @@ static cw_status keep_key(inr *n, const char *line, cw_error *err)
     if (*line == '#' || !*line)
         return CW_OK;
     if (!*value)
-        return cw_fail(err, CW_ERR_FORMAT, "the header's line '%.40s' holds no 'KEY=value'",
-                       line);
+        return cwi_fail(err, CW_ERR_FORMAT, "the header's line '%.40s' holds no 'KEY=value'",
+                        line);
     value += 1 + strspn(value + 1, " \t");
     for (int k = 0; k < KEY_COUNT; k++) {
         if (strlen(key_names[k]) != length || memcmp(key_names[k], line, length) != 0)
             continue;
         if (n->value[k])
-            return cw_fail(err, CW_ERR_FORMAT, "'%s' was given before", key_names[k]);
+            return cwi_fail(err, CW_ERR_FORMAT, "'%s' was given before", key_names[k]);
         n->value[k] = value;
     }
     return CW_OK;
@@ -132,7 +132,7 @@ static cw_status read_keys(inr *n, cw_error *err)
 
 static cw_status require_key(const inr *n, key k, cw_error *err)
 {
-    return n->value[k] ? CW_OK : cw_fail(err, CW_ERR_FORMAT, "'%s' is missing", key_names[k]);
+    return n->value[k] ? CW_OK : cwi_fail(err, CW_ERR_FORMAT, "'%s' is missing", key_names[k]);
 }
 
 /* --- voxels ------------------------------------------------------------------------------ */
@@ -150,9 +150,9 @@ static cw_status read_type(const inr *n, cwi_source *src, cw_error *err)
     cwi_next_text_word(&said, unit);
     st = cwi_field_integer("PIXSIZE", unit, 1, 1024, &bits, err);
     if (st == CW_OK && cwi_next_text_word(&said, unit) && strcmp(unit, "bits") != 0)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'PIXSIZE' is '%.40s'; '8 bits' or the like was expected",
-                       n->value[K_PIXSIZE]);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'PIXSIZE' is '%.40s'; '8 bits' or the like was expected",
+                        n->value[K_PIXSIZE]);
     for (size_t i = 0; st == CW_OK && i < sizeof types / sizeof *types; i++)
         if (strcmp(types[i].name, n->value[K_TYPE]) == 0 && types[i].bits == bits) {
             src->shape.type = types[i].type;
@@ -193,11 +193,11 @@ static cw_status read_cpu(const inr *n, cwi_source *src, cw_error *err)
     const char *cpu = n->value[K_CPU];
     const int found = cpu ? cwi_field_find(names, 2, cpu, strlen(cpu)) : -1;
     if (!cpu && cw_type_size(src->shape.type) > 1)
-        return cw_fail(err, CW_ERR_FORMAT, "'CPU' is missing; %s voxels need it",
-                       cw_type_name(src->shape.type));
+        return cwi_fail(err, CW_ERR_FORMAT, "'CPU' is missing; %s voxels need it",
+                        cw_type_name(src->shape.type));
     if (cpu && found < 0)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'CPU' is '%.40s'; it must be decm, alpha, pc, sun or sgi", cpu);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'CPU' is '%.40s'; it must be decm, alpha, pc, sun or sgi", cpu);
     src->big_endian = found == 1;
     src->encoding = n->gzipped ? CWI_DEFLATED : CWI_RAW;
     src->skip = n->size;
@@ -213,8 +213,8 @@ static cw_status read_scale(const inr *n, cw_volume *shape, cw_error *err)
     if (!scale || shape->type == CW_F32 || shape->type == CW_F64)
         return CW_OK;
     if (strncmp(scale, "2**", 3) != 0)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'SCALE' is '%.40s'; '2**0' or the like was expected", scale);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'SCALE' is '%.40s'; '2**0' or the like was expected", scale);
     cw_status st = cwi_field_integer("SCALE", scale + 3, -128, 128, &power, err);
     shape->slope = ldexp(1, (int)power);
     return st;
@@ -242,9 +242,9 @@ static cw_status read_frame(const inr *n, cwi_source *src, cw_error *err)
     if (st == CW_OK)
         st = read_three(n, K_RX, turns, err);
     if (st == CW_OK && (turns[0] != 0 || turns[1] != 0 || turns[2] != 0))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'RX', 'RY', 'RZ' are %g %g %g; rotated images are not read", turns[0],
-                       turns[1], turns[2]);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'RX', 'RY', 'RZ' are %g %g %g; rotated images are not read", turns[0],
+                        turns[1], turns[2]);
     for (int a = 0; a < 3; a++) {
         src->shape.affine[a][a] = spacing[a];
         src->shape.affine[a][3] = origin[a];

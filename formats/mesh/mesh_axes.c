@@ -118,9 +118,9 @@ cw_status cwi_turn_back(cw_mesh *mesh, const cw_axes *axes, cw_error *err)
     for (int a = 0; a < 3; a++)
         ok = ok && isfinite(mesh->origin[a]);
     if (!ok)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "its unit is '%s'; single precision cannot hold its coordinates in mm",
-                       cw_unit_name(axes->unit));
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "its unit is '%s'; single precision cannot hold its coordinates in mm",
+                        cw_unit_name(axes->unit));
     t.times = t.over = 1;
     if (mesh->normals)
         turn_floats(&t, mesh->normals, mesh->vertex_count);

@@ -26,8 +26,8 @@ static cw_status fail_limit(const cwi_mesh_input *in, cw_error *err)
 {
     char limit[CWI_MEMORY_TEXT];
     cwi_print_memory(in->desc.max_bytes, limit);
-    return cw_fail(err, CW_ERR_LIMIT,
-                   "the mesh needs more memory than the %s allowed (--memory)", limit);
+    return cwi_fail(err, CW_ERR_LIMIT,
+                    "the mesh needs more memory than the %s allowed (--memory)", limit);
 }
 
 cw_status cwi_mesh_take_bytes(cwi_mesh_input *in, uint64_t bytes, cw_error *err)
@@ -50,7 +50,7 @@ cw_status cwi_mesh_grow(cwi_mesh_input *in, void *array, size_t *room, size_t co
     memcpy(&memory, array, sizeof memory);
     memory = cwi_realloc_array(memory, next, size);
     if (!memory)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu elements of the mesh", count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu elements of the mesh", count);
     memcpy(array, &memory, sizeof memory);
     in->bytes += (next - *room) * size;
     *room = next;
@@ -85,8 +85,8 @@ cw_status cwi_mesh_limit_triangles(const cwi_mesh_input *in, uint64_t count, cw_
 {
     if (count <= in->desc.max_triangles)
         return CW_OK;
-    return cw_fail(err, CW_ERR_LIMIT, "more than %llu triangles, the most allowed",
-                   (unsigned long long)in->desc.max_triangles);
+    return cwi_fail(err, CW_ERR_LIMIT, "more than %llu triangles, the most allowed",
+                    (unsigned long long)in->desc.max_triangles);
 }
 
 /* --- points and faces -------------------------------------------------------------------- */
@@ -95,8 +95,8 @@ static cw_status limit_points(uint64_t count, cw_error *err)
 {
     if (count <= UINT32_MAX)
         return CW_OK;
-    return cw_fail(err, CW_ERR_LIMIT, "more than %u vertices, the most a mesh can have",
-                   UINT32_MAX);
+    return cwi_fail(err, CW_ERR_LIMIT, "more than %u vertices, the most a mesh can have",
+                    UINT32_MAX);
 }
 
 cw_status cwi_build_reserve(cwi_mesh_build *b, uint64_t points, uint64_t triangles,
@@ -143,8 +143,8 @@ static cw_status add_triangle(cwi_mesh_build *b, uint32_t corner, cw_error *err)
 cw_status cwi_build_corner(cwi_mesh_build *b, int64_t point, cw_error *err)
 {
     if (point < 0 || point >= UINT32_MAX)
-        return cw_fail(err, CW_ERR_FORMAT, "triangle %zu names vertex %lld, which cannot be",
-                       b->triangle_count, (long long)point);
+        return cwi_fail(err, CW_ERR_FORMAT, "triangle %zu names vertex %lld, which cannot be",
+                        b->triangle_count, (long long)point);
     const uint32_t corner = (uint32_t)point;
     cw_status st = b->corners >= 2 ? add_triangle(b, corner, err) : CW_OK;
     if (b->corners == 0)
@@ -167,8 +167,8 @@ static cw_status check_points(const cwi_mesh_build *b, cw_error *err)
 {
     for (size_t i = 0; i < 3 * b->point_count; i++)
         if (!isfinite(b->points[i]))
-            return cw_fail(err, CW_ERR_FORMAT, "'%c' of vertex %zu is %g; it must be finite",
-                           "xyz"[i % 3], i / 3 + (size_t)b->base, b->points[i]);
+            return cwi_fail(err, CW_ERR_FORMAT, "'%c' of vertex %zu is %g; it must be finite",
+                            "xyz"[i % 3], i / 3 + (size_t)b->base, b->points[i]);
     return CW_OK;
 }
 
@@ -176,9 +176,9 @@ static cw_status check_triangles(const cwi_mesh_build *b, cw_error *err)
 {
     for (size_t i = 0; i < 3 * b->triangle_count; i++)
         if (b->triangles[i] >= b->point_count)
-            return cw_fail(err, CW_ERR_FORMAT, "triangle %zu names vertex %llu of %zu", i / 3,
-                           (unsigned long long)b->triangles[i] + (unsigned)b->base,
-                           b->point_count);
+            return cwi_fail(err, CW_ERR_FORMAT, "triangle %zu names vertex %llu of %zu", i / 3,
+                            (unsigned long long)b->triangles[i] + (unsigned)b->base,
+                            b->point_count);
     return CW_OK;
 }
 
@@ -221,9 +221,9 @@ static cw_status round_points(cwi_mesh_build *b, const double origin[3], cw_erro
         memcpy(&exact, memory + i * sizeof exact, sizeof exact);
         exact -= origin[i % 3];
         if (fabs(exact) > (double)FLT_MAX)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "'%c' of vertex %zu is %g, which is beyond single precision",
-                           "xyz"[i % 3], i / 3 + (size_t)b->base, exact);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "'%c' of vertex %zu is %g, which is beyond single precision",
+                            "xyz"[i % 3], i / 3 + (size_t)b->base, exact);
         const float rounded = (float)exact;
         memcpy(memory + i * sizeof rounded, &rounded, sizeof rounded);
     }
@@ -236,7 +236,7 @@ static cw_status shrink_array(void *array, size_t count, size_t size, cw_error *
     memcpy(&memory, array, sizeof memory);
     memory = cwi_realloc_array(memory, count, size);
     if (!memory)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the mesh's arrays");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the mesh's arrays");
     memcpy(array, &memory, sizeof memory);
     return CW_OK;
 }

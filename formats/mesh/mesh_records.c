@@ -60,7 +60,7 @@ static cw_status check_single(const cwi_part *part, cw_error *err)
     cwi_part_bounds(part, low, high);
     for (int a = 0; a < 3; a++)
         if (low[a] < -(double)FLT_MAX || high[a] > (double)FLT_MAX)
-            return cw_fail(
+            return cwi_fail(
                 err, CW_ERR_LIMIT,
                 "the mesh stands at %g, which the format's single precision cannot hold",
                 high[a]);

@@ -70,7 +70,7 @@ static cw_status check_parts(const cw_part *parts, size_t count, cw_error *err)
             return st;
         empty = empty && parts[i].mesh->triangle_count == 0;
     }
-    return empty ? cw_fail(err, CW_ERR_ARGUMENT, "the mesh is empty") : CW_OK;
+    return empty ? cwi_fail(err, CW_ERR_ARGUMENT, "the mesh is empty") : CW_OK;
 }
 
 unsigned cwi_arrays_of(const cw_mesh *mesh)
@@ -169,18 +169,19 @@ static void set_sight(cwi_part *placed, const cw_part *parts, size_t count, size
 static cw_status check_times(const cw_part *parts, size_t count, cw_error *err)
 {
     if (count < 2)
-        return cw_fail(err, CW_ERR_ARGUMENT, "an animation of %zu part; it has at least two",
-                       count);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "an animation of %zu part; it has at least two",
+                        count);
     for (size_t i = 0; i < count; i++) {
         if (parts[i].level > 0)
-            return cw_fail(err, CW_ERR_ARGUMENT, "an animation of levels of detail");
+            return cwi_fail(err, CW_ERR_ARGUMENT, "an animation of levels of detail");
         const float here = (float)begin_s(parts, count, i);
         const float next = (float)begin_s(parts, count, i + 1);
         if (!isfinite(next) || !(next > here))
-            return cw_fail(err, CW_ERR_ARGUMENT,
-                           "part %zu of an animation stands at %g s and the next at %g s after "
-                           "the first; times must ascend",
-                           i, (double)here, (double)next);
+            return cwi_fail(
+                err, CW_ERR_ARGUMENT,
+                "part %zu of an animation stands at %g s and the next at %g s after "
+                "the first; times must ascend",
+                i, (double)here, (double)next);
     }
     return CW_OK;
 }
@@ -197,7 +198,7 @@ cw_status cwi_parts_place(const cw_part *parts, size_t count, const cw_write_des
         return st;
     placed->items = cwi_alloc_zeroed(count, sizeof *placed->items);
     if (!placed->items)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", count);
     const double *from = desc->local ? parts->mesh->origin : zero;
     for (size_t i = 0; i < count; i++)
         if (parts[i].mesh->triangle_count) {

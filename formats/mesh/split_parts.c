@@ -179,8 +179,8 @@ static cw_status limit_memory(const cwi_mesh_input *in, const cw_mesh *m, cw_err
         return CW_OK;
     char text[CWI_MEMORY_TEXT];
     cwi_print_memory(limit, text);
-    return cw_fail(err, CW_ERR_LIMIT,
-                   "the parts need more memory than the %s allowed (--memory)", text);
+    return cwi_fail(err, CW_ERR_LIMIT,
+                    "the parts need more memory than the %s allowed (--memory)", text);
 }
 
 cw_status cwi_parts_split(const cwi_mesh_input *in, cw_mesh *mesh, cw_part **parts,
@@ -205,7 +205,7 @@ cw_status cwi_parts_split(const cwi_mesh_input *in, cw_mesh *mesh, cw_part **par
     cwi_free(s.new);
     *parts = ok ? s.parts : NULL;
     *count = ok ? s.count : 0;
-    return ok ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to take the mesh apart");
+    return ok ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to take the mesh apart");
 }
 
 void cw_parts_free(cw_part *parts, size_t count)

@@ -84,15 +84,15 @@ static cw_status keep_key(metaimage *m, const char *line, cw_error *err)
 {
     const char *equals = strchr(line, '=');
     if (!equals)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "line %zu holds no 'Key = value'; is this a MetaImage?",
-                       m->lines.number);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "line %zu holds no 'Key = value'; is this a MetaImage?",
+                        m->lines.number);
     const int k = cwi_field_find(key_names, KEY_COUNT, line, (size_t)(equals - line));
     if (k < 0 || k == K_IGNORED)
         return CW_OK;
     if (m->value[k])
-        return cw_fail(err, CW_ERR_FORMAT, "line %zu: '%.*s' was given before", m->lines.number,
-                       (int)strcspn(line, " \t="), line);
+        return cwi_fail(err, CW_ERR_FORMAT, "line %zu: '%.*s' was given before",
+                        m->lines.number, (int)strcspn(line, " \t="), line);
     m->value[k] = equals + 1 + strspn(equals + 1, " \t");
     return CW_OK;
 }
@@ -104,7 +104,7 @@ static cw_status read_keys(metaimage *m, cw_error *err)
     while (st == CW_OK && !m->value[K_DATA_FILE]) {
         st = cwi_lines_next(&m->lines, &line, err);
         if (st == CW_OK && !line)
-            return cw_fail(err, CW_ERR_FORMAT, "'ElementDataFile' is missing");
+            return cwi_fail(err, CW_ERR_FORMAT, "'ElementDataFile' is missing");
         if (st == CW_OK && *line)
             st = keep_key(m, line, err);
     }
@@ -113,7 +113,7 @@ static cw_status read_keys(metaimage *m, cw_error *err)
 
 static cw_status require_key(const metaimage *m, key k, const char *name, cw_error *err)
 {
-    return m->value[k] ? CW_OK : cw_fail(err, CW_ERR_FORMAT, "'%s' is missing", name);
+    return m->value[k] ? CW_OK : cwi_fail(err, CW_ERR_FORMAT, "'%s' is missing", name);
 }
 
 static cw_status read_bool(const metaimage *m, key k, const char *name, bool *out,
@@ -125,8 +125,8 @@ static cw_status read_bool(const metaimage *m, key k, const char *name, bool *ou
         return CW_OK;
     const int found = cwi_field_find(words, 2, value, strlen(value));
     if (found < 0)
-        return cw_fail(err, CW_ERR_FORMAT, "'%s' is '%.40s'; it must be True or False", name,
-                       value);
+        return cwi_fail(err, CW_ERR_FORMAT, "'%s' is '%.40s'; it must be True or False", name,
+                        value);
     *out = found == 1;
     return CW_OK;
 }
@@ -181,8 +181,8 @@ static cw_status read_list(metaimage *m, cwi_source *src, int64_t *depth, cw_err
     const char *said = m->value[K_DATA_FILE] + 4;
     said += strspn(said, " \t");
     if (*said && (said[0] < '1' || said[0] > '4' || (said[1] && strcmp(said + 1, "D") != 0)))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'ElementDataFile' is 'LIST %.20s'; 'LIST 2D' was expected", said);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'ElementDataFile' is 'LIST %.20s'; 'LIST 2D' was expected", said);
     if (*said)
         *depth = said[0] - '0';
     return cwi_lines_names(&m->lines, &src->files, err);
@@ -197,9 +197,9 @@ static cw_status check_file_count(const metaimage *m, const cwi_source *src, int
     for (size_t a = (size_t)depth; a < m->dimensions; a++)
         wanted *= wanted <= INT32_MAX ? m->size[a] : 1;
     if (src->files.count != wanted)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'ElementDataFile' names %zu files; 'DimSize' needs %zu",
-                       src->files.count, wanted);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'ElementDataFile' names %zu files; 'DimSize' needs %zu",
+                        src->files.count, wanted);
     return CW_OK;
 }
 
@@ -238,8 +238,8 @@ static cw_status read_header_size(const metaimage *m, cwi_source *src, cw_error 
     cw_status st =
         cwi_field_integer("HeaderSize", m->value[K_HEADER_SIZE], -1, INT64_MAX, &size, err);
     if (st == CW_OK && size < 0 && src->encoding != CWI_RAW)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'HeaderSize' is -1; that needs binary data, uncompressed");
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'HeaderSize' is -1; that needs binary data, uncompressed");
     src->at_end = size < 0;
     if (size > 0)
         src->offset = (uint64_t)size;
@@ -287,8 +287,8 @@ static cw_status read_unit(const metaimage *m, double *mm, cw_error *err)
     const char *value = m->value[K_UNITS];
     const int found = value ? cwi_field_find(names, 4, value, strlen(value)) : 0;
     if (found < 0)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'DistanceUnits' is '%.40s'; it must be mm, cm or um", value);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'DistanceUnits' is '%.40s'; it must be mm, cm or um", value);
     *mm = scales[found];
     return CW_OK;
 }

@@ -119,10 +119,10 @@ static cw_status read_header(const cwi_input *in, mrc *m, cw_error *err)
     size_t got;
     cw_status st = cwi_stream_head(in->fd, m->bytes, HEADER, &got, &m->gzipped, err);
     if (st == CW_OK && got < HEADER)
-        return cw_fail(err, CW_ERR_FORMAT, "the header ends after %zu of %d bytes", got,
-                       HEADER);
+        return cwi_fail(err, CW_ERR_FORMAT, "the header ends after %zu of %d bytes", got,
+                        HEADER);
     if (st == CW_OK && !find_order(m))
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_FORMAT,
             "'NX', 'NY', 'NZ', 'MODE' and 'MAPC', 'MAPR', 'MAPS' are those of no MRC "
             "file in either byte order");
@@ -164,10 +164,11 @@ static cw_status read_steps(mrc *m, cw_error *err)
     if (group < STACK_GROUP || group > LAST_STACK_GROUP)
         return CW_OK;
     if (each < 1 || m->size[2] % (size_t)each != 0)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'ISPG' is %d, a stack of volumes; 'NZ' is %zu, which is no multiple of "
-                       "'MZ', %d",
-                       (int)group, m->size[2], (int)each);
+        return cwi_fail(
+            err, CW_ERR_FORMAT,
+            "'ISPG' is %d, a stack of volumes; 'NZ' is %zu, which is no multiple of "
+            "'MZ', %d",
+            (int)group, m->size[2], (int)each);
     m->steps = m->size[2] / (size_t)each;
     m->size[2] = (size_t)each;
     return CW_OK;
@@ -192,7 +193,7 @@ static cw_status read_place(const mrc *m, cwi_source *src, cw_error *err)
 {
     const int32_t extra = read_word(m, NSYMBT, 0);
     if (extra < 0)
-        return cw_fail(err, CW_ERR_FORMAT, "'NSYMBT' is %d; it must be 0 or more", (int)extra);
+        return cwi_fail(err, CW_ERR_FORMAT, "'NSYMBT' is %d; it must be 0 or more", (int)extra);
     src->skip = HEADER + (uint64_t)extra;
     src->encoding = m->gzipped ? CWI_DEFLATED : CWI_RAW;
     src->big_endian = m->big;
@@ -211,9 +212,9 @@ static cw_status cell_edges(const double angle[3], double edges[3][3], cw_error 
     const double sine = sqrt(1 - c[2] * c[2]), y = (c[0] - c[1] * c[2]) / sine;
     const double z = 1 - c[1] * c[1] - y * y;
     if (!(sine > 0 && z > 0))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'CELLB' is %g %g %g; these are not the angles of a cell", angle[0],
-                       angle[1], angle[2]);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'CELLB' is %g %g %g; these are not the angles of a cell", angle[0],
+                        angle[1], angle[2]);
     const double columns[3][3] = {{1, 0, 0}, {c[2], sine, 0}, {c[1], y, sqrt(z)}};
     for (int r = 0; r < 3; r++)
         for (int k = 0; k < 3; k++)
@@ -236,7 +237,7 @@ static cw_status read_spacing(const mrc *m, double spacing[3], cw_error *err)
         const double length = read_number(m, CELL, a);
         const int32_t intervals = read_word(m, MX, a);
         if (!(length > 0 && length < 1e30) || intervals < 1)
-            return cw_fail(
+            return cwi_fail(
                 err, CW_ERR_FORMAT,
                 "'CELLA' and 'M%c' give axis %d %g Angstrom in %d intervals; both must "
                 "be above 0",

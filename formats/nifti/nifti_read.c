@@ -197,16 +197,16 @@ static cw_status read_header(const cwi_input *in, nifti *n, cw_error *err)
     const char *inside = n->gzipped ? "inside the gzip file, " : "";
     if (got < 4 || !find_layout(n)) {
         n->swapped = false;
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "%s'sizeof_hdr' is %.0f; a NIfTI header starts with 348 or 540", inside,
-                       got < 4 ? 0.0 : get_field(n, CWI_NIFTI_SIZEOF_HDR, 0));
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "%s'sizeof_hdr' is %.0f; a NIfTI header starts with 348 or 540", inside,
+                        got < 4 ? 0.0 : get_field(n, CWI_NIFTI_SIZEOF_HDR, 0));
     }
     if (got < n->layout->bytes)
-        return cw_fail(err, CW_ERR_FORMAT, "%sthe header ends after %zu of %zu bytes", inside,
-                       got, n->layout->bytes);
+        return cwi_fail(err, CW_ERR_FORMAT, "%sthe header ends after %zu of %zu bytes", inside,
+                        got, n->layout->bytes);
     n->is_pair = has_magic(n, n->layout->pair);
     if (!n->is_pair && !has_magic(n, n->layout->one_file))
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_FORMAT,
             "%s'magic' is neither '%s' nor '%s'; Analyze 7.5 files, which have none, "
             "are not read",
@@ -233,8 +233,8 @@ static cw_status read_type(const nifti *n, cwi_source *src, size_t *components, 
         const int wanted = (int)(8 * *components * cw_type_size(src->shape.type));
         if (bits == 0 || bits == wanted)
             return CW_OK;
-        return cw_fail(err, CW_ERR_FORMAT, "'bitpix' is %d; 'datatype' %s has %d", bits, name,
-                       wanted);
+        return cwi_fail(err, CW_ERR_FORMAT, "'bitpix' is %d; 'datatype' %s has %d", bits, name,
+                        wanted);
     }
     return cwi_fail_type(err, "datatype", name);
 }
@@ -252,16 +252,16 @@ static cw_status read_dims(nifti *n, cwi_source *src, size_t colours, cw_error *
     size_t count = colours > 1 ? 1 : 0;
     const double used = get_field(n, CWI_NIFTI_DIM, 0);
     if (!(used >= 1 && used <= 7))
-        return cw_fail(err, CW_ERR_FORMAT, "'dim[0]' is %.0f; it must be 1 to 7", used);
+        return cwi_fail(err, CW_ERR_FORMAT, "'dim[0]' is %.0f; it must be 1 to 7", used);
     n->used = (int)used;
     for (int d = 1; d <= n->used; d++) {
         const double size = get_field(n, CWI_NIFTI_DIM, d);
         if (!(size >= 1 && size <= INT32_MAX))
-            return cw_fail(err, CW_ERR_FORMAT, "'dim[%d]' is %.0f; sizes are 1 to 2147483647",
-                           d, size);
+            return cwi_fail(err, CW_ERR_FORMAT, "'dim[%d]' is %.0f; sizes are 1 to 2147483647",
+                            d, size);
         if (size > 1 && (d > 5 || (d == 5 && colours > 1)))
-            return cw_fail(err, CW_ERR_FORMAT, "'dim[%d]' is %.0f; only 1 is read%s", d, size,
-                           d == 5 ? " with colours" : "");
+            return cwi_fail(err, CW_ERR_FORMAT, "'dim[%d]' is %.0f; only 1 is read%s", d, size,
+                            d == 5 ? " with colours" : "");
         if (size > 1 || d < 4)
             axes[count++] = (cwi_axis){roles[d], (size_t)size};
     }
@@ -274,7 +274,7 @@ static cw_status name_image(const cwi_input *in, cwi_source *src, cw_error *err)
     const char *slash = strrchr(in->path, '/');
     char *name = cwi_strdup(slash ? slash + 1 : in->path);
     if (!name)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a file name");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a file name");
     const bool lower = cwi_has_extension(name, ".hdr .hdr.gz");
     char *extension = NULL;
     for (char *s = name; lower && (s = strstr(s, ".hdr")); s++)
@@ -284,7 +284,7 @@ static cw_status name_image(const cwi_input *in, cwi_source *src, cw_error *err)
         memcpy(extension, ".img", 4);
         st = cwi_names_add(&src->files, name, err);
     } else {
-        st = cw_fail(
+        st = cwi_fail(
             err, CW_ERR_FORMAT,
             "'magic' says that the voxels are in a second file; the header of such a pair "
             "must be named .hdr");
@@ -300,9 +300,9 @@ static cw_status read_place(const cwi_input *in, const nifti *n, cwi_source *src
     if (offset == 0)
         offset = least;
     if (!(offset >= least && offset < 0x1p53) || offset != floor(offset))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'vox_offset' is %g; it must be a whole number of at least %.0f", offset,
-                       least);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'vox_offset' is %g; it must be a whole number of at least %.0f",
+                        offset, least);
     src->skip = (uint64_t)offset;
     src->encoding = n->gzipped ? CWI_DEFLATED : CWI_RAW;
     src->big_endian = n->swapped != cwi_machine_is_big_endian();
@@ -333,9 +333,9 @@ static cw_status read_spacing(const nifti *n, double spacing[3], cw_error *err)
         if (spacing[a] > 0 && isfinite(spacing[a]))
             continue;
         if (size > 1)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "'pixdim[%d]' is %g; it must be finite and not 0", a + 1,
-                           get_field(n, CWI_NIFTI_PIXDIM, a + 1));
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "'pixdim[%d]' is %g; it must be finite and not 0", a + 1,
+                            get_field(n, CWI_NIFTI_PIXDIM, a + 1));
         spacing[a] = 1;
     }
     return CW_OK;
@@ -345,8 +345,9 @@ static cw_status check_quaternion(const double q[4], cw_error *err)
 {
     if (isfinite(q[1]) && isfinite(q[2]) && isfinite(q[3]))
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "'quatern_b', 'c', 'd' are %g %g %g; they must be finite", q[1], q[2], q[3]);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "'quatern_b', 'c', 'd' are %g %g %g; they must be finite", q[1], q[2],
+                    q[3]);
 }
 
 /* Reads the frame by method 2: a rotation by a unit quaternion whose first number is computed

@@ -94,8 +94,8 @@ static cw_status read_words(cwi_nrrd *n, cwi_nrrd_field f, const char *name,
             set(&n->axis[count], word);
     if (count == n->dimension)
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT, "'%s' lists %zu words; 'dimension' says %zu", name,
-                   count, n->dimension);
+    return cwi_fail(err, CW_ERR_FORMAT, "'%s' lists %zu words; 'dimension' says %zu", name,
+                    count, n->dimension);
 }
 
 /* Reads one number per axis; missing ones keep their values. */
@@ -134,10 +134,10 @@ static cw_status read_space(cwi_nrrd *n, cw_error *err)
         if (cwi_field_find(&spaces[i].names, 1, name, strlen(name)) == 0)
             n->space = i;
     if (name && n->space < 0)
-        return cw_fail(err, CW_ERR_FORMAT, "'space' is '%.40s', which NRRD does not define",
-                       name);
+        return cwi_fail(err, CW_ERR_FORMAT, "'space' is '%.40s', which NRRD does not define",
+                        name);
     if (name && n->value[CWI_NRRD_SPACE_DIMENSION])
-        return cw_fail(err, CW_ERR_FORMAT, "'space' and 'space dimension' exclude each other");
+        return cwi_fail(err, CW_ERR_FORMAT, "'space' and 'space dimension' exclude each other");
     cw_status st = CW_OK;
     if (n->value[CWI_NRRD_SPACE_DIMENSION])
         st = cwi_field_integer("space dimension", n->value[CWI_NRRD_SPACE_DIMENSION], 2, 3,
@@ -165,8 +165,8 @@ static cw_status read_vector(const cwi_nrrd *n, const char *name, const char **t
         return CW_OK;
     }
 fail:
-    return cw_fail(err, CW_ERR_FORMAT, "'%s' holds '%.60s' where (%zu finite numbers) belong",
-                   name, *text, n->space_dimension);
+    return cwi_fail(err, CW_ERR_FORMAT, "'%s' holds '%.60s' where (%zu finite numbers) belong",
+                    name, *text, n->space_dimension);
 }
 
 static cw_status read_directions(cwi_nrrd *n, cw_error *err)
@@ -183,14 +183,14 @@ static cw_status read_directions(cwi_nrrd *n, cw_error *err)
             s += 4;
         if (st == CW_OK && a->vector[3] != 0 &&
             (a->vector[0] != 0 || a->vector[1] != 0 || a->vector[2] != 0))
-            return cw_fail(
+            return cwi_fail(
                 err, CW_ERR_FORMAT,
                 "vector %zu of 'space directions' runs through space and time at once", count);
     }
     if (st == CW_OK && s && count != n->dimension)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'space directions' lists %zu vectors; 'dimension' says %zu", count,
-                       n->dimension);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'space directions' lists %zu vectors; 'dimension' says %zu", count,
+                        n->dimension);
     return st;
 }
 
@@ -203,9 +203,9 @@ static cw_status read_space_units(cwi_nrrd *n, cw_error *err)
         if (count < n->space_dimension)
             find_unit(word, &n->world_mm[count], &n->world_seconds);
     if (s && count != n->space_dimension)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'space units' lists %zu words; the space has %zu axes", count,
-                       n->space_dimension);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'space units' lists %zu words; the space has %zu axes", count,
+                        n->space_dimension);
     return CW_OK;
 }
 
@@ -214,7 +214,7 @@ static cw_status read_world(cwi_nrrd *n, cw_error *err)
     const char *origin = n->value[CWI_NRRD_SPACE_ORIGIN];
     cw_status st = read_space(n, err);
     if (st == CW_OK && !n->space_dimension && (origin || n->value[CWI_NRRD_SPACE_DIRECTIONS]))
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_FORMAT,
             "'space directions' and 'space origin' need 'space' or 'space dimension'");
     if (st == CW_OK)
@@ -272,20 +272,20 @@ static cw_status assign_roles(const cwi_nrrd *n, cwi_axis roles[CWI_NRRD_MOST_AX
                                !n->value[CWI_NRRD_SPACE_DIRECTIONS];
         roles[i].size = a->size;
         if (is_space && spatial == 3 && !is_fourth)
-            return cw_fail(err, CW_ERR_FORMAT, "axis %zu of 'sizes' is a fourth axis of space",
-                           i);
+            return cwi_fail(err, CW_ERR_FORMAT, "axis %zu of 'sizes' is a fourth axis of space",
+                            i);
         roles[i].role = is_space && !is_fourth ? (cwi_role)(CWI_AXIS_X + spatial++)
                         : is_fourth            ? CWI_AXIS_STEP
                                                : other_role(a, i == 0);
         if (seen & 1u << roles[i].role)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "axis %zu of 'sizes' is a second axis of %s; one is read", i,
-                           roles[i].role == CWI_AXIS_STEP ? "time" : "values");
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "axis %zu of 'sizes' is a second axis of %s; one is read", i,
+                            roles[i].role == CWI_AXIS_STEP ? "time" : "values");
         seen |= 1u << roles[i].role;
     }
     if (spatial == 0 || (spatial == 1 && n->value[CWI_NRRD_SPACE_DIRECTIONS]))
-        return cw_fail(err, CW_ERR_FORMAT, "%d axes of 'sizes' are of space; 2 or 3 are needed",
-                       spatial);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "%d axes of 'sizes' are of space; 2 or 3 are needed", spatial);
     return CW_OK;
 }
 

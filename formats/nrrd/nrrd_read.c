@@ -64,10 +64,10 @@ static cw_status read_magic(cwi_nrrd *n, cw_error *err)
     if (st != CW_OK)
         return st;
     if (!line || strncmp(line, "NRRD000", 7) != 0)
-        return cw_fail(err, CW_ERR_FORMAT, "the first line is not 'NRRD0001' to 'NRRD0005'");
+        return cwi_fail(err, CW_ERR_FORMAT, "the first line is not 'NRRD0001' to 'NRRD0005'");
     if (line[7] < '1' || line[7] > '5' || line[8])
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "the version is '%.20s'; NRRD0001 to NRRD0005 are read", line);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the version is '%.20s'; NRRD0001 to NRRD0005 are read", line);
     return CW_OK;
 }
 
@@ -75,7 +75,8 @@ static cw_status keep_field(cwi_nrrd *n, const char *line, cw_error *err)
 {
     const char *colon = strchr(line, ':');
     if (!colon)
-        return cw_fail(err, CW_ERR_FORMAT, "line %zu holds no 'field: value'", n->lines.number);
+        return cwi_fail(err, CW_ERR_FORMAT, "line %zu holds no 'field: value'",
+                        n->lines.number);
     if (colon[1] == '=') { /* a private key: Slicer names the segments of a label map */
         n->has_segments |= strncmp(line, "Segment", 7) == 0 && isdigit((unsigned char)line[7]);
         return CW_OK;
@@ -83,11 +84,11 @@ static cw_status keep_field(cwi_nrrd *n, const char *line, cw_error *err)
     const int f =
         cwi_field_find(field_names, CWI_NRRD_FIELD_COUNT, line, (size_t)(colon - line));
     if (f < 0)
-        return cw_fail(err, CW_ERR_FORMAT, "line %zu: '%.*s' is not a field of NRRD",
-                       n->lines.number, (int)(colon - line < 60 ? colon - line : 60), line);
+        return cwi_fail(err, CW_ERR_FORMAT, "line %zu: '%.*s' is not a field of NRRD",
+                        n->lines.number, (int)(colon - line < 60 ? colon - line : 60), line);
     if (n->value[f] && f != CWI_NRRD_IGNORED)
-        return cw_fail(err, CW_ERR_FORMAT, "line %zu: the field '%.*s' appears a second time",
-                       n->lines.number, (int)(colon - line < 60 ? colon - line : 60), line);
+        return cwi_fail(err, CW_ERR_FORMAT, "line %zu: the field '%.*s' appears a second time",
+                        n->lines.number, (int)(colon - line < 60 ? colon - line : 60), line);
     n->value[f] = colon + 1 + strspn(colon + 1, " \t");
     return CW_OK;
 }
@@ -118,7 +119,7 @@ static cw_status require_field(const cwi_nrrd *n, cwi_nrrd_field f, cw_error *er
 {
     return n->value[f]
                ? CW_OK
-               : cw_fail(err, CW_ERR_FORMAT, "the field '%s' is missing", field_names[f]);
+               : cwi_fail(err, CW_ERR_FORMAT, "the field '%s' is missing", field_names[f]);
 }
 
 /* --- type of the voxels ------------------------------------------------------------------ */
@@ -172,15 +173,15 @@ static cw_status read_encoding(const cwi_nrrd *n, cwi_source *src, cw_error *err
     const char *name = n->value[CWI_NRRD_ENCODING];
     const int found = cwi_field_find(names, count, name, strlen(name));
     if (found < 0)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'encoding' is %.40s; those that are read are raw, gzip, bzip2, ascii "
-                       "and hex",
-                       name);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'encoding' is %.40s; those that are read are raw, gzip, bzip2, ascii "
+                        "and hex",
+                        name);
     if (found == CWI_BZIP2 && !cwi_bzip2_present())
-        return cw_fail(err, CW_ERR_UNSUPPORTED,
-                       "'encoding' is %.40s; this build has no libbz2 (libbz2-dev, "
-                       "CUBEWRIGHT_BZIP2)",
-                       name);
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "'encoding' is %.40s; this build has no libbz2 (libbz2-dev, "
+                        "CUBEWRIGHT_BZIP2)",
+                        name);
     src->encoding = (cwi_encoding)found;
     return CW_OK;
 }
@@ -195,9 +196,9 @@ static cw_status read_endian(const cwi_nrrd *n, cwi_source *src, cw_error *err)
     if (found >= 0 || (!name && !matters))
         return CW_OK;
     if (!name)
-        return cw_fail(err, CW_ERR_FORMAT, "the field 'endian' is missing; %s voxels need it",
-                       cw_type_name(src->shape.type));
-    return cw_fail(err, CW_ERR_FORMAT, "'endian' is '%.40s'; it must be little or big", name);
+        return cwi_fail(err, CW_ERR_FORMAT, "the field 'endian' is missing; %s voxels need it",
+                        cw_type_name(src->shape.type));
+    return cwi_fail(err, CW_ERR_FORMAT, "'endian' is '%.40s'; it must be little or big", name);
 }
 
 /* --- place of the voxels ----------------------------------------------------------------- */
@@ -213,7 +214,7 @@ static cw_status read_skips(const cwi_nrrd *n, cwi_source *src, cw_error *err)
         st = cwi_field_integer("byte skip", n->value[CWI_NRRD_BYTE_SKIP], -1, INT64_MAX, &bytes,
                                err);
     if (st == CW_OK && bytes < 0 && src->encoding != CWI_RAW)
-        return cw_fail(err, CW_ERR_FORMAT, "'byte skip' is -1; that needs the raw encoding");
+        return cwi_fail(err, CW_ERR_FORMAT, "'byte skip' is -1; that needs the raw encoding");
     src->lines = (uint64_t)lines;
     src->at_end = bytes < 0;
     src->skip = bytes > 0 ? (uint64_t)bytes : 0;
@@ -227,14 +228,14 @@ static cw_status check_file_count(const cwi_nrrd *n, const cwi_source *src, int6
 {
     size_t wanted = 1;
     if (depth < 1 || depth > (int64_t)n->dimension)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'data file' gives its files %lld axes; 'dimension' says %zu",
-                       (long long)depth, n->dimension);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'data file' gives its files %lld axes; 'dimension' says %zu",
+                        (long long)depth, n->dimension);
     for (size_t a = (size_t)depth; a < n->dimension; a++)
         wanted *= wanted <= INT32_MAX ? n->axis[a].size : 1;
     if (src->files.count != wanted)
-        return cw_fail(err, CW_ERR_FORMAT, "'data file' names %zu files; 'sizes' needs %zu",
-                       src->files.count, wanted);
+        return cwi_fail(err, CW_ERR_FORMAT, "'data file' names %zu files; 'sizes' needs %zu",
+                        src->files.count, wanted);
     return CW_OK;
 }
 
@@ -269,7 +270,7 @@ static cw_status check_voxels_follow(const cwi_input *in, const cwi_source *src,
 {
     if (src->files.count || src->offset < in->size)
         return CW_OK;
-    return cw_fail(
+    return cwi_fail(
         err, CW_ERR_FORMAT,
         "the file ends with its header: no 'data file' is named and no voxels follow an "
         "empty line");

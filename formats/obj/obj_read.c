@@ -26,7 +26,7 @@ typedef struct obj {
 static cw_status read_normal(obj *o, cwi_scan *s, cw_error *err)
 {
     if (o->normal_count == UINT32_MAX - 1)
-        return cw_fail(err, CW_ERR_LIMIT, "more than %u normals", UINT32_MAX - 1);
+        return cwi_fail(err, CW_ERR_LIMIT, "more than %u normals", UINT32_MAX - 1);
     cw_status st = cwi_mesh_grow(o->build.in, &o->normals, &o->normal_room, o->normal_count + 1,
                                  3 * sizeof *o->normals, err);
     for (size_t a = 0; a < 3 && st == CW_OK; a++) {
@@ -119,9 +119,9 @@ static cw_status add_corner(obj *o, const cwi_scan *s, const cwi_word *word, cw_
         return cwi_scan_fail(s, word, "a corner", "numbers as in 1/2/3", err);
     const int64_t index = to_index(vertex, o->build.point_count);
     if (vertex == 0 || index < 0 || index >= UINT32_MAX)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "line %zu: a corner names vertex %lld; there are %zu so far, from 1",
-                       s->line, (long long)vertex, o->build.point_count);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "line %zu: a corner names vertex %lld; there are %zu so far, from 1",
+                        s->line, (long long)vertex, o->build.point_count);
     cw_status st = cwi_build_corner(&o->build, index, err);
     if (st == CW_OK && o->normal_count)
         st = name_normal(o, (uint32_t)index, normal ? to_index(normal, o->normal_count) : -1,

@@ -56,8 +56,8 @@ static cw_status read_keyword(off *o, cwi_scan *s, cw_error *err)
     if (!parse_keyword(keyword, o, &odd))
         return cwi_scan_fail(s, &word, "the first word", "OFF, COFF, NOFF or STOFF", err);
     if (odd)
-        return cw_fail(err, CW_ERR_FORMAT, "'%s' has points of another dimension than 3",
-                       keyword);
+        return cwi_fail(err, CW_ERR_FORMAT, "'%s' has points of another dimension than 3",
+                        keyword);
     return CW_OK;
 }
 
@@ -67,15 +67,15 @@ static cw_status check_counts(const cwi_scan *s, int64_t vertices, int64_t faces
 {
     const uint64_t room = cwi_scan_left(s) + 1;
     if (vertices < 0 || faces < 0)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "line %zu: there cannot be %lld vertices and %lld faces", s->line,
-                       (long long)vertices, (long long)faces);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "line %zu: there cannot be %lld vertices and %lld faces", s->line,
+                        (long long)vertices, (long long)faces);
     if ((uint64_t)vertices > room / 6 || (uint64_t)faces > (room - 6 * (uint64_t)vertices) / 2)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "line %zu counts %lld vertices and %lld faces; the file has only %llu "
-                       "bytes for them",
-                       s->line, (long long)vertices, (long long)faces,
-                       (unsigned long long)(room - 1));
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "line %zu counts %lld vertices and %lld faces; the file has only %llu "
+                        "bytes for them",
+                        s->line, (long long)vertices, (long long)faces,
+                        (unsigned long long)(room - 1));
     return CW_OK;
 }
 
@@ -111,7 +111,7 @@ static cw_status read_counts(off *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *s
     cwi_word word = {0};
     cw_status st = first_word(s, &word, mesh, said, err);
     if (st == CW_OK && cwi_word_is(&word, "BINARY"))
-        return cw_fail(err, CW_ERR_FORMAT, "binary OFF is not read, only its text form");
+        return cwi_fail(err, CW_ERR_FORMAT, "binary OFF is not read, only its text form");
     if (st == CW_OK && !cwi_word_integer(&word, &vertices))
         return cwi_scan_fail(s, &word, "the number of vertices", "a whole number", err);
     if (st == CW_OK)
@@ -179,8 +179,8 @@ static cw_status read_face(off *o, cwi_scan *s, cw_mesh_file *said, cw_error *er
     int64_t corners, corner;
     cw_status st = cwi_scan_integer(s, "a face's number of corners", &corners, err);
     if (st == CW_OK && corners < 0)
-        return cw_fail(err, CW_ERR_FORMAT, "line %zu: a face has %lld corners", s->line,
-                       (long long)corners);
+        return cwi_fail(err, CW_ERR_FORMAT, "line %zu: a face has %lld corners", s->line,
+                        (long long)corners);
     for (int64_t c = 0; st == CW_OK && c < corners; c++) {
         st = cwi_scan_integer(s, "a corner", &corner, err);
         if (st == CW_OK)
@@ -198,8 +198,8 @@ static cw_status go_to_line(cwi_scan *s, const char *what, uint64_t i, uint64_t 
     bool found;
     cw_status st = cwi_scan_next_line(s, &found, err);
     if (st == CW_OK && !found)
-        return cw_fail(err, CW_ERR_FORMAT, "the file ends after %llu of %llu %s",
-                       (unsigned long long)i, (unsigned long long)count, what);
+        return cwi_fail(err, CW_ERR_FORMAT, "the file ends after %llu of %llu %s",
+                        (unsigned long long)i, (unsigned long long)count, what);
     return st;
 }
 

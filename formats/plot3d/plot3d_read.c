@@ -77,10 +77,10 @@ static cw_status find_form(int fd, uint64_t size, const char *what, size_t condi
             return CW_OK;
         }
     }
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "%llu bytes are not those of a PLOT3D %s of one grid in three dimensions, "
-                   "without blanking, of float or double",
-                   (unsigned long long)size, what);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "%llu bytes are not those of a PLOT3D %s of one grid in three dimensions, "
+                    "without blanking, of float or double",
+                    (unsigned long long)size, what);
 }
 
 static cw_status describe_array(const void *file, size_t piece, cwi_grid_role role,
@@ -111,11 +111,12 @@ static cw_status choose_quantity(const char *wanted, size_t *quantity, cw_error 
             *quantity = n;
             return CW_OK;
         }
-    return wanted ? cw_fail(err, CW_ERR_ARGUMENT,
-                            "there is no array '%s'; a PLOT3D solution has Density, MomentumX, "
-                            "MomentumY, MomentumZ and StagnationEnergy",
-                            wanted)
-                  : CW_OK;
+    return wanted
+               ? cwi_fail(err, CW_ERR_ARGUMENT,
+                          "there is no array '%s'; a PLOT3D solution has Density, MomentumX, "
+                          "MomentumY, MomentumZ and StagnationEnergy",
+                          wanted)
+               : CW_OK;
 }
 
 /* Finds the encodings of both files, which must have the same sizes. */
@@ -128,9 +129,9 @@ static cw_status find_forms(const cwi_input *in, const cwi_input *points, plot3d
     st = find_form(in->fd, in->size, "solution", CONDITIONS, QUANTITIES, &p->solution, err);
     const size_t *a = p->points.along, *b = p->solution.along;
     if (st == CW_OK && memcmp(a, b, sizeof p->points.along) != 0)
-        st = cw_fail(err, CW_ERR_FORMAT,
-                     "it is of %zu x %zu x %zu points; '%s' has %zu x %zu x %zu", b[0], b[1],
-                     b[2], points->path, a[0], a[1], a[2]);
+        st = cwi_fail(err, CW_ERR_FORMAT,
+                      "it is of %zu x %zu x %zu points; '%s' has %zu x %zu x %zu", b[0], b[1],
+                      b[2], points->path, a[0], a[1], a[2]);
     return st;
 }
 
@@ -160,8 +161,8 @@ cw_status cwi_plot3d_read(const cwi_input *in, const cw_read_desc *desc, cw_volu
     plot3d p = {0};
     cwi_input points = {0};
     if (!desc->points)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "a PLOT3D solution needs the file of its grid's points (--points)");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "a PLOT3D solution needs the file of its grid's points (--points)");
     cw_status st = choose_quantity(desc->array, &p.quantity, err);
     if (st != CW_OK)
         return st;
@@ -173,7 +174,7 @@ cw_status cwi_plot3d_read(const cwi_input *in, const cw_read_desc *desc, cw_volu
         return cwi_fail_in(err, st, desc->points);
     p.path = realpath(desc->points, NULL);
     st = p.path ? find_forms(in, &points, &p, err)
-                : cw_fail(err, CW_ERR_IO, "'%s' cannot be found", desc->points);
+                : cwi_fail(err, CW_ERR_IO, "'%s' cannot be found", desc->points);
     if (st == CW_OK)
         st = read_grid(in, &points, &p, desc, volume, err);
     free(p.path);

@@ -56,10 +56,10 @@ static cw_status parse_type(const char **rest, const char *line, cwi_ply_type *t
             *type = (cwi_ply_type)t;
             return CW_OK;
         }
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "'%.60s' has a property of type '%.20s'; the types are char, uchar, short, "
-                   "ushort, int, uint, float, double",
-                   line, word);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "'%.60s' has a property of type '%.20s'; the types are char, uchar, short, "
+                    "ushort, int, uint, float, double",
+                    line, word);
 }
 
 static cw_status parse_format(cwi_ply_header *h, const char *rest, cw_error *err)
@@ -70,10 +70,10 @@ static cw_status parse_format(cwi_ply_header *h, const char *rest, cw_error *err
     h->big_endian = strcmp(word, "binary_big_endian") == 0;
     if (h->text || h->big_endian || strcmp(word, "binary_little_endian") == 0)
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "'format' is '%.30s'; there are ascii, binary_little_endian and "
-                   "binary_big_endian",
-                   word);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "'format' is '%.30s'; there are ascii, binary_little_endian and "
+                    "binary_big_endian",
+                    word);
 }
 
 static cw_status parse_element(cwi_ply_header *h, const char *rest, cw_error *err)
@@ -82,19 +82,19 @@ static cw_status parse_element(cwi_ply_header *h, const char *rest, cw_error *er
     int64_t count;
     cwi_next_text_word(&rest, word);
     if (h->element_count == CWI_PLY_ELEMENTS)
-        return cw_fail(err, CW_ERR_FORMAT, "the header has more than %d elements",
-                       CWI_PLY_ELEMENTS);
+        return cwi_fail(err, CW_ERR_FORMAT, "the header has more than %d elements",
+                        CWI_PLY_ELEMENTS);
     cwi_ply_element *e = &h->elements[h->element_count++];
     *e = (cwi_ply_element){.first = h->property_count, .end = h->property_count};
     snprintf(e->name, sizeof e->name, "%.*s", CWI_PLY_NAME - 1, word);
     snprintf(e->what, sizeof e->what, "element '%.*s'", CWI_PLY_NAME - 1, word);
     for (size_t i = 0; i + 1 < h->element_count; i++)
         if (strcmp(h->elements[i].name, e->name) == 0)
-            return cw_fail(err, CW_ERR_FORMAT, "the header has two elements '%s'", e->name);
+            return cwi_fail(err, CW_ERR_FORMAT, "the header has two elements '%s'", e->name);
     cw_status st = cwi_field_integer("element", rest, 0, INT64_MAX, &count, err);
     e->count = st == CW_OK ? (uint64_t)count : 0;
     if (strcmp(word, "tristrips") == 0)
-        return cw_fail(err, CW_ERR_FORMAT, "element 'tristrips' is not read, only 'face'");
+        return cwi_fail(err, CW_ERR_FORMAT, "element 'tristrips' is not read, only 'face'");
     return st;
 }
 
@@ -114,10 +114,10 @@ static cw_status parse_property(cwi_ply_header *h, const char *rest, const char 
     char word[CWI_WORD_BYTES] = "";
     const char *behind = rest;
     if (h->element_count == 0)
-        return cw_fail(err, CW_ERR_FORMAT, "'%.60s' stands before any element", line);
+        return cwi_fail(err, CW_ERR_FORMAT, "'%.60s' stands before any element", line);
     if (h->property_count == CWI_PLY_PROPERTIES)
-        return cw_fail(err, CW_ERR_FORMAT, "the header has more than %d properties",
-                       CWI_PLY_PROPERTIES);
+        return cwi_fail(err, CW_ERR_FORMAT, "the header has more than %d properties",
+                        CWI_PLY_PROPERTIES);
     cwi_ply_element *e = &h->elements[h->element_count - 1];
     cwi_ply_property *p = &h->properties[h->property_count++];
     e->end = h->property_count;
@@ -132,8 +132,8 @@ static cw_status parse_property(cwi_ply_header *h, const char *rest, const char 
     if (st == CW_OK)
         st = parse_type(&rest, line, &p->type, err);
     if (st == CW_OK && p->is_list && p->count_type >= CWI_PLY_F32)
-        return cw_fail(err, CW_ERR_FORMAT, "'%.60s' counts with a type that is not whole",
-                       line);
+        return cwi_fail(err, CW_ERR_FORMAT, "'%.60s' counts with a type that is not whole",
+                        line);
     word[0] = '\0';
     cwi_next_text_word(&rest, word);
     p->role = find_role(e, word, p->is_list);
@@ -175,8 +175,8 @@ static cw_status parse_line(cwi_ply_header *h, const char *line, bool *ours, boo
     else if (strcmp(word, "end_header") == 0)
         *done = true;
     else if (*word && strcmp(word, "obj_info") != 0)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "the header holds '%.40s', which is not a keyword of PLY", line);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the header holds '%.40s', which is not a keyword of PLY", line);
     return CW_OK;
 }
 
@@ -187,17 +187,17 @@ static cw_status parse_lines(cwi_ply_header *h, cwi_lines *lines, cw_mesh_file *
     bool ours = false, done = false;
     cw_status st = cwi_lines_next(lines, &line, err);
     if (st == CW_OK && (!line || strcmp(line, "ply") != 0))
-        return cw_fail(err, CW_ERR_FORMAT, "the first line is not 'ply'");
+        return cwi_fail(err, CW_ERR_FORMAT, "the first line is not 'ply'");
     if (st == CW_OK)
         st = cwi_lines_next(lines, &line, err);
     if (st == CW_OK && (!line || strncmp(line, "format ", 7) != 0))
-        return cw_fail(err, CW_ERR_FORMAT, "the second line is not 'format ...'");
+        return cwi_fail(err, CW_ERR_FORMAT, "the second line is not 'format ...'");
     if (st == CW_OK)
         st = parse_format(h, line + 7, err);
     while (st == CW_OK && !done) {
         st = cwi_lines_next(lines, &line, err);
         if (st == CW_OK && !line)
-            return cw_fail(err, CW_ERR_FORMAT, "the header has no 'end_header'");
+            return cwi_fail(err, CW_ERR_FORMAT, "the header has no 'end_header'");
         if (st == CW_OK)
             st = parse_line(h, line, &ours, &done, said, err);
     }
@@ -224,12 +224,12 @@ static cw_status check_counts(const cwi_ply_header *h, uint64_t left, cw_error *
         const cwi_ply_element *e = &h->elements[i];
         const uint64_t bytes = least_bytes(h, e);
         if (e->count && !bytes)
-            return cw_fail(err, CW_ERR_FORMAT, "element '%s' has no properties", e->name);
+            return cwi_fail(err, CW_ERR_FORMAT, "element '%s' has no properties", e->name);
         if (e->count && e->count > left / bytes)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "element '%s' is there %llu times; the file has only %llu bytes "
-                           "for it",
-                           e->name, (unsigned long long)e->count, (unsigned long long)left);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "element '%s' is there %llu times; the file has only %llu bytes "
+                            "for it",
+                            e->name, (unsigned long long)e->count, (unsigned long long)left);
         left -= e->count * bytes;
     }
     return CW_OK;

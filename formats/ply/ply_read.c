@@ -68,8 +68,8 @@ static cw_status read_whole(const ply *p, cwi_scan *s, const cwi_ply_element *e,
     double number = 0;
     cw_status st = read_number(p, s, e, type, &number, err);
     if (st == CW_OK && (!(fabs(number) < 1e15) || number != floor(number)))
-        return cw_fail(err, CW_ERR_FORMAT, "element '%s' holds %g where a whole number belongs",
-                       e->name, number);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "element '%s' holds %g where a whole number belongs", e->name, number);
     if (st == CW_OK)
         *whole = (int64_t)number;
     return st;
@@ -86,8 +86,8 @@ static cw_status read_list(ply *p, cwi_scan *s, const cwi_ply_element *e,
     const bool is_face = property->role == CWI_PLY_INDICES;
     cw_status st = read_whole(p, s, e, property->count_type, &count, err);
     if (st == CW_OK && count < 0)
-        return cw_fail(err, CW_ERR_FORMAT, "element '%s' has a list of %lld numbers", e->name,
-                       (long long)count);
+        return cwi_fail(err, CW_ERR_FORMAT, "element '%s' has a list of %lld numbers", e->name,
+                        (long long)count);
     for (int64_t i = 0; st == CW_OK && i < count; i++) {
         if (!is_face) {
             st = read_number(p, s, e, property->type, &number, err);
@@ -184,15 +184,15 @@ static cw_status find_roles(ply *p, cw_error *err)
     for (size_t i = 0; i < h->property_count; i++) {
         const cwi_ply_role role = h->properties[i].role;
         if (role != CWI_PLY_NOTHING && p->has[role])
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "an element or a property of it is there twice in the header");
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "an element or a property of it is there twice in the header");
         p->has[role] = true;
     }
     if (!(p->has[CWI_PLY_X] && p->has[CWI_PLY_Y] && p->has[CWI_PLY_Z]))
-        return cw_fail(err, CW_ERR_FORMAT, "element 'vertex' has no properties x, y and z");
+        return cwi_fail(err, CW_ERR_FORMAT, "element 'vertex' has no properties x, y and z");
     const cwi_ply_element *face = find_element(h, "face");
     if (face && face->count && !p->has[CWI_PLY_INDICES])
-        return cw_fail(err, CW_ERR_FORMAT, "element 'face' has no list 'vertex_indices'");
+        return cwi_fail(err, CW_ERR_FORMAT, "element 'face' has no list 'vertex_indices'");
     return CW_OK;
 }
 
@@ -250,7 +250,7 @@ cw_status cwi_ply_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
 {
     ply *p = cwi_alloc_zeroed(1, sizeof *p);
     if (!p)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the header");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the header");
     p->build.in = in;
     cw_status st = cwi_ply_parse(&in->file, &p->header, said, err);
     if (st == CW_OK)

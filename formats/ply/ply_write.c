@@ -77,8 +77,8 @@ static cw_status write_header(const cwi_parts *parts, const cwi_mesh_output *out
 cw_status cwi_ply_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err)
 {
     if (parts->vertices > UINT32_MAX)
-        return cw_fail(err, CW_ERR_LIMIT, "PLY counts at most %u vertices; the mesh has %llu",
-                       UINT32_MAX, (unsigned long long)parts->vertices);
+        return cwi_fail(err, CW_ERR_LIMIT, "PLY counts at most %u vertices; the mesh has %llu",
+                        UINT32_MAX, (unsigned long long)parts->vertices);
     out->total = (size_t)(parts->vertices + parts->triangles);
     cw_status st = cwi_check_single(parts, err);
     if (st == CW_OK)

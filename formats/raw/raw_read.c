@@ -11,8 +11,8 @@
 
 static cw_status fail_dims(const char *text, cw_error *err)
 {
-    return cw_fail(err, CW_ERR_ARGUMENT,
-                   "'dims' is '%.40s'; it must be three sizes such as 512x512x300", text);
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "'dims' is '%.40s'; it must be three sizes such as 512x512x300", text);
 }
 
 static cw_status parse_dims(const char *text, cw_raw_layout *layout, cw_error *err)
@@ -32,10 +32,10 @@ static cw_status parse_dims(const char *text, cw_raw_layout *layout, cw_error *e
 
 static cw_status fail_spacing(const char *text, cw_error *err)
 {
-    return cw_fail(err, CW_ERR_ARGUMENT,
-                   "'spacing' is '%.40s'; it must be three lengths in mm above 0, such as "
-                   "0.5x0.5x1",
-                   text);
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "'spacing' is '%.40s'; it must be three lengths in mm above 0, such as "
+                    "0.5x0.5x1",
+                    text);
 }
 
 static cw_status parse_spacing(const char *text, cw_raw_layout *layout, cw_error *err)
@@ -120,16 +120,16 @@ static cw_status parse_pair(const char *pair, unsigned *seen, cw_raw_layout *lay
         if (strncmp(keys[k].name, pair, length) != 0 || keys[k].name[length])
             continue;
         if (!pair[length])
-            return cw_fail(err, CW_ERR_ARGUMENT, "'%s' needs a value: %s=...", pair, pair);
+            return cwi_fail(err, CW_ERR_ARGUMENT, "'%s' needs a value: %s=...", pair, pair);
         if (*seen & 1u << k)
-            return cw_fail(err, CW_ERR_ARGUMENT, "'%s' is given twice", keys[k].name);
+            return cwi_fail(err, CW_ERR_ARGUMENT, "'%s' is given twice", keys[k].name);
         *seen |= 1u << k;
         return keys[k].parse(pair + length + 1, layout, err);
     }
-    return cw_fail(err, CW_ERR_ARGUMENT,
-                   "'%.*s' is not a key of a layout; known are dims, type, offset, spacing, "
-                   "components, steps",
-                   (int)(length < 40 ? length : 40), pair);
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "'%.*s' is not a key of a layout; known are dims, type, offset, spacing, "
+                    "components, steps",
+                    (int)(length < 40 ? length : 40), pair);
 }
 
 /* Returns the length of a pair: up to a comma that no number follows. Sizes and lengths may
@@ -157,9 +157,9 @@ cw_status cw_raw_layout_parse(const char *text, cw_raw_layout *layout, cw_error 
         text += length + (text[length] == ',');
     }
     if (st == CW_OK && !(seen & 1u))
-        return cw_fail(err, CW_ERR_ARGUMENT, "'dims' is missing: dims=512x512x300");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "'dims' is missing: dims=512x512x300");
     if (st == CW_OK && !(seen & 2u))
-        return cw_fail(err, CW_ERR_ARGUMENT, "'type' is missing: type=u16le");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "'type' is missing: type=u16le");
     if (st == CW_OK)
         *layout = out;
     return st;
@@ -179,12 +179,12 @@ static void set_frame(const cw_raw_layout *layout, cw_volume *shape)
 static cw_status check_layout(const cw_raw_layout *layout, cw_error *err)
 {
     if (!cw_type_size(layout->type))
-        return cw_fail(err, CW_ERR_ARGUMENT, "'type' is %d, which is not a voxel type",
-                       (int)layout->type);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "'type' is %d, which is not a voxel type",
+                        (int)layout->type);
     for (int a = 0; a < 3; a++)
         if (layout->dim[a] < 1 || layout->dim[a] > INT32_MAX)
-            return cw_fail(err, CW_ERR_ARGUMENT, "'dims' holds %zu; sizes are 1 to 2147483647",
-                           layout->dim[a]);
+            return cwi_fail(err, CW_ERR_ARGUMENT, "'dims' holds %zu; sizes are 1 to 2147483647",
+                            layout->dim[a]);
     return CW_OK;
 }
 

@@ -57,8 +57,8 @@ static cw_status limit_memory(const facets *f, cw_error *err)
         return CW_OK;
     char text[CWI_MEMORY_TEXT];
     cwi_print_memory(limit, text);
-    return cw_fail(err, CW_ERR_LIMIT,
-                   "the mesh needs more memory than the %s allowed (--memory)", text);
+    return cwi_fail(err, CW_ERR_LIMIT,
+                    "the mesh needs more memory than the %s allowed (--memory)", text);
 }
 
 static cw_status check_corners(const facets *f, const float *corners, size_t count,
@@ -66,9 +66,9 @@ static cw_status check_corners(const facets *f, const float *corners, size_t cou
 {
     for (size_t i = 0; i < 9 * count; i++)
         if (!isfinite(corners[i]))
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "'%c' of corner %zu of facet %zu is %g; it must be finite",
-                           "xyz"[i % 3], i / 3 % 3, f->count + i / 9, (double)corners[i]);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "'%c' of corner %zu of facet %zu is %g; it must be finite",
+                            "xyz"[i % 3], i / 3 % 3, f->count + i / 9, (double)corners[i]);
     return CW_OK;
 }
 
@@ -80,8 +80,8 @@ static cw_status add_facets(facets *f, const float *corners, size_t count, cw_er
     if (st != CW_OK)
         return st;
     if (!cwi_welder_add(&f->welder, corners, 3 * count, f->triangles + 3 * f->count))
-        return cw_fail(err, f->welder.count < UINT32_MAX - 1 ? CW_ERR_NO_MEMORY : CW_ERR_LIMIT,
-                       "no memory or number for vertex %zu", f->welder.count);
+        return cwi_fail(err, f->welder.count < UINT32_MAX - 1 ? CW_ERR_NO_MEMORY : CW_ERR_LIMIT,
+                        "no memory or number for vertex %zu", f->welder.count);
     f->count += count;
     return f->welder.room == room ? CW_OK : limit_memory(f, err);
 }
@@ -138,9 +138,9 @@ static cw_status read_binary(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file
     memcpy(text, head, HEADER);
     take_words(text, mesh, said);
     if (count > held)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "the header counts %u facets; the file has room for %llu", count,
-                       (unsigned long long)held);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the header counts %u facets; the file has room for %llu", count,
+                        (unsigned long long)held);
     st = make_room(f, count, err);
     while (st == CW_OK && f->count < count) {
         const size_t left = count - f->count;

@@ -86,8 +86,8 @@ static cw_status write_binary(const cwi_parts *parts, cwi_mesh_output *out, cw_e
 {
     unsigned char header[84];
     if (parts->triangles > UINT32_MAX)
-        return cw_fail(err, CW_ERR_LIMIT, "STL counts at most %u triangles; the mesh has %llu",
-                       UINT32_MAX, (unsigned long long)parts->triangles);
+        return cwi_fail(err, CW_ERR_LIMIT, "STL counts at most %u triangles; the mesh has %llu",
+                        UINT32_MAX, (unsigned long long)parts->triangles);
     fill_header(out, (uint32_t)parts->triangles, header);
     cw_status st = cwi_outfile_write(out->file, header, sizeof header, err);
     return st == CW_OK ? cwi_write_triangles(parts, out, encode_facet, err) : st;

@@ -40,8 +40,8 @@ static cw_status next_token(cwi_numbers *n, char token[LONGEST_NUMBER + 1], cw_e
     }
     token[length] = '\0';
     if (st == CW_OK && length == 0)
-        return cw_fail(err, CW_ERR_FORMAT, "the %s end after %llu numbers", n->noun,
-                       (unsigned long long)n->count);
+        return cwi_fail(err, CW_ERR_FORMAT, "the %s end after %llu numbers", n->noun,
+                        (unsigned long long)n->count);
     return st;
 }
 
@@ -88,7 +88,7 @@ cw_status cwi_numbers_read(cwi_numbers *numbers, cw_type type, void *to, size_t 
             return st;
         numbers->count++;
         if (!cwi_parse_double(&s, &value) || *s || !type_holds(type, value))
-            return cw_fail(
+            return cwi_fail(
                 err, CW_ERR_FORMAT, "number %llu of the %s is '%s'; %s cannot hold it",
                 (unsigned long long)numbers->count, numbers->noun, token, cw_type_name(type));
         if (to)

@@ -26,7 +26,7 @@ cw_status cwi_lines_open(cwi_lines *lines, const cwi_input *in, cw_error *err)
     const size_t size = lines->cut ? MOST_HEADER : (size_t)in->size;
     lines->text = cwi_alloc_array(size + 1, 1);
     if (!lines->text)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the header");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the header");
     cw_status st = cwi_input_read_at(in->fd, 0, lines->text, size, &lines->size, err);
     lines->end = find_line_end(lines->text, lines->size);
     return st;
@@ -42,13 +42,13 @@ static cw_status check_line(const cwi_lines *lines, const char *line, size_t len
                             cw_error *err)
 {
     if (length > MOST_LINE)
-        return cw_fail(err, CW_ERR_FORMAT, "line %zu of the header is longer than 64 KiB",
-                       lines->number);
+        return cwi_fail(err, CW_ERR_FORMAT, "line %zu of the header is longer than 64 KiB",
+                        lines->number);
     if (!ends && lines->cut)
-        return cw_fail(err, CW_ERR_FORMAT, "the header is longer than 1 MiB");
+        return cwi_fail(err, CW_ERR_FORMAT, "the header is longer than 1 MiB");
     if (memchr(line, '\0', length))
-        return cw_fail(err, CW_ERR_FORMAT, "line %zu of the header holds a zero byte",
-                       lines->number);
+        return cwi_fail(err, CW_ERR_FORMAT, "line %zu of the header holds a zero byte",
+                        lines->number);
     return CW_OK;
 }
 
@@ -140,10 +140,10 @@ static cw_status check_end(const char *field, const char *text, size_t got, size
         count++;
     s += strspn(s, " \t");
     if (*s)
-        return cw_fail(err, CW_ERR_FORMAT, "'%s' holds '%.40s' where %s was expected", field, s,
-                       kind);
-    return cw_fail(err, CW_ERR_FORMAT, "'%s' lists %zu numbers; '%s' says %zu", field, count,
-                   by, wanted);
+        return cwi_fail(err, CW_ERR_FORMAT, "'%s' holds '%.40s' where %s was expected", field,
+                        s, kind);
+    return cwi_fail(err, CW_ERR_FORMAT, "'%s' lists %zu numbers; '%s' says %zu", field, count,
+                    by, wanted);
 }
 
 cw_status cwi_field_doubles(const char *field, const char *text, size_t wanted, const char *by,
@@ -172,8 +172,8 @@ cw_status cwi_field_sizes(const char *field, const char *text, size_t wanted, co
     int64_t size;
     for (; got < wanted && parse_whole(&text, &size); got++) {
         if (size < 1 || size > INT32_MAX)
-            return cw_fail(err, CW_ERR_FORMAT, "'%s' holds %lld; sizes are 1 to 2147483647",
-                           field, (long long)size);
+            return cwi_fail(err, CW_ERR_FORMAT, "'%s' holds %lld; sizes are 1 to 2147483647",
+                            field, (long long)size);
         out[got] = (size_t)size;
     }
     return check_end(field, text, got, wanted, by, "a whole number", err);
@@ -185,7 +185,7 @@ cw_status cwi_field_integer(const char *field, const char *text, int64_t low, in
     const char *s = text;
     if (cwi_parse_int(&s, out) && !s[strspn(s, " \t")] && *out >= low && *out <= high)
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "'%s' is '%.40s'; it must be a whole number from %lld to %lld", field, text,
-                   (long long)low, (long long)high);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "'%s' is '%.40s'; it must be a whole number from %lld to %lld", field, text,
+                    (long long)low, (long long)high);
 }

@@ -16,7 +16,7 @@ cw_status cwi_scan_open(cwi_scan *s, const cwi_input *in, uint64_t offset,
     *s = (cwi_scan){.in = in, .progress = progress, .offset = offset, .line = 1};
     s->text = cwi_alloc_array(HELD + 1, 1);
     if (!s->text)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to read with");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to read with");
     s->text[0] = '\0';
     return CW_OK;
 }
@@ -85,7 +85,7 @@ static cw_status refill_buffer(cwi_scan *s, cw_error *err)
         turn_line_ends(s, s->end - got);
     s->text[s->end] = '\0';
     if (st == CW_OK && got < HELD - CWI_SCAN_AHEAD && s->offset < s->in->size)
-        return cw_fail(err, CW_ERR_IO, "the file became shorter while it was read");
+        return cwi_fail(err, CW_ERR_IO, "the file became shorter while it was read");
     if (st == CW_OK)
         st = cwi_progress(s->progress, "reading", (double)s->offset / (double)s->in->size, err);
     return st;
@@ -103,8 +103,8 @@ cw_status cwi_scan_take(cwi_scan *s, size_t size, const char *what, const unsign
 {
     cw_status st = hold_bytes(s, size, err);
     if (st == CW_OK && s->end - s->next < size)
-        return cw_fail(err, CW_ERR_FORMAT, "the file ends within %s, after %llu bytes", what,
-                       (unsigned long long)s->offset);
+        return cwi_fail(err, CW_ERR_FORMAT, "the file ends within %s, after %llu bytes", what,
+                        (unsigned long long)s->offset);
     *bytes = (const unsigned char *)s->text + s->next;
     s->next += st == CW_OK ? size : 0;
     return st;
@@ -174,9 +174,9 @@ cw_status cwi_scan_word(cwi_scan *s, cwi_word *word, cw_error *err)
     while (n < most && !is_blank(text[n]) && text[n] != '\n' && !joint_size(s, text + n))
         n++;
     if (n == CWI_SCAN_AHEAD)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "line %zu: '%.20s...' is a word of more than %d bytes", s->line, text,
-                       CWI_SCAN_AHEAD - 1);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "line %zu: '%.20s...' is a word of more than %d bytes", s->line, text,
+                        CWI_SCAN_AHEAD - 1);
     *word = (cwi_word){text, n};
     s->next += n;
     return CW_OK;
@@ -229,10 +229,10 @@ cw_status cwi_scan_fail(const cwi_scan *s, const cwi_word *word, const char *wha
                         const char *expected, cw_error *err)
 {
     if (word->size == 0)
-        return cw_fail(err, CW_ERR_FORMAT, "line %zu: the %s ends before %s; %s was expected",
-                       s->line, s->by_line ? "line" : "file", what, expected);
-    return cw_fail(err, CW_ERR_FORMAT, "line %zu: %s is '%.*s'; %s was expected", s->line, what,
-                   word->size < 40 ? (int)word->size : 40, word->text, expected);
+        return cwi_fail(err, CW_ERR_FORMAT, "line %zu: the %s ends before %s; %s was expected",
+                        s->line, s->by_line ? "line" : "file", what, expected);
+    return cwi_fail(err, CW_ERR_FORMAT, "line %zu: %s is '%.*s'; %s was expected", s->line,
+                    what, word->size < 40 ? (int)word->size : 40, word->text, expected);
 }
 
 bool cwi_word_double(const cwi_word *word, double *value)

@@ -97,15 +97,15 @@ static cw_status start_element(cwi_xml *x, const char *name, cwi_attributes a)
 {
     const cwi_xml_rules *rules = x->rules;
     if (rules->most_elements && x->count == rules->most_elements)
-        return cw_fail(x->err, CW_ERR_FORMAT, "more than %llu elements",
-                       (unsigned long long)x->count);
+        return cwi_fail(x->err, CW_ERR_FORMAT, "more than %llu elements",
+                        (unsigned long long)x->count);
     if (x->depth == MOST_DEPTH)
-        return cw_fail(x->err, CW_ERR_FORMAT, "more than %d elements inside each other",
-                       MOST_DEPTH);
+        return cwi_fail(x->err, CW_ERR_FORMAT, "more than %d elements inside each other",
+                        MOST_DEPTH);
     const int row = find_row(x, name);
     if (x->depth == 0 && row == OTHER)
-        return cw_fail(x->err, CW_ERR_FORMAT, "the first element is not %s",
-                       rules->elements[0].name);
+        return cwi_fail(x->err, CW_ERR_FORMAT, "the first element is not %s",
+                        rules->elements[0].name);
     cw_status st = rules->tag ? rules->tag(x->user, x, x->err) : CW_OK;
     if (st == CW_OK && row != OTHER && rules->elements[row].start)
         st = rules->elements[row].start(x->user, x, a, x->err);
@@ -159,9 +159,9 @@ static void XMLCALL on_doctype(void *user, const XML_Char *name, const XML_Char 
     (void)name, (void)system, (void)public_id, (void)internal;
     if (!is_over(x))
         settle_status(
-            x, cw_fail(x->err, CW_ERR_UNSAFE,
-                       "the file has a document type (<!DOCTYPE>); it needs none, and none is "
-                       "read"));
+            x, cwi_fail(x->err, CW_ERR_UNSAFE,
+                        "the file has a document type (<!DOCTYPE>); it needs none, and none is "
+                        "read"));
 }
 
 /* --- the document ------------------------------------------------------------------------ */
@@ -182,9 +182,9 @@ static cw_status fail_xml(const cwi_xml *x)
     if (x->status != CW_OK)
         return x->status;
     if (code == XML_ERROR_NO_MEMORY)
-        return cw_fail(x->err, CW_ERR_NO_MEMORY, "no memory to read XML with");
-    return cw_fail(x->err, CW_ERR_FORMAT, "line %lu is not XML: %s",
-                   (unsigned long)XML_GetCurrentLineNumber(x->expat), XML_ErrorString(code));
+        return cwi_fail(x->err, CW_ERR_NO_MEMORY, "no memory to read XML with");
+    return cwi_fail(x->err, CW_ERR_FORMAT, "line %lu is not XML: %s",
+                    (unsigned long)XML_GetCurrentLineNumber(x->expat), XML_ErrorString(code));
 }
 
 /* Checks the length of a tag, which Expat keeps in memory until it is complete. */
@@ -193,8 +193,8 @@ static cw_status check_tag(const cwi_xml *x)
     const XML_Index at = XML_GetCurrentByteIndex(x->expat);
     if (at < 0 || x->fed - (uint64_t)at <= LONGEST_TAG)
         return CW_OK;
-    return cw_fail(x->err, CW_ERR_FORMAT, "line %lu has a tag longer than 1 MiB",
-                   (unsigned long)XML_GetCurrentLineNumber(x->expat));
+    return cwi_fail(x->err, CW_ERR_FORMAT, "line %lu has a tag longer than 1 MiB",
+                    (unsigned long)XML_GetCurrentLineNumber(x->expat));
 }
 
 static cw_status feed_parser(cwi_xml *x, cwi_xml_source *source, void *from)
@@ -226,7 +226,7 @@ cw_status cwi_xml_read(const cwi_xml_rules *rules, void *user, cwi_xml_source *s
                  .err = err,
                  .expat = XML_ParserCreate_MM("UTF-8", &memory, NULL)};
     if (!x.expat)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to read XML with");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to read XML with");
     XML_SetUserData(x.expat, &x);
     XML_SetElementHandler(x.expat, on_start, on_end);
     XML_SetStartDoctypeDeclHandler(x.expat, on_doctype);

@@ -63,8 +63,8 @@ static cw_status check_predictor(const cwi_tiff_layout *l, cw_error *err)
                       (l->predictor == DIFFERENCES && l->bits >= 8) ||
                       (l->predictor == FLOATS && l->format == SAMPLEFORMAT_IEEEFP);
     return good ? CW_OK
-                : cw_fail(err, CW_ERR_FORMAT, "'Predictor' is %u, with %u bits a sample",
-                          l->predictor, l->bits);
+                : cwi_fail(err, CW_ERR_FORMAT, "'Predictor' is %u, with %u bits a sample",
+                           l->predictor, l->bits);
 }
 
 /* Reads on to the checksum, past rows that some writers put after those of a short strip.
@@ -76,8 +76,8 @@ static cw_status finish_stream(cwi_stream *s, size_t bytes, cw_error *err)
     for (size_t n = 0, got; st == CW_OK && !s->ended && n <= bytes; n += got)
         st = cwi_stream_some(s, waste, sizeof waste, &got, err);
     if (st == CW_OK && s->truncated)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "the compressed data break off before their checksum");
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the compressed data break off before their checksum");
     return st;
 }
 

@@ -77,9 +77,9 @@ static cw_status find_count(const char *text, const char *key, uint32_t *count, 
     if (!find_number(text, key, &value))
         return CW_OK;
     if (!(value >= 1) || value > CWI_TIFF_MOST_PAGES || value != floor(value))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'ImageDescription' says %s=%.6g; it must be 1 to %d", key, value,
-                       CWI_TIFF_MOST_PAGES);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'ImageDescription' says %s=%.6g; it must be 1 to %d", key, value,
+                        CWI_TIFF_MOST_PAGES);
     *count = (uint32_t)value;
     return CW_OK;
 }
@@ -105,18 +105,19 @@ static cw_status find_images(cwi_tiff_file *f, uint32_t images, cw_error *err)
     if (images == f->page_count)
         return CW_OK;
     if (f->page_count > 1 || !is_one_run(f))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'ImageDescription' says images=%u; the file holds %u pages", images,
-                       f->page_count);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'ImageDescription' says images=%u; the file holds %u pages", images,
+                        f->page_count);
     const uint64_t start = TIFFGetStrileOffset(f->tiff, 0);
     if (__builtin_mul_overflow(bytes, images, &bytes) || bytes > f->size - start)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'ImageDescription' says images=%u, which would be %llu bytes; the file "
-                       "has %llu behind the first %llu",
-                       images, (unsigned long long)bytes, (unsigned long long)(f->size - start),
-                       (unsigned long long)start);
+        return cwi_fail(
+            err, CW_ERR_FORMAT,
+            "'ImageDescription' says images=%u, which would be %llu bytes; the file "
+            "has %llu behind the first %llu",
+            images, (unsigned long long)bytes, (unsigned long long)(f->size - start),
+            (unsigned long long)start);
     if (f->offsets[0] >= start && f->offsets[0] < start + bytes)
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_FORMAT,
             "'ImageDescription' says images=%u, which would be %llu bytes behind the "
             "first %llu; the file's directory is among those",
@@ -141,10 +142,11 @@ static cw_status order_images(const cwi_tiff_file *f, const char *text, cwi_tiff
     if (z == 0)
         z = (uint32_t)(f->page_count / ((uint64_t)c * t));
     if ((uint64_t)c * t > CWI_TIFF_MOST_PAGES || (uint64_t)c * t * z != f->page_count)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'ImageDescription' says %u channels, %u slices and %u frames; the file "
-                       "holds %u images",
-                       c, z, t, f->page_count);
+        return cwi_fail(
+            err, CW_ERR_FORMAT,
+            "'ImageDescription' says %u channels, %u slices and %u frames; the file "
+            "holds %u images",
+            c, z, t, f->page_count);
     facts->channels = c;
     facts->slices = z;
     facts->steps = t;
@@ -235,9 +237,9 @@ cw_status cwi_tiff_describe(cwi_tiff_file *f, const char *text, cwi_tiff_facts *
     if (is_ome(text))
         return cwi_tiff_ome(f, text, facts, order, err);
     if (strncmp(text, "{\"shape\":", 9) == 0 && strstr(text, "\"truncated\": true"))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'ImageDescription' says that tifffile wrote one directory for several "
-                       "pages; such files are not read");
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'ImageDescription' says that tifffile wrote one directory for several "
+                        "pages; such files are not read");
     facts->slices = f->page_count;
     facts->channels = facts->steps = 1;
     for (uint32_t p = 0; p < f->page_count; p++)

@@ -23,8 +23,8 @@ enum {
 
 static cw_status fail_cut(const char *what, uint32_t directory, cw_error *err)
 {
-    return cw_fail(err, CW_ERR_FORMAT, "the file ends before %s of directory %u does", what,
-                   directory);
+    return cwi_fail(err, CW_ERR_FORMAT, "the file ends before %s of directory %u does", what,
+                    directory);
 }
 
 static bool read_at(const cwi_tiff_file *f, uint64_t offset, void *to, size_t size)
@@ -66,10 +66,10 @@ static cw_status check_entry(const cwi_tiff_file *f, const unsigned char *entry,
     const uint64_t count = read_number(f, entry + 4, word);
     uint64_t bytes, end;
     if (tag == UIC2_TAG && count > 1)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'UIC2Tag' says that directory %u has %llu planes, as a MetaMorph "
-                       "stack's; such are not read",
-                       directory, (unsigned long long)count);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'UIC2Tag' says that directory %u has %llu planes, as a MetaMorph "
+                        "stack's; such are not read",
+                        directory, (unsigned long long)count);
     if (tag >= FIRST_PRIVATE_TAG)
         return CW_OK;
     if (!__builtin_mul_overflow(count, bytes_of_type(type), &bytes) &&
@@ -77,11 +77,11 @@ static cw_status check_entry(const cwi_tiff_file *f, const unsigned char *entry,
          (!__builtin_add_overflow(bytes, read_number(f, entry + 4 + word, word), &end) &&
           end <= f->size)))
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "tag %llu of directory %u has %llu values at %llu; the file has %llu bytes",
-                   (unsigned long long)tag, directory, (unsigned long long)count,
-                   (unsigned long long)read_number(f, entry + 4 + word, word),
-                   (unsigned long long)f->size);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "tag %llu of directory %u has %llu values at %llu; the file has %llu bytes",
+                    (unsigned long long)tag, directory, (unsigned long long)count,
+                    (unsigned long long)read_number(f, entry + 4 + word, word),
+                    (unsigned long long)f->size);
 }
 
 /* A list of tags, read a few at a time. */
@@ -120,13 +120,13 @@ static cw_status pass_directory(const cwi_tiff_file *f, uint64_t *offset, uint32
     unsigned char bytes[8];
     const size_t head = f->big ? 8 : 2, word = f->big ? 8 : 4;
     if (!read_at(f, *offset, bytes, head))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "directory %u should be at %llu; the file has %llu bytes", directory,
-                       (unsigned long long)*offset, (unsigned long long)f->size);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "directory %u should be at %llu; the file has %llu bytes", directory,
+                        (unsigned long long)*offset, (unsigned long long)f->size);
     const uint64_t count = read_number(f, bytes, head), at = *offset + head;
     if (count == 0 || count > MOST_ENTRIES)
-        return cw_fail(err, CW_ERR_FORMAT, "directory %u has %llu tags; it must be 1 to %d",
-                       directory, (unsigned long long)count, MOST_ENTRIES);
+        return cwi_fail(err, CW_ERR_FORMAT, "directory %u has %llu tags; it must be 1 to %d",
+                        directory, (unsigned long long)count, MOST_ENTRIES);
     cw_status st = check_entries(f, at, count, directory, err);
     if (st == CW_OK && !read_at(f, at + count * (f->big ? BIG_ENTRY : ENTRY), bytes, word))
         st = fail_cut("the end", directory, err);
@@ -138,19 +138,19 @@ static cw_status read_header(cwi_tiff_file *f, uint64_t *first, cw_error *err)
 {
     unsigned char h[16];
     if (!read_at(f, 0, h, 8))
-        return cw_fail(err, CW_ERR_FORMAT, "the file ends within its header");
+        return cwi_fail(err, CW_ERR_FORMAT, "the file ends within its header");
     f->high_first = h[0] == 'M';
     const uint64_t version = read_number(f, h + 2, 2);
     if (h[0] != h[1] || (h[0] != 'I' && h[0] != 'M') || (version != CLASSIC && version != BIG))
-        return cw_fail(err, CW_ERR_FORMAT, "it does not start as a TIFF file does");
+        return cwi_fail(err, CW_ERR_FORMAT, "it does not start as a TIFF file does");
     f->big = version == BIG;
     *first = read_number(f, h + 4, 4);
     if (f->big &&
         (!read_at(f, 0, h, 16) || read_number(f, h + 4, 2) != 8 || read_number(f, h + 6, 2)))
-        return cw_fail(err, CW_ERR_FORMAT, "the header of this BigTIFF file is damaged");
+        return cwi_fail(err, CW_ERR_FORMAT, "the header of this BigTIFF file is damaged");
     if (f->big)
         *first = read_number(f, h + 8, 8);
-    return *first ? CW_OK : cw_fail(err, CW_ERR_FORMAT, "the file has no directory");
+    return *first ? CW_OK : cwi_fail(err, CW_ERR_FORMAT, "the file has no directory");
 }
 
 static bool add_offset(cwi_tiff_file *f, uint64_t offset, uint32_t *room)
@@ -212,13 +212,13 @@ cw_status cwi_tiff_walk(cwi_tiff_file *f, cw_error *err)
     cw_status st = read_header(f, &at, err);
     while (st == CW_OK && at) {
         if (at == mark)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "the chain of directories runs in a circle, through %llu",
-                           (unsigned long long)at);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "the chain of directories runs in a circle, through %llu",
+                            (unsigned long long)at);
         if (f->offset_count == CWI_TIFF_MOST_PAGES)
-            return cw_fail(err, CW_ERR_LIMIT, "more than %d pages", CWI_TIFF_MOST_PAGES);
+            return cwi_fail(err, CW_ERR_LIMIT, "more than %d pages", CWI_TIFF_MOST_PAGES);
         if (!add_offset(f, at, &room))
-            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the places of pages");
+            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the places of pages");
         if ((f->offset_count & (f->offset_count - 1)) == 0)
             mark = at;
         st = pass_directory(f, &at, f->offset_count, err);

@@ -66,8 +66,8 @@ static cw_status read_order(parsing *p, const char *text)
     }
     if (seen == 7 && strncmp(text, "XY", 2) == 0)
         return CW_OK;
-    return cw_fail(p->err, CW_ERR_FORMAT, "'DimensionOrder' of the OME-XML is '%.16s'",
-                   text ? text : "");
+    return cwi_fail(p->err, CW_ERR_FORMAT, "'DimensionOrder' of the OME-XML is '%.16s'",
+                    text ? text : "");
 }
 
 static cw_status read_sizes(parsing *p, attributes a)
@@ -77,16 +77,17 @@ static cw_status read_sizes(parsing *p, attributes a)
     if (!parse_whole(a, "SizeX", 0, &x) || !parse_whole(a, "SizeY", 0, &y) ||
         !parse_whole(a, "SizeZ", 0, &z) || !parse_whole(a, "SizeC", 0, &c) ||
         !parse_whole(a, "SizeT", 0, &t))
-        return cw_fail(p->err, CW_ERR_FORMAT, "the OME-XML has a size that is not a number");
+        return cwi_fail(p->err, CW_ERR_FORMAT, "the OME-XML has a size that is not a number");
     if (x != f->columns || y != f->rows)
-        return cw_fail(p->err, CW_ERR_FORMAT,
-                       "'SizeX' and 'SizeY' of the OME-XML are %u x %u; the first page is %u x "
-                       "%u",
-                       x, y, f->columns, f->rows);
+        return cwi_fail(
+            p->err, CW_ERR_FORMAT,
+            "'SizeX' and 'SizeY' of the OME-XML are %u x %u; the first page is %u x "
+            "%u",
+            x, y, f->columns, f->rows);
     if (c % f->samples || z < 1 || c < 1 || t < 1 || z > CWI_TIFF_MOST_PAGES ||
         c > CWI_TIFF_MOST_PAGES || t > CWI_TIFF_MOST_PAGES ||
         (uint64_t)z * (c / f->samples) * t > CWI_TIFF_MOST_PAGES)
-        return cw_fail(
+        return cwi_fail(
             p->err, CW_ERR_FORMAT,
             "'SizeZ', 'SizeC' and 'SizeT' of the OME-XML are %u, %u and %u, pages of "
             "%u samples; at most %d pages are read",
@@ -108,8 +109,8 @@ static cw_status read_length(parsing *p, attributes a, int n)
         return CW_OK;
     const char *at = text;
     if (!cwi_parse_double(&at, &value) || *at || !(value > 0))
-        return cw_fail(p->err, CW_ERR_FORMAT, "'%s' of the OME-XML is '%.32s'", names[n][0],
-                       text);
+        return cwi_fail(p->err, CW_ERR_FORMAT, "'%s' of the OME-XML is '%.32s'", names[n][0],
+                        text);
     p->facts->spacing[n] = value;
     p->facts->unit_mm[n] = unit ? cwi_tiff_length(unit, strlen(unit)) : 1e-3;
     return CW_OK;
@@ -151,7 +152,7 @@ static cw_status place_page(parsing *p, uint32_t directory, const uint32_t at[AX
     const uint32_t *page =
         bsearch(&directory, f->pages, f->page_count, sizeof *f->pages, compare_places);
     if (!page)
-        return cw_fail(
+        return cwi_fail(
             p->err, CW_ERR_FORMAT,
             "the OME-XML has a plane in directory %u; of the file's %u there is none "
             "such of full resolution",
@@ -159,9 +160,9 @@ static cw_status place_page(parsing *p, uint32_t directory, const uint32_t at[AX
     uint32_t *to =
         &p->order[(at[AXIS_T] * p->size[AXIS_C] + at[AXIS_C]) * p->size[AXIS_Z] + at[AXIS_Z]];
     if (*to != NONE)
-        return cw_fail(p->err, CW_ERR_FORMAT,
-                       "the OME-XML has two pages for slice %u, channel %u, step %u",
-                       at[AXIS_Z], at[AXIS_C], at[AXIS_T]);
+        return cwi_fail(p->err, CW_ERR_FORMAT,
+                        "the OME-XML has two pages for slice %u, channel %u, step %u",
+                        at[AXIS_Z], at[AXIS_C], at[AXIS_T]);
     *to = (uint32_t)(page - f->pages);
     return CW_OK;
 }
@@ -175,11 +176,11 @@ static cw_status place_all(parsing *p, uint32_t directory, uint32_t at[AXIS_COUN
     for (uint32_t i = 0; st == CW_OK && i < count; i++) {
         if (at[AXIS_Z] >= p->size[AXIS_Z] || at[AXIS_C] >= p->size[AXIS_C] ||
             at[AXIS_T] >= p->size[AXIS_T])
-            return cw_fail(p->err, CW_ERR_FORMAT,
-                           "the OME-XML has a plane for slice %u, channel %u, step %u, and "
-                           "sizes of %u, %u, %u",
-                           at[AXIS_Z], at[AXIS_C], at[AXIS_T], p->size[AXIS_Z], p->size[AXIS_C],
-                           p->size[AXIS_T]);
+            return cwi_fail(p->err, CW_ERR_FORMAT,
+                            "the OME-XML has a plane for slice %u, channel %u, step %u, and "
+                            "sizes of %u, %u, %u",
+                            at[AXIS_Z], at[AXIS_C], at[AXIS_T], p->size[AXIS_Z],
+                            p->size[AXIS_C], p->size[AXIS_T]);
         st = place_page(p, directory + i, at);
         for (int n = 0; n < AXIS_COUNT && ++at[p->axes[n]] == p->size[p->axes[n]]; n++)
             if (n < AXIS_COUNT - 1)
@@ -195,7 +196,7 @@ static cw_status read_data(parsing *p, attributes a)
     if (!parse_whole(a, "IFD", 0, &directory) || !parse_whole(a, "PlaneCount", usual, &count) ||
         !parse_whole(a, "FirstZ", 0, &at[AXIS_Z]) ||
         !parse_whole(a, "FirstC", 0, &at[AXIS_C]) || !parse_whole(a, "FirstT", 0, &at[AXIS_T]))
-        return cw_fail(p->err, CW_ERR_FORMAT, "a 'TiffData' of the OME-XML has no numbers");
+        return cwi_fail(p->err, CW_ERR_FORMAT, "a 'TiffData' of the OME-XML has no numbers");
     at[AXIS_C] /= p->facts->samples;
     return place_all(p, directory, at, count);
 }
@@ -209,7 +210,7 @@ static cw_status read_name(parsing *p, attributes a)
         snprintf(p->name, sizeof p->name, "%s", name);
     if (strncmp(p->name, name, sizeof p->name - 1) == 0)
         return CW_OK;
-    return cw_fail(
+    return cwi_fail(
         p->err, CW_ERR_FORMAT,
         "the OME-XML spreads its planes over several files; only those are read that "
         "hold all of theirs");
@@ -219,7 +220,7 @@ static cw_status read_name(parsing *p, attributes a)
 
 static cw_status fail_elsewhere(parsing *p)
 {
-    return cw_fail(p->err, CW_ERR_FORMAT, "the OME-XML is in another file ('BinaryOnly')");
+    return cwi_fail(p->err, CW_ERR_FORMAT, "the OME-XML is in another file ('BinaryOnly')");
 }
 
 static cw_status open_element(parsing *p, const char *name, attributes a)
@@ -228,8 +229,8 @@ static cw_status open_element(parsing *p, const char *name, attributes a)
     if (strcmp(name, "BinaryOnly") == 0)
         return fail_elsewhere(p);
     if (strcmp(name, "Image") == 0 && p->images++ > 0)
-        return cw_fail(p->err, CW_ERR_FORMAT,
-                       "the OME-XML describes several images; files of one are read");
+        return cwi_fail(p->err, CW_ERR_FORMAT,
+                        "the OME-XML describes several images; files of one are read");
     if (strcmp(name, "Pixels") == 0 && !inside)
         return read_pixels(p, a);
     if (strcmp(name, "TiffData") == 0 && inside)
@@ -249,9 +250,9 @@ static void XMLCALL on_start(void *user, const XML_Char *name, const XML_Char **
     const char *colon = strrchr(name, ':');
     cw_status st = CW_OK;
     if (p->depth++ == MOST_DEPTH || p->elements++ == MOST_ELEMENTS)
-        st = cw_fail(p->err, CW_ERR_FORMAT,
-                     "the OME-XML has more than %d elements, or %d inside each other",
-                     MOST_ELEMENTS, MOST_DEPTH);
+        st = cwi_fail(p->err, CW_ERR_FORMAT,
+                      "the OME-XML has more than %d elements, or %d inside each other",
+                      MOST_ELEMENTS, MOST_DEPTH);
     else
         st = open_element(p, colon ? colon + 1 : name, (attributes)a);
     if (st != CW_OK)
@@ -270,8 +271,8 @@ static void XMLCALL on_doctype(void *user, const XML_Char *name, const XML_Char 
 {
     parsing *p = user;
     (void)name, (void)system, (void)public_id, (void)internal;
-    stop_parsing(p, cw_fail(p->err, CW_ERR_UNSAFE,
-                            "the OME-XML has a document type (<!DOCTYPE>); none is read"));
+    stop_parsing(p, cwi_fail(p->err, CW_ERR_UNSAFE,
+                             "the OME-XML has a document type (<!DOCTYPE>); none is read"));
 }
 
 /* --- the document ------------------------------------------------------------------------- */
@@ -292,9 +293,9 @@ static cw_status fail_xml(const parsing *p)
     if (p->status != CW_OK)
         return p->status;
     if (code == XML_ERROR_NO_MEMORY)
-        return cw_fail(p->err, CW_ERR_NO_MEMORY, "no memory to read XML with");
-    return cw_fail(p->err, CW_ERR_FORMAT, "line %lu of the OME-XML is not XML: %s",
-                   (unsigned long)XML_GetCurrentLineNumber(p->expat), XML_ErrorString(code));
+        return cwi_fail(p->err, CW_ERR_NO_MEMORY, "no memory to read XML with");
+    return cwi_fail(p->err, CW_ERR_FORMAT, "line %lu of the OME-XML is not XML: %s",
+                    (unsigned long)XML_GetCurrentLineNumber(p->expat), XML_ErrorString(code));
 }
 
 /* Checks that every plane has its page. */
@@ -303,15 +304,15 @@ static cw_status finish_parsing(parsing *p)
     uint32_t first[AXIS_COUNT] = {0, 0, 0};
     cw_status st = CW_OK;
     if (p->size[AXIS_Z] == 0)
-        return cw_fail(p->err, CW_ERR_FORMAT, "the OME-XML describes no image");
+        return cwi_fail(p->err, CW_ERR_FORMAT, "the OME-XML describes no image");
     if (!p->placed)
         st = place_all(p, 0, first, plane_count(p));
     for (uint32_t i = 0; st == CW_OK && i < plane_count(p); i++)
         if (p->order[i] == NONE)
-            st = cw_fail(p->err, CW_ERR_FORMAT,
-                         "the OME-XML names no page for slice %u, channel %u, step %u",
-                         i % p->size[AXIS_Z], i / p->size[AXIS_Z] % p->size[AXIS_C],
-                         i / p->size[AXIS_Z] / p->size[AXIS_C]);
+            st = cwi_fail(p->err, CW_ERR_FORMAT,
+                          "the OME-XML names no page for slice %u, channel %u, step %u",
+                          i % p->size[AXIS_Z], i / p->size[AXIS_Z] % p->size[AXIS_C],
+                          i / p->size[AXIS_Z] / p->size[AXIS_C]);
     if (st == CW_OK && plane_count(p) < p->file->page_count)
         snprintf(p->facts->note, sizeof p->facts->note,
                  "left out, as the OME-XML has no place for them: %u pages",
@@ -326,11 +327,11 @@ cw_status cwi_tiff_ome(const cwi_tiff_file *f, const char *xml, cwi_tiff_facts *
     const size_t size = strlen(xml);
     parsing p = {.file = f, .facts = facts, .order = order, .err = err};
     if (size > LONGEST)
-        return cw_fail(err, CW_ERR_FORMAT, "the OME-XML has %zu bytes; the most are %d", size,
-                       LONGEST);
+        return cwi_fail(err, CW_ERR_FORMAT, "the OME-XML has %zu bytes; the most are %d", size,
+                        LONGEST);
     p.expat = XML_ParserCreate_MM(NULL, &memory, NULL);
     if (!p.expat)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to read XML with");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to read XML with");
     XML_SetUserData(p.expat, &p);
     XML_SetElementHandler(p.expat, on_start, on_end);
     XML_SetStartDoctypeDeclHandler(p.expat, on_doctype);

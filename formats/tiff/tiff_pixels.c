@@ -13,25 +13,25 @@ enum { PIECE = 1 << 20, MOST_AT_ONCE = 1 << 30, MOST_PIXEL = 4 * 8 };
 
 static cw_status fail_page(const cwi_tiff_file *f, const char *why, cw_error *err)
 {
-    return cw_fail(err, CW_ERR_FORMAT, "the pixels of page %u cannot be read: %s",
-                   (uint32_t)f->page + 1, why);
+    return cwi_fail(err, CW_ERR_FORMAT, "the pixels of page %u cannot be read: %s",
+                    (uint32_t)f->page + 1, why);
 }
 
 cw_status cwi_tiff_make_room(unsigned char **buffer, size_t *room, uint64_t bytes,
                              cw_error *err)
 {
     if (bytes > MOST_AT_ONCE)
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "a strip or row of tiles takes %llu bytes; the most are %d",
-                       (unsigned long long)bytes, MOST_AT_ONCE);
+        return cwi_fail(err, CW_ERR_LIMIT,
+                        "a strip or row of tiles takes %llu bytes; the most are %d",
+                        (unsigned long long)bytes, MOST_AT_ONCE);
     if (bytes <= *room)
         return CW_OK;
     cwi_free(*buffer);
     *buffer = cwi_alloc_array(bytes, 1);
     *room = *buffer ? bytes : 0;
     return *buffer ? CW_OK
-                   : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %llu bytes of pixels",
-                             (unsigned long long)bytes);
+                   : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %llu bytes of pixels",
+                              (unsigned long long)bytes);
 }
 
 /* --- uncompressed data -------------------------------------------------------------------- */
@@ -128,7 +128,7 @@ static cw_status decode_strip(cwi_tiff_file *f, uint32_t n, unsigned char *to, s
         cw_status st = cwi_tiff_inflate(f, n, to, bytes, row_bytes, &why);
         return st == CW_ERR_FORMAT ? fail_page(f, why.message, err)
                : st == CW_OK       ? st
-                                   : cw_fail(err, st, "%s", why.message);
+                                   : cwi_fail(err, st, "%s", why.message);
     }
     memset(to, 0, bytes);
     const tmsize_t size = (tmsize_t)bytes;

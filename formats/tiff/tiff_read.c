@@ -37,11 +37,11 @@ static cw_status check_claim(const cwi_tiff_facts *f, uint64_t file_bytes, cw_er
     if (!__builtin_mul_overflow(row * f->rows, planes_of(f), &wanted) &&
         wanted / ratio <= file_bytes)
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "'ImageWidth' and 'ImageLength' ask for %llu pages of %u x %u pixels; the "
-                   "file has %llu bytes%s",
-                   (unsigned long long)planes_of(f), f->columns, f->rows,
-                   (unsigned long long)file_bytes, f->compressed ? ", compressed" : "");
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "'ImageWidth' and 'ImageLength' ask for %llu pages of %u x %u pixels; the "
+                    "file has %llu bytes%s",
+                    (unsigned long long)planes_of(f), f->columns, f->rows,
+                    (unsigned long long)file_bytes, f->compressed ? ", compressed" : "");
 }
 
 static bool is_said(double number)
@@ -53,13 +53,13 @@ static cw_status check_numbers(const cwi_tiff_facts *f, cw_error *err)
 {
     for (int a = 0; a < 3; a++)
         if (!is_said(f->spacing[a]) || !is_said(f->unit_mm[a]))
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "'ImageDescription' or 'XResolution' gives axis %d a spacing of %g",
-                           a, f->spacing[a]);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "'ImageDescription' or 'XResolution' gives axis %d a spacing of %g",
+                            a, f->spacing[a]);
     if (!is_said(f->step_seconds) || !isfinite(f->slope) || !isfinite(f->intercept) ||
         f->slope == 0)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'ImageDescription' has times or values that are not numbers");
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'ImageDescription' has times or values that are not numbers");
     return CW_OK;
 }
 
@@ -73,15 +73,15 @@ static cw_status check_facts(const cwi_tiff_facts *f, uint64_t file_bytes, cw_er
         f->page_count > most || f->slices < 1 || f->slices > most || f->channels < 1 ||
         f->channels > most || f->steps < 1 || f->steps > most || planes_of(f) > f->page_count ||
         !memchr(f->note, '\0', sizeof f->note))
-        return cw_fail(err, CW_ERR_BACKEND, "libtiff's answer is not valid");
+        return cwi_fail(err, CW_ERR_BACKEND, "libtiff's answer is not valid");
     if (f->channels > MOST_CHANNELS || (f->channels > 1 && f->samples > 1))
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_FORMAT,
             "%u channels of %u samples each; at most %d are read, and one of several",
             f->channels, f->samples, MOST_CHANNELS);
     if ((size_t)f->columns * f->samples * cw_type_size(f->type) > CWI_PLANES_SHARED)
-        return cw_fail(err, CW_ERR_LIMIT, "a row of %u pixels takes more than %d bytes",
-                       f->columns, CWI_PLANES_SHARED);
+        return cwi_fail(err, CW_ERR_LIMIT, "a row of %u pixels takes more than %d bytes",
+                        f->columns, CWI_PLANES_SHARED);
     cw_status st = check_numbers(f, err);
     return st == CW_OK ? check_claim(f, file_bytes, err) : st;
 }
@@ -102,11 +102,11 @@ static cw_status take_facts(cwi_planes *planes, int fd, uint64_t file_bytes, cwi
     const size_t count = planes_of(f);
     *order = cwi_alloc_array(count, sizeof **order);
     if (!*order)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu pages", count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu pages", count);
     memcpy(*order, (const char *)shared + sizeof *f, count * sizeof **order);
     for (size_t i = 0; i < count; i++)
         if ((*order)[i] >= f->page_count)
-            return cw_fail(err, CW_ERR_BACKEND, "libtiff's answer is not valid");
+            return cwi_fail(err, CW_ERR_BACKEND, "libtiff's answer is not valid");
     return CW_OK;
 }
 
@@ -166,7 +166,7 @@ static cw_status make_room(cwi_stack *stack, size_t planes, size_t slots, cw_err
     stack->slot_count = slots;
     return stack->planes && stack->slots
                ? CW_OK
-               : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slices", slots);
+               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slices", slots);
 }
 
 static int by_plane(const void *x, const void *y)
@@ -226,7 +226,7 @@ static cw_status find_files(slices *s, const cwi_names *names, cw_error *err)
         if (is_tiff(s->in, names->items[i]))
             st = cwi_names_add(&s->files, names->items[i], err);
     if (st == CW_OK && s->files.count == 0)
-        return cw_fail(err, CW_ERR_FORMAT, "it holds no TIFF file");
+        return cwi_fail(err, CW_ERR_FORMAT, "it holds no TIFF file");
     if (st == CW_OK && s->files.count < names->count)
         cwi_note(s->desc, "left out, because they are not TIFF: %zu of its files",
                  names->count - s->files.count);
@@ -249,10 +249,10 @@ static cw_status check_folder(const slices *s, cw_error *err)
     for (size_t i = 1; i < s->files.count; i++) {
         const char *name = s->files.items[i];
         if (folder_length(name) != length || memcmp(name, first, length) != 0)
-            return cw_fail(err, CW_ERR_UNSAFE,
-                           "it has TIFF files in several folders, as are '%.80s' and '%.80s'; "
-                           "name one of the folders, or a pattern",
-                           first, name);
+            return cwi_fail(err, CW_ERR_UNSAFE,
+                            "it has TIFF files in several folders, as are '%.80s' and '%.80s'; "
+                            "name one of the folders, or a pattern",
+                            first, name);
     }
     return CW_OK;
 }
@@ -260,22 +260,22 @@ static cw_status check_folder(const slices *s, cw_error *err)
 static cw_status check_alike(const cwi_tiff_facts *a, const cwi_tiff_facts *b, cw_error *err)
 {
     if (a->page_count > 1 || b->page_count > 1)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "it holds %u pages; slices in files of their own have one each",
-                       a->page_count > 1 ? a->page_count : b->page_count);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "it holds %u pages; slices in files of their own have one each",
+                        a->page_count > 1 ? a->page_count : b->page_count);
     if (a->columns != b->columns || a->rows != b->rows || a->samples != b->samples ||
         a->type != b->type || a->bits != b->bits)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "it is %u x %u, %u x %u bits (%s); the first is %u x %u, %u x %u bits "
-                       "(%s)",
-                       b->columns, b->rows, b->samples, b->bits, cw_type_name(b->type),
-                       a->columns, a->rows, a->samples, a->bits, cw_type_name(a->type));
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "it is %u x %u, %u x %u bits (%s); the first is %u x %u, %u x %u bits "
+                        "(%s)",
+                        b->columns, b->rows, b->samples, b->bits, cw_type_name(b->type),
+                        a->columns, a->rows, a->samples, a->bits, cw_type_name(a->type));
     for (int i = 0; i < 2; i++)
         if (!(fabs(a->spacing[i] * a->unit_mm[i] - b->spacing[i] * b->unit_mm[i]) <=
               1e-4 * a->spacing[i] * a->unit_mm[i]))
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "its pixels are %.6g mm along axis %d; the first's are %.6g",
-                           b->spacing[i] * b->unit_mm[i], i, a->spacing[i] * a->unit_mm[i]);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "its pixels are %.6g mm along axis %d; the first's are %.6g",
+                            b->spacing[i] * b->unit_mm[i], i, a->spacing[i] * a->unit_mm[i]);
     return CW_OK;
 }
 
@@ -320,8 +320,8 @@ static cw_status find_places(const slices *s, double *places, cw_error *err)
     }
     for (size_t i = 1; i < s->files.count; i++)
         if (places[i] == places[i - 1])
-            return cw_fail(err, CW_ERR_UNSAFE, "'%.80s' and '%.80s' have the same number",
-                           s->files.items[i - 1], s->files.items[i]);
+            return cwi_fail(err, CW_ERR_UNSAFE, "'%.80s' and '%.80s' have the same number",
+                            s->files.items[i - 1], s->files.items[i]);
     return CW_OK;
 }
 
@@ -329,7 +329,7 @@ static cw_status lay_slices(const slices *s, cwi_slices *laid, cw_error *err)
 {
     double *places = cwi_alloc_array(s->files.count, sizeof *places);
     if (!places)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu places", s->files.count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu places", s->files.count);
     cw_status st = find_places(s, places, err);
     if (st == CW_OK)
         st = cwi_slices_lay(places, s->files.count, "in their numbers", s->desc->gaps, laid,

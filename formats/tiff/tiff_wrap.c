@@ -117,7 +117,7 @@ static cw_status open_file(cwi_tiff_file *f, int fd, uint64_t size, cw_error *er
     f->pages = cwi_alloc_array(f->offset_count, sizeof *f->pages);
     if (!options || !f->pages) {
         TIFFOpenOptionsFree(options);
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %u pages", f->offset_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %u pages", f->offset_count);
     }
     TIFFOpenOptionsSetMaxSingleMemAlloc(options, AT_ONCE);
     TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, f);
@@ -126,7 +126,7 @@ static cw_status open_file(cwi_tiff_file *f, int fd, uint64_t size, cw_error *er
                                 NULL, NULL, options);
     TIFFOpenOptionsFree(options);
     return f->tiff ? CW_OK
-                   : cw_fail(err, CW_ERR_FORMAT, "it cannot be opened: %s", f->complaint);
+                   : cwi_fail(err, CW_ERR_FORMAT, "it cannot be opened: %s", f->complaint);
 }
 
 static cw_status open_directory(cwi_tiff_file *f, uint32_t n, cw_error *err)
@@ -136,8 +136,8 @@ static cw_status open_directory(cwi_tiff_file *f, uint32_t n, cw_error *err)
     const bool opened = TIFFSetSubDirectory(f->tiff, f->offsets[n]);
     f->guessed = opened && f->complained == 2;
     return opened ? CW_OK
-                  : cw_fail(err, CW_ERR_FORMAT, "directory %u cannot be read: %s", n + 1,
-                            f->complaint);
+                  : cwi_fail(err, CW_ERR_FORMAT, "directory %u cannot be read: %s", n + 1,
+                             f->complaint);
 }
 
 /* --- layouts ------------------------------------------------------------------------------ */
@@ -173,10 +173,10 @@ static cw_status find_type(cwi_tiff_layout *l, cw_error *err)
             l->type = types[i].type;
             return CW_OK;
         }
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "'BitsPerSample' is %u and 'SampleFormat' %u (%s); what is read is 1 bit, "
-                   "integers of 8, 16 and 32, and floats of 32 and 64",
-                   l->bits, l->format, l->format < 7 ? formats[l->format] : "unknown");
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "'BitsPerSample' is %u and 'SampleFormat' %u (%s); what is read is 1 bit, "
+                    "integers of 8, 16 and 32, and floats of 32 and 64",
+                    l->bits, l->format, l->format < 7 ? formats[l->format] : "unknown");
 }
 
 /* Refuses JBIG: libjbig allocates as much memory as a stream states, and aborts where there is
@@ -191,11 +191,12 @@ static cw_status check_compression(const cwi_tiff_layout *l, cw_error *err)
                        : c == COMPRESSION_JBIG     ? " (JBIG)"
                                                    : NULL;
     if (name || !TIFFIsCODECConfigured(c))
-        return cw_fail(err, CW_ERR_FORMAT, "'Compression' is %u%s, which is not read", c,
-                       name ? name : "");
+        return cwi_fail(err, CW_ERR_FORMAT, "'Compression' is %u%s, which is not read", c,
+                        name ? name : "");
     if (l->low_bit_first && cwi_tiff_is_deflated(l))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'FillOrder' is 2 and 'Compression' %u (deflate), which is not read", c);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'FillOrder' is 2 and 'Compression' %u (deflate), which is not read",
+                        c);
     return CW_OK;
 }
 
@@ -212,9 +213,9 @@ static cw_status find_colours(TIFF *tiff, cwi_tiff_layout *l, cw_error *err)
     const char *name = "";
     const bool white_is_zero = l->photometric == PHOTOMETRIC_MINISWHITE;
     if (white_is_zero && l->format == SAMPLEFORMAT_IEEEFP)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'PhotometricInterpretation' is 0 (white is 0), and how to invert "
-                       "floats is not defined");
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'PhotometricInterpretation' is 0 (white is 0), and how to invert "
+                        "floats is not defined");
     l->turned = white_is_zero;
     if (l->photometric <= PHOTOMETRIC_PALETTE)
         return CW_OK;
@@ -225,10 +226,10 @@ static cw_status find_colours(TIFF *tiff, cwi_tiff_layout *l, cw_error *err)
     for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
         if (refused[i].value == l->photometric)
             name = refused[i].name;
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "'PhotometricInterpretation' is %u%s; read are grey, RGB, palettes and "
-                   "YCbCr in JPEG",
-                   l->photometric, name);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "'PhotometricInterpretation' is %u%s; read are grey, RGB, palettes and "
+                    "YCbCr in JPEG",
+                    l->photometric, name);
 }
 
 /* Finds strips and rows of tiles, and checks that libtiff's sizes of them agree with ours. */
@@ -241,15 +242,15 @@ static cw_status find_bands(TIFF *tiff, cwi_tiff_layout *l, cw_error *err)
     if (l->band_rows > l->rows && !l->tiled)
         l->band_rows = l->rows;
     if (l->band_rows == 0 || l->tile_width == 0 || (l->tiled && l->tile_width % 8))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'TileWidth' %u and 'TileLength' %u are not valid sizes", l->tile_width,
-                       l->band_rows);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'TileWidth' %u and 'TileLength' %u are not valid sizes", l->tile_width,
+                        l->band_rows);
     const uint64_t row = (l->tile_width * samples * l->bits + 7) / 8;
     const uint64_t theirs = l->tiled ? TIFFTileRowSize64(tiff) : TIFFScanlineSize64(tiff);
     if (theirs != row)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "a row of %u pixels takes %llu bytes; libtiff makes them %llu",
-                       l->tile_width, (unsigned long long)row, (unsigned long long)theirs);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "a row of %u pixels takes %llu bytes; libtiff makes them %llu",
+                        l->tile_width, (unsigned long long)row, (unsigned long long)theirs);
     l->bands = (l->rows - 1) / l->band_rows + 1;
     l->stored_row = (l->columns * samples * l->bits + 7) / 8;
     return CW_OK;
@@ -258,20 +259,20 @@ static cw_status find_bands(TIFF *tiff, cwi_tiff_layout *l, cw_error *err)
 static cw_status check_sizes(TIFF *tiff, cwi_tiff_layout *l, cw_error *err)
 {
     if (l->columns < 1 || l->columns > INT32_MAX || l->rows < 1 || l->rows > INT32_MAX)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'ImageWidth' %u and 'ImageLength' %u are not valid sizes", l->columns,
-                       l->rows);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'ImageWidth' %u and 'ImageLength' %u are not valid sizes", l->columns,
+                        l->rows);
     if (l->samples < 1 || l->samples > MOST_SAMPLES)
-        return cw_fail(err, CW_ERR_FORMAT, "'SamplesPerPixel' is %u; 1 to %d are read",
-                       l->samples, MOST_SAMPLES);
+        return cwi_fail(err, CW_ERR_FORMAT, "'SamplesPerPixel' is %u; 1 to %d are read",
+                        l->samples, MOST_SAMPLES);
     if (long_of(tiff, TIFFTAG_IMAGEDEPTH, 1) != 1)
-        return cw_fail(err, CW_ERR_FORMAT, "'ImageDepth' is %u; only 1 is read",
-                       long_of(tiff, TIFFTAG_IMAGEDEPTH, 1));
+        return cwi_fail(err, CW_ERR_FORMAT, "'ImageDepth' is %u; only 1 is read",
+                        long_of(tiff, TIFFTAG_IMAGEDEPTH, 1));
     if (l->orientation < ORIENTATION_TOPLEFT || l->orientation > ORIENTATION_BOTLEFT)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'Orientation' is %u; 1 to 4 are read, which do not swap rows and "
-                       "columns",
-                       l->orientation);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'Orientation' is %u; 1 to 4 are read, which do not swap rows and "
+                        "columns",
+                        l->orientation);
     return CW_OK;
 }
 
@@ -312,8 +313,8 @@ static cw_status find_layout(cwi_tiff_file *f, cw_error *err)
     l->row = (size_t)l->columns * l->samples * cw_type_size(l->type);
     return l->row <= CWI_PLANES_SHARED
                ? CW_OK
-               : cw_fail(err, CW_ERR_LIMIT, "a row takes %zu bytes; the most are %d", l->row,
-                         CWI_PLANES_SHARED);
+               : cwi_fail(err, CW_ERR_LIMIT, "a row takes %zu bytes; the most are %d", l->row,
+                          CWI_PLANES_SHARED);
 }
 
 cw_status cwi_tiff_turn_to(cwi_tiff_file *f, uint32_t page, cw_error *err)
@@ -348,25 +349,26 @@ static cw_status check_striles(const cwi_tiff_file *f, uint32_t page, cw_error *
     const uint32_t across = (l->columns - 1) / l->tile_width + 1;
     const uint32_t count = l->tiled ? TIFFNumberOfTiles(f->tiff) : TIFFNumberOfStrips(f->tiff);
     if (count != (uint64_t)l->bands * across * l->planes)
-        return cw_fail(err, CW_ERR_FORMAT, "page %u has %u %ss, which are not all of it", page,
-                       count, what);
+        return cwi_fail(err, CW_ERR_FORMAT, "page %u has %u %ss, which are not all of it", page,
+                        count, what);
     if (f->guessed)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'StripByteCounts' of page %u are too few for its pixels, or more than "
-                       "the file has",
-                       page);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'StripByteCounts' of page %u are too few for its pixels, or more than "
+                        "the file has",
+                        page);
     for (uint32_t n = 0; n < count; n++) {
         int bad[2] = {0, 0};
         const uint64_t at = TIFFGetStrileOffsetWithErr(f->tiff, n, &bad[0]);
         const uint64_t bytes = TIFFGetStrileByteCountWithErr(f->tiff, n, &bad[1]);
         if (bad[0] || bad[1] || at == 0 || bytes == 0 || at > f->size || bytes > f->size - at)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "%s %u of page %u has %llu bytes at %llu; the file has %llu bytes",
-                           what, n + 1, page, (unsigned long long)bytes, (unsigned long long)at,
-                           (unsigned long long)f->size);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "%s %u of page %u has %llu bytes at %llu; the file has %llu bytes",
+                            what, n + 1, page, (unsigned long long)bytes,
+                            (unsigned long long)at, (unsigned long long)f->size);
         if (l->compression == COMPRESSION_NONE && bytes < strile_bytes(f, l, n))
-            return cw_fail(err, CW_ERR_FORMAT, "%s %u of page %u has %llu bytes; it needs %zu",
-                           what, n + 1, page, (unsigned long long)bytes, strile_bytes(f, l, n));
+            return cwi_fail(err, CW_ERR_FORMAT, "%s %u of page %u has %llu bytes; it needs %zu",
+                            what, n + 1, page, (unsigned long long)bytes,
+                            strile_bytes(f, l, n));
     }
     return CW_OK;
 }
@@ -389,11 +391,11 @@ static cw_status check_alike(const cwi_tiff_layout *a, const cwi_tiff_layout *b,
     if (a->columns == b->columns && a->rows == b->rows && a->samples == b->samples &&
         a->type == b->type && a->bits == b->bits)
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "page %u is %u x %u, %u x %u bits (%s); the first is %u x %u, %u x %u bits "
-                   "(%s)",
-                   page, b->columns, b->rows, b->samples, b->bits, cw_type_name(b->type),
-                   a->columns, a->rows, a->samples, a->bits, cw_type_name(a->type));
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "page %u is %u x %u, %u x %u bits (%s); the first is %u x %u, %u x %u bits "
+                    "(%s)",
+                    page, b->columns, b->rows, b->samples, b->bits, cw_type_name(b->type),
+                    a->columns, a->rows, a->samples, a->bits, cw_type_name(a->type));
 }
 
 /* Walks through all directories; all pages must have the first page's layout. */
@@ -417,7 +419,7 @@ static cw_status find_pages(cwi_tiff_file *f, cwi_tiff_facts *facts, cwi_tiff_la
         facts->turned |= f->layout.turned;
     }
     if (st == CW_OK && f->page_count == 0)
-        return cw_fail(err, CW_ERR_FORMAT, "no page has full resolution");
+        return cwi_fail(err, CW_ERR_FORMAT, "no page has full resolution");
     return st;
 }
 
@@ -451,14 +453,14 @@ static cw_status copy_rows(cwi_tiff_file *f, const cwi_plane_request *q, void *s
 {
     const cwi_tiff_layout *l = &f->layout;
     if (!f->tiff || q->plane >= f->page_count)
-        return cw_fail(err, CW_ERR_FORMAT, "there is no page %u", q->plane + 1);
+        return cwi_fail(err, CW_ERR_FORMAT, "there is no page %u", q->plane + 1);
     cw_status st = cwi_tiff_turn_to(f, q->plane, err);
     if (st != CW_OK)
         return st;
     if (q->first_row > l->rows || q->row_count > l->rows - q->first_row ||
         q->row_count > CWI_PLANES_SHARED / l->row)
-        return cw_fail(err, CW_ERR_FORMAT, "page %u has no rows %u to %u", q->plane + 1,
-                       q->first_row, q->first_row + q->row_count);
+        return cwi_fail(err, CW_ERR_FORMAT, "page %u has no rows %u to %u", q->plane + 1,
+                        q->first_row, q->first_row + q->row_count);
     return cwi_tiff_rows(f, q->first_row, q->row_count, shared, err);
 }
 

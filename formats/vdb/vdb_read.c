@@ -38,8 +38,8 @@ static cw_status take_facts(cwi_planes *planes, const cwi_input *in, cwi_vdb_fac
         return st;
     memcpy(facts, shared, sizeof *facts);
     if (facts->grid_count > CWI_VDB_MOST_GRIDS)
-        return cw_fail(err, CW_ERR_LIMIT, "it has %u grids; at most %d were expected",
-                       facts->grid_count, CWI_VDB_MOST_GRIDS);
+        return cwi_fail(err, CW_ERR_LIMIT, "it has %u grids; at most %d were expected",
+                        facts->grid_count, CWI_VDB_MOST_GRIDS);
     for (cwi_vdb_grid *g = facts->grid; g < facts->grid + facts->grid_count; g++) {
         clean_text(g->name, sizeof g->name);
         clean_text(g->kind, sizeof g->kind);
@@ -77,17 +77,17 @@ static cw_status choose_grid(const cwi_vdb_facts *f, const char *name, size_t *c
     }
     *chosen = best;
     if (best < f->grid_count && f->grid[best].refusal[0])
-        return cw_fail(err, CW_ERR_UNSUPPORTED, "grid '%s': %s", f->grid[best].name,
-                       f->grid[best].refusal);
+        return cwi_fail(err, CW_ERR_UNSUPPORTED, "grid '%s': %s", f->grid[best].name,
+                        f->grid[best].refusal);
     if (best < f->grid_count)
         return CW_OK;
     if (!name && f->grid_count == 1)
-        return cw_fail(err, CW_ERR_UNSUPPORTED, "grid '%s': %s", f->grid[0].name,
-                       f->grid[0].refusal);
-    return name ? cw_fail(err, CW_ERR_ARGUMENT, "there is no grid '%s'; there are %s", name,
-                          list_names(f, names))
-                : cw_fail(err, CW_ERR_FORMAT, "none of its grids can be read: %s",
-                          f->grid_count ? list_names(f, names) : "it has none");
+        return cwi_fail(err, CW_ERR_UNSUPPORTED, "grid '%s': %s", f->grid[0].name,
+                        f->grid[0].refusal);
+    return name ? cwi_fail(err, CW_ERR_ARGUMENT, "there is no grid '%s'; there are %s", name,
+                           list_names(f, names))
+                : cwi_fail(err, CW_ERR_FORMAT, "none of its grids can be read: %s",
+                           f->grid_count ? list_names(f, names) : "it has none");
 }
 
 static void list_grids(const cwi_vdb_facts *f, size_t chosen, cwi_array_list *list)
@@ -121,23 +121,23 @@ static cw_status check_counts(const cwi_vdb_grid *g, uint64_t file_bytes,
 {
     const uint64_t leaf = CWI_LEAF_VOXELS * cw_type_size(g->type);
     if (g->type != CW_F32 && g->type != CW_F64 && g->type != CW_I32 && g->type != CW_U8)
-        return cw_fail(err, CW_ERR_FORMAT, "grid '%s' is of an unknown type", g->name);
+        return cwi_fail(err, CW_ERR_FORMAT, "grid '%s' is of an unknown type", g->name);
     if (g->leaf_count > file_bytes / 64 || g->tile_count > file_bytes * 64)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "grid '%s' has %llu leaves and %llu tiles, more than %llu bytes hold",
-                       g->name, (unsigned long long)g->leaf_count,
-                       (unsigned long long)g->tile_count, (unsigned long long)file_bytes);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "grid '%s' has %llu leaves and %llu tiles, more than %llu bytes hold",
+                        g->name, (unsigned long long)g->leaf_count,
+                        (unsigned long long)g->tile_count, (unsigned long long)file_bytes);
     const uint64_t bytes = g->leaf_count * (leaf + 12) + g->tile_count * sizeof(cw_tile);
     if (desc->max_voxels && g->leaf_count * CWI_LEAF_VOXELS > desc->max_voxels)
-        return cw_fail(err, CW_ERR_LIMIT, "grid '%s' keeps %llu voxels; the limit is %llu",
-                       g->name, (unsigned long long)(g->leaf_count * CWI_LEAF_VOXELS),
-                       (unsigned long long)desc->max_voxels);
+        return cwi_fail(err, CW_ERR_LIMIT, "grid '%s' keeps %llu voxels; the limit is %llu",
+                        g->name, (unsigned long long)(g->leaf_count * CWI_LEAF_VOXELS),
+                        (unsigned long long)desc->max_voxels);
     if (desc->max_bytes && bytes > desc->max_bytes) {
         char needed[CWI_MEMORY_TEXT], limit[CWI_MEMORY_TEXT];
         cwi_print_memory(bytes, needed);
         cwi_print_memory(desc->max_bytes, limit);
-        return cw_fail(err, CW_ERR_LIMIT, "grid '%s' needs %s; the limit is %s (--memory)",
-                       g->name, needed, limit);
+        return cwi_fail(err, CW_ERR_LIMIT, "grid '%s' needs %s; the limit is %s (--memory)",
+                        g->name, needed, limit);
     }
     return CW_OK;
 }
@@ -151,8 +151,8 @@ static cw_status set_shape(const cwi_vdb_grid *g, const cw_read_desc *desc, cw_v
     for (int a = 0; a < 3; a++) {
         const int64_t n = g->high[a] - g->low[a] + 1;
         if (n > 0 && (g->low[a] < INT32_MIN / 8 || g->high[a] > INT32_MAX / 8))
-            return cw_fail(err, CW_ERR_FORMAT, "grid '%s' reaches beyond index %d", g->name,
-                           INT32_MAX);
+            return cwi_fail(err, CW_ERR_FORMAT, "grid '%s' reaches beyond index %d", g->name,
+                            INT32_MAX);
         v->dim[a] = CWI_LEAF * (size_t)(n > 0 ? n : 1);
         first[a] = (double)(n > 0 ? g->low[a] * CWI_LEAF : 0);
     }
@@ -176,7 +176,7 @@ static cw_status make_grid(const cwi_vdb_grid *g, bool header, cw_volume *v, cw_
         sizeof(cw_sparse) + tiles * sizeof(cw_tile) + leaves * sizeof(uint32_t[3]), 1);
     v->owned_grid = memory;
     if (!memory)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", leaves);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", leaves);
     cw_sparse *s = v->owned_grid;
     s->leaf_count = g->leaf_count;
     s->tile_count = g->tile_count;
@@ -203,7 +203,7 @@ static cw_status read_voxels(cwi_planes *planes, uint32_t plane, cw_volume *v, c
     v->data = v->owned = cwi_alloc_large(count, leaf);
     return v->owned
                ? cwi_planes_read(planes, plane + CWI_VDB_VOXELS, 0, count, leaf, v->owned, err)
-               : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", count);
+               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", count);
 }
 
 static cw_status read_chosen(cwi_planes *planes, const cwi_input *in, const cwi_vdb_facts *f,
@@ -251,7 +251,7 @@ static cw_status judge_memory(cw_status st, uint64_t limit, uint64_t file_bytes,
 {
     if (st != CW_ERR_NO_MEMORY || limit != most_memory(file_bytes) || cwi_memory_is_limited())
         return st;
-    return cw_fail(
+    return cwi_fail(
         err, CW_ERR_FORMAT,
         "it asks OpenVDB for more than %llu MB of memory, which no file of %llu bytes "
         "needs; it is damaged or hostile",
@@ -268,7 +268,7 @@ cw_status cwi_vdb_read(const cwi_input *in, const cw_read_desc *desc, cw_volume 
     cw_read_desc boxed = *desc;
     boxed.max_bytes = most < stated ? most : stated;
     cw_status st = facts ? cwi_planes_open(&planes, "openvdb", "OpenVDB", &boxed, err)
-                         : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for facts");
+                         : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for facts");
     if (st == CW_OK)
         st = judge_memory(take_facts(&planes, in, facts, err), boxed.max_bytes, in->size, err);
     if (st == CW_OK)

@@ -380,13 +380,14 @@ template <typename Body> cw_status guard_file(cw_error *err, Body &&body)
         try {
             return body();
         } catch (const unknown_version &version) {
-            return cw_fail(err, CW_ERR_FORMAT, "its file version is %u; %u to %u are read",
-                           version.number, unsigned(openvdb::OPENVDB_FILE_VERSION_ROOTNODE_MAP),
-                           unsigned(openvdb::OPENVDB_FILE_VERSION));
+            return cwi_fail(err, CW_ERR_FORMAT, "its file version is %u; %u to %u are read",
+                            version.number,
+                            unsigned(openvdb::OPENVDB_FILE_VERSION_ROOTNODE_MAP),
+                            unsigned(openvdb::OPENVDB_FILE_VERSION));
         } catch (const std::ios_base::failure &) {
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "it is damaged: it ends, or points beyond its end, "
-                           "where there should be more of a grid");
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "it is damaged: it ends, or points beyond its end, "
+                            "where there should be more of a grid");
         }
     });
 }

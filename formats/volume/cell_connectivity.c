@@ -13,18 +13,18 @@ static cw_status find_end(cwi_corner_list *list, size_t *out, cw_error *err)
         const int64_t count =
             list->at < there ? cwi_tuples_whole(&list->numbers, list->at) : -1;
         if (count < 0 || (uint64_t)count > there - list->at - 1)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "'CELLS' ends within cell %zu: it lists %zu numbers", list->cell,
-                           there);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "'CELLS' ends within cell %zu: it lists %zu numbers", list->cell,
+                            there);
         list->at++;
         end = (int64_t)list->at + count;
     } else {
         end = cwi_tuples_whole(&list->ends, list->cell);
         if (end < (int64_t)list->at || (uint64_t)end > there)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "'offsets' says that cell %zu ends at %lld; it starts at %zu, and "
-                           "the last ends at %zu",
-                           list->cell, (long long)end, list->at, there);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "'offsets' says that cell %zu ends at %lld; it starts at %zu, and "
+                            "the last ends at %zu",
+                            list->cell, (long long)end, list->at, there);
     }
     *out = (size_t)end;
     return CW_OK;
@@ -38,15 +38,15 @@ static cw_status take_corners(const cwi_corner_list *list, const cwi_cell_kind *
     const size_t wanted = cwi_shape_corners(kind->shape);
     const bool curved = kind->use == CWI_CELL_CURVED;
     if (curved ? there < wanted : there != wanted)
-        return cw_fail(err, CW_ERR_FORMAT, "cell %zu, a %s, has %zu corners; %s%zu expected",
-                       list->cell, kind->name, there, curved ? "at least " : "", wanted);
+        return cwi_fail(err, CW_ERR_FORMAT, "cell %zu, a %s, has %zu corners; %s%zu expected",
+                        list->cell, kind->name, there, curved ? "at least " : "", wanted);
     for (size_t c = 0; c < wanted; c++) {
         const size_t step = kind->use == CWI_CELL_VOXEL ? in_rows[c] : c;
         const int64_t corner = cwi_tuples_whole(&list->numbers, list->at + step);
         if (corner < 0 || (uint64_t)corner >= list->points)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "cell %zu has the corner %lld; '%s' says that there are %zu",
-                           list->cell, (long long)corner, list->point_field, list->points);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "cell %zu has the corner %lld; '%s' says that there are %zu",
+                            list->cell, (long long)corner, list->point_field, list->points);
         to[c] = (uint32_t)(base + (size_t)corner);
     }
     return CW_OK;

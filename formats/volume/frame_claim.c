@@ -68,16 +68,16 @@ static cw_status check_agreement(const cw_claim *claim, const saying *s, cw_erro
     if (claim->rule != CW_CLAIM_AGREE)
         return CW_OK;
     if (claim->has_unit && s->has_unit && !is_unit(s->axes.unit_mm, claim->axes.unit))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "the file says that its unit is %s, and not %s; %s",
-                       unit_text(s->axes.unit_mm, text), cw_unit_name(claim->axes.unit), hint);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "the file says that its unit is %s, and not %s; %s",
+                        unit_text(s->axes.unit_mm, text), cw_unit_name(claim->axes.unit), hint);
     if (claim->has_frame && s->has_frame && s->axes.ras != claim->axes.ras)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "the file says that its frame is %s, and not %s; %s",
-                       s->axes.ras ? "ras" : "lps", claim->axes.ras ? "ras" : "lps", hint);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "the file says that its frame is %s, and not %s; %s",
+                        s->axes.ras ? "ras" : "lps", claim->axes.ras ? "ras" : "lps", hint);
     if (claim->has_up && s->has_up && s->axes.y_up != claim->axes.y_up)
-        return cw_fail(err, CW_ERR_ARGUMENT, "the file says that %s is up, and not %s; %s",
-                       s->axes.y_up ? "y" : "z", claim->axes.y_up ? "y" : "z", hint);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the file says that %s is up, and not %s; %s",
+                        s->axes.y_up ? "y" : "z", claim->axes.y_up ? "y" : "z", hint);
     return CW_OK;
 }
 
@@ -144,7 +144,7 @@ cw_status cwi_claim_volume(const cw_claim *claim, cw_volume *v, cw_error *err)
         turn_affine(m, v->affine);
     for (int r = 0; r < 3; r++)
         if (!isfinite(v->affine[r][3]))
-            return cw_fail(err, CW_ERR_FORMAT, "its coordinates in mm are out of range");
+            return cwi_fail(err, CW_ERR_FORMAT, "its coordinates in mm are out of range");
     v->known |=
         (claim->has_unit ? CW_KNOWN_UNIT : 0u) | (claim->has_frame ? CW_KNOWN_FRAME : 0u);
     v->said_unit_mm = x.unit_mm;
@@ -176,8 +176,8 @@ static cw_status turn_mesh(const axes *from, const axes *to, cw_mesh *mesh, cw_e
     set_change(from, to, m);
     turn_points(m, mesh->origin, 1);
     if (!turn_floats(m, mesh->positions, mesh->vertex_count, 1))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "single precision cannot hold its coordinates in mm");
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "single precision cannot hold its coordinates in mm");
     if (mesh->normals)
         turn_floats(m, mesh->normals, mesh->vertex_count, from->unit_mm / to->unit_mm);
     return CW_OK;

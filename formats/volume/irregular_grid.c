@@ -55,8 +55,8 @@ static cw_status take_bytes(building *b, uint64_t bytes, cw_error *err)
     char asked[CWI_MEMORY_TEXT], limit[CWI_MEMORY_TEXT];
     cwi_print_memory(b->bytes, asked);
     cwi_print_memory(most, limit);
-    return cw_fail(err, CW_ERR_LIMIT, "the grid takes more than %s; the limit is %s (--memory)",
-                   asked, limit);
+    return cwi_fail(err, CW_ERR_LIMIT,
+                    "the grid takes more than %s; the limit is %s (--memory)", asked, limit);
 }
 
 static cw_status describe_array(const building *b, size_t piece, cwi_grid_role role,
@@ -120,10 +120,10 @@ static cw_status check_array(building *b, size_t piece, cwi_grid_role role, size
         return st;
     if (b->claimed <= b->in->size)
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "the arrays up to piece %zu take %llu bytes of the file, which has %llu: "
-                   "some share theirs",
-                   piece, (unsigned long long)b->claimed, (unsigned long long)b->in->size);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "the arrays up to piece %zu take %llu bytes of the file, which has %llu: "
+                    "some share theirs",
+                    piece, (unsigned long long)b->claimed, (unsigned long long)b->in->size);
 }
 
 /* --- first pass: checks ------------------------------------------------------------------ */
@@ -133,14 +133,14 @@ cw_status cwi_grid_along(cwi_grid_piece *piece, const char *field, cw_error *err
     const size_t *n = piece->along;
     for (int a = 0; a < 3; a++)
         if (n[a] < 2)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "'%s' has one plane of points along %c: the grid is flat, and has "
-                           "no volume",
-                           field, "xyz"[a]);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "'%s' has one plane of points along %c: the grid is flat, and has "
+                            "no volume",
+                            field, "xyz"[a]);
     if (!cwi_size_mul(n[0], n[1], &piece->points) ||
         !cwi_size_mul(piece->points, n[2], &piece->points))
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "'%s' asks for more points than an address space holds", field);
+        return cwi_fail(err, CW_ERR_LIMIT,
+                        "'%s' asks for more points than an address space holds", field);
     piece->cells = (n[0] - 1) * (n[1] - 1) * (n[2] - 1);
     return CW_OK;
 }
@@ -186,13 +186,13 @@ static cw_status count_shape(building *b, size_t cell, int64_t type, cw_error *e
 {
     const cwi_cell_kind *kind = cwi_cell_kind_find(type);
     if (!kind)
-        return cw_fail(err, CW_ERR_FORMAT, "cell %zu is of type %lld, which is not known", cell,
-                       (long long)type);
+        return cwi_fail(err, CW_ERR_FORMAT, "cell %zu is of type %lld, which is not known",
+                        cell, (long long)type);
     if (kind->use == CWI_CELL_REFUSED)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "cell %zu is a %s (type %lld); read are tetrahedra, pyramids, wedges, "
-                       "hexahedra and voxels",
-                       cell, kind->name, (long long)type);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "cell %zu is a %s (type %lld); read are tetrahedra, pyramids, wedges, "
+                        "hexahedra and voxels",
+                        cell, kind->name, (long long)type);
     b->flat += kind->use == CWI_CELL_FLAT;
     b->curved += kind->use == CWI_CELL_CURVED;
     return CW_OK;
@@ -257,12 +257,12 @@ static cw_status count_pieces(building *b, cw_error *err)
     for (size_t n = 0; n < g->piece_count; n++)
         if (!cwi_size_add(b->points, g->pieces[n].points, &b->points) ||
             !cwi_size_add(b->cells, g->pieces[n].cells, &b->cells) || b->points > most_samples)
-            return cw_fail(err, CW_ERR_LIMIT, "'%s' asks for more than %zu points",
-                           g->point_field, most_samples);
+            return cwi_fail(err, CW_ERR_LIMIT, "'%s' asks for more than %zu points",
+                            g->point_field, most_samples);
     if (b->points && b->cells)
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT, "the grid has %zu points and %zu cells: no volume",
-                   b->points, b->cells);
+    return cwi_fail(err, CW_ERR_FORMAT, "the grid has %zu points and %zu cells: no volume",
+                    b->points, b->cells);
 }
 
 static cw_status set_shape(building *b, cw_error *err)
@@ -290,7 +290,7 @@ static cw_status find_cells(building *b, cw_error *err)
     if (st == CW_OK)
         st = take_bytes(b, b->cells, err);
     if (st == CW_OK && !(b->types = cwi_alloc_array(b->cells, 1)))
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu cells", b->cells);
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu cells", b->cells);
     uint8_t *types = b->types;
     for (size_t n = 0; n < g->piece_count && st == CW_OK; types += g->pieces[n++].cells) {
         st = read_types(b, n, types, err);
@@ -313,10 +313,10 @@ static cw_status allocate_grid(building *b, cw_error *err)
             b->corner_count += cwi_shape_corners(cwi_cell_kind_find(b->types[n])->shape);
         }
     if (cells == 0)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "none of the grid's %zu cells is left: %zu have fewer than three "
-                       "dimensions, %zu are marked as hidden or as another piece's",
-                       b->cells, b->flat, b->marked);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "none of the grid's %zu cells is left: %zu have fewer than three "
+                        "dimensions, %zu are marked as hidden or as another piece's",
+                        b->cells, b->flat, b->marked);
     const uint64_t points = whole ? b->points : 0, corners = whole ? b->corner_count : 0,
                    bytes = sizeof *b->grid + 3 * sizeof *b->at * points +
                            sizeof *b->corners * corners + cells;
@@ -325,7 +325,7 @@ static cw_status allocate_grid(building *b, cw_error *err)
         return st;
     char *block = cwi_alloc_large(bytes, 1);
     if (!block)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu cells", cells);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu cells", cells);
     b->volume.owned_grid = block;
     b->grid = (cw_cells *)(void *)block;
     b->at = (double *)(void *)(b->grid + 1);
@@ -360,10 +360,10 @@ static cw_status read_points(building *b, size_t piece, size_t first, cw_error *
         for (size_t a = 0; a < 3; a++) {
             const double x = cwi_tuples_real(&t, n, a);
             if (!is_moderate(x))
-                st = cw_fail(err, CW_ERR_FORMAT,
-                             "point %zu has the coordinate %g; they must be finite and below "
-                             "1e30",
-                             n, x);
+                st = cwi_fail(err, CW_ERR_FORMAT,
+                              "point %zu has the coordinate %g; they must be finite and below "
+                              "1e30",
+                              n, x);
             *to++ = x + 0.0; /* no negative zeros, so that equal places have equal bits */
         }
     drop_array(b, &t);
@@ -449,7 +449,7 @@ static cw_status allocate_values(building *b, cw_error *err)
     const size_t bytes = value_bytes(b) * b->volume.dim[0];
     cw_status st = take_bytes(b, bytes, err);
     if (st == CW_OK && !(b->volume.owned = cwi_alloc_zeroed(bytes, 1)))
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of values", bytes);
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of values", bytes);
     b->volume.data = b->volume.owned;
     return st;
 }
@@ -517,7 +517,7 @@ static cw_status average_values(building *b, cw_error *err)
         st = take_bytes(b, samples * sizeof(uint32_t), err);
     uint32_t *around = st == CW_OK ? cwi_alloc_zeroed(samples, sizeof *around) : NULL;
     if (st == CW_OK && !around)
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu samples", samples);
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu samples", samples);
     if (st == CW_OK)
         st = add_values(b, around, err);
     double *values = b->volume.owned;
@@ -541,7 +541,7 @@ static cw_status merge_samples(building *b, cw_error *err)
     uint32_t *map = cwi_alloc_array(samples, sizeof *map);
     if (!map || !cwi_samples_map(b->at, values, bytes, samples, map, &same)) {
         cwi_free(map);
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu samples", samples);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu samples", samples);
     }
     if (same) {
         cwi_samples_drop(b->at, values, bytes, samples, map);
@@ -580,9 +580,10 @@ static cw_status refuse_options(const cw_read_desc *desc, cw_error *err)
 {
     const cw_volume irregular = {.cells = &(cw_cells){.count = 0}};
     if (desc->spacing_mm[0] != 0)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "a spacing is given (--spacing); the samples of an irregular grid stand "
-                       "where its points are");
+        return cwi_fail(
+            err, CW_ERR_ARGUMENT,
+            "a spacing is given (--spacing); the samples of an irregular grid stand "
+            "where its points are");
     return desc->region ? cwi_volume_expect_dense(&irregular, "a crop", err) : CW_OK;
 }
 

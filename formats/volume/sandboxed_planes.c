@@ -41,7 +41,7 @@ static cw_status prepare_module(void *state, cw_error *err)
     planes->state = planes->functions->state_new();
     return planes->state
                ? CW_OK
-               : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the module %s", planes->module);
+               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the module %s", planes->module);
 }
 
 static cw_status work_on_request(void *state, int fd, const void *request, void *shared,

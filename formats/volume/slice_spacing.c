@@ -80,13 +80,13 @@ static cw_status lay_row(const double *places, size_t count, double steps, cwi_s
                          cw_error *err)
 {
     if (steps >= MOST_SLICES)
-        return cw_fail(err, CW_ERR_LIMIT, "%s: %.6g slices would be needed; the most are %d",
-                       s->finding, steps + 1, MOST_SLICES);
+        return cwi_fail(err, CW_ERR_LIMIT, "%s: %.6g slices would be needed; the most are %d",
+                        s->finding, steps + 1, MOST_SLICES);
     s->count = (size_t)steps + 1;
     s->step = (places[count - 1] - places[0]) / steps;
     s->items = cwi_alloc_array(s->count, sizeof *s->items);
     if (!s->items)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slices", s->count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slices", s->count);
     for (size_t k = 0, low = 0; k < s->count; k++) {
         s->items[k] = slice_at(places, count, &low, places[0] + (double)k * s->step, s->step);
         s->made += s->items[k].t > 0;
@@ -101,7 +101,7 @@ static cw_status lay_as_even(const double *places, size_t count, cwi_slices *s, 
     s->step = count > 1 ? (places[count - 1] - places[0]) / (double)(count - 1) : 0;
     s->items = cwi_alloc_array(count, sizeof *s->items);
     if (!s->items)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slices", count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slices", count);
     for (size_t k = 0; k < count; k++)
         s->items[k] = (cwi_slice){k, k, 0};
     return CW_OK;
@@ -136,14 +136,14 @@ cw_status cwi_slices_lay(const double *places, size_t count, const char *unit, c
         return lay_as_even(places, count, slices, err);
     double *sorted = measure_distances(places, count);
     if (!sorted)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slices", count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slices", count);
     const double steps = find_row(places, count, sorted, unit, slices);
     cwi_free(sorted);
     if (gaps == CW_GAPS_STOP)
-        return cw_fail(err, CW_ERR_UNSAFE,
-                       "%s; --gaps interpolate makes slices at equal distances, --gaps allow "
-                       "takes these as if they were",
-                       slices->finding);
+        return cwi_fail(err, CW_ERR_UNSAFE,
+                        "%s; --gaps interpolate makes slices at equal distances, --gaps allow "
+                        "takes these as if they were",
+                        slices->finding);
     return gaps == CW_GAPS_ALLOW ? lay_as_even(places, count, slices, err)
                                  : lay_row(places, count, steps, slices, err);
 }

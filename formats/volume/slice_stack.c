@@ -202,7 +202,7 @@ static cw_status load_voxels(cw_volume v, size_t bytes, reading *r, const cw_rea
     r->voxels = v.owned;
     cw_status st = CW_OK;
     if (!r->low || !r->high || !v.owned)
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of voxels", bytes);
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of voxels", bytes);
     else if (s->sparse)
         fill_voxels(s, r->voxels, bytes);
     if (st == CW_OK)
@@ -265,9 +265,9 @@ cw_status cwi_stack_load(const cwi_stack *stack, const cwi_input *in, cwi_planes
     if (st != CW_OK)
         return st;
     if (!count_bytes(&v, held, &bytes))
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "'%s' asks for more voxels than an address space holds",
-                       stack->size_field);
+        return cwi_fail(err, CW_ERR_LIMIT,
+                        "'%s' asks for more voxels than an address space holds",
+                        stack->size_field);
     st = cwi_check_limits(&v, bytes, desc->region ? "region" : stack->size_field, desc, err);
     if (st == CW_OK && desc->header_only)
         *volume = v;

@@ -25,7 +25,7 @@ static cw_status rows_open(rows *r, const cw_volume *v, bool components_last, cw
     r->buffer = cwi_alloc_array(r->bytes, 1);
     return r->buffer
                ? CW_OK
-               : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of voxels", r->bytes);
+               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of voxels", r->bytes);
 }
 
 static const void *gather_row(const rows *r, const char *first)

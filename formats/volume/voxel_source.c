@@ -28,9 +28,9 @@ static const char *name_source(const cwi_source *src)
 cw_status cwi_fail_type(cw_error *err, const char *field, const char *name)
 {
 #define NAME(constant, ctype, text) " " text
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "'%s' is %.60s; the types that are read are" CW_TYPE_TABLE(NAME), field,
-                   name);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "'%s' is %.60s; the types that are read are" CW_TYPE_TABLE(NAME), field,
+                    name);
 #undef NAME
 }
 
@@ -101,14 +101,14 @@ cw_status cwi_source_set_axes(cwi_source *src, const cwi_axis *axes, size_t coun
         sizes[axes[i].role] = axes[i].size;
         strides[axes[i].role] = bytes;
         if (!cwi_size_mul(bytes, axes[i].size, &bytes) || bytes > PTRDIFF_MAX)
-            return cw_fail(err, CW_ERR_LIMIT,
-                           "'%s' asks for more %s than an address space holds", src->size_field,
-                           name_source(src));
+            return cwi_fail(err, CW_ERR_LIMIT,
+                            "'%s' asks for more %s than an address space holds",
+                            src->size_field, name_source(src));
     }
     if (sizes[CWI_AXIS_COMPONENT] > MOST_COMPONENTS)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'%s' asks for %zu values per voxel; at most %d are read",
-                       src->size_field, sizes[CWI_AXIS_COMPONENT], MOST_COMPONENTS);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'%s' asks for %zu values per voxel; at most %d are read",
+                        src->size_field, sizes[CWI_AXIS_COMPONENT], MOST_COMPONENTS);
     for (int r = 0; r < CWI_ROLE_COUNT; r++) /* never used as a step, but as in packed data */
         if (strides[r] == 0)
             strides[r] = r == CWI_AXIS_COMPONENT ? voxel : bytes;
@@ -138,18 +138,18 @@ cw_status cwi_check_frame(const cw_volume *v, const char *field, cw_error *err)
     for (int c = 0; c < 4; c++) {
         const double length = hypot(hypot(v->affine[0][c], v->affine[1][c]), v->affine[2][c]);
         if (!is_moderate(length * (c < 3 ? (double)v->dim[c] : 1.0)))
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "'%s' has numbers that are not finite or too large", field);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "'%s' has numbers that are not finite or too large", field);
         if (c < 3 && !(length > 1e-30))
-            return cw_fail(err, CW_ERR_FORMAT, "'%s' gives axis %d no length", field, c);
+            return cwi_fail(err, CW_ERR_FORMAT, "'%s' gives axis %d no length", field, c);
         for (int r = 0; r < 3; r++)
             unit[r][c] = v->affine[r][c] / length;
     }
     const double volume = cwi_affine_determinant(unit[0]);
     if (!(fabs(volume) > 1e-6))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'%s' gives directions that lie in one plane (determinant %g)", field,
-                       volume);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'%s' gives directions that lie in one plane (determinant %g)", field,
+                        volume);
     return CW_OK;
 }
 
@@ -177,9 +177,9 @@ static cw_status skip_lines(const part *p, uint64_t lines, uint64_t *start, cw_e
             if (st != CW_OK)
                 return st;
             if (got == 0)
-                return cw_fail(err, CW_ERR_FORMAT,
-                               "the file has %llu lines; %llu are to be skipped",
-                               (unsigned long long)line, (unsigned long long)lines);
+                return cwi_fail(err, CW_ERR_FORMAT,
+                                "the file has %llu lines; %llu are to be skipped",
+                                (unsigned long long)line, (unsigned long long)lines);
             used = 0;
         }
         line += text[used] == '\n';
@@ -227,13 +227,13 @@ static cw_status check_share(const cwi_source *src, part *p, cw_error *err)
     if (!__builtin_add_overflow(decoded_skip(src), share, &wanted) &&
         wanted <= most_bytes(src, encoded))
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "'%s' asks for %zu bytes of %s%s%s; the file holds %llu bytes behind the "
-                   "first %llu",
-                   src->size_field, share, name_source(src),
-                   src->encoding == CWI_RAW ? "" : ", encoded",
-                   src->files.count > 1 ? " in each file" : "", (unsigned long long)encoded,
-                   (unsigned long long)p->start);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "'%s' asks for %zu bytes of %s%s%s; the file holds %llu bytes behind the "
+                    "first %llu",
+                    src->size_field, share, name_source(src),
+                    src->encoding == CWI_RAW ? "" : ", encoded",
+                    src->files.count > 1 ? " in each file" : "", (unsigned long long)encoded,
+                    (unsigned long long)p->start);
 }
 
 /* Opens a stream over the encoded voxels of a part, and the table of their blocks, if any.
@@ -299,10 +299,10 @@ static cw_status open_part(const cwi_source *src, const cwi_input *in, size_t in
     if (src->span && p->start < p->size && src->span < p->size - p->start)
         p->size = p->start + src->span;
     if (st == CW_OK && src->packed > p->size - (p->start < p->size ? p->start : p->size))
-        st = cw_fail(err, CW_ERR_FORMAT,
-                     "'CompressedDataSize' is %llu; the file holds %llu bytes",
-                     (unsigned long long)src->packed,
-                     (unsigned long long)(p->start < p->size ? p->size - p->start : 0));
+        st = cwi_fail(err, CW_ERR_FORMAT,
+                      "'CompressedDataSize' is %llu; the file holds %llu bytes",
+                      (unsigned long long)src->packed,
+                      (unsigned long long)(p->start < p->size ? p->size - p->start : 0));
     if (st == CW_OK)
         st = check_share(src, p, err);
     if (st == CW_OK)
@@ -392,7 +392,7 @@ static cw_status check_packed(const reading *r, uint64_t start, cw_error *err)
     if (!r->src->packed || r->src->files.count || !s->ended || s->truncated ||
         s->packed_end - start <= r->src->packed)
         return CW_OK;
-    return cw_fail(
+    return cwi_fail(
         err, CW_ERR_FORMAT, "'CompressedDataSize' is %llu; the compressed data take %llu bytes",
         (unsigned long long)r->src->packed, (unsigned long long)(s->packed_end - start));
 }
@@ -460,9 +460,9 @@ static cw_status check_files(const cwi_source *src, const cwi_input *in, cw_erro
 {
     const size_t count = src->files.count;
     if (count && (src->bytes % count || share_bytes(src) % cw_type_size(src->shape.type)))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'%s' asks for %zu bytes, which %zu files cannot share", src->size_field,
-                       src->bytes, count);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'%s' asks for %zu bytes, which %zu files cannot share",
+                        src->size_field, src->bytes, count);
     return walk_parts(src, in, NULL, err);
 }
 
@@ -472,16 +472,16 @@ cw_status cwi_check_limits(const cw_volume *v, size_t bytes, const char *field,
     const uint64_t most = desc->max_voxels ? desc->max_voxels : (uint64_t)1 << 40;
     const uint64_t voxels = bytes / cw_type_size(v->type) / v->components;
     if (voxels > most)
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "'%s' asks for %llu voxels; the limit is %llu (--max-voxels)", field,
-                       (unsigned long long)voxels, (unsigned long long)most);
+        return cwi_fail(err, CW_ERR_LIMIT,
+                        "'%s' asks for %llu voxels; the limit is %llu (--max-voxels)", field,
+                        (unsigned long long)voxels, (unsigned long long)most);
     if (desc->max_bytes && bytes > desc->max_bytes) {
         char asked[CWI_MEMORY_TEXT], limit[CWI_MEMORY_TEXT];
         cwi_print_memory(bytes, asked);
         cwi_print_memory(desc->max_bytes, limit);
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "'%s' asks for %s of voxels; the limit is %s (--memory)", field, asked,
-                       limit);
+        return cwi_fail(err, CW_ERR_LIMIT,
+                        "'%s' asks for %s of voxels; the limit is %s (--memory)", field, asked,
+                        limit);
     }
     return CW_OK;
 }
@@ -550,8 +550,8 @@ static cw_status load_voxels(const cwi_source *src, const cwi_source *wanted,
     cw_volume v = wanted->shape;
     v.owned = cwi_alloc_large(wanted->bytes, 1);
     if (!v.owned)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of %s", wanted->bytes,
-                       name_source(wanted));
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of %s", wanted->bytes,
+                        name_source(wanted));
     v.data = v.owned;
     reading r = {.src = src, .progress = &desc->progress, .to = v.owned};
     choose_steps(src, desc, step, &fastest);

@@ -30,10 +30,10 @@ static cw_status start_file(void *user, cwi_xml *x, cwi_attributes a, cw_error *
     (void)user, (void)x;
     if (type && strcmp(type, "Collection") == 0)
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "the VTK file is '%.40s'; a list of files (pvd) is a "
-                   "Collection",
-                   type ? type : "");
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "the VTK file is '%.40s'; a list of files (pvd) is a "
+                    "Collection",
+                    type ? type : "");
 }
 
 /* Makes a path for this program from a name in the file, which is relative to the list's
@@ -53,18 +53,18 @@ static char *path_of(const cwi_input *in, const char *name)
 static cw_status add_entry(parsing *p, const char *name, double time, cw_error *err)
 {
     if (p->count == MOST_FILES)
-        return cw_fail(err, CW_ERR_LIMIT, "more than %d files are listed", MOST_FILES);
+        return cwi_fail(err, CW_ERR_LIMIT, "more than %d files are listed", MOST_FILES);
     if (p->count == p->capacity) {
         const size_t capacity = p->capacity ? 2 * p->capacity : 16;
         cw_pvd_entry *entries = cwi_realloc_array(p->entries, capacity, sizeof *entries);
         if (!entries)
-            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a list of files");
+            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a list of files");
         p->entries = entries;
         p->capacity = capacity;
     }
     char *path = path_of(p->in, name);
     if (!path)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a list of files");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a list of files");
     p->entries[p->count++] = (cw_pvd_entry){path, time};
     return CW_OK;
 }
@@ -77,13 +77,13 @@ static cw_status start_entry(void *user, cwi_xml *x, cwi_attributes a, cw_error 
     uint64_t size;
     int fd;
     if (!name || !*name)
-        return cw_fail(err, CW_ERR_FORMAT, "line %lu: the DataSet names no 'file'",
-                       cwi_xml_line(x));
+        return cwi_fail(err, CW_ERR_FORMAT, "line %lu: the DataSet names no 'file'",
+                        cwi_xml_line(x));
     if (step &&
         (!cwi_parse_double(&step, &time) || step[strspn(step, " \t")] || !isfinite(time)))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "line %lu: 'timestep' is '%.40s'; a number was expected",
-                       cwi_xml_line(x), cwi_attribute(a, "timestep"));
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "line %lu: 'timestep' is '%.40s'; a number was expected",
+                        cwi_xml_line(x), cwi_attribute(a, "timestep"));
     cw_status st = cwi_input_open_side(p->in, name, &fd, &size, err);
     if (st != CW_OK)
         return cwi_fail_in(err, st, name);
@@ -112,13 +112,13 @@ static int compare_times(const void *a, const void *b)
 static cw_status check_entries(parsing *p, cw_error *err)
 {
     if (p->count == 0)
-        return cw_fail(err, CW_ERR_FORMAT, "the list names no file");
+        return cwi_fail(err, CW_ERR_FORMAT, "the list names no file");
     qsort(p->entries, p->count, sizeof *p->entries, compare_times);
     for (size_t n = 1; n < p->count; n++)
         if (p->entries[n].time == p->entries[n - 1].time)
-            return cw_fail(err, CW_ERR_UNSUPPORTED,
-                           "'%s' and '%s' are both of time %.6g: one file a time step is read",
-                           p->entries[n - 1].path, p->entries[n].path, p->entries[n].time);
+            return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                            "'%s' and '%s' are both of time %.6g: one file a time step is read",
+                            p->entries[n - 1].path, p->entries[n].path, p->entries[n].time);
     return CW_OK;
 }
 

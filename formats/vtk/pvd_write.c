@@ -18,13 +18,13 @@ static cw_status resolve_path(const char *path, char full[PATH_MAX], cw_error *e
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
     const size_t length = (size_t)(name - path);
     if (length >= sizeof folder || !*name)
-        return cw_fail(err, CW_ERR_ARGUMENT, "'%.200s' is not a file name", path);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "'%.200s' is not a file name", path);
     memcpy(folder, path, length);
     strcpy(folder + length, length ? "" : ".");
     const bool found = realpath(folder, full);
     const size_t used = found ? strlen(full) : 0;
     if (!found || used + strlen(name) + 2 > PATH_MAX)
-        return cw_fail(err, CW_ERR_ARGUMENT, "the folder of '%.200s' is not there", path);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the folder of '%.200s' is not there", path);
     strcpy(full + used, used > 1 ? "/" : "");
     strcat(full, name);
     return CW_OK;
@@ -41,12 +41,12 @@ static cw_status relate_path(const char *from, const char *file, char related[PA
     for (const char *slash = strchr(from + shared, '/'); slash;
          slash = strchr(slash + 1, '/')) {
         if (used + 4 > PATH_MAX)
-            return cw_fail(err, CW_ERR_ARGUMENT, "it is too far from '%.200s'", file);
+            return cwi_fail(err, CW_ERR_ARGUMENT, "it is too far from '%.200s'", file);
         memcpy(related + used, "../", 3);
         used += 3;
     }
     if (used + strlen(file + shared) >= PATH_MAX)
-        return cw_fail(err, CW_ERR_ARGUMENT, "it is too far from '%.200s'", file);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "it is too far from '%.200s'", file);
     strcpy(related + used, file + shared);
     return CW_OK;
 }
@@ -57,7 +57,7 @@ static cw_status write_entry(cwi_outfile *file, const char *path, const cw_pvd_e
     char full[PATH_MAX], related[PATH_MAX], escaped[CWI_XML_BYTES(PATH_MAX)];
     char time[CWI_NUMBER_BYTES];
     if (!isfinite(e->time))
-        return cw_fail(err, CW_ERR_ARGUMENT, "the time of '%.200s' is not finite", e->path);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the time of '%.200s' is not finite", e->path);
     cw_status st = resolve_path(e->path, full, err);
     if (st == CW_OK)
         st = relate_path(path, full, related, err);
@@ -93,7 +93,7 @@ cw_status cw_pvd_write(const char *path, const cw_pvd_entry *entries, size_t cou
                        const cw_write_desc *desc, cw_error *err)
 {
     cwi_outfile *file = NULL;
-    cw_status st = count ? CW_OK : cw_fail(err, CW_ERR_ARGUMENT, "the series has no files");
+    cw_status st = count ? CW_OK : cwi_fail(err, CW_ERR_ARGUMENT, "the series has no files");
     if (st == CW_OK)
         st = cwi_outfile_open(&file, path, desc && desc->no_clobber, err);
     if (st == CW_OK)

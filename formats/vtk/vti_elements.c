@@ -18,9 +18,9 @@ cw_status cwi_vti_check_times(cwi_attributes a, cw_error *err)
     const char *times = cwi_attribute(a, "TimeValues");
     if (!times || !strchr(times, ' '))
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "'TimeValues' is '%.40s'; several time steps in one file are not read",
-                   times);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "'TimeValues' is '%.40s'; several time steps in one file are not read",
+                    times);
 }
 
 cw_status cwi_vti_image(cwi_vti *v, cwi_attributes a, cw_error *err)
@@ -42,23 +42,23 @@ cw_status cwi_vti_extent(cwi_attributes a, int64_t extent[6], cw_error *err)
     const char *text = cwi_attribute(a, "Extent"), *s = text ? text : "";
     for (int i = 0; i < 6; i++)
         if (!cwi_parse_int(&s, &extent[i]) || extent[i] > INT32_MAX || extent[i] < INT32_MIN)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "'Extent' is '%.60s'; six whole numbers were expected",
-                           text ? text : "");
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "'Extent' is '%.60s'; six whole numbers were expected",
+                            text ? text : "");
     for (int i = 0; i < 6; i += 2)
         if (extent[i + 1] < extent[i] || extent[i + 1] - extent[i] >= INT32_MAX)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "'Extent' is '%.60s'; it must hold 1 to 2147483647 points along "
-                           "each axis",
-                           text);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "'Extent' is '%.60s'; it must hold 1 to 2147483647 points along "
+                            "each axis",
+                            text);
     return CW_OK;
 }
 
 cw_status cwi_vti_piece(cwi_vti *v, cwi_attributes a, cw_error *err)
 {
     if (v->pieces++)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "the file has several Piece elements; files of one are read");
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the file has several Piece elements; files of one are read");
     return cwi_vti_extent(a, v->extent, err);
 }
 
@@ -113,21 +113,21 @@ cw_status cwi_vti_fail_choice(const cwi_vti_choice *choice, cw_error *err)
 {
     const char *others = choice->others, *there = *others ? "; there are " : "";
     if (choice->wanted)
-        return cw_fail(err, CW_ERR_ARGUMENT, "there is no array '%.100s' that is read%s%s",
-                       choice->wanted, there, others);
-    return cw_fail(err, CW_ERR_FORMAT, "PointData and CellData hold no array that is read%s%s",
-                   there, others);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "there is no array '%.100s' that is read%s%s",
+                        choice->wanted, there, others);
+    return cwi_fail(err, CW_ERR_FORMAT, "PointData and CellData hold no array that is read%s%s",
+                    there, others);
 }
 
 cw_status cwi_vti_coordinates(cwi_vti *v, cwi_attributes a, size_t *n, cw_error *err)
 {
     *n = v->coordinate_arrays++;
     if (*n > 2)
-        return cw_fail(err, CW_ERR_FORMAT, "Coordinates has more than three arrays");
+        return cwi_fail(err, CW_ERR_FORMAT, "Coordinates has more than three arrays");
     cwi_vtk_array *array = &v->coordinates[*n];
     cw_status st = cwi_vtk_xml_array(array, a, err);
     if (st == CW_OK && (!array->is_known || array->wide || array->components != 1))
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_FORMAT,
             "coordinates along %c are %zu of type '%s' each; one number of a type of "
             "up to 32 bits, or Float64, was expected",

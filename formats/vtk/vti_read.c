@@ -183,9 +183,9 @@ static bool is_of_cells(const cwi_vti *v)
 static cw_status check_found(const cwi_vti *v, cw_error *err)
 {
     if (v->rectilinear && v->coordinate_arrays != 3)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "Coordinates has %zu arrays; one for x, y and z each was expected",
-                       v->coordinate_arrays);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "Coordinates has %zu arrays; one for x, y and z each was expected",
+                        v->coordinate_arrays);
     return choose_array(v)->rank != CWI_VTI_NONE ? CW_OK : cwi_vti_fail_choice(&v->choice, err);
 }
 

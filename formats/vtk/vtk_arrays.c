@@ -63,14 +63,14 @@ cw_status cwi_vtk_line(cwi_vtk *v, bool *more, cw_error *err)
     *more = got > 0;
     v->number++;
     if (length == sizeof v->line)
-        return cw_fail(err, CW_ERR_FORMAT, "line %zu is longer than %d bytes", v->number,
-                       CWI_VTK_LINE_BYTES - 1);
+        return cwi_fail(err, CW_ERR_FORMAT, "line %zu is longer than %d bytes", v->number,
+                        CWI_VTK_LINE_BYTES - 1);
     if (v->number > MOST_LINES)
-        return cw_fail(err, CW_ERR_FORMAT, "the file has more than %d lines beside its arrays",
-                       MOST_LINES);
+        return cwi_fail(err, CW_ERR_FORMAT, "the file has more than %d lines beside its arrays",
+                        MOST_LINES);
     if (memchr(v->line, '\0', length))
-        return cw_fail(err, CW_ERR_FORMAT, "line %zu holds a zero byte; it must be text",
-                       v->number);
+        return cwi_fail(err, CW_ERR_FORMAT, "line %zu holds a zero byte; it must be text",
+                        v->number);
     v->offset += length + (end ? 1 : 0);
     while (length > 0 && isspace((unsigned char)v->line[length - 1]))
         length--;
@@ -120,9 +120,9 @@ static cw_status skip_bytes(cwi_vtk *v, const char *name, size_t count, size_t b
         v->offset += bytes;
         return CW_OK;
     }
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "the array '%s' has %zu numbers of %zu bits; the file holds %llu bytes",
-                   name, count, bits, (unsigned long long)there);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "the array '%s' has %zu numbers of %zu bits; the file holds %llu bytes",
+                    name, count, bits, (unsigned long long)there);
 }
 
 static cw_status skip_text(cwi_vtk *v, const char *name, size_t count, cw_error *err)
@@ -146,9 +146,9 @@ static cw_status skip_text(cwi_vtk *v, const char *name, size_t count, cw_error 
     seen += seen < count && inside;
     if (seen == count)
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "the array '%s' has %zu numbers; the file ends after %zu", name, count,
-                   seen);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "the array '%s' has %zu numbers; the file ends after %zu", name, count,
+                    seen);
 }
 
 /* --- arrays ------------------------------------------------------------------------------ */
@@ -222,8 +222,9 @@ static cw_status pass_array(cwi_vtk *v, const cwi_legacy_array *said, const char
     const vtk_type *type = find_type(type_name);
     size_t count;
     if (!type)
-        return cw_fail(err, CW_ERR_FORMAT, "the array '%s' is of type '%s', which is not known",
-                       said->name, type_name);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the array '%s' is of type '%s', which is not known", said->name,
+                        type_name);
     if (v->best && tuples == v->count) {
         keep_marks(v, said, type);
         consider_array(v, said, type, type_name);
@@ -231,14 +232,14 @@ static cw_status pass_array(cwi_vtk *v, const cwi_legacy_array *said, const char
     if (cwi_vtk_is_settled(v))
         return CW_OK;
     if (!cwi_size_mul(tuples, said->components, &count))
-        return cw_fail(err, CW_ERR_LIMIT, "the array '%s' is larger than an address space",
-                       said->name);
+        return cwi_fail(err, CW_ERR_LIMIT, "the array '%s' is larger than an address space",
+                        said->name);
     return pass_numbers(v, said->name, count, type->bits, err);
 }
 
 cw_status cwi_vtk_fail_cut_short(const cwi_vtk *v, cw_error *err)
 {
-    return cw_fail(err, CW_ERR_FORMAT, "line %zu, '%.60s', is cut short", v->number, v->line);
+    return cwi_fail(err, CW_ERR_FORMAT, "line %zu, '%.60s', is cut short", v->number, v->line);
 }
 
 cw_status cwi_vtk_row_pass(cwi_vtk *v, const char *field, const char *type_name, size_t skipped,
@@ -246,9 +247,9 @@ cw_status cwi_vtk_row_pass(cwi_vtk *v, const char *field, const char *type_name,
 {
     const vtk_type *type = find_type(type_name);
     if (!type || type->bits == 1)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'%s' is of type '%s'; whole or real numbers were expected", field,
-                       type_name);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'%s' is of type '%s'; whole or real numbers were expected", field,
+                        type_name);
     cw_status st = pass_numbers(v, field, skipped, type->bits, err);
     row->wide = type->type < 0 && v->binary; /* in text they are ordinary numbers */
     row->type = type->type >= 0 ? (cw_type)type->type : v->binary ? CW_U32 : CW_F64;
@@ -270,10 +271,10 @@ cw_status cwi_vtk_coordinates(cwi_vtk *v, int axis, cw_error *err)
         return st;
     const vtk_type *type = find_type(type_name);
     if (!type || type->type < 0)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'%s' is of type '%s'; numbers of up to 32 bits, or double, were "
-                       "expected",
-                       field, type_name);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "'%s' is of type '%s'; numbers of up to 32 bits, or double, were "
+                        "expected",
+                        field, type_name);
     return cwi_vtk_row_pass(v, field, type_name, 0, (size_t)count, &v->coordinates[axis], err);
 }
 
@@ -372,10 +373,11 @@ static cw_status read_field_array(cwi_vtk *v, cw_error *err)
     for (int i = 0; i < 3; i++)
         whole = whole && cwi_next_text_word(&text, words[i]);
     if (!whole)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "line %zu is '%.60s'; it must name an array of a FIELD, its components, "
-                       "tuples and type",
-                       v->number, v->line);
+        return cwi_fail(
+            err, CW_ERR_FORMAT,
+            "line %zu is '%.60s'; it must name an array of a FIELD, its components, "
+            "tuples and type",
+            v->number, v->line);
     cw_status st =
         cwi_field_integer(array.name, words[0], 0, MOST_COMPONENTS, &components, err);
     if (st == CW_OK)
@@ -398,9 +400,9 @@ static cw_status read_field(cwi_vtk *v, cw_error *err)
     while (st == CW_OK && count > 0 && !cwi_vtk_is_settled(v)) {
         st = cwi_vtk_full_line(v, &more, err);
         if (st == CW_OK && !more)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "the file ends; %lld arrays of '%.40s' are to come",
-                           (long long)count, name);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "the file ends; %lld arrays of '%.40s' are to come",
+                            (long long)count, name);
         if (st == CW_OK && is_keyword(v->line, "metadata")) {
             st = skip_metadata(v, err);
         } else if (st == CW_OK) {

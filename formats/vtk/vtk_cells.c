@@ -45,9 +45,9 @@ static cw_status read_named(cwi_vtk *v, const char *name, size_t skipped, size_t
         return st;
     if (!cwi_next_text_word(&text, word) || !cwi_next_text_word(&text, type) ||
         strcasecmp(word, name) != 0)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "line %zu is '%.40s'; %s and a type were expected, behind CELLS",
-                       v->number, v->line, name);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "line %zu is '%.40s'; %s and a type were expected, behind CELLS",
+                        v->number, v->line, name);
     return cwi_vtk_row_pass(v, name, type, skipped, count, row, err);
 }
 
@@ -91,10 +91,10 @@ cw_status cwi_vtk_describe(const cwi_vtk *v, const cwi_vtk_row *row, const char 
 {
     *wide = row->wide;
     if (!row->offset)
-        return cw_fail(err, CW_ERR_FORMAT, "'%s' is missing", field);
+        return cwi_fail(err, CW_ERR_FORMAT, "'%s' is missing", field);
     if (count > row->count)
-        return cw_fail(err, CW_ERR_FORMAT, "'%s' lists %zu; the grid asks for %zu", field,
-                       row->count, count);
+        return cwi_fail(err, CW_ERR_FORMAT, "'%s' lists %zu; the grid asks for %zu", field,
+                        row->count, count);
     cw_status st =
         cwi_tuples_describe(src, field, row->type, row->wide, components, count, err);
     src->encoding = v->binary ? CWI_RAW : CWI_ASCII;

@@ -26,7 +26,7 @@ static cw_status raise_axis(double *at, size_t count, int axis, cw_volume *shape
     for (size_t i = 0; i < count; i++) {
         at[i] *= sign;
         if (!isfinite(at[i]) || (i && !(at[i] > at[i - 1])))
-            return cw_fail(
+            return cwi_fail(
                 err, CW_ERR_FORMAT,
                 "Coordinates along %c: number %zu, %g, follows %g; all must rise, or "
                 "all fall",
@@ -48,7 +48,7 @@ static cw_status take_coordinates(const cw_volume numbers[3], bool of_cells, cw_
     double *to =
         cwi_alloc_array(numbers[0].dim[0] + numbers[1].dim[0] + numbers[2].dim[0], sizeof *to);
     if (!to)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for coordinates");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for coordinates");
     cw_status st = CW_OK;
     shape->owned_grid = to;
     for (int a = 0; a < 3 && st == CW_OK; to += numbers[a++].dim[0]) {
@@ -82,7 +82,7 @@ cw_status cwi_vtk_grid_to_cells(cwi_source *src, const char *array, size_t dim[3
 {
     for (int a = 0; a < 3; a++)
         if (--dim[a] == 0)
-            return cw_fail(
+            return cwi_fail(
                 err, CW_ERR_FORMAT,
                 "'%s' has one plane of points along %c: no cells, which have the values",
                 src->size_field, "xyz"[a]);

@@ -89,11 +89,11 @@ static cw_status read_magic(cwi_vtk *v, cw_error *err)
     if (st != CW_OK)
         return st;
     if (strncmp(v->line, magic, sizeof magic - 1) != 0)
-        return cw_fail(err, CW_ERR_FORMAT, "the first line is not '%s1.0' or the like", magic);
+        return cwi_fail(err, CW_ERR_FORMAT, "the first line is not '%s1.0' or the like", magic);
     const char *version = v->line + sizeof magic - 1;
     if (*version < '1' || *version > '5' || version[1] != '.')
-        return cw_fail(err, CW_ERR_FORMAT, "the version is '%.20s'; 1.0 to 5.1 are read",
-                       version);
+        return cwi_fail(err, CW_ERR_FORMAT, "the version is '%.20s'; 1.0 to 5.1 are read",
+                        version);
     v->version = *version - '0';
     return cwi_vtk_line(v, &more, err); /* a title, possibly empty */
 }
@@ -107,8 +107,8 @@ static cw_status read_form(cwi_vtk *v, cw_error *err)
     v->binary = strcasecmp(v->line, "binary") == 0;
     if (v->binary || strcasecmp(v->line, "ascii") == 0)
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT, "line %zu is '%.40s'; it must be ASCII or BINARY",
-                   v->number, v->line);
+    return cwi_fail(err, CW_ERR_FORMAT, "line %zu is '%.40s'; it must be ASCII or BINARY",
+                    v->number, v->line);
 }
 
 static bool is_keyword(const cwi_vtk *v, const char *names)
@@ -124,7 +124,7 @@ static cw_status read_dataset(cwi_vtk *v, grid *g, cw_error *err)
     while (st == CW_OK && known) {
         st = cwi_vtk_full_line(v, &more, err);
         if (st == CW_OK && !more)
-            return cw_fail(err, CW_ERR_FORMAT, "'DATASET' is missing");
+            return cwi_fail(err, CW_ERR_FORMAT, "'DATASET' is missing");
         if (st == CW_OK && is_keyword(v, "dataset"))
             break;
         if (st == CW_OK)
@@ -138,10 +138,10 @@ static cw_status read_dataset(cwi_vtk *v, grid *g, cw_error *err)
         }
     if (st != CW_OK)
         return st;
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "line %zu is '%.60s'; only DATASET STRUCTURED_POINTS, RECTILINEAR_GRID, "
-                   "STRUCTURED_GRID or UNSTRUCTURED_GRID is a volume",
-                   v->number, v->line);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "line %zu is '%.60s'; only DATASET STRUCTURED_POINTS, RECTILINEAR_GRID, "
+                    "STRUCTURED_GRID or UNSTRUCTURED_GRID is a volume",
+                    v->number, v->line);
 }
 
 /* --- the grid ---------------------------------------------------------------------------- */
@@ -183,19 +183,19 @@ static cw_status check_count(const cwi_vtk *v, const char *field, const grid *g,
         wanted = cells ? v->grid.count : v->grid.points.count;
         return v->count == wanted
                    ? CW_OK
-                   : cw_fail(err, CW_ERR_FORMAT, "'%s' is %zu; '%s' asks for %zu", field,
-                             v->count, cells ? "CELLS" : "POINTS", wanted);
+                   : cwi_fail(err, CW_ERR_FORMAT, "'%s' is %zu; '%s' asks for %zu", field,
+                              v->count, cells ? "CELLS" : "POINTS", wanted);
     }
     if (!g->seen[G_DIMENSIONS])
-        return cw_fail(err, CW_ERR_FORMAT, "'DIMENSIONS' is missing in front of %s", field);
+        return cwi_fail(err, CW_ERR_FORMAT, "'DIMENSIONS' is missing in front of %s", field);
     for (int a = 0; a < 3; a++)
         if (!cwi_size_mul(wanted, g->dim[a] > 1 ? g->dim[a] - cells : 1, &wanted))
-            return cw_fail(err, CW_ERR_LIMIT,
-                           "'DIMENSIONS' asks for more voxels than an address space holds");
+            return cwi_fail(err, CW_ERR_LIMIT,
+                            "'DIMENSIONS' asks for more voxels than an address space holds");
     if (v->count == wanted)
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT, "'%s' is %zu; 'DIMENSIONS' asks for %zu", field,
-                   v->count, wanted);
+    return cwi_fail(err, CW_ERR_FORMAT, "'%s' is %zu; 'DIMENSIONS' asks for %zu", field,
+                    v->count, wanted);
 }
 
 /* Reads "POINT_DATA n" or "CELL_DATA n": the places of the arrays that follow. */
@@ -220,8 +220,8 @@ static cw_status read_line(cwi_vtk *v, grid *g, cw_error *err)
         return start_data(v, g, err);
     cw_status st = cwi_vtk_section(v, &known, err);
     if (st == CW_OK && !known)
-        return cw_fail(err, CW_ERR_FORMAT, "line %zu, '%.40s', starts nothing that is known",
-                       v->number, v->line);
+        return cwi_fail(err, CW_ERR_FORMAT, "line %zu, '%.40s', starts nothing that is known",
+                        v->number, v->line);
     return st;
 }
 
@@ -243,7 +243,7 @@ static cw_status read_lines(cwi_vtk *v, grid *g, cw_error *err)
     }
     if (st == CW_OK || (listing && v->points.rank >= CWI_VTK_SCALARS))
         return CW_OK;
-    return cw_fail(err, st, "%s", why.message);
+    return cwi_fail(err, st, "%s", why.message);
 }
 
 /* Chooses the array that is the volume: at points, unless only cells have one. */
@@ -257,13 +257,13 @@ static cw_status check_found(const cwi_vtk *v, cw_error *err)
     if (choose_array(v)->rank != CWI_VTK_NONE)
         return CW_OK;
     if (!v->best)
-        return cw_fail(err, CW_ERR_FORMAT, "'POINT_DATA' is missing, and 'CELL_DATA' too");
+        return cwi_fail(err, CW_ERR_FORMAT, "'POINT_DATA' is missing, and 'CELL_DATA' too");
     if (v->wanted)
-        return cw_fail(err, CW_ERR_ARGUMENT, "there is no array '%.100s' that is read%s%s",
-                       v->wanted, *v->others ? "; there are " : "", v->others);
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "'POINT_DATA' and 'CELL_DATA' hold no array that is read%s%s",
-                   *v->others ? "; there are " : "", v->others);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "there is no array '%.100s' that is read%s%s",
+                        v->wanted, *v->others ? "; there are " : "", v->others);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "'POINT_DATA' and 'CELL_DATA' hold no array that is read%s%s",
+                    *v->others ? "; there are " : "", v->others);
 }
 
 /* --- to a source ------------------------------------------------------------------------- */
@@ -295,8 +295,8 @@ static cw_status set_coordinates(const cwi_vtk *v, const grid *g, cwi_source *sr
     for (int a = 0; a < 3; a++) {
         const cwi_vtk_row *row = &v->coordinates[a];
         if (row->count != g->dim[a])
-            return cw_fail(err, CW_ERR_FORMAT, "'%s' lists %zu numbers; 'DIMENSIONS' says %zu",
-                           fields[a], row->count, g->dim[a]);
+            return cwi_fail(err, CW_ERR_FORMAT, "'%s' lists %zu numbers; 'DIMENSIONS' says %zu",
+                            fields[a], row->count, g->dim[a]);
         cw_status st = cwi_vtk_grid_row(&rows[a], fields[a], row->type, row->count, err);
         if (st != CW_OK)
             return st;

@@ -39,8 +39,8 @@ static cw_status one_of(cwi_attributes a, const char *name, const char *const *r
     for (int i = 0; i < count; i++)
         snprintf(words + strlen(words), sizeof words - strlen(words), "%s%s",
                  *words ? ", " : "", rows[i]);
-    return cw_fail(err, CW_ERR_FORMAT, "'%s' is '%.40s'; those that are read are %s", name,
-                   value, words);
+    return cwi_fail(err, CW_ERR_FORMAT, "'%s' is '%.40s'; those that are read are %s", name,
+                    value, words);
 }
 
 cw_status cwi_vtk_xml_file(cwi_vtk_xml *v, cwi_attributes a, const char *const kind[2],
@@ -54,17 +54,17 @@ cw_status cwi_vtk_xml_file(cwi_vtk_xml *v, cwi_attributes a, const char *const k
     const char *type = cwi_attribute(a, "type");
     v->has_order = cwi_attribute(a, "byte_order");
     if (!type || strcmp(type, kind[0]) != 0)
-        return cw_fail(err, CW_ERR_FORMAT, "the VTK file is '%.40s'; only %s is %s",
-                       type ? type : "", kind[0], kind[1]);
+        return cwi_fail(err, CW_ERR_FORMAT, "the VTK file is '%.40s'; only %s is %s",
+                        type ? type : "", kind[0], kind[1]);
     cw_status st = one_of(a, "byte_order", orders, 2, &order, err);
     if (st == CW_OK)
         st = one_of(a, "header_type", words, 2, &word, err);
     if (st == CW_OK)
         st = one_of(a, "compressor", compressors, 3, &compressor, err);
     if (st == CW_OK && compressor == CWI_VTK_LZ4 && !cwi_lz4_present())
-        return cw_fail(err, CW_ERR_UNSUPPORTED,
-                       "'compressor' is vtkLZ4DataCompressor; this build has no LZ4 "
-                       "(liblz4-dev, CUBEWRIGHT_LZ4)");
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "'compressor' is vtkLZ4DataCompressor; this build has no LZ4 "
+                        "(liblz4-dev, CUBEWRIGHT_LZ4)");
     v->big_endian = order;
     v->word_bytes = word ? 8 : 4;
     v->compressor = (cwi_vtk_compressor)compressor;
@@ -117,8 +117,8 @@ cw_status cwi_vtk_xml_array(cwi_vtk_array *array, cwi_attributes a, cw_error *er
     if (st == CW_OK)
         st = cwi_vtk_xml_integer(a, "NumberOfComponents", 1, INT32_MAX, &components, err);
     if (st == CW_OK && form == CWI_VTK_APPENDED && !cwi_attribute(a, "offset"))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "the array '%s' is appended; its 'offset' is missing", array->name);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the array '%s' is appended; its 'offset' is missing", array->name);
     if (st == CW_OK)
         st = cwi_vtk_xml_integer(a, "offset", 0, INT64_MAX, &offset, err);
     array->form = (cwi_vtk_form)form;
@@ -153,7 +153,7 @@ static cw_status check_end(const cwi_input *in, cw_error *err)
         size--;
     if (st != CW_OK || (size >= length && memcmp(text + size - length, tag, length) == 0))
         return st;
-    return cw_fail(err, CW_ERR_FORMAT, "the file does not end with %s: it is cut off", tag);
+    return cwi_fail(err, CW_ERR_FORMAT, "the file does not end with %s: it is cut off", tag);
 }
 
 /* Finds the appended data, which start with an underscore. */
@@ -167,7 +167,7 @@ cw_status cwi_vtk_xml_find_appended(const cwi_input *in, cwi_vtk_xml *v, cw_erro
     while (i < size && isspace((unsigned char)text[i]))
         i++;
     if (st == CW_OK && (i == size || text[i] != '_'))
-        return cw_fail(err, CW_ERR_FORMAT, "the appended data do not start with '_'");
+        return cwi_fail(err, CW_ERR_FORMAT, "the appended data do not start with '_'");
     v->appended += i + 1;
     return st == CW_OK ? check_end(in, err) : st;
 }
@@ -218,20 +218,20 @@ static cw_status check_count(const cwi_input *in, const cwi_vtk_xml *v,
         count = count << 8 | word[v->big_endian ? i : v->word_bytes - 1 - i];
     if (count == src->bytes)
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "the array '%s' has %llu bytes; '%s' and 'type' ask for %zu", array->name,
-                   (unsigned long long)count, src->size_field, src->bytes);
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "the array '%s' has %llu bytes; '%s' and 'type' ask for %zu", array->name,
+                    (unsigned long long)count, src->size_field, src->bytes);
 }
 
 cw_status cwi_vtk_xml_place(const cwi_vtk_xml *v, const cwi_vtk_array *array,
                             const cwi_input *in, cwi_source *src, cw_error *err)
 {
     if (array->form == CWI_VTK_APPENDED && !v->has_appended)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "the array '%s' is appended; AppendedData is missing", array->name);
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the array '%s' is appended; AppendedData is missing", array->name);
     if (array->form != CWI_VTK_ASCII && !v->has_order)
-        return cw_fail(err, CW_ERR_FORMAT, "'byte_order' is missing; the array '%s' needs it",
-                       array->name);
+        return cwi_fail(err, CW_ERR_FORMAT, "'byte_order' is missing; the array '%s' needs it",
+                        array->name);
     set_place(v, array, src);
     return check_count(in, v, array, src, err);
 }
@@ -242,8 +242,8 @@ cw_status cwi_vtk_xml_tuples(const cwi_vtk_xml *v, const cwi_vtk_array *array,
 {
     *wide = false;
     if (!array)
-        return cw_fail(err, CW_ERR_FORMAT, "'%s' is %zu; the array for them is missing", field,
-                       count);
+        return cwi_fail(err, CW_ERR_FORMAT, "'%s' is %zu; the array for them is missing", field,
+                        count);
     *wide = array->wide && array->form != CWI_VTK_ASCII;
     const cw_type type = array->wide && !*wide ? CW_F64 : array->type;
     cw_status st = cwi_tuples_describe(src, field, type, *wide, array->components, count, err);

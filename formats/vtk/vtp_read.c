@@ -63,8 +63,8 @@ static cw_status start_piece(void *user, cwi_xml *x, cwi_attributes a, cw_error 
     int64_t skipped[2] = {0};
     (void)x;
     if (v->pieces++)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "the file has several Piece elements; files of one are read");
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the file has several Piece elements; files of one are read");
     const struct {
         const char *name;
         int64_t *count;
@@ -114,10 +114,10 @@ static cw_status keep_structure(vtp *v, cwi_xml *x, cwi_attributes a, role first
         return st;
     if (!array.is_known || array.components != wanted ||
         (first != POINTS && (array.type == CW_F32 || array.type == CW_F64)))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "the array '%s' has %zu numbers of type '%s'; %zu %s expected",
-                       array.name, array.components, array.type_name, wanted,
-                       first == POINTS ? "were" : "whole one was");
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the array '%s' has %zu numbers of type '%s'; %zu %s expected",
+                        array.name, array.components, array.type_name, wanted,
+                        first == POINTS ? "were" : "whole one was");
     return keep_array(v, x, is_end ? ends : first, &array, false);
 }
 
@@ -334,9 +334,9 @@ static cw_status check_ends(const cwi_tuples *ends, const char *field, cw_error 
     for (size_t i = 0; i < ends->count; i++) {
         const int64_t end = cwi_tuples_whole(ends, i);
         if (end < before)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "'offsets' says that number %zu of '%s' ends at %lld, behind %lld",
-                           i, field, (long long)end, (long long)before);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "'offsets' says that number %zu of '%s' ends at %lld, behind %lld",
+                            i, field, (long long)end, (long long)before);
         before = end;
     }
     return CW_OK;
@@ -387,7 +387,7 @@ cw_status cwi_vtp_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
 {
     vtp *v = cwi_alloc_zeroed(1, sizeof *v);
     if (!v)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the header");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the header");
     v->in = v->build.in = in;
     v->mesh = mesh;
     v->said = said;
@@ -395,7 +395,7 @@ cw_status cwi_vtp_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
     if (st == CW_OK)
         st = cwi_vtk_xml_find_appended(&in->file, &v->file, err);
     if (st == CW_OK && !v->pieces)
-        st = cw_fail(err, CW_ERR_FORMAT, "PolyData holds no Piece");
+        st = cwi_fail(err, CW_ERR_FORMAT, "PolyData holds no Piece");
     if (st == CW_OK)
         st = read_arrays(v, err);
     cwi_build_free(&v->build);

@@ -85,7 +85,7 @@ static cw_status grow_pieces(parsing *p, cw_error *err)
     cwi_grid_piece *grid = cwi_realloc_array(p->grid, room, sizeof *grid);
     p->grid = grid ? grid : p->grid;
     if (!pieces || !grid)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu pieces", room);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu pieces", room);
     p->room = room;
     return CW_OK;
 }
@@ -158,10 +158,10 @@ static cw_status keep_array(parsing *p, cwi_xml *x, cwi_attributes a, cwi_grid_r
     const bool real = array.type == CW_F32 || array.type == CW_F64;
     if (st == CW_OK && (!array.is_known || array.components != components ||
                         (real && role != CWI_GRID_POINTS)))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "the array '%s' has %zu numbers of type '%s'; %zu %s expected",
-                       array.name, array.components, array.type_name, components,
-                       role == CWI_GRID_POINTS ? "were" : "whole one was");
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the array '%s' has %zu numbers of type '%s'; %zu %s expected",
+                        array.name, array.components, array.type_name, components,
+                        role == CWI_GRID_POINTS ? "were" : "whole one was");
     if (st != CW_OK || to->has[role])
         return st;
     to->has[role] = true;
@@ -306,7 +306,7 @@ static void drop_empty(parsing *p)
 static cw_status choose_array(parsing *p, cw_error *err)
 {
     if (p->count == 0)
-        return cw_fail(err, CW_ERR_FORMAT, "the grid has no Piece");
+        return cwi_fail(err, CW_ERR_FORMAT, "the grid has no Piece");
     p->of_cells = p->pieces[0].points.best.rank == CWI_VTI_NONE;
     const cwi_vti_array *first = values_of(p, 0);
     if (first->rank == CWI_VTI_NONE)
@@ -315,11 +315,11 @@ static cw_status choose_array(parsing *p, cw_error *err)
         const cwi_vtk_array *other = &values_of(p, n)->data;
         if (strcmp(other->name, first->data.name) != 0 || other->type != first->data.type ||
             other->components != first->data.components)
-            return cw_fail(err, CW_ERR_FORMAT,
-                           "piece %zu has the array '%s' (%zu %s) where the first has '%s' "
-                           "(%zu %s)",
-                           n, other->name, other->components, other->type_name,
-                           first->data.name, first->data.components, first->data.type_name);
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "piece %zu has the array '%s' (%zu %s) where the first has '%s' "
+                            "(%zu %s)",
+                            n, other->name, other->components, other->type_name,
+                            first->data.name, first->data.components, first->data.type_name);
     }
     return CW_OK;
 }

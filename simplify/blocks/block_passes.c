@@ -20,14 +20,14 @@ static const double TIGHTER = 0.95;
 static cw_status check_limits(const cw_simplify_desc *d, cw_error *err)
 {
     if (!(d->error_mm >= 0) || !isfinite(d->error_mm))
-        return cw_fail(err, CW_ERR_ARGUMENT, "error_mm is %g; it must be 0 or more",
-                       d->error_mm);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "error_mm is %g; it must be 0 or more",
+                        d->error_mm);
     if (!(d->normal_deg >= 0) || !(d->normal_deg <= 180))
-        return cw_fail(err, CW_ERR_ARGUMENT, "normal_deg is %g; it must be 0 to 180",
-                       d->normal_deg);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "normal_deg is %g; it must be 0 to 180",
+                        d->normal_deg);
     if (!(d->ratio >= 0) || !(d->ratio < 1))
-        return cw_fail(err, CW_ERR_ARGUMENT, "ratio is %g; it must be at least 0 and below 1",
-                       d->ratio);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "ratio is %g; it must be at least 0 and below 1",
+                        d->ratio);
     return CW_OK;
 }
 
@@ -129,8 +129,8 @@ static cw_status find_normals(cwi_passes *p, cw_error *err)
         add_normals(p, seen);
     cwi_free(seen);
     return ok ? CW_OK
-              : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the normals of %zu vertices",
-                        m->vertex_count);
+              : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the normals of %zu vertices",
+                         m->vertex_count);
 }
 
 /* At a point, what is allowed on all triangles around it. What is simplified may come into view
@@ -142,8 +142,8 @@ static cw_status allow_distances(cwi_passes *p, cw_error *err)
         return CW_OK;
     p->allowed = cwi_alloc_array(m->vertex_count, sizeof *p->allowed);
     if (!p->allowed)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu vertices",
-                       m->vertex_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu vertices",
+                        m->vertex_count);
     for (size_t v = 0; v < m->vertex_count; v++)
         p->allowed[v] = (float)p->block_desc.error;
     for (size_t t = 0; t < m->triangle_count; t++) {
@@ -179,8 +179,8 @@ cw_status cwi_passes_remember(cwi_passes *p, const cw_mesh *input, cw_error *err
     p->care = cwi_alloc_zeroed(vertices, sizeof *p->care);
     p->lists = cwi_alloc_array(vertices, sizeof *p->lists);
     if (!p->first || !p->around || !p->next || !p->care || !p->lists)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu triangles",
-                       input->triangle_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu triangles",
+                        input->triangle_count);
     sort_around(p);
     for (size_t v = 0; v < vertices; v++)
         p->next[v] = (uint32_t)v; /* in no list */
@@ -203,8 +203,8 @@ cw_status cwi_passes_list(cwi_passes *p, cwi_mesh_block *b, cw_error *err)
 {
     b->lists = cwi_alloc_array(b->triangles, sizeof *b->lists);
     if (!b->lists)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu triangles",
-                       b->triangles);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu triangles",
+                        b->triangles);
     memset(b->lists, 0xff, b->triangles * sizeof *b->lists);
     for (size_t c = 0; c < 3 * b->triangles; c++) {
         const uint32_t point = b->corners[c];
@@ -352,8 +352,8 @@ static cw_status find_limits(const cwi_passes *p, const cw_mesh *m, double **lim
         return CW_OK;
     *limits = cwi_alloc_array(m->triangle_count, sizeof **limits);
     if (!*limits)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu triangles",
-                       m->triangle_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu triangles",
+                        m->triangle_count);
     for (size_t t = 0; t < m->triangle_count; t++)
         (*limits)[t] = fmin(p->error, limit_of(p, m, t, 0));
     return CW_OK;
@@ -382,7 +382,7 @@ static cw_status judge_part(const cwi_passes *p, const part *x, bool *kept, bool
     uint8_t *near = cwi_alloc_zeroed(result.vertex_count, 1);
     cw_status st = input_beyond && beyond && near
                        ? add_obstacles(x, &all, err)
-                       : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error");
+                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error");
     if (st == CW_OK)
         st = find_beyond(p, &x->input, &all, x->threads, input_beyond, err);
     if (st == CW_OK)
@@ -482,7 +482,7 @@ static cw_status each_block(crew *c, void (*work)(void *context, size_t n), cw_e
                                   "simplifying", work, c, err);
     for (size_t n = 0; n < c->count && st == CW_OK; n++)
         if (c->statuses[n] != CW_OK)
-            return cw_fail(err, c->statuses[n], "%s", c->errors[n].message);
+            return cwi_fail(err, c->statuses[n], "%s", c->errors[n].message);
     return st;
 }
 
@@ -534,7 +534,7 @@ static cw_status run_crew(crew *c, cw_error *err)
     c->errors = cwi_alloc_zeroed(c->count, sizeof *c->errors);
     c->repeats = cwi_alloc_zeroed(c->count, sizeof *c->repeats);
     if (!c->left || !c->decimaters || !c->statuses || !c->errors || !c->repeats)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu blocks", c->count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu blocks", c->count);
     c->cost = INFINITY;
     cw_status st = c->target ? run_to_target(c, err) : CW_OK;
     return st == CW_OK && c->passes->next ? each_block(c, keep_block, err) : st;

@@ -291,8 +291,8 @@ static cw_status fill_block(const plan *p, size_t n, uint32_t *place, cwi_mesh_b
     if (w->lists)
         b->lists = cwi_alloc_array(b->own, sizeof *b->lists);
     if (!b->corners || !b->names || !b->lists != !w->lists)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu triangles",
-                       b->triangles);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu triangles",
+                        b->triangles);
     size_t own = 0; /* vertices of own triangles come first */
     for (size_t i = 0; i < b->triangles; i++) {
         for (size_t k = 0; k < 3; k++) {
@@ -314,15 +314,15 @@ static cw_status fill_block(const plan *p, size_t n, uint32_t *place, cwi_mesh_b
         place[b->names[v]] = NOT_THERE;
     }
     return ok ? CW_OK
-              : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu triangles",
-                        b->triangles);
+              : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu triangles",
+                         b->triangles);
 }
 
 static cw_status fill_blocks(const plan *p, cwi_mesh_block *blocks, cw_error *err)
 {
     uint32_t *place = cwi_alloc_array(p->whole->vertices, sizeof *place);
     if (!place)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to cut a mesh into blocks");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to cut a mesh into blocks");
     memset(place, 0xff, p->whole->vertices * sizeof *place);
     cw_status st = CW_OK;
     for (size_t n = 0; n < p->count && st == CW_OK; n++)
@@ -358,7 +358,7 @@ cw_status cwi_blocks_cut(const cwi_mesh_block *whole, size_t most, double share,
     cwi_free(p.middles);
     ok = ok && find_obstacles(&p);
     cw_status st = ok ? fill_blocks(&p, *out, err)
-                      : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to cut a mesh into blocks");
+                      : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to cut a mesh into blocks");
     for (size_t n = 0; n < p.count && st != CW_OK && *out; n++)
         cwi_block_free(*out + n);
     if (st != CW_OK) {
@@ -462,5 +462,5 @@ cw_status cwi_blocks_join(const cwi_mesh_block *blocks, size_t count, size_t nam
     if (ok)
         return CW_OK;
     cwi_block_free(whole);
-    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to join blocks of a mesh");
+    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to join blocks of a mesh");
 }

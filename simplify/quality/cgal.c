@@ -41,8 +41,8 @@ cw_status cw_distance_by_cgal(const cw_mesh *mesh, const cw_mesh *reference,
     if (st == CW_OK)
         st = cw_mesh_check(reference, err);
     if (st == CW_OK && !(tolerance_mm > 0))
-        st = cw_fail(err, CW_ERR_ARGUMENT, "the tolerance is %g mm; it must be above 0",
-                     tolerance_mm);
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "the tolerance is %g mm; it must be above 0",
+                      tolerance_mm);
     if (st == CW_OK)
         st = load_cgal(&functions, err);
     return st == CW_OK ? functions->hausdorff(mesh, reference, tolerance_mm, out_mm, err) : st;

@@ -143,8 +143,8 @@ cw_status hausdorff(const cw_mesh *mesh, const cw_mesh *reference, double tolera
             const Soup soup =
                 to_soup(m.positions, m.triangles, m.vertex_count, m.triangle_count, m.origin);
             if (!pmp::is_polygon_soup_a_polygon_mesh(soup.triangles))
-                return cw_fail(err, CW_ERR_BACKEND,
-                               "CGAL takes no mesh that is not an oriented manifold");
+                return cwi_fail(err, CW_ERR_BACKEND,
+                                "CGAL takes no mesh that is not an oriented manifold");
             surfaces[n] = to_surface(soup);
         }
         *out_mm = pmp::bounded_error_Hausdorff_distance<CGAL::Sequential_tag>(

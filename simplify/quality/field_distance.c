@@ -198,14 +198,14 @@ static double measure_point(const void *context, const double point[3], uint32_t
 static cw_status check_desc(const cw_field_distance_desc *d, cw_error *err)
 {
     if (!isfinite(d->isovalue))
-        return cw_fail(err, CW_ERR_ARGUMENT, "isovalue is %g; a finite number was expected",
-                       d->isovalue);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "isovalue is %g; a finite number was expected",
+                        d->isovalue);
     if (!(d->reach_mm >= 0) || !isfinite(d->reach_mm))
-        return cw_fail(err, CW_ERR_ARGUMENT, "reach_mm is %g; 0 or a length was expected",
-                       d->reach_mm);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "reach_mm is %g; 0 or a length was expected",
+                        d->reach_mm);
     if (!(d->step_voxels >= 0) || !isfinite(d->step_voxels))
-        return cw_fail(err, CW_ERR_ARGUMENT, "step_voxels is %g; 0 or a length was expected",
-                       d->step_voxels);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "step_voxels is %g; 0 or a length was expected",
+                        d->step_voxels);
     return CW_OK;
 }
 
@@ -235,15 +235,16 @@ static cw_status make_field(field *f, const cw_volume *volume, const cw_field_di
         st = cwi_volume_expect_even(&f->volume, "the distance to a field", err);
     for (int a = 0; a < 3 && st == CW_OK; a++)
         if (f->volume.dim[a] < 2)
-            st = cw_fail(err, CW_ERR_ARGUMENT,
+            st =
+                cwi_fail(err, CW_ERR_ARGUMENT,
                          "the volume has one voxel along axis %d; at least 2 were expected", a);
     if (st != CW_OK)
         return st;
     f->level = (d->isovalue - f->volume.intercept) / f->volume.slope;
     if (!isfinite(f->level))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "isovalue %g is not finite after slope %g and intercept %g", d->isovalue,
-                       f->volume.slope, f->volume.intercept);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "isovalue %g is not finite after slope %g and intercept %g",
+                        d->isovalue, f->volume.slope, f->volume.intercept);
     f->sign = f->volume.slope < 0 ? -1 : 1;
     f->missing = d->inside_is_low ? 1 : -1;
     f->open = d->leave_open;

@@ -53,7 +53,7 @@ cw_status cw_mesh_compare(const cw_mesh *mesh, const cw_mesh *reference,
 {
     cw_distance to, from;
     if (desc && desc->worst)
-        return cw_fail(err, CW_ERR_ARGUMENT, "'worst' is of one mesh; two are measured");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "'worst' is of one mesh; two are measured");
     cw_status st = cw_distance_to_mesh(mesh, reference, desc, &to, NULL, err);
     if (st == CW_OK)
         st = cw_distance_to_mesh(reference, mesh, desc, &from, NULL, err);

@@ -312,8 +312,8 @@ static cw_status find_bound(search *s, const cw_mesh_distance_desc *d, cw_distan
     s->floor = out->max_mm;
     cw_status st = CW_OK;
     if (!s->extremes)
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu triangles",
-                     s->mesh->triangle_count);
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu triangles",
+                      s->mesh->triangle_count);
     if (st == CW_OK)
         st = cwi_each_layer(chunks, CHUNK * CHUNK, d->threads, &d->progress, "largest distance",
                             search_chunk, s, err);
@@ -363,8 +363,8 @@ static cw_status make_reference(reference *r, const cw_mesh *mesh, const double 
     for (int a = 0; a < 3; a++)
         r->shift[a] = mesh->origin[a] - origin[a];
     if (!boxes || !r->facets)
-        st =
-            cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a reference of %zu triangles", count);
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a reference of %zu triangles",
+                      count);
     if (st == CW_OK) {
         set_boxes(r, mesh, boxes);
         st = cwi_boxes_build(&r->tree, (const float(*)[6])boxes, count, err);
@@ -381,23 +381,23 @@ static cw_status check_reference(const cw_mesh *mesh, cw_error *err)
     if (st != CW_OK)
         return cwi_fail_in(err, st, "reference");
     if (mesh->triangle_count == 0)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "the reference has no triangles; at least one was expected");
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "the reference has no triangles; at least one was expected");
     if (mesh->triangle_count > INT32_MAX)
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "the reference has %zu triangles; up to 2^31 - 1 were expected",
-                       mesh->triangle_count);
+        return cwi_fail(err, CW_ERR_LIMIT,
+                        "the reference has %zu triangles; up to 2^31 - 1 were expected",
+                        mesh->triangle_count);
     return CW_OK;
 }
 
 static cw_status check_desc(const cw_mesh_distance_desc *d, cw_error *err)
 {
     if (!(d->tolerance_mm >= 0) || !isfinite(d->tolerance_mm))
-        return cw_fail(err, CW_ERR_ARGUMENT, "tolerance_mm is %g; 0 or a length was expected",
-                       d->tolerance_mm);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "tolerance_mm is %g; 0 or a length was expected",
+                        d->tolerance_mm);
     if (!(d->step_mm >= 0) || !isfinite(d->step_mm))
-        return cw_fail(err, CW_ERR_ARGUMENT, "step_mm is %g; 0 or a length was expected",
-                       d->step_mm);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "step_mm is %g; 0 or a length was expected",
+                        d->step_mm);
     return CW_OK;
 }
 
@@ -427,8 +427,8 @@ static cw_status measure_mesh(const cw_mesh *mesh, const reference *r,
                 .share = d->tolerance_mm > 0 ? 0 : 0.05};
     cw_status st = CW_OK;
     if (!slots)
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu vertices",
-                     mesh->vertex_count);
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu vertices",
+                      mesh->vertex_count);
     if (st == CW_OK)
         st = cwi_sample_mesh(&sampling, out, per_vertex, err);
     if (st == CW_OK)
@@ -546,8 +546,8 @@ cw_status cwi_mesh_within(const cw_mesh *mesh, const cw_mesh *mesh_reference, do
                    .limits = limits,
                    .beyond = beyond};
     cw_status st = slots ? make_reference(&r, mesh_reference, mesh->origin, err)
-                         : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu vertices",
-                                   mesh->vertex_count);
+                         : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu vertices",
+                                    mesh->vertex_count);
     if (st == CW_OK)
         st = cwi_each_layer((mesh->vertex_count + CHUNK - 1) / CHUNK, CHUNK * CHUNK, threads,
                             progress, "keeping the error", find_chunk, &j, err);

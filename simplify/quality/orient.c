@@ -87,8 +87,8 @@ cw_status cw_mesh_orient(cw_mesh *mesh, int threads, cw_orient_counts *counts, c
     w.turned = cwi_alloc_zeroed(mesh->vertex_count + 1, 1);
     cw_status st = w.turn && w.shell && w.agree && w.turned
                        ? CW_OK
-                       : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to orient %zu triangles",
-                                 mesh->triangle_count);
+                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to orient %zu triangles",
+                                  mesh->triangle_count);
     const cw_quality_desc desc = {
         .weld = CW_WELD_LOCAL, .shells = true, .threads = threads, .turn = w.turn};
     if (st == CW_OK)

@@ -340,10 +340,10 @@ cw_status cw_quality_measure(const cw_mesh *mesh, const cw_quality_desc *desc, c
     const bool measured =
         st == CW_OK && measure_topology(&w, &d, &q) && cwi_measure_shapes(&w.welded, &d, &q);
     if (st == CW_OK && w.stop.stopped)
-        st = cw_fail(err, CW_ERR_CANCELLED, "interrupted while checking");
+        st = cwi_fail(err, CW_ERR_CANCELLED, "interrupted while checking");
     else if (st == CW_OK && !measured)
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory to check %zu triangles",
-                     mesh->triangle_count);
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to check %zu triangles",
+                      mesh->triangle_count);
     if (st == CW_OK) {
         cw_mesh_bounds(mesh, q.min, q.max);
         *out = q;
@@ -388,7 +388,7 @@ cw_status cw_quality_compare(const cw_quality *before, const cw_quality *after, 
     for (size_t n = 0; n < sizeof facts / sizeof *facts; n++)
         if (facts[n].after != facts[n].before &&
             !(facts[n].fewer && facts[n].after < facts[n].before))
-            return cw_fail(err, CW_ERR_CHECK, "%s: %lld before, %lld after", facts[n].what,
-                           facts[n].before, facts[n].after);
+            return cwi_fail(err, CW_ERR_CHECK, "%s: %lld before, %lld after", facts[n].what,
+                            facts[n].before, facts[n].after);
     return CW_OK;
 }

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-/* The distance that a view allows on its axis, which it always sees, at the depth of a point. */
+/* Finds the distance that a view allows on its axis at the depth of a point. */
 static cw_status error_at(const cw_simplify_view *view, double pixels, const double at[3],
                           double *error_mm, cw_error *err)
 {
@@ -100,7 +100,7 @@ cw_status cw_simplify_views_box(const cw_volume *volume, const cw_simplify_view 
     if (st == CW_OK)
         st = find_seen(volume, views, view_count, low, high, err);
     if (st == CW_OK && low[0] == SIZE_MAX)
-        st = cw_fail(err, CW_ERR_EMPTY, "no camera sees anything of the volume");
+        st = cwi_fail(err, CW_ERR_EMPTY, "no camera sees anything of the volume");
     for (int a = 0; a < 3 && st == CW_OK; a++) {
         box->first[a] = low[a] > AROUND ? low[a] - AROUND : 0;
         const size_t end = high[a] + AROUND + 1;

@@ -51,7 +51,7 @@ cw_status cwi_view_init(cwi_view_tolerance *v, const cw_simplify_view *from, dou
     *v = (cwi_view_tolerance){
         .size = {size[0], size[1]}, .depth = from->depth, .unit = 1, .pixels = pixels};
     if (!(pixels > 0) || !isfinite(pixels))
-        return cw_fail(err, CW_ERR_ARGUMENT, "pixel_error is %g; it must be above 0", pixels);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "pixel_error is %g; it must be above 0", pixels);
     cw_status st = cw_camera_axes(c, v->axes[0], v->axes[1], v->axes[2], err);
     if (st != CW_OK)
         return st;
@@ -164,16 +164,16 @@ cw_status cwi_views_init(cwi_views *views, const cw_simplify_desc *d, cw_error *
     if (!d->view_count && d->pixel_error == 0)
         return CW_OK;
     if (!d->view_count)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "pixel_error is %g, and there are no views to hold it in",
-                       d->pixel_error);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "pixel_error is %g, and there are no views to hold it in",
+                        d->pixel_error);
     if (!(d->error_mm > 0))
-        return cw_fail(
+        return cwi_fail(
             err, CW_ERR_ARGUMENT,
             "views need an error_mm: the error limit where none of them sees the surface");
     views->view = cwi_alloc_array(d->view_count, sizeof *views->view);
     if (!views->view)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu views", d->view_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu views", d->view_count);
     views->count = d->view_count;
     for (size_t n = 0; n < d->view_count && st == CW_OK; n++)
         st = cwi_view_init(views->view + n, d->views + n, d->pixel_error, err);
@@ -223,8 +223,8 @@ cw_status cw_simplify_view_sees(const cw_simplify_view *view, double pixels,
     place p[CWI_VIEW_HULL];
     cw_status st = cwi_view_init(&v, view, pixels, err);
     if (st == CW_OK && (count < 1 || count > CWI_VIEW_HULL))
-        st = cw_fail(err, CW_ERR_ARGUMENT, "a hull of %zu points; 1 to %d were expected", count,
-                     CWI_VIEW_HULL);
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "a hull of %zu points; 1 to %d were expected",
+                      count, CWI_VIEW_HULL);
     if (st != CW_OK)
         return st;
     for (size_t n = 0; n < count; n++)
@@ -260,8 +260,8 @@ cw_status cw_simplify_cull(cw_mesh *mesh, const cw_simplify_view *views, size_t 
         st = cwi_views_init(&all, &desc, err);
     bool *marks = cwi_alloc_array(mesh->triangle_count, sizeof *marks);
     if (st == CW_OK && !marks)
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory to mark %zu triangles",
-                     mesh->triangle_count);
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to mark %zu triangles",
+                      mesh->triangle_count);
     if (st == CW_OK) {
         cwi_views_place(&all, mesh->origin, 1);
         mark_unseen(&all, mesh, margin_mm, marks, &unseen);

@@ -69,7 +69,7 @@ static cw_status draw_both(cwi_cpu *cpu, const cwi_frame *f, cw_picture *picture
     cw_picture mesh = {0};
     double *depths = cwi_alloc_array(count, sizeof *depths);
     if (!depths)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the depths of a mesh");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the depths of a mesh");
     cw_status st = cw_picture_alloc(&mesh, picture->width, picture->height, err);
     if (st == CW_OK)
         st = cwi_cpu_draw_mesh(f, depths, &mesh, err);
@@ -87,8 +87,8 @@ static cw_status draw_both(cwi_cpu *cpu, const cwi_frame *f, cw_picture *picture
 cw_status cwi_cpu_draw(cwi_cpu *cpu, const cwi_frame *f, cw_picture *picture, cw_error *err)
 {
     if (!cwi_cpu_draws(f->scene.mode))
-        return cw_fail(err, CW_ERR_UNSUPPORTED, "the mode %s is not drawn by the CPU",
-                       cw_mode_name(f->scene.mode));
+        return cwi_fail(err, CW_ERR_UNSUPPORTED, "the mode %s is not drawn by the CPU",
+                        cw_mode_name(f->scene.mode));
     if (f->scene.mode == CW_MODE_MESH)
         return cwi_cpu_draw_mesh(f, NULL, picture, err);
     return f->scene.mesh ? draw_both(cpu, f, picture, err)

@@ -30,8 +30,8 @@ static cw_status check_frame(const cwi_frame *f, cw_error *err)
                        : s->depth_cue > 0  ? "with a depth cue"
                        : !f->studio_light  ? "with lights or a material of their own"
                                            : NULL;
-    return more ? cw_fail(err, CW_ERR_UNSUPPORTED, "the CPU draws no meshes %s: use OpenGL",
-                          more)
+    return more ? cwi_fail(err, CW_ERR_UNSUPPORTED, "the CPU draws no meshes %s: use OpenGL",
+                           more)
                 : CW_OK;
 }
 
@@ -84,7 +84,7 @@ static cw_status make_tinted(const cw_scene *s, const double range[2], cw_mesh *
     }
     m->colors = cwi_alloc_array(m->vertex_count, 4);
     if (!m->colors || !m->positions || !m->triangles || (mesh->normals && !m->normals))
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a mesh's colours");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a mesh's colours");
     if (apart)
         tint_triangles(mesh, range, m);
     else

@@ -442,15 +442,16 @@ static cw_status draw_bands(const scene *s, hit *hits, size_t band_hits, cw_imag
 static cw_status check_sizes(const cw_render_mesh_desc *d, cw_error *err)
 {
     if (d->width > MAX_SIZE || d->height > MAX_SIZE)
-        return cw_fail(err, CW_ERR_ARGUMENT, "a picture of %zu x %zu; the most is %d a side",
-                       d->width, d->height, MAX_SIZE);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a picture of %zu x %zu; the most is %d a side",
+                        d->width, d->height, MAX_SIZE);
     if (d->samples < 1 || d->samples > MAX_SAMPLES)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "%d samples a side of a pixel; 1 to %d was expected", d->samples,
-                       MAX_SAMPLES);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "%d samples a side of a pixel; 1 to %d was expected", d->samples,
+                        MAX_SAMPLES);
     if (d->depth_mm && d->samples != 1)
-        return cw_fail(err, CW_ERR_ARGUMENT, "depths are of one sample a pixel, not of %d x %d",
-                       d->samples, d->samples);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "depths are of one sample a pixel, not of %d x %d", d->samples,
+                        d->samples);
     return CW_OK;
 }
 
@@ -510,8 +511,8 @@ static cw_status set_up_scene(const cw_mesh *mesh, const cw_render_mesh_desc *d,
     s->points = cwi_alloc_array(mesh->vertex_count, sizeof *s->points);
     s->spans = cwi_alloc_array(mesh->triangle_count, sizeof *s->spans);
     if (!s->points || !s->spans)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to draw %zu triangles",
-                       mesh->triangle_count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to draw %zu triangles",
+                        mesh->triangle_count);
     return CW_OK;
 }
 
@@ -520,8 +521,8 @@ static cw_status draw_scene(scene *s, cw_image *image, cw_error *err)
     const size_t n = (size_t)s->d->samples, band_hits = BAND_ROWS * n * (size_t)s->width;
     hit *hits = cwi_alloc_array((size_t)s->d->threads * band_hits, sizeof *hits);
     if (!hits)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %d threads to draw with",
-                       s->d->threads);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %d threads to draw with",
+                        s->d->threads);
     project_all(s);
     cw_status st = draw_bands(s, hits, band_hits, image, err);
     cwi_free(hits);

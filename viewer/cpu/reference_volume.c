@@ -286,7 +286,7 @@ cw_status cwi_reference_draw(const cwi_frame *frame, const double *depths, cw_pi
     cwi_reference reference;
     double *errors = cwi_alloc_zeroed(picture->height, sizeof *errors);
     if (!errors)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu rows", picture->height);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu rows", picture->height);
     cwi_reference_make(frame, &reference);
     job work = {&reference, depths, picture, errors};
     cw_status st =

@@ -520,7 +520,7 @@ cw_status cwi_vbuffer_draw(const cwi_frame *frame, const cwi_ranges *ranges,
 {
     vbuffer *b = cwi_alloc_zeroed(1, sizeof *b);
     if (!b)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a picture");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a picture");
     b->frame = frame;
     b->ranges = ranges;
     b->depths = depths;

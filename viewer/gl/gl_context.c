@@ -100,7 +100,8 @@ cw_status cwi_gl_is_there(cw_error *err)
 {
     if (!is_library("libEGL.so.1") ||
         !(is_library("libOpenGL.so.0") || is_library("libGL.so.1")))
-        return cw_fail(err, CW_ERR_UNSUPPORTED, "this machine has no OpenGL: " CWI_GL_PACKAGES);
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "this machine has no OpenGL: " CWI_GL_PACKAGES);
     return CW_OK;
 }
 
@@ -116,8 +117,8 @@ cw_status cwi_gl_context_open(cwi_gl_context *c, cw_error *err)
     if (start_context(c, first_device()))
         return CW_OK;
     cwi_gl_context_close(c);
-    return cw_fail(err, CW_ERR_UNSUPPORTED,
-                   "no driver here offers OpenGL 3.3 without a display: " CWI_GL_PACKAGES);
+    return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                    "no driver here offers OpenGL 3.3 without a display: " CWI_GL_PACKAGES);
 }
 
 void cwi_gl_describe(char *name, size_t size)
@@ -137,13 +138,13 @@ static bool is_lost(void)
 cw_status cwi_gl_check(cw_error *err)
 {
     if (is_lost())
-        return cw_fail(err, CW_ERR_BACKEND, "the OpenGL context was lost");
+        return cwi_fail(err, CW_ERR_BACKEND, "the OpenGL context was lost");
     const GLenum first = glGetError();
     while (glGetError() != GL_NO_ERROR)
         ;
     if (first == GL_OUT_OF_MEMORY)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "OpenGL ran out of memory");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "OpenGL ran out of memory");
     if (first != GL_NO_ERROR)
-        return cw_fail(err, CW_ERR_BACKEND, "OpenGL failed with error 0x%04x", first);
+        return cwi_fail(err, CW_ERR_BACKEND, "OpenGL failed with error 0x%04x", first);
     return CW_OK;
 }

@@ -83,7 +83,7 @@ static cw_status upload_vertices(cwi_gl *gl, const cwi_gl_mesh *m, cw_error *err
     const size_t count = m->is_expanded ? 3 * m->key.triangle_count : m->key.vertex_count;
     vertex *chunk = cwi_alloc_array(CHUNK, sizeof *chunk);
     if (!chunk)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the upload of a mesh");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the upload of a mesh");
     glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(count * sizeof *chunk), NULL, GL_STATIC_DRAW);
     cw_status st = CW_OK;
     for (size_t first = 0; first < count && st == CW_OK; first += CHUNK) {
@@ -167,10 +167,10 @@ cw_status cwi_gl_take_mesh(cwi_gl *gl, void **state, cwi_gl_mesh **mesh, cw_erro
     if (st != CW_OK)
         return st;
     if (s->mesh->triangle_count > INT32_MAX / 3)
-        return cw_fail(err, CW_ERR_LIMIT, "%zu triangles: OpenGL draws up to %d",
-                       s->mesh->triangle_count, INT32_MAX / 3);
+        return cwi_fail(err, CW_ERR_LIMIT, "%zu triangles: OpenGL draws up to %d",
+                        s->mesh->triangle_count, INT32_MAX / 3);
     if (!m && !(m = *state = cwi_alloc_zeroed(1, sizeof *m)))
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a mesh");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a mesh");
     if (!m->ramp) {
         make_ramp(m);
         glGenQueries(1, &m->query);
@@ -205,7 +205,7 @@ static cw_status make_target(GLuint *name, GLuint color, GLuint depth, cw_error 
     if (depth)
         glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth, 0);
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        return cw_fail(err, CW_ERR_BACKEND, "OpenGL does not draw into layers of floats");
+        return cwi_fail(err, CW_ERR_BACKEND, "OpenGL does not draw into layers of floats");
     return CW_OK;
 }
 

@@ -27,7 +27,7 @@ static GLuint compile_shader(GLenum stage, const char *defines, const char *sour
         return shader;
     glGetShaderInfoLog(shader, sizeof log, NULL, log);
     glDeleteShader(shader);
-    cw_fail(err, CW_ERR_BACKEND, "OpenGL refuses a shader: %s", log);
+    cwi_fail(err, CW_ERR_BACKEND, "OpenGL refuses a shader: %s", log);
     return 0;
 }
 
@@ -64,7 +64,7 @@ static cw_status link_program(GLuint vertex, GLuint fragment, GLuint *program, c
     }
     glGetProgramInfoLog(*program, sizeof log, NULL, log);
     glDeleteProgram(*program);
-    return cw_fail(err, CW_ERR_BACKEND, "OpenGL refuses a program: %s", log);
+    return cwi_fail(err, CW_ERR_BACKEND, "OpenGL refuses a program: %s", log);
 }
 
 static cw_status build_program(const char *vertex, const char *fragment, const char *defines,

@@ -58,16 +58,16 @@ cw_status cwi_gl_take_target(cwi_gl *gl, cw_error *err)
     const GLsizei width = (GLsizei)s->width, height = (GLsizei)s->height;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
     if (width > most || height > most)
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "a picture of %d x %d samples: this OpenGL draws up to %d", width,
-                       height, most);
+        return cwi_fail(err, CW_ERR_LIMIT,
+                        "a picture of %d x %d samples: this OpenGL draws up to %d", width,
+                        height, most);
     if (gl->target.width != width || gl->target.height != height) {
         cwi_gl_drop_target(gl);
         make_target(&gl->target, width, height);
     }
     glBindFramebuffer(GL_FRAMEBUFFER, gl->target.framebuffer);
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        return cw_fail(err, CW_ERR_BACKEND, "OpenGL does not draw into floats");
+        return cwi_fail(err, CW_ERR_BACKEND, "OpenGL does not draw into floats");
     glViewport(0, 0, width, height);
     return CW_OK;
 }

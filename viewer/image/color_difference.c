@@ -112,10 +112,10 @@ double cwi_delta_e(const double a[3], const double b[3])
 static cw_status expect_same_size(const cw_picture *a, const cw_picture *b, cw_error *err)
 {
     if (!a->pixels || !b->pixels)
-        return cw_fail(err, CW_ERR_ARGUMENT, "an empty picture cannot be compared");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "an empty picture cannot be compared");
     if (a->width != b->width || a->height != b->height)
-        return cw_fail(err, CW_ERR_ARGUMENT, "a picture of %zu x %zu beside one of %zu x %zu",
-                       a->width, a->height, b->width, b->height);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a picture of %zu x %zu beside one of %zu x %zu",
+                        a->width, a->height, b->width, b->height);
     return CW_OK;
 }
 
@@ -261,7 +261,7 @@ cw_status cw_picture_compare(const cw_picture *picture, const cw_picture *refere
     double(*moments)[MOMENTS] = cwi_alloc_array(count, sizeof *moments);
     double(*blurred)[MOMENTS] = cwi_alloc_array(count, sizeof *blurred);
     if (!delta || !moments || !blurred)
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu pixels", count);
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu pixels", count);
     else
         measure_colors(picture, reference, background, delta, out);
     if (out->pixels > 0) {
@@ -280,8 +280,8 @@ cw_status cw_picture_difference(const cw_picture *a, const cw_picture *b, double
     *difference = (cw_picture){0};
     cw_status st = expect_same_size(a, b, err);
     if (st == CW_OK && !(amplify > 0 && isfinite(amplify)))
-        st = cw_fail(err, CW_ERR_ARGUMENT, "a difference times %g: expected more than 0",
-                     amplify);
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "a difference times %g: expected more than 0",
+                      amplify);
     if (st == CW_OK)
         st = cw_picture_alloc(difference, a->width, a->height, err);
     for (size_t n = 0; st == CW_OK && n < a->width * a->height; n++) {
@@ -303,7 +303,7 @@ cw_status cw_picture_split(const cw_picture *left, const cw_picture *right, doub
     *both = (cw_picture){0};
     cw_status st = expect_same_size(left, right, err);
     if (st == CW_OK && !(share >= 0 && share <= 1))
-        st = cw_fail(err, CW_ERR_ARGUMENT, "%g of a picture: expected 0 to 1", share);
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "%g of a picture: expected 0 to 1", share);
     if (st == CW_OK)
         st = cw_picture_alloc(both, left->width, left->height, err);
     if (st != CW_OK)

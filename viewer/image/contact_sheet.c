@@ -25,12 +25,12 @@ static cw_status find_cell(const cw_image *images, size_t count, size_t cell[2],
     cell[0] = cell[1] = 0;
     for (size_t n = 0; n < count; n++) {
         if (!images[n].pixels)
-            return cw_fail(err, CW_ERR_ARGUMENT, "image %zu of a sheet is empty", n);
+            return cwi_fail(err, CW_ERR_ARGUMENT, "image %zu of a sheet is empty", n);
         cell[0] = images[n].width > cell[0] ? images[n].width : cell[0];
         cell[1] = images[n].height > cell[1] ? images[n].height : cell[1];
     }
     return count > 0 ? CW_OK
-                     : cw_fail(err, CW_ERR_ARGUMENT, "a sheet needs at least one image");
+                     : cwi_fail(err, CW_ERR_ARGUMENT, "a sheet needs at least one image");
 }
 
 /* Returns the fewest columns that make the sheet at least as wide as high. */
@@ -63,8 +63,8 @@ cw_status cw_image_tile(const cw_image *images, size_t count, size_t columns, si
     const size_t width = sheet_extent(columns, cell[0], gap_px),
                  height = sheet_extent(rows, cell[1], gap_px);
     if (!width || !height)
-        return cw_fail(err, CW_ERR_LIMIT, "a sheet of %zu x %zu images is above %d pixels",
-                       columns, rows, MAX_SIZE);
+        return cwi_fail(err, CW_ERR_LIMIT, "a sheet of %zu x %zu images is above %d pixels",
+                        columns, rows, MAX_SIZE);
     st = cw_image_alloc(sheet, width, height, err);
     if (st != CW_OK)
         return st;

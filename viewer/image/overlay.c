@@ -419,7 +419,7 @@ static cw_status draw_caption(board *b, cw_error *err)
         const size_t length = end ? (size_t)(end - line) : strlen(line);
         char *text = cwi_alloc_array(length + 1, 1);
         if (!text)
-            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a caption");
+            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a caption");
         memcpy(text, line, length);
         text[length] = 0;
         write_text(b, b->margin, y, 0, b->ink, text);
@@ -461,14 +461,14 @@ static cw_status check_overlay(const cw_overlay *o, const cwi_frame *f, cw_error
 {
     const cw_statistics *s = o->statistics;
     if (o->histogram && !(s && s->bin_count > 0 && s->bins))
-        return cw_fail(err, CW_ERR_ARGUMENT, "a histogram needs statistics with bins");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a histogram needs statistics with bins");
     if (o->histogram && !f->volume.data)
-        return cw_fail(err, CW_ERR_ARGUMENT, "a histogram is of a volume that is drawn");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a histogram is of a volume that is drawn");
     if (o->color_bar && !f->volume.data && f->scene.tint == CW_TINT_COLORS)
-        return cw_fail(err, CW_ERR_ARGUMENT, "a colour bar needs a volume or a tinted mesh");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a colour bar needs a volume or a tinted mesh");
     if (!(o->text_px >= 0 && o->text_px <= 1000))
-        return cw_fail(err, CW_ERR_ARGUMENT, "letters %g pixels high: expected up to 1000",
-                       o->text_px);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "letters %g pixels high: expected up to 1000",
+                        o->text_px);
     return CW_OK;
 }
 
@@ -477,14 +477,14 @@ static cw_status take_frame(const cw_scene *scene, const cw_image *image, cwi_fr
                             cw_error *err)
 {
     if (!image->pixels)
-        return cw_fail(err, CW_ERR_ARGUMENT, "the image is empty");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the image is empty");
     cw_status st = cwi_frame_init(frame, scene, err);
     if (st != CW_OK)
         return st;
     const double w = (double)frame->scene.width, h = (double)frame->scene.height;
     if (fabs((double)image->width * h - (double)image->height * w) > fmax(w, h))
-        return cw_fail(err, CW_ERR_ARGUMENT, "an image of %zu x %zu is not one of this scene",
-                       image->width, image->height);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "an image of %zu x %zu is not one of this scene",
+                        image->width, image->height);
     return CW_OK;
 }
 

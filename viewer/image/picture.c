@@ -14,12 +14,12 @@ cw_status cw_picture_alloc(cw_picture *picture, size_t width, size_t height, cw_
 {
     *picture = (cw_picture){0};
     if (width < 1 || width > MAX_SIZE || height < 1 || height > MAX_SIZE)
-        return cw_fail(err, CW_ERR_ARGUMENT, "a picture of %zu x %zu: expected 1 to %d pixels",
-                       width, height, MAX_SIZE);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a picture of %zu x %zu: expected 1 to %d pixels",
+                        width, height, MAX_SIZE);
     picture->pixels = cwi_alloc_zeroed(width * height, 4 * sizeof(float));
     if (!picture->pixels)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a picture of %zu x %zu", width,
-                       height);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a picture of %zu x %zu", width,
+                        height);
     picture->width = width;
     picture->height = height;
     return CW_OK;
@@ -67,8 +67,8 @@ cw_status cw_image_compare(const cw_image *a, const cw_image *b, int tolerance, 
 {
     *differ = 0;
     if (a->width != b->width || a->height != b->height)
-        return cw_fail(err, CW_ERR_ARGUMENT, "images of %zu x %zu and %zu x %zu pixels",
-                       a->width, a->height, b->width, b->height);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "images of %zu x %zu and %zu x %zu pixels",
+                        a->width, a->height, b->width, b->height);
     for (size_t n = 0; n < a->width * a->height; n++) {
         int largest = 0;
         for (size_t k = 0; k < 3; k++) {

@@ -16,8 +16,8 @@ cw_status cw_image_alloc(cw_image *image, size_t width, size_t height, cw_error 
     if (cwi_size_mul(width, height, &pixels))
         image->pixels = cwi_alloc_zeroed(pixels, 4);
     if (!image->pixels)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a picture of %zu x %zu", width,
-                       height);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a picture of %zu x %zu", width,
+                        height);
     image->width = width;
     image->height = height;
     return CW_OK;
@@ -53,8 +53,8 @@ static void on_flush(png_structp png)
 static void on_error(png_structp png, png_const_charp words)
 {
     writer *w = png_get_error_ptr(png);
-    w->status = w->starved ? cw_fail(w->err, CW_ERR_NO_MEMORY, "memory ran out in libpng")
-                           : cw_fail(w->err, CW_ERR_BACKEND, "libpng failed: %s", words);
+    w->status = w->starved ? cwi_fail(w->err, CW_ERR_NO_MEMORY, "memory ran out in libpng")
+                           : cwi_fail(w->err, CW_ERR_BACKEND, "libpng failed: %s", words);
     png_longjmp(png, 1);
 }
 
@@ -110,7 +110,7 @@ static cw_status encode_image(writer *w, const cw_image *image)
         png_destroy_write_struct(&png, &info);
         return w->status != CW_OK
                    ? w->status
-                   : cw_fail(w->err, CW_ERR_NO_MEMORY, "no memory to write a PNG");
+                   : cwi_fail(w->err, CW_ERR_NO_MEMORY, "no memory to write a PNG");
     }
     if (setjmp(png_jmpbuf(png)) == 0) {
         png_set_write_fn(png, w, on_bytes, on_flush);
@@ -125,7 +125,7 @@ cw_status cw_image_write(const char *path, const cw_image *image, cw_error *err)
     writer w = {.err = err};
     cw_status st = image->pixels
                        ? cwi_outfile_open(&w.file, path, false, err)
-                       : cw_fail(err, CW_ERR_ARGUMENT, "there is no picture to write");
+                       : cwi_fail(err, CW_ERR_ARGUMENT, "there is no picture to write");
     if (st == CW_OK)
         st = encode_image(&w, image);
     if (st == CW_OK)

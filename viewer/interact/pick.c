@@ -109,7 +109,7 @@ cw_status cw_pick(const cw_scene *scene, const double pixel[2], cw_picked *picke
     memset(picked, 0, sizeof *picked);
     cw_status st = cwi_frame_init(&f, scene, err);
     if (st == CW_OK && !(isfinite(pixel[0]) && isfinite(pixel[1])))
-        st = cw_fail(err, CW_ERR_ARGUMENT, "there is no pixel %g, %g", pixel[0], pixel[1]);
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "there is no pixel %g, %g", pixel[0], pixel[1]);
     if (st != CW_OK)
         return st;
     place at = {&f, pixel[0] * f.scene.samples, pixel[1] * f.scene.samples, {0}, {0}};

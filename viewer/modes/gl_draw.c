@@ -173,11 +173,11 @@ cw_status cwi_gl_draw(cwi_gl *gl, const cwi_frame *frame, cw_picture *picture, c
 {
     const cwi_gl_mode *mode = cwi_gl_find_mode(frame->scene.mode);
     if (!mode)
-        return cw_fail(err, CW_ERR_UNSUPPORTED, "the mode %s is not drawn by OpenGL",
-                       cw_mode_name(frame->scene.mode));
+        return cwi_fail(err, CW_ERR_UNSUPPORTED, "the mode %s is not drawn by OpenGL",
+                        cw_mode_name(frame->scene.mode));
     if (!cwi_gl_enter(gl))
-        return cw_fail(err, CW_ERR_BACKEND,
-                       "the OpenGL context was lost, or another library's is on this thread");
+        return cwi_fail(err, CW_ERR_BACKEND,
+                        "the OpenGL context was lost, or another library's is on this thread");
     gl->frame = frame;
     cwi_gl_start_watch(gl);
     cw_status st = draw_scene(gl, mode, err);
@@ -187,8 +187,8 @@ cw_status cwi_gl_draw(cwi_gl *gl, const cwi_frame *frame, cw_picture *picture, c
         glFinish(); /* nothing reads the caller's voxels afterwards */
     const cw_status after = cwi_gl_check(st == CW_OK ? err : NULL);
     if (gl->watch.is_astray)
-        st = cw_fail(err, CW_ERR_BACKEND,
-                     "progress left another library's OpenGL context on this thread");
+        st = cwi_fail(err, CW_ERR_BACKEND,
+                      "progress left another library's OpenGL context on this thread");
     gl->frame = NULL;
     cwi_gl_leave(gl);
     return st == CW_OK ? after : st;

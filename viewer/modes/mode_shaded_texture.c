@@ -124,7 +124,7 @@ static cw_status upload_normals(cwi_gl *gl, shaded_state *t, size_t brick, cw_er
     const GLsizei w = (GLsizei)b->count[0], h = (GLsizei)b->count[1], d = (GLsizei)b->count[2];
     uint16_t *layer = cwi_alloc_array(b->count[0] * b->count[1], sizeof *layer);
     if (!layer)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for directions of gradients");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for directions of gradients");
     t->normals[brick] = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_NORMALS, false);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glTexImage3D(GL_TEXTURE_3D, 0, GL_R16UI, w, h, d, 0, GL_RED_INTEGER, GL_UNSIGNED_SHORT,
@@ -158,7 +158,7 @@ static cw_status need_normals(cwi_gl *gl, shaded_state *t, cw_error *err)
         return st;
     t->normals = cwi_alloc_zeroed(gl->volume.brick_count, sizeof *t->normals);
     if (!t->normals)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for directions of gradients");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for directions of gradients");
     t->brick_count = gl->volume.brick_count;
     for (size_t n = 0; n < t->brick_count && st == CW_OK; n++)
         st = upload_normals(gl, t, n, err);
@@ -258,7 +258,7 @@ static cw_status need_shades(const cwi_gl *gl, shaded_state *t, cw_error *err)
         return CW_OK;
     float(*all)[SHADE_COLUMNS][4] = cwi_alloc_array(t->directions.count + 1, sizeof *all);
     if (!all)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for shaded colours");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for shaded colours");
     put_shades(&key, &t->directions, all);
     glDeleteTextures(1, &t->shades);
     t->shades = cwi_gl_texture(GL_TEXTURE_2D, CWI_UNIT_SHADES, true);
@@ -288,7 +288,7 @@ static cw_status draw_shaded_texture(cwi_gl *gl, void **state, cw_error *err)
         *state = cwi_alloc_zeroed(1, sizeof(shaded_state));
     shaded_state *t = *state;
     if (!t)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for slices");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for slices");
     if (gl->frame->transfer.gradient_count > 0)
         st = cwi_gl_need_gradients(gl, &gradients, err);
     if (st == CW_OK)

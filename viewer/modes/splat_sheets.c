@@ -59,7 +59,7 @@ static cw_status make_indices(cwi_splats *s, cw_error *err)
     static const uint32_t corners[6] = {0, 1, 2, 2, 1, 3};
     uint32_t *all = cwi_alloc_array(CHUNK, sizeof corners);
     if (!all)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for splats");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for splats");
     for (uint32_t n = 0; n < 6 * CHUNK; n++)
         all[n] = 4 * (n / 6) + corners[n % 6];
     glGenVertexArrays(1, &s->array);
@@ -154,7 +154,7 @@ cw_status cwi_splats_open(cwi_splats *s, cwi_gl *gl, bool has_nodes, cw_error *e
     s->chunk = cwi_alloc_array(CHUNK, sizeof *s->chunk);
     cw_status st = cwi_visible_make(&gl->transfer.table, &s->visible, err);
     if (st == CW_OK && !s->chunk)
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for splats");
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for splats");
     if (st == CW_OK)
         st = make_indices(s, err);
     if (st == CW_OK)
@@ -294,7 +294,7 @@ size_t *cwi_splats_order(const cwi_splats *s, cw_error *err)
     if (order)
         cwi_lattice_order(count, 0, 1, s->eye[s->axis], order);
     else
-        cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the order of sheets");
+        cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the order of sheets");
     return order;
 }
 

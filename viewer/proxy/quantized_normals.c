@@ -112,7 +112,7 @@ static cw_status make_map(cwi_directions *d, cw_error *err)
     const size_t cells = d->edge * d->edge;
     d->first = cwi_alloc_zeroed(cells + 1, sizeof *d->first);
     if (!d->first)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for directions");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for directions");
 #pragma omp parallel for schedule(dynamic, 16)
     for (size_t n = 0; n < cells; n++)
         d->first[n + 1] = (uint32_t)put_candidates(d, n, NULL);
@@ -120,7 +120,7 @@ static cw_status make_map(cwi_directions *d, cw_error *err)
         d->first[n + 1] += d->first[n];
     d->candidates = cwi_alloc_array(d->first[cells], sizeof *d->candidates);
     if (!d->candidates)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for directions");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for directions");
 #pragma omp parallel for schedule(dynamic, 16)
     for (size_t n = 0; n < cells; n++)
         put_candidates(d, n, d->candidates + d->first[n]);
@@ -132,14 +132,14 @@ cw_status cwi_directions_make(size_t count, cwi_directions *directions, cw_error
     cwi_directions *d = directions;
     *d = (cwi_directions){.count = count};
     if (count < 1 || count > CWI_MOST_DIRECTIONS)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%zu directions of gradients: expected 1 to %d",
-                       count, CWI_MOST_DIRECTIONS);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%zu directions of gradients: expected 1 to %d",
+                        count, CWI_MOST_DIRECTIONS);
     d->edge = (size_t)ceil(sqrt((double)count));
     d->all = cwi_alloc_array(count, sizeof *d->all);
     if (d->all)
         place_directions(d);
     cw_status st =
-        d->all ? make_map(d, err) : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for directions");
+        d->all ? make_map(d, err) : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for directions");
     if (st != CW_OK)
         cwi_directions_free(d);
     return st;

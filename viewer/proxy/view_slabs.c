@@ -40,8 +40,8 @@ cw_status cwi_slabs_init(const cwi_frame *f, cwi_slabs *s, cw_error *err)
     const double extent = fmax(depth[1] - depth[0], 0);
     const double count = ceil(extent / s->thickness);
     if (count > MOST_SLABS)
-        return cw_fail(err, CW_ERR_LIMIT, "%.3g slices: at most %d are drawn", count,
-                       MOST_SLABS);
+        return cwi_fail(err, CW_ERR_LIMIT, "%.3g slices: at most %d are drawn", count,
+                        MOST_SLABS);
     s->count = (size_t)count;
     s->per_layer =
         (size_t)fmax(1, floor(fmax(LAYER_DEPTH, extent / MOST_LAYERS) / s->thickness));
@@ -49,7 +49,7 @@ cw_status cwi_slabs_init(const cwi_frame *f, cwi_slabs *s, cw_error *err)
     const size_t longest = f->scene.width > f->scene.height ? f->scene.width : f->scene.height;
     s->tile = (longest + CWI_SLAB_TILES - 1) / CWI_SLAB_TILES;
     s->rows = cwi_alloc_zeroed(s->layer_count, sizeof *s->rows);
-    return s->rows ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for slices");
+    return s->rows ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for slices");
 }
 
 void cwi_slabs_free(cwi_slabs *s)

@@ -20,7 +20,7 @@ static cw_status take_vector(const json_t *root, const char *key, double v[3], c
         v[a] = json_number_value(json_array_get(list, a));
     }
     return good ? CW_OK
-                : cw_fail(err, CW_ERR_FORMAT, "'%s': [x, y, z] in mm was expected", key);
+                : cwi_fail(err, CW_ERR_FORMAT, "'%s': [x, y, z] in mm was expected", key);
 }
 
 static cw_status take_angle(const json_t *root, cw_camera *c, cw_error *err)
@@ -31,11 +31,12 @@ static cw_status take_angle(const json_t *root, cw_camera *c, cw_error *err)
     if (st == CW_OK)
         st = cwi_json_number(root, "height_mm", &c->height_mm, err);
     if (st == CW_OK && fov == height)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "either 'fov_deg' (perspective) or 'height_mm' (orthographic) was "
-                       "expected");
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "either 'fov_deg' (perspective) or 'height_mm' (orthographic) was "
+                        "expected");
     if (st == CW_OK && fov && !(c->fov_deg > 0))
-        return cw_fail(err, CW_ERR_FORMAT, "'fov_deg' is %g: above 0 was expected", c->fov_deg);
+        return cwi_fail(err, CW_ERR_FORMAT, "'fov_deg' is %g: above 0 was expected",
+                        c->fov_deg);
     return st;
 }
 

@@ -32,29 +32,29 @@ static cw_status fill_in(cw_scene *s, cw_error *err)
     static const cw_light headlight = {{0, 0, 1}, {1, 1, 1}};
     static const float bone[4] = {240 / 255.0f, 229 / 255.0f, 208 / 255.0f, 1};
     if ((unsigned)s->mode >= CW_MODE_COUNT)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%d is not a render mode (0 to %d)", (int)s->mode,
-                       CW_MODE_COUNT - 1);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a render mode (0 to %d)", (int)s->mode,
+                        CW_MODE_COUNT - 1);
     if (draws_volume(s->mode) && !(s->volume && s->transfer))
-        return cw_fail(err, CW_ERR_ARGUMENT, "%s needs a volume and a transfer function",
-                       cw_mode_name(s->mode));
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%s needs a volume and a transfer function",
+                        cw_mode_name(s->mode));
     if (!draws_volume(s->mode) && !s->mesh)
-        return cw_fail(err, CW_ERR_ARGUMENT, "the mode mesh needs a mesh");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the mode mesh needs a mesh");
     if (s->width == 0 && s->height == 0)
         s->width = 1280, s->height = 720;
     if (s->samples == 0)
         s->samples = 1;
     if (s->samples < 1 || s->samples > MAX_SAMPLES)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%d x %d samples a pixel: expected 1 to %d",
-                       s->samples, s->samples, MAX_SAMPLES);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%d x %d samples a pixel: expected 1 to %d",
+                        s->samples, s->samples, MAX_SAMPLES);
     if (s->width < 1 || s->width > MAX_SIZE || s->height < 1 || s->height > MAX_SIZE)
-        return cw_fail(err, CW_ERR_ARGUMENT, "a picture of %zu x %zu: expected 1 to %d pixels",
-                       s->width, s->height, MAX_SIZE);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a picture of %zu x %zu: expected 1 to %d pixels",
+                        s->width, s->height, MAX_SIZE);
     if (s->light_count > CW_MAX_LIGHTS || s->clip_count > CW_MAX_CLIPS ||
         s->slice_count > CW_MAX_SLICES)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "%zu lights, %zu planes that clip, %zu slices: at most %d, %d, %d",
-                       s->light_count, s->clip_count, s->slice_count, CW_MAX_LIGHTS,
-                       CW_MAX_CLIPS, CW_MAX_SLICES);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "%zu lights, %zu planes that clip, %zu slices: at most %d, %d, %d",
+                        s->light_count, s->clip_count, s->slice_count, CW_MAX_LIGHTS,
+                        CW_MAX_CLIPS, CW_MAX_SLICES);
     if (s->light_count == 0)
         s->lights[s->light_count++] = headlight;
     if (!is_material_set(&s->material))
@@ -62,28 +62,28 @@ static cw_status fill_in(cw_scene *s, cw_error *err)
     if (s->step_vox == 0)
         s->step_vox = 1;
     if (!(s->step_vox >= 1e-3 && s->step_vox <= 1e3))
-        return cw_fail(err, CW_ERR_ARGUMENT, "a step of %g voxels: expected 0.001 to 1000",
-                       s->step_vox);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a step of %g voxels: expected 0.001 to 1000",
+                        s->step_vox);
     if (s->stop_opacity == 0)
         s->stop_opacity = s->mode == CW_MODE_VBUFFER ? 0.99999f : 0.9999f;
     if (!(s->stop_opacity > 0 && s->stop_opacity <= 1))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "rays that end at an opacity of %g: expected up to 1",
-                       (double)s->stop_opacity);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "rays that end at an opacity of %g: expected up to 1",
+                        (double)s->stop_opacity);
     if (!(s->depth_cue >= 0 && s->depth_cue <= 1))
-        return cw_fail(err, CW_ERR_ARGUMENT, "a depth cue of %g: expected 0 to 1",
-                       (double)s->depth_cue);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a depth cue of %g: expected 0 to 1",
+                        (double)s->depth_cue);
     if (!(s->tree_error >= 0 && s->tree_error <= 1))
-        return cw_fail(err, CW_ERR_ARGUMENT, "an error of nodes of %g: expected 0 to 1",
-                       s->tree_error);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "an error of nodes of %g: expected 0 to 1",
+                        s->tree_error);
     if (s->normals == 0)
         s->normals = 1024;
     if (s->color[0] == 0 && s->color[1] == 0 && s->color[2] == 0 && s->color[3] == 0)
         memcpy(s->color, bone, sizeof bone);
     for (int c = 0; c < 4; c++)
         if (!(s->color[c] >= 0 && s->color[c] <= 1))
-            return cw_fail(err, CW_ERR_ARGUMENT, "a mesh's colour of %g: expected 0 to 1",
-                           (double)s->color[c]);
+            return cwi_fail(err, CW_ERR_ARGUMENT, "a mesh's colour of %g: expected 0 to 1",
+                            (double)s->color[c]);
     return CW_OK;
 }
 
@@ -230,8 +230,8 @@ static cw_status set_clips(cwi_frame *f, cw_error *err)
         const cw_clip *c = &f->scene.clips[n];
         const double length = sqrt(cwi_dot(c->normal, c->normal));
         if (!isnormal(length) || !isfinite(c->distance_mm))
-            return cw_fail(err, CW_ERR_ARGUMENT,
-                           "plane %zu that clips has no direction or place", n);
+            return cwi_fail(err, CW_ERR_ARGUMENT,
+                            "plane %zu that clips has no direction or place", n);
         for (int a = 0; a < 3; a++)
             f->clips[n][a] = cwi_dot(c->normal, f->axes[a]) / length;
         f->clips[n][3] = (c->distance_mm - cwi_dot(c->normal, f->eye_mm)) / length / f->unit_mm;

@@ -17,12 +17,12 @@ static cw_status read_bytes(FILE *file, char **bytes, size_t *size, cw_error *er
 {
     *bytes = cwi_alloc_array(MOST_BYTES + 1, 1);
     if (!*bytes)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to read it");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to read it");
     *size = fread(*bytes, 1, MOST_BYTES + 1, file);
     if (ferror(file))
-        return cw_fail(err, CW_ERR_IO, "cannot be read: %s", strerror(errno));
+        return cwi_fail(err, CW_ERR_IO, "cannot be read: %s", strerror(errno));
     if (*size > MOST_BYTES)
-        return cw_fail(err, CW_ERR_FORMAT, "is larger than settings are: at most 1 MiB");
+        return cwi_fail(err, CW_ERR_FORMAT, "is larger than settings are: at most 1 MiB");
     return CW_OK;
 }
 
@@ -35,7 +35,7 @@ cw_status cwi_json_read(const char *path,
     size_t size = 0;
     FILE *file = fopen(path, "rb");
     if (!file)
-        return cw_fail(err, CW_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));
+        return cwi_fail(err, CW_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));
     cw_status st = read_bytes(file, &bytes, &size, err);
     if (st == CW_OK)
         st = parse(bytes, size, out, err);
@@ -70,7 +70,7 @@ static cw_status check_keys(json_t *root, const char *const *keys, cw_error *err
         if (strcmp(key, "schema") == 0 || is_known(key, keys))
             continue;
         list_keys(keys, list, sizeof list);
-        return cw_fail(err, CW_ERR_FORMAT, "'%.60s' is no key; there are %s", key, list);
+        return cwi_fail(err, CW_ERR_FORMAT, "'%.60s' is no key; there are %s", key, list);
     }
     return CW_OK;
 }
@@ -79,10 +79,10 @@ static cw_status check_schema(const json_t *root, const char *schema, cw_error *
 {
     const json_t *value = json_object_get(root, "schema");
     if (!json_is_string(value))
-        return cw_fail(err, CW_ERR_FORMAT, "'schema' was expected to be \"%s\"", schema);
+        return cwi_fail(err, CW_ERR_FORMAT, "'schema' was expected to be \"%s\"", schema);
     if (strcmp(json_string_value(value), schema) != 0)
-        return cw_fail(err, CW_ERR_FORMAT, "'schema' is \"%.60s\"; \"%s\" was expected",
-                       json_string_value(value), schema);
+        return cwi_fail(err, CW_ERR_FORMAT, "'schema' is \"%.60s\"; \"%s\" was expected",
+                        json_string_value(value), schema);
     return CW_OK;
 }
 
@@ -92,11 +92,11 @@ cw_status cwi_json_object(const char *bytes, size_t size, const char *schema,
     json_error_t why;
     *root = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, &why);
     if (!*root)
-        return cw_fail(err, CW_ERR_FORMAT, "line %d, column %d: %s", why.line, why.column,
-                       why.text);
+        return cwi_fail(err, CW_ERR_FORMAT, "line %d, column %d: %s", why.line, why.column,
+                        why.text);
     cw_status st = json_is_object(*root)
                        ? check_schema(*root, schema, err)
-                       : cw_fail(err, CW_ERR_FORMAT, "an object, {...}, was expected");
+                       : cwi_fail(err, CW_ERR_FORMAT, "an object, {...}, was expected");
     if (st == CW_OK)
         st = check_keys(*root, keys, err);
     if (st != CW_OK) {
@@ -110,7 +110,7 @@ cw_status cwi_json_number(const json_t *root, const char *key, double *value, cw
 {
     const json_t *number = json_object_get(root, key);
     if (number && !json_is_number(number))
-        return cw_fail(err, CW_ERR_FORMAT, "'%s' was expected to be a number", key);
+        return cwi_fail(err, CW_ERR_FORMAT, "'%s' was expected to be a number", key);
     if (number)
         *value = json_number_value(number);
     return CW_OK;

@@ -23,7 +23,7 @@ static cw_status make_unit(cw_slice *s, cw_error *err)
 {
     const double length = sqrt(cwi_dot(s->normal, s->normal));
     if (!isnormal(length) || !isfinite(s->distance_mm))
-        return cw_fail(err, CW_ERR_ARGUMENT, "a slice has no direction or place");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a slice has no direction or place");
     for (int a = 0; a < 3; a++)
         s->normal[a] /= length;
     s->distance_mm /= length;
@@ -114,7 +114,7 @@ cw_status cw_slice_camera(const cw_volume *volume, const cw_slice *slice, double
     if (st == CW_OK)
         st = make_unit(&s, err);
     if (st == CW_OK && !(aspect > 0 && isfinite(aspect)))
-        st = cw_fail(err, CW_ERR_ARGUMENT, "a picture %g times as wide as high", aspect);
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "a picture %g times as wide as high", aspect);
     if (st != CW_OK)
         return st;
     const int axis = main_axis(s.normal);
@@ -127,7 +127,7 @@ cw_status cw_slice_camera(const cw_volume *volume, const cw_slice *slice, double
     if (st != CW_OK)
         return st;
     if (!find_extent(&v, &s, (const double(*)[3])axes, extent))
-        return cw_fail(err, CW_ERR_ARGUMENT, "the slice misses the volume");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the slice misses the volume");
     const double wide = extent[0][1] - extent[0][0], tall = extent[1][1] - extent[1][0];
     c.height_mm = fmax(fmax(tall, wide / aspect), 1e-6) / (1 - 2 * margin);
     for (int a = 0; a < 3; a++) {

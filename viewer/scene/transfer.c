@@ -10,12 +10,12 @@ static cw_status check_value(const char *list, size_t n, double value, double be
                              cw_error *err)
 {
     if (!isfinite(value))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "point %zu of '%s' has a position that is not a number", n, list);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "point %zu of '%s' has a position that is not a number", n, list);
     if (value < before)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "point %zu of '%s' stands at %g, the one before at %g", n, list, value,
-                       before);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "point %zu of '%s' stands at %g, the one before at %g", n, list, value,
+                        before);
     return CW_OK;
 }
 
@@ -32,8 +32,8 @@ static cw_status check_opacities(const char *list, const cw_opacity_point *p, si
         if (st != CW_OK)
             return st;
         if (!is_share(p[n].opacity))
-            return cw_fail(err, CW_ERR_ARGUMENT, "point %zu of '%s' is %g, not 0 to 1", n, list,
-                           (double)p[n].opacity);
+            return cwi_fail(err, CW_ERR_ARGUMENT, "point %zu of '%s' is %g, not 0 to 1", n,
+                            list, (double)p[n].opacity);
     }
     return CW_OK;
 }
@@ -48,8 +48,8 @@ static cw_status check_colors(const cw_transfer *t, cw_error *err)
             return st;
         for (int c = 0; c < 3; c++)
             if (!is_share(p->color[c]))
-                return cw_fail(err, CW_ERR_ARGUMENT, "point %zu of 'colors' is %g, not 0 to 1",
-                               n, (double)p->color[c]);
+                return cwi_fail(err, CW_ERR_ARGUMENT, "point %zu of 'colors' is %g, not 0 to 1",
+                                n, (double)p->color[c]);
     }
     return CW_OK;
 }
@@ -58,11 +58,11 @@ cw_status cw_transfer_check(const cw_transfer *t, cw_error *err)
 {
     if (t->color_count > CW_TRANSFER_POINTS || t->opacity_count > CW_TRANSFER_POINTS ||
         t->gradient_count > CW_TRANSFER_POINTS)
-        return cw_fail(err, CW_ERR_ARGUMENT, "a transfer function has at most %d points",
-                       CW_TRANSFER_POINTS);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a transfer function has at most %d points",
+                        CW_TRANSFER_POINTS);
     if (!(t->unit_mm == 0 || (isnormal(t->unit_mm) && t->unit_mm > 0)))
-        return cw_fail(err, CW_ERR_ARGUMENT, "'unit_mm' is %g: a length was expected",
-                       t->unit_mm);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "'unit_mm' is %g: a length was expected",
+                        t->unit_mm);
     cw_status st = check_colors(t, err);
     if (st == CW_OK)
         st = check_opacities("opacities", t->opacities, t->opacity_count, err);

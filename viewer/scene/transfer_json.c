@@ -20,8 +20,8 @@ static cw_status take_point(const json_t *point, const char *list, size_t n, con
 {
     if (!json_is_array(point) || json_array_size(point) != 2 ||
         !json_is_number(json_array_get(point, 0)))
-        return cw_fail(err, CW_ERR_FORMAT, "point %zu of '%s': [value, %s] was expected", n,
-                       list, second);
+        return cwi_fail(err, CW_ERR_FORMAT, "point %zu of '%s': [value, %s] was expected", n,
+                        list, second);
     *value = json_number_value(json_array_get(point, 0));
     *other = json_array_get(point, 1);
     return CW_OK;
@@ -43,10 +43,10 @@ static bool parse_color(const json_t *text, float color[3])
 static cw_status check_list(const json_t *list, const char *key, cw_error *err)
 {
     if (list && !json_is_array(list))
-        return cw_fail(err, CW_ERR_FORMAT, "'%s' was expected to be a list, [...]", key);
+        return cwi_fail(err, CW_ERR_FORMAT, "'%s' was expected to be a list, [...]", key);
     if (json_array_size(list) > CW_TRANSFER_POINTS)
-        return cw_fail(err, CW_ERR_FORMAT, "'%s' has %zu points; at most %d were expected", key,
-                       json_array_size(list), CW_TRANSFER_POINTS);
+        return cwi_fail(err, CW_ERR_FORMAT, "'%s' has %zu points; at most %d were expected",
+                        key, json_array_size(list), CW_TRANSFER_POINTS);
     return CW_OK;
 }
 
@@ -59,7 +59,8 @@ static cw_status take_colors(const json_t *root, cw_transfer *t, cw_error *err)
         st = take_point(json_array_get(list, n), "colors", n, "\"#rrggbb\"", &p->value, &color,
                         err);
         if (st == CW_OK && !parse_color(color, p->color))
-            st = cw_fail(err, CW_ERR_FORMAT,
+            st =
+                cwi_fail(err, CW_ERR_FORMAT,
                          "point %zu of 'colors': a colour such as \"#ffeedd\" was expected", n);
     }
     return st;
@@ -77,8 +78,8 @@ static cw_status take_opacities(const json_t *root, const char *key, cw_opacity_
             return st;
         const double share = json_is_number(opacity) ? json_number_value(opacity) : -1;
         if (!(share >= 0 && share <= 1))
-            return cw_fail(err, CW_ERR_FORMAT, "point %zu of '%s': 0 to 1 was expected", n,
-                           key);
+            return cwi_fail(err, CW_ERR_FORMAT, "point %zu of '%s': 0 to 1 was expected", n,
+                            key);
         p->opacity = (float)share;
     }
     return st;
@@ -89,8 +90,8 @@ static cw_status take_unit(const json_t *root, cw_transfer *t, cw_error *err)
 {
     cw_status st = cwi_json_number(root, "unit_mm", &t->unit_mm, err);
     if (st == CW_OK && json_object_get(root, "unit_mm") && !(t->unit_mm > 0))
-        return cw_fail(err, CW_ERR_FORMAT, "'unit_mm' is %g: a length was expected",
-                       t->unit_mm);
+        return cwi_fail(err, CW_ERR_FORMAT, "'unit_mm' is %g: a length was expected",
+                        t->unit_mm);
     return st;
 }
 
@@ -187,13 +188,13 @@ cw_status cw_transfer_format(const cw_transfer *transfer, char text[CW_TRANSFER_
         return st;
     FILE *out = fmemopen(text, CW_TRANSFER_TEXT, "w");
     if (!out)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a transfer function");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a transfer function");
     void *before = cwi_locale_c();
     put_transfer(out, transfer);
     cwi_locale_restore(before);
     return fclose(out) == 0
                ? CW_OK
-               : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a transfer function");
+               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a transfer function");
 }
 
 cw_status cw_transfer_write(const char *path, const cw_transfer *transfer, cw_error *err)

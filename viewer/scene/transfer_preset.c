@@ -336,8 +336,8 @@ static cw_status fail_unknown(const char *name, cw_error *err)
     size_t used = 0;
     for (size_t n = 0; n < PRESETS; n++)
         used += (size_t)snprintf(list + used, sizeof list - used, " %s", presets[n].name);
-    return cw_fail(err, CW_ERR_ARGUMENT, "no transfer function is named '%.60s'; there are%s",
-                   name, list);
+    return cwi_fail(err, CW_ERR_ARGUMENT, "no transfer function is named '%.60s'; there are%s",
+                    name, list);
 }
 
 /* Makes an opaque grey for one value, or none, as there is nothing to distinguish. */
@@ -357,7 +357,7 @@ cw_status cw_transfer_preset(const char *name, const cw_statistics *statistics,
     if (n == PRESETS)
         return fail_unknown(name, err);
     if (presets[n].fitted && !statistics)
-        return cw_fail(err, CW_ERR_ARGUMENT, "'%s' is fitted to a volume's values", name);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "'%s' is fitted to a volume's values", name);
     if (presets[n].fitted && !(statistics->max > statistics->min && statistics->bin_count))
         make_single(statistics, &t);
     else

@@ -57,12 +57,12 @@ bool cwi_ui_queue_put(cwi_ui *ui, const cwi_ui_event *event, bool repeats)
 static cw_status check_place(const cwi_ui_event *e, cw_error *err)
 {
     if (!isfinite(e->x) || !isfinite(e->y))
-        return cw_fail(err, CW_ERR_ARGUMENT, "an input has a position that is not a number");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "an input has a position that is not a number");
     if (e->kind == CWI_UI_RESIZE &&
         !(e->x >= 1 && e->x <= CWI_UI_LARGEST && e->y >= 1 && e->y <= CWI_UI_LARGEST))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "a window of %g x %g pixels; 1 x 1 to %d x %d was expected", e->x, e->y,
-                       CWI_UI_LARGEST, CWI_UI_LARGEST);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "a window of %g x %g pixels; 1 x 1 to %d x %d was expected", e->x, e->y,
+                        CWI_UI_LARGEST, CWI_UI_LARGEST);
     return CW_OK;
 }
 
@@ -70,29 +70,29 @@ static cw_status check_text(const cwi_ui_event *e, cw_error *err)
 {
     const bool has = e->kind == CWI_UI_KEY || e->kind == CWI_UI_WRITE || e->kind == CWI_UI_DROP;
     if (has && !e->text)
-        return cw_fail(err, CW_ERR_ARGUMENT, "input without the text that it is of");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "input without the text that it is of");
     if (e->kind != CWI_UI_KEY ||
         (strlen(e->text) < CWI_UI_KEY_SIZE && cwi_ui_key_number(e->text, NULL) > 0))
         return CW_OK;
-    return cw_fail(err, CW_ERR_ARGUMENT,
-                   "no key has the name '%.40s'; names are such as A, 1, ?, Space, F1, Left, "
-                   "Shift+Left, Ctrl+S",
-                   e->text);
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "no key has the name '%.40s'; names are such as A, 1, ?, Space, F1, Left, "
+                    "Shift+Left, Ctrl+S",
+                    e->text);
 }
 
 cw_status cwi_ui_feed(cwi_ui *ui, const cwi_ui_event *event, cw_error *err)
 {
     const bool pressed = event->kind == CWI_UI_PRESS || event->kind == CWI_UI_LIFT;
     if ((unsigned)event->kind > CWI_UI_CLOSE)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%d is not a kind of input", (int)event->kind);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a kind of input", (int)event->kind);
     if (pressed && (event->button < 0 || event->button >= CWI_UI_BUTTONS))
-        return cw_fail(err, CW_ERR_ARGUMENT, "a mouse has no button %d; there are 0 to %d",
-                       event->button, CWI_UI_BUTTONS - 1);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a mouse has no button %d; there are 0 to %d",
+                        event->button, CWI_UI_BUTTONS - 1);
     cw_status st = check_place(event, err);
     if (st == CW_OK)
         st = check_text(event, err);
     if (st == CW_OK && !cwi_ui_queue_put(ui, event, false))
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for input");
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for input");
     return st;
 }
 

@@ -5,12 +5,12 @@ static cw_status check_desc(const cwi_ui_desc *desc, cw_error *err)
 {
     if (desc->width < 1 || desc->width > CWI_UI_LARGEST || desc->height < 1 ||
         desc->height > CWI_UI_LARGEST)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "a window of %zu x %zu pixels; 1 x 1 to %d x %d was expected",
-                       desc->width, desc->height, CWI_UI_LARGEST, CWI_UI_LARGEST);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "a window of %zu x %zu pixels; 1 x 1 to %d x %d was expected",
+                        desc->width, desc->height, CWI_UI_LARGEST, CWI_UI_LARGEST);
     if (!(desc->scale == 0 || (desc->scale >= 0.25 && desc->scale <= 8)))
-        return cw_fail(err, CW_ERR_ARGUMENT, "a scale of letters of %g; 0.25 to 8 was expected",
-                       desc->scale);
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "a scale of letters of %g; 0.25 to 8 was expected", desc->scale);
     return CW_OK;
 }
 
@@ -20,7 +20,7 @@ static cw_status open_all(cwi_ui *ui, const cwi_ui_desc *desc, cw_error *err)
     if (st != CW_OK)
         return st;
     if (!cwi_ui_screen_enter(ui))
-        return cw_fail(err, CW_ERR_BACKEND, "OpenGL's context cannot be made current");
+        return cwi_fail(err, CW_ERR_BACKEND, "OpenGL's context cannot be made current");
     st = cwi_ui_imgui_open(ui, err);
     cwi_ui_screen_leave(ui);
     return st;
@@ -33,7 +33,7 @@ cw_status cwi_ui_open(const cwi_ui_desc *desc, cwi_ui **out, cw_error *err)
         return st;
     cwi_ui *ui = cwi_alloc_zeroed(1, sizeof *ui);
     if (!ui)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a window");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a window");
     ui->input.x = ui->input.y = -1;
     ui->settle = 3;
     st = open_all(ui, desc, err);
@@ -116,7 +116,7 @@ cw_status cwi_ui_end(cwi_ui *ui, cw_error *err)
     cwi_ui_imgui_layout(ui);
     cwi_ui_places_turn(ui);
     if (!cwi_ui_screen_enter(ui))
-        return cw_fail(err, CW_ERR_BACKEND, "OpenGL's context cannot be made current");
+        return cwi_fail(err, CW_ERR_BACKEND, "OpenGL's context cannot be made current");
     cwi_ui_target_begin(ui);
     cwi_ui_imgui_draw();
     cwi_ui_screen_show(ui);
@@ -129,7 +129,7 @@ cw_status cwi_ui_end(cwi_ui *ui, cw_error *err)
 cw_status cwi_ui_grab(cwi_ui *ui, cw_image *image, cw_error *err)
 {
     if (!cwi_ui_screen_enter(ui))
-        return cw_fail(err, CW_ERR_BACKEND, "OpenGL's context cannot be made current");
+        return cwi_fail(err, CW_ERR_BACKEND, "OpenGL's context cannot be made current");
     const cw_status st = cwi_ui_target_grab(ui, image, err);
     cwi_ui_screen_leave(ui);
     return st;
@@ -138,10 +138,10 @@ cw_status cwi_ui_grab(cwi_ui *ui, cw_image *image, cw_error *err)
 cw_status cwi_ui_keep(cwi_ui *ui, int slot, const cw_image *image, cw_error *err)
 {
     if (slot < 0 || slot >= CWI_UI_SLOTS)
-        return cw_fail(err, CW_ERR_ARGUMENT, "no slot for pictures is number %d; 0 to %d are",
-                       slot, CWI_UI_SLOTS - 1);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "no slot for pictures is number %d; 0 to %d are",
+                        slot, CWI_UI_SLOTS - 1);
     if (!cwi_ui_screen_enter(ui))
-        return cw_fail(err, CW_ERR_BACKEND, "OpenGL's context cannot be made current");
+        return cwi_fail(err, CW_ERR_BACKEND, "OpenGL's context cannot be made current");
     const cw_status st = cwi_ui_target_keep(ui, slot, image, err);
     cwi_ui_screen_leave(ui);
     return st;

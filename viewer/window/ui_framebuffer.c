@@ -72,7 +72,7 @@ cw_status cwi_ui_target_grab(cwi_ui *ui, cw_image *image, cw_error *err)
 {
     const cwi_ui_target *t = &ui->target;
     if (t->width == 0)
-        return cw_fail(err, CW_ERR_ARGUMENT, "the window has shown nothing yet");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the window has shown nothing yet");
     cw_status st = cw_image_alloc(image, t->width, t->height, err);
     if (st != CW_OK)
         return st;
@@ -117,9 +117,9 @@ static cw_status check_size(const cw_image *image, cw_error *err)
     GLint most = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
     if (image->width > (size_t)most || image->height > (size_t)most)
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "a picture of %zu x %zu pixels; OpenGL here takes up to %d x %d",
-                       image->width, image->height, most, most);
+        return cwi_fail(err, CW_ERR_LIMIT,
+                        "a picture of %zu x %zu pixels; OpenGL here takes up to %d x %d",
+                        image->width, image->height, most, most);
     return CW_OK;
 }
 

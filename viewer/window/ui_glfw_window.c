@@ -265,10 +265,10 @@ static cw_status fail_window(const char *words, cw_error *err)
         snprintf(found, sizeof found, "%s", (const char *)glGetString(GL_VERSION));
         glfwDestroyWindow(any);
     }
-    return cw_fail(err, CW_ERR_UNSUPPORTED,
-                   "a window needs OpenGL 3.3; found here: %s (%.160s): apt-get install "
-                   "libgl1-mesa-dri, or draw without one by `cubewright render`",
-                   found, words);
+    return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                    "a window needs OpenGL 3.3; found here: %s (%.160s): apt-get install "
+                    "libgl1-mesa-dri, or draw without one by `cubewright render`",
+                    found, words);
 }
 
 static void set_scale(cwi_ui *ui, const cwi_ui_desc *desc, GLFWwindow *w)
@@ -285,10 +285,10 @@ static cw_status open_window(cwi_ui *ui, const cwi_ui_desc *desc, cw_error *err)
     if (st != CW_OK)
         return st;
     if (!glfwInit())
-        return cw_fail(err, CW_ERR_UNSUPPORTED,
-                       "no display (%.160s): set DISPLAY to one, or draw without a window by "
-                       "`cubewright render`",
-                       glfw_words());
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "no display (%.160s): set DISPLAY to one, or draw without a window by "
+                        "`cubewright render`",
+                        glfw_words());
     GLFWwindow *w = make_window(desc);
     if (!w) {
         st = fail_window(glfw_words(), err);
@@ -323,7 +323,7 @@ cw_status cwi_ui_screen_open(cwi_ui *ui, const cwi_ui_desc *desc, cw_error *err)
 {
     cwi_ui_screen *s = cwi_alloc_zeroed(1, sizeof *s);
     if (!s)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a window");
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a window");
     s->start = clock_seconds();
     ui->screen = s;
     const cw_status st = desc->hidden ? open_hidden(ui, desc, err) : open_window(ui, desc, err);

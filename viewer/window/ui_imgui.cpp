@@ -207,7 +207,8 @@ void shut_modals_not_begun(ImGuiContext &g)
 cw_status cwi_ui_imgui_open(cwi_ui *ui, cw_error *err)
 {
     if (!has_libgl())
-        return cw_fail(err, CW_ERR_UNSUPPORTED, "a window needs libGL: apt-get install libgl1");
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "a window needs libGL: apt-get install libgl1");
     ui->imgui = ImGui::CreateContext();
     ImGui::SetCurrentContext(ui->imgui);
     ImGuiIO &io = ImGui::GetIO();
@@ -222,7 +223,7 @@ cw_status cwi_ui_imgui_open(cwi_ui *ui, cw_error *err)
     add_letters(static_cast<float>(ui->scale));
     if (!ImGui_ImplOpenGL3_Init("#version 330 core") ||
         !ImGui_ImplOpenGL3_CreateDeviceObjects())
-        return cw_fail(err, CW_ERR_BACKEND, "Dear ImGui found no use for this OpenGL");
+        return cwi_fail(err, CW_ERR_BACKEND, "Dear ImGui found no use for this OpenGL");
     return CW_OK;
 }
 

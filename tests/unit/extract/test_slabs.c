@@ -63,7 +63,7 @@ static cw_status take(void *user, const cw_slab *slab, cw_error *err)
     t->triangles += m->triangle_count;
     t->most = m->triangle_count > t->most ? m->triangle_count : t->most;
     t->ended = slab->last;
-    return ++t->slabs == t->stop_at ? cw_fail(err, CW_ERR_CANCELLED, "enough") : CW_OK;
+    return ++t->slabs == t->stop_at ? cwi_fail(err, CW_ERR_CANCELLED, "enough") : CW_OK;
 }
 
 static void fill(cw_volume *v, int round)

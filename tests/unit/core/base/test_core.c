@@ -33,11 +33,11 @@ static void failing_fills_the_error_and_prefixes_add_up(void **state)
 {
     (void)state;
     cw_error err = {0};
-    assert_int_equal(cw_fail(&err, CW_ERR_FORMAT, "'%s' is %d", "dim", 7), CW_ERR_FORMAT);
+    assert_int_equal(cwi_fail(&err, CW_ERR_FORMAT, "'%s' is %d", "dim", 7), CW_ERR_FORMAT);
     assert_int_equal(cwi_fail_in(&err, CW_ERR_FORMAT, "a.nrrd"), CW_ERR_FORMAT);
     assert_string_equal(err.message, "a.nrrd: 'dim' is 7");
     assert_int_equal(err.status, CW_ERR_FORMAT);
-    assert_int_equal(cw_fail(NULL, CW_ERR_IO, "nobody listens"), CW_ERR_IO);
+    assert_int_equal(cwi_fail(NULL, CW_ERR_IO, "nobody listens"), CW_ERR_IO);
 }
 
 static void a_long_message_is_cut_not_overrun(void **state)
@@ -47,7 +47,7 @@ static void a_long_message_is_cut_not_overrun(void **state)
     char text[2000];
     memset(text, 'x', sizeof text - 1);
     text[sizeof text - 1] = '\0';
-    cw_fail(&err, CW_ERR_IO, "%s", text);
+    cwi_fail(&err, CW_ERR_IO, "%s", text);
     assert_int_equal(strlen(err.message), sizeof err.message - 1);
     cwi_fail_in(&err, CW_ERR_IO, text);
     assert_int_equal(strlen(err.message), sizeof err.message - 1);

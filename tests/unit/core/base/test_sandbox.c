@@ -111,7 +111,7 @@ static cw_status work(void *state, int fd, const void *asked, void *shared, cw_e
         fflush(stdout);
         break;
     case FAIL:
-        return cw_fail(err, CW_ERR_FORMAT, "'Rows' is %d", q->number);
+        return cwi_fail(err, CW_ERR_FORMAT, "'Rows' is %d", q->number);
     case LIE:
         memset(err->message, '\n', sizeof err->message);
         return (cw_status)-7;
@@ -262,7 +262,7 @@ static cw_status look_around(void *state, cw_error *err)
     const int file = open("/dev/zero", O_RDONLY);
     m->base = file >= 0 ? 200 : 300;
     close(file);
-    return m->calls ? cw_fail(err, CW_ERR_UNSUPPORTED, "it is not there") : CW_OK;
+    return m->calls ? cwi_fail(err, CW_ERR_UNSUPPORTED, "it is not there") : CW_OK;
 }
 
 static cw_status die_of_memory(void *state, cw_error *err)
