@@ -1,3 +1,5 @@
+/* Runs the command that the first argument names, limits its memory, and turns its status
+ * into an exit code. */
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/inputs/volume_input.h"

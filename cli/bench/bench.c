@@ -1,3 +1,5 @@
+/* Runs the cases of the benchmark: opens each case, times its rows alternately, and measures
+ * the meshes that they made. */
 #define _GNU_SOURCE /* getloadavg */
 #include "cli/bench/bench.h"
 
@@ -17,7 +19,7 @@ const char *const cli_bench_status_names[] = {"done", "left-out", "missing", "fa
 
 /* --- what is measured of a result --------------------------------------------------------- */
 
-enum { MOST_VERTICES = 100000 }; /* of more, every so many-th is measured */
+enum { MOST_VERTICES = 100000 }; /* of larger meshes, only every n-th vertex */
 
 /* Of a file the truth is the field between its voxels. */
 static cw_status measure_by_field(const cli_bench *b, const cw_mesh *mesh, cli_bench_row *row,
@@ -109,8 +111,8 @@ static cw_status measure_row(const cli_bench *b, const cw_mesh *mesh, cli_bench_
 
 /* --- the runs ----------------------------------------------------------------------------- */
 
-/* Whether a row's failure ends it alone: then why is told, without the name of a folder that
- * is soon gone, and err is for the next. */
+/* Records the failure of a row, so that the other rows go on; a cancelled run is passed on. The
+ * reason is stored without the name of the scratch folder, which is soon deleted. */
 static cw_status pass_over(const cli_bench *b, cli_bench_row *row, cw_status st,
                            const cw_error *err)
 {
@@ -172,7 +174,7 @@ static double find_median(const double *times, size_t count)
     return count % 2 ? sorted[count / 2] : 0.5 * (sorted[count / 2 - 1] + sorted[count / 2]);
 }
 
-/* By turns, so that whatever else the machine does strikes all alike. */
+/* Runs the rows alternately, so that other load of the machine affects all of them equally. */
 static cw_status run_work(cli_bench *b, cli_bench_work work, cw_error *err)
 {
     cli_bench_case *c = b->now;

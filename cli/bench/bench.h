@@ -1,4 +1,5 @@
-/* The same work by us and by others, by turns: what it takes, and how close the result is. */
+/* Compares the library with others at the same work, alternately: time, memory, and how close
+ * the result is. */
 #ifndef CLI_BENCH_BENCH_H
 #define CLI_BENCH_BENCH_H
 
@@ -50,7 +51,7 @@ typedef struct cli_bench_row {
     size_t peak_bytes, vertices, triangles, file_bytes;
     size_t worked_on;                  /* triangles: of the result, or of what was simplified */
     cw_field_vertex_error at_vertices; /* to the case's surface; of a file without angles */
-    cli_gap surface;                   /* likewise, of points all over the triangles */
+    cli_gap surface;                   /* the same, at points all over the triangles */
     bool moved;                        /* of compression: how far vertices were */
     double moved_mean_mm, moved_max_mm;
     size_t open_edges, nonmanifold_edges, nonmanifold_vertices, zero_area;
@@ -92,8 +93,8 @@ typedef struct cli_bench {
     cw_mesh made;    /* by the last run of ours */
 } cli_bench;
 
-/* Measures one case after the other, and tells each when it is done. Free with
- * cli_bench_free(), also after failure. What peers or settings cannot do is told in their rows.
+/* Measures one case after the other, and reports each when it is done. Free with
+ * cli_bench_free(), also after failure. Rows store why a peer or a setting failed.
  * Returns  CW_ERR_EMPTY  there is no surface at that level
  *          CW_ERR_CANCELLED; and whatever keeps a case from being read, or extracted */
 CW_NODISCARD cw_status cli_bench_run(cli_bench *bench, cw_error *err);
@@ -106,7 +107,7 @@ CW_NODISCARD cw_status cli_bench_prepare(cli_bench *bench, const cli_bench_kind 
 CW_NODISCARD cw_status cli_bench_once(cli_bench *bench, const cli_bench_kind *kind,
                                       cli_spent *spent, cw_error *err);
 
-/* What the last run made, as a mesh, and the size of its file (0: it made none). */
+/* Returns the mesh that the last run made, and the size of its file (0: it made no file). */
 CW_NODISCARD cw_status cli_bench_take(cli_bench *bench, const cli_bench_kind *kind,
                                       cw_mesh *mesh, size_t *file_bytes, cw_error *err);
 

@@ -1,3 +1,5 @@
+/* Starts a program as a child process, exchanges lines with it through pipes, and ends it
+ * after a time limit. */
 #define _GNU_SOURCE /* pipe2, strchrnul */
 #include "cli/bench/bench_child.h"
 
@@ -82,7 +84,8 @@ void cli_child_stop(cli_child *c)
 
 enum { WORDS = 200 };
 
-/* The last line that it wrote of errors, as far as it is plain text: it is a stranger's. */
+/* Returns the last line of its error output. Other than printable ASCII is replaced by '?',
+ * because the text is untrusted input. */
 static void last_words(const cli_child *c, char words[WORDS])
 {
     char path[4096], line[180];

@@ -26,7 +26,8 @@ CW_NODISCARD cw_status cli_child_start(cli_child *child, const char *const *argv
 CW_NODISCARD cw_status cli_child_ask(cli_child *child, const char *line, char *answer,
                                      size_t room, cw_error *err);
 
-/* Waits until it ends by itself. Errors likewise, and when its exit code is not 0. */
+/* Waits until it ends by itself. Returns the same errors, and fails when its exit code is not
+ * 0. */
 CW_NODISCARD cw_status cli_child_wait(cli_child *child, cw_error *err);
 
 /* Ends it and all it started; harmless on none. */

@@ -1,3 +1,5 @@
+/* Finds the other libraries of the benchmark, exchanges files and commands with them, and
+ * checks the meshes that they return. */
 #define _GNU_SOURCE /* asprintf */
 #include "cli/bench/bench_peers.h"
 
@@ -213,7 +215,7 @@ static cw_status ask_peer(cli_peer *peer, const char *line, double *numbers, siz
     return cwi_fail(err, CW_ERR_BACKEND, "its answer is not understood");
 }
 
-/* What a voxel outside the surface may hold, in the file's numbers. */
+/* Returns a value for voxels outside the surface, in the file's numbers. */
 static double outside_of(const cw_volume *v, double level, bool inside_is_low)
 {
     const bool high = inside_is_low != (v->slope < 0);
@@ -267,7 +269,8 @@ static bool read_floats(FILE *f, size_t count, float **out)
     return *out && fread(*out, sizeof **out, count, f) == count;
 }
 
-/* The sizes are a stranger's: the file must have just so many bytes. */
+/* Reads the mesh of a peer. The sizes are untrusted input: the file must have exactly the
+ * bytes that they need. */
 static cw_status read_result(const cli_peers *p, const double n[3], cw_mesh *mesh,
                              cw_error *err)
 {

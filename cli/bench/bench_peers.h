@@ -1,7 +1,7 @@
-/* What other libraries make of the same work. Those with Python bindings are programs of
- * peer_NAME.py, behind what is common to them in peer.py: children that live as long as the
- * run, so that neither Python's start nor what is imported is timed. They stand in the scratch
- * folder, and are told on a line each, answering on one:
+/* Runs other libraries at the same work. Those with Python bindings are programs:
+ * the common peer.py, followed by peer_NAME.py. These are children that live as long as the run,
+ * so that neither Python's start nor its imports are timed. They run in the scratch folder.
+ * Each command is one line, and so is each answer:
  *
  *     (nothing)                                  ready VERSION, or: missing MODULE
  *     extract TYPE NX NY NZ DX DY DZ LEVEL OUT   ok: the file "volume" is read
@@ -52,7 +52,7 @@ typedef struct cli_peers {
     double limit_s; /* for one answer */
 } cli_peers;
 
-/* What one run took. */
+/* Time and memory that one run took. */
 typedef struct cli_spent {
     double seconds;
     size_t peak_bytes; /* beyond what was there before; 0: unknown */

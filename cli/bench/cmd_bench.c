@@ -1,3 +1,4 @@
+/* The command bench: its options, the checks of its arguments, and the list of its cases. */
 #define _GNU_SOURCE /* open_memstream */
 #include "cli/bench/bench.h"
 #include "cli/framework/commands.h"

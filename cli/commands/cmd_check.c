@@ -1,3 +1,5 @@
+/* The command check: measures the defects of a mesh and its distances to a field or another
+ * mesh, and holds them against a profile. */
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
@@ -67,7 +69,7 @@ static const cli_option options[] = {
     CLI_PROGRESS_OPTION(check_args),
 };
 
-/* What was measured; findings point into it. */
+/* State of the command: inputs and measurements; findings point into it. */
 typedef struct run_state {
     const check_args *args;
     cli_mesh mesh, reference;
@@ -259,9 +261,9 @@ static cw_status ask_cgal(run_state *s, cw_error *err)
     return in_mesh(s, st, err);
 }
 
-/* What the mesh lacks altogether is told apart from how far the rest is: a component with
- * nothing of the mesh within a quarter of a voxel was left out. Of one that is there, if only
- * coarser, some vertices are on the mesh, or nearly so. */
+/* Separates components that the mesh lacks from the distance of the others. A component counts
+ * as missing when the mesh is nowhere within a quarter of a voxel, or the tolerance if larger.
+ * A component that is present, if only coarser, has some vertices on the mesh, or nearly so. */
 static cw_status part_missing(run_state *s, cw_mesh *surface, const cw_mesh_distance_desc *back,
                               cw_error *err)
 {

@@ -1,3 +1,4 @@
+/* The command convert: writes a mesh in another format, merged or split into its parts. */
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/results/mesh_write_options.h"
@@ -86,7 +87,8 @@ static cw_status check_outputs(run_state *s, cw_error *err)
                        : st;
 }
 
-/* What can be refused before the input is read. The names of --split come with it. */
+/* Checks everything that can be refused before the input is read. The names of --split are
+ * known only after reading. */
 static cw_status check_args(run_state *s, cw_error *err)
 {
     const convert_args *args = s->args;

@@ -1,4 +1,4 @@
-/* formats and version: what this build can do. */
+/* The commands formats and version: list what this build can read, write and use. */
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/framework/json_writer.h"
@@ -86,7 +86,8 @@ static void print_availability(const char *name, bool available, const char *rea
         printf("%-11sno: %s\n", name, reason);
 }
 
-/* A feature that is one format has the format's name and is told once. */
+/* Prints features and formats. A feature that is one format has the format's name and is
+ * printed once. */
 static void print_features(const cw_format *formats, size_t format_count)
 {
     size_t count;

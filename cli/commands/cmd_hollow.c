@@ -1,3 +1,4 @@
+/* The command hollow: its options; cli_run_hollow() in offset_hollow.c does the work. */
 #include "cli/commands/offset_hollow.h"
 #include "cli/framework/commands.h"
 

@@ -1,3 +1,5 @@
+/* The command info: prints the facts of a volume or a series, such as its grid, range of
+ * values and suggested isovalues. */
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"

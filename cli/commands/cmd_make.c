@@ -1,3 +1,4 @@
+/* The command make: samples an analytic field or a hard case and writes the volume. */
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "core/base/status.h"
@@ -43,7 +44,7 @@ static const cli_option options[] = {
      offsetof(make_args, threads)},
 };
 
-/* What can be made: fields, and behind them the hard cases. */
+/* A subject to make: the fields come first, then the hard cases. */
 typedef struct subject {
     const char *name, *about;
     double isovalue;
@@ -133,7 +134,7 @@ static cw_status sample_hard(const make_args *args, size_t number, cw_volume *vo
     return cw_hard_sample(&desc, volume, err);
 }
 
-/* What the isovalue is in voxels of that type. */
+/* Returns the isovalue as voxels of that type store it. */
 static double stored_level(const subject *s, cw_type type)
 {
     return s->hard ? cw_hard_stored(s->number, type, s->isovalue)

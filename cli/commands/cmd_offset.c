@@ -1,3 +1,4 @@
+/* The command offset: its options; cli_run_offset() in offset_hollow.c does the work. */
 #include "cli/commands/offset_hollow.h"
 #include "cli/framework/commands.h"
 

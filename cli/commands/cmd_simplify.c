@@ -1,3 +1,5 @@
+/* The command simplify: its options and the checks of their values; simplify_run.c does the
+ * work. */
 #include "cli/commands/simplify_run.h"
 #include "cli/framework/commands.h"
 #include "core/base/status.h"

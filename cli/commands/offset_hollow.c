@@ -1,3 +1,5 @@
+/* Moves the surface of a solid or turns the solid into a shell, for the commands offset and
+ * hollow: arguments, work, measurements and report. */
 #include "cli/commands/offset_hollow.h"
 
 #include "cli/framework/console.h"
@@ -95,7 +97,7 @@ static void put_offset(cli_json *j, const run_state *s)
     cli_json_close(j, '}');
 }
 
-/* Of the surface itself, made anew. */
+/* Writes the facts of a surface that was rebuilt in place (--by 0). */
 static void put_anew(cli_json *j, const cw_offset_facts *f)
 {
     cli_json_open(j, "anew", '{');
@@ -386,7 +388,8 @@ static cw_status measure_result(run_state *s, cli_made *made, cw_error *err)
     return st;
 }
 
-/* What was not touched may touch itself in a vertex, or have triangles without area. */
+/* Checks that the result is closed and oriented. Parts that were not moved may touch themselves
+ * in a vertex, or have triangles without area. */
 static cw_status hold_bound(const run_state *s, cw_error *err)
 {
     const cw_quality_desc desc = {.threads = (int)s->args->input.threads};

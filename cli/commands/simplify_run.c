@@ -1,3 +1,5 @@
+/* Runs the command simplify: reads the mesh, simplifies its parts or levels of detail,
+ * measures the error, and writes the result. */
 #include "cli/commands/simplify_run.h"
 
 #include "cli/framework/console.h"
@@ -208,7 +210,7 @@ static size_t share_of(const run_state *s, const cli_piece *p)
     return s->args->triangles && !triangles ? 1 : triangles;
 }
 
-/* What the result was to have, at most; 0: nothing was said. */
+/* Returns the requested maximum number of triangles; 0: none was given. */
 static size_t target_of(const run_state *s)
 {
     const size_t rest = (size_t)(s->args->ratio.value * (double)s->pieces.triangles);
@@ -233,7 +235,7 @@ static void tell_missed(run_state *s, size_t target, size_t triangles)
                         s->args->keep_border ? ", move its border" : "");
 }
 
-/* How to simplify a mesh of so many triangles: all but how far. */
+/* Returns the settings for a mesh of that number of triangles, without its target. */
 static cw_simplify_desc simplify_desc(const run_state *s, size_t triangles)
 {
     return (cw_simplify_desc){.allow_crossings = s->args->allow_intersections,

@@ -1,3 +1,5 @@
+/* The command extract: its options, and the run over the steps of a series and their levels
+ * up to the written files. */
 #include "cli/extract/extract_run.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
@@ -194,8 +196,8 @@ static cw_status make_surface(cli_extract_run *s, const cli_moment *moment, size
     return st;
 }
 
-/* The levels of a step. An empty surface among several is told and counted; any other failure
- * ends the run. */
+/* Makes the surfaces of all levels of a step. An empty surface among several is reported and
+ * counted; any other failure ends the run. */
 static cw_status make_surfaces(cli_extract_run *s, const cli_moment *moment, size_t *empty,
                                cw_error *err)
 {
@@ -213,8 +215,8 @@ static cw_status make_surfaces(cli_extract_run *s, const cli_moment *moment, siz
     return CW_OK;
 }
 
-/* What a step took goes back to the system: left to itself glibc keeps blocks of this size, and
- * those of the next step do not quite fit between what else there is. */
+/* Returns the memory of a step to the system. By itself glibc keeps blocks of this size, and
+ * the blocks of the next step do not quite fit into the gaps. */
 static void free_step(cli_extract_run *s)
 {
     cli_free_volume(&s->volume);

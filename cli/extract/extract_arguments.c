@@ -1,3 +1,4 @@
+/* Checks the arguments and outputs of the command extract before the input is read. */
 #include "cli/extract/extract_run.h"
 
 #include "cli/results/pvd_list.h"
@@ -74,7 +75,7 @@ static cw_status check_animation(const cli_extract_args *args, cw_error *err)
     return CW_OK;
 }
 
-/* What asks for fewer triangles. */
+/* Returns the name of the option that asks for fewer triangles. */
 static const char *name_reducer(const cli_extract_args *args)
 {
     return args->pixel.camera       ? "--camera"

@@ -1,3 +1,5 @@
+/* Computes lengths and settings of the command extract, and writes them into its report and
+ * into the records of its files. */
 #include "cli/extract/extract_run.h"
 
 #include <math.h>

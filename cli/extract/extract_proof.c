@@ -1,3 +1,5 @@
+/* Measures a simplified surface against the full one, and the surface of a cropped volume
+ * against that of the whole volume. */
 #include "cli/extract/extract_proof.h"
 
 #include "cli/framework/console.h"

@@ -1,4 +1,4 @@
-/* What was promised of a surface, held against the full one, and what that saved. */
+/* Checks what was promised of a surface against the full surface, and measures the savings. */
 #ifndef CLI_EXTRACT_EXTRACT_PROOF_H
 #define CLI_EXTRACT_EXTRACT_PROOF_H
 

@@ -1,4 +1,4 @@
-/* What the parts of the command extract share. */
+/* Declares the arguments, state and steps that the files of the command extract share. */
 #ifndef CLI_EXTRACT_EXTRACT_RUN_H
 #define CLI_EXTRACT_EXTRACT_RUN_H
 
@@ -61,7 +61,7 @@ double cli_extract_voxel_mm(const cli_extract_run *s);
 double cli_extract_length_mm(const cli_extract_run *s, const cli_length *length);
 double cli_extract_error_mm(const cli_extract_run *s);
 
-/* What components have to enclose; 0: nothing. */
+/* Returns the minimum volume that a component encloses; 0: no minimum. */
 double cli_extract_least_mm3(const cli_extract_run *s);
 
 bool cli_extract_is_low(const cli_extract_run *s);
@@ -84,8 +84,8 @@ size_t cli_extract_provenance(const cli_extract_run *s, size_t n, char level[32]
 CW_NODISCARD cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
                                         cw_extract_counts *counts, cw_error *err);
 
-/* What became of all the triangles of one that is simplified, and how far from the field
- * it is. */
+/* Reports how many triangles a simplified surface had before, and measures its distance from
+ * the field. */
 CW_NODISCARD cw_status cli_extract_judge(cli_extract_run *s, cli_made *made,
                                          const cw_mesh *mesh, const cw_extract_counts *counts,
                                          cw_error *err);

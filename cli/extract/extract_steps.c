@@ -1,3 +1,4 @@
+/* Extracts, simplifies, measures and proves one surface of the command extract. */
 #include "cli/extract/extract_run.h"
 
 #include "cli/extract/extract_proof.h"
@@ -71,7 +72,7 @@ static cw_status find_error(const cli_extract_run *s, double *error, cw_error *e
     return CW_OK;
 }
 
-/* What there is besides the picture's, so that nothing of it is missed by rounding. */
+/* Returns the margin around a picture, in pixels, so that rounding loses no triangle of it. */
 static double pixels_around(const cli_extract_run *s)
 {
     return 1 + (s->args->pixel.pixels.given ? s->args->pixel.pixels.value : 0);

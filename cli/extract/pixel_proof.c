@@ -1,3 +1,5 @@
+/* Reads the cameras of extract, draws depths for them, drops triangles that no view sees,
+ * and compares pictures with those of the full surface. */
 #include "cli/extract/pixel_proof.h"
 
 #include "cli/extract/extract_proof.h"

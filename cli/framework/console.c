@@ -1,3 +1,4 @@
+/* Prints messages, the progress bar and results, and ends a run on signals. */
 #define _GNU_SOURCE /* sigaction */
 #include "cli/framework/console.h"
 

@@ -1,4 +1,4 @@
-/* What people see while a command runs: messages, steps, the progress bar, interruption. */
+/* Declares the console of a command: messages, steps, the progress bar, interruption. */
 #ifndef CLI_FRAMEWORK_CONSOLE_H
 #define CLI_FRAMEWORK_CONSOLE_H
 

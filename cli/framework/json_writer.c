@@ -1,3 +1,4 @@
+/* Writes JSON objects: keys, indentation, escaped strings and numbers. */
 #include "cli/framework/json_writer.h"
 
 #include "core/base/text.h"

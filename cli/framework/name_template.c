@@ -1,3 +1,4 @@
+/* Fills the parts in braces of an output's name, such as {stem} and {step:04d}. */
 #define _GNU_SOURCE /* strndup */
 #include "cli/framework/name_template.h"
 

@@ -1,3 +1,4 @@
+/* Parses the words of the command line by a command's table of options, and prints its help. */
 #include "cli/framework/options.h"
 
 #include "cli/framework/quantity.h"
@@ -449,7 +450,7 @@ cw_status cli_parse(const cli_command *command, int count, char **words, void *a
     return st == CW_OK ? check_inputs(command, p.args, err) : st;
 }
 
-/* What help is as wide as, and where the texts of options begin. */
+/* Width of the help, and the column where the texts of options begin. */
 enum { HELP_WIDTH = 96, TEXT_COLUMN = 32 };
 
 void cli_print_wrapped(const char *text, size_t from)

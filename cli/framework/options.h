@@ -78,7 +78,7 @@ typedef struct cli_reduction {
     size_t triangles; /* 0: neither was said */
 } cli_reduction;
 
-/* What is taken of the values of a voxel. */
+/* Selection among the values of a voxel. */
 typedef struct cli_component {
     bool given, magnitude; /* of the vector that they all are; else: */
     size_t number;
@@ -140,7 +140,7 @@ typedef struct cli_option {
 
 enum { CLI_MAX_OPTIONS = 128 }; /* rows of a command's table */
 
-/* What every command's struct begins with. */
+/* First member of every command's struct. */
 typedef struct cli_common {
     bool help;
     bool quiet;

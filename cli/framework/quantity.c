@@ -1,3 +1,5 @@
+/* Parses numbers, lengths, ranges, steps and counts of the command line, and formats numbers
+ * for messages. */
 #include "cli/framework/quantity.h"
 
 #include "core/base/text.h"

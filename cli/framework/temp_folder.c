@@ -1,3 +1,4 @@
+/* Makes a temporary folder with mkdtemp(), and removes it with the files in it. */
 #define _GNU_SOURCE /* mkdtemp, strdup, unlinkat */
 #include "cli/framework/temp_folder.h"
 

@@ -1,3 +1,5 @@
+/* The command help: prints the overview, the exit codes, a page of help, or the results of a
+ * search. */
 #include "cli/framework/commands.h"
 #include "cli/help/help_search.h"
 #include "core/base/status.h"

@@ -1,3 +1,5 @@
+/* Searches the options, commands, pages and view's verbs for the words of a query and their
+ * synonyms. */
 #include "cli/help/help_search.h"
 
 #include "cli/framework/commands.h"
@@ -123,7 +125,7 @@ static bool contains_term(const char *text, const char *term)
     return false;
 }
 
-/* What is looked in: an option by its name and its texts, a command by its texts alone. */
+/* Subject of a search: an option by its name and its texts, a command by its texts alone. */
 typedef struct subject {
     const char *option; /* NULL: not an option */
     const char *texts[3];
@@ -253,7 +255,7 @@ static size_t search_common(const query *q)
     return found;
 }
 
-/* What can be said inside view. */
+/* Searches the commands that can be given inside view. */
 static size_t search_verbs(const query *q)
 {
     size_t found = 0;

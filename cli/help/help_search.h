@@ -1,4 +1,4 @@
-/* help --search: finds options and commands by a word, or by what others call it. */
+/* Searches the help (help --search): finds options and commands by a word or a synonym. */
 #ifndef CLI_HELP_SEARCH_H
 #define CLI_HELP_SEARCH_H
 

@@ -1,4 +1,4 @@
-/* What people call things, and what they are called here. Notes are honest about what
+/* Lists words that people use and the names that they have here. Notes are honest about what
  * cubewright cannot do, and name what comes close. */
 #include "cli/help/help_search.h"
 
