@@ -121,11 +121,11 @@ static const cli_option options[] = {
 /* The next surface of the report; frames have no file of their own. */
 static cli_made *begin_surface(cli_extract_run *s, const cli_moment *moment, size_t level)
 {
-    const size_t n = s->report.made_count;
-    const char *path = s->args->animate ? NULL : s->outputs.path[n];
-    cli_made *made = cli_report_next(&s->report, path, s->args->iso.value[level]);
-    made->moment = s->series.given ? moment : NULL;
-    made->timed = s->series.timed;
+    const size_t n = s->output.report.made_count;
+    const char *path = s->args->animate ? NULL : s->output.files.path[n];
+    cli_made *made = cli_report_next(&s->output.report, path, s->args->iso.value[level]);
+    made->moment = s->input.series.given ? moment : NULL;
+    made->timed = s->input.series.timed;
     return made;
 }
 
@@ -133,20 +133,20 @@ static cli_made *begin_surface(cli_extract_run *s, const cli_moment *moment, siz
 static void name_step(const cli_extract_run *s, const cli_moment *moment, cw_error *err)
 {
     const cw_error why = *err;
-    if (s->series.given)
+    if (s->input.series.given)
         cwi_fail(err, why.status, "step %zu: %s", moment->number, why.message);
 }
 
 static cli_delivery describe_delivery(const cli_extract_run *s)
 {
-    return (cli_delivery){.input = s->volume.path,
+    return (cli_delivery){.input = s->input.volume.path,
                           .write = cli_extract_write_desc(s->args),
                           .compress = &s->args->compress,
                           .voxel_mm = cli_extract_voxel_mm(s),
                           .unchecked = !s->args->check,
                           .open = s->args->open,
                           .unpromised = s->args->pixel.cull,
-                          .preview = cli_is_preview(&s->volume)};
+                          .preview = cli_is_preview(&s->input.volume)};
 }
 
 /* Into its file, with the record of how it was made. */
@@ -160,7 +160,8 @@ static cw_status deliver_level(cli_extract_run *s, size_t level, const cw_part *
     how.write.provenance_count = cli_extract_provenance(s, level, text, simplify, provenance);
     how.unchecked = how.unchecked || how.write.animated; /* each was by itself */
     how.parts = how.write.animated ? "steps" : NULL;
-    return cli_deliver(&s->report, &how, parts, count, border_loops, s->start, err);
+    return cli_deliver(&s->output.report, &how, parts, count, border_loops, s->output.start,
+                       err);
 }
 
 static cw_status make_surface(cli_extract_run *s, const cli_moment *moment, size_t n,
@@ -181,14 +182,15 @@ static cw_status make_surface(cli_extract_run *s, const cli_moment *moment, size
         st = cli_extract_prove_crop(s, moment, made, err);
     if (st == CW_OK)
         st = s->args->animate
-                 ? cli_deliver_step(&s->report, &how, &mesh, counts.border_loops, s->start, err)
+                 ? cli_deliver_step(&s->output.report, &how, &mesh, counts.border_loops,
+                                    s->output.start, err)
                  : deliver_level(s, n, &(cw_part){.mesh = &mesh}, 1, counts.border_loops, err);
     if (s->args->animate && (st == CW_OK || st == CW_ERR_EMPTY))
-        cli_frames_add(&s->frames, &mesh, moment, s->fps);
-    if (s->extractor)
-        cw_extractor_recycle(s->extractor, &mesh);
+        cli_frames_add(&s->output.frames, &mesh, moment, s->plan.fps);
+    if (s->input.extractor)
+        cw_extractor_recycle(s->input.extractor, &mesh);
     cw_mesh_free(&mesh);
-    s->start = cli_seconds();
+    s->output.start = cli_seconds();
     if (st == CW_OK)
         return CW_OK;
     name_step(s, moment, err);
@@ -204,10 +206,11 @@ static cw_status make_surfaces(cli_extract_run *s, const cli_moment *moment, siz
     const size_t levels = s->args->iso.count;
     for (size_t n = 0; n < levels; n++) {
         cw_status st = make_surface(s, moment, n, err);
-        if (st != CW_OK && (st != CW_ERR_EMPTY || levels * s->series.count == 1))
+        if (st != CW_OK && (st != CW_ERR_EMPTY || levels * s->input.series.count == 1))
             return st;
         if (st == CW_ERR_EMPTY && s->args->animate)
-            cli_report_warn(&s->report, "%s; nothing is shown in its time", err->message);
+            cli_report_warn(&s->output.report, "%s; nothing is shown in its time",
+                            err->message);
         else if (st == CW_ERR_EMPTY)
             cli_say_error(err->message);
         *empty += st == CW_ERR_EMPTY;
@@ -219,7 +222,7 @@ static cw_status make_surfaces(cli_extract_run *s, const cli_moment *moment, siz
  * the blocks of the next step do not quite fit into the gaps. */
 static void free_step(cli_extract_run *s)
 {
-    cli_free_volume(&s->volume);
+    cli_free_volume(&s->input.volume);
 #ifdef __GLIBC__
     malloc_trim(0);
 #endif
@@ -229,22 +232,22 @@ static cw_status read_volume(cli_extract_run *s, const cli_moment *moment, cw_er
 {
     cli_input input = s->args->input;
     input.step = moment->step;
-    input.step_chosen = s->series.given;
+    input.step_chosen = s->input.series.given;
     free_step(s);
-    cli_report_begin(&s->report);
-    cw_status st = cli_read_volume(moment->path, &input, false, &s->volume, err);
+    cli_report_begin(&s->output.report);
+    cw_status st = cli_read_volume(moment->path, &input, false, &s->input.volume, err);
     if (st != CW_OK)
         return st;
-    const cw_volume *v = &s->volume.view;
-    if (!s->report.input)
-        st = cli_tell_labels(&s->volume, s->args->iso.value, s->args->iso.count,
+    const cw_volume *v = &s->input.volume.view;
+    if (!s->output.report.input)
+        st = cli_tell_labels(&s->input.volume, s->args->iso.value, s->args->iso.count,
                              cli_extract_is_low(s), err);
     if (st != CW_OK)
         return st;
-    if (!s->report.input)
-        s->first = s->volume;
-    s->report.input = &s->first;
-    cli_report_end(&s->report, "read", 1, v->dim[0] * v->dim[1] * v->dim[2]);
+    if (!s->output.report.input)
+        s->input.first = s->input.volume;
+    s->output.report.input = &s->input.first;
+    cli_report_end(&s->output.report, "read", 1, v->dim[0] * v->dim[1] * v->dim[2]);
     for (int r = 0; r < 3; r++)
         cli_say_vv("affine   %12.6g %12.6g %12.6g %12.6g", v->affine[r][0], v->affine[r][1],
                    v->affine[r][2], v->affine[r][3]);
@@ -254,25 +257,26 @@ static cw_status read_volume(cli_extract_run *s, const cli_moment *moment, cw_er
 /* The voxels of a step: those of one file are all in memory. */
 static cw_status open_step(cli_extract_run *s, const cli_moment *moment, cw_error *err)
 {
-    const bool held = s->volume.voxels.data && s->volume.path == moment->path;
-    cw_status st = held ? cli_choose_step(&s->args->input, moment->step, &s->volume, err)
+    const bool held = s->input.volume.voxels.data && s->input.volume.path == moment->path;
+    cw_status st = held ? cli_choose_step(&s->args->input, moment->step, &s->input.volume, err)
                         : read_volume(s, moment, err);
-    s->memory = held ? s->memory : s->volume.memory_left;
-    s->volume.memory_left = s->memory > s->frames.bytes ? s->memory - s->frames.bytes : 1;
-    cw_extractor_free(s->extractor);
-    s->extractor = NULL;
+    s->input.memory = held ? s->input.memory : s->input.volume.memory_left;
+    s->input.volume.memory_left =
+        s->input.memory > s->output.frames.bytes ? s->input.memory - s->output.frames.bytes : 1;
+    cw_extractor_free(s->input.extractor);
+    s->input.extractor = NULL;
     if (st != CW_OK || s->args->iso.count == 1 || s->args->accel ||
         cli_extract_is_simplified(s->args))
         return st;
-    st = cw_extractor_new(&s->volume.view, &s->extractor, err);
-    return st == CW_OK ? st : cwi_fail_in(err, st, s->volume.path);
+    st = cw_extractor_new(&s->input.volume.view, &s->input.extractor, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, s->input.volume.path);
 }
 
 static cw_status fail_empty(const cli_extract_run *s, size_t empty, size_t count, cw_error *err)
 {
-    const char *what = s->series.count == 1      ? "isovalues"
-                       : s->args->iso.count == 1 ? "steps"
-                                                 : "surfaces";
+    const char *what = s->input.series.count == 1 ? "isovalues"
+                       : s->args->iso.count == 1  ? "steps"
+                                                  : "surfaces";
     return cwi_fail(err, CW_ERR_EMPTY, "%s: %zu of %zu %s are empty", s->args->common.inputs[0],
                     empty, count, what);
 }
@@ -280,10 +284,10 @@ static cw_status fail_empty(const cli_extract_run *s, size_t empty, size_t count
 static cw_status make_steps(cli_extract_run *s, size_t *empty, cw_error *err)
 {
     cw_status st = CW_OK;
-    for (size_t n = 0; n < s->series.count && st == CW_OK; n++) {
-        st = open_step(s, &s->series.moments[n], err);
+    for (size_t n = 0; n < s->input.series.count && st == CW_OK; n++) {
+        st = open_step(s, &s->input.series.moments[n], err);
         if (st == CW_OK)
-            st = make_surfaces(s, &s->series.moments[n], empty, err);
+            st = make_surfaces(s, &s->input.series.moments[n], empty, err);
     }
     return st;
 }
@@ -291,10 +295,10 @@ static cw_status make_steps(cli_extract_run *s, size_t *empty, cw_error *err)
 /* An animation has a place for steps that are empty: only nothing but such is no result. */
 static cw_status animate_steps(cli_extract_run *s, cw_error *err)
 {
-    const cli_frames *f = &s->frames;
+    const cli_frames *f = &s->output.frames;
     if (f->empty == f->count)
         return fail_empty(s, f->empty, f->count, err);
-    cli_made *made = cli_report_next(&s->report, s->outputs.path[0], 0);
+    cli_made *made = cli_report_next(&s->output.report, s->output.files.path[0], 0);
     made->name = "all";
     cw_status st = deliver_level(s, 0, f->parts, f->count, 0, err);
     if (st != CW_OK)
@@ -305,7 +309,7 @@ static cw_status animate_steps(cli_extract_run *s, cw_error *err)
 static cw_status write_pvd(cli_extract_run *s, cw_error *err)
 {
     const cw_write_desc desc = cli_extract_write_desc(s->args);
-    return cli_write_pvd(&s->report, s->args->pvd, &desc, err);
+    return cli_write_pvd(&s->output.report, s->args->pvd, &desc, err);
 }
 
 /* A file that times its steps is believed unless --fps says otherwise. */
@@ -314,15 +318,15 @@ static cw_status plan_frames(cli_extract_run *s, cw_error *err)
     const cli_extract_args *args = s->args;
     if (!args->animate)
         return CW_OK;
-    if (s->series.count < 2)
+    if (s->input.series.count < 2)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "%s: --animate needs several time steps; there is 1",
                         args->common.inputs[0]);
-    s->fps = args->fps.given ? args->fps.value : s->series.timed ? 0 : DEFAULT_FPS;
-    if (!args->fps.given && !s->series.timed)
+    s->plan.fps = args->fps.given ? args->fps.value : s->input.series.timed ? 0 : DEFAULT_FPS;
+    if (!args->fps.given && !s->input.series.timed)
         cli_say("%s: the steps have no times; the animation shows %d a second (--fps)",
                 args->common.inputs[0], DEFAULT_FPS);
-    return cli_frames_reserve(&s->frames, s->series.count, err);
+    return cli_frames_reserve(&s->output.frames, s->input.series.count, err);
 }
 
 static cw_status plan_steps(cli_extract_run *s, cw_error *err)
@@ -331,13 +335,13 @@ static cw_status plan_steps(cli_extract_run *s, cw_error *err)
     cli_steps steps = args->steps;
     steps.all = steps.all || (args->animate && !steps.given);
     steps.given = steps.given || args->animate;
-    cw_status st = cli_find_series(&s->series, &args->common, &args->input, &steps, err);
+    cw_status st = cli_find_series(&s->input.series, &args->common, &args->input, &steps, err);
     if (st == CW_OK)
         st = cli_extract_check_outputs(s, err);
-    const size_t surfaces = s->series.count * args->iso.count;
-    s->report.several = surfaces > 1 || s->series.given ? "surfaces" : NULL;
+    const size_t surfaces = s->input.series.count * args->iso.count;
+    s->output.report.several = surfaces > 1 || s->input.series.given ? "surfaces" : NULL;
     if (st == CW_OK)
-        st = cli_report_reserve(&s->report, surfaces + 1, err);
+        st = cli_report_reserve(&s->output.report, surfaces + 1, err);
     return st == CW_OK ? plan_frames(s, err) : st;
 }
 
@@ -355,35 +359,35 @@ static cw_status extract_surfaces(void *state, cw_error *err)
     if (st == CW_OK && s->args->pvd)
         st = write_pvd(s, err);
     return st == CW_OK && empty
-               ? fail_empty(s, empty, s->series.count * s->args->iso.count, err)
+               ? fail_empty(s, empty, s->input.series.count * s->args->iso.count, err)
                : st;
 }
 
 static cw_status run_extract(void *p, cw_error *err)
 {
     cli_extract_args *args = p;
-    cli_extract_run s = {.args = args, .start = cli_seconds()};
+    cli_extract_run s = {.args = args, .output.start = cli_seconds()};
     if (!args->iso.count && args->output &&
         cli_is_level_set(args->common.inputs[0], &args->input))
         args->iso.count = 1; /* 0 */
-    s.report.command = "extract";
-    s.report.several = args->iso.count > 1 ? "surfaces" : NULL;
-    s.report.params = cli_extract_put_params;
-    s.report.facts = cli_extract_put_series;
-    s.report.args = &s;
+    s.output.report.command = "extract";
+    s.output.report.several = args->iso.count > 1 ? "surfaces" : NULL;
+    s.output.report.params = cli_extract_put_params;
+    s.output.report.facts = cli_extract_put_series;
+    s.output.report.args = &s;
     const cli_run run = {.common = &args->common,
                          .progress = args->progress,
                          .json = args->json,
                          .body = extract_surfaces,
                          .state = &s};
-    cw_status st = cli_run_reported(&run, &s.report, err);
-    for (size_t n = 0; n < s.view_count; n++)
-        cw_simplify_view_free(s.views + n);
-    cw_extractor_free(s.extractor);
-    cli_frames_free(&s.frames);
-    cli_free_volume(&s.volume);
-    cli_free_outputs(&s.outputs);
-    cli_free_series(&s.series);
+    cw_status st = cli_run_reported(&run, &s.output.report, err);
+    for (size_t n = 0; n < s.plan.view_count; n++)
+        cw_simplify_view_free(s.plan.views + n);
+    cw_extractor_free(s.input.extractor);
+    cli_frames_free(&s.output.frames);
+    cli_free_volume(&s.input.volume);
+    cli_free_outputs(&s.output.files);
+    cli_free_series(&s.input.series);
     return st;
 }
 

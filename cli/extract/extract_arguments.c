@@ -20,11 +20,11 @@ static cw_status check_report(cli_extract_run *s, const char *const *inputs, siz
                               cw_error *err)
 {
     const char *json = s->args->json;
-    s->report.path = NULL;
+    s->output.report.path = NULL;
     cw_status st = json ? cli_check_output(json, inputs, count, err) : CW_OK;
-    for (size_t n = 0; n < s->outputs.count && json && st == CW_OK; n++)
-        st = cli_check_apart(json, s->outputs.path[n], err);
-    s->report.path = st == CW_OK ? json : NULL;
+    for (size_t n = 0; n < s->output.files.count && json && st == CW_OK; n++)
+        st = cli_check_apart(json, s->output.files.path[n], err);
+    s->output.report.path = st == CW_OK ? json : NULL;
     return st;
 }
 
@@ -36,27 +36,28 @@ static cw_status check_pvd(const cli_extract_run *s, const char *const *inputs, 
     cw_status st = CW_OK;
     if (!args->pvd)
         return CW_OK;
-    if (!s->series.given)
+    if (!s->input.series.given)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--pvd is for the steps of a series: --steps");
     if (args->json)
         st = cli_check_apart(args->pvd, args->json, err);
-    return st == CW_OK ? cli_check_pvd(args->pvd, &s->outputs, inputs, count, &desc, err) : st;
+    return st == CW_OK ? cli_check_pvd(args->pvd, &s->output.files, inputs, count, &desc, err)
+                       : st;
 }
 
 cw_status cli_extract_check_outputs(cli_extract_run *s, cw_error *err)
 {
     const cli_extract_args *args = s->args;
     const cw_write_desc desc = cli_extract_write_desc(args);
-    const size_t files = s->series.files.count, count = files ? files : 1;
+    const size_t files = s->input.series.files.count, count = files ? files : 1;
     const char *const *inputs =
-        files ? (const char *const *)s->series.files.path : args->common.inputs;
-    cli_series named = s->series;
+        files ? (const char *const *)s->input.series.files.path : args->common.inputs;
+    cli_series named = s->input.series;
     named.count = args->animate ? 1 : named.count;
-    cw_status st = cli_name_outputs(&s->outputs, args->output, &named, &args->iso, err);
+    cw_status st = cli_name_outputs(&s->output.files, args->output, &named, &args->iso, err);
     if (st == CW_OK)
         st = check_report(s, inputs, count, err);
     if (st == CW_OK)
-        st = cli_check_outputs(&s->outputs, inputs, count, &desc, err);
+        st = cli_check_outputs(&s->output.files, inputs, count, &desc, err);
     return st == CW_OK ? check_pvd(s, inputs, count, err) : st;
 }
 
@@ -86,7 +87,7 @@ static const char *name_reducer(const cli_extract_args *args)
 static cw_status check_pixels(cli_extract_run *s, cw_error *err)
 {
     const cli_extract_args *args = s->args;
-    cw_status st = cli_read_views(&args->pixel, s->views, &s->view_count, err);
+    cw_status st = cli_read_views(&args->pixel, s->plan.views, &s->plan.view_count, err);
     if (st != CW_OK)
         return st;
     if ((args->pixel.camera || args->pixel.most.given) &&

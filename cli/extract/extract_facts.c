@@ -11,7 +11,7 @@ static const double SHADING = 1.5;
 
 double cli_extract_voxel_mm(const cli_extract_run *s)
 {
-    const double *spacing = s->volume.spacing;
+    const double *spacing = s->input.volume.spacing;
     return cbrt(spacing[0] * spacing[1] * spacing[2]);
 }
 
@@ -19,10 +19,11 @@ double cli_extract_length_mm(const cli_extract_run *s, const cli_length *length)
 {
     double square = 0;
     for (int a = 0; a < 3; a++) {
-        const cli_grid *g = &s->volume.grid;
-        const double side = s->volume.view.cells
-                                ? g->high[a] - g->low[a]
-                                : s->volume.spacing[a] * (double)(s->volume.view.dim[a] - 1);
+        const cli_grid *g = &s->input.volume.grid;
+        const double side =
+            s->input.volume.view.cells
+                ? g->high[a] - g->low[a]
+                : s->input.volume.spacing[a] * (double)(s->input.volume.view.dim[a] - 1);
         square += side * side;
     }
     return cli_length_mm(length, sqrt(square), cli_extract_voxel_mm(s));
@@ -44,7 +45,7 @@ double cli_extract_least_mm3(const cli_extract_run *s)
 
 bool cli_extract_is_low(const cli_extract_run *s)
 {
-    return cli_inside_is_low(s->args->inside, &s->volume.whole);
+    return cli_inside_is_low(s->args->inside, &s->input.volume.whole);
 }
 
 bool cli_extract_is_simplified(const cli_extract_args *args)
@@ -65,10 +66,10 @@ static void put_pixels(cli_json *j, const cli_extract_run *s)
         cli_json_number(j, "max_error_mm", cli_extract_length_mm(s, &a->most));
     if (!a->camera)
         return;
-    cli_json_count(j, "cameras", s->view_count);
+    cli_json_count(j, "cameras", s->plan.view_count);
     cli_json_bool(j, "cull", a->cull);
-    cli_json_count(j, "width", s->views[0].width);
-    cli_json_count(j, "height", s->views[0].height);
+    cli_json_count(j, "width", s->plan.views[0].width);
+    cli_json_count(j, "height", s->plan.views[0].height);
     if (!a->pixels.given)
         return;
     cli_json_number(j, "pixel_error", a->pixels.value);
@@ -79,7 +80,7 @@ void cli_extract_put_params(cli_json *j, const void *p, const cli_made *made)
 {
     const cli_extract_run *s = p;
     const cli_extract_args *args = s->args;
-    const size_t *step = s->volume.coarsen;
+    const size_t *step = s->input.volume.coarsen;
     cli_json_number(j, "iso", made->iso);
     cli_json_text(j, "inside", cli_extract_is_low(s) ? "below" : "above");
     cli_json_bool(j, "open", args->open);
@@ -101,7 +102,7 @@ void cli_extract_put_params(cli_json *j, const void *p, const cli_made *made)
     else
         cli_json_count(j, "component", args->input.component.number);
     cli_json_count(j, "step", made->moment ? made->moment->number : args->input.step);
-    if (cli_is_preview(&s->volume))
+    if (cli_is_preview(&s->input.volume))
         cli_json_numbers(j, "coarsen",
                          (double[3]){(double)step[0], (double)step[1], (double)step[2]}, 3);
 }
@@ -109,11 +110,11 @@ void cli_extract_put_params(cli_json *j, const void *p, const cli_made *made)
 void cli_extract_put_series(cli_json *j, const void *p)
 {
     const cli_extract_run *s = p;
-    if (!s->series.files.count)
+    if (!s->input.series.files.count)
         return;
     cli_json_open(j, "files", '[');
-    for (size_t n = 0; n < s->series.files.count; n++)
-        cli_json_text(j, NULL, cli_shown_path(s->series.files.path[n]));
+    for (size_t n = 0; n < s->input.series.files.count; n++)
+        cli_json_text(j, NULL, cli_shown_path(s->input.series.files.path[n]));
     cli_json_close(j, ']');
 }
 
@@ -128,7 +129,7 @@ size_t cli_extract_provenance(const cli_extract_run *s, size_t n, char level[32]
     lines[3] = (cw_provenance){"placement", args->placement ? "cubic" : "linear"};
     if (args->pixel.pixels.given)
         snprintf(simplify, 64, "to %.9g pixels of %zu cameras", args->pixel.pixels.value,
-                 s->view_count);
+                 s->plan.view_count);
     else if (args->pixel.most.given)
         snprintf(simplify, 64, "to %.9g mm", cli_extract_length_mm(s, &args->pixel.most));
     else if (args->simplify.error.given)

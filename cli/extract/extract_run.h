@@ -24,21 +24,36 @@ typedef struct cli_extract_args {
     size_t max_triangles;
 } cli_extract_args;
 
+/* Decisions made before a surface is extracted. */
+typedef struct cli_extract_plan {
+    cw_simplify_view views[CLI_MOST_VIEWS];
+    size_t view_count;
+    double fps; /* of --animate; 0: as the file times its steps */
+} cli_extract_plan;
+
+/* The volume at hand, and the series that it is a step of. */
+typedef struct cli_extract_input {
+    cli_series series;
+    cli_volume first;        /* of a series of files, without voxels: shown in the report */
+    cli_volume volume;       /* of the step at hand */
+    size_t memory;           /* left when its voxels were read */
+    cw_extractor *extractor; /* NULL: every surface by itself */
+} cli_extract_input;
+
+/* Files to write, and the record of what was made. */
+typedef struct cli_extract_output {
+    cli_outputs files;
+    cli_frames frames; /* of --animate */
+    cli_report report;
+    double start; /* of the surface at hand */
+} cli_extract_output;
+
 /* A run of the command. */
 typedef struct cli_extract_run {
     const cli_extract_args *args;
-    cli_series series;
-    cli_volume first; /* of a series of files, without voxels: what the report shows */
-    cli_volume volume;
-    cw_extractor *extractor; /* NULL: every surface by itself */
-    cli_frames frames;       /* of --animate */
-    double fps;              /* of those; 0: as the file times them */
-    size_t memory;           /* left when the voxels were read */
-    cw_simplify_view views[CLI_MOST_VIEWS];
-    size_t view_count;
-    cli_outputs outputs;
-    cli_report report;
-    double start; /* of the surface at hand */
+    cli_extract_plan plan;
+    cli_extract_input input;
+    cli_extract_output output;
 } cli_extract_run;
 
 enum { CLI_EXTRACT_PROVENANCE = 5 };

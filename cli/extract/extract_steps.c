@@ -51,8 +51,8 @@ static cw_simplify_desc simplify_desc(const cli_extract_run *s, double error)
     return (cw_simplify_desc){
         .error_mm = error,
         .triangles = s->args->simplify.triangles,
-        .views = s->views,
-        .view_count = s->view_count,
+        .views = s->plan.views,
+        .view_count = s->plan.view_count,
         .pixel_error = seen ? s->args->pixel.pixels.value : 0,
         .normal_deg =
             seen && cli_extract_shading(s->args) < 180 ? cli_extract_shading(s->args) : 0,
@@ -67,8 +67,8 @@ static cw_status find_error(const cli_extract_run *s, double *error, cw_error *e
     if (args->pixel.most.given)
         *error = cli_extract_length_mm(s, &args->pixel.most);
     else if (args->pixel.pixels.given)
-        return cli_widest_error(&s->volume, s->views, s->view_count, args->pixel.pixels.value,
-                                error, err);
+        return cli_widest_error(&s->input.volume, s->plan.views, s->plan.view_count,
+                                args->pixel.pixels.value, error, err);
     return CW_OK;
 }
 
@@ -86,14 +86,14 @@ static cw_status extract_for_views(cli_extract_run *s, const cli_wanted *w,
 {
     const bool cull = s->args->pixel.cull;
     cli_proof *p = &made->proof;
-    cli_volume part = s->volume;
+    cli_volume part = s->input.volume;
     cw_status st = CW_OK;
-    for (size_t n = 0; n < s->view_count; n++)
-        cw_simplify_view_free(s->views + n);
+    for (size_t n = 0; n < s->plan.view_count; n++)
+        cw_simplify_view_free(s->plan.views + n);
     if (cull && !(w->least_mm3 > 0))
-        st = cli_seen_part(&s->volume, s->views, s->view_count, &part, err);
+        st = cli_seen_part(&s->input.volume, s->plan.views, s->plan.view_count, &part, err);
     if (st == CW_OK)
-        st = cli_draw_views(&part, w, s->views, s->view_count, err);
+        st = cli_draw_views(&part, w, s->plan.views, s->plan.view_count, err);
     if (st == CW_OK)
         st = cli_extract_is_simplified(s->args)
                  ? cli_extract_simplified(&part, w, simplify, mesh, counts, &made->components,
@@ -101,10 +101,10 @@ static cw_status extract_for_views(cli_extract_run *s, const cli_wanted *w,
                  : cli_extract_wanted(&part, NULL, w, mesh, counts, &made->components, err);
     if (st != CW_OK || !cull)
         return st;
-    p->voxels = voxel_count(&s->volume.view);
+    p->voxels = voxel_count(&s->input.volume.view);
     p->seen_voxels = voxel_count(&part.view);
-    return cli_cull(&s->volume, s->views, s->view_count, pixels_around(s), simplify->error_mm,
-                    mesh, &p->culled, err);
+    return cli_cull(&s->input.volume, s->plan.views, s->plan.view_count, pixels_around(s),
+                    simplify->error_mm, mesh, &p->culled, err);
 }
 
 static void tell_components(const cli_extract_run *s, const cli_made *made)
@@ -112,8 +112,9 @@ static void tell_components(const cli_extract_run *s, const cli_made *made)
     const cw_drop_counts *c = &made->components;
     cli_say("%s: %s component%s kept, the smallest of %.6g mm3; %s dropped (< %.6g mm3), the "
             "largest of %.6g mm3; %s triangles fewer",
-            s->volume.path, cli_count(c->kept), c->kept == 1 ? "" : "s", c->least_kept_mm3,
-            cli_count(c->dropped), made->least_mm3, c->largest_mm3, cli_count(c->triangles));
+            s->input.volume.path, cli_count(c->kept), c->kept == 1 ? "" : "s",
+            c->least_kept_mm3, cli_count(c->dropped), made->least_mm3, c->largest_mm3,
+            cli_count(c->triangles));
 }
 
 cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
@@ -126,23 +127,26 @@ cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
     if (st != CW_OK)
         return st;
     const cw_simplify_desc simplify = simplify_desc(s, error);
-    cli_report_begin(&s->report);
-    if (s->view_count)
+    cli_report_begin(&s->output.report);
+    if (s->plan.view_count)
         st = extract_for_views(s, &w, &simplify, made, mesh, counts, err);
     else if (cli_extract_is_simplified(s->args))
-        st = cli_extract_simplified(&s->volume, &w, &simplify, mesh, counts, dropped, err);
+        st =
+            cli_extract_simplified(&s->input.volume, &w, &simplify, mesh, counts, dropped, err);
     else
-        st = cli_extract_wanted(&s->volume, s->extractor, &w, mesh, counts, dropped, err);
+        st = cli_extract_wanted(&s->input.volume, s->input.extractor, &w, mesh, counts, dropped,
+                                err);
     if (st != CW_OK)
         return st;
-    cli_report_end(&s->report, "extract", voxel_count(&s->volume.view), mesh->triangle_count);
+    cli_report_end(&s->output.report, "extract", voxel_count(&s->input.volume.view),
+                   mesh->triangle_count);
     made->least_mm3 = w.least_mm3;
     if (w.least_mm3 > 0)
         tell_components(s, made);
     if (s->args->pixel.cull)
         cli_say("%s: %.3g %% of the voxels are in bricks that cameras see; %s triangles in "
                 "them that no camera sees are left out",
-                s->volume.path,
+                s->input.volume.path,
                 100 * (double)made->proof.seen_voxels / (double)made->proof.voxels,
                 cli_count(made->proof.culled));
     return CW_OK;
@@ -154,17 +158,18 @@ static cw_status measure_from_field(cli_extract_run *s, cli_made *made, const cw
 {
     if (s->args->placement)
         return CW_OK;
-    if (cwi_volume_kind(&s->volume.view)) {
-        cli_say("%s: %s: the distance to its field is not measured", s->volume.path,
-                cwi_volume_kind(&s->volume.view));
+    if (cwi_volume_kind(&s->input.volume.view)) {
+        cli_say("%s: %s: the distance to its field is not measured", s->input.volume.path,
+                cwi_volume_kind(&s->input.volume.view));
         return CW_OK;
     }
-    cli_report_begin(&s->report);
-    cw_status st = cli_compare_with_field(mesh, &s->volume, made->iso, cli_extract_is_low(s),
-                                          (int)s->args->input.threads, &made->compared, err);
+    cli_report_begin(&s->output.report);
+    cw_status st =
+        cli_compare_with_field(mesh, &s->input.volume, made->iso, cli_extract_is_low(s),
+                               (int)s->args->input.threads, &made->compared, err);
     if (st != CW_OK)
-        return cwi_fail_in(err, st, s->volume.path);
-    cli_report_end(&s->report, "measure", mesh->triangle_count, mesh->triangle_count);
+        return cwi_fail_in(err, st, s->input.volume.path);
+    cli_report_end(&s->output.report, "measure", mesh->triangle_count, mesh->triangle_count);
     return CW_OK;
 }
 
@@ -175,23 +180,24 @@ static cw_status measure_from_full(cli_extract_run *s, cli_made *made, const cw_
 {
     const cli_wanted w = wants_level(s, made->iso);
     const bool fits = counts->triangles <= MOST_COMPARED &&
-                      counts->triangles < s->volume.memory_left / COMPARED_BYTES;
+                      counts->triangles < s->input.volume.memory_left / COMPARED_BYTES;
     double error;
     if (!fits) {
         cli_say("%s: the full surface has %s triangles: the distance to it is not measured "
                 "(--max-error does)",
-                s->volume.path, cli_count(counts->triangles));
+                s->input.volume.path, cli_count(counts->triangles));
         return CW_OK;
     }
-    cli_report_begin(&s->report);
+    cli_report_begin(&s->output.report);
     cw_status st = find_error(s, &error, err);
     const cw_simplify_desc simplify = simplify_desc(s, error);
     made->proof.bytes = counts->bytes;
     if (st == CW_OK)
-        st = cli_prove_error(&s->volume, &w, &simplify, mesh, &made->proof, &made->compared,
-                             err);
+        st = cli_prove_error(&s->input.volume, &w, &simplify, mesh, &made->proof,
+                             &made->compared, err);
     if (st == CW_OK)
-        cli_report_end(&s->report, "prove", made->proof.full_triangles, mesh->triangle_count);
+        cli_report_end(&s->output.report, "prove", made->proof.full_triangles,
+                       mesh->triangle_count);
     return st;
 }
 
@@ -199,17 +205,17 @@ cw_status cli_extract_judge(cli_extract_run *s, cli_made *made, const cw_mesh *m
                             const cw_extract_counts *counts, cw_error *err)
 {
     const cli_extract_args *args = s->args;
-    cli_say("%s: %s triangles were extracted, and simplified to %s", s->volume.path,
+    cli_say("%s: %s triangles were extracted, and simplified to %s", s->input.volume.path,
             cli_count(counts->triangles), cli_count(mesh->triangle_count));
     if (args->simplify.triangles && mesh->triangle_count > args->simplify.triangles)
-        cli_report_warn(&s->report,
+        cli_report_warn(&s->output.report,
                         "%s triangles were requested, %s are left: removing more would tear "
                         "the surface, flip it or make it intersect itself",
                         cli_count(args->simplify.triangles), cli_count(mesh->triangle_count));
     if (!args->check)
         return CW_OK;
     cw_status st = measure_from_field(s, made, mesh, err);
-    return st == CW_OK && !s->view_count && !args->pixel.most.given
+    return st == CW_OK && !s->plan.view_count && !args->pixel.most.given
                ? measure_from_full(s, made, mesh, counts, err)
                : st;
 }
@@ -219,19 +225,19 @@ static cw_status hold_to_pixels(const cli_extract_run *s, const cli_proof *p, cw
     for (size_t n = 0; n < p->count; n++)
         cli_say("%s: camera %zu: at most %.3g pixels off, %.3g promised; %.3g %% of its pixels "
                 "differ by more than 2/255",
-                s->volume.path, n + 1, p->views[n].pixels, p->promised_pixels,
+                s->input.volume.path, n + 1, p->views[n].pixels, p->promised_pixels,
                 100 * p->views[n].apart);
     for (size_t n = 0; n < p->count; n++)
         if (p->views[n].pixels > 1.01 * p->promised_pixels)
             return cwi_fail(err, CW_ERR_CHECK,
                             "%s: not as promised: %.4g pixels off for camera %zu",
-                            s->volume.path, p->views[n].pixels, n + 1);
+                            s->input.volume.path, p->views[n].pixels, n + 1);
         else if (p->promised_pixels == 0 && p->views[n].apart > SAME_PICTURE)
             return cwi_fail(
                 err, CW_ERR_CHECK,
                 "%s: not as promised: without what is left out %.3g %% of the pixels "
                 "of camera %zu differ",
-                s->volume.path, 100 * p->views[n].apart, n + 1);
+                s->input.volume.path, 100 * p->views[n].apart, n + 1);
     return CW_OK;
 }
 
@@ -242,19 +248,19 @@ cw_status cli_extract_prove(cli_extract_run *s, cli_made *made, const cw_mesh *m
     const cli_wanted w = wants_level(s, made->iso);
     cli_proof *p = &made->proof;
     double error;
-    if (!s->args->check || !(s->view_count || s->args->pixel.most.given))
+    if (!s->args->check || !(s->plan.view_count || s->args->pixel.most.given))
         return CW_OK;
-    cli_report_begin(&s->report);
+    cli_report_begin(&s->output.report);
     cw_status st = find_error(s, &error, err);
     const cw_simplify_desc simplify = simplify_desc(s, error);
     if (st == CW_OK)
-        st = s->view_count
-                 ? cli_prove_views(&s->volume, &w, &simplify, mesh, p, err)
-                 : cli_prove_error(&s->volume, &w, &simplify, mesh, p, &made->compared, err);
+        st = s->plan.view_count ? cli_prove_views(&s->input.volume, &w, &simplify, mesh, p, err)
+                                : cli_prove_error(&s->input.volume, &w, &simplify, mesh, p,
+                                                  &made->compared, err);
     if (st != CW_OK)
         return st;
     p->bytes = bytes;
-    cli_report_end(&s->report, "prove", p->full_triangles, mesh->triangle_count);
+    cli_report_end(&s->output.report, "prove", p->full_triangles, mesh->triangle_count);
     return hold_to_pixels(s, p, err);
 }
 
@@ -267,14 +273,14 @@ cw_status cli_extract_prove_crop(cli_extract_run *s, const cli_moment *moment, c
     if (!s->args->prove_crop)
         return CW_OK;
     input.step = moment->step;
-    cli_report_begin(&s->report);
-    cw_status st = cli_prove_crop(&s->volume, &input, &w, &made->crop, err);
+    cli_report_begin(&s->output.report);
+    cw_status st = cli_prove_crop(&s->input.volume, &input, &w, &made->crop, err);
     if (st != CW_OK)
         return st;
-    cli_report_end(&s->report, "prove crop", p->whole_triangles, p->triangles);
+    cli_report_end(&s->output.report, "prove crop", p->whole_triangles, p->triangles);
     cli_say("%s: the same %s triangles as in the whole surface: %.3g %% of its %s, from %.3g "
             "%% of the voxels; %s and %.3g s in place of %s and %.3g s",
-            s->volume.path, cli_count(p->triangles),
+            s->input.volume.path, cli_count(p->triangles),
             100 * (double)p->triangles / (double)p->whole_triangles,
             cli_count(p->whole_triangles), 100 * (double)p->voxels / (double)p->whole_voxels,
             cli_bytes((double)p->bytes), p->seconds, cli_bytes((double)p->whole_bytes),
