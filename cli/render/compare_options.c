@@ -1,3 +1,5 @@
+/* Parses --compare into the settings of two sides, and joins their pictures into a split or
+ * a picture of differences. */
 #define _GNU_SOURCE /* strdup, asprintf */
 #include "cli/render/compare_options.h"
 
