@@ -1,6 +1,6 @@
-/* Runs other libraries at the same work. Those with Python bindings are programs:
- * the common peer.py, followed by peer_NAME.py. These are children that live as long as the run,
- * so that neither Python's start nor its imports are timed. They run in the scratch folder.
+/* Runs other libraries at the same work. Those with Python bindings are programs: the common
+ * peer.py, followed by peer_NAME.py. These are children that live as long as the run, so that
+ * neither Python's start nor its imports are timed. They run in the scratch folder.
  * Each command is one line, and so is each answer:
  *
  *     (nothing)                                  ready VERSION, or: missing MODULE

@@ -1,3 +1,5 @@
+/* Extracts the surface of a volume that was read, whole or simplified slab by slab, within
+ * the memory that is left; suggests an isovalue by Otsu. */
 #include "cli/inputs/extract_surface.h"
 
 #include "cli/framework/console.h"

@@ -14,7 +14,7 @@ CW_NODISCARD cw_status cli_extract_surface(const cli_volume *volume, cw_extracto
                                            const cw_extract_desc *desc, cw_mesh *mesh,
                                            cw_extract_counts *counts, cw_error *err);
 
-/* What is wanted of a surface. */
+/* Settings of a surface to extract. */
 typedef struct cli_wanted {
     cw_extract_desc extract;
     double least_mm3; /* components that enclose less are left out; default: none is */

@@ -1,3 +1,5 @@
+/* Reads meshes for commands, prints what was found in them, and turns shells that face the
+ * wrong way. */
 #include "cli/inputs/mesh_input.h"
 
 #include "cli/framework/console.h"

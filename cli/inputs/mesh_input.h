@@ -45,8 +45,8 @@ typedef struct cli_mesh {
 CW_NODISCARD cw_status cli_read_mesh(const char *path, const char *reader,
                                      const cli_input *input, cli_mesh *mesh, cw_error *err);
 
-/* A mesh to compare the input with: what is said of that counts where this file does
- * not say. */
+/* Reads a mesh to compare the input with. The claims about the input fill in only what this
+ * file does not state. */
 CW_NODISCARD cw_status cli_read_reference(const char *path, const char *reader,
                                           const cli_input *input, cli_mesh *mesh,
                                           cw_error *err);

@@ -1,3 +1,5 @@
+/* Opens a mesh, a volume or a series of volumes for drawing, reads its steps, and finds its
+ * box. */
 #include "cli/inputs/scene_source.h"
 
 #include "cli/framework/console.h"

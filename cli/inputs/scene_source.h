@@ -1,4 +1,4 @@
-/* What there is to see: a volume, a mesh, or a series of volumes, opened a step at a time. */
+/* Source of a scene: a volume, a mesh, or a series of volumes, opened a step at a time. */
 #ifndef CLI_INPUTS_SCENE_SOURCE_H
 #define CLI_INPUTS_SCENE_SOURCE_H
 

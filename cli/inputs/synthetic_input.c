@@ -1,3 +1,5 @@
+/* Samples an analytic field as a command's input volume, and finds the field with the
+ * nearest name. */
 #include "cli/inputs/synthetic_input.h"
 
 #include "cli/framework/console.h"

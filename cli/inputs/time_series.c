@@ -1,3 +1,5 @@
+/* Finds the chosen steps of a time series in one file or several, and checks that several
+ * files agree. */
 #include "cli/inputs/time_series.h"
 
 #include "core/base/status.h"
@@ -61,7 +63,7 @@ static cw_status check_files(const cli_series *series, const cli_input *input, c
     return st;
 }
 
-/* Every step that the rows name, of so many. */
+/* Lists every step that the rows name; `total` is the number of steps in the series. */
 static cw_status choose_steps(cli_series *series, const cli_steps *asked, size_t total,
                               cw_error *err)
 {

@@ -1,3 +1,5 @@
+/* Reads the volume that the options describe: memory limit, crop, coarsening, component and
+ * step; describes it for messages and reports. */
 #define _GNU_SOURCE /* sysconf names */
 #include "cli/inputs/volume_input.h"
 
@@ -99,7 +101,8 @@ static double mean_edge(const cw_cells *c)
     return sum / (double)c->count;
 }
 
-/* What the cells are, once more where samples were merged, and their box. */
+/* Counts the cells by shape, again where samples were merged, and finds the box of their
+ * points. */
 static void find_grid(const cw_volume *v, cli_volume *volume)
 {
     cli_grid *g = &volume->grid;
@@ -268,7 +271,7 @@ static void take_note(void *user, const char *text)
         snprintf(volume->notes[volume->note_count++], sizeof *volume->notes, "%s", text);
 }
 
-/* What was chosen because nobody said. */
+/* Reports the component and the step that were chosen by default. */
 static void tell_choice(const cli_input *input, cli_volume *volume)
 {
     const cw_volume *v = &volume->whole;

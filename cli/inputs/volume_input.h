@@ -8,13 +8,13 @@
 
 #include <cubewright/formats.h>
 
-/* What is said of a file's coordinates; the first choice of each is that nothing is. */
+/* Claims of the options about a file's coordinates; the first choice of each claims nothing. */
 typedef struct cli_claim {
     int unit, up, frame;
     bool override;
 } cli_claim;
 
-/* Rows for what is said of the input, or with another prefix of another file. */
+/* Rows for the claims about the input or, with another prefix, about another file. */
 #define CLI_CLAIM_OPTIONS(prefix, what, row)                                                   \
     {prefix "-unit",                                                                           \
      0,                                                                                        \
@@ -182,8 +182,8 @@ typedef struct cli_input {
 
 enum { CLI_MOST_NOTES = 8 };
 
-/* What an irregular grid has: cells of each shape and, once it was read, the box of
- * its points. */
+/* Facts of an irregular grid: the number of cells of each shape and, once it was read, the
+ * box of its points. */
 typedef struct cli_grid {
     size_t cells[CW_SHAPE_COUNT];
     bool has_box;
@@ -208,13 +208,14 @@ typedef struct cli_volume {
 /* The least and the largest step along an axis of a rectilinear grid. */
 void cli_spacing_range(const cli_volume *volume, int axis, double mm[2]);
 
-/* What is said of a file's coordinates, for the library. */
+/* Returns the claims about a file's coordinates in the library's form. */
 cw_claim cli_claim_of(const cli_claim *claim);
 
-/* The options for a source volume beside a mesh: what is said of the input is of the mesh. */
+/* Returns the options for a source volume beside a mesh, with the claims about the source. The
+ * claims about the input are for the mesh. */
 cli_input cli_source_input(const cli_input *input);
 
-/* What the options say of reading. */
+/* Returns the library's settings for reading, from the options. */
 cw_read_desc cli_read_desc(const cli_input *input);
 
 /* Reads the header, says what was found, then reads the voxels (unless header_only). Errors

@@ -1,3 +1,5 @@
+/* Checks and makes the cameras of pictures: a named view, angles, a file, or the turns of a
+ * turntable. */
 #include "cli/render/camera_options.h"
 
 #include "core/base/status.h"

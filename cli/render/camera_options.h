@@ -19,7 +19,7 @@ CW_NODISCARD cw_status cli_find_camera(const cli_scene *args, const cli_turns *t
                                        const double box[2][3], double aspect, cw_camera *camera,
                                        cw_error *err);
 
-/* What to call the camera: its view, angles or file. */
+/* Returns a title for the camera: its view, angles or file. */
 const char *cli_camera_title(const cli_scene *args);
 
 /* How far turn n has gone, in degrees. */

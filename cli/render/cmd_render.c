@@ -1,3 +1,5 @@
+/* The command render: its table of options, and the run that checks, makes and reports the
+ * pictures. */
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/render/render_run.h"

@@ -1,3 +1,5 @@
+/* Parses --compare into the settings of two sides, and joins their pictures at a divider or
+ * side by side with their difference. */
 #define _GNU_SOURCE /* strdup, asprintf */
 #include "cli/render/compare_options.h"
 

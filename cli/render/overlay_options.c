@@ -1,3 +1,4 @@
+/* Draws marks such as axes and a scale bar onto a picture, and slices beside it. */
 #include "cli/render/overlay_options.h"
 
 #include "core/base/status.h"

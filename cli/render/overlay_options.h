@@ -1,4 +1,4 @@
-/* What is written on a picture of render, and slices beside it. */
+/* Options for marks on a picture of render, and for slices beside it. */
 #ifndef CLI_RENDER_OVERLAY_OPTIONS_H
 #define CLI_RENDER_OVERLAY_OPTIONS_H
 

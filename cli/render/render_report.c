@@ -1,3 +1,5 @@
+/* Writes the JSON report of render: scene, cameras, transfer function, settings and
+ * pictures. */
 #include "cli/render/render_report.h"
 
 #include "cli/results/run_report.h"
@@ -50,7 +52,7 @@ static void put_planes(cli_json *j, const char *key, const cw_clip *planes, size
     cli_json_close(j, ']');
 }
 
-/* What the library was given; a 0 is its default. */
+/* Writes the settings that the library was given; 0 stands for its default. */
 static void put_settings(cli_json *j, const cw_scene *s)
 {
     static const char *const targets[CW_TARGET_COUNT] = {"32f", "16", "16f", "8"};

@@ -1,4 +1,4 @@
-/* What render tells of itself: --json FILE. */
+/* Report of render for --json FILE. */
 #ifndef CLI_RENDER_RENDER_REPORT_H
 #define CLI_RENDER_RENDER_REPORT_H
 

@@ -1,3 +1,5 @@
+/* Runs the command render: opens the steps, makes the scene of each turn, draws it on OpenGL
+ * or the CPU, and writes the pictures. */
 #include "cli/render/render_run.h"
 
 #include "cli/framework/console.h"
@@ -103,7 +105,7 @@ static bool draws_on_cpu(const cli_pictures *p)
            !cli_needs_gl(p->command, &p->args->common, &p->args->scene);
 }
 
-/* What is read suits the left side: both draw the volume. */
+/* Parses --compare. The input is read for the left side; both sides draw the volume. */
 static cw_status plan_split(cli_pictures *p, cw_error *err)
 {
     const render_args *args = p->args;

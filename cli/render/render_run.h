@@ -53,7 +53,7 @@ typedef struct cli_pictures {
     cw_mode mode;
     cw_transfer transfer;
     bool has_transfer; /* of the first step, which is kept */
-    double box[2][3];  /* what the cameras see: of the first step, likewise */
+    double box[2][3];  /* box that the cameras see: of the first step, kept as well */
     bool has_box;
     cw_scene scene;        /* the latest */
     cw_renderer *renderer; /* NULL: none was needed */
@@ -63,14 +63,14 @@ typedef struct cli_pictures {
     cli_split *split; /* NULL: nothing is compared */
 } cli_pictures;
 
-/* What can be refused before the input is touched. */
+/* Checks everything that can be refused before the input is touched. */
 CW_NODISCARD cw_status cli_check_pictures(const render_args *args, cw_error *err);
 
 /* Reads what there is to see, draws and writes all pictures. */
 CW_NODISCARD cw_status cli_make_pictures(cli_pictures *p, cw_error *err);
 void cli_end_pictures(cli_pictures *p);
 
-/* What its report says. */
+/* Returns the content of the report of a run. */
 cli_render_report cli_report_pictures(const cli_pictures *p);
 
 #endif

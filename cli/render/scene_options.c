@@ -1,3 +1,5 @@
+/* Makes a scene from the options: transfer function, colours, clip planes, lights, material,
+ * steps and mesh. */
 #include "cli/render/scene_options.h"
 
 #include "cli/framework/console.h"
@@ -405,7 +407,7 @@ static cw_status add_mesh(const cli_scene *args, cw_scene *s, cw_error *err)
     return CW_OK;
 }
 
-/* What depth cues and slices blend with. */
+/* Sets the background colours, which depth cues and slices blend with. */
 static cw_status add_background(const cli_scene *args, cw_mode mode, cw_scene *s, cw_error *err)
 {
     uint8_t background[2][4];

@@ -33,7 +33,7 @@ enum { CLI_HIDE_NONE, CLI_HIDE_MESH, CLI_HIDE_VOLUME };
 #define CLI_MODE_CHOICE(name, text, about, source) "/" text
 #define CLI_MODE_CHOICES                           "auto" CW_MODE_TABLE(CLI_MODE_CHOICE)
 
-/* What is to be seen. */
+/* Subject of a picture. */
 typedef struct cli_subject {
     const cw_volume *volume; /* evenly spaced; NULL: none */
     const cw_volume *whole;  /* the file's, whose voxels --clip-box counts; NULL: none */

@@ -1,3 +1,5 @@
+/* The command report: its options, its input (a file or a field), and the page, JSON and CSV
+ * that it writes about a study. */
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
@@ -117,7 +119,8 @@ static cw_status check_outputs(const report_args *args, cw_error *err)
     return st;
 }
 
-/* What is no file may be a field that was misspelt; else its reader's words are better. */
+/* Fails for a name that is no file and nearly a field's name. For other names, the reader's own
+ * message is better. */
 static cw_status check_name(const char *name, cw_error *err)
 {
     const char *nearest = cli_nearest_field(name);
@@ -151,7 +154,7 @@ static cw_status check_args(run_state *s, cw_error *err)
     return st == CW_OK ? check_outputs(args, err) : st;
 }
 
-/* What was said of reading is said in commands, too: options from --reader on. */
+/* Repeats the given options of reading in the printed commands: the rows from --reader on. */
 static void put_reading(FILE *out, const report_args *args)
 {
     bool reading = false;
@@ -208,7 +211,7 @@ static cw_status make_field(run_state *s, cw_error *err)
     return CW_OK;
 }
 
-/* As coarse as it takes, unless asked for. */
+/* Reads the file. Without --coarsen, chooses a step that leaves at most MOST_VOXELS. */
 static cw_status read_file(run_state *s, cw_error *err)
 {
     report_args *args = s->args;

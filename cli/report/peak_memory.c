@@ -1,5 +1,5 @@
-/* How much memory a piece of work takes: the kernel counts the most that a process has held,
- * and Linux lets it begin anew. */
+/* Measures the peak memory of a piece of work. The kernel counts the maximum that a process
+ * used, and Linux lets this count be reset. */
 #include "cli/report/study.h"
 
 #ifdef __GLIBC__
@@ -32,7 +32,8 @@ static bool forget_peak(void)
     return fclose(f) == 0 && written;
 }
 
-/* What was freed goes back first: else work done in it would seem to take none. */
+/* Returns freed memory to the system first. Otherwise work that reuses it would seem to take
+ * none. */
 cli_watch cli_watch_memory(void)
 {
 #ifdef __GLIBC__

@@ -42,7 +42,7 @@ static scale fit_scale(const double *values, size_t count, double from, double t
     return (scale){low - margin, high + margin, from, to};
 }
 
-/* What is exact has no logarithm: it is drawn below the smallest that has one. */
+/* Replaces zeros, which have no logarithm, by a tenth of the smallest positive value. */
 static void lift_zeros(double *values, size_t count)
 {
     double least = INFINITY;

@@ -1,3 +1,5 @@
+/* Runs a study: tries its settings by rank until the budget is spent, and marks the Pareto
+ * front of each family. */
 #include "cli/report/study.h"
 
 #include "cli/framework/console.h"
@@ -65,7 +67,7 @@ static void leave_out(cli_point *p, const char *why)
     p->png = NULL;
 }
 
-/* What one setting cannot do is told of it; the others go on. */
+/* Tries one setting. A failure is stored in its point, and the others go on. */
 static cw_status run_point(cli_study *s, cli_point *p, cw_error *err)
 {
     cw_error why = {0};

@@ -26,9 +26,9 @@ typedef struct cli_gap {
     double max_mm, rms_mm, p99_mm;
 } cli_gap;
 
-/* What a point of its family sets; the others are zero. */
+/* Settings of a point; those of other families are zero. */
 typedef struct cli_tried {
-    size_t coarsen; /* extraction: every so many voxels; 0: all */
+    size_t coarsen; /* extraction: every n-th voxel along each axis; 0: all */
     bool cubic;
     double snap;
     double error_vox; /* simplification: to that error, */
@@ -57,7 +57,7 @@ typedef struct cli_point {
     double seconds;
     size_t peak_bytes; /* beyond what the process had before; 0: unknown */
     size_t triangles, file_bytes;
-    size_t measured_one_of; /* so many triangles one was measured */
+    size_t measured_one_of; /* one of n triangles was measured */
     cli_gap to_field;       /* from its vertices and triangles to the field's surface */
     cli_gap back;           /* from the plain surface's vertices to it */
     cli_gap truth;          /* to the surface that is known on paper */
@@ -73,7 +73,8 @@ typedef struct cli_axis {
     const char *cost, *cost_unit, *error, *error_unit;
 } cli_axis;
 
-/* The size of pictures; and of more triangles the errors of so many are measured. */
+/* Limits of a study: the size of pictures, and the number of triangles that are sampled for
+ * errors where a mesh has more. */
 enum {
     CLI_STUDY_SAMPLE = 25000,
     CLI_MOST_POINTS = 64,
@@ -92,7 +93,7 @@ typedef struct cli_study {
     const char *input_words; /* of commands: the file, and how to read it */
     const char *make_words;  /* the command that makes a field's file; NULL: none is needed */
     const char *title;
-    size_t coarsen;  /* every so many voxels are studied; 1: all */
+    size_t coarsen;  /* every n-th voxel along each axis is studied; 1: all */
     bool is_cropped; /* by who asks: no smaller part is chosen */
     int threads;
     double budget_s;
@@ -110,7 +111,7 @@ typedef struct cli_study {
     char part_words[96]; /* of commands: that box */
     char *folder;        /* for files that are measured; owned */
     cw_renderer *renderer;    /* NULL: not yet, or none */
-    cw_renderer *cpu;         /* likewise */
+    cw_renderer *cpu;         /* the same, on the CPU */
     char backend[256];        /* its name */
     cw_volume drawn;          /* borrowed */
     cw_transfer transfer;     /* of drawn */
@@ -151,8 +152,8 @@ CW_NODISCARD cw_status cli_try_rendering(cli_study *study, cli_point *point, cw_
 CW_NODISCARD cw_status cli_need_part(cli_study *study, cw_error *err);
 const cw_mesh *cli_part_mesh(const cli_study *study);
 
-/* What all families of meshes measure of one: field, back, truth, bytes of its file unless they
- * are known; of a shown point its picture and the shapes of its triangles. */
+/* Measures a mesh for any family: field, back, truth, and bytes of its file unless these are
+ * known. For a shown point, adds its picture and the shapes of its triangles. */
 CW_NODISCARD cw_status cli_measure_mesh(cli_study *study, cli_point *point, const cw_mesh *mesh,
                                         cw_error *err);
 

@@ -1,4 +1,4 @@
-/* What there is to be known of a mesh: how far it is from the truth, and how large its file. */
+/* Measures a mesh: its distance from the truth, and the size of its file. */
 #include "cli/framework/console.h"
 #include "cli/report/study.h"
 #include "cli/report/triangle_sample.h"

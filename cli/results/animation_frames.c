@@ -1,3 +1,5 @@
+/* Collects the surfaces of the steps of an animation, with their times, and counts their
+ * bytes. */
 #include "cli/results/animation_frames.h"
 
 #include "core/base/status.h"

@@ -16,7 +16,7 @@ typedef struct cli_frames {
     size_t bytes; /* that they take */
 } cli_frames;
 
-/* Room for so many. CW_ERR_NO_MEMORY */
+/* Allocates memory for `count` frames. CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cli_frames_reserve(cli_frames *frames, size_t count, cw_error *err);
 void cli_frames_free(cli_frames *frames);
 

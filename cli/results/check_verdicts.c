@@ -1,3 +1,5 @@
+/* Prints the verdicts, shapes and errors of the command check as text, and writes them as
+ * JSON. */
 #include "cli/results/check_verdicts.h"
 
 #include "cli/framework/console.h"

@@ -1,3 +1,4 @@
+/* Checks the options of compression, and sets the library's settings from them. */
 #include "cli/results/compress_options.h"
 
 #include "cli/framework/quantity.h"

@@ -1,4 +1,4 @@
-/* What became of meshes, measured against what they were made of. */
+/* Comparison of meshes with the meshes that they were made of. */
 #ifndef CLI_RESULTS_MESH_COMPARISON_H
 #define CLI_RESULTS_MESH_COMPARISON_H
 

@@ -1,3 +1,4 @@
+/* Welds, measures, filters and compares the parts of a mesh piece by piece. */
 #include "cli/results/mesh_parts.h"
 
 #include "cli/framework/console.h"

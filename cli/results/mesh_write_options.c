@@ -1,3 +1,4 @@
+/* Turns the options of writing a mesh into settings of the library, and into JSON. */
 #include "cli/results/mesh_write_options.h"
 
 enum { KEEP_FRAME, LPS, RAS };

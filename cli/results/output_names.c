@@ -1,3 +1,5 @@
+/* Makes the names of outputs from templates, and checks that no output is an input, another
+ * output or the report. */
 #define _GNU_SOURCE /* dev_t, ino_t */
 #include "cli/results/output_names.h"
 
@@ -10,7 +12,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* What stands at a path. */
+/* Identity of the file at a path. */
 typedef struct place {
     bool exists;
     dev_t device;

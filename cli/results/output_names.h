@@ -1,5 +1,4 @@
-/* What can be known of outputs before the work is done: their names, and whether they
- * can be. */
+/* Names outputs before the work is done, and checks that they can be written. */
 #ifndef CLI_RESULTS_OUTPUT_NAMES_H
 #define CLI_RESULTS_OUTPUT_NAMES_H
 
@@ -32,8 +31,8 @@ CW_NODISCARD cw_status cli_name_outputs(cli_outputs *outputs, const char *text,
 
 /* Names one output a part: {name} (that of the part, with what no file name may hold as '_'),
  * {part} (its number, from 1) and {stem} of the text are filled in. Free it with
- * cli_free_outputs(). Returns CW_ERR_ARGUMENT for an unknown {part}, and when several parts come without {name} or
- * {part}; CW_ERR_NO_MEMORY */
+ * cli_free_outputs(). Returns CW_ERR_ARGUMENT for an unknown {part}, and when several parts
+ * come without {name} or {part}; CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cli_name_part_outputs(cli_outputs *outputs, const char *text,
                                              const char *input, const cw_part *parts,
                                              size_t count, cw_error *err);

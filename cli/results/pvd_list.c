@@ -1,3 +1,4 @@
+/* Checks and writes the .pvd list of the files of a time series. */
 #include "cli/results/pvd_list.h"
 
 #include "cli/framework/console.h"

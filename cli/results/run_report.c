@@ -1,3 +1,4 @@
+/* Collects the meshes, steps and warnings of a run, and writes them as the JSON report. */
 #define _GNU_SOURCE /* reallocarray */
 #include "cli/results/run_report.h"
 
@@ -199,8 +200,8 @@ static void put_dropped_components(cli_json *j, double least_mm3, const cw_drop_
     cli_json_close(j, '}');
 }
 
-/* What a camera's picture was promised, what was measured, and what it saved. */
-/* full_to_field  how far the full mesh is from the field; NULL: not measured */
+/* Writes the promise about the pictures of cameras, what was measured, and what it saved.
+ * full_to_field  how far the full mesh is from the field; NULL: not measured */
 static void put_proof(cli_json *j, const cli_proof *p, const cw_distance *full_to_field)
 {
     cli_json_open(j, "proof", '{');

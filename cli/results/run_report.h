@@ -33,7 +33,7 @@ typedef struct cli_comparison {
 
 enum { CLI_MOST_VIEWS = 64 }; /* of one mesh */
 
-/* What became of a promise in one picture, against the full mesh. */
+/* Measurements of a promise in one picture, against the full mesh. */
 typedef struct cli_view_proof {
     double pixels; /* the farthest that was measured */
     double apart;  /* the share of pixels that look different: by more than 2/255 */
@@ -50,7 +50,7 @@ typedef struct cli_proof {
     cli_view_proof views[CLI_MOST_VIEWS];
 } cli_proof;
 
-/* What --crop left of a surface, against the whole one. */
+/* Comparison of the surface that --crop left with the whole one. */
 typedef struct cli_crop_proof {
     bool made;
     size_t voxels, triangles,
@@ -109,8 +109,8 @@ enum { CLI_MOST_STEPS = 8 }; /* of one mesh */
 /* Grows the capacity to that many meshes, before their first step. CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cli_report_reserve(cli_report *report, size_t meshes, cw_error *err);
 
-/* What meshes have and formats may not keep, by name; places are told by a warning
- * of theirs. */
+/* Names of the properties of meshes that formats may not keep. Positions have a warning of
+ * their own. */
 extern const struct cli_kept {
     unsigned flag; /* cw_keeps */
     const char *name;

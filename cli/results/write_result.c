@@ -1,3 +1,4 @@
+/* Checks a mesh, writes it to its file, and prints its summary line. */
 #include "cli/results/write_result.h"
 
 #include "cli/framework/console.h"
@@ -10,7 +11,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* What is delivered. */
+/* Parts of the mesh that is delivered, and their counts. */
 typedef struct load {
     const cw_part *parts;
     size_t part_count, vertices, triangles;
@@ -359,7 +360,8 @@ static void print_summary(const cli_delivery *how, const cli_made *made, const l
     cli_result("; %.2f s\n", cli_seconds() - start);
 }
 
-/* Bits that were stated are used, whatever they do to the shape; but it is told. */
+/* Fails when compression merged vertices or flattened triangles. Bits that were given are used
+ * all the same, so the file is already written. */
 static cw_status hold_to_shape(const cli_made *made, cw_error *err)
 {
     const cw_compressed *c = &made->compressed;

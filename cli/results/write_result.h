@@ -1,4 +1,4 @@
-/* What becomes of a mesh: held against the promise, written, and told of in one line. */
+/* Delivers a mesh: checks it against the promise, writes it, and reports it in one line. */
 #ifndef CLI_RESULTS_WRITE_RESULT_H
 #define CLI_RESULTS_WRITE_RESULT_H
 
@@ -13,7 +13,7 @@ typedef struct cli_delivery {
     int threads;       /* to measure with; default: all */
     bool unchecked;    /* default: measured, and refused when not as promised */
     bool unpromised;   /* measured, and written whatever it is: the line says what */
-    bool tell_dropped; /* say what of the mesh the file does not hold */
+    bool tell_dropped; /* report the properties of the mesh that the file does not hold */
     bool open;         /* the surface may end at the volume's border */
     const char *parts; /* what the parts are: "levels" of detail, "steps"; default: "parts" */
     const char *found; /* what else is said in the line, from "; " on; default: nothing */

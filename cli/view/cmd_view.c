@@ -1,3 +1,5 @@
+/* The command view: its options, and the window or script that it runs from the first file
+ * to the end of the session. */
 #define _GNU_SOURCE /* open_memstream */
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
@@ -92,7 +94,7 @@ static cw_status open_window(view *v, const render_args *args, cw_error *err)
     return v->ui->open(&desc, &v->window, err);
 }
 
-/* Where there is a window, what is wrong with a file is told there. */
+/* Opens the first file. A visible window shows the error of a file, and stays open. */
 static cw_status open_first(view *v, const render_args *args, cw_error *err)
 {
     cw_error why = {0};

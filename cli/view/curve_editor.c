@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* What is dragged: an opacity point, a colour, the isovalue. */
+/* Things that the mouse drags: an opacity point, a colour, the isovalue. */
 enum { NOTHING, POINT, COLOR, ISO };
 enum { NEAR_PX = 8, COLUMNS = 256 };
 

@@ -1,5 +1,5 @@
+/* Browses folders for files to open, with the folders first. */
 #define _GNU_SOURCE /* scandir, strverscmp, strdup */
-/* Files to open, by folder. */
 #include "cli/view/view.h"
 
 #include <dirent.h>

@@ -1,4 +1,4 @@
-/* What the files of commands share. */
+/* Declares what the files of view's commands share: checks, and rows of tables. */
 #ifndef CLI_VIEW_VERBS_H
 #define CLI_VIEW_VERBS_H
 

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* What is drawn becomes the curve that is edited. */
+/* Makes the drawn transfer function the curve that is edited. */
 static cw_status start_edit(view *v, cw_error *err)
 {
     cli_scene *s = &v->state.args.scene;

@@ -22,7 +22,7 @@ static cw_status run_quit(view *v, int count, char **args, cw_error *err)
     return CW_OK;
 }
 
-/* What can be opened is next, in natural order and round and round. */
+/* Opens the next readable file of the folder, in natural order; the first follows the last. */
 static cw_status open_near(view *v, int by, cw_error *err)
 {
     struct dirent **list;

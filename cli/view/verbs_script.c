@@ -1,4 +1,4 @@
-/* Commands of scripts: what they are told, and input as if from outside. */
+/* Commands of scripts: printing of settings and facts, and simulated input. */
 #include "cli/view/verbs.h"
 
 #include "core/base/status.h"

@@ -38,7 +38,7 @@ typedef struct view_part {
     double ms;      /* that the last one took */
 } view_part;
 
-/* What undo brings back, and what is saved. */
+/* State of a session that undo restores and that is saved. */
 typedef struct view_state {
     render_args args;
     bool iso_is_ours; /* nobody asked for that isovalue, but for a mesh */
@@ -55,7 +55,7 @@ typedef struct view_state {
 
 enum { VIEW_UNDO = 64, VIEW_MESSAGE = 1024 };
 
-/* What the window shows besides: keys switch it. */
+/* Further things that the window shows; keys switch them. */
 typedef struct view_shown {
     bool panels, help, handles, cross, playing, about, files;
     int cut; /* axis that the wheel cuts along: 1 to 3; 0: none */
@@ -147,7 +147,7 @@ CW_NODISCARD cw_status view_go_to_step(view *v, size_t step, cw_error *err);
 void view_clip_box(const view *v, double box[2][3]);
 /* Values from black to white in slices. */
 void view_grey_range(const view *v, double range[2]);
-void view_touch(view *v, unsigned parts); /* they have to be drawn anew */
+void view_touch(view *v, unsigned parts); /* marks parts to be drawn again */
 bool view_draws_volume(const view *v);
 bool view_has_mesh(const view *v);
 double view_suggest_iso(const view *v);
@@ -219,7 +219,8 @@ void view_lay_out(view *v);
 /* view_mouse.c, view_panels.c, curve_editor.c, file_browser.c */
 void view_browse(view *v);
 void view_close_browser(view *v);
-/* What is in a folder, in natural order, and its number; below 0: it cannot be read. */
+/* Lists a folder in natural order and returns the number of entries; below 0: it cannot be
+ * read. */
 int view_scan(const char *folder, struct dirent ***entries);
 void view_free_scan(struct dirent **entries, int count);
 void view_mouse(view *v, const cwi_ui_input *in);

@@ -1,4 +1,4 @@
-/* What can be done, by name: the one way in for keys, menus, widgets, the mouse and scripts. */
+/* Runs commands by name: the only entry for keys, menus, widgets, the mouse and scripts. */
 #include "cli/view/verbs.h"
 
 #include "core/base/status.h"

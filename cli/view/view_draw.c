@@ -112,7 +112,7 @@ static void make_rough(cw_scene *s)
     s->step_vox = fmax(s->step_vox, is_coarse ? 4 : 2);
     s->samples = 1;
     s->jitter = s->exact_filter = s->cell_steps = false;
-    s->no_preintegration = true; /* its table is made anew for every curve and step */
+    s->no_preintegration = true; /* its table is made again for every curve and step */
 }
 
 static cw_status space_scene(view *v, const render_args *args, cw_mode mode,

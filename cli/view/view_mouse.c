@@ -1,4 +1,4 @@
-/* What the mouse does on the pictures. It asks for commands, like everything else. */
+/* Handles the mouse on the pictures. It requests commands, like everything else. */
 #include "cli/view/view.h"
 
 #include "viewer/interact/clip_box_handles.h"
@@ -61,7 +61,7 @@ static bool is_on_divider(const view *v, double x)
            fabs(x - v->state.share * r->width) <= DIVIDER_PX * v->ui->scale(v->window);
 }
 
-/* What a button that goes down on a part begins. */
+/* Returns the drag that a button pressed on a part begins. */
 static int begin_drag(const view *v, const cwi_ui_input *in, int part)
 {
     const cwi_ui_rect *r = &v->parts[part].rect;
@@ -198,7 +198,7 @@ static void probe_part(view *v, const cwi_ui_input *in, int part)
              there ? "value" : "cross-hair:", value, point[0], point[1], point[2]);
 }
 
-/* What a press would do. */
+/* Returns the cursor that shows the effect of a press. */
 static int cursor_for(const view *v, const cwi_ui_input *in, int part)
 {
     enum { ARROW, CROSS_HAIR, HAND, LEFT_RIGHT };
@@ -242,7 +242,7 @@ void view_mouse(view *v, const cwi_ui_input *in)
     v->ui->set_cursor(v->window, cursor_for(v, in, part));
 }
 
-/* What is drawn over the pictures. */
+/* --- marks over the pictures -------------------------------------------------------------- */
 
 static void show_cross(view *v, int part)
 {

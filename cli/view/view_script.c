@@ -1,5 +1,6 @@
+/* Parses commands of view from text and runs them. Blanks separate words; a ; or the end of
+ * a line separates commands. */
 #define _GNU_SOURCE /* vasprintf, strdup */
-/* Commands as text: words parted by blanks, commands by ; or lines. */
 #include "cli/view/view.h"
 
 #include "core/base/status.h"

@@ -1,3 +1,5 @@
+/* Opens and closes the file of a session, goes to its steps, and chooses mode, isovalue,
+ * camera and transfer function for it. */
 #define _GNU_SOURCE /* strdup */
 #include "cli/view/view.h"
 
@@ -81,7 +83,7 @@ double view_suggest_iso(const view *v)
                : 0.5 * (v->statistics.min + v->statistics.max);
 }
 
-/* What there is decides where nothing was asked for. */
+/* Chooses the mode, by the input where none was requested, and an isovalue for meshes. */
 cw_status view_choose_mode(view *v, cw_error *err)
 {
     render_args *args = &v->state.args;
@@ -236,7 +238,7 @@ static cw_status open_path(view *v, const char *path, cw_error *err)
     return st == CW_OK ? view_choose_mode(v, err) : st;
 }
 
-/* What suited another file only: its levels, its places. */
+/* Resets the settings that suited another file only: its levels and positions. */
 static void forget_look(view *v)
 {
     view_state *s = &v->state;
@@ -254,7 +256,7 @@ static void forget_look(view *v)
         s->args.scene.mode = 0;
 }
 
-/* What is open stays open for what is none of ours. */
+/* Fails for a file that cannot be read, so that the file that is open stays open. */
 static cw_status expect_readable(const view *v, const char *path, cw_error *err)
 {
     cw_volume shape = {0};

@@ -1,5 +1,6 @@
+/* Changes settings by name, undoes changes, and writes a session as a script or as a command
+ * line. */
 #define _GNU_SOURCE /* strdup */
-/* Settings by name, undo, and a session as text. */
 #include "cli/view/view.h"
 
 #include "cli/render/compare_options.h"
@@ -126,7 +127,7 @@ static cw_status parse_setting(view *v, const cli_option *o, const char *value, 
     return st;
 }
 
-/* What a setting means beyond its own value. */
+/* Applies the effects of a setting on other parts of the state. */
 static cw_status follow_name(view *v, const char *name, cw_error *err)
 {
     view_state *s = &v->state;
@@ -147,8 +148,8 @@ static cw_status follow_name(view *v, const char *name, cw_error *err)
     return view_choose_mode(v, err);
 }
 
-/* What was set for other modes stays set in a session: only what a side says must
- * do something. */
+/* Parses --compare of a session. Settings for other modes stay set in a session; only the
+ * settings of a side must have an effect. */
 cw_status view_parse_split(const view *v, cli_split *split, cw_error *err)
 {
     render_args args = v->state.args;
@@ -194,7 +195,7 @@ cw_status view_set(view *v, const char *name, const char *value, cw_error *err)
     if (!o)
         return cwi_fail(err, CW_ERR_ARGUMENT, "'%s' is not a setting", name);
     if (v->is_configuring && v->state.args.common.given[o - v->command->options])
-        return CW_OK; /* the command line outdoes it */
+        return CW_OK; /* the command line takes precedence */
     cw_status st = parse_setting(v, o, value, err);
     if (st == CW_OK)
         st = follow_name(v, name, err);
@@ -297,7 +298,7 @@ static void put_settings(const view *v, FILE *out, bool shell)
     }
 }
 
-/* What no option stands for. */
+/* Writes the parts of the state that are no options. */
 static void put_rest(const view *v, FILE *out, const char *end)
 {
     const view_state *s = &v->state;
