@@ -1,3 +1,5 @@
+/* Carries normals, colours, scalars and labels to another mesh, from the closest point of the
+ * first, found by a tree of boxes. */
 #include "simplify/attribute_transfer.h"
 
 #include "core/base/memory.h"

@@ -1,4 +1,4 @@
-/* What vertices carry, from one mesh to another. */
+/* Normals, scalars, colours and labels of vertices, carried from one mesh to another. */
 #ifndef SIMPLIFY_ATTRIBUTE_TRANSFER_H
 #define SIMPLIFY_ATTRIBUTE_TRANSFER_H
 

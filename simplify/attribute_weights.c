@@ -1,3 +1,5 @@
+/* Checks the weights of attributes, and scales the attributes to lengths: a weight of 1 is 1 %
+ * of the diagonal. */
 #include "simplify/attribute_weights.h"
 
 #include "core/base/status.h"

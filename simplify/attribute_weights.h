@@ -1,4 +1,4 @@
-/* What vertices carry, in the measure of a length. */
+/* Attributes of vertices, measured as lengths. */
 #ifndef SIMPLIFY_ATTRIBUTE_WEIGHTS_H
 #define SIMPLIFY_ATTRIBUTE_WEIGHTS_H
 

@@ -1,3 +1,5 @@
+/* Implements cw_simplify() and its levels: scales the mesh, runs the passes, and carries
+ * attributes to the result. */
 #include <cubewright/simplify.h>
 
 #include "core/base/memory.h"

@@ -1,3 +1,5 @@
+/* Implements the simplifier of surfaces that come one slab at a time: makes blocks of slabs and
+ * passes them on. */
 #include "simplify/slab_simplifier.h"
 
 #include "core/base/memory.h"

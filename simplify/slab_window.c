@@ -1,3 +1,5 @@
+/* Simplifies a surface across slabs in a sliding window: joins the rest with the next slab, and
+ * hands out finished triangles. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/mesh/mesh.h"

@@ -1,3 +1,5 @@
+/* Simplifies a surface in passes over blocks, on threads, and repeats parts with more care
+ * where they did not keep the distance. */
 #include "simplify/blocks/block_passes.h"
 
 #include "core/base/memory.h"
@@ -343,7 +345,7 @@ static cw_status add_obstacles(const part *x, cw_mesh *mesh, cw_error *err)
     return CW_OK;
 }
 
-/* What triangles of a mesh must keep; NULL where that is the same for all. */
+/* Finds the distances that triangles of a mesh must keep; NULL where one holds for all. */
 static cw_status find_limits(const cwi_passes *p, const cw_mesh *m, double **limits,
                              cw_error *err)
 {
@@ -474,7 +476,7 @@ static void keep_block(void *context, size_t n)
     cwi_block_free(c->blocks + n);
 }
 
-/* All blocks, shared out to threads; the first that failed is the one that is told. */
+/* Runs work for all blocks on threads, and reports the error of the first block that failed. */
 static cw_status each_block(crew *c, void (*work)(void *context, size_t n), cw_error *err)
 {
     const cwi_passes *p = c->passes;
@@ -498,9 +500,9 @@ static size_t count_left(const crew *c, float *next)
     return left;
 }
 
-/* What costs the same anywhere goes at the same time everywhere: the limit rises by and by
- * until few enough triangles are left. Errors of size^4 on areas of size^2 make it rise by the
- * cube of what the number falls by; half of that way at a time. */
+/* Runs all blocks to the same cost: the limit rises step by step until few enough triangles are
+ * left. Errors of size^4 on areas of size^2 make it rise by the cube of what the number falls
+ * by; a step takes half of that way. */
 static cw_status run_to_target(crew *c, cw_error *err)
 {
     cw_status st = each_block(c, open_block, err);

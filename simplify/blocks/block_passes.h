@@ -1,4 +1,4 @@
-/* What every way to simplify is made of: passes over blocks that keep a distance. */
+/* Passes over blocks that keep a distance: the base of every way to simplify. */
 #ifndef SIMPLIFY_BLOCKS_BLOCK_PASSES_H
 #define SIMPLIFY_BLOCKS_BLOCK_PASSES_H
 
@@ -11,7 +11,7 @@
 /* Triangles of a block: as few as pay for its seams, as many as a cache holds. */
 enum { CWI_BLOCK = 1 << 15 };
 
-/* What passes over one surface share. */
+/* State that passes over one surface share. */
 typedef struct cwi_passes {
     const cwi_openmesh_functions *openmesh;
     const cw_simplify_desc *desc;
@@ -70,7 +70,8 @@ CW_NODISCARD cw_status cwi_passes_whole(cwi_passes *passes, const cwi_mesh_block
                                         const size_t *targets, size_t levels,
                                         cwi_mesh_block *left, size_t *cut, cw_error *err);
 
-/* How many triangles are asked for, of so many; 0: nothing is said of it. */
+/* Returns the number of triangles to keep, of a mesh with `triangles` of them; 0: none is
+ * set. */
 size_t cwi_simplify_target(const cw_simplify_desc *desc, size_t triangles);
 
 /* Lengths to the fourth power, and more, are worked with in single precision: those of a mesh

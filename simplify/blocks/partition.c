@@ -1,3 +1,5 @@
+/* Divides a mesh into blocks at planes across the axes, and joins the blocks again once they
+ * are simplified. */
 #include "simplify/blocks/partition.h"
 
 #include "core/base/memory.h"
@@ -9,7 +11,7 @@
 
 enum { BINS = 1024 };
 
-/* What becomes of a vertex. */
+/* State of a vertex. */
 enum { FREE, HELD, GIVEN }; /* the last: held, and some block has its quadric */
 
 static const uint32_t NOT_THERE = UINT32_MAX;
@@ -229,7 +231,8 @@ static bool alloc_vertices(cwi_mesh_block *b, const cwi_mesh_block *whole)
     return b->points && b->held && !b->quadrics == !whole->quadrics && !b->seam == !whole->seam;
 }
 
-/* What a vertex has gathered goes to one block only, one of which is left what names it. */
+/* Copies a vertex to a block. Its quadric and trends go to one block only, of those with a
+ * triangle of their own at it. */
 static void copy_vertex(const plan *p, cwi_mesh_block *b, size_t v, bool own)
 {
     const cwi_mesh_block *w = p->whole;

@@ -1,4 +1,4 @@
-// What vertices carry, as linear functions of place, so that losing it costs like moving.
+// Attributes of vertices as linear functions of place, so that losing them costs like moving.
 #ifndef SIMPLIFY_COLLAPSE_ATTRIBUTE_QUADRIC_HPP
 #define SIMPLIFY_COLLAPSE_ATTRIBUTE_QUADRIC_HPP
 

@@ -1,3 +1,5 @@
+// Checks an edge collapse: the star of triangles around the edge must keep its shape, and must
+// not meet other triangles.
 #include "simplify/collapse/collapse_checks.hpp"
 
 #include "core/geometry/triangle_intersect.h"
@@ -347,7 +349,8 @@ bool Contact::arises(Surface &surface, const Star &star)
     return found;
 }
 
-// As its triangles become fewer the tree is made anew, or it would be empty boxes mostly.
+// Moves the triangles of a star in the tree, and builds the tree again when few of them are
+// left: else most boxes would be empty.
 void Contact::change(const Surface &surface, const Star &star)
 {
     for (uint32_t f : star.gone)

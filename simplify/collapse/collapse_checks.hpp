@@ -1,5 +1,5 @@
-// What a collapse must not break. Each check looks at the star: the triangles around the edge
-// as they are, and as they would be.
+// Conditions that a collapse must not break. Each check looks at the star: the triangles around
+// the edge as they are, and as they would be.
 #ifndef SIMPLIFY_COLLAPSE_COLLAPSE_CHECKS_HPP
 #define SIMPLIFY_COLLAPSE_COLLAPSE_CHECKS_HPP
 

@@ -1,3 +1,5 @@
+// Bounds the distance between a simplified surface and its original, and refuses collapses
+// beyond it.
 #include "simplify/collapse/distance_bound.hpp"
 
 #include "simplify/collapse/surface_walk.hpp"
@@ -37,7 +39,7 @@ float triangle_square(const Vec &p, const Vec &a, const Vec &b, const Vec &c)
 
 } // namespace
 
-// Room for at most so many, half of it empty.
+// Makes room for at most `most` numbers, of which half stays empty.
 void Numbers::clear(size_t most)
 {
     size_t size = 64;
@@ -230,7 +232,7 @@ bool Bound::is_original_near(const Surface &surface, const Star &star)
     return true;
 }
 
-// What refuses most for the least work comes first.
+// Runs the checks that refuse most for the least work first.
 bool Bound::is_kept(const Surface &surface, const Star &star)
 {
     if (!is_asked())

@@ -10,8 +10,9 @@
 namespace cw
 {
 
-// A heap of four children a node. An entry is one number, its cost in the upper half: costs are
-// not negative, so their bits are in order too, and equal ones are in order of their edges.
+// Heap with four children at each node. An entry is one number, its cost in the upper half:
+// costs are not negative, so their bits are in order too, and equal ones are in order of their
+// edges.
 class Queue
 {
 public:

@@ -1,3 +1,5 @@
+// Makes an OpenMesh surface of half-edges from the arrays of a block, and marks vertices that
+// are no single fan.
 #include "simplify/collapse/halfedge_mesh.hpp"
 
 namespace cw

@@ -18,7 +18,8 @@ using namespace cw;
 namespace
 {
 
-// What a triangle takes here, with its share of vertices, edges and what is kept of them.
+// Bytes that a triangle takes here, with its share of vertices, edges and the data kept for
+// them.
 enum { TRIANGLE_BYTES = 240 };
 
 // All that a cost needs of a vertex, in one line of a cache.
@@ -281,7 +282,7 @@ private:
             wait_again(*e, kept, p.cost);
     }
 
-    // What was refused before may be fine now.
+    // Puts an edge into the queue again: a collapse that was refused before may pass now.
     void wait_again(EdgeHandle e, VertexHandle kept, float cost)
     {
         const auto i = size_t(e.idx());

@@ -63,7 +63,7 @@ static inline void cwi_trends_join(cwi_quadric *q, float *area, cwi_trend *mean,
 /* Around points that are given so much care nothing is changed. */
 enum { CWI_MOST_CARE = 4 };
 
-/* What a surface was before it was simplified, and must stay near: each of its points belongs
+/* Surface before it was simplified, which the result must stay near: each of its points belongs
  * to the list of a triangle that it is near to. */
 typedef struct cwi_original {
     const float *points;     /* vertices x 3 */
@@ -117,7 +117,7 @@ typedef struct cwi_openmesh_functions {
     float (*next)(const cwi_decimater *decimater);
     /* Vertices of the block that are no single fan, or at an edge of more than two. */
     size_t (*cut)(const cwi_decimater *decimater);
-    /* What is left, in arrays from cwi_alloc_array(): own triangles only. */
+    /* Takes the remaining triangles, own ones only, in arrays from cwi_alloc_array(). */
     cw_status (*take)(const cwi_decimater *decimater, cwi_mesh_block *out, cw_error *err);
     void (*close)(cwi_decimater *decimater);
 } cwi_openmesh_functions;

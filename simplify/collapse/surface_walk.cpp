@@ -1,3 +1,5 @@
+// Walks over the triangles of an original, across sides and corners, to the triangle nearest to
+// a point.
 #include "simplify/collapse/surface_walk.hpp"
 
 #include "core/geometry/triangle_cover.h"

@@ -1,3 +1,5 @@
+// Computes the distances of a point from four triangles at a time, and decides whether a
+// triangle is near to several facets.
 #include "simplify/collapse/triangle_packet.hpp"
 
 #include "core/geometry/vec3.h"
@@ -114,7 +116,7 @@ size_t Facets::nearest(const Vec &p, float *square) const
     return 4 * size_t(four[best]) + best;
 }
 
-// What is wrong by rounding is a few parts in 2^24 of the ways between points.
+// Rounding errors are a few parts in 2^24 of the lengths between points.
 Facets::Seen Facets::look(const Vec &p) const
 {
     const float sure = distance - 1e-6f * (reach + p.norm());

@@ -9,7 +9,7 @@ extern "C" {
 #endif
 
 typedef struct cwi_cgal_functions {
-    /* What CGAL's Polygon Mesh Processing says of the mesh, welded as it is. */
+    /* Judges the mesh, welded as it is, by CGAL's Polygon Mesh Processing. */
     cw_status (*judge)(const cwi_welded *welded, cw_cgal_facts *out, cw_error *err);
 
     /* One-sided Hausdorff distance, off by at most tolerance_mm. Both meshes must be valid

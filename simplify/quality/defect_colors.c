@@ -59,7 +59,7 @@ static uint32_t copy_of(copies *c, uint32_t vertex, int paint)
     return n;
 }
 
-/* What has no area cannot be seen: its neighbours show where it is. */
+/* Returns the defect of a triangle beside one without area, which cannot be seen itself. */
 static unsigned flat_beside(const copies *c, const uint32_t *v)
 {
     return c->flat[v[0]] | c->flat[v[1]] | c->flat[v[2]] ? CW_DEFECT_DEGENERATE : 0;

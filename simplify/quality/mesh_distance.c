@@ -35,7 +35,7 @@ typedef struct reference {
     double diagonal, side;
 } reference;
 
-/* What a query is about. */
+/* Point of a query and the nearest facet that it found. */
 typedef struct query {
     const reference *r;
     double point[3];
@@ -85,7 +85,7 @@ typedef struct corner {
     uint32_t slot;
 } corner;
 
-/* What a chunk of triangles adds to the bounds. */
+/* Largest distance and bound that a chunk of triangles adds. */
 typedef struct extreme {
     double max, bound, where[3];
     size_t triangle;
@@ -228,7 +228,7 @@ static double limit_of(const search *s, const extreme *e)
     return e->max + cwi_greater(s->tolerance, s->share * e->max);
 }
 
-/* What is known without dividing the triangle; its middle is looked at if need be. */
+/* Bounds the distance without dividing the triangle; looks at its middle if need be. */
 static double bound_of(const search *s, const corner c[3], size_t t, extreme *e)
 {
     choice choices = {0};

@@ -118,9 +118,9 @@ static void find_open_inward(const work *w, uint8_t *wrong, cw_quality *q)
 
 enum { WRONG = 1, TURN = 2 };
 
-/* Which way a shell should face is told by where it is, whichever way others do: in a solid it
- * is where it is inside an odd number of them. An open shell is never turned: a bowl may face
- * either way. */
+/* Judges shells: the direction that a shell should face follows from its place, whichever way
+ * others do. In a solid it faces inwards where it is inside an odd number of them. An open
+ * shell is never turned: a bowl may face either way. */
 static void judge_shells(const work *w, const cw_quality_desc *d, cw_quality *q)
 {
     uint8_t *found = w->shells->unbounded; /* has served its purpose */

@@ -21,14 +21,15 @@ enum {
     KEPT = 2048          /* sides of small triangles whose middles are remembered */
 };
 
-/* What was measured in the middle of a side: its other triangle mostly comes soon. */
+/* Distance measured in the middle of a side: the other triangle at the side mostly comes
+ * soon. */
 typedef struct side {
     uint32_t low, high; /* vertices; equal: none */
     bool missed;
     double distance;
 } side;
 
-/* What is known of a chunk of triangles, before it is joined with the others. */
+/* Sums and maxima of a chunk of triangles, before they are joined with those of the others. */
 typedef struct tally {
     size_t first; /* triangle; those of the next chunk follow */
     double sum, squares, balance;

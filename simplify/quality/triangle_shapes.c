@@ -1,3 +1,5 @@
+/* Measures the area, volume, angles and sides of the triangles of a mesh, on threads, with
+ * histograms. */
 #include "simplify/quality/triangle_shapes.h"
 
 #include "core/base/memory.h"

@@ -1,4 +1,4 @@
-/* What each triangle says by itself: area, volume, angles, sides. */
+/* Area, volume, angles and sides of each triangle by itself. */
 #ifndef SIMPLIFY_QUALITY_TRIANGLE_SHAPES_H
 #define SIMPLIFY_QUALITY_TRIANGLE_SHAPES_H
 

@@ -152,9 +152,9 @@ static bool project_on_patch(const search *s, const box *b, const double x[3], d
     return false;
 }
 
-/* What to do where that fails: pulls the point of the box nearest to u towards the plane until
- * it comes there or can go no farther, axes taken as orthogonal. Each begins to move when it
- * comes off a wall of the box, and stops at the other. */
+/* Serves where that fails: pulls the point of the box nearest to u towards the plane until it
+ * comes there or can go no farther, axes taken as orthogonal. Each begins to move when it comes
+ * off a wall of the box, and stops at the other. */
 static double press_bound(const search *s, const box *b, const double x[3], double f,
                           const double g[3], double y[3])
 {
@@ -306,7 +306,8 @@ static bool is_cleared(const search *s, const box *b, const double x[3], double 
     return true;
 }
 
-/* Leaves of a box what is nearer than the limit along each axis; false when nothing is. */
+/* Clips a box to the part that is nearer than the limit along each axis; false when nothing is
+ * left. */
 static bool clip_box(const search *s, box *b)
 {
     for (int a = 0; a < 3; a++) {

@@ -1,3 +1,5 @@
+/* Welds the equal points of a mesh for the checks, and sorts its triangles into a tree of
+ * boxes. */
 #include "simplify/quality/welded_mesh.h"
 
 #include "core/base/memory.h"
@@ -6,7 +8,7 @@
 #include "core/geometry/triangle_intersect.h"
 #include "core/mesh/weld.h"
 
-/* The points by which vertices are told apart. */
+/* Chooses the points that are compared to weld vertices: positions, or world points. */
 static bool choose_points(cwi_welded *w, cw_weld how)
 {
     const cw_mesh *mesh = w->mesh;

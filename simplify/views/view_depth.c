@@ -1,4 +1,5 @@
-/* What hides what: the nearest surface behind each pixel of a view. */
+/* Draws the depth of the nearest surface behind each pixel of a view, which shows what is
+ * hidden. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/mesh/mesh.h"

@@ -1,4 +1,5 @@
-/* What cameras see of a volume and of the vertices of a mesh, in voxels and in pixels. */
+/* Extents that cameras see of a volume and of the vertices of a mesh, in voxels and in
+ * pixels. */
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 

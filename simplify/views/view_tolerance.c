@@ -1,3 +1,5 @@
+/* Computes how far a surface may move in the pictures of its cameras, by depth, field of view
+ * and what hides it. */
 #include "simplify/views/view_tolerance.h"
 
 #include "core/base/memory.h"
@@ -101,7 +103,7 @@ static double distance_beyond(const cwi_view_tolerance *v, const place *p, int p
     return (out - v->half[n] - v->slope[n] * p->depth) / hypot(1, v->slope[n]);
 }
 
-/* What has all of its corners beyond one plane is not seen. */
+/* Decides whether a part is seen: it is not, when all of its corners are beyond one plane. */
 static bool is_seen(const cwi_view_tolerance *v, const place *p, int corners, double margin)
 {
     for (int plane = 0; plane < 5; plane++) {
@@ -114,8 +116,8 @@ static bool is_seen(const cwi_view_tolerance *v, const place *p, int corners, do
     return true;
 }
 
-/* What a surface is in front of at all pixels around it. Each of the two may move by `most`,
- * and as far as that is in the picture the other one's edge may be away. */
+/* Decides whether a part is hidden: a surface is in front of it at all pixels around it. Each
+ * of the two may move by `most`, and the other one's edge may be as far away in the picture. */
 static bool is_hidden(const cwi_view_tolerance *v, const place *p, int corners, double most,
                       double margin)
 {

@@ -24,7 +24,8 @@ typedef struct cwi_views {
 
 enum { CWI_VIEW_WIDTH = 1280, CWI_VIEW_HEIGHT = 720, CWI_VIEW_HULL = 8 };
 
-/* In the world's frame. Returns CW_ERR_ARGUMENT for a camera or pixels that are none. */
+/* Sets up a view, in the world's frame. Returns CW_ERR_ARGUMENT for a camera or a number of
+ * pixels that is invalid. */
 CW_NODISCARD cw_status cwi_view_init(cwi_view_tolerance *view, const cw_simplify_view *from,
                                      double pixels, cw_error *err);
 

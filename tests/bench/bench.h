@@ -1,4 +1,4 @@
-/* What the benches of pictures share. */
+/* Helpers that the benches of pictures share: values in order, medians, errors. */
 #ifndef BENCH_BENCH_H
 #define BENCH_BENCH_H
 

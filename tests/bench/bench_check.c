@@ -1,4 +1,4 @@
-/* The checks of a mesh, and CGAL's self-intersections beside ours: by turns, medians.
+/* Times the checks of a mesh, and CGAL's self-intersections beside ours: interleaved, medians.
  *
  * bench_check [SIZE [RUNS]]
  *

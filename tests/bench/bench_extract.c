@@ -1,4 +1,4 @@
-/* cw_extract() beside vtkFlyingEdges3D: one run of ours, one of theirs, by turns, medians.
+/* Times cw_extract() beside vtkFlyingEdges3D: runs of ours and theirs alternate; medians.
  *
  * bench_extract [--sizes 256,512] [--threads 1,2] [--runs 5] [--cases sphere,noise]
  *               [--data FOLDER]
@@ -237,7 +237,7 @@ static double median(double *values, int count)
     return values[count / 2];
 }
 
-/* What is measured of a volume, each a median in milliseconds. */
+/* Measurements of a volume, each a median in milliseconds. */
 typedef struct timing {
     double ours, next, recycled, theirs, theirs_next, limit, peak_mb;
     size_t triangles, vtk_triangles;

@@ -4,7 +4,7 @@
  * bench_render [--size 256] [--picture 512] [--frames 7] [--case NAME]
  *
  * VTK needs an X server: xvfb-run bench_render. Every measurement is made in a process of its
- * own, by turns. Prints a JSON line a case on stdout, a table on stderr. */
+ * own; ours and VTK's alternate. Prints a JSON line a case on stdout, a table on stderr. */
 #define _GNU_SOURCE /* MAP_ANONYMOUS */
 #include "bench.h"
 #include "render_vtk.h"
@@ -26,7 +26,7 @@ typedef struct settings {
     const char *only; /* the case of this name; NULL: all */
 } settings;
 
-/* What a child hands back. */
+/* Result that a child process hands back. */
 typedef struct result {
     bool is_there;
     bench_vtk_times times;
@@ -89,7 +89,7 @@ static const cw_transfer transfer = {
     .opacity_count = 4,
     .opacities = {{0.135, 0}, {0.5, 0.02f}, {0.8, 0.05f}, {1, 0.3f}}};
 
-/* A case: how ours draws, and what of VTK's it stands beside. */
+/* Case of the bench: how ours draws, and the drawing of VTK that it is compared with. */
 typedef struct bench_case {
     const char *name;
     cw_mode mode;
@@ -150,7 +150,7 @@ static void report(const bench_case *c, const settings *s, const result *ours,
            name_of(c->beside), peer->times.first_ms, peer->times.next_ms);
 }
 
-/* How deep a cube of so many voxels is along the line of sight. */
+/* Returns the depth along the line of sight of a cube with `size` voxels per axis. */
 static double depth_of(const cw_scene *scene, size_t size)
 {
     double axes[3][3];

@@ -1,4 +1,4 @@
-/* cw_simplify() beside other programs' simplifiers: time, memory, and what became of the mesh.
+/* Compares cw_simplify() with other programs' simplifiers: time, memory, and the result.
  *
  * bench_simplify [--inputs sphere,gyroid,head,bone] [--targets 50,10,2] [--peers
  * cubewright,...]
@@ -86,8 +86,8 @@ static bool is_here(int program)
     return here[program];
 }
 
-/* Made inputs have about a million triangles with so many voxels along each axis, and others in
- * proportion to the square. */
+/* Made inputs have about a million triangles at the number of voxels along each axis given
+ * here, and others in proportion to its square. */
 static const struct {
     const char *name;
     cw_field_desc field;

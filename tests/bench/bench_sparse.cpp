@@ -1,5 +1,5 @@
-// cw_extract() of sparse grids beside OpenVDB's volumeToMesh: one run of ours, one of theirs,
-// by turns, medians.
+// Times cw_extract() of sparse grids beside OpenVDB's volumeToMesh: runs of ours and theirs
+// alternate; medians.
 //
 // bench_sparse [--threads 2] [--runs 9] [FILE.vdb ISOVALUE]...
 //

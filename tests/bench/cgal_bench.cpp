@@ -1,3 +1,4 @@
+// Times CGAL's self_intersections() on a mesh, with TBB where CGAL has it.
 #include "cgal_bench.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

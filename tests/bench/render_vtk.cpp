@@ -1,3 +1,5 @@
+// Renders a scene with vtkGPUVolumeRayCastMapper or vtkFixedPointVolumeRayCastMapper, and times
+// the frames.
 #include "render_vtk.h"
 #include "bench.h"
 

@@ -1,3 +1,4 @@
+/* Stands in for the VTK renderers in a build without them: reports that there are none. */
 #include "render_vtk.h"
 
 bool bench_vtk_render(const cw_scene *scene, bool gpu, int frames, bench_vtk_times *times,

@@ -1,3 +1,4 @@
+// Simplifies a mesh with CGAL's edge collapse and Garland-Heckbert plane quadrics.
 #include "simplify_peers.h"
 
 #include <CGAL/Simple_cartesian.h>

@@ -1,3 +1,4 @@
+/* Simplifies a mesh with meshoptimizer, and removes unused vertices from its result. */
 #include "simplify_peers.h"
 
 #include <meshoptimizer.h>

@@ -1,3 +1,4 @@
+/* Stands in for the simplifier of meshoptimizer in a build without it: always fails. */
 #include "simplify_peers.h"
 
 const bool bench_has_meshopt = false;

@@ -1,3 +1,4 @@
+// Simplifies a mesh with OpenMesh's decimater: quadrics, and a check for flipped normals.
 #include "simplify_peers.h"
 
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>

@@ -24,7 +24,7 @@ bench_simplifier bench_cgal;     /* edge_collapse, GarlandHeckbert_plane_policie
 /* Which of them are in this build. */
 extern const bool bench_has_meshopt, bench_has_vtk, bench_has_openmesh, bench_has_cgal;
 
-/* What they need: room for a result, and a clock. */
+/* Helpers for the simplifiers: room for a result, and a clock. */
 bool bench_mesh_alloc(cw_mesh *mesh, size_t vertices, size_t triangles);
 double bench_now_s(void);
 

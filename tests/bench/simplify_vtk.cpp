@@ -1,3 +1,4 @@
+// Simplifies a mesh with vtkQuadricDecimation.
 #include "simplify_peers.h"
 
 #include <vtkCellArray.h>

@@ -1,3 +1,4 @@
+/* Stands in for vtkFlyingEdges3D in a build without VTK: returns -1. */
 #include "vtk_wrap.h"
 
 double bench_vtk(const cw_volume *volume, double isovalue, int threads, size_t *triangles)

@@ -1,3 +1,4 @@
+// Extracts an isosurface of a volume with vtkFlyingEdges3D, and times it.
 #include "vtk_wrap.h"
 
 #include <vtkFlyingEdges3D.h>

@@ -86,7 +86,8 @@ void print_triangle(const Soup &soup, size_t t)
     std::printf("\n");
 }
 
-/* What is wrong with it: a triangle that fits no manifold, has no area, or crosses another. */
+/* Decides whether a soup is defective: a triangle fits no manifold, has no area, or crosses
+ * another. */
 bool is_defective(const Soup &soup, bool print)
 {
     Surface surface;
@@ -166,7 +167,8 @@ public:
     {
     }
 
-    /* As it is, and snapped: by turns so that most needles go, or all that may. */
+    /* Adds a volume as it is, and snapped: alternately so that most needles go, or all that
+     * may. */
     void add(const cw_volume &volume, const cw_extract_desc &desc)
     {
         cw_extract_desc snapped = desc;
@@ -202,7 +204,7 @@ public:
         }
     }
 
-    /* What the volumes to come are called. */
+    /* Names the volumes that follow. */
     void about(const char *what)
     {
         about_ = what;
@@ -244,7 +246,7 @@ double next_unit()
     return static_cast<double>(state >> 11) / 9007199254740992.0;
 }
 
-/* So many cubes of samples, each by a function of the round and the sample. */
+/* Extracts `rounds` cubes of samples, each by a function of the round and the sample. */
 bool grids_pass(const char *name, int allowed_defects, int rounds, size_t side,
                 const std::function<double(int, size_t)> &value)
 {
@@ -345,7 +347,7 @@ double cell_value(int round, size_t n)
 
 } // namespace
 
-/* self_intersections [FACTOR]: so many times as many grids, for a longer look. */
+/* self_intersections [FACTOR]: extracts FACTOR times as many grids, for a longer look. */
 int main(int argc, char **argv)
 {
     const int factor = argc > 1 ? std::atoi(argv[1]) : 1;

@@ -1,4 +1,4 @@
-/* What the fuzz targets of the mesh readers share. */
+/* Helpers that the fuzz targets of the mesh readers share. */
 #ifndef TESTS_FUZZ_MESH_H
 #define TESTS_FUZZ_MESH_H
 

@@ -1,3 +1,4 @@
+/* Fuzzes the mesh reader of VTP files. */
 #define _GNU_SOURCE /* memfd_create */
 #include "fuzz_mesh.h"
 

@@ -1,3 +1,4 @@
+/* Fuzzes the reader of PVD lists, and checks the order of their times. */
 #define _GNU_SOURCE /* memfd_create */
 #include "fuzz_reader.h"
 

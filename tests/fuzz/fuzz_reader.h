@@ -1,4 +1,4 @@
-/* What the fuzz targets of the volume readers share. */
+/* Helpers that the fuzz targets of the volume readers share. */
 #ifndef TESTS_FUZZ_READER_H
 #define TESTS_FUZZ_READER_H
 

@@ -1,8 +1,9 @@
+/* Fuzzes the parser of transfer functions in JSON. */
 #include "viewer/scene/transfer_json.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 
-/* What was read is usable, everywhere. */
+/* Checks that a transfer function that was read is usable everywhere. */
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
 {
     cw_transfer t;

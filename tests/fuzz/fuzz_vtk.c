@@ -1,3 +1,4 @@
+/* Fuzzes the volume reader of legacy VTK files. */
 #define _GNU_SOURCE /* memfd_create */
 #include "fuzz_reader.h"
 

@@ -1,3 +1,5 @@
+/* Builds irregular grids: cell by cell, or as a box cut into tetrahedra, wedges, pyramids or
+ * hexahedra. */
 #include "support/cells.h"
 
 #include <stdlib.h>

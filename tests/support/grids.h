@@ -1,4 +1,4 @@
-/* What is read of irregular grids. */
+/* Checks of irregular grids that were read. */
 #ifndef TESTS_GRIDS_H
 #define TESTS_GRIDS_H
 

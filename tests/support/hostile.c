@@ -1,3 +1,5 @@
+/* Computes volumes that extractors break on: samples on the isovalue, noise, thin sheets and
+ * wires, NaN, infinity. */
 #include "support/hostile.h"
 
 #include <float.h>
@@ -30,7 +32,8 @@ static bool is_float(const hostile *h)
     return h->type == CW_F32 || h->type == CW_F64;
 }
 
-/* What the parameter names: planes, rods or whatever, along an axis or askew. */
+/* Returns the coordinate along the axis that the parameter names, for planes, rods and
+ * others. */
 static size_t along(const hostile *h, const size_t at[3])
 {
     return at[(size_t)h->parameter];
@@ -249,7 +252,7 @@ static double with_infinity(const hostile *h, const size_t at[3])
 #define BRICK {8, 7, 6}
 /* clang-format on */
 
-/* What may follow in a row: isovalue and parameter; and what stands for no value. */
+/* Fields that may follow in a row: isovalue and parameter; and the number for no value. */
 #define AT(level, with) .isovalue = (level), .parameter = (with)
 #define WITHOUT(number) .has_nodata = true, .nodata = (number)
 

@@ -25,8 +25,8 @@ const test_hostile *test_hostile_at(size_t n);
 /* Its volume, the identity for affine; free it. */
 cw_status test_hostile_make(const test_hostile *hostile, cw_volume *volume, cw_error *err);
 
-/* Where volumes may stand. far: its world zero is so many voxels away that points there have no
- * digits left for voxels in single precision. */
+/* Frames that volumes may stand in. far: the world's zero lies so far away that points there
+ * have no digits left for voxels in single precision. */
 typedef struct test_frame {
     const char *name;
     double affine[3][4];

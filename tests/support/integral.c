@@ -1,3 +1,5 @@
+/* Integrates emission and absorption along the rays of a picture, step by step in double
+ * precision. */
 #include "support/integral.h"
 
 #include "viewer/scene/frame_setup.h"

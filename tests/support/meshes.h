@@ -1,4 +1,4 @@
-/* What the tests of the mesh readers share. */
+/* Helpers that the tests of the mesh readers share. */
 #ifndef TESTS_MESHES_H
 #define TESTS_MESHES_H
 

@@ -1,3 +1,4 @@
+/* Makes volumes with known fields, transfer functions and a renderer, and compares pictures. */
 #include "support/pictures.h"
 
 #include "core/base/module.h"

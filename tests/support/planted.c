@@ -1,3 +1,4 @@
+/* Builds meshes with one known fault each, from cubes, balls, rings and fans. */
 #include "support/planted.h"
 
 #include <math.h>

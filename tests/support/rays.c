@@ -1,3 +1,5 @@
+/* Computes the colour and the values along one ray, with trilinear samples, gradients and
+ * light, in many steps. */
 #include "support/rays.h"
 
 #include "support/support.h"

@@ -5,7 +5,7 @@
 #include "viewer/scene/frame_setup.h"
 
 /* The trilinear field of packed floats at a point of index space, inside of the box; and its
- * gradient per voxel: central differences, interpolated likewise. */
+ * gradient per voxel: central differences, also interpolated trilinearly. */
 double test_field_at(const cw_volume *volume, const double index[3]);
 void test_gradient_at(const cw_volume *volume, const double index[3], double gradient[3]);
 

@@ -1,3 +1,4 @@
+/* Makes a sparse grid from a dense volume: leaves with one value become tiles. */
 #include "support/sparse.h"
 
 #include "core/volume/volume.h"

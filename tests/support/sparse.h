@@ -4,8 +4,8 @@
 
 #include "support/support.h"
 
-/* The same voxels: leaves of one value are tiles, those of the background's are left out. Sizes
- * must be multiples of 8. Free it. */
+/* The same voxels as a sparse grid: leaves with one value are tiles, those with the
+ * background's value are left out. Sizes must be multiples of 8. Free it. */
 cw_volume test_sparse_of(const cw_volume *dense, double background);
 
 #endif

@@ -1,3 +1,4 @@
+/* Implements the asserts, files and small meshes that all tests share. */
 #define _GNU_SOURCE /* mkdtemp, nftw */
 #include "support/support.h"
 

@@ -1,4 +1,5 @@
-/* What tests share. Include it instead of cmocka.h: cmocka wants its headers in one order. */
+/* Helpers that tests share. Include it instead of cmocka.h: cmocka wants its headers in one
+ * order. */
 #ifndef TESTS_SUPPORT_H
 #define TESTS_SUPPORT_H
 

@@ -1,3 +1,4 @@
+/* Extracts surfaces for tests, compares them, and looks for faults in them. */
 #include "support/surface.h"
 
 #include "core/geometry/vec3.h"

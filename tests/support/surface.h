@@ -11,8 +11,8 @@ cw_volume test_sample(cw_field field, size_t n, cw_type type);
 cw_mesh test_extract(const cw_volume *volume, const cw_extract_desc *desc,
                      cw_extract_counts *counts);
 
-/* What of the promise on any input a mesh does not keep, in words; NULL when it keeps all: a
- * manifold, indexed and welded, without zero-area triangles, equal points or equal triangles,
+/* Names a part of the promise on any input that a mesh breaks, or NULL when it keeps all:
+ * a manifold, indexed and welded, without zero-area triangles, equal points or equal triangles,
  * with finite positions and unit normals, and no edge open unless open is asked for.
  * quality  as indexed; may be NULL */
 const char *test_mesh_fault(const cw_mesh *mesh, bool open, cw_quality *quality);
@@ -38,7 +38,8 @@ cw_quality test_measure(const cw_mesh *mesh);
 /* Pairs of triangles that meet and should not. */
 size_t test_count_crossings(const cw_mesh *mesh);
 
-/* What of a sound mesh's topology and soundness a reduced one has lost, in words; or NULL. */
+/* Names the topology or soundness of a sound mesh that a reduced one has lost, in words; or
+ * NULL. */
 const char *test_reduced_fault(const cw_mesh *before, const cw_mesh *after);
 void test_assert_sound(const cw_mesh *before, const cw_mesh *after);
 

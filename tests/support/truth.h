@@ -18,7 +18,7 @@ typedef struct test_truth {
  * Threads  reentrant */
 test_truth test_topology_of(const float *voxels, const size_t dim[3], float iso);
 
-/* One way: a picture of so many (2 to 64) points a cell and axis. Always decidable. */
+/* One way: a picture of `points` (2 to 64) points a cell and axis. Always decidable. */
 test_truth test_topology_pictured(const float *voxels, const size_t dim[3], float iso,
                                   size_t points);
 

@@ -1,3 +1,5 @@
+/* Makes cameras around test volumes, and draws scenes by ray casting in fine steps for
+ * comparison. */
 #include "support/views.h"
 
 #include <math.h>
@@ -20,7 +22,7 @@ cw_picture test_truth(cw_renderer *renderer, const cw_scene *scene)
     fine.mode = CW_MODE_COMPOSITE;
     fine.step_vox = 0.1;
     fine.stop_opacity = 1;
-    fine.no_preintegration = true; /* whose table would be made anew each time */
+    fine.no_preintegration = true; /* its table would be made again each time */
     fine.no_skipping = true;
     return test_draw(renderer, &fine);
 }

@@ -1,4 +1,4 @@
-/* make_vdb KIND FILE...: writes OpenVDB files for tests of the command. */
+/* Writes OpenVDB files for tests of the command: make_vdb KIND FILE... */
 #include "vdb/vdbs.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+// Writes OpenVDB files for tests: level sets, fog volumes, masks, vectors, and streams.
 #include "vdb/vdbs.h"
 
 #include <openvdb/io/Stream.h>

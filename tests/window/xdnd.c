@@ -1,4 +1,4 @@
-/* What xdotool cannot do to a window:
+/* Does to a window what xdotool cannot:
  *   xdnd drop WINDOW X Y PATH...   drops files on it, as a file manager would (XDND 5)
  *   xdnd close WINDOW              asks it to close, as a window manager would */
 #include <X11/Xatom.h>

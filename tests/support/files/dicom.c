@@ -1,3 +1,5 @@
+/* Writes DICOM files: elements, sequences, fragments, and whole images in several transfer
+ * syntaxes. */
 #include "support/files/dicom.h"
 
 #include "support/support.h"

@@ -1,5 +1,5 @@
-/* What the tests of the readers share: files put together from text and voxels, and what is
- * read back from them. */
+/* Helpers that the tests of the readers share: files put together from text and voxels, and
+ * checks of the volumes read back from them. */
 #ifndef TESTS_READING_H
 #define TESTS_READING_H
 
@@ -69,9 +69,9 @@ static inline void check_affine(const cw_volume *volume, const double *wanted)
                          wanted[4 * r + c]);
 }
 
-/* Cut behind a byte, from one on every so many, a file that the header named gives an error and
- * no volume. Libraries run in this process, at every sixteenth cut in one of their own:
- * starting that takes a hundred times as long as reading such a file. */
+/* Checks a file that the header named, cut behind every `step`-th byte, from byte `from` on: it
+ * gives an error and no volume. Libraries run in this process, at every sixteenth cut in one of
+ * their own: starting that takes a hundred times as long as reading such a file. */
 static inline void check_some_cuts(const char *header, const char *data, size_t from,
                                    size_t step)
 {
@@ -102,8 +102,9 @@ static inline void check_every_cut(const char *name)
     check_cuts(name, name, 0);
 }
 
-/* Compressed data reach to the end of a file that the header named: zeros behind them change
- * nothing, anything else is told by its place; and their checksum is looked at. */
+/* Checks that compressed data reach to the end of a file that the header named: zeros behind
+ * them change nothing, anything else is reported by its place; and their checksum is
+ * verified. */
 static inline void check_tail(const char *header, const char *data)
 {
     size_t size;
@@ -135,7 +136,7 @@ static inline void check_tail(const char *header, const char *data)
     free(bytes);
 }
 
-/* What a file that is wrong must be told of it. */
+/* Checks the message about a file that is wrong. */
 static inline void check_told(const char *name, size_t index, const char *words)
 {
     cw_volume volume;

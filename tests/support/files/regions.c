@@ -1,3 +1,5 @@
+/* Compares regions read from a file with crops of the whole volume, at every box or some of
+ * each kind. */
 #include "support/files/regions.h"
 
 #include "support/support.h"
@@ -75,7 +77,7 @@ static void check_limits(const char *name, const cw_read_desc *desc, const cw_vo
                      "(--max-voxels)", err);
 }
 
-/* Of the box every n-th voxel, which is what coarsening leaves of the crop. */
+/* Checks every n-th voxel of the box against the crop after coarsening. */
 static void check_thin(const char *name, const cw_read_desc *desc, const cw_volume *crop)
 {
     cw_read_desc d = *desc;

@@ -1,4 +1,4 @@
-/* What is read of a region, held against the crop of what is read of the whole. */
+/* Volumes read from a region, compared with the crop of the whole volume. */
 #ifndef TESTS_REGIONS_H
 #define TESTS_REGIONS_H
 

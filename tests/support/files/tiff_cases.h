@@ -144,7 +144,7 @@ static inline void check_pixels(const cw_volume *v, size_t kind, size_t samples)
 }
 static const uint32_t per_unit[2][2] = {{5, 1}, {4, 1}}; /* pixels: 0.2 and 0.25 of a unit */
 
-/* So many pages, the first of them described. */
+/* Saves `pages` pages, the first of them described. */
 static inline void save_described(const char *name, const char *description, size_t pages)
 {
     test_tiff t = {.high_first = true};

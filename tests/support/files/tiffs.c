@@ -1,3 +1,4 @@
+/* Writes TIFF files byte by byte: pixels in strips or tiles, and directories of tags. */
 #include "support/files/tiffs.h"
 
 #include "support/support.h"

@@ -40,7 +40,7 @@ typedef struct test_tiff {
     size_t link; /* where the next directory's offset belongs */
 } test_tiff;
 
-/* Puts numbers of so many bytes each at the end; returns where. */
+/* Puts numbers of `size` bytes each at the end; returns where. */
 size_t test_tiff_put(test_tiff *t, const void *numbers, size_t count, size_t size);
 void test_tiff_add(test_tiff *t, const test_page *page);
 

@@ -32,7 +32,7 @@ static inline void zip_put_bytes(zip *z, const void *bytes, size_t size)
     z->size += size;
 }
 
-/* What both headers of an entry say, and its name. */
+/* Writes the fields that both headers of an entry have, and its name. */
 static inline void zip_put_head(zip *z, const zip_entry *e, size_t packed, bool central)
 {
     const size_t size = strlen(e->text);

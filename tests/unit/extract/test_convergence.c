@@ -1,3 +1,4 @@
+/* Tests that ray casting converges to the reference with the square of its step. */
 #include "support/pictures.h"
 
 #include <math.h>

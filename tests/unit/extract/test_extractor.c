@@ -88,7 +88,7 @@ static void one_after_another_as_each_by_itself(void **state)
     }
 }
 
-/* Larger and smaller surfaces by turns, with and without normals. */
+/* Larger and smaller surfaces alternately, with and without normals. */
 static void into_the_memory_of_the_surface_before(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* What must hold of the hard cases: the promise on any input with every setting, the topology
- * of the trilinear field, and where the surface is known how far from it vertices may be. */
+/* Tests the hard cases: the promise on any input with every setting, the topology of the
+ * trilinear field, and, where the surface is known, how far from it vertices may be. */
 #include "support/surface.h"
 #include "support/truth.h"
 
@@ -14,8 +14,8 @@ typedef enum judge {
     NOBODY, /* some samples are not finite, or too many decades apart */
     PICTURES,
     TIES,   /* samples or saddles stand on the isovalue */
-    COUNT,  /* saddles so many or so close to it that no picture tells */
-    FLAT,   /* so many equal samples that counting fails: see flat_truth() */
+    COUNT,  /* saddles too many or too close to it for pictures */
+    FLAT,   /* too many equal samples for counting: see flat_truth() */
     TUNNELS /* so close inside that the count does not either: see near_tunnels() */
 } judge;
 
@@ -208,7 +208,7 @@ static void surfaces_keep_the_promise(void **state)
     assert_int_equal(broken, 0);
 }
 
-/* What is known of a mesh by counting. */
+/* Counts the topology of a mesh. */
 static test_truth topology_of(const cw_volume *v, double isovalue)
 {
     const cw_extract_desc d = {.isovalue = isovalue, .threads = 1};

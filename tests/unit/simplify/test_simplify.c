@@ -85,7 +85,7 @@ static void hostile_surfaces_stay_sound(void **state)
     }
 }
 
-/* Meshes that are broken are not mended, but not made worse. */
+/* Broken meshes are not repaired, but not made worse. */
 static void broken_meshes_become_no_worse(void **state)
 {
     (void)state;
@@ -340,7 +340,8 @@ static void a_flat_square_becomes_two_triangles(void **state)
     cw_mesh_free(&mesh);
 }
 
-/* What a circle of radius 0.3 parts, on a flat mesh: both sides; a dent where a cone stands. */
+/* Values on a flat mesh: in_circle() parts both sides of a circle of radius 0.3; on_cone() has
+ * a dent where a cone stands. */
 static double in_circle(double x, double y)
 {
     return hypot(x - 0.5, y - 0.5) < 0.3 ? 1 : 0;
@@ -533,7 +534,7 @@ static void levels_follow_each_other(void **state)
     cw_mesh_free(&mesh);
 }
 
-/* What vertices carry is a function of place here, so it is known for the result. */
+/* The attributes of vertices are a function of place here, so they are known for the result. */
 static void what_vertices_carry_comes_along(void **state)
 {
     (void)state;

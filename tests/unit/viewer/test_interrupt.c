@@ -8,7 +8,7 @@
 
 enum { SIDE = 48, MOST_REPORTS = 1 << 20 };
 
-/* Goes on for so many reports, and on the way may draw something else. */
+/* Watcher that lets `left` more reports pass, and on the way may draw something else. */
 typedef struct watcher {
     int left, reports;
     cw_renderer *other;
@@ -47,7 +47,7 @@ static const cw_mode modes[] = {
     CW_MODE_VBUFFER,    CW_MODE_REFERENCE,
 };
 
-/* What most has to be uploaded for. */
+/* Makes a scene with settings that need the most to be uploaded. */
 static cw_scene scene_of(cw_mode mode, const cw_volume *volume, const cw_transfer *transfer,
                          const cw_mesh *mesh)
 {
@@ -78,7 +78,7 @@ static cw_renderer *new_renderer(void)
     return r;
 }
 
-/* Cancelled at report n, from nothing, and then drawn; false: it has not so many reports. */
+/* Cancels at report n, from nothing, and then draws; false: there are fewer reports. */
 static bool stop_at(int n, cw_scene scene, const cw_picture *wanted)
 {
     cw_error err = {0};

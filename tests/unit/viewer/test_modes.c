@@ -1,4 +1,4 @@
-/* What holds for every mode that draws light which is emitted and absorbed. */
+/* Tests every mode that draws light which is emitted and absorbed. */
 #include "support/meshes.h"
 #include "support/pictures.h"
 

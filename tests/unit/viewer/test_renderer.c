@@ -1,3 +1,5 @@
+/* Tests the renderer: lost contexts, replaced volumes, repeated pictures, and named
+ * mistakes. */
 #define _GNU_SOURCE /* RTLD_DEFAULT */
 #include "support/pictures.h"
 
@@ -21,7 +23,7 @@ static unsigned lost(void)
     return 0x8253; /* GL_GUILTY_CONTEXT_RESET */
 }
 
-/* What a driver says after a reset is said on, and the renderer can still be freed. */
+/* A reset that a driver reports is passed on, and the renderer can still be freed. */
 static void lost_contexts_are_reported(void **state)
 {
     (void)state;
@@ -60,7 +62,7 @@ static void volumes_take_each_others_place(void **state)
     test_field(&blobs, 33, 20, 17, cube, test_blobs);
     test_field(&ramp, 33, 20, 17, cube, test_ramp);
     cw_scene scene = small_scene(&blobs, &soft);
-    scene.step_vox = 0.2; /* steps begin anew in each brick */
+    scene.step_vox = 0.2; /* steps begin again in each brick */
     cw_picture first = test_draw(r, &scene);
     scene.volume = &ramp;
     cw_picture second = test_draw(r, &scene);

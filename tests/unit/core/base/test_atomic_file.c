@@ -1,3 +1,5 @@
+/* Tests atomic files: an old file stays until the commit, links, modes, full disks, and bytes
+ * synced before the name. */
 #define _GNU_SOURCE /* mkfifo, symlink, setrlimit, syscall */
 #include "support/support.h"
 
@@ -243,7 +245,7 @@ static void numbers_have_points_in_every_locale(void **state)
     assert_holds(test_path("n"), "0.5");
 }
 
-/* What stands at the path before, as one row a kind. */
+/* Every kind of thing at the path beforehand, as one row each. */
 static void only_regular_files_are_replaced(void **state)
 {
     (void)state;

@@ -1,3 +1,5 @@
+/* Tests the base: statuses, errors, progress, memory limits, number texts, UTF-8 and the
+ * welder. */
 #include "support/support.h"
 
 #include "core/base/memory.h"

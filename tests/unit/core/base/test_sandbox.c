@@ -1,3 +1,5 @@
+/* Tests the sandbox: work runs in a child that can open and reach nothing, and its crashes,
+ * hangs and answers are handled. */
 #define _GNU_SOURCE /* memfd_create */
 #include "support/support.h"
 
@@ -14,7 +16,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-/* What the child is asked to do, and what it leaves in the memory that both see. */
+/* Deeds that the child is asked to do, and its results in the memory that both see. */
 typedef enum deed {
     ADD,
     READ,
@@ -255,7 +257,7 @@ static void test_the_parents_files_are_closed(void **state)
     cwi_sandbox_close(&box);
 }
 
-/* What comes ahead of the door, where files may still be opened. */
+/* Work that comes before the door closes, where files may still be opened. */
 static cw_status look_around(void *state, cw_error *err)
 {
     memory_of_child *m = state;

@@ -1,3 +1,5 @@
+/* Tests cameras: fitting boxes into the picture, turning views, refused angles and camera
+ * texts. */
 #include "support/support.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Tests camera controls: orbit, pan, roll, dolly, and the projection of points and pixels. */
 #include "support/support.h"
 
 #include <math.h>

@@ -1,3 +1,5 @@
+/* Tests volumes: types, views, crops, coarsening, world points, sampling, statistics and made
+ * fields. */
 #include "support/support.h"
 
 #include <math.h>
@@ -366,8 +368,8 @@ static void world_of(const cw_volume *v, double i, double j, double k, double wo
     cw_volume_to_world(v, (const double[3]){i, j, k}, world);
 }
 
-/* What is linear in the world is linear between voxels, however they are sheared; and on a
- * rectilinear grid however far they are apart. */
+/* A field that is linear in the world is linear between voxels, however they are sheared; and
+ * on a rectilinear grid however far they are apart. */
 static void linear_fields_are_sampled_exactly(void **state)
 {
     (void)state;

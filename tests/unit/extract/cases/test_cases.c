@@ -76,8 +76,8 @@ static void triangles_use_exactly_the_crossed_edges(void **state)
     }
 }
 
-/* What is counted without the tables, 64 cells a word, is what they say: some cases, a cell
- * each. */
+/* Counts made without the tables, 64 cells a word, equal those of the tables: some cases, a
+ * cell each. */
 static void expect_counts(int first)
 {
     enum { CELLS = 64 * CWI_WORDS };
@@ -107,7 +107,7 @@ static void words_count_as_the_tables(void **state)
         expect_counts(cube);
 }
 
-/* What the tables tell twice is the same. */
+/* Sums that the tables hold twice are the same. */
 static void summaries_agree(void **state)
 {
     (void)state;
@@ -152,8 +152,8 @@ static void every_case_is_a_surface_bounded_by_its_faces(void **state)
     }
 }
 
-/* What a face shows depends on its four corners only, and its two cubes see it mirrored: so the
- * surfaces of neighbours meet along the whole face, in opposite directions. */
+/* A face depends on its four corners only, and its two cubes see it mirrored: so the surfaces
+ * of neighbours meet along the whole face, in opposite directions. */
 static void neighbours_draw_the_same_segments(void **state)
 {
     (void)state;

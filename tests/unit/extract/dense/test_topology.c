@@ -17,7 +17,7 @@ static size_t grid_count(const grid *g)
     return g->dim[0] * g->dim[1] * g->dim[2];
 }
 
-/* What came of one extraction; no assertion, so that many can be made at once. */
+/* Outcome of one extraction; no assertion, so that many can be made at once. */
 typedef struct outcome {
     bool extracted, manifold; /* as indexed and welded, without zero-area triangles */
     size_t components;

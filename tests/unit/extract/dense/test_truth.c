@@ -140,8 +140,8 @@ static void single_cells_have_their_tunnels(void **state)
     }
 }
 
-/* What has been counted on grids without order is seen in pictures; what is not has features
- * thinner than the finest picture. */
+/* Topology counted on grids without order is seen in pictures; where it cannot be counted,
+ * features are thinner than the finest picture. */
 static void both_ways_agree_on_nearly_all_random_grids(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* What is thin all over comes back from a level set whose voxels are divided where
+/* Tests that shapes thin all over come back from a level set whose voxels are divided where
  * that helps. */
 #include "support/surface.h"
 
@@ -166,7 +166,7 @@ static void threads_change_nothing(void **state)
     cw_mesh_free(&three);
 }
 
-/* Where memory is limited, or smaller parts are not wanted, it is told what is lost. */
+/* Losses are reported where memory is limited, or smaller parts are not wanted. */
 static void what_is_lost_is_told(void **state)
 {
     (void)state;

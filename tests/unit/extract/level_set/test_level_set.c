@@ -17,7 +17,7 @@ static cw_mesh surface_of(cw_field field, size_t n)
     return mesh;
 }
 
-/* A cube with sides of so many millimetres. */
+/* A cube with sides of `side` millimetres. */
 static cw_mesh make_cube(float side)
 {
     cw_mesh mesh = {0};
@@ -85,7 +85,7 @@ static void a_mesh_comes_back_within_half_a_voxel(void **state)
     }
 }
 
-/* What a cube loses at its edges and corners, whatever the place of the samples. */
+/* The loss of a cube at its edges and corners, whatever the place of the samples. */
 static void edges_lose_no_more_than_is_said(void **state)
 {
     (void)state;
@@ -228,7 +228,7 @@ static void distances_are_those_from_the_mesh(void **state)
     cw_mesh_free(&cube);
 }
 
-/* What is hollow is so on the inside, too, and stays it. */
+/* A hollow shape stays hollow on the inside, too. */
 static void cavities_stay(void **state)
 {
     (void)state;

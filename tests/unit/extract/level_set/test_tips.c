@@ -1,4 +1,5 @@
-/* What is sharper, or thinner, than voxels comes back from a level set all the same. */
+/* Tests that shapes sharper, or thinner, than voxels come back from a level set all the
+ * same. */
 #include "support/surface.h"
 
 #include <math.h>
@@ -199,7 +200,7 @@ static void tips_needles_grooves_and_fins_come_back(void **state)
     assert_true(3 * refined <= count);
 }
 
-/* Without finer voxels it may not, and that is told. */
+/* Without finer voxels a shape may be lost, and that is reported. */
 static void what_is_lost_is_told(void **state)
 {
     (void)state;

@@ -61,7 +61,7 @@ static double smallest_angle(double p[3][3])
     return smallest;
 }
 
-/* The share of triangles with an angle below so many degrees; and the smallest angle. */
+/* Returns the share of triangles with an angle below `degrees`; and the smallest angle. */
 static double share_below(const cw_mesh *mesh, double degrees, double *smallest)
 {
     size_t count = 0;

@@ -36,7 +36,7 @@ static double noise(double x, double y, double z)
 
 static const size_t dim[3] = {80, 48, 56}; /* several blocks along each axis */
 
-/* What is beyond `far` from the surface of the ball is cut off, as narrow bands are. */
+/* Cuts off the field beyond `far` from the surface of the ball, as narrow bands are. */
 static cw_volume make_dense(field f, cw_type type, double scale, double far)
 {
     cw_volume v;
@@ -256,7 +256,7 @@ static void test_tiles(void **state)
     cw_mesh_free(&m);
 }
 
-/* A tile whose sides alone are more than memory may hold is told at once. */
+/* A tile whose sides alone are more than memory may hold is refused at once. */
 static void test_too_large(void **state)
 {
     const cw_tile tile = {{0, 0, 0}, {1u << 29, 1u << 29, 1u << 29}, 2};

@@ -1,3 +1,5 @@
+/* Tests the writer of 3MF: names in the archive, vertices, triangles, parts, colours and
+ * limits. */
 #include "support/files/unzip.h"
 
 #include "formats/mesh/mesh_writer.h"

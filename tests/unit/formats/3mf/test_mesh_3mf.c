@@ -166,8 +166,8 @@ static void what_is_built_is_what_items_name(void **state)
     cw_parts_free(parts, count);
 }
 
-/* What supports is of four triangles, and eight as components; what is 'other' is placed by an
- * item and by a component. */
+/* An object for support has four triangles, and eight as components; an object of type 'other'
+ * is placed by an item and by a component. */
 static void what_is_left_out_is_counted_by_type(void **state)
 {
     (void)state;

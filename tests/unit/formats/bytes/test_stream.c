@@ -1,3 +1,4 @@
+/* Tests byte streams: gzip, zlib and base64 text, damage, tails, and skipping. */
 #define _GNU_SOURCE /* memfd_create */
 #include "formats/bytes/inflate_stream.h"
 #include "support/files/reading.h"
@@ -163,12 +164,12 @@ static size_t make_mixed(unsigned char *to, size_t room, uint32_t seed)
 
 #define BEHIND "is behind the end of the compressed data"
 
-/* What may follow packed bytes in a file, besides another member. */
+/* Tails that may follow packed bytes in a file, besides another member. */
 static const struct {
     const char *bytes;
     size_t size;
     const char *told; /* NULL: it may follow */
-    size_t at;        /* the byte that BEHIND is told of */
+    size_t at;        /* the byte that BEHIND names */
 } tails[] = {
     {"", 0, NULL, 0},
     {"\0", 1, NULL, 0},

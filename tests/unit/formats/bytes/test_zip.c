@@ -1,3 +1,4 @@
+/* Tests the writer of ZIP archives: entries, equal bytes in each run, and sizes of 64 bits. */
 #include "support/files/unzip.h"
 
 #include "core/base/memory.h"

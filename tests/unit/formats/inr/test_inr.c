@@ -1,3 +1,5 @@
+/* Tests the reader of INR: types, byte orders, gzip, long or damaged headers, cuts and
+ * tails. */
 #include "support/files/reading.h"
 #include "support/files/regions.h"
 

@@ -141,7 +141,7 @@ static void gltf_has_its_own(void **state)
     cw_mesh_free(&mesh);
 }
 
-/* The step is told in millimetres, whatever the file counts in. */
+/* The step is reported in millimetres, whatever the file counts in. */
 static void loss_is_that_of_the_file(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* What holds for every mesh reader: what we write comes back; limits, names, starvation. */
+/* Tests every mesh reader: meshes that we write come back; limits, names, starvation. */
 #include "support/meshes.h"
 
 #include <math.h>

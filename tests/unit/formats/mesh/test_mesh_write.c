@@ -1,3 +1,5 @@
+/* Tests mesh writing in every format: refused paths and formats, ended writes, names, and
+ * reported loss. */
 #define _GNU_SOURCE /* mkfifo, setrlimit */
 #include "support/support.h"
 
@@ -13,7 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* What can go wrong before a writer is asked, as one row a mistake. */
+/* Mistakes that are found before a writer is called, as one row each. */
 static void mistakes_are_named_with_the_path(void **state)
 {
     (void)state;
@@ -192,7 +194,7 @@ static void writes_that_are_ended_keep_the_old_file(void **state)
     cw_volume_free(&v);
 }
 
-/* What stands at the path is looked at before anything is written, whatever the format. */
+/* The path is looked at before anything is written, whatever the format. */
 static void only_files_are_replaced(void **state)
 {
     (void)state;
@@ -374,7 +376,7 @@ static void what_a_format_does_not_keep_is_told(void **state)
     cw_mesh_free(&mesh);
 }
 
-/* What was at one place, or flat, before the rounding is no loss. */
+/* Vertices at one place, or flat triangles, before the rounding are no loss. */
 static void what_was_not_there_cannot_be_lost(void **state)
 {
     (void)state;

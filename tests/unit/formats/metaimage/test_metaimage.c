@@ -1,3 +1,5 @@
+/* Tests the reader of MetaImage: frames, types, encodings, data files, and damaged or lying
+ * headers. */
 #define _GNU_SOURCE /* symlink */
 #include "support/files/reading.h"
 #include "support/files/regions.h"

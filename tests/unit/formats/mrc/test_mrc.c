@@ -1,3 +1,5 @@
+/* Tests the reader of MRC maps: modes, orders of axes, origins, oblique cells, and damaged
+ * headers. */
 #include "support/files/reading.h"
 #include "support/files/regions.h"
 

@@ -1,3 +1,5 @@
+/* Tests the reader of NIfTI: versions, sform and qform, units, scaling, pairs of files, and
+ * damage. */
 #define _GNU_SOURCE /* symlink */
 #include "formats/nifti/nifti.h"
 #include "support/files/reading.h"

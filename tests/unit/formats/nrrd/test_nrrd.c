@@ -1,3 +1,5 @@
+/* Tests the reader of NRRD: frames, roles of axes, encodings, data files, limits, and damaged
+ * headers. */
 #define _GNU_SOURCE /* symlink, mkfifo */
 #include "formats/bytes/bzip2.h"
 #include "support/files/reading.h"
@@ -61,7 +63,7 @@ static void slicer_says_that_its_values_are_labels(void **state)
     cw_volume_free(&v);
 }
 
-/* What headers say of place and direction, and the affine on paper. */
+/* Headers with place and direction, and the affine on paper. */
 static void frames_are_turned_to_lps_millimetres(void **state)
 {
     (void)state;
@@ -378,7 +380,7 @@ static void only_files_are_opened(void **state)
                  "nrrd, nifti, metaimage", err);
 }
 
-/* What is wrong, and words of the message. */
+/* Damaged headers, and words of the message. */
 static void damaged_headers_are_told_field_by_field(void **state)
 {
     (void)state;

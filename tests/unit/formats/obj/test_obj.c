@@ -1,3 +1,4 @@
+/* Tests the writer of OBJ: exact places, origins, faces and normals. */
 #include "support/support.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* Tests the writer of PLY: all arrays of a mesh, the header, text, and origins. */
 #include "support/support.h"
 
 #include <math.h>

@@ -1,3 +1,5 @@
+/* Tests the reader of raw voxels: layouts from text, offsets, sizes, and slices in files of
+ * their own. */
 #include "support/files/reading.h"
 #include "support/files/regions.h"
 

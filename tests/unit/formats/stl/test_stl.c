@@ -1,3 +1,4 @@
+/* Tests the writer of STL: facets, normals, origins, reported loss, and text. */
 #include "support/support.h"
 
 #include "formats/mesh/mesh_writer.h"
@@ -144,7 +145,8 @@ static void a_closed_mesh_stays_closed(void **state)
     cw_mesh_free(&mesh);
 }
 
-/* What a reader makes of a file: three vertices a facet, and those at one place merged. */
+/* Makes a mesh of a file as a reader does: three vertices a facet, and those at one place
+ * merged. */
 static cw_quality read_and_weld(const char *path)
 {
     cw_quality q;

@@ -1,3 +1,4 @@
+/* Tests numbers printed as text: rounding, and floats that come back to the bit. */
 #include "support/support.h"
 
 #include "formats/text/number_format.h"

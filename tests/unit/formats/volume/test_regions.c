@@ -1,3 +1,5 @@
+/* Tests reading of regions: crops in any order of axes, limits, checks of whole files, and
+ * interruption. */
 #include "support/files/reading.h"
 #include "support/files/regions.h"
 
@@ -199,7 +201,7 @@ static void what_is_behind_the_region_is_not_read(void **state)
     free(packed);
 }
 
-/* What a file claims is checked of all of it, also of what is not wanted. */
+/* The claims of a file are checked for all of it, also for parts that are not wanted. */
 static void files_are_checked_whole(void **state)
 {
     (void)state;

@@ -1,3 +1,5 @@
+/* Tests pictures of slices: colours, perspective, radiological orientation, hiding, and
+ * clipping. */
 #include "support/pictures.h"
 
 #include "viewer/scene/slice.h"

@@ -1,3 +1,5 @@
+/* Tests the writers of volumes: types, frames, strides, time steps, scaling, and interrupted
+ * writes. */
 #define _GNU_SOURCE /* locale_t, in core/base/text.h */
 #include "support/files/reading.h"
 

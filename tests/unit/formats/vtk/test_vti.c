@@ -1,3 +1,5 @@
+/* Tests the reader of VTI: every dialect, frames, arrays, tables of blocks, and damaged
+ * files. */
 #include "support/files/regions.h"
 #include "support/files/vtk_xml.h"
 

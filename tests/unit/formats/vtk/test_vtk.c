@@ -1,3 +1,4 @@
+/* Tests the reader of legacy VTK: types, arrays, old and new words, and damaged files. */
 #include "support/files/reading.h"
 #include "support/files/regions.h"
 

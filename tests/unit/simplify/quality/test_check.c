@@ -119,7 +119,7 @@ static void a_promise_that_was_not_looked_at_does_not_hold(void **state)
     forget(&k);
 }
 
-/* What is just at a limit is within it. */
+/* A number just at a limit is within it. */
 static void limits_belong_to_what_they_allow(void **state)
 {
     (void)state;

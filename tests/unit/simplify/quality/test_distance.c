@@ -9,7 +9,7 @@
 
 typedef double distance_of(const double p[3]);
 
-/* What the call should find, by closed form, densely. */
+/* Distances that the call should find, by closed form, densely. */
 typedef struct truth {
     double max, rms, mean;
 } truth;

@@ -157,8 +157,8 @@ static void the_largest_distance_is_between_its_bounds(void **state)
     }
 }
 
-/* What is told of each triangle of a mesh, against the bounds of its largest distance when it
- * is alone. Counts those that are beyond. */
+/* Compares the verdict on each triangle of a mesh with the bounds of its largest distance when
+ * it is alone. Counts the triangles beyond the limit. */
 static size_t verdicts_agree(const cw_mesh *mesh, const cw_mesh *reference, double limit)
 {
     const cw_mesh_distance_desc how = {.tolerance_mm = 2e-3 * limit, .step_mm = 100};
@@ -393,7 +393,7 @@ static void cgal_finds_the_same_hausdorff_distance(void **state)
     }
 }
 
-/* What a visit is to do: mark the items that a box overlaps, by slot. */
+/* State of a visit that marks the items that a box overlaps, by slot. */
 typedef struct marking {
     const cwi_boxes *tree;
     const float *box;

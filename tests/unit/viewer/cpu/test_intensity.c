@@ -1,3 +1,4 @@
+/* Tests intensity projections on the CPU: extremes, means, local maxima, and skipped blocks. */
 #include "support/pictures.h"
 #include "support/rays.h"
 
@@ -126,7 +127,8 @@ static void pictures_show_the_value(void **state)
     cw_renderer_free(r);
 }
 
-/* What is passed over would not have been told; values in their blocks or not. */
+/* Blocks that are passed over would not have changed the picture; values in their blocks or
+ * not. */
 static void passing_over_blocks_changes_nothing(void **state)
 {
     (void)state;

@@ -1,3 +1,5 @@
+/* Tests the reference renderer of volumes against formulas: opacity, depth cue, cells without
+ * values, and meshes. */
 #include "support/pictures.h"
 #include "support/rays.h"
 
@@ -201,7 +203,7 @@ static void many_small_steps_agree(void **state)
     }
 }
 
-/* What is lost to the background rises with depth: by parts, on paper. */
+/* The share lost to the background rises with depth: integrated by parts, on paper. */
 static void depth_cue_is_exact_on_paper(void **state)
 {
     (void)state;

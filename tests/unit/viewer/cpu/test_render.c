@@ -1,3 +1,4 @@
+/* Tests the rasterizer on the CPU: coverage, views, holes, hiding, perspective, and errors. */
 #include "support/support.h"
 
 #include "core/base/memory.h"

@@ -1,3 +1,5 @@
+/* Tests the V-buffer renderer against the reference: peaks within cells, ends of rays, types,
+ * and threads. */
 #include "support/pictures.h"
 
 #include "core/base/memory.h"

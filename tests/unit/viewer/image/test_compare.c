@@ -1,3 +1,5 @@
+/* Tests the comparison of pictures: colour differences, similarity, percentiles, and pictures
+ * of differences. */
 #include "support/support.h"
 
 #include "viewer/image/color_difference.h"

@@ -1,3 +1,4 @@
+/* Tests overlays: strokes, boxes, glyphs, scale bar, colour bar, and histogram. */
 #include "support/pictures.h"
 
 #include "viewer/image/strokes.h"

@@ -1,3 +1,4 @@
+/* Tests the handles of a box: projection, choice, dragging, and the edges that are drawn. */
 #include "support/support.h"
 
 #include "viewer/interact/clip_box_handles.h"

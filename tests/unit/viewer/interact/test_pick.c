@@ -1,3 +1,4 @@
+/* Tests picking: in blended volumes, extremes, slices, and meshes. */
 #include "support/pictures.h"
 #include "support/rays.h"
 #include "support/views.h"
@@ -50,7 +51,7 @@ static double distance(const double a[3], const double b[3])
     return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
 }
 
-/* What the reference's ray has covered up to the picked point is a half. */
+/* Checks that the reference's ray has covered a half up to the picked point. */
 static void assert_half_is_before(const cw_scene *scene, double x, double y, const cw_picked *p)
 {
     const cwi_frame frame = test_frame(scene);

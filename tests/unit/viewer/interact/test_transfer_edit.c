@@ -1,3 +1,4 @@
+/* Tests edits of transfer functions: points, moves, opacities, colours, and random edits. */
 #include "support/support.h"
 
 #include "viewer/interact/transfer_edit.h"

@@ -1,3 +1,4 @@
+/* Tests ray casting: a constant box on paper, the end of rays, and skipping. */
 #include "support/pictures.h"
 
 #include <math.h>
@@ -69,7 +70,7 @@ static void rays_end_where_hardly_any_light_is_left(void **state)
     cw_volume_free(&box);
 }
 
-/* What is passed over is empty. */
+/* Parts that are passed over are empty. */
 static void skipping_changes_nothing(void **state)
 {
     (void)state;

@@ -1,3 +1,4 @@
+/* Tests meshes cut by planes: caps, hollows, and a mesh in a volume. */
 #include "support/sheets.h"
 
 enum { SIDE = 96 };

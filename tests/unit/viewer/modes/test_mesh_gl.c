@@ -1,3 +1,5 @@
+/* Tests meshes drawn by OpenGL against the CPU: blending, edges, scalars, and the shape of
+ * triangles. */
 #include "support/sheets.h"
 
 #include "viewer/scene/mesh_tint.h"
@@ -389,7 +391,7 @@ static void ramp_is_perceptually_even(void **state)
     }
 }
 
-/* An equilateral triangle and a right one are told apart. */
+/* An equilateral triangle and a right one look different. */
 static void shape_of_triangles_is_shown(void **state)
 {
     (void)state;

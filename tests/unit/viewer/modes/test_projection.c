@@ -1,3 +1,5 @@
+/* Tests cell projection against formulas and ray casting: pieces of cells, degenerate views,
+ * and bricks. */
 #include "support/views.h"
 
 #include "viewer/proxy/projected_cells.h"

@@ -1,3 +1,5 @@
+/* Tests textures shaded by quantised gradients: directions, relighting, boundaries, and
+ * bricks. */
 #include "support/integral.h"
 
 #include "viewer/proxy/quantized_normals.h"
@@ -62,7 +64,8 @@ static void more_directions_are_nearer_to_exact(void **state)
     cw_volume_free(&blobs);
 }
 
-/* What a ramp's one gradient, quantised, reflects of a light in the camera's frame. */
+/* Computes how much a ramp's one gradient, quantised, reflects of a light in the camera's
+ * frame. */
 static void gain_of(const cw_scene *scene, double gain[3])
 {
     cw_error err = {0};
@@ -120,8 +123,8 @@ static void a_ramp_is_shaded_as_computed(void **state)
     cw_volume_free(&ramp);
 }
 
-/* Another light changes the table of colours, and nothing else: voxels that were written to in
- * secret do not show until the renderer is told. */
+/* Another light changes the table of colours, and nothing else: voxels that were changed in
+ * secret do not show until cw_renderer_forget() is called. */
 static void relighting_leaves_the_texture_alone(void **state)
 {
     (void)state;

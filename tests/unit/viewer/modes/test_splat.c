@@ -1,3 +1,5 @@
+/* Tests splatting: sums of footprints, opacity along the path, and errors against ray
+ * casting. */
 #include "support/views.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Tests splatting of a tree of nodes: errors, mass of the levels, and budgets of splats. */
 #include "support/views.h"
 
 #include "viewer/proxy/value_octree.h"
@@ -45,7 +46,7 @@ static void no_error_is_flat_splatting(void **state)
     cw_volume_free(&blobs);
 }
 
-/* What is allowed to differ more, does, and starts near nothing. */
+/* A tree with a larger allowed error differs more, and the difference starts near nothing. */
 static void error_rises_with_the_threshold(void **state)
 {
     (void)state;

@@ -1,3 +1,4 @@
+/* Tests slices through textures: matrix, marked boxes, bricks, convergence, and skipping. */
 #include "support/integral.h"
 
 #include "viewer/proxy/view_slabs.h"
@@ -342,7 +343,7 @@ static void opacity_is_of_a_length(void **state)
     cw_volume_free(&v);
 }
 
-/* What a mode adds to the integral agrees with ray casting in small steps. */
+/* Everything that a mode adds to the integral agrees with ray casting in small steps. */
 static void everything_else_is_as_along_rays(void **state)
 {
     (void)state;

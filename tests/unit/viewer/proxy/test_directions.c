@@ -1,3 +1,4 @@
+/* Tests the map of quantised directions: the nearest one is found, and angles are bounded. */
 #include "support/support.h"
 
 #include "viewer/proxy/quantized_normals.h"

@@ -1,3 +1,4 @@
+/* Tests transfer functions: values between points, files and texts, errors, and presets. */
 #include "support/support.h"
 
 #include "viewer/scene/transfer_json.h"
@@ -373,7 +374,7 @@ static void auto_leaves_out_what_is_around_things(void **state)
     cw_statistics_free(&s);
 }
 
-/* What stands at Hounsfield units does so whatever the values. */
+/* Presets at Hounsfield units stay there whatever the values. */
 static void ct_presets_stand_still(void **state)
 {
     (void)state;
