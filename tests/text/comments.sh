@@ -14,7 +14,7 @@ find "$@" -type f \( -name '*.c' -o -name '*.h' -o -name '*.cpp' -o -name '*.hpp
 bad=0
 
 # shellcheck disable=SC2046
-awk 'FNR == 1 && !/^\/[*\/] ?[A-Z0-9]/ { print FILENAME ":1: opens with no sentence"; bad = 1 } END { exit bad }' \
+awk 'FNR == 1 && !/^\/[*\/] ?[A-Za-z0-9]/ { print FILENAME ":1: opens with no sentence"; bad = 1 } END { exit bad }' \
     $(cat "$folder/sources") || bad=1
 
 grep -v '^ *\(#\|$\)' "$here/riddles.txt" >"$folder/riddles"

@@ -34,7 +34,7 @@ static void check_loops(const cwi_shape *s, unsigned inside, const cwi_config *c
         assert_int_equal(met[e], (inside >> s->edges[e][0] ^ inside >> s->edges[e][1]) & 1);
 }
 
-/* What bounds the triangles is the loops, and no other side of them is in a wall. */
+/* The loops bound the triangles; no other side of a triangle is in a wall. */
 static void check_triangles(const cwi_shape *s, const cwi_config *config, unsigned code)
 {
     sides all = {0};

@@ -33,7 +33,7 @@ static cw_status take_whole(void *user, const cw_slab *slab, cw_error *err)
     return CW_OK;
 }
 
-/* A slab is all of it, and an extractor makes it anew. */
+/* One slab holds the whole surface; an extractor makes it again. */
 static void slabs_and_extractors_give_the_same(void **state)
 {
     (void)state;

@@ -185,7 +185,7 @@ static double farthest_vertex(const cw_mesh *a, const cw_mesh *b)
 }
 
 /* Draco passes options on as text of six decimals; grids must not depend on it. Farther from 0
- * than floats have digits for, vertices may merge, which is told. */
+ * than floats have digits for, vertices may merge, which is reported. */
 static void draco_takes_any_unit_place_and_bits(void **state)
 {
     (void)state;

@@ -1,3 +1,4 @@
+/* glTF written: arrays to the bit, frames and units, colours, provenance, sizes. */
 #define _GNU_SOURCE /* fork, setrlimit */
 #include "support/support.h"
 
