@@ -38,18 +38,19 @@ const cli_command *cli_find_command(const char *name, cw_error *err)
 }
 
 /* Where a command has --memory, it is a limit to the whole process: what it has taken by now,
- * and what stacks and buffers will, comes off. Less than LEAST is a limit to voxels and surface
+ * and what stacks and buffers will, comes off. Less than MINIMUM is a limit to voxels and surface
  * only, for the program itself does not fit. */
 static void limit_memory(const cli_command *command, const cli_common *args)
 {
-    enum { STACKS_AND_BUFFERS = 6 << 20, LEAST = 32 << 20 };
+    enum { STACKS_AND_BUFFERS = 6 << 20, MINIMUM = 32 << 20 };
     for (size_t n = 0; n < command->option_count; n++) {
         const cli_option *o = &command->options[n];
         cli_input input = {0};
         if (o->kind == CLI_HEADING || strcmp(o->name, "memory") != 0)
             continue;
         memcpy(&input.memory, (const char *)args + o->offset, sizeof input.memory);
-        const size_t asked = cli_memory_limit(&input), limit = asked > LEAST ? asked : LEAST;
+        const size_t asked = cli_memory_limit(&input),
+                     limit = asked > MINIMUM ? asked : MINIMUM;
         const size_t spent = cli_peak_bytes() + STACKS_AND_BUFFERS;
         cw_memory_limit(limit > spent ? limit - spent : 1);
     }

@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { LEAST_LAYERS = 16 };
+enum { MIN_LAYERS = 16 };
 
 static size_t triangles_before(const cwi_plan *p, size_t layer)
 {
@@ -29,7 +29,7 @@ static size_t vertices_before(const cwi_plan *p, size_t layer)
 static size_t end_of_slab(const cwi_plan *p, size_t begin, size_t triangles)
 {
     const size_t last = p->grid.rows_z - 1;
-    size_t end = begin + LEAST_LAYERS;
+    size_t end = begin + MIN_LAYERS;
     while (end < last && triangles_before(p, end) - triangles_before(p, begin) < triangles)
         end++;
     return end >= last || p->counts.triangles - triangles_before(p, end) < triangles / 2 ? last

@@ -4,7 +4,7 @@
 
 #include <cubewright/simplify.h>
 
-/* How many numbers of a vertex have a weight: at most CWI_MOST_ATTRIBUTES. */
+/* How many numbers of a vertex have a weight: at most CWI_MAX_ATTRIBUTES. */
 size_t cwi_attributes_count(const cw_simplify_desc *desc);
 
 /* Fails for weights that are no weights, or of what the mesh has not. */

@@ -14,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST = 1 << 30 };
+enum { MAXIMUM = 1 << 30 };
 
 bool cw_simplify_available(void)
 {
@@ -23,7 +23,7 @@ bool cw_simplify_available(void)
 
 static cw_status check_desc(const cw_mesh *mesh, const cw_simplify_desc *d, cw_error *err)
 {
-    if (mesh->triangle_count > MOST || mesh->vertex_count > MOST)
+    if (mesh->triangle_count > MAXIMUM || mesh->vertex_count > MAXIMUM)
         return cwi_fail(err, CW_ERR_LIMIT,
                         "%zu triangles and %zu vertices; at most 2^30 of either are simplified",
                         mesh->triangle_count, mesh->vertex_count);

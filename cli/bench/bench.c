@@ -19,7 +19,7 @@ const char *const cli_bench_status_names[] = {"done", "left-out", "missing", "fa
 
 /* --- what is measured of a result --------------------------------------------------------- */
 
-enum { MOST_VERTICES = 100000 }; /* of larger meshes, only every n-th vertex */
+enum { MAX_VERTICES = 100000 }; /* of larger meshes, only every n-th vertex */
 
 /* Of a file the truth is the field between its voxels. */
 static cw_status measure_by_field(const cli_bench *b, const cw_mesh *mesh, cli_bench_row *row,
@@ -53,7 +53,7 @@ static cw_status measure_truth(const cli_bench *b, const cw_mesh *mesh, cli_benc
                                cw_error *err)
 {
     const cli_bench_case *c = b->now;
-    const size_t one_of = mesh->vertex_count / MOST_VERTICES + 1;
+    const size_t one_of = mesh->vertex_count / MAX_VERTICES + 1;
     cli_sample sample;
     cw_status st = cli_take_sample(mesh, CLI_STUDY_SAMPLE, c->voxel_mm, &sample, err);
     if (st == CW_OK && c->path) {
@@ -168,7 +168,7 @@ static int by_value(const void *a, const void *b)
 
 static double find_median(const double *times, size_t count)
 {
-    double sorted[CLI_BENCH_MOST_RUNS];
+    double sorted[CLI_BENCH_MAX_RUNS];
     memcpy(sorted, times, count * sizeof *times);
     qsort(sorted, count, sizeof *sorted, by_value);
     return count % 2 ? sorted[count / 2] : 0.5 * (sorted[count / 2 - 1] + sorted[count / 2]);

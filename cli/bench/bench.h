@@ -25,10 +25,10 @@ typedef enum cli_bench_status {
 extern const char *const cli_bench_status_names[];
 
 enum {
-    CLI_BENCH_MOST_RUNS = 99,
-    CLI_BENCH_BITS = 14,     /* of compressed coordinates */
-    CLI_BENCH_SHARE = 10,    /* of the triangles, in %, that simplification leaves */
-    CLI_BENCH_MOST_ROWS = 16 /* of a case */
+    CLI_BENCH_MAX_RUNS = 99,
+    CLI_BENCH_BITS = 14,    /* of compressed coordinates */
+    CLI_BENCH_SHARE = 10,   /* of the triangles, in %, that simplification leaves */
+    CLI_BENCH_MAX_ROWS = 16 /* of a case */
 };
 
 /* Who does which work, and how; a table in bench_work.c. */
@@ -41,9 +41,9 @@ typedef struct cli_bench_row {
     bool is_peer;
     int threads; /* that it may use */
     cli_bench_status status;
-    char why[CLI_WHY_ROOM]; /* unless it is done */
+    char why[CLI_WHY_CAPACITY]; /* unless it is done */
 
-    double times[CLI_BENCH_MOST_RUNS];
+    double times[CLI_BENCH_MAX_RUNS];
     size_t runs;
     double seconds; /* the median */
     double ratio;   /* of a peer: its median by that of our row `against`; 0: none */
@@ -67,7 +67,7 @@ typedef struct cli_bench_case {
     double iso, voxel_mm;
     const char *level; /* how that was found */
     bool inside_is_low;
-    cli_bench_row rows[CLI_BENCH_MOST_ROWS];
+    cli_bench_row rows[CLI_BENCH_MAX_ROWS];
     size_t row_count;
 } cli_bench_case;
 

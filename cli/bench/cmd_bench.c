@@ -24,7 +24,7 @@ typedef struct bench_args {
     int inside, progress;
 } bench_args;
 
-enum { LEAST_SIZE = 8, MOST_SIZE = 1024 };
+enum { MIN_SIZE = 8, MAX_SIZE = 1024 };
 
 static const bench_args defaults = {
     .repeat = 5, .peer_timeout = 60, .sizes = {.count = 3, .n = {64, 128, 256}}};
@@ -125,12 +125,12 @@ static cw_status check_outputs(const bench_args *args, cw_error *err)
 static cw_status check_args(const bench_args *args, cw_error *err)
 {
     for (size_t n = 0; n < args->sizes.count; n++)
-        if (args->sizes.n[n] < LEAST_SIZE || args->sizes.n[n] > MOST_SIZE)
+        if (args->sizes.n[n] < MIN_SIZE || args->sizes.n[n] > MAX_SIZE)
             return cwi_fail(err, CW_ERR_ARGUMENT, "--sizes: %d to %d were expected, not %zu",
-                            LEAST_SIZE, MOST_SIZE, args->sizes.n[n]);
-    if (args->repeat < 1 || args->repeat > CLI_BENCH_MOST_RUNS)
+                            MIN_SIZE, MAX_SIZE, args->sizes.n[n]);
+    if (args->repeat < 1 || args->repeat > CLI_BENCH_MAX_RUNS)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--repeat: 1 to %d was expected, not %zu",
-                        CLI_BENCH_MOST_RUNS, args->repeat);
+                        CLI_BENCH_MAX_RUNS, args->repeat);
     if (args->peer_timeout < 1 || args->peer_timeout > 86400)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--peer-timeout: 1 to 86400 seconds were expected, not %zu",

@@ -40,7 +40,7 @@ static const cli_option options[] = {
 enum { MAX_LEVELS = 3, OTSU_BINS = 512 };
 
 /* As many as readers take. */
-enum { MOST_COMPONENTS = 16 };
+enum { MAX_COMPONENTS = 16 };
 
 typedef struct level {
     const char *name;
@@ -56,7 +56,7 @@ typedef struct facts {
     int level_count;
     cw_array *arrays; /* of a file that has several; else NULL */
     size_t array_count;
-    double (*ranges)[2]; /* array_count x MOST_COMPONENTS: of those that are read */
+    double (*ranges)[2]; /* array_count x MAX_COMPONENTS: of those that are read */
 } facts;
 
 /* otsu parts two classes; dark, medium and bright part four [Otsu1979, Liao2001]. */
@@ -104,7 +104,7 @@ static cw_status find_ranges(const info_args *args, const char *name, double (*r
     cw_status st = cw_volume_read(args->common.inputs[0], &desc, &all, NULL, err);
     if (st != CW_OK)
         return st;
-    for (size_t c = 0; c < all.components && c < MOST_COMPONENTS && st == CW_OK; c++) {
+    for (size_t c = 0; c < all.components && c < MAX_COMPONENTS && st == CW_OK; c++) {
         cw_statistics s = {0};
         st = cw_volume_select(&all, c, 0, &one, err);
         if (st == CW_OK)
@@ -139,12 +139,12 @@ static cw_status find_arrays(const info_args *args, facts *f, cw_error *err)
         f->array_count = 0;
         return st;
     }
-    f->ranges = calloc(f->array_count * MOST_COMPONENTS, sizeof *f->ranges);
+    f->ranges = calloc(f->array_count * MAX_COMPONENTS, sizeof *f->ranges);
     if (!f->ranges)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the ranges of arrays");
     for (size_t n = 0; n < f->array_count && st == CW_OK; n++)
         if (is_reached(f, n))
-            st = find_ranges(args, f->arrays[n].name, f->ranges + n * MOST_COMPONENTS, err);
+            st = find_ranges(args, f->arrays[n].name, f->ranges + n * MAX_COMPONENTS, err);
     return st;
 }
 
@@ -247,7 +247,7 @@ static void print_arrays(const facts *f)
                : a->is_default ? ", taken unless --array names another"
                                : "");
         for (size_t c = 0; c < a->components && is_reached(f, n); c++) {
-            const double *r = f->ranges[n * MOST_COMPONENTS + c];
+            const double *r = f->ranges[n * MAX_COMPONENTS + c];
             printf("%s %.6g to %.6g", c ? "," : ":", r[0], r[1]);
         }
         puts("");
@@ -271,7 +271,7 @@ static void json_arrays(cli_json *j, const facts *f)
         if (is_reached(f, n)) {
             cli_json_open(j, "ranges", '[');
             for (size_t c = 0; c < a->components; c++)
-                cli_json_numbers(j, NULL, f->ranges[n * MOST_COMPONENTS + c], 2);
+                cli_json_numbers(j, NULL, f->ranges[n * MAX_COMPONENTS + c], 2);
             cli_json_close(j, ']');
         }
         cli_json_close(j, '}');

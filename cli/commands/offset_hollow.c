@@ -18,13 +18,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_DRAINS = 16 };
+enum { MAX_DRAINS = 16 };
 
 /* As they are asked for: shares are not resolved before the mesh is read. */
 typedef struct wishes {
-    cli_length voxel, by, drain[MOST_DRAINS];
+    cli_length voxel, by, drain[MAX_DRAINS];
     double sign; /* of by */
-    cw_drain drains[MOST_DRAINS];
+    cw_drain drains[MAX_DRAINS];
     size_t drain_count;
 } wishes;
 
@@ -166,9 +166,9 @@ static cw_status parse_drains(const char *text, wishes *w, cw_error *err)
         next = strchr(here, ',');
         if (next)
             *next++ = '\0';
-        st = w->drain_count < MOST_DRAINS
+        st = w->drain_count < MAX_DRAINS
                  ? parse_drain(here, &w->drain[w->drain_count], &w->drains[w->drain_count], err)
-                 : cwi_fail(err, CW_ERR_ARGUMENT, "--drain: more than %d", MOST_DRAINS);
+                 : cwi_fail(err, CW_ERR_ARGUMENT, "--drain: more than %d", MAX_DRAINS);
         w->drain_count++;
     }
     free(copy);

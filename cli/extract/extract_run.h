@@ -26,7 +26,7 @@ typedef struct cli_extract_args {
 
 /* Decisions made before a surface is extracted. */
 typedef struct cli_extract_plan {
-    cw_simplify_view views[CLI_MOST_VIEWS];
+    cw_simplify_view views[CLI_MAX_VIEWS];
     size_t view_count;
     double fps; /* of --animate; 0: as the file times its steps */
 } cli_extract_plan;

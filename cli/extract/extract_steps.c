@@ -14,7 +14,7 @@ static const double SAME_PICTURE = 1e-4;
 
 /* The largest full surface that --simplify is compared with, in triangles, and what one of them
  * takes then: a few seconds, and a quarter of a gigabyte. */
-enum { MOST_COMPARED = 1000000, COMPARED_BYTES = 256 };
+enum { MAX_COMPARED = 1000000, COMPARED_BYTES = 256 };
 
 static size_t voxel_count(const cw_volume *v)
 {
@@ -179,7 +179,7 @@ static cw_status measure_from_full(cli_extract_run *s, cli_made *made, const cw_
                                    const cw_extract_counts *counts, cw_error *err)
 {
     const cli_wanted w = wants_level(s, made->iso);
-    const bool fits = counts->triangles <= MOST_COMPARED &&
+    const bool fits = counts->triangles <= MAX_COMPARED &&
                       counts->triangles < s->input.volume.memory_left / COMPARED_BYTES;
     double error;
     if (!fits) {

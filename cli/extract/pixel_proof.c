@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_SIDE = 16384, MOST_PATH = 4096, SHOWN = 2 }; /* SHOWN: a difference in 1/255 */
+enum { MAX_SIDE = 16384, MAX_PATH = 4096, SHOWN = 2 }; /* SHOWN: a difference in 1/255 */
 
 /* --- cameras ------------------------------------------------------------------------------ */
 
@@ -38,25 +38,25 @@ static cw_status check_arguments(const cli_pixel_args *a, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--shading %g: above 0 and up to 180 degrees were expected",
                         a->shading.value);
-    if (a->size.count && (a->size.count != 2 || n[0] > MOST_SIDE || n[1] > MOST_SIDE))
+    if (a->size.count && (a->size.count != 2 || n[0] > MAX_SIDE || n[1] > MAX_SIDE))
         return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--size takes two numbers up to %d, such as 1280x720", MOST_SIDE);
+                        "--size takes two numbers up to %d, such as 1280x720", MAX_SIDE);
     return CW_OK;
 }
 
 static cw_status read_files(const char *list, cw_simplify_view *views, size_t *count,
                             cw_error *err)
 {
-    char path[MOST_PATH];
+    char path[MAX_PATH];
     cw_status st = CW_OK;
     for (const char *p = list; st == CW_OK && p; (*count)++) {
         const size_t length = strcspn(p, ",");
         if (length == 0 || length >= sizeof path)
             return cwi_fail(err, CW_ERR_ARGUMENT,
                             "--camera '%s': .json files by comma were expected", list);
-        if (*count == CLI_MOST_VIEWS)
+        if (*count == CLI_MAX_VIEWS)
             return cwi_fail(err, CW_ERR_ARGUMENT, "--camera takes up to %d files",
-                            CLI_MOST_VIEWS);
+                            CLI_MAX_VIEWS);
         memcpy(path, p, length);
         path[length] = '\0';
         st = cw_camera_read(path, &views[*count].camera, err);

@@ -14,7 +14,7 @@ typedef struct cli_pixel_args {
 } cli_pixel_args;
 
 /* Reads the cameras. Fails for what is not usable, or would do nothing without a camera.
- * views  CLI_MOST_VIEWS; *count of them are used */
+ * views  CLI_MAX_VIEWS; *count of them are used */
 CW_NODISCARD cw_status cli_read_views(const cli_pixel_args *args, cw_simplify_view *views,
                                       size_t *count, cw_error *err);
 

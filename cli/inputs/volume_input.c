@@ -267,7 +267,7 @@ static void take_note(void *user, const char *text)
         if (strcmp(volume->notes[n], text) == 0)
             return;
     cli_say("%s: %s", volume->path, text);
-    if (volume->note_count < CLI_MOST_NOTES)
+    if (volume->note_count < CLI_MAX_NOTES)
         snprintf(volume->notes[volume->note_count++], sizeof *volume->notes, "%s", text);
 }
 

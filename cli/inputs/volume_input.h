@@ -180,7 +180,7 @@ typedef struct cli_input {
          CLI_INPUT_ROW(args, max_voxels)},                                                     \
         CLI_MEMORY_OPTION(args)
 
-enum { CLI_MOST_NOTES = 8 };
+enum { CLI_MAX_NOTES = 8 };
 
 /* Facts of an irregular grid: the number of cells of each shape and, once it was read, the
  * box of its points. */
@@ -201,7 +201,7 @@ typedef struct cli_volume {
     cli_grid grid;       /* zeroed for other volumes */
     size_t memory_left;  /* of the limit, after the voxels */
     size_t coarsen[3];   /* the view's step along each axis */
-    char notes[CLI_MOST_NOTES][256]; /* what the reader found and decided on */
+    char notes[CLI_MAX_NOTES][256]; /* what the reader found and decided on */
     size_t note_count;
 } cli_volume;
 

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_WORDS = 32 };
+enum { MAX_WORDS = 32 };
 
 static bool is_mode(const char *word)
 {
@@ -32,9 +32,9 @@ static cw_status add_word(char **words, int *count, const char *item, cw_error *
                         "--compare: '%s' is neither a mode nor an option of pictures, such as "
                         "step-length=2 or no-lit",
                         item);
-    if (*count == MOST_WORDS)
+    if (*count == MAX_WORDS)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--compare: at most %d settings a side",
-                        MOST_WORDS);
+                        MAX_WORDS);
     if (asprintf(&words[*count], "--%s%s", mode ? "mode=" : "", item) < 0)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a comparison");
     ++*count;
@@ -45,7 +45,7 @@ static cw_status add_word(char **words, int *count, const char *item, cw_error *
 static cw_status parse_side(const cli_command *command, const render_args *args,
                             const char *text, size_t length, cli_side *side, cw_error *err)
 {
-    const char *nothing[MOST_WORDS + 2] = {0};
+    const char *nothing[MAX_WORDS + 2] = {0};
     char *copy = strndup(text, length), *next = copy;
     cw_status st = copy ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a comparison");
     while (st == CW_OK && next) {

@@ -26,10 +26,10 @@ typedef struct report_args {
     int inside, progress;
 } report_args;
 
-enum { DEFAULT_DIMS = 96, MOST_DIMS = 1024 };
+enum { DEFAULT_DIMS = 96, MAX_DIMS = 1024 };
 
 /* Of more voxels meshes are studied on every other one, or fewer. */
-static const double MOST_VOXELS = 33554432;
+static const double MAX_VOXELS = 33554432;
 
 static const report_args defaults = {.budget = "60s"};
 
@@ -94,9 +94,9 @@ static cw_status check_dims(report_args *args, cw_error *err)
     if (args->dims.count < 2)
         n[1] = n[2] = n[0];
     for (int a = 0; a < 3; a++)
-        if (n[a] < 8 || n[a] > MOST_DIMS)
+        if (n[a] < 8 || n[a] > MAX_DIMS)
             return cwi_fail(err, CW_ERR_ARGUMENT,
-                            "--dims: 8 to %d samples were expected, not %zu", MOST_DIMS, n[a]);
+                            "--dims: 8 to %d samples were expected, not %zu", MAX_DIMS, n[a]);
     return CW_OK;
 }
 
@@ -211,7 +211,7 @@ static cw_status make_field(run_state *s, cw_error *err)
     return CW_OK;
 }
 
-/* Reads the file. Without --coarsen, chooses a step that leaves at most MOST_VOXELS. */
+/* Reads the file. Without --coarsen, chooses a step that leaves at most MAX_VOXELS. */
 static cw_status read_file(run_state *s, cw_error *err)
 {
     report_args *args = s->args;
@@ -225,7 +225,7 @@ static cw_status read_file(run_state *s, cw_error *err)
         while (st == CW_OK && !shape.cells && !shape.sparse &&
                (double)(shape.dim[0] / step) * (double)(shape.dim[1] / step) *
                        (double)(shape.dim[2] / step) >
-                   MOST_VOXELS)
+                   MAX_VOXELS)
             step++;
         args->input.coarsen = step > 1 ? step : 0;
     }

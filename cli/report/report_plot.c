@@ -12,7 +12,7 @@ enum {
     RIGHT = 20,
     TOP = 16,
     BOTTOM = 52,
-    MOST_GROUPS = 8
+    MAX_GROUPS = 8
 };
 
 typedef struct scale {
@@ -138,7 +138,7 @@ size_t cli_point_number(const cli_study *s, const cli_point *point)
 
 static void put_front(FILE *out, dot *dots, size_t count)
 {
-    bool drawn[CLI_MOST_POINTS] = {false};
+    bool drawn[CLI_MAX_POINTS] = {false};
     const char *separator = "";
     fputs("<polyline class=\"front\" points=\"", out);
     for (size_t turn = 0; turn < count; turn++) {
@@ -188,12 +188,12 @@ static size_t collect_dots(const cli_study *s, cli_family family, dot *dots, dou
 
 void cli_put_plot(FILE *out, const cli_study *s, cli_family family)
 {
-    dot dots[CLI_MOST_POINTS];
-    double cost[CLI_MOST_POINTS], error[CLI_MOST_POINTS];
-    const char *groups[MOST_GROUPS];
+    dot dots[CLI_MAX_POINTS];
+    double cost[CLI_MAX_POINTS], error[CLI_MAX_POINTS];
+    const char *groups[MAX_GROUPS];
     const cli_axis axis = cli_study_axis(s, family);
     const size_t count = collect_dots(s, family, dots, cost, error),
-                 group_count = cli_family_groups(s, family, groups, MOST_GROUPS);
+                 group_count = cli_family_groups(s, family, groups, MAX_GROUPS);
     if (!count) {
         fputs("<p class=\"quiet\">Nothing was measured that could be drawn.</p>", out);
         return;

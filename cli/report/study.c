@@ -159,8 +159,8 @@ cli_axis cli_study_axis(const cli_study *s, cli_family family)
 
 static void mark_front(cli_study *s, cli_family family)
 {
-    double cost[CLI_MOST_POINTS], error[CLI_MOST_POINTS];
-    bool front[CLI_MOST_POINTS];
+    double cost[CLI_MAX_POINTS], error[CLI_MAX_POINTS];
+    bool front[CLI_MAX_POINTS];
     for (size_t n = 0; n < s->point_count; n++) {
         const cli_point *p = &s->points[n];
         const bool counts = p->family == family && p->done && !p->aside;

@@ -39,21 +39,21 @@ typedef struct cli_tried {
     cli_scene scene;
 } cli_tried;
 
-enum { CLI_NAME_ROOM = 64, CLI_WHY_ROOM = 512 };
+enum { CLI_NAME_CAPACITY = 64, CLI_WHY_CAPACITY = 512 };
 
 /* One setting: what it is, and what came of it. */
 typedef struct cli_point {
     cli_family family;
-    int rank;                 /* the lower, the sooner it is tried */
-    const char *group;        /* of its kind in the family */
-    char name[CLI_NAME_ROOM]; /* of the setting */
+    int rank;                     /* the lower, the sooner it is tried */
+    const char *group;            /* of its kind in the family */
+    char name[CLI_NAME_CAPACITY]; /* of the setting */
     cli_tried tried;
     bool shown; /* its mesh is drawn, its triangles' shapes are kept */
 
     bool done;
-    char why[CLI_WHY_ROOM]; /* if not: why it was left out */
-    const char *aside;      /* why it is not compared with the others; NULL: it is */
-    char *command;          /* that does it; owned */
+    char why[CLI_WHY_CAPACITY]; /* if not: why it was left out */
+    const char *aside;          /* why it is not compared with the others; NULL: it is */
+    char *command;              /* that does it; owned */
     double seconds;
     size_t peak_bytes; /* beyond what the process had before; 0: unknown */
     size_t triangles, file_bytes;
@@ -77,7 +77,7 @@ typedef struct cli_axis {
  * errors where a mesh has more. */
 enum {
     CLI_STUDY_SAMPLE = 25000,
-    CLI_MOST_POINTS = 64,
+    CLI_MAX_POINTS = 64,
     CLI_STUDY_WIDTH = 320,
     CLI_STUDY_HEIGHT = 240
 };
@@ -99,7 +99,7 @@ typedef struct cli_study {
     double budget_s;
 
     /* what came of it */
-    cli_point points[CLI_MOST_POINTS];
+    cli_point points[CLI_MAX_POINTS];
     size_t point_count;
     double voxel_mm;
     const char *suffix; /* of meshes: ".glb", or ".stl" in builds without */

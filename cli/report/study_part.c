@@ -7,7 +7,7 @@
 #include <math.h>
 
 /* Triangles that are simplified and compressed a dozen times within a minute. */
-enum { MOST_TRIANGLES = 60000, MOST_DIVISIONS = 6 };
+enum { MAX_TRIANGLES = 60000, MAX_DIVISIONS = 6 };
 
 static cw_extract_desc desc_of(const cli_study *s)
 {
@@ -61,7 +61,7 @@ static bool find_box(const cli_study *s, const cw_volume *v, size_t by, cw_box *
         if (cw_volume_crop(v, &box, &part, NULL) != CW_OK ||
             cw_extract_predict(&part, &desc, &counts, NULL) != CW_OK)
             return false;
-        if (counts.triangles > MOST_TRIANGLES || counts.triangles < MOST_TRIANGLES / 3 ||
+        if (counts.triangles > MAX_TRIANGLES || counts.triangles < MAX_TRIANGLES / 3 ||
             !(depth_of(v, &part) < least))
             continue;
         least = depth_of(v, &part);
@@ -88,13 +88,13 @@ cw_status cli_need_part(cli_study *s, cw_error *err)
         return CW_OK;
     s->part_chosen = true;
     s->part = *s->volume;
-    if (s->full.triangle_count <= MOST_TRIANGLES || s->is_cropped || v->cells || v->sparse ||
+    if (s->full.triangle_count <= MAX_TRIANGLES || s->is_cropped || v->cells || v->sparse ||
         v->coordinates[0])
         return CW_OK;
     size_t by = 2;
-    while (by <= MOST_DIVISIONS && !find_box(s, v, by, &box))
+    while (by <= MAX_DIVISIONS && !find_box(s, v, by, &box))
         by++;
-    if (by > MOST_DIVISIONS)
+    if (by > MAX_DIVISIONS)
         return CW_OK;
     cw_status st = cw_volume_crop(v, &box, &s->part.view, err);
     if (st == CW_OK)

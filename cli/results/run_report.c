@@ -29,7 +29,7 @@ const size_t cli_kept_count = sizeof cli_kept / sizeof *cli_kept;
 
 cw_status cli_report_reserve(cli_report *report, size_t meshes, cw_error *err)
 {
-    const size_t steps = (meshes + 1) * CLI_MOST_STEPS;
+    const size_t steps = (meshes + 1) * CLI_STEPS_PER_MESH;
     cli_made *made = reallocarray(report->made, meshes, sizeof *made);
     report->made = made ? made : report->made;
     cli_step *step = reallocarray(report->steps, steps, sizeof *step);
@@ -75,7 +75,7 @@ void cli_report_warn(cli_report *report, const char *format, ...)
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
     cli_say("cubewright: warning: %s", text);
-    if (made->warning_count < CLI_MOST_WARNINGS)
+    if (made->warning_count < CLI_MAX_WARNINGS)
         memcpy(made->warning[made->warning_count++], text, sizeof text);
 }
 

@@ -17,7 +17,7 @@ typedef struct cli_step {
     size_t peak_bytes, in, out;
 } cli_step;
 
-enum { CLI_MOST_WARNINGS = 3 }; /* about one mesh */
+enum { CLI_MAX_WARNINGS = 3 }; /* about one mesh */
 
 /* How far a mesh is from the one that it was made of, and that from it. */
 typedef struct cli_comparison {
@@ -31,7 +31,7 @@ typedef struct cli_comparison {
     const char *other;  /* what it was made of; default: the input */
 } cli_comparison;
 
-enum { CLI_MOST_VIEWS = 64 }; /* of one mesh */
+enum { CLI_MAX_VIEWS = 64 }; /* of one mesh */
 
 /* Measurements of a promise in one picture, against the full mesh. */
 typedef struct cli_view_proof {
@@ -47,7 +47,7 @@ typedef struct cli_proof {
     double full_seconds;
     size_t culled;              /* triangles that no view sees, left out */
     size_t voxels, seen_voxels; /* of the bricks that views see; 0: not looked for */
-    cli_view_proof views[CLI_MOST_VIEWS];
+    cli_view_proof views[CLI_MAX_VIEWS];
 } cli_proof;
 
 /* Comparison of the surface that --crop left with the whole one. */
@@ -81,7 +81,7 @@ typedef struct cli_made {
     cw_drop_counts components; /* when something was */
     cli_proof proof;
     cli_crop_proof crop;
-    char warning[CLI_MOST_WARNINGS][512];
+    char warning[CLI_MAX_WARNINGS][512];
     size_t warning_count;
     cw_error error; /* with the status CW_OK: none */
 } cli_made;
@@ -104,7 +104,7 @@ typedef struct cli_report {
     double step_start;
 } cli_report;
 
-enum { CLI_MOST_STEPS = 8 }; /* of one mesh */
+enum { CLI_STEPS_PER_MESH = 8 }; /* of one mesh */
 
 /* Grows the capacity to that many meshes, before their first step. CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cli_report_reserve(cli_report *report, size_t meshes, cw_error *err);

@@ -173,10 +173,10 @@ static cw_status run_drop(view *v, int count, char **args, cw_error *err)
 /* Where a widget is once it moves no more: what came just now may still be laid out. */
 static cw_status find_widget(view *v, const char *label, cwi_ui_rect *r, cw_error *err)
 {
-    enum { MOST_FRAMES = 8 };
+    enum { MAX_FRAMES = 8 };
     cwi_ui_rect before = {0};
     bool is_there = false;
-    for (int n = 0; n < MOST_FRAMES; n++) {
+    for (int n = 0; n < MAX_FRAMES; n++) {
         cw_status st = view_frame(v, 0, err);
         if (st != CW_OK)
             return st;

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PANEL_WIDTH = 320, STRIP_HEIGHT = 30, MOST_NAMES = 32, MOST_OPTIONS = 32 };
+enum { PANEL_WIDTH = 320, STRIP_HEIGHT = 30, MAX_NAMES = 32, MAX_OPTIONS = 32 };
 
 /* The menu of a row, "View/Front": whether it is of that menu, and the item's name. */
 static const char *item_of(const view_key *k, const char *menu)
@@ -91,7 +91,7 @@ static size_t split_names(const char *choices, char *room, size_t size, const ch
 {
     size_t count = 0;
     snprintf(room, size, "%s", choices);
-    for (char *c = room; c && count < MOST_NAMES;) {
+    for (char *c = room; c && count < MAX_NAMES;) {
         names[count++] = c;
         c = strchr(c, '/');
         if (c)
@@ -103,7 +103,7 @@ static size_t split_names(const char *choices, char *room, size_t size, const ch
 static void show_choice(view *v, const cli_option *o, const char *label)
 {
     char room[512];
-    const char *names[MOST_NAMES];
+    const char *names[MAX_NAMES];
     const size_t count = split_names(o->value, room, sizeof room, names);
     size_t chosen = (size_t) * (const int *)((const char *)&v->state.args + o->offset);
     if (v->ui->choice(v->window, label, names, count, &chosen))
@@ -142,7 +142,7 @@ static void show_option(view *v, const char *name)
 }
 
 /* The options under a heading of the command's table that do something now: how many. */
-static size_t find_options(const view *v, const char *heading, const char *names[MOST_OPTIONS])
+static size_t find_options(const view *v, const char *heading, const char *names[MAX_OPTIONS])
 {
     bool is_here = false;
     size_t count = 0;
@@ -150,7 +150,7 @@ static size_t find_options(const view *v, const char *heading, const char *names
         const cli_option *o = &v->command->options[n];
         if (o->kind == CLI_HEADING)
             is_here = strncmp(o->name, heading, strlen(heading)) == 0;
-        else if (is_here && count < MOST_OPTIONS &&
+        else if (is_here && count < MAX_OPTIONS &&
                  cli_setting_fits(o->name, v->mode, view_has_mesh(v)))
             names[count++] = o->name;
     }
@@ -159,7 +159,7 @@ static size_t find_options(const view *v, const char *heading, const char *names
 
 static void show_options(view *v, const char *heading)
 {
-    const char *names[MOST_OPTIONS];
+    const char *names[MAX_OPTIONS];
     const size_t count = find_options(v, heading, names);
     if (count == 0 || !v->ui->section(v->window, heading, false))
         return;
@@ -184,11 +184,11 @@ static void show_mode(view *v)
 
 static void show_preset(view *v)
 {
-    const char *names[MOST_NAMES] = {"by mode"};
+    const char *names[MAX_NAMES] = {"by mode"};
     const char *now = v->state.args.scene.transfer;
     size_t count = 1, chosen = 0;
     for (const char *name;
-         count < MOST_NAMES - 1 && (name = cw_transfer_preset_name(count - 1));)
+         count < MAX_NAMES - 1 && (name = cw_transfer_preset_name(count - 1));)
         names[count++] = name;
     for (size_t n = 1; n < count; n++)
         chosen = now && strcmp(names[n], now) == 0 ? n : chosen;
@@ -196,7 +196,7 @@ static void show_preset(view *v)
         chosen = count;
         names[count++] = v->state.is_edited ? "edited" : "a file";
     }
-    if (v->ui->choice(v->window, "Preset", names, count, &chosen) && chosen < MOST_NAMES &&
+    if (v->ui->choice(v->window, "Preset", names, count, &chosen) && chosen < MAX_NAMES &&
         (chosen == 0 || cw_transfer_preset_name(chosen - 1)))
         view_ask(v, "tf %s", chosen ? names[chosen] : "default");
     if (chosen && cw_transfer_preset_name(chosen - 1))

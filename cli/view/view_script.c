@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_WORDS = 16, MOST_BYTES = 1 << 20 };
+enum { MAX_WORDS = 16, MAX_BYTES = 1 << 20 };
 
 /* Behind a command, what looks like a colour is one: #ffeedd. */
 static bool is_comment(const char *c, bool is_first)
@@ -51,18 +51,18 @@ static bool next_word(const char **text, bool is_first, char *out, bool *bad)
 /* Runs the first command of a text, and moves behind it. */
 static cw_status run_first(view *v, const char **text, char *room, cw_error *err)
 {
-    char *words[MOST_WORDS];
+    char *words[MAX_WORDS];
     int count = 0;
     bool bad = false;
-    while (count < MOST_WORDS && next_word(text, count == 0, room, &bad)) {
+    while (count < MAX_WORDS && next_word(text, count == 0, room, &bad)) {
         words[count++] = room;
         room += strlen(room) + 1;
     }
     if (bad)
         return cwi_fail(err, CW_ERR_ARGUMENT, "a quote is not closed: %.60s", *text);
-    if (count == MOST_WORDS)
+    if (count == MAX_WORDS)
         return cwi_fail(err, CW_ERR_ARGUMENT, "'%s' has more than %d words", words[0],
-                        MOST_WORDS - 1);
+                        MAX_WORDS - 1);
     if (**text == '#')
         *text += strcspn(*text, "\n");
     *text += **text != '\0';
@@ -82,14 +82,14 @@ cw_status view_exec(view *v, const char *text, cw_error *err)
 static cw_status read_text(const char *path, char **text, cw_error *err)
 {
     FILE *in = fopen(path, "rb");
-    *text = in ? calloc(1, MOST_BYTES + 1) : NULL;
+    *text = in ? calloc(1, MAX_BYTES + 1) : NULL;
     if (!*text) {
         if (in)
             fclose(in);
         return cwi_fail(err, CW_ERR_IO, "%s: cannot be read", path);
     }
-    const size_t size = fread(*text, 1, MOST_BYTES + 1, in);
-    const bool whole = !ferror(in) && size <= MOST_BYTES && strlen(*text) == size;
+    const size_t size = fread(*text, 1, MAX_BYTES + 1, in);
+    const bool whole = !ferror(in) && size <= MAX_BYTES && strlen(*text) == size;
     fclose(in);
     return whole ? CW_OK
                  : cwi_fail(err, CW_ERR_FORMAT,

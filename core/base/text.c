@@ -187,15 +187,15 @@ static int free_sink(void *sink)
 FILE *cwi_text_open(char **text, size_t *size)
 {
     static const cookie_io_functions_t functions = {.write = put_text, .close = free_sink};
-    enum { FIRST_ROOM = 256 };
+    enum { FIRST_CAPACITY = 256 };
     text_sink *sink = malloc(sizeof *sink);
     FILE *stream = sink ? fopencookie(sink, "w", functions) : NULL;
     *size = 0;
-    *text = stream ? malloc(FIRST_ROOM) : NULL;
+    *text = stream ? malloc(FIRST_CAPACITY) : NULL;
     if (!stream)
         free(sink);
     if (stream)
-        *sink = (text_sink){text, size, *text ? FIRST_ROOM : 0};
+        *sink = (text_sink){text, size, *text ? FIRST_CAPACITY : 0};
     if (*text)
         **text = '\0';
     return stream;

@@ -9,12 +9,12 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_TERMS = 48 };
+enum { MAX_TERMS = 48 };
 
 /* A sum without rounding: its parts do not overlap, and their sizes increase. */
 typedef struct sum {
     int count;
-    double part[MOST_TERMS];
+    double part[MAX_TERMS];
 } sum;
 
 static void add_to_sum(sum *s, double x)

@@ -16,7 +16,7 @@ typedef struct cwi_places {
     size_t slots;
 } cwi_places;
 
-enum { CWI_PLACE_MOST = 1 << 21 };
+enum { CWI_PLACE_MAX = 1 << 21 };
 
 void cwi_places_free(cwi_places *places);
 
@@ -34,7 +34,7 @@ static inline uint64_t cwi_place_key(const uint32_t at[3])
 static inline void cwi_place_of_key(uint64_t key, uint32_t at[3])
 {
     for (int a = 0; a < 3; a++)
-        at[a] = (uint32_t)(key >> 21 * a) & (CWI_PLACE_MOST - 1);
+        at[a] = (uint32_t)(key >> 21 * a) & (CWI_PLACE_MAX - 1);
 }
 
 #endif

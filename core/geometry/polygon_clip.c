@@ -9,9 +9,9 @@ void cwi_polygon_clip(const cwi_polygon *in, int a, double at, int by, cwi_polyg
     for (int n = 0; n < in->count; n++) {
         const double *p = in->p[n], *q = in->p[(n + 1) % in->count];
         const double u = by * (p[a] - at), v = by * (q[a] - at);
-        if (u <= 0 && out->count < CWI_POLYGON_MOST)
+        if (u <= 0 && out->count < CWI_POLYGON_MAX)
             memcpy(out->p[out->count++], p, sizeof out->p[0]);
-        if (!((u < 0 && v > 0) || (u > 0 && v < 0)) || out->count == CWI_POLYGON_MOST)
+        if (!((u < 0 && v > 0) || (u > 0 && v < 0)) || out->count == CWI_POLYGON_MAX)
             continue;
         for (int k = 0; k < 3; k++)
             out->p[out->count][k] = p[k] + u / (u - v) * (q[k] - p[k]);

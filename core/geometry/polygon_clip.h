@@ -2,13 +2,13 @@
 #ifndef CORE_GEOMETRY_POLYGON_CLIP_H
 #define CORE_GEOMETRY_POLYGON_CLIP_H
 
-enum { CWI_POLYGON_MOST = 24 };
+enum { CWI_POLYGON_MAX = 24 };
 
 /* A convex polygon. A plane adds one corner at most; corners beyond the capacity are left
  * out. */
 typedef struct cwi_polygon {
     int count;
-    double p[CWI_POLYGON_MOST][3];
+    double p[CWI_POLYGON_MAX][3];
 } cwi_polygon;
 
 /* Clips a polygon to the part with by * (x[a] - at) <= 0. */

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-enum { MOST_VOXELS = 1 << 22, FEWEST_LABELS = 3 };
+enum { MAX_VOXELS = 1 << 22, FEWEST_LABELS = 3 };
 /* Limits of detection. Equal pairs are at least 0.8 in label maps, and at most 0.25 in scans
  * and photographs. */
 static const double EQUAL_SHARE = 0.7, SKIPPING_SHARE = 0.2;
@@ -14,9 +14,9 @@ static const double EQUAL_SHARE = 0.7, SKIPPING_SHARE = 0.2;
 typedef struct census {
     size_t count;
     bool too_many;
-    double value[CW_LABELS_MOST];
-    size_t number[CW_LABELS_MOST];
-    uint32_t (*pairs)[CW_LABELS_MOST]; /* counts of neighbours, by the numbers of both */
+    double value[CW_LABELS_MAX];
+    size_t number[CW_LABELS_MAX];
+    uint32_t (*pairs)[CW_LABELS_MAX]; /* counts of neighbours, by the numbers of both */
 } census;
 
 static size_t find_value(const census *c, double value)
@@ -37,7 +37,7 @@ static size_t number_of(census *c, double value)
     const size_t at = find_value(c, value);
     if (at < c->count && c->value[at] == value)
         return c->number[at];
-    if (c->count == CW_LABELS_MOST) {
+    if (c->count == CW_LABELS_MAX) {
         c->too_many = true;
         return 0;
     }
@@ -72,7 +72,7 @@ static void count_row(const cw_volume *v, size_t j, size_t k, census *c)
 static void count_rows(const cw_volume *v, census *c)
 {
     const size_t rows = v->dim[1] * v->dim[2], per_row = v->dim[0];
-    const size_t most = MOST_VOXELS / per_row ? MOST_VOXELS / per_row : 1;
+    const size_t most = MAX_VOXELS / per_row ? MAX_VOXELS / per_row : 1;
     const size_t by = (rows + most - 1) / most;
     for (size_t row = 0; row < rows && !c->too_many; row += by)
         count_row(v, row % v->dim[1], row / v->dim[1], c);
@@ -116,7 +116,7 @@ cw_status cw_volume_labels(const cw_volume *volume, cw_labels *out, cw_error *er
     if (st != CW_OK || v.sparse || v.cells ||
         ((v.type == CW_F32 || v.type == CW_F64) && !known))
         return st;
-    c.pairs = cwi_alloc_zeroed(CW_LABELS_MOST, sizeof *c.pairs);
+    c.pairs = cwi_alloc_zeroed(CW_LABELS_MAX, sizeof *c.pairs);
     if (!c.pairs)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to count labels");
     count_rows(&v, &c);

@@ -11,8 +11,8 @@
 /* ---- decisions ------------------------------------------------------------------------- */
 
 /* Products of numbers in this range neither overflow nor lose their rounding errors. */
-#define PLAIN_LEAST 1e-140
-#define PLAIN_MOST  1e140
+#define PLAIN_MIN 1e-140
+#define PLAIN_MAX 1e140
 
 /* Returns the sign of a c - b d, exactly. Compares the products and, if these are equal, their
  * rounding errors, as rounding keeps their order. Where exponents are extreme, it compares the
@@ -25,7 +25,7 @@ static int compare_products(double a, double c, double b, double d)
     const double least = cwi_lesser(cwi_lesser(fabs(a), fabs(b)), cwi_lesser(fabs(c), fabs(d)));
     const double most =
         cwi_greater(cwi_greater(fabs(a), fabs(b)), cwi_greater(fabs(c), fabs(d)));
-    if (least < PLAIN_LEAST || most > PLAIN_MOST) {
+    if (least < PLAIN_MIN || most > PLAIN_MAX) {
         int exponent[4];
         a = frexp(a, &exponent[0]);
         c = frexp(c, &exponent[1]);
@@ -133,7 +133,7 @@ static bool start_sweep(sweep *s, unsigned cube, const double values[8], bool ze
         largest = cwi_greater(largest, fabs(values[c]));
     }
     int exponent = 0;
-    if (largest < PLAIN_LEAST || largest > PLAIN_MOST)
+    if (largest < PLAIN_MIN || largest > PLAIN_MAX)
         frexp(largest, &exponent);
     add_event(s, 0, -1);
     for (int n = 0; n < 4; n++) {
@@ -239,7 +239,7 @@ static bool columns_pass(const cwi_config *config, unsigned cube, const double v
     if (cwi_case_ambiguous_faces[cube] || config->loop_count != 2)
         return false;
     const double a = values[low] - values[low + 4], b = values[high - 4] - values[high];
-    return fabs(a) < PLAIN_MOST && fabs(b) < PLAIN_MOST &&
+    return fabs(a) < PLAIN_MAX && fabs(b) < PLAIN_MAX &&
            values[low] / a <= values[high - 4] / b;
 }
 

@@ -21,13 +21,13 @@
 #define NEVER_INLINE  __attribute__((noinline)) static
 
 /* Limits for lengths of gradients, between which squares neither overflow nor underflow. */
-#define LEAST 1e-280
-#define MOST  1e280
+#define MINIMUM 1e-280
+#define MAXIMUM 1e280
 
 enum {
     BATCH = 128, /* edges; arithmetic is on LANES at a time */
     LANES = 16,
-    ROOM = BATCH + 64 + LANES,
+    CAPACITY = BATCH + 64 + LANES,
     AHEAD = 3, /* rows by which samples are prefetched, */
     DENSE = 2, /* in rows with more vertices a word than this */
     FAR = 512, /* numbers that memory is prefetched for before they are written */
@@ -51,8 +51,8 @@ typedef struct cwi_edge_list {
     int axis;
     size_t k, count, runs;
     bool few; /* few vertices in a row: nothing was prefetched for them */
-    _Alignas(64) int32_t i[ROOM], j[ROOM];
-    cwi_run run[ROOM + 1];
+    _Alignas(64) int32_t i[CAPACITY], j[CAPACITY];
+    cwi_run run[CAPACITY + 1];
 } cwi_edge_list;
 
 /* Begins a run: edges listed from now on are in row j, and their vertices are numbered from
@@ -317,7 +317,7 @@ static void turn_cubics(cwi_cubic_lanes *restrict c, const double *restrict t,
         const double scale = 1 / sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
         for (int r = 0; r < 3; r++)
             c->normal[r][n] = (float)(d[r] * scale);
-        c->found[n] &= (sum > LEAST) & (sum < MOST);
+        c->found[n] &= (sum > MINIMUM) & (sum < MAXIMUM);
     }
 }
 

@@ -306,8 +306,8 @@ static void mark_side(cwi_cells *g, const side *s)
 
 static cw_status mark_shared_sides(cwi_cells *g, cw_error *err)
 {
-    enum { MOST = 8 }; /* sides of a cap, each counted once, and diagonals */
-    sides s = {.items = cwi_alloc_array(g->border_count, MOST * sizeof *s.items)};
+    enum { MAXIMUM = 8 }; /* sides of a cap, each counted once, and diagonals */
+    sides s = {.items = cwi_alloc_array(g->border_count, MAXIMUM * sizeof *s.items)};
     if (!s.items)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu caps", g->border_count);
     for (size_t b = 0; b < g->border_count; b++)

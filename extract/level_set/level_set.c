@@ -71,7 +71,7 @@ double cwi_level_set_bytes(const cw_quality *q, double voxel_mm, double reach_mm
 bool cwi_level_set_fits(const cw_quality *q, double voxel_mm, double reach_mm, size_t max_bytes)
 {
     for (int a = 0; a < 3; a++)
-        if (count_samples(q, a, voxel_mm, reach_mm) > CWI_WINDING_MOST)
+        if (count_samples(q, a, voxel_mm, reach_mm) > CWI_WINDING_MAX)
             return false;
     return !max_bytes || cwi_level_set_bytes(q, voxel_mm, reach_mm) <= (double)max_bytes;
 }
@@ -87,7 +87,7 @@ static cw_status check_fits(const cw_quality *q, const cw_level_set_desc *d, dou
     if (!d->max_bytes || cwi_level_set_bytes(q, d->voxel_mm, reach_mm) <= (double)d->max_bytes)
         return cwi_fail(err, CW_ERR_LIMIT,
                         "voxels of %.3g mm are more than %d along an axis; %.2g mm would do",
-                        d->voxel_mm, CWI_WINDING_MOST, voxel);
+                        d->voxel_mm, CWI_WINDING_MAX, voxel);
     return cwi_fail(
         err, CW_ERR_LIMIT,
         "a level set with voxels of %.3g mm needs some %.3g MB, the limit is %.3g MB; "

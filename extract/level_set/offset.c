@@ -201,8 +201,8 @@ static cw_status make_either(making *m, cw_mesh *out, bool *holds, bool *is_near
 }
 
 enum {
-    MOST_HALVINGS = 2,
-    MOST_ROUNDS = 16,
+    MAX_HALVINGS = 2,
+    MAX_ROUNDS = 16,
     FEW = 1 << 18 /* number of triangles that takes only a moment */
 };
 
@@ -222,7 +222,7 @@ static cw_status make_whole(making *m, size_t triangles, bool is_near, cw_mesh *
                             bool *holds, cw_error *err)
 {
     cw_status st = make_warped(m, out, holds, &is_near, err);
-    for (int n = 0; n < MOST_HALVINGS && st == CW_OK && !*holds; n++, triangles *= 4) {
+    for (int n = 0; n < MAX_HALVINGS && st == CW_OK && !*holds; n++, triangles *= 4) {
         if (!should_halve(m, triangles, is_near))
             break;
         cw_mesh_free(out);
@@ -281,7 +281,7 @@ static cw_status make_adaptive(making *m, cw_mesh *out, cw_offset_facts *facts, 
     cw_status st = make_samples(m, err);
     if (st == CW_OK)
         st = cwi_adaptive_init(&a, m->mesh, &m->volume, m->desc, err);
-    for (int n = 0; n < MOST_ROUNDS && st == CW_OK; n++) {
+    for (int n = 0; n < MAX_ROUNDS && st == CW_OK; n++) {
         cw_mesh next = {0};
         st = cwi_adaptive_divide(&a, out, m->asked / 2, !m->overlaps, &beyond, err);
         if (st != CW_OK || !beyond.divided)

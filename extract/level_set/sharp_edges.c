@@ -325,13 +325,13 @@ typedef struct part {
     const point *corner[3];
 } part;
 
-enum { MOST_PARTS = 6 };
+enum { MAX_PARTS = 6 };
 
 /* Divides a triangle into parts around a point in it. */
 static int divide_around(const point *c, const point v[3], const point *const m[3],
-                         part parts[MOST_PARTS])
+                         part parts[MAX_PARTS])
 {
-    const point *rim[MOST_PARTS];
+    const point *rim[MAX_PARTS];
     int count = 0;
     for (int k = 0; k < 3; k++) {
         rim[count++] = &v[k];
@@ -345,7 +345,7 @@ static int divide_around(const point *c, const point v[3], const point *const m[
 
 /* Divides a triangle into parts between its corners v and the cuts m of its sides (NULL:
  * none). */
-static int divide_by_cuts(const point v[3], const point *const m[3], part parts[MOST_PARTS])
+static int divide_by_cuts(const point v[3], const point *const m[3], part parts[MAX_PARTS])
 {
     const int cuts = !!m[0] + !!m[1] + !!m[2];
     int k = 0; /* one cut: that one; two cuts: the first of them */
@@ -376,7 +376,7 @@ static int divide_by_cuts(const point v[3], const point *const m[3], part parts[
 /* A triangle and its points. */
 typedef struct division {
     point v[3], m[3], c;
-    part parts[MOST_PARTS];
+    part parts[MAX_PARTS];
     int count;
 } division;
 

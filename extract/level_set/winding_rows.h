@@ -18,7 +18,7 @@ typedef struct cwi_winding {
 } cwi_winding;
 
 /* Maximum number of samples along an axis: so that computed numbers fit 64 bits. */
-enum { CWI_WINDING_MOST = 65535 };
+enum { CWI_WINDING_MAX = 65535 };
 
 /* Crosses a mesh, whose vertices in the grid are at (positions - first) / voxel_mm, with rows.
  * Free with cwi_winding_free(), also after an error. CW_ERR_NO_MEMORY */

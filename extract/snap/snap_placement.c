@@ -14,7 +14,7 @@
 #define ROUNDING 1e-4
 
 /* Maximum distance of a merged vertex from the surface, in voxels, times the share. */
-#define MOST_ERROR 0.25
+#define MAX_ERROR 0.25
 
 /* ---- where a cluster goes --------------------------------------------------------------- */
 
@@ -207,7 +207,7 @@ static double square_from(const cwi_snapping *s, const cwi_cluster *c, const dou
 /* Returns true if no member is left far from the new triangles. */
 static bool is_faithful(const cwi_snapping *s, const cwi_cluster *c, const double x[3])
 {
-    const double most = MOST_ERROR * s->share;
+    const double most = MAX_ERROR * s->share;
     for (int m = 0; m < c->count; m++)
         if (square_from(s, c, x, cwi_index(s, c->member[m]), most * most) > most * most)
             return false;

@@ -9,7 +9,7 @@
 
 /* Maximums: the depth of nested components, the number of placings, and the number of triangles
  * and points that may be drawn in any case. */
-enum { DEEPEST = 64, MOST_PLACINGS = 1 << 20, FREE_COUNT = 1 << 26 };
+enum { DEEPEST = 64, MAX_PLACINGS = 1 << 20, FREE_COUNT = 1 << 26 };
 
 /* A placed mesh of an object. */
 typedef struct instance {
@@ -82,9 +82,9 @@ static cw_status visit_component(placing *p, const cwi_3mf_component *c, const d
     if (depth == DEEPEST)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "components are nested deeper than %d, or hold themselves", DEEPEST);
-    if (p->visits++ == MOST_PLACINGS)
+    if (p->visits++ == MAX_PLACINGS)
         return cwi_fail(err, CW_ERR_LIMIT, "objects are placed more than %d times",
-                        MOST_PLACINGS);
+                        MAX_PLACINGS);
     multiply_transforms(parent, c->place, place);
     for (int i = 0; i < 12; i++)
         if (!isfinite(place[i]))

@@ -9,7 +9,7 @@
 
 /* The text may be 100 times as large as the archive, once it is beyond a free amount. The XML
  * of real models packs to a tenth. */
-enum { FREE_TEXT = 64 << 20, MOST_RATIO = 100 };
+enum { FREE_TEXT = 64 << 20, MAX_RATIO = 100 };
 
 bool cwi_3mf_sniff(const unsigned char *head, size_t size, uint64_t file_size)
 {
@@ -86,7 +86,7 @@ static cw_status start_relationship(void *user, cwi_xml *x, cwi_attributes a, cw
     return CW_OK;
 }
 
-enum { E_RELATIONSHIPS, E_RELATIONSHIP, ELEMENT_COUNT, MOST_RELATIONSHIPS = 10000 };
+enum { E_RELATIONSHIPS, E_RELATIONSHIP, ELEMENT_COUNT, MAX_RELATIONSHIPS = 10000 };
 
 static const cwi_xml_element elements[ELEMENT_COUNT] = {
     [E_RELATIONSHIPS] = {"Relationships", CWI_XML_ROOT, NULL, NULL},
@@ -94,7 +94,7 @@ static const cwi_xml_element elements[ELEMENT_COUNT] = {
 };
 
 static const cwi_xml_rules rules = {
-    .elements = elements, .element_count = ELEMENT_COUNT, .most_elements = MOST_RELATIONSHIPS};
+    .elements = elements, .element_count = ELEMENT_COUNT, .most_elements = MAX_RELATIONSHIPS};
 
 /* Adds the models that the relationships of a part name. They are in
  * "3D/_rels/3dmodel.model.rels" for "3D/3dmodel.model". */
@@ -153,7 +153,7 @@ cw_status cwi_3mf_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
     m->in = m->build.in = in;
     m->mesh = mesh;
     m->said = said;
-    m->text_left = stated ? UINT64_MAX : FREE_TEXT + MOST_RATIO * in->file.size;
+    m->text_left = stated ? UINT64_MAX : FREE_TEXT + MAX_RATIO * in->file.size;
     cw_status st = cwi_unzip_open(&m->zip, &in->file, err);
     if (st == CW_OK)
         st = read_models(m, err);

@@ -14,7 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { MOST_NAMES = 65536, LONGEST_NAME = 1023 };
+enum { MAX_NAMES = 65536, LONGEST_NAME = 1023 };
 
 static cw_status fail_system(cw_error *err, const char *what)
 {
@@ -187,8 +187,8 @@ cw_status cwi_input_read_at(int fd, uint64_t offset, void *to, size_t size, size
 cw_status cwi_names_add(cwi_names *names, const char *name, cw_error *err)
 {
     const size_t n = names->count;
-    if (n >= MOST_NAMES)
-        return cwi_fail(err, CW_ERR_LIMIT, "more than %d data files", MOST_NAMES);
+    if (n >= MAX_NAMES)
+        return cwi_fail(err, CW_ERR_LIMIT, "more than %d data files", MAX_NAMES);
     if ((n & (n - 1)) == 0) { /* the capacity is reached at every power of two */
         char **items = cwi_realloc_array(names->items, n ? 2 * n : 1, sizeof *items);
         if (!items)

@@ -11,8 +11,8 @@
 /* Sizes of the fixed records, and the maximum bytes of the directory and of a comment behind
  * it. */
 enum { LOCAL = 30, CENTRAL = 46, END = 22, END64 = 56, LOCATOR = 20 };
-enum { MOST_BYTES = 4 << 20, MOST_COMMENT = 65535, BUFFER_BYTES = 1 << 16 };
-enum { STORED = 0, DEFLATED = 8, ENCRYPTED = 1, MOST_RATIO = 1032 };
+enum { MAX_BYTES = 4 << 20, MAX_COMMENT = 65535, BUFFER_BYTES = 1 << 16 };
+enum { STORED = 0, DEFLATED = 8, ENCRYPTED = 1, MAX_RATIO = 1032 };
 
 static const uint32_t FULL = UINT32_MAX; /* the true number is in a field of 64 bits */
 
@@ -44,7 +44,7 @@ static cw_status read_at(const cwi_input *in, uint64_t at, void *to, size_t size
 static cw_status find_end(const cwi_input *in, uint64_t *end, unsigned char record[END],
                           cw_error *err)
 {
-    const size_t most = END + MOST_COMMENT;
+    const size_t most = END + MAX_COMMENT;
     const size_t size = in->size < most ? (size_t)in->size : most;
     unsigned char *tail = cwi_alloc_array(size, 1);
     if (!tail)
@@ -104,11 +104,11 @@ cw_status cwi_unzip_open(cwi_unzip *z, const cwi_input *in, cw_error *err)
         st = read_end64(in, &end, &count, &bytes, &start, err);
     if (st == CW_OK && (start > end || bytes > end - start))
         return fail_damaged("its directory does not fit into the file", err);
-    if (st == CW_OK && (bytes > MOST_BYTES || count > UINT16_MAX || count > bytes / CENTRAL))
+    if (st == CW_OK && (bytes > MAX_BYTES || count > UINT16_MAX || count > bytes / CENTRAL))
         return cwi_fail(
             err, CW_ERR_FORMAT,
             "the zip archive has %llu entries in %llu bytes; at most %d in %d are read",
-            (unsigned long long)count, (unsigned long long)bytes, UINT16_MAX, MOST_BYTES);
+            (unsigned long long)count, (unsigned long long)bytes, UINT16_MAX, MAX_BYTES);
     if (st == CW_OK && !(z->directory = cwi_alloc_array((size_t)bytes, 1)))
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for an archive's directory");
     z->start = start;
@@ -230,7 +230,7 @@ cw_status cwi_unzip_find(const cwi_unzip *z, const char *name, cwi_unzip_entry *
                         entry->name, (unsigned)method);
     if (!read_extra(at + CENTRAL + length, (size_t)read_number(at + 30, 2), entry))
         return fail_damaged("sizes of 64 bits are missing", err);
-    if (entry->deflated ? entry->size / MOST_RATIO > entry->packed
+    if (entry->deflated ? entry->size / MAX_RATIO > entry->packed
                         : entry->size != entry->packed)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "'%s' cannot have %llu bytes; %llu are in the archive", entry->name,

@@ -13,7 +13,7 @@ static const struct {
     const char *name;
     int most_bits;
 } kinds[] = {[CW_COMPRESS_QUANTIZE] = {"quantize", SHORT_BITS},
-             [CW_COMPRESS_DRACO] = {"Draco", CWI_MOST_GRID_BITS},
+             [CW_COMPRESS_DRACO] = {"Draco", CWI_MAX_GRID_BITS},
              [CW_COMPRESS_MESHOPT] = {"meshopt", EXPONENTIAL_BITS}};
 
 cw_status cwi_grid_check_bits(const cw_write_desc *desc, cw_error *err)
@@ -55,7 +55,7 @@ static cw_status fail_shape(const cwi_quantization_grid *grid, const cwi_grid_ha
         "with %d bits a coordinate, the most there are, %zu vertices fall onto others "
         "and %zu triangles lose their area%s",
         grid->bits, harm->merged, harm->flat,
-        grid->bits < CWI_MOST_GRID_BITS ? "; meshopt has up to 24, Draco up to 30" : "");
+        grid->bits < CWI_MAX_GRID_BITS ? "; meshopt has up to 24, Draco up to 30" : "");
 }
 
 /* Divides the grid. Beyond integers of 16 bits, meshopt's exponential filter makes multiples of

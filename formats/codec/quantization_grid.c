@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { LEAST_EXPONENT = -126 }; /* decoders make the power in single precision */
+enum { MIN_EXPONENT = -126 }; /* decoders make the power in single precision */
 
 cwi_quantization_grid cwi_grid_around(const cwi_parts *parts)
 {
@@ -37,8 +37,8 @@ cwi_quantization_grid cwi_grid_around(const cwi_parts *parts)
 static void lay_dyadic(cwi_quantization_grid *grid)
 {
     frexp((double)grid->range / (double)((1u << grid->bits) - 4), &grid->exponent);
-    if (grid->exponent < LEAST_EXPONENT)
-        grid->exponent = LEAST_EXPONENT;
+    if (grid->exponent < MIN_EXPONENT)
+        grid->exponent = MIN_EXPONENT;
     grid->step = ldexp(1, grid->exponent);
     for (int a = 0; a < 3; a++)
         grid->origin[a] = (float)(floor((double)grid->low[a] / grid->step) * grid->step);

@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-enum { CWI_MOST_GRID_BITS = 30 };
+enum { CWI_MAX_GRID_BITS = 30 };
 
 /* A grid. Positions are origin + n * step, n from 0 to 2^bits - 1, along each axis. The step is
  * range / (2^bits - 1); or it is dyadic: a power of two, and the origin is a multiple of it. */

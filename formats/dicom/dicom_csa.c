@@ -9,7 +9,7 @@
 /* Sizes in the header. A tag is a name of 64 bytes, three numbers (count of values, their kind,
  * its number), the count of items that follow, and a mark. An item is four numbers with its
  * length, then a text. */
-enum { TAG_BYTES = 84, TAG_ITEMS = 76, ITEM_BYTES = 16, NAME_BYTES = 64, MOST_TAGS = 1000 };
+enum { TAG_BYTES = 84, TAG_ITEMS = 76, ITEM_BYTES = 16, NAME_BYTES = 64, MAX_TAGS = 1000 };
 
 typedef struct reader {
     const unsigned char *bytes;
@@ -76,7 +76,7 @@ bool cwi_csa_numbers(const unsigned char *header, size_t size, const char *tag, 
         return false;
     const uint32_t tags = number_at(&r, r.at);
     r.at += 8;
-    for (uint32_t t = 0; t < tags && t < MOST_TAGS && has_bytes(&r, TAG_BYTES); t++) {
+    for (uint32_t t = 0; t < tags && t < MAX_TAGS && has_bytes(&r, TAG_BYTES); t++) {
         const char *name = (const char *)r.bytes + r.at;
         const bool is_it = strncmp(name, tag, NAME_BYTES) == 0;
         const uint32_t items = number_at(&r, r.at + TAG_ITEMS);

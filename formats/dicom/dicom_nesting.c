@@ -7,8 +7,8 @@
 #include <string.h>
 #include <zlib.h>
 
-enum { WINDOW = 4096, PREAMBLE = 128, MOST_ELEMENTS = 1 << 23 };
-static const uint64_t MOST_INFLATED = (uint64_t)1 << 33;
+enum { WINDOW = 4096, PREAMBLE = 128, MAX_ELEMENTS = 1 << 23 };
+static const uint64_t MAX_INFLATED = (uint64_t)1 << 33;
 static const uint32_t UNDEFINED = 0xffffffff;
 
 /* A sequence or an item that was entered. */
@@ -62,7 +62,7 @@ static void inflate_more(walk *w, cw_error *err)
 static const unsigned char *peek_inflated(walk *w, uint64_t at, size_t count, cw_error *err)
 {
     size_t before = SIZE_MAX;
-    while (at + count > w->start + w->held && w->held != before && at <= MOST_INFLATED) {
+    while (at + count > w->start + w->held && w->held != before && at <= MAX_INFLATED) {
         const uint64_t end = w->start + w->held;
         const size_t passed = (size_t)((at < end ? at : end) - w->start);
         w->held -= passed;
@@ -153,10 +153,10 @@ static cw_status walk_elements(walk *w, cw_error *err)
     int pixels = 0; /* the depth at which pixels begin; 0: not inside them */
     element e;
     for (int count = 0;; count++) {
-        if (count == MOST_ELEMENTS)
+        if (count == MAX_ELEMENTS)
             return cwi_fail(err, CW_ERR_FORMAT,
                             "it has more than %d elements; it is damaged or hostile",
-                            MOST_ELEMENTS);
+                            MAX_ELEMENTS);
         while (w->depth > 0 && w->at >= w->levels[w->depth].end)
             w->depth--;
         pixels = pixels > w->depth ? 0 : pixels;
@@ -227,8 +227,8 @@ cw_status cwi_dicom_check_depth(int fd, uint64_t size, cw_error *err)
     cw_status st = read_meta(&w, err) ? walk_elements(&w, err) : CW_OK;
     if (w.deflated)
         inflateEnd(&w.inflater);
-    if (st == CW_OK && w.deflated && w.at > MOST_INFLATED)
+    if (st == CW_OK && w.deflated && w.at > MAX_INFLATED)
         st = cwi_fail(err, CW_ERR_LIMIT, "its data inflate to more than %llu bytes",
-                      (unsigned long long)MOST_INFLATED);
+                      (unsigned long long)MAX_INFLATED);
     return st;
 }

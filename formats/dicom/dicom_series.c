@@ -12,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MOST_COMPRESSION = 65536, MOST_DEFLATION = 1032 };
+enum { MAX_COMPRESSION = 65536, MAX_DEFLATION = 1032 };
 
 static bool is_capital(unsigned char c)
 {
@@ -79,9 +79,9 @@ static cw_status check_claim(const cwi_dicom_facts *f, uint64_t file_bytes, cw_e
     const uint64_t bits = f->kind == CWI_DICOM_SEGMENTATION ? 1 : 8 * cw_type_size(f->type);
     const uint64_t frame = (uint64_t)f->columns * f->rows * f->samples * bits; /* below 2^43 */
     const uint64_t have = f->pixel_bytes ? f->pixel_bytes : file_bytes;
-    const uint64_t most = f->pixel_bytes ? have : have * MOST_COMPRESSION;
+    const uint64_t most = f->pixel_bytes ? have : have * MAX_COMPRESSION;
     uint64_t wanted;
-    if (have / (f->deflated ? MOST_DEFLATION : 1) <= file_bytes &&
+    if (have / (f->deflated ? MAX_DEFLATION : 1) <= file_bytes &&
         !__builtin_mul_overflow(frame, f->frame_count, &wanted) && (wanted + 7) / 8 <= most)
         return CW_OK;
     return cwi_fail(err, CW_ERR_FORMAT,

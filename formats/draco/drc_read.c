@@ -12,7 +12,7 @@
 
 /* An upper bound of Draco's compression, far beyond all observed files; larger claims are
  * rejected. */
-enum { MOST_GAIN = 1024, WINDOW = 4 << 20 };
+enum { MAX_GAIN = 1024, WINDOW = 4 << 20 };
 
 typedef enum operation {
     DECODE,
@@ -124,7 +124,7 @@ static cw_status copy_array(cwi_sandbox *box, operation op, void *to, size_t byt
 
 static cw_status check_counts(cwi_mesh_input *in, const counts *c, cw_error *err)
 {
-    if (c->vertices / MOST_GAIN > in->file.size || c->triangles / MOST_GAIN > in->file.size)
+    if (c->vertices / MAX_GAIN > in->file.size || c->triangles / MAX_GAIN > in->file.size)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "%llu bytes cannot stand for %llu vertices and %llu triangles",
                         (unsigned long long)in->file.size, (unsigned long long)c->vertices,
@@ -203,10 +203,10 @@ cw_status cwi_drc_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
         st = cwi_sandbox_open(&box, &desc, err);
     if (st != CW_OK)
         return st;
-    const request r = {
-        .op = DECODE,
-        .most = in->file.size > UINT32_MAX / MOST_GAIN ? UINT32_MAX : MOST_GAIN * in->file.size,
-        .count = in->file.size};
+    const request r = {.op = DECODE,
+                       .most = in->file.size > UINT32_MAX / MAX_GAIN ? UINT32_MAX
+                                                                     : MAX_GAIN * in->file.size,
+                       .count = in->file.size};
     box.progress = &in->desc.progress;
     st = read_file(in, &box, err);
     if (st == CW_OK)

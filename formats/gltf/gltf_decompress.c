@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* Limits of compression, far beyond those observed in codecs; larger claims are rejected. */
-enum { MOST_GAIN = 1024, MOST_STRIDE = 256, LEAST_SHARED = 16 << 20 };
+enum { MAX_GAIN = 1024, MAX_STRIDE = 256, MIN_SHARED = 16 << 20 };
 
 typedef enum job_kind { JOB_VERTICES, JOB_TRIANGLES, JOB_INDICES, JOB_DRACO } job_kind;
 
@@ -100,7 +100,7 @@ static cw_status start_sandbox(cwi_gltf_unpacker *u, size_t bytes, bool anew, cw
     const cwi_sandbox_desc desc = {.library = "the decoder of compressed glTF",
                                    .work = work_on_job,
                                    .state = u,
-                                   .shared_bytes = bytes > LEAST_SHARED ? bytes : LEAST_SHARED,
+                                   .shared_bytes = bytes > MIN_SHARED ? bytes : MIN_SHARED,
                                    .memory = u->desc->max_bytes,
                                    .timeout_s = u->desc->timeout_s,
                                    .inside = u->desc->no_sandbox};
@@ -132,7 +132,7 @@ static bool is_view(const cwi_gltf_view *v)
     const bool indices = v->packed_mode != CWI_GLTF_ATTRIBUTES;
     return indices ? (v->packed_stride == 2 || v->packed_stride == 4) &&
                          (v->packed_mode != CWI_GLTF_TRIANGLES || v->packed_count % 3 == 0)
-                   : v->packed_stride > 0 && v->packed_stride <= MOST_STRIDE &&
+                   : v->packed_stride > 0 && v->packed_stride <= MAX_STRIDE &&
                          v->packed_stride % 4 == 0;
 }
 
@@ -153,7 +153,7 @@ cw_status cwi_gltf_unpack_view(cwi_gltf_unpacker *u, const cwi_gltf_view *v,
             err, CW_ERR_FORMAT,
             "EXT_meshopt_compression states a byteStride of %llu and a count of %llu",
             (unsigned long long)v->packed_stride, (unsigned long long)v->packed_count);
-    if (v->packed_count / MOST_GAIN > v->packed_bytes)
+    if (v->packed_count / MAX_GAIN > v->packed_bytes)
         return fail_claim(v->packed_count, v->packed_bytes, err);
     const size_t size = (size_t)(v->packed_count * v->packed_stride);
     cw_status st = anew ? cwi_meshopt_functions_load(&u->meshopt, err) : CW_OK;
@@ -186,7 +186,7 @@ cw_status cwi_gltf_unpack_draco(cwi_gltf_unpacker *u, const cwi_draco_ids *ids,
     const bool anew = !u->draco;
     const job j = {
         .kind = JOB_DRACO, .ids = *ids, .packed = size, .count = vertices, .corners = corners};
-    if (vertices / MOST_GAIN > size || corners / MOST_GAIN > size || corners % 3)
+    if (vertices / MAX_GAIN > size || corners / MAX_GAIN > size || corners % 3)
         return fail_claim(vertices > corners ? vertices : corners, size, err);
     const size_t points = (size_t)vertices;
     cw_status st = anew ? cwi_draco_functions_load(&u->draco, err) : CW_OK;

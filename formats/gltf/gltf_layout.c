@@ -17,7 +17,7 @@ enum {
 };
 
 /* The maximum of a buffer: GLB states lengths in 32 bits, and the JSON takes a part of that. */
-static const uint64_t MOST_BYTES = UINT32_MAX - (1 << 20);
+static const uint64_t MAX_BYTES = UINT32_MAX - (1 << 20);
 
 void cwi_gltf_plan_free(cwi_gltf_plan *plan)
 {
@@ -210,11 +210,10 @@ static cw_status lay_out(cwi_gltf_plan *plan, cw_error *err)
         d->unpacked = d->unpacked ? at : 0;
     else
         d->bytes = at;
-    return d->bytes <= MOST_BYTES
-               ? CW_OK
-               : cwi_fail(err, CW_ERR_LIMIT,
-                          "glTF holds at most 4 GiB; the mesh needs %.1f GiB",
-                          (double)d->bytes / 1073741824.0);
+    return d->bytes <= MAX_BYTES ? CW_OK
+                                 : cwi_fail(err, CW_ERR_LIMIT,
+                                            "glTF holds at most 4 GiB; the mesh needs %.1f GiB",
+                                            (double)d->bytes / 1073741824.0);
 }
 
 /* Returns true if positions or normals are integers; glTF without extensions requires

@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <string.h>
 
-enum { LARGEST_ELEMENT = 256, MOST_JSON = 32 << 20, HEAD = 64 << 10 };
+enum { LARGEST_ELEMENT = 256, MAX_JSON = 32 << 20, HEAD = 64 << 10 };
 static const uint64_t NO_URI = UINT64_MAX;
 
 /* An array of a scene. */
@@ -202,7 +202,7 @@ cw_status cwi_gltf_take_scene(const void *from, size_t size, cwi_gltf_scene *s, 
 cw_status cwi_gltf_parse(const char *json, size_t size, const cw_mesh_read_desc *desc,
                          cwi_gltf_scene *scene, cw_error *err)
 {
-    const size_t dense = size < MOST_JSON ? size : MOST_JSON; /* without its strings */
+    const size_t dense = size < MAX_JSON ? size : MAX_JSON; /* without its strings */
     job j = {.json = size, .shared = 2 * size + LARGEST_ELEMENT * dense + HEAD};
     cwi_sandbox box = {0};
     const cwi_sandbox_desc shut = {.library = "tinygltf",

@@ -7,8 +7,8 @@
 
 enum {
     PRIMITIVE_DEPTH = 5, /* {"meshes": [{"primitives": [{ */
-    MOST_DEPTH = 64,
-    MOST_STRUCTURE = 32 << 20
+    MAX_DEPTH = 64,
+    MAX_STRUCTURE = 32 << 20
 };
 
 /* Returns the end of a string, given the place of its first quote: behind the last one. */
@@ -81,12 +81,12 @@ cw_status cwi_gltf_blind(char *json, size_t size, cw_error *err)
             depth += json[i] == '{' || json[i] == '[';
             depth -= depth && (json[i] == '}' || json[i] == ']');
         }
-        if (depth > MOST_DEPTH)
-            return cwi_fail(err, CW_ERR_FORMAT, "the JSON nests deeper than %d", MOST_DEPTH);
-        if (++structure > MOST_STRUCTURE)
+        if (depth > MAX_DEPTH)
+            return cwi_fail(err, CW_ERR_FORMAT, "the JSON nests deeper than %d", MAX_DEPTH);
+        if (++structure > MAX_STRUCTURE)
             return cwi_fail(err, CW_ERR_LIMIT,
                             "the JSON has more than %d MiB beside its strings",
-                            MOST_STRUCTURE >> 20);
+                            MAX_STRUCTURE >> 20);
     }
     return CW_OK;
 }

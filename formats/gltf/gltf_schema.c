@@ -53,12 +53,12 @@ typedef struct rule {
 
 /* The maximum of small numbers. tinygltf keeps whole numbers of extensions and of "sparse" in
  * 31 bits, and cuts off the rest; those of buffers pass through it in 32 bits. */
-#define MOST_SMALL INT32_MAX
-#define ALL_CODES  "5120 5121 5122 5123 5125 5126"
+#define MAX_SMALL INT32_MAX
+#define ALL_CODES "5120 5121 5122 5123 5125 5126"
 
-static const rule draco_attributes[] = {{.key = "POSITION", .kind = WHOLE, .most = MOST_SMALL},
-                                        {.key = "NORMAL", .kind = WHOLE, .most = MOST_SMALL},
-                                        {.key = "COLOR_0", .kind = WHOLE, .most = MOST_SMALL},
+static const rule draco_attributes[] = {{.key = "POSITION", .kind = WHOLE, .most = MAX_SMALL},
+                                        {.key = "NORMAL", .kind = WHOLE, .most = MAX_SMALL},
+                                        {.key = "COLOR_0", .kind = WHOLE, .most = MAX_SMALL},
                                         {0}};
 static const rule draco[] = {
     {.key = "bufferView", .kind = INDEX, .list = VIEWS, .required = true},
@@ -92,7 +92,7 @@ static const rule scene[] = {{.key = "nodes", .kind = INDICES, .list = NODES}, {
 
 static const rule sparse_indices[] = {
     {.key = "bufferView", .kind = INDEX, .list = VIEWS, .required = true},
-    {.key = "byteOffset", .kind = WHOLE, .most = MOST_SMALL},
+    {.key = "byteOffset", .kind = WHOLE, .most = MAX_SMALL},
     {.key = "componentType",
      .kind = NUMBER_CODE,
      .choices = "5121 5123 5125",
@@ -100,10 +100,10 @@ static const rule sparse_indices[] = {
     {0}};
 static const rule sparse_values[] = {
     {.key = "bufferView", .kind = INDEX, .list = VIEWS, .required = true},
-    {.key = "byteOffset", .kind = WHOLE, .most = MOST_SMALL},
+    {.key = "byteOffset", .kind = WHOLE, .most = MAX_SMALL},
     {0}};
 static const rule sparse[] = {
-    {.key = "count", .kind = WHOLE, .least = 1, .most = MOST_SMALL, .required = true},
+    {.key = "count", .kind = WHOLE, .least = 1, .most = MAX_SMALL, .required = true},
     {.key = "indices", .kind = OBJECT, .members = sparse_indices, .required = true},
     {.key = "values", .kind = OBJECT, .members = sparse_values, .required = true},
     {0}};
@@ -122,10 +122,10 @@ static const rule accessor[] = {
 
 static const rule meshopt[] = {
     {.key = "buffer", .kind = INDEX, .list = BUFFERS, .required = true},
-    {.key = "byteOffset", .kind = WHOLE, .most = MOST_SMALL},
-    {.key = "byteLength", .kind = WHOLE, .least = 1, .most = MOST_SMALL, .required = true},
+    {.key = "byteOffset", .kind = WHOLE, .most = MAX_SMALL},
+    {.key = "byteLength", .kind = WHOLE, .least = 1, .most = MAX_SMALL, .required = true},
     {.key = "byteStride", .kind = WHOLE, .least = 1, .most = 256, .required = true},
-    {.key = "count", .kind = WHOLE, .least = 1, .most = MOST_SMALL, .required = true},
+    {.key = "count", .kind = WHOLE, .least = 1, .most = MAX_SMALL, .required = true},
     {.key = "mode", .kind = WORD, .choices = "ATTRIBUTES TRIANGLES INDICES", .required = true},
     {.key = "filter", .kind = WORD, .choices = "NONE OCTAHEDRAL QUATERNION EXPONENTIAL"},
     {0}};

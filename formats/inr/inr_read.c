@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { BLOCK = 256, MOST_HEADER = 1 << 16 };
+enum { BLOCK = 256, MAX_HEADER = 1 << 16 };
 static const char magic[] = "#INRIMAGE-4#{", closing[] = "##}\n";
 
 typedef enum key {
@@ -81,10 +81,10 @@ static cw_status find_end(inr *n, size_t got, cw_error *err)
 static cw_status read_text(const cwi_input *in, inr *n, cw_error *err)
 {
     size_t got;
-    n->text = cwi_alloc_array(MOST_HEADER, 1);
+    n->text = cwi_alloc_array(MAX_HEADER, 1);
     if (!n->text)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the header");
-    cw_status st = cwi_stream_head(in->fd, n->text, MOST_HEADER, &got, &n->gzipped, err);
+    cw_status st = cwi_stream_head(in->fd, n->text, MAX_HEADER, &got, &n->gzipped, err);
     if (st == CW_OK && !cwi_inr_sniff((const unsigned char *)n->text, got))
         return cwi_fail(err, CW_ERR_FORMAT, "the first line is not '%s'", magic);
     if (st == CW_OK)

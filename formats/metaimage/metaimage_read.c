@@ -7,7 +7,7 @@
 #include <ctype.h>
 #include <string.h>
 
-enum { MOST_AXES = 4 };
+enum { MAX_AXES = 4 };
 
 typedef enum key {
     K_OBJECT_TYPE,
@@ -65,7 +65,7 @@ typedef struct metaimage {
     cwi_lines lines;
     const char *value[KEY_COUNT]; /* as written; NULL: the key is missing */
     size_t dimensions;
-    size_t size[MOST_AXES];
+    size_t size[MAX_AXES];
 } metaimage;
 
 /* Recognises a first line "Key = ..." with a known key. */
@@ -153,7 +153,7 @@ static cw_status read_sizes(metaimage *m, cwi_source *src, cw_error *err)
     int64_t dimensions = 0, channels = 1;
     cw_status st = require_key(m, K_NDIMS, "NDims", err);
     if (st == CW_OK)
-        st = cwi_field_integer("NDims", m->value[K_NDIMS], 2, MOST_AXES, &dimensions, err);
+        st = cwi_field_integer("NDims", m->value[K_NDIMS], 2, MAX_AXES, &dimensions, err);
     m->dimensions = (size_t)dimensions;
     if (st == CW_OK)
         st = require_key(m, K_DIM_SIZE, "DimSize", err);
@@ -165,9 +165,8 @@ static cw_status read_sizes(metaimage *m, cwi_source *src, cw_error *err)
                                &channels, err);
     if (st != CW_OK)
         return st;
-    static const cwi_role roles[MOST_AXES] = {CWI_AXIS_X, CWI_AXIS_Y, CWI_AXIS_Z,
-                                              CWI_AXIS_STEP};
-    cwi_axis axes[1 + MOST_AXES] = {{CWI_AXIS_COMPONENT, (size_t)channels}};
+    static const cwi_role roles[MAX_AXES] = {CWI_AXIS_X, CWI_AXIS_Y, CWI_AXIS_Z, CWI_AXIS_STEP};
+    cwi_axis axes[1 + MAX_AXES] = {{CWI_AXIS_COMPONENT, (size_t)channels}};
     for (size_t a = 0; a < m->dimensions; a++)
         axes[a + 1] = (cwi_axis){roles[a], m->size[a]};
     return cwi_source_set_axes(src, axes, 1 + m->dimensions, err);
@@ -313,8 +312,8 @@ static void set_affine(const metaimage *m, const double *spacing, const double *
 static cw_status read_frame(const metaimage *m, cwi_source *src, cw_error *err)
 {
     const size_t n = m->dimensions;
-    double spacing[MOST_AXES] = {1, 1, 1, 1}, origin[MOST_AXES] = {0}, mm = 1;
-    double matrix[MOST_AXES * MOST_AXES] = {0};
+    double spacing[MAX_AXES] = {1, 1, 1, 1}, origin[MAX_AXES] = {0}, mm = 1;
+    double matrix[MAX_AXES * MAX_AXES] = {0};
     for (size_t a = 0; a < n; a++)
         matrix[a * n + a] = 1;
     src->frame_field = "TransformMatrix, ElementSpacing, Offset";

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_HEADER = 540 };
+enum { MAX_HEADER = 540 };
 
 const cwi_nifti_layout cwi_nifti_layouts[2] = {
     {348,
@@ -148,7 +148,7 @@ void cwi_nifti_put(const cwi_nifti_layout *layout, unsigned char *header, cwi_ni
 
 /* The header's bytes, and their layout and byte order. */
 typedef struct nifti {
-    unsigned char bytes[MOST_HEADER];
+    unsigned char bytes[MAX_HEADER];
     const cwi_nifti_layout *layout;
     bool swapped;
     bool is_pair; /* the voxels are in a separate file */
@@ -183,7 +183,7 @@ static bool has_magic(const nifti *n, const char *magic)
 bool cwi_nifti_sniff(const unsigned char *head, size_t size)
 {
     nifti n = {0};
-    memcpy(n.bytes, head, size < MOST_HEADER ? size : MOST_HEADER);
+    memcpy(n.bytes, head, size < MAX_HEADER ? size : MAX_HEADER);
     return size >= 348 && find_layout(&n) &&
            (has_magic(&n, n.layout->one_file) || has_magic(&n, n.layout->pair));
 }

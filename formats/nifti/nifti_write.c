@@ -6,11 +6,11 @@
 
 #include <string.h>
 
-enum { MOST_BYTES = 544, SPACE_MM = 2, TIME_SECONDS = 8, INTENT_VECTOR = 1007 };
+enum { MAX_BYTES = 544, SPACE_MM = 2, TIME_SECONDS = 8, INTENT_VECTOR = 1007 };
 
 /* A header that is being filled in. */
 typedef struct header {
-    unsigned char bytes[MOST_BYTES];
+    unsigned char bytes[MAX_BYTES];
     const cwi_nifti_layout *layout;
 } header;
 

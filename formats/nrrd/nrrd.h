@@ -6,7 +6,7 @@
 #include "formats/text/text_header.h"
 #include "formats/volume/voxel_source.h"
 
-enum { CWI_NRRD_MOST_AXES = 16 };
+enum { CWI_NRRD_MAX_AXES = 16 };
 
 /* The fields that are used, and one for all others that NRRD defines. */
 typedef enum cwi_nrrd_field {
@@ -58,11 +58,11 @@ typedef struct cwi_nrrd {
     const char *value[CWI_NRRD_FIELD_COUNT]; /* as written; NULL: the field is missing */
     bool has_segments;                       /* keys describe segments: values are labels */
     size_t dimension;
-    cwi_nrrd_axis axis[CWI_NRRD_MOST_AXES];
-    double spacing[CWI_NRRD_MOST_AXES], min[CWI_NRRD_MOST_AXES],
-        max[CWI_NRRD_MOST_AXES]; /* NaN: not stated */
-    int space;                   /* the row in a table of named worlds, or -1 */
-    size_t space_dimension;      /* 0: no world is described */
+    cwi_nrrd_axis axis[CWI_NRRD_MAX_AXES];
+    double spacing[CWI_NRRD_MAX_AXES], min[CWI_NRRD_MAX_AXES],
+        max[CWI_NRRD_MAX_AXES]; /* NaN: not stated */
+    int space;                  /* the row in a table of named worlds, or -1 */
+    size_t space_dimension;     /* 0: no world is described */
     double origin[4];
     double world_mm[4];   /* per unit of each world coordinate; 0: not stated */
     double world_seconds; /* per unit of the fourth */

@@ -260,7 +260,7 @@ static cwi_role other_role(const cwi_nrrd_axis *a, bool is_fastest)
     return CWI_AXIS_STEP;
 }
 
-static cw_status assign_roles(const cwi_nrrd *n, cwi_axis roles[CWI_NRRD_MOST_AXES],
+static cw_status assign_roles(const cwi_nrrd *n, cwi_axis roles[CWI_NRRD_MAX_AXES],
                               cw_error *err)
 {
     unsigned seen = 0;
@@ -391,7 +391,7 @@ static void add_missing_axes(const cwi_axis *roles, size_t count, bool has_direc
 
 cw_status cwi_nrrd_describe(cwi_nrrd *n, cwi_source *src, cw_error *err)
 {
-    cwi_axis roles[CWI_NRRD_MOST_AXES];
+    cwi_axis roles[CWI_NRRD_MAX_AXES];
     cw_status st = read_axes(n, err);
     if (st == CW_OK)
         st = read_world(n, err);

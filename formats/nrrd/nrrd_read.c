@@ -126,11 +126,11 @@ static cw_status require_field(const cwi_nrrd *n, cwi_nrrd_field f, cw_error *er
 
 static cw_status read_sizes(cwi_nrrd *n, cw_error *err)
 {
-    size_t sizes[CWI_NRRD_MOST_AXES];
+    size_t sizes[CWI_NRRD_MAX_AXES];
     int64_t dimension = 0;
     cw_status st = require_field(n, CWI_NRRD_DIMENSION, err);
     if (st == CW_OK)
-        st = cwi_field_integer("dimension", n->value[CWI_NRRD_DIMENSION], 1, CWI_NRRD_MOST_AXES,
+        st = cwi_field_integer("dimension", n->value[CWI_NRRD_DIMENSION], 1, CWI_NRRD_MAX_AXES,
                                &dimension, err);
     n->dimension = (size_t)dimension;
     if (st == CW_OK)
@@ -245,7 +245,7 @@ static cw_status read_list(cwi_nrrd *n, cwi_source *src, int64_t *depth, cw_erro
     cw_status st = CW_OK;
     said += strspn(said, " \t");
     if (*said)
-        st = cwi_field_integer("data file: LIST", said, 1, CWI_NRRD_MOST_AXES, depth, err);
+        st = cwi_field_integer("data file: LIST", said, 1, CWI_NRRD_MAX_AXES, depth, err);
     return st == CW_OK ? cwi_lines_names(&n->lines, &src->files, err) : st;
 }
 

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { LONGEST = 25, MOST_DIGITS = 15 };
+enum { LONGEST = 25, MAX_DIGITS = 15 };
 
 /* Powers of ten that a double holds exactly. */
 static const double tens[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,
@@ -54,7 +54,7 @@ unsigned char *cwi_put_decimal(unsigned char *to, double value, int digits)
         *to = '0';
         return to + 1;
     }
-    if (digits > MOST_DIGITS || !(size >= 1e-4 && size < tens[digits]))
+    if (digits > MAX_DIGITS || !(size >= 1e-4 && size < tens[digits]))
         return print_number(to, value, digits);
     int places = digits + 3;
     while (size * 1e4 >= tens[digits + 4 - places])

@@ -8,7 +8,7 @@
 #include <ctype.h>
 #include <string.h>
 
-enum { MOST_HEADER = 1 << 20, MOST_LINE = 1 << 16 };
+enum { MAX_HEADER = 1 << 20, MAX_LINE = 1 << 16 };
 
 /* Finds the character that ends lines: a line feed, or a carriage return, as on an old
  * Macintosh, where it alone ends the first line. */
@@ -22,8 +22,8 @@ static char find_line_end(const char *text, size_t size)
 
 cw_status cwi_lines_open(cwi_lines *lines, const cwi_input *in, cw_error *err)
 {
-    *lines = (cwi_lines){.cut = in->size > MOST_HEADER};
-    const size_t size = lines->cut ? MOST_HEADER : (size_t)in->size;
+    *lines = (cwi_lines){.cut = in->size > MAX_HEADER};
+    const size_t size = lines->cut ? MAX_HEADER : (size_t)in->size;
     lines->text = cwi_alloc_array(size + 1, 1);
     if (!lines->text)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the header");
@@ -41,7 +41,7 @@ void cwi_lines_close(cwi_lines *lines)
 static cw_status check_line(const cwi_lines *lines, const char *line, size_t length, bool ends,
                             cw_error *err)
 {
-    if (length > MOST_LINE)
+    if (length > MAX_LINE)
         return cwi_fail(err, CW_ERR_FORMAT, "line %zu of the header is longer than 64 KiB",
                         lines->number);
     if (!ends && lines->cut)
@@ -56,7 +56,7 @@ cw_status cwi_lines_next(cwi_lines *lines, char **line, cw_error *err)
 {
     char *start = lines->text + lines->next;
     const size_t left = lines->size - lines->next;
-    char *end = memchr(start, lines->end, left < MOST_LINE + 1 ? left : MOST_LINE + 1);
+    char *end = memchr(start, lines->end, left < MAX_LINE + 1 ? left : MAX_LINE + 1);
     size_t length = end ? (size_t)(end - start) : left;
     *line = NULL;
     if (left == 0 && !lines->cut)

@@ -7,13 +7,13 @@
 #include <expat.h>
 #include <string.h>
 
-enum { CHUNK = 1 << 16, MOST_DEPTH = 64, LONGEST_TAG = 1 << 20, OTHER = -2 };
+enum { CHUNK = 1 << 16, MAX_DEPTH = 64, LONGEST_TAG = 1 << 20, OTHER = -2 };
 
 struct cwi_xml {
     XML_Parser expat;
     const cwi_xml_rules *rules;
     void *user;
-    int path[MOST_DEPTH]; /* rows; OTHER for elements outside of the table */
+    int path[MAX_DEPTH]; /* rows; OTHER for elements outside of the table */
     size_t depth;
     uint64_t count, fed;
     bool stopped;
@@ -99,9 +99,9 @@ static cw_status start_element(cwi_xml *x, const char *name, cwi_attributes a)
     if (rules->most_elements && x->count == rules->most_elements)
         return cwi_fail(x->err, CW_ERR_FORMAT, "more than %llu elements",
                         (unsigned long long)x->count);
-    if (x->depth == MOST_DEPTH)
+    if (x->depth == MAX_DEPTH)
         return cwi_fail(x->err, CW_ERR_FORMAT, "more than %d elements inside each other",
-                        MOST_DEPTH);
+                        MAX_DEPTH);
     const int row = find_row(x, name);
     if (x->depth == 0 && row == OTHER)
         return cwi_fail(x->err, CW_ERR_FORMAT, "the first element is not %s",

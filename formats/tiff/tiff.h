@@ -5,7 +5,7 @@
 
 #include "formats/volume/sandboxed_planes.h"
 
-enum { CWI_TIFF_MOST_PAGES = 65536 };
+enum { CWI_TIFF_MAX_PAGES = 65536 };
 
 typedef struct cwi_tiff_facts {
     uint32_t columns, rows, samples;

@@ -76,10 +76,10 @@ static cw_status find_count(const char *text, const char *key, uint32_t *count, 
     double value;
     if (!find_number(text, key, &value))
         return CW_OK;
-    if (!(value >= 1) || value > CWI_TIFF_MOST_PAGES || value != floor(value))
+    if (!(value >= 1) || value > CWI_TIFF_MAX_PAGES || value != floor(value))
         return cwi_fail(err, CW_ERR_FORMAT,
                         "'ImageDescription' says %s=%.6g; it must be 1 to %d", key, value,
-                        CWI_TIFF_MOST_PAGES);
+                        CWI_TIFF_MAX_PAGES);
     *count = (uint32_t)value;
     return CW_OK;
 }
@@ -141,7 +141,7 @@ static cw_status order_images(const cwi_tiff_file *f, const char *text, cwi_tiff
         return st;
     if (z == 0)
         z = (uint32_t)(f->page_count / ((uint64_t)c * t));
-    if ((uint64_t)c * t > CWI_TIFF_MOST_PAGES || (uint64_t)c * t * z != f->page_count)
+    if ((uint64_t)c * t > CWI_TIFF_MAX_PAGES || (uint64_t)c * t * z != f->page_count)
         return cwi_fail(
             err, CW_ERR_FORMAT,
             "'ImageDescription' says %u channels, %u slices and %u frames; the file "

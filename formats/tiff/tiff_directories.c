@@ -11,7 +11,7 @@
 enum {
     CLASSIC = 42,
     BIG = 43,
-    MOST_ENTRIES = 4096, /* libtiff's own limit */
+    MAX_ENTRIES = 4096, /* libtiff's own limit */
     ENTRIES_AT_ONCE = 64,
     ENTRY = 12,
     BIG_ENTRY = 20,
@@ -124,9 +124,9 @@ static cw_status pass_directory(const cwi_tiff_file *f, uint64_t *offset, uint32
                         "directory %u should be at %llu; the file has %llu bytes", directory,
                         (unsigned long long)*offset, (unsigned long long)f->size);
     const uint64_t count = read_number(f, bytes, head), at = *offset + head;
-    if (count == 0 || count > MOST_ENTRIES)
+    if (count == 0 || count > MAX_ENTRIES)
         return cwi_fail(err, CW_ERR_FORMAT, "directory %u has %llu tags; it must be 1 to %d",
-                        directory, (unsigned long long)count, MOST_ENTRIES);
+                        directory, (unsigned long long)count, MAX_ENTRIES);
     cw_status st = check_entries(f, at, count, directory, err);
     if (st == CW_OK && !read_at(f, at + count * (f->big ? BIG_ENTRY : ENTRY), bytes, word))
         st = fail_cut("the end", directory, err);
@@ -215,8 +215,8 @@ cw_status cwi_tiff_walk(cwi_tiff_file *f, cw_error *err)
             return cwi_fail(err, CW_ERR_FORMAT,
                             "the chain of directories runs in a circle, through %llu",
                             (unsigned long long)at);
-        if (f->offset_count == CWI_TIFF_MOST_PAGES)
-            return cwi_fail(err, CW_ERR_LIMIT, "more than %d pages", CWI_TIFF_MOST_PAGES);
+        if (f->offset_count == CWI_TIFF_MAX_PAGES)
+            return cwi_fail(err, CW_ERR_LIMIT, "more than %d pages", CWI_TIFF_MAX_PAGES);
         if (!add_offset(f, at, &room))
             return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the places of pages");
         if ((f->offset_count & (f->offset_count - 1)) == 0)

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_DEPTH = 64, MOST_ELEMENTS = 1 << 20, LONGEST = 64 << 20, CHUNK = 1 << 20 };
+enum { MAX_DEPTH = 64, MAX_ELEMENTS = 1 << 20, LONGEST = 64 << 20, CHUNK = 1 << 20 };
 static const uint32_t NONE = UINT32_MAX;
 
 typedef enum axis { AXIS_Z, AXIS_C, AXIS_T, AXIS_COUNT } axis;
@@ -84,14 +84,14 @@ static cw_status read_sizes(parsing *p, attributes a)
             "'SizeX' and 'SizeY' of the OME-XML are %u x %u; the first page is %u x "
             "%u",
             x, y, f->columns, f->rows);
-    if (c % f->samples || z < 1 || c < 1 || t < 1 || z > CWI_TIFF_MOST_PAGES ||
-        c > CWI_TIFF_MOST_PAGES || t > CWI_TIFF_MOST_PAGES ||
-        (uint64_t)z * (c / f->samples) * t > CWI_TIFF_MOST_PAGES)
+    if (c % f->samples || z < 1 || c < 1 || t < 1 || z > CWI_TIFF_MAX_PAGES ||
+        c > CWI_TIFF_MAX_PAGES || t > CWI_TIFF_MAX_PAGES ||
+        (uint64_t)z * (c / f->samples) * t > CWI_TIFF_MAX_PAGES)
         return cwi_fail(
             p->err, CW_ERR_FORMAT,
             "'SizeZ', 'SizeC' and 'SizeT' of the OME-XML are %u, %u and %u, pages of "
             "%u samples; at most %d pages are read",
-            z, c, t, f->samples, CWI_TIFF_MOST_PAGES);
+            z, c, t, f->samples, CWI_TIFF_MAX_PAGES);
     p->facts->slices = p->size[AXIS_Z] = z;
     p->facts->channels = p->size[AXIS_C] = c / f->samples;
     p->facts->steps = p->size[AXIS_T] = t;
@@ -128,7 +128,7 @@ static cw_status read_pixels(parsing *p, attributes a)
         st = read_length(p, a, n);
     if (st == CW_OK && step && cwi_parse_double(&step, &value) && value > 0)
         p->facts->step_seconds = value * (unit ? cwi_tiff_time(unit, strlen(unit)) : 1);
-    for (size_t i = 0; st == CW_OK && i < CWI_TIFF_MOST_PAGES; i++)
+    for (size_t i = 0; st == CW_OK && i < CWI_TIFF_MAX_PAGES; i++)
         p->order[i] = NONE;
     return st;
 }
@@ -249,10 +249,10 @@ static void XMLCALL on_start(void *user, const XML_Char *name, const XML_Char **
     parsing *p = user;
     const char *colon = strrchr(name, ':');
     cw_status st = CW_OK;
-    if (p->depth++ == MOST_DEPTH || p->elements++ == MOST_ELEMENTS)
+    if (p->depth++ == MAX_DEPTH || p->elements++ == MAX_ELEMENTS)
         st = cwi_fail(p->err, CW_ERR_FORMAT,
                       "the OME-XML has more than %d elements, or %d inside each other",
-                      MOST_ELEMENTS, MOST_DEPTH);
+                      MAX_ELEMENTS, MAX_DEPTH);
     else
         st = open_element(p, colon ? colon + 1 : name, (attributes)a);
     if (st != CW_OK)

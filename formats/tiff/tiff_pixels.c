@@ -9,7 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { PIECE = 1 << 20, MOST_AT_ONCE = 1 << 30, MOST_PIXEL = 4 * 8 };
+enum { PIECE = 1 << 20, MAX_AT_ONCE = 1 << 30, MAX_PIXEL = 4 * 8 };
 
 static cw_status fail_page(const cwi_tiff_file *f, const char *why, cw_error *err)
 {
@@ -20,10 +20,10 @@ static cw_status fail_page(const cwi_tiff_file *f, const char *why, cw_error *er
 cw_status cwi_tiff_make_room(unsigned char **buffer, size_t *room, uint64_t bytes,
                              cw_error *err)
 {
-    if (bytes > MOST_AT_ONCE)
+    if (bytes > MAX_AT_ONCE)
         return cwi_fail(err, CW_ERR_LIMIT,
                         "a strip or row of tiles takes %llu bytes; the most are %d",
-                        (unsigned long long)bytes, MOST_AT_ONCE);
+                        (unsigned long long)bytes, MAX_AT_ONCE);
     if (bytes <= *room)
         return CW_OK;
     cwi_free(*buffer);
@@ -231,7 +231,7 @@ static void turn_round(const cwi_tiff_layout *l, unsigned char *row)
 static void mirror_row(const cwi_tiff_layout *l, unsigned char *row)
 {
     const size_t size = l->samples * cw_type_size(l->type);
-    unsigned char kept[MOST_PIXEL];
+    unsigned char kept[MAX_PIXEL];
     for (size_t i = 0, k = l->columns - 1; i < k; i++, k--) {
         memcpy(kept, row + i * size, size);
         memcpy(row + i * size, row + k * size, size);

@@ -13,7 +13,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MOST_COMPRESSION = 65536, MOST_SAMPLES = 4, MOST_CHANNELS = 16 };
+enum { MAX_COMPRESSION = 65536, MAX_SAMPLES = 4, MAX_CHANNELS = 16 };
 
 bool cwi_tiff_sniff(const unsigned char *head, size_t size)
 {
@@ -32,7 +32,7 @@ static uint64_t planes_of(const cwi_tiff_facts *f)
 static cw_status check_claim(const cwi_tiff_facts *f, uint64_t file_bytes, cw_error *err)
 {
     const uint64_t row = ((uint64_t)f->columns * f->samples * f->bits + 7) / 8; /* < 2^37 */
-    const uint64_t ratio = f->compressed ? MOST_COMPRESSION : 1;
+    const uint64_t ratio = f->compressed ? MAX_COMPRESSION : 1;
     uint64_t wanted;
     if (!__builtin_mul_overflow(row * f->rows, planes_of(f), &wanted) &&
         wanted / ratio <= file_bytes)
@@ -66,19 +66,19 @@ static cw_status check_numbers(const cwi_tiff_facts *f, cw_error *err)
 /* Checks the facts, which are untrusted: libtiff's process may have been taken over. */
 static cw_status check_facts(const cwi_tiff_facts *f, uint64_t file_bytes, cw_error *err)
 {
-    const uint32_t most = CWI_TIFF_MOST_PAGES;
+    const uint32_t most = CWI_TIFF_MAX_PAGES;
     if (f->columns < 1 || f->columns > INT32_MAX || f->rows < 1 || f->rows > INT32_MAX ||
-        f->samples < 1 || f->samples > MOST_SAMPLES || f->bits < 1 || f->bits > 64 ||
+        f->samples < 1 || f->samples > MAX_SAMPLES || f->bits < 1 || f->bits > 64 ||
         !cw_type_size(f->type) || f->bits > 8 * cw_type_size(f->type) || f->page_count < 1 ||
         f->page_count > most || f->slices < 1 || f->slices > most || f->channels < 1 ||
         f->channels > most || f->steps < 1 || f->steps > most || planes_of(f) > f->page_count ||
         !memchr(f->note, '\0', sizeof f->note))
         return cwi_fail(err, CW_ERR_BACKEND, "libtiff's answer is not valid");
-    if (f->channels > MOST_CHANNELS || (f->channels > 1 && f->samples > 1))
+    if (f->channels > MAX_CHANNELS || (f->channels > 1 && f->samples > 1))
         return cwi_fail(
             err, CW_ERR_FORMAT,
             "%u channels of %u samples each; at most %d are read, and one of several",
-            f->channels, f->samples, MOST_CHANNELS);
+            f->channels, f->samples, MAX_CHANNELS);
     if ((size_t)f->columns * f->samples * cw_type_size(f->type) > CWI_PLANES_SHARED)
         return cwi_fail(err, CW_ERR_LIMIT, "a row of %u pixels takes more than %d bytes",
                         f->columns, CWI_PLANES_SHARED);

@@ -9,7 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MOST_SAMPLES = 4, AT_ONCE = 1 << 30 };
+enum { MAX_SAMPLES = 4, AT_ONCE = 1 << 30 };
 
 /* --- libtiff's access to the file --------------------------------------------------------- */
 
@@ -262,9 +262,9 @@ static cw_status check_sizes(TIFF *tiff, cwi_tiff_layout *l, cw_error *err)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "'ImageWidth' %u and 'ImageLength' %u are not valid sizes", l->columns,
                         l->rows);
-    if (l->samples < 1 || l->samples > MOST_SAMPLES)
+    if (l->samples < 1 || l->samples > MAX_SAMPLES)
         return cwi_fail(err, CW_ERR_FORMAT, "'SamplesPerPixel' is %u; 1 to %d are read",
-                        l->samples, MOST_SAMPLES);
+                        l->samples, MAX_SAMPLES);
     if (long_of(tiff, TIFFTAG_IMAGEDEPTH, 1) != 1)
         return cwi_fail(err, CW_ERR_FORMAT, "'ImageDepth' is %u; only 1 is read",
                         long_of(tiff, TIFFTAG_IMAGEDEPTH, 1));

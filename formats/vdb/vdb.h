@@ -9,7 +9,7 @@
  * leaves' voxels (512, x fastest), and tiles (cw_tile). */
 enum { CWI_VDB_LEAVES, CWI_VDB_VOXELS, CWI_VDB_TILES, CWI_VDB_PLANES };
 
-enum { CWI_VDB_MOST_GRIDS = 1024 };
+enum { CWI_VDB_MAX_GRIDS = 1024 };
 
 typedef struct cwi_vdb_grid {
     char name[64], kind[32]; /* "level set"; may be empty */
@@ -24,7 +24,7 @@ typedef struct cwi_vdb_grid {
 
 typedef struct cwi_vdb_facts {
     uint32_t grid_count; /* in the file */
-    cwi_vdb_grid grid[CWI_VDB_MOST_GRIDS];
+    cwi_vdb_grid grid[CWI_VDB_MAX_GRIDS];
 } cwi_vdb_facts;
 
 extern CW_API const cwi_plane_functions cwi_module_openvdb;

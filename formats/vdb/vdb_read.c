@@ -37,9 +37,9 @@ static cw_status take_facts(cwi_planes *planes, const cwi_input *in, cwi_vdb_fac
     if (st != CW_OK)
         return st;
     memcpy(facts, shared, sizeof *facts);
-    if (facts->grid_count > CWI_VDB_MOST_GRIDS)
+    if (facts->grid_count > CWI_VDB_MAX_GRIDS)
         return cwi_fail(err, CW_ERR_LIMIT, "it has %u grids; at most %d were expected",
-                        facts->grid_count, CWI_VDB_MOST_GRIDS);
+                        facts->grid_count, CWI_VDB_MAX_GRIDS);
     for (cwi_vdb_grid *g = facts->grid; g < facts->grid + facts->grid_count; g++) {
         clean_text(g->name, sizeof g->name);
         clean_text(g->kind, sizeof g->kind);

@@ -398,7 +398,7 @@ cw_status list(state &s, void *shared, cw_error *err)
         auto *facts = static_cast<cwi_vdb_facts *>(shared);
         archive file(s.fd, s.size);
         facts->grid_count = uint32_t(file.count);
-        for (int32_t n = 0; n < std::min<int32_t>(file.count, CWI_VDB_MOST_GRIDS); n++) {
+        for (int32_t n = 0; n < std::min<int32_t>(file.count, CWI_VDB_MAX_GRIDS); n++) {
             openvdb::io::GridDescriptor about;
             facts->grid[n] = cwi_vdb_grid{};
             const held_grid grid = file.next(about);

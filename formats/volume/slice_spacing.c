@@ -13,7 +13,7 @@
 /* The tolerance of an even step: a twentieth. Positions in headers are rounded to a tenth or a
  * hundredth of a millimetre. */
 static const double TOLERANCE = 0.05;
-enum { FINEST = 8, MOST_SLICES = 65536 };
+enum { FINEST = 8, MAX_SLICES = 65536 };
 
 void cwi_slices_free(cwi_slices *slices)
 {
@@ -79,9 +79,9 @@ static cwi_slice slice_at(const double *places, size_t count, size_t *low, doubl
 static cw_status lay_row(const double *places, size_t count, double steps, cwi_slices *s,
                          cw_error *err)
 {
-    if (steps >= MOST_SLICES)
+    if (steps >= MAX_SLICES)
         return cwi_fail(err, CW_ERR_LIMIT, "%s: %.6g slices would be needed; the most are %d",
-                        s->finding, steps + 1, MOST_SLICES);
+                        s->finding, steps + 1, MAX_SLICES);
     s->count = (size_t)steps + 1;
     s->step = (places[count - 1] - places[0]) / steps;
     s->items = cwi_alloc_array(s->count, sizeof *s->items);

@@ -18,7 +18,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { SLAB_BYTES = 1 << 20, MOST_COMPONENTS = 16 };
+enum { SLAB_BYTES = 1 << 20, MAX_COMPONENTS = 16 };
 
 static const char *name_source(const cwi_source *src)
 {
@@ -105,10 +105,10 @@ cw_status cwi_source_set_axes(cwi_source *src, const cwi_axis *axes, size_t coun
                             "'%s' asks for more %s than an address space holds",
                             src->size_field, name_source(src));
     }
-    if (sizes[CWI_AXIS_COMPONENT] > MOST_COMPONENTS)
+    if (sizes[CWI_AXIS_COMPONENT] > MAX_COMPONENTS)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "'%s' asks for %zu values per voxel; at most %d are read",
-                        src->size_field, sizes[CWI_AXIS_COMPONENT], MOST_COMPONENTS);
+                        src->size_field, sizes[CWI_AXIS_COMPONENT], MAX_COMPONENTS);
     for (int r = 0; r < CWI_ROLE_COUNT; r++) /* never used as a step, but as in packed data */
         if (strides[r] == 0)
             strides[r] = r == CWI_AXIS_COMPONENT ? voxel : bytes;

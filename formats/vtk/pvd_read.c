@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MOST_FILES = 65536 };
+enum { MAX_FILES = 65536 };
 
 typedef struct parsing {
     const cwi_input *in;
@@ -52,8 +52,8 @@ static char *path_of(const cwi_input *in, const char *name)
 
 static cw_status add_entry(parsing *p, const char *name, double time, cw_error *err)
 {
-    if (p->count == MOST_FILES)
-        return cwi_fail(err, CW_ERR_LIMIT, "more than %d files are listed", MOST_FILES);
+    if (p->count == MAX_FILES)
+        return cwi_fail(err, CW_ERR_LIMIT, "more than %d files are listed", MAX_FILES);
     if (p->count == p->capacity) {
         const size_t capacity = p->capacity ? 2 * p->capacity : 16;
         cw_pvd_entry *entries = cwi_realloc_array(p->entries, capacity, sizeof *entries);
@@ -100,7 +100,7 @@ static const cwi_xml_element elements[ELEMENT_COUNT] = {
 };
 
 static const cwi_xml_rules rules = {
-    .elements = elements, .element_count = ELEMENT_COUNT, .most_elements = 4 * MOST_FILES};
+    .elements = elements, .element_count = ELEMENT_COUNT, .most_elements = 4 * MAX_FILES};
 
 static int compare_times(const void *a, const void *b)
 {

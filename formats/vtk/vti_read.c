@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-enum { MOST_ELEMENTS = 10000 };
+enum { MAX_ELEMENTS = 10000 };
 
 /* Recognises the first element VTKFile, of image data or of another kind, which is then
  * refused. */
@@ -164,7 +164,7 @@ static const cwi_xml_element elements[ELEMENT_COUNT] = {
 
 static const cwi_xml_rules rules = {.elements = elements,
                                     .element_count = ELEMENT_COUNT,
-                                    .most_elements = MOST_ELEMENTS,
+                                    .most_elements = MAX_ELEMENTS,
                                     .tag = end_text};
 
 /* --- the array ---------------------------------------------------------------------------- */

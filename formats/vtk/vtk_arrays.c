@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_LINES = 10000, MOST_COMPONENTS = 1 << 16 };
+enum { MAX_LINES = 10000, MAX_COMPONENTS = 1 << 16 };
 
 /* The types, with the bits of a number in binary files, where those are the same everywhere.
  * `type` is -1 for types that are not read. */
@@ -65,9 +65,9 @@ cw_status cwi_vtk_line(cwi_vtk *v, bool *more, cw_error *err)
     if (length == sizeof v->line)
         return cwi_fail(err, CW_ERR_FORMAT, "line %zu is longer than %d bytes", v->number,
                         CWI_VTK_LINE_BYTES - 1);
-    if (v->number > MOST_LINES)
+    if (v->number > MAX_LINES)
         return cwi_fail(err, CW_ERR_FORMAT, "the file has more than %d lines beside its arrays",
-                        MOST_LINES);
+                        MAX_LINES);
     if (memchr(v->line, '\0', length))
         return cwi_fail(err, CW_ERR_FORMAT, "line %zu holds a zero byte; it must be text",
                         v->number);
@@ -326,7 +326,7 @@ static cw_status read_attribute(cwi_vtk *v, int row, cw_error *err)
     for (const char *w = attributes[row].words; whole && st == CW_OK && *w; w++) {
         whole = cwi_next_text_word(&text, *w == 't' ? type : word);
         if (whole && *w != 't')
-            st = cwi_field_integer(array.name, word, 1, MOST_COMPONENTS, &components, err);
+            st = cwi_field_integer(array.name, word, 1, MAX_COMPONENTS, &components, err);
         whole |= *w == 'C';
     }
     if (st == CW_OK && !whole)
@@ -378,8 +378,7 @@ static cw_status read_field_array(cwi_vtk *v, cw_error *err)
             "line %zu is '%.60s'; it must name an array of a FIELD, its components, "
             "tuples and type",
             v->number, v->line);
-    cw_status st =
-        cwi_field_integer(array.name, words[0], 0, MOST_COMPONENTS, &components, err);
+    cw_status st = cwi_field_integer(array.name, words[0], 0, MAX_COMPONENTS, &components, err);
     if (st == CW_OK)
         st = cwi_field_integer(array.name, words[1], 0, INT64_MAX, &tuples, err);
     if (st != CW_OK)
@@ -396,7 +395,7 @@ static cw_status read_field(cwi_vtk *v, cw_error *err)
     int64_t count = 0;
     bool more = true;
     skip_name(&text, name);
-    cw_status st = cwi_field_integer("FIELD", text, 0, MOST_LINES, &count, err);
+    cw_status st = cwi_field_integer("FIELD", text, 0, MAX_LINES, &count, err);
     while (st == CW_OK && count > 0 && !cwi_vtk_is_settled(v)) {
         st = cwi_vtk_full_line(v, &more, err);
         if (st == CW_OK && !more)

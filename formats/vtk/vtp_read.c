@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_ELEMENTS = 10000 };
+enum { MAX_ELEMENTS = 10000 };
 
 /* The arrays that are read. */
 typedef enum role {
@@ -225,7 +225,7 @@ static const cwi_xml_element elements[ELEMENT_COUNT] = {
 
 static const cwi_xml_rules rules = {.elements = elements,
                                     .element_count = ELEMENT_COUNT,
-                                    .most_elements = MOST_ELEMENTS,
+                                    .most_elements = MAX_ELEMENTS,
                                     .tag = end_text,
                                     .comment = take_comment};
 

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_ELEMENTS = 100000 };
+enum { MAX_ELEMENTS = 100000 };
 
 /* The content of a Piece. */
 typedef struct piece {
@@ -279,7 +279,7 @@ static const cwi_xml_element elements[ELEMENT_COUNT] = {
 
 static const cwi_xml_rules rules = {.elements = elements,
                                     .element_count = ELEMENT_COUNT,
-                                    .most_elements = MOST_ELEMENTS,
+                                    .most_elements = MAX_ELEMENTS,
                                     .tag = end_text};
 
 /* --- to a grid --------------------------------------------------------------------------- */

@@ -315,7 +315,7 @@ static bool take_care(const cwi_passes *p, const part *x)
         for (uint32_t v = x->left->lists[t]; v != UINT32_MAX; v = p->next[v])
             if (p->care[v] & MARK) {
                 p->care[v] &= (uint8_t)~MARK;
-                if (p->care[v] < CWI_MOST_CARE) {
+                if (p->care[v] < CWI_MAX_CARE) {
                     p->care[v]++;
                     more = true;
                 }

@@ -101,7 +101,7 @@ private:
     size_t count;
     std::vector<float> areas;
     std::vector<cwi_trend> all; // vertices x count
-    cwi_trend joined[CWI_MOST_ATTRIBUTES];
+    cwi_trend joined[CWI_MAX_ATTRIBUTES];
     float joined_area = 0;
 };
 

@@ -90,14 +90,14 @@ void Bound::collect(const Star &star)
 // nothing tells where the original is.
 float Bound::allowed() const
 {
-    uint8_t care = points.empty() ? uint8_t(CWI_MOST_CARE) : 0;
+    uint8_t care = points.empty() ? uint8_t(CWI_MAX_CARE) : 0;
     float least = error;
     for (uint32_t p : points) {
         care = std::max(care, original->care[p]);
         if (original->allowed)
             least = std::min(least, original->allowed[p]);
     }
-    return care < CWI_MOST_CARE ? std::ldexp(least, -care) : -1;
+    return care < CWI_MAX_CARE ? std::ldexp(least, -care) : -1;
 }
 
 // Whether what is seen of the star was about as even as one that is joined.

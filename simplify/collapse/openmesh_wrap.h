@@ -32,7 +32,7 @@ typedef struct cwi_trend {
     float slope[3], value;
 } cwi_trend;
 
-enum { CWI_MOST_ATTRIBUTES = 8 };
+enum { CWI_MAX_ATTRIBUTES = 8 };
 
 /* The mean over an area of `count` trends, and those of another area about the same place,
  * become the mean over both; the quadric gets what they differ by, squared and times area. */
@@ -61,7 +61,7 @@ static inline void cwi_trends_join(cwi_quadric *q, float *area, cwi_trend *mean,
 }
 
 /* Around points that are given so much care nothing is changed. */
-enum { CWI_MOST_CARE = 4 };
+enum { CWI_MAX_CARE = 4 };
 
 /* Surface before it was simplified, which the result must stay near: each of its points belongs
  * to the list of a triangle that it is near to. */

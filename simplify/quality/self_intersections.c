@@ -14,7 +14,7 @@
 /* Nodes of the tree are handed out in chunks. A chunk may do so much work, a test being 1 and a
  * pair kept 4: a sound mesh needs about 15 a triangle. When it is cut off, it is done again
  * with a share of what all such chunks have together. The result does not depend on threads. */
-enum { CHUNK_NODES = 512, COST_OF_PAIR = 4, LEAST_WORK = 32, MOST_WORK = 96 };
+enum { CHUNK_NODES = 512, COST_OF_PAIR = 4, MIN_WORK = 32, MAX_WORK = 96 };
 static const size_t work_of_all = (size_t)1 << 28, work_beyond = (size_t)1 << 25;
 
 typedef struct pair {
@@ -112,9 +112,7 @@ static void search_chunk(void *context, size_t k)
 static size_t first_allowance(const search *s)
 {
     const size_t share = work_of_all / (s->tree.count + 1);
-    const size_t a_triangle = share < LEAST_WORK  ? LEAST_WORK
-                              : share > MOST_WORK ? MOST_WORK
-                                                  : share;
+    const size_t a_triangle = share < MIN_WORK ? MIN_WORK : share > MAX_WORK ? MAX_WORK : share;
     return CHUNK_NODES * CWI_WIDTH * a_triangle;
 }
 

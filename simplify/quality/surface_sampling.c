@@ -358,7 +358,7 @@ static void plan_chunks(work *w)
     w->scale = w->chunks = 1;
     if (w->s->vertices_only)
         return;
-    while (count_points(w) > CWI_MOST_SAMPLES && w->scale > 1e-6)
+    while (count_points(w) > CWI_MAX_SAMPLES && w->scale > 1e-6)
         w->scale *= 0.75;
     w->chunks = cut_chunks(w);
 }

@@ -5,7 +5,7 @@
 #include <cubewright/distance.h>
 
 /* The most points at which a mesh is measured: beyond, steps grow. */
-#define CWI_MOST_SAMPLES ((size_t)1 << 25)
+#define CWI_MAX_SAMPLES ((size_t)1 << 25)
 
 /* The distance of a point, relative to the mesh's origin; negative inside, where that has a
  * meaning. Called from several threads.

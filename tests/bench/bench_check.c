@@ -14,11 +14,11 @@
 #include <stdlib.h>
 #include <time.h>
 
-enum { MOST_RUNS = 99 };
+enum { MAX_RUNS = 99 };
 
 typedef struct times {
     int count;
-    double ms[MOST_RUNS];
+    double ms[MAX_RUNS];
 } times;
 
 static double now_ms(void)
@@ -117,7 +117,7 @@ int main(int count, char **words)
 {
     const size_t size = count > 1 ? strtoul(words[1], NULL, 10) : 256;
     const int runs = count > 2 ? atoi(words[2]) : 3;
-    if (size < 8 || runs < 1 || runs > MOST_RUNS) {
+    if (size < 8 || runs < 1 || runs > MAX_RUNS) {
         fprintf(stderr, "usage: bench_check [SIZE [RUNS]]\n");
         return 2;
     }

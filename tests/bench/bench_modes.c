@@ -14,7 +14,7 @@
 
 #include <string.h>
 
-enum { MOST_FRAMES = 31 };
+enum { MAX_FRAMES = 31 };
 
 typedef struct settings {
     size_t size, picture;
@@ -89,7 +89,7 @@ static bool draw(cw_renderer *r, const cw_scene *scene, int frames, double *ms,
                  cw_picture *picture)
 {
     cw_error err = {0};
-    double all[MOST_FRAMES];
+    double all[MAX_FRAMES];
     for (int n = 0; n <= frames; n++) {
         const double start = bench_cpu_ms();
         cw_picture_free(picture);
@@ -179,7 +179,7 @@ static int parse(int argc, char **argv, settings *s)
         else if (strcmp(argv[n], "--picture") == 0)
             s->picture = (size_t)value;
         else if (strcmp(argv[n], "--frames") == 0)
-            s->frames = value < MOST_FRAMES ? (int)value : MOST_FRAMES - 1;
+            s->frames = value < MAX_FRAMES ? (int)value : MAX_FRAMES - 1;
     }
     return n;
 }

@@ -18,7 +18,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MOST_FRAMES = 101 };
+enum { MAX_FRAMES = 101 };
 
 typedef struct settings {
     size_t size, picture;
@@ -39,7 +39,7 @@ static void render_ours(const cw_scene *scene, int frames, result *out)
     cw_error err = {0};
     cw_renderer *renderer;
     cw_picture picture;
-    double all[MOST_FRAMES];
+    double all[MAX_FRAMES];
     /* contexts are opened before, as VTK's is */
     bench_check(
         cw_renderer_new(scene->mode == CW_MODE_VBUFFER ? CW_BACKEND_CPU : CW_BACKEND_EGL,
@@ -187,7 +187,7 @@ static settings parse(int argc, char **argv)
         else if (strcmp(argv[n], "--picture") == 0)
             s.picture = (size_t)value;
         else if (strcmp(argv[n], "--frames") == 0)
-            s.frames = value < MOST_FRAMES ? (int)value : MOST_FRAMES - 1;
+            s.frames = value < MAX_FRAMES ? (int)value : MAX_FRAMES - 1;
         else if (strcmp(argv[n], "--case") == 0)
             s.only = argv[n + 1];
     }

@@ -8,17 +8,17 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 
-enum { MOST_BYTES = 1 << 24 };
+enum { MAX_BYTES = 1 << 24 };
 
 static int replay_file(const char *path)
 {
     FILE *file = fopen(path, "rb");
-    uint8_t *bytes = malloc(MOST_BYTES);
+    uint8_t *bytes = malloc(MAX_BYTES);
     if (!file || !bytes) {
         fprintf(stderr, "%s: cannot be read\n", path);
         exit(1);
     }
-    const size_t size = fread(bytes, 1, MOST_BYTES, file);
+    const size_t size = fread(bytes, 1, MAX_BYTES, file);
     LLVMFuzzerTestOneInput(bytes, size);
     free(bytes);
     fclose(file);

@@ -7,11 +7,11 @@
 #include <stdio.h>
 #include <unistd.h>
 
-enum { SKIPPED = 77, MOST = 3 };
+enum { SKIPPED = 77, MAXIMUM = 3 };
 
 /* Where segments overlap, there are several NRRD files, and the highest number stays. */
 static const struct {
-    const char *dicom, *nrrd[MOST];
+    const char *dicom, *nrrd[MAXIMUM];
 } rows[] = {
     {"liver.dcm", {"liver_seg.nrrd"}},
     {"partial_overlaps.dcm",
@@ -60,11 +60,11 @@ static size_t count_differences(const cw_volume *v, const cw_volume *wanted, int
 
 static int check_row(const char *folder, size_t row)
 {
-    cw_volume v = {0}, wanted[MOST] = {{0}};
+    cw_volume v = {0}, wanted[MAXIMUM] = {{0}};
     cw_error err = {0};
     int count = 0, failed = 0;
     cw_status st = read_volume(folder, rows[row].dicom, &v, &err);
-    for (; st == CW_OK && count < MOST && rows[row].nrrd[count]; count++)
+    for (; st == CW_OK && count < MAXIMUM && rows[row].nrrd[count]; count++)
         st = read_volume(folder, rows[row].nrrd[count], &wanted[count], &err);
     if (st == CW_ERR_UNSUPPORTED)
         failed = SKIPPED;
@@ -73,7 +73,7 @@ static int check_row(const char *folder, size_t row)
     else if (count_differences(&v, wanted, count) > 0)
         failed = printf("%s: differs from %s\n", rows[row].dicom, rows[row].nrrd[0]) > 0;
     cw_volume_free(&v);
-    for (int w = 0; w < MOST; w++)
+    for (int w = 0; w < MAXIMUM; w++)
         cw_volume_free(&wanted[w]);
     return failed;
 }

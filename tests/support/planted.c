@@ -4,17 +4,17 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { ROOM = 1024 };
+enum { CAPACITY = 1024 };
 
 struct test_builder {
-    float points[3 * ROOM];
-    uint32_t corners[3 * ROOM];
+    float points[3 * CAPACITY];
+    uint32_t corners[3 * CAPACITY];
     uint32_t points_used, triangles_used;
 };
 
 static uint32_t point(test_builder *b, double x, double y, double z)
 {
-    assert_true(b->points_used < ROOM);
+    assert_true(b->points_used < CAPACITY);
     const double p[3] = {x, y, z};
     for (int a = 0; a < 3; a++)
         b->points[3 * b->points_used + (uint32_t)a] = (float)p[a];
@@ -23,7 +23,7 @@ static uint32_t point(test_builder *b, double x, double y, double z)
 
 static void triangle(test_builder *b, uint32_t u, uint32_t v, uint32_t w)
 {
-    assert_true(b->triangles_used < ROOM);
+    assert_true(b->triangles_used < CAPACITY);
     uint32_t *c = b->corners + 3 * b->triangles_used++;
     c[0] = u;
     c[1] = v;

@@ -1,5 +1,5 @@
-/* Whether two pictures are alike: png_near A.png B.png [MEAN [MOST]]. Of 255, their bytes are
- * at most MEAN (0.5) apart on average, and none more than MOST (64). */
+/* Whether two pictures are alike: png_near A.png B.png [MEAN [MAXIMUM]]. Of 255, their bytes are
+ * at most MEAN (0.5) apart on average, and none more than MAXIMUM (64). */
 #include <math.h>
 #include <png.h>
 #include <stdbool.h>

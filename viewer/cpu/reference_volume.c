@@ -25,7 +25,7 @@ static const double tolerance = 1e-8, piece_tolerance = 1e-13;
 /* The light at which a ray ends. */
 static const double dark = 1e-10;
 
-enum { MOST_HALVINGS = 40 };
+enum { MAX_HALVINGS = 40 };
 
 /* Returns the integral, up to x, of the polynomial that is 1 at one point and 0 at the
  * others. */
@@ -162,7 +162,7 @@ static void add_passage(const medium *m, double from, double to, const passage *
     const passage both = join_passages(&front, &back);
     const double error = s->light * passage_difference(whole, &both);
     if (error > fmax(s->tolerance * (to - from) * m->length, piece_tolerance) &&
-        halvings < MOST_HALVINGS) {
+        halvings < MAX_HALVINGS) {
         add_passage(m, from, middle, &front, halvings + 1, s);
         add_passage(m, middle, to, &back, halvings + 1, s);
         return;

@@ -10,7 +10,7 @@
 /* Minimum and maximum seconds between two reports. */
 static const double soon = 0.005, late = 0.012;
 
-enum { FIRST_ROWS = 8, MOST_ROWS = 16, LEAST_ROWS = 4, FIRST_TRIANGLES = 4096 };
+enum { FIRST_ROWS = 8, MAX_ROWS = 16, MIN_ROWS = 4, FIRST_TRIANGLES = 4096 };
 
 /* Calls the caller, which finds its own context, and may make another current. */
 static bool ask_caller(void *user, const char *step, double done)
@@ -89,7 +89,7 @@ static cw_status draw_bands(cwi_gl *gl, void (*draw)(void *), void *context, siz
         glScissor(0, (GLint)y, gl->target.width, (GLsizei)*rows);
         draw(context);
         y += *rows;
-        *rows = adapt_size(*rows, start, LEAST_ROWS, most);
+        *rows = adapt_size(*rows, start, MIN_ROWS, most);
         st = report_share(gl, y, height, err);
     }
     glDisable(GL_SCISSOR_TEST);
@@ -105,7 +105,7 @@ static void draw_screen(void *gl)
 cw_status cwi_gl_draw_rays(cwi_gl *gl, cw_error *err)
 {
     if (is_watched(gl))
-        return draw_bands(gl, draw_screen, gl, &gl->watch.rows, MOST_ROWS, err);
+        return draw_bands(gl, draw_screen, gl, &gl->watch.rows, MAX_ROWS, err);
     cwi_gl_draw_screen(gl);
     return CW_OK;
 }

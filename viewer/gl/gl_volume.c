@@ -13,9 +13,9 @@
 
 enum {
     CHUNK_BYTES = 1 << 22,
-    MOST_BRICKS = 4096,
+    MAX_BRICKS = 4096,
     GRADIENT_BYTES = 8,
-    MOST_GRADIENTS = 1 << 24 /* voxels that have their gradients in a texture */
+    MAX_GRADIENTS = 1 << 24 /* voxels that have their gradients in a texture */
 };
 
 /* Returns the format of texels. Eight and sixteen bits are normalised, and stay exact; others
@@ -213,10 +213,10 @@ static cw_status plan_bricks(cwi_gl_volume *g, const size_t edge[3], cw_error *e
     for (int a = 0; a < 3; a++)
         parts[a] = parts_of(v->dim[a], edge[a]);
     const size_t count = parts[0] * parts[1] * parts[2];
-    if (count > MOST_BRICKS)
+    if (count > MAX_BRICKS)
         return cwi_fail(err, CW_ERR_LIMIT,
                         "the volume makes %zu textures: at most %d are drawn", count,
-                        MOST_BRICKS);
+                        MAX_BRICKS);
     g->bricks = cwi_alloc_zeroed(count, sizeof *g->bricks);
     if (!g->bricks)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bricks", count);
@@ -434,7 +434,7 @@ static bool has_differences(const cwi_gl *gl)
     const cwi_gl_volume *g = &gl->volume;
     const size_t *dim = g->key.dim;
     return g->brick_count == 1 && !g->ranges.has_gaps &&
-           (gl->frame->scene.lean || dim[0] * dim[1] * dim[2] > MOST_GRADIENTS);
+           (gl->frame->scene.lean || dim[0] * dim[1] * dim[2] > MAX_GRADIENTS);
 }
 
 cw_status cwi_gl_need_gradients(cwi_gl *gl, const char **defines, cw_error *err)

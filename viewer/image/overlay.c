@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_BARS = 512, MOST_LABELS = 8, TEXT = 48 };
+enum { MAX_BARS = 512, MAX_LABELS = 8, TEXT = 48 };
 
 /* An image that is drawn on. Lengths are pixels of the image, not samples of the frame. */
 typedef struct board {
@@ -314,7 +314,7 @@ static cw_status draw_color_bar(const board *b, cw_error *err)
         find_range(&b->frame->transfer, range);
     else if (cwi_tint_range(&b->frame->scene, range, err) != CW_OK)
         return CW_ERR_ARGUMENT;
-    const double span = range[1] - range[0], step = round_up(span / (MOST_LABELS - 2));
+    const double span = range[1] - range[0], step = round_up(span / (MAX_LABELS - 2));
     fill_bar(b, range, box);
     for (double n = ceil(range[0] / step - 1e-9); n * step <= range[1] + 1e-9 * span; n++) {
         const double y = box[3] - (n * step - range[0]) / span * (box[3] - box[1]);
@@ -390,8 +390,8 @@ static void draw_histogram(const board *b)
     const double bottom = b->height - b->margin - 1.6 * b->text;
     const double box[4] = {0.70 * b->width, bottom - 0.18 * b->height, b->width - b->margin,
                            bottom};
-    double bars[MOST_BARS];
-    const size_t count = (size_t)fmin(fmax(floor(box[2] - box[0]), 1), MOST_BARS);
+    double bars[MAX_BARS];
+    const size_t count = (size_t)fmin(fmax(floor(box[2] - box[0]), 1), MAX_BARS);
     const double wide = (box[2] - box[0]) / (double)count;
     char text[TEXT];
     cwi_pen pen = {.image = b->image};

@@ -18,7 +18,7 @@
 extern const char cwi_glsl_mesh[], cwi_glsl_layer[];
 
 /* The maximum number of layers; those behind them are left out. */
-enum { MOST_LAYERS = 128 };
+enum { MAX_LAYERS = 128 };
 
 /* Half the width of edges, in pixels. */
 static const float LINE_WIDTH = 0.6f;
@@ -171,7 +171,7 @@ static cw_status peel_layers(cwi_gl *gl, cwi_gl_mesh *m, cw_error *err)
 {
     GLuint drawn = 1;
     cw_status st = cwi_gl_need_layers(gl, m, err);
-    for (int n = 0; n < MOST_LAYERS && drawn && st == CW_OK; n++) {
+    for (int n = 0; n < MAX_LAYERS && drawn && st == CW_OK; n++) {
         start_layer(gl, m, n);
         glBeginQuery(GL_ANY_SAMPLES_PASSED, m->query);
         st = draw_surface(gl, m, (manner){.peels = true}, err);

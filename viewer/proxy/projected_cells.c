@@ -8,14 +8,14 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_SIDES = 16, MOST_FACES = 7 };
+enum { MAX_SIDES = 16, MAX_FACES = 7 };
 
 /* Faces seen more edge-on than this cover nothing: slopes, or distances in voxels. */
 static const double edge_on = 1e-9;
 
 typedef struct polygon {
     int count;
-    double at[MOST_SIDES][2];
+    double at[MAX_SIDES][2];
 } polygon;
 
 /* A face on the picture. plane: depth, in perspective 1 / depth, is plane[0] x + plane[1] y +
@@ -27,7 +27,7 @@ typedef struct face {
 
 typedef struct faces {
     int count;
-    face all[MOST_FACES];
+    face all[MAX_FACES];
 } faces;
 
 typedef struct solid {
@@ -48,7 +48,7 @@ static void project_point(const cwi_frame *f, const double p[3], double at[2])
 
 static void add_corner(polygon *p, const double at[2])
 {
-    if (p->count < MOST_SIDES)
+    if (p->count < MAX_SIDES)
         memcpy(p->at[p->count++], at, 2 * sizeof *at);
 }
 
@@ -181,7 +181,7 @@ static double twice_area(const polygon *p)
 static void cut_polygon(polygon *p, const double a[2], const double b[2], double rounding)
 {
     polygon out;
-    double at[2], d[MOST_SIDES];
+    double at[2], d[MAX_SIDES];
     bool any_left = false, any_right = false;
     for (int n = 0; n < p->count; n++) {
         d[n] = cross_in_plane(a, b, p->at[n]);
@@ -253,7 +253,7 @@ static int choose_first(const polygon *p)
 static void add_polygon(const solid *s, const polygon *p, const face *front, const face *back,
                         double size, cwi_pieces *out)
 {
-    uint8_t number[MOST_SIDES];
+    uint8_t number[MAX_SIDES];
     const int first = choose_first(p);
     const double thick = s->depth[1] - s->depth[0];
     for (int n = 0; n < p->count; n++) {

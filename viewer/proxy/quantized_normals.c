@@ -131,9 +131,9 @@ cw_status cwi_directions_make(size_t count, cwi_directions *directions, cw_error
 {
     cwi_directions *d = directions;
     *d = (cwi_directions){.count = count};
-    if (count < 1 || count > CWI_MOST_DIRECTIONS)
+    if (count < 1 || count > CWI_MAX_DIRECTIONS)
         return cwi_fail(err, CW_ERR_ARGUMENT, "%zu directions of gradients: expected 1 to %d",
-                        count, CWI_MOST_DIRECTIONS);
+                        count, CWI_MAX_DIRECTIONS);
     d->edge = (size_t)ceil(sqrt((double)count));
     d->all = cwi_alloc_array(count, sizeof *d->all);
     if (d->all)

@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-enum { CWI_MOST_DIRECTIONS = 8192 };
+enum { CWI_MAX_DIRECTIONS = 8192 };
 
 /* A spherical Fibonacci lattice: direction n is at height z = 1 - (n + 1/2) / count, each a
  * golden angle further around than the last. No line is farther from one of them than
@@ -24,7 +24,7 @@ typedef struct cwi_directions {
     uint16_t *candidates;
 } cwi_directions;
 
-/* count: 1 to CWI_MOST_DIRECTIONS. CW_ERR_ARGUMENT, CW_ERR_NO_MEMORY. */
+/* count: 1 to CWI_MAX_DIRECTIONS. CW_ERR_ARGUMENT, CW_ERR_NO_MEMORY. */
 CW_NODISCARD cw_status cwi_directions_make(size_t count, cwi_directions *directions,
                                            cw_error *err);
 void cwi_directions_free(cwi_directions *directions);

@@ -11,7 +11,7 @@
 
 /* Depth of a layer of thin slabs: half of an empty block. Deep scenes have thicker layers, to
  * save memory. */
-enum { LAYER_DEPTH = 4, MOST_LAYERS = 1 << 16, MOST_SLABS = 1 << 24 };
+enum { LAYER_DEPTH = 4, MAX_LAYERS = 1 << 16, MAX_SLABS = 1 << 24 };
 
 /* Finds the depths, from the eye's plane, of the nearest and the farthest corner of the
  * volume. */
@@ -39,12 +39,12 @@ cw_status cwi_slabs_init(const cwi_frame *f, cwi_slabs *s, cw_error *err)
     s->first = depth[0];
     const double extent = fmax(depth[1] - depth[0], 0);
     const double count = ceil(extent / s->thickness);
-    if (count > MOST_SLABS)
+    if (count > MAX_SLABS)
         return cwi_fail(err, CW_ERR_LIMIT, "%.3g slices: at most %d are drawn", count,
-                        MOST_SLABS);
+                        MAX_SLABS);
     s->count = (size_t)count;
     s->per_layer =
-        (size_t)fmax(1, floor(fmax(LAYER_DEPTH, extent / MOST_LAYERS) / s->thickness));
+        (size_t)fmax(1, floor(fmax(LAYER_DEPTH, extent / MAX_LAYERS) / s->thickness));
     s->layer_count = (s->count + s->per_layer - 1) / s->per_layer;
     const size_t longest = f->scene.width > f->scene.height ? f->scene.width : f->scene.height;
     s->tile = (longest + CWI_SLAB_TILES - 1) / CWI_SLAB_TILES;

@@ -355,7 +355,7 @@ void cwi_frame_to_world(const cwi_frame *f, const double eye[3], double world[3]
 
 double cwi_frame_extinction(const cwi_frame *f, double opacity)
 {
-    return -log1p(-fmin(opacity, CWI_MOST_OPACITY)) / f->opacity_units;
+    return -log1p(-fmin(opacity, CWI_MAX_OPACITY)) / f->opacity_units;
 }
 
 double cwi_frame_cue(const cwi_frame *f, double depth)

@@ -67,8 +67,8 @@ int cwi_frame_keep(const cwi_frame *frame, const double origin[3], const double 
 void cwi_frame_to_world(const cwi_frame *frame, const double eye[3], double world[3]);
 
 /* Returns the extinction coefficient, per unit of eye space, of an opacity of the transfer
- * function. The opacity is limited to CWI_MOST_OPACITY. */
-#define CWI_MOST_OPACITY (1 - 1e-6)
+ * function. The opacity is limited to CWI_MAX_OPACITY. */
+#define CWI_MAX_OPACITY (1 - 1e-6)
 double cwi_frame_extinction(const cwi_frame *frame, double opacity);
 
 /* Returns the fraction of light that is left at a depth: 1 near, 1 - depth_cue far. */

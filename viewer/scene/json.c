@@ -11,17 +11,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_BYTES = 1 << 20 };
+enum { MAX_BYTES = 1 << 20 };
 
 static cw_status read_bytes(FILE *file, char **bytes, size_t *size, cw_error *err)
 {
-    *bytes = cwi_alloc_array(MOST_BYTES + 1, 1);
+    *bytes = cwi_alloc_array(MAX_BYTES + 1, 1);
     if (!*bytes)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to read it");
-    *size = fread(*bytes, 1, MOST_BYTES + 1, file);
+    *size = fread(*bytes, 1, MAX_BYTES + 1, file);
     if (ferror(file))
         return cwi_fail(err, CW_ERR_IO, "cannot be read: %s", strerror(errno));
-    if (*size > MOST_BYTES)
+    if (*size > MAX_BYTES)
         return cwi_fail(err, CW_ERR_FORMAT, "is larger than settings are: at most 1 MiB");
     return CW_OK;
 }

@@ -17,8 +17,8 @@ static int in_order(const void *a, const void *b)
  * which extinction is constant. */
 static void add_limit(const cw_opacity_point *p, cwi_knots *k)
 {
-    const double a = (double)p[0].opacity - CWI_MOST_OPACITY,
-                 b = (double)p[1].opacity - CWI_MOST_OPACITY;
+    const double a = (double)p[0].opacity - CWI_MAX_OPACITY,
+                 b = (double)p[1].opacity - CWI_MAX_OPACITY;
     if (a * b < 0)
         k->at[k->count++] = p[0].value + a / (a - b) * (p[1].value - p[0].value);
 }

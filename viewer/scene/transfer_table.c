@@ -9,7 +9,7 @@
 
 /* Steps of the running integrals between rows of a pre-integrated table. */
 enum { FINE = 8 };
-static const double PIECES_PER_DEPTH = 40, MOST_PIECES = 32;
+static const double PIECES_PER_DEPTH = 40, MAX_PIECES = 32;
 
 static void widen_range(double value, double range[2])
 {
@@ -138,7 +138,7 @@ static double (*running_integrals(const cwi_table *t, size_t count))[4]
  * depth, so deep ones are cut. */
 static size_t piece_count(double depth, size_t span)
 {
-    const double wanted = fmin(ceil(PIECES_PER_DEPTH * depth), MOST_PIECES);
+    const double wanted = fmin(ceil(PIECES_PER_DEPTH * depth), MAX_PIECES);
     return wanted < 1 ? 1 : wanted < (double)span ? (size_t)wanted : span;
 }
 

@@ -130,7 +130,7 @@ static void put_pixels(test_tiff *t, const test_page *p, blocks *b)
 
 /* --- directories -------------------------------------------------------------------------- */
 
-enum { ASCII = 2, SHORT = 3, LONG = 4, LONG8 = 16, MOST_TAGS = 20 + TEST_TIFF_MOST_TAGS };
+enum { ASCII = 2, SHORT = 3, LONG = 4, LONG8 = 16, MAX_TAGS = 20 + TEST_TIFF_MAX_TAGS };
 
 static size_t size_of_type(uint16_t type)
 {
@@ -152,7 +152,7 @@ static int compare(const void *a, const void *b)
 static void put_directory(test_tiff *t, test_tag *tags, size_t count)
 {
     const size_t word = t->big ? 8 : 4, head = t->big ? 8 : 2, entry = t->big ? 20 : 12;
-    size_t places[MOST_TAGS];
+    size_t places[MAX_TAGS];
     qsort(tags, count, sizeof *tags, compare);
     for (size_t i = 0; i < count; i++) {
         const size_t size = size_of_type(tags[i].type), n = numbers_of(&tags[i]);
@@ -192,7 +192,7 @@ static void begin(test_tiff *t)
 void test_tiff_add(test_tiff *t, const test_page *p)
 {
     blocks b = {.count = 0};
-    test_tag tags[MOST_TAGS];
+    test_tag tags[MAX_TAGS];
     size_t count = 0;
     if (t->size == 0)
         begin(t);
@@ -237,7 +237,7 @@ void test_tiff_add(test_tiff *t, const test_page *p)
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (all[i].count)
             tags[count++] = all[i];
-    for (size_t i = 0; i < TEST_TIFF_MOST_TAGS; i++)
+    for (size_t i = 0; i < TEST_TIFF_MAX_TAGS; i++)
         if (p->tags[i].count)
             tags[count++] = p->tags[i];
     put_directory(t, tags, count);

@@ -12,7 +12,7 @@ typedef struct test_tag {
     const void *values; /* numbers of this machine; text */
 } test_tag;
 
-enum { TEST_TIFF_MOST_TAGS = 8 };
+enum { TEST_TIFF_MAX_TAGS = 8 };
 
 /* A zero field means what is said beside it. */
 typedef struct test_page {
@@ -28,7 +28,7 @@ typedef struct test_page {
     uint32_t tile_width;     /* strips */
     uint32_t kind;           /* NewSubfileType */
     const char *description;
-    test_tag tags[TEST_TIFF_MOST_TAGS];
+    test_tag tags[TEST_TIFF_MAX_TAGS];
     const void *pixels; /* interleaved, packed, of this machine; 1 bit: a byte each */
 } test_page;
 

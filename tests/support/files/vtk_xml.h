@@ -5,7 +5,7 @@
 #include "formats/bytes/block_reader.h"
 #include "support/files/reading.h"
 
-enum { VTK_BLOCK = 7, VTK_MOST = 8000 };
+enum { VTK_BLOCK = 7, VTK_MAX = 8000 };
 
 typedef enum packing { PLAIN, ZLIB, LZ4 } packing;
 typedef enum form { ASCII, INLINE, APPENDED_TEXT, APPENDED_RAW, FORM_COUNT } form;
@@ -35,13 +35,13 @@ static inline bool is_read(const dialect *d)
 
 /* Bytes that grow. */
 typedef struct byte_buffer {
-    unsigned char at[VTK_MOST];
+    unsigned char at[VTK_MAX];
     size_t size;
 } byte_buffer;
 
 static inline void add(byte_buffer *b, const void *more, size_t size)
 {
-    assert_true(b->size + size <= VTK_MOST);
+    assert_true(b->size + size <= VTK_MAX);
     memcpy(b->at + b->size, more, size);
     b->size += size;
 }

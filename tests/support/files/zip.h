@@ -9,25 +9,25 @@ typedef struct zip_entry {
     bool deflated;
 } zip_entry;
 
-enum { ZIP_MOST = 256 << 10 };
+enum { ZIP_MAX = 256 << 10 };
 
 /* An archive, and where the records of its first entries are, for tests that change them. */
 typedef struct zip {
-    unsigned char bytes[ZIP_MOST];
+    unsigned char bytes[ZIP_MAX];
     size_t size;
     size_t local[8], central[8], end;
 } zip;
 
 static inline void zip_put(zip *z, uint64_t value, size_t size)
 {
-    assert_true(z->size + size <= ZIP_MOST);
+    assert_true(z->size + size <= ZIP_MAX);
     for (size_t i = 0; i < size; i++)
         z->bytes[z->size++] = (unsigned char)(i < 8 ? value >> (8 * i) : 0);
 }
 
 static inline void zip_put_bytes(zip *z, const void *bytes, size_t size)
 {
-    assert_true(z->size + size <= ZIP_MOST);
+    assert_true(z->size + size <= ZIP_MAX);
     memcpy(z->bytes + z->size, bytes, size);
     z->size += size;
 }

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST = 200 };
+enum { MAXIMUM = 200 };
 
-static double coordinates[3][MOST];
+static double coordinates[3][MAXIMUM];
 
 /* Steps that differ by up to three times, from -1 to 1; smooth, as grids of finer n
  * refine it. */

@@ -6,7 +6,7 @@
 
 #include <dlfcn.h>
 
-enum { SIDE = 48, MOST_REPORTS = 1 << 20 };
+enum { SIDE = 48, MAX_REPORTS = 1 << 20 };
 
 /* Watcher that lets `left` more reports pass, and on the way may draw something else. */
 typedef struct watcher {
@@ -163,7 +163,7 @@ static void watched_pictures_are_the_same(void **state)
                                     .transfer = &t.soft,
                                     .width = 8,
                                     .height = 8};
-            watcher w = {.left = MOST_REPORTS, .other = other, .scene = &aside};
+            watcher w = {.left = MAX_REPORTS, .other = other, .scene = &aside};
             scene.progress = (cw_progress){watch, &w};
             cw_renderer_forget(r);
             cw_picture first = test_draw(r, &scene), second = test_draw(r, &scene);

@@ -19,7 +19,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MOST_SYNCS = 4 };
+enum { MAX_SYNCS = 4 };
 
 /* One call of fsync(): of what, and how far the file was by then. */
 typedef struct sync_call {
@@ -28,9 +28,9 @@ typedef struct sync_call {
 } sync_call;
 
 static struct {
-    const char *path;        /* of the file that is written */
-    int failure[MOST_SYNCS]; /* errno of each call; 0: it succeeds */
-    sync_call calls[MOST_SYNCS];
+    const char *path;       /* of the file that is written */
+    int failure[MAX_SYNCS]; /* errno of each call; 0: it succeeds */
+    sync_call calls[MAX_SYNCS];
     int count;
     ino_t file;
 } syncs;
@@ -45,7 +45,7 @@ static void watch_syncs(const char *path)
 int fsync(int fd)
 {
     struct stat info, named;
-    if (!syncs.path || syncs.count == MOST_SYNCS || fstat(fd, &info) != 0)
+    if (!syncs.path || syncs.count == MAX_SYNCS || fstat(fd, &info) != 0)
         return (int)syscall(SYS_fsync, fd);
     sync_call *call = &syncs.calls[syncs.count];
     call->of_folder = S_ISDIR(info.st_mode);

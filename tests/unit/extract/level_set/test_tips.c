@@ -5,12 +5,12 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_SIDES = 8 };
+enum { MAX_SIDES = 8 };
 
 /* A mesh in memory of its own: nothing to free. */
 typedef struct shape {
-    float positions[3 * 2 * MOST_SIDES];
-    uint32_t triangles[3 * 4 * MOST_SIDES];
+    float positions[3 * 2 * MAX_SIDES];
+    uint32_t triangles[3 * 4 * MAX_SIDES];
     cw_mesh mesh;
 } shape;
 

@@ -212,13 +212,13 @@ static unsigned char *add_tail(unsigned char *packed, size_t *packed_size, unsig
 static void mutants_are_taken_as_zlib_takes_them(void **state)
 {
     (void)state;
-    enum { ROOM = 20000, ROUNDS = 4000 };
-    static unsigned char data[ROOM + MEMBER], wanted[4 * ROOM], back[4 * ROOM];
+    enum { CAPACITY = 20000, ROUNDS = 4000 };
+    static unsigned char data[CAPACITY + MEMBER], wanted[4 * CAPACITY], back[4 * CAPACITY];
     size_t whole = 0, damaged = 0;
     for (uint32_t round = 0; round < ROUNDS; round++) {
         uint32_t seed = round;
         size_t packed_size, wanted_size, got = 0;
-        size_t size = make_mixed(data, 1000 + next_random(&seed) % (ROOM - 1000), seed);
+        size_t size = make_mixed(data, 1000 + next_random(&seed) % (CAPACITY - 1000), seed);
         unsigned char *packed = pack_bytes(data, size, round % 2, &packed_size);
         packed = add_tail(packed, &packed_size, data, &size, next_random(&seed) % (TAILS + 4));
         for (uint32_t flips = next_random(&seed) % 3; flips; flips--)

@@ -5,11 +5,11 @@
 
 #include <stdio.h>
 
-enum { HEADER = 1024, MOST = HEADER + 400 };
+enum { HEADER = 1024, MAXIMUM = HEADER + 400 };
 
 /* A map in memory, little end first until it is saved. */
 typedef struct map {
-    unsigned char bytes[MOST];
+    unsigned char bytes[MAXIMUM];
     size_t size;
     size_t voxel; /* bytes */
 } map;

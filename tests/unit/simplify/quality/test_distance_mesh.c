@@ -423,11 +423,11 @@ static bool stop(void *context, size_t node)
 static void a_box_overlaps_what_a_slow_look_finds(void **state)
 {
     (void)state;
-    enum { MOST = 3000 };
-    static float boxes[MOST][6];
-    static bool marked[MOST];
+    enum { MAXIMUM = 3000 };
+    static float boxes[MAXIMUM][6];
+    static bool marked[MAXIMUM];
     test_seed(9);
-    for (size_t count = 0; count < MOST; count = count * 3 + 1) {
+    for (size_t count = 0; count < MAXIMUM; count = count * 3 + 1) {
         cwi_boxes tree;
         cw_error err = {0};
         for (size_t n = 0; n < count; n++)

@@ -87,9 +87,9 @@ static void boxes_cover_shares_of_pixels(void **state)
 static void glyphs_are_all_different(void **state)
 {
     (void)state;
-    enum { MOST = 160 };
+    enum { MAXIMUM = 160 };
     static const uint32_t beyond[] = {0xb0, 0xb5, 0xb7, 0xd7, 0x2212, 0x394, 0xfffd};
-    static uint8_t seen[MOST][32 * 24 * 4];
+    static uint8_t seen[MAXIMUM][32 * 24 * 4];
     size_t count = 0;
     for (size_t n = 33; n < 127 + sizeof beyond / sizeof *beyond; n++) {
         const uint32_t c = n < 127 ? (uint32_t)n : beyond[n - 127];
