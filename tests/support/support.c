@@ -49,13 +49,23 @@ int test_rounds(int count)
     return TEST_IS_SLOW ? TEST_SOME(count) : (count + 3) / 4;
 }
 
-unsigned test_seed(unsigned own)
+static unsigned added_seed(void)
 {
     const char *added = getenv("CUBEWRIGHT_TEST_SEED");
-    const unsigned seed = own + (added ? (unsigned)strtoul(added, NULL, 10) : 0);
-    print_message("random seed %u (CUBEWRIGHT_TEST_SEED=%s)\n", seed, added ? added : "0");
+    return added ? (unsigned)strtoul(added, NULL, 10) : 0;
+}
+
+unsigned test_seed(unsigned own)
+{
+    const unsigned seed = own + added_seed();
+    print_message("random seed %u (CUBEWRIGHT_TEST_SEED=%u)\n", seed, added_seed());
     srand(seed);
     return seed;
+}
+
+bool test_seed_is_other(void)
+{
+    return added_seed() != 0;
 }
 
 int test_folder_make(void **state)

@@ -27,6 +27,9 @@ int test_rounds(int count);
  * plus CUBEWRIGHT_TEST_SEED where that is set: other random cases of the same test. */
 unsigned test_seed(unsigned own);
 
+/* Returns true if CUBEWRIGHT_TEST_SEED asks for other cases than those of the tests' own seeds. */
+bool test_seed_is_other(void);
+
 /* The call succeeded; else the test fails with its message. */
 #define assert_ok(call, err)                                                                   \
     do {                                                                                       \

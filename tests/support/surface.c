@@ -3,7 +3,6 @@
 
 #include "core/geometry/vec3.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -108,7 +107,7 @@ cw_quality test_check_promise(const cw_mesh *mesh, bool open)
     return quality;
 }
 
-/* The largest coordinate in magnitude: its rounding to single precision moves vertices. */
+/* The largest coordinate in magnitude. */
 static double largest_coordinate(const cw_mesh *mesh)
 {
     double largest = 0;
@@ -119,7 +118,7 @@ static double largest_coordinate(const cw_mesh *mesh)
 
 bool test_normals_agree(const cw_mesh *mesh)
 {
-    return test_normals_agree_but(mesh, 4 * (double)FLT_EPSILON);
+    return test_normals_agree_but(mesh, 0);
 }
 
 bool test_normals_agree_but(const cw_mesh *mesh, double share)
@@ -139,7 +138,7 @@ bool test_normals_agree_but(const cw_mesh *mesh, double share)
         cwi_cross(u, w, normal);
         for (int a = 0; a < 3; a++)
             dot += (double)n[a] * normal[a];
-        if (!(dot > 0) && sqrt(cwi_dot(normal, normal)) > thin * longest)
+        if (!(dot > 0) && !(sqrt(cwi_dot(normal, normal)) < thin * longest))
             return false;
     }
     return true;

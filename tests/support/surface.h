@@ -20,12 +20,12 @@ const char *test_mesh_fault(const cw_mesh *mesh, bool open, cw_quality *quality)
 /* Fails with the fault if there is one. */
 cw_quality test_check_promise(const cw_mesh *mesh, bool open);
 
-/* Every vertex normal is on the outer side of every triangle around it: of smooth fields. Needles
- * thinner than the rounding of their corners may face any way, or than a share of the largest
- * coordinate: crossings are kept off the samples by some of an edge, which tilts the smallest
- * triangles. */
-bool test_normals_agree_but(const cw_mesh *mesh, double share);
+/* Every vertex normal is on the outer side of every triangle around it: of smooth fields. */
 bool test_normals_agree(const cw_mesh *mesh);
+
+/* The same, but for triangles thinner than a fraction of the largest coordinate: crossings are
+ * kept off the samples by a part of an edge, which tilts the smallest triangles. */
+bool test_normals_agree_but(const cw_mesh *mesh, double share);
 
 void test_assert_same_mesh(const cw_mesh *a, const cw_mesh *b);
 

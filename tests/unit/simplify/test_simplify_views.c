@@ -525,7 +525,7 @@ static void the_box_of_views_holds_all_that_they_see(void **state)
                 assert_true(inside || !is_seen(views + i, world));
         }
     }
-    assert_true(smaller > 0);
+    assert_true(smaller > (test_seed_is_other() ? 0 : 20));
     cw_volume_free(&v);
     cw_mesh_free(&mesh);
 }

@@ -107,7 +107,7 @@ static double measure_sphere(test_cut cut, size_t n)
     const cw_quality q = test_check_promise(&m, false);
     assert_int_equal(q.euler, 2);
     assert_int_equal(q.components, 1);
-    assert_true(test_normals_agree_but(&m, NEEDLE));
+    assert_true(test_normals_agree_but(&m, needle_share()));
     assert_within(q.volume_mm3, 4.0 / 3 * PI * pow(radius, 3), 9.0 / (double)(n * n));
     assert_int_equal(test_count_crossings(&m), 0);
     assert_int_equal(counts.border_loops, 0);
@@ -168,7 +168,7 @@ static void normals_of_linear_fields_are_exact(void **state)
         outward_slope(&g.volume, (round & 1) == (round >> 1 & 1) ? -1 : 1, wanted);
         for (size_t i = 0; i < 3 * m.vertex_count; i++)
             assert_near((double)m.normals[i], wanted[i % 3], 1e-6);
-        assert_true(test_normals_agree_but(&m, NEEDLE));
+        assert_true(test_normals_agree_but(&m, needle_share()));
         cw_mesh_free(&m);
         test_grid_free(&g);
     }
@@ -208,8 +208,8 @@ static void any_field_gives_a_sound_surface(void **state)
         }
 }
 
-/* In cells with flat faces nothing crosses anything. Where quadrilaterals are warped a few
- * triangles of noise may. */
+/* In cells that are convex, or nearly so, nothing crosses anything. With other seeds a few
+ * triangles of noise do where quadrilaterals are warped. */
 static void no_surface_crosses_itself(void **state)
 {
     (void)state;
@@ -221,7 +221,7 @@ static void no_surface_crosses_itself(void **state)
             fill_with_noise(&g, round % 2);
             cw_mesh m = test_extract(&g.volume, NULL, NULL);
             const size_t crossings = test_count_crossings(&m);
-            if (crossings > (round < 4 ? 0 : m.triangle_count / 200))
+            if (crossings > (round >= 4 && test_seed_is_other() ? m.triangle_count / 200 : 0))
                 fail_msg("round %d, cut %d: %zu crossings of %zu triangles", round, cut,
                          crossings, m.triangle_count);
             cw_mesh_free(&m);
@@ -321,7 +321,7 @@ static void cells_may_be_inside_out(void **state)
             assert_int_equal(q.euler, 2);
             assert_within(q.volume_mm3, test_measure(&straight).volume_mm3, 1e-3);
             assert_same_places(&m, &straight, true);
-            assert_true(test_normals_agree_but(&m, NEEDLE));
+            assert_true(test_normals_agree_but(&m, needle_share()));
             cw_mesh_free(&m);
             cw_mesh_free(&straight);
             test_grid_free(&g);
