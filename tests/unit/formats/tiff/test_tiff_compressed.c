@@ -299,13 +299,11 @@ static void a_cut_of_compressed_pages_is_never_a_volume(void **state)
     }
     free(bytes);
 }
-#endif
 
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
     const struct CMUnitTest tests[] = {
-#if CW_TEST_LIBTIFF
         TEST(compressed_pixels_are_what_was_compressed),
         TEST(damaged_pixels_are_no_voxels),
         TEST(floats_are_predicted_alike_in_either_order),
@@ -314,7 +312,6 @@ int main(void)
         TEST(jpeg_in_ycbcr_arrives_as_rgb),
         TEST(webp_without_loss_is_what_was_compressed),
         TEST(a_cut_of_compressed_pages_is_never_a_volume),
-#endif
     };
     if (!cwi_module_present("tiff")) {
         puts("this build reads no TIFF");
@@ -322,3 +319,10 @@ int main(void)
     }
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
+#else
+int main(void)
+{
+    puts("without libtiff nothing compresses what is to be read");
+    return 0;
+}
+#endif
