@@ -10,7 +10,7 @@
 #include <math.h>
 #include <sys/stat.h>
 
-enum { DENSE_VOXELS = 512 * 512 * 512 };
+enum { DENSE_VOXELS = 512 * 512 * 512, MAX_STEPS = 16 };
 
 bool cli_is_folder(const char *path)
 {
@@ -65,6 +65,47 @@ cw_status cli_read_step(cli_source *source, const cli_input *input, size_t step,
         return cli_choose_step(&at, moment->step, &source->volume, err);
     cli_free_volume(&source->volume);
     return cli_read_volume(moment->path, &at, false, &source->volume, err);
+}
+
+/* Reads a step to count its values alone. */
+static cw_status count_step(cli_source *source, const cli_input *input, size_t step,
+                            size_t bins, cw_statistics *out, cw_error *err)
+{
+    const cli_moment *moment = &source->series.moments[step];
+    cli_input at = *input;
+    cli_volume other = {0};
+    if (source->volume.path == moment->path) {
+        cw_status st = cli_read_step(source, input, step, err);
+        return st == CW_OK ? cw_volume_statistics(&source->volume.view, bins,
+                                                  (int)input->threads, out, err)
+                           : st;
+    }
+    at.step = moment->step;
+    at.sample = at.is_quiet = true;
+    cw_status st = cli_read_volume(moment->path, &at, false, &other, err);
+    if (st == CW_OK)
+        st = cw_volume_statistics(&other.view, bins, (int)input->threads, out, err);
+    cli_free_volume(&other);
+    return st;
+}
+
+cw_status cli_find_statistics(cli_source *source, const cli_input *input, size_t step,
+                              size_t bins, cw_statistics *out, cw_error *err)
+{
+    cw_statistics parts[MAX_STEPS] = {{0}};
+    const size_t all = source->series.count, count = all < MAX_STEPS ? all : MAX_STEPS;
+    cw_status st = CW_OK;
+    if (count < 2)
+        return cw_volume_statistics(&source->volume.view, bins, (int)input->threads, out, err);
+    for (size_t n = 0; n < count && st == CW_OK; n++)
+        st = count_step(source, input, n * (all - 1) / (count - 1), bins, &parts[n], err);
+    if (st == CW_OK)
+        st = cli_read_step(source, input, step, err);
+    if (st == CW_OK)
+        st = cw_statistics_join(parts, count, bins, out, err);
+    for (size_t n = 0; n < count; n++)
+        cw_statistics_free(&parts[n]);
+    return st;
 }
 
 cw_status cli_need_drawable(cli_source *source, const cli_input *input, cw_error *err)

@@ -30,6 +30,15 @@ void cli_close_source(cli_source *source);
 CW_NODISCARD cw_status cli_read_step(cli_source *source, const cli_input *input, size_t step,
                                      cw_error *err);
 
+/* Computes the statistics of the values of a series: of the step that was read if it is the
+ * only one, else of up to 16 steps, evenly spread from the first to the last. Of other files
+ * than the one at hand large ones are sampled, row by row. Afterwards that step is read, if the
+ * steps are in one file.
+ * Returns CW_ERR_NO_MEMORY; as cli_read_step() */
+CW_NODISCARD cw_status cli_find_statistics(cli_source *source, const cli_input *input,
+                                           size_t step, size_t bins, cw_statistics *out,
+                                           cw_error *err);
+
 /* Makes a sparse volume dense, which is said, so that it can be drawn; fails for volumes that
  * are not evenly spaced. */
 CW_NODISCARD cw_status cli_need_drawable(cli_source *source, const cli_input *input,

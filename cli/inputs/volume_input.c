@@ -183,8 +183,8 @@ static cw_status box_from_world(const cw_volume *v, cli_ranges *r, cw_error *err
 }
 
 /* The voxels that --crop asks for, as far as there are any. */
-static cw_status find_box(const cli_input *input, const cw_volume *v, cw_box *box,
-                          cw_error *err)
+static cw_status find_box(const cli_input *input, const cw_volume *v, bool is_quiet,
+                          cw_box *box, cw_error *err)
 {
     cli_ranges r = input->crop;
     cw_status st = r.world ? box_from_world(v, &r, err) : CW_OK;
@@ -196,7 +196,7 @@ static cw_status find_box(const cli_input *input, const cw_volume *v, cw_box *bo
                             "%.6g to %.6g were requested",
                             "xyz"[a], size - 1, r.low[a], r.high[a]);
     }
-    if (st == CW_OK)
+    if (st == CW_OK && !is_quiet)
         cli_say("using voxels %zu:%zu,%zu:%zu,%zu:%zu", box->first[0],
                 box->first[0] + box->count[0] - 1, box->first[1],
                 box->first[1] + box->count[1] - 1, box->first[2],
@@ -266,7 +266,8 @@ static void take_note(void *user, const char *text)
     for (size_t n = 0; n < volume->note_count; n++)
         if (strcmp(volume->notes[n], text) == 0)
             return;
-    cli_say("%s: %s", volume->path, text);
+    if (!volume->is_quiet)
+        cli_say("%s: %s", volume->path, text);
     if (volume->note_count < CLI_MAX_NOTES)
         snprintf(volume->notes[volume->note_count++], sizeof *volume->notes, "%s", text);
 }
@@ -297,7 +298,8 @@ static cw_status read_header(const char *path, const cw_read_desc *voxels,
     cw_volume_spacing(&volume->whole, volume->spacing);
     if (volume->whole.cells)
         find_grid(&volume->whole, volume);
-    cli_say("%s: %s", path, cli_describe(volume));
+    if (!volume->is_quiet)
+        cli_say("%s: %s", path, cli_describe(volume));
     st = check_choice(input, &volume->whole, err);
     if (st == CW_OK)
         tell_choice(input, volume);
@@ -369,7 +371,7 @@ static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_inp
     cw_box box;
     cw_status st = input->crop.given ? cwi_volume_expect_dense(&part, "a crop", err) : CW_OK;
     if (st == CW_OK && input->crop.given)
-        st = find_box(input, &part, &box, err);
+        st = find_box(input, &part, volume->is_quiet, &box, err);
     if (st == CW_OK && input->crop.given)
         st = cwi_volume_shrink(&part, &box, err);
     if (st != CW_OK)
@@ -461,6 +463,7 @@ cw_status cli_read_volume(const char *path, const cli_input *input, bool header_
     cw_read_desc desc = cli_read_desc(input);
     memset(volume, 0, sizeof *volume);
     volume->path = path;
+    volume->is_quiet = input->is_quiet;
     desc.note = take_note;
     desc.note_user = volume;
     cw_status st = set_raw(input, &raw, &desc, err);

@@ -56,6 +56,7 @@ typedef struct cli_input {
     bool allow_external, preview;
     size_t coarsen;    /* 0: 4 for a preview, else 1 */
     bool coarsen_view; /* all voxels are read, and only the view is coarse */
+    bool is_quiet;     /* prints no lines about the file */
     bool sample;       /* of many voxels some rows and slices are read: cli_volume's coarsen */
 } cli_input;
 
@@ -201,6 +202,7 @@ typedef struct cli_volume {
     cli_grid grid;       /* zeroed for other volumes */
     size_t memory_left;  /* of the limit, after the voxels */
     size_t coarsen[3];   /* the view's step along each axis */
+    bool is_quiet;       /* prints no lines about the file */
     char notes[CLI_MAX_NOTES][256]; /* what the reader found and decided on */
     size_t note_count;
 } cli_volume;

@@ -233,19 +233,25 @@ static cw_status read_beside(cli_pictures *p, cw_error *err)
     return st;
 }
 
-static cw_status make_transfer(cli_pictures *p, cw_error *err)
+/* Fits the transfer function to all steps, once. */
+static cw_status make_transfer(cli_pictures *p, size_t step, cw_error *err)
 {
     const render_args *args = p->args;
-    cw_status st = CW_OK;
+    cw_statistics statistics;
+    cw_status st = cli_find_statistics(&p->source, &args->input, step, CLI_TRANSFER_BINS,
+                                       &statistics, err);
+    if (st != CW_OK)
+        return st;
     for (int n = 0; n < 2 && p->split && st == CW_OK; n++)
-        st = cli_make_transfer(&p->split->sides[n].args.scene, cli_drawn(&p->source),
-                               p->split->sides[n].mode, (int)args->input.threads,
-                               &p->split->sides[n].transfer, err);
+        st = cli_fit_transfer(&p->split->sides[n].args.scene, &p->source.volume.view,
+                              p->split->sides[n].mode, &statistics,
+                              &p->split->sides[n].transfer, err);
     if (p->split)
         p->transfer = p->split->sides[0].transfer;
     else
-        st = cli_make_transfer(&args->scene, cli_drawn(&p->source), p->mode,
-                               (int)args->input.threads, &p->transfer, err);
+        st = cli_fit_transfer(&args->scene, &p->source.volume.view, p->mode, &statistics,
+                              &p->transfer, err);
+    cw_statistics_free(&statistics);
     p->has_transfer = st == CW_OK;
     if (st == CW_OK && args->save_transfer)
         st = cw_transfer_write(args->save_transfer, &p->transfer, err);
@@ -259,14 +265,14 @@ static cw_status open_step(cli_pictures *p, size_t step, cw_error *err)
     if (p->source.is_mesh)
         return CW_OK;
     cw_status st = cli_read_step(&p->source, &args->input, step, err);
+    if (st == CW_OK && draws_volume(p) && !p->has_transfer)
+        st = make_transfer(p, step, err);
     if (st == CW_OK && draws_volume(p))
         st = cli_need_drawable(&p->source, &args->input, err);
     if (st == CW_OK && args->mesh)
         st = read_beside(p, err);
     else if (st == CW_OK && has_mesh(p))
         st = extract_shown(p, err);
-    if (st == CW_OK && draws_volume(p) && !p->has_transfer)
-        st = make_transfer(p, err);
     return st;
 }
 

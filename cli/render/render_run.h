@@ -52,7 +52,7 @@ typedef struct cli_pictures {
     cli_source source; /* its mesh: what is seen beside the volume, or by itself */
     cw_mode mode;
     cw_transfer transfer;
-    bool has_transfer; /* of the first step, which is kept */
+    bool has_transfer; /* of all steps */
     double box[2][3];  /* box that the cameras see: of the first step, kept as well */
     bool has_box;
     cw_scene scene;        /* the latest */

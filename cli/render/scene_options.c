@@ -11,7 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BINS = 1024 };
 /* Pictures for keeps: the library's own is 1. Lit rays have one gradient for two steps. */
 static const double STEP_VOX = 0.5, LIT_STEP_VOX = 0.25;
 
@@ -179,7 +178,7 @@ cw_status cli_make_transfer(const cli_scene *args, const cw_volume *volume, cw_m
                             int threads, cw_transfer *transfer, cw_error *err)
 {
     cw_statistics statistics;
-    cw_status st = cw_volume_statistics(volume, BINS, threads, &statistics, err);
+    cw_status st = cw_volume_statistics(volume, CLI_TRANSFER_BINS, threads, &statistics, err);
     if (st == CW_OK)
         st = cli_fit_transfer(args, volume, mode, &statistics, transfer, err);
     cw_statistics_free(&statistics);

@@ -63,6 +63,9 @@ bool cli_parse_color(const char *text, uint8_t rgba[4]);
 CW_NODISCARD cw_status cli_background(const cli_scene *args, cw_mode mode,
                                       uint8_t background[2][4], cw_error *err);
 
+/* Bins of the histograms that transfer functions are fitted to. */
+enum { CLI_TRANSFER_BINS = 1024 };
+
 /* The transfer function for a volume: a preset, a file or JSON text, shifted and scaled. What
  * looks wrong is said.
  * Returns CW_ERR_ARGUMENT for an unknown preset; as cw_transfer_read() */

@@ -100,7 +100,7 @@ static cw_status open_first(view *v, const render_args *args, cw_error *err)
     cw_error why = {0};
     if (args->common.input_count == 0)
         return CW_OK;
-    cw_status st = view_open(v, args->common.inputs[0], &why);
+    cw_status st = view_open(v, args->common.inputs, args->common.input_count, &why);
     if (st == CW_OK)
         return CW_OK;
     if (v->is_hidden)

@@ -4,6 +4,7 @@
 #include "core/base/status.h"
 
 #include <dirent.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,8 +12,7 @@
 
 static cw_status run_open(view *v, int count, char **args, cw_error *err)
 {
-    (void)count;
-    return view_open(v, args[0], err);
+    return view_open(v, (const char *const *)args, (size_t)count, err);
 }
 
 static cw_status run_quit(view *v, int count, char **args, cw_error *err)
@@ -50,7 +50,7 @@ static cw_status open_near(view *v, int by, cw_error *err)
              cli_read_shape(path, &v->state.args.input, &shape, NULL) == CW_OK);
         cw_volume_free(&shape);
         if (readable)
-            st = view_open(v, path, err);
+            st = view_open(v, (const char *const[]){path}, 1, err);
     }
     view_free_scan(list, count);
     return st;
@@ -90,7 +90,8 @@ static cw_status run_step(view *v, int count, char **args, cw_error *err)
 }
 
 static const view_verb rows[] = {
-    VERB("open", "PATH", "Open a file or a folder", 1, 1, run_open),
+    VERB("open", "PATH...", "Open a file, a folder, or the files of a series", 1, INT_MAX,
+         run_open),
     VERB("next", "", "Open the next file of the folder", 0, 0, run_next),
     VERB("previous", "", "Open the previous file of the folder", 0, 0, run_previous),
     VERB("step", "N|next|previous", "Go to a step of a time series", 1, 1, run_step),

@@ -87,10 +87,12 @@ typedef struct view {
     bool is_monkey; /* what comes in is random */
     size_t gesture; /* counts presses of buttons and keys */
 
-    char *path;          /* NULL: nothing is open */
+    char *path;   /* the first of files; NULL: nothing is open */
+    char **files; /* what is open: a file or a folder, or the files of a series */
+    size_t file_count;
     const char *opening; /* is being read; else NULL */
     cli_source source;
-    cw_statistics statistics; /* of the volume at this step */
+    cw_statistics statistics; /* of the volume, over all its steps */
     cw_extractor *extractor, *coarse;
     cw_volume thinned;  /* what coarse extracts from */
     cw_mesh old_mesh;   /* was drawn until now: its address must not come again */
@@ -140,7 +142,9 @@ typedef struct view {
 } view;
 
 /* view_session.c */
-CW_NODISCARD cw_status view_open(view *v, const char *path, cw_error *err);
+/* Several paths are the steps of a series. */
+CW_NODISCARD cw_status view_open(view *v, const char *const *paths, size_t count,
+                                 cw_error *err);
 void view_close(view *v);
 CW_NODISCARD cw_status view_go_to_step(view *v, size_t step, cw_error *err);
 /* Of the world, low and high corner: what is left of all by the clip box in mm, else all. */

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_WORDS = 16, MAX_BYTES = 1 << 20 };
+enum { MAX_BYTES = 1 << 20 };
 
 /* Behind a command, what looks like a colour is one: #ffeedd. */
 static bool is_comment(const char *c, bool is_first)
@@ -48,21 +48,17 @@ static bool next_word(const char **text, bool is_first, char *out, bool *bad)
     return true;
 }
 
-/* Runs the first command of a text, and moves behind it. */
-static cw_status run_first(view *v, const char **text, char *room, cw_error *err)
+/* Runs the first command of a text, and moves behind it. words, room: as large as the text. */
+static cw_status run_first(view *v, const char **text, char **words, char *room, cw_error *err)
 {
-    char *words[MAX_WORDS];
     int count = 0;
     bool bad = false;
-    while (count < MAX_WORDS && next_word(text, count == 0, room, &bad)) {
+    while (next_word(text, count == 0, room, &bad)) {
         words[count++] = room;
         room += strlen(room) + 1;
     }
     if (bad)
         return cwi_fail(err, CW_ERR_ARGUMENT, "a quote is not closed: %.60s", *text);
-    if (count == MAX_WORDS)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "'%s' has more than %d words", words[0],
-                        MAX_WORDS - 1);
     if (**text == '#')
         *text += strcspn(*text, "\n");
     *text += **text != '\0';
@@ -71,10 +67,13 @@ static cw_status run_first(view *v, const char **text, char *room, cw_error *err
 
 cw_status view_exec(view *v, const char *text, cw_error *err)
 {
-    char *room = malloc(2 * strlen(text) + 2);
-    cw_status st = room ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for commands");
+    const size_t size = strlen(text) + 1;
+    char *room = malloc(2 * size), **words = malloc(size * sizeof *words);
+    cw_status st =
+        room && words ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for commands");
     while (st == CW_OK && *text)
-        st = run_first(v, &text, room, err);
+        st = run_first(v, &text, words, room, err);
+    free(words);
     free(room);
     return st;
 }

@@ -13,8 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BINS = 1024 };
-
 void view_touch(view *v, unsigned parts)
 {
     for (int p = 0; p < VIEW_PARTS; p++)
@@ -67,8 +65,12 @@ void view_close(view *v)
     cli_close_source(&v->source);
     if (v->renderer)
         cw_renderer_forget(v->renderer);
-    free(v->path);
+    for (size_t n = 0; n < v->file_count; n++)
+        free(v->files[n]);
+    free(v->files);
+    v->files = NULL;
     v->path = NULL;
+    v->file_count = 0;
     v->has_volume = false;
 }
 
@@ -112,13 +114,6 @@ cw_status view_choose_mode(view *v, cw_error *err)
     return CW_OK;
 }
 
-static cw_status read_statistics(view *v, cw_error *err)
-{
-    cw_statistics_free(&v->statistics);
-    return cw_volume_statistics(&v->source.volume.view, BINS, (int)v->state.args.input.threads,
-                                &v->statistics, err);
-}
-
 /* Volumes that cannot be drawn still have surfaces. */
 static cw_status read_step(view *v, size_t step, cw_error *err)
 {
@@ -129,8 +124,9 @@ static cw_status read_step(view *v, size_t step, cw_error *err)
     if (s->is_mesh)
         return CW_OK;
     cw_status st = cli_read_step(s, &v->state.args.input, step, err);
-    if (st == CW_OK)
-        st = read_statistics(v, err);
+    if (st == CW_OK && !v->statistics.bins)
+        st = cli_find_statistics(s, &v->state.args.input, step, CLI_TRANSFER_BINS,
+                                 &v->statistics, err);
     if (st != CW_OK)
         return st;
     v->has_volume = cli_need_drawable(s, &v->state.args.input, &why) == CW_OK;
@@ -186,17 +182,13 @@ static void choose_series(view *v)
     cw_series_free(list);
 }
 
-/* Files that the command line names are steps; so are those in a folder that is no volume
- * itself, if they agree. */
+/* Several files are steps; so are those in a folder that is no volume itself, if they agree. */
 static cw_status open_source(view *v, cw_error *err)
 {
     char pattern[4096];
-    const char *one[] = {v->path}, *all[] = {pattern};
-    const cli_common *said = &v->state.args.common;
-    const bool several = said->input_count > 1 && strcmp(v->path, said->inputs[0]) == 0;
-    cw_status st =
-        several ? open_as(v, said->inputs, said->input_count, err) : open_as(v, one, 1, err);
-    if (st != CW_OK || several || !cli_is_folder(v->path))
+    const char *all[] = {pattern};
+    cw_status st = open_as(v, (const char **)v->files, v->file_count, err);
+    if (st != CW_OK || v->file_count > 1 || !cli_is_folder(v->path))
         return st;
     cw_volume shape = {0};
     st = cli_read_shape(v->path, &v->state.args.input, &shape, err);
@@ -220,11 +212,8 @@ static void fresh_look(view *v)
     view_touch(v, VIEW_ALL);
 }
 
-static cw_status open_path(view *v, const char *path, cw_error *err)
+static cw_status open_path(view *v, cw_error *err)
 {
-    v->path = strdup(path);
-    if (!v->path)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
     v->opening = v->path;
     const char *series = v->state.args.input.series;
     choose_series(v);
@@ -276,19 +265,38 @@ static void name_window(view *v)
     v->ui->set_title(v->window, title);
 }
 
-cw_status view_open(view *v, const char *path, cw_error *err)
+/* Copies the paths: they may be of what is closed. */
+static cw_status copy_paths(const char *const *paths, size_t count, char ***copies,
+                            cw_error *err)
 {
-    cw_status st = expect_readable(v, path, err);
+    char **all = calloc(count, sizeof *all);
+    bool is_whole = all;
+    for (size_t n = 0; n < count && is_whole; n++)
+        is_whole = (all[n] = strdup(paths[n]));
+    *copies = all;
+    if (is_whole)
+        return CW_OK;
+    for (size_t n = 0; n < count && all; n++)
+        free(all[n]);
+    free(all);
+    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the names of %zu files", count);
+}
+
+cw_status view_open(view *v, const char *const *paths, size_t count, cw_error *err)
+{
+    char **copies;
+    cw_status st = expect_readable(v, paths[0], err);
+    if (st == CW_OK)
+        st = copy_paths(paths, count, &copies, err);
     if (st != CW_OK)
         return st;
-    char *copy = strdup(path); /* it may be the path that is closed */
-    if (!copy)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
     v->message[0] = '\0'; /* it was of another file */
     view_close(v);
     forget_look(v);
-    st = open_path(v, copy, err);
-    free(copy);
+    v->files = copies;
+    v->file_count = count;
+    v->path = copies[0];
+    st = open_path(v, err);
     if (st != CW_OK && v->state.args.scene.mode && v->path && !v->has_volume &&
         (v->source.is_mesh || v->source.volume.voxels.data)) {
         v->state.args.scene.mode = 0; /* it was another file's */

@@ -313,6 +313,14 @@ static void put_rest(const view *v, FILE *out, const char *end)
         fprintf(out, "split %.6g%s", s->share, end);
 }
 
+static void put_files(const view *v, FILE *out)
+{
+    for (size_t n = 0; n < v->file_count; n++) {
+        fputc(' ', out);
+        put_word(out, v->files[n]);
+    }
+}
+
 cw_status view_write_state(const view *v, const char *path, cw_error *err)
 {
     char *text;
@@ -323,8 +331,8 @@ cw_status view_write_state(const view *v, const char *path, cw_error *err)
     fputs("# cubewright view: a state; 'cubewright view --run' this file\n", out);
     put_options(v, out, false, true);
     if (v->path) {
-        fputs("open ", out);
-        put_word(out, v->path);
+        fputs("open", out);
+        put_files(v, out);
         fputc('\n', out);
     }
     put_settings(v, out, false);
@@ -344,10 +352,7 @@ char *view_command_line(const view *v)
     if (!out)
         return NULL;
     fputs("cubewright view", out);
-    if (v->path) {
-        fputc(' ', out);
-        put_word(out, v->path);
-    }
+    put_files(v, out);
     put_options(v, out, true, true);
     put_settings(v, out, true);
     fputs(" --exec '", out);

@@ -260,6 +260,43 @@ void cw_statistics_free(cw_statistics *statistics)
     memset(statistics, 0, sizeof *statistics);
 }
 
+/* Joins ranges and counts. Bins of integer types keep whole steps if all parts have the same. */
+static void join_ranges(const cw_statistics *parts, size_t count, cw_statistics *s)
+{
+    *s = (cw_statistics){.min = INFINITY, .max = -INFINITY};
+    for (size_t n = 0; n < count; n++) {
+        const cw_statistics *p = &parts[n];
+        s->not_finite += p->not_finite;
+        s->nodata += p->nodata;
+        if (!p->finite)
+            continue;
+        s->quantum = s->finite && s->quantum != p->quantum ? 0 : p->quantum;
+        s->finite += p->finite;
+        s->min = fmin(s->min, p->min);
+        s->max = fmax(s->max, p->max);
+    }
+    if (!s->finite)
+        s->min = s->max = 0;
+}
+
+cw_status cw_statistics_join(const cw_statistics *parts, size_t count, size_t bin_count,
+                             cw_statistics *out, cw_error *err)
+{
+    join_ranges(parts, count, out);
+    if (!bin_count || !out->finite)
+        return CW_OK;
+    set_bins(out, bin_count);
+    out->bins = cwi_alloc_zeroed(out->bin_count, sizeof *out->bins);
+    if (!out->bins)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bins", out->bin_count);
+    for (size_t n = 0; n < count; n++)
+        for (size_t b = 0; b < parts[n].bin_count; b++) {
+            const double middle = parts[n].min + parts[n].bin_width * ((double)b + 0.5);
+            out->bins[bin_of(out, middle - parts[n].quantum / 2)] += parts[n].bins[b];
+        }
+    return CW_OK;
+}
+
 /* Zeroth and first moments of the bins before b, so that a class is a difference of two. */
 typedef struct moments {
     double *count, *sum;

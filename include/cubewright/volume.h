@@ -245,6 +245,14 @@ CW_NODISCARD CW_API cw_status cw_volume_statistics(const cw_volume *volume, size
                                                    cw_error *err);
 CW_API void cw_statistics_free(cw_statistics *statistics);
 
+/* Joins the statistics of several volumes, such as the steps of a series, into bin_count bins
+ * over the range of all. A bin's values count where its middle is.
+ * parts    count of them; borrowed; out is none of them
+ * Returns  CW_ERR_NO_MEMORY; free out with cw_statistics_free() */
+CW_NODISCARD CW_API cw_status cw_statistics_join(const cw_statistics *parts, size_t count,
+                                                 size_t bin_count, cw_statistics *out,
+                                                 cw_error *err);
+
 /* Finds the levels that separate the histogram into level_count + 1 classes (level_count is 1
  * to 3) with the largest variance between classes: [Otsu1979], and [Liao2001] for more than one
  * level.

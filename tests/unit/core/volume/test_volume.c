@@ -321,6 +321,51 @@ static void statistics_do_not_depend_on_threads(void **state)
     cw_volume_free(&v);
 }
 
+/* The statistics of two halves, joined, are those of the whole: every integer keeps its bin. */
+static void joined_statistics_are_those_of_the_whole(void **state)
+{
+    (void)state;
+    int16_t voxels[600];
+    for (int n = 0; n < 600; n++)
+        voxels[n] = (int16_t)(n < 300 ? n % 100 : 3 * n - 800);
+    const cw_volume whole = {
+        .data = voxels, .type = CW_I16, .dim = {600, 1, 1}, .slope = 2.0222414};
+    cw_volume half = whole;
+    half.dim[0] = 300;
+    cw_statistics all, parts[3] = {{0}}, joined;
+    cw_error err = {0};
+    assert_ok(cw_volume_statistics(&whole, 2048, 0, &all, &err), err);
+    assert_ok(cw_volume_statistics(&half, 2048, 0, &parts[0], &err), err);
+    half.data = voxels + 300;
+    assert_ok(cw_volume_statistics(&half, 2048, 0, &parts[1], &err), err);
+    assert_ok(cw_statistics_join(parts, 3, 2048, &joined, &err), err);
+    assert_true(joined.min == all.min && joined.max == all.max);
+    assert_int_equal(joined.finite, 600);
+    assert_int_equal(joined.bin_count, all.bin_count);
+    assert_memory_equal(joined.bins, all.bins, all.bin_count * sizeof *all.bins);
+    cw_statistics_free(&joined);
+
+    /* of floats and integers: a bin counts what its middle is within */
+    const cw_volume floats = {
+        .data = (const float[3]){-1, 0.25f, NAN}, .type = CW_F32, .dim = {3, 1, 1}};
+    cw_statistics_free(&parts[1]);
+    assert_ok(cw_volume_statistics(&floats, 4, 0, &parts[1], &err), err);
+    assert_ok(cw_statistics_join(parts, 2, 10, &joined, &err), err);
+    assert_true(joined.min == -1 && joined.max == parts[0].max && joined.quantum == 0);
+    assert_int_equal(joined.finite, 302);
+    assert_int_equal(joined.not_finite, 1);
+    uint64_t sum = 0;
+    for (size_t b = 0; b < joined.bin_count; b++)
+        sum += joined.bins[b];
+    assert_int_equal(sum, 302);
+    cw_statistics_free(&joined);
+    for (int n = 0; n < 3; n++)
+        cw_statistics_free(&parts[n]);
+
+    assert_ok(cw_statistics_join(parts, 2, 10, &joined, &err), err); /* of nothing */
+    assert_true(joined.finite == 0 && !joined.bins && joined.min == 0 && joined.max == 0);
+}
+
 static void fields_are_the_same_bytes_for_any_number_of_threads(void **state)
 {
     (void)state;
@@ -517,6 +562,7 @@ int main(void)
         cmocka_unit_test(otsu_parts_classes),
         cmocka_unit_test(scaled_integers_fall_into_their_own_bins),
         cmocka_unit_test(statistics_do_not_depend_on_threads),
+        cmocka_unit_test(joined_statistics_are_those_of_the_whole),
         cmocka_unit_test(fields_are_the_same_bytes_for_any_number_of_threads),
         cmocka_unit_test(integer_fields_keep_their_level),
     };
