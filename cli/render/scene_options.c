@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Pictures for keeps: the library's own is 1. Lit rays have one gradient for two steps. */
-static const double STEP_VOX = 0.5, LIT_STEP_VOX = 0.25;
+/* Pictures for keeps: the library's own is 1. */
+static const double STEP_VOX = 0.5;
 
 static bool parse_hex(const char *hex, uint8_t rgba[4])
 {
@@ -364,9 +364,7 @@ static cw_status add_steps(const cli_scene *args, const cw_volume *v, cw_scene *
     if (args->stop_opacity.given && !(args->stop_opacity.value > 0))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--stop-opacity %g: above 0 was expected",
                         args->stop_opacity.value);
-    s->step_vox = args->step.given                         ? args->step.value
-                  : s->lit && s->mode == CW_MODE_COMPOSITE ? LIT_STEP_VOX
-                                                           : STEP_VOX;
+    s->step_vox = args->step.given ? args->step.value : STEP_VOX;
     s->stop_opacity = s->mode == CW_MODE_VBUFFER ? 0.99999f : 0.9999f;
     s->cell_steps = args->cell_steps;
     s->no_preintegration = !args->preintegration;

@@ -140,7 +140,9 @@ typedef struct cw_scene {
     double step_vox;        /* distance of samples along a ray, or of slices of a texture, in
                                units of the smallest spacing; default 1 */
     bool cell_steps;        /* samples end at the faces of cells */
-    bool no_preintegration; /* sample at the middle of each step */
+    bool no_preintegration; /* sample at the middle of each step. Default: composite does so for
+                               wide transfer functions, and integrates narrow ones over each
+                               step, as the other modes do all */
     bool jitter;            /* shift the samples of every ray by a different fraction of a
                                step */
     bool exact_filter;      /* trilinear interpolation by the shader, not the texture unit */

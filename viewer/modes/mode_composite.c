@@ -9,15 +9,21 @@
 
 extern const char cwi_glsl_composite[];
 
-static void describe_shader(const cw_scene *s, const cw_transfer *t, const char *gradients,
-                            char *defines, size_t size)
+/* Pre-integration is for narrow functions. Of wide ones a sample in the middle of a step is
+ * closer to the integral than a straight line between its ends, and costs less. */
+static bool needs_segments(const cwi_gl *gl)
+{
+    return !gl->frame->scene.no_preintegration && cwi_table_is_narrow(&gl->transfer.table);
+}
+
+static void describe_shader(const cw_scene *s, const cw_transfer *t, bool has_segments,
+                            const char *gradients, char *defines, size_t size)
 {
     snprintf(defines, size, "%s%s%s%s%s%s%s%s%s%s", gradients,
-             s->no_preintegration ? "" : "#define SEGMENTS\n",
-             s->no_skipping ? "" : "#define SKIP\n", s->cell_steps ? "#define CELLS\n" : "",
-             cwi_gl_ray_defines(s), s->jitter ? "#define JITTER\n" : "",
-             s->depth_cue > 0 ? "#define CUE\n" : "", s->lit ? "#define LIT\n" : "",
-             t->gradient_count ? "#define FACTOR\n" : "",
+             has_segments ? "#define SEGMENTS\n" : "", s->no_skipping ? "" : "#define SKIP\n",
+             s->cell_steps ? "#define CELLS\n" : "", cwi_gl_ray_defines(s),
+             s->jitter ? "#define JITTER\n" : "", s->depth_cue > 0 ? "#define CUE\n" : "",
+             s->lit ? "#define LIT\n" : "", t->gradient_count ? "#define FACTOR\n" : "",
              s->exact_filter ? "#define EXACT_FILTER\n" : "");
 }
 
@@ -28,14 +34,13 @@ static cw_status draw_composite_mode(cwi_gl *gl, void **state, cw_error *err)
     const char *gradients = "";
     GLuint program;
     const cw_scene *s = &gl->frame->scene;
-    /* a segment has samples at both ends and in the middle */
-    const double length = s->no_preintegration || s->cell_steps ? s->step_vox : 2 * s->step_vox;
+    const bool has_segments = needs_segments(gl);
     cw_status st = cwi_gl_need_skip(gl, err);
-    if (st == CW_OK && !s->no_preintegration)
-        st = cwi_gl_need_segments(gl, length, err);
+    if (st == CW_OK && has_segments)
+        st = cwi_gl_need_segments(gl, s->step_vox, err);
     if (st == CW_OK && (s->lit || gl->frame->transfer.gradient_count > 0))
         st = cwi_gl_need_gradients(gl, &gradients, err);
-    describe_shader(s, &gl->frame->transfer, gradients, defines, sizeof defines);
+    describe_shader(s, &gl->frame->transfer, has_segments, gradients, defines, sizeof defines);
     if (st == CW_OK)
         st = cwi_gl_use(gl, cwi_glsl_screen, cwi_glsl_composite, defines, &program, err);
     if (st != CW_OK)
@@ -43,7 +48,7 @@ static cw_status draw_composite_mode(cwi_gl *gl, void **state, cw_error *err)
     size_t *order = cwi_gl_order_bricks(gl);
     if (!order)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the order of bricks");
-    cwi_gl_set(program, "step_length", (float)length);
+    cwi_gl_set(program, "step_length", (float)s->step_vox);
     cwi_gl_set_last_block(program, gl->volume.ranges.dim);
     glDisable(GL_DEPTH_TEST);
     glEnable(GL_BLEND);

@@ -86,6 +86,27 @@ bool cwi_table_is_visible(const cwi_table *table, double low, double high)
     return table->visible[first] <= last;
 }
 
+bool cwi_table_is_narrow(const cwi_table *t)
+{
+    enum { WIDTH = CWI_TABLE_ROWS / 8, REACH = WIDTH / 2 };
+    static const double MAX_CHANGE = 0.1;
+    double change = 0, total = 0;
+    for (int c = 0; c < 4; c++) {
+        double window = 0;
+#define GLOW(n)                                                                                \
+    ((double)t->rows[4 * (n) + 3] * (c < 3 ? (double)t->rows[4 * (n) + (size_t)c] : 1))
+        for (size_t n = 0; n < WIDTH; n++)
+            window += GLOW(n);
+        for (size_t n = REACH; n + REACH < t->count; n++) {
+            change += fabs(window / WIDTH - GLOW(n));
+            total += GLOW(n);
+            window += GLOW(n + REACH) - GLOW(n - REACH);
+        }
+#undef GLOW
+    }
+    return change > MAX_CHANGE * total;
+}
+
 /* Returns the shortest distance between two points that differ, at most `most`. */
 static double find_narrowest(const void *points, size_t row, size_t count, double most)
 {

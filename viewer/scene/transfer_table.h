@@ -27,6 +27,11 @@ void cwi_table_free(cwi_table *table);
 /* Returns true if something within a range of values is not fully transparent. */
 bool cwi_table_is_visible(const cwi_table *table, double low, double high);
 
+/* Returns true if the function has features so narrow that samples a few of them apart miss
+ * some: averaged over an eighth of the table, extinction and glow change by more than a tenth.
+ * Pre-integration pays for such functions alone. */
+bool cwi_table_is_narrow(const cwi_table *table);
+
 /* Returns the number of rows that a pre-integrated table needs: more for narrow peaks, 256 to
  * 1024. */
 size_t cwi_table_segment_rows(const cwi_table *table, const cw_transfer *transfer);

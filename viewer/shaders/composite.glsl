@@ -1,5 +1,6 @@
-// Ray casting [Upson1988, Drebin1988], front to back, in segments that are pre-integrated
-// [Engel2001]; the last one ends where the ray does.
+// Ray casting [Upson1988, Drebin1988], front to back, a sample in the middle of each step; the
+// last step ends where the ray does. SEGMENTS: steps are pre-integrated [Engel2001], over the
+// range of values that the samples before and after tell; with CELLS, from face to face.
 uniform sampler2D segments;
 uniform usampler3D skip;
 uniform float step_length;
@@ -34,6 +35,16 @@ vec4 segment_through(float front, float middle, float back)
     return color;
 }
 
+// Returns the colour that a step adds, with the given value in its middle, and those a step
+// before and after, which may be NaN. Over the step the value changes by half their difference.
+vec4 segment_around(float middle, float before, float after)
+{
+    float change = 0.25 * (after - before);
+    change = isnan(change) ? 0.0 : change;
+    vec4 color = textureLod(segments, vec2(middle - change, middle + change), 0.0);
+    return isnan(middle) ? vec4(0.0) : color;
+}
+
 // Returns how far a ray goes through empty blocks, at most `most`.
 float leap_from(ray r, vec3 from, float most)
 {
@@ -62,8 +73,8 @@ float random(vec2 at)
 
 vec4 along(ray r, float from, float to, vec4 sum, float y)
 {
-    float h = step_length, t = from, front = 0.0;
-    bool has_front = false, may_leap = true;
+    float h = step_length, t = from, before = 0.0, next = 0.0;
+    bool has_before = false, may_leap = true;
 #ifdef SEGMENTS
     vec2 scale = segment_scale();
 #endif
@@ -76,7 +87,7 @@ vec4 along(ray r, float from, float to, vec4 sum, float y)
             float steps = floor(leap_from(r, r.index + t * r.slope, to - t) / h);
             if (steps >= 1.0) {
                 t += steps * h;
-                has_front = false;
+                has_before = false;
                 continue;
             }
         }
@@ -90,14 +101,21 @@ vec4 along(ray r, float from, float to, vec4 sum, float y)
         first = h;
 #endif
 #endif
-#ifdef SEGMENTS
-        if (!has_front)
-            front = texel_on(r, t) * scale.x + scale.y;
+#if defined(SEGMENTS) && defined(CELLS)
+        float front = has_before ? before : texel_on(r, t) * scale.x + scale.y;
         float middle = texel_on(r, t + 0.5 * extent) * scale.x + scale.y;
-        float back = texel_on(r, t + extent) * scale.x + scale.y;
-        vec4 color = segment_through(front, middle, back);
-        front = back;
-        has_front = true;
+        before = texel_on(r, t + extent) * scale.x + scale.y;
+        vec4 color = segment_through(front, middle, before);
+#elif defined(SEGMENTS)
+        float here = has_before ? next : texel_on(r, t + 0.5 * extent) * scale.x + scale.y;
+        bool is_last = t + extent + 0.5 * h > to;
+        next = is_last ? has_before ? 2.0 * here - before : here
+                       : texel_on(r, t + extent + 0.5 * h) * scale.x + scale.y;
+        vec4 color = segment_around(here, has_before ? before : 2.0 * here - next, next);
+        before = here;
+#endif
+#ifdef SEGMENTS
+        has_before = true;
         if (extent != h)
             color = stretch(color, extent / h);
 #else

@@ -1,4 +1,5 @@
-/* Tests ray casting: a constant box on paper, the end of rays, and skipping. */
+/* Tests ray casting: a constant box on paper, the end of rays, skipping, and the error of the
+ * default steps. */
 #include "support/pictures.h"
 
 #include <math.h>
@@ -92,12 +93,68 @@ static void skipping_changes_nothing(void **state)
     cw_volume_free(&blobs);
 }
 
+/* Smooth blobs, with a step of its own in every voxel, as a scan's noise. */
+static double rough(const double p[3], const double q[3])
+{
+    uint32_t n = (uint32_t)lround(p[0] + 97 * p[1] + 8191 * p[2]) * 2654435761u;
+    n = (n ^ (n >> 15)) * 2246822519u;
+    return test_blobs(p, q) + 0.15 * ((double)(n >> 8) / 0x1p24 - 0.5);
+}
+
+/* Returns how far a picture with steps of one voxel is from the integral. */
+static test_gap measure_steps(const cw_volume *volume, const cw_transfer *transfer, bool lit,
+                              bool no_preintegration)
+{
+    cw_renderer *cpu;
+    cw_error err = {0};
+    cw_scene scene = {.mode = CW_MODE_COMPOSITE,
+                      .volume = volume,
+                      .transfer = transfer,
+                      .lit = lit,
+                      .no_preintegration = no_preintegration,
+                      .width = 96,
+                      .height = 96};
+    assert_ok(cw_renderer_new(CW_BACKEND_CPU, &cpu, &err), err);
+    cw_picture drawn = test_draw(test_renderer(), &scene);
+    scene.mode = CW_MODE_REFERENCE;
+    cw_picture exact = test_draw(cpu, &scene);
+    const test_gap gap = test_compare(&drawn, &exact);
+    cw_picture_free(&drawn);
+    cw_picture_free(&exact);
+    cw_renderer_free(cpu);
+    return gap;
+}
+
+/* In data that is rough a straight line between samples is dark: of a function that is smooth
+ * the sample alone is taken, so that the default is not the less exact choice. Of narrow tents
+ * samples miss some, and the line does not. */
+static void default_steps_suit_the_transfer_function(void **state)
+{
+    (void)state;
+    const cw_transfer soft = test_soft_transfer(), tent = test_tent_transfer();
+    cw_volume volume = {0}, smooth = {0};
+    test_renderer(); /* or skip */
+    test_field(&volume, 48, 48, 48, cube, rough);
+    test_field(&smooth, 48, 48, 48, cube, test_blobs);
+    for (int lit = 0; lit < 2; lit++) {
+        const test_gap chosen = measure_steps(&volume, &soft, lit, false);
+        assert_true(chosen.rmse <= measure_steps(&volume, &soft, lit, true).rmse);
+        assert_true(chosen.rmse < (lit ? 2.5 : 0.5));
+        const test_gap narrow = measure_steps(&smooth, &tent, lit, false);
+        const test_gap sampled = measure_steps(&smooth, &tent, lit, true);
+        assert_true(narrow.rmse < 0.4 * sampled.rmse);
+    }
+    cw_volume_free(&volume);
+    cw_volume_free(&smooth);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(constant_box_is_exact),
         cmocka_unit_test(rays_end_where_hardly_any_light_is_left),
         cmocka_unit_test(skipping_changes_nothing),
+        cmocka_unit_test(default_steps_suit_the_transfer_function),
     };
     return cmocka_run_group_tests(tests, NULL, test_renderer_close);
 }
