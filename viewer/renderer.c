@@ -66,20 +66,23 @@ void cw_renderer_forget(cw_renderer *r)
     cwi_cpu_forget(&r->cpu);
 }
 
-/* Returns true for modes that GL does not draw, which are left to the CPU. */
-static bool is_for_cpu(const cw_renderer *r, cw_mode mode)
+/* Returns true for pictures that GL does not draw, which are left to the CPU. */
+static bool is_for_cpu(const cw_renderer *r, const cwi_frame *frame)
 {
     return r->backend == CW_BACKEND_CPU ||
            (r->backend == CW_BACKEND_AUTO &&
-            (mode == CW_MODE_VBUFFER || mode == CW_MODE_REFERENCE));
+            (frame->scene.mode == CW_MODE_VBUFFER || frame->is_reference));
 }
 
 /* Draws every sample of the picture. */
 static cw_status draw_frame(cw_renderer *r, const cwi_frame *frame, cw_picture *picture,
                             cw_error *err)
 {
-    if (is_for_cpu(r, frame->scene.mode))
+    if (is_for_cpu(r, frame))
         return cwi_cpu_draw(&r->cpu, frame, picture, err);
+    if (frame->is_reference)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED, "the mode %s is not drawn by OpenGL",
+                        cw_mode_name(CW_MODE_REFERENCE));
     cw_status st = need_gl(r, err);
     return st == CW_OK ? r->functions->draw(r->gl, frame, picture, err) : st;
 }

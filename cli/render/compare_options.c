@@ -70,6 +70,27 @@ static cw_status parse_side(const cli_command *command, const render_args *args,
     return st;
 }
 
+/* Makes the reference beside an intensity projection that of the same projection, with its
+ * threshold and its transfer function, unless it has its own. */
+static void match_reference(cli_side *reference, const cli_side *other)
+{
+    cli_scene *s = &reference->args.scene;
+    if (reference->mode != CW_MODE_REFERENCE || !cw_mode_is_intensity(other->mode))
+        return;
+    s->reference_of = other->mode;
+    s->threshold = other->args.scene.threshold;
+    s->transfer = s->transfer ? s->transfer : other->args.scene.transfer;
+}
+
+bool cli_compares_alike(const cli_split *split)
+{
+    const cw_mode a = split->sides[0].mode, b = split->sides[1].mode;
+    const bool has_reference = a == CW_MODE_REFERENCE || b == CW_MODE_REFERENCE;
+    const bool is_single = cw_mode_is_intensity(a) || cw_mode_is_intensity(b);
+    const bool is_sliced = a == CW_MODE_SLICES || b == CW_MODE_SLICES;
+    return a == b || (!is_sliced && (!is_single || has_reference));
+}
+
 cw_status cli_parse_split(const cli_command *command, const render_args *args, cli_split *split,
                           cw_error *err)
 {
@@ -89,6 +110,8 @@ cw_status cli_parse_split(const cli_command *command, const render_args *args, c
     if (st == CW_OK &&
         cli_check_scene(command, &args->common, split->sides[0].mode, has_mesh, NULL) != CW_OK)
         st = cli_check_scene(command, &args->common, split->sides[1].mode, has_mesh, err);
+    for (int n = 0; n < 2; n++)
+        match_reference(&split->sides[n], &split->sides[1 - n]);
     return st;
 }
 

@@ -13,6 +13,10 @@ CW_NODISCARD cw_status cli_parse_split(const cli_command *command, const render_
                                        cli_split *split, cw_error *err);
 void cli_free_split(cli_split *split);
 
+/* Returns true if the difference of the sides is an error: both draw the same thing, or one is
+ * its reference. Else it is between two ways to show a volume. */
+bool cli_compares_alike(const cli_split *split);
+
 /* The split of two pictures, or both and their difference, and what is measured. */
 CW_NODISCARD cw_status cli_draw_split(const cw_picture sides[2], const render_args *args,
                                       const uint8_t background[2][4], cw_comparison *measured,

@@ -116,6 +116,9 @@ static cw_status plan_split(cli_pictures *p, cw_error *err)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a comparison");
     cw_status st = cli_parse_split(p->command, args, p->split, err);
     p->mode = p->split->sides[0].mode;
+    if (st == CW_OK && !cli_compares_alike(p->split))
+        cli_say("warning: %s and %s show different things: their difference is not an error",
+                cw_mode_name(p->mode), cw_mode_name(p->split->sides[1].mode));
     return st;
 }
 

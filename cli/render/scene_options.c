@@ -165,7 +165,9 @@ cw_status cli_fit_transfer(const cli_scene *args, const cw_volume *volume, cw_mo
                            const cw_statistics *statistics, cw_transfer *transfer,
                            cw_error *err)
 {
-    const char *name = args->transfer ? args->transfer : default_preset(volume, mode);
+    const cw_mode drawn =
+        mode == CW_MODE_REFERENCE && args->reference_of ? args->reference_of : mode;
+    const char *name = args->transfer ? args->transfer : default_preset(volume, drawn);
     cw_status st = find_transfer(name, statistics, args, transfer, err);
     if (st == CW_OK)
         st = cli_change_transfer(args, transfer, err);
@@ -420,6 +422,7 @@ cw_status cli_make_scene(const cli_scene *args, const cli_subject *subject, cw_m
 {
     cw_scene *s = scene;
     s->mode = mode;
+    s->reference_of = mode == CW_MODE_REFERENCE ? args->reference_of : (cw_mode)0;
     s->volume = mode == CW_MODE_MESH ? NULL : subject->volume;
     s->mesh = args->hide == CLI_HIDE_MESH ? NULL : subject->mesh;
     s->transfer = mode == CW_MODE_MESH ? NULL : transfer;

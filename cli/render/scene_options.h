@@ -7,7 +7,8 @@
 #include <cubewright/render.h>
 
 typedef struct cli_scene {
-    int mode; /* 0: by what there is to see; else 1 + cw_mode */
+    int mode;             /* 0: by what there is to see; else 1 + cw_mode */
+    cw_mode reference_of; /* of a side of --compare; no option */
     const char *transfer, *camera, *lights, *background, *color, *clips, *planes;
     cli_number shift, opacity, fov, zoom;
     bool ortho;

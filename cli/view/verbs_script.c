@@ -48,7 +48,9 @@ static cw_status run_print(view *v, int count, char **args, cw_error *err)
     else if (strcmp(what, "message") == 0)
         printf("message %s\n", v->message);
     else if (strcmp(what, "compare") == 0 && s->args.compare && v->is_measured)
-        printf("compare %s: rmse %.3g\n", s->args.compare, v->measured.rmse);
+        printf("compare %s: rmse %.3g%s%s\n", s->args.compare, v->measured.rmse,
+               v->is_preliminary ? ", preliminary" : "",
+               v->is_alike ? "" : ", of different modes");
     else if (strcmp(what, "command") == 0) {
         char *line = view_command_line(v);
         if (!line)

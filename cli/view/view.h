@@ -117,6 +117,8 @@ typedef struct view {
     double bar_height, panel_width, strip_height; /* of menus, settings, status */
     cw_comparison measured;
     bool is_measured;
+    bool is_preliminary; /* measured before the pictures were finished */
+    bool is_alike;       /* cli_compares_alike() */
 
     char message[VIEW_MESSAGE];
     bool is_error;

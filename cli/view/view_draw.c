@@ -102,7 +102,7 @@ static bool is_slow(cw_mode mode)
 static void make_rough(cw_scene *s)
 {
     if (is_slow(s->mode))
-        s->mode = CW_MODE_COMPOSITE;
+        s->mode = s->reference_of ? s->reference_of : CW_MODE_COMPOSITE;
     if (s->mode == CW_MODE_SPLAT)
         s->mode = CW_MODE_SPLAT_TREE;
     if (s->mode == CW_MODE_SPLAT_TREE)
@@ -234,6 +234,8 @@ static cw_status draw_split(view *v, view_level level, const cw_progress *progre
         st = cw_picture_compare(&sides[0], &sides[1], (const float(*)[3])scene->background,
                                 &v->measured, err);
         v->is_measured = st == CW_OK;
+        v->is_preliminary = level < VIEW_FINAL;
+        v->is_alike = cli_compares_alike(&split);
     }
     cw_picture_free(&sides[0]);
     cw_picture_free(&sides[1]);

@@ -343,11 +343,11 @@ static void show_compare(view *v)
     if (v->ui->check(v->window, "Difference, 20 times", &difference))
         view_ask(v, "difference %s", difference ? "20" : "off");
     snprintf(said, sizeof said,
-             "rmse %.3g, max %.3g of 255\ndelta-E %.3g, 99 %% below %.3g\nSSIM %.5f", m->rmse,
-             m->max, m->delta_e_mean, m->delta_e_p99, m->ssim);
-    v->ui->text(v->window, v->is_measured
-                               ? said
-                               : "The difference is measured when both are finished ...");
+             "%s%srmse %.3g, max %.3g of 255\ndelta-E %.3g, 99 %% below %.3g\nSSIM %.5f",
+             v->is_preliminary ? "preliminary: the pictures are not finished\n" : "",
+             v->is_alike ? "" : "Different modes: this is not an error\n", m->rmse, m->max,
+             m->delta_e_mean, m->delta_e_p99, m->ssim);
+    v->ui->text(v->window, v->is_measured ? said : "The difference is measured soon ...");
 }
 
 static void show_side(view *v)

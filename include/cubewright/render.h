@@ -59,6 +59,8 @@ typedef enum cw_mode {
 CW_API const char *cw_mode_name(cw_mode mode);
 CW_API const char *cw_mode_about(cw_mode mode);
 CW_API const char *cw_mode_source(cw_mode mode);
+/* Returns true for the intensity projections: mip, minip, average and local-mip. */
+CW_API bool cw_mode_is_intensity(cw_mode mode);
 
 /* The backend that draws. */
 typedef enum cw_backend {
@@ -122,6 +124,10 @@ typedef struct cw_scene {
     cw_camera camera;            /* default (up all 0): front view of everything, 30 degrees */
     size_t width, height;        /* pixels, at most 16384; default 1280 x 720 */
     int samples;                 /* a side: 1 to 4 squared samples a pixel; default 1 */
+
+    cw_mode reference_of; /* reference: an intensity projection whose exact picture is drawn,
+                             with the extremes or means of the field itself, on the CPU; default:
+                             the rendering integral */
 
     /* light and depth */
     cw_light lights[CW_MAX_LIGHTS]; /* light_count of them */

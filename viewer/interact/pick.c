@@ -67,18 +67,12 @@ static cw_status take_slice(const place *at, double mesh_t, cw_picked *out, cw_e
     return CW_OK;
 }
 
-static bool is_intensity(cw_mode mode)
-{
-    return mode == CW_MODE_MIP || mode == CW_MODE_MINIP || mode == CW_MODE_AVERAGE ||
-           mode == CW_MODE_LOCAL_MIP;
-}
-
 /* Takes the volume's point, if it is in front of the mesh, which `out` has if it is met. */
 static void take_volume(const place *at, double mesh_t, cw_picked *out)
 {
     const cwi_frame *f = at->frame;
     const double depth = mesh_t < INFINITY ? out->depth_mm / f->unit_mm : INFINITY;
-    const cwi_volume_hit hit = is_intensity(f->scene.mode)
+    const cwi_volume_hit hit = cw_mode_is_intensity(f->scene.mode)
                                    ? cwi_pick_intensity(f, at->x, at->y, depth)
                                    : cwi_pick_blended(f, at->x, at->y, depth);
     if (hit.t == INFINITY || (mesh_t < INFINITY && hit.opacity < 0.5))

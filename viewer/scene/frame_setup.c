@@ -87,6 +87,21 @@ static cw_status fill_in(cw_scene *s, cw_error *err)
     return CW_OK;
 }
 
+/* Replaces the mode reference by the intensity projection whose exact picture is requested. */
+static cw_status choose_reference(cwi_frame *f, cw_error *err)
+{
+    const cw_mode of = f->scene.reference_of;
+    f->is_reference = f->scene.mode == CW_MODE_REFERENCE;
+    if (!f->is_reference || of == (cw_mode)0)
+        return CW_OK;
+    if (!cw_mode_is_intensity(of))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "a reference of the mode %s: an intensity projection was expected",
+                        (unsigned)of < CW_MODE_COUNT ? cw_mode_name(of) : "?");
+    f->scene.mode = of;
+    return CW_OK;
+}
+
 /* Finds the volume's box in index space. */
 static void find_box(cwi_frame *f)
 {
@@ -256,6 +271,8 @@ cw_status cwi_frame_init(cwi_frame *frame, const cw_scene *scene, cw_error *err)
                      .studio_light =
                          scene->light_count == 0 && !is_material_set(&scene->material)};
     cw_status st = fill_in(&f->scene, err);
+    if (st == CW_OK)
+        st = choose_reference(f, err);
     if (st == CW_OK && f->scene.mesh)
         st = cw_mesh_check(f->scene.mesh, err);
     if (st == CW_OK && draws_volume(f->scene.mode))

@@ -38,6 +38,8 @@ typedef struct cwi_frame {
 
     /* The transfer function: extinction is per unit of eye space. */
     cw_transfer transfer;
+    bool is_reference; /* an exact picture was requested, of scene.mode: an intensity projection
+                             has its own mode here */
     double opacity_units; /* length to which the transfer function's opacities refer */
 
     /* Planes that clip, in eye space: n . p >= d is kept. */

@@ -23,3 +23,9 @@ const char *cw_mode_source(cw_mode mode)
 {
     return (unsigned)mode < CW_MODE_COUNT ? modes[mode].source : "";
 }
+
+bool cw_mode_is_intensity(cw_mode mode)
+{
+    return mode == CW_MODE_MIP || mode == CW_MODE_MINIP || mode == CW_MODE_AVERAGE ||
+           mode == CW_MODE_LOCAL_MIP;
+}

@@ -82,7 +82,8 @@ view 'toggle panels off; compare "mip|average"; wait; print compare; mouse 320 2
       screenshot split.png; difference 20; screenshot difference.png; print compare; compare off; print compare' 2>&1
 differ split.png difference.png
 view 'mouse 600 400; wheel -20; click Compare; mouse 600 400; wheel -20; click "With the reference"; wait; print compare;
-      mouse 600 400; wheel -20; click "Left | right"; capture typed.png; key Ctrl+A; write "mip|reference"; key Enter; wait; print compare'
+      mouse 600 400; wheel -20; click "Left | right"; capture typed.png; key Ctrl+A; write "mip|reference"; key Enter; wait; print compare
+      compare "mip,cell-steps|reference"; mouse 300 300; mouse 301 300; print compare; wait; print compare'
 
 # A field has the title of the section it is in; boxes of one label are two.
 echo "fields"

@@ -60,6 +60,37 @@ static void cells_are_exact(void **state)
     cw_volume_free(&blobs);
 }
 
+/* The reference of a projection is the picture of the CPU; of other modes there is none. */
+static void projections_have_a_reference(void **state)
+{
+    (void)state;
+    cw_volume blobs = {0};
+    cw_renderer *any, *cpu, *gl = test_renderer();
+    cw_error err = {0};
+    assert_ok(cw_renderer_new(CW_BACKEND_AUTO, &any, &err), err);
+    assert_ok(cw_renderer_new(CW_BACKEND_CPU, &cpu, &err), err);
+    test_field(&blobs, 20, 18, 16, cube, test_blobs);
+    for (int m = 0; m < MODES; m++) {
+        cw_scene s = scene_of(modes[m], &blobs, true);
+        cw_picture exact = test_draw(cpu, &s), drawn;
+        s.mode = CW_MODE_REFERENCE;
+        s.reference_of = modes[m];
+        drawn = test_draw(any, &s);
+        assert_memory_equal(drawn.pixels, exact.pixels, 48 * 48 * 4 * sizeof *exact.pixels);
+        cw_picture_free(&drawn);
+        assert_fails(cw_render(gl, &s, &drawn, &err), CW_ERR_UNSUPPORTED, "reference", err);
+        cw_picture_free(&exact);
+    }
+    cw_picture drawn;
+    cw_scene s = scene_of(CW_MODE_REFERENCE, &blobs, true);
+    s.reference_of = CW_MODE_SLICES;
+    assert_fails(cw_render(any, &s, &drawn, &err), CW_ERR_ARGUMENT,
+                 "slices: an intensity projection was expected", err);
+    cw_volume_free(&blobs);
+    cw_renderer_free(any);
+    cw_renderer_free(cpu);
+}
+
 /* A quarter of the step, less than a quarter of the error: samples miss a smooth maximum by its
  * curvature, one at the face of a cell by its slope. */
 static void samples_converge(void **state)
@@ -124,6 +155,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cells_are_exact),
         cmocka_unit_test(samples_converge),
+        cmocka_unit_test(projections_have_a_reference),
         cmocka_unit_test(bricks_are_as_one_texture),
         cmocka_unit_test(gaps_and_cuts_are_left_out),
     };
