@@ -45,7 +45,7 @@ static const struct {
     {"jitter", ONE(COMPOSITE), false, false},
     {"exact-filter", RAYS | TEXTURES | ONE(SLICES), false, false},
     {"skipping", ONE(COMPOSITE) | TEXTURES, false, false},
-    {"stop-opacity", ONE(COMPOSITE) | ONE(VBUFFER), false, false},
+    {"stop-opacity", ONE(COMPOSITE) | ONE(PROJECTION) | ONE(VBUFFER), false, false},
     {"threshold", ONE(LOCAL_MIP), false, false},
     {"texture-edge", RAYS | TEXTURES | ONE(SLICES), false, false},
     {"target", TEXTURES, false, false},

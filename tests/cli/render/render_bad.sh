@@ -84,8 +84,8 @@ for option in '--threshold 3' '--slices 9' '--target 8' --colors-first '--normal
     --linear-opacity '--tree-error 0.1' '--planes 1,0,0,0' --wireframe '--tint quality' --cap '--color white'; do
     try v.nrrd -o v.png $option
 done
-for option in --cell-steps --jitter --exact-filter \
-    '--stop-opacity 1' '--texture-edge 9' '--step-length 2' --no-skipping; do
+for option in --cell-steps --jitter --exact-filter '--texture-edge 9' '--step-length 2' \
+    --no-skipping; do
     try v.nrrd -o v.png --mode projection $option
 done
 try v.nrrd -o v.png --mode mip --no-lit
