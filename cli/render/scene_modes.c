@@ -55,6 +55,8 @@ static const struct {
     {"linear-opacity", ONE(PROJECTION), false, false},
     {"tree-error", ONE(SPLAT_TREE) | ONE(PROJECTION), false, false},
     {"splat-budget", ONE(SPLAT_TREE), false, false},
+    {"splat-kernel", ONE(SPLAT) | ONE(SPLAT_TREE), false, false},
+    {"splat-width", ONE(SPLAT) | ONE(SPLAT_TREE), false, false},
     {"tint", 0, true, true},
     {"tint-range", 0, true, true},
     {"wireframe", 0, true, true},

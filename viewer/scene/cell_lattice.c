@@ -120,6 +120,11 @@ static bool is_whole(const cw_volume *v, const size_t low[3], const size_t high[
 double cwi_lattice_mass(const cw_volume *v, const size_t at[3], bool has_gaps)
 {
     int cells = 0;
+    bool is_within = true;
+    for (int a = 0; a < 3; a++)
+        is_within = is_within && at[a] > 0 && at[a] + 1 < v->dim[a];
+    if (is_within && !has_gaps)
+        return 1;
     for (int n = 0; n < 8; n++) {
         size_t low[3], high[3];
         bool is_inside = true;
