@@ -21,12 +21,12 @@ def text(x, y, words, anchor="middle", color="#333"):
 
 
 def draw_axes(times, errors):
-    """Draws grid lines and numbers at 1, 2 and 5 times powers of ten."""
+    """Draws grid lines and numbers: times at 1, 2 and 5 times powers of ten, errors at all digits."""
     out = []
     for power in range(-3, 4):
-        for digit in (1, 2, 5):
+        for digit in range(1, 10):
             tick = digit * 10.0**power
-            if times[0] <= tick <= times[1]:
+            if digit in (1, 2, 5) and times[0] <= tick <= times[1]:
                 x = place(tick, *times, LEFT, WIDTH - RIGHT)
                 out.append(f'<path d="M{x:.1f} {ABOVE}V{HEIGHT - BELOW}" stroke="#ddd"/>')
                 out.append(text(x, HEIGHT - BELOW + 18, f"{tick:g}"))
