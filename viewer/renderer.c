@@ -5,12 +5,17 @@
 #include "core/base/module.h"
 #include "core/base/status.h"
 #include "viewer/cpu/cpu_draw.h"
+#include "viewer/cpu/cpu_mesh.h"
 #include "viewer/gl/gl.h"
+
+#include <string.h>
 
 struct cw_renderer {
     cw_backend backend;
     const cwi_gl_functions *functions; /* NULL: not loaded yet */
     cwi_gl *gl;                        /* opened by the first scene that needs it */
+    bool has_no_gl;                    /* it could not be opened */
+    bool drew_on_cpu;                  /* the last picture */
     cwi_cpu cpu;
 };
 
@@ -56,7 +61,7 @@ void cw_renderer_free(cw_renderer *r)
 
 const char *cw_renderer_name(const cw_renderer *r)
 {
-    return r->gl ? r->functions->name(r->gl) : "CPU";
+    return r->gl && !r->drew_on_cpu ? r->functions->name(r->gl) : "CPU";
 }
 
 void cw_renderer_forget(cw_renderer *r)
@@ -66,19 +71,41 @@ void cw_renderer_forget(cw_renderer *r)
     cwi_cpu_forget(&r->cpu);
 }
 
-/* Returns true for pictures that GL does not draw, which are left to the CPU. */
-static bool is_for_cpu(const cw_renderer *r, const cwi_frame *frame)
+/* Returns true if GL has no hardware: Mesa's software renderers. */
+static bool is_software(const char *name)
 {
-    return r->backend == CW_BACKEND_CPU ||
-           (r->backend == CW_BACKEND_AUTO &&
-            (frame->scene.mode == CW_MODE_VBUFFER || frame->is_reference));
+    return strstr(name, "llvmpipe") || strstr(name, "softpipe") || strstr(name, "swrast");
+}
+
+/* Returns true if the CPU draws a frame's cells faster than GL: where GL runs on the CPU, too,
+ * small triangles take it ten times as long. A mesh with settings of GL's alone stays there. */
+static bool is_faster_on_cpu(cw_renderer *r, const cwi_frame *frame)
+{
+    cw_error ignored;
+    if (!r->gl && !r->has_no_gl)
+        r->has_no_gl = need_gl(r, &ignored) != CW_OK;
+    if (!r->gl)
+        return true;
+    return is_software(r->functions->name(r->gl)) &&
+           (!frame->scene.mesh || !cwi_cpu_mesh_refusal(frame));
+}
+
+/* Returns true for frames that are left to the CPU. */
+static bool is_for_cpu(cw_renderer *r, const cwi_frame *frame)
+{
+    const cw_mode mode = frame->scene.mode;
+    if (r->backend != CW_BACKEND_AUTO)
+        return r->backend == CW_BACKEND_CPU;
+    return mode == CW_MODE_VBUFFER || frame->is_reference ||
+           (mode == CW_MODE_PROJECTION && is_faster_on_cpu(r, frame));
 }
 
 /* Draws every sample of the picture. */
 static cw_status draw_frame(cw_renderer *r, const cwi_frame *frame, cw_picture *picture,
                             cw_error *err)
 {
-    if (is_for_cpu(r, frame))
+    r->drew_on_cpu = is_for_cpu(r, frame);
+    if (r->drew_on_cpu)
         return cwi_cpu_draw(&r->cpu, frame, picture, err);
     if (frame->is_reference)
         return cwi_fail(err, CW_ERR_UNSUPPORTED, "the mode %s is not drawn by OpenGL",

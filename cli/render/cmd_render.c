@@ -19,7 +19,8 @@ static const cli_option options[] = {
     {"size", 0, CLI_SIZES, "WxH", "Size of the picture in pixels (1280x720)",
      offsetof(render_args, size)},
     {"backend", 0, CLI_CHOICE, "auto/egl/cpu",
-     "OpenGL without a display, or the CPU for meshes, vbuffer and reference (auto)",
+     "OpenGL without a display, or the CPU for meshes, projection, vbuffer and reference "
+     "(auto)",
      offsetof(render_args, backend)},
     CLI_JSON_OPTION(render_args),
     {"save-tf", 0, CLI_TEXT, "FILE", "File to write the transfer function to, as .json",

@@ -56,6 +56,8 @@ static void put_planes(cli_json *j, const char *key, const cw_clip *planes, size
 static void put_settings(cli_json *j, const cw_scene *s)
 {
     static const char *const targets[CW_TARGET_COUNT] = {"32f", "16", "16f", "8"};
+    static const char *const kernels[CW_SPLAT_COUNT] = {"gaussian", "polygon", "tent",
+                                                        "b-spline"};
     const cw_material *m = &s->material;
     cli_json_open(j, "settings", '{');
     cli_json_count(j, "width", s->width);
@@ -81,6 +83,8 @@ static void put_settings(cli_json *j, const cw_scene *s)
     cli_json_bool(j, "boundary", s->mark_boundary);
     cli_json_bool(j, "linear_opacity", s->linear_opacity);
     cli_json_number(j, "tree_error", s->tree_error);
+    cli_json_text(j, "splat_kernel", kernels[s->splat_kernel]);
+    cli_json_number(j, "splat_width", s->splat_width);
     put_planes(j, "clips", s->clips, s->clip_count);
     cli_json_bool(j, "cut_away", s->cut_away);
     put_planes(j, "planes", s->slices, s->slice_count);

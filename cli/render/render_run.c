@@ -328,7 +328,7 @@ static cw_status draw_picture(cli_pictures *p, cw_picture *picture, cw_error *er
         st = cw_render(p->renderer, &p->scene, picture, err);
     if (st == CW_ERR_UNSUPPORTED && draws_volume(p) && p->mode != CW_MODE_VBUFFER &&
         (!p->renderer || strcmp(cw_renderer_name(p->renderer), "CPU") == 0))
-        cli_say("without OpenGL, use --mode vbuffer or --mode reference");
+        cli_say("without OpenGL, use --mode projection, vbuffer or reference");
     return st;
 }
 

@@ -363,6 +363,10 @@ static cw_status add_steps(const cli_scene *args, const cw_volume *v, cw_scene *
     if (args->tree_error.given && !(args->tree_error.value >= 0 && args->tree_error.value <= 1))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--tree-error %g: 0 to 1 was expected",
                         args->tree_error.value);
+    if (args->splat_width.given &&
+        !(args->splat_width.value >= 0.2 && args->splat_width.value <= 4))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--splat-width %g: 0.2 to 4 was expected",
+                        args->splat_width.value);
     if (args->stop_opacity.given && !(args->stop_opacity.value > 0))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--stop-opacity %g: above 0 was expected",
                         args->stop_opacity.value);
@@ -382,6 +386,8 @@ static cw_status add_steps(const cli_scene *args, const cw_volume *v, cw_scene *
     s->linear_opacity = args->linear_opacity;
     s->tree_error = args->tree_error.value;
     s->splat_budget = args->splat_budget;
+    s->splat_kernel = (cw_splat_kernel)args->splat_kernel;
+    s->splat_width = args->splat_width.value; /* 0: the kernel's own */
     cw_status st = take_share("stop-opacity", &args->stop_opacity, 1, &s->stop_opacity, err);
     return st == CW_OK ? space_slices(args, v, s, err) : st;
 }

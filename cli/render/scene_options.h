@@ -24,6 +24,8 @@ typedef struct cli_scene {
     bool colors_first, boundary, linear_opacity;
     cli_number tree_error;
     size_t splat_budget;
+    int splat_kernel;
+    cli_number splat_width;
     int tint;
     cli_numbers tint_range;
     bool wireframe, cap;

@@ -64,10 +64,11 @@ CW_API bool cw_mode_is_intensity(cw_mode mode);
 
 /* The backend that draws. */
 typedef enum cw_backend {
-    CW_BACKEND_AUTO, /* the CPU for its own modes (vbuffer, reference), else EGL */
+    CW_BACKEND_AUTO, /* the CPU for its own modes (vbuffer, reference), and for projection where
+                        OpenGL is missing or runs on the CPU, too; else EGL */
     CW_BACKEND_EGL,  /* OpenGL 3.3, without a display */
-    CW_BACKEND_CPU,  /* vbuffer, reference, intensity projections, and opaque meshes, alone (in
-                        a light of their own) or with those */
+    CW_BACKEND_CPU,  /* vbuffer, reference, projection, intensity projections, and opaque
+                        meshes, alone (in a light of their own) or with those */
     CW_BACKEND_COUNT
 } cw_backend;
 
@@ -114,6 +115,17 @@ typedef enum cw_target {
     CW_TARGET_COUNT
 } cw_target;
 
+/* The blob that stands for a voxel in splatting. Gaussians are blobs in space, seen as ellipses.
+ * B-splines lie in their sheet, across the lattice: with their own widths a constant volume is
+ * constant in any view. */
+typedef enum cw_splat_kernel {
+    CW_SPLAT_GAUSSIAN, /* default width 0.6 voxels */
+    CW_SPLAT_POLYGON,  /* a Gaussian as 24 triangles with colours at corners, as in 1991 */
+    CW_SPLAT_TENT, /* linear B-spline: nearest to trilinear interpolation, and the fastest */
+    CW_SPLAT_B_SPLINE, /* cubic B-spline: smooth */
+    CW_SPLAT_COUNT
+} cw_splat_kernel;
+
 /* A scene. Zero-initialise it and set what you need; a zero field means the default named
  * beside it. Memory behind pointers is borrowed. */
 typedef struct cw_scene {
@@ -153,30 +165,34 @@ typedef struct cw_scene {
                                step */
     bool exact_filter;      /* trilinear interpolation by the shader, not the texture unit */
     bool no_skipping;       /* do not skip empty space */
-    float stop_opacity;     /* rays, and layers of meshes, end at this opacity; default 0.9999,
-                               vbuffer 0.99999 */
-    double threshold;       /* local-mip: the minimum of a maximum that counts */
-    bool lean;              /* saves memory and time of the first picture. The shader computes
+    float stop_opacity;  /* rays, layers of meshes, and cells of projection on the CPU, end at
+                               this opacity; default 0.9999, vbuffer 0.99999 */
+    double threshold;    /* local-mip: the minimum of a maximum that counts */
+    bool lean;           /* saves memory and time of the first picture. The shader computes
                                gradients where it can, instead of reading them from a texture;
                                lit rays are up to a third slower. Always so for large volumes.
                                Where the processor draws (Mesa's llvmpipe), voxels without gaps
                                of u8, u16, i16 or f32 are read from the caller's memory without
                                a texture; rays are a sixth slower. texture and shaded-texture
                                always have textures */
-    size_t texture_edge;    /* maximum edge of a 3D texture, in voxels; default: GL's maximum */
-    cw_target target;       /* texture, shaded-texture: the pixel type for blending slices */
-    bool colors_first;      /* texture, shaded-texture: interpolate colours, not data */
-    size_t normals;         /* shaded-texture: number of directions in the table, at most 8192;
+    size_t texture_edge; /* maximum edge of a 3D texture, in voxels; default: GL's maximum */
+    cw_target target;    /* texture, shaded-texture: the pixel type for blending slices */
+    bool colors_first;   /* texture, shaded-texture: interpolate colours, not data */
+    size_t normals;      /* shaded-texture: number of directions in the table, at most 8192;
                                default 1024. The mode is lit whether or not lit is set */
-    bool mark_boundary;     /* shaded-texture: draw only cells at material boundaries: between
+    bool mark_boundary;  /* shaded-texture: draw only cells at material boundaries: between
                                the values of their samples lies a point of the opacities */
-    bool linear_opacity;    /* projection: opacity, not depth, is linear over a polygon, as in
+    bool linear_opacity; /* projection: opacity, not depth, is linear over a polygon, as in
                                1991 */
-    double tree_error;      /* splat-tree: maximum error of a node, in the table's range 0..1 of
+    double tree_error;   /* splat-tree: maximum error of a node, in the table's range 0..1 of
                                values; 0: every voxel is splatted. projection: half the range of
                                values of a node that is drawn whole */
-    size_t splat_budget;    /* splat-tree: approximate maximum of splats in a picture; the error
+    size_t splat_budget; /* splat-tree: approximate maximum of splats in a picture; the error
                                is raised until they suffice; default: no limit */
+
+    cw_splat_kernel splat_kernel; /* splat, splat-tree: the blob of a voxel */
+    double splat_width; /* splat, splat-tree: its standard deviation in voxels, 0.2 to 4;
+                           default 0.6, of a tent 0.408, of a cubic B-spline 0.577 */
 
     /* slices */
     cw_slice slices[CW_MAX_SLICES]; /* slice_count of them */
@@ -208,8 +224,8 @@ CW_NODISCARD CW_API cw_status cw_renderer_new(cw_backend backend, cw_renderer **
                                               cw_error *err);
 CW_API void cw_renderer_free(cw_renderer *renderer);
 
-/* Returns the name of the drawing device: "CPU", or the name that GL reports. Valid as long as
- * the renderer. */
+/* Returns the name of the device that drew the last picture, or before the first will draw:
+ * "CPU", or the name that GL reports. Valid as long as the renderer. */
 CW_API const char *cw_renderer_name(const cw_renderer *renderer);
 
 /* Draws a scene. Deterministic: the same scene gives the same picture on the same machine, and

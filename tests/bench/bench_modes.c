@@ -57,6 +57,8 @@ static const setting list[] = {
     {"projection", {.mode = CW_MODE_PROJECTION}, false},
     {"projection, linear", {.mode = CW_MODE_PROJECTION, .linear_opacity = true}, false},
     {"splat", {.mode = CW_MODE_SPLAT}, false},
+    {"splat, tent", {.mode = CW_MODE_SPLAT, .splat_kernel = CW_SPLAT_TENT}, false},
+    {"splat, b-spline", {.mode = CW_MODE_SPLAT, .splat_kernel = CW_SPLAT_B_SPLINE}, false},
     {"splat tree, 0.01", {.mode = CW_MODE_SPLAT_TREE, .tree_error = 0.01}, false},
     {"splat tree, 0.05", {.mode = CW_MODE_SPLAT_TREE, .tree_error = 0.05}, false},
     {"mip, step 2", {.mode = CW_MODE_MIP, .step_vox = 2}, false},

@@ -2,6 +2,7 @@
  * depths. */
 #include "viewer/cpu/cpu_draw.h"
 
+#include "viewer/cpu/cell_projection.h"
 #include "viewer/cpu/cpu_mesh.h"
 #include "viewer/cpu/intensity_projection.h"
 #include "viewer/cpu/reference_volume.h"
@@ -15,13 +16,14 @@
 bool cwi_cpu_draws(cw_mode mode)
 {
     return mode == CW_MODE_MESH || mode == CW_MODE_MIP || mode == CW_MODE_MINIP ||
-           mode == CW_MODE_AVERAGE || mode == CW_MODE_LOCAL_MIP || mode == CW_MODE_VBUFFER ||
-           mode == CW_MODE_REFERENCE;
+           mode == CW_MODE_AVERAGE || mode == CW_MODE_LOCAL_MIP || mode == CW_MODE_PROJECTION ||
+           mode == CW_MODE_VBUFFER || mode == CW_MODE_REFERENCE;
 }
 
 void cwi_cpu_forget(cwi_cpu *cpu)
 {
     cwi_ranges_free(&cpu->ranges);
+    cwi_cell_tables_free(&cpu->cell_tables);
     *cpu = (cwi_cpu){0};
 }
 
@@ -29,13 +31,13 @@ static cw_status take_ranges(cwi_cpu *cpu, const cwi_frame *f, cw_error *err)
 {
     if (cpu->ranges.blocks && memcmp(&cpu->key, &f->volume, sizeof cpu->key) == 0)
         return CW_OK;
-    cwi_cpu_forget(cpu);
+    cwi_ranges_free(&cpu->ranges);
     cw_status st =
         cwi_ranges_make(&f->volume, f->scene.threads, &f->scene.progress, &cpu->ranges, err);
     if (st == CW_OK)
         cpu->key = f->volume;
     else
-        cwi_cpu_forget(cpu);
+        cwi_ranges_free(&cpu->ranges);
     return st;
 }
 
@@ -47,6 +49,8 @@ static cw_status draw_volume(cwi_cpu *cpu, const cwi_frame *f, const double *dep
     cw_status st = take_ranges(cpu, f, err);
     if (st == CW_OK && f->scene.mode == CW_MODE_VBUFFER)
         st = cwi_vbuffer_draw(f, &cpu->ranges, depths, picture, err);
+    else if (st == CW_OK && f->scene.mode == CW_MODE_PROJECTION)
+        st = cwi_projection_draw(f, &cpu->ranges, &cpu->cell_tables, depths, picture, err);
     else if (st == CW_OK)
         st = cwi_intensity_draw(f, &cpu->ranges, depths, picture, err);
     return st;

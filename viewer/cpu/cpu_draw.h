@@ -2,6 +2,7 @@
 #ifndef VIEWER_CPU_CPU_DRAW_H
 #define VIEWER_CPU_CPU_DRAW_H
 
+#include "viewer/cpu/cell_color.h"
 #include "viewer/scene/block_ranges.h"
 #include "viewer/scene/frame_setup.h"
 
@@ -13,6 +14,7 @@ extern "C" {
 typedef struct cwi_cpu {
     cw_volume key;
     cwi_ranges ranges; /* of key, when it has blocks */
+    cwi_cell_tables cell_tables;
 } cwi_cpu;
 
 bool cwi_cpu_draws(cw_mode mode);

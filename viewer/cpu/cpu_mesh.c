@@ -20,16 +20,21 @@ static bool is_clear(const cw_scene *s)
     return false;
 }
 
+const char *cwi_cpu_mesh_refusal(const cwi_frame *f)
+{
+    const cw_scene *s = &f->scene;
+    return is_clear(s)         ? "translucent"
+           : s->clip_count > 0 ? "cut open"
+           : s->wireframe      ? "with edges"
+           : s->depth_cue > 0  ? "with a depth cue"
+           : !f->studio_light  ? "with lights or a material of their own"
+                               : NULL;
+}
+
 /* Refuses settings that the CPU does not draw, so that none is ignored silently. */
 static cw_status check_frame(const cwi_frame *f, cw_error *err)
 {
-    const cw_scene *s = &f->scene;
-    const char *more = is_clear(s)         ? "translucent"
-                       : s->clip_count > 0 ? "cut open"
-                       : s->wireframe      ? "with edges"
-                       : s->depth_cue > 0  ? "with a depth cue"
-                       : !f->studio_light  ? "with lights or a material of their own"
-                                           : NULL;
+    const char *more = cwi_cpu_mesh_refusal(f);
     return more ? cwi_fail(err, CW_ERR_UNSUPPORTED, "the CPU draws no meshes %s: use OpenGL",
                            more)
                 : CW_OK;

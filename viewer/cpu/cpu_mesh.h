@@ -19,6 +19,10 @@ extern "C" {
 CW_NODISCARD cw_status cwi_cpu_draw_mesh(const cwi_frame *frame, double *depth_mm,
                                          cw_picture *picture, cw_error *err);
 
+/* Returns words for a setting of the frame's mesh that the CPU does not draw, such as
+ * "translucent"; NULL: it draws all of them. */
+const char *cwi_cpu_mesh_refusal(const cwi_frame *frame);
+
 #ifdef __cplusplus
 }
 #endif

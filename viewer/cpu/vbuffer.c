@@ -5,6 +5,7 @@
  * Blocks of cells that the transfer function leaves empty are skipped. */
 #include "viewer/cpu/vbuffer.h"
 
+#include "viewer/cpu/lanes.h"
 #include "viewer/cpu/ray_traversal.h"
 #include "viewer/scene/lighting.h"
 #include "viewer/scene/transfer_segments.h"
@@ -20,8 +21,7 @@
 #include <math.h>
 #include <string.h>
 
-typedef float lanes __attribute__((vector_size(16)));
-typedef int32_t int_lanes __attribute__((vector_size(16)));
+typedef cwi_lanes lanes;
 
 /* Two points of 0..1, both of weight 1/2. The way to a point takes this fraction of the value
  * at the other point: 1/4 -+ sqrt(3) / 6. */
@@ -130,34 +130,6 @@ static fetch_function *choose_fetch(const cw_volume *v)
     return functions[v->type];
 }
 
-static inline lanes load_lanes(const float *p)
-{
-    lanes v;
-    memcpy(&v, p, sizeof v);
-    return v;
-}
-
-static inline lanes spread_lanes(float x)
-{
-    return (lanes){x, x, x, x};
-}
-
-/* Returns exp(-x), to a relative error of 2e-7: 2^n times a polynomial for 2^f, f from -1/2 to
- * 1/2. */
-static inline lanes fade_lanes(lanes x)
-{
-    const int_lanes few = x < 80.0f;
-    const lanes y =
-        (lanes)(((int_lanes)x & few) | ((int_lanes)spread_lanes(80) & ~few)) * -1.44269504f;
-    const int_lanes n = __builtin_convertvector(y - 0.5f, int_lanes); /* y is hardly above 0 */
-    const lanes f = (y - __builtin_convertvector(n, lanes)) * 0.69314718f;
-    const lanes p =
-        ((((f * (1.0f / 720) + 1.0f / 120) * f + 1.0f / 24) * f + 1.0f / 6) * f + 0.5f) * f *
-            f +
-        f + 1;
-    return p * (lanes)((n + 127) << 23);
-}
-
 /* Interpolates the field at four places of a line, as rows of the table. */
 static inline lanes rows_along(lanes even, lanes odd, const lanes at[3])
 {
@@ -174,8 +146,8 @@ static inline lanes glow_of_row(const vbuffer *b, float row)
     const float at = row > 0 ? row < most ? row : most : 0;
     int32_t n = (int32_t)at;
     n = n > CWI_TABLE_ROWS - 2 ? CWI_TABLE_ROWS - 2 : n;
-    const lanes low = load_lanes(b->table.rows + 4 * n),
-                high = load_lanes(b->table.rows + 4 * n + 4);
+    const lanes low = cwi_lanes_load(b->table.rows + 4 * n),
+                high = cwi_lanes_load(b->table.rows + 4 * n + 4);
     return low + (at - (float)n) * (high - low);
 }
 
@@ -221,7 +193,7 @@ static inline void pass_segment(state *s, lanes first, lanes second, float lengt
     const float a = first[3] * length, b = second[3] * length;
     const lanes depths = {0.25f * a + to_first * b, to_second * a + 0.25f * b, 0.5f * (a + b),
                           0};
-    const lanes left = fade_lanes(depths);
+    const lanes left = cwi_lanes_fade(depths);
     const float p = a * left[0], q = b * left[1];
     if (!(p + q > 0))
         return;

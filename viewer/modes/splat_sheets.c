@@ -1,5 +1,5 @@
-/* Splats voxels into sheets: projects them as Gaussians [Westover1990], adds them up in a
- * sheet, and blends sheets. */
+/* Splats voxels into sheets [Westover1990]: adds up the footprints of a sheet's voxels, and
+ * blends sheets. */
 #include "viewer/modes/splat_sheets.h"
 
 #include "core/base/memory.h"
@@ -15,30 +15,11 @@
 extern const char cwi_glsl_splat[], cwi_glsl_sheet[];
 
 enum {
-    CHUNK = 1 << 14, /* splats; three texels each: as many as any GL's buffers have */
-    FOOTPRINT_ROWS = 256,
+    CHUNK = 1 << 11, /* splats: so few that a software renderer takes no new pages for them */
     UNIT_SHEET = CWI_UNIT_FREE,
     UNIT_SPLATS,
     UNIT_FOOTPRINT
 };
-
-/* The Gaussian of one voxel, in voxels. It is just so wide that the sum of footprints on a
- * lattice varies by less than 0.6 %. The table ends at a radius in sigmas where it has fallen
- * to 0.3 %. */
-static const double sigma = 0.6, table_radius = 3.4;
-
-/* Makes the footprint by the square of the distance: a Gaussian, lowered to reach 0 at the end,
- * over its integral. */
-static void make_footprint(cwi_splats *s)
-{
-    float rows[FOOTPRINT_ROWS];
-    const double end = table_radius * table_radius / 2, rest = exp(-end);
-    const double integral = 2 * CWI_PI * (1 - rest - end * rest);
-    for (int n = 0; n < FOOTPRINT_ROWS; n++)
-        rows[n] = (float)((exp(-end * n / (FOOTPRINT_ROWS - 1)) - rest) / integral);
-    s->footprint = cwi_gl_texture(GL_TEXTURE_2D, UNIT_FOOTPRINT, true);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, FOOTPRINT_ROWS, 1, 0, GL_RED, GL_FLOAT, rows);
-}
 
 /* Makes a buffer in which splats are added up, behind the mesh's depth. */
 static void make_sheet(cwi_splats *s)
@@ -53,20 +34,20 @@ static void make_sheet(cwi_splats *s)
     glClear(GL_COLOR_BUFFER_BIT);
 }
 
-/* Makes indices: two triangles a splat. */
-static cw_status make_indices(cwi_splats *s, cw_error *err)
+/* Makes the indices of a batch's triangles. */
+static cw_status make_indices(cwi_splat_batch *b, const cwi_splat_kernel *kernel, cw_error *err)
 {
-    static const uint32_t corners[6] = {0, 1, 2, 2, 1, 3};
-    uint32_t *all = cwi_alloc_array(CHUNK, sizeof corners);
+    b->triangles = kernel ? kernel->triangles : 2;
+    const size_t bytes = CHUNK * 3 * b->triangles * sizeof(uint32_t);
+    uint32_t *all = cwi_alloc_array(CHUNK, 3 * b->triangles * sizeof *all);
     if (!all)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for splats");
-    for (uint32_t n = 0; n < 6 * CHUNK; n++)
-        all[n] = 4 * (n / 6) + corners[n % 6];
-    glGenVertexArrays(1, &s->array);
-    glBindVertexArray(s->array);
-    glGenBuffers(1, &s->indices);
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, s->indices);
-    glBufferData(GL_ELEMENT_ARRAY_BUFFER, CHUNK * sizeof corners, all, GL_STATIC_DRAW);
+    cwi_splat_indices(kernel, CHUNK, all);
+    glGenVertexArrays(1, &b->array);
+    glBindVertexArray(b->array);
+    glGenBuffers(1, &b->indices);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, b->indices);
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)bytes, all, GL_STATIC_DRAW);
     cwi_free(all);
     return CW_OK;
 }
@@ -75,33 +56,49 @@ static void make_buffer(cwi_splats *s)
 {
     glGenBuffers(1, &s->buffer);
     glBindBuffer(GL_TEXTURE_BUFFER, s->buffer);
-    glBufferData(GL_TEXTURE_BUFFER, CHUNK * sizeof *s->chunk, NULL, GL_STREAM_DRAW);
+    glBufferData(GL_TEXTURE_BUFFER, CHUNK * sizeof(cwi_splat), NULL, GL_STREAM_DRAW);
     glGenTextures(1, &s->splats);
     glActiveTexture(GL_TEXTURE0 + UNIT_SPLATS);
     glBindTexture(GL_TEXTURE_BUFFER, s->splats);
     glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, s->buffer);
 }
 
-static cw_status make_programs(cwi_splats *s, bool has_nodes, cw_error *err)
+static cw_status make_composite(cwi_splats *s, cw_error *err)
 {
-    char defines[64];
-    const cwi_frame *f = s->frame;
-    snprintf(defines, sizeof defines, "%s%s%s", f->scene.lit ? "#define LIT\n" : "",
-             f->transfer.gradient_count ? "#define FACTOR\n" : "",
-             has_nodes ? "#define NODES\n" : "");
-    cw_status st = cwi_gl_use(s->gl, cwi_glsl_screen, cwi_glsl_sheet, "", &s->composite, err);
+    cw_status st =
+        cwi_gl_use(s->gl, cwi_glsl_screen, cwi_glsl_sheet,
+                   s->kernel->is_in_plane ? s->kernel->defines : "", &s->composite, err);
     if (st != CW_OK)
         return st;
     glUniform1i(glGetUniformLocation(s->composite, "sheet"), UNIT_SHEET);
-    st = cwi_gl_use(s->gl, cwi_glsl_splat, cwi_glsl_splat, defines, &s->program, err);
+    glUniform1i(glGetUniformLocation(s->composite, "axis"), s->axis);
+    return CW_OK;
+}
+
+/* Makes the program of voxels or of nodes. They are apart because a renderer in software runs
+ * through both sides of a branch. */
+static cw_status make_batch(cwi_splats *s, bool is_of_nodes, cw_error *err)
+{
+    char defines[128];
+    const cwi_frame *f = s->frame;
+    cwi_splat_batch *b = &s->batches[is_of_nodes];
+    const bool is_blob = is_of_nodes && !s->kernel->is_in_plane;
+    snprintf(defines, sizeof defines, "%s%s%s%s", f->scene.lit ? "#define LIT\n" : "",
+             f->transfer.gradient_count ? "#define FACTOR\n" : "",
+             is_of_nodes ? "#define NODES\n" : "", is_blob ? "" : s->kernel->defines);
+    b->chunk = cwi_alloc_array(CHUNK, sizeof *b->chunk);
+    if (!b->chunk)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for splats");
+    cw_status st = make_indices(b, is_of_nodes ? NULL : s->kernel, err);
+    if (st == CW_OK)
+        st = cwi_gl_use(s->gl, cwi_glsl_splat, cwi_glsl_splat, defines, &b->program, err);
     if (st != CW_OK)
         return st;
-    glUniform1i(glGetUniformLocation(s->program, "splats"), UNIT_SPLATS);
-    glUniform1i(glGetUniformLocation(s->program, "footprint"), UNIT_FOOTPRINT);
-    cwi_gl_set(s->program, "sigma", (float)sigma);
-    cwi_gl_set(s->program, "radius", (float)table_radius);
-    glUniform1i(glGetUniformLocation(s->program, "axis"), s->axis);
-    cwi_gl_set(s->program, "cell", (float)fabs(cwi_affine_determinant(f->eye_from_index)));
+    glUniform1i(glGetUniformLocation(b->program, "splats"), UNIT_SPLATS);
+    glUniform1i(glGetUniformLocation(b->program, "footprint"), UNIT_FOOTPRINT);
+    glUniform1i(glGetUniformLocation(b->program, "axis"), s->axis);
+    cwi_gl_set(b->program, "cell", (float)fabs(cwi_affine_determinant(f->eye_from_index)));
+    cwi_splat_kernel_set(s->kernel, &f->scene, b->program);
     return CW_OK;
 }
 
@@ -137,7 +134,9 @@ static void measure_splats(cwi_splats *s)
     double sum = 0;
     for (int n = 0; n < 12; n++)
         sum += n % 4 < 3 ? m[n] * m[n] : 0;
-    s->radius = sigma * table_radius * sqrt(sum); /* of a ball around the ellipsoid */
+    s->kernel = cwi_splat_kernel_of(&s->frame->scene);
+    /* of a ball around the ellipsoid, or around the rectangle */
+    s->radius = s->frame->scene.splat_width * s->kernel->reach * sqrt(sum);
     s->axis = choose_axis(s->frame);
     s->needs_gradients = s->frame->scene.lit || s->frame->transfer.gradient_count > 0;
     cwi_lattice_eye(s->frame, s->eye);
@@ -151,17 +150,14 @@ cw_status cwi_splats_open(cwi_splats *s, cwi_gl *gl, bool has_nodes, cw_error *e
     s->err = err;
     s->has_gaps = gl->volume.ranges.has_gaps;
     measure_splats(s);
-    s->chunk = cwi_alloc_array(CHUNK, sizeof *s->chunk);
     cw_status st = cwi_visible_make(&gl->transfer.table, &s->visible, err);
-    if (st == CW_OK && !s->chunk)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for splats");
     if (st == CW_OK)
-        st = make_indices(s, err);
-    if (st == CW_OK)
-        st = make_programs(s, has_nodes, err);
+        st = make_composite(s, err);
+    for (int n = 0; n < (has_nodes ? 2 : 1) && st == CW_OK; n++)
+        st = make_batch(s, n, err);
     if (st != CW_OK)
         return st;
-    make_footprint(s);
+    s->footprint = cwi_splat_footprint(s->kernel, UNIT_FOOTPRINT);
     make_buffer(s);
     make_sheet(s);
     glDepthMask(GL_FALSE);
@@ -177,33 +173,35 @@ void cwi_splats_close(cwi_splats *s)
     glDisable(GL_BLEND);
     glDisable(GL_SCISSOR_TEST);
     glBindVertexArray(0);
-    glDeleteVertexArrays(1, &s->array);
-    glDeleteBuffers(1, &s->indices);
+    for (int n = 0; n < 2; n++) {
+        glDeleteVertexArrays(1, &s->batches[n].array);
+        glDeleteBuffers(1, &s->batches[n].indices);
+        cwi_free(s->batches[n].chunk);
+        s->batches[n].chunk = NULL;
+    }
     glDeleteBuffers(1, &s->buffer);
     glDeleteTextures(1, &s->splats);
     glDeleteTextures(1, &s->footprint);
     glDeleteTextures(1, &s->sheet);
     glDeleteFramebuffers(1, &s->framebuffer);
     cwi_visible_free(&s->visible);
-    cwi_free(s->chunk);
-    s->chunk = NULL;
 }
 
-/* Adds the splats of the chunk to the sheet. */
-static void flush_splats(cwi_splats *s)
+/* Adds the splats of a batch to the sheet. */
+static void flush_splats(cwi_splats *s, cwi_splat_batch *b)
 {
-    if (s->count == 0 || s->status != CW_OK)
+    if (b->count == 0 || s->status != CW_OK)
         return;
     glDisable(GL_SCISSOR_TEST);
     glEnable(GL_DEPTH_TEST);
     glBlendFunc(GL_ONE, GL_ONE);
-    glUseProgram(s->program);
-    glBindVertexArray(s->array);
+    glUseProgram(b->program);
+    glBindVertexArray(b->array);
     glBindBuffer(GL_TEXTURE_BUFFER, s->buffer);
-    glBufferData(GL_TEXTURE_BUFFER, CHUNK * sizeof *s->chunk, NULL, GL_STREAM_DRAW);
-    glBufferSubData(GL_TEXTURE_BUFFER, 0, (GLsizeiptr)(s->count * sizeof *s->chunk), s->chunk);
-    s->status = cwi_gl_draw_triangles(s->gl, 2 * s->count, true, s->err);
-    s->count = 0;
+    glBufferData(GL_TEXTURE_BUFFER, CHUNK * sizeof *b->chunk, NULL, GL_STREAM_DRAW);
+    glBufferSubData(GL_TEXTURE_BUFFER, 0, (GLsizeiptr)(b->count * sizeof *b->chunk), b->chunk);
+    s->status = cwi_gl_draw_triangles(s->gl, b->triangles * b->count, true, s->err);
+    b->count = 0;
 }
 
 bool cwi_splats_keep(const cwi_splats *s, const double at[3], double eye[3])
@@ -231,7 +229,7 @@ static bool find_bounds(const cwi_splats *s, const cwi_splat *splat, const doubl
     for (int a = 0; a < 2; a++) {
         const double at = eye[a] * scale, slant = f->perspective ? sqrt(1 + at * at) : 1;
         const double reach = s->radius * size * scale * slant / f->half[a] +
-                             2 * table_radius / (double)points[a];
+                             2 * s->kernel->reach / (double)points[a];
         bounds[2 * a] = at / f->half[a] - reach;
         bounds[2 * a + 1] = at / f->half[a] + reach;
     }
@@ -247,9 +245,10 @@ void cwi_splats_add(cwi_splats *s, const cwi_splat *splat, const double eye[3])
         s->bounds[2 * a] = cwi_lesser(s->bounds[2 * a], bounds[2 * a]);
         s->bounds[2 * a + 1] = cwi_greater(s->bounds[2 * a + 1], bounds[2 * a + 1]);
     }
-    if (s->count == CHUNK)
-        flush_splats(s);
-    s->chunk[s->count++] = *splat;
+    cwi_splat_batch *b = &s->batches[splat->is_node > 0];
+    if (b->count == CHUNK)
+        flush_splats(s, b);
+    b->chunk[b->count++] = *splat;
 }
 
 /* Restricts drawing to the bounds of the sheet's splats. */
@@ -268,7 +267,8 @@ static void cut_to_bounds(const cwi_splats *s)
 cw_status cwi_splats_end_sheet(cwi_splats *s, size_t n, cw_error *err)
 {
     const double done = (double)(n + 1) / (double)s->frame->volume.dim[s->axis];
-    flush_splats(s);
+    for (int b = 0; b < 2; b++)
+        flush_splats(s, &s->batches[b]);
     if (s->status != CW_OK)
         return s->status;
     if (s->bounds[0] < s->bounds[1]) {

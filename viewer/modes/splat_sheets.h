@@ -3,10 +3,10 @@
 #ifndef VIEWER_MODES_SPLAT_SHEETS_H
 #define VIEWER_MODES_SPLAT_SHEETS_H
 
-#include "viewer/gl/gl_internal.h"
+#include "viewer/modes/splat_kernel.h"
 #include "viewer/scene/cell_lattice.h"
 
-/* A voxel's Gaussian blob, or the part of a node's voxels that is in a sheet, as one. As
+/* A voxel's blob, or the part of a node's voxels that is in a sheet, as one. As
  * shaders/splat.glsl reads it from a buffer. */
 typedef struct cwi_splat {
     float at[3];       /* index space */
@@ -17,6 +17,14 @@ typedef struct cwi_splat {
     float size[3]; /* of a node in the sheet, in voxels; else 0 */
     float is_node; /* 1: it is one */
 } cwi_splat;
+
+/* Splats of one kind, drawn by one program: voxels, or nodes. */
+typedef struct cwi_splat_batch {
+    GLuint program, array, indices;
+    size_t triangles; /* of a splat */
+    cwi_splat *chunk;
+    size_t count;
+} cwi_splat_batch;
 
 /* A picture being made of splats. Zeroed, then cwi_splats_open(), harmless to close twice. */
 typedef struct cwi_splats {
@@ -30,10 +38,9 @@ typedef struct cwi_splats {
     bool has_gaps; /* some voxels may have no value */
     bool needs_gradients;
     double radius; /* of a footprint, eye space */
-    GLuint program, composite;
-    GLuint array, indices, buffer, splats, footprint, sheet, framebuffer;
-    cwi_splat *chunk;
-    size_t count;
+    const cwi_splat_kernel *kernel;
+    cwi_splat_batch batches[2]; /* voxels; nodes, of which there may be none */
+    GLuint composite, buffer, splats, footprint, sheet, framebuffer;
     double bounds[4]; /* of the sheet's splats, on the picture from -1 to 1: low, high x; y */
 } cwi_splats;
 

@@ -59,20 +59,44 @@ bool cwi_visible_any(const cwi_visible *visible, float low, float high)
     return visible->before[last + 1] > visible->before[first];
 }
 
+/* A row of voxels to load: a coordinate in the table is voxel x scale + bias. */
+typedef struct voxel_row {
+    const char *from;
+    ptrdiff_t stride;
+    size_t count;
+    double scale, bias;
+    const double *nodata; /* NULL: every number is a value */
+} voxel_row;
+
+#define LOAD(name, ctype, text)                                                                \
+    static void load_##name(const voxel_row *r, float *to)                                     \
+    {                                                                                          \
+        for (size_t i = 0; i < r->count; i++) {                                                \
+            const double x = (double)*(const ctype *)(r->from + (ptrdiff_t)i * r->stride);     \
+            to[i] = r->nodata && x == *r->nodata ? NAN : (float)(x * r->scale + r->bias);      \
+        }                                                                                      \
+    }
+CW_TYPE_TABLE(LOAD)
+#undef LOAD
+
+static void (*const load_functions[CW_TYPE_COUNT])(const voxel_row *r, float *to) = {
+#define ROW(name, ctype, text) load_##name,
+    CW_TYPE_TABLE(ROW)
+#undef ROW
+};
+
 void cwi_lattice_load(const cwi_frame *frame, const cwi_table *table, const size_t first[3],
                       const size_t count[3], float *out)
 {
     const cw_volume *v = &frame->volume;
-    const double scale = v->slope / (table->high - table->low);
-    const double bias = (v->intercept - table->low) / (table->high - table->low);
+    voxel_row row = {.stride = v->stride[0], .count = count[0]};
+    row.scale = v->slope / (table->high - table->low);
+    row.bias = (v->intercept - table->low) / (table->high - table->low);
+    row.nodata = v->has_nodata ? &v->nodata : NULL;
     for (size_t k = 0; k < count[2]; k++)
-        for (size_t j = 0; j < count[1]; j++) {
-            const char *p = cwi_voxel_address(v, first[0], first[1] + j, first[2] + k);
-            for (size_t i = 0; i < count[0]; i++, p += v->stride[0]) {
-                const double x = cwi_voxel_at(v->type, p);
-                const bool is_empty = v->has_nodata && x == v->nodata;
-                *out++ = is_empty ? NAN : (float)(x * scale + bias);
-            }
+        for (size_t j = 0; j < count[1]; j++, out += count[0]) {
+            row.from = cwi_voxel_address(v, first[0], first[1] + j, first[2] + k);
+            load_functions[v->type](&row, out);
         }
 }
 
@@ -96,6 +120,11 @@ static bool is_whole(const cw_volume *v, const size_t low[3], const size_t high[
 double cwi_lattice_mass(const cw_volume *v, const size_t at[3], bool has_gaps)
 {
     int cells = 0;
+    bool is_within = true;
+    for (int a = 0; a < 3; a++)
+        is_within = is_within && at[a] > 0 && at[a] + 1 < v->dim[a];
+    if (is_within && !has_gaps)
+        return 1;
     for (int n = 0; n < 8; n++) {
         size_t low[3], high[3];
         bool is_inside = true;

@@ -12,6 +12,16 @@
 
 enum { MAX_SIZE = 16384, MAX_SAMPLES = 4, MESH_UNITS = 256 };
 
+/* Narrower blobs leave holes between voxels; wider ones cover thousands of samples. */
+static const double MIN_SPLAT_WIDTH = 0.2, MAX_SPLAT_WIDTH = 4;
+
+/* A Gaussian of 0.6 voxels is just so wide that the sum of footprints on a lattice varies by
+ * less than 0.6 %. */
+static const double splat_widths[CW_SPLAT_COUNT] = {[CW_SPLAT_GAUSSIAN] = 0.6,
+                                                    [CW_SPLAT_POLYGON] = 0.6,
+                                                    [CW_SPLAT_TENT] = CWI_TENT_WIDTH,
+                                                    [CW_SPLAT_B_SPLINE] = CWI_B_SPLINE_WIDTH};
+
 static bool is_camera_set(const cw_camera *c)
 {
     return c->up[0] != 0 || c->up[1] != 0 || c->up[2] != 0;
@@ -76,6 +86,14 @@ static cw_status fill_in(cw_scene *s, cw_error *err)
     if (!(s->tree_error >= 0 && s->tree_error <= 1))
         return cwi_fail(err, CW_ERR_ARGUMENT, "an error of nodes of %g: expected 0 to 1",
                         s->tree_error);
+    if ((unsigned)s->splat_kernel >= CW_SPLAT_COUNT)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a kernel of splats (0 to %d)",
+                        (int)s->splat_kernel, CW_SPLAT_COUNT - 1);
+    if (s->splat_width == 0)
+        s->splat_width = splat_widths[s->splat_kernel];
+    if (!(s->splat_width >= MIN_SPLAT_WIDTH && s->splat_width <= MAX_SPLAT_WIDTH))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "splats %g voxels wide: expected %g to %g",
+                        s->splat_width, MIN_SPLAT_WIDTH, MAX_SPLAT_WIDTH);
     if (s->normals == 0)
         s->normals = 1024;
     if (s->color[0] == 0 && s->color[1] == 0 && s->color[2] == 0 && s->color[3] == 0)

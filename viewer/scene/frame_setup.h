@@ -46,6 +46,10 @@ typedef struct cwi_frame {
     double clips[CW_MAX_CLIPS][4];
 } cwi_frame;
 
+/* Standard deviations of a linear and a cubic B-spline with steps of 1. */
+#define CWI_TENT_WIDTH     0.40824829046386302
+#define CWI_B_SPLINE_WIDTH 0.57735026918962576
+
 /* Resolves a scene: fills in defaults, and checks the conditions of all modes. Returns
  * CW_ERR_ARGUMENT, CW_ERR_UNSUPPORTED as cw_render(). */
 CW_NODISCARD cw_status cwi_frame_init(cwi_frame *frame, const cw_scene *scene, cw_error *err);

@@ -63,6 +63,8 @@ try v.nrrd -o v.png --stop-opacity 0
 try v.nrrd -o v.png --stop-opacity 2
 try v.nrrd -o v.png --mode texture --slices 5 --step-length 2
 try v.nrrd -o v.png --mode splat-tree --tree-error 2
+try v.nrrd -o v.png --mode splat --splat-width 9
+try v.nrrd -o v.png --mode splat --splat-kernel cone
 try v.nrrd -o v.png --mode slices --planes 1,0,0
 try v.nrrd -o v.png --iso 0 --color mauve
 try v.nrrd -o v.png --iso 0 --tint quality --tint-range 0,1
@@ -81,11 +83,11 @@ try v.nrrd -o v.png --json v.png
 try v.nrrd -o v.png --save-tf v.nrrd
 # An option for another mode says for which.
 for option in '--threshold 3' '--slices 9' '--target 8' --colors-first '--normals 6' --boundary \
-    --linear-opacity '--tree-error 0.1' '--planes 1,0,0,0' --wireframe '--tint quality' --cap '--color white'; do
+    --linear-opacity '--tree-error 0.1' '--splat-kernel tent' '--splat-width 1' '--planes 1,0,0,0' --wireframe '--tint quality' --cap '--color white'; do
     try v.nrrd -o v.png $option
 done
-for option in --cell-steps --jitter --exact-filter \
-    '--stop-opacity 1' '--texture-edge 9' '--step-length 2' --no-skipping; do
+for option in --cell-steps --jitter --exact-filter '--texture-edge 9' '--step-length 2' \
+    --no-skipping; do
     try v.nrrd -o v.png --mode projection $option
 done
 try v.nrrd -o v.png --mode mip --no-lit
