@@ -254,6 +254,7 @@ static cw_status make_transfer(cli_pictures *p, size_t step, cw_error *err)
     else
         st = cli_fit_transfer(&args->scene, &p->source.volume.view, p->mode, &statistics,
                               &p->transfer, err);
+    p->level = cli_class_level(&statistics);
     cw_statistics_free(&statistics);
     p->has_transfer = st == CW_OK;
     if (st == CW_OK && args->save_transfer)
@@ -286,6 +287,7 @@ static cw_status make_scene(cli_pictures *p, size_t turn, cw_error *err)
         .volume = draws_volume(p) ? cli_drawn(&p->source) : NULL,
         .whole = p->source.is_mesh ? NULL : &p->source.volume.whole,
         .mesh = has_mesh(p) ? &p->source.mesh : NULL,
+        .level = p->level,
         .threads = (int)args->input.threads,
     };
     const double aspect = (double)args->size.n[0] / (double)args->size.n[1];
@@ -414,7 +416,7 @@ static cw_status take_picture(cli_pictures *p, size_t turn, cli_shot *shot, cw_e
     cw_image image = {0};
     cw_status st = make_scene(p, turn, err);
     if (st == CW_OK)
-        st = cli_background(&p->args->scene, p->mode, background, err);
+        st = cli_background(&p->args->scene, background, err);
     if (st == CW_OK)
         st = draws_on_cpu(p)
                  ? draw_mesh(p, (const uint8_t(*)[4])background, &image, err)

@@ -52,6 +52,7 @@ typedef struct cli_pictures {
     cli_source source; /* its mesh: what is seen beside the volume, or by itself */
     cw_mode mode;
     cw_transfer transfer;
+    double level;      /* between two classes of values */
     bool has_transfer; /* of all steps */
     double box[2][3];  /* box that the cameras see: of the first step, kept as well */
     bool has_box;

@@ -59,21 +59,12 @@ static bool parse_background(const char *text, uint8_t background[2][4])
            cli_parse_color(comma ? comma + 1 : top, background[1]);
 }
 
-cw_status cli_background(const cli_scene *args, cw_mode mode, uint8_t background[2][4],
-                         cw_error *err)
+cw_status cli_background(const cli_scene *args, uint8_t background[2][4], cw_error *err)
 {
-    static const uint8_t light[2][4] = {{248, 250, 252, 255}, {205, 213, 222, 255}},
-                         black[2][4] = {{0, 0, 0, 255}, {0, 0, 0, 255}},
-                         dark[2][4] = {{14, 17, 24, 255}, {44, 51, 63, 255}},
+    static const uint8_t dark[2][4] = {{8, 10, 14, 255}, {24, 28, 36, 255}},
                          none[2][4] = {{255, 255, 255, 0}, {255, 255, 255, 0}};
     const char *text = args->background;
-    const bool flat = mode >= CW_MODE_MIP && mode <= CW_MODE_LOCAL_MIP;
-    const bool sliced = mode == CW_MODE_SLICES;
-    memcpy(background,
-           mode == CW_MODE_MESH ? light
-           : flat || sliced     ? black
-                                : dark,
-           sizeof light);
+    memcpy(background, dark, sizeof dark);
     if (text && strcmp(text, "none") == 0)
         memcpy(background, none, sizeof none);
     else if (text && !parse_background(text, background))
@@ -84,7 +75,14 @@ cw_status cli_background(const cli_scene *args, cw_mode mode, uint8_t background
     return CW_OK;
 }
 
-static const char *default_preset(const cw_volume *v, cw_mode mode)
+/* Returns true for fields: floats whose file names neither unit nor frame, as those of
+ * simulations. They have no natural colours. */
+static bool is_field(const cw_volume *v, const cw_statistics *s)
+{
+    return s->quantum == 0 && !(v->known & (CW_KNOWN_UNIT | CW_KNOWN_FRAME));
+}
+
+static const char *default_preset(const cw_volume *v, const cw_statistics *s, cw_mode mode)
 {
     switch (mode) {
     case CW_MODE_MIP:
@@ -93,10 +91,13 @@ static const char *default_preset(const cw_volume *v, cw_mode mode)
     case CW_MODE_AVERAGE:
         return "xray";
     case CW_MODE_MINIP:
-    case CW_MODE_SLICES:
         return "grey";
+    case CW_MODE_SLICES:
+        return "window";
     default:
-        return v->known & CW_KNOWN_LEVEL_SET ? "level-set" : "auto";
+        return v->known & CW_KNOWN_LEVEL_SET ? "level-set"
+               : is_field(v, s)              ? "viridis"
+                                             : "auto";
     }
 }
 
@@ -161,13 +162,20 @@ static cw_status find_transfer(const char *name, const cw_statistics *statistics
     return st;
 }
 
+double cli_class_level(const cw_statistics *s)
+{
+    double level;
+    return cw_statistics_otsu(s, 1, &level) ? level : 0.5 * (s->min + s->max);
+}
+
 cw_status cli_fit_transfer(const cli_scene *args, const cw_volume *volume, cw_mode mode,
                            const cw_statistics *statistics, cw_transfer *transfer,
                            cw_error *err)
 {
     const cw_mode drawn =
         mode == CW_MODE_REFERENCE && args->reference_of ? args->reference_of : mode;
-    const char *name = args->transfer ? args->transfer : default_preset(volume, drawn);
+    const char *name =
+        args->transfer ? args->transfer : default_preset(volume, statistics, drawn);
     cw_status st = find_transfer(name, statistics, args, transfer, err);
     if (st == CW_OK)
         st = cli_change_transfer(args, transfer, err);
@@ -354,7 +362,7 @@ static cw_status space_slices(const cli_scene *args, const cw_volume *v, cw_scen
     return st;
 }
 
-static cw_status add_steps(const cli_scene *args, const cw_volume *v, cw_scene *s,
+static cw_status add_steps(const cli_scene *args, const cw_volume *v, double level, cw_scene *s,
                            cw_error *err)
 {
     if (args->step.given && !(args->step.value >= 1e-3 && args->step.value <= 1e3))
@@ -377,7 +385,7 @@ static cw_status add_steps(const cli_scene *args, const cw_volume *v, cw_scene *
     s->jitter = args->jitter;
     s->exact_filter = args->exact_filter;
     s->no_skipping = !args->skipping;
-    s->threshold = args->threshold.value;
+    s->threshold = args->threshold.given ? args->threshold.value : level;
     s->texture_edge = args->texture_edge;
     s->target = (cw_target)args->target;
     s->colors_first = args->colors_first;
@@ -413,10 +421,10 @@ static cw_status add_mesh(const cli_scene *args, cw_scene *s, cw_error *err)
 }
 
 /* Sets the background colours, which depth cues and slices blend with. */
-static cw_status add_background(const cli_scene *args, cw_mode mode, cw_scene *s, cw_error *err)
+static cw_status add_background(const cli_scene *args, cw_scene *s, cw_error *err)
 {
     uint8_t background[2][4];
-    cw_status st = cli_background(args, mode, background, err);
+    cw_status st = cli_background(args, background, err);
     for (int n = 0; n < 2; n++)
         for (int c = 0; c < 3; c++)
             s->background[n][c] = (float)background[n][c] / 255;
@@ -434,13 +442,13 @@ cw_status cli_make_scene(const cli_scene *args, const cli_subject *subject, cw_m
     s->transfer = mode == CW_MODE_MESH ? NULL : transfer;
     s->threads = subject->threads;
     s->lit = args->lit && has_shading(mode);
-    cw_status st = add_background(args, mode, s, err);
+    cw_status st = add_background(args, s, err);
     if (st == CW_OK)
         st = add_clips(args, subject, s, err);
     if (st == CW_OK)
         st = add_material(args, s, err);
     if (st == CW_OK && s->volume)
-        st = add_steps(args, s->volume, s, err);
+        st = add_steps(args, s->volume, subject->level, s, err);
     if (st == CW_OK)
         st = parse_planes("planes", args->planes, CW_MAX_SLICES, s->slices, &s->slice_count,
                           err);

@@ -41,6 +41,7 @@ typedef struct cli_subject {
     const cw_volume *volume; /* evenly spaced; NULL: none */
     const cw_volume *whole;  /* the file's, whose voxels --clip-box counts; NULL: none */
     const cw_mesh *mesh;     /* NULL: none */
+    double level; /* between two classes of values: local-mip's threshold by default */
     int threads;
 } cli_subject;
 
@@ -62,9 +63,12 @@ const char *cli_needs_gl(const cli_command *command, const cli_common *common,
 /* A colour such as #ffeedd, #fed, #ffeedd80 or a name. */
 bool cli_parse_color(const char *text, uint8_t rgba[4]);
 
-/* Top and bottom: as asked for, else as suits the mode. CW_ERR_ARGUMENT */
-CW_NODISCARD cw_status cli_background(const cli_scene *args, cw_mode mode,
-                                      uint8_t background[2][4], cw_error *err);
+/* Top and bottom colours: as requested, else dark, the same in all modes. CW_ERR_ARGUMENT */
+CW_NODISCARD cw_status cli_background(const cli_scene *args, uint8_t background[2][4],
+                                      cw_error *err);
+
+/* Finds the level that separates the values into two classes [Otsu1979], else their middle. */
+double cli_class_level(const cw_statistics *statistics);
 
 /* Bins of the histograms that transfer functions are fitted to. */
 enum { CLI_TRANSFER_BINS = 1024 };

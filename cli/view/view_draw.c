@@ -122,6 +122,7 @@ static cw_status space_scene(view *v, const render_args *args, cw_mode mode,
         .volume = v->has_volume && mode != CW_MODE_MESH ? cli_drawn(&v->source) : NULL,
         .whole = v->source.is_mesh ? NULL : &v->source.volume.whole,
         .mesh = view_has_mesh(v) && v->source.mesh.triangle_count ? &v->source.mesh : NULL,
+        .level = v->has_volume ? cli_class_level(&v->statistics) : 0,
         .threads = (int)args->input.threads};
     scene->camera = v->state.camera;
     scene->lean = !v->is_saving;
@@ -285,7 +286,7 @@ static cw_status show_part(view *v, int part, cw_scene *scene, const cw_picture 
     static const cli_marks plain = {.scale_bar = true, .letters = true};
     uint8_t background[2][4];
     const bool space = part == VIEW_SPACE;
-    cw_status st = cli_background(&v->state.args.scene, v->mode, background, err);
+    cw_status st = cli_background(&v->state.args.scene, background, err);
     if (st == CW_OK)
         st = cw_picture_show(picture, space ? (const uint8_t(*)[4])background : black, image,
                              err);

@@ -31,9 +31,14 @@ void view_clip_box(const view *v, double box[2][3])
 void view_grey_range(const view *v, double range[2])
 {
     const double *w = v->state.window;
-    const bool all = w[0] == 0 && w[1] == 0;
-    range[0] = all ? v->statistics.min : w[0];
-    range[1] = all ? v->statistics.max : w[1];
+    cw_transfer greys;
+    range[0] = w[0];
+    range[1] = w[1];
+    if (w[0] == 0 && w[1] == 0 &&
+        cw_transfer_preset("window", &v->statistics, &greys, NULL) == CW_OK) {
+        range[0] = greys.colors[0].value;
+        range[1] = greys.colors[greys.color_count - 1].value;
+    }
 }
 
 bool view_draws_volume(const view *v)
@@ -77,12 +82,7 @@ void view_close(view *v)
 /* Between the two classes of values; of a level set 0. */
 double view_suggest_iso(const view *v)
 {
-    double level;
-    if (v->source.is_level_set)
-        return 0;
-    return cw_statistics_otsu(&v->statistics, 1, &level)
-               ? level
-               : 0.5 * (v->statistics.min + v->statistics.max);
+    return v->source.is_level_set ? 0 : cli_class_level(&v->statistics);
 }
 
 /* Chooses the mode, by the input where none was requested, and an isovalue for meshes. */

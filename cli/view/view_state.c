@@ -175,7 +175,7 @@ static cw_status try_scene(view *v, cw_error *err)
                         args->difference.value);
     cw_status st = cli_check_camera(&args->scene, &one, err);
     if (st == CW_OK)
-        st = cli_background(&args->scene, v->mode, background, err);
+        st = cli_background(&args->scene, background, err);
     if (st == CW_OK && v->path)
         st = view_need_transfer(v, err);
     if (st == CW_OK && v->path && (v->state.is_placed || !subject.volume))

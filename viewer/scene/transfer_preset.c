@@ -189,10 +189,11 @@ static void make_grey_between(double low, double high, cw_transfer *t)
     put_color(t, high, 0xffffff);
 }
 
-/* Makes a preset for vessels: black at most values, white at the few highest. */
+/* Makes a preset for vessels: black at most values, white at the very highest. Rays show the
+ * highest values alone, so that a lower white would saturate bone. */
 static void make_mip(const cw_statistics *s, cw_transfer *t)
 {
-    make_grey_between(find_quantile(s, 0, 0.5), find_quantile(s, 0, 0.9995), t);
+    make_grey_between(find_quantile(s, 0, 0.5), find_quantile(s, 0, 0.99999), t);
     put_opacity(t, t->colors[0].value, 1);
 }
 
@@ -200,6 +201,27 @@ static void make_grey(const cw_statistics *s, cw_transfer *t)
 {
     make_grey_between(s->min, s->max, t);
     put_opacity(t, s->min, 1);
+}
+
+/* Returns true if values look like Hounsfield units: some are air's, near -1000, and some are
+ * denser than soft tissue. */
+static bool is_hounsfield(const cw_statistics *s)
+{
+    return s->min >= -8192 && s->max >= 200 && s->max <= 65536 &&
+           count_between(s, -1100, -900) > 0.02;
+}
+
+/* Makes a preset for slices: greys that the rarest values do not stretch. In Hounsfield units it
+ * is the window of soft tissue, 400 wide around 40. */
+static void make_window(const cw_statistics *s, cw_transfer *t)
+{
+    double low = find_quantile(s, 0, 0.005), high = find_quantile(s, 0, 0.995);
+    if (is_hounsfield(s))
+        low = -160, high = 240;
+    if (!(high > low))
+        low = s->min, high = s->max;
+    make_grey_between(low, high, t);
+    put_opacity(t, low, 1);
 }
 
 /* Makes a preset for means along rays, which include air and so stay below the densest
@@ -290,10 +312,62 @@ static void make_above(const cw_statistics *s, cw_transfer *t)
     put_opacity(t, c.high, spread_opacity(s, 0.999, 0.04));
 }
 
+/* Colours of matplotlib's maps "viridis" and "inferno" (CC0) and of Moreland's "cool to warm"
+ * (public domain), evenly spaced: perceptual, for fields that have no natural colours. */
+static const unsigned viridis[] = {0x440154, 0x482878, 0x3e4a89, 0x31688e, 0x26828e,
+                                   0x1f9e89, 0x35b779, 0x6ece58, 0xb5de2b, 0xfde725};
+static const unsigned inferno[] = {0x000004, 0x1b0c41, 0x4a0c6b, 0x781c6d, 0xa52c60,
+                                   0xcf4446, 0xed6925, 0xfb9b06, 0xf7d13d, 0xfcffa4};
+static const unsigned cool_warm[] = {0x3b4cc0, 0x6f92f3, 0xaac7fd, 0xdddcdc,
+                                     0xf7b89c, 0xe7745b, 0xb40426};
+
+/* Replaces the colours by those of a map, over a range. */
+static void put_map(cw_transfer *t, const unsigned *map, size_t count, double low, double high)
+{
+    t->color_count = 0;
+    for (size_t n = 0; n < count; n++)
+        put_color(t, low + (high - low) * (double)n / (double)(count - 1), map[n]);
+}
+
+/* Makes a preset for fields, with the opacities of auto and the colours of a map. Of a signed
+ * quantity the map's middle is at 0. */
+static void make_field(const cw_statistics *s, const unsigned *map, size_t count,
+                       cw_transfer *t)
+{
+    double low = find_quantile(s, 0, 0.0005), high = find_quantile(s, 0, 0.9995);
+    const double reach = fmax(-low, high);
+    if (is_signed(s, low, high)) {
+        make_signed(s, low, high, t);
+        low = -reach, high = reach;
+    } else {
+        make_above(s, t);
+    }
+    put_map(t, map, count, low, high > low ? high : s->max);
+}
+
+#define MAP(map) map, sizeof map / sizeof *map
+
+static void make_viridis(const cw_statistics *s, cw_transfer *t)
+{
+    make_field(s, MAP(viridis), t);
+}
+
+static void make_inferno(const cw_statistics *s, cw_transfer *t)
+{
+    make_field(s, MAP(inferno), t);
+}
+
+static void make_cool_warm(const cw_statistics *s, cw_transfer *t)
+{
+    make_field(s, MAP(cool_warm), t);
+}
+
 static void make_auto(const cw_statistics *s, cw_transfer *t)
 {
     const double low = find_quantile(s, 0, 0.0005), high = find_quantile(s, 0, 0.9995);
-    if (is_signed(s, low, high))
+    if (is_hounsfield(s))
+        make_ct_soft(s, t);
+    else if (is_signed(s, low, high))
         make_signed(s, low, high, t);
     else if (is_inverted(s))
         make_inverted(s, t);
@@ -306,13 +380,18 @@ static const struct {
     bool fitted; /* to the values; else at Hounsfield units */
     void (*make)(const cw_statistics *s, cw_transfer *t);
 } presets[] = {
-    {"auto", "what is around things is left out, the rest fades in", true, make_auto},
+    {"auto", "what is around things is left out, the rest fades in; CT as ct-soft", true,
+     make_auto},
     {"ct-bone", "bone, in Hounsfield units", false, make_ct_bone},
     {"ct-soft", "soft tissue over bone, in Hounsfield units", false, make_ct_soft},
     {"ct-skin", "skin, in Hounsfield units", false, make_ct_skin},
     {"mr", "tissue as a veil, what is bright in it dense", true, make_mr},
     {"mip", "opaque greys from the median up, for vessels in mip", true, make_mip},
     {"grey", "opaque greys over the whole range", true, make_grey},
+    {"window", "opaque greys for slices: percentiles, or soft tissue of CT", true, make_window},
+    {"viridis", "as auto, from violet over green to yellow, for fields", true, make_viridis},
+    {"inferno", "as auto, from black over red to yellow, for fields", true, make_inferno},
+    {"cool-warm", "as auto, from blue over grey to red, for fields", true, make_cool_warm},
     {"xray", "opaque greys up to the densest class, for average", true, make_xray},
     {"fog", "a thin white haze", true, make_fog},
     {"level-set", "solid below 0", true, make_level_set},
@@ -332,7 +411,7 @@ const char *cw_transfer_preset_about(size_t n)
 
 static cw_status fail_unknown(const char *name, cw_error *err)
 {
-    char list[256] = "";
+    char list[512] = "";
     size_t used = 0;
     for (size_t n = 0; n < PRESETS; n++)
         used += (size_t)snprintf(list + used, sizeof list - used, " %s", presets[n].name);

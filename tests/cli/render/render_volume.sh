@@ -4,7 +4,8 @@ cubewright make torus -o t.nrrd --dims 24 -q
 cubewright render t.nrrd -o t.png --size 80x60
 od -A n -t u1 -j 16 -N 8 t.png
 
-# Without a table that is integrated first, small pictures are there at once.
+# Without a table that is integrated first, small pictures are there at once; of a narrow function it
+# makes another picture.
 draw() {
     cubewright render "$@" --no-preintegration -q
 }
@@ -22,8 +23,10 @@ draw t.nrrd -o 'turn-{turn:02d}.png' --size 64x64 --turntable 4
 draw t.nrrd -o left.png --size 64x64 --camera left
 draw t.nrrd -o 'arc-{turn}.png' --size 64x64 --turntable 3 --orbit 180
 cmp turn-00.png arc-0.png && cmp turn-01.png arc-1.png && cmp turn-02.png arc-2.png && echo "same"
-cubewright render t.nrrd -o i.png --size 64x64 -q
-cmp -s i.png a.png || echo "another"
+narrow='{"schema": "cubewright-transfer-1", "opacities": [[-9, 0], [-0.5, 0], [0, 1], [0.5, 0], [9, 0]]}'
+draw t.nrrd -o sampled.png --size 64x64 --tf "$narrow"
+cubewright render t.nrrd -o i.png --size 64x64 -q --tf "$narrow"
+cmp -s i.png sampled.png || echo "another"
 ls turn-*.png arc-*.png | wc -l
 
 # Nothing of it left, in part or at all; as one box of voxels or of millimetres.

@@ -399,22 +399,91 @@ static void ct_presets_stand_still(void **state)
     cw_statistics_free(&s);
 }
 
+/* A head: air, tissue and bone; then the same with air at 0, as some files store it. */
+static double head(size_t i)
+{
+    const double u = (double)(i % 1000) / 1000;
+    return u < 0.5   ? -1000 + 60 * (u - 0.25)
+           : u < 0.9 ? 40 + 100 * (u - 0.7)
+                     : 300 + 9000 * (u - 0.9);
+}
+
+static double shifted_head(size_t i)
+{
+    return head(i) + 1024;
+}
+
+static void ct_is_told_by_its_air(void **state)
+{
+    (void)state;
+    cw_error err = {0};
+    cw_transfer t, soft;
+    cw_statistics s = count(CW_F32, 50000, head);
+    assert_ok(cw_transfer_preset("ct-soft", &s, &soft, &err), err);
+    assert_ok(cw_transfer_preset("auto", &s, &t, &err), err);
+    assert_memory_equal(&t, &soft, sizeof t);
+    assert_ok(cw_transfer_preset("window", &s, &t, &err), err);
+    assert_true(t.colors[0].value == -160 && t.colors[1].value == 240);
+    cw_statistics_free(&s);
+    s = count(CW_F32, 50000, shifted_head);
+    assert_ok(cw_transfer_preset("auto", &s, &t, &err), err);
+    assert_true(memcmp(&t, &soft, sizeof t) != 0);
+    cw_statistics_free(&s);
+}
+
+/* Slices leave half a percent of the values black, and as many white. */
+static void windows_leave_out_rare_values(void **state)
+{
+    (void)state;
+    cw_error err = {0};
+    cw_transfer t;
+    cw_statistics s = count(CW_F32, 50000, three_humps);
+    assert_ok(cw_transfer_preset("window", &s, &t, &err), err);
+    assert_true(t.colors[0].value > s.min && t.colors[1].value < s.max);
+    cw_statistics_free(&s);
+}
+
+/* The maps of fields rise in brightness, but cool-warm, whose middle is the brightest; of a
+ * signed quantity that is at 0. */
+static void maps_have_the_opacities_of_auto(void **state)
+{
+    (void)state;
+    cw_error err = {0};
+    cw_transfer t, plain;
+    cw_statistics s = count(CW_F32, 50000, three_humps);
+    assert_ok(cw_transfer_preset("auto", &s, &plain, &err), err);
+    for (int n = 0; n < 3; n++) {
+        const char *name = (const char *const[]){"viridis", "inferno", "cool-warm"}[n];
+        assert_ok(cw_transfer_preset(name, &s, &t, &err), err);
+        assert_memory_equal(t.opacities, plain.opacities, sizeof t.opacities);
+        float before = -1;
+        for (size_t c = 0; c < t.color_count && n < 2; c++) {
+            const float *rgb = t.colors[c].color,
+                        light = 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
+            assert_true(light > before);
+            before = light;
+        }
+    }
+    cw_statistics_free(&s);
+    s = count(CW_F32, 50000, both_signs);
+    assert_ok(cw_transfer_preset("cool-warm", &s, &t, &err), err);
+    assert_near(t.colors[3].value, 0, 1e-9);
+    assert_near(t.colors[0].value, -t.colors[6].value, 1e-9);
+    cw_statistics_free(&s);
+}
+
 #define CASE(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        CASE(values_between_points_are_linear),
-        CASE(nothing_said_is_white_and_transparent),
-        CASE(unusable_points_are_named),
-        CASE(files_are_read_back_to_the_bit),
-        CASE(texts_are_what_files_hold),
-        CASE(locales_change_nothing),
-        CASE(bad_files_are_told_apart),
-        CASE(files_that_are_no_settings_are_refused),
-        CASE(too_many_points_are_refused),
-        CASE(presets_fit_odd_values),
-        CASE(auto_leaves_out_what_is_around_things),
+        CASE(values_between_points_are_linear), CASE(nothing_said_is_white_and_transparent),
+        CASE(unusable_points_are_named),        CASE(files_are_read_back_to_the_bit),
+        CASE(texts_are_what_files_hold),        CASE(locales_change_nothing),
+        CASE(bad_files_are_told_apart),         CASE(files_that_are_no_settings_are_refused),
+        CASE(too_many_points_are_refused),      CASE(ct_is_told_by_its_air),
+        CASE(windows_leave_out_rare_values),    CASE(maps_have_the_opacities_of_auto),
+        CASE(presets_fit_odd_values),           CASE(auto_leaves_out_what_is_around_things),
         CASE(ct_presets_stand_still),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
