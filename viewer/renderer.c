@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/module.h"
 #include "core/base/status.h"
+#include "core/volume/volume.h"
 #include "viewer/cpu/cpu_draw.h"
 #include "viewer/gl/gl.h"
 
@@ -66,20 +67,26 @@ void cw_renderer_forget(cw_renderer *r)
     cwi_cpu_forget(&r->cpu);
 }
 
-/* Returns true for modes that GL does not draw, which are left to the CPU. */
-static bool is_for_cpu(const cw_renderer *r, cw_mode mode)
+/* Returns true for modes and grids that GL does not draw, which are left to the CPU. */
+static bool is_for_cpu(const cw_renderer *r, const cwi_frame *frame)
 {
+    const cw_mode mode = frame->scene.mode;
     return r->backend == CW_BACKEND_CPU ||
            (r->backend == CW_BACKEND_AUTO &&
-            (mode == CW_MODE_VBUFFER || mode == CW_MODE_REFERENCE));
+            (mode == CW_MODE_VBUFFER || mode == CW_MODE_REFERENCE ||
+             cwi_volume_kind(&frame->volume)));
 }
 
 /* Draws every sample of the picture. */
 static cw_status draw_frame(cw_renderer *r, const cwi_frame *frame, cw_picture *picture,
                             cw_error *err)
 {
-    if (is_for_cpu(r, frame->scene.mode))
+    const char *kind = cwi_volume_kind(&frame->volume);
+    if (is_for_cpu(r, frame))
         return cwi_cpu_draw(&r->cpu, frame, picture, err);
+    if (kind)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "OpenGL draws evenly spaced volumes; the CPU draws %s", kind);
     cw_status st = need_gl(r, err);
     return st == CW_OK ? r->functions->draw(r->gl, frame, picture, err) : st;
 }

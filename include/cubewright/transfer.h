@@ -35,7 +35,12 @@ typedef struct cw_transfer {
     cw_opacity_point gradients[CW_TRANSFER_POINTS]; /* value: length of the gradient, per mm;
                                                        opacity: a factor of the extinction
                                                        coefficient */
-    double unit_mm;                                 /* default: the volume's smallest spacing */
+    double unit_mm; /* default: the volume's smallest spacing, on
+                                                       a rectilinear grid the smallest mean one;
+                                                       on an irregular one the edge of a cube of
+                                                       the mean volume of hexahedra, in which a
+                                                       wedge counts 1/2, a pyramid 1/3 and a
+                                                       tetrahedron 1/6 */
 } cw_transfer;
 
 /* Checks a transfer function. Returns CW_ERR_ARGUMENT, naming the point, for values that

@@ -9,6 +9,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/volume/volume.h"
 
 #include <string.h>
 
@@ -22,6 +23,7 @@ bool cwi_cpu_draws(cw_mode mode)
 void cwi_cpu_forget(cwi_cpu *cpu)
 {
     cwi_ranges_free(&cpu->ranges);
+    cwi_cell_tree_free(&cpu->tree);
     *cpu = (cwi_cpu){0};
 }
 
@@ -39,16 +41,39 @@ static cw_status take_ranges(cwi_cpu *cpu, const cwi_frame *f, cw_error *err)
     return st;
 }
 
+/* Makes the tree of an irregular grid, with gradients where the frame needs them. */
+static cw_status take_tree(cwi_cpu *cpu, const cwi_frame *f, cw_error *err)
+{
+    cw_status st = CW_OK;
+    if (!f->volume.cells)
+        return CW_OK;
+    if (!cpu->tree.kinds || memcmp(&cpu->key, &f->volume, sizeof cpu->key) != 0 ||
+        memcmp(&cpu->cells, f->volume.cells, sizeof cpu->cells) != 0) {
+        cwi_cpu_forget(cpu);
+        st = cwi_cell_tree_make(f, NULL, &cpu->tree, err);
+        if (st == CW_OK) {
+            cpu->key = f->volume;
+            cpu->cells = *f->volume.cells;
+        }
+    }
+    if (st == CW_OK && (f->scene.lit || f->transfer.gradient_count > 0))
+        st = cwi_cell_tree_need_gradients(f, &cpu->tree, err);
+    return st;
+}
+
 static cw_status draw_volume(cwi_cpu *cpu, const cwi_frame *f, const double *depths,
                              cw_picture *picture, cw_error *err)
 {
-    if (f->scene.mode == CW_MODE_REFERENCE)
-        return cwi_reference_draw(f, depths, picture, NULL, err);
-    cw_status st = take_ranges(cpu, f, err);
+    const bool is_even = !cwi_volume_kind(&f->volume);
+    cw_status st = is_even ? CW_OK : take_tree(cpu, f, err);
+    if (st == CW_OK && f->scene.mode == CW_MODE_REFERENCE)
+        return cwi_reference_draw(f, &cpu->tree, depths, picture, NULL, err);
+    if (st == CW_OK && is_even)
+        st = take_ranges(cpu, f, err);
     if (st == CW_OK && f->scene.mode == CW_MODE_VBUFFER)
-        st = cwi_vbuffer_draw(f, &cpu->ranges, depths, picture, err);
+        st = cwi_vbuffer_draw(f, &cpu->ranges, &cpu->tree, depths, picture, err);
     else if (st == CW_OK)
-        st = cwi_intensity_draw(f, &cpu->ranges, depths, picture, err);
+        st = cwi_intensity_draw(f, &cpu->ranges, &cpu->tree, depths, picture, err);
     return st;
 }
 
