@@ -243,10 +243,10 @@ static bool solve_columns(const double columns[3][3], const double right[3], dou
     return isfinite(x[0] + x[1] + x[2]);
 }
 
-bool cwi_cell_invert(const cwi_mapped_cell *cell, const double point[3], double u[3])
+bool cwi_cell_invert(const cwi_mapped_cell *cell, const double point[3], double last_step,
+                     double u[3])
 {
     enum { MAX_STEPS = 40 };
-    double before = INFINITY;
     for (int n = 0; n < MAX_STEPS; n++) {
         double w[8], d[8][3], columns[3][3] = {{0}}, rest[3], step[3], longest = 0;
         cwi_cell_weights(cell->shape, u, w);
@@ -261,13 +261,12 @@ bool cwi_cell_invert(const cwi_mapped_cell *cell, const double point[3], double 
         if (!solve_columns((const double(*)[3])columns, rest, step))
             return false;
         for (int a = 0; a < 3; a++)
-            longest = fmax(longest, fabs(step[a]));
+            longest = cwi_greater(longest, fabs(step[a]));
         const double scale = longest > 0.5 ? 0.5 / longest : 1; /* far off, go carefully */
         for (int a = 0; a < 3; a++)
             u[a] += scale * step[a];
-        if (longest < 1e-13 || (longest < 1e-9 && longest >= before))
+        if (longest < last_step)
             return true;
-        before = longest;
     }
     return false;
 }

@@ -44,9 +44,10 @@ void cwi_cell_part(const cwi_mapped_cell *cell, int number, cwi_mapped_cell *par
 /* Computes the weights of the corners at u. */
 void cwi_cell_weights(uint8_t shape, const double u[3], double weights[8]);
 
-/* Finds u of a point by Newton's method, from a first guess in u. Returns false where it does
- * not converge. */
-bool cwi_cell_invert(const cwi_mapped_cell *cell, const double point[3], double u[3]);
+/* Finds u of a point by Newton's method, from a first guess in u, until a step is shorter than
+ * last_step; the error is then about its square. Returns false where it does not converge. */
+bool cwi_cell_invert(const cwi_mapped_cell *cell, const double point[3], double last_step,
+                     double u[3]);
 
 /* Returns true if u lies in the cell. */
 bool cwi_cell_contains(uint8_t shape, const double u[3]);

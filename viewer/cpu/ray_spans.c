@@ -217,6 +217,21 @@ static void sort_places(double *t, int count)
     }
 }
 
+/* Returns true if a point lies in the box around a cell. */
+static bool is_in_box(const cwi_mapped_cell *mapped, const double point[3])
+{
+    for (int a = 0; a < 3; a++) {
+        bool is_above = false, is_below = false;
+        for (int c = 0; c < mapped->count; c++) {
+            is_below = is_below || mapped->points[c][a] <= point[a];
+            is_above = is_above || mapped->points[c][a] >= point[a];
+        }
+        if (!is_below || !is_above)
+            return false;
+    }
+    return true;
+}
+
 /* Adds the parts of the ray in a curved cell: of those between two crossings, the ones whose
  * middle lies inside. */
 static void hit_curved(cwi_spans *s, const cwi_mapped_cell *mapped, uint32_t cell,
@@ -233,7 +248,8 @@ static void hit_curved(cwi_spans *s, const cwi_mapped_cell *mapped, uint32_t cel
         if (!(to > from))
             continue;
         point_at(s, (from + to) / 2, point);
-        if (cwi_cell_invert(mapped, point, u) && cwi_cell_contains(mapped->shape, u))
+        if (is_in_box(mapped, point) && cwi_cell_invert(mapped, point, 1e-4, u) &&
+            cwi_cell_contains(mapped->shape, u))
             add_hit(s, cell, -1, from, to);
     }
 }
@@ -329,7 +345,7 @@ static void place_in_cell(const cwi_spans *s, double t, double u[3])
         return;
     }
     point_at(s, t, point);
-    if (cwi_cell_invert(&s->mapped, point, found))
+    if (cwi_cell_invert(&s->mapped, point, s->field->tolerance < 1e-4 ? 1e-7 : 1e-4, found))
         memcpy(u, found, sizeof found);
 }
 
@@ -355,10 +371,14 @@ static bool fit_span(cwi_spans *s, double from, double to, cwi_span *span)
 {
     const bool is_exact = s->is_linear && s->mapped.shape != CW_PYRAMID;
     double u[3] = {0.4, 0.4, 0.4}, values[PLACES], gradients[PLACES][3], cubics[3][4];
-    double worst = 0, steepest = 0;
+    double worst = 0, steepest = 0, first[2][3];
     for (int n = 0; n < (is_exact ? FITTED : PLACES); n++) {
+        for (int a = 0; a < 3 && n > 1; a++) /* a straight line is a good guess */
+            u[a] = first[0][a] + places[n] / places[1] * (first[1][a] - first[0][a]);
         place_in_cell(s, from + places[n] * (to - from), u);
         values[n] = sample_cell(s, u, gradients[n]);
+        if (n < 2)
+            memcpy(first[n], u, sizeof u);
     }
     fit_cubic(values, span->value);
     for (int n = FITTED; n < PLACES && !is_exact; n++)
