@@ -63,8 +63,8 @@ CW_API const char *cw_mode_about(cw_mode mode);
 CW_API const char *cw_mode_source(cw_mode mode);
 
 /* Returns true if a mode draws a volume of this kind: all draw evenly spaced ones. Rectilinear
- * and irregular grids are drawn by the CPU, in the modes vbuffer, reference, mip, minip, average
- * and local-mip. None draws sparse grids; see cw_volume_densify(). */
+ * and irregular grids are drawn by the CPU, in the modes vbuffer, reference, projection, mip,
+ * minip, average and local-mip. None draws sparse grids; see cw_volume_densify(). */
 CW_API bool cw_mode_draws(cw_mode mode, const cw_volume *volume);
 
 /* The backend that draws. */

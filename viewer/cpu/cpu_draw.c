@@ -2,6 +2,7 @@
  * depths. */
 #include "viewer/cpu/cpu_draw.h"
 
+#include "viewer/cpu/cell_projection.h"
 #include "viewer/cpu/cpu_mesh.h"
 #include "viewer/cpu/intensity_projection.h"
 #include "viewer/cpu/reference_volume.h"
@@ -68,6 +69,8 @@ static cw_status draw_volume(cwi_cpu *cpu, const cwi_frame *f, const double *dep
     cw_status st = is_even ? CW_OK : take_tree(cpu, f, err);
     if (st == CW_OK && f->scene.mode == CW_MODE_REFERENCE)
         return cwi_reference_draw(f, &cpu->tree, depths, picture, NULL, err);
+    if (st == CW_OK && f->scene.mode == CW_MODE_PROJECTION)
+        return cwi_projection_draw(f, &cpu->tree, depths, picture, err);
     if (st == CW_OK && is_even)
         st = take_ranges(cpu, f, err);
     if (st == CW_OK && f->scene.mode == CW_MODE_VBUFFER)
@@ -111,7 +114,8 @@ static cw_status draw_both(cwi_cpu *cpu, const cwi_frame *f, cw_picture *picture
 
 cw_status cwi_cpu_draw(cwi_cpu *cpu, const cwi_frame *f, cw_picture *picture, cw_error *err)
 {
-    if (!cwi_cpu_draws(f->scene.mode))
+    const bool is_uneven = cwi_volume_kind(&f->volume);
+    if (!cwi_cpu_draws(f->scene.mode) && !(is_uneven && f->scene.mode == CW_MODE_PROJECTION))
         return cwi_fail(err, CW_ERR_UNSUPPORTED, "the mode %s is not drawn by the CPU",
                         cw_mode_name(f->scene.mode));
     if (f->scene.mode == CW_MODE_MESH)

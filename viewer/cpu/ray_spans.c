@@ -317,7 +317,8 @@ static void collect_cells(cwi_spans *s)
     }
     const cwi_boxes_segment segment = cwi_cell_tree_segment(tree, ray);
     cwi_boxes_pierce(&tree->boxes, &segment, collect_cell, &c);
-    qsort(s->hits, s->hit_count, sizeof *s->hits, compare_hits);
+    if (s->hit_count > 1)
+        qsort(s->hits, s->hit_count, sizeof *s->hits, compare_hits);
 }
 
 /* --- irregular grids: the field in a cell ------------------------------------------------- */

@@ -34,5 +34,6 @@ bool cw_mode_draws(cw_mode mode, const cw_volume *volume)
     if (!is_uneven)
         return !volume->sparse;
     return mode == CW_MODE_VBUFFER || mode == CW_MODE_REFERENCE || mode == CW_MODE_MIP ||
-           mode == CW_MODE_MINIP || mode == CW_MODE_AVERAGE || mode == CW_MODE_LOCAL_MIP;
+           mode == CW_MODE_MINIP || mode == CW_MODE_PROJECTION || mode == CW_MODE_AVERAGE ||
+           mode == CW_MODE_LOCAL_MIP;
 }

@@ -33,7 +33,7 @@ for grid in rect cells; do
     cubewright render $grid.vtk -o $grid.png --size 48x48
     cubewright render $grid.vtk -o $grid.png --size 48x48 --iso 2 --mode vbuffer -q || echo "exit $?"
     cubewright render $grid.vtk -o s.png --size 48x48 --iso 2 -q || echo "exit $?"
-    for mode in composite projection splat texture slices; do
+    for mode in composite splat texture slices; do
         cubewright render $grid.vtk -o x.png --mode $mode -q --size 8x8 || echo "exit $?"
     done
 done
@@ -42,4 +42,10 @@ cubewright render rect.vtk -o rect.png --size 48x48 -q --mode vbuffer --clip-box
 cmp even.png rect.png && echo "same: clip box"
 cubewright render cells.vtk -o x.png --clip-box 1:3,0:5.5,2:4 -q || echo "exit $?"
 cubewright render cells.vtk -o x.png --tf ct-bone --size 8x8 -q --save-tf tf.json || echo "exit $?"
+# Projection of cells: near the reference.
+for grid in rect cells; do
+    cubewright render $grid.vtk -o p.png --mode projection --linear-opacity -q --size 8x8 || echo "exit $?"
+    cubewright render $grid.vtk -o p.png --compare 'projection|reference' --size 48x48 --no-lit -q --json - |
+        awk '/"rmse"/ { print ($2 + 0 < 3 ? "near" : "far: " $2) }'
+done
 ls ./*.png tf.json

@@ -285,11 +285,12 @@ static void no_ray_falls_between_cells(void **state)
     const double truth = 1 - pow(1 - (double)0.05f, 20);
     for (int cut = 0; cut < TEST_CUT_COUNT; cut++)
         for (int warped = 0; warped < 2; warped++)
-            for (int mode = 0; mode < 2; mode++) {
+            for (int mode = 0; mode < 3; mode++) {
+                static const cw_mode modes[] = {CW_MODE_REFERENCE, CW_MODE_VBUFFER,
+                                                CW_MODE_PROJECTION};
                 test_grid g;
                 make_cells(&g, (test_cut)cut, 5, warped ? 0.2 : 0, one);
-                cw_scene s =
-                    scene_of(&g.volume, &t, mode ? CW_MODE_VBUFFER : CW_MODE_REFERENCE);
+                cw_scene s = scene_of(&g.volume, &t, modes[mode]);
                 s.camera = (cw_camera){.eye = {0, -9, 0}, .up = {0, 0, 1}, .height_mm = 1.6};
                 s.width = s.height = 41; /* the middle is a plane of the lattice for none */
                 for (int n = 0; n < 2; n++, s.width = s.height = 40) {
@@ -348,6 +349,145 @@ static void vbuffer_keeps_to_the_reference(void **state)
         }
 }
 
+/* --- projection --------------------------------------------------------------------------- */
+
+/* Cells are cut into tetrahedra, in which linear fields are exact; light is that of the middle
+ * of each. */
+static void projection_is_exact_for_linear_fields(void **state)
+{
+    (void)state;
+    cw_transfer t = soft();
+    for (int cut = 0; cut < TEST_CUT_COUNT; cut++)
+        for (int n = 0; n < 4; n++) {
+            test_grid g;
+            make_cells(&g, (test_cut)cut, 5, n % 2 ? 0.2 : 0, linear);
+            cw_scene s = scene_of(&g.volume, &t, CW_MODE_REFERENCE);
+            s.clip_count = 2;
+            s.clips[0] = (cw_clip){{1, 0.2, 0}, -0.6};
+            s.clips[1] = (cw_clip){{-1, 0.2, 0.3}, -0.7};
+            s.cut_away = n / 2;
+            if (n / 2)
+                s.camera = (cw_camera){
+                    .eye = {5, -8, 3}, .up = {0, 0, 1}, .height_mm = 4}; /* orthographic */
+            cw_picture truth = test_draw(cpu, &s);
+            s.mode = CW_MODE_PROJECTION;
+            cw_picture p = test_draw(cpu, &s);
+            assert_gap(test_compare(&truth, &p), 0.3);
+            cw_picture_free(&truth);
+            cw_picture_free(&p);
+            test_grid_free(&g);
+        }
+}
+
+/* The error falls with the square of the cells' size, and in boxes faster. */
+static void projection_converges(void **state)
+{
+    (void)state;
+    const cw_transfer t = soft();
+    cw_volume fine = even_box(64, waves);
+    rectilinear r;
+    for (int cut = 0; cut <= TEST_CUT_COUNT; cut++) {
+        double before = INFINITY;
+        for (size_t n = 4; n <= 16; n *= 2) {
+            test_grid g;
+            cw_volume even = even_box(n, waves);
+            lay_out(&r, &even, false);
+            make_cells(&g, cut < TEST_CUT_COUNT ? (test_cut)cut : 0, n, 0.15, waves);
+            const cw_volume *v = cut < TEST_CUT_COUNT ? &g.volume : &r.volume;
+            cw_scene s = scene_of(&fine, &t, CW_MODE_REFERENCE);
+            cw_picture truth = test_draw(cpu, &s);
+            s.volume = v;
+            s.mode = CW_MODE_PROJECTION;
+            cw_picture p = test_draw(cpu, &s);
+            const double rmse = test_compare(&truth, &p).rmse;
+            if (!(rmse < before / 2.5))
+                fail_msg("cut %d, %zu boxes a side: %g after %g of 255", cut, n, rmse, before);
+            before = rmse;
+            cw_picture_free(&truth);
+            cw_picture_free(&p);
+            test_grid_free(&g);
+            cw_volume_free(&even);
+        }
+        assert_true(before < 0.8);
+    }
+    cw_volume_free(&fine);
+}
+
+/* Grids that are not convex, and cycles of cells that hide each other, are sorted exactly:
+ * three bars, each over the next. */
+static void projection_sorts_cycles(void **state)
+{
+    (void)state;
+    const cw_transfer t = test_soft_transfer();
+    test_grid g = {0};
+    cw_renderer_forget(cpu);
+    for (int bar = 0; bar < 3; bar++) {
+        uint32_t c[8];
+        const double angle = bar * 2 * PI / 3, x = cos(angle), y = sin(angle);
+        for (int n = 0; n < 8; n++) {
+            const int around = n % 4;
+            const double along = around == 1 || around == 2 ? 1.6 : -1.0;
+            const double side = (around > 1 ? 0.2 : -0.2) + 0.5,
+                         up = 0.3 * along + (n < 4 ? -0.05 : 0.05);
+            c[n] = test_grid_sample(&g, along * x - side * y, along * y + side * x, up);
+        }
+        test_grid_cell(&g, CW_HEXAHEDRON, c);
+        for (int n = 0; n < 8; n++)
+            g.values[c[n]] = 0.4 + 0.3 * bar;
+    }
+    cw_scene s = scene_of(&g.volume, &t, CW_MODE_REFERENCE);
+    s.camera = (cw_camera){.eye = {0, 0, 9}, .up = {0, 1, 0}, .fov_deg = 25};
+    cw_picture truth = test_draw(cpu, &s);
+    s.mode = CW_MODE_PROJECTION;
+    cw_picture p = test_draw(cpu, &s);
+    assert_gap(test_compare(&truth, &p), 0.2);
+    cw_picture_free(&truth);
+    cw_picture_free(&p);
+    test_grid_free(&g);
+}
+
+/* Light, the depth cue, a mesh and the factor of gradients are near those of the reference. */
+static void projection_is_lit_and_cut_by_meshes(void **state)
+{
+    (void)state;
+    cw_transfer t = soft();
+    cw_volume even = even_box(24, waves);
+    rectilinear r;
+    test_grid g;
+    cw_mesh m = {0};
+    lay_out(&r, &even, true);
+    make_cells(&g, TEST_MIXED, 20, 0.1, waves);
+    test_make_cube(&m);
+    for (size_t n = 0; n < 3 * m.vertex_count; n++)
+        m.positions[n] = m.positions[n] * 0.8f - 0.3f;
+    t.gradient_count = 2;
+    t.gradients[0] = (cw_opacity_point){0.1, 0.2f};
+    t.gradients[1] = (cw_opacity_point){0.8, 1};
+    for (int n = 0; n < 4; n++) {
+        cw_scene s = scene_of(n % 2 ? &g.volume : &r.volume, &t, CW_MODE_REFERENCE);
+        s.mesh = n / 2 ? &m : NULL;
+        s.lit = true;
+        s.depth_cue = n / 2 ? 0 : 0.4f;
+        s.background[0][2] = s.background[1][0] = 0.5f;
+        cw_picture truth = test_draw(cpu, &s);
+        s.mode = CW_MODE_PROJECTION;
+        s.threads = 1;
+        cw_picture p = test_draw(cpu, &s);
+        s.threads = 3;
+        cw_picture other = test_draw(cpu, &s);
+        if (!(test_compare(&truth, &p).rmse < 0.5))
+            fail_msg("grid %d: rmse %g, max %g", n, test_compare(&truth, &p).rmse,
+                     test_compare(&truth, &p).max);
+        assert_memory_equal(p.pixels, other.pixels, 16 * SIDE * SIDE);
+        cw_picture_free(&truth);
+        cw_picture_free(&p);
+        cw_picture_free(&other);
+    }
+    cw_mesh_free(&m);
+    test_grid_free(&g);
+    cw_volume_free(&even);
+}
+
 /* --- threads, units, gaps ---------------------------------------------------------------- */
 
 static void any_threads_draw_the_same(void **state)
@@ -400,10 +540,13 @@ static void expect_cells(test_grid *g, double cells)
     const cw_transfer t = flat();
     cw_scene s = scene_of(&g->volume, &t, CW_MODE_REFERENCE);
     s.camera = (cw_camera){.eye = {0, -9, 0}, .up = {0, 0, 1}, .height_mm = 0.3};
-    cw_picture p = test_draw(cpu, &s);
-    for (size_t i = 0; i < SIDE * SIDE; i++)
-        assert_near((double)p.pixels[4 * i + 3], 1 - pow(1 - (double)0.05f, 5 * cells), 1e-6);
-    cw_picture_free(&p);
+    for (int mode = 0; mode < 2; mode++, s.mode = CW_MODE_PROJECTION) {
+        cw_picture p = test_draw(cpu, &s);
+        for (size_t i = 0; i < SIDE * SIDE; i++)
+            assert_near((double)p.pixels[4 * i + 3], 1 - pow(1 - (double)0.05f, 5 * cells),
+                        1e-6);
+        cw_picture_free(&p);
+    }
 }
 
 static void holes_are_empty(void **state)
@@ -489,8 +632,10 @@ static void bad_cells_do_no_harm(void **state)
                 g.points[3 * other] = (double[]){NAN, INFINITY, 1e300, 1e-300}[n % 4];
             }
         }
-        cw_scene s = scene_of(&g.volume, &t, round % 2 ? CW_MODE_REFERENCE : CW_MODE_VBUFFER);
-        s.lit = round % 3 == 0;
+        cw_scene s = scene_of(
+            &g.volume, &t,
+            (cw_mode[]){CW_MODE_REFERENCE, CW_MODE_VBUFFER, CW_MODE_PROJECTION}[round % 3]);
+        s.lit = round / 3 % 2;
         s.width = s.height = 12;
         cw_picture p = test_draw(cpu, &s);
         for (size_t i = 0; i < 4 * 12 * 12; i++)
@@ -543,7 +688,11 @@ static void memory_may_end_anywhere(void **state)
     s.threads = 1;
     s.width = s.height = 8;
     bool has_failed = true;
-    for (long n = 0; n < 100 && has_failed; n++) {
+    for (long n = 0; n < 200 && (has_failed || s.mode == CW_MODE_VBUFFER); n++) {
+        if (!has_failed) {
+            s.mode = CW_MODE_PROJECTION;
+            n = 0;
+        }
         cw_renderer_forget(cpu);
         cwi_alloc_fail_after(n);
         const cw_status st = cw_render(cpu, &s, &p, &err);
@@ -623,6 +772,10 @@ int main(void)
         cmocka_unit_test(no_ray_falls_between_cells),
         cmocka_unit_test(warped_cells_converge),
         cmocka_unit_test(vbuffer_keeps_to_the_reference),
+        cmocka_unit_test(projection_is_exact_for_linear_fields),
+        cmocka_unit_test(projection_converges),
+        cmocka_unit_test(projection_sorts_cycles),
+        cmocka_unit_test(projection_is_lit_and_cut_by_meshes),
         cmocka_unit_test(any_threads_draw_the_same),
         cmocka_unit_test(any_unit_is_the_same),
         cmocka_unit_test(holes_are_empty),
