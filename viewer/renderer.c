@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/module.h"
 #include "core/base/status.h"
+#include "core/volume/volume.h"
 #include "viewer/cpu/cpu_draw.h"
 #include "viewer/cpu/cpu_mesh.h"
 #include "viewer/gl/gl.h"
@@ -96,7 +97,7 @@ static bool is_for_cpu(cw_renderer *r, const cwi_frame *frame)
     const cw_mode mode = frame->scene.mode;
     if (r->backend != CW_BACKEND_AUTO)
         return r->backend == CW_BACKEND_CPU;
-    return mode == CW_MODE_VBUFFER || frame->is_reference ||
+    return mode == CW_MODE_VBUFFER || frame->is_reference || cwi_volume_kind(&frame->volume) ||
            (mode == CW_MODE_PROJECTION && is_faster_on_cpu(r, frame));
 }
 
@@ -104,9 +105,13 @@ static bool is_for_cpu(cw_renderer *r, const cwi_frame *frame)
 static cw_status draw_frame(cw_renderer *r, const cwi_frame *frame, cw_picture *picture,
                             cw_error *err)
 {
+    const char *kind = cwi_volume_kind(&frame->volume);
     r->drew_on_cpu = is_for_cpu(r, frame);
     if (r->drew_on_cpu)
         return cwi_cpu_draw(&r->cpu, frame, picture, err);
+    if (kind)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "OpenGL draws evenly spaced volumes; the CPU draws %s", kind);
     if (frame->is_reference)
         return cwi_fail(err, CW_ERR_UNSUPPORTED, "the mode %s is not drawn by OpenGL",
                         cw_mode_name(CW_MODE_REFERENCE));

@@ -25,6 +25,7 @@ static cw_status look_at_file(cli_source *s, const char *path, const cli_input *
     cw_error why = {0};
     cw_status st = cli_read_shape(path, input, &shape, &why);
     s->is_level_set = st == CW_OK && shape.known & CW_KNOWN_LEVEL_SET;
+    s->is_uneven = st == CW_OK && (shape.cells || cwi_is_rectilinear(&shape));
     cw_volume_free(&shape);
     s->is_mesh = st != CW_OK && may_be_mesh && !input->raw && s->series.count == 1 &&
                  !s->series.given && !cli_is_folder(path);
@@ -118,10 +119,13 @@ cw_status cli_need_drawable(cli_source *source, const cli_input *input, cw_error
         if (st == CW_OK)
             cli_say("%s: a sparse grid, drawn as a dense one of %zu x %zu x %zu voxels",
                     source->volume.path, v->dim[0], v->dim[1], v->dim[2]);
-        return st;
     }
-    st = cwi_volume_expect_even(cli_drawn(source), "drawing", err);
-    return st == CW_OK ? st : cwi_fail_in(err, st, source->volume.path);
+    return st;
+}
+
+cw_mode cli_default_mode(const cli_source *source)
+{
+    return source->is_uneven ? CW_MODE_VBUFFER : CW_MODE_COMPOSITE;
 }
 
 const cw_volume *cli_drawn(const cli_source *source)
@@ -148,7 +152,12 @@ bool cli_find_box(const cw_volume *volume, const cw_mesh *mesh, double box[2][3]
         grow_box(box, point[0]);
         grow_box(box, point[1]);
     }
-    for (int n = 0; n < 8 && volume; n++) {
+    double corners[8][3];
+    if (volume && volume->cells)
+        cw_volume_corners(volume, corners);
+    for (int n = 0; n < 8 && volume && volume->cells; n++)
+        grow_box(box, corners[n]);
+    for (int n = 0; n < 8 && volume && !volume->cells; n++) {
         double index[3];
         for (int a = 0; a < 3; a++)
             index[a] = volume->dim[a] == 1 ? (n >> a & 1) - 0.5

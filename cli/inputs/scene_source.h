@@ -5,12 +5,14 @@
 #include "cli/inputs/time_series.h"
 
 #include <cubewright/mesh.h>
+#include <cubewright/render.h>
 
 /* Zeroed, there is nothing. Free with cli_close_source(). */
 typedef struct cli_source {
     cli_series series;
     bool is_mesh; /* the input is a mesh */
     bool is_level_set;
+    bool is_uneven;    /* it is a rectilinear or irregular grid */
     cli_volume volume; /* of the step at hand */
     cw_volume dense;   /* of a sparse one */
     cw_mesh mesh;      /* the input's; else whatever is put here */
@@ -39,10 +41,12 @@ CW_NODISCARD cw_status cli_find_statistics(cli_source *source, const cli_input *
                                            size_t step, size_t bins, cw_statistics *out,
                                            cw_error *err);
 
-/* Makes a sparse volume dense, which is said, so that it can be drawn; fails for volumes that
- * are not evenly spaced. */
+/* Makes a sparse volume dense, which is said, so that it can be drawn. */
 CW_NODISCARD cw_status cli_need_drawable(cli_source *source, const cli_input *input,
                                          cw_error *err);
+
+/* The mode for a volume, unless one was requested: one that draws its kind of grid. */
+cw_mode cli_default_mode(const cli_source *source);
 
 /* The volume that is drawn. */
 const cw_volume *cli_drawn(const cli_source *source);

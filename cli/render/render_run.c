@@ -72,7 +72,7 @@ static cw_status look_at_input(cli_pictures *p, cw_error *err)
     const bool by_default = s->is_mesh || args->iso.given || (s->is_level_set && !args->mesh);
     p->mode = args->scene.mode ? (cw_mode)(args->scene.mode - 1)
               : by_default     ? CW_MODE_MESH
-                               : CW_MODE_COMPOSITE;
+                               : cli_default_mode(s);
     return st;
 }
 
@@ -328,10 +328,13 @@ static cw_status draw_picture(cli_pictures *p, cw_picture *picture, cw_error *er
         st = cw_renderer_new((cw_backend)p->args->backend, &p->renderer, err);
     if (st == CW_OK)
         st = cw_render(p->renderer, &p->scene, picture, err);
-    if (st == CW_ERR_UNSUPPORTED && draws_volume(p) && p->mode != CW_MODE_VBUFFER &&
+    if (st == CW_ERR_UNSUPPORTED && draws_volume(p) && !p->source.is_uneven &&
+        p->mode != CW_MODE_VBUFFER &&
         (!p->renderer || strcmp(cw_renderer_name(p->renderer), "CPU") == 0))
         cli_say("without OpenGL, use --mode projection, vbuffer or reference");
-    return st;
+    return st == CW_ERR_UNSUPPORTED && p->source.is_uneven
+               ? cwi_fail_in(err, st, p->source.volume.path)
+               : st;
 }
 
 /* A side is drawn as if the run were about it alone. */

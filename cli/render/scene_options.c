@@ -6,6 +6,7 @@
 #include "cli/framework/quantity.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/volume/volume.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -234,28 +235,46 @@ static cw_status parse_planes(const char *option, const char *text, size_t most,
 }
 
 /* Two planes across each axis, of the world or of the file's voxels. */
+/* Returns the place of a (fractional) index on the axis of a rectilinear grid; else itself. */
+static double place_of(const cw_volume *v, int axis, double index)
+{
+    if (!cwi_is_rectilinear(v))
+        return index;
+    if (v->dim[axis] == 1)
+        return v->coordinates[axis][0] + index;
+    const double low = floor(fmin(fmax(index, 0), (double)v->dim[axis] - 2));
+    return cwi_grid_coordinate(v, axis, (ptrdiff_t)low, index - low);
+}
+
 static cw_status add_clip_box(const cli_ranges *box, const cw_volume *whole, cw_scene *s,
                               cw_error *err)
 {
     double at_zero[3] = {0}, at[3] = {0}, zero[3] = {0};
+    cw_volume plain = {0}; /* without coordinates, to find directions */
     cw_status st = CW_OK;
-    if (!box->world && !whole)
+    if (!box->world && (!whole || whole->cells))
         return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--clip-box of a mesh is in mm, such as -30mm:30mm,0mm:50mm,0mm:9mm");
-    if (!box->world)
-        st = cw_volume_to_index(whole, zero, at_zero, err);
+                        "--clip-box of %s is in mm, such as -30mm:30mm,0mm:50mm,0mm:9mm",
+                        whole ? "an irregular grid" : "a mesh");
+    if (!box->world) {
+        plain = *whole;
+        memset(plain.coordinates, 0, sizeof plain.coordinates);
+        st = cw_volume_to_index(&plain, zero, at_zero, err);
+    }
     for (int a = 0; a < 3 && st == CW_OK; a++) {
         cw_clip *low = &s->clips[s->clip_count++], *high = &s->clips[s->clip_count++];
         for (int w = 0; w < 3 && st == CW_OK; w++) {
             double unit[3] = {0};
             unit[w] = 1;
             if (!box->world)
-                st = cw_volume_to_index(whole, unit, at, err);
+                st = cw_volume_to_index(&plain, unit, at, err);
             low->normal[w] = box->world ? w == a : at[a] - at_zero[a];
             high->normal[w] = -low->normal[w];
         }
-        low->distance_mm = box->low[a] - at_zero[a];
-        high->distance_mm = -(box->high[a] - at_zero[a]);
+        const double ends[2] = {box->world ? box->low[a] : place_of(whole, a, box->low[a]),
+                                box->world ? box->high[a] : place_of(whole, a, box->high[a])};
+        low->distance_mm = ends[0] - at_zero[a];
+        high->distance_mm = -(ends[1] - at_zero[a]);
     }
     return st;
 }

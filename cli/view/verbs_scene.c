@@ -9,12 +9,6 @@
 
 /* how it is drawn */
 
-/* The modes that what is open can be drawn in. */
-static bool fits_mode(const view *v, cw_mode mode)
-{
-    return mode == CW_MODE_MESH || v->has_volume;
-}
-
 static cw_status change_mode(view *v, int by, cw_error *err)
 {
     int m = (int)v->mode;
@@ -22,7 +16,7 @@ static cw_status change_mode(view *v, int by, cw_error *err)
         v->state.iso_is_ours = true; /* the volume comes without the surface */
     do
         m = (m + by + CW_MODE_COUNT) % CW_MODE_COUNT;
-    while (!fits_mode(v, (cw_mode)m));
+    while (!view_fits_mode(v, (cw_mode)m));
     return view_set(v, "mode", cw_mode_name((cw_mode)m), err);
 }
 

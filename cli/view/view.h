@@ -155,6 +155,8 @@ void view_clip_box(const view *v, double box[2][3]);
 void view_grey_range(const view *v, double range[2]);
 void view_touch(view *v, unsigned parts); /* marks parts to be drawn again */
 bool view_draws_volume(const view *v);
+/* Whether a mode draws what is open; slices need an even grid. */
+bool view_fits_mode(const view *v, cw_mode mode);
 bool view_has_mesh(const view *v);
 double view_suggest_iso(const view *v);
 CW_NODISCARD cw_status view_need_transfer(view *v, cw_error *err);

@@ -102,7 +102,10 @@ static bool is_slow(cw_mode mode)
 static void make_rough(cw_scene *s)
 {
     if (is_slow(s->mode))
-        s->mode = s->reference_of ? s->reference_of : CW_MODE_COMPOSITE;
+        s->mode = s->reference_of ? s->reference_of
+                  : s->volume && !cw_mode_draws(CW_MODE_COMPOSITE, s->volume)
+                      ? CW_MODE_VBUFFER
+                      : CW_MODE_COMPOSITE;
     if (s->mode == CW_MODE_SPLAT)
         s->mode = CW_MODE_SPLAT_TREE;
     if (s->mode == CW_MODE_SPLAT_TREE)
@@ -299,11 +302,13 @@ static cw_status show_part(view *v, int part, cw_scene *scene, const cw_picture 
 /* Slower or faster than wanted: the next rough picture is smaller or larger. */
 static void adapt_level(view_part *part, cw_mode mode, double ms)
 {
-    if (mode == CW_MODE_MESH) /* its cost is in its triangles */
+    const double least =
+        mode == CW_MODE_VBUFFER ? 0.1 : 0.25; /* of a grid that GL does not draw */
+    if (mode == CW_MODE_MESH)                 /* its cost is in its triangles */
         return;
     const double factor = sqrt(ROUGH_MS / fmax(ms, 1));
     if (factor < 0.8 || factor > 1.1)
-        part->scale = fmin(fmax(part->scale * factor, 0.25), 0.5);
+        part->scale = fmin(fmax(part->scale * factor, least), 0.5);
 }
 
 static cw_status draw_part(view *v, int p, view_level level, bool may_stop, cw_image *image,
@@ -343,7 +348,7 @@ cw_status view_draw(view *v, view_level level, bool may_stop, cw_error *err)
         view_part *part = &v->parts[p];
         if (!part->is_shown || part->level >= level)
             continue;
-        if (!v->path || (p != VIEW_SPACE && !v->has_volume)) {
+        if (!v->path || (p != VIEW_SPACE && !view_fits_mode(v, CW_MODE_SLICES))) {
             drop_picture(v, p);
             continue;
         }

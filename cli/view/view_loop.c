@@ -17,7 +17,8 @@ void view_lay_out(view *v)
     const double bar = v->bar_height;
     const double width = fmax(1, (double)v->width - v->panel_width);
     const double height = fmax(1, (double)v->height - bar - v->strip_height);
-    const bool quad = v->state.args.marks.layout == CLI_LAYOUT_QUAD && v->has_volume;
+    const bool quad = v->state.args.marks.layout == CLI_LAYOUT_QUAD && v->has_volume &&
+                      view_fits_mode(v, CW_MODE_SLICES);
     for (int p = 0; p < VIEW_PARTS; p++) {
         view_part *part = &v->parts[p];
         const cwi_ui_rect before = part->rect;

@@ -191,7 +191,7 @@ static void probe_part(view *v, const cwi_ui_input *in, int part)
         there = slice_point(v, part, in->x - v->parts[part].rect.x,
                             in->y - v->parts[part].rect.y, point);
     v->probe[0] = '\0';
-    if (!v->has_volume)
+    if (!v->has_volume || cli_drawn(&v->source)->cells) /* the value at any point is unknown */
         return;
     const double value = cw_volume_sample(cli_drawn(&v->source), point);
     snprintf(v->probe, sizeof v->probe, "%s %.5g at %.1f, %.1f, %.1f mm",
@@ -308,7 +308,7 @@ void view_show_parts(view *v, const cwi_ui_input *in)
         if (!part->is_shown || !v->path)
             continue;
         v->ui->show(v->window, p, &part->rect);
-        if (p > VIEW_SPACE || (v->shown.cross && v->has_volume))
+        if (p > VIEW_SPACE || (v->shown.cross && view_fits_mode(v, CW_MODE_SLICES)))
             show_cross(v, p);
     }
     if (has_handles(v))

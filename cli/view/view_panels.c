@@ -171,10 +171,13 @@ static void show_mode(view *v)
 {
     const char *names[CW_MODE_COUNT];
     char tip[256];
-    size_t chosen = v->has_volume ? (size_t)v->mode : 0;
-    const size_t count = v->has_volume ? CW_MODE_COUNT : 1; /* mesh is the first */
-    for (size_t m = 0; m < CW_MODE_COUNT; m++)
-        names[m] = cw_mode_name((cw_mode)m);
+    size_t chosen = 0, count = 0;
+    for (int m = 0; m < CW_MODE_COUNT; m++) {
+        if (!view_fits_mode(v, (cw_mode)m))
+            continue;
+        chosen = (cw_mode)m == v->mode ? count : chosen;
+        names[count++] = cw_mode_name((cw_mode)m);
+    }
     if (v->ui->choice(v->window, "Mode", names, count, &chosen))
         view_ask(v, "mode %s", names[chosen]);
     snprintf(tip, sizeof tip, "%s%s%s", cw_mode_about(v->mode),
@@ -290,7 +293,8 @@ static void show_slices(view *v)
     double w[2];
     bool quad = v->state.args.marks.layout == CLI_LAYOUT_QUAD;
     double cross[3];
-    if (!v->has_volume || !v->ui->section(v->window, "Slices", quad))
+    if (!v->has_volume || !view_fits_mode(v, CW_MODE_SLICES) ||
+        !v->ui->section(v->window, "Slices", quad))
         return;
     if (v->ui->check(v->window, "Beside the scene", &quad))
         view_ask(v, "toggle quad");

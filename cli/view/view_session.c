@@ -46,6 +46,12 @@ bool view_draws_volume(const view *v)
     return v->has_volume && v->mode != CW_MODE_MESH;
 }
 
+bool view_fits_mode(const view *v, cw_mode mode)
+{
+    return mode == CW_MODE_MESH ||
+           (v->has_volume && cw_mode_draws(mode, cli_drawn(&v->source)));
+}
+
 bool view_has_mesh(const view *v)
 {
     const render_args *args = &v->state.args;
@@ -93,14 +99,15 @@ cw_status view_choose_mode(view *v, cw_error *err)
     v->mode =
         asked ? (cw_mode)(asked - 1)
         : v->has_volume && !v->source.is_level_set && (!args->iso.given || v->state.iso_is_ours)
-            ? CW_MODE_COMPOSITE
+            ? cli_default_mode(&v->source)
             : CW_MODE_MESH;
     if (args->scene.hide == CLI_HIDE_VOLUME)
         v->mode = CW_MODE_MESH;
-    if (v->path && v->mode != CW_MODE_MESH && !v->has_volume)
+    if (v->path && !view_fits_mode(v, v->mode))
         return cwi_fail(err, CW_ERR_ARGUMENT, "the mode %s draws volumes on even grids; %s",
                         cw_mode_name(v->mode),
                         v->source.is_mesh ? "this is a mesh"
+                        : v->has_volume   ? "vbuffer draws this one"
                                           : "this grid is shown as surfaces");
     if (v->mode != CW_MODE_MESH && v->state.iso_is_ours) {
         args->iso = (cli_number){0};
@@ -297,8 +304,11 @@ cw_status view_open(view *v, const char *const *paths, size_t count, cw_error *e
     v->file_count = count;
     v->path = copies[0];
     st = open_path(v, err);
-    if (st != CW_OK && v->state.args.scene.mode && v->path && !v->has_volume &&
+    if (st != CW_OK && v->state.args.scene.mode && v->path &&
+        !view_fits_mode(v, (cw_mode)(v->state.args.scene.mode - 1)) &&
         (v->source.is_mesh || v->source.volume.voxels.data)) {
+        if (v->has_volume)
+            cli_say("%s", err->message);
         v->state.args.scene.mode = 0; /* it was another file's */
         st = view_choose_mode(v, err);
     }

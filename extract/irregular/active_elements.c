@@ -2,6 +2,7 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/volume/cell_shapes.h"
 #include "extract/irregular/cell_surface.h"
 
 #include <float.h>
@@ -95,27 +96,6 @@ static cw_status compare_samples(cwi_cells *g, cw_error *err)
 }
 
 /* --- cells ------------------------------------------------------------------------------- */
-
-/* Finds where the corners of each chunk of cells begin, so that chunks can be read
- * independently. */
-static cw_status find_chunks(cwi_cells *g, cw_error *err)
-{
-    const cw_cells *cells = g->volume.cells;
-    size_t corner = 0;
-    g->chunks = (cells->count + CWI_CELL_CHUNK - 1) / CWI_CELL_CHUNK;
-    g->chunk_corners = cwi_alloc_array(g->chunks + 1, sizeof *g->chunk_corners);
-    if (!g->chunk_corners)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu chunks of cells", g->chunks);
-    for (size_t n = 0; n < cells->count; n++) {
-        if (n % CWI_CELL_CHUNK == 0)
-            g->chunk_corners[n / CWI_CELL_CHUNK] = corner;
-        if (cells->shapes[n] >= CW_SHAPE_COUNT)
-            return cwi_fail(err, CW_ERR_ARGUMENT, "cell %zu has shape %u; the last is %d", n,
-                            cells->shapes[n], CW_SHAPE_COUNT - 1);
-        corner += cwi_shapes[cells->shapes[n]].corner_count;
-    }
-    return CW_OK;
-}
 
 /* Counts for every chunk: first the elements in it, then those before it. */
 typedef struct gathering {
@@ -252,7 +232,9 @@ static cw_status place_elements(gathering *w, cw_error *err)
 cw_status cwi_cells_gather(cwi_cells *g, cw_error *err)
 {
     gathering w = {.g = g, .bad = SIZE_MAX};
-    cw_status st = find_chunks(g, err);
+    const cw_cells *cells = g->volume.cells;
+    g->chunks = (cells->count + CWI_CELL_CHUNK - 1) / CWI_CELL_CHUNK;
+    cw_status st = cwi_cell_chunks(cells, CWI_CELL_CHUNK, &g->chunk_corners, err);
     if (st != CW_OK)
         return st;
     w.elements = cwi_alloc_array(g->chunks, sizeof *w.elements);

@@ -22,8 +22,10 @@ extern "C" {
  * leaves values. If none reaches the threshold, the highest value counts.
  *
  * A gradient is interpolated between those of the voxels around. These are central differences,
- * one-sided at the border, 0 where a neighbour has no value and along an axis of one voxel. A
- * cell with a corner that has no value is empty. */
+ * one-sided at the border, 0 where a neighbour has no value and along an axis of one voxel. On a
+ * rectilinear grid the slopes on both sides are weighted so that parabolas are exact, and on an
+ * irregular one gradients are least squares over the edges of cells. A cell with a corner that
+ * has no value is empty. The field in cells: viewer/irregular.md. */
 #define CW_MODE_TABLE(X)                                                                       \
     X(CW_MODE_MESH, "mesh", "triangles, lit", "Blinn 1977")                                    \
     X(CW_MODE_COMPOSITE, "composite", "ray casting: emission and absorption",                  \
@@ -62,10 +64,16 @@ CW_API const char *cw_mode_source(cw_mode mode);
 /* Returns true for the intensity projections: mip, minip, average and local-mip. */
 CW_API bool cw_mode_is_intensity(cw_mode mode);
 
+/* Returns true if a mode draws a volume of this kind: all draw evenly spaced ones. Rectilinear
+ * and irregular grids are drawn by the CPU, in the modes vbuffer, reference, projection, mip,
+ * minip, average and local-mip. None draws sparse grids; see cw_volume_densify(). */
+CW_API bool cw_mode_draws(cw_mode mode, const cw_volume *volume);
+
 /* The backend that draws. */
 typedef enum cw_backend {
-    CW_BACKEND_AUTO, /* the CPU for its own modes (vbuffer, reference), and for projection where
-                        OpenGL is missing or runs on the CPU, too; else EGL */
+    CW_BACKEND_AUTO, /* the CPU for its own modes (vbuffer, reference), for rectilinear and
+                        irregular grids, and for projection where OpenGL is missing or runs on
+                        the CPU, too; else EGL */
     CW_BACKEND_EGL,  /* OpenGL 3.3, without a display */
     CW_BACKEND_CPU,  /* vbuffer, reference, projection, intensity projections, and opaque
                         meshes, alone (in a light of their own) or with those */
@@ -130,7 +138,7 @@ typedef enum cw_splat_kernel {
  * beside it. Memory behind pointers is borrowed. */
 typedef struct cw_scene {
     cw_mode mode;
-    const cw_volume *volume;     /* evenly spaced; required for all modes but mesh */
+    const cw_volume *volume;     /* see cw_mode_draws(); required for all modes but mesh */
     const cw_mesh *mesh;         /* also drawn, opaque, in any mode; required for mesh */
     const cw_transfer *transfer; /* required for all modes but mesh */
     cw_camera camera;            /* default (up all 0): front view of everything, 30 degrees */
@@ -233,8 +241,8 @@ CW_API const char *cw_renderer_name(const cw_renderer *renderer);
  *
  * picture  filled on success, emptied on failure; free it with cw_picture_free()
  * Returns  CW_ERR_ARGUMENT     an input of the mode is missing or out of range
- *          CW_ERR_UNSUPPORTED  the mode is not one of the backend's; a volume that is not
- *                              evenly spaced
+ *          CW_ERR_UNSUPPORTED  the mode is not one of the backend's, or does not draw the
+ *                              volume's kind of grid
  *          CW_ERR_BACKEND      GL failed or its context was lost: make another renderer
  *          CW_ERR_LIMIT; CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
 CW_NODISCARD CW_API cw_status cw_render(cw_renderer *renderer, const cw_scene *scene,

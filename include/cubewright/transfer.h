@@ -27,7 +27,10 @@ typedef struct cw_opacity_point {
  * side above. No colours: white; no opacities: fully transparent; no gradients: 1 everywhere.
  *
  * Opacity o is the opacity of a path of unit_mm through that value. The extinction coefficient
- * is -ln(1 - o) / unit_mm, and o is limited to 1 - 1e-6. */
+ * is -ln(1 - o) / unit_mm, and o is limited to 1 - 1e-6. The default of unit_mm is the smallest
+ * of the three mean spacings on a rectilinear grid. On an irregular one it is the edge of the
+ * mean cell: a cube with the mean volume of hexahedra, where a wedge counts as 1/2 of one, a
+ * pyramid as 1/3 and a tetrahedron as 1/6. */
 typedef struct cw_transfer {
     size_t color_count, opacity_count, gradient_count;
     cw_color_point colors[CW_TRANSFER_POINTS];

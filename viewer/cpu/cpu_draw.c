@@ -6,10 +6,12 @@
 #include "viewer/cpu/cpu_mesh.h"
 #include "viewer/cpu/intensity_projection.h"
 #include "viewer/cpu/reference_volume.h"
+#include "viewer/cpu/uneven_projection.h"
 #include "viewer/cpu/vbuffer.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/volume/volume.h"
 
 #include <string.h>
 
@@ -24,6 +26,7 @@ void cwi_cpu_forget(cwi_cpu *cpu)
 {
     cwi_ranges_free(&cpu->ranges);
     cwi_cell_tables_free(&cpu->cell_tables);
+    cwi_cell_tree_free(&cpu->tree);
     *cpu = (cwi_cpu){0};
 }
 
@@ -41,18 +44,43 @@ static cw_status take_ranges(cwi_cpu *cpu, const cwi_frame *f, cw_error *err)
     return st;
 }
 
+/* Makes the tree of an irregular grid, with gradients where the frame needs them. */
+static cw_status take_tree(cwi_cpu *cpu, const cwi_frame *f, cw_error *err)
+{
+    cw_status st = CW_OK;
+    if (!f->volume.cells)
+        return CW_OK;
+    if (!cpu->tree.kinds || memcmp(&cpu->key, &f->volume, sizeof cpu->key) != 0 ||
+        memcmp(&cpu->cells, f->volume.cells, sizeof cpu->cells) != 0) {
+        cwi_cpu_forget(cpu);
+        st = cwi_cell_tree_make(f, NULL, &cpu->tree, err);
+        if (st == CW_OK) {
+            cpu->key = f->volume;
+            cpu->cells = *f->volume.cells;
+        }
+    }
+    if (st == CW_OK && (f->scene.lit || f->transfer.gradient_count > 0))
+        st = cwi_cell_tree_need_gradients(f, &cpu->tree, err);
+    return st;
+}
+
 static cw_status draw_volume(cwi_cpu *cpu, const cwi_frame *f, const double *depths,
                              cw_picture *picture, cw_error *err)
 {
-    if (f->scene.mode == CW_MODE_REFERENCE)
-        return cwi_reference_draw(f, depths, picture, NULL, err);
-    cw_status st = take_ranges(cpu, f, err);
+    const bool is_even = !cwi_volume_kind(&f->volume);
+    cw_status st = is_even ? CW_OK : take_tree(cpu, f, err);
+    if (st == CW_OK && f->scene.mode == CW_MODE_REFERENCE)
+        return cwi_reference_draw(f, &cpu->tree, depths, picture, NULL, err);
+    if (st == CW_OK && f->scene.mode == CW_MODE_PROJECTION && !is_even)
+        return cwi_uneven_projection_draw(f, &cpu->tree, depths, picture, err);
+    if (st == CW_OK && is_even)
+        st = take_ranges(cpu, f, err);
     if (st == CW_OK && f->scene.mode == CW_MODE_VBUFFER)
-        st = cwi_vbuffer_draw(f, &cpu->ranges, depths, picture, err);
+        st = cwi_vbuffer_draw(f, &cpu->ranges, &cpu->tree, depths, picture, err);
     else if (st == CW_OK && f->scene.mode == CW_MODE_PROJECTION)
         st = cwi_projection_draw(f, &cpu->ranges, &cpu->cell_tables, depths, picture, err);
     else if (st == CW_OK)
-        st = cwi_intensity_draw(f, &cpu->ranges, depths, picture, err);
+        st = cwi_intensity_draw(f, &cpu->ranges, &cpu->tree, depths, picture, err);
     return st;
 }
 
@@ -90,7 +118,8 @@ static cw_status draw_both(cwi_cpu *cpu, const cwi_frame *f, cw_picture *picture
 
 cw_status cwi_cpu_draw(cwi_cpu *cpu, const cwi_frame *f, cw_picture *picture, cw_error *err)
 {
-    if (!cwi_cpu_draws(f->scene.mode))
+    const bool is_uneven = cwi_volume_kind(&f->volume);
+    if (!cwi_cpu_draws(f->scene.mode) && !(is_uneven && f->scene.mode == CW_MODE_PROJECTION))
         return cwi_fail(err, CW_ERR_UNSUPPORTED, "the mode %s is not drawn by the CPU",
                         cw_mode_name(f->scene.mode));
     if (f->scene.mode == CW_MODE_MESH)

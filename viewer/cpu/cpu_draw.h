@@ -3,6 +3,7 @@
 #define VIEWER_CPU_CPU_DRAW_H
 
 #include "viewer/cpu/cell_color.h"
+#include "viewer/cpu/cell_tree.h"
 #include "viewer/scene/block_ranges.h"
 #include "viewer/scene/frame_setup.h"
 
@@ -13,7 +14,9 @@ extern "C" {
 /* State kept for the next picture of the same volume. Zeroed: nothing is kept. */
 typedef struct cwi_cpu {
     cw_volume key;
-    cwi_ranges ranges; /* of key, when it has blocks */
+    cw_cells cells;     /* those of key, if it has them */
+    cwi_ranges ranges;  /* of key, when it has blocks */
+    cwi_cell_tree tree; /* of key, when it has kinds */
     cwi_cell_tables cell_tables;
 } cwi_cpu;
 

@@ -5,7 +5,9 @@
 #include "viewer/cpu/ray_traversal.h"
 
 #include "core/base/parallel.h"
+#include "core/base/status.h"
 #include "core/geometry/cubic.h"
+#include "core/volume/volume.h"
 
 #include <math.h>
 
@@ -66,14 +68,18 @@ static void add_lowest(const cwi_walk *w, const double v[8], tally *t)
     }
 }
 
-static void add_mean(const cwi_walk *w, const double v[8], tally *t)
+static void add_mean_cubic(const double c[4], double length, tally *t)
 {
-    double c[4];
-    const double length = w->to - w->from;
-    cwi_walk_cubic(w, v, c);
     t->integral += length * (c[0] + c[1] / 2 + c[2] / 3 + c[3] / 4);
     t->length += length;
     t->has_value = true;
+}
+
+static void add_mean(const cwi_walk *w, const double v[8], tally *t)
+{
+    double c[4];
+    cwi_walk_cubic(w, v, c);
+    add_mean_cubic(c, w->to - w->from, t);
 }
 
 /* Ends a stretch: its end is a maximum too, if values rise towards it. */
@@ -84,14 +90,11 @@ static void end_stretch(tally *t)
     t->is_under_way = false;
 }
 
-/* Adds a cell for local-mip. Neighbouring cells agree on the value between them except for
+/* Adds a cubic for local-mip. Neighbouring cells agree on the value between them except for
  * rounding, which is not a fall. */
-static void add_local(const cwi_walk *w, const double v[8], tally *t)
+static void add_local_cubic(const double c[4], double rounding, tally *t)
 {
-    double c[4], values[4], rounding = 0;
-    cwi_walk_cubic(w, v, c);
-    for (int n = 0; n < 8; n++)
-        rounding = fmax(rounding, 1e-12 * fabs(v[n]));
+    double values[4];
     const int count = turning_values(c, values);
     for (int n = 0; n < count && !t->is_found; n++) {
         const bool falls = t->is_under_way && values[n] < t->last - rounding;
@@ -103,6 +106,15 @@ static void add_local(const cwi_walk *w, const double v[8], tally *t)
             t->last = values[n];
         t->is_under_way = true;
     }
+}
+
+static void add_local(const cwi_walk *w, const double v[8], tally *t)
+{
+    double c[4], rounding = 0;
+    cwi_walk_cubic(w, v, c);
+    for (int n = 0; n < 8; n++)
+        rounding = fmax(rounding, 1e-12 * fabs(v[n]));
+    add_local_cubic(c, rounding, t);
 }
 
 static void add_cell(cw_mode mode, const cwi_walk *w, tally *t)
@@ -160,6 +172,54 @@ static void add_part(const cwi_frame *frame, const cwi_ranges *ranges, const cwi
         end_stretch(t);
 }
 
+static double result_of(cw_mode mode, const tally *t)
+{
+    if (!t->has_value)
+        return NAN;
+    if (mode == CW_MODE_AVERAGE)
+        return t->integral / t->length;
+    return t->is_found ? t->last : t->extreme;
+}
+
+static void add_span(cw_mode mode, const cwi_span *span, tally *t)
+{
+    double values[4], rounding = 0;
+    if (!span->follows)
+        end_stretch(t);
+    const int count = turning_values(span->value, values);
+    for (int n = 0; n < count && (mode == CW_MODE_MIP || mode == CW_MODE_MINIP); n++) {
+        const bool is_better =
+            mode == CW_MODE_MIP ? values[n] > t->extreme : values[n] < t->extreme;
+        if (!t->has_value || is_better)
+            t->extreme = values[n];
+        t->has_value = true;
+    }
+    for (int n = 0; n < count; n++)
+        rounding = fmax(rounding, 1e-9 * fabs(values[n]));
+    if (mode == CW_MODE_AVERAGE)
+        add_mean_cubic(span->value, span->to - span->from, t);
+    if (mode == CW_MODE_LOCAL_MIP && !t->is_found)
+        add_local_cubic(span->value, rounding, t);
+}
+
+double cwi_intensity_spans(const cwi_field *field, cwi_spans *spans, double x, double y,
+                           double depth)
+{
+    cwi_ray ray;
+    cwi_span span;
+    const cw_mode mode = field->frame->scene.mode;
+    tally t = {.threshold =
+                   mode == CW_MODE_LOCAL_MIP ? field->frame->scene.threshold : INFINITY};
+    cwi_ray_make(field->frame, x, y, depth, &ray);
+    if (!cwi_spans_start(spans, field, &ray))
+        return NAN;
+    while (!t.is_found && cwi_spans_next(spans, &span))
+        add_span(mode, &span, &t);
+    if (!t.is_found)
+        end_stretch(&t);
+    return result_of(mode, &t);
+}
+
 double cwi_intensity_ray(const cwi_frame *frame, const cwi_ranges *ranges, double x, double y,
                          double depth)
 {
@@ -169,11 +229,7 @@ double cwi_intensity_ray(const cwi_frame *frame, const cwi_ranges *ranges, doubl
     cwi_ray_make(frame, x, y, depth, &ray);
     for (int n = 0; n < ray.part_count && !t.is_found; n++)
         add_part(frame, ranges, &ray, n, &t);
-    if (!t.has_value)
-        return NAN;
-    if (mode == CW_MODE_AVERAGE)
-        return t.integral / t.length;
-    return t.is_found ? t.last : t.extreme;
+    return result_of(mode, &t);
 }
 
 typedef struct job {
@@ -181,18 +237,27 @@ typedef struct job {
     const cwi_ranges *ranges;
     const double *depths;
     cw_picture *picture;
+    cwi_field field;
+    bool is_even, is_starved;
 } job;
 
 static void draw_row(void *context, size_t y)
 {
-    const job *work = context;
+    job *work = context;
     const size_t width = work->picture->width;
+    cwi_spans spans = {0};
     for (size_t x = 0; x < width; x++) {
         float *pixel = work->picture->pixels + 4 * (y * width + x);
         const double depth = work->depths ? work->depths[y * width + x] : INFINITY;
-        const double value = cwi_intensity_ray(work->frame, work->ranges, (double)x + 0.5,
-                                               (double)y + 0.5, depth);
+        const double at[2] = {(double)x + 0.5, (double)y + 0.5};
+        const double value =
+            work->is_even ? cwi_intensity_ray(work->frame, work->ranges, at[0], at[1], depth)
+                          : cwi_intensity_spans(&work->field, &spans, at[0], at[1], depth);
         double color[3], opacity;
+        if (spans.is_starved) {
+#pragma omp atomic write
+            work->is_starved = true;
+        }
         if (isnan(value))
             continue;
         cw_transfer_at(&work->frame->transfer, value, color, &opacity);
@@ -200,13 +265,24 @@ static void draw_row(void *context, size_t y)
             pixel[c] = (float)color[c];
         pixel[3] = 1;
     }
+    cwi_spans_free(&spans);
 }
 
 cw_status cwi_intensity_draw(const cwi_frame *frame, const cwi_ranges *ranges,
-                             const double *depths, cw_picture *picture, cw_error *err)
+                             const cwi_cell_tree *tree, const double *depths,
+                             cw_picture *picture, cw_error *err)
 {
-    job work = {frame, ranges, depths, picture};
-    return cwi_each_layer(picture->height, picture->width * CWI_RAY_SAMPLES,
-                          frame->scene.threads, &frame->scene.progress, "drawing", draw_row,
-                          &work, err);
+    job work = {.frame = frame,
+                .ranges = ranges,
+                .depths = depths,
+                .picture = picture,
+                .is_even = !cwi_volume_kind(&frame->volume)};
+    cwi_field_make(frame, tree, NULL, false, &work.field);
+    work.field.has_gradients = false;
+    cw_status st =
+        cwi_each_layer(picture->height, picture->width * CWI_RAY_SAMPLES, frame->scene.threads,
+                       &frame->scene.progress, "drawing", draw_row, &work, err);
+    if (st == CW_OK && work.is_starved)
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the cells of a ray");
+    return st;
 }

@@ -14,6 +14,7 @@
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/geometry/cubic.h"
+#include "core/volume/volume.h"
 
 #include <math.h>
 #include <string.h>
@@ -59,13 +60,14 @@ static void make_rule(cwi_rule *r)
     }
 }
 
-void cwi_reference_make(const cwi_frame *frame, cwi_reference *r)
+void cwi_reference_make(const cwi_frame *frame, const cwi_cell_tree *tree, cwi_reference *r)
 {
     *r = (cwi_reference){.frame = frame};
     cwi_knots_make(&frame->transfer, &r->knots);
     make_rule(&r->rule);
     cwi_frame_gradient_matrix(frame, r->to_eye);
     r->has_gradients = frame->scene.lit || frame->transfer.gradient_count > 0;
+    cwi_field_make(frame, tree, &r->knots, true, &r->field);
 }
 
 /* The medium that a ray meets in a cell; x goes from 0 to 1. */
@@ -198,28 +200,48 @@ static bool is_visible(const cwi_knots *k, const double v[8])
     return cwi_knots_is_visible(k, low, high);
 }
 
-static void add_cell(medium *m, const cwi_walk *w, const cwi_ray *ray, sum *s)
+/* Adds a part of the ray on which the value is a cubic. walk: computes the gradients when they
+ * are needed; NULL: they are there. */
+static void add_part(medium *m, double from, double to, const cwi_ray *ray,
+                     const cwi_walk *walk, sum *s)
 {
     const cwi_knots *knots = &m->reference->knots;
     cwi_transfer_segment pieces[CWI_PIECES];
-    double v[8];
-    bool has_gradients = !m->reference->has_gradients;
-    if (!cwi_walk_values(w, v) || !is_visible(knots, v))
-        return;
-    m->length = w->to - w->from;
-    m->depth = -w->from * ray->direction[2];
+    bool has_gradients = !m->reference->has_gradients || !walk;
+    m->length = to - from;
+    m->depth = -from * ray->direction[2];
     m->depth_rise = -m->length * ray->direction[2];
-    cwi_walk_cubic(w, v, m->value);
     const size_t count = cwi_knots_cut(knots, m->value, pieces);
     for (size_t n = 0; n < count; n++) {
         if (!pieces[n].linear->is_visible)
             continue;
         if (!has_gradients)
-            find_gradients(m, w);
+            find_gradients(m, walk);
         has_gradients = true;
         m->linear = pieces[n].linear;
         const passage whole = pass_medium(m, pieces[n].from, pieces[n].to);
         add_passage(m, pieces[n].from, pieces[n].to, &whole, 0, s);
+    }
+}
+
+static void add_cell(medium *m, const cwi_walk *w, const cwi_ray *ray, sum *s)
+{
+    double v[8];
+    if (!cwi_walk_values(w, v) || !is_visible(&m->reference->knots, v))
+        return;
+    cwi_walk_cubic(w, v, m->value);
+    add_part(m, w->from, w->to, ray, w, s);
+}
+
+static void add_spans(medium *m, cwi_spans *spans, const cwi_ray *ray, sum *s)
+{
+    cwi_span span;
+    if (!cwi_spans_start(spans, &m->reference->field, ray))
+        return;
+    while (s->light > dark && cwi_spans_next(spans, &span)) {
+        memcpy(m->value, span.value, sizeof m->value);
+        memcpy(m->gradient, span.gradient, sizeof m->gradient);
+        add_part(m, span.from, span.to, ray, NULL, s);
     }
 }
 
@@ -232,8 +254,8 @@ static void background_at(const cwi_frame *f, double y, double color[3])
                    share * (double)f->scene.background[1][c];
 }
 
-double cwi_reference_ray(const cwi_reference *r, double x, double y, double depth,
-                         double out[4])
+double cwi_reference_ray(const cwi_reference *r, cwi_spans *spans, double x, double y,
+                         double depth, double out[4])
 {
     cwi_ray ray;
     cwi_walk walk;
@@ -247,7 +269,9 @@ double cwi_reference_ray(const cwi_reference *r, double x, double y, double dept
     s.tolerance = tolerance / length;
     background_at(r->frame, y, background);
     cwi_lighting_make(r->frame, ray.direction, &lighting);
-    for (int n = 0; n < ray.part_count; n++) {
+    if (cwi_volume_kind(&r->frame->volume))
+        add_spans(&m, spans, &ray, &s);
+    for (int n = 0; n < ray.part_count && !cwi_volume_kind(&r->frame->volume); n++) {
         cwi_walk_start(&walk, r->frame, &ray, n);
         while (s.light > dark && cwi_walk_next(&walk))
             add_cell(&m, &walk, &ray, &s);
@@ -262,36 +286,46 @@ typedef struct job {
     const double *depths;
     cw_picture *picture;
     double *errors; /* of each row, the largest */
+    bool is_starved;
 } job;
 
 static void draw_row(void *context, size_t y)
 {
-    const job *work = context;
+    job *work = context;
     const size_t width = work->picture->width;
+    cwi_spans spans = {0};
     work->errors[y] = 0;
     for (size_t x = 0; x < width; x++) {
         double out[4];
         const double depth = work->depths ? work->depths[y * width + x] : INFINITY;
-        const double error =
-            cwi_reference_ray(work->reference, (double)x + 0.5, (double)y + 0.5, depth, out);
+        const double error = cwi_reference_ray(work->reference, &spans, (double)x + 0.5,
+                                               (double)y + 0.5, depth, out);
         work->errors[y] = fmax(work->errors[y], error);
         for (size_t c = 0; c < 4; c++)
             work->picture->pixels[4 * (y * width + x) + c] = (float)out[c];
+        if (spans.is_starved) {
+#pragma omp atomic write
+            work->is_starved = true;
+        }
     }
+    cwi_spans_free(&spans);
 }
 
-cw_status cwi_reference_draw(const cwi_frame *frame, const double *depths, cw_picture *picture,
-                             double *estimate, cw_error *err)
+cw_status cwi_reference_draw(const cwi_frame *frame, const cwi_cell_tree *tree,
+                             const double *depths, cw_picture *picture, double *estimate,
+                             cw_error *err)
 {
     cwi_reference reference;
     double *errors = cwi_alloc_zeroed(picture->height, sizeof *errors);
     if (!errors)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu rows", picture->height);
-    cwi_reference_make(frame, &reference);
-    job work = {&reference, depths, picture, errors};
+    cwi_reference_make(frame, tree, &reference);
+    job work = {&reference, depths, picture, errors, false};
     cw_status st =
         cwi_each_layer(picture->height, picture->width * CWI_RAY_SAMPLES, frame->scene.threads,
                        &frame->scene.progress, "drawing", draw_row, &work, err);
+    if (st == CW_OK && work.is_starved)
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the cells of a ray");
     double most = 0;
     for (size_t y = 0; y < picture->height; y++)
         most = fmax(most, errors[y]);

@@ -3,6 +3,7 @@
 #ifndef VIEWER_CPU_REFERENCE_VOLUME_H
 #define VIEWER_CPU_REFERENCE_VOLUME_H
 
+#include "viewer/cpu/ray_spans.h"
 #include "viewer/scene/transfer_segments.h"
 
 #ifdef __cplusplus
@@ -23,21 +24,30 @@ typedef struct cwi_reference {
     cwi_rule rule;
     double to_eye[3][3]; /* gradients */
     bool has_gradients;  /* they are needed */
+    cwi_field field;     /* of a rectilinear or irregular grid */
 } cwi_reference;
 
-void cwi_reference_make(const cwi_frame *frame, cwi_reference *reference);
+/* tree: of an irregular grid, else NULL. The result must stay where it is. */
+void cwi_reference_make(const cwi_frame *frame, const cwi_cell_tree *tree,
+                        cwi_reference *reference);
 
 /* Integrates the ray through a point of the picture up to a depth (INFINITY: all of it):
- * colour, premultiplied, and opacity. Returns an estimate of their largest error. */
-double cwi_reference_ray(const cwi_reference *reference, double x, double y, double depth,
-                         double out[4]);
+ * colour, premultiplied, and opacity.
+ * spans    scratch for grids that are not evenly spaced, else NULL; is_starved is then true if
+ *          memory was out
+ * Returns  an estimate of their largest error, but for that of the field in curved cells */
+double cwi_reference_ray(const cwi_reference *reference, cwi_spans *spans, double x, double y,
+                         double depth, double out[4]);
 
-/* Draws a frame. one per sample, of the mesh that the volume is in front of; NULL: there is
+/* Draws a frame.
+ * tree      of an irregular grid, with gradients if the frame needs them; else NULL
+ * depths    one per sample, of the mesh that the volume is in front of; NULL: there is
  * none
  * estimate  the largest error of a sample, but for rounding to floats; may be NULL
  * Returns   CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
-CW_NODISCARD cw_status cwi_reference_draw(const cwi_frame *frame, const double *depths,
-                                          cw_picture *picture, double *estimate, cw_error *err);
+CW_NODISCARD cw_status cwi_reference_draw(const cwi_frame *frame, const cwi_cell_tree *tree,
+                                          const double *depths, cw_picture *picture,
+                                          double *estimate, cw_error *err);
 
 #ifdef __cplusplus
 }

@@ -2,10 +2,12 @@
  * cell it takes Gauss's two points, four values at a time: the trilinear field at both ends of
  * the cell and at both points. If these show that the transfer function has a breakpoint
  * between them, or that the cell takes much of the light, the cell is cut, as in the reference.
- * Blocks of cells that the transfer function leaves empty are skipped. */
+ * Blocks of cells that the transfer function leaves empty are skipped. Grids that are not evenly
+ * spaced are always cut as in the reference, and take two points of each piece. */
 #include "viewer/cpu/vbuffer.h"
 
 #include "viewer/cpu/lanes.h"
+#include "viewer/cpu/ray_spans.h"
 #include "viewer/cpu/ray_traversal.h"
 #include "viewer/scene/lighting.h"
 #include "viewer/scene/transfer_segments.h"
@@ -66,6 +68,9 @@ struct vbuffer {
     double to_eye[3][3];
     float rows_to_eye[3][3]; /* of gradients in rows of the table */
     bool has_gradients;
+    bool is_even;
+    cwi_field field; /* of a grid that is not even */
+    bool is_starved;
 };
 
 /* One ray under way. */
@@ -268,20 +273,26 @@ static void find_gradients(state *s)
                                 s->b->to_eye[a][2] * cubic[2][n];
 }
 
+/* Passes a part of the ray on which the value is a cubic, and the gradient is known. */
+static void pass_cubic(state *s, const double value[4])
+{
+    cwi_transfer_segment pieces[CWI_PIECES];
+    const size_t count = cwi_knots_cut(&s->b->knots, value, pieces);
+    for (size_t n = 0; n < count; n++)
+        if (pieces[n].linear->is_visible)
+            pass_piece(s, &pieces[n], value);
+}
+
 /* Passes a cell with a breakpoint in it. */
 static void pass_in_pieces(state *s)
 {
-    cwi_transfer_segment pieces[CWI_PIECES];
     double v[8], value[4];
     if (!cwi_walk_values(&s->walk, v))
         return;
     cwi_walk_cubic(&s->walk, v, value);
     if (s->b->has_gradients)
         find_gradients(s);
-    const size_t count = cwi_knots_cut(&s->b->knots, value, pieces);
-    for (size_t n = 0; n < count; n++)
-        if (pieces[n].linear->is_visible)
-            pass_piece(s, &pieces[n], value);
+    pass_cubic(s, value);
 }
 
 /* Fetches gradients at the cell's corners, per voxel and in rows, as values are: by the cells
@@ -413,7 +424,24 @@ static void draw_part(state *s, int part, float least_light)
     }
 }
 
-static void draw_pixel(const vbuffer *b, size_t x, size_t y)
+/* Draws all parts of a ray through a grid that is not even. Returns false when memory is
+ * out. */
+static bool draw_spans(state *s, cwi_spans *spans, float least_light)
+{
+    cwi_span span;
+    if (!cwi_spans_start(spans, &s->b->field, &s->ray))
+        return false;
+    s->has_gradient = s->b->has_gradients;
+    while (s->light > least_light && cwi_spans_next(spans, &span)) {
+        s->walk.from = span.from;
+        s->walk.to = span.to;
+        memcpy(s->gradient, span.gradient, sizeof s->gradient);
+        pass_cubic(s, span.value);
+    }
+    return true;
+}
+
+static bool draw_pixel(const vbuffer *b, cwi_spans *spans, size_t x, size_t y)
 {
     const size_t n = y * b->picture->width + x;
     const cw_scene *scene = &b->frame->scene;
@@ -428,18 +456,28 @@ static void draw_pixel(const vbuffer *b, size_t x, size_t y)
     for (int c = 0; c < 3; c++)
         s.background[c] =
             (1 - share) * scene->background[0][c] + share * scene->background[1][c];
-    for (int part = 0; part < s.ray.part_count; part++)
-        draw_part(&s, part, 1 - scene->stop_opacity);
+    const float least_light = 1 - scene->stop_opacity;
+    bool is_whole = true;
+    for (int part = 0; part < s.ray.part_count && b->is_even; part++)
+        draw_part(&s, part, least_light);
+    if (!b->is_even)
+        is_whole = draw_spans(&s, spans, least_light);
     for (int c = 0; c < 3; c++)
         pixel[c] = s.color[c];
     pixel[3] = 1 - s.light;
+    return is_whole;
 }
 
 static void draw_row(void *context, size_t y)
 {
-    const vbuffer *b = context;
+    vbuffer *b = context;
+    cwi_spans spans = {0};
     for (size_t x = 0; x < b->picture->width; x++)
-        draw_pixel(b, x, y);
+        if (!draw_pixel(b, &spans, x, y)) {
+#pragma omp atomic write
+            b->is_starved = true;
+        }
+    cwi_spans_free(&spans);
 }
 
 /* Finds the parts of rows. Rows of the table stand at evenly spaced values; a part begins at
@@ -465,7 +503,7 @@ static bool is_visible(const void *knots, double low, double high)
     return cwi_knots_is_visible(knots, low, high);
 }
 
-static cw_status set_up(vbuffer *b, cw_error *err)
+static cw_status set_up(vbuffer *b, const cwi_cell_tree *tree, cw_error *err)
 {
     const cw_volume *v = &b->frame->volume;
     cw_status st = cwi_table_make(b->frame, &b->table, err);
@@ -476,6 +514,7 @@ static cw_status set_up(vbuffer *b, cw_error *err)
     const double scale = (CWI_TABLE_ROWS - 1) / (b->table.high - b->table.low);
     b->row_scale = v->slope * scale;
     b->row_bias = (v->intercept - b->table.low) * scale;
+    b->is_even = !cwi_volume_kind(v);
     b->fetch = choose_fetch(v);
     for (int a = 0; a < 3; a++)
         b->side[a] = v->dim[a] > 1 ? v->stride[a] : 0;
@@ -484,11 +523,15 @@ static cw_status set_up(vbuffer *b, cw_error *err)
         for (int c = 0; c < 3; c++)
             b->rows_to_eye[r][c] = (float)(b->to_eye[r][c] / scale);
     b->has_gradients = b->frame->scene.lit || b->frame->transfer.gradient_count > 0;
+    cwi_field_make(b->frame, tree, &b->knots, false, &b->field);
+    if (!b->is_even)
+        return CW_OK;
     return cwi_ranges_distances(b->ranges, is_visible, &b->knots, &b->distances, err);
 }
 
 cw_status cwi_vbuffer_draw(const cwi_frame *frame, const cwi_ranges *ranges,
-                           const double *depths, cw_picture *picture, cw_error *err)
+                           const cwi_cell_tree *tree, const double *depths, cw_picture *picture,
+                           cw_error *err)
 {
     vbuffer *b = cwi_alloc_zeroed(1, sizeof *b);
     if (!b)
@@ -497,11 +540,13 @@ cw_status cwi_vbuffer_draw(const cwi_frame *frame, const cwi_ranges *ranges,
     b->ranges = ranges;
     b->depths = depths;
     b->picture = picture;
-    cw_status st = set_up(b, err);
+    cw_status st = set_up(b, tree, err);
     if (st == CW_OK)
         st = cwi_each_layer(picture->height, picture->width * CWI_RAY_SAMPLES,
                             frame->scene.threads, &frame->scene.progress, "drawing", draw_row,
                             b, err);
+    if (st == CW_OK && b->is_starved)
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the cells of a ray");
     cwi_free(b->distances);
     cwi_table_free(&b->table);
     cwi_free(b);

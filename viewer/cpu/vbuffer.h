@@ -3,6 +3,7 @@
 #ifndef VIEWER_CPU_VBUFFER_H
 #define VIEWER_CPU_VBUFFER_H
 
+#include "viewer/cpu/cell_tree.h"
 #include "viewer/scene/block_ranges.h"
 #include "viewer/scene/frame_setup.h"
 
@@ -10,10 +11,11 @@
 extern "C" {
 #endif
 
-/* Draws a frame as cwi_reference_draw(). ranges: of the frame's volume */
+/* Draws a frame as cwi_reference_draw(). ranges: of the frame's volume, if it is evenly
+ * spaced; tree: of an irregular grid */
 CW_NODISCARD cw_status cwi_vbuffer_draw(const cwi_frame *frame, const cwi_ranges *ranges,
-                                        const double *depths, cw_picture *picture,
-                                        cw_error *err);
+                                        const cwi_cell_tree *tree, const double *depths,
+                                        cw_picture *picture, cw_error *err);
 
 #ifdef __cplusplus
 }

@@ -5,6 +5,7 @@
 #include "viewer/scene/slice.h"
 
 #include "core/base/status.h"
+#include "core/volume/volume.h"
 
 #include <math.h>
 #include <string.h>
@@ -68,17 +69,23 @@ static cw_status take_slice(const place *at, double mesh_t, cw_picked *out, cw_e
 }
 
 /* Takes the volume's point, if it is in front of the mesh, which `out` has if it is met. */
-static void take_volume(const place *at, double mesh_t, cw_picked *out)
+static cw_status take_volume(const place *at, double mesh_t, cw_picked *out, cw_error *err)
 {
     const cwi_frame *f = at->frame;
     const double depth = mesh_t < INFINITY ? out->depth_mm / f->unit_mm : INFINITY;
-    const cwi_volume_hit hit = cw_mode_is_intensity(f->scene.mode)
-                                   ? cwi_pick_intensity(f, at->x, at->y, depth)
-                                   : cwi_pick_blended(f, at->x, at->y, depth);
-    if (hit.t == INFINITY || (mesh_t < INFINITY && hit.opacity < 0.5))
-        return;
+    cwi_volume_hit hit;
+    cw_status st = CW_OK;
+    if (cwi_volume_kind(&f->volume))
+        st = cwi_pick_uneven(f, at->x, at->y, depth, &hit, err);
+    else if (cw_mode_is_intensity(f->scene.mode))
+        hit = cwi_pick_intensity(f, at->x, at->y, depth);
+    else
+        hit = cwi_pick_blended(f, at->x, at->y, depth);
+    if (st != CW_OK || hit.t == INFINITY || (mesh_t < INFINITY && hit.opacity < 0.5))
+        return st;
     take_point(at, CW_PICK_VOLUME, hit.t, out);
-    out->value = value_of(f, out->point);
+    out->value = isnan(hit.value) ? value_of(f, out->point) : hit.value;
+    return CW_OK;
 }
 
 static cw_status pick_nearest(const place *at, cw_picked *out, cw_error *err)
@@ -91,9 +98,7 @@ static cw_status pick_nearest(const place *at, cw_picked *out, cw_error *err)
         take_mesh(at, &hit, out);
     if (f->scene.mode == CW_MODE_SLICES)
         return take_slice(at, hit.t, out, err);
-    if (f->volume.data)
-        take_volume(at, hit.t, out);
-    return CW_OK;
+    return f->volume.data ? take_volume(at, hit.t, out, err) : CW_OK;
 }
 
 cw_status cw_pick(const cw_scene *scene, const double pixel[2], cw_picked *picked,

@@ -2,10 +2,12 @@
  * projection's value occurs, or on a slice. */
 #include "viewer/interact/pick_volume.h"
 
+#include "core/base/status.h"
 #include "core/geometry/affine.h"
 #include "core/geometry/cubic.h"
 #include "core/geometry/vec3.h"
 #include "viewer/cpu/intensity_projection.h"
+#include "viewer/cpu/ray_spans.h"
 #include "viewer/cpu/ray_traversal.h"
 #include "viewer/scene/transfer_segments.h"
 
@@ -18,10 +20,11 @@ enum { STEPS = 8 }; /* of a piece of the ray between breakpoints */
 typedef struct passage {
     const cwi_frame *frame;
     cwi_knots knots;
-    double to_eye[3][3];  /* gradients */
-    double light, half;   /* fraction of it that is left; where that became a half, or
+    double to_eye[3][3];           /* gradients */
+    double light, half;            /* fraction of it that is left; where that became a half, or
                              INFINITY */
-    double most, most_at; /* the most light that a cell took, and that cell's middle */
+    double most, most_at;          /* the most light that a cell took, and that cell's middle */
+    double half_value, most_value; /* of the field there */
 } passage;
 
 /* Computes the gradient's cubics in a cell, in eye space. */
@@ -60,41 +63,60 @@ static void pass_segment(passage *p, double from, double length, double depth)
     p->light = after;
 }
 
-static void pass_piece(passage *p, const cwi_walk *w, const cwi_transfer_segment *piece,
-                       const double value[4], const double gradient[3][4])
+static void pass_piece(passage *p, const cwi_span *span, const cwi_transfer_segment *piece)
 {
-    const double whole = w->to - w->from, width = (piece->to - piece->from) / STEPS;
+    const double whole = span->to - span->from, width = (piece->to - piece->from) / STEPS;
     for (int n = 0; n < STEPS && p->half == INFINITY; n++) {
         const double x = piece->from + n * width;
         const double extinction =
-            extinction_at(p, piece->linear, value, gradient, x + width / 2);
-        pass_segment(p, w->from + x * whole, width * whole, extinction * width * whole);
+            extinction_at(p, piece->linear, span->value, span->gradient, x + width / 2);
+        pass_segment(p, span->from + x * whole, width * whole, extinction * width * whole);
+    }
+    if (p->half < INFINITY)
+        p->half_value = cwi_cubic_at(span->value, (p->half - span->from) / whole);
+}
+
+static void pass_span(passage *p, const cwi_span *span)
+{
+    cwi_transfer_segment pieces[CWI_PIECES];
+    const double before = p->light;
+    const size_t count = cwi_knots_cut(&p->knots, span->value, pieces);
+    for (size_t n = 0; n < count && p->half == INFINITY; n++)
+        if (pieces[n].linear->is_visible)
+            pass_piece(p, span, &pieces[n]);
+    if (before - p->light > p->most) {
+        p->most = before - p->light;
+        p->most_at = (span->from + span->to) / 2;
+        p->most_value = cwi_cubic_at(span->value, 0.5);
     }
 }
 
 static void pass_cell(passage *p, const cwi_walk *w)
 {
-    double v[8], value[4], gradient[3][4] = {{0}}; /* read for factors of gradients alone */
-    cwi_transfer_segment pieces[CWI_PIECES];
-    const double before = p->light;
+    cwi_span span = {.from = w->from, .to = w->to};
+    double v[8];
     if (!cwi_walk_values(w, v))
         return;
-    cwi_walk_cubic(w, v, value);
+    cwi_walk_cubic(w, v, span.value);
     if (p->frame->transfer.gradient_count > 0)
-        find_gradients(p, w, gradient);
-    const size_t count = cwi_knots_cut(&p->knots, value, pieces);
-    for (size_t n = 0; n < count; n++)
-        if (pieces[n].linear->is_visible)
-            pass_piece(p, w, &pieces[n], value, (const double(*)[4])gradient);
-    if (before - p->light > p->most) {
-        p->most = before - p->light;
-        p->most_at = (w->from + w->to) / 2;
-    }
+        find_gradients(p, w, span.gradient);
+    pass_span(p, &span);
+}
+
+/* Returns the point that is seen after a whole ray. */
+static cwi_volume_hit find_hit(const passage *p)
+{
+    static const double seen = 1.0 / 512; /* half a step of what is displayed */
+    const double opacity = 1 - p->light;
+    const bool is_half = p->half < INFINITY;
+    return (cwi_volume_hit){is_half           ? p->half
+                            : opacity >= seen ? p->most_at
+                                              : INFINITY,
+                            opacity, is_half ? p->half_value : p->most_value};
 }
 
 cwi_volume_hit cwi_pick_blended(const cwi_frame *frame, double x, double y, double depth)
 {
-    static const double seen = 1.0 / 512; /* half a step of what is displayed */
     passage p = {.frame = frame, .light = 1, .half = INFINITY};
     cwi_ray ray;
     cwi_walk walk;
@@ -106,27 +128,31 @@ cwi_volume_hit cwi_pick_blended(const cwi_frame *frame, double x, double y, doub
         while (p.half == INFINITY && cwi_walk_next(&walk))
             pass_cell(&p, &walk);
     }
-    const double opacity = 1 - p.light;
-    return (cwi_volume_hit){p.half < INFINITY ? p.half
-                            : opacity >= seen ? p.most_at
-                                              : INFINITY,
-                            opacity};
+    cwi_volume_hit hit = find_hit(&p);
+    hit.value = NAN;
+    return hit;
 }
 
-/* Finds where the field first has a value in a cell, at an end or where it turns. It compares
- * the same numbers, to the bit, from which the value was found. */
-static double find_value(const cwi_walk *w, double value)
+/* Finds where a cubic first has a value, at an end or where it turns: the place, from 0 to 1.
+ * It compares the same numbers, to the bit, from which the value was found. */
+static double find_value(const double c[4], double value)
 {
-    double v[8], c[4], places[4] = {0};
-    if (!cwi_walk_values(w, v))
-        return INFINITY;
-    cwi_walk_cubic(w, v, c);
+    double places[4] = {0};
     const int turns = cwi_cubic_turns(c, places + 1);
     places[turns + 1] = 1;
     for (int n = 0; n <= turns + 1; n++)
         if ((places[n] == 0 ? c[0] : cwi_cubic_at(c, places[n])) == value)
-            return w->from + places[n] * (w->to - w->from);
+            return places[n];
     return INFINITY;
+}
+
+static double find_in_cell(const cwi_walk *w, double value)
+{
+    double v[8], c[4];
+    if (!cwi_walk_values(w, v))
+        return INFINITY;
+    cwi_walk_cubic(w, v, c);
+    return w->from + find_value(c, value) * (w->to - w->from);
 }
 
 cwi_volume_hit cwi_pick_intensity(const cwi_frame *frame, double x, double y, double depth)
@@ -142,9 +168,67 @@ cwi_volume_hit cwi_pick_intensity(const cwi_frame *frame, double x, double y, do
     for (int n = 0; n < ray.part_count && !isnan(value); n++) {
         cwi_walk_start(&walk, &f, &ray, n);
         while (t == INFINITY && cwi_walk_next(&walk))
-            t = find_value(&walk, value);
+            t = find_in_cell(&walk, value);
     }
-    return (cwi_volume_hit){t, t < INFINITY};
+    return (cwi_volume_hit){t, t < INFINITY, NAN};
+}
+
+/* Picks in a projection of values: the first place of its value. */
+static cwi_volume_hit pick_value(cwi_field *field, cwi_spans *spans, const cwi_ray *ray,
+                                 double x, double y, double depth)
+{
+    cwi_frame f = *field->frame;
+    cwi_span span;
+    double t = INFINITY;
+    if (f.scene.mode == CW_MODE_AVERAGE)
+        f.scene.mode = CW_MODE_MIP;
+    field->frame = &f;
+    const double value = cwi_intensity_spans(field, spans, x, y, depth);
+    bool is_under_way = !isnan(value) && cwi_spans_start(spans, field, ray);
+    while (is_under_way && t == INFINITY && cwi_spans_next(spans, &span))
+        t = span.from + find_value(span.value, value) * (span.to - span.from);
+    return (cwi_volume_hit){t, t < INFINITY, value};
+}
+
+static cwi_volume_hit pick_half(const cwi_field *field, cwi_spans *spans, const cwi_ray *ray)
+{
+    cwi_span span = {0};
+    passage p = {.frame = field->frame, .light = 1, .half = INFINITY, .knots = *field->knots};
+    const bool is_under_way = cwi_spans_start(spans, field, ray);
+    while (is_under_way && p.half == INFINITY && cwi_spans_next(spans, &span))
+        pass_span(&p, &span);
+    return find_hit(&p);
+}
+
+cw_status cwi_pick_uneven(const cwi_frame *frame, double x, double y, double depth,
+                          cwi_volume_hit *hit, cw_error *err)
+{
+    cwi_ray ray;
+    cwi_cell_tree tree = {0};
+    cwi_field field;
+    cwi_knots knots;
+    cwi_spans spans = {0};
+    const cw_mode mode = frame->scene.mode;
+    const bool is_blended =
+        mode == CW_MODE_VBUFFER || mode == CW_MODE_REFERENCE || mode == CW_MODE_PROJECTION;
+    *hit = (cwi_volume_hit){.t = INFINITY};
+    cwi_ray_make(frame, x, y, depth, &ray);
+    cw_status st = ray.part_count > 0 && frame->volume.cells
+                       ? cwi_cell_tree_make(frame, &ray, &tree, err)
+                       : CW_OK;
+    if (st == CW_OK && tree.kinds && is_blended && frame->transfer.gradient_count > 0)
+        st = cwi_cell_tree_need_gradients(frame, &tree, err);
+    cwi_knots_make(&frame->transfer, &knots);
+    cwi_field_make(frame, &tree, is_blended ? &knots : NULL, false, &field);
+    field.has_gradients = is_blended && frame->transfer.gradient_count > 0;
+    if (st == CW_OK && ray.part_count > 0)
+        *hit = is_blended ? pick_half(&field, &spans, &ray)
+                          : pick_value(&field, &spans, &ray, x, y, depth);
+    if (st == CW_OK && spans.is_starved)
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the cells of a ray");
+    cwi_spans_free(&spans);
+    cwi_cell_tree_free(&tree);
+    return st;
 }
 
 /* Returns true if a point of a slice has a value. Slices in a face of the volume, or in a clip

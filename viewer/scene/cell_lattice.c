@@ -151,8 +151,29 @@ static double row_derivative(const cw_volume *v, const char *at, int axis, size_
     return isfinite(d) && !(v->has_nodata && (a == v->nodata || b == v->nodata)) ? d : 0;
 }
 
+/* Computes the derivative along an axis of uneven spacing: the slopes on both sides, each
+ * weighted by the distance on the other side, which is exact for parabolas. */
+static double uneven_derivative(const cw_volume *v, const char *at, int axis, size_t n)
+{
+    const double *x = v->coordinates[axis];
+    const bool below = n > 0, above = n + 1 < v->dim[axis];
+    if (!below && !above)
+        return 0;
+    const double a = cwi_voxel_at(v->type, below ? at - v->stride[axis] : at);
+    const double b = cwi_voxel_at(v->type, above ? at + v->stride[axis] : at);
+    const double low = below ? x[n] - x[n - 1] : 0, high = above ? x[n + 1] - x[n] : 0;
+    double d = (b - a) / (low + high);
+    if (below && above) {
+        const double centre = cwi_voxel_at(v->type, at);
+        d = ((centre - a) / low * high + (b - centre) / high * low) / (low + high);
+    }
+    return isfinite(d) && !(v->has_nodata && (a == v->nodata || b == v->nodata)) ? d : 0;
+}
+
 void cwi_lattice_gradient(const cw_volume *v, const size_t at[3], double gradient[3])
 {
+    const char *p = cwi_voxel_address(v, at[0], at[1], at[2]);
     for (int a = 0; a < 3; a++)
-        gradient[a] = row_derivative(v, cwi_voxel_address(v, at[0], at[1], at[2]), a, at[a]);
+        gradient[a] = v->coordinates[a] ? uneven_derivative(v, p, a, at[a])
+                                        : row_derivative(v, p, a, at[a]);
 }

@@ -40,8 +40,8 @@ void cwi_lattice_load(const cwi_frame *frame, const cwi_table *table, const size
  * it. has_gaps: whether to look for samples without a value */
 double cwi_lattice_mass(const cw_volume *v, const size_t at[3], bool has_gaps);
 
-/* Computes the derivatives of the stored values per voxel: central inside, one-sided at the
- * border; 0 where a sample has no value. */
+/* Computes the derivatives of the stored values per voxel, on a rectilinear grid per unit of
+ * its coordinates: central inside, one-sided at the border; 0 where a sample has no value. */
 void cwi_lattice_gradient(const cw_volume *v, const size_t at[3], double gradient[3]);
 
 #ifdef __cplusplus

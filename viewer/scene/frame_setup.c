@@ -6,8 +6,10 @@
 #include "core/geometry/affine.h"
 #include "core/geometry/vec3.h"
 #include "core/volume/volume.h"
+#include "viewer/scene/cells_size.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { MAX_SIZE = 16384, MAX_SAMPLES = 4, MESH_UNITS = 256 };
@@ -120,31 +122,76 @@ static cw_status choose_reference(cwi_frame *f, cw_error *err)
     return CW_OK;
 }
 
-/* Finds the volume's box in index space. */
+/* Finds the box of an even or rectilinear grid in index space, and the smallest spacing. */
 static void find_box(cwi_frame *f)
 {
+    double spacing[3];
+    cw_volume_spacing(&f->volume, spacing);
+    f->unit_mm = fmin(fmin(spacing[0], spacing[1]), spacing[2]);
     for (int a = 0; a < 3; a++) {
         const size_t n = f->volume.dim[a];
-        f->low[a] = n == 1 ? -0.5 : 0;
-        f->high[a] = n == 1 ? 0.5 : (double)n - 1;
+        const double *at = f->volume.coordinates[a];
+        const double low = at ? at[0] : 0, high = at ? at[n - 1] : (double)n - 1;
+        f->low[a] = n == 1 ? low - 0.5 : low;
+        f->high[a] = n == 1 ? high + 0.5 : high;
     }
+}
+
+/* Finds the box of an irregular grid, and the edge of its mean cell. */
+static cw_status find_cells(cwi_frame *f, cw_error *err)
+{
+    cwi_cells_size size;
+    double longest = 0;
+    cw_status st = cwi_cells_measure(&f->volume, f->scene.threads, &size, err);
+    if (st != CW_OK)
+        return st;
+    memcpy(f->low, size.low, sizeof f->low);
+    memcpy(f->high, size.high, sizeof f->high);
+    for (int a = 0; a < 3; a++)
+        longest = fmax(longest, size.high[a] - size.low[a]);
+    const double scale = cbrt(fabs(cwi_affine_determinant(f->volume.affine[0])));
+    f->unit_mm = scale * cbrt(size.volume / size.boxes);
+    if (!isnormal(f->unit_mm)) /* cells without volume */
+        f->unit_mm = scale * longest / MESH_UNITS;
+    if (!isnormal(f->unit_mm))
+        f->unit_mm = 1;
+    return CW_OK;
+}
+
+/* Refuses modes that draw evenly spaced volumes alone, for a grid of another kind. */
+static cw_status check_kind(const cwi_frame *f, cw_error *err)
+{
+    const char *kind = cwi_volume_kind(&f->volume);
+    char list[256];
+    size_t used = 0;
+    if (cw_mode_draws(f->scene.mode, &f->volume))
+        return CW_OK;
+    if (f->volume.sparse)
+        return cwi_volume_expect_even(&f->volume, "drawing", err);
+    for (int m = CW_MODE_MESH + 1; m < CW_MODE_COUNT; m++)
+        if (cw_mode_draws((cw_mode)m, &f->volume))
+            used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "",
+                                     cw_mode_name((cw_mode)m));
+    return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                    "the mode %s draws evenly spaced volumes; %s is drawn by %s",
+                    cw_mode_name(f->scene.mode), kind, list);
 }
 
 static cw_status take_volume(cwi_frame *f, cw_error *err)
 {
     cw_status st = cw_volume_resolve(f->scene.volume, &f->volume, err);
     if (st == CW_OK)
-        st = cwi_volume_expect_even(&f->volume, "drawing", err);
+        st = check_kind(f, err);
     if (st == CW_OK)
         st = cw_transfer_check(f->scene.transfer, err);
+    if (st == CW_OK && f->volume.cells)
+        st = find_cells(f, err);
+    else if (st == CW_OK)
+        find_box(f);
     if (st != CW_OK)
         return st;
-    double spacing[3];
-    cw_volume_spacing(&f->volume, spacing);
-    f->unit_mm = fmin(fmin(spacing[0], spacing[1]), spacing[2]);
     f->transfer = *f->scene.transfer;
     f->opacity_units = f->transfer.unit_mm > 0 ? f->transfer.unit_mm / f->unit_mm : 1;
-    find_box(f);
     return CW_OK;
 }
 
@@ -154,7 +201,7 @@ static void box_corner(const cwi_frame *f, int n, double world[3])
     double p[3];
     for (int a = 0; a < 3; a++)
         p[a] = n >> a & 1 ? f->high[a] : f->low[a];
-    cw_volume_to_world(&f->volume, p, world);
+    cwi_affine_apply(f->volume.affine[0], p, world);
 }
 
 /* Computes the world box of everything that is drawn. */

@@ -1,8 +1,9 @@
 /* A scene resolved for one picture: the data with which the CPU and GL draw the same thing.
  *
  * Eye space has its origin at the eye, x to the right, y up and z towards the eye; its unit is
- * the volume's smallest spacing (the 1/256th of the mesh's diagonal when there is no volume),
- * so that single precision is enough for scenes of any size and place. */
+ * the volume's smallest spacing, so that single precision is enough for scenes of any size and
+ * place. On a rectilinear grid it is the smallest mean spacing, on an irregular one the edge of
+ * the mean cell, and without a volume 1/256 of the mesh's diagonal. */
 #ifndef VIEWER_SCENE_FRAME_SETUP_H
 #define VIEWER_SCENE_FRAME_SETUP_H
 
@@ -18,8 +19,9 @@ typedef struct cwi_frame {
     double unit_mm;   /* of eye space */
     double axes[3][3], eye_mm[3]; /* of the camera in the world: right, up, to the eye; unit */
 
-    /* Index space: voxel (i, j, k) is the point (i, j, k). The volume reaches from low to high:
-     * from 0 to dim - 1, along an axis of one voxel from -0.5 to 0.5. */
+    /* Index space: voxel (i, j, k) is the point (i, j, k), on a rectilinear grid the point of its
+     * coordinates, and on an irregular one sample n is point n. The volume reaches from low to
+     * high: from 0 to dim - 1, along an axis of one voxel 0.5 to both sides. */
     double low[3], high[3];
     double eye_from_index[12], index_from_eye[12]; /* affines, 3x4 */
 

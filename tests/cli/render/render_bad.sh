@@ -78,7 +78,7 @@ try m.ply -o v.png --hide mesh
 try m.ply -o v.png --clip-box 0:1,0:1,0:1
 try m.ply -o v.png --tf auto
 try none.nrrd -o v.png
-try g.vtu -o v.png
+try g.vtu -o v.png --mode splat
 try v.nrrd -o v.png --json v.png
 try v.nrrd -o v.png --save-tf v.nrrd
 # An option for another mode says for which.

@@ -38,8 +38,8 @@ static double ray_of(const cw_scene *scene, double x, double y, double out[4])
 {
     const cwi_frame frame = test_frame(scene);
     cwi_reference reference;
-    cwi_reference_make(&frame, &reference);
-    return cwi_reference_ray(&reference, x, y, INFINITY, out);
+    cwi_reference_make(&frame, NULL, &reference);
+    return cwi_reference_ray(&reference, NULL, x, y, INFINITY, out);
 }
 
 static void expect_box(const cw_scene *scene, double length)
@@ -332,7 +332,7 @@ static void renderer_draws_it_with_any_threads(void **state)
     cw_picture three = test_draw(r, &scene);
     assert_memory_equal(one.pixels, three.pixels, 40 * 30 * 4 * sizeof(float));
     const cwi_frame frame = test_frame(&scene);
-    assert_ok(cwi_reference_draw(&frame, NULL, &three, &estimate, &err), err);
+    assert_ok(cwi_reference_draw(&frame, NULL, NULL, &three, &estimate, &err), err);
     assert_true(estimate > 0 && estimate < 1e-6);
     cw_picture_free(&three);
     scene.threads = 1;

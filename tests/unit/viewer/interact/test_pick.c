@@ -58,8 +58,9 @@ static void assert_half_is_before(const cw_scene *scene, double x, double y, con
     cwi_reference reference;
     double out[4];
     const double samples = frame.scene.samples;
-    cwi_reference_make(&frame, &reference);
-    cwi_reference_ray(&reference, samples * x, samples * y, p->depth_mm / frame.unit_mm, out);
+    cwi_reference_make(&frame, NULL, &reference);
+    cwi_reference_ray(&reference, NULL, samples * x, samples * y, p->depth_mm / frame.unit_mm,
+                      out);
     assert_near(out[3], 0.5, 2e-3);
     assert_near(p->value, cw_volume_sample(scene->volume, p->point), 1e-6);
 }
@@ -70,8 +71,8 @@ static double whole_opacity(const cw_scene *scene, double x, double y)
     cwi_reference reference;
     double out[4];
     const double samples = frame.scene.samples;
-    cwi_reference_make(&frame, &reference);
-    cwi_reference_ray(&reference, samples * x, samples * y, INFINITY, out);
+    cwi_reference_make(&frame, NULL, &reference);
+    cwi_reference_ray(&reference, NULL, samples * x, samples * y, INFINITY, out);
     return out[3];
 }
 

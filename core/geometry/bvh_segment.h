@@ -1,0 +1,77 @@
+/* Segments through a bounding volume hierarchy: the items whose boxes a ray may meet. */
+#ifndef CORE_GEOMETRY_BVH_SEGMENT_H
+#define CORE_GEOMETRY_BVH_SEGMENT_H
+
+#include "core/geometry/bvh.h"
+
+/* A segment from a point along a vector, prepared for cwi_boxes_crossed(). */
+typedef struct cwi_boxes_segment {
+    float from[3], inverse[3]; /* of the vector, kept finite */
+    float slack;               /* boxes are widened by it */
+} cwi_boxes_segment;
+
+static inline cwi_boxes_segment cwi_boxes_segment_of(const double from[3],
+                                                     const double vector[3], float slack)
+{
+    cwi_boxes_segment s = {.slack = slack};
+    for (int a = 0; a < 3; a++) {
+        s.from[a] = (float)from[a];
+        s.inverse[a] = fabs(vector[a]) > 1e-30 ? (float)(1 / vector[a])
+                                               : copysignf(1e30f, (float)vector[a]);
+    }
+    return s;
+}
+
+/* Returns bit c for each box c of the node that the segment may meet. */
+static inline unsigned cwi_boxes_crossed(const cwi_boxes_node *n, const cwi_boxes_segment *s)
+{
+    unsigned crossed = 0;
+    for (int c = 0; c < CWI_WIDTH; c += 4) {
+        cwi_lanes enter = {0, 0, 0, 0}, leave = {1, 1, 1, 1};
+        for (int a = 0; a < 3; a++) {
+            const bool rises = s->inverse[a] > 0;
+            cwi_lanes near, far;
+            memcpy(&near, (rises ? n->low : n->high)[a] + c, sizeof near);
+            memcpy(&far, (rises ? n->high : n->low)[a] + c, sizeof far);
+            const float slack = rises ? s->slack : -s->slack;
+            near = (near - slack - s->from[a]) * s->inverse[a];
+            far = (far + slack - s->from[a]) * s->inverse[a];
+            const cwi_mask later = near > enter, sooner = far < leave;
+            enter = (cwi_lanes)(((cwi_mask)near & later) | ((cwi_mask)enter & ~later));
+            leave = (cwi_lanes)(((cwi_mask)far & sooner) | ((cwi_mask)leave & ~sooner));
+        }
+        const cwi_mask meet = enter <= leave;
+        crossed |= cwi_mask_bits(&meet) << c;
+    }
+    return crossed;
+}
+
+/* Calls visit for each item whose box a segment may meet, by its slot in the tree's order;
+ * stops when visit returns false. Inline, so that visit becomes part of the loop. */
+static inline void cwi_boxes_pierce(const cwi_boxes *tree, const cwi_boxes_segment *segment,
+                                    bool (*visit)(void *context, size_t slot), void *context)
+{
+    struct entry {
+        int level;
+        size_t node;
+    } stack[CWI_LEVELS * CWI_WIDTH];
+    size_t depth = 0;
+    if (tree->count)
+        stack[depth++] = (struct entry){tree->levels - 1, 0};
+    while (depth) {
+        const struct entry e = stack[--depth];
+        const cwi_boxes_node *node = tree->nodes + tree->first[e.level] + e.node;
+        unsigned crossed = cwi_boxes_crossed(node, segment);
+        for (size_t c = 0; crossed; c++, crossed >>= 1) {
+            const size_t child = e.node * CWI_WIDTH + c;
+            if (!(crossed & 1))
+                continue;
+            if (e.level > 0)
+                stack[depth++] = (struct entry){e.level - 1, child};
+            else if (!visit(context, child))
+                return;
+        }
+    }
+}
+
+#endif
