@@ -2,12 +2,12 @@
  * depths. */
 #include "viewer/cpu/cpu_draw.h"
 
-#include "viewer/cpu/cell_projection.h"
 #include "viewer/cpu/cpu_mesh.h"
 #include "viewer/cpu/intensity_projection.h"
 #include "viewer/cpu/reference_volume.h"
-#include "viewer/cpu/uneven_projection.h"
 #include "viewer/cpu/vbuffer.h"
+#include "viewer/projection/cell_projection.h"
+#include "viewer/projection/uneven_projection.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"

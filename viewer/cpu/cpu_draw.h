@@ -2,8 +2,8 @@
 #ifndef VIEWER_CPU_CPU_DRAW_H
 #define VIEWER_CPU_CPU_DRAW_H
 
-#include "viewer/cpu/cell_color.h"
-#include "viewer/cpu/cell_tree.h"
+#include "viewer/projection/cell_color.h"
+#include "viewer/rays/cell_tree.h"
 #include "viewer/scene/block_ranges.h"
 #include "viewer/scene/frame_setup.h"
 

@@ -2,7 +2,7 @@
  * mean or first local maximum of the value. */
 #include "viewer/cpu/intensity_projection.h"
 
-#include "viewer/cpu/ray_traversal.h"
+#include "viewer/rays/ray_traversal.h"
 
 #include "core/base/parallel.h"
 #include "core/base/status.h"

@@ -2,7 +2,7 @@
 #ifndef VIEWER_CPU_INTENSITY_PROJECTION_H
 #define VIEWER_CPU_INTENSITY_PROJECTION_H
 
-#include "viewer/cpu/ray_spans.h"
+#include "viewer/rays/ray_spans.h"
 #include "viewer/scene/block_ranges.h"
 #include "viewer/scene/frame_setup.h"
 

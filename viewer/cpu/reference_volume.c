@@ -7,7 +7,7 @@
  * on. */
 #include "viewer/cpu/reference_volume.h"
 
-#include "viewer/cpu/ray_traversal.h"
+#include "viewer/rays/ray_traversal.h"
 #include "viewer/scene/lighting.h"
 
 #include "core/base/memory.h"

@@ -3,7 +3,7 @@
 #ifndef VIEWER_CPU_REFERENCE_VOLUME_H
 #define VIEWER_CPU_REFERENCE_VOLUME_H
 
-#include "viewer/cpu/ray_spans.h"
+#include "viewer/rays/ray_spans.h"
 #include "viewer/scene/transfer_segments.h"
 
 #ifdef __cplusplus

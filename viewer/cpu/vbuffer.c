@@ -6,9 +6,9 @@
  * spaced are always cut as in the reference, and take two points of each piece. */
 #include "viewer/cpu/vbuffer.h"
 
-#include "viewer/cpu/lanes.h"
-#include "viewer/cpu/ray_spans.h"
-#include "viewer/cpu/ray_traversal.h"
+#include "viewer/rays/lanes.h"
+#include "viewer/rays/ray_spans.h"
+#include "viewer/rays/ray_traversal.h"
 #include "viewer/scene/lighting.h"
 #include "viewer/scene/transfer_segments.h"
 #include "viewer/scene/transfer_table.h"

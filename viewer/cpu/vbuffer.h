@@ -3,7 +3,7 @@
 #ifndef VIEWER_CPU_VBUFFER_H
 #define VIEWER_CPU_VBUFFER_H
 
-#include "viewer/cpu/cell_tree.h"
+#include "viewer/rays/cell_tree.h"
 #include "viewer/scene/block_ranges.h"
 #include "viewer/scene/frame_setup.h"
 

@@ -7,8 +7,8 @@
 #include "core/geometry/cubic.h"
 #include "core/geometry/vec3.h"
 #include "viewer/cpu/intensity_projection.h"
-#include "viewer/cpu/ray_spans.h"
-#include "viewer/cpu/ray_traversal.h"
+#include "viewer/rays/ray_spans.h"
+#include "viewer/rays/ray_traversal.h"
 #include "viewer/scene/transfer_segments.h"
 
 #include <math.h>

@@ -1,9 +1,9 @@
 /* The light that a cell adds to a ray: the transfer function between the values where the ray
  * enters and leaves, pre-integrated [Engel2001], with light and gradient factor. */
-#ifndef VIEWER_CPU_CELL_COLOR_H
-#define VIEWER_CPU_CELL_COLOR_H
+#ifndef VIEWER_PROJECTION_CELL_COLOR_H
+#define VIEWER_PROJECTION_CELL_COLOR_H
 
-#include "viewer/cpu/lanes.h"
+#include "viewer/rays/lanes.h"
 #include "viewer/scene/cell_lattice.h"
 
 #ifdef __cplusplus

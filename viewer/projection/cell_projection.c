@@ -1,10 +1,10 @@
 /* Draws the cells of a volume in tiles of the picture, one thread a tile. A tile goes through an
  * octree of blocks from front to back. It leaves out nodes that the transfer function makes
  * empty, that are beside the tile, or that are behind samples which are opaque already. */
-#include "viewer/cpu/cell_projection.h"
+#include "viewer/projection/cell_projection.h"
 
-#include "viewer/cpu/cell_block.h"
-#include "viewer/cpu/ray_traversal.h"
+#include "viewer/projection/cell_block.h"
+#include "viewer/rays/ray_traversal.h"
 
 #include "core/base/memory.h"
 #include "core/base/parallel.h"

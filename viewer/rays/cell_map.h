@@ -5,8 +5,8 @@
  * triangle times linear between both. A pyramid is bilinear over its base and shrinks linearly
  * to its tip; u are the sides of the shrunken base, so that the map is regular up to the tip.
  * Faces of four corners are bilinear patches, and neighbours agree on them. */
-#ifndef VIEWER_CPU_CELL_MAP_H
-#define VIEWER_CPU_CELL_MAP_H
+#ifndef VIEWER_RAYS_CELL_MAP_H
+#define VIEWER_RAYS_CELL_MAP_H
 
 #include "core/volume/cell_shapes.h"
 

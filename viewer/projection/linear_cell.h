@@ -1,9 +1,9 @@
 /* Opacity that is linear over the triangles of a projected cell, as graphics hardware
  * interpolated it in 1991 [Wilhelms1991]. */
-#ifndef VIEWER_CPU_LINEAR_CELL_H
-#define VIEWER_CPU_LINEAR_CELL_H
+#ifndef VIEWER_PROJECTION_LINEAR_CELL_H
+#define VIEWER_PROJECTION_LINEAR_CELL_H
 
-#include "viewer/cpu/cell_color.h"
+#include "viewer/projection/cell_color.h"
 #include "viewer/proxy/projected_cells.h"
 
 #ifdef __cplusplus

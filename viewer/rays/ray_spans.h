@@ -5,12 +5,12 @@
  * map is linear. In other cells spans are halved until the cubic through four values keeps to a
  * tolerance where it is checked. Rays are shifted by 1e-11 of the grid's size, so that none
  * runs in the faces between two cells. */
-#ifndef VIEWER_CPU_RAY_SPANS_H
-#define VIEWER_CPU_RAY_SPANS_H
+#ifndef VIEWER_RAYS_RAY_SPANS_H
+#define VIEWER_RAYS_RAY_SPANS_H
 
-#include "viewer/cpu/cell_map.h"
-#include "viewer/cpu/cell_tree.h"
-#include "viewer/cpu/ray_traversal.h"
+#include "viewer/rays/cell_map.h"
+#include "viewer/rays/cell_tree.h"
+#include "viewer/rays/ray_traversal.h"
 #include "viewer/scene/transfer_segments.h"
 
 #ifdef __cplusplus

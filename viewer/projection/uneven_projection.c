@@ -4,15 +4,15 @@
  * sample gets the parts of its ray, nearly sorted, with the values at entry and exit. They are
  * sorted exactly, sample by sample, whatever the shape of the grid, and blended by running
  * integrals of the transfer function [Engel2001]. */
-#include "viewer/cpu/uneven_projection.h"
+#include "viewer/projection/uneven_projection.h"
 
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
-#include "viewer/cpu/projected_solids.h"
-#include "viewer/cpu/ray_traversal.h"
-#include "viewer/cpu/running_integrals.h"
+#include "viewer/projection/projected_solids.h"
+#include "viewer/projection/running_integrals.h"
+#include "viewer/rays/ray_traversal.h"
 #include "viewer/scene/lighting.h"
 #include "viewer/scene/transfer_segments.h"
 
@@ -388,7 +388,7 @@ static cw_status draw_cells(projection *p, cw_error *err)
 }
 
 cw_status cwi_uneven_projection_draw(const cwi_frame *frame, const cwi_cell_tree *tree,
-                              const double *depths, cw_picture *picture, cw_error *err)
+                                     const double *depths, cw_picture *picture, cw_error *err)
 {
     if (frame->scene.linear_opacity)
         return cwi_fail(err, CW_ERR_UNSUPPORTED,

@@ -1,10 +1,10 @@
 /* Cells as convex solids in eye space: tetrahedra with a linear field, and boxes with a
  * trilinear one. */
-#ifndef VIEWER_CPU_PROJECTED_SOLIDS_H
-#define VIEWER_CPU_PROJECTED_SOLIDS_H
+#ifndef VIEWER_PROJECTION_PROJECTED_SOLIDS_H
+#define VIEWER_PROJECTION_PROJECTED_SOLIDS_H
 
-#include "viewer/cpu/cell_map.h"
-#include "viewer/cpu/cell_tree.h"
+#include "viewer/rays/cell_map.h"
+#include "viewer/rays/cell_tree.h"
 #include "viewer/scene/frame_setup.h"
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
 /* Interpolates opacities over the triangles of projected cells. */
-#include "viewer/cpu/linear_cell.h"
+#include "viewer/projection/linear_cell.h"
 
 #include "core/geometry/affine.h"
 #include "core/geometry/vec3.h"

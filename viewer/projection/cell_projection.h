@@ -1,8 +1,8 @@
 /* Draws a volume by coherent projection [Wilhelms1991] on the CPU. */
-#ifndef VIEWER_CPU_CELL_PROJECTION_H
-#define VIEWER_CPU_CELL_PROJECTION_H
+#ifndef VIEWER_PROJECTION_CELL_PROJECTION_H
+#define VIEWER_PROJECTION_CELL_PROJECTION_H
 
-#include "viewer/cpu/cell_color.h"
+#include "viewer/projection/cell_color.h"
 #include "viewer/scene/block_ranges.h"
 
 #ifdef __cplusplus

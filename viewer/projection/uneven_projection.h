@@ -1,8 +1,8 @@
 /* Coherent projection of rectilinear and irregular cells, on the CPU. */
-#ifndef VIEWER_CPU_UNEVEN_PROJECTION_H
-#define VIEWER_CPU_UNEVEN_PROJECTION_H
+#ifndef VIEWER_PROJECTION_UNEVEN_PROJECTION_H
+#define VIEWER_PROJECTION_UNEVEN_PROJECTION_H
 
-#include "viewer/cpu/cell_tree.h"
+#include "viewer/rays/cell_tree.h"
 #include "viewer/scene/frame_setup.h"
 
 #ifdef __cplusplus
@@ -13,9 +13,10 @@ extern "C" {
  * frame needs them; unused on a rectilinear grid.
  * Returns CW_ERR_LIMIT for 2^32 cells or more; CW_ERR_UNSUPPORTED for linear_opacity;
  * CW_ERR_NO_MEMORY; CW_ERR_CANCELLED. */
-CW_NODISCARD cw_status cwi_uneven_projection_draw(const cwi_frame *frame, const cwi_cell_tree *tree,
-                                           const double *depths, cw_picture *picture,
-                                           cw_error *err);
+CW_NODISCARD cw_status cwi_uneven_projection_draw(const cwi_frame *frame,
+                                                  const cwi_cell_tree *tree,
+                                                  const double *depths, cw_picture *picture,
+                                                  cw_error *err);
 
 #ifdef __cplusplus
 }

@@ -1,7 +1,7 @@
 /* The cells a ray goes through, and the field along it: trilinear in a cell, so a cubic on a
  * line. */
-#ifndef VIEWER_CPU_RAY_TRAVERSAL_H
-#define VIEWER_CPU_RAY_TRAVERSAL_H
+#ifndef VIEWER_RAYS_RAY_TRAVERSAL_H
+#define VIEWER_RAYS_RAY_TRAVERSAL_H
 
 #include "viewer/scene/block_ranges.h"
 #include "viewer/scene/frame_setup.h"

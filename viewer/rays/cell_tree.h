@@ -1,10 +1,10 @@
 /* The cells of an irregular grid in a bounding volume hierarchy, with the gradients of its
  * samples. It depends on the grid alone, not on the view. */
-#ifndef VIEWER_CPU_CELL_TREE_H
-#define VIEWER_CPU_CELL_TREE_H
+#ifndef VIEWER_RAYS_CELL_TREE_H
+#define VIEWER_RAYS_CELL_TREE_H
 
 #include "core/geometry/bvh_segment.h"
-#include "viewer/cpu/ray_traversal.h"
+#include "viewer/rays/ray_traversal.h"
 #include "viewer/scene/frame_setup.h"
 
 #ifdef __cplusplus

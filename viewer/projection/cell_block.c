@@ -1,7 +1,7 @@
 /* Draws a block of cells in a tile of the picture. Faces are not cut into polygons: a sample is
  * in a cell's piece where its ray enters by one of the front faces and leaves by one of the back
  * faces, which six products tell. */
-#include "viewer/cpu/cell_block.h"
+#include "viewer/projection/cell_block.h"
 
 #include <math.h>
 

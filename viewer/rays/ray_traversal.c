@@ -1,6 +1,6 @@
 /* Walks a ray from cell to cell, and finds the field's values, gradients and cubics along
  * it. */
-#include "viewer/cpu/ray_traversal.h"
+#include "viewer/rays/ray_traversal.h"
 #include "viewer/scene/cell_lattice.h"
 
 #include "core/geometry/affine.h"

@@ -1,6 +1,6 @@
 /* Builds the tree of an irregular grid's cells: their kinds and boxes in parallel, then the
  * hierarchy. */
-#include "viewer/cpu/cell_tree.h"
+#include "viewer/rays/cell_tree.h"
 
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
@@ -9,7 +9,7 @@
 #include "core/volume/cell_shapes.h"
 #include "core/volume/sample_gradients.h"
 #include "core/volume/volume.h"
-#include "viewer/cpu/cell_map.h"
+#include "viewer/rays/cell_map.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* Computes the light that a cell adds to a ray, by tables of the transfer function. */
-#include "viewer/cpu/cell_color.h"
+#include "viewer/projection/cell_color.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"

@@ -1,6 +1,6 @@
 /* Goes along rays through rectilinear and irregular grids: finds the cells that a ray meets,
  * sorts them by entry, and fits cubics to the field in each. */
-#include "viewer/cpu/ray_spans.h"
+#include "viewer/rays/ray_spans.h"
 
 #include "core/base/memory.h"
 #include "core/geometry/cubic.h"

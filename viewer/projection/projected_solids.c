@@ -1,6 +1,6 @@
 /* Makes convex solids of cells: cuts irregular ones into tetrahedra [Shirley1990] that fit
  * together, and takes boxes of rectilinear grids as they are. */
-#include "viewer/cpu/projected_solids.h"
+#include "viewer/projection/projected_solids.h"
 
 #include "core/geometry/affine.h"
 #include "core/geometry/vec3.h"

@@ -1,9 +1,9 @@
 /* A block of cells as coherent projection [Wilhelms1991] draws it on the CPU: cells, and nodes
  * of similar cells, from front to back, each over the samples of a tile that it covers. */
-#ifndef VIEWER_CPU_CELL_BLOCK_H
-#define VIEWER_CPU_CELL_BLOCK_H
+#ifndef VIEWER_PROJECTION_CELL_BLOCK_H
+#define VIEWER_PROJECTION_CELL_BLOCK_H
 
-#include "viewer/cpu/linear_cell.h"
+#include "viewer/projection/linear_cell.h"
 #include "viewer/scene/block_ranges.h"
 
 #ifdef __cplusplus

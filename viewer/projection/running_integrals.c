@@ -1,5 +1,5 @@
 /* Sums up a transfer function's table, row by row, and takes means between values. */
-#include "viewer/cpu/running_integrals.h"
+#include "viewer/projection/running_integrals.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"

@@ -1,6 +1,6 @@
 /* Maps cells isoparametrically: weights and their derivatives, Newton's method for the inverse,
  * and the kinds of cells that need it. */
-#include "viewer/cpu/cell_map.h"
+#include "viewer/rays/cell_map.h"
 
 #include "core/geometry/vec3.h"
 

@@ -1,6 +1,6 @@
 /* Four floats at once, by the vectors of GCC and Clang. */
-#ifndef VIEWER_CPU_LANES_H
-#define VIEWER_CPU_LANES_H
+#ifndef VIEWER_RAYS_LANES_H
+#define VIEWER_RAYS_LANES_H
 
 #include <stdint.h>
 #include <string.h>

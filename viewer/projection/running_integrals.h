@@ -1,7 +1,7 @@
 /* Running integrals of a transfer function: a segment of any length, along which the value
  * changes linearly, is the difference of two of them. */
-#ifndef VIEWER_CPU_RUNNING_INTEGRALS_H
-#define VIEWER_CPU_RUNNING_INTEGRALS_H
+#ifndef VIEWER_PROJECTION_RUNNING_INTEGRALS_H
+#define VIEWER_PROJECTION_RUNNING_INTEGRALS_H
 
 #include "viewer/scene/transfer_table.h"
 
