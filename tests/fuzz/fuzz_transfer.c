@@ -1,5 +1,5 @@
 /* Fuzzes the parser of transfer functions in JSON. */
-#include "viewer/scene/transfer_json.h"
+#include "viewer/settings/transfer_json.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 

@@ -4,7 +4,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
-#include "viewer/scene/json.h"
+#include "viewer/settings/json.h"
 
 #include <stdio.h>
 #include <string.h>

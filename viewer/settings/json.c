@@ -1,5 +1,5 @@
 /* Reads JSON files of up to 1 MiB, and checks their schema and keys. */
-#include "viewer/scene/json.h"
+#include "viewer/settings/json.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"

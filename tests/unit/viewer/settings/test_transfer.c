@@ -1,7 +1,7 @@
 /* Tests transfer functions: values between points, files and texts, errors, and presets. */
 #include "support/support.h"
 
-#include "viewer/scene/transfer_json.h"
+#include "viewer/settings/transfer_json.h"
 
 #include <locale.h>
 #include <math.h>

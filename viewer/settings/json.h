@@ -1,6 +1,6 @@
 /* Reads small files of settings in JSON, with errors that name the field or the line. */
-#ifndef VIEWER_SCENE_JSON_H
-#define VIEWER_SCENE_JSON_H
+#ifndef VIEWER_SETTINGS_JSON_H
+#define VIEWER_SETTINGS_JSON_H
 
 #include <cubewright/core.h>
 

@@ -1,6 +1,6 @@
 /* Parses transfer functions from bytes in memory. */
-#ifndef VIEWER_SCENE_TRANSFER_JSON_H
-#define VIEWER_SCENE_TRANSFER_JSON_H
+#ifndef VIEWER_SETTINGS_TRANSFER_JSON_H
+#define VIEWER_SETTINGS_TRANSFER_JSON_H
 
 #include <cubewright/transfer.h>
 

@@ -1,11 +1,11 @@
 /* Reads and writes transfer functions as JSON, by the schema "cubewright-transfer-1". */
 #define _GNU_SOURCE /* fmemopen */
-#include "viewer/scene/transfer_json.h"
+#include "viewer/settings/transfer_json.h"
 
 #include "core/base/atomic_file.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
-#include "viewer/scene/json.h"
+#include "viewer/settings/json.h"
 
 #include <math.h>
 #include <stdio.h>
