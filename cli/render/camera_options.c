@@ -2,6 +2,7 @@
  * turntable. */
 #include "cli/render/camera_options.h"
 
+#include "cli/inputs/scene_source.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 
@@ -42,19 +43,61 @@ static bool parse_angles(const char *text, double *azimuth, double *elevation)
            cwi_parse_double(&text, elevation) && *text == '\0';
 }
 
-const char *cli_camera_title(const cli_scene *args)
+/* Chooses a view for a box: from the front, but flat things are not seen edge-on. */
+static const char *choose_view(const double box[2][3])
 {
-    return is_json(args->camera) ? "{...}" : args->camera;
+    static const double FLAT = 0.3; /* of the second smallest size */
+    double size[3];
+    for (int a = 0; a < 3; a++)
+        size[a] = box[1][a] - box[0][a];
+    if (size[2] < FLAT * fmin(size[0], size[1]))
+        return "0,60";
+    return size[0] < FLAT * fmin(size[1], size[2]) ? "60,0" : "front";
 }
 
-static cw_fit_desc describe_camera(const cli_scene *args)
+static const char *camera_of(const cli_scene *args, const double box[2][3])
 {
-    cw_fit_desc fit = {.view = args->camera, .fov_deg = FOV, .margin = 0.04};
+    return args->camera ? args->camera : choose_view(box);
+}
+
+const char *cli_camera_title(const cli_scene *args, const double box[2][3])
+{
+    const char *camera = camera_of(args, box);
+    return is_json(camera) ? "{...}" : camera;
+}
+
+static cw_status add_visible(const cw_volume *volume, const cw_transfer *transfer, int threads,
+                             double box[2][3], cw_error *err)
+{
+    double low[3], high[3];
+    cw_status st = cw_transfer_box(volume, transfer, threads, low, high, err);
+    for (int a = 0; a < 3 && st == CW_OK; a++) {
+        box[0][a] = fmin(box[0][a], low[a]);
+        box[1][a] = fmax(box[1][a], high[a]);
+    }
+    return st;
+}
+
+cw_status cli_find_seen_box(const cw_volume *volume, const cw_mesh *mesh, cw_mode mode,
+                            const cw_transfer *transfer, int threads, double box[2][3],
+                            bool *found, cw_error *err)
+{
+    const bool blends =
+        mode != CW_MODE_MESH && mode != CW_MODE_SLICES && !cw_mode_is_intensity(mode);
+    const bool is_trimmed = volume && blends && cw_mode_draws(CW_MODE_COMPOSITE, volume);
+    *found = cli_find_box(is_trimmed ? NULL : volume, mesh, box) || is_trimmed;
+    return is_trimmed ? add_visible(volume, transfer, threads, box, err) : CW_OK;
+}
+
+static cw_fit_desc describe_camera(const cli_scene *args, const double box[2][3])
+{
+    const char *camera = camera_of(args, box);
+    cw_fit_desc fit = {.view = camera, .fov_deg = FOV, .margin = 0.04};
     if (args->fov.given)
         fit.fov_deg = args->fov.value;
     if (args->ortho)
         fit.fov_deg = 0;
-    if (parse_angles(args->camera, &fit.azimuth_deg, &fit.elevation_deg))
+    if (parse_angles(camera, &fit.azimuth_deg, &fit.elevation_deg))
         fit.view = "front";
     return fit;
 }
@@ -79,8 +122,9 @@ static cw_status check_turns(const cli_turns *turns, cw_error *err)
 
 cw_status cli_check_camera(const cli_scene *args, const cli_turns *turns, cw_error *err)
 {
+    static const double box[2][3] = {{0, 0, 0}, {1, 1, 1}};
     cw_camera camera;
-    cw_fit_desc fit = describe_camera(args);
+    cw_fit_desc fit = describe_camera(args, box);
     cw_status st = check_turns(turns, err);
     if (st != CW_OK)
         return st;
@@ -92,10 +136,10 @@ cw_status cli_check_camera(const cli_scene *args, const cli_turns *turns, cw_err
     if (args->fov.given && !(args->fov.value > 0 && args->fov.value < 180))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--fov %g: 0 to 180 degrees were expected",
                         args->fov.value);
-    if (is_whole(args->camera) && (args->ortho || args->fov.given))
+    if (args->camera && is_whole(args->camera) && (args->ortho || args->fov.given))
         return cwi_fail(err, CW_ERR_ARGUMENT, "%s is a complete camera; %s cannot change it",
-                        cli_camera_title(args), args->ortho ? "--ortho" : "--fov");
-    if (is_whole(args->camera))
+                        cli_camera_title(args, box), args->ortho ? "--ortho" : "--fov");
+    if (args->camera && is_whole(args->camera))
         return is_json(args->camera) ? read_camera(args->camera, &camera, err) : CW_OK;
     fit.max[0] = fit.max[1] = fit.max[2] = 1;
     return cw_camera_fit(&fit, &camera, err);
@@ -133,12 +177,12 @@ cw_status cli_find_camera(const cli_scene *args, const cli_turns *turns, size_t 
                           const double box[2][3], double aspect, cw_camera *camera,
                           cw_error *err)
 {
-    cw_fit_desc fit = describe_camera(args);
+    cw_fit_desc fit = describe_camera(args, box);
     cw_status st;
     fit.aspect = aspect;
     memcpy(fit.min, box[0], sizeof fit.min);
     memcpy(fit.max, box[1], sizeof fit.max);
-    if (is_whole(args->camera)) {
+    if (args->camera && is_whole(args->camera)) {
         st = read_camera(args->camera, camera, err);
         if (st == CW_OK && n)
             st = cw_camera_turn(camera, camera->up, cli_turn_angle(turns, n), err);

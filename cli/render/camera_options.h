@@ -9,6 +9,12 @@ typedef struct cli_turns {
     cli_number orbit; /* degrees from the first to the last; default: all round */
 } cli_turns;
 
+/* Box that a camera sees: around what is visible of a volume in modes that blend, around all of
+ * it in others, and around a mesh. volume, mesh: NULL for none. false: there is nothing. */
+CW_NODISCARD cw_status cli_find_seen_box(const cw_volume *volume, const cw_mesh *mesh,
+                                         cw_mode mode, const cw_transfer *transfer, int threads,
+                                         double box[2][3], bool *found, cw_error *err);
+
 /* Fails for a camera, an angle or a zoom that is none; files are not looked at. */
 CW_NODISCARD cw_status cli_check_camera(const cli_scene *args, const cli_turns *turns,
                                         cw_error *err);
@@ -19,8 +25,9 @@ CW_NODISCARD cw_status cli_find_camera(const cli_scene *args, const cli_turns *t
                                        const double box[2][3], double aspect, cw_camera *camera,
                                        cw_error *err);
 
-/* Returns a title for the camera: its view, angles or file. */
-const char *cli_camera_title(const cli_scene *args);
+/* Returns a title for the camera: its view, angles or file; the view that is chosen for a box
+ * where none was requested. */
+const char *cli_camera_title(const cli_scene *args, const double box[2][3]);
 
 /* How far turn n has gone, in degrees. */
 double cli_turn_angle(const cli_turns *turns, size_t n);

@@ -295,10 +295,15 @@ static cw_status make_scene(cli_pictures *p, size_t turn, cw_error *err)
     p->scene = (cw_scene){.width = args->size.n[0] / part, .height = args->size.n[1] / part};
     p->scene.samples = args->samples ? (int)args->samples : draws_volume(p) ? 1 : MESH_SAMPLES;
     p->scene.progress = cli_progress((double)p->source.mesh.triangle_count / 1e6, "Mtriangle");
-    if (!p->has_box)
+    cw_status st = CW_OK;
+    if (!p->has_box && p->source.series.count > 1) /* what is visible moves */
         p->has_box = cli_find_box(subject.volume, subject.mesh, p->box);
-    cw_status st = cli_find_camera(&args->scene, &args->turns, turn, (const double(*)[3])p->box,
-                                   aspect, &p->scene.camera, err);
+    else if (!p->has_box)
+        st = cli_find_seen_box(subject.volume, subject.mesh, p->mode, &p->transfer,
+                               subject.threads, p->box, &p->has_box, err);
+    if (st == CW_OK)
+        st = cli_find_camera(&args->scene, &args->turns, turn, (const double(*)[3])p->box,
+                             aspect, &p->scene.camera, err);
     return st == CW_OK
                ? cli_make_scene(&args->scene, &subject, p->mode, &p->transfer, &p->scene, err)
                : st;
@@ -395,7 +400,9 @@ static void tell_picture(const cli_pictures *p, const cli_shot *shot)
                    shot->measured.delta_e_mean, shot->measured.delta_e_p99);
     else
         cli_result("%s: %zu x %zu, %s seen from %s; %.2f s\n", shot->path, p->args->size.n[0],
-                   p->args->size.n[1], what, cli_camera_title(&p->args->scene), shot->seconds);
+                   p->args->size.n[1], what,
+                   cli_camera_title(&p->args->scene, (const double(*)[3])p->box),
+                   shot->seconds);
 }
 
 /* With slices beside it. */

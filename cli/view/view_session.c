@@ -359,11 +359,19 @@ cw_status view_place_camera(view *v, const char *name, cw_error *err)
     cli_scene scene = v->state.args.scene;
     cw_camera camera;
     double box[2][3];
-    if (v->mode != CW_MODE_MESH || !cli_find_box(NULL, &v->source.mesh, box))
-        memcpy(box, v->box, sizeof box);
+    bool found = false;
+    const bool moves = v->source.series.count > 1;
     if (name)
         scene.camera = name;
     cw_status st = cli_check_camera(&scene, &one, err);
+    if (st == CW_OK && view_draws_volume(v))
+        st = view_need_transfer(v, err);
+    if (st == CW_OK && !(moves && view_draws_volume(v)))
+        st = cli_find_seen_box(view_draws_volume(v) ? cli_drawn(&v->source) : NULL,
+                               view_has_mesh(v) ? &v->source.mesh : NULL, v->mode, &v->transfer,
+                               (int)v->state.args.input.threads, box, &found, err);
+    if (!found)
+        memcpy(box, v->box, sizeof box);
     if (st == CW_OK)
         st = cli_find_camera(&scene, &one, 0, (const double(*)[3])box, aspect, &camera, err);
     if (st != CW_OK)

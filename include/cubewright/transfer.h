@@ -62,6 +62,19 @@ CW_NODISCARD CW_API cw_status cw_transfer_preset(const char *name,
                                                  const cw_statistics *statistics,
                                                  cw_transfer *transfer, cw_error *err);
 
+/* Finds the box, along the world's axes, of what a transfer function shows of a volume: a thing
+ * in a large volume can then be framed. A thousandth of the opacity may be outside at each end
+ * of an axis, so that specks do not count. If nothing is visible it is the box of all samples.
+ *
+ * volume     borrowed; evenly spaced
+ * low, high  corners, LPS millimetres
+ * Returns    CW_ERR_ARGUMENT as cw_transfer_check(), cw_volume_resolve(); CW_ERR_UNSUPPORTED for
+ *            other volumes; CW_ERR_NO_MEMORY
+ * Cost       a pass over the voxels; of more than 2^24, over evenly chosen rows */
+CW_NODISCARD CW_API cw_status cw_transfer_box(const cw_volume *volume,
+                                              const cw_transfer *transfer, int threads,
+                                              double low[3], double high[3], cw_error *err);
+
 /* Reads or writes a transfer function as JSON, in a file or as text:
  *     {"schema": "cubewright-transfer-1", "unit_mm": 1,
  *      "colors": [[-1000, "#000000"], [300, "#ffeedd"]],

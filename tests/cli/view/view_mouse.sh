@@ -18,8 +18,8 @@ view 'mode mip; mouse 160 240; press; mouse 260 190; lift; mouse 10 300; screens
       mouse 160 240; press left shift; mouse 200 250; lift; screenshot pan.png; press middle; mouse 160 240; lift middle;
       screenshot back.png; press right; mouse 160 200; lift right; screenshot dolly.png; key Enter; screenshot all.png;
       press left ctrl; mouse 200 160; lift; print shift; print opacity; undo; print shift; print opacity'
-view 'mode mip; screenshot front.png; orbit -40 -20; screenshot o.png; dolly 1.10517; screenshot n.png; pan 40 10; screenshot p.png;
-      pan -40 -10; screenshot b.png; dolly 1.2214; screenshot d.png'
+view 'mode mip; orbit -40 -20; screenshot o.png; dolly 1.10517; screenshot n.png; pan 40 10; screenshot p.png;
+      pan -40 -10; screenshot b.png; dolly 1.2214; screenshot d.png; reset; screenshot front.png'
 alike orbit.png o.png
 alike near.png n.png
 alike pan.png p.png

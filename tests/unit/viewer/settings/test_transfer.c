@@ -472,6 +472,43 @@ static void maps_have_the_opacities_of_auto(void **state)
     cw_statistics_free(&s);
 }
 
+/* A block of voxels in a large, tilted volume, and a speck far from it, which is not framed. */
+static void boxes_are_around_what_is_visible(void **state)
+{
+    (void)state;
+    cw_error err = {0};
+    cw_volume v;
+    double low[3], high[3], one[3], corner[3];
+    const cw_transfer t = {.opacity_count = 2, .opacities = {{99, 0}, {100, 0.5f}}};
+    assert_ok(cw_volume_alloc(&v, CW_U8, (size_t[3]){60, 50, 40}, 1, 1, &err), err);
+    const double affine[3][4] = {{0, -2, 0, 10}, {1, 0, 0, 20}, {0, 0, 3, -5}};
+    memcpy(v.affine, affine, sizeof affine);
+    uint8_t *voxels = cw_volume_voxels(&v);
+    for (size_t k = 10; k < 20; k++)
+        for (size_t j = 30; j < 45; j++)
+            for (size_t i = 5; i < 25; i++)
+                voxels[(k * 50 + j) * 60 + i] = 200;
+    voxels[(39 * 50 + 1) * 60 + 58] = 255;
+    assert_ok(cw_transfer_box(&v, &t, 0, low, high, &err), err);
+    assert_ok(cw_transfer_box(&v, &t, 1, one, corner, &err), err);
+    assert_memory_equal(low, one, sizeof low);
+    assert_memory_equal(high, corner, sizeof high);
+    const double expected[2][3] = {{10 - 2 * 45, 20 + 4, -5 + 3 * 9},
+                                   {10 - 2 * 29, 20 + 25, -5 + 3 * 20}};
+    for (int a = 0; a < 3; a++) {
+        assert_near(low[a], expected[0][a], 1e-9);
+        assert_near(high[a], expected[1][a], 1e-9);
+    }
+    const cw_transfer nothing = {.opacity_count = 1, .opacities = {{0, 0}}};
+    assert_ok(cw_transfer_box(&v, &nothing, 0, low, high, &err), err);
+    assert_near(high[1], 20 + 59, 1e-9);
+    assert_near(low[0], 10 - 2 * 49, 1e-9);
+    cw_volume_free(&v);
+
+    const cw_volume points = {.data = voxels, .dim = {4, 1, 1}, .cells = &(cw_cells){0}};
+    assert_true(cw_transfer_box(&points, &t, 0, low, high, &err) != CW_OK);
+}
+
 #define CASE(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
 
 int main(void)
@@ -484,7 +521,7 @@ int main(void)
         CASE(too_many_points_are_refused),      CASE(ct_is_told_by_its_air),
         CASE(windows_leave_out_rare_values),    CASE(maps_have_the_opacities_of_auto),
         CASE(presets_fit_odd_values),           CASE(auto_leaves_out_what_is_around_things),
-        CASE(ct_presets_stand_still),
+        CASE(ct_presets_stand_still),           CASE(boxes_are_around_what_is_visible),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
