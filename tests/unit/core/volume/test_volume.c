@@ -344,6 +344,7 @@ static void joined_statistics_are_those_of_the_whole(void **state)
     assert_int_equal(joined.bin_count, all.bin_count);
     assert_memory_equal(joined.bins, all.bins, all.bin_count * sizeof *all.bins);
     cw_statistics_free(&joined);
+    cw_statistics_free(&all);
 
     /* of floats and integers: a bin counts what its middle is within */
     const cw_volume floats = {
