@@ -112,6 +112,14 @@ cw_picture test_draw(cw_renderer *r, const cw_scene *scene)
     return picture;
 }
 
+void test_shear(cw_volume *v)
+{
+    v->affine[0][0] *= -1; /* mirrored */
+    v->affine[0][3] *= -1;
+    v->affine[0][1] = 0.4 * v->affine[1][1];
+    v->affine[0][3] -= 0.4 * v->affine[1][1] * (double)(v->dim[1] - 1) / 2;
+}
+
 test_gap test_compare(const cw_picture *a, const cw_picture *b)
 {
     test_gap gap = {0};

@@ -16,6 +16,9 @@ int test_renderer_close(void **state);
 void test_field(cw_volume *volume, size_t nx, size_t ny, size_t nz, const double spacing[3],
                 double (*value)(const double p[3], const double q[3]));
 
+/* Mirrors a volume along x, and shears it along y, around its middle. */
+void test_shear(cw_volume *volume);
+
 /* Fields: 1 everywhere; q along x; the product of all three; six Gaussians and a ripple. */
 double test_constant(const double p[3], const double q[3]);
 double test_ramp(const double p[3], const double q[3]);

@@ -102,14 +102,6 @@ static void errors_are_not_above_those_of_opengl(void **state)
     }
 }
 
-static void shear(cw_volume *v)
-{
-    v->affine[0][0] *= -1; /* mirrored */
-    v->affine[0][3] *= -1;
-    v->affine[0][1] = 0.4 * v->affine[1][1];
-    v->affine[0][3] -= 0.4 * v->affine[1][1] * (double)(v->dim[1] - 1) / 2;
-}
-
 enum {
     TINY,
     HUGE_WORLD,
@@ -149,7 +141,7 @@ static void make_field(variant *v, int setting)
                setting == ONE_LAYER ? test_ramp : test_blobs);
     float *voxels = cw_volume_voxels(&v->volume);
     if (setting == SHEARED)
-        shear(&v->volume);
+        test_shear(&v->volume);
     if (setting == NODATA) {
         v->volume.has_nodata = true;
         v->volume.nodata = -7;

@@ -150,14 +150,6 @@ static void no_jump_in_degenerate_views(void **state)
     cw_volume_free(&blobs);
 }
 
-static void shear(cw_volume *v)
-{
-    v->affine[0][0] *= -1; /* mirrored */
-    v->affine[0][3] *= -1;
-    v->affine[0][1] = 0.4 * v->affine[1][1];
-    v->affine[0][3] -= 0.4 * v->affine[1][1] * (double)(v->dim[1] - 1) / 2;
-}
-
 /* Worlds of any scale, spacing and handedness, light, gradients, fog, planes: as
  * ray casting. */
 static void settings_agree_with_ray_casting(void **state)
@@ -177,7 +169,7 @@ static void settings_agree_with_ray_casting(void **state)
         if (n == 3)
             soft.unit_mm = 1;
         if (n == 4 || n == 11)
-            shear(&blobs);
+            test_shear(&blobs);
         if (n == 6 || n == 7)
             scene.lit = true;
         if (n == 8) {
