@@ -93,6 +93,7 @@ typedef struct view {
     const char *opening; /* is being read; else NULL */
     cli_source source;
     cw_statistics statistics; /* of the volume, over all its steps */
+    double level;             /* between two classes of these values */
     cw_extractor *extractor, *coarse;
     cw_volume thinned;  /* what coarse extracts from */
     cw_mesh old_mesh;   /* was drawn until now: its address must not come again */

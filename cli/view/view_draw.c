@@ -125,7 +125,7 @@ static cw_status space_scene(view *v, const render_args *args, cw_mode mode,
         .volume = v->has_volume && mode != CW_MODE_MESH ? cli_drawn(&v->source) : NULL,
         .whole = v->source.is_mesh ? NULL : &v->source.volume.whole,
         .mesh = view_has_mesh(v) && v->source.mesh.triangle_count ? &v->source.mesh : NULL,
-        .level = v->has_volume ? cli_class_level(&v->statistics) : 0,
+        .level = v->level,
         .threads = (int)args->input.threads};
     scene->camera = v->state.camera;
     scene->lean = !v->is_saving;

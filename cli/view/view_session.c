@@ -88,7 +88,7 @@ void view_close(view *v)
 /* Between the two classes of values; of a level set 0. */
 double view_suggest_iso(const view *v)
 {
-    return v->source.is_level_set ? 0 : cli_class_level(&v->statistics);
+    return v->source.is_level_set ? 0 : v->level;
 }
 
 /* Chooses the mode, by the input where none was requested, and an isovalue for meshes. */
@@ -131,9 +131,11 @@ static cw_status read_step(view *v, size_t step, cw_error *err)
     if (s->is_mesh)
         return CW_OK;
     cw_status st = cli_read_step(s, &v->state.args.input, step, err);
-    if (st == CW_OK && !v->statistics.bins)
+    if (st == CW_OK && !v->statistics.bins) {
         st = cli_find_statistics(s, &v->state.args.input, step, CLI_TRANSFER_BINS,
                                  &v->statistics, err);
+        v->level = cli_class_level(&v->statistics);
+    }
     if (st != CW_OK)
         return st;
     v->has_volume = cli_need_drawable(s, &v->state.args.input, &why) == CW_OK;
