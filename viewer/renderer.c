@@ -8,6 +8,7 @@
 #include "viewer/cpu/cpu_draw.h"
 #include "viewer/cpu/cpu_mesh.h"
 #include "viewer/gl/gl.h"
+#include "viewer/scene/gradient_volume.h"
 
 #include <string.h>
 
@@ -18,6 +19,7 @@ struct cw_renderer {
     bool has_no_gl;                    /* it could not be opened */
     bool drew_on_cpu;                  /* the last picture */
     cwi_cpu cpu;
+    cwi_gradient_volume gradients;
 };
 
 /* Loads the module and opens a context, once. */
@@ -56,7 +58,7 @@ void cw_renderer_free(cw_renderer *r)
     if (r && r->gl)
         r->functions->close(r->gl);
     if (r)
-        cwi_cpu_forget(&r->cpu);
+        cw_renderer_forget(r);
     cwi_free(r);
 }
 
@@ -70,6 +72,7 @@ void cw_renderer_forget(cw_renderer *r)
     if (r->gl)
         r->functions->forget(r->gl);
     cwi_cpu_forget(&r->cpu);
+    cwi_gradient_volume_free(&r->gradients);
 }
 
 /* Returns true if GL has no hardware: Mesa's software renderers. */
@@ -142,6 +145,8 @@ cw_status cw_render(cw_renderer *renderer, const cw_scene *scene, cw_picture *pi
     cw_picture fine = {0};
     *picture = (cw_picture){0};
     cw_status st = cwi_frame_init(&frame, scene, err);
+    if (st == CW_OK)
+        st = cwi_gradient_volume_take(&renderer->gradients, &frame, err);
     if (st == CW_OK)
         st = cw_picture_alloc(&fine, frame.scene.width, frame.scene.height, err);
     if (st == CW_OK)

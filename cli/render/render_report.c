@@ -19,6 +19,28 @@ static void put_camera(cli_json *j, const cw_camera *c)
     cli_json_close(j, '}');
 }
 
+/* Writes what a transfer function has for gradients, if it has something. */
+static void put_gradients(cli_json *j, const cw_transfer *t)
+{
+    if (t->gradient_count > 0) {
+        cli_json_open(j, "gradients", '[');
+        for (size_t n = 0; n < t->gradient_count; n++)
+            cli_json_numbers(
+                j, NULL, (double[2]){t->gradients[n].value, (double)t->gradients[n].opacity},
+                2);
+        cli_json_close(j, ']');
+    }
+    if (t->index_count > 0) {
+        cli_json_open(j, "indices", '[');
+        for (size_t n = 0; n < t->index_count; n++)
+            cli_json_numbers(
+                j, NULL, (double[2]){t->indices[n].value, (double)t->indices[n].index}, 2);
+        cli_json_close(j, ']');
+    }
+    if (t->surface_mm > 0)
+        cli_json_number(j, "surface_mm", t->surface_mm);
+}
+
 static void put_transfer(cli_json *j, const cw_transfer *t)
 {
     cli_json_open(j, "transfer", '{');
@@ -38,6 +60,7 @@ static void put_transfer(cli_json *j, const cw_transfer *t)
         cli_json_numbers(
             j, NULL, (double[2]){t->opacities[n].value, (double)t->opacities[n].opacity}, 2);
     cli_json_close(j, ']');
+    put_gradients(j, t);
     cli_json_close(j, '}');
 }
 
@@ -69,6 +92,7 @@ static void put_settings(cli_json *j, const cw_scene *s)
                                  (double)m->shininess},
                      4);
     cli_json_number(j, "depth_cue", (double)s->depth_cue);
+    cli_json_number(j, "gradient_smoothing", s->gradient_sigma);
     cli_json_number(j, "step_length", s->step_vox);
     cli_json_bool(j, "cell_steps", s->cell_steps);
     cli_json_bool(j, "preintegration", !s->no_preintegration);

@@ -133,6 +133,25 @@ static void warn_of_nothing(const cw_transfer *t, const cw_statistics *s)
                 s->min, s->max);
 }
 
+/* Reads factors of the gradient: pairs G:F by comma. */
+static cw_status change_gradients(const char *text, cw_transfer *t, cw_error *err)
+{
+    char item[CWI_ITEM_BYTES], separator = 0;
+    const char *rest = text;
+    t->gradient_count = 0;
+    do {
+        double place, factor;
+        const char *at = item;
+        if (!cwi_next_item(&rest, &separator, item) || !cwi_parse_double(&at, &place) ||
+            *at++ != ':' || !cwi_parse_double(&at, &factor) || *at ||
+            t->gradient_count == CW_TRANSFER_POINTS)
+            return cwi_fail(err, CW_ERR_ARGUMENT,
+                            "--gradient-opacity '%s': expected G:F,..., such as 0:0.1,1:1", text);
+        t->gradients[t->gradient_count++] = (cw_opacity_point){place, (float)factor};
+    } while (separator);
+    return CW_OK;
+}
+
 cw_status cli_change_transfer(const cli_scene *args, cw_transfer *t, cw_error *err)
 {
     const double factor = args->opacity.given ? args->opacity.value : 1;
@@ -144,6 +163,22 @@ cw_status cli_change_transfer(const cli_scene *args, cw_transfer *t, cw_error *e
     for (size_t n = 0; n < t->opacity_count; n++) {
         t->opacities[n].value += args->shift.value;
         t->opacities[n].opacity = (float)fmin(factor * (double)t->opacities[n].opacity, 1);
+    }
+    for (size_t n = 0; n < t->index_count; n++)
+        t->indices[n].value += args->shift.value;
+    if (args->surface_width.given)
+        t->surface_mm = args->surface_width.value;
+    if (args->surface_width.given && !(t->surface_mm > 0))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--surface-width %g: a length was expected",
+                        t->surface_mm);
+    if (args->surface_width.given && t->index_count == 0)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--surface-width is for transfer functions with materials, such as "
+                        "--tf ct-materials");
+    if (args->gradient_opacity) {
+        cw_status st = change_gradients(args->gradient_opacity, t, err);
+        if (st != CW_OK)
+            return st;
     }
     return cw_transfer_check(t, err);
 }
@@ -397,6 +432,11 @@ static cw_status add_steps(const cli_scene *args, const cw_volume *v, double lev
     if (args->stop_opacity.given && !(args->stop_opacity.value > 0))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--stop-opacity %g: above 0 was expected",
                         args->stop_opacity.value);
+    if (args->gradient_smoothing.given &&
+        !(args->gradient_smoothing.value >= 0 && args->gradient_smoothing.value <= 16))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--gradient-smoothing %g: 0 to 16 was expected",
+                        args->gradient_smoothing.value);
+    s->gradient_sigma = args->gradient_smoothing.value;
     s->step_vox = args->step.given ? args->step.value : STEP_VOX;
     s->stop_opacity = s->mode == CW_MODE_VBUFFER ? 0.99999f : 0.9999f;
     s->cell_steps = args->cell_steps;

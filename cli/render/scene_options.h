@@ -9,8 +9,8 @@
 typedef struct cli_scene {
     int mode;             /* 0: by what there is to see; else 1 + cw_mode */
     cw_mode reference_of; /* of a side of --compare; no option */
-    const char *transfer, *camera, *lights, *background, *color, *clips, *planes;
-    cli_number shift, opacity, fov, zoom;
+    const char *transfer, *gradient_opacity, *camera, *lights, *background, *color, *clips, *planes;
+    cli_number shift, opacity, surface_width, gradient_smoothing, fov, zoom;
     bool ortho;
     bool lit;
     cli_number ambient, diffuse, specular, shininess, depth_cue;

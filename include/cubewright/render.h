@@ -154,6 +154,9 @@ typedef struct cw_scene {
     size_t light_count;             /* default: one, white, from the eye; for meshes without a
                                        material, studio lights */
     cw_material material;
+    double gradient_sigma; /* standard deviation of a Gaussian that smooths the field before
+                              its gradient is taken, in units of the smallest spacing, at most
+                              16, on evenly spaced volumes; default 0: none */
     bool lit;        /* volumes are shaded by their gradient; meshes always are */
     float depth_cue; /* 0 to 1: the fraction of the background at the far end of the visible
                         range, rising linearly from 0 at the near end */

@@ -59,9 +59,12 @@ static cw_status take_tree(cwi_cpu *cpu, const cwi_frame *f, cw_error *err)
             cpu->cells = *f->volume.cells;
         }
     }
-    if (st == CW_OK && (f->scene.lit || f->transfer.gradient_count > 0))
-        st = cwi_cell_tree_need_gradients(f, &cpu->tree, err);
-    return st;
+    if (st != CW_OK || !cwi_frame_needs_gradients(f))
+        return st;
+    if (cpu->gradient_version != f->gradient_version)
+        cwi_cell_tree_drop_gradients(&cpu->tree);
+    cpu->gradient_version = f->gradient_version;
+    return cwi_cell_tree_need_gradients(f, &cpu->tree, err);
 }
 
 static cw_status draw_volume(cwi_cpu *cpu, const cwi_frame *f, const double *depths,

@@ -15,6 +15,7 @@ extern "C" {
 typedef struct cwi_cpu {
     cw_volume key;
     cw_cells cells;     /* those of key, if it has them */
+    size_t gradient_version; /* of the tree's gradients */
     cwi_ranges ranges;  /* of key, when it has blocks */
     cwi_cell_tree tree; /* of key, when it has kinds */
     cwi_cell_tables cell_tables;

@@ -66,7 +66,7 @@ void cwi_reference_make(const cwi_frame *frame, const cwi_cell_tree *tree, cwi_r
     cwi_knots_make(&frame->transfer, &r->knots);
     make_rule(&r->rule);
     cwi_frame_gradient_matrix(frame, r->to_eye);
-    r->has_gradients = frame->scene.lit || frame->transfer.gradient_count > 0;
+    r->has_gradients = cwi_frame_needs_gradients(frame);
     cwi_field_make(frame, tree, &r->knots, true, &r->field);
 }
 
@@ -108,8 +108,8 @@ static double emitted_color(const medium *m, double x, double color[3])
     for (int a = 0; a < 3 && m->reference->has_gradients; a++)
         gradient[a] = cwi_cubic_at(m->gradient[a], x);
     if (f->transfer.gradient_count > 0)
-        extinction *= cw_transfer_gradient_factor(
-            &f->transfer, hypot(hypot(gradient[0], gradient[1]), gradient[2]) / f->unit_mm);
+        extinction *=
+            cwi_frame_gradient_factor(f, hypot(hypot(gradient[0], gradient[1]), gradient[2]));
     if (f->scene.lit)
         cwi_lighting_shade(m->lighting, gradient, color);
     const double cue = cwi_frame_cue(f, m->depth + x * m->depth_rise);

@@ -161,8 +161,7 @@ static void change_by_gradient(const state *s, const double gradient[3], lanes *
     const cwi_frame *f = s->b->frame;
     double color[3] = {(double)(*glow)[0], (double)(*glow)[1], (double)(*glow)[2]};
     if (f->transfer.gradient_count > 0)
-        (*glow)[3] *= (float)cw_transfer_gradient_factor(
-            &f->transfer, sqrt(cwi_dot(gradient, gradient)) / f->unit_mm);
+        (*glow)[3] *= (float)cwi_frame_gradient_factor(f, sqrt(cwi_dot(gradient, gradient)));
     if (f->scene.lit) {
         cwi_lighting_shade(s->lighting, gradient, color);
         for (int a = 0; a < 3; a++)
@@ -326,7 +325,7 @@ static void gradients_at_points(state *s, const char *p, lanes even, lanes odd,
                                 const lanes at[3], double gradients[2][3])
 {
     lanes g[3][2], along[3];
-    if (!fetch_gradients(s->b, &s->walk, p, even, odd, g)) {
+    if (s->b->frame->gradient_version || !fetch_gradients(s->b, &s->walk, p, even, odd, g)) {
         find_gradients(s);
         for (int a = 0; a < 3; a++) {
             gradients[0][a] = cwi_cubic_at(s->gradient[a], FIRST_POINT);
@@ -522,7 +521,7 @@ static cw_status set_up(vbuffer *b, const cwi_cell_tree *tree, cw_error *err)
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)
             b->rows_to_eye[r][c] = (float)(b->to_eye[r][c] / scale);
-    b->has_gradients = b->frame->scene.lit || b->frame->transfer.gradient_count > 0;
+    b->has_gradients = cwi_frame_needs_gradients(b->frame);
     cwi_field_make(b->frame, tree, &b->knots, false, &b->field);
     if (!b->is_even)
         return CW_OK;

@@ -41,7 +41,9 @@ typedef struct cwi_gl_volume {
     size_t edge;   /* as the scene had it */
     cwi_gl_texels kind;
     double scale, bias;
-    double range; /* of the scaled values, above 0; the unit of gradients */
+    double range; /* of the scaled values, above 0 */
+    size_t gradient_version; /* of the frame, when gradients were made */
+    double gradient_unit;    /* of gradients in textures: halves have few exponents */
     size_t brick_count;
     size_t texture_bytes; /* counted as taken */
     cwi_gl_brick *bricks;
@@ -52,7 +54,7 @@ typedef struct cwi_gl_volume {
 /* The transfer function on the GPU. */
 typedef struct cwi_gl_transfer {
     cw_transfer key;
-    double opacity_units;
+    double opacity_units, surface, gradient_unit;
     bool is_made;
     cwi_table table;
     GLuint rows, skip, segments, factor;

@@ -25,11 +25,15 @@ static void make_factor(cwi_gl *gl)
     const cw_transfer *t = &gl->transfer.key;
     float rows[CWI_FACTOR_ROWS];
     double end = t->gradient_count ? t->gradients[t->gradient_count - 1].value : 0;
+    if (gl->frame->surface > 0) /* strengths go to 1 */
+        end = 1;
     if (!(end > 0))
         end = 1;
     for (int n = 0; n < CWI_FACTOR_ROWS; n++)
         rows[n] = (float)cw_transfer_gradient_factor(t, end * n / (CWI_FACTOR_ROWS - 1));
-    gl->transfer.factor_end = end * gl->frame->unit_mm / gl->volume.range;
+    gl->transfer.factor_end =
+        gl->frame->surface > 0 ? end / (gl->frame->surface * gl->volume.gradient_unit)
+                               : end * gl->frame->unit_mm / gl->volume.gradient_unit;
     gl->transfer.factor = cwi_gl_texture(GL_TEXTURE_1D, CWI_UNIT_FACTOR, true);
     glTexImage1D(GL_TEXTURE_1D, 0, GL_R32F, CWI_FACTOR_ROWS, 0, GL_RED, GL_FLOAT, rows);
 }
@@ -51,6 +55,8 @@ static cw_status make_textures(cwi_gl *gl, cw_error *err)
     cwi_gl_transfer *t = &gl->transfer;
     t->key = gl->frame->transfer;
     t->opacity_units = gl->frame->opacity_units;
+    t->surface = gl->frame->surface;
+    t->gradient_unit = gl->volume.gradient_unit;
     cw_status st = cwi_table_make(gl->frame, &t->table, err);
     if (st != CW_OK)
         return st;
@@ -68,7 +74,8 @@ cw_status cwi_gl_take_transfer(cwi_gl *gl, cw_error *err)
     cwi_gl_transfer *t = &gl->transfer;
     cw_status st = CW_OK;
     if (!t->is_made || memcmp(&t->key, &gl->frame->transfer, sizeof t->key) != 0 ||
-        t->opacity_units != gl->frame->opacity_units) {
+        t->opacity_units != gl->frame->opacity_units ||
+        t->surface != gl->frame->surface || t->gradient_unit != gl->volume.gradient_unit) {
         cwi_gl_drop_transfer(gl);
         st = make_textures(gl, err);
     }

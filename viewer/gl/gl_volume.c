@@ -247,9 +247,18 @@ void cwi_gl_drop_volume(cwi_gl *gl)
     *g = (cwi_gl_volume){0};
 }
 
+/* Returns the unit of gradients that is best for a frame: they are about 1 in it. */
+static double find_gradient_unit(const cwi_gl_volume *g, const cwi_frame *f)
+{
+    return f->surface > 0 ? 1 : g->range;
+}
+
 static bool is_there(const cwi_gl_volume *g, const cwi_frame *f)
 {
     return g->bricks && g->edge == f->scene.texture_edge &&
+           (!cwi_frame_needs_gradients(f) ||
+            (g->gradient_version == f->gradient_version &&
+             g->gradient_unit == find_gradient_unit(g, f))) &&
            memcmp(&g->key, &f->volume, sizeof g->key) == 0;
 }
 
@@ -270,6 +279,8 @@ static cw_status make_volume(cwi_gl *gl, cw_error *err)
     g->kind = kind_of(&g->key);
     fit_wide(&g->key, range, &g->kind);
     g->range = range[1] - range[0];
+    g->gradient_version = gl->frame->gradient_version;
+    g->gradient_unit = find_gradient_unit(g, gl->frame);
     g->scale = g->key.slope * g->kind.scale;
     g->bias = g->key.slope * g->kind.bias + g->key.intercept;
     choose_edges(&g->key, &g->kind, g->edge, edge);
@@ -394,8 +405,8 @@ static bool put_gradients(const cw_volume *v, const cwi_gl_brick *b, double scal
 
 static cw_status upload_gradients(cwi_gl *gl, cwi_gl_brick *b, cw_error *err)
 {
-    const cw_volume *v = &gl->volume.key;
-    const double scale = v->slope / gl->volume.range; /* about 1: halves have few exponents */
+    const cw_volume *v = &gl->frame->gradient_volume;
+    const double scale = v->slope / gl->volume.gradient_unit;
     const GLsizei w = (GLsizei)b->count[0], h = (GLsizei)b->count[1];
     const size_t layer = b->count[0] * b->count[1] * GRADIENT_BYTES;
     const size_t step = layers_at_once(layer, b->count[2]);
@@ -433,7 +444,7 @@ static bool has_differences(const cwi_gl *gl)
 {
     const cwi_gl_volume *g = &gl->volume;
     const size_t *dim = g->key.dim;
-    return g->brick_count == 1 && !g->ranges.has_gaps &&
+    return g->brick_count == 1 && !g->ranges.has_gaps && !gl->frame->gradient_version &&
            (gl->frame->scene.lean || dim[0] * dim[1] * dim[2] > MAX_GRADIENTS);
 }
 

@@ -2,6 +2,7 @@
  * it. */
 #include "viewer/interact/pick_mesh.h"
 #include "viewer/interact/pick_volume.h"
+#include "viewer/scene/gradient_volume.h"
 #include "viewer/scene/slice.h"
 
 #include "core/base/status.h"
@@ -105,6 +106,7 @@ cw_status cw_pick(const cw_scene *scene, const double pixel[2], cw_picked *picke
                   cw_error *err)
 {
     cwi_frame f;
+    cwi_gradient_volume gradients = {0};
     memset(picked, 0, sizeof *picked);
     cw_status st = cwi_frame_init(&f, scene, err);
     if (st == CW_OK && !(isfinite(pixel[0]) && isfinite(pixel[1])))
@@ -116,5 +118,11 @@ cw_status cw_pick(const cw_scene *scene, const double pixel[2], cw_picked *picke
           at.y <= (double)f.scene.height))
         return CW_OK;
     cwi_frame_ray(&f, at.x, at.y, at.origin, at.direction);
-    return pick_nearest(&at, picked, err);
+    /* light does not count; the factor of gradients does */
+    f.scene.lit = false;
+    st = cwi_gradient_volume_take(&gradients, &f, err);
+    if (st == CW_OK)
+        st = pick_nearest(&at, picked, err);
+    cwi_gradient_volume_free(&gradients);
+    return st;
 }

@@ -51,7 +51,7 @@ static double extinction_at(const passage *p, const cwi_linear *l, const double 
         return extinction;
     const double g = hypot(hypot(cwi_cubic_at(gradient[0], x), cwi_cubic_at(gradient[1], x)),
                            cwi_cubic_at(gradient[2], x));
-    return extinction * cw_transfer_gradient_factor(&f->transfer, g / f->unit_mm);
+    return extinction * cwi_frame_gradient_factor(f, g);
 }
 
 /* Passes a step of the ray, in eye space: light falls by the optical depth. */

@@ -90,8 +90,9 @@ static void put_volume(const cwi_gl *gl, frame_block *b)
     const cwi_table *t = &gl->transfer.table;
     b->texels[0] = (float)(gl->volume.scale / (t->high - t->low));
     b->texels[1] = (float)((gl->volume.bias - t->low) / (t->high - t->low));
-    b->texels[2] = (float)(gl->volume.scale / gl->volume.range);
+    b->texels[2] = (float)(gl->volume.scale / gl->volume.gradient_unit);
     b->limits[1] = (float)gl->transfer.factor_end;
+    b->limits[2] = (float)(f->surface * gl->volume.gradient_unit);
 }
 
 static void put_frame(cwi_gl *gl)

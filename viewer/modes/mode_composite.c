@@ -38,7 +38,7 @@ static cw_status draw_composite_mode(cwi_gl *gl, void **state, cw_error *err)
     cw_status st = cwi_gl_need_skip(gl, err);
     if (st == CW_OK && has_segments)
         st = cwi_gl_need_segments(gl, s->step_vox, err);
-    if (st == CW_OK && (s->lit || gl->frame->transfer.gradient_count > 0))
+    if (st == CW_OK && cwi_frame_needs_gradients(gl->frame))
         st = cwi_gl_need_gradients(gl, &gradients, err);
     describe_shader(s, &gl->frame->transfer, has_segments, gradients, defines, sizeof defines);
     if (st == CW_OK)

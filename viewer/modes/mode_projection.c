@@ -333,7 +333,7 @@ static void draw_block(job *j, const cwi_gl_brick *brick, const size_t block[3])
         samples[a] = last_of(j, a, whole.count[a]) + 1;
     }
     float rows[SIDE * SIDE * SIDE];
-    cwi_lattice_load(j->frame, t, j->first, samples, rows);
+    cwi_lattice_load(&j->frame->volume, t, j->first, samples, rows);
     for (size_t n = 0, z = 0; z < samples[2]; z++)
         for (size_t y = 0; y < samples[1]; y++, n += samples[0])
             memcpy(j->samples + (z * SIDE + y) * SIDE, rows + n, samples[0] * sizeof *rows);
@@ -420,7 +420,7 @@ static void close_stream(job *j)
 static cw_status open_job(cwi_gl *gl, job *j, const char **gradients, cw_error *err)
 {
     const cw_scene *s = &gl->frame->scene;
-    const bool needs_gradients = s->lit || gl->frame->transfer.gradient_count > 0;
+    const bool needs_gradients = cwi_frame_needs_gradients(gl->frame);
     j->gl = gl;
     j->err = err;
     j->frame = gl->frame;

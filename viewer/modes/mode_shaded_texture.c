@@ -91,11 +91,11 @@ static bool is_boundary(const cw_volume *v, const cw_transfer *t, const size_t a
 
 /* Returns the number of a voxel's direction, or of the table's last row where there is none;
  * and whether the cell above the voxel is at a boundary. */
-static uint16_t normal_of(const cw_volume *v, const shaded_state *t,
+static uint16_t normal_of(const cw_volume *v, const cw_volume *gradients, const shaded_state *t,
                           const double to_world[3][3], const size_t at[3])
 {
     double gradient[3], world[3];
-    cwi_lattice_gradient(v, at, gradient);
+    cwi_lattice_gradient(gradients, at, gradient);
     for (int r = 0; r < 3; r++)
         world[r] = cwi_dot(to_world[r], gradient);
     const size_t n = cwi_directions_nearest(&t->directions, world);
@@ -114,7 +114,7 @@ static void put_layer(const cwi_gl *gl, const shaded_state *t, const cwi_gl_bric
     for (size_t j = 0; j < b->count[1]; j++)
         for (size_t i = 0; i < b->count[0]; i++) {
             const size_t at[3] = {b->first[0] + i, b->first[1] + j, b->first[2] + k};
-            out[j * b->count[0] + i] = normal_of(v, t, (const double(*)[3])to_world, at);
+            out[j * b->count[0] + i] = normal_of(v, &gl->frame->gradient_volume, t, (const double(*)[3])to_world, at);
         }
 }
 

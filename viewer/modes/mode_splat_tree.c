@@ -58,8 +58,8 @@ static bool is_too_near(const cwi_splats *s, const double eye[3], const float si
     return s->frame->perspective && -eye[2] <= s->radius * (1 + (double)most);
 }
 
-/* Returns the slope of the means of the nodes on both sides, as a fraction of the volume's
- * range, per voxel. */
+/* Returns the slope of the means of the nodes on both sides, or of their indices, in the unit of
+ * gradients, per voxel. */
 static float slope_at(const walk *w, size_t level, const size_t node[3], int axis)
 {
     size_t low[3], high[3];
@@ -74,7 +74,10 @@ static float slope_at(const walk *w, size_t level, const size_t node[3], int axi
     if (low[axis] == high[axis] || !(x->mass > 0) || !(y->mass > 0))
         return 0;
     const size_t away = (high[axis] - low[axis]) << (level + 1);
-    return (float)((double)(y->mean - x->mean) / (double)away / w->splats.gl->volume.range);
+    const cw_transfer *t = &w->splats.frame->transfer;
+    const double rise =
+        cw_transfer_index(t, (double)y->mean) - cw_transfer_index(t, (double)x->mean);
+    return (float)(rise / (double)away / w->splats.gl->volume.gradient_unit);
 }
 
 /* Finds a node's box; it ends half a voxel beyond its voxels, or at the volume's border. */

@@ -129,7 +129,7 @@ static cw_status draw_texture_mode(cwi_gl *gl, void **state, cw_error *err)
     texture_state *t = *state;
     if (!t)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for slices");
-    if (s->lit || gl->frame->transfer.gradient_count > 0)
+    if (cwi_frame_needs_gradients(gl->frame))
         st = cwi_gl_need_gradients(gl, &gradients, err);
     if (st == CW_OK && s->colors_first)
         st = need_classes(gl, t, err);

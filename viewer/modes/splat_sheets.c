@@ -138,7 +138,7 @@ static void measure_splats(cwi_splats *s)
     /* of a ball around the ellipsoid, or around the rectangle */
     s->radius = s->frame->scene.splat_width * s->kernel->reach * sqrt(sum);
     s->axis = choose_axis(s->frame);
-    s->needs_gradients = s->frame->scene.lit || s->frame->transfer.gradient_count > 0;
+    s->needs_gradients = cwi_frame_needs_gradients(s->frame);
     cwi_lattice_eye(s->frame, s->eye);
     start_bounds(s);
 }
@@ -304,7 +304,7 @@ void cwi_splats_voxel(cwi_splats *s, const size_t at[3])
     cwi_splat splat = {0};
     const cwi_frame *f = s->frame;
     const double place[3] = {(double)at[0], (double)at[1], (double)at[2]};
-    cwi_lattice_load(f, &s->gl->transfer.table, at, (size_t[]){1, 1, 1}, &splat.value);
+    cwi_lattice_load(&f->volume, &s->gl->transfer.table, at, (size_t[]){1, 1, 1}, &splat.value);
     if (!cwi_visible_any(&s->visible, splat.value, splat.value) ||
         !cwi_splats_keep(s, place, eye))
         return;
@@ -312,9 +312,10 @@ void cwi_splats_voxel(cwi_splats *s, const size_t at[3])
     if (!(splat.mass > 0))
         return;
     if (s->needs_gradients) {
-        cwi_lattice_gradient(&f->volume, at, gradient);
+        cwi_lattice_gradient(&f->gradient_volume, at, gradient);
         for (int a = 0; a < 3; a++)
-            splat.gradient[a] = (float)(gradient[a] * f->volume.slope / s->gl->volume.range);
+            splat.gradient[a] = (float)(gradient[a] * f->gradient_volume.slope /
+                                        s->gl->volume.gradient_unit);
     }
     for (int a = 0; a < 3; a++)
         splat.at[a] = (float)at[a];

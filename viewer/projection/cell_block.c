@@ -118,13 +118,13 @@ bool cwi_tile_is_live(const cwi_tile *t, const cwi_tile_box *box)
     return any & row_bits(box);
 }
 
-/* Loads the samples of the block, and those around it: beyond the volume's border its last ones
- * are repeated.
+/* Loads the samples of the block from the frame's volume or from that of its gradients, and
+ * those around it: beyond the volume's border its last ones are repeated.
  * ends  the first and last number along each axis that are samples of the volume */
-static void load_samples(const block *b, float samples[WIDE * WIDE * WIDE], int ends[3][2])
+static void load_samples(const block *b, const cw_volume *v,
+                         float samples[WIDE * WIDE * WIDE], int ends[3][2])
 {
     const cwi_cell_model *m = b->tile->model;
-    const cw_volume *v = &m->frame->volume;
     const int around = m->needs_gradients ? 1 : 0;
     float read[WIDE * WIDE * WIDE];
     size_t first[3], count[3];
@@ -137,7 +137,7 @@ static void load_samples(const block *b, float samples[WIDE * WIDE * WIDE], int 
         first[a] = from - (size_t)before;
         count[a] = (size_t)(ends[a][1] - ends[a][0] + 1);
     }
-    cwi_lattice_load(m->frame, &m->tables->table, first, count, read);
+    cwi_lattice_load(v, &m->tables->table, first, count, read);
     for (int z = 0; z < WIDE; z++)
         for (int y = 0; y < WIDE; y++) {
             const int at[2] = {y, z};
@@ -185,11 +185,14 @@ static void load_values(block *b)
 {
     float samples[WIDE * WIDE * WIDE];
     int ends[3][2];
-    load_samples(b, samples, ends);
+    const cwi_frame *f = b->tile->model->frame;
+    load_samples(b, &f->volume, samples, ends);
     for (int n = 0; n < SIDE * SIDE; n++)
         memcpy(b->values + n * SIDE,
                samples + ((n / SIDE + 1) * WIDE + n % SIDE + 1) * WIDE + 1,
                SIDE * sizeof *b->values);
+    if (b->tile->model->needs_gradients && f->gradient_version)
+        load_samples(b, &f->gradient_volume, samples, ends);
     if (b->tile->model->needs_gradients)
         find_gradients(b, samples, ends);
 }

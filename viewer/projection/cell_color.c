@@ -81,7 +81,7 @@ void cwi_cell_model_make(const cwi_frame *f, const cwi_cell_tables *tables, cwi_
     const cw_scene *s = &f->scene;
     double matrix[3][3];
     *m = (cwi_cell_model){.frame = f, .tables = tables};
-    m->needs_gradients = s->lit || f->transfer.gradient_count > 0;
+    m->needs_gradients = cwi_frame_needs_gradients(f);
     cwi_frame_gradient_matrix(f, matrix);
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)
@@ -217,14 +217,16 @@ static inline cwi_lanes shade_color(const cwi_cell_model *m, const cwi_cell_ray 
     const cw_scene *s = &m->frame->scene;
     const float opacity = color[3], size_sq = dot_lanes(gradient, gradient);
     cwi_lanes light = s->material.ambient * color;
-    const cwi_lanes normal = gradient / sqrtf(size_sq);
+    const float size = sqrtf(size_sq);
+    const cwi_lanes normal = gradient / size;
+    const float strength = (float)cwi_frame_surface_strength(m->frame, (double)size);
     for (size_t n = 0; n < s->light_count && size_sq > 0; n++) {
         const float diffuse =
             s->material.diffuse * fabsf(dot_lanes(normal, m->light_direction[n]));
         const float gloss = fabsf(dot_lanes(normal, r->halfway[n]));
         const float specular = s->material.specular * opacity *
                                raise_power(gloss < 1 ? gloss : 1, s->material.shininess);
-        light += m->light_color[n] * (diffuse * color + specular);
+        light += strength * m->light_color[n] * (diffuse * color + specular);
     }
     light[3] = opacity;
     return light;
@@ -248,9 +250,9 @@ static inline glow apply_gradient(const cwi_cell_model *m, const cwi_cell_ray *r
 {
     const cwi_frame *f = m->frame;
     if (f->transfer.gradient_count > 0) {
-        const double length = sqrt((double)dot_lanes(gradient, gradient)) / f->unit_mm;
+        const double length = sqrt((double)dot_lanes(gradient, gradient));
         g = opaque_glow(g.color / g.color[3],
-                        g.depth * (float)cw_transfer_gradient_factor(&f->transfer, length));
+                        g.depth * (float)cwi_frame_gradient_factor(f, length));
     }
     if (f->scene.lit)
         g.color = shade_color(m, r, gradient, g.color);

@@ -16,7 +16,7 @@ void cwi_solids_init(cwi_solids *s, const cwi_frame *f, const cwi_cell_tree *tre
     *s = (cwi_solids){.frame = f,
                       .tree = v->cells ? tree : NULL,
                       .count = v->cells ? v->cells->count : 1,
-                      .has_gradients = f->scene.lit || f->transfer.gradient_count > 0};
+                      .has_gradients = cwi_frame_needs_gradients(f)};
     cwi_frame_gradient_matrix(f, s->gradient_to_eye);
     for (int a = 0; a < 3; a++) {
         s->count *= !v->cells && v->dim[a] > 1 ? v->dim[a] - 1 : 1;
@@ -138,13 +138,14 @@ bool cwi_solids_measure(const cwi_solids *s, size_t cell, double range[2], doubl
 
 static void load_gradient(const cwi_solids *s, const size_t at[3], double eye[3])
 {
+    const cw_volume *v = &s->frame->gradient_volume;
     double g[3];
     for (int a = 0; a < 3 && s->tree; a++)
         g[a] = (double)s->tree->gradients[at[0]][a];
     if (!s->tree)
-        cwi_lattice_gradient(&s->frame->volume, at, g);
+        cwi_lattice_gradient(v, at, g);
     for (int a = 0; a < 3 && !s->tree; a++) {
-        g[a] *= s->frame->volume.slope;
+        g[a] *= v->slope;
         g[a] = isfinite(g[a]) ? g[a] : 0;
     }
     for (int a = 0; a < 3; a++)

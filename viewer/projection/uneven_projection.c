@@ -245,8 +245,7 @@ static void blend_segment(blending *b, const fragment *f, double near, double fa
     if (!(whole[3] > 0))
         return;
     if (frame->transfer.gradient_count > 0)
-        scale *= cw_transfer_gradient_factor(
-            &frame->transfer, sqrt(cwi_dot(gradient, gradient)) / frame->unit_mm);
+        scale *= cwi_frame_gradient_factor(frame, sqrt(cwi_dot(gradient, gradient)));
     if (frame->scene.lit) { /* light is linear in the colour */
         cwi_lighting_shade(&b->lighting, gradient, base);
         cwi_lighting_shade(&b->lighting, gradient, gain);

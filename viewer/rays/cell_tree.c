@@ -163,7 +163,7 @@ static double find_largest(const cw_volume *v)
 
 cw_status cwi_cell_tree_need_gradients(const cwi_frame *f, cwi_cell_tree *tree, cw_error *err)
 {
-    const cw_volume *v = &f->volume;
+    const cw_volume *v = &f->gradient_volume;
     double factor;
     if (tree->gradients)
         return CW_OK;
@@ -185,6 +185,12 @@ cw_status cwi_cell_tree_need_gradients(const cwi_frame *f, cwi_cell_tree *tree, 
     else
         cwi_free(kept);
     return st;
+}
+
+void cwi_cell_tree_drop_gradients(cwi_cell_tree *tree)
+{
+    cwi_free(tree->gradients);
+    tree->gradients = NULL;
 }
 
 void cwi_cell_tree_free(cwi_cell_tree *tree)

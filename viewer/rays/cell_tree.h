@@ -28,10 +28,13 @@ typedef struct cwi_cell_tree {
 CW_NODISCARD cw_status cwi_cell_tree_make(const cwi_frame *frame, const cwi_ray *only,
                                           cwi_cell_tree *tree, cw_error *err);
 
-/* Computes the gradients, if they are not there. CW_ERR_NO_MEMORY. Cost: 12 bytes a sample,
+/* Computes the gradients of the frame's gradient volume, if they are not there. CW_ERR_NO_MEMORY. Cost: 12 bytes a sample,
  * and 96 more meanwhile. */
 CW_NODISCARD cw_status cwi_cell_tree_need_gradients(const cwi_frame *frame, cwi_cell_tree *tree,
                                                     cw_error *err);
+
+/* Frees the gradients alone. */
+void cwi_cell_tree_drop_gradients(cwi_cell_tree *tree);
 
 /* Prepares the part of a ray that is drawn, from its first to its last place, for the tree's
  * boxes. */

@@ -22,7 +22,7 @@ void cwi_field_make(const cwi_frame *frame, const cwi_cell_tree *tree, const cwi
         (cwi_field){.frame = frame,
                     .tree = tree,
                     .knots = knots,
-                    .has_gradients = frame->scene.lit || frame->transfer.gradient_count > 0,
+                    .has_gradients = cwi_frame_needs_gradients(frame),
                     .tolerance = is_exact ? 1e-8 : 1e-4};
     cwi_frame_gradient_matrix(frame, m);
     for (int n = 0; n < 9;

@@ -31,7 +31,7 @@ static ptrdiff_t cells_along(const cw_volume *v, int axis)
 void cwi_walk_start(cwi_walk *w, const cwi_frame *f, const cwi_ray *ray, int part)
 {
     *w =
-        (cwi_walk){.volume = &f->volume, .t = ray->parts[part][0], .stop = ray->parts[part][1]};
+        (cwi_walk){.volume = &f->volume, .gradient_volume = &f->gradient_volume, .t = ray->parts[part][0], .stop = ray->parts[part][1]};
     memcpy(w->index, ray->index, sizeof w->index);
     memcpy(w->slope, ray->slope, sizeof w->slope);
     for (int a = 0; a < 3; a++) {
@@ -152,7 +152,7 @@ void cwi_walk_cubic(const cwi_walk *w, const double v[8], double c[4])
 
 void cwi_walk_gradients(const cwi_walk *w, double g[3][8])
 {
-    const cw_volume *v = w->volume;
+    const cw_volume *v = w->gradient_volume;
     for (int n = 0; n < 8; n++) {
         size_t at[3];
         for (int a = 0; a < 3; a++)

@@ -31,7 +31,7 @@ void cwi_ray_make(const cwi_frame *frame, double x, double y, double depth, cwi_
 
 /* A walk from cell to cell. An axis of one voxel has one cell, from -0.5 to 0.5. */
 typedef struct cwi_walk {
-    const cw_volume *volume;
+    const cw_volume *volume, *gradient_volume;
     double index[3], slope[3], inverse[3];
     double next[3];            /* where the ray meets the next plane of voxels of each axis */
     ptrdiff_t cell[3], end[3]; /* end: the cell beyond the last along the ray */

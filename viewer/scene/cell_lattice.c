@@ -85,10 +85,9 @@ static void (*const load_functions[CW_TYPE_COUNT])(const voxel_row *r, float *to
 #undef ROW
 };
 
-void cwi_lattice_load(const cwi_frame *frame, const cwi_table *table, const size_t first[3],
+void cwi_lattice_load(const cw_volume *v, const cwi_table *table, const size_t first[3],
                       const size_t count[3], float *out)
 {
-    const cw_volume *v = &frame->volume;
     voxel_row row = {.stride = v->stride[0], .count = count[0]};
     row.scale = v->slope / (table->high - table->low);
     row.bias = (v->intercept - table->low) / (table->high - table->low);

@@ -32,7 +32,7 @@ bool cwi_visible_any(const cwi_visible *visible, float low, float high);
 
 /* Loads the coordinates in the table of the voxels of a box (x fastest); NaN: without a
  * value. */
-void cwi_lattice_load(const cwi_frame *frame, const cwi_table *table, const size_t first[3],
+void cwi_lattice_load(const cw_volume *volume, const cwi_table *table, const size_t first[3],
                       const size_t count[3], float *out);
 
 /* Returns the cells that a voxel represents: of the eight eighths around it, those in cells of

@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_SIZE = 16384, MAX_SAMPLES = 4, MESH_UNITS = 256 };
+enum { MAX_SIZE = 16384, MAX_SAMPLES = 4, MAX_SIGMA = 16, MESH_UNITS = 256 };
 
 /* Narrower blobs leave holes between voxels; wider ones cover thousands of samples. */
 static const double MIN_SPLAT_WIDTH = 0.2, MAX_SPLAT_WIDTH = 4;
@@ -85,6 +85,9 @@ static cw_status fill_in(cw_scene *s, cw_error *err)
     if (!(s->depth_cue >= 0 && s->depth_cue <= 1))
         return cwi_fail(err, CW_ERR_ARGUMENT, "a depth cue of %g: expected 0 to 1",
                         (double)s->depth_cue);
+    if (!(s->gradient_sigma >= 0 && s->gradient_sigma <= MAX_SIGMA))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "gradients smoothed over %g voxels: expected 0 to %d",
+                        s->gradient_sigma, MAX_SIGMA);
     if (!(s->tree_error >= 0 && s->tree_error <= 1))
         return cwi_fail(err, CW_ERR_ARGUMENT, "an error of nodes of %g: expected 0 to 1",
                         s->tree_error);
@@ -192,6 +195,9 @@ static cw_status take_volume(cwi_frame *f, cw_error *err)
         return st;
     f->transfer = *f->scene.transfer;
     f->opacity_units = f->transfer.unit_mm > 0 ? f->transfer.unit_mm / f->unit_mm : 1;
+    f->gradient_volume = f->volume;
+    if (f->transfer.index_count > 0)
+        f->surface = f->transfer.surface_mm > 0 ? f->transfer.surface_mm / f->unit_mm : 2;
     return CW_OK;
 }
 
@@ -438,6 +444,23 @@ void cwi_frame_to_world(const cwi_frame *f, const double eye[3], double world[3]
 double cwi_frame_extinction(const cwi_frame *f, double opacity)
 {
     return -log1p(-fmin(opacity, CWI_MAX_OPACITY)) / f->opacity_units;
+}
+
+bool cwi_frame_needs_gradients(const cwi_frame *f)
+{
+    return f->scene.lit || f->transfer.gradient_count > 0;
+}
+
+double cwi_frame_surface_strength(const cwi_frame *f, double length)
+{
+    return f->surface > 0 ? fmin(length * f->surface, 1) : 1;
+}
+
+double cwi_frame_gradient_factor(const cwi_frame *f, double length)
+{
+    return cw_transfer_gradient_factor(&f->transfer, f->surface > 0
+                                                         ? cwi_frame_surface_strength(f, length)
+                                                         : length / f->unit_mm);
 }
 
 double cwi_frame_cue(const cwi_frame *f, double depth)

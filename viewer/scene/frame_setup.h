@@ -44,6 +44,13 @@ typedef struct cwi_frame {
                              has its own mode here */
     double opacity_units; /* length to which the transfer function's opacities refer */
 
+    /* Gradients are those of this volume, on the same grid: `volume` itself, or its indices,
+     * smoothed or not; see gradient_volume.h. */
+    cw_volume gradient_volume;
+    size_t gradient_version; /* 0: it is `volume`; else another number for other contents */
+    double surface; /* length, in units, over which an index changes by 1 at a surface of full
+                       strength; 0: there are no indices, and all surfaces are of that */
+
     /* Planes that clip, in eye space: n . p >= d is kept. */
     double clips[CW_MAX_CLIPS][4];
 } cwi_frame;
@@ -78,6 +85,15 @@ void cwi_frame_to_world(const cwi_frame *frame, const double eye[3], double worl
  * function. The opacity is limited to CWI_MAX_OPACITY. */
 #define CWI_MAX_OPACITY (1 - 1e-6)
 double cwi_frame_extinction(const cwi_frame *frame, double opacity);
+
+/* Returns true if light or the transfer function needs gradients. */
+bool cwi_frame_needs_gradients(const cwi_frame *frame);
+
+/* Returns the strength of a surface, 0 to 1, where the gradient has a length, per unit. */
+double cwi_frame_surface_strength(const cwi_frame *frame, double length);
+
+/* Returns the transfer function's factor of the extinction for a length of the gradient. */
+double cwi_frame_gradient_factor(const cwi_frame *frame, double length);
 
 /* Returns the fraction of light that is left at a depth: 1 near, 1 - depth_cue far. */
 double cwi_frame_cue(const cwi_frame *frame, double depth);

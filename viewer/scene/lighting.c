@@ -20,7 +20,9 @@ static double raise_power(double x, double power)
 
 void cwi_lighting_make(const cwi_frame *f, const double direction[3], cwi_lighting *l)
 {
-    *l = (cwi_lighting){.material = f->scene.material, .count = f->scene.light_count};
+    *l = (cwi_lighting){.material = f->scene.material,
+                         .count = f->scene.light_count,
+                         .surface = f->surface};
     for (size_t n = 0; n < l->count; n++) {
         const cw_light *light = &f->scene.lights[n];
         memcpy(l->direction[n], light->direction, sizeof l->direction[n]);
@@ -37,6 +39,8 @@ void cwi_lighting_shade(const cwi_lighting *l, const double gradient[3], double 
 {
     double n[3] = {gradient[0], gradient[1], gradient[2]};
     double light[3];
+    const double length = sqrt(cwi_dot(n, n));
+    const double strength = l->surface > 0 ? fmin(length * l->surface, 1) : 1;
     const bool has_side = n[0] != 0 || n[1] != 0 || n[2] != 0;
     cwi_to_unit(n);
     for (int c = 0; c < 3; c++)
@@ -47,7 +51,7 @@ void cwi_lighting_shade(const cwi_lighting *l, const double gradient[3], double 
         const double specular =
             (double)l->material.specular * raise_power(gloss, (double)l->material.shininess);
         for (int c = 0; c < 3; c++)
-            light[c] += l->color[i][c] * (diffuse * color[c] + specular);
+            light[c] += strength * l->color[i][c] * (diffuse * color[c] + specular);
     }
     memcpy(color, light, sizeof light);
 }

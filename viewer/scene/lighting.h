@@ -13,6 +13,7 @@ extern "C" {
 typedef struct cwi_lighting {
     cw_material material;
     size_t count;
+    double surface; /* as the frame's */
     double direction[CW_MAX_LIGHTS][3], halfway[CW_MAX_LIGHTS][3]; /* of unit length, or 0 */
     double color[CW_MAX_LIGHTS][3];
 } cwi_lighting;

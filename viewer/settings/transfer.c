@@ -54,16 +54,40 @@ static cw_status check_colors(const cw_transfer *t, cw_error *err)
     return CW_OK;
 }
 
+static cw_status check_indices(const cw_transfer *t, cw_error *err)
+{
+    for (size_t n = 0; n < t->index_count; n++) {
+        const cw_index_point *p = &t->indices[n];
+        cw_status st =
+            check_value("indices", n, p->value, n ? t->indices[n - 1].value : -INFINITY, err);
+        if (st != CW_OK)
+            return st;
+        if (!isfinite(p->index))
+            return cwi_fail(err, CW_ERR_ARGUMENT, "point %zu of 'indices' is not a number", n);
+    }
+    return CW_OK;
+}
+
+static cw_status check_length(const char *name, double length, cw_error *err)
+{
+    if (length == 0 || (isnormal(length) && length > 0))
+        return CW_OK;
+    return cwi_fail(err, CW_ERR_ARGUMENT, "'%s' is %g: a length was expected", name, length);
+}
+
 cw_status cw_transfer_check(const cw_transfer *t, cw_error *err)
 {
     if (t->color_count > CW_TRANSFER_POINTS || t->opacity_count > CW_TRANSFER_POINTS ||
-        t->gradient_count > CW_TRANSFER_POINTS)
+        t->gradient_count > CW_TRANSFER_POINTS || t->index_count > CW_TRANSFER_POINTS)
         return cwi_fail(err, CW_ERR_ARGUMENT, "a transfer function has at most %d points",
                         CW_TRANSFER_POINTS);
-    if (!(t->unit_mm == 0 || (isnormal(t->unit_mm) && t->unit_mm > 0)))
-        return cwi_fail(err, CW_ERR_ARGUMENT, "'unit_mm' is %g: a length was expected",
-                        t->unit_mm);
-    cw_status st = check_colors(t, err);
+    cw_status st = check_length("unit_mm", t->unit_mm, err);
+    if (st == CW_OK)
+        st = check_length("surface_mm", t->surface_mm, err);
+    if (st == CW_OK)
+        st = check_colors(t, err);
+    if (st == CW_OK)
+        st = check_indices(t, err);
     if (st == CW_OK)
         st = check_opacities("opacities", t->opacities, t->opacity_count, err);
     if (st == CW_OK)
@@ -86,6 +110,18 @@ static size_t find_place(const void *points, size_t row, size_t count, double va
         *share = (value / 2 - VALUE(n - 1) / 2) / (VALUE(n) / 2 - VALUE(n - 1) / 2);
 #undef VALUE
     return n;
+}
+
+double cw_transfer_index(const cw_transfer *t, double value)
+{
+    double share;
+    if (t->index_count == 0)
+        return value;
+    const cw_index_point *p = t->indices;
+    const size_t n = find_place(p, sizeof *p, t->index_count, value, &share);
+    const double low = (double)p[n ? n - 1 : 0].index;
+    const double high = (double)p[n < t->index_count ? n : t->index_count - 1].index;
+    return low + share * (high - low);
 }
 
 static double opacity_at(const cw_opacity_point *p, size_t count, double value)

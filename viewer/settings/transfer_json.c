@@ -85,25 +85,118 @@ static cw_status take_opacities(const json_t *root, const char *key, cw_opacity_
     return st;
 }
 
-/* Takes the unit. A unit that is present must be valid; only a missing one is the volume's. */
-static cw_status take_unit(const json_t *root, cw_transfer *t, cw_error *err)
+static cw_status take_indices(const json_t *root, cw_transfer *t, cw_error *err)
 {
-    cw_status st = cwi_json_number(root, "unit_mm", &t->unit_mm, err);
-    if (st == CW_OK && json_object_get(root, "unit_mm") && !(t->unit_mm > 0))
-        return cwi_fail(err, CW_ERR_FORMAT, "'unit_mm' is %g: a length was expected",
-                        t->unit_mm);
+    const json_t *list = json_object_get(root, "indices"), *index = NULL;
+    cw_status st = check_list(list, "indices", err);
+    for (size_t n = 0; st == CW_OK && n < json_array_size(list); n++) {
+        cw_index_point *p = &t->indices[t->index_count++];
+        st = take_point(json_array_get(list, n), "indices", n, "index", &p->value, &index, err);
+        if (st == CW_OK && !json_is_number(index))
+            st = cwi_fail(err, CW_ERR_FORMAT, "point %zu of 'indices': a number was expected", n);
+        p->index = (float)json_number_value(index);
+    }
+    return st;
+}
+
+/* Takes a material's four values: null is an open end. */
+static bool take_ends(const json_t *list, double values[4])
+{
+    if (!json_is_array(list) || json_array_size(list) != 4)
+        return false;
+    for (size_t n = 0; n < 4; n++) {
+        const json_t *end = json_array_get(list, n);
+        if (!json_is_null(end) && !json_is_number(end))
+            return false;
+        values[n] = json_is_number(end) ? json_number_value(end) : n < 2 ? -INFINITY : INFINITY;
+    }
+    return true;
+}
+
+static cw_status take_material(const json_t *object, size_t n, cw_material_class *m,
+                               cw_error *err)
+{
+    static const char *const keys[] = {"name", "values", "color", "opacity", "index"};
+    const char *key;
+    const json_t *value;
+    double opacity = 0, index = 0;
+    size_t known = 0;
+    if (!json_is_object(object))
+        return cwi_fail(err, CW_ERR_FORMAT, "material %zu: an object, {...}, was expected", n);
+    json_object_foreach((json_t *)object, key, value)
+    {
+        for (known = 0; known < 5 && strcmp(key, keys[known]) != 0; known++) {
+        }
+        if (known == 5)
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "material %zu has the unknown field '%.60s'; there are name, values, "
+                            "color, opacity, index",
+                            n, key);
+    }
+    if (!take_ends(json_object_get(object, "values"), m->values))
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "material %zu: 'values' was expected to be [v, v, v, v], null for an "
+                        "open end",
+                        n);
+    if (!parse_color(json_object_get(object, "color"), m->color))
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "material %zu: 'color' was expected, such as \"#ffeedd\"", n);
+    cw_status st = cwi_json_number(object, "opacity", &opacity, err);
+    if (st == CW_OK)
+        st = cwi_json_number(object, "index", &index, err);
+    m->opacity = (float)opacity;
+    m->index = (float)index;
+    return st;
+}
+
+/* Takes classes of materials, which stand for colours, opacities and indices. */
+static cw_status take_materials(const json_t *root, cw_transfer *t, cw_error *err)
+{
+    static const char *const curves[] = {"colors", "opacities", "indices"};
+    cw_material_class materials[CW_MAX_MATERIALS] = {0};
+    const json_t *list = json_object_get(root, "materials");
+    const size_t count = json_array_size(list);
+    cw_status st = CW_OK;
+    if (!list)
+        return CW_OK;
+    for (int n = 0; n < 3; n++)
+        if (json_object_get(root, curves[n]))
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "'materials' and '%s': one of them was expected", curves[n]);
+    if (!json_is_array(list) || count < 1 || count > CW_MAX_MATERIALS)
+        return cwi_fail(err, CW_ERR_FORMAT, "'materials' was expected to be a list of 1 to %d",
+                        CW_MAX_MATERIALS);
+    for (size_t n = 0; n < count && st == CW_OK; n++)
+        st = take_material(json_array_get(list, n), n, &materials[n], err);
+    if (st == CW_OK && cw_transfer_set_materials(t, materials, count, err) != CW_OK)
+        st = CW_ERR_FORMAT;
+    return st;
+}
+
+/* Takes a length. One that is present must be valid; a missing one is chosen by the volume. */
+static cw_status take_length(const json_t *root, const char *key, double *length, cw_error *err)
+{
+    cw_status st = cwi_json_number(root, key, length, err);
+    if (st == CW_OK && json_object_get(root, key) && !(*length > 0))
+        return cwi_fail(err, CW_ERR_FORMAT, "'%s' is %g: a length was expected", key, *length);
     return st;
 }
 
 static cw_status take_all(const json_t *root, cw_transfer *t, cw_error *err)
 {
-    cw_status st = take_unit(root, t, err);
+    cw_status st = take_length(root, "unit_mm", &t->unit_mm, err);
+    if (st == CW_OK)
+        st = take_length(root, "surface_mm", &t->surface_mm, err);
     if (st == CW_OK)
         st = take_colors(root, t, err);
     if (st == CW_OK)
         st = take_opacities(root, "opacities", t->opacities, &t->opacity_count, err);
     if (st == CW_OK)
         st = take_opacities(root, "gradients", t->gradients, &t->gradient_count, err);
+    if (st == CW_OK)
+        st = take_indices(root, t, err);
+    if (st == CW_OK)
+        st = take_materials(root, t, err);
     if (st == CW_OK && cw_transfer_check(t, err) != CW_OK)
         st = CW_ERR_FORMAT;
     return st;
@@ -112,7 +205,8 @@ static cw_status take_all(const json_t *root, cw_transfer *t, cw_error *err)
 cw_status cwi_transfer_parse(const char *bytes, size_t size, cw_transfer *transfer,
                              cw_error *err)
 {
-    static const char *const keys[] = {"unit_mm", "colors", "opacities", "gradients", NULL};
+    static const char *const keys[] = {"unit_mm",    "colors",  "opacities", "gradients",
+                                       "surface_mm", "indices", "materials", NULL};
     cw_transfer t = {0};
     json_t *root;
     cw_status st = cwi_json_object(bytes, size, schema, keys, &root, err);
@@ -166,6 +260,16 @@ static void put_opacities(FILE *out, const char *key, const cw_opacity_point *po
     fputc(']', out);
 }
 
+static void put_indices(FILE *out, const cw_transfer *t)
+{
+    char value[CWI_JSON_NUMBER], index[CWI_JSON_NUMBER];
+    fputs(",\n \"indices\": [", out);
+    for (size_t n = 0; n < t->index_count; n++)
+        fprintf(out, "%s[%s, %s]", n ? ", " : "", cwi_json_double(value, t->indices[n].value),
+                cwi_json_float(index, t->indices[n].index));
+    fputc(']', out);
+}
+
 static void put_transfer(FILE *out, const cw_transfer *t)
 {
     char number[CWI_JSON_NUMBER];
@@ -176,10 +280,14 @@ static void put_transfer(FILE *out, const cw_transfer *t)
     put_opacities(out, "opacities", t->opacities, t->opacity_count);
     if (t->gradient_count)
         put_opacities(out, "gradients", t->gradients, t->gradient_count);
+    if (t->index_count)
+        put_indices(out, t);
+    if (t->surface_mm > 0)
+        fprintf(out, ",\n \"surface_mm\": %s", cwi_json_double(number, t->surface_mm));
     fputs("}\n", out);
 }
 
-/* Formats a transfer function. 3 * 64 points of up to 70 bytes each always fit. */
+/* Formats a transfer function. 4 * 64 points of up to 70 bytes each always fit. */
 cw_status cw_transfer_format(const cw_transfer *transfer, char text[CW_TRANSFER_TEXT],
                              cw_error *err)
 {

@@ -168,6 +168,60 @@ static void make_ct_skin(const cw_statistics *s, cw_transfer *t)
     put_opacity(t, 0, 0.7);
 }
 
+/* Presets of materials. In Hounsfield units air, fat, soft tissue and bone have their own
+ * ranges [Drebin1988]; between them are mixtures. */
+static void make_ct_materials(const cw_statistics *s, cw_transfer *t)
+{
+    static const cw_material_class materials[] = {
+        {{-INFINITY, -INFINITY, -900, -150}, {0, 0, 0}, 0, 0},
+        {{-900, -150, -90, 20}, {0.94f, 0.78f, 0.50f}, 0.03f, 2},
+        {{-90, 20, 80, 600}, {0.80f, 0.36f, 0.30f}, 0.08f, 2.5f},
+        {{80, 600, INFINITY, INFINITY}, {0.98f, 0.95f, 0.87f}, 0.8f, 6}};
+    cw_error ignored;
+    (void)s;
+    t->unit_mm = 1;
+    if (cw_transfer_set_materials(t, materials, sizeof materials / sizeof *materials,
+                                  &ignored) != CW_OK)
+        *t = (cw_transfer){0};
+}
+
+/* Makes classes of surroundings, things, and dense things, of given colours: surroundings are
+ * clear. The inside of materials keeps `inside` of its extinction. */
+static void make_classes(const cw_statistics *s, const float colors[2][3],
+                         const double opacities[2], double inside, cw_transfer *t)
+{
+    const classes c = find_classes(s);
+    const double low = s->min + 0.5 * (c.first - s->min), fade = 0.5 * (c.first + c.second);
+    const double dense = c.second + 0.5 * (c.high - c.second);
+    const cw_material_class materials[] = {
+        {{-INFINITY, -INFINITY, low, fade}, {0}, 0, 0},
+        {{low, fade, c.second, dense},
+         {colors[0][0], colors[0][1], colors[0][2]},
+         (float)spread_opacity(s, opacities[0], 0.1),
+         2},
+        {{c.second, dense, INFINITY, INFINITY},
+         {colors[1][0], colors[1][1], colors[1][2]},
+         (float)spread_opacity(s, opacities[1], 0.05),
+         4}};
+    cw_error ignored;
+    if (cw_transfer_set_materials(t, materials, 3, &ignored) != CW_OK)
+        *t = (cw_transfer){0};
+    t->gradients[t->gradient_count++] = (cw_opacity_point){0, (float)inside};
+    t->gradients[t->gradient_count++] = (cw_opacity_point){1, 1};
+}
+
+static void make_mr_materials(const cw_statistics *s, cw_transfer *t)
+{
+    static const float colors[2][3] = {{0.78f, 0.52f, 0.42f}, {0.99f, 0.95f, 0.85f}};
+    make_classes(s, colors, (double[2]){0.8, 0.97}, 0.3, t);
+}
+
+static void make_metals(const cw_statistics *s, cw_transfer *t)
+{
+    static const float colors[2][3] = {{0.45f, 0.60f, 0.80f}, {0.95f, 0.75f, 0.25f}};
+    make_classes(s, colors, (double[2]){0.9, 0.999}, 0.15, t);
+}
+
 /* Makes a preset with tissue as a veil, and brighter parts of it dense. */
 static void make_mr(const cw_statistics *s, cw_transfer *t)
 {
@@ -385,7 +439,12 @@ static const struct {
     {"ct-bone", "bone, in Hounsfield units", false, make_ct_bone},
     {"ct-soft", "soft tissue over bone, in Hounsfield units", false, make_ct_soft},
     {"ct-skin", "skin, in Hounsfield units", false, make_ct_skin},
+    {"ct-materials", "air, fat, soft tissue and bone, in Hounsfield units", false,
+     make_ct_materials},
     {"mr", "tissue as a veil, what is bright in it dense", true, make_mr},
+    {"mr-materials", "tissue and bright tissue, as materials with surfaces", true,
+     make_mr_materials},
+    {"metals", "a light and a dense material, for industrial CT", true, make_metals},
     {"mip", "opaque greys from the median up, for vessels in mip", true, make_mip},
     {"grey", "opaque greys over the whole range", true, make_grey},
     {"window", "opaque greys for slices: percentiles, or soft tissue of CT", true, make_window},

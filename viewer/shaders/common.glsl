@@ -9,7 +9,7 @@ layout(std140) uniform Frame
     vec4 low, high;       // the volume in index space
     vec4 dim;             // samples; rows of the pre-integrated table
     vec4 texels;          // scale and bias from a texel to a table's coordinate
-    vec4 limits;          // opacity to stop at, factor's end
+    vec4 limits;          // opacity to stop at, factor's end, 1 / gradient of a full surface
     vec4 material;        // ambient, diffuse, specular, shininess
     vec4 light_direction[4], light_color[4];
     vec4 background[2]; // top, bottom
@@ -149,12 +149,13 @@ float gradient_factor(vec3 gradient)
 }
 
 // Shades a colour, on both sides; to_eye and the gradient are in eye space. Without a gradient:
-// ambient light.
+// ambient light. Surfaces of indices reflect by their strength.
 vec3 shade(vec3 color, vec3 gradient, vec3 to_eye)
 {
     float size2 = dot(gradient, gradient);
     vec3 n = gradient * (size2 > 0.0 ? inversesqrt(size2) : 0.0);
     vec3 light = material.x * color;
+    float strength = limits.z > 0.0 ? min(sqrt(size2) * limits.z, 1.0) : 1.0;
     for (int i = 0; i < counts.x; i++) {
         vec3 l = light_direction[i].xyz, h = l + to_eye;
         float diffuse = abs(dot(n, l));
@@ -163,7 +164,7 @@ vec3 shade(vec3 color, vec3 gradient, vec3 to_eye)
             float near = abs(dot(n, h)) * inversesqrt(max(dot(h, h), 1e-20));
             specular = near > 0.0 ? pow(near, material.w) : 0.0;
         }
-        light += light_color[i].rgb * (material.y * diffuse * color + material.z * specular);
+        light += strength * light_color[i].rgb * (material.y * diffuse * color + material.z * specular);
     }
     return light;
 }
