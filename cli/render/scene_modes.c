@@ -52,7 +52,7 @@ static const struct {
     {"threshold", ONE(LOCAL_MIP), false, false},
     {"texture-edge", RAYS | TEXTURES | ONE(SLICES), false, false},
     {"target", TEXTURES, false, false},
-    {"colors-first", TEXTURES, false, false},
+    {"colors-first", TEXTURES | ONE(REFERENCE), false, false},
     {"normals", ONE(SHADED_TEXTURE), false, false},
     {"boundary", ONE(SHADED_TEXTURE), false, false},
     {"linear-opacity", ONE(PROJECTION), false, false},

@@ -188,7 +188,8 @@ typedef struct cw_scene {
                                always have textures */
     size_t texture_edge; /* maximum edge of a 3D texture, in voxels; default: GL's maximum */
     cw_target target;    /* texture, shaded-texture: the pixel type for blending slices */
-    bool colors_first;   /* texture, shaded-texture: interpolate colours, not data */
+    bool colors_first;   /* texture, shaded-texture, reference on evenly spaced volumes:
+                            interpolate the colours and extinctions of voxels, not data */
     size_t normals;      /* shaded-texture: number of directions in the table, at most 8192;
                                default 1024. The mode is lit whether or not lit is set */
     bool mark_boundary;  /* shaded-texture: draw only cells at material boundaries: between

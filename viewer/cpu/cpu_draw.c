@@ -72,6 +72,10 @@ static cw_status draw_volume(cwi_cpu *cpu, const cwi_frame *f, const double *dep
 {
     const bool is_even = !cwi_volume_kind(&f->volume);
     cw_status st = is_even ? CW_OK : take_tree(cpu, f, err);
+    if (st == CW_OK && !is_even && f->scene.mode == CW_MODE_REFERENCE && f->scene.colors_first)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "colours are interpolated on evenly spaced volumes, not on %s",
+                        cwi_volume_kind(&f->volume));
     if (st == CW_OK && f->scene.mode == CW_MODE_REFERENCE)
         return cwi_reference_draw(f, &cpu->tree, depths, picture, NULL, err);
     if (st == CW_OK && f->scene.mode == CW_MODE_PROJECTION && !is_even)

@@ -76,6 +76,7 @@ typedef struct medium {
     const cwi_lighting *lighting;
     const double *background;
     double value[4], gradient[3][4]; /* cubics; gradients in eye space */
+    double classes[4][4]; /* colors_first: cubics of colour times extinction, and extinction */
     double length, depth, depth_rise;
     const cwi_linear *linear; /* the piece's part of the transfer function */
 } medium;
@@ -95,16 +96,33 @@ static double clamp_number(double x, double low, double high)
     return x < low ? low : x > high ? high : x;
 }
 
+/* Classifies the field at a point: finds the colour, and returns the extinction. */
+static double classify_value(const medium *m, double x, double color[3])
+{
+    const cwi_linear *l = m->linear;
+    const double value = clamp_number(cwi_cubic_at(m->value, x), l->low, l->high) - l->origin;
+    const double opacity = clamp_number(l->opacity + value * l->opacity_slope, 0, 1);
+    for (int c = 0; c < 3; c++)
+        color[c] = l->color[c] + value * l->color_slope[c];
+    return cwi_frame_extinction(m->reference->frame, opacity);
+}
+
+/* Interpolates classified voxels at a point, as classify_value(). */
+static double mix_classes(const medium *m, double x, double color[3])
+{
+    const double extinction = fmax(cwi_cubic_at(m->classes[3], x), 0);
+    for (int c = 0; c < 3; c++)
+        color[c] = extinction > 0 ? cwi_cubic_at(m->classes[c], x) / extinction : 0;
+    return extinction;
+}
+
 /* Computes extinction and colour at a point. */
 static double emitted_color(const medium *m, double x, double color[3])
 {
     const cwi_frame *f = m->reference->frame;
-    const cwi_linear *l = m->linear;
-    const double value = clamp_number(cwi_cubic_at(m->value, x), l->low, l->high) - l->origin;
-    const double opacity = clamp_number(l->opacity + value * l->opacity_slope, 0, 1);
-    double extinction = cwi_frame_extinction(f, opacity), gradient[3];
-    for (int c = 0; c < 3; c++)
-        color[c] = l->color[c] + value * l->color_slope[c];
+    double gradient[3];
+    double extinction =
+        f->scene.colors_first ? mix_classes(m, x, color) : classify_value(m, x, color);
     for (int a = 0; a < 3 && m->reference->has_gradients; a++)
         gradient[a] = cwi_cubic_at(m->gradient[a], x);
     if (f->transfer.gradient_count > 0)
@@ -200,6 +218,14 @@ static bool is_visible(const cwi_knots *k, const double v[8])
     return cwi_knots_is_visible(k, low, high);
 }
 
+/* Sets length and depths of a part of the ray. */
+static void place_part(medium *m, double from, double to, const cwi_ray *ray)
+{
+    m->length = to - from;
+    m->depth = -from * ray->direction[2];
+    m->depth_rise = -m->length * ray->direction[2];
+}
+
 /* Adds a part of the ray on which the value is a cubic. walk: computes the gradients when they
  * are needed; NULL: they are there. */
 static void add_part(medium *m, double from, double to, const cwi_ray *ray,
@@ -208,9 +234,7 @@ static void add_part(medium *m, double from, double to, const cwi_ray *ray,
     const cwi_knots *knots = &m->reference->knots;
     cwi_transfer_segment pieces[CWI_PIECES];
     bool has_gradients = !m->reference->has_gradients || !walk;
-    m->length = to - from;
-    m->depth = -from * ray->direction[2];
-    m->depth_rise = -m->length * ray->direction[2];
+    place_part(m, from, to, ray);
     const size_t count = cwi_knots_cut(knots, m->value, pieces);
     for (size_t n = 0; n < count; n++) {
         if (!pieces[n].linear->is_visible)
@@ -224,10 +248,41 @@ static void add_part(medium *m, double from, double to, const cwi_ray *ray,
     }
 }
 
+/* Adds a cell in which the colours and extinctions of its corners are interpolated. */
+static void add_classes(medium *m, const cwi_walk *w, const double v[8], const cwi_ray *ray,
+                        sum *s)
+{
+    const cwi_frame *f = m->reference->frame;
+    double corners[4][8], most = 0;
+    for (int n = 0; n < 8; n++) {
+        double color[3], opacity;
+        cw_transfer_at(&f->transfer, v[n], color, &opacity);
+        corners[3][n] = cwi_frame_extinction(f, opacity);
+        for (int c = 0; c < 3; c++)
+            corners[c][n] = color[c] * corners[3][n];
+        most = fmax(most, corners[3][n]);
+    }
+    if (!(most > 0))
+        return;
+    for (int c = 0; c < 4; c++)
+        cwi_walk_cubic(w, corners[c], m->classes[c]);
+    if (m->reference->has_gradients)
+        find_gradients(m, w);
+    place_part(m, w->from, w->to, ray);
+    const passage whole = pass_medium(m, 0, 1);
+    add_passage(m, 0, 1, &whole, 0, s);
+}
+
 static void add_cell(medium *m, const cwi_walk *w, const cwi_ray *ray, sum *s)
 {
     double v[8];
-    if (!cwi_walk_values(w, v) || !is_visible(&m->reference->knots, v))
+    if (!cwi_walk_values(w, v))
+        return;
+    if (m->reference->frame->scene.colors_first) {
+        add_classes(m, w, v, ray, s);
+        return;
+    }
+    if (!is_visible(&m->reference->knots, v))
         return;
     cwi_walk_cubic(w, v, m->value);
     add_part(m, w->from, w->to, ray, w, s);

@@ -1,6 +1,6 @@
 /* Tests surfaces between materials [Drebin1988], and smoothed gradients: on paper, as
  * convergence to the reference in every mode, and in memory. */
-#include "support/pictures.h"
+#include "support/integral.h"
 
 #include "viewer/scene/gradient_volume.h"
 
@@ -143,6 +143,45 @@ static void modes_converge_to_the_reference(void **state)
     cw_volume_free(&blobs);
 }
 
+/* Volumes of colour and opacity, composited: by the definition, and lit slices of them. */
+static void colors_of_voxels_have_a_reference(void **state)
+{
+    (void)state;
+    (void)test_renderer(); /* skips without OpenGL */
+    cw_volume blobs = {0};
+    cw_transfer t = blob_transfer();
+    test_field(&blobs, 30, 30, 30, cube, test_blobs);
+    cw_scene scene = {.mode = CW_MODE_REFERENCE,
+                      .volume = &blobs,
+                      .transfer = &t,
+                      .width = 48,
+                      .height = 48,
+                      .colors_first = true,
+                      .lit = true};
+    cw_picture truth = draw_by_any(&scene);
+    scene.mode = CW_MODE_TEXTURE;
+    for (int n = 0; n < 2; n++) {
+        scene.step_vox = n ? 0.125 : 0.5;
+        cw_picture slices = draw_by_any(&scene);
+        assert_true(test_compare(&slices, &truth).rmse < (n ? 0.1 : 0.3));
+        cw_picture_free(&slices);
+    }
+    cw_picture_free(&truth);
+    t.gradient_count = 0;
+    scene.mode = CW_MODE_REFERENCE;
+    scene.lit = false;
+    truth = test_integral(&scene, 0.02);
+    cw_picture reference = draw_by_any(&scene);
+    assert_true(test_compare(&reference, &truth).max < 0.01);
+    scene.colors_first = false;
+    cw_picture data = draw_by_any(&scene);
+    assert_true(test_compare(&data, &truth).max > 2);
+    cw_picture_free(&data);
+    cw_picture_free(&reference);
+    cw_picture_free(&truth);
+    cw_volume_free(&blobs);
+}
+
 static double wave_along_y(const double p[3], const double q[3])
 {
     (void)p;
@@ -272,6 +311,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reflection_grows_with_the_change_of_the_index),
         cmocka_unit_test(modes_converge_to_the_reference),
+        cmocka_unit_test(colors_of_voxels_have_a_reference),
         cmocka_unit_test(smoothing_is_that_of_a_gaussian),
         cmocka_unit_test(smoothing_leaves_gaps),
         cmocka_unit_test(picking_sees_surfaces),
