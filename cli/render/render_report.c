@@ -33,8 +33,8 @@ static void put_gradients(cli_json *j, const cw_transfer *t)
     if (t->index_count > 0) {
         cli_json_open(j, "indices", '[');
         for (size_t n = 0; n < t->index_count; n++)
-            cli_json_numbers(
-                j, NULL, (double[2]){t->indices[n].value, (double)t->indices[n].index}, 2);
+            cli_json_numbers(j, NULL,
+                             (double[2]){t->indices[n].value, (double)t->indices[n].index}, 2);
         cli_json_close(j, ']');
     }
     if (t->surface_mm > 0)

@@ -146,7 +146,8 @@ static cw_status change_gradients(const char *text, cw_transfer *t, cw_error *er
             *at++ != ':' || !cwi_parse_double(&at, &factor) || *at ||
             t->gradient_count == CW_TRANSFER_POINTS)
             return cwi_fail(err, CW_ERR_ARGUMENT,
-                            "--gradient-opacity '%s': expected G:F,..., such as 0:0.1,1:1", text);
+                            "--gradient-opacity '%s': expected G:F,..., such as 0:0.1,1:1",
+                            text);
         t->gradients[t->gradient_count++] = (cw_opacity_point){place, (float)factor};
     } while (separator);
     return CW_OK;

@@ -9,7 +9,8 @@
 typedef struct cli_scene {
     int mode;             /* 0: by what there is to see; else 1 + cw_mode */
     cw_mode reference_of; /* of a side of --compare; no option */
-    const char *transfer, *gradient_opacity, *camera, *lights, *background, *color, *clips, *planes;
+    const char *transfer, *gradient_opacity, *camera, *lights, *background, *color, *clips,
+        *planes;
     cli_number shift, opacity, surface_width, gradient_smoothing, fov, zoom;
     bool ortho;
     bool lit;

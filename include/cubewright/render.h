@@ -157,7 +157,7 @@ typedef struct cw_scene {
     double gradient_sigma; /* standard deviation of a Gaussian that smooths the field before
                               its gradient is taken, in units of the smallest spacing, at most
                               16, on evenly spaced volumes; default 0: none */
-    bool lit;        /* volumes are shaded by their gradient; meshes always are */
+    bool lit;              /* volumes are shaded by their gradient; meshes always are */
     float depth_cue; /* 0 to 1: the fraction of the background at the far end of the visible
                         range, rising linearly from 0 at the near end */
     float background[2][3];      /* top and bottom, for depth_cue and slices; sRGB */

@@ -53,7 +53,7 @@ typedef struct cw_transfer {
     cw_index_point indices[CW_TRANSFER_POINTS];
     double surface_mm; /* the width over which an index changes by 1 at a surface of full
                           strength; default: twice the volume's smallest spacing */
-    double unit_mm;                                 /* default: the volume's smallest spacing */
+    double unit_mm;    /* default: the volume's smallest spacing */
 } cw_transfer;
 
 /* Checks a transfer function. Returns CW_ERR_ARGUMENT, naming the point, for values that

@@ -14,10 +14,10 @@ extern "C" {
 /* State kept for the next picture of the same volume. Zeroed: nothing is kept. */
 typedef struct cwi_cpu {
     cw_volume key;
-    cw_cells cells;     /* those of key, if it has them */
+    cw_cells cells;          /* those of key, if it has them */
     size_t gradient_version; /* of the tree's gradients */
-    cwi_ranges ranges;  /* of key, when it has blocks */
-    cwi_cell_tree tree; /* of key, when it has kinds */
+    cwi_ranges ranges;       /* of key, when it has blocks */
+    cwi_cell_tree tree;      /* of key, when it has kinds */
     cwi_cell_tables cell_tables;
 } cwi_cpu;
 

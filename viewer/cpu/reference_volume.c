@@ -77,7 +77,7 @@ typedef struct medium {
     const double *background;
     double value[4], gradient[3][4]; /* cubics; gradients in eye space */
     double classes[4][4]; /* colors_first: cubics of colour times extinction, and extinction */
-    double length, depth, depth_rise;
+    double from, length, depth, depth_rise;
     const cwi_linear *linear; /* the piece's part of the transfer function */
 } medium;
 
@@ -129,7 +129,7 @@ static double emitted_color(const medium *m, double x, double color[3])
         extinction *=
             cwi_frame_gradient_factor(f, hypot(hypot(gradient[0], gradient[1]), gradient[2]));
     if (f->scene.lit)
-        cwi_lighting_shade(m->lighting, gradient, color);
+        cwi_lighting_shade(m->lighting, m->from + x * m->length, gradient, color);
     const double cue = cwi_frame_cue(f, m->depth + x * m->depth_rise);
     for (int c = 0; c < 3; c++)
         color[c] = cue * color[c] + (1 - cue) * m->background[c];
@@ -221,6 +221,7 @@ static bool is_visible(const cwi_knots *k, const double v[8])
 /* Sets length and depths of a part of the ray. */
 static void place_part(medium *m, double from, double to, const cwi_ray *ray)
 {
+    m->from = from;
     m->length = to - from;
     m->depth = -from * ray->direction[2];
     m->depth_rise = -m->length * ray->direction[2];
@@ -323,7 +324,7 @@ double cwi_reference_ray(const cwi_reference *r, cwi_spans *spans, double x, dou
         length += ray.parts[n][1] - ray.parts[n][0];
     s.tolerance = tolerance / length;
     background_at(r->frame, y, background);
-    cwi_lighting_make(r->frame, ray.direction, &lighting);
+    cwi_lighting_make(r->frame, ray.origin, ray.direction, &lighting);
     if (cwi_volume_kind(&r->frame->volume))
         add_spans(&m, spans, &ray, &s);
     for (int n = 0; n < ray.part_count && !cwi_volume_kind(&r->frame->volume); n++) {

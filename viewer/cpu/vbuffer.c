@@ -156,14 +156,20 @@ static inline lanes glow_of_row(const vbuffer *b, float row)
     return low + (at - (float)n) * (high - low);
 }
 
-static void change_by_gradient(const state *s, const double gradient[3], lanes *glow)
+/* Returns the distance along the ray of a place in the cell, 0 to 1. */
+static inline double distance_at(const state *s, double x)
+{
+    return s->walk.from + x * (s->walk.to - s->walk.from);
+}
+
+static void change_by_gradient(const state *s, double x, const double gradient[3], lanes *glow)
 {
     const cwi_frame *f = s->b->frame;
     double color[3] = {(double)(*glow)[0], (double)(*glow)[1], (double)(*glow)[2]};
     if (f->transfer.gradient_count > 0)
         (*glow)[3] *= (float)cwi_frame_gradient_factor(f, sqrt(cwi_dot(gradient, gradient)));
     if (f->scene.lit) {
-        cwi_lighting_shade(s->lighting, gradient, color);
+        cwi_lighting_shade(s->lighting, distance_at(s, x), gradient, color);
         for (int a = 0; a < 3; a++)
             (*glow)[a] = (float)color[a];
     }
@@ -171,8 +177,7 @@ static void change_by_gradient(const state *s, const double gradient[3], lanes *
 
 static void change_by_depth(const state *s, double x, lanes *glow)
 {
-    const cwi_walk *w = &s->walk;
-    const double t = w->from + x * (w->to - w->from);
+    const double t = distance_at(s, x);
     const float cue = (float)cwi_frame_cue(s->b->frame, -t * s->ray.direction[2]);
     for (int c = 0; c < 3; c++)
         (*glow)[c] = cue * (*glow)[c] + (1 - cue) * s->background[c];
@@ -183,7 +188,7 @@ static void change_by_depth(const state *s, double x, lanes *glow)
 static inline lanes finish_cell(const state *s, double x, const double gradient[3], lanes glow)
 {
     if (s->b->has_gradients)
-        change_by_gradient(s, gradient, &glow);
+        change_by_gradient(s, x, gradient, &glow);
     if (s->b->frame->scene.depth_cue > 0)
         change_by_depth(s, x, &glow);
     return glow;
@@ -451,7 +456,7 @@ static bool draw_pixel(const vbuffer *b, cwi_spans *spans, size_t x, size_t y)
     cwi_ray_make(b->frame, (double)x + 0.5, (double)y + 0.5,
                  b->depths ? b->depths[n] : INFINITY, &s.ray);
     if (scene->lit)
-        cwi_lighting_make(b->frame, s.ray.direction, &lighting);
+        cwi_lighting_make(b->frame, s.ray.origin, s.ray.direction, &lighting);
     for (int c = 0; c < 3; c++)
         s.background[c] =
             (1 - share) * scene->background[0][c] + share * scene->background[1][c];

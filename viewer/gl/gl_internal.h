@@ -41,7 +41,7 @@ typedef struct cwi_gl_volume {
     size_t edge;   /* as the scene had it */
     cwi_gl_texels kind;
     double scale, bias;
-    double range; /* of the scaled values, above 0 */
+    double range;            /* of the scaled values, above 0 */
     size_t gradient_version; /* of the frame, when gradients were made */
     double gradient_unit;    /* of gradients in textures: halves have few exponents */
     size_t brick_count;

@@ -31,9 +31,9 @@ static void make_factor(cwi_gl *gl)
         end = 1;
     for (int n = 0; n < CWI_FACTOR_ROWS; n++)
         rows[n] = (float)cw_transfer_gradient_factor(t, end * n / (CWI_FACTOR_ROWS - 1));
-    gl->transfer.factor_end =
-        gl->frame->surface > 0 ? end / (gl->frame->surface * gl->volume.gradient_unit)
-                               : end * gl->frame->unit_mm / gl->volume.gradient_unit;
+    gl->transfer.factor_end = gl->frame->surface > 0
+                                  ? end / (gl->frame->surface * gl->volume.gradient_unit)
+                                  : end * gl->frame->unit_mm / gl->volume.gradient_unit;
     gl->transfer.factor = cwi_gl_texture(GL_TEXTURE_1D, CWI_UNIT_FACTOR, true);
     glTexImage1D(GL_TEXTURE_1D, 0, GL_R32F, CWI_FACTOR_ROWS, 0, GL_RED, GL_FLOAT, rows);
 }
@@ -74,8 +74,8 @@ cw_status cwi_gl_take_transfer(cwi_gl *gl, cw_error *err)
     cwi_gl_transfer *t = &gl->transfer;
     cw_status st = CW_OK;
     if (!t->is_made || memcmp(&t->key, &gl->frame->transfer, sizeof t->key) != 0 ||
-        t->opacity_units != gl->frame->opacity_units ||
-        t->surface != gl->frame->surface || t->gradient_unit != gl->volume.gradient_unit) {
+        t->opacity_units != gl->frame->opacity_units || t->surface != gl->frame->surface ||
+        t->gradient_unit != gl->volume.gradient_unit) {
         cwi_gl_drop_transfer(gl);
         st = make_textures(gl, err);
     }

@@ -256,9 +256,8 @@ static double find_gradient_unit(const cwi_gl_volume *g, const cwi_frame *f)
 static bool is_there(const cwi_gl_volume *g, const cwi_frame *f)
 {
     return g->bricks && g->edge == f->scene.texture_edge &&
-           (!cwi_frame_needs_gradients(f) ||
-            (g->gradient_version == f->gradient_version &&
-             g->gradient_unit == find_gradient_unit(g, f))) &&
+           (!cwi_frame_needs_gradients(f) || (g->gradient_version == f->gradient_version &&
+                                              g->gradient_unit == find_gradient_unit(g, f))) &&
            memcmp(&g->key, &f->volume, sizeof g->key) == 0;
 }
 

@@ -441,7 +441,8 @@ static cw_status open_job(cwi_gl *gl, job *j, const char **gradients, cw_error *
 static void describe_shader(const cw_scene *s, const cw_transfer *t, const char *gradients,
                             char *defines, size_t size)
 {
-    snprintf(defines, size, "#define RAYS\n%s%s%s%s%s", gradients,
+    snprintf(defines, size, "#define RAYS\n%s%s%s%s%s%s", gradients,
+             s->clip_count ? "#define CLIPS\n" : "",
              s->no_preintegration ? "" : "#define SEGMENTS\n",
              s->linear_opacity ? "#define LINEAR\n" : "", s->lit ? "#define LIT\n" : "",
              t->gradient_count ? "#define FACTOR\n" : "");

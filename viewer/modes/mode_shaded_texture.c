@@ -114,7 +114,8 @@ static void put_layer(const cwi_gl *gl, const shaded_state *t, const cwi_gl_bric
     for (size_t j = 0; j < b->count[1]; j++)
         for (size_t i = 0; i < b->count[0]; i++) {
             const size_t at[3] = {b->first[0] + i, b->first[1] + j, b->first[2] + k};
-            out[j * b->count[0] + i] = normal_of(v, &gl->frame->gradient_volume, t, (const double(*)[3])to_world, at);
+            out[j * b->count[0] + i] =
+                normal_of(v, &gl->frame->gradient_volume, t, (const double(*)[3])to_world, at);
         }
 }
 

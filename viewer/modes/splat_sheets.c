@@ -83,7 +83,8 @@ static cw_status make_batch(cwi_splats *s, bool is_of_nodes, cw_error *err)
     const cwi_frame *f = s->frame;
     cwi_splat_batch *b = &s->batches[is_of_nodes];
     const bool is_blob = is_of_nodes && !s->kernel->is_in_plane;
-    snprintf(defines, sizeof defines, "%s%s%s%s", f->scene.lit ? "#define LIT\n" : "",
+    snprintf(defines, sizeof defines, "%s%s%s%s%s", f->scene.lit ? "#define LIT\n" : "",
+             f->scene.clip_count ? "#define CLIPS\n" : "",
              f->transfer.gradient_count ? "#define FACTOR\n" : "",
              is_of_nodes ? "#define NODES\n" : "", is_blob ? "" : s->kernel->defines);
     b->chunk = cwi_alloc_array(CHUNK, sizeof *b->chunk);
@@ -314,8 +315,8 @@ void cwi_splats_voxel(cwi_splats *s, const size_t at[3])
     if (s->needs_gradients) {
         cwi_lattice_gradient(&f->gradient_volume, at, gradient);
         for (int a = 0; a < 3; a++)
-            splat.gradient[a] = (float)(gradient[a] * f->gradient_volume.slope /
-                                        s->gl->volume.gradient_unit);
+            splat.gradient[a] =
+                (float)(gradient[a] * f->gradient_volume.slope / s->gl->volume.gradient_unit);
     }
     for (int a = 0; a < 3; a++)
         splat.at[a] = (float)at[a];

@@ -121,8 +121,8 @@ bool cwi_tile_is_live(const cwi_tile *t, const cwi_tile_box *box)
 /* Loads the samples of the block from the frame's volume or from that of its gradients, and
  * those around it: beyond the volume's border its last ones are repeated.
  * ends  the first and last number along each axis that are samples of the volume */
-static void load_samples(const block *b, const cw_volume *v,
-                         float samples[WIDE * WIDE * WIDE], int ends[3][2])
+static void load_samples(const block *b, const cw_volume *v, float samples[WIDE * WIDE * WIDE],
+                         int ends[3][2])
 {
     const cwi_cell_model *m = b->tile->model;
     const int around = m->needs_gradients ? 1 : 0;

@@ -1,6 +1,8 @@
 /* Computes the light that a cell adds to a ray, by tables of the transfer function. */
 #include "viewer/projection/cell_color.h"
 
+#include "viewer/scene/lighting.h"
+
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
@@ -76,6 +78,20 @@ void cwi_cell_tables_free(cwi_cell_tables *t)
     *t = (cwi_cell_tables){0};
 }
 
+/* Adds a face that a clip plane cuts, in eye space. */
+static void add_face(cwi_cell_model *m, const double plane[4])
+{
+    const size_t n = m->face_count++;
+    m->face_start[n] = (float)-plane[3];
+    for (int r = 0; r < 3; r++) {
+        const double *row = m->frame->eye_from_index + (size_t)4 * (size_t)r;
+        m->face_normal[n][r] = (float)(m->frame->scene.cut_away ? -plane[r] : plane[r]);
+        for (int a = 0; a < 3; a++)
+            m->face_slope[n][a] += (float)(plane[r] * row[a]);
+        m->face_start[n] += (float)(plane[r] * row[3]);
+    }
+}
+
 void cwi_cell_model_make(const cwi_frame *f, const cwi_cell_tables *tables, cwi_cell_model *m)
 {
     const cw_scene *s = &f->scene;
@@ -86,6 +102,9 @@ void cwi_cell_model_make(const cwi_frame *f, const cwi_cell_tables *tables, cwi_
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)
             m->to_eye[c][r] = (float)(matrix[r][c] * (tables->table.high - tables->table.low));
+    for (size_t n = 0; n < s->clip_count; n++)
+        if (f->faces >> n & 1)
+            add_face(m, f->clips[n]);
     for (size_t n = 0; n < s->light_count; n++) {
         double direction[3];
         memcpy(direction, s->lights[n].direction, sizeof direction);
@@ -210,25 +229,47 @@ static inline float raise_power(float x, float power)
     return result;
 }
 
-/* Lights a premultiplied colour on both sides, as cwi_lighting_shade(). */
-static inline cwi_lanes shade_color(const cwi_cell_model *m, const cwi_cell_ray *r,
-                                    cwi_lanes gradient, cwi_lanes color)
+/* Returns the light that a surface with a normal of unit length reflects of a premultiplied
+ * colour. */
+static inline cwi_lanes reflect_light(const cwi_cell_model *m, const cwi_cell_ray *r,
+                                      cwi_lanes normal, bool is_glossy, cwi_lanes color)
 {
     const cw_scene *s = &m->frame->scene;
-    const float opacity = color[3], size_sq = dot_lanes(gradient, gradient);
-    cwi_lanes light = s->material.ambient * color;
-    const float size = sqrtf(size_sq);
-    const cwi_lanes normal = gradient / size;
-    const float strength = (float)cwi_frame_surface_strength(m->frame, (double)size);
-    for (size_t n = 0; n < s->light_count && size_sq > 0; n++) {
+    cwi_lanes light = {0};
+    for (size_t n = 0; n < s->light_count; n++) {
         const float diffuse =
             s->material.diffuse * fabsf(dot_lanes(normal, m->light_direction[n]));
         const float gloss = fabsf(dot_lanes(normal, r->halfway[n]));
-        const float specular = s->material.specular * opacity *
-                               raise_power(gloss < 1 ? gloss : 1, s->material.shininess);
-        light += strength * m->light_color[n] * (diffuse * color + specular);
+        const float specular =
+            is_glossy ? s->material.specular * color[3] *
+                            raise_power(gloss < 1 ? gloss : 1, s->material.shininess)
+                      : 0;
+        light += m->light_color[n] * (diffuse * color + specular);
     }
-    light[3] = opacity;
+    return light;
+}
+
+/* Lights a premultiplied colour at a distance along the ray, as cwi_lighting_shade(). */
+static inline cwi_lanes shade_color(const cwi_cell_model *m, const cwi_cell_ray *r, float t,
+                                    cwi_lanes gradient, cwi_lanes color)
+{
+    const cw_scene *s = &m->frame->scene;
+    const cwi_lanes at = r->origin + t * r->slope;
+    const float size = sqrtf(dot_lanes(gradient, gradient));
+    const float strength = (float)cwi_frame_surface_strength(m->frame, (double)size);
+    cwi_lanes light = s->material.ambient * color, face = {0};
+    float nearest = INFINITY;
+    for (size_t n = 0; n < m->face_count; n++) {
+        const float distance = dot_lanes(m->face_slope[n], at) + m->face_start[n];
+        face = distance < nearest ? m->face_normal[n] : face;
+        nearest = distance < nearest ? distance : nearest;
+    }
+    const float share = (float)cwi_lighting_face_share((double)nearest);
+    if (share < 1 && size > 0)
+        light += (1 - share) * strength * reflect_light(m, r, gradient / size, true, color);
+    if (share > 0)
+        light += share * reflect_light(m, r, face, false, color);
+    light[3] = color[3];
     return light;
 }
 
@@ -245,8 +286,8 @@ static inline cwi_lanes gradient_at(const cwi_cell_model *m, const cwi_projected
 }
 
 /* Changes a glow by the gradient: more or less of it, and light on it. */
-static inline glow apply_gradient(const cwi_cell_model *m, const cwi_cell_ray *r, glow g,
-                                  cwi_lanes gradient)
+static inline glow apply_gradient(const cwi_cell_model *m, const cwi_cell_ray *r, float t,
+                                  glow g, cwi_lanes gradient)
 {
     const cwi_frame *f = m->frame;
     if (f->transfer.gradient_count > 0) {
@@ -255,7 +296,7 @@ static inline glow apply_gradient(const cwi_cell_model *m, const cwi_cell_ray *r
                         g.depth * (float)cwi_frame_gradient_factor(f, length));
     }
     if (f->scene.lit)
-        g.color = shade_color(m, r, gradient, g.color);
+        g.color = shade_color(m, r, t, gradient, g.color);
     return g;
 }
 
@@ -275,7 +316,7 @@ static inline void add_glow(const cwi_cell_model *m, const cwi_projected_cell *c
     if (!(g.color[3] > 0))
         return;
     if (m->needs_gradients && g.color[3] > 1e-6f)
-        g = apply_gradient(m, r, g, gradient_at(m, c, cwi_cell_place(c, r, middle)));
+        g = apply_gradient(m, r, middle, g, gradient_at(m, c, cwi_cell_place(c, r, middle)));
     if (m->frame->scene.depth_cue > 0)
         g.color = apply_depth(m, r, middle, g.color);
     r->color += r->light * g.color;

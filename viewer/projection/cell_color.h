@@ -35,6 +35,10 @@ typedef struct cwi_cell_model {
     cwi_lanes to_eye[3]; /* columns of the matrix from gradients in index space to eye space, in
                             rows of the table */
     cwi_lanes light_direction[CW_MAX_LIGHTS], light_color[CW_MAX_LIGHTS];
+    size_t face_count;                   /* of clip planes that cut the volume */
+    cwi_lanes face_normal[CW_MAX_CLIPS]; /* in eye space */
+    cwi_lanes face_slope[CW_MAX_CLIPS];  /* distances to the planes, over index space, */
+    float face_start[CW_MAX_CLIPS];      /* and at its origin */
 } cwi_cell_model;
 
 void cwi_cell_model_make(const cwi_frame *frame, const cwi_cell_tables *tables,

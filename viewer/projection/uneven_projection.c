@@ -246,9 +246,10 @@ static void blend_segment(blending *b, const fragment *f, double near, double fa
         return;
     if (frame->transfer.gradient_count > 0)
         scale *= cwi_frame_gradient_factor(frame, sqrt(cwi_dot(gradient, gradient)));
-    if (frame->scene.lit) { /* light is linear in the colour */
-        cwi_lighting_shade(&b->lighting, gradient, base);
-        cwi_lighting_shade(&b->lighting, gradient, gain);
+    if (frame->scene.lit) {                             /* light is linear in the colour */
+        const double middle = (near + far) / 2 * along; /* from depths to the way on the ray */
+        cwi_lighting_shade(&b->lighting, middle, gradient, base);
+        cwi_lighting_shade(&b->lighting, middle, gradient, gain);
     }
     const double length = (far - near) * scale;
     const int count =
@@ -314,7 +315,7 @@ static void blend_sample(band *b, size_t x, size_t y)
         l.background[c] =
             (1 - share) * (double)s->background[0][c] + share * (double)s->background[1][c];
     if (s->lit)
-        cwi_lighting_make(p->frame, ray.direction, &l.lighting);
+        cwi_lighting_make(p->frame, ray.origin, ray.direction, &l.lighting);
     const size_t count = sort_fragments(b, last);
     const double slope = -ray.direction[2]; /* depth along the ray */
     for (int part = 0; part < ray.part_count; part++)

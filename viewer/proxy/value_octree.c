@@ -176,7 +176,8 @@ static void tally_voxels(tally *t, const size_t node[3], float end)
         float value;
         if (at[0] >= v->dim[0] || at[1] >= v->dim[1] || at[2] >= v->dim[2])
             continue;
-        cwi_lattice_load(&t->view->frame->volume, t->view->table, at, (size_t[]){1, 1, 1}, &value);
+        cwi_lattice_load(&t->view->frame->volume, t->view->table, at, (size_t[]){1, 1, 1},
+                         &value);
         if (!cwi_visible_any(t->view->visible, value, value))
             continue;
         t->voxels++;

@@ -18,12 +18,11 @@ void cwi_field_make(const cwi_frame *frame, const cwi_cell_tree *tree, const cwi
                     bool is_exact, cwi_field *field)
 {
     double m[3][3];
-    *field =
-        (cwi_field){.frame = frame,
-                    .tree = tree,
-                    .knots = knots,
-                    .has_gradients = cwi_frame_needs_gradients(frame),
-                    .tolerance = is_exact ? 1e-8 : 1e-4};
+    *field = (cwi_field){.frame = frame,
+                         .tree = tree,
+                         .knots = knots,
+                         .has_gradients = cwi_frame_needs_gradients(frame),
+                         .tolerance = is_exact ? 1e-8 : 1e-4};
     cwi_frame_gradient_matrix(frame, m);
     for (int n = 0; n < 9;
          n++) /* gradients at the samples of irregular grids are in the world */
@@ -71,7 +70,9 @@ static void start_boxes(cwi_spans *s)
 {
     const cw_volume *v = &s->field->frame->volume;
     const cwi_ray *ray = s->ray;
-    s->walk = (cwi_walk){.volume = v, .t = ray->parts[s->part][0]};
+    s->walk = (cwi_walk){.volume = v,
+                         .gradient_volume = &s->field->frame->gradient_volume,
+                         .t = ray->parts[s->part][0]};
     s->walk.stop = ray->parts[s->part][1];
     for (int a = 0; a < 3; a++) {
         const double at = ray->index[a] + s->walk.t * ray->slope[a];

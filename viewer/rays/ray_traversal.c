@@ -30,8 +30,10 @@ static ptrdiff_t cells_along(const cw_volume *v, int axis)
 
 void cwi_walk_start(cwi_walk *w, const cwi_frame *f, const cwi_ray *ray, int part)
 {
-    *w =
-        (cwi_walk){.volume = &f->volume, .gradient_volume = &f->gradient_volume, .t = ray->parts[part][0], .stop = ray->parts[part][1]};
+    *w = (cwi_walk){.volume = &f->volume,
+                    .gradient_volume = &f->gradient_volume,
+                    .t = ray->parts[part][0],
+                    .stop = ray->parts[part][1]};
     memcpy(w->index, ray->index, sizeof w->index);
     memcpy(w->slope, ray->slope, sizeof w->slope);
     for (int a = 0; a < 3; a++) {

@@ -86,7 +86,8 @@ static cw_status fill_in(cw_scene *s, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT, "a depth cue of %g: expected 0 to 1",
                         (double)s->depth_cue);
     if (!(s->gradient_sigma >= 0 && s->gradient_sigma <= MAX_SIGMA))
-        return cwi_fail(err, CW_ERR_ARGUMENT, "gradients smoothed over %g voxels: expected 0 to %d",
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "gradients smoothed over %g voxels: expected 0 to %d",
                         s->gradient_sigma, MAX_SIGMA);
     if (!(s->tree_error >= 0 && s->tree_error <= 1))
         return cwi_fail(err, CW_ERR_ARGUMENT, "an error of nodes of %g: expected 0 to 1",
@@ -325,6 +326,20 @@ static cw_status set_clips(cwi_frame *f, cw_error *err)
     return CW_OK;
 }
 
+/* Finds the planes that leave some of the volume's box behind. Those in its sides do not count. */
+static void find_faces(cwi_frame *f)
+{
+    static const double slack = 1e-3;
+    for (int c = 0; c < 8; c++) {
+        double world[3], eye[3];
+        box_corner(f, c, world);
+        to_eye(f, world, eye);
+        for (size_t n = 0; n < f->scene.clip_count; n++)
+            if (cwi_dot(f->clips[n], eye) < f->clips[n][3] - slack)
+                f->faces |= (uint32_t)1 << n;
+    }
+}
+
 static void choose_unit(cwi_frame *f, const double min[3], const double max[3])
 {
     const double d[3] = {max[0] - min[0], max[1] - min[1], max[2] - min[2]};
@@ -355,8 +370,10 @@ cw_status cwi_frame_init(cwi_frame *frame, const cw_scene *scene, cw_error *err)
     st = set_camera(f, min, max, err);
     if (st == CW_OK)
         st = set_clips(f, err);
-    if (st == CW_OK && f->volume.data)
+    if (st == CW_OK && f->volume.data) {
         set_matrices(f);
+        find_faces(f);
+    }
     if (st == CW_OK)
         set_depths(f, min, max);
     f->scene.width *= (size_t)f->scene.samples;

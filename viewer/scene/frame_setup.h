@@ -53,6 +53,7 @@ typedef struct cwi_frame {
 
     /* Planes that clip, in eye space: n . p >= d is kept. */
     double clips[CW_MAX_CLIPS][4];
+    uint32_t faces; /* bit n: plane n cuts the volume, and is lit as a face */
 } cwi_frame;
 
 /* Standard deviations of a linear and a cubic B-spline with steps of 1. */

@@ -11,7 +11,7 @@ extern "C" {
 
 /* The volume made last. Zeroed: there is none. */
 typedef struct cwi_gradient_volume {
-    cw_volume key; /* it was made from this one, by these settings: */
+    cw_volume key;        /* it was made from this one, by these settings: */
     cw_transfer transfer; /* indices alone */
     double sigma;
     float *values;  /* x fastest */

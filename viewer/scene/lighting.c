@@ -18,11 +18,13 @@ static double raise_power(double x, double power)
     return result;
 }
 
-void cwi_lighting_make(const cwi_frame *f, const double direction[3], cwi_lighting *l)
+void cwi_lighting_make(const cwi_frame *f, const double origin[3], const double direction[3],
+                       cwi_lighting *l)
 {
     *l = (cwi_lighting){.material = f->scene.material,
-                         .count = f->scene.light_count,
-                         .surface = f->surface};
+                        .count = f->scene.light_count,
+                        .surface = f->surface,
+                        .side = f->scene.cut_away ? -1 : 1};
     for (size_t n = 0; n < l->count; n++) {
         const cw_light *light = &f->scene.lights[n];
         memcpy(l->direction[n], light->direction, sizeof l->direction[n]);
@@ -33,25 +35,65 @@ void cwi_lighting_make(const cwi_frame *f, const double direction[3], cwi_lighti
         }
         cwi_to_unit(l->halfway[n]);
     }
+    for (size_t n = 0; n < f->scene.clip_count; n++) {
+        if (!(f->faces >> n & 1))
+            continue;
+        l->faces[l->face_count] = f->clips[n];
+        l->face_start[l->face_count] = cwi_dot(f->clips[n], origin) - f->clips[n][3];
+        l->face_slope[l->face_count++] = cwi_dot(f->clips[n], direction);
+    }
 }
 
-void cwi_lighting_shade(const cwi_lighting *l, const double gradient[3], double color[3])
+/* Adds the light that a surface with a normal of unit length reflects, times a factor. */
+static void add_reflection(const cwi_lighting *l, const double n[3], const double color[3],
+                           double factor, bool is_glossy, double light[3])
 {
-    double n[3] = {gradient[0], gradient[1], gradient[2]};
+    for (size_t i = 0; i < l->count; i++) {
+        const double diffuse = (double)l->material.diffuse * fabs(cwi_dot(n, l->direction[i]));
+        const double gloss = fabs(cwi_dot(n, l->halfway[i]));
+        const double specular = is_glossy
+                                    ? (double)l->material.specular *
+                                          raise_power(gloss, (double)l->material.shininess)
+                                    : 0;
+        for (int c = 0; c < 3; c++)
+            light[c] += factor * l->color[i][c] * (diffuse * color[c] + specular);
+    }
+}
+
+double cwi_lighting_face_share(double distance)
+{
+    return fmin(fmax(2 - fabs(distance), 0), 1);
+}
+
+/* Finds the face that clip planes cut near a place of the ray; returns its share of the light. */
+static double find_face(const cwi_lighting *l, double t, double normal[3])
+{
+    double nearest = INFINITY;
+    for (size_t n = 0; n < l->face_count; n++) {
+        const double distance = l->face_start[n] + t * l->face_slope[n];
+        if (distance < nearest) {
+            nearest = distance;
+            for (int a = 0; a < 3; a++)
+                normal[a] = l->side * l->faces[n][a];
+        }
+    }
+    return cwi_lighting_face_share(nearest);
+}
+
+void cwi_lighting_shade(const cwi_lighting *l, double t, const double gradient[3],
+                        double color[3])
+{
+    double n[3] = {gradient[0], gradient[1], gradient[2]}, face[3] = {0};
     double light[3];
     const double length = sqrt(cwi_dot(n, n));
     const double strength = l->surface > 0 ? fmin(length * l->surface, 1) : 1;
-    const bool has_side = n[0] != 0 || n[1] != 0 || n[2] != 0;
+    const double share = find_face(l, t, face);
     cwi_to_unit(n);
     for (int c = 0; c < 3; c++)
         light[c] = (double)l->material.ambient * color[c];
-    for (size_t i = 0; i < l->count && has_side; i++) {
-        const double diffuse = (double)l->material.diffuse * fabs(cwi_dot(n, l->direction[i]));
-        const double gloss = fabs(cwi_dot(n, l->halfway[i]));
-        const double specular =
-            (double)l->material.specular * raise_power(gloss, (double)l->material.shininess);
-        for (int c = 0; c < 3; c++)
-            light[c] += strength * l->color[i][c] * (diffuse * color[c] + specular);
-    }
+    if (share < 1 && length > 0)
+        add_reflection(l, n, color, (1 - share) * strength, true, light);
+    if (share > 0)
+        add_reflection(l, face, color, share, false, light);
     memcpy(color, light, sizeof light);
 }

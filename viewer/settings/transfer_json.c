@@ -93,7 +93,8 @@ static cw_status take_indices(const json_t *root, cw_transfer *t, cw_error *err)
         cw_index_point *p = &t->indices[t->index_count++];
         st = take_point(json_array_get(list, n), "indices", n, "index", &p->value, &index, err);
         if (st == CW_OK && !json_is_number(index))
-            st = cwi_fail(err, CW_ERR_FORMAT, "point %zu of 'indices': a number was expected", n);
+            st = cwi_fail(err, CW_ERR_FORMAT, "point %zu of 'indices': a number was expected",
+                          n);
         p->index = (float)json_number_value(index);
     }
     return st;
@@ -128,10 +129,11 @@ static cw_status take_material(const json_t *object, size_t n, cw_material_class
         for (known = 0; known < 5 && strcmp(key, keys[known]) != 0; known++) {
         }
         if (known == 5)
-            return cwi_fail(err, CW_ERR_FORMAT,
-                            "material %zu has the unknown field '%.60s'; there are name, values, "
-                            "color, opacity, index",
-                            n, key);
+            return cwi_fail(
+                err, CW_ERR_FORMAT,
+                "material %zu has the unknown field '%.60s'; there are name, values, "
+                "color, opacity, index",
+                n, key);
     }
     if (!take_ends(json_object_get(object, "values"), m->values))
         return cwi_fail(err, CW_ERR_FORMAT,

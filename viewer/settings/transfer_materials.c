@@ -172,16 +172,17 @@ static cw_status make_curves(const mixture *m, cw_transfer *t, cw_error *err)
     const size_t count = list_ends(m, ends);
     if (2 * count > CW_TRANSFER_POINTS)
         return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "the materials have %zu different ends: at most %d were expected", count,
-                        CW_TRANSFER_POINTS / 2);
+                        "the materials have %zu different ends: at most %d were expected",
+                        count, CW_TRANSFER_POINTS / 2);
     for (size_t n = 0; n + 1 < count; n++) {
         mix_inside(m, ends[n], ends[n + 1], &pieces[n].low);
         mix_inside(m, ends[n + 1], ends[n], &pieces[n].high);
         measure_error(m, &pieces[n]);
     }
     /* each piece may begin and end with a jump, and there are values beyond the ends */
-    const size_t jumps = count + 1, fine =
-        count > 1 ? halve_pieces(m, pieces, count - 1, CW_TRANSFER_POINTS - jumps) : 0;
+    const size_t jumps = count + 1, fine = count > 1 ? halve_pieces(m, pieces, count - 1,
+                                                                    CW_TRANSFER_POINTS - jumps)
+                                                     : 0;
     const double beyond = fmax(fabs(ends[0]), fabs(ends[count - 1])) + 1;
     mix_inside(m, ends[0], -beyond, last);
     for (size_t n = 0; n < fine; n++) {
@@ -204,9 +205,8 @@ static cw_status check_material(const cw_material_class *m, size_t n, cw_error *
     for (int i = 0; i < 4; i++) {
         const double v = m->values[i], open = i < 2 ? -INFINITY : INFINITY;
         if (!isfinite(v) && v != open)
-            return cwi_fail(err, CW_ERR_ARGUMENT,
-                            "value %d of material %zu is not a number%s", i, n,
-                            isnan(v) ? "" : ", or open on the other side");
+            return cwi_fail(err, CW_ERR_ARGUMENT, "value %d of material %zu is not a number%s",
+                            i, n, isnan(v) ? "" : ", or open on the other side");
         if (i > 0 && !(v >= m->values[i - 1]))
             return cwi_fail(err, CW_ERR_ARGUMENT,
                             "value %d of material %zu is %g, below the one before, %g", i, n, v,
@@ -218,10 +218,11 @@ static cw_status check_material(const cw_material_class *m, size_t n, cw_error *
                         "material %zu: both values of an open end were expected to be open", n);
     for (int c = 0; c < 3; c++)
         if (!(m->color[c] >= 0 && m->color[c] <= 1))
-            return cwi_fail(err, CW_ERR_ARGUMENT, "the colour of material %zu is not 0 to 1", n);
+            return cwi_fail(err, CW_ERR_ARGUMENT, "the colour of material %zu is not 0 to 1",
+                            n);
     if (!(m->opacity >= 0 && m->opacity <= 1))
-        return cwi_fail(err, CW_ERR_ARGUMENT, "the opacity of material %zu is %g, not 0 to 1", n,
-                        (double)m->opacity);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the opacity of material %zu is %g, not 0 to 1",
+                        n, (double)m->opacity);
     if (!(fabsf(m->index) <= 1e6f))
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "the index of material %zu is %g: -1e6 to 1e6 was expected", n,
@@ -243,8 +244,8 @@ cw_status cw_transfer_set_materials(cw_transfer *t, const cw_material_class *mat
         st = check_material(&materials[n], n, err);
         low = fmin(low, (double)materials[n].index);
         high = fmax(high, (double)materials[n].index);
-        is_bounded = is_bounded || isfinite(materials[n].values[1]) ||
-                     isfinite(materials[n].values[2]);
+        is_bounded =
+            is_bounded || isfinite(materials[n].values[1]) || isfinite(materials[n].values[2]);
     }
     if (st == CW_OK && !is_bounded)
         st = cwi_fail(err, CW_ERR_ARGUMENT, "no material has an end");

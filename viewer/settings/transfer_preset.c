@@ -193,16 +193,15 @@ static void make_classes(const cw_statistics *s, const float colors[2][3],
     const classes c = find_classes(s);
     const double low = s->min + 0.5 * (c.first - s->min), fade = 0.5 * (c.first + c.second);
     const double dense = c.second + 0.5 * (c.high - c.second);
-    const cw_material_class materials[] = {
-        {{-INFINITY, -INFINITY, low, fade}, {0}, 0, 0},
-        {{low, fade, c.second, dense},
-         {colors[0][0], colors[0][1], colors[0][2]},
-         (float)spread_opacity(s, opacities[0], 0.1),
-         2},
-        {{c.second, dense, INFINITY, INFINITY},
-         {colors[1][0], colors[1][1], colors[1][2]},
-         (float)spread_opacity(s, opacities[1], 0.05),
-         4}};
+    const cw_material_class materials[] = {{{-INFINITY, -INFINITY, low, fade}, {0}, 0, 0},
+                                           {{low, fade, c.second, dense},
+                                            {colors[0][0], colors[0][1], colors[0][2]},
+                                            (float)spread_opacity(s, opacities[0], 0.1),
+                                            2},
+                                           {{c.second, dense, INFINITY, INFINITY},
+                                            {colors[1][0], colors[1][1], colors[1][2]},
+                                            (float)spread_opacity(s, opacities[1], 0.05),
+                                            4}};
     cw_error ignored;
     if (cw_transfer_set_materials(t, materials, 3, &ignored) != CW_OK)
         *t = (cw_transfer){0};

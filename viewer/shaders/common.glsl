@@ -14,7 +14,7 @@ layout(std140) uniform Frame
     vec4 light_direction[4], light_color[4];
     vec4 background[2]; // top, bottom
     vec4 clips[12];     // eye space: n . p >= w is kept
-    ivec4 counts;       // lights, clips, 1: clips cut away
+    ivec4 counts;       // lights, clips, 1: clips cut away, bits of clips that are faces
 };
 
 // Values of one brick. IN_PLACE: the voxels themselves, x fastest, as the processor that draws
@@ -154,8 +154,8 @@ vec3 shade(vec3 color, vec3 gradient, vec3 to_eye)
 {
     float size2 = dot(gradient, gradient);
     vec3 n = gradient * (size2 > 0.0 ? inversesqrt(size2) : 0.0);
-    vec3 light = material.x * color;
     float strength = limits.z > 0.0 ? min(sqrt(size2) * limits.z, 1.0) : 1.0;
+    vec3 light = material.x * color;
     for (int i = 0; i < counts.x; i++) {
         vec3 l = light_direction[i].xyz, h = l + to_eye;
         float diffuse = abs(dot(n, l));
@@ -164,8 +164,40 @@ vec3 shade(vec3 color, vec3 gradient, vec3 to_eye)
             float near = abs(dot(n, h)) * inversesqrt(max(dot(h, h), 1e-20));
             specular = near > 0.0 ? pow(near, material.w) : 0.0;
         }
-        light += strength * light_color[i].rgb * (material.y * diffuse * color + material.z * specular);
+        light += strength * light_color[i].rgb *
+                 (material.y * diffuse * color + material.z * specular);
     }
+    return light;
+}
+
+#ifdef CLIPS
+// Finds the face that clip planes cut near a point in eye space: its normal, and its share of
+// the light there, 1 within a unit of it and 0 beyond two.
+vec4 clip_face(vec3 at)
+{
+    vec4 face = vec4(0.0, 0.0, 0.0, 1e30);
+    for (int n = 0; n < counts.y; n++) {
+        float d = dot(clips[n].xyz, at) - clips[n].w;
+        face = d < face.w && (counts.w >> n & 1) != 0 ? vec4(clips[n].xyz, d) : face;
+    }
+    return vec4(counts.z > 0 ? -face.xyz : face.xyz, clamp(2.0 - abs(face.w), 0.0, 1.0));
+}
+#endif
+
+// Shades a colour at a point in eye space: by the gradient, and close to clip planes by these,
+// since a cut through a solid has no gradient. Cuts have no highlights, which would cover them
+// whole.
+vec3 shade_at(vec3 color, vec3 gradient, vec3 to_eye, vec3 at)
+{
+    vec3 light = shade(color, gradient, to_eye);
+#ifdef CLIPS
+    vec4 face = clip_face(at);
+    vec3 cut = material.x * color;
+    for (int i = 0; i < counts.x; i++)
+        cut += light_color[i].rgb * material.y * abs(dot(face.xyz, light_direction[i].xyz)) *
+               color;
+    light = mix(light, cut, face.w);
+#endif
     return light;
 }
 
@@ -178,15 +210,15 @@ vec4 stretch(vec4 color, float power)
 }
 
 // Changes a premultiplied colour by the gradient: more or less of it, and light on it. SHADES:
-// it is lit already.
-vec4 by_gradient(vec4 color, vec3 gradient, vec3 to_eye)
+// it is lit already. at: in eye space.
+vec4 by_gradient(vec4 color, vec3 gradient, vec3 to_eye, vec3 at)
 {
 #ifdef FACTOR
     color = stretch(color, gradient_factor(gradient));
 #endif
 #if defined(LIT) && !defined(SHADES)
     if (color.a > 0.0)
-        color.rgb = shade(color.rgb / color.a, gradient, to_eye) * color.a;
+        color.rgb = shade_at(color.rgb / color.a, gradient, to_eye, at) * color.a;
 #endif
     return color;
 }

@@ -125,7 +125,8 @@ vec4 along(ray r, float from, float to, vec4 sum, float y)
 #endif
 #if defined(LIT) || defined(FACTOR)
         if ((1.0 - sum.a) * color.a > 1e-5) // others would not be seen
-            color = by_gradient(color, gradient_on(r, t + 0.5 * extent), -r.direction);
+            color = by_gradient(color, gradient_on(r, t + 0.5 * extent), -r.direction,
+                                r.origin + (t + 0.5 * extent) * r.direction);
 #endif
 #ifdef CUE
         color = attenuate(color, -(t + 0.5 * extent) * r.direction.z, y);

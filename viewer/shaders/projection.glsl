@@ -101,7 +101,8 @@ vec4 along(ray r, way w, vec2 t, float y)
 #endif
 #if defined(LIT) || defined(FACTOR)
     if (color.a > 1e-6)
-        color = by_gradient(color, gradient_at(r.index + middle * r.slope), -r.direction);
+        color = by_gradient(color, gradient_at(r.index + middle * r.slope), -r.direction,
+                            r.origin + middle * r.direction);
 #endif
     return attenuate(color, -middle * r.direction.z, y);
 }

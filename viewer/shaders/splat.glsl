@@ -66,7 +66,7 @@ vec4 shine(vec4 row, vec3 gradient, vec3 at)
     row.a *= gradient_factor(slope);
 #endif
 #ifdef LIT
-    row.rgb = shade(row.rgb, slope, view.x > 0.5 ? normalize(-at) : vec3(0.0, 0.0, 1.0));
+    row.rgb = shade_at(row.rgb, slope, view.x > 0.5 ? normalize(-at) : vec3(0.0, 0.0, 1.0), at);
 #endif
     return row;
 }

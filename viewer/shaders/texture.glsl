@@ -119,7 +119,11 @@ vec4 through(float from, float to, vec3 direction, float secant)
         return vec4(0.0);
     vec4 color = color_of(a, b, (to - from) * thickness * secant);
 #if (defined(LIT) && !defined(SHADES)) || defined(FACTOR)
-    color = by_gradient(color, gradient_in(0.5 * (a + b)), -direction);
+    float depth = front_depth + 0.5 * (from + to) * thickness;
+    vec3 at = view.x > 0.5
+                  ? direction * secant * depth
+                  : vec3((2.0 * gl_FragCoord.xy / picture.xy - 1.0) * picture.zw, -depth);
+    color = by_gradient(color, gradient_in(0.5 * (a + b)), -direction, at);
 #endif
 #ifdef CUE
     color = attenuate(color, front_depth + 0.5 * (from + to) * thickness,

@@ -73,8 +73,7 @@ static void reflection_grows_with_the_change_of_the_index(void **state)
             assert_near((double)picture.pixels[4 * p + 3], seen, 1e-5);
             for (size_t c = 0; c < 3; c++) {
                 const double a = (double[]){0.2, 0.4, 1}[c], b = (double[]){0.8, 0.4, 0}[c];
-                const double color =
-                    seen * (light * (a + (b - a) * mean) + 0.2 * strength);
+                const double color = seen * (light * (a + (b - a) * mean) + 0.2 * strength);
                 assert_near((double)picture.pixels[4 * p + c], color, bounds[n]);
             }
         }
@@ -104,12 +103,9 @@ static void modes_converge_to_the_reference(void **state)
     static const struct {
         cw_mode mode;
         double coarse, fine;
-    } rows[] = {{CW_MODE_COMPOSITE, 0.2, 0.02},
-                {CW_MODE_TEXTURE, 0.2, 0.03},
-                {CW_MODE_PROJECTION, 0.5, 0.5},
-                {CW_MODE_VBUFFER, 0.05, 0.05},
-                {CW_MODE_SPLAT, 8, 8},
-                {CW_MODE_SPLAT_TREE, 8, 8}};
+    } rows[] = {{CW_MODE_COMPOSITE, 0.2, 0.02}, {CW_MODE_TEXTURE, 0.2, 0.03},
+                {CW_MODE_PROJECTION, 0.5, 0.5}, {CW_MODE_VBUFFER, 0.05, 0.05},
+                {CW_MODE_SPLAT, 8, 8},          {CW_MODE_SPLAT_TREE, 8, 8}};
     (void)test_renderer(); /* skips without OpenGL */
     cw_volume blobs = {0};
     const cw_transfer t = blob_transfer();
