@@ -77,6 +77,7 @@ static void put_settings(cli_json *j, const cw_scene *s)
     cli_json_bool(j, "skipping", !s->no_skipping);
     cli_json_number(j, "stop_opacity", (double)s->stop_opacity);
     cli_json_number(j, "threshold", s->threshold);
+    cli_json_bool(j, "minip_inside", s->minip_inside);
     cli_json_text(j, "target", targets[s->target]);
     cli_json_bool(j, "colors_first", s->colors_first);
     cli_json_count(j, "normals", s->normals);

@@ -90,9 +90,8 @@ static const char *default_preset(const cw_volume *v, const cw_statistics *s, cw
     case CW_MODE_LOCAL_MIP:
         return "mip";
     case CW_MODE_AVERAGE:
-        return "xray";
     case CW_MODE_MINIP:
-        return "grey";
+        return "xray";
     case CW_MODE_SLICES:
         return "window";
     default:
@@ -405,6 +404,7 @@ static cw_status add_steps(const cli_scene *args, const cw_volume *v, double lev
     s->exact_filter = args->exact_filter;
     s->no_skipping = !args->skipping;
     s->threshold = args->threshold.given ? args->threshold.value : level;
+    s->minip_inside = args->minip_inside;
     s->texture_edge = args->texture_edge;
     s->target = (cw_target)args->target;
     s->colors_first = args->colors_first;

@@ -19,7 +19,7 @@ typedef struct cli_scene {
     int hide;
     cli_number step, stop_opacity, threshold;
     size_t slices, texture_edge, normals;
-    bool cell_steps, preintegration, jitter, exact_filter, skipping;
+    bool minip_inside, cell_steps, preintegration, jitter, exact_filter, skipping;
     int target;
     bool colors_first, boundary, linear_opacity;
     cli_number tree_error;
@@ -41,7 +41,7 @@ typedef struct cli_subject {
     const cw_volume *volume; /* evenly spaced; NULL: none */
     const cw_volume *whole;  /* the file's, whose voxels --clip-box counts; NULL: none */
     const cw_mesh *mesh;     /* NULL: none */
-    double level; /* between two classes of values: local-mip's threshold by default */
+    double level;            /* between two classes of values: the threshold by default */
     int threads;
 } cli_subject;
 

@@ -19,7 +19,9 @@ extern "C" {
  * colour of the transfer function and is opaque, whatever its opacity there. Nothing shows
  * where the ray meets no value. These modes have no light and no depth cue. average leaves gaps
  * on the ray out of the mean. A local maximum of local-mip may lie where the ray enters or
- * leaves values. If none reaches the threshold, the highest value counts.
+ * leaves values. If none reaches the threshold, the highest value counts. minip_inside makes
+ * minip show what is lowest inside of an object; a ray through a solid one shows the threshold,
+ * which it crosses on its way in.
  *
  * A gradient is interpolated between those of the voxels around. These are central differences,
  * one-sided at the border, 0 where a neighbour has no value and along an axis of one voxel. On a
@@ -175,7 +177,12 @@ typedef struct cw_scene {
     bool no_skipping;       /* do not skip empty space */
     float stop_opacity;  /* rays, layers of meshes, and cells of projection on the CPU, end at
                                this opacity; default 0.9999, vbuffer 0.99999 */
-    double threshold;    /* local-mip: the minimum of a maximum that counts */
+    double threshold;    /* local-mip: the minimum of a maximum that counts; minip_inside: what
+                               values of the object reach */
+    bool minip_inside;   /* minip: the minimum between the first and the last place of a ray
+                               whose value reaches threshold, so that the air around an object
+                               does not count. A ray that does not reach it shows nothing.
+                               Default: the minimum of the whole ray */
     bool lean;           /* saves memory and time of the first picture. The shader computes
                                gradients where it can, instead of reading them from a texture;
                                lit rays are up to a third slower. Always so for large volumes.
