@@ -58,6 +58,7 @@ static void put_settings(cli_json *j, const cw_scene *s)
     static const char *const targets[CW_TARGET_COUNT] = {"32f", "16", "16f", "8"};
     static const char *const kernels[CW_SPLAT_COUNT] = {"gaussian", "polygon", "tent",
                                                         "b-spline"};
+    static const char *const forms[CW_CUE_COUNT] = {"linear", "exponential"};
     const cw_material *m = &s->material;
     cli_json_open(j, "settings", '{');
     cli_json_count(j, "width", s->width);
@@ -69,6 +70,8 @@ static void put_settings(cli_json *j, const cw_scene *s)
                                  (double)m->shininess},
                      4);
     cli_json_number(j, "depth_cue", (double)s->depth_cue);
+    cli_json_numbers(j, "depth_cue_range", s->cue_range, 2);
+    cli_json_text(j, "depth_cue_form", forms[s->cue_form]);
     cli_json_number(j, "step_length", s->step_vox);
     cli_json_bool(j, "cell_steps", s->cell_steps);
     cli_json_bool(j, "preintegration", !s->no_preintegration);

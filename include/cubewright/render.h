@@ -108,6 +108,16 @@ typedef struct cw_material {
     float ambient, diffuse, specular, shininess; /* all 0: 0.25, 0.75, 0.2, 32 */
 } cw_material;
 
+/* How the depth cue changes from its start to its end. */
+typedef enum cw_cue_form {
+    CW_CUE_LINEAR,      /* the background's fraction rises linearly, and is constant beyond the
+                           end */
+    CW_CUE_EXPONENTIAL, /* fog of one density: a fraction exp(-k d) of the light is left, d from
+                           the start on; k gives the fraction that is named at the end, and it
+                           goes on falling beyond */
+    CW_CUE_COUNT
+} cw_cue_form;
+
 /* The source of a mesh's colours. */
 typedef enum cw_tint {
     CW_TINT_COLORS,  /* the mesh's colours, else the scene's */
@@ -156,9 +166,14 @@ typedef struct cw_scene {
     size_t light_count;             /* default: one, white, from the eye; for meshes without a
                                        material, studio lights */
     cw_material material;
-    bool lit;        /* volumes are shaded by their gradient; meshes always are */
-    float depth_cue; /* 0 to 1: the fraction of the background at the far end of the visible
-                        range, rising linearly from 0 at the near end */
+    bool lit; /* volumes are shaded by their gradient; meshes always are */
+    float
+        depth_cue; /* 0 to 1: the fraction of the background at the cue's end; it is 0 up to the
+                        cue's start. Below 1 if exponential */
+    double cue_range[2]; /* start and end of the depth cue, as fractions of the scene's
+                                    depth: 0 is its nearest point, 1 its farthest, and they may lie
+                                    outside; both 0: 0 and 1 */
+    cw_cue_form cue_form;
     float background[2][3];      /* top and bottom, for depth_cue and slices; sRGB */
     cw_clip clips[CW_MAX_CLIPS]; /* clip_count planes: points kept by all of them are drawn */
     size_t clip_count;

@@ -107,6 +107,17 @@ static void index_at(const cwi_frame *f, const double o[3], const double d[3], d
     }
 }
 
+/* Fog from the start of the depth cue on, linear or of one density. */
+static double background_share(const cwi_frame *f, double depth)
+{
+    const double *range = f->scene.cue_range, most = (double)f->scene.depth_cue;
+    const double at =
+        ((depth - f->near) / (f->far - f->near) - range[0]) / (range[1] - range[0]);
+    if (at <= 0)
+        return 0;
+    return f->scene.cue_form == CW_CUE_EXPONENTIAL ? 1 - pow(1 - most, at) : most * fmin(at, 1);
+}
+
 void test_ray(const cwi_frame *f, double x, double y, size_t steps, double out[4])
 {
     double o[3], d[3], parts[2][2], index[3], g[3], m[3][3], color[3], opacity, left = 1;
@@ -129,8 +140,7 @@ void test_ray(const cwi_frame *f, double x, double y, size_t steps, double out[4
             if (f->scene.lit)
                 light(f, e, d, color);
         }
-        const double far =
-            (-t * d[2] - f->near) / (f->far - f->near) * (double)f->scene.depth_cue;
+        const double far = background_share(f, -t * d[2]);
         for (int c = 0; c < 3; c++) {
             const double back = (1 - share) * (double)f->scene.background[0][c] +
                                 share * (double)f->scene.background[1][c];

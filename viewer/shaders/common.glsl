@@ -6,6 +6,7 @@ layout(std140) uniform Frame
     mat4 gradient_to_eye; // of a gradient per voxel, to one per unit
     vec4 picture;         // width, height, half x, half y
     vec4 view;            // 1 in perspective, near, far, depth cue
+    vec4 cue_range;       // start and end of the depth cue, decay per unit if it is exponential
     vec4 low, high;       // the volume in index space
     vec4 dim;             // samples; rows of the pre-integrated table
     vec4 texels;          // scale and bias from a texel to a table's coordinate
@@ -193,7 +194,9 @@ vec4 by_gradient(vec4 color, vec3 gradient, vec3 to_eye)
 // Returns the fraction of its own light that something at a depth keeps.
 float cue(float depth)
 {
-    return 1.0 - view.w * clamp((depth - view.y) / (view.z - view.y), 0.0, 1.0);
+    if (cue_range.z > 0.0)
+        return exp(-cue_range.z * max(depth - cue_range.x, 0.0));
+    return 1.0 - view.w * clamp((depth - cue_range.x) / (cue_range.y - cue_range.x), 0.0, 1.0);
 }
 
 // y: 0 at the picture's bottom, 1 at its top.

@@ -52,6 +52,11 @@ try v.nrrd -o v.png --light '1,0,0;1,0,0;1,0,0;1,0,0;1,0,0'
 try v.nrrd -o v.png --ambient 2
 try v.nrrd -o v.png --ambient 0 --diffuse 0 --specular 0
 try v.nrrd -o v.png --depth-cue 1.5
+try v.nrrd -o v.png --depth-cue-range 0,1
+try v.nrrd -o v.png --depth-cue-form exponential
+try v.nrrd -o v.png --depth-cue 0.5 --depth-cue-range 1,0.5
+try v.nrrd -o v.png --depth-cue 1 --depth-cue-form exponential
+try v.nrrd -o v.png --depth-cue 0.5 --mode mip
 try v.nrrd -o v.png --clip 0,0,1
 try v.nrrd -o v.png --clip 0,0,0,1
 try v.nrrd -o v.png --clip 0,0,one,1

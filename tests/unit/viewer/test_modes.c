@@ -57,6 +57,40 @@ static void boxes_are_as_opaque_as_they_are_thick(void **state)
     cw_volume_free(&box);
 }
 
+/* The colour of a box of one value behind a depth cue that starts and ends inside of it, by the
+ * rendering integral of one line, in every mode. */
+static void depth_cues_start_and_end_where_asked(void **state)
+{
+    (void)state;
+    static const double ranges[3][2] = {{0.25, 0.75}, {0, 0}, {-0.5, 0.5}};
+    cw_volume box = {0};
+    const cw_transfer flat = test_flat_transfer();
+    test_field(&box, 24, 33, 20, cube, test_constant);
+    for (int n = 0; n < 6; n++) {
+        const double *range = ranges[n / 2], end = range[1] == range[0] ? 1 : range[1];
+        const double tau = -log(0.95) * 32 / 1000;
+        double wanted = 0;
+        for (int i = 0; i < 1000; i++) {
+            const double at = fmax((((double)i + 0.5) / 1000 - range[0]) / (end - range[0]), 0);
+            const double kept = n & 1 ? pow(1 - 0.8, at) : 1 - 0.8 * fmin(at, 1);
+            wanted += (1 - exp(-tau)) * exp(-tau * i) * (0.8 * kept + 0.25 * (1 - kept));
+        }
+        for (int m = 0; m < MODES; m++) {
+            cw_scene s = scene_of(modes[m], &box, &flat);
+            s.depth_cue = 0.8f;
+            s.cue_range[0] = range[0];
+            s.cue_range[1] = range[1];
+            s.cue_form = n & 1 ? CW_CUE_EXPONENTIAL : CW_CUE_LINEAR;
+            s.background[0][0] = s.background[1][0] = 0.25f;
+            cw_picture p = draw(s);
+            for (size_t i = 0; i < SIDE * SIDE; i++)
+                assert_near((double)p.pixels[4 * i], wanted, 1.5 / 255);
+            cw_picture_free(&p);
+        }
+    }
+    cw_volume_free(&box);
+}
+
 static double along_y(const double p[3], const double q[3])
 {
     (void)p;
@@ -167,6 +201,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(boxes_are_as_opaque_as_they_are_thick),
+        cmocka_unit_test(depth_cues_start_and_end_where_asked),
         cmocka_unit_test(ramps_are_as_opaque_as_they_are),
         cmocka_unit_test(meshes_hide_what_is_behind),
         cmocka_unit_test(size_does_not_matter),

@@ -438,21 +438,35 @@ static void depth_fades_into_the_background(void **state)
     make_arrays(&mesh, 8, 4);
     put_sheet(&mesh, 0, 100, 9, white);
     put_sheet(&mesh, 1, 0, 3, white);
-    const cw_scene scene = {.mode = CW_MODE_MESH,
-                            .mesh = &mesh,
-                            .camera = straight(20),
-                            .width = 40,
-                            .height = 40,
-                            .background = {{0.2f, 0.4f, 0.6f}, {0.2f, 0.4f, 0.6f}},
-                            .depth_cue = 0.7f,
-                            .material = flat};
-    cw_renderer_forget(r);
-    cw_picture picture = test_draw(r, &scene);
-    for (int c = 0; c < 3; c++) {
-        assert_near((double)pixel(&picture, 20, 20)[c], 1, 2e-3);
-        assert_near((double)pixel(&picture, 4, 20)[c], 0.3 + 0.7 * 0.2 * (c + 1), 2e-3);
+    static const struct {
+        double range[2], near, far; /* shares of the background */
+        cw_cue_form form;
+    } cases[] = {{{0, 0}, 0, 0.7, CW_CUE_LINEAR},
+                 {{0, 2}, 0, 0.35, CW_CUE_LINEAR},
+                 {{-1, 0.5}, 0.7 * 2 / 3, 0.7, CW_CUE_LINEAR},
+                 {{0, 0}, 0, 0.7, CW_CUE_EXPONENTIAL},
+                 {{0, 0.5}, 0, 0.91, CW_CUE_EXPONENTIAL},
+                 {{-1, 0}, 0.7, 0.91, CW_CUE_EXPONENTIAL}};
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        const cw_scene scene = {.mode = CW_MODE_MESH,
+                                .mesh = &mesh,
+                                .camera = straight(20),
+                                .width = 40,
+                                .height = 40,
+                                .background = {{0.2f, 0.4f, 0.6f}, {0.2f, 0.4f, 0.6f}},
+                                .depth_cue = 0.7f,
+                                .cue_range = {cases[n].range[0], cases[n].range[1]},
+                                .cue_form = cases[n].form,
+                                .material = flat};
+        cw_renderer_forget(r);
+        cw_picture picture = test_draw(r, &scene);
+        for (int c = 0; c < 3; c++) {
+            const double other = 1 - 0.2 * (c + 1);
+            assert_near((double)pixel(&picture, 20, 20)[c], 1 - cases[n].near * other, 3e-3);
+            assert_near((double)pixel(&picture, 4, 20)[c], 1 - cases[n].far * other, 3e-3);
+        }
+        cw_picture_free(&picture);
     }
-    cw_picture_free(&picture);
     cw_mesh_free(&mesh);
 }
 
