@@ -65,6 +65,7 @@ static void put_settings(cli_json *j, const cw_scene *s)
     cli_json_count(j, "height", s->height);
     cli_json_int(j, "samples", s->samples);
     cli_json_bool(j, "lit", s->lit);
+    cli_json_text(j, "lambert", s->one_sided ? "one-sided" : "two-sided");
     cli_json_numbers(j, "material",
                      (double[4]){(double)m->ambient, (double)m->diffuse, (double)m->specular,
                                  (double)m->shininess},

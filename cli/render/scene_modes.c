@@ -28,6 +28,7 @@ static const struct {
     {"opacity", VOLUMES, false, false},
     {"save-tf", VOLUMES, false, false},
     {"lit", SHADED & ~ONE(SHADED_TEXTURE), false, false},
+    {"lambert", SHADED, true, true},
     {"ambient", SHADED, true, true},
     {"diffuse", SHADED, true, true},
     {"specular", SHADED, true, true},

@@ -354,6 +354,7 @@ static cw_status add_material(const cli_scene *args, cw_scene *s, cw_error *err)
     const bool given = args->ambient.given || args->diffuse.given || args->specular.given ||
                        args->shininess.given;
     cw_material *m = &s->material;
+    s->one_sided = args->lambert;
     if (given)
         *m = (cw_material){0.25f, 0.75f, 0.2f, 32};
     cw_status st = take_share("ambient", &args->ambient, 1, &m->ambient, err);

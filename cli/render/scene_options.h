@@ -14,6 +14,7 @@ typedef struct cli_scene {
     bool ortho;
     bool lit;
     cli_number ambient, diffuse, specular, shininess, depth_cue;
+    int lambert;
     cli_numbers cue_range;
     int cue_form;
     cli_ranges clip_box;

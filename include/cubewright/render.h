@@ -102,8 +102,8 @@ typedef struct cw_clip {
 typedef cw_clip cw_slice;
 
 /* Reflection of light: I = ambient C + sum over lights (diffuse |n.l| C + specular
- * |n.h|^shininess) I_l. Both sides are lit. Where a volume's gradient is 0 there is no n, and
- * only ambient light. */
+ * |n.h|^shininess) I_l. Both sides are lit, unless the scene is one_sided. Where a volume's
+ * gradient is 0 there is no n, and only ambient light. */
 typedef struct cw_material {
     float ambient, diffuse, specular, shininess; /* all 0: 0.25, 0.75, 0.2, 32 */
 } cw_material;
@@ -166,14 +166,18 @@ typedef struct cw_scene {
     size_t light_count;             /* default: one, white, from the eye; for meshes without a
                                        material, studio lights */
     cw_material material;
-    bool lit; /* volumes are shaded by their gradient; meshes always are */
-    float
-        depth_cue; /* 0 to 1: the fraction of the background at the cue's end; it is 0 up to the
-                        cue's start. Below 1 if exponential */
-    double cue_range[2]; /* start and end of the depth cue, as fractions of the scene's
-                                    depth: 0 is its nearest point, 1 its farthest, and they may lie
-                                    outside; both 0: 0 and 1 */
-    cw_cue_form cue_form;
+    bool lit;            /* volumes are shaded by their gradient; meshes always are */
+    bool one_sided;      /* light falls only on the side that faces lower values (n is minus the
+                             gradient), of meshes on the side that their triangles face: n.l and
+                             n.h count where n.l is above 0, in place of their absolute values.
+                             Things of low values in high ones, such as airways, are then lit
+                             from inside of them. Default: both sides are lit */
+    float depth_cue;     /* 0 to 1: the fraction of the background at the cue's end; it is 0 up
+                             to the cue's start. Below 1 if exponential */
+    double cue_range[2]; /* start and end of the depth cue, as fractions of the scene's depth:
+                             0 is its nearest point, 1 its farthest, and they may lie outside;
+                             both 0: 0 and 1 */
+    cw_cue_form cue_form;        /* default: linear */
     float background[2][3];      /* top and bottom, for depth_cue and slices; sRGB */
     cw_clip clips[CW_MAX_CLIPS]; /* clip_count planes: points kept by all of them are drawn */
     size_t clip_count;

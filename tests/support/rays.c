@@ -85,6 +85,8 @@ static void light(const cwi_frame *f, const double g[3], const double direction[
             to[a] = l->direction[a] / sqrt(dot(l->direction, l->direction));
             h[a] = to[a] - direction[a];
         }
+        if (f->scene.one_sided && dot(g, to) >= 0)
+            continue;
         const double diffuse = fabs(dot(g, to)) / size,
                      gloss =
                          pow(fabs(dot(g, h)) / size / sqrt(dot(h, h)), (double)m->shininess);

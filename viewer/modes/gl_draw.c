@@ -106,7 +106,7 @@ static void put_frame(cwi_gl *gl)
         .limits = {s->stop_opacity},
         .material = {s->material.ambient, s->material.diffuse, s->material.specular,
                      s->material.shininess},
-        .counts = {(int32_t)s->light_count, (int32_t)s->clip_count, s->cut_away},
+        .counts = {(int32_t)s->light_count, (int32_t)s->clip_count, s->cut_away, s->one_sided},
     };
     put_projection(f, b.projection);
     put_lights(s, &b);

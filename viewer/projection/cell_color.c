@@ -210,7 +210,7 @@ static inline float raise_power(float x, float power)
     return result;
 }
 
-/* Lights a premultiplied colour on both sides, as cwi_lighting_shade(). */
+/* Lights a premultiplied colour, as cwi_lighting_shade(). */
 static inline cwi_lanes shade_color(const cwi_cell_model *m, const cwi_cell_ray *r,
                                     cwi_lanes gradient, cwi_lanes color)
 {
@@ -219,8 +219,10 @@ static inline cwi_lanes shade_color(const cwi_cell_model *m, const cwi_cell_ray 
     cwi_lanes light = s->material.ambient * color;
     const cwi_lanes normal = gradient / sqrtf(size_sq);
     for (size_t n = 0; n < s->light_count && size_sq > 0; n++) {
-        const float diffuse =
-            s->material.diffuse * fabsf(dot_lanes(normal, m->light_direction[n]));
+        const float facing = -dot_lanes(normal, m->light_direction[n]);
+        if (s->one_sided && !(facing > 0))
+            continue;
+        const float diffuse = s->material.diffuse * fabsf(facing);
         const float gloss = fabsf(dot_lanes(normal, r->halfway[n]));
         const float specular = s->material.specular * opacity *
                                raise_power(gloss < 1 ? gloss : 1, s->material.shininess);

@@ -1,4 +1,5 @@
-/* Shades points by the Blinn-Phong model, lit from both sides, in eye space. */
+/* Shades points by the Blinn-Phong model, lit from both sides or from outside alone, in eye
+ * space. */
 #include "viewer/scene/lighting.h"
 
 #include "core/geometry/vec3.h"
@@ -20,7 +21,9 @@ static double raise_power(double x, double power)
 
 void cwi_lighting_make(const cwi_frame *f, const double direction[3], cwi_lighting *l)
 {
-    *l = (cwi_lighting){.material = f->scene.material, .count = f->scene.light_count};
+    *l = (cwi_lighting){.material = f->scene.material,
+                        .is_one_sided = f->scene.one_sided,
+                        .count = f->scene.light_count};
     for (size_t n = 0; n < l->count; n++) {
         const cw_light *light = &f->scene.lights[n];
         memcpy(l->direction[n], light->direction, sizeof l->direction[n]);
@@ -42,7 +45,10 @@ void cwi_lighting_shade(const cwi_lighting *l, const double gradient[3], double 
     for (int c = 0; c < 3; c++)
         light[c] = (double)l->material.ambient * color[c];
     for (size_t i = 0; i < l->count && has_side; i++) {
-        const double diffuse = (double)l->material.diffuse * fabs(cwi_dot(n, l->direction[i]));
+        const double facing = -cwi_dot(n, l->direction[i]);
+        if (l->is_one_sided && !(facing > 0))
+            continue;
+        const double diffuse = (double)l->material.diffuse * fabs(facing);
         const double gloss = fabs(cwi_dot(n, l->halfway[i]));
         const double specular =
             (double)l->material.specular * raise_power(gloss, (double)l->material.shininess);

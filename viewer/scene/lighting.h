@@ -12,6 +12,7 @@ extern "C" {
  * eye. */
 typedef struct cwi_lighting {
     cw_material material;
+    bool is_one_sided;
     size_t count;
     double direction[CW_MAX_LIGHTS][3], halfway[CW_MAX_LIGHTS][3]; /* of unit length, or 0 */
     double color[CW_MAX_LIGHTS][3];

@@ -15,7 +15,7 @@ layout(std140) uniform Frame
     vec4 light_direction[4], light_color[4];
     vec4 background[2]; // top, bottom
     vec4 clips[12];     // eye space: n . p >= w is kept
-    ivec4 counts;       // lights, clips, 1: clips cut away
+    ivec4 counts;       // lights, clips, 1: clips cut away, 1: lit on one side
 };
 
 // Values of one brick. IN_PLACE: the voxels themselves, x fastest, as the processor that draws
@@ -149,8 +149,8 @@ float gradient_factor(vec3 gradient)
     return textureLod(factor, (at * (factor_rows - 1.0) + 0.5) / factor_rows, 0.0).r;
 }
 
-// Shades a colour, on both sides; to_eye and the gradient are in eye space. Without a gradient:
-// ambient light.
+// Shades a colour, on both sides or on that of lower values; to_eye and the gradient are in eye
+// space. Without a gradient: ambient light.
 vec3 shade(vec3 color, vec3 gradient, vec3 to_eye)
 {
     float size2 = dot(gradient, gradient);
@@ -158,9 +158,10 @@ vec3 shade(vec3 color, vec3 gradient, vec3 to_eye)
     vec3 light = material.x * color;
     for (int i = 0; i < counts.x; i++) {
         vec3 l = light_direction[i].xyz, h = l + to_eye;
-        float diffuse = abs(dot(n, l));
+        float facing = -dot(n, l);
+        float diffuse = counts.w != 0 ? max(facing, 0.0) : abs(facing);
         float specular = 0.0;
-        if (material.z > 0.0) {
+        if (material.z > 0.0 && (counts.w == 0 || facing > 0.0)) {
             float near = abs(dot(n, h)) * inversesqrt(max(dot(h, h), 1e-20));
             specular = near > 0.0 ? pow(near, material.w) : 0.0;
         }

@@ -96,4 +96,5 @@ for option in --cell-steps --jitter --exact-filter '--texture-edge 9' '--step-le
     try v.nrrd -o v.png --mode projection $option
 done
 try v.nrrd -o v.png --mode mip --no-lit
+try v.nrrd -o v.png --mode mip --lambert one-sided
 ls

@@ -53,7 +53,7 @@ done
 cmp -s ff.png 80.png || cmp -s 80.png 40.png || echo "another"
 
 # Settings that change the picture, one by one.
-for setting in --no-lit '--light 1,1,0' '--ambient 0.9' '--diffuse 0.1' '--specular 1' '--shininess 2' \
+for setting in --no-lit '--lambert one-sided --light 1,0,-0.5' '--light 1,1,0' '--ambient 0.9' '--diffuse 0.1' '--specular 1' '--shininess 2' \
     '--depth-cue 1' '--depth-cue 0.5' '--background white' '--tf fog' '--opacity 0.1' '--step-length 5' --cell-steps \
     --ortho '--fov 60' '--zoom 2' '--samples 3' '--stop-opacity 0.5' '--light 0,0,1,1,0,0'; do
     draw t.nrrd -o s.png --size 64x64 $setting || echo "exit $?"

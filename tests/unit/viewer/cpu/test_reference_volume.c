@@ -212,9 +212,11 @@ static void many_small_steps_agree(void **state)
         scene.light_count = 2;
         scene.lights[0] = (cw_light){{1, 2, 2}, {1, 0.8f, 0.6f}};
         scene.lights[1] = (cw_light){{-1, 0, 0.5}, {0.2f, 0.3f, 0.4f}};
-        const cwi_frame frame = test_frame(&scene);
-        for (int p = 0; p < 3; p++) {
-            const double x = (double[]){4.1, 3.2, 4.9}[p], y = (double[]){3.9, 4.6, 3.1}[p];
+        for (int p = 0; p < 6; p++) {
+            const double x = (double[]){4.1, 3.2, 4.9}[p / 2],
+                         y = (double[]){3.9, 4.6, 3.1}[p / 2];
+            scene.one_sided = p & 1;
+            const cwi_frame frame = test_frame(&scene);
             double out[4], truth[4];
             const double estimate = ray_of(&scene, x, y, out);
             test_ray(&frame, x, y, 40000, truth);
