@@ -79,6 +79,7 @@ static void match_reference(cli_side *reference, const cli_side *other)
         return;
     s->reference_of = other->mode;
     s->threshold = other->args.scene.threshold;
+    s->minip_inside = other->args.scene.minip_inside;
     s->transfer = s->transfer ? s->transfer : other->args.scene.transfer;
 }
 

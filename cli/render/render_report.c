@@ -81,17 +81,21 @@ static void put_settings(cli_json *j, const cw_scene *s)
     static const char *const targets[CW_TARGET_COUNT] = {"32f", "16", "16f", "8"};
     static const char *const kernels[CW_SPLAT_COUNT] = {"gaussian", "polygon", "tent",
                                                         "b-spline"};
+    static const char *const forms[CW_CUE_COUNT] = {"linear", "exponential"};
     const cw_material *m = &s->material;
     cli_json_open(j, "settings", '{');
     cli_json_count(j, "width", s->width);
     cli_json_count(j, "height", s->height);
     cli_json_int(j, "samples", s->samples);
     cli_json_bool(j, "lit", s->lit);
+    cli_json_text(j, "lambert", s->one_sided ? "one-sided" : "two-sided");
     cli_json_numbers(j, "material",
                      (double[4]){(double)m->ambient, (double)m->diffuse, (double)m->specular,
                                  (double)m->shininess},
                      4);
     cli_json_number(j, "depth_cue", (double)s->depth_cue);
+    cli_json_numbers(j, "depth_cue_range", s->cue_range, 2);
+    cli_json_text(j, "depth_cue_form", forms[s->cue_form]);
     cli_json_number(j, "gradient_smoothing", s->gradient_sigma);
     cli_json_number(j, "step_length", s->step_vox);
     cli_json_bool(j, "cell_steps", s->cell_steps);
@@ -101,6 +105,7 @@ static void put_settings(cli_json *j, const cw_scene *s)
     cli_json_bool(j, "skipping", !s->no_skipping);
     cli_json_number(j, "stop_opacity", (double)s->stop_opacity);
     cli_json_number(j, "threshold", s->threshold);
+    cli_json_bool(j, "minip_inside", s->minip_inside);
     cli_json_text(j, "target", targets[s->target]);
     cli_json_bool(j, "colors_first", s->colors_first);
     cli_json_count(j, "normals", s->normals);

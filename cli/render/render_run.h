@@ -25,7 +25,7 @@ typedef struct render_args {
 
 #define CLI_SCENE_DEFAULTS                                                                     \
     {                                                                                          \
-        .lit = true, .preintegration = true, .skipping = true                                  \
+        .lit = true, .minip_inside = true, .preintegration = true, .skipping = true            \
     }
 
 /* For the rows of options_what.inc, options_camera.inc and options_look.inc. */

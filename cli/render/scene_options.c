@@ -90,9 +90,8 @@ static const char *default_preset(const cw_volume *v, const cw_statistics *s, cw
     case CW_MODE_LOCAL_MIP:
         return "mip";
     case CW_MODE_AVERAGE:
-        return "xray";
     case CW_MODE_MINIP:
-        return "grey";
+        return "xray";
     case CW_MODE_SLICES:
         return "window";
     default:
@@ -363,12 +362,35 @@ static cw_status take_share(const char *name, const cli_number *n, double most, 
     return CW_OK;
 }
 
+static cw_status add_depth_cue(const cli_scene *args, cw_scene *s, cw_error *err)
+{
+    const cli_numbers *range = &args->cue_range;
+    cw_status st = take_share("depth-cue", &args->depth_cue, 1, &s->depth_cue, err);
+    if (st != CW_OK)
+        return st;
+    if ((range->count || args->cue_form) && !args->depth_cue.given)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--depth-cue-%s needs --depth-cue",
+                        range->count ? "range" : "form");
+    if (range->count && (range->count != 2 || !(range->value[0] < range->value[1])))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--depth-cue-range takes two rising numbers");
+    if (args->cue_form == CW_CUE_EXPONENTIAL && args->depth_cue.value >= 1)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--depth-cue %g: less than 1 was expected with --depth-cue-form "
+                        "exponential",
+                        args->depth_cue.value);
+    for (size_t n = 0; n < 2; n++)
+        s->cue_range[n] = range->count ? range->value[n] : (double)n;
+    s->cue_form = (cw_cue_form)args->cue_form;
+    return CW_OK;
+}
+
 /* Nothing said is left to the library: meshes may have a light of their own. */
 static cw_status add_material(const cli_scene *args, cw_scene *s, cw_error *err)
 {
     const bool given = args->ambient.given || args->diffuse.given || args->specular.given ||
                        args->shininess.given;
     cw_material *m = &s->material;
+    s->one_sided = args->lambert;
     if (given)
         *m = (cw_material){0.25f, 0.75f, 0.2f, 32};
     cw_status st = take_share("ambient", &args->ambient, 1, &m->ambient, err);
@@ -379,7 +401,7 @@ static cw_status add_material(const cli_scene *args, cw_scene *s, cw_error *err)
     if (st == CW_OK)
         st = take_share("shininess", &args->shininess, 1000, &m->shininess, err);
     if (st == CW_OK)
-        st = take_share("depth-cue", &args->depth_cue, 1, &s->depth_cue, err);
+        st = add_depth_cue(args, s, err);
     if (st == CW_OK && given && m->ambient + m->diffuse + m->specular == 0)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--ambient, --diffuse and --specular are all 0: nothing is lit");
@@ -446,6 +468,7 @@ static cw_status add_steps(const cli_scene *args, const cw_volume *v, double lev
     s->exact_filter = args->exact_filter;
     s->no_skipping = !args->skipping;
     s->threshold = args->threshold.given ? args->threshold.value : level;
+    s->minip_inside = args->minip_inside;
     s->texture_edge = args->texture_edge;
     s->target = (cw_target)args->target;
     s->colors_first = args->colors_first;

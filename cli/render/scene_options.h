@@ -15,12 +15,15 @@ typedef struct cli_scene {
     bool ortho;
     bool lit;
     cli_number ambient, diffuse, specular, shininess, depth_cue;
+    int lambert;
+    cli_numbers cue_range;
+    int cue_form;
     cli_ranges clip_box;
     bool cut_away;
     int hide;
     cli_number step, stop_opacity, threshold;
     size_t slices, texture_edge, normals;
-    bool cell_steps, preintegration, jitter, exact_filter, skipping;
+    bool minip_inside, cell_steps, preintegration, jitter, exact_filter, skipping;
     int target;
     bool colors_first, boundary, linear_opacity;
     cli_number tree_error;
@@ -42,7 +45,7 @@ typedef struct cli_subject {
     const cw_volume *volume; /* evenly spaced; NULL: none */
     const cw_volume *whole;  /* the file's, whose voxels --clip-box counts; NULL: none */
     const cw_mesh *mesh;     /* NULL: none */
-    double level; /* between two classes of values: local-mip's threshold by default */
+    double level;            /* between two classes of values: the threshold by default */
     int threads;
 } cli_subject;
 

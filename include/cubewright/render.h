@@ -19,7 +19,9 @@ extern "C" {
  * colour of the transfer function and is opaque, whatever its opacity there. Nothing shows
  * where the ray meets no value. These modes have no light and no depth cue. average leaves gaps
  * on the ray out of the mean. A local maximum of local-mip may lie where the ray enters or
- * leaves values. If none reaches the threshold, the highest value counts.
+ * leaves values. If none reaches the threshold, the highest value counts. minip_inside makes
+ * minip show what is lowest inside of an object; a ray through a solid one shows the threshold,
+ * which it crosses on its way in.
  *
  * A gradient is interpolated between those of the voxels around. These are central differences,
  * one-sided at the border, 0 where a neighbour has no value and along an axis of one voxel. On a
@@ -100,11 +102,21 @@ typedef struct cw_clip {
 typedef cw_clip cw_slice;
 
 /* Reflection of light: I = ambient C + sum over lights (diffuse |n.l| C + specular
- * |n.h|^shininess) I_l. Both sides are lit. Where a volume's gradient is 0 there is no n, and
- * only ambient light. */
+ * |n.h|^shininess) I_l. Both sides are lit, unless the scene is one_sided. Where a volume's
+ * gradient is 0 there is no n, and only ambient light. */
 typedef struct cw_material {
     float ambient, diffuse, specular, shininess; /* all 0: 0.25, 0.75, 0.2, 32 */
 } cw_material;
+
+/* How the depth cue changes from its start to its end. */
+typedef enum cw_cue_form {
+    CW_CUE_LINEAR,      /* the background's fraction rises linearly, and is constant beyond the
+                           end */
+    CW_CUE_EXPONENTIAL, /* fog of one density: a fraction exp(-k d) of the light is left, d from
+                           the start on; k gives the fraction that is named at the end, and it
+                           goes on falling beyond */
+    CW_CUE_COUNT
+} cw_cue_form;
 
 /* The source of a mesh's colours. */
 typedef enum cw_tint {
@@ -158,8 +170,17 @@ typedef struct cw_scene {
                               its gradient is taken, in units of the smallest spacing, at most
                               16, on evenly spaced volumes; default 0: none */
     bool lit;              /* volumes are shaded by their gradient; meshes always are */
-    float depth_cue; /* 0 to 1: the fraction of the background at the far end of the visible
-                        range, rising linearly from 0 at the near end */
+    bool one_sided;      /* light falls only on the side that faces lower values (n is minus the
+                             gradient), of meshes on the side that their triangles face: n.l and
+                             n.h count where n.l is above 0, in place of their absolute values.
+                             Things of low values in high ones, such as airways, are then lit
+                             from inside of them. Default: both sides are lit */
+    float depth_cue;     /* 0 to 1: the fraction of the background at the cue's end; it is 0 up
+                             to the cue's start. Below 1 if exponential */
+    double cue_range[2]; /* start and end of the depth cue, as fractions of the scene's depth:
+                             0 is its nearest point, 1 its farthest, and they may lie outside;
+                             both 0: 0 and 1 */
+    cw_cue_form cue_form;        /* default: linear */
     float background[2][3];      /* top and bottom, for depth_cue and slices; sRGB */
     cw_clip clips[CW_MAX_CLIPS]; /* clip_count planes: points kept by all of them are drawn */
     size_t clip_count;
@@ -178,7 +199,12 @@ typedef struct cw_scene {
     bool no_skipping;       /* do not skip empty space */
     float stop_opacity;  /* rays, layers of meshes, and cells of projection on the CPU, end at
                                this opacity; default 0.9999, vbuffer 0.99999 */
-    double threshold;    /* local-mip: the minimum of a maximum that counts */
+    double threshold;    /* local-mip: the minimum of a maximum that counts; minip_inside: what
+                               values of the object reach */
+    bool minip_inside;   /* minip: the minimum between the first and the last place of a ray
+                               whose value reaches threshold, so that the air around an object
+                               does not count. A ray that does not reach it shows nothing.
+                               Default: the minimum of the whole ray */
     bool lean;           /* saves memory and time of the first picture. The shader computes
                                gradients where it can, instead of reading them from a texture;
                                lit rays are up to a third slower. Always so for large volumes.

@@ -85,6 +85,8 @@ static void light(const cwi_frame *f, const double g[3], const double direction[
             to[a] = l->direction[a] / sqrt(dot(l->direction, l->direction));
             h[a] = to[a] - direction[a];
         }
+        if (f->scene.one_sided && dot(g, to) >= 0)
+            continue;
         const double diffuse = fabs(dot(g, to)) / size,
                      gloss =
                          pow(fabs(dot(g, h)) / size / sqrt(dot(h, h)), (double)m->shininess);
@@ -105,6 +107,17 @@ static void index_at(const cwi_frame *f, const double o[3], const double d[3], d
         for (int c = 0; c < 3; c++)
             index[r] += m[c] * (o[c] + t * d[c]);
     }
+}
+
+/* Fog from the start of the depth cue on, linear or of one density. */
+static double background_share(const cwi_frame *f, double depth)
+{
+    const double *range = f->scene.cue_range, most = (double)f->scene.depth_cue;
+    const double at =
+        ((depth - f->near) / (f->far - f->near) - range[0]) / (range[1] - range[0]);
+    if (at <= 0)
+        return 0;
+    return f->scene.cue_form == CW_CUE_EXPONENTIAL ? 1 - pow(1 - most, at) : most * fmin(at, 1);
 }
 
 void test_ray(const cwi_frame *f, double x, double y, size_t steps, double out[4])
@@ -129,8 +142,7 @@ void test_ray(const cwi_frame *f, double x, double y, size_t steps, double out[4
             if (f->scene.lit)
                 light(f, e, d, color);
         }
-        const double far =
-            (-t * d[2] - f->near) / (f->far - f->near) * (double)f->scene.depth_cue;
+        const double far = background_share(f, -t * d[2]);
         for (int c = 0; c < 3; c++) {
             const double back = (1 - share) * (double)f->scene.background[0][c] +
                                 share * (double)f->scene.background[1][c];

@@ -27,6 +27,7 @@ const char *cwi_cpu_mesh_refusal(const cwi_frame *f)
            : s->clip_count > 0 ? "cut open"
            : s->wireframe      ? "with edges"
            : s->depth_cue > 0  ? "with a depth cue"
+           : s->one_sided      ? "lit on one side"
            : !f->studio_light  ? "with lights or a material of their own"
                                : NULL;
 }

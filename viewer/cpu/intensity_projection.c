@@ -17,8 +17,13 @@ typedef struct tally {
     double extreme;
     double integral, length;
 
+    double threshold; /* of local-mip, and of minip inside an object */
+
+    /* minip inside an object: the lowest value since the ray last reached the threshold; it
+     * counts if the ray reaches the threshold again */
+    double pending;
+
     /* local-mip */
-    double threshold;
     bool is_under_way, is_found; /* a stretch of values without a gap; the maximum */
     double last;                 /* the highest value since it last fell */
 } tally;
@@ -66,6 +71,38 @@ static void add_lowest(const cwi_walk *w, const double v[8], tally *t)
         t->extreme = t->has_value ? fmin(t->extreme, values[n]) : values[n];
         t->has_value = true;
     }
+}
+
+/* Adds a value of a ray to the minimum between its first and its last value that reaches the
+ * threshold. */
+static void add_inside_value(double value, tally *t)
+{
+    if (value >= t->threshold) {
+        t->extreme = t->has_value ? fmin(fmin(t->extreme, t->pending), value) : value;
+        t->has_value = true;
+        t->pending = INFINITY;
+    } else if (t->has_value) {
+        t->pending = fmin(t->pending, value);
+    }
+}
+
+/* Adds a cubic, with the threshold itself wherever values cross it. */
+static void add_inside_cubic(const double c[4], tally *t)
+{
+    double values[4];
+    const int count = turning_values(c, values);
+    for (int n = 0; n < count; n++) {
+        if (n > 0 && (values[n - 1] < t->threshold) != (values[n] < t->threshold))
+            add_inside_value(t->threshold, t);
+        add_inside_value(values[n], t);
+    }
+}
+
+static void add_inside(const cwi_walk *w, const double v[8], tally *t)
+{
+    double c[4];
+    cwi_walk_cubic(w, v, c);
+    add_inside_cubic(c, t);
 }
 
 static void add_mean_cubic(const double c[4], double length, tally *t)
@@ -117,13 +154,16 @@ static void add_local(const cwi_walk *w, const double v[8], tally *t)
     add_local_cubic(c, rounding, t);
 }
 
-static void add_cell(cw_mode mode, const cwi_walk *w, tally *t)
+static void add_cell(const cw_scene *s, const cwi_walk *w, tally *t)
 {
     double v[8];
+    const cw_mode mode = s->mode;
     if (!cwi_walk_values(w, v))
         end_stretch(t);
     else if (mode == CW_MODE_MIP)
         add_highest(w, v, t);
+    else if (mode == CW_MODE_MINIP && s->minip_inside)
+        add_inside(w, v, t);
     else if (mode == CW_MODE_MINIP)
         add_lowest(w, v, t);
     else if (mode == CW_MODE_AVERAGE)
@@ -135,12 +175,18 @@ static void add_cell(cw_mode mode, const cwi_walk *w, tally *t)
 /* Returns true if a block of cells can be skipped: it has no values, or none that would change
  * the result. A stretch of values continues behind it, below the threshold as its end was, as
  * if it began there. */
-static bool is_passed_over(cw_mode mode, const float range[2], tally *t)
+static bool is_passed_over(const cw_scene *s, const float range[2], tally *t)
 {
+    const cw_mode mode = s->mode;
     const double low = (double)range[0], high = (double)range[1];
     if (low > high) {
         end_stretch(t);
         return true;
+    }
+    if (mode == CW_MODE_MINIP && s->minip_inside) {
+        const bool is_below = high < t->threshold;
+        return t->has_value ? low >= t->extreme && (is_below || t->pending >= t->extreme)
+                            : is_below;
     }
     if (mode == CW_MODE_AVERAGE || !t->has_value ||
         !(mode == CW_MODE_MINIP ? low >= t->extreme : high <= t->extreme) ||
@@ -154,19 +200,19 @@ static void add_part(const cwi_frame *frame, const cwi_ranges *ranges, const cwi
                      int part, tally *t)
 {
     cwi_walk walk;
-    const cw_mode mode = frame->scene.mode;
+    const cw_scene *s = &frame->scene;
     bool is_new_block = ranges != NULL;
     cwi_walk_start(&walk, frame, ray, part);
     while (!t->is_found && walk.t < walk.stop) {
         if (is_new_block &&
-            is_passed_over(mode, ranges->blocks[cwi_walk_block(&walk, ranges->dim)], t)) {
+            is_passed_over(s, ranges->blocks[cwi_walk_block(&walk, ranges->dim)], t)) {
             cwi_walk_leap(&walk, CWI_RANGE_EDGE, 1);
             continue;
         }
         if (!cwi_walk_next(&walk))
             break;
         is_new_block = ranges && cwi_walk_changes_block(&walk);
-        add_cell(mode, &walk, t);
+        add_cell(s, &walk, t);
     }
     if (!t->is_found)
         end_stretch(t);
@@ -181,9 +227,14 @@ static double result_of(cw_mode mode, const tally *t)
     return t->is_found ? t->last : t->extreme;
 }
 
-static void add_span(cw_mode mode, const cwi_span *span, tally *t)
+static void add_span(const cw_scene *s, const cwi_span *span, tally *t)
 {
     double values[4], rounding = 0;
+    const cw_mode mode = s->mode;
+    if (mode == CW_MODE_MINIP && s->minip_inside) {
+        add_inside_cubic(span->value, t);
+        return;
+    }
     if (!span->follows)
         end_stretch(t);
     const int count = turning_values(span->value, values);
@@ -202,19 +253,25 @@ static void add_span(cw_mode mode, const cwi_span *span, tally *t)
         add_local_cubic(span->value, rounding, t);
 }
 
+static tally start_tally(const cw_scene *s)
+{
+    const bool has_threshold =
+        s->mode == CW_MODE_LOCAL_MIP || (s->mode == CW_MODE_MINIP && s->minip_inside);
+    return (tally){.threshold = has_threshold ? s->threshold : INFINITY, .pending = INFINITY};
+}
+
 double cwi_intensity_spans(const cwi_field *field, cwi_spans *spans, double x, double y,
                            double depth)
 {
     cwi_ray ray;
     cwi_span span;
     const cw_mode mode = field->frame->scene.mode;
-    tally t = {.threshold =
-                   mode == CW_MODE_LOCAL_MIP ? field->frame->scene.threshold : INFINITY};
+    tally t = start_tally(&field->frame->scene);
     cwi_ray_make(field->frame, x, y, depth, &ray);
     if (!cwi_spans_start(spans, field, &ray))
         return NAN;
     while (!t.is_found && cwi_spans_next(spans, &span))
-        add_span(mode, &span, &t);
+        add_span(&field->frame->scene, &span, &t);
     if (!t.is_found)
         end_stretch(&t);
     return result_of(mode, &t);
@@ -225,7 +282,7 @@ double cwi_intensity_ray(const cwi_frame *frame, const cwi_ranges *ranges, doubl
 {
     cwi_ray ray;
     const cw_mode mode = frame->scene.mode;
-    tally t = {.threshold = mode == CW_MODE_LOCAL_MIP ? frame->scene.threshold : INFINITY};
+    tally t = start_tally(&frame->scene);
     cwi_ray_make(frame, x, y, depth, &ray);
     for (int n = 0; n < ray.part_count && !t.is_found; n++)
         add_part(frame, ranges, &ray, n, &t);

@@ -146,13 +146,56 @@ static double find_value(const double c[4], double value)
     return INFINITY;
 }
 
-static double find_in_cell(const cwi_walk *w, double value)
+/* Finds where a cubic, which rises or falls from a to b, crosses a level, by bisection. */
+static double find_crossing(const double c[4], double a, double b, double level)
+{
+    const bool starts_below = cwi_cubic_at(c, a) < level;
+    for (int n = 0; n < 50; n++) {
+        const double middle = (a + b) / 2;
+        if ((cwi_cubic_at(c, middle) < level) == starts_below)
+            a = middle;
+        else
+            b = middle;
+    }
+    return b;
+}
+
+/* Finds where a cubic first has a value, for a ray that counts from where it first reaches the
+ * scene's threshold; is_inside: it has. */
+static double find_value_inside(const cw_scene *s, const double c[4], double value,
+                                bool *is_inside)
+{
+    double places[4] = {0}, before = c[0];
+    const int turns = cwi_cubic_turns(c, places + 1);
+    places[turns + 1] = 1;
+    for (int n = 0; n <= turns + 1; n++) {
+        const double now = n == 0 ? c[0] : cwi_cubic_at(c, places[n]);
+        const bool crosses = (before < s->threshold) != (now < s->threshold);
+        *is_inside = *is_inside || crosses || now >= s->threshold;
+        if (crosses && value == s->threshold)
+            return find_crossing(c, places[n - 1], places[n], value);
+        if (*is_inside && now == value)
+            return places[n];
+        before = now;
+    }
+    return INFINITY;
+}
+
+/* Finds where a cubic of a ray shows the projection's value. */
+static double find_shown(const cw_scene *s, const double c[4], double value, bool *is_inside)
+{
+    return s->mode == CW_MODE_MINIP && s->minip_inside
+               ? find_value_inside(s, c, value, is_inside)
+               : find_value(c, value);
+}
+
+static double find_in_cell(const cw_scene *s, const cwi_walk *w, double value, bool *is_inside)
 {
     double v[8], c[4];
     if (!cwi_walk_values(w, v))
         return INFINITY;
     cwi_walk_cubic(w, v, c);
-    return w->from + find_value(c, value) * (w->to - w->from);
+    return w->from + find_shown(s, c, value, is_inside) * (w->to - w->from);
 }
 
 cwi_volume_hit cwi_pick_intensity(const cwi_frame *frame, double x, double y, double depth)
@@ -161,6 +204,7 @@ cwi_volume_hit cwi_pick_intensity(const cwi_frame *frame, double x, double y, do
     cwi_ray ray;
     cwi_walk walk;
     double t = INFINITY;
+    bool is_inside = false;
     if (f.scene.mode == CW_MODE_AVERAGE)
         f.scene.mode = CW_MODE_MIP;
     const double value = cwi_intensity_ray(&f, NULL, x, y, depth);
@@ -168,7 +212,7 @@ cwi_volume_hit cwi_pick_intensity(const cwi_frame *frame, double x, double y, do
     for (int n = 0; n < ray.part_count && !isnan(value); n++) {
         cwi_walk_start(&walk, &f, &ray, n);
         while (t == INFINITY && cwi_walk_next(&walk))
-            t = find_in_cell(&walk, value);
+            t = find_in_cell(&f.scene, &walk, value, &is_inside);
     }
     return (cwi_volume_hit){t, t < INFINITY, NAN};
 }
@@ -180,13 +224,15 @@ static cwi_volume_hit pick_value(cwi_field *field, cwi_spans *spans, const cwi_r
     cwi_frame f = *field->frame;
     cwi_span span;
     double t = INFINITY;
+    bool is_inside = false;
     if (f.scene.mode == CW_MODE_AVERAGE)
         f.scene.mode = CW_MODE_MIP;
     field->frame = &f;
     const double value = cwi_intensity_spans(field, spans, x, y, depth);
     bool is_under_way = !isnan(value) && cwi_spans_start(spans, field, ray);
     while (is_under_way && t == INFINITY && cwi_spans_next(spans, &span))
-        t = span.from + find_value(span.value, value) * (span.to - span.from);
+        t = span.from +
+            find_shown(&f.scene, span.value, value, &is_inside) * (span.to - span.from);
     return (cwi_volume_hit){t, t < INFINITY, value};
 }
 

@@ -11,7 +11,8 @@
 /* The uniform block of shaders/common.glsl, laid out by std140. Matrices are columns. */
 typedef struct frame_block {
     float projection[16], eye_from_index[16], index_from_eye[16], gradient_to_eye[16];
-    float picture[4], view[4], low[4], high[4], dim[4], texels[4], limits[4], material[4];
+    float picture[4], view[4], cue_range[4], low[4], high[4], dim[4], texels[4], limits[4],
+        material[4];
     float light_direction[CW_MAX_LIGHTS][4], light_color[CW_MAX_LIGHTS][4];
     float background[2][4];
     float clips[CW_MAX_CLIPS][4];
@@ -92,6 +93,7 @@ static void put_volume(const cwi_gl *gl, frame_block *b)
     b->texels[1] = (float)((gl->volume.bias - t->low) / (t->high - t->low));
     b->texels[2] = (float)(gl->volume.scale / gl->volume.gradient_unit);
     b->limits[1] = (float)gl->transfer.factor_end;
+    b->limits[3] = (float)f->faces;
     b->limits[2] = (float)(f->surface * gl->volume.gradient_unit);
 }
 
@@ -102,11 +104,11 @@ static void put_frame(cwi_gl *gl)
     frame_block b = {
         .picture = {(float)s->width, (float)s->height, (float)f->half[0], (float)f->half[1]},
         .view = {f->perspective, (float)f->near, (float)f->far, s->depth_cue},
+        .cue_range = {(float)f->cue_start, (float)f->cue_end, (float)f->cue_decay},
         .limits = {s->stop_opacity},
         .material = {s->material.ambient, s->material.diffuse, s->material.specular,
                      s->material.shininess},
-        .counts = {(int32_t)s->light_count, (int32_t)s->clip_count, s->cut_away,
-                   (int32_t)f->faces},
+        .counts = {(int32_t)s->light_count, (int32_t)s->clip_count, s->cut_away, s->one_sided},
     };
     put_projection(f, b.projection);
     put_lights(s, &b);

@@ -93,19 +93,21 @@ static void make_found(const cwi_gl *gl, projector *p)
     }
 }
 
-static const char *name_of(cw_mode mode)
+static const char *define_mode(const cw_scene *s)
 {
-    return mode == CW_MODE_MIP       ? "MIP"
-           : mode == CW_MODE_MINIP   ? "MINIP"
-           : mode == CW_MODE_AVERAGE ? "AVERAGE"
-                                     : "LOCAL";
+    return s->mode == CW_MODE_MIP       ? "#define MIP\n"
+           : s->mode == CW_MODE_AVERAGE ? "#define AVERAGE\n"
+           : s->mode != CW_MODE_MINIP   ? "#define LOCAL\n"
+           : s->minip_inside            ? "#define MINIP\n#define INSIDE\n"
+                                        : "#define MINIP\n";
 }
 
-/* Returns true if the range of a block holds for every ray through it. */
+/* Returns true if the range of a block holds for every ray through it, and for every part. */
 static bool can_foresee(const cwi_gl *gl)
 {
-    const cw_mode mode = gl->frame->scene.mode;
-    return (mode == CW_MODE_MIP || mode == CW_MODE_MINIP) && !gl->volume.ranges.has_gaps;
+    const cw_scene *s = &gl->frame->scene;
+    return (s->mode == CW_MODE_MIP || (s->mode == CW_MODE_MINIP && !s->minip_inside)) &&
+           !gl->volume.ranges.has_gaps;
 }
 
 /* Draws one brick, the n-th from the front of `count`. */
@@ -116,8 +118,8 @@ static cw_status draw_brick(cwi_gl *gl, const projector *p, const cwi_gl_brick *
     char defines[256];
     const cw_scene *s = &gl->frame->scene;
     const bool is_last = n + 1 == count;
-    snprintf(defines, sizeof defines, "%s#define %s\n%s%s%s%s%s", cwi_gl_ray_defines(s),
-             name_of(s->mode), n == 0 ? "#define FIRST\n" : "", is_last ? "#define LAST\n" : "",
+    snprintf(defines, sizeof defines, "%s%s%s%s%s%s%s", cwi_gl_ray_defines(s), define_mode(s),
+             n == 0 ? "#define FIRST\n" : "", is_last ? "#define LAST\n" : "",
              can_foresee(gl) ? "#define FORESEE\n" : "", s->cell_steps ? "#define CELLS\n" : "",
              s->exact_filter ? "#define EXACT_FILTER\n" : "");
     cw_status st = cwi_gl_use(gl, cwi_glsl_screen, cwi_glsl_mip, defines, &program, err);

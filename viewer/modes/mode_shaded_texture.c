@@ -16,7 +16,9 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { SHADE_COLUMNS = 256, BOUNDARY = 1 << 15 };
+/* A voxel's direction: its row of the table, and flags. A gradient may be opposite to the
+ * direction of its row, which is in a half sphere. */
+enum { SHADE_COLUMNS = 256, OPPOSITE = 1 << 14, BOUNDARY = 1 << 15 };
 
 /* Settings that the textures of directions depend on, beside the volume. */
 typedef struct normals_key {
@@ -30,6 +32,7 @@ typedef struct shades_key {
     size_t count, light_count;
     cw_light lights[CW_MAX_LIGHTS];
     cw_material material;
+    bool one_sided; /* the table has a second half, for opposite gradients */
     double axes[3][3], to_eye[3];
     cw_transfer transfer;
     double low, high; /* values of the first column and the last */
@@ -89,8 +92,8 @@ static bool is_boundary(const cw_volume *v, const cw_transfer *t, const size_t a
     return material_of(t, range[0] + v->intercept) != material_of(t, range[1] + v->intercept);
 }
 
-/* Returns the number of a voxel's direction, or of the table's last row where there is none;
- * and whether the cell above the voxel is at a boundary. */
+/* Returns the number of a voxel's direction, or of the row after all where there is none; whether
+ * the gradient is opposite to it; and whether the cell above the voxel is at a boundary. */
 static uint16_t normal_of(const cw_volume *v, const cw_volume *gradients, const shaded_state *t,
                           const double to_world[3][3], const size_t at[3])
 {
@@ -101,7 +104,9 @@ static uint16_t normal_of(const cw_volume *v, const cw_volume *gradients, const 
     const size_t n = cwi_directions_nearest(&t->directions, world);
     const bool marked =
         t->normals_key.mark_boundary && is_boundary(v, &t->normals_key.transfer, at);
-    return (uint16_t)(n | (marked ? BOUNDARY : 0));
+    const bool is_opposite =
+        n < t->directions.count && cwi_dot(t->directions.all[n], world) < 0;
+    return (uint16_t)(n | (is_opposite ? OPPOSITE : 0) | (marked ? BOUNDARY : 0));
 }
 
 static void put_layer(const cwi_gl *gl, const shaded_state *t, const cwi_gl_brick *b, size_t k,
@@ -110,6 +115,9 @@ static void put_layer(const cwi_gl *gl, const shaded_state *t, const cwi_gl_bric
     const cw_volume *v = &gl->frame->volume;
     double to_world[3][3];
     cwi_affine_cofactor(v->affine[0], to_world);
+    const double sign = cwi_affine_determinant(v->affine[0]) * v->slope < 0 ? -1 : 1;
+    for (int n = 0; n < 9; n++)
+        to_world[n / 3][n % 3] *= sign;
 #pragma omp parallel for num_threads(cwi_threads(gl->frame->scene.threads))
     for (size_t j = 0; j < b->count[1]; j++)
         for (size_t i = 0; i < b->count[0]; i++) {
@@ -189,6 +197,7 @@ static void fill_key(const cwi_gl *gl, shades_key *key)
     key->light_count = f->scene.light_count;
     memcpy(key->lights, f->scene.lights, key->light_count * sizeof *key->lights);
     key->material = f->scene.material;
+    key->one_sided = f->scene.one_sided;
     memcpy(key->axes, f->axes, sizeof key->axes);
     find_to_eye(f, key->to_eye);
     memcpy(&key->transfer, &f->transfer, sizeof key->transfer);
@@ -211,7 +220,10 @@ static void add_light(const shades_key *key, const cw_light *light, const double
         to_light[a] = length > 0 ? light->direction[a] / length : 0;
         half[a] = to_light[a] + key->to_eye[a];
     }
-    const double diffuse = (double)key->material.diffuse * fabs(cwi_dot(n, to_light));
+    const double facing = -cwi_dot(n, to_light);
+    if (key->one_sided && !(facing > 0))
+        return;
+    const double diffuse = (double)key->material.diffuse * fabs(facing);
     const double size = sqrt(cwi_dot(half, half));
     const double specular = size > 0 ? fmin(fabs(cwi_dot(n, half)) / size, 1) : 0;
     const double shine =
@@ -222,17 +234,24 @@ static void add_light(const shades_key *key, const cw_light *light, const double
     }
 }
 
-/* direction: in the world; NULL where there is none */
-static reflection reflect_light(const shades_key *key, const double *direction)
+/* direction: of the gradient in the world, times sign; NULL where there is none */
+static reflection reflect_light(const shades_key *key, const double *direction, double sign)
 {
     const double ambient = (double)key->material.ambient;
     reflection r = {{ambient, ambient, ambient}, {0}};
     double n[3];
     for (int a = 0; direction && a < 3; a++)
-        n[a] = cwi_dot(key->axes[a], direction);
+        n[a] = sign * cwi_dot(key->axes[a], direction);
     for (size_t l = 0; direction && l < key->light_count; l++)
         add_light(key, &key->lights[l], n, &r);
     return r;
+}
+
+/* Returns the number of rows: one for each direction and one for none; twice that if opposite
+ * gradients are lit otherwise. */
+static size_t count_rows(const shades_key *key, const cwi_directions *d)
+{
+    return (d->count + 1) * (key->one_sided ? 2 : 1);
 }
 
 static void put_shades(const shades_key *key, const cwi_directions *d,
@@ -243,8 +262,10 @@ static void put_shades(const shades_key *key, const cwi_directions *d,
         cw_transfer_at(&key->transfer,
                        key->low + (key->high - key->low) * m / (SHADE_COLUMNS - 1), colors[m],
                        &opacity);
-    for (size_t n = 0; n <= d->count; n++) {
-        const reflection r = reflect_light(key, n < d->count ? d->all[n] : NULL);
+    for (size_t n = 0; n < count_rows(key, d); n++) {
+        const size_t row = n % (d->count + 1);
+        const reflection r =
+            reflect_light(key, row < d->count ? d->all[row] : NULL, row < n ? -1 : 1);
         for (int m = 0; m < SHADE_COLUMNS; m++)
             for (int c = 0; c < 4; c++)
                 out[n][m][c] = c < 3 ? (float)(r.gain[c] * colors[m][c] + r.shine[c]) : 1;
@@ -257,14 +278,15 @@ static cw_status need_shades(const cwi_gl *gl, shaded_state *t, cw_error *err)
     fill_key(gl, &key);
     if (t->shades && memcmp(&key, &t->shades_key, sizeof key) == 0)
         return CW_OK;
-    float(*all)[SHADE_COLUMNS][4] = cwi_alloc_array(t->directions.count + 1, sizeof *all);
+    float(*all)[SHADE_COLUMNS][4] =
+        cwi_alloc_array(count_rows(&key, &t->directions), sizeof *all);
     if (!all)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for shaded colours");
     put_shades(&key, &t->directions, all);
     glDeleteTextures(1, &t->shades);
     t->shades = cwi_gl_texture(GL_TEXTURE_2D, CWI_UNIT_SHADES, true);
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, SHADE_COLUMNS,
-                 (GLsizei)(t->directions.count + 1), 0, GL_RGBA, GL_FLOAT, all);
+                 (GLsizei)count_rows(&key, &t->directions), 0, GL_RGBA, GL_FLOAT, all);
     memcpy(&t->shades_key, &key, sizeof key);
     cwi_free(all);
     return CW_OK;

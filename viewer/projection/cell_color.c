@@ -237,8 +237,10 @@ static inline cwi_lanes reflect_light(const cwi_cell_model *m, const cwi_cell_ra
     const cw_scene *s = &m->frame->scene;
     cwi_lanes light = {0};
     for (size_t n = 0; n < s->light_count; n++) {
-        const float diffuse =
-            s->material.diffuse * fabsf(dot_lanes(normal, m->light_direction[n]));
+        const float facing = -dot_lanes(normal, m->light_direction[n]);
+        if (s->one_sided && !(facing > 0))
+            continue;
+        const float diffuse = s->material.diffuse * fabsf(facing);
         const float gloss = fabsf(dot_lanes(normal, r->halfway[n]));
         const float specular =
             is_glossy ? s->material.specular * color[3] *

@@ -1,5 +1,5 @@
-/* Directions spread evenly over a half sphere, for gradients that are quantised: lit from both
- * sides, n and -n look the same. */
+/* Directions spread evenly over a half sphere, for gradients that are quantised. A
+ * gradient is along a direction or opposite to it, which looks the same if both sides are lit. */
 #ifndef VIEWER_PROXY_QUANTIZED_NORMALS_H
 #define VIEWER_PROXY_QUANTIZED_NORMALS_H
 

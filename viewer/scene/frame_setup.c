@@ -89,6 +89,20 @@ static cw_status fill_in(cw_scene *s, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "gradients smoothed over %g voxels: expected 0 to %d",
                         s->gradient_sigma, MAX_SIGMA);
+    if ((unsigned)s->cue_form >= CW_CUE_COUNT)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a form of depth cues (0 to %d)",
+                        (int)s->cue_form, CW_CUE_COUNT - 1);
+    if (s->cue_form == CW_CUE_EXPONENTIAL && !(s->depth_cue < 1))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "an exponential depth cue of %g: expected less than 1",
+                        (double)s->depth_cue);
+    if (s->cue_range[0] == 0 && s->cue_range[1] == 0)
+        s->cue_range[1] = 1;
+    if (!(s->cue_range[0] < s->cue_range[1] && isfinite(s->cue_range[0]) &&
+          isfinite(s->cue_range[1])))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "a depth cue from %g to %g: expected two rising fractions",
+                        s->cue_range[0], s->cue_range[1]);
     if (!(s->tree_error >= 0 && s->tree_error <= 1))
         return cwi_fail(err, CW_ERR_ARGUMENT, "an error of nodes of %g: expected 0 to 1",
                         s->tree_error);
@@ -311,6 +325,15 @@ static void set_depths(cwi_frame *f, const double min[3], const double max[3])
     }
 }
 
+static void set_cue(cwi_frame *f)
+{
+    const double *range = f->scene.cue_range;
+    f->cue_start = (1 - range[0]) * f->near + range[0] * f->far;
+    f->cue_end = (1 - range[1]) * f->near + range[1] * f->far;
+    if (f->scene.cue_form == CW_CUE_EXPONENTIAL)
+        f->cue_decay = -log1p(-(double)f->scene.depth_cue) / (f->cue_end - f->cue_start);
+}
+
 static cw_status set_clips(cwi_frame *f, cw_error *err)
 {
     for (size_t n = 0; n < f->scene.clip_count; n++) {
@@ -376,6 +399,8 @@ cw_status cwi_frame_init(cwi_frame *frame, const cw_scene *scene, cw_error *err)
     }
     if (st == CW_OK)
         set_depths(f, min, max);
+    if (st == CW_OK)
+        set_cue(f);
     f->scene.width *= (size_t)f->scene.samples;
     f->scene.height *= (size_t)f->scene.samples;
     return st;
@@ -482,7 +507,9 @@ double cwi_frame_gradient_factor(const cwi_frame *f, double length)
 
 double cwi_frame_cue(const cwi_frame *f, double depth)
 {
-    const double share = (depth - f->near) / (f->far - f->near);
+    const double share = (depth - f->cue_start) / (f->cue_end - f->cue_start);
+    if (f->cue_decay > 0)
+        return exp(-f->cue_decay * fmax(depth - f->cue_start, 0));
     return 1 - f->scene.depth_cue * fmin(fmax(share, 0), 1);
 }
 

@@ -38,6 +38,9 @@ typedef struct cwi_frame {
      * above 0 in perspective. */
     double near, far;
 
+    /* The depth cue: where it starts and ends, and the decay per unit of an exponential one. */
+    double cue_start, cue_end, cue_decay;
+
     /* The transfer function: extinction is per unit of eye space. */
     cw_transfer transfer;
     bool is_reference; /* an exact picture was requested, of scene.mode: an intensity projection
@@ -96,7 +99,8 @@ double cwi_frame_surface_strength(const cwi_frame *frame, double length);
 /* Returns the transfer function's factor of the extinction for a length of the gradient. */
 double cwi_frame_gradient_factor(const cwi_frame *frame, double length);
 
-/* Returns the fraction of light that is left at a depth: 1 near, 1 - depth_cue far. */
+/* Returns the fraction of light that is left at a depth: 1 at the cue's start, 1 - depth_cue at
+ * its end. */
 double cwi_frame_cue(const cwi_frame *frame, double depth);
 
 /* Computes the matrix that takes a gradient in index space (per voxel) to eye space (per

@@ -1,4 +1,5 @@
-/* Shades points by the Blinn-Phong model, lit from both sides, in eye space. */
+/* Shades points by the Blinn-Phong model, lit from both sides or from outside alone, in eye
+ * space. */
 #include "viewer/scene/lighting.h"
 
 #include "core/geometry/vec3.h"
@@ -22,6 +23,7 @@ void cwi_lighting_make(const cwi_frame *f, const double origin[3], const double 
                        cwi_lighting *l)
 {
     *l = (cwi_lighting){.material = f->scene.material,
+                        .is_one_sided = f->scene.one_sided,
                         .count = f->scene.light_count,
                         .surface = f->surface,
                         .side = f->scene.cut_away ? -1 : 1};
@@ -49,7 +51,10 @@ static void add_reflection(const cwi_lighting *l, const double n[3], const doubl
                            double factor, bool is_glossy, double light[3])
 {
     for (size_t i = 0; i < l->count; i++) {
-        const double diffuse = (double)l->material.diffuse * fabs(cwi_dot(n, l->direction[i]));
+        const double facing = -cwi_dot(n, l->direction[i]);
+        if (l->is_one_sided && !(facing > 0))
+            continue;
+        const double diffuse = (double)l->material.diffuse * fabs(facing);
         const double gloss = fabs(cwi_dot(n, l->halfway[i]));
         const double specular = is_glossy
                                     ? (double)l->material.specular *

@@ -12,6 +12,7 @@ extern "C" {
  * eye. */
 typedef struct cwi_lighting {
     cw_material material;
+    bool is_one_sided;
     size_t count;
     double surface;                    /* as the frame's */
     size_t face_count;                 /* of clip planes that cut the volume */

@@ -450,7 +450,7 @@ static const struct {
     {"viridis", "as auto, from violet over green to yellow, for fields", true, make_viridis},
     {"inferno", "as auto, from black over red to yellow, for fields", true, make_inferno},
     {"cool-warm", "as auto, from blue over grey to red, for fields", true, make_cool_warm},
-    {"xray", "opaque greys up to the densest class, for average", true, make_xray},
+    {"xray", "opaque greys up to the densest class, for average and minip", true, make_xray},
     {"fog", "a thin white haze", true, make_fog},
     {"level-set", "solid below 0", true, make_level_set},
 };

@@ -6,15 +6,17 @@ layout(std140) uniform Frame
     mat4 gradient_to_eye; // of a gradient per voxel, to one per unit
     vec4 picture;         // width, height, half x, half y
     vec4 view;            // 1 in perspective, near, far, depth cue
+    vec4 cue_range;       // start and end of the depth cue, decay per unit if it is exponential
     vec4 low, high;       // the volume in index space
     vec4 dim;             // samples; rows of the pre-integrated table
     vec4 texels;          // scale and bias from a texel to a table's coordinate
-    vec4 limits;          // opacity to stop at, factor's end, 1 / gradient of a full surface
+    vec4 limits;          // opacity to stop at, factor's end, 1 / gradient of a full surface,
+                          // bits of the clips that are faces
     vec4 material;        // ambient, diffuse, specular, shininess
     vec4 light_direction[4], light_color[4];
     vec4 background[2]; // top, bottom
     vec4 clips[12];     // eye space: n . p >= w is kept
-    ivec4 counts;       // lights, clips, 1: clips cut away, bits of clips that are faces
+    ivec4 counts;       // lights, clips, 1: clips cut away, 1: lit on one side
 };
 
 // Values of one brick. IN_PLACE: the voxels themselves, x fastest, as the processor that draws
@@ -148,8 +150,8 @@ float gradient_factor(vec3 gradient)
     return textureLod(factor, (at * (factor_rows - 1.0) + 0.5) / factor_rows, 0.0).r;
 }
 
-// Shades a colour, on both sides; to_eye and the gradient are in eye space. Without a gradient:
-// ambient light. Surfaces of indices reflect by their strength.
+// Shades a colour, on both sides or on that of lower values; to_eye and the gradient are in eye
+// space. Without a gradient: ambient light. Surfaces of indices reflect by their strength.
 vec3 shade(vec3 color, vec3 gradient, vec3 to_eye)
 {
     float size2 = dot(gradient, gradient);
@@ -158,9 +160,10 @@ vec3 shade(vec3 color, vec3 gradient, vec3 to_eye)
     vec3 light = material.x * color;
     for (int i = 0; i < counts.x; i++) {
         vec3 l = light_direction[i].xyz, h = l + to_eye;
-        float diffuse = abs(dot(n, l));
+        float facing = -dot(n, l);
+        float diffuse = counts.w != 0 ? max(facing, 0.0) : abs(facing);
         float specular = 0.0;
-        if (material.z > 0.0) {
+        if (material.z > 0.0 && (counts.w == 0 || facing > 0.0)) {
             float near = abs(dot(n, h)) * inversesqrt(max(dot(h, h), 1e-20));
             specular = near > 0.0 ? pow(near, material.w) : 0.0;
         }
@@ -178,7 +181,7 @@ vec4 clip_face(vec3 at)
     vec4 face = vec4(0.0, 0.0, 0.0, 1e30);
     for (int n = 0; n < counts.y; n++) {
         float d = dot(clips[n].xyz, at) - clips[n].w;
-        face = d < face.w && (counts.w >> n & 1) != 0 ? vec4(clips[n].xyz, d) : face;
+        face = d < face.w && (int(limits.w) >> n & 1) != 0 ? vec4(clips[n].xyz, d) : face;
     }
     return vec4(counts.z > 0 ? -face.xyz : face.xyz, clamp(2.0 - abs(face.w), 0.0, 1.0));
 }
@@ -193,9 +196,11 @@ vec3 shade_at(vec3 color, vec3 gradient, vec3 to_eye, vec3 at)
 #ifdef CLIPS
     vec4 face = clip_face(at);
     vec3 cut = material.x * color;
-    for (int i = 0; i < counts.x; i++)
-        cut += light_color[i].rgb * material.y * abs(dot(face.xyz, light_direction[i].xyz)) *
-               color;
+    for (int i = 0; i < counts.x; i++) {
+        float facing = -dot(face.xyz, light_direction[i].xyz);
+        cut += light_color[i].rgb * material.y *
+               (counts.w != 0 ? max(facing, 0.0) : abs(facing)) * color;
+    }
     light = mix(light, cut, face.w);
 #endif
     return light;
@@ -226,7 +231,9 @@ vec4 by_gradient(vec4 color, vec3 gradient, vec3 to_eye, vec3 at)
 // Returns the fraction of its own light that something at a depth keeps.
 float cue(float depth)
 {
-    return 1.0 - view.w * clamp((depth - view.y) / (view.z - view.y), 0.0, 1.0);
+    if (cue_range.z > 0.0)
+        return exp(-cue_range.z * max(depth - cue_range.x, 0.0));
+    return 1.0 - view.w * clamp((depth - cue_range.x) / (cue_range.y - cue_range.x), 0.0, 1.0);
 }
 
 // y: 0 at the picture's bottom, 1 at its top.

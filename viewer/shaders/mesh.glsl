@@ -1,4 +1,4 @@
-// Triangles, lit on both sides, and the faces of what planes cut them to. Of these are made:
+// Triangles, lit on both sides or on their own, and the faces of what planes cut them to. Of these are made:
 //   both stages, plain    the surface; with EDGES its triangles' edges too
 //   COUNT                 how often the surface is left, less entered, beyond each of four planes
 //   CAP, after screen     the part of a plane that is inside of the surface
@@ -54,14 +54,15 @@ vec3 studio(vec3 surface, vec3 n, vec3 v)
     return srgb_of(clamp(surface * light + 0.08 * gloss, 0.0, 1.0));
 }
 
-// A point of a surface of some colour (linear) and opacity, by a unit normal; premultiplied.
+// A point of a surface of some colour (linear) and opacity, by a unit normal, outward if one side
+// is lit; premultiplied.
 vec4 light_up(vec3 p, vec3 n, vec4 surface)
 {
     vec3 v = view.x > 0.5 ? normalize(-p) : vec3(0.0, 0.0, 1.0);
 #ifdef STUDIO
     vec3 shown = studio(surface.rgb, n, v);
 #else
-    vec3 shown = min(shade(srgb_of(surface.rgb), n, v), 1.0);
+    vec3 shown = min(shade(srgb_of(surface.rgb), -n, v), 1.0);
 #endif
     return attenuate(vec4(shown * surface.a, surface.a), -p.z, gl_FragCoord.y / picture.y);
 }
@@ -179,7 +180,8 @@ void main()
         kept = kept && dot(clips[n].xyz, at) >= clips[n].w;
     if ((counts.y > 0 && kept == (counts.z != 0)) || is_peeled(gl_FragCoord.z))
         discard;
-    result = light_up(at, normal_here(own_normal), surface_here());
+    vec3 n = normal_here(own_normal);
+    result = light_up(at, counts.w != 0 && !gl_FrontFacing ? -n : n, surface_here());
 #ifdef EDGES
     result =
         mix(result, attenuate(vec4(line_color, 1.0), -at.z, gl_FragCoord.y / picture.y), edge);

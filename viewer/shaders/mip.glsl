@@ -1,9 +1,12 @@
 // Projects values along rays: the highest (MIP), the lowest, the mean, and the first maximum
-// above a threshold (LOCAL). A volume in bricks is traversed front to back; each pass reads the
+// above a threshold (LOCAL). INSIDE: the lowest between the first and the last value that reaches
+// the threshold. A volume in bricks is traversed front to back; each pass reads the
 // result of the one before.
 uniform sampler3D ranges; // of texels in each block
 uniform vec3 last_block;  // of these
-uniform sampler2D before; // value, length so far, 1: LOCAL is done, the last value
+uniform sampler2D
+    before; // value; length so far, or INSIDE: the lowest value since the ray last
+            // reached the threshold; 1: LOCAL is done; the last value
 uniform float step_length, threshold;
 out vec4 result;
 
@@ -23,7 +26,10 @@ float block_exit(ray r, vec3 at)
 // Returns true if nothing in a range changes what was found.
 bool is_useless(vec2 range, vec4 found)
 {
-#ifdef MIP
+#if defined(INSIDE)
+    bool is_below = range.y < threshold;
+    return found.x < none ? range.x >= found.x && (is_below || found.y >= found.x) : is_below;
+#elif defined(MIP)
     return range.y <= found.x;
 #else
     return range.x >= found.x;
@@ -40,12 +46,34 @@ float useless_length(ray r, vec3 at, vec4 found)
     return 0.0;
 }
 
+#ifdef INSIDE
+vec4 take_inside(vec4 found, float value)
+{
+    if (value >= threshold) {
+        found.x = min(found.x, min(found.x < none ? found.y : none, value));
+        found.y = none;
+    } else if (value < found.y && found.x < none) {
+        found.y = value;
+    }
+    return found;
+}
+#endif
+
 vec4 take(vec4 found, float value)
 {
 #ifdef MIP
     found.x = value > found.x ? value : found.x;
 #endif
-#ifdef MINIP
+#if defined(INSIDE)
+    if (isnan(value)) {
+        found.w = none; // the next value follows on nothing
+    } else {
+        if (found.w < none && (found.w < threshold) != (value < threshold))
+            found = take_inside(found, threshold); // where they cross it
+        found = take_inside(found, value);
+        found.w = value;
+    }
+#elif defined(MINIP)
     found.x = value < found.x ? value : found.x;
 #endif
 #ifdef LOCAL
@@ -123,6 +151,9 @@ vec4 along(ray r, float from, float to, vec4 found)
         if (useless > 0.01) {
             t += useless;
             value = texel_on(r, t);
+#ifdef INSIDE
+            found.w = none;
+#endif
             continue;
         }
         float extent = min(cell_exit(r, at), to - t);
@@ -161,10 +192,18 @@ vec4 along(ray r, float from, float to, vec4 found)
         float until = to;
 #if defined(MIP) || defined(MINIP)
         float useless = useless_length(r, r.index + t * r.slope, found);
+#ifdef INSIDE
+        bool is_skipping = useless > 0.0;
+#endif
         while (useless > 0.0 && t < to) {
             t += max(ceil(useless / step_length), 1.0) * step_length;
             useless = useless_length(r, r.index + t * r.slope, found);
         }
+#ifdef INSIDE
+        float last = texel_on(r, min(t - step_length, to)); // that was skipped
+        if (is_skipping)
+            found.w = isnan(last) ? none : last;
+#endif
         until = min(to, t + block_exit(r, r.index + t * r.slope) + 1e-3);
 #endif
         for (; t < until && found.z < 0.5; t += step_length)
@@ -179,6 +218,9 @@ vec4 along(ray r, float from, float to, vec4 found)
 vec4 along_part(ray r, vec2 part, vec4 found)
 {
     if (part.x < part.y) {
+#ifdef INSIDE
+        found.w = none; // it follows on nothing
+#endif
         found = foresee(r, part, found);
         found = along(r, part.x, part.y, found);
     }
@@ -191,7 +233,7 @@ vec4 nothing()
     return vec4(0.0);
 #endif
 #ifdef MINIP
-    return vec4(none, 0.0, 0.0, none);
+    return vec4(none, none, 0.0, none);
 #endif
     return vec4(-none, 0.0, 0.0, -none);
 }

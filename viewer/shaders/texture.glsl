@@ -3,7 +3,7 @@
 // [VanGelder1996].
 uniform sampler2D segments;
 uniform sampler3D classes;  // premultiplied: colour x extinction, extinction per unit
-uniform usampler3D normals; // each voxel's direction; the highest bit: a boundary's cell
+uniform usampler3D normals; // each voxel's direction; bits: opposite, a boundary's cell
 uniform sampler2D shades;   // shaded colours: a row for each direction, the last for none
 uniform vec3 box_low, box_high;
 uniform float thickness;
@@ -47,7 +47,9 @@ vec4 segment_between(vec3 from, vec3 to, float extent)
 vec3 shade_of(uint direction, float coordinate)
 {
     vec2 size = vec2(textureSize(shades, 0));
-    float row = float(direction & 32767u) + 0.5;
+    float row = float(direction & 16383u) + 0.5;
+    if (counts.w != 0 && (direction & 16384u) != 0u)
+        row += 0.5 * size.y; // the half for opposite gradients
     return texture(shades, vec2((clamp(coordinate, 0.0, 1.0) * (size.x - 1.0) + 0.5) / size.x,
                                 row / size.y))
         .rgb;

@@ -52,6 +52,11 @@ try v.nrrd -o v.png --light '1,0,0;1,0,0;1,0,0;1,0,0;1,0,0'
 try v.nrrd -o v.png --ambient 2
 try v.nrrd -o v.png --ambient 0 --diffuse 0 --specular 0
 try v.nrrd -o v.png --depth-cue 1.5
+try v.nrrd -o v.png --depth-cue-range 0,1
+try v.nrrd -o v.png --depth-cue-form exponential
+try v.nrrd -o v.png --depth-cue 0.5 --depth-cue-range 1,0.5
+try v.nrrd -o v.png --depth-cue 1 --depth-cue-form exponential
+try v.nrrd -o v.png --depth-cue 0.5 --mode mip
 try v.nrrd -o v.png --clip 0,0,1
 try v.nrrd -o v.png --clip 0,0,0,1
 try v.nrrd -o v.png --clip 0,0,one,1
@@ -82,7 +87,7 @@ try g.vtu -o v.png --mode splat
 try v.nrrd -o v.png --json v.png
 try v.nrrd -o v.png --save-tf v.nrrd
 # An option for another mode says for which.
-for option in '--threshold 3' '--slices 9' '--target 8' --colors-first '--normals 6' --boundary \
+for option in '--threshold 3' --no-minip-inside '--slices 9' '--target 8' --colors-first '--normals 6' --boundary \
     --linear-opacity '--tree-error 0.1' '--splat-kernel tent' '--splat-width 1' '--planes 1,0,0,0' --wireframe '--tint quality' --cap '--color white'; do
     try v.nrrd -o v.png $option
 done
@@ -91,4 +96,5 @@ for option in --cell-steps --jitter --exact-filter '--texture-edge 9' '--step-le
     try v.nrrd -o v.png --mode projection $option
 done
 try v.nrrd -o v.png --mode mip --no-lit
+try v.nrrd -o v.png --mode mip --lambert one-sided
 ls

@@ -19,7 +19,7 @@ render --compare 'composite|mip,no-lit' -o x.png
 render --compare 'composite|mip' --threshold 3 -o x.png
 render --compare 'mesh|composite' -o x.png
 echo "each projection beside its own reference"
-for mode in mip minip average local-mip,threshold=30; do
+for mode in mip minip minip,no-minip-inside minip,threshold=-200 average local-mip,threshold=30; do
     cubewright render h.nrrd --size 64x48 --compare "$mode,cell-steps|reference" -q --json m.json -o x.png
     grep -o '"rmse": [0-9.e-]*' m.json | awk '{ print ($2 < 1.5 ? "an error" : "no error: " $2) }'
 done

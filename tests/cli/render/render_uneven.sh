@@ -28,6 +28,7 @@ draw --mode mip
 draw --mode minip
 draw --mode average
 draw --mode reference --depth-cue 0.5 --clip 0,1,0,-1
+draw --mode vbuffer --depth-cue 0.5 --depth-cue-range 0.2,0.6 --depth-cue-form exponential
 draw --mode reference --lit --clip-box -1mm:2mm,-2mm:3mm,-9mm:1mm --cut-away
 for grid in rect cells; do
     cubewright render $grid.vtk -o $grid.png --size 48x48

@@ -53,12 +53,19 @@ done
 cmp -s ff.png 80.png || cmp -s 80.png 40.png || echo "another"
 
 # Settings that change the picture, one by one.
-for setting in --no-lit '--light 1,1,0' '--ambient 0.9' '--diffuse 0.1' '--specular 1' '--shininess 2' \
-    '--depth-cue 1' '--background white' '--tf fog' '--opacity 0.1' '--step-length 5' --cell-steps \
+for setting in --no-lit '--lambert one-sided --light 1,0,-0.5' '--light 1,1,0' '--ambient 0.9' '--diffuse 0.1' '--specular 1' '--shininess 2' \
+    '--depth-cue 1' '--depth-cue 0.5' '--background white' '--tf fog' '--opacity 0.1' '--step-length 5' --cell-steps \
     --ortho '--fov 60' '--zoom 2' '--samples 3' '--stop-opacity 0.5' '--light 0,0,1,1,0,0'; do
     draw t.nrrd -o s.png --size 64x64 $setting || echo "exit $?"
     cmp -s s.png a.png && echo "$setting changes nothing"
 done
+draw t.nrrd -o cue.png --size 64x64 --depth-cue 0.5
+for setting in '--depth-cue-range 0.2,0.7' '--depth-cue-form exponential'; do
+    draw t.nrrd -o s.png --size 64x64 --depth-cue 0.5 $setting
+    cmp -s s.png cue.png && echo "$setting changes nothing"
+done
+draw t.nrrd -o s.png --size 64x64 --depth-cue 0.5 --depth-cue-range 0,1 --depth-cue-form linear
+cmp s.png cue.png
 draw t.nrrd -o s.png --size 64x64 --light 1,1,0 --jitter
 # Slices are spread from the first to the last voxel: 23 steps of a voxel in 40 parts.
 draw t.nrrd -o s.png --size 8x8 --mode texture --ortho --slices 40 --json - | grep '"step_length"'

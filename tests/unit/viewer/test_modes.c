@@ -57,6 +57,40 @@ static void boxes_are_as_opaque_as_they_are_thick(void **state)
     cw_volume_free(&box);
 }
 
+/* The colour of a box of one value behind a depth cue that starts and ends inside of it, by the
+ * rendering integral of one line, in every mode. */
+static void depth_cues_start_and_end_where_asked(void **state)
+{
+    (void)state;
+    static const double ranges[3][2] = {{0.25, 0.75}, {0, 0}, {-0.5, 0.5}};
+    cw_volume box = {0};
+    const cw_transfer flat = test_flat_transfer();
+    test_field(&box, 24, 33, 20, cube, test_constant);
+    for (int n = 0; n < 6; n++) {
+        const double *range = ranges[n / 2], end = range[1] == range[0] ? 1 : range[1];
+        const double tau = -log(0.95) * 32 / 1000;
+        double wanted = 0;
+        for (int i = 0; i < 1000; i++) {
+            const double at = fmax((((double)i + 0.5) / 1000 - range[0]) / (end - range[0]), 0);
+            const double kept = n & 1 ? pow(1 - 0.8, at) : 1 - 0.8 * fmin(at, 1);
+            wanted += (1 - exp(-tau)) * exp(-tau * i) * (0.8 * kept + 0.25 * (1 - kept));
+        }
+        for (int m = 0; m < MODES; m++) {
+            cw_scene s = scene_of(modes[m], &box, &flat);
+            s.depth_cue = 0.8f;
+            s.cue_range[0] = range[0];
+            s.cue_range[1] = range[1];
+            s.cue_form = n & 1 ? CW_CUE_EXPONENTIAL : CW_CUE_LINEAR;
+            s.background[0][0] = s.background[1][0] = 0.25f;
+            cw_picture p = draw(s);
+            for (size_t i = 0; i < SIDE * SIDE; i++)
+                assert_near((double)p.pixels[4 * i], wanted, 1.5 / 255);
+            cw_picture_free(&p);
+        }
+    }
+    cw_volume_free(&box);
+}
+
 static double along_y(const double p[3], const double q[3])
 {
     (void)p;
@@ -163,13 +197,106 @@ static void size_does_not_matter(void **state)
     }
 }
 
+/* The distance to the middle, from -1 there. */
+static double ball(const double p[3], const double q[3])
+{
+    (void)q;
+    return hypot(hypot(p[0] - 11, p[1] - 11), p[2] - 11) / 10 - 1;
+}
+
+static double brightness(cw_scene scene, bool one_sided, double z)
+{
+    scene.one_sided = one_sided;
+    scene.light_count = 1;
+    scene.lights[0] = (cw_light){{0, 0, z}, {1, 1, 1}};
+    cw_picture p = draw(scene);
+    double sum = 0;
+    for (size_t n = 0; n < SIDE * SIDE; n++)
+        sum += (double)p.pixels[4 * n] / SIDE / SIDE;
+    cw_picture_free(&p);
+    return sum;
+}
+
+/* A ball of high values in low ones is lit by a light from the eye, and dark by one from behind;
+ * a ball of low values in high ones the other way round. Both sides lit, both are bright.
+ * Mirrored volumes and voxels that fall where values rise are no exceptions. */
+static void one_sided_light_falls_from_the_side_of_low_values(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 8; kind++) {
+        const bool is_low = kind & 1; /* values inside */
+        cw_volume v = {0};
+        const cw_transfer t =
+            is_low ? (cw_transfer){.opacity_count = 2, .opacities = {{-0.5, 0.9f}, {-0.3, 0}}}
+                   : (cw_transfer){.opacity_count = 2, .opacities = {{0.3, 0}, {0.5, 0.9f}}};
+        test_field(&v, 23, 23, 23, cube, ball);
+        if (kind & 2)
+            test_shear(&v);
+        const bool falls = kind & 4;
+        float *voxels = cw_volume_voxels(&v);
+        for (size_t n = 0; n < 23 * 23 * 23; n++)
+            voxels[n] *= is_low != falls ? 1 : -1;
+        v.slope = falls ? -1 : 1;
+        for (int m = 0; m < MODES; m++) {
+            cw_scene s = scene_of(modes[m], &v, &t);
+            s.lit = true;
+            s.material = (cw_material){.diffuse = 1, .shininess = 1};
+            s.camera.height_mm = 6;
+            const double front = brightness(s, true, 1), back = brightness(s, true, -1);
+            const double both = brightness(s, false, 1);
+            if (!((is_low ? back : front) > 0.6 && (is_low ? front : back) < 0.02))
+                fail_msg("%s, kind %d: %g from the front, %g from behind",
+                         cw_mode_name(modes[m]), kind, front, back);
+            assert_near(both, front + back, 0.03);
+        }
+        cw_volume_free(&v);
+    }
+}
+
+/* Every mode that is lit is as near to the reference with one side lit as with both. */
+static void one_sided_light_is_the_references(void **state)
+{
+    (void)state;
+    cw_volume v = {0};
+    const cw_transfer soft = test_soft_transfer();
+    test_field(&v, 40, 40, 40, cube, test_blobs);
+    for (int m = 0; m < MODES; m++) {
+        double rmse[2];
+        for (int one = 0; one < 2; one++) {
+            cw_scene s = scene_of(modes[m], &v, &soft);
+            s.lit = true;
+            s.one_sided = one;
+            s.material = (cw_material){
+                .ambient = 0.1f, .diffuse = 0.9f, .specular = 0.3f, .shininess = 8};
+            s.light_count = 2;
+            s.lights[0] = (cw_light){{1, 1, 1}, {1, 0.9f, 0.8f}};
+            s.lights[1] = (cw_light){{-1, 0.5, -1}, {0.3f, 0.3f, 0.5f}};
+            s.camera = (cw_camera){.eye = {30, -80, 25}, .up = {0, 0, 1}, .fov_deg = 25};
+            s.width = s.height = 48;
+            cw_picture p = draw(s);
+            s.mode = CW_MODE_REFERENCE;
+            cw_picture exact = draw(s);
+            rmse[one] = test_compare(&p, &exact).rmse;
+            cw_picture_free(&p);
+            cw_picture_free(&exact);
+        }
+        if (!(rmse[1] <= 1.3 * rmse[0] + 0.05))
+            fail_msg("%s: rmse %g with one side lit, %g with both", cw_mode_name(modes[m]),
+                     rmse[1], rmse[0]);
+    }
+    cw_volume_free(&v);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(boxes_are_as_opaque_as_they_are_thick),
+        cmocka_unit_test(depth_cues_start_and_end_where_asked),
         cmocka_unit_test(ramps_are_as_opaque_as_they_are),
         cmocka_unit_test(meshes_hide_what_is_behind),
         cmocka_unit_test(size_does_not_matter),
+        cmocka_unit_test(one_sided_light_falls_from_the_side_of_low_values),
+        cmocka_unit_test(one_sided_light_is_the_references),
     };
     return cmocka_run_group_tests(tests, NULL, test_renderer_close);
 }

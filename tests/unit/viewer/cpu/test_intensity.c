@@ -91,6 +91,47 @@ static void first_maximum_above_the_threshold_counts(void **state)
     }
 }
 
+/* Air around a row of values does not count, seen from both ends; a gap inside does not end the
+ * object, and a ray that only touches values below the threshold shows nothing. */
+static void minimum_inside_leaves_out_the_air_around(void **state)
+{
+    (void)state;
+    static const float row[] = {0.1f, 0, 0.2f, 0.9f, 0.4f, 0.8f, 0.3f, 0.7f, 0.05f, 0.1f};
+    static const struct {
+        double threshold, value;
+        int gap;    /* of values; -1: none */
+        double cut; /* of the row's beginning, in voxels; 0: none */
+    } cases[] = {
+        {0.6, 0.3, -1, 0},     {0.75, 0.4, -1, 0}, {0.85, 0.85, -1, 0}, {0.05, 0, -1, 0},
+        {0.25, 0.25, -1, 0},   {0.6, 0.4, 6, 0},   {0.6, 0.3, 4, 0},    {2, NAN, -1, 0},
+        {0.38, 0.38, -1, 6.9}, {0.6, 0.6, -1, 7},  {0, 0, -1, 0},       {-1, 0, -1, 0},
+    };
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++)
+        for (int behind = 0; behind < 2; behind++) {
+            cw_volume v = {0};
+            test_field(&v, 4, 10, 4, (const double[3]){1, 1, 1}, test_constant);
+            float *voxels = cw_volume_voxels(&v);
+            for (size_t p = 0; p < 160; p++)
+                voxels[p] = (int)(p / 4 % 10) == cases[n].gap ? NAN : row[p / 4 % 10];
+            cw_scene scene = scene_of(
+                CW_MODE_MINIP, &v,
+                (cw_camera){.eye = {0, behind ? 50 : -50, 0}, .up = {0, 0, 1}, .height_mm = 2});
+            scene.minip_inside = true;
+            scene.threshold = cases[n].threshold;
+            scene.clip_count = cases[n].cut > 0;
+            scene.clips[0] = (cw_clip){{0, 1, 0}, cases[n].cut - 4.5};
+            const double value = value_of(&scene, 3.5, 4.2);
+            if (isnan(cases[n].value))
+                assert_true(isnan(value));
+            else
+                assert_near(value, cases[n].value, 1e-7);
+            scene.minip_inside = false; /* the threshold does nothing */
+            if (cases[n].cut == 0 && cases[n].gap < 0)
+                assert_near(value_of(&scene, 3.5, 4.2), 0, 1e-7);
+            cw_volume_free(&v);
+        }
+}
+
 /* Greys as they are, opaque wherever there is a value, and nothing elsewhere. */
 static void pictures_show_the_value(void **state)
 {
@@ -142,12 +183,13 @@ static void passing_over_blocks_changes_nothing(void **state)
             voxels[n] = NAN;
     assert_ok(cwi_ranges_make(&v, 1, &(cw_progress){0}, &ranges, &err), err);
     for (int mode = CW_MODE_MIP; mode <= CW_MODE_LOCAL_MIP; mode++)
-        for (size_t p = 0; p < 400; p++) {
+        for (size_t p = 0; p < 800; p++) {
             cw_scene scene = scene_of((cw_mode)mode, &v, (cw_camera){0});
+            scene.minip_inside = p >= 400;
             scene.camera = (cw_camera){.eye = {35, -60, 20}, .up = {0, 0, 1}, .fov_deg = 30};
             scene.threshold = (double[]){0.2, 0.5, 0.8}[p % 3];
             const cwi_frame frame = test_frame(&scene);
-            const double x = 0.4 * (double)(p % 20), y = 0.4 * (double)(p / 20);
+            const double x = 0.4 * (double)(p % 20), y = 0.4 * (double)(p / 20 % 20);
             const double all = cwi_intensity_ray(&frame, NULL, x, y, INFINITY),
                          some = cwi_intensity_ray(&frame, &ranges, x, y, INFINITY);
             assert_true(all == some || (isnan(all) && isnan(some)));
@@ -192,6 +234,7 @@ int main(void)
         cmocka_unit_test(extremes_and_mean_are_exact),
         cmocka_unit_test(ranges_of_blocks_are_rounded_outward),
         cmocka_unit_test(first_maximum_above_the_threshold_counts),
+        cmocka_unit_test(minimum_inside_leaves_out_the_air_around),
         cmocka_unit_test(pictures_show_the_value),
         cmocka_unit_test(passing_over_blocks_changes_nothing),
     };

@@ -163,17 +163,38 @@ static void many_small_steps_agree(void **state)
         bool perspective, lit;
         float depth_cue;
         double margin;
+        double cue_range[2];
+        cw_cue_form cue_form;
     } cases[] = {
-        {test_ramp, &ramp_transfer, NULL, false, false, 0, 1e-8},
-        {test_ramp, &ramp_transfer, NULL, true, false, 0, 1e-8},
-        {test_ramp, &tent, NULL, true, false, 0, 1e-7},
-        {test_cubic, &ramp_transfer, shear, true, false, 0.6f, 1e-8},
-        {test_cubic, &tent, mirror, false, false, 0, 1e-6},
-        {test_cubic, &jumpy_transfer, NULL, true, false, 0, 2e-4}, /* steps miss the jumps */
-        {test_blobs, &soft, mirror, true, false, 1, 1e-7},
-        {test_blobs, &soft, shear, true, true, 0.5f, 1e-6},
-        {test_blobs, &edges, NULL, true, true, 0, 1e-6},
-        {test_cubic, &ramp_transfer, NULL, true, true, 0, 1e-6}, /* lit at the border */
+        {test_ramp, &ramp_transfer, NULL, false, false, 0, 1e-8, {0, 0}, CW_CUE_LINEAR},
+        {test_ramp, &ramp_transfer, NULL, true, false, 0, 1e-8, {0, 0}, CW_CUE_LINEAR},
+        {test_ramp, &tent, NULL, true, false, 0, 1e-7, {0, 0}, CW_CUE_LINEAR},
+        {test_cubic, &ramp_transfer, shear, true, false, 0.6f, 1e-8, {0, 0}, CW_CUE_LINEAR},
+        {test_cubic, &tent, mirror, false, false, 0, 1e-6, {0, 0}, CW_CUE_LINEAR},
+        {test_cubic,
+         &jumpy_transfer,
+         NULL,
+         true,
+         false,
+         0,
+         2e-4,
+         {0, 0},
+         CW_CUE_LINEAR}, /* steps miss the jumps */
+        {test_blobs, &soft, mirror, true, false, 1, 1e-7, {0, 0}, CW_CUE_LINEAR},
+        {test_blobs, &soft, shear, true, true, 0.5f, 1e-6, {0, 0}, CW_CUE_LINEAR},
+        {test_blobs, &edges, NULL, true, true, 0, 1e-6, {0, 0}, CW_CUE_LINEAR},
+        {test_cubic,
+         &ramp_transfer,
+         NULL,
+         true,
+         true,
+         0,
+         1e-6,
+         {0, 0},
+         CW_CUE_LINEAR}, /* lit at the border */
+        {test_cubic, &ramp_transfer, NULL, true, false, 0.6f, 1e-7, {0.3, 0.6}, CW_CUE_LINEAR},
+        {test_blobs, &soft, NULL, true, true, 0.9f, 1e-6, {0.4, 0.7}, CW_CUE_EXPONENTIAL},
+        {test_ramp, &soft, shear, false, false, 0.9f, 1e-7, {-2, 3}, CW_CUE_EXPONENTIAL},
     };
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
         cw_volume volume = {0};
@@ -184,14 +205,18 @@ static void many_small_steps_agree(void **state)
                                   cases[n].perspective ? aslant(30) : straight(12));
         scene.lit = cases[n].lit;
         scene.depth_cue = cases[n].depth_cue;
+        memcpy(scene.cue_range, cases[n].cue_range, sizeof scene.cue_range);
+        scene.cue_form = cases[n].cue_form;
         scene.background[0][1] = 1;
         scene.background[1][2] = 0.5f;
         scene.light_count = 2;
         scene.lights[0] = (cw_light){{1, 2, 2}, {1, 0.8f, 0.6f}};
         scene.lights[1] = (cw_light){{-1, 0, 0.5}, {0.2f, 0.3f, 0.4f}};
-        const cwi_frame frame = test_frame(&scene);
-        for (int p = 0; p < 3; p++) {
-            const double x = (double[]){4.1, 3.2, 4.9}[p], y = (double[]){3.9, 4.6, 3.1}[p];
+        for (int p = 0; p < 6; p++) {
+            const double x = (double[]){4.1, 3.2, 4.9}[p / 2],
+                         y = (double[]){3.9, 4.6, 3.1}[p / 2];
+            scene.one_sided = p & 1;
+            const cwi_frame frame = test_frame(&scene);
             double out[4], truth[4];
             const double estimate = ray_of(&scene, x, y, out);
             test_ray(&frame, x, y, 40000, truth);

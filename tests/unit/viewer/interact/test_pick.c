@@ -214,6 +214,37 @@ static void extremes_are_where_they_are(void **state)
     }
 }
 
+/* Air of 0 before and behind a slab, with a hollow in it: minip inside picks the hollow, and in
+ * a solid slab the place where the ray reaches the threshold. */
+static void minimum_inside_is_picked_inside(void **state)
+{
+    (void)state;
+    const cw_transfer grey = test_flat_transfer();
+    cw_volume v;
+    test_field(&v, 11, 21, 11, (const double[3]){1, 1, 1}, test_constant);
+    float *voxels = cw_volume_voxels(&v);
+    for (size_t n = 0; n < 11 * 21 * 11; n++)
+        voxels[n] = n / 11 % 21 < 5 || n / 11 % 21 > 15 ? 0 : n / 11 % 21 == 9 ? 0.25f : 1;
+    for (int hollow = 1; hollow >= 0; hollow--) {
+        cw_scene scene = scene_of(CW_MODE_MINIP, &v, &grey, true);
+        scene.camera = test_view(0, 0, 0, 50);
+        scene.minip_inside = true;
+        scene.threshold = 0.5;
+        for (size_t n = 0; n < 11 * 21 * 11 && !hollow; n++)
+            voxels[n] = voxels[n] > 0 ? 1 : 0;
+        const double middle[3] = {0.3, 0, 0.4};
+        const cw_picked p = pick_at(&scene, middle);
+        assert_int_equal(p.kind, CW_PICK_VOLUME);
+        assert_near(p.value, hollow ? 0.25 : 0.5, 1e-6);
+        assert_near(fabs(p.point[1]), hollow ? 1 : 5.5, 1e-6);
+        scene.threshold = 1.5;
+        double pixel[2];
+        assert_true(cw_camera_project(&scene.camera, WIDTH, HEIGHT, middle, pixel, NULL));
+        assert_int_equal(pick(&scene, pixel[0], pixel[1]).kind, CW_PICK_NOTHING);
+    }
+    cw_volume_free(&v);
+}
+
 static void slices_are_hit_nearest_first(void **state)
 {
     (void)state;
@@ -464,6 +495,7 @@ int main(void)
         cmocka_unit_test(what_blends_is_where_half_is_covered),
         cmocka_unit_test(the_most_of_little_is_found),
         cmocka_unit_test(extremes_are_where_they_are),
+        cmocka_unit_test(minimum_inside_is_picked_inside),
         cmocka_unit_test(slices_are_hit_nearest_first),
         cmocka_unit_test(slices_have_holes_where_there_is_no_value),
         cmocka_unit_test(meshes_are_hit_nearest_first),

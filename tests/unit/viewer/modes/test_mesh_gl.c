@@ -101,14 +101,15 @@ static void backends_agree(void **state)
         cw_picture_free(&a);
         cw_picture_free(&b);
     }
-    cw_scene others[] = {scene, scene, scene, scene, scene};
+    cw_scene others[] = {scene, scene, scene, scene, scene, scene};
     others[0].wireframe = true;
     others[1].clip_count = 1;
     others[1].clips[0].normal[0] = 1;
     memcpy(others[2].color, (float[4]){1, 1, 1, 0.5f}, sizeof scene.color);
     others[3].depth_cue = 0.5f;
     others[4].material = flat;
-    for (size_t n = 0; n < 5; n++) {
+    others[5].one_sided = true;
+    for (size_t n = 0; n < 6; n++) {
         cw_picture picture;
         assert_fails(cw_render(cpu, &others[n], &picture, &err), CW_ERR_UNSUPPORTED, "the CPU",
                      err);
@@ -438,22 +439,70 @@ static void depth_fades_into_the_background(void **state)
     make_arrays(&mesh, 8, 4);
     put_sheet(&mesh, 0, 100, 9, white);
     put_sheet(&mesh, 1, 0, 3, white);
-    const cw_scene scene = {.mode = CW_MODE_MESH,
-                            .mesh = &mesh,
-                            .camera = straight(20),
-                            .width = 40,
-                            .height = 40,
-                            .background = {{0.2f, 0.4f, 0.6f}, {0.2f, 0.4f, 0.6f}},
-                            .depth_cue = 0.7f,
-                            .material = flat};
-    cw_renderer_forget(r);
-    cw_picture picture = test_draw(r, &scene);
-    for (int c = 0; c < 3; c++) {
-        assert_near((double)pixel(&picture, 20, 20)[c], 1, 2e-3);
-        assert_near((double)pixel(&picture, 4, 20)[c], 0.3 + 0.7 * 0.2 * (c + 1), 2e-3);
+    static const struct {
+        double range[2], near, far; /* shares of the background */
+        cw_cue_form form;
+    } cases[] = {{{0, 0}, 0, 0.7, CW_CUE_LINEAR},
+                 {{0, 2}, 0, 0.35, CW_CUE_LINEAR},
+                 {{-1, 0.5}, 0.7 * 2 / 3, 0.7, CW_CUE_LINEAR},
+                 {{0, 0}, 0, 0.7, CW_CUE_EXPONENTIAL},
+                 {{0, 0.5}, 0, 0.91, CW_CUE_EXPONENTIAL},
+                 {{-1, 0}, 0.7, 0.91, CW_CUE_EXPONENTIAL}};
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        const cw_scene scene = {.mode = CW_MODE_MESH,
+                                .mesh = &mesh,
+                                .camera = straight(20),
+                                .width = 40,
+                                .height = 40,
+                                .background = {{0.2f, 0.4f, 0.6f}, {0.2f, 0.4f, 0.6f}},
+                                .depth_cue = 0.7f,
+                                .cue_range = {cases[n].range[0], cases[n].range[1]},
+                                .cue_form = cases[n].form,
+                                .material = flat};
+        cw_renderer_forget(r);
+        cw_picture picture = test_draw(r, &scene);
+        for (int c = 0; c < 3; c++) {
+            const double other = 1 - 0.2 * (c + 1);
+            assert_near((double)pixel(&picture, 20, 20)[c], 1 - cases[n].near * other, 3e-3);
+            assert_near((double)pixel(&picture, 4, 20)[c], 1 - cases[n].far * other, 3e-3);
+        }
+        cw_picture_free(&picture);
     }
-    cw_picture_free(&picture);
     cw_mesh_free(&mesh);
+}
+
+/* A ball lit on one side is dark in a light from behind, and seen from inside, through a cut, in
+ * one from the eye. */
+static void one_sided_meshes_are_lit_from_outside(void **state)
+{
+    (void)state;
+    cw_renderer *r = test_renderer();
+    cw_mesh ball;
+    make_ball(&ball, 8, (const double[3]){0, 0, 0});
+    cw_renderer_forget(r);
+    for (int n = 0; n < 8; n++) {
+        const bool one_sided = n & 1, is_behind = n & 2, is_cut = n & 4;
+        cw_scene scene = {.mode = CW_MODE_MESH,
+                          .mesh = &ball,
+                          .camera = straight(20),
+                          .width = 40,
+                          .height = 40,
+                          .one_sided = one_sided,
+                          .color = {1, 1, 1, 1},
+                          .material = {.diffuse = 0.8f, .shininess = 1},
+                          .light_count = 1,
+                          .lights = {{{0, 0, is_behind ? -1 : 1}, {1, 1, 1}}}};
+        cw_camera *c = &scene.camera;
+        for (int a = 0; a < 3; a++)
+            scene.clips[0].normal[a] = c->target[a] - c->eye[a];
+        scene.clip_count = is_cut;
+        cw_picture picture = test_draw(r, &scene);
+        const bool is_lit = !one_sided || is_behind == is_cut;
+        assert_near((double)pixel(&picture, 20, 20)[3], 1, 1e-6);
+        assert_int_equal(pixel(&picture, 20, 20)[2] > 0.05f, is_lit); /* red inside */
+        cw_picture_free(&picture);
+    }
+    cw_mesh_free(&ball);
 }
 
 int main(void)
@@ -471,6 +520,7 @@ int main(void)
         cmocka_unit_test(ramp_is_perceptually_even),
         cmocka_unit_test(shape_of_triangles_is_shown),
         cmocka_unit_test(depth_fades_into_the_background),
+        cmocka_unit_test(one_sided_meshes_are_lit_from_outside),
     };
     return cmocka_run_group_tests(tests, NULL, test_renderer_close);
 }

@@ -60,6 +60,102 @@ static void cells_are_exact(void **state)
     cw_volume_free(&blobs);
 }
 
+/* A thick shell around a hollow of -0.1, in air of -0.1: it peaks at a radius of 9 voxels. */
+static double hollow_ball(const double p[3], const double q[3])
+{
+    (void)q;
+    const double r = hypot(hypot(p[0] - 15, p[1] - 15), p[2] - 15);
+    return fmax(1 - fabs(r - 9) / 5, -0.1);
+}
+
+/* Inside of a shell the lowest value is that of the hollow: known on paper, along rays through
+ * the middle and beside it, where plain minip is as dark as the air. */
+static void minimum_inside_shows_a_hollow(void **state)
+{
+    (void)state;
+    cw_volume ball = {0};
+    cw_renderer *gl = test_renderer();
+    test_field(&ball, 31, 31, 31, cube, hollow_ball);
+    cw_scene s = scene_of(CW_MODE_MINIP, &ball, false);
+    s.camera.eye[0] = s.camera.eye[2] = 0;
+    s.camera.height_mm = 30;
+    s.width = s.height = 30;
+    s.threshold = 0.5;
+    s.step_vox = 0.2;
+    for (int cells = 0; cells < 2; cells++) {
+        s.cell_steps = cells;
+        s.minip_inside = true;
+        cw_renderer_forget(gl);
+        cw_picture inside = test_draw(gl, &s);
+        s.minip_inside = false;
+        cw_picture plain = test_draw(gl, &s);
+        for (size_t n = 0; n < 30 * 30; n++) {
+            const double b =
+                hypot((double)(n % 30) - 14.5, (double)(n / 30) - 14.5); /* from the middle */
+            const double lowest = fmax(fmin(1 - (9 - b) / 5, 0.5), -0.1);
+            const float *pixel = inside.pixels + 4 * n;
+            assert_near((double)plain.pixels[4 * n], 0, 1e-3);
+            if (fabs(b - 11.5) < 1) /* the outline */
+                continue;
+            assert_true(pixel[3] == (b < 11.5 ? 1 : 0));
+            if (b < 11.5) /* voxels know the ball to a tenth */
+                assert_near((double)pixel[0], (lowest + 0.1) / 1.2, 0.05);
+        }
+        cw_picture_free(&inside);
+        cw_picture_free(&plain);
+    }
+    cw_volume_free(&ball);
+}
+
+/* Takes minima inside by cells, in one texture and in bricks, past gaps and cuts, as the CPU. */
+static void minima_inside_are_exact_by_cells(void **state)
+{
+    (void)state;
+    cw_volume blobs = {0};
+    test_field(&blobs, 30, 26, 28, cube, test_blobs);
+    float *voxels = cw_volume_voxels(&blobs);
+    for (int what = 0; what < 8; what++) {
+        cw_scene s = scene_of(CW_MODE_MINIP, &blobs, what & 1);
+        s.minip_inside = s.cell_steps = true;
+        s.texture_edge = what & 2 ? 9 : 0;
+        s.clip_count = what / 2 == 2 || what / 2 == 3;
+        s.cut_away = what / 2 == 3;
+        s.clips[0] = (cw_clip){{0.2, 1, 0.3}, 2};
+        for (int t = 0; t < 3; t++) {
+            s.threshold = (double[]){0.1, 0.4, 0.8}[t];
+            assert_true(measure(&s).rmse < 0.5); /* a ray may graze the threshold */
+        }
+    }
+    for (size_t n = 0; n < 30 * 26 * 28; n++)
+        if (n % 30 > 8 && n % 30 < 14)
+            voxels[n] = NAN;
+    cw_scene s = scene_of(CW_MODE_MINIP, &blobs, true);
+    s.minip_inside = s.cell_steps = true;
+    assert_true(measure(&s).rmse < 6); /* two pixels, as in gaps_and_cuts_are_left_out */
+    cw_volume_free(&blobs);
+}
+
+/* Leaping over blocks changes nothing of it, and fewer samples change little: rays that graze the
+ * threshold find the object or not. */
+static void minima_inside_converge(void **state)
+{
+    (void)state;
+    cw_volume blobs = {0};
+    double rmse[2];
+    test_field(&blobs, 64, 64, 64, cube, test_blobs);
+    for (int n = 0; n < 2; n++) {
+        cw_scene s = scene_of(CW_MODE_MINIP, &blobs, true);
+        s.camera.eye[0] = 65;
+        s.camera.eye[1] = -170;
+        s.minip_inside = true;
+        s.step_vox = (double[]){2, 0.125}[n];
+        rmse[n] = measure(&s).rmse;
+    }
+    assert_true(rmse[0] < 8);
+    assert_true(rmse[1] < 1e-2 || rmse[1] < rmse[0] / 2);
+    cw_volume_free(&blobs);
+}
+
 /* The reference of a projection is the picture of the CPU; of other modes there is none. */
 static void projections_have_a_reference(void **state)
 {
@@ -155,6 +251,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cells_are_exact),
         cmocka_unit_test(samples_converge),
+        cmocka_unit_test(minimum_inside_shows_a_hollow),
+        cmocka_unit_test(minima_inside_are_exact_by_cells),
+        cmocka_unit_test(minima_inside_converge),
         cmocka_unit_test(projections_have_a_reference),
         cmocka_unit_test(bricks_are_as_one_texture),
         cmocka_unit_test(gaps_and_cuts_are_left_out),
