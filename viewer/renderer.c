@@ -9,6 +9,7 @@
 #include "viewer/cpu/cpu_mesh.h"
 #include "viewer/gl/gl.h"
 #include "viewer/scene/gradient_volume.h"
+#include "viewer/scene/shadow_volume.h"
 
 #include <string.h>
 
@@ -20,6 +21,7 @@ struct cw_renderer {
     bool drew_on_cpu;                  /* the last picture */
     cwi_cpu cpu;
     cwi_gradient_volume gradients;
+    cwi_shadow_volume shadows;
 };
 
 /* Loads the module and opens a context, once. */
@@ -73,6 +75,7 @@ void cw_renderer_forget(cw_renderer *r)
         r->functions->forget(r->gl);
     cwi_cpu_forget(&r->cpu);
     cwi_gradient_volume_free(&r->gradients);
+    cwi_shadow_volume_free(&r->shadows);
 }
 
 /* Returns true if GL has no hardware: Mesa's software renderers. */
@@ -147,6 +150,8 @@ cw_status cw_render(cw_renderer *renderer, const cw_scene *scene, cw_picture *pi
     cw_status st = cwi_frame_init(&frame, scene, err);
     if (st == CW_OK)
         st = cwi_gradient_volume_take(&renderer->gradients, &frame, err);
+    if (st == CW_OK)
+        st = cwi_shadow_volume_take(&renderer->shadows, &frame, err);
     if (st == CW_OK)
         st = cw_picture_alloc(&fine, frame.scene.width, frame.scene.height, err);
     if (st == CW_OK)

@@ -82,6 +82,7 @@ static void put_settings(cli_json *j, const cw_scene *s)
     static const char *const kernels[CW_SPLAT_COUNT] = {"gaussian", "polygon", "tent",
                                                         "b-spline"};
     static const char *const forms[CW_CUE_COUNT] = {"linear", "exponential"};
+    static const char *const shadows[CW_SHADOW_COUNT] = {"none", "light", "ambient"};
     const cw_material *m = &s->material;
     cli_json_open(j, "settings", '{');
     cli_json_count(j, "width", s->width);
@@ -96,6 +97,7 @@ static void put_settings(cli_json *j, const cw_scene *s)
     cli_json_number(j, "depth_cue", (double)s->depth_cue);
     cli_json_numbers(j, "depth_cue_range", s->cue_range, 2);
     cli_json_text(j, "depth_cue_form", forms[s->cue_form]);
+    cli_json_text(j, "shadow", shadows[s->shadow]);
     cli_json_number(j, "gradient_smoothing", s->gradient_sigma);
     cli_json_number(j, "step_length", s->step_vox);
     cli_json_bool(j, "cell_steps", s->cell_steps);

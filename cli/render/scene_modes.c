@@ -28,6 +28,7 @@ static const struct {
     {"opacity", VOLUMES, false, false},
     {"gradient-opacity", SHADED, false, false},
     {"surface-width", SHADED, false, false},
+    {"shadow", ONE(COMPOSITE) | ONE(TEXTURE) | CPU, false, false},
     {"gradient-smoothing", SHADED, false, false},
     {"save-tf", VOLUMES, false, false},
     {"lit", SHADED & ~ONE(SHADED_TEXTURE), false, false},

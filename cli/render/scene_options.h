@@ -28,6 +28,7 @@ typedef struct cli_scene {
     bool colors_first, boundary, linear_opacity;
     cli_number tree_error;
     size_t splat_budget;
+    int shadow;
     int splat_kernel;
     cli_number splat_width;
     int tint;

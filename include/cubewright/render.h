@@ -146,6 +146,18 @@ typedef enum cw_splat_kernel {
     CW_SPLAT_COUNT
 } cw_splat_kernel;
 
+/* Shadows of a lit volume on itself: the volume between a voxel and a light absorbs. They are
+ * computed at voxels, by rays in steps of the smallest spacing through the extinction of voxels,
+ * and interpolated. Modes composite, texture, vbuffer and reference have them, of evenly spaced
+ * volumes. */
+typedef enum cw_shadow {
+    CW_SHADOW_NONE,
+    CW_SHADOW_LIGHT,   /* a ray to the first light: less of its diffuse and specular light */
+    CW_SHADOW_AMBIENT, /* ambient occlusion: the mean over 14 rays of 12 steps. All light is
+                          multiplied by twice that, at most 1, which it is at a flat surface */
+    CW_SHADOW_COUNT
+} cw_shadow;
+
 /* A scene. Zero-initialise it and set what you need; a zero field means the default named
  * beside it. Memory behind pointers is borrowed. */
 typedef struct cw_scene {
@@ -175,6 +187,7 @@ typedef struct cw_scene {
                              n.h count where n.l is above 0, in place of their absolute values.
                              Things of low values in high ones, such as airways, are then lit
                              from inside of them. Default: both sides are lit */
+    cw_shadow shadow;    /* default: none */
     float depth_cue;     /* 0 to 1: the fraction of the background at the cue's end; it is 0 up
                              to the cue's start. Below 1 if exponential */
     double cue_range[2]; /* start and end of the depth cue, as fractions of the scene's depth:

@@ -75,7 +75,7 @@ typedef struct medium {
     const cwi_reference *reference;
     const cwi_lighting *lighting;
     const double *background;
-    double value[4], gradient[3][4]; /* cubics; gradients in eye space */
+    double value[4], gradient[3][4], shadow[4]; /* cubics; gradients in eye space */
     double classes[4][4]; /* colors_first: cubics of colour times extinction, and extinction */
     double from, length, depth, depth_rise;
     const cwi_linear *linear; /* the piece's part of the transfer function */
@@ -129,7 +129,8 @@ static double emitted_color(const medium *m, double x, double color[3])
         extinction *=
             cwi_frame_gradient_factor(f, hypot(hypot(gradient[0], gradient[1]), gradient[2]));
     if (f->scene.lit)
-        cwi_lighting_shade(m->lighting, m->from + x * m->length, gradient, color);
+        cwi_lighting_shade(m->lighting, m->from + x * m->length, gradient,
+                           cwi_cubic_at(m->shadow, x), color);
     const double cue = cwi_frame_cue(f, m->depth + x * m->depth_rise);
     for (int c = 0; c < 3; c++)
         color[c] = cue * color[c] + (1 - cue) * m->background[c];
@@ -193,10 +194,12 @@ static void add_passage(const medium *m, double from, double to, const passage *
     s->error += error;
 }
 
-/* The gradient's cubics, in eye space. */
+/* The cubics of the gradient, in eye space, and of shadows. */
 static void find_gradients(medium *m, const cwi_walk *w)
 {
-    double g[3][8], cubic[3][4];
+    double g[3][8], cubic[3][4], shadows[8];
+    cwi_walk_shadows(w, shadows);
+    cwi_walk_cubic(w, shadows, m->shadow);
     cwi_walk_gradients(w, g);
     for (int a = 0; a < 3; a++)
         cwi_walk_cubic(w, g[a], cubic[a]);
@@ -317,7 +320,10 @@ double cwi_reference_ray(const cwi_reference *r, cwi_spans *spans, double x, dou
     cwi_walk walk;
     cwi_lighting lighting;
     double background[3], length = 0;
-    medium m = {.reference = r, .lighting = &lighting, .background = background};
+    medium m = {.reference = r,
+                .lighting = &lighting,
+                .background = background,
+                .shadow = {1}};
     sum s = {.light = 1};
     cwi_ray_make(r->frame, x, y, depth, &ray);
     for (int n = 0; n < ray.part_count; n++)

@@ -84,6 +84,7 @@ typedef struct state {
     float background[3];
     bool has_gradient;     /* the cell's: */
     double gradient[3][4]; /* cubics, eye space */
+    double shadow[4];      /* cubic; 1 where there are none */
 } state;
 
 #define FETCH(name, ctype, text)                                                               \
@@ -169,7 +170,8 @@ static void change_by_gradient(const state *s, double x, const double gradient[3
     if (f->transfer.gradient_count > 0)
         (*glow)[3] *= (float)cwi_frame_gradient_factor(f, sqrt(cwi_dot(gradient, gradient)));
     if (f->scene.lit) {
-        cwi_lighting_shade(s->lighting, distance_at(s, x), gradient, color);
+        cwi_lighting_shade(s->lighting, distance_at(s, x), gradient,
+                           cwi_cubic_at(s->shadow, x), color);
         for (int a = 0; a < 3; a++)
             (*glow)[a] = (float)color[a];
     }
@@ -265,8 +267,12 @@ static void pass_piece(state *s, const cwi_transfer_segment *piece, const double
 
 static void find_gradients(state *s)
 {
-    double g[3][8], cubic[3][4];
+    double g[3][8], cubic[3][4], shadows[8];
     s->has_gradient = true;
+    if (s->b->frame->shadows) {
+        cwi_walk_shadows(&s->walk, shadows);
+        cwi_walk_cubic(&s->walk, shadows, s->shadow);
+    }
     cwi_walk_gradients(&s->walk, g);
     for (int a = 0; a < 3; a++)
         cwi_walk_cubic(&s->walk, g[a], cubic[a]);
@@ -330,7 +336,9 @@ static void gradients_at_points(state *s, const char *p, lanes even, lanes odd,
                                 const lanes at[3], double gradients[2][3])
 {
     lanes g[3][2], along[3];
-    if (s->b->frame->gradient_version || !fetch_gradients(s->b, &s->walk, p, even, odd, g)) {
+    const cwi_frame *f = s->b->frame;
+    if (f->gradient_version || f->shadows ||
+        !fetch_gradients(s->b, &s->walk, p, even, odd, g)) {
         find_gradients(s);
         for (int a = 0; a < 3; a++) {
             gradients[0][a] = cwi_cubic_at(s->gradient[a], FIRST_POINT);
@@ -451,7 +459,7 @@ static bool draw_pixel(const vbuffer *b, cwi_spans *spans, size_t x, size_t y)
     const cw_scene *scene = &b->frame->scene;
     float *pixel = b->picture->pixels + 4 * n;
     cwi_lighting lighting;
-    state s = {.b = b, .lighting = &lighting, .light = 1};
+    state s = {.b = b, .lighting = &lighting, .light = 1, .shadow = {1}};
     const float share = ((float)y + 0.5f) / (float)scene->height;
     cwi_ray_make(b->frame, (double)x + 0.5, (double)y + 0.5,
                  b->depths ? b->depths[n] : INFINITY, &s.ray);

@@ -31,7 +31,7 @@ typedef struct cwi_gl_texels {
 /* A part of the volume that fits a texture: neighbours have a layer of samples in common. */
 typedef struct cwi_gl_brick {
     size_t first[3], count[3];
-    GLuint values, gradients; /* 0 until they are needed */
+    GLuint values, gradients; /* 0 until they are needed; gradients with shadows */
     GLuint voxels, buffer;    /* the caller's memory as a texture; 0 until it is needed */
 } cwi_gl_brick;
 
@@ -42,7 +42,7 @@ typedef struct cwi_gl_volume {
     cwi_gl_texels kind;
     double scale, bias;
     double range;            /* of the scaled values, above 0 */
-    size_t gradient_version; /* of the frame, when gradients were made */
+    size_t gradient_version, shadow_version; /* of the frame, when gradients were made */
     double gradient_unit;    /* of gradients in textures: halves have few exponents */
     size_t brick_count;
     size_t texture_bytes; /* counted as taken */

@@ -256,8 +256,6 @@ static double find_gradient_unit(const cwi_gl_volume *g, const cwi_frame *f)
 static bool is_there(const cwi_gl_volume *g, const cwi_frame *f)
 {
     return g->bricks && g->edge == f->scene.texture_edge &&
-           (!cwi_frame_needs_gradients(f) || (g->gradient_version == f->gradient_version &&
-                                              g->gradient_unit == find_gradient_unit(g, f))) &&
            memcmp(&g->key, &f->volume, sizeof g->key) == 0;
 }
 
@@ -278,8 +276,6 @@ static cw_status make_volume(cwi_gl *gl, cw_error *err)
     g->kind = kind_of(&g->key);
     fit_wide(&g->key, range, &g->kind);
     g->range = range[1] - range[0];
-    g->gradient_version = gl->frame->gradient_version;
-    g->gradient_unit = find_gradient_unit(g, gl->frame);
     g->scale = g->key.slope * g->kind.scale;
     g->bias = g->key.slope * g->kind.bias + g->key.intercept;
     choose_edges(&g->key, &g->kind, g->edge, edge);
@@ -298,9 +294,33 @@ static cw_status upload_bricks(cwi_gl *gl, cw_error *err)
     return st;
 }
 
+/* Drops gradients that are not the frame's. */
+static void choose_gradients(cwi_gl_volume *g, const cwi_frame *f)
+{
+    const double unit = find_gradient_unit(g, f);
+    if (g->gradient_version == f->gradient_version && g->shadow_version == f->shadow_version &&
+        g->gradient_unit == unit)
+        return;
+    for (size_t n = 0; n < g->brick_count; n++) {
+        const size_t *count = g->bricks[n].count;
+        const size_t bytes = count[0] * count[1] * count[2] * GRADIENT_BYTES;
+        if (!g->bricks[n].gradients)
+            continue;
+        glDeleteTextures(1, &g->bricks[n].gradients);
+        g->bricks[n].gradients = 0;
+        cwi_memory_give(bytes);
+        g->texture_bytes -= bytes;
+    }
+    g->gradient_version = f->gradient_version;
+    g->shadow_version = f->shadow_version;
+    g->gradient_unit = unit;
+}
+
 cw_status cwi_gl_take_volume(cwi_gl *gl, bool as_textures, cw_error *err)
 {
     cw_status st = is_there(&gl->volume, gl->frame) ? CW_OK : make_volume(gl, err);
+    if (st == CW_OK && (cwi_frame_needs_gradients(gl->frame) || gl->volume.gradient_unit == 0))
+        choose_gradients(&gl->volume, gl->frame);
     gl->volume.in_place = st == CW_OK && !as_textures && cwi_gl_find_voxels(gl);
     if (st == CW_OK && !gl->volume.in_place)
         st = upload_bricks(gl, err);
@@ -360,9 +380,10 @@ static void along_row(const float *row, size_t n, float scale, float *out)
 }
 
 /* Derivatives along a row: central inside, one-sided at the border; 0 where a neighbour has no
- * value. rows: room for five rows */
+ * value; and shadows, if there are some. rows: room for five rows */
 static void put_gradient_row(const cw_volume *v, const cwi_gl_brick *b, size_t j, size_t k,
-                             float scale, float *rows, uint16_t (*out)[4])
+                             const float *shadows, float scale, float *rows,
+                             uint16_t (*out)[4])
 {
     const size_t n = v->dim[0];
     const char *row = cwi_voxel_address(v, 0, j, k);
@@ -378,14 +399,15 @@ static void put_gradient_row(const cw_volume *v, const cwi_gl_brick *b, size_t j
         out[i][0] = to_half(x[at]);
         out[i][1] = to_half(y[at]);
         out[i][2] = to_half(z[at]);
-        out[i][3] = 0;
+        out[i][3] = shadows ? to_half(shadows[(k * v->dim[1] + j) * n + at]) : 0x3c00; /* 1 */
     }
 }
 
 /* Computes layers of a brick; returns false when there is no memory for a thread's rows. */
-static bool put_gradients(const cw_volume *v, const cwi_gl_brick *b, double scale, size_t from,
+static bool put_gradients(const cwi_frame *f, const cwi_gl_brick *b, double scale, size_t from,
                           size_t count, uint16_t (*out)[4])
 {
+    const cw_volume *v = &f->gradient_volume;
     bool failed = false;
 #pragma omp parallel reduction(|| : failed)
     {
@@ -395,7 +417,7 @@ static bool put_gradients(const cw_volume *v, const cwi_gl_brick *b, double scal
         for (size_t n = 0; n < count * b->count[1]; n++)
             if (rows)
                 put_gradient_row(v, b, b->first[1] + n % b->count[1],
-                                 b->first[2] + from + n / b->count[1], (float)scale, rows,
+                                 b->first[2] + from + n / b->count[1], f->shadows, (float)scale, rows,
                                  out + n * b->count[0]);
         cwi_free(rows);
     }
@@ -420,7 +442,7 @@ static cw_status upload_gradients(cwi_gl *gl, cwi_gl_brick *b, cw_error *err)
                  GL_HALF_FLOAT, NULL);
     for (size_t k = 0; k < b->count[2] && st == CW_OK; k += step) {
         const size_t n = b->count[2] - k < step ? b->count[2] - k : step;
-        if (!put_gradients(v, b, scale, k, n, chunk))
+        if (!put_gradients(gl->frame, b, scale, k, n, chunk))
             st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for gradients");
         else
             glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, (GLint)k, w, h, (GLsizei)n, GL_RGBA,
@@ -444,6 +466,7 @@ static bool has_differences(const cwi_gl *gl)
     const cwi_gl_volume *g = &gl->volume;
     const size_t *dim = g->key.dim;
     return g->brick_count == 1 && !g->ranges.has_gaps && !gl->frame->gradient_version &&
+           !gl->frame->shadows &&
            (gl->frame->scene.lean || dim[0] * dim[1] * dim[2] > MAX_GRADIENTS);
 }
 
@@ -452,7 +475,10 @@ cw_status cwi_gl_need_gradients(cwi_gl *gl, const char **defines, cw_error *err)
     cwi_gl_volume *g = &gl->volume;
     cw_status st = CW_OK;
     const bool differs = has_differences(gl);
-    *defines = differs ? "#define DIFFERENCES\n" : "";
+    *defines = differs                                 ? "#define DIFFERENCES\n"
+               : !gl->frame->shadows                   ? ""
+               : gl->frame->scene.shadow == CW_SHADOW_LIGHT ? "#define SHADOW\n"
+                                                       : "#define OCCLUSION\n";
     for (size_t n = 0; n < g->brick_count && !differs && st == CW_OK; n++)
         if (!g->bricks[n].gradients)
             st = upload_gradients(gl, &g->bricks[n], err);

@@ -248,8 +248,8 @@ static void blend_segment(blending *b, const fragment *f, double near, double fa
         scale *= cwi_frame_gradient_factor(frame, sqrt(cwi_dot(gradient, gradient)));
     if (frame->scene.lit) {                             /* light is linear in the colour */
         const double middle = (near + far) / 2 * along; /* from depths to the way on the ray */
-        cwi_lighting_shade(&b->lighting, middle, gradient, base);
-        cwi_lighting_shade(&b->lighting, middle, gradient, gain);
+        cwi_lighting_shade(&b->lighting, middle, gradient, 1, base);
+        cwi_lighting_shade(&b->lighting, middle, gradient, 1, gain);
     }
     const double length = (far - near) * scale;
     const int count =

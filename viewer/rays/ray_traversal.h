@@ -32,6 +32,7 @@ void cwi_ray_make(const cwi_frame *frame, double x, double y, double depth, cwi_
 /* A walk from cell to cell. An axis of one voxel has one cell, from -0.5 to 0.5. */
 typedef struct cwi_walk {
     const cw_volume *volume, *gradient_volume;
+    const float *shadows; /* as the frame's */
     double index[3], slope[3], inverse[3];
     double next[3];            /* where the ray meets the next plane of voxels of each axis */
     ptrdiff_t cell[3], end[3]; /* end: the cell beyond the last along the ray */
@@ -108,6 +109,9 @@ void cwi_walk_cubic(const cwi_walk *walk, const double v[8], double c[4]);
 /* Computes the gradient at the cell's corners, per voxel: central differences, one-sided at the
  * border; 0 where a neighbour has no value, and along an axis of one voxel. */
 void cwi_walk_gradients(const cwi_walk *walk, double g[3][8]);
+
+/* Reads the shadows at the cell's corners; 1 where there are none. */
+void cwi_walk_shadows(const cwi_walk *walk, double shadows[8]);
 
 #ifdef __cplusplus
 }

@@ -85,6 +85,9 @@ static cw_status fill_in(cw_scene *s, cw_error *err)
     if (!(s->depth_cue >= 0 && s->depth_cue <= 1))
         return cwi_fail(err, CW_ERR_ARGUMENT, "a depth cue of %g: expected 0 to 1",
                         (double)s->depth_cue);
+    if ((unsigned)s->shadow >= CW_SHADOW_COUNT)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a kind of shadows (0 to %d)",
+                        (int)s->shadow, CW_SHADOW_COUNT - 1);
     if (!(s->gradient_sigma >= 0 && s->gradient_sigma <= MAX_SIGMA))
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "gradients smoothed over %g voxels: expected 0 to %d",

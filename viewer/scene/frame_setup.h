@@ -51,6 +51,8 @@ typedef struct cwi_frame {
      * smoothed or not; see gradient_volume.h. */
     cw_volume gradient_volume;
     size_t gradient_version; /* 0: it is `volume`; else another number for other contents */
+    const float *shadows;  /* of the volume's voxels, 0 to 1, x fastest; NULL: there are none */
+    size_t shadow_version; /* another number for other contents */
     double surface; /* length, in units, over which an index changes by 1 at a surface of full
                        strength; 0: there are no indices, and all surfaces are of that */
 

@@ -26,6 +26,7 @@ void cwi_lighting_make(const cwi_frame *f, const double origin[3], const double 
                         .is_one_sided = f->scene.one_sided,
                         .count = f->scene.light_count,
                         .surface = f->surface,
+                        .shadow = f->shadows ? f->scene.shadow : CW_SHADOW_NONE,
                         .side = f->scene.cut_away ? -1 : 1};
     for (size_t n = 0; n < l->count; n++) {
         const cw_light *light = &f->scene.lights[n];
@@ -48,9 +49,10 @@ void cwi_lighting_make(const cwi_frame *f, const double origin[3], const double 
 
 /* Adds the light that a surface with a normal of unit length reflects, times a factor. */
 static void add_reflection(const cwi_lighting *l, const double n[3], const double color[3],
-                           double factor, bool is_glossy, double light[3])
+                           double factor, double shadow, bool is_glossy, double light[3])
 {
     for (size_t i = 0; i < l->count; i++) {
+        const double lit = l->shadow == CW_SHADOW_LIGHT && i == 0 ? factor * shadow : factor;
         const double facing = -cwi_dot(n, l->direction[i]);
         if (l->is_one_sided && !(facing > 0))
             continue;
@@ -61,7 +63,7 @@ static void add_reflection(const cwi_lighting *l, const double n[3], const doubl
                                           raise_power(gloss, (double)l->material.shininess)
                                     : 0;
         for (int c = 0; c < 3; c++)
-            light[c] += factor * l->color[i][c] * (diffuse * color[c] + specular);
+            light[c] += lit * l->color[i][c] * (diffuse * color[c] + specular);
     }
 }
 
@@ -86,7 +88,7 @@ static double find_face(const cwi_lighting *l, double t, double normal[3])
 }
 
 void cwi_lighting_shade(const cwi_lighting *l, double t, const double gradient[3],
-                        double color[3])
+                        double shadow, double color[3])
 {
     double n[3] = {gradient[0], gradient[1], gradient[2]}, face[3] = {0};
     double light[3];
@@ -97,8 +99,9 @@ void cwi_lighting_shade(const cwi_lighting *l, double t, const double gradient[3
     for (int c = 0; c < 3; c++)
         light[c] = (double)l->material.ambient * color[c];
     if (share < 1 && length > 0)
-        add_reflection(l, n, color, (1 - share) * strength, true, light);
+        add_reflection(l, n, color, (1 - share) * strength, shadow, true, light);
     if (share > 0)
-        add_reflection(l, face, color, share, false, light);
-    memcpy(color, light, sizeof light);
+        add_reflection(l, face, color, share, shadow, false, light);
+    for (int c = 0; c < 3; c++)
+        color[c] = l->shadow == CW_SHADOW_AMBIENT ? shadow * light[c] : light[c];
 }

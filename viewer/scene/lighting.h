@@ -18,6 +18,7 @@ typedef struct cwi_lighting {
     size_t face_count;                 /* of clip planes that cut the volume */
     const double *faces[CW_MAX_CLIPS]; /* normals in eye space, */
     double face_start[CW_MAX_CLIPS], face_slope[CW_MAX_CLIPS]; /* and distances along the ray */
+    cw_shadow shadow;
     double side; /* of the planes that is drawn: 1 or -1 */
     double direction[CW_MAX_LIGHTS][3], halfway[CW_MAX_LIGHTS][3]; /* of unit length, or 0 */
     double color[CW_MAX_LIGHTS][3];
@@ -27,11 +28,12 @@ typedef struct cwi_lighting {
 void cwi_lighting_make(const cwi_frame *frame, const double origin[3],
                        const double direction[3], cwi_lighting *lighting);
 
-/* Lights a colour at a distance t along the ray, by a gradient in eye space. Within a unit of a
+/* Lights a colour at a distance t along the ray, by a gradient in eye space. shadow: the fraction
+ * of light that comes there, 1 without shadows. Within a unit of a
  * clip plane it is lit by the plane's normal in place of the gradient's, which is 0 where a solid
  * is cut, and has no highlight; beyond two units the gradient alone counts. */
 void cwi_lighting_shade(const cwi_lighting *lighting, double t, const double gradient[3],
-                        double color[3]);
+                        double shadow, double color[3]);
 
 /* Returns the share of the light that a clip plane has at a distance from it, 0 to 1. */
 double cwi_lighting_face_share(double distance);

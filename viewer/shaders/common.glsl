@@ -31,7 +31,7 @@ uniform samplerBuffer volume;
 uniform ivec3
     voxel_steps; // IN_PLACE: from a voxel to the next along each axis that has more than one
 uniform vec3 last_cell;
-uniform sampler3D gradients;          // and gradients per voxel
+uniform sampler3D gradients;          // and gradients per voxel, and shadows
 uniform sampler1D table;              // transfer function: colour, extinction per unit
 uniform sampler1D factor;             // of the extinction, by the gradient's length
 uniform vec3 brick_first, brick_size; // samples
@@ -120,6 +120,10 @@ vec4 classify(float coordinate)
     return isnan(coordinate) ? vec4(0.0) : row;
 }
 
+#if defined(SHADOW) || defined(OCCLUSION)
+float shadow; // fraction of the light, where gradient_in() was called last
+#endif
+
 // Returns the gradient at a place in the brick's texture, in eye space, per unit. Differences
 // of interpolated values equal interpolated differences of voxels.
 vec3 gradient_in(vec3 place)
@@ -134,7 +138,11 @@ vec3 gradient_in(vec3 place)
     vec3 apart = max((high - low) * brick_size, 0.5);
     return mat3(gradient_to_eye) * (rise * texels.z / apart);
 #else
-    return mat3(gradient_to_eye) * textureLod(gradients, place, 0.0).xyz;
+    vec4 texel = textureLod(gradients, place, 0.0);
+#if defined(SHADOW) || defined(OCCLUSION)
+    shadow = texel.w;
+#endif
+    return mat3(gradient_to_eye) * texel.xyz;
 #endif
 }
 
@@ -167,7 +175,11 @@ vec3 shade(vec3 color, vec3 gradient, vec3 to_eye)
             float near = abs(dot(n, h)) * inversesqrt(max(dot(h, h), 1e-20));
             specular = near > 0.0 ? pow(near, material.w) : 0.0;
         }
-        light += strength * light_color[i].rgb *
+        float lit = strength;
+#ifdef SHADOW
+        lit *= i == 0 ? shadow : 1.0;
+#endif
+        light += lit * light_color[i].rgb *
                  (material.y * diffuse * color + material.z * specular);
     }
     return light;
@@ -198,6 +210,9 @@ vec3 shade_at(vec3 color, vec3 gradient, vec3 to_eye, vec3 at)
     vec3 cut = material.x * color;
     for (int i = 0; i < counts.x; i++) {
         float facing = -dot(face.xyz, light_direction[i].xyz);
+#ifdef SHADOW
+        facing *= i == 0 ? shadow : 1.0;
+#endif
         cut += light_color[i].rgb * material.y *
                (counts.w != 0 ? max(facing, 0.0) : abs(facing)) * color;
     }
@@ -224,6 +239,9 @@ vec4 by_gradient(vec4 color, vec3 gradient, vec3 to_eye, vec3 at)
 #if defined(LIT) && !defined(SHADES)
     if (color.a > 0.0)
         color.rgb = shade_at(color.rgb / color.a, gradient, to_eye, at) * color.a;
+#ifdef OCCLUSION
+    color.rgb *= shadow;
+#endif
 #endif
     return color;
 }

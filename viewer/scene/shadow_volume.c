@@ -1,0 +1,350 @@
+/* Computes shadows: rays from visible voxels, in steps of a unit of eye space, through the
+ * interpolated extinction of voxels. Blocks without any are leapt over, by whole steps. */
+#include "viewer/scene/shadow_volume.h"
+
+#include "viewer/scene/cell_lattice.h"
+#include "viewer/scene/transfer_table.h"
+#include "viewer/scene/voxel_rows.h"
+
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
+#include "core/base/status.h"
+#include "core/geometry/vec3.h"
+#include "core/volume/volume.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { BLOCK = 8, RADIUS = 12, WORK = 32 /* one voxel takes as long as this number elsewhere */ };
+
+/* Optical depth at which a shadow is black. */
+static const double deepest = 7;
+
+typedef struct job {
+    const cwi_frame *frame;
+    const cwi_shadow_key *key;
+    const cwi_table *table;
+    double to_eye[3][3]; /* gradients */
+    size_t dim[3], blocks[3];
+    float *extinctions; /* per unit */
+    uint8_t *is_dense;  /* blocks with extinction in them or right beside them */
+    float *out;
+} job;
+
+static size_t number_of(const size_t dim[3], size_t x, size_t y, size_t z)
+{
+    return (z * dim[1] + y) * dim[0] + x;
+}
+
+/* Returns the extinction of a voxel with a coordinate in the table, 0 to 1. */
+static float classify(const job *w, float coordinate, const size_t at[3])
+{
+    const cwi_table *t = w->table;
+    const cwi_frame *f = w->frame;
+    double gradient[3], eye[3];
+    if (coordinate != coordinate)
+        return 0;
+    const float most = (float)(t->count - 1), place = coordinate * most;
+    const float row = place < 0 ? 0 : place > most ? most : place;
+    const size_t n = (size_t)row < t->count - 2 ? (size_t)row : t->count - 2;
+    const float low = t->rows[4 * n + 3], high = t->rows[4 * n + 7];
+    const float extinction = low + (row - (float)n) * (high - low);
+    if (f->transfer.gradient_count == 0 || !(extinction > 0))
+        return extinction;
+    cwi_lattice_gradient(&f->gradient_volume, at, gradient);
+    for (int a = 0; a < 3; a++)
+        eye[a] = f->gradient_volume.slope * cwi_dot(w->to_eye[a], gradient);
+    const double length = sqrt(cwi_dot(eye, eye));
+    return extinction * (float)cwi_frame_gradient_factor(f, isfinite(length) ? length : 0);
+}
+
+static void classify_layer(void *context, size_t k)
+{
+    job *w = context;
+    float *to = w->extinctions + k * w->dim[0] * w->dim[1];
+    cwi_lattice_load(&w->frame->volume, w->table, (size_t[]){0, 0, k},
+                     (size_t[]){w->dim[0], w->dim[1], 1}, to);
+    for (size_t n = 0; n < w->dim[0] * w->dim[1]; n++)
+        to[n] = classify(w, to[n], (size_t[]){n % w->dim[0], n / w->dim[0], k});
+}
+
+/* Marks the blocks of a layer of blocks that have extinction, or voxels beside them have. */
+static void mark_layer(void *context, size_t bz)
+{
+    job *w = context;
+    for (size_t b = 0; b < w->blocks[0] * w->blocks[1]; b++) {
+        const size_t at[3] = {b % w->blocks[0], b / w->blocks[0], bz};
+        size_t low[3], high[3];
+        bool is_dense = false;
+        for (int a = 0; a < 3; a++) {
+            low[a] = at[a] * BLOCK > 0 ? at[a] * BLOCK - 1 : 0;
+            high[a] = at[a] * BLOCK + BLOCK + 1;
+            high[a] = high[a] < w->dim[a] ? high[a] : w->dim[a];
+        }
+        for (size_t z = low[2]; z < high[2] && !is_dense; z++)
+            for (size_t y = low[1]; y < high[1] && !is_dense; y++)
+                for (size_t x = low[0]; x < high[0]; x++)
+                    is_dense = is_dense || w->extinctions[number_of(w->dim, x, y, z)] > 0;
+        w->is_dense[number_of(w->blocks, at[0], at[1], at[2])] = is_dense;
+    }
+}
+
+/* Interpolates the extinction at a place between voxels. */
+static double extinction_at(const job *w, const double p[3])
+{
+    size_t low[3], high[3];
+    double s[3], line[4];
+    for (int a = 0; a < 3; a++) {
+        low[a] = (size_t)p[a];
+        low[a] = low[a] < w->dim[a] - 1 ? low[a] : w->dim[a] - 1;
+        high[a] = low[a] + 1 < w->dim[a] ? low[a] + 1 : low[a];
+        s[a] = p[a] - (double)low[a];
+    }
+    for (int n = 0; n < 4; n++) {
+        const size_t y = n & 1 ? high[1] : low[1], z = n & 2 ? high[2] : low[2];
+        const double from = (double)w->extinctions[number_of(w->dim, low[0], y, z)];
+        const double to = (double)w->extinctions[number_of(w->dim, high[0], y, z)];
+        line[n] = from + s[0] * (to - from);
+    }
+    const double near = line[0] + s[1] * (line[1] - line[0]);
+    const double far = line[2] + s[1] * (line[3] - line[2]);
+    return near + s[2] * (far - near);
+}
+
+/* Returns true if clip planes leave a place visible: what is cut away casts no shadow. */
+static bool is_kept(const cwi_shadow_key *key, const double p[3])
+{
+    bool kept = true;
+    for (size_t n = 0; n < key->clip_count; n++)
+        kept = kept && cwi_dot(key->clips[n], p) >= key->clips[n][3];
+    return key->clip_count == 0 || kept != (key->cut_away != 0);
+}
+
+/* Returns the number of steps from a place in an empty block that stay in it, at least 1. */
+static double steps_in_block(const job *w, const double p[3], const double step[3])
+{
+    double least = 1e9;
+    (void)w;
+    for (int a = 0; a < 3; a++) {
+        const double low = floor(p[a] / BLOCK) * BLOCK;
+        const double way = step[a] > 0 ? low + BLOCK - p[a] : low - p[a];
+        if (step[a] != 0)
+            least = fmin(least, way / step[a]);
+    }
+    return fmax(floor(least), 1);
+}
+
+/* Returns the light that comes to a voxel along a ray of a number of steps. The first step,
+ * which is mostly the voxel itself, does not count. */
+static double follow_ray(const job *w, const size_t at[3], const double step[3], double steps)
+{
+    double depth = 0;
+    for (double n = 1.5; n < steps && depth < deepest;) {
+        double p[3];
+        bool is_inside = true;
+        for (int a = 0; a < 3; a++) {
+            p[a] = (double)at[a] + n * step[a];
+            is_inside = is_inside && p[a] >= 0 && p[a] <= (double)w->dim[a] - 1;
+        }
+        if (!is_inside)
+            break;
+        const size_t block = number_of(w->blocks, (size_t)p[0] / BLOCK, (size_t)p[1] / BLOCK,
+                                       (size_t)p[2] / BLOCK);
+        if (!w->is_dense[block]) {
+            n += steps_in_block(w, p, step);
+            continue;
+        }
+        if (is_kept(w->key, p))
+            depth += extinction_at(w, p);
+        n++;
+    }
+    return exp(-depth);
+}
+
+/* Returns true if a voxel or one beside it is visible: cells around it then show its light. */
+static bool is_seen(const job *w, const size_t at[3])
+{
+    for (int n = 0; n < 27; n++) {
+        const size_t x = at[0] + (size_t)(n % 3), y = at[1] + (size_t)(n / 3 % 3),
+                     z = at[2] + (size_t)(n / 9);
+        if (x > 0 && y > 0 && z > 0 && x <= w->dim[0] && y <= w->dim[1] && z <= w->dim[2] &&
+            w->extinctions[number_of(w->dim, x - 1, y - 1, z - 1)] > 0)
+            return true;
+    }
+    return false;
+}
+
+static void shade_layer(void *context, size_t k)
+{
+    job *w = context;
+    const cwi_shadow_key *key = w->key;
+    for (size_t n = 0; n < w->dim[0] * w->dim[1]; n++) {
+        const size_t at[3] = {n % w->dim[0], n / w->dim[0], k};
+        double light = 0;
+        float *to = &w->out[number_of(w->dim, at[0], at[1], at[2])];
+        *to = 1;
+        if (!w->is_dense[number_of(w->blocks, at[0] / BLOCK, at[1] / BLOCK, k / BLOCK)] ||
+            !is_seen(w, at))
+            continue;
+        for (size_t r = 0; r < key->count; r++)
+            light += follow_ray(w, at, key->steps[r], key->count == 1 ? INFINITY : RADIUS);
+        /* half of the rays end in the object itself, where a surface is flat */
+        *to = (float)(key->count == 1 ? light : fmin(2 * light / (double)key->count, 1));
+    }
+}
+
+/* Converts a direction of unit length in the world to a step in index space. */
+static cw_status find_step(const cwi_frame *f, const double world[3], double step[3],
+                           cw_error *err)
+{
+    double there[3], zero[3] = {0}, at_zero[3], scaled[3];
+    for (int a = 0; a < 3; a++)
+        scaled[a] = f->unit_mm * world[a];
+    cw_status st = cw_volume_to_index(&f->volume, zero, at_zero, err);
+    if (st == CW_OK)
+        st = cw_volume_to_index(&f->volume, scaled, there, err);
+    for (int a = 0; a < 3 && st == CW_OK; a++)
+        step[a] = there[a] - at_zero[a];
+    return st;
+}
+
+/* Finds the rays: one to the first light, or to the sides and corners of a cube. */
+static cw_status find_rays(const cwi_frame *f, cwi_shadow_key *key, cw_error *err)
+{
+    double light[3], world[3];
+    cw_status st = CW_OK;
+    memcpy(light, f->scene.lights[0].direction, sizeof light);
+    cwi_to_unit(light);
+    for (int a = 0; a < 3; a++)
+        world[a] = light[0] * f->axes[0][a] + light[1] * f->axes[1][a] + light[2] * f->axes[2][a];
+    if (f->scene.shadow == CW_SHADOW_LIGHT) {
+        key->count = 1;
+        return find_step(f, world, key->steps[0], err);
+    }
+    for (size_t n = 0; n < CWI_SHADOW_RAYS && st == CW_OK; n++) {
+        for (size_t a = 0; a < 3; a++)
+            world[a] = n >= 6     ? ((n - 6) >> a & 1 ? 1 : -1)
+                       : n / 2 == a ? (n & 1 ? 1 : -1)
+                                    : 0;
+        cwi_to_unit(world);
+        st = find_step(f, world, key->steps[key->count++], err);
+    }
+    return st;
+}
+
+static cw_status make_key(const cwi_frame *f, cwi_shadow_key *key, cw_error *err)
+{
+    const cw_scene *s = &f->scene;
+    memset(key, 0, sizeof *key);
+    key->volume = f->volume;
+    memcpy(&key->transfer, &f->transfer, sizeof key->transfer);
+    key->opacity_units = f->opacity_units;
+    key->surface = f->surface;
+    key->gradient_version = f->gradient_version;
+    key->clip_count = s->clip_count;
+    key->cut_away = s->cut_away;
+    for (size_t n = 0; n < s->clip_count; n++) {
+        const cw_clip *c = &s->clips[n];
+        const double *affine = f->volume.affine[0];
+        key->clips[n][3] = c->distance_mm;
+        for (int r = 0; r < 3; r++) {
+            key->clips[n][3] -= c->normal[r] * affine[4 * r + 3];
+            for (int a = 0; a < 3; a++)
+                key->clips[n][a] += c->normal[r] * affine[4 * r + a];
+        }
+    }
+    return find_rays(f, key, err);
+}
+
+static cw_status run_job(job *w, cw_error *err)
+{
+    const cw_scene *s = &w->frame->scene;
+    const size_t layer = w->dim[0] * w->dim[1];
+    cw_status st = cwi_each_layer(w->dim[2], 4 * layer, s->threads, &s->progress, "classifying",
+                                  classify_layer, w, err);
+    if (st == CW_OK)
+        st = cwi_each_layer(w->blocks[2], BLOCK * layer, s->threads, &s->progress, "classifying",
+                            mark_layer, w, err);
+    if (st == CW_OK)
+        st = cwi_each_layer(w->dim[2], WORK * layer, s->threads, &s->progress, "casting shadows",
+                            shade_layer, w, err);
+    return st;
+}
+
+static cw_status make_values(const cwi_frame *f, const cwi_shadow_key *key, float *values,
+                             cw_error *err)
+{
+    job w = {.frame = f, .key = key, .out = values};
+    cwi_table table;
+    cw_status st = cwi_table_make(f, &table, err);
+    if (st != CW_OK)
+        return st;
+    w.table = &table;
+    cwi_frame_gradient_matrix(f, w.to_eye);
+    for (int a = 0; a < 3; a++) {
+        w.dim[a] = f->volume.dim[a];
+        w.blocks[a] = (w.dim[a] + BLOCK - 1) / BLOCK;
+    }
+    w.extinctions = cwi_alloc_array(w.dim[0] * w.dim[1] * w.dim[2], sizeof *w.extinctions);
+    w.is_dense = cwi_alloc_array(w.blocks[0] * w.blocks[1] * w.blocks[2], 1);
+    st = w.extinctions && w.is_dense
+             ? run_job(&w, err)
+             : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for shadows");
+    cwi_free(w.extinctions);
+    cwi_free(w.is_dense);
+    cwi_table_free(&table);
+    return st;
+}
+
+static cw_status make_shadows(cwi_shadow_volume *made, const cwi_frame *f,
+                              const cwi_shadow_key *key, cw_error *err)
+{
+    const size_t count = f->volume.dim[0] * f->volume.dim[1] * f->volume.dim[2];
+    cwi_shadow_volume_free(made);
+    float *values = cwi_alloc_array(count, sizeof *values);
+    if (!values)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the shadows of %zu voxels", count);
+    cw_status st = make_values(f, key, values, err);
+    if (st != CW_OK) {
+        cwi_free(values);
+        return st;
+    }
+    made->values = values;
+    memcpy(&made->key, key, sizeof *key);
+    made->version++;
+    return CW_OK;
+}
+
+cw_status cwi_shadow_volume_take(cwi_shadow_volume *made, cwi_frame *f, cw_error *err)
+{
+    cwi_shadow_key key;
+    const cw_mode mode = f->scene.mode;
+    if (f->scene.shadow == CW_SHADOW_NONE || !f->scene.lit || !f->volume.data)
+        return CW_OK;
+    if (mode != CW_MODE_COMPOSITE && mode != CW_MODE_TEXTURE && mode != CW_MODE_VBUFFER &&
+        mode != CW_MODE_REFERENCE)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "the mode %s has no shadows; composite, texture, vbuffer and reference "
+                        "have",
+                        cw_mode_name(mode));
+    if (cwi_volume_kind(&f->volume))
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "shadows fall in evenly spaced volumes, not in %s",
+                        cwi_volume_kind(&f->volume));
+    cw_status st = make_key(f, &key, err);
+    if (st == CW_OK && (!made->values || memcmp(&key, &made->key, sizeof key) != 0))
+        st = make_shadows(made, f, &key, err);
+    if (st != CW_OK)
+        return st;
+    f->shadows = made->values;
+    f->shadow_version = made->version;
+    return CW_OK;
+}
+
+void cwi_shadow_volume_free(cwi_shadow_volume *made)
+{
+    const size_t version = made->version; /* numbers go on */
+    cwi_free(made->values);
+    memset(made, 0, sizeof *made);
+    made->version = version;
+}
