@@ -110,6 +110,9 @@ static cw_status fill_in(cw_scene *s, cw_error *err)
     if (!(s->splat_width >= MIN_SPLAT_WIDTH && s->splat_width <= MAX_SPLAT_WIDTH))
         return cwi_fail(err, CW_ERR_ARGUMENT, "splats %g voxels wide: expected %g to %g",
                         s->splat_width, MIN_SPLAT_WIDTH, MAX_SPLAT_WIDTH);
+    if ((unsigned)s->direction_filter >= CW_DIRECTIONS_COUNT)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a filter of directions (0 to %d)",
+                        (int)s->direction_filter, CW_DIRECTIONS_COUNT - 1);
     if (s->normals == 0)
         s->normals = 1024;
     if (s->color[0] == 0 && s->color[1] == 0 && s->color[2] == 0 && s->color[3] == 0)
