@@ -57,10 +57,10 @@ cw_status cw_renderer_new(cw_backend backend, cw_renderer **renderer, cw_error *
 
 void cw_renderer_free(cw_renderer *r)
 {
-    if (r && r->gl)
-        r->functions->close(r->gl);
     if (r)
         cw_renderer_forget(r);
+    if (r && r->gl)
+        r->functions->close(r->gl);
     cwi_free(r);
 }
 

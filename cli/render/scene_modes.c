@@ -59,6 +59,8 @@ static const struct {
     {"target", TEXTURES, false, false},
     {"colors-first", TEXTURES | ONE(REFERENCE), false, false},
     {"normals", ONE(SHADED_TEXTURE), false, false},
+    {"direction-filter", ONE(SHADED_TEXTURE), false, false},
+    {"material-table", ONE(SHADED_TEXTURE), false, false},
     {"boundary", ONE(SHADED_TEXTURE), false, false},
     {"linear-opacity", ONE(PROJECTION), false, false},
     {"tree-error", ONE(SPLAT_TREE) | ONE(PROJECTION), false, false},

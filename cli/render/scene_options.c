@@ -452,6 +452,11 @@ static cw_status add_steps(const cli_scene *args, const cw_volume *v, double lev
         !(args->splat_width.value >= 0.2 && args->splat_width.value <= 4))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--splat-width %g: 0.2 to 4 was expected",
                         args->splat_width.value);
+    if (args->colors_first && args->direction_filter)
+        return cwi_fail(
+            err, CW_ERR_ARGUMENT,
+            "--direction-filter does nothing with --colors-first, which interpolates "
+            "lit colours");
     if (args->stop_opacity.given && !(args->stop_opacity.value > 0))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--stop-opacity %g: above 0 was expected",
                         args->stop_opacity.value);
@@ -474,6 +479,8 @@ static cw_status add_steps(const cli_scene *args, const cw_volume *v, double lev
     s->target = (cw_target)args->target;
     s->colors_first = args->colors_first;
     s->normals = args->normals ? args->normals : 1024;
+    s->direction_filter = (cw_direction_filter)args->direction_filter;
+    s->material_table = args->material_table;
     s->mark_boundary = args->boundary;
     s->linear_opacity = args->linear_opacity;
     s->tree_error = args->tree_error.value;

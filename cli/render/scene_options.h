@@ -25,7 +25,8 @@ typedef struct cli_scene {
     size_t slices, texture_edge, normals;
     bool minip_inside, cell_steps, preintegration, jitter, exact_filter, skipping;
     int target;
-    bool colors_first, boundary, linear_opacity;
+    int direction_filter;
+    bool material_table, colors_first, boundary, linear_opacity;
     cli_number tree_error;
     size_t splat_budget;
     int shadow;

@@ -135,6 +135,16 @@ typedef enum cw_target {
     CW_TARGET_COUNT
 } cw_target;
 
+/* The gradient of a point in shaded-texture, from the quantised ones of the voxels. */
+typedef enum cw_direction_filter {
+    CW_DIRECTIONS_LINEAR,  /* the directions of the eight voxels around it, each as long as its
+                              gradient, are interpolated and lit for each fragment: the error
+                              falls with the number of directions */
+    CW_DIRECTIONS_NEAREST, /* that of the nearest voxel; its colour is in a table of lit colours,
+                              as in 1996: faster, and facets show, however many directions */
+    CW_DIRECTIONS_COUNT
+} cw_direction_filter;
+
 /* The blob that stands for a voxel in splatting. Gaussians are blobs in space, seen as ellipses.
  * B-splines lie in their sheet, across the lattice: with their own widths a constant volume is
  * constant in any view. */
@@ -147,9 +157,9 @@ typedef enum cw_splat_kernel {
 } cw_splat_kernel;
 
 /* Shadows of a lit volume on itself: the volume between a voxel and a light absorbs. They are
- * computed at voxels, by rays in steps of the smallest spacing through the extinction of voxels,
- * and interpolated. Modes composite, texture, vbuffer and reference have them, of evenly spaced
- * volumes. */
+ * computed at every second voxel, by rays in steps of the smallest spacing through the extinction
+ * of voxels, and interpolated. Modes composite, texture, vbuffer and reference have them, of
+ * evenly spaced volumes. */
 typedef enum cw_shadow {
     CW_SHADOW_NONE,
     CW_SHADOW_LIGHT,   /* a ray to the first light: less of its diffuse and specular light */
@@ -231,8 +241,15 @@ typedef struct cw_scene {
                             interpolate the colours and extinctions of voxels, not data */
     size_t normals;      /* shaded-texture: number of directions in the table, at most 8192;
                                default 1024. The mode is lit whether or not lit is set */
-    bool mark_boundary;  /* shaded-texture: draw only cells at material boundaries: between
-                               the values of their samples lies a point of the opacities */
+    cw_direction_filter direction_filter; /* shaded-texture; colors_first has the table's
+                               colours of eight voxels, whatever this is */
+    bool material_table; /* shaded-texture: a value has the mean colour and opacity of its
+                               material, the interval between two points of the opacities, as in
+                               1996. The table has a column for each material and one for what is
+                               invisible, in place of 256 for values */
+    bool mark_boundary;  /* shaded-texture: draw only cells at material boundaries, and those
+                               around them, so that no hole is left: between the values of their
+                               samples lies a point of the opacities */
     bool linear_opacity; /* projection: opacity, not depth, is linear over a polygon, as in
                                1991 */
     double tree_error;   /* splat-tree: maximum error of a node, in the table's range 0..1 of

@@ -320,10 +320,7 @@ double cwi_reference_ray(const cwi_reference *r, cwi_spans *spans, double x, dou
     cwi_walk walk;
     cwi_lighting lighting;
     double background[3], length = 0;
-    medium m = {.reference = r,
-                .lighting = &lighting,
-                .background = background,
-                .shadow = {1}};
+    medium m = {.reference = r, .lighting = &lighting, .background = background, .shadow = {1}};
     sum s = {.light = 1};
     cwi_ray_make(r->frame, x, y, depth, &ray);
     for (int n = 0; n < ray.part_count; n++)

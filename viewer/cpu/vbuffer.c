@@ -170,8 +170,8 @@ static void change_by_gradient(const state *s, double x, const double gradient[3
     if (f->transfer.gradient_count > 0)
         (*glow)[3] *= (float)cwi_frame_gradient_factor(f, sqrt(cwi_dot(gradient, gradient)));
     if (f->scene.lit) {
-        cwi_lighting_shade(s->lighting, distance_at(s, x), gradient,
-                           cwi_cubic_at(s->shadow, x), color);
+        cwi_lighting_shade(s->lighting, distance_at(s, x), gradient, cwi_cubic_at(s->shadow, x),
+                           color);
         for (int a = 0; a < 3; a++)
             (*glow)[a] = (float)color[a];
     }

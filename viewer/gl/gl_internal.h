@@ -41,9 +41,9 @@ typedef struct cwi_gl_volume {
     size_t edge;   /* as the scene had it */
     cwi_gl_texels kind;
     double scale, bias;
-    double range;            /* of the scaled values, above 0 */
+    double range;                            /* of the scaled values, above 0 */
     size_t gradient_version, shadow_version; /* of the frame, when gradients were made */
-    double gradient_unit;    /* of gradients in textures: halves have few exponents */
+    double gradient_unit; /* of gradients in textures: halves have few exponents */
     size_t brick_count;
     size_t texture_bytes; /* counted as taken */
     cwi_gl_brick *bricks;

@@ -382,8 +382,7 @@ static void along_row(const float *row, size_t n, float scale, float *out)
 /* Derivatives along a row: central inside, one-sided at the border; 0 where a neighbour has no
  * value; and shadows, if there are some. rows: room for five rows */
 static void put_gradient_row(const cw_volume *v, const cwi_gl_brick *b, size_t j, size_t k,
-                             const float *shadows, float scale, float *rows,
-                             uint16_t (*out)[4])
+                             const float *shadows, float scale, float *rows, uint16_t (*out)[4])
 {
     const size_t n = v->dim[0];
     const char *row = cwi_voxel_address(v, 0, j, k);
@@ -417,8 +416,8 @@ static bool put_gradients(const cwi_frame *f, const cwi_gl_brick *b, double scal
         for (size_t n = 0; n < count * b->count[1]; n++)
             if (rows)
                 put_gradient_row(v, b, b->first[1] + n % b->count[1],
-                                 b->first[2] + from + n / b->count[1], f->shadows, (float)scale, rows,
-                                 out + n * b->count[0]);
+                                 b->first[2] + from + n / b->count[1], f->shadows, (float)scale,
+                                 rows, out + n * b->count[0]);
         cwi_free(rows);
     }
     return !failed;
@@ -475,10 +474,10 @@ cw_status cwi_gl_need_gradients(cwi_gl *gl, const char **defines, cw_error *err)
     cwi_gl_volume *g = &gl->volume;
     cw_status st = CW_OK;
     const bool differs = has_differences(gl);
-    *defines = differs                                 ? "#define DIFFERENCES\n"
-               : !gl->frame->shadows                   ? ""
+    *defines = differs                                      ? "#define DIFFERENCES\n"
+               : !gl->frame->shadows                        ? ""
                : gl->frame->scene.shadow == CW_SHADOW_LIGHT ? "#define SHADOW\n"
-                                                       : "#define OCCLUSION\n";
+                                                            : "#define OCCLUSION\n";
     for (size_t n = 0; n < g->brick_count && !differs && st == CW_OK; n++)
         if (!g->bricks[n].gradients)
             st = upload_gradients(gl, &g->bricks[n], err);

@@ -36,14 +36,14 @@ static void drop_mip_mode(void *state)
     cwi_free(p);
 }
 
-/* Converts ranges of values to ranges of texels; without values: from infinity down. */
+/* Converts ranges of values to ranges of texels, which rise with values; without values: from infinity down. */
 static void to_texels(const cwi_gl_volume *v, cwi_ranges *ranges, size_t count)
 {
     for (size_t n = 0; n < count; n++) {
         float *r = ranges->blocks[n];
         const bool is_empty = r[0] > r[1];
-        const double a = ((double)r[0] - v->bias) / v->scale,
-                     b = ((double)r[1] - v->bias) / v->scale;
+        const double a = ((double)r[0] - v->bias) / fabs(v->scale),
+                     b = ((double)r[1] - v->bias) / fabs(v->scale);
         r[0] = is_empty ? INFINITY : nextafterf((float)fmin(a, b), -INFINITY);
         r[1] = is_empty ? -INFINITY : nextafterf((float)fmax(a, b), INFINITY);
     }
@@ -131,7 +131,8 @@ static cw_status draw_brick(cwi_gl *gl, const projector *p, const cwi_gl_brick *
     cwi_gl_set(program, "step_length", (float)s->step_vox);
     cwi_gl_set_last_block(program, p->blocks);
     cwi_gl_set(program, "threshold",
-               (float)((s->threshold - gl->volume.bias) / gl->volume.scale));
+               (float)((s->threshold - gl->volume.bias) / fabs(gl->volume.scale)));
+    cwi_gl_set(program, "rise", gl->volume.scale < 0 ? -1.0f : 1.0f);
     cwi_gl_bind_brick(program, brick);
     glActiveTexture(GL_TEXTURE0 + UNIT_RANGES);
     glBindTexture(GL_TEXTURE_3D, p->ranges);

@@ -328,6 +328,8 @@ static void set_samplers(GLuint program)
     glUniform1i(glGetUniformLocation(program, "classes"), CWI_UNIT_CLASSES);
     glUniform1i(glGetUniformLocation(program, "normals"), CWI_UNIT_NORMALS);
     glUniform1i(glGetUniformLocation(program, "shades"), CWI_UNIT_SHADES);
+    glUniform1i(glGetUniformLocation(program, "directions"), CWI_UNIT_DIRECTIONS);
+    glUniform1i(glGetUniformLocation(program, "materials"), CWI_UNIT_MATERIALS);
 }
 
 cw_status cwi_gl_draw_slices(cwi_gl *gl, cwi_gl_slabs *slices, const char *own,

@@ -10,7 +10,9 @@ enum {
     CWI_UNIT_SLICES = CWI_UNIT_FREE, /* blended, in the scene's precision */
     CWI_UNIT_CLASSES,                /* classified voxels */
     CWI_UNIT_NORMALS,                /* numbers of the voxels' directions */
-    CWI_UNIT_SHADES                  /* colours by direction and value */
+    CWI_UNIT_SHADES,                 /* colours by direction, and by value or material */
+    CWI_UNIT_DIRECTIONS,             /* the directions themselves */
+    CWI_UNIT_MATERIALS               /* the material of a value */
 };
 
 /* State that a mode keeps from one picture to the next. Zeroed is valid. */

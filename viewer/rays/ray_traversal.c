@@ -32,7 +32,7 @@ void cwi_walk_start(cwi_walk *w, const cwi_frame *f, const cwi_ray *ray, int par
 {
     *w = (cwi_walk){.volume = &f->volume,
                     .gradient_volume = &f->gradient_volume,
-                   .shadows = f->shadows,
+                    .shadows = f->shadows,
                     .t = ray->parts[part][0],
                     .stop = ray->parts[part][1]};
     memcpy(w->index, ray->index, sizeof w->index);
@@ -176,8 +176,9 @@ void cwi_walk_shadows(const cwi_walk *w, double shadows[8])
         size_t at[3];
         for (int a = 0; a < 3; a++)
             at[a] = (size_t)w->at[a] + (v->dim[a] > 1 && (n >> a & 1));
-        shadows[n] =
-            w->shadows ? (double)w->shadows[(at[2] * v->dim[1] + at[1]) * v->dim[0] + at[0]] : 1;
+        shadows[n] = w->shadows
+                         ? (double)w->shadows[(at[2] * v->dim[1] + at[1]) * v->dim[0] + at[0]]
+                         : 1;
     }
 }
 

@@ -117,6 +117,9 @@ static cw_status fill_in(cw_scene *s, cw_error *err)
     if (!(s->splat_width >= MIN_SPLAT_WIDTH && s->splat_width <= MAX_SPLAT_WIDTH))
         return cwi_fail(err, CW_ERR_ARGUMENT, "splats %g voxels wide: expected %g to %g",
                         s->splat_width, MIN_SPLAT_WIDTH, MAX_SPLAT_WIDTH);
+    if ((unsigned)s->direction_filter >= CW_DIRECTIONS_COUNT)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a filter of directions (0 to %d)",
+                        (int)s->direction_filter, CW_DIRECTIONS_COUNT - 1);
     if (s->normals == 0)
         s->normals = 1024;
     if (s->color[0] == 0 && s->color[1] == 0 && s->color[2] == 0 && s->color[3] == 0)
@@ -493,7 +496,8 @@ double cwi_frame_extinction(const cwi_frame *f, double opacity)
 
 bool cwi_frame_needs_gradients(const cwi_frame *f)
 {
-    return f->scene.lit || f->transfer.gradient_count > 0;
+    return f->scene.lit || f->transfer.gradient_count > 0 ||
+           f->scene.mode == CW_MODE_SHADED_TEXTURE;
 }
 
 double cwi_frame_surface_strength(const cwi_frame *f, double length)

@@ -1,10 +1,10 @@
-/* Computes shadows: rays from visible voxels, in steps of a unit of eye space, through the
- * interpolated extinction of voxels. Blocks without any are leapt over, by whole steps. */
+/* Computes shadows: rays from every second voxel along each axis, in steps of a unit of eye space,
+ * through the interpolated extinction of voxels. Blocks without any are leapt over, by whole
+ * steps. The voxels between are interpolated. */
 #include "viewer/scene/shadow_volume.h"
 
 #include "viewer/scene/cell_lattice.h"
 #include "viewer/scene/transfer_table.h"
-#include "viewer/scene/voxel_rows.h"
 
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
@@ -15,10 +15,15 @@
 #include <math.h>
 #include <string.h>
 
-enum { BLOCK = 8, RADIUS = 12, WORK = 32 /* one voxel takes as long as this number elsewhere */ };
+enum {
+    BLOCK = 8,
+    MARGIN = 2,
+    RADIUS = 12,
+    WORK = 32 /* one voxel takes as long as this number elsewhere */
+};
 
-/* Optical depth at which a shadow is black. */
-static const double deepest = 7;
+/* Optical depth of a shadow that is black to 1/255. */
+static const double deepest = 6;
 
 typedef struct job {
     const cwi_frame *frame;
@@ -27,7 +32,7 @@ typedef struct job {
     double to_eye[3][3]; /* gradients */
     size_t dim[3], blocks[3];
     float *extinctions; /* per unit */
-    uint8_t *is_dense;  /* blocks with extinction in them or right beside them */
+    uint8_t *is_dense;  /* blocks with extinction in them, or within MARGIN voxels */
     float *out;
 } job;
 
@@ -68,7 +73,7 @@ static void classify_layer(void *context, size_t k)
         to[n] = classify(w, to[n], (size_t[]){n % w->dim[0], n / w->dim[0], k});
 }
 
-/* Marks the blocks of a layer of blocks that have extinction, or voxels beside them have. */
+/* Marks the blocks of a layer of blocks that have extinction, or voxels close to them have. */
 static void mark_layer(void *context, size_t bz)
 {
     job *w = context;
@@ -77,8 +82,8 @@ static void mark_layer(void *context, size_t bz)
         size_t low[3], high[3];
         bool is_dense = false;
         for (int a = 0; a < 3; a++) {
-            low[a] = at[a] * BLOCK > 0 ? at[a] * BLOCK - 1 : 0;
-            high[a] = at[a] * BLOCK + BLOCK + 1;
+            low[a] = at[a] > 0 ? at[a] * BLOCK - MARGIN : 0;
+            high[a] = at[a] * BLOCK + BLOCK + MARGIN;
             high[a] = high[a] < w->dim[a] ? high[a] : w->dim[a];
         }
         for (size_t z = low[2]; z < high[2] && !is_dense; z++)
@@ -89,26 +94,21 @@ static void mark_layer(void *context, size_t bz)
     }
 }
 
-/* Interpolates the extinction at a place between voxels. */
-static double extinction_at(const job *w, const double p[3])
+/* Interpolates the extinction at a place in the volume. */
+static inline float extinction_at(const job *w, const double p[3])
 {
-    size_t low[3], high[3];
-    double s[3], line[4];
-    for (int a = 0; a < 3; a++) {
-        low[a] = (size_t)p[a];
-        low[a] = low[a] < w->dim[a] - 1 ? low[a] : w->dim[a] - 1;
-        high[a] = low[a] + 1 < w->dim[a] ? low[a] + 1 : low[a];
-        s[a] = p[a] - (double)low[a];
-    }
-    for (int n = 0; n < 4; n++) {
-        const size_t y = n & 1 ? high[1] : low[1], z = n & 2 ? high[2] : low[2];
-        const double from = (double)w->extinctions[number_of(w->dim, low[0], y, z)];
-        const double to = (double)w->extinctions[number_of(w->dim, high[0], y, z)];
-        line[n] = from + s[0] * (to - from);
-    }
-    const double near = line[0] + s[1] * (line[1] - line[0]);
-    const double far = line[2] + s[1] * (line[3] - line[2]);
-    return near + s[2] * (far - near);
+    const size_t x = (size_t)p[0], y = (size_t)p[1], z = (size_t)p[2];
+    const size_t dx = x + 1 < w->dim[0] ? 1 : 0;
+    const size_t dy = y + 1 < w->dim[1] ? w->dim[0] : 0;
+    const size_t dz = z + 1 < w->dim[2] ? w->dim[0] * w->dim[1] : 0;
+    const float *e = w->extinctions + number_of(w->dim, x, y, z);
+    const float s = (float)(p[0] - (double)x), t = (float)(p[1] - (double)y),
+                u = (float)(p[2] - (double)z);
+    const float a = e[0] + s * (e[dx] - e[0]), b = e[dy] + s * (e[dy + dx] - e[dy]);
+    const float c = e[dz] + s * (e[dz + dx] - e[dz]);
+    const float d = e[dz + dy] + s * (e[dz + dy + dx] - e[dz + dy]);
+    const float low = a + t * (b - a), high = c + t * (d - c);
+    return low + u * (high - low);
 }
 
 /* Returns true if clip planes leave a place visible: what is cut away casts no shadow. */
@@ -117,14 +117,13 @@ static bool is_kept(const cwi_shadow_key *key, const double p[3])
     bool kept = true;
     for (size_t n = 0; n < key->clip_count; n++)
         kept = kept && cwi_dot(key->clips[n], p) >= key->clips[n][3];
-    return key->clip_count == 0 || kept != (key->cut_away != 0);
+    return kept != (key->cut_away != 0);
 }
 
-/* Returns the number of steps from a place in an empty block that stay in it, at least 1. */
-static double steps_in_block(const job *w, const double p[3], const double step[3])
+/* Returns the number of steps from a place that stay in its empty block, at least 1. */
+static double steps_in_block(const double p[3], const double step[3])
 {
     double least = 1e9;
-    (void)w;
     for (int a = 0; a < 3; a++) {
         const double low = floor(p[a] / BLOCK) * BLOCK;
         const double way = step[a] > 0 ? low + BLOCK - p[a] : low - p[a];
@@ -134,63 +133,95 @@ static double steps_in_block(const job *w, const double p[3], const double step[
     return fmax(floor(least), 1);
 }
 
+/* Returns the number of steps after which a ray from a voxel leaves the volume. */
+static double steps_in_volume(const job *w, const size_t at[3], const double step[3])
+{
+    double least = INFINITY;
+    for (int a = 0; a < 3; a++) {
+        const double way = step[a] > 0 ? (double)(w->dim[a] - 1 - at[a]) : -(double)at[a];
+        if (step[a] != 0)
+            least = fmin(least, way / step[a]);
+    }
+    return least - 1e-9; /* rounding may put the last place outside */
+}
+
 /* Returns the light that comes to a voxel along a ray of a number of steps. The first step,
  * which is mostly the voxel itself, does not count. */
 static double follow_ray(const job *w, const size_t at[3], const double step[3], double steps)
 {
+    const double end = fmin(steps, steps_in_volume(w, at, step));
     double depth = 0;
-    for (double n = 1.5; n < steps && depth < deepest;) {
+    for (double n = 1.5; n < end && depth < deepest;) {
         double p[3];
-        bool is_inside = true;
-        for (int a = 0; a < 3; a++) {
-            p[a] = (double)at[a] + n * step[a];
-            is_inside = is_inside && p[a] >= 0 && p[a] <= (double)w->dim[a] - 1;
-        }
-        if (!is_inside)
-            break;
+        for (int a = 0; a < 3; a++)
+            p[a] = fmax((double)at[a] + n * step[a], 0);
         const size_t block = number_of(w->blocks, (size_t)p[0] / BLOCK, (size_t)p[1] / BLOCK,
                                        (size_t)p[2] / BLOCK);
         if (!w->is_dense[block]) {
-            n += steps_in_block(w, p, step);
+            n += steps_in_block(p, step);
             continue;
         }
-        if (is_kept(w->key, p))
-            depth += extinction_at(w, p);
+        if (w->key->clip_count == 0 || is_kept(w->key, p))
+            depth += (double)extinction_at(w, p);
         n++;
     }
     return exp(-depth);
 }
 
-/* Returns true if a voxel or one beside it is visible: cells around it then show its light. */
-static bool is_seen(const job *w, const size_t at[3])
-{
-    for (int n = 0; n < 27; n++) {
-        const size_t x = at[0] + (size_t)(n % 3), y = at[1] + (size_t)(n / 3 % 3),
-                     z = at[2] + (size_t)(n / 9);
-        if (x > 0 && y > 0 && z > 0 && x <= w->dim[0] && y <= w->dim[1] && z <= w->dim[2] &&
-            w->extinctions[number_of(w->dim, x - 1, y - 1, z - 1)] > 0)
-            return true;
-    }
-    return false;
-}
-
-static void shade_layer(void *context, size_t k)
+/* Computes the voxels of a layer whose numbers are even. */
+static void shade_layer(void *context, size_t half)
 {
     job *w = context;
     const cwi_shadow_key *key = w->key;
-    for (size_t n = 0; n < w->dim[0] * w->dim[1]; n++) {
-        const size_t at[3] = {n % w->dim[0], n / w->dim[0], k};
-        double light = 0;
-        float *to = &w->out[number_of(w->dim, at[0], at[1], at[2])];
-        *to = 1;
-        if (!w->is_dense[number_of(w->blocks, at[0] / BLOCK, at[1] / BLOCK, k / BLOCK)] ||
-            !is_seen(w, at))
-            continue;
-        for (size_t r = 0; r < key->count; r++)
-            light += follow_ray(w, at, key->steps[r], key->count == 1 ? INFINITY : RADIUS);
-        /* half of the rays end in the object itself, where a surface is flat */
-        *to = (float)(key->count == 1 ? light : fmin(2 * light / (double)key->count, 1));
+    const size_t k = 2 * half;
+    for (size_t j = 0; j < w->dim[1]; j += 2)
+        for (size_t i = 0; i < w->dim[0]; i += 2) {
+            const size_t at[3] = {i, j, k};
+            double light = 0;
+            float *to = &w->out[number_of(w->dim, i, j, k)];
+            *to = 1;
+            if (!w->is_dense[number_of(w->blocks, i / BLOCK, j / BLOCK, k / BLOCK)])
+                continue;
+            for (size_t r = 0; r < key->count; r++)
+                light += follow_ray(w, at, key->steps[r], key->count == 1 ? INFINITY : RADIUS);
+            /* half of the rays end in the object itself, where a surface is flat */
+            *to = (float)(key->count == 1 ? light : fmin(2 * light / (double)key->count, 1));
+        }
+}
+
+/* Returns the number of the even voxel above an odd one; at the border that below. */
+static size_t even_above(size_t n, size_t dim)
+{
+    return n + 1 < dim ? n + 1 : n - 1;
+}
+
+/* Interpolates rows and voxels between those of a layer that is even. */
+static void fill_layer(void *context, size_t half)
+{
+    job *w = context;
+    float *layer = w->out + 2 * half * w->dim[0] * w->dim[1];
+    for (size_t j = 0; j < w->dim[1]; j += 2)
+        for (size_t i = 1; i < w->dim[0]; i += 2) {
+            float *row = layer + j * w->dim[0];
+            row[i] = 0.5f * (row[i - 1] + row[even_above(i, w->dim[0])]);
+        }
+    for (size_t j = 1; j < w->dim[1]; j += 2) {
+        const float *low = layer + (j - 1) * w->dim[0];
+        const float *high = layer + even_above(j, w->dim[1]) * w->dim[0];
+        for (size_t i = 0; i < w->dim[0]; i++)
+            layer[j * w->dim[0] + i] = 0.5f * (low[i] + high[i]);
     }
+}
+
+/* Interpolates an odd layer. */
+static void fill_between(void *context, size_t half)
+{
+    job *w = context;
+    const size_t k = 2 * half + 1, count = w->dim[0] * w->dim[1];
+    const float *low = w->out + (k - 1) * count;
+    const float *high = w->out + even_above(k, w->dim[2]) * count;
+    for (size_t n = 0; n < count; n++)
+        w->out[k * count + n] = 0.5f * (low[n] + high[n]);
 }
 
 /* Converts a direction of unit length in the world to a step in index space. */
@@ -216,16 +247,15 @@ static cw_status find_rays(const cwi_frame *f, cwi_shadow_key *key, cw_error *er
     memcpy(light, f->scene.lights[0].direction, sizeof light);
     cwi_to_unit(light);
     for (int a = 0; a < 3; a++)
-        world[a] = light[0] * f->axes[0][a] + light[1] * f->axes[1][a] + light[2] * f->axes[2][a];
+        world[a] =
+            light[0] * f->axes[0][a] + light[1] * f->axes[1][a] + light[2] * f->axes[2][a];
     if (f->scene.shadow == CW_SHADOW_LIGHT) {
         key->count = 1;
         return find_step(f, world, key->steps[0], err);
     }
     for (size_t n = 0; n < CWI_SHADOW_RAYS && st == CW_OK; n++) {
         for (size_t a = 0; a < 3; a++)
-            world[a] = n >= 6     ? ((n - 6) >> a & 1 ? 1 : -1)
-                       : n / 2 == a ? (n & 1 ? 1 : -1)
-                                    : 0;
+            world[a] = n >= 6 ? ((n - 6) >> a & 1 ? 1 : -1) : n / 2 == a ? (n & 1 ? 1 : -1) : 0;
         cwi_to_unit(world);
         st = find_step(f, world, key->steps[key->count++], err);
     }
@@ -263,11 +293,17 @@ static cw_status run_job(job *w, cw_error *err)
     cw_status st = cwi_each_layer(w->dim[2], 4 * layer, s->threads, &s->progress, "classifying",
                                   classify_layer, w, err);
     if (st == CW_OK)
-        st = cwi_each_layer(w->blocks[2], BLOCK * layer, s->threads, &s->progress, "classifying",
-                            mark_layer, w, err);
+        st = cwi_each_layer(w->blocks[2], BLOCK * layer, s->threads, &s->progress,
+                            "classifying", mark_layer, w, err);
     if (st == CW_OK)
-        st = cwi_each_layer(w->dim[2], WORK * layer, s->threads, &s->progress, "casting shadows",
-                            shade_layer, w, err);
+        st = cwi_each_layer((w->dim[2] + 1) / 2, WORK * layer, s->threads, &s->progress,
+                            "casting shadows", shade_layer, w, err);
+    if (st == CW_OK)
+        st = cwi_each_layer((w->dim[2] + 1) / 2, layer, s->threads, &s->progress,
+                            "casting shadows", fill_layer, w, err);
+    if (st == CW_OK)
+        st = cwi_each_layer(w->dim[2] / 2, layer, s->threads, &s->progress, "casting shadows",
+                            fill_between, w, err);
     return st;
 }
 
@@ -287,9 +323,8 @@ static cw_status make_values(const cwi_frame *f, const cwi_shadow_key *key, floa
     }
     w.extinctions = cwi_alloc_array(w.dim[0] * w.dim[1] * w.dim[2], sizeof *w.extinctions);
     w.is_dense = cwi_alloc_array(w.blocks[0] * w.blocks[1] * w.blocks[2], 1);
-    st = w.extinctions && w.is_dense
-             ? run_job(&w, err)
-             : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for shadows");
+    st = w.extinctions && w.is_dense ? run_job(&w, err)
+                                     : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for shadows");
     cwi_free(w.extinctions);
     cwi_free(w.is_dense);
     cwi_table_free(&table);
@@ -303,7 +338,8 @@ static cw_status make_shadows(cwi_shadow_volume *made, const cwi_frame *f,
     cwi_shadow_volume_free(made);
     float *values = cwi_alloc_array(count, sizeof *values);
     if (!values)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the shadows of %zu voxels", count);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the shadows of %zu voxels",
+                        count);
     cw_status st = make_values(f, key, values, err);
     if (st != CW_OK) {
         cwi_free(values);

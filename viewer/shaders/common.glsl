@@ -179,8 +179,8 @@ vec3 shade(vec3 color, vec3 gradient, vec3 to_eye)
 #ifdef SHADOW
         lit *= i == 0 ? shadow : 1.0;
 #endif
-        light += lit * light_color[i].rgb *
-                 (material.y * diffuse * color + material.z * specular);
+        light +=
+            lit * light_color[i].rgb * (material.y * diffuse * color + material.z * specular);
     }
     return light;
 }

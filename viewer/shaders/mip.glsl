@@ -8,9 +8,16 @@ uniform sampler2D
     before; // value; length so far, or INSIDE: the lowest value since the ray last
             // reached the threshold; 1: LOCAL is done; the last value
 uniform float step_length, threshold;
+uniform float rise; // 1, or -1 where values rise as texels fall
 out vec4 result;
 
 const float none = 3e38;
+
+// Returns a value of the field as texels have it, but that it rises where values rise.
+float value_on(ray r, float t)
+{
+    return rise * texel_on(r, t);
+}
 
 vec2 range_of(vec3 at)
 {
@@ -132,8 +139,8 @@ vec4 foresee(ray r, inout vec2 part, vec4 found)
         useful.y = promise > bound ? t : useful.y;
     }
     float until = min(part.y, best_from + block_exit(r, r.index + best_from * r.slope));
-    found = take(found, texel_on(r, mix(best_from, until, 0.5)));
-    found = take(found, texel_on(r, until));
+    found = take(found, value_on(r, mix(best_from, until, 0.5)));
+    found = take(found, value_on(r, until));
     part = vec2(part.x + max(floor((useful.x - part.x) / step_length), 0.0) * step_length,
                 min(part.y, useful.y));
 #endif
@@ -144,21 +151,21 @@ vec4 foresee(ray r, inout vec2 part, vec4 found)
 // Goes cell by cell; values at a cell's ends are shared.
 vec4 along(ray r, float from, float to, vec4 found)
 {
-    float value = texel_on(r, from);
+    float value = value_on(r, from);
     for (float t = from; t < to && found.z < 0.5;) {
         vec3 at = r.index + t * r.slope;
         float useless = useless_length(r, at, found);
         if (useless > 0.01) {
             t += useless;
-            value = texel_on(r, t);
+            value = value_on(r, t);
 #ifdef INSIDE
             found.w = none;
 #endif
             continue;
         }
         float extent = min(cell_exit(r, at), to - t);
-        vec4 v = vec4(value, texel_on(r, t + extent / 3.0),
-                      texel_on(r, t + extent * (2.0 / 3.0)), texel_on(r, t + extent));
+        vec4 v = vec4(value, value_on(r, t + extent / 3.0),
+                      value_on(r, t + extent * (2.0 / 3.0)), value_on(r, t + extent));
         value = v.w;
 #ifdef AVERAGE
         float mean = (v.x + v.w) / 8.0 + (v.y + v.z) * 0.375;
@@ -177,7 +184,7 @@ vec4 along(ray r, float from, float to, vec4 found)
 {
     for (float t = from; t < to; t += step_length) {
         float extent = min(step_length, to - t);
-        float mean = texel_on(r, t + 0.5 * extent);
+        float mean = value_on(r, t + 0.5 * extent);
         found.xy += isnan(mean) ? vec2(0.0) : extent * vec2(mean, 1.0);
     }
     return found;
@@ -200,16 +207,16 @@ vec4 along(ray r, float from, float to, vec4 found)
             useless = useless_length(r, r.index + t * r.slope, found);
         }
 #ifdef INSIDE
-        float last = texel_on(r, min(t - step_length, to)); // that was skipped
+        float last = value_on(r, min(t - step_length, to)); // that was skipped
         if (is_skipping)
             found.w = isnan(last) ? none : last;
 #endif
         until = min(to, t + block_exit(r, r.index + t * r.slope) + 1e-3);
 #endif
         for (; t < until && found.z < 0.5; t += step_length)
-            found = take(found, texel_on(r, t));
+            found = take(found, value_on(r, t));
     }
-    return found.z < 0.5 ? take(found, texel_on(r, to)) : found;
+    return found.z < 0.5 ? take(found, value_on(r, to)) : found;
 }
 #endif
 #endif
@@ -250,7 +257,7 @@ vec4 show(vec4 found, bool has_mesh)
     if (abs(value) >= none)
         return vec4(0.0);
 #endif
-    vec4 row = classify(coordinate_of(value));
+    vec4 row = classify(coordinate_of(rise * value));
     float alpha = has_mesh ? 1.0 - exp(-row.a) : 1.0;
     return vec4(row.rgb * alpha, alpha);
 }

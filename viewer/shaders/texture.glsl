@@ -2,9 +2,14 @@
 // [Wilson1994], pre-integrated [Engel2001], shaded by gradients or by quantised gradients
 // [VanGelder1996].
 uniform sampler2D segments;
-uniform sampler3D classes;  // premultiplied: colour x extinction, extinction per unit
-uniform usampler3D normals; // each voxel's direction; bits: opposite, a boundary's cell
-uniform sampler2D shades;   // shaded colours: a row for each direction, the last for none
+uniform sampler3D classes; // premultiplied: colour x extinction, extinction per unit
+uniform usampler3D
+    normals;              // each voxel's direction; bits: opposite, a boundary's cell; and the
+                          // root of the gradient's length
+uniform sampler2D shades; // shaded colours: a row for each direction, the last for none; of
+                          // materials with their extinction
+uniform sampler2D directions; // in eye space, as long as the longest gradient; the last is 0
+uniform sampler1D materials;  // the column of a value
 uniform vec3 box_low, box_high;
 uniform float thickness;
 in vec3 front, back;
@@ -43,17 +48,33 @@ vec4 segment_between(vec3 from, vec3 to, float extent)
 }
 
 #ifdef SHADES
-// Returns the shaded colour of a direction and a value.
-vec3 shade_of(uint direction, float coordinate)
+// Returns the row of a voxel in the table.
+float row_of(uint direction)
+{
+    bool is_opposite = counts.w != 0 && (direction & 16384u) != 0u;
+    return float(direction & 16383u) +
+           (is_opposite ? 0.5 * float(textureSize(shades, 0).y) : 0.0);
+}
+
+#ifdef MATERIALS
+// Returns the shaded colour of a direction and a value's material, and its extinction.
+vec4 entry_of(float row, float coordinate)
+{
+    int count = textureSize(materials, 0);
+    int at = int(clamp(coordinate, 0.0, 1.0) * float(count - 1) + 0.5);
+    int column = int(texelFetch(materials, at, 0).r + 0.5);
+    return isnan(coordinate) ? vec4(0.0) : texelFetch(shades, ivec2(column, int(row)), 0);
+}
+#else
+// Returns the shaded colour of a direction and a value, and the value's extinction.
+vec4 entry_of(float row, float coordinate)
 {
     vec2 size = vec2(textureSize(shades, 0));
-    float row = float(direction & 16383u) + 0.5;
-    if (counts.w != 0 && (direction & 16384u) != 0u)
-        row += 0.5 * size.y; // the half for opposite gradients
-    return texture(shades, vec2((clamp(coordinate, 0.0, 1.0) * (size.x - 1.0) + 0.5) / size.x,
-                                row / size.y))
-        .rgb;
+    float column = (clamp(coordinate, 0.0, 1.0) * (size.x - 1.0) + 0.5) / size.x;
+    return vec4(texture(shades, vec2(column, (row + 0.5) / size.y)).rgb,
+                classify(coordinate).a);
 }
+#endif
 
 ivec3 voxel_near(vec3 place)
 {
@@ -71,13 +92,34 @@ vec4 shaded_voxels(vec3 place)
         ivec3 voxel = min(ivec3(low) + corner, ivec3(brick_size) - 1);
         vec3 share = mix(1.0 - s, s, vec3(corner));
         float coordinate = coordinate_of(texelFetch(volume, voxel, 0).r);
-        float extinction = classify(coordinate).a * share.x * share.y * share.z;
+        vec4 entry = entry_of(row_of(texelFetch(normals, voxel, 0).r), coordinate);
+        float extinction = entry.a * share.x * share.y * share.z;
         if (extinction > 0.0)
-            sum +=
-                extinction * vec4(shade_of(texelFetch(normals, voxel, 0).r, coordinate), 1.0);
+            sum += extinction * vec4(entry.rgb, 1.0);
     }
     return sum;
 }
+
+#ifdef DIRECTIONS
+// Interpolates the quantised gradients of the cell's eight voxels, in eye space.
+vec3 gradient_of_voxels(vec3 place)
+{
+    vec3 at = clamp(place * brick_size - 0.5, vec3(0.0), brick_size - 1.0);
+    vec3 low = min(floor(at), max(brick_size - 2.0, 0.0)), s = at - low;
+    vec3 sum = vec3(0.0);
+    for (int n = 0; n < 8; n++) {
+        ivec3 corner = ivec3(n & 1, n >> 1 & 1, n >> 2);
+        ivec3 voxel = min(ivec3(low) + corner, ivec3(brick_size) - 1);
+        vec3 share = mix(1.0 - s, s, vec3(corner));
+        uvec2 found = texelFetch(normals, voxel, 0).rg;
+        float root = float(found.g) / 65535.0;
+        float size = share.x * share.y * share.z * root * root;
+        vec3 direction = texelFetch(directions, ivec2(int(found.r & 16383u), 0), 0).xyz;
+        sum += ((found.r & 16384u) != 0u ? -size : size) * direction;
+    }
+    return sum;
+}
+#endif
 
 bool is_boundary(vec3 place)
 {
@@ -103,11 +145,23 @@ vec4 color_of(vec3 from, vec3 to, float extent)
 #endif
     return mixed.a > 0.0 ? absorb(mixed.rgb / mixed.a, mixed.a * extent) : vec4(0.0);
 #else
+#ifdef MATERIALS
+#ifdef DIRECTIONS
+    float row = 0.0;
+#else
+    float row = row_of(texelFetch(normals, voxel_near(middle), 0).r);
+#endif
+    vec4 entry = entry_of(row, value_at(middle));
+    vec4 color = absorb(entry.rgb, entry.a * extent);
+#else
     vec4 color = segment_between(from, to, extent);
-#ifdef SHADES
+#if defined(SHADES) && !defined(DIRECTIONS)
     if (color.a > 0.0)
         color.rgb =
-            shade_of(texelFetch(normals, voxel_near(middle), 0).r, value_at(middle)) * color.a;
+            entry_of(row_of(texelFetch(normals, voxel_near(middle), 0).r), value_at(middle))
+                .rgb *
+            color.a;
+#endif
 #endif
     return color;
 #endif
@@ -120,11 +174,17 @@ vec4 through(float from, float to, vec3 direction, float secant)
     if (!(from < to))
         return vec4(0.0);
     vec4 color = color_of(a, b, (to - from) * thickness * secant);
-#if (defined(LIT) && !defined(SHADES)) || defined(FACTOR)
     float depth = front_depth + 0.5 * (from + to) * thickness;
     vec3 at = view.x > 0.5
                   ? direction * secant * depth
                   : vec3((2.0 * gl_FragCoord.xy / picture.xy - 1.0) * picture.zw, -depth);
+#ifdef DIRECTIONS
+    if (color.a > 0.0)
+        color.rgb =
+            shade_at(color.rgb / color.a, gradient_of_voxels(0.5 * (a + b)), -direction, at) *
+            color.a;
+#endif
+#if (defined(LIT) && !defined(SHADES)) || defined(FACTOR)
     color = by_gradient(color, gradient_in(0.5 * (a + b)), -direction, at);
 #endif
 #ifdef CUE

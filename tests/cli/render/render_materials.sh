@@ -18,7 +18,9 @@ draw --tf m.json --surface-width 40 -o wide.png
 draw --tf m.json --gradient-opacity 0:1 -o even.png
 draw --tf m.json --gradient-smoothing 2 -o smooth.png
 draw --tf m.json --shift 0.05 -o shifted.png
-for other in wide even smooth shifted; do
+draw --tf m.json --shadow light --light 1,0,0 -o dark.png
+draw --tf m.json --shadow ambient -o occluded.png
+for other in wide even smooth shifted dark occluded; do
     cmp -s file.png $other.png && echo "$other is the same"
 done
 for preset in ct-materials mr-materials metals; do
@@ -32,4 +34,5 @@ draw --tf m.json --gradient-opacity 1:0,0:1 -o x.png
 draw --tf m.json --gradient-smoothing 17 -o x.png
 draw --tf '{"schema": "cubewright-transfer-1", "materials": [{"values": [3, 2, 1, 0], "color": "#ffffff"}]}' -o x.png
 cubewright render t.nrrd --size 48x36 --mode mip --gradient-smoothing 1 -q -o x.png
+cubewright render t.nrrd --size 48x36 --mode projection --shadow light -q -o x.png
 ls x.png 2>/dev/null

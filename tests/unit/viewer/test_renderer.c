@@ -132,6 +132,7 @@ static void mistakes_are_named(void **state)
     FAILS(CW_ERR_ARGUMENT, "step", bad.step_vox = -1);
     FAILS(CW_ERR_ARGUMENT, "step", bad.step_vox = (double)NAN);
     FAILS(CW_ERR_ARGUMENT, "opacity", bad.stop_opacity = 2);
+    FAILS(CW_ERR_ARGUMENT, "filter of directions", bad.direction_filter = CW_DIRECTIONS_COUNT);
     FAILS(CW_ERR_ARGUMENT, "depth cue", bad.depth_cue = -1);
     FAILS(CW_ERR_ARGUMENT, "rising", bad.cue_range[0] = 2);
     FAILS(CW_ERR_ARGUMENT, "rising", bad.cue_range[1] = NAN);

@@ -27,9 +27,10 @@ static double light_of_face(double extinction, double slope, double depth)
 static void faces_are_lit_by_their_plane(void **state)
 {
     (void)state;
-    static const cw_mode modes[] = {CW_MODE_REFERENCE, CW_MODE_VBUFFER, CW_MODE_COMPOSITE,
-                                    CW_MODE_PROJECTION, CW_MODE_TEXTURE};
-    static const double bounds[] = {1e-4, 2e-3, 2e-3, 2e-2, 2e-3};
+    static const cw_mode modes[] = {CW_MODE_REFERENCE, CW_MODE_VBUFFER,
+                                    CW_MODE_COMPOSITE, CW_MODE_PROJECTION,
+                                    CW_MODE_TEXTURE,   CW_MODE_SHADED_TEXTURE};
+    static const double bounds[] = {1e-4, 2e-3, 2e-3, 2e-2, 2e-3, 5e-3};
     const cw_transfer half = {
         .opacity_count = 2, .opacities = {{-9, 0.5f}, {9, 0.5f}}, .unit_mm = 1};
     cw_volume box = {0};
@@ -56,7 +57,7 @@ static void faces_are_lit_by_their_plane(void **state)
                           .clips = {{{sign * sin(angle), sign * cos(angle), 0}, 0}},
                           .clip_count = 1,
                           .cut_away = n & 2};
-        for (int m = 0; m < 5; m++) {
+        for (int m = 0; m < 6; m++) {
             scene.mode = modes[m];
             if (!cw_mode_draws(modes[m], &box))
                 continue;

@@ -209,6 +209,29 @@ static void samples_converge(void **state)
     cw_volume_free(&blobs);
 }
 
+/* Voxels may fall where values rise. */
+static void falling_voxels_have_the_same_values(void **state)
+{
+    (void)state;
+    cw_volume blobs = {0};
+    test_field(&blobs, 30, 26, 28, cube, test_blobs);
+    float *voxels = cw_volume_voxels(&blobs);
+    for (size_t n = 0; n < 30 * 26 * 28; n++)
+        voxels[n] = 3 - 2 * voxels[n];
+    blobs.slope = -0.5;
+    blobs.intercept = 1.5;
+    for (int m = 0; m < 5; m++) {
+        cw_scene s = scene_of(modes[m % MODES], &blobs, true);
+        s.mode = m == MODES ? CW_MODE_MINIP : s.mode;
+        s.minip_inside = m == MODES;
+        s.cell_steps = true;
+        const test_gap gap = measure(&s);
+        assert_true(s.mode == CW_MODE_LOCAL_MIP || s.minip_inside ? gap.rmse < 1.5
+                                                                  : gap.max < 0.01);
+    }
+    cw_volume_free(&blobs);
+}
+
 static void bricks_are_as_one_texture(void **state)
 {
     (void)state;
@@ -255,6 +278,7 @@ int main(void)
         cmocka_unit_test(minima_inside_are_exact_by_cells),
         cmocka_unit_test(minima_inside_converge),
         cmocka_unit_test(projections_have_a_reference),
+        cmocka_unit_test(falling_voxels_have_the_same_values),
         cmocka_unit_test(bricks_are_as_one_texture),
         cmocka_unit_test(gaps_and_cuts_are_left_out),
     };

@@ -103,9 +103,10 @@ static void modes_converge_to_the_reference(void **state)
     static const struct {
         cw_mode mode;
         double coarse, fine;
-    } rows[] = {{CW_MODE_COMPOSITE, 0.2, 0.02}, {CW_MODE_TEXTURE, 0.2, 0.03},
-                {CW_MODE_PROJECTION, 0.5, 0.5}, {CW_MODE_VBUFFER, 0.05, 0.05},
-                {CW_MODE_SPLAT, 8, 8},          {CW_MODE_SPLAT_TREE, 8, 8}};
+    } rows[] = {{CW_MODE_COMPOSITE, 0.2, 0.02},     {CW_MODE_TEXTURE, 0.2, 0.03},
+                {CW_MODE_SHADED_TEXTURE, 0.5, 0.5}, {CW_MODE_PROJECTION, 0.5, 0.5},
+                {CW_MODE_VBUFFER, 0.05, 0.05},      {CW_MODE_SPLAT, 8, 8},
+                {CW_MODE_SPLAT_TREE, 8, 8}};
     (void)test_renderer(); /* skips without OpenGL */
     cw_volume blobs = {0};
     const cw_transfer t = blob_transfer();
