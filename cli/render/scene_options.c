@@ -410,6 +410,7 @@ static cw_status add_steps(const cli_scene *args, const cw_volume *v, double lev
     s->colors_first = args->colors_first;
     s->normals = args->normals ? args->normals : 1024;
     s->mark_boundary = args->boundary;
+    s->pixel_area = args->pixel_area;
     s->linear_opacity = args->linear_opacity;
     s->tree_error = args->tree_error.value;
     s->splat_budget = args->splat_budget;

@@ -21,7 +21,7 @@ typedef struct cli_scene {
     size_t slices, texture_edge, normals;
     bool cell_steps, preintegration, jitter, exact_filter, skipping;
     int target;
-    bool colors_first, boundary, linear_opacity;
+    bool colors_first, boundary, linear_opacity, pixel_area;
     cli_number tree_error;
     size_t splat_budget;
     int splat_kernel;

@@ -6,6 +6,7 @@
 #include "viewer/rays/cell_tree.h"
 #include "viewer/scene/block_ranges.h"
 #include "viewer/scene/frame_setup.h"
+#include "viewer/scene/mean_cells.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -14,9 +15,10 @@ extern "C" {
 /* State kept for the next picture of the same volume. Zeroed: nothing is kept. */
 typedef struct cwi_cpu {
     cw_volume key;
-    cw_cells cells;     /* those of key, if it has them */
-    cwi_ranges ranges;  /* of key, when it has blocks */
-    cwi_cell_tree tree; /* of key, when it has kinds */
+    cw_cells cells;       /* those of key, if it has them */
+    cwi_ranges ranges;    /* of key, when it has blocks */
+    cwi_mean_cells means; /* of key, when it has levels */
+    cwi_cell_tree tree;   /* of key, when it has kinds */
     cwi_cell_tables cell_tables;
 } cwi_cpu;
 
