@@ -114,6 +114,7 @@ static void put_settings(cli_json *j, const cw_scene *s)
     cli_json_text(j, "direction_filter", s->direction_filter ? "nearest" : "linear");
     cli_json_bool(j, "material_table", s->material_table);
     cli_json_bool(j, "boundary", s->mark_boundary);
+    cli_json_bool(j, "pixel_area", s->pixel_area);
     cli_json_bool(j, "linear_opacity", s->linear_opacity);
     cli_json_number(j, "tree_error", s->tree_error);
     cli_json_text(j, "splat_kernel", kernels[s->splat_kernel]);

@@ -62,6 +62,7 @@ static const struct {
     {"direction-filter", ONE(SHADED_TEXTURE), false, false},
     {"material-table", ONE(SHADED_TEXTURE), false, false},
     {"boundary", ONE(SHADED_TEXTURE), false, false},
+    {"pixel-area", ONE(VBUFFER), false, false},
     {"linear-opacity", ONE(PROJECTION), false, false},
     {"tree-error", ONE(SPLAT_TREE) | ONE(PROJECTION), false, false},
     {"splat-budget", ONE(SPLAT_TREE), false, false},

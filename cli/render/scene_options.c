@@ -482,6 +482,7 @@ static cw_status add_steps(const cli_scene *args, const cw_volume *v, double lev
     s->direction_filter = (cw_direction_filter)args->direction_filter;
     s->material_table = args->material_table;
     s->mark_boundary = args->boundary;
+    s->pixel_area = args->pixel_area;
     s->linear_opacity = args->linear_opacity;
     s->tree_error = args->tree_error.value;
     s->splat_budget = args->splat_budget;

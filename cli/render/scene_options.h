@@ -26,7 +26,7 @@ typedef struct cli_scene {
     bool minip_inside, cell_steps, preintegration, jitter, exact_filter, skipping;
     int target;
     int direction_filter;
-    bool material_table, colors_first, boundary, linear_opacity;
+    bool material_table, colors_first, boundary, linear_opacity, pixel_area;
     cli_number tree_error;
     size_t splat_budget;
     int shadow;

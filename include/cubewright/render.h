@@ -250,6 +250,9 @@ typedef struct cw_scene {
     bool mark_boundary;  /* shaded-texture: draw only cells at material boundaries, and those
                                around them, so that no hole is left: between the values of their
                                samples lies a point of the opacities */
+    bool pixel_area;     /* vbuffer: a pixel that is wider than a cell shows the mean over its
+                               area, of evenly spaced volumes; default: what the ray through
+                               its middle meets */
     bool linear_opacity; /* projection: opacity, not depth, is linear over a polygon, as in
                                1991 */
     double tree_error;   /* splat-tree: maximum error of a node, in the table's range 0..1 of

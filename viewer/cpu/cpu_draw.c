@@ -4,6 +4,7 @@
 
 #include "viewer/cpu/cpu_mesh.h"
 #include "viewer/cpu/intensity_projection.h"
+#include "viewer/cpu/pixel_beam.h"
 #include "viewer/cpu/reference_volume.h"
 #include "viewer/cpu/vbuffer.h"
 #include "viewer/projection/cell_projection.h"
@@ -25,6 +26,7 @@ bool cwi_cpu_draws(cw_mode mode)
 void cwi_cpu_forget(cwi_cpu *cpu)
 {
     cwi_ranges_free(&cpu->ranges);
+    cwi_mean_cells_free(&cpu->means);
     cwi_cell_tables_free(&cpu->cell_tables);
     cwi_cell_tree_free(&cpu->tree);
     *cpu = (cwi_cpu){0};
@@ -35,6 +37,7 @@ static cw_status take_ranges(cwi_cpu *cpu, const cwi_frame *f, cw_error *err)
     if (cpu->ranges.blocks && memcmp(&cpu->key, &f->volume, sizeof cpu->key) == 0)
         return CW_OK;
     cwi_ranges_free(&cpu->ranges);
+    cwi_mean_cells_free(&cpu->means);
     cw_status st =
         cwi_ranges_make(&f->volume, f->scene.threads, &f->scene.progress, &cpu->ranges, err);
     if (st == CW_OK)
@@ -42,6 +45,35 @@ static cw_status take_ranges(cwi_cpu *cpu, const cwi_frame *f, cw_error *err)
     else
         cwi_ranges_free(&cpu->ranges);
     return st;
+}
+
+/* Makes the mean cells of the volume whose ranges are there, with gradients where the frame
+ * needs them. */
+static cw_status take_means(cwi_cpu *cpu, const cwi_frame *f, cw_error *err)
+{
+    const bool has_gradients = cwi_frame_needs_gradients(f);
+    if (cpu->means.level_count > 0 && (cpu->means.has_gradients || !has_gradients))
+        return CW_OK;
+    cwi_mean_cells_free(&cpu->means);
+    return cwi_mean_cells_make(&f->volume, &cpu->ranges, has_gradients, f->scene.threads,
+                               &f->scene.progress, &cpu->means, err);
+}
+
+/* Draws cell by cell, with means where pixels are much wider than a cell. */
+static cw_status draw_vbuffer(cwi_cpu *cpu, const cwi_frame *f, const double *depths,
+                              cw_picture *picture, cw_error *err)
+{
+    const char *kind = cwi_volume_kind(&f->volume);
+    if (f->scene.pixel_area && kind)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "the area of pixels is averaged for evenly spaced volumes, not for %s",
+                        kind);
+    const bool needs_means = f->scene.pixel_area && cwi_beams_need_means(f);
+    cw_status st = needs_means ? take_means(cpu, f, err) : CW_OK;
+    if (st != CW_OK)
+        return st;
+    return cwi_vbuffer_draw(f, &cpu->ranges, &cpu->tree, needs_means ? &cpu->means : NULL,
+                            depths, picture, err);
 }
 
 /* Makes the tree of an irregular grid, with gradients where the frame needs them. */
@@ -83,7 +115,7 @@ static cw_status draw_volume(cwi_cpu *cpu, const cwi_frame *f, const double *dep
     if (st == CW_OK && is_even)
         st = take_ranges(cpu, f, err);
     if (st == CW_OK && f->scene.mode == CW_MODE_VBUFFER)
-        st = cwi_vbuffer_draw(f, &cpu->ranges, &cpu->tree, depths, picture, err);
+        st = draw_vbuffer(cpu, f, depths, picture, err);
     else if (st == CW_OK && f->scene.mode == CW_MODE_PROJECTION)
         st = cwi_projection_draw(f, &cpu->ranges, &cpu->cell_tables, depths, picture, err);
     else if (st == CW_OK)

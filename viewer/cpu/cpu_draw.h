@@ -6,6 +6,7 @@
 #include "viewer/rays/cell_tree.h"
 #include "viewer/scene/block_ranges.h"
 #include "viewer/scene/frame_setup.h"
+#include "viewer/scene/mean_cells.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -17,6 +18,7 @@ typedef struct cwi_cpu {
     cw_cells cells;          /* those of key, if it has them */
     size_t gradient_version; /* of the tree's gradients */
     cwi_ranges ranges;       /* of key, when it has blocks */
+    cwi_mean_cells means;    /* of key, when it has levels */
     cwi_cell_tree tree;      /* of key, when it has kinds */
     cwi_cell_tables cell_tables;
 } cwi_cpu;

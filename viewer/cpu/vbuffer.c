@@ -6,6 +6,8 @@
  * spaced are always cut as in the reference, and take two points of each piece. */
 #include "viewer/cpu/vbuffer.h"
 
+#include "viewer/cpu/pixel_beam.h"
+#include "viewer/rays/cell_corners.h"
 #include "viewer/rays/lanes.h"
 #include "viewer/rays/ray_spans.h"
 #include "viewer/rays/ray_traversal.h"
@@ -43,10 +45,6 @@ static const float most_turn = 2e-3f;
 
 typedef struct vbuffer vbuffer;
 
-/* Fetches eight corners of a cell, those of even and those of odd number; false: one has no
- * value. */
-typedef bool fetch_function(const vbuffer *b, const char *p, lanes *even, lanes *odd);
-
 /* For each row of the table, and the values below the first and above the last, the lowest and
  * the highest part of the transfer function that its values have. */
 typedef struct row_parts {
@@ -62,14 +60,14 @@ struct vbuffer {
     cwi_knots knots;
     row_parts parts[CWI_TABLE_ROWS + 1];
     uint8_t *distances; /* of blocks to visible ones */
-    fetch_function *fetch;
-    ptrdiff_t side[3];
-    double row_scale, row_bias; /* from a voxel to its row */
+    cwi_cell_corners corners;
     double to_eye[3][3];
     float rows_to_eye[3][3]; /* of gradients in rows of the table */
     bool has_gradients;
     bool is_even;
     cwi_field field; /* of a grid that is not even */
+    cwi_beams beams;
+    bool has_beams;
     bool is_starved;
 };
 
@@ -86,65 +84,6 @@ typedef struct state {
     double gradient[3][4]; /* cubics, eye space */
     double shadow[4];      /* cubic; 1 where there are none */
 } state;
-
-#define FETCH(name, ctype, text)                                                               \
-    static bool fetch_##name(const vbuffer *b, const char *p, lanes *even, lanes *odd)         \
-    {                                                                                          \
-        const cw_volume *v = &b->frame->volume;                                                \
-        bool is_whole = true;                                                                  \
-        for (int n = 0; n < 8; n++) {                                                          \
-            const double x =                                                                   \
-                (double)*(const ctype *)(p + (n & 1) * b->side[0] +                            \
-                                         (n >> 1 & 1) * b->side[1] + (n >> 2) * b->side[2]);   \
-            const float row = (float)(x * b->row_scale + b->row_bias);                         \
-            if (!isfinite(x) || (v->has_nodata && x == v->nodata))                             \
-                is_whole = false;                                                              \
-            if (n & 1)                                                                         \
-                (*odd)[n >> 1] = row;                                                          \
-            else                                                                               \
-                (*even)[n >> 1] = row;                                                         \
-        }                                                                                      \
-        return is_whole;                                                                       \
-    }
-CW_TYPE_TABLE(FETCH)
-#undef FETCH
-
-/* Fetches floats packed along x, where every number that is not NaN counts. */
-static bool fetch_floats(const vbuffer *b, const char *p, lanes *even, lanes *odd)
-{
-    const float *r0 = (const float *)p, *r1 = (const float *)(p + b->side[1]),
-                *r2 = (const float *)(p + b->side[2]),
-                *r3 = (const float *)(p + b->side[1] + b->side[2]);
-    const float scale = (float)b->row_scale, bias = (float)b->row_bias;
-    const lanes e = {r0[0], r1[0], r2[0], r3[0]}, o = {r0[1], r1[1], r2[1], r3[1]};
-    *even = e * scale + bias;
-    *odd = o * scale + bias;
-    const lanes none = (e - e) + (o - o); /* 0, or NaN */
-    return none[0] + none[1] + none[2] + none[3] == 0;
-}
-
-static fetch_function *choose_fetch(const cw_volume *v)
-{
-    static fetch_function *const functions[CW_TYPE_COUNT] = {
-#define ROW(name, ctype, text) fetch_##name,
-        CW_TYPE_TABLE(ROW)
-#undef ROW
-    };
-    if (v->type == CW_F32 && v->dim[0] > 1 && v->stride[0] == (ptrdiff_t)sizeof(float) &&
-        !v->has_nodata)
-        return fetch_floats;
-    return functions[v->type];
-}
-
-/* Interpolates the field at four places of a line, as rows of the table. */
-static inline lanes rows_along(lanes even, lanes odd, const lanes at[3])
-{
-    const lanes rise = odd - even;
-    const lanes e0 = even[0] + rise[0] * at[0], e1 = even[1] + rise[1] * at[0];
-    const lanes e2 = even[2] + rise[2] * at[0], e3 = even[3] + rise[3] * at[0];
-    const lanes q0 = e0 + (e1 - e0) * at[1], q1 = e2 + (e3 - e2) * at[1];
-    return q0 + (q1 - q0) * at[2];
-}
 
 static inline lanes glow_of_row(const vbuffer *b, float row)
 {
@@ -194,6 +133,35 @@ static inline lanes finish_cell(const state *s, double x, const double gradient[
     if (s->b->frame->scene.depth_cue > 0)
         change_by_depth(s, x, &glow);
     return glow;
+}
+
+/* Interpolates the shadows at a distance along the ray. */
+static double shadow_at(state *s, double at)
+{
+    double shadows[8], cubic[4];
+    cwi_walk *w = &s->walk;
+    const cw_volume *v = &s->b->frame->volume;
+    w->volume = v;
+    w->shadows = s->b->frame->shadows;
+    for (int a = 0; a < 3; a++) {
+        const double place = s->ray.index[a] + at * s->ray.slope[a];
+        w->index[a] = s->ray.index[a];
+        w->slope[a] = s->ray.slope[a];
+        w->at[a] = (ptrdiff_t)fmin(fmax(place, 0), fmax((double)v->dim[a] - 2, 0));
+    }
+    cwi_walk_shadows(w, shadows);
+    cwi_walk_cubic(w, shadows, cubic);
+    return fmin(fmax(cubic[0], 0), 1);
+}
+
+/* Shades a sample of a beam, at a distance along the ray. */
+static void shade_beam(void *context, double at, const double gradient[3], lanes *glow)
+{
+    state *s = context;
+    s->walk.from = s->walk.to = at;
+    if (s->b->frame->shadows)
+        s->shadow[0] = shadow_at(s, at);
+    *glow = finish_cell(s, 0, gradient, *glow);
 }
 
 /* Passes a segment of a length by the values at its two points. Its opacity is that of its
@@ -315,8 +283,8 @@ static bool fetch_gradients(const vbuffer *b, const cwi_walk *w, const char *p, 
     lanes low[3][2], high[3][2];
     for (int a = 0; a < 3; a++)
         if (w->at[a] < 1 || w->at[a] + 2 >= (ptrdiff_t)v->dim[a] ||
-            !b->fetch(b, p - v->stride[a], &low[a][0], &low[a][1]) ||
-            !b->fetch(b, p + v->stride[a], &high[a][0], &high[a][1]))
+            !b->corners.fetch(&b->corners, p - v->stride[a], &low[a][0], &low[a][1]) ||
+            !b->corners.fetch(&b->corners, p + v->stride[a], &high[a][0], &high[a][1]))
             return false;
     g[0][0] = 0.5f * (odd - low[0][0]);
     g[0][1] = 0.5f * (high[0][1] - even);
@@ -347,7 +315,7 @@ static void gradients_at_points(state *s, const char *p, lanes even, lanes odd,
         return;
     }
     for (int a = 0; a < 3; a++)
-        along[a] = rows_along(g[a][0], g[a][1], at);
+        along[a] = cwi_cell_corners_at(g[a][0], g[a][1], at);
     for (int r = 0; r < 3; r++) {
         const float *m = s->b->rows_to_eye[r];
         const lanes eye = m[0] * along[0] + m[1] * along[1] + m[2] * along[2];
@@ -388,14 +356,14 @@ static inline void pass_cell(state *s)
     lanes even, odd, at[3];
     const char *p = (const char *)v->data + w->at[0] * v->stride[0] + w->at[1] * v->stride[1] +
                     w->at[2] * v->stride[2];
-    if (!b->fetch(b, p, &even, &odd))
+    if (!b->corners.fetch(&b->corners, p, &even, &odd))
         return;
     const lanes x = {0, (float)FIRST_POINT, (float)SECOND_POINT, 1};
     const double length = w->to - w->from;
     for (int a = 0; a < 3; a++)
         at[a] = (float)(w->index[a] + w->from * w->slope[a] - (double)w->at[a]) +
                 (float)(length * w->slope[a]) * x;
-    const lanes rows = rows_along(even, odd, at);
+    const lanes rows = cwi_cell_corners_at(even, odd, at);
     float low, high;
     range_of(rows, &low, &high);
     const int first = parts_of(b, low)->low, last = parts_of(b, high)->high;
@@ -453,16 +421,17 @@ static bool draw_spans(state *s, cwi_spans *spans, float least_light)
     return true;
 }
 
-static bool draw_pixel(const vbuffer *b, cwi_spans *spans, size_t x, size_t y)
+/* Draws the ray through a point of the picture, which belongs to pixel n. Returns false when
+ * memory is out. */
+static bool draw_ray(const vbuffer *b, cwi_spans *spans, double x, double y, size_t n,
+                     double offset, float pixel[4])
 {
-    const size_t n = y * b->picture->width + x;
     const cw_scene *scene = &b->frame->scene;
-    float *pixel = b->picture->pixels + 4 * n;
+    const double depth = b->depths ? b->depths[n] : INFINITY;
     cwi_lighting lighting;
     state s = {.b = b, .lighting = &lighting, .light = 1, .shadow = {1}};
-    const float share = ((float)y + 0.5f) / (float)scene->height;
-    cwi_ray_make(b->frame, (double)x + 0.5, (double)y + 0.5,
-                 b->depths ? b->depths[n] : INFINITY, &s.ray);
+    const float share = (float)(y / (double)scene->height);
+    cwi_ray_make(b->frame, x, y, b->has_beams ? fmin(depth, b->beams.start) : depth, &s.ray);
     if (scene->lit)
         cwi_lighting_make(b->frame, s.ray.origin, s.ray.direction, &lighting);
     for (int c = 0; c < 3; c++)
@@ -474,9 +443,32 @@ static bool draw_pixel(const vbuffer *b, cwi_spans *spans, size_t x, size_t y)
         draw_part(&s, part, least_light);
     if (!b->is_even)
         is_whole = draw_spans(&s, spans, least_light);
+    if (b->has_beams)
+        cwi_beam_pass(&b->beams, &s.ray, depth, offset, shade_beam, &s, &s.color, &s.light);
     for (int c = 0; c < 3; c++)
         pixel[c] = s.color[c];
     pixel[3] = 1 - s.light;
+    return is_whole;
+}
+
+/* Draws a pixel: the mean of its beams, if there are any, else one ray. */
+static bool draw_pixel(const vbuffer *b, cwi_spans *spans, size_t x, size_t y)
+{
+    const size_t n = y * b->picture->width + x, sides = b->has_beams ? b->beams.sides : 1;
+    float *pixel = b->picture->pixels + 4 * n, sum[4] = {0};
+    bool is_whole = true;
+    for (size_t i = 0; i < sides * sides; i++) {
+        const double across = (double)x + ((double)(i % sides) + 0.5) / (double)sides,
+                     down = (double)y + ((double)(i / sides) + 0.5) / (double)sides;
+        float one[4];
+        const double offset =
+            ((double)(7 * i % (sides * sides)) + 0.5) / (double)(sides * sides);
+        is_whole &= draw_ray(b, spans, across, down, n, offset, one);
+        for (int c = 0; c < 4; c++)
+            sum[c] += one[c];
+    }
+    for (int c = 0; c < 4; c++)
+        pixel[c] = sum[c] / (float)(sides * sides);
     return is_whole;
 }
 
@@ -515,7 +507,8 @@ static bool is_visible(const void *knots, double low, double high)
     return cwi_knots_is_visible(knots, low, high);
 }
 
-static cw_status set_up(vbuffer *b, const cwi_cell_tree *tree, cw_error *err)
+static cw_status set_up(vbuffer *b, const cwi_cell_tree *tree, const cwi_mean_cells *cells,
+                        cw_error *err)
 {
     const cw_volume *v = &b->frame->volume;
     cw_status st = cwi_table_make(b->frame, &b->table, err);
@@ -524,12 +517,8 @@ static cw_status set_up(vbuffer *b, const cwi_cell_tree *tree, cw_error *err)
     cwi_knots_make(&b->frame->transfer, &b->knots);
     find_parts(b);
     const double scale = (CWI_TABLE_ROWS - 1) / (b->table.high - b->table.low);
-    b->row_scale = v->slope * scale;
-    b->row_bias = (v->intercept - b->table.low) * scale;
     b->is_even = !cwi_volume_kind(v);
-    b->fetch = choose_fetch(v);
-    for (int a = 0; a < 3; a++)
-        b->side[a] = v->dim[a] > 1 ? v->stride[a] : 0;
+    cwi_cell_corners_make(v, &b->table, &b->corners);
     cwi_frame_gradient_matrix(b->frame, b->to_eye);
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)
@@ -538,12 +527,17 @@ static cw_status set_up(vbuffer *b, const cwi_cell_tree *tree, cw_error *err)
     cwi_field_make(b->frame, tree, &b->knots, false, &b->field);
     if (!b->is_even)
         return CW_OK;
-    return cwi_ranges_distances(b->ranges, is_visible, &b->knots, &b->distances, err);
+    st = cwi_ranges_distances(b->ranges, is_visible, &b->knots, &b->distances, err);
+    b->has_beams = b->frame->scene.pixel_area && cwi_beams_are_wide(b->frame);
+    if (st == CW_OK && b->has_beams)
+        st = cwi_beams_make(b->frame, b->ranges, b->distances, &b->corners, cells, &b->table,
+                            &b->beams, err);
+    return st;
 }
 
 cw_status cwi_vbuffer_draw(const cwi_frame *frame, const cwi_ranges *ranges,
-                           const cwi_cell_tree *tree, const double *depths, cw_picture *picture,
-                           cw_error *err)
+                           const cwi_cell_tree *tree, const cwi_mean_cells *cells,
+                           const double *depths, cw_picture *picture, cw_error *err)
 {
     vbuffer *b = cwi_alloc_zeroed(1, sizeof *b);
     if (!b)
@@ -552,13 +546,14 @@ cw_status cwi_vbuffer_draw(const cwi_frame *frame, const cwi_ranges *ranges,
     b->ranges = ranges;
     b->depths = depths;
     b->picture = picture;
-    cw_status st = set_up(b, tree, err);
+    cw_status st = set_up(b, tree, cells, err);
     if (st == CW_OK)
         st = cwi_each_layer(picture->height, picture->width * CWI_RAY_SAMPLES,
                             frame->scene.threads, &frame->scene.progress, "drawing", draw_row,
                             b, err);
     if (st == CW_OK && b->is_starved)
         st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the cells of a ray");
+    cwi_beams_free(&b->beams);
     cwi_free(b->distances);
     cwi_table_free(&b->table);
     cwi_free(b);

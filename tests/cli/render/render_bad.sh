@@ -88,7 +88,7 @@ try v.nrrd -o v.png --json v.png
 try v.nrrd -o v.png --save-tf v.nrrd
 # An option for another mode says for which.
 for option in '--threshold 3' --no-minip-inside '--slices 9' '--target 8' --colors-first '--normals 6' --boundary --material-table '--direction-filter nearest' \
-    --linear-opacity '--tree-error 0.1' '--splat-kernel tent' '--splat-width 1' '--planes 1,0,0,0' --wireframe '--tint quality' --cap '--color white'; do
+    --linear-opacity --pixel-area '--tree-error 0.1' '--splat-kernel tent' '--splat-width 1' '--planes 1,0,0,0' --wireframe '--tint quality' --cap '--color white'; do
     try v.nrrd -o v.png $option
 done
 for option in --cell-steps --jitter --exact-filter '--texture-edge 9' '--step-length 2' \

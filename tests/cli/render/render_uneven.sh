@@ -45,6 +45,7 @@ cubewright render cells.vtk -o x.png --clip-box 1:3,0:5.5,2:4 -q || echo "exit $
 cubewright render cells.vtk -o x.png --tf ct-bone --size 8x8 -q --save-tf tf.json || echo "exit $?"
 # Projection of cells: near the reference.
 for grid in rect cells; do
+    cubewright render $grid.vtk -o p.png --mode vbuffer --pixel-area -q --size 8x8 || echo "exit $?"
     cubewright render $grid.vtk -o p.png --mode projection --linear-opacity -q --size 8x8 || echo "exit $?"
     cubewright render $grid.vtk -o p.png --compare 'projection|reference' --size 48x48 --no-lit -q --json - |
         awk '/"rmse"/ { print ($2 + 0 < 3 ? "near" : "far: " $2) }'
