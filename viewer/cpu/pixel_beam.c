@@ -142,17 +142,6 @@ typedef struct beam {
     double light, waiting_light, left_light;
 } beam;
 
-/* Cuts an interval to where at + t slope >= 0. */
-static void cut_interval(double at, double slope, double t[2])
-{
-    if (slope > 0)
-        t[0] = fmax(t[0], -at / slope);
-    else if (slope < 0)
-        t[1] = fmin(t[1], -at / slope);
-    else if (at < 0)
-        t[1] = -INFINITY;
-}
-
 /* Finds the cuts, and the part of the ray on which some of the area may be filled. */
 static void cut_beam(beam *m, double t[2])
 {
@@ -170,8 +159,8 @@ static void cut_beam(beam *m, double t[2])
         const double reach = c->reach[0] + c->reach[1],
                      rise = c->reach_slope[0] + c->reach_slope[1];
         if (n < 6 || !cuts_away)
-            cut_interval(c->at + reach, c->slope + rise, t);
-        cut_interval(c->at - reach, c->slope - rise, m->whole);
+            cwi_cut_interval(c->at + reach, c->slope + rise, t);
+        cwi_cut_interval(c->at - reach, c->slope - rise, m->whole);
     }
     if (cuts_away && b->plane_count > 6)
         m->whole[1] = -INFINITY;

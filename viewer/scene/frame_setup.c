@@ -432,8 +432,7 @@ void cwi_frame_ray(const cwi_frame *f, double x, double y, double origin[3],
     }
 }
 
-/* Cuts an interval to where at + t slope >= 0. */
-static void cut_interval(double at, double slope, double t[2])
+void cwi_cut_interval(double at, double slope, double t[2])
 {
     if (slope > 0)
         t[0] = fmax(t[0], -at / slope);
@@ -449,8 +448,8 @@ int cwi_frame_keep(const cwi_frame *f, const double origin[3], const double dire
     const double *t = interval;
     double kept[2] = {t[0], t[1]};
     for (size_t n = 0; n < f->scene.clip_count; n++)
-        cut_interval(cwi_dot(f->clips[n], origin) - f->clips[n][3],
-                     cwi_dot(f->clips[n], direction), kept);
+        cwi_cut_interval(cwi_dot(f->clips[n], origin) - f->clips[n][3],
+                         cwi_dot(f->clips[n], direction), kept);
     int count = 0;
     const bool away = f->scene.cut_away && f->scene.clip_count > 0;
     const double parts[2][2] = {{away ? t[0] : kept[0], away ? fmin(t[1], kept[0]) : kept[1]},
@@ -475,8 +474,8 @@ int cwi_frame_clip(const cwi_frame *f, const double origin[3], const double dire
     cwi_affine_apply(f->index_from_eye, origin, index);
     for (int r = 0; r < 3; r++) {
         slope[r] = cwi_dot(f->index_from_eye + (size_t)4 * (size_t)r, direction);
-        cut_interval(index[r] - f->low[r], slope[r], t);
-        cut_interval(f->high[r] - index[r], -slope[r], t);
+        cwi_cut_interval(index[r] - f->low[r], slope[r], t);
+        cwi_cut_interval(f->high[r] - index[r], -slope[r], t);
     }
     return cwi_frame_keep(f, origin, direction, t, intervals);
 }

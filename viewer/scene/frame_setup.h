@@ -79,6 +79,9 @@ void cwi_frame_ray(const cwi_frame *frame, double x, double y, double origin[3],
 int cwi_frame_clip(const cwi_frame *frame, const double origin[3], const double direction[3],
                    double intervals[2][2]);
 
+/* Cuts an interval to where at + t slope >= 0. */
+void cwi_cut_interval(double at, double slope, double t[2]);
+
 /* Finds the parts of an interval of a ray that clip planes keep: up to two, in order; returns
  * their number. */
 int cwi_frame_keep(const cwi_frame *frame, const double origin[3], const double direction[3],
