@@ -1,0 +1,45 @@
+/* Cubes between 2 x 2 x 2 voxels of a label map: their tetrahedra, and which of them can be one
+ * point. */
+#ifndef EXTRACT_LABELS_LABEL_CUBES_H
+#define EXTRACT_LABELS_LABEL_CUBES_H
+
+#include <cubewright/core.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { CWI_TETS = 6, CWI_EDGES = 8, CWI_RING = 6 };
+
+/* The tetrahedra around an edge of tetrahedra, in the order in which a right-handed screw turns
+ * that goes along the edge. */
+typedef struct cwi_label_ring {
+    int count;
+    int8_t cube[CWI_RING][3]; /* the tetrahedron's cube: 0 or -1 along each axis, from the cube
+                                 whose corner 0 is the edge's start */
+    uint8_t tet[CWI_RING];
+} cwi_label_ring;
+
+/* Facts that follow from the definition of the tetrahedra. Bit a of a corner's number is its
+ * place along axis a; sets of corners are bits of a byte. */
+typedef struct cwi_label_rules {
+    uint8_t tets[CWI_TETS]; /* corners */
+    /* True for the corners of a label if neither it nor the rest is in two parts on the cube's
+     * surface, nor touches a face of the cube with two corners that are apart. */
+    bool is_simple[256];
+    cwi_label_ring rings[CWI_EDGES]; /* of the edge from corner 0 to corner n; none of 0 */
+} cwi_label_rules;
+
+void cwi_label_rules_make(cwi_label_rules *rules);
+
+/* The vertices of a cube: 0: none, as all corners have one label; CWI_CUBE_SIMPLE: one in its
+ * middle; else a bit for each tetrahedron that has one. */
+enum { CWI_CUBE_SIMPLE = 0x80 };
+
+uint8_t cwi_label_cube(const cwi_label_rules *rules, const uint32_t labels[8]);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,133 @@
+/* Converts voxels of any type to labels: whole numbers are checked, and labels that are not
+ * wanted become the background. */
+#include "extract/labels/label_layers.h"
+
+#include "core/volume/volume.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Returns true if a volume's stored numbers are its values. */
+static bool is_plain(const cw_volume *v)
+{
+    return v->slope == 1 && v->intercept == 0 && !v->has_nodata;
+}
+
+#define LOAD(name, ctype)                                                                      \
+    static void load_##name(const char *from, ptrdiff_t stride, size_t count, uint32_t *out)   \
+    {                                                                                          \
+        if (stride == (ptrdiff_t)sizeof(ctype))                                                \
+            for (size_t i = 0; i < count; i++)                                                 \
+                out[i] = ((const ctype *)from)[i];                                             \
+        else                                                                                   \
+            for (size_t i = 0; i < count; i++)                                                 \
+                out[i] = *(const ctype *)(from + (ptrdiff_t)i * stride);                       \
+    }
+LOAD(u8, uint8_t)
+LOAD(u16, uint16_t)
+LOAD(u32, uint32_t)
+#undef LOAD
+
+/* Loads a row of any type. Returns the number of the first value that is no label, or count. */
+static size_t load_checked(const cwi_label_layers *l, const char *from, size_t count,
+                           uint32_t *out)
+{
+    const cw_volume *v = l->volume;
+    for (size_t i = 0; i < count; i++, from += v->stride[0]) {
+        const double stored = cwi_voxel_at(v->type, from);
+        const double value = v->slope * stored + v->intercept;
+        out[i] = l->background;
+        if ((v->has_nodata && stored == v->nodata) || isnan(value))
+            continue;
+        if (!(value >= 0 && value <= UINT32_MAX && value == floor(value)))
+            return i;
+        out[i] = (uint32_t)value;
+    }
+    return count;
+}
+
+static size_t load_row(const cwi_label_layers *l, const char *from, uint32_t *out)
+{
+    const cw_volume *v = l->volume;
+    const size_t count = v->dim[0];
+    if (is_plain(v) && v->type == CW_U8)
+        load_u8(from, v->stride[0], count, out);
+    else if (is_plain(v) && v->type == CW_U16)
+        load_u16(from, v->stride[0], count, out);
+    else if (is_plain(v) && v->type == CW_U32)
+        load_u32(from, v->stride[0], count, out);
+    else
+        return load_checked(l, from, count, out);
+    return count;
+}
+
+static bool is_wanted(const cwi_label_layers *l, uint32_t label)
+{
+    size_t low = 0, high = l->wanted_count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (l->wanted[middle] < label)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < l->wanted_count && l->wanted[low] == label;
+}
+
+/* Replaces labels that are not wanted; runs of one label are looked up once. */
+static void choose_labels(const cwi_label_layers *l, uint32_t *row, size_t count)
+{
+    uint32_t last = l->background, becomes = l->background;
+    for (size_t i = 0; i < count; i++) {
+        if (row[i] != last) {
+            last = row[i];
+            becomes = is_wanted(l, last) ? last : l->background;
+        }
+        row[i] = becomes;
+    }
+}
+
+static void fill_row(uint32_t *row, size_t count, uint32_t label)
+{
+    for (size_t i = 0; i < count; i++)
+        row[i] = label;
+}
+
+/* Returns the voxel that stands at a place counted with the border, or beside it. */
+static size_t voxel_at(size_t place, size_t dim)
+{
+    return place == 0 ? 0 : place > dim ? dim - 1 : place - 1;
+}
+
+bool cwi_label_layer_load(const cwi_label_layers *l, size_t k, uint32_t *out, size_t bad[3])
+{
+    const cw_volume *v = l->volume;
+    const size_t nx = v->dim[0], ny = v->dim[1];
+    const size_t at = voxel_at(k, v->dim[2]);
+    if (!l->copies_border && (k == 0 || k + 1 == l->count)) {
+        fill_row(out, l->width * l->height, l->background);
+        return true;
+    }
+    for (size_t j = 0; j < ny; j++) {
+        uint32_t *row = out + (j + 1) * l->width;
+        const char *from = (const char *)v->data + (ptrdiff_t)j * v->stride[1] +
+                           (ptrdiff_t)at * v->stride[2];
+        const size_t good = load_row(l, from, row + 1);
+        if (good < nx) {
+            bad[0] = good, bad[1] = j, bad[2] = at;
+            return false;
+        }
+        if (l->wanted_count > 0)
+            choose_labels(l, row + 1, nx);
+        row[0] = l->copies_border ? row[1] : l->background;
+        row[nx + 1] = l->copies_border ? row[nx] : l->background;
+    }
+    if (l->copies_border) {
+        memcpy(out, out + l->width, l->width * sizeof *out);
+        memcpy(out + (ny + 1) * l->width, out + ny * l->width, l->width * sizeof *out);
+    } else {
+        fill_row(out, l->width, l->background);
+        fill_row(out + (ny + 1) * l->width, l->width, l->background);
+    }
+    return true;
+}

@@ -1,0 +1,30 @@
+/* Layers of a label map as 32-bit labels, with a border of one voxel around. */
+#ifndef EXTRACT_LABELS_LABEL_LAYERS_H
+#define EXTRACT_LABELS_LABEL_LAYERS_H
+
+#include <cubewright/labels.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct cwi_label_layers {
+    const cw_volume *volume; /* resolved */
+    uint32_t background;
+    bool copies_border;     /* the border has the labels beside it, not the background */
+    size_t width, height;   /* of a layer with its border */
+    size_t count;           /* of layers with the border's */
+    size_t wanted_count;    /* 0: all labels */
+    const uint32_t *wanted; /* rising */
+} cwi_label_layers;
+
+/* Loads layer k, counted with the border, into width x height labels. Returns false when a value
+ * is no label: the index of its voxel is then in `bad`. */
+bool cwi_label_layer_load(const cwi_label_layers *layers, size_t k, uint32_t *out,
+                          size_t bad[3]);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,69 @@
+/* Copies the closed mesh of one label out of the interfaces. */
+#include <cubewright/labels.h>
+
+#include "extract/labels/label_table.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+
+#include <string.h>
+
+/* Returns the side of a patch that a label is on: 0, 1, or -1. */
+static int side_of(const cw_label_patch *patch, uint32_t label)
+{
+    return patch->labels[0] == label ? 0 : patch->labels[1] == label ? 1 : -1;
+}
+
+/* Copies a patch's triangles, with vertices numbered as they are met. Returns false when memory
+ * is out. */
+static bool copy_patch(const cw_label_surfaces *s, const cw_label_patch *patch, int side,
+                       cwi_label_table *numbers, cw_mesh *mesh)
+{
+    const uint32_t *from = s->mesh.triangles + 3 * patch->first;
+    for (size_t n = 0; n < 3 * patch->count; n++) {
+        /* seen from the other side, the last two corners change places */
+        const size_t turned = n % 3 && side == 1 ? n - n % 3 + 3 - n % 3 : n;
+        cwi_label_entry *e = cwi_label_table_need(numbers, (uint64_t)from[turned] + 1);
+        if (!e)
+            return false;
+        if (e->count == 0) {
+            memcpy(mesh->positions + 3 * mesh->vertex_count,
+                   s->mesh.positions + 3 * (size_t)from[turned], 3 * sizeof(float));
+            e->count = ++mesh->vertex_count;
+        }
+        mesh->triangles[3 * mesh->triangle_count + n] = (uint32_t)(e->count - 1);
+    }
+    mesh->triangle_count += patch->count;
+    return true;
+}
+
+cw_status cw_label_mesh(const cw_label_surfaces *s, uint32_t label, cw_mesh *mesh, cw_error *err)
+{
+    cwi_label_table numbers = {0};
+    size_t triangles = 0;
+    memset(mesh, 0, sizeof *mesh);
+    for (size_t p = 0; p < s->patch_count; p++)
+        triangles += side_of(&s->patches[p], label) >= 0 ? s->patches[p].count : 0;
+    memcpy(mesh->origin, s->mesh.origin, sizeof mesh->origin);
+    memcpy(mesh->affine, s->mesh.affine, sizeof mesh->affine);
+    if (triangles == 0)
+        return CW_OK;
+    /* a triangle brings at most three vertices, and closed surfaces have half as many */
+    mesh->triangles = cwi_alloc_array(triangles, 3 * sizeof *mesh->triangles);
+    mesh->positions = cwi_alloc_array(3 * triangles, 3 * sizeof *mesh->positions);
+    bool is_whole = mesh->triangles && mesh->positions;
+    for (size_t p = 0; p < s->patch_count && is_whole; p++) {
+        const int side = side_of(&s->patches[p], label);
+        is_whole = side < 0 || copy_patch(s, &s->patches[p], side, &numbers, mesh);
+    }
+    cwi_label_table_free(&numbers);
+    float *fitted =
+        is_whole ? cwi_realloc_array(mesh->positions, 3 * mesh->vertex_count, sizeof *fitted)
+                 : NULL;
+    if (!fitted) {
+        cw_mesh_free(mesh);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the mesh of label %u", label);
+    }
+    mesh->positions = fitted;
+    return CW_OK;
+}

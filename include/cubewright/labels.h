@@ -1,0 +1,92 @@
+/* Label maps to meshes: every label a closed manifold, neighbours without a gap. */
+#ifndef CUBEWRIGHT_LABELS_H
+#define CUBEWRIGHT_LABELS_H
+
+#include <cubewright/mesh.h>
+#include <cubewright/volume.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Options of an extraction of labels. Zero-initialise the struct and set what you need. A zero
+ * field means the default named beside it. */
+typedef struct cw_labels_desc {
+    const uint32_t *labels; /* label_count of those wanted, in any order; others count as
+                               background */
+    size_t label_count;     /* default: all but the background */
+    uint32_t background;    /* the label of what is no object; also beyond the volume */
+    bool leave_open;        /* default: cap labels half a voxel beyond the volume's border */
+    int threads;            /* default: all that OpenMP offers */
+    size_t max_triangles;   /* fail with CW_ERR_LIMIT before allocating more; default: no limit */
+    cw_progress progress;   /* default: none */
+} cw_labels_desc;
+
+/* The interface of two labels: triangles of cw_label_surfaces.mesh. */
+typedef struct cw_label_patch {
+    uint32_t labels[2]; /* triangles wind counter-clockwise seen from labels[1]. The background
+                           is the second, of other labels the larger */
+    size_t first, count;
+} cw_label_patch;
+
+/* A label that occurs. */
+typedef struct cw_label_count {
+    uint32_t label;
+    size_t voxels;
+} cw_label_count;
+
+/* All interfaces of a label map, which share their vertices. A zeroed struct is valid and
+ * empty. */
+typedef struct cw_label_surfaces {
+    cw_mesh mesh;            /* without normals; not a manifold where three labels meet */
+    size_t patch_count;
+    cw_label_patch *patches; /* in rising order of both labels */
+    size_t label_count;
+    cw_label_count *labels;  /* rising, without the background */
+    uint32_t background;
+} cw_label_surfaces;
+
+/* Extracts the interfaces between all labels of a volume in one pass.
+ *
+ * Taken alone, each label is a closed, oriented manifold without triangles of zero area; the
+ * interface of two labels is the same triangles for both. That holds by construction. The cubes
+ * between 2 x 2 x 2 voxels are cut into six tetrahedra around the diagonal that rises along all
+ * axes. The interfaces are faces of the dual cells, of which four meet in a point and three
+ * along an edge, so no union of cells touches itself along an edge or in a point. Voxels of one
+ * label are joined if an edge of tetrahedra joins them: along an axis, or along a diagonal that
+ * rises along two or three axes. Across the other diagonals they are apart. Where a cube of
+ * tetrahedra can be one point without a change of topology, it is: then the surface is that of
+ * surface nets, with a vertex in the middle of the cube.
+ *
+ * Vertices are in the world (LPS, millimetres). Without smoothing a surface is within 0.87
+ * voxels of the faces of voxels.
+ *
+ * volume    evenly spaced or rectilinear; values are whole numbers from 0 to 2^32 - 1, stored in
+ *           any type. Voxels without a value are background
+ * surfaces  filled on success, emptied on failure; free it with cw_label_surfaces_free()
+ * Returns   CW_ERR_ARGUMENT  a value is no label, naming the voxel; as cw_volume_resolve()
+ *           CW_ERR_UNSUPPORTED  sparse and irregular grids; CW_ERR_LIMIT: max_triangles, or
+ *           2^32 - 1 vertices; CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
+ * Cost      two passes over the voxels, and time in proportion to the interfaces
+ * Threads   the same bytes for any number
+ * Source    surface nets [Gibson1998]; tetrahedra [Freudenthal1942]; dual cells as regular
+ *           neighbourhoods [RourkeSanderson1972] */
+CW_NODISCARD CW_API cw_status cw_extract_labels(const cw_volume *volume,
+                                                const cw_labels_desc *desc,
+                                                cw_label_surfaces *surfaces, cw_error *err);
+
+CW_API void cw_label_surfaces_free(cw_label_surfaces *surfaces);
+
+/* Copies the closed mesh of one label out of the interfaces, seen from outside. A label without
+ * voxels gives an empty mesh and CW_OK.
+ * mesh     filled on success, emptied on failure; free it with cw_mesh_free()
+ * Returns  CW_ERR_NO_MEMORY
+ * Cost     in proportion to the patches, and to the label's triangles */
+CW_NODISCARD CW_API cw_status cw_label_mesh(const cw_label_surfaces *surfaces, uint32_t label,
+                                            cw_mesh *mesh, cw_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

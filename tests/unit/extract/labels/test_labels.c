@@ -1,0 +1,318 @@
+/* Tests label maps: every label a closed manifold, neighbours with the same triangles, of all
+ * neighbourhoods, random maps, spheres, and voxels of any type. */
+#include "support/support.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Makes a volume of labels, with the first voxel at the world's zero. */
+static uint32_t *make_map(cw_volume *v, size_t nx, size_t ny, size_t nz)
+{
+    cw_error err = {0};
+    assert_ok(cw_volume_alloc(v, CW_U32, (size_t[]){nx, ny, nz}, 1, 1, &err), err);
+    return cw_volume_voxels(v);
+}
+
+/* Checks one label: closed, oriented, manifold, also for readers who weld; no crossings. */
+static void check_label(const cw_label_surfaces *s, uint32_t label)
+{
+    cw_mesh mesh;
+    cw_quality q;
+    cw_crossings crossings = {0};
+    cw_error err = {0};
+    const cw_quality_desc welded = {.weld = CW_WELD_WORLD, .shells = true, .threads = 1};
+    assert_ok(cw_label_mesh(s, label, &mesh, &err), err);
+    assert_true(mesh.triangle_count > 0);
+    assert_ok(cw_quality_measure(&mesh, &welded, &q, &err), err);
+    if (!cw_quality_is_closed_manifold(&q) || q.duplicates || q.degenerate ||
+        q.merged_vertices || q.unused_vertices || q.inside_out)
+        fail_msg("label %u: %zu open, %zu non-manifold edges, %zu vertices, %zu misoriented, "
+                 "%zu duplicates, %zu degenerate, %zu merged, %zu unused, %zu inside out",
+                 label, q.open_edges, q.nonmanifold_edges, q.nonmanifold_vertices,
+                 q.misoriented_edges, q.duplicates, q.degenerate, q.merged_vertices,
+                 q.unused_vertices, q.inside_out);
+    assert_true(q.volume_mm3 > 0);
+    assert_ok(cw_self_intersections(&mesh, &(cw_crossings_desc){.threads = 1}, &crossings, &err),
+              err);
+    if (crossings.count > 0)
+        fail_msg("label %u crosses itself %zu times", label, crossings.count);
+    cw_crossings_free(&crossings);
+    cw_mesh_free(&mesh);
+}
+
+/* Checks the whole: patches in order, each triangle in one, and no crossings of patches but
+ * along the curves that they share. */
+static void check_whole(const cw_label_surfaces *s)
+{
+    size_t next = 0;
+    for (size_t p = 0; p < s->patch_count; p++) {
+        const cw_label_patch *patch = &s->patches[p];
+        assert_true(patch->first == next && patch->count > 0);
+        assert_true(patch->labels[0] != patch->labels[1]);
+        assert_true(patch->labels[0] != s->background);
+        assert_true(patch->labels[1] == s->background || patch->labels[0] < patch->labels[1]);
+        if (p > 0)
+            assert_true(s->patches[p - 1].labels[0] < patch->labels[0] ||
+                        s->patches[p - 1].labels[1] < patch->labels[1]);
+        next += patch->count;
+    }
+    assert_true(next == s->mesh.triangle_count);
+    cw_crossings crossings = {0};
+    cw_error err = {0};
+    assert_ok(cw_self_intersections(&s->mesh, &(cw_crossings_desc){.threads = 1}, &crossings,
+                                    &err),
+              err);
+    if (crossings.count > 0)
+        fail_msg("patches cross each other %zu times", crossings.count);
+    cw_crossings_free(&crossings);
+}
+
+/* Extracts a map and checks all of it. */
+static void check_map(const cw_volume *v, const cw_labels_desc *desc)
+{
+    cw_label_surfaces s;
+    cw_error err = {0};
+    assert_ok(cw_extract_labels(v, desc, &s, &err), err);
+    check_whole(&s);
+    for (size_t n = 0; n < s.label_count; n++)
+        check_label(&s, s.labels[n].label);
+    cw_label_surfaces_free(&s);
+}
+
+/* Goes through all ways to label 8 voxels, with 0 as background, up to other names: the number
+ * of a label is at most one above those before. Returns the number of ways. */
+static size_t each_labelling(uint32_t labels[8], int n, uint32_t most, cw_volume *v)
+{
+    if (n == 8) {
+        uint32_t *to = cw_volume_voxels(v);
+        memcpy(to, labels, 8 * sizeof *to);
+        if (most > 0)
+            check_map(v, NULL);
+        return 1;
+    }
+    size_t count = 0;
+    for (uint32_t label = 0; label <= most + 1; label++) {
+        labels[n] = label;
+        count += each_labelling(labels, n + 1, label > most ? label : most, v);
+    }
+    return count;
+}
+
+static void every_neighbourhood_is_right(void **state)
+{
+    (void)state;
+    cw_volume v = {0};
+    uint32_t labels[8];
+    make_map(&v, 2, 2, 2);
+    assert_int_equal(each_labelling(labels, 0, 0, &v), 21147);
+    cw_volume_free(&v);
+}
+
+static void random_maps_are_right(void **state)
+{
+    (void)state;
+    test_seed(7);
+    for (int n = 0; n < test_rounds(1000); n++) {
+        static const uint32_t counts[] = {2, 3, 5, 50};
+        cw_volume v = {0};
+        size_t dim[3];
+        for (int a = 0; a < 3; a++)
+            dim[a] = 4 + (size_t)(rand() % 9);
+        uint32_t *to = make_map(&v, dim[0], dim[1], dim[2]);
+        const uint32_t labels = counts[rand() % 4];
+        for (size_t i = 0; i < dim[0] * dim[1] * dim[2]; i++)
+            to[i] = (uint32_t)rand() % labels;
+        check_map(&v, NULL);
+        cw_volume_free(&v);
+    }
+}
+
+/* Spheres that come closer until all eight meet in the middle. */
+static void spheres_that_meet_are_right(void **state)
+{
+    (void)state;
+    enum { SIDE = 32 };
+    cw_volume v = {0};
+    uint32_t *to = make_map(&v, SIDE, SIDE, SIDE);
+    for (int step = 0; step < 6; step++) {
+        for (size_t n = 0; n < SIDE * SIDE * SIDE; n++) {
+            const double p[3] = {(double)(n % SIDE), (double)(n / SIDE % SIDE),
+                                 (double)(n / SIDE / SIDE)};
+            double square = 0;
+            uint32_t label = 1;
+            for (int a = 0; a < 3; a++) {
+                const double middle = (SIDE - 1) / 2.0, away = fabs(p[a] - middle);
+                square += (away - 9) * (away - 9);
+                label += (p[a] > middle) << a;
+            }
+            to[n] = sqrt(square) < 5 + 2.2 * step ? label : 0;
+        }
+        check_map(&v, NULL);
+    }
+    cw_volume_free(&v);
+}
+
+static void volumes_are_those_of_voxels(void **state)
+{
+    (void)state;
+    cw_volume v = {0};
+    cw_label_surfaces s;
+    cw_mesh mesh;
+    cw_quality q;
+    cw_error err = {0};
+    uint32_t *to = make_map(&v, 20, 20, 20);
+    for (size_t n = 0; n < 8000; n++)
+        to[n] = n % 20 < 10 ? 4294967295u : n / 20 % 20 < 7 ? 3 : 70000;
+    for (int a = 0; a < 3; a++)
+        v.affine[a][a] = (double[]){-0.5, 2, 1e-3}[a]; /* mirrored */
+    assert_ok(cw_extract_labels(&v, NULL, &s, &err), err);
+    assert_int_equal(s.label_count, 3);
+    assert_int_equal(s.labels[0].voxels, 10 * 7 * 20);
+    assert_int_equal(s.labels[2].label, 4294967295u);
+    for (int n = 0; n < 3; n++) {
+        assert_ok(cw_label_mesh(&s, s.labels[n].label, &mesh, &err), err);
+        assert_ok(cw_quality_measure(&mesh, NULL, &q, &err), err);
+        /* edges and corners of the box are cut */
+        assert_near(q.volume_mm3, 1e-3 * (double)s.labels[n].voxels,
+                    0.02e-3 * (double)s.labels[n].voxels);
+        cw_mesh_free(&mesh);
+    }
+    assert_int_equal(s.patch_count, 6);
+    cw_label_surfaces_free(&s);
+    cw_volume_free(&v);
+}
+
+/* The same bytes for any number of threads, and from any type that holds the labels. */
+static void types_and_threads_change_nothing(void **state)
+{
+    (void)state;
+    static const cw_type types[] = {CW_U8, CW_I8, CW_U16, CW_I16, CW_U32, CW_I32, CW_F32, CW_F64};
+    cw_volume v = {0};
+    cw_label_surfaces first, s;
+    cw_error err = {0};
+    test_seed(3);
+    uint32_t *to = make_map(&v, 30, 20, 70);
+    for (size_t n = 0; n < 30 * 20 * 70; n++)
+        to[n] = n > 0 && rand() % 4 ? to[n - 1] : (uint32_t)rand() % 100;
+    assert_ok(cw_extract_labels(&v, &(cw_labels_desc){.threads = 1}, &first, &err), err);
+    for (size_t n = 0; n < sizeof types / sizeof *types; n++) {
+        cw_volume other = {0};
+        assert_ok(cw_volume_alloc(&other, types[n], v.dim, 1, 1, &err), err);
+        char *voxels = cw_volume_voxels(&other);
+        for (size_t i = 0; i < 30 * 20 * 70; i++) {
+            char *p = voxels + i * cw_type_size(types[n]);
+            switch (types[n]) {
+#define CASE(name, ctype)                                                                      \
+    case name:                                                                                 \
+        *(ctype *)p = (ctype)to[i];                                                            \
+        break;
+                CASE(CW_U8, uint8_t)
+                CASE(CW_I8, int8_t)
+                CASE(CW_U16, uint16_t)
+                CASE(CW_I16, int16_t)
+                CASE(CW_U32, uint32_t)
+                CASE(CW_I32, int32_t)
+                CASE(CW_F32, float)
+                CASE(CW_F64, double)
+#undef CASE
+            default:
+                break;
+            }
+        }
+        assert_ok(cw_extract_labels(&other, &(cw_labels_desc){.threads = 3}, &s, &err), err);
+        assert_int_equal(s.mesh.triangle_count, first.mesh.triangle_count);
+        assert_int_equal(s.mesh.vertex_count, first.mesh.vertex_count);
+        assert_memory_equal(s.mesh.triangles, first.mesh.triangles,
+                            12 * s.mesh.triangle_count);
+        assert_memory_equal(s.mesh.positions, first.mesh.positions, 12 * s.mesh.vertex_count);
+        cw_label_surfaces_free(&s);
+        cw_volume_free(&other);
+    }
+    cw_label_surfaces_free(&first);
+    cw_volume_free(&v);
+}
+
+static void wanted_labels_alone_are_extracted(void **state)
+{
+    (void)state;
+    cw_volume v = {0};
+    cw_label_surfaces s;
+    cw_error err = {0};
+    const uint32_t wanted[] = {9, 2, 77};
+    uint32_t *to = make_map(&v, 12, 6, 6);
+    for (size_t n = 0; n < 12 * 36; n++)
+        to[n] = n % 12 < 4 ? 2 : n % 12 < 8 ? 5 : 9;
+    assert_ok(cw_extract_labels(
+                  &v, &(cw_labels_desc){.labels = wanted, .label_count = 3}, &s, &err),
+              err);
+    assert_int_equal(s.label_count, 2);
+    assert_int_equal(s.patch_count, 2);
+    assert_true(s.labels[0].label == 2 && s.labels[1].label == 9);
+    cw_label_surfaces_free(&s);
+    check_map(&v, &(cw_labels_desc){.background = 5});
+    cw_volume_free(&v);
+}
+
+/* Open borders are the ends of the volume, and all else is closed. */
+static void open_borders_are_at_the_end(void **state)
+{
+    (void)state;
+    cw_volume v = {0};
+    cw_label_surfaces s;
+    cw_quality q;
+    cw_error err = {0};
+    uint32_t *to = make_map(&v, 10, 10, 10);
+    for (size_t n = 0; n < 1000; n++)
+        to[n] = n / 100 < 5 ? 1 : 2;
+    assert_ok(cw_extract_labels(&v, &(cw_labels_desc){.leave_open = true}, &s, &err), err);
+    assert_int_equal(s.patch_count, 1);
+    assert_ok(cw_quality_measure(&s.mesh, NULL, &q, &err), err);
+    assert_int_equal(q.border_loops, 1);
+    assert_near(q.area_mm2, 100, 1e-3);
+    assert_near(q.min[2], 4.5, 1e-6);
+    assert_near(q.min[0], -0.5, 1e-6);
+    cw_label_surfaces_free(&s);
+    cw_volume_free(&v);
+}
+
+static void unusable_values_are_named(void **state)
+{
+    (void)state;
+    static const double values[] = {-1, 0.5, 4294967296.0, INFINITY};
+    cw_volume v = {0};
+    cw_label_surfaces s;
+    cw_error err = {0};
+    assert_ok(cw_volume_alloc(&v, CW_F64, (size_t[]){5, 6, 40}, 1, 1, &err), err);
+    double *to = cw_volume_voxels(&v);
+    for (int n = 0; n < 4; n++) {
+        memset(to, 0, 5 * 6 * 40 * sizeof *to);
+        to[(37 * 6 + 1) * 5 + 1] = -7;
+        to[(20 * 6 + 3) * 5 + 2] = values[n];
+        assert_fails(cw_extract_labels(&v, NULL, &s, &err), CW_ERR_ARGUMENT,
+                     "voxel 2, 3, 20 is ", err);
+        assert_true(s.mesh.triangles == NULL);
+    }
+    memset(to, 0, 5 * 6 * 40 * sizeof *to);
+    to[3] = NAN; /* no value: background */
+    to[100] = 8;
+    check_map(&v, NULL);
+    assert_fails(cw_extract_labels(&v, &(cw_labels_desc){.max_triangles = 3}, &s, &err),
+                 CW_ERR_LIMIT, "more than 3", err);
+    assert_fails(cw_extract_labels(&v, &(cw_labels_desc){.label_count = 3}, &s, &err),
+                 CW_ERR_ARGUMENT, "none are named", err);
+    cw_volume_free(&v);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(every_neighbourhood_is_right),
+                                       cmocka_unit_test(random_maps_are_right),
+                                       cmocka_unit_test(spheres_that_meet_are_right),
+                                       cmocka_unit_test(volumes_are_those_of_voxels),
+                                       cmocka_unit_test(types_and_threads_change_nothing),
+                                       cmocka_unit_test(wanted_labels_alone_are_extracted),
+                                       cmocka_unit_test(open_borders_are_at_the_end),
+                                       cmocka_unit_test(unusable_values_are_named)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
