@@ -2,9 +2,11 @@
  * the triangles of each pair of labels, and a second one writes them where they belong. Layers
  * are worked on in chunks, so that the result does not depend on threads. */
 #include <cubewright/labels.h>
+#include <cubewright/quality.h>
 
 #include "extract/labels/label_cubes.h"
 #include "extract/labels/label_layers.h"
+#include "extract/labels/label_smooth.h"
 #include "extract/labels/label_table.h"
 
 #include "core/base/memory.h"
@@ -18,7 +20,8 @@
 #include <string.h>
 
 enum {
-    CHUNK = 16, /* layers of cubes */
+    CHUNK = 16,       /* layers of cubes */
+    PLACES = 1 << 14, /* vertices */
     WORK = 4    /* one voxel takes as long as this number elsewhere */
 };
 
@@ -39,6 +42,8 @@ typedef struct job {
     const cwi_label_ring *rings;
     double corners[CWI_TETS][3]; /* vertices of tetrahedra, from the cube's middle */
     bool is_mirrored;
+    cwi_label_net net;
+    float *originals; /* places before smoothing; NULL: there is none */
     cw_label_surfaces *out;
     chunk *chunks;
     bool is_writing; /* the second pass */
@@ -218,18 +223,46 @@ static bool take_layer(scan *s, size_t k)
 /* Puts a vertex at a place counted in voxels, from the first. */
 static void put_vertex(const job *j, const double place[3], uint32_t number)
 {
-    const cw_volume *v = j->layers.volume;
-    cw_mesh *mesh = &j->out->mesh;
-    double at[3], world[3];
-    for (int a = 0; a < 3; a++) {
-        const double low = floor(place[a]);
-        at[a] = v->dim[a] > 1 ? cwi_grid_coordinate(v, a, (ptrdiff_t)low, place[a] - low)
-                : v->coordinates[a] ? v->coordinates[a][0] + place[a]
-                                    : place[a];
-    }
-    cwi_affine_apply(v->affine[0], at, world);
+    float *to = j->out->mesh.positions + 3 * (size_t)number;
     for (int a = 0; a < 3; a++)
-        mesh->positions[3 * (size_t)number + (size_t)a] = (float)(world[a] - mesh->origin[a]);
+        to[a] = (float)place[a];
+}
+
+/* Sets a bit of a vertex's kind; another chunk may set another one. */
+static void mark_kind(uint8_t *kind, bool is_curve, int bit)
+{
+    if (is_curve) {
+#pragma omp atomic
+        *kind |= (uint8_t)(1 << bit);
+    }
+}
+
+/* Tells a cube and the one before it along an axis that they are neighbours, if the face
+ * between them is part of an interface; and if three labels meet there. */
+static void join_cubes(const scan *s, size_t n, int axis)
+{
+    const size_t back[3] = {1, s->width, 0};
+    const int layer = axis == 2 ? 0 : 1;
+    const size_t other = n - back[axis];
+    cwi_label_net *net = &s->job->net;
+    uint32_t c[8];
+    load_corners(s, n % s->width, n / s->width, c);
+    const int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3;
+    const uint32_t around[4] = {c[0], c[u], c[u | v], c[v]};
+    int changes = 0;
+    for (int i = 0; i < 4; i++)
+        changes += around[i] != around[(i + 1) % 4];
+    if (changes == 0)
+        return;
+    const uint32_t here = s->firsts[1][n], there = s->firsts[layer][other];
+    if (s->shapes[1][n] == CWI_CUBE_SIMPLE) {
+        net->neighbours[here][axis] = there;
+        mark_kind(&net->kinds[here], changes > 2, axis);
+    }
+    if (s->shapes[layer][other] == CWI_CUBE_SIMPLE) {
+        net->neighbours[there][axis + 3] = here;
+        mark_kind(&net->kinds[there], changes > 2, axis + 3);
+    }
 }
 
 static void put_vertices(const scan *s, size_t k)
@@ -239,8 +272,18 @@ static void put_vertices(const scan *s, size_t k)
         const double middle[3] = {(double)(n % s->width) - 0.5, (double)(n / s->width) - 0.5,
                                   (double)k - 0.5};
         uint32_t number = s->firsts[1][n];
+        if (!shape)
+            continue;
         if (shape == CWI_CUBE_SIMPLE)
             put_vertex(s->job, middle, number);
+        if (s->job->net.kinds) {
+            const bool has_below[3] = {n % s->width > 0, n / s->width > 0, k > 0};
+            for (size_t v = 0; v < count_vertices(shape) && shape != CWI_CUBE_SIMPLE; v++)
+                s->job->net.kinds[number + v] = CWI_NET_FIXED;
+            for (int a = 0; a < 3; a++)
+                if (has_below[a])
+                    join_cubes(s, n, a);
+        }
         for (int t = 0; t < CWI_TETS && shape != CWI_CUBE_SIMPLE; t++) {
             const double *c = s->job->corners[t];
             if (shape >> t & 1)
@@ -249,6 +292,56 @@ static void put_vertices(const scan *s, size_t k)
                            number++);
         }
     }
+}
+
+/* Converts a place to a world point, from the mesh's origin. */
+static void place_vertex(const job *j, const float place[3], float point[3])
+{
+    const cw_volume *v = j->layers.volume;
+    double at[3], world[3];
+    for (int a = 0; a < 3; a++) {
+        const double p = (double)place[a], low = floor(p);
+        at[a] = v->dim[a] > 1       ? cwi_grid_coordinate(v, a, (ptrdiff_t)low, p - low)
+                : v->coordinates[a] ? v->coordinates[a][0] + p
+                                    : p;
+    }
+    cwi_affine_apply(v->affine[0], at, world);
+    for (int a = 0; a < 3; a++)
+        point[a] = (float)(world[a] - j->out->mesh.origin[a]);
+}
+
+static void place_part(void *context, size_t n)
+{
+    const job *j = context;
+    const size_t count = j->out->mesh.vertex_count;
+    for (size_t i = n * PLACES; i < (n + 1) * PLACES && i < count; i++)
+        place_vertex(j, j->out->mesh.positions + 3 * i, j->out->mesh.positions + 3 * i);
+}
+
+/* Puts the vertices of a triangle back to where they were before smoothing. */
+static void put_back(const job *j, size_t triangle)
+{
+    cw_mesh *mesh = &j->out->mesh;
+    for (size_t c = 0; c < 3; c++) {
+        const size_t v = mesh->triangles[3 * triangle + c];
+        place_vertex(j, j->originals + 3 * v, mesh->positions + 3 * v);
+    }
+}
+
+/* Puts vertices back until no triangles cross, which none did before smoothing. */
+static cw_status untangle(const job *j, const cw_labels_desc *desc, cw_error *err)
+{
+    const cw_crossings_desc how = {.threads = desc->threads, .progress = desc->progress};
+    cw_crossings crossings = {0};
+    cw_status st = CW_OK;
+    do {
+        cw_crossings_free(&crossings);
+        st = cw_self_intersections(&j->out->mesh, &how, &crossings, err);
+        for (size_t n = 0; n < 2 * crossings.count && st == CW_OK; n++)
+            put_back(j, crossings.pairs[n]);
+    } while (st == CW_OK && crossings.count > 0);
+    cw_crossings_free(&crossings);
+    return st;
 }
 
 /* Counts the voxels of a layer without its border, by runs. */
@@ -463,9 +556,10 @@ static cw_status number_vertices(const job *j, size_t chunks, cw_error *err)
     return CW_OK;
 }
 
-static cw_status make_room(const job *j, const cw_labels_desc *desc, cw_error *err)
+static cw_status make_room(job *j, const cw_labels_desc *desc, cw_error *err)
 {
     const cw_volume *v = j->layers.volume;
+    cwi_label_net *net = &j->net;
     cw_mesh *mesh = &j->out->mesh;
     double middle[3];
     if (desc->max_triangles > 0 && mesh->triangle_count > desc->max_triangles)
@@ -473,7 +567,15 @@ static cw_status make_room(const job *j, const cw_labels_desc *desc, cw_error *e
                         mesh->triangle_count, desc->max_triangles);
     mesh->positions = cwi_alloc_large(mesh->vertex_count, 3 * sizeof *mesh->positions);
     mesh->triangles = cwi_alloc_large(mesh->triangle_count, 3 * sizeof *mesh->triangles);
-    if (!mesh->positions || !mesh->triangles)
+    if (!desc->no_smoothing && mesh->vertex_count > 0) {
+        net->neighbours = cwi_alloc_array(mesh->vertex_count, sizeof *net->neighbours);
+        net->kinds = cwi_alloc_zeroed(mesh->vertex_count, 1);
+        j->originals = cwi_alloc_large(mesh->vertex_count, 3 * sizeof *j->originals);
+        if (net->neighbours)
+            memset(net->neighbours, 0xff, mesh->vertex_count * sizeof *net->neighbours);
+    }
+    if (!mesh->positions || !mesh->triangles ||
+        (!desc->no_smoothing && mesh->vertex_count > 0 && !(net->neighbours && net->kinds && j->originals)))
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu triangles",
                         mesh->triangle_count);
     for (int a = 0; a < 3; a++)
@@ -518,6 +620,19 @@ static cw_status run_job(job *j, const cw_labels_desc *desc, cw_error *err)
     j->is_writing = true;
     if (st == CW_OK)
         st = run_pass(j, chunks, desc, err);
+    if (st == CW_OK && j->originals) {
+        memcpy(j->originals, j->out->mesh.positions,
+               3 * j->out->mesh.vertex_count * sizeof *j->originals);
+        st = cwi_labels_smooth(&j->net, j->originals, j->out, desc, j->layers.volume->dim, err);
+    }
+    if (st == CW_OK)
+        st = cwi_each_layer((j->out->mesh.vertex_count + PLACES - 1) / PLACES, PLACES,
+                            desc->threads, &desc->progress, "placing", place_part, j, err);
+    if (st == CW_OK && j->originals)
+        st = untangle(j, desc, err);
+    cwi_free(j->net.neighbours);
+    cwi_free(j->net.kinds);
+    cwi_free(j->originals);
     for (size_t c = 0; c < chunks; c++) {
         cwi_label_table_free(&j->chunks[c].pairs);
         cwi_label_table_free(&j->chunks[c].voxels);

@@ -16,6 +16,9 @@ typedef struct cw_labels_desc {
                                background */
     size_t label_count;     /* default: all but the background */
     uint32_t background;    /* the label of what is no object; also beyond the volume */
+    bool no_smoothing;      /* default: interfaces are smoothed together, see below */
+    double max_move;        /* of a vertex by smoothing, along each axis of the grid, in voxels:
+                               up to 0.5, which is the default */
     bool leave_open;        /* default: cap labels half a voxel beyond the volume's border */
     int threads;            /* default: all that OpenMP offers */
     size_t max_triangles;   /* fail with CW_ERR_LIMIT before allocating more; default: no limit */
