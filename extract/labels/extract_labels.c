@@ -2,12 +2,12 @@
  * the triangles of each pair of labels, and a second one writes them where they belong. Layers
  * are worked on in chunks, so that the result does not depend on threads. */
 #include <cubewright/labels.h>
-#include <cubewright/quality.h>
 
 #include "extract/labels/label_cubes.h"
 #include "extract/labels/label_layers.h"
 #include "extract/labels/label_smooth.h"
 #include "extract/labels/label_table.h"
+#include "extract/labels/label_untangle.h"
 
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
@@ -22,7 +22,7 @@
 enum {
     CHUNK = 16,       /* layers of cubes */
     PLACES = 1 << 14, /* vertices */
-    WORK = 4    /* one voxel takes as long as this number elsewhere */
+    WORK = 4          /* one voxel takes as long as this number elsewhere */
 };
 
 /* Tetrahedra of a cube that is not one point have vertices this far from the cube's middle to
@@ -157,8 +157,7 @@ static int find_polygon(const scan *s, int edge, size_t x, size_t y, uint32_t po
 static bool order_pair(const job *j, uint32_t pair[2])
 {
     const uint32_t background = j->layers.background;
-    const bool changes =
-        pair[0] == background || (pair[1] != background && pair[0] > pair[1]);
+    const bool changes = pair[0] == background || (pair[1] != background && pair[0] > pair[1]);
     if (changes) {
         const uint32_t first = pair[0];
         pair[0] = pair[1];
@@ -310,38 +309,17 @@ static void place_vertex(const job *j, const float place[3], float point[3])
         point[a] = (float)(world[a] - j->out->mesh.origin[a]);
 }
 
+static void place_one(const void *context, const float place[3], float point[3])
+{
+    place_vertex(context, place, point);
+}
+
 static void place_part(void *context, size_t n)
 {
     const job *j = context;
     const size_t count = j->out->mesh.vertex_count;
     for (size_t i = n * PLACES; i < (n + 1) * PLACES && i < count; i++)
         place_vertex(j, j->out->mesh.positions + 3 * i, j->out->mesh.positions + 3 * i);
-}
-
-/* Puts the vertices of a triangle back to where they were before smoothing. */
-static void put_back(const job *j, size_t triangle)
-{
-    cw_mesh *mesh = &j->out->mesh;
-    for (size_t c = 0; c < 3; c++) {
-        const size_t v = mesh->triangles[3 * triangle + c];
-        place_vertex(j, j->originals + 3 * v, mesh->positions + 3 * v);
-    }
-}
-
-/* Puts vertices back until no triangles cross, which none did before smoothing. */
-static cw_status untangle(const job *j, const cw_labels_desc *desc, cw_error *err)
-{
-    const cw_crossings_desc how = {.threads = desc->threads, .progress = desc->progress};
-    cw_crossings crossings = {0};
-    cw_status st = CW_OK;
-    do {
-        cw_crossings_free(&crossings);
-        st = cw_self_intersections(&j->out->mesh, &how, &crossings, err);
-        for (size_t n = 0; n < 2 * crossings.count && st == CW_OK; n++)
-            put_back(j, crossings.pairs[n]);
-    } while (st == CW_OK && crossings.count > 0);
-    cw_crossings_free(&crossings);
-    return st;
 }
 
 /* Counts the voxels of a layer without its border, by runs. */
@@ -383,9 +361,10 @@ static bool load_layer(scan *s, size_t k)
         return true;
 #pragma omp critical(cwi_labels_bad)
     {
-        const bool is_first = !j->is_bad || bad[2] < j->bad[2] ||
-                              (bad[2] == j->bad[2] &&
-                               (bad[1] < j->bad[1] || (bad[1] == j->bad[1] && bad[0] < j->bad[0])));
+        const bool is_first =
+            !j->is_bad || bad[2] < j->bad[2] ||
+            (bad[2] == j->bad[2] &&
+             (bad[1] < j->bad[1] || (bad[1] == j->bad[1] && bad[0] < j->bad[0])));
         if (is_first)
             memcpy(j->bad, bad, sizeof bad);
         j->is_bad = true;
@@ -575,7 +554,8 @@ static cw_status make_room(job *j, const cw_labels_desc *desc, cw_error *err)
             memset(net->neighbours, 0xff, mesh->vertex_count * sizeof *net->neighbours);
     }
     if (!mesh->positions || !mesh->triangles ||
-        (!desc->no_smoothing && mesh->vertex_count > 0 && !(net->neighbours && net->kinds && j->originals)))
+        (!desc->no_smoothing && mesh->vertex_count > 0 &&
+         !(net->neighbours && net->kinds && j->originals)))
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu triangles",
                         mesh->triangle_count);
     for (int a = 0; a < 3; a++)
@@ -629,7 +609,7 @@ static cw_status run_job(job *j, const cw_labels_desc *desc, cw_error *err)
         st = cwi_each_layer((j->out->mesh.vertex_count + PLACES - 1) / PLACES, PLACES,
                             desc->threads, &desc->progress, "placing", place_part, j, err);
     if (st == CW_OK && j->originals)
-        st = untangle(j, desc, err);
+        st = cwi_labels_untangle(j->out, j->originals, place_one, j, desc, err);
     cwi_free(j->net.neighbours);
     cwi_free(j->net.kinds);
     cwi_free(j->originals);
@@ -685,6 +665,9 @@ cw_status cw_extract_labels(const cw_volume *volume, const cw_labels_desc *desc,
         st = cwi_volume_expect_dense(&v, "extracting labels", err);
     if (st != CW_OK)
         return st;
+    if (!(desc->max_move >= 0 && desc->max_move <= 0.5))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "vertices move by %g voxels: 0 to 0.5 was expected", desc->max_move);
     if (desc->label_count > 0 && !desc->labels)
         return cwi_fail(err, CW_ERR_ARGUMENT, "%zu labels are wanted, but none are named",
                         desc->label_count);

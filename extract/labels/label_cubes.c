@@ -14,8 +14,7 @@ static void make_tets(uint8_t tets[CWI_TETS])
     for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++)
             if (a != b)
-                tets[count++] =
-                    (uint8_t)(1 | 1 << (1 << a) | 1 << (1 << a | 1 << b) | 1 << 7);
+                tets[count++] = (uint8_t)(1 | 1 << (1 << a) | 1 << (1 << a | 1 << b) | 1 << 7);
 }
 
 /* Returns true if an edge of tetrahedra joins two corners: one rises from the other. */
@@ -83,9 +82,9 @@ static int find_around(const uint8_t tets[CWI_TETS], int edge, around *found)
                 next->cube[a] = (int8_t) - (c >> a & 1);
             for (int p = 0; p < 8; p++)
                 if (tets[t] >> p & 1)
-                    next->corners |= 1u << (((p >> 2) - (c >> 2) + 1) * 9 +
-                                            ((p >> 1 & 1) - (c >> 1 & 1) + 1) * 3 +
-                                            ((p & 1) - (c & 1) + 1));
+                    next->corners |=
+                        1u << (((p >> 2) - (c >> 2) + 1) * 9 +
+                               ((p >> 1 & 1) - (c >> 1 & 1) + 1) * 3 + ((p & 1) - (c & 1) + 1));
             count++;
         }
     return count;
@@ -145,8 +144,7 @@ void cwi_label_rules_make(cwi_label_rules *r)
     memset(r, 0, sizeof *r);
     make_tets(r->tets);
     for (int n = 0; n < 256; n++)
-        r->is_simple[n] =
-            is_connected(n) && is_connected(WHOLE & ~n) && !has_split_face(n);
+        r->is_simple[n] = is_connected(n) && is_connected(WHOLE & ~n) && !has_split_face(n);
     for (int edge = 1; edge < 8; edge++)
         make_ring(r->tets, edge, &r->rings[edge]);
 }

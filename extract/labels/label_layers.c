@@ -110,8 +110,8 @@ bool cwi_label_layer_load(const cwi_label_layers *l, size_t k, uint32_t *out, si
     }
     for (size_t j = 0; j < ny; j++) {
         uint32_t *row = out + (j + 1) * l->width;
-        const char *from = (const char *)v->data + (ptrdiff_t)j * v->stride[1] +
-                           (ptrdiff_t)at * v->stride[2];
+        const char *from =
+            (const char *)v->data + (ptrdiff_t)j * v->stride[1] + (ptrdiff_t)at * v->stride[2];
         const size_t good = load_row(l, from, row + 1);
         if (good < nx) {
             bad[0] = good, bad[1] = j, bad[2] = at;

@@ -37,7 +37,8 @@ static bool copy_patch(const cw_label_surfaces *s, const cw_label_patch *patch, 
     return true;
 }
 
-cw_status cw_label_mesh(const cw_label_surfaces *s, uint32_t label, cw_mesh *mesh, cw_error *err)
+cw_status cw_label_mesh(const cw_label_surfaces *s, uint32_t label, cw_mesh *mesh,
+                        cw_error *err)
 {
     cwi_label_table numbers = {0};
     size_t triangles = 0;

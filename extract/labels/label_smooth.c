@@ -41,8 +41,7 @@ static void keep_in_box(const smoother *s, size_t v, float p[3])
     const float *o = s->originals + 3 * v;
     for (int a = 0; a < 3; a++) {
         const float low = o[a] - s->bound, high = o[a] + s->bound;
-        const bool is_border =
-            s->is_open && (o[a] < 0 || o[a] > (float)s->dim[a] - 1);
+        const bool is_border = s->is_open && (o[a] < 0 || o[a] > (float)s->dim[a] - 1);
         p[a] = is_border ? o[a] : p[a] < low ? low : p[a] > high ? high : p[a];
     }
 }

@@ -14,7 +14,7 @@ enum { CWI_NET_FIXED = 0x40 };
 typedef struct cwi_label_net {
     uint32_t (*neighbours)[6]; /* below and above along each axis: x-, y-, z-, x+, y+, z+;
                                   UINT32_MAX: none */
-    uint8_t *kinds; /* bit n: three labels or more meet on the way to neighbour n; or
+    uint8_t *kinds;            /* bit n: three labels or more meet on the way to neighbour n; or
                        CWI_NET_FIXED: the vertex stays */
 } cwi_label_net;
 

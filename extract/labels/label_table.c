@@ -39,6 +39,11 @@ cwi_label_entry *cwi_label_table_need(cwi_label_table *t, uint64_t key)
     return entry;
 }
 
+bool cwi_label_table_has(const cwi_label_table *t, uint64_t key)
+{
+    return t->size > 0 && t->entries[find_place(t, key)].key == key;
+}
+
 void cwi_label_table_free(cwi_label_table *t)
 {
     cwi_free(t->entries);

@@ -22,6 +22,8 @@ typedef struct cwi_label_table {
 /* Finds the entry of a key, or makes one with a count of 0; valid until the next call. NULL when
  * memory is out. */
 cwi_label_entry *cwi_label_table_need(cwi_label_table *table, uint64_t key);
+/* Returns true if there is an entry of the key. */
+bool cwi_label_table_has(const cwi_label_table *table, uint64_t key);
 void cwi_label_table_free(cwi_label_table *table);
 
 #ifdef __cplusplus

@@ -21,8 +21,8 @@ typedef struct cw_labels_desc {
                                up to 0.5, which is the default */
     bool leave_open;        /* default: cap labels half a voxel beyond the volume's border */
     int threads;            /* default: all that OpenMP offers */
-    size_t max_triangles;   /* fail with CW_ERR_LIMIT before allocating more; default: no limit */
-    cw_progress progress;   /* default: none */
+    size_t max_triangles; /* fail with CW_ERR_LIMIT before allocating more; default: no limit */
+    cw_progress progress; /* default: none */
 } cw_labels_desc;
 
 /* The interface of two labels: triangles of cw_label_surfaces.mesh. */
@@ -41,11 +41,11 @@ typedef struct cw_label_count {
 /* All interfaces of a label map, which share their vertices. A zeroed struct is valid and
  * empty. */
 typedef struct cw_label_surfaces {
-    cw_mesh mesh;            /* without normals; not a manifold where three labels meet */
+    cw_mesh mesh; /* without normals; not a manifold where three labels meet */
     size_t patch_count;
     cw_label_patch *patches; /* in rising order of both labels */
     size_t label_count;
-    cw_label_count *labels;  /* rising, without the background */
+    cw_label_count *labels; /* rising, without the background */
     uint32_t background;
 } cw_label_surfaces;
 
@@ -61,13 +61,19 @@ typedef struct cw_label_surfaces {
  * tetrahedra can be one point without a change of topology, it is: then the surface is that of
  * surface nets, with a vertex in the middle of the cube.
  *
- * Vertices are in the world (LPS, millimetres). Without smoothing a surface is within 0.87
- * voxels of the faces of voxels.
+ * Smoothing moves vertices towards the mean of those in the cubes beside, 16 times, and those
+ * on curves where three labels meet along the curves, each within max_move of where it was. Then
+ * pressures, which move each interface along its normal by the difference of its labels'
+ * pressures, give every label the volume of its voxels; not where borders are open. Where
+ * triangles would cross, vertices go back. In cubes with more than one vertex they stay.
+ *
+ * Vertices are in the world (LPS, millimetres).
  *
  * volume    evenly spaced or rectilinear; values are whole numbers from 0 to 2^32 - 1, stored in
  *           any type. Voxels without a value are background
  * surfaces  filled on success, emptied on failure; free it with cw_label_surfaces_free()
- * Returns   CW_ERR_ARGUMENT  a value is no label, naming the voxel; as cw_volume_resolve()
+ * Returns   CW_ERR_ARGUMENT  a value is no label, naming the voxel; max_move is out of range; as
+ *           cw_volume_resolve()
  *           CW_ERR_UNSUPPORTED  sparse and irregular grids; CW_ERR_LIMIT: max_triangles, or
  *           2^32 - 1 vertices; CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
  * Cost      two passes over the voxels, and time in proportion to the interfaces

@@ -1,0 +1,24 @@
+/* Removal of crossings that smoothing made. */
+#ifndef EXTRACT_LABELS_LABEL_UNTANGLE_H
+#define EXTRACT_LABELS_LABEL_UNTANGLE_H
+
+#include <cubewright/labels.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Puts vertices back to where they were, until no triangles cross; none did then.
+ * originals  places counted in voxels, which place() turns into points of the mesh
+ * Returns    CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
+CW_NODISCARD cw_status cwi_labels_untangle(cw_label_surfaces *surfaces, const float *originals,
+                                           void (*place)(const void *context,
+                                                         const float place[3], float point[3]),
+                                           const void *context, const cw_labels_desc *desc,
+                                           cw_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
