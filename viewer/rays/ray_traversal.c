@@ -28,6 +28,15 @@ static ptrdiff_t cells_along(const cw_volume *v, int axis)
     return v->dim[axis] > 1 ? (ptrdiff_t)v->dim[axis] - 1 : 1;
 }
 
+/* Finds where the ray leaves the cell along an axis. */
+static void find_next_plane(cwi_walk *w, int axis)
+{
+    w->plane[axis] = w->slope[axis] != 0 && w->volume->dim[axis] > 1
+                         ? (double)(w->cell[axis] + (w->slope[axis] > 0))
+                         : INFINITY;
+    w->next[axis] = (w->plane[axis] - w->index[axis]) * w->inverse[axis];
+}
+
 void cwi_walk_start(cwi_walk *w, const cwi_frame *f, const cwi_ray *ray, int part)
 {
     *w = (cwi_walk){.volume = &f->volume,
@@ -35,15 +44,22 @@ void cwi_walk_start(cwi_walk *w, const cwi_frame *f, const cwi_ray *ray, int par
                     .shadows = f->shadows,
                     .t = ray->parts[part][0],
                     .stop = ray->parts[part][1]};
-    memcpy(w->index, ray->index, sizeof w->index);
-    memcpy(w->slope, ray->slope, sizeof w->slope);
+    w->next[3] = INFINITY;
     for (int a = 0; a < 3; a++) {
+        w->index[a] = ray->index[a];
+        w->slope[a] = ray->slope[a];
         const ptrdiff_t cells = cells_along(w->volume, a);
         const double at = w->volume->dim[a] > 1 ? floor(w->index[a] + w->t * w->slope[a]) : 0;
+        const bool rises = w->slope[a] > 0,
+                   is_crossed = w->slope[a] != 0 && w->volume->dim[a] > 1;
         w->cell[a] = (ptrdiff_t)fmin(fmax(at, 0), (double)(cells - 1));
-        w->end[a] = w->slope[a] > 0 ? cells : -1;
-        w->inverse[a] = 1 / w->slope[a];
-        w->next[a] = cwi_walk_plane(w, a);
+        w->step[a] = rises ? 1 : -1;
+        w->advance[a] = rises ? 1 : -1;
+        w->inverse[a] = is_crossed ? 1 / w->slope[a] : 1;
+        find_next_plane(w, a);
+        if (is_crossed)
+            w->stop = cwi_lesser(w->stop,
+                                 ((rises ? (double)cells : 0) - w->index[a]) * w->inverse[a]);
     }
 }
 
@@ -80,7 +96,7 @@ void cwi_walk_leap(cwi_walk *w, int edge, int distance)
         return;
     for (int a = 0; a < 3; a++) {
         w->cell[a] = a == leave ? cell : cell_after(w, a);
-        w->next[a] = cwi_walk_plane(w, a);
+        find_next_plane(w, a);
     }
     if (cell < 0 || cell >= cells_along(w->volume, leave))
         w->t = w->stop;
