@@ -248,17 +248,56 @@ static void pass_piece(state *s, const cwi_transfer_segment *piece, const double
     }
 }
 
+/* Fetches gradients at the cell's corners. Returns false if a cell beside it is missing, or has
+ * no value. */
+static bool fetch_gradients(const vbuffer *b, const cwi_walk *w, lanes g[3][2])
+{
+    const cw_volume *v = b->gradient_corners.volume;
+    const char *p = v->data;
+    for (int a = 0; a < 3; a++) {
+        if (w->at[a] < 1 || w->at[a] + 2 >= (ptrdiff_t)v->dim[a])
+            return false;
+        p += w->at[a] * v->stride[a];
+    }
+    return b->gradient_corners.gradients(&b->gradient_corners, p, g);
+}
+
+static void put_corners(const double corners[8], double scale, lanes out[2])
+{
+    float rows[2][4];
+    for (int n = 0; n < 8; n++)
+        rows[n & 1][n >> 1] = (float)(scale * corners[n]);
+    out[0] = cwi_lanes_load(rows[0]);
+    out[1] = cwi_lanes_load(rows[1]);
+}
+
+/* Finds gradients at the cell's corners, per voxel and in rows. */
+static void find_corner_gradients(const vbuffer *b, const cwi_walk *w, lanes g[3][2])
+{
+    double exact[3][8];
+    if (fetch_gradients(b, w, g))
+        return;
+    cwi_walk_gradients(w, exact);
+    for (int a = 0; a < 3; a++)
+        put_corners(exact[a], 1 / b->row_value, g[a]);
+}
+
+/* Finds the gradient, and shadows, along a cell that is cut. */
 static void find_gradients(state *s)
 {
-    double g[3][8], cubic[3][4], shadows[8];
+    lanes g[3][2];
+    double corners[8], cubic[3][4];
     s->has_gradient = true;
     if (s->b->frame->shadows) {
-        cwi_walk_shadows(&s->walk, shadows);
-        cwi_walk_cubic(&s->walk, shadows, s->shadow);
+        cwi_walk_shadows(&s->walk, corners);
+        cwi_walk_cubic(&s->walk, corners, s->shadow);
     }
-    cwi_walk_gradients(&s->walk, g);
-    for (int a = 0; a < 3; a++)
-        cwi_walk_cubic(&s->walk, g[a], cubic[a]);
+    find_corner_gradients(s->b, &s->walk, g);
+    for (int a = 0; a < 3; a++) {
+        for (int n = 0; n < 8; n++)
+            corners[n] = s->b->row_value * (double)g[a][n & 1][n >> 1];
+        cwi_walk_cubic(&s->walk, corners, cubic[a]);
+    }
     for (int a = 0; a < 3; a++)
         for (int n = 0; n < 4; n++)
             s->gradient[a][n] = s->b->to_eye[a][0] * cubic[0][n] +
@@ -288,45 +327,15 @@ static void pass_in_pieces(state *s)
     pass_cubic(s, value);
 }
 
-/* Fetches gradients at the cell's corners, per voxel and in rows. Returns false if a cell beside
- * it is missing, or has no value. */
-static bool fetch_gradients(const vbuffer *b, const cwi_walk *w, lanes g[3][2])
-{
-    const cw_volume *v = b->gradient_corners.volume;
-    const char *p = v->data;
-    for (int a = 0; a < 3; a++) {
-        if (w->at[a] < 1 || w->at[a] + 2 >= (ptrdiff_t)v->dim[a])
-            return false;
-        p += w->at[a] * v->stride[a];
-    }
-    return b->gradient_corners.gradients(&b->gradient_corners, p, g);
-}
-
-/* Computes the same where cells are missing. */
-static void compute_gradients(const vbuffer *b, const cwi_walk *w, lanes g[3][2])
-{
-    double exact[3][8];
-    cwi_walk_gradients(w, exact);
-    for (int a = 0; a < 3; a++) {
-        float rows[2][4];
-        for (int n = 0; n < 8; n++)
-            rows[n & 1][n >> 1] = (float)(exact[a][n] / b->row_value);
-        g[a][0] = cwi_lanes_load(rows[0]);
-        g[a][1] = cwi_lanes_load(rows[1]);
-    }
-}
-
 /* Adds the gradients and shadows at the two points of a cell to its place in the batch. */
 static void add_gradients(state *s, const lanes at[3], int cell)
 {
     lanes g[3][2], light[2] = {cwi_lanes_spread(1), cwi_lanes_spread(1)};
-    if (!fetch_gradients(s->b, &s->walk, g))
-        compute_gradients(s->b, &s->walk, g);
+    find_corner_gradients(s->b, &s->walk, g);
     if (s->b->frame->shadows) {
         double shadows[8];
         cwi_walk_shadows(&s->walk, shadows);
-        for (int n = 0; n < 8; n++)
-            light[n & 1][n >> 1] = (float)shadows[n];
+        put_corners(shadows, 1, light);
     }
     s->batch.gradient_xy[cell] = cwi_cell_corners_pair(g[0], g[1], at);
     s->batch.gradient_z_shadow[cell] = cwi_cell_corners_pair(g[2], light, at);

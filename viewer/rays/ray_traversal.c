@@ -187,16 +187,12 @@ void cwi_walk_gradients(const cwi_walk *w, double g[3][8])
 
 void cwi_walk_shadows(const cwi_walk *w, double shadows[8])
 {
-    const cw_volume *v = w->volume;
-    for (int n = 0; n < 8; n++) {
-        size_t at[3];
-        for (int a = 0; a < 3; a++)
-            at[a] = (size_t)w->at[a] + (v->dim[a] > 1 && (n >> a & 1));
+    const size_t *dim = w->volume->dim, row = dim[0], slice = dim[0] * dim[1];
+    const size_t side[3] = {dim[0] > 1, dim[1] > 1 ? row : 0, dim[2] > 1 ? slice : 0};
+    const size_t first = (size_t)w->at[2] * slice + (size_t)w->at[1] * row + (size_t)w->at[0];
+    for (int n = 0; n < 8; n++)
         shadows[n] = w->shadows
-                         ? (double)w->shadows[(at[2] * v->dim[1] + at[1]) * v->dim[0] + at[0]]
+                         ? (double)w->shadows[first + (n & 1 ? side[0] : 0) +
+                                              (n & 2 ? side[1] : 0) + (n & 4 ? side[2] : 0)]
                          : 1;
-    }
 }
-
-/* The roots of 3 c3 x^2 + 2 c2 x + c1, each by the form that does not cancel. Where there is
- * none, or a double one, the comparisons with infinity and NaN leave it out. */
