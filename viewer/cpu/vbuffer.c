@@ -2,10 +2,12 @@
  * cell it takes Gauss's two points, four values at a time: the trilinear field at both ends of
  * the cell and at both points. If these show that the transfer function has a breakpoint
  * between them, or that the cell takes much of the light, the cell is cut, as in the reference.
- * Blocks of cells that the transfer function leaves empty are skipped. Grids that are not evenly
- * spaced are always cut as in the reference, and take two points of each piece. */
+ * Other cells are passed in batches of four. Blocks of cells that the transfer function leaves
+ * empty are skipped. Grids that are not evenly spaced are always cut as in the reference, and
+ * take two points of each piece. */
 #include "viewer/cpu/vbuffer.h"
 
+#include "viewer/cpu/cell_batch.h"
 #include "viewer/cpu/pixel_beam.h"
 #include "viewer/rays/cell_corners.h"
 #include "viewer/rays/lanes.h"
@@ -27,10 +29,8 @@
 
 typedef cwi_lanes lanes;
 
-/* Two points of 0..1, both of weight 1/2. The way to a point takes this fraction of the value
- * at the other point: 1/4 -+ sqrt(3) / 6. */
-#define FIRST_POINT  0.21132486540518713
-#define SECOND_POINT 0.78867513459481287
+/* The way to a point takes this fraction of the value at the other point:
+ * 1/4 -+ sqrt(3) / 6. */
 static const float to_first = -0.038675134594812866f, to_second = 0.53867513459481287f;
 
 /* Maximum optical depth for which two points are enough. */
@@ -61,8 +61,11 @@ struct vbuffer {
     row_parts parts[CWI_TABLE_ROWS + 1];
     uint8_t *distances; /* of blocks to visible ones */
     cwi_cell_corners corners;
+    double per_opacity_unit; /* 1 / the length that opacities refer to */
     double to_eye[3][3];
-    float rows_to_eye[3][3]; /* of gradients in rows of the table */
+    cwi_cell_corners gradient_corners; /* of the frame's gradient volume */
+    double row_value;                  /* difference of the values of two rows */
+    float rows_to_eye[3][3];           /* to_eye, in single precision */
     bool has_gradients;
     bool is_even;
     cwi_field field; /* of a grid that is not even */
@@ -77,24 +80,17 @@ typedef struct state {
     const cwi_lighting *lighting;
     cwi_ray ray;
     cwi_walk walk;
+    float slope[3]; /* the ray's, in index space */
+    cwi_batch_scene scene;
+    cwi_cell_batch batch;
+    lanes colors[3]; /* sent by cells of batches, a sum in each lane */
     lanes color;
     float light;
     float background[3];
-    bool has_gradient;     /* the cell's: */
+    bool has_gradient;     /* of a cell in pieces: */
     double gradient[3][4]; /* cubics, eye space */
     double shadow[4];      /* cubic; 1 where there are none */
 } state;
-
-static inline lanes glow_of_row(const vbuffer *b, float row)
-{
-    const float most = (float)(CWI_TABLE_ROWS - 1);
-    const float at = row > 0 ? row < most ? row : most : 0;
-    int32_t n = (int32_t)at;
-    n = n > CWI_TABLE_ROWS - 2 ? CWI_TABLE_ROWS - 2 : n;
-    const lanes low = cwi_lanes_load(b->table.rows + 4 * n),
-                high = cwi_lanes_load(b->table.rows + 4 * n + 4);
-    return low + (at - (float)n) * (high - low);
-}
 
 /* Returns the distance along the ray of a place in the cell, 0 to 1. */
 static inline double distance_at(const state *s, double x)
@@ -180,6 +176,24 @@ static inline void pass_segment(state *s, lanes first, lanes second, float lengt
     s->light *= left[2];
 }
 
+/* Computes the extinction coefficient of an opacity as cwi_frame_extinction(), to a relative
+ * error of 1e-8. The logarithm of what is let through is that of its power of two, and
+ * 2 atanh((m - 1) / (m + 1)) of the rest m, from sqrt(1/2) to sqrt(2). */
+static inline double extinction_of(const vbuffer *b, double opacity)
+{
+    const double left = 1 - (opacity < CWI_MAX_OPACITY ? opacity : CWI_MAX_OPACITY);
+    const uint64_t one = 0x3ff0000000000000, root_of_half = 0x3fe6a09e667f3bcd;
+    uint64_t bits;
+    double m;
+    memcpy(&bits, &left, sizeof bits);
+    const int64_t power = (int64_t)((bits + (one - root_of_half)) >> 52) - 1023;
+    bits -= (uint64_t)power << 52;
+    memcpy(&m, &bits, sizeof m);
+    const double s = (m - 1) / (m + 1), z = s * s;
+    const double series = 1 + z * (1.0 / 3 + z * (1.0 / 5 + z * (1.0 / 7 + z * (1.0 / 9))));
+    return -(0.69314718055994531 * (double)power + 2 * s * series) * b->per_opacity_unit;
+}
+
 /* Computes the glow at a point of a piece, by the transfer function itself. */
 static lanes glow_of_piece(const state *s, const cwi_linear *l, const double value[4], double x)
 {
@@ -189,7 +203,7 @@ static lanes glow_of_piece(const state *s, const cwi_linear *l, const double val
     lanes glow;
     for (int c = 0; c < 3; c++)
         glow[c] = (float)(l->color[c] + v * l->color_slope[c]);
-    glow[3] = (float)cwi_frame_extinction(s->b->frame, opacity);
+    glow[3] = (float)extinction_of(s->b, opacity);
     double gradient[3] = {0};
     for (int a = 0; a < 3 && s->has_gradient; a++)
         gradient[a] = cwi_cubic_at(s->gradient[a], x);
@@ -217,9 +231,10 @@ static void pass_piece(state *s, const cwi_transfer_segment *piece, const double
     double width = piece->to - piece->from;
     for (int n = 0, parts = 1; n < parts; n++) {
         const double from = piece->from + n * width;
-        const lanes first = glow_of_piece(s, piece->linear, value, from + FIRST_POINT * width);
+        const lanes first =
+            glow_of_piece(s, piece->linear, value, from + CWI_FIRST_POINT * width);
         const lanes second =
-            glow_of_piece(s, piece->linear, value, from + SECOND_POINT * width);
+            glow_of_piece(s, piece->linear, value, from + CWI_SECOND_POINT * width);
         const float steepness = fabsf(first[3] - second[3]) * (float)width * length;
         if (parts == 1 &&
             (steepness > most_steepness || !is_told(s, first, second, (float)width * length))) {
@@ -233,17 +248,56 @@ static void pass_piece(state *s, const cwi_transfer_segment *piece, const double
     }
 }
 
+/* Fetches gradients at the cell's corners. Returns false if a cell beside it is missing, or has
+ * no value. */
+static bool fetch_gradients(const vbuffer *b, const cwi_walk *w, lanes g[3][2])
+{
+    const cw_volume *v = b->gradient_corners.volume;
+    const char *p = v->data;
+    for (int a = 0; a < 3; a++) {
+        if (w->at[a] < 1 || w->at[a] + 2 >= (ptrdiff_t)v->dim[a])
+            return false;
+        p += w->at[a] * v->stride[a];
+    }
+    return b->gradient_corners.gradients(&b->gradient_corners, p, g);
+}
+
+static void put_corners(const double corners[8], double scale, lanes out[2])
+{
+    float rows[2][4];
+    for (int n = 0; n < 8; n++)
+        rows[n & 1][n >> 1] = (float)(scale * corners[n]);
+    out[0] = cwi_lanes_load(rows[0]);
+    out[1] = cwi_lanes_load(rows[1]);
+}
+
+/* Finds gradients at the cell's corners, per voxel and in rows. */
+static void find_corner_gradients(const vbuffer *b, const cwi_walk *w, lanes g[3][2])
+{
+    double exact[3][8];
+    if (fetch_gradients(b, w, g))
+        return;
+    cwi_walk_gradients(w, exact);
+    for (int a = 0; a < 3; a++)
+        put_corners(exact[a], 1 / b->row_value, g[a]);
+}
+
+/* Finds the gradient, and shadows, along a cell that is cut. */
 static void find_gradients(state *s)
 {
-    double g[3][8], cubic[3][4], shadows[8];
+    lanes g[3][2];
+    double corners[8], cubic[3][4];
     s->has_gradient = true;
     if (s->b->frame->shadows) {
-        cwi_walk_shadows(&s->walk, shadows);
-        cwi_walk_cubic(&s->walk, shadows, s->shadow);
+        cwi_walk_shadows(&s->walk, corners);
+        cwi_walk_cubic(&s->walk, corners, s->shadow);
     }
-    cwi_walk_gradients(&s->walk, g);
-    for (int a = 0; a < 3; a++)
-        cwi_walk_cubic(&s->walk, g[a], cubic[a]);
+    find_corner_gradients(s->b, &s->walk, g);
+    for (int a = 0; a < 3; a++) {
+        for (int n = 0; n < 8; n++)
+            corners[n] = s->b->row_value * (double)g[a][n & 1][n >> 1];
+        cwi_walk_cubic(&s->walk, corners, cubic[a]);
+    }
     for (int a = 0; a < 3; a++)
         for (int n = 0; n < 4; n++)
             s->gradient[a][n] = s->b->to_eye[a][0] * cubic[0][n] +
@@ -273,62 +327,33 @@ static void pass_in_pieces(state *s)
     pass_cubic(s, value);
 }
 
-/* Fetches gradients at the cell's corners, per voxel and in rows, as values are: by the cells
- * on both sides along each axis. Returns false if a cell is missing on one side, or has no
- * value. */
-static bool fetch_gradients(const vbuffer *b, const cwi_walk *w, const char *p, lanes even,
-                            lanes odd, lanes g[3][2])
+/* Adds the gradients and shadows at the two points of a cell to its place in the batch. */
+static void add_gradients(state *s, const lanes at[3], int cell)
 {
-    const cw_volume *v = &b->frame->volume;
-    lanes low[3][2], high[3][2];
-    for (int a = 0; a < 3; a++)
-        if (w->at[a] < 1 || w->at[a] + 2 >= (ptrdiff_t)v->dim[a] ||
-            !b->corners.fetch(&b->corners, p - v->stride[a], &low[a][0], &low[a][1]) ||
-            !b->corners.fetch(&b->corners, p + v->stride[a], &high[a][0], &high[a][1]))
-            return false;
-    g[0][0] = 0.5f * (odd - low[0][0]);
-    g[0][1] = 0.5f * (high[0][1] - even);
-    for (int n = 0; n < 2; n++) {
-        const lanes e = n ? odd : even, *l = &low[1][n], *h = &high[1][n];
-        g[1][n] = 0.5f * ((lanes){e[1], (*h)[1], e[3], (*h)[3]} -
-                          (lanes){(*l)[0], e[0], (*l)[2], e[2]});
-        l = &low[2][n], h = &high[2][n];
-        g[2][n] = 0.5f * ((lanes){e[2], e[3], (*h)[2], (*h)[3]} -
-                          (lanes){(*l)[0], (*l)[1], e[0], e[1]});
+    lanes g[3][2], light[2] = {cwi_lanes_spread(1), cwi_lanes_spread(1)};
+    find_corner_gradients(s->b, &s->walk, g);
+    if (s->b->frame->shadows) {
+        double shadows[8];
+        cwi_walk_shadows(&s->walk, shadows);
+        put_corners(shadows, 1, light);
     }
-    return true;
+    s->batch.gradient_xy[cell] = cwi_cell_corners_pair(g[0], g[1], at);
+    s->batch.gradient_z_shadow[cell] = cwi_cell_corners_pair(g[2], light, at);
 }
 
-/* Computes the gradients at the two points of a cell, in eye space. */
-static void gradients_at_points(state *s, const char *p, lanes even, lanes odd,
-                                const lanes at[3], double gradients[2][3])
+static inline float lesser(float a, float b)
 {
-    lanes g[3][2], along[3];
-    const cwi_frame *f = s->b->frame;
-    if (f->gradient_version || f->shadows ||
-        !fetch_gradients(s->b, &s->walk, p, even, odd, g)) {
-        find_gradients(s);
-        for (int a = 0; a < 3; a++) {
-            gradients[0][a] = cwi_cubic_at(s->gradient[a], FIRST_POINT);
-            gradients[1][a] = cwi_cubic_at(s->gradient[a], SECOND_POINT);
-        }
-        return;
-    }
-    for (int a = 0; a < 3; a++)
-        along[a] = cwi_cell_corners_at(g[a][0], g[a][1], at);
-    for (int r = 0; r < 3; r++) {
-        const float *m = s->b->rows_to_eye[r];
-        const lanes eye = m[0] * along[0] + m[1] * along[1] + m[2] * along[2];
-        gradients[0][r] = (double)eye[1];
-        gradients[1][r] = (double)eye[2];
-    }
+    return a < b ? a : b;
+}
+
+static inline float greater(float a, float b)
+{
+    return a > b ? a : b;
 }
 
 static inline const row_parts *parts_of(const vbuffer *b, float row)
 {
-    const float most = (float)CWI_TABLE_ROWS;
-    const float at = row + 1;
-    return &b->parts[(int32_t)(at > 0 ? at < most ? at : most : 0)];
+    return &b->parts[(int32_t)greater(lesser(row + 1, (float)CWI_TABLE_ROWS), 0)];
 }
 
 /* Estimates the range of values of a cell along the ray. Where they turn, the cubic goes
@@ -336,61 +361,79 @@ static inline const row_parts *parts_of(const vbuffer *b, float row)
  * turns close to an end; for a rough cubic it is more. */
 static inline void range_of(lanes rows, float *low, float *high)
 {
-    *low = *high = rows[0];
-    for (int n = 1; n < 4; n++) {
-        *low = rows[n] < *low ? rows[n] : *low;
-        *high = rows[n] > *high ? rows[n] : *high;
-    }
-    const bool rises = rows[0] <= rows[1] && rows[1] <= rows[2] && rows[2] <= rows[3];
-    const bool falls = rows[0] >= rows[1] && rows[1] >= rows[2] && rows[2] >= rows[3];
-    const float beyond = (rises || falls ? 0.125f : 1.0f) * (*high - *low);
+    const float start = rows[0], first = rows[1], second = rows[2], end = rows[3];
+    const float ends[2] = {lesser(start, end), greater(start, end)};
+    *low = lesser(ends[0], lesser(first, second));
+    *high = greater(ends[1], greater(first, second));
+    const bool is_monotone =
+        *low >= ends[0] && *high <= ends[1] && (second - first) * (end - start) >= 0;
+    const float beyond = (is_monotone ? 0.125f : 1.0f) * (*high - *low);
     *low -= beyond;
     *high += beyond;
 }
 
-static inline void pass_cell(state *s)
+/* Adds the cell that the walk has found to the batch, if something of it is visible. */
+static inline void add_cell(state *s)
 {
     const vbuffer *b = s->b;
     const cwi_walk *w = &s->walk;
-    const cw_volume *v = &b->frame->volume;
     lanes even, odd, at[3];
+    const cw_volume *v = &b->frame->volume;
     const char *p = (const char *)v->data + w->at[0] * v->stride[0] + w->at[1] * v->stride[1] +
                     w->at[2] * v->stride[2];
     if (!b->corners.fetch(&b->corners, p, &even, &odd))
         return;
-    const lanes x = {0, (float)FIRST_POINT, (float)SECOND_POINT, 1};
-    const double length = w->to - w->from;
+    const lanes x = {0, (float)CWI_FIRST_POINT, (float)CWI_SECOND_POINT, 1};
+    const lanes steps = x * (float)(w->to - w->from);
     for (int a = 0; a < 3; a++)
         at[a] = (float)(w->index[a] + w->from * w->slope[a] - (double)w->at[a]) +
-                (float)(length * w->slope[a]) * x;
+                s->slope[a] * steps;
     const lanes rows = cwi_cell_corners_at(even, odd, at);
     float low, high;
     range_of(rows, &low, &high);
     const int first = parts_of(b, low)->low, last = parts_of(b, high)->high;
     if (first == last && !b->knots.linear[first].is_visible)
         return;
-    if (first != last) {
+    const int n = s->batch.count++;
+    s->batch.rows[n] = rows;
+    s->batch.cells[n].from = w->from;
+    s->batch.cells[n].to = w->to;
+    s->batch.cells[n].is_cut = first != last;
+    memcpy(s->batch.cells[n].at, w->at, sizeof w->at);
+    if (b->has_gradients && first == last)
+        add_gradients(s, at, n);
+}
+
+/* Passes the cells of the batch in their order, until too little light is left. */
+static void pass_batch(state *s, float least_light)
+{
+    cwi_cell_batch *batch = &s->batch;
+    const cwi_batch_light light = cwi_cell_batch_light(&s->scene, batch);
+    lanes share = {0};
+    for (int n = 0; n < batch->count && s->light > least_light; n++) {
+        if (!batch->cells[n].is_cut && light.depth[n] <= most_depth &&
+            s->light * light.difference[n] < most_turn) {
+            share[n] = s->light;
+            s->light *= light.left[n];
+            continue;
+        }
+        memcpy(s->walk.at, batch->cells[n].at, sizeof s->walk.at);
+        s->walk.from = batch->cells[n].from;
+        s->walk.to = batch->cells[n].to;
         pass_in_pieces(s);
-        return;
     }
-    double gradients[2][3] = {0};
-    if (b->has_gradients)
-        gradients_at_points(s, p, even, odd, at, gradients);
-    const lanes front = finish_cell(s, FIRST_POINT, gradients[0], glow_of_row(b, rows[1]));
-    const lanes back = finish_cell(s, SECOND_POINT, gradients[1], glow_of_row(b, rows[2]));
-    if (is_told(s, front, back, (float)length))
-        pass_segment(s, front, back, (float)length);
-    else
-        pass_in_pieces(s);
+    for (int c = 0; c < 3; c++)
+        s->colors[c] += share * light.color[c];
+    batch->count = 0;
 }
 
 static void draw_part(state *s, int part, float least_light)
 {
     cwi_walk *w = &s->walk;
     cwi_walk_start(w, s->b->frame, &s->ray, part);
-    bool is_new = true;
+
     while (w->t < w->stop && s->light > least_light) {
-        if (is_new) {
+        {
             const int distance = s->b->distances[cwi_walk_block(w, s->b->ranges->dim)];
             if (distance > 0) {
                 cwi_walk_leap(w, CWI_RANGE_EDGE, distance);
@@ -399,9 +442,13 @@ static void draw_part(state *s, int part, float least_light)
         }
         if (!cwi_walk_next(w))
             break;
-        is_new = cwi_walk_changes_block(w);
-        pass_cell(s);
+
+        add_cell(s);
+        if (s->batch.count == CWI_BATCH_CELLS)
+            pass_batch(s, least_light);
     }
+    if (s->batch.count > 0)
+        pass_batch(s, least_light);
 }
 
 /* Draws all parts of a ray through a grid that is not even. Returns false when memory is
@@ -437,10 +484,22 @@ static bool draw_ray(const vbuffer *b, cwi_spans *spans, double x, double y, siz
     for (int c = 0; c < 3; c++)
         s.background[c] =
             (1 - share) * scene->background[0][c] + share * scene->background[1][c];
+    for (int a = 0; a < 3; a++)
+        s.slope[a] = (float)s.ray.slope[a];
     const float least_light = 1 - scene->stop_opacity;
     bool is_whole = true;
+    s.scene = (cwi_batch_scene){.frame = b->frame,
+                                .table = &b->table,
+                                .lighting = &lighting,
+                                .to_eye = b->rows_to_eye,
+                                .unit = (float)b->row_value,
+                                .background = s.background,
+                                .deepening = -s.ray.direction[2],
+                                .has_gradients = b->has_gradients};
     for (int part = 0; part < s.ray.part_count && b->is_even; part++)
         draw_part(&s, part, least_light);
+    for (int c = 0; c < 3; c++)
+        s.color[c] += s.colors[c][0] + s.colors[c][1] + s.colors[c][2] + s.colors[c][3];
     if (!b->is_even)
         is_whole = draw_spans(&s, spans, least_light);
     if (b->has_beams)
@@ -516,13 +575,15 @@ static cw_status set_up(vbuffer *b, const cwi_cell_tree *tree, const cwi_mean_ce
         return st;
     cwi_knots_make(&b->frame->transfer, &b->knots);
     find_parts(b);
-    const double scale = (CWI_TABLE_ROWS - 1) / (b->table.high - b->table.low);
+    b->row_value = (b->table.high - b->table.low) / (CWI_TABLE_ROWS - 1);
     b->is_even = !cwi_volume_kind(v);
+    b->per_opacity_unit = 1 / b->frame->opacity_units;
     cwi_cell_corners_make(v, &b->table, &b->corners);
+    cwi_cell_corners_make(&b->frame->gradient_volume, &b->table, &b->gradient_corners);
     cwi_frame_gradient_matrix(b->frame, b->to_eye);
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)
-            b->rows_to_eye[r][c] = (float)(b->to_eye[r][c] / scale);
+            b->rows_to_eye[r][c] = (float)b->to_eye[r][c];
     b->has_gradients = cwi_frame_needs_gradients(b->frame);
     cwi_field_make(b->frame, tree, &b->knots, false, &b->field);
     if (!b->is_even)

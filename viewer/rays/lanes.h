@@ -2,6 +2,7 @@
 #ifndef VIEWER_RAYS_LANES_H
 #define VIEWER_RAYS_LANES_H
 
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -38,6 +39,35 @@ static inline cwi_lanes cwi_lanes_min(cwi_lanes a, cwi_lanes b)
 static inline cwi_lanes cwi_lanes_max(cwi_lanes a, cwi_lanes b)
 {
     return cwi_lanes_choose(a > b, a, b);
+}
+
+/* Returns true if all of a mask is set. */
+static inline int cwi_lanes_all(cwi_int_lanes mask)
+{
+    int64_t half[2];
+    memcpy(half, &mask, sizeof half);
+    return (half[0] & half[1]) == -1;
+}
+
+/* Swaps rows and columns of four by four numbers. */
+static inline void cwi_lanes_transpose(cwi_lanes m[4])
+{
+    const cwi_lanes a = __builtin_shufflevector(m[0], m[1], 0, 4, 1, 5),
+                    b = __builtin_shufflevector(m[0], m[1], 2, 6, 3, 7),
+                    c = __builtin_shufflevector(m[2], m[3], 0, 4, 1, 5),
+                    d = __builtin_shufflevector(m[2], m[3], 2, 6, 3, 7);
+    m[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+    m[1] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+    m[2] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+    m[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+
+static inline cwi_lanes cwi_lanes_root(cwi_lanes x)
+{
+    cwi_lanes root;
+    for (int n = 0; n < 4; n++)
+        root[n] = sqrtf(x[n]);
+    return root;
 }
 
 /* Returns exp(-x) for x above -0.3, to a relative error of 2e-7: 2^n times a polynomial for

@@ -92,7 +92,8 @@ static bool next_box(cwi_spans *s)
         const int a = s->next[0] < s->next[1] ? (s->next[0] < s->next[2] ? 0 : 2)
                                               : (s->next[1] < s->next[2] ? 1 : 2);
         const ptrdiff_t step = s->ray->slope[a] > 0 ? 1 : -1;
-        memcpy(w->at, s->cell, sizeof w->at);
+        for (int i = 0; i < 3; i++)
+            w->at[i] = s->cell[i];
         w->from = w->t;
         w->to = cwi_lesser(cwi_greater(s->next[a], w->t), w->stop);
         w->t = w->to;

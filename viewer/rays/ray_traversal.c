@@ -28,6 +28,15 @@ static ptrdiff_t cells_along(const cw_volume *v, int axis)
     return v->dim[axis] > 1 ? (ptrdiff_t)v->dim[axis] - 1 : 1;
 }
 
+/* Finds where the ray leaves the cell along an axis. */
+static void find_next_plane(cwi_walk *w, int axis)
+{
+    w->plane[axis] = w->slope[axis] != 0 && w->volume->dim[axis] > 1
+                         ? (double)(w->cell[axis] + (w->slope[axis] > 0))
+                         : INFINITY;
+    w->next[axis] = (w->plane[axis] - w->index[axis]) * w->inverse[axis];
+}
+
 void cwi_walk_start(cwi_walk *w, const cwi_frame *f, const cwi_ray *ray, int part)
 {
     *w = (cwi_walk){.volume = &f->volume,
@@ -35,15 +44,22 @@ void cwi_walk_start(cwi_walk *w, const cwi_frame *f, const cwi_ray *ray, int par
                     .shadows = f->shadows,
                     .t = ray->parts[part][0],
                     .stop = ray->parts[part][1]};
-    memcpy(w->index, ray->index, sizeof w->index);
-    memcpy(w->slope, ray->slope, sizeof w->slope);
+    w->next[3] = INFINITY;
     for (int a = 0; a < 3; a++) {
+        w->index[a] = ray->index[a];
+        w->slope[a] = ray->slope[a];
         const ptrdiff_t cells = cells_along(w->volume, a);
         const double at = w->volume->dim[a] > 1 ? floor(w->index[a] + w->t * w->slope[a]) : 0;
+        const bool rises = w->slope[a] > 0,
+                   is_crossed = w->slope[a] != 0 && w->volume->dim[a] > 1;
         w->cell[a] = (ptrdiff_t)fmin(fmax(at, 0), (double)(cells - 1));
-        w->end[a] = w->slope[a] > 0 ? cells : -1;
-        w->inverse[a] = 1 / w->slope[a];
-        w->next[a] = cwi_walk_plane(w, a);
+        w->step[a] = rises ? 1 : -1;
+        w->advance[a] = rises ? 1 : -1;
+        w->inverse[a] = is_crossed ? 1 / w->slope[a] : 1;
+        find_next_plane(w, a);
+        if (is_crossed)
+            w->stop = cwi_lesser(w->stop,
+                                 ((rises ? (double)cells : 0) - w->index[a]) * w->inverse[a]);
     }
 }
 
@@ -80,7 +96,7 @@ void cwi_walk_leap(cwi_walk *w, int edge, int distance)
         return;
     for (int a = 0; a < 3; a++) {
         w->cell[a] = a == leave ? cell : cell_after(w, a);
-        w->next[a] = cwi_walk_plane(w, a);
+        find_next_plane(w, a);
     }
     if (cell < 0 || cell >= cells_along(w->volume, leave))
         w->t = w->stop;
@@ -171,16 +187,12 @@ void cwi_walk_gradients(const cwi_walk *w, double g[3][8])
 
 void cwi_walk_shadows(const cwi_walk *w, double shadows[8])
 {
-    const cw_volume *v = w->volume;
-    for (int n = 0; n < 8; n++) {
-        size_t at[3];
-        for (int a = 0; a < 3; a++)
-            at[a] = (size_t)w->at[a] + (v->dim[a] > 1 && (n >> a & 1));
+    const size_t *dim = w->volume->dim, row = dim[0], slice = dim[0] * dim[1];
+    const size_t side[3] = {dim[0] > 1, dim[1] > 1 ? row : 0, dim[2] > 1 ? slice : 0};
+    const size_t first = (size_t)w->at[2] * slice + (size_t)w->at[1] * row + (size_t)w->at[0];
+    for (int n = 0; n < 8; n++)
         shadows[n] = w->shadows
-                         ? (double)w->shadows[(at[2] * v->dim[1] + at[1]) * v->dim[0] + at[0]]
+                         ? (double)w->shadows[first + (n & 1 ? side[0] : 0) +
+                                              (n & 2 ? side[1] : 0) + (n & 4 ? side[2] : 0)]
                          : 1;
-    }
 }
-
-/* The roots of 3 c3 x^2 + 2 c2 x + c1, each by the form that does not cancel. Where there is
- * none, or a double one, the comparisons with infinity and NaN leave it out. */

@@ -9,6 +9,8 @@
 #include "core/geometry/vec3.h"
 
 #include <math.h>
+#include <stdint.h>
+#include <string.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -29,50 +31,65 @@ typedef struct cwi_ray {
  * beyond a depth (INFINITY: all is drawn). */
 void cwi_ray_make(const cwi_frame *frame, double x, double y, double depth, cwi_ray *ray);
 
-/* A walk from cell to cell. An axis of one voxel has one cell, from -0.5 to 0.5. */
+/* A walk from cell to cell. An axis of one voxel has one cell, from -0.5 to 0.5. Each array has
+ * a fourth number, so that two pairs are computed at once. */
 typedef struct cwi_walk {
+    double index[4], slope[4], inverse[4];
+    double plane[4];   /* the next plane of voxels of each axis; INFINITY: none, */
+    double next[4];    /* and where the ray meets it */
+    double advance[4]; /* to the plane after that: 1 or -1; as step */
+    int64_t cell[4], step[4];
+    int64_t at[4];   /* the cell that was found, */
+    double from, to; /* and the part of the ray in it */
+    double t, stop;
     const cw_volume *volume, *gradient_volume;
     const float *shadows; /* as the frame's */
-    double index[3], slope[3], inverse[3];
-    double next[3];            /* where the ray meets the next plane of voxels of each axis */
-    ptrdiff_t cell[3], end[3]; /* end: the cell beyond the last along the ray */
-    double t, stop;
-    ptrdiff_t at[3]; /* the cell that was found, */
-    double from, to; /* and the part of the ray in it */
-    int leave;       /* the axis it is left along */
 } cwi_walk;
+
+typedef double cwi_pair __attribute__((vector_size(16)));
+typedef int64_t cwi_int_pair __attribute__((vector_size(16)));
+
+static inline cwi_pair cwi_pair_load(const double *p)
+{
+    cwi_pair v;
+    memcpy(&v, p, sizeof v);
+    return v;
+}
+
+static inline cwi_int_pair cwi_int_pair_load(const int64_t *p)
+{
+    cwi_int_pair v;
+    memcpy(&v, p, sizeof v);
+    return v;
+}
 
 void cwi_walk_start(cwi_walk *walk, const cwi_frame *frame, const cwi_ray *ray, int part);
 
-/* Returns where the ray leaves the cell along an axis. Planes are computed from their number,
- * not from the plane before: errors do not add up. */
-static inline double cwi_walk_plane(const cwi_walk *w, int axis)
-{
-    const double plane = (double)(w->cell[axis] + (w->slope[axis] > 0));
-    return w->slope[axis] == 0 || w->volume->dim[axis] == 1
-               ? INFINITY
-               : (plane - w->index[axis]) * w->inverse[axis];
-}
-
 /* Goes to the next cell, of which more than a point is met; returns false if there is none.
- * Rounding may put the start behind a plane it is close to: cells of zero length are
- * skipped. */
+ * Rounding may put the start behind a plane it is close to: cells of zero length are skipped.
+ * There are no branches by axis, which no processor foresees. Distances are computed from the
+ * number of the plane, not from the plane before: errors do not add up. */
 static inline bool cwi_walk_next(cwi_walk *w)
 {
     while (w->t < w->stop) {
-        const int a = w->next[0] < w->next[1] ? (w->next[0] < w->next[2] ? 0 : 2)
-                                              : (w->next[1] < w->next[2] ? 1 : 2);
-        for (int i = 0; i < 3; i++)
-            w->at[i] = w->cell[i];
+        const double nearest = cwi_lesser(cwi_lesser(w->next[0], w->next[1]), w->next[2]);
         w->from = w->t;
-        w->to = cwi_lesser(cwi_greater(w->next[a], w->t), w->stop);
-        w->t = w->to;
-        w->leave = a;
-        w->cell[a] += w->slope[a] > 0 ? 1 : -1;
-        if (w->cell[a] == w->end[a])
-            w->t = w->stop;
-        else
-            w->next[a] = cwi_walk_plane(w, a);
+        w->to = w->t = cwi_lesser(cwi_greater(nearest, w->t), w->stop);
+        for (int n = 0; n < 4; n += 2) {
+            const cwi_int_pair is_left =
+                cwi_pair_load(w->next + n) == (cwi_pair){nearest, nearest};
+            const cwi_int_pair cell = cwi_int_pair_load(w->cell + n),
+                               after = cell + (is_left & cwi_int_pair_load(w->step + n));
+            const cwi_pair move = (cwi_pair)(is_left &
+                                             (cwi_int_pair)cwi_pair_load(w->advance + n)),
+                           plane = cwi_pair_load(w->plane + n) + move,
+                           next = (plane - cwi_pair_load(w->index + n)) *
+                                  cwi_pair_load(w->inverse + n);
+            memcpy(w->at + n, &cell, sizeof cell);
+            memcpy(w->cell + n, &after, sizeof after);
+            memcpy(w->plane + n, &plane, sizeof plane);
+            memcpy(w->next + n, &next, sizeof next);
+        }
         if (w->to > w->from)
             return true;
     }
@@ -91,7 +108,8 @@ static inline size_t cwi_walk_block(const cwi_walk *w, const size_t dim[3])
 
 static inline bool cwi_walk_changes_block(const cwi_walk *w)
 {
-    return (w->cell[w->leave] ^ w->at[w->leave]) & CWI_RANGE_EDGE;
+    return ((w->cell[0] ^ w->at[0]) | (w->cell[1] ^ w->at[1]) | (w->cell[2] ^ w->at[2])) &
+           CWI_RANGE_EDGE;
 }
 
 /* Leaves empty blocks of `edge` cells a side: the block of the next cell, and those around it

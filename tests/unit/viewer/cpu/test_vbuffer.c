@@ -200,16 +200,18 @@ static void voxels_of_any_type_pass(void **state)
     cw_renderer *r = cpu();
     cw_error err = {0};
     const size_t dim[3] = {30, 32, 34};
-    for (int type = 0; type < CW_TYPE_COUNT; type++) {
+    for (int row = 0; row < 2 * CW_TYPE_COUNT; row++) {
+        const int type = row / 2;
+        const size_t channels = 1 + (size_t)row % 2; /* two: voxels are not packed */
         cw_volume v = {0};
         cw_transfer soft = test_soft_transfer();
         const double shift = type == CW_F64 ? 1e9 : 0;
-        assert_ok(cw_volume_alloc(&v, (cw_type)type, dim, 2, 1, &err), err);
+        assert_ok(cw_volume_alloc(&v, (cw_type)type, dim, channels, 1, &err), err);
         for (size_t n = 0; n < 30 * 32 * 34; n++) {
             double q[3] = {(double)(n % 30) / 29, (double)(n / 30 % 32) / 31,
                            (double)(n / 960) / 33};
             const double value = test_blobs(q, q);
-            void *at = (char *)cw_volume_voxels(&v) + 2 * n * cw_type_size(v.type);
+            void *at = (char *)cw_volume_voxels(&v) + channels * n * cw_type_size(v.type);
             const double stored = fmin(fmax(rint(value * 100), 0), 120);
             if (type == CW_F64)
                 *(double *)at = shift + stored;
@@ -226,10 +228,42 @@ static void voxels_of_any_type_pass(void **state)
         v.intercept = -0.01 * shift;
         v.has_nodata = true;
         v.nodata = shift + 70;
-        const cw_scene scene = {.volume = &v, .transfer = &soft, .width = SIZE, .height = SIZE};
+        cw_scene scene = {.volume = &v, .transfer = &soft, .width = SIZE, .height = SIZE};
         expect_close(r, &scene, 0.02, 0.3);
+        scene.lit = true;
+        expect_close(r, &scene, 0.05, 1);
         cw_volume_free(&v);
     }
+    cw_renderer_free(r);
+}
+
+/* Two lights, glossy by a power that is not whole, from one side, smoothed, with shadows: each
+ * row has one more. */
+static void every_kind_of_light_passes(void **state)
+{
+    (void)state;
+    cw_renderer *r = cpu();
+    cw_volume blobs = {0};
+    const cw_transfer soft = test_soft_transfer();
+    test_field(&blobs, 36, 40, 38, cube, test_blobs);
+    cw_scene scene = {.volume = &blobs,
+                      .transfer = &soft,
+                      .width = SIZE,
+                      .height = SIZE,
+                      .lit = true,
+                      .light_count = 2,
+                      .lights = {{{1, 1, 1}, {1, 0.9f, 0.8f}}, {{-1, 0, 0.5}, {0, 0.2f, 0.4f}}},
+                      .material = {0.2f, 0.6f, 0.4f, 7.5f}};
+    expect_close(r, &scene, 0.05, 1);
+    scene.one_sided = true;
+    expect_close(r, &scene, 0.05, 1);
+    scene.gradient_sigma = 1.5;
+    expect_close(r, &scene, 0.05, 1);
+    scene.shadow = CW_SHADOW_LIGHT;
+    expect_close(r, &scene, 0.05, 1);
+    scene.shadow = CW_SHADOW_AMBIENT;
+    expect_close(r, &scene, 0.05, 1);
+    cw_volume_free(&blobs);
     cw_renderer_free(r);
 }
 
@@ -308,6 +342,7 @@ int main(void)
         cmocka_unit_test(rays_end_at_the_opacity_asked_for),
         cmocka_unit_test(rays_of_any_kind_pass),
         cmocka_unit_test(voxels_of_any_type_pass),
+        cmocka_unit_test(every_kind_of_light_passes),
         cmocka_unit_test(any_threads_give_the_same_bytes),
         cmocka_unit_test(memory_that_runs_out_is_reported),
     };
