@@ -205,7 +205,7 @@ static const bench_case cases[] = {
 /* Step of a program at the wanted error, and its error. */
 typedef struct search {
     double step, rmse;
-    const char *truth; /* what the error is to; "none": equal steps, no search */
+    const char *truth; /* what the error is to; NULL: nothing was searched */
     bool reached;      /* else: the step of the least error */
 } search;
 
@@ -333,10 +333,11 @@ static void time_both(const bench_case *c, const settings *s, const cw_scene *ou
 
 static void report_side(const char *prefix, const search *at, const bench_vtk_times *times)
 {
-    printf(",\"%strue_to\":\"%s\",\"%sstep\":%g,\"%srmse\":%.4f,\"%sreached\":%s,"
-           "\"%sfirst_ms\":%.1f,\"%sms\":%.1f",
-           prefix, at->truth, prefix, at->step, prefix, at->rmse, prefix,
-           at->reached ? "true" : "false", prefix, times->first_ms, prefix, times->next_ms);
+    printf(",\"%sstep\":%g,\"%sfirst_ms\":%.1f,\"%sms\":%.1f", prefix, at->step, prefix,
+           times->first_ms, prefix, times->next_ms);
+    if (at->truth && isfinite(at->rmse))
+        printf(",\"%strue_to\":\"%s\",\"%srmse\":%.4f,\"%sreached\":%s", prefix, at->truth,
+               prefix, at->rmse, prefix, at->reached ? "true" : "false");
 }
 
 static void report(const bench_case *c, const settings *s, const search *at, const result *own,
@@ -350,12 +351,13 @@ static void report(const bench_case *c, const settings *s, const search *at, con
             "(asked %.2f, %.2f)%s\n",
             c->name, at->step, at->rmse, a->first_ms, a->next_ms, name_of(c->beside),
             peer_at->step, peer_at->rmse, b->first_ms, b->next_ms, first, next, c->first_wanted,
-            c->wanted, s->rmse > 0 && !(at->reached && peer_at->reached) ? " not reached" : "");
+            c->wanted, at->truth && !(at->reached && peer_at->reached) ? " not reached" : "");
     printf("{\"scene\":\"%s\",\"case\":\"%s\",\"size\":%zu,\"picture\":%zu,\"wanted_rmse\":%g",
            s->scene, c->name, s->size, s->picture, s->rmse);
     report_side("", at, a);
     printf(",\"peer\":\"%s\"", name_of(c->beside));
-    report_side("peer_", peer_at, b);
+    if (peer->is_there)
+        report_side("peer_", peer_at, b);
     printf("}\n");
 }
 
@@ -372,7 +374,7 @@ static void run_case(const bench_case *c, const settings *s, const cw_scene *bas
 {
     cw_scene ours = *base, theirs = *base;
     result own = {0}, peer = {0};
-    search at = {.truth = "none"}, peer_at = {.step = 1, .truth = "none"};
+    search at = {0}, peer_at = {.step = 1};
     ours.mode = c->mode;
     ours.lit = c->lit;
     ours.lean = c->lean;
