@@ -374,7 +374,7 @@ static void run_case(const bench_case *c, const settings *s, const cw_scene *bas
 {
     cw_scene ours = *base, theirs = *base;
     result own = {0}, peer = {0};
-    search at = {0}, peer_at = {.step = 1};
+    search at = {.rmse = NAN}, peer_at = {.step = 1, .rmse = NAN};
     ours.mode = c->mode;
     ours.lit = c->lit;
     ours.lean = c->lean;
