@@ -51,8 +51,9 @@ void set_transfer(const cw_scene &s, vtkVolumeProperty *property)
     for (size_t n = 0; n < t.color_count; n++)
         colors->AddRGBPoint(t.colors[n].value, t.colors[n].color[0], t.colors[n].color[1],
                             t.colors[n].color[2]);
-    for (size_t n = 0; n < t.opacity_count; n++)
-        opacities->AddPoint(t.opacities[n].value, t.opacities[n].opacity);
+    for (size_t n = 0; n < t.opacity_count; n++) /* our mip shows the colour alone */
+        opacities->AddPoint(t.opacities[n].value,
+                            s.mode == CW_MODE_MIP ? 1 : t.opacities[n].opacity);
     property->SetColor(colors);
     property->SetScalarOpacity(opacities);
     property->SetScalarOpacityUnitDistance(s.volume->affine[0][0]);
@@ -66,7 +67,7 @@ void set_transfer(const cw_scene &s, vtkVolumeProperty *property)
 
 vtkSmartPointer<vtkVolumeMapper> mapper_of(const cw_scene &s, bool gpu)
 {
-    const double step = s.volume->affine[0][0];
+    const double step = s.volume->affine[0][0] * (s.step_vox > 0 ? s.step_vox : 1);
     if (gpu) {
         auto mapper = vtkSmartPointer<vtkGPUVolumeRayCastMapper>::New();
         mapper->SetAutoAdjustSampleDistances(0);
@@ -128,7 +129,7 @@ bool bench_vtk_render(const cw_scene *scene, bool gpu, int frames, bench_vtk_tim
     }
     times->first_ms = all[0];
     std::sort(all.begin() + 1, all.end());
-    times->next_ms = all[size_t(1 + frames / 2)];
+    times->next_ms = all[frames > 0 ? size_t(1 + frames / 2) : 0];
     if (bytes)
         std::copy(pixels->GetPointer(0),
                   pixels->GetPointer(0) + 3 * scene->width * scene->height, bytes);

@@ -15,7 +15,7 @@ typedef struct bench_vtk_times {
 } bench_vtk_times;
 
 /* Draws a scene of a packed f32 volume with an even, unmirrored affine along the axes:
- * composite (lit or not) or mip, one step a spacing. bytes: height x width x 3, rows going up;
+ * composite (lit or not) or mip, in steps of step_vox (0: 1) spacings. bytes: height x width x 3, rows going up;
  * or NULL. False: there is no VTK in this build, no X server, or it failed. */
 bool bench_vtk_render(const cw_scene *scene, bool gpu, int frames, bench_vtk_times *times,
                       unsigned char *bytes);
