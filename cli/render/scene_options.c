@@ -465,7 +465,8 @@ static cw_status add_steps(const cli_scene *args, const cw_volume *v, double lev
         return cwi_fail(err, CW_ERR_ARGUMENT, "--gradient-smoothing %g: 0 to 16 was expected",
                         args->gradient_smoothing.value);
     s->gradient_sigma = args->gradient_smoothing.value;
-    s->shadow = (cw_shadow)args->shadow;
+    s->shadow =
+        cli_setting_fits("shadow", s->mode, false) ? (cw_shadow)args->shadow : CW_SHADOW_NONE;
     s->step_vox = args->step.given ? args->step.value : STEP_VOX;
     s->stop_opacity = s->mode == CW_MODE_VBUFFER ? 0.99999f : 0.9999f;
     s->cell_steps = args->cell_steps;
