@@ -2,6 +2,8 @@
  * neighbourhoods, random maps, spheres, and voxels of any type. */
 #include "support/support.h"
 
+#include "core/base/memory.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -358,6 +360,32 @@ static void unusable_values_are_named(void **state)
     cw_volume_free(&v);
 }
 
+/* Each allocation fails in turn: an error, and nothing left behind. */
+static void memory_that_is_out_is_an_error(void **state)
+{
+    (void)state;
+    cw_volume v = {0};
+    cw_error err = {0};
+    uint32_t *to = make_map(&v, 9, 8, 40);
+    for (size_t n = 0; n < 9 * 8 * 40; n++)
+        to[n] = (uint32_t)(n * n % 7);
+    bool failed = true;
+    for (long n = 0; failed; n++) {
+        cw_label_surfaces s;
+        cw_mesh mesh = {0};
+        cwi_alloc_fail_after(n);
+        cw_status st = cw_extract_labels(&v, &(cw_labels_desc){.threads = 1}, &s, &err);
+        if (st == CW_OK)
+            st = cw_label_mesh(&s, 3, &mesh, &err);
+        failed = cwi_alloc_fail_after(-1);
+        assert_true(st == (failed ? CW_ERR_NO_MEMORY : CW_OK));
+        assert_true(!failed || mesh.triangles == NULL);
+        cw_mesh_free(&mesh);
+        cw_label_surfaces_free(&s);
+    }
+    cw_volume_free(&v);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_neighbourhood_is_right),
@@ -368,6 +396,7 @@ int main(void)
                                        cmocka_unit_test(types_and_threads_change_nothing),
                                        cmocka_unit_test(wanted_labels_alone_are_extracted),
                                        cmocka_unit_test(open_borders_are_at_the_end),
-                                       cmocka_unit_test(unusable_values_are_named)};
+                                       cmocka_unit_test(unusable_values_are_named),
+                                       cmocka_unit_test(memory_that_is_out_is_an_error)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
