@@ -39,11 +39,10 @@ typedef struct chunk {
 typedef struct job {
     cwi_label_layers layers;
     cwi_label_rules rules;
-    const cwi_label_ring *rings;
     double corners[CWI_TETS][3]; /* vertices of tetrahedra, from the cube's middle */
     bool is_mirrored;
     cwi_label_net net;
-    float *originals; /* places before smoothing; NULL: there is none */
+    float *originals; /* places before smoothing; NULL without smoothing */
     cw_label_surfaces *out;
     chunk *chunks;
     bool is_writing; /* the second pass */
@@ -65,18 +64,10 @@ typedef struct scan {
     cwi_label_entry *last;
 } scan;
 
-static int count_bits(unsigned bits)
-{
-    int count = 0;
-    for (; bits; bits &= bits - 1)
-        count++;
-    return count;
-}
-
 /* Returns the number of vertices of a cube. */
 static size_t count_vertices(uint8_t shape)
 {
-    return shape == CWI_CUBE_SIMPLE ? 1 : (size_t)count_bits(shape);
+    return shape == CWI_CUBE_SIMPLE ? 1 : (size_t)cwi_count_bits(shape);
 }
 
 /* Marks the cubes of a row whose corners are not all alike. */
@@ -133,14 +124,14 @@ static uint32_t vertex_of(const scan *s, const cwi_label_ring *ring, int n, size
     const uint32_t first = s->firsts[layer][place];
     return shape == CWI_CUBE_SIMPLE
                ? first
-               : first + (uint32_t)count_bits(shape & ((1u << ring->tet[n]) - 1));
+               : first + (uint32_t)cwi_count_bits(shape & ((1u << ring->tet[n]) - 1));
 }
 
 /* Finds the polygon around an edge that starts at the corner 0 of a cube. Tetrahedra with the
- * same vertex follow each other. Returns the number of corners; below 3: there is none. */
+ * same vertex follow each other. Returns the number of corners; fewer than 3 make no polygon. */
 static int find_polygon(const scan *s, int edge, size_t x, size_t y, uint32_t polygon[CWI_RING])
 {
-    const cwi_label_ring *ring = &s->job->rings[edge];
+    const cwi_label_ring *ring = &s->job->rules.rings[edge];
     int count = 0;
     for (int n = 0; n < ring->count; n++) {
         const uint32_t v = vertex_of(s, ring, n, x, y);
@@ -294,8 +285,9 @@ static void put_vertices(const scan *s, size_t k)
 }
 
 /* Converts a place to a world point, from the mesh's origin. */
-static void place_vertex(const job *j, const float place[3], float point[3])
+static void place_vertex(const void *context, const float place[3], float point[3])
 {
+    const job *j = context;
     const cw_volume *v = j->layers.volume;
     double at[3], world[3];
     for (int a = 0; a < 3; a++) {
@@ -307,11 +299,6 @@ static void place_vertex(const job *j, const float place[3], float point[3])
     cwi_affine_apply(v->affine[0], at, world);
     for (int a = 0; a < 3; a++)
         point[a] = (float)(world[a] - j->out->mesh.origin[a]);
-}
-
-static void place_one(const void *context, const float place[3], float point[3])
-{
-    place_vertex(context, place, point);
 }
 
 static void place_part(void *context, size_t n)
@@ -609,7 +596,7 @@ static cw_status run_job(job *j, const cw_labels_desc *desc, cw_error *err)
         st = cwi_each_layer((j->out->mesh.vertex_count + PLACES - 1) / PLACES, PLACES,
                             desc->threads, &desc->progress, "placing", place_part, j, err);
     if (st == CW_OK && j->originals)
-        st = cwi_labels_untangle(j->out, j->originals, place_one, j, desc, err);
+        st = cwi_labels_untangle(j->out, j->originals, place_vertex, j, desc, err);
     cwi_free(j->net.neighbours);
     cwi_free(j->net.kinds);
     cwi_free(j->originals);
@@ -628,7 +615,8 @@ static int compare_labels(const void *a, const void *b)
 }
 
 /* Fills in what follows from the volume and the options. wanted: room for the labels, sorted. */
-static void prepare(job *j, const cw_volume *v, const cw_labels_desc *desc, uint32_t *wanted)
+static void prepare_job(job *j, const cw_volume *v, const cw_labels_desc *desc,
+                        uint32_t *wanted)
 {
     if (desc->label_count > 0)
         memcpy(wanted, desc->labels, desc->label_count * sizeof *wanted);
@@ -642,7 +630,6 @@ static void prepare(job *j, const cw_volume *v, const cw_labels_desc *desc, uint
                                    .wanted_count = desc->label_count,
                                    .wanted = wanted};
     cwi_label_rules_make(&j->rules);
-    j->rings = j->rules.rings;
     j->is_mirrored = cwi_affine_determinant(v->affine[0]) < 0;
     for (int t = 0; t < CWI_TETS; t++)
         for (int a = 0; a < 3; a++) {
@@ -676,7 +663,7 @@ cw_status cw_extract_labels(const cw_volume *volume, const cw_labels_desc *desc,
     if (wanted && j) {
         j->out = surfaces;
         surfaces->background = desc->background;
-        prepare(j, &v, desc, wanted);
+        prepare_job(j, &v, desc, wanted);
         st = run_job(j, desc, err);
     } else
         st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for labels");

@@ -60,14 +60,6 @@ typedef struct around {
     uint8_t tet;
 } around;
 
-static int count_bits(uint32_t bits)
-{
-    int count = 0;
-    for (; bits; bits &= bits - 1)
-        count++;
-    return count;
-}
-
 /* Finds the tetrahedra with an edge, in any order. */
 static int find_around(const uint8_t tets[CWI_TETS], int edge, around *found)
 {
@@ -125,7 +117,7 @@ static void make_ring(const uint8_t tets[CWI_TETS], int edge, cwi_label_ring *ri
     ring->count = find_around(tets, edge, found);
     for (int n = 1; n < ring->count; n++)
         for (int m = n; m < ring->count; m++)
-            if (count_bits(found[n - 1].corners & found[m].corners) == 3) {
+            if (cwi_count_bits(found[n - 1].corners & found[m].corners) == 3) {
                 const around next = found[m];
                 found[m] = found[n];
                 found[n] = next;

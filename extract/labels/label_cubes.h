@@ -30,6 +30,14 @@ typedef struct cwi_label_rules {
     cwi_label_ring rings[CWI_EDGES]; /* of the edge from corner 0 to corner n; none of 0 */
 } cwi_label_rules;
 
+static inline int cwi_count_bits(uint32_t bits)
+{
+    int count = 0;
+    for (; bits; bits &= bits - 1)
+        count++;
+    return count;
+}
+
 void cwi_label_rules_make(cwi_label_rules *rules);
 
 /* The vertices of a cube: 0: none, as all corners have one label; CWI_CUBE_SIMPLE: one in its

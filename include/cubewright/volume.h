@@ -247,7 +247,7 @@ CW_API void cw_statistics_free(cw_statistics *statistics);
 
 /* Joins the statistics of several volumes, such as the steps of a series, into bin_count bins
  * over the range of all. A bin's values count where its middle is.
- * parts    count of them; borrowed; out is none of them
+ * parts    count of them; borrowed, and apart from out
  * Returns  CW_ERR_NO_MEMORY; free out with cw_statistics_free() */
 CW_NODISCARD CW_API cw_status cw_statistics_join(const cw_statistics *parts, size_t count,
                                                  size_t bin_count, cw_statistics *out,

@@ -326,8 +326,8 @@ static void sample_field(const beam *m, const double index[3], lanes *moments, l
 }
 
 /* Takes moments and gradient at a place, between two levels. */
-static void sample(const beam *m, const double index[3], size_t level, float blend,
-                   lanes *moments, lanes *gradient)
+static void sample_levels(const beam *m, const double index[3], size_t level, float blend,
+                          lanes *moments, lanes *gradient)
 {
     const cwi_mean_cells *cells = m->b->cells;
     lanes found[2][2] = {0};
@@ -412,7 +412,7 @@ static void sample_means(const beam *m, const step *s, found *f)
 {
     const cwi_beams *b = m->b;
     lanes moments;
-    sample(m, f->index, s->level, s->blend, &moments, &f->gradient);
+    sample_levels(m, f->index, s->level, s->blend, &moments, &f->gradient);
     if (!(moments[0] > 0))
         return;
     f->color = average_function(b, s->level, moments);

@@ -12,7 +12,7 @@ extern "C" {
 
 enum { CWI_BEAM_PLANES = 6 + CW_MAX_CLIPS };
 
-/* The beams of a frame. Zeroed: there are none. */
+/* The beams of a frame. A zeroed struct has no beams. */
 typedef struct cwi_beams {
     const cwi_frame *frame;
     const cwi_ranges *ranges;

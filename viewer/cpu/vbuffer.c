@@ -89,7 +89,7 @@ typedef struct state {
     float background[3];
     bool has_gradient;     /* of a cell in pieces: */
     double gradient[3][4]; /* cubics, eye space */
-    double shadow[4];      /* cubic; 1 where there are none */
+    double shadow[4];      /* cubic; the constant 1 without shadows */
 } state;
 
 /* Returns the distance along the ray of a place in the cell, 0 to 1. */

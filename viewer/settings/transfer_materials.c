@@ -41,7 +41,7 @@ static double find_fraction(const cw_material_class *m, double value)
 }
 
 /* Mixes the materials at a value. A mixture of clear ones has the colour of their mean. */
-static void mix(const mixture *m, double value, sample *s)
+static void mix_materials(const mixture *m, double value, sample *s)
 {
     double sum = 0, color[2][3] = {{0}}, opacity = 0, index = 0;
     for (size_t n = 0; n < m->count; n++) {
@@ -67,7 +67,7 @@ static void mix(const mixture *m, double value, sample *s)
  * is unknown where its fraction is 0. */
 static void mix_inside(const mixture *m, double end, double other, sample *s)
 {
-    mix(m, end + 1e-6 * (other - end), s);
+    mix_materials(m, end + 1e-6 * (other - end), s);
     s->value = end;
 }
 
@@ -78,7 +78,7 @@ static void measure_error(const mixture *m, piece *p)
     p->error = 0;
     if (!(value > p->low.value && value < p->high.value))
         return;
-    mix(m, value, &middle);
+    mix_materials(m, value, &middle);
     for (int c = 0; c < CURVES; c++) {
         const double line = p->low.curves[c] / 2 + p->high.curves[c] / 2;
         const double scale = c == 4 ? 1 / m->index_range : 1;
@@ -144,7 +144,7 @@ static size_t halve_pieces(const mixture *m, piece *pieces, size_t count, size_t
             break;
         memmove(pieces + worst + 1, pieces + worst, (count - worst) * sizeof *pieces);
         piece *low = &pieces[worst], *high = low + 1;
-        mix(m, low->low.value / 2 + low->high.value / 2, &low->high);
+        mix_materials(m, low->low.value / 2 + low->high.value / 2, &low->high);
         high->low = low->high;
         measure_error(m, low);
         measure_error(m, high);

@@ -3,6 +3,7 @@
 #include "support/support.h"
 
 #include "core/base/memory.h"
+#include "core/volume/volume.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -255,26 +256,8 @@ static void types_and_threads_change_nothing(void **state)
         cw_volume other = {0};
         assert_ok(cw_volume_alloc(&other, types[n], v.dim, 1, 1, &err), err);
         char *voxels = cw_volume_voxels(&other);
-        for (size_t i = 0; i < 30 * 20 * 70; i++) {
-            char *p = voxels + i * cw_type_size(types[n]);
-            switch (types[n]) {
-#define CASE(name, ctype)                                                                      \
-    case name:                                                                                 \
-        *(ctype *)p = (ctype)to[i];                                                            \
-        break;
-                CASE(CW_U8, uint8_t)
-                CASE(CW_I8, int8_t)
-                CASE(CW_U16, uint16_t)
-                CASE(CW_I16, int16_t)
-                CASE(CW_U32, uint32_t)
-                CASE(CW_I32, int32_t)
-                CASE(CW_F32, float)
-                CASE(CW_F64, double)
-#undef CASE
-            default:
-                break;
-            }
-        }
+        for (size_t i = 0; i < 30 * 20 * 70; i++)
+            cwi_voxel_put(types[n], voxels + i * cw_type_size(types[n]), (double)to[i]);
         assert_ok(cw_extract_labels(&other, &(cw_labels_desc){.threads = 3}, &s, &err), err);
         assert_int_equal(s.mesh.triangle_count, first.mesh.triangle_count);
         assert_int_equal(s.mesh.vertex_count, first.mesh.vertex_count);

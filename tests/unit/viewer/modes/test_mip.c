@@ -156,7 +156,7 @@ static void minima_inside_converge(void **state)
     cw_volume_free(&blobs);
 }
 
-/* The reference of a projection is the picture of the CPU; of other modes there is none. */
+/* The reference of a projection is the picture of the CPU; other modes have none. */
 static void projections_have_a_reference(void **state)
 {
     (void)state;
