@@ -3,10 +3,10 @@
  * are worked on in chunks, so that the result does not depend on threads. */
 #include <cubewright/labels.h>
 
+#include "extract/labels/key_counts.h"
 #include "extract/labels/label_cubes.h"
 #include "extract/labels/label_layers.h"
 #include "extract/labels/label_smooth.h"
-#include "extract/labels/label_table.h"
 #include "extract/labels/label_untangle.h"
 
 #include "core/base/memory.h"
@@ -31,9 +31,9 @@ static const double spread = 0.5;
 
 /* A chunk's share of the result. */
 typedef struct chunk {
-    cwi_label_table pairs;  /* triangles of each; in the second pass, where the next goes */
-    cwi_label_table voxels; /* of each label */
-    size_t vertices;        /* in the second pass, the number of the first */
+    cwi_key_counts pairs;  /* triangles of each; in the second pass, where the next goes */
+    cwi_key_counts voxels; /* of each label */
+    size_t vertices;       /* in the second pass, the number of the first */
 } chunk;
 
 typedef struct job {
@@ -61,7 +61,7 @@ typedef struct scan {
     uint8_t *marks;       /* of a row: columns of four voxels that differ; then cubes */
     size_t next;          /* vertex */
     uint64_t last_key;    /* of `last`; 0: none */
-    cwi_label_entry *last;
+    cwi_key_count *last;
 } scan;
 
 /* Returns the number of vertices of a cube. */
@@ -158,11 +158,11 @@ static bool order_pair(const job *j, uint32_t pair[2])
 }
 
 /* Finds a pair's entry, mostly that of the polygon before. NULL when memory is out. */
-static cwi_label_entry *find_pair(scan *s, const uint32_t pair[2])
+static cwi_key_count *find_pair(scan *s, const uint32_t pair[2])
 {
     const uint64_t key = (uint64_t)pair[0] << 32 | pair[1];
     if (key != s->last_key) {
-        s->last = cwi_label_table_need(&s->chunk->pairs, key);
+        s->last = cwi_key_counts_need(&s->chunk->pairs, key);
         s->last_key = s->last ? key : 0;
     }
     return s->last;
@@ -174,7 +174,7 @@ static bool take_polygon(scan *s, uint32_t pair[2], const uint32_t *polygon, int
 {
     const job *j = s->job;
     const bool flips = order_pair(j, pair) != j->is_mirrored;
-    cwi_label_entry *entry = find_pair(s, pair);
+    cwi_key_count *entry = find_pair(s, pair);
     if (!entry)
         return false;
     uint32_t *to = j->is_writing ? j->out->mesh.triangles + 3 * entry->count : NULL;
@@ -321,7 +321,7 @@ static bool count_voxels(scan *s)
                 end++;
             if (row[x] == l->background)
                 continue;
-            cwi_label_entry *e = cwi_label_table_need(&s->chunk->voxels, (uint64_t)row[x] + 1);
+            cwi_key_count *e = cwi_key_counts_need(&s->chunk->voxels, (uint64_t)row[x] + 1);
             if (!e)
                 return false;
             e->count += end - x;
@@ -426,7 +426,7 @@ static void work_chunk(void *context, size_t n)
 typedef struct part {
     uint64_t key;
     size_t chunk;
-    cwi_label_entry *entry;
+    cwi_key_count *entry;
 } part;
 
 static int compare_parts(const void *a, const void *b)
@@ -447,7 +447,7 @@ static part *list_parts(const job *j, size_t chunks, bool of_voxels, size_t *cou
     part *parts = cwi_alloc_array(*count, sizeof *parts);
     size_t n = 0;
     for (size_t c = 0; c < chunks && parts; c++) {
-        const cwi_label_table *t = of_voxels ? &j->chunks[c].voxels : &j->chunks[c].pairs;
+        const cwi_key_counts *t = of_voxels ? &j->chunks[c].voxels : &j->chunks[c].pairs;
         for (size_t e = 0; e < t->size; e++)
             if (t->entries[e].key != 0)
                 parts[n++] = (part){t->entries[e].key, c, &t->entries[e]};
@@ -601,8 +601,8 @@ static cw_status run_job(job *j, const cw_labels_desc *desc, cw_error *err)
     cwi_free(j->net.kinds);
     cwi_free(j->originals);
     for (size_t c = 0; c < chunks; c++) {
-        cwi_label_table_free(&j->chunks[c].pairs);
-        cwi_label_table_free(&j->chunks[c].voxels);
+        cwi_key_counts_free(&j->chunks[c].pairs);
+        cwi_key_counts_free(&j->chunks[c].voxels);
     }
     cwi_free(j->chunks);
     return st;

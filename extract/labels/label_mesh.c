@@ -1,7 +1,7 @@
 /* Copies the closed mesh of one label out of the interfaces. */
 #include <cubewright/labels.h>
 
-#include "extract/labels/label_table.h"
+#include "extract/labels/key_counts.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -17,13 +17,13 @@ static int side_of(const cw_label_patch *patch, uint32_t label)
 /* Copies a patch's triangles, with vertices numbered as they are met. Returns false when memory
  * is out. */
 static bool copy_patch(const cw_label_surfaces *s, const cw_label_patch *patch, int side,
-                       cwi_label_table *numbers, cw_mesh *mesh)
+                       cwi_key_counts *numbers, cw_mesh *mesh)
 {
     const uint32_t *from = s->mesh.triangles + 3 * patch->first;
     for (size_t n = 0; n < 3 * patch->count; n++) {
         /* seen from the other side, the last two corners change places */
         const size_t turned = n % 3 && side == 1 ? n - n % 3 + 3 - n % 3 : n;
-        cwi_label_entry *e = cwi_label_table_need(numbers, (uint64_t)from[turned] + 1);
+        cwi_key_count *e = cwi_key_counts_need(numbers, (uint64_t)from[turned] + 1);
         if (!e)
             return false;
         if (e->count == 0) {
@@ -40,7 +40,7 @@ static bool copy_patch(const cw_label_surfaces *s, const cw_label_patch *patch, 
 cw_status cw_label_mesh(const cw_label_surfaces *s, uint32_t label, cw_mesh *mesh,
                         cw_error *err)
 {
-    cwi_label_table numbers = {0};
+    cwi_key_counts numbers = {0};
     size_t triangles = 0;
     memset(mesh, 0, sizeof *mesh);
     for (size_t p = 0; p < s->patch_count; p++)
@@ -57,7 +57,7 @@ cw_status cw_label_mesh(const cw_label_surfaces *s, uint32_t label, cw_mesh *mes
         const int side = side_of(&s->patches[p], label);
         is_whole = side < 0 || copy_patch(s, &s->patches[p], side, &numbers, mesh);
     }
-    cwi_label_table_free(&numbers);
+    cwi_key_counts_free(&numbers);
     float *fitted =
         is_whole ? cwi_realloc_array(mesh->positions, 3 * mesh->vertex_count, sizeof *fitted)
                  : NULL;

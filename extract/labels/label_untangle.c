@@ -1,7 +1,7 @@
 /* Finds triangles that cross, first among all, then only around vertices that were put back. */
 #include "extract/labels/label_untangle.h"
 
-#include "extract/labels/label_table.h"
+#include "extract/labels/key_counts.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -17,7 +17,7 @@ typedef struct untangling {
     const float *originals;
     uint32_t *near; /* numbers of the triangles that are looked at */
     size_t near_count;
-    cwi_label_table cubes; /* around vertices that were put back */
+    cwi_key_counts cubes; /* around vertices that were put back */
 } untangling;
 
 /* Returns the key of a cube at an offset from a vertex's own. */
@@ -33,12 +33,12 @@ static uint64_t key_of(const float *place, int x, int y, int z)
 static bool mark_around(untangling *u, size_t vertex)
 {
     const float *place = u->originals + 3 * vertex;
-    cwi_label_entry *own = cwi_label_table_need(&u->cubes, key_of(place, 0, 0, 0));
+    cwi_key_count *own = cwi_key_counts_need(&u->cubes, key_of(place, 0, 0, 0));
     if (!own || own->count == 2)
         return own != NULL;
     own->count = 2; /* all around are marked */
     for (int n = 0; n < 125; n++) {
-        cwi_label_entry *e = cwi_label_table_need(
+        cwi_key_count *e = cwi_key_counts_need(
             &u->cubes, key_of(place, n % 5 - REACH, n / 5 % 5 - REACH, n / 25 - REACH));
         if (!e)
             return false;
@@ -56,7 +56,7 @@ static void list_near(untangling *u)
         bool is_near = false;
         for (size_t c = 0; c < 3 && !is_near; c++) {
             const float *p = u->originals + 3 * (size_t)mesh->triangles[3 * t + c];
-            is_near = cwi_label_table_has(&u->cubes, key_of(p, 0, 0, 0));
+            is_near = cwi_key_counts_has(&u->cubes, key_of(p, 0, 0, 0));
         }
         if (is_near)
             u->near[u->near_count++] = (uint32_t)t;
@@ -103,7 +103,7 @@ cw_status cwi_labels_untangle(cw_label_surfaces *surfaces, const float *original
             u.near = cwi_alloc_array(mesh->triangle_count, sizeof *u.near);
             is_whole = u.near != NULL;
         }
-        cwi_label_table_free(&u.cubes);
+        cwi_key_counts_free(&u.cubes);
         for (size_t n = 0; n < 6 * crossings.count && st == CW_OK && is_whole; n++) {
             const size_t v = mesh->triangles[3 * (size_t)crossings.pairs[n / 3] + n % 3];
             place(context, originals + 3 * v, mesh->positions + 3 * v);
@@ -114,7 +114,7 @@ cw_status cwi_labels_untangle(cw_label_surfaces *surfaces, const float *original
         is_first = false;
     } while (st == CW_OK && is_whole && crossings.count > 0);
     cw_crossings_free(&crossings);
-    cwi_label_table_free(&u.cubes);
+    cwi_key_counts_free(&u.cubes);
     cwi_free(u.near);
     if (st == CW_OK && !is_whole)
         st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for triangles that cross");

@@ -10,6 +10,7 @@
 #include <cubewright/field.h>
 #include <cubewright/formats.h>
 #include <cubewright/hard.h>
+#include <cubewright/label_table.h>
 #include <cubewright/labels.h>
 #include <cubewright/level_set.h>
 #include <cubewright/mesh.h>

@@ -2,6 +2,7 @@
 #ifndef CUBEWRIGHT_FORMATS_H
 #define CUBEWRIGHT_FORMATS_H
 
+#include <cubewright/label_table.h>
 #include <cubewright/mesh.h>
 #include <cubewright/volume.h>
 
@@ -93,6 +94,9 @@ typedef struct cw_read_desc {
                                  LPS mm */
     const char *array;        /* the name, where files have several; default: the array that the
                                  file names, else the first of one value */
+
+    cw_label_table *labels; /* filled with the names and colours of labels that the file holds;
+                               free it with cw_label_table_free(); default: not kept */
 
     const char *points; /* for a PLOT3D solution: the file of its grid's points; marks it as
                            one */
@@ -299,8 +303,9 @@ CW_NODISCARD CW_API cw_status cw_mesh_read(const char *path, const cw_mesh_read_
 
 /* A named mesh, one of several in a file. */
 typedef struct cw_part {
-    const cw_mesh *mesh; /* borrowed */
-    const char *name;    /* default: the file's name and a number */
+    const cw_mesh *mesh;   /* borrowed */
+    const char *name;      /* default: the file's name and a number */
+    const cw_label *label; /* the label that it is the surface of, borrowed; default: none */
     size_t level; /* level of detail: level n + 1 is a coarser form of level n, right after it,
                      for viewers to show where the part appears small; default: 0, a part by
                      itself */

@@ -1,11 +1,11 @@
 /* A hash table with open addressing. */
-#include "extract/labels/label_table.h"
+#include "extract/labels/key_counts.h"
 
 #include "core/base/memory.h"
 
 enum { FIRST_SIZE = 64 };
 
-static size_t find_place(const cwi_label_table *t, uint64_t key)
+static size_t find_place(const cwi_key_counts *t, uint64_t key)
 {
     uint64_t hash = key * 0x9e3779b97f4a7c15u;
     hash ^= hash >> 32;
@@ -15,9 +15,9 @@ static size_t find_place(const cwi_label_table *t, uint64_t key)
     return n;
 }
 
-static bool grow(cwi_label_table *t)
+static bool grow(cwi_key_counts *t)
 {
-    cwi_label_table larger = {.size = t->size ? 2 * t->size : FIRST_SIZE, .used = t->used};
+    cwi_key_counts larger = {.size = t->size ? 2 * t->size : FIRST_SIZE, .used = t->used};
     larger.entries = cwi_alloc_zeroed(larger.size, sizeof *larger.entries);
     if (!larger.entries)
         return false;
@@ -29,23 +29,23 @@ static bool grow(cwi_label_table *t)
     return true;
 }
 
-cwi_label_entry *cwi_label_table_need(cwi_label_table *t, uint64_t key)
+cwi_key_count *cwi_key_counts_need(cwi_key_counts *t, uint64_t key)
 {
     if (2 * (t->used + 1) > t->size && !grow(t))
         return NULL;
-    cwi_label_entry *entry = &t->entries[find_place(t, key)];
+    cwi_key_count *entry = &t->entries[find_place(t, key)];
     t->used += entry->key == 0;
     entry->key = key;
     return entry;
 }
 
-bool cwi_label_table_has(const cwi_label_table *t, uint64_t key)
+bool cwi_key_counts_has(const cwi_key_counts *t, uint64_t key)
 {
     return t->size > 0 && t->entries[find_place(t, key)].key == key;
 }
 
-void cwi_label_table_free(cwi_label_table *t)
+void cwi_key_counts_free(cwi_key_counts *t)
 {
     cwi_free(t->entries);
-    *t = (cwi_label_table){0};
+    *t = (cwi_key_counts){0};
 }

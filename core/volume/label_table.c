@@ -1,0 +1,153 @@
+/* Tables of the names and colours of labels. */
+#include <cubewright/label_table.h>
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/base/text.h"
+
+#include <math.h>
+#include <string.h>
+#include <strings.h>
+
+static uint64_t key_of(uint32_t layer, uint32_t value)
+{
+    return (uint64_t)layer << 32 | value;
+}
+
+/* Returns the place of the first label that is not below a key. */
+static size_t find_place(const cw_label_table *table, uint64_t key)
+{
+    size_t low = 0, high = table->count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (key_of(table->labels[middle].layer, table->labels[middle].value) < key)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+const cw_label *cw_label_find(const cw_label_table *table, uint32_t layer, uint32_t value)
+{
+    const size_t at = find_place(table, key_of(layer, value));
+    const cw_label *label = &table->labels[at];
+    return at < table->count && label->layer == layer && label->value == value ? label : NULL;
+}
+
+const cw_label *cw_label_find_name(const cw_label_table *table, const char *name)
+{
+    const cw_label *found = NULL;
+    for (size_t n = 0; n < table->count; n++) {
+        const cw_label *label = &table->labels[n];
+        if (!label->name || strcasecmp(label->name, name) != 0)
+            continue;
+        if (found)
+            return NULL;
+        found = label;
+    }
+    return found;
+}
+
+/* Copies a text and replaces bytes that are not printable UTF-8. Returns false when memory is
+ * out. */
+static bool copy_text(const char *from, char **to)
+{
+    *to = NULL;
+    if (!from)
+        return true;
+    const size_t size = strlen(from) + 1;
+    char *text = cwi_alloc_array(size, 1);
+    if (!text)
+        return false;
+    memcpy(text, from, size);
+    for (size_t n = 0; text[n];) {
+        const size_t length = cwi_utf8_length(text + n);
+        const unsigned char first = (unsigned char)text[n];
+        if (length == 0 || first < 0x20 || first == 0x7f)
+            text[n++] = '_';
+        else
+            n += length;
+    }
+    *to = text;
+    return true;
+}
+
+static bool copy_code(const cw_code *from, cw_code *to)
+{
+    return copy_text(from->scheme, &to->scheme) & copy_text(from->value, &to->value) &
+           copy_text(from->meaning, &to->meaning);
+}
+
+static void free_code(cw_code *code)
+{
+    cwi_free(code->scheme);
+    cwi_free(code->value);
+    cwi_free(code->meaning);
+}
+
+static void free_label(cw_label *label)
+{
+    cwi_free(label->name);
+    free_code(&label->category);
+    free_code(&label->type);
+}
+
+/* Makes room for one more label: capacities are powers of two. */
+static bool grow(cw_label_table *table)
+{
+    const size_t count = table->count;
+    if (count & (count - 1))
+        return true;
+    cw_label *labels =
+        cwi_realloc_array(table->labels, count ? 2 * count : 1, sizeof *table->labels);
+    if (labels)
+        table->labels = labels;
+    return labels != NULL;
+}
+
+cw_status cw_label_table_add(cw_label_table *table, const cw_label *label, cw_error *err)
+{
+    cw_label copy = *label;
+    const bool is_copied = copy_text(label->name, &copy.name) &
+                           copy_code(&label->category, &copy.category) &
+                           copy_code(&label->type, &copy.type);
+    const size_t at = find_place(table, key_of(label->layer, label->value));
+    const bool replaces = cw_label_find(table, label->layer, label->value) != NULL;
+    if (!is_copied || (!replaces && !grow(table))) {
+        free_label(&copy);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the names of labels");
+    }
+    if (replaces) {
+        free_label(&table->labels[at]);
+    } else {
+        memmove(table->labels + at + 1, table->labels + at,
+                (table->count - at) * sizeof *table->labels);
+        table->count++;
+    }
+    table->labels[at] = copy;
+    return CW_OK;
+}
+
+void cw_label_table_free(cw_label_table *table)
+{
+    for (size_t n = 0; n < table->count; n++)
+        free_label(&table->labels[n]);
+    cwi_free(table->labels);
+    *table = (cw_label_table){0};
+}
+
+void cw_label_color(uint32_t value, uint8_t color[4])
+{
+    /* hues by the golden ratio: each falls into the largest gap that those before leave */
+    static const double golden = 0.61803398874989485;
+    static const double brightness[] = {0.95, 0.75, 0.85}, saturation[] = {0.75, 0.55};
+    const double hue = 6 * fmod(golden * value, 1), v = brightness[value % 3];
+    const double s = saturation[value % 2];
+    for (int c = 0; c < 3; c++) {
+        const double k = fmod((c == 0 ? 5 : c == 1 ? 3 : 1) + hue, 6);
+        const double ramp = fmin(fmin(k, 4 - k), 1);
+        color[c] = (uint8_t)lround(255 * v * (1 - s * fmax(ramp, 0)));
+    }
+    color[3] = 255;
+}
