@@ -102,6 +102,15 @@ static cw_status check_animation(const cwi_format_driver *f, const cw_write_desc
                           f->name);
 }
 
+static cw_status check_sides(const cwi_format_driver *f, const cw_write_desc *d, cw_error *err)
+{
+    return !d->sides || f->write.sides
+               ? CW_OK
+               : cwi_fail(err, CW_ERR_ARGUMENT,
+                          "%s has no labels on both sides of triangles; vtp and ply have",
+                          f->name);
+}
+
 /* Finds the format and writer of a path, loads its modules, and checks that it supports the
  * request. */
 static cw_status prepare_writer(const char *path, const cw_write_desc *d,
@@ -115,6 +124,8 @@ static cw_status prepare_writer(const char *path, const cw_write_desc *d,
         st = check_text(f, d, err);
     if (st == CW_OK)
         st = check_animation(f, d, err);
+    if (st == CW_OK)
+        st = check_sides(f, d, err);
     if (st == CW_OK)
         st = check_compression(f, d, err);
     return st == CW_OK && f->write.prepare ? f->write.prepare(err) : st;
@@ -148,8 +159,11 @@ static cw_status write_parts(const char *path, const cwi_parts *parts,
     cw_status st = cwi_outfile_open(&out->file, path, d->no_clobber, err);
     if (st == CW_OK)
         st = f->write.write(parts, out, err);
+    if (st == CW_OK && out->side)
+        st = cwi_outfile_commit(&out->side, err);
     if (st == CW_OK)
         st = cwi_outfile_commit(&out->file, err);
+    cwi_outfile_abort(&out->side);
     cwi_outfile_abort(&out->file);
     return st;
 }
@@ -163,7 +177,8 @@ cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
     double origin[3];
     cwi_parts placed = {0};
     cwi_choose_name(path, parts, count, &d, name);
-    cwi_mesh_output out = {.name = name,
+    cwi_mesh_output out = {.path = path,
+                           .name = name,
                            .local_origin = d.local ? origin : NULL,
                            .desc = &d,
                            .axes = &d.axes,
@@ -172,6 +187,9 @@ cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
     cw_status st = prepare_writer(path, &d, &f, err);
     if (st == CW_OK)
         st = check_levels(f, parts, count, err);
+    if (st == CW_OK && d.sides && count != 1)
+        st = cwi_fail(err, CW_ERR_ARGUMENT,
+                      "the sides of triangles are those of one mesh, not of %zu", count);
     if (st == CW_OK && f->write.own_axes)
         d.axes = (cw_axes){0};
     if (st == CW_OK && f->write.only)
@@ -205,7 +223,7 @@ static unsigned find_dropped(const cw_part *parts, size_t count, const cwi_parts
     for (size_t i = 0; i < count; i++)
         had |= cwi_arrays_of(parts[i].mesh);
     for (size_t i = 0; i < placed->count; i++)
-        has |= cwi_arrays_of(&placed->items[i].mesh) & ~(unsigned)CW_KEEPS_AFFINE;
+        has |= placed->items[i].arrays & ~(unsigned)CW_KEEPS_AFFINE;
     if (loss->merged_vertices || loss->flat_triangles)
         had |= CW_KEEPS_PLACES;
     return had & ~has;

@@ -50,9 +50,8 @@ static cw_status print_model(model *m, cw_error *err, const char *format, ...)
 
 /* --- colours ----------------------------------------------------------------------------- */
 
-static uint32_t color_of(const cw_mesh *mesh, size_t v)
+static uint32_t pack_color(const uint8_t c[4])
 {
-    const uint8_t *c = mesh->colors + 4 * v;
     return (uint32_t)c[0] << 24 | (uint32_t)c[1] << 16 | (uint32_t)c[2] << 8 | c[3];
 }
 
@@ -67,7 +66,7 @@ static size_t list_colors(const cw_mesh *mesh, uint32_t *colors)
 {
     size_t count = 0;
     for (size_t v = 0; v < mesh->vertex_count; v++)
-        colors[v] = color_of(mesh, v);
+        colors[v] = pack_color(mesh->colors + 4 * v);
     qsort(colors, mesh->vertex_count, sizeof *colors, compare_colors);
     for (size_t v = 0; v < mesh->vertex_count; v++)
         if (count == 0 || colors[count - 1] != colors[v])
@@ -93,7 +92,7 @@ static cw_status write_colors(model *m, const cw_mesh *mesh, size_t id, uint32_t
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for its colours");
     const size_t count = list_colors(mesh, colors);
     for (size_t v = 0; v < mesh->vertex_count; v++) {
-        const uint32_t color = color_of(mesh, v);
+        const uint32_t color = pack_color(mesh->colors + 4 * v);
         const uint32_t *at = bsearch(&color, colors, count, sizeof color, compare_colors);
         numbers[v] = (uint32_t)(at - colors);
     }
@@ -148,8 +147,15 @@ static size_t object_id(size_t part)
     return 2 * part + 2;
 }
 
+/* Writes the group of a label's one colour. */
+static cw_status write_label_color(model *m, const cw_label *label, size_t id, cw_error *err)
+{
+    const uint32_t color = pack_color(label->color);
+    return write_group(m, id, &color, 1, err);
+}
+
 /* Writes an object. Vertices stay where they are: the build item holds the origin. An object
- * with colours must name one for itself, too. */
+ * whose vertices have colours must name one for itself, too. */
 static cw_status write_object(model *m, const cwi_part *given, size_t id, cw_error *err)
 {
     char name[CWI_XML_BYTES(CWI_NAME_BYTES)], group[64] = "";
@@ -157,9 +163,13 @@ static cw_status write_object(model *m, const cwi_part *given, size_t id, cw_err
     uint32_t *numbers = NULL;
     cw_status st = CW_OK;
     memset(part.mesh.origin, 0, sizeof part.mesh.origin);
+    const bool has_color = part.label && part.label->has_color;
+    if (part.mesh.colors || has_color)
+        snprintf(group, sizeof group, " pid=\"%zu\" pindex=\"0\"", id - 1);
+    if (!part.mesh.colors && has_color)
+        st = write_label_color(m, part.label, id - 1, err);
     if (part.mesh.colors) {
         part.group = id - 1;
-        snprintf(group, sizeof group, " pid=\"%zu\" pindex=\"0\"", id - 1);
         part.numbers = numbers = cwi_alloc_array(part.mesh.vertex_count, sizeof *numbers);
         st = numbers ? write_colors(m, &part.mesh, id - 1, numbers, err)
                      : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for its colours");

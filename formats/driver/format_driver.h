@@ -55,6 +55,7 @@ typedef struct cwi_mesh_writing {
     cw_compression only;                 /* it has this form alone */
     bool levels;                         /* it has levels of detail */
     bool animates;                       /* it can show parts one after another */
+    bool sides;                          /* it has labels on both sides of triangles */
 } cwi_mesh_writing;
 
 typedef struct cwi_format_driver {

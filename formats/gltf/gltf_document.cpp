@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 
 #include <cmath>
+#include <cstdio>
 #include <sstream>
 #include <string>
 
@@ -92,24 +93,76 @@ tinygltf::Value draco_extension(tinygltf::Model &model, const cwi_gltf_piece &pi
                                   {"attributes", tinygltf::Value(ids)}});
 }
 
-// Finds the material of a piece. Vertex colours are multiplied with the base colour, so the
-// base colour is white with them. Similar pieces share a material.
-int find_material(tinygltf::Model &model, const cwi_gltf_piece &piece)
+// Converts a component of an sRGB colour to glTF's linear one, in double precision: it becomes
+// the same byte again.
+double linear(uint8_t component)
 {
-    const double grey = piece.part->mesh.colors ? 1.0 : 0.8;
-    const std::string mode = piece.translucent ? "BLEND" : "OPAQUE";
-    for (size_t i = 0; i < model.materials.size(); i++)
-        if (model.materials[i].alphaMode == mode &&
-            model.materials[i].pbrMetallicRoughness.baseColorFactor[0] == grey)
-            return int(i);
+    const double c = component / 255.0;
+    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
+
+int add_material(tinygltf::Model &model, const std::string &name,
+                 const std::vector<double> &color, const std::string &mode)
+{
     tinygltf::Material material;
-    material.name = "surface";
-    material.pbrMetallicRoughness.baseColorFactor = {grey, grey, grey, 1.0};
+    material.name = name;
+    material.pbrMetallicRoughness.baseColorFactor = color;
     material.pbrMetallicRoughness.metallicFactor = 0.0;
     material.pbrMetallicRoughness.roughnessFactor = 0.8;
     material.alphaMode = mode;
     model.materials.push_back(material);
     return int(model.materials.size()) - 1;
+}
+
+// Finds the material of a piece. A label has one of its own. Vertex colours are multiplied with
+// the base colour, so the base colour is white with them. Other similar pieces share a material.
+int find_material(tinygltf::Model &model, const cwi_gltf_piece &piece)
+{
+    const cw_label *label = piece.part->label;
+    if (label && label->has_color && !piece.part->mesh.colors) {
+        const uint8_t *c = label->color;
+        return add_material(model, piece.part->name,
+                            {linear(c[0]), linear(c[1]), linear(c[2]), c[3] / 255.0},
+                            c[3] < 255 ? "BLEND" : "OPAQUE");
+    }
+    const double grey = piece.part->mesh.colors ? 1.0 : 0.8;
+    const std::string mode = piece.translucent ? "BLEND" : "OPAQUE";
+    for (size_t i = 0; i < model.materials.size(); i++)
+        if (model.materials[i].alphaMode == mode && model.materials[i].name == "surface" &&
+            model.materials[i].pbrMetallicRoughness.baseColorFactor[0] == grey)
+            return int(i);
+    return add_material(model, "surface", {grey, grey, grey, 1.0}, mode);
+}
+
+// Tells a label in the extras of its node: its value, colour and codes.
+tinygltf::Value describe_code(const cw_code &code)
+{
+    Object words;
+    if (code.scheme)
+        words["scheme"] = text(code.scheme);
+    if (code.value)
+        words["value"] = text(code.value);
+    if (code.meaning)
+        words["meaning"] = text(code.meaning);
+    return tinygltf::Value(words);
+}
+
+void tell_label(const cw_label &label, Object &extras)
+{
+    extras["label"] =
+        label.value <= INT32_MAX ? whole(label.value) : tinygltf::Value(double(label.value));
+    if (label.layer > 0)
+        extras["layer"] = whole(label.layer);
+    if (label.has_color) {
+        char hex[16];
+        std::snprintf(hex, sizeof hex, "#%02X%02X%02X", label.color[0], label.color[1],
+                      label.color[2]);
+        extras["color"] = text(hex);
+    }
+    if (label.category.value || label.category.meaning)
+        extras["category"] = describe_code(label.category);
+    if (label.type.value || label.type.meaning)
+        extras["type"] = describe_code(label.type);
 }
 
 Object make_extras(const cw_mesh &mesh, const double *origin)
@@ -209,6 +262,8 @@ void add_piece(tinygltf::Model &model, const cwi_gltf_piece &piece, size_t left,
     const size_t levels = is_level ? 1 : count_levels(&piece, left);
     const int index = int(model.nodes.size());
     Object extras = make_extras(piece.part->mesh, local_origin);
+    if (piece.part->label)
+        tell_label(*piece.part->label, extras);
     if (is_level || levels > 1)
         tell_level(*piece.part, extras);
     if (levels > 1)

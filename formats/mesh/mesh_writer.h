@@ -23,6 +23,7 @@ typedef struct cwi_part {
     uint64_t first, first_normal, first_triangle; /* numbers of elements in the parts before
                                                      it */
     int digits;                                   /* number of digits of a coordinate in text */
+    const uint32_t *sides;                        /* as in cw_write_desc */
     const uint32_t *numbers;                      /* one per vertex, for a writer's own use */
     size_t group;                                 /* for a writer's own use */
     size_t level;                                 /* of detail, as in cw_part */
@@ -30,7 +31,10 @@ typedef struct cwi_part {
     double time_s;                                /* the same */
     double from_s, until_s;                       /* time in sight; from the animation's
                                                      start */
-    char name[CWI_NAME_BYTES];                    /* printable UTF-8 on one line */
+    const cw_label *label;                        /* as in cw_part */
+    unsigned arrays; /* that the file holds: those of the mesh and, in a file of one mesh, those
+                        that the label stands for; cw_keeps flags */
+    char name[CWI_NAME_BYTES]; /* printable UTF-8 on one line */
 } cwi_part;
 
 /* All parts of a file. Formats of one mesh write them one after the other; all then have the
@@ -47,6 +51,8 @@ typedef cw_status cwi_drain(void *to, const void *bytes, size_t size, cw_error *
 
 typedef struct cwi_mesh_output {
     cwi_outfile *file;
+    cwi_outfile *side; /* a second file that a writer opens beside the path; NULL: none */
+    const char *path;
     cwi_drain *drain; /* receiver of records; NULL: the file itself */
     void *drain_to;
     const char *name;           /* name of all parts together; like that of a part */
@@ -128,6 +134,17 @@ static inline void cwi_normal(const cwi_part *part, size_t vertex, float normal[
     for (int a = 0; a < 3; a++)
         normal[a] = (float)part->turn.sign[a] *
                     part->mesh.normals[3 * vertex + (size_t)part->turn.from[a]];
+}
+
+/* Returns a vertex's colour, sRGB and alpha, or label, where part->arrays has them. */
+static inline const uint8_t *cwi_vertex_color(const cwi_part *part, size_t v)
+{
+    return part->mesh.colors ? part->mesh.colors + 4 * v : part->label->color;
+}
+
+static inline uint32_t cwi_vertex_label(const cwi_part *part, size_t v)
+{
+    return part->mesh.labels ? part->mesh.labels[v] : part->label->value;
 }
 
 /* Puts a vertex's place, or its normal, as text: three numbers each. */

@@ -91,16 +91,29 @@ static void keep_arrays(cw_mesh *m, unsigned keeps)
     m->labels = keeps & CW_KEEPS_LABELS ? m->labels : NULL;
 }
 
+/* Returns the arrays that a label stands for where all parts are one mesh. */
+static unsigned arrays_of_label(const cw_label *label)
+{
+    return !label             ? 0u
+           : label->has_color ? CW_KEEPS_LABELS | CW_KEEPS_COLORS
+                              : (unsigned)CW_KEEPS_LABELS;
+}
+
 /* Drops arrays that one part lacks, for formats where all parts share the arrays. */
 static void choose_arrays(cwi_parts *parts, unsigned keeps)
 {
     unsigned shared = keeps;
     uint64_t normals = 0;
-    for (size_t i = 0; i < parts->count; i++)
-        shared &= cwi_arrays_of(&parts->items[i].mesh);
     for (size_t i = 0; i < parts->count; i++) {
         cwi_part *part = &parts->items[i];
-        keep_arrays(&part->mesh, keeps & CW_KEEPS_PARTS ? keeps : shared);
+        part->arrays = cwi_arrays_of(&part->mesh);
+        part->arrays |= keeps & CW_KEEPS_PARTS ? 0u : arrays_of_label(part->label);
+        shared &= part->arrays;
+    }
+    for (size_t i = 0; i < parts->count; i++) {
+        cwi_part *part = &parts->items[i];
+        part->arrays &= keeps & CW_KEEPS_PARTS ? keeps : shared;
+        keep_arrays(&part->mesh, part->arrays);
         part->first_normal = normals;
         normals += part->mesh.normals ? part->mesh.vertex_count : 0;
     }
@@ -141,6 +154,7 @@ static void add_part(cwi_parts *parts, const cw_part *given, const double origin
     part->max_error_mm = given->max_error_mm;
     part->rms_error_mm = given->rms_error_mm;
     part->time_s = given->time_s;
+    part->label = given->label;
     part->mesh = *mesh;
     part->turn = cwi_turn_to(axes);
     part->first = parts->vertices;
@@ -204,6 +218,7 @@ cw_status cwi_parts_place(const cw_part *parts, size_t count, const cw_write_des
         if (parts[i].mesh->triangle_count) {
             add_part(placed, &parts[i], from, &desc->axes);
             name_part(&placed->items[placed->count - 1], parts[i].name, name, i + 1, count);
+            placed->items[placed->count - 1].sides = desc->sides;
             if (desc->animated)
                 set_sight(&placed->items[placed->count - 1], parts, count, i);
         }

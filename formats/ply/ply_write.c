@@ -13,14 +13,14 @@ static unsigned char *encode_vertex(const cwi_part *part, size_t v, unsigned cha
         cwi_normal(part, v, normal);
         to = cwi_put_f32x3(to, normal);
     }
-    if (mesh->colors) {
-        memcpy(to, mesh->colors + 4 * v, 4);
+    if (part->arrays & CW_KEEPS_COLORS) {
+        memcpy(to, cwi_vertex_color(part, v), 4);
         to += 4;
     }
     if (mesh->scalars)
         to = cwi_put_f32(to, mesh->scalars[v]);
-    if (mesh->labels)
-        to = cwi_put_u32(to, mesh->labels[v]);
+    if (part->arrays & CW_KEEPS_LABELS)
+        to = cwi_put_u32(to, cwi_vertex_label(part, v));
     return to;
 }
 
@@ -29,7 +29,18 @@ static unsigned char *encode_face(const cwi_part *part, size_t t, unsigned char 
     *to++ = 3;
     for (int c = 0; c < 3; c++)
         to = cwi_put_u32(to, (uint32_t)cwi_corner_number(part, t, c));
+    for (size_t s = 0; part->sides && s < 2; s++)
+        to = cwi_put_u32(to, part->sides[2 * t + s]);
     return to;
+}
+
+static unsigned char *encode_text_face(const cwi_part *part, size_t t, unsigned char *to)
+{
+    to = cwi_put_face_line(part, t, to);
+    if (!part->sides)
+        return to;
+    to = cwi_put_integer(cwi_put_text(to - 1, " "), part->sides[2 * t]);
+    return cwi_put_text(cwi_put_integer(cwi_put_text(to, " "), part->sides[2 * t + 1]), "\n");
 }
 
 static unsigned char *encode_text_vertex(const cwi_part *part, size_t v, unsigned char *to)
@@ -41,18 +52,18 @@ static unsigned char *encode_text_vertex(const cwi_part *part, size_t v, unsigne
     to = cwi_put_singles(to, place);
     if (mesh->normals)
         to = cwi_put_normal(cwi_put_text(to, " "), part, v);
-    for (size_t c = 0; mesh->colors && c < 4; c++)
-        to = cwi_put_integer(cwi_put_text(to, " "), mesh->colors[4 * v + c]);
+    for (size_t c = 0; part->arrays & CW_KEEPS_COLORS && c < 4; c++)
+        to = cwi_put_integer(cwi_put_text(to, " "), cwi_vertex_color(part, v)[c]);
     if (mesh->scalars)
         to = cwi_put_decimal(cwi_put_text(to, " "), (double)mesh->scalars[v], 9);
-    if (mesh->labels)
-        to = cwi_put_integer(cwi_put_text(to, " "), mesh->labels[v]);
+    if (part->arrays & CW_KEEPS_LABELS)
+        to = cwi_put_integer(cwi_put_text(to, " "), cwi_vertex_label(part, v));
     return cwi_put_text(to, "\n");
 }
 
 static cw_status write_header(const cwi_parts *parts, const cwi_mesh_output *out, cw_error *err)
 {
-    const cw_mesh *mesh = &parts->items[0].mesh; /* all have the same arrays */
+    const unsigned has = parts->items[0].arrays; /* all have the same */
     /* readers expect int; uint is used only when the numbers need it */
     const char *index = parts->vertices > INT32_MAX ? "uint" : "int";
     char origin[CWI_ORIGIN_BYTES];
@@ -62,16 +73,19 @@ static cw_status write_header(const cwi_parts *parts, const cwi_mesh_output *out
         "ply\nformat %s 1.0\n"
         "comment cubewright %s\ncomment object %s\ncomment unit %s\ncomment frame %s\n%s%s"
         "element vertex %ju\nproperty float x\nproperty float y\nproperty float z\n%s%s%s%s"
-        "element face %ju\nproperty list uchar %s vertex_indices\nend_header\n",
+        "element face %ju\nproperty list uchar %s vertex_indices\n%send_header\n",
         out->text ? "ascii" : "binary_little_endian", CW_VERSION, out->name,
         cw_unit_name(out->axes->unit), out->axes->ras ? "RAS" : "LPS",
         out->axes->y_up ? "comment up Y\n" : "", origin, (uintmax_t)parts->vertices,
-        mesh->normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
-        mesh->colors ? "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-                       "property uchar alpha\n"
-                     : "",
-        mesh->scalars ? "property float scalar\n" : "",
-        mesh->labels ? "property uint label\n" : "", (uintmax_t)parts->triangles, index);
+        has & CW_KEEPS_NORMALS ? "property float nx\nproperty float ny\nproperty float nz\n"
+                               : "",
+        has & CW_KEEPS_COLORS
+            ? "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+              "property uchar alpha\n"
+            : "",
+        has & CW_KEEPS_SCALARS ? "property float scalar\n" : "",
+        has & CW_KEEPS_LABELS ? "property uint label\n" : "", (uintmax_t)parts->triangles,
+        index, parts->items[0].sides ? "property uint label_0\nproperty uint label_1\n" : "");
 }
 
 cw_status cwi_ply_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err)
@@ -87,6 +101,6 @@ cw_status cwi_ply_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *
         st = cwi_write_part_vertices(parts, out, out->text ? encode_text_vertex : encode_vertex,
                                      err);
     if (st == CW_OK)
-        st = cwi_write_triangles(parts, out, out->text ? cwi_put_face_line : encode_face, err);
+        st = cwi_write_triangles(parts, out, out->text ? encode_text_face : encode_face, err);
     return st;
 }

@@ -22,7 +22,7 @@ static unsigned char *encode_normal(const cwi_part *part, size_t v, unsigned cha
 
 static unsigned char *encode_color(const cwi_part *part, size_t v, unsigned char *to)
 {
-    memcpy(to, part->mesh.colors + 4 * v, 4);
+    memcpy(to, cwi_vertex_color(part, v), 4);
     return to + 4;
 }
 
@@ -33,7 +33,7 @@ static unsigned char *encode_scalar(const cwi_part *part, size_t v, unsigned cha
 
 static unsigned char *encode_label(const cwi_part *part, size_t v, unsigned char *to)
 {
-    return cwi_put_u32(to, part->mesh.labels[v]);
+    return cwi_put_u32(to, cwi_vertex_label(part, v));
 }
 
 static unsigned char *encode_corners(const cwi_part *part, size_t t, unsigned char *to)
@@ -48,6 +48,11 @@ static unsigned char *encode_wide_corners(const cwi_part *part, size_t t, unsign
     for (int c = 0; c < 3; c++)
         to = cwi_put_u64(to, cwi_corner_number(part, t, c));
     return to;
+}
+
+static unsigned char *encode_sides(const cwi_part *part, size_t t, unsigned char *to)
+{
+    return cwi_put_u32(cwi_put_u32(to, part->sides[2 * t]), part->sides[2 * t + 1]);
 }
 
 /* Encodes the end of a polygon's corners among all corners. */
@@ -65,9 +70,12 @@ static unsigned char *encode_wide_end(const cwi_part *part, size_t t, unsigned c
 
 typedef enum width { ANY, NARROW, WIDE } width;
 
+/* Beside the cw_keeps flags: the labels on both sides of triangles. */
+enum { SIDES = CW_KEEPS_ALL + 1 };
+
 /* An array of the file. */
 typedef struct array {
-    unsigned keeps; /* written when the mesh has it; 0: always */
+    unsigned keeps; /* written when the mesh has it; 0: always; SIDES */
     width width;    /* written when numbers need 64 bits, or when they do not */
     const char *type, *name;
     size_t numbers, bytes; /* of a vertex or triangle */
@@ -88,6 +96,8 @@ static const array arrays[] = {
     {0, NARROW, "Int32", "offsets", 1, 4, true, encode_end, "", "</Polys>\n"},
     {0, WIDE, "Int64", "connectivity", 1, 24, true, encode_wide_corners, "<Polys>\n", ""},
     {0, WIDE, "Int64", "offsets", 1, 8, true, encode_wide_end, "", "</Polys>\n"},
+    {SIDES, ANY, "UInt32", "BoundaryLabels", 2, 8, true, encode_sides, "<CellData>\n",
+     "</CellData>\n"},
 };
 enum { ARRAY_COUNT = sizeof arrays / sizeof *arrays, OFFSET_DIGITS = 20 };
 
@@ -101,7 +111,8 @@ typedef struct vtp {
 
 static void choose_arrays(vtp *f, bool wide)
 {
-    const unsigned has = cwi_arrays_of(&f->parts->items[0].mesh); /* all parts have the same */
+    const cwi_part *first = &f->parts->items[0]; /* all parts have the same arrays */
+    const unsigned has = first->arrays | (first->sides ? SIDES : 0u);
     for (int i = 0; i < ARRAY_COUNT; i++)
         f->has[i] = (!arrays[i].keeps || arrays[i].keeps & has) &&
                     (arrays[i].width == ANY || (arrays[i].width == WIDE) == wide);
@@ -125,8 +136,10 @@ static cw_status declare_array(vtp *f, int i, cw_error *err)
 /* Returns the array that viewers show at first: scalars, else colours. */
 static const char *shown_array(const vtp *f)
 {
-    const cw_mesh *mesh = &f->parts->items[0].mesh;
-    return mesh->scalars ? " Scalars=\"scalar\"" : mesh->colors ? " Scalars=\"RGBA\"" : "";
+    const unsigned has = f->parts->items[0].arrays;
+    return has & CW_KEEPS_SCALARS  ? " Scalars=\"scalar\""
+           : has & CW_KEEPS_COLORS ? " Scalars=\"RGBA\""
+                                   : "";
 }
 
 static cw_status write_head(vtp *f, cw_error *err)

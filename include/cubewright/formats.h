@@ -376,6 +376,9 @@ typedef struct cw_write_desc {
     cw_compressed *compressed; /* filled in; default: none */
     bool animated; /* for glTF: parts are shown one after another, each at its time_s; default:
                       all of them at once; CW_ERR_ARGUMENT for other formats */
+    const uint32_t *sides; /* for VTP and PLY, with one mesh: triangle_count x 2, the labels
+                              that each triangle separates: the one behind it, then the one
+                              that it faces; CW_ERR_ARGUMENT for other formats; default: none */
     const cw_provenance *provenance; /* in the extras of a glTF file; default: none */
     size_t provenance_count;
     cw_progress progress; /* default: none */
@@ -397,6 +400,9 @@ CW_NODISCARD CW_API cw_status cw_volume_write(const char *path, const cw_volume 
  * stay exact in 3MF, too, whose build items hold the origin. The other formats hold world
  * coordinates (origin added), LPS millimetres: see cw_mesh_write_loss().
  *
+ * The labels of both sides of triangles (sides) are the cell array "BoundaryLabels" in VTP, and
+ * the properties "label_0" and "label_1" of PLY's faces.
+ *
  * local leaves the origin out: coordinates are the mesh's positions, and the glTF node has no
  * translation. The file names the origin; adding it gives the coordinates of the world. PLY,
  * OBJ, OFF and VTP name it in a comment, STL in its header when it fits there, glTF in the
@@ -412,6 +418,11 @@ CW_NODISCARD CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mes
 /* Writes parts into one file. OBJ and 3MF get an object for each. In the other formats the
  * parts are joined into one mesh, with the arrays that all of them have. Parts without
  * triangles are left out. A local file has the origin of the first part.
+ *
+ * The label of a part colours it: by a material in glTF, by a colour group in 3MF. OBJ gets a
+ * second file for that, with the path's stem and the extension .mtl. In the extras of a glTF
+ * node are the label's value, colour and codes. In the other formats its value and colour are
+ * those of the vertices, if all parts have them.
  *
  * Levels of detail are for glTF. Its scene holds level 0, whose node names the nodes of the
  * other levels (MSFT_lod) and the share of the screen below which each is enough. At that share
