@@ -1,10 +1,11 @@
-/* Copies the closed mesh of one label out of the interfaces. */
+/* Copies meshes out of the interfaces: the closed one of a label, or that of a patch. */
 #include <cubewright/labels.h>
 
 #include "extract/labels/key_counts.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/vec3.h"
 
 #include <string.h>
 
@@ -37,34 +38,75 @@ static bool copy_patch(const cw_label_surfaces *s, const cw_label_patch *patch, 
     return true;
 }
 
+/* Makes arrays for copies of triangles. One brings at most three vertices. */
+static bool make_room(const cw_label_surfaces *s, size_t triangles, cw_mesh *mesh)
+{
+    memset(mesh, 0, sizeof *mesh);
+    memcpy(mesh->origin, s->mesh.origin, sizeof mesh->origin);
+    memcpy(mesh->affine, s->mesh.affine, sizeof mesh->affine);
+    if (triangles == 0)
+        return true;
+    mesh->triangles = cwi_alloc_array(triangles, 3 * sizeof *mesh->triangles);
+    mesh->positions = cwi_alloc_array(3 * triangles, 3 * sizeof *mesh->positions);
+    return mesh->triangles && mesh->positions;
+}
+
+/* Returns the memory of vertices that were not needed. The mesh is emptied on failure. */
+static cw_status fit_vertices(cw_mesh *mesh, bool is_whole, cw_error *err)
+{
+    float *fitted = NULL;
+    if (is_whole && mesh->vertex_count == 0)
+        return CW_OK;
+    if (is_whole)
+        fitted = cwi_realloc_array(mesh->positions, 3 * mesh->vertex_count, sizeof *fitted);
+    if (fitted) {
+        mesh->positions = fitted;
+        return CW_OK;
+    }
+    cw_mesh_free(mesh);
+    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the mesh of a label");
+}
+
 cw_status cw_label_mesh(const cw_label_surfaces *s, uint32_t label, cw_mesh *mesh,
                         cw_error *err)
 {
     cwi_key_counts numbers = {0};
     size_t triangles = 0;
-    memset(mesh, 0, sizeof *mesh);
     for (size_t p = 0; p < s->patch_count; p++)
         triangles += side_of(&s->patches[p], label) >= 0 ? s->patches[p].count : 0;
-    memcpy(mesh->origin, s->mesh.origin, sizeof mesh->origin);
-    memcpy(mesh->affine, s->mesh.affine, sizeof mesh->affine);
-    if (triangles == 0)
-        return CW_OK;
-    /* a triangle brings at most three vertices, and closed surfaces have half as many */
-    mesh->triangles = cwi_alloc_array(triangles, 3 * sizeof *mesh->triangles);
-    mesh->positions = cwi_alloc_array(3 * triangles, 3 * sizeof *mesh->positions);
-    bool is_whole = mesh->triangles && mesh->positions;
+    bool is_whole = make_room(s, triangles, mesh);
     for (size_t p = 0; p < s->patch_count && is_whole; p++) {
         const int side = side_of(&s->patches[p], label);
         is_whole = side < 0 || copy_patch(s, &s->patches[p], side, &numbers, mesh);
     }
     cwi_key_counts_free(&numbers);
-    float *fitted =
-        is_whole ? cwi_realloc_array(mesh->positions, 3 * mesh->vertex_count, sizeof *fitted)
-                 : NULL;
-    if (!fitted) {
-        cw_mesh_free(mesh);
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the mesh of label %u", label);
+    return fit_vertices(mesh, is_whole, err);
+}
+
+cw_status cw_label_patch_mesh(const cw_label_surfaces *s, const cw_label_patch *patch,
+                              cw_mesh *mesh, cw_error *err)
+{
+    cwi_key_counts numbers = {0};
+    const bool is_whole =
+        make_room(s, patch->count, mesh) && copy_patch(s, patch, 0, &numbers, mesh);
+    cwi_key_counts_free(&numbers);
+    return fit_vertices(mesh, is_whole, err);
+}
+
+double cw_label_patch_area(const cw_label_surfaces *s, const cw_label_patch *patch)
+{
+    double area = 0;
+    for (size_t t = patch->first; t < patch->first + patch->count; t++) {
+        const float *p[3];
+        double u[3], v[3], normal[3];
+        for (size_t c = 0; c < 3; c++)
+            p[c] = s->mesh.positions + 3 * (size_t)s->mesh.triangles[3 * t + c];
+        for (int a = 0; a < 3; a++) {
+            u[a] = (double)p[1][a] - (double)p[0][a];
+            v[a] = (double)p[2][a] - (double)p[0][a];
+        }
+        cwi_cross(u, v, normal);
+        area += sqrt(cwi_dot(normal, normal)) / 2;
     }
-    mesh->positions = fitted;
-    return CW_OK;
+    return area;
 }

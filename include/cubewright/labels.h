@@ -94,6 +94,17 @@ CW_API void cw_label_surfaces_free(cw_label_surfaces *surfaces);
 CW_NODISCARD CW_API cw_status cw_label_mesh(const cw_label_surfaces *surfaces, uint32_t label,
                                             cw_mesh *mesh, cw_error *err);
 
+/* Copies one patch, with the vertices that its triangles name: seen from labels[1].
+ * mesh     filled on success, emptied on failure; free it with cw_mesh_free()
+ * Returns  CW_ERR_NO_MEMORY */
+CW_NODISCARD CW_API cw_status cw_label_patch_mesh(const cw_label_surfaces *surfaces,
+                                                  const cw_label_patch *patch, cw_mesh *mesh,
+                                                  cw_error *err);
+
+/* Computes the area of a patch in square millimetres. */
+CW_API double cw_label_patch_area(const cw_label_surfaces *surfaces,
+                                  const cw_label_patch *patch);
+
 #ifdef __cplusplus
 }
 #endif

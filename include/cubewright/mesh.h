@@ -37,6 +37,15 @@ CW_NODISCARD CW_API cw_status cw_mesh_check(const cw_mesh *mesh, cw_error *err);
  * vertices. */
 CW_API bool cw_mesh_bounds(const cw_mesh *mesh, double min[3], double max[3]);
 
+/* Gives the vertices normals from the triangles around them, which wind counter-clockwise seen
+ * from outside. A vertex without triangles, or of triangles that have no area or cancel out, gets
+ * the direction of z.
+ *
+ * mesh     its normals are replaced, or added; unchanged on failure
+ * Returns  CW_ERR_ARGUMENT as cw_mesh_check(); CW_ERR_NO_MEMORY
+ * Source   weights of corners [Max1999] */
+CW_NODISCARD CW_API cw_status cw_mesh_normals(cw_mesh *mesh, cw_error *err);
+
 /* Merges vertices at equal positions (0 equals -0) into the first of them, with its normal,
  * colour and other attributes. Triangles that name a vertex twice are left out, and then
  * vertices that no triangle names.

@@ -1,0 +1,54 @@
+/* Normals of vertices from the triangles around them. */
+#include <cubewright/mesh.h>
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/geometry/vec3.h"
+
+/* Adds a triangle's normal to those of its corners. The weight at a corner is the sine of its
+ * angle by the lengths of the edges beside it [Max1999]: the normals of vertices on a sphere are
+ * then exact. */
+static void add_triangle(const cw_mesh *mesh, const uint32_t *corners, double (*sums)[3])
+{
+    double edges[3][3], squares[3], normal[3];
+    for (int c = 0; c < 3; c++) {
+        const float *p = mesh->positions + 3 * (size_t)corners[c];
+        const float *q = mesh->positions + 3 * (size_t)corners[(c + 1) % 3];
+        for (int a = 0; a < 3; a++)
+            edges[c][a] = (double)q[a] - (double)p[a];
+        squares[c] = cwi_dot(edges[c], edges[c]);
+    }
+    cwi_cross(edges[0], edges[1], normal);
+    for (int c = 0; c < 3; c++) {
+        const double weight = squares[c] * squares[(c + 2) % 3];
+        for (int a = 0; a < 3 && weight > 0; a++)
+            sums[corners[c]][a] += normal[a] / weight;
+    }
+}
+
+cw_status cw_mesh_normals(cw_mesh *mesh, cw_error *err)
+{
+    cw_status st = cw_mesh_check(mesh, err);
+    if (st != CW_OK)
+        return st;
+    double(*sums)[3] = cwi_alloc_zeroed(mesh->vertex_count, sizeof *sums);
+    float *normals = mesh->normals ? mesh->normals
+                                   : cwi_alloc_array(mesh->vertex_count, 3 * sizeof *normals);
+    if (!sums || !normals) {
+        cwi_free(sums);
+        if (!mesh->normals)
+            cwi_free(normals);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the normals of %zu vertices",
+                        mesh->vertex_count);
+    }
+    for (size_t t = 0; t < mesh->triangle_count; t++)
+        add_triangle(mesh, mesh->triangles + 3 * t, sums);
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        const bool has_normal = cwi_normalise(sums[v]);
+        for (size_t a = 0; a < 3; a++)
+            normals[3 * v + a] = has_normal ? (float)sums[v][a] : a == 2 ? 1.0f : 0.0f;
+    }
+    mesh->normals = normals;
+    cwi_free(sums);
+    return CW_OK;
+}

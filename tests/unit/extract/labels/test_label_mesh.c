@@ -1,0 +1,126 @@
+/* Meshes that are copied out of the interfaces of labels: of a label, and of a patch. */
+#include "support/support.h"
+
+#include "core/base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A map of four labels in a grid that is scaled and far from zero. */
+static void extract_random(cw_label_surfaces *s)
+{
+    cw_volume v;
+    cw_error err = {0};
+    assert_ok(cw_volume_alloc(&v, CW_U32, (size_t[]){9, 8, 7}, 1, 1, &err), err);
+    uint32_t *to = cw_volume_voxels(&v);
+    srand(test_seed(40));
+    for (size_t n = 0; n < 9 * 8 * 7; n++)
+        to[n] = (uint32_t)(rand() % 5) * 1000000000u;
+    v.affine[0][0] = 0.5;
+    v.affine[1][1] = 2;
+    v.affine[0][3] = 1e4;
+    assert_ok(cw_extract_labels(&v, NULL, s, &err), err);
+    cw_volume_free(&v);
+}
+
+/* Returns true if three points of a mesh are, in this order or turned, those of a triangle. */
+static bool is_same(const cw_mesh *a, const uint32_t *corners, const cw_mesh *b,
+                    const uint32_t *others)
+{
+    for (size_t turn = 0; turn < 3; turn++) {
+        bool is = true;
+        for (size_t c = 0; c < 3; c++)
+            is = is && memcmp(a->positions + 3 * (size_t)corners[c],
+                              b->positions + 3 * (size_t)others[(c + turn) % 3],
+                              3 * sizeof(float)) == 0;
+        if (is)
+            return true;
+    }
+    return false;
+}
+
+/* The two labels of a patch have its triangles, with opposite winding. */
+static void both_labels_have_a_patch(void **state)
+{
+    (void)state;
+    cw_label_surfaces s;
+    cw_error err = {0};
+    extract_random(&s);
+    assert_true(s.patch_count == 10);
+    for (size_t p = 0; p < s.patch_count; p++) {
+        const cw_label_patch *patch = &s.patches[p];
+        cw_mesh mesh, sides[2];
+        assert_ok(cw_label_patch_mesh(&s, patch, &mesh, &err), err);
+        assert_int_equal(mesh.triangle_count, patch->count);
+        assert_ok(cw_mesh_check(&mesh, &err), err);
+        assert_memory_equal(mesh.origin, s.mesh.origin, sizeof mesh.origin);
+        assert_ok(cw_label_mesh(&s, patch->labels[0], &sides[0], &err), err);
+        assert_ok(cw_label_mesh(&s, patch->labels[1], &sides[1], &err), err);
+        for (size_t t = 0; t < mesh.triangle_count; t++) {
+            const uint32_t *c = mesh.triangles + 3 * t;
+            assert_true(is_same(&mesh, c, &s.mesh, s.mesh.triangles + 3 * (patch->first + t)));
+            for (int side = 0; side < 2; side++) {
+                const uint32_t seen[3] = {c[0], c[side ? 2 : 1], c[side ? 1 : 2]};
+                size_t found = 0;
+                for (size_t u = 0; u < sides[side].triangle_count; u++)
+                    found += is_same(&mesh, seen, &sides[side], sides[side].triangles + 3 * u);
+                assert_int_equal(found, 1);
+            }
+        }
+        cw_mesh_free(&mesh);
+        cw_mesh_free(&sides[0]);
+        cw_mesh_free(&sides[1]);
+    }
+    cw_label_surfaces_free(&s);
+}
+
+static void areas_of_patches_add_up(void **state)
+{
+    (void)state;
+    cw_label_surfaces s;
+    cw_error err = {0};
+    extract_random(&s);
+    for (size_t n = 0; n < s.label_count; n++) {
+        cw_mesh mesh;
+        cw_quality q;
+        double area = 0;
+        assert_ok(cw_label_mesh(&s, s.labels[n].label, &mesh, &err), err);
+        assert_ok(cw_quality_measure(&mesh, NULL, &q, &err), err);
+        for (size_t p = 0; p < s.patch_count; p++)
+            if (s.patches[p].labels[0] == s.labels[n].label ||
+                s.patches[p].labels[1] == s.labels[n].label)
+                area += cw_label_patch_area(&s, &s.patches[p]);
+        assert_within(area, q.area_mm2, 1e-9);
+        cw_mesh_free(&mesh);
+    }
+    cw_label_surfaces_free(&s);
+}
+
+static void memory_that_is_out_is_an_error(void **state)
+{
+    (void)state;
+    cw_label_surfaces s;
+    extract_random(&s);
+    bool failed = true;
+    for (long n = 0; failed; n++) {
+        cw_mesh mesh;
+        cw_error err = {0};
+        cwi_alloc_fail_after(n);
+        const cw_status st = cw_label_patch_mesh(&s, &s.patches[0], &mesh, &err);
+        failed = cwi_alloc_fail_after(-1);
+        assert_int_equal(st, failed ? CW_ERR_NO_MEMORY : CW_OK);
+        assert_true(!failed || !mesh.positions);
+        cw_mesh_free(&mesh);
+    }
+    cw_label_surfaces_free(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(both_labels_have_a_patch),
+        cmocka_unit_test(areas_of_patches_add_up),
+        cmocka_unit_test(memory_that_is_out_is_an_error),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
