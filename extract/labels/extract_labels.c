@@ -25,28 +25,33 @@ enum {
 static const double spread = 0.5;
 
 /* Converts a place to a world point, from the mesh's origin. */
-static void place_vertex(const void *context, const float place[3], float point[3])
+static void place_vertex(const void *context, const double place[3], double point[3])
 {
     const cwi_label_job *j = context;
     const cw_volume *v = j->layers.volume;
     double at[3], world[3];
     for (int a = 0; a < 3; a++) {
-        const double p = (double)place[a], low = floor(p);
+        const double p = place[a], low = floor(p);
         at[a] = v->dim[a] > 1       ? cwi_grid_coordinate(v, a, (ptrdiff_t)low, p - low)
                 : v->coordinates[a] ? v->coordinates[a][0] + p
                                     : p;
     }
     cwi_affine_apply(v->affine[0], at, world);
     for (int a = 0; a < 3; a++)
-        point[a] = (float)(world[a] - j->out->mesh.origin[a]);
+        point[a] = world[a] - j->out->mesh.origin[a];
 }
 
 static void place_part(void *context, size_t n)
 {
     const cwi_label_job *j = context;
     const size_t count = j->out->mesh.vertex_count;
-    for (size_t i = n * PLACES; i < (n + 1) * PLACES && i < count; i++)
-        place_vertex(j, j->out->mesh.positions + 3 * i, j->out->mesh.positions + 3 * i);
+    for (size_t i = n * PLACES; i < (n + 1) * PLACES && i < count; i++) {
+        float *p = j->out->mesh.positions + 3 * i;
+        double place[3] = {(double)p[0], (double)p[1], (double)p[2]}, point[3];
+        place_vertex(j, place, point);
+        for (int a = 0; a < 3; a++)
+            p[a] = (float)point[a];
+    }
 }
 
 /* A pair's triangles in a chunk. */
@@ -163,13 +168,14 @@ static cw_status make_room(cwi_label_job *j, const cw_labels_desc *desc, cw_erro
     if (!desc->no_smoothing && mesh->vertex_count > 0) {
         net->neighbours = cwi_alloc_array(mesh->vertex_count, sizeof *net->neighbours);
         net->kinds = cwi_alloc_zeroed(mesh->vertex_count, 1);
+        j->polygons = cwi_alloc_large(mesh->triangle_count, 1);
         j->originals = cwi_alloc_large(mesh->vertex_count, 3 * sizeof *j->originals);
         if (net->neighbours)
             memset(net->neighbours, 0xff, mesh->vertex_count * sizeof *net->neighbours);
     }
     if (!mesh->positions || !mesh->triangles ||
         (!desc->no_smoothing && mesh->vertex_count > 0 &&
-         !(net->neighbours && net->kinds && j->originals)))
+         !(net->neighbours && net->kinds && j->polygons && j->originals)))
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu triangles",
                         mesh->triangle_count);
     for (int a = 0; a < 3; a++)
@@ -225,9 +231,11 @@ static cw_status run_job(cwi_label_job *j, const cw_labels_desc *desc, cw_error 
         st = cwi_each_layer((j->out->mesh.vertex_count + PLACES - 1) / PLACES, PLACES,
                             desc->threads, &desc->progress, "placing", place_part, j, err);
     if (st == CW_OK && j->originals)
-        st = cwi_labels_untangle(j->out, j->originals, place_vertex, j, desc, err);
+        st = cwi_labels_untangle(j->out, &j->net, j->polygons, j->originals, place_vertex, j,
+                                 desc, err);
     cwi_free(j->net.neighbours);
     cwi_free(j->net.kinds);
+    cwi_free(j->polygons);
     cwi_free(j->originals);
     for (size_t c = 0; c < chunks; c++) {
         cwi_key_counts_free(&j->chunks[c].pairs);

@@ -126,7 +126,8 @@ static cwi_key_count *find_pair(scan *s, const uint32_t pair[2])
 
 /* Counts or writes the triangles of a polygon; pair[0] is at the edge's start. Returns false
  * when memory is out. */
-static bool take_polygon(scan *s, uint32_t pair[2], const uint32_t *polygon, int count)
+static bool take_polygon(scan *s, int edge, uint32_t pair[2], const uint32_t *polygon,
+                         int count)
 {
     const cwi_label_job *j = s->job;
     const bool flips = order_pair(j, pair) != j->is_mirrored;
@@ -139,6 +140,8 @@ static bool take_polygon(scan *s, uint32_t pair[2], const uint32_t *polygon, int
         to[1] = polygon[flips ? n + 1 : n];
         to[2] = polygon[flips ? n : n + 1];
     }
+    for (int n = 0; n + 2 < count && to && j->polygons; n++)
+        j->polygons[entry->count + (size_t)n] = n == 0 ? (uint8_t)edge : 0;
     entry->count += (size_t)count - 2;
     return true;
 }
@@ -159,7 +162,7 @@ static bool take_layer(scan *s, size_t k)
                 continue;
             uint32_t pair[2] = {corners[0], corners[edge]};
             const int count = find_polygon(s, edge, x, y, polygon);
-            if (count >= 3 && !take_polygon(s, pair, polygon, count))
+            if (count >= 3 && !take_polygon(s, edge, pair, polygon, count))
                 return false;
         }
     }

@@ -27,7 +27,8 @@ typedef struct cwi_label_job {
     double corners[CWI_TETS][3]; /* vertices of tetrahedra, from the cube's middle */
     bool is_mirrored;
     cwi_label_net net;
-    float *originals; /* places before smoothing; NULL without smoothing */
+    uint8_t *polygons; /* as cwi_label_crossings.polygons; NULL without smoothing */
+    float *originals;  /* places before smoothing; NULL without smoothing */
     cw_label_surfaces *out;
     cwi_label_chunk *chunks;
     bool is_writing; /* the second pass */
