@@ -1,12 +1,8 @@
-/* Extracts the interfaces of a label map: a first pass over layers of cubes counts vertices and
- * the triangles of each pair of labels, and a second one writes them where they belong. Layers
- * are worked on in chunks, so that the result does not depend on threads. */
+/* Extracts the interfaces of a label map in chunks, so that the result does not depend on threads:
+ * assembles what the first pass counted, and smooths what the second one wrote. */
 #include <cubewright/labels.h>
 
-#include "extract/labels/key_counts.h"
-#include "extract/labels/label_cubes.h"
-#include "extract/labels/label_layers.h"
-#include "extract/labels/label_smooth.h"
+#include "extract/labels/label_chunks.h"
 #include "extract/labels/label_untangle.h"
 
 #include "core/base/memory.h"
@@ -20,7 +16,6 @@
 #include <string.h>
 
 enum {
-    CHUNK = 16,       /* layers of cubes */
     PLACES = 1 << 14, /* vertices */
     WORK = 4          /* one voxel takes as long as this number elsewhere */
 };
@@ -29,397 +24,34 @@ enum {
  * their own: near it, so that sheets stay apart and close to where surface nets have them. */
 static const double spread = 0.5;
 
-/* A chunk's share of the result. */
-typedef struct chunk {
-    cwi_key_counts pairs;  /* triangles of each; in the second pass, where the next goes */
-    cwi_key_counts voxels; /* of each label */
-    size_t vertices;       /* in the second pass, the number of the first */
-} chunk;
-
-typedef struct job {
-    cwi_label_layers layers;
-    cwi_label_rules rules;
-    double corners[CWI_TETS][3]; /* vertices of tetrahedra, from the cube's middle */
-    bool is_mirrored;
-    cwi_label_net net;
-    float *originals; /* places before smoothing; NULL without smoothing */
-    cw_label_surfaces *out;
-    chunk *chunks;
-    bool is_writing; /* the second pass */
-    bool is_starved, is_bad;
-    size_t bad[3]; /* the first voxel whose value is no label */
-} job;
-
-/* The buffers of a thread that goes through a chunk. Layers come and go: [0] is the one below. */
-typedef struct scan {
-    job *job;
-    chunk *chunk;
-    size_t width, height; /* of layers of cubes */
-    uint32_t *labels[2];  /* of voxels, with the border */
-    uint8_t *shapes[2];   /* of cubes: cwi_label_cube() */
-    uint32_t *firsts[2];  /* their first vertices */
-    uint8_t *marks;       /* of a row: columns of four voxels that differ; then cubes */
-    size_t next;          /* vertex */
-    uint64_t last_key;    /* of `last`; 0: none */
-    cwi_key_count *last;
-} scan;
-
-/* Returns the number of vertices of a cube. */
-static size_t count_vertices(uint8_t shape)
-{
-    return shape == CWI_CUBE_SIMPLE ? 1 : (size_t)cwi_count_bits(shape);
-}
-
-/* Marks the cubes of a row whose corners are not all alike. */
-static void mark_row(const scan *s, size_t y)
-{
-    const size_t wide = s->job->layers.width;
-    const uint32_t *a = s->labels[0] + y * wide, *b = a + wide;
-    const uint32_t *c = s->labels[1] + y * wide, *d = c + wide;
-    uint8_t *marks = s->marks;
-    for (size_t x = 0; x < wide; x++)
-        marks[x] = (a[x] != b[x]) | (a[x] != c[x]) | (a[x] != d[x]);
-    for (size_t x = 0; x < s->width; x++)
-        marks[x] = marks[x] | marks[x + 1] | (a[x] != a[x + 1]);
-}
-
-static void load_corners(const scan *s, size_t x, size_t y, uint32_t corners[8])
-{
-    const size_t wide = s->job->layers.width;
-    for (int z = 0; z < 2; z++) {
-        const uint32_t *p = s->labels[z] + y * wide + x;
-        corners[4 * z] = p[0];
-        corners[4 * z + 1] = p[1];
-        corners[4 * z + 2] = p[wide];
-        corners[4 * z + 3] = p[wide + 1];
-    }
-}
-
-/* Finds the shapes of the upper layer of cubes, and numbers their vertices. */
-static void shape_layer(scan *s)
-{
-    uint32_t corners[8];
-    memset(s->shapes[1], 0, s->width * s->height);
-    for (size_t y = 0; y < s->height; y++) {
-        mark_row(s, y);
-        for (size_t x = 0; x < s->width; x++) {
-            if (!s->marks[x])
-                continue;
-            const size_t n = y * s->width + x;
-            load_corners(s, x, y, corners);
-            s->shapes[1][n] = cwi_label_cube(&s->job->rules, corners);
-            s->firsts[1][n] = (uint32_t)s->next;
-            s->next += count_vertices(s->shapes[1][n]);
-        }
-    }
-}
-
-/* Returns the vertex of a tetrahedron. */
-static uint32_t vertex_of(const scan *s, const cwi_label_ring *ring, int n, size_t x, size_t y)
-{
-    const int8_t *cube = ring->cube[n];
-    const size_t place = (y - (cube[1] < 0)) * s->width + x - (cube[0] < 0);
-    const int layer = cube[2] < 0 ? 0 : 1;
-    const uint8_t shape = s->shapes[layer][place];
-    const uint32_t first = s->firsts[layer][place];
-    return shape == CWI_CUBE_SIMPLE
-               ? first
-               : first + (uint32_t)cwi_count_bits(shape & ((1u << ring->tet[n]) - 1));
-}
-
-/* Finds the polygon around an edge that starts at the corner 0 of a cube. Tetrahedra with the
- * same vertex follow each other. Returns the number of corners; fewer than 3 make no polygon. */
-static int find_polygon(const scan *s, int edge, size_t x, size_t y, uint32_t polygon[CWI_RING])
-{
-    const cwi_label_ring *ring = &s->job->rules.rings[edge];
-    int count = 0;
-    for (int n = 0; n < ring->count; n++) {
-        const uint32_t v = vertex_of(s, ring, n, x, y);
-        if (count == 0 || polygon[count - 1] != v)
-            polygon[count++] = v;
-    }
-    while (count > 1 && polygon[count - 1] == polygon[0])
-        count--;
-    return count;
-}
-
-/* Orders a pair of labels: the background is the second, of others the larger. Returns true if
- * they changed places. */
-static bool order_pair(const job *j, uint32_t pair[2])
-{
-    const uint32_t background = j->layers.background;
-    const bool changes = pair[0] == background || (pair[1] != background && pair[0] > pair[1]);
-    if (changes) {
-        const uint32_t first = pair[0];
-        pair[0] = pair[1];
-        pair[1] = first;
-    }
-    return changes;
-}
-
-/* Finds a pair's entry, mostly that of the polygon before. NULL when memory is out. */
-static cwi_key_count *find_pair(scan *s, const uint32_t pair[2])
-{
-    const uint64_t key = (uint64_t)pair[0] << 32 | pair[1];
-    if (key != s->last_key) {
-        s->last = cwi_key_counts_need(&s->chunk->pairs, key);
-        s->last_key = s->last ? key : 0;
-    }
-    return s->last;
-}
-
-/* Counts or writes the triangles of a polygon; pair[0] is at the edge's start. Returns false
- * when memory is out. */
-static bool take_polygon(scan *s, uint32_t pair[2], const uint32_t *polygon, int count)
-{
-    const job *j = s->job;
-    const bool flips = order_pair(j, pair) != j->is_mirrored;
-    cwi_key_count *entry = find_pair(s, pair);
-    if (!entry)
-        return false;
-    uint32_t *to = j->is_writing ? j->out->mesh.triangles + 3 * entry->count : NULL;
-    for (int n = 1; n + 1 < count && to; n++, to += 3) {
-        to[0] = polygon[0];
-        to[1] = polygon[flips ? n + 1 : n];
-        to[2] = polygon[flips ? n : n + 1];
-    }
-    entry->count += (size_t)count - 2;
-    return true;
-}
-
-/* Takes the polygons around the edges that start at the corner 0 of the cubes of the upper
- * layer. In an open border edges have cubes on one side only, and no polygon. */
-static bool take_layer(scan *s, size_t k)
-{
-    uint32_t corners[8], polygon[CWI_RING];
-    for (size_t n = 0; n < s->width * s->height; n++) {
-        if (!s->shapes[1][n])
-            continue;
-        const size_t x = n % s->width, y = n / s->width;
-        const int inner = (x > 0) | (y > 0) << 1 | (k > 0) << 2;
-        load_corners(s, x, y, corners);
-        for (int edge = 1; edge < 8; edge++) {
-            if (corners[0] == corners[edge] || (inner | edge) != 7)
-                continue;
-            uint32_t pair[2] = {corners[0], corners[edge]};
-            const int count = find_polygon(s, edge, x, y, polygon);
-            if (count >= 3 && !take_polygon(s, pair, polygon, count))
-                return false;
-        }
-    }
-    return true;
-}
-
-/* Puts a vertex at a place counted in voxels, from the first. */
-static void put_vertex(const job *j, const double place[3], uint32_t number)
-{
-    float *to = j->out->mesh.positions + 3 * (size_t)number;
-    for (int a = 0; a < 3; a++)
-        to[a] = (float)place[a];
-}
-
-/* Sets a bit of a vertex's kind; another chunk may set another one. */
-static void mark_kind(uint8_t *kind, bool is_curve, int bit)
-{
-    if (is_curve) {
-#pragma omp atomic
-        *kind |= (uint8_t)(1 << bit);
-    }
-}
-
-/* Tells a cube and the one before it along an axis that they are neighbours, if the face
- * between them is part of an interface; and if three labels meet there. */
-static void join_cubes(const scan *s, size_t n, int axis)
-{
-    const size_t back[3] = {1, s->width, 0};
-    const int layer = axis == 2 ? 0 : 1;
-    const size_t other = n - back[axis];
-    cwi_label_net *net = &s->job->net;
-    uint32_t c[8];
-    load_corners(s, n % s->width, n / s->width, c);
-    const int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3;
-    const uint32_t around[4] = {c[0], c[u], c[u | v], c[v]};
-    int changes = 0;
-    for (int i = 0; i < 4; i++)
-        changes += around[i] != around[(i + 1) % 4];
-    if (changes == 0)
-        return;
-    const uint32_t here = s->firsts[1][n], there = s->firsts[layer][other];
-    if (s->shapes[1][n] == CWI_CUBE_SIMPLE) {
-        net->neighbours[here][axis] = there;
-        mark_kind(&net->kinds[here], changes > 2, axis);
-    }
-    if (s->shapes[layer][other] == CWI_CUBE_SIMPLE) {
-        net->neighbours[there][axis + 3] = here;
-        mark_kind(&net->kinds[there], changes > 2, axis + 3);
-    }
-}
-
-static void put_vertices(const scan *s, size_t k)
-{
-    for (size_t n = 0; n < s->width * s->height; n++) {
-        const uint8_t shape = s->shapes[1][n];
-        const double middle[3] = {(double)(n % s->width) - 0.5, (double)(n / s->width) - 0.5,
-                                  (double)k - 0.5};
-        uint32_t number = s->firsts[1][n];
-        if (!shape)
-            continue;
-        if (shape == CWI_CUBE_SIMPLE)
-            put_vertex(s->job, middle, number);
-        if (s->job->net.kinds) {
-            const bool has_below[3] = {n % s->width > 0, n / s->width > 0, k > 0};
-            for (size_t v = 0; v < count_vertices(shape) && shape != CWI_CUBE_SIMPLE; v++)
-                s->job->net.kinds[number + v] = CWI_NET_FIXED;
-            for (int a = 0; a < 3; a++)
-                if (has_below[a])
-                    join_cubes(s, n, a);
-        }
-        for (int t = 0; t < CWI_TETS && shape != CWI_CUBE_SIMPLE; t++) {
-            const double *c = s->job->corners[t];
-            if (shape >> t & 1)
-                put_vertex(s->job,
-                           (double[3]){middle[0] + c[0], middle[1] + c[1], middle[2] + c[2]},
-                           number++);
-        }
-    }
-}
-
 /* Converts a place to a world point, from the mesh's origin. */
-static void place_vertex(const void *context, const float place[3], float point[3])
+static void place_vertex(const void *context, const double place[3], double point[3])
 {
-    const job *j = context;
+    const cwi_label_job *j = context;
     const cw_volume *v = j->layers.volume;
     double at[3], world[3];
     for (int a = 0; a < 3; a++) {
-        const double p = (double)place[a], low = floor(p);
+        const double p = place[a], low = floor(p);
         at[a] = v->dim[a] > 1       ? cwi_grid_coordinate(v, a, (ptrdiff_t)low, p - low)
                 : v->coordinates[a] ? v->coordinates[a][0] + p
                                     : p;
     }
     cwi_affine_apply(v->affine[0], at, world);
     for (int a = 0; a < 3; a++)
-        point[a] = (float)(world[a] - j->out->mesh.origin[a]);
+        point[a] = world[a] - j->out->mesh.origin[a];
 }
 
 static void place_part(void *context, size_t n)
 {
-    const job *j = context;
+    const cwi_label_job *j = context;
     const size_t count = j->out->mesh.vertex_count;
-    for (size_t i = n * PLACES; i < (n + 1) * PLACES && i < count; i++)
-        place_vertex(j, j->out->mesh.positions + 3 * i, j->out->mesh.positions + 3 * i);
-}
-
-/* Counts the voxels of a layer without its border, by runs. */
-static bool count_voxels(scan *s)
-{
-    const cwi_label_layers *l = &s->job->layers;
-    for (size_t y = 1; y + 1 < l->height; y++) {
-        const uint32_t *row = s->labels[1] + y * l->width + 1;
-        const size_t count = l->width - 2;
-        for (size_t x = 0, end; x < count; x = end) {
-            for (end = x + 1; end < count && row[end] == row[x];)
-                end++;
-            if (row[x] == l->background)
-                continue;
-            cwi_key_count *e = cwi_key_counts_need(&s->chunk->voxels, (uint64_t)row[x] + 1);
-            if (!e)
-                return false;
-            e->count += end - x;
-        }
+    for (size_t i = n * PLACES; i < (n + 1) * PLACES && i < count; i++) {
+        float *p = j->out->mesh.positions + 3 * i;
+        double place[3] = {(double)p[0], (double)p[1], (double)p[2]}, point[3];
+        place_vertex(j, place, point);
+        for (int a = 0; a < 3; a++)
+            p[a] = (float)point[a];
     }
-    return true;
-}
-
-static void swap_layers(scan *s)
-{
-    uint32_t *labels = s->labels[0], *firsts = s->firsts[0];
-    uint8_t *shapes = s->shapes[0];
-    s->labels[0] = s->labels[1], s->labels[1] = labels;
-    s->firsts[0] = s->firsts[1], s->firsts[1] = firsts;
-    s->shapes[0] = s->shapes[1], s->shapes[1] = shapes;
-}
-
-/* Loads a layer of voxels above the one before; keeps the first voxel that is no label. */
-static bool load_layer(scan *s, size_t k)
-{
-    job *j = s->job;
-    size_t bad[3];
-    if (cwi_label_layer_load(&j->layers, k, s->labels[1], bad))
-        return true;
-#pragma omp critical(cwi_labels_bad)
-    {
-        const bool is_first =
-            !j->is_bad || bad[2] < j->bad[2] ||
-            (bad[2] == j->bad[2] &&
-             (bad[1] < j->bad[1] || (bad[1] == j->bad[1] && bad[0] < j->bad[0])));
-        if (is_first)
-            memcpy(j->bad, bad, sizeof bad);
-        j->is_bad = true;
-    }
-    return false;
-}
-
-/* Goes through the cube layers of a chunk, and the one below it for its vertices' numbers.
- * Returns false when memory is out or a value is no label. */
-static bool scan_chunk(scan *s, size_t first, size_t end)
-{
-    job *j = s->job;
-    const size_t from = first > 0 ? first - 1 : 0;
-    bool is_well = load_layer(s, from);
-    s->next = s->chunk->vertices;
-    for (size_t k = from; k < end && is_well; k++) {
-        swap_layers(s);
-        is_well = load_layer(s, k + 1);
-        if (!is_well)
-            break;
-        if (k < first) { /* its vertices end where the chunk's begin */
-            s->next = 0;
-            shape_layer(s);
-            const uint32_t shift = (uint32_t)(s->chunk->vertices - s->next);
-            for (size_t n = 0; n < s->width * s->height; n++)
-                s->firsts[1][n] += shift;
-            s->next = s->chunk->vertices;
-            continue;
-        }
-        shape_layer(s);
-        is_well = take_layer(s, k);
-        if (j->is_writing)
-            put_vertices(s, k);
-        else if (is_well && k + 2 < j->layers.count)
-            is_well = count_voxels(s);
-    }
-    if (!j->is_writing)
-        s->chunk->vertices = s->next - s->chunk->vertices;
-    return is_well;
-}
-
-static void work_chunk(void *context, size_t n)
-{
-    job *j = context;
-    scan s = {.job = j,
-              .chunk = &j->chunks[n],
-              .width = j->layers.width - 1,
-              .height = j->layers.height - 1};
-    const size_t voxels = j->layers.width * j->layers.height, layers = j->layers.count - 1;
-    const size_t first = n * CHUNK, end = first + CHUNK < layers ? first + CHUNK : layers;
-    bool is_whole = true;
-    for (int i = 0; i < 2; i++) {
-        s.labels[i] = cwi_alloc_array(voxels, sizeof *s.labels[i]);
-        s.shapes[i] = cwi_alloc_zeroed(voxels, 1);
-        s.firsts[i] = cwi_alloc_array(voxels, sizeof *s.firsts[i]);
-        is_whole = is_whole && s.labels[i] && s.shapes[i] && s.firsts[i];
-    }
-    s.marks = cwi_alloc_array(j->layers.width, 1);
-    if (!is_whole || !s.marks || (!scan_chunk(&s, first, end) && !j->is_bad)) {
-#pragma omp atomic write
-        j->is_starved = true;
-    }
-    for (int i = 0; i < 2; i++) {
-        cwi_free(s.labels[i]);
-        cwi_free(s.shapes[i]);
-        cwi_free(s.firsts[i]);
-    }
-    cwi_free(s.marks);
 }
 
 /* A pair's triangles in a chunk. */
@@ -439,7 +71,7 @@ static int compare_parts(const void *a, const void *b)
 
 /* Lists the entries of all chunks' pairs, or of their voxels, by key and then by chunk. Returns
  * NULL when memory is out. */
-static part *list_parts(const job *j, size_t chunks, bool of_voxels, size_t *count)
+static part *list_parts(const cwi_label_job *j, size_t chunks, bool of_voxels, size_t *count)
 {
     *count = 0;
     for (size_t c = 0; c < chunks; c++)
@@ -466,7 +98,7 @@ static size_t count_keys(const part *parts, size_t count)
 }
 
 /* Sums up the voxels of each label. */
-static cw_status list_labels(const job *j, size_t chunks, cw_error *err)
+static cw_status list_labels(const cwi_label_job *j, size_t chunks, cw_error *err)
 {
     cw_label_surfaces *out = j->out;
     size_t count;
@@ -484,7 +116,7 @@ static cw_status list_labels(const job *j, size_t chunks, cw_error *err)
 }
 
 /* Makes the patches, and turns counts of triangles into the places of each chunk's first. */
-static cw_status list_patches(const job *j, size_t chunks, cw_error *err)
+static cw_status list_patches(const cwi_label_job *j, size_t chunks, cw_error *err)
 {
     cw_label_surfaces *out = j->out;
     size_t count;
@@ -507,7 +139,7 @@ static cw_status list_patches(const job *j, size_t chunks, cw_error *err)
 }
 
 /* Turns counts of vertices into the number of each chunk's first. */
-static cw_status number_vertices(const job *j, size_t chunks, cw_error *err)
+static cw_status number_vertices(const cwi_label_job *j, size_t chunks, cw_error *err)
 {
     size_t sum = 0;
     for (size_t c = 0; c < chunks; c++) {
@@ -522,7 +154,7 @@ static cw_status number_vertices(const job *j, size_t chunks, cw_error *err)
     return CW_OK;
 }
 
-static cw_status make_room(job *j, const cw_labels_desc *desc, cw_error *err)
+static cw_status make_room(cwi_label_job *j, const cw_labels_desc *desc, cw_error *err)
 {
     const cw_volume *v = j->layers.volume;
     cwi_label_net *net = &j->net;
@@ -536,13 +168,14 @@ static cw_status make_room(job *j, const cw_labels_desc *desc, cw_error *err)
     if (!desc->no_smoothing && mesh->vertex_count > 0) {
         net->neighbours = cwi_alloc_array(mesh->vertex_count, sizeof *net->neighbours);
         net->kinds = cwi_alloc_zeroed(mesh->vertex_count, 1);
+        j->polygons = cwi_alloc_large(mesh->triangle_count, 1);
         j->originals = cwi_alloc_large(mesh->vertex_count, 3 * sizeof *j->originals);
         if (net->neighbours)
             memset(net->neighbours, 0xff, mesh->vertex_count * sizeof *net->neighbours);
     }
     if (!mesh->positions || !mesh->triangles ||
         (!desc->no_smoothing && mesh->vertex_count > 0 &&
-         !(net->neighbours && net->kinds && j->originals)))
+         !(net->neighbours && net->kinds && j->polygons && j->originals)))
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu triangles",
                         mesh->triangle_count);
     for (int a = 0; a < 3; a++)
@@ -553,12 +186,13 @@ static cw_status make_room(job *j, const cw_labels_desc *desc, cw_error *err)
     return CW_OK;
 }
 
-static cw_status run_pass(job *j, size_t chunks, const cw_labels_desc *desc, cw_error *err)
+static cw_status run_pass(cwi_label_job *j, size_t chunks, const cw_labels_desc *desc,
+                          cw_error *err)
 {
     const cw_volume *v = j->layers.volume;
-    cw_status st = cwi_each_layer(chunks, WORK * CHUNK * v->dim[0] * v->dim[1], desc->threads,
-                                  &desc->progress, j->is_writing ? "extracting" : "counting",
-                                  work_chunk, j, err);
+    cw_status st = cwi_each_layer(
+        chunks, WORK * CWI_LABEL_CHUNK * v->dim[0] * v->dim[1], desc->threads, &desc->progress,
+        j->is_writing ? "extracting" : "counting", cwi_label_chunk_work, j, err);
     if (st == CW_OK && j->is_starved)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for layers of labels");
     if (st == CW_OK && j->is_bad)
@@ -569,9 +203,10 @@ static cw_status run_pass(job *j, size_t chunks, const cw_labels_desc *desc, cw_
     return st;
 }
 
-static cw_status run_job(job *j, const cw_labels_desc *desc, cw_error *err)
+static cw_status run_job(cwi_label_job *j, const cw_labels_desc *desc, cw_error *err)
 {
-    const size_t layers = j->layers.count - 1, chunks = (layers + CHUNK - 1) / CHUNK;
+    const size_t layers = j->layers.count - 1,
+                 chunks = (layers + CWI_LABEL_CHUNK - 1) / CWI_LABEL_CHUNK;
     j->chunks = cwi_alloc_zeroed(chunks, sizeof *j->chunks);
     if (!j->chunks)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for layers of labels");
@@ -596,9 +231,11 @@ static cw_status run_job(job *j, const cw_labels_desc *desc, cw_error *err)
         st = cwi_each_layer((j->out->mesh.vertex_count + PLACES - 1) / PLACES, PLACES,
                             desc->threads, &desc->progress, "placing", place_part, j, err);
     if (st == CW_OK && j->originals)
-        st = cwi_labels_untangle(j->out, j->originals, place_vertex, j, desc, err);
+        st = cwi_labels_untangle(j->out, &j->net, j->polygons, j->originals, place_vertex, j,
+                                 desc, err);
     cwi_free(j->net.neighbours);
     cwi_free(j->net.kinds);
+    cwi_free(j->polygons);
     cwi_free(j->originals);
     for (size_t c = 0; c < chunks; c++) {
         cwi_key_counts_free(&j->chunks[c].pairs);
@@ -615,7 +252,7 @@ static int compare_labels(const void *a, const void *b)
 }
 
 /* Fills in what follows from the volume and the options. wanted: room for the labels, sorted. */
-static void prepare_job(job *j, const cw_volume *v, const cw_labels_desc *desc,
+static void prepare_job(cwi_label_job *j, const cw_volume *v, const cw_labels_desc *desc,
                         uint32_t *wanted)
 {
     if (desc->label_count > 0)
@@ -659,7 +296,7 @@ cw_status cw_extract_labels(const cw_volume *volume, const cw_labels_desc *desc,
         return cwi_fail(err, CW_ERR_ARGUMENT, "%zu labels are wanted, but none are named",
                         desc->label_count);
     uint32_t *wanted = cwi_alloc_array(desc->label_count, sizeof *wanted);
-    job *j = cwi_alloc_zeroed(1, sizeof *j);
+    cwi_label_job *j = cwi_alloc_zeroed(1, sizeof *j);
     if (wanted && j) {
         j->out = surfaces;
         surfaces->background = desc->background;

@@ -8,14 +8,18 @@
 extern "C" {
 #endif
 
-enum { CWI_NET_FIXED = 0x40 };
+/* Flags of a vertex's kind. */
+enum {
+    CWI_NET_FIXED = 0x40, /* in a cube with more than one vertex: it stays */
+    CWI_NET_BACK = 0x80   /* put back to where it was before smoothing */
+};
 
 /* The vertices that a vertex is smoothed with: those of the cubes beside its own. */
 typedef struct cwi_label_net {
     uint32_t (*neighbours)[6]; /* below and above along each axis: x-, y-, z-, x+, y+, z+;
                                   UINT32_MAX: none */
-    uint8_t *kinds;            /* bit n: three labels or more meet on the way to neighbour n; or
-                       CWI_NET_FIXED: the vertex stays */
+    uint8_t *kinds;            /* bit n: three labels or more meet on the way to neighbour n;
+                                  and flags */
 } cwi_label_net;
 
 /* Smooths places, counted in voxels, of the vertices of surfaces->mesh. Volumes of labels become

@@ -1,0 +1,358 @@
+/* Goes through chunks of layers of cubes: a first pass counts vertices and the triangles of each
+ * pair of labels, and a second one writes them where they belong. */
+#include "extract/labels/label_chunks.h"
+
+#include "core/base/memory.h"
+
+#include <string.h>
+
+/* The buffers of a thread that goes through a chunk. Layers come and go: [0] is the one below. */
+typedef struct scan {
+    cwi_label_job *job;
+    cwi_label_chunk *chunk;
+    size_t width, height; /* of layers of cubes */
+    uint32_t *labels[2];  /* of voxels, with the border */
+    uint8_t *shapes[2];   /* of cubes: cwi_label_cube() */
+    uint32_t *firsts[2];  /* their first vertices */
+    uint8_t *marks;       /* of a row: columns of four voxels that differ; then cubes */
+    size_t next;          /* vertex */
+    uint64_t last_key;    /* of `last`; 0: none */
+    cwi_key_count *last;
+} scan;
+
+/* Returns the number of vertices of a cube. */
+static size_t count_vertices(uint8_t shape)
+{
+    return shape == CWI_CUBE_SIMPLE ? 1 : (size_t)cwi_count_bits(shape);
+}
+
+/* Marks the cubes of a row whose corners are not all alike. */
+static void mark_row(const scan *s, size_t y)
+{
+    const size_t wide = s->job->layers.width;
+    const uint32_t *a = s->labels[0] + y * wide, *b = a + wide;
+    const uint32_t *c = s->labels[1] + y * wide, *d = c + wide;
+    uint8_t *marks = s->marks;
+    for (size_t x = 0; x < wide; x++)
+        marks[x] = (a[x] != b[x]) | (a[x] != c[x]) | (a[x] != d[x]);
+    for (size_t x = 0; x < s->width; x++)
+        marks[x] = marks[x] | marks[x + 1] | (a[x] != a[x + 1]);
+}
+
+static void load_corners(const scan *s, size_t x, size_t y, uint32_t corners[8])
+{
+    const size_t wide = s->job->layers.width;
+    for (int z = 0; z < 2; z++) {
+        const uint32_t *p = s->labels[z] + y * wide + x;
+        corners[4 * z] = p[0];
+        corners[4 * z + 1] = p[1];
+        corners[4 * z + 2] = p[wide];
+        corners[4 * z + 3] = p[wide + 1];
+    }
+}
+
+/* Finds the shapes of the upper layer of cubes, and numbers their vertices. */
+static void shape_layer(scan *s)
+{
+    uint32_t corners[8];
+    memset(s->shapes[1], 0, s->width * s->height);
+    for (size_t y = 0; y < s->height; y++) {
+        mark_row(s, y);
+        for (size_t x = 0; x < s->width; x++) {
+            if (!s->marks[x])
+                continue;
+            const size_t n = y * s->width + x;
+            load_corners(s, x, y, corners);
+            s->shapes[1][n] = cwi_label_cube(&s->job->rules, corners);
+            s->firsts[1][n] = (uint32_t)s->next;
+            s->next += count_vertices(s->shapes[1][n]);
+        }
+    }
+}
+
+/* Returns the vertex of a tetrahedron. */
+static uint32_t vertex_of(const scan *s, const cwi_label_ring *ring, int n, size_t x, size_t y)
+{
+    const int8_t *cube = ring->cube[n];
+    const size_t place = (y - (cube[1] < 0)) * s->width + x - (cube[0] < 0);
+    const int layer = cube[2] < 0 ? 0 : 1;
+    const uint8_t shape = s->shapes[layer][place];
+    const uint32_t first = s->firsts[layer][place];
+    return shape == CWI_CUBE_SIMPLE
+               ? first
+               : first + (uint32_t)cwi_count_bits(shape & ((1u << ring->tet[n]) - 1));
+}
+
+/* Finds the polygon around an edge that starts at the corner 0 of a cube. Tetrahedra with the
+ * same vertex follow each other. Returns the number of corners; fewer than 3 make no polygon. */
+static int find_polygon(const scan *s, int edge, size_t x, size_t y, uint32_t polygon[CWI_RING])
+{
+    const cwi_label_ring *ring = &s->job->rules.rings[edge];
+    int count = 0;
+    for (int n = 0; n < ring->count; n++) {
+        const uint32_t v = vertex_of(s, ring, n, x, y);
+        if (count == 0 || polygon[count - 1] != v)
+            polygon[count++] = v;
+    }
+    while (count > 1 && polygon[count - 1] == polygon[0])
+        count--;
+    return count;
+}
+
+/* Orders a pair of labels: the background is the second, of others the larger. Returns true if
+ * they changed places. */
+static bool order_pair(const cwi_label_job *j, uint32_t pair[2])
+{
+    const uint32_t background = j->layers.background;
+    const bool changes = pair[0] == background || (pair[1] != background && pair[0] > pair[1]);
+    if (changes) {
+        const uint32_t first = pair[0];
+        pair[0] = pair[1];
+        pair[1] = first;
+    }
+    return changes;
+}
+
+/* Finds a pair's entry, mostly that of the polygon before. NULL when memory is out. */
+static cwi_key_count *find_pair(scan *s, const uint32_t pair[2])
+{
+    const uint64_t key = (uint64_t)pair[0] << 32 | pair[1];
+    if (key != s->last_key) {
+        s->last = cwi_key_counts_need(&s->chunk->pairs, key);
+        s->last_key = s->last ? key : 0;
+    }
+    return s->last;
+}
+
+/* Counts or writes the triangles of a polygon; pair[0] is at the edge's start. Returns false
+ * when memory is out. */
+static bool take_polygon(scan *s, int edge, uint32_t pair[2], const uint32_t *polygon,
+                         int count)
+{
+    const cwi_label_job *j = s->job;
+    const bool flips = order_pair(j, pair) != j->is_mirrored;
+    cwi_key_count *entry = find_pair(s, pair);
+    if (!entry)
+        return false;
+    uint32_t *to = j->is_writing ? j->out->mesh.triangles + 3 * entry->count : NULL;
+    for (int n = 1; n + 1 < count && to; n++, to += 3) {
+        to[0] = polygon[0];
+        to[1] = polygon[flips ? n + 1 : n];
+        to[2] = polygon[flips ? n : n + 1];
+    }
+    for (int n = 0; n + 2 < count && to && j->polygons; n++)
+        j->polygons[entry->count + (size_t)n] = n == 0 ? (uint8_t)edge : 0;
+    entry->count += (size_t)count - 2;
+    return true;
+}
+
+/* Takes the polygons around the edges that start at the corner 0 of the cubes of the upper
+ * layer. In an open border edges have cubes on one side only, and no polygon. */
+static bool take_layer(scan *s, size_t k)
+{
+    uint32_t corners[8], polygon[CWI_RING];
+    for (size_t n = 0; n < s->width * s->height; n++) {
+        if (!s->shapes[1][n])
+            continue;
+        const size_t x = n % s->width, y = n / s->width;
+        const int inner = (x > 0) | (y > 0) << 1 | (k > 0) << 2;
+        load_corners(s, x, y, corners);
+        for (int edge = 1; edge < 8; edge++) {
+            if (corners[0] == corners[edge] || (inner | edge) != 7)
+                continue;
+            uint32_t pair[2] = {corners[0], corners[edge]};
+            const int count = find_polygon(s, edge, x, y, polygon);
+            if (count >= 3 && !take_polygon(s, edge, pair, polygon, count))
+                return false;
+        }
+    }
+    return true;
+}
+
+/* Puts a vertex at a place counted in voxels, from the first. */
+static void put_vertex(const cwi_label_job *j, const double place[3], uint32_t number)
+{
+    float *to = j->out->mesh.positions + 3 * (size_t)number;
+    for (int a = 0; a < 3; a++)
+        to[a] = (float)place[a];
+}
+
+/* Sets a bit of a vertex's kind; another chunk may set another one. */
+static void mark_kind(uint8_t *kind, bool is_curve, int bit)
+{
+    if (is_curve) {
+#pragma omp atomic
+        *kind |= (uint8_t)(1 << bit);
+    }
+}
+
+/* Tells a cube and the one before it along an axis that they are neighbours, if the face
+ * between them is part of an interface; and if three labels meet there. */
+static void join_cubes(const scan *s, size_t n, int axis)
+{
+    const size_t back[3] = {1, s->width, 0};
+    const int layer = axis == 2 ? 0 : 1;
+    const size_t other = n - back[axis];
+    cwi_label_net *net = &s->job->net;
+    uint32_t c[8];
+    load_corners(s, n % s->width, n / s->width, c);
+    const int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3;
+    const uint32_t around[4] = {c[0], c[u], c[u | v], c[v]};
+    int changes = 0;
+    for (int i = 0; i < 4; i++)
+        changes += around[i] != around[(i + 1) % 4];
+    if (changes == 0)
+        return;
+    const uint32_t here = s->firsts[1][n], there = s->firsts[layer][other];
+    if (s->shapes[1][n] == CWI_CUBE_SIMPLE) {
+        net->neighbours[here][axis] = there;
+        mark_kind(&net->kinds[here], changes > 2, axis);
+    }
+    if (s->shapes[layer][other] == CWI_CUBE_SIMPLE) {
+        net->neighbours[there][axis + 3] = here;
+        mark_kind(&net->kinds[there], changes > 2, axis + 3);
+    }
+}
+
+static void put_vertices(const scan *s, size_t k)
+{
+    for (size_t n = 0; n < s->width * s->height; n++) {
+        const uint8_t shape = s->shapes[1][n];
+        const double middle[3] = {(double)(n % s->width) - 0.5, (double)(n / s->width) - 0.5,
+                                  (double)k - 0.5};
+        uint32_t number = s->firsts[1][n];
+        if (!shape)
+            continue;
+        if (shape == CWI_CUBE_SIMPLE)
+            put_vertex(s->job, middle, number);
+        if (s->job->net.kinds) {
+            const bool has_below[3] = {n % s->width > 0, n / s->width > 0, k > 0};
+            for (size_t v = 0; v < count_vertices(shape) && shape != CWI_CUBE_SIMPLE; v++)
+                s->job->net.kinds[number + v] = CWI_NET_FIXED;
+            for (int a = 0; a < 3; a++)
+                if (has_below[a])
+                    join_cubes(s, n, a);
+        }
+        for (int t = 0; t < CWI_TETS && shape != CWI_CUBE_SIMPLE; t++) {
+            const double *c = s->job->corners[t];
+            if (shape >> t & 1)
+                put_vertex(s->job,
+                           (double[3]){middle[0] + c[0], middle[1] + c[1], middle[2] + c[2]},
+                           number++);
+        }
+    }
+}
+
+/* Counts the voxels of a layer without its border, by runs. */
+static bool count_voxels(scan *s)
+{
+    const cwi_label_layers *l = &s->job->layers;
+    for (size_t y = 1; y + 1 < l->height; y++) {
+        const uint32_t *row = s->labels[1] + y * l->width + 1;
+        const size_t count = l->width - 2;
+        for (size_t x = 0, end; x < count; x = end) {
+            for (end = x + 1; end < count && row[end] == row[x];)
+                end++;
+            if (row[x] == l->background)
+                continue;
+            cwi_key_count *e = cwi_key_counts_need(&s->chunk->voxels, (uint64_t)row[x] + 1);
+            if (!e)
+                return false;
+            e->count += end - x;
+        }
+    }
+    return true;
+}
+
+static void swap_layers(scan *s)
+{
+    uint32_t *labels = s->labels[0], *firsts = s->firsts[0];
+    uint8_t *shapes = s->shapes[0];
+    s->labels[0] = s->labels[1], s->labels[1] = labels;
+    s->firsts[0] = s->firsts[1], s->firsts[1] = firsts;
+    s->shapes[0] = s->shapes[1], s->shapes[1] = shapes;
+}
+
+/* Loads a layer of voxels above the one before; keeps the first voxel that is no label. */
+static bool load_layer(scan *s, size_t k)
+{
+    cwi_label_job *j = s->job;
+    size_t bad[3];
+    if (cwi_label_layer_load(&j->layers, k, s->labels[1], bad))
+        return true;
+#pragma omp critical(cwi_labels_bad)
+    {
+        const bool is_first =
+            !j->is_bad || bad[2] < j->bad[2] ||
+            (bad[2] == j->bad[2] &&
+             (bad[1] < j->bad[1] || (bad[1] == j->bad[1] && bad[0] < j->bad[0])));
+        if (is_first)
+            memcpy(j->bad, bad, sizeof bad);
+        j->is_bad = true;
+    }
+    return false;
+}
+
+/* Goes through the cube layers of a chunk, and the one below it for its vertices' numbers.
+ * Returns false when memory is out or a value is no label. */
+static bool scan_chunk(scan *s, size_t first, size_t end)
+{
+    cwi_label_job *j = s->job;
+    const size_t from = first > 0 ? first - 1 : 0;
+    bool is_well = load_layer(s, from);
+    s->next = s->chunk->vertices;
+    for (size_t k = from; k < end && is_well; k++) {
+        swap_layers(s);
+        is_well = load_layer(s, k + 1);
+        if (!is_well)
+            break;
+        if (k < first) { /* its vertices end where the chunk's begin */
+            s->next = 0;
+            shape_layer(s);
+            const uint32_t shift = (uint32_t)(s->chunk->vertices - s->next);
+            for (size_t n = 0; n < s->width * s->height; n++)
+                s->firsts[1][n] += shift;
+            s->next = s->chunk->vertices;
+            continue;
+        }
+        shape_layer(s);
+        is_well = take_layer(s, k);
+        if (j->is_writing)
+            put_vertices(s, k);
+        else if (is_well && k + 2 < j->layers.count)
+            is_well = count_voxels(s);
+    }
+    if (!j->is_writing)
+        s->chunk->vertices = s->next - s->chunk->vertices;
+    return is_well;
+}
+
+void cwi_label_chunk_work(void *context, size_t n)
+{
+    cwi_label_job *j = context;
+    scan s = {.job = j,
+              .chunk = &j->chunks[n],
+              .width = j->layers.width - 1,
+              .height = j->layers.height - 1};
+    const size_t voxels = j->layers.width * j->layers.height, layers = j->layers.count - 1;
+    const size_t first = n * CWI_LABEL_CHUNK,
+                 end = first + CWI_LABEL_CHUNK < layers ? first + CWI_LABEL_CHUNK : layers;
+    bool is_whole = true;
+    for (int i = 0; i < 2; i++) {
+        s.labels[i] = cwi_alloc_array(voxels, sizeof *s.labels[i]);
+        s.shapes[i] = cwi_alloc_zeroed(voxels, 1);
+        s.firsts[i] = cwi_alloc_array(voxels, sizeof *s.firsts[i]);
+        is_whole = is_whole && s.labels[i] && s.shapes[i] && s.firsts[i];
+    }
+    s.marks = cwi_alloc_array(j->layers.width, 1);
+    if (!is_whole || !s.marks || (!scan_chunk(&s, first, end) && !j->is_bad)) {
+#pragma omp atomic write
+        j->is_starved = true;
+    }
+    for (int i = 0; i < 2; i++) {
+        cwi_free(s.labels[i]);
+        cwi_free(s.shapes[i]);
+        cwi_free(s.firsts[i]);
+    }
+    cwi_free(s.marks);
+}

@@ -1,0 +1,320 @@
+/* Finds triangles of a label map that cross, from where their vertices may be.
+ *
+ * A vertex stays strictly inside of its cube, so a polygon stays strictly inside of the box of the
+ * cubes around its edge, and only polygons with a cube in common can meet.
+ *
+ * Most need no test. Take an edge from voxel p to voxel q, and a polygon around it with one vertex
+ * in each of its four cubes. The segment between vertices of two cubes passes through the face
+ * between them, in a point f. In each of the two cubes, the triangle p, q, f and the cube's vertex
+ * span a tetrahedron. The eight tetrahedra around the edge are its envelope. The triangles p, q, f
+ * of different edges lie side by side on the faces of a cube, and all tetrahedra in a cube have
+ * their apex in its vertex. So envelopes have at most faces in common [JuUdeshi2006].
+ *
+ * The polygon is two triangles. If p is strictly below both of their planes and q strictly above
+ * both, the edge passes through one of them, and their common side through the triangle that p and
+ * q span with the fourth vertex. Then the polygon is cut into triangles that each lie in a
+ * tetrahedron of the envelope, and touch its surface in the sides of the polygon alone. Such
+ * polygons are sound: two of them meet in common sides and vertices only. */
+#include "extract/labels/label_crossings.h"
+
+#include "extract/labels/label_smooth.h"
+
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
+#include "core/base/status.h"
+#include "core/geometry/triangle_intersect.h"
+#include "core/geometry/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    PART = 1 << 14,  /* triangles */
+    QUEUE_PART = 64, /* polygons */
+    CORNERS = 8,     /* capacity for those of a polygon: 6 at most */
+    SEEN = 128       /* polygons that a search remembers */
+};
+
+/* The edge passes through a sound polygon at least this fraction of its length from its ends. That
+ * is far above the rounding errors of doubles. */
+static const double clearance = 1e-4;
+
+static const uint32_t *corners_of(const cwi_label_crossings *c, size_t triangle)
+{
+    return c->mesh->triangles + 3 * triangle;
+}
+
+/* Returns the triangle behind a polygon's last. */
+static size_t end_of(const cwi_label_crossings *c, size_t polygon)
+{
+    size_t t = polygon + 1;
+    while (t < c->mesh->triangle_count && !c->polygons[t])
+        t++;
+    return t;
+}
+
+/* Lists a polygon's corners, in one of the two orders around it. Returns their number. */
+static int list_corners(const cwi_label_crossings *c, size_t polygon, uint32_t corners[CORNERS])
+{
+    const size_t end = end_of(c, polygon);
+    const uint32_t *v = corners_of(c, polygon);
+    const bool flips = end > polygon + 1 && v[4] != v[2];
+    int count = 0;
+    corners[count++] = v[0];
+    corners[count++] = v[flips ? 2 : 1];
+    for (size_t t = polygon; t < end && count < CORNERS; t++)
+        corners[count++] = corners_of(c, t)[flips ? 1 : 2];
+    return count;
+}
+
+/* Returns true if a vertex is where it was before smoothing. */
+static bool is_back(const cwi_label_crossings *c, uint32_t vertex)
+{
+    return (c->kinds[vertex] & (CWI_NET_FIXED | CWI_NET_BACK)) != 0;
+}
+
+/* Finds the ends of the edge around which a polygon of four cubes lies, along an axis. */
+static void find_edge(const cwi_label_crossings *c, const uint32_t v[3], int axis, double p[3],
+                      double q[3])
+{
+    double low[3], high[3];
+    for (int a = 0; a < 3; a++) {
+        const float x = c->originals[3 * (size_t)v[0] + (size_t)a];
+        const float y = c->originals[3 * (size_t)v[1] + (size_t)a];
+        const float z = c->originals[3 * (size_t)v[2] + (size_t)a];
+        low[a] = high[a] = (double)(x > y ? (x > z ? x : z) : (y > z ? y : z)) - 0.5;
+    }
+    high[axis] += 1;
+    c->place(c->context, low, p);
+    c->place(c->context, high, q);
+}
+
+/* Returns true if a polygon is sound, as above. */
+static bool is_sound(const cwi_label_crossings *c, size_t polygon)
+{
+    const int edge = c->polygons[polygon] & CWI_POLYGON_EDGE;
+    uint32_t v[CORNERS];
+    double p[3], q[3], d[3][3], u[3], w[3];
+    if ((edge != 1 && edge != 2 && edge != 4) || list_corners(c, polygon, v) != 4)
+        return false;
+    for (int n = 0; n < 4; n++)
+        if (c->kinds[v[n]] & CWI_NET_FIXED) /* others in its cube */
+            return false;
+    find_edge(c, v, edge >> 1, p, q);
+    for (int a = 0; a < 3; a++) {
+        const double from = (double)c->mesh->positions[3 * (size_t)v[0] + (size_t)a];
+        for (int n = 0; n < 3; n++)
+            d[n][a] = (double)c->mesh->positions[3 * (size_t)v[n + 1] + (size_t)a] - from;
+        p[a] -= from;
+        q[a] -= from;
+    }
+    cwi_cross(d[1], p, u);
+    cwi_cross(d[1], q, w);
+    const double p1 = cwi_dot(d[0], u), q1 = cwi_dot(d[0], w), h1 = clearance * fabs(p1 - q1);
+    const double p2 = -cwi_dot(d[2], u), q2 = -cwi_dot(d[2], w), h2 = clearance * fabs(p2 - q2);
+    return (p1 < -h1 && q1 > h1 && p2 < -h2 && q2 > h2) ||
+           (p1 > h1 && q1 < -h1 && p2 > h2 && q2 < -h2);
+}
+
+static void judge_polygon(cwi_label_crossings *c, size_t polygon)
+{
+    c->polygons[polygon] &= CWI_POLYGON_EDGE;
+    c->polygons[polygon] |= is_sound(c, polygon) ? CWI_POLYGON_SOUND : CWI_POLYGON_QUEUED;
+}
+
+static void judge_part(void *context, size_t n)
+{
+    cwi_label_crossings *c = context;
+    for (size_t t = n * PART; t < (n + 1) * PART && t < c->mesh->triangle_count; t++)
+        if (c->polygons[t])
+            judge_polygon(c, t);
+}
+
+/* Lists the polygons around each vertex: counts them, then fills in from behind. */
+static bool list_around(cwi_label_crossings *c)
+{
+    const cw_mesh *mesh = c->mesh;
+    uint32_t v[CORNERS];
+    size_t total = 0;
+    c->firsts = cwi_alloc_zeroed(mesh->vertex_count + 1, sizeof *c->firsts);
+    if (!c->firsts)
+        return false;
+    for (size_t t = 0; t < mesh->triangle_count; t++)
+        for (int n = c->polygons[t] ? list_corners(c, t, v) : 0; n-- > 0;)
+            c->firsts[v[n]]++;
+    for (size_t n = 0; n <= mesh->vertex_count; n++) {
+        total += c->firsts[n];
+        c->firsts[n] = (uint32_t)total;
+    }
+    c->around = cwi_alloc_large(total, sizeof *c->around);
+    if (!c->around)
+        return false;
+    for (size_t t = mesh->triangle_count; t-- > 0;)
+        for (int n = c->polygons[t] ? list_corners(c, t, v) : 0; n-- > 0;)
+            c->around[--c->firsts[v[n]]] = (uint32_t)t;
+    return true;
+}
+
+cw_status cwi_label_crossings_init(cwi_label_crossings *c, const cw_labels_desc *desc,
+                                   cw_error *err)
+{
+    const cw_mesh *mesh = c->mesh;
+    cw_status st =
+        cwi_each_layer((mesh->triangle_count + PART - 1) / PART, 8 * PART, desc->threads,
+                       &desc->progress, "looking for crossings", judge_part, c, err);
+    if (st != CW_OK)
+        return st;
+    c->queue = cwi_alloc_large(mesh->triangle_count, sizeof *c->queue);
+    c->hits = cwi_alloc_zeroed(mesh->vertex_count, 1);
+    for (size_t t = 0; t < mesh->triangle_count && c->queue; t++)
+        if (c->polygons[t] & CWI_POLYGON_QUEUED)
+            c->queue[c->queued++] = (uint32_t)t;
+    if (!c->queue || !c->hits || (c->queued > 0 && !list_around(c)))
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for triangles that cross");
+    return CW_OK;
+}
+
+static bool boxes_are_apart(const float *points, const uint32_t a[3], const uint32_t b[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        const float *p = points + axis;
+        float low[2], high[2];
+        for (int n = 0; n < 2; n++) {
+            const uint32_t *v = n ? b : a;
+            const float x = p[3 * (size_t)v[0]], y = p[3 * (size_t)v[1]],
+                        z = p[3 * (size_t)v[2]];
+            low[n] = x < y ? (x < z ? x : z) : (y < z ? y : z);
+            high[n] = x > y ? (x > z ? x : z) : (y > z ? y : z);
+        }
+        if (low[0] > high[1] || low[1] > high[0])
+            return true;
+    }
+    return false;
+}
+
+static void hit_triangle(cwi_label_crossings *c, const uint32_t v[3])
+{
+    for (int n = 0; n < 3; n++) {
+#pragma omp atomic write
+        c->hits[v[n]] = 1;
+    }
+}
+
+static bool all_back(const cwi_label_crossings *c, const uint32_t v[3])
+{
+    return is_back(c, v[0]) && is_back(c, v[1]) && is_back(c, v[2]);
+}
+
+/* Tests two triangles; where they were at first, none crossed. */
+static void test_pair(cwi_label_crossings *c, size_t s, size_t t)
+{
+    const float *points = c->mesh->positions;
+    const uint32_t *a = corners_of(c, s), *b = corners_of(c, t);
+    if ((all_back(c, a) && all_back(c, b)) || boxes_are_apart(points, a, b) ||
+        !cwi_has_area(points, a) || !cwi_has_area(points, b) ||
+        !cwi_triangles_meet(points, a, b))
+        return;
+    hit_triangle(c, a);
+    hit_triangle(c, b);
+}
+
+/* Tests the triangles of a polygon: with each other, and whether they have an area. */
+static void test_inside(cwi_label_crossings *c, size_t polygon)
+{
+    const size_t end = end_of(c, polygon);
+    for (size_t s = polygon; s < end; s++) {
+        const uint32_t *v = corners_of(c, s);
+        if (!all_back(c, v) && !cwi_has_area(c->mesh->positions, v))
+            hit_triangle(c, v);
+        for (size_t t = s + 1; t < end; t++)
+            test_pair(c, s, t);
+    }
+}
+
+static void test_polygons(cwi_label_crossings *c, size_t one, size_t other)
+{
+    const size_t end = end_of(c, one), other_end = end_of(c, other);
+    for (size_t s = one; s < end; s++)
+        for (size_t t = other; t < other_end; t++)
+            test_pair(c, s, t);
+}
+
+/* Returns true if two vertices are in one cube. */
+static bool share_cube(const cwi_label_crossings *c, uint32_t v, uint32_t w)
+{
+    const float *p = c->originals + 3 * (size_t)v, *q = c->originals + 3 * (size_t)w;
+    return floorf(p[0]) == floorf(q[0]) && floorf(p[1]) == floorf(q[1]) &&
+           floorf(p[2]) == floorf(q[2]);
+}
+
+/* Tests a polygon of the queue against those with a cube in common. A polygon has vertices in all
+ * cubes around its edge. Vertices of one cube follow each other. */
+static void test_around(cwi_label_crossings *c, size_t polygon)
+{
+    uint32_t corners[CORNERS], seen[SEEN];
+    const uint8_t flags = c->polygons[polygon];
+    const int count = list_corners(c, polygon, corners);
+    int seen_count = 0;
+    test_inside(c, polygon);
+    for (int n = 0; n < count; n++) {
+        uint32_t first = corners[n], end = first + 1;
+        while (first > 0 && share_cube(c, first - 1, first))
+            first--;
+        while (end < c->mesh->vertex_count && share_cube(c, end, first))
+            end++;
+        for (uint32_t k = c->firsts[first]; k < c->firsts[end]; k++) {
+            const uint32_t other = c->around[k];
+            const uint8_t its = c->polygons[other];
+            int i = 0;
+            while (i < seen_count && seen[i] != other)
+                i++;
+            if (i < seen_count || other == polygon || (its & flags & CWI_POLYGON_SOUND) ||
+                (its & CWI_POLYGON_QUEUED && other < polygon)) /* it tests this one */
+                continue;
+            if (seen_count < SEEN)
+                seen[seen_count++] = other;
+            test_polygons(c, polygon, other);
+        }
+    }
+}
+
+static void test_part(void *context, size_t n)
+{
+    cwi_label_crossings *c = context;
+    for (size_t i = n * QUEUE_PART; i < (n + 1) * QUEUE_PART && i < c->queued; i++)
+        test_around(c, c->queue[i]);
+}
+
+cw_status cwi_label_crossings_find(cwi_label_crossings *c, const cw_labels_desc *desc,
+                                   cw_error *err)
+{
+    return cwi_each_layer((c->queued + QUEUE_PART - 1) / QUEUE_PART, 64 * QUEUE_PART,
+                          desc->threads, &desc->progress, "looking for crossings", test_part, c,
+                          err);
+}
+
+void cwi_label_crossings_renew(cwi_label_crossings *c)
+{
+    for (size_t n = 0; n < c->queued; n++)
+        c->polygons[c->queue[n]] &= (uint8_t)~CWI_POLYGON_QUEUED;
+    c->queued = 0;
+    for (size_t v = 0; v < c->mesh->vertex_count; v++) {
+        for (uint32_t k = c->firsts[v]; k < c->firsts[v + 1] && c->hits[v]; k++) {
+            const uint32_t polygon = c->around[k];
+            if (c->polygons[polygon] & CWI_POLYGON_QUEUED)
+                continue;
+            judge_polygon(c, polygon);
+            c->polygons[polygon] |= CWI_POLYGON_QUEUED;
+            c->queue[c->queued++] = polygon;
+        }
+        c->hits[v] = 0;
+    }
+}
+
+void cwi_label_crossings_free(cwi_label_crossings *c)
+{
+    cwi_free(c->firsts);
+    cwi_free(c->around);
+    cwi_free(c->queue);
+    cwi_free(c->hits);
+}
