@@ -1,11 +1,12 @@
 /* Tables of the names and colours of labels. */
-#include <cubewright/label_table.h>
+#include "core/volume/label_table.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -106,18 +107,28 @@ static bool grow(cw_label_table *table)
     return labels != NULL;
 }
 
+/* Copies a label with its texts; it takes a place of its own unless it replaces another. */
+static cw_status copy_label(cw_label_table *table, const cw_label *label, bool replaces,
+                            cw_label *copy, cw_error *err)
+{
+    *copy = *label;
+    const bool is_copied = copy_text(label->name, &copy->name) &
+                           copy_code(&label->category, &copy->category) &
+                           copy_code(&label->type, &copy->type);
+    if (is_copied && (replaces || grow(table)))
+        return CW_OK;
+    free_label(copy);
+    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the names of labels");
+}
+
 cw_status cw_label_table_add(cw_label_table *table, const cw_label *label, cw_error *err)
 {
-    cw_label copy = *label;
-    const bool is_copied = copy_text(label->name, &copy.name) &
-                           copy_code(&label->category, &copy.category) &
-                           copy_code(&label->type, &copy.type);
+    cw_label copy;
     const size_t at = find_place(table, key_of(label->layer, label->value));
     const bool replaces = cw_label_find(table, label->layer, label->value) != NULL;
-    if (!is_copied || (!replaces && !grow(table))) {
-        free_label(&copy);
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the names of labels");
-    }
+    cw_status st = copy_label(table, label, replaces, &copy, err);
+    if (st != CW_OK)
+        return st;
     if (replaces) {
         free_label(&table->labels[at]);
     } else {
@@ -127,6 +138,87 @@ cw_status cw_label_table_add(cw_label_table *table, const cw_label *label, cw_er
     }
     table->labels[at] = copy;
     return CW_OK;
+}
+
+cw_status cwi_label_table_append(cw_label_table *table, const cw_label *label, cw_error *err)
+{
+    cw_label copy;
+    cw_status st = copy_label(table, label, false, &copy, err);
+    if (st == CW_OK)
+        table->labels[table->count++] = copy;
+    return st;
+}
+
+/* The place of a label before sorting. */
+typedef struct label_place {
+    uint64_t key;
+    size_t index;
+} label_place;
+
+static int compare_places(const void *a, const void *b)
+{
+    const label_place *p = a, *q = b;
+    return p->key != q->key ? (p->key > q->key) - (p->key < q->key)
+                            : (p->index > q->index) - (p->index < q->index);
+}
+
+static bool is_rising(const cw_label_table *table)
+{
+    for (size_t n = 1; n < table->count; n++) {
+        const cw_label *a = &table->labels[n - 1], *b = &table->labels[n];
+        if (key_of(a->layer, a->value) >= key_of(b->layer, b->value))
+            return false;
+    }
+    return true;
+}
+
+static const cw_label *find_repeat(const cw_label_table *table, const label_place *places)
+{
+    for (size_t n = 1; n < table->count; n++)
+        if (places[n].key == places[n - 1].key)
+            return &table->labels[places[n].index];
+    return NULL;
+}
+
+/* Moves the labels to a new array in the order of their places, and frees those that a later
+ * one replaces. */
+static void move_labels(cw_label_table *table, const label_place *places, cw_label *to)
+{
+    size_t count = 0;
+    for (size_t n = 0; n < table->count; n++) {
+        if (n > 0 && places[n].key == places[n - 1].key)
+            free_label(&to[--count]);
+        to[count++] = table->labels[places[n].index];
+    }
+    cwi_free(table->labels);
+    *table = (cw_label_table){count, to};
+}
+
+cw_status cwi_label_table_sort(cw_label_table *table, bool refuse_repeats, cw_error *err)
+{
+    size_t capacity = 1;
+    if (is_rising(table))
+        return CW_OK;
+    while (capacity < table->count)
+        capacity *= 2;
+    label_place *places = cwi_alloc_array(table->count, sizeof *places);
+    cw_label *labels = cwi_alloc_array(capacity, sizeof *labels);
+    cw_status st = places && labels ? CW_OK
+                                    : cwi_fail(err, CW_ERR_NO_MEMORY,
+                                               "no memory to sort the names of labels");
+    for (size_t n = 0; st == CW_OK && n < table->count; n++)
+        places[n] = (label_place){key_of(table->labels[n].layer, table->labels[n].value), n};
+    if (st == CW_OK)
+        qsort(places, table->count, sizeof *places, compare_places);
+    const cw_label *repeat = st == CW_OK && refuse_repeats ? find_repeat(table, places) : NULL;
+    if (repeat)
+        st = cwi_fail(err, CW_ERR_FORMAT, "label %u is described twice", repeat->value);
+    if (st == CW_OK)
+        move_labels(table, places, labels);
+    else
+        cwi_free(labels);
+    cwi_free(places);
+    return st;
 }
 
 void cw_label_table_free(cw_label_table *table)

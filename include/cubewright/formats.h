@@ -218,6 +218,37 @@ CW_NODISCARD CW_API cw_status cw_series_list(const char *path, const cw_read_des
                                              cw_series **series, size_t *count, cw_error *err);
 CW_API void cw_series_free(cw_series *series);
 
+/* Reads the names and colours of labels from a file: a colour table of FreeSurfer or 3D Slicer,
+ * descriptions of ITK-SNAP, the CSV of 3D Slicer, the TSV of BIDS, JSON of niivue, XML with a
+ * LabelTable as of Connectome Workbench, the image-label of OME-Zarr, or plain lines such as
+ * "5 liver" or "5;LIV;liver". The content decides which; the extension counts only where the
+ * content is of none. Where A of a number, a name and R G B A may be opacity or transparency,
+ * the majority is taken as opaque: 255 as of 3D Slicer, or 0 as of FreeSurfer.
+ *
+ * table    zeroed or filled; freed first, filled on success, else emptied. 0 is in it if the
+ *          file names it; it is the background. Of a value that is there twice the last one
+ *          stays.
+ * format   set to a static name such as "freesurfer"; may be NULL
+ * Returns  CW_ERR_IO      missing, not a regular file, empty, unreadable
+ *          CW_ERR_FORMAT  no such table; a line and its field are wrong; OME-Zarr with a value
+ *                         twice
+ *          CW_ERR_UNSAFE  an XML document type
+ *          CW_ERR_LIMIT   more than 64 MiB, or 16 MiB of JSON; CW_ERR_NO_MEMORY
+ * Cost     time in proportion to n log n labels */
+CW_NODISCARD CW_API cw_status cw_label_table_read(const char *path, cw_label_table *table,
+                                                  const char **format, cw_error *err);
+
+/* Finds a table of labels beside a volume: a file of the same stem with the extension .ctbl,
+ * .ctab, .label, .txt, .csv, .tsv or .json, or with "_semicolon.txt" or "_dseg.tsv" behind the
+ * stem. Beside a.nii.gz the stems are "a.nii" and "a". Files with other content, links and
+ * unreadable files are passed over.
+ * table_path  set to the path for cw_label_table_read(), or to NULL if there is none; free it
+ *             with free()
+ * Returns     CW_ERR_NO_MEMORY
+ * Cost        each such file is read, .txt and .json as a whole */
+CW_NODISCARD CW_API cw_status cw_label_table_beside(const char *volume_path, char **table_path,
+                                                    cw_error *err);
+
 /* Parses a layout written as on the command line, for example
  * "dims=512x512x300,type=u16le,offset=62,spacing=0.5x0.5x1,components=1,steps=1".
  * Type is one of the eight with an optional le or be; le when left out.
