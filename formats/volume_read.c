@@ -359,6 +359,8 @@ cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *
     cwi_array_list arrays = {0};
     opened o = {0};
     memset(volume, 0, sizeof *volume);
+    if (d.labels)
+        cw_label_table_free(d.labels);
     cw_status st = check_spacing(d.spacing_mm, err);
     if (st == CW_OK && d.spacing_mm[0] > 0 && d.claim.has_unit)
         st = cwi_fail(
@@ -368,6 +370,7 @@ cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *
     if (st == CW_OK)
         st = open_path(&o, path, &d, err);
     o.in.arrays = d.note && !d.array ? &arrays : NULL;
+    o.in.labels = d.labels;
     if (st == CW_OK)
         st = read_opened(&o, &d, volume, err);
     if (st == CW_OK && (st = cwi_claim_volume(&d.claim, volume, err)) != CW_OK)
@@ -376,6 +379,8 @@ cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *
         st = expect_thin(&d, volume, err);
     if (st == CW_OK)
         tell_arrays(&o, &d, &arrays);
+    else if (d.labels)
+        cw_label_table_free(d.labels);
     if (format)
         *format = o.reader ? o.reader->name : d.raw ? "raw" : NULL;
     close_path(&o);
@@ -395,6 +400,7 @@ cw_status cw_arrays_list(const char *path, const cw_read_desc *desc, cw_array **
     d.header_only = true;
     d.array = NULL;
     d.region = NULL;
+    d.labels = NULL;
     d.note = NULL;
     cw_status st = open_path(&o, path, &d, err);
     o.in.arrays = &list;
@@ -451,6 +457,7 @@ static kind kind_of(const char *path, const cw_read_desc *desc)
     const bool pages = slices && o.reader->volume.holds_pages;
     close_path(&o);
     d.header_only = true;
+    d.labels = NULL;
     d.note = NULL;
     if (!pages)
         return slices ? SLICE : known ? VOLUME : UNKNOWN;

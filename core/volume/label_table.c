@@ -76,8 +76,9 @@ static bool copy_text(const char *from, char **to)
 
 static bool copy_code(const cw_code *from, cw_code *to)
 {
-    return copy_text(from->scheme, &to->scheme) & copy_text(from->value, &to->value) &
-           copy_text(from->meaning, &to->meaning);
+    const bool has_scheme = copy_text(from->scheme, &to->scheme);
+    const bool has_value = copy_text(from->value, &to->value);
+    return copy_text(from->meaning, &to->meaning) && has_scheme && has_value;
 }
 
 static void free_code(cw_code *code)
@@ -112,10 +113,10 @@ static cw_status copy_label(cw_label_table *table, const cw_label *label, bool r
                             cw_label *copy, cw_error *err)
 {
     *copy = *label;
-    const bool is_copied = copy_text(label->name, &copy->name) &
-                           copy_code(&label->category, &copy->category) &
-                           copy_code(&label->type, &copy->type);
-    if (is_copied && (replaces || grow(table)))
+    const bool has_name = copy_text(label->name, &copy->name);
+    const bool has_category = copy_code(&label->category, &copy->category);
+    const bool has_type = copy_code(&label->type, &copy->type);
+    if (has_name && has_category && has_type && (replaces || grow(table)))
         return CW_OK;
     free_label(copy);
     return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the names of labels");

@@ -15,6 +15,8 @@ typedef struct cwi_input {
     const char *array;             /* name of the wanted array; NULL: any */
     struct cwi_array_list *arrays; /* list that readers fill with the arrays; NULL: not
                                       wanted */
+    cw_label_table *labels; /* empty table that readers fill with the names of labels; NULL: not
+                               wanted */
 } cwi_input;
 
 /* Opens the file that a user named. Links are followed, as the user may have made them.

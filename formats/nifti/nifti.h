@@ -1,8 +1,11 @@
-/* The places of the fields in both NIfTI headers; the reader and the writer share this
- * table. */
+/* The places of the fields in both NIfTI headers, which the reader and the writer share; and the
+ * search for labels behind a header. */
 #ifndef FORMATS_NIFTI_NIFTI_H
 #define FORMATS_NIFTI_NIFTI_H
 
+#include "formats/bytes/input_file.h"
+
+#include <cubewright/label_table.h>
 #include <cubewright/volume.h>
 
 /* The fields that are used; the rest of a header is zero, or ignored. */
@@ -50,5 +53,16 @@ void cwi_nifti_put(const cwi_nifti_layout *layout, unsigned char *header, cwi_ni
 
 /* Returns NIfTI's number of a voxel type. */
 int cwi_nifti_datatype(cw_type type);
+
+/* The bytes of a file, inflated if it is a gzip file, in which extensions may be. */
+typedef struct cwi_nifti_span {
+    uint64_t start, end; /* behind the header, and where the voxels start or the file ends */
+    bool gzipped, swapped;
+} cwi_nifti_span;
+
+/* Fills a zeroed table from the first extension that is XML with labels. A table that cannot be
+ * read is left out, with a note. Returns CW_ERR_IO, CW_ERR_NO_MEMORY */
+CW_NODISCARD cw_status cwi_nifti_labels(const cwi_input *in, const cwi_nifti_span *span,
+                                        cw_label_table *table, char note[200], cw_error *err);
 
 #endif

@@ -422,6 +422,25 @@ static void read_intent(const nifti *n, cw_volume *shape)
         shape->known |= CW_KNOWN_LABELS;
 }
 
+/* Reads the names of labels, for the caller if he wants them. A volume that has some is one of
+ * labels. */
+static cw_status read_labels(const cwi_input *in, const nifti *n, cwi_source *src,
+                             cw_error *err)
+{
+    const uint64_t whole = n->gzipped ? UINT64_MAX : in->size;
+    const cwi_nifti_span span = {n->layout->bytes, n->is_pair ? whole : src->skip, n->gzipped,
+                                 n->swapped};
+    cw_label_table table = {0};
+    cw_status st = cwi_nifti_labels(in, &span, &table, src->note, err);
+    if (table.count)
+        src->shape.known |= CW_KNOWN_LABELS;
+    if (in->labels)
+        *in->labels = table;
+    else
+        cw_label_table_free(&table);
+    return st;
+}
+
 static cw_status read_frame(const nifti *n, cwi_source *src, cw_error *err)
 {
     const bool sform = get_field(n, CWI_NIFTI_SFORM_CODE, 0) > 0;
@@ -461,6 +480,8 @@ cw_status cwi_nifti_parse(const cwi_input *in, cwi_source *src, cw_error *err)
         st = read_frame(&n, src, err);
     if (st == CW_OK)
         read_intent(&n, &src->shape);
+    if (st == CW_OK)
+        st = read_labels(in, &n, src, err);
     if (st == CW_OK)
         read_scaling(&n, colours, &src->shape);
     return st;

@@ -52,11 +52,17 @@ typedef struct cwi_nrrd_axis {
     double mm, seconds; /* per unit; 0: not stated */
 } cwi_nrrd_axis;
 
+/* A key of a segment (nrrd_segments.c). */
+typedef struct cwi_nrrd_segment_key cwi_nrrd_segment_key;
+
 /* The parts of a header read so far. */
 typedef struct cwi_nrrd {
     cwi_lines lines;
     const char *value[CWI_NRRD_FIELD_COUNT]; /* as written; NULL: the field is missing */
     bool has_segments;                       /* keys describe segments: values are labels */
+    bool wants_segments;                     /* the keys are kept */
+    cwi_nrrd_segment_key *segment_keys;
+    size_t segment_key_count;
     size_t dimension;
     cwi_nrrd_axis axis[CWI_NRRD_MAX_AXES];
     double spacing[CWI_NRRD_MAX_AXES], min[CWI_NRRD_MAX_AXES],
@@ -71,5 +77,15 @@ typedef struct cwi_nrrd {
 /* Reads the axes and their world from the header, and sets the source's sizes, strides and
  * frame. Needs the type and the plain sizes. */
 CW_NODISCARD cw_status cwi_nrrd_describe(cwi_nrrd *n, cwi_source *src, cw_error *err);
+
+/* Keeps a line "key:=value" that describes a segment; others are ignored. The value stays in
+ * the line. Returns CW_ERR_FORMAT, CW_ERR_NO_MEMORY */
+CW_NODISCARD cw_status cwi_nrrd_keep_segment(cwi_nrrd *n, char *line, char *value,
+                                             cw_error *err);
+
+/* Fills a zeroed table from the kept keys. Needs the number of components. Returns
+ * CW_ERR_FORMAT, which names line and key; CW_ERR_NO_MEMORY */
+CW_NODISCARD cw_status cwi_nrrd_read_segments(cwi_nrrd *n, cwi_source *src,
+                                              cw_label_table *table, cw_error *err);
 
 #endif

@@ -1,11 +1,11 @@
 /* Reads the header of NRRD; the order of the fields here is the one in which later ones need
  * earlier ones. Defined at teem.sourceforge.net/nrrd/format.html. */
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/bytes/bzip2.h"
 #include "formats/nrrd/nrrd.h"
 #include "formats/volume/volume_reader.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <string.h>
 
@@ -71,16 +71,14 @@ static cw_status read_magic(cwi_nrrd *n, cw_error *err)
     return CW_OK;
 }
 
-static cw_status keep_field(cwi_nrrd *n, const char *line, cw_error *err)
+static cw_status keep_field(cwi_nrrd *n, char *line, cw_error *err)
 {
-    const char *colon = strchr(line, ':');
+    char *colon = strchr(line, ':');
     if (!colon)
         return cwi_fail(err, CW_ERR_FORMAT, "line %zu holds no 'field: value'",
                         n->lines.number);
-    if (colon[1] == '=') { /* a private key: Slicer names the segments of a label map */
-        n->has_segments |= strncmp(line, "Segment", 7) == 0 && isdigit((unsigned char)line[7]);
-        return CW_OK;
-    }
+    if (colon[1] == '=') /* a private key: Slicer names the segments of a label map */
+        return cwi_nrrd_keep_segment(n, line, colon + 2, err);
     const int f =
         cwi_field_find(field_names, CWI_NRRD_FIELD_COUNT, line, (size_t)(colon - line));
     if (f < 0)
@@ -278,7 +276,7 @@ static cw_status check_voxels_follow(const cwi_input *in, const cwi_source *src,
 
 cw_status cwi_nrrd_parse(const cwi_input *in, cwi_source *src, cw_error *err)
 {
-    cwi_nrrd n = {0};
+    cwi_nrrd n = {.wants_segments = in->labels != NULL};
     cw_status st = cwi_lines_open(&n.lines, in, err);
     if (st == CW_OK)
         st = read_fields(&n, err);
@@ -301,6 +299,9 @@ cw_status cwi_nrrd_parse(const cwi_input *in, cwi_source *src, cw_error *err)
         st = cwi_nrrd_describe(&n, src, err);
     if (st == CW_OK)
         st = check_voxels_follow(in, src, err);
+    if (st == CW_OK && in->labels)
+        st = cwi_nrrd_read_segments(&n, src, in->labels, err);
+    cwi_free(n.segment_keys);
     cwi_lines_close(&n.lines);
     return st;
 }

@@ -95,8 +95,9 @@ typedef struct cw_read_desc {
     const char *array;        /* the name, where files have several; default: the array that the
                                  file names, else the first of one value */
 
-    cw_label_table *labels; /* filled with the names and colours of labels that the file holds;
-                               free it with cw_label_table_free(); default: not kept */
+    cw_label_table *labels; /* zeroed or filled; freed first, then filled with the names and
+                               colours of labels that the file holds; free it with
+                               cw_label_table_free(); default: not kept */
 
     const char *points; /* for a PLOT3D solution: the file of its grid's points; marks it as
                            one */

@@ -96,8 +96,12 @@ static inline int fuzz_with(const cw_read_desc *desc, const uint8_t *bytes, size
 
 static inline int fuzz_reader(const char *reader, const uint8_t *bytes, size_t size)
 {
-    const cw_read_desc desc = {.reader = reader, .max_bytes = (uint64_t)64 << 20};
-    return fuzz_with(&desc, bytes, size);
+    cw_label_table labels = {0};
+    const cw_read_desc desc = {
+        .reader = reader, .max_bytes = (uint64_t)64 << 20, .labels = &labels};
+    const int result = fuzz_with(&desc, bytes, size);
+    cw_label_table_free(&labels);
+    return result;
 }
 
 #endif
