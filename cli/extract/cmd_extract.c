@@ -1,6 +1,7 @@
 /* The command extract: its options, and the run over the steps of a series and their levels
  * up to the written files. */
 #include "cli/extract/extract_run.h"
+#include "cli/extract/label_run.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/results/pvd_list.h"
@@ -18,11 +19,31 @@ static const cli_extract_args defaults = {.check = true};
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
-     "Mesh to write, in the format of its extension; may hold {level}, {step} and {stem}",
+     "Mesh to write, in the format of its extension; may hold {level}, {step}, {stem}, and of "
+     "labels {label} and {name}",
      offsetof(cli_extract_args, output)},
     {"iso", 'i', CLI_NUMBERS, "V[,V...]",
      "Isovalue, or several, in the unit of the values (required; in level sets 0)",
      offsetof(cli_extract_args, iso)},
+    {"labels", 'l', CLI_TEXT, "all/LIST",
+     "Extract labels of a label map instead: all, or a list such as 1,5,7-9,Liver (none)",
+     offsetof(cli_extract_args, labels)},
+    CLI_HEADED("Labels"),
+    {"names", 0, CLI_TEXT, "FILE",
+     "Table of the labels' names and colours (in the volume, else in a file beside it)",
+     offsetof(cli_extract_args, names)},
+    {"require-labels", 0, CLI_FLAG, NULL,
+     "Fail if a label of the list has no voxels (off: it is skipped)",
+     offsetof(cli_extract_args, require_labels)},
+    {"smooth-labels", 0, CLI_TEXT, "off/L",
+     "Limit of smoothing along each axis: 0.3mm, or up to half a voxel (0.5vox)",
+     offsetof(cli_extract_args, smooth_labels)},
+    {"shared-faces", 0, CLI_FLAG, NULL,
+     "Write the interface of two labels once, for VTP, PLY, glTF and OBJ (off: with each)",
+     offsetof(cli_extract_args, shared_faces)},
+    {"table", 0, CLI_TEXT, "FILE",
+     "Write a CSV of the labels: name, colour, volumes, area, components, neighbours",
+     offsetof(cli_extract_args, table)},
     CLI_HEADED("Isovalue and surface"),
     {"inside", 0, CLI_CHOICE, CLI_INSIDE_CHOICES,
      "Which values are inside the solid (auto: above; in level sets below)",
@@ -245,7 +266,8 @@ static cw_status read_volume(cli_extract_run *s, const cli_moment *moment, cw_er
     if (st != CW_OK)
         return st;
     if (!s->output.report.input)
-        s->input.first = s->input.volume;
+        s->input.first = s->input.volume; /* without its label table, which has one owner */
+    s->input.first.labels = (cw_label_table){0};
     s->output.report.input = &s->input.first;
     cli_report_end(&s->output.report, "read", 1, v->dim[0] * v->dim[1] * v->dim[2]);
     for (int r = 0; r < 3; r++)
@@ -367,6 +389,8 @@ static cw_status run_extract(void *p, cw_error *err)
 {
     cli_extract_args *args = p;
     cli_extract_run s = {.args = args, .output.start = cli_seconds()};
+    if (args->labels)
+        return cli_extract_labels(args, err);
     if (!args->iso.count && args->output &&
         cli_is_level_set(args->common.inputs[0], &args->input))
         args->iso.count = 1; /* 0 */
@@ -393,7 +417,7 @@ static cw_status run_extract(void *p, cw_error *err)
 
 const cli_command cli_extract = {
     .name = "extract",
-    .usage = "VOLUME... --iso V -o MESH [options]",
+    .usage = "VOLUME... --iso V|--labels LIST -o MESH [options]",
     .about = "Extract the surface at an isovalue from a volume, as a mesh",
     .page = cli_page_extract,
     .options = options,

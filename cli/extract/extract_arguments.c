@@ -1,6 +1,7 @@
 /* Checks the arguments and outputs of the command extract before the input is read. */
 #include "cli/extract/extract_run.h"
 
+#include "cli/extract/label_run.h"
 #include "cli/results/pvd_list.h"
 #include "core/base/status.h"
 
@@ -116,6 +117,8 @@ cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err)
     cw_status st = check_report(s, input, args->common.input_count, err);
     if (st == CW_OK)
         st = cli_check_compress(&args->compress, true, err);
+    if (st == CW_OK)
+        st = cli_check_label_args(args, err);
     if (st != CW_OK)
         return st;
     if (!args->output)

@@ -13,6 +13,8 @@ typedef struct cli_extract_args {
     cli_input input;
     cli_compress compress;
     const char *output, *name, *format, *json, *pvd;
+    const char *labels, *names, *smooth_labels, *table;
+    bool require_labels, shared_faces;
     cli_numbers iso;
     cli_steps steps;
     cli_number snap, fps;

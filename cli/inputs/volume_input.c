@@ -431,6 +431,7 @@ cw_read_desc cli_read_desc(const cli_input *input)
 
 void cli_free_volume(cli_volume *volume)
 {
+    cw_label_table_free(&volume->labels);
     cw_volume_free(&volume->whole);
     cw_volume_free(&volume->voxels);
     cw_volume_free(&volume->magnitude);
@@ -466,9 +467,11 @@ cw_status cli_read_volume(const char *path, const cli_input *input, bool header_
     volume->is_quiet = input->is_quiet;
     desc.note = take_note;
     desc.note_user = volume;
+    desc.labels = &volume->labels;
     cw_status st = set_raw(input, &raw, &desc, err);
     if (st == CW_OK)
         st = read_header(path, &desc, input, volume, err);
+    desc.labels = NULL; /* the header told them */
     if (st == CW_OK && !header_only)
         st = read_voxels(path, &desc, input, volume, err);
     if (st != CW_OK)

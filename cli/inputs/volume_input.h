@@ -194,15 +194,16 @@ typedef struct cli_grid {
 /* A volume as a command uses it. */
 typedef struct cli_volume {
     const char *path, *format;
-    cw_volume whole;     /* as the file has it, spacing applied; without the voxels */
-    cw_volume voxels;    /* what was read of it: all, or what --crop leaves */
-    cw_volume magnitude; /* of the chosen step, where --component mag asks for it */
-    cw_volume view;      /* of that the chosen component, step and samples */
-    double spacing[3];   /* of an irregular grid the mean length of cells' edges */
-    cli_grid grid;       /* zeroed for other volumes */
-    size_t memory_left;  /* of the limit, after the voxels */
-    size_t coarsen[3];   /* the view's step along each axis */
-    bool is_quiet;       /* prints no lines about the file */
+    cw_volume whole;       /* as the file has it, spacing applied; without the voxels */
+    cw_volume voxels;      /* what was read of it: all, or what --crop leaves */
+    cw_volume magnitude;   /* of the chosen step, where --component mag asks for it */
+    cw_volume view;        /* of that the chosen component, step and samples */
+    double spacing[3];     /* of an irregular grid the mean length of cells' edges */
+    cli_grid grid;         /* zeroed for other volumes */
+    size_t memory_left;    /* of the limit, after the voxels */
+    size_t coarsen[3];     /* the view's step along each axis */
+    bool is_quiet;         /* prints no lines about the file */
+    cw_label_table labels; /* names and colours of labels that the file holds */
     char notes[CLI_MAX_NOTES][256]; /* what the reader found and decided on */
     size_t note_count;
 } cli_volume;

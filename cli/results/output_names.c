@@ -168,18 +168,25 @@ static void to_file_name(const char *name, size_t number, char text[256])
 cw_status cli_name_part_outputs(cli_outputs *outputs, const char *text, const char *input,
                                 const cw_part *parts, size_t count, cw_error *err)
 {
-    char *stem = NULL, name[256], number[24], why[64];
+    char *stem = NULL, name[256], number[24], label[24] = "", layer[24] = "", why[64];
     cw_status st = reserve_names(outputs, count, &stem, input, err);
     cli_part fields[] = {{.name = "stem", .value = stem},
                          {.name = "name", .value = name},
-                         {.name = "part", .value = number}};
+                         {.name = "part", .value = number},
+                         {.name = "label", .value = label, .number = true},
+                         {.name = "layer", .value = layer}};
+    const size_t field_count = count > 0 && parts[0].label ? 5 : 3;
     for (size_t n = 0; n < count && st == CW_OK; n++) {
         to_file_name(parts[n].name, n + 1, name);
         snprintf(number, sizeof number, "%zu", n + 1);
-        st = add_output(outputs, text, fields, 3, err);
+        if (parts[n].label) {
+            snprintf(label, sizeof label, "%u", parts[n].label->value);
+            snprintf(layer, sizeof layer, "%u", parts[n].label->layer);
+        }
+        st = add_output(outputs, text, fields, field_count, err);
     }
     snprintf(why, sizeof why, "--split makes %zu files", count);
-    if (st == CW_OK && count > 1 && !fields[1].used && !fields[2].used)
+    if (st == CW_OK && count > 1 && !fields[1].used && !fields[2].used && !fields[3].used)
         st = ask_for("name", text, why, err);
     free(stem);
     return st;

@@ -30,7 +30,8 @@ CW_NODISCARD cw_status cli_name_outputs(cli_outputs *outputs, const char *text,
                                         cw_error *err);
 
 /* Names one output a part: {name} (that of the part, with what no file name may hold as '_'),
- * {part} (its number, from 1) and {stem} of the text are filled in. Free it with
+ * {part} (its number, from 1), {stem} and, of labels, {label} and {layer} of the text are filled
+ * in. Free it with
  * cli_free_outputs(). Returns CW_ERR_ARGUMENT for an unknown {part}, and when several parts
  * come without {name} or {part}; CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cli_name_part_outputs(cli_outputs *outputs, const char *text,

@@ -45,8 +45,7 @@ static cw_status hold_to_promise(const cli_delivery *how, const cli_made *made, 
                     q->misoriented_edges, q->nonmanifold_vertices, q->degenerate);
 }
 
-/* Parts share no vertices, so what is counted adds up. */
-static void add_quality(cw_quality *sum, const cw_quality *q)
+void cli_add_quality(cw_quality *sum, const cw_quality *q)
 {
 #define COUNT(field) offsetof(cw_quality, field)
     static const size_t counts[] = {COUNT(vertices),
@@ -117,7 +116,7 @@ static cw_status check_mesh(cli_report *report, const cli_delivery *how, const l
         if (st == CW_OK && p == 0)
             made->quality = q;
         else if (st == CW_OK)
-            add_quality(&made->quality, &q);
+            cli_add_quality(&made->quality, &q);
     }
     if (st != CW_OK)
         return st;

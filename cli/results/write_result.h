@@ -33,6 +33,10 @@ CW_NODISCARD cw_status cli_deliver(cli_report *report, const cli_delivery *how,
                                    const cw_part *parts, size_t part_count, size_t border_loops,
                                    double start, cw_error *err);
 
+/* Adds what was measured of a part to the sum of others, with which it shares no vertices: what
+ * is counted adds up. */
+void cli_add_quality(cw_quality *sum, const cw_quality *q);
+
 /* Checks the report's latest mesh, a step of an animation that has no file of its own, and
  * tells of it in a line: the first half of cli_deliver(). */
 CW_NODISCARD cw_status cli_deliver_step(cli_report *report, const cli_delivery *how,

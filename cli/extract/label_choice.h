@@ -1,0 +1,38 @@
+/* The labels that --labels chooses: all, numbers, ranges of numbers, and names. */
+#ifndef CLI_EXTRACT_LABEL_CHOICE_H
+#define CLI_EXTRACT_LABEL_CHOICE_H
+
+#include <cubewright/label_table.h>
+
+/* A label that was chosen, by a number for every layer or by its name in one. */
+typedef struct cli_chosen_label {
+    uint32_t value, layer;
+    bool of_all_layers;
+    bool is_found; /* it has voxels */
+} cli_chosen_label;
+
+typedef struct cli_label_choice {
+    bool all;
+    size_t count, capacity;
+    cli_chosen_label *labels;
+} cli_label_choice;
+
+/* Resolves the text: "all", or a list such as "1,5,7-9,Liver,left-*". Names are those of the
+ * table, as patterns of the shell and in lower or upper case.
+ * table    may be empty; then no name is known
+ * choice   free it with cli_free_label_choice(), also after failure
+ * Returns  CW_ERR_ARGUMENT  an item is neither, or is the background, 0; a name is not in the
+ *          table, with the nearest; a range is too long; CW_ERR_NO_MEMORY */
+CW_NODISCARD cw_status cli_choose_labels(const char *text, const cw_label_table *table,
+                                         cli_label_choice *choice, cw_error *err);
+void cli_free_label_choice(cli_label_choice *choice);
+
+/* Lists the values that were chosen in a layer: count of them, to be freed with free(). Returns
+ * CW_ERR_NO_MEMORY. */
+CW_NODISCARD cw_status cli_labels_of_layer(const cli_label_choice *choice, uint32_t layer,
+                                           uint32_t **values, size_t *count, cw_error *err);
+
+/* Marks a label as found. */
+void cli_mark_found(cli_label_choice *choice, uint32_t layer, uint32_t value);
+
+#endif

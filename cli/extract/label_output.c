@@ -1,0 +1,261 @@
+/* Writes the surfaces of labels: all into one file, a file a label, or the interfaces once. */
+#include "cli/extract/label_run.h"
+
+#include "cli/framework/console.h"
+#include "cli/framework/name_template.h"
+#include "core/base/status.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool cli_has_file_a_label(const char *output)
+{
+    return strstr(output, "{label}") || strstr(output, "{label:") || strstr(output, "{name}");
+}
+
+/* Makes the record of how the surfaces were made, for the files. */
+static size_t make_provenance(const cli_label_run *r, char smoothing[48],
+                              cw_provenance lines[2])
+{
+    if (r->max_move > 0)
+        snprintf(smoothing, 48, "within %.9g voxels", r->max_move);
+    else
+        snprintf(smoothing, 48, "off");
+    lines[0] = (cw_provenance){"labels", r->args->labels};
+    lines[1] = (cw_provenance){"smoothing", smoothing};
+    return 2;
+}
+
+/* Sums what was measured of items, for the line and the report. */
+static void sum_quality(const cli_label_run *r, size_t first, size_t count, cli_made *made)
+{
+    made->measured = r->args->check && !r->args->shared_faces; /* three may meet at an edge */
+    made->quality = r->items[first].quality;
+    for (size_t n = first + 1; n < first + count; n++)
+        cli_add_quality(&made->quality, &r->items[n].quality);
+}
+
+/* Delivers parts, which are the surfaces of items, as a file. */
+static cw_status deliver_file(cli_label_run *r, size_t file, const cw_part *parts, size_t count,
+                              size_t first, size_t items, const cw_write_desc *more,
+                              const char *found, cw_error *err)
+{
+    char smoothing[48];
+    cw_provenance lines[2];
+    const double *spacing = r->volume.spacing;
+    cli_made *made = file ? cli_report_next(&r->report, NULL, 0) : r->report.made;
+    made->path = r->files.path[file];
+    made->name = items == 1 ? r->items[first].name : "labels";
+    sum_quality(r, first, items, made);
+    cli_delivery how = {.input = r->volume.path,
+                        .write = cli_extract_write_desc(r->args),
+                        .compress = &r->args->compress,
+                        .voxel_mm = cbrt(spacing[0] * spacing[1] * spacing[2]),
+                        .unchecked = true, /* each label was by itself */
+                        .open = r->args->open,
+                        .parts = r->args->shared_faces ? "interfaces" : "labels",
+                        .found = found,
+                        .preview = cli_is_preview(&r->volume)};
+    how.write.sides = more ? more->sides : NULL;
+    how.write.provenance = lines;
+    how.write.provenance_count = make_provenance(r, smoothing, lines);
+    cw_status st = cli_deliver(&r->report, &how, parts, count, 0, r->start, err);
+    if (st != CW_OK)
+        r->report.made[r->report.made_count - 1].error = *err;
+    r->start = cli_seconds();
+    return st;
+}
+
+static cw_part *make_parts(const cli_label_run *r)
+{
+    cw_part *parts = calloc(r->item_count, sizeof *parts);
+    for (size_t n = 0; parts && n < r->item_count; n++)
+        parts[n] = (cw_part){
+            .mesh = &r->items[n].mesh, .name = r->items[n].name, .label = &r->items[n].label};
+    return parts;
+}
+
+/* Names the files and checks that none is an input, another output or in the way. */
+static cw_status name_files(cli_label_run *r, const cw_part *parts, size_t count, cw_error *err)
+{
+    const cli_extract_args *args = r->args;
+    const cw_write_desc desc = cli_extract_write_desc(args);
+    cw_status st = cli_name_part_outputs(&r->files, args->output, args->common.inputs[0], parts,
+                                         count, err);
+    for (size_t n = 0; n < r->files.count && st == CW_OK; n++) {
+        const char *path = r->files.path[n];
+        if (args->json)
+            st = cli_check_apart(path, args->json, err);
+        if (st == CW_OK && args->table)
+            st = cli_check_apart(path, args->table, err);
+        if (st == CW_OK && r->names.path)
+            st = cli_check_apart(path, r->names.path, err);
+    }
+    return st == CW_OK ? cli_check_outputs(&r->files, args->common.inputs,
+                                           args->common.input_count, &desc, err)
+                       : st;
+}
+
+cw_status cli_name_label_file(cli_label_run *r, cw_error *err)
+{
+    const cw_label label = {.name = NULL};
+    return cli_has_file_a_label(r->args->output)
+               ? CW_OK
+               : name_files(r, &(cw_part){.name = "labels", .label = &label}, 1, err);
+}
+
+/* Describes the smoothing for the line of a file. */
+static void print_smoothing(const cli_label_run *r, char text[96])
+{
+    if (r->max_move > 0)
+        snprintf(text, 96, "; smoothed, by at most %.3g voxels along each axis", r->max_move);
+    else
+        snprintf(text, 96, "; not smoothed");
+}
+
+/* Tells when a file joins labels that its format cannot tell apart. */
+static void tell_joined(const cli_label_run *r)
+{
+    const cw_format *f = cw_mesh_format(r->files.path[0], r->args->format);
+    if (r->item_count > 1 && !(f->keeps & (CW_KEEPS_PARTS | CW_KEEPS_LABELS)))
+        cli_say("%s: %s holds no labels, so all are joined; {label} or {name} in the output "
+                "gives a file for each",
+                r->files.path[0], f->name);
+}
+
+static cw_status write_files(cli_label_run *r, const cw_part *parts, cw_error *err)
+{
+    char found[96];
+    cw_status st = CW_OK;
+    print_smoothing(r, found);
+    if (!cli_has_file_a_label(r->args->output))
+        tell_joined(r);
+    if (!cli_has_file_a_label(r->args->output))
+        return deliver_file(r, 0, parts, r->item_count, 0, r->item_count, NULL, found, err);
+    r->report.several = "surfaces";
+    st = cli_report_reserve(&r->report, r->item_count + 1, err);
+    for (size_t n = 0; n < r->item_count && st == CW_OK; n++)
+        st = deliver_file(r, n, parts + n, 1, n, 1, NULL, found, err);
+    return st;
+}
+
+/* --- interfaces -------------------------------------------------------------------------- */
+
+/* Returns true if a patch is the border of a label that is written. */
+static bool has_item(const cli_label_run *r, const cli_label_layer *layer,
+                     const cw_label_patch *patch)
+{
+    for (size_t n = 0; n < r->item_count; n++)
+        if (r->items[n].layer == layer && (r->items[n].label.value == patch->labels[0] ||
+                                           r->items[n].label.value == patch->labels[1]))
+            return true;
+    return false;
+}
+
+/* Writes the interfaces as one mesh with the labels of both sides of each triangle. */
+static cw_status write_sides(cli_label_run *r, const char *found, cw_error *err)
+{
+    const cw_label_surfaces *s = &r->layers[0].surfaces;
+    cw_mesh mesh = s->mesh;
+    uint32_t *sides = malloc(2 * s->mesh.triangle_count * sizeof *sides);
+    if (!sides)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the labels of triangles");
+    for (size_t p = 0; p < s->patch_count; p++)
+        for (size_t t = s->patches[p].first; t < s->patches[p].first + s->patches[p].count; t++)
+            memcpy(sides + 2 * t, s->patches[p].labels, 2 * sizeof *sides);
+    const cw_part part = {.mesh = &mesh, .name = "labels"};
+    const cw_write_desc more = {.sides = sides};
+    cw_status st = deliver_file(r, 0, &part, 1, 0, r->item_count, &more, found, err);
+    free(sides);
+    return st;
+}
+
+/* Copies a patch as a part that is named by both of its labels. */
+static cw_status add_patch(const cli_label_run *r, const cli_label_layer *layer,
+                           const cw_label_patch *patch, cw_mesh *mesh, cw_label *label,
+                           char name[2 * CLI_LABEL_NAME], cw_part *part, cw_error *err)
+{
+    char names[2][CLI_LABEL_NAME];
+    const bool has_rest = patch->labels[1] == layer->surfaces.background;
+    *label = cli_complete_label(&r->names.table, layer->number, patch->labels[0], names[0]);
+    cli_complete_label(&r->names.table, layer->number, patch->labels[1], names[1]);
+    snprintf(name, 2 * CLI_LABEL_NAME, "%.120s | %.120s", names[0],
+             has_rest ? "background" : names[1]);
+    label->name = name;
+    *part = (cw_part){.mesh = mesh, .name = name, .label = label};
+    return cw_label_patch_mesh(&layer->surfaces, patch, mesh, err);
+}
+
+/* Writes a part an interface. */
+static cw_status write_patches(cli_label_run *r, const char *found, cw_error *err)
+{
+    size_t room = 0, count = 0;
+    cw_status st = CW_OK;
+    for (size_t l = 0; l < r->layer_count; l++)
+        room += r->layers[l].surfaces.patch_count;
+    cw_part *parts = calloc(room + 1, sizeof *parts);
+    cw_mesh *meshes = calloc(room + 1, sizeof *meshes);
+    cw_label *labels = calloc(room + 1, sizeof *labels);
+    char(*names)[2 * CLI_LABEL_NAME] = calloc(room + 1, sizeof *names);
+    if (!parts || !meshes || !labels || !names)
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu interfaces", room);
+    for (size_t l = 0; l < r->layer_count && st == CW_OK; l++) {
+        const cli_label_layer *layer = &r->layers[l];
+        for (size_t p = 0; p < layer->surfaces.patch_count && st == CW_OK; p++) {
+            const cw_label_patch *patch = &layer->surfaces.patches[p];
+            if (!has_item(r, layer, patch))
+                continue;
+            st = add_patch(r, layer, patch, &meshes[count], &labels[count], names[count],
+                           &parts[count], err);
+            count++;
+        }
+    }
+    if (st == CW_OK)
+        st = deliver_file(r, 0, parts, count, 0, r->item_count, NULL, found, err);
+    for (size_t n = 0; n < count; n++)
+        cw_mesh_free(&meshes[n]);
+    free(parts);
+    free(meshes);
+    free(labels);
+    free(names);
+    return st;
+}
+
+static cw_status write_interfaces(cli_label_run *r, cw_error *err)
+{
+    char found[192], smoothing[96];
+    const cli_extract_args *args = r->args;
+    const cw_format *f = cw_mesh_format(args->output, args->format);
+    const bool has_sides = !(f->keeps & CW_KEEPS_PARTS);
+    print_smoothing(r, smoothing);
+    snprintf(found, sizeof found, "; interfaces of %zu labels, each written once%s%s",
+             r->item_count,
+             !args->check ? ""
+             : args->open ? "; each label is a manifold"
+                          : "; each label is closed, manifold",
+             smoothing);
+    if (has_sides && r->layer_count == 1)
+        return write_sides(r, found, err);
+    if (has_sides)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "%s: its labels overlap in %zu layers; --shared-faces writes one of "
+                        "them to %s (--component N), or all to glb and obj",
+                        r->volume.path, r->layer_count, f->name);
+    return write_patches(r, found, err);
+}
+
+cw_status cli_write_labels(cli_label_run *r, cw_error *err)
+{
+    cw_part *parts = make_parts(r);
+    if (!parts)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", r->item_count);
+    cw_status st = cli_has_file_a_label(r->args->output)
+                       ? name_files(r, parts, r->item_count, err)
+                       : CW_OK;
+    if (st == CW_OK)
+        st = r->args->shared_faces ? write_interfaces(r, err) : write_files(r, parts, err);
+    free(parts);
+    return st;
+}

@@ -1,0 +1,369 @@
+/* Runs `extract --labels`: reads a label map, finds names, extracts the interfaces, makes a mesh
+ * a label, checks and writes. */
+#include "cli/extract/label_run.h"
+
+#include "cli/framework/console.h"
+#include "core/base/status.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static cw_status fail_without(const char *option, cw_error *err)
+{
+    return cwi_fail(err, CW_ERR_ARGUMENT, "%s is for --labels", option);
+}
+
+/* Returns true if the output's format has labels on both sides of triangles, or parts that need
+ * not be solids. An unknown format is refused later. */
+static bool holds_interfaces(const cli_extract_args *args)
+{
+    const cw_format *f = cw_mesh_format(args->output, args->format);
+    return !f || strcmp(f->name, "vtp") == 0 || strcmp(f->name, "ply") == 0 ||
+           strcmp(f->name, "obj") == 0 || strcmp(f->name, "glb") == 0 ||
+           strcmp(f->name, "gltf") == 0;
+}
+
+cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
+{
+    const struct {
+        bool is_given;
+        const char *option;
+    } refused[] = {
+        {args->iso.count > 0, "--iso"},
+        {args->inside != CLI_INSIDE_AUTO, "--inside"},
+        {args->topology, "--topology"},
+        {args->placement, "--placement"},
+        {args->snap.given, "--snap"},
+        {args->least.given, "--min-volume"},
+        {args->simplify.error.given || args->simplify.triangles > 0, "--simplify"},
+        {args->pixel.most.given, "--max-error"},
+        {args->pixel.camera != NULL, "--camera"},
+        {args->steps.given, "--steps"},
+        {args->animate, "--animate"},
+        {args->pvd != NULL, "--pvd"},
+        {args->prove_crop, "--prove-crop"},
+        {args->input.component.magnitude, "--component mag"},
+    };
+    if (!args->labels)
+        return args->names            ? fail_without("--names", err)
+               : args->smooth_labels  ? fail_without("--smooth-labels", err)
+               : args->table          ? fail_without("--table", err)
+               : args->shared_faces   ? fail_without("--shared-faces", err)
+               : args->require_labels ? fail_without("--require-labels", err)
+                                      : CW_OK;
+    for (size_t n = 0; n < sizeof refused / sizeof *refused; n++)
+        if (refused[n].is_given)
+            return cwi_fail(err, CW_ERR_ARGUMENT, "--labels cannot be combined with %s",
+                            refused[n].option);
+    if (!args->output)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "extract needs an output: -o FILE");
+    if (args->common.input_count > 1)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--labels takes one volume; there are %zu",
+                        args->common.input_count);
+    if (args->shared_faces && !holds_interfaces(args))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--shared-faces is for vtp, ply, glb, gltf and obj: other formats hold "
+                        "no interfaces of two labels");
+    if (args->shared_faces && cli_has_file_a_label(args->output))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--shared-faces writes all interfaces into one file; the output holds "
+                        "{label} or {name}");
+    return cli_check_compress(&args->compress, true, err);
+}
+
+/* Converts --smooth-labels to the bound of the library, in voxels. A length bounds the
+ * displacement along each axis of the grid. */
+static cw_status find_max_move(cli_label_run *r, cw_error *err)
+{
+    const char *text = r->args->smooth_labels;
+    const double *spacing = r->volume.spacing;
+    const double voxel = fmax(spacing[0], fmax(spacing[1], spacing[2]));
+    cli_length length;
+    r->max_move = 0.5;
+    if (!text)
+        return CW_OK;
+    r->max_move = 0;
+    if (strcmp(text, "off") == 0)
+        return CW_OK;
+    if (!cli_parse_length(text, &length) || length.unit == CLI_PERCENT)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--smooth-labels '%s': expected is 'off' or a length such as 0.3mm or "
+                        "0.5vox",
+                        text);
+    r->max_move = length.unit == CLI_VOXELS ? length.value : length.value / voxel;
+    if (!(r->max_move > 0 && r->max_move <= 0.5))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--smooth-labels %s is %.3g voxels; above 0 and up to 0.5 was expected",
+                        text, r->max_move);
+    return CW_OK;
+}
+
+static cw_status read_label_map(cli_label_run *r, cw_error *err)
+{
+    const cli_extract_args *args = r->args;
+    cli_input input = args->input;
+    input.component.given = true; /* all are taken, unless one was stated */
+    cli_report_begin(&r->report);
+    cw_status st = cli_read_volume(args->common.inputs[0], &input, false, &r->volume, err);
+    if (st != CW_OK)
+        return st;
+    const cw_volume *v = &r->volume.view;
+    r->report.input = &r->volume;
+    cli_report_end(&r->report, "read", 1, v->dim[0] * v->dim[1] * v->dim[2]);
+    if (v->cells || v->sparse)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "%s: --labels is for dense grids of voxels; this is %s", r->volume.path,
+                        v->cells ? "an irregular grid" : "a sparse one");
+    st = cli_find_label_names(args->names, &r->volume, &r->names, err);
+    if (st == CW_OK)
+        st = cli_choose_labels(args->labels, &r->names.table, &r->choice, err);
+    return st == CW_OK ? find_max_move(r, err) : st;
+}
+
+/* Extracts the interfaces of one component of the volume. */
+static cw_status extract_layer(cli_label_run *r, uint32_t number, cw_error *err)
+{
+    const cli_extract_args *args = r->args;
+    cw_volume view;
+    uint32_t *values = NULL;
+    size_t count = 0;
+    cw_status st = cw_volume_select(&r->volume.voxels, number, args->input.step, &view, err);
+    if (st == CW_OK && args->input.coarsen_view) {
+        const cw_volume all = view;
+        st = cw_volume_coarsen(&all, r->volume.coarsen, &view, err);
+    }
+    if (st == CW_OK && !r->choice.all)
+        st = cli_labels_of_layer(&r->choice, number, &values, &count, err);
+    if (st != CW_OK || (!r->choice.all && count == 0)) {
+        free(values);
+        return st;
+    }
+    cli_label_layer *layer = &r->layers[r->layer_count];
+    const cw_labels_desc desc = {
+        .labels = values,
+        .label_count = count,
+        .no_smoothing = r->max_move == 0,
+        .max_move = r->max_move,
+        .leave_open = args->open,
+        .threads = (int)args->input.threads,
+        .max_triangles = args->max_triangles,
+        .progress =
+            cli_progress((double)(view.dim[0] * view.dim[1] * view.dim[2]) / 1e6, "Mvoxel")};
+    layer->number = number;
+    st = cw_extract_labels(&view, &desc, &layer->surfaces, err);
+    free(values);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, r->volume.path);
+    r->layer_count++;
+    r->triangles += layer->surfaces.mesh.triangle_count;
+    for (size_t n = 0; n < layer->surfaces.label_count; n++)
+        cli_mark_found(&r->choice, number, layer->surfaces.labels[n].label);
+    return CW_OK;
+}
+
+static cw_status extract_layers(cli_label_run *r, cw_error *err)
+{
+    const cli_component *stated = &r->args->input.component;
+    const size_t components = r->volume.voxels.components;
+    const size_t first = stated->given ? stated->number : 0;
+    const size_t end = stated->given ? first + 1 : components;
+    cw_status st = CW_OK;
+    r->layers = calloc(components, sizeof *r->layers);
+    if (!r->layers)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu layers", components);
+    cli_report_begin(&r->report);
+    for (size_t c = first; c < end && st == CW_OK; c++)
+        st = extract_layer(r, (uint32_t)c, err);
+    if (st == CW_OK)
+        cli_report_end(&r->report, "extract",
+                       r->volume.view.dim[0] * r->volume.view.dim[1] * r->volume.view.dim[2],
+                       r->triangles);
+    return st;
+}
+
+/* Names the labels that were chosen and have no voxels. They fail the run with
+ * --require-labels. */
+static cw_status tell_missing(const cli_label_run *r, cw_error *err)
+{
+    char list[256] = "";
+    size_t used = 0, missing = 0;
+    for (size_t n = 0; n < r->choice.count; n++) {
+        const cli_chosen_label *chosen = &r->choice.labels[n];
+        char name[CLI_LABEL_NAME];
+        if (chosen->is_found)
+            continue;
+        cli_complete_label(&r->names.table, chosen->layer, chosen->value, name);
+        if (used < sizeof list - 1)
+            used += (size_t)snprintf(list + used, sizeof list - used, "%s%u (%.60s)",
+                                     missing ? ", " : "", chosen->value, name);
+        missing++;
+    }
+    if (!missing)
+        return CW_OK;
+    if (r->args->require_labels)
+        return cwi_fail(err, CW_ERR_EMPTY, "%s: no voxel has label%s %s", r->volume.path,
+                        missing == 1 ? "" : "s", list);
+    cli_say("%s: no voxel has label%s %s: skipped", r->volume.path, missing == 1 ? "" : "s",
+            list);
+    return CW_OK;
+}
+
+/* Lists the labels that occur. Those that their table hides are left out of "all". */
+static cw_status list_items(cli_label_run *r, cw_error *err)
+{
+    size_t count = 0, hidden = 0;
+    for (size_t n = 0; n < r->layer_count; n++)
+        count += r->layers[n].surfaces.label_count;
+    r->items = calloc(count ? count : 1, sizeof *r->items);
+    if (!r->items)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu labels", count);
+    for (size_t n = 0; n < r->layer_count; n++)
+        for (size_t l = 0; l < r->layers[n].surfaces.label_count; l++) {
+            const cw_label_count *found = &r->layers[n].surfaces.labels[l];
+            cli_label_item *item = &r->items[r->item_count];
+            item->label = cli_complete_label(&r->names.table, r->layers[n].number, found->label,
+                                             item->name);
+            if (r->choice.all && item->label.hidden) {
+                hidden++;
+                continue;
+            }
+            item->layer = &r->layers[n];
+            item->voxels = found->voxels;
+            r->item_count++;
+        }
+    if (hidden)
+        cli_say(
+            "%s: %zu labels that the table hides in 3D are left out; --labels takes them by "
+            "number or name",
+            r->volume.path, hidden);
+    return r->item_count ? CW_OK
+                         : cwi_fail(err, CW_ERR_EMPTY,
+                                    "%s: none of the labels has voxels: all values are the "
+                                    "background or not chosen",
+                                    r->volume.path);
+}
+
+/* Fails unless a label's surface is closed (or open at the border alone) and a manifold. */
+static cw_status hold_item(const cli_label_run *r, const cli_label_item *item, cw_error *err)
+{
+    const cw_quality *q = &item->quality;
+    if (!q->nonmanifold_edges && !q->nonmanifold_vertices && !q->misoriented_edges &&
+        !q->degenerate && (!q->open_edges || r->args->open))
+        return CW_OK;
+    return cwi_fail(err, CW_ERR_CHECK,
+                    "%s: the surface of label %u is not as promised: %zu open, %zu "
+                    "non-manifold, %zu misoriented edges, %zu non-manifold vertices, %zu "
+                    "degenerate triangles; nothing is written (--no-check writes it)",
+                    r->volume.path, item->label.value, q->open_edges, q->nonmanifold_edges,
+                    q->misoriented_edges, q->nonmanifold_vertices, q->degenerate);
+}
+
+static bool needs_quality(const cli_extract_args *args)
+{
+    return args->check || args->table || args->json;
+}
+
+/* Makes the mesh of each label and checks it; it is kept unless only interfaces are written. */
+static cw_status make_meshes(cli_label_run *r, cw_error *err)
+{
+    const cli_extract_args *args = r->args;
+    const cw_quality_desc desc = {.threads = (int)args->input.threads};
+    cw_status st = CW_OK;
+    cli_report_begin(&r->report);
+    for (size_t n = 0; n < r->item_count && st == CW_OK; n++) {
+        cli_label_item *item = &r->items[n];
+        item->label.name = item->name; /* items stay where they are from now on */
+        if (args->shared_faces && !needs_quality(args))
+            continue;
+        st = cw_label_mesh(&item->layer->surfaces, item->label.value, &item->mesh, err);
+        if (st == CW_OK && needs_quality(args))
+            st = cw_quality_measure(&item->mesh, &desc, &item->quality, err);
+        if (st == CW_OK && args->check)
+            st = hold_item(r, item, err);
+        if (args->shared_faces)
+            cw_mesh_free(&item->mesh);
+        else if (st == CW_OK && !args->normals)
+            st = cw_mesh_normals(&item->mesh, err);
+    }
+    if (st == CW_OK)
+        cli_report_end(&r->report, "check", r->triangles, r->triangles);
+    return st;
+}
+
+/* The report and the table are outputs too. */
+static cw_status check_side_outputs(cli_label_run *r, cw_error *err)
+{
+    const cli_extract_args *args = r->args;
+    const cli_common *common = &args->common;
+    cw_status st = CW_OK;
+    if (args->json)
+        st = cli_check_output(args->json, common->inputs, common->input_count, err);
+    if (st != CW_OK)
+        return st;
+    r->report.path = args->json;
+    if (args->table)
+        st = cli_check_output(args->table, common->inputs, common->input_count, err);
+    if (st == CW_OK && args->table && args->names)
+        st = cli_check_apart(args->table, args->names, err);
+    return st == CW_OK && args->table && args->json
+               ? cli_check_apart(args->table, args->json, err)
+               : st;
+}
+
+static cw_status run_labels(void *state, cw_error *err)
+{
+    cli_label_run *r = state;
+    cw_status st = check_side_outputs(r, err);
+    if (st == CW_OK)
+        st = cli_check_label_args(r->args, err);
+    cli_report_next(&r->report, NULL, 0); /* its path is known once the labels are */
+    if (st == CW_OK)
+        st = cli_name_label_file(r, err);
+    if (st == CW_OK)
+        st = read_label_map(r, err);
+    if (st == CW_OK)
+        st = extract_layers(r, err);
+    if (st == CW_OK)
+        st = tell_missing(r, err);
+    if (st == CW_OK)
+        st = list_items(r, err);
+    if (st == CW_OK)
+        st = make_meshes(r, err);
+    if (st == CW_OK)
+        st = cli_write_labels(r, err);
+    return st == CW_OK ? cli_write_label_table(r, err) : st;
+}
+
+static void free_run(cli_label_run *r)
+{
+    for (size_t n = 0; n < r->item_count; n++)
+        cw_mesh_free(&r->items[n].mesh);
+    for (size_t n = 0; n < r->layer_count; n++)
+        cw_label_surfaces_free(&r->layers[n].surfaces);
+    free(r->items);
+    free(r->layers);
+    cli_free_label_choice(&r->choice);
+    cli_free_label_names(&r->names);
+    cli_free_outputs(&r->files);
+    cli_free_volume(&r->volume);
+}
+
+cw_status cli_extract_labels(const cli_extract_args *args, cw_error *err)
+{
+    cli_label_run r = {.args = args,
+                       .start = cli_seconds(),
+                       .report = {.command = "extract",
+                                  .params = cli_put_label_params,
+                                  .facts = cli_put_labels,
+                                  .args = &r}};
+    const cli_run run = {.common = &args->common,
+                         .progress = args->progress,
+                         .json = args->json,
+                         .body = run_labels,
+                         .state = &r};
+    cw_status st = cli_run_reported(&run, &r.report, err);
+    free_run(&r);
+    return st;
+}

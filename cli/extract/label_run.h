@@ -1,0 +1,65 @@
+/* Declares the state and the steps of `extract --labels`. */
+#ifndef CLI_EXTRACT_LABEL_RUN_H
+#define CLI_EXTRACT_LABEL_RUN_H
+
+#include "cli/extract/extract_run.h"
+#include "cli/extract/label_choice.h"
+#include "cli/inputs/label_names.h"
+
+#include <cubewright/labels.h>
+
+/* The interfaces of a component of the volume; segments that overlap are in several. */
+typedef struct cli_label_layer {
+    uint32_t number;
+    cw_label_surfaces surfaces;
+} cli_label_layer;
+
+/* A label with its surface. */
+typedef struct cli_label_item {
+    cw_label label; /* complete; the name is the next field */
+    char name[CLI_LABEL_NAME];
+    const cli_label_layer *layer;
+    size_t voxels;
+    cw_mesh mesh; /* closed, unless open; empty where only interfaces are written */
+    cw_quality quality;
+} cli_label_item;
+
+typedef struct cli_label_run {
+    const cli_extract_args *args;
+    cli_volume volume;
+    cli_label_names names;
+    cli_label_choice choice;
+    double max_move; /* of smoothing, in voxels; 0: off */
+    cli_label_layer *layers;
+    size_t layer_count;
+    cli_label_item *items; /* in rising order of layers and labels */
+    size_t item_count;
+    size_t triangles; /* of all interfaces */
+    cli_outputs files;
+    cli_report report;
+    double start;
+} cli_label_run;
+
+/* Returns true for an output that has a file a label: it holds {label} or {name}. */
+bool cli_has_file_a_label(const char *output);
+
+/* Checks what can be refused before the input is read. */
+CW_NODISCARD cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err);
+
+/* Names the output if all labels go into one file, and checks that it can be written. */
+CW_NODISCARD cw_status cli_name_label_file(cli_label_run *run, cw_error *err);
+
+/* Writes the meshes, or with --shared-faces the interfaces, and tells of them. */
+CW_NODISCARD cw_status cli_write_labels(cli_label_run *run, cw_error *err);
+
+/* Writes the table of labels that --table asks for. */
+CW_NODISCARD cw_status cli_write_label_table(const cli_label_run *run, cw_error *err);
+
+/* Of the report: the settings, and the labels. p is the run. */
+void cli_put_label_params(cli_json *j, const void *p, const cli_made *made);
+void cli_put_labels(cli_json *j, const void *p);
+
+/* Runs the command with --labels. */
+CW_NODISCARD cw_status cli_extract_labels(const cli_extract_args *args, cw_error *err);
+
+#endif

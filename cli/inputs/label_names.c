@@ -1,0 +1,82 @@
+/* Finds the names and colours of a volume's labels. */
+#define _GNU_SOURCE /* strdup */
+#include "cli/inputs/label_names.h"
+
+#include "cli/framework/console.h"
+#include "core/base/status.h"
+
+#include <cubewright/formats.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void cli_free_label_names(cli_label_names *names)
+{
+    cw_label_table_free(&names->table);
+    free(names->path);
+    *names = (cli_label_names){0};
+}
+
+static cw_status read_stated(const char *path, cli_label_names *names, cw_error *err)
+{
+    cw_status st = cw_label_table_read(path, &names->table, &names->format, err);
+    names->path = st == CW_OK ? strdup(path) : NULL;
+    if (st == CW_OK && !names->path)
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of a file");
+    return st;
+}
+
+static cw_status read_beside(const cli_volume *volume, cli_label_names *names, cw_error *err)
+{
+    cw_error why;
+    cw_status st = cw_label_table_beside(volume->path, &names->path, err);
+    if (st != CW_OK || !names->path)
+        return st;
+    st = cw_label_table_read(names->path, &names->table, &names->format, &why);
+    if (st == CW_OK)
+        return st;
+    cli_say("%s: the names beside it are not used: %s", volume->path, why.message);
+    cli_free_label_names(names);
+    return CW_OK;
+}
+
+cw_status cli_find_label_names(const char *path, cli_volume *volume, cli_label_names *names,
+                               cw_error *err)
+{
+    cw_status st = CW_OK;
+    *names = (cli_label_names){0};
+    if (path) {
+        st = read_stated(path, names, err);
+    } else if (volume->labels.count) {
+        names->table = volume->labels;
+        volume->labels = (cw_label_table){0};
+    } else {
+        st = read_beside(volume, names, err);
+    }
+    if (st != CW_OK)
+        cli_free_label_names(names);
+    else if (names->path)
+        cli_say("%s: names of %zu labels from %s (%s)", volume->path, names->table.count,
+                names->path, names->format);
+    else if (names->table.count)
+        cli_say("%s: names of %zu labels from the volume itself", volume->path,
+                names->table.count);
+    return st;
+}
+
+cw_label cli_complete_label(const cw_label_table *table, uint32_t layer, uint32_t value,
+                            char name[CLI_LABEL_NAME])
+{
+    const cw_label *known = cw_label_find(table, layer, value);
+    cw_label label = known ? *known : (cw_label){.value = value, .layer = layer};
+    if (label.name && *label.name)
+        snprintf(name, CLI_LABEL_NAME, "%s", label.name);
+    else
+        snprintf(name, CLI_LABEL_NAME, "label_%u", value);
+    label.name = name;
+    if (!label.has_color)
+        cw_label_color(value, label.color);
+    label.has_color = true;
+    return label;
+}
