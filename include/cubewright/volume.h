@@ -160,15 +160,14 @@ enum { CW_LABELS_MAX = 255 };
 /* Labels of a volume: whole numbers that stand for objects, not for amounts. */
 typedef struct cw_labels {
     bool found;                  /* CW_KNOWN_LABELS, or values that look like labels */
-    bool more;                   /* more values exist than are listed: in a volume that states
-                                     it holds labels */
+    bool more;                   /* more values exist than are listed */
     size_t count;                /* number of values; at most CW_LABELS_MAX */
     double value[CW_LABELS_MAX]; /* rising */
 } cw_labels;
 
 /* Finds if the first component and step holds labels. A volume with CW_KNOWN_LABELS does. The
- * values of another one must meet three conditions. They are whole numbers, 3 to CW_LABELS_MAX
- * of them. Of neighbours along x that are not both the most frequent value, 7 in 10 are equal.
+ * values of another one must meet three conditions. They are whole numbers, in any type, and at
+ * least three. Of neighbours along x that are not both the most frequent value, 7 in 10 are equal.
  * Of those that differ, 2 in 10 skip a value that occurs. A smooth picture skips none, and a
  * noisy one has no equal neighbours. At most 2^22 voxels are examined, in rows spread evenly.
  * Returns CW_ERR_ARGUMENT as cw_volume_resolve(). */

@@ -537,6 +537,16 @@ static void label_maps_are_told_from_pictures(void **state)
         if (kind == 0)
             assert_true(labels.count > 5 && labels.value[0] == 0 && labels.value[1] == 3);
     }
+    /* labels beyond a byte, as floats, and more of them than are listed */
+    static float floats[SIDE * SIDE * SIDE];
+    cw_volume f = {.data = floats, .type = CW_F32, .dim = {SIDE, SIDE, SIDE}};
+    for (size_t n = 0; n < sizeof voxels; n++)
+        floats[n] = (float)(1000000 + n / 5 * 7919 % 997);
+    assert_ok(cw_volume_labels(&f, &labels, &err), err);
+    assert_true(labels.found && labels.more && labels.count == CW_LABELS_MAX);
+    floats[7] = 0.5f;
+    assert_ok(cw_volume_labels(&f, &labels, &err), err);
+    assert_false(labels.found);
     v.known = CW_KNOWN_LABELS;
     assert_ok(cw_volume_labels(&v, &labels, &err), err);
     assert_true(labels.found && labels.count == 2 && labels.value[1] == 1);
