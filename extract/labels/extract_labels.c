@@ -1,8 +1,9 @@
 /* Extracts the interfaces of a label map in chunks, so that the result does not depend on threads:
  * assembles what the first pass counted, and smooths what the second one wrote. */
-#include <cubewright/labels.h>
+#include "extract/labels/extract_labels.h"
 
 #include "extract/labels/label_chunks.h"
+#include "extract/labels/label_smooth.h"
 #include "extract/labels/label_untangle.h"
 
 #include "core/base/memory.h"
@@ -24,18 +25,26 @@ enum {
  * their own: near it, so that sheets stay apart and close to where surface nets have them. */
 static const double spread = 0.5;
 
+/* Vertices stay at least this far inside of their cubes, in voxels. */
+#define MARGIN 1e-3
+
+/* Returns the coordinate of a place along an axis, from -1 to its number of voxels. */
+static double find_coordinate(const cw_volume *v, int axis, double place)
+{
+    const double last = (double)v->dim[axis] - 1, low = fmin(floor(place), last);
+    if (v->dim[axis] > 1)
+        return cwi_grid_coordinate(v, axis, (ptrdiff_t)low, place - low);
+    return v->coordinates[axis] ? v->coordinates[axis][0] + place : place;
+}
+
 /* Converts a place to a world point, from the mesh's origin. */
 static void place_vertex(const void *context, const double place[3], double point[3])
 {
     const cwi_label_job *j = context;
     const cw_volume *v = j->layers.volume;
     double at[3], world[3];
-    for (int a = 0; a < 3; a++) {
-        const double p = place[a], low = floor(p);
-        at[a] = v->dim[a] > 1       ? cwi_grid_coordinate(v, a, (ptrdiff_t)low, p - low)
-                : v->coordinates[a] ? v->coordinates[a][0] + p
-                                    : p;
-    }
+    for (int a = 0; a < 3; a++)
+        at[a] = find_coordinate(v, a, place[a]);
     cwi_affine_apply(v->affine[0], at, world);
     for (int a = 0; a < 3; a++)
         point[a] = world[a] - j->out->mesh.origin[a];
@@ -163,24 +172,26 @@ static cw_status make_room(cwi_label_job *j, const cw_labels_desc *desc, cw_erro
     if (desc->max_triangles > 0 && mesh->triangle_count > desc->max_triangles)
         return cwi_fail(err, CW_ERR_LIMIT, "the labels make %zu triangles, more than %zu",
                         mesh->triangle_count, desc->max_triangles);
-    mesh->positions = cwi_alloc_large(mesh->vertex_count, 3 * sizeof *mesh->positions);
+    mesh->positions =
+        cwi_alloc_large(mesh->vertex_count + CWI_SPARE_PLACES, 3 * sizeof *mesh->positions);
     mesh->triangles = cwi_alloc_large(mesh->triangle_count, 3 * sizeof *mesh->triangles);
     if (!desc->no_smoothing && mesh->vertex_count > 0) {
-        net->neighbours = cwi_alloc_array(mesh->vertex_count, sizeof *net->neighbours);
+        net->neighbours = cwi_alloc_large(mesh->vertex_count, sizeof *net->neighbours);
         net->kinds = cwi_alloc_zeroed(mesh->vertex_count, 1);
-        j->polygons = cwi_alloc_large(mesh->triangle_count, 1);
-        j->originals = cwi_alloc_large(mesh->vertex_count, 3 * sizeof *j->originals);
+        net->polygons = cwi_alloc_large(mesh->triangle_count, 1);
+        j->originals =
+            cwi_alloc_large(mesh->vertex_count + CWI_SPARE_PLACES, 3 * sizeof *j->originals);
         if (net->neighbours)
             memset(net->neighbours, 0xff, mesh->vertex_count * sizeof *net->neighbours);
     }
     if (!mesh->positions || !mesh->triangles ||
         (!desc->no_smoothing && mesh->vertex_count > 0 &&
-         !(net->neighbours && net->kinds && j->polygons && j->originals)))
+         !(net->neighbours && net->kinds && net->polygons && j->originals)))
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu triangles",
                         mesh->triangle_count);
     for (int a = 0; a < 3; a++)
-        middle[a] = 0.5 * (cwi_grid_coordinate(v, a, 0, 0) +
-                           cwi_grid_coordinate(v, a, (ptrdiff_t)v->dim[a] - 1, 0));
+        middle[a] =
+            0.5 * (find_coordinate(v, a, 0) + find_coordinate(v, a, (double)v->dim[a] - 1));
     cwi_affine_apply(v->affine[0], middle, mesh->origin);
     memcpy(mesh->affine, v->affine, sizeof mesh->affine);
     return CW_OK;
@@ -203,7 +214,8 @@ static cw_status run_pass(cwi_label_job *j, size_t chunks, const cw_labels_desc 
     return st;
 }
 
-static cw_status run_job(cwi_label_job *j, const cw_labels_desc *desc, cw_error *err)
+static cw_status run_job(cwi_label_job *j, const cw_labels_desc *desc,
+                         cwi_label_smoother *smooth, cw_error *err)
 {
     const size_t layers = j->layers.count - 1,
                  chunks = (layers + CWI_LABEL_CHUNK - 1) / CWI_LABEL_CHUNK;
@@ -225,17 +237,17 @@ static cw_status run_job(cwi_label_job *j, const cw_labels_desc *desc, cw_error 
     if (st == CW_OK && j->originals) {
         memcpy(j->originals, j->out->mesh.positions,
                3 * j->out->mesh.vertex_count * sizeof *j->originals);
-        st = cwi_labels_smooth(&j->net, j->originals, j->out, desc, j->layers.volume->dim, err);
+        if (!cwi_label_net_finish(&j->net, &j->out->mesh))
+            st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the polygons around vertices");
     }
+    if (st == CW_OK && j->originals)
+        st = smooth(&j->net, j->originals, j->out, desc, j->layers.volume->dim, err);
     if (st == CW_OK)
         st = cwi_each_layer((j->out->mesh.vertex_count + PLACES - 1) / PLACES, PLACES,
                             desc->threads, &desc->progress, "placing", place_part, j, err);
     if (st == CW_OK && j->originals)
-        st = cwi_labels_untangle(j->out, &j->net, j->polygons, j->originals, place_vertex, j,
-                                 desc, err);
-    cwi_free(j->net.neighbours);
-    cwi_free(j->net.kinds);
-    cwi_free(j->polygons);
+        st = cwi_labels_untangle(j->out, &j->net, j->originals, place_vertex, j, desc, err);
+    cwi_label_net_free(&j->net);
     cwi_free(j->originals);
     for (size_t c = 0; c < chunks; c++) {
         cwi_key_counts_free(&j->chunks[c].pairs);
@@ -277,8 +289,43 @@ static void prepare_job(cwi_label_job *j, const cw_volume *v, const cw_labels_de
         }
 }
 
-cw_status cw_extract_labels(const cw_volume *volume, const cw_labels_desc *desc,
-                            cw_label_surfaces *surfaces, cw_error *err)
+/* Returns the maximum error of a point of the mesh along an axis of the grid, in voxels, from
+ * rounding to single precision. */
+static double find_rounding(const cw_volume *v)
+{
+    double cofactors[3][3], extent = 0, most = 0;
+    const double volume = fabs(cwi_affine_determinant(v->affine[0]));
+    cwi_affine_cofactor(v->affine[0], cofactors);
+    for (int b = 0; b < 3; b++) {
+        double half = 0; /* of the volume and its border */
+        for (int a = 0; a < 3; a++)
+            half += fabs(v->affine[b][a]) * 0.5 *
+                    (find_coordinate(v, a, (double)v->dim[a]) - find_coordinate(v, a, -1));
+        extent += half * half;
+    }
+    for (int a = 0; a < 3; a++) {
+        double spacing = INFINITY, slope = 0;
+        for (size_t i = 0; i < v->dim[a]; i++)
+            spacing = fmin(spacing, find_coordinate(v, a, (double)i + 1) -
+                                        find_coordinate(v, a, (double)i));
+        for (int b = 0; b < 3; b++)
+            slope += cofactors[b][a] * cofactors[b][a];
+        most = fmax(most, sqrt(extent * slope) / (volume * spacing));
+    }
+    return 0x1p-24 * most;
+}
+
+/* Returns how far vertices may move, so that they stay inside of their cubes: those of two cubes
+ * never meet. */
+static double resolve_max_move(const cw_volume *v, double max_move)
+{
+    const double margin = fmax(MARGIN, 4 * find_rounding(v));
+    return fmax(0, (max_move > 0 ? max_move : 0.5) - margin);
+}
+
+cw_status cwi_extract_labels_with(const cw_volume *volume, const cw_labels_desc *desc,
+                                  cwi_label_smoother *smooth, cw_label_surfaces *surfaces,
+                                  cw_error *err)
 {
     const cw_labels_desc none = {0};
     cw_volume v;
@@ -295,13 +342,15 @@ cw_status cw_extract_labels(const cw_volume *volume, const cw_labels_desc *desc,
     if (desc->label_count > 0 && !desc->labels)
         return cwi_fail(err, CW_ERR_ARGUMENT, "%zu labels are wanted, but none are named",
                         desc->label_count);
+    cw_labels_desc resolved = *desc;
+    resolved.max_move = resolve_max_move(&v, desc->max_move);
     uint32_t *wanted = cwi_alloc_array(desc->label_count, sizeof *wanted);
     cwi_label_job *j = cwi_alloc_zeroed(1, sizeof *j);
     if (wanted && j) {
         j->out = surfaces;
         surfaces->background = desc->background;
         prepare_job(j, &v, desc, wanted);
-        st = run_job(j, desc, err);
+        st = run_job(j, &resolved, smooth, err);
     } else
         st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for labels");
     cwi_free(j);
@@ -309,6 +358,12 @@ cw_status cw_extract_labels(const cw_volume *volume, const cw_labels_desc *desc,
     if (st != CW_OK)
         cw_label_surfaces_free(surfaces);
     return st;
+}
+
+cw_status cw_extract_labels(const cw_volume *volume, const cw_labels_desc *desc,
+                            cw_label_surfaces *surfaces, cw_error *err)
+{
+    return cwi_extract_labels_with(volume, desc, cwi_labels_smooth, surfaces, err);
 }
 
 void cw_label_surfaces_free(cw_label_surfaces *s)

@@ -140,8 +140,8 @@ static bool take_polygon(scan *s, int edge, uint32_t pair[2], const uint32_t *po
         to[1] = polygon[flips ? n + 1 : n];
         to[2] = polygon[flips ? n : n + 1];
     }
-    for (int n = 0; n + 2 < count && to && j->polygons; n++)
-        j->polygons[entry->count + (size_t)n] = n == 0 ? (uint8_t)edge : 0;
+    for (int n = 0; n + 2 < count && to && j->net.polygons; n++)
+        j->net.polygons[entry->count + (size_t)n] = n == 0 ? (uint8_t)edge : 0;
     entry->count += (size_t)count - 2;
     return true;
 }

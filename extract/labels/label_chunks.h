@@ -5,7 +5,9 @@
 #include "extract/labels/key_counts.h"
 #include "extract/labels/label_cubes.h"
 #include "extract/labels/label_layers.h"
-#include "extract/labels/label_smooth.h"
+#include "extract/labels/label_net.h"
+
+#include <cubewright/labels.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -27,8 +29,7 @@ typedef struct cwi_label_job {
     double corners[CWI_TETS][3]; /* vertices of tetrahedra, from the cube's middle */
     bool is_mirrored;
     cwi_label_net net;
-    uint8_t *polygons; /* as cwi_label_crossings.polygons; NULL without smoothing */
-    float *originals;  /* places before smoothing; NULL without smoothing */
+    float *originals; /* places before smoothing; NULL without smoothing */
     cw_label_surfaces *out;
     cwi_label_chunk *chunks;
     bool is_writing; /* the second pass */

@@ -17,8 +17,6 @@
  * polygons are sound: two of them meet in common sides and vertices only. */
 #include "extract/labels/label_crossings.h"
 
-#include "extract/labels/label_smooth.h"
-
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
@@ -31,7 +29,6 @@
 enum {
     PART = 1 << 14,  /* triangles */
     QUEUE_PART = 64, /* polygons */
-    CORNERS = 8,     /* capacity for those of a polygon: 6 at most */
     SEEN = 128       /* polygons that a search remembers */
 };
 
@@ -44,33 +41,17 @@ static const uint32_t *corners_of(const cwi_label_crossings *c, size_t triangle)
     return c->mesh->triangles + 3 * triangle;
 }
 
-/* Returns the triangle behind a polygon's last. */
-static size_t end_of(const cwi_label_crossings *c, size_t polygon)
+/* Lists a polygon's corners. */
+static int list_corners(const cwi_label_crossings *c, size_t polygon,
+                        uint32_t corners[CWI_POLYGON_CORNERS])
 {
-    size_t t = polygon + 1;
-    while (t < c->mesh->triangle_count && !c->polygons[t])
-        t++;
-    return t;
-}
-
-/* Lists a polygon's corners, in one of the two orders around it. Returns their number. */
-static int list_corners(const cwi_label_crossings *c, size_t polygon, uint32_t corners[CORNERS])
-{
-    const size_t end = end_of(c, polygon);
-    const uint32_t *v = corners_of(c, polygon);
-    const bool flips = end > polygon + 1 && v[4] != v[2];
-    int count = 0;
-    corners[count++] = v[0];
-    corners[count++] = v[flips ? 2 : 1];
-    for (size_t t = polygon; t < end && count < CORNERS; t++)
-        corners[count++] = corners_of(c, t)[flips ? 1 : 2];
-    return count;
+    return cwi_polygon_corners(c->net, c->mesh, polygon, corners);
 }
 
 /* Returns true if a vertex is where it was before smoothing. */
 static bool is_back(const cwi_label_crossings *c, uint32_t vertex)
 {
-    return (c->kinds[vertex] & (CWI_NET_FIXED | CWI_NET_BACK)) != 0;
+    return (c->net->kinds[vertex] & (CWI_NET_FIXED | CWI_NET_BACK)) != 0;
 }
 
 /* Finds the ends of the edge around which a polygon of four cubes lies, along an axis. */
@@ -92,13 +73,13 @@ static void find_edge(const cwi_label_crossings *c, const uint32_t v[3], int axi
 /* Returns true if a polygon is sound, as above. */
 static bool is_sound(const cwi_label_crossings *c, size_t polygon)
 {
-    const int edge = c->polygons[polygon] & CWI_POLYGON_EDGE;
-    uint32_t v[CORNERS];
+    const int edge = c->net->polygons[polygon] & CWI_POLYGON_EDGE;
+    uint32_t v[CWI_POLYGON_CORNERS];
     double p[3], q[3], d[3][3], u[3], w[3];
     if ((edge != 1 && edge != 2 && edge != 4) || list_corners(c, polygon, v) != 4)
         return false;
     for (int n = 0; n < 4; n++)
-        if (c->kinds[v[n]] & CWI_NET_FIXED) /* others in its cube */
+        if (c->net->kinds[v[n]] & CWI_NET_FIXED) /* others in its cube */
             return false;
     find_edge(c, v, edge >> 1, p, q);
     for (int a = 0; a < 3; a++) {
@@ -118,41 +99,16 @@ static bool is_sound(const cwi_label_crossings *c, size_t polygon)
 
 static void judge_polygon(cwi_label_crossings *c, size_t polygon)
 {
-    c->polygons[polygon] &= CWI_POLYGON_EDGE;
-    c->polygons[polygon] |= is_sound(c, polygon) ? CWI_POLYGON_SOUND : CWI_POLYGON_QUEUED;
+    c->net->polygons[polygon] &= CWI_POLYGON_EDGE;
+    c->net->polygons[polygon] |= is_sound(c, polygon) ? CWI_POLYGON_SOUND : CWI_POLYGON_QUEUED;
 }
 
 static void judge_part(void *context, size_t n)
 {
     cwi_label_crossings *c = context;
     for (size_t t = n * PART; t < (n + 1) * PART && t < c->mesh->triangle_count; t++)
-        if (c->polygons[t])
+        if (c->net->polygons[t])
             judge_polygon(c, t);
-}
-
-/* Lists the polygons around each vertex: counts them, then fills in from behind. */
-static bool list_around(cwi_label_crossings *c)
-{
-    const cw_mesh *mesh = c->mesh;
-    uint32_t v[CORNERS];
-    size_t total = 0;
-    c->firsts = cwi_alloc_zeroed(mesh->vertex_count + 1, sizeof *c->firsts);
-    if (!c->firsts)
-        return false;
-    for (size_t t = 0; t < mesh->triangle_count; t++)
-        for (int n = c->polygons[t] ? list_corners(c, t, v) : 0; n-- > 0;)
-            c->firsts[v[n]]++;
-    for (size_t n = 0; n <= mesh->vertex_count; n++) {
-        total += c->firsts[n];
-        c->firsts[n] = (uint32_t)total;
-    }
-    c->around = cwi_alloc_large(total, sizeof *c->around);
-    if (!c->around)
-        return false;
-    for (size_t t = mesh->triangle_count; t-- > 0;)
-        for (int n = c->polygons[t] ? list_corners(c, t, v) : 0; n-- > 0;)
-            c->around[--c->firsts[v[n]]] = (uint32_t)t;
-    return true;
 }
 
 cw_status cwi_label_crossings_init(cwi_label_crossings *c, const cw_labels_desc *desc,
@@ -167,9 +123,9 @@ cw_status cwi_label_crossings_init(cwi_label_crossings *c, const cw_labels_desc 
     c->queue = cwi_alloc_large(mesh->triangle_count, sizeof *c->queue);
     c->hits = cwi_alloc_zeroed(mesh->vertex_count, 1);
     for (size_t t = 0; t < mesh->triangle_count && c->queue; t++)
-        if (c->polygons[t] & CWI_POLYGON_QUEUED)
+        if (c->net->polygons[t] & CWI_POLYGON_QUEUED)
             c->queue[c->queued++] = (uint32_t)t;
-    if (!c->queue || !c->hits || (c->queued > 0 && !list_around(c)))
+    if (!c->queue || !c->hits)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for triangles that cross");
     return CW_OK;
 }
@@ -221,7 +177,7 @@ static void test_pair(cwi_label_crossings *c, size_t s, size_t t)
 /* Tests the triangles of a polygon: with each other, and whether they have an area. */
 static void test_inside(cwi_label_crossings *c, size_t polygon)
 {
-    const size_t end = end_of(c, polygon);
+    const size_t end = cwi_polygon_end(c->net, c->mesh, polygon);
     for (size_t s = polygon; s < end; s++) {
         const uint32_t *v = corners_of(c, s);
         if (!all_back(c, v) && !cwi_has_area(c->mesh->positions, v))
@@ -233,7 +189,8 @@ static void test_inside(cwi_label_crossings *c, size_t polygon)
 
 static void test_polygons(cwi_label_crossings *c, size_t one, size_t other)
 {
-    const size_t end = end_of(c, one), other_end = end_of(c, other);
+    const size_t end = cwi_polygon_end(c->net, c->mesh, one),
+                 other_end = cwi_polygon_end(c->net, c->mesh, other);
     for (size_t s = one; s < end; s++)
         for (size_t t = other; t < other_end; t++)
             test_pair(c, s, t);
@@ -251,8 +208,8 @@ static bool share_cube(const cwi_label_crossings *c, uint32_t v, uint32_t w)
  * cubes around its edge. Vertices of one cube follow each other. */
 static void test_around(cwi_label_crossings *c, size_t polygon)
 {
-    uint32_t corners[CORNERS], seen[SEEN];
-    const uint8_t flags = c->polygons[polygon];
+    uint32_t corners[CWI_POLYGON_CORNERS], seen[SEEN];
+    const uint8_t flags = c->net->polygons[polygon];
     const int count = list_corners(c, polygon, corners);
     int seen_count = 0;
     test_inside(c, polygon);
@@ -262,9 +219,9 @@ static void test_around(cwi_label_crossings *c, size_t polygon)
             first--;
         while (end < c->mesh->vertex_count && share_cube(c, end, first))
             end++;
-        for (uint32_t k = c->firsts[first]; k < c->firsts[end]; k++) {
-            const uint32_t other = c->around[k];
-            const uint8_t its = c->polygons[other];
+        for (uint32_t k = c->net->firsts[first]; k < c->net->firsts[end]; k++) {
+            const uint32_t other = c->net->around[k];
+            const uint8_t its = c->net->polygons[other];
             int i = 0;
             while (i < seen_count && seen[i] != other)
                 i++;
@@ -296,15 +253,15 @@ cw_status cwi_label_crossings_find(cwi_label_crossings *c, const cw_labels_desc 
 void cwi_label_crossings_renew(cwi_label_crossings *c)
 {
     for (size_t n = 0; n < c->queued; n++)
-        c->polygons[c->queue[n]] &= (uint8_t)~CWI_POLYGON_QUEUED;
+        c->net->polygons[c->queue[n]] &= (uint8_t)~CWI_POLYGON_QUEUED;
     c->queued = 0;
     for (size_t v = 0; v < c->mesh->vertex_count; v++) {
-        for (uint32_t k = c->firsts[v]; k < c->firsts[v + 1] && c->hits[v]; k++) {
-            const uint32_t polygon = c->around[k];
-            if (c->polygons[polygon] & CWI_POLYGON_QUEUED)
+        for (uint32_t k = c->net->firsts[v]; k < c->net->firsts[v + 1] && c->hits[v]; k++) {
+            const uint32_t polygon = c->net->around[k];
+            if (c->net->polygons[polygon] & CWI_POLYGON_QUEUED)
                 continue;
             judge_polygon(c, polygon);
-            c->polygons[polygon] |= CWI_POLYGON_QUEUED;
+            c->net->polygons[polygon] |= CWI_POLYGON_QUEUED;
             c->queue[c->queued++] = polygon;
         }
         c->hits[v] = 0;
@@ -313,8 +270,6 @@ void cwi_label_crossings_renew(cwi_label_crossings *c)
 
 void cwi_label_crossings_free(cwi_label_crossings *c)
 {
-    cwi_free(c->firsts);
-    cwi_free(c->around);
     cwi_free(c->queue);
     cwi_free(c->hits);
 }

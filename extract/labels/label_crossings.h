@@ -2,14 +2,13 @@
 #ifndef EXTRACT_LABELS_LABEL_CROSSINGS_H
 #define EXTRACT_LABELS_LABEL_CROSSINGS_H
 
+#include "extract/labels/label_net.h"
+
 #include <cubewright/labels.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/* Bits of the byte of a polygon's first triangle, beside the edge. */
-enum { CWI_POLYGON_EDGE = 7, CWI_POLYGON_QUEUED = 0x40, CWI_POLYGON_SOUND = 0x80 };
 
 /* Converts a place counted in voxels to a point of the mesh. */
 typedef void cwi_label_place(const void *context, const double place[3], double point[3]);
@@ -18,15 +17,11 @@ typedef void cwi_label_place(const void *context, const double place[3], double 
 typedef struct cwi_label_crossings {
     const cw_mesh *mesh;
     const float *originals; /* vertex_count x 3: places before smoothing, counted in voxels */
-    const uint8_t *kinds;   /* of vertices, as cwi_label_net */
-    uint8_t *polygons;      /* of triangles: at the first of a polygon, the edge of tetrahedra
-                               around it, and flags; 0 at the others */
+    cwi_label_net *net;     /* finished */
     cwi_label_place *place;
     const void *context;
 
-    uint32_t *firsts; /* vertex_count + 1: where a vertex's part of `around` begins */
-    uint32_t *around; /* first triangles of the polygons with a vertex */
-    uint32_t *queue;  /* first triangles of the polygons to look at */
+    uint32_t *queue; /* first triangles of the polygons to look at */
     size_t queued;
     uint8_t *hits; /* of vertices: 1 if a triangle with it crosses another */
 } cwi_label_crossings;

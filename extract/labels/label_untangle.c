@@ -3,7 +3,7 @@
 
 /* Puts the vertices that were hit back to their places before smoothing. Returns false if there
  * are none. */
-static bool put_back(const cwi_label_crossings *c, cw_mesh *mesh, uint8_t *kinds)
+static bool put_back(const cwi_label_crossings *c, cw_mesh *mesh)
 {
     bool is_any = false;
     for (size_t v = 0; v < mesh->vertex_count; v++) {
@@ -15,26 +15,25 @@ static bool put_back(const cwi_label_crossings *c, cw_mesh *mesh, uint8_t *kinds
         c->place(c->context, place, point);
         for (int a = 0; a < 3; a++)
             mesh->positions[3 * v + (size_t)a] = (float)point[a];
-        kinds[v] |= CWI_NET_BACK;
+        c->net->kinds[v] |= CWI_NET_BACK;
         is_any = true;
     }
     return is_any;
 }
 
 cw_status cwi_labels_untangle(cw_label_surfaces *surfaces, cwi_label_net *net,
-                              uint8_t *polygons, const float *originals, cwi_label_place *place,
+                              const float *originals, cwi_label_place *place,
                               const void *context, const cw_labels_desc *desc, cw_error *err)
 {
     cwi_label_crossings crossings = {.mesh = &surfaces->mesh,
                                      .originals = originals,
-                                     .kinds = net->kinds,
-                                     .polygons = polygons,
+                                     .net = net,
                                      .place = place,
                                      .context = context};
     cw_status st = cwi_label_crossings_init(&crossings, desc, err);
     while (st == CW_OK && crossings.queued > 0) {
         st = cwi_label_crossings_find(&crossings, desc, err);
-        if (st != CW_OK || !put_back(&crossings, &surfaces->mesh, net->kinds))
+        if (st != CW_OK || !put_back(&crossings, &surfaces->mesh))
             break;
         cwi_label_crossings_renew(&crossings);
     }

@@ -3,7 +3,6 @@
 #define EXTRACT_LABELS_LABEL_UNTANGLE_H
 
 #include "extract/labels/label_crossings.h"
-#include "extract/labels/label_smooth.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -11,14 +10,13 @@ extern "C" {
 
 /* Puts vertices back to where they were, until no triangles cross and none is without area; none
  * did before smoothing.
- * net        kinds get CWI_NET_BACK
- * polygons   as cwi_label_crossings.polygons
+ * net        finished; kinds get CWI_NET_BACK, and polygons flags
  * originals  places counted in voxels, which place() turns into points of the mesh
  * Returns    CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
 CW_NODISCARD cw_status cwi_labels_untangle(cw_label_surfaces *surfaces, cwi_label_net *net,
-                                           uint8_t *polygons, const float *originals,
-                                           cwi_label_place *place, const void *context,
-                                           const cw_labels_desc *desc, cw_error *err);
+                                           const float *originals, cwi_label_place *place,
+                                           const void *context, const cw_labels_desc *desc,
+                                           cw_error *err);
 
 #ifdef __cplusplus
 }

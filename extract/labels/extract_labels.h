@@ -1,0 +1,29 @@
+/* The extraction of labels with any smoothing. */
+#ifndef EXTRACT_LABELS_EXTRACT_LABELS_H
+#define EXTRACT_LABELS_EXTRACT_LABELS_H
+
+#include "extract/labels/label_net.h"
+
+#include <cubewright/labels.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Moves vertices, as cwi_labels_smooth(). */
+typedef cw_status cwi_label_smoother(cwi_label_net *net, const float *originals,
+                                     cw_label_surfaces *surfaces, const cw_labels_desc *desc,
+                                     const size_t dim[3], cw_error *err);
+
+/* Extracts labels as cw_extract_labels(), but smooths them with the given function. Tests tangle
+ * vertices with it. */
+CW_NODISCARD cw_status cwi_extract_labels_with(const cw_volume *volume,
+                                               const cw_labels_desc *desc,
+                                               cwi_label_smoother *smooth,
+                                               cw_label_surfaces *surfaces, cw_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

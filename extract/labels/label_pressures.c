@@ -1,0 +1,345 @@
+/* Gives labels the volumes of their voxels. Directions of vertices in one patch are computed once,
+ * and those of vertices on curves in each round. */
+#include "extract/labels/label_pressures.h"
+
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
+#include "core/base/status.h"
+#include "core/geometry/affine.h"
+#include "core/geometry/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { ROUNDS = 8, SOLVER_ROUNDS = 300, PART = 1 << 14, CURVE_PART = 1 << 10 };
+
+/* The fraction of its volume that a label may lack. */
+static const double enough = 5e-6;
+
+/* The sum of the triangles' area vectors around a vertex in one patch. */
+typedef struct direction {
+    float normal[3], area;
+    uint32_t patch;
+} direction;
+
+typedef struct presser {
+    cwi_label_net *net;
+    cw_label_surfaces *surfaces;
+    const float *originals;
+    float bound;
+    double side; /* on which triangles have their normals in the grid: -1 if the world is a
+                    mirror image of it */
+    const size_t *dim;
+    size_t labels;
+    double *volumes, *areas; /* of patches: inside labels[0], signed; and of triangles */
+    uint32_t (*sides)[2];    /* numbers of a patch's labels; `labels`: the background */
+    double *pressures;       /* 4 x (labels + 1) numbers to solve with; these come first */
+    direction *directions;   /* of vertices */
+    size_t curve_count;
+    uint32_t *curve;   /* vertices on curves */
+    float (*moves)[3]; /* of those */
+    bool is_first;     /* round */
+} presser;
+
+/* Computes twice the area vector of a triangle. */
+static inline void find_normal(const presser *s, size_t t, const float *p[3], double normal[3])
+{
+    const cw_mesh *mesh = &s->surfaces->mesh;
+    double u[3], v[3];
+    for (int c = 0; c < 3; c++)
+        p[c] = mesh->positions + 3 * (size_t)mesh->triangles[3 * t + (size_t)c];
+    for (int a = 0; a < 3; a++) {
+        u[a] = (double)p[1][a] - (double)p[0][a];
+        v[a] = (double)p[2][a] - (double)p[0][a];
+    }
+    cwi_cross(u, v, normal);
+    for (int a = 0; a < 3; a++)
+        normal[a] *= s->side;
+}
+
+/* Adds a triangle to the directions of its vertices that are in one patch. */
+static void add_directions(const presser *s, size_t t, size_t patch, const double normal[3],
+                           double area)
+{
+    for (size_t c = 0; c < 3; c++) {
+        const uint32_t v = s->surfaces->mesh.triangles[3 * t + c];
+        direction *to = &s->directions[v];
+        if (s->net->kinds[v])
+            continue;
+        for (int a = 0; a < 3; a++)
+            to->normal[a] += (float)normal[a];
+        to->area += (float)area;
+        to->patch = (uint32_t)patch;
+    }
+}
+
+/* Measures a patch: the volume between it and the middle, and at first its area. */
+static void measure_patch(void *context, size_t n)
+{
+    const presser *s = context;
+    const cw_label_patch *patch = &s->surfaces->patches[n];
+    const double middle[3] = {0.5 * (double)s->dim[0], 0.5 * (double)s->dim[1],
+                              0.5 * (double)s->dim[2]};
+    double volume = 0, areas = 0;
+    for (size_t t = patch->first; t < patch->first + patch->count; t++) {
+        const float *p[3];
+        double normal[3], from[3];
+        find_normal(s, t, p, normal);
+        for (int a = 0; a < 3; a++)
+            from[a] = (double)p[0][a] - middle[a];
+        volume += cwi_dot(from, normal);
+        if (s->is_first) {
+            const double area = sqrt(cwi_dot(normal, normal));
+            areas += area;
+            add_directions(s, t, n, normal, area);
+        }
+    }
+    s->volumes[n] = volume / 6;
+    if (s->is_first)
+        s->areas[n] = areas / 2;
+}
+
+/* Multiplies by the matrix of areas: how volumes change with pressures. */
+static void apply_areas(const presser *s, const double *x, double *y)
+{
+    memset(y, 0, (s->labels + 1) * sizeof *y);
+    for (size_t n = 0; n < s->surfaces->patch_count; n++) {
+        const uint32_t *side = s->sides[n];
+        const double flow = s->areas[n] * (x[side[0]] - x[side[1]]);
+        y[side[0]] += flow;
+        y[side[1]] -= flow;
+    }
+    y[s->labels] = 0; /* the background has none */
+}
+
+static double dot_all(const double *x, const double *y, size_t count)
+{
+    double sum = 0;
+    for (size_t n = 0; n < count; n++)
+        sum += x[n] * y[n];
+    return sum;
+}
+
+/* Solves for the pressures that add the missing volumes, by conjugate gradients. */
+static void solve_pressures(const presser *s)
+{
+    const size_t count = s->labels + 1;
+    double *x = s->pressures, *r = x + count, *p = r + count, *q = p + count;
+    memset(x, 0, count * sizeof *x);
+    memcpy(p, r, count * sizeof *p);
+    double rest = dot_all(r, r, count);
+    const double end = 1e-12 * rest;
+    for (int n = 0; n < SOLVER_ROUNDS && rest > end; n++) {
+        apply_areas(s, p, q);
+        const double along = dot_all(p, q, count);
+        if (!(along > 0))
+            return;
+        const double step = rest / along;
+        for (size_t i = 0; i < count; i++) {
+            x[i] += step * p[i];
+            r[i] -= step * q[i];
+        }
+        const double now = dot_all(r, r, count);
+        for (size_t i = 0; i < count; i++)
+            p[i] = r[i] + now / rest * p[i];
+        rest = now;
+    }
+}
+
+/* Returns the difference of pressures across a patch. */
+static double find_difference(const presser *s, size_t patch)
+{
+    return s->pressures[s->sides[patch][0]] - s->pressures[s->sides[patch][1]];
+}
+
+/* Finds the patch of a triangle. */
+static size_t find_patch(const cw_label_surfaces *f, size_t triangle)
+{
+    size_t low = 0, high = f->patch_count;
+    while (high - low > 1) {
+        const size_t middle = low + (high - low) / 2;
+        if (f->patches[middle].first <= triangle)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* Finds the move of a vertex on a curve, from the triangles around it. */
+static void find_curve_move(const presser *s, uint32_t vertex, float move[3])
+{
+    const cwi_label_net *net = s->net;
+    const cw_label_surfaces *f = s->surfaces;
+    double sum[3] = {0}, area = 0, difference = 0;
+    size_t patch_end = 0;
+    for (uint32_t k = net->firsts[vertex]; k < net->firsts[vertex + 1]; k++) {
+        const size_t end = cwi_polygon_end(net, &f->mesh, net->around[k]);
+        if (net->around[k] >= patch_end) { /* they rise */
+            const size_t patch = find_patch(f, net->around[k]);
+            patch_end = f->patches[patch].first + f->patches[patch].count;
+            difference = find_difference(s, patch);
+        }
+        for (size_t t = net->around[k]; t < end; t++) {
+            const uint32_t *v = f->mesh.triangles + 3 * t;
+            const float *p[3];
+            double normal[3];
+            if (v[0] != vertex && v[1] != vertex && v[2] != vertex)
+                continue;
+            find_normal(s, t, p, normal);
+            for (int a = 0; a < 3; a++)
+                sum[a] += difference * normal[a];
+            area += sqrt(cwi_dot(normal, normal));
+        }
+    }
+    for (int a = 0; a < 3; a++)
+        move[a] = area > 0 ? (float)(sum[a] / area) : 0;
+}
+
+static void find_curve_part(void *context, size_t n)
+{
+    const presser *s = context;
+    for (size_t i = n * CURVE_PART; i < (n + 1) * CURVE_PART && i < s->curve_count; i++)
+        find_curve_move(s, s->curve[i], s->moves[i]);
+}
+
+static void move_vertex(const presser *s, size_t v, const float move[3])
+{
+    float *p = s->surfaces->mesh.positions + 3 * v;
+    const float *o = s->originals + 3 * v;
+    for (int a = 0; a < 3; a++) {
+        const float low = o[a] - s->bound, high = o[a] + s->bound, to = p[a] + move[a];
+        p[a] = to < low ? low : to > high ? high : to;
+    }
+}
+
+static void move_part(void *context, size_t n)
+{
+    const presser *s = context;
+    const size_t count = s->surfaces->mesh.vertex_count;
+    for (size_t v = n * PART; v < (n + 1) * PART && v < count; v++) {
+        const direction *d = &s->directions[v];
+        if (s->net->kinds[v] || !(d->area > 0))
+            continue;
+        const float by = (float)find_difference(s, d->patch) / d->area;
+        move_vertex(s, v, (float[3]){by * d->normal[0], by * d->normal[1], by * d->normal[2]});
+    }
+}
+
+static cw_status move_all(presser *s, const cw_labels_desc *desc, cw_error *err)
+{
+    const size_t vertices = s->surfaces->mesh.vertex_count;
+    cw_status st = cwi_each_layer((s->curve_count + CURVE_PART - 1) / CURVE_PART,
+                                  32 * CURVE_PART, desc->threads, &desc->progress,
+                                  "keeping volumes", find_curve_part, s, err);
+    if (st == CW_OK)
+        st = cwi_each_layer((vertices + PART - 1) / PART, PART, desc->threads, &desc->progress,
+                            "keeping volumes", move_part, s, err);
+    for (size_t i = 0; i < s->curve_count && st == CW_OK; i++)
+        move_vertex(s, s->curve[i], s->moves[i]);
+    return st;
+}
+
+/* Finds a label's number; the background's is the count of labels. */
+static uint32_t number_of(const cw_label_surfaces *s, uint32_t label)
+{
+    size_t low = 0, high = s->label_count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (s->labels[middle].label < label)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return (uint32_t)(label == s->background ? s->label_count : low);
+}
+
+/* Computes the volumes that labels lack. Returns true if they are as good as none. */
+static bool find_missing(const presser *s)
+{
+    const cw_label_surfaces *f = s->surfaces;
+    double *missing = s->pressures + s->labels + 1;
+    bool is_full = true;
+    for (size_t n = 0; n < s->labels; n++)
+        missing[n] = (double)f->labels[n].voxels;
+    missing[s->labels] = 0;
+    for (size_t n = 0; n < f->patch_count; n++) {
+        missing[s->sides[n][0]] -= s->volumes[n];
+        missing[s->sides[n][1]] += s->volumes[n];
+    }
+    missing[s->labels] = 0;
+    for (size_t n = 0; n < s->labels && is_full; n++)
+        is_full = fabs(missing[n]) <= enough * (double)f->labels[n].voxels;
+    return is_full;
+}
+
+static cw_status press_all(presser *s, const cw_labels_desc *desc, cw_error *err)
+{
+    const cw_label_surfaces *f = s->surfaces;
+    const size_t triangles = f->mesh.triangle_count / (f->patch_count + 1);
+    cw_status st = CW_OK;
+    for (int round = 0; round < ROUNDS && st == CW_OK; round++) {
+        s->is_first = round == 0;
+        st = cwi_each_layer(f->patch_count, 8 * triangles, desc->threads, &desc->progress,
+                            "keeping volumes", measure_patch, s, err);
+        if (st != CW_OK || find_missing(s))
+            break;
+        solve_pressures(s);
+        st = move_all(s, desc, err);
+    }
+    return st;
+}
+
+/* Lists vertices on curves, and numbers the labels of patches. */
+static bool prepare_presser(presser *s)
+{
+    const cw_label_surfaces *f = s->surfaces;
+    const size_t vertices = f->mesh.vertex_count;
+    const uint8_t *kinds = s->net->kinds;
+    for (size_t v = 0; v < vertices; v++)
+        s->curve_count += kinds[v] != 0 && !(kinds[v] & CWI_NET_FIXED);
+    s->directions = cwi_renew_large(s->net->neighbours, vertices, sizeof *s->directions);
+    s->net->neighbours = NULL;
+    s->volumes = cwi_alloc_array(f->patch_count, sizeof *s->volumes);
+    s->areas = cwi_alloc_array(f->patch_count, sizeof *s->areas);
+    s->sides = cwi_alloc_array(f->patch_count, sizeof *s->sides);
+    s->pressures = cwi_alloc_zeroed(4 * (s->labels + 1), sizeof *s->pressures);
+    s->curve = cwi_alloc_array(s->curve_count, sizeof *s->curve);
+    s->moves = cwi_alloc_array(s->curve_count, sizeof *s->moves);
+    if (!s->directions || !s->volumes || !s->areas || !s->sides || !s->pressures || !s->curve ||
+        !s->moves)
+        return false;
+    memset(s->directions, 0, vertices * sizeof *s->directions);
+    s->curve_count = 0;
+    for (size_t v = 0; v < vertices; v++)
+        if (kinds[v] != 0 && !(kinds[v] & CWI_NET_FIXED))
+            s->curve[s->curve_count++] = (uint32_t)v;
+    for (size_t n = 0; n < f->patch_count; n++)
+        for (int side = 0; side < 2; side++)
+            s->sides[n][side] = number_of(f, f->patches[n].labels[side]);
+    return true;
+}
+
+cw_status cwi_labels_keep_volumes(cwi_label_net *net, const float *originals,
+                                  cw_label_surfaces *surfaces, const cw_labels_desc *desc,
+                                  const size_t dim[3], cw_error *err)
+{
+    presser s = {.net = net,
+                 .surfaces = surfaces,
+                 .originals = originals,
+                 .bound = (float)desc->max_move,
+                 .side = cwi_affine_determinant(surfaces->mesh.affine[0]) < 0 ? -1 : 1,
+                 .dim = dim,
+                 .labels = surfaces->label_count};
+    cw_status st = prepare_presser(&s) ? press_all(&s, desc, err)
+                                       : cwi_fail(err, CW_ERR_NO_MEMORY,
+                                                  "no memory to keep the volumes of labels");
+    cwi_free(s.directions);
+    cwi_free(s.volumes);
+    cwi_free(s.areas);
+    cwi_free(s.sides);
+    cwi_free(s.pressures);
+    cwi_free(s.curve);
+    cwi_free(s.moves);
+    return st;
+}

@@ -1,0 +1,137 @@
+/* Tests that crossings are found where vertices are tangled on purpose: the result is that of a
+ * search among all triangles. */
+#include "support/support.h"
+
+#include "core/geometry/affine.h"
+#include "core/volume/volume.h"
+#include "extract/labels/extract_labels.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The places of tangled vertices, and the fraction of vertices to tangle. */
+static float *tangled;
+static double fraction;
+
+/* Moves vertices to anywhere in their cubes. */
+static cw_status tangle(cwi_label_net *net, const float *originals, cw_label_surfaces *surfaces,
+                        const cw_labels_desc *desc, const size_t dim[3], cw_error *err)
+{
+    (void)desc, (void)dim, (void)err;
+    const size_t count = surfaces->mesh.vertex_count;
+    tangled = malloc((3 * count + 1) * sizeof *tangled);
+    assert_non_null(tangled);
+    for (size_t n = 0; n < 3 * count; n++) {
+        const bool stays = net->kinds[n / 3] & CWI_NET_FIXED;
+        const double by = 0.998 * (rand() / (double)RAND_MAX - 0.5);
+        const bool moves = rand() < fraction * RAND_MAX;
+        tangled[n] = originals[n] + (float)(stays || !moves ? 0 : by);
+        surfaces->mesh.positions[n] = tangled[n];
+    }
+    return CW_OK;
+}
+
+/* Puts tangled places into the world, and all vertices of triangles that cross back to where they
+ * are without smoothing, until none cross. Returns the number that were put back. */
+static size_t untangle_all(cw_mesh *mesh, const cw_volume *v)
+{
+    size_t back = 0;
+    cw_crossings crossings = {0};
+    cw_error err = {0};
+    float *originals = malloc(mesh->vertex_count * 3 * sizeof *originals);
+    assert_non_null(originals);
+    memcpy(originals, mesh->positions, mesh->vertex_count * 3 * sizeof *originals);
+    for (size_t n = 0; n < mesh->vertex_count; n++) {
+        const float *p = tangled + 3 * n;
+        double at[3], world[3];
+        for (int a = 0; a < 3; a++) {
+            const double low = floor((double)p[a]);
+            at[a] = cwi_grid_coordinate(v, a, (ptrdiff_t)low, (double)p[a] - low);
+        }
+        cwi_affine_apply(v->affine[0], at, world);
+        for (int a = 0; a < 3; a++)
+            mesh->positions[3 * n + (size_t)a] = (float)(world[a] - mesh->origin[a]);
+    }
+    do {
+        cw_crossings_free(&crossings);
+        assert_ok(
+            cw_self_intersections(mesh, &(cw_crossings_desc){.threads = 1}, &crossings, &err),
+            err);
+        for (size_t n = 0; n < 6 * crossings.count; n++) {
+            const size_t at =
+                3 * (size_t)mesh->triangles[3 * (size_t)crossings.pairs[n / 3] + n % 3];
+            back += memcmp(mesh->positions + at, originals + at, 12) != 0;
+            memcpy(mesh->positions + at, originals + at, 12);
+        }
+    } while (crossings.count > 0);
+    cw_crossings_free(&crossings);
+    free(originals);
+    return back;
+}
+
+/* Fills a map with labels that run along rows, or with noise. */
+static void fill_map(uint32_t *to, const size_t dim[3], int n)
+{
+    const uint32_t labels = (uint32_t[]){2, 3, 5, 50}[n % 4];
+    const size_t plane = dim[0] * dim[1];
+    for (size_t i = 0; i < plane * dim[2]; i++) {
+        const size_t steps[3] = {1, dim[0], plane}, step = steps[rand() % 3];
+        const bool follows = n % 5 && i >= step && rand() % 16;
+        to[i] = follows ? to[i - step] : (uint32_t)rand() % labels;
+    }
+}
+
+static void tangles_are_found_as_among_all(void **state)
+{
+    (void)state;
+    size_t back = 0, moved = 0;
+    test_seed(11);
+    for (int n = 0; n < test_rounds(400); n++) {
+        cw_volume v = {0};
+        cw_label_surfaces s, plain;
+        cw_error err = {0};
+        size_t dim[3];
+        for (int a = 0; a < 3; a++)
+            dim[a] = 3 + (size_t)(rand() % 14);
+        assert_ok(cw_volume_alloc(&v, CW_U32, dim, 1, 1, &err), err);
+        for (int a = 0; a < 9; a++) /* from mirrored to sheared */
+            v.affine[a / 3][a % 3] = (a % 4   ? 0.4
+                                      : n % 2 ? 1
+                                              : -2) *
+                                     (0.2 + rand() / (double)RAND_MAX);
+        double uneven[3][17];
+        for (int a = 0; a < 3 && n % 3 == 1; a++) {
+            for (size_t i = 0; i < dim[a]; i++)
+                uneven[a][i] = (i > 0 ? uneven[a][i - 1] : 0) + 0.1 + rand() / (double)RAND_MAX;
+            v.coordinates[a] = uneven[a];
+        }
+        fill_map(cw_volume_voxels(&v), dim, n);
+        fraction = (double[]){0.02, 0.1, 0.4, 1}[n / 4 % 4];
+        const cw_labels_desc desc = {.threads = 1 + n % 2, .leave_open = n % 3 == 0};
+        assert_ok(cwi_extract_labels_with(&v, &desc, tangle, &s, &err), err);
+        assert_ok(cw_extract_labels(
+                      &v, &(cw_labels_desc){.no_smoothing = true, .leave_open = n % 3 == 0},
+                      &plain, &err),
+                  err);
+        assert_int_equal(s.mesh.vertex_count, plain.mesh.vertex_count);
+        for (size_t i = 0; i < 3 * plain.mesh.vertex_count; i++)
+            moved += s.mesh.positions[i] != plain.mesh.positions[i];
+        back += untangle_all(&plain.mesh, &v);
+        assert_memory_equal(s.mesh.positions, plain.mesh.positions, 12 * s.mesh.vertex_count);
+        free(tangled);
+        tangled = NULL;
+        cw_label_surfaces_free(&s);
+        cw_label_surfaces_free(&plain);
+        memset(v.coordinates, 0, sizeof v.coordinates);
+        cw_volume_free(&v);
+    }
+    assert_true(back > 100 && moved > 100);
+    print_message("%zu vertices were put back, %zu numbers stay moved\n", back, moved);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(tangles_are_found_as_among_all)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
