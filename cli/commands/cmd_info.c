@@ -1,5 +1,6 @@
 /* The command info: prints the facts of a volume or a series, such as its grid, range of
  * values and suggested isovalues. */
+#include "cli/commands/info_labels.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
@@ -20,12 +21,16 @@ typedef struct info_args {
     cli_common common;
     cli_input input;
     size_t histogram;
+    const char *names;
     bool json, levels, deep;
 } info_args;
 
 static const cli_option options[] = {
     {"histogram", 0, CLI_COUNT, "N", "Print a histogram of the values with N bins (0)",
      offsetof(info_args, histogram)},
+    {"names", 0, CLI_TEXT, "FILE",
+     "Table of the labels' names and colours (in the volume, else in a file beside it)",
+     offsetof(info_args, names)},
     {"levels", 0, CLI_FLAG, NULL,
      "Predict the number of triangles at each suggested isovalue (off)",
      offsetof(info_args, levels)},
@@ -54,6 +59,7 @@ typedef struct facts {
     cw_statistics range; /* and the bins asked for */
     level levels[MAX_LEVELS + 2];
     int level_count;
+    cli_label_facts labels;
     cw_array *arrays; /* of a file that has several; else NULL */
     size_t array_count;
     double (*ranges)[2]; /* array_count x MAX_COMPONENTS: of those that are read */
@@ -158,12 +164,14 @@ static cw_status find_facts(const info_args *args, facts *f, cw_error *err)
         return st;
     st = cw_volume_statistics(&f->volume.view, args->histogram, threads, &f->range, err);
     if (st == CW_OK)
+        st = cli_find_label_facts(args->names, &f->volume, &f->labels, err);
+    if (st == CW_OK && !f->labels.is_label_map)
         st = find_levels(f, threads, err);
     if (st == CW_OK)
         st = find_arrays(args, f, err);
     if (st == CW_OK)
         st = cli_tell_labels(&f->volume, NULL, 0, false, err);
-    if (st == CW_OK && args->levels)
+    if (st == CW_OK && args->levels && f->level_count)
         st = predict_surface(f, threads, err);
     return st == CW_OK ? st : cwi_fail_in(err, st, f->volume.path);
 }
@@ -360,6 +368,7 @@ static void print_json(const facts *f, bool predicted)
         cli_json_close(&j, '}');
     }
     json_arrays(&j, f);
+    cli_json_label_facts(&j, &f->labels);
     cli_json_numbers(&j, "range", (const double[2]){r->min, r->max}, 2);
     if (is_sampled(f))
         cli_json_numbers(
@@ -616,9 +625,11 @@ static cw_status run_info(void *p, cw_error *err)
     } else if (st == CW_OK) {
         print_geometry(&f);
         print_values(args, &f);
+        cli_print_label_facts(&f.labels, is_sampled(&f));
         print_levels(&f, args->levels);
     }
     cw_statistics_free(&f.range);
+    cli_free_label_facts(&f.labels);
     cw_arrays_free(f.arrays);
     free(f.ranges);
     cli_free_volume(&f.volume);

@@ -29,15 +29,34 @@ typedef struct census {
     change *changes;
     size_t run_count, change_count;
     bool too_many; /* changes, for a label map */
+    bool is_starved;
     bool is_whole; /* all values are whole numbers */
 } census;
+
+/* Makes room for one more element; capacities are powers of two. */
+static void *grow(census *c, void *array, size_t count, size_t size)
+{
+    if (count & (count - 1))
+        return array;
+    void *grown = cwi_realloc_array(array, count ? 2 * count : 1, size);
+    c->is_starved = c->is_starved || !grown;
+    return grown ? grown : array;
+}
 
 static void add_run(census *c, double value, size_t pairs)
 {
     c->is_whole = c->is_whole && value == floor(value);
     c->too_many = c->too_many || c->run_count == MAX_CHANGES;
-    if (!c->too_many)
+    c->runs = grow(c, c->runs, c->run_count, sizeof *c->runs);
+    if (!c->too_many && !c->is_starved)
         c->runs[c->run_count++] = (run){value, pairs};
+}
+
+static void add_change(census *c, double from, double to)
+{
+    c->changes = grow(c, c->changes, c->change_count, sizeof *c->changes);
+    if (c->change_count < MAX_CHANGES && !c->is_starved)
+        c->changes[c->change_count++] = (change){from, to};
 }
 
 /* Adds a row. Voxels without a value end a run, and are in no pair. */
@@ -46,7 +65,7 @@ static void count_row(const cw_volume *v, size_t j, size_t k, census *c)
     const char *p = cwi_voxel_address(v, 0, j, k);
     double last = NAN;
     size_t pairs = 0;
-    for (size_t i = 0; i < v->dim[0] && !c->too_many; i++, p += v->stride[0]) {
+    for (size_t i = 0; i < v->dim[0] && !c->too_many && !c->is_starved; i++, p += v->stride[0]) {
         const double value = cwi_voxel_at(v->type, p);
         const bool has_value = value == value && !(v->has_nodata && value == v->nodata);
         if (has_value && value == last) {
@@ -55,8 +74,8 @@ static void count_row(const cw_volume *v, size_t j, size_t k, census *c)
         }
         if (last == last)
             add_run(c, last, pairs);
-        if (has_value && last == last && c->change_count < MAX_CHANGES)
-            c->changes[c->change_count++] = (change){last, value};
+        if (has_value && last == last)
+            add_change(c, last, value);
         last = has_value ? value : NAN;
         pairs = 0;
     }
@@ -78,8 +97,10 @@ static void count_rows(const cw_volume *v, census *c)
     const size_t most = MAX_VOXELS / per_row ? MAX_VOXELS / per_row : 1;
     const size_t by = (rows + most - 1) / most;
     size_t values = 0;
-    for (size_t row = 0; row < rows && !c->too_many; row += by)
+    for (size_t row = 0; row < rows && !c->too_many && !c->is_starved; row += by)
         count_row(v, row % v->dim[1], row / v->dim[1], c);
+    if (c->run_count == 0)
+        return;
     qsort(c->runs, c->run_count, sizeof *c->runs, compare_runs);
     for (size_t n = 0; n < c->run_count; n++) {
         if (values > 0 && c->runs[values - 1].value == c->runs[n].value)
@@ -125,21 +146,20 @@ cw_status cw_volume_labels(const cw_volume *volume, cw_labels *out, cw_error *er
     const bool known = v.known & CW_KNOWN_LABELS;
     if (st != CW_OK || v.sparse || v.cells)
         return st;
-    c.runs = cwi_alloc_array(MAX_CHANGES, sizeof *c.runs);
-    c.changes = cwi_alloc_array(MAX_CHANGES, sizeof *c.changes);
-    if (c.runs && c.changes) {
-        count_rows(&v, &c);
+    count_rows(&v, &c);
+    if (c.is_starved)
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to count labels");
+    if (st == CW_OK) {
         out->found = known || (!c.too_many && c.is_whole && c.run_count >= FEWEST_LABELS &&
+                               v.slope * c.runs[0].value + v.intercept >= 0 &&
                                is_label_map(&c));
         out->more = out->found && (c.too_many || c.run_count > CW_LABELS_MAX);
         out->count = !out->found                   ? 0
                      : c.run_count < CW_LABELS_MAX ? c.run_count
                                                    : CW_LABELS_MAX;
-        for (size_t n = 0; n < out->count; n++)
-            out->value[n] = v.slope * c.runs[n].value + v.intercept;
-    } else {
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to count labels");
     }
+    for (size_t n = 0; n < out->count; n++)
+        out->value[n] = v.slope * c.runs[n].value + v.intercept;
     cwi_free(c.runs);
     cwi_free(c.changes);
     return st;

@@ -207,10 +207,7 @@ static cw_status run_pass(cwi_label_job *j, size_t chunks, const cw_labels_desc 
     if (st == CW_OK && j->is_starved)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for layers of labels");
     if (st == CW_OK && j->is_bad)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "voxel %zu, %zu, %zu is %g: labels are whole numbers, 0 to 4294967295",
-                        j->bad[0], j->bad[1], j->bad[2],
-                        cw_volume_value(v, j->bad[0], j->bad[1], j->bad[2]));
+        return cwi_label_fail_voxel(v, j->bad, err);
     return st;
 }
 

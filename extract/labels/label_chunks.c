@@ -243,27 +243,6 @@ static void put_vertices(const scan *s, size_t k)
     }
 }
 
-/* Counts the voxels of a layer without its border, by runs. */
-static bool count_voxels(scan *s)
-{
-    const cwi_label_layers *l = &s->job->layers;
-    for (size_t y = 1; y + 1 < l->height; y++) {
-        const uint32_t *row = s->labels[1] + y * l->width + 1;
-        const size_t count = l->width - 2;
-        for (size_t x = 0, end; x < count; x = end) {
-            for (end = x + 1; end < count && row[end] == row[x];)
-                end++;
-            if (row[x] == l->background)
-                continue;
-            cwi_key_count *e = cwi_key_counts_need(&s->chunk->voxels, (uint64_t)row[x] + 1);
-            if (!e)
-                return false;
-            e->count += end - x;
-        }
-    }
-    return true;
-}
-
 static void swap_layers(scan *s)
 {
     uint32_t *labels = s->labels[0], *firsts = s->firsts[0];
@@ -320,7 +299,7 @@ static bool scan_chunk(scan *s, size_t first, size_t end)
         if (j->is_writing)
             put_vertices(s, k);
         else if (is_well && k + 2 < j->layers.count)
-            is_well = count_voxels(s);
+            is_well = cwi_label_layer_count(&j->layers, s->labels[1], &s->chunk->voxels);
     }
     if (!j->is_writing)
         s->chunk->vertices = s->next - s->chunk->vertices;

@@ -2,6 +2,7 @@
  * wanted become the background. */
 #include "extract/labels/label_layers.h"
 
+#include "core/base/status.h"
 #include "core/volume/volume.h"
 
 #include <math.h>
@@ -128,6 +129,33 @@ bool cwi_label_layer_load(const cwi_label_layers *l, size_t k, uint32_t *out, si
     } else {
         fill_row(out, l->width, l->background);
         fill_row(out + (ny + 1) * l->width, l->width, l->background);
+    }
+    return true;
+}
+
+cw_status cwi_label_fail_voxel(const cw_volume *v, const size_t bad[3], cw_error *err)
+{
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "voxel %zu, %zu, %zu is %g: labels are whole numbers, 0 to 4294967295",
+                    bad[0], bad[1], bad[2], cw_volume_value(v, bad[0], bad[1], bad[2]));
+}
+
+bool cwi_label_layer_count(const cwi_label_layers *l, const uint32_t *labels,
+                           cwi_key_counts *counts)
+{
+    for (size_t y = 1; y + 1 < l->height; y++) {
+        const uint32_t *row = labels + y * l->width + 1;
+        const size_t count = l->width - 2;
+        for (size_t x = 0, end; x < count; x = end) {
+            for (end = x + 1; end < count && row[end] == row[x];)
+                end++;
+            if (row[x] == l->background)
+                continue;
+            cwi_key_count *e = cwi_key_counts_need(counts, (uint64_t)row[x] + 1);
+            if (!e)
+                return false;
+            e->count += end - x;
+        }
     }
     return true;
 }

@@ -2,6 +2,8 @@
 #ifndef EXTRACT_LABELS_LABEL_LAYERS_H
 #define EXTRACT_LABELS_LABEL_LAYERS_H
 
+#include "extract/labels/key_counts.h"
+
 #include <cubewright/labels.h>
 
 #ifdef __cplusplus
@@ -22,6 +24,14 @@ typedef struct cwi_label_layers {
  * is no label: the index of its voxel is then in `bad`. */
 bool cwi_label_layer_load(const cwi_label_layers *layers, size_t k, uint32_t *out,
                           size_t bad[3]);
+
+/* Fails with CW_ERR_ARGUMENT for a voxel whose value is no label. */
+cw_status cwi_label_fail_voxel(const cw_volume *volume, const size_t bad[3], cw_error *err);
+
+/* Counts the voxels of a layer without its border, by labels plus 1, except the background.
+ * Returns false when memory is out. */
+bool cwi_label_layer_count(const cwi_label_layers *layers, const uint32_t *labels,
+                           cwi_key_counts *counts);
 
 #ifdef __cplusplus
 }

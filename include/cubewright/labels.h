@@ -84,6 +84,17 @@ CW_NODISCARD CW_API cw_status cw_extract_labels(const cw_volume *volume,
                                                 const cw_labels_desc *desc,
                                                 cw_label_surfaces *surfaces, cw_error *err);
 
+/* Counts the voxels of all labels but the background.
+ *
+ * volume   as for cw_extract_labels()
+ * counts   set to *count of them, in rising order; free it with cw_label_counts_free()
+ * Returns  as cw_extract_labels()
+ * Cost     one pass over the voxels */
+CW_NODISCARD CW_API cw_status cw_label_counts(const cw_volume *volume, uint32_t background,
+                                              cw_label_count **counts, size_t *count,
+                                              cw_error *err);
+CW_API void cw_label_counts_free(cw_label_count *counts);
+
 CW_API void cw_label_surfaces_free(cw_label_surfaces *surfaces);
 
 /* Copies the closed mesh of one label out of the interfaces, seen from outside. A label without

@@ -166,8 +166,7 @@ typedef struct cw_labels {
 } cw_labels;
 
 /* Finds if the first component and step holds labels. A volume with CW_KNOWN_LABELS does. The
- * values of another one must meet three conditions. They are whole numbers, in any type, and at
- * least three. Of neighbours along x that are not both the most frequent value, 7 in 10 are equal.
+ * values of another one must meet three conditions. They are whole numbers from 0, in any type, and at least three. Of neighbours along x that are not both the most frequent value, 7 in 10 are equal.
  * Of those that differ, 2 in 10 skip a value that occurs. A smooth picture skips none, and a
  * noisy one has no equal neighbours. At most 2^22 voxels are examined, in rows spread evenly.
  * Returns CW_ERR_ARGUMENT as cw_volume_resolve(). */

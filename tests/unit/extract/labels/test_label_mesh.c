@@ -96,6 +96,43 @@ static void areas_of_patches_add_up(void **state)
     cw_label_surfaces_free(&s);
 }
 
+static void voxels_are_counted(void **state)
+{
+    (void)state;
+    static float voxels[5 * 4 * 3] = {0};
+    const cw_volume v = {.data = voxels, .type = CW_F32, .dim = {5, 4, 3}};
+    cw_label_count *counts;
+    size_t count;
+    cw_error err = {0};
+    voxels[0] = voxels[1] = voxels[59] =
+        4294967040.0f; /* the largest label that a float holds */
+    voxels[7] = 2;
+    voxels[8] = 1;
+    assert_ok(cw_label_counts(&v, 0, &counts, &count, &err), err);
+    assert_int_equal(count, 3);
+    assert_true(counts[0].label == 1 && counts[0].voxels == 1);
+    assert_true(counts[1].label == 2 && counts[1].voxels == 1);
+    assert_true(counts[2].label == 4294967040u && counts[2].voxels == 3);
+    cw_label_counts_free(counts);
+    assert_ok(cw_label_counts(&v, 2, &counts, &count, &err), err);
+    assert_int_equal(counts[0].label, 0);
+    assert_int_equal(counts[0].voxels, 55);
+    cw_label_counts_free(counts);
+    voxels[6] = 0.5f;
+    assert_fails(cw_label_counts(&v, 0, &counts, &count, &err), CW_ERR_ARGUMENT,
+                 "voxel 1, 1, 0 is 0.5: labels are whole numbers", err);
+    assert_null(counts);
+    voxels[6] = 0;
+    bool failed = true;
+    for (long n = 0; failed; n++) {
+        cwi_alloc_fail_after(n);
+        const cw_status st = cw_label_counts(&v, 0, &counts, &count, &err);
+        failed = cwi_alloc_fail_after(-1);
+        assert_int_equal(st, failed ? CW_ERR_NO_MEMORY : CW_OK);
+        cw_label_counts_free(counts);
+    }
+}
+
 static void memory_that_is_out_is_an_error(void **state)
 {
     (void)state;
@@ -120,6 +157,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(both_labels_have_a_patch),
         cmocka_unit_test(areas_of_patches_add_up),
+        cmocka_unit_test(voxels_are_counted),
         cmocka_unit_test(memory_that_is_out_is_an_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
