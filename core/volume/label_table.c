@@ -32,8 +32,10 @@ static size_t find_place(const cw_label_table *table, uint64_t key)
 const cw_label *cw_label_find(const cw_label_table *table, uint32_t layer, uint32_t value)
 {
     const size_t at = find_place(table, key_of(layer, value));
+    if (at == table->count)
+        return NULL;
     const cw_label *label = &table->labels[at];
-    return at < table->count && label->layer == layer && label->value == value ? label : NULL;
+    return label->layer == layer && label->value == value ? label : NULL;
 }
 
 const cw_label *cw_label_find_name(const cw_label_table *table, const char *name)

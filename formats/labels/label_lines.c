@@ -245,18 +245,18 @@ static cw_status read_name_line(char *line, size_t number, cw_label *label, cw_e
     cw_status st = cwi_label_whole(line, UINT32_MAX, number, "number", &label->value, err);
     if (st != CW_OK)
         return st;
-    if (!name || !*name)
-        return cwi_fail(err, CW_ERR_FORMAT, "line %zu: a name was expected behind %u", number,
-                        label->value);
     if (separator == ';') {
         char *full = cut_text(name, ';');
         trim_end(name);
         label->name = full && *full ? full : name;
-        label->type.value = full && *full ? name : NULL;
-    } else {
+        label->type.value = full && *full && *name ? name : NULL;
+    } else if (name) {
         read_name(name, label);
     }
-    return CW_OK;
+    if (label->name && *label->name)
+        return CW_OK;
+    return cwi_fail(err, CW_ERR_FORMAT, "line %zu: a name was expected behind %u", number,
+                    label->value);
 }
 
 static cw_status read_names(cwi_label_file *file, cw_label_table *table, cw_error *err)

@@ -216,6 +216,7 @@ static void errors_name_the_line_and_the_field(void **state)
         {"a.tsv", "index\tname\tcolor\n1\ta\t#12345\n", "line 2: 'color' is '#12345'"},
         {"a.tsv", "index\tname\nn/a\ta\n", "line 2: 'index' is ''"},
         {"a.txt", "1 a\n2\n", "line 2: a name was expected behind 2"},
+        {"a.txt", "1;a\n2; ; \n", "line 2: a name was expected behind 2"},
         {"a.txt", "1 a\nb 2\n", "line 2: 'number' is 'b'"},
         {"a.json", "{\"R\":[1],\"G\":[2,3],\"B\":[3],\"labels\":[\"a\"]}", "'G' has 2 entries"},
         {"a.json", "{\"R\":[1],\"B\":[3],\"labels\":[\"a\"]}", "'G' is missing"},
