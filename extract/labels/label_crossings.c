@@ -73,7 +73,7 @@ static void find_edge(const cwi_label_crossings *c, const uint32_t v[3], int axi
 /* Returns true if a polygon is sound, as above. */
 static bool is_sound(const cwi_label_crossings *c, size_t polygon)
 {
-    const int edge = c->net->polygons[polygon] & CWI_POLYGON_EDGE;
+    const int edge = c->net->polygons[polygon];
     uint32_t v[CWI_POLYGON_CORNERS];
     double p[3], q[3], d[3][3], u[3], w[3];
     if ((edge != 1 && edge != 2 && edge != 4) || list_corners(c, polygon, v) != 4)
@@ -99,8 +99,7 @@ static bool is_sound(const cwi_label_crossings *c, size_t polygon)
 
 static void judge_polygon(cwi_label_crossings *c, size_t polygon)
 {
-    c->net->polygons[polygon] &= CWI_POLYGON_EDGE;
-    c->net->polygons[polygon] |= is_sound(c, polygon) ? CWI_POLYGON_SOUND : CWI_POLYGON_QUEUED;
+    c->flags[polygon] = is_sound(c, polygon) ? CWI_POLYGON_SOUND : CWI_POLYGON_QUEUED;
 }
 
 static void judge_part(void *context, size_t n)
@@ -115,19 +114,18 @@ cw_status cwi_label_crossings_init(cwi_label_crossings *c, const cw_labels_desc 
                                    cw_error *err)
 {
     const cw_mesh *mesh = c->mesh;
-    cw_status st =
-        cwi_each_layer((mesh->triangle_count + PART - 1) / PART, 8 * PART, desc->threads,
-                       &desc->progress, "looking for crossings", judge_part, c, err);
-    if (st != CW_OK)
-        return st;
+    const size_t parts = (mesh->triangle_count + PART - 1) / PART;
+    c->flags = cwi_alloc_zeroed(mesh->triangle_count, 1);
     c->queue = cwi_alloc_large(mesh->triangle_count, sizeof *c->queue);
     c->hits = cwi_alloc_zeroed(mesh->vertex_count, 1);
-    for (size_t t = 0; t < mesh->triangle_count && c->queue; t++)
-        if (c->net->polygons[t] & CWI_POLYGON_QUEUED)
-            c->queue[c->queued++] = (uint32_t)t;
-    if (!c->queue || !c->hits)
+    if (!c->flags || !c->queue || !c->hits)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for triangles that cross");
-    return CW_OK;
+    cw_status st = cwi_each_layer(parts, 8 * PART, desc->threads, &desc->progress,
+                                  "looking for crossings", judge_part, c, err);
+    for (size_t t = 0; t < mesh->triangle_count && st == CW_OK; t++)
+        if (c->flags[t] & CWI_POLYGON_QUEUED)
+            c->queue[c->queued++] = (uint32_t)t;
+    return st;
 }
 
 static bool boxes_are_apart(const float *points, const uint32_t a[3], const uint32_t b[3])
@@ -209,7 +207,7 @@ static bool share_cube(const cwi_label_crossings *c, uint32_t v, uint32_t w)
 static void test_around(cwi_label_crossings *c, size_t polygon)
 {
     uint32_t corners[CWI_POLYGON_CORNERS], seen[SEEN];
-    const uint8_t flags = c->net->polygons[polygon];
+    const uint8_t flags = c->flags[polygon];
     const int count = list_corners(c, polygon, corners);
     int seen_count = 0;
     test_inside(c, polygon);
@@ -221,7 +219,7 @@ static void test_around(cwi_label_crossings *c, size_t polygon)
             end++;
         for (uint32_t k = c->net->firsts[first]; k < c->net->firsts[end]; k++) {
             const uint32_t other = c->net->around[k];
-            const uint8_t its = c->net->polygons[other];
+            const uint8_t its = c->flags[other];
             int i = 0;
             while (i < seen_count && seen[i] != other)
                 i++;
@@ -253,15 +251,15 @@ cw_status cwi_label_crossings_find(cwi_label_crossings *c, const cw_labels_desc 
 void cwi_label_crossings_renew(cwi_label_crossings *c)
 {
     for (size_t n = 0; n < c->queued; n++)
-        c->net->polygons[c->queue[n]] &= (uint8_t)~CWI_POLYGON_QUEUED;
+        c->flags[c->queue[n]] &= (uint8_t)~CWI_POLYGON_QUEUED;
     c->queued = 0;
     for (size_t v = 0; v < c->mesh->vertex_count; v++) {
         for (uint32_t k = c->net->firsts[v]; k < c->net->firsts[v + 1] && c->hits[v]; k++) {
             const uint32_t polygon = c->net->around[k];
-            if (c->net->polygons[polygon] & CWI_POLYGON_QUEUED)
+            if (c->flags[polygon] & CWI_POLYGON_QUEUED)
                 continue;
             judge_polygon(c, polygon);
-            c->net->polygons[polygon] |= CWI_POLYGON_QUEUED;
+            c->flags[polygon] |= CWI_POLYGON_QUEUED;
             c->queue[c->queued++] = polygon;
         }
         c->hits[v] = 0;
@@ -270,6 +268,7 @@ void cwi_label_crossings_renew(cwi_label_crossings *c)
 
 void cwi_label_crossings_free(cwi_label_crossings *c)
 {
+    cwi_free(c->flags);
     cwi_free(c->queue);
     cwi_free(c->hits);
 }

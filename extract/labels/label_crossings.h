@@ -10,6 +10,8 @@
 extern "C" {
 #endif
 
+enum { CWI_POLYGON_QUEUED = 1, CWI_POLYGON_SOUND = 2 };
+
 /* Converts a place counted in voxels to a point of the mesh. */
 typedef void cwi_label_place(const void *context, const double place[3], double point[3]);
 
@@ -21,6 +23,7 @@ typedef struct cwi_label_crossings {
     cwi_label_place *place;
     const void *context;
 
+    uint8_t *flags;  /* of polygons, CWI_POLYGON_QUEUED and _SOUND */
     uint32_t *queue; /* first triangles of the polygons to look at */
     size_t queued;
     uint8_t *hits; /* of vertices: 1 if a triangle with it crosses another */

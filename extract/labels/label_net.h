@@ -14,9 +14,6 @@ enum {
     CWI_NET_BACK = 0x80   /* put back to where it was before smoothing */
 };
 
-/* Parts of a polygon's byte: the edge of tetrahedra around which it lies, and flags. */
-enum { CWI_POLYGON_EDGE = 7, CWI_POLYGON_QUEUED = 0x40, CWI_POLYGON_SOUND = 0x80 };
-
 /* Capacity for the corners of a polygon: 6 at most. */
 enum { CWI_POLYGON_CORNERS = 8 };
 
@@ -26,7 +23,8 @@ typedef struct cwi_label_net {
                                   y-, z-, x+, y+, z+; UINT32_MAX: none */
     uint8_t *kinds;    /* of vertices. Bit n: three labels or more meet on the way to neighbour
                           n; and flags. 0: the vertex is in one patch */
-    uint8_t *polygons; /* of triangles: at a polygon's first, the edge and flags; 0 at others */
+    uint8_t *polygons; /* of triangles: at a polygon's first, the edge of tetrahedra around
+                          which it lies, as in cwi_label_rules; 0 at others */
     uint32_t *firsts;  /* vertex_count + 1: where a vertex's part of `around` begins */
     uint32_t *around;  /* the polygons with a vertex, rising */
 } cwi_label_net;

@@ -10,7 +10,7 @@ extern "C" {
 
 /* Puts vertices back to where they were, until no triangles cross and none is without area; none
  * did before smoothing.
- * net        finished; kinds get CWI_NET_BACK, and polygons flags
+ * net        finished; kinds get CWI_NET_BACK
  * originals  places counted in voxels, which place() turns into points of the mesh
  * Returns    CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
 CW_NODISCARD cw_status cwi_labels_untangle(cw_label_surfaces *surfaces, cwi_label_net *net,

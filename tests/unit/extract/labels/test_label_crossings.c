@@ -5,6 +5,7 @@
 #include "core/geometry/affine.h"
 #include "core/volume/volume.h"
 #include "extract/labels/extract_labels.h"
+#include "extract/labels/label_cubes.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -130,8 +131,49 @@ static void tangles_are_found_as_among_all(void **state)
     print_message("%zu vertices were put back, %zu numbers stay moved\n", back, moved);
 }
 
+/* Counts changes of labels around a face of a cube. */
+static int count_changes(const uint32_t labels[8], int axis, int side)
+{
+    const int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3, low = side << axis;
+    const int ring[4] = {low, low | u, low | u | v, low | v};
+    int changes = 0;
+    for (int n = 0; n < 4; n++)
+        changes += labels[ring[n]] != labels[ring[(n + 1) % 4]];
+    return changes;
+}
+
+/* Checks all ways to label 8 voxels: a cube with one vertex has two labels, or a face on which
+ * three meet. Returns the number of cubes with one vertex. */
+static size_t check_cubes(const cwi_label_rules *rules, uint32_t labels[8], int n,
+                          uint32_t count)
+{
+    size_t simple = 0;
+    bool is_curve = false;
+    for (uint32_t label = 0; label <= count && n < 8; label++) {
+        labels[n] = label;
+        simple += check_cubes(rules, labels, n + 1, label == count ? count + 1 : count);
+    }
+    if (n < 8 || cwi_label_cube(rules, labels) != CWI_CUBE_SIMPLE)
+        return simple;
+    for (int face = 0; face < 6; face++)
+        is_curve = is_curve || count_changes(labels, face / 2, face % 2) > 2;
+    assert_true(is_curve == (count > 2));
+    return 1;
+}
+
+/* Threads add to the directions of vertices that are in one patch. */
+static void vertices_off_curves_are_in_one_patch(void **state)
+{
+    (void)state;
+    cwi_label_rules rules;
+    uint32_t labels[8];
+    cwi_label_rules_make(&rules);
+    assert_int_equal(check_cubes(&rules, labels, 0, 0), 893);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(tangles_are_found_as_among_all)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(tangles_are_found_as_among_all),
+                                       cmocka_unit_test(vertices_off_curves_are_in_one_patch)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
