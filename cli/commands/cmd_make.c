@@ -16,7 +16,7 @@ typedef struct make_args {
     cli_sizes dims;
     int type;
     cli_number noise;
-    size_t seed, threads;
+    size_t seed, labels, threads;
     bool no_clobber, list;
 } make_args;
 
@@ -38,30 +38,47 @@ static const cli_option options[] = {
     {"noise", 0, CLI_NUMBER, "SIGMA",
      "Standard deviation of Gaussian noise, in the unit of the field (0)",
      offsetof(make_args, noise)},
-    {"seed", 0, CLI_COUNT, "N", "Seed of the noise (0)", offsetof(make_args, seed)},
+    {"seed", 0, CLI_COUNT, "N", "Seed of the noise, and of the points of labels (0)",
+     offsetof(make_args, seed)},
+    {"labels", 0, CLI_COUNT, "N", "Number of labels of label maps (100)",
+     offsetof(make_args, labels)},
     CLI_HEADED("Limits and messages"),
     {"threads", 't', CLI_COUNT, "N", "Number of threads; results do not depend on it (0: all)",
      offsetof(make_args, threads)},
 };
 
-/* A subject to make: the fields come first, then the hard cases. */
+/* A subject to make: the fields come first, then the label maps and the hard cases. */
 typedef struct subject {
     const char *name, *about;
     double isovalue;
-    bool hard;
-    size_t number; /* of the field or the hard case */
+    bool hard, is_label_map;
+    size_t number; /* of the field, the label map or the hard case */
 } subject;
+
+static const subject label_maps[] = {
+    {"labels/cells", "label map: cells that touch each other, in a ball", 0, false, true,
+     CW_LABEL_CELLS},
+    {"labels/spheres", "label map: spheres, some of which touch", 0, false, true,
+     CW_LABEL_SPHERES},
+};
+enum { LABEL_MAPS = sizeof label_maps / sizeof *label_maps };
 
 static bool subject_at(size_t n, subject *s)
 {
     if (n < CW_FIELD_COUNT) {
         const cw_field f = (cw_field)n;
-        *s = (subject){cw_field_name(f), cw_field_about(f), cw_field_isovalue(f), false, n};
+        *s = (subject){cw_field_name(f), cw_field_about(f), cw_field_isovalue(f), .number = n};
         return true;
     }
-    const cw_hard *hard = cw_hard_at(n - CW_FIELD_COUNT);
+    n -= CW_FIELD_COUNT;
+    if (n < LABEL_MAPS) {
+        *s = label_maps[n];
+        return true;
+    }
+    n -= LABEL_MAPS;
+    const cw_hard *hard = cw_hard_at(n);
     if (hard)
-        *s = (subject){hard->name, hard->about, hard->isovalue, true, n - CW_FIELD_COUNT};
+        *s = (subject){hard->name, hard->about, hard->isovalue, .hard = true, .number = n};
     return hard != NULL;
 }
 
@@ -69,8 +86,11 @@ static cw_status list_subjects(void)
 {
     subject s;
     for (size_t n = 0; subject_at(n, &s); n++)
-        printf("%-28s--iso %-5.10g %s%s\n", s.name, s.isovalue, s.about,
-               s.hard && cw_hard_at(s.number)->scale == 0 ? " (f32, f64)" : "");
+        if (s.is_label_map)
+            printf("%-28s--labels  %s\n", s.name, s.about);
+        else
+            printf("%-28s--iso %-5.10g %s%s\n", s.name, s.isovalue, s.about,
+                   s.hard && cw_hard_at(s.number)->scale == 0 ? " (f32, f64)" : "");
     return CW_OK;
 }
 
@@ -119,6 +139,23 @@ static cw_status sample_field(const make_args *args, cw_field field, cw_volume *
     return cw_field_sample(&desc, volume, err);
 }
 
+static cw_status sample_labels(const make_args *args, size_t number, cw_volume *volume,
+                               cw_error *err)
+{
+    const cw_label_field_desc desc = {
+        .field = (cw_label_field)number,
+        .dim = {args->dims.n[0], args->dims.n[1], args->dims.n[2]},
+        .type = (cw_type)args->type,
+        .labels = args->labels,
+        .seed = args->seed,
+        .threads = (int)args->threads,
+        .progress = cli_progress(mega_voxels(args), "Mvoxel"),
+    };
+    if (args->noise.given)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--noise is not for label maps");
+    return cw_label_field_sample(&desc, volume, err);
+}
+
 static cw_status sample_hard(const make_args *args, size_t number, cw_volume *volume,
                              cw_error *err)
 {
@@ -144,14 +181,23 @@ static double stored_level(const subject *s, cw_type type)
 static cw_status make_field(const make_args *args, const subject *s, cw_error *err)
 {
     cw_volume volume;
-    cw_status st = s->hard ? sample_hard(args, s->number, &volume, err)
-                           : sample_field(args, (cw_field)s->number, &volume, err);
+    if (args->labels && !s->is_label_map)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--labels is for label maps: labels/cells and "
+                        "labels/spheres");
+    cw_status st = s->hard           ? sample_hard(args, s->number, &volume, err)
+                   : s->is_label_map ? sample_labels(args, s->number, &volume, err)
+                                     : sample_field(args, (cw_field)s->number, &volume, err);
     if (st != CW_OK)
         return st;
     const cw_write_desc write = {.no_clobber = args->no_clobber,
                                  .progress = cli_progress(mega_voxels(args), "Mvoxel")};
     st = cw_volume_write(args->output, &volume, &write, err);
-    if (st == CW_OK)
+    if (st == CW_OK && s->is_label_map)
+        cli_result("%s: %s, %zu x %zu x %zu %s; its surfaces: --labels all\n", args->output,
+                   s->name, volume.dim[0], volume.dim[1], volume.dim[2],
+                   cw_type_name(volume.type));
+    else if (st == CW_OK)
         cli_result("%s: %s, %zu x %zu x %zu %s; its surface: --iso %.10g\n", args->output,
                    s->name, volume.dim[0], volume.dim[1], volume.dim[2],
                    cw_type_name(volume.type), stored_level(s, volume.type));

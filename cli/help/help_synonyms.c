@@ -15,14 +15,14 @@ const cli_synonym cli_synonyms[] = {
     {"remesh|retopolog", NULL, "offset|--by|--snap",
      "'offset --by 0' makes a new mesh of the same surface; 'extract --snap' gives better "
      "triangles."},
-    {"label|segment|mask|atlas", NULL, "label|--inside",
-     "cubewright does not extract each label of a label map as a separate mesh. An isovalue "
-     "joins all labels above it; a mask of one label works, with --iso 0.5 for values 0 and "
-     "1."},
+    {"label|segment|mask|atlas", NULL, "--labels|--names|label|--inside",
+     "'extract --labels all' makes a closed mesh of each label of a label map or a mask. An "
+     "isovalue joins all labels above it."},
     {"smooth|denois|filter|laplacian|taubin|gaussian", NULL,
-     "--snap|--placement|--min-volume|--drop-components|--noise",
-     "cubewright does not smooth or denoise, neither volumes nor meshes. --snap removes thin "
-     "triangles, and --min-volume and --drop-components remove small components."},
+     "--smooth-labels|--snap|--placement|--min-volume|--drop-components|--noise",
+     "cubewright smooths the surfaces of labels; it does not smooth or denoise other volumes "
+     "and meshes. --snap removes thin triangles, and --min-volume and --drop-components remove "
+     "small components."},
     {"hole|watertight|repair|heal|leak", "closed", "closed|--open|--orient|--by|--profile",
      "cubewright does not fill holes of a mesh. 'extract' makes closed meshes, 'check' finds "
      "open edges, and 'offset --by 0' rebuilds closed meshes that intersect themselves."},

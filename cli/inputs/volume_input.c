@@ -521,14 +521,16 @@ cw_status cli_tell_labels(cli_volume *volume, const double *iso, size_t count,
         const size_t inside = count_inside(&l, iso[n], inside_is_low);
         if (inside < 2)
             continue;
-        snprintf(text, sizeof text,
-                 "%s: the surface at %.10g joins the %zu labels %s it; --labels extracts each",
-                 what, iso[n], inside, inside_is_low ? "below" : "above");
+        snprintf(
+            text, sizeof text,
+            "%s: the surface at %.10g joins the %zu labels %s it; 'extract --labels' takes each",
+            what, iso[n], inside, inside_is_low ? "below" : "above");
         take_note(volume, text);
     }
     if (!count && l.count > 2) {
         snprintf(text, sizeof text,
-                 "%s: an isovalue joins all labels above it; --labels takes each", what);
+                 "%s: an isovalue joins all labels above it; 'extract --labels' takes each",
+                 what);
         take_note(volume, text);
     }
     return CW_OK;

@@ -62,6 +62,32 @@ CW_API double cw_field_stored(cw_field field, cw_type type, double value);
 CW_NODISCARD CW_API cw_status cw_field_sample(const cw_field_desc *desc, cw_volume *volume,
                                               cw_error *err);
 
+/* The form of the objects of a made label map. */
+typedef enum cw_label_field {
+    CW_LABEL_CELLS,  /* what is nearest to each of many points, in a ball: cells that touch */
+    CW_LABEL_SPHERES /* spheres around the points, some of which touch */
+} cw_label_field;
+
+/* Options of cw_label_field_sample(). Zero fields mean the default named beside them. */
+typedef struct cw_label_field_desc {
+    cw_label_field field;
+    size_t dim[3];        /* voxels; default 64 each */
+    cw_type type;         /* CW_U8 first: name it; it has to hold the labels */
+    size_t labels;        /* number of points, one to a cell of a lattice; default 100 */
+    uint64_t seed;        /* of the points and radii */
+    int threads;          /* default: all */
+    cw_progress progress; /* default: none */
+} cw_label_field_desc;
+
+/* Samples a label map into a new volume of voxels of 1 mm, centred on the world's zero. Labels
+ * are 1 to desc->labels, and 0 is the background. In a small volume some labels have no voxels.
+ * Returns CW_ERR_ARGUMENT for an unknown form, and a type that does not hold the labels;
+ * CW_ERR_LIMIT, CW_ERR_NO_MEMORY, CW_ERR_CANCELLED.
+ * The same bytes for the same desc, for any number of threads.
+ * Source  points in a lattice [Worley1996] */
+CW_NODISCARD CW_API cw_status cw_label_field_sample(const cw_label_field_desc *desc,
+                                                    cw_volume *volume, cw_error *err);
+
 /* How far the points of a mesh are from the exact surface { p : f(p) = isovalue } of a field,
  * over its area. */
 typedef struct cw_field_error {
