@@ -1,5 +1,6 @@
 /* Runs the command that the first argument names, limits its memory, and turns its status
  * into an exit code. */
+#include "cli/framework/batch.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/inputs/volume_input.h"
@@ -56,6 +57,21 @@ static void limit_memory(const cli_command *command, const cli_common *args)
     }
 }
 
+/* Gives a process of a batch its share of the memory. */
+static void share_memory(const cli_command *command, cli_common *args)
+{
+    for (size_t n = 0; n < command->option_count && args->processes > 1; n++) {
+        const cli_option *o = &command->options[n];
+        cli_input input = {0};
+        char *field = (char *)args + o->offset;
+        if (o->kind == CLI_HEADING || strcmp(o->name, "memory") != 0)
+            continue;
+        memcpy(&input.memory, field, sizeof input.memory);
+        input.memory = cli_memory_limit(&input) / args->processes;
+        memcpy(field, &input.memory, sizeof input.memory);
+    }
+}
+
 /* Tells memory that ran out from memory that --memory does not allow. */
 static void explain_memory(cw_error *err)
 {
@@ -71,6 +87,26 @@ static void explain_memory(cw_error *err)
              asked_text, left_text);
 }
 
+static cw_status run_parsed(const cli_command *command, cli_common *args, cw_error *err)
+{
+    share_memory(command, args);
+    limit_memory(command, args);
+    cw_status st = command->run(args, err);
+    if (st == CW_ERR_NO_MEMORY)
+        explain_memory(err);
+    cli_progress_end();
+    return st;
+}
+
+/* Runs the command for one input of a batch, in a process of its own. */
+static cw_status run_in_batch(const cli_command *command, cli_common *args, cw_error *err)
+{
+    cw_status st = run_parsed(command, args, err);
+    if (st != CW_OK)
+        cli_say_error(err->message);
+    return st;
+}
+
 static cw_status run_command(const cli_command *command, int count, char **words, cw_error *err)
 {
     cli_common *args = calloc(1, command->size);
@@ -83,12 +119,10 @@ static cw_status run_command(const cli_command *command, int count, char **words
         cli_console_start(args, CLI_PROGRESS_AUTO);
         if (st == CW_OK && args->help)
             cli_print_help(command, false);
-        else if (st == CW_OK) {
-            limit_memory(command, args);
-            st = command->run(args, err);
-        }
-        if (st == CW_ERR_NO_MEMORY)
-            explain_memory(err);
+        else if (st == CW_OK && cli_is_batch(&args->batch))
+            st = cli_batch_run(command, args, run_in_batch, err);
+        else if (st == CW_OK)
+            st = run_parsed(command, args, err);
     } else {
         cwi_fail(err, st, "no memory for the arguments");
     }

@@ -1,6 +1,7 @@
 /* The command info: prints the facts of a volume or a series, such as its grid, range of
  * values and suggested isovalues. */
 #include "cli/commands/info_labels.h"
+#include "cli/framework/batch.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
@@ -38,6 +39,7 @@ static const cli_option options[] = {
      "Read all voxels (off: above 256 MiB a part of the rows, unless --levels needs all)",
      offsetof(info_args, deep)},
     {"json", 0, CLI_FLAG, NULL, "Print one JSON object (off)", offsetof(info_args, json)},
+    CLI_BATCH_OPTIONS(info_args),
     CLI_INPUT_OPTIONS(info_args),
 };
 

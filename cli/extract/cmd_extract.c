@@ -2,6 +2,7 @@
  * up to the written files. */
 #include "cli/extract/extract_run.h"
 #include "cli/extract/label_run.h"
+#include "cli/framework/batch.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/results/pvd_list.h"
@@ -19,7 +20,7 @@ static const cli_extract_args defaults = {.check = true};
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
-     "Mesh to write, in the format of its extension; may hold {level}, {step}, {stem}, and of "
+     "Mesh to write, in the format of its extension; may hold {level}, {step}, {stem}, {parent}, and of "
      "labels {label} and {name}",
      offsetof(cli_extract_args, output)},
     {"iso", 'i', CLI_NUMBERS, "V[,V...]",
@@ -131,6 +132,7 @@ static const cli_option options[] = {
     {"prove-crop", 0, CLI_FLAG, NULL,
      "Extract the whole volume as well, to prove that --crop changes nothing inside (off)",
      offsetof(cli_extract_args, prove_crop)},
+    CLI_BATCH_OPTIONS(cli_extract_args),
     CLI_COMPRESS_OPTIONS(cli_extract_args),
     CLI_INPUT_OPTIONS(cli_extract_args),
     {"max-triangles", 0, CLI_COUNT, "N",

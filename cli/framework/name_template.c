@@ -107,3 +107,14 @@ char *cli_stem(const char *path)
             return strndup(name, dot - 1);
     return strndup(name, length);
 }
+
+char *cli_parent(const char *path)
+{
+    const char *end = strrchr(path, '/');
+    while (end && end > path && end[-1] == '/')
+        end--;
+    const char *start = end;
+    while (start && start > path && start[-1] != '/')
+        start--;
+    return end && end > start ? strndup(start, (size_t)(end - start)) : strdup(".");
+}

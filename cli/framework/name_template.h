@@ -23,4 +23,8 @@ CW_NODISCARD cw_status cli_fill_template(const char *text, cli_part *parts, size
  * when there is no memory. */
 char *cli_stem(const char *path);
 
+/* "sub-01" of "data/sub-01/aseg.nii.gz": the name of the folder that holds the file. "." where
+ * the path names none. Free it with free(); NULL when there is no memory. */
+char *cli_parent(const char *path);
+
 #endif

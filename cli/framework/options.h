@@ -140,6 +140,13 @@ typedef struct cli_option {
 
 enum { CLI_MAX_OPTIONS = 128 }; /* rows of a command's table */
 
+/* Options of commands that take each input by itself: see batch.h. */
+typedef struct cli_batch {
+    bool is_asked, skip_existing, keep_going;
+    size_t jobs;
+    const char *json_lines;
+} cli_batch;
+
 /* First member of every command's struct. */
 typedef struct cli_common {
     bool help;
@@ -147,6 +154,8 @@ typedef struct cli_common {
     int verbose;
     const char **inputs; /* the arguments that are no options */
     size_t input_count;
+    cli_batch batch;
+    size_t processes; /* of a batch, which share threads and memory; 0: this one alone */
     bool given[CLI_MAX_OPTIONS]; /* rows of the command's table that were */
 } cli_common;
 

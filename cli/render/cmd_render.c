@@ -1,5 +1,6 @@
 /* The command render: its table of options, and the run that checks, makes and reports the
  * pictures. */
+#include "cli/framework/batch.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/render/render_run.h"
@@ -13,7 +14,7 @@ static const render_args defaults = {.scene = CLI_SCENE_DEFAULTS,
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
-     "Picture to write, a .png file; may hold {turn}, {step} or {step:04d}, and {stem}",
+     "Picture to write, a .png file; may hold {turn}, {step} or {step:04d}, {stem} and {parent}",
      offsetof(render_args, output)},
 #include "cli/render/options_what.inc"
     {"size", 0, CLI_SIZES, "WxH", "Size of the picture in pixels (1280x720)",
@@ -34,6 +35,7 @@ static const cli_option options[] = {
     {"orbit", 0, CLI_NUMBER, "DEG", "Angle of the turntable in degrees (360)",
      offsetof(render_args, turns) + offsetof(cli_turns, orbit)},
 #include "cli/render/options_look.inc"
+    CLI_BATCH_OPTIONS(render_args),
     CLI_INPUT_OPTIONS(render_args),
 };
 

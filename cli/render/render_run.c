@@ -156,14 +156,16 @@ static cw_status fill_name(const cli_pictures *p, const cli_moment *moment, size
                            char **name, cw_error *err)
 {
     char numbers[2][24];
-    char *stem = cli_stem(moment->path);
+    char *stem = cli_stem(moment->path), *parent = cli_parent(moment->path);
     snprintf(numbers[0], sizeof numbers[0], "%zu", moment->number);
     snprintf(numbers[1], sizeof numbers[1], "%zu", turn);
     cli_part parts[] = {{"step", numbers[0], true, false},
                         {"turn", numbers[1], true, false},
-                        {"stem", stem, false, false}};
-    cw_status st = stem ? cli_fill_template(p->args->output, parts, 3, name, err)
-                        : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
+                        {"stem", stem, false, false},
+                        {"parent", parent, false, false}};
+    cw_status st = stem && parent ? cli_fill_template(p->args->output, parts, 4, name, err)
+                                  : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
+    free(parent);
     free(stem);
     if (st == CW_OK && p->args->turns.count > 1 && !parts[1].used)
         return cwi_fail(

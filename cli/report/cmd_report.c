@@ -1,5 +1,6 @@
 /* The command report: its options, its input (a file or a field), and the page, JSON and CSV
  * that it writes about a study. */
+#include "cli/framework/batch.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
@@ -34,7 +35,8 @@ static const double MAX_VOXELS = 33554432;
 static const report_args defaults = {.budget = "60s"};
 
 static const cli_option options[] = {
-    {"output", 'o', CLI_TEXT, "FILE", "Page to write, a .html file",
+    {"output", 'o', CLI_TEXT, "FILE",
+     "Page to write, a .html file; may hold {stem} and {parent}",
      offsetof(report_args, output)},
     {"iso", 'i', CLI_NUMBER, "V", "Isovalue (otsu, as 'info' suggests; of a field its own)",
      offsetof(report_args, iso)},
@@ -57,6 +59,7 @@ static const cli_option options[] = {
     {"csv", 0, CLI_TEXT, "FILE",
      "Write a table with a row for each setting; - is the standard output",
      offsetof(report_args, csv)},
+    CLI_BATCH_OPTIONS(report_args),
     CLI_INPUT_OPTIONS(report_args),
     CLI_PROGRESS_OPTION(report_args),
 };
@@ -66,6 +69,7 @@ typedef struct run_state {
     cli_volume volume;
     char *input_words, *make_words;
     char field_path[64];
+    cli_outputs files; /* the page */
     cli_study study;
 } run_state;
 
@@ -302,6 +306,12 @@ static cw_status run_pipeline(run_state *s, cw_error *err)
 static cw_status run_report_command(void *p, cw_error *err)
 {
     report_args *args = p;
+    if (args->common.input_count > 1)
+        return cwi_fail(
+            err, CW_ERR_ARGUMENT,
+            "a report is about one volume; there are %zu, for which --batch makes a "
+            "report each",
+            args->common.input_count);
     run_state *s = calloc(1, sizeof *s);
     if (!s)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a report");
@@ -313,7 +323,13 @@ static cw_status run_report_command(void *p, cw_error *err)
     cli_console_reserve_stdout(args->output);
     cli_console_reserve_stdout(args->json);
     cli_console_reserve_stdout(args->csv);
-    cw_status st = run_pipeline(s, err);
+    cw_status st = args->output
+                       ? cli_name_output(&s->files, args->output, args->common.inputs[0], err)
+                       : CW_OK;
+    args->output = s->files.count ? s->files.path[0] : args->output;
+    if (st == CW_OK)
+        st = run_pipeline(s, err);
+    cli_free_outputs(&s->files);
     cli_study_free(&s->study);
     cli_free_volume(&s->volume);
     free(s->input_words);
@@ -330,7 +346,7 @@ const cli_command cli_report_command = {
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,
-    .max_inputs = 1,
+    .max_inputs = SIZE_MAX, /* of a batch; else 1 */
     .size = sizeof(report_args),
     .defaults = &defaults,
     .run = run_report_command,

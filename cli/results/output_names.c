@@ -103,20 +103,23 @@ static cw_status add_output(cli_outputs *outputs, const char *text, cli_part *pa
     return cli_fill_template(text, parts, part_count, &outputs->path[outputs->count++], err);
 }
 
-enum { STEM, LEVEL, STEP, PARTS };
+enum { STEM, PARENT, LEVEL, STEP, PARTS };
 
 static cw_status name_levels(cli_outputs *outputs, const char *text, const cli_moment *moment,
                              const cli_numbers *levels, cli_part parts[PARTS], cw_error *err)
 {
-    char number[24], *stem = cli_stem(moment->path);
-    cw_status st = stem ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
+    char number[24], *stem = cli_stem(moment->path), *parent = cli_parent(moment->path);
+    cw_status st =
+        stem && parent ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
     snprintf(number, sizeof number, "%zu", moment->number);
     parts[STEM].value = stem;
+    parts[PARENT].value = parent;
     parts[STEP].value = number;
     for (size_t n = 0; n < levels->count && st == CW_OK; n++) {
         parts[LEVEL].value = cli_number_text(levels->value[n]);
         st = add_output(outputs, text, parts, PARTS, err);
     }
+    free(parent);
     free(stem);
     return st;
 }
@@ -142,6 +145,7 @@ cw_status cli_name_outputs(cli_outputs *outputs, const char *text, const cli_ser
                            const cli_numbers *levels, cw_error *err)
 {
     cli_part parts[PARTS] = {[STEM] = {.name = "stem"},
+                             [PARENT] = {.name = "parent"},
                              [LEVEL] = {.name = "level"},
                              [STEP] = {.name = "step", .number = true}};
     cw_status st = check_levels(levels, err);
@@ -169,13 +173,15 @@ cw_status cli_name_part_outputs(cli_outputs *outputs, const char *text, const ch
                                 const cw_part *parts, size_t count, cw_error *err)
 {
     char *stem = NULL, name[256], number[24], label[24] = "", layer[24] = "", why[64];
+    char *parent = cli_parent(input);
     cw_status st = reserve_names(outputs, count, &stem, input, err);
-    cli_part fields[] = {{.name = "stem", .value = stem},
-                         {.name = "name", .value = name},
-                         {.name = "part", .value = number},
-                         {.name = "label", .value = label, .number = true},
-                         {.name = "layer", .value = layer}};
-    const size_t field_count = count > 0 && parts[0].label ? 5 : 3;
+    cli_part fields[] = {
+        {.name = "stem", .value = stem},   {.name = "name", .value = name},
+        {.name = "part", .value = number}, {.name = "label", .value = label, .number = true},
+        {.name = "layer", .value = layer}, {.name = "parent", .value = parent}};
+    const size_t field_count = count > 0 && parts[0].label ? 6 : 3;
+    if (st == CW_OK && !parent)
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
     for (size_t n = 0; n < count && st == CW_OK; n++) {
         to_file_name(parts[n].name, n + 1, name);
         snprintf(number, sizeof number, "%zu", n + 1);
@@ -188,6 +194,7 @@ cw_status cli_name_part_outputs(cli_outputs *outputs, const char *text, const ch
     snprintf(why, sizeof why, "--split makes %zu files", count);
     if (st == CW_OK && count > 1 && !fields[1].used && !fields[2].used && !fields[3].used)
         st = ask_for("name", text, why, err);
+    free(parent);
     free(stem);
     return st;
 }
@@ -229,10 +236,14 @@ cw_status cli_name_lod_outputs(cli_outputs *outputs, const char *text, const cha
 cw_status cli_name_output(cli_outputs *outputs, const char *text, const char *input,
                           cw_error *err)
 {
-    char *stem = NULL;
+    char *stem = NULL, *parent = cli_parent(input);
     cw_status st = reserve_names(outputs, 1, &stem, input, err);
+    cli_part parts[] = {{.name = "stem", .value = stem}, {.name = "parent", .value = parent}};
+    if (st == CW_OK && !parent)
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
     if (st == CW_OK)
-        st = add_output(outputs, text, &(cli_part){.name = "stem", .value = stem}, 1, err);
+        st = add_output(outputs, text, parts, 2, err);
+    free(parent);
     free(stem);
     return st;
 }

@@ -20,8 +20,8 @@ typedef struct cli_outputs {
     char **path;
 } cli_outputs;
 
-/* Names them, all levels of a step and then those of the next: {level}, {step} and {stem} (of
- * the step's file) of the text are filled in. Free, also after failure, with
+/* Names them, all levels of a step and then those of the next: {level}, {step}, {stem} and
+ * {parent} (of the step's file, and its folder) of the text are filled in. Free, also after failure, with
  * cli_free_outputs(). Returns CW_ERR_ARGUMENT for a level that is there twice, an unknown
  * {part}, and when several levels or steps come without a part that tells them apart;
  * CW_ERR_NO_MEMORY */
@@ -30,8 +30,8 @@ CW_NODISCARD cw_status cli_name_outputs(cli_outputs *outputs, const char *text,
                                         cw_error *err);
 
 /* Names one output a part: {name} (that of the part, with what no file name may hold as '_'),
- * {part} (its number, from 1), {stem} and, of labels, {label} and {layer} of the text are filled
- * in. Free it with
+ * {part} (its number, from 1), {stem} and, of labels, {label}, {layer} and {parent} (the input's
+ * folder) of the text are filled in. Free it with
  * cli_free_outputs(). Returns CW_ERR_ARGUMENT for an unknown {part}, and when several parts
  * come without {name} or {part}; CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cli_name_part_outputs(cli_outputs *outputs, const char *text,
@@ -45,7 +45,7 @@ CW_NODISCARD cw_status cli_name_lod_outputs(cli_outputs *outputs, const char *te
                                             const char *input, size_t levels, bool together,
                                             cw_error *err);
 
-/* Names the only output of a run: {stem} is filled in. Free it with cli_free_outputs(). */
+/* Names the only output of a run: {stem} and {parent} are filled in. Free it with cli_free_outputs(). */
 CW_NODISCARD cw_status cli_name_output(cli_outputs *outputs, const char *text,
                                        const char *input, cw_error *err);
 void cli_free_outputs(cli_outputs *outputs);
