@@ -1,7 +1,8 @@
 // Loads GLB files with three.js in headless Chromium, Draco's and meshopt's decoders included:
-// node three.mjs [--picture OUT.png] FILE...
+// node three.mjs [--names] [--picture OUT.png] FILE...
 // node three.mjs --steps TIME=FILE[,TIME=FILE...] ANIMATED
-// Prints for each file: its triangles, and its box in metres. With --steps, plays the animation of a
+// Prints for each file: its triangles, and its box in metres. With --names, also the name, colour and
+// label of each mesh. With --steps, plays the animation of a
 // file: at each time, on the way there and back, the picture must be that of the other file, seen
 // from the same place, or without a name that of nothing; and pictures of different files must
 // differ. Exit: 0 all loaded and alike, 1 one did not, 2 usage, 77 no Chromium, three.js or
@@ -100,16 +101,20 @@ window.play = async (url, steps) => {
 window.load = async url => {
     const { scene } = await loader.loadAsync(url);
     let triangles = 0, nodes = 0;
+    const names = [];
     scene.updateMatrixWorld(true);
     scene.traverse(o => {
         nodes += o.isMesh ? 1 : 0;
+        if (o.isMesh)
+            names.push(o.name + ' #' + o.material.color.getHexString() + ' ' + o.material.opacity.toFixed(3) +
+                       ' ' + o.userData.label);
         triangles += o.isMesh ? o.geometry.index.count / 3 : 0;
     });
     const box = new THREE.Box3().setFromObject(scene, true), stated = new THREE.Box3().setFromObject(scene);
     if (box.min.distanceTo(stated.min) > 1e-6 || box.max.distanceTo(stated.max) > 1e-6)
         throw new Error('the box that the accessors state is not that of their positions');
     draw(scene, look(box));
-    return { triangles, nodes, low: box.min.toArray(), high: box.max.toArray() };
+    return { triangles, nodes, names, low: box.min.toArray(), high: box.max.toArray() };
 };
 window.ready = true;
 </script>`;
@@ -130,6 +135,7 @@ function serve(three, files) {
 }
 
 const words = process.argv.slice(2);
+const tells = words[0] === '--names' && words.splice(0, 1);
 const picture = words[0] === '--picture' ? words.splice(0, 2)[1] : null;
 const steps = words[0] === '--steps' ? words.splice(0, 2)[1].split(',').map(s => s.split('=')) : null;
 if (words.length === 0 || (steps && words.length > 1)) {
@@ -168,6 +174,8 @@ try {
         console.log(r.error ? `${basename(file)}: ${r.error}`
                             : `${basename(file)} ${r.nodes} ${r.triangles} ` +
                               [...r.low, ...r.high].map(x => x.toFixed(6)).join(' '));
+        for (const name of (tells && r.names) || [])
+            console.log(`  ${name}`);
         if (picture)
             await page.screenshot({ path: picture.replace('{stem}', basename(file, '.glb')) });
     }
