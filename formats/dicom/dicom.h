@@ -58,7 +58,21 @@ typedef struct cwi_dicom_facts {
     bool deflated;        /* the whole file is deflated */
     bool has_padding;
     double padding[2];
-} cwi_dicom_facts; /* frame_count frames follow */
+    uint32_t segment_count; /* of a segmentation */
+} cwi_dicom_facts;          /* frame_count frames follow, then segment_count segments */
+
+/* A word of a coding scheme. Texts are as the file has them. */
+typedef struct cwi_dicom_code {
+    char scheme[20], value[20], meaning[260];
+} cwi_dicom_code;
+
+/* A segment of a segmentation. */
+typedef struct cwi_dicom_segment {
+    uint32_t number, has_color;
+    uint16_t lab[3]; /* RecommendedDisplayCIELabValue */
+    char label[260];
+    cwi_dicom_code category, type;
+} cwi_dicom_segment;
 
 /* The size that an image within DICOM must have. */
 typedef struct cwi_dicom_image {

@@ -500,6 +500,47 @@ const char *check_sizes(const PixelLayout &l)
                                         : nullptr;
 }
 
+void take_code(DcmItem *item, cwi_dicom_code *code)
+{
+    if (!item)
+        return;
+    copy_text(code->scheme, text_of(item, DCM_CodingSchemeDesignator));
+    copy_text(code->value, text_of(item, DCM_CodeValue));
+    copy_text(code->meaning, text_of(item, DCM_CodeMeaning));
+}
+
+void take_segment(DcmItem *item, cwi_dicom_segment *s)
+{
+    double lab[3];
+    *s = cwi_dicom_segment();
+    s->number = count_of(item, DCM_SegmentNumber, 0);
+    copy_text(s->label, text_of(item, DCM_SegmentLabel));
+    if (numbers_of(item, DCM_RecommendedDisplayCIELabValue, 3, lab)) {
+        s->has_color = 1;
+        for (int n = 0; n < 3; n++)
+            s->lab[n] = uint16_t(std::fmin(std::fmax(lab[n], 0), 65535));
+    }
+    take_code(first_item(item, DCM_SegmentedPropertyCategoryCodeSequence), &s->category);
+    take_code(first_item(item, DCM_SegmentedPropertyTypeCodeSequence), &s->type);
+}
+
+// Takes the segments of a segmentation, as many as there is room for.
+void take_segments(DcmDataset *data, cwi_dicom_facts *f, size_t room)
+{
+    DcmSequenceOfItems *sequence = nullptr;
+    cwi_dicom_frame *frames = reinterpret_cast<cwi_dicom_frame *>(f + 1);
+    cwi_dicom_segment *segments =
+        reinterpret_cast<cwi_dicom_segment *>(frames + f->frame_count);
+    const size_t most = (room - sizeof *f - f->frame_count * sizeof *frames) / sizeof *segments;
+    if (f->kind == CWI_DICOM_IMAGE ||
+        data->findAndGetSequence(DCM_SegmentSequence, sequence).bad())
+        return;
+    while (f->segment_count < sequence->card() && f->segment_count < most) {
+        take_segment(sequence->getItem(f->segment_count), segments + f->segment_count);
+        f->segment_count++;
+    }
+}
+
 cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t room, cw_error *err)
 {
     DcmDataset *data = d.data();
@@ -538,6 +579,7 @@ cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t room, cw_error *er
     f->frame_count = l.frames;
     take_padding(data, l, f);
     take_frames(data, f);
+    take_segments(data, f, room);
     unfold(d, f);
     return CW_OK;
 }

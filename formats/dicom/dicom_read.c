@@ -2,6 +2,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/bytes/file_pattern.h"
+#include "formats/dicom/dicom_segments.h"
 #include "formats/dicom/dicom_stack.h"
 #include "formats/volume/volume_reader.h"
 #include "formats/volume/voxel_source.h"
@@ -91,6 +92,10 @@ cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names, const cw_read_de
         st = cwi_stack_load(&stack, in, &planes, desc, volume, err);
         stack.files = (cwi_names){0};
     }
+    if (st == CW_OK && desc->labels)
+        st = cwi_dicom_add_segments(&found, series, desc->labels, err);
+    if (st != CW_OK)
+        cw_volume_free(volume);
     cwi_stack_free(&stack);
     cwi_dicom_scan_free(&found);
     cwi_planes_close(&planes);

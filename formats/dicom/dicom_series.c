@@ -62,8 +62,11 @@ void cwi_dicom_scan_free(cwi_dicom_scan *scan)
 {
     for (size_t i = 0; scan->facts && i < scan->files.count; i++)
         cwi_free(scan->facts[i]);
+    for (size_t i = 0; scan->segments && i < scan->files.count; i++)
+        cwi_free(scan->segments[i]);
     cwi_names_free(&scan->files);
     cwi_free(scan->facts);
+    cwi_free(scan->segments);
     cwi_free(scan->planes);
     cwi_free(scan->series);
     *scan = (cwi_dicom_scan){0};
@@ -110,6 +113,10 @@ static cw_status check_facts(const cwi_dicom_facts *f, uint64_t file_bytes, cw_e
                         "'Columns' %u, 'Rows' %u, 'SamplesPerPixel' %u and 'NumberOfFrames' %u "
                         "are not valid image sizes",
                         f->columns, f->rows, f->samples, f->frame_count);
+    const size_t left =
+        CWI_PLANES_SHARED - sizeof *f - f->frame_count * sizeof(cwi_dicom_frame);
+    if (f->segment_count > left / sizeof(cwi_dicom_segment))
+        return cwi_fail(err, CW_ERR_BACKEND, "DCMTK's answer is not valid");
     return check_claim(f, file_bytes, err);
 }
 
@@ -131,16 +138,21 @@ static cw_status keep_file(cwi_dicom_scan *scan, const char *name, const cwi_dic
                            const void *frames, cw_error *err)
 {
     const size_t n = scan->files.count;
+    const void *segments = (const cwi_dicom_frame *)frames + facts->frame_count;
     cwi_dicom_facts *copy = cwi_alloc_array(1, sizeof *copy);
-    cw_status st = copy && grow_planes(scan, facts->frame_count)
+    cwi_dicom_segment *own = cwi_alloc_array(facts->segment_count, sizeof *own);
+    cw_status st = copy && own && grow_planes(scan, facts->frame_count)
                        ? cwi_names_add(&scan->files, name, err)
                        : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the facts of a file");
     if (st != CW_OK) {
         cwi_free(copy);
+        cwi_free(own);
         return st;
     }
     *copy = *facts;
+    memcpy(own, segments, facts->segment_count * sizeof *own);
     scan->facts[n] = copy;
+    scan->segments[n] = own;
     for (uint32_t i = 0; i < facts->frame_count; i++) {
         cwi_dicom_plane *p = &scan->planes[scan->plane_count++];
         *p = (cwi_dicom_plane){.file = copy, .index = n, .number = i};
@@ -338,7 +350,8 @@ cw_status cwi_dicom_scan_files(cwi_dicom_scan *scan, const cwi_input *in, cwi_na
 {
     cw_status st = CW_OK;
     scan->facts = cwi_alloc_zeroed(names->count, sizeof(cwi_dicom_facts *));
-    if (!scan->facts)
+    scan->segments = cwi_alloc_zeroed(names->count, sizeof(cwi_dicom_segment *));
+    if (!scan->facts || !scan->segments)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu files", names->count);
     for (size_t i = 0; st == CW_OK && i < names->count; i++) {
         uint64_t size;

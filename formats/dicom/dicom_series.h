@@ -27,6 +27,7 @@ typedef struct cwi_dicom_series {
 typedef struct cwi_dicom_scan {
     cwi_names files; /* files with images */
     cwi_dicom_facts **facts;
+    cwi_dicom_segment **segments; /* of each file; NULL: none */
     cwi_dicom_plane *planes;
     size_t plane_count, plane_room;
     cwi_dicom_series *series;

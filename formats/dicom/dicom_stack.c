@@ -543,6 +543,7 @@ static cw_status stack_segments(sorting *s, cwi_stack *stack, cw_error *err)
     stack->sparse = true;
     set_sizes(s, slices, stack);
     set_frame(s, along, step, stack);
+    stack->shape.known |= CW_KNOWN_LABELS;
     return map ? fill_maps(s, stack, err) : fill_labels(s, stack, err);
 }
 

@@ -167,6 +167,36 @@ typedef struct frame {
     int segment;
 } frame;
 
+static inline void put_code(test_dicom *d, uint32_t tag, const char *value, const char *meaning)
+{
+    test_dicom_open_sequence(d, tag);
+    test_dicom_open_item(d);
+    test_dicom_text(d, 0x00080100, "SH", value);
+    test_dicom_text(d, 0x00080102, "SH", "SCT");
+    test_dicom_text(d, 0x00080104, "LO", meaning);
+    test_dicom_close_item(d);
+    test_dicom_close_sequence(d);
+}
+
+/* Two segments: 1 is red and has codes, 3 has a name alone. */
+static inline void put_segments(test_dicom *d)
+{
+    static const uint16_t red[3] = {35579, 53663, 50858};
+    test_dicom_open_sequence(d, 0x00620002); /* SegmentSequence */
+    test_dicom_open_item(d);
+    put_code(d, 0x00620003, "85756007", "Tissue");
+    test_dicom_u16(d, 0x00620004, 1);
+    test_dicom_text(d, 0x00620005, "LO", "left\tlung");
+    test_dicom_bytes(d, 0x0062000d, "US", red, sizeof red);
+    put_code(d, 0x0062000f, "10200004", "Liver");
+    test_dicom_close_item(d);
+    test_dicom_open_item(d);
+    test_dicom_u16(d, 0x00620004, 3);
+    test_dicom_text(d, 0x00620005, "LO", "rest");
+    test_dicom_close_item(d);
+    test_dicom_close_sequence(d);
+}
+
 static const char ENHANCED_CT[] = "1.2.840.10008.5.1.4.1.1.2.1",
                   SEGMENTATION[] = "1.2.840.10008.5.1.4.1.1.66.4",
                   LABEL_MAP[] = "1.2.840.10008.5.1.4.1.1.66.7";
@@ -189,6 +219,8 @@ static inline void put_head(test_dicom *d, const char *sop_class, const char *fr
     test_dicom_u16(d, 0x00280103, 0);
     if (sop_class == LABEL_MAP)
         test_dicom_u16(d, 0x00280120, 7);
+    if (sop_class != ENHANCED_CT)
+        put_segments(d);
     test_dicom_open_sequence(d, 0x52009229); /* SharedFunctionalGroupsSequence */
     test_dicom_open_item(d);
     test_dicom_open_sequence(d, 0x00209116);
