@@ -43,7 +43,8 @@ typedef enum cwi_dicom_kind {
     CWI_DICOM_NO_IMAGE, /* a directory, a report, ... */
     CWI_DICOM_IMAGE,
     CWI_DICOM_SEGMENTATION, /* a frame holds the mask of one segment */
-    CWI_DICOM_LABELMAP      /* a pixel is the number of a segment */
+    CWI_DICOM_LABELMAP,     /* a pixel is the number of a segment */
+    CWI_DICOM_FRACTIONS     /* a frame holds the fractions of one segment: from 0 to 1 */
 } cwi_dicom_kind;
 
 typedef struct cwi_dicom_facts {
@@ -59,6 +60,7 @@ typedef struct cwi_dicom_facts {
     bool has_padding;
     double padding[2];
     uint32_t segment_count; /* of a segmentation */
+    bool never_overlaps;    /* it states that its segments do not overlap */
 } cwi_dicom_facts;          /* frame_count frames follow, then segment_count segments */
 
 /* A word of a coding scheme. Texts are as the file has them. */

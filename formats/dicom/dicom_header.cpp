@@ -109,6 +109,8 @@ cwi_dicom_kind kind_of(DcmItem *data)
     const bool labels = text_of(data, DCM_SegmentationType) == "LABELMAP";
     if (what == label_map || (what == UID_SegmentationStorage && labels))
         return CWI_DICOM_LABELMAP;
+    if (what == UID_SegmentationStorage && text_of(data, DCM_SegmentationType) == "FRACTIONAL")
+        return CWI_DICOM_FRACTIONS;
     return what == UID_SegmentationStorage ? CWI_DICOM_SEGMENTATION : CWI_DICOM_IMAGE;
 }
 
@@ -532,12 +534,29 @@ void take_segments(DcmDataset *data, cwi_dicom_facts *f, size_t room)
     cwi_dicom_segment *segments =
         reinterpret_cast<cwi_dicom_segment *>(frames + f->frame_count);
     const size_t most = (room - sizeof *f - f->frame_count * sizeof *frames) / sizeof *segments;
-    if (f->kind == CWI_DICOM_IMAGE ||
-        data->findAndGetSequence(DCM_SegmentSequence, sequence).bad())
+    if (f->kind == CWI_DICOM_IMAGE)
+        return;
+    f->never_overlaps = text_of(data, DcmTagKey(0x0062, 0x0013)) == "NO"; // SegmentsOverlap
+    if (data->findAndGetSequence(DCM_SegmentSequence, sequence).bad())
         return;
     while (f->segment_count < sequence->card() && f->segment_count < most) {
         take_segment(sequence->getItem(f->segment_count), segments + f->segment_count);
         f->segment_count++;
+    }
+}
+
+// Scales the fractions of a segment to 0 to 1.
+void scale_fractions(DcmDataset *data, cwi_dicom_facts *f)
+{
+    const uint32_t most = count_of(data, DCM_MaximumFractionalValue, 0);
+    cwi_dicom_frame *frames = reinterpret_cast<cwi_dicom_frame *>(f + 1);
+    if (f->kind != CWI_DICOM_FRACTIONS)
+        return;
+    if (most == 0)
+        refuse(f, "it is a segmentation by fractions without 'MaximumFractionalValue'");
+    for (uint32_t n = 0; n < f->frame_count && most > 0; n++) {
+        frames[n].slope = 1.0 / most;
+        frames[n].intercept = 0;
     }
 }
 
@@ -570,9 +589,6 @@ cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t room, cw_error *er
     f->deflated = d.data()->getOriginalXfer() == EXS_DeflatedLittleEndianExplicit;
     refuse(f, s.why_not);
     refuse(f, check_sizes(l));
-    if (f->kind == CWI_DICOM_SEGMENTATION &&
-        text_of(data, DCM_SegmentationType) == "FRACTIONAL")
-        refuse(f, "it is a segmentation of type FRACTIONAL, which is not read");
     if (l.frames > (room - sizeof *f) / sizeof(cwi_dicom_frame))
         return cwi_fail(err, CW_ERR_LIMIT, "'NumberOfFrames' is %u; at most %zu are read",
                         l.frames, (room - sizeof *f) / sizeof(cwi_dicom_frame));
@@ -580,6 +596,7 @@ cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t room, cw_error *er
     take_padding(data, l, f);
     take_frames(data, f);
     take_segments(data, f, room);
+    scale_fractions(data, f);
     unfold(d, f);
     return CW_OK;
 }

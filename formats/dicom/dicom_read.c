@@ -2,6 +2,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/bytes/file_pattern.h"
+#include "formats/dicom/dicom_overlap.h"
 #include "formats/dicom/dicom_segments.h"
 #include "formats/dicom/dicom_stack.h"
 #include "formats/volume/volume_reader.h"
@@ -67,6 +68,31 @@ static void note_scan(const cw_read_desc *desc, const cwi_dicom_scan *found, boo
                  found->copies);
 }
 
+/* Parts segments that overlap into layers, and adds their names to the table that is wanted. */
+static cw_status read_segments(const cwi_dicom_scan *found, size_t series, const cwi_input *in,
+                               cwi_planes *planes, const cw_read_desc *desc, cwi_stack *stack,
+                               cw_error *err)
+{
+    const cwi_dicom_facts *f = found->series[series].sample->file;
+    if (f->kind == CWI_DICOM_FRACTIONS)
+        cwi_note(desc, "its segments are fractions from 0 to 1, a component each: their "
+                       "surfaces are at 0.5");
+    if (f->kind == CWI_DICOM_IMAGE || f->kind == CWI_DICOM_FRACTIONS)
+        return CW_OK;
+    uint8_t *layer_of = cwi_alloc_zeroed(CWI_DICOM_SEGMENTS, 1);
+    cw_status st =
+        layer_of ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for layers of segments");
+    if (st == CW_OK && f->kind == CWI_DICOM_SEGMENTATION && !f->never_overlaps)
+        st = cwi_dicom_find_layers(stack, in, planes, desc, layer_of, err);
+    if (st == CW_OK && stack->shape.components > 1)
+        cwi_note(desc, "segments overlap: they are in %zu layers, a component each",
+                 stack->shape.components);
+    if (st == CW_OK && desc->labels)
+        st = cwi_dicom_add_segments(found, series, layer_of, desc->labels, err);
+    cwi_free(layer_of);
+    return st;
+}
+
 cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,
                          cw_volume *volume, cw_error *err)
 {
@@ -89,13 +115,11 @@ cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names, const cw_read_de
     if (st == CW_OK) {
         cwi_set_spacing(&stack.shape, desc);
         stack.files = found.files; /* borrowed */
-        st = cwi_stack_load(&stack, in, &planes, desc, volume, err);
+        st = read_segments(&found, series, in, &planes, desc, &stack, err);
+        if (st == CW_OK)
+            st = cwi_stack_load(&stack, in, &planes, desc, volume, err);
         stack.files = (cwi_names){0};
     }
-    if (st == CW_OK && desc->labels)
-        st = cwi_dicom_add_segments(&found, series, desc->labels, err);
-    if (st != CW_OK)
-        cw_volume_free(volume);
     cwi_stack_free(&stack);
     cwi_dicom_scan_free(&found);
     cwi_planes_close(&planes);

@@ -2,6 +2,7 @@
 #include "formats/dicom/dicom_segments.h"
 
 #include "core/base/status.h"
+#include "formats/dicom/dicom_overlap.h"
 
 #include <math.h>
 #include <string.h>
@@ -63,11 +64,13 @@ static cw_code borrow_code(const cwi_dicom_code *code)
 }
 
 /* Adds a segment, whose facts are untrusted. */
-static cw_status add_segment(const cwi_dicom_segment *s, cw_label_table *table, cw_error *err)
+static cw_status add_segment(const cwi_dicom_segment *s, const uint8_t *layer_of,
+                             cw_label_table *table, cw_error *err)
 {
     if (!IS_TERMINATED(s->label) || !is_valid_code(&s->category) || !is_valid_code(&s->type))
         return cwi_fail(err, CW_ERR_BACKEND, "DCMTK's answer is not valid");
     cw_label label = {.value = s->number,
+                      .layer = s->number < CWI_DICOM_SEGMENTS ? layer_of[s->number] : 0,
                       .name = text_or_null(s->label),
                       .has_color = s->has_color != 0,
                       .color = {0, 0, 0, 255},
@@ -79,7 +82,7 @@ static cw_status add_segment(const cwi_dicom_segment *s, cw_label_table *table, 
 }
 
 cw_status cwi_dicom_add_segments(const cwi_dicom_scan *scan, size_t series,
-                                 cw_label_table *table, cw_error *err)
+                                 const uint8_t *layer_of, cw_label_table *table, cw_error *err)
 {
     cw_status st = CW_OK;
     for (size_t p = 0; p < scan->plane_count && st == CW_OK; p++) {
@@ -87,7 +90,7 @@ cw_status cwi_dicom_add_segments(const cwi_dicom_scan *scan, size_t series,
         if (plane->series != series || plane->number > 0)
             continue;
         for (uint32_t n = 0; n < plane->file->segment_count && st == CW_OK; n++)
-            st = add_segment(&scan->segments[plane->index][n], table, err);
+            st = add_segment(&scan->segments[plane->index][n], layer_of, table, err);
     }
     return st;
 }

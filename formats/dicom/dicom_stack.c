@@ -517,6 +517,58 @@ static cw_status fill_maps(const sorting *s, cwi_stack *stack, cw_error *err)
     return st;
 }
 
+/* Lists the numbers of segments that occur, rising; *count of them. */
+static void list_segments(const sorting *s, uint32_t *numbers, size_t *count)
+{
+    *count = 0;
+    for (size_t i = 0; i < s->count; i++) {
+        const uint32_t number = s->planes[i].frame.segment;
+        size_t at = *count;
+        while (at > 0 && numbers[at - 1] >= number)
+            at--;
+        if (at < *count && numbers[at] == number)
+            continue;
+        memmove(numbers + at + 1, numbers + at, (*count - at) * sizeof *numbers);
+        numbers[at] = number;
+        ++*count;
+    }
+}
+
+static size_t find_segment(const uint32_t *numbers, uint32_t number)
+{
+    size_t n = 0;
+    while (numbers[n] != number)
+        n++;
+    return n;
+}
+
+/* Fills fractions: each segment is a component, in the order of their numbers. */
+static cw_status fill_fractions(const sorting *s, cwi_stack *stack, cw_error *err)
+{
+    enum { MAX_SEGMENTS = 16 };
+    cw_volume *v = &stack->shape;
+    uint32_t *numbers = cwi_alloc_array(s->count, sizeof *numbers);
+    size_t count;
+    if (!numbers)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu segments", s->count);
+    list_segments(s, numbers, &count);
+    cw_status st = make_room(s, s->count, stack, err);
+    if (st == CW_OK && count > MAX_SEGMENTS)
+        st = cwi_fail(err, CW_ERR_LIMIT,
+                      "%zu segments by fractions; up to %d are read, a component each", count,
+                      MAX_SEGMENTS);
+    for (size_t i = 0; st == CW_OK && i < s->count; i++) {
+        const cwi_dicom_plane *p = &s->planes[i];
+        const size_t component = find_segment(numbers, p->frame.segment);
+        stack->slots[i] =
+            (cwi_slot){.place = component * v->dim[2] + p->place, .low = i, .high = i};
+    }
+    v->components = count;
+    v->component_stride = v->stride[2] * (ptrdiff_t)v->dim[2];
+    cwi_free(numbers);
+    return st;
+}
+
 static cw_status stack_segments(sorting *s, cwi_stack *stack, cw_error *err)
 {
     double along[3];
@@ -532,8 +584,8 @@ static cw_status stack_segments(sorting *s, cwi_stack *stack, cw_error *err)
         st = find_segment_places(s, step, &slices, err);
     if (st != CW_OK)
         return st;
-    const bool map = s->planes[0].file->kind == CWI_DICOM_LABELMAP;
-    if (map) {
+    const cwi_dicom_kind kind = s->planes[0].file->kind;
+    if (kind != CWI_DICOM_SEGMENTATION) {
         set_values(s, stack);
     } else {
         stack->type = CW_U8;
@@ -543,8 +595,10 @@ static cw_status stack_segments(sorting *s, cwi_stack *stack, cw_error *err)
     stack->sparse = true;
     set_sizes(s, slices, stack);
     set_frame(s, along, step, stack);
+    if (kind == CWI_DICOM_FRACTIONS)
+        return fill_fractions(s, stack, err);
     stack->shape.known |= CW_KNOWN_LABELS;
-    return map ? fill_maps(s, stack, err) : fill_labels(s, stack, err);
+    return kind == CWI_DICOM_LABELMAP ? fill_maps(s, stack, err) : fill_labels(s, stack, err);
 }
 
 /* --- images without a place --------------------------------------------------------------- */

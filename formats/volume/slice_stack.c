@@ -22,9 +22,8 @@ void cwi_stack_free(cwi_stack *stack)
 /* The reading of a stack. */
 typedef struct reading {
     const cwi_stack *stack;
-    const cwi_input *in;
+    cwi_stack_reader reader;
     cwi_planes *planes;
-    size_t file;               /* the last file handed over; SIZE_MAX: none */
     cw_box box;                /* the wanted region */
     size_t every;              /* every n-th of its slices */
     size_t pixels;             /* number of wanted samples in a plane */
@@ -82,7 +81,7 @@ static const char *file_name(const cwi_stack *s, size_t file)
     return s->files.count ? s->files.items[file] : NULL;
 }
 
-static cw_status hand_over(reading *r, size_t file, cw_error *err)
+static cw_status hand_over(cwi_stack_reader *r, size_t file, cw_error *err)
 {
     const char *name = file_name(r->stack, file);
     const void *facts;
@@ -100,6 +99,26 @@ static cw_status hand_over(reading *r, size_t file, cw_error *err)
     return st;
 }
 
+/* Reads rows of a plane. */
+static cw_status read_rows(cwi_stack_reader *r, size_t index, size_t first, size_t count,
+                           void *to, cw_error *err)
+{
+    const cwi_stack *s = r->stack;
+    const cwi_plane *plane = &s->planes[index];
+    cw_status st = hand_over(r, plane->file, err);
+    if (st == CW_OK)
+        st = cwi_planes_read(r->planes, plane->number, first, count,
+                             s->shape.dim[0] * s->samples * cw_type_size(s->type), to, err);
+    return st == CW_OK || st == CW_ERR_CANCELLED || !file_name(s, plane->file)
+               ? st
+               : cwi_fail_in(err, st, file_name(s, plane->file));
+}
+
+cw_status cwi_stack_read_plane(cwi_stack_reader *r, size_t index, void *to, cw_error *err)
+{
+    return read_rows(r, index, 0, r->stack->shape.dim[1], to, err);
+}
+
 /* Keeps the wanted columns of rows, one row after another. */
 static void keep_columns(const reading *r, char *rows)
 {
@@ -113,17 +132,10 @@ static void keep_columns(const reading *r, char *rows)
 /* Reads the wanted rows of a plane; there must be room for whole rows. */
 static cw_status read_plane(reading *r, size_t index, void *to, cw_error *err)
 {
-    const cwi_stack *s = r->stack;
-    const cwi_plane *plane = &s->planes[index];
-    cw_status st = hand_over(r, plane->file, err);
-    if (st == CW_OK)
-        st = cwi_planes_read(r->planes, plane->number, r->box.first[1], r->box.count[1],
-                             s->shape.dim[0] * s->samples * cw_type_size(s->type), to, err);
+    cw_status st = read_rows(&r->reader, index, r->box.first[1], r->box.count[1], to, err);
     if (st == CW_OK)
         keep_columns(r, to);
-    return st == CW_OK || st == CW_ERR_CANCELLED || !file_name(s, plane->file)
-               ? st
-               : cwi_fail_in(err, st, file_name(s, plane->file));
+    return st;
 }
 
 /* Returns true if voxels are the module's pixels without any conversion. */
@@ -258,7 +270,9 @@ cw_status cwi_stack_load(const cwi_stack *stack, const cwi_input *in, cwi_planes
 {
     size_t bytes, held[3];
     cw_volume v = stack->shape;
-    reading r = {.stack = stack, .in = in, .planes = planes, .file = SIZE_MAX};
+    reading r = {.stack = stack,
+                 .reader = {.stack = stack, .in = in, .planes = planes, .file = SIZE_MAX},
+                 .planes = planes};
     if (desc->region)
         r.box = *desc->region;
     cw_status st = narrow_to_region(desc, &r, held, &v, err);

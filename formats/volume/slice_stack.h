@@ -44,6 +44,18 @@ CW_NODISCARD cw_status cwi_stack_load(const cwi_stack *stack, const cwi_input *i
                                       cwi_planes *planes, const cw_read_desc *desc,
                                       cw_volume *volume, cw_error *err);
 
+/* Reads whole planes of a stack, as the module returns their pixels. Initialise `file` to
+ * SIZE_MAX. */
+typedef struct cwi_stack_reader {
+    const cwi_stack *stack;
+    const cwi_input *in;
+    cwi_planes *planes;
+    size_t file; /* the last file handed over; SIZE_MAX: none */
+} cwi_stack_reader;
+
+CW_NODISCARD cw_status cwi_stack_read_plane(cwi_stack_reader *reader, size_t plane, void *to,
+                                            cw_error *err);
+
 void cwi_stack_free(cwi_stack *stack);
 
 #endif

@@ -199,7 +199,9 @@ static inline void put_segments(test_dicom *d)
 
 static const char ENHANCED_CT[] = "1.2.840.10008.5.1.4.1.1.2.1",
                   SEGMENTATION[] = "1.2.840.10008.5.1.4.1.1.66.4",
-                  LABEL_MAP[] = "1.2.840.10008.5.1.4.1.1.66.7";
+                  LABEL_MAP[] = "1.2.840.10008.5.1.4.1.1.66.7",
+                  FRACTIONS[] = "1.2.840.10008.5.1.4.1.1.66.4",
+                  APART[] = "1.2.840.10008.5.1.4.1.1.66.4"; /* segments, which do not overlap */
 
 static inline void put_head(test_dicom *d, const char *sop_class, const char *frames,
                             unsigned bits)
@@ -219,8 +221,14 @@ static inline void put_head(test_dicom *d, const char *sop_class, const char *fr
     test_dicom_u16(d, 0x00280103, 0);
     if (sop_class == LABEL_MAP)
         test_dicom_u16(d, 0x00280120, 7);
+    if (sop_class == FRACTIONS)
+        test_dicom_text(d, 0x00620001, "CS", "FRACTIONAL");
     if (sop_class != ENHANCED_CT)
         put_segments(d);
+    if (sop_class == FRACTIONS)
+        test_dicom_u16(d, 0x0062000e, 200); /* MaximumFractionalValue */
+    if (sop_class == APART)
+        test_dicom_text(d, 0x00620013, "CS", "NO");
     test_dicom_open_sequence(d, 0x52009229); /* SharedFunctionalGroupsSequence */
     test_dicom_open_item(d);
     test_dicom_open_sequence(d, 0x00209116);
@@ -245,7 +253,7 @@ static inline void begin_frames(test_dicom *d, test_dicom_syntax syntax, const c
     char number[8];
     snprintf(number, sizeof number, "%d", count);
     test_dicom_begin(d, syntax);
-    put_head(d, sop_class, number, sop_class == SEGMENTATION ? 1 : 8);
+    put_head(d, sop_class, number, sop_class == SEGMENTATION || sop_class == APART ? 1 : 8);
     test_dicom_open_sequence(d, 0x52009230); /* PerFrameFunctionalGroupsSequence */
     for (int n = 0; n < count; n++)
         put_frame(d, frames[n].position, frames[n].slope, frames[n].segment);

@@ -28,9 +28,9 @@ static void segments_become_labels(void **state)
     const frame frames[] = {
         {"0\\0\\0", NULL, 3}, {"0\\0\\6", NULL, 3}, {"0\\0\\0", NULL, 1}, {"0\\0\\2", NULL, 1}};
     const uint8_t bits[6] = {0x0f, 0xf0, 0xff, 0xff, 0x01, 0x00};
-    write_frames("seg.dcm", SEGMENTATION, frames, 4, bits, sizeof bits);
+    write_frames("seg.dcm", APART, frames, 4, bits, sizeof bits);
     cw_volume v = read_all(NULL);
-    assert_true(v.dim[2] == 4 && v.type == CW_U8);
+    assert_true(v.dim[2] == 4 && v.type == CW_U8 && v.components == 1);
     for (size_t k = 0; k < 4; k++)
         for (size_t n = 0; n < PIXELS; n++) {
             int label = 0;
@@ -43,6 +43,67 @@ static void segments_become_labels(void **state)
             }
             assert_near(cw_volume_value(&v, n % COLUMNS, n / COLUMNS, k), label, 0);
         }
+    cw_volume_free(&v);
+}
+
+/* Segments that overlap are in layers, the first in which they fit. */
+static void segments_that_overlap_are_in_layers(void **state)
+{
+    (void)state;
+    /* 4 overlaps 2 in the second slice, 5 overlaps none, 9 overlaps 2 and 4 */
+    const frame frames[] = {{"0\\0\\0", NULL, 2},
+                            {"0\\0\\2", NULL, 2},
+                            {"0\\0\\2", NULL, 4},
+                            {"0\\0\\0", NULL, 5},
+                            {"0\\0\\2", NULL, 9}};
+    static const uint16_t masks[5] = {0x00f, 0x0ff, 0x0c0, 0xf00, 0x0e0};
+    static const size_t layers[5] = {0, 0, 1, 0, 2};
+    uint8_t bits[5 * PIXELS / 8 + 1] = {0};
+    for (size_t f = 0; f < 5; f++)
+        for (size_t n = 0; n < PIXELS; n++)
+            if (masks[f] >> n & 1)
+                bits[(f * PIXELS + n) / 8] |= (uint8_t)(1 << (f * PIXELS + n) % 8);
+    write_frames("seg.dcm", SEGMENTATION, frames, 5, bits, sizeof bits);
+    cw_volume v = read_all(NULL);
+    assert_true(v.dim[2] == 2 && v.components == 3);
+    for (size_t c = 0; c < 3; c++) {
+        cw_volume layer;
+        assert_int_equal(cw_volume_select(&v, c, 0, &layer, NULL), CW_OK);
+        for (size_t k = 0; k < 2; k++)
+            for (size_t n = 0; n < PIXELS; n++) {
+                int label = 0;
+                for (size_t f = 0; f < 5; f++)
+                    if (layers[f] == c && frames[f].position[4] - '0' == 2 * (int)k &&
+                        masks[f] >> n & 1)
+                        label = frames[f].segment;
+                assert_near(cw_volume_value(&layer, n % COLUMNS, n / COLUMNS, k), label, 0);
+            }
+    }
+    cw_volume_free(&v);
+}
+
+/* Each segment is a component of values from 0 to 1. */
+static void fractions_are_components(void **state)
+{
+    (void)state;
+    const frame frames[] = {{"0\\0\\0", NULL, 3}, {"0\\0\\2", NULL, 3}, {"0\\0\\2", NULL, 1}};
+    uint8_t pixels[3 * PIXELS];
+    for (int n = 0; n < 3 * PIXELS; n++)
+        pixels[n] = (uint8_t)(5 * n);
+    write_frames("seg.dcm", FRACTIONS, frames, 3, pixels, sizeof pixels);
+    cw_volume v = read_all(NULL);
+    assert_true(v.components == 2 && v.dim[2] == 2 && !(v.known & CW_KNOWN_LABELS));
+    for (size_t c = 0; c < 2; c++) {
+        cw_volume one;
+        assert_int_equal(cw_volume_select(&v, c, 0, &one, NULL), CW_OK);
+        for (size_t k = 0; k < 2; k++)
+            for (size_t n = 0; n < PIXELS; n++) {
+                const bool is_empty = c == 0 && k == 0;
+                const size_t from = c == 0 ? 2 : k;
+                assert_near(cw_volume_value(&one, n % COLUMNS, n / COLUMNS, k),
+                            is_empty ? 0 : pixels[from * PIXELS + n] / 200.0, 1e-12);
+            }
+    }
     cw_volume_free(&v);
 }
 
@@ -266,9 +327,14 @@ int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
     const struct CMUnitTest tests[] = {
-        TEST(frames_have_a_place_each),     TEST(segments_become_labels),
-        TEST(label_maps_have_their_slices), TEST(runs_of_bits_are_read),
-        TEST(mosaics_are_unfolded),         TEST(mosaics_of_unknown_places_are_refused),
+        TEST(frames_have_a_place_each),
+        TEST(segments_become_labels),
+        TEST(segments_that_overlap_are_in_layers),
+        TEST(fractions_are_components),
+        TEST(label_maps_have_their_slices),
+        TEST(runs_of_bits_are_read),
+        TEST(mosaics_are_unfolded),
+        TEST(mosaics_of_unknown_places_are_refused),
     };
     if (!cwi_module_present("dicom")) {
         print_message("this build reads no DICOM\n");
