@@ -9,7 +9,7 @@
 
 enum { SKIPPED = 77, MAXIMUM = 3 };
 
-/* Where segments overlap, there are several NRRD files, and the highest number stays. */
+/* Where segments overlap, there is an NRRD file for each layer. */
 static const struct {
     const char *dicom, *nrrd[MAXIMUM];
 } rows[] = {
@@ -48,12 +48,16 @@ static size_t count_differences(const cw_volume *v, const cw_volume *wanted, int
             if (fabs(v->affine[a][c] - wanted[0].affine[a][c]) > 1e-4)
                 return SIZE_MAX;
     }
-    for (size_t i = 0; i < n[0] * n[1] * n[2]; i++) {
-        const size_t x = i % n[0], y = i / n[0] % n[1], z = i / n[0] / n[1];
-        double most = 0;
-        for (int w = 0; w < wanted_count; w++)
-            most = fmax(most, voxel_at(&wanted[w], x, y, z));
-        differ += voxel_at(v, x, y, z) != most;
+    if (v->components != (size_t)wanted_count)
+        return SIZE_MAX;
+    for (int w = 0; w < wanted_count; w++) {
+        cw_volume layer;
+        if (cw_volume_select(v, (size_t)w, 0, &layer, NULL) != CW_OK)
+            return SIZE_MAX;
+        for (size_t i = 0; i < n[0] * n[1] * n[2]; i++) {
+            const size_t x = i % n[0], y = i / n[0] % n[1], z = i / n[0] / n[1];
+            differ += voxel_at(&layer, x, y, z) != voxel_at(&wanted[w], x, y, z);
+        }
     }
     return differ;
 }
