@@ -65,7 +65,8 @@ static void count_row(const cw_volume *v, size_t j, size_t k, census *c)
     const char *p = cwi_voxel_address(v, 0, j, k);
     double last = NAN;
     size_t pairs = 0;
-    for (size_t i = 0; i < v->dim[0] && !c->too_many && !c->is_starved; i++, p += v->stride[0]) {
+    for (size_t i = 0; i < v->dim[0] && !c->too_many && !c->is_starved;
+         i++, p += v->stride[0]) {
         const double value = cwi_voxel_at(v->type, p);
         const bool has_value = value == value && !(v->has_nodata && value == v->nodata);
         if (has_value && value == last) {
@@ -150,9 +151,9 @@ cw_status cw_volume_labels(const cw_volume *volume, cw_labels *out, cw_error *er
     if (c.is_starved)
         st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to count labels");
     if (st == CW_OK) {
-        out->found = known || (!c.too_many && c.is_whole && c.run_count >= FEWEST_LABELS &&
-                               v.slope * c.runs[0].value + v.intercept >= 0 &&
-                               is_label_map(&c));
+        out->found =
+            known || (!c.too_many && c.is_whole && c.run_count >= FEWEST_LABELS &&
+                      v.slope * c.runs[0].value + v.intercept >= 0 && is_label_map(&c));
         out->more = out->found && (c.too_many || c.run_count > CW_LABELS_MAX);
         out->count = !out->found                   ? 0
                      : c.run_count < CW_LABELS_MAX ? c.run_count
