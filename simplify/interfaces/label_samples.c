@@ -1,10 +1,8 @@
-/* Makes samples of label interfaces, and measures how far a collapse takes the surface from
- * them. Distances are measured in each patch by itself. */
+/* Makes samples of label interfaces, and keeps their lists. */
 #include "simplify/interfaces/label_samples.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "core/geometry/point_triangle.h"
 
 #include <string.h>
 
@@ -63,8 +61,12 @@ static bool alloc_samples(cwi_label_samples *s, const cwi_complex *c)
     s->collected = cwi_alloc_array(s->count, sizeof *s->collected);
     s->nearest = cwi_alloc_array(s->count, sizeof *s->nearest);
     s->originals = cwi_alloc_array(3 * c->vertex_count, sizeof *s->originals);
+    s->sample_marks = cwi_alloc_zeroed(s->count, sizeof *s->sample_marks);
+    s->triangle_marks = cwi_alloc_zeroed(c->triangle_count, sizeof *s->triangle_marks);
+    s->met = cwi_alloc_array(c->triangle_count, sizeof *s->met);
     return s->vertices && s->patches && s->first_triangle && s->triangles && s->cares &&
-           s->next && s->heads && s->collected && s->nearest && s->originals;
+           s->next && s->heads && s->collected && s->nearest && s->originals &&
+           s->sample_marks && s->triangle_marks && s->met;
 }
 
 cw_status cwi_label_samples_build(cwi_label_samples *s, const cwi_complex *c,
@@ -97,6 +99,9 @@ void cwi_label_samples_free(cwi_label_samples *s)
     cwi_free(s->heads);
     cwi_free(s->collected);
     cwi_free(s->nearest);
+    cwi_free(s->sample_marks);
+    cwi_free(s->triangle_marks);
+    cwi_free(s->met);
     memset(s, 0, sizeof *s);
 }
 
@@ -116,124 +121,12 @@ void cwi_label_samples_restart(cwi_label_samples *s, cwi_complex *c)
     }
 }
 
-/* ---- measuring -------------------------------------------------------------------------- */
-
-static void collect_samples(cwi_label_samples *s, uint32_t triangle)
+uint32_t cwi_label_samples_find(const cwi_label_samples *s, uint32_t vertex, uint32_t patch)
 {
-    for (uint32_t n = s->heads[triangle]; n != CWI_NO_INDEX; n = s->next[n])
-        s->collected[s->collected_count++] = n;
-}
-
-/* Returns the distance that is allowed at all samples of a star; 0: it must not change. */
-static double find_allowed(const cwi_label_samples *s)
-{
-    uint8_t care = 0;
-    for (size_t n = 0; n < s->collected_count; n++) {
-        const uint8_t its_care = s->cares[s->collected[n]];
-        care = its_care > care ? its_care : care;
-    }
-    return care < CWI_LABEL_MAX_CARE ? ldexp(s->error, -care) : 0;
-}
-
-static void get_original(const cwi_label_samples *s, uint32_t sample, double p[3])
-{
-    for (size_t k = 0; k < 3; k++)
-        p[k] = (double)s->originals[3 * (size_t)s->vertices[sample] + k];
-}
-
-/* Finds the spoke nearest to each sample. Returns false if one is too far. */
-static bool find_nearest_spokes(cwi_label_samples *s, const cwi_complex *c,
-                                const cwi_star *star, double square)
-{
-    for (size_t n = 0; n < s->collected_count; n++) {
-        const uint32_t sample = s->collected[n];
-        double p[3], least = INFINITY;
-        get_original(s, sample, p);
-        for (size_t i = 0; i < star->spoke_count; i++) {
-            const cwi_star_spoke *spoke = &star->spokes[i];
-            if (spoke->patch != s->patches[sample])
-                continue;
-            const double distance =
-                cwi_facet_square(star->move.place, c->points + 3 * (size_t)spoke->a,
-                                 c->points + 3 * (size_t)spoke->b, p);
-            if (distance < least) {
-                least = distance;
-                s->nearest[n] = (uint32_t)i;
-            }
-        }
-        if (!(least <= square))
-            return false;
-    }
-    return true;
-}
-
-/* Returns true if a point is near the input's triangles around the nearest sample of a patch.
- * Others may be nearer still. */
-static bool is_near_input(const cwi_label_samples *s, uint32_t patch, const double p[3],
-                          double square)
-{
-    uint32_t start = CWI_NO_INDEX;
-    double least = INFINITY;
-    for (size_t n = 0; n < s->collected_count; n++) {
-        double q[3];
-        if (s->patches[s->collected[n]] != patch)
-            continue;
-        get_original(s, s->collected[n], q);
-        for (int k = 0; k < 3; k++)
-            q[k] -= p[k];
-        const double distance = cwi_dot(q, q);
-        if (distance < least) {
-            least = distance;
-            start = s->collected[n];
-        }
-    }
-    if (start == CWI_NO_INDEX)
-        return false;
-    for (uint32_t i = s->first_triangle[start]; i < s->first_triangle[start + 1]; i++) {
-        const uint32_t *v = s->corners + 3 * (size_t)s->triangles[i];
-        if (cwi_facet_square(s->originals + 3 * (size_t)v[0], s->originals + 3 * (size_t)v[1],
-                             s->originals + 3 * (size_t)v[2], p) <= square)
-            return true;
-    }
-    return false;
-}
-
-/* Returns true if the new vertex, and the middles of new sides and triangles, are near the
- * input. */
-static bool is_star_near_input(const cwi_label_samples *s, const cwi_complex *c,
-                               const cwi_star *star, double square)
-{
-    double place[3];
-    for (int k = 0; k < 3; k++)
-        place[k] = (double)star->move.place[k];
-    for (size_t i = 0; i < star->spoke_count; i++) {
-        const cwi_star_spoke *spoke = &star->spokes[i];
-        double side[3], middle[3];
-        for (size_t k = 0; k < 3; k++) {
-            const double a = (double)c->points[3 * (size_t)spoke->a + k],
-                         b = (double)c->points[3 * (size_t)spoke->b + k];
-            side[k] = (place[k] + a) / 2;
-            middle[k] = (place[k] + a + b) / 3;
-        }
-        const bool is_first = i == 0 || star->spokes[i - 1].patch != spoke->patch;
-        if ((is_first && !is_near_input(s, spoke->patch, place, square)) ||
-            !is_near_input(s, spoke->patch, side, square) ||
-            !is_near_input(s, spoke->patch, middle, square))
-            return false;
-    }
-    return true;
-}
-
-bool cwi_label_samples_allow(cwi_label_samples *s, const cwi_complex *c, const cwi_star *star)
-{
-    s->collected_count = 0;
-    for (size_t i = 0; i < star->spoke_count; i++)
-        collect_samples(s, star->spokes[i].triangle);
-    for (size_t i = 0; i < star->gone_count; i++)
-        collect_samples(s, star->gone[i]);
-    const double allowed = find_allowed(s);
-    return allowed > 0 && find_nearest_spokes(s, c, star, allowed * allowed) &&
-           is_star_near_input(s, c, star, allowed * allowed);
+    for (uint32_t n = s->first_sample[vertex]; n < s->first_sample[vertex + 1]; n++)
+        if (s->patches[n] == patch)
+            return n;
+    return CWI_NO_INDEX;
 }
 
 void cwi_label_samples_move(cwi_label_samples *s, const cwi_star *star)
@@ -243,5 +136,5 @@ void cwi_label_samples_move(cwi_label_samples *s, const cwi_star *star)
     for (size_t i = 0; i < star->gone_count; i++)
         s->heads[star->gone[i]] = CWI_NO_INDEX;
     for (size_t n = 0; n < s->collected_count; n++)
-        list_sample(s, s->collected[n], star->spokes[s->nearest[n]].triangle);
+        list_sample(s, s->collected[n], star->spokes[s->nearest[s->collected[n]]].triangle);
 }

@@ -6,7 +6,7 @@
 #include "simplify/interfaces/label_star.h"
 
 /* The level of care at which the triangles around a sample stay as they are. Each level below
- * halves the distance that is allowed. */
+ * allows a smaller part of the distance. */
 enum { CWI_LABEL_MAX_CARE = 3 };
 
 /* One sample for each vertex and patch around it. Each is in the list of a triangle of its patch
@@ -27,6 +27,11 @@ typedef struct cwi_label_samples {
     uint32_t *collected;      /* count: the samples of a star */
     uint32_t *nearest;        /* count: the spoke that is nearest to each of them */
     size_t collected_count;
+    uint32_t *sample_marks;   /* count: of those of the last star, `mark` */
+    uint32_t *triangle_marks; /* triangle_count: of the input's triangles that were met */
+    uint32_t *met;            /* triangle_count: these triangles */
+    size_t met_count;
+    uint32_t mark;
 } cwi_label_samples;
 
 /* Makes the samples of a complex that is as it was built.
@@ -41,9 +46,12 @@ void cwi_label_samples_free(cwi_label_samples *s);
  * For a complex that was built again. */
 void cwi_label_samples_restart(cwi_label_samples *s, cwi_complex *c);
 
-/* Returns true if the samples of a star are near enough to its new triangles, and these to the
- * input's. */
+/* Returns true if the new triangles of a star are near enough to the input, and the input there
+ * to them and the triangles beside. */
 bool cwi_label_samples_allow(cwi_label_samples *s, const cwi_complex *c, const cwi_star *star);
+
+/* Returns the sample of a vertex of the input and a patch; CWI_NO_INDEX: there is none. */
+uint32_t cwi_label_samples_find(const cwi_label_samples *s, uint32_t vertex, uint32_t patch);
 
 /* Lists the samples of a star that was allowed with its new triangles. */
 void cwi_label_samples_move(cwi_label_samples *s, const cwi_star *star);

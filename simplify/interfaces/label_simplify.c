@@ -189,10 +189,15 @@ static void fail_list(job *j, uint32_t triangle)
         j->is_failing[n] = true;
 }
 
-/* Marks the samples around a triangle of the complex, in lists of its patch. */
+/* Marks the samples in the list of a triangle of the complex. If there are none, marks those of
+ * triangles of its patch around it. */
 static void fail_around(job *j, size_t triangle)
 {
     const cwi_complex *c = &j->complex;
+    if (j->samples.heads[triangle] != CWI_NO_INDEX) {
+        fail_list(j, (uint32_t)triangle);
+        return;
+    }
     for (size_t k = 0; k < 3; k++)
         for (uint32_t at = c->heads[c->corners[3 * triangle + k]]; at != CWI_NO_INDEX;
              at = c->next[at])

@@ -7,6 +7,10 @@
 
 #include <string.h>
 
+/* Patches with fewer triangles than this are measured by one thread: waking others would take
+ * longer. */
+enum { MIN_SHARED = 10000 };
+
 /* One patch as a mesh, in memory for the largest one. */
 typedef struct patch_copy {
     cw_mesh mesh;
@@ -66,12 +70,13 @@ cw_status cwi_patches_measure(const cw_label_surfaces *in, const cw_label_surfac
     for (size_t p = 0; p < in->patch_count && st == CW_OK; p++) {
         if (in->patches[p].count == out->patches[p].count)
             continue;
+        const int few = in->patches[p].count < MIN_SHARED ? 1 : threads;
         fill_copy(&before, in, p);
         fill_copy(&after, out, p);
-        st = cwi_mesh_within(&before.mesh, &after.mesh, error_mm, NULL, threads, progress,
+        st = cwi_mesh_within(&before.mesh, &after.mesh, error_mm, NULL, few, progress,
                              in_beyond + in->patches[p].first, err);
         if (st == CW_OK)
-            st = cwi_mesh_within(&after.mesh, &before.mesh, error_mm, NULL, threads, progress,
+            st = cwi_mesh_within(&after.mesh, &before.mesh, error_mm, NULL, few, progress,
                                  out_beyond + out->patches[p].first, err);
     }
     free_copy(&before);
