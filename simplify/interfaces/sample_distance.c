@@ -10,22 +10,28 @@
 /* The part of the error that is allowed at each level of care. */
 static const double allowed_parts[CWI_LABEL_MAX_CARE + 1] = {1, 0.75, 0.4, 0};
 
+/* The part of the squared error at which no nearer triangle is looked for. */
+#define NEAR_ENOUGH (1.0 / 16)
+
 /* The most triangles beside a star that are looked at. */
 enum { MAX_FACETS = 1024 };
 
-/* A triangle that may be near the input's. */
+/* A triangle that may be near the input's, and its box. */
 typedef struct near_facet {
     const float *corners[3];
     uint32_t patch;
+    float low[3], high[3];
 } near_facet;
 
 /* ---- samples ---------------------------------------------------------------------------- */
 
-static void collect_samples(cwi_label_samples *s, uint32_t triangle)
+/* Collects the samples of a triangle. spoke: its number in the star; CWI_NO_INDEX: it goes */
+static void collect_samples(cwi_label_samples *s, uint32_t triangle, uint32_t spoke)
 {
     for (uint32_t n = s->heads[triangle]; n != CWI_NO_INDEX; n = s->next[n]) {
         s->collected[s->collected_count++] = n;
         s->sample_marks[n] = s->mark;
+        s->nearest[n] = spoke;
     }
 }
 
@@ -59,26 +65,36 @@ static double measure_spoke(const cwi_complex *c, const cwi_star *star, size_t n
                             c->points + 3 * (size_t)spoke->b, p);
 }
 
-/* Finds the spoke nearest to each sample. Returns false if one is too far. */
+/* Finds the spoke nearest to a sample. One that it had before stays if it is near enough. */
+static double find_nearest_spoke(cwi_label_samples *s, const cwi_complex *c,
+                                 const cwi_star *star, uint32_t sample, double near_enough)
+{
+    const uint32_t before = s->nearest[sample];
+    double p[3], least = INFINITY;
+    widen_point(get_original(s, s->vertices[sample]), p);
+    if (before != CWI_NO_INDEX)
+        least = measure_spoke(c, star, before, p);
+    if (least <= near_enough)
+        return least;
+    for (size_t i = 0; i < star->spoke_count; i++) {
+        if (star->spokes[i].patch != s->patches[sample] || i == before)
+            continue;
+        const double distance = measure_spoke(c, star, i, p);
+        if (distance < least) {
+            least = distance;
+            s->nearest[sample] = (uint32_t)i;
+        }
+    }
+    return least;
+}
+
+/* Finds the spokes near all samples. Returns false if one is too far. */
 static bool find_nearest_spokes(cwi_label_samples *s, const cwi_complex *c,
                                 const cwi_star *star, double square)
 {
-    for (size_t n = 0; n < s->collected_count; n++) {
-        const uint32_t sample = s->collected[n];
-        double p[3], least = INFINITY;
-        widen_point(get_original(s, s->vertices[sample]), p);
-        for (size_t i = 0; i < star->spoke_count; i++) {
-            if (star->spokes[i].patch != s->patches[sample])
-                continue;
-            const double distance = measure_spoke(c, star, i, p);
-            if (distance < least) {
-                least = distance;
-                s->nearest[sample] = (uint32_t)i;
-            }
-        }
-        if (!(least <= square))
+    for (size_t n = 0; n < s->collected_count; n++)
+        if (!(find_nearest_spoke(s, c, star, s->collected[n], NEAR_ENOUGH * square) <= square))
             return false;
-    }
     return true;
 }
 
@@ -232,8 +248,26 @@ typedef struct facet_list {
 static void add_facet(facet_list *list, const float *p, const float *a, const float *b,
                       uint32_t patch)
 {
-    if (list->count < MAX_FACETS)
-        list->items[list->count++] = (near_facet){{p, a, b}, patch};
+    if (list->count == MAX_FACETS)
+        return;
+    near_facet *f = &list->items[list->count++];
+    *f = (near_facet){{p, a, b}, patch, {0}, {0}};
+    for (int k = 0; k < 3; k++) {
+        f->low[k] = fminf(p[k], fminf(a[k], b[k]));
+        f->high[k] = fmaxf(p[k], fmaxf(a[k], b[k]));
+    }
+}
+
+/* Computes the square of a point's distance from a facet's box. */
+static double measure_box(const near_facet *f, const double p[3])
+{
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        const double below = (double)f->low[k] - p[k], above = p[k] - (double)f->high[k];
+        const double d = cwi_greater(cwi_greater(below, above), 0);
+        square += d * d;
+    }
+    return square;
 }
 
 static bool has_star_triangle(const cwi_star *star, uint32_t triangle)
@@ -272,7 +306,7 @@ static double list_nearest(void *context, const double p[3], const float *facet[
     double least = INFINITY;
     for (size_t n = 0; n < list->count; n++) {
         const near_facet *f = &list->items[n];
-        if (f->patch != list->patch)
+        if (f->patch != list->patch || measure_box(f, p) >= least)
             continue;
         const double square = cwi_facet_square(f->corners[0], f->corners[1], f->corners[2], p);
         if (square < least) {
@@ -346,9 +380,9 @@ bool cwi_label_samples_allow(cwi_label_samples *s, const cwi_complex *c, const c
     s->collected_count = s->met_count = 0;
     s->mark++;
     for (size_t i = 0; i < star->spoke_count; i++)
-        collect_samples(s, star->spokes[i].triangle);
+        collect_samples(s, star->spokes[i].triangle, (uint32_t)i);
     for (size_t i = 0; i < star->gone_count; i++)
-        collect_samples(s, star->gone[i]);
+        collect_samples(s, star->gone[i], CWI_NO_INDEX);
     const double allowed = find_allowed(s), square = allowed * allowed;
     return allowed > 0 && find_nearest_spokes(s, c, star, square) &&
            is_star_near(s, c, star, square) && is_input_near(s, c, star, square);
