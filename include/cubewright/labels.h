@@ -116,6 +116,48 @@ CW_NODISCARD CW_API cw_status cw_label_patch_mesh(const cw_label_surfaces *surfa
 CW_API double cw_label_patch_area(const cw_label_surfaces *surfaces,
                                   const cw_label_patch *patch);
 
+/* Targets of a simplification of label surfaces. Zero-initialise the struct and set what you
+ * need. At least one of error_mm, triangles and ratio is needed. The first one reached ends the
+ * simplification. */
+typedef struct cw_label_simplify_desc {
+    double error_mm;      /* no point of a patch, before or after, is farther than this from the
+                             same patch of the other surfaces; default: no such promise */
+    size_t triangles;     /* stop at this number of triangles; default: no limit */
+    double ratio;         /* the same as a fraction of the input's; above 0, below 1; default:
+                             none */
+    int threads;          /* default: all that OpenMP offers */
+    cw_progress progress; /* default: none */
+} cw_label_simplify_desc;
+
+/* Simplifies all interfaces of a label map together by edge collapses, those first that move
+ * them least. Patches share their vertices afterwards as before, so neighbours stay without a
+ * gap.
+ *
+ * The complex of all patches stays homeomorphic to the input, with its curves and points. So
+ * each label taken alone is closed, oriented and a manifold where it was, with as many
+ * components and handles. No label is lost. Where patches meet, vertices move along their curve
+ * alone. Points where curves meet or end stay where they are, and borders stay borders. No
+ * triangle loses its area, or turns by more than 78 degrees in a collapse. No triangles meet
+ * that did not meet before, and no part changes to the other side of a surface.
+ *
+ * With triangles or ratio alone the result may have more triangles than requested. That happens
+ * where every edge that is left would break one of these rules.
+ *
+ * in       borrowed; such as from cw_extract_labels(). Patches are in order, and each triangle
+ *          is in one
+ * out      the same labels and patches, without attributes of vertices; filled on success,
+ *          emptied on failure. Free it with cw_label_surfaces_free()
+ * Returns  CW_ERR_ARGUMENT  no target; a target that is negative or not finite; patches that do
+ *          not cover the triangles; a triangle that names a vertex twice; as cw_mesh_check()
+ *          CW_ERR_LIMIT  more than 2^30 vertices or triangles; CW_ERR_NO_MEMORY;
+ *          CW_ERR_CANCELLED
+ * Cost     a few microseconds of one processor for a triangle that is removed
+ * Threads  the same bytes for any number
+ * Source   link condition [Dey1999]; quadrics [Garland1997] */
+CW_NODISCARD CW_API cw_status cw_label_simplify(const cw_label_surfaces *in,
+                                                const cw_label_simplify_desc *desc,
+                                                cw_label_surfaces *out, cw_error *err);
+
 #ifdef __cplusplus
 }
 #endif

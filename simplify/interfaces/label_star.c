@@ -1,0 +1,137 @@
+/* Makes the star of a collapse: triangles before and after, their turns and shapes. */
+#include "simplify/interfaces/label_star.h"
+
+#include "core/geometry/vec3.h"
+
+#include <string.h>
+
+/* The least cosine between the normals of a triangle before and after: 78 degrees. */
+#define MIN_COSINE 0.2
+
+/* The least ratio of height to longest side of a triangle, unless one of the star's triangles
+ * had less before. */
+#define MIN_SHAPE 0.03
+
+static void get_point(const cwi_complex *c, uint32_t vertex, double p[3])
+{
+    for (size_t k = 0; k < 3; k++)
+        p[k] = (double)c->points[3 * (size_t)vertex + k];
+}
+
+static void find_normal(const double p[3], const double a[3], const double b[3], double n[3])
+{
+    double u[3], v[3];
+    for (int k = 0; k < 3; k++) {
+        u[k] = a[k] - p[k];
+        v[k] = b[k] - p[k];
+    }
+    cwi_cross(u, v, n);
+}
+
+static double find_square(const double a[3], const double b[3])
+{
+    const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    return cwi_dot(d, d);
+}
+
+/* Computes the ratio of a triangle's height to its longest side. */
+static double find_shape(const double normal[3], const double p[3], const double a[3],
+                         const double b[3])
+{
+    const double longest =
+        cwi_greater(find_square(a, b), cwi_greater(find_square(p, a), find_square(p, b)));
+    return longest > 0 ? sqrt(cwi_dot(normal, normal)) / longest : 0;
+}
+
+static void grow_box(float box[6], const double p[3])
+{
+    for (int k = 0; k < 3; k++) {
+        box[k] = p[k] < (double)box[k] ? (float)p[k] : box[k];
+        box[k + 3] = p[k] > (double)box[k + 3] ? (float)p[k] : box[k + 3];
+    }
+}
+
+static void put_box(cwi_star *star, cwi_boxes_node *nodes, size_t n,
+                    const double *const *points, int count)
+{
+    float box[6] = {INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY};
+    if (n % CWI_WIDTH == 0)
+        cwi_boxes_clear(&nodes[n / CWI_WIDTH]);
+    for (int i = 0; i < count; i++)
+        grow_box(box, points[i]);
+    cwi_boxes_put(nodes, n, box);
+    for (int k = 0; k < 3; k++) {
+        star->box[k] = box[k] < star->box[k] ? box[k] : star->box[k];
+        star->box[k + 3] = box[k + 3] > star->box[k + 3] ? box[k + 3] : star->box[k + 3];
+    }
+}
+
+static void add_swept(cwi_star *star, const double w[3], const double a[3], const double b[3],
+                      const double place[3])
+{
+    const double *const points[4] = {w, a, b, place};
+    cwi_swept *swept = &star->swept[star->swept_count];
+    for (int i = 0; i < 4; i++)
+        memcpy(swept->p[i], points[i], sizeof swept->p[i]);
+    put_box(star, star->swept_boxes, star->swept_count++, points, 4);
+}
+
+/* The shapes of triangles of a star: the poorest before, and the poorest after. */
+typedef struct star_shapes {
+    double before, after;
+} star_shapes;
+
+/* Adds the triangles around one end of the edge. Returns false if one turns too far. */
+static bool add_ring(cwi_star *star, const cwi_complex *c, const cwi_ring *ring,
+                     uint32_t center, uint32_t other, star_shapes *shapes)
+{
+    double w[3], place[3];
+    get_point(c, center, w);
+    for (int k = 0; k < 3; k++)
+        place[k] = (double)star->move.place[k];
+    const bool is_moved = memcmp(w, place, sizeof w) != 0;
+    for (size_t i = 0; i < ring->spoke_count; i++) {
+        const cwi_spoke *s = &ring->spokes[i];
+        double a[3], b[3], before[3];
+        get_point(c, s->a, a);
+        get_point(c, s->b, b);
+        find_normal(w, a, b, before);
+        shapes->before = cwi_lesser(shapes->before, find_shape(before, w, a, b));
+        if (s->a == other || s->b == other) {
+            if (center == star->move.keep)
+                continue; /* it comes with the other end */
+            star->gone[star->gone_count++] = s->triangle;
+            add_swept(star, w, a, b, place);
+            continue;
+        }
+        cwi_star_spoke *spoke = &star->spokes[star->spoke_count];
+        *spoke = (cwi_star_spoke){s->triangle, s->a, s->b, c->patches[s->triangle], {0}, 0};
+        find_normal(place, a, b, spoke->normal);
+        const double now = cwi_dot(spoke->normal, spoke->normal), old = cwi_dot(before, before),
+                     turn = cwi_dot(spoke->normal, before);
+        if (old > 0 && !(turn > 0 && turn * turn >= MIN_COSINE * MIN_COSINE * now * old))
+            return false;
+        shapes->after = cwi_lesser(shapes->after, find_shape(spoke->normal, place, a, b));
+        spoke->scale = sqrt(find_square(place, a) * find_square(place, b));
+        put_box(star, star->spoke_boxes, star->spoke_count++,
+                (const double *const[3]){place, a, b}, 3);
+        if (is_moved)
+            add_swept(star, w, a, b, place);
+    }
+    return true;
+}
+
+bool cwi_star_make(cwi_star *star, const cwi_complex *c, const cwi_label_move *move,
+                   const cwi_ring *keep_ring, const cwi_ring *drop_ring)
+{
+    star_shapes shapes = {INFINITY, INFINITY};
+    star->move = *move;
+    star->spoke_count = star->gone_count = star->swept_count = 0;
+    for (int k = 0; k < 3; k++) {
+        star->box[k] = INFINITY;
+        star->box[k + 3] = -INFINITY;
+    }
+    return add_ring(star, c, keep_ring, move->keep, move->drop, &shapes) &&
+           add_ring(star, c, drop_ring, move->drop, move->keep, &shapes) &&
+           shapes.after >= cwi_lesser(MIN_SHAPE, shapes.before) && shapes.after > 1e-6;
+}

@@ -1,0 +1,389 @@
+/* Measures how far a collapse takes the interfaces from the input, in each patch by itself.
+ * Bounds hold for whole triangles [Tang2009]. */
+#include "simplify/interfaces/label_samples.h"
+
+#include "core/geometry/point_triangle.h"
+#include "core/geometry/triangle_cover.h"
+
+#include <string.h>
+
+/* The part of the error that is allowed at each level of care. */
+static const double allowed_parts[CWI_LABEL_MAX_CARE + 1] = {1, 0.75, 0.4, 0};
+
+/* The part of the squared error at which no nearer triangle is looked for. */
+#define NEAR_ENOUGH (1.0 / 16)
+
+/* The most triangles beside a star that are looked at. */
+enum { MAX_FACETS = 1024 };
+
+/* A triangle that may be near the input's, and its box. */
+typedef struct near_facet {
+    const float *corners[3];
+    uint32_t patch;
+    float low[3], high[3];
+} near_facet;
+
+/* ---- samples ---------------------------------------------------------------------------- */
+
+/* Collects the samples of a triangle. spoke: its number in the star; CWI_NO_INDEX: it goes */
+static void collect_samples(cwi_label_samples *s, uint32_t triangle, uint32_t spoke)
+{
+    for (uint32_t n = s->heads[triangle]; n != CWI_NO_INDEX; n = s->next[n]) {
+        s->collected[s->collected_count++] = n;
+        s->sample_marks[n] = s->mark;
+        s->nearest[n] = spoke;
+    }
+}
+
+/* Returns the distance that is allowed at all samples of a star; 0: it must not change. */
+static double find_allowed(const cwi_label_samples *s)
+{
+    uint8_t care = 0;
+    for (size_t n = 0; n < s->collected_count; n++) {
+        const uint8_t its_care = s->cares[s->collected[n]];
+        care = its_care > care ? its_care : care;
+    }
+    return s->error * allowed_parts[care];
+}
+
+static const float *get_original(const cwi_label_samples *s, uint32_t vertex)
+{
+    return s->originals + 3 * (size_t)vertex;
+}
+
+static void widen_point(const float *from, double p[3])
+{
+    for (int k = 0; k < 3; k++)
+        p[k] = (double)from[k];
+}
+
+static double measure_spoke(const cwi_complex *c, const cwi_star *star, size_t n,
+                            const double p[3])
+{
+    const cwi_star_spoke *spoke = &star->spokes[n];
+    return cwi_facet_square(star->move.place, c->points + 3 * (size_t)spoke->a,
+                            c->points + 3 * (size_t)spoke->b, p);
+}
+
+/* Finds the spoke nearest to a sample. One that it had before stays if it is near enough. */
+static double find_nearest_spoke(cwi_label_samples *s, const cwi_complex *c,
+                                 const cwi_star *star, uint32_t sample, double near_enough)
+{
+    const uint32_t before = s->nearest[sample];
+    double p[3], least = INFINITY;
+    widen_point(get_original(s, s->vertices[sample]), p);
+    if (before != CWI_NO_INDEX)
+        least = measure_spoke(c, star, before, p);
+    if (least <= near_enough)
+        return least;
+    for (size_t i = 0; i < star->spoke_count; i++) {
+        if (star->spokes[i].patch != s->patches[sample] || i == before)
+            continue;
+        const double distance = measure_spoke(c, star, i, p);
+        if (distance < least) {
+            least = distance;
+            s->nearest[sample] = (uint32_t)i;
+        }
+    }
+    return least;
+}
+
+/* Finds the spokes near all samples. Returns false if one is too far. */
+static bool find_nearest_spokes(cwi_label_samples *s, const cwi_complex *c,
+                                const cwi_star *star, double square)
+{
+    for (size_t n = 0; n < s->collected_count; n++)
+        if (!(find_nearest_spoke(s, c, star, s->collected[n], NEAR_ENOUGH * square) <= square))
+            return false;
+    return true;
+}
+
+/* ---- from the star to the input --------------------------------------------------------- */
+
+/* A walk over the input's triangles of a patch, to the one nearest to a point. */
+typedef struct input_walk {
+    cwi_label_samples *s;
+    uint32_t patch, at;
+    double square; /* distances up to its root are near enough */
+} input_walk;
+
+static void find_input_facet(const cwi_label_samples *s, uint32_t triangle,
+                             const float *facet[3])
+{
+    for (size_t k = 0; k < 3; k++)
+        facet[k] = get_original(s, s->corners[3 * (size_t)triangle + k]);
+}
+
+static double measure_input(const cwi_label_samples *s, uint32_t triangle, const double p[3])
+{
+    const float *facet[3];
+    find_input_facet(s, triangle, facet);
+    return cwi_facet_square(facet[0], facet[1], facet[2], p);
+}
+
+/* Goes to a triangle if it is nearer than the least distance so far. */
+static bool go_if_nearer(input_walk *w, uint32_t triangle, const double p[3], double *least)
+{
+    const double square = measure_input(w->s, triangle, p);
+    if (!(square < *least))
+        return false;
+    *least = square;
+    w->at = triangle;
+    return true;
+}
+
+/* Goes over the side of a triangle to its neighbour in the patch if that is nearer. */
+static bool cross_side(input_walk *w, uint32_t a, uint32_t b, const double p[3], double *least)
+{
+    const cwi_label_samples *s = w->s;
+    const uint32_t sample = cwi_label_samples_find(s, a, w->patch);
+    for (uint32_t i = s->first_triangle[sample]; i < s->first_triangle[sample + 1]; i++) {
+        const uint32_t t = s->triangles[i], *v = s->corners + 3 * (size_t)t;
+        if (t != w->at && (v[0] == b || v[1] == b || v[2] == b))
+            return go_if_nearer(w, t, p, least);
+    }
+    return false;
+}
+
+/* Goes over a side that the point is beyond. Returns false if that does not help. */
+static bool step_nearer(input_walk *w, const double p[3], double *least)
+{
+    const uint32_t *v = w->s->corners + 3 * (size_t)w->at;
+    const float *f[3];
+    find_input_facet(w->s, w->at, f);
+    const cwi_facet_view view = cwi_facet_look(f[0], f[1], f[2], p);
+    return (view.in_a < 0 && cross_side(w, v[1], v[2], p, least)) ||
+           (view.in_b < 0 && cross_side(w, v[2], v[0], p, least)) ||
+           (view.in_c < 0 && cross_side(w, v[0], v[1], p, least));
+}
+
+/* Goes to the nearest of the triangles around the corners. Returns false if none is nearer. */
+static bool jump_nearer(input_walk *w, const double p[3], double *least)
+{
+    const cwi_label_samples *s = w->s;
+    const uint32_t start = w->at;
+    for (size_t k = 0; k < 3; k++) {
+        const uint32_t sample =
+            cwi_label_samples_find(s, s->corners[3 * (size_t)start + k], w->patch);
+        for (uint32_t i = s->first_triangle[sample]; i < s->first_triangle[sample + 1]; i++)
+            go_if_nearer(w, s->triangles[i], p, least);
+    }
+    return w->at != start;
+}
+
+/* Walks over sides as long as that helps. Where the end is too far, folds may hide a nearer
+ * triangle, and those around corners are looked at, too. */
+static double walk_nearest(void *context, const double p[3], const float *facet[3])
+{
+    input_walk *w = context;
+    cwi_label_samples *s = w->s;
+    double least = measure_input(s, w->at, p);
+    do {
+        while (step_nearer(w, p, &least)) {
+        }
+    } while (least > w->square && jump_nearer(w, p, &least));
+    if (s->triangle_marks[w->at] != s->mark) {
+        s->triangle_marks[w->at] = s->mark;
+        s->met[s->met_count++] = w->at;
+    }
+    find_input_facet(s, w->at, facet);
+    return least;
+}
+
+/* Returns a triangle around the sample of a patch that is nearest to a point. */
+static uint32_t find_start(const cwi_label_samples *s, uint32_t patch, const double p[3])
+{
+    uint32_t start = CWI_NO_INDEX;
+    double least = INFINITY;
+    for (size_t n = 0; n < s->collected_count; n++) {
+        const uint32_t sample = s->collected[n];
+        double q[3];
+        if (s->patches[sample] != patch)
+            continue;
+        widen_point(get_original(s, s->vertices[sample]), q);
+        for (int k = 0; k < 3; k++)
+            q[k] -= p[k];
+        const double square = cwi_dot(q, q);
+        if (square < least) {
+            least = square;
+            start = s->triangles[s->first_triangle[sample]];
+        }
+    }
+    return start;
+}
+
+/* Returns true if all points of the new triangles are near the input. */
+static bool is_star_near(cwi_label_samples *s, const cwi_complex *c, const cwi_star *star,
+                         double square)
+{
+    input_walk walk = {.s = s, .patch = CWI_NO_INDEX, .square = square};
+    cwi_cover cover = {.nearest = walk_nearest, .context = &walk, .square = square};
+    double p[3][3];
+    widen_point(star->move.place, p[0]);
+    for (size_t i = 0; i < star->spoke_count; i++) {
+        const cwi_star_spoke *spoke = &star->spokes[i];
+        if (spoke->patch != walk.patch) {
+            walk.patch = spoke->patch;
+            walk.at = find_start(s, walk.patch, p[0]);
+            if (walk.at == CWI_NO_INDEX)
+                return false;
+        }
+        widen_point(c->points + 3 * (size_t)spoke->a, p[1]);
+        widen_point(c->points + 3 * (size_t)spoke->b, p[2]);
+        if (!cwi_is_covered(&cover, (const double(*)[3])p))
+            return false;
+    }
+    return true;
+}
+
+/* ---- from the input to the star --------------------------------------------------------- */
+
+/* The triangles of the star and around it. */
+typedef struct facet_list {
+    size_t count;
+    uint32_t patch; /* that is looked for */
+    near_facet items[MAX_FACETS];
+} facet_list;
+
+static void add_facet(facet_list *list, const float *p, const float *a, const float *b,
+                      uint32_t patch)
+{
+    if (list->count == MAX_FACETS)
+        return;
+    near_facet *f = &list->items[list->count++];
+    *f = (near_facet){{p, a, b}, patch, {0}, {0}};
+    for (int k = 0; k < 3; k++) {
+        f->low[k] = fminf(p[k], fminf(a[k], b[k]));
+        f->high[k] = fmaxf(p[k], fmaxf(a[k], b[k]));
+    }
+}
+
+/* Computes the square of a point's distance from a facet's box. */
+static double measure_box(const near_facet *f, const double p[3])
+{
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        const double below = (double)f->low[k] - p[k], above = p[k] - (double)f->high[k];
+        const double d = cwi_greater(cwi_greater(below, above), 0);
+        square += d * d;
+    }
+    return square;
+}
+
+static bool has_star_triangle(const cwi_star *star, uint32_t triangle)
+{
+    for (size_t i = 0; i < star->spoke_count; i++)
+        if (star->spokes[i].triangle == triangle)
+            return true;
+    for (size_t i = 0; i < star->gone_count; i++)
+        if (star->gone[i] == triangle)
+            return true;
+    return false;
+}
+
+/* Lists the star's new triangles, and those around its outer vertices, of which some come
+ * twice. */
+static void list_facets(facet_list *list, const cwi_complex *c, const cwi_star *star)
+{
+    list->count = 0;
+    for (size_t i = 0; i < star->spoke_count; i++) {
+        const cwi_star_spoke *s = &star->spokes[i];
+        add_facet(list, star->move.place, c->points + 3 * (size_t)s->a,
+                  c->points + 3 * (size_t)s->b, s->patch);
+    }
+    for (size_t i = 0; i < star->spoke_count; i++)
+        for (uint32_t at = c->heads[star->spokes[i].a]; at != CWI_NO_INDEX; at = c->next[at]) {
+            const uint32_t *v = c->corners + 3 * (size_t)(at / 3);
+            if (!has_star_triangle(star, at / 3))
+                add_facet(list, c->points + 3 * (size_t)v[0], c->points + 3 * (size_t)v[1],
+                          c->points + 3 * (size_t)v[2], c->patches[at / 3]);
+        }
+}
+
+static double list_nearest(void *context, const double p[3], const float *facet[3])
+{
+    const facet_list *list = context;
+    double least = INFINITY;
+    for (size_t n = 0; n < list->count; n++) {
+        const near_facet *f = &list->items[n];
+        if (f->patch != list->patch || measure_box(f, p) >= least)
+            continue;
+        const double square = cwi_facet_square(f->corners[0], f->corners[1], f->corners[2], p);
+        if (square < least) {
+            least = square;
+            memcpy(facet, f->corners, sizeof f->corners);
+        }
+    }
+    return least;
+}
+
+/* Returns true if one spoke is near all corners of a triangle of the input: one that is nearest
+ * to a corner. */
+static bool has_near_spoke(const cwi_label_samples *s, const cwi_complex *c,
+                           const cwi_star *star, const uint32_t v[3], uint32_t patch,
+                           const double p[3][3], double square)
+{
+    for (int n = 0; n < 3; n++) {
+        const uint32_t sample = cwi_label_samples_find(s, v[n], patch);
+        if (s->sample_marks[sample] != s->mark)
+            continue;
+        const uint32_t spoke = s->nearest[sample];
+        if (measure_spoke(c, star, spoke, p[(n + 1) % 3]) <= square &&
+            measure_spoke(c, star, spoke, p[(n + 2) % 3]) <= square)
+            return true;
+    }
+    return false;
+}
+
+static void meet_around(cwi_label_samples *s)
+{
+    for (size_t n = 0; n < s->collected_count; n++) {
+        const uint32_t sample = s->collected[n];
+        for (uint32_t i = s->first_triangle[sample]; i < s->first_triangle[sample + 1]; i++) {
+            const uint32_t t = s->triangles[i];
+            if (s->triangle_marks[t] != s->mark) {
+                s->triangle_marks[t] = s->mark;
+                s->met[s->met_count++] = t;
+            }
+        }
+    }
+}
+
+/* Returns true if the input's triangles around samples of the star, and those that the star lies
+ * over, are near it or what is beside it. */
+static bool is_input_near(cwi_label_samples *s, const cwi_complex *c, const cwi_star *star,
+                          double square)
+{
+    facet_list list;
+    list.count = 0;
+    cwi_cover cover = {.nearest = list_nearest, .context = &list, .square = square};
+    meet_around(s);
+    for (size_t n = 0; n < s->met_count; n++) {
+        const uint32_t *v = s->corners + 3 * (size_t)s->met[n];
+        const uint32_t patch = c->patches[s->met[n]];
+        double p[3][3];
+        for (int k = 0; k < 3; k++)
+            widen_point(get_original(s, v[k]), p[k]);
+        if (has_near_spoke(s, c, star, v, patch, (const double(*)[3])p, square))
+            continue;
+        if (list.count == 0)
+            list_facets(&list, c, star);
+        list.patch = patch;
+        if (!cwi_is_covered(&cover, (const double(*)[3])p))
+            return false;
+    }
+    return true;
+}
+
+bool cwi_label_samples_allow(cwi_label_samples *s, const cwi_complex *c, const cwi_star *star)
+{
+    s->collected_count = s->met_count = 0;
+    s->mark++;
+    for (size_t i = 0; i < star->spoke_count; i++)
+        collect_samples(s, star->spokes[i].triangle, (uint32_t)i);
+    for (size_t i = 0; i < star->gone_count; i++)
+        collect_samples(s, star->gone[i], CWI_NO_INDEX);
+    const double allowed = find_allowed(s), square = allowed * allowed;
+    return allowed > 0 && find_nearest_spokes(s, c, star, square) &&
+           is_star_near(s, c, star, square) && is_input_near(s, c, star, square);
+}
