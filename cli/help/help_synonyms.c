@@ -15,10 +15,9 @@ const cli_synonym cli_synonyms[] = {
     {"remesh|retopolog", NULL, "offset|--by|--snap",
      "'offset --by 0' makes a new mesh of the same surface; 'extract --snap' gives better "
      "triangles."},
-    {"label|segment|mask|atlas", NULL, "label|--inside",
-     "cubewright does not extract each label of a label map as a separate mesh. An isovalue "
-     "joins all labels above it; a mask of one label works, with --iso 0.5 for values 0 and "
-     "1."},
+    {"label|segment|mask|atlas", "labels", "label|--labels|--names",
+     "An isovalue joins all labels above it; --labels takes each. A mask of one label works "
+     "with --iso 0.5, too, for values 0 and 1."},
     {"smooth|denois|filter|laplacian|taubin|gaussian", NULL,
      "--snap|--placement|--min-volume|--drop-components|--noise",
      "cubewright does not smooth or denoise, neither volumes nor meshes. --snap removes thin "

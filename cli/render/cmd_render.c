@@ -33,6 +33,7 @@ static const cli_option options[] = {
      offsetof(render_args, turns) + offsetof(cli_turns, count)},
     {"orbit", 0, CLI_NUMBER, "DEG", "Angle of the turntable in degrees (360)",
      offsetof(render_args, turns) + offsetof(cli_turns, orbit)},
+#include "cli/render/options_labels.inc"
 #include "cli/render/options_look.inc"
     CLI_INPUT_OPTIONS(render_args),
 };

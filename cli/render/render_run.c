@@ -8,6 +8,7 @@
 #include "cli/inputs/extract_surface.h"
 #include "cli/inputs/mesh_input.h"
 #include "cli/render/compare_options.h"
+#include "cli/render/label_pictures.h"
 #include "cli/results/output_names.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
@@ -53,6 +54,8 @@ cw_status cli_check_pictures(const render_args *args, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--difference %g: above 0 was expected",
                         args->difference.value);
     cw_status st = cli_check_camera(&args->scene, &args->turns, err);
+    if (st == CW_OK)
+        st = cli_check_label_look(args, err);
     if (st == CW_OK)
         st = check_side_output(args->json, args, err);
     if (st == CW_OK)
@@ -102,7 +105,8 @@ static cw_status check_hidden(cli_pictures *p, cw_error *err)
 static bool draws_on_cpu(const cli_pictures *p)
 {
     return p->mode == CW_MODE_MESH && p->args->backend != CW_BACKEND_EGL &&
-           !cli_needs_gl(p->command, &p->args->common, &p->args->scene);
+           !cli_needs_gl(p->command, &p->args->common, &p->args->scene) &&
+           !cli_labels_need_gl(&p->labels);
 }
 
 /* Parses --compare. The input is read for the left side; both sides draw the volume. */
@@ -141,7 +145,7 @@ static cw_status check_mode(cli_pictures *p, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT, "%s is a mesh; --%s is for volumes",
                         args->common.inputs[0], args->mesh ? "mesh" : "hide");
     if (p->mode == CW_MODE_MESH && !p->source.is_mesh && !args->mesh && !args->iso.given &&
-        !p->source.is_level_set)
+        !p->source.is_level_set && !p->look.labels)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "the surface of a volume needs an isovalue: --iso V; 'cubewright info "
                         "%s' suggests some",
@@ -273,7 +277,9 @@ static cw_status open_step(cli_pictures *p, size_t step, cw_error *err)
         st = make_transfer(p, step, err);
     if (st == CW_OK && draws_volume(p))
         st = cli_need_drawable(&p->source, &args->input, err);
-    if (st == CW_OK && args->mesh)
+    if (st == CW_OK && p->look.labels)
+        st = cli_open_labels(p, step, err);
+    else if (st == CW_OK && args->mesh)
         st = read_beside(p, err);
     else if (st == CW_OK && has_mesh(p))
         st = extract_shown(p, err);
@@ -295,6 +301,7 @@ static cw_status make_scene(cli_pictures *p, size_t turn, cw_error *err)
     p->scene = (cw_scene){.width = args->size.n[0] / part, .height = args->size.n[1] / part};
     p->scene.samples = args->samples ? (int)args->samples : draws_volume(p) ? 1 : MESH_SAMPLES;
     p->scene.progress = cli_progress((double)p->source.mesh.triangle_count / 1e6, "Mtriangle");
+    p->scene.same_inside = p->look.labels;
     cw_status st = CW_OK;
     if (!p->has_box && p->source.series.count > 1) /* what is visible moves */
         p->has_box = cli_find_box(subject.volume, subject.mesh, p->box);
@@ -318,6 +325,7 @@ static cw_status draw_mesh(cli_pictures *p, const uint8_t background[2][4], cw_i
                                 .width = s->width,
                                 .height = s->height,
                                 .samples = s->samples,
+                                .same_inside = s->same_inside,
                                 .threads = s->threads,
                                 .progress = s->progress};
     memcpy(desc.background, background, sizeof desc.background);
@@ -394,6 +402,11 @@ static void tell_picture(const cli_pictures *p, const cli_shot *shot)
                  triangles ? " triangles" : "", cw_renderer_name(p->renderer));
     else
         snprintf(what, sizeof what, "%s triangles", cli_count(triangles));
+    if (p->labels.shown.count) {
+        const size_t used = strlen(what);
+        snprintf(what + used, sizeof what - used, " of %zu label%s", p->labels.shown.count,
+                 p->labels.shown.count == 1 ? "" : "s");
+    }
     if (shot->compared)
         cli_result("%s: %s: rmse %.3g, max %.3g of 255; delta-E %.3g, 99 %% below %.3g\n",
                    shot->path, p->args->compare, shot->measured.rmse, shot->measured.max,
@@ -470,6 +483,8 @@ cw_status cli_make_pictures(cli_pictures *p, cw_error *err)
     if (st == CW_OK)
         st = plan_pictures(p, err);
     if (st == CW_OK)
+        st = cli_decide_labels(p, err);
+    if (st == CW_OK)
         st = check_mode(p, err);
     return st == CW_OK ? take_pictures(p, err) : st;
 }
@@ -483,6 +498,7 @@ void cli_end_pictures(cli_pictures *p)
     for (size_t n = 0; n < p->shot_count; n++)
         free(p->shots[n].path);
     free(p->shots);
+    cli_free_label_scene(&p->labels);
     cli_close_source(&p->source);
 }
 
@@ -494,6 +510,7 @@ cli_render_report cli_report_pictures(const cli_pictures *p)
         .backend = p->renderer ? cw_renderer_name(p->renderer) : "CPU",
         .scene = p->scene.width ? &p->scene : NULL,
         .transfer = &p->transfer,
+        .labels = &p->labels,
         .shots = p->shots,
         .shot_count = p->shot_count,
         .triangles = p->source.mesh.triangle_count,

@@ -52,6 +52,8 @@ static cw_status need_surface(view *v, view_level level, cw_error *err)
     const render_args *args = &v->state.args;
     const bool coarse = level == VIEW_ROUGH && v->state.is_placed && can_thin(v);
     cw_mesh mesh;
+    if (v->look.labels && v->mode == CW_MODE_MESH)
+        return view_need_label_mesh(v, err);
     const bool is_there =
         v->mesh_iso == args->iso.value &&
         (v->mesh_level == (coarse ? 1 : 2) ||
@@ -80,6 +82,7 @@ static cw_status need_surface(view *v, view_level level, cw_error *err)
     v->source.mesh = mesh;
     v->mesh_iso = args->iso.value;
     v->mesh_level = coarse ? 1 : 2;
+    v->has_label_mesh = false;
     return CW_OK;
 }
 
@@ -128,6 +131,7 @@ static cw_status space_scene(view *v, const render_args *args, cw_mode mode,
         .level = v->level,
         .threads = (int)args->input.threads};
     scene->camera = v->state.camera;
+    scene->same_inside = v->look.labels;
     scene->lean = !v->is_saving;
     scene->samples = args->samples ? (int)args->samples : mode == CW_MODE_MESH ? 2 : 1;
     cw_status st = cli_make_scene(&args->scene, &subject, mode, transfer, scene, err);
