@@ -280,6 +280,35 @@ cw_status cli_make_label_mesh(const cli_input *input, size_t step, const cli_vol
     return cwi_fail_in(err, st, volume->path);
 }
 
+bool cli_find_label_at(const cli_volume *volume, const cli_input *input, size_t step,
+                       const double world[3], uint32_t *layer, uint32_t *value)
+{
+    size_t first, end, at[3];
+    double index[3];
+    const cw_volume *v = &volume->view;
+    if (!v->data || v->cells || v->sparse || cw_volume_to_index(v, world, index, NULL) != CW_OK)
+        return false;
+    for (int a = 0; a < 3; a++) {
+        const double nearest = floor(index[a] + 0.5);
+        if (!(nearest >= 0 && nearest < (double)v->dim[a]))
+            return false;
+        at[a] = (size_t)nearest;
+    }
+    cli_label_layers(volume, input, &first, &end);
+    for (size_t c = end; c-- > first;) {
+        cw_volume view;
+        if (cw_volume_select(&volume->voxels, c, step, &view, NULL) != CW_OK)
+            return false;
+        const double found = cw_volume_value(&view, at[0], at[1], at[2]);
+        if (!(found >= 1 && found <= UINT32_MAX))
+            continue;
+        *layer = (uint32_t)c;
+        *value = (uint32_t)found;
+        return true;
+    }
+    return false;
+}
+
 cw_status cli_looks_like_labels(const cli_volume *volume, char *what, size_t size,
                                 cw_error *err)
 {

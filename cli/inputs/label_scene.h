@@ -45,6 +45,11 @@ CW_NODISCARD cw_status cli_make_label_mesh(const cli_input *input, size_t step,
 void cli_label_layers(const cli_volume *volume, const cli_input *input, size_t *first,
                       size_t *end);
 
+/* Finds the label of the voxel nearest to a point of the world: of components that overlap, the
+ * last. Returns false where there is none, or only the background. */
+bool cli_find_label_at(const cli_volume *volume, const cli_input *input, size_t step,
+                       const double world[3], uint32_t *layer, uint32_t *value);
+
 /* Finds if a volume is drawn as labels when nobody asked for a way to draw it: the file says so,
  * or its values look like labels. `what` gets a line about it, "": it is not. */
 CW_NODISCARD cw_status cli_looks_like_labels(const cli_volume *volume, char *what, size_t size,

@@ -42,10 +42,14 @@ cw_status cli_mark(const cli_marks *marks, const cw_scene *scene, cw_image *imag
     return st;
 }
 
-/* Greys over the range of the values. */
-static cw_status make_greys(const cw_scene *scene, cw_transfer *greys, cw_error *err)
+/* Makes greys over the range of the values, or black under labels. */
+static cw_status make_greys(const cw_scene *scene, const cli_slice_labels *labels,
+                            cw_transfer *greys, cw_error *err)
 {
     cw_statistics statistics;
+    *greys = cli_black_transfer();
+    if (labels->is_base)
+        return CW_OK;
     cw_status st = cw_volume_statistics(scene->volume, BINS, scene->threads, &statistics, err);
     if (st == CW_OK)
         st = cw_transfer_preset("grey", &statistics, greys, err);
@@ -53,8 +57,9 @@ static cw_status make_greys(const cw_scene *scene, cw_transfer *greys, cw_error 
     return st;
 }
 
-static cw_status draw_slice(const cw_scene *scene, const cw_transfer *greys, int axis,
-                            cw_renderer *renderer, cw_image *image, cw_error *err)
+static cw_status draw_slice(const cw_scene *scene, const cw_transfer *greys,
+                            const cli_slice_labels *labels, int axis, cw_renderer *renderer,
+                            cw_image *image, cw_error *err)
 {
     static const uint8_t black[2][4] = {{0, 0, 0, 255}, {0, 0, 0, 255}};
     static const cli_marks marks = {.scale_bar = true, .letters = true};
@@ -79,18 +84,21 @@ static cw_status draw_slice(const cw_scene *scene, const cw_transfer *greys, int
         st = cw_render(renderer, &s, &picture, err);
     if (st != CW_OK)
         return st;
-    st = cw_picture_show(&picture, black, image, err);
+    st = cli_draw_slice_labels(labels, &s, &picture, err);
+    if (st == CW_OK)
+        st = cw_picture_show(&picture, black, image, err);
     cw_picture_free(&picture);
     return st == CW_OK ? cli_mark(&marks, &s, image, err) : st;
 }
 
-cw_status cli_mark_quad(const cw_scene *scene, const cw_image *shown, cw_backend backend,
+cw_status cli_mark_quad(const cw_scene *scene, const cw_image *shown,
+                        const cli_slice_labels *labels, cw_backend backend,
                         cw_renderer **renderer, cw_image *sheet, cw_error *err)
 {
     static const int axes[3] = {2, 1, 0}; /* axial, coronal, sagittal */
     cw_transfer greys;
     const ptrdiff_t w = (ptrdiff_t)shown->width, h = (ptrdiff_t)shown->height;
-    cw_status st = make_greys(scene, &greys, err);
+    cw_status st = make_greys(scene, labels, &greys, err);
     if (st == CW_OK && !*renderer)
         st = cw_renderer_new(backend, renderer, err);
     if (st == CW_OK)
@@ -99,7 +107,7 @@ cw_status cli_mark_quad(const cw_scene *scene, const cw_image *shown, cw_backend
         cw_image_place(sheet, shown, w, h);
     for (int n = 0; n < 3 && st == CW_OK; n++) {
         cw_image slice = {0};
-        st = draw_slice(scene, &greys, axes[n], *renderer, &slice, err);
+        st = draw_slice(scene, &greys, labels, axes[n], *renderer, &slice, err);
         if (st == CW_OK)
             cw_image_place(sheet, &slice, n % 2 * w, n / 2 * h);
         cw_image_free(&slice);

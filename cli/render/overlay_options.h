@@ -2,6 +2,8 @@
 #ifndef CLI_RENDER_OVERLAY_OPTIONS_H
 #define CLI_RENDER_OVERLAY_OPTIONS_H
 
+#include "cli/render/slice_labels.h"
+
 #include <cubewright/overlay.h>
 
 typedef struct cli_marks {
@@ -24,9 +26,10 @@ bool cli_has_marks(const cli_marks *marks);
  * them, and the picture of the scene, lower right. A quarter each.
  * scene     of the whole sheet's size
  * shown     its picture, of half that size on a side
+ * labels    that are drawn over the slices
  * renderer  NULL at first; made when needed */
 CW_NODISCARD cw_status cli_mark_quad(const cw_scene *scene, const cw_image *shown,
-                                     cw_backend backend, cw_renderer **renderer,
-                                     cw_image *sheet, cw_error *err);
+                                     const cli_slice_labels *labels, cw_backend backend,
+                                     cw_renderer **renderer, cw_image *sheet, cw_error *err);
 
 #endif

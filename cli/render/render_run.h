@@ -7,6 +7,7 @@
 #include "cli/render/camera_options.h"
 #include "cli/render/overlay_options.h"
 #include "cli/render/render_report.h"
+#include "cli/render/slice_labels.h"
 
 typedef struct render_args {
     cli_common common;
@@ -17,8 +18,8 @@ typedef struct render_args {
     cli_label_look look;
     const char *exec, *run, *config; /* of view alone, */
     bool hidden;                     /* and this */
-    const char *output, *json, *mesh, *save_transfer, *save_camera, *compare;
-    cli_number iso, difference;
+    const char *output, *json, *mesh, *save_transfer, *save_camera, *compare, *overlay;
+    cli_number iso, difference, overlay_opacity;
     int inside, backend;
     cli_sizes size;
     size_t samples;
@@ -57,6 +58,8 @@ typedef struct cli_pictures {
     cw_mode mode;
     cli_label_look look; /* labels: NULL where none are drawn */
     cli_label_scene labels;
+    cli_volume overlay; /* another volume, with labels */
+    cli_slice_labels on_slices;
     cw_transfer transfer;
     double level;      /* between two classes of values */
     bool has_transfer; /* of all steps */

@@ -249,16 +249,19 @@ static cw_status run_cross_by(view *v, int count, char **args, cw_error *err)
     return CW_OK;
 }
 
-/* Says the label of a surface that was picked. */
+/* Says the label of the surface that was picked, or of the voxel there. */
 static void tell_picked_label(view *v, const cw_scene *scene, const cw_picked *picked)
 {
     char text[CLI_LABEL_NAME + 32];
     const cw_mesh *m = scene->mesh;
-    if (!v->look.labels || picked->kind != CW_PICK_MESH || !m || !m->labels ||
-        picked->number == SIZE_MAX)
+    if (!v->look.labels)
         return;
-    view_name_label(v, 0, m->labels[m->triangles[3 * picked->number]], text, sizeof text);
-    view_say(v, false, text);
+    if (picked->kind == CW_PICK_MESH && m && m->labels && picked->number != SIZE_MAX)
+        view_name_label(v, m->labels[m->triangles[3 * picked->number]], text, sizeof text);
+    else
+        view_label_at(v, picked->point, text, sizeof text);
+    if (*text)
+        view_say(v, false, text);
 }
 
 /* To what the mouse is on, in pixels of the 3D part. */

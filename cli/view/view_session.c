@@ -57,7 +57,7 @@ bool view_has_mesh(const view *v)
     const render_args *args = &v->state.args;
     return v->path && args->scene.hide != CLI_HIDE_MESH &&
            (v->source.is_mesh || args->iso.given || args->mesh ||
-            (v->look.labels && v->mode == CW_MODE_MESH));
+            (view_shows_surfaces(v) && v->mode == CW_MODE_MESH));
 }
 
 static void drop_surface(view *v)
@@ -102,8 +102,8 @@ cw_status view_choose_mode(view *v, cw_error *err)
     const int asked = args->scene.mode;
     view_choose_labels(v);
     v->mode =
-        asked            ? (cw_mode)(asked - 1)
-        : v->look.labels ? CW_MODE_MESH
+        asked                    ? (cw_mode)(asked - 1)
+        : view_shows_surfaces(v) ? CW_MODE_MESH
         : v->has_volume && !v->source.is_level_set && (!args->iso.given || v->state.iso_is_ours)
             ? cli_default_mode(&v->source)
             : CW_MODE_MESH;
@@ -115,11 +115,11 @@ cw_status view_choose_mode(view *v, cw_error *err)
                         v->source.is_mesh ? "this is a mesh"
                         : v->has_volume   ? "vbuffer draws this one"
                                           : "this grid is shown as surfaces");
-    if ((v->mode != CW_MODE_MESH || v->look.labels) && v->state.iso_is_ours) {
+    if ((v->mode != CW_MODE_MESH || view_shows_surfaces(v)) && v->state.iso_is_ours) {
         args->iso = (cli_number){0};
         v->state.iso_is_ours = false;
     }
-    if (v->look.labels)
+    if (view_shows_surfaces(v))
         return CW_OK;
     if (v->path && v->mode == CW_MODE_MESH && !v->source.is_mesh && !args->mesh &&
         !args->iso.given) {
@@ -246,7 +246,7 @@ static cw_status open_path(view *v, cw_error *err)
         st = read_beside(v, err);
     if (st == CW_OK)
         st = view_choose_mode(v, err);
-    if (st == CW_OK && v->look.labels && !v->state.args.look.labels)
+    if (st == CW_OK && view_shows_surfaces(v) && !v->state.args.look.labels)
         cli_say("%s: %s: its labels are drawn; --mode composite draws its numbers", v->path,
                 v->label_note);
     return st == CW_OK ? view_need_labels(v, err) : st;
@@ -263,6 +263,7 @@ static void forget_look(view *v)
     s->args.scene.clips = s->args.scene.planes = NULL;
     s->args.scene.shift = (cli_number){0};
     s->args.look = (cli_label_look){0};
+    s->args.overlay = NULL;
     s->args.scene.tint_range = (cli_numbers){0};
     s->is_edited = false;
     s->window[0] = s->window[1] = 0;

@@ -142,12 +142,13 @@ static cw_status follow_name(view *v, const char *name, cw_error *err)
     if (strcmp(name, "iso") == 0 && !s->args.iso.given &&
         s->args.scene.mode == 1 + CW_MODE_MESH && v->has_volume)
         s->args.scene.mode = 0;
-    if (strcmp(name, "labels") == 0 && s->args.look.labels) { /* they are drawn by themselves */
+    if (strcmp(name, "labels") == 0 && s->args.look.labels &&
+        !s->args.overlay) { /* they are drawn by themselves */
         s->args.iso = (cli_number){0};
         if (s->args.scene.mode != 1 + CW_MODE_SLICES)
             s->args.scene.mode = 0;
     }
-    if (strcmp(name, "iso") == 0 && s->args.iso.given)
+    if (strcmp(name, "iso") == 0 && s->args.iso.given && !s->args.overlay)
         s->args.look.labels = NULL;
     v->transfer_is_old = true;
     v->is_measured = false;

@@ -20,3 +20,14 @@ view 'mode composite; print mode; labels all; print mode; iso 5; print mode; wai
 for wrong in 'labels 3' 'labels lung' 'label-opacity 4' 'label-opacity all:0; wait' 'smooth-labels 9mm; wait' 'names none.csv'; do
     view "$wrong"
 done
+# slices: of the map itself, and over another volume
+sed '/^[0-9]$/s/.*/3/' map.nrrd >scan.nrrd
+view 'labels 4; layout quad; cross 7 5 5; mouse 630 470; wait; print probe; cross 4 5 5; wait; print probe; mode slices; wait; screenshot four.png;
+      labels 9; wait; screenshot nine.png; labels default; tf grey; wait; print probe'
+cmp -s four.png nine.png && echo "the same, but should not be"
+over() { cubewright view scan.nrrd -q --hidden --size 640x480 --overlay map.nrrd --exec "$*" || echo "exit $?"; }
+over 'print mode; layout quad; cross 7 5 5; mouse 630 470; wait; print probe; labels 9; wait; print probe; mode slices; wait; screenshot a.png;
+      overlay-opacity 0; wait; screenshot b.png; labels default; overlay off; wait; screenshot c.png; print message'
+cmp b.png c.png && ! cmp -s a.png b.png && echo "an overlay"
+over 'overlay none.nrrd'
+over 'overlay-opacity 3'
