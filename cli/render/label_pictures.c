@@ -12,6 +12,7 @@ static const char *find_hint(const render_args *args)
     return args->look.names     ? "names"
            : args->look.opacity ? "label-opacity"
            : args->look.smooth  ? "smooth-labels"
+           : args->marks.legend ? "legend"
                                 : NULL;
 }
 

@@ -3,41 +3,93 @@
 
 #include "core/base/status.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 enum { BINS = 256 };
 
 bool cli_has_marks(const cli_marks *m)
 {
-    return m->axes || m->scale_bar || m->letters || m->color_bar || m->histogram || m->caption;
+    return m->axes || m->scale_bar || m->letters || m->color_bar || m->histogram || m->legend ||
+           m->caption;
 }
 
-static cw_status draw_slices(const cli_marks *m, const cw_scene *scene,
-                             const cw_statistics *statistics, cw_image *image, cw_error *err)
+/* A label of the legend. */
+typedef struct entry {
+    size_t voxels, place; /* in the list of labels */
+} entry;
+
+static int compare_entries(const void *a, const void *b)
 {
+    const entry *x = a, *y = b;
+    return x->voxels != y->voxels ? (x->voxels < y->voxels) - (x->voxels > y->voxels)
+                                  : (x->place > y->place) - (x->place < y->place);
+}
+
+/* Lists the labels that the scene shows, the largest first. */
+static cw_status list_legend(const cli_label_scene *s, const cw_scene *scene,
+                             cw_legend_item **items, size_t *count, cw_error *err)
+{
+    const size_t all = s->shown.count;
+    entry *entries = calloc(all + 1, sizeof *entries);
+    *items = calloc(all + 1, sizeof **items);
+    *count = 0;
+    if (!entries || !*items) {
+        free(entries);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a legend of %zu labels", all);
+    }
+    for (size_t n = 0; n < all; n++) {
+        const cw_label *label = &s->shown.labels[n];
+        if (label->color[3] > 0 && !(label->hidden && scene->mode == CW_MODE_MESH))
+            entries[(*count)++] = (entry){s->voxels[n], n};
+    }
+    qsort(entries, *count, sizeof *entries, compare_entries);
+    for (size_t n = 0; n < *count; n++) {
+        const cw_label *label = &s->shown.labels[entries[n].place];
+        (*items)[n].name = label->name;
+        memcpy((*items)[n].color, label->color, 3);
+    }
+    free(entries);
+    return CW_OK;
+}
+
+static cw_status draw_marks(const cli_marks *m, const cli_label_scene *labels,
+                            const cw_scene *scene, const cw_statistics *statistics,
+                            cw_image *image, cw_error *err)
+{
+    cw_legend_item *legend = NULL;
+    size_t count = 0;
+    cw_status st = CW_OK;
+    if (m->legend && labels)
+        st = list_legend(labels, scene, &legend, &count, err);
     const cw_overlay overlay = {.axes = m->axes,
                                 .scale_bar = m->scale_bar,
                                 .letters = m->letters,
                                 .color_bar = m->color_bar,
                                 .histogram = m->histogram,
+                                .legend = legend,
+                                .legend_count = count,
                                 .caption = m->caption,
                                 .statistics = statistics};
-    return cw_overlay_draw(&overlay, scene, image, err);
+    if (st == CW_OK)
+        st = cw_overlay_draw(&overlay, scene, image, err);
+    free(legend);
+    return st;
 }
 
-cw_status cli_mark(const cli_marks *marks, const cw_scene *scene, cw_image *image,
-                   cw_error *err)
+cw_status cli_mark(const cli_marks *marks, const cli_label_scene *labels, const cw_scene *scene,
+                   cw_image *image, cw_error *err)
 {
     cw_statistics statistics;
     if (!cli_has_marks(marks))
         return CW_OK;
     if (!marks->histogram)
-        return draw_slices(marks, scene, NULL, image, err);
+        return draw_marks(marks, labels, scene, NULL, image, err);
     if (!scene->volume)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--histogram is for volumes");
     cw_status st = cw_volume_statistics(scene->volume, BINS, scene->threads, &statistics, err);
     if (st == CW_OK)
-        st = draw_slices(marks, scene, &statistics, image, err);
+        st = draw_marks(marks, labels, scene, &statistics, image, err);
     cw_statistics_free(&statistics);
     return st;
 }
@@ -88,7 +140,7 @@ static cw_status draw_slice(const cw_scene *scene, const cw_transfer *greys,
     if (st == CW_OK)
         st = cw_picture_show(&picture, black, image, err);
     cw_picture_free(&picture);
-    return st == CW_OK ? cli_mark(&marks, &s, image, err) : st;
+    return st == CW_OK ? cli_mark(&marks, NULL, &s, image, err) : st;
 }
 
 cw_status cli_mark_quad(const cw_scene *scene, const cw_image *shown,

@@ -7,7 +7,7 @@
 #include <cubewright/overlay.h>
 
 typedef struct cli_marks {
-    bool axes, scale_bar, letters, color_bar, histogram;
+    bool axes, scale_bar, letters, color_bar, histogram, legend;
     const char *caption;
     int layout;
 } cli_marks;
@@ -15,9 +15,10 @@ typedef struct cli_marks {
 enum { CLI_LAYOUT_SINGLE, CLI_LAYOUT_QUAD };
 
 /* Draws what was asked for on the picture of a scene.
+ * labels   of the legend, or NULL
  * Returns CW_ERR_ARGUMENT for what needs a volume, without one; as cw_overlay_draw() */
-CW_NODISCARD cw_status cli_mark(const cli_marks *marks, const cw_scene *scene, cw_image *image,
-                                cw_error *err);
+CW_NODISCARD cw_status cli_mark(const cli_marks *marks, const cli_label_scene *labels,
+                                const cw_scene *scene, cw_image *image, cw_error *err);
 
 /* Whether there is something to draw. */
 bool cli_has_marks(const cli_marks *marks);

@@ -446,7 +446,7 @@ static cw_status take_picture(cli_pictures *p, size_t turn, cli_shot *shot, cw_e
                  ? draw_mesh(p, (const uint8_t(*)[4])background, &image, err)
                  : draw_scene(p, turn, shot, (const uint8_t(*)[4])background, &image, err);
     if (st == CW_OK)
-        st = cli_mark(&p->args->marks, &p->scene, &image, err);
+        st = cli_mark(&p->args->marks, &p->labels, &p->scene, &image, err);
     if (st == CW_OK && p->args->marks.layout == CLI_LAYOUT_QUAD)
         st = add_slices(p, &image, err);
     if (st == CW_OK)

@@ -306,7 +306,8 @@ static cw_status show_part(view *v, int part, cw_scene *scene, const cw_picture 
                              err);
     scene->progress = (cw_progress){0};
     if (st == CW_OK && (scene->volume || scene->mesh))
-        st = cli_mark(space ? &v->state.args.marks : &plain, scene, image, err);
+        st = cli_mark(space ? &v->state.args.marks : &plain, v->look.labels ? &v->labels : NULL,
+                      scene, image, err);
     return st;
 }
 

@@ -9,6 +9,12 @@
 extern "C" {
 #endif
 
+/* An item of a legend. */
+typedef struct cw_legend_item {
+    const char *name; /* UTF-8; one that is too wide is cut */
+    uint8_t color[3]; /* sRGB */
+} cw_legend_item;
+
 /* The parts to draw on a picture. Zero-initialise the struct and set what you need. */
 typedef struct cw_overlay {
     bool axes;      /* the edges of the volume's box (or the mesh's), fainter behind; and, lower
@@ -20,6 +26,10 @@ typedef struct cw_overlay {
                        in the mode mesh those of its tint */
     bool histogram; /* lower right: the frequency of values, logarithmic, under the opacity; its
                        highest value is written */
+    const cw_legend_item *legend;    /* legend_count items on the right: patches of colours with
+                                     their names, in this order. Those without room are counted
+                                     in a last line, "and 3 more" */
+    size_t legend_count;             /* default: no legend */
     const char *caption;             /* top; UTF-8, lines end with \n; default none */
     const cw_statistics *statistics; /* required for the histogram, with bins */
     double text_px;   /* height of capitals; default 1/48 of the picture's height,

@@ -41,6 +41,10 @@ draw --labels 'left*,7' --names names.csv -o left.png -q && cmp one.png left.png
 # a label of opacity 0 is not there; the neighbour has the whole interface
 draw --labels 1,2 --label-opacity 'Right Lung:0' --names names.csv -o clear.png -q
 draw --labels 1,2 --label-opacity 'all:0,1:1' --names names.csv -o again.png -q && cmp clear.png again.png && echo "same opacities"
+# a legend is drawn
+draw --labels 1,2 --names names.csv -o legend.png -q --legend --label-opacity all:1
+draw --labels 1,2 --names names.csv -o bare.png -q --label-opacity all:1
+cmp -s legend.png bare.png || echo "a legend"
 # a map is recognised, unless something else is asked for
 cp names.csv map.csv
 {
@@ -69,5 +73,6 @@ bad --labels all --label-opacity all:0
 bad --labels all --smooth-labels 3mm
 bad --labels all --names missing.csv
 bad --iso 1 --names names.csv
+bad --iso 1 --legend
 bad --labels all --label-opacity 1:0.5 --backend cpu
 ls bad.png 2>/dev/null || echo none

@@ -20,6 +20,8 @@ view 'mode composite; print mode; labels all; print mode; iso 5; print mode; wai
 for wrong in 'labels 3' 'labels lung' 'label-opacity 4' 'label-opacity all:0; wait' 'smooth-labels 9mm; wait' 'names none.csv'; do
     view "$wrong"
 done
+view 'screenshot plain.png; legend on; screenshot legend.png; labels 9; iso 5; screenshot iso.png; print legend'
+cmp -s plain.png legend.png && echo "the same, but should not be"
 # slices: of the map itself, and over another volume
 sed '/^[0-9]$/s/.*/3/' map.nrrd >scan.nrrd
 view 'labels 4; layout quad; cross 7 5 5; mouse 630 470; wait; print probe; cross 4 5 5; wait; print probe; mode slices; wait; screenshot four.png;
