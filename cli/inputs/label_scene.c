@@ -245,12 +245,34 @@ static cw_status add_layer(const cw_labels_desc *desc, const cw_volume *view, ui
     return st;
 }
 
+size_t cli_count_visible(const cli_label_scene *scene, bool in_3d)
+{
+    size_t count = 0;
+    for (size_t n = 0; n < scene->shown.count; n++) {
+        const cw_label *label = &scene->shown.labels[n];
+        count += label->color[3] > 0 && !(in_3d && label->hidden);
+    }
+    return count;
+}
+
+static void tell_hidden(const cli_volume *volume, const cli_label_scene *s)
+{
+    size_t hidden = 0;
+    for (size_t n = 0; n < s->shown.count; n++)
+        hidden += s->shown.labels[n].hidden;
+    if (hidden)
+        cli_say("%s: %zu label%s that the table hides in 3D %s left out; --labels takes them by "
+                "number or name",
+                volume->path, hidden, hidden == 1 ? "" : "s", hidden == 1 ? "is" : "are");
+}
+
 cw_status cli_make_label_mesh(const cli_input *input, size_t step, const cli_volume *volume,
                               const cli_label_scene *s, cw_mesh *mesh, cw_error *err)
 {
     size_t first, end;
     cw_status st = CW_OK;
     *mesh = (cw_mesh){0};
+    tell_hidden(volume, s);
     cli_label_layers(volume, input, &first, &end);
     for (size_t c = first; c < end && st == CW_OK; c++) {
         cw_volume view;

@@ -33,8 +33,11 @@ CW_NODISCARD cw_status cli_find_shown_labels(const cli_label_look *look, const c
                                              cli_label_scene *scene, cw_error *err);
 void cli_free_label_scene(cli_label_scene *scene);
 
+/* Returns the number of labels that are not clear, and in 3D not hidden. */
+size_t cli_count_visible(const cli_label_scene *scene, bool in_3d);
+
 /* Makes a mesh of the surfaces of the labels that cli_find_shown_labels() found, as
- * cw_label_colored_mesh().
+ * cw_label_colored_mesh(). Says how many are hidden.
  * Returns  as cw_extract_labels(); CW_ERR_EMPTY: all are clear or hidden */
 CW_NODISCARD cw_status cli_make_label_mesh(const cli_input *input, size_t step,
                                            const cli_volume *volume,

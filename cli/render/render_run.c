@@ -398,9 +398,9 @@ static void tell_picture(const cli_pictures *p, const cli_shot *shot)
 {
     char what[256], labels[32] = "";
     const size_t triangles = has_mesh(p) ? p->source.mesh.triangle_count : 0;
+    const size_t visible = cli_count_visible(&p->labels, p->mode == CW_MODE_MESH);
     if (p->labels.shown.count)
-        snprintf(labels, sizeof labels, " of %zu label%s", p->labels.shown.count,
-                 p->labels.shown.count == 1 ? "" : "s");
+        snprintf(labels, sizeof labels, " of %zu label%s", visible, visible == 1 ? "" : "s");
     if (draws_volume(p))
         snprintf(what, sizeof what, "%s%s%s%s%s by %s", cw_mode_name(p->mode),
                  p->mode == CW_MODE_SLICES ? labels : "", triangles ? " and " : "",

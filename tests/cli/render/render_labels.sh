@@ -53,6 +53,9 @@ cp names.csv map.csv
 } >blocks.nrrd
 cubewright render blocks.nrrd -o auto.png --size 80x60 --names names.csv
 cubewright render blocks.nrrd -o all.png --size 80x60 --labels all -q && cmp auto.png all.png && echo "same as all"
+printf '4 255 0 0 1 1 0 "Four"\n9 0 255 0 1 1 1 "Nine"\n' >snap.label
+cubewright render blocks.nrrd -o nine.png --size 80x60 --names snap.label
+cubewright render blocks.nrrd -o again.png --size 80x60 --names snap.label --labels 9,4 --label-opacity 4:0 -q && cmp nine.png again.png && echo "same as hidden"
 for other in '--iso 1' '--tf grey' '--mode vbuffer' --histogram; do
     cubewright render blocks.nrrd -o other.png --size 80x60 $other -q --json - --backend cpu | grep '"labels"'
 done
