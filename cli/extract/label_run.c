@@ -5,7 +5,6 @@
 #include "cli/framework/console.h"
 #include "core/base/status.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -73,33 +72,6 @@ cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
     return cli_check_compress(&args->compress, true, err);
 }
 
-/* Converts --smooth-labels to the bound of the library, in voxels. A length bounds the
- * displacement along each axis of the grid. */
-static cw_status find_max_move(cli_label_run *r, cw_error *err)
-{
-    const char *text = r->args->smooth_labels;
-    const double *spacing = r->volume.spacing;
-    const double voxel = fmax(spacing[0], fmax(spacing[1], spacing[2]));
-    cli_length length;
-    r->max_move = 0.5;
-    if (!text)
-        return CW_OK;
-    r->max_move = 0;
-    if (strcmp(text, "off") == 0)
-        return CW_OK;
-    if (!cli_parse_length(text, &length) || length.unit == CLI_PERCENT)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--smooth-labels '%s': expected is 'off' or a length such as 0.3mm or "
-                        "0.5vox",
-                        text);
-    r->max_move = length.unit == CLI_VOXELS ? length.value : length.value / voxel;
-    if (!(r->max_move > 0 && r->max_move <= 0.5))
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--smooth-labels %s is %.3g voxels; above 0 and up to 0.5 was expected",
-                        text, r->max_move);
-    return CW_OK;
-}
-
 static cw_status read_label_map(cli_label_run *r, cw_error *err)
 {
     const cli_extract_args *args = r->args;
@@ -118,8 +90,10 @@ static cw_status read_label_map(cli_label_run *r, cw_error *err)
                         v->cells ? "an irregular grid" : "a sparse one");
     st = cli_find_label_names(args->names, &r->volume, &r->names, err);
     if (st == CW_OK)
-        st = cli_choose_labels(args->labels, &r->names.table, &r->choice, err);
-    return st == CW_OK ? find_max_move(r, err) : st;
+        st = cli_choose_labels("--labels", args->labels, &r->names.table, &r->choice, err);
+    return st == CW_OK
+               ? cli_parse_label_move(args->smooth_labels, r->volume.spacing, &r->max_move, err)
+               : st;
 }
 
 /* Extracts the interfaces of one component of the volume. */
@@ -187,19 +161,8 @@ static cw_status extract_layers(cli_label_run *r, cw_error *err)
  * --require-labels. */
 static cw_status tell_missing(const cli_label_run *r, cw_error *err)
 {
-    char list[256] = "";
-    size_t used = 0, missing = 0;
-    for (size_t n = 0; n < r->choice.count; n++) {
-        const cli_chosen_label *chosen = &r->choice.labels[n];
-        char name[CLI_LABEL_NAME];
-        if (chosen->is_found)
-            continue;
-        cli_complete_label(&r->names.table, chosen->layer, chosen->value, name);
-        if (used < sizeof list - 1)
-            used += (size_t)snprintf(list + used, sizeof list - used, "%s%u (%.60s)",
-                                     missing ? ", " : "", chosen->value, name);
-        missing++;
-    }
+    char list[256];
+    const size_t missing = cli_list_missing(&r->choice, &r->names.table, list, sizeof list);
     if (!missing)
         return CW_OK;
     if (r->args->require_labels)

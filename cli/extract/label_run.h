@@ -3,8 +3,7 @@
 #define CLI_EXTRACT_LABEL_RUN_H
 
 #include "cli/extract/extract_run.h"
-#include "cli/extract/label_choice.h"
-#include "cli/inputs/label_names.h"
+#include "cli/inputs/label_choice.h"
 
 #include <cubewright/labels.h>
 

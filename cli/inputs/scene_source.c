@@ -25,6 +25,7 @@ static cw_status look_at_file(cli_source *s, const char *path, const cli_input *
     cw_error why = {0};
     cw_status st = cli_read_shape(path, input, &shape, &why);
     s->is_level_set = st == CW_OK && shape.known & CW_KNOWN_LEVEL_SET;
+    s->is_label_map = st == CW_OK && shape.known & CW_KNOWN_LABELS;
     s->is_uneven = st == CW_OK && (shape.cells || cwi_is_rectilinear(&shape));
     cw_volume_free(&shape);
     s->is_mesh = st != CW_OK && may_be_mesh && !input->raw && s->series.count == 1 &&
@@ -61,6 +62,7 @@ cw_status cli_read_step(cli_source *source, const cli_input *input, size_t step,
     cli_input at = *input;
     at.step = moment->step;
     at.step_chosen = source->series.given;
+    at.component.given |= source->of_labels;
     cw_volume_free(&source->dense);
     if (source->volume.voxels.data && source->volume.path == moment->path)
         return cli_choose_step(&at, moment->step, &source->volume, err);

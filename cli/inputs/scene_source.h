@@ -13,6 +13,8 @@ typedef struct cli_source {
     bool is_mesh; /* the input is a mesh */
     bool is_level_set;
     bool is_uneven;    /* it is a rectilinear or irregular grid */
+    bool is_label_map; /* the file says that its values are labels */
+    bool of_labels;    /* labels are drawn: all components are read, unless one was chosen */
     cli_volume volume; /* of the step at hand */
     cw_volume dense;   /* of a sparse one */
     cw_mesh mesh;      /* the input's; else whatever is put here */

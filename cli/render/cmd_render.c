@@ -34,6 +34,7 @@ static const cli_option options[] = {
      offsetof(render_args, turns) + offsetof(cli_turns, count)},
     {"orbit", 0, CLI_NUMBER, "DEG", "Angle of the turntable in degrees (360)",
      offsetof(render_args, turns) + offsetof(cli_turns, orbit)},
+#include "cli/render/options_labels.inc"
 #include "cli/render/options_look.inc"
     CLI_BATCH_OPTIONS(render_args),
     CLI_INPUT_OPTIONS(render_args),

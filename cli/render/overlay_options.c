@@ -3,49 +3,105 @@
 
 #include "core/base/status.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 enum { BINS = 256 };
 
 bool cli_has_marks(const cli_marks *m)
 {
-    return m->axes || m->scale_bar || m->letters || m->color_bar || m->histogram || m->caption;
+    return m->axes || m->scale_bar || m->letters || m->color_bar || m->histogram || m->legend ||
+           m->caption;
 }
 
-static cw_status draw_slices(const cli_marks *m, const cw_scene *scene,
-                             const cw_statistics *statistics, cw_image *image, cw_error *err)
+/* A label of the legend. */
+typedef struct entry {
+    size_t voxels, place; /* in the list of labels */
+} entry;
+
+static int compare_entries(const void *a, const void *b)
 {
+    const entry *x = a, *y = b;
+    return x->voxels != y->voxels ? (x->voxels < y->voxels) - (x->voxels > y->voxels)
+                                  : (x->place > y->place) - (x->place < y->place);
+}
+
+/* Lists the labels that the scene shows, the largest first. */
+static cw_status list_legend(const cli_label_scene *s, const cw_scene *scene,
+                             cw_legend_item **items, size_t *count, cw_error *err)
+{
+    const size_t all = s->shown.count;
+    entry *entries = calloc(all + 1, sizeof *entries);
+    *items = calloc(all + 1, sizeof **items);
+    *count = 0;
+    if (!entries || !*items) {
+        free(entries);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a legend of %zu labels", all);
+    }
+    for (size_t n = 0; n < all; n++) {
+        const cw_label *label = &s->shown.labels[n];
+        if (label->color[3] > 0 && !(label->hidden && scene->mode == CW_MODE_MESH))
+            entries[(*count)++] = (entry){s->voxels[n], n};
+    }
+    qsort(entries, *count, sizeof *entries, compare_entries);
+    for (size_t n = 0; n < *count; n++) {
+        const cw_label *label = &s->shown.labels[entries[n].place];
+        (*items)[n].name = label->name;
+        memcpy((*items)[n].color, label->color, 3);
+    }
+    free(entries);
+    return CW_OK;
+}
+
+static cw_status draw_marks(const cli_marks *m, const cli_label_scene *labels,
+                            const cw_scene *scene, const cw_statistics *statistics,
+                            cw_image *image, cw_error *err)
+{
+    cw_legend_item *legend = NULL;
+    size_t count = 0;
+    cw_status st = CW_OK;
+    if (m->legend && labels)
+        st = list_legend(labels, scene, &legend, &count, err);
     const cw_overlay overlay = {.axes = m->axes,
                                 .scale_bar = m->scale_bar,
                                 .letters = m->letters,
                                 .color_bar = m->color_bar,
                                 .histogram = m->histogram,
+                                .legend = legend,
+                                .legend_count = count,
                                 .caption = m->caption,
                                 .statistics = statistics};
-    return cw_overlay_draw(&overlay, scene, image, err);
+    if (st == CW_OK)
+        st = cw_overlay_draw(&overlay, scene, image, err);
+    free(legend);
+    return st;
 }
 
-cw_status cli_mark(const cli_marks *marks, const cw_scene *scene, cw_image *image,
-                   cw_error *err)
+cw_status cli_mark(const cli_marks *marks, const cli_label_scene *labels, const cw_scene *scene,
+                   cw_image *image, cw_error *err)
 {
     cw_statistics statistics;
     if (!cli_has_marks(marks))
         return CW_OK;
     if (!marks->histogram)
-        return draw_slices(marks, scene, NULL, image, err);
+        return draw_marks(marks, labels, scene, NULL, image, err);
     if (!scene->volume)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--histogram is for volumes");
     cw_status st = cw_volume_statistics(scene->volume, BINS, scene->threads, &statistics, err);
     if (st == CW_OK)
-        st = draw_slices(marks, scene, &statistics, image, err);
+        st = draw_marks(marks, labels, scene, &statistics, image, err);
     cw_statistics_free(&statistics);
     return st;
 }
 
-/* Greys over the range of the values. */
-static cw_status make_greys(const cw_scene *scene, cw_transfer *greys, cw_error *err)
+/* Makes greys over the range of the values, or black under labels. */
+static cw_status make_greys(const cw_scene *scene, const cli_slice_labels *labels,
+                            cw_transfer *greys, cw_error *err)
 {
     cw_statistics statistics;
+    *greys = cli_black_transfer();
+    if (labels->is_base)
+        return CW_OK;
     cw_status st = cw_volume_statistics(scene->volume, BINS, scene->threads, &statistics, err);
     if (st == CW_OK)
         st = cw_transfer_preset("grey", &statistics, greys, err);
@@ -53,8 +109,9 @@ static cw_status make_greys(const cw_scene *scene, cw_transfer *greys, cw_error 
     return st;
 }
 
-static cw_status draw_slice(const cw_scene *scene, const cw_transfer *greys, int axis,
-                            cw_renderer *renderer, cw_image *image, cw_error *err)
+static cw_status draw_slice(const cw_scene *scene, const cw_transfer *greys,
+                            const cli_slice_labels *labels, int axis, cw_renderer *renderer,
+                            cw_image *image, cw_error *err)
 {
     static const uint8_t black[2][4] = {{0, 0, 0, 255}, {0, 0, 0, 255}};
     static const cli_marks marks = {.scale_bar = true, .letters = true};
@@ -79,18 +136,21 @@ static cw_status draw_slice(const cw_scene *scene, const cw_transfer *greys, int
         st = cw_render(renderer, &s, &picture, err);
     if (st != CW_OK)
         return st;
-    st = cw_picture_show(&picture, black, image, err);
+    st = cli_draw_slice_labels(labels, &s, &picture, err);
+    if (st == CW_OK)
+        st = cw_picture_show(&picture, black, image, err);
     cw_picture_free(&picture);
-    return st == CW_OK ? cli_mark(&marks, &s, image, err) : st;
+    return st == CW_OK ? cli_mark(&marks, NULL, &s, image, err) : st;
 }
 
-cw_status cli_mark_quad(const cw_scene *scene, const cw_image *shown, cw_backend backend,
+cw_status cli_mark_quad(const cw_scene *scene, const cw_image *shown,
+                        const cli_slice_labels *labels, cw_backend backend,
                         cw_renderer **renderer, cw_image *sheet, cw_error *err)
 {
     static const int axes[3] = {2, 1, 0}; /* axial, coronal, sagittal */
     cw_transfer greys;
     const ptrdiff_t w = (ptrdiff_t)shown->width, h = (ptrdiff_t)shown->height;
-    cw_status st = make_greys(scene, &greys, err);
+    cw_status st = make_greys(scene, labels, &greys, err);
     if (st == CW_OK && !*renderer)
         st = cw_renderer_new(backend, renderer, err);
     if (st == CW_OK)
@@ -99,7 +159,7 @@ cw_status cli_mark_quad(const cw_scene *scene, const cw_image *shown, cw_backend
         cw_image_place(sheet, shown, w, h);
     for (int n = 0; n < 3 && st == CW_OK; n++) {
         cw_image slice = {0};
-        st = draw_slice(scene, &greys, axes[n], *renderer, &slice, err);
+        st = draw_slice(scene, &greys, labels, axes[n], *renderer, &slice, err);
         if (st == CW_OK)
             cw_image_place(sheet, &slice, n % 2 * w, n / 2 * h);
         cw_image_free(&slice);

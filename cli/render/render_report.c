@@ -159,6 +159,26 @@ static void put_shots(cli_json *j, const cli_render_report *r)
     cli_json_close(j, ']');
 }
 
+static void put_labels(cli_json *j, const cli_label_scene *s)
+{
+    cli_json_open(j, "labels", '[');
+    for (size_t n = 0; n < s->shown.count; n++) {
+        const cw_label *l = &s->shown.labels[n];
+        char hex[16];
+        snprintf(hex, sizeof hex, "#%02X%02X%02X", l->color[0], l->color[1], l->color[2]);
+        cli_json_open(j, NULL, '{');
+        cli_json_count(j, "label", l->value);
+        if (l->layer > 0)
+            cli_json_count(j, "layer", l->layer);
+        cli_json_text(j, "name", l->name);
+        cli_json_text(j, "color", hex);
+        cli_json_number(j, "opacity", l->hidden ? 0 : l->color[3] / 255.0);
+        cli_json_count(j, "voxels", s->voxels[n]);
+        cli_json_close(j, '}');
+    }
+    cli_json_close(j, ']');
+}
+
 static void put_report(FILE *out, const cli_render_report *r, cw_status status,
                        const cw_error *err)
 {
@@ -172,6 +192,8 @@ static void put_report(FILE *out, const cli_render_report *r, cw_status status,
     cli_json_text(&j, "mode", cw_mode_name(r->mode));
     cli_json_text(&j, "source", cw_mode_source(r->mode));
     cli_json_text(&j, "backend", r->backend);
+    if (r->labels->shown.count)
+        put_labels(&j, r->labels);
     if (r->triangles)
         cli_json_count(&j, "triangles", r->triangles);
     if (r->scene)

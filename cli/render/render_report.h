@@ -2,6 +2,7 @@
 #ifndef CLI_RENDER_RENDER_REPORT_H
 #define CLI_RENDER_RENDER_REPORT_H
 
+#include "cli/inputs/label_scene.h"
 #include "cli/render/scene_options.h"
 
 /* One picture of a run. */
@@ -21,6 +22,7 @@ typedef struct cli_render_report {
     const char *backend;
     const cw_scene *scene; /* NULL: it did not come to one */
     const cw_transfer *transfer;
+    const cli_label_scene *labels; /* without labels: none were drawn */
     const cli_shot *shots;
     size_t shot_count, triangles;
     double seconds;

@@ -8,6 +8,7 @@
 #include "cli/inputs/extract_surface.h"
 #include "cli/inputs/mesh_input.h"
 #include "cli/render/compare_options.h"
+#include "cli/render/label_pictures.h"
 #include "cli/results/output_names.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
@@ -53,6 +54,8 @@ cw_status cli_check_pictures(const render_args *args, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--difference %g: above 0 was expected",
                         args->difference.value);
     cw_status st = cli_check_camera(&args->scene, &args->turns, err);
+    if (st == CW_OK)
+        st = cli_check_label_look(args, err);
     if (st == CW_OK)
         st = check_side_output(args->json, args, err);
     if (st == CW_OK)
@@ -102,7 +105,8 @@ static cw_status check_hidden(cli_pictures *p, cw_error *err)
 static bool draws_on_cpu(const cli_pictures *p)
 {
     return p->mode == CW_MODE_MESH && p->args->backend != CW_BACKEND_EGL &&
-           !cli_needs_gl(p->command, &p->args->common, &p->args->scene);
+           !cli_needs_gl(p->command, &p->args->common, &p->args->scene) &&
+           (p->args->overlay || !cli_labels_need_gl(&p->labels));
 }
 
 /* Parses --compare. The input is read for the left side; both sides draw the volume. */
@@ -141,7 +145,7 @@ static cw_status check_mode(cli_pictures *p, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT, "%s is a mesh; --%s is for volumes",
                         args->common.inputs[0], args->mesh ? "mesh" : "hide");
     if (p->mode == CW_MODE_MESH && !p->source.is_mesh && !args->mesh && !args->iso.given &&
-        !p->source.is_level_set)
+        !p->source.is_level_set && !(p->look.labels && !args->overlay))
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "the surface of a volume needs an isovalue: --iso V; 'cubewright info "
                         "%s' suggests some",
@@ -275,11 +279,13 @@ static cw_status open_step(cli_pictures *p, size_t step, cw_error *err)
         st = make_transfer(p, step, err);
     if (st == CW_OK && draws_volume(p))
         st = cli_need_drawable(&p->source, &args->input, err);
-    if (st == CW_OK && args->mesh)
-        st = read_beside(p, err);
-    else if (st == CW_OK && has_mesh(p))
-        st = extract_shown(p, err);
-    return st;
+    if (st == CW_OK && p->look.labels)
+        st = cli_open_labels(p, step, err);
+    if (st != CW_OK || (p->look.labels && !args->overlay))
+        return st;
+    if (args->mesh)
+        return read_beside(p, err);
+    return has_mesh(p) ? extract_shown(p, err) : CW_OK;
 }
 
 static cw_status make_scene(cli_pictures *p, size_t turn, cw_error *err)
@@ -297,6 +303,7 @@ static cw_status make_scene(cli_pictures *p, size_t turn, cw_error *err)
     p->scene = (cw_scene){.width = args->size.n[0] / part, .height = args->size.n[1] / part};
     p->scene.samples = args->samples ? (int)args->samples : draws_volume(p) ? 1 : MESH_SAMPLES;
     p->scene.progress = cli_progress((double)p->source.mesh.triangle_count / 1e6, "Mtriangle");
+    p->scene.same_inside = p->look.labels && !args->overlay;
     cw_status st = CW_OK;
     if (!p->has_box && p->source.series.count > 1) /* what is visible moves */
         p->has_box = cli_find_box(subject.volume, subject.mesh, p->box);
@@ -320,6 +327,7 @@ static cw_status draw_mesh(cli_pictures *p, const uint8_t background[2][4], cw_i
                                 .width = s->width,
                                 .height = s->height,
                                 .samples = s->samples,
+                                .same_inside = s->same_inside,
                                 .threads = s->threads,
                                 .progress = s->progress};
     memcpy(desc.background, background, sizeof desc.background);
@@ -335,6 +343,8 @@ static cw_status draw_picture(cli_pictures *p, cw_picture *picture, cw_error *er
         st = cw_renderer_new((cw_backend)p->args->backend, &p->renderer, err);
     if (st == CW_OK)
         st = cw_render(p->renderer, &p->scene, picture, err);
+    if (st == CW_OK && p->mode == CW_MODE_SLICES)
+        st = cli_draw_slice_labels(&p->on_slices, &p->scene, picture, err);
     if (st == CW_ERR_UNSUPPORTED && draws_volume(p) && !p->source.is_uneven &&
         p->mode != CW_MODE_VBUFFER &&
         (!p->renderer || strcmp(cw_renderer_name(p->renderer), "CPU") == 0))
@@ -388,14 +398,18 @@ static cw_status draw_scene(cli_pictures *p, size_t turn, cli_shot *shot,
 
 static void tell_picture(const cli_pictures *p, const cli_shot *shot)
 {
-    char what[256];
+    char what[256], labels[32] = "";
     const size_t triangles = has_mesh(p) ? p->source.mesh.triangle_count : 0;
+    const size_t visible = cli_count_visible(&p->labels, p->mode == CW_MODE_MESH);
+    if (p->labels.shown.count)
+        snprintf(labels, sizeof labels, " of %zu label%s", visible, visible == 1 ? "" : "s");
     if (draws_volume(p))
-        snprintf(what, sizeof what, "%s%s%s%s by %s", cw_mode_name(p->mode),
-                 triangles ? " and " : "", triangles ? cli_count(triangles) : "",
-                 triangles ? " triangles" : "", cw_renderer_name(p->renderer));
+        snprintf(what, sizeof what, "%s%s%s%s%s by %s", cw_mode_name(p->mode),
+                 p->mode == CW_MODE_SLICES ? labels : "", triangles ? " and " : "",
+                 triangles ? cli_count(triangles) : "", triangles ? " triangles" : "",
+                 cw_renderer_name(p->renderer));
     else
-        snprintf(what, sizeof what, "%s triangles", cli_count(triangles));
+        snprintf(what, sizeof what, "%s triangles%s", cli_count(triangles), labels);
     if (shot->compared)
         cli_result("%s: %s: rmse %.3g, max %.3g of 255; delta-E %.3g, 99 %% below %.3g\n",
                    shot->path, p->args->compare, shot->measured.rmse, shot->measured.max,
@@ -415,8 +429,8 @@ static cw_status add_slices(cli_pictures *p, cw_image *image, cw_error *err)
     whole.volume = cli_drawn(&p->source);
     whole.width = p->args->size.n[0];
     whole.height = p->args->size.n[1];
-    cw_status st =
-        cli_mark_quad(&whole, image, (cw_backend)p->args->backend, &p->renderer, &sheet, err);
+    cw_status st = cli_mark_quad(&whole, image, &p->on_slices, (cw_backend)p->args->backend,
+                                 &p->renderer, &sheet, err);
     cw_image_free(image);
     *image = sheet;
     return st;
@@ -434,7 +448,7 @@ static cw_status take_picture(cli_pictures *p, size_t turn, cli_shot *shot, cw_e
                  ? draw_mesh(p, (const uint8_t(*)[4])background, &image, err)
                  : draw_scene(p, turn, shot, (const uint8_t(*)[4])background, &image, err);
     if (st == CW_OK)
-        st = cli_mark(&p->args->marks, &p->scene, &image, err);
+        st = cli_mark(&p->args->marks, &p->labels, &p->scene, &image, err);
     if (st == CW_OK && p->args->marks.layout == CLI_LAYOUT_QUAD)
         st = add_slices(p, &image, err);
     if (st == CW_OK)
@@ -472,6 +486,8 @@ cw_status cli_make_pictures(cli_pictures *p, cw_error *err)
     if (st == CW_OK)
         st = plan_pictures(p, err);
     if (st == CW_OK)
+        st = cli_decide_labels(p, err);
+    if (st == CW_OK)
         st = check_mode(p, err);
     return st == CW_OK ? take_pictures(p, err) : st;
 }
@@ -485,6 +501,8 @@ void cli_end_pictures(cli_pictures *p)
     for (size_t n = 0; n < p->shot_count; n++)
         free(p->shots[n].path);
     free(p->shots);
+    cli_free_label_scene(&p->labels);
+    cli_free_volume(&p->overlay);
     cli_close_source(&p->source);
 }
 
@@ -496,6 +514,7 @@ cli_render_report cli_report_pictures(const cli_pictures *p)
         .backend = p->renderer ? cw_renderer_name(p->renderer) : "CPU",
         .scene = p->scene.width ? &p->scene : NULL,
         .transfer = &p->transfer,
+        .labels = &p->labels,
         .shots = p->shots,
         .shot_count = p->shot_count,
         .triangles = p->source.mesh.triangle_count,

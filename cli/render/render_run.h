@@ -2,10 +2,12 @@
 #ifndef CLI_RENDER_RENDER_RUN_H
 #define CLI_RENDER_RENDER_RUN_H
 
+#include "cli/inputs/label_scene.h"
 #include "cli/inputs/scene_source.h"
 #include "cli/render/camera_options.h"
 #include "cli/render/overlay_options.h"
 #include "cli/render/render_report.h"
+#include "cli/render/slice_labels.h"
 
 typedef struct render_args {
     cli_common common;
@@ -13,10 +15,11 @@ typedef struct render_args {
     cli_scene scene;
     cli_turns turns;
     cli_marks marks;
+    cli_label_look look;
     const char *exec, *run, *config; /* of view alone, */
     bool hidden;                     /* and this */
-    const char *output, *json, *mesh, *save_transfer, *save_camera, *compare;
-    cli_number iso, difference;
+    const char *output, *json, *mesh, *save_transfer, *save_camera, *compare, *overlay;
+    cli_number iso, difference, overlay_opacity;
     int inside, backend;
     cli_sizes size;
     size_t samples;
@@ -28,9 +31,11 @@ typedef struct render_args {
         .lit = true, .minip_inside = true, .preintegration = true, .skipping = true            \
     }
 
-/* For the rows of options_what.inc, options_camera.inc and options_look.inc. */
+/* For the rows of options_what.inc, options_camera.inc, options_look.inc and
+ * options_labels.inc. */
 #define CLI_SCENE_AT(field) offsetof(render_args, scene) + offsetof(cli_scene, field)
 #define CLI_MARKS_AT(field) offsetof(render_args, marks) + offsetof(cli_marks, field)
+#define CLI_LOOK_AT(field)  offsetof(render_args, look) + offsetof(cli_label_look, field)
 
 /* One side of --compare: the run's arguments, changed. */
 typedef struct cli_side {
@@ -51,6 +56,10 @@ typedef struct cli_pictures {
     const render_args *args;
     cli_source source; /* its mesh: what is seen beside the volume, or by itself */
     cw_mode mode;
+    cli_label_look look; /* labels: NULL where none are drawn */
+    cli_label_scene labels;
+    cli_volume overlay; /* another volume, with labels */
+    cli_slice_labels on_slices;
     cw_transfer transfer;
     double level;      /* between two classes of values */
     bool has_transfer; /* of all steps */

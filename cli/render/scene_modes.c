@@ -68,6 +68,7 @@ static const struct {
     {"splat-budget", ONE(SPLAT_TREE), false, false},
     {"splat-kernel", ONE(SPLAT) | ONE(SPLAT_TREE), false, false},
     {"splat-width", ONE(SPLAT) | ONE(SPLAT_TREE), false, false},
+    {"smooth-labels", ONE(MESH), false, false},
     {"tint", 0, true, true},
     {"tint-range", 0, true, true},
     {"wireframe", 0, true, true},

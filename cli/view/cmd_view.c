@@ -35,6 +35,7 @@ static const cli_option options[] = {
 #include "cli/render/options_what.inc"
     CLI_HEADED("Camera"),
 #include "cli/render/options_camera.inc"
+#include "cli/render/options_labels.inc"
 #include "cli/render/options_look.inc"
     CLI_INPUT_OPTIONS(render_args),
 };

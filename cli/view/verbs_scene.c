@@ -249,6 +249,21 @@ static cw_status run_cross_by(view *v, int count, char **args, cw_error *err)
     return CW_OK;
 }
 
+/* Says the label of the surface that was picked, or of the voxel there. */
+static void tell_picked_label(view *v, const cw_scene *scene, const cw_picked *picked)
+{
+    char text[CLI_LABEL_NAME + 32];
+    const cw_mesh *m = scene->mesh;
+    if (!v->look.labels)
+        return;
+    if (picked->kind == CW_PICK_MESH && m && m->labels && picked->number != SIZE_MAX)
+        view_name_label(v, m->labels[m->triangles[3 * picked->number]], text, sizeof text);
+    else
+        view_label_at(v, picked->point, text, sizeof text);
+    if (*text)
+        view_say(v, false, text);
+}
+
 /* To what the mouse is on, in pixels of the 3D part. */
 static cw_status run_pick(view *v, int count, char **args, cw_error *err)
 {
@@ -265,8 +280,10 @@ static cw_status run_pick(view *v, int count, char **args, cw_error *err)
         const double at[2] = {pixel[0] * scale, pixel[1] * scale};
         st = cw_pick(&part->scene, at, &picked, err);
     }
-    if (st == CW_OK && picked.kind != CW_PICK_NOTHING)
+    if (st == CW_OK && picked.kind != CW_PICK_NOTHING) {
         put_cross(v, picked.point);
+        tell_picked_label(v, &part->scene, &picked);
+    }
     return st;
 }
 

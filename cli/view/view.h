@@ -99,6 +99,14 @@ typedef struct view {
     cw_mesh old_mesh;   /* was drawn until now: its address must not come again */
     bool mesh_is_drawn; /* the renderer holds it, and no longer the old one */
     double mesh_iso;
+    char label_note[160]; /* why the volume is taken for a label map; "": it is not */
+    cli_label_look look;  /* as it is drawn; labels: NULL for none */
+    cli_label_look found; /* that labels are of */
+    cli_label_scene labels;
+    const char *overlay_path; /* of overlay, which has them; NULL: the volume itself */
+    cli_volume overlay;
+    bool has_labels; /* they are found; and their surfaces are made: */
+    bool has_label_mesh;
     int mesh_level; /* 0: none, 1: of coarse, 2: of all */
     double box[2][3];
     bool has_volume;  /* that can be drawn */
@@ -127,7 +135,7 @@ typedef struct view {
     double start;         /* in cli_seconds() */
     bool is_told;         /* how long the first picture took */
     double frame_shown, play_next;
-    char probe[128];
+    char probe[256];
     view_browser browser;
 
     char **words; /* texts that options point to */
@@ -164,6 +172,22 @@ CW_NODISCARD cw_status view_need_transfer(view *v, cw_error *err);
 CW_NODISCARD cw_status view_place_camera(view *v, const char *name, cw_error *err);
 CW_NODISCARD cw_status view_choose_mode(view *v,
                                         cw_error *err); /* after settings have changed */
+
+/* view_labels.c: labels of label maps. */
+void view_choose_labels(view *v); /* whether they are drawn */
+/* Finds the labels that are drawn, and for a mesh makes their surfaces. */
+CW_NODISCARD cw_status view_need_labels(view *v, cw_error *err);
+CW_NODISCARD cw_status view_need_label_mesh(view *v, cw_error *err);
+/* Finds if the volume that was read is a label map. */
+CW_NODISCARD cw_status view_look_for_labels(view *v, cw_error *err);
+void view_forget_labels(view *v); /* they are of another volume */
+/* Names a label: "label 7, Liver". */
+void view_name_label(const view *v, uint32_t value, char *text, size_t size);
+/* The same of the label at a point of the world; "": none is drawn there. */
+void view_label_at(const view *v, const double world[3], char *text, size_t size);
+/* Returns the labels that are drawn over slices. */
+cli_slice_labels view_slice_labels(const view *v);
+bool view_shows_surfaces(const view *v); /* of labels */
 
 /* view_state.c: undo, settings by name, and what is saved. */
 void view_remember(view *v, const char *verb);

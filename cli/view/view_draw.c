@@ -52,6 +52,8 @@ static cw_status need_surface(view *v, view_level level, cw_error *err)
     const render_args *args = &v->state.args;
     const bool coarse = level == VIEW_ROUGH && v->state.is_placed && can_thin(v);
     cw_mesh mesh;
+    if (view_shows_surfaces(v) && v->mode == CW_MODE_MESH)
+        return view_need_label_mesh(v, err);
     const bool is_there =
         v->mesh_iso == args->iso.value &&
         (v->mesh_level == (coarse ? 1 : 2) ||
@@ -80,6 +82,7 @@ static cw_status need_surface(view *v, view_level level, cw_error *err)
     v->source.mesh = mesh;
     v->mesh_iso = args->iso.value;
     v->mesh_level = coarse ? 1 : 2;
+    v->has_label_mesh = false;
     return CW_OK;
 }
 
@@ -128,6 +131,7 @@ static cw_status space_scene(view *v, const render_args *args, cw_mode mode,
         .level = v->level,
         .threads = (int)args->input.threads};
     scene->camera = v->state.camera;
+    scene->same_inside = view_shows_surfaces(v);
     scene->lean = !v->is_saving;
     scene->samples = args->samples ? (int)args->samples : mode == CW_MODE_MESH ? 2 : 1;
     cw_status st = cli_make_scene(&args->scene, &subject, mode, transfer, scene, err);
@@ -172,14 +176,21 @@ static cw_status slice_scene(view *v, int part, cw_scene *scene, cw_error *err)
 
 static cw_status draw_scene(view *v, const cw_scene *scene, cw_picture *picture, cw_error *err)
 {
-    cw_status st = CW_OK;
-    if (!v->renderer)
+    const cw_transfer black = cli_black_transfer();
+    cw_scene s = *scene;
+    cw_status st = scene->mode == CW_MODE_SLICES ? view_need_labels(v, err) : CW_OK;
+    const cli_slice_labels labels = view_slice_labels(v);
+    if (scene->mode == CW_MODE_SLICES && labels.is_base)
+        s.transfer = &black;
+    if (st == CW_OK && !v->renderer)
         st = cw_renderer_new(CW_BACKEND_AUTO, &v->renderer, err);
     if (st == CW_OK && v->values_come)
         cw_renderer_forget(v->renderer);
     v->values_come = v->values_come && st != CW_OK;
     if (st == CW_OK)
-        st = cw_render(v->renderer, scene, picture, err);
+        st = cw_render(v->renderer, &s, picture, err);
+    if (st == CW_OK && scene->mode == CW_MODE_SLICES && !scene->mesh)
+        st = cli_draw_slice_labels(&labels, scene, picture, err);
     v->mesh_is_drawn = v->mesh_is_drawn || (st == CW_OK && scene->mesh);
     return st;
 }
@@ -295,7 +306,8 @@ static cw_status show_part(view *v, int part, cw_scene *scene, const cw_picture 
                              err);
     scene->progress = (cw_progress){0};
     if (st == CW_OK && (scene->volume || scene->mesh))
-        st = cli_mark(space ? &v->state.args.marks : &plain, scene, image, err);
+        st = cli_mark(space ? &v->state.args.marks : &plain, v->look.labels ? &v->labels : NULL,
+                      scene, image, err);
     return st;
 }
 

@@ -185,6 +185,7 @@ static void turn_wheel(view *v, const cwi_ui_input *in, int part)
 static void probe_part(view *v, const cwi_ui_input *in, int part)
 {
     double point[3];
+    char label[CLI_LABEL_NAME + 32];
     bool there = false;
     memcpy(point, v->state.cross, sizeof point);
     if (part > VIEW_SPACE)
@@ -194,8 +195,15 @@ static void probe_part(view *v, const cwi_ui_input *in, int part)
     if (!v->has_volume || cli_drawn(&v->source)->cells) /* the value at any point is unknown */
         return;
     const double value = cw_volume_sample(cli_drawn(&v->source), point);
-    snprintf(v->probe, sizeof v->probe, "%s %.5g at %.1f, %.1f, %.1f mm",
-             there ? "value" : "cross-hair:", value, point[0], point[1], point[2]);
+    view_label_at(v, point, label, sizeof label);
+    if (view_slice_labels(v).is_base) /* values between labels mean nothing */
+        snprintf(v->probe, sizeof v->probe, "%s%.80s at %.1f, %.1f, %.1f mm",
+                 there ? "" : "cross-hair: ", *label ? label : "no label", point[0], point[1],
+                 point[2]);
+    else
+        snprintf(v->probe, sizeof v->probe, "%s %.5g at %.1f, %.1f, %.1f mm%s%.80s",
+                 there ? "value" : "cross-hair:", value, point[0], point[1], point[2],
+                 *label ? ": " : "", label);
 }
 
 /* Returns the cursor that shows the effect of a press. */

@@ -367,6 +367,8 @@ static void show_side(view *v)
         show_cut(v);
         show_time(v);
         show_compare(v);
+        if (v->look.labels)
+            show_options(v, "Label maps");
         show_options(v, "Light");
         show_options(v, "Sampling");
         show_options(v, "Meshes");

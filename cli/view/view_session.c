@@ -56,13 +56,15 @@ bool view_has_mesh(const view *v)
 {
     const render_args *args = &v->state.args;
     return v->path && args->scene.hide != CLI_HIDE_MESH &&
-           (v->source.is_mesh || args->iso.given || args->mesh);
+           (v->source.is_mesh || args->iso.given || args->mesh ||
+            (view_shows_surfaces(v) && v->mode == CW_MODE_MESH));
 }
 
 static void drop_surface(view *v)
 {
     cw_extractor_free(v->extractor);
     cw_extractor_free(v->coarse);
+    v->has_labels = v->has_label_mesh = false;
     cw_volume_free(&v->thinned);
     v->extractor = v->coarse = NULL;
     v->mesh_level = 0;
@@ -71,6 +73,8 @@ static void drop_surface(view *v)
 void view_close(view *v)
 {
     drop_surface(v);
+    view_forget_labels(v);
+    v->label_note[0] = '\0';
     cw_mesh_free(&v->old_mesh);
     cw_statistics_free(&v->statistics);
     cli_close_source(&v->source);
@@ -96,8 +100,10 @@ cw_status view_choose_mode(view *v, cw_error *err)
 {
     render_args *args = &v->state.args;
     const int asked = args->scene.mode;
+    view_choose_labels(v);
     v->mode =
-        asked ? (cw_mode)(asked - 1)
+        asked                    ? (cw_mode)(asked - 1)
+        : view_shows_surfaces(v) ? CW_MODE_MESH
         : v->has_volume && !v->source.is_level_set && (!args->iso.given || v->state.iso_is_ours)
             ? cli_default_mode(&v->source)
             : CW_MODE_MESH;
@@ -109,10 +115,12 @@ cw_status view_choose_mode(view *v, cw_error *err)
                         v->source.is_mesh ? "this is a mesh"
                         : v->has_volume   ? "vbuffer draws this one"
                                           : "this grid is shown as surfaces");
-    if (v->mode != CW_MODE_MESH && v->state.iso_is_ours) {
+    if ((v->mode != CW_MODE_MESH || view_shows_surfaces(v)) && v->state.iso_is_ours) {
         args->iso = (cli_number){0};
         v->state.iso_is_ours = false;
     }
+    if (view_shows_surfaces(v))
+        return CW_OK;
     if (v->path && v->mode == CW_MODE_MESH && !v->source.is_mesh && !args->mesh &&
         !args->iso.given) {
         args->iso = (cli_number){true, view_suggest_iso(v)};
@@ -135,6 +143,8 @@ static cw_status read_step(view *v, size_t step, cw_error *err)
         st = cli_find_statistics(s, &v->state.args.input, step, CLI_TRANSFER_BINS,
                                  &v->statistics, err);
         v->level = cli_class_level(&v->statistics);
+        if (st == CW_OK)
+            st = view_look_for_labels(v, err);
     }
     if (st != CW_OK)
         return st;
@@ -227,13 +237,19 @@ static cw_status open_path(view *v, cw_error *err)
     const char *series = v->state.args.input.series;
     choose_series(v);
     cw_status st = open_source(v, err);
+    v->source.of_labels = v->source.is_label_map || v->state.args.look.labels;
     if (st == CW_OK)
         st = read_step(v, v->state.step, err);
     v->opening = NULL;
     v->state.args.input.series = series; /* which is not for what is opened next */
     if (st == CW_OK)
         st = read_beside(v, err);
-    return st == CW_OK ? view_choose_mode(v, err) : st;
+    if (st == CW_OK)
+        st = view_choose_mode(v, err);
+    if (st == CW_OK && view_shows_surfaces(v) && !v->state.args.look.labels)
+        cli_say("%s: %s: its labels are drawn; --mode composite draws its numbers", v->path,
+                v->label_note);
+    return st == CW_OK ? view_need_labels(v, err) : st;
 }
 
 /* Resets the settings that suited another file only: its levels and positions. */
@@ -246,6 +262,8 @@ static void forget_look(view *v)
     s->args.scene.clip_box = (cli_ranges){0};
     s->args.scene.clips = s->args.scene.planes = NULL;
     s->args.scene.shift = (cli_number){0};
+    s->args.look = (cli_label_look){0};
+    s->args.overlay = NULL;
     s->args.scene.tint_range = (cli_numbers){0};
     s->is_edited = false;
     s->window[0] = s->window[1] = 0;

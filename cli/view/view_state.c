@@ -142,10 +142,20 @@ static cw_status follow_name(view *v, const char *name, cw_error *err)
     if (strcmp(name, "iso") == 0 && !s->args.iso.given &&
         s->args.scene.mode == 1 + CW_MODE_MESH && v->has_volume)
         s->args.scene.mode = 0;
+    if (strcmp(name, "labels") == 0 && s->args.look.labels &&
+        !s->args.overlay) { /* they are drawn by themselves */
+        s->args.iso = (cli_number){0};
+        if (s->args.scene.mode != 1 + CW_MODE_SLICES)
+            s->args.scene.mode = 0;
+    }
+    if (strcmp(name, "iso") == 0 && s->args.iso.given && !s->args.overlay)
+        s->args.look.labels = NULL;
     v->transfer_is_old = true;
     v->is_measured = false;
-    view_touch(v, 1 << VIEW_SPACE);
-    return view_choose_mode(v, err);
+    const bool had_labels = v->look.labels;
+    cw_status st = view_choose_mode(v, err);
+    view_touch(v, had_labels || v->look.labels ? VIEW_ALL : 1 << VIEW_SPACE);
+    return st == CW_OK ? view_need_labels(v, err) : st;
 }
 
 /* Parses --compare of a session. Settings for other modes stay set in a session; only the

@@ -112,6 +112,19 @@ CW_NODISCARD CW_API cw_status cw_label_patch_mesh(const cw_label_surfaces *surfa
                                                   const cw_label_patch *patch, cw_mesh *mesh,
                                                   cw_error *err);
 
+/* Makes one mesh of all interfaces for a picture. Each is there once, so that no two triangles lie
+ * in one place: in the colour of the more opaque of its two labels (of equal ones the first), and
+ * seen from outside of that. An interface of two labels with opacity 0, or of one with the
+ * background, is left out. Where labels meet, each has vertices of its own: edges are sharp.
+ * colors   label_count x 4, of surfaces->labels: sRGB and opacity
+ * mesh     filled on success, emptied on failure; with normals, colours, and the label that each
+ *          vertex belongs to, whose triangles follow each other. Free it with cw_mesh_free()
+ * Returns  CW_ERR_NO_MEMORY; CW_ERR_LIMIT: 2^32 - 1 vertices
+ * Cost     in proportion to the triangles */
+CW_NODISCARD CW_API cw_status cw_label_colored_mesh(const cw_label_surfaces *surfaces,
+                                                    const uint8_t (*colors)[4], cw_mesh *mesh,
+                                                    cw_error *err);
+
 /* Computes the area of a patch in square millimetres. */
 CW_API double cw_label_patch_area(const cw_label_surfaces *surfaces,
                                   const cw_label_patch *patch);

@@ -2,11 +2,18 @@
 #ifndef CUBEWRIGHT_OVERLAY_H
 #define CUBEWRIGHT_OVERLAY_H
 
+#include <cubewright/label_table.h>
 #include <cubewright/render.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* An item of a legend. */
+typedef struct cw_legend_item {
+    const char *name; /* UTF-8; one that is too wide is cut */
+    uint8_t color[3]; /* sRGB */
+} cw_legend_item;
 
 /* The parts to draw on a picture. Zero-initialise the struct and set what you need. */
 typedef struct cw_overlay {
@@ -19,6 +26,10 @@ typedef struct cw_overlay {
                        in the mode mesh those of its tint */
     bool histogram; /* lower right: the frequency of values, logarithmic, under the opacity; its
                        highest value is written */
+    const cw_legend_item *legend;    /* legend_count items on the right: patches of colours with
+                                     their names, in this order. Those without room are counted
+                                     in a last line, "and 3 more" */
+    size_t legend_count;             /* default: no legend */
     const char *caption;             /* top; UTF-8, lines end with \n; default none */
     const cw_statistics *statistics; /* required for the histogram, with bins */
     double text_px;   /* height of capitals; default 1/48 of the picture's height,
@@ -41,6 +52,31 @@ CW_NODISCARD CW_API cw_status cw_overlay_draw(const cw_overlay *overlay, const c
  * a scene. */
 CW_NODISCARD CW_API cw_status cw_scale_bar(const cw_scene *scene, const cw_image *image,
                                            double *length_mm, double *length_px, cw_error *err);
+
+/* Labels to draw over slices. Zero-initialise the struct and set what you need. */
+typedef struct cw_label_slices {
+    const cw_volume *labels; /* on a dense grid anywhere in the world: a point has the label of
+                                    the nearest voxel, and beyond the outermost voxels none */
+    const cw_label_table
+        *table;     /* their colours and opacities. Labels that it does not have are
+                                    not drawn */
+    uint32_t layer; /* of the table */
+    float opacity;  /* factor of all opacities, up to 1; default 1 */
+} cw_label_slices;
+
+/* Draws labels over the picture of a scene of slices, where the slices have values.
+ *
+ * scene    as it was rendered, borrowed; without a mesh
+ * picture  of that scene
+ * Returns  CW_ERR_ARGUMENT  the mode is not slices, the picture has another size, the opacity is
+ *                           out of range, or the labels lie outside of the volume's box
+ *          CW_ERR_UNSUPPORTED  a scene with a mesh; labels on sparse or irregular grids
+ *          CW_ERR_CANCELLED; as cw_render()
+ * Cost     in proportion to the samples of the picture
+ * Threads  reentrant; the same picture for any number of threads */
+CW_NODISCARD CW_API cw_status cw_label_slices_draw(const cw_label_slices *labels,
+                                                   const cw_scene *scene, cw_picture *picture,
+                                                   cw_error *err);
 
 /* Copies one image into another, with its upper left corner at column x, row y. Parts outside
  * are left out. */

@@ -274,6 +274,8 @@ typedef struct cw_scene {
     cw_tint tint;
     double tint_low, tint_high; /* both 0: the range of the scalars */
     bool wireframe;             /* edges drawn over the triangles; faint where they are dense */
+    bool same_inside;           /* the inside of a mesh, seen through a cut or a clear surface,
+                                   has the colour of the outside; default: a red shade of it */
     bool cap;                   /* fill the cut through a clipped mesh, which must be closed */
 
     int threads;          /* default: all that OpenMP offers */
@@ -369,12 +371,14 @@ typedef struct cw_render_mesh_desc {
                                * transparent one give any colour and alpha 0 */
     double *depth_mm; /* not NULL: filled with height x width depths, along the line of sight,
                          of what is seen; INFINITY: nothing is. One sample a pixel only */
+    bool same_inside; /* as in cw_scene; default: the inside is red */
     int threads;      /* default: all that OpenMP offers */
     cw_progress progress; /* default: none */
 } cw_render_mesh_desc;
 
 /* Draws a mesh on the CPU in double precision, without OpenGL: the nearest surface, lit on both
- * sides. Back faces are tinted red, so that an open or inside-out surface shows. A mesh without
+ * sides. Back faces are tinted red, unless same_inside, so that an open or inside-out surface
+ * shows. A mesh without
  * normals is drawn with the normals of its triangles.
  *
  * image    filled on success, emptied on failure; free it with cw_image_free()

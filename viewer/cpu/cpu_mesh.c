@@ -119,6 +119,7 @@ static cw_status draw_tinted(const cwi_frame *f, const cw_mesh *mesh, double *de
                              .samples = 1,
                              .background = {{255, 255, 255, 0}, {255, 255, 255, 0}},
                              .depth_mm = depth_mm,
+                             .same_inside = f->scene.same_inside,
                              .threads = f->scene.threads,
                              .progress = f->scene.progress};
     for (int c = 0; c < 4; c++)

@@ -274,18 +274,20 @@ static void surface_normal(const cw_mesh *mesh, const facet *f, const double sha
     cwi_to_unit(n);
 }
 
-/* Computes the linear colour of the surface itself; its inside is redder and darker. */
+/* Computes the linear colour of the surface itself; its inside is redder and darker, unless
+ * same_inside. */
 static void surface_color(const scene *s, const facet *f, const double share[3], double rgb[3])
 {
     static const double inside[3] = {0.75, 0.22, 0.17};
     const cw_mesh *mesh = s->mesh;
+    const bool is_red = f->is_back && !s->d->same_inside;
     for (size_t a = 0; a < 3; a++) {
         double sum = 0;
         for (size_t c = 0; c < 3 && mesh->colors; c++)
             sum +=
                 share[c] *
                 to_linear(mesh->colors[4 * (size_t)mesh->triangles[3 * f->triangle + c] + a]);
-        rgb[a] = (mesh->colors ? sum : s->color[a]) * (f->is_back ? inside[a] : 1);
+        rgb[a] = (mesh->colors ? sum : s->color[a]) * (is_red ? inside[a] : 1);
     }
 }
 

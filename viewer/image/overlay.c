@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
+#include "viewer/image/legend.h"
 #include "viewer/image/strokes.h"
 #include "viewer/scene/mesh_tint.h"
 
@@ -20,7 +21,8 @@ typedef struct board {
     const cwi_frame *frame;
     cw_image *image;
     double width, height, text, margin;
-    double top; /* above it the middle is taken */
+    double top;   /* above it the middle is taken */
+    double right; /* beyond it the legend is */
     double ink[4], halo[4];
     double corners[8][3];
 } board;
@@ -77,18 +79,10 @@ static void draw_lines(const board *b, const cwi_stroke *strokes, size_t count, 
     cwi_pen_draw(&pen, strokes, count);
 }
 
-/* Writes a text. anchor: 0: x is its left end; 0.5: its middle; 1: its right end */
 static void write_text(const board *b, double x, double y, double anchor, const double color[4],
                        const char *text)
 {
-    const double left = x - anchor * cwi_text_width(b->text, text);
-    const double width = fmax(b->text / 7, 1.1);
-    cwi_pen pen = {.image = b->image, .width = 2.6 * width};
-    memcpy(pen.color, b->halo, sizeof pen.color);
-    cwi_pen_text(&pen, left, y, b->text, text);
-    pen.width = width;
-    memcpy(pen.color, color, sizeof pen.color);
-    cwi_pen_text(&pen, left, y, b->text, text);
+    cwi_text_write(b->image, (const double[2]){x, y}, b->text, anchor, color, b->halo, text);
 }
 
 /* Projects a point of the world to the picture; returns false behind the eye. */
@@ -212,7 +206,7 @@ static void draw_letters(const board *b)
     const struct {
         double x, y, anchor;
         int axis, sign;
-    } places[4] = {{b->width - b->margin, (b->height + b->text) / 2, 1, 0, 1},
+    } places[4] = {{b->right - b->margin, (b->height + b->text) / 2, 1, 0, 1},
                    {b->margin, (b->height + b->text) / 2, 0, 0, -1},
                    {b->width / 2, b->top + b->text, 0.5, 1, 1},
                    {b->width / 2, low, 0.5, 1, -1}};
@@ -410,6 +404,24 @@ static void draw_histogram(const board *b)
     }
 }
 
+/* Draws the legend between the colour bar and the histogram, if these are there. */
+static void draw_legend(board *b)
+{
+    const cw_overlay *o = b->o;
+    cwi_legend legend = {.items = o->legend,
+                         .count = o->legend_count,
+                         .text = b->text,
+                         .right = b->width - b->margin,
+                         .max_width = 0.4 * b->width,
+                         .top = o->color_bar ? 0.44 * b->height + 2 * b->margin : b->margin,
+                         .bottom = b->height - b->margin};
+    if (o->histogram)
+        legend.bottom -= 0.18 * b->height + 3.2 * b->text;
+    memcpy(legend.ink, b->ink, sizeof legend.ink);
+    memcpy(legend.halo, b->halo, sizeof legend.halo);
+    b->right = cwi_legend_draw(&legend, b->image);
+}
+
 /* Draws the caption. The letter at the top moves below lines that reach it. */
 static cw_status draw_caption(board *b, cw_error *err)
 {
@@ -516,8 +528,11 @@ cw_status cw_overlay_draw(const cw_overlay *overlay, const cw_scene *scene, cw_i
                .height = h,
                .text = overlay->text_px > 0 ? overlay->text_px : fmax(round(h / 48), 7)};
     b.margin = b.top = 1.2 * b.text;
+    b.right = b.width;
     choose_ink(&b);
     st = draw_caption(&b, err);
+    if (overlay->legend_count > 0)
+        draw_legend(&b);
     if (overlay->axes) {
         find_corners(&b);
         draw_box(&b);

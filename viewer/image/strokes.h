@@ -30,6 +30,10 @@ void cwi_pen_fill(const cwi_pen *pen, double left, double top, double right, dou
 /* Draws UTF-8 text, with capitals of a height, from a point of the baseline on; and returns its
  * width. Characters that the font does not have become a box. */
 void cwi_pen_text(const cwi_pen *pen, double x, double y, double height, const char *text);
+/* Writes a text in a colour, on a halo that separates it from any picture. anchor: 0: x is its
+ * left end; 0.5: its middle; 1: its right end */
+void cwi_text_write(cw_image *image, const double at[2], double height, double anchor,
+                    const double color[4], const double halo[4], const char *text);
 double cwi_text_width(double height, const char *text);
 
 /* Finds the strokes of a character, in sixths of the height of capitals, y down from their top;

@@ -60,7 +60,7 @@ static cw_status take_slice(const place *at, double mesh_t, cw_picked *out, cw_e
     cw_status st = cwi_slices_of(&f->scene, &f->volume, slices, &count, err);
     if (st != CW_OK)
         return st;
-    const double t = cwi_pick_slice(f, slices, count, at->origin, at->direction, &number);
+    const double t = cwi_slice_hit(f, slices, count, at->origin, at->direction, &number);
     if (t == INFINITY || t > mesh_t)
         return CW_OK;
     take_point(at, CW_PICK_SLICE, t, out);

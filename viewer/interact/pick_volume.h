@@ -25,11 +25,6 @@ cwi_volume_hit cwi_pick_intensity(const cwi_frame *frame, double x, double y, do
 CW_NODISCARD cw_status cwi_pick_uneven(const cwi_frame *frame, double x, double y, double depth,
                                        cwi_volume_hit *hit, cw_error *err);
 
-/* Finds the nearest of the slices (normals of unit length) that has a value on a ray in eye
- * space, and its number. INFINITY: there is none. */
-double cwi_pick_slice(const cwi_frame *frame, const cw_slice *slices, size_t count,
-                      const double origin[3], const double direction[3], size_t *number);
-
 #ifdef __cplusplus
 }
 #endif

@@ -60,12 +60,12 @@ static cw_status use_program(cwi_gl *gl, const char *vertex, const char *kind, m
 {
     const cw_scene *s = &gl->frame->scene;
     char defines[256];
-    snprintf(defines, sizeof defines, "%s%s%s%s%s%s%s", kind,
-             gl->frame->studio_light ? "#define STUDIO\n" : "",
-             how.peels ? "#define PEEL\n" : "",
-             s->tint != CW_TINT_COLORS ? "#define TINTED\n" : "",
-             has_colors(s) ? "#define COLORED\n" : "", s->wireframe ? "#define EDGES\n" : "",
-             how.opaque ? "#define SOLID\n" : "");
+    snprintf(
+        defines, sizeof defines, "%s%s%s%s%s%s%s%s", kind,
+        gl->frame->studio_light ? "#define STUDIO\n" : "", how.peels ? "#define PEEL\n" : "",
+        s->tint != CW_TINT_COLORS ? "#define TINTED\n" : "",
+        has_colors(s) ? "#define COLORED\n" : "", s->wireframe ? "#define EDGES\n" : "",
+        how.opaque ? "#define SOLID\n" : "", s->same_inside ? "#define SAME_INSIDE\n" : "");
     cw_status st = cwi_gl_use(gl, vertex, cwi_glsl_mesh, defines, program, err);
     if (st == CW_OK)
         cwi_gl_set_mesh(gl, *program);

@@ -3,6 +3,7 @@
 #include "viewer/scene/slice.h"
 
 #include "core/base/status.h"
+#include "core/geometry/affine.h"
 #include "core/geometry/vec3.h"
 
 #include <math.h>
@@ -138,4 +139,48 @@ cw_status cw_slice_camera(const cw_volume *volume, const cw_slice *slice, double
     }
     *camera = c;
     return CW_OK;
+}
+
+/* Returns true if a point of a slice has a value. Slices in a face of the volume, or in a clip
+ * plane, are drawn: they get some tolerance. */
+static bool has_value(const cwi_frame *f, const double p[3])
+{
+    static const double slack = 1e-3;
+    double index[3], world[3];
+    bool kept = true;
+    cwi_affine_apply(f->index_from_eye, p, index);
+    for (int a = 0; a < 3; a++) {
+        if (!(index[a] >= f->low[a] - slack && index[a] <= f->high[a] + slack))
+            return false;
+        index[a] = fmin(fmax(index[a], f->low[a]), f->high[a]);
+    }
+    for (size_t n = 0; n < f->scene.clip_count; n++)
+        kept = kept &&
+               cwi_dot(f->clips[n], p) >= f->clips[n][3] + (f->scene.cut_away ? slack : -slack);
+    if (f->scene.clip_count > 0 && kept == f->scene.cut_away)
+        return false;
+    cw_volume_to_world(&f->volume, index, world);
+    return !isnan(cw_volume_sample(&f->volume, world));
+}
+
+double cwi_slice_hit(const cwi_frame *f, const cw_slice *slices, size_t count,
+                     const double origin[3], const double direction[3], size_t *number)
+{
+    double nearest = INFINITY;
+    for (size_t n = 0; n < count; n++) {
+        double normal[3], p[3];
+        for (int a = 0; a < 3; a++)
+            normal[a] = cwi_dot(f->axes[a], slices[n].normal);
+        const double distance =
+            (slices[n].distance_mm - cwi_dot(slices[n].normal, f->eye_mm)) / f->unit_mm;
+        const double slope = cwi_dot(normal, direction);
+        const double t = (distance - cwi_dot(normal, origin)) / slope;
+        for (int a = 0; a < 3; a++)
+            p[a] = origin[a] + t * direction[a];
+        if (!(fabs(slope) >= 1e-6 && t < nearest && -p[2] >= f->near) || !has_value(f, p))
+            continue;
+        nearest = t;
+        *number = n;
+    }
+    return nearest;
 }

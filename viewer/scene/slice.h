@@ -19,6 +19,11 @@ CW_NODISCARD cw_status cwi_slices_of(const cw_scene *scene, const cw_volume *vol
  * yellow, oblique violet; sRGB. */
 void cwi_slice_color(const cw_slice *slice, double srgb[3]);
 
+/* Finds the nearest of the slices (normals of unit length) that has a value on a ray in eye
+ * space, and its number. INFINITY: there is none. */
+double cwi_slice_hit(const cwi_frame *frame, const cw_slice *slices, size_t count,
+                     const double origin[3], const double direction[3], size_t *number);
+
 #ifdef __cplusplus
 }
 #endif

@@ -152,6 +152,9 @@ vec4 surface_here()
 #ifdef SOLID
     surface.a = 1.0;
 #endif
+#ifdef SAME_INSIDE
+    return surface;
+#endif
     return gl_FrontFacing ? surface : vec4(surface.rgb * inside, surface.a);
 }
 

@@ -133,21 +133,72 @@ static void voxels_are_counted(void **state)
     }
 }
 
+/* Each interface is there once, as the more opaque of its labels has it, in that one's colour. */
+static void a_picture_has_each_interface_once(void **state)
+{
+    (void)state;
+    static const uint8_t colors[4][4] = {
+        {1, 2, 3, 255}, {4, 5, 6, 128}, {7, 8, 9, 0}, {10, 11, 12, 255}};
+    cw_label_surfaces s;
+    cw_error err = {0};
+    cw_mesh mesh, alone[4];
+    size_t expected = 0, found[4] = {0};
+    extract_random(&s);
+    assert_int_equal(s.label_count, 4);
+    assert_ok(cw_label_colored_mesh(&s, colors, &mesh, &err), err);
+    assert_ok(cw_mesh_check(&mesh, &err), err);
+    assert_memory_equal(mesh.origin, s.mesh.origin, sizeof mesh.origin);
+    assert_non_null(mesh.normals);
+    for (size_t l = 0; l < 4; l++)
+        assert_ok(cw_label_mesh(&s, s.labels[l].label, &alone[l], &err), err);
+    for (size_t p = 0; p < s.patch_count; p++) /* only label 3 by the background is left out */
+        expected += s.patches[p].labels[0] == 3000000000u && s.patches[p].labels[1] == 0
+                        ? 0
+                        : s.patches[p].count;
+    assert_int_equal(mesh.triangle_count, expected);
+    for (size_t t = 0; t < mesh.triangle_count; t++) {
+        const uint32_t *c = mesh.triangles + 3 * t;
+        const size_t owner = mesh.labels[c[0]] / 1000000000u - 1;
+        size_t same = 0;
+        for (size_t n = 0; n < 3; n++) {
+            assert_int_equal(mesh.labels[c[n]], s.labels[owner].label);
+            assert_memory_equal(mesh.colors + 4 * (size_t)c[n], colors[owner], 4);
+        }
+        for (size_t u = 0; u < alone[owner].triangle_count; u++)
+            same += is_same(&mesh, c, &alone[owner], alone[owner].triangles + 3 * u);
+        assert_int_equal(same, 1);
+        found[owner]++;
+    }
+    assert_int_equal(found[0],
+                     alone[0].triangle_count); /* it is the first of the opaque ones */
+    assert_true(found[1] > 0 && found[1] < alone[1].triangle_count);
+    assert_int_equal(found[2], 0);
+    assert_true(found[3] > 0 && found[3] < alone[3].triangle_count);
+    for (size_t l = 0; l < 4; l++)
+        cw_mesh_free(&alone[l]);
+    cw_mesh_free(&mesh);
+    cw_label_surfaces_free(&s);
+}
+
 static void memory_that_is_out_is_an_error(void **state)
 {
     (void)state;
+    static const uint8_t colors[4][4] = {{1, 2, 3, 4}};
     cw_label_surfaces s;
     extract_random(&s);
-    bool failed = true;
-    for (long n = 0; failed; n++) {
-        cw_mesh mesh;
-        cw_error err = {0};
-        cwi_alloc_fail_after(n);
-        const cw_status st = cw_label_patch_mesh(&s, &s.patches[0], &mesh, &err);
-        failed = cwi_alloc_fail_after(-1);
-        assert_int_equal(st, failed ? CW_ERR_NO_MEMORY : CW_OK);
-        assert_true(!failed || !mesh.positions);
-        cw_mesh_free(&mesh);
+    for (int painted = 0; painted < 2; painted++) {
+        bool failed = true;
+        for (long n = 0; failed; n++) {
+            cw_mesh mesh;
+            cw_error err = {0};
+            cwi_alloc_fail_after(n);
+            const cw_status st = painted ? cw_label_colored_mesh(&s, colors, &mesh, &err)
+                                         : cw_label_patch_mesh(&s, &s.patches[0], &mesh, &err);
+            failed = cwi_alloc_fail_after(-1);
+            assert_int_equal(st, failed ? CW_ERR_NO_MEMORY : CW_OK);
+            assert_true(!failed || !mesh.positions);
+            cw_mesh_free(&mesh);
+        }
     }
     cw_label_surfaces_free(&s);
 }
@@ -158,6 +209,7 @@ int main(void)
         cmocka_unit_test(both_labels_have_a_patch),
         cmocka_unit_test(areas_of_patches_add_up),
         cmocka_unit_test(voxels_are_counted),
+        cmocka_unit_test(a_picture_has_each_interface_once),
         cmocka_unit_test(memory_that_is_out_is_an_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

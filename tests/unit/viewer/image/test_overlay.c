@@ -253,6 +253,68 @@ static void parts_are_drawn_where_they_say(void **state)
     cw_volume_free(&v);
 }
 
+/* Counts pixels of a colour in a box. */
+static size_t count_color(const cw_image *i, const uint8_t color[3], size_t left, size_t top,
+                          size_t right, size_t bottom)
+{
+    size_t count = 0;
+    for (size_t y = top; y < bottom; y++)
+        for (size_t x = left; x < right; x++)
+            count += memcmp(pixel(i, x, y), color, 3) == 0;
+    return count;
+}
+
+/* Each item has its colour in a line of its own, as far as there is room; names are cut at 0.4 of
+ * the width, and letters move aside. */
+static void legends_have_a_line_an_item(void **state)
+{
+    (void)state;
+    enum { W = 400, H = 300, TEXT_PX = 10, LINE = 17 };
+    char long_name[400];
+    static const char accents[] =
+        "\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4"
+        "\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4";
+    cw_legend_item items[40];
+    cw_volume v = make_volume();
+    cw_error err = {0};
+    const cw_transfer t = test_soft_transfer();
+    const cw_scene scene = {
+        .mode = CW_MODE_SLICES, .volume = &v, .transfer = &t, .width = W, .height = H};
+    memset(long_name, 'm', sizeof long_name - 1);
+    long_name[sizeof long_name - 1] = '\0';
+    for (size_t n = 0; n < 40; n++)
+        items[n] = (cw_legend_item){"name", {(uint8_t)(20 + n), 100, 50}};
+    for (size_t count = 1; count <= 40; count += 13) { /* 27 and 40 do not fit */
+        const size_t lines = 15, shown = count <= lines ? count : lines - 1;
+        cw_image image = make_image(W, H, 0);
+        const cw_overlay o = {.legend = items, .legend_count = count, .text_px = TEXT_PX};
+        assert_ok(cw_overlay_draw(&o, &scene, &image, &err), err);
+        for (size_t n = 0; n < 40; n++) {
+            const size_t top = n < shown ? 12 + n * 35 / 2 : 0;
+            const size_t found =
+                count_color(&image, items[n].color, 0, top, W, n < shown ? top + 2 * LINE : H);
+            assert_int_equal(found > 80, n < shown);
+            assert_true(n < shown || found == 0);
+        }
+        assert_int_equal(has_ink(&image, 300, 12 + shown * 35 / 2, W, 12 + shown * 35 / 2 + 14),
+                         count > shown);
+        cw_image_free(&image);
+    }
+    items[0].name = long_name;
+    items[1].name = accents;
+    items[2].name = "";
+    cw_image image = make_image(W, H, 0);
+    const cw_overlay o = {
+        .legend = items, .legend_count = 3, .text_px = TEXT_PX, .letters = true};
+    assert_ok(cw_overlay_draw(&o, &scene, &image, &err), err);
+    assert_true(!has_ink(&image, 100, 0, 180, 100));
+    assert_true(has_ink(&image, 215, 12, 260, 60));
+    assert_true(has_ink(&image, 180, 140, 215, 160)); /* the letter */
+    assert_true(!has_ink(&image, 370, 140, 400, 160));
+    cw_image_free(&image);
+    cw_volume_free(&v);
+}
+
 /* The bar's colours are the transfer function's, from its lowest to its highest value. */
 static void color_bar_has_the_colours(void **state)
 {
@@ -417,6 +479,7 @@ int main(void)
         cmocka_unit_test(text_is_as_wide_as_said),
         cmocka_unit_test(scale_bar_is_true),
         cmocka_unit_test(parts_are_drawn_where_they_say),
+        cmocka_unit_test(legends_have_a_line_an_item),
         cmocka_unit_test(color_bar_has_the_colours),
         cmocka_unit_test(histogram_has_bars_and_the_curve),
         cmocka_unit_test(ink_stands_out),

@@ -78,6 +78,42 @@ static void looks_as_the_reference(void **state)
     }
 }
 
+/* An open ball is red inside, unless its inside is to look as its outside; by either backend. */
+static void insides_may_look_as_outsides(void **state)
+{
+    (void)state;
+    cw_renderer *renderers[2] = {test_renderer(), NULL};
+    cw_mesh ball;
+    cw_error err = {0};
+    assert_ok(cw_renderer_new(CW_BACKEND_CPU, &renderers[1], &err), err);
+    make_ball(&ball, 20, (const double[3]){0, 0, 0});
+    ball.triangle_count = ball.triangle_count * 5 / 9;
+    cw_renderer_forget(renderers[0]);
+    for (int n = 0; n < 4; n++) {
+        const bool same = n & 1;
+        const cw_scene scene = {
+            .mode = CW_MODE_MESH,
+            .mesh = &ball,
+            .camera = {.eye = {-90, 20, 60}, .up = {0, 0, 1}, .fov_deg = 30},
+            .width = SIDE,
+            .height = SIDE,
+            .color = {0.8f, 0.8f, 0.8f, 1},
+            .same_inside = same};
+        cw_picture picture = test_draw(renderers[n / 2], &scene);
+        size_t red = 0, grey = 0;
+        for (size_t p = 0; p < (size_t)SIDE * SIDE; p++) {
+            const float *c = picture.pixels + 4 * p;
+            red += c[0] > 1.3f * c[2];
+            grey += c[3] > 0 && fabsf(c[0] - c[2]) < 0.01f;
+        }
+        assert_true(grey > 300);
+        assert_int_equal(red > 300, !same);
+        cw_picture_free(&picture);
+    }
+    cw_renderer_free(renderers[1]);
+    cw_mesh_free(&ball);
+}
+
 /* By either backend a scene looks the same, tints too; what the CPU does not draw it says. */
 static void backends_agree(void **state)
 {
@@ -509,6 +545,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(looks_as_the_reference),
+        cmocka_unit_test(insides_may_look_as_outsides),
         cmocka_unit_test(backends_agree),
         cmocka_unit_test(translucent_sheets_blend_in_any_order),
         cmocka_unit_test(crossing_sheets_blend_pixel_by_pixel),

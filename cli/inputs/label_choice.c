@@ -1,12 +1,14 @@
-/* Resolves the labels that --labels chooses. */
+/* Resolves the labels that an option chooses, and the limit of their smoothing. */
 #define _GNU_SOURCE /* FNM_CASEFOLD */
-#include "cli/extract/label_choice.h"
+#include "cli/inputs/label_choice.h"
 
 #include "cli/framework/options.h"
+#include "cli/framework/quantity.h"
 #include "core/base/status.h"
 
 #include <ctype.h>
 #include <fnmatch.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,10 +22,11 @@ void cli_free_label_choice(cli_label_choice *choice)
     *choice = (cli_label_choice){0};
 }
 
-static cw_status add_chosen(cli_label_choice *choice, cli_chosen_label label, cw_error *err)
+static cw_status add_chosen(const char *option, cli_label_choice *choice,
+                            cli_chosen_label label, cw_error *err)
 {
     if (label.value == 0)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--labels: 0 is the background, not a label");
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%s: 0 is the background, not a label", option);
     if (choice->count == choice->capacity) {
         const size_t capacity = choice->capacity ? 2 * choice->capacity : 16;
         cli_chosen_label *grown = realloc(choice->labels, capacity * sizeof *grown);
@@ -48,49 +51,51 @@ static bool read_range(const char *item, uint64_t *first, uint64_t *last)
     return *end == '\0';
 }
 
-static cw_status add_range(cli_label_choice *choice, const char *item, uint64_t first,
-                           uint64_t last, cw_error *err)
+static cw_status add_range(const char *option, cli_label_choice *choice, const char *item,
+                           uint64_t first, uint64_t last, cw_error *err)
 {
     if (last > UINT32_MAX || first > last)
         return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--labels: '%s' is no range of labels, which are 1 to 4294967295",
+                        "%s: '%s' is no range of labels, which are 1 to 4294967295", option,
                         item);
     if (last - first >= MAX_RANGE)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--labels: '%s' is longer than %d labels", item,
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%s: '%s' is longer than %d labels", option, item,
                         MAX_RANGE);
     cw_status st = CW_OK;
     for (uint64_t value = first; value <= last && st == CW_OK; value++)
-        st = add_chosen(
-            choice, (cli_chosen_label){.value = (uint32_t)value, .of_all_layers = true}, err);
+        st = add_chosen(option, choice,
+                        (cli_chosen_label){.value = (uint32_t)value, .of_all_layers = true},
+                        err);
     return st;
 }
 
 /* Reports a name that the table does not have, with the nearest. */
-static cw_status fail_unknown(const char *item, const cw_label_table *table, cw_error *err)
+static cw_status fail_unknown(const char *option, const char *item, const cw_label_table *table,
+                              cw_error *err)
 {
     const char **names = calloc(table->count + 1, sizeof *names);
     size_t count = 0;
     if (table->count == 0) {
         free(names);
         return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--labels: '%s' is no number, and no names are known; --names FILE "
+                        "%s: '%s' is no number, and no names are known; --names FILE "
                         "states them",
-                        item);
+                        option, item);
     }
     for (size_t n = 0; names && n < table->count; n++)
         if (table->labels[n].name)
             names[count++] = table->labels[n].name;
     const char *nearest = names ? cli_nearest(item, names) : NULL;
     free(names);
-    return nearest
-               ? cwi_fail(err, CW_ERR_ARGUMENT,
-                          "--labels: no label is named '%s'; did you mean '%s'?", item, nearest)
-               : cwi_fail(err, CW_ERR_ARGUMENT,
-                          "--labels: no label is named '%s'; 'cubewright info' lists them",
-                          item);
+    return nearest ? cwi_fail(err, CW_ERR_ARGUMENT,
+                              "%s: no label is named '%s'; did you mean '%s'?", option, item,
+                              nearest)
+                   : cwi_fail(err, CW_ERR_ARGUMENT,
+                              "%s: no label is named '%s'; 'cubewright info' lists them",
+                              option, item);
 }
 
-static cw_status add_names(cli_label_choice *choice, const char *item,
+static cw_status add_names(const char *option, cli_label_choice *choice, const char *item,
                            const cw_label_table *table, cw_error *err)
 {
     cw_status st = CW_OK;
@@ -100,13 +105,13 @@ static cw_status add_names(cli_label_choice *choice, const char *item,
         if (!label->name || fnmatch(item, label->name, FNM_CASEFOLD) != 0 || !label->value)
             continue;
         is_known = true;
-        st = add_chosen(choice,
+        st = add_chosen(option, choice,
                         (cli_chosen_label){.value = label->value, .layer = label->layer}, err);
     }
-    return st == CW_OK && !is_known ? fail_unknown(item, table, err) : st;
+    return st == CW_OK && !is_known ? fail_unknown(option, item, table, err) : st;
 }
 
-cw_status cli_choose_labels(const char *text, const cw_label_table *table,
+cw_status cli_choose_labels(const char *option, const char *text, const cw_label_table *table,
                             cli_label_choice *choice, cw_error *err)
 {
     cw_status st = CW_OK;
@@ -117,11 +122,11 @@ cw_status cli_choose_labels(const char *text, const cw_label_table *table,
         const size_t length = strcspn(at, ",");
         if (length == 0 || length >= sizeof item)
             return cwi_fail(err, CW_ERR_ARGUMENT,
-                            "--labels %s: expected is 'all', or a list such as 1,5,7-9,Liver",
+                            "%s %s: expected is 'all', or a list such as 1,5,7-9,Liver", option,
                             text);
         snprintf(item, sizeof item, "%.*s", (int)length, at);
-        st = read_range(item, &first, &last) ? add_range(choice, item, first, last, err)
-                                             : add_names(choice, item, table, err);
+        st = read_range(item, &first, &last) ? add_range(option, choice, item, first, last, err)
+                                             : add_names(option, choice, item, table, err);
         at += length;
         if (!*at)
             break;
@@ -149,4 +154,44 @@ void cli_mark_found(cli_label_choice *choice, uint32_t layer, uint32_t value)
         if (label->value == value && (label->of_all_layers || label->layer == layer))
             label->is_found = true;
     }
+}
+
+size_t cli_list_missing(const cli_label_choice *choice, const cw_label_table *table, char *list,
+                        size_t size)
+{
+    size_t used = 0, missing = 0;
+    *list = '\0';
+    for (size_t n = 0; n < choice->count; n++) {
+        const cli_chosen_label *chosen = &choice->labels[n];
+        char name[CLI_LABEL_NAME];
+        if (chosen->is_found)
+            continue;
+        cli_complete_label(table, chosen->layer, chosen->value, name);
+        if (used < size - 1)
+            used += (size_t)snprintf(list + used, size - used, "%s%u (%.60s)",
+                                     missing ? ", " : "", chosen->value, name);
+        missing++;
+    }
+    return missing;
+}
+
+cw_status cli_parse_label_move(const char *text, const double spacing[3], double *max_move,
+                               cw_error *err)
+{
+    const double voxel = fmax(spacing[0], fmax(spacing[1], spacing[2]));
+    cli_length length;
+    *max_move = text ? 0 : 0.5;
+    if (!text || strcmp(text, "off") == 0)
+        return CW_OK;
+    if (!cli_parse_length(text, &length) || length.unit == CLI_PERCENT)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--smooth-labels '%s': expected is 'off' or a length such as 0.3mm or "
+                        "0.5vox",
+                        text);
+    *max_move = length.unit == CLI_VOXELS ? length.value : length.value / voxel;
+    if (!(*max_move > 0 && *max_move <= 0.5))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--smooth-labels %s is %.3g voxels; above 0 and up to 0.5 was expected",
+                        text, *max_move);
+    return CW_OK;
 }

@@ -1,8 +1,9 @@
-/* The labels that --labels chooses: all, numbers, ranges of numbers, and names. */
-#ifndef CLI_EXTRACT_LABEL_CHOICE_H
-#define CLI_EXTRACT_LABEL_CHOICE_H
+/* The labels that an option such as --labels chooses: all, numbers, ranges of numbers, and
+ * names; and the limit of their smoothing. */
+#ifndef CLI_INPUTS_LABEL_CHOICE_H
+#define CLI_INPUTS_LABEL_CHOICE_H
 
-#include <cubewright/label_table.h>
+#include "cli/inputs/label_names.h"
 
 /* A label that was chosen, by a number for every layer or by its name in one. */
 typedef struct cli_chosen_label {
@@ -19,12 +20,14 @@ typedef struct cli_label_choice {
 
 /* Resolves the text: "all", or a list such as "1,5,7-9,Liver,left-*". Names are those of the
  * table, as patterns of the shell and in lower or upper case.
+ * option   begins the messages: "--labels"
  * table    may be empty; then no name is known
  * choice   free it with cli_free_label_choice(), also after failure
  * Returns  CW_ERR_ARGUMENT  an item is neither, or is the background, 0; a name is not in the
  *          table, with the nearest; a range is too long; CW_ERR_NO_MEMORY */
-CW_NODISCARD cw_status cli_choose_labels(const char *text, const cw_label_table *table,
-                                         cli_label_choice *choice, cw_error *err);
+CW_NODISCARD cw_status cli_choose_labels(const char *option, const char *text,
+                                         const cw_label_table *table, cli_label_choice *choice,
+                                         cw_error *err);
 void cli_free_label_choice(cli_label_choice *choice);
 
 /* Lists the values that were chosen in a layer: count of them, to be freed with free(). Returns
@@ -34,5 +37,15 @@ CW_NODISCARD cw_status cli_labels_of_layer(const cli_label_choice *choice, uint3
 
 /* Marks a label as found. */
 void cli_mark_found(cli_label_choice *choice, uint32_t layer, uint32_t value);
+
+/* Lists the labels that were chosen and not found, as "7 (Liver), 9 (label_9)", as far as there
+ * is room. Returns their number. */
+size_t cli_list_missing(const cli_label_choice *choice, const cw_label_table *table, char *list,
+                        size_t size);
+
+/* Converts --smooth-labels to the bound of the library, in voxels: 0 for "off", the default for
+ * NULL. A length bounds the displacement along each axis of the grid. CW_ERR_ARGUMENT */
+CW_NODISCARD cw_status cli_parse_label_move(const char *text, const double spacing[3],
+                                            double *max_move, cw_error *err);
 
 #endif
