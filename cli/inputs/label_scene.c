@@ -261,9 +261,10 @@ static void tell_hidden(const cli_volume *volume, const cli_label_scene *s)
     for (size_t n = 0; n < s->shown.count; n++)
         hidden += s->shown.labels[n].hidden;
     if (hidden)
-        cli_say("%s: %zu label%s that the table hides in 3D %s left out; --labels takes them by "
-                "number or name",
-                volume->path, hidden, hidden == 1 ? "" : "s", hidden == 1 ? "is" : "are");
+        cli_say(
+            "%s: %zu label%s that the table hides in 3D %s left out; --labels takes them by "
+            "number or name",
+            volume->path, hidden, hidden == 1 ? "" : "s", hidden == 1 ? "is" : "are");
 }
 
 cw_status cli_make_label_mesh(const cli_input *input, size_t step, const cli_volume *volume,

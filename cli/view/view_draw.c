@@ -89,9 +89,11 @@ static cw_status need_surface(view *v, view_level level, cw_error *err)
 /* Meshes have no volume to be around. */
 static void need_box(view *v)
 {
+    double box[2][3];
     if (v->box[0][0] < v->box[1][0] || v->source.mesh.triangle_count == 0)
         return;
-    cli_find_box(NULL, &v->source.mesh, v->box);
+    cli_find_box(NULL, &v->source.mesh, box);
+    memcpy(v->box, box, sizeof box);
     for (int a = 0; a < 3; a++)
         v->state.cross[a] = 0.5 * (v->box[0][a] + v->box[1][a]);
 }
