@@ -14,7 +14,7 @@ typedef struct cli_extract_args {
     cli_compress compress;
     const char *output, *name, *format, *json, *pvd;
     const char *labels, *names, *smooth_labels, *table;
-    bool require_labels, shared_faces;
+    bool require_labels, shared_faces, per_label;
     cli_numbers iso;
     cli_steps steps;
     cli_number snap, fps;

@@ -3,6 +3,7 @@
 
 #include "cli/framework/console.h"
 #include "cli/framework/name_template.h"
+#include "cli/framework/quantity.h"
 #include "core/base/status.h"
 
 #include <math.h>
@@ -16,16 +17,22 @@ bool cli_has_file_a_label(const char *output)
 }
 
 /* Makes the record of how the surfaces were made, for the files. */
-static size_t make_provenance(const cli_label_run *r, char smoothing[48],
-                              cw_provenance lines[2])
+static size_t make_provenance(const cli_label_run *r, char smoothing[48], char simplified[64],
+                              cw_provenance lines[3])
 {
+    const char *how = r->args->per_label ? ", each label by itself" : ", together";
     if (r->max_move > 0)
         snprintf(smoothing, 48, "within %.9g voxels", r->max_move);
     else
         snprintf(smoothing, 48, "off");
     lines[0] = (cw_provenance){"labels", r->args->labels};
     lines[1] = (cw_provenance){"smoothing", smoothing};
-    return 2;
+    if (r->error_mm > 0)
+        snprintf(simplified, 64, "to %.9g mm%s", r->error_mm, how);
+    else
+        snprintf(simplified, 64, "to %zu triangles%s", r->args->simplify.triangles, how);
+    lines[2] = (cw_provenance){"simplified", simplified};
+    return r->extracted ? 3 : 2;
 }
 
 /* Sums what was measured of items, for the line and the report. */
@@ -42,8 +49,8 @@ static cw_status deliver_file(cli_label_run *r, size_t file, const cw_part *part
                               size_t first, size_t items, const cw_write_desc *more,
                               const char *found, cw_error *err)
 {
-    char smoothing[48];
-    cw_provenance lines[2];
+    char smoothing[48], simplified[64];
+    cw_provenance lines[3];
     const double *spacing = r->volume.spacing;
     cli_made *made = file ? cli_report_next(&r->report, NULL, 0) : r->report.made;
     made->path = r->files.path[file];
@@ -60,7 +67,7 @@ static cw_status deliver_file(cli_label_run *r, size_t file, const cw_part *part
                         .preview = cli_is_preview(&r->volume)};
     how.write.sides = more ? more->sides : NULL;
     how.write.provenance = lines;
-    how.write.provenance_count = make_provenance(r, smoothing, lines);
+    how.write.provenance_count = make_provenance(r, smoothing, simplified, lines);
     cw_status st = cli_deliver(&r->report, &how, parts, count, 0, r->start, err);
     if (st != CW_OK)
         r->report.made[r->report.made_count - 1].error = *err;
@@ -106,13 +113,27 @@ cw_status cli_name_label_file(cli_label_run *r, cw_error *err)
                : name_files(r, &(cw_part){.name = "labels", .label = &label}, 1, err);
 }
 
-/* Describes the smoothing for the line of a file. */
-static void print_smoothing(const cli_label_run *r, char text[96])
+enum { STEPS_BYTES = 224 };
+
+/* Describes smoothing and simplification for the line of a file. */
+static void print_steps(const cli_label_run *r, char text[STEPS_BYTES])
 {
-    if (r->max_move > 0)
-        snprintf(text, 96, "; smoothed, by at most %.3g voxels along each axis", r->max_move);
-    else
-        snprintf(text, 96, "; not smoothed");
+    int n = r->max_move > 0
+                ? snprintf(text, STEPS_BYTES,
+                           "; smoothed, by at most %.3g voxels along each axis", r->max_move)
+                : snprintf(text, STEPS_BYTES, "; not smoothed");
+    if (r->extracted && !r->args->per_label)
+        n += snprintf(text + n, STEPS_BYTES - (size_t)n,
+                      "; interfaces simplified from %s to %s triangles",
+                      cli_count(r->extracted), cli_count(r->triangles));
+    else if (r->extracted)
+        n += snprintf(text + n, STEPS_BYTES - (size_t)n, "; simplified from %s triangles",
+                      cli_count(r->extracted));
+    if (r->extracted && r->error_mm > 0)
+        n += snprintf(text + n, STEPS_BYTES - (size_t)n, ", within %.6g mm", r->error_mm);
+    if (r->extracted && r->args->per_label)
+        snprintf(text + n, STEPS_BYTES - (size_t)n,
+                 ", each label by itself: interfaces of neighbours part");
 }
 
 /* Tells when a file joins labels that its format cannot tell apart. */
@@ -127,9 +148,9 @@ static void tell_joined(const cli_label_run *r)
 
 static cw_status write_files(cli_label_run *r, const cw_part *parts, cw_error *err)
 {
-    char found[96];
+    char found[STEPS_BYTES];
     cw_status st = CW_OK;
-    print_smoothing(r, found);
+    print_steps(r, found);
     if (!cli_has_file_a_label(r->args->output))
         tell_joined(r);
     if (!cli_has_file_a_label(r->args->output))
@@ -225,17 +246,17 @@ static cw_status write_patches(cli_label_run *r, const char *found, cw_error *er
 
 static cw_status write_interfaces(cli_label_run *r, cw_error *err)
 {
-    char found[192], smoothing[96];
+    char found[STEPS_BYTES + 96], steps[STEPS_BYTES];
     const cli_extract_args *args = r->args;
     const cw_format *f = cw_mesh_format(args->output, args->format);
     const bool has_sides = !(f->keeps & CW_KEEPS_PARTS);
-    print_smoothing(r, smoothing);
+    print_steps(r, steps);
     snprintf(found, sizeof found, "; interfaces of %zu labels, each written once%s%s",
              r->item_count,
              !args->check ? ""
              : args->open ? "; each label is a manifold"
                           : "; each label is closed, manifold",
-             smoothing);
+             steps);
     if (has_sides && r->layer_count == 1)
         return write_sides(r, found, err);
     if (has_sides)

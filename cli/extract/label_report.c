@@ -95,6 +95,12 @@ void cli_put_label_params(cli_json *j, const void *p, const cli_made *made)
     (void)made;
     cli_json_text(j, "labels", r->args->labels);
     cli_json_number(j, "smooth_labels_voxels", r->max_move);
+    if (r->error_mm > 0)
+        cli_json_number(j, "simplify_error_mm", r->error_mm);
+    else if (r->args->simplify.triangles)
+        cli_json_count(j, "simplify_triangles", r->args->simplify.triangles);
+    if (r->extracted)
+        cli_json_bool(j, "per_label", r->args->per_label);
     cli_json_bool(j, "open", r->args->open);
     cli_json_bool(j, "shared_faces", r->args->shared_faces);
     cli_json_text(j, "normals", r->args->normals ? "none" : "mesh");

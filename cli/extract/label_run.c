@@ -5,6 +5,9 @@
 #include "cli/framework/console.h"
 #include "core/base/status.h"
 
+#include <cubewright/simplify.h>
+
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,6 +27,11 @@ static bool holds_interfaces(const cli_extract_args *args)
            strcmp(f->name, "gltf") == 0;
 }
 
+static bool is_simplified(const cli_extract_args *args)
+{
+    return args->simplify.error.given || args->simplify.triangles > 0;
+}
+
 cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
 {
     const struct {
@@ -36,7 +44,6 @@ cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
         {args->placement, "--placement"},
         {args->snap.given, "--snap"},
         {args->least.given, "--min-volume"},
-        {args->simplify.error.given || args->simplify.triangles > 0, "--simplify"},
         {args->pixel.most.given, "--max-error"},
         {args->pixel.camera != NULL, "--camera"},
         {args->steps.given, "--steps"},
@@ -50,6 +57,7 @@ cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
                : args->smooth_labels  ? fail_without("--smooth-labels", err)
                : args->table          ? fail_without("--table", err)
                : args->shared_faces   ? fail_without("--shared-faces", err)
+               : args->per_label      ? fail_without("--per-label", err)
                : args->require_labels ? fail_without("--require-labels", err)
                                       : CW_OK;
     for (size_t n = 0; n < sizeof refused / sizeof *refused; n++)
@@ -61,6 +69,16 @@ cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
     if (args->common.input_count > 1)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--labels takes one volume; there are %zu",
                         args->common.input_count);
+    if (args->per_label && !is_simplified(args))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--per-label is for --simplify");
+    if (args->per_label && args->shared_faces)
+        return cwi_fail(
+            err, CW_ERR_ARGUMENT,
+            "--per-label lets interfaces part, and --shared-faces writes them once");
+    if (args->per_label && !cw_simplify_available())
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "--per-label needs OpenMesh, which this build lacks: install "
+                        "libopenmesh-dev and build again");
     if (args->shared_faces && !holds_interfaces(args))
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--shared-faces is for vtp, ply, glb, gltf and obj: other formats hold "
@@ -70,6 +88,21 @@ cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
                         "--shared-faces writes all interfaces into one file; the output holds "
                         "{label} or {name}");
     return cli_check_compress(&args->compress, true, err);
+}
+
+/* Returns the error of --simplify in millimetres; 0: none was stated. */
+static double find_error_mm(const cli_label_run *r)
+{
+    const double *spacing = r->volume.spacing;
+    double square = 0;
+    for (int a = 0; a < 3; a++) {
+        const double side = spacing[a] * (double)(r->volume.view.dim[a] - 1);
+        square += side * side;
+    }
+    return r->args->simplify.error.given
+               ? cli_length_mm(&r->args->simplify.error, sqrt(square),
+                               cbrt(spacing[0] * spacing[1] * spacing[2]))
+               : 0;
 }
 
 static cw_status read_label_map(cli_label_run *r, cw_error *err)
@@ -88,6 +121,7 @@ static cw_status read_label_map(cli_label_run *r, cw_error *err)
         return cwi_fail(err, CW_ERR_UNSUPPORTED,
                         "%s: --labels is for dense grids of voxels; this is %s", r->volume.path,
                         v->cells ? "an irregular grid" : "a sparse one");
+    r->error_mm = find_error_mm(r);
     st = cli_find_label_names(args->names, &r->volume, &r->names, err);
     if (st == CW_OK)
         st = cli_choose_labels("--labels", args->labels, &r->names.table, &r->choice, err);
@@ -155,6 +189,62 @@ static cw_status extract_layers(cli_label_run *r, cw_error *err)
                        r->volume.view.dim[0] * r->volume.view.dim[1] * r->volume.view.dim[2],
                        r->triangles);
     return st;
+}
+
+/* Returns the share of its triangles that a part of all may keep; 0: no limit. */
+static double find_ratio(const cli_label_run *r, size_t all)
+{
+    const size_t wanted = r->args->simplify.triangles;
+    return wanted > 0 && wanted < all ? (double)wanted / (double)all : 0;
+}
+
+/* Simplifies the interfaces of all layers, so that neighbours still share them. */
+static cw_status simplify_together(cli_label_run *r, cw_error *err)
+{
+    const cli_extract_args *args = r->args;
+    const double ratio = find_ratio(r, r->triangles);
+    cw_status st = CW_OK;
+    if (!is_simplified(args) || args->per_label || (r->error_mm == 0 && ratio == 0))
+        return CW_OK;
+    r->extracted = r->triangles;
+    r->triangles = 0;
+    cli_report_begin(&r->report);
+    for (size_t n = 0; n < r->layer_count && st == CW_OK; n++) {
+        cw_label_surfaces *surfaces = &r->layers[n].surfaces, simplified;
+        const double count = (double)surfaces->mesh.triangle_count;
+        const cw_label_simplify_desc desc = {.error_mm = r->error_mm,
+                                             .ratio = ratio,
+                                             .threads = (int)args->input.threads,
+                                             .progress =
+                                                 cli_progress(count / 1e6, "Mtriangle")};
+        st = count > 0 ? cw_label_simplify(surfaces, &desc, &simplified, err) : CW_OK;
+        if (st == CW_OK && count > 0) {
+            cw_label_surfaces_free(surfaces);
+            *surfaces = simplified;
+        }
+        r->triangles += surfaces->mesh.triangle_count;
+    }
+    if (st == CW_OK)
+        cli_report_end(&r->report, "simplify", r->extracted, r->triangles);
+    return st;
+}
+
+/* Simplifies the mesh of a label by itself. */
+static cw_status simplify_item(const cli_label_run *r, cli_label_item *item, size_t all,
+                               cw_error *err)
+{
+    const cw_simplify_desc desc = {.error_mm = r->error_mm,
+                                   .ratio = find_ratio(r, all),
+                                   .threads = (int)r->args->input.threads};
+    cw_mesh simplified;
+    if (desc.error_mm == 0 && desc.ratio == 0)
+        return CW_OK;
+    cw_status st = cw_simplify(&item->mesh, &desc, &simplified, NULL, err);
+    if (st != CW_OK)
+        return st;
+    cw_mesh_free(&item->mesh);
+    item->mesh = simplified;
+    return CW_OK;
 }
 
 /* Names the labels that were chosen and have no voxels. They fail the run with
@@ -228,11 +318,25 @@ static bool needs_quality(const cli_extract_args *args)
     return args->check || args->table || args->json;
 }
 
+/* Counts the triangles of all labels: interfaces of two labels count twice. */
+static size_t count_both_sides(const cli_label_run *r)
+{
+    size_t count = 0;
+    for (size_t n = 0; n < r->layer_count; n++) {
+        const cw_label_surfaces *s = &r->layers[n].surfaces;
+        for (size_t p = 0; p < s->patch_count; p++)
+            count += s->patches[p].count *
+                     (s->patches[p].labels[1] == s->background ? 1 : (size_t)2);
+    }
+    return count;
+}
+
 /* Makes the mesh of each label and checks it; it is kept unless only interfaces are written. */
 static cw_status make_meshes(cli_label_run *r, cw_error *err)
 {
     const cli_extract_args *args = r->args;
     const cw_quality_desc desc = {.threads = (int)args->input.threads};
+    const size_t both_sides = args->per_label ? count_both_sides(r) : 0;
     cw_status st = CW_OK;
     cli_report_begin(&r->report);
     for (size_t n = 0; n < r->item_count && st == CW_OK; n++) {
@@ -241,6 +345,9 @@ static cw_status make_meshes(cli_label_run *r, cw_error *err)
         if (args->shared_faces && !needs_quality(args))
             continue;
         st = cw_label_mesh(&item->layer->surfaces, item->label.value, &item->mesh, err);
+        r->extracted += args->per_label ? item->mesh.triangle_count : 0;
+        if (st == CW_OK && args->per_label)
+            st = simplify_item(r, item, both_sides, err);
         if (st == CW_OK && needs_quality(args))
             st = cw_quality_measure(&item->mesh, &desc, &item->quality, err);
         if (st == CW_OK && args->check)
@@ -288,6 +395,8 @@ static cw_status run_labels(void *state, cw_error *err)
         st = read_label_map(r, err);
     if (st == CW_OK)
         st = extract_layers(r, err);
+    if (st == CW_OK)
+        st = simplify_together(r, err);
     if (st == CW_OK)
         st = tell_missing(r, err);
     if (st == CW_OK)

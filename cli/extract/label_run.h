@@ -33,7 +33,9 @@ typedef struct cli_label_run {
     size_t layer_count;
     cli_label_item *items; /* in rising order of layers and labels */
     size_t item_count;
+    double error_mm;  /* of --simplify; 0: none */
     size_t triangles; /* of all interfaces */
+    size_t extracted; /* of those before they were simplified; 0: they are not */
     cli_outputs files;
     cli_report report;
     double start;

@@ -15,7 +15,7 @@ const cli_synonym cli_synonyms[] = {
     {"remesh|retopolog", NULL, "offset|--by|--snap",
      "'offset --by 0' makes a new mesh of the same surface; 'extract --snap' gives better "
      "triangles."},
-    {"label|segment|mask|atlas", "labels", "--labels|--names|label|--inside",
+    {"label|segment|mask|atlas", NULL, "--labels|--names|label|--inside",
      "'extract --labels all' makes a closed mesh of each label of a label map or a mask. An "
      "isovalue joins all labels above it."},
     {"smooth|denois|filter|laplacian|taubin|gaussian", NULL,

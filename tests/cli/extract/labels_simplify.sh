@@ -1,0 +1,17 @@
+# Labels are simplified together, so that interfaces stay shared, or each by itself.
+cubewright make labels/cells -o cells.nrrd --dims 32 --labels 8 --type u8 -q
+cubewright extract cells.nrrd --labels all --simplify 2k -o count.ply --name x --json - | grep simplify
+cubewright extract cells.nrrd --labels all --simplify 0.5vox -o error.ply --name x
+cubewright extract cells.nrrd --labels all --simplify 2k --shared-faces -o faces.ply
+cubewright extract cells.nrrd --labels all --simplify 2k -o one.ply --name x -q -t 1
+cmp count.ply one.ply && echo same
+# more than there are changes nothing
+cubewright extract cells.nrrd --labels all --simplify 1M -o all.ply | sed 's/;.*;/;/'
+if cubewright version --features | grep -q '^simplify *yes'; then
+    cubewright extract cells.nrrd --labels all --simplify 4k --per-label -o apart.ply >line
+    grep -o 'each label by itself: interfaces of neighbours part' line
+fi
+bad() { cubewright extract cells.nrrd --labels all -o bad.ply "$@" || echo "exit $?"; }
+bad --per-label
+bad --per-label --simplify 1k --shared-faces
+bad --simplify 0
