@@ -73,7 +73,8 @@ static void copy_surfaces(cwi_complex *c, const cw_label_surfaces *s, double sca
     for (size_t p = 0; p < s->patch_count; p++)
         for (size_t t = 0; t < s->patches[p].count; t++)
             c->patches[s->patches[p].first + t] = (uint32_t)p;
-    memcpy(c->corners, s->mesh.triangles, 3 * c->triangle_count * sizeof *c->corners);
+    if (c->triangle_count > 0)
+        memcpy(c->corners, s->mesh.triangles, 3 * c->triangle_count * sizeof *c->corners);
     memset(c->heads, 0xff, c->vertex_count * sizeof *c->heads);
     for (size_t i = 3 * c->triangle_count; i-- > 0;) {
         c->next[i] = c->heads[c->corners[i]];
