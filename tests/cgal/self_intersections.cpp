@@ -325,6 +325,67 @@ bool hostile_pass()
     return tally.passes();
 }
 
+/* Decides whether a label's surface is defective, also after its points are welded. */
+bool is_label_defective(const cw_label_surfaces &surfaces, uint32_t label)
+{
+    cw_mesh mesh;
+    cw_error err = {};
+    if (cw_label_mesh(&surfaces, label, &mesh, &err) != CW_OK)
+        return true;
+    Soup soup = to_soup(mesh);
+    cw_mesh_free(&mesh);
+    weld(soup);
+    return is_defective(soup, false);
+}
+
+size_t count_defective(const cw_label_surfaces &surfaces)
+{
+    size_t defective = 0;
+    for (size_t n = 0; n < surfaces.label_count; n++)
+        defective += is_label_defective(surfaces, surfaces.labels[n].label);
+    return defective;
+}
+
+/* Random maps of 2 to 50 labels, unsmoothed, smoothed, and simplified to a fifth. */
+bool labels_pass(int maps)
+{
+    size_t surfaces_seen = 0, defective = 0;
+    for (int map = 0; map < maps; map++) {
+        const size_t side = 4 + static_cast<size_t>(6 * next_unit());
+        const int labels = 2 + static_cast<int>(49 * next_unit());
+        std::vector<uint32_t> voxels(side * side * side);
+        for (uint32_t &v : voxels)
+            v = static_cast<uint32_t>(labels * next_unit());
+        cw_volume volume = {};
+        volume.data = voxels.data();
+        volume.type = CW_U32;
+        volume.dim[0] = volume.dim[1] = volume.dim[2] = side;
+        for (int how = 0; how < 3; how++) {
+            cw_label_surfaces surfaces, simple;
+            cw_error err = {};
+            cw_labels_desc desc = {};
+            desc.no_smoothing = how == 0;
+            cw_status st = cw_extract_labels(&volume, &desc, &surfaces, &err);
+            if (st == CW_OK && how == 2) {
+                cw_label_simplify_desc fifth = {};
+                fifth.ratio = 0.2;
+                st = cw_label_simplify(&surfaces, &fifth, &simple, &err);
+                cw_label_surfaces_free(&surfaces);
+                surfaces = simple;
+            }
+            if (st != CW_OK) {
+                std::printf("labels: %s\n", err.message);
+                return false;
+            }
+            surfaces_seen += surfaces.label_count;
+            defective += count_defective(surfaces);
+            cw_label_surfaces_free(&surfaces);
+        }
+    }
+    std::printf("labels: %zu surfaces, %zu defective\n", surfaces_seen, defective);
+    return defective == 0;
+}
+
 double whole_value(int, size_t)
 {
     return std::floor(5 * next_unit()) - 2;
@@ -357,5 +418,6 @@ int main(int argc, char **argv)
     pass = grids_pass("single cells", allowed.cells, 256 * 6 * factor, 2, cell_value) && pass;
     pass = fields_pass() && pass;
     pass = hostile_pass() && pass;
+    pass = labels_pass(20 * factor) && pass;
     return pass ? 0 : 1;
 }
