@@ -45,6 +45,10 @@ static const cli_option options[] = {
     {"per-label", 0, CLI_FLAG, NULL,
      "Simplify each label by itself: interfaces of neighbours then part (off: together)",
      offsetof(cli_extract_args, per_label)},
+    {"lod", 0, CLI_COUNTS, "N[,N...]",
+     "Levels of detail: triangles of all surfaces, such as 50k,12k,3k; a file each, and in glTF "
+     "one with all (none)",
+     offsetof(cli_extract_args, lod)},
     {"table", 0, CLI_TEXT, "FILE",
      "Write a CSV of the labels: name, colour, volumes, area, components, neighbours",
      offsetof(cli_extract_args, table)},

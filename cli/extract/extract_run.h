@@ -19,6 +19,7 @@ typedef struct cli_extract_args {
     cli_steps steps;
     cli_number snap, fps;
     cli_reduction simplify;
+    cli_counts lod;
     cli_amount least;
     cli_pixel_args pixel;
     int inside, normals, progress, topology, placement, accel;

@@ -62,7 +62,9 @@ static cw_status deliver_file(cli_label_run *r, size_t file, const cw_part *part
                         .voxel_mm = cbrt(spacing[0] * spacing[1] * spacing[2]),
                         .unchecked = true, /* each label was by itself */
                         .open = r->args->open,
-                        .parts = r->args->shared_faces ? "interfaces" : "labels",
+                        .parts = r->args->shared_faces ? "interfaces"
+                                 : count > items       ? "levels"
+                                                       : "labels",
                         .found = found,
                         .preview = cli_is_preview(&r->volume)};
     how.write.sides = more ? more->sides : NULL;
@@ -84,30 +86,55 @@ static cw_part *make_parts(const cli_label_run *r)
     return parts;
 }
 
-/* Names the files and checks that none is an input, another output or in the way. */
-static cw_status name_files(cli_label_run *r, const cw_part *parts, size_t count, cw_error *err)
+/* Checks that no file is an input, another output or in the way. */
+static cw_status check_files(const cli_label_run *r, cw_error *err)
 {
     const cli_extract_args *args = r->args;
     const cw_write_desc desc = cli_extract_write_desc(args);
-    cw_status st = cli_name_part_outputs(&r->files, args->output, args->common.inputs[0], parts,
-                                         count, err);
+    cw_status st = CW_OK;
     for (size_t n = 0; n < r->files.count && st == CW_OK; n++) {
         const char *path = r->files.path[n];
         if (args->json)
             st = cli_check_apart(path, args->json, err);
         if (st == CW_OK && args->table)
             st = cli_check_apart(path, args->table, err);
-        if (st == CW_OK && r->names.path)
-            st = cli_check_apart(path, r->names.path, err);
+        if (st == CW_OK && args->names)
+            st = cli_check_apart(path, args->names, err);
     }
     return st == CW_OK ? cli_check_outputs(&r->files, args->common.inputs,
                                            args->common.input_count, &desc, err)
                        : st;
 }
 
+/* Names a file a part, and checks them. */
+static cw_status name_files(cli_label_run *r, const cw_part *parts, size_t count, cw_error *err)
+{
+    const cli_extract_args *args = r->args;
+    cw_status st = cli_name_part_outputs(&r->files, args->output, args->common.inputs[0], parts,
+                                         count, err);
+    return st == CW_OK ? check_files(r, err) : st;
+}
+
+static bool is_gltf(const cli_extract_args *args)
+{
+    const cw_format *f = cw_mesh_format(args->output, args->format);
+    return f && (strcmp(f->name, "glb") == 0 || strcmp(f->name, "gltf") == 0);
+}
+
+/* Names the files of levels of detail, and checks them. */
+static cw_status name_levels(cli_label_run *r, cw_error *err)
+{
+    const cli_extract_args *args = r->args;
+    cw_status st = cli_name_lod_outputs(&r->files, args->output, args->common.inputs[0],
+                                        args->lod.count, is_gltf(args), err);
+    return st == CW_OK ? check_files(r, err) : st;
+}
+
 cw_status cli_name_label_file(cli_label_run *r, cw_error *err)
 {
     const cw_label label = {.name = NULL};
+    if (r->args->lod.count)
+        return name_levels(r, err);
     return cli_has_file_a_label(r->args->output)
                ? CW_OK
                : name_files(r, &(cw_part){.name = "labels", .label = &label}, 1, err);
@@ -277,6 +304,45 @@ cw_status cli_write_labels(cli_label_run *r, cw_error *err)
                        : CW_OK;
     if (st == CW_OK)
         st = r->args->shared_faces ? write_interfaces(r, err) : write_files(r, parts, err);
+    free(parts);
+    return st;
+}
+
+cw_status cli_write_label_level(cli_label_run *r, size_t n, cw_error *err)
+{
+    char found[STEPS_BYTES];
+    cw_part *parts = make_parts(r);
+    if (!parts)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", r->item_count);
+    print_steps(r, found);
+    cw_status st = deliver_file(r, n, parts, r->item_count, 0, r->item_count, NULL, found, err);
+    free(parts);
+    for (size_t i = 0; i < r->item_count; i++) {
+        r->levels[n * r->item_count + i] = r->items[i].mesh;
+        r->items[i].mesh = (cw_mesh){0};
+    }
+    r->level_count = n + 1;
+    return st;
+}
+
+cw_status cli_write_label_levels(cli_label_run *r, cw_error *err)
+{
+    const size_t count = r->level_count * r->item_count;
+    if (r->files.count == r->level_count)
+        return CW_OK;
+    cw_part *parts = calloc(count, sizeof *parts);
+    if (!parts)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", count);
+    for (size_t i = 0; i < count; i++) { /* the levels of a label follow each other */
+        const cli_label_item *item = &r->items[i / r->level_count];
+        const size_t level = i % r->level_count;
+        parts[i] = (cw_part){.mesh = &r->levels[level * r->item_count + i / r->level_count],
+                             .name = item->name,
+                             .label = &item->label,
+                             .level = level};
+    }
+    cw_status st = deliver_file(r, r->level_count, parts, count, 0, r->item_count, NULL,
+                                "; all levels of detail", err);
     free(parts);
     return st;
 }

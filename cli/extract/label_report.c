@@ -97,8 +97,8 @@ void cli_put_label_params(cli_json *j, const void *p, const cli_made *made)
     cli_json_number(j, "smooth_labels_voxels", r->max_move);
     if (r->error_mm > 0)
         cli_json_number(j, "simplify_error_mm", r->error_mm);
-    else if (r->args->simplify.triangles)
-        cli_json_count(j, "simplify_triangles", r->args->simplify.triangles);
+    else if (r->target)
+        cli_json_count(j, "simplify_triangles", r->target);
     if (r->extracted)
         cli_json_bool(j, "per_label", r->args->per_label);
     cli_json_bool(j, "open", r->args->open);

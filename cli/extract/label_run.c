@@ -32,6 +32,27 @@ static bool is_simplified(const cli_extract_args *args)
     return args->simplify.error.given || args->simplify.triangles > 0;
 }
 
+/* Checks the levels of detail: they have targets of their own, and a file each. */
+static cw_status check_lod(const cli_extract_args *args, cw_error *err)
+{
+    const cli_counts *lod = &args->lod;
+    if (lod->count && (is_simplified(args) || args->shared_faces))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--lod cannot be combined with %s",
+                        args->shared_faces ? "--shared-faces" : "--simplify");
+    if (lod->count && cli_has_file_a_label(args->output))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--lod writes all labels into a file a level; the output holds {label} "
+                        "or {name}");
+    for (size_t n = 0; n < lod->count; n++)
+        if (!lod->n[n] || (n && lod->n[n] >= lod->n[n - 1]))
+            return cwi_fail(
+                err, CW_ERR_ARGUMENT,
+                "--lod lists %zu triangles%s; each level needs at least 1, and fewer "
+                "than the level before it",
+                lod->n[n], n ? " after a level with as many or fewer" : "");
+    return CW_OK;
+}
+
 cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
 {
     const struct {
@@ -58,6 +79,7 @@ cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
                : args->table          ? fail_without("--table", err)
                : args->shared_faces   ? fail_without("--shared-faces", err)
                : args->per_label      ? fail_without("--per-label", err)
+               : args->lod.count      ? fail_without("--lod", err)
                : args->require_labels ? fail_without("--require-labels", err)
                                       : CW_OK;
     for (size_t n = 0; n < sizeof refused / sizeof *refused; n++)
@@ -69,6 +91,9 @@ cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
     if (args->common.input_count > 1)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--labels takes one volume; there are %zu",
                         args->common.input_count);
+    cw_status st = check_lod(args, err);
+    if (st != CW_OK)
+        return st;
     if (args->per_label && !is_simplified(args))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--per-label is for --simplify");
     if (args->per_label && args->shared_faces)
@@ -122,6 +147,7 @@ static cw_status read_label_map(cli_label_run *r, cw_error *err)
                         "%s: --labels is for dense grids of voxels; this is %s", r->volume.path,
                         v->cells ? "an irregular grid" : "a sparse one");
     r->error_mm = find_error_mm(r);
+    r->target = args->simplify.triangles;
     st = cli_find_label_names(args->names, &r->volume, &r->names, err);
     if (st == CW_OK)
         st = cli_choose_labels("--labels", args->labels, &r->names.table, &r->choice, err);
@@ -194,7 +220,7 @@ static cw_status extract_layers(cli_label_run *r, cw_error *err)
 /* Returns the share of its triangles that a part of all may keep; 0: no limit. */
 static double find_ratio(const cli_label_run *r, size_t all)
 {
-    const size_t wanted = r->args->simplify.triangles;
+    const size_t wanted = r->target;
     return wanted > 0 && wanted < all ? (double)wanted / (double)all : 0;
 }
 
@@ -204,9 +230,10 @@ static cw_status simplify_together(cli_label_run *r, cw_error *err)
     const cli_extract_args *args = r->args;
     const double ratio = find_ratio(r, r->triangles);
     cw_status st = CW_OK;
-    if (!is_simplified(args) || args->per_label || (r->error_mm == 0 && ratio == 0))
+    if (args->per_label || (r->error_mm == 0 && ratio == 0))
         return CW_OK;
-    r->extracted = r->triangles;
+    const size_t before = r->triangles;
+    r->extracted = r->extracted ? r->extracted : before;
     r->triangles = 0;
     cli_report_begin(&r->report);
     for (size_t n = 0; n < r->layer_count && st == CW_OK; n++) {
@@ -225,7 +252,7 @@ static cw_status simplify_together(cli_label_run *r, cw_error *err)
         r->triangles += surfaces->mesh.triangle_count;
     }
     if (st == CW_OK)
-        cli_report_end(&r->report, "simplify", r->extracted, r->triangles);
+        cli_report_end(&r->report, "simplify", before, r->triangles);
     return st;
 }
 
@@ -382,6 +409,26 @@ static cw_status check_side_outputs(cli_label_run *r, cw_error *err)
                : st;
 }
 
+/* Makes and writes the levels of detail, each from the one before, then all in one file. */
+static cw_status make_levels(cli_label_run *r, cw_error *err)
+{
+    const cli_counts *lod = &r->args->lod;
+    cw_status st = cli_report_reserve(&r->report, lod->count + 1, err);
+    r->report.several = "surfaces";
+    r->levels = calloc(lod->count * r->item_count, sizeof *r->levels);
+    if (!r->levels)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu levels", lod->count);
+    for (size_t n = 0; n < lod->count && st == CW_OK; n++) {
+        r->target = lod->n[n];
+        st = simplify_together(r, err);
+        if (st == CW_OK)
+            st = make_meshes(r, err);
+        if (st == CW_OK)
+            st = cli_write_label_level(r, n, err);
+    }
+    return st == CW_OK ? cli_write_label_levels(r, err) : st;
+}
+
 static cw_status run_labels(void *state, cw_error *err)
 {
     cli_label_run *r = state;
@@ -401,9 +448,11 @@ static cw_status run_labels(void *state, cw_error *err)
         st = tell_missing(r, err);
     if (st == CW_OK)
         st = list_items(r, err);
-    if (st == CW_OK)
+    if (st == CW_OK && r->args->lod.count)
+        st = make_levels(r, err);
+    else if (st == CW_OK)
         st = make_meshes(r, err);
-    if (st == CW_OK)
+    if (st == CW_OK && !r->args->lod.count)
         st = cli_write_labels(r, err);
     return st == CW_OK ? cli_write_label_table(r, err) : st;
 }
@@ -414,6 +463,9 @@ static void free_run(cli_label_run *r)
         cw_mesh_free(&r->items[n].mesh);
     for (size_t n = 0; n < r->layer_count; n++)
         cw_label_surfaces_free(&r->layers[n].surfaces);
+    for (size_t n = 0; n < r->level_count * r->item_count; n++)
+        cw_mesh_free(&r->levels[n]);
+    free(r->levels);
     free(r->items);
     free(r->layers);
     cli_free_label_choice(&r->choice);

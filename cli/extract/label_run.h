@@ -34,8 +34,11 @@ typedef struct cli_label_run {
     cli_label_item *items; /* in rising order of layers and labels */
     size_t item_count;
     double error_mm;  /* of --simplify; 0: none */
+    size_t target;    /* triangles of --simplify, or of the level of --lod at hand; 0: none */
     size_t triangles; /* of all interfaces */
     size_t extracted; /* of those before they were simplified; 0: they are not */
+    cw_mesh *levels;  /* of --lod: item_count meshes a level */
+    size_t level_count;
     cli_outputs files;
     cli_report report;
     double start;
@@ -49,6 +52,13 @@ CW_NODISCARD cw_status cli_check_label_args(const cli_extract_args *args, cw_err
 
 /* Names the output if all labels go into one file, and checks that it can be written. */
 CW_NODISCARD cw_status cli_name_label_file(cli_label_run *run, cw_error *err);
+
+/* Writes the meshes as level n of --lod. Then they belong to the levels, which it keeps for the
+ * file of all of them. */
+CW_NODISCARD cw_status cli_write_label_level(cli_label_run *run, size_t n, cw_error *err);
+
+/* Writes the file of all levels of --lod, which only glTF has. */
+CW_NODISCARD cw_status cli_write_label_levels(cli_label_run *run, cw_error *err);
 
 /* Writes the meshes, or with --shared-faces the interfaces, and tells of them. */
 CW_NODISCARD cw_status cli_write_labels(cli_label_run *run, cw_error *err);

@@ -11,7 +11,19 @@ if cubewright version --features | grep -q '^simplify *yes'; then
     cubewright extract cells.nrrd --labels all --simplify 4k --per-label -o apart.ply >line
     grep -o 'each label by itself: interfaces of neighbours part' line
 fi
+# levels of detail: a file each, and one with all
+cubewright extract cells.nrrd --labels all --lod 4k,1k -o lod.obj --name x --json lod.json
+ls lod*
+grep -c '"status": "ok"' lod.json
+if cubewright version --features | grep -q '^glb *yes\|^gltf *yes'; then
+    cubewright extract cells.nrrd --labels all --lod 4k,1k -o lod.glb | sed -n '3s/.* in 16/16/p' >line
+    grep -q '16 levels; .*all levels of detail' line || cat line
+fi
 bad() { cubewright extract cells.nrrd --labels all -o bad.ply "$@" || echo "exit $?"; }
 bad --per-label
 bad --per-label --simplify 1k --shared-faces
 bad --simplify 0
+bad --lod 1k,2k
+bad --lod 1k --simplify 2k
+bad --lod 1k -o 'bad-{label}.ply'
+cubewright extract cells.nrrd --iso 1 --lod 1k -o bad.ply || echo "exit $?"
