@@ -466,8 +466,9 @@ cw_status cli_batch_run(const cli_command *command, cli_common *args,
         st = run_jobs(&r, err);
     if (st == CW_OK)
         st = judge_batch(&r, err);
-    const bool is_whole =
-        !r.lines || r.lines == stdout || (!ferror(r.lines) & (fclose(r.lines) == 0));
+    bool is_whole = !r.lines || !ferror(r.lines);
+    if (r.lines && r.lines != stdout)
+        is_whole = fclose(r.lines) == 0 && is_whole;
     if (!is_whole && st == CW_OK)
         st = cwi_fail(err, CW_ERR_OUTPUT, "%s: cannot be written", args->batch.json_lines);
     free_batch(&r);
