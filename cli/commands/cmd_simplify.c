@@ -2,6 +2,7 @@
  * work. */
 #include "cli/commands/simplify_run.h"
 #include "cli/framework/commands.h"
+#include "cli/results/output_names.h"
 #include "core/base/status.h"
 
 static const cli_simplify_args defaults = {.measure = true};
@@ -69,18 +70,11 @@ static const cli_option options[] = {
 
 static cw_status check_lod(const cli_simplify_args *args, cw_error *err)
 {
-    const cli_counts *lod = &args->lod;
     if (args->error.given || args->triangles || args->ratio.given)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--lod has its own targets; --error, --triangles and --ratio are for a "
                         "single mesh");
-    for (size_t n = 0; n < lod->count; n++)
-        if (!lod->n[n] || (n && lod->n[n] >= lod->n[n - 1]))
-            return cwi_fail(err, CW_ERR_ARGUMENT,
-                            "--lod lists %zu triangles%s; each level needs at least 1, and "
-                            "fewer than the one before",
-                            lod->n[n], n ? " after a level with as many or fewer" : "");
-    return CW_OK;
+    return cli_check_lod(&args->lod, err);
 }
 
 static cw_status check_targets(const cli_simplify_args *args, cw_error *err)

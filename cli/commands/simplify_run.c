@@ -115,12 +115,6 @@ static cw_status check_outputs(run_state *s, cw_error *err)
                        : st;
 }
 
-static bool is_gltf(const cli_simplify_args *args)
-{
-    const cw_format *format = cw_mesh_format(args->output, args->written.format);
-    return format && (strcmp(format->name, "glb") == 0 || strcmp(format->name, "gltf") == 0);
-}
-
 static cw_status check_args(run_state *s, cw_error *err)
 {
     const cli_simplify_args *args = s->args;
@@ -137,7 +131,8 @@ static cw_status check_args(run_state *s, cw_error *err)
                         "libopenmesh-dev and build again");
     st = args->lod.count
              ? cli_name_lod_outputs(&s->outputs, args->output, args->common.inputs[0],
-                                    args->lod.count, is_gltf(args), err)
+                                    args->lod.count,
+                                    cli_is_gltf(args->output, args->written.format), err)
              : cli_name_output(&s->outputs, args->output, args->common.inputs[0], err);
     return st == CW_OK ? check_outputs(s, err) : st;
 }

@@ -9,24 +9,33 @@
  * in 100. */
 static const double SHADING = 1.5;
 
+double cli_volume_voxel_mm(const cli_volume *volume)
+{
+    const double *spacing = volume->spacing;
+    return cbrt(spacing[0] * spacing[1] * spacing[2]);
+}
+
+double cli_volume_length_mm(const cli_volume *volume, const cli_length *length)
+{
+    const cli_grid *g = &volume->grid;
+    double square = 0;
+    for (int a = 0; a < 3; a++) {
+        const double side = volume->view.cells
+                                ? g->high[a] - g->low[a]
+                                : volume->spacing[a] * (double)(volume->view.dim[a] - 1);
+        square += side * side;
+    }
+    return cli_length_mm(length, sqrt(square), cli_volume_voxel_mm(volume));
+}
+
 double cli_extract_voxel_mm(const cli_extract_run *s)
 {
-    const double *spacing = s->input.volume.spacing;
-    return cbrt(spacing[0] * spacing[1] * spacing[2]);
+    return cli_volume_voxel_mm(&s->input.volume);
 }
 
 double cli_extract_length_mm(const cli_extract_run *s, const cli_length *length)
 {
-    double square = 0;
-    for (int a = 0; a < 3; a++) {
-        const cli_grid *g = &s->input.volume.grid;
-        const double side =
-            s->input.volume.view.cells
-                ? g->high[a] - g->low[a]
-                : s->input.volume.spacing[a] * (double)(s->input.volume.view.dim[a] - 1);
-        square += side * side;
-    }
-    return cli_length_mm(length, sqrt(square), cli_extract_voxel_mm(s));
+    return cli_volume_length_mm(&s->input.volume, length);
 }
 
 double cli_extract_error_mm(const cli_extract_run *s)

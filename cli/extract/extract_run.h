@@ -73,6 +73,11 @@ cw_write_desc cli_extract_write_desc(const cli_extract_args *args);
 
 /* ---- facts ------------------------------------------------------------------------------- */
 
+/* Returns the edge of a cube of a voxel's volume, and a length in millimetres: shares are of the
+ * diagonal of the volume's box. */
+double cli_volume_voxel_mm(const cli_volume *volume);
+double cli_volume_length_mm(const cli_volume *volume, const cli_length *length);
+
 double cli_extract_voxel_mm(const cli_extract_run *s);
 
 /* Shares are of the diagonal of the volume's box. */

@@ -6,7 +6,6 @@
 #include "cli/framework/quantity.h"
 #include "core/base/status.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -51,7 +50,6 @@ static cw_status deliver_file(cli_label_run *r, size_t file, const cw_part *part
 {
     char smoothing[48], simplified[64];
     cw_provenance lines[3];
-    const double *spacing = r->volume.spacing;
     cli_made *made = file ? cli_report_next(&r->report, NULL, 0) : r->report.made;
     made->path = r->files.path[file];
     made->name = items == 1 ? r->items[first].name : "labels";
@@ -59,7 +57,7 @@ static cw_status deliver_file(cli_label_run *r, size_t file, const cw_part *part
     cli_delivery how = {.input = r->volume.path,
                         .write = cli_extract_write_desc(r->args),
                         .compress = &r->args->compress,
-                        .voxel_mm = cbrt(spacing[0] * spacing[1] * spacing[2]),
+                        .voxel_mm = cli_volume_voxel_mm(&r->volume),
                         .unchecked = true, /* each label was by itself */
                         .open = r->args->open,
                         .parts = r->args->shared_faces ? "interfaces"
@@ -115,18 +113,13 @@ static cw_status name_files(cli_label_run *r, const cw_part *parts, size_t count
     return st == CW_OK ? check_files(r, err) : st;
 }
 
-static bool is_gltf(const cli_extract_args *args)
-{
-    const cw_format *f = cw_mesh_format(args->output, args->format);
-    return f && (strcmp(f->name, "glb") == 0 || strcmp(f->name, "gltf") == 0);
-}
-
 /* Names the files of levels of detail, and checks them. */
 static cw_status name_levels(cli_label_run *r, cw_error *err)
 {
     const cli_extract_args *args = r->args;
-    cw_status st = cli_name_lod_outputs(&r->files, args->output, args->common.inputs[0],
-                                        args->lod.count, is_gltf(args), err);
+    cw_status st =
+        cli_name_lod_outputs(&r->files, args->output, args->common.inputs[0], args->lod.count,
+                             cli_is_gltf(args->output, args->format), err);
     return st == CW_OK ? check_files(r, err) : st;
 }
 

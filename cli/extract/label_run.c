@@ -3,11 +3,11 @@
 #include "cli/extract/label_run.h"
 
 #include "cli/framework/console.h"
+#include "cli/inputs/label_scene.h"
 #include "core/base/status.h"
 
 #include <cubewright/simplify.h>
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,14 +43,7 @@ static cw_status check_lod(const cli_extract_args *args, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--lod writes all labels into a file a level; the output holds {label} "
                         "or {name}");
-    for (size_t n = 0; n < lod->count; n++)
-        if (!lod->n[n] || (n && lod->n[n] >= lod->n[n - 1]))
-            return cwi_fail(
-                err, CW_ERR_ARGUMENT,
-                "--lod lists %zu triangles%s; each level needs at least 1, and fewer "
-                "than the level before it",
-                lod->n[n], n ? " after a level with as many or fewer" : "");
-    return CW_OK;
+    return cli_check_lod(lod, err);
 }
 
 cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
@@ -118,16 +111,8 @@ cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
 /* Returns the error of --simplify in millimetres; 0: none was stated. */
 static double find_error_mm(const cli_label_run *r)
 {
-    const double *spacing = r->volume.spacing;
-    double square = 0;
-    for (int a = 0; a < 3; a++) {
-        const double side = spacing[a] * (double)(r->volume.view.dim[a] - 1);
-        square += side * side;
-    }
-    return r->args->simplify.error.given
-               ? cli_length_mm(&r->args->simplify.error, sqrt(square),
-                               cbrt(spacing[0] * spacing[1] * spacing[2]))
-               : 0;
+    const cli_length *error = &r->args->simplify.error;
+    return error->given ? cli_volume_length_mm(&r->volume, error) : 0;
 }
 
 static cw_status read_label_map(cli_label_run *r, cw_error *err)
@@ -199,14 +184,12 @@ static cw_status extract_layer(cli_label_run *r, uint32_t number, cw_error *err)
 
 static cw_status extract_layers(cli_label_run *r, cw_error *err)
 {
-    const cli_component *stated = &r->args->input.component;
-    const size_t components = r->volume.voxels.components;
-    const size_t first = stated->given ? stated->number : 0;
-    const size_t end = stated->given ? first + 1 : components;
+    size_t first, end;
     cw_status st = CW_OK;
-    r->layers = calloc(components, sizeof *r->layers);
+    cli_label_layers(&r->volume, &r->args->input, &first, &end);
+    r->layers = calloc(end - first, sizeof *r->layers);
     if (!r->layers)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu layers", components);
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu layers", end - first);
     cli_report_begin(&r->report);
     for (size_t c = first; c < end && st == CW_OK; c++)
         st = extract_layer(r, (uint32_t)c, err);
@@ -328,16 +311,9 @@ static cw_status list_items(cli_label_run *r, cw_error *err)
 /* Fails unless a label's surface is closed (or open at the border alone) and a manifold. */
 static cw_status hold_item(const cli_label_run *r, const cli_label_item *item, cw_error *err)
 {
-    const cw_quality *q = &item->quality;
-    if (!q->nonmanifold_edges && !q->nonmanifold_vertices && !q->misoriented_edges &&
-        !q->degenerate && (!q->open_edges || r->args->open))
-        return CW_OK;
-    return cwi_fail(err, CW_ERR_CHECK,
-                    "%s: the surface of label %u is not as promised: %zu open, %zu "
-                    "non-manifold, %zu misoriented edges, %zu non-manifold vertices, %zu "
-                    "degenerate triangles; nothing is written (--no-check writes it)",
-                    r->volume.path, item->label.value, q->open_edges, q->nonmanifold_edges,
-                    q->misoriented_edges, q->nonmanifold_vertices, q->degenerate);
+    char what[32];
+    snprintf(what, sizeof what, "of label %u", item->label.value);
+    return cli_hold_to_promise(r->volume.path, what, &item->quality, r->args->open, err);
 }
 
 static bool needs_quality(const cli_extract_args *args)

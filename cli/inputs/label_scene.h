@@ -11,7 +11,7 @@ typedef struct cli_label_look {
     const char *labels, *names, *smooth, *opacity;
 } cli_label_look;
 
-/* Labels of one step. Zeroed, there are none. Free with cli_free_label_scene(). */
+/* Labels of one step. A zeroed scene has no labels. Free with cli_free_label_scene(). */
 typedef struct cli_label_scene {
     bool has_names;
     cli_label_names names;
@@ -49,7 +49,7 @@ void cli_label_layers(const cli_volume *volume, const cli_input *input, size_t *
                       size_t *end);
 
 /* Finds the label of the voxel nearest to a point of the world: of components that overlap, the
- * last. Returns false where there is none, or only the background. */
+ * last. Returns false for the background, and beyond the volume. */
 bool cli_find_label_at(const cli_volume *volume, const cli_input *input, size_t step,
                        const double world[3], uint32_t *layer, uint32_t *value);
 

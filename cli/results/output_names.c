@@ -199,6 +199,23 @@ cw_status cli_name_part_outputs(cli_outputs *outputs, const char *text, const ch
     return st;
 }
 
+bool cli_is_gltf(const char *output, const char *format)
+{
+    const cw_format *f = cw_mesh_format(output, format);
+    return f && (strcmp(f->name, "glb") == 0 || strcmp(f->name, "gltf") == 0);
+}
+
+cw_status cli_check_lod(const cli_counts *lod, cw_error *err)
+{
+    for (size_t n = 0; n < lod->count; n++)
+        if (!lod->n[n] || (n && lod->n[n] >= lod->n[n - 1]))
+            return cwi_fail(err, CW_ERR_ARGUMENT,
+                            "--lod lists %zu triangles%s; each level needs at least 1, and "
+                            "fewer than the one before",
+                            lod->n[n], n ? " after a level with as many or fewer" : "");
+    return CW_OK;
+}
+
 /* "out.glb" is "out-lod{lod}.glb"; free it with free(). */
 static char *with_lod(const char *text)
 {

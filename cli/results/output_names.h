@@ -38,6 +38,13 @@ CW_NODISCARD cw_status cli_name_part_outputs(cli_outputs *outputs, const char *t
                                              const char *input, const cw_part *parts,
                                              size_t count, cw_error *err);
 
+/* Returns true if a mesh is written as glTF, which holds levels of detail in one file. format: of
+ * --format, or NULL. */
+bool cli_is_gltf(const char *output, const char *format);
+
+/* Checks the counts of --lod: each at least 1, and fewer than the one before. */
+CW_NODISCARD cw_status cli_check_lod(const cli_counts *lod, cw_error *err);
+
 /* Names one output a level of detail: {lod} (its number, from 0) and {stem} are filled in. A
  * text without {lod} gets "-lod0" and so on in front of its extension, and, with together, is
  * itself the name of one more output, the last. Free it with cli_free_outputs(). */

@@ -29,20 +29,27 @@ static load count_load(const cw_part *parts, size_t part_count)
 
 /* --- checking ---------------------------------------------------------------------------- */
 
-/* The promise: closed unless --open, and a manifold without zero-area triangles in any case. */
-static cw_status hold_to_promise(const cli_delivery *how, const cli_made *made, cw_error *err)
+cw_status cli_hold_to_promise(const char *input, const char *what, const cw_quality *q,
+                              bool open, cw_error *err)
 {
-    const cw_quality *q = &made->quality;
-    if (how->unpromised ||
-        (!q->nonmanifold_edges && !q->nonmanifold_vertices && !q->misoriented_edges &&
-         !q->degenerate && (!q->open_edges || how->open)))
+    if (!q->nonmanifold_edges && !q->nonmanifold_vertices && !q->misoriented_edges &&
+        !q->degenerate && (!q->open_edges || open))
         return CW_OK;
     return cwi_fail(err, CW_ERR_CHECK,
-                    "%s: the surface at %g is not as promised: %zu open, %zu non-manifold, %zu "
+                    "%s: the surface %s is not as promised: %zu open, %zu non-manifold, %zu "
                     "misoriented edges, %zu non-manifold vertices, %zu degenerate triangles; "
                     "nothing is written (--no-check writes it)",
-                    how->input, made->iso, q->open_edges, q->nonmanifold_edges,
-                    q->misoriented_edges, q->nonmanifold_vertices, q->degenerate);
+                    input, what, q->open_edges, q->nonmanifold_edges, q->misoriented_edges,
+                    q->nonmanifold_vertices, q->degenerate);
+}
+
+static cw_status hold_to_promise(const cli_delivery *how, const cli_made *made, cw_error *err)
+{
+    char what[32];
+    snprintf(what, sizeof what, "at %g", made->iso);
+    return how->unpromised
+               ? CW_OK
+               : cli_hold_to_promise(how->input, what, &made->quality, how->open, err);
 }
 
 void cli_add_quality(cw_quality *sum, const cw_quality *q)

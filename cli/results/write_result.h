@@ -33,6 +33,12 @@ CW_NODISCARD cw_status cli_deliver(cli_report *report, const cli_delivery *how,
                                    const cw_part *parts, size_t part_count, size_t border_loops,
                                    double start, cw_error *err);
 
+/* Holds a surface to the promise: closed unless it may be open, and a manifold without zero-area
+ * triangles in any case. what: names it, such as "at 300".
+ * Returns CW_ERR_CHECK with what was found. */
+CW_NODISCARD cw_status cli_hold_to_promise(const char *input, const char *what,
+                                           const cw_quality *quality, bool open, cw_error *err);
+
 /* Adds what was measured of a part to the sum of others, with which it shares no vertices: what
  * is counted adds up. */
 void cli_add_quality(cw_quality *sum, const cw_quality *q);

@@ -98,7 +98,7 @@ static void free_label(cw_label *label)
 }
 
 /* Makes room for one more label: capacities are powers of two. */
-static bool grow(cw_label_table *table)
+static bool grow_table(cw_label_table *table)
 {
     const size_t count = table->count;
     if (count & (count - 1))
@@ -118,7 +118,7 @@ static cw_status copy_label(cw_label_table *table, const cw_label *label, bool r
     const bool has_name = copy_text(label->name, &copy->name);
     const bool has_category = copy_code(&label->category, &copy->category);
     const bool has_type = copy_code(&label->type, &copy->type);
-    if (has_name && has_category && has_type && (replaces || grow(table)))
+    if (has_name && has_category && has_type && (replaces || grow_table(table)))
         return CW_OK;
     free_label(copy);
     return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the names of labels");

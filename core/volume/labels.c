@@ -34,7 +34,7 @@ typedef struct census {
 } census;
 
 /* Makes room for one more element; capacities are powers of two. */
-static void *grow(census *c, void *array, size_t count, size_t size)
+static void *grow_array(census *c, void *array, size_t count, size_t size)
 {
     if (count & (count - 1))
         return array;
@@ -47,14 +47,14 @@ static void add_run(census *c, double value, size_t pairs)
 {
     c->is_whole = c->is_whole && value == floor(value);
     c->too_many = c->too_many || c->run_count == MAX_CHANGES;
-    c->runs = grow(c, c->runs, c->run_count, sizeof *c->runs);
+    c->runs = grow_array(c, c->runs, c->run_count, sizeof *c->runs);
     if (!c->too_many && !c->is_starved)
         c->runs[c->run_count++] = (run){value, pairs};
 }
 
 static void add_change(census *c, double from, double to)
 {
-    c->changes = grow(c, c->changes, c->change_count, sizeof *c->changes);
+    c->changes = grow_array(c, c->changes, c->change_count, sizeof *c->changes);
     if (c->change_count < MAX_CHANGES && !c->is_starved)
         c->changes[c->change_count++] = (change){from, to};
 }

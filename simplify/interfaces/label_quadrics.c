@@ -91,7 +91,7 @@ void cwi_label_quadrics_join(cwi_label_quadric *quadrics, uint32_t keep, uint32_
 }
 
 /* Computes A d. */
-static void multiply(const double a[6], const double d[3], double out[3])
+static void multiply_matrix(const double a[6], const double d[3], double out[3])
 {
     out[0] = a[0] * d[0] + a[1] * d[1] + a[2] * d[2];
     out[1] = a[1] * d[0] + a[3] * d[1] + a[4] * d[2];
@@ -101,7 +101,7 @@ static void multiply(const double a[6], const double d[3], double out[3])
 static double find_error(const cwi_label_quadric *q, const double p[3])
 {
     double ap[3];
-    multiply(q->a, p, ap);
+    multiply_matrix(q->a, p, ap);
     return cwi_greater(cwi_dot(ap, p) + 2 * cwi_dot(q->b, p) + q->c, 0);
 }
 
@@ -111,7 +111,7 @@ static void find_least(const cwi_label_quadric *q, double place[3])
 {
     const double pull = PULL * (q->a[0] + q->a[3] + q->a[5]) + 1e-300;
     double slope[3];
-    multiply(q->a, place, slope);
+    multiply_matrix(q->a, place, slope);
     for (int k = 0; k < 3; k++)
         slope[k] = -slope[k] - q->b[k];
     const double xx = q->a[0] + pull, xy = q->a[1], xz = q->a[2];
@@ -130,8 +130,8 @@ static void find_least_along(const cwi_label_quadric *q, const double p[3], cons
                              double place[3])
 {
     double ap[3], ad[3];
-    multiply(q->a, p, ap);
-    multiply(q->a, d, ad);
+    multiply_matrix(q->a, p, ap);
+    multiply_matrix(q->a, d, ad);
     const double pull = PULL * (q->a[0] + q->a[3] + q->a[5]) * cwi_dot(d, d) + 1e-300;
     const double bend = cwi_dot(ad, d) + pull;
     const double fall = -cwi_dot(ap, d) - cwi_dot(q->b, d) + pull / 2;

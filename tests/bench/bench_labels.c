@@ -8,7 +8,7 @@
  * have a surface each; ours share theirs. */
 #define _GNU_SOURCE /* CLOCK_MONOTONIC */
 #include "bench.h"
-#include "vtk_labels.h"
+#include "vtk_wrap.h"
 
 #include <cubewright/field.h>
 #include <cubewright/formats.h>
@@ -57,7 +57,7 @@ static size_t max_label(const cw_volume *v)
     return max;
 }
 
-static void measure(const char *name, const cw_volume *v)
+static void measure_volume(const char *name, const cw_volume *v)
 {
     double times[WORKS][MAX_RUNS], medians[WORKS];
     size_t triangles[WORKS] = {0};
@@ -90,7 +90,7 @@ static void measure_made(const char *name, cw_label_field field, size_t side, si
     const cw_label_field_desc desc = {
         .field = field, .dim = {side, side, side}, .type = CW_U16, .labels = labels};
     bench_check(cw_label_field_sample(&desc, &v, &err), &err);
-    measure(name, &v);
+    measure_volume(name, &v);
     cw_volume_free(&v);
 }
 
@@ -114,7 +114,7 @@ int main(int argc, char **argv)
         cw_volume v;
         cw_error err = {0};
         bench_check(cw_volume_read(argv[n], NULL, &v, NULL, &err), &err);
-        measure(argv[n], &v);
+        measure_volume(argv[n], &v);
         cw_volume_free(&v);
     }
     return 0;

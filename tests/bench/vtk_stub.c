@@ -7,3 +7,14 @@ double bench_vtk(const cw_volume *volume, double isovalue, int threads, size_t *
     *triangles = 0;
     return -1;
 }
+
+double bench_vtk_labels(const cw_volume *volume, size_t labels, bool marching_cubes,
+                        int threads, size_t *triangles)
+{
+    (void)volume;
+    (void)labels;
+    (void)marching_cubes;
+    (void)threads;
+    *triangles = 0;
+    return -1;
+}

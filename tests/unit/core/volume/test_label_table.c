@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void add(cw_label_table *table, uint32_t value, const char *name)
+static void add_label(cw_label_table *table, uint32_t value, const char *name)
 {
     cw_error err = {0};
     const cw_label label = {.value = value, .name = (char *)name};
@@ -21,10 +21,10 @@ static void labels_are_found_by_value_and_name(void **state)
     cw_error err = {0};
     cw_label_table table = {0};
     for (uint32_t n = 0; n < 1000; n++) /* in an order of its own: 7 has no divisor with 1000 */
-        add(&table, n * 7 % 1000 * 4000000u, "some");
-    add(&table, 5, "Left Lung");
-    add(&table, UINT32_MAX, "last");
-    add(&table, 5, "left lung"); /* replaces */
+        add_label(&table, n * 7 % 1000 * 4000000u, "some");
+    add_label(&table, 5, "Left Lung");
+    add_label(&table, UINT32_MAX, "last");
+    add_label(&table, 5, "left lung"); /* replaces */
     assert_int_equal(table.count, 1002);
     for (size_t n = 1; n < table.count; n++)
         assert_true(table.labels[n - 1].value < table.labels[n].value);
@@ -81,7 +81,7 @@ static void without_memory_a_table_stays_as_it_was(void **state)
 {
     (void)state;
     cw_label_table table = {0};
-    add(&table, 1, "one");
+    add_label(&table, 1, "one");
     bool failed = true;
     for (long n = 0; failed; n++) {
         cw_error err = {0};

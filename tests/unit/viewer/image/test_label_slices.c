@@ -55,7 +55,7 @@ static void make_fixture(fixture *f)
 }
 
 /* Draws on a picture of one grey. */
-static cw_picture paint(const fixture *f, float opacity)
+static cw_picture paint_slice(const fixture *f, float opacity)
 {
     cw_picture picture;
     cw_error err = {0};
@@ -99,7 +99,7 @@ static void the_nearest_voxel_counts(void **state)
     cw_error err = {0};
     size_t colored = 0, plain = 0;
     make_fixture(&f);
-    cw_picture picture = paint(&f, 0.5f);
+    cw_picture picture = paint_slice(&f, 0.5f);
     for (size_t y = 0; y < HEIGHT; y++)
         for (size_t x = 0; x < WIDTH; x++) {
             const double pixel[2] = {(double)x + 0.5, (double)y + 0.5};
@@ -139,12 +139,12 @@ static void samples_are_averaged(void **state)
     (void)state;
     static fixture f;
     make_fixture(&f);
-    cw_picture one = paint(&f, 0);
+    cw_picture one = paint_slice(&f, 0);
     f.scene.samples = 3;
     f.scene.threads = 1;
-    cw_picture fine = paint(&f, 0);
+    cw_picture fine = paint_slice(&f, 0);
     f.scene.threads = 3;
-    cw_picture again = paint(&f, 0);
+    cw_picture again = paint_slice(&f, 0);
     assert_memory_equal(fine.pixels, again.pixels, 16 * (size_t)WIDTH * HEIGHT);
     size_t mixed = 0;
     double sums[2] = {0};
