@@ -62,6 +62,7 @@ bad --labels 3-2
 bad --labels 1,,2
 bad --labels 7
 bad --labels 1 --iso 3
+bad --labels 1 --pixel-error 1
 bad --labels all --smooth-labels 3mm
 bad --labels all --smooth-labels fine
 bad --labels all --shared-faces -o 'bad-{label}.ply'
