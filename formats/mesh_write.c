@@ -131,6 +131,31 @@ static cw_status prepare_writer(const char *path, const cw_write_desc *d,
     return st == CW_OK && f->write.prepare ? f->write.prepare(err) : st;
 }
 
+static const char *spool_writer_name(const cwi_format_driver *f)
+{
+    return f->write.spools ? f->name : NULL;
+}
+
+static cw_status check_spools(const cwi_format_driver *f, const cw_part *parts, size_t count,
+                              const cw_write_desc *d, cw_error *err)
+{
+    char list[CWI_FORMAT_LIST];
+    bool any = false;
+    for (size_t i = 0; i < count; i++)
+        any = any || parts[i].spool;
+    if (any && !f->write.spools)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "%s is not written piece by piece, as a surface larger than memory is; "
+                        "those that are: %s",
+                        f->name, cwi_list_formats(spool_writer_name, " ", list));
+    return any && d->compression != CW_COMPRESS_NONE
+               ? cwi_fail(
+                     err, CW_ERR_UNSUPPORTED,
+                     "a surface larger than memory is not compressed; 'convert' compresses "
+                     "a file of it that fits")
+               : CW_OK;
+}
+
 static cw_status check_levels(const cwi_format_driver *f, const cw_part *parts, size_t count,
                               cw_error *err)
 {
@@ -187,6 +212,8 @@ cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
     cw_status st = prepare_writer(path, &d, &f, err);
     if (st == CW_OK)
         st = check_levels(f, parts, count, err);
+    if (st == CW_OK)
+        st = check_spools(f, parts, count, &d, err);
     if (st == CW_OK && d.sides && count != 1)
         st = cwi_fail(err, CW_ERR_ARGUMENT,
                       "the sides of triangles are those of one mesh, not of %zu", count);
@@ -221,7 +248,7 @@ static unsigned find_dropped(const cw_part *parts, size_t count, const cwi_parts
     unsigned had = CW_KEEPS_SHARING | (placed->count > 1 ? CW_KEEPS_PARTS : 0u);
     unsigned has = keeps & (CW_KEEPS_SHARING | CW_KEEPS_PARTS | CW_KEEPS_AFFINE);
     for (size_t i = 0; i < count; i++)
-        had |= cwi_arrays_of(parts[i].mesh);
+        had |= parts[i].spool ? cwi_spool_arrays(parts[i].spool) : cwi_arrays_of(parts[i].mesh);
     for (size_t i = 0; i < placed->count; i++)
         has |= placed->items[i].arrays & ~(unsigned)CW_KEEPS_AFFINE;
     if (loss->merged_vertices || loss->flat_triangles)

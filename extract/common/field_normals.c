@@ -28,21 +28,19 @@ void cwi_outward(const cw_volume *volume, bool invert, double cofactor[3][3])
 
 /* --- from triangles ---------------------------------------------------------------------- */
 
-static void add_triangle_normal(const cw_mesh *mesh, double scale, const uint32_t *t,
-                                float *normal)
+void cwi_add_facet_normal(const float *const corner[3], double scale, float normal[3])
 {
-    const float *p = mesh->positions;
     double u[3], v[3], across[3];
     for (size_t a = 0; a < 3; a++) {
-        u[a] = scale * ((double)p[3 * (size_t)t[1] + a] - (double)p[3 * (size_t)t[0] + a]);
-        v[a] = scale * ((double)p[3 * (size_t)t[2] + a] - (double)p[3 * (size_t)t[0] + a]);
+        u[a] = scale * ((double)corner[1][a] - (double)corner[0][a]);
+        v[a] = scale * ((double)corner[2][a] - (double)corner[0][a]);
     }
     cwi_cross(u, v, across);
     for (int a = 0; a < 3; a++)
         normal[a] += (float)across[a];
 }
 
-static void normalise_float(float *n)
+void cwi_finish_normal(float n[3])
 {
     const double length = sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]);
     for (int a = 0; a < 3; a++)
@@ -80,14 +78,16 @@ cw_status cwi_mend_normals(cw_mesh *mesh, double scale, cw_error *err)
     }
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         const uint32_t *triangle = mesh->triangles + 3 * t;
+        const float *corner[3];
+        for (int c = 0; c < 3; c++)
+            corner[c] = mesh->positions + 3 * (size_t)triangle[c];
         for (int c = 0; c < 3; c++)
             if (missing[triangle[c]])
-                add_triangle_normal(mesh, scale, triangle,
-                                    mesh->normals + 3 * (size_t)triangle[c]);
+                cwi_add_facet_normal(corner, scale, mesh->normals + 3 * (size_t)triangle[c]);
     }
     for (size_t v = 0; v < mesh->vertex_count; v++)
         if (missing[v])
-            normalise_float(mesh->normals + 3 * v);
+            cwi_finish_normal(mesh->normals + 3 * v);
     cwi_free(missing);
     return CW_OK;
 }

@@ -200,9 +200,7 @@ static cw_status set_box(cwi_bit_grid *g, cw_error *err)
     return CW_OK;
 }
 
-/* Finds the live cells. Where the surface stays open, cells at the end of the domain are
- * dropped. */
-static cw_status set_live(cwi_bit_grid *g, bool leave_open, cw_error *err)
+cw_status cwi_grid_set_live(cwi_bit_grid *g, bool leave_open, cw_error *err)
 {
     cwi_free(g->live);
     g->live = NULL;
@@ -322,7 +320,7 @@ cw_status cwi_grid_classify(cwi_bit_grid *g, const cwi_engine *engine, cwi_octre
     if (st != CW_OK)
         return st;
     g->crossed = g->everything ? c.in && c.out : cwi_octree_crossed(tree, g);
-    return set_live(g, desc->leave_open, err);
+    return cwi_grid_set_live(g, desc->leave_open, err);
 }
 
 void cwi_grid_free(cwi_bit_grid *g)
@@ -330,6 +328,7 @@ void cwi_grid_free(cwi_bit_grid *g)
     for (size_t k = 0; g->layers && k < g->rows_z; k++)
         cwi_free(g->layers[k].plans);
     cwi_free(g->layers);
+    cwi_free(g->row_plans);
     cwi_free(g->inside);
     cwi_free(g->has);
     cwi_free(g->live);

@@ -68,7 +68,9 @@ typedef struct cwi_bit_grid {
     size_t masks;     /* words of a mask that has a bit for every word of a row */
     uint64_t *busy;   /* rows x masks, found when a row is counted: bit w is set where a cell of
                          word w has corners on both sides. No other word holds crossings */
-    cwi_layer *layers; /* rows_z */
+    cwi_layer *layers;   /* rows_z */
+    uint32_t *row_plans; /* rows: number of plans of the layer up to the row, where a row has
+                            ambiguous cells; filled when a layer is counted. NULL: not wanted */
     size_t bricks_y, bricks_z;
     uint64_t
         *wanted; /* bricks_z x bricks_y x masks: words with cells the octree cannot rule out */
@@ -107,6 +109,10 @@ size_t cwi_grid_bytes(const cwi_bit_grid *grid);
  * sample. */
 CW_NODISCARD cw_status cwi_grid_set_level(cwi_bit_grid *grid, const cw_extract_desc *desc,
                                           cw_error *err);
+
+/* Finds the live cells. Where the surface stays open, cells at the end of the domain are
+ * dropped. */
+CW_NODISCARD cw_status cwi_grid_set_live(cwi_bit_grid *grid, bool leave_open, cw_error *err);
 
 /* Checks that positions can distinguish the voxels and can reach all of them. */
 CW_NODISCARD cw_status cwi_extract_check_range(const cw_volume *volume, cw_error *err);

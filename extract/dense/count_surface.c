@@ -142,6 +142,8 @@ static inline void take_words(const cwi_bit_grid *g, const word_counts *c, int n
         const int i = __builtin_ctz(left);
         count_ambiguous(g, c->ambiguous[i], j, k, w + (size_t)(i - n), row);
     }
+    if (g->row_plans && c->open & here)
+        g->row_plans[k * g->rows_y + j] = (uint32_t)g->layers[k].plan_count;
     if (!g->layers[k].at_border)
         g->layers[k].at_border = meets_border(g, c, n, count, j, k, w);
 }

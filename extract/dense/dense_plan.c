@@ -141,9 +141,12 @@ static void write_share(void *context, size_t share)
     cwi_writing *w = context;
     const size_t begin = begin_of_share(w, share), end = begin_of_share(w, share + 1);
     const bool last = end >= w->end;
-    w->plan->engine->write_layers(&w->plan->grid, begin, last ? w->end + 1 : end,
-                                  last ? w->end : end, w->plan->rows, &w->emission, &w->sink,
-                                  w->triangles);
+    const cwi_span span = {.begin = begin,
+                           .end = last ? w->end + 1 : end,
+                           .cells = last ? w->end : end,
+                           .row_end = w->plan->grid.rows_y};
+    w->plan->engine->write_span(&w->plan->grid, &span, w->plan->rows, &w->emission, &w->sink,
+                                w->triangles);
 }
 
 cw_status cwi_write_dense_layers(cwi_writing *w, const cw_extract_desc *d, cw_error *err)

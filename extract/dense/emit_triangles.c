@@ -101,25 +101,30 @@ static void write_row(const cwi_bit_grid *g, size_t j, size_t k, const cwi_row *
     }
 }
 
-void cwi_write_layers(const cwi_bit_grid *g, size_t begin, size_t end, size_t cells,
-                      const cwi_row *rows, const cwi_emission *emission, cwi_vertex_sink *sink,
-                      uint32_t *triangles)
+void cwi_write_span(const cwi_bit_grid *g, const cwi_span *span, const cwi_row *rows,
+                    const cwi_emission *emission, cwi_vertex_sink *sink, uint32_t *triangles)
 {
+    /* the row after the span; without cells there are no triangles */
+    const size_t after = span->row_end < g->rows_y && span->cells > span->begin
+                             ? (span->cells - 1) * g->rows_y + span->row_end
+                             : span->cells * g->rows_y;
     /* excess writes are overwritten by the next rows, but not those of other threads */
-    cwi_cursor to = {.end = triangles + 3 * rows[cells * g->rows_y].triangle};
+    cwi_cursor to = {0};
+    if (span->cells > span->begin)
+        to.end = triangles + 3 * (rows[after].triangle - span->first_triangle);
     cell_list list;
     memset(&list.edges, 0, sizeof list.edges); /* not known where numbers count on */
-    cwi_place_vertices(g, begin, end, rows, sink);
-    for (size_t k = begin; k < cells; k++) {
+    cwi_place_vertices(g, span, rows, sink);
+    for (size_t k = span->begin; k < span->cells; k++) {
         const cwi_row *layer = rows + k * g->rows_y;
-        to.plan = 0;
+        to.plan = k == span->begin ? span->plan : 0;
         if (layer[0].triangle == layer[g->rows_y].triangle)
             continue;
-        for (size_t j = 0; j + 1 < g->rows_y; j++) {
+        for (size_t j = span->row; j < span->row_end && j + 1 < g->rows_y; j++) {
             const cwi_row *row = layer + j;
             if (row[0].triangle == row[1].triangle)
                 continue;
-            to.out = triangles + 3 * row[0].triangle;
+            to.out = triangles + 3 * (row[0].triangle - span->first_triangle);
             to.inner = row[0].first[3];
             write_row(g, j, k, rows, emission, sink, &list, &to);
         }

@@ -40,9 +40,8 @@ static bool has_avx512(void)
                                     bool *);                                                   \
     void cwi_find_sides_##engine(const cwi_bit_grid *, const void *, size_t, bool *, bool *);  \
     void cwi_count_layer_##engine(const cwi_bit_grid *, size_t, cwi_row *);                    \
-    void cwi_write_layers_##engine(const cwi_bit_grid *, size_t, size_t, size_t,               \
-                                   const cwi_row *, const cwi_emission *, cwi_vertex_sink *,   \
-                                   uint32_t *);
+    void cwi_write_span_##engine(const cwi_bit_grid *, const cwi_span *, const cwi_row *,      \
+                                 const cwi_emission *, cwi_vertex_sink *, uint32_t *);
 ENGINES(DECLARE)
 
 static const cwi_engine engines[] = {
@@ -53,7 +52,7 @@ static const cwi_engine engines[] = {
      cwi_classify_rows_##compare,                                                              \
      cwi_find_sides_##compare,                                                                 \
      cwi_count_layer_##march,                                                                  \
-     cwi_write_layers_##march},
+     cwi_write_span_##march},
     ENGINES(ROW)
 #undef ROW
 };

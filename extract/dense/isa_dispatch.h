@@ -29,6 +29,7 @@ typedef struct cwi_emission {
 /* Destination of vertices: arrays, and the maps from index space. */
 typedef struct cwi_vertex_sink {
     float *positions, *normals; /* normals may be NULL */
+    size_t first;               /* number of the vertex at the start of the arrays */
     double affine[3][3];        /* index to world directions */
     bool diagonal;              /* only the diagonal is not 0 */
     double centre[3];           /* index, or coordinate, that stands at the mesh's origin */
@@ -37,6 +38,15 @@ typedef struct cwi_vertex_sink {
     float cap[3][2][3];         /* normals of caps across an axis, low and high side */
     bool missing;               /* some normal is zero as the gradient vanished */
 } cwi_vertex_sink;
+
+/* A part of a surface to write: vertices and triangles of some rows in some layers. */
+typedef struct cwi_span {
+    size_t begin, end;     /* layers of vertices, from begin to end - 1 */
+    size_t cells;          /* layers of triangles, from begin to cells - 1 */
+    size_t row, row_end;   /* rows of each layer, from row to row_end - 1 */
+    size_t plan;           /* number of ambiguous cells of layer `begin` before the first row */
+    size_t first_triangle; /* number of the triangle at the start of the array */
+} cwi_span;
 
 struct cwi_engine {
     const char *name;
@@ -57,11 +67,10 @@ struct cwi_engine {
                        bool *out);
     /* Stores a layer's counts, not yet first numbers, in its rows. */
     void (*count_layer)(const cwi_bit_grid *grid, size_t k, cwi_row *rows);
-    /* Writes, to their places, the vertices of the layers begin to end, and the triangles of
-     * those from begin to cells. */
-    void (*write_layers)(const cwi_bit_grid *grid, size_t begin, size_t end, size_t cells,
-                         const cwi_row *rows, const cwi_emission *emission,
-                         cwi_vertex_sink *sink, uint32_t *triangles);
+    /* Writes the vertices and triangles of a span to their places. */
+    void (*write_span)(const cwi_bit_grid *grid, const cwi_span *span, const cwi_row *rows,
+                       const cwi_emission *emission, cwi_vertex_sink *sink,
+                       uint32_t *triangles);
 };
 
 /* Returns the n-th engine this machine can use, the plain one first; NULL when there are
@@ -85,7 +94,7 @@ const cwi_engine *cwi_engine_best(void);
 #define cwi_classify_rows  CWI_OF_ENGINE(cwi_classify_rows)
 #define cwi_find_sides     CWI_OF_ENGINE(cwi_find_sides)
 #define cwi_count_layer    CWI_OF_ENGINE(cwi_count_layer)
-#define cwi_write_layers   CWI_OF_ENGINE(cwi_write_layers)
+#define cwi_write_span     CWI_OF_ENGINE(cwi_write_span)
 #define cwi_place_vertices CWI_OF_ENGINE(cwi_place_vertices)
 
 void cwi_classify_layer(const cwi_bit_grid *grid, size_t b, cwi_range *leaves, bool *in,
@@ -95,10 +104,9 @@ void cwi_classify_rows(const cwi_bit_grid *grid, size_t j, size_t k, size_t rows
 void cwi_find_sides(const cwi_bit_grid *grid, const void *voxels, size_t count, bool *in,
                     bool *out);
 void cwi_count_layer(const cwi_bit_grid *grid, size_t k, cwi_row *rows);
-void cwi_write_layers(const cwi_bit_grid *grid, size_t begin, size_t end, size_t cells,
-                      const cwi_row *rows, const cwi_emission *emission, cwi_vertex_sink *sink,
-                      uint32_t *triangles);
-void cwi_place_vertices(const cwi_bit_grid *grid, size_t begin, size_t end, const cwi_row *rows,
+void cwi_write_span(const cwi_bit_grid *grid, const cwi_span *span, const cwi_row *rows,
+                    const cwi_emission *emission, cwi_vertex_sink *sink, uint32_t *triangles);
+void cwi_place_vertices(const cwi_bit_grid *grid, const cwi_span *span, const cwi_row *rows,
                         cwi_vertex_sink *sink);
 #endif
 

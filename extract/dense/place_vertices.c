@@ -154,7 +154,8 @@ static inline void store_runs(const cwi_edge_list *l, float (*positions)[3],
 {
     for (size_t r = 0; r < l->runs; r++) {
         const cwi_run *run = &l->run[r];
-        const size_t to = 3 * (size_t)run->number, count = end_of_run(l, r) - run->begin;
+        const size_t to = 3 * (run->number - sink->first),
+                     count = end_of_run(l, r) - run->begin;
         copy_vectors(sink->positions + to, positions[run->begin], count);
         if (sink->normals)
             copy_vectors(sink->normals + to, normals[run->begin], count);
@@ -324,13 +325,13 @@ static void turn_cubics(cwi_cubic_lanes *restrict c, const double *restrict t,
 #define TYPED "extract/dense/place_vertices.inc"
 #include "extract/dense/for_each_type.inc"
 
-void cwi_place_vertices(const cwi_bit_grid *g, size_t begin, size_t end, const cwi_row *rows,
+void cwi_place_vertices(const cwi_bit_grid *g, const cwi_span *span, const cwi_row *rows,
                         cwi_vertex_sink *sink)
 {
-    static void (*const layers[CW_TYPE_COUNT])(const cwi_bit_grid *, size_t, size_t,
-                                               const cwi_row *, cwi_vertex_sink *) = {
+    static void (*const write[CW_TYPE_COUNT])(const cwi_bit_grid *, const cwi_span *,
+                                              const cwi_row *, cwi_vertex_sink *) = {
         [CW_U8] = write_u8,   [CW_I8] = write_i8,   [CW_U16] = write_u16, [CW_I16] = write_i16,
         [CW_U32] = write_u32, [CW_I32] = write_i32, [CW_F32] = write_f32, [CW_F64] = write_f64,
     };
-    layers[g->volume.type](g, begin, end, rows, sink);
+    write[g->volume.type](g, span, rows, sink);
 }

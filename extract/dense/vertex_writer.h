@@ -24,7 +24,7 @@ static inline void cwi_world_position(const cwi_vertex_sink *sink, const size_t 
 static inline void cwi_store_position(const cwi_vertex_sink *sink, const size_t at[3],
                                       const double x[3], size_t n)
 {
-    cwi_world_position(sink, at, x, sink->positions + 3 * n);
+    cwi_world_position(sink, at, x, sink->positions + 3 * (n - sink->first));
 }
 
 /* Writes a vertex's normal. g: the gradient of the stored numbers in index space. Where it
@@ -38,7 +38,7 @@ static inline void cwi_store_normal(cwi_vertex_sink *sink, double g[3], size_t n
                    sink->cofactor[r][2] * g[2];
     const bool known = cwi_normalise(d);
     for (int r = 0; r < 3; r++)
-        sink->normals[3 * n + (size_t)r] = known ? (float)d[r] : 0;
+        sink->normals[3 * (n - sink->first) + (size_t)r] = known ? (float)d[r] : 0;
     if (!known) {
 #pragma omp atomic write
         sink->missing = true;

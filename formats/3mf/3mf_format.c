@@ -8,5 +8,5 @@ const cwi_format_driver cwi_format_3mf = {
     .lost = "normals, scalars, labels, affine",
     .keeps = CW_KEEPS_SHARING | CW_KEEPS_PLACES | CW_KEEPS_COLORS | CW_KEEPS_PARTS,
     .mesh = {.sniff = cwi_3mf_sniff, .read = cwi_3mf_read},
-    .write = {.write = cwi_3mf_write},
+    .write = {.write = cwi_3mf_write, .spools = true},
 };

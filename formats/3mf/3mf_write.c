@@ -133,11 +133,11 @@ static cw_status write_mesh(model *m, const cwi_part *part, cw_error *err)
 {
     cw_status st = print_model(m, err, "<mesh>\n<vertices>\n");
     if (st == CW_OK)
-        st = cwi_write_records(part, m->out, encode_vertex, part->mesh.vertex_count, err);
+        st = cwi_write_records(part, CWI_VERTICES, m->out, encode_vertex, err);
     if (st == CW_OK)
         st = print_model(m, err, "</vertices>\n<triangles>\n");
     if (st == CW_OK)
-        st = cwi_write_records(part, m->out, encode_triangle, part->mesh.triangle_count, err);
+        st = cwi_write_records(part, CWI_TRIANGLES, m->out, encode_triangle, err);
     return st == CW_OK ? print_model(m, err, "</triangles>\n</mesh>\n</object>\n") : st;
 }
 

@@ -56,6 +56,7 @@ typedef struct cwi_mesh_writing {
     bool levels;                         /* it has levels of detail */
     bool animates;                       /* it can show parts one after another */
     bool sides;                          /* it has labels on both sides of triangles */
+    bool spools;                         /* it can write a surface from a spool */
 } cwi_mesh_writing;
 
 typedef struct cwi_format_driver {

@@ -68,7 +68,7 @@ void cwi_gltf_plan_arrays(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
                                       .exponential = on_grid(plan) && plan->grid.dyadic,
                                       .count = m->vertex_count,
                                       .stride = shorts ? 8 : 12});
-    if (m->normals)
+    if (piece->part->arrays & CW_KEEPS_NORMALS)
         add_array(piece, (cwi_gltf_array){.use = CWI_GLTF_NORMAL,
                                           .component = rounded ? BYTE : FLOAT,
                                           .numbers = 3,
@@ -96,10 +96,15 @@ double cwi_gltf_stored(const cwi_gltf_plan *plan, float coordinate, int axis)
 static void find_bounds(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
 {
     const cw_mesh *m = &piece->part->mesh;
+    float low[3], high[3];
+    if (piece->part->spool)
+        cwi_spool_range(piece->part->spool, low, high);
     for (int a = 0; a < 3; a++) {
-        piece->low[a] = INFINITY;
-        piece->high[a] = -INFINITY;
+        piece->low[a] = piece->part->spool ? (double)low[a] : INFINITY;
+        piece->high[a] = piece->part->spool ? (double)high[a] : -INFINITY;
     }
+    if (piece->part->spool)
+        return;
     for (size_t i = 0; i < 3 * m->vertex_count; i++) {
         const int a = (int)(i % 3);
         const double x = cwi_gltf_stored(plan, m->positions[i], a);

@@ -69,15 +69,48 @@ static cw_status push_zeros(pipe *p, size_t size, cw_error *err)
     return push_bytes(p, zeros, size, err);
 }
 
-static cw_status push_array(pipe *p, const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,
-                            const cwi_gltf_array *a, cw_error *err)
+static cw_status push_elements(pipe *p, const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,
+                               const cwi_gltf_array *a, size_t count, cw_error *err)
 {
     unsigned char element[16];
     cw_status st = CW_OK;
-    for (size_t i = 0; st == CW_OK && i < a->count; i++) {
+    for (size_t i = 0; st == CW_OK && i < count; i++) {
         cwi_gltf_put(plan, piece, a, i, element);
         st = push_bytes(p, element, (size_t)a->stride, err);
     }
+    return st;
+}
+
+/* Reads a spool piece by piece. */
+static cw_status push_spooled(pipe *p, const cwi_gltf_plan *plan, const cwi_gltf_piece *whole,
+                              const cwi_gltf_array *a, cw_error *err)
+{
+    const bool corners = a->use == CWI_GLTF_INDICES;
+    cwi_spool_reader reader;
+    cw_status st = cwi_spool_open(&reader, whole->part->spool,
+                                  corners ? CWI_TRIANGLES : CWI_VERTICES, err);
+    if (st == CW_OK)
+        st = cwi_spool_next(&reader, err);
+    while (st == CW_OK && reader.count) {
+        cwi_gltf_piece piece = *whole;
+        cwi_part part = *whole->part;
+        piece.part = &part;
+        part.mesh.positions = reader.mesh.positions;
+        part.mesh.normals = reader.mesh.normals;
+        part.mesh.triangles = reader.mesh.triangles;
+        st = push_elements(p, plan, &piece, a, (corners ? 3 : 1) * reader.count, err);
+        if (st == CW_OK)
+            st = cwi_spool_next(&reader, err);
+    }
+    cwi_spool_close(&reader);
+    return st;
+}
+
+static cw_status push_array(pipe *p, const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,
+                            const cwi_gltf_array *a, cw_error *err)
+{
+    cw_status st = piece->part->spool ? push_spooled(p, plan, piece, a, err)
+                                      : push_elements(p, plan, piece, a, a->count, err);
     return st == CW_OK ? push_zeros(p, (size_t)(-(a->count * a->stride) % 4), err) : st;
 }
 

@@ -16,7 +16,8 @@ static cw_status drain_bytes(const cwi_mesh_output *out, const void *bytes, size
                       : cwi_outfile_write(out->file, bytes, size, err);
 }
 
-cw_status cwi_write_records(const cwi_part *part, cwi_mesh_output *out,
+/* Encodes `count` records of a part in memory. */
+static cw_status write_held(const cwi_part *part, cwi_mesh_output *out,
                             cwi_record_encoder *encode, size_t count, cw_error *err)
 {
     unsigned char batch[BATCH_BYTES], *to = batch;
@@ -34,24 +35,64 @@ cw_status cwi_write_records(const cwi_part *part, cwi_mesh_output *out,
     return st;
 }
 
-cw_status cwi_write_part_vertices(const cwi_parts *parts, cwi_mesh_output *out,
-                                  cwi_record_encoder *encode, cw_error *err)
+static cw_status write_spooled(const cwi_part *part, cwi_elements elements,
+                               cwi_mesh_output *out, cwi_record_encoder *encode, cw_error *err)
+{
+    cwi_spool_reader reader;
+    cw_status st = cwi_spool_open(&reader, part->spool, elements, err);
+    if (st == CW_OK)
+        st = cwi_spool_next(&reader, err);
+    while (st == CW_OK && reader.count) {
+        cwi_part piece = *part;
+        piece.mesh.positions = reader.mesh.positions;
+        piece.mesh.normals = reader.mesh.normals;
+        piece.mesh.triangles = reader.mesh.triangles;
+        piece.first_triangle += elements == CWI_VERTICES ? 0 : reader.first;
+        st = write_held(&piece, out, encode, reader.count, err);
+        if (st == CW_OK)
+            st = cwi_spool_next(&reader, err);
+    }
+    cwi_spool_close(&reader);
+    return st;
+}
+
+cw_status cwi_write_records(const cwi_part *part, cwi_elements elements, cwi_mesh_output *out,
+                            cwi_record_encoder *encode, cw_error *err)
+{
+    const cw_mesh *m = &part->mesh;
+    return part->spool
+               ? write_spooled(part, elements, out, encode, err)
+               : write_held(part, out, encode,
+                            elements == CWI_VERTICES ? m->vertex_count : m->triangle_count,
+                            err);
+}
+
+static cw_status write_all_parts(const cwi_parts *parts, cwi_elements elements,
+                                 cwi_mesh_output *out, cwi_record_encoder *encode,
+                                 cw_error *err)
 {
     cw_status st = CW_OK;
     for (size_t i = 0; i < parts->count && st == CW_OK; i++)
-        st = cwi_write_records(&parts->items[i], out, encode, parts->items[i].mesh.vertex_count,
-                               err);
+        st = cwi_write_records(&parts->items[i], elements, out, encode, err);
     return st;
+}
+
+cw_status cwi_write_part_vertices(const cwi_parts *parts, cwi_mesh_output *out,
+                                  cwi_record_encoder *encode, cw_error *err)
+{
+    return write_all_parts(parts, CWI_VERTICES, out, encode, err);
 }
 
 cw_status cwi_write_triangles(const cwi_parts *parts, cwi_mesh_output *out,
                               cwi_record_encoder *encode, cw_error *err)
 {
-    cw_status st = CW_OK;
-    for (size_t i = 0; i < parts->count && st == CW_OK; i++)
-        st = cwi_write_records(&parts->items[i], out, encode,
-                               parts->items[i].mesh.triangle_count, err);
-    return st;
+    return write_all_parts(parts, CWI_TRIANGLES, out, encode, err);
+}
+
+cw_status cwi_write_facets(const cwi_parts *parts, cwi_mesh_output *out,
+                           cwi_record_encoder *encode, cw_error *err)
+{
+    return write_all_parts(parts, CWI_FACETS, out, encode, err);
 }
 
 static cw_status check_single(const cwi_part *part, cw_error *err)

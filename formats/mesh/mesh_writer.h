@@ -7,6 +7,7 @@
 #include "core/base/atomic_file.h"
 #include "formats/bytes/little_endian.h"
 #include "formats/mesh/mesh_axes.h"
+#include "formats/mesh/mesh_spool.h"
 #include "formats/text/number_format.h"
 
 #ifdef __cplusplus
@@ -17,6 +18,7 @@ enum { CWI_NAME_BYTES = 256, CWI_RECORD_BYTES = 512 };
 
 /* A part as a writer receives it: checked, with triangles. */
 typedef struct cwi_part {
+    const cw_mesh_spool *spool; /* holds the arrays of the mesh; NULL: the mesh does */
     cw_mesh mesh;  /* borrows its arrays; those that the file does not keep are NULL. In a local
                       file its origin is relative to that of the file */
     cwi_turn turn; /* from its coordinates to those of the file */
@@ -91,16 +93,20 @@ CW_NODISCARD cw_status cwi_gltf_prepare_codec(const cw_write_desc *desc, cw_erro
 /* Puts record i of a part at `to`, with room for CWI_RECORD_BYTES; returns its end. */
 typedef unsigned char *cwi_record_encoder(const cwi_part *part, size_t i, unsigned char *to);
 
-/* Writes a part's records 0 to count - 1 and reports progress on the way. */
-CW_NODISCARD cw_status cwi_write_records(const cwi_part *part, cwi_mesh_output *out,
-                                         cwi_record_encoder *encode, size_t count,
+/* Writes a record for every vertex, or triangle, of a part, and reports progress on the way. A
+ * part from a spool is read piece by piece, and an encoder sees one piece. Only facets have
+ * positions there. */
+CW_NODISCARD cw_status cwi_write_records(const cwi_part *part, cwi_elements elements,
+                                         cwi_mesh_output *out, cwi_record_encoder *encode,
                                          cw_error *err);
 
-/* Writes a record for every vertex, or triangle, of all parts. */
+/* Writes the records of all parts. */
 CW_NODISCARD cw_status cwi_write_part_vertices(const cwi_parts *parts, cwi_mesh_output *out,
                                                cwi_record_encoder *encode, cw_error *err);
 CW_NODISCARD cw_status cwi_write_triangles(const cwi_parts *parts, cwi_mesh_output *out,
                                            cwi_record_encoder *encode, cw_error *err);
+CW_NODISCARD cw_status cwi_write_facets(const cwi_parts *parts, cwi_mesh_output *out,
+                                        cwi_record_encoder *encode, cw_error *err);
 
 enum { CWI_ORIGIN_BYTES = 160 };
 

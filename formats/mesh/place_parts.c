@@ -65,7 +65,7 @@ static cw_status check_parts(const cw_part *parts, size_t count, cw_error *err)
 {
     bool empty = true;
     for (size_t i = 0; i < count; i++) {
-        cw_status st = cw_mesh_check(parts[i].mesh, err);
+        cw_status st = parts[i].spool ? CW_OK : cw_mesh_check(parts[i].mesh, err);
         if (st != CW_OK)
             return st;
         empty = empty && parts[i].mesh->triangle_count == 0;
@@ -106,7 +106,7 @@ static void choose_arrays(cwi_parts *parts, unsigned keeps)
     uint64_t normals = 0;
     for (size_t i = 0; i < parts->count; i++) {
         cwi_part *part = &parts->items[i];
-        part->arrays = cwi_arrays_of(&part->mesh);
+        part->arrays = part->spool ? cwi_spool_arrays(part->spool) : cwi_arrays_of(&part->mesh);
         part->arrays |= keeps & CW_KEEPS_PARTS ? 0u : arrays_of_label(part->label);
         shared &= part->arrays;
     }
@@ -115,14 +115,28 @@ static void choose_arrays(cwi_parts *parts, unsigned keeps)
         part->arrays &= keeps & CW_KEEPS_PARTS ? keeps : shared;
         keep_arrays(&part->mesh, part->arrays);
         part->first_normal = normals;
-        normals += part->mesh.normals ? part->mesh.vertex_count : 0;
+        normals += part->arrays & CW_KEEPS_NORMALS ? part->mesh.vertex_count : 0;
+    }
+}
+
+/* Finds the box of a spool with the part's origin, to the bit that of the same mesh. */
+static void bound_spool(const cwi_part *part, double min[3], double max[3])
+{
+    float low[3], high[3];
+    cwi_spool_range(part->spool, low, high);
+    for (int a = 0; a < 3; a++) {
+        min[a] = part->mesh.origin[a] + (double)low[a];
+        max[a] = part->mesh.origin[a] + (double)high[a];
     }
 }
 
 void cwi_part_bounds(const cwi_part *part, double low[3], double high[3])
 {
     double min[3], max[3], p[3], q[3];
-    cw_mesh_bounds(&part->mesh, min, max);
+    if (part->spool)
+        bound_spool(part, min, max);
+    else
+        cw_mesh_bounds(&part->mesh, min, max);
     cwi_turn_point(&part->turn, min, p);
     cwi_turn_point(&part->turn, max, q);
     for (int a = 0; a < 3; a++) {
@@ -156,6 +170,7 @@ static void add_part(cwi_parts *parts, const cw_part *given, const double origin
     part->time_s = given->time_s;
     part->label = given->label;
     part->mesh = *mesh;
+    part->spool = given->spool;
     part->turn = cwi_turn_to(axes);
     part->first = parts->vertices;
     part->first_triangle = parts->triangles;

@@ -57,6 +57,10 @@ cw_status cwi_measure_loss(const cwi_part *part, cw_write_loss *loss, cw_error *
 {
     const cw_mesh *mesh = &part->mesh;
     const size_t count = mesh->vertex_count;
+    if (part->spool) { /* its vertices are not compared */
+        loss->step_mm = fmax(loss->step_mm, step_of(part));
+        return CW_OK;
+    }
     float *rounded = cwi_alloc_array(count, 3 * sizeof *rounded);
     uint32_t *map = cwi_alloc_array(count, sizeof *map);
     bool ok = rounded && map;

@@ -8,5 +8,5 @@ const cwi_format_driver cwi_format_obj = {
     .lost = "colours, scalars, labels, affine",
     .keeps = CW_KEEPS_SHARING | CW_KEEPS_NORMALS | CW_KEEPS_PARTS,
     .mesh = {.read = cwi_obj_read},
-    .write = {.write = cwi_obj_write, .text = true},
+    .write = {.write = cwi_obj_write, .spools = true, .text = true},
 };

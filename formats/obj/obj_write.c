@@ -26,7 +26,7 @@ static unsigned char *encode_face(const cwi_part *part, size_t t, unsigned char 
     for (int c = 0; c < 3; c++) {
         const uint64_t number = cwi_corner_number(part, t, c) + 1;
         to = cwi_put_integer(cwi_put_text(to, " "), number);
-        if (part->mesh.normals)
+        if (part->arrays & CW_KEEPS_NORMALS)
             to = cwi_put_integer(cwi_put_text(to, "//"),
                                  number - part->first + part->first_normal);
     }
@@ -80,7 +80,6 @@ static cw_status write_materials(const cwi_parts *parts, cwi_mesh_output *out, c
 
 static cw_status write_object(const cwi_part *part, cwi_mesh_output *out, cw_error *err)
 {
-    const cw_mesh *mesh = &part->mesh;
     char material[MATERIAL_BYTES];
     cw_status st = cwi_outfile_printf(out->file, err, "o %s\n", part->name);
     if (st == CW_OK && has_material(part)) {
@@ -88,11 +87,11 @@ static cw_status write_object(const cwi_part *part, cwi_mesh_output *out, cw_err
         st = cwi_outfile_printf(out->file, err, "usemtl %s\n", material);
     }
     if (st == CW_OK)
-        st = cwi_write_records(part, out, encode_place, mesh->vertex_count, err);
-    if (st == CW_OK && mesh->normals)
-        st = cwi_write_records(part, out, encode_normal, mesh->vertex_count, err);
+        st = cwi_write_records(part, CWI_VERTICES, out, encode_place, err);
+    if (st == CW_OK && part->arrays & CW_KEEPS_NORMALS)
+        st = cwi_write_records(part, CWI_VERTICES, out, encode_normal, err);
     if (st == CW_OK)
-        st = cwi_write_records(part, out, encode_face, mesh->triangle_count, err);
+        st = cwi_write_records(part, CWI_TRIANGLES, out, encode_face, err);
     return st;
 }
 
@@ -103,7 +102,7 @@ cw_status cwi_obj_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *
     cwi_print_axes(out->axes, axes);
     cwi_print_origin(out, "# origin ", "\n", origin);
     out->total = (size_t)(parts->vertices + last->first_normal + parts->triangles);
-    out->total += last->mesh.normals ? last->mesh.vertex_count : 0;
+    out->total += last->arrays & CW_KEEPS_NORMALS ? last->mesh.vertex_count : 0;
     cw_status st =
         cwi_outfile_printf(out->file, err, "# cubewright %s, %s\n%s", CW_VERSION, axes, origin);
     bool has_materials = false;

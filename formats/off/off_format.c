@@ -8,5 +8,5 @@ const cwi_format_driver cwi_format_off = {
     .lost = "scalars, labels, affine",
     .keeps = CW_KEEPS_SHARING | CW_KEEPS_NORMALS | CW_KEEPS_COLORS,
     .mesh = {.sniff = cwi_off_sniff, .read = cwi_off_read},
-    .write = {.write = cwi_off_write, .text = true},
+    .write = {.write = cwi_off_write, .spools = true, .text = true},
 };

@@ -76,7 +76,7 @@ static cw_status write_text(const cwi_parts *parts, cwi_mesh_output *out, cw_err
     cw_status st = cwi_outfile_printf(out->file, err, "solid %s cubewright, %s%s\n", out->name,
                                       axes, origin);
     if (st == CW_OK)
-        st = cwi_write_triangles(parts, out, encode_text_facet, err);
+        st = cwi_write_facets(parts, out, encode_text_facet, err);
     if (st == CW_OK)
         st = cwi_outfile_printf(out->file, err, "endsolid %s\n", out->name);
     return st;
@@ -90,7 +90,7 @@ static cw_status write_binary(const cwi_parts *parts, cwi_mesh_output *out, cw_e
                         UINT32_MAX, (unsigned long long)parts->triangles);
     fill_header(out, (uint32_t)parts->triangles, header);
     cw_status st = cwi_outfile_write(out->file, header, sizeof header, err);
-    return st == CW_OK ? cwi_write_triangles(parts, out, encode_facet, err) : st;
+    return st == CW_OK ? cwi_write_facets(parts, out, encode_facet, err) : st;
 }
 
 cw_status cwi_stl_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err)

@@ -30,5 +30,5 @@ const cwi_format_driver cwi_format_vtp = {
     .keeps = CW_KEEPS_SHARING | CW_KEEPS_NORMALS | CW_KEEPS_COLORS | CW_KEEPS_SCALARS |
              CW_KEEPS_LABELS,
     .mesh = {.sniff = cwi_vtp_sniff, .read = cwi_vtp_read},
-    .write = {.write = cwi_vtp_write, .sides = true},
+    .write = {.write = cwi_vtp_write, .spools = true, .sides = true},
 };

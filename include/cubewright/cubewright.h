@@ -19,6 +19,7 @@
 #include <cubewright/quality.h>
 #include <cubewright/render.h>
 #include <cubewright/simplify.h>
+#include <cubewright/stream.h>
 #include <cubewright/transfer.h>
 #include <cubewright/volume.h>
 

@@ -4,6 +4,7 @@
 
 #include <cubewright/label_table.h>
 #include <cubewright/mesh.h>
+#include <cubewright/spool.h>
 #include <cubewright/volume.h>
 
 #ifdef __cplusplus
@@ -344,6 +345,8 @@ typedef struct cw_part {
     double max_error_mm, rms_error_mm; /* for a level: its distance from the true surface;
                                           default: 0, not stated */
     double time_s; /* animated: the time at which it appears, in place of the part before it */
+    const cw_mesh_spool
+        *spool; /* borrowed: mesh is cw_mesh_spool_frame() of it; default: none */
 } cw_part;
 
 /* Reads the parts of a file, each as a mesh. Parts are the objects of OBJ, or its groups if it

@@ -91,14 +91,14 @@ static void every_engine_gives_the_same_bytes(void **state)
 }
 
 /* No-data, nobody knows where, sends every vertex through the code for one at a time. */
-static void write_one_at_a_time(const cwi_bit_grid *grid, size_t begin, size_t end,
-                                size_t cells, const cwi_row *rows, const cwi_emission *emission,
+static void write_one_at_a_time(const cwi_bit_grid *grid, const cwi_span *span,
+                                const cwi_row *rows, const cwi_emission *emission,
                                 cwi_vertex_sink *sink, uint32_t *triangles)
 {
     cwi_bit_grid g = *grid;
     g.volume.has_nodata = true;
     g.volume.nodata = 0.123; /* no voxel has it */
-    cwi_engine_at(0)->write_layers(&g, begin, end, cells, rows, emission, sink, triangles);
+    cwi_engine_at(0)->write_span(&g, span, rows, emission, sink, triangles);
 }
 
 /* Positions are the same to the bit, normals to rounding. */
@@ -127,7 +127,7 @@ static void many_vertices_at_a_time_are_as_good_as_one(void **state)
         test_turn(&v, type);
         cw_mesh many = test_extract(&v, &d, NULL);
         cwi_engine engine = *cwi_engine_at(0);
-        engine.write_layers = write_one_at_a_time;
+        engine.write_span = write_one_at_a_time;
         cw_mesh one;
         assert_ok(cwi_extract_with(&engine, &v, &d, &one, NULL, &err), err);
         assert_as_good(&many, &one);
@@ -153,7 +153,7 @@ static void so_they_are_on_cubics(void **state)
         test_turn(&v, type);
         cw_mesh many = test_extract(&v, &d, NULL), one;
         cwi_engine engine = *cwi_engine_at(0);
-        engine.write_layers = write_one_at_a_time;
+        engine.write_span = write_one_at_a_time;
         assert_ok(cwi_extract_with(&engine, &v, &d, &one, NULL, &err), err);
         assert_int_equal(many.vertex_count, one.vertex_count);
         assert_memory_equal(many.positions, one.positions, 12 * one.vertex_count);

@@ -1,0 +1,173 @@
+/* Extracts a surface from slices: the public calls. */
+#include "extract/stream/extract_stream.h"
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/base/text.h"
+#include "core/volume/volume.h"
+#include "extract/common/extract_limits.h"
+#include "extract/stream/write_chunks.h"
+
+#include <string.h>
+
+/* Limits of the layers that are extracted together, and the memory that their number is chosen
+ * for: BASE_BYTES, and SAMPLE_BYTES for each sample of a slice. */
+enum { MIN_LAYERS = 4, MAX_LAYERS = 64, BASE_BYTES = 8 << 20, SAMPLE_BYTES = 24 };
+
+static size_t bytes_with(const cw_volume *whole, const cw_extract_desc *d, size_t layers)
+{
+    return cwi_slice_window_bytes(whole, d, layers) + CWI_CHUNK_BYTES;
+}
+
+static size_t choose_layers(const cw_volume *whole, const cw_stream_desc *d)
+{
+    const size_t samples = whole->dim[0] * whole->dim[1];
+    const size_t limit = d->extract.max_bytes, wanted = BASE_BYTES + SAMPLE_BYTES * samples;
+    size_t layers = d->layers ? d->layers : MIN_LAYERS;
+    while (!d->layers && layers < MAX_LAYERS &&
+           bytes_with(whole, &d->extract, layers + 1) <= wanted)
+        layers++;
+    while (limit && layers > 1 && bytes_with(whole, &d->extract, layers) > limit)
+        layers--;
+    return layers;
+}
+
+/* Fills in the defaults of a volume without data, with packed slices. */
+static cw_status resolve_shape(const cw_volume *shape, cw_volume *whole, cw_error *err)
+{
+    static const double none = 0;
+    cw_volume v = *shape;
+    if (v.sparse || v.cells)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED, "%s is not extracted slice by slice",
+                        cwi_volume_kind(&v));
+    v.data = &none; /* only to be present */
+    cw_status st = cw_volume_select(&v, 0, 0, whole, err);
+    whole->data = NULL;
+    return st;
+}
+
+size_t cw_extract_stream_bytes(const cw_volume *shape, const cw_stream_desc *desc, bool minimum)
+{
+    const cw_stream_desc d = desc ? *desc : (cw_stream_desc){0};
+    cw_volume whole;
+    if (resolve_shape(shape, &whole, NULL) != CW_OK)
+        return 0;
+    return bytes_with(&whole, &d.extract, minimum ? 1 : choose_layers(&whole, &d));
+}
+
+static cw_status check_desc(const cw_volume *whole, const cw_extract_desc *d, cw_error *err)
+{
+    if (d->snap != 0)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "snap is %g; a surface made slice by slice is not snapped", d->snap);
+    if (cwi_is_rectilinear(whole) && !d->no_normals)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "normals on a rectilinear grid are not made slice by slice");
+    return d->cubic_placement ? cwi_volume_expect_even(whole, "cubic placement", err) : CW_OK;
+}
+
+static cw_status check_memory(const cw_volume *whole, const cw_extract_desc *d, size_t layers,
+                              cw_error *err)
+{
+    const size_t bytes = bytes_with(whole, d, layers);
+    if (!d->max_bytes || bytes <= d->max_bytes)
+        return CW_OK;
+    char needed[CWI_MEMORY_TEXT], left[CWI_MEMORY_TEXT];
+    cwi_print_memory(bytes, needed);
+    cwi_print_memory(d->max_bytes, left);
+    return cwi_fail(
+        err, CW_ERR_LIMIT,
+        "slices of %zu x %zu voxels need %s, a layer of cells at a time; %s are left "
+        "(--memory)",
+        whole->dim[0], whole->dim[1], needed, left);
+}
+
+/* Looks ahead where the surface depends on slices far away: see cw_extract_stream(). */
+static cw_status look_ahead(cwi_slice_window *w, cw_error *err)
+{
+    const cw_type type = w->whole.type;
+    const bool has_floats = type == CW_F32 || type == CW_F64;
+    const bool all = w->whole.has_nodata || (w->desc.leave_open && has_floats);
+    cw_status st = all ? cwi_slice_window_scan(w, true, err) : CW_OK;
+    if (st != CW_OK || !all)
+        return st;
+    cwi_bit_grid *g = &w->plan.grid;
+    if (g->gaps && w->desc.leave_open)
+        return cwi_fail(
+            err, CW_ERR_UNSUPPORTED,
+            "an open surface of a volume with voxels without a value (NaN, no-data) "
+            "is not made slice by slice");
+    if (!g->gaps) { /* then no value is sought, as in a volume in memory */
+        g->volume.has_nodata = g->find_values = false;
+        cwi_free(g->has);
+        g->has = NULL;
+    }
+    return CW_OK;
+}
+
+/* Writes the layers of all slabs. A volume that is inside from the start is first looked
+ * through: if it is inside everywhere there is no surface. */
+static cw_status write_slabs(cwi_slice_window *w, cwi_chunk_writer *c, size_t layers,
+                             cw_error *err)
+{
+    const size_t last = w->whole.dim[2] + 1;
+    cw_status st = CW_OK;
+    for (size_t begin = 0, end; begin < last && st == CW_OK; begin = end) {
+        end = begin + layers < last ? begin + layers : last;
+        st = cwi_progress(&w->desc.progress, "extracting", (double)begin / (double)last, err);
+        if (st == CW_OK)
+            st = cwi_slice_window_move(w, begin, end, err);
+        if (st == CW_OK && begin == 0 && w->in && !w->out) {
+            st = cwi_slice_window_scan(w, false, err);
+            if (st != CW_OK || !w->out)
+                return st;
+            w->counted = w->vertices = w->triangles = 0;
+            st = cwi_slice_window_move(w, begin, end, err);
+        }
+        if (st == CW_OK && w->desc.max_triangles && w->triangles > w->desc.max_triangles)
+            st = cwi_fail(err, CW_ERR_LIMIT,
+                          "the surface has more triangles than the limit of %zu "
+                          "(--max-triangles); layer %zu of %zu was reached",
+                          w->desc.max_triangles, end, last);
+        if (st == CW_OK)
+            st = cwi_chunks_write(c, begin, end, err);
+    }
+    return st;
+}
+
+cw_status cwi_extract_stream_with(const cwi_engine *engine, const cw_slice_source *source,
+                                  const cw_stream_desc *desc, cw_chunk_sink sink,
+                                  cw_extract_counts *counts, cw_error *err)
+{
+    const cw_stream_desc d = desc ? *desc : (cw_stream_desc){0};
+    cwi_slice_window w = {0};
+    cwi_chunk_writer c = {0};
+    cw_status st = resolve_shape(&source->shape, &w.whole, err);
+    if (st == CW_OK)
+        st = check_desc(&w.whole, &d.extract, err);
+    if (st != CW_OK)
+        return st;
+    const size_t layers = choose_layers(&w.whole, &d);
+    st = check_memory(&w.whole, &d.extract, layers, err);
+    if (st == CW_OK)
+        st = cwi_slice_window_init(&w, engine, source, &d.extract, layers, err);
+    if (st == CW_OK)
+        st = look_ahead(&w, err);
+    if (st == CW_OK) {
+        cwi_chunks_init(&c, &w, sink);
+        st = write_slabs(&w, &c, layers, err);
+    }
+    const bool is_crossed = w.in && w.out;
+    if (st == CW_OK && counts)
+        *counts = (cw_extract_counts){.vertices = is_crossed ? w.vertices : 0,
+                                      .triangles = is_crossed ? w.triangles : 0,
+                                      .bytes = bytes_with(&w.whole, &d.extract, layers)};
+    cwi_chunks_free(&c);
+    cwi_slice_window_free(&w);
+    return st;
+}
+
+cw_status cw_extract_stream(const cw_slice_source *source, const cw_stream_desc *desc,
+                            cw_chunk_sink sink, cw_extract_counts *counts, cw_error *err)
+{
+    return cwi_extract_stream_with(cwi_engine_best(), source, desc, sink, counts, err);
+}

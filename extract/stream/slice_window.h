@@ -1,0 +1,54 @@
+/* The slices of a volume that are in memory: their voxels, bits and numbers. The window moves
+ * upward; numbers are those in the whole surface.
+ *
+ * Layers count as in extract/dense/bit_planes.h, padding first: layer p holds voxel slice p - 1.
+ * In the window's grid, layer p of the volume has number p - first. */
+#ifndef EXTRACT_STREAM_SLICE_WINDOW_H
+#define EXTRACT_STREAM_SLICE_WINDOW_H
+
+#include <cubewright/stream.h>
+
+#include "extract/dense/dense_plan.h"
+
+typedef struct cwi_slice_window {
+    const cw_slice_source *source;
+    cw_extract_desc desc;
+    cw_volume whole;            /* the volume, resolved; its data are those of the window */
+    cwi_plan plan;              /* engine, grid and rows of the window */
+    size_t below;               /* layers below a layer that its vertices need */
+    size_t first, count;        /* voxel slices in memory */
+    size_t capacity;            /* ... at most */
+    size_t counted;             /* layers below this one have numbers */
+    size_t vertices, triangles; /* of these layers */
+    bool in, out;               /* samples were found inside, and outside */
+    unsigned char *slices;
+} cwi_slice_window;
+
+/* Returns the bytes of a window with `layers` layers between two slabs' ends. */
+size_t cwi_slice_window_bytes(const cw_volume *whole, const cw_extract_desc *desc,
+                              size_t layers);
+
+/* Allocates a window for slabs of up to `layers` layers. Free it with cwi_slice_window_free(), also
+ * after an error. volume: without data */
+CW_NODISCARD cw_status cwi_slice_window_init(cwi_slice_window *w, const cwi_engine *engine,
+                                             const cw_slice_source *source,
+                                             const cw_extract_desc *desc, size_t layers,
+                                             cw_error *err);
+void cwi_slice_window_free(cwi_slice_window *w);
+
+/* Reads slices until it is known on which sides samples are, or to the end of the volume (`all`).
+ * The window then stands at the start again. */
+CW_NODISCARD cw_status cwi_slice_window_scan(cwi_slice_window *w, bool all, cw_error *err);
+
+/* Moves the window so that layers begin to end - 1 can be written: reads, classifies and counts
+ * what is new. Windows follow each other: begin is the last end. */
+CW_NODISCARD cw_status cwi_slice_window_move(cwi_slice_window *w, size_t begin, size_t end,
+                                             cw_error *err);
+
+/* Returns the first row of a layer. */
+static inline const cwi_row *cwi_slice_window_layer(const cwi_slice_window *w, size_t layer)
+{
+    return w->plan.rows + (layer - w->first) * w->plan.grid.rows_y;
+}
+
+#endif

@@ -1,0 +1,295 @@
+/* Spools: appends chunks of a surface to temporary files, and reads them back in pieces. */
+#define _GNU_SOURCE /* O_TMPFILE */
+#include "formats/mesh/mesh_spool.h"
+
+#include <cubewright/formats.h>
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { POSITIONS, NORMALS, TRIANGLES, FILES };
+
+/* Elements of a piece; each array has three numbers of four bytes for an element. */
+enum { PIECE = 16384, ELEMENT_BYTES = 12 };
+
+struct cw_mesh_spool {
+    int files[FILES];
+    bool has_normals;
+    cw_mesh frame;
+    float low[3], high[3]; /* of the positions */
+};
+
+/* --- writing -------------------------------------------------------------------------------- */
+
+/* Opens a file without a name in a folder. */
+static int open_unnamed(const char *folder)
+{
+    int file = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (file >= 0 || (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL))
+        return file;
+    static const char name[] = "/.cubewright-XXXXXX"; /* a file system without such files */
+    char *path = cwi_alloc_array(strlen(folder) + sizeof name, 1);
+    if (!path)
+        return -1;
+    strcpy(path, folder);
+    strcat(path, name);
+    file = mkostemp(path, O_CLOEXEC);
+    if (file >= 0)
+        unlink(path);
+    cwi_free(path);
+    return file;
+}
+
+static char *find_folder(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    if (!slash)
+        return cwi_strdup(".");
+    char *folder = cwi_strdup(path);
+    if (folder)
+        folder[slash == path ? 1 : slash - path] = '\0';
+    return folder;
+}
+
+cw_status cw_mesh_spool_new(const char *path, cw_mesh_spool **out, cw_error *err)
+{
+    cw_mesh_spool *s = *out = cwi_alloc_zeroed(1, sizeof *s);
+    char *folder = find_folder(path);
+    cw_status st = CW_OK;
+    for (int n = 0; s && n < FILES; n++)
+        s->files[n] = -1;
+    if (!s || !folder)
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a spool");
+    for (int n = 0; n < FILES && st == CW_OK; n++) {
+        s->files[n] = open_unnamed(folder);
+        if (s->files[n] < 0)
+            st = cwi_fail(err, CW_ERR_OUTPUT, "no temporary file in '%s': %s", folder,
+                          strerror(errno));
+    }
+    for (int a = 0; a < 3 && st == CW_OK; a++) {
+        s->low[a] = INFINITY;
+        s->high[a] = -INFINITY;
+    }
+    cwi_free(folder);
+    if (st != CW_OK) {
+        cw_mesh_spool_free(s);
+        *out = NULL;
+    }
+    return st;
+}
+
+void cw_mesh_spool_free(cw_mesh_spool *s)
+{
+    for (int n = 0; s && n < FILES; n++)
+        if (s->files[n] >= 0)
+            close(s->files[n]);
+    cwi_free(s);
+}
+
+static cw_status append(int file, size_t first, const void *from, size_t count, cw_error *err)
+{
+    const char *bytes = from;
+    off_t at = (off_t)(first * ELEMENT_BYTES);
+    for (size_t left = count * ELEMENT_BYTES; left > 0;) {
+        const ssize_t n = pwrite(file, bytes, left, at);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n <= 0)
+            return cwi_fail(err, CW_ERR_OUTPUT, "a temporary file cannot be written: %s",
+                            strerror(n < 0 ? errno : ENOSPC));
+        bytes += n;
+        at += n;
+        left -= (size_t)n;
+    }
+    return CW_OK;
+}
+
+static void widen_bounds(cw_mesh_spool *s, const cw_mesh *m)
+{
+    for (int a = 0; a < 3; a++) {
+        float low = s->low[a], high = s->high[a];
+        for (size_t v = 0; v < m->vertex_count; v++) {
+            const float p = m->positions[3 * v + (size_t)a];
+            low = p < low ? p : low;
+            high = p > high ? p : high;
+        }
+        s->low[a] = low;
+        s->high[a] = high;
+    }
+}
+
+static cw_status take_chunk(void *user, const cw_mesh_chunk *chunk, cw_error *err)
+{
+    cw_mesh_spool *s = user;
+    cw_mesh *all = &s->frame;
+    const cw_mesh *m = &chunk->mesh;
+    const bool is_first = !all->vertex_count && !all->triangle_count;
+    if (chunk->first_vertex != all->vertex_count ||
+        chunk->first_triangle != all->triangle_count ||
+        (!is_first && s->has_normals != (m->normals != NULL)))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "a chunk from vertex %zu and triangle %zu on, where %zu and %zu follow",
+                        chunk->first_vertex, chunk->first_triangle, all->vertex_count,
+                        all->triangle_count);
+    s->has_normals = m->normals != NULL;
+    memcpy(all->origin, m->origin, sizeof all->origin);
+    memcpy(all->affine, m->affine, sizeof all->affine);
+    widen_bounds(s, m);
+    cw_status st =
+        append(s->files[POSITIONS], all->vertex_count, m->positions, m->vertex_count, err);
+    if (st == CW_OK && m->normals)
+        st = append(s->files[NORMALS], all->vertex_count, m->normals, m->vertex_count, err);
+    if (st == CW_OK)
+        st = append(s->files[TRIANGLES], all->triangle_count, m->triangles, m->triangle_count,
+                    err);
+    all->vertex_count += m->vertex_count;
+    all->triangle_count += m->triangle_count;
+    return st;
+}
+
+cw_chunk_sink cw_mesh_spool_sink(cw_mesh_spool *spool)
+{
+    return (cw_chunk_sink){.take = take_chunk, .user = spool};
+}
+
+const cw_mesh *cw_mesh_spool_frame(const cw_mesh_spool *spool)
+{
+    return &spool->frame;
+}
+
+bool cw_mesh_spool_bounds(const cw_mesh_spool *s, double min[3], double max[3])
+{
+    const bool any = s->frame.vertex_count > 0;
+    for (int a = 0; a < 3; a++) {
+        min[a] = any ? s->frame.origin[a] + (double)s->low[a] : 0;
+        max[a] = any ? s->frame.origin[a] + (double)s->high[a] : 0;
+    }
+    return any;
+}
+
+void cwi_spool_range(const cw_mesh_spool *s, float low[3], float high[3])
+{
+    memcpy(low, s->low, sizeof s->low);
+    memcpy(high, s->high, sizeof s->high);
+}
+
+unsigned cwi_spool_arrays(const cw_mesh_spool *s)
+{
+    unsigned has = s->has_normals ? CW_KEEPS_NORMALS : 0u;
+    for (int i = 0; i < 12; i++)
+        has |= s->frame.affine[i / 4][i % 4] != 0 ? CW_KEEPS_AFFINE : 0u;
+    return has;
+}
+
+/* --- reading -------------------------------------------------------------------------------- */
+
+static cw_status read_elements(int file, size_t first, size_t count, void *to, cw_error *err)
+{
+    char *bytes = to;
+    off_t at = (off_t)(first * ELEMENT_BYTES);
+    for (size_t left = count * ELEMENT_BYTES; left > 0;) {
+        const ssize_t n = pread(file, bytes, left, at);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n <= 0)
+            return cwi_fail(err, CW_ERR_IO, "a temporary file cannot be read: %s",
+                            n < 0 ? strerror(errno) : "it ends early");
+        bytes += n;
+        at += n;
+        left -= (size_t)n;
+    }
+    return CW_OK;
+}
+
+/* Positions of vertices that triangles name. They are near each other: in a few rows of two
+ * layers. */
+enum { BLOCK = 1024, BLOCKS = 512 };
+
+struct cwi_block_cache {
+    size_t block[BLOCKS]; /* number of the block that is held, plus 1; 0: none */
+    float positions[BLOCKS][3 * BLOCK];
+};
+
+static cw_status fetch_position(cwi_spool_reader *r, size_t vertex, float to[3], cw_error *err)
+{
+    const size_t block = vertex / BLOCK, slot = block % BLOCKS;
+    struct cwi_block_cache *c = r->cache;
+    if (c->block[slot] != block + 1) {
+        const size_t first = block * BLOCK, left = r->spool->frame.vertex_count - first;
+        c->block[slot] = 0;
+        cw_status st = read_elements(r->spool->files[POSITIONS], first,
+                                     left < BLOCK ? left : BLOCK, c->positions[slot], err);
+        if (st != CW_OK)
+            return st;
+        c->block[slot] = block + 1;
+    }
+    memcpy(to, c->positions[slot] + 3 * (vertex % BLOCK), 3 * sizeof *to);
+    return CW_OK;
+}
+
+/* Gives each corner of a piece a vertex of its own. */
+static cw_status fetch_corners(cwi_spool_reader *r, cw_error *err)
+{
+    cw_mesh *m = &r->mesh;
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < 3 * r->count && st == CW_OK; n++) {
+        st = fetch_position(r, m->triangles[n], m->positions + 3 * n, err);
+        m->triangles[n] = (uint32_t)n;
+    }
+    m->vertex_count = 3 * r->count;
+    return st;
+}
+
+cw_status cwi_spool_open(cwi_spool_reader *r, const cw_mesh_spool *spool, cwi_elements elements,
+                         cw_error *err)
+{
+    const bool vertices = elements == CWI_VERTICES, facets = elements == CWI_FACETS;
+    *r = (cwi_spool_reader){.spool = spool, .elements = elements, .mesh = spool->frame};
+    cw_mesh *m = &r->mesh;
+    if (vertices || facets)
+        m->positions = cwi_alloc_array((size_t)(facets ? 3 : 1) * PIECE, ELEMENT_BYTES);
+    if (vertices && spool->has_normals)
+        m->normals = cwi_alloc_array(PIECE, ELEMENT_BYTES);
+    if (!vertices)
+        m->triangles = cwi_alloc_array(PIECE, ELEMENT_BYTES);
+    if (facets)
+        r->cache = cwi_alloc_zeroed(1, sizeof *r->cache);
+    const bool ok = (m->positions || !(vertices || facets)) && (m->triangles || vertices) &&
+                    (m->normals || !(vertices && spool->has_normals)) && (r->cache || !facets);
+    return ok ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a piece of the surface");
+}
+
+cw_status cwi_spool_next(cwi_spool_reader *r, cw_error *err)
+{
+    const cw_mesh_spool *s = r->spool;
+    const bool vertices = r->elements == CWI_VERTICES;
+    const size_t all = vertices ? s->frame.vertex_count : s->frame.triangle_count;
+    r->first += r->count;
+    r->count = all - r->first < PIECE ? all - r->first : PIECE;
+    if (!vertices) {
+        cw_status st =
+            read_elements(s->files[TRIANGLES], r->first, r->count, r->mesh.triangles, err);
+        return st == CW_OK && r->elements == CWI_FACETS ? fetch_corners(r, err) : st;
+    }
+    cw_status st =
+        read_elements(s->files[POSITIONS], r->first, r->count, r->mesh.positions, err);
+    return st == CW_OK && r->mesh.normals
+               ? read_elements(s->files[NORMALS], r->first, r->count, r->mesh.normals, err)
+               : st;
+}
+
+void cwi_spool_close(cwi_spool_reader *r)
+{
+    cwi_free(r->mesh.positions);
+    cwi_free(r->mesh.normals);
+    cwi_free(r->mesh.triangles);
+    cwi_free(r->cache);
+    *r = (cwi_spool_reader){0};
+}

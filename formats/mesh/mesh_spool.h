@@ -1,0 +1,42 @@
+/* Reading of spools: pieces of a surface that is in temporary files. */
+#ifndef FORMATS_MESH_MESH_SPOOL_H
+#define FORMATS_MESH_MESH_SPOOL_H
+
+#include <cubewright/spool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The arrays that a spool has: cw_keeps flags. */
+unsigned cwi_spool_arrays(const cw_mesh_spool *spool);
+
+/* Returns the range of the positions of a spool with vertices. */
+void cwi_spool_range(const cw_mesh_spool *spool, float low[3], float high[3]);
+
+/* The elements of a mesh that a piece has. Facets are triangles with corners of their own: their
+ * vertices are those of the piece, three for each. */
+typedef enum cwi_elements { CWI_VERTICES, CWI_TRIANGLES, CWI_FACETS } cwi_elements;
+
+/* A reader of pieces, one after the other. A zeroed one is closed. */
+typedef struct cwi_spool_reader {
+    const cw_mesh_spool *spool;
+    cwi_elements elements;
+    size_t first, count; /* of the piece */
+    cw_mesh mesh;        /* the piece's arrays; those that it lacks are NULL */
+    struct cwi_block_cache *cache;
+} cwi_spool_reader;
+
+CW_NODISCARD cw_status cwi_spool_open(cwi_spool_reader *r, const cw_mesh_spool *spool,
+                                      cwi_elements elements, cw_error *err);
+
+/* Reads the next piece; count is 0 behind the last one.
+ * Returns CW_ERR_IO, CW_ERR_NO_MEMORY */
+CW_NODISCARD cw_status cwi_spool_next(cwi_spool_reader *r, cw_error *err);
+void cwi_spool_close(cwi_spool_reader *r);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,352 @@
+/* A surface from slices: the same bytes as from a volume in memory, for any layers and threads. */
+#include "support/surface.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "extract/stream/extract_stream.h"
+
+#include <cubewright/stream.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A volume in memory, as slices. */
+typedef struct slices {
+    const cw_volume *volume;
+    size_t next, reads, most; /* the slice expected next; slices read; of one call at most */
+    size_t fail_at;           /* the slice that cannot be read; 0: none */
+} slices;
+
+static cw_status read_slices(void *user, size_t first, size_t count, void *to, cw_error *err)
+{
+    slices *s = user;
+    const size_t slice = (size_t)s->volume->stride[2];
+    assert_true(first == s->next || first == 0);
+    assert_true(count > 0 && first + count <= s->volume->dim[2]);
+    if (s->fail_at && first + count > s->fail_at)
+        return cwi_fail(err, CW_ERR_IO, "slice %zu cannot be read", s->fail_at);
+    memcpy(to, (const char *)s->volume->data + first * slice, count * slice);
+    s->next = first + count;
+    s->reads += count;
+    s->most = count > s->most ? count : s->most;
+    return CW_OK;
+}
+
+static cw_slice_source source_of(slices *s)
+{
+    cw_slice_source source = {.shape = *s->volume, .read = read_slices, .user = s};
+    source.shape.data = NULL;
+    return source;
+}
+
+/* Chunks, put together. */
+typedef struct gathered {
+    cw_mesh mesh;
+    size_t chunks, stop_at;
+} gathered;
+
+static cw_status take_chunk(void *user, const cw_mesh_chunk *chunk, cw_error *err)
+{
+    gathered *g = user;
+    cw_mesh *to = &g->mesh;
+    const cw_mesh *m = &chunk->mesh;
+    if (g->stop_at && ++g->chunks == g->stop_at)
+        return cwi_fail(err, CW_ERR_OUTPUT, "full");
+    assert_int_equal(chunk->first_vertex, to->vertex_count);
+    assert_int_equal(chunk->first_triangle, to->triangle_count);
+    const size_t v = to->vertex_count + m->vertex_count,
+                 t = to->triangle_count + m->triangle_count;
+    to->positions = realloc(to->positions, (3 * v + 1) * sizeof(float));
+    memcpy(to->positions + 3 * to->vertex_count, m->positions, 12 * m->vertex_count);
+    if (m->normals) {
+        to->normals = realloc(to->normals, (3 * v + 1) * sizeof(float));
+        memcpy(to->normals + 3 * to->vertex_count, m->normals, 12 * m->vertex_count);
+    }
+    to->triangles = realloc(to->triangles, (3 * t + 1) * sizeof(uint32_t));
+    memcpy(to->triangles + 3 * to->triangle_count, m->triangles, 12 * m->triangle_count);
+    to->vertex_count = v;
+    to->triangle_count = t;
+    memcpy(to->origin, m->origin, sizeof to->origin);
+    memcpy(to->affine, m->affine, sizeof to->affine);
+    return CW_OK;
+}
+
+static void free_gathered(gathered *g)
+{
+    free(g->mesh.positions);
+    free(g->mesh.normals);
+    free(g->mesh.triangles);
+}
+
+static void assert_streamed(const cw_mesh *whole, const cw_volume *v,
+                            const cw_extract_desc *desc, size_t layers,
+                            const cwi_engine *engine)
+{
+    slices s = {.volume = v};
+    gathered g = {0};
+    cw_extract_counts counts;
+    cw_error err = {0};
+    const cw_slice_source source = source_of(&s);
+    const cw_stream_desc d = {.extract = *desc, .layers = layers};
+    assert_ok(cwi_extract_stream_with(engine, &source, &d, (cw_chunk_sink){take_chunk, &g},
+                                      &counts, &err),
+              err);
+    assert_int_equal(counts.vertices, whole->vertex_count);
+    assert_int_equal(counts.triangles, whole->triangle_count);
+    assert_int_equal(g.mesh.vertex_count, whole->vertex_count);
+    assert_int_equal(g.mesh.triangle_count, whole->triangle_count);
+    if (whole->triangle_count) {
+        assert_memory_equal(g.mesh.triangles, whole->triangles, 12 * whole->triangle_count);
+        assert_memory_equal(g.mesh.positions, whole->positions, 12 * whole->vertex_count);
+        assert_int_equal(g.mesh.normals != NULL, whole->normals != NULL);
+        if (whole->normals)
+            assert_memory_equal(g.mesh.normals, whole->normals, 12 * whole->vertex_count);
+        assert_memory_equal(g.mesh.origin, whole->origin, sizeof whole->origin);
+        assert_memory_equal(g.mesh.affine, whole->affine, sizeof whole->affine);
+    }
+    free_gathered(&g);
+}
+
+/* For all of these numbers of layers, and for one and two threads. */
+static void assert_same_for_layers(const cw_volume *v, const cw_extract_desc *desc)
+{
+    static const size_t layers[] = {1, 2, 3, 7, 16, 64, 0};
+    cw_extract_desc d = *desc;
+    d.threads = 1;
+    cw_mesh whole = test_extract(v, &d, NULL);
+    for (size_t n = 0; n < sizeof layers / sizeof *layers; n++) {
+        d.threads = 1 + (int)(n & 1);
+        assert_streamed(&whole, v, &d, layers[n], cwi_engine_best());
+    }
+    cw_mesh_free(&whole);
+}
+
+/* Values that repeat, so that some are the isovalue and some gradients vanish. */
+static cw_volume make_noise(cw_type type, const size_t dim[3], unsigned values, uint64_t seed)
+{
+    cw_volume v;
+    cw_error err = {0};
+    assert_ok(cw_volume_alloc(&v, type, dim, 1, 1, &err), err);
+    for (size_t i = 0; i < dim[0] * dim[1] * dim[2]; i++) {
+        seed = seed * 6364136223846793005u + 1442695040888963407u;
+        const unsigned x = (unsigned)(seed >> 33) % values;
+        void *to = (char *)cw_volume_voxels(&v) + i * cw_type_size(type);
+        switch (type) {
+        case CW_U8:
+            *(uint8_t *)to = (uint8_t)x;
+            break;
+        case CW_I16:
+            *(int16_t *)to = (int16_t)x;
+            break;
+        case CW_F32:
+            *(float *)to = (float)x;
+            break;
+        default:
+            *(double *)to = x;
+            break;
+        }
+    }
+    const double affine[3][4] = {{0.5, 0.1, 0, 3}, {-0.1, 0.7, 0, -20}, {0, 0.2, 1.5, 100}};
+    memcpy(v.affine, affine, sizeof affine);
+    return v;
+}
+
+static void noise_is_the_same_from_slices(void **state)
+{
+    (void)state;
+    static const cw_type types[] = {CW_U8, CW_I16, CW_F32, CW_F64};
+    for (int n = 0; n < 4; n++) {
+        cw_volume v = make_noise(types[n], (const size_t[3]){37, 19, 23 + (size_t)n}, 5,
+                                 11 + (uint64_t)n);
+        assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 2});
+        assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 2.3, .inside_is_low = true});
+        assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 2, .leave_open = true});
+        assert_same_for_layers(&v,
+                               &(cw_extract_desc){.isovalue = 1.5, .simple_topology = true});
+        assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 3, .cubic_placement = true});
+        assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 2.5, .no_normals = true});
+        v.slope = -2;
+        v.intercept = 1;
+        assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = -3});
+        cw_volume_free(&v);
+    }
+}
+
+/* Two values: most gradients that vanish are those of thin parts, whose normals come from
+ * triangles of several slabs. */
+static void vanishing_gradients_are_repaired_across_slabs(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 8; seed++) {
+        cw_volume v = make_noise(CW_U8, (const size_t[3]){70, 9, 13}, 2, seed);
+        assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 0.5});
+        assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 1, .leave_open = true});
+        assert_same_for_layers(&v,
+                               &(cw_extract_desc){.isovalue = 0.4, .cubic_placement = true});
+        cw_volume_free(&v);
+    }
+}
+
+static void voxels_without_a_value_are_the_same(void **state)
+{
+    (void)state;
+    cw_volume v = make_noise(CW_F32, (const size_t[3]){33, 15, 21}, 7, 5);
+    v.has_nodata = true;
+    v.nodata = 100; /* no voxel has it */
+    assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 3});
+    v.nodata = 6;
+    assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 3});
+    v.has_nodata = false;
+    float *voxels = cw_volume_voxels(&v);
+    for (size_t i = 0; i < 33 * 15 * 21; i += 97)
+        voxels[i] = i % 2 ? NAN : INFINITY;
+    assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 3});
+    cw_error err = {0};
+    slices s = {.volume = &v};
+    const cw_slice_source source = source_of(&s);
+    const cw_stream_desc open = {.extract = {.isovalue = 3, .leave_open = true}};
+    assert_int_equal(cw_extract_stream(&source, &open, (cw_chunk_sink){0}, NULL, &err),
+                     CW_ERR_UNSUPPORTED);
+    assert_non_null(strstr(err.message, "without a value"));
+    cw_volume_free(&v);
+}
+
+/* Inside from the first slice on: only the rest tells if there is a surface. */
+static void a_volume_inside_at_first_is_looked_through(void **state)
+{
+    (void)state;
+    const size_t dim[3] = {12, 10, 90};
+    cw_volume v;
+    cw_error err = {0};
+    assert_ok(cw_volume_alloc(&v, CW_U8, dim, 1, 1, &err), err);
+    uint8_t *voxels = cw_volume_voxels(&v);
+    memset(voxels, 9, 12 * 10 * 90);
+    assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 5});
+    voxels[12 * 10 * 80 + 50] = 1;
+    assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 5});
+    memset(voxels, 0, 12 * 10 * 90);
+    assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 5});
+    voxels[12 * 10 * 89] = 7;
+    assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 5});
+    cw_volume_free(&v);
+}
+
+/* Layers with more bytes than a chunk are cut between rows, with every engine. */
+static void large_layers_are_cut_between_rows(void **state)
+{
+    (void)state;
+    cw_volume v = make_noise(CW_U8, (const size_t[3]){500, 430, 5}, 200, 3);
+    const cw_extract_desc d = {.isovalue = 90};
+    cw_mesh whole = test_extract(&v, &d, NULL);
+    assert_true(12 * whole.triangle_count > 5 * (4 << 20));
+    const cwi_engine *engine;
+    for (size_t n = 0; (engine = cwi_engine_at(n)); n++)
+        assert_streamed(&whole, &v, &d, 1 + 4 * (n % 2), engine);
+    cw_mesh_free(&whole);
+    cw_volume_free(&v);
+}
+
+static void thin_volumes_and_rectilinear_ones_work(void **state)
+{
+    (void)state;
+    static const double x[] = {0, 1, 3, 4, 9}, y[] = {-3, 0, 2, 2.5}, z[] = {0, 2, 3, 7, 8, 20};
+    cw_volume v = make_noise(CW_I16, (const size_t[3]){5, 4, 2}, 6, 9);
+    assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 3});
+    cw_volume_free(&v);
+    v = make_noise(CW_I16, (const size_t[3]){5, 4, 6}, 6, 10);
+    v.coordinates[0] = x;
+    v.coordinates[1] = y;
+    v.coordinates[2] = z;
+    assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 3, .no_normals = true});
+    v.coordinates[0] = v.coordinates[1] = v.coordinates[2] = NULL;
+    cw_volume_free(&v);
+}
+
+/* Each slice is read once, and no more of them are in memory than the layers need. */
+static void slices_are_read_once(void **state)
+{
+    (void)state;
+    cw_volume v = make_noise(CW_U8, (const size_t[3]){20, 20, 100}, 9, 1);
+    slices s = {.volume = &v};
+    gathered g = {0};
+    cw_error err = {0};
+    const cw_slice_source source = source_of(&s);
+    const cw_stream_desc d = {.extract = {.isovalue = 4}, .layers = 5};
+    assert_ok(cw_extract_stream(&source, &d, (cw_chunk_sink){take_chunk, &g}, NULL, &err), err);
+    assert_int_equal(s.reads, 100);
+    assert_true(s.most <= 8);
+    free_gathered(&g);
+    cw_volume_free(&v);
+}
+
+static void limits_and_failures_are_reported(void **state)
+{
+    (void)state;
+    cw_volume v = make_noise(CW_U8, (const size_t[3]){40, 40, 40}, 9, 1);
+    slices s = {.volume = &v};
+    gathered g = {0};
+    cw_error err = {0};
+    const cw_chunk_sink sink = {take_chunk, &g};
+    cw_slice_source source = source_of(&s);
+    cw_stream_desc d = {.extract = {.isovalue = 4, .max_bytes = 10000}};
+    assert_int_equal(cw_extract_stream(&source, &d, sink, NULL, &err), CW_ERR_LIMIT);
+    assert_non_null(strstr(err.message, "slices of 40 x 40 voxels need"));
+    assert_int_equal(g.mesh.vertex_count, 0);
+    d.extract.max_bytes = cw_extract_stream_bytes(&source.shape, &d, true);
+    assert_true(d.extract.max_bytes < (5 << 20));
+    assert_ok(cw_extract_stream(&source, &d, sink, NULL, &err), err);
+    d.extract = (cw_extract_desc){.isovalue = 4, .max_triangles = 1000};
+    assert_int_equal(cw_extract_stream(&source, &d, sink, NULL, &err), CW_ERR_LIMIT);
+    d.extract = (cw_extract_desc){.isovalue = 4, .snap = 0.3};
+    assert_int_equal(cw_extract_stream(&source, &d, sink, NULL, &err), CW_ERR_UNSUPPORTED);
+    d.extract = (cw_extract_desc){.isovalue = NAN};
+    assert_int_equal(cw_extract_stream(&source, &d, sink, NULL, &err), CW_ERR_ARGUMENT);
+    free_gathered(&g);
+    g = (gathered){.stop_at = 1};
+    d.extract = (cw_extract_desc){.isovalue = 4};
+    assert_int_equal(cw_extract_stream(&source, &d, sink, NULL, &err), CW_ERR_OUTPUT);
+    g.stop_at = 0;
+    s.fail_at = 39;
+    assert_int_equal(cw_extract_stream(&source, &d, sink, NULL, &err), CW_ERR_IO);
+    free_gathered(&g);
+    cw_volume_free(&v);
+}
+
+static void a_lack_of_memory_is_reported(void **state)
+{
+    (void)state;
+    cw_volume v = make_noise(CW_U8, (const size_t[3]){12, 6, 9}, 3, 1);
+    slices s = {.volume = &v};
+    gathered g = {0};
+    cw_error err = {0};
+    const cw_chunk_sink sink = {take_chunk, &g};
+    const cw_slice_source source = source_of(&s);
+    const cw_stream_desc d = {.extract = {.isovalue = 1}, .layers = 3};
+    cw_status st = CW_ERR_NO_MEMORY;
+    for (long n = 0; st == CW_ERR_NO_MEMORY; n++) {
+        g = (gathered){0};
+        cwi_alloc_fail_after(n);
+        st = cw_extract_stream(&source, &d, sink, NULL, &err);
+        cwi_alloc_fail_after(-1);
+        free_gathered(&g);
+    }
+    assert_ok(st, err);
+    cw_volume_free(&v);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(noise_is_the_same_from_slices),
+        cmocka_unit_test(vanishing_gradients_are_repaired_across_slabs),
+        cmocka_unit_test(voxels_without_a_value_are_the_same),
+        cmocka_unit_test(a_volume_inside_at_first_is_looked_through),
+        cmocka_unit_test(large_layers_are_cut_between_rows),
+        cmocka_unit_test(thin_volumes_and_rectilinear_ones_work),
+        cmocka_unit_test(slices_are_read_once),
+        cmocka_unit_test(limits_and_failures_are_reported),
+        cmocka_unit_test(a_lack_of_memory_is_reported),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

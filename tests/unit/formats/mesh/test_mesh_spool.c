@@ -1,0 +1,194 @@
+/* Surfaces in temporary files: the writers make of them the bytes that they make of a mesh. */
+#define _GNU_SOURCE /* mkdtemp */
+#include "support/surface.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+
+#include <cubewright/formats.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static char folder[] = "/tmp/cubewright-spool-XXXXXX";
+
+static int make_folder(void **state)
+{
+    (void)state;
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    return rmdir(folder);
+}
+
+static const char *path_of(const char *name)
+{
+    static char path[2][256];
+    static int n;
+    n = !n;
+    snprintf(path[n], sizeof path[n], "%s/%s", folder, name);
+    return path[n];
+}
+
+/* Fills a spool with a mesh, in chunks of these sizes. */
+static cw_mesh_spool *fill_spool(const cw_mesh *m, size_t vertices, size_t triangles)
+{
+    cw_mesh_spool *spool;
+    cw_error err = {0};
+    assert_ok(cw_mesh_spool_new(path_of("any"), &spool, &err), err);
+    const cw_chunk_sink sink = cw_mesh_spool_sink(spool);
+    for (size_t v = 0, t = 0; v < m->vertex_count || t < m->triangle_count;) {
+        cw_mesh_chunk chunk = {.mesh = *m, .first_vertex = v, .first_triangle = t};
+        const size_t here = m->vertex_count - v, corners = m->triangle_count - t;
+        chunk.mesh.vertex_count = here < vertices ? here : vertices;
+        chunk.mesh.triangle_count = corners < triangles ? corners : triangles;
+        chunk.mesh.positions += 3 * v;
+        if (m->normals)
+            chunk.mesh.normals += 3 * v;
+        chunk.mesh.triangles += 3 * t;
+        assert_ok(sink.take(sink.user, &chunk, &err), err);
+        v += chunk.mesh.vertex_count;
+        t += chunk.mesh.triangle_count;
+    }
+    return spool;
+}
+
+static char *read_bytes(const char *path, size_t *size)
+{
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    fseek(file, 0, SEEK_END);
+    *size = (size_t)ftell(file);
+    char *bytes = malloc(*size + 1);
+    rewind(file);
+    assert_int_equal(fread(bytes, 1, *size, file), *size);
+    fclose(file);
+    return bytes;
+}
+
+static void assert_same_file(const cw_mesh *mesh, const cw_mesh_spool *spool, const char *name,
+                             const cw_write_desc *desc)
+{
+    const char *path = path_of(name);
+    size_t size[2];
+    char *bytes[2];
+    cw_error err = {0};
+    for (int n = 0; n < 2; n++) {
+        const cw_part part = {.mesh = n ? cw_mesh_spool_frame(spool) : mesh,
+                              .spool = n ? spool : NULL};
+        assert_ok(cw_parts_write(path, &part, 1, desc, &err), err);
+        bytes[n] = read_bytes(path, &size[n]);
+        unlink(path);
+    }
+    assert_int_equal(size[0], size[1]);
+    assert_memory_equal(bytes[0], bytes[1], size[0]);
+    free(bytes[0]);
+    free(bytes[1]);
+}
+
+static cw_mesh make_mesh(bool normals)
+{
+    const cw_field_desc desc = {
+        .field = CW_FIELD_GYROID, .dim = {60, 50, 40}, .type = CW_F32, .noise = 0.2};
+    cw_volume v;
+    cw_error err = {0};
+    assert_ok(cw_field_sample(&desc, &v, &err), err);
+    v.affine[0][3] = 1000.25;
+    v.affine[1][0] = 0.1;
+    cw_mesh mesh = test_extract(&v, &(cw_extract_desc){.no_normals = !normals}, NULL);
+    cw_volume_free(&v);
+    assert_in_range(mesh.vertex_count, 20000, 100000);
+    return mesh;
+}
+
+static void every_format_is_the_same_from_a_spool(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"a.ply", "a.stl", "a.obj",  "a.off",
+                                        "a.vtp", "a.glb", "a.gltf", "a.3mf"};
+    static const double far[3] = {4e5, -3e5, 1e3};
+    for (int n = 0; n < 4; n++) {
+        cw_mesh mesh = make_mesh(n % 2 == 0);
+        if (n >= 2)
+            memcpy(mesh.origin, far, sizeof far);
+        cw_mesh_spool *spool = fill_spool(&mesh, n ? 1000 : SIZE_MAX, n ? 777 : SIZE_MAX);
+        for (size_t f = 0; f < sizeof names / sizeof *names; f++) {
+            const bool has_text = f < 4, gltf = f == 5 || f == 6;
+            if (gltf && !cw_mesh_format(names[f], NULL))
+                continue;
+            assert_same_file(&mesh, spool, names[f], NULL);
+            assert_same_file(&mesh, spool, names[f], &(cw_write_desc){.local = true});
+            if (has_text)
+                assert_same_file(&mesh, spool, names[f], &(cw_write_desc){.text = true});
+            if (!gltf)
+                assert_same_file(&mesh, spool, names[f],
+                                 &(cw_write_desc){.axes = {.unit = CW_UNIT_CM, .ras = true}});
+        }
+        cw_mesh_spool_free(spool);
+        cw_mesh_free(&mesh);
+    }
+}
+
+static void a_spool_has_the_frame_and_the_box_of_its_mesh(void **state)
+{
+    (void)state;
+    cw_mesh mesh = make_mesh(true);
+    cw_mesh_spool *spool = fill_spool(&mesh, 500, 900);
+    const cw_mesh *frame = cw_mesh_spool_frame(spool);
+    double min[2][3], max[2][3];
+    assert_int_equal(frame->vertex_count, mesh.vertex_count);
+    assert_int_equal(frame->triangle_count, mesh.triangle_count);
+    assert_null(frame->positions);
+    assert_memory_equal(frame->origin, mesh.origin, sizeof mesh.origin);
+    assert_true(cw_mesh_bounds(&mesh, min[0], max[0]));
+    assert_true(cw_mesh_spool_bounds(spool, min[1], max[1]));
+    assert_memory_equal(min[0], min[1], sizeof *min);
+    assert_memory_equal(max[0], max[1], sizeof *max);
+    cw_mesh_spool_free(spool);
+    cw_mesh_free(&mesh);
+}
+
+static void what_a_spool_cannot_do_is_refused(void **state)
+{
+    (void)state;
+    cw_mesh mesh = make_mesh(true);
+    cw_mesh_spool *spool = fill_spool(&mesh, SIZE_MAX, SIZE_MAX), *none;
+    const cw_part part = {.mesh = cw_mesh_spool_frame(spool), .spool = spool};
+    cw_error err = {0};
+    const cw_chunk_sink sink = cw_mesh_spool_sink(spool);
+    const cw_mesh_chunk again = {.mesh = mesh};
+    assert_int_equal(sink.take(sink.user, &again, &err), CW_ERR_ARGUMENT);
+    assert_int_equal(cw_mesh_spool_new("/no/such/folder/a.ply", &none, &err), CW_ERR_OUTPUT);
+    assert_null(none);
+    assert_non_null(strstr(err.message, "/no/such/folder"));
+    const cw_write_desc packed = {.compression = CW_COMPRESS_DRACO};
+    if (cw_parts_write(path_of("a.drc"), &part, 1, NULL, &err) != CW_ERR_UNSUPPORTED ||
+        cw_parts_write(path_of("a.glb"), &part, 1, &packed, &err) != CW_ERR_UNSUPPORTED)
+        fail();
+    cw_status st = CW_ERR_NO_MEMORY;
+    for (long n = 0; st == CW_ERR_NO_MEMORY; n++) {
+        cwi_alloc_fail_after(n);
+        st = cw_parts_write(path_of("a.stl"), &part, 1, NULL, &err);
+        cwi_alloc_fail_after(-1);
+    }
+    assert_ok(st, err);
+    unlink(path_of("a.stl"));
+    cw_mesh_spool_free(spool);
+    cw_mesh_spool_free(NULL);
+    cw_mesh_free(&mesh);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_format_is_the_same_from_a_spool),
+        cmocka_unit_test(a_spool_has_the_frame_and_the_box_of_its_mesh),
+        cmocka_unit_test(what_a_spool_cannot_do_is_refused),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
