@@ -9,6 +9,7 @@
 #include "formats/mesh/mesh_reader.h"
 #include "formats/volume/frame_claim.h"
 #include "formats/volume/named_arrays.h"
+#include "formats/volume/slice_visit.h"
 #include "formats/volume/volume_reader.h"
 #include "formats/vtk/pvd.h"
 
@@ -293,7 +294,8 @@ static cw_status read_source(opened *o, const cw_read_desc *desc, cw_volume *vol
     if (st == CW_OK)
         cwi_set_spacing(&src.shape, desc);
     if (st == CW_OK)
-        st = cwi_source_load(&src, &o->in, desc, volume, err);
+        st = o->in.visit ? cwi_source_visit(&src, &o->in, desc, err)
+                         : cwi_source_load(&src, &o->in, desc, volume, err);
     cwi_source_free(&src);
     return st;
 }
@@ -308,15 +310,20 @@ static cw_status read_one(opened *o, const cw_read_desc *desc, cw_volume *volume
     return st == CW_OK && !is_grid ? read_source(o, desc, volume, err) : st;
 }
 
-static cw_status check_spacing(const double *s, cw_error *err)
+static cw_status check_spacing(const cw_read_desc *desc, cw_error *err)
 {
+    const double *s = desc->spacing_mm;
     if (s[0] == 0 && s[1] == 0 && s[2] == 0)
         return CW_OK;
     for (int a = 0; a < 3; a++)
         if (!(s[a] > 0) || !isfinite(s[a]))
             return cwi_fail(err, CW_ERR_ARGUMENT, "a spacing of %g mm; it must be above 0",
                             s[a]);
-    return CW_OK;
+    return desc->claim.has_unit
+               ? cwi_fail(err, CW_ERR_ARGUMENT,
+                          "its spacing in mm and its unit are both said (--spacing, "
+                          "--input-unit): one was expected")
+               : CW_OK;
 }
 
 /* Refuses a preview of a grid with cells or leaves, which are always read whole. */
@@ -361,12 +368,7 @@ cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *
     memset(volume, 0, sizeof *volume);
     if (d.labels)
         cw_label_table_free(d.labels);
-    cw_status st = check_spacing(d.spacing_mm, err);
-    if (st == CW_OK && d.spacing_mm[0] > 0 && d.claim.has_unit)
-        st = cwi_fail(
-            err, CW_ERR_ARGUMENT,
-            "its spacing in mm and its unit are both said (--spacing, --input-unit): one "
-            "was expected");
+    cw_status st = check_spacing(&d, err);
     if (st == CW_OK)
         st = open_path(&o, path, &d, err);
     o.in.arrays = d.note && !d.array ? &arrays : NULL;
@@ -386,6 +388,56 @@ cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *
     close_path(&o);
     cwi_array_list_free(&arrays);
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
+}
+
+/* A visit whose slices have the axes that the caller claims. */
+typedef struct claimed_visit {
+    const char *path;
+    const cw_claim *claim;
+    const cw_slice_visitor *visitor;
+    const cw_slice_source *source; /* of the reader */
+} claimed_visit;
+
+static cw_status read_named(void *user, size_t first, size_t count, void *to, cw_error *err)
+{
+    const claimed_visit *c = user;
+    cw_status st = c->source->read(c->source->user, first, count, to, err);
+    return st == CW_OK ? CW_OK : cwi_fail_in(err, st, c->path);
+}
+
+static cw_status visit_claimed(void *user, const cw_slice_source *source, cw_error *err)
+{
+    claimed_visit *c = user;
+    cw_slice_source claimed = {.shape = source->shape, .read = read_named, .user = c};
+    c->source = source;
+    cw_status st = cwi_claim_volume(c->claim, &claimed.shape, err);
+    return st == CW_OK ? c->visitor->visit(c->visitor->user, &claimed, err) : st;
+}
+
+cw_status cw_volume_visit(const char *path, const cw_read_desc *desc, size_t component,
+                          size_t step, const cw_slice_visitor *visitor, const char **format,
+                          cw_error *err)
+{
+    const cw_read_desc d = desc ? *desc : (cw_read_desc){0};
+    claimed_visit claimed = {.path = path, .claim = &d.claim, .visitor = visitor};
+    cwi_slice_visit visit = {
+        .component = component, .step = step, .visit = visit_claimed, .user = &claimed};
+    opened o = {0};
+    cw_volume none = {0};
+    cw_status st = check_spacing(&d, err);
+    if (st == CW_OK)
+        st = open_path(&o, path, &d, err);
+    o.in.visit = &visit;
+    if (st == CW_OK)
+        st = read_opened(&o, &d, &none, err);
+    if (st == CW_OK && !visit.called)
+        st = cwi_fail(err, CW_ERR_UNSUPPORTED, "%s is not read slice by slice",
+                      cwi_volume_kind(&none) ? cwi_volume_kind(&none) : "this format");
+    cw_volume_free(&none);
+    if (format)
+        *format = o.reader ? o.reader->name : d.raw ? "raw" : NULL;
+    close_path(&o);
+    return st == CW_OK || visit.called ? st : cwi_fail_in(err, st, path);
 }
 
 /* Lists the arrays of a file. Slices have no named arrays, and are many files, so their headers

@@ -17,6 +17,7 @@ typedef struct cwi_input {
                                       wanted */
     cw_label_table *labels; /* empty table that readers fill with the names of labels; NULL: not
                                wanted */
+    struct cwi_slice_visit *visit; /* slices are wanted in place of all voxels; else NULL */
 } cwi_input;
 
 /* Opens the file that a user named. Links are followed, as the user may have made them.

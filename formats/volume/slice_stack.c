@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
+#include "formats/volume/slice_visit.h"
 #include "formats/volume/voxel_source.h"
 
 #include <math.h>
@@ -26,6 +27,8 @@ typedef struct reading {
     cwi_planes *planes;
     cw_box box;                /* the wanted region */
     size_t every;              /* every n-th of its slices */
+    size_t only;               /* of the stacks of slices, steps and components, that are one
+                                  after another: this one; SIZE_MAX: all */
     size_t pixels;             /* number of wanted samples in a plane */
     unsigned char *low, *high; /* planes as the module returns them */
     char *voxels;
@@ -153,9 +156,11 @@ static cw_status read_slot(reading *r, const cwi_slot *slot, cw_error *err)
     const size_t kept = (r->box.count[2] - 1) / r->every + 1;
     const size_t bytes = r->pixels * cw_type_size(s->shape.type);
     const bool plain = is_plain(s, slot);
-    if (z >= r->box.count[2] || z % r->every) /* also for slices before it */
+    const size_t in = slot->place / slices;
+    if (z >= r->box.count[2] || z % r->every || /* also for slices before it */
+        (r->only != SIZE_MAX && r->only != in))
         return CW_OK;
-    char *to = r->voxels + (slot->place / slices * kept + z / r->every) * bytes;
+    char *to = r->voxels + ((r->only == SIZE_MAX ? in * kept : 0) + z / r->every) * bytes;
     if (plain && r->box.count[0] == s->shape.dim[0])
         return read_plane(r, slot->low, to, err);
     cw_status st = read_plane(r, slot->low, r->low, err);
@@ -201,21 +206,30 @@ static void fill_voxels(const cwi_stack *s, char *voxels, size_t bytes)
         cwi_voxel_put(s->shape.type, voxels + i, s->shape.nodata);
 }
 
-/* Loads the voxels; `v` is the shape of the wanted part. */
-static cw_status load_voxels(cw_volume v, size_t bytes, reading *r, const cw_read_desc *desc,
-                             cw_volume *volume, cw_error *err)
+/* Allocates two planes of pixels as the module returns them. */
+static cw_status alloc_planes(reading *r, cw_error *err)
 {
     const cwi_stack *s = r->stack;
     const size_t row = s->shape.dim[0] * s->samples * cw_type_size(s->type);
     r->pixels = r->box.count[0] * r->box.count[1] * s->samples;
     r->low = cwi_alloc_array(r->box.count[1], row);
     r->high = cwi_alloc_array(r->box.count[1], row);
+    return r->low && r->high ? CW_OK
+                             : cwi_fail(err, CW_ERR_NO_MEMORY,
+                                        "no memory for planes of %zu pixels", r->pixels);
+}
+
+/* Loads the voxels; `v` is the shape of the wanted part. */
+static cw_status load_voxels(cw_volume v, size_t bytes, reading *r, const cw_read_desc *desc,
+                             cw_volume *volume, cw_error *err)
+{
+    const cwi_stack *s = r->stack;
+    cw_status st = alloc_planes(r, err);
     v.owned = cwi_alloc_large(bytes, 1);
     r->voxels = v.owned;
-    cw_status st = CW_OK;
-    if (!r->low || !r->high || !v.owned)
+    if (st == CW_OK && !v.owned)
         st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of voxels", bytes);
-    else if (s->sparse)
+    else if (st == CW_OK && s->sparse)
         fill_voxels(s, r->voxels, bytes);
     if (st == CW_OK)
         st = read_slots(r, &desc->progress, err);
@@ -265,6 +279,52 @@ static cw_status narrow_to_region(const cw_read_desc *desc, reading *r, size_t h
     return st;
 }
 
+/* --- slices --------------------------------------------------------------------------------- */
+
+/* The slices of a region. */
+typedef struct slice_reading {
+    reading reading;
+    cw_box box;
+    size_t every, slice_bytes;
+} slice_reading;
+
+static cw_status read_slices(void *user, size_t first, size_t count, void *to, cw_error *err)
+{
+    static const cw_progress quiet = {0};
+    slice_reading *s = user;
+    reading *r = &s->reading;
+    r->box.first[2] = s->box.first[2] + first * s->every;
+    r->box.count[2] = (count - 1) * s->every + 1;
+    r->voxels = to;
+    if (r->stack->sparse)
+        fill_voxels(r->stack, to, count * s->slice_bytes);
+    return read_slots(r, &quiet, err);
+}
+
+/* Gives slices to the input's visitor; `v` is the shape of the wanted part. */
+static cw_status visit_slices(const cw_volume *v, const reading *from, cw_error *err)
+{
+    slice_reading s = {.reading = *from,
+                       .box = from->box,
+                       .every = from->every,
+                       .slice_bytes = (size_t)v->stride[2]};
+    cwi_slice_visit *visit = from->reader.in->visit;
+    reading *r = &s.reading;
+    cw_volume shape = *v;
+    const size_t planar = v->component_stride >= v->stride[2] ? v->components : 1;
+    r->only = planar > 1 ? visit->component + visit->step * planar : visit->step;
+    if (planar > 1) { /* a component is a stack of its own */
+        shape.components = 1;
+        shape.component_stride = 0;
+    }
+    cw_status st = alloc_planes(r, err);
+    if (st == CW_OK)
+        st = cwi_visit_slices(visit, &shape, read_slices, &s, err);
+    cwi_free(r->low);
+    cwi_free(r->high);
+    return st;
+}
+
 cw_status cwi_stack_load(const cwi_stack *stack, const cwi_input *in, cwi_planes *planes,
                          const cw_read_desc *desc, cw_volume *volume, cw_error *err)
 {
@@ -272,7 +332,8 @@ cw_status cwi_stack_load(const cwi_stack *stack, const cwi_input *in, cwi_planes
     cw_volume v = stack->shape;
     reading r = {.stack = stack,
                  .reader = {.stack = stack, .in = in, .planes = planes, .file = SIZE_MAX},
-                 .planes = planes};
+                 .planes = planes,
+                 .only = SIZE_MAX};
     if (desc->region)
         r.box = *desc->region;
     cw_status st = narrow_to_region(desc, &r, held, &v, err);
@@ -282,8 +343,13 @@ cw_status cwi_stack_load(const cwi_stack *stack, const cwi_input *in, cwi_planes
         return cwi_fail(err, CW_ERR_LIMIT,
                         "'%s' asks for more voxels than an address space holds",
                         stack->size_field);
-    st = cwi_check_limits(&v, bytes, desc->region ? "region" : stack->size_field, desc, err);
-    if (st == CW_OK && desc->header_only)
+    cw_read_desc limits = *desc;
+    if (in->visit)
+        limits.max_bytes = 0; /* voxels are not read at once */
+    st = cwi_check_limits(&v, bytes, desc->region ? "region" : stack->size_field, &limits, err);
+    if (st == CW_OK && in->visit)
+        st = visit_slices(&v, &r, err);
+    else if (st == CW_OK && desc->header_only)
         *volume = v;
     else if (st == CW_OK)
         st = load_voxels(v, bytes, &r, desc, volume, err);

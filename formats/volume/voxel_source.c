@@ -12,6 +12,7 @@
 #include "formats/bytes/inflate_stream.h"
 #include "formats/text/ascii_voxels.h"
 #include "formats/volume/region_runs.h"
+#include "formats/volume/slice_visit.h"
 
 #include <assert.h>
 #include <math.h>
@@ -568,21 +569,137 @@ static cw_status load_voxels(const cwi_source *src, const cwi_source *wanted,
     return st;
 }
 
+/* --- slices --------------------------------------------------------------------------------- */
+
+/* The slices of a region, read in rising order. A part of the files stays open between them, so
+ * that compressed data are inflated once. */
+typedef struct slice_reading {
+    const cwi_input *in;
+    cw_box box; /* all wanted voxels */
+    size_t step[3];
+    uint64_t offset; /* bytes of the time steps before the wanted one */
+    reading reading;
+    part part;
+    size_t index; /* of the open part */
+    bool open;
+} slice_reading;
+
+static void close_reading(slice_reading *s)
+{
+    cwi_blocks_close(&s->reading.blocks);
+    cwi_stream_close(&s->reading.stream);
+    if (s->open)
+        close_part(&s->part);
+    s->open = false;
+}
+
+/* Opens the part with the next wanted byte, unless it is open and not yet beyond that byte. */
+static cw_status open_next_part(slice_reading *s, cw_error *err)
+{
+    reading *r = &s->reading;
+    const uint64_t share = share_bytes(r->src);
+    const size_t index = (size_t)(r->runs.next / share);
+    if (s->open && s->index == index && r->at <= r->runs.next)
+        return CW_OK;
+    close_reading(s);
+    cw_status st = open_part(r->src, s->in, index, &s->part, err);
+    if (st != CW_OK)
+        return st;
+    s->open = true;
+    s->index = index;
+    r->at = index * share;
+    r->numbers = (cwi_numbers){.stream = &r->stream, .noun = name_source(r->src)};
+    return open_stream(r->src, &s->part, &r->stream, &r->blocks, err);
+}
+
+static cw_status read_slices(void *user, size_t first, size_t count, void *to, cw_error *err)
+{
+    slice_reading *s = user;
+    reading *r = &s->reading;
+    const cwi_source *src = r->src;
+    const uint64_t share = share_bytes(src);
+    cw_box box = s->box;
+    box.first[2] += first * s->step[2];
+    box.count[2] = (count - 1) * s->step[2] + 1;
+    cwi_source one_step = *src; /* its files are borrowed */
+    for (size_t a = 0; a < src->axis_count; a++)
+        if (src->axes[a].role == CWI_AXIS_STEP)
+            one_step.axes[a].size = 1;
+    cwi_runs_plan(&r->runs, &one_step, &box, s->step);
+    r->runs.next += s->offset;
+    r->runs.end += s->offset;
+    r->to = to;
+    cw_status st = CW_OK;
+    while (st == CW_OK && r->runs.left > 0) {
+        st = open_next_part(s, err);
+        if (st == CW_OK)
+            st = read_runs(r, (s->index + 1) * share, err);
+        if (st == CW_OK && r->at == (s->index + 1) * share)
+            st = check_packed(r, s->part.start, err);
+        if (st != CW_OK && part_name(src, s->index) && st != CW_ERR_CANCELLED)
+            cwi_fail_in(err, st, part_name(src, s->index));
+    }
+    return st;
+}
+
+/* Gives slices to the input's visitor. `wanted`: as in load_voxels() */
+static cw_status visit_slices(const cwi_source *src, const cwi_source *wanted,
+                              const cwi_input *in, const cw_read_desc *desc, cw_error *err)
+{
+    static const cw_progress quiet = {0};
+    const cw_volume *all = &src->shape;
+    slice_reading s = {.in = in, .reading = {.src = src, .progress = &quiet}};
+    int fastest;
+    for (int a = 0; a < 3; a++)
+        s.box.count[a] = all->dim[a];
+    if (desc->region)
+        s.box = *desc->region;
+    choose_steps(src, desc, s.step, &fastest);
+    s.offset = in->visit->step * (uint64_t)all->step_stride;
+    for (size_t a = 0; a + 1 < src->axis_count; a++)
+        if (src->axes[a].role == CWI_AXIS_STEP && src->axes[a].size > 1)
+            return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                            "time steps are not the slowest axis of this file; it is only read "
+                            "as a whole");
+    cw_status st = cwi_visit_slices(in->visit, &wanted->shape, read_slices, &s, err);
+    close_reading(&s);
+    return st;
+}
+
+/* Checks the files, and makes the source of the wanted voxels: a region, every n-th of them. */
+static cw_status want_part(const cwi_source *src, const cwi_input *in, const cw_read_desc *desc,
+                           cwi_source *wanted, cw_error *err)
+{
+    *wanted = *src; /* its files are borrowed */
+    cw_status st = check_files(src, in, err);
+    if (st == CW_OK && desc->region)
+        st = narrow_to_region(src, desc->region, wanted, err);
+    if (st == CW_OK)
+        st = thin_source(desc, wanted, err);
+    return st == CW_OK
+               ? cwi_check_limits(&wanted->shape, wanted->bytes, wanted->size_field, desc, err)
+               : st;
+}
+
 cw_status cwi_source_load(const cwi_source *src, const cwi_input *in, const cw_read_desc *desc,
                           cw_volume *volume, cw_error *err)
 {
-    cwi_source wanted = *src; /* its files are borrowed */
-    cw_status st = check_files(src, in, err);
-    if (st == CW_OK && desc->region)
-        st = narrow_to_region(src, desc->region, &wanted, err);
-    if (st == CW_OK)
-        st = thin_source(desc, &wanted, err);
-    if (st == CW_OK)
-        st = cwi_check_limits(&wanted.shape, wanted.bytes, wanted.size_field, desc, err);
+    cwi_source wanted;
+    cw_status st = want_part(src, in, desc, &wanted, err);
     if (st != CW_OK || !desc->header_only)
         return st == CW_OK ? load_voxels(src, &wanted, in, desc, volume, err) : st;
     st = cwi_volume_own_coordinates(&wanted.shape, err);
     if (st == CW_OK)
         *volume = wanted.shape;
     return st;
+}
+
+cw_status cwi_source_visit(const cwi_source *src, const cwi_input *in, const cw_read_desc *desc,
+                           cw_error *err)
+{
+    cw_read_desc limits = *desc;
+    cwi_source wanted;
+    limits.max_bytes = 0; /* voxels are not read at once */
+    cw_status st = want_part(src, in, &limits, &wanted, err);
+    return st == CW_OK ? visit_slices(src, &wanted, in, desc, err) : st;
 }

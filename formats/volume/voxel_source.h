@@ -99,6 +99,11 @@ CW_NODISCARD cw_status cwi_source_load(const cwi_source *src, const cwi_input *i
                                        const cw_read_desc *desc, cw_volume *volume,
                                        cw_error *err);
 
+/* Checks as cwi_source_load(), but for the limit of bytes, and gives the voxels to in->visit
+ * slice by slice. */
+CW_NODISCARD cw_status cwi_source_visit(const cwi_source *src, const cwi_input *in,
+                                        const cw_read_desc *desc, cw_error *err);
+
 void cwi_source_free(cwi_source *src);
 
 #endif

@@ -158,6 +158,25 @@ CW_NODISCARD CW_API cw_status cw_volume_read(const char *path, const cw_read_des
                                              cw_volume *volume, const char **format,
                                              cw_error *err);
 
+/* A user of slices. A status other than CW_OK ends the visit, which then returns it. */
+typedef struct cw_slice_visitor {
+    cw_status (*visit)(void *user, const cw_slice_source *source, cw_error *err);
+    void *user;
+} cw_slice_visitor;
+
+/* Opens a volume for cw_extract_stream(): calls the visitor once, with a source that is valid
+ * during the call. Voxels are read as the visitor asks for slices; those of compressed files are
+ * inflated on the way. desc->max_bytes is for the whole and not used.
+ *
+ * component, step  that the slices have
+ * Returns  as cw_volume_read(), or what the visitor returned
+ *          CW_ERR_UNSUPPORTED  a format, or an order of its axes, whose slices are not read by
+ *                              themselves */
+CW_NODISCARD CW_API cw_status cw_volume_visit(const char *path, const cw_read_desc *desc,
+                                              size_t component, size_t step,
+                                              const cw_slice_visitor *visitor,
+                                              const char **format, cw_error *err);
+
 /* Lists the files of a time series; each file is a volume and a step. Paths name files or
  * folders of slices; patterns stand for the files that match. Numbers in names count as
  * numbers, so that 2 comes before 10. A .pvd file by itself stands for the files that it lists.

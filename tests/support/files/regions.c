@@ -77,6 +77,69 @@ static void check_limits(const char *name, const cw_read_desc *desc, const cw_vo
                      "(--max-voxels)", err);
 }
 
+/* Slices that are compared with those of a volume. */
+typedef struct expected {
+    const cw_volume *volume;
+    size_t component, step, compared;
+} expected;
+
+static cw_status compare_slices(void *user, const cw_slice_source *source, cw_error *err)
+{
+    static const double aligned = 0;
+    expected *e = user;
+    cw_volume one, all = source->shape, slab;
+    cw_status st = cw_volume_select(e->volume, e->component, e->step, &one, err);
+    all.data = &aligned; /* to have strides */
+    assert_ok(cw_volume_resolve(&all, &all, err), *err);
+    if (memcmp(all.affine, one.affine, sizeof one.affine) != 0 ||
+        memcmp(all.dim, one.dim, sizeof one.dim) != 0 || !same_coordinates(&all, &one))
+        fail_msg("slices have another shape than the whole");
+    for (int pass = 0; pass < 2; pass++) /* twice: from the start again */
+        for (size_t z = 0, count; z < one.dim[2] && st == CW_OK; z += count) {
+            const size_t wanted = 1 + (z + e->step) % 3, left = one.dim[2] - z;
+            count = wanted < left ? wanted : left;
+            const cw_box box = {.first = {0, 0, z}, .count = {one.dim[0], one.dim[1], count}};
+            cw_volume part;
+            void *voxels = malloc(count * (size_t)all.stride[2]);
+            st = source->read(source->user, z, count, voxels, err);
+            slab = all;
+            slab.data = voxels;
+            slab.dim[2] = count;
+            assert_ok(cw_volume_crop(&one, &box, &part, err), *err);
+            if (st == CW_OK && !same_voxels(&part, &slab))
+                fail_msg("slices %zu to %zu are not those of the whole", z, z + count - 1);
+            free(voxels);
+            e->compared += count;
+        }
+    return st;
+}
+
+/* True where the slices of a file with these strides are one block each. */
+static bool has_slices(const cw_volume *whole)
+{
+    const ptrdiff_t slice = whole->stride[2];
+    const bool steps = whole->steps > 1 && whole->step_stride < slice;
+    return (whole->dim[0] == 1 || whole->stride[0] < slice) &&
+           (whole->dim[1] == 1 || whole->stride[1] < slice) && !steps &&
+           (whole->components < 2 || whole->component_stride < slice);
+}
+
+/* Checks slices of the region, of one component and step. */
+static void check_slices(const char *name, const cw_read_desc *desc, const cw_volume *part)
+{
+    expected e = {.volume = part,
+                  .component = part->dim[0] % part->components,
+                  .step = part->dim[1] % part->steps};
+    const cw_slice_visitor visitor = {compare_slices, &e};
+    cw_error err = {0};
+    const cw_status st =
+        cw_volume_visit(test_path(name), desc, e.component, e.step, &visitor, NULL, &err);
+    if (st == CW_ERR_UNSUPPORTED && !has_slices(part))
+        return;
+    assert_ok(st, err);
+    assert_int_equal(e.compared, 2 * part->dim[2]);
+}
+
 /* Checks every n-th voxel of the box against the crop after coarsening. */
 static void check_thin(const char *name, const cw_read_desc *desc, const cw_volume *crop)
 {
@@ -96,6 +159,8 @@ static void check_thin(const char *name, const cw_read_desc *desc, const cw_volu
     if (!same_shape(&thin, &part) || !same_shape(&thin, &shape) || !same_voxels(&thin, &part))
         fail_msg("%s: every %zu, %zu, %zu-th voxel of a region is not the coarsened crop", name,
                  d.every[0], d.every[1], d.every[2]);
+    d.header_only = false;
+    check_slices(name, &d, &part);
     cw_volume_free(&part);
     cw_volume_free(&shape);
 }
@@ -117,9 +182,10 @@ static void check_box(const char *name, const cw_read_desc *desc, const cw_volum
         fail_msg("%s: the region %zu+%zu, %zu+%zu, %zu+%zu is not the crop of the whole", name,
                  box->first[0], box->count[0], box->first[1], box->count[1], box->first[2],
                  box->count[2]);
+    d.header_only = false;
+    check_slices(name, &d, &part);
     cw_volume_free(&part);
     cw_volume_free(&shape);
-    d.header_only = false;
     check_thin(name, &d, &crop);
 }
 
