@@ -2,6 +2,7 @@
  * up to the written files. */
 #include "cli/extract/extract_run.h"
 #include "cli/extract/label_run.h"
+#include "cli/extract/stream_run.h"
 #include "cli/framework/batch.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
@@ -142,6 +143,12 @@ static const cli_option options[] = {
     CLI_BATCH_OPTIONS(cli_extract_args),
     CLI_COMPRESS_OPTIONS(cli_extract_args),
     CLI_INPUT_OPTIONS(cli_extract_args),
+    {"stream", 0, CLI_CHOICE, "auto/always/never",
+     "Read and extract slice by slice: if the volume exceeds --memory, always, or never (auto)",
+     offsetof(cli_extract_args, stream)},
+    {"slab", 0, CLI_COUNT, "N",
+     "Layers that --stream extracts together; the result is the same (as memory allows)",
+     offsetof(cli_extract_args, slab)},
     {"max-triangles", 0, CLI_COUNT, "N",
      "Stop before making more triangles than this, such as 100M (no limit)",
      offsetof(cli_extract_args, max_triangles)},
@@ -188,16 +195,45 @@ static cw_status deliver_level(cli_extract_run *s, size_t level, const cw_part *
     cli_delivery how = describe_delivery(s);
     how.write.provenance = provenance;
     how.write.provenance_count = cli_extract_provenance(s, level, text, simplify, provenance);
-    how.unchecked = how.unchecked || how.write.animated; /* each was by itself */
+    /* each was by itself; a spool is not read again */
+    how.unchecked = how.unchecked || how.write.animated || s->input.volume.streams;
     how.parts = how.write.animated ? "steps" : NULL;
     return cli_deliver(&s->output.report, &how, parts, count, border_loops, s->output.start,
                        err);
+}
+
+/* Makes a surface slice by slice. */
+static cw_status stream_surface(cli_extract_run *s, const cli_moment *moment, size_t level,
+                                cli_made *made, cw_error *err)
+{
+    cw_mesh_spool *spool = NULL;
+    cw_status st = cli_extract_streamed(s, moment, made, &spool, err);
+    if (st == CW_OK)
+        st = deliver_level(s, level,
+                           &(cw_part){.mesh = cw_mesh_spool_frame(spool), .spool = spool}, 1, 0,
+                           err);
+    cw_mesh_spool_free(spool);
+    return st;
+}
+
+/* Ends a surface: keeps its error in the report. */
+static cw_status finish_surface(cli_extract_run *s, const cli_moment *moment, cli_made *made,
+                                cw_status st, cw_error *err)
+{
+    s->output.start = cli_seconds();
+    if (st == CW_OK)
+        return CW_OK;
+    name_step(s, moment, err);
+    made->error = *err;
+    return st;
 }
 
 static cw_status make_surface(cli_extract_run *s, const cli_moment *moment, size_t n,
                               cw_error *err)
 {
     cli_made *made = begin_surface(s, moment, n);
+    if (s->input.volume.streams)
+        return finish_surface(s, moment, made, stream_surface(s, moment, n, made, err), err);
     const cli_delivery how = describe_delivery(s);
     cw_mesh mesh = {0};
     cw_extract_counts counts = {0};
@@ -220,12 +256,7 @@ static cw_status make_surface(cli_extract_run *s, const cli_moment *moment, size
     if (s->input.extractor)
         cw_extractor_recycle(s->input.extractor, &mesh);
     cw_mesh_free(&mesh);
-    s->output.start = cli_seconds();
-    if (st == CW_OK)
-        return CW_OK;
-    name_step(s, moment, err);
-    made->error = *err;
-    return st;
+    return finish_surface(s, moment, made, st, err);
 }
 
 /* Makes the surfaces of all levels of a step. An empty surface among several is reported and
@@ -263,6 +294,8 @@ static cw_status read_volume(cli_extract_run *s, const cli_moment *moment, cw_er
     cli_input input = s->args->input;
     input.step = moment->step;
     input.step_chosen = s->input.series.given;
+    input.stream = s->args->stream;
+    input.may_stream = !cli_find_unstreamed(s->args);
     free_step(s);
     cli_report_begin(&s->output.report);
     cw_status st = cli_read_volume(moment->path, &input, false, &s->input.volume, err);
@@ -289,6 +322,7 @@ static cw_status read_volume(cli_extract_run *s, const cli_moment *moment, cw_er
 static cw_status open_step(cli_extract_run *s, const cli_moment *moment, cw_error *err)
 {
     const bool held = s->input.volume.voxels.data && s->input.volume.path == moment->path;
+
     cw_status st = held ? cli_choose_step(&s->args->input, moment->step, &s->input.volume, err)
                         : read_volume(s, moment, err);
     s->input.memory = held ? s->input.memory : s->input.volume.memory_left;
@@ -296,7 +330,7 @@ static cw_status open_step(cli_extract_run *s, const cli_moment *moment, cw_erro
         s->input.memory > s->output.frames.bytes ? s->input.memory - s->output.frames.bytes : 1;
     cw_extractor_free(s->input.extractor);
     s->input.extractor = NULL;
-    if (st != CW_OK || s->args->iso.count == 1 || s->args->accel ||
+    if (st != CW_OK || s->args->iso.count == 1 || s->args->accel || s->input.volume.streams ||
         cli_extract_is_simplified(s->args))
         return st;
     st = cw_extractor_new(&s->input.volume.view, &s->input.extractor, err);

@@ -2,6 +2,7 @@
 #include "cli/extract/extract_run.h"
 
 #include "cli/extract/label_run.h"
+#include "cli/extract/stream_run.h"
 #include "cli/results/pvd_list.h"
 #include "core/base/status.h"
 
@@ -131,6 +132,10 @@ cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--snap is a fraction of an edge from 0 to %g, not %g",
                         CW_EXTRACT_MAX_SNAP, args->snap.value);
+    if (args->stream == CLI_STREAM_ALWAYS && cli_find_unstreamed(args))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--stream always cannot be combined with %s, which needs all in memory",
+                        cli_find_unstreamed(args));
     st = check_pixels(s, err);
     if (st == CW_OK)
         st = check_crop(args, err);

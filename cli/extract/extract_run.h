@@ -24,7 +24,8 @@ typedef struct cli_extract_args {
     cli_pixel_args pixel;
     int inside, normals, progress, topology, placement, accel;
     bool open, no_clobber, local, check, animate, prove_crop;
-    size_t max_triangles;
+    int stream;
+    size_t max_triangles, slab;
 } cli_extract_args;
 
 /* Decisions made before a surface is extracted. */
@@ -103,6 +104,9 @@ size_t cli_extract_provenance(const cli_extract_run *s, size_t n, char level[32]
                               char simplify[64], cw_provenance lines[CLI_EXTRACT_PROVENANCE]);
 
 /* ---- a surface --------------------------------------------------------------------------- */
+
+/* Returns the settings of the surface at an isovalue. */
+cli_wanted cli_extract_wants(const cli_extract_run *run, double iso);
 
 CW_NODISCARD cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
                                         cw_extract_counts *counts, cw_error *err);

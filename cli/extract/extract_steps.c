@@ -27,7 +27,7 @@ static size_t check_bytes(void)
     return cw_quality_bytes(500, 1000) / 1000 + 1;
 }
 
-static cli_wanted wants_level(const cli_extract_run *s, double iso)
+cli_wanted cli_extract_wants(const cli_extract_run *s, double iso)
 {
     return (cli_wanted){
         .extract = {.isovalue = iso,
@@ -120,7 +120,7 @@ static void tell_components(const cli_extract_run *s, const cli_made *made)
 cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
                            cw_extract_counts *counts, cw_error *err)
 {
-    const cli_wanted w = wants_level(s, made->iso);
+    const cli_wanted w = cli_extract_wants(s, made->iso);
     cw_drop_counts *dropped = &made->components;
     double error;
     cw_status st = find_error(s, &error, err);
@@ -178,7 +178,7 @@ static cw_status measure_from_field(cli_extract_run *s, cli_made *made, const cw
 static cw_status measure_from_full(cli_extract_run *s, cli_made *made, const cw_mesh *mesh,
                                    const cw_extract_counts *counts, cw_error *err)
 {
-    const cli_wanted w = wants_level(s, made->iso);
+    const cli_wanted w = cli_extract_wants(s, made->iso);
     const bool fits = counts->triangles <= MAX_COMPARED &&
                       counts->triangles < s->input.volume.memory_left / COMPARED_BYTES;
     double error;
@@ -245,7 +245,7 @@ static cw_status hold_to_pixels(const cli_extract_run *s, const cli_proof *p, cw
 cw_status cli_extract_prove(cli_extract_run *s, cli_made *made, const cw_mesh *mesh,
                             size_t bytes, cw_error *err)
 {
-    const cli_wanted w = wants_level(s, made->iso);
+    const cli_wanted w = cli_extract_wants(s, made->iso);
     cli_proof *p = &made->proof;
     double error;
     if (!s->args->check || !(s->plan.view_count || s->args->pixel.most.given))
@@ -267,7 +267,7 @@ cw_status cli_extract_prove(cli_extract_run *s, cli_made *made, const cw_mesh *m
 cw_status cli_extract_prove_crop(cli_extract_run *s, const cli_moment *moment, cli_made *made,
                                  cw_error *err)
 {
-    const cli_wanted w = wants_level(s, made->iso);
+    const cli_wanted w = cli_extract_wants(s, made->iso);
     const cli_crop_proof *p = &made->crop;
     cli_input input = s->args->input;
     if (!s->args->prove_crop)

@@ -364,6 +364,33 @@ cw_status cli_choose_step(const cli_input *input, size_t step, cli_volume *volum
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
 }
 
+/* Beside voxels: planes of bits and numbers of rows, and the program. */
+static double bytes_beside(double voxels)
+{
+    return 0.2 * voxels + (24 << 20);
+}
+
+/* Returns true if voxels of a shape are to be read slice by slice. */
+static bool streams(const cli_input *input, const cw_volume *part, size_t limit)
+{
+    double voxels = (double)part->components * (double)part->steps;
+    for (int a = 0; a < 3; a++)
+        voxels *= (double)part->dim[a];
+    const double bytes = voxels * (double)cw_type_size(part->type);
+    return input->may_stream && !part->cells && !part->sparse && input->stream != 2 &&
+           (input->stream == 1 || bytes + bytes_beside(voxels) > (double)limit);
+}
+
+/* Makes the view of a volume that streams: a shape without voxels. */
+static cw_status view_shape(const cw_volume *part, cli_volume *volume, cw_error *err)
+{
+    cw_volume *view = &volume->view;
+    volume->streams = true;
+    *view = *part;
+    view->components = view->steps = 1;
+    return cwi_volume_thin(view, volume->coarsen, err);
+}
+
 static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_input *input,
                              cli_volume *volume, cw_error *err)
 {
@@ -380,6 +407,8 @@ static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_inp
     choose_coarsening(pick_coarsening(input), &part, volume->coarsen);
     if (input->sample && !part.cells && !part.sparse && !cwi_is_rectilinear(&part))
         choose_sample(&part, cli_memory_limit(input), volume->coarsen);
+    if (streams(input, &part, desc->max_bytes))
+        return view_shape(&part, volume, err);
     if (!input->coarsen_view)
         memcpy(desc->every, volume->coarsen, sizeof desc->every);
     st = read_part(path, desc, &part, volume, err);
@@ -479,6 +508,23 @@ cw_status cli_read_volume(const char *path, const cli_input *input, bool header_
     return st;
 }
 
+cw_status cli_visit_slices(const cli_volume *volume, const cli_input *input,
+                           const cw_slice_visitor *visitor, cw_error *err)
+{
+    cw_raw_layout raw;
+    cw_read_desc desc = cli_read_desc(input);
+    cw_box box;
+    cw_status st = set_raw(input, &raw, &desc, err);
+    if (st == CW_OK && input->crop.given) {
+        desc.region = &box;
+        st = find_box(input, &volume->whole, true, &box, err);
+    }
+    memcpy(desc.every, volume->coarsen, sizeof desc.every);
+    return st == CW_OK ? cw_volume_visit(volume->path, &desc, input->component.number,
+                                         input->step, visitor, NULL, err)
+                       : cwi_fail_in(err, st, volume->path);
+}
+
 cw_status cli_read_whole(const cli_volume *part, const cli_input *input, cli_volume *whole,
                          cw_error *err)
 {
@@ -508,7 +554,7 @@ cw_status cli_tell_labels(cli_volume *volume, const double *iso, size_t count,
 {
     cw_labels l;
     char text[256], what[128];
-    if (volume->magnitude.data)
+    if (volume->magnitude.data || volume->streams)
         return CW_OK;
     cw_status st = cw_volume_labels(&volume->voxels, &l, err); /* of a preview all of them */
     if (st != CW_OK || !l.found || !l.count)

@@ -57,7 +57,9 @@ typedef struct cli_input {
     size_t coarsen;    /* 0: 4 for a preview, else 1 */
     bool coarsen_view; /* all voxels are read, and only the view is coarse */
     bool is_quiet;     /* prints no lines about the file */
-    bool sample;       /* of many voxels some rows and slices are read: cli_volume's coarsen */
+    int stream; /* 0: voxels are read slice by slice if they do not fit memory; 1: always; 2: never */
+    bool may_stream; /* the command can do with slices */
+    bool sample;     /* of many voxels some rows and slices are read: cli_volume's coarsen */
 } cli_input;
 
 /* Rows for a command whose struct has the field `input`. */
@@ -202,6 +204,7 @@ typedef struct cli_volume {
     cli_grid grid;         /* zeroed for other volumes */
     size_t memory_left;    /* of the limit, after the voxels */
     size_t coarsen[3];     /* the view's step along each axis */
+    bool streams;          /* voxels are not read: they do not fit, and come slice by slice */
     bool is_quiet;         /* prints no lines about the file */
     cw_label_table labels; /* names and colours of labels that the file holds */
     char notes[CLI_MAX_NOTES][256]; /* what the reader found and decided on */
@@ -230,6 +233,10 @@ CW_NODISCARD cw_status cli_read_volume(const char *path, const cli_input *input,
  * cli_free_volume(). */
 CW_NODISCARD cw_status cli_read_whole(const cli_volume *part, const cli_input *input,
                                       cli_volume *whole, cw_error *err);
+
+/* Gives the slices of a volume that streams, as the options choose them, to a visitor. */
+CW_NODISCARD cw_status cli_visit_slices(const cli_volume *volume, const cli_input *input,
+                                        const cw_slice_visitor *visitor, cw_error *err);
 
 /* The header alone, without a word. */
 CW_NODISCARD cw_status cli_read_shape(const char *path, const cli_input *input,

@@ -68,12 +68,14 @@ void cwi_corner_values(const cwi_bit_grid *grid, const size_t at[3], double valu
 }
 
 /* Appends a cell's plan to its layer's list, and doubles the capacity when the list is full.
- * Without memory for it there is no list: the layer's cells are planned twice. */
-static void note_cell(cwi_layer *layer, uint32_t code)
+ * Without memory for it, or beyond a limit, there is no list: the layer's cells are planned
+ * twice. */
+static void note_cell(cwi_layer *layer, size_t max_plans, uint32_t code)
 {
     if (layer->plan_count == layer->plan_room && !layer->plans_lost) {
         const size_t room = layer->plan_room ? 2 * layer->plan_room : 64;
-        uint32_t *more = cwi_realloc_array(layer->plans, room, sizeof *more);
+        const bool fits = !max_plans || room <= max_plans;
+        uint32_t *more = fits ? cwi_realloc_array(layer->plans, room, sizeof *more) : NULL;
         layer->plans_lost = !more;
         layer->plan_room = more ? room : 0;
         if (!more)
@@ -96,7 +98,7 @@ void cwi_ambiguous_plan(const cwi_bit_grid *grid, const size_t at[3], unsigned c
                         cwi_cell_plan *plan)
 {
     make_plan(grid, at, cube, plan);
-    note_cell(&grid->layers[at[2]], cwi_cell_plan_pack(plan));
+    note_cell(&grid->layers[at[2]], grid->max_plans, cwi_cell_plan_pack(plan));
 }
 
 /* Computes central differences at a corner, in halves; NaN where a neighbour is missing. */

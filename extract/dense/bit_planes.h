@@ -68,7 +68,8 @@ typedef struct cwi_bit_grid {
     size_t masks;     /* words of a mask that has a bit for every word of a row */
     uint64_t *busy;   /* rows x masks, found when a row is counted: bit w is set where a cell of
                          word w has corners on both sides. No other word holds crossings */
-    cwi_layer *layers;   /* rows_z */
+    cwi_layer *layers; /* rows_z */
+    size_t max_plans; /* that a layer keeps: if it has more, they are made twice. 0: no limit */
     uint32_t *row_plans; /* rows: number of plans of the layer up to the row, where a row has
                             ambiguous cells; filled when a layer is counted. NULL: not wanted */
     size_t bricks_y, bricks_z;

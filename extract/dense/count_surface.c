@@ -239,7 +239,7 @@ void cwi_count_layer(const cwi_bit_grid *g, size_t k, cwi_row *rows)
     cwi_layer *layer = &g->layers[k];
     const size_t first = k * g->rows_y;
     layer->vertices = layer->triangles = layer->plan_count = 0;
-    layer->at_border = false;
+    layer->at_border = layer->plans_lost = false;
     memset(rows + first, 0, g->rows_y * sizeof *rows);
     memset(g->busy + first * g->masks, 0, g->rows_y * g->masks * sizeof *g->busy);
     if (is_unwanted(g, k))

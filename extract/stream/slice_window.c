@@ -12,6 +12,9 @@
 /* Layers that vertices need above: of the samples at the ends of an edge, and beside them. */
 enum { ABOVE = 2 };
 
+/* Plans of ambiguous cells, 4 bytes each, that all layers in memory keep. */
+enum { PLANS = 1 << 18 };
+
 static size_t layers_below(const cw_extract_desc *d)
 {
     return d->cubic_placement ? 2 : 1;
@@ -77,6 +80,7 @@ cw_status cwi_slice_window_init(cwi_slice_window *w, const cwi_engine *engine,
     if (st != CW_OK)
         return st;
     g->everything = true;
+    g->max_plans = PLANS / w->capacity;
     w->plan.rows = cwi_alloc_zeroed(g->rows, sizeof *w->plan.rows);
     g->row_plans = cwi_alloc_zeroed(g->rows, sizeof *g->row_plans);
     g->has = w->whole.has_nodata ? cwi_grid_plane(g) : NULL;

@@ -60,12 +60,12 @@ cw_status cwi_visit_slices(cwi_slice_visit *v, const cw_volume *shape,
     cw_volume *s = &source.shape;
     const size_t components = s->components ? s->components : 1;
     const ptrdiff_t slice = s->stride[2];
-    v->called = true;
     if ((s->dim[0] > 1 && s->stride[0] >= slice) || (s->dim[1] > 1 && s->stride[1] >= slice) ||
         (components > 1 && s->component_stride >= slice))
         return cwi_fail(err, CW_ERR_UNSUPPORTED,
                         "the slices of this file are not contiguous: its fastest axis is z, or "
                         "components are apart; it is only read as a whole");
+    v->called = true;
     s->data = NULL;
     s->owned = s->owned_grid = NULL;
     s->steps = 1;

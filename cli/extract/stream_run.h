@@ -1,0 +1,20 @@
+/* Extraction of a volume slice by slice: for volumes and surfaces larger than memory. */
+#ifndef CLI_EXTRACT_STREAM_RUN_H
+#define CLI_EXTRACT_STREAM_RUN_H
+
+#include "cli/extract/extract_run.h"
+
+/* Choices of --stream. */
+enum { CLI_STREAM_AUTO, CLI_STREAM_ALWAYS, CLI_STREAM_NEVER };
+
+/* Returns an option of the run that needs the whole volume or surface in memory; NULL: slices
+ * suffice. */
+const char *cli_find_unstreamed(const cli_extract_args *args);
+
+/* Extracts a surface of the run's volume, whose voxels were not read, into a spool beside the
+ * path. Free it with cw_mesh_spool_free(). */
+CW_NODISCARD cw_status cli_extract_streamed(cli_extract_run *run, const cli_moment *moment,
+                                            cli_made *made, cw_mesh_spool **spool,
+                                            cw_error *err);
+
+#endif
