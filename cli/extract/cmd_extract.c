@@ -238,6 +238,8 @@ static cw_status make_surface(cli_extract_run *s, const cli_moment *moment, size
     cw_mesh mesh = {0};
     cw_extract_counts counts = {0};
     cw_status st = cli_extract_make(s, made, &mesh, &counts, err);
+    if (st == CW_ERR_LIMIT && cli_turn_to_slices(s))
+        return finish_surface(s, moment, made, stream_surface(s, moment, n, made, err), err);
     made->snapped = st == CW_OK && s->args->snap.value > 0;
     made->snap = made->snapped ? counts.snap : (cw_snap_counts){0};
     if (st == CW_OK && cli_extract_is_simplified(s->args))
@@ -299,6 +301,11 @@ static cw_status read_volume(cli_extract_run *s, const cli_moment *moment, cw_er
     free_step(s);
     cli_report_begin(&s->output.report);
     cw_status st = cli_read_volume(moment->path, &input, false, &s->input.volume, err);
+    if (st == CW_ERR_LIMIT && cli_find_unstreamed(s->args)) {
+        const cw_error why = *err;
+        return cwi_fail(err, st, "%s; %s needs all voxels in memory", why.message,
+                        cli_find_unstreamed(s->args));
+    }
     if (st != CW_OK)
         return st;
     const cw_volume *v = &s->input.volume.view;

@@ -5,11 +5,12 @@
 #include "cli/framework/console.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/base/text.h"
 
 #include <cubewright/spool.h>
 
-/* What writers of files take, beside the slices. */
-enum { WRITER_BYTES = 4 << 20 };
+/* Memory beside the slices and the program so far: the writer of a file, threads, buffers. */
+enum { BESIDE_BYTES = 10 << 20 };
 
 const char *cli_find_unstreamed(const cli_extract_args *args)
 {
@@ -33,6 +34,21 @@ const char *cli_find_unstreamed(const cli_extract_args *args)
     return NULL;
 }
 
+bool cli_turn_to_slices(cli_extract_run *run)
+{
+    const cli_extract_args *args = run->args;
+    cli_volume *v = &run->input.volume;
+    if (args->stream == CLI_STREAM_NEVER || args->max_triangles || v->view.cells ||
+        v->view.sparse || cli_find_unstreamed(args))
+        return false;
+    cw_extractor_free(run->input.extractor);
+    run->input.extractor = NULL;
+    cw_volume_free(&v->voxels);
+    v->view.data = NULL;
+    v->streams = true;
+    return true;
+}
+
 /* A surface on its way. */
 typedef struct streaming {
     const cli_extract_run *run;
@@ -41,14 +57,37 @@ typedef struct streaming {
     cw_extract_counts counts;
 } streaming;
 
+/* Checks that the process keeps to --memory: `left` is what slices may take. */
+static cw_status check_memory(const cli_extract_run *run, const cw_slice_source *source,
+                              const cw_stream_desc *desc, size_t *left, cw_error *err)
+{
+    char needed_text[CWI_MEMORY_TEXT], limit_text[CWI_MEMORY_TEXT];
+    const size_t limit = cli_memory_limit(&run->args->input),
+                 beside = cli_peak_bytes() + BESIDE_BYTES,
+                 needed = beside + cw_extract_stream_bytes(&source->shape, desc, true);
+    if (needed <= limit) {
+        *left = limit - beside < *left ? limit - beside : *left;
+        return CW_OK;
+    }
+    cwi_print_memory(needed, needed_text);
+    cwi_print_memory(limit, limit_text);
+    return cwi_fail(err, CW_ERR_LIMIT,
+                    "%s: slice by slice, the program needs %s; the limit is %s (--memory)",
+                    run->input.volume.path, needed_text, limit_text);
+}
+
 static cw_status extract_slices(void *user, const cw_slice_source *source, cw_error *err)
 {
     streaming *s = user;
-    const size_t *dim = source->shape.dim, left = cwi_memory_left();
+    const size_t *dim = source->shape.dim;
+    size_t left = cwi_memory_left();
     cw_stream_desc d = {.extract = cli_extract_wants(s->run, s->made->iso).extract,
                         .layers = s->run->args->slab};
     d.extract.extra_bytes = 0;
-    d.extract.max_bytes = left > WRITER_BYTES ? left - WRITER_BYTES : 1;
+    cw_status st = check_memory(s->run, source, &d, &left, err);
+    if (st != CW_OK)
+        return st;
+    d.extract.max_bytes = left;
     d.extract.progress =
         cli_progress((double)dim[0] * (double)dim[1] * (double)dim[2] / 1e6, "Mvoxel");
     return cw_extract_stream(source, &d, cw_mesh_spool_sink(s->spool), &s->counts, err);
@@ -64,6 +103,9 @@ cw_status cli_extract_streamed(cli_extract_run *run, const cli_moment *moment, c
     input.step_chosen = run->input.series.given;
     streaming s = {.run = run, .made = made};
     const cw_slice_visitor visitor = {extract_slices, &s};
+    if (run->args->stream == CLI_STREAM_AUTO)
+        cli_say("%s: voxels and surface exceed --memory: read and extracted slice by slice",
+                v->path);
     cli_report_begin(&run->output.report);
     cw_status st = cw_mesh_spool_new(made->path, spool, err);
     s.spool = *spool;

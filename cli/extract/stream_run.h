@@ -11,6 +11,10 @@ enum { CLI_STREAM_AUTO, CLI_STREAM_ALWAYS, CLI_STREAM_NEVER };
  * suffice. */
 const char *cli_find_unstreamed(const cli_extract_args *args);
 
+/* Lets go of the voxels where a surface did not fit memory beside them, if slices suffice. Returns
+ * false if they do not. */
+bool cli_turn_to_slices(cli_extract_run *run);
+
 /* Extracts a surface of the run's volume, whose voxels were not read, into a spool beside the
  * path. Free it with cw_mesh_spool_free(). */
 CW_NODISCARD cw_status cli_extract_streamed(cli_extract_run *run, const cli_moment *moment,

@@ -141,10 +141,10 @@ static void write_share(void *context, size_t share)
     cwi_writing *w = context;
     const size_t begin = begin_of_share(w, share), end = begin_of_share(w, share + 1);
     const bool last = end >= w->end;
-    const cwi_span span = {.begin = begin,
-                           .end = last ? w->end + 1 : end,
-                           .cells = last ? w->end : end,
-                           .row_end = w->plan->grid.rows_y};
+    const cwi_row_span span = {.begin = begin,
+                               .end = last ? w->end + 1 : end,
+                               .cells = last ? w->end : end,
+                               .row_end = w->plan->grid.rows_y};
     w->plan->engine->write_span(&w->plan->grid, &span, w->plan->rows, &w->emission, &w->sink,
                                 w->triangles);
 }

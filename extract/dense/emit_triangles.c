@@ -101,7 +101,7 @@ static void write_row(const cwi_bit_grid *g, size_t j, size_t k, const cwi_row *
     }
 }
 
-void cwi_write_span(const cwi_bit_grid *g, const cwi_span *span, const cwi_row *rows,
+void cwi_write_span(const cwi_bit_grid *g, const cwi_row_span *span, const cwi_row *rows,
                     const cwi_emission *emission, cwi_vertex_sink *sink, uint32_t *triangles)
 {
     /* the row after the span; without cells there are no triangles */

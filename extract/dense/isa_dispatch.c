@@ -40,7 +40,7 @@ static bool has_avx512(void)
                                     bool *);                                                   \
     void cwi_find_sides_##engine(const cwi_bit_grid *, const void *, size_t, bool *, bool *);  \
     void cwi_count_layer_##engine(const cwi_bit_grid *, size_t, cwi_row *);                    \
-    void cwi_write_span_##engine(const cwi_bit_grid *, const cwi_span *, const cwi_row *,      \
+    void cwi_write_span_##engine(const cwi_bit_grid *, const cwi_row_span *, const cwi_row *,  \
                                  const cwi_emission *, cwi_vertex_sink *, uint32_t *);
 ENGINES(DECLARE)
 

@@ -40,13 +40,13 @@ typedef struct cwi_vertex_sink {
 } cwi_vertex_sink;
 
 /* A part of a surface to write: vertices and triangles of some rows in some layers. */
-typedef struct cwi_span {
+typedef struct cwi_row_span {
     size_t begin, end;     /* layers of vertices, from begin to end - 1 */
     size_t cells;          /* layers of triangles, from begin to cells - 1 */
     size_t row, row_end;   /* rows of each layer, from row to row_end - 1 */
     size_t plan;           /* number of ambiguous cells of layer `begin` before the first row */
     size_t first_triangle; /* number of the triangle at the start of the array */
-} cwi_span;
+} cwi_row_span;
 
 struct cwi_engine {
     const char *name;
@@ -68,7 +68,7 @@ struct cwi_engine {
     /* Stores a layer's counts, not yet first numbers, in its rows. */
     void (*count_layer)(const cwi_bit_grid *grid, size_t k, cwi_row *rows);
     /* Writes the vertices and triangles of a span to their places. */
-    void (*write_span)(const cwi_bit_grid *grid, const cwi_span *span, const cwi_row *rows,
+    void (*write_span)(const cwi_bit_grid *grid, const cwi_row_span *span, const cwi_row *rows,
                        const cwi_emission *emission, cwi_vertex_sink *sink,
                        uint32_t *triangles);
 };
@@ -104,9 +104,9 @@ void cwi_classify_rows(const cwi_bit_grid *grid, size_t j, size_t k, size_t rows
 void cwi_find_sides(const cwi_bit_grid *grid, const void *voxels, size_t count, bool *in,
                     bool *out);
 void cwi_count_layer(const cwi_bit_grid *grid, size_t k, cwi_row *rows);
-void cwi_write_span(const cwi_bit_grid *grid, const cwi_span *span, const cwi_row *rows,
+void cwi_write_span(const cwi_bit_grid *grid, const cwi_row_span *span, const cwi_row *rows,
                     const cwi_emission *emission, cwi_vertex_sink *sink, uint32_t *triangles);
-void cwi_place_vertices(const cwi_bit_grid *grid, const cwi_span *span, const cwi_row *rows,
+void cwi_place_vertices(const cwi_bit_grid *grid, const cwi_row_span *span, const cwi_row *rows,
                         cwi_vertex_sink *sink);
 #endif
 

@@ -325,10 +325,10 @@ static void turn_cubics(cwi_cubic_lanes *restrict c, const double *restrict t,
 #define TYPED "extract/dense/place_vertices.inc"
 #include "extract/dense/for_each_type.inc"
 
-void cwi_place_vertices(const cwi_bit_grid *g, const cwi_span *span, const cwi_row *rows,
+void cwi_place_vertices(const cwi_bit_grid *g, const cwi_row_span *span, const cwi_row *rows,
                         cwi_vertex_sink *sink)
 {
-    static void (*const write[CW_TYPE_COUNT])(const cwi_bit_grid *, const cwi_span *,
+    static void (*const write[CW_TYPE_COUNT])(const cwi_bit_grid *, const cwi_row_span *,
                                               const cwi_row *, cwi_vertex_sink *) = {
         [CW_U8] = write_u8,   [CW_I8] = write_i8,   [CW_U16] = write_u16, [CW_I16] = write_i16,
         [CW_U32] = write_u32, [CW_I32] = write_i32, [CW_F32] = write_f32, [CW_F64] = write_f64,

@@ -170,7 +170,7 @@ static cw_status make_piece(const sparse_plan *p, cwi_leaf_block *b, worker *w, 
     sink.grid = &g->volume;
     for (int a = 0; a < 3; a++)
         sink.centre[a] -= (double)cwi_first_sample(&w->gathering, b, a);
-    const cwi_span all = {.end = g->rows_z, .cells = g->rows_z - 1, .row_end = g->rows_y};
+    const cwi_row_span all = {.end = g->rows_z, .cells = g->rows_z - 1, .row_end = g->rows_y};
     p->engine->write_span(g, &all, w->plan.rows, &p->emission, &sink, b->piece.triangles);
     w->missing = w->missing || sink.missing;
     return CW_OK;

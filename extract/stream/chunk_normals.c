@@ -52,13 +52,14 @@ static cw_status make_layer(const cwi_chunk_writer *c, size_t layer, size_t low,
     sink.positions = s->positions[n];
     sink.normals = NULL;
     sink.first = s->first[n];
-    const cwi_span span = {.begin = local,
-                           .end = local + 1,
-                           .cells = has_cells ? local + 1 : local,
-                           .row = low,
-                           .row_end = end,
-                           .plan = w->plan.grid.row_plans[local * w->plan.grid.rows_y + low],
-                           .first_triangle = first->triangle};
+    const cwi_row_span span = {.begin = local,
+                               .end = local + 1,
+                               .cells = has_cells ? local + 1 : local,
+                               .row = low,
+                               .row_end = end,
+                               .plan =
+                                   w->plan.grid.row_plans[local * w->plan.grid.rows_y + low],
+                               .first_triangle = first->triangle};
     w->plan.engine->write_span(&w->plan.grid, &span, w->plan.rows, &c->emission, &sink,
                                corners);
     return CW_OK;

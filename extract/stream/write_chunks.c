@@ -74,7 +74,7 @@ static place end_of_bytes(const cwi_chunk_writer *c, place from, place last, siz
 typedef struct chunk_work {
     cwi_chunk_writer *writer;
     cwi_vertex_sink sink;
-    cwi_span spans[MAX_SPANS];
+    cwi_row_span spans[MAX_SPANS];
     size_t count;
 } chunk_work;
 
@@ -92,18 +92,18 @@ static void write_span(void *context, size_t n)
 }
 
 /* Returns the part of the surface between two places of one layer, or between two layers. */
-static cwi_span make_span(const cwi_chunk_writer *c, place from, place to, size_t triangle)
+static cwi_row_span make_span(const cwi_chunk_writer *c, place from, place to, size_t triangle)
 {
     const cwi_bit_grid *g = &c->window->plan.grid;
     const size_t layer = from.layer - c->window->first;
     const size_t end = to.row ? layer + 1 : to.layer - c->window->first;
-    return (cwi_span){.begin = layer,
-                      .end = end,
-                      .cells = end,
-                      .row = from.row,
-                      .row_end = to.row ? to.row : g->rows_y,
-                      .plan = g->row_plans[layer * g->rows_y + from.row],
-                      .first_triangle = triangle};
+    return (cwi_row_span){.begin = layer,
+                          .end = end,
+                          .cells = end,
+                          .row = from.row,
+                          .row_end = to.row ? to.row : g->rows_y,
+                          .plan = g->row_plans[layer * g->rows_y + from.row],
+                          .first_triangle = triangle};
 }
 
 static cw_status make_room(cwi_chunk_writer *c, size_t vertices, size_t triangles,

@@ -14,7 +14,7 @@ typedef struct cw_slice_source {
      * first component and step are used. */
     cw_volume shape;
     /* Reads `count` slices, from slice `first` on, to packed memory. It is called on the calling
-     * thread, for slices in rising order. It may be called for slice 0 again, to begin anew. */
+     * thread, for slices in rising order. A call for slice 0 starts again. */
     cw_status (*read)(void *user, size_t first, size_t count, void *to, cw_error *err);
     void *user;
 } cw_slice_source;

@@ -91,7 +91,7 @@ static void every_engine_gives_the_same_bytes(void **state)
 }
 
 /* No-data, nobody knows where, sends every vertex through the code for one at a time. */
-static void write_one_at_a_time(const cwi_bit_grid *grid, const cwi_span *span,
+static void write_one_at_a_time(const cwi_bit_grid *grid, const cwi_row_span *span,
                                 const cwi_row *rows, const cwi_emission *emission,
                                 cwi_vertex_sink *sink, uint32_t *triangles)
 {
