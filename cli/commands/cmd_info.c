@@ -1,6 +1,7 @@
 /* The command info: prints the facts of a volume or a series, such as its grid, range of
  * values and suggested isovalues. */
 #include "cli/commands/info_labels.h"
+#include "cli/commands/info_scales.h"
 #include "cli/framework/batch.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
@@ -62,6 +63,7 @@ typedef struct facts {
     level levels[MAX_LEVELS + 2];
     int level_count;
     cli_label_facts labels;
+    cli_scales scales;
     cw_array *arrays; /* of a file that has several; else NULL */
     size_t array_count;
     double (*ranges)[2]; /* array_count x MAX_COMPONENTS: of those that are read */
@@ -171,6 +173,11 @@ static cw_status find_facts(const info_args *args, facts *f, cw_error *err)
         st = find_levels(f, threads, err);
     if (st == CW_OK)
         st = find_arrays(args, f, err);
+    if (st == CW_OK) {
+        const cw_read_desc desc = cli_read_desc(&args->input);
+        st = args->input.raw ? CW_OK
+                             : cli_find_scales(args->common.inputs[0], &desc, &f->scales, err);
+    }
     if (st == CW_OK)
         st = cli_tell_labels(&f->volume, NULL, 0, false, err);
     if (st == CW_OK && args->levels && f->level_count)
@@ -305,6 +312,7 @@ static void print_geometry(const facts *f)
         printf("  series   %s %s, %zu images, tilt %.3g degrees\n", f->series.label,
                f->series.modality, f->series.images, f->series.tilt_degrees);
     print_arrays(f);
+    cli_print_scales(&f->scales);
     for (size_t n = 0; n < f->volume.note_count; n++)
         if (!f->array_count ||
             !strstr(f->volume.notes[n], "; --array takes")) /* listed above */
@@ -370,6 +378,7 @@ static void print_json(const facts *f, bool predicted)
         cli_json_close(&j, '}');
     }
     json_arrays(&j, f);
+    cli_json_scales(&j, &f->scales);
     cli_json_label_facts(&j, &f->labels);
     cli_json_numbers(&j, "range", (const double[2]){r->min, r->max}, 2);
     if (is_sampled(f))
@@ -632,6 +641,7 @@ static cw_status run_info(void *p, cw_error *err)
     }
     cw_statistics_free(&f.range);
     cli_free_label_facts(&f.labels);
+    cw_levels_free(f.scales.levels);
     cw_arrays_free(f.arrays);
     free(f.ranges);
     cli_free_volume(&f.volume);
