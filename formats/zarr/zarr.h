@@ -13,8 +13,9 @@ typedef struct cwi_zarr_desc {
                             else its first array of 3 dimensions or more */
     size_t level;        /* of an image in several sizes; default 0, the finest */
     bool allow_external; /* follow links that leave the store; default: refused */
-    size_t cache_bytes;  /* of decoded chunks that are kept between calls; default 256 MiB */
-    int threads;         /* default: all that OpenMP offers */
+    size_t
+        cache_bytes; /* limit of decoded chunks that are kept between calls; default 256 MiB */
+    int threads;     /* default: all that OpenMP offers */
 } cwi_zarr_desc;
 
 /* Opens the array of a path: a folder with .zarray, .zgroup or zarr.json, or such a file.
@@ -49,11 +50,12 @@ cwi_zarr_box cwi_zarr_make_box(const cwi_zarr *zarr, const cw_box *box, size_t c
 
 /* Reads a box into packed voxels: x fastest, then y, z, components, steps.
  *
- * Each chunk that meets the box is decoded once, several at a time. Chunks that the box takes
- * only in part are kept until cache_bytes are used. So slabs of z, one after another, decode each
- * chunk once if a row of chunks, all that share their place in z, fits into cache_bytes. Memory
- * beside the box: the cache, and for each thread one chunk and its packed bytes; for shards the
- * indexes of 64 of them. A missing chunk has the fill value.
+ * Each chunk that meets the box is decoded once, several at a time. Chunks that the box takes only
+ * in part are kept for the next boxes, until a box begins behind them in z: two rows at most, where
+ * a row is all chunks of one place in z, and at most cache_bytes. So slabs of rising z decode each
+ * chunk once if the rows that a slab meets fit, two at most. Memory beside the box: those rows, and
+ * for each thread one chunk and its packed bytes; for shards the indexes of 64 of them, or 64 MiB.
+ * A missing chunk has the fill value.
  *
  * to       as many voxels as the box has, of the shape's type
  * Returns  CW_ERR_FORMAT    a damaged chunk, which the message names; a number of 64 bits that

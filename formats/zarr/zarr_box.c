@@ -180,8 +180,28 @@ static const void *find_kept(cwi_zarr *z, uint64_t number)
     return found;
 }
 
+/* Gives up the chunks of rows that lie before a row, as slabs of rising z have passed them. Their
+ * memory is for the next chunks. */
+static void drop_rows(cwi_zarr *z, size_t row)
+{
+    for (size_t n = 0; n < z->slot_count; n++)
+        if (z->slots[n].bytes && z->slots[n].row < row) {
+            z->spare[z->spare_count++] = z->slots[n].bytes;
+            z->slots[n] = (cwi_zarr_slot){0};
+        }
+}
+
+/* Takes spare memory for a chunk, if there is any. */
+static void take_spare(cwi_zarr *z, void **bytes)
+{
+    pthread_mutex_lock(&z->lock);
+    if (!*bytes && z->spare_count > 0)
+        *bytes = z->spare[--z->spare_count];
+    pthread_mutex_unlock(&z->lock);
+}
+
 /* Keeps a chunk in place of one that this call did not use. The thread gets that one's memory. */
-static void keep_chunk(cwi_zarr *z, uint64_t number, void **bytes)
+static void keep_chunk(cwi_zarr *z, uint64_t number, size_t row, void **bytes)
 {
     if (!z->slot_count)
         return;
@@ -189,7 +209,8 @@ static void keep_chunk(cwi_zarr *z, uint64_t number, void **bytes)
     cwi_zarr_slot *slot = &z->slots[number % z->slot_count];
     if (slot->call != z->call) {
         void *before = slot->bytes;
-        *slot = (cwi_zarr_slot){.key = number + 1, .call = z->call, .bytes = *bytes};
+        *slot =
+            (cwi_zarr_slot){.key = number + 1, .row = row, .call = z->call, .bytes = *bytes};
         *bytes = before;
     }
     pthread_mutex_unlock(&z->lock);
@@ -214,12 +235,13 @@ static cw_status read_chunk(boxing *b, const size_t at[CWI_ROLE_COUNT], cw_error
     for (int r = 0; r < CWI_ROLE_COUNT; r++)
         if (z->dimensions[r] >= 0)
             place[z->dimensions[r]] = at[r];
+    take_spare(z, scratch);
     cw_status st = cwi_zarr_load_chunk(z, place, scratch, &missing, err);
     if (st != CW_OK)
         return st;
     st = copy_overlap(b, &o, missing ? (const char *)&a->fill : *scratch, missing, err);
     if (st == CW_OK && !missing && !o.is_whole)
-        keep_chunk(z, number, scratch);
+        keep_chunk(z, number, at[CWI_AXIS_Z], scratch);
     pthread_mutex_lock(&z->lock);
     z->decoded += !missing;
     pthread_mutex_unlock(&z->lock);
@@ -291,6 +313,7 @@ cw_status cwi_zarr_read_box(cwi_zarr *z, const cwi_zarr_box *box, void *to,
     if (!b.scratch)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to read with");
     z->call++;
+    drop_rows(z, b.first_chunk[CWI_AXIS_Z]);
     st = cwi_each_layer(chunks, z->array.chunk_bytes / z->array.stored_bytes, z->threads,
                         progress ? progress : &silent, "reading", read_nth_chunk, &b, err);
     for (int n = 0; n < threads; n++)

@@ -23,6 +23,7 @@ typedef struct cwi_zarr_shard {
 /* A decoded chunk that is kept. */
 typedef struct cwi_zarr_slot {
     uint64_t key;  /* its number plus 1; 0: none */
+    size_t row;    /* its place in z, in chunks */
     uint64_t call; /* the last call that used it */
     void *bytes;
 } cwi_zarr_slot;
@@ -44,6 +45,8 @@ struct cwi_zarr {
     size_t shard_slots;
     cwi_zarr_slot *slots; /* a chunk has its place at its number modulo slot_count */
     size_t slot_count;
+    void **spare; /* memory of chunks that are no longer kept, for the next ones */
+    size_t spare_count;
 };
 
 struct cwi_array_list;

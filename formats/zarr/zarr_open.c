@@ -266,21 +266,25 @@ static cw_status open_store(cwi_zarr *z, const char *path, cw_error *err)
                        : st;
 }
 
-/* Makes room for the chunks that are kept, at most as many as the array has. */
+/* Makes room for the chunks that are kept: two rows of one place in z each, as a slab with a plane
+ * of the next one meets both. More would hold rows that slabs have passed. */
 static cw_status make_caches(cwi_zarr *z, size_t bytes, cw_error *err)
 {
-    size_t slots = bytes / z->array.chunk_bytes, chunks = 1;
+    size_t slots = bytes / z->array.chunk_bytes, needed = 2;
     for (size_t d = 0; d < z->array.rank; d++)
-        if (!cwi_size_mul(chunks, (z->array.shape[d] - 1) / z->array.inner[d] + 1, &chunks))
-            chunks = SIZE_MAX;
-    slots = slots < chunks ? slots : chunks;
+        if ((int)d != z->dimensions[CWI_AXIS_Z] &&
+            !cwi_size_mul(needed, (z->array.shape[d] - 1) / z->array.inner[d] + 1, &needed))
+            needed = SIZE_MAX;
+    slots = slots < needed ? slots : needed;
     z->slot_count = slots < MAX_SLOTS ? slots : MAX_SLOTS;
     z->slots = cwi_alloc_zeroed(z->slot_count, sizeof *z->slots);
     const size_t threads = (size_t)cwi_threads(z->threads);
     const size_t index_bytes = z->array.is_sharded ? 16 * z->array.shard_count : 1;
     const size_t places = CWI_ZARR_INDEX_BYTES / index_bytes;
     z->shard_slots = (places < CWI_ZARR_SHARDS ? places : CWI_ZARR_SHARDS) + threads;
-    return z->slots ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a cache");
+    z->spare = cwi_alloc_zeroed(z->slot_count, sizeof *z->spare);
+    return z->slots && z->spare ? CW_OK
+                                : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a cache");
 }
 
 cw_status cwi_zarr_open_found(const char *path, const cwi_zarr_desc *desc,
@@ -319,7 +323,10 @@ void cwi_zarr_close(cwi_zarr *z)
         return;
     for (size_t n = 0; n < z->slot_count && z->slots; n++)
         cwi_free(z->slots[n].bytes);
+    for (size_t n = 0; n < z->spare_count; n++)
+        cwi_free(z->spare[n]);
     cwi_free(z->slots);
+    cwi_free(z->spare);
     cwi_zarr_close_shards(z);
     cwi_input_close(&z->in);
     pthread_mutex_destroy(&z->lock);
