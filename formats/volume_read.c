@@ -434,6 +434,8 @@ cw_status cw_arrays_list(const char *path, const cw_read_desc *desc, cw_array **
     d.region = NULL;
     d.labels = NULL;
     d.note = NULL;
+    d.max_bytes = 0; /* no voxel is read */
+    d.max_voxels = UINT64_MAX;
     cw_status st = open_path(&o, path, &d, err);
     o.in.arrays = &list;
     if (st == CW_OK && !(o.reader && o.reader->volume.read_slices))

@@ -104,13 +104,37 @@ static cw_status predict_surface(facts *f, int threads, cw_error *err)
     return st;
 }
 
-/* Of every component, at the chosen step. */
+/* Returns true if an array is too large to be read for its range alone, unless --deep asks for
+ * that. */
+static bool is_large(const info_args *args, const cw_read_desc *desc)
+{
+    const double limit = (double)(256 << 20); /* bytes, as of the volume itself */
+    cw_read_desc header = *desc;
+    cw_volume v;
+    header.header_only = true;
+    header.note = NULL;
+    header.max_bytes = 0;
+    header.max_voxels = UINT64_MAX;
+    if (args->deep || cw_volume_read(args->common.inputs[0], &header, &v, NULL, NULL) != CW_OK)
+        return false;
+    const bool is_dense = !v.sparse && !v.cells;
+    const double bytes = (double)(v.dim[0] * v.components * cw_type_size(v.type)) *
+                         (double)v.dim[1] * (double)v.dim[2] * (double)v.steps;
+    cw_volume_free(&v);
+    return is_dense && bytes > limit;
+}
+
+/* Of every component, at the chosen step. Those of a large array are not finite. */
 static cw_status find_ranges(const info_args *args, const char *name, double (*ranges)[2],
                              cw_error *err)
 {
     cw_read_desc desc = cli_read_desc(&args->input);
     cw_volume all, one;
     desc.array = name;
+    if (is_large(args, &desc)) {
+        ranges[0][0] = ranges[0][1] = (double)NAN;
+        return CW_OK;
+    }
     cw_status st = cw_volume_read(args->common.inputs[0], &desc, &all, NULL, err);
     if (st != CW_OK)
         return st;
@@ -134,6 +158,11 @@ static bool is_reached(const facts *f, size_t n)
             f->arrays[n].of_cells && !f->arrays[i].of_cells)
             return false;
     return f->arrays[n].is_read;
+}
+
+static bool has_ranges(const facts *f, size_t n)
+{
+    return is_reached(f, n) && !isnan(f->ranges[n * MAX_COMPONENTS][0]);
 }
 
 static cw_status find_arrays(const info_args *args, facts *f, cw_error *err)
@@ -263,7 +292,7 @@ static void print_arrays(const facts *f)
                !a->is_read     ? ", not read"
                : a->is_default ? ", taken unless --array names another"
                                : "");
-        for (size_t c = 0; c < a->components && is_reached(f, n); c++) {
+        for (size_t c = 0; c < a->components && has_ranges(f, n); c++) {
             const double *r = f->ranges[n * MAX_COMPONENTS + c];
             printf("%s %.6g to %.6g", c ? "," : ":", r[0], r[1]);
         }
@@ -285,7 +314,7 @@ static void json_arrays(cli_json *j, const facts *f)
         cli_json_text(j, "of", a->of_cells ? "cells" : "points");
         cli_json_bool(j, "read", a->is_read);
         cli_json_bool(j, "default", a->is_default);
-        if (is_reached(f, n)) {
+        if (has_ranges(f, n)) {
             cli_json_open(j, "ranges", '[');
             for (size_t c = 0; c < a->components; c++)
                 cli_json_numbers(j, NULL, f->ranges[n * MAX_COMPONENTS + c], 2);

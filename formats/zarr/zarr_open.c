@@ -135,9 +135,9 @@ static cw_status look_at(const cwi_zarr *z, const char *path, cwi_zarr_array *ar
     if (st == CW_OK) {
         st = is_image(&node) ? open_level(z, &node, 0, array, &ignored)
                              : cwi_zarr_node_array(&node, array, &ignored);
-        if (st == CW_ERR_NO_MEMORY)
-            *err = ignored;
-        else if (st != CW_OK) {
+        if (st == CW_ERR_NO_MEMORY) {
+            cwi_fail(err, st, "%s", ignored.message);
+        } else if (st != CW_OK) {
             array->rank = 0;
             st = CW_OK;
         }

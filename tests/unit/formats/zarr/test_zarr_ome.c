@@ -262,6 +262,35 @@ static void labels_bring_names_and_colours(void **state)
     cw_volume_free(&v);
 }
 
+static void running_out_of_memory_is_an_error(void **state)
+{
+    (void)state;
+    bool failed = true;
+    put_image(3);
+    put_group("group", 2, "{}");
+    put_array("group/a", 2, 3, (const size_t[3]){2, 3, 4});
+    put_array("group/b", 2, 3, (const size_t[3]){2, 3, 4});
+    for (long n = 0; failed; n++) {
+        cw_level *levels = NULL;
+        cw_array *arrays = NULL;
+        size_t count;
+        cw_volume v = {0};
+        cw_error err = {0};
+        cwi_alloc_fail_after(n);
+        cw_status st = cw_levels_list(test_path("image"), NULL, &levels, &count, &err);
+        if (st == CW_OK)
+            st = read_back("image", &v, &err);
+        if (st == CW_OK)
+            st = cw_arrays_list(test_path("group"), NULL, &arrays, &count, &err);
+        failed = cwi_alloc_fail_after(-1);
+        if (st != (failed ? CW_ERR_NO_MEMORY : CW_OK))
+            fail_msg("allocation %ld: %s", n, err.message);
+        cw_levels_free(levels);
+        cw_arrays_free(arrays);
+        cw_volume_free(&v);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -276,6 +305,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(the_first_solid_array_of_a_group_is_taken,
                                         test_folder_make, test_folder_remove),
         cmocka_unit_test_setup_teardown(labels_bring_names_and_colours, test_folder_make,
+                                        test_folder_remove),
+        cmocka_unit_test_setup_teardown(running_out_of_memory_is_an_error, test_folder_make,
                                         test_folder_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
