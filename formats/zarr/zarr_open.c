@@ -203,6 +203,23 @@ static bool find_named_level(const cwi_zarr_node *root, const char *name, size_t
     return false;
 }
 
+/* Reports a name that leads to nothing, with as many of the store's arrays as fit. */
+static cw_status fail_name(const cwi_zarr *z, const char *name, cw_error *err)
+{
+    cwi_zarr_listing list;
+    char text[240] = "";
+    size_t used = 0, n = 0;
+    cw_status st = cwi_zarr_list(&z->in, "", &list, err);
+    for (; st == CW_OK && n < list.paths.count && used < sizeof text - 80; n++)
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s'%.60s'",
+                                 used ? ", " : "; there are ", list.paths.items[n]);
+    if (st == CW_OK)
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "the store has no array '%.200s'%s%s", name, text,
+                      n < list.paths.count ? ", ..." : "");
+    cwi_names_free(&list.paths);
+    return st;
+}
+
 /* Takes the node that a name leads to, from the root. */
 static cw_status take_named(cwi_zarr *z, const cwi_zarr_node *root, const cwi_zarr_desc *desc,
                             cwi_zarr_found *found, cw_error *err)
@@ -216,7 +233,7 @@ static cw_status take_named(cwi_zarr *z, const cwi_zarr_node *root, const cwi_za
     }
     cw_status st = cwi_zarr_node_open(&node, &z->in, desc->array, err);
     if (st == CW_OK && node.kind == CWI_ZARR_NOTHING)
-        st = cwi_fail(err, CW_ERR_ARGUMENT, "the store has no array '%.200s'", desc->array);
+        st = fail_name(z, desc->array, err);
     else if (st == CW_OK && node.kind == CWI_ZARR_IS_GROUP && !is_image(&node))
         st = take_group(z, &node, level, found, err);
     else if (st == CW_OK)

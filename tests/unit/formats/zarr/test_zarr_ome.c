@@ -215,7 +215,7 @@ static void the_first_solid_array_of_a_group_is_taken(void **state)
     cw_arrays_free(arrays);
     desc.array = "a11";
     assert_fails(cw_volume_read(test_path("group"), &desc, &v, NULL, &err), CW_ERR_ARGUMENT,
-                 "the store has no array 'a11'", err);
+                 "the store has no array 'a11'; there are 'a1', 'a2/deep', 'a10'", err);
     assert_ok(read_back("group/a10/.zarray", &v, &err), err);
     assert_int_equal(v.dim[0], 7);
     cw_volume_free(&v);
