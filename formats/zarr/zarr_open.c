@@ -100,8 +100,12 @@ static cw_status take_image(cwi_zarr *z, const cwi_zarr_node *image, size_t leve
     if (st == CW_OK && (st = cwi_zarr_set_frame(z, &frame, err)) != CW_OK)
         cwi_zarr_fail_in(err, st, image, true);
     z->level_count = count;
+    const size_t images = json_array_size(json_object_get(image->ome, "multiscales"));
     if (st == CW_OK)
         note_labels(z, image, found);
+    if (st == CW_OK && images > 1 && !*found->note)
+        snprintf(found->note, sizeof found->note,
+                 "'multiscales' lists %zu images; the first is taken", images);
     return st;
 }
 
