@@ -267,8 +267,8 @@ if(CUBEWRIGHT_LZ4)
   find_library(LZ4_LIBRARY lz4)
 endif()
 add_feature(lz4 OPTION CUBEWRIGHT_LZ4 PACKAGES liblz4-dev
-  ABOUT "VTK image data compressed with LZ4"
-  COST "reads no .vti that is compressed with LZ4"
+  ABOUT "VTK image data and Zarr compressed with LZ4"
+  COST "reads no .vti that is compressed with LZ4, nor such Zarr"
   NEEDS LZ4_INCLUDE=liblz4-dev LZ4_LIBRARY=liblz4-dev
   INCLUDES ${LZ4_INCLUDE} LIBRARIES ${LZ4_LIBRARY}
   TRIAL [[
@@ -293,6 +293,42 @@ add_feature(bzip2 OPTION CUBEWRIGHT_BZIP2 PACKAGES libbz2-dev
 int main(void)
 {
     return *BZ2_bzlibVersion() == 0;
+}
+]])
+
+if(CUBEWRIGHT_ZSTD)
+  find_path(ZSTD_INCLUDE zstd.h)
+  find_library(ZSTD_LIBRARY zstd)
+endif()
+add_feature(zstd OPTION CUBEWRIGHT_ZSTD PACKAGES libzstd-dev
+  ABOUT "Zarr volumes compressed with Zstandard"
+  COST "reads no Zarr that is compressed with Zstandard"
+  NEEDS ZSTD_INCLUDE=libzstd-dev ZSTD_LIBRARY=libzstd-dev
+  INCLUDES ${ZSTD_INCLUDE} LIBRARIES ${ZSTD_LIBRARY}
+  TRIAL [[
+#include <zstd.h>
+#include <zstd_errors.h>
+int main(void)
+{
+    return ZSTD_getErrorCode(0) != ZSTD_error_no_error;
+}
+]])
+
+if(CUBEWRIGHT_BLOSC)
+  find_path(BLOSC_INCLUDE blosc.h)
+  find_library(BLOSC_LIBRARY blosc)
+endif()
+add_feature(blosc OPTION CUBEWRIGHT_BLOSC PACKAGES libblosc-dev
+  ABOUT "Zarr volumes compressed with Blosc"
+  COST "reads no Zarr that is compressed with Blosc"
+  NEEDS BLOSC_INCLUDE=libblosc-dev BLOSC_LIBRARY=libblosc-dev
+  INCLUDES ${BLOSC_INCLUDE} LIBRARIES ${BLOSC_LIBRARY}
+  TRIAL [[
+#include <blosc.h>
+int main(void)
+{
+    size_t bytes;
+    return blosc_cbuffer_validate("", 0, &bytes) == 0;
 }
 ]])
 

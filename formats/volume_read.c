@@ -110,7 +110,9 @@ static cw_status find_by_file(const cwi_input *in, const driver **found, cw_erro
     cw_status st = read_head(in, head, &size, &gzipped, err);
     if (st != CW_OK)
         return st;
-    *found = find_by_content(head, size, gzipped);
+    *found = find_by_extension(in->path);
+    if (!*found || !(*found)->volume.is_store) /* files of stores are known by name alone */
+        *found = find_by_content(head, size, gzipped);
     const char *mesh = *found ? NULL : cwi_mesh_format_by_content(head, size, in->size);
     if (!*found && !mesh)
         *found = find_by_extension(in->path);
@@ -243,9 +245,35 @@ static cw_status find_reader(opened *o, const cw_read_desc *desc, cw_error *err)
     return st;
 }
 
+/* Finds the format of a folder that is one volume, or returns NULL. */
+static const driver *find_store(const char *path, const cw_read_desc *desc)
+{
+    const driver *found = NULL;
+    cwi_input folder;
+    if (desc->raw || !cwi_is_folder(path) ||
+        cwi_input_open_folder(&folder, path, NULL) != CW_OK)
+        return NULL;
+    folder.allow_external = desc->allow_external;
+    for (size_t n = 0; cwi_format_at(n) && !found; n++) {
+        const driver *f = cwi_format_at(n);
+        const bool is_named = desc->reader && strcmp(desc->reader, f->name) == 0;
+        if (f->volume.is_store && (is_named || (!desc->reader && f->volume.is_store(&folder))))
+            found = f;
+    }
+    cwi_input_close(&folder);
+    return found;
+}
+
 static cw_status open_path(opened *o, const char *path, const cw_read_desc *desc, cw_error *err)
 {
     *o = (opened){.in = {.allow_external = desc->allow_external}};
+    o->reader = find_store(path, desc);
+    if (o->reader) {
+        cw_status st = cwi_input_open_folder(&o->in, path, err);
+        o->in.allow_external = desc->allow_external;
+        o->in.array = desc->array;
+        return st;
+    }
     o->many = cwi_files_is_pattern(path) || cwi_is_folder(path);
     cw_status st = o->many ? open_names(o, path, desc, err) : cwi_input_open(&o->in, path, err);
     o->in.allow_external |= desc->allow_external;
@@ -351,6 +379,10 @@ static cw_status read_opened(opened *o, const cw_read_desc *desc, cw_volume *vol
                              cw_error *err)
 {
     const cwi_volume_reading none = {0}, *r = o->reader ? &o->reader->volume : &none;
+    if (desc->level > 0 && !r->list_levels)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "level %zu was asked for; files of this format have no levels",
+                        desc->level);
     if (r->read_slices && desc->array)
         return refuse_array(desc->array, err);
     if (r->read_slices)
@@ -454,6 +486,8 @@ cw_status cw_arrays_list(const char *path, const cw_read_desc *desc, cw_array **
     d.region = NULL;
     d.labels = NULL;
     d.note = NULL;
+    d.max_bytes = 0; /* no voxel is read */
+    d.max_voxels = UINT64_MAX;
     cw_status st = open_path(&o, path, &d, err);
     o.in.arrays = &list;
     if (st == CW_OK && !(o.reader && o.reader->volume.read_slices))
@@ -472,6 +506,25 @@ cw_status cw_arrays_list(const char *path, const cw_read_desc *desc, cw_array **
 void cw_arrays_free(cw_array *arrays)
 {
     cwi_free(arrays);
+}
+
+cw_status cw_levels_list(const char *path, const cw_read_desc *desc, cw_level **levels,
+                         size_t *count, cw_error *err)
+{
+    const cw_read_desc d = desc ? *desc : (cw_read_desc){0};
+    opened o = {0};
+    *levels = NULL;
+    *count = 0;
+    cw_status st = open_path(&o, path, &d, err);
+    if (st == CW_OK && o.reader && o.reader->volume.list_levels)
+        st = o.reader->volume.list_levels(&o.in, &d, levels, count, err);
+    close_path(&o);
+    return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
+}
+
+void cw_levels_free(cw_level *levels)
+{
+    cwi_free(levels);
 }
 
 cw_status cw_series_list(const char *path, const cw_read_desc *desc, cw_series **series,
@@ -697,7 +750,7 @@ cw_status cw_steps_list(const char *const *paths, size_t path_count, const cw_re
     *count = 0;
     if (several || (!d.raw && pattern))
         st = list_paths(paths, path_count, &d, &names, err);
-    else if (!d.raw && !d.reader && cwi_is_folder(paths[0]))
+    else if (!d.raw && !d.reader && cwi_is_folder(paths[0]) && !find_store(paths[0], &d))
         st = list_folder(paths[0], &d, &names, err);
     else if (!d.raw && cw_pvd_is(paths[0]))
         st = list_pvd(paths[0], &d, &names, err);

@@ -1,6 +1,7 @@
 /* The command info: prints the facts of a volume or a series, such as its grid, range of
  * values and suggested isovalues. */
 #include "cli/commands/info_labels.h"
+#include "cli/commands/info_scales.h"
 #include "cli/framework/batch.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
@@ -62,6 +63,7 @@ typedef struct facts {
     level levels[MAX_LEVELS + 2];
     int level_count;
     cli_label_facts labels;
+    cli_scales scales;
     cw_array *arrays; /* of a file that has several; else NULL */
     size_t array_count;
     double (*ranges)[2]; /* array_count x MAX_COMPONENTS: of those that are read */
@@ -102,13 +104,37 @@ static cw_status predict_surface(facts *f, int threads, cw_error *err)
     return st;
 }
 
-/* Of every component, at the chosen step. */
+/* Returns true if an array is too large to be read for its range alone, unless --deep asks for
+ * that. */
+static bool is_large(const info_args *args, const cw_read_desc *desc)
+{
+    const double limit = (double)(256 << 20); /* bytes, as of the volume itself */
+    cw_read_desc header = *desc;
+    cw_volume v;
+    header.header_only = true;
+    header.note = NULL;
+    header.max_bytes = 0;
+    header.max_voxels = UINT64_MAX;
+    if (args->deep || cw_volume_read(args->common.inputs[0], &header, &v, NULL, NULL) != CW_OK)
+        return false;
+    const bool is_dense = !v.sparse && !v.cells;
+    const double bytes = (double)(v.dim[0] * v.components * cw_type_size(v.type)) *
+                         (double)v.dim[1] * (double)v.dim[2] * (double)v.steps;
+    cw_volume_free(&v);
+    return is_dense && bytes > limit;
+}
+
+/* Of every component, at the chosen step. Those of a large array are not finite. */
 static cw_status find_ranges(const info_args *args, const char *name, double (*ranges)[2],
                              cw_error *err)
 {
     cw_read_desc desc = cli_read_desc(&args->input);
     cw_volume all, one;
     desc.array = name;
+    if (is_large(args, &desc)) {
+        ranges[0][0] = ranges[0][1] = (double)NAN;
+        return CW_OK;
+    }
     cw_status st = cw_volume_read(args->common.inputs[0], &desc, &all, NULL, err);
     if (st != CW_OK)
         return st;
@@ -132,6 +158,11 @@ static bool is_reached(const facts *f, size_t n)
             f->arrays[n].of_cells && !f->arrays[i].of_cells)
             return false;
     return f->arrays[n].is_read;
+}
+
+static bool has_ranges(const facts *f, size_t n)
+{
+    return is_reached(f, n) && !isnan(f->ranges[n * MAX_COMPONENTS][0]);
 }
 
 static cw_status find_arrays(const info_args *args, facts *f, cw_error *err)
@@ -171,6 +202,11 @@ static cw_status find_facts(const info_args *args, facts *f, cw_error *err)
         st = find_levels(f, threads, err);
     if (st == CW_OK)
         st = find_arrays(args, f, err);
+    if (st == CW_OK) {
+        const cw_read_desc desc = cli_read_desc(&args->input);
+        st = args->input.raw ? CW_OK
+                             : cli_find_scales(args->common.inputs[0], &desc, &f->scales, err);
+    }
     if (st == CW_OK)
         st = cli_tell_labels(&f->volume, NULL, 0, false, err);
     if (st == CW_OK && args->levels && f->level_count)
@@ -256,7 +292,7 @@ static void print_arrays(const facts *f)
                !a->is_read     ? ", not read"
                : a->is_default ? ", taken unless --array names another"
                                : "");
-        for (size_t c = 0; c < a->components && is_reached(f, n); c++) {
+        for (size_t c = 0; c < a->components && has_ranges(f, n); c++) {
             const double *r = f->ranges[n * MAX_COMPONENTS + c];
             printf("%s %.6g to %.6g", c ? "," : ":", r[0], r[1]);
         }
@@ -278,7 +314,7 @@ static void json_arrays(cli_json *j, const facts *f)
         cli_json_text(j, "of", a->of_cells ? "cells" : "points");
         cli_json_bool(j, "read", a->is_read);
         cli_json_bool(j, "default", a->is_default);
-        if (is_reached(f, n)) {
+        if (has_ranges(f, n)) {
             cli_json_open(j, "ranges", '[');
             for (size_t c = 0; c < a->components; c++)
                 cli_json_numbers(j, NULL, f->ranges[n * MAX_COMPONENTS + c], 2);
@@ -305,6 +341,7 @@ static void print_geometry(const facts *f)
         printf("  series   %s %s, %zu images, tilt %.3g degrees\n", f->series.label,
                f->series.modality, f->series.images, f->series.tilt_degrees);
     print_arrays(f);
+    cli_print_scales(&f->scales);
     for (size_t n = 0; n < f->volume.note_count; n++)
         if (!f->array_count ||
             !strstr(f->volume.notes[n], "; --array takes")) /* listed above */
@@ -370,6 +407,7 @@ static void print_json(const facts *f, bool predicted)
         cli_json_close(&j, '}');
     }
     json_arrays(&j, f);
+    cli_json_scales(&j, &f->scales);
     cli_json_label_facts(&j, &f->labels);
     cli_json_numbers(&j, "range", (const double[2]){r->min, r->max}, 2);
     if (is_sampled(f))
@@ -632,6 +670,7 @@ static cw_status run_info(void *p, cw_error *err)
     }
     cw_statistics_free(&f.range);
     cli_free_label_facts(&f.labels);
+    cw_levels_free(f.scales.levels);
     cw_arrays_free(f.arrays);
     free(f.ranges);
     cli_free_volume(&f.volume);

@@ -445,6 +445,7 @@ cw_read_desc cli_read_desc(const cli_input *input)
                          .allow_external = input->allow_external,
                          .series = input->series,
                          .array = input->array,
+                         .level = input->level,
                          .points = input->points,
                          .gaps = (cw_gaps)input->gaps,
                          .tilt = (cw_tilt)input->tilt,

@@ -50,6 +50,7 @@ typedef struct cli_input {
     cli_claim source_claim; /* of the source volume, in commands that take a mesh and that */
     cli_ranges crop;
     cli_component component;
+    size_t level; /* of an image in several sizes */
     size_t step;
     bool step_chosen; /* by the command, of a series: nothing is to be said of it */
     size_t threads, memory, max_voxels, max_triangles;
@@ -131,6 +132,12 @@ typedef struct cli_input {
          "NAME",                                                                               \
          "OpenVDB grid to read (the first level set, else the first with one value)",          \
          CLI_INPUT_ROW(args, array)},                                                          \
+        {"level",                                                                              \
+         0,                                                                                    \
+         CLI_COUNT,                                                                            \
+         "N",                                                                                  \
+         "Level of an image in several sizes (OME-Zarr), counted from the finest (0)",         \
+         CLI_INPUT_ROW(args, level)},                                                          \
         {"points",                                                                             \
          0,                                                                                    \
          CLI_TEXT,                                                                             \

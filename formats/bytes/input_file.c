@@ -16,10 +16,14 @@
 
 enum { MAX_NAMES = 65536, LONGEST_NAME = 1023 };
 
+/* Reports the system's last error, and leaves it in errno. */
 static cw_status fail_system(cw_error *err, const char *what)
 {
-    const char *why = strerrordesc_np(errno);
-    return cwi_fail(err, CW_ERR_IO, "%s: %s", what, why ? why : "unknown error");
+    const int number = errno;
+    const char *why = strerrordesc_np(number);
+    cwi_fail(err, CW_ERR_IO, "%s: %s", what, why ? why : "unknown error");
+    errno = number;
+    return CW_ERR_IO;
 }
 
 static const char *kind_of_file(mode_t mode)
@@ -141,7 +145,9 @@ static cw_status open_below(int folder, const char *name, int *fd, uint64_t *siz
     if (next < 0)
         return fail_system(err, "its folder cannot be opened or is a link");
     cw_status st = open_below(next, slash + 1, fd, size, err);
+    const int number = errno;
     close(next);
+    errno = number;
     return st;
 }
 
@@ -165,6 +171,20 @@ cw_status cwi_input_open_side(const cwi_input *in, const char *name, int *fd, ui
         return open_regular(in->folder, name, 0, fd, size, err);
     cw_status st = check_name(name, err);
     return st == CW_OK ? open_below(in->folder, name, fd, size, err) : st;
+}
+
+cw_status cwi_input_find_side(const cwi_input *in, const char *name, int *fd, uint64_t *size,
+                              cw_error *err)
+{
+    cw_error why = {0};
+    *fd = -1;
+    errno = 0;
+    cw_status st = cwi_input_open_side(in, name, fd, size, &why);
+    if (st == CW_ERR_IO && errno == ENOENT) {
+        *fd = -1;
+        return CW_OK;
+    }
+    return st == CW_OK ? CW_OK : cwi_fail(err, st, "%s", why.message);
 }
 
 cw_status cwi_input_read_at(int fd, uint64_t offset, void *to, size_t size, size_t *got,

@@ -39,6 +39,11 @@ bool cwi_input_is_named(const cwi_input *in, const char *name);
 CW_NODISCARD cw_status cwi_input_open_side(const cwi_input *in, const char *name, int *fd,
                                            uint64_t *size, cw_error *err);
 
+/* Opens a side file as cwi_input_open_side() does, if it exists. Sets *fd to -1 where it or its
+ * folder is missing. */
+CW_NODISCARD cw_status cwi_input_find_side(const cwi_input *in, const char *name, int *fd,
+                                           uint64_t *size, cw_error *err);
+
 /* Reads up to size bytes at an offset; *got is less only where the file ends. */
 CW_NODISCARD cw_status cwi_input_read_at(int fd, uint64_t offset, void *to, size_t size,
                                          size_t *got, cw_error *err);

@@ -15,6 +15,8 @@ typedef struct cwi_volume_reading {
     /* Returns true if a file with such a head has the format; NULL: the content cannot
      * decide. */
     bool (*sniff)(const unsigned char *head, size_t size);
+    /* Returns true if a folder is a volume of the format as a whole, not of slices. */
+    bool (*is_store)(const cwi_input *folder);
     /* Reads a header, from which voxels are then loaded. */
     cw_status (*parse)(const cwi_input *in, cwi_source *src, cw_error *err);
     /* Reads an irregular grid; *is_grid is false where the file holds something else. */
@@ -29,6 +31,9 @@ typedef struct cwi_volume_reading {
     /* Lists the series of a folder. */
     cw_status (*list_series)(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,
                              cw_series **series, size_t *count, cw_error *err);
+    /* Lists the sizes in which a file holds its volume; NULL: there is one alone. */
+    cw_status (*list_levels)(const cwi_input *in, const cw_read_desc *desc, cw_level **levels,
+                             size_t *count, cw_error *err);
     bool holds_pages;  /* slices: a file with several pages is a volume */
     bool tells_arrays; /* its reader itself reports which of several arrays it took */
     bool needs_points; /* it is the format of files whose points are in another file */
@@ -74,8 +79,8 @@ typedef struct cwi_format_driver {
 
 extern const cwi_format_driver cwi_format_nrrd, cwi_format_nifti, cwi_format_metaimage,
     cwi_format_vtk, cwi_format_vtu, cwi_format_vti, cwi_format_mrc, cwi_format_inr,
-    cwi_format_dicom, cwi_format_tiff, cwi_format_vdb, cwi_format_plot3d, cwi_format_raw,
-    cwi_format_glb, cwi_format_gltf, cwi_format_stl, cwi_format_ply, cwi_format_obj,
-    cwi_format_off, cwi_format_3mf, cwi_format_vtp, cwi_format_drc;
+    cwi_format_dicom, cwi_format_tiff, cwi_format_zarr, cwi_format_vdb, cwi_format_plot3d,
+    cwi_format_raw, cwi_format_glb, cwi_format_gltf, cwi_format_stl, cwi_format_ply,
+    cwi_format_obj, cwi_format_off, cwi_format_3mf, cwi_format_vtp, cwi_format_drc;
 
 #endif

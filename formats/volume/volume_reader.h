@@ -64,6 +64,14 @@ CW_NODISCARD cw_status cwi_tiff_read(const cwi_input *in, cwi_names *names,
 CW_NODISCARD cw_status cwi_vdb_read(const cwi_input *in, const cw_read_desc *desc,
                                     cw_volume *volume, cw_error *err);
 
+/* Recognise, read and list the levels of a store of Zarr: its folder, or a metadata file in
+ * it. */
+bool cwi_zarr_is_store(const cwi_input *folder);
+CW_NODISCARD cw_status cwi_zarr_read(const cwi_input *in, const cw_read_desc *desc,
+                                     cw_volume *volume, cw_error *err);
+CW_NODISCARD cw_status cwi_zarr_levels(const cwi_input *in, const cw_read_desc *desc,
+                                       cw_level **levels, size_t *count, cw_error *err);
+
 /* Reads one file and the one that desc->points names. */
 CW_NODISCARD cw_status cwi_plot3d_read(const cwi_input *in, const cw_read_desc *desc,
                                        cw_volume *volume, cw_error *err);

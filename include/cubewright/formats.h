@@ -96,6 +96,10 @@ typedef struct cw_read_desc {
     const char *array;        /* the name, where files have several; default: the array that the
                                  file names, else the first of one value */
 
+    size_t
+        level; /* of a volume that the file holds in several sizes, as OME-Zarr does; default:
+                     0, the finest */
+
     cw_label_table *labels; /* zeroed or filled; freed first, then filled with the names and
                                colours of labels that the file holds; free it with
                                cw_label_table_free(); default: not kept */
@@ -122,7 +126,8 @@ typedef struct cw_read_desc {
 
 /* Reads a volume: the whole file or a region of it, every component and time step.
  *
- * path is a file, a folder of slices, or a pattern such as "scan/slice_*.tif" that names them.
+ * path is a file, a folder of slices, a pattern such as "scan/slice_*.tif" that names them, or
+ * the folder of a Zarr store.
  * Numbers in their names count as numbers. With a layout (raw), each slice has an equal share
  * of the voxels. A DICOM file stands for its whole series, as far as it is in the same folder.
  *
@@ -150,7 +155,7 @@ typedef struct cw_read_desc {
  *                              an irregular grid
  *          CW_ERR_BACKEND      a library crashed on the file, or took too long
  *          CW_ERR_LIMIT        more voxels or bytes than allowed; CW_ERR_NO_MEMORY
- *          CW_ERR_ARGUMENT     no such reader or array; a region that is empty or leaves the
+ *          CW_ERR_ARGUMENT     no such reader, array or level; a region that is empty or leaves the
  *                              volume; a spacing for an irregular grid, or beside the claim
  *                              of a unit; a claim that the file contradicts
  *          CW_ERR_CANCELLED */
@@ -207,8 +212,8 @@ typedef struct cw_array {
     bool is_default; /* the array that is read when none is named */
 } cw_array;
 
-/* Lists the arrays of a file of VTK, the quantities of PLOT3D or the grids of OpenVDB. Files of
- * other formats, folders and patterns have none. If an array at points and one at cells have
+/* Lists the arrays of a file of VTK or a group of Zarr, the quantities of PLOT3D or the grids of
+ * OpenVDB. Files of other formats, folders and patterns have none. If an array at points and one at cells have
  * the same name, the one at points is read.
  *
  * arrays   set to *count of them, to be freed with cw_arrays_free(); NULL when there are none
@@ -216,6 +221,21 @@ typedef struct cw_array {
 CW_NODISCARD CW_API cw_status cw_arrays_list(const char *path, const cw_read_desc *desc,
                                              cw_array **arrays, size_t *count, cw_error *err);
 CW_API void cw_arrays_free(cw_array *arrays);
+
+/* One of the sizes in which a file holds its volume. */
+typedef struct cw_level {
+    char name[64];   /* path of its array in the store */
+    char axes[64];   /* names of all dimensions, as they are stored: "t c z y x" */
+    cw_volume shape; /* as it would be read, without voxels */
+} cw_level;
+
+/* Lists the levels of an image of OME-Zarr, the finest first. Files of other formats have none.
+ *
+ * levels   set to *count of them, to be freed with cw_levels_free(); NULL when there are none
+ * Returns  as cw_volume_read() for a header */
+CW_NODISCARD CW_API cw_status cw_levels_list(const char *path, const cw_read_desc *desc,
+                                             cw_level **levels, size_t *count, cw_error *err);
+CW_API void cw_levels_free(cw_level *levels);
 
 /* A series of images in a folder of DICOM files. */
 typedef struct cw_series {

@@ -1,0 +1,214 @@
+/* Finds and decodes single chunks of a Zarr array: files, and parts of shards. */
+#define _GNU_SOURCE /* close */
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "formats/zarr/zarr_decode.h"
+#include "formats/zarr/zarr_handle.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Prints the path of a chunk's file below the store. */
+static void print_key(const cwi_zarr_array *a, const size_t at[CWI_ZARR_RANK],
+                      char key[CWI_ZARR_KEY_BYTES])
+{
+    const size_t room = CWI_ZARR_KEY_BYTES;
+    size_t used = (size_t)snprintf(key, room, "%s%s%s", a->path, *a->path ? "/" : "",
+                                   a->has_prefix ? "c" : "");
+    for (size_t d = 0; d < a->rank && used < room; d++) {
+        const bool separates = d > 0 || a->has_prefix;
+        used += (size_t)snprintf(key + used, room - used, "%.*s%zu", separates ? 1 : 0,
+                                 &a->separator, at[d]);
+    }
+}
+
+/* Reads an encoded chunk at an offset of a file, and decodes it. Nothing is allocated for a
+ * chunk that is too short or too long. */
+static cw_status decode_part(const cwi_zarr_array *a, int fd, uint64_t offset, uint64_t size,
+                             void **to, cw_error *err)
+{
+    size_t got = 0;
+    cw_status st = cwi_zarr_packed_check(&a->chain, size, a->chunk_bytes, err);
+    if (st != CW_OK)
+        return st;
+    if (!*to)
+        *to = cwi_alloc_large(a->chunk_bytes, 1);
+    unsigned char *packed = a->chain.count ? cwi_alloc_array((size_t)size, 1) : *to;
+    if (!*to || !packed)
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a chunk of %zu bytes",
+                      a->chunk_bytes);
+    if (st == CW_OK)
+        st = cwi_input_read_at(fd, offset, packed, (size_t)size, &got, err);
+    if (st == CW_OK && got < size)
+        st = cwi_fail(err, CW_ERR_FORMAT, "the file ends inside a chunk");
+    if (st == CW_OK)
+        st = cwi_zarr_decode(&a->chain, packed, (size_t)size, *to, a->chunk_bytes,
+                             a->stored_bytes, err);
+    if (a->chain.count)
+        cwi_free(packed);
+    return st;
+}
+
+static cw_status load_file(const cwi_zarr *z, const char *key, void **to, bool *missing,
+                           cw_error *err)
+{
+    uint64_t size = 0;
+    int fd;
+    cw_status st = cwi_input_find_side(&z->in, key, &fd, &size, err);
+    *missing = st == CW_OK && fd < 0;
+    if (st == CW_OK && fd >= 0) {
+        st = decode_part(&z->array, fd, 0, size, to, err);
+        close(fd);
+    }
+    return st;
+}
+
+/* --- shards ------------------------------------------------------------------------------- */
+
+static void close_shard(cwi_zarr_shard *shard)
+{
+    if (shard->key && shard->fd >= 0)
+        close(shard->fd);
+    cwi_free(shard->index);
+    *shard = (cwi_zarr_shard){0};
+}
+
+void cwi_zarr_close_shards(cwi_zarr *z)
+{
+    for (size_t n = 0; z->shards && n < z->shard_slots; n++)
+        close_shard(&z->shards[n]);
+    cwi_free(z->shards);
+    z->shards = NULL;
+}
+
+static cw_status read_index(const cwi_zarr_array *a, cwi_zarr_shard *shard, cw_error *err)
+{
+    bool exact;
+    size_t got = 0;
+    const size_t bytes = 16 * a->shard_count;
+    const size_t packed = cwi_zarr_packed_max(&a->index_chain, bytes, &exact);
+    if (shard->size < packed)
+        return cwi_fail(err, CW_ERR_FORMAT, "a shard has %llu bytes; its index alone takes %zu",
+                        (unsigned long long)shard->size, packed);
+    unsigned char *text = cwi_alloc_array(packed, 1);
+    shard->index = cwi_alloc_array(a->shard_count, 16);
+    cw_status st = CW_OK;
+    if (!text || !shard->index)
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the index of a shard");
+    if (st == CW_OK)
+        st = cwi_input_read_at(shard->fd, a->index_at_start ? 0 : shard->size - packed, text,
+                               packed, &got, err);
+    if (st == CW_OK && got < packed)
+        st = cwi_fail(err, CW_ERR_FORMAT, "the file ends inside the index of a shard");
+    if (st == CW_OK)
+        st = cwi_zarr_decode(&a->index_chain, text, packed, shard->index, bytes, 8, err);
+    cwi_free(text);
+    return st;
+}
+
+/* Finds the place of a shard: its own, an empty one, or that of the shard unused for longest. */
+static cwi_zarr_shard *find_place(cwi_zarr *z, uint64_t key)
+{
+    cwi_zarr_shard *place = NULL;
+    for (size_t n = 0; n < z->shard_slots; n++) {
+        cwi_zarr_shard *s = &z->shards[n];
+        if (s->key == key)
+            return s;
+        if (s->users == 0 && (!place || s->used < place->used))
+            place = s;
+    }
+    return place;
+}
+
+/* Opens a shard, or finds it open. There is a place for every thread. */
+static cw_status take_shard(cwi_zarr *z, const char *name, uint64_t key, cwi_zarr_shard **taken,
+                            cw_error *err)
+{
+    cw_status st = CW_OK;
+    pthread_mutex_lock(&z->lock);
+    if (!z->shards)
+        z->shards = cwi_alloc_zeroed(z->shard_slots, sizeof *z->shards);
+    cwi_zarr_shard *s = z->shards ? find_place(z, key) : NULL;
+    if (!s)
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for open shards");
+    if (s && s->key != key) {
+        close_shard(s);
+        st = cwi_input_find_side(&z->in, name, &s->fd, &s->size, err);
+        s->key = st == CW_OK ? key : 0;
+        if (st == CW_OK && s->fd >= 0)
+            st = read_index(&z->array, s, err);
+        if (st != CW_OK)
+            close_shard(s);
+    }
+    if (st == CW_OK) {
+        s->users++;
+        s->used = ++z->clock;
+        *taken = s;
+    }
+    pthread_mutex_unlock(&z->lock);
+    return st;
+}
+
+static void return_shard(cwi_zarr *z, cwi_zarr_shard *shard)
+{
+    pthread_mutex_lock(&z->lock);
+    shard->users--;
+    pthread_mutex_unlock(&z->lock);
+}
+
+static cw_status read_shard(const cwi_zarr_array *a, const cwi_zarr_shard *s, size_t number,
+                            void **to, bool *missing, cw_error *err)
+{
+    if (s->fd < 0) {
+        *missing = true;
+        return CW_OK;
+    }
+    const uint64_t offset = s->index[2 * number], size = s->index[2 * number + 1];
+    *missing = offset == UINT64_MAX && size == UINT64_MAX;
+    if (*missing)
+        return CW_OK;
+    if (offset > s->size || size > s->size - offset)
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the index of a shard places inner chunk %zu at byte %llu, %llu bytes "
+                        "long; the file has %llu",
+                        number, (unsigned long long)offset, (unsigned long long)size,
+                        (unsigned long long)s->size);
+    cw_status st = decode_part(a, s->fd, offset, size, to, err);
+    if (st != CW_OK && st != CW_ERR_NO_MEMORY) {
+        char subject[48];
+        snprintf(subject, sizeof subject, "inner chunk %zu", number);
+        return cwi_fail_in(err, st, subject);
+    }
+    return st;
+}
+
+cw_status cwi_zarr_load_chunk(cwi_zarr *z, const size_t at[CWI_ZARR_RANK], void **to,
+                              bool *missing, cw_error *err)
+{
+    const cwi_zarr_array *a = &z->array;
+    char key[CWI_ZARR_KEY_BYTES];
+    size_t outer[CWI_ZARR_RANK];
+    uint64_t shard_number = 0, number = 0;
+    cw_status st;
+    for (size_t d = 0; d < a->rank; d++)
+        outer[d] = at[d] / (a->chunk[d] / a->inner[d]);
+    print_key(a, outer, key);
+    if (!a->is_sharded) {
+        st = load_file(z, key, to, missing, err);
+    } else {
+        cwi_zarr_shard *shard = NULL;
+        for (size_t d = 0; d < a->rank; d++)
+            shard_number = shard_number * ((a->shape[d] - 1) / a->chunk[d] + 1) + outer[d];
+        for (size_t n = 0; n < a->rank; n++) {
+            const size_t d = a->shard_order[n], along = a->chunk[d] / a->inner[d];
+            number = number * along + at[d] % along;
+        }
+        st = take_shard(z, key, shard_number + 1, &shard, err);
+        if (st == CW_OK) {
+            st = read_shard(a, shard, (size_t)number, to, missing, err);
+            return_shard(z, shard);
+        }
+    }
+    return st == CW_OK ? CW_OK : cwi_fail_in(err, st, key);
+}

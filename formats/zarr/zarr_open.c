@@ -1,0 +1,356 @@
+/* Opens an array of a Zarr store: finds it by path, name or level, and makes its caches. */
+#include "formats/zarr/zarr.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "formats/bytes/file_pattern.h"
+#include "formats/text/label_ome.h"
+#include "formats/volume/named_arrays.h"
+#include "formats/zarr/zarr_handle.h"
+#include "formats/zarr/zarr_image.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { CACHE_BYTES = 256 << 20, MAX_SLOTS = 1 << 18 };
+
+/* --- from nodes to arrays ----------------------------------------------------------------- */
+
+/* Takes the array of a node by itself. */
+static cw_status take_array(cwi_zarr *z, const cwi_zarr_node *node, cw_error *err)
+{
+    cwi_zarr_frame frame;
+    cw_status st = cwi_zarr_node_array(node, &z->array, err);
+    if (st != CW_OK)
+        return st;
+    cwi_zarr_plain_frame(&z->array, &frame);
+    st = cwi_zarr_set_frame(z, &frame, err);
+    return st == CW_OK ? CW_OK : cwi_zarr_fail_in(err, st, node, false);
+}
+
+/* Reads the labels of an image-label, and marks the volume as one. */
+static cw_status take_labels(cwi_zarr *z, const cwi_zarr_node *node, cwi_zarr_found *found,
+                             cw_error *err)
+{
+    const json_t *image = json_object_get(node->ome, "image-label");
+    if (!json_is_object(image))
+        return CW_OK;
+    z->shape.known |= CW_KNOWN_LABELS;
+    if (z->array.is_wide)
+        z->array.type = CW_U32;
+    cw_status st = found->labels ? cwi_label_ome_read(image, found->labels, err) : CW_OK;
+    return st == CW_OK ? CW_OK : cwi_zarr_fail_in(err, st, node, true);
+}
+
+/* Opens the array of a level. */
+static cw_status open_level(const cwi_zarr *z, const cwi_zarr_node *image, size_t level,
+                            cwi_zarr_array *array, cw_error *err)
+{
+    char path[CWI_ZARR_KEY_BYTES];
+    cwi_zarr_node node = {0};
+    cw_status st = cwi_zarr_level_path(image, level, path, err);
+    if (st == CW_OK)
+        st = cwi_zarr_node_open(&node, &z->in, path, err);
+    if (st == CW_OK && node.kind != CWI_ZARR_IS_ARRAY) {
+        st = cwi_fail(err, CW_ERR_FORMAT,
+                      "datasets[%zu]: 'path' is '%.200s', where no array is", level, path);
+        cwi_zarr_fail_in(err, st, image, true);
+    }
+    if (st == CW_OK)
+        st = cwi_zarr_node_array(&node, array, err);
+    cwi_zarr_node_close(&node);
+    return st;
+}
+
+/* Notes the images of labels that belong to an image. */
+static void note_labels(const cwi_zarr *z, const cwi_zarr_node *image, cwi_zarr_found *found)
+{
+    cwi_zarr_node node = {0};
+    char path[CWI_ZARR_KEY_BYTES];
+    size_t used = 0;
+    if (cwi_zarr_join(image->path, "labels", path, NULL) == CW_OK &&
+        cwi_zarr_node_open(&node, &z->in, path, NULL) == CW_OK) {
+        const json_t *list = json_object_get(node.ome, "labels");
+        for (size_t n = 0; n < json_array_size(list) && used < 300; n++) {
+            const char *name = json_string_value(json_array_get(list, n));
+            used += (size_t)snprintf(
+                found->note + used, sizeof found->note - used, "%s'%.40s/%.40s'",
+                used ? ", " : "label maps of it, for --array: ", path, name ? name : "?");
+        }
+    }
+    cwi_zarr_node_close(&node);
+}
+
+static cw_status take_image(cwi_zarr *z, const cwi_zarr_node *image, size_t level,
+                            cwi_zarr_found *found, cw_error *err)
+{
+    cwi_zarr_frame frame;
+    const size_t count = cwi_zarr_level_count(image);
+    if (count == 0)
+        return cwi_zarr_fail_in(
+            err, cwi_fail(err, CW_ERR_FORMAT, "'multiscales' has no 'datasets'"), image, true);
+    if (level >= count)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "level %zu was asked for; there are %zu, from 0",
+                        level, count);
+    cw_status st = open_level(z, image, level, &z->array, err);
+    if (st == CW_OK)
+        st = take_labels(z, image, found, err);
+    if (st == CW_OK)
+        st = cwi_zarr_level_frame(image, level, &z->array, &frame, err);
+    if (st == CW_OK && (st = cwi_zarr_set_frame(z, &frame, err)) != CW_OK)
+        cwi_zarr_fail_in(err, st, image, true);
+    z->level_count = count;
+    const size_t images = json_array_size(json_object_get(image->ome, "multiscales"));
+    if (st == CW_OK)
+        note_labels(z, image, found);
+    if (st == CW_OK && images > 1 && !*found->note)
+        snprintf(found->note, sizeof found->note,
+                 "'multiscales' lists %zu images; the first is taken", images);
+    return st;
+}
+
+static bool is_image(const cwi_zarr_node *node)
+{
+    return json_is_array(json_object_get(node->ome, "multiscales"));
+}
+
+static cw_status take_node(cwi_zarr *z, const cwi_zarr_node *node, size_t level,
+                           cwi_zarr_found *found, cw_error *err)
+{
+    if (is_image(node))
+        return take_image(z, node, level, found, err);
+    if (level > 0)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "level %zu was asked for; the array '%s' has no levels", level,
+                        *node->path ? node->path : ".");
+    return take_array(z, node, err);
+}
+
+/* --- groups ------------------------------------------------------------------------------- */
+
+/* Looks at an array or image of a group. An array that is not read has 0 dimensions. */
+static cw_status look_at(const cwi_zarr *z, const char *path, cwi_zarr_array *array,
+                         cw_error *err)
+{
+    cwi_zarr_node node = {0};
+    cw_error ignored;
+    *array = (cwi_zarr_array){0};
+    cw_status st = cwi_zarr_node_open(&node, &z->in, path, err);
+    if (st == CW_OK) {
+        st = is_image(&node) ? open_level(z, &node, 0, array, &ignored)
+                             : cwi_zarr_node_array(&node, array, &ignored);
+        if (st == CW_ERR_NO_MEMORY) {
+            cwi_fail(err, st, "%s", ignored.message);
+        } else if (st != CW_OK) {
+            array->rank = 0;
+            st = CW_OK;
+        }
+    }
+    cwi_zarr_node_close(&node);
+    return st;
+}
+
+/* Finds the first array of a group with three dimensions or more, else its first that is read. */
+static cw_status choose_array(cwi_zarr *z, const cwi_zarr_node *group, cwi_zarr_found *found,
+                              char chosen[CWI_ZARR_KEY_BYTES], cw_error *err)
+{
+    cwi_zarr_listing list;
+    size_t best = 0;
+    cw_status st = cwi_zarr_list(&z->in, group->path, &list, err);
+    chosen[0] = '\0';
+    for (size_t n = 0; st == CW_OK && n < list.paths.count; n++) {
+        cwi_zarr_array array;
+        st = look_at(z, list.paths.items[n], &array, err);
+        const size_t worth = array.rank > 3 ? 3 : array.rank;
+        if (st == CW_OK && found->arrays)
+            cwi_array_list_add(found->arrays, list.paths.items[n], array.type_name, 1, false,
+                               array.rank > 0);
+        if (worth > best && (worth == 3 || best == 0)) {
+            best = worth;
+            snprintf(chosen, CWI_ZARR_KEY_BYTES, "%s", list.paths.items[n]);
+        }
+    }
+    if (st == CW_OK && !chosen[0])
+        st = list.paths.count ? look_at(z, list.paths.items[0], &z->array, err)
+                              : cwi_fail(err, CW_ERR_FORMAT, "the group holds no array");
+    if (st == CW_OK && !chosen[0])
+        snprintf(chosen, CWI_ZARR_KEY_BYTES, "%s", list.paths.items[0]); /* it tells why not */
+    if (st == CW_OK && found->arrays)
+        cwi_array_list_choose(found->arrays, chosen, false);
+    cwi_names_free(&list.paths);
+    return st;
+}
+
+static cw_status take_group(cwi_zarr *z, const cwi_zarr_node *group, size_t level,
+                            cwi_zarr_found *found, cw_error *err)
+{
+    cwi_zarr_node node = {0};
+    char path[CWI_ZARR_KEY_BYTES];
+    cw_status st = choose_array(z, group, found, path, err);
+    if (st == CW_OK)
+        st = cwi_zarr_node_open(&node, &z->in, path, err);
+    if (st == CW_OK)
+        st = take_node(z, &node, level, found, err);
+    cwi_zarr_node_close(&node);
+    return st;
+}
+
+/* Finds the level of an image that a name is the path of. */
+static bool find_named_level(const cwi_zarr_node *root, const char *name, size_t *level)
+{
+    char path[CWI_ZARR_KEY_BYTES];
+    for (size_t n = 0; is_image(root) && n < cwi_zarr_level_count(root); n++)
+        if (cwi_zarr_level_path(root, n, path, NULL) == CW_OK && strcmp(path, name) == 0) {
+            *level = n;
+            return true;
+        }
+    return false;
+}
+
+/* Reports a name that leads to nothing, with as many of the store's arrays as fit. */
+static cw_status fail_name(const cwi_zarr *z, const char *name, cw_error *err)
+{
+    cwi_zarr_listing list;
+    char text[240] = "";
+    size_t used = 0, n = 0;
+    cw_status st = cwi_zarr_list(&z->in, "", &list, err);
+    for (; st == CW_OK && n < list.paths.count && used < sizeof text - 80; n++)
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s'%.60s'",
+                                 used ? ", " : "; there are ", list.paths.items[n]);
+    if (st == CW_OK)
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "the store has no array '%.200s'%s%s", name, text,
+                      n < list.paths.count ? ", ..." : "");
+    cwi_names_free(&list.paths);
+    return st;
+}
+
+/* Takes the node that a name leads to, from the root. */
+static cw_status take_named(cwi_zarr *z, const cwi_zarr_node *root, const cwi_zarr_desc *desc,
+                            cwi_zarr_found *found, cw_error *err)
+{
+    cwi_zarr_node node = {0};
+    size_t level = desc->level;
+    if (find_named_level(root, desc->array, &level)) {
+        cw_status st = take_image(z, root, level, found, err);
+        z->level_count = 0; /* one was named */
+        return st;
+    }
+    cw_status st = cwi_zarr_node_open(&node, &z->in, desc->array, err);
+    if (st == CW_OK && node.kind == CWI_ZARR_NOTHING)
+        st = fail_name(z, desc->array, err);
+    else if (st == CW_OK && node.kind == CWI_ZARR_IS_GROUP && !is_image(&node))
+        st = take_group(z, &node, level, found, err);
+    else if (st == CW_OK)
+        st = take_node(z, &node, level, found, err);
+    cwi_zarr_node_close(&node);
+    return st;
+}
+
+static cw_status take_root(cwi_zarr *z, const cwi_zarr_desc *desc, cwi_zarr_found *found,
+                           cw_error *err)
+{
+    cwi_zarr_node root = {0};
+    cw_status st = cwi_zarr_node_open(&root, &z->in, "", err);
+    if (st == CW_OK && root.kind == CWI_ZARR_NOTHING && !desc->array)
+        st = cwi_fail(err, CW_ERR_FORMAT,
+                      "the folder has no metadata of Zarr; zarr.json, .zarray or .zgroup was "
+                      "expected");
+    else if (st == CW_OK && desc->array)
+        st = take_named(z, &root, desc, found, err);
+    else if (st == CW_OK && root.kind == CWI_ZARR_IS_GROUP && !is_image(&root))
+        st = take_group(z, &root, desc->level, found, err);
+    else if (st == CW_OK)
+        st = take_node(z, &root, desc->level, found, err);
+    cwi_zarr_node_close(&root);
+    return st;
+}
+
+/* --- the handle --------------------------------------------------------------------------- */
+
+/* Opens the folder of a path, which may name a metadata file in it. */
+static cw_status open_store(cwi_zarr *z, const char *path, cw_error *err)
+{
+    static const char *const names[] = {"zarr.json", ".zarray", ".zgroup", ".zattrs",
+                                        ".zmetadata"};
+    z->path = cwi_strdup(path);
+    if (!z->path)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a path");
+    if (cwi_is_folder(path))
+        return cwi_input_open_folder(&z->in, z->path, err);
+    cw_status st = cwi_input_open(&z->in, z->path, err);
+    for (size_t n = 0; st == CW_OK && n < sizeof names / sizeof *names; n++)
+        if (cwi_input_is_named(&z->in, names[n]))
+            return CW_OK;
+    return st == CW_OK ? cwi_fail(err, CW_ERR_FORMAT,
+                                  "the folder of a Zarr store was expected, or zarr.json, "
+                                  ".zarray or .zgroup in it")
+                       : st;
+}
+
+/* Makes room for the chunks that are kept: two rows of one place in z each, as a slab with a plane
+ * of the next one meets both. More would hold rows that slabs have passed. */
+static cw_status make_caches(cwi_zarr *z, size_t bytes, cw_error *err)
+{
+    size_t slots = bytes / z->array.chunk_bytes, needed = 2;
+    for (size_t d = 0; d < z->array.rank; d++)
+        if ((int)d != z->dimensions[CWI_AXIS_Z] &&
+            !cwi_size_mul(needed, (z->array.shape[d] - 1) / z->array.inner[d] + 1, &needed))
+            needed = SIZE_MAX;
+    slots = slots < needed ? slots : needed;
+    z->slot_count = slots < MAX_SLOTS ? slots : MAX_SLOTS;
+    z->slots = cwi_alloc_zeroed(z->slot_count, sizeof *z->slots);
+    const size_t threads = (size_t)cwi_threads(z->threads);
+    const size_t index_bytes = z->array.is_sharded ? 16 * z->array.shard_count : 1;
+    const size_t places = CWI_ZARR_INDEX_BYTES / index_bytes;
+    z->shard_slots = (places < CWI_ZARR_SHARDS ? places : CWI_ZARR_SHARDS) + threads;
+    z->spare = cwi_alloc_zeroed(z->slot_count, sizeof *z->spare);
+    return z->slots && z->spare ? CW_OK
+                                : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a cache");
+}
+
+cw_status cwi_zarr_open_found(const char *path, const cwi_zarr_desc *desc,
+                              cwi_zarr_found *found, cwi_zarr **zarr, cw_error *err)
+{
+    cwi_zarr *z = cwi_alloc_zeroed(1, sizeof *z);
+    *zarr = NULL;
+    if (!z)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a Zarr store");
+    pthread_mutex_init(&z->lock, NULL);
+    z->threads = desc->threads;
+    cw_status st = open_store(z, path, err);
+    z->in.allow_external = desc->allow_external;
+    if (st == CW_OK)
+        st = take_root(z, desc, found, err);
+    if (st == CW_OK)
+        st = make_caches(z, desc->cache_bytes ? desc->cache_bytes : CACHE_BYTES, err);
+    if (st == CW_OK)
+        *zarr = z;
+    else
+        cwi_zarr_close(z);
+    return st;
+}
+
+cw_status cwi_zarr_open(const char *path, const cwi_zarr_desc *desc, cwi_zarr **zarr,
+                        cw_error *err)
+{
+    static const cwi_zarr_desc defaults = {0};
+    cwi_zarr_found found = {0};
+    return cwi_zarr_open_found(path, desc ? desc : &defaults, &found, zarr, err);
+}
+
+void cwi_zarr_close(cwi_zarr *z)
+{
+    if (!z)
+        return;
+    for (size_t n = 0; n < z->slot_count && z->slots; n++)
+        cwi_free(z->slots[n].bytes);
+    for (size_t n = 0; n < z->spare_count; n++)
+        cwi_free(z->spare[n]);
+    cwi_free(z->slots);
+    cwi_free(z->spare);
+    cwi_zarr_close_shards(z);
+    cwi_input_close(&z->in);
+    pthread_mutex_destroy(&z->lock);
+    cwi_free(z->path);
+    cwi_free(z);
+}

@@ -1,0 +1,158 @@
+/* Reads the volume of a Zarr store, or a part of it, and lists its levels. */
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/volume/volume.h"
+#include "formats/volume/named_arrays.h"
+#include "formats/volume/volume_reader.h"
+#include "formats/zarr/zarr_handle.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+static bool has_file(const cwi_input *folder, const char *name)
+{
+    uint64_t size;
+    int fd = -1;
+    if (cwi_input_find_side(folder, name, &fd, &size, NULL) != CW_OK || fd < 0)
+        return false;
+    close(fd);
+    return true;
+}
+
+bool cwi_zarr_is_store(const cwi_input *folder)
+{
+    return has_file(folder, "zarr.json") || has_file(folder, ".zarray") ||
+           has_file(folder, ".zgroup");
+}
+
+static cwi_zarr_desc describe_opening(const cw_read_desc *desc)
+{
+    return (cwi_zarr_desc){
+        .array = desc->array, .level = desc->level, .allow_external = desc->allow_external};
+}
+
+/* Sets the strides of packed voxels, and counts their bytes. */
+static cw_status pack_shape(cw_volume *v, size_t *bytes, cw_error *err)
+{
+    size_t stride = cw_type_size(v->type);
+    const size_t counts[] = {v->dim[0], v->dim[1], v->dim[2], v->components, v->steps};
+    ptrdiff_t *const strides[] = {&v->stride[0], &v->stride[1], &v->stride[2],
+                                  &v->component_stride, &v->step_stride};
+    for (size_t n = 0; n < sizeof counts / sizeof *counts; n++) {
+        *strides[n] = (ptrdiff_t)stride;
+        if (!cwi_size_mul(stride, counts[n], &stride) || stride > PTRDIFF_MAX)
+            return cwi_fail(err, CW_ERR_LIMIT,
+                            "'shape' asks for more voxels than an address space holds");
+    }
+    *bytes = stride;
+    return CW_OK;
+}
+
+/* Narrows the shape to the wanted part, and the box to its voxels. */
+static cw_status narrow_shape(const cw_read_desc *desc, cw_volume *v, cwi_zarr_box *box,
+                              size_t *bytes, cw_error *err)
+{
+    size_t every[3];
+    cw_status st = desc->region ? cwi_volume_shrink(v, desc->region, err) : CW_OK;
+    for (int a = 0; a < 3; a++) {
+        every[a] = desc->every[a] ? desc->every[a] : 1;
+        box->first[a] = desc->region ? desc->region->first[a] : 0;
+        box->count[a] = v->dim[a];
+        box->every[a] = every[a];
+    }
+    box->count[CWI_AXIS_COMPONENT] = v->components;
+    box->count[CWI_AXIS_STEP] = v->steps;
+    if (st == CW_OK)
+        st = cwi_volume_thin(v, every, err);
+    for (int a = 0; st == CW_OK && a < 3; a++) /* those beyond the last step are left out */
+        box->count[a] = (v->dim[a] - 1) * every[a] + 1;
+    if (st == CW_OK)
+        st = pack_shape(v, bytes, err);
+    return st == CW_OK
+               ? cwi_check_limits(v, *bytes, desc->region ? "region" : "shape", desc, err)
+               : st;
+}
+
+static cw_status load_volume(cwi_zarr *zarr, const cw_read_desc *desc, cw_volume *volume,
+                             cw_error *err)
+{
+    cw_volume v = *cwi_zarr_shape(zarr);
+    cwi_zarr_box box = {0};
+    size_t bytes = 0;
+    cwi_set_spacing(&v, desc);
+    cw_status st = narrow_shape(desc, &v, &box, &bytes, err);
+    if (st != CW_OK || desc->header_only) {
+        if (st == CW_OK)
+            *volume = v;
+        return st;
+    }
+    v.owned = cwi_alloc_large(bytes, 1);
+    if (!v.owned)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of voxels", bytes);
+    v.data = v.owned;
+    st = cwi_zarr_read_box(zarr, &box, v.owned, &desc->progress, err);
+    if (st == CW_OK)
+        *volume = v;
+    else
+        cw_volume_free(&v);
+    return st;
+}
+
+cw_status cwi_zarr_read(const cwi_input *in, const cw_read_desc *desc, cw_volume *volume,
+                        cw_error *err)
+{
+    const cwi_zarr_desc opening = describe_opening(desc);
+    cwi_zarr_found found = {.arrays = in->arrays, .labels = in->labels};
+    cwi_zarr *zarr;
+    cw_status st = cwi_zarr_open_found(in->path, &opening, &found, &zarr, err);
+    if (st == CW_OK && *found.note)
+        cwi_note(desc, "%s", found.note);
+    if (st == CW_OK)
+        st = load_volume(zarr, desc, volume, err);
+    cwi_zarr_close(zarr);
+    return st;
+}
+
+/* --- levels ------------------------------------------------------------------------------- */
+
+static void fill_level(const cwi_zarr *zarr, cw_level *level)
+{
+    snprintf(level->name, sizeof level->name, "%.*s", (int)sizeof level->name - 1,
+             zarr->array.path);
+    snprintf(level->axes, sizeof level->axes, "%.*s", (int)sizeof level->axes - 1, zarr->axes);
+    level->shape = *cwi_zarr_shape(zarr);
+}
+
+cw_status cwi_zarr_levels(const cwi_input *in, const cw_read_desc *desc, cw_level **levels,
+                          size_t *count, cw_error *err)
+{
+    cwi_zarr_desc opening = describe_opening(desc);
+    cwi_zarr_found found = {0};
+    cwi_zarr *zarr;
+    opening.level = 0;
+    *levels = NULL;
+    *count = 0;
+    cw_status st = cwi_zarr_open_found(in->path, &opening, &found, &zarr, err);
+    const size_t all = st == CW_OK ? zarr->level_count : 0;
+    cw_level *list = all ? cwi_alloc_zeroed(all, sizeof *list) : NULL;
+    if (all && !list)
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a list of levels");
+    for (size_t n = 0; st == CW_OK && n < all; n++) {
+        if (n > 0) {
+            cwi_zarr_close(zarr);
+            opening.level = n;
+            st = cwi_zarr_open_found(in->path, &opening, &found, &zarr, err);
+        }
+        if (st == CW_OK)
+            fill_level(zarr, &list[n]);
+    }
+    cwi_zarr_close(zarr);
+    if (st != CW_OK) {
+        cwi_free(list);
+        return st;
+    }
+    *levels = list;
+    *count = all;
+    return CW_OK;
+}
