@@ -381,6 +381,7 @@ typedef struct cw_compressed {
     size_t merged;             /* vertices that fell onto another: only with bits stated */
     size_t flat;               /* triangles that lost their area: only with bits stated */
     size_t dropped;            /* triangles with a vertex twice, which Draco cannot store */
+    size_t fragments;          /* meshes in the nodes of an octree: neuroglancer alone */
     uint64_t bytes;            /* of the arrays in the file */
     double encode_s, decode_s; /* times to encode, and to check the decoded data */
 } cw_compressed;
