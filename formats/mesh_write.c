@@ -141,8 +141,10 @@ static cw_status check_levels(const cwi_format_driver *f, const cw_part *parts, 
         if (level == 0)
             continue;
         if (!f->write.levels)
-            return cwi_fail(err, CW_ERR_ARGUMENT,
-                            "%s has no levels of detail; glTF (.glb, .gltf) has", f->name);
+            return cwi_fail(
+                err, CW_ERR_ARGUMENT,
+                "%s has no levels of detail; glTF (.glb, .gltf) and neuroglancer have",
+                f->name);
         if (i == 0 || parts[i - 1].level != level - 1)
             return cwi_fail(err, CW_ERR_ARGUMENT,
                             "part %zu is of level %zu: one of level %zu must be "

@@ -286,7 +286,8 @@ static void print_compressed(const cli_made *made)
     if (c->dropped) {
         cli_result(", ");
         print_count(c->dropped, "triangle");
-        cli_result(" with a repeated vertex left out");
+        cli_result(c->fragments ? " smaller than a step left out"
+                                : " with a repeated vertex left out");
     }
     cli_result(", verified by decoding");
 }
