@@ -1,7 +1,10 @@
 /* Cancels pairs of triangles with the same corners and opposite windings. */
 #include "core/base/memory.h"
+#include "core/geometry/lattice_map.h"
+#include "core/geometry/vec3.h"
 #include "formats/neuroglancer/lod_grid.h"
 
+#include <math.h>
 #include <string.h>
 
 /* A triangle with its corners in rising order. */
@@ -23,6 +26,28 @@ static sorted_corners sort_corners(const uint32_t *triangle)
         }
     }
     return s;
+}
+
+/* The height of needles, in steps: rounding moves each of three corners by less than one. */
+static const double NEEDLE_STEPS = 2;
+
+/* Returns true if the height over the longest side is small. */
+static bool is_needle(const uint32_t *triangle, const uint64_t *keys)
+{
+    double corner[3][3], side[3][3], normal[3], longest_sq = 0;
+    for (int k = 0; k < 3; k++) {
+        uint32_t at[3];
+        cwi_place_of_key(keys[triangle[k]], at);
+        for (int a = 0; a < 3; a++)
+            corner[k][a] = at[a];
+    }
+    for (int k = 0; k < 3; k++) {
+        for (int a = 0; a < 3; a++)
+            side[k][a] = corner[(k + 1) % 3][a] - corner[k][a];
+        longest_sq = fmax(longest_sq, cwi_dot(side[k], side[k]));
+    }
+    cwi_cross(side[0], side[1], normal);
+    return cwi_dot(normal, normal) <= NEEDLE_STEPS * NEEDLE_STEPS * longest_sq;
 }
 
 static uint64_t hash_corners(const sorted_corners *s)
@@ -53,7 +78,7 @@ static void enter_triangle(const uint32_t *triangles, uint32_t t, uint32_t *tabl
     table[slot] = t + 1;
 }
 
-bool cwi_lod_cancel(cw_mesh *mesh)
+bool cwi_lod_cancel(cw_mesh *mesh, const uint64_t *keys)
 {
     size_t slots = 16, kept = 0;
     while (slots < 2 * mesh->triangle_count)
@@ -62,7 +87,8 @@ bool cwi_lod_cancel(cw_mesh *mesh)
     bool *cancelled = cwi_alloc_zeroed(mesh->triangle_count, sizeof *cancelled);
     const bool has_memory = table && cancelled;
     for (size_t t = 0; t < mesh->triangle_count && has_memory; t++)
-        enter_triangle(mesh->triangles, (uint32_t)t, table, slots, cancelled);
+        if (is_needle(mesh->triangles + 3 * t, keys))
+            enter_triangle(mesh->triangles, (uint32_t)t, table, slots, cancelled);
     for (size_t t = 0; t < mesh->triangle_count && has_memory; t++)
         if (!cancelled[t])
             memmove(mesh->triangles + 3 * kept++, mesh->triangles + 3 * t,

@@ -63,9 +63,11 @@ CW_NODISCARD cw_status cwi_lod_cut(const cwi_lod_grid *grid, const cwi_part *par
                                    cwi_lod_level *level, cw_error *err);
 void cwi_lod_free(cwi_lod_level *level);
 
-/* Leaves out pairs of triangles with the same corners that face each other: rounding folds thin
- * parts of a surface flat. A closed mesh stays closed. Returns false without memory. */
-bool cwi_lod_cancel(cw_mesh *mesh);
+/* Leaves out pairs of needles with the same corners that face each other: rounding folds needles
+ * flat. A closed mesh stays closed. Sheets with two sides stay, as their triangles are no needles.
+ * keys: of the places that are the vertices.
+ * Returns false without memory. */
+bool cwi_lod_cancel(cw_mesh *mesh, const uint64_t *keys);
 
 /* Unpacks a Morton code. */
 void cwi_lod_node(uint32_t code, uint32_t node[3]);

@@ -90,7 +90,7 @@ static cw_status make_fragment(const writer *w, const cwi_lod_level *level, size
     mesh->triangles = cwi_alloc_array(count, 3 * sizeof *mesh->triangles);
     cw_status st = mesh->triangles ? number_corners(w, level, first, &places, mesh, err)
                                    : fail_memory(count, err);
-    if (st == CW_OK && !cwi_lod_cancel(mesh))
+    if (st == CW_OK && !cwi_lod_cancel(mesh, places.keys))
         st = fail_memory(count, err);
     if (st == CW_OK && mesh->triangle_count)
         st = place_vertices(&places, mesh, err);
