@@ -36,7 +36,7 @@ static const char *writer_name(const cwi_format_driver *f)
 
 static const char *writer_extensions(const cwi_format_driver *f)
 {
-    return f->write.write ? f->extensions : NULL;
+    return f->write.write && *f->extensions ? f->extensions : NULL;
 }
 
 static const char *text_writer_name(const cwi_format_driver *f)
@@ -128,6 +128,8 @@ static cw_status prepare_writer(const char *path, const cw_write_desc *d,
         st = check_sides(f, d, err);
     if (st == CW_OK)
         st = check_compression(f, d, err);
+    if (st == CW_OK && f->write.check)
+        st = f->write.check(d, err);
     return st == CW_OK && f->write.prepare ? f->write.prepare(err) : st;
 }
 
@@ -164,8 +166,10 @@ static cw_status check_levels(const cwi_format_driver *f, const cw_part *parts, 
         if (level == 0)
             continue;
         if (!f->write.levels)
-            return cwi_fail(err, CW_ERR_ARGUMENT,
-                            "%s has no levels of detail; glTF (.glb, .gltf) has", f->name);
+            return cwi_fail(
+                err, CW_ERR_ARGUMENT,
+                "%s has no levels of detail; glTF (.glb, .gltf) and neuroglancer have",
+                f->name);
         if (i == 0 || parts[i - 1].level != level - 1)
             return cwi_fail(err, CW_ERR_ARGUMENT,
                             "part %zu is of level %zu: one of level %zu must be "
@@ -177,19 +181,34 @@ static cw_status check_levels(const cwi_format_driver *f, const cw_part *parts, 
     return CW_OK;
 }
 
+static cw_status open_output(const char *path, const cwi_format_driver *f,
+                             const cw_write_desc *d, cwi_mesh_output *out, cw_error *err)
+{
+    return f->write.replaces
+               ? cwi_outfolder_open(&out->folder, path, d->no_clobber, f->write.replaces, err)
+               : cwi_outfile_open(&out->file, path, d->no_clobber, err);
+}
+
+static void abort_output(cwi_mesh_output *out)
+{
+    cwi_outfile_abort(&out->side);
+    cwi_outfile_abort(&out->file);
+    cwi_outfolder_abort(&out->folder);
+}
+
 static cw_status write_parts(const char *path, const cwi_parts *parts,
                              const cwi_format_driver *f, const cw_write_desc *d,
                              cwi_mesh_output *out, cw_error *err)
 {
-    cw_status st = cwi_outfile_open(&out->file, path, d->no_clobber, err);
+    cw_status st = open_output(path, f, d, out, err);
     if (st == CW_OK)
         st = f->write.write(parts, out, err);
     if (st == CW_OK && out->side)
         st = cwi_outfile_commit(&out->side, err);
     if (st == CW_OK)
-        st = cwi_outfile_commit(&out->file, err);
-    cwi_outfile_abort(&out->side);
-    cwi_outfile_abort(&out->file);
+        st = out->folder ? cwi_outfolder_commit(&out->folder, err)
+                         : cwi_outfile_commit(&out->file, err);
+    abort_output(out);
     return st;
 }
 
@@ -285,11 +304,11 @@ cw_status cw_mesh_write_loss(const char *path, const cw_mesh *mesh, const cw_wri
 cw_status cw_mesh_write_check(const char *path, const cw_write_desc *desc, cw_error *err)
 {
     const cw_write_desc d = desc ? *desc : (cw_write_desc){0};
-    cwi_outfile *file = NULL;
+    cwi_mesh_output out = {0};
     const cwi_format_driver *f;
     cw_status st = prepare_writer(path, &d, &f, err);
     if (st == CW_OK) /* the only sure way is to make a file and drop it */
-        st = cwi_outfile_open(&file, path, d.no_clobber, err);
-    cwi_outfile_abort(&file);
+        st = open_output(path, f, &d, &out, err);
+    abort_output(&out);
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }

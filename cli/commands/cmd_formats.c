@@ -20,7 +20,7 @@ static void print_row(const cw_format *f)
     *d++ = f->writes_volume || f->writes_mesh ? 'w' : '-';
     *d = '\0';
     const bool volume = f->reads_volume || f->writes_volume;
-    printf("%-11s%-8s%-4s%-22s%s%s\n", f->name, volume ? "volume" : "mesh", does, f->extensions,
+    printf("%-13s%-8s%-4s%-22s%s%s\n", f->name, volume ? "volume" : "mesh", does, f->extensions,
            f->about, f->in_this_build ? "" : " (not in this build)");
 }
 
@@ -71,7 +71,7 @@ static cw_status run_formats(void *p, cw_error *err)
         print_json(formats, count);
         return CW_OK;
     }
-    printf("%-11s%-8s%-4s%-22s%s\n", "name", "holds", "", "extensions", "what");
+    printf("%-13s%-8s%-4s%-22s%s\n", "name", "holds", "", "extensions", "what");
     for (size_t i = 0; i < count; i++)
         print_row(&formats[i]);
     puts("r: read, w: written; 'cubewright formats --json' also says what writing loses");
@@ -81,9 +81,9 @@ static cw_status run_formats(void *p, cw_error *err)
 static void print_availability(const char *name, bool available, const char *reason)
 {
     if (available)
-        printf("%-11syes\n", name);
+        printf("%-13syes\n", name);
     else
-        printf("%-11sno: %s\n", name, reason);
+        printf("%-13sno: %s\n", name, reason);
 }
 
 /* Prints features and formats. A feature that is one format has the format's name and is

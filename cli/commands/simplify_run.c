@@ -129,10 +129,11 @@ static cw_status check_args(run_state *s, cw_error *err)
         return cwi_fail(err, CW_ERR_UNSUPPORTED,
                         "simplify needs OpenMesh, which this build lacks: install "
                         "libopenmesh-dev and build again");
+    const cli_lod_files files = cli_lod_files_of(args->output, args->written.format);
     st = args->lod.count
              ? cli_name_lod_outputs(&s->outputs, args->output, args->common.inputs[0],
                                     args->lod.count,
-                                    cli_is_gltf(args->output, args->written.format), err)
+                                    files == CLI_LOD_APART ? CLI_LOD_APART : CLI_LOD_BOTH, err)
              : cli_name_output(&s->outputs, args->output, args->common.inputs[0], err);
     return st == CW_OK ? check_outputs(s, err) : st;
 }

@@ -119,7 +119,7 @@ static cw_status name_levels(cli_label_run *r, cw_error *err)
     const cli_extract_args *args = r->args;
     cw_status st =
         cli_name_lod_outputs(&r->files, args->output, args->common.inputs[0], args->lod.count,
-                             cli_is_gltf(args->output, args->format), err);
+                             cli_lod_files_of(args->output, args->format), err);
     return st == CW_OK ? check_files(r, err) : st;
 }
 
@@ -301,7 +301,13 @@ cw_status cli_write_labels(cli_label_run *r, cw_error *err)
     return st;
 }
 
-cw_status cli_write_label_level(cli_label_run *r, size_t n, cw_error *err)
+/* Returns true if the levels have no files of their own. */
+static bool is_together(const cli_label_run *r)
+{
+    return cli_lod_files_of(r->args->output, r->args->format) == CLI_LOD_TOGETHER;
+}
+
+static cw_status deliver_level(cli_label_run *r, size_t n, cw_error *err)
 {
     char found[STEPS_BYTES];
     cw_part *parts = make_parts(r);
@@ -310,6 +316,12 @@ cw_status cli_write_label_level(cli_label_run *r, size_t n, cw_error *err)
     print_steps(r, found);
     cw_status st = deliver_file(r, n, parts, r->item_count, 0, r->item_count, NULL, found, err);
     free(parts);
+    return st;
+}
+
+cw_status cli_write_label_level(cli_label_run *r, size_t n, cw_error *err)
+{
+    cw_status st = is_together(r) ? CW_OK : deliver_level(r, n, err);
     for (size_t i = 0; i < r->item_count; i++) {
         r->levels[n * r->item_count + i] = r->items[i].mesh;
         r->items[i].mesh = (cw_mesh){0};
@@ -321,7 +333,8 @@ cw_status cli_write_label_level(cli_label_run *r, size_t n, cw_error *err)
 cw_status cli_write_label_levels(cli_label_run *r, cw_error *err)
 {
     const size_t count = r->level_count * r->item_count;
-    if (r->files.count == r->level_count)
+    const bool together = is_together(r);
+    if (r->files.count == r->level_count && !together)
         return CW_OK;
     cw_part *parts = calloc(count, sizeof *parts);
     if (!parts)
@@ -334,8 +347,8 @@ cw_status cli_write_label_levels(cli_label_run *r, cw_error *err)
                              .label = &item->label,
                              .level = level};
     }
-    cw_status st = deliver_file(r, r->level_count, parts, count, 0, r->item_count, NULL,
-                                "; all levels of detail", err);
+    cw_status st = deliver_file(r, together ? 0 : r->level_count, parts, count, 0,
+                                r->item_count, NULL, "; all levels of detail", err);
     free(parts);
     return st;
 }

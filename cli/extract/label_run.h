@@ -53,11 +53,11 @@ CW_NODISCARD cw_status cli_check_label_args(const cli_extract_args *args, cw_err
 /* Names the output if all labels go into one file, and checks that it can be written. */
 CW_NODISCARD cw_status cli_name_label_file(cli_label_run *run, cw_error *err);
 
-/* Writes the meshes as level n of --lod. Then they belong to the levels, which it keeps for the
- * file of all of them. */
+/* Writes the meshes as level n of --lod, unless all levels are in one file. Then they belong to
+ * the levels, which it keeps for that file. */
 CW_NODISCARD cw_status cli_write_label_level(cli_label_run *run, size_t n, cw_error *err);
 
-/* Writes the file of all levels of --lod, which only glTF has. */
+/* Writes the file of all levels of --lod, which glTF and neuroglancer have. */
 CW_NODISCARD cw_status cli_write_label_levels(cli_label_run *run, cw_error *err);
 
 /* Writes the meshes, or with --shared-faces the interfaces, and tells of them. */

@@ -205,6 +205,14 @@ bool cli_is_gltf(const char *output, const char *format)
     return f && (strcmp(f->name, "glb") == 0 || strcmp(f->name, "gltf") == 0);
 }
 
+cli_lod_files cli_lod_files_of(const char *output, const char *format)
+{
+    const cw_format *f = cw_mesh_format(output, format);
+    return f && strcmp(f->name, "neuroglancer") == 0 ? CLI_LOD_TOGETHER
+           : cli_is_gltf(output, format)             ? CLI_LOD_BOTH
+                                                     : CLI_LOD_APART;
+}
+
 cw_status cli_check_lod(const cli_counts *lod, cw_error *err)
 {
     for (size_t n = 0; n < lod->count; n++)
@@ -228,7 +236,7 @@ static char *with_lod(const char *text)
 }
 
 cw_status cli_name_lod_outputs(cli_outputs *outputs, const char *text, const char *input,
-                               size_t levels, bool together, cw_error *err)
+                               size_t levels, cli_lod_files files, cw_error *err)
 {
     char *stem = NULL, *plain = NULL, *made = NULL, number[24] = "0";
     cw_status st = reserve_names(outputs, levels + 1, &stem, input, err);
@@ -236,13 +244,17 @@ cw_status cli_name_lod_outputs(cli_outputs *outputs, const char *text, const cha
     if (st == CW_OK) /* only to see whether there is a {lod} in it */
         st = cli_fill_template(text, parts, 2, &plain, err);
     const bool apart = parts[1].used;
+    if (st == CW_OK && apart && files == CLI_LOD_TOGETHER)
+        st = cwi_fail(err, CW_ERR_ARGUMENT,
+                      "this format holds all levels of --lod in one output; '%s' holds {lod}",
+                      text);
     if (st == CW_OK && !apart && !(made = with_lod(text)))
         st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
-    for (size_t n = 0; n < levels && st == CW_OK; n++) {
+    for (size_t n = 0; n < levels && st == CW_OK && files != CLI_LOD_TOGETHER; n++) {
         snprintf(number, sizeof number, "%zu", n);
         st = add_output(outputs, apart ? text : made, parts, 2, err);
     }
-    if (st == CW_OK && !apart && together)
+    if (st == CW_OK && !apart && files != CLI_LOD_APART)
         st = add_output(outputs, text, parts, 2, err);
     free(made);
     free(plain);

@@ -42,15 +42,27 @@ CW_NODISCARD cw_status cli_name_part_outputs(cli_outputs *outputs, const char *t
  * --format, or NULL. */
 bool cli_is_gltf(const char *output, const char *format);
 
+/* The files of levels of detail. */
+typedef enum cli_lod_files {
+    CLI_LOD_APART, /* a file a level */
+    CLI_LOD_BOTH,  /* and one more with all of them */
+    CLI_LOD_TOGETHER
+} cli_lod_files;
+
+/* Returns the files of levels of a label map: glTF has both kinds, a mesh of neuroglancer is all
+ * levels together. */
+cli_lod_files cli_lod_files_of(const char *output, const char *format);
+
 /* Checks the counts of --lod: each at least 1, and fewer than the one before. */
 CW_NODISCARD cw_status cli_check_lod(const cli_counts *lod, cw_error *err);
 
 /* Names one output a level of detail: {lod} (its number, from 0) and {stem} are filled in. A
- * text without {lod} gets "-lod0" and so on in front of its extension, and, with together, is
- * itself the name of one more output, the last. Free it with cli_free_outputs(). */
+ * text without {lod} gets "-lod0" and so on in front of its extension, and, with both kinds of
+ * files, is itself the name of one more output, the last. Together there is that one alone.
+ * Free it with cli_free_outputs(). */
 CW_NODISCARD cw_status cli_name_lod_outputs(cli_outputs *outputs, const char *text,
-                                            const char *input, size_t levels, bool together,
-                                            cw_error *err);
+                                            const char *input, size_t levels,
+                                            cli_lod_files files, cw_error *err);
 
 /* Names the only output of a run: {stem} and {parent} are filled in. Free it with cli_free_outputs(). */
 CW_NODISCARD cw_status cli_name_output(cli_outputs *outputs, const char *text,

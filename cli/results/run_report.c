@@ -297,6 +297,8 @@ static void put_compressed(cli_json *j, const cw_compressed *c)
     cli_json_count(j, "merged_vertices", c->merged);
     cli_json_count(j, "flat_triangles", c->flat);
     cli_json_count(j, "dropped_triangles", c->dropped);
+    if (c->fragments)
+        cli_json_count(j, "fragments", c->fragments);
     cli_json_bool(j, "decoded_checked", true);
 }
 
@@ -321,7 +323,9 @@ static void put_output(cli_json *j, const cli_made *made)
         return;
     cli_json_open(j, NULL, '{');
     cli_json_text(j, "path", cli_shown_path(made->path));
-    cli_json_count(j, "bytes", (size_t)info.st_size);
+    cli_json_count(j, "bytes",
+                   S_ISDIR(info.st_mode) ? (size_t)made->compressed.bytes
+                                         : (size_t)info.st_size);
     cli_json_text(j, "compression", cli_compression_name(made->compression));
     if (made->compression)
         put_compressed(j, &made->compressed);

@@ -280,10 +280,14 @@ static void print_compressed(const cli_made *made)
         cli_result(" to %d bits, error at most %.3g mm", c->bits, c->error_mm);
     else
         cli_result(", positions unchanged");
+    if (c->fragments)
+        cli_result(", in steps of %.3g mm, %s fragment%s", c->step_mm, cli_count(c->fragments),
+                   c->fragments == 1 ? "" : "s");
     if (c->dropped) {
         cli_result(", ");
         print_count(c->dropped, "triangle");
-        cli_result(" with a repeated vertex left out");
+        cli_result(c->fragments ? " smaller than a step left out"
+                                : " with a repeated vertex left out");
     }
     cli_result(", verified by decoding");
 }
@@ -362,7 +366,8 @@ static void print_summary(const cli_delivery *how, const cli_made *made, const l
         print_times(l);
     print_facts(how, made);
     if (made->written && stat(made->path, &info) == 0)
-        cli_result("; %s", cli_bytes((double)info.st_size));
+        cli_result("; %s", cli_bytes(S_ISDIR(info.st_mode) ? (double)made->compressed.bytes
+                                                           : (double)info.st_size));
     cli_result("; %.2f s\n", cli_seconds() - start);
 }
 

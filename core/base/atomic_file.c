@@ -3,6 +3,7 @@
 #define _GNU_SOURCE /* renameat2, getrandom, O_PATH */
 #include "core/base/atomic_file.h"
 
+#include "core/base/atomic_folder.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
@@ -71,6 +72,7 @@ void cwi_outfile_remove_all(void)
     for (int i = 0; i < SLOT_COUNT; i++)
         if (atomic_load(&slots[i].state) == SLOT_LIVE)
             unlinkat(slots[i].folder, slots[i].name, 0);
+    cwi_outfolder_remove_all();
     errno = before;
 }
 
@@ -99,32 +101,30 @@ static cw_status inspect_target(const char *path, bool no_clobber, bool *exists,
     return CW_OK;
 }
 
-/* Opens the folder of a path with resolved links, and keeps the last name. */
-static cw_status open_folder(cwi_outfile *f, char *path, cw_error *err)
+cw_status cwi_open_parent(char *path, int *folder, char name[NAME_MAX + 1], cw_error *err)
 {
     char *slash = strrchr(path, '/');
-    const char *name = slash ? slash + 1 : path;
-    if (!*name)
+    const char *last = slash ? slash + 1 : path;
+    if (!*last)
         return cwi_fail(err, CW_ERR_OUTPUT, "it names no file");
-    if (strlen(name) > NAME_MAX)
+    if (strlen(last) > NAME_MAX)
         return fail_system(err, "it cannot be made", ENAMETOOLONG);
-    strcpy(f->name, name);
+    strcpy(name, last);
     if (slash)
         slash[slash == path] = '\0'; /* the root keeps its slash */
-    const char *folder = slash ? path : ".";
-    f->folder = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (f->folder < 0 && errno == EACCES) /* a folder with write but no list permission */
-        f->folder = open(folder, O_PATH | O_DIRECTORY | O_CLOEXEC);
-    if (f->folder < 0 && errno == ENOENT)
-        return cwi_fail(err, CW_ERR_OUTPUT, "the folder '%s' does not exist", folder);
-    if (f->folder < 0)
-        return cwi_fail(err, CW_ERR_OUTPUT, "the folder '%s' cannot be opened: %s", folder,
+    const char *parent = slash ? path : ".";
+    *folder = open(parent, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (*folder < 0 && errno == EACCES) /* a folder with write but no list permission */
+        *folder = open(parent, O_PATH | O_DIRECTORY | O_CLOEXEC);
+    if (*folder < 0 && errno == ENOENT)
+        return cwi_fail(err, CW_ERR_OUTPUT, "the folder '%s' does not exist", parent);
+    if (*folder < 0)
+        return cwi_fail(err, CW_ERR_OUTPUT, "the folder '%s' cannot be opened: %s", parent,
                         strerror(errno));
     return CW_OK;
 }
 
-/* Makes a name such as ".head.glb.k3x0aq.part". Long names are cut to fit a directory entry. */
-static void name_temporary(cwi_outfile *f)
+void cwi_name_temporary(const char *name, char temporary[NAME_MAX + 1])
 {
     static const char letters[] = "abcdefghijklmnopqrstuvwxyz012345";
     unsigned char random[6] = {0};
@@ -135,7 +135,7 @@ static void name_temporary(cwi_outfile *f)
     for (size_t i = 0; i < sizeof random; i++)
         word[i] = letters[random[i] % 32];
     const int room = NAME_MAX - (int)(sizeof "..XXXXXX.part" - 1);
-    snprintf(f->temporary, sizeof f->temporary, ".%.*s.%s.part", room, f->name, word);
+    snprintf(temporary, NAME_MAX + 1, ".%.*s.%s.part", room, name, word);
 }
 
 /* Creates the temporary. The kernel applies the umask to a new file's 0666. The mode of a
@@ -144,7 +144,7 @@ static void name_temporary(cwi_outfile *f)
 static cw_status make_temporary(cwi_outfile *f, bool replaces, mode_t mode, cw_error *err)
 {
     for (int i = 0; i < NAME_TRIES; i++) {
-        name_temporary(f);
+        cwi_name_temporary(f->name, f->temporary);
         f->fd = openat(f->folder, f->temporary,
                        O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW,
                        replaces ? mode : 0666);
@@ -185,7 +185,7 @@ static cw_status open_beside(cwi_outfile *f, const char *path, cw_error *err)
     char *real = exists ? realpath(path, NULL) : cwi_strdup(path);
     if (!real)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for its name");
-    st = open_folder(f, real, err);
+    st = cwi_open_parent(real, &f->folder, f->name, err);
     free(real); /* realpath allocates with malloc, and so does cwi_strdup */
     if (st == CW_OK)
         st = make_temporary(f, exists, mode, err);

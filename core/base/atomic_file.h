@@ -4,6 +4,8 @@
 
 #include <cubewright/core.h>
 
+#include <limits.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -49,9 +51,20 @@ void cwi_outfile_abort(cwi_outfile **f);
 CW_NODISCARD cw_status cwi_outfile_save(const char *path, const void *bytes, size_t size,
                                         cw_error *err);
 
-/* Unlinks every temporary in progress; the program then has to exit. Async-signal-safe: for a
- * second Ctrl-C. Covers the first 64 files that are open at one time. */
+/* Unlinks every temporary in progress, folders too; the program then has to exit.
+ * Async-signal-safe: for a second Ctrl-C. Covers the first 64 files and 8 folders that are open
+ * at one time. */
 void cwi_outfile_remove_all(void);
+
+/* Opens the folder that a path with resolved links is in, and copies its last name. The path is
+ * cut off there. Returns CW_ERR_OUTPUT for a folder that is missing or cannot be opened, and for
+ * a path that ends in a slash. */
+CW_NODISCARD cw_status cwi_open_parent(char *path, int *folder, char name[NAME_MAX + 1],
+                                       cw_error *err);
+
+/* Makes a name such as ".head.glb.k3x0aq.part", another one at each call. Long names are cut to
+ * fit a directory entry. */
+void cwi_name_temporary(const char *name, char temporary[NAME_MAX + 1]);
 
 #ifdef __cplusplus
 }

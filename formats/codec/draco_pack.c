@@ -3,6 +3,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/memory.h"
+#include "core/base/status.h"
 #include "formats/codec/verify_decoded.h"
 
 #include <string.h>
@@ -79,6 +80,58 @@ cw_status cwi_draco_pack(const cw_mesh *mesh, const uint8_t *colors,
                            &packed->decoded, err);
     if (st == CW_OK)
         st = verify_decoded(mesh, grid, &packed->decoded, &told->normal_degrees, err);
+    told->encode_s += encoded - start;
+    told->decode_s += cwi_now_s() - encoded;
+    return st;
+}
+
+/* Copies positions as integers; NULL: no memory. */
+static uint32_t *copy_integers(const float *positions, size_t vertex_count)
+{
+    uint32_t *integers = cwi_alloc_array(vertex_count, 3 * sizeof *integers);
+    for (size_t i = 0; integers && i < 3 * vertex_count; i++)
+        integers[i] = positions[i] > 0 ? (uint32_t)positions[i] : 0;
+    return integers;
+}
+
+static cw_status verify_integers(const cw_mesh *mesh, int bits, cwi_arrays *decoded,
+                                 cw_error *err)
+{
+    double no_normals = 0;
+    const cwi_quantization_grid grid = {
+        .range = (float)((1u << bits) - 1), .bits = bits, .step = 1};
+    decoded->places = copy_integers(decoded->positions, decoded->vertex_count);
+    return decoded->places
+               ? verify_decoded(mesh, &grid, decoded, &no_normals, err)
+               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu decoded vertices",
+                          decoded->vertex_count);
+}
+
+cw_status cwi_draco_pack_integers(const cw_mesh *mesh, int bits, const cw_write_desc *desc,
+                                  cwi_draco_packed *packed, cw_compressed *told, cw_error *err)
+{
+    const cwi_draco_functions *draco;
+    const cwi_draco_settings settings = {.level = desc->level ? desc->level : LEVEL};
+    const double start = cwi_now_s();
+    *packed = (cwi_draco_packed){0};
+    cw_status st = cwi_draco_functions_load(&draco, err);
+    const cwi_arrays arrays = {.vertex_count = mesh->vertex_count,
+                               .triangle_count = mesh->triangle_count,
+                               .places = copy_integers(mesh->positions, mesh->vertex_count),
+                               .triangles = mesh->triangles};
+    if (st == CW_OK && !arrays.places)
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", mesh->vertex_count);
+    if (st == CW_OK)
+        st =
+            draco->encode(&arrays, &settings, &packed->bytes, &packed->size, &packed->ids, err);
+    cwi_free(arrays.places);
+    const double encoded = cwi_now_s();
+    if (st == CW_OK)
+        st = draco->decode(packed->bytes, packed->size, &packed->ids, SIZE_MAX, NULL,
+                           &packed->decoded, err);
+    if (st == CW_OK)
+        st = verify_integers(mesh, bits, &packed->decoded, err);
+    cwi_arrays_free(&packed->decoded);
     told->encode_s += encoded - start;
     told->decode_s += cwi_now_s() - encoded;
     return st;

@@ -23,6 +23,13 @@ CW_NODISCARD cw_status cwi_draco_pack(const cw_mesh *mesh, const uint8_t *colors
                                       const cwi_quantization_grid *grid, const char *comment,
                                       const cw_write_desc *desc, cwi_draco_packed *packed,
                                       cw_compressed *told, cw_error *err);
+
+/* Encodes a mesh whose positions are integers from 0 to 2^bits - 1, as integers; bits is at most
+ * 16. Otherwise as cwi_draco_pack(). packed has no decoded mesh. */
+CW_NODISCARD cw_status cwi_draco_pack_integers(const cw_mesh *mesh, int bits,
+                                               const cw_write_desc *desc,
+                                               cwi_draco_packed *packed, cw_compressed *told,
+                                               cw_error *err);
 void cwi_draco_packed_free(cwi_draco_packed *packed);
 
 /* Counts triangles that name a vertex twice: Draco cannot store them. */

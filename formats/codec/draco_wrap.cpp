@@ -82,12 +82,13 @@ draco::Options position_options(const cwi_quantization_grid &grid)
     return options;
 }
 
-void set_options(draco::Encoder &encoder, const cwi_draco_settings &s)
+void set_options(draco::Encoder &encoder, const cwi_draco_settings &s, bool on_grid)
 {
     encoder.SetSpeedOptions(10 - s.level, 10 - s.level);
     encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
-    encoder.options().SetAttributeOptions(draco::GeometryAttribute::POSITION,
-                                          position_options(s.grid));
+    if (on_grid)
+        encoder.options().SetAttributeOptions(draco::GeometryAttribute::POSITION,
+                                              position_options(s.grid));
     encoder.SetAttributeQuantization(draco::GeometryAttribute::NORMAL, s.normal_bits);
     encoder.SetAttributeQuantization(draco::GeometryAttribute::COLOR, COLOR_BITS);
 }
@@ -105,8 +106,12 @@ cw_status encode(const cwi_arrays *from, const cwi_draco_settings *settings,
         *ids = {-1, -1, -1};
         mesh.set_num_points(uint32_t(count));
         add_faces(mesh, *from);
-        ids->position = add_attribute(mesh, draco::GeometryAttribute::POSITION,
-                                      draco::DT_FLOAT32, 3, false, from->positions, count);
+        // Neuroglancer takes no other integers than signed ones of 32 bits.
+        ids->position = from->positions
+                            ? add_attribute(mesh, draco::GeometryAttribute::POSITION,
+                                            draco::DT_FLOAT32, 3, false, from->positions, count)
+                            : add_attribute(mesh, draco::GeometryAttribute::POSITION,
+                                            draco::DT_INT32, 3, false, from->places, count);
         if (from->normals)
             ids->normal = add_attribute(mesh, draco::GeometryAttribute::NORMAL,
                                         draco::DT_FLOAT32, 3, false, from->normals, count);
@@ -118,7 +123,7 @@ cw_status encode(const cwi_arrays *from, const cwi_draco_settings *settings,
             metadata->AddEntryString(COMMENT, settings->comment);
             mesh.AddMetadata(std::move(metadata));
         }
-        set_options(encoder, *settings);
+        set_options(encoder, *settings, from->positions != nullptr);
         const draco::Status done = encoder.EncodeMeshToBuffer(mesh, &buffer);
         if (!done.ok())
             return fail_draco(err, CW_ERR_BACKEND, "encode the mesh", done);

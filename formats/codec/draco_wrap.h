@@ -37,7 +37,8 @@ typedef struct cwi_draco_settings {
 } cwi_draco_settings;
 
 typedef struct cwi_draco_functions {
-    /* Encodes by edgebreaker. The bytes are freed with cwi_free(). */
+    /* Encodes by edgebreaker. The bytes are freed with cwi_free(). Arrays with places and no
+     * positions have them as integers of 32 bits, without a grid. */
     cw_status (*encode)(const cwi_arrays *arrays, const cwi_draco_settings *settings,
                         unsigned char **bytes, size_t *size, cwi_draco_ids *ids, cw_error *err);
 

@@ -54,14 +54,19 @@ typedef struct cwi_mesh_reading {
 typedef struct cwi_mesh_writing {
     cwi_mesh_writer *write;              /* NULL: it writes no mesh */
     cw_status (*prepare)(cw_error *err); /* finds its modules; NULL: nothing to find */
-    bool own_axes;                       /* unit and frame are those of the format */
-    bool text;                           /* it is text, or can be */
-    bool compresses;                     /* it has compressed forms */
-    cw_compression only;                 /* it has this form alone */
-    bool levels;                         /* it has levels of detail */
-    bool animates;                       /* it can show parts one after another */
-    bool sides;                          /* it has labels on both sides of triangles */
-    bool spools;                         /* it can write a surface from a spool */
+    /* Refuses requests that the format has no place for; NULL: nothing to refuse. */
+    cw_status (*check)(const cw_write_desc *desc, cw_error *err);
+    /* It writes a folder, and replaces an old one that passes this check; NULL: it writes a
+     * file. */
+    cwi_folder_check *replaces;
+    bool own_axes;       /* unit and frame are those of the format */
+    bool text;           /* it is text, or can be */
+    bool compresses;     /* it has compressed forms */
+    cw_compression only; /* it has this form alone */
+    bool levels;         /* it has levels of detail */
+    bool animates;       /* it can show parts one after another */
+    bool sides;          /* it has labels on both sides of triangles */
+    bool spools;         /* it can write a surface from a spool */
 } cwi_mesh_writing;
 
 typedef struct cwi_format_driver {
@@ -81,6 +86,7 @@ extern const cwi_format_driver cwi_format_nrrd, cwi_format_nifti, cwi_format_met
     cwi_format_vtk, cwi_format_vtu, cwi_format_vti, cwi_format_mrc, cwi_format_inr,
     cwi_format_dicom, cwi_format_tiff, cwi_format_zarr, cwi_format_vdb, cwi_format_plot3d,
     cwi_format_raw, cwi_format_glb, cwi_format_gltf, cwi_format_stl, cwi_format_ply,
-    cwi_format_obj, cwi_format_off, cwi_format_3mf, cwi_format_vtp, cwi_format_drc;
+    cwi_format_obj, cwi_format_off, cwi_format_3mf, cwi_format_vtp, cwi_format_drc,
+    cwi_format_neuroglancer;
 
 #endif

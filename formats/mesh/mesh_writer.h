@@ -5,6 +5,7 @@
 #include <cubewright/formats.h>
 
 #include "core/base/atomic_file.h"
+#include "core/base/atomic_folder.h"
 #include "formats/bytes/little_endian.h"
 #include "formats/mesh/mesh_axes.h"
 #include "formats/mesh/mesh_spool.h"
@@ -53,7 +54,8 @@ typedef cw_status cwi_drain(void *to, const void *bytes, size_t size, cw_error *
 
 typedef struct cwi_mesh_output {
     cwi_outfile *file;
-    cwi_outfile *side; /* a second file that a writer opens beside the path; NULL: none */
+    cwi_outfolder *folder; /* in place of the file, for formats of many files */
+    cwi_outfile *side;     /* a second file that a writer opens beside the path; NULL: none */
     const char *path;
     cwi_drain *drain; /* receiver of records; NULL: the file itself */
     void *drain_to;
@@ -78,6 +80,7 @@ cwi_mesh_writer cwi_vtp_write;
 cwi_mesh_writer cwi_glb_write;
 cwi_mesh_writer cwi_gltf_write;
 cwi_mesh_writer cwi_drc_write;
+cwi_mesh_writer cwi_neuroglancer_write;
 
 /* Writes VTP with indices of 64 bits; cwi_vtp_write() calls it for meshes that need them. */
 cwi_mesh_writer cwi_vtp_write_wide;

@@ -39,11 +39,18 @@ void cwi_clean_name(const char *text, size_t size, char name[CWI_NAME_BYTES])
 void cwi_choose_name(const char *path, const cw_part *parts, size_t count,
                      const cw_write_desc *desc, char name[CWI_NAME_BYTES])
 {
-    const char *slash = strrchr(path, '/');
     const char *asked = desc->name ? desc->name : count == 1 ? parts->name : NULL;
-    const char *stem = asked ? asked : slash ? slash + 1 : path;
-    const char *dot = asked ? NULL : strrchr(stem, '.');
-    cwi_clean_name(stem, dot && dot != stem ? (size_t)(dot - stem) : strlen(stem), name);
+    const char *stem = asked ? asked : path, *end = stem + strlen(stem);
+    while (!asked && end > path + 1 && end[-1] == '/') /* of a folder */
+        end--;
+    for (const char *c = path; !asked && c < end; c++)
+        stem = *c == '/' && c + 1 < end ? c + 1 : stem;
+    for (const char *c = end; !asked && c > stem + 1; c--)
+        if (c[-1] == '.') {
+            end = c - 1;
+            break;
+        }
+    cwi_clean_name(stem, (size_t)(end - stem), name);
 }
 
 /* Names a part. Without a name of its own it has that of all, and a number if there are

@@ -3,6 +3,7 @@
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 #include "formats/volume/named_arrays.h"
+#include "formats/volume/slice_visit.h"
 #include "formats/volume/volume_reader.h"
 #include "formats/zarr/zarr_handle.h"
 
@@ -74,6 +75,43 @@ static cw_status narrow_shape(const cw_read_desc *desc, cw_volume *v, cwi_zarr_b
                : st;
 }
 
+/* The slices of a box. */
+typedef struct slice_reading {
+    cwi_zarr *zarr;
+    cwi_zarr_box box;
+} slice_reading;
+
+static cw_status read_slices(void *user, size_t first, size_t count, void *to, cw_error *err)
+{
+    static const cw_progress quiet = {0};
+    const slice_reading *s = user;
+    cwi_zarr_box box = s->box;
+    box.first[CWI_AXIS_Z] += first * box.every[CWI_AXIS_Z];
+    box.count[CWI_AXIS_Z] = (count - 1) * box.every[CWI_AXIS_Z] + 1;
+    return cwi_zarr_read_box(s->zarr, &box, to, &quiet, err);
+}
+
+/* Gives the slices of one component and step to the visitor. */
+static cw_status visit_slices(cwi_zarr *zarr, cwi_slice_visit *visit, const cw_read_desc *desc,
+                              cw_error *err)
+{
+    cw_volume v = *cwi_zarr_shape(zarr);
+    cw_read_desc limits = *desc;
+    slice_reading s = {.zarr = zarr};
+    size_t bytes = 0;
+    limits.max_bytes = 0; /* voxels are not read at once */
+    cwi_set_spacing(&v, desc);
+    cw_status st = narrow_shape(&limits, &v, &s.box, &bytes, err);
+    if (st != CW_OK)
+        return st;
+    v.components = v.steps = 1;
+    v.component_stride = 0;
+    s.box.first[CWI_AXIS_COMPONENT] = visit->component;
+    s.box.first[CWI_AXIS_STEP] = visit->step;
+    s.box.count[CWI_AXIS_COMPONENT] = s.box.count[CWI_AXIS_STEP] = 1;
+    return cwi_visit_slices(visit, &v, read_slices, &s, err);
+}
+
 static cw_status load_volume(cwi_zarr *zarr, const cw_read_desc *desc, cw_volume *volume,
                              cw_error *err)
 {
@@ -109,7 +147,8 @@ cw_status cwi_zarr_read(const cwi_input *in, const cw_read_desc *desc, cw_volume
     if (st == CW_OK && *found.note)
         cwi_note(desc, "%s", found.note);
     if (st == CW_OK)
-        st = load_volume(zarr, desc, volume, err);
+        st = in->visit ? visit_slices(zarr, in->visit, desc, err)
+                       : load_volume(zarr, desc, volume, err);
     cwi_zarr_close(zarr);
     return st;
 }

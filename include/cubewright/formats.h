@@ -422,7 +422,9 @@ typedef struct cw_compressed {
     double normal_degrees;     /* ... and the largest turn of a normal */
     size_t merged;             /* vertices that fell onto another: only with bits stated */
     size_t flat;               /* triangles that lost their area: only with bits stated */
-    size_t dropped;            /* triangles with a vertex twice, which Draco cannot store */
+    size_t dropped;            /* triangles with a vertex twice, which Draco cannot store;
+                                  neuroglancer: that rounding left so, of the finest level */
+    size_t fragments;          /* meshes in the nodes of an octree: neuroglancer alone */
     uint64_t bytes;            /* of the arrays in the file */
     double encode_s, decode_s; /* times to encode, and to check the decoded data */
 } cw_compressed;
@@ -441,11 +443,12 @@ typedef struct cw_write_desc {
     cw_axes axes;               /* mesh: default LPS millimetres; glTF is in metres, +Y up */
     bool text;                  /* STL, PLY: numbers as text; default: binary */
     cw_compression compression; /* of glTF; CW_ERR_ARGUMENT for other formats */
-    double tolerance_mm; /* for glTF: the largest move of a vertex; default: 1/20,000 of the
-                            diagonal */
+    double tolerance_mm; /* for glTF: the largest move of a vertex; for neuroglancer: of a point
+                            of the finest level; default: 1/20,000 of the diagonal */
     int bits;            /* for glTF: bits of a coordinate, 1 to 16 (quantize), 24 (meshopt) or
                             30 (Draco), whatever the loss; default: as many as the tolerance and
-                            the shape require */
+                            the shape require. For neuroglancer 10 or 16 in a node of an octree,
+                            which is as fine as the tolerance requires; default: 16 */
     int level;           /* for Draco: 1 (fast) to 10 (small); default 7 */
     cw_compressed *compressed; /* filled in; default: none */
     bool animated; /* for glTF: parts are shown one after another, each at its time_s; default:
@@ -469,8 +472,8 @@ typedef struct cw_write_desc {
 CW_NODISCARD CW_API cw_status cw_volume_write(const char *path, const cw_volume *volume,
                                               const cw_write_desc *desc, cw_error *err);
 
-/* Writes a mesh in the same way: .glb, .gltf, .stl, .ply, .obj, .off, .3mf or .vtp. glTF is
- * written in metres, +Y up and facing +Z, by the node's transform, so vertices stay exact. They
+/* Writes a mesh in the same way: .glb, .gltf, .stl, .ply, .obj, .off, .3mf or .vtp; or a folder
+ * of the format "neuroglancer", see cw_parts_write(). glTF is written in metres, +Y up and facing +Z, by the node's transform, so vertices stay exact. They
  * stay exact in 3MF, too, whose build items hold the origin. The other formats hold world
  * coordinates (origin added), LPS millimetres: see cw_mesh_write_loss().
  *
@@ -498,7 +501,12 @@ CW_NODISCARD CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mes
  * node are the label's value, colour and codes. In the other formats its value and colour are
  * those of the vertices, if all parts have them.
  *
- * Levels of detail are for glTF. Its scene holds level 0, whose node names the nodes of the
+ * The format "neuroglancer" writes a folder of multi-resolution meshes with a segment for each
+ * part, whose levels are its levels of detail. The label of a part is the segment's number;
+ * without labels segments count from 1. Names and, of closed parts, volumes are segment
+ * properties. An old folder is replaced if it is empty or such a mesh, and holds nothing else.
+ *
+ * Levels of detail are for glTF and neuroglancer. The scene of glTF holds level 0, whose node names the nodes of the
  * other levels (MSFT_lod) and the share of the screen below which each is enough. At that share
  * it has as many triangles to an area as level 0 has on all of it. Readers without the
  * extension see only level 0, and so does cw_mesh_read().
@@ -509,7 +517,9 @@ CW_NODISCARD CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mes
  * play no animation, such as cw_mesh_read(), show the first part that has triangles.
  *
  * Returns as cw_mesh_write(); CW_ERR_ARGUMENT for levels that do not follow one another, have
- * no triangles, or are for another format; for an animation of fewer than two parts, of levels,
+ * no triangles, or are for another format; for labels of neuroglancer that are 0, twice there, or
+ * of some parts alone; CW_ERR_CHECK for a part of neuroglancer that is smaller than its steps;
+ * CW_ERR_ARGUMENT for an animation of fewer than two parts, of levels,
  * or of times that do not ascend in single precision */
 CW_NODISCARD CW_API cw_status cw_parts_write(const char *path, const cw_part *parts,
                                              size_t count, const cw_write_desc *desc,

@@ -20,6 +20,11 @@ for bits in 16 19 22; do
     draco_encoder -i g.ply -o theirs.drc -qp $bits >/dev/null
     cubewright check theirs.drc --reference g.ply --tolerance 0.05% -q >/dev/null || fail "we read Draco's of $bits bits wrongly"
 done
+# a fragment of Neuroglancer's meshes has integers as positions
+cubewright convert g.ply -o folder --format neuroglancer --compress draco --tolerance 0.1mm -q
+draco_decoder -i folder/1 -o fragment.obj >/dev/null || fail "Draco does not read our fragment"
+grep '^v ' fragment.obj | awk '{ for (n = 2; n < 5; n++) if ($n != int($n) || $n < 0 || $n > 65535) exit 1 }' ||
+    fail "Draco reads no integers from 0 to 65535 from our fragment"
 draco_encoder -point_cloud -i g.ply -o points.drc >/dev/null
 cubewright convert points.drc -o points.stl -q 2>said && fail "a point cloud is a mesh"
 grep -q 'a point cloud, not a mesh' said
