@@ -91,6 +91,7 @@ static cw_status look_ahead(cwi_slice_window *w, cw_error *err)
     if (st != CW_OK || !all)
         return st;
     cwi_bit_grid *g = &w->plan.grid;
+    w->in = w->out = false; /* of the layers that are written */
     if (g->gaps && w->desc.leave_open)
         return cwi_fail(
             err, CW_ERR_UNSUPPORTED,
@@ -104,33 +105,87 @@ static cw_status look_ahead(cwi_slice_window *w, cw_error *err)
     return CW_OK;
 }
 
-/* Writes the layers of all slabs. A volume that is inside from the start is first looked
- * through: if it is inside everywhere there is no surface. */
-static cw_status write_slabs(cwi_slice_window *w, cwi_chunk_writer *c, size_t layers,
-                             cw_error *err)
+/* Layers of cells to write. A part of a volume leaves it open if there is a surface: only all
+ * parts together tell. */
+typedef struct layer_range {
+    size_t begin, end;
+    bool is_part;
+} layer_range;
+
+/* Checks a volume that is inside from the start: if it is inside everywhere there is no surface. */
+static cw_status look_for_outside(cwi_slice_window *w, size_t end, cw_error *err)
 {
-    const size_t last = w->whole.dim[2] + 1;
+    cw_status st = cwi_slice_window_scan(w, false, err);
+    if (st != CW_OK || !w->out)
+        return st;
+    cwi_slice_window_start(w, 0);
+    return cwi_slice_window_move(w, 0, end, err);
+}
+
+static cw_status write_layers(cwi_slice_window *w, cwi_chunk_writer *c, const layer_range *r,
+                              size_t layers, cw_error *err)
+{
     cw_status st = CW_OK;
-    for (size_t begin = 0, end; begin < last && st == CW_OK; begin = end) {
-        end = begin + layers < last ? begin + layers : last;
-        st = cwi_progress(&w->desc.progress, "extracting", (double)begin / (double)last, err);
+    cwi_slice_window_start(w, r->begin);
+    for (size_t begin = r->begin, end; begin < r->end && st == CW_OK; begin = end) {
+        end = begin + layers < r->end ? begin + layers : r->end;
+        st = cwi_progress(&w->desc.progress, "extracting",
+                          (double)(begin - r->begin) / (double)(r->end - r->begin), err);
         if (st == CW_OK)
             st = cwi_slice_window_move(w, begin, end, err);
-        if (st == CW_OK && begin == 0 && w->in && !w->out) {
-            st = cwi_slice_window_scan(w, false, err);
-            if (st != CW_OK || !w->out)
-                return st;
-            w->counted = w->vertices = w->triangles = 0;
-            st = cwi_slice_window_move(w, begin, end, err);
+        if (st == CW_OK && !r->is_part && begin == 0 && w->in && !w->out) {
+            st = look_for_outside(w, end, err);
+            if (st == CW_OK && !w->out)
+                return CW_OK;
         }
-        if (st == CW_OK && w->desc.max_triangles && w->triangles > w->desc.max_triangles)
+        if (st == CW_OK && w->desc.max_triangles &&
+            w->triangles - w->first_triangle > w->desc.max_triangles)
             st = cwi_fail(err, CW_ERR_LIMIT,
                           "the surface has more triangles than the limit of %zu "
                           "(--max-triangles); layer %zu of %zu was reached",
-                          w->desc.max_triangles, end, last);
+                          w->desc.max_triangles, end, w->whole.dim[2] + 1);
         if (st == CW_OK)
             st = cwi_chunks_write(c, begin, end, err);
     }
+    return st;
+}
+
+static cw_status extract_layers(const cwi_engine *engine, const cw_slice_source *source,
+                                const cw_stream_desc *d, size_t part, size_t parts,
+                                cw_chunk_sink sink, cw_part_counts *counts, size_t *bytes,
+                                cw_error *err)
+{
+    cwi_slice_window w = {0};
+    cwi_chunk_writer c = {0};
+    cw_status st = resolve_shape(&source->shape, &w.whole, err);
+    if (st == CW_OK)
+        st = check_desc(&w.whole, &d->extract, err);
+    if (st != CW_OK)
+        return st;
+    const size_t all = w.whole.dim[2] + 1, layers = choose_layers(&w.whole, d);
+    const layer_range range = {all * part / parts, all * (part + 1) / parts, parts > 1};
+    *bytes = bytes_with(&w.whole, &d->extract, layers);
+    *counts = (cw_part_counts){0};
+    st = check_memory(&w.whole, &d->extract, layers, err);
+    if (st == CW_OK)
+        st = cwi_slice_window_init(&w, engine, source, &d->extract, layers, err);
+    if (st == CW_OK)
+        st = look_ahead(&w, err);
+    if (st == CW_OK) {
+        cwi_chunks_init(&c, &w, sink);
+        st = write_layers(&w, &c, &range, layers, err);
+    }
+    if (st == CW_OK && range.begin < range.end) {
+        counts->has_inside = w.in;
+        counts->has_outside = w.out;
+    }
+    if (st == CW_OK && range.begin < range.end && (range.is_part || (w.in && w.out))) {
+        const cwi_row *end = cwi_slice_window_layer(&w, range.end);
+        counts->vertices = end->first[0] - w.first_vertex;
+        counts->triangles = end->triangle - w.first_triangle;
+    }
+    cwi_chunks_free(&c);
+    cwi_slice_window_free(&w);
     return st;
 }
 
@@ -139,31 +194,27 @@ cw_status cwi_extract_stream_with(const cwi_engine *engine, const cw_slice_sourc
                                   cw_extract_counts *counts, cw_error *err)
 {
     const cw_stream_desc d = desc ? *desc : (cw_stream_desc){0};
-    cwi_slice_window w = {0};
-    cwi_chunk_writer c = {0};
-    cw_status st = resolve_shape(&source->shape, &w.whole, err);
-    if (st == CW_OK)
-        st = check_desc(&w.whole, &d.extract, err);
-    if (st != CW_OK)
-        return st;
-    const size_t layers = choose_layers(&w.whole, &d);
-    st = check_memory(&w.whole, &d.extract, layers, err);
-    if (st == CW_OK)
-        st = cwi_slice_window_init(&w, engine, source, &d.extract, layers, err);
-    if (st == CW_OK)
-        st = look_ahead(&w, err);
-    if (st == CW_OK) {
-        cwi_chunks_init(&c, &w, sink);
-        st = write_slabs(&w, &c, layers, err);
-    }
-    const bool is_crossed = w.in && w.out;
+    cw_part_counts made;
+    size_t bytes;
+    cw_status st = extract_layers(engine, source, &d, 0, 1, sink, &made, &bytes, err);
     if (st == CW_OK && counts)
-        *counts = (cw_extract_counts){.vertices = is_crossed ? w.vertices : 0,
-                                      .triangles = is_crossed ? w.triangles : 0,
-                                      .bytes = bytes_with(&w.whole, &d.extract, layers)};
-    cwi_chunks_free(&c);
-    cwi_slice_window_free(&w);
+        *counts = (cw_extract_counts){
+            .vertices = made.vertices, .triangles = made.triangles, .bytes = bytes};
     return st;
+}
+
+cw_status cw_extract_stream_part(const cw_slice_source *source, const cw_stream_desc *desc,
+                                 size_t part, size_t parts, cw_chunk_sink sink,
+                                 cw_part_counts *counts, cw_error *err)
+{
+    const cw_stream_desc d = desc ? *desc : (cw_stream_desc){0};
+    cw_part_counts made;
+    size_t bytes;
+    if (part >= parts)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "part %zu of %zu; they count from 0", part,
+                        parts);
+    return extract_layers(cwi_engine_best(), source, &d, part, parts, sink,
+                          counts ? counts : &made, &bytes, err);
 }
 
 cw_status cw_extract_stream(const cw_slice_source *source, const cw_stream_desc *desc,

@@ -267,11 +267,25 @@ static cw_status count_layers(cwi_slice_window *w, size_t last, cw_error *err)
     return st;
 }
 
+/* The layer below is counted too: normals are repaired from its triangles. */
+void cwi_slice_window_start(cwi_slice_window *w, size_t layer)
+{
+    w->start = layer;
+    w->counted = layer ? layer - 1 : 0;
+    w->vertices = w->triangles = w->first_vertex = w->first_triangle = 0;
+}
+
 cw_status cwi_slice_window_move(cwi_slice_window *w, size_t begin, size_t end, cw_error *err)
 {
     const size_t slices = w->whole.dim[2];
     const size_t first = begin > w->below + 1 ? begin - w->below - 1 : 0;
     const size_t last = end + 1 < slices ? end + 1 : slices;
     cw_status st = hold_slices(w, first, last, err);
-    return st == CW_OK ? count_layers(w, end, err) : st;
+    if (st == CW_OK)
+        st = count_layers(w, end, err);
+    if (st == CW_OK && begin == w->start) {
+        w->first_vertex = cwi_slice_window_layer(w, begin)->first[0];
+        w->first_triangle = cwi_slice_window_layer(w, begin)->triangle;
+    }
+    return st;
 }

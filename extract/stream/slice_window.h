@@ -19,8 +19,11 @@ typedef struct cwi_slice_window {
     size_t first, count;        /* voxel slices in memory */
     size_t capacity;            /* ... at most */
     size_t counted;             /* layers below this one have numbers */
-    size_t vertices, triangles; /* of these layers */
-    bool in, out;               /* samples were found inside, and outside */
+    size_t vertices, triangles; /* of these layers, from the first that was counted on */
+    size_t first_vertex,
+        first_triangle; /* the numbers that count as 0: those of layer `start` */
+    size_t start;       /* the first layer that is written */
+    bool in, out;       /* samples were found inside, and outside */
     unsigned char *slices;
 } cwi_slice_window;
 
@@ -39,6 +42,9 @@ void cwi_slice_window_free(cwi_slice_window *w);
 /* Reads slices until it is known on which sides samples are, or to the end of the volume (`all`).
  * The window then stands at the start again. */
 CW_NODISCARD cw_status cwi_slice_window_scan(cwi_slice_window *w, bool all, cw_error *err);
+
+/* Begins with a layer in place of the first one: numbers then count from there. */
+void cwi_slice_window_start(cwi_slice_window *w, size_t layer);
 
 /* Moves the window so that layers begin to end - 1 can be written: reads, classifies and counts
  * what is new. Windows follow each other: begin is the last end. */

@@ -157,7 +157,13 @@ static cw_status write_chunk(cwi_chunk_writer *c, place from, place to, cw_error
     if (st == CW_OK && work.sink.missing)
         st = cwi_chunk_mend_normals(c, &chunk, from.layer, to.row ? to.layer + 1 : to.layer,
                                     err);
-    return st == CW_OK ? c->sink.take(c->sink.user, &chunk, err) : st;
+    if (st != CW_OK)
+        return st;
+    for (size_t n = 0; w->first_vertex && n < 3 * triangles; n++)
+        c->corners[n] -= (uint32_t)w->first_vertex;
+    chunk.first_vertex -= w->first_vertex;
+    chunk.first_triangle -= w->first_triangle;
+    return c->sink.take(c->sink.user, &chunk, err);
 }
 
 cw_status cwi_chunks_write(cwi_chunk_writer *c, size_t begin, size_t end, cw_error *err)

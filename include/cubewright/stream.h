@@ -14,12 +14,12 @@ typedef struct cw_slice_source {
      * first component and step are used. */
     cw_volume shape;
     /* Reads `count` slices, from slice `first` on, to packed memory. It is called on the calling
-     * thread, for slices in rising order. A call for slice 0 starts again. */
+     * thread, for slices in rising order. After a look ahead it starts again. */
     cw_status (*read)(void *user, size_t first, size_t count, void *to, cw_error *err);
     void *user;
 } cw_slice_source;
 
-/* A part of a surface, in the order of cw_extract(). */
+/* A piece of a surface, in the order of cw_extract(). */
 typedef struct cw_mesh_chunk {
     cw_mesh mesh; /* borrowed arrays of this chunk alone. Its triangles name vertices by their
                      numbers in the whole surface; some may be of a later chunk */
@@ -66,6 +66,28 @@ typedef struct cw_stream_desc {
 CW_NODISCARD CW_API cw_status cw_extract_stream(const cw_slice_source *source,
                                                 const cw_stream_desc *desc, cw_chunk_sink sink,
                                                 cw_extract_counts *counts, cw_error *err);
+
+/* Counts of a part of a surface. */
+typedef struct cw_part_counts {
+    size_t vertices, triangles;
+    bool has_inside,
+        has_outside; /* samples on each side were found. A volume whose parts all have
+                                     one side only has no surface */
+} cw_part_counts;
+
+/* Extracts a part of the surface of cw_extract_stream(): the layers of cells of part `part`, from 0,
+ * out of `parts` that share them evenly. Parts are made in any order, or on several machines.
+ *
+ * Vertices and triangles of a part count from 0. A triangle may name vertices beyond the part's
+ * last: vertex number vertices + n of a part is vertex n of those behind it. So a part's numbers, plus
+ * the vertices of all parts before it, are those of the whole surface.
+ *
+ * counts   what was made; may be NULL
+ * Returns  as cw_extract_stream(); CW_ERR_ARGUMENT: part is not below parts */
+CW_NODISCARD CW_API cw_status cw_extract_stream_part(const cw_slice_source *source,
+                                                     const cw_stream_desc *desc, size_t part,
+                                                     size_t parts, cw_chunk_sink sink,
+                                                     cw_part_counts *counts, cw_error *err);
 
 /* Returns the working memory of cw_extract_stream() in bytes, without that of the source and the
  * sink. minimum: with one layer at a time, which max_bytes has to allow. */

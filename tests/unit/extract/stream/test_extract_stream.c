@@ -16,13 +16,14 @@ typedef struct slices {
     const cw_volume *volume;
     size_t next, reads, most; /* the slice expected next; slices read; of one call at most */
     size_t fail_at;           /* the slice that cannot be read; 0: none */
+    bool is_part;             /* reading begins anywhere */
 } slices;
 
 static cw_status read_slices(void *user, size_t first, size_t count, void *to, cw_error *err)
 {
     slices *s = user;
     const size_t slice = (size_t)s->volume->stride[2];
-    assert_true(first == s->next || first == 0);
+    assert_true(first == s->next || first == 0 || s->is_part);
     assert_true(count > 0 && first + count <= s->volume->dim[2]);
     if (s->fail_at && first + count > s->fail_at)
         return cwi_fail(err, CW_ERR_IO, "slice %zu cannot be read", s->fail_at);
@@ -108,6 +109,47 @@ static void assert_streamed(const cw_mesh *whole, const cw_volume *v,
     free_gathered(&g);
 }
 
+/* Parts, put together by their numbers, are the whole. */
+static void assert_parts(const cw_mesh *whole, const cw_volume *v, const cw_extract_desc *desc,
+                         size_t parts)
+{
+    const cw_stream_desc d = {.extract = *desc, .layers = 3};
+    gathered all = {0};
+    bool in = false, out = false;
+    for (size_t part = 0; part < parts; part++) {
+        slices s = {.volume = v, .is_part = true};
+        gathered g = {0};
+        cw_part_counts counts;
+        cw_error err = {0};
+        const cw_slice_source source = source_of(&s);
+        assert_ok(cw_extract_stream_part(&source, &d, part, parts,
+                                         (cw_chunk_sink){take_chunk, &g}, &counts, &err),
+                  err);
+        assert_int_equal(counts.vertices, g.mesh.vertex_count);
+        assert_int_equal(counts.triangles, g.mesh.triangle_count);
+        cw_mesh_chunk chunk = {.mesh = g.mesh,
+                               .first_vertex = all.mesh.vertex_count,
+                               .first_triangle = all.mesh.triangle_count};
+        for (size_t n = 0; n < 3 * g.mesh.triangle_count; n++)
+            g.mesh.triangles[n] += (uint32_t)all.mesh.vertex_count;
+        if (counts.vertices || counts.triangles)
+            assert_ok(take_chunk(&all, &chunk, &err), err);
+        in = in || counts.has_inside;
+        out = out || counts.has_outside;
+        free_gathered(&g);
+    }
+    assert_int_equal(in && out, whole->triangle_count > 0);
+    if (in && out) {
+        assert_int_equal(all.mesh.vertex_count, whole->vertex_count);
+        assert_int_equal(all.mesh.triangle_count, whole->triangle_count);
+        assert_memory_equal(all.mesh.triangles, whole->triangles, 12 * whole->triangle_count);
+        assert_memory_equal(all.mesh.positions, whole->positions, 12 * whole->vertex_count);
+        if (whole->normals)
+            assert_memory_equal(all.mesh.normals, whole->normals, 12 * whole->vertex_count);
+    }
+    free_gathered(&all);
+}
+
 /* For all of these numbers of layers, and for one and two threads. */
 static void assert_same_for_layers(const cw_volume *v, const cw_extract_desc *desc)
 {
@@ -119,6 +161,9 @@ static void assert_same_for_layers(const cw_volume *v, const cw_extract_desc *de
         d.threads = 1 + (int)(n & 1);
         assert_streamed(&whole, v, &d, layers[n], cwi_engine_best());
     }
+    if (v->dim[2] > 2)
+        for (size_t parts = 2; parts < 2 * v->dim[2]; parts = 2 * parts + 1)
+            assert_parts(&whole, v, &d, parts);
     cw_mesh_free(&whole);
 }
 
