@@ -318,7 +318,7 @@ if(CUBEWRIGHT_BLOSC)
   find_path(BLOSC_INCLUDE blosc.h)
   find_library(BLOSC_LIBRARY blosc)
 endif()
-add_feature(blosc OPTION CUBEWRIGHT_BLOSC PACKAGES libblosc-dev
+add_feature(blosc OPTION CUBEWRIGHT_BLOSC PACKAGES libblosc-dev MODULE blosc
   ABOUT "Zarr volumes compressed with Blosc"
   COST "reads no Zarr that is compressed with Blosc"
   NEEDS BLOSC_INCLUDE=libblosc-dev BLOSC_LIBRARY=libblosc-dev

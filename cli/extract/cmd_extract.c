@@ -2,6 +2,7 @@
  * up to the written files. */
 #include "cli/extract/extract_run.h"
 #include "cli/extract/label_run.h"
+#include "cli/extract/part_run.h"
 #include "cli/extract/stream_run.h"
 #include "cli/framework/batch.h"
 #include "cli/framework/commands.h"
@@ -124,6 +125,13 @@ static const cli_option options[] = {
     {"pvd", 0, CLI_TEXT, "FILE",
      "List to write for ParaView: the .vtp files of the steps, with their times",
      offsetof(cli_extract_args, pvd)},
+    CLI_HEADED("Parts, for many processes or machines"),
+    {"part", 0, CLI_TEXT, "K/N",
+     "Extract only part K of N into --manifest; 'join' makes one file of all parts (the whole)",
+     offsetof(cli_extract_args, part)},
+    {"manifest", 0, CLI_TEXT, "DIR",
+     "Folder of the parts and of the record of their job; made if need be",
+     offsetof(cli_extract_args, manifest)},
     CLI_HEADED("Output file"),
     {"format", 0, CLI_TEXT, "NAME", "Format to write; names as in 'formats' (by extension)",
      offsetof(cli_extract_args, format)},
@@ -439,6 +447,8 @@ static cw_status run_extract(void *p, cw_error *err)
 {
     cli_extract_args *args = p;
     cli_extract_run s = {.args = args, .output.start = cli_seconds()};
+    if (args->part || args->manifest)
+        return cli_extract_part(args, err);
     if (args->labels)
         return cli_extract_labels(args, err);
     if (!args->iso.count && args->output &&

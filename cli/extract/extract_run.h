@@ -24,6 +24,7 @@ typedef struct cli_extract_args {
     cli_pixel_args pixel;
     int inside, normals, progress, topology, placement, accel;
     bool open, no_clobber, local, check, animate, prove_crop;
+    const char *part, *manifest;
     int stream;
     size_t max_triangles, slab;
 } cli_extract_args;

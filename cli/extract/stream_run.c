@@ -76,21 +76,29 @@ static cw_status check_memory(const cli_extract_run *run, const cw_slice_source 
                     run->input.volume.path, needed_text, limit_text);
 }
 
+cw_status cli_plan_slices(const cli_extract_run *run, double iso, const cw_slice_source *source,
+                          cw_stream_desc *desc, cw_error *err)
+{
+    const size_t *dim = source->shape.dim;
+    size_t left = cwi_memory_left();
+    *desc = (cw_stream_desc){.extract = cli_extract_wants(run, iso).extract,
+                             .layers = run->args->slab};
+    desc->extract.extra_bytes = 0;
+    cw_status st = check_memory(run, source, desc, &left, err);
+    desc->extract.max_bytes = left;
+    desc->extract.progress =
+        cli_progress((double)dim[0] * (double)dim[1] * (double)dim[2] / 1e6, "Mvoxel");
+    return st;
+}
+
 static cw_status extract_slices(void *user, const cw_slice_source *source, cw_error *err)
 {
     streaming *s = user;
-    const size_t *dim = source->shape.dim;
-    size_t left = cwi_memory_left();
-    cw_stream_desc d = {.extract = cli_extract_wants(s->run, s->made->iso).extract,
-                        .layers = s->run->args->slab};
-    d.extract.extra_bytes = 0;
-    cw_status st = check_memory(s->run, source, &d, &left, err);
-    if (st != CW_OK)
-        return st;
-    d.extract.max_bytes = left;
-    d.extract.progress =
-        cli_progress((double)dim[0] * (double)dim[1] * (double)dim[2] / 1e6, "Mvoxel");
-    return cw_extract_stream(source, &d, cw_mesh_spool_sink(s->spool), &s->counts, err);
+    cw_stream_desc d;
+    cw_status st = cli_plan_slices(s->run, s->made->iso, source, &d, err);
+    return st == CW_OK
+               ? cw_extract_stream(source, &d, cw_mesh_spool_sink(s->spool), &s->counts, err)
+               : st;
 }
 
 cw_status cli_extract_streamed(cli_extract_run *run, const cli_moment *moment, cli_made *made,

@@ -15,6 +15,12 @@ const char *cli_find_unstreamed(const cli_extract_args *args);
  * false if they do not. */
 bool cli_turn_to_slices(cli_extract_run *run);
 
+/* Plans the extraction of slices at an isovalue within --memory. Returns CW_ERR_LIMIT when that is
+ * not enough. */
+CW_NODISCARD cw_status cli_plan_slices(const cli_extract_run *run, double iso,
+                                       const cw_slice_source *source, cw_stream_desc *desc,
+                                       cw_error *err);
+
 /* Extracts a surface of the run's volume, whose voxels were not read, into a spool beside the
  * path. Free it with cw_mesh_spool_free(). */
 CW_NODISCARD cw_status cli_extract_streamed(cli_extract_run *run, const cli_moment *moment,

@@ -364,10 +364,12 @@ cw_status cli_choose_step(const cli_input *input, size_t step, cli_volume *volum
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
 }
 
-/* Beside voxels: planes of bits and numbers of rows, and the program. */
-static double bytes_beside(double voxels)
+/* Returns the bytes beside voxels: planes of bits, numbers of rows, and the program, which counts
+ * unless the limit is too small for it. */
+static double bytes_beside(double voxels, size_t limit)
 {
-    return 0.2 * voxels + (24 << 20);
+    enum { PROGRAM = 24 << 20, MINIMUM = 32 << 20 };
+    return 0.2 * voxels + (limit < MINIMUM ? 0 : PROGRAM);
 }
 
 /* Returns true if voxels of a shape are to be read slice by slice. */
@@ -378,7 +380,7 @@ static bool streams(const cli_input *input, const cw_volume *part, size_t limit)
         voxels *= (double)part->dim[a];
     const double bytes = voxels * (double)cw_type_size(part->type);
     return input->may_stream && !part->cells && !part->sparse && input->stream != 2 &&
-           (input->stream == 1 || bytes + bytes_beside(voxels) > (double)limit);
+           (input->stream == 1 || bytes + bytes_beside(voxels, limit) > (double)limit);
 }
 
 /* Makes the view of a volume that streams: a shape without voxels. */

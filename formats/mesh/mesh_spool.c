@@ -133,12 +133,14 @@ static cw_status take_chunk(void *user, const cw_mesh_chunk *chunk, cw_error *er
     const bool is_first = !all->vertex_count && !all->triangle_count;
     if (chunk->first_vertex != all->vertex_count ||
         chunk->first_triangle != all->triangle_count ||
-        (!is_first && s->has_normals != (m->normals != NULL)))
+        (!is_first && m->vertex_count && all->vertex_count &&
+         s->has_normals != (m->normals != NULL)))
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "a chunk from vertex %zu and triangle %zu on, where %zu and %zu follow",
                         chunk->first_vertex, chunk->first_triangle, all->vertex_count,
                         all->triangle_count);
-    s->has_normals = m->normals != NULL;
+    if (m->vertex_count)
+        s->has_normals = m->normals != NULL;
     memcpy(all->origin, m->origin, sizeof all->origin);
     memcpy(all->affine, m->affine, sizeof all->affine);
     widen_bounds(s, m);

@@ -32,6 +32,31 @@ CW_API const cw_mesh *cw_mesh_spool_frame(const cw_mesh_spool *spool);
 /* Computes the box around the vertices, as cw_mesh_bounds() does. */
 CW_API bool cw_mesh_spool_bounds(const cw_mesh_spool *spool, double min[3], double max[3]);
 
+/* A part of a surface in a file of its own: a fragment. */
+typedef struct cw_fragment {
+    size_t part, parts;    /* as in cw_extract_stream_part() */
+    cw_part_counts counts; /* what that call made */
+    uint64_t job; /* the caller's number of the extraction: fragments of different ones do
+                              not fit together */
+} cw_fragment;
+
+/* Writes a part that is in a spool as a fragment: its facts, arrays and a checksum. It appears at
+ * the path only when it is complete.
+ * Returns CW_ERR_OUTPUT; CW_ERR_IO; CW_ERR_NO_MEMORY */
+CW_NODISCARD CW_API cw_status cw_fragment_write(const char *path, const cw_fragment *fragment,
+                                                const cw_mesh_spool *spool, cw_error *err);
+
+/* Reads the facts of a fragment, and checks the size of its file.
+ * Returns CW_ERR_IO, CW_ERR_FORMAT: it is no fragment, or not complete */
+CW_NODISCARD CW_API cw_status cw_fragment_read(const char *path, cw_fragment *fragment,
+                                               cw_error *err);
+
+/* Appends a fragment to the spool that holds all parts before it, and verifies the checksum.
+ * Returns as cw_fragment_read(), also for a wrong checksum; CW_ERR_LIMIT: more than 2^32 - 1
+ *         vertices; as the spool's sink */
+CW_NODISCARD CW_API cw_status cw_fragment_append(const char *path, cw_mesh_spool *spool,
+                                                 cw_error *err);
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,20 +1,15 @@
 /* Decodes buffers of Blosc 1 by libblosc. */
-#include "formats/zarr/zarr_decode.h"
+#include "formats/zarr/blosc_wrap.h"
 
 #include "core/base/memory.h"
 
 #include <blosc.h>
 #include <limits.h>
 
-bool cwi_zarr_blosc_present(void)
-{
-    return true;
-}
-
 /* The library takes memory for three blocks. Its context is our own, so that threads do not wait
  * for each other. */
-bool cwi_zarr_blosc_decode(const unsigned char *packed, size_t packed_size, void *to,
-                           size_t capacity, size_t *got, bool *starved)
+static bool decode_buffer(const unsigned char *packed, size_t packed_size, void *to,
+                          size_t capacity, size_t *got, bool *starved)
 {
     size_t packed_stated, block;
     *got = 0;
@@ -33,3 +28,5 @@ bool cwi_zarr_blosc_decode(const unsigned char *packed, size_t packed_size, void
     cwi_memory_give(3 * block);
     return size >= 0 && (size_t)size == *got;
 }
+
+const cwi_blosc_functions cwi_module_blosc = {.decode = decode_buffer};
