@@ -132,6 +132,12 @@ static const cli_option options[] = {
     {"manifest", 0, CLI_TEXT, "DIR",
      "Folder of the parts and of the record of their job; made if need be",
      offsetof(cli_extract_args, manifest)},
+    {"queue", 0, CLI_TEXT, "DIR",
+     "Make all parts in DIR, with any number of processes that say the same; then -o. What was "
+     "interrupted goes on when it is run again",
+     offsetof(cli_extract_args, queue)},
+    {"parts", 0, CLI_COUNT, "N", "Number of parts of --queue (one for 64 slices)",
+     offsetof(cli_extract_args, parts)},
     CLI_HEADED("Output file"),
     {"format", 0, CLI_TEXT, "NAME", "Format to write; names as in 'formats' (by extension)",
      offsetof(cli_extract_args, format)},
@@ -447,7 +453,7 @@ static cw_status run_extract(void *p, cw_error *err)
 {
     cli_extract_args *args = p;
     cli_extract_run s = {.args = args, .output.start = cli_seconds()};
-    if (args->part || args->manifest)
+    if (args->part || args->manifest || args->queue || args->parts)
         return cli_extract_part(args, err);
     if (args->labels)
         return cli_extract_labels(args, err);

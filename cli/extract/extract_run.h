@@ -24,7 +24,8 @@ typedef struct cli_extract_args {
     cli_pixel_args pixel;
     int inside, normals, progress, topology, placement, accel;
     bool open, no_clobber, local, check, animate, prove_crop;
-    const char *part, *manifest;
+    const char *part, *manifest, *queue;
+    size_t parts;
     int stream;
     size_t max_triangles, slab;
 } cli_extract_args;
