@@ -2,7 +2,7 @@
  * sizes decide the encoding, since the files do not state it. */
 #define _DEFAULT_SOURCE /* realpath */
 #include "core/base/status.h"
-#include "formats/volume/irregular_grid.h"
+#include "formats/cells/irregular_grid.h"
 #include "formats/volume/named_arrays.h"
 #include "formats/volume/volume_reader.h"
 

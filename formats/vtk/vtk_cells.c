@@ -1,7 +1,7 @@
 /* Reads points and cells of a legacy VTK file's irregular grid. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "formats/volume/grid_arrays.h"
+#include "formats/cells/grid_arrays.h"
 #include "formats/vtk/vtk.h"
 
 #include <strings.h>

@@ -2,7 +2,7 @@
  * Formats", the simple legacy formats, version 1.0 to 5.1). */
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "formats/volume/irregular_grid.h"
+#include "formats/cells/irregular_grid.h"
 #include "formats/volume/named_arrays.h"
 #include "formats/volume/volume_reader.h"
 #include "formats/vtk/vtk.h"

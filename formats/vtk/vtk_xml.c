@@ -2,7 +2,7 @@
 #include "formats/vtk/vtk_xml.h"
 
 #include "core/base/status.h"
-#include "formats/volume/grid_arrays.h"
+#include "formats/cells/grid_arrays.h"
 
 #include <ctype.h>
 #include <stdio.h>

@@ -2,8 +2,8 @@
  * read first; then each needed array, one after another, by the reader of voxels. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "formats/cells/grid_arrays.h"
 #include "formats/mesh/mesh_reader.h"
-#include "formats/volume/grid_arrays.h"
 #include "formats/vtk/vtk_xml.h"
 
 #include <float.h>

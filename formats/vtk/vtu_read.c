@@ -3,7 +3,7 @@
 #define _GNU_SOURCE /* memmem */
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "formats/volume/irregular_grid.h"
+#include "formats/cells/irregular_grid.h"
 #include "formats/volume/volume_reader.h"
 #include "formats/vtk/vti.h"
 

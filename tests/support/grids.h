@@ -2,7 +2,7 @@
 #ifndef TESTS_GRIDS_H
 #define TESTS_GRIDS_H
 
-#include "formats/volume/vtk_cell_types.h"
+#include "formats/cells/vtk_cell_types.h"
 #include "support/files/reading.h"
 
 #include <math.h>

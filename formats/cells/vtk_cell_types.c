@@ -1,5 +1,5 @@
 /* Maps VTK's cell types to our shapes, and gives their names and numbers of corners. */
-#include "formats/volume/vtk_cell_types.h"
+#include "formats/cells/vtk_cell_types.h"
 
 #define FLAT(name)                                                                             \
     {                                                                                          \

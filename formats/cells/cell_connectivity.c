@@ -1,8 +1,8 @@
 /* Reads the corners of cells from VTK's lists, and converts them to the order of our shapes. */
-#include "formats/volume/cell_connectivity.h"
+#include "formats/cells/cell_connectivity.h"
 
 #include "core/base/status.h"
-#include "formats/volume/vtk_cell_types.h"
+#include "formats/cells/vtk_cell_types.h"
 
 /* Finds the end of the next cell's numbers. */
 static cw_status find_end(cwi_corner_list *list, size_t *out, cw_error *err)

@@ -1,15 +1,15 @@
 /* Reads irregular grids in two passes: checks the arrays and selects the cells, then builds the
  * volume. */
-#include "formats/volume/irregular_grid.h"
+#include "formats/cells/irregular_grid.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "core/volume/volume.h"
-#include "formats/volume/cell_connectivity.h"
-#include "formats/volume/merge_samples.h"
+#include "formats/cells/cell_connectivity.h"
+#include "formats/cells/merge_samples.h"
+#include "formats/cells/vtk_cell_types.h"
 #include "formats/volume/volume_reader.h"
-#include "formats/volume/vtk_cell_types.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 /* The corners of cells as VTK lists them, read cell by cell. */
-#ifndef FORMATS_VOLUME_CELL_CONNECTIVITY_H
-#define FORMATS_VOLUME_CELL_CONNECTIVITY_H
+#ifndef FORMATS_CELLS_CELL_CONNECTIVITY_H
+#define FORMATS_CELLS_CELL_CONNECTIVITY_H
 
-#include "formats/volume/grid_arrays.h"
+#include "formats/cells/grid_arrays.h"
 
 typedef struct cwi_corner_list {
     cwi_tuples numbers;

@@ -1,9 +1,9 @@
 /* Irregular grids: the description of their arrays by a header, and the common reader that
  * makes a volume with cells from it. */
-#ifndef FORMATS_VOLUME_IRREGULAR_GRID_H
-#define FORMATS_VOLUME_IRREGULAR_GRID_H
+#ifndef FORMATS_CELLS_IRREGULAR_GRID_H
+#define FORMATS_CELLS_IRREGULAR_GRID_H
 
-#include "formats/volume/grid_arrays.h"
+#include "formats/cells/grid_arrays.h"
 
 /* The arrays of a piece. Kinds and corners of cells are numbered as in VTK. */
 typedef enum cwi_grid_role {

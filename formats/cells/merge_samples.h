@@ -1,6 +1,6 @@
 /* Merging of samples with the same place and the same value. */
-#ifndef FORMATS_VOLUME_MERGE_SAMPLES_H
-#define FORMATS_VOLUME_MERGE_SAMPLES_H
+#ifndef FORMATS_CELLS_MERGE_SAMPLES_H
+#define FORMATS_CELLS_MERGE_SAMPLES_H
 
 #include <cubewright/core.h>
 

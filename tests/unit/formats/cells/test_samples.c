@@ -1,5 +1,5 @@
 /* Samples that stand twice. */
-#include "formats/volume/merge_samples.h"
+#include "formats/cells/merge_samples.h"
 #include "support/support.h"
 
 #include <stdlib.h>

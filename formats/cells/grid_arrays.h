@@ -1,6 +1,6 @@
 /* Arrays of tuples in memory, stored like voxels, including whole numbers of 64 bits. */
-#ifndef FORMATS_VOLUME_GRID_ARRAYS_H
-#define FORMATS_VOLUME_GRID_ARRAYS_H
+#ifndef FORMATS_CELLS_GRID_ARRAYS_H
+#define FORMATS_CELLS_GRID_ARRAYS_H
 
 #include "formats/volume/voxel_source.h"
 

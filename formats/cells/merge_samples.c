@@ -1,5 +1,5 @@
 /* Finds equal samples by a hash table, and drops all but the first of them. */
-#include "formats/volume/merge_samples.h"
+#include "formats/cells/merge_samples.h"
 
 #include "core/base/memory.h"
 

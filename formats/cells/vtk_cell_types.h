@@ -1,6 +1,6 @@
 /* The kinds of cells that VTK numbers, and their use here. */
-#ifndef FORMATS_VOLUME_VTK_CELL_TYPES_H
-#define FORMATS_VOLUME_VTK_CELL_TYPES_H
+#ifndef FORMATS_CELLS_VTK_CELL_TYPES_H
+#define FORMATS_CELLS_VTK_CELL_TYPES_H
 
 #include <cubewright/volume.h>
 

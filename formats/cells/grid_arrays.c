@@ -1,5 +1,5 @@
 /* Loads arrays of tuples into memory, and returns their numbers as doubles or whole numbers. */
-#include "formats/volume/grid_arrays.h"
+#include "formats/cells/grid_arrays.h"
 
 #include "core/volume/volume.h"
 
