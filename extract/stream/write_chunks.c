@@ -110,17 +110,18 @@ static cw_status make_room(cwi_chunk_writer *c, size_t vertices, size_t triangle
                            cw_error *err)
 {
     const bool normals = !c->window->desc.no_normals;
-    if (vertices > c->vertex_room) {
+    if (!c->positions || vertices > c->vertex_room) {
         c->positions = cwi_renew_large(c->positions, 3 * vertices, sizeof *c->positions);
         if (normals)
             c->normals = cwi_renew_large(c->normals, 3 * vertices, sizeof *c->normals);
         c->vertex_room = c->positions && (c->normals || !normals) ? vertices : 0;
     }
-    if (triangles > c->triangle_room) {
+    if (!c->corners || triangles > c->triangle_room) {
         c->corners = cwi_renew_large(c->corners, 3 * triangles, sizeof *c->corners);
         c->triangle_room = c->corners ? triangles : 0;
     }
-    return vertices <= c->vertex_room && triangles <= c->triangle_room
+    return c->positions && c->corners && vertices <= c->vertex_room &&
+                   triangles <= c->triangle_room
                ? CW_OK
                : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu triangles", triangles);
 }
