@@ -13,8 +13,8 @@
 #include <string.h>
 
 /* Elements of the smallest array, and vertices that are settled at a time. A larger front is
- * settled in eight steps, so that their arrays are small beside it. */
-enum { MIN_CAPACITY = 512, MIN_STEP = 65536, STEPS = 8 };
+ * settled in four steps, so that their arrays are small beside it. */
+enum { MIN_CAPACITY = 512, MIN_STEP = 65536, STEPS = 4 };
 
 enum { VERTEX_BYTES = 3 * sizeof(float), TRIANGLE_BYTES = 3 * sizeof(uint32_t) };
 
@@ -139,7 +139,7 @@ static void drop_sets(cw_quality_stream *s, uint32_t count)
 /* Measures the topology around vertices that are final. */
 static bool settle_vertices(cw_quality_stream *s)
 {
-    const size_t eighth = s->set_count / STEPS, step = eighth > MIN_STEP ? eighth : MIN_STEP;
+    const size_t part = s->set_count / STEPS, step = part > MIN_STEP ? part : MIN_STEP;
     while (s->settled < s->final) {
         const size_t left = s->final - s->settled, count = left < step ? left : step;
         const cwi_stars stars = {.triangles = s->triangles,
@@ -155,29 +155,26 @@ static bool settle_vertices(cw_quality_stream *s)
     return true;
 }
 
-/* Drops triangles that are measured and have final vertices only. */
-static void drop_triangles(cw_quality_stream *s)
+/* Drops triangles that are measured and have final vertices only, and the positions that no other
+ * triangle needs for its shape. */
+static void drop_measured(cw_quality_stream *s)
 {
-    size_t kept = 0, shaped = 0;
+    size_t kept = 0, shaped = 0, first = s->final;
     for (size_t t = 0; t < s->held; t++) {
-        const uint32_t *c = s->triangles + 3 * t;
-        if (t < s->shaped && highest_of(c) < s->settled)
+        const uint32_t c[3] = {s->triangles[3 * t], s->triangles[3 * t + 1],
+                               s->triangles[3 * t + 2]};
+        const bool is_shaped = t < s->shaped;
+        if (is_shaped && highest_of(c) < s->settled)
             continue;
-        shaped += t < s->shaped;
-        memmove(s->triangles + 3 * kept++, c, TRIANGLE_BYTES);
+        const uint32_t low = lowest_of(c);
+        first = !is_shaped && low < first ? low : first;
+        shaped += is_shaped;
+        for (size_t n = 0; n < 3; n++)
+            s->triangles[3 * kept + n] = c[n];
+        kept++;
     }
     s->held = kept;
     s->shaped = shaped;
-}
-
-/* Drops positions that no triangle needs for its shape. */
-static void drop_positions(cw_quality_stream *s)
-{
-    size_t first = s->final;
-    for (size_t t = s->shaped; t < s->held; t++) {
-        const uint32_t low = lowest_of(s->triangles + 3 * t);
-        first = low < first ? low : first;
-    }
     memmove(s->positions, s->positions + 3 * (first - s->placed),
             (s->q.vertices - first) * VERTEX_BYTES);
     s->placed = first;
@@ -187,8 +184,7 @@ static cw_status settle_front(cw_quality_stream *s, bool last, cw_error *err)
 {
     if (!add_shapes(s, last) || !settle_vertices(s))
         return fail_memory(s, err);
-    drop_triangles(s);
-    drop_positions(s);
+    drop_measured(s);
     return CW_OK;
 }
 
