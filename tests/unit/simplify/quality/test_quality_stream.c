@@ -323,6 +323,27 @@ static void memory_is_that_of_the_front(void **state)
     assert_true(most[0] < 400000);
 }
 
+/* More vertices become final at once than are measured in one step. */
+static void a_large_front_is_settled_in_steps(void **state)
+{
+    (void)state;
+    cw_volume v = make_noise(40, 200);
+    cw_mesh mesh =
+        test_extract(&v, &(cw_extract_desc){.isovalue = 99.5, .leave_open = true}, NULL);
+    cw_quality whole;
+    cw_error err = {0};
+    assert_true(mesh.vertex_count > 100000);
+    assert_ok(cw_quality_measure(&mesh, NULL, &whole, &err), err);
+    for (int threads = 1; threads < 3; threads++) {
+        const cw_quality one = measure_stream(&mesh, mesh.triangle_count, threads),
+                         many = measure_stream(&mesh, 50000, threads);
+        assert_same_quality("one chunk", &whole, &one);
+        assert_same_quality("large chunks", &whole, &many);
+    }
+    cw_mesh_free(&mesh);
+    cw_volume_free(&v);
+}
+
 static void expect_refused(const cw_mesh_chunk *chunk, const char *message)
 {
     cw_quality_stream *stream;
@@ -444,9 +465,11 @@ int main(void)
         cmocka_unit_test(damaged_surfaces_are_measured),
         cmocka_unit_test(a_hub_is_measured),
         cmocka_unit_test(memory_is_that_of_the_front),
+        cmocka_unit_test(a_large_front_is_settled_in_steps),
         cmocka_unit_test(chunks_that_do_not_follow_are_refused),
         cmocka_unit_test(a_front_above_its_limit_is_refused),
         cmocka_unit_test(memory_running_out_is_an_error_at_every_allocation),
     };
+    seed = test_seed(7);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
