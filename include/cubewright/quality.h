@@ -117,9 +117,10 @@ CW_NODISCARD CW_API cw_status cw_quality_stream_new(const cw_quality_stream_desc
 /* Returns the sink that takes the chunks. It returns
  *          CW_ERR_ARGUMENT  a chunk does not follow the last one, or has another origin; a
  *                           triangle names a vertex before its chunk; a position is not finite
- *          CW_ERR_LIMIT     the front takes more than max_bytes; CW_ERR_NO_MEMORY
- * Cost     about 24 bytes for each triangle of the front, and as much for a vertex. Numbers of
- *          vertices that were named and did not come yet count as vertices */
+ *          CW_ERR_LIMIT     the front takes more than max_bytes; more than 2^32 - 1 vertices
+ *          CW_ERR_NO_MEMORY
+ * Cost     time as cw_quality_measure(); up to 18 bytes for each triangle of the front, and 24
+ *          for each number between its first vertex and the highest one that was named */
 CW_API cw_chunk_sink cw_quality_stream_sink(cw_quality_stream *stream);
 
 /* Ends the measurement, once. The result is that of cw_quality_measure() of the whole mesh as
