@@ -209,7 +209,7 @@ static cw_status deliver_level(cli_extract_run *s, size_t level, const cw_part *
     cli_delivery how = describe_delivery(s);
     how.write.provenance = provenance;
     how.write.provenance_count = cli_extract_provenance(s, level, text, simplify, provenance);
-    /* each was by itself; a spool is not read again */
+    /* each step was measured by itself; a streamed surface was on its way */
     how.unchecked = how.unchecked || how.write.animated || s->input.volume.streams;
     how.parts = how.write.animated ? "steps" : NULL;
     return cli_deliver(&s->output.report, &how, parts, count, border_loops, s->output.start,

@@ -9,6 +9,8 @@
 
 #include <cubewright/spool.h>
 
+#include <stdio.h>
+
 /* Memory beside the slices and the program so far: the writer of a file, threads, buffers. */
 enum { BESIDE_BYTES = 10 << 20 };
 
@@ -54,8 +56,27 @@ typedef struct streaming {
     const cli_extract_run *run;
     const cli_made *made;
     cw_mesh_spool *spool;
+    cw_quality_stream *check; /* NULL: it is not measured */
     cw_extract_counts counts;
 } streaming;
+
+/* Passes a chunk on to the spool, and to the measurement. */
+static cw_status take_chunk(void *user, const cw_mesh_chunk *chunk, cw_error *err)
+{
+    const streaming *s = user;
+    const cw_chunk_sink spool = cw_mesh_spool_sink(s->spool),
+                        check = cw_quality_stream_sink(s->check);
+    cw_status st = spool.take(spool.user, chunk, err);
+    if (st != CW_OK || !s->check)
+        return st;
+    st = check.take(check.user, chunk, err);
+    if (st == CW_ERR_LIMIT) {
+        const cw_error why = *err;
+        return cwi_fail(err, st, "%s: %s (--memory); --no-check leaves it out",
+                        s->run->input.volume.path, why.message);
+    }
+    return st;
+}
 
 /* Checks that the process keeps to --memory: `left` is what slices may take. */
 static cw_status check_memory(const cli_extract_run *run, const cw_slice_source *source,
@@ -91,14 +112,48 @@ cw_status cli_plan_slices(const cli_extract_run *run, double iso, const cw_slice
     return st;
 }
 
+/* Divides the memory that is left. Slices take a third of it at most, or what a single layer needs.
+ * The front of the surface may have the rest, and half of that beside: the file is written later.
+ * A quarter is for the work on the front. */
+static cw_status begin_check(streaming *s, const cw_slice_source *source, cw_stream_desc *desc,
+                             size_t left, cw_error *err)
+{
+    const size_t least = cw_extract_stream_bytes(&source->shape, desc, true);
+    desc->extract.max_bytes = left;
+    if (!s->run->args->check)
+        return CW_OK;
+    desc->extract.max_bytes = left / 3 > least ? left / 3 : least;
+    const size_t slices = cw_extract_stream_bytes(&source->shape, desc, false),
+                 rest = (left > slices ? left - slices : 0) + BESIDE_BYTES / 2;
+    const cw_quality_stream_desc check = {.threads = (int)s->run->args->input.threads,
+                                          .max_bytes = rest / 4 * 3};
+    return cw_quality_stream_new(&check, &s->check, err);
+}
+
 static cw_status extract_slices(void *user, const cw_slice_source *source, cw_error *err)
 {
     streaming *s = user;
     cw_stream_desc d;
     cw_status st = cli_plan_slices(s->run, s->made->iso, source, &d, err);
+    if (st == CW_OK)
+        st = begin_check(s, source, &d, d.extract.max_bytes, err);
     return st == CW_OK
-               ? cw_extract_stream(source, &d, cw_mesh_spool_sink(s->spool), &s->counts, err)
+               ? cw_extract_stream(source, &d, (cw_chunk_sink){take_chunk, s}, &s->counts, err)
                : st;
+}
+
+/* Ends the measurement, and holds the surface to the promise. */
+static cw_status end_check(const streaming *s, cli_made *made, cw_error *err)
+{
+    char what[32];
+    snprintf(what, sizeof what, "at %g", made->iso);
+    if (!s->check)
+        return CW_OK;
+    cw_status st = cw_quality_stream_finish(s->check, &made->quality, err);
+    made->measured = st == CW_OK;
+    return st == CW_OK ? cli_hold_to_promise(s->run->input.volume.path, what, &made->quality,
+                                             s->run->args->open, err)
+                       : st;
 }
 
 cw_status cli_extract_streamed(cli_extract_run *run, const cli_moment *moment, cli_made *made,
@@ -124,6 +179,9 @@ cw_status cli_extract_streamed(cli_extract_run *run, const cli_moment *moment, c
                       "%s: no surface at isovalue %g: it must be above the lowest value and at "
                       "most the highest ('cubewright info' tells them)",
                       v->path, made->iso);
+    if (st == CW_OK)
+        st = end_check(&s, made, err);
+    cw_quality_stream_free(s.check);
     if (st != CW_OK) {
         cw_mesh_spool_free(*spool);
         *spool = NULL;

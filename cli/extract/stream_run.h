@@ -22,7 +22,8 @@ CW_NODISCARD cw_status cli_plan_slices(const cli_extract_run *run, double iso,
                                        cw_error *err);
 
 /* Extracts a surface of the run's volume, whose voxels were not read, into a spool beside the
- * path. Free it with cw_mesh_spool_free(). */
+ * path. Free it with cw_mesh_spool_free(). Unless the run says otherwise, it measures the surface
+ * on the way and holds it to the promise: CW_ERR_CHECK. */
 CW_NODISCARD cw_status cli_extract_streamed(cli_extract_run *run, const cli_moment *moment,
                                             cli_made *made, cw_mesh_spool **spool,
                                             cw_error *err);

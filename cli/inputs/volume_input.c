@@ -560,6 +560,8 @@ cw_status cli_tell_labels(cli_volume *volume, const double *iso, size_t count,
     if (volume->magnitude.data || volume->streams)
         return CW_OK;
     cw_status st = cw_volume_labels(&volume->voxels, &l, err); /* of a preview all of them */
+    if (st == CW_ERR_NO_MEMORY) /* a note is not worth an error */
+        return CW_OK;
     if (st != CW_OK || !l.found || !l.count)
         return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
     const bool said = volume->view.known & CW_KNOWN_LABELS;

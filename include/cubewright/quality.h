@@ -4,6 +4,7 @@
 #define CUBEWRIGHT_QUALITY_H
 
 #include <cubewright/mesh.h>
+#include <cubewright/stream.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -97,6 +98,43 @@ CW_NODISCARD CW_API cw_status cw_quality_measure(const cw_mesh *mesh,
 /* Returns the bytes that measuring takes beside the mesh; for one with open edges a third
  * more. */
 CW_API size_t cw_quality_bytes(size_t vertices, size_t triangles);
+
+/* A measurement of a surface that comes in chunks, such as those of cw_extract_stream(). It holds
+ * the front of the surface only: vertices that may still get triangles, and the triangles that
+ * name them or wait for their positions. */
+typedef struct cw_quality_stream cw_quality_stream;
+
+typedef struct cw_quality_stream_desc {
+    int threads;      /* default: all */
+    size_t max_bytes; /* limit of the memory for the front; default: none */
+} cw_quality_stream_desc;
+
+/* Begins a measurement; free it with cw_quality_stream_free(). desc: NULL means all defaults.
+ * Returns CW_ERR_NO_MEMORY */
+CW_NODISCARD CW_API cw_status cw_quality_stream_new(const cw_quality_stream_desc *desc,
+                                                    cw_quality_stream **out, cw_error *err);
+
+/* Returns the sink that takes the chunks. It returns
+ *          CW_ERR_ARGUMENT  a chunk does not follow the last one, or has another origin; a
+ *                           triangle names a vertex before its chunk; a position is not finite
+ *          CW_ERR_LIMIT     the front takes more than max_bytes; more than 2^32 - 1 vertices
+ *          CW_ERR_NO_MEMORY
+ * Cost     time as cw_quality_measure(); up to 18 bytes for each triangle of the front, and 24
+ *          for each number between its first vertex and the highest one that was named */
+CW_API cw_chunk_sink cw_quality_stream_sink(cw_quality_stream *stream);
+
+/* Ends the measurement, once. The result is that of cw_quality_measure() of the whole mesh as
+ * indexed, to the bit, for any chunks and threads. Three things are not known, and 0:
+ * shapes.lengths; merged_vertices; the fields from cavities to to_turn.
+ * Returns CW_ERR_ARGUMENT  a triangle names a vertex that did not come; it was finished before
+ *         or what the sink returned, if it failed */
+CW_NODISCARD CW_API cw_status cw_quality_stream_finish(cw_quality_stream *stream,
+                                                       cw_quality *out, cw_error *err);
+
+/* Returns the bytes of the arrays that it holds at present. */
+CW_API size_t cw_quality_stream_bytes(const cw_quality_stream *stream);
+
+CW_API void cw_quality_stream_free(cw_quality_stream *stream); /* harmless on NULL */
 
 /* Counts of cw_mesh_orient(). */
 typedef struct cw_orient_counts {

@@ -19,7 +19,8 @@ typedef struct cw_slice_source {
     void *user;
 } cw_slice_source;
 
-/* A piece of a surface, in the order of cw_extract(). */
+/* A piece of a surface, in the order of cw_extract(). The triangles of a chunk, and of all later
+ * ones, name no vertex before the chunk's first_vertex: so vertices below it are final. */
 typedef struct cw_mesh_chunk {
     cw_mesh mesh; /* borrowed arrays of this chunk alone. Its triangles name vertices by their
                      numbers in the whole surface; some may be of a later chunk */

@@ -10,8 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Sums are made chunk by chunk and joined in order, so that they do not depend on threads. */
-enum { CHUNK = 4096 };
+enum { CHUNK = CWI_SHAPE_CHUNK };
 
 const double cw_aspect_ends[CW_ASPECT_BINS - 1] = {1.25, 1.5, 2, 3, 5, 10, 30, 100};
 
@@ -24,26 +23,26 @@ typedef struct sides {
     double normal[3]; /* as long as twice the area */
 } sides;
 
-typedef struct part {
-    double area, volume;
-    size_t degenerate, needles, caps;
-    cw_shapes shapes;
-} part;
-
 typedef struct work {
     const cwi_welded *welded;
     uint8_t *defects;
-    part *parts;
+    cwi_shape_sum *parts;
     double bins_per_octave, shortest; /* of the histogram of lengths */
 } work;
 
-static void load_sides(const cw_mesh *mesh, size_t triangle, sides *s)
+/* Finds the sides and the normal from the corners. */
+static void find_sides(sides *s)
 {
-    cwi_corners(mesh, triangle, s->from);
     for (int n = 0; n < 3; n++)
         for (int a = 0; a < 3; a++)
             s->side[n][a] = s->from[(n + 1) % 3][a] - s->from[n][a];
     cwi_cross(s->side[0], s->side[1], s->normal);
+}
+
+static void load_sides(const cw_mesh *mesh, size_t triangle, sides *s)
+{
+    cwi_corners(mesh, triangle, s->from);
+    find_sides(s);
 }
 
 void cwi_add_triangle(const cw_mesh *mesh, size_t triangle, uint32_t vertex, double *volume,
@@ -63,7 +62,7 @@ static size_t bin_of(double value, double step)
     return bin < CW_ANGLE_BINS ? (size_t)bin : CW_ANGLE_BINS - 1;
 }
 
-static void count_angles(const sides *s, part *p, double *largest)
+static void count_angles(const sides *s, cwi_shape_sum *p, double *largest)
 {
     const double degrees = 180 / acos(-1.0);
     double least = 180, most = 0;
@@ -81,7 +80,7 @@ static void count_angles(const sides *s, part *p, double *largest)
 }
 
 /* a b c (a + b + c) / (4 K)^2, where K is the area. */
-static void count_aspect(const sides *s, part *p)
+static void count_aspect(const sides *s, cwi_shape_sum *p)
 {
     const double *l = s->length, quarter = 2 * s->twice_area;
     const double aspect = (l[0] / quarter) * (l[1] / quarter) * l[2] * (l[0] + l[1] + l[2]);
@@ -92,33 +91,50 @@ static void count_aspect(const sides *s, part *p)
     p->shapes.max_aspect = cwi_greater(p->shapes.max_aspect, aspect);
 }
 
-static void measure_triangle(const work *w, size_t t, part *p)
+void cwi_shape_sum_init(cwi_shape_sum *p)
 {
-    sides s;
+    *p = (cwi_shape_sum){.shapes = {.min_angle_deg = 180, .min_edge_mm = INFINITY}};
+}
+
+static unsigned add_shape(sides *s, bool collapsed, cwi_shape_sum *p)
+{
     double largest, low, high;
-    load_sides(w->welded->mesh, t, &s);
-    s.twice_area = sqrt(cwi_dot(s.normal, s.normal));
+    s->twice_area = sqrt(cwi_dot(s->normal, s->normal));
     for (int n = 0; n < 3; n++)
-        s.length[n] = sqrt(cwi_dot(s.side[n], s.side[n]));
-    low = cwi_lesser(s.length[0], cwi_lesser(s.length[1], s.length[2]));
-    high = cwi_greater(s.length[0], cwi_greater(s.length[1], s.length[2]));
-    p->area += s.twice_area / 2;
-    p->volume += cwi_dot(s.normal, s.from[0]) / 6;
-    if (!(s.twice_area > 0) || cwi_is_collapsed(w->welded, t)) {
+        s->length[n] = sqrt(cwi_dot(s->side[n], s->side[n]));
+    low = cwi_lesser(s->length[0], cwi_lesser(s->length[1], s->length[2]));
+    high = cwi_greater(s->length[0], cwi_greater(s->length[1], s->length[2]));
+    p->area += s->twice_area / 2;
+    p->volume += cwi_dot(s->normal, s->from[0]) / 6;
+    if (!(s->twice_area > 0) || collapsed) {
         p->degenerate++;
-        if (w->defects)
-            w->defects[t] |= CW_DEFECT_DEGENERATE;
-        return;
+        return CW_DEFECT_DEGENERATE;
     }
     p->shapes.min_edge_mm = cwi_lesser(p->shapes.min_edge_mm, low);
     p->shapes.max_edge_mm = cwi_greater(p->shapes.max_edge_mm, high);
-    count_angles(&s, p, &largest);
-    count_aspect(&s, p);
+    count_angles(s, p, &largest);
+    count_aspect(s, p);
     const bool cap = largest > CW_CAP_ANGLE_DEG, needle = high > CW_NEEDLE_RATIO * low;
     p->caps += cap;
     p->needles += needle && !cap;
-    if (w->defects && (cap || needle))
-        w->defects[t] |= CW_DEFECT_SLIVER;
+    return cap || needle ? CW_DEFECT_SLIVER : 0;
+}
+
+void cwi_shape_sum_add(cwi_shape_sum *p, const double corners[3][3], bool collapsed)
+{
+    sides s;
+    memcpy(s.from, corners, sizeof s.from);
+    find_sides(&s);
+    add_shape(&s, collapsed, p);
+}
+
+static void measure_triangle(const work *w, size_t t, cwi_shape_sum *p)
+{
+    sides s;
+    load_sides(w->welded->mesh, t, &s);
+    const unsigned defects = add_shape(&s, cwi_is_collapsed(w->welded, t), p);
+    if (w->defects)
+        w->defects[t] |= (uint8_t)defects;
 }
 
 static size_t end_of(const work *w, size_t k)
@@ -130,9 +146,8 @@ static size_t end_of(const work *w, size_t k)
 static void measure_chunk(void *context, size_t k)
 {
     const work *w = context;
-    part *p = &w->parts[k];
-    p->shapes.min_angle_deg = 180;
-    p->shapes.min_edge_mm = INFINITY;
+    cwi_shape_sum *p = &w->parts[k];
+    cwi_shape_sum_init(p);
     for (size_t t = k * CHUNK; t < end_of(w, k); t++)
         measure_triangle(w, t, p);
 }
@@ -160,7 +175,7 @@ static void add_bins(size_t *to, const size_t *from, size_t count)
         to[n] += from[n];
 }
 
-static void add_part(const part *p, cw_quality *q)
+void cwi_shape_sum_join(const cwi_shape_sum *p, cw_quality *q)
 {
     cw_shapes *s = &q->shapes;
     q->area_mm2 += p->area;
@@ -198,7 +213,7 @@ bool cwi_measure_shapes(const cwi_welded *welded, const cw_quality_desc *desc, c
     s->min_angle_deg = 180;
     s->min_edge_mm = INFINITY;
     for (size_t k = 0; k < chunks; k++)
-        add_part(&w.parts[k], q);
+        cwi_shape_sum_join(&w.parts[k], q);
     w.shortest = s->min_edge_mm;
     w.bins_per_octave = s->max_edge_mm > s->min_edge_mm
                             ? CW_LENGTH_BINS / log2(s->max_edge_mm / s->min_edge_mm)

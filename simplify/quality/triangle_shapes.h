@@ -8,6 +8,25 @@
 void cwi_add_triangle(const cw_mesh *mesh, size_t triangle, uint32_t vertex, double *volume,
                       double *area);
 
+/* Triangles whose sums are made one by one; these sums are then joined in order. So they do not
+ * depend on threads. */
+enum { CWI_SHAPE_CHUNK = 4096 };
+
+/* Sums over some triangles. */
+typedef struct cwi_shape_sum {
+    double area, volume;
+    size_t degenerate, needles, caps;
+    cw_shapes shapes; /* without lengths */
+} cwi_shape_sum;
+
+void cwi_shape_sum_init(cwi_shape_sum *sum);
+
+/* Adds a triangle. collapsed: it names a vertex twice */
+void cwi_shape_sum_add(cwi_shape_sum *sum, const double corners[3][3], bool collapsed);
+
+/* Adds a sum to those of a mesh, whose shapes begin as those of an empty sum. */
+void cwi_shape_sum_join(const cwi_shape_sum *sum, cw_quality *q);
+
 /* Fills in area, volume, degenerate, needles, caps and shapes. False when memory is out. */
 bool cwi_measure_shapes(const cwi_welded *welded, const cw_quality_desc *desc, cw_quality *q);
 

@@ -23,7 +23,14 @@ cubewright make gyroid -o g.nii.gz --dims 70x60x50 --type i16 --noise 0.2 --seed
 cubewright extract g.nii.gz --iso 100 -o a.ply --name a --stream never -q
 cubewright extract g.nii.gz --iso 100 -o b.ply --name a --stream always --slab 5 -q
 cmp a.ply b.ply && echo "gzip: the same"
-cubewright extract g.nrrd --iso 100 -o all.ply --stream always
+# the surface is measured on its way: the same line and report, but for capped openings
+cubewright extract g.nrrd --iso 100 -o all.ply --stream always --json always.json
+cubewright extract g.nrrd --iso 100 -o all.ply --stream never --json never.json -q
+sed -n '/"mesh": {/,/}/p' always.json >always.txt
+sed -n '/"mesh": {/,/}/p' never.json | cmp - always.txt && grep -c : always.txt
+cubewright extract g.nrrd --iso 100 -o all.ply --stream always --open --slab 3
+cubewright extract g.nrrd --iso 100 -o all.ply --stream never --open
+cubewright extract g.nrrd --iso 100 -o all.ply --stream always --no-check
 # larger than the limit
 head -c 64000000 /dev/zero >big.raw
 printf '\377' | dd of=big.raw bs=1 seek=32200200 conv=notrunc 2>/dev/null
@@ -31,6 +38,10 @@ cubewright extract big.raw --raw dims=400x400x400,type=u8 --iso 100 --memory 40M
 cubewright extract big.raw --raw dims=400x400x400,type=u8 --iso 100 --memory 40M --stream never -o no.ply ||
     echo "exit $?"
 cubewright extract big.raw --raw dims=400x400x400,type=u8 --iso 100 --memory 40M --simplify 50% -o no.ply ||
+    echo "exit $?"
+# the front of a rough surface may need more than slices leave
+head -c 1000000 /dev/urandom >noise.raw
+cubewright extract noise.raw --raw dims=400x500x5,type=u8 --iso 128 --memory 24M --stream always -o no.ply ||
     echo "exit $?"
 # what slices cannot do
 cubewright extract g.nrrd --iso 100 --stream always --simplify 50% -o no.ply || echo "exit $?"
