@@ -24,9 +24,9 @@ enum { BUFFER_BYTES = 256 * 1024, SLOT_COUNT = 64, NAME_TRIES = 100 };
 
 struct cwi_outfile {
     int fd, folder;
-    char name[NAME_MAX + 1]; /* in the folder, after links are followed */
-    char temporary[NAME_MAX +
-                   1]; /* in the same folder; "" before it exists and after it is removed */
+    char name[CWI_FILE_NAME_BYTES]; /* in the folder, after links are followed */
+    char temporary
+        [CWI_FILE_NAME_BYTES]; /* in the same folder; "" before it exists and after it is removed */
     bool no_clobber;
     int failure;   /* errno of the first write that failed */
     int slot;      /* in the registry; -1 for none */
@@ -40,7 +40,7 @@ struct cwi_outfile {
 static struct {
     atomic_int state;
     int folder;
-    char name[NAME_MAX + 1];
+    char name[CWI_FILE_NAME_BYTES];
 } slots[SLOT_COUNT];
 
 enum { SLOT_FREE, SLOT_CHANGING, SLOT_LIVE };
@@ -101,13 +101,14 @@ static cw_status inspect_target(const char *path, bool no_clobber, bool *exists,
     return CW_OK;
 }
 
-cw_status cwi_open_parent(char *path, int *folder, char name[NAME_MAX + 1], cw_error *err)
+cw_status cwi_open_parent(char *path, int *folder, char name[CWI_FILE_NAME_BYTES],
+                          cw_error *err)
 {
     char *slash = strrchr(path, '/');
     const char *last = slash ? slash + 1 : path;
     if (!*last)
         return cwi_fail(err, CW_ERR_OUTPUT, "it names no file");
-    if (strlen(last) > NAME_MAX)
+    if (strlen(last) >= CWI_FILE_NAME_BYTES)
         return fail_system(err, "it cannot be made", ENAMETOOLONG);
     strcpy(name, last);
     if (slash)
@@ -124,7 +125,7 @@ cw_status cwi_open_parent(char *path, int *folder, char name[NAME_MAX + 1], cw_e
     return CW_OK;
 }
 
-void cwi_name_temporary(const char *name, char temporary[NAME_MAX + 1])
+void cwi_name_temporary(const char *name, char temporary[CWI_FILE_NAME_BYTES])
 {
     static const char letters[] = "abcdefghijklmnopqrstuvwxyz012345";
     unsigned char random[6] = {0};
@@ -134,8 +135,8 @@ void cwi_name_temporary(const char *name, char temporary[NAME_MAX + 1])
             random[i] = (unsigned char)rand();
     for (size_t i = 0; i < sizeof random; i++)
         word[i] = letters[random[i] % 32];
-    const int room = NAME_MAX - (int)(sizeof "..XXXXXX.part" - 1);
-    snprintf(temporary, NAME_MAX + 1, ".%.*s.%s.part", room, name, word);
+    const int room = CWI_FILE_NAME_BYTES - 1 - (int)(sizeof "..XXXXXX.part" - 1);
+    snprintf(temporary, CWI_FILE_NAME_BYTES, ".%.*s.%s.part", room, name, word);
 }
 
 /* Creates the temporary. The kernel applies the umask to a new file's 0666. The mode of a

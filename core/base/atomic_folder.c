@@ -23,10 +23,10 @@
 enum { SLOT_COUNT = 8, NAME_TRIES = 100, MAX_PASSES = 64, LIST_BYTES = 8192 };
 
 struct cwi_outfolder {
-    int parent, folder, fd;       /* -1: not open; fd is the file that was begun */
-    char name[NAME_MAX + 1];      /* in the parent, after links are followed */
-    char temporary[NAME_MAX + 1]; /* in the parent; "": none */
-    char *path;                   /* without slashes at its end */
+    int parent, folder, fd;              /* -1: not open; fd is the file that was begun */
+    char name[CWI_FILE_NAME_BYTES];      /* in the parent, after links are followed */
+    char temporary[CWI_FILE_NAME_BYTES]; /* in the parent; "": none */
+    char *path;                          /* without slashes at its end */
     bool no_clobber;
     cwi_folder_check *check;
     int slot; /* in the registry; -1: none */
@@ -37,7 +37,7 @@ struct cwi_outfolder {
 static struct {
     atomic_int state;
     int parent;
-    char name[NAME_MAX + 1];
+    char name[CWI_FILE_NAME_BYTES];
 } slots[SLOT_COUNT];
 
 enum { SLOT_FREE, SLOT_CHANGING, SLOT_LIVE };
@@ -233,7 +233,7 @@ cw_status cwi_outfolder_begin(cwi_outfolder *f, const char *name, cw_error *err)
 {
     const char *slash = strchr(name, '/');
     if (slash) {
-        char inner[NAME_MAX + 1];
+        char inner[CWI_FILE_NAME_BYTES];
         snprintf(inner, sizeof inner, "%.*s", (int)(slash - name), name);
         if (mkdirat(f->folder, inner, 0777) != 0 && errno != EEXIST)
             return fail_system(err, "a folder in it cannot be made", errno);
@@ -305,7 +305,7 @@ static cw_status rename_new(cwi_outfolder *f, cw_error *err)
  * Where the file system has no such exchange, the old one is moved aside first. */
 static cw_status replace_old(cwi_outfolder *f, cw_error *err)
 {
-    char aside[NAME_MAX + 1];
+    char aside[CWI_FILE_NAME_BYTES];
     if (renameat2(f->parent, f->temporary, f->parent, f->name, RENAME_EXCHANGE) == 0)
         return CW_OK;
     cwi_name_temporary(f->name, aside);
