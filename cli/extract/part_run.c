@@ -1,5 +1,6 @@
 /* Extracts one part of a surface into a fragment. Parts need nothing of each other: any scheduler
  * can run them, in any order, and again. */
+#define _GNU_SOURCE /* nanosleep */
 #include "cli/extract/part_run.h"
 
 #include "cli/extract/part_join.h"
