@@ -39,11 +39,11 @@ const cli_command *cli_find_command(const char *name, cw_error *err)
 }
 
 /* Where a command has --memory, it is a limit to the whole process: what it has taken by now,
- * and what stacks and buffers will, comes off. Less than MINIMUM is a limit to voxels and surface
+ * and what stacks and buffers will, comes off. Less than CLI_MIN_MEMORY is a limit to voxels and surface
  * only, for the program itself does not fit. */
 static void limit_memory(const cli_command *command, const cli_common *args)
 {
-    enum { STACKS_AND_BUFFERS = 6 << 20, MINIMUM = 32 << 20 };
+    enum { STACKS_AND_BUFFERS = 6 << 20 };
     for (size_t n = 0; n < command->option_count; n++) {
         const cli_option *o = &command->options[n];
         cli_input input = {0};
@@ -51,7 +51,7 @@ static void limit_memory(const cli_command *command, const cli_common *args)
             continue;
         memcpy(&input.memory, (const char *)args + o->offset, sizeof input.memory);
         const size_t asked = cli_memory_limit(&input),
-                     limit = asked > MINIMUM ? asked : MINIMUM;
+                     limit = asked > CLI_MIN_MEMORY ? asked : CLI_MIN_MEMORY;
         const size_t spent = cli_peak_bytes() + STACKS_AND_BUFFERS;
         cw_memory_limit(limit > spent ? limit - spent : 1);
     }

@@ -7,7 +7,7 @@
 /* Seconds after which a lease that is not renewed counts no more: its worker is taken for dead. */
 enum { CLI_LEASE_SECONDS = 60 };
 
-/* A lease of this process. A zeroed one is none. */
+/* A lease of this process. A zeroed one holds nothing. */
 typedef struct cli_lease {
     char path[CLI_FRAGMENT_PATH];
     double renewed; /* by cli_seconds() */

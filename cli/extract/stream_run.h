@@ -4,9 +4,6 @@
 
 #include "cli/extract/extract_run.h"
 
-/* Choices of --stream. */
-enum { CLI_STREAM_AUTO, CLI_STREAM_ALWAYS, CLI_STREAM_NEVER };
-
 /* Returns an option of the run that needs the whole volume or surface in memory; NULL: slices
  * suffice. */
 const char *cli_find_unstreamed(const cli_extract_args *args);

@@ -368,19 +368,21 @@ cw_status cli_choose_step(const cli_input *input, size_t step, cli_volume *volum
  * unless the limit is too small for it. */
 static double bytes_beside(double voxels, size_t limit)
 {
-    enum { PROGRAM = 24 << 20, MINIMUM = 32 << 20 };
-    return 0.2 * voxels + (limit < MINIMUM ? 0 : PROGRAM);
+    enum { PROGRAM = 24 << 20 };
+    return 0.2 * voxels + (limit < CLI_MIN_MEMORY ? 0 : PROGRAM);
 }
 
 /* Returns true if voxels of a shape are to be read slice by slice. */
-static bool streams(const cli_input *input, const cw_volume *part, size_t limit)
+static bool needs_slices(const cli_input *input, const cw_volume *part, size_t limit)
 {
     double voxels = (double)part->components * (double)part->steps;
     for (int a = 0; a < 3; a++)
         voxels *= (double)part->dim[a];
     const double bytes = voxels * (double)cw_type_size(part->type);
-    return input->may_stream && !part->cells && !part->sparse && input->stream != 2 &&
-           (input->stream == 1 || bytes + bytes_beside(voxels, limit) > (double)limit);
+    return input->may_stream && !part->cells && !part->sparse &&
+           input->stream != CLI_STREAM_NEVER &&
+           (input->stream == CLI_STREAM_ALWAYS ||
+            bytes + bytes_beside(voxels, limit) > (double)limit);
 }
 
 /* Makes the view of a volume that streams: a shape without voxels. */
@@ -409,7 +411,7 @@ static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_inp
     choose_coarsening(pick_coarsening(input), &part, volume->coarsen);
     if (input->sample && !part.cells && !part.sparse && !cwi_is_rectilinear(&part))
         choose_sample(&part, cli_memory_limit(input), volume->coarsen);
-    if (streams(input, &part, desc->max_bytes))
+    if (needs_slices(input, &part, desc->max_bytes))
         return view_shape(&part, volume, err);
     if (!input->coarsen_view)
         memcpy(desc->every, volume->coarsen, sizeof desc->every);

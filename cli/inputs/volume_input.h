@@ -40,6 +40,12 @@ typedef struct cli_claim {
             row + offsetof(cli_claim, override)                                                \
     }
 
+/* Choices of --stream: voxels are read slice by slice if they do not fit memory, always, never. */
+enum { CLI_STREAM_AUTO, CLI_STREAM_ALWAYS, CLI_STREAM_NEVER };
+
+/* The least --memory that counts the program too; less is a limit to voxels and surface. */
+enum { CLI_MIN_MEMORY = 32 << 20 };
+
 typedef struct cli_input {
     const char *reader, *raw, *series, *array, *points;
     int gaps, tilt; /* cw_gaps, cw_tilt */
@@ -58,9 +64,9 @@ typedef struct cli_input {
     size_t coarsen;    /* 0: 4 for a preview, else 1 */
     bool coarsen_view; /* all voxels are read, and only the view is coarse */
     bool is_quiet;     /* prints no lines about the file */
-    int stream; /* 0: voxels are read slice by slice if they do not fit memory; 1: always; 2: never */
-    bool may_stream; /* the command can do with slices */
-    bool sample;     /* of many voxels some rows and slices are read: cli_volume's coarsen */
+    int stream;        /* CLI_STREAM_... */
+    bool may_stream;   /* the command can do with slices */
+    bool sample;       /* of many voxels some rows and slices are read: cli_volume's coarsen */
 } cli_input;
 
 /* Rows for a command whose struct has the field `input`. */

@@ -10,24 +10,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Reads a whole number from 0 to max, which may be written as 5.0. */
-static cw_status read_whole(const json_t *json, const char *field, uint32_t max,
-                            uint32_t *value, cw_error *err)
-{
-    const double number = json_is_number(json) ? json_number_value(json) : -1;
-    if (!(number >= 0 && number <= max) || number != floor(number))
-        return cwi_fail(err, CW_ERR_FORMAT, "'%s': a whole number from 0 to %u was expected",
-                        field, max);
-    *value = (uint32_t)number;
-    return CW_OK;
-}
-
-static char *text_of(const json_t *json)
-{
-    const char *text = json_string_value(json);
-    return text && *text ? (char *)(uintptr_t)text : NULL;
-}
-
 /* --- niivue: arrays of channels, and of names -------------------------------------------- */
 
 enum { RED, GREEN, BLUE, ALPHA, VALUE, NAMES, ARRAY_COUNT };
@@ -66,8 +48,8 @@ static cw_status read_entry(json_t *const arrays[ARRAY_COUNT], size_t n, cw_labe
         if (!arrays[a])
             continue;
         snprintf(field, sizeof field, "%s[%zu]", array_names[a], n);
-        st = read_whole(json_array_get(arrays[a], n), field, a == VALUE ? UINT32_MAX : 255,
-                        &value, err);
+        st = cwi_json_read_whole(json_array_get(arrays[a], n), field,
+                                 a == VALUE ? UINT32_MAX : 255, &value, err);
         if (a == VALUE)
             label->value = value;
         else
@@ -75,7 +57,7 @@ static cw_status read_entry(json_t *const arrays[ARRAY_COUNT], size_t n, cw_labe
     }
     if (st == CW_OK && !json_is_string(name) && !json_is_null(name))
         return cwi_fail(err, CW_ERR_FORMAT, "'labels[%zu]': a text was expected", n);
-    label->name = text_of(name);
+    label->name = cwi_json_text(name);
     return st;
 }
 

@@ -93,7 +93,8 @@ void cw_mesh_spool_free(cw_mesh_spool *s)
     cwi_free(s);
 }
 
-static cw_status append(int file, size_t first, const void *from, size_t count, cw_error *err)
+static cw_status append_elements(int file, size_t first, const void *from, size_t count,
+                                 cw_error *err)
 {
     const char *bytes = from;
     off_t at = (off_t)(first * ELEMENT_BYTES);
@@ -144,13 +145,14 @@ static cw_status take_chunk(void *user, const cw_mesh_chunk *chunk, cw_error *er
     memcpy(all->origin, m->origin, sizeof all->origin);
     memcpy(all->affine, m->affine, sizeof all->affine);
     widen_bounds(s, m);
-    cw_status st =
-        append(s->files[POSITIONS], all->vertex_count, m->positions, m->vertex_count, err);
+    cw_status st = append_elements(s->files[POSITIONS], all->vertex_count, m->positions,
+                                   m->vertex_count, err);
     if (st == CW_OK && m->normals)
-        st = append(s->files[NORMALS], all->vertex_count, m->normals, m->vertex_count, err);
+        st = append_elements(s->files[NORMALS], all->vertex_count, m->normals, m->vertex_count,
+                             err);
     if (st == CW_OK)
-        st = append(s->files[TRIANGLES], all->triangle_count, m->triangles, m->triangle_count,
-                    err);
+        st = append_elements(s->files[TRIANGLES], all->triangle_count, m->triangles,
+                             m->triangle_count, err);
     all->vertex_count += m->vertex_count;
     all->triangle_count += m->triangle_count;
     return st;

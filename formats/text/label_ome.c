@@ -9,9 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Reads a whole number from 0 to max, which may be written as 5.0. */
-static cw_status read_whole(const json_t *json, const char *field, uint32_t max,
-                            uint32_t *value, cw_error *err)
+cw_status cwi_json_read_whole(const json_t *json, const char *field, uint32_t max,
+                              uint32_t *value, cw_error *err)
 {
     const double number = json_is_number(json) ? json_number_value(json) : -1;
     if (!(number >= 0 && number <= max) || number != floor(number))
@@ -21,7 +20,7 @@ static cw_status read_whole(const json_t *json, const char *field, uint32_t max,
     return CW_OK;
 }
 
-static char *text_of(const json_t *json)
+char *cwi_json_text(const json_t *json)
 {
     const char *text = json_string_value(json);
     return text && *text ? (char *)(uintptr_t)text : NULL;
@@ -38,7 +37,7 @@ static cw_status read_rgba(const json_t *rgba, const char *field, cw_label *labe
                         field);
     for (size_t c = 0; c < 4 && st == CW_OK; c++) {
         uint32_t value = 0;
-        st = read_whole(json_array_get(rgba, c), field, 255, &value, err);
+        st = cwi_json_read_whole(json_array_get(rgba, c), field, 255, &value, err);
         label->color[c] = (uint8_t)value;
     }
     label->has_color = true;
@@ -51,7 +50,7 @@ static char *find_name(const json_t *entry)
     static const char *const keys[] = {"name", "label", "class"};
     char *name = NULL;
     for (size_t n = 0; !name && n < sizeof keys / sizeof *keys; n++)
-        name = text_of(json_object_get(entry, keys[n]));
+        name = cwi_json_text(json_object_get(entry, keys[n]));
     return name;
 }
 
@@ -68,8 +67,8 @@ static cw_status read_list(const json_t *image, const char *key, cw_label_table 
         const json_t *entry = json_array_get(list, n);
         cw_label label = {.name = find_name(entry)};
         snprintf(field, sizeof field, "%s[%zu].label-value", key, n);
-        st = read_whole(json_object_get(entry, "label-value"), field, UINT32_MAX, &label.value,
-                        err);
+        st = cwi_json_read_whole(json_object_get(entry, "label-value"), field, UINT32_MAX,
+                                 &label.value, err);
         snprintf(field, sizeof field, "%s[%zu].rgba", key, n);
         if (st == CW_OK)
             st = read_rgba(json_object_get(entry, "rgba"), field, &label, err);

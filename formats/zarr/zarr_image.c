@@ -9,7 +9,7 @@
 
 enum { MAX_COMPONENTS = 16 };
 
-/* Returns the first image in several sizes of a node; NULL if there is none. */
+/* Returns the first image in several sizes of a node, or NULL. */
 static const json_t *find_multiscale(const cwi_zarr_node *node)
 {
     return json_array_get(json_object_get(node->ome, "multiscales"), 0);

@@ -231,7 +231,7 @@ typedef struct cw_level {
 
 /* Lists the levels of an image of OME-Zarr, the finest first. Files of other formats have none.
  *
- * levels   set to *count of them, to be freed with cw_levels_free(); NULL when there are none
+ * levels   set to *count of them, to be freed with cw_levels_free(), or to NULL
  * Returns  as cw_volume_read() for a header */
 CW_NODISCARD CW_API cw_status cw_levels_list(const char *path, const cw_read_desc *desc,
                                              cw_level **levels, size_t *count, cw_error *err);

@@ -370,7 +370,7 @@ cw_chunk_sink cw_quality_stream_sink(cw_quality_stream *stream)
 }
 
 /* Fills in the fields that need the whole surface. */
-static void conclude(cw_quality_stream *s)
+static void derive_totals(cw_quality_stream *s)
 {
     cw_quality *q = &s->q;
     q->components -= s->joined;
@@ -404,7 +404,7 @@ cw_status cw_quality_stream_finish(cw_quality_stream *s, cw_quality *out, cw_err
         if (st != CW_OK)
             return st;
     }
-    conclude(s);
+    derive_totals(s);
     *out = s->q;
     return CW_OK;
 }

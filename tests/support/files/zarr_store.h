@@ -14,7 +14,7 @@ typedef struct zarr_made {
     bool big_endian;
     size_t rank;
     size_t shape[ZARR_MAX_RANK], chunk[ZARR_MAX_RANK];
-    size_t inner[ZARR_MAX_RANK]; /* of shards; 0: there are none */
+    size_t inner[ZARR_MAX_RANK]; /* of shards; 0: no shards */
     size_t
         order[ZARR_MAX_RANK]; /* transposition, version 3; version 2 has C, or F if it falls */
     const char *codec;        /* "zlib", "gzip", "zstd", "lz4", "blosc"; NULL: none */
