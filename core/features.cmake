@@ -332,4 +332,43 @@ int main(void)
 }
 ]])
 
+# What a compiler wrapper of an MPI adds: sets ${name}_INCLUDE and ${name}_LIBRARY.
+function(find_mpi name wrapper library)
+  find_program(${name}_WRAPPER ${wrapper})
+  if(NOT ${name}_WRAPPER)
+    return()
+  endif()
+  execute_process(COMMAND ${${name}_WRAPPER} -show OUTPUT_VARIABLE line ERROR_QUIET)
+  string(REGEX MATCHALL " -I[^ \n]+" includes "${line}")
+  string(REGEX MATCHALL " -L[^ \n]+" folders "${line}")
+  list(TRANSFORM includes REPLACE "^ -I" "")
+  list(TRANSFORM folders REPLACE "^ -L" "")
+  find_path(${name}_INCLUDE mpi.h HINTS ${includes} NO_DEFAULT_PATH)
+  find_library(${name}_LIBRARY ${library} HINTS ${folders} NO_DEFAULT_PATH)
+endfunction()
+
+set(mpi_trial [[
+#include <mpi.h>
+#include <stddef.h>
+int main(void)
+{
+    int level;
+    return MPI_Init_thread(NULL, NULL, MPI_THREAD_MULTIPLE, &level);
+}
+]])
+if(CUBEWRIGHT_MPI)
+  find_mpi(OPENMPI mpicc.openmpi mpi)
+  find_mpi(MPICH mpicc.mpich mpich)
+endif()
+add_feature(openmpi OPTION CUBEWRIGHT_MPI PACKAGES libopenmpi-dev MODULE openmpi
+  ABOUT "extraction by the ranks of Open MPI"
+  COST "is no rank of Open MPI"
+  NEEDS OPENMPI_INCLUDE=libopenmpi-dev OPENMPI_LIBRARY=libopenmpi-dev
+  INCLUDES ${OPENMPI_INCLUDE} LIBRARIES ${OPENMPI_LIBRARY} TRIAL "${mpi_trial}")
+add_feature(mpich OPTION CUBEWRIGHT_MPI PACKAGES libmpich-dev MODULE mpich
+  ABOUT "extraction by the ranks of MPICH"
+  COST "is no rank of MPICH"
+  NEEDS MPICH_INCLUDE=libmpich-dev MPICH_LIBRARY=libmpich-dev
+  INCLUDES ${MPICH_INCLUDE} LIBRARIES ${MPICH_LIBRARY} TRIAL "${mpi_trial}")
+
 configure_file(core/features_table.c.in features_table.c @ONLY)

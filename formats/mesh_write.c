@@ -8,6 +8,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Returns the writer's index among the formats, or the number of formats when there is none. */
 static size_t find_writer(const char *path, const char *name)
@@ -196,6 +197,43 @@ static void abort_output(cwi_mesh_output *out)
     cwi_outfolder_abort(&out->folder);
 }
 
+/* Opens the temporary of rank 0 in all processes of a team. */
+static cw_status open_shared(const char *path, const cw_team *team, const cw_write_desc *d,
+                             cwi_mesh_output *out, cw_error *err)
+{
+    char name[CWI_FILE_NAME_BYTES] = "";
+    cw_status st =
+        team->rank == 0 ? cwi_outfile_open(&out->file, path, d->no_clobber, err) : CW_OK;
+    if (out->file)
+        strcpy(name, cwi_outfile_temporary(out->file));
+    st = cw_team_agree(team, st, err);
+    if (st == CW_OK)
+        st = cw_team_broadcast(team, 0, name, sizeof name, err);
+    if (st == CW_OK && team->rank > 0)
+        st = cwi_outfile_join(&out->file, path, name, err);
+    return cw_team_agree(team, st, err);
+}
+
+/* Writes a file by all processes of a team, each the records of its part. */
+static cw_status write_shared(const char *path, const cwi_parts *parts,
+                              const cwi_format_driver *f, const cw_team *team,
+                              const cw_write_desc *d, cwi_mesh_output *out, cw_error *err)
+{
+    out->shared = true;
+    cw_status st = open_shared(path, team, d, out, err);
+    if (st == CW_OK) {
+        st = f->write.write(parts, out, err);
+        if (st == CW_OK && team->rank > 0)
+            st = cwi_outfile_commit(&out->file, err);
+        st = cw_team_agree(team, st, err);
+    }
+    if (st == CW_OK)
+        st = cw_team_agree(team, team->rank == 0 ? cwi_outfile_commit(&out->file, err) : CW_OK,
+                           err);
+    abort_output(out);
+    return st;
+}
+
 static cw_status write_parts(const char *path, const cwi_parts *parts,
                              const cwi_format_driver *f, const cw_write_desc *d,
                              cwi_mesh_output *out, cw_error *err)
@@ -210,6 +248,26 @@ static cw_status write_parts(const char *path, const cwi_parts *parts,
                          : cwi_outfile_commit(&out->file, err);
     abort_output(out);
     return st;
+}
+
+static cw_status write_by_team(const char *path, const cwi_parts *parts,
+                               const cwi_format_driver *f, const cw_team *team,
+                               const cw_write_desc *d, cwi_mesh_output *out, cw_error *err)
+{
+    if (f->write.shares && !d->text)
+        return write_shared(path, parts, f, team, d, out, err);
+    const bool writes = team->rank == 0;
+    cw_status st = writes ? write_parts(path, parts, f, d, out, err) : CW_OK;
+    return cw_team_agree(team, st, err);
+}
+
+/* Returns the team that shares the parts; NULL: there is none. */
+static const cw_team *find_team(const cw_part *parts, size_t count)
+{
+    const cw_team *team = NULL;
+    for (size_t i = 0; i < count; i++)
+        team = parts[i].spool && parts[i].spool->team ? parts[i].spool->team : team;
+    return team;
 }
 
 cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
@@ -242,8 +300,12 @@ cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
         d.compression = f->write.only;
     if (st == CW_OK)
         st = cwi_parts_place(parts, count, &d, f->keeps, name, &placed, origin, err);
+    const cw_team *team = find_team(parts, count);
+    if (team)
+        st = cw_team_agree(team, st, err);
     if (st == CW_OK)
-        st = write_parts(path, &placed, f, &d, &out, err);
+        st = team ? write_by_team(path, &placed, f, team, &d, &out, err)
+                  : write_parts(path, &placed, f, &d, &out, err);
     cwi_parts_free(&placed);
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }

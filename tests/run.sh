@@ -78,8 +78,8 @@ case $stages in *fresh*) install_packages "what makes a bare Debian" fresh || tr
 for stage in $stages; do
     case $stage in
     release)
-        install_packages "a second opinion on meshes" heavy ||
-            echo "== CGAL cannot be had: tests that ask it will be skipped"
+        install_packages "a second opinion on meshes, and MPI" heavy ||
+            echo "== CGAL or MPI cannot be had: tests that ask them will be skipped"
         install_packages "the scan that the README shows" data ||
             echo "== mricron-data cannot be had: the README's commands run on a synthetic head"
         install_validators >build/validators.log 2>&1 & # while the compiler works

@@ -130,13 +130,14 @@ static const cli_option options[] = {
      "Extract only part K of N into --manifest; 'join' makes one file of all parts (the whole)",
      offsetof(cli_extract_args, part)},
     {"manifest", 0, CLI_TEXT, "DIR",
-     "Folder of the parts and of the record of their job; made if need be",
+     "Folder of the parts of --part, or of mpirun, and of the record of their job; made if need be",
      offsetof(cli_extract_args, manifest)},
     {"queue", 0, CLI_TEXT, "DIR",
      "Make all parts in DIR, with any number of processes that say the same; then -o. What was "
      "interrupted goes on when it is run again",
      offsetof(cli_extract_args, queue)},
-    {"parts", 0, CLI_COUNT, "N", "Number of parts of --queue (one for 64 slices)",
+    {"parts", 0, CLI_COUNT, "N",
+     "Number of parts of --queue, or of mpirun with --manifest (one for 64 slices)",
      offsetof(cli_extract_args, parts)},
     CLI_HEADED("Output file"),
     {"format", 0, CLI_TEXT, "NAME", "Format to write; names as in 'formats' (by extension)",
@@ -453,6 +454,8 @@ static cw_status run_extract(void *p, cw_error *err)
 {
     cli_extract_args *args = p;
     cli_extract_run s = {.args = args, .output.start = cli_seconds()};
+    if (cw_team_is_started())
+        return cli_extract_ranks(args, err);
     if (args->part || args->manifest || args->queue || args->parts)
         return cli_extract_part(args, err);
     if (args->labels)

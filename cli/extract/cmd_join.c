@@ -8,11 +8,11 @@ typedef struct join_args {
     cli_common common;
     cli_input input;
     const char *output, *format, *name;
-    bool local, no_clobber;
+    bool local, no_clobber, check;
     int progress;
 } join_args;
 
-static const join_args defaults = {0};
+static const join_args defaults = {.check = true};
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE", "Mesh to write, in the format of its extension",
@@ -26,6 +26,8 @@ static const cli_option options[] = {
      offsetof(join_args, local)},
     {"no-clobber", 0, CLI_FLAG, NULL, "Fail if the output exists (off: replace it)",
      offsetof(join_args, no_clobber)},
+    {"check", 0, CLI_FLAG, NULL, "Measure the mesh: closed, manifold (on; --no-check)",
+     offsetof(join_args, check)},
     CLI_HEADED(CLI_LIMITS),
     CLI_MEMORY_OPTION(join_args),
     CLI_PROGRESS_OPTION(join_args),
@@ -37,6 +39,7 @@ static cw_status run_join(void *p, cw_error *err)
     const char *folder = args->common.inputs[0];
     const double start = cli_seconds();
     cli_manifest m = {0};
+    char text[CLI_PARTS_TEXT];
     if (!args->output)
         return cwi_fail(err, CW_ERR_ARGUMENT, "join needs an output: -o FILE");
     cli_console_start(&args->common, (cli_progress_mode)args->progress);
@@ -48,7 +51,15 @@ static cw_status run_join(void *p, cw_error *err)
     if (st == CW_OK)
         st = cli_read_manifest(folder, &m, err);
     if (st == CW_OK)
-        st = cli_join_parts(folder, &m, args->output, &desc, start, err);
+        st = cli_join_parts(folder,
+                            &(cli_joined){.output = args->output,
+                                          .from = cli_count_parts(m.parts, text),
+                                          .desc = &desc,
+                                          .manifest = &m,
+                                          .input = &args->input,
+                                          .check = args->check,
+                                          .start = start},
+                            err);
     cli_free_manifest(&m);
     return st;
 }

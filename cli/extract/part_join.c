@@ -1,20 +1,18 @@
-/* Joins fragments: appends them to a spool in order, and writes its file. */
+/* Joins parts: appends their fragments to a spool in order, checks the surface and writes its
+ * file. */
 #include "cli/extract/part_join.h"
 
 #include "cli/framework/console.h"
 #include "core/base/status.h"
 
-#include <cubewright/spool.h>
-
+#include <stdio.h>
 #include <sys/stat.h>
 
-/* Appends the fragments of all parts in order. `is_crossed`: they have samples on both sides. */
-static cw_status append_parts(const char *folder, const cli_manifest *m, cw_mesh_spool *spool,
-                              bool *is_crossed, cw_error *err)
+cw_status cli_append_parts(const char *folder, const cli_manifest *m, size_t first, size_t end,
+                           cw_mesh_spool *spool, cw_part_counts *sides, cw_error *err)
 {
-    bool in = false, out = false;
     cw_status st = CW_OK;
-    for (size_t part = 0; part < m->parts && st == CW_OK; part++) {
+    for (size_t part = first; part < end && st == CW_OK; part++) {
         char path[CLI_FRAGMENT_PATH];
         struct stat info;
         cw_fragment f;
@@ -33,50 +31,87 @@ static cw_status append_parts(const char *folder, const cli_manifest *m, cw_mesh
                          path);
         if (st == CW_OK)
             st = cw_fragment_append(path, spool, err);
-        in = in || (st == CW_OK && f.counts.has_inside);
-        out = out || (st == CW_OK && f.counts.has_outside);
+        sides->has_inside = sides->has_inside || (st == CW_OK && f.counts.has_inside);
+        sides->has_outside = sides->has_outside || (st == CW_OK && f.counts.has_outside);
     }
-    *is_crossed = in && out;
     return st;
 }
 
-static cw_status write_file(const char *path, const cw_write_desc *desc, const cli_manifest *m,
-                            const cw_mesh_spool *spool, double start, cw_error *err)
+/* Measures the surface, and holds it to the promise of the command extract. */
+static cw_status check_surface(const cli_joined *j, const cw_mesh_spool *spool, cw_error *err)
+{
+    enum { BESIDE_BYTES = 10 << 20 };
+    const size_t limit = cli_memory_limit(j->input), beside = cli_peak_bytes() + BESIDE_BYTES;
+    const cw_quality_stream_desc desc = {.threads = (int)j->input->threads,
+                                         .max_bytes = limit > beside ? limit - beside : 1};
+    cw_quality_stream *check = NULL;
+    cw_quality q;
+    char what[32];
+    snprintf(what, sizeof what, "at %g", j->manifest->iso);
+    cw_status st = cw_quality_stream_new(&desc, &check, err);
+    if (st == CW_OK)
+        st = cw_mesh_spool_read(spool, cw_quality_stream_sink(check), err);
+    if (st == CW_OK)
+        st = cw_quality_stream_finish(check, &q, err);
+    cw_quality_stream_free(check);
+    if (st == CW_ERR_LIMIT) {
+        const cw_error why = *err;
+        return cwi_fail(err, st, "%s: %s (--memory); --no-check leaves it out", j->output,
+                        why.message);
+    }
+    return st == CW_OK ? cli_hold_to_promise(j->output, what, &q, j->manifest->open, err) : st;
+}
+
+static cw_status write_file(const cli_joined *j, const cw_mesh_spool *spool, cw_error *err)
 {
     cw_provenance lines[CLI_EXTRACT_PROVENANCE];
+    const cli_manifest *m = j->manifest;
     const cw_mesh *frame = cw_mesh_spool_frame(spool);
     const cw_part part = {.mesh = frame, .spool = spool};
     struct stat info = {0};
     for (size_t n = 0; n < m->line_count; n++)
         lines[n] = (cw_provenance){m->lines[n][0], m->lines[n][1]};
-    cw_write_desc d = *desc;
+    cw_write_desc d = *j->desc;
     d.provenance = lines;
     d.provenance_count = m->line_count;
     d.progress = cli_progress((double)frame->triangle_count / 1e6, "Mtriangle");
-    cw_status st = cw_parts_write(path, &part, 1, &d, err);
+    cw_status st = cw_parts_write(j->output, &part, 1, &d, err);
     if (st != CW_OK)
         return st;
-    cli_result("%s: %s triangles, %s vertices, from %zu part%s", path,
-               cli_count(frame->triangle_count), cli_count(frame->vertex_count), m->parts,
-               m->parts == 1 ? "" : "s");
-    if (stat(path, &info) == 0)
+    cli_result("%s: %s triangles, %s vertices, from %s%s", j->output,
+               cli_count(frame->triangle_count), cli_count(frame->vertex_count), j->from,
+               j->check ? "; checked" : "");
+    if (stat(j->output, &info) == 0)
         cli_result("; %s", cli_bytes((double)info.st_size));
-    cli_result("; %.2f s\n", cli_seconds() - start);
+    cli_result("; %.2f s\n", cli_seconds() - j->start);
     return CW_OK;
 }
 
-cw_status cli_join_parts(const char *folder, const cli_manifest *m, const char *output,
-                         const cw_write_desc *desc, double start, cw_error *err)
+cw_status cli_write_joined(const cli_joined *j, const cw_mesh_spool *spool,
+                           const cw_part_counts *sides, const cw_team *team, cw_error *err)
+{
+    const bool is_crossed = sides->has_inside && sides->has_outside;
+    cw_status st = CW_OK;
+    if (!is_crossed || !cw_mesh_spool_frame(spool)->triangle_count)
+        return cwi_fail(err, CW_ERR_EMPTY,
+                        "%s: the parts have no surface at isovalue %g: it must be above the "
+                        "lowest value and at most the highest ('cubewright info' tells them)",
+                        j->output, j->manifest->iso);
+    if (j->check && team->rank == 0)
+        st = check_surface(j, spool, err);
+    st = cw_team_agree(team, st, err);
+    return st == CW_OK ? write_file(j, spool, err) : st;
+}
+
+cw_status cli_join_parts(const char *folder, const cli_joined *j, cw_error *err)
 {
     cw_mesh_spool *spool = NULL;
-    bool is_crossed = false;
-    cw_status st = cw_mesh_spool_new(output, &spool, err);
+    cw_part_counts sides = {0};
+    cw_status st = cw_mesh_spool_new(j->output, &spool, err);
     if (st == CW_OK)
-        st = append_parts(folder, m, spool, &is_crossed, err);
-    if (st == CW_OK && (!is_crossed || !cw_mesh_spool_frame(spool)->triangle_count))
-        st = cwi_fail(err, CW_ERR_EMPTY, "%s: the parts have no surface", folder);
+        st = cli_append_parts(folder, j->manifest, 0, j->manifest->parts, spool, &sides, err);
     if (st == CW_OK)
-        st = write_file(output, desc, m, spool, start, err);
+        st = cli_write_joined(j, spool, &sides, &(cw_team){0}, err);
     cw_mesh_spool_free(spool);
     return st;
 }

@@ -87,11 +87,57 @@ static void put_job(cli_json *j, const cli_extract_run *run, size_t parts)
     cli_json_close(j, '}');
 }
 
+static bool take_line(cli_manifest *m, json_t *pair)
+{
+    if (m->line_count == CLI_EXTRACT_PROVENANCE)
+        return false;
+    char **line = m->lines[m->line_count++];
+    for (size_t n = 0; n < 2; n++) {
+        const char *text = json_string_value(json_array_get(pair, n));
+        line[n] = strdup(text ? text : "");
+    }
+    return line[0] && line[1] && *line[0];
+}
+
+static cw_status take_manifest(cli_manifest *m, json_t *root, cw_error *err)
+{
+    const char *name = json_string_value(json_object_get(root, "schema"));
+    const json_int_t parts = json_integer_value(json_object_get(root, "parts"));
+    json_t *lines = json_object_get(root, "provenance"), *pair;
+    size_t n;
+    if (!name || strcmp(name, schema) != 0)
+        return cwi_fail(err, CW_ERR_FORMAT, "'schema' is '%.40s', not '%s'", name ? name : "",
+                        schema);
+    if (parts < 1)
+        return cwi_fail(err, CW_ERR_FORMAT, "'parts' is %lld; it is 1 or more",
+                        (long long)parts);
+    m->parts = (size_t)parts;
+    json_t *params = json_object_get(root, "params");
+    m->iso = json_number_value(json_object_get(params, "iso"));
+    m->open = json_is_true(json_object_get(params, "open"));
+    json_array_foreach(lines, n, pair) if (!take_line(m, pair)) return cwi_fail(
+        err, CW_ERR_FORMAT, "'provenance' is no list of up to %d pairs of texts",
+        CLI_EXTRACT_PROVENANCE);
+    return CW_OK;
+}
+
+/* Takes the job, parts and provenance of the text. */
+static cw_status take_text(cli_manifest *m, cw_error *err)
+{
+    json_error_t why;
+    json_t *root = json_loads(m->text, JSON_REJECT_DUPLICATES, &why);
+    m->job = hash_text(m->text);
+    cw_status st = root ? take_manifest(m, root, err)
+                        : cwi_fail(err, CW_ERR_FORMAT, "line %d: %s", why.line, why.text);
+    json_decref(root);
+    return st;
+}
+
 cw_status cli_describe_job(const cli_extract_run *run, size_t parts, cli_manifest *m,
                            cw_error *err)
 {
     size_t size;
-    *m = (cli_manifest){.parts = parts};
+    *m = (cli_manifest){0};
     FILE *out = open_memstream(&m->text, &size);
     if (!out)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a manifest");
@@ -100,8 +146,7 @@ cw_status cli_describe_job(const cli_extract_run *run, size_t parts, cli_manifes
     const bool failed = ferror(out) || fputc('\n', out) == EOF;
     if (fclose(out) != 0 || failed)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a manifest");
-    m->job = hash_text(m->text);
-    return CW_OK;
+    return take_text(m, err);
 }
 
 static cw_status name_manifest(const char *folder, char path[CLI_FRAGMENT_PATH], cw_error *err)
@@ -189,51 +234,21 @@ cw_status cli_settle_manifest(const char *folder, const cli_manifest *m, cw_erro
     return st;
 }
 
-static bool take_line(cli_manifest *m, json_t *pair)
-{
-    if (m->line_count == CLI_EXTRACT_PROVENANCE)
-        return false;
-    char **line = m->lines[m->line_count++];
-    for (size_t n = 0; n < 2; n++) {
-        const char *text = json_string_value(json_array_get(pair, n));
-        line[n] = strdup(text ? text : "");
-    }
-    return line[0] && line[1] && *line[0];
-}
-
-static cw_status take_manifest(cli_manifest *m, json_t *root, cw_error *err)
-{
-    const char *name = json_string_value(json_object_get(root, "schema"));
-    const json_int_t parts = json_integer_value(json_object_get(root, "parts"));
-    json_t *lines = json_object_get(root, "provenance"), *pair;
-    size_t n;
-    if (!name || strcmp(name, schema) != 0)
-        return cwi_fail(err, CW_ERR_FORMAT, "'schema' is '%.40s', not '%s'", name ? name : "",
-                        schema);
-    if (parts < 1)
-        return cwi_fail(err, CW_ERR_FORMAT, "'parts' is %lld; it is 1 or more",
-                        (long long)parts);
-    m->parts = (size_t)parts;
-    json_array_foreach(lines, n, pair) if (!take_line(m, pair)) return cwi_fail(
-        err, CW_ERR_FORMAT, "'provenance' is no list of up to %d pairs of texts",
-        CLI_EXTRACT_PROVENANCE);
-    return CW_OK;
-}
-
 cw_status cli_read_manifest(const char *folder, cli_manifest *m, cw_error *err)
 {
     char path[CLI_FRAGMENT_PATH];
-    json_error_t why;
     *m = (cli_manifest){0};
     cw_status st = name_manifest(folder, path, err);
     if (st == CW_OK)
         st = read_text(path, &m->text, err);
     if (st != CW_OK)
         return st;
-    m->job = hash_text(m->text);
-    json_t *root = json_loads(m->text, JSON_REJECT_DUPLICATES, &why);
-    st = root ? take_manifest(m, root, err)
-              : cwi_fail(err, CW_ERR_FORMAT, "line %d: %s", why.line, why.text);
-    json_decref(root);
+    st = take_text(m, err);
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
+}
+
+const char *cli_count_parts(size_t parts, char text[CLI_PARTS_TEXT])
+{
+    snprintf(text, CLI_PARTS_TEXT, "%zu part%s", parts, parts == 1 ? "" : "s");
+    return text;
 }

@@ -9,6 +9,8 @@ typedef struct cli_manifest {
     char *text;   /* JSON */
     uint64_t job; /* number of the job: a hash of the text */
     size_t parts;
+    double iso;
+    bool open;                              /* at the border of the volume */
     char *lines[CLI_EXTRACT_PROVENANCE][2]; /* provenance for the file: key and value */
     size_t line_count;
 } cli_manifest;
@@ -26,6 +28,10 @@ CW_NODISCARD cw_status cli_settle_manifest(const char *folder, const cli_manifes
 CW_NODISCARD cw_status cli_read_manifest(const char *folder, cli_manifest *manifest,
                                          cw_error *err);
 void cli_free_manifest(cli_manifest *manifest);
+
+/* Prints a number of parts: "8 parts". Returns the text. */
+enum { CLI_PARTS_TEXT = 32 };
+const char *cli_count_parts(size_t parts, char text[CLI_PARTS_TEXT]);
 
 /* Prints the path of a part's fragment, counted from 0: FOLDER/part-2-of-8.cwpart. */
 enum { CLI_FRAGMENT_PATH = 4096 };

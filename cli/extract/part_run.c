@@ -1,5 +1,5 @@
-/* Extracts one part of a surface into a fragment. Parts need nothing of each other: any scheduler
- * can run them, in any order, and again. */
+/* Extracts a surface in parts. Parts need nothing of each other: any scheduler can run them, in any
+ * order, and again. */
 #define _GNU_SOURCE /* nanosleep */
 #include "cli/extract/part_run.h"
 
@@ -16,6 +16,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <time.h>
+#include <unistd.h>
 
 /* A part on its way. */
 typedef struct part_run {
@@ -46,9 +47,25 @@ static cw_status parse_part(const char *text, size_t *part, size_t *parts, cw_er
     return CW_OK;
 }
 
-static cw_status check_args(const cli_extract_args *args, cw_error *err)
+/* Refuses what is not made in parts. how: the option, or launcher, that asks for parts */
+static cw_status check_job(const cli_extract_args *args, const char *how, cw_error *err)
 {
     const char *unstreamed = cli_find_unstreamed(args);
+    if (args->labels || unstreamed || args->json || args->pvd)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%s cannot be combined with %s", how,
+                        args->labels ? "--labels"
+                        : unstreamed ? unstreamed
+                        : args->json ? "--json"
+                                     : "--pvd");
+    if (args->iso.count != 1 || args->common.input_count != 1 || args->steps.given)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "%s is for one volume, one step and one isovalue (--iso V)", how);
+    const cw_write_desc desc = cli_extract_write_desc(args);
+    return args->output ? cw_mesh_write_check(args->output, &desc, err) : CW_OK;
+}
+
+static cw_status check_args(const cli_extract_args *args, cw_error *err)
+{
     if (args->queue && (args->part || args->manifest))
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--queue makes all parts; --part and --manifest make one");
@@ -60,19 +77,7 @@ static cw_status check_args(const cli_extract_args *args, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--part writes into --manifest, not -o; 'cubewright join DIR -o FILE' "
                         "makes the file of all parts");
-    if (args->labels || unstreamed || args->json || args->pvd)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "%s cannot be combined with %s",
-                        args->queue ? "--queue" : "--part",
-                        args->labels ? "--labels"
-                        : unstreamed ? unstreamed
-                        : args->json ? "--json"
-                                     : "--pvd");
-    if (args->iso.count != 1 || args->common.input_count != 1 || args->steps.given)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "%s is for one volume, one step and one isovalue (--iso V)",
-                        args->queue ? "--queue" : "--part");
-    const cw_write_desc desc = cli_extract_write_desc(args);
-    return args->output ? cw_mesh_write_check(args->output, &desc, err) : CW_OK;
+    return check_job(args, args->queue ? "--queue" : "--part", err);
 }
 
 /* Shows progress, and renews the lease. */
@@ -103,14 +108,21 @@ static bool is_made(const part_run *p)
            there.part == p->part && there.parts == p->parts;
 }
 
-static cw_status make_fragment(part_run *p, cw_error *err)
+/* Extracts the part into a new spool beside a path. */
+static cw_status fill_spool(part_run *p, const char *path, cw_error *err)
 {
     const cw_slice_visitor visitor = {extract_slices, p};
+    cw_status st = cw_mesh_spool_new(path, &p->spool, err);
+    return st == CW_OK
+               ? cli_visit_slices(&p->run.input.volume, &p->run.args->input, &visitor, err)
+               : st;
+}
+
+static cw_status make_fragment(part_run *p, cw_error *err)
+{
     struct stat info = {0};
     p->start = cli_seconds();
-    cw_status st = cw_mesh_spool_new(p->path, &p->spool, err);
-    if (st == CW_OK)
-        st = cli_visit_slices(&p->run.input.volume, &p->run.args->input, &visitor, err);
+    cw_status st = fill_spool(p, p->path, err);
     const cw_fragment fragment = {
         .part = p->part, .parts = p->parts, .counts = p->counts, .job = p->manifest.job};
     if (st == CW_OK)
@@ -178,36 +190,176 @@ static cw_status run_queue(part_run *p, cw_error *err)
 /* Layers of a part, if the number of parts is not stated: parts of a size that is soon made. */
 enum { PART_LAYERS = 64 };
 
+/* Opens the volume and describes the job. parts: 0: of PART_LAYERS */
+static cw_status begin_job(part_run *p, size_t parts, cw_error *err)
+{
+    const cli_extract_args *args = p->run.args;
+    cli_input input = args->input;
+    input.stream = CLI_STREAM_ALWAYS;
+    input.may_stream = true;
+    cw_status st =
+        cli_read_volume(args->common.inputs[0], &input, false, &p->run.input.volume, err);
+    p->parts = parts ? parts : p->run.input.volume.view.dim[2] / PART_LAYERS + 1;
+    return st == CW_OK ? cli_describe_job(&p->run, p->parts, &p->manifest, err) : st;
+}
+
+static void end_job(part_run *p)
+{
+    cw_mesh_spool_free(p->spool);
+    cli_free_manifest(&p->manifest);
+    cli_free_volume(&p->run.input.volume);
+}
+
+static cli_joined describe_file(const part_run *p, const cw_write_desc *desc, double start,
+                                char text[CLI_PARTS_TEXT])
+{
+    return (cli_joined){.output = p->run.args->output,
+                        .from = cli_count_parts(p->parts, text),
+                        .desc = desc,
+                        .manifest = &p->manifest,
+                        .input = &p->run.args->input,
+                        .check = p->run.args->check,
+                        .start = start};
+}
+
 cw_status cli_extract_part(const cli_extract_args *args, cw_error *err)
 {
     part_run p = {.run.args = args, .folder = args->queue ? args->queue : args->manifest};
     const double start = cli_seconds();
-    cli_input input = args->input;
-    input.stream = CLI_STREAM_ALWAYS;
-    input.may_stream = true;
+    char text[CLI_PARTS_TEXT];
     cli_console_start(&args->common, (cli_progress_mode)args->progress);
     cw_status st = check_args(args, err);
     if (st == CW_OK && args->part)
         st = parse_part(args->part, &p.part, &p.parts, err);
     if (st == CW_OK)
-        st = cli_read_volume(args->common.inputs[0], &input, false, &p.run.input.volume, err);
-    if (args->queue)
-        p.parts = args->parts ? args->parts : p.run.input.volume.view.dim[2] / PART_LAYERS + 1;
-    if (st == CW_OK)
-        st = cli_describe_job(&p.run, p.parts, &p.manifest, err);
+        st = begin_job(&p, args->part ? p.parts : args->parts, err);
     if (st == CW_OK)
         st = cli_settle_manifest(p.folder, &p.manifest, err);
     if (st == CW_OK)
         st = args->queue ? run_queue(&p, err) : make_part(&p, err);
     if (st == CW_OK && args->queue && args->output) {
         const cw_write_desc desc = cli_extract_write_desc(args);
-        cli_manifest there = {0};
-        st = cli_read_manifest(p.folder, &there, err);
-        if (st == CW_OK)
-            st = cli_join_parts(p.folder, &there, args->output, &desc, start, err);
-        cli_free_manifest(&there);
+        const cli_joined joined = describe_file(&p, &desc, start, text);
+        st = cli_join_parts(p.folder, &joined, err);
     }
-    cli_free_manifest(&p.manifest);
-    cli_free_volume(&p.run.input.volume);
+    end_job(&p);
     return st;
+}
+
+/* --- ranks ---------------------------------------------------------------------------------- */
+
+/* Refuses what the processes of a team cannot do together. */
+static cw_status check_team(const cli_extract_args *args, cw_error *err)
+{
+    if (args->part || args->queue)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "mpirun shares the parts itself: %s is for processes that it did not "
+                        "start",
+                        args->part ? "--part" : "--queue");
+    if (args->parts && !args->manifest)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--parts is for --manifest, where parts are kept");
+    if (!args->output)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "mpirun needs an output: -o FILE");
+    return check_job(args, "mpirun", err);
+}
+
+/* Shares the processors and the memory of this machine among the ranks on it. */
+static void share_machine(cli_input *input, const cw_team *team)
+{
+    const long ranks = team->on_this_host, online = sysconf(_SC_NPROCESSORS_ONLN);
+    const int bound = cwi_threads(0); /* the launcher may have bound the rank to some */
+    const long fair = online / ranks > 1 ? online / ranks : 1;
+    if (!input->threads)
+        input->threads = (size_t)(bound < fair ? bound : fair);
+    if (!input->memory)
+        input->memory = cli_memory_limit(input) / (size_t)ranks;
+}
+
+/* Rank 0 makes the folder and its manifest. */
+static cw_status settle_together(const part_run *p, const cw_team *team, cw_error *err)
+{
+    cw_status st = team->rank == 0 ? cli_settle_manifest(p->folder, &p->manifest, err) : CW_OK;
+    st = cw_team_agree(team, st, err);
+    return st == CW_OK && team->rank > 0 ? cli_settle_manifest(p->folder, &p->manifest, err)
+                                         : st;
+}
+
+/* Makes the parts of this rank: fragments that are kept, which it then reads back. */
+static cw_status make_kept_parts(part_run *p, const cw_team *team, cw_error *err)
+{
+    const size_t rank = (size_t)team->rank, size = (size_t)team->size,
+                 first = p->parts * rank / size, end = p->parts * (rank + 1) / size;
+    cw_status st = settle_together(p, team, err);
+    for (p->part = first; p->part < end && st == CW_OK; p->part++)
+        st = make_part(p, err);
+    if (st == CW_OK)
+        st = cw_mesh_spool_new(p->run.args->output, &p->spool, err);
+    p->counts = (cw_part_counts){0};
+    return st == CW_OK ? cli_append_parts(p->folder, &p->manifest, first, end, p->spool,
+                                          &p->counts, err)
+                       : st;
+}
+
+/* Finds out whether the parts of all ranks have samples on each side. */
+static cw_status gather_sides(const cw_team *team, cw_part_counts *sides, cw_error *err)
+{
+    const unsigned char mine[2] = {sides->has_inside, sides->has_outside};
+    unsigned char *all = cwi_alloc_array((size_t)team->size, sizeof mine);
+    cw_status st = all ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the ranks");
+    st = cw_team_agree(team, st, err);
+    if (st == CW_OK)
+        st = cw_team_gather(team, mine, sizeof mine, all, err);
+    for (int r = 0; r < team->size && st == CW_OK; r++) {
+        sides->has_inside = sides->has_inside || all[2 * r];
+        sides->has_outside = sides->has_outside || all[2 * r + 1];
+    }
+    cwi_free(all);
+    return st;
+}
+
+/* Makes the parts of this rank, and with the others the file. */
+static cw_status work_together(part_run *p, const cw_team *team, double start, cw_error *err)
+{
+    const cli_extract_args *args = p->run.args;
+    const cw_write_desc desc = cli_extract_write_desc(args);
+    char text[CLI_PARTS_TEXT];
+    cw_status st = check_team(args, err);
+    if (st == CW_OK)
+        st = begin_job(p, args->manifest ? args->parts : (size_t)team->size, err);
+    st = cw_team_agree(team, st, err);
+    if (st == CW_OK && args->manifest)
+        st = make_kept_parts(p, team, err);
+    else if (st == CW_OK) {
+        p->part = (size_t)team->rank;
+        st = fill_spool(p, args->output, err);
+    }
+    st = cw_team_agree(team, st, err);
+    if (st == CW_OK)
+        st = gather_sides(team, &p->counts, err);
+    if (st == CW_OK)
+        st = cw_mesh_spool_share(p->spool, team, err);
+    const cli_joined joined = describe_file(p, &desc, start, text);
+    snprintf(text, sizeof text, "%d processes", team->size);
+    return st == CW_OK ? cli_write_joined(&joined, p->spool, &p->counts, team, err) : st;
+}
+
+cw_status cli_extract_ranks(const cli_extract_args *args, cw_error *err)
+{
+    const double start = cli_seconds();
+    cli_extract_args mine = *args;
+    part_run p = {.run.args = &mine, .folder = args->manifest};
+    cw_team team;
+    cw_status st = cw_team_join(&team, err);
+    if (st != CW_OK)
+        return st;
+    mine.common.quiet = args->common.quiet || team.rank > 0;
+    cli_console_start(&mine.common,
+                      team.rank > 0 ? CLI_PROGRESS_NONE : (cli_progress_mode)args->progress);
+    share_machine(&mine.input, &team);
+    st = work_together(&p, &team, start, err);
+    const bool speaks = team.rank == 0;
+    end_job(&p);
+    cw_team_leave(&team);
+    return speaks ? st : CW_OK; /* all failed alike; one tells */
 }

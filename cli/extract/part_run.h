@@ -8,4 +8,8 @@
  * extract --queue DIR: makes all parts, together with other processes, and then the file of -o. */
 CW_NODISCARD cw_status cli_extract_part(const cli_extract_args *args, cw_error *err);
 
+/* mpirun -n N ... extract -o FILE: makes the part of this rank, and with the others the file. With
+ * --manifest DIR the parts are kept there, and the same command resumes. */
+CW_NODISCARD cw_status cli_extract_ranks(const cli_extract_args *args, cw_error *err);
+
 #endif

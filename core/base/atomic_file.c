@@ -28,6 +28,7 @@ struct cwi_outfile {
     char temporary
         [CWI_FILE_NAME_BYTES]; /* in the same folder; "" before it exists and after it is removed */
     bool no_clobber;
+    bool joined;   /* the temporary is another process's */
     int failure;   /* errno of the first write that failed */
     int slot;      /* in the registry; -1 for none */
     uint64_t size; /* number of bytes so far, including those in the buffer */
@@ -176,6 +177,18 @@ static void close_and_free(cwi_outfile **f)
     *f = NULL;
 }
 
+/* Opens the folder of a path, or of the file that a link there leads to. */
+static cw_status open_real_parent(cwi_outfile *f, const char *path, cw_error *err)
+{
+    char *real = realpath(path, NULL);
+    if (!real)
+        real = cwi_strdup(path);
+    cw_status st = real ? cwi_open_parent(real, &f->folder, f->name, err)
+                        : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for its name");
+    free(real); /* realpath allocates with malloc, and so does cwi_strdup */
+    return st;
+}
+
 static cw_status open_beside(cwi_outfile *f, const char *path, cw_error *err)
 {
     bool exists;
@@ -183,33 +196,61 @@ static cw_status open_beside(cwi_outfile *f, const char *path, cw_error *err)
     cw_status st = inspect_target(path, f->no_clobber, &exists, &mode, err);
     if (st != CW_OK)
         return st;
-    char *real = exists ? realpath(path, NULL) : cwi_strdup(path);
-    if (!real)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for its name");
-    st = cwi_open_parent(real, &f->folder, f->name, err);
-    free(real); /* realpath allocates with malloc, and so does cwi_strdup */
+    st = open_real_parent(f, path, err);
     if (st == CW_OK)
         st = make_temporary(f, exists, mode, err);
     return st;
 }
 
+/* Allocates a file that is not open yet. */
+static cw_status new_file(cwi_outfile **out, const char *path, cw_error *err)
+{
+    cwi_outfile *f = *out = cwi_alloc_zeroed(1, sizeof *f);
+    if (f) {
+        f->fd = f->folder = f->slot = -1;
+        f->buffer = cwi_alloc_array(BUFFER_BYTES, 1);
+    }
+    if (f && f->buffer && path)
+        return CW_OK;
+    if (f)
+        close_and_free(out);
+    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to write a file");
+}
+
 cw_status cwi_outfile_open(cwi_outfile **out, const char *path, bool no_clobber, cw_error *err)
 {
-    cwi_outfile *f = cwi_alloc_zeroed(1, sizeof *f);
-    *out = NULL;
-    if (!f || !path) { /* no memory for the name */
-        cwi_free(f);
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to write a file");
-    }
-    f->fd = f->folder = f->slot = -1;
-    f->no_clobber = no_clobber;
-    f->buffer = cwi_alloc_array(BUFFER_BYTES, 1);
-    cw_status st = f->buffer ? open_beside(f, path, err)
-                             : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to write a file");
+    cw_status st = new_file(out, path, err);
     if (st != CW_OK)
-        close_and_free(&f);
-    *out = f;
+        return st;
+    (*out)->no_clobber = no_clobber;
+    st = open_beside(*out, path, err);
+    if (st != CW_OK)
+        close_and_free(out);
     return st;
+}
+
+cw_status cwi_outfile_join(cwi_outfile **out, const char *path, const char *temporary,
+                           cw_error *err)
+{
+    cw_status st = new_file(out, path, err);
+    if (st != CW_OK)
+        return st;
+    cwi_outfile *f = *out;
+    f->joined = true;
+    st = open_real_parent(f, path, err);
+    if (st == CW_OK) {
+        f->fd = openat(f->folder, temporary, O_WRONLY | O_CLOEXEC | O_NOFOLLOW);
+        if (f->fd < 0)
+            st = fail_system(err, "the file that another process made is not seen", errno);
+    }
+    if (st != CW_OK)
+        close_and_free(out);
+    return st;
+}
+
+const char *cwi_outfile_temporary(const cwi_outfile *f)
+{
+    return f->temporary;
 }
 
 static cw_status fail_write(const cwi_outfile *f, cw_error *err)
@@ -257,6 +298,17 @@ cw_status cwi_outfile_write(cwi_outfile *f, const void *bytes, size_t size, cw_e
         memcpy(f->buffer + f->used, bytes, size);
     f->used += size;
     return CW_OK;
+}
+
+cw_status cwi_outfile_skip(cwi_outfile *f, uint64_t size, cw_error *err)
+{
+    cw_status st = f->failure ? fail_write(f, err) : flush_file(f, err);
+    if (st == CW_OK && lseek(f->fd, (off_t)size, SEEK_CUR) < 0) {
+        f->failure = errno;
+        st = fail_write(f, err);
+    }
+    f->size += size;
+    return st;
 }
 
 uint64_t cwi_outfile_size(const cwi_outfile *f)
@@ -364,7 +416,7 @@ static cw_status put_in_place(cwi_outfile *f, cw_error *err)
 cw_status cwi_outfile_commit(cwi_outfile **f, cw_error *err)
 {
     cw_status st = finish_bytes(*f, err);
-    if (st == CW_OK)
+    if (st == CW_OK && !(*f)->joined)
         st = put_in_place(*f, err);
     close_and_free(f);
     return st;

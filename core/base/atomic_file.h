@@ -32,6 +32,16 @@ CW_NODISCARD cw_status cwi_outfile_write(cwi_outfile *f, const void *bytes, size
 CW_NODISCARD cw_status cwi_outfile_printf(cwi_outfile *f, cw_error *err, const char *format,
                                           ...) CW_PRINTF(3, 4);
 
+/* Leaves a gap of bytes, which another process writes. Same errors as cwi_outfile_write(). */
+CW_NODISCARD cw_status cwi_outfile_skip(cwi_outfile *f, uint64_t size, cw_error *err);
+
+/* Returns the name of the temporary, without its folder; and opens the one of that name which
+ * another process created for the same path. It writes, and leaves its gaps to others. Its commit
+ * flushes to the disk and renames nothing: that process does. */
+const char *cwi_outfile_temporary(const cwi_outfile *f);
+CW_NODISCARD cw_status cwi_outfile_join(cwi_outfile **out, const char *path,
+                                        const char *temporary, cw_error *err);
+
 /* Returns the number of bytes appended so far. */
 uint64_t cwi_outfile_size(const cwi_outfile *f);
 

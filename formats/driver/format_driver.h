@@ -67,6 +67,7 @@ typedef struct cwi_mesh_writing {
     bool animates;       /* it can show parts one after another */
     bool sides;          /* it has labels on both sides of triangles */
     bool spools;         /* it can write a surface from a spool */
+    bool shares; /* each process of a team can write its records: in binary, all have a size */
 } cwi_mesh_writing;
 
 typedef struct cwi_format_driver {

@@ -12,6 +12,7 @@ const cwi_format_driver cwi_format_glb = {
     .mesh = {.sniff = cwi_glb_sniff, .read = cwi_glb_read},
     .write = {.write = cwi_glb_write,
               .spools = true,
+              .shares = true,
               .prepare = cwi_gltf_prepare,
               .own_axes = true,
               .compresses = true,

@@ -69,6 +69,15 @@ static cw_status push_zeros(pipe *p, size_t size, cw_error *err)
     return push_bytes(p, zeros, size, err);
 }
 
+/* Leaves a gap for the elements of other processes. */
+static cw_status skip_elements(pipe *p, const cwi_gltf_array *a, size_t count, cw_error *err)
+{
+    const size_t size = count * (size_t)a->stride;
+    cw_status st = flush_pipe(p, err);
+    p->out->done += size;
+    return st == CW_OK ? cwi_outfile_skip(p->out->file, size, err) : st;
+}
+
 static cw_status push_elements(pipe *p, const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,
                                const cwi_gltf_array *a, size_t count, cw_error *err)
 {
@@ -81,7 +90,7 @@ static cw_status push_elements(pipe *p, const cwi_gltf_plan *plan, const cwi_glt
     return st;
 }
 
-/* Reads a spool piece by piece. */
+/* Reads a spool piece by piece; of one that a team shares, the piece of this process. */
 static cw_status push_spooled(pipe *p, const cwi_gltf_plan *plan, const cwi_gltf_piece *whole,
                               const cwi_gltf_array *a, cw_error *err)
 {
@@ -89,6 +98,12 @@ static cw_status push_spooled(pipe *p, const cwi_gltf_plan *plan, const cwi_gltf
     cwi_spool_reader reader;
     cw_status st = cwi_spool_open(&reader, whole->part->spool,
                                   corners ? CWI_TRIANGLES : CWI_VERTICES, err);
+    const size_t each = corners ? 3 : 1, all = reader.end;
+    if (p->out->shared)
+        cwi_spool_read_own(&reader);
+    const size_t after = all - reader.end;
+    if (st == CW_OK && p->out->shared)
+        st = skip_elements(p, a, each * reader.first, err);
     if (st == CW_OK)
         st = cwi_spool_next(&reader, err);
     while (st == CW_OK && reader.count) {
@@ -98,12 +113,12 @@ static cw_status push_spooled(pipe *p, const cwi_gltf_plan *plan, const cwi_gltf
         part.mesh.positions = reader.mesh.positions;
         part.mesh.normals = reader.mesh.normals;
         part.mesh.triangles = reader.mesh.triangles;
-        st = push_elements(p, plan, &piece, a, (corners ? 3 : 1) * reader.count, err);
+        st = push_elements(p, plan, &piece, a, each * reader.count, err);
         if (st == CW_OK)
             st = cwi_spool_next(&reader, err);
     }
     cwi_spool_close(&reader);
-    return st;
+    return st == CW_OK && p->out->shared ? skip_elements(p, a, each * after, err) : st;
 }
 
 static cw_status push_array(pipe *p, const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,

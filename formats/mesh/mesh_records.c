@@ -35,11 +35,32 @@ static cw_status write_held(const cwi_part *part, cwi_mesh_output *out,
     return st;
 }
 
+/* Returns the bytes of a record, of a format in which all have the same. */
+static size_t measure_record(const cwi_part *part, cwi_record_encoder *encode)
+{
+    static float zeros[9];
+    static uint32_t corners[3];
+    unsigned char record[CWI_RECORD_BYTES];
+    cwi_part piece = *part;
+    piece.mesh.positions = zeros;
+    piece.mesh.normals = cwi_spool_arrays(part->spool) & CW_KEEPS_NORMALS ? zeros : NULL;
+    piece.mesh.triangles = corners;
+    return (size_t)(encode(&piece, 0, record) - record);
+}
+
+/* Writes the records of a spool; of one that a team shares, those of this process at their
+ * place. */
 static cw_status write_spooled(const cwi_part *part, cwi_elements elements,
                                cwi_mesh_output *out, cwi_record_encoder *encode, cw_error *err)
 {
     cwi_spool_reader reader;
     cw_status st = cwi_spool_open(&reader, part->spool, elements, err);
+    const size_t all = reader.end, bytes = out->shared ? measure_record(part, encode) : 0;
+    if (out->shared)
+        cwi_spool_read_own(&reader);
+    const size_t after = all - reader.end;
+    if (st == CW_OK && out->shared)
+        st = cwi_outfile_skip(out->file, reader.first * bytes, err);
     if (st == CW_OK)
         st = cwi_spool_next(&reader, err);
     while (st == CW_OK && reader.count) {
@@ -53,7 +74,7 @@ static cw_status write_spooled(const cwi_part *part, cwi_elements elements,
             st = cwi_spool_next(&reader, err);
     }
     cwi_spool_close(&reader);
-    return st;
+    return st == CW_OK && out->shared ? cwi_outfile_skip(out->file, after * bytes, err) : st;
 }
 
 cw_status cwi_write_records(const cwi_part *part, cwi_elements elements, cwi_mesh_output *out,

@@ -14,17 +14,8 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { POSITIONS, NORMALS, TRIANGLES, FILES };
-
-/* Elements of a piece; each array has three numbers of four bytes for an element. */
-enum { PIECE = 16384, ELEMENT_BYTES = 12 };
-
-struct cw_mesh_spool {
-    int files[FILES];
-    bool has_normals;
-    cw_mesh frame;
-    float low[3], high[3]; /* of the positions */
-};
+/* Elements of a piece. */
+enum { PIECE = 16384 };
 
 /* --- writing -------------------------------------------------------------------------------- */
 
@@ -61,23 +52,27 @@ static char *find_folder(const char *path)
 cw_status cw_mesh_spool_new(const char *path, cw_mesh_spool **out, cw_error *err)
 {
     cw_mesh_spool *s = *out = cwi_alloc_zeroed(1, sizeof *s);
-    char *folder = find_folder(path);
+    if (!s)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a spool");
+    int *files = s->mine.files;
     cw_status st = CW_OK;
-    for (int n = 0; s && n < FILES; n++)
-        s->files[n] = -1;
-    if (!s || !folder)
+    s->segments = &s->mine;
+    s->segment_count = 1;
+    s->folder = find_folder(path);
+    for (int n = 0; n < CWI_SPOOL_FILES; n++)
+        files[n] = -1;
+    if (!s->folder)
         st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a spool");
-    for (int n = 0; n < FILES && st == CW_OK; n++) {
-        s->files[n] = open_unnamed(folder);
-        if (s->files[n] < 0)
-            st = cwi_fail(err, CW_ERR_OUTPUT, "no temporary file in '%s': %s", folder,
+    for (int n = 0; n < CWI_SPOOL_FILES && st == CW_OK; n++) {
+        files[n] = open_unnamed(s->folder);
+        if (files[n] < 0)
+            st = cwi_fail(err, CW_ERR_OUTPUT, "no temporary file in '%s': %s", s->folder,
                           strerror(errno));
     }
     for (int a = 0; a < 3 && st == CW_OK; a++) {
         s->low[a] = INFINITY;
         s->high[a] = -INFINITY;
     }
-    cwi_free(folder);
     if (st != CW_OK) {
         cw_mesh_spool_free(s);
         *out = NULL;
@@ -87,18 +82,24 @@ cw_status cw_mesh_spool_new(const char *path, cw_mesh_spool **out, cw_error *err
 
 void cw_mesh_spool_free(cw_mesh_spool *s)
 {
-    for (int n = 0; s && n < FILES; n++)
-        if (s->files[n] >= 0)
-            close(s->files[n]);
+    if (!s)
+        return;
+    for (size_t k = 0; k < s->segment_count; k++)
+        for (int n = 0; n < CWI_SPOOL_FILES; n++)
+            if (s->segments[k].files[n] >= 0)
+                close(s->segments[k].files[n]);
+    if (s->segments != &s->mine)
+        cwi_free(s->segments);
+    cwi_free(s->folder);
     cwi_free(s);
 }
 
-static cw_status append_elements(int file, size_t first, const void *from, size_t count,
-                                 cw_error *err)
+cw_status cwi_write_elements(int file, size_t first, const void *from, size_t count,
+                             cw_error *err)
 {
     const char *bytes = from;
-    off_t at = (off_t)(first * ELEMENT_BYTES);
-    for (size_t left = count * ELEMENT_BYTES; left > 0;) {
+    off_t at = (off_t)(first * CWI_SPOOL_ELEMENT);
+    for (size_t left = count * CWI_SPOOL_ELEMENT; left > 0;) {
         const ssize_t n = pwrite(file, bytes, left, at);
         if (n < 0 && errno == EINTR)
             continue;
@@ -132,6 +133,8 @@ static cw_status take_chunk(void *user, const cw_mesh_chunk *chunk, cw_error *er
     cw_mesh *all = &s->frame;
     const cw_mesh *m = &chunk->mesh;
     const bool is_first = !all->vertex_count && !all->triangle_count;
+    if (s->team)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a chunk for a surface that a team shares");
     if (chunk->first_vertex != all->vertex_count ||
         chunk->first_triangle != all->triangle_count ||
         (!is_first && m->vertex_count && all->vertex_count &&
@@ -145,16 +148,16 @@ static cw_status take_chunk(void *user, const cw_mesh_chunk *chunk, cw_error *er
     memcpy(all->origin, m->origin, sizeof all->origin);
     memcpy(all->affine, m->affine, sizeof all->affine);
     widen_bounds(s, m);
-    cw_status st = append_elements(s->files[POSITIONS], all->vertex_count, m->positions,
-                                   m->vertex_count, err);
+    cw_status st = cwi_write_elements(s->mine.files[CWI_SPOOL_POSITIONS], all->vertex_count,
+                                      m->positions, m->vertex_count, err);
     if (st == CW_OK && m->normals)
-        st = append_elements(s->files[NORMALS], all->vertex_count, m->normals, m->vertex_count,
-                             err);
+        st = cwi_write_elements(s->mine.files[CWI_SPOOL_NORMALS], all->vertex_count, m->normals,
+                                m->vertex_count, err);
     if (st == CW_OK)
-        st = append_elements(s->files[TRIANGLES], all->triangle_count, m->triangles,
-                             m->triangle_count, err);
-    all->vertex_count += m->vertex_count;
-    all->triangle_count += m->triangle_count;
+        st = cwi_write_elements(s->mine.files[CWI_SPOOL_TRIANGLES], all->triangle_count,
+                                m->triangles, m->triangle_count, err);
+    s->mine.vertices = all->vertex_count += m->vertex_count;
+    s->mine.triangles = all->triangle_count += m->triangle_count;
     return st;
 }
 
@@ -194,11 +197,11 @@ unsigned cwi_spool_arrays(const cw_mesh_spool *s)
 
 /* --- reading -------------------------------------------------------------------------------- */
 
-static cw_status read_elements(int file, size_t first, size_t count, void *to, cw_error *err)
+cw_status cwi_read_elements(int file, size_t first, size_t count, void *to, cw_error *err)
 {
     char *bytes = to;
-    off_t at = (off_t)(first * ELEMENT_BYTES);
-    for (size_t left = count * ELEMENT_BYTES; left > 0;) {
+    off_t at = (off_t)(first * CWI_SPOOL_ELEMENT);
+    for (size_t left = count * CWI_SPOOL_ELEMENT; left > 0;) {
         const ssize_t n = pread(file, bytes, left, at);
         if (n < 0 && errno == EINTR)
             continue;
@@ -210,6 +213,28 @@ static cw_status read_elements(int file, size_t first, size_t count, void *to, c
         left -= (size_t)n;
     }
     return CW_OK;
+}
+
+cw_status cwi_spool_read(const cw_mesh_spool *s, int array, size_t first, size_t count,
+                         void *to, cw_error *err)
+{
+    const bool triangles = array == CWI_SPOOL_TRIANGLES;
+    cw_status st = CW_OK;
+    for (size_t k = 0; k < s->segment_count && count && st == CW_OK; k++) {
+        const cwi_spool_segment *g = s->segments + k;
+        const size_t begin = triangles ? g->first_triangle : g->first_vertex,
+                     end = begin + (triangles ? g->triangles : g->vertices);
+        if (first >= end)
+            continue;
+        const size_t here = end - first < count ? end - first : count;
+        st = cwi_read_elements(g->files[array], first - begin, here, to, err);
+        for (size_t n = 0; triangles && g->first_vertex && n < 3 * here; n++)
+            ((uint32_t *)to)[n] += (uint32_t)g->first_vertex;
+        to = (char *)to + here * CWI_SPOOL_ELEMENT;
+        first += here;
+        count -= here;
+    }
+    return st;
 }
 
 /* Positions of vertices that triangles name. They are near each other: in a few rows of two
@@ -228,8 +253,8 @@ static cw_status fetch_position(cwi_spool_reader *r, size_t vertex, float to[3],
     if (c->block[slot] != block + 1) {
         const size_t first = block * BLOCK, left = r->spool->frame.vertex_count - first;
         c->block[slot] = 0;
-        cw_status st = read_elements(r->spool->files[POSITIONS], first,
-                                     left < BLOCK ? left : BLOCK, c->positions[slot], err);
+        cw_status st = cwi_spool_read(r->spool, CWI_SPOOL_POSITIONS, first,
+                                      left < BLOCK ? left : BLOCK, c->positions[slot], err);
         if (st != CW_OK)
             return st;
         c->block[slot] = block + 1;
@@ -257,12 +282,13 @@ cw_status cwi_spool_open(cwi_spool_reader *r, const cw_mesh_spool *spool, cwi_el
     const bool vertices = elements == CWI_VERTICES, facets = elements == CWI_FACETS;
     *r = (cwi_spool_reader){.spool = spool, .elements = elements, .mesh = spool->frame};
     cw_mesh *m = &r->mesh;
+    r->end = vertices ? m->vertex_count : m->triangle_count;
     if (vertices || facets)
-        m->positions = cwi_alloc_array((size_t)(facets ? 3 : 1) * PIECE, ELEMENT_BYTES);
+        m->positions = cwi_alloc_array((size_t)(facets ? 3 : 1) * PIECE, CWI_SPOOL_ELEMENT);
     if (vertices && spool->has_normals)
-        m->normals = cwi_alloc_array(PIECE, ELEMENT_BYTES);
+        m->normals = cwi_alloc_array(PIECE, CWI_SPOOL_ELEMENT);
     if (!vertices)
-        m->triangles = cwi_alloc_array(PIECE, ELEMENT_BYTES);
+        m->triangles = cwi_alloc_array(PIECE, CWI_SPOOL_ELEMENT);
     if (facets)
         r->cache = cwi_alloc_zeroed(1, sizeof *r->cache);
     const bool ok = (m->positions || !(vertices || facets)) && (m->triangles || vertices) &&
@@ -270,22 +296,29 @@ cw_status cwi_spool_open(cwi_spool_reader *r, const cw_mesh_spool *spool, cwi_el
     return ok ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a piece of the surface");
 }
 
+void cwi_spool_read_own(cwi_spool_reader *r)
+{
+    const cwi_spool_segment *g = r->spool->segments + r->spool->own;
+    const bool vertices = r->elements == CWI_VERTICES;
+    r->first = vertices ? g->first_vertex : g->first_triangle;
+    r->end = r->first + (vertices ? g->vertices : g->triangles);
+}
+
 cw_status cwi_spool_next(cwi_spool_reader *r, cw_error *err)
 {
     const cw_mesh_spool *s = r->spool;
-    const bool vertices = r->elements == CWI_VERTICES;
-    const size_t all = vertices ? s->frame.vertex_count : s->frame.triangle_count;
+    cw_mesh *m = &r->mesh;
     r->first += r->count;
-    r->count = all - r->first < PIECE ? all - r->first : PIECE;
-    if (!vertices) {
+    r->count = r->end - r->first < PIECE ? r->end - r->first : PIECE;
+    if (r->elements != CWI_VERTICES) {
         cw_status st =
-            read_elements(s->files[TRIANGLES], r->first, r->count, r->mesh.triangles, err);
+            cwi_spool_read(s, CWI_SPOOL_TRIANGLES, r->first, r->count, m->triangles, err);
         return st == CW_OK && r->elements == CWI_FACETS ? fetch_corners(r, err) : st;
     }
     cw_status st =
-        read_elements(s->files[POSITIONS], r->first, r->count, r->mesh.positions, err);
-    return st == CW_OK && r->mesh.normals
-               ? read_elements(s->files[NORMALS], r->first, r->count, r->mesh.normals, err)
+        cwi_spool_read(s, CWI_SPOOL_POSITIONS, r->first, r->count, m->positions, err);
+    return st == CW_OK && m->normals
+               ? cwi_spool_read(s, CWI_SPOOL_NORMALS, r->first, r->count, m->normals, err)
                : st;
 }
 

@@ -65,6 +65,7 @@ typedef struct cwi_mesh_output {
     const cw_write_desc *desc;
     const cw_axes *axes;
     bool text;
+    bool shared; /* other processes write the records that are theirs */
     const cw_progress *progress;
     size_t done, total; /* records, for progress; a writer sets the total */
 } cwi_mesh_output;

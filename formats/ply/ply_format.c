@@ -9,5 +9,6 @@ const cwi_format_driver cwi_format_ply = {
     .keeps = CW_KEEPS_SHARING | CW_KEEPS_NORMALS | CW_KEEPS_COLORS | CW_KEEPS_SCALARS |
              CW_KEEPS_LABELS,
     .mesh = {.sniff = cwi_ply_sniff, .read = cwi_ply_read},
-    .write = {.write = cwi_ply_write, .spools = true, .text = true, .sides = true},
+    .write =
+        {.write = cwi_ply_write, .spools = true, .shares = true, .text = true, .sides = true},
 };

@@ -8,5 +8,5 @@ const cwi_format_driver cwi_format_stl = {
     .lost = "shared vertices, normals, colours, scalars, labels, affine; places beyond single "
             "precision, unless local",
     .mesh = {.sniff = cwi_stl_sniff, .sniffs_last = true, .read = cwi_stl_read},
-    .write = {.write = cwi_stl_write, .spools = true, .text = true},
+    .write = {.write = cwi_stl_write, .spools = true, .shares = true, .text = true},
 };

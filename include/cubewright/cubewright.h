@@ -19,7 +19,9 @@
 #include <cubewright/quality.h>
 #include <cubewright/render.h>
 #include <cubewright/simplify.h>
+#include <cubewright/spool.h>
 #include <cubewright/stream.h>
+#include <cubewright/team.h>
 #include <cubewright/transfer.h>
 #include <cubewright/volume.h>
 

@@ -385,7 +385,9 @@ typedef struct cw_part {
                                           default: 0, not stated */
     double time_s; /* animated: the time at which it appears, in place of the part before it */
     const cw_mesh_spool
-        *spool; /* borrowed: mesh is cw_mesh_spool_frame() of it; default: none */
+        *spool; /* borrowed: mesh is cw_mesh_spool_frame() of it; default: none. That of a team
+                   (cw_mesh_spool_share) is written by all its processes together: PLY, STL and
+                   GLB in binary by each at its place, other formats by rank 0 */
 } cw_part;
 
 /* Reads the parts of a file, each as a mesh. Parts are the objects of OBJ, or its groups if it

@@ -3,6 +3,7 @@
 #define CUBEWRIGHT_SPOOL_H
 
 #include <cubewright/stream.h>
+#include <cubewright/team.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -31,6 +32,25 @@ CW_API const cw_mesh *cw_mesh_spool_frame(const cw_mesh_spool *spool);
 
 /* Computes the box around the vertices, as cw_mesh_bounds() does. */
 CW_API bool cw_mesh_spool_bounds(const cw_mesh_spool *spool, double min[3], double max[3]);
+
+/* Gives the surface of a spool away again, in chunks of up to 16384 triangles.
+ * Returns CW_ERR_IO, CW_ERR_NO_MEMORY, or what the sink returned
+ * Cost    triangles are read twice. Memory: a chunk, and 4 bytes for each */
+CW_NODISCARD CW_API cw_status cw_mesh_spool_read(const cw_mesh_spool *spool, cw_chunk_sink sink,
+                                                 cw_error *err);
+
+/* Joins the spools of all processes of a team: each holds a part of one surface, those of
+ * cw_extract_stream_part() by rank. From then on the spool is the whole surface in every process,
+ * and takes no more chunks. It is written by all together: cw_parts_write().
+ *
+ * What a process tells the others are counts, a box and names of files. All processes see the
+ * spool's folder; its files have names there until they are open everywhere.
+ *
+ * team     borrowed, as long as the spool lives
+ * Returns  in all processes the same: CW_ERR_LIMIT: more than 2^32 - 1 vertices; CW_ERR_OUTPUT;
+ *          CW_ERR_IO: the folder is not shared; CW_ERR_NO_MEMORY */
+CW_NODISCARD CW_API cw_status cw_mesh_spool_share(cw_mesh_spool *spool, const cw_team *team,
+                                                  cw_error *err);
 
 /* A part of a surface in a file of its own: a fragment. */
 typedef struct cw_fragment {

@@ -154,6 +154,56 @@ static void a_spool_has_the_frame_and_the_box_of_its_mesh(void **state)
     cw_mesh_free(&mesh);
 }
 
+/* The mesh that is read back, and the chunk before. */
+typedef struct read_back {
+    const cw_mesh *mesh;
+    size_t vertices, triangles, chunks;
+} read_back;
+
+static cw_status compare_chunk(void *user, const cw_mesh_chunk *chunk, cw_error *err)
+{
+    (void)err;
+    read_back *b = user;
+    const cw_mesh *m = &chunk->mesh, *all = b->mesh;
+    assert_int_equal(chunk->first_vertex, b->vertices);
+    assert_int_equal(chunk->first_triangle, b->triangles);
+    assert_memory_equal(m->positions, all->positions + 3 * b->vertices,
+                        3 * m->vertex_count * sizeof(float));
+    assert_memory_equal(m->normals, all->normals + 3 * b->vertices,
+                        3 * m->vertex_count * sizeof(float));
+    assert_memory_equal(m->triangles, all->triangles + 3 * b->triangles,
+                        3 * m->triangle_count * sizeof(uint32_t));
+    for (size_t c = 0; c < 3 * m->triangle_count; c++)
+        assert_true(m->triangles[c] >= b->vertices); /* those before are final */
+    b->vertices += m->vertex_count;
+    b->triangles += m->triangle_count;
+    b->chunks++;
+    return CW_OK;
+}
+
+static void a_spool_is_read_back_in_chunks(void **state)
+{
+    (void)state;
+    cw_mesh mesh = make_mesh(true);
+    cw_mesh_spool *spool = fill_spool(&mesh, 700, 1100);
+    read_back back = {.mesh = &mesh};
+    cw_error err = {0};
+    cw_status st = CW_ERR_NO_MEMORY;
+    assert_ok(cw_mesh_spool_read(spool, (cw_chunk_sink){compare_chunk, &back}, &err), err);
+    assert_int_equal(back.vertices, mesh.vertex_count);
+    assert_int_equal(back.triangles, mesh.triangle_count);
+    assert_true(back.chunks > 2);
+    for (long n = 0; st == CW_ERR_NO_MEMORY; n++) {
+        back = (read_back){.mesh = &mesh};
+        cwi_alloc_fail_after(n);
+        st = cw_mesh_spool_read(spool, (cw_chunk_sink){compare_chunk, &back}, &err);
+        cwi_alloc_fail_after(-1);
+    }
+    assert_ok(st, err);
+    cw_mesh_spool_free(spool);
+    cw_mesh_free(&mesh);
+}
+
 static void what_a_spool_cannot_do_is_refused(void **state)
 {
     (void)state;
@@ -189,6 +239,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_format_is_the_same_from_a_spool),
         cmocka_unit_test(a_spool_has_the_frame_and_the_box_of_its_mesh),
+        cmocka_unit_test(a_spool_is_read_back_in_chunks),
         cmocka_unit_test(what_a_spool_cannot_do_is_refused),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -1,0 +1,62 @@
+/* Agreement among the processes of a team. */
+#include <cubewright/team.h>
+
+#include "core/base/status.h"
+
+#include <string.h>
+
+cw_status cw_team_gather(const cw_team *team, const void *mine, size_t bytes, void *all,
+                         cw_error *err)
+{
+    if (team->size > 1)
+        return team->gather(team->user, mine, bytes, all, err);
+    memcpy(all, mine, bytes);
+    return CW_OK;
+}
+
+cw_status cw_team_broadcast(const cw_team *team, int from, void *bytes, size_t size,
+                            cw_error *err)
+{
+    return team->size > 1 ? team->broadcast(team->user, from, bytes, size, err) : CW_OK;
+}
+
+/* The outcome of a process: its status, and a hash of its message. */
+typedef struct outcome {
+    int32_t status;
+    uint32_t message;
+} outcome;
+
+static uint32_t hash_message(const char *text)
+{
+    uint32_t hash = 2166136261u; /* FNV-1a */
+    for (; *text; text++)
+        hash = (hash ^ (unsigned char)*text) * 16777619u;
+    return hash;
+}
+
+cw_status cw_team_agree(const cw_team *team, cw_status status, cw_error *err)
+{
+    cw_error told = {.status = status};
+    outcome all[CW_TEAM_MAX];
+    int first = 0, alike = 0;
+    if (team->size <= 1)
+        return status;
+    if (status != CW_OK && err)
+        memcpy(told.message, err->message, sizeof told.message);
+    const outcome mine = {.status = (int32_t)status, .message = hash_message(told.message)};
+    cw_status st = cw_team_gather(team, &mine, sizeof mine, all, err);
+    if (st != CW_OK)
+        return st;
+    while (first < team->size && all[first].status == CW_OK)
+        first++;
+    if (first == team->size)
+        return CW_OK;
+    for (int r = 0; r < team->size; r++)
+        alike += memcmp(&all[r], &all[first], sizeof *all) == 0;
+    st = cw_team_broadcast(team, first, &told, sizeof told, err);
+    if (st != CW_OK)
+        return st;
+    return alike == team->size
+               ? cwi_fail(err, told.status, "%s", told.message)
+               : cwi_fail(err, told.status, "rank %d: %.490s", first, told.message);
+}

@@ -1,0 +1,80 @@
+# A host is lost in the middle of a job of Open MPI: the job ends soon, with a message and with the parts
+# that were made. Two network namespaces stand for the hosts. 77 where they cannot be had.
+# Usage: sh lost_host.sh BIN_FOLDER
+set -eu
+PATH=$1:$PATH
+cubewright version --features | grep -q '^openmpi *yes' || { echo "no module openmpi"; exit 77; }
+command -v mpirun.openmpi >/dev/null && command -v ip >/dev/null || { echo "no Open MPI, or no ip (iproute2)"; exit 77; }
+a=cubewright-a-$$ b=cubewright-b-$$ wire=cubewright-w-$$
+folder=$(mktemp -d)
+clean() {
+    for space in $a $b $wire; do
+        ip netns pids $space 2>/dev/null | xargs -r kill -KILL 2>/dev/null || true
+        ip netns del $space 2>/dev/null || true
+    done
+    rm -rf "$folder"
+}
+trap clean EXIT
+{ ip netns add $wire && ip netns add $a && ip netns add $b &&
+    ip netns exec $wire ip link add bridge type bridge; } 2>/dev/null ||
+    { echo "no network namespaces here (they need root)"; exit 77; }
+ip netns exec $wire ip link set bridge up
+n=1
+for space in $a $b; do
+    ip link add eth netns $space type veth peer name port$n netns $wire
+    ip netns exec $wire ip link set port$n master bridge
+    ip netns exec $wire ip link set port$n up
+    ip netns exec $space ip addr add 10.77.0.$n/24 dev eth
+    ip netns exec $space ip link set eth up
+    ip netns exec $space ip link set lo up
+    n=$((n + 1))
+done
+cd "$folder"
+HOME=$folder
+export HOME OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+cat >rsh <<END
+#!/bin/sh
+host=\$1
+shift
+case \$host in 10.77.0.1) space=$a ;; *) space=$b ;; esac
+exec ip netns exec \$space unshare --uts sh -c "hostname \$space; \$*"
+END
+chmod +x rsh
+net=10.77.0.0/24
+# run_job OPTION...: on both hosts, two ranks each
+run_job() {
+    ip netns exec $a unshare --uts sh -c 'hostname "$0"; exec "$@"' $a mpirun.openmpi \
+        --mca plm_rsh_agent "$folder/rsh" --mca plm_rsh_no_tree_spawn 1 --mca pml ob1 --mca btl tcp,self \
+        --mca btl_tcp_if_include $net --mca oob_tcp_if_include $net --host 10.77.0.1:2,10.77.0.2:2 \
+        cubewright extract "$@"
+}
+cubewright make gyroid -o ct.nrrd --dims 60 --type i16 --noise 0.2 -q
+cubewright extract ct.nrrd --iso 100 -o whole.ply --name bone --stream never -q
+code=0
+run_job ct.nrrd --iso 100 -o bone.ply -q 2>log || code=$?
+[ $code = 0 ] || { cat log; echo "no job across namespaces here"; exit 77; }
+cmp whole.ply bone.ply
+echo "two hosts: the same bytes"
+
+cubewright make gyroid -o large.nrrd --dims 400x400x400 --type u16 -q
+{
+    sleep 2
+    ip netns exec $wire ip link set port2 down
+} &
+start=$(date +%s)
+code=0
+run_job large.nrrd --iso 30000 -o bone.ply --manifest parts --parts 100 --threads 1 --progress none >log 2>&1 || code=$?
+took=$(($(date +%s) - start - 2))
+wait
+[ $code != 0 ] || { echo "the job was done before its host was lost"; exit 77; }
+grep 'on host .* has not been heard of' log | sed "s/$a/A/; s/$b/B/"
+[ $took -le 60 ] # 11 s on a machine at rest
+sleep 5
+[ -z "$(find . -name '.*.part')" ] || { find . -name '.*.part'; exit 1; }
+made=$(find parts -name '*.cwpart' | wc -l)
+[ "$made" -gt 0 ] && [ "$made" -lt 100 ]
+ip netns exec $wire ip link set port2 up
+run_job large.nrrd --iso 30000 -o bone.ply --manifest parts --parts 100 --threads 1 -q
+cubewright extract large.nrrd --iso 30000 -o whole.ply --name bone --stream always --no-check -q
+cmp whole.ply bone.ply
+echo "the parts that were made were kept: the same bytes"
