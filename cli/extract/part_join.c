@@ -1,7 +1,9 @@
 /* Joins fragments: appends them to a spool in order, and writes its file. */
 #include "cli/extract/part_join.h"
 
+#include "cli/extract/small_components.h"
 #include "cli/framework/console.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <cubewright/spool.h>
@@ -40,6 +42,20 @@ static cw_status append_parts(const char *folder, const cli_manifest *m, cw_mesh
     return st;
 }
 
+/* Moves the components that enclose enough into another spool beside the output. */
+static cw_status drop_components(const char *folder, const cli_manifest *m, const char *output,
+                                 cw_mesh_spool **spool, cw_error *err)
+{
+    cw_mesh_spool *whole = *spool;
+    cw_drop_counts counts;
+    cw_status st = cw_mesh_spool_new(output, spool, err);
+    if (st == CW_OK)
+        st = cli_drop_small_components(folder, whole, m->least_mm3, cwi_memory_left(),
+                                       cw_mesh_spool_sink(*spool), &counts, err);
+    cw_mesh_spool_free(whole);
+    return st;
+}
+
 static cw_status write_file(const char *path, const cw_write_desc *desc, const cli_manifest *m,
                             const cw_mesh_spool *spool, double start, cw_error *err)
 {
@@ -75,6 +91,8 @@ cw_status cli_join_parts(const char *folder, const cli_manifest *m, const char *
         st = append_parts(folder, m, spool, &is_crossed, err);
     if (st == CW_OK && (!is_crossed || !cw_mesh_spool_frame(spool)->triangle_count))
         st = cwi_fail(err, CW_ERR_EMPTY, "%s: the parts have no surface", folder);
+    if (st == CW_OK && m->least_mm3 > 0)
+        st = drop_components(folder, m, output, &spool, err);
     if (st == CW_OK)
         st = write_file(output, desc, m, spool, start, err);
     cw_mesh_spool_free(spool);

@@ -206,6 +206,7 @@ static cw_status take_manifest(cli_manifest *m, json_t *root, cw_error *err)
     const char *name = json_string_value(json_object_get(root, "schema"));
     const json_int_t parts = json_integer_value(json_object_get(root, "parts"));
     json_t *lines = json_object_get(root, "provenance"), *pair;
+    const json_t *least = json_object_get(json_object_get(root, "params"), "min_volume_mm3");
     size_t n;
     if (!name || strcmp(name, schema) != 0)
         return cwi_fail(err, CW_ERR_FORMAT, "'schema' is '%.40s', not '%s'", name ? name : "",
@@ -214,6 +215,9 @@ static cw_status take_manifest(cli_manifest *m, json_t *root, cw_error *err)
         return cwi_fail(err, CW_ERR_FORMAT, "'parts' is %lld; it is 1 or more",
                         (long long)parts);
     m->parts = (size_t)parts;
+    m->least_mm3 = json_number_value(least);
+    if (least && !(json_is_number(least) && m->least_mm3 >= 0))
+        return cwi_fail(err, CW_ERR_FORMAT, "'min_volume_mm3' is not a number of 0 or more");
     json_array_foreach(lines, n, pair) if (!take_line(m, pair)) return cwi_fail(
         err, CW_ERR_FORMAT, "'provenance' is no list of up to %d pairs of texts",
         CLI_EXTRACT_PROVENANCE);
