@@ -2,6 +2,7 @@
 #include "cli/extract/extract_run.h"
 
 #include "cli/extract/extract_proof.h"
+#include "cli/extract/small_components.h"
 #include "cli/framework/console.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/results/mesh_comparison.h"
@@ -27,8 +28,12 @@ static size_t check_bytes(void)
     return cw_quality_bytes(500, 1000) / 1000 + 1;
 }
 
+/* That dropping components takes a triangle, if each has 8 triangles or more. */
+enum { DROP_BYTES = 10 };
+
 cli_wanted cli_extract_wants(const cli_extract_run *s, double iso)
 {
+    const double least_mm3 = cli_extract_least_mm3(s);
     return (cli_wanted){
         .extract = {.isovalue = iso,
                     .inside_is_low = cli_extract_is_low(s),
@@ -39,8 +44,10 @@ cli_wanted cli_extract_wants(const cli_extract_run *s, double iso)
                     .no_normals = s->args->normals,
                     .threads = (int)s->args->input.threads,
                     .max_triangles = s->args->max_triangles,
-                    .extra_bytes = s->args->check ? check_bytes() : 0},
-        .least_mm3 = cli_extract_least_mm3(s),
+                    .extra_bytes = s->args->check  ? check_bytes()
+                                   : least_mm3 > 0 ? DROP_BYTES
+                                                   : 0},
+        .least_mm3 = least_mm3,
     };
 }
 
@@ -107,16 +114,6 @@ static cw_status extract_for_views(cli_extract_run *s, const cli_wanted *w,
                     simplify->error_mm, mesh, &p->culled, err);
 }
 
-static void tell_components(const cli_extract_run *s, const cli_made *made)
-{
-    const cw_drop_counts *c = &made->components;
-    cli_say("%s: %s component%s kept, the smallest of %.6g mm3; %s dropped (< %.6g mm3), the "
-            "largest of %.6g mm3; %s triangles fewer",
-            s->input.volume.path, cli_count(c->kept), c->kept == 1 ? "" : "s",
-            c->least_kept_mm3, cli_count(c->dropped), made->least_mm3, c->largest_mm3,
-            cli_count(c->triangles));
-}
-
 cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
                            cw_extract_counts *counts, cw_error *err)
 {
@@ -142,7 +139,7 @@ cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
                    mesh->triangle_count);
     made->least_mm3 = w.least_mm3;
     if (w.least_mm3 > 0)
-        tell_components(s, made);
+        cli_tell_components(s->input.volume.path, w.least_mm3, dropped);
     if (s->args->pixel.cull)
         cli_say("%s: %.3g %% of the voxels are in bricks that cameras see; %s triangles in "
                 "them that no camera sees are left out",

@@ -2,7 +2,9 @@
  * file. */
 #include "cli/extract/part_join.h"
 
+#include "cli/extract/small_components.h"
 #include "cli/framework/console.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <stdio.h>
@@ -35,6 +37,18 @@ cw_status cli_append_parts(const char *folder, const cli_manifest *m, size_t fir
         sides->has_outside = sides->has_outside || (st == CW_OK && f.counts.has_outside);
     }
     return st;
+}
+
+/* Moves the components that enclose enough into another spool beside the output. */
+static cw_status drop_components(const cli_joined *j, const cw_mesh_spool *whole,
+                                 cw_mesh_spool **kept, cw_error *err)
+{
+    cw_drop_counts counts;
+    cw_status st = cw_mesh_spool_new(j->output, kept, err);
+    return st == CW_OK ? cli_drop_small_components(j->output, whole, j->manifest->least_mm3,
+                                                   cwi_memory_left(), cw_mesh_spool_sink(*kept),
+                                                   &counts, err)
+                       : st;
 }
 
 /* Measures the surface, and holds it to the promise of the command extract. */
@@ -91,16 +105,25 @@ cw_status cli_write_joined(const cli_joined *j, const cw_mesh_spool *spool,
                            const cw_part_counts *sides, const cw_team *team, cw_error *err)
 {
     const bool is_crossed = sides->has_inside && sides->has_outside;
+    const bool leads = team->rank == 0, drops = j->manifest->least_mm3 > 0;
+    cw_mesh_spool *kept = NULL;
     cw_status st = CW_OK;
     if (!is_crossed || !cw_mesh_spool_frame(spool)->triangle_count)
         return cwi_fail(err, CW_ERR_EMPTY,
                         "%s: the parts have no surface at isovalue %g: it must be above the "
                         "lowest value and at most the highest ('cubewright info' tells them)",
                         j->output, j->manifest->iso);
-    if (j->check && team->rank == 0)
-        st = check_surface(j, spool, err);
+    if (drops && leads)
+        st = drop_components(j, spool, &kept, err);
+    if (st == CW_OK && j->check && leads)
+        st = check_surface(j, drops ? kept : spool, err);
     st = cw_team_agree(team, st, err);
-    return st == CW_OK ? write_file(j, spool, err) : st;
+    if (st == CW_OK && !drops)
+        st = write_file(j, spool, err);
+    else if (st == CW_OK) /* what rank 0 kept is its own */
+        st = cw_team_agree(team, leads ? write_file(j, kept, err) : CW_OK, err);
+    cw_mesh_spool_free(kept);
+    return st;
 }
 
 cw_status cli_join_parts(const char *folder, const cli_joined *j, cw_error *err)

@@ -115,6 +115,10 @@ static cw_status take_manifest(cli_manifest *m, json_t *root, cw_error *err)
     json_t *params = json_object_get(root, "params");
     m->iso = json_number_value(json_object_get(params, "iso"));
     m->open = json_is_true(json_object_get(params, "open"));
+    const json_t *least = json_object_get(params, "min_volume_mm3");
+    m->least_mm3 = json_number_value(least);
+    if (least && !(json_is_number(least) && m->least_mm3 >= 0))
+        return cwi_fail(err, CW_ERR_FORMAT, "'min_volume_mm3' is not a number of 0 or more");
     json_array_foreach(lines, n, pair) if (!take_line(m, pair)) return cwi_fail(
         err, CW_ERR_FORMAT, "'provenance' is no list of up to %d pairs of texts",
         CLI_EXTRACT_PROVENANCE);

@@ -10,7 +10,8 @@ typedef struct cli_manifest {
     uint64_t job; /* number of the job: a hash of the text */
     size_t parts;
     double iso;
-    bool open;                              /* at the border of the volume */
+    bool open;        /* at the border of the volume */
+    double least_mm3; /* components that enclose less are left out of the file; 0: none is */
     char *lines[CLI_EXTRACT_PROVENANCE][2]; /* provenance for the file: key and value */
     size_t line_count;
 } cli_manifest;

@@ -2,6 +2,7 @@
  * surface goes to temporary files beside its own. */
 #include "cli/extract/stream_run.h"
 
+#include "cli/extract/small_components.h"
 #include "cli/framework/console.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -23,7 +24,6 @@ const char *cli_find_unstreamed(const cli_extract_args *args)
         {"--simplify", args->simplify.error.given || args->simplify.triangles},
         {"--max-error", args->pixel.most.given},
         {"--camera", args->pixel.camera != NULL},
-        {"--min-volume", args->least.given},
         {"--snap", args->snap.value > 0},
         {"--animate", args->animate},
         {"--prove-crop", args->prove_crop},
@@ -56,7 +56,9 @@ typedef struct streaming {
     const cli_extract_run *run;
     const cli_made *made;
     cw_mesh_spool *spool;
-    cw_quality_stream *check; /* NULL: it is not measured */
+    cw_quality_stream *check; /* NULL: it is not measured, or not yet */
+    double least_mm3; /* above 0: small components are left out when all is in the spool */
+    size_t left;      /* memory for slices or their surface */
     cw_extract_counts counts;
 } streaming;
 
@@ -112,22 +114,28 @@ cw_status cli_plan_slices(const cli_extract_run *run, double iso, const cw_slice
     return st;
 }
 
-/* Divides the memory that is left. Slices take a third of it at most, or what a single layer needs.
- * The front of the surface may have the rest, and half of that beside: the file is written later.
- * A quarter is for the work on the front. */
-static cw_status begin_check(streaming *s, const cw_slice_source *source, cw_stream_desc *desc,
-                             size_t left, cw_error *err)
+/* Begins the measurement. A quarter of its bytes is for the work on the front. */
+static cw_status begin_check(streaming *s, size_t bytes, cw_error *err)
 {
-    const size_t least = cw_extract_stream_bytes(&source->shape, desc, true);
-    desc->extract.max_bytes = left;
-    if (!s->run->args->check)
+    const cw_quality_stream_desc check = {.threads = (int)s->run->args->input.threads,
+                                          .max_bytes = bytes / 4 * 3};
+    return cw_quality_stream_new(&check, &s->check, err);
+}
+
+/* Divides the memory that is left. Slices take a third of it at most, or what a single layer needs.
+ * The front of the surface may have the rest, and half of that beside: the file is written later. */
+static cw_status share_memory(streaming *s, const cw_slice_source *source, cw_stream_desc *desc,
+                              cw_error *err)
+{
+    const size_t least = cw_extract_stream_bytes(&source->shape, desc, true),
+                 left = desc->extract.max_bytes;
+    s->left = left;
+    if (!s->run->args->check || s->least_mm3 > 0)
         return CW_OK;
     desc->extract.max_bytes = left / 3 > least ? left / 3 : least;
     const size_t slices = cw_extract_stream_bytes(&source->shape, desc, false),
                  rest = (left > slices ? left - slices : 0) + BESIDE_BYTES / 2;
-    const cw_quality_stream_desc check = {.threads = (int)s->run->args->input.threads,
-                                          .max_bytes = rest / 4 * 3};
-    return cw_quality_stream_new(&check, &s->check, err);
+    return begin_check(s, rest, err);
 }
 
 static cw_status extract_slices(void *user, const cw_slice_source *source, cw_error *err)
@@ -136,10 +144,31 @@ static cw_status extract_slices(void *user, const cw_slice_source *source, cw_er
     cw_stream_desc d;
     cw_status st = cli_plan_slices(s->run, s->made->iso, source, &d, err);
     if (st == CW_OK)
-        st = begin_check(s, source, &d, d.extract.max_bytes, err);
+        st = share_memory(s, source, &d, err);
     return st == CW_OK
                ? cw_extract_stream(source, &d, (cw_chunk_sink){take_chunk, s}, &s->counts, err)
                : st;
+}
+
+/* Moves what is kept into another spool, and measures it on the way. The slices have gone: a
+ * third of the memory is for the components, and the rest for the measurement. */
+static cw_status drop_components(streaming *s, cli_made *made, cw_error *err)
+{
+    cw_mesh_spool *whole = s->spool;
+    const size_t bytes = s->run->args->check ? s->left / 3 : s->left;
+    cw_status st = CW_OK;
+    s->spool = NULL;
+    if (s->run->args->check)
+        st = begin_check(s, s->left - bytes + BESIDE_BYTES / 2, err);
+    if (st == CW_OK)
+        st = cw_mesh_spool_new(made->path, &s->spool, err);
+    if (st == CW_OK)
+        st = cli_drop_small_components(s->run->input.volume.path, whole, s->least_mm3, bytes,
+                                       (cw_chunk_sink){take_chunk, s}, &made->components, err);
+    cw_mesh_spool_free(whole);
+    if (st == CW_OK)
+        made->least_mm3 = s->least_mm3;
+    return st;
 }
 
 /* Ends the measurement, and holds the surface to the promise. */
@@ -164,14 +193,13 @@ cw_status cli_extract_streamed(cli_extract_run *run, const cli_moment *moment, c
     cli_input input = run->args->input;
     input.step = moment->step;
     input.step_chosen = run->input.series.given;
-    streaming s = {.run = run, .made = made};
+    streaming s = {.run = run, .made = made, .least_mm3 = cli_extract_least_mm3(run)};
     const cw_slice_visitor visitor = {extract_slices, &s};
     if (run->args->stream == CLI_STREAM_AUTO)
         cli_say("%s: voxels and surface exceed --memory: read and extracted slice by slice",
                 v->path);
     cli_report_begin(&run->output.report);
-    cw_status st = cw_mesh_spool_new(made->path, spool, err);
-    s.spool = *spool;
+    cw_status st = cw_mesh_spool_new(made->path, &s.spool, err);
     if (st == CW_OK)
         st = cli_visit_slices(v, &input, &visitor, err);
     if (st == CW_OK && !s.counts.triangles)
@@ -179,15 +207,17 @@ cw_status cli_extract_streamed(cli_extract_run *run, const cli_moment *moment, c
                       "%s: no surface at isovalue %g: it must be above the lowest value and at "
                       "most the highest ('cubewright info' tells them)",
                       v->path, made->iso);
+    if (st == CW_OK && s.least_mm3 > 0)
+        st = drop_components(&s, made, err);
     if (st == CW_OK)
         st = end_check(&s, made, err);
     cw_quality_stream_free(s.check);
     if (st != CW_OK) {
-        cw_mesh_spool_free(*spool);
-        *spool = NULL;
+        cw_mesh_spool_free(s.spool);
         return st;
     }
+    *spool = s.spool;
     cli_report_end(&run->output.report, "extract", dim[0] * dim[1] * dim[2],
-                   s.counts.triangles);
+                   cw_mesh_spool_frame(*spool)->triangle_count);
     return CW_OK;
 }

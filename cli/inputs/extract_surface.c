@@ -50,12 +50,11 @@ cw_status cli_extract_surface(const cli_volume *volume, cw_extractor *extractor,
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
 }
 
-static cw_status explain_dropped(const cli_wanted *wanted, const cw_drop_counts *dropped,
-                                 cw_error *err)
+cw_status cli_fail_dropped(double least_mm3, const cw_drop_counts *dropped, cw_error *err)
 {
     return cwi_fail(err, CW_ERR_EMPTY,
                     "no component encloses %.6g mm3: the largest of %zu encloses %.6g",
-                    wanted->least_mm3, dropped->dropped, dropped->largest_mm3);
+                    least_mm3, dropped->dropped, dropped->largest_mm3);
 }
 
 cw_status cli_extract_wanted(const cli_volume *volume, cw_extractor *extractor,
@@ -69,7 +68,7 @@ cw_status cli_extract_wanted(const cli_volume *volume, cw_extractor *extractor,
         return st;
     st = cw_mesh_drop_volumes(mesh, wanted->least_mm3, d, err);
     if (st == CW_OK && !d->kept)
-        st = explain_dropped(wanted, d, err);
+        st = cli_fail_dropped(wanted->least_mm3, d, err);
     if (st == CW_OK)
         return CW_OK;
     cw_mesh_free(mesh);

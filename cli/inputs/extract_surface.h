@@ -20,6 +20,9 @@ typedef struct cli_wanted {
     double least_mm3; /* components that enclose less are left out; default: none is */
 } cli_wanted;
 
+/* Fails with CW_ERR_EMPTY: all components enclose less than a volume. */
+cw_status cli_fail_dropped(double least_mm3, const cw_drop_counts *dropped, cw_error *err);
+
 /* The same without the components that are too small.
  * dropped   may be NULL
  * Returns   CW_ERR_EMPTY also when all are, and how much the largest encloses */

@@ -3,7 +3,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/union_find.h"
-#include "core/geometry/vec3.h"
+#include "core/mesh/enclosed_volume.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/weld.h"
 
@@ -94,78 +94,117 @@ cw_status cw_mesh_weld(cw_mesh *mesh, size_t *merged, cw_error *err)
 
 /* --- components -------------------------------------------------------------------------- */
 
-/* Sets of vertices that triangles join, each with its box and its measure. Both are stored at
- * the set's minimum vertex. */
+/* Sets of vertices that triangles join, each with its box and, if that is the measure, its
+ * volume. A vertex without triangles is a set, too. */
 typedef struct components {
-    uint32_t *sets;
-    float (*boxes)[6]; /* low, high */
-    double *sizes;
+    uint32_t *set; /* number of a vertex' set; sets have the order of their first vertices */
+    size_t count;
+    float (*boxes)[6];    /* low, high */
+    cwi_volume_sum *sums; /* twelve times the volume; NULL: diagonals are the measure */
+    cwi_volume_unit unit; /* of the sums */
     bool *dropped, *met;
 } components;
 
 static void free_components(components *c)
 {
-    cwi_free(c->sets);
+    cwi_free(c->set);
     cwi_free(c->boxes);
-    cwi_free(c->sizes);
+    cwi_free(c->sums);
     cwi_free(c->dropped);
     cwi_free(c->met);
 }
 
-static cw_status find_components(const cw_mesh *m, components *c, cw_error *err)
+/* Joins vertices to sets and numbers them. Returns false when memory is out. */
+static bool number_sets(const cw_mesh *m, components *c)
 {
-    c->sets = cwi_sets_alloc(m->vertex_count);
-    c->boxes = cwi_alloc_array(m->vertex_count, sizeof *c->boxes);
-    c->sizes = cwi_alloc_zeroed(m->vertex_count, sizeof *c->sizes);
-    c->dropped = cwi_alloc_zeroed(m->vertex_count, sizeof *c->dropped);
-    c->met = cwi_alloc_zeroed(m->vertex_count, sizeof *c->met);
-    if (!c->sets || !c->boxes || !c->sizes || !c->dropped || !c->met)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the components of %zu vertices",
-                        m->vertex_count);
+    uint32_t *sets = c->set = cwi_sets_alloc(m->vertex_count), count = 0;
+    if (!sets)
+        return false;
     for (size_t t = 0; t < m->triangle_count; t++)
         for (size_t k = 1; k < 3; k++)
-            cwi_sets_join(c->sets, m->triangles[3 * t], m->triangles[3 * t + k]);
+            cwi_sets_join(sets, m->triangles[3 * t], m->triangles[3 * t + k]);
+    for (uint32_t v = 0; v < m->vertex_count; v++)
+        sets[v] = cwi_sets_find(sets, v);
+    for (uint32_t v = 0; v < m->vertex_count; v++) /* the first of a set is its root */
+        sets[v] = sets[v] == v ? count++ : sets[sets[v]];
+    c->count = count;
+    return true;
+}
+
+static cw_status find_components(const cw_mesh *m, components *c, cw_error *err)
+{
+    const bool numbered = number_sets(m, c);
+    c->boxes = cwi_alloc_array(c->count, sizeof *c->boxes);
+    c->dropped = cwi_alloc_zeroed(c->count, sizeof *c->dropped);
+    c->met = cwi_alloc_zeroed(c->count, sizeof *c->met);
+    if (!numbered || !c->boxes || !c->dropped || !c->met)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the components of %zu vertices",
+                        m->vertex_count);
+    for (size_t n = 0; n < c->count; n++)
+        for (size_t a = 0; a < 3; a++) {
+            c->boxes[n][a] = INFINITY;
+            c->boxes[n][3 + a] = -INFINITY;
+        }
     for (size_t v = 0; v < m->vertex_count; v++) {
-        const uint32_t set = cwi_sets_find(c->sets, (uint32_t)v);
-        float *box = c->boxes[set];
+        float *box = c->boxes[c->set[v]];
         for (size_t a = 0; a < 3; a++) {
             const float p = m->positions[3 * v + a];
-            box[a] = v == set || p < box[a] ? p : box[a]; /* the minimum vertex comes first */
-            box[3 + a] = v == set || p > box[3 + a] ? p : box[3 + a];
+            box[a] = p < box[a] ? p : box[a];
+            box[3 + a] = p > box[3 + a] ? p : box[3 + a];
         }
     }
     return CW_OK;
 }
 
-static void measure_diagonals(const cw_mesh *m, components *c)
+static float find_largest(const cw_mesh *m)
 {
-    for (size_t v = 0; v < m->vertex_count; v++) {
-        const float *box = c->boxes[v];
-        double square = 0;
-        for (int a = 0; a < 3 && c->sets[v] == v; a++) {
-            const double side = (double)box[3 + a] - (double)box[a];
-            square += side * side;
-        }
-        c->sizes[v] = sqrt(square);
+    float largest = 0;
+    for (size_t n = 0; n < 3 * m->vertex_count; n++) {
+        const float size = fabsf(m->positions[n]);
+        largest = size > largest ? size : largest;
     }
+    return largest;
 }
 
-/* Sums the tetrahedra up to the middle of the box. */
-static void measure_volumes(const cw_mesh *m, components *c)
+/* Sums the tetrahedra up to the middle of the box. Corners are taken twice from there, as the
+ * middle may be half a unit. */
+static cw_status measure_volumes(const cw_mesh *m, components *c, cw_error *err)
 {
+    c->sums = cwi_alloc_zeroed(c->count, sizeof *c->sums);
+    if (!c->sums)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the volumes of %zu components",
+                        c->count);
+    c->unit = cwi_volume_unit_for(find_largest(m));
     for (size_t t = 0; t < m->triangle_count; t++) {
-        const uint32_t set = cwi_sets_find(c->sets, m->triangles[3 * t]);
+        const uint32_t set = c->set[m->triangles[3 * t]];
         const float *box = c->boxes[set];
-        double corner[3][3], normal[3];
+        int64_t corner[3][3], area[3], twice[3];
         for (size_t n = 0; n < 9; n++)
-            corner[n / 3][n % 3] =
-                (double)m->positions[3 * (size_t)m->triangles[3 * t + n / 3] + n % 3] -
-                0.5 * ((double)box[n % 3] + (double)box[3 + n % 3]);
-        cwi_cross(corner[1], corner[2], normal);
-        c->sizes[set] += cwi_dot(corner[0], normal) / 6;
+            corner[n / 3][n % 3] = cwi_volume_coordinate(
+                c->unit.scale, m->positions[3 * (size_t)m->triangles[3 * t + n / 3] + n % 3]);
+        for (size_t a = 0; a < 3; a++)
+            twice[a] = 2 * corner[0][a] - cwi_volume_coordinate(c->unit.scale, box[a]) -
+                       cwi_volume_coordinate(c->unit.scale, box[3 + a]);
+        cwi_volume_area(corner[0], corner[1], corner[2], area);
+        c->sums[set] += cwi_volume_dot(twice, area);
     }
-    for (size_t v = 0; v < m->vertex_count; v++)
-        c->sizes[v] = fabs(c->sizes[v]);
+    for (size_t n = 0; n < c->count; n++)
+        c->sums[n] = cwi_volume_abs(c->sums[n]);
+    return CW_OK;
+}
+
+/* Returns the volume of a set, or the diagonal of its box. */
+static double measure_set(const components *c, size_t set)
+{
+    const float *box = c->boxes[set];
+    double square = 0;
+    if (c->sums)
+        return cwi_volume_mm3(&c->unit, c->sums[set]);
+    for (int a = 0; a < 3; a++) {
+        const double side = (double)box[3 + a] - (double)box[a];
+        square += side * side;
+    }
+    return sqrt(square);
 }
 
 static void count_component(cw_drop_counts *n, double size, bool keep)
@@ -176,39 +215,43 @@ static void count_component(cw_drop_counts *n, double size, bool keep)
         return;
     }
     n->dropped++;
-    n->dropped_mm3 += size;
     n->largest_mm3 = fmax(n->largest_mm3, size);
 }
 
 static void drop_components(cw_mesh *mesh, components *c, cw_drop_counts *counts)
 {
     size_t triangles = 0;
+    cwi_volume_sum dropped = 0;
     *counts = (cw_drop_counts){0};
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         const uint32_t *corners = mesh->triangles + 3 * t;
-        const uint32_t set = cwi_sets_find(c->sets, corners[0]);
+        const uint32_t set = c->set[corners[0]];
         const bool keep = !c->dropped[set];
-        if (!c->met[set])
-            count_component(counts, c->sizes[set], keep);
+        if (!c->met[set]) {
+            count_component(counts, measure_set(c, set), keep);
+            dropped += keep || !c->sums ? 0 : c->sums[set];
+        }
         c->met[set] = true;
         counts->triangles += !keep;
         if (keep)
             memmove(mesh->triangles + 3 * triangles++, corners, 3 * sizeof *corners);
     }
+    if (c->sums)
+        counts->dropped_mm3 = cwi_volume_mm3(&c->unit, dropped);
     mesh->triangle_count = triangles;
-    drop_unused(mesh, c->sets);
+    drop_unused(mesh, c->set);
 }
 
-static cw_status drop_smaller(cw_mesh *mesh, double least,
-                              void (*measure)(const cw_mesh *m, components *c),
+static cw_status drop_smaller(cw_mesh *mesh, double least, bool by_volume,
                               cw_drop_counts *counts, cw_error *err)
 {
     components c = {0};
     cw_status st = find_components(mesh, &c, err);
+    if (st == CW_OK && by_volume)
+        st = measure_volumes(mesh, &c, err);
     if (st == CW_OK) {
-        measure(mesh, &c);
-        for (size_t v = 0; v < mesh->vertex_count; v++)
-            c.dropped[v] = !(c.sizes[v] >= least);
+        for (size_t n = 0; n < c.count; n++)
+            c.dropped[n] = !(measure_set(&c, n) >= least);
         drop_components(mesh, &c, counts);
     }
     free_components(&c);
@@ -224,7 +267,7 @@ cw_status cw_mesh_drop_components(cw_mesh *mesh, double diagonal_mm, size_t *dro
         st = cwi_fail(err, CW_ERR_ARGUMENT, "diagonal_mm is %g; it must be 0 or more",
                       diagonal_mm);
     if (st == CW_OK)
-        st = drop_smaller(mesh, diagonal_mm, measure_diagonals, &counts, err);
+        st = drop_smaller(mesh, diagonal_mm, false, &counts, err);
     if (st == CW_OK && dropped)
         *dropped = counts.dropped;
     if (st == CW_OK && kept)
@@ -239,9 +282,7 @@ cw_status cw_mesh_drop_volumes(cw_mesh *mesh, double least_mm3, cw_drop_counts *
     cw_status st = cw_mesh_check(mesh, err);
     if (st == CW_OK && !(least_mm3 >= 0))
         st = cwi_fail(err, CW_ERR_ARGUMENT, "least_mm3 is %g; it must be 0 or more", least_mm3);
-    return st == CW_OK
-               ? drop_smaller(mesh, least_mm3, measure_volumes, counts ? counts : &own, err)
-               : st;
+    return st == CW_OK ? drop_smaller(mesh, least_mm3, true, counts ? counts : &own, err) : st;
 }
 
 cw_status cw_mesh_drop_distant(cw_mesh *mesh, const float *distance_mm, double limit_mm,
@@ -255,15 +296,16 @@ cw_status cw_mesh_drop_distant(cw_mesh *mesh, const float *distance_mm, double l
         st = cwi_fail(err, CW_ERR_ARGUMENT, "limit_mm is %g; it must be 0 or more", limit_mm);
     if (st == CW_OK)
         st = find_components(mesh, &c, err);
+    if (st == CW_OK)
+        st = measure_volumes(mesh, &c, err);
     if (st == CW_OK) {
-        measure_volumes(mesh, &c);
-        memset(c.dropped, true, mesh->vertex_count * sizeof *c.dropped);
+        memset(c.dropped, true, c.count * sizeof *c.dropped);
         for (uint32_t v = 0; v < mesh->vertex_count; v++)
             if ((double)distance_mm[v] <= limit_mm)
-                c.dropped[cwi_sets_find(c.sets, v)] = false;
+                c.dropped[c.set[v]] = false;
         for (size_t n = 0; n < 3 * mesh->triangle_count; n++) {
             const uint32_t v = mesh->triangles[n];
-            if (c.dropped[cwi_sets_find(c.sets, v)])
+            if (c.dropped[c.set[v]])
                 farthest = fmax(farthest, (double)distance_mm[v]);
         }
         drop_components(mesh, &c, counts ? counts : &own);

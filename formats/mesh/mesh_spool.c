@@ -1,42 +1,20 @@
 /* Spools: appends chunks of a surface to temporary files, and reads them back in pieces. */
-#define _GNU_SOURCE /* O_TMPFILE */
 #include "formats/mesh/mesh_spool.h"
 
 #include <cubewright/formats.h>
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "formats/mesh/unnamed_file.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 /* Elements of a piece. */
-enum { PIECE = 16384 };
+enum { PIECE = CWI_SPOOL_PIECE };
 
 /* --- writing -------------------------------------------------------------------------------- */
-
-/* Opens a file without a name in a folder. */
-static int open_unnamed(const char *folder)
-{
-    int file = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-    if (file >= 0 || (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL))
-        return file;
-    static const char name[] = "/.cubewright-XXXXXX"; /* a file system without such files */
-    char *path = cwi_alloc_array(strlen(folder) + sizeof name, 1);
-    if (!path)
-        return -1;
-    strcpy(path, folder);
-    strcat(path, name);
-    file = mkostemp(path, O_CLOEXEC);
-    if (file >= 0)
-        unlink(path);
-    cwi_free(path);
-    return file;
-}
 
 static char *find_folder(const char *path)
 {
@@ -54,21 +32,16 @@ cw_status cw_mesh_spool_new(const char *path, cw_mesh_spool **out, cw_error *err
     cw_mesh_spool *s = *out = cwi_alloc_zeroed(1, sizeof *s);
     if (!s)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a spool");
-    int *files = s->mine.files;
     cw_status st = CW_OK;
     s->segments = &s->mine;
     s->segment_count = 1;
     s->folder = find_folder(path);
     for (int n = 0; n < CWI_SPOOL_FILES; n++)
-        files[n] = -1;
+        s->mine.files[n] = -1;
     if (!s->folder)
         st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a spool");
-    for (int n = 0; n < CWI_SPOOL_FILES && st == CW_OK; n++) {
-        files[n] = open_unnamed(s->folder);
-        if (files[n] < 0)
-            st = cwi_fail(err, CW_ERR_OUTPUT, "no temporary file in '%s': %s", s->folder,
-                          strerror(errno));
-    }
+    for (int n = 0; n < CWI_SPOOL_FILES && st == CW_OK; n++)
+        st = cwi_unnamed_open(s->folder, &s->mine.files[n], err);
     for (int a = 0; a < 3 && st == CW_OK; a++) {
         s->low[a] = INFINITY;
         s->high[a] = -INFINITY;
@@ -97,20 +70,8 @@ void cw_mesh_spool_free(cw_mesh_spool *s)
 cw_status cwi_write_elements(int file, size_t first, const void *from, size_t count,
                              cw_error *err)
 {
-    const char *bytes = from;
-    off_t at = (off_t)(first * CWI_SPOOL_ELEMENT);
-    for (size_t left = count * CWI_SPOOL_ELEMENT; left > 0;) {
-        const ssize_t n = pwrite(file, bytes, left, at);
-        if (n < 0 && errno == EINTR)
-            continue;
-        if (n <= 0)
-            return cwi_fail(err, CW_ERR_OUTPUT, "a temporary file cannot be written: %s",
-                            strerror(n < 0 ? errno : ENOSPC));
-        bytes += n;
-        at += n;
-        left -= (size_t)n;
-    }
-    return CW_OK;
+    return cwi_unnamed_write(file, first * CWI_SPOOL_ELEMENT, from, count * CWI_SPOOL_ELEMENT,
+                             err);
 }
 
 static void widen_bounds(cw_mesh_spool *s, const cw_mesh *m)
@@ -187,6 +148,11 @@ void cwi_spool_range(const cw_mesh_spool *s, float low[3], float high[3])
     memcpy(high, s->high, sizeof s->high);
 }
 
+const char *cwi_spool_folder(const cw_mesh_spool *s)
+{
+    return s->folder;
+}
+
 unsigned cwi_spool_arrays(const cw_mesh_spool *s)
 {
     unsigned has = s->has_normals ? CW_KEEPS_NORMALS : 0u;
@@ -199,20 +165,8 @@ unsigned cwi_spool_arrays(const cw_mesh_spool *s)
 
 cw_status cwi_read_elements(int file, size_t first, size_t count, void *to, cw_error *err)
 {
-    char *bytes = to;
-    off_t at = (off_t)(first * CWI_SPOOL_ELEMENT);
-    for (size_t left = count * CWI_SPOOL_ELEMENT; left > 0;) {
-        const ssize_t n = pread(file, bytes, left, at);
-        if (n < 0 && errno == EINTR)
-            continue;
-        if (n <= 0)
-            return cwi_fail(err, CW_ERR_IO, "a temporary file cannot be read: %s",
-                            n < 0 ? strerror(errno) : "it ends early");
-        bytes += n;
-        at += n;
-        left -= (size_t)n;
-    }
-    return CW_OK;
+    return cwi_unnamed_read(file, first * CWI_SPOOL_ELEMENT, to, count * CWI_SPOOL_ELEMENT,
+                            err);
 }
 
 cw_status cwi_spool_read(const cw_mesh_spool *s, int array, size_t first, size_t count,

@@ -46,6 +46,12 @@ unsigned cwi_spool_arrays(const cw_mesh_spool *spool);
 /* Returns the range of the positions of a spool with vertices. */
 void cwi_spool_range(const cw_mesh_spool *spool, float low[3], float high[3]);
 
+/* Returns the folder of a spool's temporary files. */
+const char *cwi_spool_folder(const cw_mesh_spool *spool);
+
+/* Elements of a piece; the last one may have fewer. */
+enum { CWI_SPOOL_PIECE = 16384 };
+
 /* The elements of a mesh that a piece has. Facets are triangles with corners of their own: their
  * vertices are those of the piece, three for each. */
 typedef enum cwi_elements { CWI_VERTICES, CWI_TRIANGLES, CWI_FACETS } cwi_elements;

@@ -4,7 +4,7 @@
 #include "formats/mesh/mesh_spool.h"
 
 /* Triangles of a chunk. */
-enum { CHUNK = 16384 };
+enum { CHUNK = CWI_SPOOL_PIECE };
 
 /* A spool on its way to a sink. */
 typedef struct reading {

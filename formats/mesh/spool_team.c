@@ -32,7 +32,7 @@ static cw_status fail_file(const char *what, const char *folder, cw_error *err)
 static cw_status copy_file(int *file, const char *path, size_t elements, const char *folder,
                            cw_error *err)
 {
-    enum { PIECE = 16384 };
+    enum { PIECE = CWI_SPOOL_PIECE };
     const int to = open(path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     void *piece = cwi_alloc_array(PIECE, CWI_SPOOL_ELEMENT);
     cw_status st = to < 0 ? fail_file("no temporary file", folder, err) : CW_OK;

@@ -52,6 +52,39 @@ CW_NODISCARD CW_API cw_status cw_mesh_spool_read(const cw_mesh_spool *spool, cw_
 CW_NODISCARD CW_API cw_status cw_mesh_spool_share(cw_mesh_spool *spool, const cw_team *team,
                                                   cw_error *err);
 
+/* Options of cw_mesh_spool_drop_volumes(). */
+typedef struct cw_spool_drop_desc {
+    double least_mm3;     /* as in cw_mesh_drop_volumes(); 0 keeps all components */
+    size_t max_bytes;     /* limit of the working memory; default: none */
+    cw_progress progress; /* default: none; called on the calling thread, may cancel */
+} cw_spool_drop_desc;
+
+/* Gives a spool's surface away in chunks, without the components that enclose less than a volume,
+ * and without vertices that no triangle names. The chunks together are the mesh that
+ * cw_mesh_drop_volumes() makes, to the bit; the counts are the same, too.
+ *
+ * In memory are only the vertices at the surface's front, in the order in which it was made:
+ * between the lowest vertex that later triangles name and the highest one that earlier triangles
+ * name. A vertex of it takes up to 25 bytes, and a component of it 96. So memory does not
+ * grow with the number of components. A temporary file beside the spool's takes 4 bytes for a vertex of the surface.
+ *
+ * spool   borrowed and unchanged. It holds a whole surface
+ * desc    borrowed; NULL means all defaults
+ * kept    called on the calling thread; not at all if nothing is kept. It may be the sink of
+ *         another spool
+ * counts  may be NULL
+ *
+ * Returns CW_ERR_ARGUMENT  least_mm3 is negative or NaN; a triangle names a vertex that is not
+ *                          there; a position is not finite
+ *         CW_ERR_LIMIT     the front needs more than max_bytes; CW_ERR_NO_MEMORY;
+ *                          CW_ERR_OUTPUT; CW_ERR_IO; CW_ERR_CANCELLED; or what the sink returned
+ * Cost    reads the triangles three times and the vertices twice
+ * Source  union-find over the front of a streaming mesh [Isenburg2005] */
+CW_NODISCARD CW_API cw_status cw_mesh_spool_drop_volumes(const cw_mesh_spool *spool,
+                                                         const cw_spool_drop_desc *desc,
+                                                         cw_chunk_sink kept,
+                                                         cw_drop_counts *counts, cw_error *err);
+
 /* A part of a surface in a file of its own: a fragment. */
 typedef struct cw_fragment {
     size_t part, parts;    /* as in cw_extract_stream_part() */

@@ -45,6 +45,5 @@ cubewright extract noise.raw --raw dims=400x500x5,type=u8 --iso 128 --memory 24M
     echo "exit $?"
 # what slices cannot do
 cubewright extract g.nrrd --iso 100 --stream always --simplify 50% -o no.ply || echo "exit $?"
-cubewright extract g.nrrd --iso 100 --stream always --min-volume 5mm3 -o no.ply || echo "exit $?"
 cubewright extract g.nrrd --iso 1e6 --stream always -o no.ply || echo "exit $?"
 ls no.* .cubewright* 2>/dev/null || echo "nothing is left behind"

@@ -1,0 +1,55 @@
+/* Leaves small components out of a surface in a spool, within --memory, and reports them. */
+#include "cli/extract/small_components.h"
+
+#include "cli/framework/console.h"
+#include "cli/framework/quantity.h"
+#include "cli/inputs/extract_surface.h"
+#include "core/base/status.h"
+
+/* A sink, and whether it failed: its errors are complete. */
+typedef struct watched_sink {
+    cw_chunk_sink to;
+    bool failed;
+} watched_sink;
+
+static cw_status pass_chunk(void *user, const cw_mesh_chunk *chunk, cw_error *err)
+{
+    watched_sink *w = user;
+    cw_status st = w->to.take(w->to.user, chunk, err);
+    w->failed = st != CW_OK;
+    return st;
+}
+
+void cli_tell_components(const char *name, double least_mm3, const cw_drop_counts *c)
+{
+    cli_say("%s: %s component%s kept, the smallest of %.6g mm3; %s dropped (< %.6g mm3), the "
+            "largest of %.6g mm3; %s triangles fewer",
+            name, cli_count(c->kept), c->kept == 1 ? "" : "s", c->least_kept_mm3,
+            cli_count(c->dropped), least_mm3, c->largest_mm3, cli_count(c->triangles));
+}
+
+cw_status cli_drop_small_components(const char *name, const cw_mesh_spool *spool,
+                                    double least_mm3, size_t max_bytes, cw_chunk_sink kept,
+                                    cw_drop_counts *counts, cw_error *err)
+{
+    watched_sink watched = {.to = kept};
+    const cw_spool_drop_desc desc = {
+        .least_mm3 = least_mm3,
+        .max_bytes = max_bytes,
+        .progress = cli_progress((double)cw_mesh_spool_frame(spool)->triangle_count / 1e6,
+                                 "Mtriangle")};
+    cw_status st = cw_mesh_spool_drop_volumes(
+        spool, &desc, (cw_chunk_sink){pass_chunk, &watched}, counts, err);
+    if (watched.failed)
+        return st;
+    if (st == CW_ERR_LIMIT) {
+        const cw_error why = *err;
+        return cwi_fail(err, st, "%s: %s (--memory)", name, why.message);
+    }
+    if (st == CW_OK && !counts->kept)
+        st = cli_fail_dropped(least_mm3, counts, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, name);
+    cli_tell_components(name, least_mm3, counts);
+    return CW_OK;
+}
