@@ -60,6 +60,12 @@ static cw_status check_args(const cli_extract_args *args, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--part writes into --manifest, not -o; 'cubewright join DIR -o FILE' "
                         "makes the file of all parts");
+    if (cli_extract_is_simplified(args) && !args->pixel.pixels.given && !args->pixel.most.given)
+        return cwi_fail(
+            err, CW_ERR_ARGUMENT,
+            "%s cannot be combined with --simplify: join the parts, then 'cubewright "
+            "simplify' reduces the file",
+            args->queue ? "--queue" : "--part");
     if (args->labels || unstreamed || args->json || args->pvd)
         return cwi_fail(err, CW_ERR_ARGUMENT, "%s cannot be combined with %s",
                         args->queue ? "--queue" : "--part",
