@@ -4,6 +4,7 @@
 #include "cli/extract/label_run.h"
 #include "cli/extract/part_run.h"
 #include "cli/extract/stream_run.h"
+#include "cli/extract/stream_simplify.h"
 #include "cli/framework/batch.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
@@ -210,24 +211,27 @@ static cw_status deliver_level(cli_extract_run *s, size_t level, const cw_part *
     cli_delivery how = describe_delivery(s);
     how.write.provenance = provenance;
     how.write.provenance_count = cli_extract_provenance(s, level, text, simplify, provenance);
-    /* each step was measured by itself; a streamed surface was on its way */
-    how.unchecked = how.unchecked || how.write.animated || s->input.volume.streams;
+    /* each step was measured by itself; a surface in a spool was on its way */
+    how.unchecked = how.unchecked || how.write.animated || parts->spool;
     how.parts = how.write.animated ? "steps" : NULL;
     return cli_deliver(&s->output.report, &how, parts, count, border_loops, s->output.start,
                        err);
 }
 
-/* Makes a surface slice by slice. */
+/* Makes a surface slice by slice. A simplified one is in memory then. */
 static cw_status stream_surface(cli_extract_run *s, const cli_moment *moment, size_t level,
                                 cli_made *made, cw_error *err)
 {
     cw_mesh_spool *spool = NULL;
-    cw_status st = cli_extract_streamed(s, moment, made, &spool, err);
+    cw_mesh mesh = {0};
+    cw_status st = cli_extract_is_simplified(s->args)
+                       ? cli_simplify_streamed(s, moment, made, &mesh, err)
+                       : cli_extract_streamed(s, moment, made, &spool, err);
+    const cw_part part = {.mesh = spool ? cw_mesh_spool_frame(spool) : &mesh, .spool = spool};
     if (st == CW_OK)
-        st = deliver_level(s, level,
-                           &(cw_part){.mesh = cw_mesh_spool_frame(spool), .spool = spool}, 1, 0,
-                           err);
+        st = deliver_level(s, level, &part, 1, 0, err);
     cw_mesh_spool_free(spool);
+    cw_mesh_free(&mesh);
     return st;
 }
 
@@ -253,7 +257,7 @@ static cw_status make_surface(cli_extract_run *s, const cli_moment *moment, size
     cw_mesh mesh = {0};
     cw_extract_counts counts = {0};
     cw_status st = cli_extract_make(s, made, &mesh, &counts, err);
-    if (st == CW_ERR_LIMIT && cli_turn_to_slices(s))
+    if (st != CW_OK && cli_turn_to_slices(s, st))
         return finish_surface(s, moment, made, stream_surface(s, moment, n, made, err), err);
     made->snapped = st == CW_OK && s->args->snap.value > 0;
     made->snap = made->snapped ? counts.snap : (cw_snap_counts){0};
@@ -314,6 +318,7 @@ static cw_status read_volume(cli_extract_run *s, const cli_moment *moment, cw_er
     input.stream = s->args->stream;
     input.may_stream = !cli_find_unstreamed(s->args);
     free_step(s);
+    s->input.turned = false;
     cli_report_begin(&s->output.report);
     cw_status st = cli_read_volume(moment->path, &input, false, &s->input.volume, err);
     if (st == CW_ERR_LIMIT && cli_find_unstreamed(s->args)) {

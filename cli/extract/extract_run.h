@@ -44,6 +44,7 @@ typedef struct cli_extract_input {
     cli_volume volume;       /* of the step at hand */
     size_t memory;           /* left when its voxels were read */
     cw_extractor *extractor; /* NULL: every surface by itself */
+    bool turned;             /* voxels were read, and freed again: they come slice by slice */
 } cli_extract_input;
 
 /* Files to write, and the record of what was made. */
@@ -114,7 +115,7 @@ CW_NODISCARD cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_m
                                         cw_extract_counts *counts, cw_error *err);
 
 /* Reports how many triangles a simplified surface had before, and measures its distance from
- * the field. */
+ * the field if the voxels are in memory. */
 CW_NODISCARD cw_status cli_extract_judge(cli_extract_run *s, cli_made *made,
                                          const cw_mesh *mesh, const cw_extract_counts *counts,
                                          cw_error *err);

@@ -211,6 +211,13 @@ cw_status cli_extract_judge(cli_extract_run *s, cli_made *made, const cw_mesh *m
                         cli_count(args->simplify.triangles), cli_count(mesh->triangle_count));
     if (!args->check)
         return CW_OK;
+    if (s->input.volume.streams) {
+        cli_say(
+            "%s: slice by slice, the distances to the field and to the full surface are not "
+            "measured",
+            s->input.volume.path);
+        return CW_OK;
+    }
     cw_status st = measure_from_field(s, made, mesh, err);
     return st == CW_OK && !s->plan.view_count && !args->pixel.most.given
                ? measure_from_full(s, made, mesh, counts, err)

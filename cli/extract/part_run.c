@@ -51,6 +51,12 @@ static cw_status parse_part(const char *text, size_t *part, size_t *parts, cw_er
 static cw_status check_job(const cli_extract_args *args, const char *how, cw_error *err)
 {
     const char *unstreamed = cli_find_unstreamed(args);
+    if (cli_extract_is_simplified(args) && !args->pixel.pixels.given && !args->pixel.most.given)
+        return cwi_fail(
+            err, CW_ERR_ARGUMENT,
+            "%s cannot be combined with --simplify: join the parts, then 'cubewright "
+            "simplify' reduces the file",
+            how);
     if (args->labels || unstreamed || args->json || args->pvd)
         return cwi_fail(err, CW_ERR_ARGUMENT, "%s cannot be combined with %s", how,
                         args->labels ? "--labels"

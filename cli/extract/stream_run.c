@@ -15,19 +15,24 @@
 /* Memory beside the slices and the program so far: the writer of a file, threads, buffers. */
 enum { BESIDE_BYTES = 10 << 20 };
 
+static bool has_simplify(const cli_extract_args *args)
+{
+    return args->simplify.error.given || args->simplify.triangles;
+}
+
 const char *cli_find_unstreamed(const cli_extract_args *args)
 {
     const struct {
         const char *name;
         bool given;
     } options[] = {
-        {"--simplify", args->simplify.error.given || args->simplify.triangles},
         {"--max-error", args->pixel.most.given},
         {"--camera", args->pixel.camera != NULL},
+        {"--min-volume beside --simplify", args->least.given && has_simplify(args)},
         {"--snap", args->snap.value > 0},
         {"--animate", args->animate},
         {"--prove-crop", args->prove_crop},
-        {"--compress", args->compress.kind != 0},
+        {"--compress", args->compress.kind != 0 && !has_simplify(args)},
         {"--component mag", args->input.component.magnitude},
     };
     for (size_t n = 0; n < sizeof options / sizeof *options; n++)
@@ -36,19 +41,52 @@ const char *cli_find_unstreamed(const cli_extract_args *args)
     return NULL;
 }
 
-bool cli_turn_to_slices(cli_extract_run *run)
+/* Returns true for errors of too low a --memory. */
+static bool exceeds_memory(cw_status st)
+{
+    size_t left;
+    return st == CW_ERR_LIMIT || (st == CW_ERR_NO_MEMORY && cwi_memory_refused(&left));
+}
+
+bool cli_turn_to_slices(cli_extract_run *run, cw_status st)
 {
     const cli_extract_args *args = run->args;
     cli_volume *v = &run->input.volume;
-    if (args->stream == CLI_STREAM_NEVER || args->max_triangles || v->view.cells ||
-        v->view.sparse || cli_find_unstreamed(args))
+    if (!exceeds_memory(st) || args->stream == CLI_STREAM_NEVER || args->max_triangles ||
+        v->view.cells || v->view.sparse || cli_find_unstreamed(args))
         return false;
     cw_extractor_free(run->input.extractor);
     run->input.extractor = NULL;
     cw_volume_free(&v->voxels);
     v->view.data = NULL;
     v->streams = true;
+    run->input.turned = true;
     return true;
+}
+
+cw_status cli_visit_moment(const cli_extract_run *run, const cli_moment *moment,
+                           const cw_slice_visitor *visitor, cw_error *err)
+{
+    const cli_volume *v = &run->input.volume;
+    cli_input input = run->args->input;
+    input.step = moment->step;
+    input.step_chosen = run->input.series.given;
+    if (run->args->stream == CLI_STREAM_AUTO)
+        cli_say("%s: voxels and surface exceed --memory: read and extracted slice by slice",
+                v->path);
+    return cli_visit_slices(v, &input, visitor, err);
+}
+
+cw_status cli_expect_surface(const cli_extract_run *run, const cli_made *made, size_t triangles,
+                             cw_error *err)
+{
+    return triangles
+               ? CW_OK
+               : cwi_fail(
+                     err, CW_ERR_EMPTY,
+                     "%s: no surface at isovalue %g: it must be above the lowest value and "
+                     "at most the highest ('cubewright info' tells them)",
+                     run->input.volume.path, made->iso);
 }
 
 /* A surface on its way. */
@@ -80,13 +118,15 @@ static cw_status take_chunk(void *user, const cw_mesh_chunk *chunk, cw_error *er
     return st;
 }
 
-/* Checks that the process keeps to --memory: `left` is what slices may take. */
+/* Checks that the process keeps to --memory: `left` is what slices may take. The peak counts, but
+ * not that of voxels which were read first and freed. */
 static cw_status check_memory(const cli_extract_run *run, const cw_slice_source *source,
                               const cw_stream_desc *desc, size_t *left, cw_error *err)
 {
     char needed_text[CWI_MEMORY_TEXT], limit_text[CWI_MEMORY_TEXT];
     const size_t limit = cli_memory_limit(&run->args->input),
-                 beside = cli_peak_bytes() + BESIDE_BYTES,
+                 taken = run->input.turned && *left < limit ? limit - *left : cli_peak_bytes(),
+                 beside = taken + BESIDE_BYTES,
                  needed = beside + cw_extract_stream_bytes(&source->shape, desc, true);
     if (needed <= limit) {
         *left = limit - beside < *left ? limit - beside : *left;
@@ -188,25 +228,15 @@ static cw_status end_check(const streaming *s, cli_made *made, cw_error *err)
 cw_status cli_extract_streamed(cli_extract_run *run, const cli_moment *moment, cli_made *made,
                                cw_mesh_spool **spool, cw_error *err)
 {
-    const cli_volume *v = &run->input.volume;
-    const size_t *dim = v->view.dim;
-    cli_input input = run->args->input;
-    input.step = moment->step;
-    input.step_chosen = run->input.series.given;
+    const size_t *dim = run->input.volume.view.dim;
     streaming s = {.run = run, .made = made, .least_mm3 = cli_extract_least_mm3(run)};
     const cw_slice_visitor visitor = {extract_slices, &s};
-    if (run->args->stream == CLI_STREAM_AUTO)
-        cli_say("%s: voxels and surface exceed --memory: read and extracted slice by slice",
-                v->path);
     cli_report_begin(&run->output.report);
     cw_status st = cw_mesh_spool_new(made->path, &s.spool, err);
     if (st == CW_OK)
-        st = cli_visit_slices(v, &input, &visitor, err);
-    if (st == CW_OK && !s.counts.triangles)
-        st = cwi_fail(err, CW_ERR_EMPTY,
-                      "%s: no surface at isovalue %g: it must be above the lowest value and at "
-                      "most the highest ('cubewright info' tells them)",
-                      v->path, made->iso);
+        st = cli_visit_moment(run, moment, &visitor, err);
+    if (st == CW_OK)
+        st = cli_expect_surface(run, made, s.counts.triangles, err);
     if (st == CW_OK && s.least_mm3 > 0)
         st = drop_components(&s, made, err);
     if (st == CW_OK)

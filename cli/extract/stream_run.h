@@ -8,9 +8,18 @@
  * suffice. */
 const char *cli_find_unstreamed(const cli_extract_args *args);
 
-/* Lets go of the voxels where a surface did not fit memory beside them, if slices suffice. Returns
- * false if they do not. */
-bool cli_turn_to_slices(cli_extract_run *run);
+/* Lets go of the voxels if a status says that --memory was too low beside them, and slices
+ * suffice. Returns false if not. */
+bool cli_turn_to_slices(cli_extract_run *run, cw_status st);
+
+/* Gives the slices of the run's volume at a moment to a visitor. Says so if the run was not asked
+ * for it. */
+CW_NODISCARD cw_status cli_visit_moment(const cli_extract_run *run, const cli_moment *moment,
+                                        const cw_slice_visitor *visitor, cw_error *err);
+
+/* Returns CW_ERR_EMPTY for a surface without triangles. */
+CW_NODISCARD cw_status cli_expect_surface(const cli_extract_run *run, const cli_made *made,
+                                          size_t triangles, cw_error *err);
 
 /* Plans the extraction of slices at an isovalue within --memory. Returns CW_ERR_LIMIT when that is
  * not enough. */

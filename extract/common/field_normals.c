@@ -9,8 +9,6 @@
 #include "core/geometry/vec3.h"
 #include "core/volume/volume.h"
 
-#include <cubewright/extract.h>
-
 #include <math.h>
 #include <string.h>
 
@@ -100,22 +98,15 @@ enum { CHUNK = 4096 };
  * vertices of a cap are four times as far out. */
 #define REACH (1.0 / 4096)
 
-typedef struct shading {
-    cw_volume volume; /* resolved */
-    cw_mesh *mesh;
-    float *normals;
-    double inverse[3][3]; /* world to index, of differences */
-    double outward[3][3];
-} shading;
-
-static bool fetch_sample(const cw_volume *v, const size_t at[3], int axis, int step,
+static bool fetch_sample(const cwi_shading *s, const size_t at[3], int axis, int step,
                          double *value)
 {
+    const cw_volume *v = &s->volume;
     size_t i[3] = {at[0], at[1], at[2]};
     i[axis] += (size_t)step; /* -1 from 0 is beyond any dim, too */
     if (i[axis] >= v->dim[axis])
         return false;
-    *value = cwi_voxel_at(v->type, cwi_voxel_address(v, i[0], i[1], i[2]));
+    *value = cwi_voxel_at(v->type, cwi_voxel_address(v, i[0], i[1], i[2] - s->first));
     return !isnan(*value) && !(v->has_nodata && *value == v->nodata);
 }
 
@@ -139,15 +130,16 @@ static double difference_unevenly(const cw_volume *v, int axis, size_t i, double
 /* Computes the gradient as extraction does at a sample: central differences of the stored
  * numbers, one-sided where a neighbour is missing or infinite. Returns false at a sample
  * without value. */
-static bool sample_gradient(const cw_volume *v, const size_t at[3], double g[3])
+static bool sample_gradient(const cwi_shading *s, const size_t at[3], double g[3])
 {
+    const cw_volume *v = &s->volume;
     double centre;
-    if (!fetch_sample(v, at, 0, 0, &centre))
+    if (!fetch_sample(s, at, 0, 0, &centre))
         return false;
     for (int a = 0; a < 3; a++) {
         double before = 0, after = 0;
-        const bool has_before = fetch_sample(v, at, a, -1, &before) && isfinite(before);
-        const bool has_after = fetch_sample(v, at, a, 1, &after) && isfinite(after);
+        const bool has_before = fetch_sample(s, at, a, -1, &before) && isfinite(before);
+        const bool has_after = fetch_sample(s, at, a, 1, &after) && isfinite(after);
         before *= 0.5; /* halves first, so that differences of huge doubles stay finite */
         after *= 0.5;
         if (cwi_is_rectilinear(v))
@@ -164,7 +156,7 @@ static bool sample_gradient(const cw_volume *v, const size_t at[3], double g[3])
 }
 
 /* Finds the cell of a vertex, and the place in it; returns false outside the volume. */
-static bool find_cell(const shading *s, size_t vertex, size_t cell[3], double share[3])
+static bool find_cell(const cwi_shading *s, size_t vertex, size_t cell[3], double share[3])
 {
     const cw_volume *v = &s->volume;
     double p[3];
@@ -185,7 +177,7 @@ static bool find_cell(const shading *s, size_t vertex, size_t cell[3], double sh
 
 /* Interpolates the gradient at a vertex, in index space. Returns false outside the domain:
  * where a sample without value has more weight than rounding gives it. */
-static bool interpolate_gradient(const shading *s, size_t vertex, double sum[3])
+static bool interpolate_gradient(const cwi_shading *s, size_t vertex, double sum[3])
 {
     size_t cell[3];
     double share[3], total = 0;
@@ -199,7 +191,7 @@ static bool interpolate_gradient(const shading *s, size_t vertex, double sum[3])
             at[a] = cell[a] + high;
             weight *= high ? share[a] : 1 - share[a];
         }
-        if (!(weight > 0) || !sample_gradient(&s->volume, at, g))
+        if (!(weight > 0) || !sample_gradient(s, at, g))
             continue;
         total += weight;
         for (int a = 0; a < 3; a++)
@@ -208,23 +200,36 @@ static bool interpolate_gradient(const shading *s, size_t vertex, double sum[3])
     return total > 1 - REACH;
 }
 
-static void shade_chunk(void *context, size_t chunk)
+bool cwi_shading_slice(const cwi_shading *s, size_t vertex, size_t *slice)
 {
-    const shading *s = context;
-    const size_t last = s->mesh->vertex_count, end = (chunk + 1) * CHUNK;
-    for (size_t v = chunk * CHUNK; v < (end < last ? end : last); v++) {
-        double g[3] = {0, 0, 0}, n[3] = {0, 0, 0};
-        if (!interpolate_gradient(s, v, g) || !cwi_normalise(g))
-            continue;
-        for (int r = 0; r < 3; r++)
-            n[r] = cwi_dot(s->outward[r], g);
-        for (size_t r = 0; r < 3 && cwi_normalise(n); r++)
-            s->normals[3 * v + r] = (float)n[r];
-    }
+    size_t cell[3];
+    double fraction[3];
+    const bool found = find_cell(s, vertex, cell, fraction);
+    *slice = found ? cell[2] : 0;
+    return found;
 }
 
-static cw_status begin_shading(shading *s, const cw_volume *volume, const cw_normals_desc *d,
-                               cw_mesh *mesh, cw_error *err)
+void cwi_shade_vertex(const cwi_shading *s, size_t vertex)
+{
+    double g[3] = {0, 0, 0}, n[3] = {0, 0, 0};
+    if (!interpolate_gradient(s, vertex, g) || !cwi_normalise(g))
+        return;
+    for (int r = 0; r < 3; r++)
+        n[r] = cwi_dot(s->outward[r], g);
+    for (size_t r = 0; r < 3 && cwi_normalise(n); r++)
+        s->normals[3 * vertex + r] = (float)n[r];
+}
+
+static void shade_chunk(void *context, size_t chunk)
+{
+    const cwi_shading *s = context;
+    const size_t last = s->mesh->vertex_count, end = (chunk + 1) * CHUNK;
+    for (size_t v = chunk * CHUNK; v < (end < last ? end : last); v++)
+        cwi_shade_vertex(s, v);
+}
+
+cw_status cwi_shading_init(cwi_shading *s, const cw_volume *volume, const cw_normals_desc *d,
+                           cw_mesh *mesh, cw_error *err)
 {
     double cofactor[3][3];
     cw_status st = cw_volume_select(volume, 0, 0, &s->volume, err);
@@ -255,23 +260,35 @@ static cw_status begin_shading(shading *s, const cw_volume *volume, const cw_nor
     return CW_OK;
 }
 
+void cwi_shading_free(cwi_shading *s)
+{
+    cwi_free(s->normals);
+    s->normals = NULL;
+}
+
+cw_status cwi_shading_finish(cwi_shading *s, cw_error *err)
+{
+    cw_mesh shaded = *s->mesh; /* so that a failure leaves the mesh as it was */
+    shaded.normals = s->normals;
+    cw_status st = cwi_mend_normals(&shaded, cwi_voxel_scale(&s->volume), err);
+    if (st == CW_OK) {
+        s->normals = s->mesh->normals;
+        s->mesh->normals = shaded.normals;
+    }
+    return st;
+}
+
 cw_status cw_extract_normals(const cw_volume *volume, const cw_normals_desc *desc,
                              cw_mesh *mesh, cw_error *err)
 {
     const cw_normals_desc d = desc ? *desc : (cw_normals_desc){0};
-    shading s = {0};
-    cw_status st = begin_shading(&s, volume, &d, mesh, err);
+    cwi_shading s = {0};
+    cw_status st = cwi_shading_init(&s, volume, &d, mesh, err);
     if (st == CW_OK)
         st = cwi_each_layer((mesh->vertex_count + CHUNK - 1) / CHUNK, CHUNK, d.threads,
                             &d.progress, "shading", shade_chunk, &s, err);
-    cw_mesh shaded = *mesh; /* so that a failure leaves the mesh as it was */
-    shaded.normals = s.normals;
     if (st == CW_OK)
-        st = cwi_mend_normals(&shaded, cwi_voxel_scale(&s.volume), err);
-    if (st == CW_OK) {
-        s.normals = mesh->normals;
-        mesh->normals = shaded.normals;
-    }
-    cwi_free(s.normals);
+        st = cwi_shading_finish(&s, err);
+    cwi_shading_free(&s);
     return st;
 }

@@ -2,8 +2,7 @@
 #ifndef EXTRACT_COMMON_FIELD_NORMALS_H
 #define EXTRACT_COMMON_FIELD_NORMALS_H
 
-#include <cubewright/mesh.h>
-#include <cubewright/volume.h>
+#include <cubewright/extract.h>
 
 /* Computes the map from gradients of the stored numbers, in index space, to outward directions
  * of the world. It is the inverse transpose of the affine, here as its cofactors, the largest
@@ -24,5 +23,33 @@ void cwi_finish_normal(float normal[3]);
 /* Replaces normals that are zero by those of the triangles around their vertex, weighted by
  * area. */
 CW_NODISCARD cw_status cwi_mend_normals(cw_mesh *mesh, double scale, cw_error *err);
+
+/* Normals in the making, from the field around the vertices of a mesh. The field is that of a
+ * volume, of which some slices may be in memory. */
+typedef struct cwi_shading {
+    cw_volume volume; /* resolved. Its data begin with slice `first` */
+    size_t first;
+    cw_mesh *mesh;        /* unchanged until the end */
+    float *normals;       /* vertex_count x 3 */
+    double inverse[3][3]; /* world to index, of differences */
+    double outward[3][3];
+} cwi_shading;
+
+/* Begins with the normals that the mesh has; free with cwi_shading_free(), also after an error.
+ * Errors as cw_extract_normals(). */
+CW_NODISCARD cw_status cwi_shading_init(cwi_shading *shading, const cw_volume *volume,
+                                        const cw_normals_desc *desc, cw_mesh *mesh,
+                                        cw_error *err);
+void cwi_shading_free(cwi_shading *shading);
+
+/* Finds the lower slice of the cell around a vertex. The vertex needs that slice, the one before
+ * and the two after. Returns false outside the volume. */
+bool cwi_shading_slice(const cwi_shading *shading, size_t vertex, size_t *slice);
+
+/* Sets the normal of a vertex, whose slices are in memory. */
+void cwi_shade_vertex(const cwi_shading *shading, size_t vertex);
+
+/* Makes the normals that the field does not give, and hands all to the mesh. */
+CW_NODISCARD cw_status cwi_shading_finish(cwi_shading *shading, cw_error *err);
 
 #endif

@@ -31,8 +31,7 @@ static size_t choose_layers(const cw_volume *whole, const cw_stream_desc *d)
     return layers;
 }
 
-/* Fills in the defaults of a volume without data, with packed slices. */
-static cw_status resolve_shape(const cw_volume *shape, cw_volume *whole, cw_error *err)
+cw_status cwi_resolve_shape(const cw_volume *shape, cw_volume *whole, cw_error *err)
 {
     static const double none = 0;
     cw_volume v = *shape;
@@ -49,7 +48,7 @@ size_t cw_extract_stream_bytes(const cw_volume *shape, const cw_stream_desc *des
 {
     const cw_stream_desc d = desc ? *desc : (cw_stream_desc){0};
     cw_volume whole;
-    if (resolve_shape(shape, &whole, NULL) != CW_OK)
+    if (cwi_resolve_shape(shape, &whole, NULL) != CW_OK)
         return 0;
     return bytes_with(&whole, &d.extract, minimum ? 1 : choose_layers(&whole, &d));
 }
@@ -150,6 +149,22 @@ static cw_status write_layers(cwi_slice_window *w, cwi_chunk_writer *c, const la
     return st;
 }
 
+cw_status cwi_open_slices(cwi_slice_window *w, const cwi_engine *engine,
+                          const cw_slice_source *source, const cw_stream_desc *d,
+                          size_t *layers, cw_error *err)
+{
+    cw_status st = cwi_resolve_shape(&source->shape, &w->whole, err);
+    if (st == CW_OK)
+        st = check_desc(&w->whole, &d->extract, err);
+    if (st != CW_OK)
+        return st;
+    *layers = choose_layers(&w->whole, d);
+    st = check_memory(&w->whole, &d->extract, *layers, err);
+    if (st == CW_OK)
+        st = cwi_slice_window_init(w, engine, source, &d->extract, *layers, err);
+    return st == CW_OK ? look_ahead(w, err) : st;
+}
+
 static cw_status extract_layers(const cwi_engine *engine, const cw_slice_source *source,
                                 const cw_stream_desc *d, size_t part, size_t parts,
                                 cw_chunk_sink sink, cw_part_counts *counts, size_t *bytes,
@@ -157,21 +172,13 @@ static cw_status extract_layers(const cwi_engine *engine, const cw_slice_source 
 {
     cwi_slice_window w = {0};
     cwi_chunk_writer c = {0};
-    cw_status st = resolve_shape(&source->shape, &w.whole, err);
-    if (st == CW_OK)
-        st = check_desc(&w.whole, &d->extract, err);
-    if (st != CW_OK)
-        return st;
-    const size_t all = w.whole.dim[2] + 1, layers = choose_layers(&w.whole, d);
+    size_t layers = 0;
+    cw_status st = cwi_open_slices(&w, engine, source, d, &layers, err);
+    const size_t all = w.whole.dim[2] + 1;
     const layer_range range = {all * part / parts, all * (part + 1) / parts, parts > 1};
-    *bytes = bytes_with(&w.whole, &d->extract, layers);
     *counts = (cw_part_counts){0};
-    st = check_memory(&w.whole, &d->extract, layers, err);
-    if (st == CW_OK)
-        st = cwi_slice_window_init(&w, engine, source, &d->extract, layers, err);
-    if (st == CW_OK)
-        st = look_ahead(&w, err);
     if (st == CW_OK) {
+        *bytes = bytes_with(&w.whole, &d->extract, layers);
         cwi_chunks_init(&c, &w, sink);
         st = write_layers(&w, &c, &range, layers, err);
     }

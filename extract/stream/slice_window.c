@@ -205,7 +205,6 @@ cw_status cwi_slice_window_scan(cwi_slice_window *w, bool all, cw_error *err)
             st = hold_slices(w, first, first + (left < w->capacity ? left : w->capacity), err);
         g->gaps = g->gaps || (st == CW_OK && has_gap(w));
     }
-    w->first = w->count = 0;
     return st;
 }
 
@@ -270,6 +269,7 @@ static cw_status count_layers(cwi_slice_window *w, size_t last, cw_error *err)
 /* The layer below is counted too: normals are repaired from its triangles. */
 void cwi_slice_window_start(cwi_slice_window *w, size_t layer)
 {
+    w->first = w->count = 0; /* slices of two passes have nothing in common */
     w->start = layer;
     w->counted = layer ? layer - 1 : 0;
     w->vertices = w->triangles = w->first_vertex = w->first_triangle = 0;

@@ -40,10 +40,10 @@ CW_NODISCARD cw_status cwi_slice_window_init(cwi_slice_window *w, const cwi_engi
 void cwi_slice_window_free(cwi_slice_window *w);
 
 /* Reads slices until it is known on which sides samples are, or to the end of the volume (`all`).
- * The window then stands at the start again. */
+ * cwi_slice_window_start() has to follow. */
 CW_NODISCARD cw_status cwi_slice_window_scan(cwi_slice_window *w, bool all, cw_error *err);
 
-/* Begins with a layer in place of the first one: numbers then count from there. */
+/* Begins a pass with a layer: numbers count from there. */
 void cwi_slice_window_start(cwi_slice_window *w, size_t layer);
 
 /* Moves the window so that layers begin to end - 1 can be written: reads, classifies and counts

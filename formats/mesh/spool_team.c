@@ -14,7 +14,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* A process's part, as the others are told. */
+/* Description of a process's part, for the others. */
 typedef struct member {
     uint64_t vertices, triangles;
     double origin[3], affine[3][4];

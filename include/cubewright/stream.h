@@ -90,6 +90,37 @@ CW_NODISCARD CW_API cw_status cw_extract_stream_part(const cw_slice_source *sour
                                                      size_t parts, cw_chunk_sink sink,
                                                      cw_part_counts *counts, cw_error *err);
 
+/* Extracts the slabs of cw_extract_slabs() from slices: the same vertices, triangles and seams. In
+ * memory are one slab, and the slices of some layers. Slices are read twice, since where slabs end
+ * depends on all of them; three times where cw_extract_stream() looks ahead for values.
+ *
+ *     cw_simplifier_new(&(cw_simplify_desc){.error_mm = 0.1}, &simplifier, &err);
+ *     cw_extract_stream_slabs(&source, &stream_desc, CW_SIMPLIFIER_SLAB,
+ *                             (cw_slab_sink){cw_simplifier_take, simplifier}, NULL, &err);
+ *     cw_simplifier_finish(simplifier, &mesh, NULL, &err);
+ *     cw_extract_stream_normals(&source, &normals_desc, 0, &mesh, &err);
+ *
+ * triangles  minimum of a slab, as in cw_extract_slabs()
+ * counts     what was made; bytes are those of the largest slab and of the working memory. Loops of
+ *            the border are not counted: 0. May be NULL
+ * Returns    as cw_extract_stream(), but rectilinear grids are extracted. CW_ERR_LIMIT also for
+ *            max_bytes below what the largest slab needs, before the sink is called */
+CW_NODISCARD CW_API cw_status cw_extract_stream_slabs(const cw_slice_source *source,
+                                                      const cw_stream_desc *desc,
+                                                      size_t triangles, cw_slab_sink sink,
+                                                      cw_extract_counts *counts, cw_error *err);
+
+/* Gives the vertices of a mesh the normals of cw_extract_normals(), to the bit, from slices. Each
+ * slice with vertices near it is read once. In memory are the mesh, 17 bytes for each of its
+ * vertices, and some slices.
+ *
+ * max_bytes  limit of the working memory, without the mesh; 0: none
+ * Returns    as cw_extract_normals(); CW_ERR_LIMIT: max_bytes is too low; or what source returned */
+CW_NODISCARD CW_API cw_status cw_extract_stream_normals(const cw_slice_source *source,
+                                                        const cw_normals_desc *desc,
+                                                        size_t max_bytes, cw_mesh *mesh,
+                                                        cw_error *err);
+
 /* Returns the working memory of cw_extract_stream() in bytes, without that of the source and the
  * sink. minimum: with one layer at a time, which max_bytes has to allow. */
 CW_API size_t cw_extract_stream_bytes(const cw_volume *shape, const cw_stream_desc *desc,

@@ -37,13 +37,13 @@ printf '\377' | dd of=big.raw bs=1 seek=32200200 conv=notrunc 2>/dev/null
 cubewright extract big.raw --raw dims=400x400x400,type=u8 --iso 100 --memory 40M -o big.ply
 cubewright extract big.raw --raw dims=400x400x400,type=u8 --iso 100 --memory 40M --stream never -o no.ply ||
     echo "exit $?"
-cubewright extract big.raw --raw dims=400x400x400,type=u8 --iso 100 --memory 40M --simplify 50% -o no.ply ||
+cubewright extract big.raw --raw dims=400x400x400,type=u8 --iso 100 --memory 40M --snap 0.3 -o no.ply ||
     echo "exit $?"
 # the front of a rough surface may need more than slices leave
 head -c 1000000 /dev/urandom >noise.raw
 cubewright extract noise.raw --raw dims=400x500x5,type=u8 --iso 128 --memory 24M --stream always -o no.ply ||
     echo "exit $?"
 # what slices cannot do
-cubewright extract g.nrrd --iso 100 --stream always --simplify 50% -o no.ply || echo "exit $?"
+cubewright extract g.nrrd --iso 100 --stream always --snap 0.3 -o no.ply || echo "exit $?"
 cubewright extract g.nrrd --iso 1e6 --stream always -o no.ply || echo "exit $?"
 ls no.* .cubewright* 2>/dev/null || echo "nothing is left behind"
