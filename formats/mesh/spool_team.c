@@ -173,11 +173,11 @@ cw_status cw_mesh_spool_share(cw_mesh_spool *s, const cw_team *team, cw_error *e
                        : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu processes", count);
     if (st == CW_OK && s->team)
         st = cwi_fail(err, CW_ERR_ARGUMENT, "a spool that is shared already");
+    st = cw_team_agree(team, st, err); /* all are done: files have names for a moment only */
     if (st == CW_OK) {
         describe_member(s, mine);
-        st = name_files(s, mine, err);
+        st = cw_team_agree(team, name_files(s, mine, err), err);
     }
-    st = cw_team_agree(team, st, err);
     if (st == CW_OK)
         st = cw_team_gather(team, mine, sizeof *mine, members, err);
     if (st == CW_OK) {
