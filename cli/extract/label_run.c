@@ -12,107 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static cw_status fail_without(const char *option, cw_error *err)
-{
-    return cwi_fail(err, CW_ERR_ARGUMENT, "%s is for --labels", option);
-}
-
-/* Returns true if the output's format has labels on both sides of triangles, or parts that need
- * not be solids. An unknown format is refused later. */
-static bool holds_interfaces(const cli_extract_args *args)
-{
-    const cw_format *f = cw_mesh_format(args->output, args->format);
-    return !f || strcmp(f->name, "vtp") == 0 || strcmp(f->name, "ply") == 0 ||
-           strcmp(f->name, "obj") == 0 || strcmp(f->name, "glb") == 0 ||
-           strcmp(f->name, "gltf") == 0;
-}
-
-static bool is_simplified(const cli_extract_args *args)
-{
-    return args->simplify.error.given || args->simplify.triangles > 0;
-}
-
-/* Checks the levels of detail: they have targets of their own, and a file each. */
-static cw_status check_lod(const cli_extract_args *args, cw_error *err)
-{
-    const cli_counts *lod = &args->lod;
-    if (lod->count && (is_simplified(args) || args->shared_faces))
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--lod cannot be combined with %s",
-                        args->shared_faces ? "--shared-faces" : "--simplify");
-    if (lod->count && cli_has_file_a_label(args->output))
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--lod writes all labels into a file a level; the output holds {label} "
-                        "or {name}");
-    return cli_check_lod(lod, err);
-}
-
-cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
-{
-    const struct {
-        bool is_given;
-        const char *option;
-    } refused[] = {
-        {args->iso.count > 0, "--iso"},
-        {args->inside != CLI_INSIDE_AUTO, "--inside"},
-        {args->topology, "--topology"},
-        {args->placement, "--placement"},
-        {args->snap.given, "--snap"},
-        {args->least.given, "--min-volume"},
-        {args->pixel.most.given, "--max-error"},
-        {args->pixel.camera != NULL, "--camera"},
-        {args->pixel.pixels.given, "--pixel-error"},
-        {args->pixel.cull, "--cull"},
-        {args->pixel.shading.given, "--shading"},
-        {args->pixel.size.count > 0, "--size"},
-        {args->fps.given, "--fps"},
-        {args->steps.given, "--steps"},
-        {args->animate, "--animate"},
-        {args->pvd != NULL, "--pvd"},
-        {args->prove_crop, "--prove-crop"},
-        {args->input.component.magnitude, "--component mag"},
-    };
-    if (!args->labels)
-        return args->names            ? fail_without("--names", err)
-               : args->smooth_labels  ? fail_without("--smooth-labels", err)
-               : args->table          ? fail_without("--table", err)
-               : args->shared_faces   ? fail_without("--shared-faces", err)
-               : args->per_label      ? fail_without("--per-label", err)
-               : args->lod.count      ? fail_without("--lod", err)
-               : args->require_labels ? fail_without("--require-labels", err)
-                                      : CW_OK;
-    for (size_t n = 0; n < sizeof refused / sizeof *refused; n++)
-        if (refused[n].is_given)
-            return cwi_fail(err, CW_ERR_ARGUMENT, "--labels cannot be combined with %s",
-                            refused[n].option);
-    if (!args->output)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "extract needs an output: -o FILE");
-    if (args->common.input_count > 1)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--labels takes one volume; there are %zu",
-                        args->common.input_count);
-    cw_status st = check_lod(args, err);
-    if (st != CW_OK)
-        return st;
-    if (args->per_label && !is_simplified(args))
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--per-label is for --simplify");
-    if (args->per_label && args->shared_faces)
-        return cwi_fail(
-            err, CW_ERR_ARGUMENT,
-            "--per-label lets interfaces part, and --shared-faces writes them once");
-    if (args->per_label && !cw_simplify_available())
-        return cwi_fail(err, CW_ERR_UNSUPPORTED,
-                        "--per-label needs OpenMesh, which this build lacks: install "
-                        "libopenmesh-dev and build again");
-    if (args->shared_faces && !holds_interfaces(args))
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--shared-faces is for vtp, ply, glb, gltf and obj: other formats hold "
-                        "no interfaces of two labels");
-    if (args->shared_faces && cli_has_file_a_label(args->output))
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--shared-faces writes all interfaces into one file; the output holds "
-                        "{label} or {name}");
-    return cli_check_compress(&args->compress, true, err);
-}
-
 /* Returns the error of --simplify in millimetres; 0: none was stated. */
 static double find_error_mm(const cli_label_run *r)
 {
@@ -125,11 +24,16 @@ static cw_status read_label_map(cli_label_run *r, cw_error *err)
     const cli_extract_args *args = r->args;
     cli_input input = args->input;
     input.component.given = true; /* all are taken, unless one was stated */
+    input.stream = args->stream;
+    input.may_stream = true;
     cli_report_begin(&r->report);
     cw_status st = cli_read_volume(args->common.inputs[0], &input, false, &r->volume, err);
     if (st != CW_OK)
         return st;
     const cw_volume *v = &r->volume.view;
+    if (r->volume.streams && args->stream == CLI_STREAM_AUTO)
+        cli_say("%s: voxels exceed --memory: read and extracted slice by slice",
+                r->volume.path);
     r->report.input = &r->volume;
     cli_report_end(&r->report, "read", 1, v->dim[0] * v->dim[1] * v->dim[2]);
     if (v->cells || v->sparse)
@@ -146,19 +50,46 @@ static cw_status read_label_map(cli_label_run *r, cw_error *err)
                : st;
 }
 
+/* An extraction of slices. */
+typedef struct label_slices {
+    const cw_labels_desc *desc;
+    cw_label_surfaces *surfaces;
+} label_slices;
+
+static cw_status extract_slices(void *user, const cw_slice_source *source, cw_error *err)
+{
+    const label_slices *s = user;
+    return cw_extract_labels_stream(source, s->desc, s->surfaces, err);
+}
+
+/* Extracts the interfaces of one component from its voxels, or from slices. */
+static cw_status extract_component(const cli_label_run *r, uint32_t number,
+                                   const cw_labels_desc *desc, cw_label_surfaces *surfaces,
+                                   cw_error *err)
+{
+    cli_input input = r->args->input;
+    label_slices slices = {desc, surfaces};
+    const cw_slice_visitor visitor = {extract_slices, &slices};
+    cw_volume view;
+    input.component.number = number;
+    if (r->volume.streams)
+        return cli_visit_slices(&r->volume, &input, &visitor, err);
+    cw_status st = cw_volume_select(&r->volume.voxels, number, input.step, &view, err);
+    const cw_volume all = view;
+    if (st == CW_OK && input.coarsen_view)
+        st = cw_volume_coarsen(&all, r->volume.coarsen, &view, err);
+    return st == CW_OK ? cw_extract_labels(&view, desc, surfaces, err) : st;
+}
+
 /* Extracts the interfaces of one component of the volume. */
 static cw_status extract_layer(cli_label_run *r, uint32_t number, cw_error *err)
 {
     const cli_extract_args *args = r->args;
-    cw_volume view;
+    const size_t *dim = r->volume.view.dim;
     uint32_t *values = NULL;
     size_t count = 0;
-    cw_status st = cw_volume_select(&r->volume.voxels, number, args->input.step, &view, err);
-    if (st == CW_OK && args->input.coarsen_view) {
-        const cw_volume all = view;
-        st = cw_volume_coarsen(&all, r->volume.coarsen, &view, err);
-    }
-    if (st == CW_OK && !r->choice.all)
+    cw_status st = CW_OK;
+    if (!r->choice.all)
         st = cli_labels_of_layer(&r->choice, number, &values, &count, err);
     if (st != CW_OK || (!r->choice.all && count == 0)) {
         free(values);
@@ -174,9 +105,9 @@ static cw_status extract_layer(cli_label_run *r, uint32_t number, cw_error *err)
         .threads = (int)args->input.threads,
         .max_triangles = args->max_triangles,
         .progress =
-            cli_progress((double)(view.dim[0] * view.dim[1] * view.dim[2]) / 1e6, "Mvoxel")};
+            cli_progress((double)dim[0] * (double)dim[1] * (double)dim[2] / 1e6, "Mvoxel")};
     layer->number = number;
-    st = cw_extract_labels(&view, &desc, &layer->surfaces, err);
+    st = extract_component(r, number, &desc, &layer->surfaces, err);
     free(values);
     if (st != CW_OK)
         return cwi_fail_in(err, st, r->volume.path);

@@ -35,7 +35,9 @@ void cli_label_layers(const cli_volume *volume, const cli_input *input, size_t *
 {
     const bool is_one = input->component.given && !input->component.magnitude;
     *first = is_one ? input->component.number : 0;
-    *end = is_one ? *first + 1 : volume->voxels.components;
+    *end = is_one            ? *first + 1
+           : volume->streams ? volume->whole.components
+                             : volume->voxels.components;
 }
 
 static bool is_chosen(const cli_label_choice *choice, uint32_t layer, uint32_t value)

@@ -69,6 +69,18 @@ cw_status cwi_progress(const cw_progress *progress, const char *step, double don
     return CW_OK;
 }
 
+static bool report_part(void *user, const char *step, double done)
+{
+    const cwi_part_progress *p = user;
+    return p->whole->report(p->whole->user, step, p->from + p->share * done);
+}
+
+cw_progress cwi_progress_part(const cwi_part_progress *part)
+{
+    return part->whole->report ? (cw_progress){.report = report_part, .user = (void *)part}
+                               : (cw_progress){0};
+}
+
 int cwi_threads(int asked)
 {
     return asked > 0 ? asked : omp_get_max_threads();

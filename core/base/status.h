@@ -20,6 +20,15 @@ cw_status cwi_fail_in(cw_error *err, cw_status status, const char *subject);
 CW_NODISCARD cw_status cwi_progress(const cw_progress *progress, const char *step, double done,
                                     cw_error *err);
 
+/* A part of a call, whose progress is a share of the whole. */
+typedef struct cwi_part_progress {
+    const cw_progress *whole;
+    double from, share;
+} cwi_part_progress;
+
+/* Returns the progress that the part reports to; it borrows the part. */
+cw_progress cwi_progress_part(const cwi_part_progress *part);
+
 /* Returns the number of threads that a desc requests: all that OpenMP offers for 0 or less. */
 int cwi_threads(int asked);
 

@@ -250,6 +250,19 @@ cw_status cwi_volume_expect_dense(const cw_volume *v, const char *what, cw_error
     return v->cells || v->sparse ? refuse_kind(v, what, err) : CW_OK;
 }
 
+cw_status cwi_volume_resolve_shape(const cw_volume *shape, cw_volume *whole, cw_error *err)
+{
+    static const double none = 0;
+    cw_volume v = *shape;
+    if (v.sparse || v.cells)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED, "%s is not extracted slice by slice",
+                        cwi_volume_kind(&v));
+    v.data = &none; /* only to be present */
+    cw_status st = cw_volume_select(&v, 0, 0, whole, err);
+    whole->data = NULL;
+    return st;
+}
+
 double cwi_coordinate_index(const cw_volume *v, int axis, double coordinate)
 {
     const double *at = v->coordinates[axis];

@@ -93,6 +93,11 @@ CW_NODISCARD cw_status cwi_volume_expect_even(const cw_volume *v, const char *wh
 CW_NODISCARD cw_status cwi_volume_expect_dense(const cw_volume *v, const char *what,
                                                cw_error *err);
 
+/* Fills in the defaults of a volume without data: the first component and step of a slice source's
+ * shape, with packed slices. Returns CW_ERR_UNSUPPORTED, CW_ERR_ARGUMENT */
+CW_NODISCARD cw_status cwi_volume_resolve_shape(const cw_volume *shape, cw_volume *whole,
+                                                cw_error *err);
+
 static inline const void *cwi_voxel_address(const cw_volume *v, size_t i, size_t j, size_t k)
 {
     return (const char *)v->data + (ptrdiff_t)i * v->stride[0] + (ptrdiff_t)j * v->stride[1] +

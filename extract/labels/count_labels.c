@@ -53,7 +53,7 @@ cw_status cw_label_counts(const cw_volume *volume, uint32_t background, cw_label
     for (size_t k = 1; k + 1 < layers.count && st == CW_OK && is_whole; k++) {
         size_t bad[3];
         if (!cwi_label_layer_load(&layers, k, labels, bad))
-            st = cwi_label_fail_voxel(&v, bad, err);
+            st = cwi_label_fail_voxel(&layers, bad, err);
         else
             is_whole = cwi_label_layer_count(&layers, labels, &table);
     }

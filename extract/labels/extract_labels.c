@@ -197,18 +197,54 @@ static cw_status make_room(cwi_label_job *j, const cw_labels_desc *desc, cw_erro
     return CW_OK;
 }
 
-static cw_status run_pass(cwi_label_job *j, size_t chunks, const cw_labels_desc *desc,
-                          cw_error *err)
+/* Goes through chunks whose slices are in memory. */
+static cw_status run_chunks(cwi_label_job *j, size_t first, size_t count,
+                            const cw_labels_desc *desc, const cw_progress *progress,
+                            cw_error *err)
 {
     const cw_volume *v = j->layers.volume;
+    j->first_chunk = first;
     cw_status st = cwi_each_layer(
-        chunks, WORK * CWI_LABEL_CHUNK * v->dim[0] * v->dim[1], desc->threads, &desc->progress,
+        count, WORK * CWI_LABEL_CHUNK * v->dim[0] * v->dim[1], desc->threads, progress,
         j->is_writing ? "extracting" : "counting", cwi_label_chunk_work, j, err);
     if (st == CW_OK && j->is_starved)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for layers of labels");
     if (st == CW_OK && j->is_bad)
-        return cwi_label_fail_voxel(v, j->bad, err);
+        return cwi_label_fail_voxel(&j->layers, j->bad, err);
     return st;
+}
+
+/* Goes through all chunks, a window of slices after the other. */
+static cw_status run_windows(cwi_label_job *j, size_t chunks, const cw_labels_desc *desc,
+                             cw_error *err)
+{
+    cw_volume view = *j->layers.volume;
+    cwi_label_window *w = j->window;
+    cw_status st = CW_OK;
+    w->count = 0; /* each pass reads from the start */
+    for (size_t n = 0; n < chunks && st == CW_OK; n += w->chunks) {
+        const size_t count = chunks - n < w->chunks ? chunks - n : w->chunks;
+        const cwi_part_progress span = {.whole = &desc->progress,
+                                        .from = (double)n / (double)chunks,
+                                        .share = (double)count / (double)chunks};
+        const cw_progress progress = cwi_progress_part(&span);
+        st = cwi_label_window_move(w, &j->layers, n, count, err);
+        view.data = w->slices;
+        j->layers.volume = &view;
+        j->layers.first_slice = w->first;
+        if (st == CW_OK)
+            st = run_chunks(j, n, count, desc, &progress, err);
+    }
+    j->layers.volume = &w->whole;
+    j->layers.first_slice = 0;
+    return st;
+}
+
+static cw_status run_pass(cwi_label_job *j, size_t chunks, const cw_labels_desc *desc,
+                          cw_error *err)
+{
+    return j->window ? run_windows(j, chunks, desc, err)
+                     : run_chunks(j, 0, chunks, desc, &desc->progress, err);
 }
 
 static cw_status run_job(cwi_label_job *j, const cw_labels_desc *desc,
@@ -320,19 +356,12 @@ static double resolve_max_move(const cw_volume *v, double max_move)
     return fmax(0, (max_move > 0 ? max_move : 0.5) - margin);
 }
 
-cw_status cwi_extract_labels_with(const cw_volume *volume, const cw_labels_desc *desc,
-                                  cwi_label_smoother *smooth, cw_label_surfaces *surfaces,
-                                  cw_error *err)
+/* Extracts the labels of a resolved volume: of its voxels or, if there is a window, of slices. */
+static cw_status extract_resolved(const cw_volume *v, cwi_label_window *window,
+                                  const cw_labels_desc *desc, cwi_label_smoother *smooth,
+                                  cw_label_surfaces *surfaces, cw_error *err)
 {
-    const cw_labels_desc none = {0};
-    cw_volume v;
-    memset(surfaces, 0, sizeof *surfaces);
-    desc = desc ? desc : &none;
-    cw_status st = cw_volume_resolve(volume, &v, err);
-    if (st == CW_OK)
-        st = cwi_volume_expect_dense(&v, "extracting labels", err);
-    if (st != CW_OK)
-        return st;
+    cw_status st = CW_OK;
     if (!(desc->max_move >= 0 && desc->max_move <= 0.5))
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "vertices move by %g voxels: 0 to 0.5 was expected", desc->max_move);
@@ -340,13 +369,14 @@ cw_status cwi_extract_labels_with(const cw_volume *volume, const cw_labels_desc 
         return cwi_fail(err, CW_ERR_ARGUMENT, "%zu labels are wanted, but none are named",
                         desc->label_count);
     cw_labels_desc resolved = *desc;
-    resolved.max_move = resolve_max_move(&v, desc->max_move);
+    resolved.max_move = resolve_max_move(v, desc->max_move);
     uint32_t *wanted = cwi_alloc_array(desc->label_count, sizeof *wanted);
     cwi_label_job *j = cwi_alloc_zeroed(1, sizeof *j);
     if (wanted && j) {
         j->out = surfaces;
         surfaces->background = desc->background;
-        prepare_job(j, &v, desc, wanted);
+        j->window = window;
+        prepare_job(j, v, desc, wanted);
         st = run_job(j, &resolved, smooth, err);
     } else
         st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for labels");
@@ -355,6 +385,41 @@ cw_status cwi_extract_labels_with(const cw_volume *volume, const cw_labels_desc 
     if (st != CW_OK)
         cw_label_surfaces_free(surfaces);
     return st;
+}
+
+cw_status cwi_extract_labels_with(const cw_volume *volume, const cw_labels_desc *desc,
+                                  cwi_label_smoother *smooth, cw_label_surfaces *surfaces,
+                                  cw_error *err)
+{
+    const cw_labels_desc none = {0};
+    cw_volume v;
+    memset(surfaces, 0, sizeof *surfaces);
+    cw_status st = cw_volume_resolve(volume, &v, err);
+    if (st == CW_OK)
+        st = cwi_volume_expect_dense(&v, "extracting labels", err);
+    return st == CW_OK ? extract_resolved(&v, NULL, desc ? desc : &none, smooth, surfaces, err)
+                       : st;
+}
+
+cw_status cwi_extract_labels_windowed(const cw_slice_source *source, size_t chunks,
+                                      const cw_labels_desc *desc, cw_label_surfaces *surfaces,
+                                      cw_error *err)
+{
+    const cw_labels_desc none = {0};
+    cwi_label_window w;
+    memset(surfaces, 0, sizeof *surfaces);
+    cw_status st = cwi_label_window_open(&w, source, chunks, err);
+    if (st == CW_OK)
+        st = extract_resolved(&w.whole, &w, desc ? desc : &none, cwi_labels_smooth, surfaces,
+                              err);
+    cwi_label_window_close(&w);
+    return st;
+}
+
+cw_status cw_extract_labels_stream(const cw_slice_source *source, const cw_labels_desc *desc,
+                                   cw_label_surfaces *surfaces, cw_error *err)
+{
+    return cwi_extract_labels_windowed(source, 0, desc, surfaces, err);
 }
 
 cw_status cw_extract_labels(const cw_volume *volume, const cw_labels_desc *desc,

@@ -5,6 +5,7 @@
 #include "extract/labels/label_net.h"
 
 #include <cubewright/labels.h>
+#include <cubewright/stream.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -21,6 +22,11 @@ CW_NODISCARD cw_status cwi_extract_labels_with(const cw_volume *volume,
                                                const cw_labels_desc *desc,
                                                cwi_label_smoother *smooth,
                                                cw_label_surfaces *surfaces, cw_error *err);
+
+/* Extracts labels as cw_extract_labels_stream(). chunks: of its window; 0: as many as fit */
+CW_NODISCARD cw_status cwi_extract_labels_windowed(const cw_slice_source *source, size_t chunks,
+                                                   const cw_labels_desc *desc,
+                                                   cw_label_surfaces *surfaces, cw_error *err);
 
 #ifdef __cplusplus
 }

@@ -306,9 +306,10 @@ static bool scan_chunk(scan *s, size_t first, size_t end)
     return is_well;
 }
 
-void cwi_label_chunk_work(void *context, size_t n)
+void cwi_label_chunk_work(void *context, size_t chunk)
 {
     cwi_label_job *j = context;
+    const size_t n = j->first_chunk + chunk;
     scan s = {.job = j,
               .chunk = &j->chunks[n],
               .width = j->layers.width - 1,

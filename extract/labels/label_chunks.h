@@ -6,6 +6,7 @@
 #include "extract/labels/label_cubes.h"
 #include "extract/labels/label_layers.h"
 #include "extract/labels/label_net.h"
+#include "extract/labels/label_window.h"
 
 #include <cubewright/labels.h>
 
@@ -25,6 +26,7 @@ typedef struct cwi_label_chunk {
 /* An extraction: two passes over all chunks, then smoothing. */
 typedef struct cwi_label_job {
     cwi_label_layers layers;
+    cwi_label_window *window; /* of slices that are read; NULL: all voxels are in memory */
     cwi_label_rules rules;
     double corners[CWI_TETS][3]; /* vertices of tetrahedra, from the cube's middle */
     bool is_mirrored;
@@ -32,12 +34,14 @@ typedef struct cwi_label_job {
     float *originals; /* places before smoothing; NULL without smoothing */
     cw_label_surfaces *out;
     cwi_label_chunk *chunks;
-    bool is_writing; /* the second pass */
+    size_t first_chunk; /* of those whose slices are in memory */
+    bool is_writing;    /* the second pass */
     bool is_starved, is_bad;
     size_t bad[3]; /* the first voxel whose value is no label */
 } cwi_label_job;
 
-/* Goes through chunk n of a job, the context: the first pass counts, the second one writes. */
+/* Goes through chunk n of a job, the context, counted from its first_chunk: the first pass counts,
+ * the second one writes. */
 void cwi_label_chunk_work(void *context, size_t n);
 
 #ifdef __cplusplus

@@ -105,15 +105,14 @@ bool cwi_label_layer_load(const cwi_label_layers *l, size_t k, uint32_t *out, si
     const cw_volume *v = l->volume;
     const size_t nx = v->dim[0], ny = v->dim[1];
     const size_t at = voxel_at(k, v->dim[2]);
+    const char *slice = (const char *)v->data + (ptrdiff_t)(at - l->first_slice) * v->stride[2];
     if (!l->copies_border && (k == 0 || k + 1 == l->count)) {
         fill_row(out, l->width * l->height, l->background);
         return true;
     }
     for (size_t j = 0; j < ny; j++) {
         uint32_t *row = out + (j + 1) * l->width;
-        const char *from =
-            (const char *)v->data + (ptrdiff_t)j * v->stride[1] + (ptrdiff_t)at * v->stride[2];
-        const size_t good = load_row(l, from, row + 1);
+        const size_t good = load_row(l, slice + (ptrdiff_t)j * v->stride[1], row + 1);
         if (good < nx) {
             bad[0] = good, bad[1] = j, bad[2] = at;
             return false;
@@ -133,11 +132,17 @@ bool cwi_label_layer_load(const cwi_label_layers *l, size_t k, uint32_t *out, si
     return true;
 }
 
-cw_status cwi_label_fail_voxel(const cw_volume *v, const size_t bad[3], cw_error *err)
+size_t cwi_label_layer_slice(const cwi_label_layers *l, size_t k)
 {
+    return voxel_at(k, l->volume->dim[2]);
+}
+
+cw_status cwi_label_fail_voxel(const cwi_label_layers *l, const size_t bad[3], cw_error *err)
+{
+    const double value = cw_volume_value(l->volume, bad[0], bad[1], bad[2] - l->first_slice);
     return cwi_fail(err, CW_ERR_ARGUMENT,
                     "voxel %zu, %zu, %zu is %g: labels are whole numbers, 0 to 4294967295",
-                    bad[0], bad[1], bad[2], cw_volume_value(v, bad[0], bad[1], bad[2]));
+                    bad[0], bad[1], bad[2], value);
 }
 
 bool cwi_label_layer_count(const cwi_label_layers *l, const uint32_t *labels,

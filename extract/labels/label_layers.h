@@ -12,6 +12,7 @@ extern "C" {
 
 typedef struct cwi_label_layers {
     const cw_volume *volume; /* resolved */
+    size_t first_slice;      /* at the volume's data; those below are not in memory */
     uint32_t background;
     bool copies_border;     /* the border has the labels beside it, not the background */
     size_t width, height;   /* of a layer with its border */
@@ -26,7 +27,11 @@ bool cwi_label_layer_load(const cwi_label_layers *layers, size_t k, uint32_t *ou
                           size_t bad[3]);
 
 /* Fails with CW_ERR_ARGUMENT for a voxel whose value is no label. */
-cw_status cwi_label_fail_voxel(const cw_volume *volume, const size_t bad[3], cw_error *err);
+cw_status cwi_label_fail_voxel(const cwi_label_layers *layers, const size_t bad[3],
+                               cw_error *err);
+
+/* Returns the slice of voxels that stands at layer k, or beside it. */
+size_t cwi_label_layer_slice(const cwi_label_layers *layers, size_t k);
 
 /* Counts the voxels of a layer without its border, by labels plus 1, except the background.
  * Returns false when memory is out. */

@@ -31,24 +31,11 @@ static size_t choose_layers(const cw_volume *whole, const cw_stream_desc *d)
     return layers;
 }
 
-cw_status cwi_resolve_shape(const cw_volume *shape, cw_volume *whole, cw_error *err)
-{
-    static const double none = 0;
-    cw_volume v = *shape;
-    if (v.sparse || v.cells)
-        return cwi_fail(err, CW_ERR_UNSUPPORTED, "%s is not extracted slice by slice",
-                        cwi_volume_kind(&v));
-    v.data = &none; /* only to be present */
-    cw_status st = cw_volume_select(&v, 0, 0, whole, err);
-    whole->data = NULL;
-    return st;
-}
-
 size_t cw_extract_stream_bytes(const cw_volume *shape, const cw_stream_desc *desc, bool minimum)
 {
     const cw_stream_desc d = desc ? *desc : (cw_stream_desc){0};
     cw_volume whole;
-    if (cwi_resolve_shape(shape, &whole, NULL) != CW_OK)
+    if (cwi_volume_resolve_shape(shape, &whole, NULL) != CW_OK)
         return 0;
     return bytes_with(&whole, &d.extract, minimum ? 1 : choose_layers(&whole, &d));
 }
@@ -153,7 +140,7 @@ cw_status cwi_open_slices(cwi_slice_window *w, const cwi_engine *engine,
                           const cw_slice_source *source, const cw_stream_desc *d,
                           size_t *layers, cw_error *err)
 {
-    cw_status st = cwi_resolve_shape(&source->shape, &w->whole, err);
+    cw_status st = cwi_volume_resolve_shape(&source->shape, &w->whole, err);
     if (st == CW_OK)
         st = check_desc(&w->whole, &d->extract, err);
     if (st != CW_OK)

@@ -12,10 +12,6 @@ CW_NODISCARD cw_status cwi_extract_stream_with(const cwi_engine *engine,
                                                const cw_stream_desc *desc, cw_chunk_sink sink,
                                                cw_extract_counts *counts, cw_error *err);
 
-/* Fills in the defaults of a volume without data, with packed slices. */
-CW_NODISCARD cw_status cwi_resolve_shape(const cw_volume *shape, cw_volume *whole,
-                                         cw_error *err);
-
 /* Checks a request, and sets up a zeroed window for it, before the first slice. Looks ahead where
  * the surface depends on slices far away. Free the window with cwi_slice_window_free(), also after
  * an error.

@@ -146,7 +146,7 @@ cw_status cw_extract_stream_normals(const cw_slice_source *source, const cw_norm
     const cw_normals_desc d = desc ? *desc : (cw_normals_desc){0};
     normal_walk w = {.source = source};
     cw_volume whole;
-    cw_status st = cwi_resolve_shape(&source->shape, &whole, err);
+    cw_status st = cwi_volume_resolve_shape(&source->shape, &whole, err);
     if (st != CW_OK)
         return st;
     st = plan_window(&w, &whole, mesh, max_bytes, err);

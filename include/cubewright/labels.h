@@ -3,6 +3,7 @@
 #define CUBEWRIGHT_LABELS_H
 
 #include <cubewright/mesh.h>
+#include <cubewright/stream.h>
 #include <cubewright/volume.h>
 
 #ifdef __cplusplus
@@ -83,6 +84,18 @@ typedef struct cw_label_surfaces {
 CW_NODISCARD CW_API cw_status cw_extract_labels(const cw_volume *volume,
                                                 const cw_labels_desc *desc,
                                                 cw_label_surfaces *surfaces, cw_error *err);
+
+/* Extracts labels as cw_extract_labels() does, to the bit, from slices that are read twice. In
+ * memory are some slices, and the surfaces.
+ *
+ * source   borrowed; at least 1 voxel along each axis
+ * Returns  as cw_extract_labels(); or what source returned
+ * Cost     memory: 32 MiB of slices, or 19 if those are more; 18 bytes a thread for each voxel of a
+ *          slice; the surfaces */
+CW_NODISCARD CW_API cw_status cw_extract_labels_stream(const cw_slice_source *source,
+                                                       const cw_labels_desc *desc,
+                                                       cw_label_surfaces *surfaces,
+                                                       cw_error *err);
 
 /* Counts the voxels of all labels but the background.
  *

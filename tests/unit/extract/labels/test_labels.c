@@ -3,7 +3,9 @@
 #include "support/support.h"
 
 #include "core/base/memory.h"
+#include "core/base/status.h"
 #include "core/volume/volume.h"
+#include "extract/labels/extract_labels.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -270,6 +272,108 @@ static void types_and_threads_change_nothing(void **state)
     cw_volume_free(&v);
 }
 
+/* A label map that is read in slices, and the slice after those that were read. */
+typedef struct slices {
+    const cw_volume *volume;
+    size_t next, fails_at;
+} slices;
+
+static cw_status read_slices(void *user, size_t first, size_t count, void *to, cw_error *err)
+{
+    slices *s = user;
+    const size_t slice = s->volume->dim[0] * s->volume->dim[1] * cw_type_size(s->volume->type);
+    assert_true(first == s->next || first == 0); /* none is read twice in a pass */
+    s->next = first + count;
+    if (s->fails_at && s->next > s->fails_at)
+        return cwi_fail(err, CW_ERR_IO, "the disk is gone");
+    memcpy(to, (const char *)s->volume->data + first * slice, count * slice);
+    return CW_OK;
+}
+
+static cw_slice_source source_of(slices *s)
+{
+    cw_slice_source source = {.shape = *s->volume, .read = read_slices, .user = s};
+    source.shape.data = NULL;
+    source.shape.owned = NULL;
+    return source;
+}
+
+static void assert_same_surfaces(const cw_label_surfaces *a, const cw_label_surfaces *b)
+{
+    assert_int_equal(a->mesh.vertex_count, b->mesh.vertex_count);
+    assert_int_equal(a->mesh.triangle_count, b->mesh.triangle_count);
+    assert_memory_equal(a->mesh.triangles, b->mesh.triangles, 12 * a->mesh.triangle_count);
+    assert_memory_equal(a->mesh.positions, b->mesh.positions, 12 * a->mesh.vertex_count);
+    assert_int_equal(a->patch_count, b->patch_count);
+    assert_memory_equal(a->patches, b->patches, a->patch_count * sizeof *a->patches);
+    assert_int_equal(a->label_count, b->label_count);
+    assert_memory_equal(a->labels, b->labels, a->label_count * sizeof *a->labels);
+}
+
+static void slices_give_the_same_surfaces(void **state)
+{
+    (void)state;
+    static const size_t heights[] = {1, 14, 15, 16, 17, 33, 70};
+    static const uint32_t wanted[] = {3, 5, 8};
+    cw_error err = {0};
+    test_seed(11);
+    for (size_t h = 0; h < sizeof heights / sizeof *heights; h++)
+        for (int round = 0; round < 4; round++) {
+            cw_volume v = {0};
+            cw_label_surfaces whole;
+            const cw_labels_desc desc = {.leave_open = round == 1,
+                                         .no_smoothing = round == 2,
+                                         .labels = round == 3 ? wanted : NULL,
+                                         .label_count = round == 3 ? 3 : 0,
+                                         .threads = 1 + round % 2};
+            uint32_t *to = make_map(&v, 20, 13, heights[h]);
+            for (size_t n = 0; n < 20 * 13 * heights[h]; n++)
+                to[n] = n > 0 && rand() % 4 ? to[n - 1] : (uint32_t)rand() % 9;
+            assert_ok(cw_extract_labels(&v, &desc, &whole, &err), err);
+            for (size_t chunks = 0; chunks < 4; chunks++) {
+                slices s = {.volume = &v};
+                const cw_slice_source source = source_of(&s);
+                cw_label_surfaces got;
+                assert_ok(cwi_extract_labels_windowed(&source, chunks, &desc, &got, &err), err);
+                assert_same_surfaces(&got, &whole);
+                cw_label_surfaces_free(&got);
+            }
+            cw_label_surfaces_free(&whole);
+            cw_volume_free(&v);
+        }
+}
+
+static void slices_that_fail_are_errors(void **state)
+{
+    (void)state;
+    cw_volume v = {0};
+    cw_label_surfaces got;
+    cw_error err = {0};
+    assert_ok(cw_volume_alloc(&v, CW_F32, (size_t[]){5, 6, 60}, 1, 1, &err), err);
+    float *to = cw_volume_voxels(&v);
+    to[(50 * 6 + 3) * 5 + 2] = 0.25f;
+    slices s = {.volume = &v};
+    const cw_slice_source source = source_of(&s);
+    assert_fails(cwi_extract_labels_windowed(&source, 1, NULL, &got, &err), CW_ERR_ARGUMENT,
+                 "voxel 2, 3, 50 is 0.25", err);
+    assert_null(got.mesh.triangles);
+    to[(50 * 6 + 3) * 5 + 2] = 2;
+    s = (slices){.volume = &v, .fails_at = 30};
+    assert_fails(cwi_extract_labels_windowed(&source, 1, NULL, &got, &err), CW_ERR_IO,
+                 "the disk is gone", err);
+    s.fails_at = 0;
+    bool failed = true;
+    for (long n = 0; failed; n++) {
+        cwi_alloc_fail_after(n);
+        const cw_status st = cwi_extract_labels_windowed(
+            &source, 2, &(cw_labels_desc){.threads = 1}, &got, &err);
+        failed = cwi_alloc_fail_after(-1);
+        assert_true(st == (failed ? CW_ERR_NO_MEMORY : CW_OK));
+        cw_label_surfaces_free(&got);
+    }
+    cw_volume_free(&v);
+}
+
 static void wanted_labels_alone_are_extracted(void **state)
 {
     (void)state;
@@ -377,6 +481,8 @@ int main(void)
                                        cmocka_unit_test(smoothing_keeps_volumes_and_bounds),
                                        cmocka_unit_test(volumes_are_those_of_voxels),
                                        cmocka_unit_test(types_and_threads_change_nothing),
+                                       cmocka_unit_test(slices_give_the_same_surfaces),
+                                       cmocka_unit_test(slices_that_fail_are_errors),
                                        cmocka_unit_test(wanted_labels_alone_are_extracted),
                                        cmocka_unit_test(open_borders_are_at_the_end),
                                        cmocka_unit_test(unusable_values_are_named),
