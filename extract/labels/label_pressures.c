@@ -11,10 +11,25 @@
 #include <math.h>
 #include <string.h>
 
-enum { ROUNDS = 8, SOLVER_ROUNDS = 300, PART = 1 << 14, CURVE_PART = 1 << 10 };
+enum {
+    ROUNDS = 8,
+    SMALL = 64 /* voxels */,
+    SOLVER_ROUNDS = 300,
+    PART = 1 << 14,
+    CURVE_PART = 1 << 10
+};
 
 /* The fraction of its volume that a label may lack. */
 static const double enough = 5e-6;
+
+/* The most that a label asks for, by what it lacks. */
+static const double most_times = 8;
+
+/* The fraction that ends the smoothing of a small one. */
+static const double too_much = 0.01;
+
+/* The least part of a pressure's effect that is reckoned with. */
+static const double least_share = 0.2;
 
 /* The sum of the triangles' area vectors around a vertex in one patch. */
 typedef struct direction {
@@ -31,10 +46,16 @@ typedef struct presser {
                     mirror image of it */
     const size_t *dim;
     size_t labels;
+    double (
+        *tries)[2]; /* of labels: the volume that lacked in the round before, and by how many
+                                times it was asked for */
+    size_t *patch_counts;    /* of labels, and the background */
     double *volumes, *areas; /* of patches: inside labels[0], signed; and of triangles */
-    uint32_t (*sides)[2];    /* numbers of a patch's labels; `labels`: the background */
-    double *pressures;       /* 4 x (labels + 1) numbers to solve with; these come first */
-    direction *directions;   /* of vertices */
+    double (
+        *shares)[2]; /* of patches: their vertices' normals, and areas to hold them against */
+    uint32_t (*sides)[2];  /* numbers of a patch's labels; `labels`: the background */
+    double *pressures;     /* 4 x (labels + 1) numbers to solve with; these come first */
+    direction *directions; /* of vertices */
     size_t curve_count;
     uint32_t *curve;   /* vertices on curves */
     float (*moves)[3]; /* of those */
@@ -73,7 +94,8 @@ static void add_directions(const presser *s, size_t t, size_t patch, const doubl
     }
 }
 
-/* Measures a patch: the volume between it and the middle, and at first its area. */
+/* Measures a patch: the volume between it and the middle, and its area. A label that smoothing
+ * has shrunk to almost nothing has a fair area after the first round only. */
 static void measure_patch(void *context, size_t n)
 {
     const presser *s = context;
@@ -88,15 +110,38 @@ static void measure_patch(void *context, size_t n)
         for (int a = 0; a < 3; a++)
             from[a] = (double)p[0][a] - middle[a];
         volume += cwi_dot(from, normal);
-        if (s->is_first) {
-            const double area = sqrt(cwi_dot(normal, normal));
-            areas += area;
+        const double area = sqrt(cwi_dot(normal, normal));
+        areas += area;
+        if (s->is_first)
             add_directions(s, t, n, normal, area);
-        }
     }
     s->volumes[n] = volume / 6;
-    if (s->is_first)
-        s->areas[n] = areas / 2;
+    s->areas[n] = areas / 2;
+}
+
+/* Sums up how far apart the normals around vertices are: a vertex in a corner of three faces moves
+ * each by a third of its own way. */
+static void measure_shares(const presser *s)
+{
+    for (size_t v = 0; v < s->surfaces->mesh.vertex_count; v++) {
+        const direction *d = &s->directions[v];
+        if (s->net->kinds[v] || !(d->area > 0))
+            continue;
+        double square = 0;
+        for (int a = 0; a < 3; a++)
+            square += (double)d->normal[a] * (double)d->normal[a];
+        s->shares[d->patch][0] += square / (double)d->area;
+        s->shares[d->patch][1] += (double)d->area;
+    }
+}
+
+/* Turns the areas of patches into how volumes change with pressures. */
+static void weigh_areas(const presser *s)
+{
+    for (size_t n = 0; n < s->surfaces->patch_count; n++) {
+        const double *share = s->shares[n], weight = share[1] > 0 ? share[0] / share[1] : 1;
+        s->areas[n] *= weight > least_share ? weight : least_share;
+    }
 }
 
 /* Multiplies by the matrix of areas: how volumes change with pressures. */
@@ -273,20 +318,66 @@ static bool find_missing(const presser *s)
     return is_full;
 }
 
+/* Asks for more of labels that got less than they lacked in the round before: the bound holds some
+ * of their vertices. */
+static void raise_missing(const presser *s)
+{
+    double *missing = s->pressures + s->labels + 1;
+    for (size_t n = 0; n < s->labels; n++) {
+        double *before = s->tries[n];
+        const double got = before[0] != 0 ? 1 - missing[n] / before[0] : 1;
+        const double times = before[1] > 0 ? before[1] : 1;
+        before[1] = got > 0.1 && got < 0.9 ? fmin(times / got, most_times)
+                    : got >= 1.1           ? 1
+                                           : times;
+        before[0] = missing[n];
+        missing[n] *= before[1];
+    }
+}
+
+/* Puts vertices of labels of a few voxels that lie in one other label, and still lack too much, back
+ * to where they were: there they have their volume. Smoothing had made them flat. */
+static void restore_small(const presser *s)
+{
+    const cw_label_surfaces *f = s->surfaces;
+    const double *missing = s->pressures + s->labels + 1;
+    for (size_t n = 0; n < f->patch_count; n++)
+        for (int side = 0; side < 2; side++)
+            s->patch_counts[s->sides[n][side]]++;
+    for (size_t v = 0; v < f->mesh.vertex_count; v++) {
+        const direction *d = &s->directions[v];
+        if (s->net->kinds[v] || !(d->area > 0))
+            continue;
+        for (int side = 0; side < 2; side++) {
+            const uint32_t label = s->sides[d->patch][side];
+            if (label < s->labels && s->patch_counts[label] == 1 &&
+                f->labels[label].voxels <= SMALL &&
+                fabs(missing[label]) > too_much * (double)f->labels[label].voxels)
+                memcpy(f->mesh.positions + 3 * v, s->originals + 3 * v, 3 * sizeof(float));
+        }
+    }
+}
+
 static cw_status press_all(presser *s, const cw_labels_desc *desc, cw_error *err)
 {
     const cw_label_surfaces *f = s->surfaces;
     const size_t triangles = f->mesh.triangle_count / (f->patch_count + 1);
     cw_status st = CW_OK;
-    for (int round = 0; round < ROUNDS && st == CW_OK; round++) {
+    for (int round = 0; st == CW_OK; round++) {
         s->is_first = round == 0;
         st = cwi_each_layer(f->patch_count, 8 * triangles, desc->threads, &desc->progress,
                             "keeping volumes", measure_patch, s, err);
-        if (st != CW_OK || find_missing(s))
+        if (st != CW_OK || find_missing(s) || round == ROUNDS)
             break;
+        if (s->is_first)
+            measure_shares(s);
+        weigh_areas(s);
+        raise_missing(s);
         solve_pressures(s);
         st = move_all(s, desc, err);
     }
+    if (st == CW_OK)
+        restore_small(s);
     return st;
 }
 
@@ -302,12 +393,15 @@ static bool prepare_presser(presser *s)
     s->net->neighbours = NULL;
     s->volumes = cwi_alloc_array(f->patch_count, sizeof *s->volumes);
     s->areas = cwi_alloc_array(f->patch_count, sizeof *s->areas);
+    s->patch_counts = cwi_alloc_zeroed(s->labels + 1, sizeof *s->patch_counts);
+    s->tries = cwi_alloc_zeroed(s->labels, sizeof *s->tries);
+    s->shares = cwi_alloc_zeroed(f->patch_count, sizeof *s->shares);
     s->sides = cwi_alloc_array(f->patch_count, sizeof *s->sides);
     s->pressures = cwi_alloc_zeroed(4 * (s->labels + 1), sizeof *s->pressures);
     s->curve = cwi_alloc_array(s->curve_count, sizeof *s->curve);
     s->moves = cwi_alloc_array(s->curve_count, sizeof *s->moves);
-    if (!s->directions || !s->volumes || !s->areas || !s->sides || !s->pressures || !s->curve ||
-        !s->moves)
+    if (!s->directions || !s->volumes || !s->areas || !s->shares || !s->tries ||
+        !s->patch_counts || !s->sides || !s->pressures || !s->curve || !s->moves)
         return false;
     memset(s->directions, 0, vertices * sizeof *s->directions);
     s->curve_count = 0;
@@ -337,6 +431,9 @@ cw_status cwi_labels_keep_volumes(cwi_label_net *net, const float *originals,
     cwi_free(s.directions);
     cwi_free(s.volumes);
     cwi_free(s.areas);
+    cwi_free(s.shares);
+    cwi_free(s.tries);
+    cwi_free(s.patch_counts);
     cwi_free(s.sides);
     cwi_free(s.pressures);
     cwi_free(s.curve);

@@ -240,6 +240,37 @@ static void volumes_are_those_of_voxels(void **state)
     cw_volume_free(&v);
 }
 
+/* Smoothing shrinks small solids to almost nothing; they get their volumes back. */
+static void small_solids_keep_their_volumes(void **state)
+{
+    (void)state;
+    static const size_t sizes[][3] = {{1, 1, 1}, {1, 1, 2}, {2, 2, 1},
+                                      {2, 2, 2}, {3, 1, 2}, {3, 3, 3}};
+    for (size_t n = 0; n < sizeof sizes / sizeof *sizes; n++) {
+        cw_volume v = {0};
+        cw_label_surfaces s;
+        cw_mesh mesh;
+        cw_quality q;
+        cw_error err = {0};
+        uint32_t *to = make_map(&v, 12, 12, 12);
+        double voxels = 1;
+        for (int a = 0; a < 3; a++)
+            voxels *= (double)sizes[n][a];
+        memset(to, 0, 12 * 12 * 12 * sizeof *to);
+        for (size_t z = 0; z < sizes[n][2]; z++)
+            for (size_t y = 0; y < sizes[n][1]; y++)
+                for (size_t x = 0; x < sizes[n][0]; x++)
+                    to[((z + 5) * 12 + y + 4) * 12 + x + 3] = 9;
+        assert_ok(cw_extract_labels(&v, NULL, &s, &err), err);
+        assert_ok(cw_label_mesh(&s, 9, &mesh, &err), err);
+        assert_ok(cw_quality_measure(&mesh, NULL, &q, &err), err);
+        assert_near(q.volume_mm3, voxels, 0.01 * voxels);
+        cw_mesh_free(&mesh);
+        cw_label_surfaces_free(&s);
+        cw_volume_free(&v);
+    }
+}
+
 /* The same bytes for any number of threads, and from any type that holds the labels. */
 static void types_and_threads_change_nothing(void **state)
 {
@@ -480,6 +511,7 @@ int main(void)
                                        cmocka_unit_test(spheres_that_meet_are_right),
                                        cmocka_unit_test(smoothing_keeps_volumes_and_bounds),
                                        cmocka_unit_test(volumes_are_those_of_voxels),
+                                       cmocka_unit_test(small_solids_keep_their_volumes),
                                        cmocka_unit_test(types_and_threads_change_nothing),
                                        cmocka_unit_test(slices_give_the_same_surfaces),
                                        cmocka_unit_test(slices_that_fail_are_errors),
