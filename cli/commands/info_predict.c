@@ -26,7 +26,7 @@ typedef struct predictor {
     const cli_input *input;
     cli_volume *volume;
     size_t program;                /* bytes of the process without voxels */
-    double read_seconds;           /* 0: slices are read again for each isovalue */
+    double read_seconds;           /* time that reading the voxels took */
     double make_seconds;           /* for a triangle: made in memory */
     double check_seconds;          /* for a triangle: checked */
     size_t ply_header, glb_header; /* bytes of files beside their arrays; 0: not written */
@@ -177,7 +177,7 @@ static void predict_memory(const predictor *p, double beside, cli_prediction *ou
         voxel_bytes(p) + beside + (double)cli_check_bytes() * (double)out->triangles;
     out->memory_bytes = (size_t)bytes;
     out->slices_bytes = cli_slices_bytes(&p->volume->view, &stream, p->program);
-    out->is_streamed = p->volume->streams || out->memory_bytes > cli_memory_limit(p->input);
+    out->is_streamed = out->memory_bytes > cli_memory_limit(p->input);
 }
 
 static cw_status count_in_memory(const predictor *p, cli_prediction *out, cw_error *err)
@@ -250,27 +250,12 @@ static cw_status predict_surface(const predictor *p, cli_prediction *out, cw_err
 
 /* --- the volume --------------------------------------------------------------------------- */
 
-/* Frees the voxels that info has read: all of them, or slices, are read again. */
+/* Frees what info has read. */
 static void free_voxels(cli_volume *volume)
 {
+    cw_volume_free(&volume->magnitude);
     cw_volume_free(&volume->voxels);
     volume->view.data = NULL;
-}
-
-/* Reads all voxels if they fit, else only their shape. */
-static cw_status read_again(predictor *p, cli_volume *again, bool in_slices, cw_error *err)
-{
-    cli_input input = *p->input;
-    input.is_quiet = true;
-    input.sample = false;
-    input.may_stream = !input.component.magnitude;
-    input.stream = in_slices && input.may_stream ? CLI_STREAM_ALWAYS : CLI_STREAM_AUTO;
-    free_voxels(p->volume);
-    const double start = cli_seconds();
-    cw_status st = cli_read_volume(p->volume->path, &input, false, again, err);
-    p->read_seconds = cli_seconds() - start;
-    p->volume = again;
-    return st;
 }
 
 static cw_status predict_surfaces(const predictor *p, const cli_numbers *iso,
@@ -284,11 +269,26 @@ static cw_status predict_surfaces(const predictor *p, const cli_numbers *iso,
     return st;
 }
 
-/* Returns true for errors of too low a --memory, which slices may avoid. */
-static bool needs_slices(const predictor *p, cw_status st)
+/* Predicts surfaces from all voxels of a volume of which info read a part. They are read as a whole,
+ * or come in slices. */
+static cw_status predict_again(const predictor *of_part, const cli_numbers *iso, bool in_slices,
+                               cli_predictions *out, cw_error *err)
 {
-    return (st == CW_ERR_LIMIT || st == CW_ERR_NO_MEMORY) && !p->volume->streams &&
-           !p->input->component.magnitude;
+    predictor p = *of_part;
+    cli_volume all;
+    cli_input input = *p.input;
+    input.is_quiet = true;
+    input.sample = false;
+    input.may_stream = in_slices;
+    input.stream = in_slices ? CLI_STREAM_ALWAYS : CLI_STREAM_NEVER;
+    const double start = cli_seconds();
+    cw_status st = cli_read_volume(p.volume->path, &input, false, &all, err);
+    p.read_seconds = cli_seconds() - start;
+    p.volume = &all;
+    if (st == CW_OK)
+        st = predict_surfaces(&p, iso, out, err);
+    cli_free_volume(&all);
+    return st;
 }
 
 cw_status cli_predict(const cli_predict_desc *desc, cli_volume *volume, cli_predictions *out,
@@ -298,7 +298,6 @@ cw_status cli_predict(const cli_predict_desc *desc, cli_volume *volume, cli_pred
                    .volume = volume,
                    .program = desc->program_bytes,
                    .read_seconds = desc->read_seconds};
-    cli_volume again = {0};
     if (volume->whole.sparse || volume->whole.cells)
         return cwi_fail(err, CW_ERR_UNSUPPORTED,
                         "%s: what 'extract' takes is not predicted for %s (--iso); --levels "
@@ -307,18 +306,16 @@ cw_status cli_predict(const cli_predict_desc *desc, cli_volume *volume, cli_pred
     cw_status st = measure_headers(&p, err);
     if (st == CW_OK)
         st = time_triangles(&p, err);
-    if (st == CW_OK && cli_is_preview(volume))
-        st = read_again(&p, &again, false, err);
-    if (st == CW_OK)
+    const bool is_part = cli_is_preview(volume);
+    if (st == CW_OK && !is_part)
         st = predict_surfaces(&p, desc->iso, out, err);
-    if (needs_slices(&p, st)) {
-        cli_free_volume(&again);
-        p.volume = volume;
-        st = read_again(&p, &again, true, err);
-        if (st == CW_OK)
-            st = predict_surfaces(&p, desc->iso, out, err);
+    if (is_part ? st == CW_OK : st == CW_ERR_LIMIT || st == CW_ERR_NO_MEMORY) {
+        free_voxels(volume);
+        st = p.input->component.magnitude ? CW_ERR_UNSUPPORTED
+                                          : predict_again(&p, desc->iso, true, out, err);
+        if (st == CW_ERR_UNSUPPORTED) /* in slices */
+            st = predict_again(&p, desc->iso, false, out, err);
     }
-    cli_free_volume(&again);
     return st;
 }
 
@@ -353,7 +350,7 @@ void cli_print_predictions(const cli_predictions *p)
         printf("\n    memory   about %s; slice by slice at least %s%s\n",
                cli_bytes((double)m->memory_bytes), cli_bytes((double)m->slices_bytes),
                m->is_streamed ? ", as --memory is less" : "");
-        printf("    time     about %.2g s, and writing\n", m->seconds);
+        printf("    time     about %.*f s, and writing\n", m->seconds < 10 ? 1 : 0, m->seconds);
     }
 }
 

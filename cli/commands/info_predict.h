@@ -30,11 +30,11 @@ typedef struct cli_predict_desc {
     double read_seconds;  /* time that reading took */
 } cli_predict_desc;
 
-/* Predicts the surfaces at some isovalues. They are counted in memory if --memory allows that, and
- * slice by slice if not.
+/* Predicts the surfaces at some isovalues. They are counted in memory if info has read all voxels and
+ * --memory allows that, and slice by slice if not.
  *
  * volume   as info read it. If that is only a part of it, or too large, its voxels are freed, and
- *          all are read
+ *          all are read; as a whole only where slices are not read by themselves
  * Returns  CW_ERR_UNSUPPORTED for a sparse or an irregular grid. CW_ERR_LIMIT: --memory is too low
  *          to extract slice by slice, too */
 CW_NODISCARD cw_status cli_predict(const cli_predict_desc *desc, cli_volume *volume,
