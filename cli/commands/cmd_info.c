@@ -1,6 +1,7 @@
 /* The command info: prints the facts of a volume or a series, such as its grid, range of
  * values and suggested isovalues. */
 #include "cli/commands/info_labels.h"
+#include "cli/commands/info_predict.h"
 #include "cli/commands/info_scales.h"
 #include "cli/framework/batch.h"
 #include "cli/framework/commands.h"
@@ -22,6 +23,7 @@
 typedef struct info_args {
     cli_common common;
     cli_input input;
+    cli_numbers iso;
     size_t histogram;
     const char *names;
     bool json, levels, deep;
@@ -30,6 +32,9 @@ typedef struct info_args {
 static const cli_option options[] = {
     {"histogram", 0, CLI_COUNT, "N", "Print a histogram of the values with N bins (0)",
      offsetof(info_args, histogram)},
+    {"iso", 'i', CLI_NUMBERS, "V[,V...]",
+     "Predict the mesh, file sizes, memory and time of 'extract' at isovalues; reads all voxels (none)",
+     offsetof(info_args, iso)},
     {"names", 0, CLI_TEXT, "FILE",
      "Table of the labels' names and colours (in the volume, else in a file beside it)",
      offsetof(info_args, names)},
@@ -64,7 +69,9 @@ typedef struct facts {
     int level_count;
     cli_label_facts labels;
     cli_scales scales;
-    cw_array *arrays; /* of a file that has several; else NULL */
+    cli_predictions predictions;
+    double read_seconds; /* of the volume, or of the part that was read */
+    cw_array *arrays;    /* of a file that has several; else NULL */
     size_t array_count;
     double (*ranges)[2]; /* array_count x MAX_COMPONENTS: of those that are read */
 } facts;
@@ -187,12 +194,26 @@ static cw_status find_arrays(const info_args *args, facts *f, cw_error *err)
     return st;
 }
 
+/* Predicts what `extract` takes. It comes last, as it may free the voxels. */
+static cw_status predict_extract(const info_args *args, size_t program_bytes, facts *f,
+                                 cw_error *err)
+{
+    const cli_predict_desc desc = {.iso = &args->iso,
+                                   .input = &args->input,
+                                   .program_bytes = program_bytes,
+                                   .read_seconds = f->read_seconds};
+    return args->iso.count ? cli_predict(&desc, &f->volume, &f->predictions, err) : CW_OK;
+}
+
 static cw_status find_facts(const info_args *args, facts *f, cw_error *err)
 {
     const int threads = (int)args->input.threads;
+    const size_t program_bytes = cli_peak_bytes();
+    const double start = cli_seconds();
     cli_input input = args->input;
     input.sample = !args->deep && !args->levels;
     cw_status st = cli_read_volume(args->common.inputs[0], &input, false, &f->volume, err);
+    f->read_seconds = cli_seconds() - start;
     if (st != CW_OK)
         return st;
     st = cw_volume_statistics(&f->volume.view, args->histogram, threads, &f->range, err);
@@ -211,7 +232,8 @@ static cw_status find_facts(const info_args *args, facts *f, cw_error *err)
         st = cli_tell_labels(&f->volume, NULL, 0, false, err);
     if (st == CW_OK && args->levels && f->level_count)
         st = predict_surface(f, threads, err);
-    return st == CW_OK ? st : cwi_fail_in(err, st, f->volume.path);
+    return st == CW_OK ? predict_extract(args, program_bytes, f, err)
+                       : cwi_fail_in(err, st, f->volume.path);
 }
 
 /* "left 0.00, posterior -1.00, ..." : the world direction that each index axis mostly
@@ -435,6 +457,7 @@ static void print_json(const facts *f, bool predicted)
         cli_json_close(&j, '}');
     }
     cli_json_close(&j, ']');
+    cli_json_predictions(&j, &f->predictions);
     cli_json_close(&j, '}');
 }
 
@@ -588,9 +611,10 @@ static cw_status print_files(const info_args *args, char *const *files, size_t c
 {
     cli_json j = {.out = stdout};
     cw_error finding = {0};
-    if (args->histogram || args->levels)
+    if (args->histogram || args->levels || args->iso.count)
         return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--histogram and --levels need a single file; there are %zu", count);
+                        "--histogram, --levels and --iso need a single file; there are %zu",
+                        count);
     open_list(args, count, &j);
     cw_status st = list_files(args, files, count, &j, &finding, err);
     close_list(args, st == CW_OK ? &finding : err, &j);
@@ -667,7 +691,10 @@ static cw_status run_info(void *p, cw_error *err)
         print_values(args, &f);
         cli_print_label_facts(&f.labels, is_sampled(&f));
         print_levels(&f, args->levels);
+        cli_print_predictions(&f.predictions);
     }
+    if (st == CW_OK)
+        st = cli_expect_surfaces(&f.volume, &f.predictions, err);
     cw_statistics_free(&f.range);
     cli_free_label_facts(&f.labels);
     cw_levels_free(f.scales.levels);

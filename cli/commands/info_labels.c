@@ -60,6 +60,8 @@ cw_status cli_find_label_facts(const char *names_path, cli_volume *volume,
     cw_labels labels;
     *facts = (cli_label_facts){0};
     cw_status st = cw_volume_labels(&volume->voxels, &labels, err);
+    if (st == CW_ERR_NO_MEMORY && !names_path) /* its labels are left out */
+        return CW_OK;
     facts->is_label_map =
         st == CW_OK && (labels.found || names_path) && !volume->magnitude.data;
     if (facts->is_label_map)

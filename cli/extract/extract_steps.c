@@ -22,12 +22,6 @@ static size_t voxel_count(const cw_volume *v)
     return v->dim[0] * v->dim[1] * v->dim[2];
 }
 
-/* That the check takes a triangle; a closed surface has half as many vertices. */
-static size_t check_bytes(void)
-{
-    return cw_quality_bytes(500, 1000) / 1000 + 1;
-}
-
 /* That dropping components takes a triangle, if each has 8 triangles or more. */
 enum { DROP_BYTES = 10 };
 
@@ -44,7 +38,7 @@ cli_wanted cli_extract_wants(const cli_extract_run *s, double iso)
                     .no_normals = s->args->normals,
                     .threads = (int)s->args->input.threads,
                     .max_triangles = s->args->max_triangles,
-                    .extra_bytes = s->args->check  ? check_bytes()
+                    .extra_bytes = s->args->check  ? cli_check_bytes()
                                    : least_mm3 > 0 ? DROP_BYTES
                                                    : 0},
         .least_mm3 = least_mm3,

@@ -6,14 +6,10 @@
 #include "cli/framework/console.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "core/base/text.h"
 
 #include <cubewright/spool.h>
 
 #include <stdio.h>
-
-/* Memory beside the slices and the program so far: the writer of a file, threads, buffers. */
-enum { BESIDE_BYTES = 10 << 20 };
 
 static bool has_simplify(const cli_extract_args *args)
 {
@@ -118,37 +114,17 @@ static cw_status take_chunk(void *user, const cw_mesh_chunk *chunk, cw_error *er
     return st;
 }
 
-/* Checks that the process keeps to --memory: `left` is what slices may take. The peak counts, but
- * not that of voxels which were read first and freed. */
-static cw_status check_memory(const cli_extract_run *run, const cw_slice_source *source,
-                              const cw_stream_desc *desc, size_t *left, cw_error *err)
-{
-    char needed_text[CWI_MEMORY_TEXT], limit_text[CWI_MEMORY_TEXT];
-    const size_t limit = cli_memory_limit(&run->args->input),
-                 taken = run->input.turned && *left < limit ? limit - *left : cli_peak_bytes(),
-                 beside = taken + BESIDE_BYTES,
-                 needed = beside + cw_extract_stream_bytes(&source->shape, desc, true);
-    if (needed <= limit) {
-        *left = limit - beside < *left ? limit - beside : *left;
-        return CW_OK;
-    }
-    cwi_print_memory(needed, needed_text);
-    cwi_print_memory(limit, limit_text);
-    return cwi_fail(err, CW_ERR_LIMIT,
-                    "%s: slice by slice, the program needs %s; the limit is %s (--memory)",
-                    run->input.volume.path, needed_text, limit_text);
-}
-
 cw_status cli_plan_slices(const cli_extract_run *run, double iso, const cw_slice_source *source,
                           cw_stream_desc *desc, cw_error *err)
 {
     const size_t *dim = source->shape.dim;
-    size_t left = cwi_memory_left();
+    const cli_slices slices = {.path = run->input.volume.path,
+                               .limit = cli_memory_limit(&run->args->input),
+                               .turned = run->input.turned};
     *desc = (cw_stream_desc){.extract = cli_extract_wants(run, iso).extract,
                              .layers = run->args->slab};
     desc->extract.extra_bytes = 0;
-    cw_status st = check_memory(run, source, desc, &left, err);
-    desc->extract.max_bytes = left;
+    cw_status st = cli_limit_slices(&slices, &source->shape, desc, err);
     desc->extract.progress =
         cli_progress((double)dim[0] * (double)dim[1] * (double)dim[2] / 1e6, "Mvoxel");
     return st;
@@ -174,7 +150,7 @@ static cw_status share_memory(streaming *s, const cw_slice_source *source, cw_st
         return CW_OK;
     desc->extract.max_bytes = left / 3 > least ? left / 3 : least;
     const size_t slices = cw_extract_stream_bytes(&source->shape, desc, false),
-                 rest = (left > slices ? left - slices : 0) + BESIDE_BYTES / 2;
+                 rest = (left > slices ? left - slices : 0) + CLI_BESIDE_SLICES / 2;
     return begin_check(s, rest, err);
 }
 
@@ -199,7 +175,7 @@ static cw_status drop_components(streaming *s, cli_made *made, cw_error *err)
     cw_status st = CW_OK;
     s->spool = NULL;
     if (s->run->args->check)
-        st = begin_check(s, s->left - bytes + BESIDE_BYTES / 2, err);
+        st = begin_check(s, s->left - bytes + CLI_BESIDE_SLICES / 2, err);
     if (st == CW_OK)
         st = cw_mesh_spool_new(made->path, &s->spool, err);
     if (st == CW_OK)

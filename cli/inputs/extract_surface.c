@@ -5,7 +5,40 @@
 #include "cli/framework/console.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/base/text.h"
 #include "core/volume/volume.h"
+
+#include <cubewright/quality.h>
+
+/* A closed surface has half as many vertices as triangles. */
+size_t cli_check_bytes(void)
+{
+    return cw_quality_bytes(500, 1000) / 1000 + 1;
+}
+
+size_t cli_slices_bytes(const cw_volume *shape, const cw_stream_desc *desc, size_t taken)
+{
+    return taken + CLI_BESIDE_SLICES + cw_extract_stream_bytes(shape, desc, true);
+}
+
+cw_status cli_limit_slices(const cli_slices *slices, const cw_volume *shape,
+                           cw_stream_desc *desc, cw_error *err)
+{
+    char needed_text[CWI_MEMORY_TEXT], limit_text[CWI_MEMORY_TEXT];
+    const size_t limit = slices->limit, unused = cwi_memory_left(),
+                 taken = slices->turned && unused < limit ? limit - unused : cli_peak_bytes(),
+                 beside = taken + CLI_BESIDE_SLICES,
+                 needed = cli_slices_bytes(shape, desc, taken);
+    if (needed <= limit) {
+        desc->extract.max_bytes = limit - beside < unused ? limit - beside : unused;
+        return CW_OK;
+    }
+    cwi_print_memory(needed, needed_text);
+    cwi_print_memory(limit, limit_text);
+    return cwi_fail(err, CW_ERR_LIMIT,
+                    "%s: slice by slice, the program needs %s; the limit is %s (--memory)",
+                    slices->path, needed_text, limit_text);
+}
 
 static cw_status explain_empty(const cli_volume *volume, const cw_extract_desc *desc,
                                cw_error *err)

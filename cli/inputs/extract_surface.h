@@ -6,6 +6,30 @@
 
 #include <cubewright/extract.h>
 #include <cubewright/simplify.h>
+#include <cubewright/stream.h>
+
+/* Memory beside the slices and the program so far, when a surface is made slice by slice: the
+ * writer of a file, threads, buffers. */
+enum { CLI_BESIDE_SLICES = 10 << 20 };
+
+/* Returns the bytes that the check of a surface takes for a triangle. */
+size_t cli_check_bytes(void);
+
+/* A volume whose surface is to be made slice by slice. */
+typedef struct cli_slices {
+    const char *path;
+    size_t limit; /* of --memory */
+    bool turned;  /* its voxels were read first, and freed: their peak does not count */
+} cli_slices;
+
+/* Returns the memory that a program which makes the surface slice by slice needs at least.
+ * taken: by the program so far */
+size_t cli_slices_bytes(const cw_volume *shape, const cw_stream_desc *desc, size_t taken);
+
+/* Limits the memory of a description to that which is left of --memory.
+ * Returns CW_ERR_LIMIT when that is not enough */
+CW_NODISCARD cw_status cli_limit_slices(const cli_slices *slices, const cw_volume *shape,
+                                        cw_stream_desc *desc, cw_error *err);
 
 /* cw_extract() with progress, within the memory that is left, and with an empty result turned
  * into CW_ERR_EMPTY that tells the range of the values. Errors name the file.

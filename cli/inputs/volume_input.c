@@ -364,9 +364,7 @@ cw_status cli_choose_step(const cli_input *input, size_t step, cli_volume *volum
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
 }
 
-/* Returns the bytes beside voxels: planes of bits, numbers of rows, and the program, which counts
- * unless the limit is too small for it. */
-static double bytes_beside(double voxels, size_t limit)
+double cli_bytes_beside(double voxels, size_t limit)
 {
     enum { PROGRAM = 24 << 20 };
     return 0.2 * voxels + (limit < CLI_MIN_MEMORY ? 0 : PROGRAM);
@@ -382,7 +380,7 @@ static bool needs_slices(const cli_input *input, const cw_volume *part, size_t l
     return input->may_stream && !part->cells && !part->sparse &&
            input->stream != CLI_STREAM_NEVER &&
            (input->stream == CLI_STREAM_ALWAYS ||
-            bytes + bytes_beside(voxels, limit) > (double)limit);
+            bytes + cli_bytes_beside(voxels, limit) > (double)limit);
 }
 
 /* Makes the view of a volume that streams: a shape without voxels. */

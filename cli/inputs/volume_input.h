@@ -287,6 +287,10 @@ void cli_json_input(cli_json *j, const char *key, const cli_volume *volume);
 /* In bytes: as asked for, or three quarters of the machine's. */
 size_t cli_memory_limit(const cli_input *input);
 
+/* Returns the bytes that extraction takes beside voxels in memory, without the mesh: planes of bits,
+ * numbers of rows, and the program, which counts unless the limit is too small for it. */
+double cli_bytes_beside(double voxels, size_t limit);
+
 /* A path as reports show it: absolute ones lose their folders. */
 const char *cli_shown_path(const char *path);
 

@@ -4,6 +4,8 @@ make_vdb sphere s.vdb several g.vdb bool b.vdb vec3 v.vdb
 cubewright info s.vdb | sed -n 2,6p
 cubewright info s.vdb --levels | grep zero
 cubewright info g.vdb --grid density | sed -n -e 2p -e '/note/p' -e /values/p
+cubewright info s.vdb --iso 0 >no.txt || echo "exit $?"
+rm no.txt
 cubewright info s.vdb --json | sed -n -e '/"sparse"/,/}/p'
 cubewright extract s.vdb -o s.ply
 cubewright extract s.vdb --iso 0.5 --inside above -o out.ply

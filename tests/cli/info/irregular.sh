@@ -41,4 +41,5 @@ cubewright extract g.vtu --iso 2 -o none.ply --preview -q || echo "exit $?"
 cubewright extract g.vtu --iso 2 -o none.ply --crop 0:1,0:0,0:0 -q || echo "exit $?"
 cubewright make sphere -o s.nrrd --dims 8 -q && cubewright extract s.nrrd --iso 0 -o s.ply -q
 cubewright check s.ply --source g.vtu --iso 0 -q || echo "exit $?"
+cubewright info g.vtu --iso 2 || echo "exit $?"
 [ ! -e none.ply ]
