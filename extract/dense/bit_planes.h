@@ -121,10 +121,6 @@ CW_NODISCARD cw_status cwi_extract_check_range(const cw_volume *volume, cw_error
 /* Allocates a plane of bits for the grid, not cleared; NULL without memory. */
 uint64_t *cwi_grid_plane(const cwi_bit_grid *grid);
 
-/* Counts the closed curves along which the surface meets the sides of the volume's box. */
-CW_NODISCARD cw_status cwi_grid_border_loops(const cwi_bit_grid *grid, size_t *loops,
-                                             cw_error *err);
-
 static inline const uint64_t *cwi_grid_row(const cwi_bit_grid *g, size_t row)
 {
     return g->inside + row * g->words;

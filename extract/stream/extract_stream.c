@@ -15,7 +15,8 @@ enum { MIN_LAYERS = 4, MAX_LAYERS = 64, BASE_BYTES = 8 << 20, SAMPLE_BYTES = 24 
 
 static size_t bytes_with(const cw_volume *whole, const cw_extract_desc *d, size_t layers)
 {
-    return cwi_slice_window_bytes(whole, d, layers) + CWI_CHUNK_BYTES;
+    return cwi_slice_window_bytes(whole, d, layers) + cwi_border_loops_bytes(whole->dim) +
+           CWI_CHUNK_BYTES;
 }
 
 static size_t choose_layers(const cw_volume *whole, const cw_stream_desc *d)
@@ -121,8 +122,9 @@ static cw_status look_for_outside(cwi_slice_window *w, size_t end, cw_error *err
     return cwi_slice_window_move(w, 0, end, err);
 }
 
+/* loops: counted unless the range is a part */
 static cw_status write_layers(cwi_slice_window *w, cwi_chunk_writer *c, const layer_range *r,
-                              size_t layers, cw_error *err)
+                              size_t layers, cwi_border_loops *loops, cw_error *err)
 {
     cw_status st = CW_OK;
     cwi_slice_window_start(w, r->begin);
@@ -137,6 +139,8 @@ static cw_status write_layers(cwi_slice_window *w, cwi_chunk_writer *c, const la
             if (st == CW_OK && !w->out)
                 return CW_OK;
         }
+        if (st == CW_OK && !r->is_part)
+            cwi_slice_window_add_border(w, loops);
         if (st == CW_OK && w->desc.max_triangles &&
             w->triangles - w->first_triangle > w->desc.max_triangles)
             st = cwi_fail(err, CW_ERR_LIMIT,
@@ -165,22 +169,25 @@ cw_status cwi_open_slices(cwi_slice_window *w, const cwi_engine *engine,
     return st == CW_OK ? look_ahead(w, err) : st;
 }
 
+/* whole: counts of a surface in one part; may be NULL */
 static cw_status extract_layers(const cwi_engine *engine, const cw_slice_source *source,
                                 const cw_stream_desc *d, size_t part, size_t parts,
-                                cw_chunk_sink sink, cw_part_counts *counts, size_t *bytes,
-                                cw_error *err)
+                                cw_chunk_sink sink, cw_part_counts *counts,
+                                cw_extract_counts *whole, cw_error *err)
 {
     cwi_slice_window w = {0};
     cwi_chunk_writer c = {0};
+    cwi_border_loops loops = {0};
     size_t layers = 0;
     cw_status st = cwi_open_slices(&w, engine, source, d, &layers, err);
     const size_t all = w.whole.dim[2] + 1;
     const layer_range range = {all * part / parts, all * (part + 1) / parts, parts > 1};
     *counts = (cw_part_counts){0};
+    if (st == CW_OK && !range.is_part)
+        st = cwi_border_loops_init(&loops, w.whole.dim, err);
     if (st == CW_OK) {
-        *bytes = bytes_with(&w.whole, &d->extract, layers);
         cwi_chunks_init(&c, &w, sink);
-        st = write_layers(&w, &c, &range, layers, err);
+        st = write_layers(&w, &c, &range, layers, &loops, err);
     }
     if (st == CW_OK && range.begin < range.end) {
         counts->has_inside = w.in;
@@ -191,6 +198,13 @@ static cw_status extract_layers(const cwi_engine *engine, const cw_slice_source 
         counts->vertices = end->first[0] - w.first_vertex;
         counts->triangles = end->triangle - w.first_triangle;
     }
+    if (st == CW_OK && whole)
+        *whole = (cw_extract_counts){.vertices = counts->vertices,
+                                     .triangles = counts->triangles,
+                                     .bytes = bytes_with(&w.whole, &d->extract, layers),
+                                     .border_loops =
+                                         w.in && w.out ? cwi_border_loops_count(&loops) : 0};
+    cwi_border_loops_free(&loops);
     cwi_chunks_free(&c);
     cwi_slice_window_free(&w);
     return st;
@@ -202,12 +216,7 @@ cw_status cwi_extract_stream_with(const cwi_engine *engine, const cw_slice_sourc
 {
     const cw_stream_desc d = desc ? *desc : (cw_stream_desc){0};
     cw_part_counts made;
-    size_t bytes;
-    cw_status st = extract_layers(engine, source, &d, 0, 1, sink, &made, &bytes, err);
-    if (st == CW_OK && counts)
-        *counts = (cw_extract_counts){
-            .vertices = made.vertices, .triangles = made.triangles, .bytes = bytes};
-    return st;
+    return extract_layers(engine, source, &d, 0, 1, sink, &made, counts, err);
 }
 
 cw_status cw_extract_stream_part(const cw_slice_source *source, const cw_stream_desc *desc,
@@ -216,12 +225,11 @@ cw_status cw_extract_stream_part(const cw_slice_source *source, const cw_stream_
 {
     const cw_stream_desc d = desc ? *desc : (cw_stream_desc){0};
     cw_part_counts made;
-    size_t bytes;
     if (part >= parts)
         return cwi_fail(err, CW_ERR_ARGUMENT, "part %zu of %zu; they count from 0", part,
                         parts);
     return extract_layers(cwi_engine_best(), source, &d, part, parts, sink,
-                          counts ? counts : &made, &bytes, err);
+                          counts ? counts : &made, NULL, err);
 }
 
 cw_status cw_extract_stream(const cw_slice_source *source, const cw_stream_desc *desc,

@@ -7,6 +7,7 @@
 #include "core/volume/volume.h"
 #include "extract/dense/crossed_edges.h"
 
+#include <assert.h>
 #include <string.h>
 
 /* Layers that vertices need above: of the samples at the ends of an edge, and beside them. */
@@ -288,4 +289,11 @@ cw_status cwi_slice_window_move(cwi_slice_window *w, size_t begin, size_t end, c
         w->first_triangle = cwi_slice_window_layer(w, begin)->triangle;
     }
     return st;
+}
+
+void cwi_slice_window_add_border(const cwi_slice_window *w, cwi_border_loops *loops)
+{
+    assert(loops->next == 0 || loops->next > w->first);
+    while (loops->next < w->first + w->count)
+        cwi_border_loops_add(loops, &w->plan.grid, loops->next - w->first + 1);
 }

@@ -8,6 +8,7 @@
 
 #include <cubewright/stream.h>
 
+#include "extract/dense/border_loops.h"
 #include "extract/dense/dense_plan.h"
 
 typedef struct cwi_slice_window {
@@ -50,6 +51,10 @@ void cwi_slice_window_start(cwi_slice_window *w, size_t layer);
  * what is new. Windows follow each other: begin is the last end. */
 CW_NODISCARD cw_status cwi_slice_window_move(cwi_slice_window *w, size_t begin, size_t end,
                                              cw_error *err);
+
+/* Adds the slices that came into memory to a count of the border's curves. It follows each move of a
+ * pass that begins at layer 0. */
+void cwi_slice_window_add_border(const cwi_slice_window *w, cwi_border_loops *loops);
 
 /* Returns the first row of a layer. */
 static inline const cwi_row *cwi_slice_window_layer(const cwi_slice_window *w, size_t layer)

@@ -52,8 +52,7 @@ typedef struct cw_stream_desc {
  * source  borrowed; at least 2 voxels along each axis
  * desc    borrowed; NULL means all defaults
  * sink    called on the calling thread; not at all for a volume without a crossing
- * counts  what was made; bytes are those of the working memory. Loops of the border are not
- *         counted: 0. May be NULL
+ * counts  what was made; bytes are those of the working memory. May be NULL
  *
  * Returns CW_ERR_ARGUMENT     as cw_extract()
  *         CW_ERR_UNSUPPORTED  a sparse or irregular grid; snap; normals on a rectilinear grid; an
@@ -101,8 +100,7 @@ CW_NODISCARD CW_API cw_status cw_extract_stream_part(const cw_slice_source *sour
  *     cw_extract_stream_normals(&source, &normals_desc, 0, &mesh, &err);
  *
  * triangles  minimum of a slab, as in cw_extract_slabs()
- * counts     what was made; bytes are those of the largest slab and of the working memory. Loops of
- *            the border are not counted: 0. May be NULL
+ * counts     what was made; bytes are those of the largest slab and of the working memory. May be NULL
  * Returns    as cw_extract_stream(), but rectilinear grids are extracted. CW_ERR_LIMIT also for
  *            max_bytes below what the largest slab needs, before the sink is called */
 CW_NODISCARD CW_API cw_status cw_extract_stream_slabs(const cw_slice_source *source,

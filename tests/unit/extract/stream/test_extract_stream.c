@@ -80,8 +80,8 @@ static void free_gathered(gathered *g)
     free(g->mesh.triangles);
 }
 
-static void assert_streamed(const cw_mesh *whole, const cw_volume *v,
-                            const cw_extract_desc *desc, size_t layers,
+static void assert_streamed(const cw_mesh *whole, const cw_extract_counts *made,
+                            const cw_volume *v, const cw_extract_desc *desc, size_t layers,
                             const cwi_engine *engine)
 {
     slices s = {.volume = v};
@@ -95,6 +95,7 @@ static void assert_streamed(const cw_mesh *whole, const cw_volume *v,
               err);
     assert_int_equal(counts.vertices, whole->vertex_count);
     assert_int_equal(counts.triangles, whole->triangle_count);
+    assert_int_equal(counts.border_loops, made->border_loops);
     assert_int_equal(g.mesh.vertex_count, whole->vertex_count);
     assert_int_equal(g.mesh.triangle_count, whole->triangle_count);
     if (whole->triangle_count) {
@@ -156,10 +157,11 @@ static void assert_same_for_layers(const cw_volume *v, const cw_extract_desc *de
     static const size_t layers[] = {1, 2, 3, 7, 16, 64, 0};
     cw_extract_desc d = *desc;
     d.threads = 1;
-    cw_mesh whole = test_extract(v, &d, NULL);
+    cw_extract_counts made;
+    cw_mesh whole = test_extract(v, &d, &made);
     for (size_t n = 0; n < sizeof layers / sizeof *layers; n++) {
         d.threads = 1 + (int)(n & 1);
-        assert_streamed(&whole, v, &d, layers[n], cwi_engine_best());
+        assert_streamed(&whole, &made, v, &d, layers[n], cwi_engine_best());
     }
     if (v->dim[2] > 2)
         for (size_t parts = 2; parts < 2 * v->dim[2]; parts = 2 * parts + 1)
@@ -283,11 +285,12 @@ static void large_layers_are_cut_between_rows(void **state)
     (void)state;
     cw_volume v = make_noise(CW_U8, (const size_t[3]){500, 430, 5}, 200, 3);
     const cw_extract_desc d = {.isovalue = 90};
-    cw_mesh whole = test_extract(&v, &d, NULL);
+    cw_extract_counts made;
+    cw_mesh whole = test_extract(&v, &d, &made);
     assert_true(12 * whole.triangle_count > 5 * (4 << 20));
     const cwi_engine *engine;
     for (size_t n = 0; (engine = cwi_engine_at(n)); n++)
-        assert_streamed(&whole, &v, &d, 1 + 4 * (n % 2), engine);
+        assert_streamed(&whole, &made, &v, &d, 1 + 4 * (n % 2), engine);
     cw_mesh_free(&whole);
     cw_volume_free(&v);
 }

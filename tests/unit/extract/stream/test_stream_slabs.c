@@ -120,6 +120,7 @@ static void assert_same_slabs(const cw_volume *v, const cw_extract_desc *desc)
                       err);
             assert_int_equal(counts.vertices, expected.vertices);
             assert_int_equal(counts.triangles, expected.triangles);
+            assert_int_equal(counts.border_loops, expected.border_loops);
             assert_int_equal(parts.count, whole.count);
             for (size_t k = 0; k < whole.count; k++)
                 assert_same_slab(&parts.slabs[k], &whole.slabs[k]);
