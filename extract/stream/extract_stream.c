@@ -59,9 +59,6 @@ static cw_status check_desc(const cw_volume *whole, const cw_extract_desc *d, cw
     if (d->snap != 0)
         return cwi_fail(err, CW_ERR_UNSUPPORTED,
                         "snap is %g; a surface made slice by slice is not snapped", d->snap);
-    if (cwi_is_rectilinear(whole) && !d->no_normals)
-        return cwi_fail(err, CW_ERR_UNSUPPORTED,
-                        "normals on a rectilinear grid are not made slice by slice");
     return d->cubic_placement ? cwi_volume_expect_even(whole, "cubic placement", err) : CW_OK;
 }
 

@@ -5,25 +5,32 @@
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
+#include "extract/common/field_normals.h"
 #include "extract/dense/crossed_edges.h"
 
 #include <assert.h>
 #include <string.h>
 
-/* Layers that vertices need above: of the samples at the ends of an edge, and beside them. */
-enum { ABOVE = 2 };
-
 /* Plans of ambiguous cells, 4 bytes each, that all layers in memory keep. */
 enum { PLANS = 1 << 18 };
 
-static size_t layers_below(const cw_extract_desc *d)
+/* Finds the layers that vertices need below and above. Those are the samples at the ends of an
+ * edge, and beside them. On a rectilinear grid normals are found at rounded positions, which may be
+ * in another layer of cells. */
+static void find_neighbours(const cw_volume *whole, const cw_extract_desc *d, size_t *below,
+                            size_t *above)
 {
-    return d->cubic_placement ? 2 : 1;
+    const bool by_position = cwi_is_rectilinear(whole) && !d->no_normals;
+    const size_t more = by_position ? 1 + cwi_shading_drift(whole) : 0;
+    *below = (d->cubic_placement ? 2 : 1) + more;
+    *above = 2 + more;
 }
 
 static size_t slices_for(const cw_volume *whole, const cw_extract_desc *d, size_t layers)
 {
-    const size_t wanted = layers + layers_below(d) + ABOVE;
+    size_t below, above;
+    find_neighbours(whole, d, &below, &above);
+    const size_t wanted = layers + below + above;
     return wanted < whole->dim[2] ? wanted : whole->dim[2];
 }
 
@@ -64,7 +71,7 @@ cw_status cwi_slice_window_init(cwi_slice_window *w, const cwi_engine *engine,
     cwi_bit_grid *g = &w->plan.grid;
     w->source = source;
     w->desc = *desc;
-    w->below = layers_below(desc);
+    find_neighbours(&w->whole, desc, &w->below, &w->above);
     w->plan.engine = engine;
     w->capacity = slices_for(&w->whole, desc, layers);
     w->slices = cwi_alloc_large(w->capacity, (size_t)w->whole.stride[2]);
@@ -280,7 +287,7 @@ cw_status cwi_slice_window_move(cwi_slice_window *w, size_t begin, size_t end, c
 {
     const size_t slices = w->whole.dim[2];
     const size_t first = begin > w->below + 1 ? begin - w->below - 1 : 0;
-    const size_t last = end + 1 < slices ? end + 1 : slices;
+    const size_t last = end + w->above - 1 < slices ? end + w->above - 1 : slices;
     cw_status st = hold_slices(w, first, last, err);
     if (st == CW_OK)
         st = count_layers(w, end, err);

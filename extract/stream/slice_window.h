@@ -16,7 +16,7 @@ typedef struct cwi_slice_window {
     cw_extract_desc desc;
     cw_volume whole;            /* the volume, resolved; its data are those of the window */
     cwi_plan plan;              /* engine, grid and rows of the window */
-    size_t below;               /* layers below a layer that its vertices need */
+    size_t below, above;        /* layers below and above a layer that its vertices need */
     size_t first, count;        /* voxel slices in memory */
     size_t capacity;            /* ... at most */
     size_t counted;             /* layers below this one have numbers */

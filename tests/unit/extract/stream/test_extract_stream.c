@@ -295,19 +295,61 @@ static void large_layers_are_cut_between_rows(void **state)
     cw_volume_free(&v);
 }
 
-static void thin_volumes_and_rectilinear_ones_work(void **state)
+static void thin_volumes_are_the_same(void **state)
 {
     (void)state;
-    static const double x[] = {0, 1, 3, 4, 9}, y[] = {-3, 0, 2, 2.5}, z[] = {0, 2, 3, 7, 8, 20};
     cw_volume v = make_noise(CW_I16, (const size_t[3]){5, 4, 2}, 6, 9);
     assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 3});
     cw_volume_free(&v);
-    v = make_noise(CW_I16, (const size_t[3]){5, 4, 6}, 6, 10);
-    v.coordinates[0] = x;
-    v.coordinates[1] = y;
-    v.coordinates[2] = z;
-    assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 3, .no_normals = true});
-    v.coordinates[0] = v.coordinates[1] = v.coordinates[2] = NULL;
+}
+
+/* With normals, and without. */
+static void assert_same_on_grid(cw_volume *v, const double *const coordinates[3])
+{
+    memcpy(v->coordinates, coordinates, sizeof v->coordinates);
+    assert_same_for_layers(v, &(cw_extract_desc){.isovalue = 3, .no_normals = true});
+    assert_same_for_layers(v, &(cw_extract_desc){.isovalue = 3});
+    assert_same_for_layers(v, &(cw_extract_desc){.isovalue = 2.2, .inside_is_low = true});
+    memset(v->coordinates, 0, sizeof v->coordinates);
+}
+
+static void rectilinear_grids_are_the_same(void **state)
+{
+    (void)state;
+    static const double x[] = {0, 1, 3, 4, 9}, y[] = {-3, 0, 2, 2.5}, z[] = {0, 2, 3, 7, 8, 20};
+    cw_volume v = make_noise(CW_I16, (const size_t[3]){5, 4, 6}, 6, 10);
+    assert_same_on_grid(&v, (const double *const[3]){x, y, z});
+    assert_same_on_grid(&v, (const double *const[3]){NULL, NULL, NULL});
+    cw_volume_free(&v);
+    /* also voxels without a value, and surfaces that are open */
+    double uneven[3][24];
+    for (size_t n = 0; n < 72; n++)
+        uneven[n / 24][n % 24] = (double)(n % 24) + 0.3 * sin(2.0 * (double)n);
+    const double *const axes[3] = {uneven[0], uneven[1], uneven[2]};
+    v = make_noise(CW_F32, (const size_t[3]){23, 17, 24}, 7, 12);
+    memcpy(v.coordinates, axes, sizeof v.coordinates);
+    assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 3, .leave_open = true});
+    memset(v.coordinates, 0, sizeof v.coordinates);
+    for (size_t i = 0; i < 23 * 17 * 24; i += 97)
+        ((float *)cw_volume_voxels(&v))[i] = NAN;
+    assert_same_on_grid(&v, axes);
+    cw_volume_free(&v);
+}
+
+/* Slices so close that a float does not tell them apart: normals come from slices farther away. */
+static void slices_closer_than_positions_tell_are_the_same(void **state)
+{
+    (void)state;
+    double x[9], y[8], z[40];
+    cw_volume v = make_noise(CW_U8, (const size_t[3]){9, 8, 40}, 6, 13);
+    for (size_t n = 0; n < 40; n++) {
+        z[n] = n ? z[n - 1] + (n % 10 < 6 ? 3e-7 : 5) : -40;
+        x[n % 9] = (double)(n % 9);
+        y[n % 8] = 2 * (double)(n % 8);
+    }
+    assert_same_on_grid(&v, (const double *const[3]){x, y, z});
+    v.affine[0][3] = 1e9;
+    assert_same_on_grid(&v, (const double *const[3]){x, y, z});
     cw_volume_free(&v);
 }
 
@@ -391,7 +433,9 @@ int main(void)
         cmocka_unit_test(voxels_without_a_value_are_the_same),
         cmocka_unit_test(a_volume_inside_at_first_is_looked_through),
         cmocka_unit_test(large_layers_are_cut_between_rows),
-        cmocka_unit_test(thin_volumes_and_rectilinear_ones_work),
+        cmocka_unit_test(thin_volumes_are_the_same),
+        cmocka_unit_test(rectilinear_grids_are_the_same),
+        cmocka_unit_test(slices_closer_than_positions_tell_are_the_same),
         cmocka_unit_test(slices_are_read_once),
         cmocka_unit_test(limits_and_failures_are_reported),
         cmocka_unit_test(a_lack_of_memory_is_reported),
