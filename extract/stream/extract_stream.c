@@ -13,21 +13,22 @@
  * for: BASE_BYTES, and SAMPLE_BYTES for each sample of a slice. */
 enum { MIN_LAYERS = 4, MAX_LAYERS = 64, BASE_BYTES = 8 << 20, SAMPLE_BYTES = 24 };
 
-static size_t bytes_with(const cw_volume *whole, const cw_extract_desc *d, size_t layers)
+static size_t bytes_with(const cw_volume *whole, const cw_extract_desc *d, size_t sweeps,
+                         size_t layers)
 {
-    return cwi_slice_window_bytes(whole, d, layers) + cwi_border_loops_bytes(whole->dim) +
-           CWI_CHUNK_BYTES;
+    return cwi_slice_window_bytes(whole, d, sweeps, layers) +
+           cwi_border_loops_bytes(whole->dim) + CWI_CHUNK_BYTES;
 }
 
-static size_t choose_layers(const cw_volume *whole, const cw_stream_desc *d)
+static size_t choose_layers(const cw_volume *whole, const cw_stream_desc *d, size_t sweeps)
 {
     const size_t samples = whole->dim[0] * whole->dim[1];
     const size_t limit = d->extract.max_bytes, wanted = BASE_BYTES + SAMPLE_BYTES * samples;
     size_t layers = d->layers ? d->layers : MIN_LAYERS;
     while (!d->layers && layers < MAX_LAYERS &&
-           bytes_with(whole, &d->extract, layers + 1) <= wanted)
+           bytes_with(whole, &d->extract, sweeps, layers + 1) <= wanted)
         layers++;
-    while (limit && layers > 1 && bytes_with(whole, &d->extract, layers) > limit)
+    while (limit && layers > 1 && bytes_with(whole, &d->extract, sweeps, layers) > limit)
         layers--;
     return layers;
 }
@@ -51,7 +52,7 @@ size_t cw_extract_stream_bytes(const cw_volume *shape, const cw_stream_desc *des
     cw_volume whole;
     if (cwi_resolve_shape(shape, &whole, NULL) != CW_OK)
         return 0;
-    return bytes_with(&whole, &d.extract, minimum ? 1 : choose_layers(&whole, &d));
+    return bytes_with(&whole, &d.extract, 0, minimum ? 1 : choose_layers(&whole, &d, 0));
 }
 
 static cw_status check_desc(const cw_volume *whole, const cw_extract_desc *d, cw_error *err)
@@ -62,10 +63,10 @@ static cw_status check_desc(const cw_volume *whole, const cw_extract_desc *d, cw
     return d->cubic_placement ? cwi_volume_expect_even(whole, "cubic placement", err) : CW_OK;
 }
 
-static cw_status check_memory(const cw_volume *whole, const cw_extract_desc *d, size_t layers,
-                              cw_error *err)
+static cw_status check_memory(const cw_volume *whole, const cw_extract_desc *d, size_t sweeps,
+                              size_t layers, cw_error *err)
 {
-    const size_t bytes = bytes_with(whole, d, layers);
+    const size_t bytes = bytes_with(whole, d, sweeps, layers);
     if (!d->max_bytes || bytes <= d->max_bytes)
         return CW_OK;
     char needed[CWI_MEMORY_TEXT], left[CWI_MEMORY_TEXT];
@@ -89,12 +90,7 @@ static cw_status look_ahead(cwi_slice_window *w, cw_error *err)
         return st;
     cwi_bit_grid *g = &w->plan.grid;
     w->in = w->out = false; /* of the layers that are written */
-    if (g->gaps && w->desc.leave_open)
-        return cwi_fail(
-            err, CW_ERR_UNSUPPORTED,
-            "an open surface of a volume with voxels without a value (NaN, no-data) "
-            "is not made slice by slice");
-    if (!g->gaps) { /* then no value is sought, as in a volume in memory */
+    if (!g->gaps) {         /* then no value is sought, as in a volume in memory */
         g->volume.has_nodata = g->find_values = false;
         cwi_free(g->has);
         g->has = NULL;
@@ -125,6 +121,12 @@ static cw_status write_layers(cwi_slice_window *w, cwi_chunk_writer *c, const la
 {
     cw_status st = CW_OK;
     cwi_slice_window_start(w, r->begin);
+    for (size_t begin = 0, end; w->sweeps && begin < r->begin && st == CW_OK; begin = end) {
+        end = begin + layers < r->begin ? begin + layers : r->begin;
+        st = cwi_progress(&w->desc.progress, "scanning", (double)begin / (double)r->begin, err);
+        if (st == CW_OK)
+            st = cwi_slice_window_pass(w, begin, end, err);
+    }
     for (size_t begin = r->begin, end; begin < r->end && st == CW_OK; begin = end) {
         end = begin + layers < r->end ? begin + layers : r->end;
         st = cwi_progress(&w->desc.progress, "extracting",
@@ -150,6 +152,22 @@ static cw_status write_layers(cwi_slice_window *w, cwi_chunk_writer *c, const la
     return st;
 }
 
+/* Sets up a window for the volume of `w`, in place of the one that it has. */
+static cw_status open_window(cwi_slice_window *w, const cwi_engine *engine,
+                             const cw_slice_source *source, const cw_stream_desc *d,
+                             size_t sweeps, size_t *layers, cw_error *err)
+{
+    cw_volume whole = w->whole;
+    whole.data = NULL;
+    cwi_slice_window_free(w);
+    w->whole = whole;
+    w->sweeps = sweeps;
+    *layers = choose_layers(&whole, d, sweeps);
+    cw_status st = check_memory(&whole, &d->extract, sweeps, *layers, err);
+    return st == CW_OK ? cwi_slice_window_init(w, engine, source, &d->extract, *layers, err)
+                       : st;
+}
+
 cw_status cwi_open_slices(cwi_slice_window *w, const cwi_engine *engine,
                           const cw_slice_source *source, const cw_stream_desc *d,
                           size_t *layers, cw_error *err)
@@ -159,11 +177,12 @@ cw_status cwi_open_slices(cwi_slice_window *w, const cwi_engine *engine,
         st = check_desc(&w->whole, &d->extract, err);
     if (st != CW_OK)
         return st;
-    *layers = choose_layers(&w->whole, d);
-    st = check_memory(&w->whole, &d->extract, *layers, err);
+    st = open_window(w, engine, source, d, 0, layers, err);
     if (st == CW_OK)
-        st = cwi_slice_window_init(w, engine, source, &d->extract, *layers, err);
-    return st == CW_OK ? look_ahead(w, err) : st;
+        st = look_ahead(w, err);
+    return st == CW_OK && w->plan.grid.gaps && d->extract.leave_open
+               ? open_window(w, engine, source, d, CWI_SWEEPS, layers, err)
+               : st;
 }
 
 /* whole: counts of a surface in one part; may be NULL */
@@ -196,11 +215,11 @@ static cw_status extract_layers(const cwi_engine *engine, const cw_slice_source 
         counts->triangles = end->triangle - w.first_triangle;
     }
     if (st == CW_OK && whole)
-        *whole = (cw_extract_counts){.vertices = counts->vertices,
-                                     .triangles = counts->triangles,
-                                     .bytes = bytes_with(&w.whole, &d->extract, layers),
-                                     .border_loops =
-                                         w.in && w.out ? cwi_border_loops_count(&loops) : 0};
+        *whole = (cw_extract_counts){
+            .vertices = counts->vertices,
+            .triangles = counts->triangles,
+            .bytes = bytes_with(&w.whole, &d->extract, w.sweeps, layers),
+            .border_loops = w.in && w.out ? cwi_border_loops_count(&loops) : 0};
     cwi_border_loops_free(&loops);
     cwi_chunks_free(&c);
     cwi_slice_window_free(&w);

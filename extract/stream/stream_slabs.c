@@ -162,7 +162,7 @@ static cw_status make_room(slab_writer *s, const cw_extract_desc *d, size_t tria
     const cw_extract_counts most = cwi_largest_slab(&s->sums, triangles);
     cw_mesh mesh;
     counts->bytes = cwi_extract_mesh_bytes(&most, false) + most.vertices +
-                    cwi_slice_window_bytes(whole, d, s->layers) +
+                    cwi_slice_window_bytes(whole, d, s->window->sweeps, s->layers) +
                     cwi_border_loops_bytes(whole->dim) + s->sums.count * sizeof *s->counted;
     cw_status st = cwi_extract_check_limits(d, counts, err);
     if (st == CW_OK)

@@ -48,7 +48,9 @@ typedef struct cw_stream_desc {
  * rectilinear grid), and one chunk.
  *
  * Slices are read twice in three cases, as the result depends on all of them: the first layers
- * are inside; the volume has a no-data value; the surface is left open and voxels are floats.
+ * are inside; the volume has a no-data value; the surface is left open and voxels are floats. If it
+ * is open and some voxel has no value, up to 13 slices more are in memory, and a part reads all
+ * slices below it.
  *
  * source  borrowed; at least 2 voxels along each axis
  * desc    borrowed; NULL means all defaults
@@ -56,8 +58,8 @@ typedef struct cw_stream_desc {
  * counts  what was made; bytes are those of the working memory. May be NULL
  *
  * Returns CW_ERR_ARGUMENT     as cw_extract()
- *         CW_ERR_UNSUPPORTED  a sparse or irregular grid; snap; an open surface of a volume with
- *                             NaN or no-data voxels
+ *         CW_ERR_UNSUPPORTED  a sparse or irregular grid; snap; an open surface whose border,
+ *                             around voxels without a value, depends on more slices than these
  *         CW_ERR_LIMIT        more than 2^32 - 1 vertices, or a limit of desc: max_bytes below
  *                             what one layer needs. CW_ERR_NO_MEMORY; CW_ERR_CANCELLED; or what
  *                             source or sink returned

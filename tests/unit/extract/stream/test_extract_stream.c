@@ -249,13 +249,57 @@ static void voxels_without_a_value_are_the_same(void **state)
     for (size_t i = 0; i < 33 * 15 * 21; i += 97)
         voxels[i] = i % 2 ? NAN : INFINITY;
     assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 3});
-    cw_error err = {0};
+    cw_volume_free(&v);
+}
+
+/* Where some cells at the border share an edge alone, they are dropped: sweep by sweep. */
+static void open_surfaces_around_gaps_are_the_same(void **state)
+{
+    (void)state;
+    static const size_t every[] = {2, 3, 5, 7, 12, 19, 50};
+    for (size_t n = 0; n < sizeof every / sizeof *every; n++) {
+        cw_volume v = make_noise(CW_F32, (const size_t[3]){67, 15, 26}, 6, 30 + n);
+        cw_volume gaps = make_noise(CW_F32, v.dim, (unsigned)every[n], 60 + n);
+        float *voxels = cw_volume_voxels(&v);
+        const float *at = gaps.data;
+        for (size_t i = 0; i < 67 * 15 * 26; i++)
+            voxels[i] = at[i] == 0 ? NAN : voxels[i];
+        assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 2, .leave_open = true});
+        assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 2.5,
+                                                      .leave_open = true,
+                                                      .cubic_placement = true,
+                                                      .inside_is_low = true});
+        v.has_nodata = true;
+        v.nodata = 1;
+        assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 3, .leave_open = true});
+        cw_volume_free(&gaps);
+        cw_volume_free(&v);
+    }
+}
+
+/* A window with too few sweeps notices that its cells are not settled. */
+static void cells_that_are_not_settled_are_reported(void **state)
+{
+    (void)state;
+    cw_volume v = make_noise(CW_F32, (const size_t[3]){67, 15, 26}, 6, 30);
+    for (size_t i = 0; i < 67 * 15 * 26; i++)
+        if (((float *)cw_volume_voxels(&v))[i] == 5)
+            ((float *)cw_volume_voxels(&v))[i] = NAN;
     slices s = {.volume = &v};
     const cw_slice_source source = source_of(&s);
-    const cw_stream_desc open = {.extract = {.isovalue = 3, .leave_open = true}};
-    assert_int_equal(cw_extract_stream(&source, &open, (cw_chunk_sink){0}, NULL, &err),
-                     CW_ERR_UNSUPPORTED);
-    assert_non_null(strstr(err.message, "without a value"));
+    for (size_t sweeps = 1; sweeps <= CWI_SWEEPS; sweeps += CWI_SWEEPS - 1) {
+        cwi_slice_window w = {.sweeps = sweeps};
+        cw_error err = {0};
+        const cw_extract_desc d = {.isovalue = 2, .leave_open = true};
+        assert_ok(cwi_resolve_shape(&source.shape, &w.whole, &err), err);
+        assert_ok(cwi_slice_window_init(&w, cwi_engine_best(), &source, &d, 26, &err), err);
+        cwi_slice_window_start(&w, 0);
+        const cw_status st = cwi_slice_window_move(&w, 0, 26, &err);
+        assert_int_equal(st, sweeps == 1 ? CW_ERR_UNSUPPORTED : CW_OK);
+        if (st != CW_OK)
+            assert_non_null(strstr(err.message, "voxels without a value"));
+        cwi_slice_window_free(&w);
+    }
     cw_volume_free(&v);
 }
 
@@ -333,6 +377,9 @@ static void rectilinear_grids_are_the_same(void **state)
     for (size_t i = 0; i < 23 * 17 * 24; i += 97)
         ((float *)cw_volume_voxels(&v))[i] = NAN;
     assert_same_on_grid(&v, axes);
+    memcpy(v.coordinates, axes, sizeof v.coordinates);
+    assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 3, .leave_open = true});
+    memset(v.coordinates, 0, sizeof v.coordinates);
     cw_volume_free(&v);
 }
 
@@ -411,17 +458,20 @@ static void a_lack_of_memory_is_reported(void **state)
     gathered g = {0};
     cw_error err = {0};
     const cw_chunk_sink sink = {take_chunk, &g};
-    const cw_slice_source source = source_of(&s);
-    const cw_stream_desc d = {.extract = {.isovalue = 1}, .layers = 3};
-    cw_status st = CW_ERR_NO_MEMORY;
-    for (long n = 0; st == CW_ERR_NO_MEMORY; n++) {
-        g = (gathered){0};
-        cwi_alloc_fail_after(n);
-        st = cw_extract_stream(&source, &d, sink, NULL, &err);
-        cwi_alloc_fail_after(-1);
-        free_gathered(&g);
+    for (int open = 0; open < 2; open++) {
+        const cw_stream_desc d = {.extract = {.isovalue = 1, .leave_open = open}, .layers = 3};
+        cw_status st = CW_ERR_NO_MEMORY;
+        v.has_nodata = open; /* two windows, one after the other */
+        for (long n = 0; st == CW_ERR_NO_MEMORY; n++) {
+            const cw_slice_source source = source_of(&s);
+            g = (gathered){0};
+            cwi_alloc_fail_after(n);
+            st = cw_extract_stream(&source, &d, sink, NULL, &err);
+            cwi_alloc_fail_after(-1);
+            free_gathered(&g);
+        }
+        assert_ok(st, err);
     }
-    assert_ok(st, err);
     cw_volume_free(&v);
 }
 
@@ -431,6 +481,8 @@ int main(void)
         cmocka_unit_test(noise_is_the_same_from_slices),
         cmocka_unit_test(vanishing_gradients_are_repaired_across_slabs),
         cmocka_unit_test(voxels_without_a_value_are_the_same),
+        cmocka_unit_test(open_surfaces_around_gaps_are_the_same),
+        cmocka_unit_test(cells_that_are_not_settled_are_reported),
         cmocka_unit_test(a_volume_inside_at_first_is_looked_through),
         cmocka_unit_test(large_layers_are_cut_between_rows),
         cmocka_unit_test(thin_volumes_are_the_same),

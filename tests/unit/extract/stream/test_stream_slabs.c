@@ -187,6 +187,17 @@ static void slabs_are_those_of_a_volume_in_memory(void **state)
     }
 }
 
+/* Open surfaces end at voxels without a value, too. */
+static void open_slabs_around_gaps_are_the_same(void **state)
+{
+    (void)state;
+    cw_volume v = make_noise(CW_F32, (const size_t[3]){19, 11, 70}, 9, 11);
+    v.has_nodata = true;
+    v.nodata = 8;
+    assert_same_slabs(&v, &(cw_extract_desc){.isovalue = 3, .leave_open = true});
+    cw_volume_free(&v);
+}
+
 static void a_volume_on_one_side_has_no_slabs(void **state)
 {
     (void)state;
@@ -354,6 +365,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slabs_are_those_of_a_volume_in_memory),
+        cmocka_unit_test(open_slabs_around_gaps_are_the_same),
         cmocka_unit_test(a_volume_on_one_side_has_no_slabs),
         cmocka_unit_test(normals_are_those_of_a_volume_in_memory),
         cmocka_unit_test(slices_far_from_vertices_are_not_read),
