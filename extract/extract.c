@@ -8,6 +8,7 @@
 #include "core/volume/volume.h"
 #include "extract/common/extract_limits.h"
 #include "extract/common/field_normals.h"
+#include "extract/dense/border_loops.h"
 #include "extract/extract_internal.h"
 #include "extract/irregular/cell_surface.h"
 #include "extract/snap/snap.h"

@@ -224,12 +224,13 @@ static cw_status stream_surface(cli_extract_run *s, const cli_moment *moment, si
 {
     cw_mesh_spool *spool = NULL;
     cw_mesh mesh = {0};
+    cw_extract_counts counts = {0};
     cw_status st = cli_extract_is_simplified(s->args)
-                       ? cli_simplify_streamed(s, moment, made, &mesh, err)
-                       : cli_extract_streamed(s, moment, made, &spool, err);
+                       ? cli_simplify_streamed(s, moment, made, &mesh, &counts, err)
+                       : cli_extract_streamed(s, moment, made, &spool, &counts, err);
     const cw_part part = {.mesh = spool ? cw_mesh_spool_frame(spool) : &mesh, .spool = spool};
     if (st == CW_OK)
-        st = deliver_level(s, level, &part, 1, 0, err);
+        st = deliver_level(s, level, &part, 1, counts.border_loops, err);
     cw_mesh_spool_free(spool);
     cw_mesh_free(&mesh);
     return st;

@@ -202,7 +202,7 @@ static cw_status end_check(const streaming *s, cli_made *made, cw_error *err)
 }
 
 cw_status cli_extract_streamed(cli_extract_run *run, const cli_moment *moment, cli_made *made,
-                               cw_mesh_spool **spool, cw_error *err)
+                               cw_mesh_spool **spool, cw_extract_counts *counts, cw_error *err)
 {
     const size_t *dim = run->input.volume.view.dim;
     streaming s = {.run = run, .made = made, .least_mm3 = cli_extract_least_mm3(run)};
@@ -223,6 +223,7 @@ cw_status cli_extract_streamed(cli_extract_run *run, const cli_moment *moment, c
         return st;
     }
     *spool = s.spool;
+    *counts = s.counts;
     cli_report_end(&run->output.report, "extract", dim[0] * dim[1] * dim[2],
                    cw_mesh_spool_frame(*spool)->triangle_count);
     return CW_OK;

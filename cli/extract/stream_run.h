@@ -32,6 +32,6 @@ CW_NODISCARD cw_status cli_plan_slices(const cli_extract_run *run, double iso,
  * on the way and holds it to the promise: CW_ERR_CHECK. */
 CW_NODISCARD cw_status cli_extract_streamed(cli_extract_run *run, const cli_moment *moment,
                                             cli_made *made, cw_mesh_spool **spool,
-                                            cw_error *err);
+                                            cw_extract_counts *counts, cw_error *err);
 
 #endif

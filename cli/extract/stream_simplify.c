@@ -77,7 +77,7 @@ static cw_status explain_limit(const cli_extract_run *run, cw_status st, cw_erro
 }
 
 cw_status cli_simplify_streamed(cli_extract_run *run, const cli_moment *moment, cli_made *made,
-                                cw_mesh *mesh, cw_error *err)
+                                cw_mesh *mesh, cw_extract_counts *counts, cw_error *err)
 {
     const size_t *dim = run->input.volume.view.dim;
     reduction r = {.run = run, .made = made, .mesh = mesh};
@@ -91,6 +91,7 @@ cw_status cli_simplify_streamed(cli_extract_run *run, const cli_moment *moment, 
         cw_mesh_free(mesh);
         return st;
     }
+    *counts = r.counts;
     cli_report_end(&run->output.report, "extract", dim[0] * dim[1] * dim[2],
                    mesh->triangle_count);
     return cli_extract_judge(run, made, mesh, &r.counts, err);

@@ -8,6 +8,7 @@
  * that of cli_extract_make(), to the bit. Free it with cw_mesh_free().
  * Returns  CW_ERR_LIMIT when --memory is too low for slices and mesh */
 CW_NODISCARD cw_status cli_simplify_streamed(cli_extract_run *run, const cli_moment *moment,
-                                             cli_made *made, cw_mesh *mesh, cw_error *err);
+                                             cli_made *made, cw_mesh *mesh,
+                                             cw_extract_counts *counts, cw_error *err);
 
 #endif

@@ -9,6 +9,7 @@
 #include "core/geometry/vec3.h"
 #include "core/volume/volume.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -228,10 +229,54 @@ static void shade_chunk(void *context, size_t chunk)
         cwi_shade_vertex(s, v);
 }
 
+static void invert_affine(const cw_volume *v, double inverse[3][3])
+{
+    double cofactor[3][3];
+    cwi_affine_cofactor(v->affine[0], cofactor);
+    for (int i = 0; i < 9; i++)
+        inverse[i % 3][i / 3] = cofactor[i / 3][i % 3] / cwi_affine_determinant(v->affine[0]);
+}
+
+void cwi_shading_set_field(cwi_shading *s, const cw_volume *volume, bool invert)
+{
+    s->volume = *volume;
+    cwi_outward(volume, invert, s->outward);
+    invert_affine(volume, s->inverse);
+}
+
+/* Bounds the error of a z coordinate that find_cell() finds. Positions are floats, relative to the
+ * middle of the volume; the middle and the sums are doubles. Each has twice its rounding error. */
+static double bound_rounding(const cw_volume *v)
+{
+    double inverse[3][3], bound = 0;
+    invert_affine(v, inverse);
+    for (int r = 0; r < 3; r++) {
+        double half = 0, centre = fabs(v->affine[r][3]);
+        for (int a = 0; a < 3; a++) {
+            const double low = cwi_grid_coordinate(v, a, -1, 0),
+                         high = cwi_grid_coordinate(v, a, (ptrdiff_t)v->dim[a] - 1, 1);
+            half += fabs(v->affine[r][a]) * fabs(high - low);
+            centre += fabs(v->affine[r][a]) * fmax(fabs(low), fabs(high));
+        }
+        bound += fabs(inverse[2][r]) * (half * FLT_EPSILON + 16 * centre * DBL_EPSILON);
+    }
+    return bound;
+}
+
+size_t cwi_shading_drift(const cw_volume *v)
+{
+    const double *z = v->coordinates[2];
+    const double bound = z ? bound_rounding(v) : 0;
+    size_t drift = 0;
+    for (size_t k = 0; z && k < v->dim[2]; k++)
+        while (k + drift + 1 < v->dim[2] && z[k + drift + 1] - z[k] <= bound)
+            drift++;
+    return drift;
+}
+
 cw_status cwi_shading_init(cwi_shading *s, const cw_volume *volume, const cw_normals_desc *d,
                            cw_mesh *mesh, cw_error *err)
 {
-    double cofactor[3][3];
     cw_status st = cw_volume_select(volume, 0, 0, &s->volume, err);
     const cw_volume *v = &s->volume;
     if (st == CW_OK)
@@ -246,11 +291,7 @@ cw_status cwi_shading_init(cwi_shading *s, const cw_volume *volume, const cw_nor
     if (st != CW_OK)
         return st;
     s->mesh = mesh;
-    cwi_outward(v, (v->slope < 0) != d->inside_is_low, s->outward);
-    cwi_affine_cofactor(v->affine[0], cofactor);
-    for (int i = 0; i < 9; i++)
-        s->inverse[i % 3][i / 3] =
-            cofactor[i / 3][i % 3] / cwi_affine_determinant(v->affine[0]);
+    cwi_shading_set_field(s, v, (v->slope < 0) != d->inside_is_low);
     const size_t bytes = mesh->vertex_count * 3 * sizeof *s->normals;
     s->normals = cwi_alloc_zeroed(mesh->vertex_count, 3 * sizeof *s->normals);
     if (!s->normals)

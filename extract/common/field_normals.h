@@ -35,6 +35,10 @@ typedef struct cwi_shading {
     double outward[3][3];
 } cwi_shading;
 
+/* Sets the field: a resolved volume. invert: low numbers are inside. Mesh and normals are left to
+ * the caller. */
+void cwi_shading_set_field(cwi_shading *shading, const cw_volume *volume, bool invert);
+
 /* Begins with the normals that the mesh has; free with cwi_shading_free(), also after an error.
  * Errors as cw_extract_normals(). */
 CW_NODISCARD cw_status cwi_shading_init(cwi_shading *shading, const cw_volume *volume,
@@ -45,6 +49,10 @@ void cwi_shading_free(cwi_shading *shading);
 /* Finds the lower slice of the cell around a vertex. The vertex needs that slice, the one before
  * and the two after. Returns false outside the volume. */
 bool cwi_shading_slice(const cwi_shading *shading, size_t vertex, size_t *slice);
+
+/* Returns how many slices beyond the next one a vertex's place may be away from its cell, as its
+ * position is rounded: 0 unless slices of a rectilinear grid are very close. */
+size_t cwi_shading_drift(const cw_volume *volume);
 
 /* Sets the normal of a vertex, whose slices are in memory. */
 void cwi_shade_vertex(const cwi_shading *shading, size_t vertex);

@@ -84,12 +84,11 @@ cw_status cwi_grid_init(cwi_bit_grid *g, const cw_volume *volume, cw_error *err)
     return st == CW_OK ? allocate_planes(g, err) : st;
 }
 
-/* Finds the cells all of whose samples have values: each needs this row of samples and the
- * next. */
-static void find_live(const cwi_bit_grid *g)
+/* Each cell needs its row of samples and the next. */
+void cwi_find_live_layer(const cwi_bit_grid *g, size_t k)
 {
-    for (size_t r = 0; r < g->rows; r++) {
-        const size_t j = r % g->rows_y, k = r / g->rows_y;
+    for (size_t j = 0; j < g->rows_y; j++) {
+        const size_t r = k * g->rows_y + j;
         const uint64_t *row = g->has + r * g->words;
         const bool last = j + 1 == g->rows_y || k + 1 == g->rows_z;
         for (size_t w = 0; w < g->words; w++) {
@@ -123,43 +122,48 @@ static bool is_wanted(const cwi_bit_grid *g, size_t j, size_t k, size_t w)
     return g->everything || cwi_grid_wanted(g, j, k)[w / 64] >> w % 64 & 1;
 }
 
-/* Drops cells that share nothing but a crossed edge: two live ones, diagonal, while the other
- * two are dead. Both would put triangles at its vertex, in two fans. Makes one sweep; returns
- * true if any was dropped, which may leave others so. */
-static bool drop_pinched(cwi_bit_grid *g)
+bool cwi_drop_pinched_layer(const cwi_bit_grid *g, size_t k)
+{
+    bool changed = false;
+    for (size_t j = 1; j < g->rows_y; j++)
+        for (int axis = 0; axis < 3; axis++) {
+            uint64_t *here = g->live + (k * g->rows_y + j) * g->words;
+            uint64_t *below = here - (axis == 1 ? g->rows_y : 1) * g->words;
+            uint64_t *side = here - g->rows_y * g->words, *corner = side - g->words;
+            for (size_t w = 0; w < g->words; w++) {
+                const uint64_t crossed = cwi_grid_crossed(g, axis, j, k, w);
+                if (!crossed || !is_wanted(g, j, k, w))
+                    continue;
+                const uint64_t a = here[w], b = below[w];
+                uint64_t c, d; /* beside a, beside b */
+                if (axis == 0) {
+                    c = side[w];
+                    d = corner[w];
+                } else {
+                    c = a << 1 | (w ? here[w - 1] >> 63 : 0);
+                    d = b << 1 | (w ? below[w - 1] >> 63 : 0);
+                }
+                const uint64_t pinched = ((a & d & ~b & ~c) | (b & c & ~a & ~d)) & crossed;
+                if (!pinched)
+                    continue;
+                changed = true;
+                clear_cells(here, w, pinched, axis != 0);
+                clear_cells(below, w, pinched, axis != 0);
+                if (axis == 0) {
+                    clear_cells(side, w, pinched, false);
+                    clear_cells(corner, w, pinched, false);
+                }
+            }
+        }
+    return changed;
+}
+
+/* Makes one sweep over all layers; returns true if any cell was dropped. */
+static bool drop_pinched(const cwi_bit_grid *g)
 {
     bool changed = false;
     for (size_t k = 1; k < g->rows_z; k++)
-        for (size_t j = 1; j < g->rows_y; j++)
-            for (int axis = 0; axis < 3; axis++) {
-                uint64_t *here = g->live + (k * g->rows_y + j) * g->words;
-                uint64_t *below = here - (axis == 1 ? g->rows_y : 1) * g->words;
-                uint64_t *side = here - g->rows_y * g->words, *corner = side - g->words;
-                for (size_t w = 0; w < g->words; w++) {
-                    const uint64_t crossed = cwi_grid_crossed(g, axis, j, k, w);
-                    if (!crossed || !is_wanted(g, j, k, w))
-                        continue;
-                    const uint64_t a = here[w], b = below[w];
-                    uint64_t c, d; /* beside a, beside b */
-                    if (axis == 0) {
-                        c = side[w];
-                        d = corner[w];
-                    } else {
-                        c = a << 1 | (w ? here[w - 1] >> 63 : 0);
-                        d = b << 1 | (w ? below[w - 1] >> 63 : 0);
-                    }
-                    const uint64_t pinched = ((a & d & ~b & ~c) | (b & c & ~a & ~d)) & crossed;
-                    if (!pinched)
-                        continue;
-                    changed = true;
-                    clear_cells(here, w, pinched, axis != 0);
-                    clear_cells(below, w, pinched, axis != 0);
-                    if (axis == 0) {
-                        clear_cells(side, w, pinched, false);
-                        clear_cells(corner, w, pinched, false);
-                    }
-                }
-            }
+        changed |= cwi_drop_pinched_layer(g, k);
     return changed;
 }
 
@@ -212,7 +216,8 @@ cw_status cwi_grid_set_live(cwi_bit_grid *g, bool leave_open, cw_error *err)
     g->live = cwi_grid_plane(g);
     if (!g->live)
         return no_memory(g, err);
-    find_live(g);
+    for (size_t k = 0; k < g->rows_z; k++)
+        cwi_find_live_layer(g, k);
     while (drop_pinched(g))
         ;
     return CW_OK;

@@ -115,15 +115,20 @@ CW_NODISCARD cw_status cwi_grid_set_level(cwi_bit_grid *grid, const cw_extract_d
  * dropped. */
 CW_NODISCARD cw_status cwi_grid_set_live(cwi_bit_grid *grid, bool leave_open, cw_error *err);
 
+/* Finds the cells of a layer all of whose samples have values. */
+void cwi_find_live_layer(const cwi_bit_grid *grid, size_t layer);
+
+/* Drops the cells of a layer, 1 or above, and of the one below it that share nothing but a crossed
+ * edge: two live ones, diagonal, while the other two are dead. Both would put triangles at its
+ * vertex, in two fans. A sweep over all layers may leave others so. Returns true if any was
+ * dropped. */
+bool cwi_drop_pinched_layer(const cwi_bit_grid *grid, size_t layer);
+
 /* Checks that positions can distinguish the voxels and can reach all of them. */
 CW_NODISCARD cw_status cwi_extract_check_range(const cw_volume *volume, cw_error *err);
 
 /* Allocates a plane of bits for the grid, not cleared; NULL without memory. */
 uint64_t *cwi_grid_plane(const cwi_bit_grid *grid);
-
-/* Counts the closed curves along which the surface meets the sides of the volume's box. */
-CW_NODISCARD cw_status cwi_grid_border_loops(const cwi_bit_grid *grid, size_t *loops,
-                                             cw_error *err);
 
 static inline const uint64_t *cwi_grid_row(const cwi_bit_grid *g, size_t row)
 {

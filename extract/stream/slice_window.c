@@ -5,35 +5,45 @@
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
+#include "extract/common/field_normals.h"
 #include "extract/dense/crossed_edges.h"
 
+#include <assert.h>
 #include <string.h>
-
-/* Layers that vertices need above: of the samples at the ends of an edge, and beside them. */
-enum { ABOVE = 2 };
 
 /* Plans of ambiguous cells, 4 bytes each, that all layers in memory keep. */
 enum { PLANS = 1 << 18 };
 
-static size_t layers_below(const cw_extract_desc *d)
+/* Finds the layers that vertices need below and above. Those are the samples at the ends of an
+ * edge, and beside them. On a rectilinear grid normals are found at rounded positions, which may be
+ * in another layer of cells. Edges need the live cells below them, and cells all sweeps. */
+static void find_neighbours(const cw_volume *whole, const cw_extract_desc *d, size_t sweeps,
+                            size_t *below, size_t *above)
 {
-    return d->cubic_placement ? 2 : 1;
+    const bool by_position = cwi_is_rectilinear(whole) && !d->no_normals;
+    const size_t more = by_position ? 1 + cwi_shading_drift(whole) : 0;
+    *below = (d->cubic_placement ? 2 : 1) + more + (sweeps ? 1 : 0);
+    *above = 2 + (sweeps > more ? sweeps : more);
 }
 
-static size_t slices_for(const cw_volume *whole, const cw_extract_desc *d, size_t layers)
+static size_t slices_for(const cw_volume *whole, const cw_extract_desc *d, size_t sweeps,
+                         size_t layers)
 {
-    const size_t wanted = layers + layers_below(d) + ABOVE;
+    size_t below, above;
+    find_neighbours(whole, d, sweeps, &below, &above);
+    const size_t wanted = layers + below + above;
     return wanted < whole->dim[2] ? wanted : whole->dim[2];
 }
 
-size_t cwi_slice_window_bytes(const cw_volume *whole, const cw_extract_desc *d, size_t layers)
+size_t cwi_slice_window_bytes(const cw_volume *whole, const cw_extract_desc *d, size_t sweeps,
+                              size_t layers)
 {
     const size_t words = (whole->dim[0] + 2 + 63) / 64, masks = (words + 63) / 64;
-    const size_t planes = whole->has_nodata ? 2 : 1;
+    const size_t planes = sweeps ? 3 : whole->has_nodata ? 2 : 1;
     const size_t row = (planes * words + masks) * sizeof(uint64_t) + sizeof(cwi_row) +
                        sizeof(uint32_t) + sizeof(uint8_t);
     const size_t slice = (size_t)whole->stride[2];
-    return slices_for(whole, d, layers) * (slice + (whole->dim[1] + 2) * row);
+    return slices_for(whole, d, sweeps, layers) * (slice + (whole->dim[1] + 2) * row);
 }
 
 /* Gives the grid the size of the slices in memory. */
@@ -63,9 +73,9 @@ cw_status cwi_slice_window_init(cwi_slice_window *w, const cwi_engine *engine,
     cwi_bit_grid *g = &w->plan.grid;
     w->source = source;
     w->desc = *desc;
-    w->below = layers_below(desc);
+    find_neighbours(&w->whole, desc, w->sweeps, &w->below, &w->above);
     w->plan.engine = engine;
-    w->capacity = slices_for(&w->whole, desc, layers);
+    w->capacity = slices_for(&w->whole, desc, w->sweeps, layers);
     w->slices = cwi_alloc_large(w->capacity, (size_t)w->whole.stride[2]);
     if (!w->slices)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slices", w->capacity);
@@ -83,15 +93,19 @@ cw_status cwi_slice_window_init(cwi_slice_window *w, const cwi_engine *engine,
     g->max_plans = PLANS / w->capacity;
     w->plan.rows = cwi_alloc_zeroed(g->rows, sizeof *w->plan.rows);
     g->row_plans = cwi_alloc_zeroed(g->rows, sizeof *g->row_plans);
-    g->has = w->whole.has_nodata ? cwi_grid_plane(g) : NULL;
-    if (!w->plan.rows || !g->row_plans || (w->whole.has_nodata && !g->has))
+    const bool finds_values = w->whole.has_nodata || w->sweeps;
+    g->has = finds_values ? cwi_grid_plane(g) : NULL;
+    g->live = w->sweeps ? cwi_grid_plane(g) : NULL;
+    if (!w->plan.rows || !g->row_plans || (finds_values && !g->has) || (w->sweeps && !g->live))
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the rows of %zu slices",
                         w->capacity);
     /* the row after the last layer is read too: its padding has to be outside */
     clear_rows(g, g->inside, 0, 0, g->rows);
     clear_rows(g, g->has, 0, 0, g->rows);
+    clear_rows(g, g->live, 0, 0, g->rows);
     g->find_values = g->has != NULL;
-    return cwi_grid_set_live(g, desc->leave_open, err);
+    g->gaps = w->sweeps > 0;
+    return w->sweeps ? CW_OK : cwi_grid_set_live(g, desc->leave_open, err);
 }
 
 void cwi_slice_window_free(cwi_slice_window *w)
@@ -144,6 +158,8 @@ static void shift_layers(cwi_slice_window *w, size_t by, size_t slices)
     SHIFT(g->inside, g->words);
     if (g->has)
         SHIFT(g->has, g->words);
+    if (w->sweeps)
+        SHIFT(g->live, g->words);
     SHIFT(g->busy, g->masks);
     SHIFT(g->filled, 1);
     SHIFT(w->plan.rows, 1);
@@ -208,6 +224,41 @@ cw_status cwi_slice_window_scan(cwi_slice_window *w, bool all, cw_error *err)
     return st;
 }
 
+/* --- live cells ------------------------------------------------------------------------------ */
+
+/* Makes the n-th sweep over layer swept - n, if it is one of those with a layer below. */
+static void sweep_layers(cwi_slice_window *w)
+{
+    const cwi_bit_grid *g = &w->plan.grid;
+    for (size_t n = 0; n < w->sweeps && n < w->swept; n++) {
+        const size_t layer = w->swept - n;
+        const bool any =
+            layer <= w->whole.dim[2] && cwi_drop_pinched_layer(g, layer - w->first);
+        w->unsettled = w->unsettled || (any && n + 1 == w->sweeps);
+    }
+}
+
+/* Finds the live cells of layers whose samples came into memory, and makes the sweeps that they
+ * allow. Above the last layer of cells the later sweeps go on. */
+static cw_status find_live(cwi_slice_window *w, cw_error *err)
+{
+    const size_t slices = w->whole.dim[2], last = w->first + w->count,
+                 end = !w->sweeps       ? w->swept
+                       : last == slices ? slices + w->sweeps
+                                        : last;
+    for (; w->swept < end; w->swept++) {
+        if (w->swept <= slices)
+            cwi_find_live_layer(&w->plan.grid, w->swept - w->first);
+        sweep_layers(w);
+    }
+    return w->unsettled
+               ? cwi_fail(err, CW_ERR_UNSUPPORTED,
+                          "around voxels without a value (NaN, no-data) the border of the "
+                          "open surface depends on more than %d slices; it is found in memory",
+                          CWI_SWEEPS)
+               : CW_OK;
+}
+
 /* --- counting ------------------------------------------------------------------------------- */
 
 /* Makes sums of the number of ambiguous cells in each row, from those of rows that have some. */
@@ -269,18 +320,24 @@ static cw_status count_layers(cwi_slice_window *w, size_t last, cw_error *err)
 /* The layer below is counted too: normals are repaired from its triangles. */
 void cwi_slice_window_start(cwi_slice_window *w, size_t layer)
 {
-    w->first = w->count = 0; /* slices of two passes have nothing in common */
+    w->first = w->count = w->swept = 0; /* slices of two passes have nothing in common */
     w->start = layer;
     w->counted = layer ? layer - 1 : 0;
     w->vertices = w->triangles = w->first_vertex = w->first_triangle = 0;
 }
 
-cw_status cwi_slice_window_move(cwi_slice_window *w, size_t begin, size_t end, cw_error *err)
+cw_status cwi_slice_window_pass(cwi_slice_window *w, size_t begin, size_t end, cw_error *err)
 {
     const size_t slices = w->whole.dim[2];
     const size_t first = begin > w->below + 1 ? begin - w->below - 1 : 0;
-    const size_t last = end + 1 < slices ? end + 1 : slices;
+    const size_t last = end + w->above - 1 < slices ? end + w->above - 1 : slices;
     cw_status st = hold_slices(w, first, last, err);
+    return st == CW_OK ? find_live(w, err) : st;
+}
+
+cw_status cwi_slice_window_move(cwi_slice_window *w, size_t begin, size_t end, cw_error *err)
+{
+    cw_status st = cwi_slice_window_pass(w, begin, end, err);
     if (st == CW_OK)
         st = count_layers(w, end, err);
     if (st == CW_OK && begin == w->start) {
@@ -288,4 +345,11 @@ cw_status cwi_slice_window_move(cwi_slice_window *w, size_t begin, size_t end, c
         w->first_triangle = cwi_slice_window_layer(w, begin)->triangle;
     }
     return st;
+}
+
+void cwi_slice_window_add_border(const cwi_slice_window *w, cwi_border_loops *loops)
+{
+    assert(loops->next == 0 || loops->next > w->first);
+    while (loops->next < w->first + w->count)
+        cwi_border_loops_add(loops, &w->plan.grid, loops->next - w->first + 1);
 }

@@ -21,6 +21,7 @@ typedef struct slab_writer {
     size_t layers;      /* that the window is moved by, at most */
     cwi_layer *counted; /* of the first pass: what is before each layer */
     cwi_layer_sums sums;
+    cwi_border_loops loops;
     cwi_emission emission;
     cwi_vertex_sink place; /* of the vertices of the slab at hand */
     cw_mesh mesh;
@@ -35,6 +36,7 @@ static void free_writer(slab_writer *s)
     cw_mesh_free(&s->mesh);
     cwi_free(s->seam);
     cwi_free(s->counted);
+    cwi_border_loops_free(&s->loops);
 }
 
 /* --- the first pass -------------------------------------------------------------------------- */
@@ -49,7 +51,7 @@ static void add_layer(slab_writer *s, size_t layer)
     s->sums.triangles += counts->triangles;
 }
 
-/* Counts the vertices and triangles of each layer. */
+/* Counts the vertices and triangles of each layer, and the loops of the border. */
 static cw_status count_surface(slab_writer *s, cw_error *err)
 {
     cwi_slice_window *w = s->window;
@@ -59,12 +61,15 @@ static cw_status count_surface(slab_writer *s, cw_error *err)
     if (!s->counted)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the counts of %zu layers", last);
     s->sums = (cwi_layer_sums){.layers = s->counted, .count = last + 1};
+    st = cwi_border_loops_init(&s->loops, w->whole.dim, err);
     cwi_slice_window_start(w, 0);
     for (size_t begin = 0, end; begin < last && st == CW_OK; begin = end) {
         end = begin + s->layers < last ? begin + s->layers : last;
         st = cwi_progress(&w->desc.progress, "counting", (double)begin / (double)last, err);
         if (st == CW_OK)
             st = cwi_slice_window_move(w, begin, end, err);
+        if (st == CW_OK)
+            cwi_slice_window_add_border(w, &s->loops);
         for (size_t layer = begin; layer < end && st == CW_OK; layer++)
             add_layer(s, layer);
     }
@@ -157,8 +162,8 @@ static cw_status make_room(slab_writer *s, const cw_extract_desc *d, size_t tria
     const cw_extract_counts most = cwi_largest_slab(&s->sums, triangles);
     cw_mesh mesh;
     counts->bytes = cwi_extract_mesh_bytes(&most, false) + most.vertices +
-                    cwi_slice_window_bytes(whole, d, s->layers) +
-                    s->sums.count * sizeof *s->counted;
+                    cwi_slice_window_bytes(whole, d, s->window->sweeps, s->layers) +
+                    cwi_border_loops_bytes(whole->dim) + s->sums.count * sizeof *s->counted;
     cw_status st = cwi_extract_check_limits(d, counts, err);
     if (st == CW_OK)
         st = cwi_mesh_alloc(&mesh, most.vertices, most.triangles, false, err);
@@ -215,6 +220,8 @@ cw_status cw_extract_stream_slabs(const cw_slice_source *source, const cw_stream
         st = count_surface(&s, err);
     made.vertices = s.sums.vertices;
     made.triangles = s.sums.triangles;
+    if (st == CW_OK && window.in && window.out)
+        made.border_loops = cwi_border_loops_count(&s.loops);
     if (st == CW_OK && made.triangles)
         st = write_slabs(&s, &d.extract, triangles, sink, &made, err);
     if (st == CW_OK && counts)

@@ -16,6 +16,9 @@
  * around the end of a layer: so a chunk has no more than MAX_SPANS. */
 enum { SPAN_BYTES = CWI_CHUNK_BYTES / 16, MAX_SPANS = 64 };
 
+/* Vertices that one thread shades at a time. */
+enum { SHADED_VERTICES = 4096 };
+
 /* A row of the surface: of cells, edges and vertices. */
 typedef struct place {
     size_t layer, row;
@@ -28,6 +31,9 @@ void cwi_chunks_init(cwi_chunk_writer *c, cwi_slice_window *window, cw_chunk_sin
     c->emission = cwi_make_emission(whole, window->desc.simple_topology);
     c->vertices = cwi_make_sink(whole, window->plan.grid.invert, &c->frame);
     memcpy(c->frame.affine, whole->affine, sizeof c->frame.affine);
+    c->by_position = cwi_is_rectilinear(whole) && !window->desc.no_normals;
+    if (c->by_position)
+        cwi_shading_set_field(&c->shading, whole, window->plan.grid.invert);
 }
 
 void cwi_chunks_free(cwi_chunk_writer *c)
@@ -91,6 +97,28 @@ static void write_span(void *context, size_t n)
     }
 }
 
+static void shade_vertices(void *context, size_t n)
+{
+    const cwi_shading *s = context;
+    const size_t begin = n * SHADED_VERTICES, end = begin + SHADED_VERTICES,
+                 last = s->mesh->vertex_count;
+    for (size_t v = begin; v < (end < last ? end : last); v++)
+        cwi_shade_vertex(s, v);
+}
+
+/* Finds the normals of a chunk at its vertices. Those that the field does not give stay zero. */
+static cw_status shade_chunk(cwi_chunk_writer *c, cw_mesh_chunk *chunk, cw_error *err)
+{
+    const size_t vertices = chunk->mesh.vertex_count;
+    memset(c->normals, 0, 3 * vertices * sizeof *c->normals);
+    c->shading.mesh = &chunk->mesh;
+    c->shading.normals = c->normals;
+    c->shading.first = c->window->first;
+    return cwi_each_layer((vertices + SHADED_VERTICES - 1) / SHADED_VERTICES, SHADED_VERTICES,
+                          c->window->desc.threads, &(cw_progress){0}, "shading", shade_vertices,
+                          &c->shading, err);
+}
+
 /* Returns the part of the surface between two places of one layer, or between two layers. */
 static cwi_row_span make_span(const cwi_chunk_writer *c, place from, place to, size_t triangle)
 {
@@ -139,7 +167,8 @@ static cw_status write_chunk(cwi_chunk_writer *c, place from, place to, cw_error
         return st;
     chunk_work work = {.writer = c, .sink = c->vertices};
     work.sink.positions = chunk.mesh.positions = c->positions;
-    work.sink.normals = chunk.mesh.normals = c->normals;
+    chunk.mesh.normals = c->normals;
+    work.sink.normals = c->by_position ? NULL : c->normals;
     work.sink.first = chunk.first_vertex;
     for (place at = from; at.layer != to.layer || at.row != to.row;) {
         /* a span has rows of one layer, or whole layers */
@@ -155,7 +184,9 @@ static cw_status write_chunk(cwi_chunk_writer *c, place from, place to, cw_error
     chunk.mesh.triangles = c->corners;
     chunk.mesh.vertex_count = vertices;
     chunk.mesh.triangle_count = triangles;
-    if (st == CW_OK && work.sink.missing)
+    if (st == CW_OK && c->by_position)
+        st = shade_chunk(c, &chunk, err);
+    if (st == CW_OK && (work.sink.missing || c->by_position))
         st = cwi_chunk_mend_normals(c, &chunk, from.layer, to.row ? to.layer + 1 : to.layer,
                                     err);
     if (st != CW_OK)

@@ -2,6 +2,7 @@
 #ifndef EXTRACT_STREAM_WRITE_CHUNKS_H
 #define EXTRACT_STREAM_WRITE_CHUNKS_H
 
+#include "extract/common/field_normals.h"
 #include "extract/stream/slice_window.h"
 
 /* The state of writing, from slab to slab. */
@@ -10,7 +11,9 @@ typedef struct cwi_chunk_writer {
     cw_chunk_sink sink;
     cwi_emission emission;
     cwi_vertex_sink vertices; /* of the whole volume: arrays and first are set for each chunk */
-    cw_mesh frame;            /* origin and affine of every chunk */
+    bool by_position;         /* normals are found at vertices, as on a rectilinear grid */
+    cwi_shading shading;
+    cw_mesh frame; /* origin and affine of every chunk */
     float *positions, *normals;
     uint32_t *corners;
     size_t vertex_room, triangle_room;

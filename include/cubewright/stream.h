@@ -44,20 +44,22 @@ typedef struct cw_stream_desc {
 
 /* Extracts the surface of cw_extract() from slices, and gives it away in chunks. The chunks
  * together are that mesh to the bit, for any number of layers and threads. In memory are only
- * the slices of some layers, three more (four with cubic placement), and one chunk.
+ * the slices of some layers, three more (four with cubic placement, five with normals on a
+ * rectilinear grid), and one chunk.
  *
  * Slices are read twice in three cases, as the result depends on all of them: the first layers
- * are inside; the volume has a no-data value; the surface is left open and voxels are floats.
+ * are inside; the volume has a no-data value; the surface is left open and voxels are floats. If it
+ * is open and some voxel has no value, up to 13 slices more are in memory, and a part reads all
+ * slices below it.
  *
  * source  borrowed; at least 2 voxels along each axis
  * desc    borrowed; NULL means all defaults
  * sink    called on the calling thread; not at all for a volume without a crossing
- * counts  what was made; bytes are those of the working memory. Loops of the border are not
- *         counted: 0. May be NULL
+ * counts  what was made; bytes are those of the working memory. May be NULL
  *
  * Returns CW_ERR_ARGUMENT     as cw_extract()
- *         CW_ERR_UNSUPPORTED  a sparse or irregular grid; snap; normals on a rectilinear grid; an
- *                             open surface of a volume with NaN or no-data voxels
+ *         CW_ERR_UNSUPPORTED  a sparse or irregular grid; snap; an open surface whose border,
+ *                             around voxels without a value, depends on more slices than these
  *         CW_ERR_LIMIT        more than 2^32 - 1 vertices, or a limit of desc: max_bytes below
  *                             what one layer needs. CW_ERR_NO_MEMORY; CW_ERR_CANCELLED; or what
  *                             source or sink returned
@@ -101,10 +103,9 @@ CW_NODISCARD CW_API cw_status cw_extract_stream_part(const cw_slice_source *sour
  *     cw_extract_stream_normals(&source, &normals_desc, 0, &mesh, &err);
  *
  * triangles  minimum of a slab, as in cw_extract_slabs()
- * counts     what was made; bytes are those of the largest slab and of the working memory. Loops of
- *            the border are not counted: 0. May be NULL
- * Returns    as cw_extract_stream(), but rectilinear grids are extracted. CW_ERR_LIMIT also for
- *            max_bytes below what the largest slab needs, before the sink is called */
+ * counts     what was made; bytes are those of the largest slab and of the working memory. May be NULL
+ * Returns    as cw_extract_stream(). CW_ERR_LIMIT also for max_bytes below what the largest slab
+ *            needs, before the sink is called */
 CW_NODISCARD CW_API cw_status cw_extract_stream_slabs(const cw_slice_source *source,
                                                       const cw_stream_desc *desc,
                                                       size_t triangles, cw_slab_sink sink,

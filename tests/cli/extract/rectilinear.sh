@@ -23,6 +23,8 @@ cubewright info g.vtr --json | sed -n -e '/"spacing"/,/"unit"/p'
 cubewright extract g.vtr --iso 0 -o closed.ply
 cubewright extract g.vtr --iso 0 -o open.ply --open --name closed -q
 cmp closed.ply open.ply # it does not meet the border
+cubewright extract g.vtr --iso 0 -o slices.ply --stream always --slab 2 --name closed -q
+cmp closed.ply slices.ply
 cubewright extract g.vtr --iso 0 -o crop.ply --crop 6:12,0:12,0:12 --json - -q |
     sed -n -e '/"rectilinear"/p' -e '/"euler"/p' -e '/"open_edges"/p'
 cubewright extract g.vtr --iso 6.5 --array layer -o layer.ply -q && ls layer.ply

@@ -514,13 +514,15 @@ static size_t count_open_curves(const cw_mesh *mesh)
 static void border_loops_are_the_open_surfaces_borders(void **state)
 {
     (void)state;
+    static const size_t dims[][3] = {{5, 4, 3}, {2, 2, 2}, {70, 2, 3}, {2, 67, 2}, {3, 63, 3}};
     test_seed(5);
-    for (int round = 0; round < 60; round++) {
-        float voxels[5 * 4 * 3];
-        for (int n = 0; n < 60; n++)
+    for (int round = 0; round < 100; round++) {
+        const size_t *dim = dims[round % 5];
+        float voxels[70 * 3 * 3];
+        for (size_t n = 0; n < dim[0] * dim[1] * dim[2]; n++)
             voxels[n] =
                 round % 3 ? (float)rand() / (float)RAND_MAX - 0.5f : (float)(rand() % 5 - 2);
-        const cw_volume v = {.data = voxels, .type = CW_F32, .dim = {5, 4, 3}};
+        const cw_volume v = {.data = voxels, .type = CW_F32, .dim = {dim[0], dim[1], dim[2]}};
         const cw_extract_desc d = {
             .leave_open = true, .simple_topology = round & 1, .inside_is_low = round & 2};
         cw_extract_counts counts;

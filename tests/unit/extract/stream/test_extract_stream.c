@@ -80,8 +80,8 @@ static void free_gathered(gathered *g)
     free(g->mesh.triangles);
 }
 
-static void assert_streamed(const cw_mesh *whole, const cw_volume *v,
-                            const cw_extract_desc *desc, size_t layers,
+static void assert_streamed(const cw_mesh *whole, const cw_extract_counts *made,
+                            const cw_volume *v, const cw_extract_desc *desc, size_t layers,
                             const cwi_engine *engine)
 {
     slices s = {.volume = v};
@@ -95,6 +95,7 @@ static void assert_streamed(const cw_mesh *whole, const cw_volume *v,
               err);
     assert_int_equal(counts.vertices, whole->vertex_count);
     assert_int_equal(counts.triangles, whole->triangle_count);
+    assert_int_equal(counts.border_loops, made->border_loops);
     assert_int_equal(g.mesh.vertex_count, whole->vertex_count);
     assert_int_equal(g.mesh.triangle_count, whole->triangle_count);
     if (whole->triangle_count) {
@@ -156,10 +157,11 @@ static void assert_same_for_layers(const cw_volume *v, const cw_extract_desc *de
     static const size_t layers[] = {1, 2, 3, 7, 16, 64, 0};
     cw_extract_desc d = *desc;
     d.threads = 1;
-    cw_mesh whole = test_extract(v, &d, NULL);
+    cw_extract_counts made;
+    cw_mesh whole = test_extract(v, &d, &made);
     for (size_t n = 0; n < sizeof layers / sizeof *layers; n++) {
         d.threads = 1 + (int)(n & 1);
-        assert_streamed(&whole, v, &d, layers[n], cwi_engine_best());
+        assert_streamed(&whole, &made, v, &d, layers[n], cwi_engine_best());
     }
     if (v->dim[2] > 2)
         for (size_t parts = 2; parts < 2 * v->dim[2]; parts = 2 * parts + 1)
@@ -247,13 +249,57 @@ static void voxels_without_a_value_are_the_same(void **state)
     for (size_t i = 0; i < 33 * 15 * 21; i += 97)
         voxels[i] = i % 2 ? NAN : INFINITY;
     assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 3});
-    cw_error err = {0};
+    cw_volume_free(&v);
+}
+
+/* Where some cells at the border share an edge alone, they are dropped: sweep by sweep. */
+static void open_surfaces_around_gaps_are_the_same(void **state)
+{
+    (void)state;
+    static const size_t every[] = {2, 3, 5, 7, 12, 19, 50};
+    for (size_t n = 0; n < sizeof every / sizeof *every; n++) {
+        cw_volume v = make_noise(CW_F32, (const size_t[3]){67, 15, 26}, 6, 30 + n);
+        cw_volume gaps = make_noise(CW_F32, v.dim, (unsigned)every[n], 60 + n);
+        float *voxels = cw_volume_voxels(&v);
+        const float *at = gaps.data;
+        for (size_t i = 0; i < 67 * 15 * 26; i++)
+            voxels[i] = at[i] == 0 ? NAN : voxels[i];
+        assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 2, .leave_open = true});
+        assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 2.5,
+                                                      .leave_open = true,
+                                                      .cubic_placement = true,
+                                                      .inside_is_low = true});
+        v.has_nodata = true;
+        v.nodata = 1;
+        assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 3, .leave_open = true});
+        cw_volume_free(&gaps);
+        cw_volume_free(&v);
+    }
+}
+
+/* A window with too few sweeps notices that its cells are not settled. */
+static void cells_that_are_not_settled_are_reported(void **state)
+{
+    (void)state;
+    cw_volume v = make_noise(CW_F32, (const size_t[3]){67, 15, 26}, 6, 30);
+    for (size_t i = 0; i < 67 * 15 * 26; i++)
+        if (((float *)cw_volume_voxels(&v))[i] == 5)
+            ((float *)cw_volume_voxels(&v))[i] = NAN;
     slices s = {.volume = &v};
     const cw_slice_source source = source_of(&s);
-    const cw_stream_desc open = {.extract = {.isovalue = 3, .leave_open = true}};
-    assert_int_equal(cw_extract_stream(&source, &open, (cw_chunk_sink){0}, NULL, &err),
-                     CW_ERR_UNSUPPORTED);
-    assert_non_null(strstr(err.message, "without a value"));
+    for (size_t sweeps = 1; sweeps <= CWI_SWEEPS; sweeps += CWI_SWEEPS - 1) {
+        cwi_slice_window w = {.sweeps = sweeps};
+        cw_error err = {0};
+        const cw_extract_desc d = {.isovalue = 2, .leave_open = true};
+        assert_ok(cwi_resolve_shape(&source.shape, &w.whole, &err), err);
+        assert_ok(cwi_slice_window_init(&w, cwi_engine_best(), &source, &d, 26, &err), err);
+        cwi_slice_window_start(&w, 0);
+        const cw_status st = cwi_slice_window_move(&w, 0, 26, &err);
+        assert_int_equal(st, sweeps == 1 ? CW_ERR_UNSUPPORTED : CW_OK);
+        if (st != CW_OK)
+            assert_non_null(strstr(err.message, "voxels without a value"));
+        cwi_slice_window_free(&w);
+    }
     cw_volume_free(&v);
 }
 
@@ -283,28 +329,74 @@ static void large_layers_are_cut_between_rows(void **state)
     (void)state;
     cw_volume v = make_noise(CW_U8, (const size_t[3]){500, 430, 5}, 200, 3);
     const cw_extract_desc d = {.isovalue = 90};
-    cw_mesh whole = test_extract(&v, &d, NULL);
+    cw_extract_counts made;
+    cw_mesh whole = test_extract(&v, &d, &made);
     assert_true(12 * whole.triangle_count > 5 * (4 << 20));
     const cwi_engine *engine;
     for (size_t n = 0; (engine = cwi_engine_at(n)); n++)
-        assert_streamed(&whole, &v, &d, 1 + 4 * (n % 2), engine);
+        assert_streamed(&whole, &made, &v, &d, 1 + 4 * (n % 2), engine);
     cw_mesh_free(&whole);
     cw_volume_free(&v);
 }
 
-static void thin_volumes_and_rectilinear_ones_work(void **state)
+static void thin_volumes_are_the_same(void **state)
 {
     (void)state;
-    static const double x[] = {0, 1, 3, 4, 9}, y[] = {-3, 0, 2, 2.5}, z[] = {0, 2, 3, 7, 8, 20};
     cw_volume v = make_noise(CW_I16, (const size_t[3]){5, 4, 2}, 6, 9);
     assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 3});
     cw_volume_free(&v);
-    v = make_noise(CW_I16, (const size_t[3]){5, 4, 6}, 6, 10);
-    v.coordinates[0] = x;
-    v.coordinates[1] = y;
-    v.coordinates[2] = z;
-    assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 3, .no_normals = true});
-    v.coordinates[0] = v.coordinates[1] = v.coordinates[2] = NULL;
+}
+
+/* With normals, and without. */
+static void assert_same_on_grid(cw_volume *v, const double *const coordinates[3])
+{
+    memcpy(v->coordinates, coordinates, sizeof v->coordinates);
+    assert_same_for_layers(v, &(cw_extract_desc){.isovalue = 3, .no_normals = true});
+    assert_same_for_layers(v, &(cw_extract_desc){.isovalue = 3});
+    assert_same_for_layers(v, &(cw_extract_desc){.isovalue = 2.2, .inside_is_low = true});
+    memset(v->coordinates, 0, sizeof v->coordinates);
+}
+
+static void rectilinear_grids_are_the_same(void **state)
+{
+    (void)state;
+    static const double x[] = {0, 1, 3, 4, 9}, y[] = {-3, 0, 2, 2.5}, z[] = {0, 2, 3, 7, 8, 20};
+    cw_volume v = make_noise(CW_I16, (const size_t[3]){5, 4, 6}, 6, 10);
+    assert_same_on_grid(&v, (const double *const[3]){x, y, z});
+    assert_same_on_grid(&v, (const double *const[3]){NULL, NULL, NULL});
+    cw_volume_free(&v);
+    /* also voxels without a value, and surfaces that are open */
+    double uneven[3][24];
+    for (size_t n = 0; n < 72; n++)
+        uneven[n / 24][n % 24] = (double)(n % 24) + 0.3 * sin(2.0 * (double)n);
+    const double *const axes[3] = {uneven[0], uneven[1], uneven[2]};
+    v = make_noise(CW_F32, (const size_t[3]){23, 17, 24}, 7, 12);
+    memcpy(v.coordinates, axes, sizeof v.coordinates);
+    assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 3, .leave_open = true});
+    memset(v.coordinates, 0, sizeof v.coordinates);
+    for (size_t i = 0; i < 23 * 17 * 24; i += 97)
+        ((float *)cw_volume_voxels(&v))[i] = NAN;
+    assert_same_on_grid(&v, axes);
+    memcpy(v.coordinates, axes, sizeof v.coordinates);
+    assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 3, .leave_open = true});
+    memset(v.coordinates, 0, sizeof v.coordinates);
+    cw_volume_free(&v);
+}
+
+/* Slices so close that a float does not tell them apart: normals come from slices farther away. */
+static void slices_closer_than_positions_tell_are_the_same(void **state)
+{
+    (void)state;
+    double x[9], y[8], z[40];
+    cw_volume v = make_noise(CW_U8, (const size_t[3]){9, 8, 40}, 6, 13);
+    for (size_t n = 0; n < 40; n++) {
+        z[n] = n ? z[n - 1] + (n % 10 < 6 ? 3e-7 : 5) : -40;
+        x[n % 9] = (double)(n % 9);
+        y[n % 8] = 2 * (double)(n % 8);
+    }
+    assert_same_on_grid(&v, (const double *const[3]){x, y, z});
+    v.affine[0][3] = 1e9;
+    assert_same_on_grid(&v, (const double *const[3]){x, y, z});
     cw_volume_free(&v);
 }
 
@@ -366,17 +458,20 @@ static void a_lack_of_memory_is_reported(void **state)
     gathered g = {0};
     cw_error err = {0};
     const cw_chunk_sink sink = {take_chunk, &g};
-    const cw_slice_source source = source_of(&s);
-    const cw_stream_desc d = {.extract = {.isovalue = 1}, .layers = 3};
-    cw_status st = CW_ERR_NO_MEMORY;
-    for (long n = 0; st == CW_ERR_NO_MEMORY; n++) {
-        g = (gathered){0};
-        cwi_alloc_fail_after(n);
-        st = cw_extract_stream(&source, &d, sink, NULL, &err);
-        cwi_alloc_fail_after(-1);
-        free_gathered(&g);
+    for (int open = 0; open < 2; open++) {
+        const cw_stream_desc d = {.extract = {.isovalue = 1, .leave_open = open}, .layers = 3};
+        cw_status st = CW_ERR_NO_MEMORY;
+        v.has_nodata = open; /* two windows, one after the other */
+        for (long n = 0; st == CW_ERR_NO_MEMORY; n++) {
+            const cw_slice_source source = source_of(&s);
+            g = (gathered){0};
+            cwi_alloc_fail_after(n);
+            st = cw_extract_stream(&source, &d, sink, NULL, &err);
+            cwi_alloc_fail_after(-1);
+            free_gathered(&g);
+        }
+        assert_ok(st, err);
     }
-    assert_ok(st, err);
     cw_volume_free(&v);
 }
 
@@ -386,9 +481,13 @@ int main(void)
         cmocka_unit_test(noise_is_the_same_from_slices),
         cmocka_unit_test(vanishing_gradients_are_repaired_across_slabs),
         cmocka_unit_test(voxels_without_a_value_are_the_same),
+        cmocka_unit_test(open_surfaces_around_gaps_are_the_same),
+        cmocka_unit_test(cells_that_are_not_settled_are_reported),
         cmocka_unit_test(a_volume_inside_at_first_is_looked_through),
         cmocka_unit_test(large_layers_are_cut_between_rows),
-        cmocka_unit_test(thin_volumes_and_rectilinear_ones_work),
+        cmocka_unit_test(thin_volumes_are_the_same),
+        cmocka_unit_test(rectilinear_grids_are_the_same),
+        cmocka_unit_test(slices_closer_than_positions_tell_are_the_same),
         cmocka_unit_test(slices_are_read_once),
         cmocka_unit_test(limits_and_failures_are_reported),
         cmocka_unit_test(a_lack_of_memory_is_reported),

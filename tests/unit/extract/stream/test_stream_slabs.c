@@ -120,6 +120,7 @@ static void assert_same_slabs(const cw_volume *v, const cw_extract_desc *desc)
                       err);
             assert_int_equal(counts.vertices, expected.vertices);
             assert_int_equal(counts.triangles, expected.triangles);
+            assert_int_equal(counts.border_loops, expected.border_loops);
             assert_int_equal(parts.count, whole.count);
             for (size_t k = 0; k < whole.count; k++)
                 assert_same_slab(&parts.slabs[k], &whole.slabs[k]);
@@ -184,6 +185,17 @@ static void slabs_are_those_of_a_volume_in_memory(void **state)
         v.coordinates[0] = v.coordinates[1] = v.coordinates[2] = NULL;
         cw_volume_free(&v);
     }
+}
+
+/* Open surfaces end at voxels without a value, too. */
+static void open_slabs_around_gaps_are_the_same(void **state)
+{
+    (void)state;
+    cw_volume v = make_noise(CW_F32, (const size_t[3]){19, 11, 70}, 9, 11);
+    v.has_nodata = true;
+    v.nodata = 8;
+    assert_same_slabs(&v, &(cw_extract_desc){.isovalue = 3, .leave_open = true});
+    cw_volume_free(&v);
 }
 
 static void a_volume_on_one_side_has_no_slabs(void **state)
@@ -353,6 +365,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slabs_are_those_of_a_volume_in_memory),
+        cmocka_unit_test(open_slabs_around_gaps_are_the_same),
         cmocka_unit_test(a_volume_on_one_side_has_no_slabs),
         cmocka_unit_test(normals_are_those_of_a_volume_in_memory),
         cmocka_unit_test(slices_far_from_vertices_are_not_read),
