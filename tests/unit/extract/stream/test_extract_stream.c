@@ -3,6 +3,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/volume/volume.h"
 #include "extract/stream/extract_stream.h"
 
 #include <cubewright/stream.h>
@@ -291,7 +292,7 @@ static void cells_that_are_not_settled_are_reported(void **state)
         cwi_slice_window w = {.sweeps = sweeps};
         cw_error err = {0};
         const cw_extract_desc d = {.isovalue = 2, .leave_open = true};
-        assert_ok(cwi_resolve_shape(&source.shape, &w.whole, &err), err);
+        assert_ok(cwi_volume_resolve_shape(&source.shape, &w.whole, &err), err);
         assert_ok(cwi_slice_window_init(&w, cwi_engine_best(), &source, &d, 26, &err), err);
         cwi_slice_window_start(&w, 0);
         const cw_status st = cwi_slice_window_move(&w, 0, 26, &err);
