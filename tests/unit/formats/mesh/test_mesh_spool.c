@@ -59,19 +59,6 @@ static cw_mesh_spool *fill_spool(const cw_mesh *m, size_t vertices, size_t trian
     return spool;
 }
 
-static char *read_bytes(const char *path, size_t *size)
-{
-    FILE *file = fopen(path, "rb");
-    assert_non_null(file);
-    fseek(file, 0, SEEK_END);
-    *size = (size_t)ftell(file);
-    char *bytes = malloc(*size + 1);
-    rewind(file);
-    assert_int_equal(fread(bytes, 1, *size, file), *size);
-    fclose(file);
-    return bytes;
-}
-
 static void assert_same_file(const cw_mesh *mesh, const cw_mesh_spool *spool, const char *name,
                              const cw_write_desc *desc)
 {
@@ -83,7 +70,7 @@ static void assert_same_file(const cw_mesh *mesh, const cw_mesh_spool *spool, co
         const cw_part part = {.mesh = n ? cw_mesh_spool_frame(spool) : mesh,
                               .spool = n ? spool : NULL};
         assert_ok(cw_parts_write(path, &part, 1, desc, &err), err);
-        bytes[n] = read_bytes(path, &size[n]);
+        bytes[n] = test_file_read(path, &size[n]);
         unlink(path);
     }
     assert_int_equal(size[0], size[1]);

@@ -165,19 +165,6 @@ static cw_status write_together(member *m, cw_error *err)
     return st;
 }
 
-static char *read_bytes(const char *path, size_t *size)
-{
-    FILE *file = fopen(path, "rb");
-    assert_non_null(file);
-    fseek(file, 0, SEEK_END);
-    *size = (size_t)ftell(file);
-    char *bytes = malloc(*size + 1);
-    rewind(file);
-    assert_int_equal(fread(bytes, 1, *size, file), *size);
-    fclose(file);
-    return bytes;
-}
-
 static size_t count_entries(const char *path)
 {
     DIR *d = opendir(path);
@@ -197,7 +184,7 @@ static void assert_written_alike(const job *j, const char *bytes, size_t size)
         run_team(sizes[n], write_together, j, members);
         for (int r = 0; r < sizes[n]; r++)
             assert_ok(members[r].status, members[r].err);
-        char *got = read_bytes(j->path, &got_size);
+        char *got = test_file_read(j->path, &got_size);
         assert_int_equal(got_size, size);
         assert_memory_equal(got, bytes, size);
         free(got);
@@ -225,7 +212,7 @@ static void every_team_writes_the_bytes_of_one(void **state)
             j.write.text = f == 0 && !normals;
             name_path(names[f], path);
             assert_ok(cw_mesh_write(path, &mesh, &j.write, &err), err);
-            char *bytes = read_bytes(path, &size);
+            char *bytes = test_file_read(path, &size);
             unlink(path);
             assert_written_alike(&j, bytes, size);
             free(bytes);
