@@ -43,7 +43,7 @@ chmod +x rsh
 net=10.77.0.0/24
 # run_job OPTION...: on both hosts, two ranks each
 run_job() {
-    ip netns exec $a unshare --uts sh -c 'hostname "$0"; exec "$@"' $a mpirun.openmpi \
+    ip netns exec $a unshare --uts sh -c 'hostname "$0"; exec "$@"' $a timeout -s KILL 150 mpirun.openmpi \
         --mca plm_rsh_agent "$folder/rsh" --mca plm_rsh_no_tree_spawn 1 --mca pml ob1 --mca btl tcp,self \
         --mca btl_tcp_if_include $net --mca oob_tcp_if_include $net --host 10.77.0.1:2,10.77.0.2:2 \
         cubewright extract "$@"
@@ -73,8 +73,7 @@ sleep 5
 [ -z "$(find . -name '.*.part')" ] || { find . -name '.*.part'; exit 1; }
 made=$(find parts -name '*.cwpart' | wc -l)
 [ "$made" -gt 0 ] && [ "$made" -lt 100 ]
-ip netns exec $wire ip link set port2 up
-run_job large.nrrd --iso 30000 -o bone.ply --manifest parts --parts 100 --threads 1 -q
+cubewright extract large.nrrd --iso 30000 -o bone.ply --queue parts --parts 100 --no-check -q
 cubewright extract large.nrrd --iso 30000 -o whole.ply --name bone --stream always --no-check -q
 cmp whole.ply bone.ply
 echo "the parts that were made were kept: the same bytes"
