@@ -460,7 +460,7 @@ static cw_status run_extract(void *p, cw_error *err)
 {
     cli_extract_args *args = p;
     cli_extract_run s = {.args = args, .output.start = cli_seconds()};
-    if (cw_team_is_started())
+    if (cw_team_is_started() && !args->part && !args->queue) /* else each rank is a worker */
         return cli_extract_ranks(args, err);
     if (args->part || args->manifest || args->queue || args->parts)
         return cli_extract_part(args, err);

@@ -257,11 +257,6 @@ cw_status cli_extract_part(const cli_extract_args *args, cw_error *err)
 /* Refuses what the processes of a team cannot do together. */
 static cw_status check_team(const cli_extract_args *args, cw_error *err)
 {
-    if (args->part || args->queue)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "mpirun shares the parts itself: %s is for processes that it did not "
-                        "start",
-                        args->part ? "--part" : "--queue");
     if (args->parts && !args->manifest)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--parts is for --manifest, where parts are kept");
