@@ -261,7 +261,7 @@ static cw_status write_by_team(const char *path, const cwi_parts *parts,
     return cw_team_agree(team, st, err);
 }
 
-/* Returns the team that shares the parts; NULL: there is none. */
+/* Finds the team that shares a spool among the parts. Returns NULL if none does. */
 static const cw_team *find_team(const cw_part *parts, size_t count)
 {
     const cw_team *team = NULL;

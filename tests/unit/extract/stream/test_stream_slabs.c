@@ -215,7 +215,7 @@ static void a_volume_on_one_side_has_no_slabs(void **state)
 }
 
 /* Moves the vertices a little, some of them out of the volume, as simplification does. */
-static void disturb(cw_mesh *mesh)
+static void disturb_mesh(cw_mesh *mesh)
 {
     for (size_t n = 0; n < 3 * mesh->vertex_count; n++)
         mesh->positions[n] += 0.2F * (float)sin(7.0 * (double)n);
@@ -256,7 +256,7 @@ static void normals_are_those_of_a_volume_in_memory(void **state)
                      beside = 17 * mesh.vertex_count + 8 * v.dim[2] + 16;
         for (size_t held = 4; held < 50; held += 3 + held)
             assert_same_normals(&v, &mesh, &d, beside + held * slice);
-        disturb(&mesh);
+        disturb_mesh(&mesh);
         assert_same_normals(&v, &mesh, &d, beside + 5 * slice);
         assert_same_normals(&v, &mesh, &d, 0);
         cw_mesh_free(&mesh);

@@ -270,7 +270,7 @@ static void memory_that_runs_out_in_one_ends_all(void **state)
     cw_volume_free(&v);
 }
 
-static cw_status disagree(member *m, cw_error *err)
+static cw_status fail_by_rank(member *m, cw_error *err)
 {
     cw_status st = m->team.rank == 1 ? CW_ERR_IO : m->team.rank == 2 ? CW_ERR_FORMAT : CW_OK;
     snprintf(err->message, sizeof err->message, "of %d", m->team.rank);
@@ -283,7 +283,7 @@ static void the_lowest_rank_that_failed_is_told(void **state)
     (void)state;
     member members[MAX_RANKS];
     cw_error err = {0};
-    run_team(4, disagree, NULL, members);
+    run_team(4, fail_by_rank, NULL, members);
     for (int r = 0; r < 4; r++) {
         assert_int_equal(members[r].status, CW_ERR_IO);
         assert_string_equal(members[r].err.message, "rank 1: of 1");

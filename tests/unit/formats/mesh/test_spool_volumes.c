@@ -29,7 +29,7 @@ static int remove_folder(void **state)
 
 static uint64_t seed = 11;
 
-static size_t draw(size_t below)
+static size_t draw_number(size_t below)
 {
     seed = seed * 6364136223846793005u + 1442695040888963407u;
     return (size_t)(seed >> 33) % below;
@@ -119,7 +119,7 @@ static cw_mesh extract_noise(size_t n, unsigned values, bool open)
     assert_ok(cw_volume_alloc(&v, CW_U8, (const size_t[3]){n, n + 3, n + 5}, 1, 1, &err), err);
     uint8_t *voxels = cw_volume_voxels(&v);
     for (size_t i = 0; i < n * (n + 3) * (n + 5); i++)
-        voxels[i] = (uint8_t)draw(values);
+        voxels[i] = (uint8_t)draw_number(values);
     v.affine[0][3] = 1000.25;
     v.affine[1][0] = 0.1;
     cw_mesh mesh = test_extract(
@@ -194,25 +194,26 @@ static void components_of_any_mesh_are_dropped(void **state)
     (void)state;
     for (int round = 0; round < 12; round++) {
         cw_mesh mesh = extract_noise(14 + 4 * (size_t)(round % 5), 9, round % 2);
-        const size_t reach = round % 3 ? 1 + draw(4000) : mesh.triangle_count;
+        const size_t reach = round % 3 ? 1 + draw_number(4000) : mesh.triangle_count;
         for (size_t t = 0; t < mesh.triangle_count; t++) {
             uint32_t *one = mesh.triangles + 3 * t, swap[3];
             const size_t left = mesh.triangle_count - t;
-            uint32_t *other = one + 3 * draw(reach < left ? reach : left);
+            uint32_t *other = one + 3 * draw_number(reach < left ? reach : left);
             memcpy(swap, one, sizeof swap);
             memcpy(one, other, sizeof swap);
             memcpy(other, swap, sizeof swap);
         }
-        for (size_t t = 0; t < mesh.triangle_count; t += 1 + draw(40)) {
+        for (size_t t = 0; t < mesh.triangle_count; t += 1 + draw_number(40)) {
             uint32_t *c = mesh.triangles + 3 * t;
-            if (draw(2))
-                c[draw(3)] = c[draw(3)];
+            if (draw_number(2))
+                c[draw_number(3)] = c[draw_number(3)];
             else
-                memcpy(c, mesh.triangles + 3 * draw(mesh.triangle_count), 3 * sizeof *c);
+                memcpy(c, mesh.triangles + 3 * draw_number(mesh.triangle_count), 3 * sizeof *c);
         }
-        const size_t cut = draw(mesh.triangle_count / 2);
+        const size_t cut = draw_number(mesh.triangle_count / 2);
         mesh.triangle_count -= cut;
-        memmove(mesh.triangles, mesh.triangles + 3 * draw(cut + 1), 12 * mesh.triangle_count);
+        memmove(mesh.triangles, mesh.triangles + 3 * draw_number(cut + 1),
+                12 * mesh.triangle_count);
         assert_dropped(&mesh, 0.3);
         cw_mesh_free(&mesh);
     }

@@ -14,7 +14,7 @@
 
 static uint64_t seed = 7;
 
-static size_t draw(size_t below)
+static size_t draw_number(size_t below)
 {
     seed = seed * 6364136223846793005u + 1442695040888963407u;
     return (size_t)(seed >> 33) % below;
@@ -48,10 +48,11 @@ static cw_status feed(const cw_mesh *mesh, size_t most, cw_chunk_sink sink, cw_e
     }
     size_t v = 0;
     for (size_t t = 0; st == CW_OK && (t < triangles || v < vertices);) {
-        const size_t left = triangles - t, wanted = draw(most + 1);
+        const size_t left = triangles - t, wanted = draw_number(most + 1);
         const size_t count = wanted < left ? wanted : left, end = t + count;
         const size_t final = low[end] - v;
-        const size_t named = end == triangles || draw(3) ? final : draw(final + 1);
+        const size_t named =
+            end == triangles || draw_number(3) ? final : draw_number(final + 1);
         cw_mesh_chunk chunk = {.mesh = *mesh, .first_vertex = v, .first_triangle = t};
         chunk.mesh.positions += 3 * v;
         chunk.mesh.triangles += 3 * t;
@@ -132,7 +133,7 @@ static cw_volume make_noise(size_t n, unsigned values)
     assert_ok(cw_volume_alloc(&v, CW_U8, (const size_t[3]){n, n + 3, n + 5}, 1, 1, &err), err);
     uint8_t *voxels = cw_volume_voxels(&v);
     for (size_t i = 0; i < n * (n + 3) * (n + 5); i++)
-        voxels[i] = (uint8_t)draw(values);
+        voxels[i] = (uint8_t)draw_number(values);
     return v;
 }
 
@@ -199,9 +200,9 @@ static void planted_faults_are_found(void **state)
 static void damage(cw_mesh *mesh, size_t faults)
 {
     for (size_t n = 0; n < faults; n++) {
-        uint32_t *c = mesh->triangles + 3 * draw(mesh->triangle_count), swap = c[0];
-        const uint32_t *other = mesh->triangles + 3 * draw(mesh->triangle_count);
-        switch (draw(6)) {
+        uint32_t *c = mesh->triangles + 3 * draw_number(mesh->triangle_count), swap = c[0];
+        const uint32_t *other = mesh->triangles + 3 * draw_number(mesh->triangle_count);
+        switch (draw_number(6)) {
         case 0:
             c[0] = c[1];
             c[1] = swap;
@@ -213,10 +214,10 @@ static void damage(cw_mesh *mesh, size_t faults)
             memcpy(c, mesh->triangles + 3 * --mesh->triangle_count, 3 * sizeof *c);
             break;
         case 3:
-            c[draw(3)] = (uint32_t)draw(mesh->vertex_count);
+            c[draw_number(3)] = (uint32_t)draw_number(mesh->vertex_count);
             break;
         case 4:
-            c[draw(3)] = other[draw(3)];
+            c[draw_number(3)] = other[draw_number(3)];
             break;
         default:
             c[0] = c[1];
@@ -234,7 +235,7 @@ static void damaged_surfaces_are_measured(void **state)
         cw_mesh mesh = test_extract(
             &v, &(cw_extract_desc){.isovalue = 2, .leave_open = n % 2, .no_normals = true},
             NULL);
-        damage(&mesh, 1 + draw(mesh.triangle_count / (n % 3 ? 10 : 2)));
+        damage(&mesh, 1 + draw_number(mesh.triangle_count / (n % 3 ? 10 : 2)));
         sort_triangles(&mesh);
         const cw_quality q = assert_measured("damaged", &mesh);
         sum.unused_vertices += q.unused_vertices;
@@ -434,7 +435,7 @@ static void memory_running_out_is_an_error_at_every_allocation(void **state)
         test_extract(&v, &(cw_extract_desc){.isovalue = 1, .leave_open = true}, NULL);
     damage(&mesh, 20);
     for (int i = 0; i < 300; i++) /* a hub of its own memory */
-        mesh.triangles[3 * draw(mesh.triangle_count)] = (uint32_t)mesh.vertex_count - 1;
+        mesh.triangles[3 * draw_number(mesh.triangle_count)] = (uint32_t)mesh.vertex_count - 1;
     sort_triangles(&mesh);
     const cw_quality_stream_desc desc = {.threads = 1};
     for (long n = 0;; n++) {
