@@ -25,19 +25,19 @@ for n in 1 2 3 4 8; do
     done
     echo "$n ranks: the same bytes"
 done
-# parts that are kept: a rank is killed, and another number of ranks goes on
+# parts that are kept: the ranks of this test are killed, and another number of ranks goes on
 cubewright make gyroid -o large.nrrd --dims 160 --type i16 --noise 0.2 -q
 cubewright extract large.nrrd --iso 100 -o whole.ply --name bone --stream never -q
 for pause in 0.2 0.4 0.6; do
-    mpirun.$mpi -n 3 cubewright extract large.nrrd --iso 100 -o bone.ply --manifest parts --parts 20 -q \
+    mpirun.$mpi -n 3 cubewright extract large.nrrd --iso 100 -o bone.ply --manifest "$folder/parts" --parts 20 -q \
         >killed.log 2>&1 &
     job=$!
     sleep $pause
-    pkill -KILL -f 'extract large.nrrd --iso 100 -o bone.ply --manifest' || true
+    pkill -KILL -f "manifest $folder/parts" || true
     wait $job || true
     rm -f bone.ply
 done
-mpirun.$mpi -n 2 cubewright extract large.nrrd --iso 100 -o bone.ply --manifest parts --parts 20 -q
+mpirun.$mpi -n 2 cubewright extract large.nrrd --iso 100 -o bone.ply --manifest "$folder/parts" --parts 20 -q
 cmp whole.ply bone.ply
 echo "killed three times: the same bytes"
 mkdir failed
