@@ -93,26 +93,32 @@ function(try_library result name)
   endif()
 endfunction()
 
-# add_feature(NAME OPTION OPTION PACKAGES PACKAGE... ABOUT TEXT COST TEXT [MODULE NAME]
-#   [LANGUAGE CXX] NEEDS VARIABLE=PACKAGE... [HEADERS FILE...] [INCLUDES FOLDER...]
+# add_feature(NAME OPTION OPTION PACKAGES PACKAGE... ABOUT TEXT COST TEXT LICENCES TEXT [MODULE NAME]
+#   [SHIPPED PACKAGE] [LANGUAGE CXX] NEEDS VARIABLE=PACKAGE... [HEADERS FILE...] [INCLUDES FOLDER...]
 #   LIBRARIES LIBRARY... TRIAL SOURCE)
 # add_feature(NAME OPTION ... COST TEXT [MODULE NAME] LIKE FEATURE)
 #
 # Sets HAS_<NAME>, in capitals and with _ for -, and adds a row to the table.
 # ABOUT says what the feature brings. COST ends the sentence "this build ...".
+# LICENCES lists its libraries and their licences, as SPDX names them.
 # MODULE is the shared object that the feature lives in, if any.
+# SHIPPED is our Debian package with that object (cli/debian), libcubewright0 unless it is another.
 # NEEDS lists variables that must be true, each with the package that makes it so.
 # TRIAL is a whole program. HEADERS are too slow to compile for a trial: the preprocessor reads them.
 # LANGUAGE is C unless it is CXX. LIKE names a feature of the same library, tried already.
 function(add_feature name)
-  cmake_parse_arguments(PARSE_ARGV 1 A "" "OPTION;ABOUT;COST;MODULE;LANGUAGE;TRIAL;LIKE"
+  cmake_parse_arguments(PARSE_ARGV 1 A "" "OPTION;ABOUT;COST;LICENCES;MODULE;SHIPPED;LANGUAGE;TRIAL;LIKE"
     "PACKAGES;NEEDS;HEADERS;INCLUDES;LIBRARIES")
   if(NOT A_LANGUAGE)
     set(A_LANGUAGE C)
   endif()
+  if(NOT A_SHIPPED)
+    set(A_SHIPPED libcubewright0)
+  endif()
   set(ENV{LC_ALL} C) # errors are read in English
   if(A_LIKE)
     set(reason "${reason_of_${A_LIKE}}")
+    set(A_LICENCES "${licences_of_${A_LIKE}}")
   else()
     try_library(reason ${name})
   endif()
@@ -125,12 +131,13 @@ function(add_feature name)
   endif()
   list(JOIN A_PACKAGES " " packages)
   set(row "")
-  foreach(text "${name}" "${A_ABOUT}" "${A_MODULE}" "${A_OPTION}" "${packages}" "${reason}")
+  foreach(text "${name}" "${A_ABOUT}" "${A_MODULE}" "${A_SHIPPED}" "${A_OPTION}" "${packages}" "${A_LICENCES}" "${reason}")
     quote_for_c(quoted "${text}")
     string(APPEND row "${quoted}, ")
   endforeach()
   string(REGEX REPLACE ", $" "" row "${row}")
   set(feature_rows "${feature_rows}    {${row}},\n" PARENT_SCOPE)
   set(reason_of_${name} "${reason}" PARENT_SCOPE)
+  set(licences_of_${name} "${A_LICENCES}" PARENT_SCOPE)
   set(${variable} ${has} PARENT_SCOPE)
 endfunction()

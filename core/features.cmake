@@ -1,5 +1,9 @@
-# The optional features of a build, a call each: library, price, and a program that tries it.
+# The optional features of a build, a call each: library, licence, price, and a program that tries it.
 include(core/add_feature.cmake)
+
+# The libraries that no build is without.
+quote_for_c(needed_licences "zlib (Zlib), Expat (MIT), libpng (libpng-2.0), Jansson (MIT), libmd (ISC), \
+libseccomp (LGPL-2.1), the OpenMP runtime (GPL-3.0-or-later with the GCC exception)")
 
 # C++ is for the wrappers of C++ libraries alone; without them no C++ compiler is needed.
 if(CUBEWRIGHT_GLTF OR CUBEWRIGHT_DRACO OR CUBEWRIGHT_DICOM OR CUBEWRIGHT_OPENVDB OR CUBEWRIGHT_CGAL
@@ -19,9 +23,11 @@ set(unsanitized ON)
 if(CUBEWRIGHT_SANITIZE)
   set(unsanitized OFF) # sanitizers make its exact arithmetic crawl
 endif()
-add_feature(cgal OPTION CUBEWRIGHT_CGAL PACKAGES libcgal-dev MODULE cgal LANGUAGE CXX
+add_feature(cgal OPTION CUBEWRIGHT_CGAL PACKAGES libcgal-dev
+  SHIPPED cubewright-cgal MODULE cgal LANGUAGE CXX
   ABOUT "a second opinion on meshes, by CGAL (GPL)"
   COST "asks no second opinion on meshes"
+  LICENCES "CGAL (GPL-3.0-or-later), GMP (LGPL-3.0-or-later)"
   NEEDS CGAL_FOUND=libcgal-dev "unsanitized=a build without sanitizers" LIBRARIES CGAL
   HEADERS CGAL/Polygon_mesh_processing/self_intersections.h CGAL/Surface_mesh.h
   TRIAL [[
@@ -38,6 +44,7 @@ endif()
 add_feature(simplify OPTION CUBEWRIGHT_OPENMESH PACKAGES libopenmesh-dev MODULE openmesh LANGUAGE CXX
   ABOUT "simplification of meshes, on OpenMesh"
   COST "does not simplify"
+  LICENCES "OpenMesh (BSD-3-Clause)"
   NEEDS OpenMesh_FOUND=libopenmesh-dev LIBRARIES OpenMeshCore
   TRIAL [[
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
@@ -62,9 +69,11 @@ set(OPENVDB_LIBRARIES ${OPENVDB_LIBRARY} TBB::tbb Imath::Imath)
 if(CUBEWRIGHT_SANITIZE)
   set(OPENVDB_OPTIONS -fno-sanitize=undefined)
 endif()
-add_feature(vdb OPTION CUBEWRIGHT_OPENVDB PACKAGES libopenvdb-dev libboost-dev MODULE openvdb LANGUAGE CXX
+add_feature(vdb OPTION CUBEWRIGHT_OPENVDB PACKAGES libopenvdb-dev libboost-dev
+  SHIPPED cubewright-modules MODULE openvdb LANGUAGE CXX
   ABOUT "sparse volumes, through OpenVDB"
   COST "reads no OpenVDB"
+  LICENCES "OpenVDB (MPL-2.0), TBB (Apache-2.0), Imath (BSD-3-Clause)"
   NEEDS OPENVDB_INCLUDE=libopenvdb-dev OPENVDB_LIBRARY=libopenvdb-dev BOOST_INCLUDE=libboost-dev
         TBB_FOUND=libtbb-dev Imath_FOUND=libimath-dev
   HEADERS openvdb/openvdb.h openvdb/tools/MeshToVolume.h tbb/global_control.h
@@ -78,7 +87,8 @@ int main()
     return map.metaCount() != 0;
 }
 ]])
-add_feature(level-set OPTION CUBEWRIGHT_OPENVDB PACKAGES libopenvdb-dev libboost-dev MODULE levelset
+add_feature(level-set OPTION CUBEWRIGHT_OPENVDB PACKAGES libopenvdb-dev libboost-dev
+  SHIPPED cubewright-modules MODULE levelset
   ABOUT "offset and hollow, through OpenVDB"
   COST "does not offset and hollow meshes"
   LIKE vdb)
@@ -87,9 +97,10 @@ if(CUBEWRIGHT_GL OR CUBEWRIGHT_WINDOW)
   find_path(EPOXY_INCLUDE epoxy/egl.h)
   find_library(EPOXY_LIBRARY epoxy)
 endif()
-add_feature(gl OPTION CUBEWRIGHT_GL PACKAGES libepoxy-dev MODULE gl
+add_feature(gl OPTION CUBEWRIGHT_GL PACKAGES libepoxy-dev SHIPPED cubewright-modules MODULE gl
   ABOUT "volumes drawn by OpenGL"
   COST "draws volumes by the CPU alone"
+  LICENCES "libepoxy (MIT)"
   NEEDS EPOXY_INCLUDE=libepoxy-dev EPOXY_LIBRARY=libepoxy-dev
   INCLUDES ${EPOXY_INCLUDE} LIBRARIES ${EPOXY_LIBRARY}
   TRIAL [[
@@ -116,10 +127,11 @@ set(imgui_is_known OFF)
 if(imgui_version)
   set(imgui_is_known ON)
 endif()
-add_feature(window OPTION CUBEWRIGHT_WINDOW MODULE window LANGUAGE CXX
+add_feature(window OPTION CUBEWRIGHT_WINDOW SHIPPED cubewright-modules MODULE window LANGUAGE CXX
   PACKAGES libimgui-dev libglfw3-dev libstb-dev libepoxy-dev
   ABOUT "the window of view, by GLFW and Dear ImGui"
   COST "opens no window"
+  LICENCES "GLFW (Zlib), Dear ImGui (MIT), stb (MIT), libepoxy (MIT), libpng (libpng-2.0)"
   NEEDS "imgui_is_known=libimgui-dev (1.86)" "IMGUI_LIBRARY=libimgui-dev (1.86)" STB_LIBRARY=libstb-dev
         GLFW_INCLUDE=libglfw3-dev GLFW_LIBRARY=libglfw3-dev EPOXY_INCLUDE=libepoxy-dev
         EPOXY_LIBRARY=libepoxy-dev
@@ -144,6 +156,7 @@ endif()
 add_feature(gltf OPTION CUBEWRIGHT_GLTF PACKAGES libtinygltf-dev MODULE gltf LANGUAGE CXX
   ABOUT "glTF and GLB, through tinygltf"
   COST "reads and writes no glTF and no GLB"
+  LICENCES "tinygltf (MIT)"
   NEEDS TinyGLTF_FOUND=libtinygltf-dev LIBRARIES TinyGLTF::TinyGLTF
   TRIAL [[
 #include <tiny_gltf.h>
@@ -162,6 +175,7 @@ endif()
 add_feature(draco OPTION CUBEWRIGHT_DRACO PACKAGES libdraco-dev MODULE draco LANGUAGE CXX
   ABOUT "Draco compression in glTF"
   COST "has no Draco compression"
+  LICENCES "Draco (Apache-2.0)"
   NEEDS draco_FOUND=libdraco-dev LIBRARIES draco::draco
   TRIAL [[
 #include <draco/compression/decode.h>
@@ -181,6 +195,7 @@ endif()
 add_feature(meshopt OPTION CUBEWRIGHT_MESHOPT PACKAGES libmeshoptimizer-dev MODULE meshopt
   ABOUT "meshopt compression in glTF"
   COST "has no meshopt compression"
+  LICENCES "meshoptimizer (MIT)"
   NEEDS meshoptimizer_FOUND=libmeshoptimizer-dev LIBRARIES meshoptimizer::meshoptimizer
   TRIAL [[
 #include <meshoptimizer.h>
@@ -193,9 +208,11 @@ int main(void)
 if(CUBEWRIGHT_DICOM AND CMAKE_CXX_COMPILER)
   find_package(DCMTK QUIET CONFIG)
 endif()
-add_feature(dicom OPTION CUBEWRIGHT_DICOM PACKAGES libdcmtk-dev MODULE dicom LANGUAGE CXX
+add_feature(dicom OPTION CUBEWRIGHT_DICOM PACKAGES libdcmtk-dev
+  SHIPPED cubewright-modules MODULE dicom LANGUAGE CXX
   ABOUT "DICOM series, through DCMTK"
   COST "reads no DICOM"
+  LICENCES "DCMTK (BSD-3-Clause)"
   NEEDS DCMTK_FOUND=libdcmtk-dev LIBRARIES DCMTK::dcmjpeg DCMTK::dcmjpls DCMTK::dcmdata
   TRIAL [[
 #include <dcmtk/dcmdata/dcfilefo.h>
@@ -214,9 +231,11 @@ if(CUBEWRIGHT_DICOM)
   find_path(OPENJPEG_INCLUDE openjpeg.h PATH_SUFFIXES openjpeg-2.5)
   find_library(OPENJPEG_LIBRARY openjp2)
 endif()
-add_feature(jpeg2000 OPTION CUBEWRIGHT_DICOM PACKAGES libopenjp2-7-dev MODULE dicom
+add_feature(jpeg2000 OPTION CUBEWRIGHT_DICOM PACKAGES libopenjp2-7-dev
+  SHIPPED cubewright-modules MODULE dicom
   ABOUT "DICOM compressed by JPEG 2000, through OpenJPEG"
   COST "reads no DICOM compressed by JPEG 2000"
+  LICENCES "OpenJPEG (BSD-2-Clause)"
   NEEDS HAS_DICOM=libdcmtk-dev OPENJPEG_INCLUDE=libopenjp2-7-dev OPENJPEG_LIBRARY=libopenjp2-7-dev
   INCLUDES ${OPENJPEG_INCLUDE} LIBRARIES ${OPENJPEG_LIBRARY}
   TRIAL [[
@@ -233,6 +252,7 @@ endif()
 add_feature(tiff OPTION CUBEWRIGHT_TIFF PACKAGES libtiff-dev MODULE tiff
   ABOUT "TIFF stacks, through libtiff"
   COST "reads no TIFF"
+  LICENCES "libtiff (libtiff)"
   NEEDS "TIFF_FOUND=libtiff-dev (4.5 or later)" LIBRARIES TIFF::TIFF
   TRIAL [[
 #include <tiffio.h>
@@ -250,6 +270,7 @@ endif()
 add_feature(isal OPTION CUBEWRIGHT_ISAL PACKAGES libisal-dev
   ABOUT "compressed volumes read in half the time, by ISA-L"
   COST "reads compressed volumes by zlib, at half the speed"
+  LICENCES "ISA-L (BSD-3-Clause)"
   NEEDS ISAL_INCLUDE=libisal-dev ISAL_LIBRARY=libisal-dev
   INCLUDES ${ISAL_INCLUDE} LIBRARIES ${ISAL_LIBRARY}
   TRIAL [[
@@ -269,6 +290,7 @@ endif()
 add_feature(lz4 OPTION CUBEWRIGHT_LZ4 PACKAGES liblz4-dev
   ABOUT "VTK image data and Zarr compressed with LZ4"
   COST "reads no .vti that is compressed with LZ4, nor such Zarr"
+  LICENCES "LZ4 (BSD-2-Clause)"
   NEEDS LZ4_INCLUDE=liblz4-dev LZ4_LIBRARY=liblz4-dev
   INCLUDES ${LZ4_INCLUDE} LIBRARIES ${LZ4_LIBRARY}
   TRIAL [[
@@ -286,6 +308,7 @@ endif()
 add_feature(bzip2 OPTION CUBEWRIGHT_BZIP2 PACKAGES libbz2-dev
   ABOUT "NRRD volumes compressed with bzip2"
   COST "reads no NRRD that is compressed with bzip2"
+  LICENCES "bzip2 (bzip2-1.0.6)"
   NEEDS BZIP2_INCLUDE=libbz2-dev BZIP2_LIBRARY=libbz2-dev
   INCLUDES ${BZIP2_INCLUDE} LIBRARIES ${BZIP2_LIBRARY}
   TRIAL [[
@@ -303,6 +326,7 @@ endif()
 add_feature(zstd OPTION CUBEWRIGHT_ZSTD PACKAGES libzstd-dev
   ABOUT "Zarr volumes compressed with Zstandard"
   COST "reads no Zarr that is compressed with Zstandard"
+  LICENCES "Zstandard (BSD-3-Clause)"
   NEEDS ZSTD_INCLUDE=libzstd-dev ZSTD_LIBRARY=libzstd-dev
   INCLUDES ${ZSTD_INCLUDE} LIBRARIES ${ZSTD_LIBRARY}
   TRIAL [[
@@ -321,6 +345,7 @@ endif()
 add_feature(blosc OPTION CUBEWRIGHT_BLOSC PACKAGES libblosc-dev MODULE blosc
   ABOUT "Zarr volumes compressed with Blosc"
   COST "reads no Zarr that is compressed with Blosc"
+  LICENCES "Blosc (BSD-3-Clause)"
   NEEDS BLOSC_INCLUDE=libblosc-dev BLOSC_LIBRARY=libblosc-dev
   INCLUDES ${BLOSC_INCLUDE} LIBRARIES ${BLOSC_LIBRARY}
   TRIAL [[
@@ -360,14 +385,17 @@ if(CUBEWRIGHT_MPI)
   find_mpi(OPENMPI mpicc.openmpi mpi)
   find_mpi(MPICH mpicc.mpich mpich)
 endif()
-add_feature(openmpi OPTION CUBEWRIGHT_MPI PACKAGES libopenmpi-dev MODULE openmpi
+add_feature(openmpi OPTION CUBEWRIGHT_MPI PACKAGES libopenmpi-dev
+  SHIPPED cubewright-mpi MODULE openmpi
   ABOUT "extraction by the ranks of Open MPI"
   COST "is no rank of Open MPI"
+  LICENCES "Open MPI (BSD-3-Clause)"
   NEEDS OPENMPI_INCLUDE=libopenmpi-dev OPENMPI_LIBRARY=libopenmpi-dev
   INCLUDES ${OPENMPI_INCLUDE} LIBRARIES ${OPENMPI_LIBRARY} TRIAL "${mpi_trial}")
-add_feature(mpich OPTION CUBEWRIGHT_MPI PACKAGES libmpich-dev MODULE mpich
+add_feature(mpich OPTION CUBEWRIGHT_MPI PACKAGES libmpich-dev SHIPPED cubewright-mpi MODULE mpich
   ABOUT "extraction by the ranks of MPICH"
   COST "is no rank of MPICH"
+  LICENCES "MPICH (mpich2)"
   NEEDS MPICH_INCLUDE=libmpich-dev MPICH_LIBRARY=libmpich-dev
   INCLUDES ${MPICH_INCLUDE} LIBRARIES ${MPICH_LIBRARY} TRIAL "${mpi_trial}")
 

@@ -26,6 +26,10 @@ has_feature gl && has_feature window || missing="$missing|cubewright view"
 has_feature gl || missing="$missing|cubewright render.*--(layout|mode|compare)"
 has_feature level-set || missing="$missing|cubewright (hollow|offset)"
 
+for feature in cgal openmpi mpich vdb dicom jpeg2000 gl window gltf draco meshopt simplify tiff blosc isal lz4 bzip2 zstd; do
+    has_feature $feature || missing="$missing|--licences"
+done
+
 compare_output() { # of the last command with what the document shows, if it shows something
     [ -n "${made:-}" ] || [ ! -s "$folder/wanted" ] && return # another head, other numbers
     sed 's/[0-9.]* s$/* s/' "$folder/wanted" >"$folder/pattern"

@@ -3,6 +3,8 @@
 #include "cli/framework/console.h"
 #include "cli/framework/json_writer.h"
 
+#include "core/base/features.h"
+
 #include <cubewright/formats.h>
 
 #include <stdio.h>
@@ -10,7 +12,7 @@
 
 typedef struct formats_args {
     cli_common common;
-    bool json, features;
+    bool json, features, licences;
 } formats_args;
 
 static void print_row(const cw_format *f)
@@ -103,6 +105,36 @@ static void print_features(const cw_format *formats, size_t format_count)
         print_availability(formats[k].name, formats[k].in_this_build, formats[k].reason);
 }
 
+/* Prints a name, and the licences of the features in a module; "": those in the library itself,
+ * after those that no build is without. */
+static void print_module_licences(const char *name, const char *module)
+{
+    char text[1024] = "";
+    size_t used = 0;
+    if (!*module)
+        used = (size_t)snprintf(text, sizeof text, "%s", cwi_needed_licences);
+    for (size_t i = 0; i < cwi_feature_row_count && used < sizeof text; i++) {
+        const cwi_feature_row *row = &cwi_feature_rows[i];
+        if (!*row->reason && strcmp(row->module, module) == 0)
+            used += (size_t)snprintf(text + used, sizeof text - used, "%s%s",
+                                     used > 0 ? ", " : "", row->licences);
+    }
+    printf("%-13s", name);
+    cli_print_wrapped(text, 13);
+}
+
+/* Prints the libraries that this build links, with their licences: a line for the library, and
+ * one for each module. */
+static void print_licences(void)
+{
+    print_module_licences("library", "");
+    for (size_t i = 0; i < cwi_feature_row_count; i++) {
+        const cwi_feature_row *row = &cwi_feature_rows[i];
+        if (!*row->reason && *row->module && cwi_find_module_row(row->module) == row)
+            print_module_licences(row->module, row->module);
+    }
+}
+
 static cw_status run_version(void *p, cw_error *err)
 {
     const formats_args *args = p;
@@ -116,6 +148,8 @@ static cw_status run_version(void *p, cw_error *err)
     printf("cubewright %s\n", cw_version());
     if (args->features)
         print_features(formats, count);
+    if (args->licences)
+        print_licences();
     return CW_OK;
 }
 
@@ -138,6 +172,9 @@ static const cli_option version_options[] = {
     {"features", 0, CLI_FLAG, NULL,
      "List the optional parts of this build, and why any is missing (off)",
      offsetof(formats_args, features)},
+    {"licences", 0, CLI_FLAG, NULL,
+     "List the libraries that this build links, with their licences (off)",
+     offsetof(formats_args, licences)},
     {"json", 0, CLI_FLAG, NULL, "Print one JSON object, with formats and features (off)",
      offsetof(formats_args, json)},
 };

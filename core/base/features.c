@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_FEATURES = 32, REASON_BYTES = 96 };
+enum { MAX_FEATURES = 32, REASON_BYTES = 128 };
 
 static cw_feature features[MAX_FEATURES];
 static char file_is_missing[MAX_FEATURES][REASON_BYTES];
@@ -22,7 +22,8 @@ static void fill_features(void)
         *f = (cw_feature){.name = row->name, .about = row->about, .reason = row->reason};
         if (!*row->reason && *row->module && !cwi_module_present(row->module)) {
             snprintf(file_is_missing[i], REASON_BYTES,
-                     "the file cubewright-%s.so is not beside the library", row->module);
+                     "the file cubewright-%s.so is not beside the library (Debian: %s)",
+                     row->module, row->shipped);
             f->reason = file_is_missing[i];
         }
         f->available = !*f->reason;

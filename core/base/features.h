@@ -8,13 +8,16 @@ typedef struct cwi_feature_row {
     const char *name;     /* as printed by `version --features` */
     const char *about;    /* benefit of the feature */
     const char *module;   /* the module that contains it; "" for a part of the library itself */
+    const char *shipped;  /* our Debian package with the module */
     const char *option;   /* name of the CMake option */
     const char *packages; /* Debian packages, separated by spaces */
+    const char *licences; /* the libraries it links, each with its licence in brackets */
     const char *reason;   /* why the feature was not built; "" when it was */
 } cwi_feature_row;
 
 extern const cwi_feature_row cwi_feature_rows[];
 extern const size_t cwi_feature_row_count;
+extern const char cwi_needed_licences[]; /* of the libraries that no build is without */
 
 /* Finds the row of the first feature of a module; NULL when the module is unknown. */
 const cwi_feature_row *cwi_find_module_row(const char *module);

@@ -107,14 +107,18 @@ static cw_status find_module(const char *name, char *path, size_t size,
     *row = cwi_find_module_row(name);
     if (!*row)
         return cwi_fail(err, CW_ERR_UNSUPPORTED, "there is no module '%s'", name);
-    if (!module_path(name, path, size))
+    if (module_path(name, path, size))
+        return CW_OK;
+    const char *s = strchr((*row)->packages, ' ') ? "s" : "";
+    if (!*(*row)->reason)
         return cwi_fail(err, CW_ERR_UNSUPPORTED,
-                        "the %s module is not in this build (%s); configure with -D%s=ON and "
-                        "the Debian package%s %s",
-                        name, *(*row)->reason ? (*row)->reason : "its file was removed",
-                        (*row)->option, strchr((*row)->packages, ' ') ? "s" : "",
-                        (*row)->packages);
-    return CW_OK;
+                        "the %s module is not installed: the Debian package %s has it; from "
+                        "sources, configure with -D%s=ON and the Debian package%s %s",
+                        name, (*row)->shipped, (*row)->option, s, (*row)->packages);
+    return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                    "the %s module is not in this build (%s); configure with -D%s=ON and the "
+                    "Debian package%s %s",
+                    name, (*row)->reason, (*row)->option, s, (*row)->packages);
 }
 
 cw_status cwi_module_find(const char *name, cw_error *err)

@@ -11,7 +11,7 @@
 extern "C" {
 #endif
 
-#define CW_VERSION "0.1.0"
+#define CW_VERSION "0.2.0"
 
 #if defined(__GNUC__)
 #define CW_API                 __attribute__((visibility("default")))
@@ -64,7 +64,7 @@ typedef struct cw_progress {
     void *user;
 } cw_progress;
 
-/* Returns the version of the library at run time, such as "0.1.0". */
+/* Returns the version of the library at run time, such as "0.2.0". */
 CW_API const char *cw_version(void);
 
 /* Limits the total size of the arrays of all calls in this process. Calls that need more fail
