@@ -7,10 +7,11 @@
 # without  after root: each optional package left out by itself; the rest still builds
 # user     the quickstart as a user with sudo; what root has compiled is compiled no more
 # needed   needed packages alone: no C++, no OpenGL; mesh and picture all the same
+# packages the Debian packages: made twice with the same bytes, installed, used, removed without a trace
 set -eu
 cd "$(dirname "$0")/.."
 tree=$(pwd)
-stages=${*:-root without user needed}
+stages=${*:-root without user needed packages}
 
 skip() { echo "fresh: skipped: $*"; exit 77; }
 [ "$(id -u)" = 0 ] || skip "only root can make a Debian root"
@@ -132,6 +133,41 @@ leave_out_all() {
     done
 }
 
+# list_files ROOT: what stands in it, but for what all packages share.
+list_files() {
+    (cd "$1" && find . -xdev \( -path ./var -o -path ./tmp -o -path ./results -o -path ./etc/ld.so.cache \) -prune -o -print) | sort
+}
+
+# make_packages ROOT: builds them in /src and again in another folder, and compares.
+make_packages() {
+    must "the packages" "$1" "
+        rm -rf /src/build
+        cp -a /src /elsewhere
+        cd /src && sh cli/make_packages.sh && mv build/packages /packages"
+    say "the packages again"
+    must "the packages again" "$1" "cd /elsewhere && rm -rf build && sh cli/make_packages.sh"
+    for package in "$1"/packages/*.deb; do
+        cmp "$package" "$1/elsewhere/build/packages/${package##*/}" || fail "${package##*/} differs when it is built again"
+    done
+    must "lintian" "$1" "
+        apt-get install -y -qq --no-install-recommends lintian
+        lintian --allow-root --fail-on error,warning /packages/*.changes"
+}
+
+# use_packages ROOT: what a user does with them.
+use_packages() {
+    must "the installed packages" "$1" "
+        cd /results
+        cubewright version --features >features
+        ! grep ' no: ' features
+        cubewright make ct-head -o head.nrrd --dims 64 -q
+        cubewright extract head.nrrd --iso 300 -o head.glb
+        cubewright check head.glb
+        cubewright check head.glb --deep -q
+        cubewright render head.nrrd --iso 300 -o head.png --size 600x600 -q"
+    [ "$(wc -c <"$1/results/head.png")" -gt 10000 ] || fail "head.png is blank"
+}
+
 # A root a stage, from one bare system.
 say "a bare Debian"
 mkdir "$folder/archives"
@@ -213,6 +249,25 @@ for stage in $stages; do
         for feature in simplify vdb gl window glb dicom tiff draco isal; do
             grep -q "^$feature  *no: not found: " "$folder/features" || fail "no reason why $feature is missing"
         done
+        ;;
+    packages)
+        builder=$folder/builder
+        if [ -d "$folder/root" ]; then cp -a "$folder/root" "$builder"; else cp -a "$folder/bare" "$builder"; fi
+        make_packages "$builder"
+        say "the packages installed"
+        cp -a "$folder/bare" "$root"
+        cp -a "$builder/packages" "$root/packages"
+        rm -rf --one-file-system "$builder"
+        must "apt-get install ./*.deb" "$root" "apt-get update -qq && apt-get install -y -qq /packages/*.deb"
+        ours=$(cd "$root/packages" && ls *.deb | sed 's/_.*//' | tr '\n' ' ')
+        # what they need stays: without and with them the same files stand beside them
+        must "removing them" "$root" "apt-get purge -y -qq $ours"
+        list_files "$root" >"$folder/before"
+        must "apt-get install ./*.deb" "$root" "apt-get install -y -qq /packages/*.deb"
+        use_packages "$root"
+        must "removing them" "$root" "apt-get purge -y -qq $ours"
+        list_files "$root" | diff "$folder/before" - || fail "the files above remain when the packages are removed"
+        [ -z "$(find "$root/var" -xdev -iname '*cubewright*' ! -path '*/apt/archives/*')" ] || fail "files remain in /var"
         ;;
     *) fail "there is no stage '$stage'" ;;
     esac

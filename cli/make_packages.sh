@@ -1,0 +1,25 @@
+#!/bin/sh
+# Makes the Debian packages of cubewright in build/packages: sh cli/make_packages.sh
+# Then: apt-get install ./build/packages/*.deb
+set -eu
+cd "$(dirname "$0")/.."
+set -- # the functions of packages.sh look at $0 alone
+. cli/packages.sh
+install_packages "what the packages are made of" needed optional heavy package
+
+version=$(sed -n 's/^#define CW_VERSION "\(.*\)"/\1/p' include/cubewright/core.h)
+[ "$(dpkg-parsechangelog -l cli/debian/changelog -S Version)" = "$version" ] ||
+    { echo "make_packages: cli/debian/changelog has another version than $version" >&2; exit 1; }
+folder=build/packages
+source=$folder/cubewright-$version
+rm -rf "$folder"
+mkdir -p "$source"
+for entry in *; do
+    [ "$entry" = build ] || cp -a "$entry" "$source/"
+done
+cp -a cli/debian "$source/debian"
+echo "== building in $source, three to five minutes on two cores"
+(cd "$source" && DEB_BUILD_OPTIONS="noautodbgsym parallel=$(nproc)" dpkg-buildpackage -b -us -uc) >"$folder/build.log" 2>&1 ||
+    { tail -n 40 "$folder/build.log" >&2; exit 1; }
+rm -rf "$source"
+ls -l "$folder"/*.deb | awk '{print $5, $NF}'
