@@ -156,12 +156,14 @@ cw_status cwi_extract_with(const cwi_engine *engine, const cw_volume *volume,
 cw_status cw_extract(const cw_volume *volume, const cw_extract_desc *desc, cw_mesh *mesh,
                      cw_extract_counts *counts, cw_error *err)
 {
+    CWI_REQUIRE(err, volume, mesh);
     return cwi_extract_with(cwi_engine_best(), volume, desc, mesh, counts, err);
 }
 
 cw_status cw_extract_predict(const cw_volume *volume, const cw_extract_desc *desc,
                              cw_extract_counts *counts, cw_error *err)
 {
+    CWI_REQUIRE(err, volume);
     cwi_plan p;
     cw_status st = cwi_plan_init(&p, cwi_engine_best(), volume, err);
     if (st == CW_OK)
@@ -190,6 +192,7 @@ cw_status cwi_extractor_new_with(const cwi_engine *engine, size_t leaf_bytes,
 
 cw_status cw_extractor_new(const cw_volume *volume, cw_extractor **out, cw_error *err)
 {
+    CWI_REQUIRE(err, volume, out);
     return cwi_extractor_new_with(cwi_engine_best(), CWI_LEAF_BYTES, volume, out, err);
 }
 
@@ -203,11 +206,14 @@ void cw_extractor_free(cw_extractor *e)
 cw_status cw_extractor_extract(cw_extractor *e, const cw_extract_desc *desc, cw_mesh *mesh,
                                cw_extract_counts *counts, cw_error *err)
 {
+    CWI_REQUIRE(err, e, mesh);
     return extract_planned(e, desc, mesh, counts, err);
 }
 
 void cw_extractor_recycle(cw_extractor *e, cw_mesh *mesh)
 {
+    if (!e || !mesh)
+        return;
     if (mesh->positions) {
         cw_mesh_free(&e->spare);
         e->spare = *mesh;
@@ -219,5 +225,6 @@ void cw_extractor_recycle(cw_extractor *e, cw_mesh *mesh)
 cw_status cw_extractor_predict(cw_extractor *e, const cw_extract_desc *desc,
                                cw_extract_counts *counts, cw_error *err)
 {
+    CWI_REQUIRE(err, e);
     return predict_planned(e, desc, counts, err);
 }

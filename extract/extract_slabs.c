@@ -109,6 +109,7 @@ cw_status cw_extract_slabs(const cw_volume *volume, const cw_extract_desc *desc,
                            size_t triangles, cw_slab_sink sink, cw_extract_counts *counts,
                            cw_error *err)
 {
+    CWI_REQUIRE(err, volume);
     cw_extract_desc d = desc ? *desc : (cw_extract_desc){0};
     const size_t max_bytes = d.max_bytes;
     cwi_plan p = {0};

@@ -168,6 +168,7 @@ static void free_marks(cwi_marks *marks)
 cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc, cw_mesh *mesh,
                        cw_mesh_file *file, cw_error *err)
 {
+    CWI_REQUIRE(err, path, mesh);
     cwi_mesh_input in = {.desc = resolve_desc(desc)};
     cw_mesh_file said = {0};
     cw_status st = read_file(path, &in, mesh, &said, err);
@@ -180,6 +181,7 @@ cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc, cw_mesh 
 cw_status cw_parts_read(const char *path, const cw_mesh_read_desc *desc, cw_part **parts,
                         size_t *count, cw_mesh_file *file, cw_error *err)
 {
+    CWI_REQUIRE(err, path, parts, count);
     cwi_mesh_input in = {.desc = resolve_desc(desc)};
     cw_mesh_file said = {0};
     cw_mesh mesh;

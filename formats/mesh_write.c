@@ -273,6 +273,8 @@ static const cw_team *find_team(const cw_part *parts, size_t count)
 cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
                          const cw_write_desc *desc, cw_error *err)
 {
+    CWI_REQUIRE(err, path);
+    CWI_REQUIRE_ARRAY(err, parts, count);
     cw_write_desc d = desc ? *desc : (cw_write_desc){0};
     const cwi_format_driver *f;
     char name[CWI_NAME_BYTES];
@@ -313,6 +315,7 @@ cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
 cw_status cw_mesh_write(const char *path, const cw_mesh *mesh, const cw_write_desc *desc,
                         cw_error *err)
 {
+    CWI_REQUIRE(err, path, mesh);
     return cw_parts_write(path, &(cw_part){.mesh = mesh}, 1, desc, err);
 }
 
@@ -340,6 +343,8 @@ static unsigned find_dropped(const cw_part *parts, size_t count, const cwi_parts
 cw_status cw_parts_write_loss(const char *path, const cw_part *parts, size_t count,
                               const cw_write_desc *desc, cw_write_loss *loss, cw_error *err)
 {
+    CWI_REQUIRE(err, path, loss);
+    CWI_REQUIRE_ARRAY(err, parts, count);
     const cw_write_desc d = desc ? *desc : (cw_write_desc){0};
     const cwi_format_driver *f;
     double origin[3];
@@ -360,11 +365,13 @@ cw_status cw_parts_write_loss(const char *path, const cw_part *parts, size_t cou
 cw_status cw_mesh_write_loss(const char *path, const cw_mesh *mesh, const cw_write_desc *desc,
                              cw_write_loss *loss, cw_error *err)
 {
+    CWI_REQUIRE(err, path, mesh, loss);
     return cw_parts_write_loss(path, &(cw_part){.mesh = mesh}, 1, desc, loss, err);
 }
 
 cw_status cw_mesh_write_check(const char *path, const cw_write_desc *desc, cw_error *err)
 {
+    CWI_REQUIRE(err, path);
     const cw_write_desc d = desc ? *desc : (cw_write_desc){0};
     cwi_mesh_output out = {0};
     const cwi_format_driver *f;

@@ -127,7 +127,7 @@ static cw_status find_by_file(const cwi_input *in, const driver **found, cw_erro
     return cwi_fail(
         err, CW_ERR_FORMAT,
         "neither content nor extension is of a format that is read (%s); a headerless "
-        "file needs its layout stated (--raw)",
+        "file needs its layout stated (desc->raw)",
         list_readers(names));
 }
 
@@ -155,7 +155,7 @@ static cw_status open_names(opened *o, const char *path, const cw_read_desc *des
     if (st == CW_OK && o->names.count == 0 && o->links)
         return cwi_fail(
             err, CW_ERR_IO,
-            "the folder holds no file, only %zu links; --allow-external follows them",
+            "the folder holds no file, only %zu links; desc->allow_external follows them",
             o->links);
     if (st == CW_OK && o->names.count == 0)
         return cwi_fail(err, CW_ERR_IO, "the folder holds no file");
@@ -184,7 +184,7 @@ static cw_status fail_no_slice(const opened *o, cw_error *err)
     char links[96] = "", all[320] = "";
     if (o->links)
         snprintf(links, sizeof links,
-                 "; %zu links were left out, --allow-external follows them", o->links);
+                 "; %zu links were left out, desc->allow_external follows them", o->links);
     for (size_t r = 0; cwi_format_at(r); r++) {
         size_t count = 0;
         const char *last = NULL;
@@ -208,7 +208,7 @@ static cw_status fail_no_slice(const opened *o, cw_error *err)
     return cwi_fail(
         err, CW_ERR_FORMAT,
         "none of its %zu files is a slice in a format that is read (DICOM, TIFF)%s; "
-        "headerless slices need their layout stated (--raw)",
+        "headerless slices need their layout stated (desc->raw)",
         o->names.count, links);
 }
 
@@ -349,8 +349,8 @@ static cw_status check_spacing(const cw_read_desc *desc, cw_error *err)
                             s[a]);
     return desc->claim.has_unit
                ? cwi_fail(err, CW_ERR_ARGUMENT,
-                          "its spacing in mm and its unit are both said (--spacing, "
-                          "--input-unit): one was expected")
+                          "its spacing in mm and its unit are both said (desc->spacing_mm, "
+                          "desc->claim.unit): one was expected")
                : CW_OK;
 }
 
@@ -394,6 +394,7 @@ static cw_status read_opened(opened *o, const cw_read_desc *desc, cw_volume *vol
 cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *volume,
                          const char **format, cw_error *err)
 {
+    CWI_REQUIRE(err, path, volume);
     const cw_read_desc d = desc ? *desc : (cw_read_desc){0};
     cwi_array_list arrays = {0};
     opened o = {0};
@@ -450,6 +451,7 @@ cw_status cw_volume_visit(const char *path, const cw_read_desc *desc, size_t com
                           size_t step, const cw_slice_visitor *visitor, const char **format,
                           cw_error *err)
 {
+    CWI_REQUIRE(err, path, visitor);
     const cw_read_desc d = desc ? *desc : (cw_read_desc){0};
     claimed_visit claimed = {.path = path, .claim = &d.claim, .visitor = visitor};
     cwi_slice_visit visit = {
@@ -477,6 +479,7 @@ cw_status cw_volume_visit(const char *path, const cw_read_desc *desc, size_t com
 cw_status cw_arrays_list(const char *path, const cw_read_desc *desc, cw_array **arrays,
                          size_t *count, cw_error *err)
 {
+    CWI_REQUIRE(err, path, arrays, count);
     cw_read_desc d = desc ? *desc : (cw_read_desc){0};
     cwi_array_list list = {0};
     opened o = {0};
@@ -511,6 +514,7 @@ void cw_arrays_free(cw_array *arrays)
 cw_status cw_levels_list(const char *path, const cw_read_desc *desc, cw_level **levels,
                          size_t *count, cw_error *err)
 {
+    CWI_REQUIRE(err, path, levels, count);
     const cw_read_desc d = desc ? *desc : (cw_read_desc){0};
     opened o = {0};
     *levels = NULL;
@@ -530,6 +534,7 @@ void cw_levels_free(cw_level *levels)
 cw_status cw_series_list(const char *path, const cw_read_desc *desc, cw_series **series,
                          size_t *count, cw_error *err)
 {
+    CWI_REQUIRE(err, path, series, count);
     const cw_read_desc defaults = {0};
     opened o = {0};
     *series = NULL;
@@ -742,6 +747,8 @@ static cw_status list_paths(const char *const *paths, size_t path_count,
 cw_status cw_steps_list(const char *const *paths, size_t path_count, const cw_read_desc *desc,
                         char ***files, size_t *count, cw_error *err)
 {
+    CWI_REQUIRE(err, files, count);
+    CWI_REQUIRE_ARRAY(err, paths, path_count);
     const cw_read_desc d = desc ? *desc : (cw_read_desc){0};
     const bool several = path_count > 1, pattern = cwi_files_is_pattern(paths[0]);
     cwi_names names = {0};

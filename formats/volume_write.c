@@ -87,6 +87,7 @@ static cw_status write_file(const char *path, const driver *f, const cw_write_de
 cw_status cw_volume_write(const char *path, const cw_volume *volume, const cw_write_desc *desc,
                           cw_error *err)
 {
+    CWI_REQUIRE(err, path, volume);
     const cw_write_desc defaults = {0};
     const driver *f;
     cw_volume v;

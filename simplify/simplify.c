@@ -191,6 +191,7 @@ size_t cwi_simplify_target(const cw_simplify_desc *d, size_t triangles)
 cw_status cw_simplify(const cw_mesh *mesh, const cw_simplify_desc *desc, cw_mesh *out,
                       cw_simplify_facts *facts, cw_error *err)
 {
+    CWI_REQUIRE(err, mesh, desc, out);
     const size_t target = cwi_simplify_target(desc, mesh->triangle_count);
     *out = (cw_mesh){0};
     if (desc->error_mm == 0 && desc->ratio == 0 && desc->triangles == 0)
@@ -203,6 +204,9 @@ cw_status cw_simplify_levels(const cw_mesh *mesh, const cw_simplify_desc *desc,
                              const size_t *triangles, size_t levels, cw_mesh *out,
                              cw_simplify_facts *facts, cw_error *err)
 {
+    CWI_REQUIRE(err, mesh, desc);
+    CWI_REQUIRE_ARRAY(err, triangles, levels);
+    CWI_REQUIRE_ARRAY(err, out, levels);
     for (size_t n = 0; n < levels; n++)
         out[n] = (cw_mesh){0};
     for (size_t n = 0; n < levels; n++)

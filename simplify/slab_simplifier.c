@@ -189,6 +189,7 @@ static cw_status join_slabs(cw_simplifier *s, cwi_mesh_block *left, size_t *cut,
 
 cw_status cw_simplifier_new(const cw_simplify_desc *desc, cw_simplifier **out, cw_error *err)
 {
+    CWI_REQUIRE(err, desc, out);
     *out = NULL;
     if ((desc->error_mm == 0) == (desc->ratio == 0 && desc->triangles == 0))
         return cwi_fail(err, CW_ERR_ARGUMENT,
@@ -223,6 +224,7 @@ void cw_simplifier_free(cw_simplifier *s)
 
 cw_status cw_simplifier_take(void *simplifier, const cw_slab *from, cw_error *err)
 {
+    CWI_REQUIRE(err, simplifier, from);
     cw_simplifier *s = simplifier;
     cwi_slab_block slab;
     cwi_stop_init(&s->passes.stop, &s->desc.progress); /* this thread may be another one */
@@ -266,6 +268,7 @@ static cw_status finish_mesh(cw_simplifier *s, cw_mesh *out, size_t *cut, cw_err
 cw_status cw_simplifier_finish(cw_simplifier *s, cw_mesh *out, cw_simplify_facts *facts,
                                cw_error *err)
 {
+    CWI_REQUIRE(err, s, out);
     size_t cut = 0;
     cw_status st = CW_OK;
     *out = (cw_mesh){0};

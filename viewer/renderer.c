@@ -39,6 +39,7 @@ static cw_status need_gl(cw_renderer *r, cw_error *err)
 
 cw_status cw_renderer_new(cw_backend backend, cw_renderer **renderer, cw_error *err)
 {
+    CWI_REQUIRE(err, renderer);
     *renderer = NULL;
     if ((unsigned)backend >= CW_BACKEND_COUNT)
         return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a backend (0 to %d)", (int)backend,
@@ -66,11 +67,15 @@ void cw_renderer_free(cw_renderer *r)
 
 const char *cw_renderer_name(const cw_renderer *r)
 {
+    if (!r)
+        return "CPU";
     return r->gl && !r->drew_on_cpu ? r->functions->name(r->gl) : "CPU";
 }
 
 void cw_renderer_forget(cw_renderer *r)
 {
+    if (!r)
+        return;
     if (r->gl)
         r->functions->forget(r->gl);
     cwi_cpu_forget(&r->cpu);
@@ -144,6 +149,7 @@ static cw_status average_samples(const cw_picture *fine, size_t n, cw_picture *o
 cw_status cw_render(cw_renderer *renderer, const cw_scene *scene, cw_picture *picture,
                     cw_error *err)
 {
+    CWI_REQUIRE(err, renderer, scene, picture);
     cwi_frame frame;
     cw_picture fine = {0};
     *picture = (cw_picture){0};

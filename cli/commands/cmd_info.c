@@ -6,6 +6,7 @@
 #include "cli/framework/batch.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
+#include "cli/framework/field_names.h"
 #include "cli/framework/quantity.h"
 #include "cli/inputs/time_series.h"
 #include "cli/inputs/volume_input.h"
@@ -487,7 +488,8 @@ static void print_series(const char *path, const cw_series *series, size_t count
     for (size_t n = 0; n < count; n++) {
         const cw_series *s = &series[n];
         printf("  series %-6s %-4s %4zu images  %s%s%s\n", s->label, s->modality, s->images,
-               shape_of(s), s->finding[0] ? "\n    " : "", s->finding);
+               shape_of(s), s->finding[0] ? "\n    " : "",
+               cli_name_options(s->finding, (char[CLI_MESSAGE]){0}));
     }
 }
 
@@ -504,7 +506,7 @@ static void json_shape(cli_json *j, const cw_series *s)
         cli_json_count(j, "steps", s->shape.steps);
     }
     cli_json_text(j, "status", cw_status_name(s->status));
-    cli_json_text(j, "finding", s->finding);
+    cli_json_message(j, "finding", s->finding);
 }
 
 static void print_series_json(const char *path, const cw_series *series, size_t count)
@@ -602,7 +604,7 @@ static void close_list(const info_args *args, const cw_error *finding, cli_json 
         return;
     cli_json_close(j, ']');
     cli_json_bool(j, "agree", finding->status == CW_OK);
-    cli_json_text(j, "finding", finding->message);
+    cli_json_message(j, "finding", finding->message);
     cli_json_close(j, '}');
 }
 

@@ -2,6 +2,7 @@
 #define _GNU_SOURCE /* sigaction */
 #include "cli/framework/console.h"
 
+#include "cli/framework/field_names.h"
 #include "core/base/atomic_file.h"
 #include "core/base/clock.h"
 
@@ -93,9 +94,11 @@ void cli_say_vv(const char *format, ...)
 /* Names of files come from outside: nothing in them may move the terminal's cursor. */
 void cli_say_error(const char *message)
 {
+    char text[CLI_MESSAGE];
     cli_progress_end();
     fputs(console.color ? "\033[31mcubewright:\033[0m " : "cubewright: ", stderr);
-    for (const unsigned char *c = (const unsigned char *)message; *c; c++)
+    for (const unsigned char *c = (const unsigned char *)cli_name_options(message, text); *c;
+         c++)
         fputc(*c < 0x20 || *c == 0x7f ? '?' : *c, stderr);
     fputc('\n', stderr);
 }

@@ -1,6 +1,8 @@
 /* Writes JSON objects: keys, indentation, escaped strings and numbers. */
 #include "cli/framework/json_writer.h"
 
+#include "cli/framework/field_names.h"
+
 #include "core/base/text.h"
 
 #include <inttypes.h>
@@ -65,6 +67,12 @@ void cli_json_text(cli_json *j, const char *key, const char *value)
 {
     begin_value(j, key);
     print_text(j->out, value);
+}
+
+void cli_json_message(cli_json *j, const char *key, const char *message)
+{
+    char text[CLI_MESSAGE];
+    cli_json_text(j, key, cli_name_options(message, text));
 }
 
 static void print_number(FILE *out, double value)

@@ -18,6 +18,7 @@ typedef struct cli_json {
 void cli_json_open(cli_json *j, const char *key, char bracket); /* '{' or '[' */
 void cli_json_close(cli_json *j, char bracket);                 /* '}' or ']' */
 void cli_json_text(cli_json *j, const char *key, const char *value);
+void cli_json_message(cli_json *j, const char *key, const char *message); /* of the library */
 void cli_json_number(cli_json *j, const char *key, double value);
 void cli_json_count(cli_json *j, const char *key, size_t value);
 void cli_json_int(cli_json *j, const char *key, int64_t value);

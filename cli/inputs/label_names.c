@@ -3,6 +3,7 @@
 #include "cli/inputs/label_names.h"
 
 #include "cli/framework/console.h"
+#include "cli/framework/field_names.h"
 #include "core/base/status.h"
 
 #include <cubewright/formats.h>
@@ -36,7 +37,8 @@ static cw_status read_beside(const cli_volume *volume, cli_label_names *names, c
     st = cw_label_table_read(names->path, &names->table, &names->format, &why);
     if (st == CW_OK)
         return st;
-    cli_say("%s: the names beside it are not used: %s", volume->path, why.message);
+    cli_say("%s: the names beside it are not used: %s", volume->path,
+            cli_name_options(why.message, (char[CLI_MESSAGE]){0}));
     cli_free_label_names(names);
     return CW_OK;
 }

@@ -4,6 +4,7 @@
 #include "cli/inputs/volume_input.h"
 
 #include "cli/framework/console.h"
+#include "cli/framework/field_names.h"
 #include "cli/framework/quantity.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
@@ -262,7 +263,9 @@ static cw_status read_shape(const char *path, const cw_read_desc *voxels, cw_vol
  * they are read, and tell then what their header told, too. */
 static void take_note(void *user, const char *text)
 {
+    char note[CLI_MESSAGE];
     cli_volume *volume = user;
+    text = cli_name_options(text, note);
     for (size_t n = 0; n < volume->note_count; n++)
         if (strcmp(volume->notes[n], text) == 0)
             return;

@@ -204,7 +204,7 @@ static void put_report(FILE *out, const cli_render_report *r, cw_status status,
     cli_json_number(&j, "seconds", r->seconds);
     cli_json_text(&j, "status", cw_status_name(status));
     if (status != CW_OK)
-        cli_json_text(&j, "message", err->message);
+        cli_json_message(&j, "message", err->message);
     cli_json_int(&j, "exit", cw_status_exit_code(status));
     cli_json_close(&j, '}');
 }

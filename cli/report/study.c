@@ -3,6 +3,7 @@
 #include "cli/report/study.h"
 
 #include "cli/framework/console.h"
+#include "cli/framework/field_names.h"
 #include "cli/framework/temp_folder.h"
 #include "cli/report/point_command.h"
 #include "core/base/status.h"
@@ -85,8 +86,9 @@ static cw_status run_point(cli_study *s, cli_point *p, cw_error *err)
         *err = why;
         return st;
     }
-    leave_out(p, st == CW_ERR_CANCELLED ? "it was still running when the budget was spent"
-                                        : why.message);
+    leave_out(p, st == CW_ERR_CANCELLED
+                     ? "it was still running when the budget was spent"
+                     : cli_name_options(why.message, (char[CLI_MESSAGE]){0}));
     return CW_OK;
 }
 

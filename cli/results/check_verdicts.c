@@ -3,6 +3,7 @@
 #include "cli/results/check_verdicts.h"
 
 #include "cli/framework/console.h"
+#include "cli/framework/field_names.h"
 #include "cli/framework/quantity.h"
 
 #include <math.h>
@@ -14,7 +15,8 @@ void cli_print_verdicts(const cw_verdict *verdicts, size_t count)
         const char *grade = v->grade == CW_GRADE_FAIL ? "FAIL" : cw_grade_name(v->grade);
         cli_result("  %-8s%-19s%s\n", grade, v->name, v->text);
         if (v->advice && v->grade < CW_GRADE_OK)
-            cli_result("  %-8s%-19s-> %s\n", "", "", v->advice);
+            cli_result("  %-8s%-19s-> %s\n", "", "",
+                       cli_name_options(v->advice, (char[CLI_MESSAGE]){0}));
     }
 }
 
@@ -70,7 +72,7 @@ void cli_json_verdicts(cli_json *j, const cw_verdict *verdicts, size_t count)
         cli_json_number(j, "number", v->number);
         cli_json_text(j, "text", v->text);
         if (v->advice)
-            cli_json_text(j, "advice", v->advice);
+            cli_json_message(j, "advice", v->advice);
         cli_json_close(j, '}');
     }
     cli_json_close(j, ']');

@@ -282,7 +282,7 @@ static void put_several(cli_json *j, const cli_report *r)
         put_facts(j, m);
         cli_json_text(j, "status", cw_status_name(m->error.status));
         if (m->error.status != CW_OK)
-            cli_json_text(j, "message", m->error.message);
+            cli_json_message(j, "message", m->error.message);
         cli_json_close(j, '}');
     }
     cli_json_close(j, ']');
@@ -377,7 +377,7 @@ static void put_report(FILE *out, const cli_report *r, cw_status status, const c
     put_warnings(&j, r);
     cli_json_text(&j, "status", cw_status_name(status));
     if (status != CW_OK)
-        cli_json_text(&j, "message", err->message);
+        cli_json_message(&j, "message", err->message);
     cli_json_int(&j, "exit", cw_status_exit_code(status));
     cli_json_close(&j, '}');
 }

@@ -3,6 +3,7 @@
 #define _GNU_SOURCE /* vasprintf, strdup */
 #include "cli/view/view.h"
 
+#include "cli/framework/field_names.h"
 #include "core/base/status.h"
 
 #include <ctype.h>
@@ -152,8 +153,9 @@ void view_run_asked(view *v)
 
 void view_say(view *v, bool is_error, const char *text)
 {
+    char message[CLI_MESSAGE];
     const double reading_s = is_error ? 30 : 6;
-    snprintf(v->message, sizeof v->message, "%s", text);
+    snprintf(v->message, sizeof v->message, "%s", cli_name_options(text, message));
     v->is_error = is_error;
     v->message_until = v->ui->seconds(v->window) + reading_s;
 }

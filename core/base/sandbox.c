@@ -210,7 +210,7 @@ static cw_status shut_in(const cwi_sandbox_desc *d, cw_error *err)
         !lock_system_calls())
         return cwi_fail(err, CW_ERR_BACKEND,
                         "the process that is to read with %s cannot be sandboxed (seccomp); "
-                        "--no-sandbox reads in this one",
+                        "with desc->no_sandbox it is read in this one",
                         d->library);
     return CW_OK;
 }
@@ -255,7 +255,7 @@ static cw_status wait_for_answer(const cwi_sandbox *box, cw_error *err)
             return cwi_fail(
                 err, CW_ERR_BACKEND,
                 "%s was stopped after %.6g s without a result; the file is damaged, "
-                "or needs a longer --timeout",
+                "or needs a longer desc->timeout_s",
                 box->desc.library, timeout_s(box));
     }
     return CW_OK;

@@ -61,6 +61,25 @@ cw_status cwi_fail_in(cw_error *err, cw_status status, const char *subject)
     return status;
 }
 
+bool cwi_begin_call(cw_error *err, const char *function, const char *names,
+                    const void *const *pointers, size_t count)
+{
+    if (err) {
+        err->status = CW_OK;
+        err->message[0] = '\0';
+    }
+    for (size_t n = 0; n < count; n++) {
+        if (!pointers[n]) {
+            cwi_fail(err, CW_ERR_ARGUMENT, "%s: '%.*s' is NULL", function,
+                     (int)strcspn(names, ","), names);
+            return false;
+        }
+        names += strcspn(names, ",");
+        names += strspn(names, ", ");
+    }
+    return true;
+}
+
 cw_status cwi_progress(const cw_progress *progress, const char *step, double done,
                        cw_error *err)
 {

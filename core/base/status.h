@@ -16,6 +16,26 @@ cw_status cwi_fail(cw_error *err, cw_status status, const char *format, ...) CW_
  * the same status, so that it can be passed through. */
 cw_status cwi_fail_in(cw_error *err, cw_status status, const char *subject);
 
+/* Begins a public call: clears *err, and returns CW_ERR_ARGUMENT from the calling function when a
+ * pointer is NULL. One to six pointers, or none but err. */
+#define CWI_REQUIRE(...) CWI_REQUIRE_(__VA_ARGS__, NULL)
+#define CWI_REQUIRE_(err, ...)                                                                 \
+    do {                                                                                       \
+        const void *const pointers_[] = {__VA_ARGS__};                                         \
+        const size_t count_ = sizeof pointers_ / sizeof *pointers_ - 1;                        \
+        if (!cwi_begin_call(err, __func__, #__VA_ARGS__, pointers_, count_))                   \
+            return CW_ERR_ARGUMENT;                                                            \
+    } while (0)
+bool cwi_begin_call(cw_error *err, const char *function, const char *names,
+                    const void *const *pointers, size_t count);
+
+/* Returns CW_ERR_ARGUMENT from the calling function when an array with elements is NULL. */
+#define CWI_REQUIRE_ARRAY(err, array, count)                                                   \
+    do {                                                                                       \
+        if ((count) > 0 && !(array))                                                           \
+            return cwi_fail(err, CW_ERR_ARGUMENT, "%s: '%s' is NULL", __func__, #array);       \
+    } while (0)
+
 /* Reports progress, and returns CW_ERR_CANCELLED if the caller stops the call. */
 CW_NODISCARD cw_status cwi_progress(const cw_progress *progress, const char *step, double done,
                                     cw_error *err);

@@ -30,6 +30,7 @@ const char *cw_view_name(size_t n)
 cw_status cw_camera_axes(const cw_camera *camera, double right[3], double up[3],
                          double forward[3], cw_error *err)
 {
+    CWI_REQUIRE(err, camera, right, up, forward);
     for (int a = 0; a < 3; a++)
         forward[a] = camera->target[a] - camera->eye[a];
     if (!cwi_to_unit(forward))
@@ -137,6 +138,7 @@ static cw_status turn_view(const cw_fit_desc *d, double forward[3], double up[3]
 
 cw_status cw_camera_turn(cw_camera *camera, const double axis[3], double degrees, cw_error *err)
 {
+    CWI_REQUIRE(err, camera, axis);
     double unit[3], arm[3];
     memcpy(unit, axis, sizeof unit);
     if (!cwi_to_unit(unit) || !isfinite(degrees))
@@ -153,6 +155,7 @@ cw_status cw_camera_turn(cw_camera *camera, const double axis[3], double degrees
 
 cw_status cw_camera_zoom(cw_camera *camera, double factor, cw_error *err)
 {
+    CWI_REQUIRE(err, camera);
     const double half = CWI_PI / 360;
     if (!(isnormal(factor) && factor > 0))
         return cwi_fail(err, CW_ERR_ARGUMENT, "a zoom of %g: above 0 was expected", factor);
@@ -163,6 +166,7 @@ cw_status cw_camera_zoom(cw_camera *camera, double factor, cw_error *err)
 
 cw_status cw_camera_fit(const cw_fit_desc *desc, cw_camera *camera, cw_error *err)
 {
+    CWI_REQUIRE(err, desc, camera);
     int view;
     double axes[3][3]; /* right, up, forward */
     cw_camera c = {.fov_deg = desc->fov_deg, .height_mm = 1};

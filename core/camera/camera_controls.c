@@ -32,6 +32,8 @@ static double target_distance(const cw_camera *c)
 bool cw_camera_project(const cw_camera *camera, size_t width, size_t height,
                        const double point[3], double pixel[2], double *depth_mm)
 {
+    if (!camera || !point || !pixel)
+        return false;
     axes a;
     if (width == 0 || height == 0 || find_axes(camera, &a, NULL) != CW_OK)
         return false;
@@ -61,6 +63,7 @@ cw_status cw_camera_ray(const cw_camera *camera, size_t width, size_t height,
                         const double pixel[2], double origin[3], double direction[3],
                         cw_error *err)
 {
+    CWI_REQUIRE(err, camera, pixel, origin, direction);
     axes a;
     cw_status st = check_size(width, height, err);
     if (st == CW_OK)
@@ -83,6 +86,7 @@ cw_status cw_camera_ray(const cw_camera *camera, size_t width, size_t height,
 cw_status cw_camera_pan(cw_camera *camera, size_t height, double right_px, double down_px,
                         cw_error *err)
 {
+    CWI_REQUIRE(err, camera);
     axes a;
     cw_status st = check_size(1, height, err);
     if (st == CW_OK && !(isfinite(right_px) && isfinite(down_px)))
@@ -129,6 +133,7 @@ static double clamp_climb(const axes *a, const double axis[3], double degrees)
 
 cw_status cw_camera_orbit(cw_camera *camera, double right_deg, double up_deg, cw_error *err)
 {
+    CWI_REQUIRE(err, camera);
     axes a;
     double axis[3];
     cw_camera c = *camera;
@@ -150,6 +155,7 @@ cw_status cw_camera_orbit(cw_camera *camera, double right_deg, double up_deg, cw
 
 cw_status cw_camera_roll(cw_camera *camera, double degrees, cw_error *err)
 {
+    CWI_REQUIRE(err, camera);
     axes a;
     const double angle = degrees * CWI_PI / 180;
     cw_status st = find_axes(camera, &a, err);
@@ -162,6 +168,7 @@ cw_status cw_camera_roll(cw_camera *camera, double degrees, cw_error *err)
 
 cw_status cw_camera_dolly(cw_camera *camera, double factor, cw_error *err)
 {
+    CWI_REQUIRE(err, camera);
     if (!(isnormal(factor) && factor > 0))
         return cwi_fail(err, CW_ERR_ARGUMENT, "%g times as near: above 0 was expected", factor);
     if (camera->fov_deg == 0) {

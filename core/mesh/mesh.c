@@ -39,6 +39,8 @@ cw_status cwi_mesh_alloc(cw_mesh *mesh, size_t vertices, size_t triangles, bool 
 
 void cw_mesh_free(cw_mesh *mesh)
 {
+    if (!mesh)
+        return;
     cwi_free(mesh->positions);
     cwi_free(mesh->normals);
     cwi_free(mesh->triangles);
@@ -50,6 +52,7 @@ void cw_mesh_free(cw_mesh *mesh)
 
 cw_status cw_mesh_check(const cw_mesh *mesh, cw_error *err)
 {
+    CWI_REQUIRE(err, mesh);
     if ((mesh->vertex_count && !mesh->positions) || (mesh->triangle_count && !mesh->triangles))
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "a mesh with elements needs positions and triangles");
@@ -69,6 +72,8 @@ cw_status cw_mesh_check(const cw_mesh *mesh, cw_error *err)
 
 bool cw_mesh_bounds(const cw_mesh *mesh, double min[3], double max[3])
 {
+    if (!mesh || !min || !max)
+        return false;
     for (int a = 0; a < 3; a++) {
         float low = INFINITY, high = -INFINITY;
         for (size_t v = 0; v < mesh->vertex_count; v++) {

@@ -66,6 +66,7 @@ cw_status cwi_mesh_drop_marked(cw_mesh *mesh, const bool *marked, cw_error *err)
 
 cw_status cw_mesh_weld(cw_mesh *mesh, size_t *merged, cw_error *err)
 {
+    CWI_REQUIRE(err, mesh);
     cw_status st = cw_mesh_check(mesh, err);
     if (st != CW_OK)
         return st;
@@ -261,6 +262,7 @@ static cw_status drop_smaller(cw_mesh *mesh, double least, bool by_volume,
 cw_status cw_mesh_drop_components(cw_mesh *mesh, double diagonal_mm, size_t *dropped,
                                   size_t *kept, cw_error *err)
 {
+    CWI_REQUIRE(err, mesh);
     cw_drop_counts counts;
     cw_status st = cw_mesh_check(mesh, err);
     if (st == CW_OK && !(diagonal_mm >= 0))
@@ -278,6 +280,7 @@ cw_status cw_mesh_drop_components(cw_mesh *mesh, double diagonal_mm, size_t *dro
 cw_status cw_mesh_drop_volumes(cw_mesh *mesh, double least_mm3, cw_drop_counts *counts,
                                cw_error *err)
 {
+    CWI_REQUIRE(err, mesh);
     cw_drop_counts own;
     cw_status st = cw_mesh_check(mesh, err);
     if (st == CW_OK && !(least_mm3 >= 0))
@@ -288,6 +291,7 @@ cw_status cw_mesh_drop_volumes(cw_mesh *mesh, double least_mm3, cw_drop_counts *
 cw_status cw_mesh_drop_distant(cw_mesh *mesh, const float *distance_mm, double limit_mm,
                                cw_drop_counts *counts, double *farthest_mm, cw_error *err)
 {
+    CWI_REQUIRE(err, mesh, distance_mm);
     components c = {0};
     cw_drop_counts own;
     double farthest = 0;

@@ -28,6 +28,7 @@ static void add_triangle(const cw_mesh *mesh, const uint32_t *corners, double (*
 
 cw_status cw_mesh_normals(cw_mesh *mesh, cw_error *err)
 {
+    CWI_REQUIRE(err, mesh);
     cw_status st = cw_mesh_check(mesh, err);
     if (st != CW_OK)
         return st;

@@ -122,6 +122,7 @@ static cw_status check_arguments(cw_field field, double isovalue, double voxel_m
 cw_status cw_field_measure(cw_field field, double isovalue, double voxel_mm,
                            const cw_mesh *mesh, cw_field_error *out, cw_error *err)
 {
+    CWI_REQUIRE(err, mesh, out);
     *out = (cw_field_error){0};
     cw_status st = check_arguments(field, isovalue, voxel_mm, mesh, err);
     if (st != CW_OK)
@@ -155,6 +156,7 @@ cw_status cw_field_measure_vertices(cw_field field, double isovalue, double voxe
                                     const cw_mesh *mesh, size_t every,
                                     cw_field_vertex_error *out, cw_error *err)
 {
+    CWI_REQUIRE(err, mesh, out);
     cw_field_vertex_error e = {0};
     *out = e;
     cw_status st = check_arguments(field, isovalue, voxel_mm, mesh, err);

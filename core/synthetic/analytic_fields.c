@@ -43,6 +43,8 @@ double cw_field_isovalue(cw_field field)
 
 bool cw_field_find(const char *name, cw_field *field)
 {
+    if (!name || !field)
+        return false;
     for (int f = 0; f < CW_FIELD_COUNT; f++)
         if (strcmp(name, fields[f].name) == 0) {
             *field = (cw_field)f;
@@ -170,6 +172,7 @@ static void sample_layer(void *context, size_t k)
 
 cw_status cw_field_sample(const cw_field_desc *desc, cw_volume *volume, cw_error *err)
 {
+    CWI_REQUIRE(err, desc, volume);
     cw_field_desc d = *desc;
     size_t longest = 0;
     if (!is_known_field(d.field))

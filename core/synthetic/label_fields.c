@@ -123,6 +123,7 @@ static double max_label(cw_type type)
 cw_status cw_label_field_sample(const cw_label_field_desc *desc, cw_volume *volume,
                                 cw_error *err)
 {
+    CWI_REQUIRE(err, desc, volume);
     cw_label_field_desc d = *desc;
     sampling s = {.desc = &d, .volume = volume, .side = 1};
     if (d.field != CW_LABEL_CELLS && d.field != CW_LABEL_SPHERES)

@@ -16,6 +16,8 @@ const cw_hard *cw_hard_at(size_t n)
 
 bool cw_hard_find(const char *name, size_t *n)
 {
+    if (!name || !n)
+        return false;
     const cw_hard *hard;
     for (*n = 0; (hard = cw_hard_at(*n)) != NULL; ++*n)
         if (strcmp(hard->name, name) == 0)
@@ -87,6 +89,7 @@ static cw_status check_desc(const cw_hard_desc *d, cw_error *err)
 
 cw_status cw_hard_sample(const cw_hard_desc *desc, cw_volume *volume, cw_error *err)
 {
+    CWI_REQUIRE(err, desc, volume);
     cw_hard_desc d = *desc;
     *volume = (cw_volume){0};
     cw_status st = check_desc(&d, err);

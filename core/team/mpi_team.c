@@ -32,6 +32,7 @@ bool cw_team_is_started(void)
 
 cw_status cw_team_join(cw_team *team, cw_error *err)
 {
+    CWI_REQUIRE(err, team);
     const char *module = find_launcher();
     const cwi_lost_rank lost = {.remove_temporaries = cwi_outfile_remove_all,
                                 .exit_code = cw_status_exit_code(CW_ERR_IO)};
@@ -51,6 +52,8 @@ cw_status cw_team_join(cw_team *team, cw_error *err)
 
 void cw_team_leave(cw_team *team)
 {
+    if (!team)
+        return;
     if (mpi && team->size > 1)
         mpi->leave();
     mpi = NULL;

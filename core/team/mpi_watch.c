@@ -81,7 +81,7 @@ static _Noreturn void end_job(const cwi_rank_watch *w, int lost)
     const int length =
         snprintf(line, sizeof line,
                  "cubewright: rank %d on host %s has not been heard of for %d s: the job ends. "
-                 "Parts in --manifest stay: run the same command again\n",
+                 "Parts that were kept stay: run the same command again\n",
                  lost, w->hosts[lost], SILENT_S);
     const ssize_t written = write(STDERR_FILENO, line, (size_t)length);
     (void)written;

@@ -8,6 +8,9 @@
 cw_status cw_team_gather(const cw_team *team, const void *mine, size_t bytes, void *all,
                          cw_error *err)
 {
+    CWI_REQUIRE(err, team);
+    CWI_REQUIRE_ARRAY(err, mine, bytes);
+    CWI_REQUIRE_ARRAY(err, all, bytes);
     if (team->size > 1)
         return team->gather(team->user, mine, bytes, all, err);
     memcpy(all, mine, bytes);
@@ -17,6 +20,8 @@ cw_status cw_team_gather(const cw_team *team, const void *mine, size_t bytes, vo
 cw_status cw_team_broadcast(const cw_team *team, int from, void *bytes, size_t size,
                             cw_error *err)
 {
+    CWI_REQUIRE(err, team);
+    CWI_REQUIRE_ARRAY(err, bytes, size);
     return team->size > 1 ? team->broadcast(team->user, from, bytes, size, err) : CW_OK;
 }
 
@@ -36,11 +41,14 @@ static uint32_t hash_message(const char *text)
 
 cw_status cw_team_agree(const cw_team *team, cw_status status, cw_error *err)
 {
+    if (!team)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "cw_team_agree: 'team' is NULL");
     cw_error told = {.status = status};
     outcome all[CW_TEAM_MAX];
     int first = 0, alike = 0;
     if (team->size <= 1)
         return status;
+    /* err holds the message of a failure before this call */
     if (status != CW_OK && err)
         memcpy(told.message, err->message, sizeof told.message);
     const outcome mine = {.status = (int32_t)status, .message = hash_message(told.message)};

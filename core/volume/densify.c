@@ -63,6 +63,7 @@ static void copy_leaf(const cw_volume *sparse, size_t n, const cw_volume *v, cha
 cw_status cw_volume_densify(const cw_volume *sparse, size_t max_voxels, cw_volume *dense,
                             cw_error *err)
 {
+    CWI_REQUIRE(err, sparse, dense);
     const size_t *n = sparse->dim;
     *dense = (cw_volume){0};
     if (!sparse->sparse)

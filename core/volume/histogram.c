@@ -235,6 +235,7 @@ static cw_status gather_histogram(const cw_volume *v, size_t bin_count, int thre
 cw_status cw_volume_statistics(const cw_volume *volume, size_t bin_count, int threads,
                                cw_statistics *out, cw_error *err)
 {
+    CWI_REQUIRE(err, volume, out);
     cw_volume v;
     memset(out, 0, sizeof *out);
     cw_status st = cw_volume_select(volume, 0, 0, &v, err);
@@ -256,6 +257,8 @@ cw_status cw_volume_statistics(const cw_volume *volume, size_t bin_count, int th
 
 void cw_statistics_free(cw_statistics *statistics)
 {
+    if (!statistics)
+        return;
     cwi_free(statistics->bins);
     memset(statistics, 0, sizeof *statistics);
 }
@@ -282,6 +285,8 @@ static void join_ranges(const cw_statistics *parts, size_t count, cw_statistics 
 cw_status cw_statistics_join(const cw_statistics *parts, size_t count, size_t bin_count,
                              cw_statistics *out, cw_error *err)
 {
+    CWI_REQUIRE(err, out);
+    CWI_REQUIRE_ARRAY(err, parts, count);
     join_ranges(parts, count, out);
     if (!bin_count || !out->finite)
         return CW_OK;
@@ -343,6 +348,8 @@ static double level_before(const cw_statistics *s, size_t bin)
 
 bool cw_statistics_otsu(const cw_statistics *s, int level_count, double *levels)
 {
+    if (!s || !levels)
+        return false;
     const size_t bins = s->bin_count, row = bins + 1, classes = (size_t)level_count + 1;
     if (level_count < 1 || level_count > 3 || !s->bins)
         return false;

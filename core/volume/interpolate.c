@@ -31,6 +31,8 @@ static double value_at(const cw_volume *v, const size_t at[3])
 
 double cw_volume_sample(const cw_volume *volume, const double world[3])
 {
+    if (!volume || !world)
+        return NAN;
     cw_volume v;
     double index[3], share[3], sum = 0;
     size_t cell[3];

@@ -31,6 +31,8 @@ static size_t find_place(const cw_label_table *table, uint64_t key)
 
 const cw_label *cw_label_find(const cw_label_table *table, uint32_t layer, uint32_t value)
 {
+    if (!table)
+        return NULL;
     const size_t at = find_place(table, key_of(layer, value));
     if (at == table->count)
         return NULL;
@@ -40,6 +42,8 @@ const cw_label *cw_label_find(const cw_label_table *table, uint32_t layer, uint3
 
 const cw_label *cw_label_find_name(const cw_label_table *table, const char *name)
 {
+    if (!table || !name)
+        return NULL;
     const cw_label *found = NULL;
     for (size_t n = 0; n < table->count; n++) {
         const cw_label *label = &table->labels[n];
@@ -126,6 +130,7 @@ static cw_status copy_label(cw_label_table *table, const cw_label *label, bool r
 
 cw_status cw_label_table_add(cw_label_table *table, const cw_label *label, cw_error *err)
 {
+    CWI_REQUIRE(err, table, label);
     cw_label copy;
     const size_t at = find_place(table, key_of(label->layer, label->value));
     const bool replaces = cw_label_find(table, label->layer, label->value) != NULL;
@@ -226,6 +231,8 @@ cw_status cwi_label_table_sort(cw_label_table *table, bool refuse_repeats, cw_er
 
 void cw_label_table_free(cw_label_table *table)
 {
+    if (!table)
+        return;
     for (size_t n = 0; n < table->count; n++)
         free_label(&table->labels[n]);
     cwi_free(table->labels);

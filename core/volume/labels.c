@@ -140,6 +140,7 @@ static bool is_label_map(const census *c)
 
 cw_status cw_volume_labels(const cw_volume *volume, cw_labels *out, cw_error *err)
 {
+    CWI_REQUIRE(err, volume, out);
     cw_volume v;
     census c = {.is_whole = true};
     cw_status st = cw_volume_resolve(volume, &v, err);

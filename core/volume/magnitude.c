@@ -31,6 +31,7 @@ static cw_status check_components(const cw_volume *v, size_t step, cw_error *err
 cw_status cw_volume_magnitude(const cw_volume *in, size_t step, int threads, cw_volume *out,
                               cw_error *err)
 {
+    CWI_REQUIRE(err, in, out);
     cw_volume v, m = {0};
     cw_status st = cw_volume_resolve(in, &v, err);
     if (st == CW_OK)

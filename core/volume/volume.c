@@ -72,6 +72,7 @@ static bool is_zero(const double *affine)
 cw_status cw_volume_alloc(cw_volume *volume, cw_type type, const size_t dim[3],
                           size_t components, size_t steps, cw_error *err)
 {
+    CWI_REQUIRE(err, volume, dim);
     size_t bytes;
     cw_volume v = {.type = type,
                    .dim = {dim[0], dim[1], dim[2]},
@@ -100,6 +101,8 @@ cw_status cw_volume_alloc(cw_volume *volume, cw_type type, const size_t dim[3],
 
 void cw_volume_free(cw_volume *volume)
 {
+    if (!volume)
+        return;
     cwi_free(volume->owned);
     cwi_free(volume->owned_grid);
     memset(volume, 0, sizeof *volume);
@@ -107,6 +110,8 @@ void cw_volume_free(cw_volume *volume)
 
 void *cw_volume_voxels(cw_volume *volume)
 {
+    if (!volume)
+        return NULL;
     return volume->owned;
 }
 
@@ -181,6 +186,7 @@ static cw_status check_strides(const cw_volume *v, cw_error *err)
 
 cw_status cw_volume_resolve(const cw_volume *in, cw_volume *out, cw_error *err)
 {
+    CWI_REQUIRE(err, in, out);
     cw_volume v = *in;
     size_t bytes;
     if (!cw_type_size(v.type))
@@ -284,6 +290,7 @@ double cwi_coordinate_index(const cw_volume *v, int axis, double coordinate)
 cw_status cw_volume_select(const cw_volume *in, size_t component, size_t step, cw_volume *out,
                            cw_error *err)
 {
+    CWI_REQUIRE(err, in, out);
     cw_volume v;
     cw_status st = cw_volume_resolve(in, &v, err);
     if (st != CW_OK)
@@ -325,6 +332,7 @@ cw_status cwi_volume_shrink(cw_volume *v, const cw_box *box, cw_error *err)
 
 cw_status cw_volume_crop(const cw_volume *in, const cw_box *box, cw_volume *out, cw_error *err)
 {
+    CWI_REQUIRE(err, in, box, out);
     cw_volume v;
     cw_status st = cw_volume_resolve(in, &v, err);
     if (st == CW_OK)
@@ -360,6 +368,7 @@ cw_status cwi_volume_thin(cw_volume *v, const size_t step[3], cw_error *err)
 cw_status cw_volume_coarsen(const cw_volume *in, const size_t step[3], cw_volume *out,
                             cw_error *err)
 {
+    CWI_REQUIRE(err, in, step, out);
     cw_volume v;
     cw_status st = cw_volume_resolve(in, &v, err);
     if (st == CW_OK)
@@ -432,6 +441,7 @@ void cw_volume_corners(const cw_volume *volume, double corners[8][3])
 cw_status cw_volume_to_index(const cw_volume *volume, const double world[3], double index[3],
                              cw_error *err)
 {
+    CWI_REQUIRE(err, volume, world, index);
     double a[3][4], cofactor[3][3];
     if (is_zero(volume->affine[0]))
         set_identity(a);

@@ -15,7 +15,7 @@ cw_status cwi_extract_check_limits(const cw_extract_desc *d, const cw_extract_co
 {
     if (d->max_triangles && c->triangles > d->max_triangles)
         return cwi_fail(err, CW_ERR_LIMIT,
-                        "the surface has %zu triangles; the limit is %zu (--max-triangles)",
+                        "the surface has %zu triangles; the limit is %zu (desc->max_triangles)",
                         c->triangles, d->max_triangles);
     const size_t bytes = c->bytes + d->extra_bytes * c->triangles;
     if (d->max_bytes && bytes > d->max_bytes) {
@@ -23,7 +23,7 @@ cw_status cwi_extract_check_limits(const cw_extract_desc *d, const cw_extract_co
         cwi_print_memory(bytes, needed);
         cwi_print_memory(d->max_bytes, left);
         return cwi_fail(err, CW_ERR_LIMIT,
-                        "extraction of %zu triangles needs %s%s; %s are left (--memory)",
+                        "extraction of %zu triangles needs %s%s; %s are left (desc->max_bytes)",
                         c->triangles, needed, d->extra_bytes ? ", checks included" : "", left);
     }
     return CW_OK;

@@ -322,6 +322,7 @@ cw_status cwi_shading_finish(cwi_shading *s, cw_error *err)
 cw_status cw_extract_normals(const cw_volume *volume, const cw_normals_desc *desc,
                              cw_mesh *mesh, cw_error *err)
 {
+    CWI_REQUIRE(err, volume, mesh);
     const cw_normals_desc d = desc ? *desc : (cw_normals_desc){0};
     cwi_shading s = {0};
     cw_status st = cwi_shading_init(&s, volume, &d, mesh, err);

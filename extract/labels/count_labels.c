@@ -34,6 +34,7 @@ static cw_status list_counts(const cwi_key_counts *table, cw_label_count **count
 cw_status cw_label_counts(const cw_volume *volume, uint32_t background, cw_label_count **counts,
                           size_t *count, cw_error *err)
 {
+    CWI_REQUIRE(err, volume, counts, count);
     cw_volume v;
     cwi_key_counts table = {0};
     *counts = NULL;

@@ -419,17 +419,21 @@ cw_status cwi_extract_labels_windowed(const cw_slice_source *source, size_t chun
 cw_status cw_extract_labels_stream(const cw_slice_source *source, const cw_labels_desc *desc,
                                    cw_label_surfaces *surfaces, cw_error *err)
 {
+    CWI_REQUIRE(err, source, surfaces);
     return cwi_extract_labels_windowed(source, 0, desc, surfaces, err);
 }
 
 cw_status cw_extract_labels(const cw_volume *volume, const cw_labels_desc *desc,
                             cw_label_surfaces *surfaces, cw_error *err)
 {
+    CWI_REQUIRE(err, volume, surfaces);
     return cwi_extract_labels_with(volume, desc, cwi_labels_smooth, surfaces, err);
 }
 
 void cw_label_surfaces_free(cw_label_surfaces *s)
 {
+    if (!s)
+        return;
     cw_mesh_free(&s->mesh);
     cwi_free(s->patches);
     cwi_free(s->labels);

@@ -70,6 +70,7 @@ static cw_status fit_vertices(cw_mesh *mesh, bool is_whole, cw_error *err)
 cw_status cw_label_mesh(const cw_label_surfaces *s, uint32_t label, cw_mesh *mesh,
                         cw_error *err)
 {
+    CWI_REQUIRE(err, s, mesh);
     cwi_key_counts numbers = {0};
     size_t triangles = 0;
     for (size_t p = 0; p < s->patch_count; p++)
@@ -86,6 +87,7 @@ cw_status cw_label_mesh(const cw_label_surfaces *s, uint32_t label, cw_mesh *mes
 cw_status cw_label_patch_mesh(const cw_label_surfaces *s, const cw_label_patch *patch,
                               cw_mesh *mesh, cw_error *err)
 {
+    CWI_REQUIRE(err, s, patch, mesh);
     cwi_key_counts numbers = {0};
     const bool is_whole =
         make_room(s, patch->count, mesh) && copy_patch(s, patch, 0, &numbers, mesh);

@@ -137,6 +137,7 @@ static cw_status alloc_painted(const cw_label_surfaces *s, size_t vertices, size
 cw_status cw_label_colored_mesh(const cw_label_surfaces *s, const uint8_t (*colors)[4],
                                 cw_mesh *mesh, cw_error *err)
 {
+    CWI_REQUIRE(err, s, colors, mesh);
     const size_t size = s->mesh.vertex_count;
     owned *patches = cwi_alloc_array(s->patch_count, sizeof *patches);
     numbering n = {cwi_alloc_zeroed(size, sizeof *n.owner),

@@ -345,6 +345,7 @@ static cw_status make_level_set(hollowing *h, cw_error *err)
 cw_status cw_mesh_hollow(const cw_mesh *mesh, const cw_hollow_desc *desc, cw_mesh *out,
                          cw_hollow_facts *facts, cw_error *err)
 {
+    CWI_REQUIRE(err, mesh, desc, out);
     hollowing h = {.mesh = mesh, .desc = desc};
     *out = (cw_mesh){0};
     cw_status st = check_desc(desc, err);

@@ -422,6 +422,7 @@ float *cwi_level_set_voxel(const cw_volume *volume, const cwi_places *leaves,
 cw_status cw_level_set_from_mesh(const cw_mesh *mesh, const cw_level_set_desc *desc,
                                  cw_volume *volume, cw_error *err)
 {
+    CWI_REQUIRE(err, mesh, desc, volume);
     cw_level_set_desc d = *desc;
     cw_quality q;
     *volume = (cw_volume){0};

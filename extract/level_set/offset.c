@@ -342,6 +342,7 @@ static cw_status make_true(making *m, cw_mesh *out, cw_offset_facts *facts, cw_e
 cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mesh *out,
                          cw_offset_facts *facts, cw_error *err)
 {
+    CWI_REQUIRE(err, mesh, desc, out);
     making m = {.mesh = mesh, .desc = desc};
     cw_offset_facts found = {0};
     *out = (cw_mesh){0};

@@ -185,8 +185,8 @@ static cw_status grow_blocks(cwi_leaf_blocks *b, size_t max_bytes, cw_error *err
         cwi_print_memory(max_bytes ? max_bytes : UINT32_MAX / 2 * sizeof *b->block, left);
         return cwi_fail(
             err, CW_ERR_LIMIT,
-            "blocks around leaves and tiles need %s and more; %s are left (--memory)", needed,
-            left);
+            "blocks around leaves and tiles need %s and more; %s are left (desc->max_bytes)",
+            needed, left);
     }
     cwi_leaf_block *more = cwi_realloc_array(b->block, room, sizeof *more);
     if (!more)

@@ -200,14 +200,15 @@ static cw_status check_made(sparse_plan *p, const cwi_leaf_block *b, cw_error *e
     if (d->max_triangles && made > d->max_triangles)
         return cwi_fail(
             err, CW_ERR_LIMIT,
-            "the surface has more triangles than the limit of %zu (--max-triangles)",
+            "the surface has more triangles than the limit of %zu (desc->max_triangles)",
             d->max_triangles);
     bytes += d->extra_bytes * made;
     if (d->max_bytes && bytes > d->max_bytes) {
         char left[CWI_MEMORY_TEXT];
         cwi_print_memory(d->max_bytes, left);
         return cwi_fail(err, CW_ERR_LIMIT,
-                        "extraction needs more than the %s that are left (--memory)", left);
+                        "extraction needs more than the %s that are left (desc->max_bytes)",
+                        left);
     }
     return CW_OK;
 }

@@ -35,6 +35,8 @@ static size_t choose_layers(const cw_volume *whole, const cw_stream_desc *d, siz
 
 size_t cw_extract_stream_bytes(const cw_volume *shape, const cw_stream_desc *desc, bool minimum)
 {
+    if (!shape)
+        return 0;
     const cw_stream_desc d = desc ? *desc : (cw_stream_desc){0};
     cw_volume whole;
     if (cwi_volume_resolve_shape(shape, &whole, NULL) != CW_OK)
@@ -62,7 +64,7 @@ static cw_status check_memory(const cw_volume *whole, const cw_extract_desc *d, 
     return cwi_fail(
         err, CW_ERR_LIMIT,
         "slices of %zu x %zu voxels need %s, a layer of cells at a time; %s are left "
-        "(--memory)",
+        "(desc->max_bytes)",
         whole->dim[0], whole->dim[1], needed, left);
 }
 
@@ -131,7 +133,7 @@ static cw_status write_layers(cwi_slice_window *w, cwi_chunk_writer *c, const la
             w->triangles - w->first_triangle > w->desc.max_triangles)
             st = cwi_fail(err, CW_ERR_LIMIT,
                           "the surface has more triangles than the limit of %zu "
-                          "(--max-triangles); layer %zu of %zu was reached",
+                          "(desc->max_triangles); layer %zu of %zu was reached",
                           w->desc.max_triangles, end, w->whole.dim[2] + 1);
         if (st == CW_OK)
             st = cwi_chunks_write(c, begin, end, err);
@@ -226,6 +228,7 @@ cw_status cw_extract_stream_part(const cw_slice_source *source, const cw_stream_
                                  size_t part, size_t parts, cw_chunk_sink sink,
                                  cw_part_counts *counts, cw_error *err)
 {
+    CWI_REQUIRE(err, source);
     const cw_stream_desc d = desc ? *desc : (cw_stream_desc){0};
     cw_part_counts made;
     if (part >= parts)
@@ -238,5 +241,6 @@ cw_status cw_extract_stream_part(const cw_slice_source *source, const cw_stream_
 cw_status cw_extract_stream(const cw_slice_source *source, const cw_stream_desc *desc,
                             cw_chunk_sink sink, cw_extract_counts *counts, cw_error *err)
 {
+    CWI_REQUIRE(err, source);
     return cwi_extract_stream_with(cwi_engine_best(), source, desc, sink, counts, err);
 }

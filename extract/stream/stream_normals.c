@@ -56,7 +56,7 @@ static cw_status plan_window(normal_walk *w, const cw_volume *whole, const cw_me
     cwi_print_memory(needed, needed_text);
     cwi_print_memory(max_bytes, left_text);
     return cwi_fail(err, CW_ERR_LIMIT,
-                    "normals of %zu vertices, slice by slice, need %s; %s are left (--memory)",
+                    "normals of %zu vertices, slice by slice, need %s; %s are left (max_bytes)",
                     mesh->vertex_count, needed_text, left_text);
 }
 
@@ -142,6 +142,7 @@ static cw_status shade_mesh(normal_walk *w, const cw_normals_desc *d, cw_error *
 cw_status cw_extract_stream_normals(const cw_slice_source *source, const cw_normals_desc *desc,
                                     size_t max_bytes, cw_mesh *mesh, cw_error *err)
 {
+    CWI_REQUIRE(err, source, mesh);
     static const double none = 0;
     const cw_normals_desc d = desc ? *desc : (cw_normals_desc){0};
     normal_walk w = {.source = source};

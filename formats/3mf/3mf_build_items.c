@@ -45,7 +45,7 @@ static cw_status add_instance(placing *p, size_t index, const double *place, cw_
         return cwi_fail(
             err, CW_ERR_LIMIT,
             "objects are placed so often that their points and triangles are more than "
-            "%llu; state a limit if that is meant (--max-triangles)",
+            "%llu; state a limit if that is meant (desc->max_triangles)",
             (unsigned long long)p->most);
     cw_status st = cwi_mesh_grow(p->m->in, &p->instances, &p->room, p->count + 1,
                                  sizeof *p->instances, err);

@@ -25,7 +25,7 @@ static cw_status take_text(cwi_3mf *m, const cwi_unzip_entry *entry, cw_error *e
         return cwi_fail(
             err, CW_ERR_LIMIT,
             "'%s' has %llu bytes of text in an archive of %llu; state a limit if that "
-            "is meant (--max-triangles)",
+            "is meant (desc->max_triangles)",
             entry->name, (unsigned long long)entry->size, (unsigned long long)m->in->file.size);
     m->text_left -= entry->size;
     return CW_OK;

@@ -56,7 +56,8 @@ static cw_status take_bytes(building *b, uint64_t bytes, cw_error *err)
     cwi_print_memory(b->bytes, asked);
     cwi_print_memory(most, limit);
     return cwi_fail(err, CW_ERR_LIMIT,
-                    "the grid takes more than %s; the limit is %s (--memory)", asked, limit);
+                    "the grid takes more than %s; the limit is %s (desc->max_bytes)", asked,
+                    limit);
 }
 
 static cw_status describe_array(const building *b, size_t piece, cwi_grid_role role,
@@ -582,7 +583,7 @@ static cw_status refuse_options(const cw_read_desc *desc, cw_error *err)
     if (desc->spacing_mm[0] != 0)
         return cwi_fail(
             err, CW_ERR_ARGUMENT,
-            "a spacing is given (--spacing); the samples of an irregular grid stand "
+            "a spacing is given (desc->spacing_mm); the samples of an irregular grid stand "
             "where its points are");
     return desc->region ? cwi_volume_expect_dense(&irregular, "a crop", err) : CW_OK;
 }

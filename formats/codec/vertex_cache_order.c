@@ -42,6 +42,7 @@ cw_status cwi_mesh_reorder(cw_mesh *mesh, const cwi_meshopt_functions *meshopt, 
 
 cw_status cw_mesh_optimize(cw_mesh *mesh, cw_error *err)
 {
+    CWI_REQUIRE(err, mesh);
     const cwi_meshopt_functions *meshopt;
     cw_status st = cw_mesh_check(mesh, err);
     if (st == CW_OK)

@@ -380,7 +380,7 @@ static cw_status fail_several(const cwi_dicom_scan *scan, cw_error *err)
                                  s ? ", " : "", me->label, me->sample->file->modality,
                                  me->count, me->sample->file->columns, me->sample->file->rows);
     }
-    return cwi_fail(err, CW_ERR_UNSAFE, "it holds %zu series: %s%s; choose one by --series",
+    return cwi_fail(err, CW_ERR_UNSAFE, "it holds %zu series: %s%s; choose one by desc->series",
                     scan->series_count, list, used < sizeof list - 64 ? "" : ", ...");
 }
 

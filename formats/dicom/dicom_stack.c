@@ -39,10 +39,11 @@ static cw_status check_has(const sorting *s, unsigned flag, const char *field, c
         missing += !(s->planes[i].frame.has & flag);
     if (missing == 0)
         return CW_OK;
-    return cwi_fail(err, CW_ERR_UNSAFE,
-                    "%zu of %zu images have no '%s', so where they lie is not known; --spacing "
-                    "X,Y,Z takes them in the order of their numbers, at that distance",
-                    missing, s->count, field);
+    return cwi_fail(
+        err, CW_ERR_UNSAFE,
+        "%zu of %zu images have no '%s', so where they lie is not known; desc->spacing_mm "
+        "takes them in the order of their numbers, at that distance",
+        missing, s->count, field);
 }
 
 static bool is_placed(const sorting *s)
@@ -165,7 +166,7 @@ static cw_status fail_duplicates(const sorting *s, cw_error *err)
     return cwi_fail(
         err, CW_ERR_UNSAFE,
         "%zu of %zu places hold more than one image, the first at %.6g mm along the "
-        "normal, and not as many as others do; --gaps allow takes the first of each",
+        "normal, and not as many as others do; desc->gaps = CW_GAPS_ALLOW takes the first of each",
         places, s->places, s->planes[first].distance);
 }
 
@@ -250,11 +251,10 @@ static cw_status find_tilt(sorting *s, double along[3], cw_error *err)
     if (s->desc->tilt == CW_TILT_KEEP) {
         memcpy(along, s->normal, sizeof s->normal);
     } else if (worst > 0.1 * smaller_spacing(s)) {
-        return cwi_fail(
-            err, CW_ERR_UNSAFE,
-            "slices are shifted against each other, unevenly, by up to %.6g mm; --tilt "
-            "keep stacks them up as if they were not",
-            worst);
+        return cwi_fail(err, CW_ERR_UNSAFE,
+                        "slices are shifted against each other, unevenly, by up to %.6g mm; "
+                        "desc->tilt = CW_TILT_KEEP stacks them up as if they were not",
+                        worst);
     }
     return CW_OK;
 }

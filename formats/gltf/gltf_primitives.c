@@ -17,7 +17,7 @@ cw_status cwi_gltf_limit(const cwi_gltf_reader *r, uint64_t count, cw_error *err
     return cwi_fail(
         err, CW_ERR_LIMIT,
         "the scene draws its triangles so often that they are more than %llu; state "
-        "a limit if that is meant (--max-triangles)",
+        "a limit if that is meant (desc->max_triangles)",
         (unsigned long long)r->most);
 }
 

@@ -228,7 +228,7 @@ static cw_status check_memory(const cwi_gltf_reader *r, const drawing *sum, cw_e
     return cwi_fail(
         err, CW_ERR_LIMIT,
         "the scene draws its triangles so often that they need more memory than the "
-        "%s allowed (--memory)",
+        "%s allowed (desc->max_bytes)",
         text);
 }
 

@@ -84,6 +84,7 @@ static cw_status print_path(const char *folder, size_t folder_length, const char
 
 cw_status cw_label_table_beside(const char *volume_path, char **table_path, cw_error *err)
 {
+    CWI_REQUIRE(err, volume_path, table_path);
     const char *slash = strrchr(volume_path, '/');
     const char *name = slash ? slash + 1 : volume_path;
     const size_t folder_length = (size_t)(name - volume_path);

@@ -180,6 +180,7 @@ static cw_status read_table(const cwi_input *in, cw_label_table *table, const ch
 cw_status cw_label_table_read(const char *path, cw_label_table *table, const char **format,
                               cw_error *err)
 {
+    CWI_REQUIRE(err, path, table);
     cwi_input in = {0};
     cw_label_table_free(table);
     if (format)

@@ -27,7 +27,7 @@ static cw_status fail_limit(const cwi_mesh_input *in, cw_error *err)
     char limit[CWI_MEMORY_TEXT];
     cwi_print_memory(in->desc.max_bytes, limit);
     return cwi_fail(err, CW_ERR_LIMIT,
-                    "the mesh needs more memory than the %s allowed (--memory)", limit);
+                    "the mesh needs more memory than the %s allowed (desc->max_bytes)", limit);
 }
 
 cw_status cwi_mesh_take_bytes(cwi_mesh_input *in, uint64_t bytes, cw_error *err)

@@ -86,6 +86,7 @@ static cw_status put_array(checked_file *f, const cw_mesh_spool *spool, array wh
 cw_status cw_fragment_write(const char *path, const cw_fragment *fragment,
                             const cw_mesh_spool *spool, cw_error *err)
 {
+    CWI_REQUIRE(err, path, fragment, spool);
     checked_file f = {0};
     unsigned char sum[CHECKSUM_BYTES];
     cw_status st = cwi_outfile_open(&f.file, path, false, err);
@@ -154,7 +155,7 @@ static cw_status read_header(opened *o, cw_error *err)
                         (unsigned long long)o->in.size);
     cw_status st = read_bytes(o, 0, header, sizeof header, err);
     if (st == CW_OK && memcmp(header, magic, sizeof magic) != 0)
-        st = cwi_fail(err, CW_ERR_FORMAT, "this is no fragment of 'extract --part'");
+        st = cwi_fail(err, CW_ERR_FORMAT, "this is no fragment of a surface");
     if (st != CW_OK)
         return st;
     for (int n = 0; n < 6; n++)
@@ -199,6 +200,7 @@ static cw_status open_fragment(opened *o, const char *path, cw_error *err)
 
 cw_status cw_fragment_read(const char *path, cw_fragment *fragment, cw_error *err)
 {
+    CWI_REQUIRE(err, path, fragment);
     opened o;
     cw_status st = open_fragment(&o, path, err);
     if (st != CW_OK)
@@ -303,6 +305,7 @@ static cw_status append_opened(const opened *o, cw_mesh_spool *spool, cw_error *
 
 cw_status cw_fragment_append(const char *path, cw_mesh_spool *spool, cw_error *err)
 {
+    CWI_REQUIRE(err, path, spool);
     opened o;
     cw_status st = open_fragment(&o, path, err);
     if (st == CW_OK) {

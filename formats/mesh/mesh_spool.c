@@ -29,6 +29,7 @@ static char *find_folder(const char *path)
 
 cw_status cw_mesh_spool_new(const char *path, cw_mesh_spool **out, cw_error *err)
 {
+    CWI_REQUIRE(err, path, out);
     cw_mesh_spool *s = *out = cwi_alloc_zeroed(1, sizeof *s);
     if (!s)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a spool");
@@ -129,11 +130,15 @@ cw_chunk_sink cw_mesh_spool_sink(cw_mesh_spool *spool)
 
 const cw_mesh *cw_mesh_spool_frame(const cw_mesh_spool *spool)
 {
+    if (!spool)
+        return NULL;
     return &spool->frame;
 }
 
 bool cw_mesh_spool_bounds(const cw_mesh_spool *s, double min[3], double max[3])
 {
+    if (!s || !min || !max)
+        return false;
     const bool any = s->frame.vertex_count > 0;
     for (int a = 0; a < 3; a++) {
         min[a] = any ? s->frame.origin[a] + (double)s->low[a] : 0;

@@ -180,7 +180,7 @@ static cw_status limit_memory(const cwi_mesh_input *in, const cw_mesh *m, cw_err
     char text[CWI_MEMORY_TEXT];
     cwi_print_memory(limit, text);
     return cwi_fail(err, CW_ERR_LIMIT,
-                    "the parts need more memory than the %s allowed (--memory)", text);
+                    "the parts need more memory than the %s allowed (desc->max_bytes)", text);
 }
 
 cw_status cwi_parts_split(const cwi_mesh_input *in, cw_mesh *mesh, cw_part **parts,

@@ -80,6 +80,7 @@ static cw_status give_chunk(reading *r, size_t c, cw_chunk_sink sink, cw_error *
 
 cw_status cw_mesh_spool_read(const cw_mesh_spool *spool, cw_chunk_sink sink, cw_error *err)
 {
+    CWI_REQUIRE(err, spool);
     reading *r = cwi_alloc_zeroed(1, sizeof *r);
     if (!r)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to read a surface back");

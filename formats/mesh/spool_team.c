@@ -162,6 +162,7 @@ static void describe_member(const cw_mesh_spool *s, member *m)
 
 cw_status cw_mesh_spool_share(cw_mesh_spool *s, const cw_team *team, cw_error *err)
 {
+    CWI_REQUIRE(err, s, team);
     const size_t count = team->size > 1 ? (size_t)team->size : 1;
     if (count == 1)
         return CW_OK;

@@ -162,7 +162,7 @@ cw_status cwi_plot3d_read(const cwi_input *in, const cw_read_desc *desc, cw_volu
     cwi_input points = {0};
     if (!desc->points)
         return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "a PLOT3D solution needs the file of its grid's points (--points)");
+                        "a PLOT3D solution needs the file of its grid's points (desc->points)");
     cw_status st = choose_quantity(desc->array, &p.quantity, err);
     if (st != CW_OK)
         return st;

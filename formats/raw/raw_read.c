@@ -144,6 +144,7 @@ static size_t pair_length(const char *text)
 
 cw_status cw_raw_layout_parse(const char *text, cw_raw_layout *layout, cw_error *err)
 {
+    CWI_REQUIRE(err, text, layout);
     cw_raw_layout out = {0};
     unsigned seen = 0;
     cw_status st = CW_OK;

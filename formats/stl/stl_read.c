@@ -58,7 +58,7 @@ static cw_status limit_memory(const facets *f, cw_error *err)
     char text[CWI_MEMORY_TEXT];
     cwi_print_memory(limit, text);
     return cwi_fail(err, CW_ERR_LIMIT,
-                    "the mesh needs more memory than the %s allowed (--memory)", text);
+                    "the mesh needs more memory than the %s allowed (desc->max_bytes)", text);
 }
 
 static cw_status check_corners(const facets *f, const float *corners, size_t count,

@@ -155,7 +155,7 @@ static void set_frame(const cwi_tiff_facts *f, const cw_read_desc *desc, cw_volu
     if (some && !known && !(desc->spacing_mm[0] > 0))
         cwi_note(desc,
                  "the file does not say all sizes of a voxel: what is missing is taken as "
-                 "1, and no unit is known; --spacing states them");
+                 "1, and no unit is known; desc->spacing_mm states them");
 }
 
 static cw_status make_room(cwi_stack *stack, size_t planes, size_t slots, cw_error *err)

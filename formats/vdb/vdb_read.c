@@ -109,7 +109,8 @@ static void tell_choice(const cw_read_desc *desc, const cwi_vdb_facts *f, const 
              (unsigned long long)g->active, (unsigned long long)g->leaf_count,
              (unsigned long long)g->tile_count, g->background);
     if (f->grid_count > 1)
-        cwi_note(desc, "it has %u grids: %s (--grid)", f->grid_count, list_names(f, names));
+        cwi_note(desc, "it has %u grids: %s (desc->array names one)", f->grid_count,
+                 list_names(f, names));
 }
 
 /* --- the volume --------------------------------------------------------------------------- */
@@ -136,8 +137,9 @@ static cw_status check_counts(const cwi_vdb_grid *g, uint64_t file_bytes,
         char needed[CWI_MEMORY_TEXT], limit[CWI_MEMORY_TEXT];
         cwi_print_memory(bytes, needed);
         cwi_print_memory(desc->max_bytes, limit);
-        return cwi_fail(err, CW_ERR_LIMIT, "grid '%s' needs %s; the limit is %s (--memory)",
-                        g->name, needed, limit);
+        return cwi_fail(err, CW_ERR_LIMIT,
+                        "grid '%s' needs %s; the limit is %s (desc->max_bytes)", g->name,
+                        needed, limit);
     }
     return CW_OK;
 }

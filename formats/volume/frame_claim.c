@@ -63,7 +63,8 @@ static void set_change(const axes *from, const axes *to, double m[3][3])
 
 static cw_status check_agreement(const cw_claim *claim, const saying *s, cw_error *err)
 {
-    static const char hint[] = "to be read so all the same, say --input-override";
+    static const char hint[] =
+        "to be read so all the same, say desc->claim.rule = CW_CLAIM_OVERRIDE";
     char text[32];
     if (claim->rule != CW_CLAIM_AGREE)
         return CW_OK;

@@ -59,7 +59,8 @@ bool cwi_array_list_tell(const cwi_array_list *list, char *text, size_t size)
             others += list->items[n].is_read;
     if (!taken || !others)
         return false;
-    size_t used = (size_t)snprintf(text, size, "the array '%s' is taken; --array takes", taken);
+    size_t used =
+        (size_t)snprintf(text, size, "the array '%s' is taken; desc->array takes", taken);
     for (size_t n = 0; n < list->count && used < size; n++) {
         const cw_array *a = &list->items[n];
         if (a->is_default || !a->is_read)

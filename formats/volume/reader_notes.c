@@ -19,7 +19,7 @@ void cwi_note(const cw_read_desc *desc, const char *format, ...)
 void cwi_note_links(const cw_read_desc *desc, size_t links)
 {
     if (links)
-        cwi_note(desc, "left out: %zu links; --allow-external follows them", links);
+        cwi_note(desc, "left out: %zu links; desc->allow_external follows them", links);
 }
 
 void cwi_set_spacing(cw_volume *v, const cw_read_desc *desc)

@@ -141,8 +141,8 @@ cw_status cwi_slices_lay(const double *places, size_t count, const char *unit, c
     cwi_free(sorted);
     if (gaps == CW_GAPS_STOP)
         return cwi_fail(err, CW_ERR_UNSAFE,
-                        "%s; --gaps interpolate makes slices at equal distances, --gaps allow "
-                        "takes these as if they were",
+                        "%s; desc->gaps = CW_GAPS_INTERPOLATE makes slices at equal distances, "
+                        "desc->gaps = CW_GAPS_ALLOW takes these as if they were",
                         slices->finding);
     return gaps == CW_GAPS_ALLOW ? lay_as_even(places, count, slices, err)
                                  : lay_row(places, count, steps, slices, err);

@@ -204,15 +204,15 @@ cw_status cwi_check_limits(const cw_volume *v, size_t bytes, const char *field,
     const uint64_t voxels = bytes / cw_type_size(v->type) / v->components;
     if (voxels > most)
         return cwi_fail(err, CW_ERR_LIMIT,
-                        "'%s' asks for %llu voxels; the limit is %llu (--max-voxels)", field,
-                        (unsigned long long)voxels, (unsigned long long)most);
+                        "'%s' asks for %llu voxels; the limit is %llu (desc->max_voxels)",
+                        field, (unsigned long long)voxels, (unsigned long long)most);
     if (desc->max_bytes && bytes > desc->max_bytes) {
         char asked[CWI_MEMORY_TEXT], limit[CWI_MEMORY_TEXT];
         cwi_print_memory(bytes, asked);
         cwi_print_memory(desc->max_bytes, limit);
         return cwi_fail(err, CW_ERR_LIMIT,
-                        "'%s' asks for %s of voxels; the limit is %s (--memory)", field, asked,
-                        limit);
+                        "'%s' asks for %s of voxels; the limit is %s (desc->max_bytes)", field,
+                        asked, limit);
     }
     return CW_OK;
 }

@@ -125,6 +125,7 @@ static cw_status check_entries(parsing *p, cw_error *err)
 cw_status cw_pvd_read(const char *path, const cw_read_desc *desc, cw_pvd_entry **entries,
                       size_t *count, cw_error *err)
 {
+    CWI_REQUIRE(err, path, entries, count);
     cwi_input in = {0};
     parsing p = {.in = &in};
     cw_status st = cwi_input_open(&in, path, err);
@@ -146,6 +147,8 @@ cw_status cw_pvd_read(const char *path, const cw_read_desc *desc, cw_pvd_entry *
 
 void cw_pvd_free(cw_pvd_entry *entries, size_t count)
 {
+    if (!entries)
+        return;
     for (size_t n = 0; n < count; n++)
         cwi_free((void *)(uintptr_t)entries[n].path);
     cwi_free(entries);
@@ -153,6 +156,8 @@ void cw_pvd_free(cw_pvd_entry *entries, size_t count)
 
 bool cw_pvd_is(const char *path)
 {
+    if (!path)
+        return false;
     unsigned char head[512];
     cwi_input in = {0};
     size_t size = 0;

@@ -75,7 +75,7 @@ static void note_labels(const cwi_zarr *z, const cwi_zarr_node *image, cwi_zarr_
             const char *name = json_string_value(json_array_get(list, n));
             used += (size_t)snprintf(
                 found->note + used, sizeof found->note - used, "%s'%.40s/%.40s'",
-                used ? ", " : "label maps of it, for --array: ", path, name ? name : "?");
+                used ? ", " : "label maps of it, for desc->array: ", path, name ? name : "?");
         }
     }
     cwi_zarr_node_close(&node);

@@ -49,8 +49,13 @@ typedef enum cw_status {
         CW_STATUS_COUNT
 } cw_status;
 
-/* The reason why a call failed, for a person: subject, problem, expected value, actual
- * value. */
+/* The reason why a call failed, for a person: subject, problem, expected value, actual value. A
+ * message names a field of the call's options as "desc->max_bytes".
+ *
+ * Each call that takes a cw_error begins by clearing it: after a success the status is CW_OK and
+ * the message is empty. NULL is allowed in its place. Other pointers that are NULL fail with
+ * CW_ERR_ARGUMENT, unless the call says that they may be. Functions named _free take NULL; those
+ * that look something up find nothing for it. */
 typedef struct cw_error {
     cw_status status;
     char message[512];

@@ -315,6 +315,7 @@ static cw_status run_pass(job *j, cw_label_surfaces *out, bool *is_kept, cw_erro
 cw_status cw_label_simplify(const cw_label_surfaces *in, const cw_label_simplify_desc *desc,
                             cw_label_surfaces *out, cw_error *err)
 {
+    CWI_REQUIRE(err, in, out);
     memset(out, 0, sizeof *out);
     cw_status st = check_desc(desc, err);
     if (st == CW_OK)

@@ -2,6 +2,7 @@
 #include "simplify/quality/cgal_wrap.h"
 
 #include "core/base/module.h"
+#include "core/base/status.h"
 
 static cw_status load_cgal(const cwi_cgal_functions **functions, cw_error *err)
 {
@@ -20,6 +21,7 @@ bool cw_quality_has_cgal(void)
 cw_status cw_quality_ask_cgal(const cw_mesh *mesh, cw_weld weld, cw_cgal_facts *out,
                               cw_error *err)
 {
+    CWI_REQUIRE(err, mesh, out);
     const cwi_cgal_functions *functions;
     cwi_welded welded = {0};
     *out = (cw_cgal_facts){0};
@@ -35,6 +37,7 @@ cw_status cw_quality_ask_cgal(const cw_mesh *mesh, cw_weld weld, cw_cgal_facts *
 cw_status cw_distance_by_cgal(const cw_mesh *mesh, const cw_mesh *reference,
                               double tolerance_mm, double *out_mm, cw_error *err)
 {
+    CWI_REQUIRE(err, mesh, reference, out_mm);
     const cwi_cgal_functions *functions;
     *out_mm = 0;
     cw_status st = cw_mesh_check(mesh, err);

@@ -149,6 +149,7 @@ static cw_status fill_copies(const copies *c, const cw_mesh *mesh, const float *
 cw_status cw_check_paint(const cw_mesh *mesh, const uint8_t *defects, const float *distances,
                          double full_mm, cw_mesh *out, cw_error *err)
 {
+    CWI_REQUIRE(err, mesh, out);
     copies c = {0};
     *out = (cw_mesh){0};
     cw_status st = cw_mesh_check(mesh, err);

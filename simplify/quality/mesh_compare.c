@@ -51,6 +51,7 @@ cw_status cw_mesh_compare(const cw_mesh *mesh, const cw_mesh *reference,
                           const cw_mesh_distance_desc *desc, cw_mesh_comparison *comparison,
                           cw_error *err)
 {
+    CWI_REQUIRE(err, mesh, reference, comparison);
     cw_distance to, from;
     if (desc && desc->worst)
         return cwi_fail(err, CW_ERR_ARGUMENT, "'worst' is of one mesh; two are measured");
@@ -70,11 +71,15 @@ cw_status cw_mesh_compare(const cw_mesh *mesh, const cw_mesh *reference,
 
 double cw_mesh_comparison_rms(const cw_mesh_comparison *comparison)
 {
+    if (!comparison)
+        return NAN;
     const double to = comparison->to_reference.rms_mm, from = comparison->from_reference.rms_mm;
     return sqrt(0.5 * (to * to + from * from));
 }
 
 double cw_mesh_comparison_max(const cw_mesh_comparison *comparison)
 {
+    if (!comparison)
+        return NAN;
     return fmax(comparison->to_reference.max_mm, comparison->from_reference.max_mm);
 }

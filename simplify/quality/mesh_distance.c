@@ -441,6 +441,7 @@ cw_status cw_distance_to_mesh(const cw_mesh *mesh, const cw_mesh *reference_mesh
                               const cw_mesh_distance_desc *desc, cw_distance *out,
                               float *per_vertex, cw_error *err)
 {
+    CWI_REQUIRE(err, mesh, reference_mesh, out);
     const cw_mesh_distance_desc none = {0}, *d = desc ? desc : &none;
     reference r = {0};
     memset(out, 0, sizeof *out);

@@ -78,6 +78,7 @@ static void turn_shells(work *w, cw_orient_counts *counts)
 
 cw_status cw_mesh_orient(cw_mesh *mesh, int threads, cw_orient_counts *counts, cw_error *err)
 {
+    CWI_REQUIRE(err, mesh);
     cw_orient_counts own = {0};
     cw_quality q;
     work w = {.mesh = mesh};

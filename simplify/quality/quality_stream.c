@@ -351,6 +351,7 @@ static cw_status take_chunk(void *user, const cw_mesh_chunk *chunk, cw_error *er
 cw_status cw_quality_stream_new(const cw_quality_stream_desc *desc, cw_quality_stream **out,
                                 cw_error *err)
 {
+    CWI_REQUIRE(err, out);
     cw_quality_stream *s = *out = cwi_alloc_zeroed(1, sizeof *s);
     if (!s)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to check a surface");
@@ -389,6 +390,7 @@ static void derive_totals(cw_quality_stream *s)
 
 cw_status cw_quality_stream_finish(cw_quality_stream *s, cw_quality *out, cw_error *err)
 {
+    CWI_REQUIRE(err, s, out);
     *out = (cw_quality){0};
     if (s->status != CW_OK || s->finished)
         return cwi_fail(err, s->status != CW_OK ? s->status : CW_ERR_ARGUMENT,
@@ -411,6 +413,8 @@ cw_status cw_quality_stream_finish(cw_quality_stream *s, cw_quality *out, cw_err
 
 size_t cw_quality_stream_bytes(const cw_quality_stream *stream)
 {
+    if (!stream)
+        return 0;
     return count_bytes(stream);
 }
 

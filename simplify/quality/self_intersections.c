@@ -188,6 +188,7 @@ static cw_status run_search(search *s, const cw_crossings_desc *d, cw_error *err
 cw_status cw_self_intersections(const cw_mesh *mesh, const cw_crossings_desc *desc,
                                 cw_crossings *out, cw_error *err)
 {
+    CWI_REQUIRE(err, mesh, out);
     const cw_crossings_desc d = desc ? *desc : (cw_crossings_desc){0};
     search s = {0};
     *out = (cw_crossings){0};
@@ -208,6 +209,8 @@ cw_status cw_self_intersections(const cw_mesh *mesh, const cw_crossings_desc *de
 
 void cw_crossings_free(cw_crossings *crossings)
 {
+    if (!crossings)
+        return;
     cwi_free(crossings->pairs);
     *crossings = (cw_crossings){0};
 }

@@ -329,6 +329,7 @@ static void free_work(work *w)
 cw_status cw_quality_measure(const cw_mesh *mesh, const cw_quality_desc *desc, cw_quality *out,
                              cw_error *err)
 {
+    CWI_REQUIRE(err, mesh, out);
     cw_quality_desc d = desc ? *desc : (cw_quality_desc){0};
     const cw_progress progress = d.progress;
     work w = {.defects = d.defects};
@@ -363,12 +364,15 @@ size_t cw_quality_bytes(size_t vertices, size_t triangles)
 
 bool cw_quality_is_closed_manifold(const cw_quality *q)
 {
+    if (!q)
+        return false;
     return !q->open_edges && !q->nonmanifold_edges && !q->misoriented_edges &&
            !q->nonmanifold_vertices;
 }
 
 cw_status cw_quality_compare(const cw_quality *before, const cw_quality *after, cw_error *err)
 {
+    CWI_REQUIRE(err, before, after);
     const struct {
         const char *what;
         long long before, after;

@@ -172,7 +172,7 @@ static void judge_shapes(bench *b)
         plural_ending(q->caps), s->min_edge_mm, s->max_edge_mm);
     if (v->grade == CW_GRADE_FAIL)
         v->advice =
-            "remesh, or extract with --snap 0.5: FEM wants 10 degrees and a ratio of 10";
+            "remesh, or extract with desc->snap = 0.5: FEM wants 10 degrees and a ratio of 10";
 }
 
 bool cw_check_wants_crossings(cw_profile profile)
@@ -190,7 +190,8 @@ static void judge_crossings(bench *b)
         say_finding(v,
                     x ? "undecided: too many triangles are in one place to look at every pair"
                       : "not looked for");
-        v->advice = x ? "drop the heap of slivers first" : "--deep looks for them";
+        v->advice =
+            x ? "drop the heap of slivers first" : "cw_self_intersections() looks for them";
         return;
     }
     cw_verdict *v = add_count(b, "self-intersections", &not_for_web, x->count,
@@ -233,7 +234,7 @@ static void judge_distance(bench *b, const char *name, const char *other, const 
         v, "at most %.4g mm from %s, rms %.3g, 99 %% within %.3g; farthest at %.8g, %.8g, %.8g",
         to->max_mm, other, to->rms_mm, to->p99_mm, to->where[0], to->where[1], to->where[2]);
     if (v->grade == CW_GRADE_FAIL)
-        v->advice = "beyond the tolerance: --defects shows where";
+        v->advice = "beyond the tolerance: cw_check_paint() shows where";
     if (!back)
         return;
     const bool covers = fmax(back->max_mm, back->bound_mm) <= tolerance;
@@ -261,7 +262,7 @@ static void judge_missing(bench *b)
         "mm3, and %s up to %.4g mm from the mesh",
         f->missing, plural_ending(f->missing), f->missing == 1 ? "has" : "have", f->missing_mm3,
         f->missing == 1 ? "it is" : "they are", f->missing_mm);
-    v->advice = "--min-volume leaves small ones out of the comparison";
+    v->advice = "cw_mesh_drop_volumes() leaves small ones out of the comparison";
 }
 
 static void judge_topology(bench *b)
@@ -333,6 +334,8 @@ static void sort_verdicts(cw_verdict *v, size_t count)
 size_t cw_check_judge(const cw_findings *findings, cw_profile profile,
                       cw_verdict verdicts[CW_MAX_VERDICTS])
 {
+    if (!findings || !verdicts)
+        return 0;
     bench b = {findings, profile, verdicts, 0};
     judge_size(&b);
     judge_surface(&b);
@@ -356,6 +359,8 @@ size_t cw_check_judge(const cw_findings *findings, cw_profile profile,
 
 bool cw_check_holds(const cw_verdict *verdicts, size_t count)
 {
+    if (!verdicts && count > 0)
+        return false;
     for (size_t n = 0; n < count; n++)
         if (verdicts[n].grade == CW_GRADE_FAIL || verdicts[n].grade == CW_GRADE_UNKNOWN)
             return false;

@@ -10,6 +10,8 @@
 
 void cw_simplify_view_free(cw_simplify_view *view)
 {
+    if (!view)
+        return;
     cwi_free(view->depth);
     view->depth = NULL;
 }
@@ -70,6 +72,7 @@ static void fill_triangle(cw_simplify_view *view, const spot s[3])
 
 cw_status cw_simplify_view_draw(cw_simplify_view *view, const cw_mesh *mesh, cw_error *err)
 {
+    CWI_REQUIRE(err, view, mesh);
     cwi_view_tolerance v;
     cw_status st = cwi_view_init(&v, view, 1, err);
     if (st == CW_OK)

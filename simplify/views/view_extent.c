@@ -26,6 +26,10 @@ cw_status cw_simplify_views_error(const cw_simplify_view *views, size_t view_cou
                                   double pixels, const double *points, size_t count,
                                   double *error_mm, cw_error *err)
 {
+    CWI_REQUIRE(err);
+    CWI_REQUIRE_ARRAY(err, points, count);
+    CWI_REQUIRE_ARRAY(err, views, view_count);
+    CWI_REQUIRE_ARRAY(err, error_mm, count);
     cw_status st = CW_OK;
     *error_mm = 0;
     for (size_t n = 0; n < view_count * count && st == CW_OK; n++) {
@@ -96,6 +100,8 @@ static cw_status find_seen(const cw_volume *v, const cw_simplify_view *views, si
 cw_status cw_simplify_views_box(const cw_volume *volume, const cw_simplify_view *views,
                                 size_t view_count, cw_box *box, cw_error *err)
 {
+    CWI_REQUIRE(err, volume, box);
+    CWI_REQUIRE_ARRAY(err, views, view_count);
     size_t low[3], high[3];
     cw_status st = cwi_volume_expect_dense(volume, "bricks", err);
     if (st == CW_OK)
@@ -115,6 +121,7 @@ cw_status cw_simplify_views_box(const cw_volume *volume, const cw_simplify_view 
 cw_status cw_simplify_view_distance(const cw_simplify_view *view, const cw_mesh *mesh,
                                     const float *distance_mm, double *pixels, cw_error *err)
 {
+    CWI_REQUIRE(err, view, mesh, distance_mm, pixels);
     cw_status st = CW_OK;
     *pixels = 0;
     for (size_t v = 0; v < mesh->vertex_count && st == CW_OK; v++) {

@@ -221,6 +221,9 @@ double cwi_views_limit(const cwi_views *views, const float *const corners[3], do
 cw_status cw_simplify_view_sees(const cw_simplify_view *view, double pixels,
                                 const double *points, size_t count, bool *seen, cw_error *err)
 {
+    CWI_REQUIRE(err, view);
+    CWI_REQUIRE_ARRAY(err, points, count);
+    CWI_REQUIRE_ARRAY(err, seen, count);
     cwi_view_tolerance v;
     place p[CWI_VIEW_HULL];
     cw_status st = cwi_view_init(&v, view, pixels, err);
@@ -252,6 +255,8 @@ static void mark_unseen(const cwi_views *views, const cw_mesh *m, double margin,
 cw_status cw_simplify_cull(cw_mesh *mesh, const cw_simplify_view *views, size_t count,
                            double pixels, double margin_mm, size_t *dropped, cw_error *err)
 {
+    CWI_REQUIRE(err, mesh);
+    CWI_REQUIRE_ARRAY(err, views, count);
     /* the error is never looked at */
     const cw_simplify_desc desc = {
         .error_mm = 1, .views = views, .view_count = count, .pixel_error = pixels};
@@ -279,6 +284,7 @@ cw_status cw_simplify_cull(cw_mesh *mesh, const cw_simplify_view *views, size_t 
 cw_status cw_simplify_view_error(const cw_simplify_view *view, double pixels,
                                  const double point[3], double *error_mm, cw_error *err)
 {
+    CWI_REQUIRE(err, view, point, error_mm);
     cwi_view_tolerance v;
     cw_status st = cwi_view_init(&v, view, pixels, err);
     *error_mm = 0;

@@ -534,6 +534,7 @@ static cw_status draw_scene(scene *s, cw_image *image, cw_error *err)
 cw_status cw_render_mesh(const cw_mesh *mesh, const cw_render_mesh_desc *desc, cw_image *image,
                          cw_error *err)
 {
+    CWI_REQUIRE(err, mesh, image);
     cw_render_mesh_desc d;
     scene s = {0};
     *image = (cw_image){0};

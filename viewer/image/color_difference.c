@@ -252,6 +252,7 @@ static double mean_similarity(const cw_picture *picture, const cw_picture *refer
 cw_status cw_picture_compare(const cw_picture *picture, const cw_picture *reference,
                              const float background[2][3], cw_comparison *out, cw_error *err)
 {
+    CWI_REQUIRE(err, picture, reference, background, out);
     *out = (cw_comparison){0};
     cw_status st = expect_same_size(picture, reference, err);
     if (st != CW_OK)
@@ -277,6 +278,7 @@ cw_status cw_picture_compare(const cw_picture *picture, const cw_picture *refere
 cw_status cw_picture_difference(const cw_picture *a, const cw_picture *b, double amplify,
                                 cw_picture *difference, cw_error *err)
 {
+    CWI_REQUIRE(err, a, b, difference);
     *difference = (cw_picture){0};
     cw_status st = expect_same_size(a, b, err);
     if (st == CW_OK && !(amplify > 0 && isfinite(amplify)))
@@ -300,6 +302,7 @@ cw_status cw_picture_difference(const cw_picture *a, const cw_picture *b, double
 cw_status cw_picture_split(const cw_picture *left, const cw_picture *right, double share,
                            cw_picture *both, cw_error *err)
 {
+    CWI_REQUIRE(err, left, right, both);
     *both = (cw_picture){0};
     cw_status st = expect_same_size(left, right, err);
     if (st == CW_OK && !(share >= 0 && share <= 1))

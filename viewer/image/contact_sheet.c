@@ -52,6 +52,8 @@ static size_t sheet_extent(size_t cells, size_t size, size_t gap)
 cw_status cw_image_tile(const cw_image *images, size_t count, size_t columns, size_t gap_px,
                         const uint8_t background[4], cw_image *sheet, cw_error *err)
 {
+    CWI_REQUIRE(err, background, sheet);
+    CWI_REQUIRE_ARRAY(err, images, count);
     size_t cell[2];
     *sheet = (cw_image){0};
     cw_status st = find_cell(images, count, cell, err);

@@ -130,6 +130,7 @@ static cw_status check_labels(const painting *p, const cw_scene *scene, cw_error
 cw_status cw_label_slices_draw(const cw_label_slices *labels, const cw_scene *scene,
                                cw_picture *picture, cw_error *err)
 {
+    CWI_REQUIRE(err, labels, scene, picture);
     cw_label_slices o = *labels;
     painting p = {.o = &o, .picture = picture};
     o.opacity = o.opacity != 0 ? o.opacity : 1;

@@ -503,6 +503,7 @@ static cw_status take_frame(const cw_scene *scene, const cw_image *image, cwi_fr
 cw_status cw_scale_bar(const cw_scene *scene, const cw_image *image, double *length_mm,
                        double *length_px, cw_error *err)
 {
+    CWI_REQUIRE(err, scene, image, length_mm, length_px);
     cwi_frame frame;
     cw_status st = take_frame(scene, image, &frame, err);
     if (st == CW_OK)
@@ -514,6 +515,7 @@ cw_status cw_scale_bar(const cw_scene *scene, const cw_image *image, double *len
 cw_status cw_overlay_draw(const cw_overlay *overlay, const cw_scene *scene, cw_image *image,
                           cw_error *err)
 {
+    CWI_REQUIRE(err, overlay, scene, image);
     cwi_frame frame;
     cw_status st = take_frame(scene, image, &frame, err);
     if (st == CW_OK)

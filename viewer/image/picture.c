@@ -12,6 +12,7 @@ enum { MAX_SIZE = 16384 };
 
 cw_status cw_picture_alloc(cw_picture *picture, size_t width, size_t height, cw_error *err)
 {
+    CWI_REQUIRE(err, picture);
     *picture = (cw_picture){0};
     if (width < 1 || width > MAX_SIZE || height < 1 || height > MAX_SIZE)
         return cwi_fail(err, CW_ERR_ARGUMENT, "a picture of %zu x %zu: expected 1 to %d pixels",
@@ -27,6 +28,8 @@ cw_status cw_picture_alloc(cw_picture *picture, size_t width, size_t height, cw_
 
 void cw_picture_free(cw_picture *picture)
 {
+    if (!picture)
+        return;
     cwi_free(picture->pixels);
     *picture = (cw_picture){0};
 }
@@ -49,6 +52,7 @@ static void show_pixel(const float *pixel, const double background[4], uint8_t *
 cw_status cw_picture_show(const cw_picture *picture, const uint8_t background[2][4],
                           cw_image *image, cw_error *err)
 {
+    CWI_REQUIRE(err, picture, background, image);
     const size_t w = picture->width, h = picture->height;
     cw_status st = cw_image_alloc(image, w, h, err);
     for (size_t y = 0; y < h && st == CW_OK; y++) {
@@ -65,6 +69,7 @@ cw_status cw_picture_show(const cw_picture *picture, const uint8_t background[2]
 cw_status cw_image_compare(const cw_image *a, const cw_image *b, int tolerance, size_t *differ,
                            cw_error *err)
 {
+    CWI_REQUIRE(err, a, b, differ);
     *differ = 0;
     if (a->width != b->width || a->height != b->height)
         return cwi_fail(err, CW_ERR_ARGUMENT, "images of %zu x %zu and %zu x %zu pixels",

@@ -11,6 +11,7 @@
 
 cw_status cw_image_alloc(cw_image *image, size_t width, size_t height, cw_error *err)
 {
+    CWI_REQUIRE(err, image);
     size_t pixels;
     *image = (cw_image){0};
     if (cwi_size_mul(width, height, &pixels))
@@ -25,6 +26,8 @@ cw_status cw_image_alloc(cw_image *image, size_t width, size_t height, cw_error 
 
 void cw_image_free(cw_image *image)
 {
+    if (!image)
+        return;
     cwi_free(image->pixels);
     *image = (cw_image){0};
 }
@@ -122,6 +125,7 @@ static cw_status encode_image(writer *w, const cw_image *image)
 
 cw_status cw_image_write(const char *path, const cw_image *image, cw_error *err)
 {
+    CWI_REQUIRE(err, path, image);
     writer w = {.err = err};
     cw_status st = image->pixels
                        ? cwi_outfile_open(&w.file, path, false, err)

@@ -105,6 +105,7 @@ static cw_status pick_nearest(const place *at, cw_picked *out, cw_error *err)
 cw_status cw_pick(const cw_scene *scene, const double pixel[2], cw_picked *picked,
                   cw_error *err)
 {
+    CWI_REQUIRE(err, scene, pixel, picked);
     cwi_frame f;
     cwi_gradient_volume gradients = {0};
     memset(picked, 0, sizeof *picked);

@@ -28,6 +28,8 @@ const char *cw_mode_source(cw_mode mode)
 
 bool cw_mode_draws(cw_mode mode, const cw_volume *volume)
 {
+    if (!volume)
+        return false;
     const bool is_uneven = volume->cells || cwi_is_rectilinear(volume);
     if (mode == CW_MODE_MESH)
         return true;

@@ -107,6 +107,7 @@ static bool find_extent(const cw_volume *v, const cw_slice *s, const double axes
 cw_status cw_slice_camera(const cw_volume *volume, const cw_slice *slice, double aspect,
                           cw_camera *camera, cw_error *err)
 {
+    CWI_REQUIRE(err, volume, slice, camera);
     static const double margin = 0.02;
     cw_volume v;
     cw_slice s = *slice;

@@ -135,6 +135,7 @@ static void find_corners(const cw_volume *v, const double ends[3][2], double low
 cw_status cw_transfer_box(const cw_volume *volume, const cw_transfer *transfer, int threads,
                           double low[3], double high[3], cw_error *err)
 {
+    CWI_REQUIRE(err, volume, transfer, low, high);
     cw_volume v;
     double ends[3][2];
     cw_status st = cw_volume_select(volume, 0, 0, &v, err);

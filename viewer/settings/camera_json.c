@@ -68,16 +68,19 @@ static cw_status parse_camera(const char *bytes, size_t size, void *out, cw_erro
 
 cw_status cw_camera_read(const char *path, cw_camera *camera, cw_error *err)
 {
+    CWI_REQUIRE(err, path, camera);
     return cwi_json_read(path, parse_camera, camera, err);
 }
 
 cw_status cw_camera_parse(const char *text, cw_camera *camera, cw_error *err)
 {
+    CWI_REQUIRE(err, text, camera);
     return parse_camera(text, strlen(text), camera, err);
 }
 
 cw_status cw_camera_format(const cw_camera *camera, char text[CW_CAMERA_TEXT], cw_error *err)
 {
+    CWI_REQUIRE(err, camera, text);
     char n[10][CWI_JSON_NUMBER];
     const bool flat = camera->fov_deg == 0;
     double axes[3][3];
@@ -103,6 +106,7 @@ cw_status cw_camera_format(const cw_camera *camera, char text[CW_CAMERA_TEXT], c
 
 cw_status cw_camera_write(const char *path, const cw_camera *camera, cw_error *err)
 {
+    CWI_REQUIRE(err, path, camera);
     char text[CW_CAMERA_TEXT];
     cw_status st = cw_camera_format(camera, text, err);
     return st == CW_OK ? cwi_outfile_save(path, text, strlen(text), err) : st;

@@ -77,6 +77,7 @@ static cw_status check_length(const char *name, double length, cw_error *err)
 
 cw_status cw_transfer_check(const cw_transfer *t, cw_error *err)
 {
+    CWI_REQUIRE(err, t);
     if (t->color_count > CW_TRANSFER_POINTS || t->opacity_count > CW_TRANSFER_POINTS ||
         t->gradient_count > CW_TRANSFER_POINTS || t->index_count > CW_TRANSFER_POINTS)
         return cwi_fail(err, CW_ERR_ARGUMENT, "a transfer function has at most %d points",

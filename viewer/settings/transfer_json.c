@@ -230,11 +230,13 @@ static cw_status parse_transfer(const char *bytes, size_t size, void *out, cw_er
 
 cw_status cw_transfer_read(const char *path, cw_transfer *transfer, cw_error *err)
 {
+    CWI_REQUIRE(err, path, transfer);
     return cwi_json_read(path, parse_transfer, transfer, err);
 }
 
 cw_status cw_transfer_parse(const char *text, cw_transfer *transfer, cw_error *err)
 {
+    CWI_REQUIRE(err, text, transfer);
     return cwi_transfer_parse(text, strlen(text), transfer, err);
 }
 
@@ -293,6 +295,7 @@ static void put_transfer(FILE *out, const cw_transfer *t)
 cw_status cw_transfer_format(const cw_transfer *transfer, char text[CW_TRANSFER_TEXT],
                              cw_error *err)
 {
+    CWI_REQUIRE(err, transfer, text);
     cw_status st = cw_transfer_check(transfer, err);
     if (st != CW_OK)
         return st;
@@ -309,6 +312,7 @@ cw_status cw_transfer_format(const cw_transfer *transfer, char text[CW_TRANSFER_
 
 cw_status cw_transfer_write(const char *path, const cw_transfer *transfer, cw_error *err)
 {
+    CWI_REQUIRE(err, path, transfer);
     char text[CW_TRANSFER_TEXT];
     cw_status st = cw_transfer_format(transfer, text, err);
     return st == CW_OK ? cwi_outfile_save(path, text, strlen(text), err) : st;

@@ -233,6 +233,8 @@ static cw_status check_material(const cw_material_class *m, size_t n, cw_error *
 cw_status cw_transfer_set_materials(cw_transfer *t, const cw_material_class *materials,
                                     size_t count, cw_error *err)
 {
+    CWI_REQUIRE(err, t);
+    CWI_REQUIRE_ARRAY(err, materials, count);
     mixture m = {materials, count, 0};
     double low = 0, high = 0; /* no material has the index 0 */
     bool is_bounded = false;

@@ -487,6 +487,7 @@ static void make_single(const cw_statistics *s, cw_transfer *t)
 cw_status cw_transfer_preset(const char *name, const cw_statistics *statistics,
                              cw_transfer *transfer, cw_error *err)
 {
+    CWI_REQUIRE(err, name, transfer);
     size_t n = 0;
     cw_transfer t = {0};
     while (n < PRESETS && strcmp(presets[n].name, name) != 0)

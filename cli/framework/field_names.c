@@ -1,0 +1,51 @@
+/* The fields and calls that messages of the library name, and the options that stand for them. */
+#include "cli/framework/field_names.h"
+
+#include <string.h>
+
+static const struct {
+    const char *in_c, *option;
+} names[] = {
+    {"desc->gaps = CW_GAPS_INTERPOLATE", "--gaps interpolate"},
+    {"desc->gaps = CW_GAPS_ALLOW", "--gaps allow"},
+    {"desc->tilt = CW_TILT_KEEP", "--tilt keep"},
+    {"desc->claim.rule = CW_CLAIM_OVERRIDE", "--input-override"},
+    {"desc->claim.unit", "--input-unit"},
+    {"desc->max_bytes", "--memory"},
+    {"(max_bytes)", "(--memory)"},
+    {"desc->max_triangles", "--max-triangles"},
+    {"desc->max_voxels", "--max-voxels"},
+    {"desc->no_sandbox", "--no-sandbox"},
+    {"desc->timeout_s", "--timeout"},
+    {"desc->spacing_mm", "--spacing"},
+    {"desc->series", "--series"},
+    {"(desc->array names one)", "(--grid)"},
+    {"desc->array", "--array"},
+    {"desc->points", "--points"},
+    {"desc->raw", "--raw"},
+    {"desc->allow_external", "--allow-external"},
+    {"desc->snap = 0.5", "--snap 0.5"},
+    {"cw_self_intersections()", "--deep"},
+    {"cw_check_paint()", "--defects"},
+    {"cw_mesh_drop_volumes()", "--min-volume"},
+};
+
+const char *cli_name_options(const char *message, char to[CLI_MESSAGE])
+{
+    size_t used = 0;
+    while (*message && used + 1 < CLI_MESSAGE) {
+        size_t n = 0;
+        while (n < sizeof names / sizeof *names &&
+               strncmp(message, names[n].in_c, strlen(names[n].in_c)) != 0)
+            n++;
+        const char *option = n < sizeof names / sizeof *names ? names[n].option : NULL;
+        const size_t length = option ? strlen(option) : 1;
+        if (used + length >= CLI_MESSAGE)
+            break;
+        memcpy(to + used, option ? option : message, length);
+        used += length;
+        message += option ? strlen(names[n].in_c) : 1;
+    }
+    to[used] = '\0';
+    return to;
+}
