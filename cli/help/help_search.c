@@ -84,7 +84,7 @@ static void add_wish(query *q, const char *word, const cli_synonym *s)
     if (s && s->name && !stands_for(word, s->name))
         printf("'%s' is called '%s' here.\n", word, s->name);
     if (s && s->note)
-        cli_print_wrapped(s->note, 0);
+        cli_print_wrapped(stdout, s->note, 0);
 }
 
 /* A phrase of the table stands as one; else every word is looked for. */
