@@ -230,7 +230,8 @@ static size_t search_commands(const query *q)
     return found;
 }
 
-/* Names the commands and topics whose page has the words; the page of help has words as examples. */
+/* Names the commands and topics whose page has the words; the page of help has words as
+ * examples. */
 static size_t search_pages(const query *q)
 {
     size_t found = 0;

@@ -122,6 +122,14 @@ static cw_status print_more(const cli_command *c, cw_error *err)
                     : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the page of %s", c->name);
 }
 
+static bool has_flags(const cli_command *c)
+{
+    for (size_t n = 0; n < c->option_count; n++)
+        if (c->options[n].kind == CLI_FLAG)
+            return true;
+    return false;
+}
+
 static cw_status print_command(const cli_command *c, cw_error *err)
 {
     print_title(c->name, 1);
@@ -131,8 +139,9 @@ static cw_status print_command(const cli_command *c, cw_error *err)
     puts("\n.SH DESCRIPTION");
     cli_roff_page(c->page, CLI_ROFF_TEXT, true);
     puts(".SH OPTIONS\nThe default of an option is in brackets.");
-    puts(
-        "A flag \\fB\\-\\-\\fP\\fINAME\\fP is switched off by \\fB\\-\\-no\\-\\fP\\fINAME\\fP.");
+    if (has_flags(c))
+        puts("A flag \\fB\\-\\-\\fP\\fINAME\\fP is switched off by "
+             "\\fB\\-\\-no\\-\\fP\\fINAME\\fP.");
     for (size_t n = 0; n < c->option_count; n++)
         print_option(&c->options[n]);
     for (size_t n = 0; n < cli_common_option_count; n++)
