@@ -15,6 +15,16 @@ static bool is_wanted(const driver *f, const char *path, const char *format)
                                    : cwi_has_extension(path, f->save.extensions));
 }
 
+const cw_format *cw_volume_format(const char *path, const char *name)
+{
+    size_t count;
+    const cw_format *all = cw_formats(&count);
+    for (size_t n = 0; cwi_format_at(n); n++)
+        if (is_wanted(cwi_format_at(n), path, name))
+            return n < count ? &all[n] : NULL;
+    return NULL;
+}
+
 static const char *writer_name(const driver *f)
 {
     return f->save.save ? f->name : NULL;

@@ -62,4 +62,12 @@ code=0
 [ $code = 5 ] && grep -q 'CUBEWRIGHT_GLTF=ON and the Debian package libtinygltf-dev' error
 "$prefix/bin/cubewright" extract s.nrrd --iso 0 -o t.stl -q
 cmp s.stl t.stl
+# manual pages and completion, where the build could write them
+if [ -f "$build/pages" ]; then
+    for file in man/man1/cubewright.1 man/man1/cubewright-extract.1 man/man3/cubewright.3 \
+        bash-completion/completions/cubewright fish/vendor_completions.d/cubewright.fish; do
+        test -s "usr/share/$file" || { echo "$file is not installed"; exit 1; }
+    done
+    find usr/share/zsh -name _cubewright | grep -q . || { echo "no completion of zsh"; exit 1; }
+fi
 echo "the installed library and program work"

@@ -24,7 +24,7 @@ static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
      "Mesh to write, in the format of its extension; may hold {stem}, with --split {name} "
      "and {part}",
-     offsetof(convert_args, output)},
+     offsetof(convert_args, output), CLI_VALUES_MESH_OUTPUT},
     CLI_HEADED("Parts and checks"),
     {"merge", 0, CLI_FLAG, NULL,
      "Join all parts to one mesh (off: keep parts where the format has them)",
@@ -208,6 +208,7 @@ const cli_command cli_convert = {
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,
     .max_inputs = 1,
+    .inputs = CLI_VALUES_MESH,
     .size = sizeof(convert_args),
     .defaults = &defaults,
     .run = run_convert,

@@ -38,7 +38,7 @@ static const cli_option options[] = {
      offsetof(info_args, iso)},
     {"names", 0, CLI_TEXT, "FILE",
      "Table of the labels' names and colours (in the volume, else in a file beside it)",
-     offsetof(info_args, names)},
+     offsetof(info_args, names), CLI_VALUES_FILE},
     {"levels", 0, CLI_FLAG, NULL,
      "Predict the number of triangles at each suggested isovalue (off)",
      offsetof(info_args, levels)},
@@ -715,6 +715,7 @@ const cli_command cli_info = {
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,
     .max_inputs = SIZE_MAX,
+    .inputs = CLI_VALUES_VOLUME,
     .size = sizeof(info_args),
     .run = run_info,
 };

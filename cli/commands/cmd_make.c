@@ -1,9 +1,9 @@
 /* The command make: samples an analytic field or a hard case and writes the volume. */
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
+#include "cli/inputs/synthetic_input.h"
 #include "core/base/status.h"
 
-#include <cubewright/field.h>
 #include <cubewright/formats.h>
 #include <cubewright/hard.h>
 
@@ -26,7 +26,7 @@ static const make_args defaults = {.type = CW_F32, .dims = {.count = 3, .n = {64
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE", "Volume to write: .nrrd, .nii, .nii.gz or .mha",
-     offsetof(make_args, output)},
+     offsetof(make_args, output), CLI_VALUES_VOLUME_OUTPUT},
     {"list", 'l', CLI_FLAG, NULL, "List the fields and their isovalues",
      offsetof(make_args, list)},
     {"no-clobber", 0, CLI_FLAG, NULL, "Fail if the output exists (off: replace it)",
@@ -47,45 +47,10 @@ static const cli_option options[] = {
      offsetof(make_args, threads)},
 };
 
-/* A subject to make: the fields come first, then the label maps and the hard cases. */
-typedef struct subject {
-    const char *name, *about;
-    double isovalue;
-    bool hard, is_label_map;
-    size_t number; /* of the field, the label map or the hard case */
-} subject;
-
-static const subject label_maps[] = {
-    {"labels/cells", "label map: cells that touch each other, in a ball", 0, false, true,
-     CW_LABEL_CELLS},
-    {"labels/spheres", "label map: spheres, some of which touch", 0, false, true,
-     CW_LABEL_SPHERES},
-};
-enum { LABEL_MAPS = sizeof label_maps / sizeof *label_maps };
-
-static bool subject_at(size_t n, subject *s)
-{
-    if (n < CW_FIELD_COUNT) {
-        const cw_field f = (cw_field)n;
-        *s = (subject){cw_field_name(f), cw_field_about(f), cw_field_isovalue(f), .number = n};
-        return true;
-    }
-    n -= CW_FIELD_COUNT;
-    if (n < LABEL_MAPS) {
-        *s = label_maps[n];
-        return true;
-    }
-    n -= LABEL_MAPS;
-    const cw_hard *hard = cw_hard_at(n);
-    if (hard)
-        *s = (subject){hard->name, hard->about, hard->isovalue, .hard = true, .number = n};
-    return hard != NULL;
-}
-
 static cw_status list_subjects(void)
 {
-    subject s;
-    for (size_t n = 0; subject_at(n, &s); n++)
+    cli_made_field s;
+    for (size_t n = 0; cli_made_field_at(n, &s); n++)
         if (s.is_label_map)
             printf("%-28s--labels  %s\n", s.name, s.about);
         else
@@ -94,9 +59,9 @@ static cw_status list_subjects(void)
     return CW_OK;
 }
 
-static bool find_subject(const char *name, subject *s)
+static bool find_subject(const char *name, cli_made_field *s)
 {
-    for (size_t n = 0; subject_at(n, s); n++)
+    for (size_t n = 0; cli_made_field_at(n, s); n++)
         if (strcmp(s->name, name) == 0)
             return true;
     return false;
@@ -107,8 +72,8 @@ enum { MAX_SUBJECTS = 256 };
 static cw_status unknown_subject(const char *name, cw_error *err)
 {
     const char *names[MAX_SUBJECTS + 1] = {0};
-    subject s;
-    for (size_t n = 0; n < MAX_SUBJECTS && subject_at(n, &s); n++)
+    cli_made_field s;
+    for (size_t n = 0; n < MAX_SUBJECTS && cli_made_field_at(n, &s); n++)
         names[n] = s.name;
     const char *nearest = cli_nearest(name, names);
     if (nearest)
@@ -172,13 +137,13 @@ static cw_status sample_hard(const make_args *args, size_t number, cw_volume *vo
 }
 
 /* Returns the isovalue as voxels of that type store it. */
-static double stored_level(const subject *s, cw_type type)
+static double stored_level(const cli_made_field *s, cw_type type)
 {
     return s->hard ? cw_hard_stored(s->number, type, s->isovalue)
                    : cw_field_stored((cw_field)s->number, type, s->isovalue);
 }
 
-static cw_status make_field(const make_args *args, const subject *s, cw_error *err)
+static cw_status make_field(const make_args *args, const cli_made_field *s, cw_error *err)
 {
     cw_volume volume;
     if (args->labels && !s->is_label_map)
@@ -208,7 +173,7 @@ static cw_status make_field(const make_args *args, const subject *s, cw_error *e
 static cw_status run_make(void *p, cw_error *err)
 {
     make_args *args = p;
-    subject s;
+    cli_made_field s;
     if (args->list)
         return list_subjects();
     if (args->common.input_count == 0)
@@ -233,6 +198,7 @@ const cli_command cli_make = {
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .max_inputs = 1,
+    .inputs = CLI_VALUES_MADE_FIELD,
     .size = sizeof(make_args),
     .defaults = &defaults,
     .run = run_make,

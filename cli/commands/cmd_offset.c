@@ -28,6 +28,7 @@ const cli_command cli_offset = {
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,
     .max_inputs = 1,
+    .inputs = CLI_VALUES_MESH,
     .size = sizeof(cli_solid_args),
     .defaults = &cli_solid_defaults,
     .run = cli_run_offset,

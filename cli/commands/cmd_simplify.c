@@ -10,7 +10,7 @@ static const cli_simplify_args defaults = {.measure = true};
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
      "Mesh to write, in the format of its extension; may hold {stem}, with --lod {lod}",
-     offsetof(cli_simplify_args, output)},
+     offsetof(cli_simplify_args, output), CLI_VALUES_MESH_OUTPUT},
     CLI_HEADED("Target"),
     {"error", 'e', CLI_LENGTH, "L", "Error limit: 0.1mm, or 0.05% of the box's diagonal",
      offsetof(cli_simplify_args, error)},
@@ -44,7 +44,7 @@ static const cli_option options[] = {
     CLI_HEADED("Source volume and error"),
     {"source", 's', CLI_TEXT, "VOLUME",
      "Volume to take normals from (off: carry over the input's)",
-     offsetof(cli_simplify_args, source)},
+     offsetof(cli_simplify_args, source), CLI_VALUES_VOLUME},
     {"iso", 'i', CLI_NUMBER, "V",
      "Isovalue of the source, to measure the distance to its surface, too",
      offsetof(cli_simplify_args, iso)},
@@ -64,7 +64,7 @@ static const cli_option options[] = {
      CLI_INPUT_ROW(cli_simplify_args, max_triangles)},
     {"mesh-reader", 0, CLI_TEXT, "NAME",
      "Read the mesh as this format; names as in 'formats' (by content)",
-     offsetof(cli_simplify_args, mesh_reader)},
+     offsetof(cli_simplify_args, mesh_reader), CLI_VALUES_MESH_READER},
     CLI_PROGRESS_OPTION(cli_simplify_args),
 };
 
@@ -127,6 +127,7 @@ const cli_command cli_simplify = {
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,
     .max_inputs = 1,
+    .inputs = CLI_VALUES_MESH,
     .size = sizeof(cli_simplify_args),
     .defaults = &defaults,
     .run = cli_run_simplify,

@@ -30,7 +30,8 @@ typedef struct cli_solid_args {
          CLI_TEXT,                                                                             \
          "FILE",                                                                               \
          "Mesh to write, in the format of its extension; may hold {stem}",                     \
-         offsetof(cli_solid_args, output)},                                                    \
+         offsetof(cli_solid_args, output),                                                     \
+         CLI_VALUES_MESH_OUTPUT},                                                              \
         CLI_JSON_OPTION(cli_solid_args), CLI_WRITTEN_OPTIONS(cli_solid_args),                  \
         CLI_COMPRESS_OPTIONS(cli_solid_args), CLI_MESH_INPUT_OPTIONS(cli_solid_args),          \
         CLI_PROGRESS_OPTION(cli_solid_args)

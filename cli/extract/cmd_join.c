@@ -16,9 +16,9 @@ static const join_args defaults = {.check = true};
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE", "Mesh to write, in the format of its extension",
-     offsetof(join_args, output)},
+     offsetof(join_args, output), CLI_VALUES_MESH_OUTPUT},
     {"format", 0, CLI_TEXT, "NAME", "Format to write; names as in 'formats' (by extension)",
-     offsetof(join_args, format)},
+     offsetof(join_args, format), CLI_VALUES_MESH_WRITER},
     {"name", 0, CLI_TEXT, "TEXT", "Name of the object inside the file (the file's)",
      offsetof(join_args, name)},
     {"local", 0, CLI_FLAG, NULL,
@@ -73,6 +73,7 @@ const cli_command cli_join = {
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,
     .max_inputs = 1,
+    .inputs = CLI_VALUES_FOLDER,
     .size = sizeof(join_args),
     .defaults = &defaults,
     .run = run_join,

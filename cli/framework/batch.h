@@ -34,7 +34,7 @@
     {                                                                                          \
         "json-lines", 0, CLI_TEXT, "FILE",                                                     \
             "Write a line of JSON for each input: its status, time and report",                \
-            CLI_BATCH_ROW(args, json_lines)                                                    \
+            CLI_BATCH_ROW(args, json_lines), CLI_VALUES_JSON_LINES                             \
     }
 #define CLI_BATCH_ROW(args, field)                                                             \
     offsetof(args, common) + offsetof(cli_common, batch) + offsetof(cli_batch, field)

@@ -15,8 +15,20 @@ extern const char cli_page_bench[], cli_page_check[], cli_page_convert[], cli_pa
     cli_page_make[], cli_page_offset[], cli_page_render[], cli_page_report[],
     cli_page_simplify[], cli_page_version[], cli_page_view[];
 
+/* Pages of topics. */
+extern const char cli_page_environment[], cli_page_library[];
+
 /* In the order of help; the last is NULL. */
 extern const cli_command *const cli_commands[];
+
+/* A page of 'help' that is not about a command. */
+typedef struct cli_topic {
+    const char *name, *about;
+    const char *page; /* NULL: the exit codes */
+} cli_topic;
+
+/* The last row has no name. */
+extern const cli_topic cli_topics[];
 
 /* The row of a name; NULL, and an error with the nearest name, when there is none. */
 const cli_command *cli_find_command(const char *name, cw_error *err);

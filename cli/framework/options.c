@@ -13,7 +13,8 @@ const cli_option cli_common_options[] = {
     {"verbose", 'v', CLI_LOUDER, NULL,
      "Print the time and memory of each step; -vv also the settings",
      offsetof(cli_common, verbose)},
-    {"help", 'h', CLI_FLAG, NULL, "Print this help", offsetof(cli_common, help)},
+    {"help", 'h', CLI_FLAG, NULL, "Print the options of the command",
+     offsetof(cli_common, help)},
 };
 const size_t cli_common_option_count = sizeof cli_common_options / sizeof *cli_common_options;
 
@@ -453,23 +454,23 @@ cw_status cli_parse(const cli_command *command, int count, char **words, void *a
 /* Width of the help, and the column where the texts of options begin. */
 enum { HELP_WIDTH = 96, TEXT_COLUMN = 32 };
 
-void cli_print_wrapped(const char *text, size_t from)
+void cli_print_wrapped(FILE *out, const char *text, size_t from)
 {
     size_t column = from;
     for (bool first = true; *text; first = false) {
         const size_t length = strcspn(text, " ");
         if (!first && column + 1 + length > HELP_WIDTH) {
-            printf("\n%*s", (int)from, "");
+            fprintf(out, "\n%*s", (int)from, "");
             column = from;
         } else if (!first) {
-            putchar(' ');
+            fputc(' ', out);
             column++;
         }
-        printf("%.*s", (int)length, text);
+        fprintf(out, "%.*s", (int)length, text);
         column += length;
         text += length + (text[length] == ' ');
     }
-    putchar('\n');
+    fputc('\n', out);
 }
 
 /* Prints "--mode a/b/c", after a '/' in a new line where it would be too long; returns its
@@ -506,7 +507,7 @@ static void print_option(const cli_option *o)
         printf("\n%*s", TEXT_COLUMN, "");
     else
         printf("%*s", (int)(TEXT_COLUMN - length), "");
-    cli_print_wrapped(o->about, TEXT_COLUMN);
+    cli_print_wrapped(stdout, o->about, TEXT_COLUMN);
 }
 
 void cli_print_help(const cli_command *command, bool long_form)
@@ -521,7 +522,7 @@ void cli_print_help(const cli_command *command, bool long_form)
     for (size_t n = 0; (o = option_at(command, n)); n++)
         print_option(o);
     if (long_form && command->print_more)
-        command->print_more();
+        command->print_more(stdout);
     if (!long_form)
         printf("\n'cubewright help %s' explains more, with examples.\n", command->name);
 }

@@ -4,6 +4,8 @@
 
 #include <cubewright/core.h>
 
+#include <stdio.h>
+
 typedef enum cli_kind {
     CLI_FLAG,      /* bool; --x and --no-x */
     CLI_TEXT,      /* const char * */
@@ -107,6 +109,38 @@ typedef struct cli_steps {
     } rows[CLI_MAX_STEPS];
 } cli_steps;
 
+/* Values that an option or an input may have, for the completion of shells. The words in lower
+ * case of a row's `value`, such as off of off/L, are offered in any case. */
+typedef enum cli_values {
+    CLI_VALUES_ANY, /* nothing more is known */
+    CLI_VALUES_FILE,
+    CLI_VALUES_FOLDER,
+    CLI_VALUES_VOLUME, /* files to read */
+    CLI_VALUES_MESH,
+    CLI_VALUES_SCENE, /* volumes and meshes */
+    CLI_VALUES_STUDY, /* volumes, and fields that are known exactly */
+    CLI_VALUES_VOLUME_OUTPUT,
+    CLI_VALUES_MESH_OUTPUT,
+    CLI_VALUES_DEFECTS, /* meshes with colours */
+    CLI_VALUES_JSON,
+    CLI_VALUES_JSON_INPUT,
+    CLI_VALUES_JSON_LINES,
+    CLI_VALUES_CSV,
+    CLI_VALUES_HTML,
+    CLI_VALUES_PNG,
+    CLI_VALUES_PVD,
+    CLI_VALUES_READER, /* names of formats */
+    CLI_VALUES_MESH_READER,
+    CLI_VALUES_MESH_WRITER,
+    CLI_VALUES_TRANSFER,   /* transfer functions, and files of them */
+    CLI_VALUES_VIEW,       /* views of a camera, and files of cameras */
+    CLI_VALUES_FIELD,      /* fields that are known exactly */
+    CLI_VALUES_MADE_FIELD, /* all fields of 'make' */
+    CLI_VALUES_TOPIC,      /* commands and topics of 'help' */
+    CLI_VALUES_MANUAL,     /* manual pages */
+    CLI_VALUES_COUNT
+} cli_values;
+
 typedef struct cli_option {
     const char *name; /* without the dashes */
     char letter;      /* of the short form; 0: none */
@@ -114,6 +148,7 @@ typedef struct cli_option {
     const char *value; /* what help calls the value; for CLI_CHOICE the choices */
     const char *about; /* for help; the default stands in brackets at the end */
     size_t offset;     /* of its field in the command's struct */
+    cli_values values; /* for completion; 0: see cli_values */
 } cli_option;
 
 /* A row that is no option: the options below it stand under this name in the help. */
@@ -126,7 +161,7 @@ typedef struct cli_option {
 #define CLI_JSON_OPTION(args)                                                                  \
     {                                                                                          \
         "json", 0, CLI_TEXT, "FILE", "Write a report as JSON; - is the standard output",       \
-            offsetof(args, json)                                                               \
+            offsetof(args, json), CLI_VALUES_JSON                                              \
     }
 #define CLI_PROGRESS_OPTION(args)                                                              \
     {                                                                                          \
@@ -167,10 +202,11 @@ typedef struct cli_command {
     const cli_option *options;
     size_t option_count;
     size_t min_inputs, max_inputs;
-    bool slices; /* the input may be slices, which a shell may make many arguments of */
-    size_t size; /* of the struct that options fill in; it begins with cli_common */
-    void (*print_more)(void); /* behind the options of the long help; NULL: nothing */
-    const void *defaults;     /* that struct before any option; NULL: zeros */
+    cli_values inputs; /* for completion */
+    bool slices;       /* the input may be slices, which a shell may make many arguments of */
+    size_t size;       /* of the struct that options fill in; it begins with cli_common */
+    void (*print_more)(FILE *out); /* behind the options of the long help; NULL: nothing */
+    const void *defaults;          /* that struct before any option; NULL: zeros */
     cw_status (*run)(void *args, cw_error *err);
 } cli_command;
 
@@ -193,9 +229,9 @@ bool cli_option_text(const cli_option *option, const void *args, char *text, siz
 /* The help of a command: the options, and in the long form its page before them. */
 void cli_print_help(const cli_command *command, bool long_form);
 
-/* Prints a text to the standard output, where the cursor stands in a column: in lines of up to
- * 96 columns that begin there. */
-void cli_print_wrapped(const char *text, size_t column);
+/* Prints a text where the cursor stands in a column: in lines of up to 96 columns that begin
+ * there. */
+void cli_print_wrapped(FILE *out, const char *text, size_t column);
 
 /* The candidate most like a word, or NULL when none is close; names end with a NULL. */
 const char *cli_nearest(const char *word, const char *const *names);

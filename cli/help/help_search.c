@@ -84,7 +84,7 @@ static void add_wish(query *q, const char *word, const cli_synonym *s)
     if (s && s->name && !stands_for(word, s->name))
         printf("'%s' is called '%s' here.\n", word, s->name);
     if (s && s->note)
-        cli_print_wrapped(s->note, 0);
+        cli_print_wrapped(stdout, s->note, 0);
 }
 
 /* A phrase of the table stands as one; else every word is looked for. */
@@ -230,7 +230,8 @@ static size_t search_commands(const query *q)
     return found;
 }
 
-/* Names the commands whose page has the words; the page of help has words as examples. */
+/* Names the commands and topics whose page has the words; the page of help has words as
+ * examples. */
 static size_t search_pages(const query *q)
 {
     size_t found = 0;
@@ -238,6 +239,9 @@ static size_t search_pages(const query *q)
         if (cli_commands[n] != &cli_help &&
             fits_query(&(subject){NULL, {cli_commands[n]->page}}, q))
             printf("%s%s", found++ ? ", help " : "see also: help ", cli_commands[n]->name);
+    for (const cli_topic *t = cli_topics; t->name; t++)
+        if (t->page && fits_query(&(subject){NULL, {t->page}}, q))
+            printf("%s%s", found++ ? ", help " : "see also: help ", t->name);
     if (found)
         putchar('\n');
     return found;

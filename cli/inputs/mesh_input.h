@@ -14,7 +14,8 @@
          CLI_TEXT,                                                                             \
          "NAME",                                                                               \
          "Read the file as this format; names as in 'formats' (by content)",                   \
-         CLI_INPUT_ROW(args, reader)},                                                         \
+         CLI_INPUT_ROW(args, reader),                                                          \
+         CLI_VALUES_MESH_READER},                                                              \
         CLI_CLAIM_OPTIONS("input", "the input", CLI_INPUT_ROW(args, claim)),                   \
         {"allow-external",                                                                     \
          0,                                                                                    \

@@ -1,8 +1,10 @@
-/* Samples an analytic field as a command's input volume, and finds the field with the
- * nearest name. */
+/* Samples an analytic field as a command's input volume, lists all that 'make' makes, and
+ * finds the field with the nearest name. */
 #include "cli/inputs/synthetic_input.h"
 
 #include "cli/framework/console.h"
+
+#include <cubewright/hard.h>
 
 cw_status cli_make_field(cw_field field, const size_t dim[3], const cli_input *input,
                          cli_volume *v, cw_error *err)
@@ -24,6 +26,35 @@ cw_status cli_make_field(cw_field field, const size_t dim[3], const cli_input *i
     v->coarsen[0] = v->coarsen[1] = v->coarsen[2] = 1;
     cw_volume_spacing(&v->view, v->spacing);
     return CW_OK;
+}
+
+static const cli_made_field label_maps[] = {
+    {"labels/cells", "label map: cells that touch each other, in a ball", 0, false, true,
+     CW_LABEL_CELLS},
+    {"labels/spheres", "label map: spheres, some of which touch", 0, false, true,
+     CW_LABEL_SPHERES},
+};
+enum { LABEL_MAPS = sizeof label_maps / sizeof *label_maps };
+
+bool cli_made_field_at(size_t n, cli_made_field *s)
+{
+    if (n < CW_FIELD_COUNT) {
+        const cw_field f = (cw_field)n;
+        *s = (cli_made_field){cw_field_name(f), cw_field_about(f), cw_field_isovalue(f),
+                              .number = n};
+        return true;
+    }
+    n -= CW_FIELD_COUNT;
+    if (n < LABEL_MAPS) {
+        *s = label_maps[n];
+        return true;
+    }
+    n -= LABEL_MAPS;
+    const cw_hard *hard = cw_hard_at(n);
+    if (hard)
+        *s = (cli_made_field){hard->name, hard->about, hard->isovalue, .hard = true,
+                              .number = n};
+    return hard != NULL;
 }
 
 const char *cli_nearest_field(const char *word)

@@ -105,7 +105,8 @@ typedef struct cli_input {
          CLI_TEXT,                                                                             \
          "NAME",                                                                               \
          "Read the file as this format; names as in 'formats' (by content)",                   \
-         CLI_INPUT_ROW(args, reader)},                                                         \
+         CLI_INPUT_ROW(args, reader),                                                          \
+         CLI_VALUES_READER},                                                                   \
         {"raw",                                                                                \
          0,                                                                                    \
          CLI_TEXT,                                                                             \
@@ -149,7 +150,8 @@ typedef struct cli_input {
          CLI_TEXT,                                                                             \
          "FILE",                                                                               \
          "File with the grid points of a PLOT3D solution",                                     \
-         CLI_INPUT_ROW(args, points)},                                                         \
+         CLI_INPUT_ROW(args, points),                                                          \
+         CLI_VALUES_FILE},                                                                     \
         {"gaps",                                                                               \
          0,                                                                                    \
          CLI_CHOICE,                                                                           \

@@ -36,8 +36,8 @@ static const report_args defaults = {.budget = "60s"};
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
-     "Page to write, a .html file; may hold {stem} and {parent}",
-     offsetof(report_args, output)},
+     "Page to write, a .html file; may hold {stem} and {parent}", offsetof(report_args, output),
+     CLI_VALUES_HTML},
     {"iso", 'i', CLI_NUMBER, "V", "Isovalue (otsu, as 'info' suggests; of a field its own)",
      offsetof(report_args, iso)},
     {"inside", 0, CLI_CHOICE, CLI_INSIDE_CHOICES,
@@ -55,10 +55,10 @@ static const cli_option options[] = {
     {"title", 0, CLI_TEXT, "TEXT", "Title of the page (the input's name)",
      offsetof(report_args, title)},
     {"json", 0, CLI_TEXT, "FILE", "Write the same facts as JSON; - is the standard output",
-     offsetof(report_args, json)},
+     offsetof(report_args, json), CLI_VALUES_JSON},
     {"csv", 0, CLI_TEXT, "FILE",
      "Write a table with a row for each setting; - is the standard output",
-     offsetof(report_args, csv)},
+     offsetof(report_args, csv), CLI_VALUES_CSV},
     CLI_BATCH_OPTIONS(report_args),
     CLI_INPUT_OPTIONS(report_args),
     CLI_PROGRESS_OPTION(report_args),
@@ -347,6 +347,7 @@ const cli_command cli_report_command = {
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,
     .max_inputs = SIZE_MAX, /* of a batch; else 1 */
+    .inputs = CLI_VALUES_STUDY,
     .size = sizeof(report_args),
     .defaults = &defaults,
     .run = run_report_command,

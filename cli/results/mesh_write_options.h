@@ -22,7 +22,8 @@ typedef struct cli_written {
          CLI_TEXT,                                                                             \
          "NAME",                                                                               \
          "Format to write; names as in 'formats' (by extension)",                              \
-         CLI_WRITTEN_ROW(args, format)},                                                       \
+         CLI_WRITTEN_ROW(args, format),                                                        \
+         CLI_VALUES_MESH_WRITER},                                                              \
         {"ascii",                                                                              \
          0,                                                                                    \
          CLI_FLAG,                                                                             \

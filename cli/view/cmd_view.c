@@ -21,15 +21,15 @@ static const cli_option options[] = {
      "Commands to run first, such as 'mode mip; orbit 30; screenshot a.png'",
      offsetof(render_args, exec)},
     {"run", 0, CLI_TEXT, "FILE", "File of commands to run first, such as a saved session",
-     offsetof(render_args, run)},
+     offsetof(render_args, run), CLI_VALUES_FILE},
     {"config", 0, CLI_TEXT, "FILE|none",
      "File of default settings (~/.config/cubewright/view; with --hidden none)",
-     offsetof(render_args, config)},
+     offsetof(render_args, config), CLI_VALUES_FILE},
     {"hidden", 0, CLI_FLAG, NULL, "Run the commands and end, without window and display (off)",
      offsetof(render_args, hidden)},
     {"output", 'o', CLI_TEXT, "FILE",
      "Run as --hidden, and write the last picture as a .png file",
-     offsetof(render_args, output)},
+     offsetof(render_args, output), CLI_VALUES_PNG},
     {"size", 0, CLI_SIZES, "WxH", "Size of the window in pixels (1280x800)",
      offsetof(render_args, size)},
 #include "cli/render/options_what.inc"
@@ -209,19 +209,20 @@ static cw_status run_view(void *p, cw_error *err)
 }
 
 /* Keys and commands, out of their tables. */
-static void print_more(void)
+static void print_more(FILE *out)
 {
-    puts("\nKeys");
-    view_print_keys();
-    puts("\nCommands for --exec and --run\n"
-         "Every option above is a command, too, without its dashes: 'iso 300', 'lit off',\n"
-         "'clip-box default'. A ';' or the end of a line separates commands.");
+    fputs("\nKeys\n", out);
+    view_print_keys(out);
+    fputs("\nCommands for --exec and --run\n"
+          "Every option above is a command, too, without its dashes: 'iso 300', 'lit off',\n"
+          "'clip-box default'. A ';' or the end of a line separates commands.\n",
+          out);
     const view_verb *verb;
     for (size_t n = 0; (verb = view_verb_at(n)); n++) {
         char head[64];
         snprintf(head, sizeof head, "%s %s", verb->name, verb->takes);
-        printf("  %-28s", head);
-        cli_print_wrapped(verb->about, 30);
+        fprintf(out, "  %-28s", head);
+        cli_print_wrapped(out, verb->about, 30);
     }
 }
 
@@ -233,6 +234,7 @@ const cli_command cli_view = {
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .max_inputs = SIZE_MAX,
+    .inputs = CLI_VALUES_SCENE,
     .size = sizeof(render_args),
     .defaults = &defaults,
     .print_more = print_more,

@@ -233,7 +233,7 @@ bool view_find_flag(const view *v, const char *name, bool *on);
 bool *view_shown_flag(view *v, const char *name); /* NULL: none of those */
 /* "X Y Z": the keys of a row and of those that have its about; false: none */
 bool view_key_names(size_t n, char *names, size_t size);
-void view_print_keys(void);
+void view_print_keys(FILE *out);
 
 /* view_draw.c */
 CW_NODISCARD cw_status view_draw(view *v, view_level level, bool may_stop, cw_error *err);

@@ -113,10 +113,10 @@ bool view_key_names(size_t n, char *names, size_t size)
     return true;
 }
 
-void view_print_keys(void)
+void view_print_keys(FILE *out)
 {
     char names[64];
     for (size_t n = 0; n < view_key_count; n++)
         if (view_key_names(n, names, sizeof names))
-            printf("  %-22s%s\n", names, view_keys[n].about);
+            fprintf(out, "  %-22s%s\n", names, view_keys[n].about);
 }

@@ -628,6 +628,9 @@ typedef struct cw_format {
  * one of the path's extension. Returns NULL when there is none. */
 CW_API const cw_format *cw_mesh_format(const char *path, const char *name);
 
+/* The same for a volume. */
+CW_API const cw_format *cw_volume_format(const char *path, const char *name);
+
 /* Returns all formats, in_this_build or not; *count rows, static. */
 CW_API const cw_format *cw_formats(size_t *count);
 

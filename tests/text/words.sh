@@ -35,5 +35,7 @@ cubewright help >"$folder/help"
 for command in $(cubewright help | sed -n '/^Commands/,/^$/s/^  \([a-z]*\) .*/\1/p'); do
     cubewright help "$command" >>"$folder/help"
 done
+cubewright help environment >>"$folder/help"
+cubewright help library | sed '/^  /d' >>"$folder/help"
 check_document help "$folder/help"
 exit $bad

@@ -286,6 +286,16 @@ static void memory_may_run_out_anywhere(void **state)
     cw_volume_free(&v);
 }
 
+static void a_format_is_found_by_the_extensions_that_are_written(void **state)
+{
+    (void)state;
+    assert_string_equal(cw_volume_format("a.NII.gz", NULL)->name, "nifti");
+    assert_string_equal(cw_volume_format("a", "nrrd")->name, "nrrd");
+    assert_null(cw_volume_format("a.nhdr", NULL)); /* is read only */
+    assert_null(cw_volume_format("a.stl", NULL));
+    assert_null(cw_volume_format("a.nrrd", "tiff"));
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
@@ -300,6 +310,7 @@ int main(void)
         TEST(what_is_not_known_is_not_claimed),
         TEST(the_header_says_what_it_should),
         TEST(unknown_writers_are_refused),
+        TEST(a_format_is_found_by_the_extensions_that_are_written),
         TEST(an_interrupted_write_leaves_nothing),
         TEST(memory_may_run_out_anywhere),
     };
