@@ -1,4 +1,4 @@
-"""Tests an installed package: it finds the library beside it, without any variable."""
+"""Tests an installed package: by CMake, beside its library; and by pip."""
 
 import os
 import subprocess
@@ -45,6 +45,22 @@ class Install(Case):
         self.assertEqual(sorted(path.name for path in self.package.iterdir()), names)
         for name in names:
             self.assertEqual((self.package / name).read_bytes(), (tree / name).read_bytes())
+
+
+class Wheel(Case):
+    def test_pip_installs_it_without_a_network(self):
+        """Installs into an environment that sees the system's NumPy."""
+        packages = self.folder / "environment"
+        made = subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", packages], capture_output=True)
+        if made.returncode:
+            self.skipTest("no venv or pip")
+        python = packages / "bin" / "python"
+        pip = [python, "-m", "pip", "install", "--no-index", "--quiet", ROOT / "python"]
+        subprocess.run(pip, check=True, timeout=120)
+        code = "import cubewright as cw; print(cw.__file__, len(cw.extract(cw.make('sphere'), 0).triangles))"
+        environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+        ran = subprocess.run([python, "-c", code], cwd=self.folder, env=environment, capture_output=True, text=True)
+        self.assertIn(str(packages), ran.stdout, ran.stderr)
 
 
 if __name__ == "__main__":
