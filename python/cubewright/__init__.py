@@ -15,7 +15,7 @@ threads at once, as long as none writes to its arrays.
 from ._about import Feature, Format, features, formats, make
 from ._check import Check, Verdict, check, report
 from ._errors import Error, Status
-from ._extract import LabelSurfaces, Patch, extract, extract_labels
+from ._extract import Extractor, LabelSurfaces, Patch, extract, extract_labels
 from ._library import lib as _lib
 from ._memory import memory_limit, memory_used
 from ._mesh import Mesh
@@ -31,6 +31,7 @@ __version__: str = _lib.cw_version().decode()
 __all__ = [
     "Check",
     "Error",
+    "Extractor",
     "Feature",
     "Format",
     "Label",

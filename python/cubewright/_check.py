@@ -104,7 +104,9 @@ class Measurer:
             self.call(lib.cw_self_intersections, wanted, (byref(self.mesh),), (byref(self.crossings),))
             self.findings.crossings = pointer(self.crossings)
 
-    def measure_mesh_distance(self, name: str, mesh: c.cw_mesh, other: c.cw_mesh, desc: Any, each: Any = None) -> None:
+    def measure_mesh_distance(
+        self, name: str, mesh: c.cw_mesh, other: c.cw_mesh, desc: Any, each: Any = None
+    ) -> None:
         out = self.distances[name] = c.cw_distance()
         self.call(lib.cw_distance_to_mesh, desc, (byref(mesh), byref(other)), (byref(out), each))
 

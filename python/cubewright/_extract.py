@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from ctypes import byref, c_uint32
+import threading
+import weakref
+from collections.abc import Callable, Iterable
+from ctypes import POINTER, byref, c_uint32
 from dataclasses import dataclass
 from typing import Any, Union
 
@@ -71,28 +73,81 @@ def extract(
     A volume without a crossing gives a mesh without triangles. Raises Error: ARGUMENT, UNSUPPORTED,
     LIMIT, NO_MEMORY, CANCELLED.
     """
+    options = {name: value for name, value in locals().items() if name not in ("volume", "component", "step")}
     source = take_volume(volume)
     view = source._select(component, step)
-    reporter = Reporter(progress)
+    return extract_by(lib.cw_extract, byref(view), source, **options)
+
+
+def extract_by(function: Callable[..., int], place: Any, source: Volume, **options: Any) -> Mesh:
+    """Extracts by a function of the library; place is what it takes first, a volume or extractor."""
+    reporter = Reporter(options["progress"])
     desc = c.cw_extract_desc(
-        isovalue=take_number("iso", iso),
-        inside_is_low=take_inside(inside, source),
-        leave_open=take_flag("open", open),
-        simple_topology=take_choice("topology", topology, ("field", "simple")) == 1,
-        cubic_placement=take_choice("placement", placement, ("linear", "cubic")) == 1,
-        no_normals=take_choice("normals", normals, ("field", "none")) == 1,
-        snap=take_number("snap", snap),
-        threads=take_threads(threads),
-        max_triangles=take_count("max_triangles", max_triangles),
-        max_bytes=take_count("max_bytes", max_bytes),
+        isovalue=take_number("iso", options["iso"]),
+        inside_is_low=take_inside(options["inside"], source),
+        leave_open=take_flag("open", options["open"]),
+        simple_topology=take_choice("topology", options["topology"], ("field", "simple")) == 1,
+        cubic_placement=take_choice("placement", options["placement"], ("linear", "cubic")) == 1,
+        no_normals=take_choice("normals", options["normals"], ("field", "none")) == 1,
+        snap=take_number("snap", options["snap"]),
+        threads=take_threads(options["threads"]),
+        max_triangles=take_count("max_triangles", options["max_triangles"]),
+        max_bytes=take_count("max_bytes", options["max_bytes"]),
         progress=reporter.struct,
     )
-    least = take_length("min_volume", min_volume)
+    least = take_length("min_volume", options["min_volume"])
     mesh = Mesh._from_c(c.cw_mesh())
-    reporter.call(lib.cw_extract, byref(view), byref(desc), byref(mesh._struct), None)
+    reporter.call(function, place, byref(desc), byref(mesh._struct), None)
     if least > 0:
         call(lib.cw_mesh_drop_volumes, byref(mesh._struct), least, None)
-    return mesh if simplify is None else reduce_surface(mesh, simplify, threads, progress)
+    target = options["simplify"]
+    return mesh if target is None else reduce_surface(mesh, target, options["threads"], options["progress"])
+
+
+class Extractor:
+    """Extracts several surfaces of one volume, at different isovalues.
+
+    The first extraction builds an octree of values. Later ones read only the parts that their
+    isovalue passes through. Meshes are the same to the bit as those of extract(). The volume's
+    values must not change meanwhile. Calls of several threads wait for each other.
+    """
+
+    def __init__(self, volume: AnyVolume, *, component: int = 0, step: int = 0) -> None:
+        self.volume = take_volume(volume)
+        self._view = self.volume._select(component, step)  # borrowed by the extractor
+        self._extractor = POINTER(c.cw_extractor)()
+        self._lock = threading.Lock()
+        self._user = 0  # the thread that extracts
+        call(lib.cw_extractor_new, byref(self._view), byref(self._extractor))
+        weakref.finalize(self, lib.cw_extractor_free, self._extractor).atexit = False
+
+    def extract(
+        self,
+        iso: float,
+        *,
+        inside: str = "auto",
+        open: bool = False,
+        topology: str = "field",
+        placement: str = "linear",
+        snap: float = 0.0,
+        normals: str = "field",
+        min_volume: float = 0.0,
+        simplify: int | float | None = None,
+        max_triangles: int = 0,
+        max_bytes: int = 0,
+        threads: int = 0,
+        progress: Progress = None,
+    ) -> Mesh:
+        """Extracts the surface at an isovalue; options and errors as of extract()."""
+        options = {name: value for name, value in locals().items() if name != "self"}
+        if self._user == threading.get_ident():
+            raise RuntimeError("an extractor cannot be used by the progress callback of its own call")
+        with self._lock:
+            self._user = threading.get_ident()
+            try:
+                return extract_by(lib.cw_extractor_extract, self._extractor, self.volume, **options)
+            finally:
+                self._user = 0
 
 
 def reduce_surface(mesh: Mesh, target: int | float, threads: int, progress: Progress) -> Mesh:

@@ -169,7 +169,8 @@ def render(
         desc.background, desc.threads = colors, take_threads(threads)
         reporter = Reporter(progress)
         desc.progress = reporter.struct
-        reporter.call(lib.cw_render_mesh, byref(shown._struct), byref(desc), byref(image.struct))  # type: ignore[union-attr]
+        mesh_struct = take_mesh("mesh", shown)
+        reporter.call(lib.cw_render_mesh, byref(mesh_struct), byref(desc), byref(image.struct))
         return lend_image(image)
     mode = "composite" if number < 0 else mode
     if number < 0 and volume.kind != "even":

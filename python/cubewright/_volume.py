@@ -244,7 +244,8 @@ class Volume:
         """Computes range, histogram and Otsu's level of one component and step."""
         view = self._select(component, step)
         out = c.cw_statistics()
-        call(lib.cw_volume_statistics, byref(view), take_count("bins", bins, 0, 2**24), take_threads(threads), byref(out))
+        count = take_count("bins", bins, 0, 2**24)
+        call(lib.cw_volume_statistics, byref(view), count, take_threads(threads), byref(out))
         try:
             counts = np.array(out.bins[: out.bin_count] if out.bin_count else [], np.uint64)
             level = c_double()
@@ -274,7 +275,9 @@ class Volume:
         call(lib.cw_volume_select, byref(self._struct), component, take_count("step", step, 0, 2**62), byref(out))
         return out
 
-    def __array__(self, dtype: npt.DTypeLike = None) -> npt.NDArray[Any]:
+    def __array__(self, dtype: npt.DTypeLike = None, copy: bool | None = None) -> npt.NDArray[Any]:
+        if copy:
+            return np.array(self.array, dtype)
         return self.array if dtype is None else self.array.astype(dtype, copy=False)
 
     def __repr__(self) -> str:

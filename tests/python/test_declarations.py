@@ -35,8 +35,13 @@ class Declarations(Case):
 
     def test_sizes_offsets_and_values_are_those_of_the_compiler(self):
         program = self.folder / "probe"
-        subprocess.run([CC, f"-I{ROOT}/include", "-o", program, self.probe, "-L" + os.path.dirname(os.environ["CUBEWRIGHT_LIBRARY"]), "-lcubewright"], check=True)
-        lines = subprocess.run([program], check=True, capture_output=True, text=True, env=link_environment()).stdout.splitlines()
+        folder = os.path.dirname(os.environ["CUBEWRIGHT_LIBRARY"])
+        subprocess.run(
+            [CC, f"-I{ROOT}/include", "-o", program, self.probe, f"-L{folder}", "-lcubewright"], check=True
+        )
+        environment = {**os.environ, "LD_LIBRARY_PATH": folder}
+        ran = subprocess.run([program], check=True, capture_output=True, text=True, env=environment)
+        lines = ran.stdout.splitlines()
         self.assertGreater(len(lines), 1500)
         for line in lines:
             kind, name, value = line.split(" ", 2)
@@ -47,10 +52,6 @@ class Declarations(Case):
             function = getattr(lib, name)
             self.assertEqual(function.argtypes, arguments, name)
             self.assertEqual(function.restype, result, name)
-
-
-def link_environment():
-    return {**os.environ, "LD_LIBRARY_PATH": os.path.dirname(os.environ["CUBEWRIGHT_LIBRARY"])}
 
 
 def ask_ctypes(kind, name):

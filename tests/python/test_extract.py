@@ -44,6 +44,23 @@ class Surfaces(Case):
         for more in ({"topology": "simple"}, {"placement": "cubic"}, {"inside": "below"}):
             self.assertTrue(cw.check(cw.extract(ball, 0, **more)).holds, more)
 
+    def test_an_extractor_gives_the_meshes_of_extract(self):
+        ball = make_ball()
+        gc.collect()
+        before = cw.memory_used()
+        extractor = cw.Extractor(ball)
+        for iso in (-3, 0, 2.5):
+            self.same_mesh(extractor.extract(iso), cw.extract(ball, iso))
+        self.assertLess(len(extractor.extract(0, snap=0.3).vertices), len(extractor.extract(0).vertices))
+        with self.assertRaises(TypeError):
+            extractor.extract(0, step=1)
+        with self.assertRaisesRegex(RuntimeError, "its own call"):
+            extractor.extract(1, progress=lambda *_: extractor.extract(0))
+        self.assertGreater(cw.memory_used(), before)
+        del extractor
+        gc.collect()
+        self.assertEqual(cw.memory_used(), before)
+
     def test_simplify_by_count_error_and_ratio(self):
         self.need("simplify")
         mesh = cw.extract(make_ball(), 0)
@@ -284,7 +301,7 @@ class Library(Case):
         source.write_text('const char *cw_version(void) { return "9.1.0"; }\n')
         os.system(f"{os.environ.get('CC', 'cc')} -shared -fPIC -o {other} {source}")
         ran = run_python("import cubewright", CUBEWRIGHT_LIBRARY=str(other))
-        self.assertIn("is cubewright 9.1.0; this package is for 0.1", ran.stderr)
+        self.assertIn(f"is cubewright 9.1.0; this package is for {cw.__version__}", ran.stderr)
 
 
 if __name__ == "__main__":

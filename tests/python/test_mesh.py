@@ -85,6 +85,7 @@ class Sharing(Case):
             for _ in range(1000):
                 cw.extract(ball, 0, threads=1, progress=lambda step, done: True)
             self.assertEqual(cw.memory_used(), before)
+            self.assertLess(gc.collect(), 100)
         finally:
             gc.enable()
 

@@ -60,12 +60,14 @@ class Recipes(Case):
         if not blender:
             self.skipTest("no Blender")
         start = (blender, "--background", "--factory-startup", "--python-use-system-env", "--python-exit-code", "1")
-        _, printed = self.run_program(*start, "--python", RECIPES / "blender_surface.py", "--", "ball.nrrd", "0", "ball.blend")
+        recipe = RECIPES / "blender_surface.py"
+        _, printed = self.run_program(*start, "--python", recipe, "--", "ball.nrrd", "0", "ball.blend")
         counts = f"{len(self.mesh.vertices)} vertices, {len(self.mesh.triangles)} triangles"
         self.assertIn(counts, printed)
         check = self.folder / "check.py"
         check.write_text(BLENDER_CHECK)
-        found, _ = self.run_program(blender, "--background", self.folder / "ball.blend", *start[2:], "--python", check)
+        saved = self.folder / "ball.blend"
+        found, _ = self.run_program(blender, "--background", saved, *start[2:], "--python", check)
         self.assertTrue(np.allclose([float(x) for x in found["bounds"]], self.mesh.bounds.ravel(), atol=1e-3))
         self.assertEqual((found["custom"], found["valid"]), (["normals", "True"], ["True"]))
 
@@ -80,7 +82,8 @@ class Recipes(Case):
         script.write_text(text.replace(usual, 'VOLUME, ISO = "ball.nrrd", 0.0'))
         check.write_text(PARAVIEW_CHECK)
         found, printed = self.run_program(pvpython, "--force-offscreen-rendering", check, script)
-        self.assertEqual(found["cells"], [str(len(self.mesh.triangles)), "points", str(len(self.mesh.vertices))], printed)
+        counts = [str(len(self.mesh.triangles)), "points", str(len(self.mesh.vertices))]
+        self.assertEqual(found["cells"], counts, printed)
         x0, x1, y0, y1, z0, z1 = (float(x) for x in found["bounds"])
         self.assertTrue(np.allclose([[x0, y0, z0], [x1, y1, z1]], self.mesh.bounds))
         self.assertEqual((found["edges"], found["normals"]), (["0"], [str(len(self.mesh.vertices))]))
