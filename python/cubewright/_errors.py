@@ -31,7 +31,7 @@ class Status(enum.IntEnum):
 
     @property
     def text(self) -> str:
-        """What the status means, for people."""
+        """The meaning of the status, for people."""
         return str(lib.cw_status_text(self).decode())
 
 

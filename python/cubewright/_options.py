@@ -90,7 +90,7 @@ def take_path(name: str, value: Any) -> bytes:
 
 
 def take_numbers(name: str, value: Any, count: int) -> list[float]:
-    """Returns so many finite numbers."""
+    """Returns `count` finite numbers as floats."""
     if isinstance(value, (str, bytes)) or not isinstance(value, (Iterable, np.ndarray)):
         raise TypeError(f"{name} must be {count} numbers, not {name_type(value)}")
     numbers = [take_number(name, each) for each in value]
