@@ -91,6 +91,17 @@ class Volumes(Case):
         self.assertEqual(part.origin, (1, 2, 3))
         self.assertTrue(np.array_equal(cw.read_volume(path, raw=raw, coarsen=2).array, ball[::2, ::2, ::2]))
 
+    def test_names_and_colours_of_labels_come_with_their_volume(self):
+        path = self.folder / "organs.seg.nrrd"
+        fields = ("NRRD0004", "type: uint8", "dimension: 3", "sizes: 4 4 4", "encoding: raw",
+                  "space: left-posterior-superior", "space directions: (1,0,0) (0,1,0) (0,0,1)",
+                  "space origin: (0,0,0)", "Segment0_LabelValue:=1", "Segment0_Layer:=0", "Segment0_ID:=a",
+                  "Segment0_Name:=Leber \u00e4", "Segment0_Color:=1 0.5 0", "Segment0_Extent:=0 3 0 3 0 3")  # fmt: skip
+        path.write_bytes("\n".join([*fields, "", ""]).encode() + bytes([0] * 32 + [1] * 32))
+        volume = cw.read_volume(path)
+        self.assertEqual(volume.labels, [cw.Label(1, 0, "Leber \u00e4", (255, 128, 0, 255))])
+        self.assertEqual(cw.extract_labels(volume).voxels, {1: 32})
+
     def test_a_real_scan_if_it_is_there(self):
         scan = ROOT.parent / "shared" / "data" / "headsq-ct" / "headsq.mha"
         if not scan.exists():
