@@ -29,5 +29,15 @@ if grep -n -E '(/\*+|//) (What|Whose)\b' $(cat "$folder/sources") >"$folder/foun
     sed 's/^\([^:]*:[^:]*:\)/\1 begins with a clause:/' "$folder/found"
     bad=1
 fi
+
+# Python: each file opens with its sentence, and docstrings are too many to tell from code.
+find python tests/python -name '*.py' ! -name _declarations.py | sort >"$folder/scripts"
+while IFS= read -r script; do
+    sed -n '/^#!/d; p; q' "$script" | grep -q '^"""[A-Z]' || { echo "$script:1: opens with no sentence"; bad=1; }
+    if grep -n -i -w -E -e '"""(What|Whose)' -f "$folder/riddles" "$script" >"$folder/found"; then
+        sed "s|^|$script: a riddle: |" "$folder/found"
+        bad=1
+    fi
+done <"$folder/scripts"
 [ $bad = 0 ] && echo "$(wc -l <"$folder/sources") sources, $(wc -l <"$folder/comments") lines of comments"
 exit $bad

@@ -1,0 +1,66 @@
+"""Cubewright: volumes to surfaces, on NumPy arrays.
+
+    import cubewright
+    volume = cubewright.Volume(array, spacing=(0.5, 0.5, 1.0))  # array[z, y, x], shared
+    mesh = cubewright.extract(volume, 300)
+    cubewright.write("bone.glb", mesh)
+
+Arrays have the axes z, y, x. Lengths are millimetres, as floats; points, spacing and indices run
+x, y, z; the world is LPS. Long calls run without the interpreter's lock, take progress=callable,
+and stop at Ctrl-C. What fails raises Error; a wrong type of an argument raises TypeError, a wrong
+value ValueError. Unknown keywords are TypeErrors. A mesh or a volume may be used by several
+threads at once, as long as none writes to its arrays.
+"""
+
+from ._about import Feature, Format, features, formats, make
+from ._check import Check, Verdict, check, report
+from ._errors import Error, Status
+from ._extract import Extractor, LabelSurfaces, Patch, extract, extract_labels
+from ._library import lib as _lib
+from ._memory import memory_limit, memory_used
+from ._mesh import Mesh
+from ._progress import Progress
+from ._read import read_mesh, read_volume
+from ._render import render, write_png
+from ._simplify import hollow, offset, simplify, weld
+from ._volume import Label, Statistics, Volume
+from ._write import Written, write
+
+__version__: str = _lib.cw_version().decode()
+
+__all__ = [
+    "Check",
+    "Error",
+    "Extractor",
+    "Feature",
+    "Format",
+    "Label",
+    "LabelSurfaces",
+    "Mesh",
+    "Patch",
+    "Progress",
+    "Statistics",
+    "Status",
+    "Verdict",
+    "Volume",
+    "Written",
+    "check",
+    "extract",
+    "extract_labels",
+    "features",
+    "formats",
+    "hollow",
+    "make",
+    "memory_limit",
+    "memory_used",
+    "offset",
+    "read_mesh",
+    "read_volume",
+    "render",
+    "report",
+    "simplify",
+    "weld",
+    "write",
+    "write_png",
+    "__version__",
+]

@@ -1,0 +1,59 @@
+"""Errors: the status codes of the library, and the exception that carries one."""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Callable
+from ctypes import byref
+from typing import Any
+
+from . import _declarations as c
+from ._library import lib
+
+
+class Status(enum.IntEnum):
+    """The outcome of a call. `cubewright help exit` explains each."""
+
+    OK = c.cw_status.CW_OK
+    CHECK = c.cw_status.CW_ERR_CHECK
+    ARGUMENT = c.cw_status.CW_ERR_ARGUMENT
+    IO = c.cw_status.CW_ERR_IO
+    FORMAT = c.cw_status.CW_ERR_FORMAT
+    BACKEND = c.cw_status.CW_ERR_BACKEND
+    UNSAFE = c.cw_status.CW_ERR_UNSAFE
+    UNSUPPORTED = c.cw_status.CW_ERR_UNSUPPORTED
+    OUTPUT = c.cw_status.CW_ERR_OUTPUT
+    BATCH = c.cw_status.CW_ERR_BATCH
+    LIMIT = c.cw_status.CW_ERR_LIMIT
+    NO_MEMORY = c.cw_status.CW_ERR_NO_MEMORY
+    EMPTY = c.cw_status.CW_ERR_EMPTY
+    CANCELLED = c.cw_status.CW_ERR_CANCELLED
+
+    @property
+    def text(self) -> str:
+        """The meaning of the status, for people."""
+        return str(lib.cw_status_text(self).decode())
+
+
+class Error(Exception):
+    """A call of the library that failed.
+
+    status   a Status, for code to branch on
+    message  the library's own words: subject, problem, expected and actual value
+    """
+
+    def __init__(self, status: Status, message: str) -> None:
+        super().__init__(message or status.text)
+        self.status = status
+        self.message = message or status.text
+
+    def __reduce__(self) -> tuple[type[Error], tuple[Status, str]]:
+        return Error, (self.status, self.message)
+
+
+def call(function: Callable[..., int], *arguments: Any) -> None:
+    """Calls a function whose last argument is a cw_error. Raises Error unless it returns CW_OK."""
+    error = c.cw_error()
+    status = function(*arguments, byref(error))
+    if status != Status.OK:
+        raise Error(Status(status), error.message.decode("utf-8", "replace"))

@@ -1,0 +1,193 @@
+"""Reading of volumes and meshes from files."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from ctypes import byref, c_char_p, pointer, string_at
+from typing import Any, Union
+
+from . import _declarations as c
+from ._errors import call
+from ._library import lib
+from ._memory import Owner
+from ._mesh import Mesh
+from ._options import (
+    take_choice,
+    take_count,
+    take_flag,
+    take_number,
+    take_path,
+    take_text,
+)
+from ._progress import Progress, Reporter
+from ._volume import Label, Volume, take_spacing
+
+Path = Union[str, "os.PathLike[str]"]
+UNITS = ("mm", "um", "cm", "m", "in", "ft")
+
+_NOTE: Any = dict(c.cw_read_desc._fields_)["note"]  # type: ignore[arg-type]
+
+
+def make_claim(unit: str | None, frame: str | None, up: str | None, override: bool) -> c.cw_claim:
+    """Returns the caller's statement on the coordinates of a file."""
+    claim = c.cw_claim(rule=c.cw_claim_rule.CW_CLAIM_AGREE)
+    if unit is not None:
+        claim.has_unit, claim.axes.unit = True, take_choice("input_unit", unit, UNITS)
+    if frame is not None:
+        claim.has_frame = True
+        claim.axes.ras = take_choice("input_frame", frame, ("lps", "ras")) == 1
+    if up is not None:
+        claim.has_up, claim.axes.y_up = True, take_choice("input_up", up, ("z", "y")) == 1
+    if take_flag("input_override", override):
+        claim.rule = c.cw_claim_rule.CW_CLAIM_OVERRIDE
+    return claim
+
+
+def make_box(crop: Any) -> c.cw_box:
+    """Returns the box of the first and last voxels along x, y and z."""
+    try:
+        ends = [(take_count("crop", a), take_count("crop", b)) for a, b in crop]
+    except (TypeError, ValueError) as error:
+        raise type(error)(f"crop must be ((x, x), (y, y), (z, z)): {error}") from None
+    if len(ends) != 3 or any(b < a for a, b in ends):
+        raise ValueError(f"crop is {ends}; three pairs of first and last voxel were expected")
+    box = c.cw_box()
+    box.first[:] = [a for a, _ in ends]
+    box.count[:] = [b - a + 1 for a, b in ends]
+    return box
+
+
+def take_labels(table: c.cw_label_table) -> list[Label]:
+    """Copies and frees a table of labels."""
+    labels = []
+    for row in table.labels[: table.count] if table.count else []:
+        name = string_at(row.name).decode("utf-8", "replace") if row.name else None
+        red, green, blue, opacity = row.color
+        color = (red, green, blue, opacity) if row.has_color else None
+        labels.append(Label(row.value, row.layer, name, color))
+    lib.cw_label_table_free(byref(table))
+    return labels
+
+
+def read_volume(
+    path: Path,
+    *,
+    reader: str | None = None,
+    raw: str | None = None,
+    spacing: float | Sequence[float] | None = None,
+    input_unit: str | None = None,
+    input_frame: str | None = None,
+    input_up: str | None = None,
+    input_override: bool = False,
+    series: str | None = None,
+    array: str | None = None,
+    level: int = 0,
+    points: Path | None = None,
+    gaps: str = "stop",
+    tilt: str = "correct",
+    crop: Sequence[Sequence[int]] | None = None,
+    coarsen: int = 1,
+    allow_external: bool = False,
+    sandbox: bool = True,
+    timeout: float = 60.0,
+    max_voxels: int = 0,
+    max_bytes: int = 0,
+    note: Callable[[str], Any] | None = None,
+    progress: Progress = None,
+) -> Volume:
+    """Reads a volume: every component and time step of a file, folder or pattern of slices.
+
+    Options are those of the command: `cubewright help extract` explains them.
+
+    raw         layout of headerless voxels: 'dims=64x64x93,type=u16le,offset=0,spacing=1x1x2'
+    spacing     millimetres between voxels, one number or x, y, z, in place of the file's
+    input_unit, input_frame, input_up  'mm' and others; 'lps' or 'ras'; 'z' or 'y': what the file
+                does not say. An error if it says otherwise, unless input_override
+    crop        ((x, x), (y, y), (z, z)): first and last voxels to read, ends included
+    coarsen     every n-th voxel along each axis
+    gaps, tilt  'stop', 'interpolate' or 'allow'; 'correct' or 'keep'
+    max_voxels, max_bytes  limits; 0: 2**40 voxels, any bytes
+    note        called with one line for each finding and decision of the reader
+    progress    see Progress
+
+    The array keeps the file's type; frame and scaling are in affine, slope and intercept. Names
+    and colours of labels are in labels, the reader's name in format.
+    Raises Error: IO, FORMAT, UNSAFE, UNSUPPORTED, BACKEND, LIMIT, NO_MEMORY, ARGUMENT, CANCELLED.
+    """
+    reporter = Reporter(progress)
+    table = c.cw_label_table()
+    desc = c.cw_read_desc(
+        reader=take_text("reader", reader),
+        series=take_text("series", series),
+        array=take_text("array", array),
+        level=take_count("level", level),
+        points=None if points is None else take_path("points", points),
+        gaps=take_choice("gaps", gaps, ("stop", "interpolate", "allow")),
+        tilt=take_choice("tilt", tilt, ("correct", "keep")),
+        allow_external=take_flag("allow_external", allow_external),
+        no_sandbox=not take_flag("sandbox", sandbox),
+        timeout_s=take_number("timeout", timeout),
+        max_voxels=take_count("max_voxels", max_voxels),
+        max_bytes=take_count("max_bytes", max_bytes),
+        claim=make_claim(input_unit, input_frame, input_up, input_override),
+        labels=pointer(table),
+        progress=reporter.struct,
+    )
+    if raw is not None:
+        layout = c.cw_raw_layout()
+        call(lib.cw_raw_layout_parse, take_text("raw", raw), byref(layout))
+        desc.raw = pointer(layout)
+    if spacing is not None:
+        desc.spacing_mm[:] = take_spacing(spacing)
+    if crop is not None:
+        desc.region = pointer(make_box(crop))
+    desc.every[:] = [take_count("coarsen", coarsen, 1)] * 3
+    if note is not None:
+        if not callable(note):
+            raise TypeError(f"note must be callable, not {type(note).__name__}")
+        desc.note = _NOTE(lambda _user, text: note((text or b"").decode("utf-8", "replace")))
+    out, form = Owner(c.cw_volume(), lib.cw_volume_free), c_char_p()
+    try:
+        reporter.call(lib.cw_volume_read, take_path("path", path), byref(desc), byref(out.struct), byref(form))
+        volume = Volume._from_c(out)
+    finally:
+        labels = take_labels(table)
+    volume.labels, volume.format = labels, form.value.decode() if form.value else None
+    return volume
+
+
+def read_mesh(
+    path: Path,
+    *,
+    mesh_reader: str | None = None,
+    input_unit: str | None = None,
+    input_frame: str | None = None,
+    input_up: str | None = None,
+    input_override: bool = False,
+    allow_external: bool = False,
+    sandbox: bool = True,
+    timeout: float = 60.0,
+    max_triangles: int = 0,
+    max_bytes: int = 0,
+    progress: Progress = None,
+) -> Mesh:
+    """Reads a mesh: all parts of a file, merged, in LPS millimetres.
+
+    mesh_reader  a name of formats(); default: by content
+    Other options are those of read_volume(). Raises the same errors.
+    """
+    reporter = Reporter(progress)
+    desc = c.cw_mesh_read_desc(
+        reader=take_text("mesh_reader", mesh_reader),
+        allow_external=take_flag("allow_external", allow_external),
+        max_triangles=take_count("max_triangles", max_triangles),
+        max_bytes=take_count("max_bytes", max_bytes),
+        no_sandbox=not take_flag("sandbox", sandbox),
+        timeout_s=take_number("timeout", timeout),
+        claim=make_claim(input_unit, input_frame, input_up, input_override),
+        progress=reporter.struct,
+    )
+    mesh = Mesh._from_c(c.cw_mesh())
+    reporter.call(lib.cw_mesh_read, take_path("path", path), byref(desc), byref(mesh._struct), None)
+    return mesh

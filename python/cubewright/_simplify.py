@@ -1,0 +1,144 @@
+"""Simplification, offsets and hollowing of meshes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from ctypes import byref
+
+from . import _declarations as c
+from ._errors import call
+from ._library import lib
+from ._mesh import ARRAYS, Mesh, take_mesh
+from ._options import take_count, take_flag, take_length, take_number, take_numbers, take_threads
+from ._progress import Progress, Reporter
+
+
+def simplify(
+    mesh: Mesh,
+    *,
+    error: float = 0.0,
+    triangles: int = 0,
+    ratio: float = 0.0,
+    normal_weight: float = 0.0,
+    color_weight: float = 0.0,
+    scalar_weight: float = 0.0,
+    allow_intersections: bool = False,
+    keep_border: bool = False,
+    threads: int = 0,
+    progress: Progress = None,
+) -> Mesh:
+    """Returns a mesh with fewer triangles, by edge collapses.
+
+    error      mm: no point of the mesh or of the result is farther from the other
+    triangles  number to stop at
+    ratio      the same as a fraction, above 0 and below 1. At least one of the three is needed;
+               the first one reached ends the work
+    normal_weight, color_weight, scalar_weight  of attributes to keep, in percent of the diagonal
+    allow_intersections  of triangles that did not meet before; keep_border: to the bit
+
+    Components, handles and border loops stay the same. Raises Error: ARGUMENT, UNSUPPORTED (this
+    build has no OpenMesh), LIMIT, NO_MEMORY, CANCELLED.
+    """
+    source = take_mesh("mesh", mesh)
+    reporter = Reporter(progress)
+    desc = c.cw_simplify_desc(
+        error_mm=take_length("error", error),
+        triangles=take_count("triangles", triangles),
+        ratio=take_number("ratio", ratio),
+        normal_weight=take_number("normal_weight", normal_weight),
+        color_weight=take_number("color_weight", color_weight),
+        scalar_weight=take_number("scalar_weight", scalar_weight),
+        allow_crossings=take_flag("allow_intersections", allow_intersections),
+        keep_border=take_flag("keep_border", keep_border),
+        threads=take_threads(threads),
+        progress=reporter.struct,
+    )
+    out = Mesh._from_c(c.cw_mesh())
+    reporter.call(lib.cw_simplify, byref(source), byref(desc), byref(out._struct), None)
+    return out
+
+
+def offset(
+    mesh: Mesh,
+    by: float,
+    *,
+    voxel: float = 0.0,
+    sharp: bool = True,
+    refine: bool = True,
+    max_bytes: int = 0,
+    threads: int = 0,
+    progress: Progress = None,
+) -> Mesh:
+    """Returns the surface at a distance from a closed mesh.
+
+    by     mm outward; negative: inward; 0: the surface rebuilt, closed and without crossings
+    voxel  mm, of the level set; 0: chosen by the offset and the size
+    sharp  restore edges that voxels cut off; refine: use smaller voxels where they are needed
+
+    Raises Error: ARGUMENT (the mesh is not closed), EMPTY, UNSUPPORTED (this build has no OpenVDB),
+    LIMIT, NO_MEMORY, CANCELLED.
+    """
+    source = take_mesh("mesh", mesh)
+    reporter = Reporter(progress)
+    desc = c.cw_offset_desc(
+        offset_mm=take_number("by", by),
+        voxel_mm=take_length("voxel", voxel),
+        no_sharpen=not take_flag("sharp", sharp),
+        no_refine=not take_flag("refine", refine),
+        threads=take_threads(threads),
+        max_bytes=take_count("max_bytes", max_bytes),
+        progress=reporter.struct,
+    )
+    out = Mesh._from_c(c.cw_mesh())
+    reporter.call(lib.cw_mesh_offset, byref(source), byref(desc), byref(out._struct), None)
+    return out
+
+
+def hollow(
+    mesh: Mesh,
+    wall: float,
+    *,
+    drains: Sequence[tuple[float, Sequence[float]]] = (),
+    voxel: float = 0.0,
+    max_bytes: int = 0,
+    threads: int = 0,
+    progress: Progress = None,
+) -> Mesh:
+    """Returns a solid with a cavity inside a wall, to save print material.
+
+    wall    mm; drains: pairs of a diameter (mm) and a direction (x, y, z) of holes to the outside
+    Raises Error as offset(); EMPTY where no point is deep enough.
+    """
+    source = take_mesh("mesh", mesh)
+    reporter = Reporter(progress)
+    holes = (c.cw_drain * max(len(drains), 1))()
+    for hole, (diameter, direction) in zip(holes, drains):
+        hole.diameter_mm = take_length("a drain's diameter", diameter)
+        hole.direction[:] = take_numbers("a drain's direction", direction, 3)
+    desc = c.cw_hollow_desc(
+        wall_mm=take_length("wall", wall),
+        drains=holes,
+        drain_count=len(drains),
+        voxel_mm=take_length("voxel", voxel),
+        no_measure=True,
+        threads=take_threads(threads),
+        max_bytes=take_count("max_bytes", max_bytes),
+        progress=reporter.struct,
+    )
+    out = Mesh._from_c(c.cw_mesh())
+    reporter.call(lib.cw_mesh_hollow, byref(source), byref(desc), byref(out._struct), None)
+    return out
+
+
+def weld(mesh: Mesh) -> Mesh:
+    """Returns a mesh whose vertices at equal positions are merged, as simplify() needs them."""
+    take_mesh("mesh", mesh)
+    copied = mesh.copy()
+    call(lib.cw_mesh_weld, byref(copied._struct), None)
+    vertices, triangles = copied._struct.vertex_count, copied._struct.triangle_count
+    arrays = {
+        name: array[: triangles if name == "triangles" else vertices]
+        for name in ARRAYS
+        if (array := copied._array(name)) is not None
+    }
+    return Mesh.from_arrays(**arrays, origin=copied.origin)

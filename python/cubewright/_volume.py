@@ -1,0 +1,377 @@
+"""Volumes: voxels with a place in the world, over the memory of an array or of a file's reader."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from ctypes import byref, c_double, c_void_p
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _declarations as c
+from ._errors import call
+from ._library import lib
+from ._memory import Owner, lend_array
+from ._options import take_count, take_flag, take_number, take_numbers, take_threads
+
+TYPES: dict[str, int] = {
+    "u1": c.cw_type.CW_U8,
+    "i1": c.cw_type.CW_I8,
+    "u2": c.cw_type.CW_U16,
+    "i2": c.cw_type.CW_I16,
+    "u4": c.cw_type.CW_U32,
+    "i4": c.cw_type.CW_I32,
+    "f4": c.cw_type.CW_F32,
+    "f8": c.cw_type.CW_F64,
+}
+KINDS = {number: kind for kind, number in TYPES.items()}
+AFFINE = c_double * 4 * 3
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """Range and frequencies of the values of one component and step, after slope and intercept.
+
+    counts  of bins of one width from min to max; edges has one more
+    otsu    the level that separates the values best into two classes [Otsu1979], or None
+    """
+
+    min: float
+    max: float
+    finite: int
+    not_finite: int
+    nodata: int
+    counts: npt.NDArray[np.uint64] = field(repr=False)
+    edges: npt.NDArray[np.float64] = field(repr=False)
+    otsu: float | None
+
+
+@dataclass(frozen=True)
+class Label:
+    """A label that a file names. color is sRGB and opacity, 0 to 255, or None."""
+
+    value: int
+    layer: int
+    name: str | None
+    color: tuple[int, int, int, int] | None
+
+
+class Volume:
+    """A volume over the memory of an array.
+
+    Axes of arrays run z, y, x: the last index is x. Everything else (spacing, origin, affine,
+    points) runs x, y, z. Lengths are millimetres. The world is LPS: +x to the patient's left,
+    +y to the back, +z to the head.
+
+    array        of shape (z, y, x); with components=True (z, y, x, component), with steps=True
+                 (step, z, y, x), or both. Anything that numpy.asarray() takes without a copy.
+                 Types: bool, signed and unsigned integers of 8, 16 and 32 bits, float32,
+                 float64. Others are TypeErrors: convert them, such as array.astype('f4').
+    copy         None: share the array's memory, with any strides. A copy is made only of arrays
+                 in another byte order, not aligned, or that repeat memory (broadcast arrays).
+                 False: such arrays are ValueErrors. True: always copy
+    spacing      distance between voxels, one number or x, y, z; default 1
+    origin       world point of the first voxel; default 0, 0, 0
+    affine       3 x 4 or 4 x 4, (x, y, z, 1) of an index to the world; in place of both
+    coordinates  three rising sequences of the places of planes along x, y, z, in place of
+                 spacing: a rectilinear grid
+    slope, intercept  value = slope * voxel + intercept; isovalues are in this unit
+    nodata       voxels equal to this, before scaling, are outside the domain, as NaN is
+    level_set    values are distances, negative inside: functions then take low values as inside
+
+    Values may change while no function uses the volume; shape and type may not.
+    Raises Error (ARGUMENT) for an affine that cannot be inverted, and an empty array.
+    """
+
+    def __init__(
+        self,
+        array: Any,
+        *,
+        spacing: float | Sequence[float] | None = None,
+        origin: Sequence[float] | None = None,
+        affine: npt.ArrayLike | None = None,
+        coordinates: Sequence[npt.ArrayLike] | None = None,
+        slope: float = 1.0,
+        intercept: float = 0.0,
+        nodata: float | None = None,
+        components: bool = False,
+        steps: bool = False,
+        level_set: bool = False,
+        copy: bool | None = None,
+    ) -> None:
+        components, steps = take_flag("components", components), take_flag("steps", steps)
+        voxels = take_voxels(array, 3 + components + steps, copy)
+        struct = c.cw_volume(type=TYPES[voxels.dtype.str[1:]])
+        place_voxels(struct, voxels, components, steps)
+        place_frame(struct, spacing, origin, affine)
+        self._coordinates = place_coordinates(struct, coordinates)
+        struct.slope = take_number("slope", slope)
+        struct.intercept = take_number("intercept", intercept)
+        if struct.slope == 0:
+            raise ValueError("slope is 0; another number was expected")
+        if nodata is not None:
+            struct.has_nodata, struct.nodata = True, take_number("nodata", nodata)
+        if take_flag("level_set", level_set):
+            struct.known = c.cw_known.CW_KNOWN_LEVEL_SET
+        self._set(struct, voxels, voxels)
+        self.labels: list[Label] = []
+        self.format: str | None = None
+
+    @classmethod
+    def _from_c(cls, owner: Owner[c.cw_volume]) -> Volume:
+        """Returns a volume of what the library made."""
+        volume = cls.__new__(cls)
+        volume._coordinates = None
+        volume._set(owner.struct, owner, None)
+        volume.labels, volume.format = [], None
+        return volume
+
+    def _set(self, struct: c.cw_volume, owner: object, array: npt.NDArray[Any] | None) -> None:
+        self._struct, self._owner, self._array = struct, owner, array
+        self._resolved = c.cw_volume()
+        call(lib.cw_volume_resolve, byref(struct), byref(self._resolved))
+
+    @property
+    def array(self) -> npt.NDArray[Any]:
+        """The voxels, shared without a copy: the array given, or the memory of the reader.
+
+        The shape is (z, y, x), with further axes for several components (last) and steps
+        (first). An irregular grid has the shape (1, 1, samples). Raises TypeError for a sparse
+        grid: dense() has its voxels.
+        """
+        if self.kind == "sparse":
+            raise TypeError("a sparse grid has no array; dense() makes one")
+        if self._array is None:
+            v = self._resolved
+            shape, strides = tuple(v.dim)[::-1], tuple(v.stride)[::-1]
+            if v.components > 1:
+                shape, strides = (*shape, v.components), (*strides, v.component_stride)
+            if v.steps > 1:
+                shape, strides = (v.steps, *shape), (v.step_stride, *strides)
+            return lend_array(self._owner, v.data, KINDS[v.type], shape, strides)
+        return self._array
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Voxels along z, y, x."""
+        x, y, z = self._resolved.dim
+        return z, y, x
+
+    @property
+    def components(self) -> int:
+        """Values of each voxel."""
+        return self._resolved.components
+
+    @property
+    def steps(self) -> int:
+        """Number of time steps."""
+        return self._resolved.steps
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        return np.dtype(KINDS[self._resolved.type])
+
+    @property
+    def kind(self) -> str:
+        """'even', 'rectilinear', 'irregular' or 'sparse'."""
+        v = self._struct
+        return (
+            "sparse" if v.sparse else "irregular" if v.cells else "rectilinear" if v.coordinates[0] else "even"
+        )
+
+    @property
+    def spacing(self) -> tuple[float, float, float]:
+        """Millimetres between voxels along x, y, z; on a rectilinear grid the mean."""
+        out = (c_double * 3)()
+        lib.cw_volume_spacing(byref(self._resolved), out)
+        x, y, z = out
+        return x, y, z
+
+    @property
+    def affine(self) -> npt.NDArray[np.float64]:
+        """The 4 x 4 matrix from (x, y, z, 1) of an index to the world, a copy."""
+        return np.vstack([np.array(self._resolved.affine), [0.0, 0.0, 0.0, 1.0]])
+
+    @property
+    def origin(self) -> tuple[float, float, float]:
+        """World point at which the affine puts the index 0, 0, 0."""
+        x, y, z = (row[3] for row in self._resolved.affine)
+        return x, y, z
+
+    @property
+    def slope(self) -> float:
+        return self._resolved.slope
+
+    @property
+    def intercept(self) -> float:
+        return self._resolved.intercept
+
+    @property
+    def nodata(self) -> float | None:
+        """The voxel that stands for no value, before scaling; None: there is none."""
+        return self._resolved.nodata if self._resolved.has_nodata else None
+
+    @property
+    def level_set(self) -> bool:
+        """True if values are distances from a surface, negative inside."""
+        return bool(self._struct.known & c.cw_known.CW_KNOWN_LEVEL_SET)
+
+    def world(self, index: Sequence[float]) -> tuple[float, float, float]:
+        """Returns the world point of an index (x, y, z), which may have fractions."""
+        out = (c_double * 3)()
+        lib.cw_volume_to_world(byref(self._resolved), (c_double * 3)(*take_numbers("index", index, 3)), out)
+        x, y, z = out
+        return x, y, z
+
+    def index(self, world: Sequence[float]) -> tuple[float, float, float]:
+        """Returns the index (x, y, z) of a world point, with fractions."""
+        out = (c_double * 3)()
+        point = (c_double * 3)(*take_numbers("world", world, 3))
+        call(lib.cw_volume_to_index, byref(self._resolved), point, out)
+        x, y, z = out
+        return x, y, z
+
+    def sample(self, world: Sequence[float]) -> float:
+        """Returns the value at a world point, trilinear; NaN outside of the domain."""
+        point = (c_double * 3)(*take_numbers("world", world, 3))
+        return float(lib.cw_volume_sample(byref(self._resolved), point))
+
+    def statistics(
+        self, bins: int = 256, *, component: int = 0, step: int = 0, threads: int = 0
+    ) -> Statistics:
+        """Computes range, histogram and Otsu's level of one component and step."""
+        view = self._select(component, step)
+        out = c.cw_statistics()
+        count = take_count("bins", bins, 0, 2**24)
+        call(lib.cw_volume_statistics, byref(view), count, take_threads(threads), byref(out))
+        try:
+            counts = np.array(out.bins[: out.bin_count] if out.bin_count else [], np.uint64)
+            level = c_double()
+            has_level = bool(out.bin_count) and lib.cw_statistics_otsu(byref(out), 1, byref(level))
+            edges = out.min + out.bin_width * np.arange(len(counts) + 1, dtype=float)
+            return Statistics(
+                out.min, out.max, out.finite, out.not_finite, out.nodata, counts, edges,
+                level.value if has_level else None,
+            )  # fmt: skip
+        finally:
+            lib.cw_statistics_free(byref(out))
+
+    def dense(self, max_voxels: int = 2**32) -> Volume:
+        """Copies the leaves and tiles of a sparse grid into a volume with an array.
+
+        Raises Error: ARGUMENT for other grids, LIMIT for more voxels than that.
+        """
+        out = Owner(c.cw_volume(), lib.cw_volume_free)
+        limit = take_count("max_voxels", max_voxels)
+        call(lib.cw_volume_densify, byref(self._struct), limit, byref(out.struct))
+        return Volume._from_c(out)
+
+    def _select(self, component: int, step: int) -> c.cw_volume:
+        """Returns a view of one component and step; valid as long as self."""
+        out = c.cw_volume()
+        component = take_count("component", component, 0, 2**62)
+        call(lib.cw_volume_select, byref(self._struct), component, take_count("step", step, 0, 2**62), byref(out))
+        return out
+
+    def __array__(self, dtype: npt.DTypeLike = None, copy: bool | None = None) -> npt.NDArray[Any]:
+        if copy:
+            return np.array(self.array, dtype)
+        return self.array if dtype is None else self.array.astype(dtype, copy=False)
+
+    def __repr__(self) -> str:
+        spacing = " x ".join(f"{s:g}" for s in self.spacing)
+        more = f", {self.components} components" if self.components > 1 else ""
+        more += f", {self.steps} steps" if self.steps > 1 else ""
+        return f"<cubewright.Volume (z, y, x) {self.shape} {self.dtype}{more}, {spacing} mm, {self.kind}>"
+
+
+def take_voxels(array: Any, axes: int, copy: bool | None) -> npt.NDArray[Any]:
+    """Returns an array that the library can address; a copy only where it has to be one."""
+    if isinstance(array, np.ma.MaskedArray):
+        raise TypeError("a masked array is not a volume; use array.filled(value) with nodata=value")
+    voxels = np.asarray(array)
+    if voxels.dtype == np.bool_:
+        voxels = voxels.view(np.uint8)
+    if voxels.dtype.str[1:] not in TYPES:
+        raise TypeError(
+            f"voxels of type {voxels.dtype} are not taken; expected bool, 8 to 32 bit integers, "
+            "float32 or float64, such as array.astype('f4')"
+        )
+    if voxels.ndim != axes:
+        shape = "z, y, x" if axes == 3 else "z, y, x with components, steps or both"
+        raise ValueError(f"the array has {voxels.ndim} axes; {axes} were expected ({shape})")
+    if copy is not None and not isinstance(copy, bool):
+        raise TypeError(f"copy must be True, False or None, not {type(copy).__name__}")
+    repeats = any(s == 0 and n > 1 for s, n in zip(voxels.strides, voxels.shape))
+    usable = voxels.dtype.isnative and voxels.flags.aligned and not repeats
+    if not usable and copy is False:
+        raise ValueError("the array is byte-swapped, not aligned, or repeats memory: it needs a copy")
+    if copy or not usable:
+        return np.array(voxels, voxels.dtype.newbyteorder("="), order="C")
+    return voxels
+
+
+def place_voxels(struct: c.cw_volume, voxels: npt.NDArray[Any], components: bool, steps: bool) -> None:
+    """Describes the memory of an array: address, numbers of voxels, strides."""
+    shape, strides = list(voxels.shape), list(voxels.strides)
+    if 0 in shape:
+        raise ValueError(f"the array is empty: its shape is {voxels.shape}")
+    # NumPy's stride along an axis of one voxel means nothing, and 0 means a default to C.
+    strides = [s if n > 1 else voxels.itemsize for s, n in zip(strides, shape)]
+    if steps:
+        struct.steps, struct.step_stride = shape.pop(0), strides.pop(0)
+    if components:
+        struct.components, struct.component_stride = shape.pop(), strides.pop()
+    struct.data = c_void_p(voxels.ctypes.data)
+    struct.dim[:], struct.stride[:] = shape[::-1], strides[::-1]
+
+
+def place_frame(struct: c.cw_volume, spacing: Any, origin: Any, affine: Any) -> None:
+    if affine is not None:
+        if spacing is not None or origin is not None:
+            raise TypeError("affine is in place of spacing and origin: give one or the other")
+        matrix = np.asarray(affine, float)
+        if matrix.shape not in ((3, 4), (4, 4)):
+            raise ValueError(f"affine has the shape {matrix.shape}; (3, 4) or (4, 4) was expected")
+        if matrix.shape == (4, 4) and not np.array_equal(matrix[3], [0, 0, 0, 1]):
+            raise ValueError("the last row of affine is not 0, 0, 0, 1")
+    else:
+        widths = [1.0] * 3 if spacing is None else take_spacing(spacing)
+        start = [0.0] * 3 if origin is None else take_numbers("origin", origin, 3)
+        matrix = np.column_stack([np.diag(widths), start])
+    struct.affine = AFFINE()
+    for row, numbers in zip(struct.affine, matrix.tolist()):
+        row[:] = numbers
+
+
+def take_spacing(spacing: Any) -> list[float]:
+    """Returns three lengths above 0; one number stands for all."""
+    widths = [take_number("spacing", spacing)] * 3 if np.ndim(spacing) == 0 else take_numbers("spacing", spacing, 3)
+    if min(widths) <= 0:
+        raise ValueError(f"spacing is {widths}; lengths above 0 mm were expected")
+    return widths
+
+
+def place_coordinates(struct: c.cw_volume, coordinates: Any) -> Any:
+    """Sets the planes of a rectilinear grid; returns what holds their memory."""
+    if coordinates is None:
+        return None
+    planes = [np.ascontiguousarray(each, float) for each in coordinates]
+    if [each.shape for each in planes] != [(n,) for n in struct.dim]:
+        raise ValueError(
+            f"coordinates have the shapes {[each.shape for each in planes]}; x, y and z with "
+            f"{', '.join(str(n) for n in struct.dim)} numbers were expected"
+        )
+    for axis, each in enumerate(planes):
+        struct.coordinates[axis] = each.ctypes.data_as(type(struct.coordinates[axis]))
+    return planes
+
+
+def take_volume(volume: Any) -> Volume:
+    """Returns a volume; an array is one of voxels of 1 mm."""
+    return volume if isinstance(volume, Volume) else Volume(volume)
+
+
+__all__ = ["Label", "Statistics", "Volume"]

@@ -1,0 +1,116 @@
+"""Writing of meshes, parts and volumes to files, and of pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from ctypes import byref, pointer
+from dataclasses import dataclass
+from typing import Any, Union
+
+from . import _declarations as c
+from ._library import lib
+from ._mesh import Mesh, take_mesh
+from ._options import take_choice, take_count, take_flag, take_length, take_path, take_text
+from ._progress import Progress, Reporter
+from ._read import UNITS, Path
+from ._volume import Volume
+
+COMPRESSIONS = ("none", "quantize", "draco", "meshopt")
+
+
+@dataclass(frozen=True)
+class Written:
+    """The loss of compression, measured on the decoded file; zeros without compression.
+
+    error_mm  the largest move of a vertex; normal_degrees the largest turn of a normal
+    bits      of a coordinate; step_mm the step of their grid
+    """
+
+    bits: int
+    step_mm: float
+    error_mm: float
+    normal_degrees: float
+    merged: int
+    flat: int
+    dropped: int
+
+
+def make_write_desc(options: dict[str, Any], reporter: Reporter) -> c.cw_write_desc:
+    desc = c.cw_write_desc(
+        format=take_text("format", options["format"]),
+        name=take_text("name", options["name"]),
+        no_clobber=take_flag("no_clobber", options["no_clobber"]),
+        local=take_flag("local", options["local"]),
+        text=take_flag("ascii", options["ascii"]),
+        compression=take_choice("compress", options["compress"], COMPRESSIONS),
+        tolerance_mm=take_length("tolerance", options["tolerance"]),
+        bits=take_count("bits", options["bits"], 0, 30),
+        level=take_count("level", options["level"], 0, 10),
+        progress=reporter.struct,
+    )
+    desc.axes.unit = take_choice("unit", options["unit"], UNITS)
+    desc.axes.ras = take_choice("frame", options["frame"], ("lps", "ras")) == 1
+    desc.axes.y_up = take_choice("up", options["up"], ("z", "y")) == 1
+    return desc
+
+
+def write(
+    path: Path,
+    what: Union[Mesh, Volume, Mapping[str, Mesh]],
+    *,
+    format: str | None = None,
+    name: str | None = None,
+    no_clobber: bool = False,
+    local: bool = False,
+    ascii: bool = False,
+    unit: str = "mm",
+    frame: str = "lps",
+    up: str = "z",
+    compress: str = "none",
+    tolerance: float = 0.0,
+    bits: int = 0,
+    level: int = 0,
+    progress: Progress = None,
+) -> Written:
+    """Writes a mesh, several named meshes, or a volume, in the format of the path's suffix.
+
+    what        a Mesh; a dict of names and meshes (parts of a file, kept by glTF, OBJ, 3MF); or
+                a Volume (.nrrd, .nii, .nii.gz, .mha)
+    format      a name of formats(), in place of the suffix
+    no_clobber  fail if the path exists; default: replace it. A file appears only when complete
+    local       coordinates relative to the mesh's origin; default: world coordinates. glTF and
+                3MF keep the origin apart and lose nothing
+    unit, frame, up  of the coordinates in the file; glTF is always in metres, +Y up
+    compress    of glTF: 'none', 'quantize', 'draco' or 'meshopt'; tolerance is the largest move
+                of a vertex, mm (default 1/20,000 of the diagonal), bits a number in its place
+    level       effort of Draco, 1 to 10; 0: 7
+
+    Raises Error: ARGUMENT, OUTPUT, UNSUPPORTED, LIMIT, CHECK, NO_MEMORY, CANCELLED.
+    """
+    options = {key: value for key, value in locals().items() if key not in ("path", "what", "progress")}
+    reporter = Reporter(progress)
+    target = take_path("path", path)
+    desc = make_write_desc(options, reporter)
+    result = c.cw_compressed()
+    if isinstance(what, Volume):
+        reporter.call(lib.cw_volume_write, target, byref(what._struct), byref(desc))
+        return summarize(result)
+    if compress != "none":
+        desc.compressed = pointer(result)
+    if isinstance(what, Mapping):
+        parts = (c.cw_part * max(len(what), 1))()
+        for part, (title, mesh) in zip(parts, what.items()):
+            part.mesh = pointer(take_mesh(f"what[{title!r}]", mesh))
+            part.name = take_text("a part's name", title)
+        reporter.call(lib.cw_parts_write, target, parts, len(what), byref(desc))
+    elif isinstance(what, Mesh):
+        reporter.call(lib.cw_mesh_write, target, byref(what._struct), byref(desc))
+    else:
+        raise TypeError(f"a Mesh, a dict of them or a Volume can be written, not a {type(what).__name__}")
+    return summarize(result)
+
+
+def summarize(r: c.cw_compressed) -> Written:
+    return Written(r.bits, r.step_mm, r.error_mm, r.normal_degrees, r.merged, r.flat, r.dropped)
+
+

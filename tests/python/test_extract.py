@@ -1,0 +1,308 @@
+"""Tests extraction, its progress and cancelling, threads, and the errors of calls."""
+
+import gc
+import os
+import pathlib
+import pickle
+import signal
+import sys
+import threading
+import time
+import unittest.mock
+
+import cubewright as cw
+import numpy as np
+from support import Case, main, make_ball, run_python
+
+
+def make_slow_volume():
+    """Returns a volume whose extraction takes about a second with snapping."""
+    return cw.make("gyroid", dims=160, noise=0.02)
+
+
+class Surfaces(Case):
+    def test_a_ball_is_closed_round_and_full(self):
+        size = 48
+        ball = make_ball(size)
+        found = cw.check(cw.extract(ball, 0), profile="print", source=ball, iso=0)
+        self.assertTrue(found.holds, found.verdicts)
+        self.assertLess(abs(found.quality["volume_mm3"] / (4 / 3 * np.pi * (0.35 * size) ** 3) - 1), 0.01)
+        self.assertEqual((found.quality["euler"], found.intersections), (2, 0))
+        self.assertLess(found.distances["to_source"]["max_mm"], 0.02)
+
+    def test_options_change_the_mesh(self):
+        ball = make_ball()
+        cut = ball[8:]
+        self.assertIsNone(cw.extract(ball, 0, normals="none").normals)
+        self.assertEqual(cw.check(cw.extract(cut, 0, open=True)).quality["border_loops"], 1)
+        self.assertEqual(cw.check(cw.extract(cut, 0)).quality["border_loops"], 0)
+        self.assertLess(len(cw.extract(ball, 0, snap=0.3).vertices), len(cw.extract(ball, 0).vertices))
+        speck = ball.copy()
+        speck[1, 1, 1] = 5
+        self.assertEqual(cw.check(cw.extract(speck, 0)).quality["components"], 2)
+        self.same_mesh(cw.extract(speck, 0, min_volume=10), cw.extract(ball, 0))
+        for more in ({"topology": "simple"}, {"placement": "cubic"}, {"inside": "below"}):
+            self.assertTrue(cw.check(cw.extract(ball, 0, **more)).holds, more)
+
+    def test_an_extractor_gives_the_meshes_of_extract(self):
+        ball = make_ball()
+        gc.collect()
+        before = cw.memory_used()
+        extractor = cw.Extractor(ball)
+        for iso in (-3, 0, 2.5):
+            self.same_mesh(extractor.extract(iso), cw.extract(ball, iso))
+        self.assertLess(len(extractor.extract(0, snap=0.3).vertices), len(extractor.extract(0).vertices))
+        with self.assertRaises(TypeError):
+            extractor.extract(0, step=1)
+        with self.assertRaisesRegex(RuntimeError, "its own call"):
+            extractor.extract(1, progress=lambda *_: extractor.extract(0))
+        self.assertGreater(cw.memory_used(), before)
+        del extractor
+        gc.collect()
+        self.assertEqual(cw.memory_used(), before)
+
+    def test_simplify_by_count_error_and_ratio(self):
+        self.need("simplify")
+        mesh = cw.extract(make_ball(), 0)
+        self.assertLessEqual(len(cw.extract(make_ball(), 0, simplify=200).triangles), 200)
+        self.assertLessEqual(len(cw.simplify(mesh, ratio=0.1).triangles), len(mesh.triangles) // 10)
+        small = cw.simplify(mesh, error=0.1)
+        found = cw.check(small, reference=mesh, tolerance=0.1, profile="print", deep=True)
+        self.assertTrue(found.holds, found.verdicts)
+        self.assertLess(len(small.triangles), len(mesh.triangles))
+        with self.fails(cw.Status.ARGUMENT):
+            cw.simplify(mesh)
+
+    def test_offset_and_hollow(self):
+        self.need("level-set")
+        mesh = cw.extract(make_ball(), 0)
+        full = cw.check(mesh).quality["volume_mm3"]
+        self.assertGreater(cw.check(cw.offset(mesh, 1)).quality["volume_mm3"], full)
+        self.assertLess(cw.check(cw.hollow(mesh, 2)).quality["volume_mm3"], 0.8 * full)
+
+    def test_labels_share_their_interfaces(self):
+        volume = cw.make("labels/cells", dims=40, labels=12, type="u8")
+        found = cw.extract_labels(volume)
+        counts = dict(zip(*np.unique(volume.array[volume.array > 0], return_counts=True)))
+        self.assertEqual(found.voxels, counts)
+        for label, mesh in found.meshes().items():
+            self.assertAlmostEqual(cw.check(mesh).quality["volume_mm3"] / counts[label], 1, 2)
+        self.assertEqual(sum(p.count for p in found.patches), len(found.shared.triangles))
+        shared = found.shared
+        less = found.simplify(ratio=0.3)
+        self.assertLess(len(less.shared.triangles), 0.5 * len(shared.triangles))
+        del found
+        gc.collect()
+        self.assertEqual(shared.triangles.max() + 1, len(shared.vertices))
+        self.assertEqual(set(cw.extract_labels(volume, [3, 5]).voxels), {3, 5})
+        self.assertEqual(len(cw.extract_labels(volume, smooth_labels=0).mesh(200).triangles), 0)
+        with self.fails(cw.Status.ARGUMENT):
+            cw.extract_labels(np.full((4, 4, 4), 0.5, "f4"))
+
+
+class Progress(Case):
+    def test_reports_name_steps_and_rise_to_one(self):
+        reports = []
+        cw.extract(make_slow_volume(), 0, progress=lambda step, done: reports.append((step, done)))
+        self.assertTrue(reports)
+        self.assertTrue(all(step and 0 <= done <= 1 for step, done in reports))
+
+    def test_false_cancels(self):
+        volume = make_slow_volume()
+        gc.collect()
+        before = cw.memory_used()
+        with self.fails(cw.Status.CANCELLED):
+            cw.extract(volume, 0, progress=lambda step, done: False)
+        self.assertEqual(cw.memory_used(), before)
+
+    def test_an_exception_of_the_callback_comes_out(self):
+        class Oops(Exception):
+            pass
+
+        def fail(step, done):
+            raise Oops(step)
+
+        with self.assertRaises(Oops):
+            cw.extract(make_slow_volume(), 0, progress=fail)
+        with self.assertRaises(TypeError):
+            cw.extract(make_ball(), 0, progress=1)
+
+    def test_ctrl_c_stops_a_call_without_a_callback(self):
+        volume, statuses, plain_call = make_slow_volume(), [], cw._progress.call
+        gc.collect()
+        before = cw.memory_used()
+
+        def call_and_note(*arguments):
+            try:
+                plain_call(*arguments)
+            except cw.Error as error:
+                statuses.append(error.status)
+                raise
+
+        with unittest.mock.patch("cubewright._progress.call", call_and_note):
+            for _ in range(20):  # the interrupt may come between two calls
+                timer = threading.Timer(0.05, os.kill, (os.getpid(), signal.SIGINT))
+                try:
+                    timer.start()
+                    while True:
+                        cw.extract(volume, 0, snap=0.3)
+                except KeyboardInterrupt:
+                    if statuses:
+                        break
+                finally:
+                    timer.join()
+        self.assertEqual(statuses, [cw.Status.CANCELLED])
+        self.assertIs(signal.getsignal(signal.SIGINT), signal.default_int_handler)
+        gc.collect()
+        self.assertEqual(cw.memory_used(), before)
+
+    def test_a_handler_that_does_not_raise_lets_the_call_go_on(self):
+        caught = []
+        usual = signal.signal(signal.SIGINT, lambda number, frame: caught.append(number))
+        try:
+            mesh = cw.extract(make_slow_volume(), 0, progress=lambda *_: signal.raise_signal(signal.SIGINT))
+        finally:
+            signal.signal(signal.SIGINT, usual)
+        self.assertGreater(len(mesh.triangles), 0)
+        self.assertEqual(set(caught), {signal.SIGINT})
+
+class Threads(Case):
+    def test_other_threads_run_during_a_call(self):
+        """Counts by a thread that gives way after each step. Nothing forces the main thread to."""
+        volume = make_slow_volume()
+        counts, ends = [0], threading.Event()
+
+        def count():
+            while not ends.is_set():
+                counts[0] += 1
+                time.sleep(0.0005)
+
+        usual = sys.getswitchinterval()
+        thread = threading.Thread(target=count)
+        try:
+            sys.setswitchinterval(1000)
+            thread.start()
+            before = counts[0]
+            cw.extract(volume, 0, snap=0.3, threads=1)
+            during = counts[0] - before
+        finally:
+            ends.set()
+            sys.setswitchinterval(usual)
+            thread.join()
+        print(f"another thread counted to {during} during one extraction")
+        self.assertGreater(during, 50)
+
+    def test_several_threads_extract_at_once(self):
+        volume = cw.make("gyroid", dims=48)
+        expected, results = cw.extract(volume, 0), []
+        threads = [
+            threading.Thread(target=lambda: results.append(cw.extract(volume, 0, threads=2))) for _ in range(6)
+        ]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(len(results), 6)
+        for mesh in results:
+            self.same_mesh(mesh, expected)
+
+    def test_results_do_not_depend_on_threads(self):
+        volume = cw.make("gyroid", dims=48)
+        self.same_mesh(cw.extract(volume, 0, threads=1), cw.extract(volume, 0, threads=4))
+
+
+class Overhead(Case):
+    def test_a_small_call_copies_no_array(self):
+        """Prints the time of a call; what is held to account is that no array is copied."""
+        cube = np.random.default_rng(1).random((4, 4, 4), np.float32)
+        rounds = 500
+        start = time.perf_counter()
+        for _ in range(rounds):
+            volume = cw.Volume(cube)
+            mesh = cw.extract(volume, 0.5, threads=1)
+            arrays = mesh.vertices, mesh.triangles
+        each = (time.perf_counter() - start) / rounds
+        print(f"4 x 4 x 4: {1e3 * each:.3f} ms for Volume(), extract() and two arrays")
+        self.assertEqual(volume._resolved.data, cube.ctypes.data)
+        self.assertFalse(any(array.flags.owndata for array in arrays))
+
+
+class Mistakes(Case):
+    def test_unknown_and_wrong_arguments(self):
+        ball = make_ball()
+        for wrong in (
+            lambda: cw.extract(ball, 0, isovalue=3),
+            lambda: cw.extract(ball, "300"),
+            lambda: cw.extract(ball, True),
+            lambda: cw.extract(ball, 0, open=1),
+            lambda: cw.extract(ball, 0, threads=1.5),
+            lambda: cw.extract(ball, 0, inside=None),
+            lambda: cw.simplify(ball),
+            lambda: cw.extract_labels(ball, ["liver"]),
+        ):
+            self.assertRaises(TypeError, wrong)
+        for wrong in (
+            lambda: cw.extract(ball, float("nan")),
+            lambda: cw.extract(ball, float("inf")),
+            lambda: cw.extract(ball, 0, inside="within"),
+            lambda: cw.extract(ball, 0, threads=-1),
+            lambda: cw.extract(ball, 0, min_volume=-1),
+            lambda: cw.extract_labels(ball, []),
+        ):
+            self.assertRaises(ValueError, wrong)
+
+    def test_statuses_of_the_library(self):
+        ball = make_ball()
+        with self.fails(cw.Status.ARGUMENT, "snap"):
+            cw.extract(ball, 0, snap=0.7)
+        with self.fails(cw.Status.LIMIT):
+            cw.extract(ball, 0, max_triangles=10)
+        cw.memory_limit(max(cw.memory_used(), 1) + 1000)
+        try:
+            with self.fails(cw.Status.NO_MEMORY):
+                cw.extract(cw.Volume(make_ball(64)), 0)
+        finally:
+            cw.memory_limit(0)
+
+    def test_no_surface_is_a_mesh_without_triangles(self):
+        mesh = cw.extract(np.zeros((4, 4, 4), "f4"), 1)
+        self.assertEqual((len(mesh.vertices), len(mesh.triangles)), (0, 0))
+        self.assertEqual(len(cw.extract(np.full((4, 4, 4), np.nan, "f4"), 0).triangles), 0)
+
+    def test_errors_have_a_status_a_text_and_survive_pickling(self):
+        with self.assertRaises(cw.Error) as caught:
+            cw.extract(make_ball(), 0, snap=0.7)
+        error = caught.exception
+        self.assertEqual(str(error), error.message)
+        again = pickle.loads(pickle.dumps(error))
+        self.assertEqual((again.status, again.message), (error.status, error.message))
+        self.assertEqual(cw.Status.NO_MEMORY.text, "memory ran out")
+
+
+class Library(Case):
+    def test_features_without_their_module_are_not_in_this_build(self):
+        """Loads a copy of the library that has no modules beside it."""
+        alone = self.folder / "libcubewright.so.0"
+        alone.write_bytes(pathlib.Path(os.environ["CUBEWRIGHT_LIBRARY"]).read_bytes())
+        code = "import cubewright as cw; m = cw.extract(cw.make('sphere'), 0)\ntry: cw.simplify(m, ratio=.5)\n"
+        code += "except cw.Error as e: print(e.status.name, e, cw.features()['simplify'].reason)"
+        ran = run_python(code, CUBEWRIGHT_LIBRARY=str(alone))
+        self.assertIn("UNSUPPORTED", ran.stdout, ran.stderr)
+
+    def test_what_is_not_the_library_is_refused(self):
+        ran = run_python("import cubewright", CUBEWRIGHT_LIBRARY="/nowhere/libcubewright.so.0")
+        self.assertIn("ImportError: the cubewright library was not found", ran.stderr)
+        self.assertIn("/nowhere/libcubewright.so.0", ran.stderr)
+        ran = run_python("import cubewright", CUBEWRIGHT_LIBRARY="libc.so.6")
+        self.assertIn("is not the cubewright library", ran.stderr)
+
+    def test_another_version_is_refused(self):
+        source, other = self.folder / "other.c", self.folder / "other.so"
+        source.write_text('const char *cw_version(void) { return "9.1.0"; }\n')
+        os.system(f"{os.environ.get('CC', 'cc')} -shared -fPIC -o {other} {source}")
+        ran = run_python("import cubewright", CUBEWRIGHT_LIBRARY=str(other))
+        self.assertIn(f"is cubewright 9.1.0; this package is for {cw.__version__}", ran.stderr)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,158 @@
+"""Tests reading and writing: what comes back, and what is refused."""
+
+import pathlib
+
+import cubewright as cw
+import numpy as np
+from support import ROOT, Case, main, make_ball
+
+
+class Meshes(Case):
+    def test_formats_that_keep_every_bit(self):
+        mesh = cw.extract(make_ball(), 0)
+        for suffix in (".ply", ".glb", ".obj", ".3mf", ".vtp"):
+            with self.subTest(suffix):
+                path = self.folder / f"ball{suffix}"
+                try:
+                    cw.write(path, mesh)
+                except cw.Error as error:
+                    self.assertEqual(error.status, cw.Status.UNSUPPORTED)
+                    continue
+                again = cw.read_mesh(path)
+                self.assertTrue(np.array_equal(again.triangles, mesh.triangles))
+                self.assertLess(np.abs(again.world_vertices() - mesh.world_vertices()).max(), 1e-5)
+
+    def test_options(self):
+        mesh = cw.extract(make_ball(), 0)
+        path = self.folder / "ball.ply"
+        cw.write(path, mesh, ascii=True, unit="cm")
+        self.assertIn(b"format ascii", path.read_bytes()[:40])
+        self.assertTrue(np.allclose(cw.read_mesh(path).bounds, mesh.bounds))
+        with self.fails(cw.Status.OUTPUT):
+            cw.write(path, mesh, no_clobber=True)
+        self.need("draco")
+        loss = cw.write(self.folder / "ball.glb", mesh, compress="draco", tolerance=0.01)
+        self.assertTrue(0 < loss.error_mm <= 0.01)
+
+    def test_parts_keep_their_names(self):
+        mesh = cw.extract(make_ball(), 0)
+        path = self.folder / "parts.obj"
+        cw.write(path, {"first": mesh, "second": mesh})
+        text = path.read_text()
+        self.assertIn("first", text)
+        self.assertIn("second", text)
+        self.assertEqual(len(cw.read_mesh(path).triangles), 2 * len(mesh.triangles))
+
+    def test_mistakes(self):
+        mesh = cw.extract(make_ball(), 0)
+        with self.fails(cw.Status.IO, "missing.ply"):
+            cw.read_mesh(self.folder / "missing.ply")
+        with self.fails(cw.Status.OUTPUT):
+            cw.write(self.folder / "no folder" / "a.ply", mesh)
+        with self.fails(cw.Status.ARGUMENT):
+            cw.write(self.folder / "a.unknown", mesh)
+        damaged = self.folder / "damaged.ply"
+        damaged.write_bytes(b"ply\nformat ascii 1.0\nelement vertex many\nend_header\n")
+        with self.fails(cw.Status.FORMAT):
+            cw.read_mesh(damaged)
+        with self.assertRaises(TypeError):
+            cw.write(self.folder / "a.ply", np.zeros(3))
+        with self.assertRaises(TypeError):
+            cw.write(self.folder / "a.ply", {"first": np.zeros(3)})
+        with self.assertRaises(ValueError):
+            cw.write(self.folder / "a.glb", mesh, compress="zip")
+        with self.assertRaises(TypeError):
+            cw.write(self.folder / "a.glb", mesh, compression="draco")
+
+
+class Volumes(Case):
+    def test_every_type_and_frame_comes_back(self):
+        ball = make_ball(8)
+        for kind in ("u1", "i2", "u2", "i4", "f4", "f8"):
+            path = self.folder / f"{kind}.nrrd"
+            volume = cw.Volume(ball.clip(0).astype(kind)[::-1], spacing=(0.5, 1, 2), origin=(-3, 4, 5))
+            cw.write(path, volume)
+            again = cw.read_volume(path)
+            self.assertTrue(np.array_equal(again.array, volume.array))
+            self.assertEqual((again.dtype, again.format), (volume.dtype, "nrrd"))
+            self.assertTrue(np.allclose(again.affine, volume.affine))
+
+    def test_crop_coarsen_raw_and_notes(self):
+        ball = make_ball(8)
+        path = self.folder / "ball.raw"
+        ball.astype("<f4").tofile(path)
+        z, y, x = ball.shape
+        raw = f"dims={x}x{y}x{z},type=f32le"
+        volume = cw.read_volume(path, raw=raw, spacing=(1, 2, 3), note=lambda text: None)
+        self.assertTrue(np.array_equal(volume.array, ball))
+        self.assertEqual(volume.spacing, (1, 2, 3))
+        part = cw.read_volume(path, raw=raw, crop=((1, 6), (2, 5), (3, 4)))
+        self.assertTrue(np.array_equal(part.array, ball[3:5, 2:6, 1:7]))
+        self.assertEqual(part.origin, (1, 2, 3))
+        self.assertTrue(np.array_equal(cw.read_volume(path, raw=raw, coarsen=2).array, ball[::2, ::2, ::2]))
+
+    def test_names_and_colours_of_labels_come_with_their_volume(self):
+        path = self.folder / "organs.seg.nrrd"
+        fields = ("NRRD0004", "type: uint8", "dimension: 3", "sizes: 4 4 4", "encoding: raw",
+                  "space: left-posterior-superior", "space directions: (1,0,0) (0,1,0) (0,0,1)",
+                  "space origin: (0,0,0)", "Segment0_LabelValue:=1", "Segment0_Layer:=0", "Segment0_ID:=a",
+                  "Segment0_Name:=Leber \u00e4", "Segment0_Color:=1 0.5 0", "Segment0_Extent:=0 3 0 3 0 3")  # fmt: skip
+        path.write_bytes("\n".join([*fields, "", ""]).encode() + bytes([0] * 32 + [1] * 32))
+        volume = cw.read_volume(path)
+        self.assertEqual(volume.labels, [cw.Label(1, 0, "Leber \u00e4", (255, 128, 0, 255))])
+        self.assertEqual(cw.extract_labels(volume).voxels, {1: 32})
+
+    def test_a_real_scan_if_it_is_there(self):
+        scan = ROOT.parent / "shared" / "data" / "headsq-ct" / "headsq.mha"
+        if not scan.exists():
+            self.skipTest("no scan")
+        volume = cw.read_volume(scan, coarsen=2)
+        mesh = cw.extract(volume, 1150)
+        self.assertTrue(cw.check(mesh, source=volume, iso=1150, tolerance=6.4).holds)
+
+    def test_mistakes(self):
+        with self.fails(cw.Status.IO, "missing.nrrd"):
+            cw.read_volume("missing.nrrd")
+        with self.fails(cw.Status.ARGUMENT):
+            cw.read_volume(pathlib.Path(__file__), reader="unheard-of")
+        with self.fails(cw.Status.FORMAT):
+            cw.read_volume(pathlib.Path(__file__), reader="nrrd")
+        with self.fails(cw.Status.ARGUMENT, "dims"):
+            cw.read_volume(pathlib.Path(__file__), raw="dims=0x2")
+        path = self.folder / "ball.nrrd"
+        cw.write(path, cw.Volume(make_ball(8)))
+        with self.fails(cw.Status.CANCELLED):
+            cw.read_volume(path, progress=lambda step, done: False)
+        with self.fails(cw.Status.LIMIT):
+            cw.read_volume(path, max_voxels=10)
+        path.write_bytes(path.read_bytes()[:-100])
+        with self.fails(cw.Status.FORMAT):
+            cw.read_volume(path)
+        for wrong in ({"crop": 3}, {"spacing": "1"}, {"sandbox": 1}, {"note": 1}, {"series": 1}, {"level": "0"}):
+            with self.subTest(wrong), self.assertRaises(TypeError):
+                cw.read_volume(path, **wrong)
+        with self.assertRaises(TypeError):
+            cw.read_volume(3)
+        with self.assertRaises(ValueError):
+            cw.read_volume(path, gaps="mind")
+        with self.assertRaises(ValueError):
+            cw.read_volume("a\0b")
+
+
+class Facts(Case):
+    def test_formats_and_features(self):
+        formats = {f.name: f for f in cw.formats()}
+        self.assertTrue(formats["nrrd"].reads_volume and ".nrrd" in formats["nrrd"].extensions)
+        self.assertTrue(formats["ply"].writes_mesh)
+        for feature in cw.features().values():
+            self.assertEqual(feature.available, feature.reason == "")
+        self.assertEqual(cw.__version__, cw._declarations.CW_VERSION)
+
+    def test_fields(self):
+        self.assertEqual(cw.make("gyroid", dims=(5, 6, 7), type="u8").shape, (7, 6, 5))
+        with self.assertRaisesRegex(ValueError, "sphere"):
+            cw.make("cube")
+
+
+if __name__ == "__main__":
+    main()

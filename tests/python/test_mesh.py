@@ -1,0 +1,233 @@
+"""Tests that meshes share memory with the library, and keep it."""
+
+import gc
+import sys
+import types
+import unittest.mock
+import weakref
+
+import cubewright as cw
+import numpy as np
+from support import Case, main, make_ball
+
+FIELDS = {"vertices": "positions", "normals": "normals", "triangles": "triangles", "scalars": "scalars",
+          "colors": "colors", "labels": "labels"}  # fmt: skip
+
+
+def pointer_of(mesh, name):
+    return cw._memory.find_address(getattr(mesh._struct, FIELDS[name]))
+
+
+def make_tetrahedron():
+    vertices = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], "f4")
+    triangles = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], "u4")
+    return vertices, triangles
+
+
+class Sharing(Case):
+    def test_arrays_are_the_memory_of_the_library(self):
+        mesh = cw.extract(make_ball(), 0)
+        for name in ("vertices", "normals", "triangles"):
+            array = getattr(mesh, name)
+            self.assertEqual(array.ctypes.data, pointer_of(mesh, name), name)
+            self.assertIs(array.flags.owndata, False)
+        self.assertEqual((mesh.scalars, mesh.colors, mesh.labels), (None, None, None))
+        self.assertEqual((mesh.vertices.dtype, mesh.triangles.dtype), (np.float32, np.uint32))
+
+    def test_given_arrays_are_used_as_they_are(self):
+        vertices, triangles = make_tetrahedron()
+        colors, labels = np.full((4, 4), 200, "u1"), np.arange(4, dtype="u4")
+        scalars = np.arange(4, dtype="f4")
+        mesh = cw.Mesh.from_arrays(vertices, triangles, scalars=scalars, colors=colors, labels=labels)
+        given = {"vertices": vertices, "triangles": triangles, "scalars": scalars, "colors": colors, "labels": labels}
+        for name, array in given.items():
+            self.assertIs(getattr(mesh, name), array)
+            self.assertEqual(pointer_of(mesh, name), array.ctypes.data, name)
+        self.assertAlmostEqual(cw.check(mesh).quality["volume_mm3"], 1 / 6)
+
+    def test_other_types_and_strides_are_converted(self):
+        vertices, triangles = make_tetrahedron()
+        for v, t in (
+            (vertices.astype("f8"), triangles.astype("i8")),
+            (vertices.tolist(), triangles.tolist()),
+            (np.asfortranarray(vertices), triangles.astype(">u4")),
+            (np.repeat(vertices, 2, axis=0)[::2], triangles[::-1]),
+        ):
+            self.assertAlmostEqual(cw.check(cw.Mesh.from_arrays(v, t)).quality["volume_mm3"], 1 / 6)
+
+    def test_arrays_outlive_the_mesh_and_then_memory_is_freed(self):
+        gc.collect()
+        before = cw.memory_used()
+        mesh = cw.extract(make_ball(), 0)
+        vertices, alive = mesh.vertices, weakref.ref(mesh._owner)
+        held = cw.memory_used()
+        self.assertGreater(held, before)
+        total = vertices.sum()
+        del mesh
+        gc.collect()
+        self.assertEqual((cw.memory_used(), vertices.sum()), (held, total))
+        part = vertices[3:7]
+        del vertices
+        gc.collect()
+        self.assertIsNotNone(alive())
+        del part
+        gc.collect()
+        self.assertIsNone(alive())
+        self.assertEqual(cw.memory_used(), before)
+
+    def test_a_thousand_meshes_leave_nothing_without_the_collector(self):
+        ball = make_ball(8)
+        cw.extract(ball, 0)
+        gc.collect()
+        before = cw.memory_used()
+        gc.disable()
+        try:
+            for _ in range(1000):
+                cw.extract(ball, 0, threads=1, progress=lambda step, done: True)
+            self.assertEqual(cw.memory_used(), before)
+            self.assertLess(gc.collect(), 100)
+        finally:
+            gc.enable()
+
+    def test_writing_to_arrays_moves_the_mesh(self):
+        mesh = cw.extract(make_ball(), 0)
+        bounds = mesh.bounds
+        mesh.vertices[:] += 10
+        mesh.origin[:] += [1, 2, 3]
+        self.assertTrue(np.allclose(mesh.bounds - bounds, [11, 12, 13]))
+
+    def test_a_copy_has_its_own_memory(self):
+        mesh = cw.extract(make_ball(), 0)
+        other = mesh.copy()
+        self.same_mesh(mesh, other)
+        self.assertFalse(np.shares_memory(mesh.vertices, other.vertices))
+        self.assertTrue(np.array_equal(mesh.affine, other.affine))
+
+
+class Coordinates(Case):
+    def test_world_vertices_keep_what_single_precision_loses(self):
+        far = (1e7, -2e7, 3e7)
+        near, moved = cw.extract(make_ball(), 0), cw.extract(cw.Volume(make_ball(), origin=far), 0)
+        world = moved.world_vertices()
+        self.assertEqual(world.dtype, np.float64)
+        self.assertLess(np.abs(world - far - near.world_vertices()).max(), 1e-5)
+        self.assertLess(np.abs(moved.vertices).max(), 100)
+
+    def test_weld_merges_corners(self):
+        mesh = cw.extract(make_ball(), 0)
+        corners = mesh.vertices[mesh.triangles.ravel()]
+        loose = cw.Mesh.from_arrays(corners, np.arange(len(corners), dtype="u4").reshape(-1, 3), origin=(1, 2, 3))
+        joined = cw.weld(loose)
+        self.assertEqual(len(joined.vertices), len(mesh.vertices))
+        self.assertEqual(len(joined.triangles), len(mesh.triangles))
+        self.assertTrue(np.array_equal(joined.origin, [1, 2, 3]))
+        self.assertEqual(len(loose.vertices), len(corners))
+
+
+class Mistakes(Case):
+    def test_wrong_arrays(self):
+        vertices, triangles = make_tetrahedron()
+        for v, t, words in (
+            (vertices[:, :2], triangles, "shape"),
+            (vertices, triangles.ravel(), "shape"),
+            (vertices, triangles.astype("i8") - 1, "0 to 4294967295"),
+        ):
+            with self.assertRaisesRegex(ValueError, words):
+                cw.Mesh.from_arrays(v, t)
+        with self.assertRaises(TypeError):
+            cw.Mesh.from_arrays(vertices, triangles.astype("f4"))
+        with self.assertRaises(TypeError):
+            cw.Mesh.from_arrays(vertices, triangles, colours=None)
+        with self.assertRaisesRegex(ValueError, "3 rows for 4"):
+            cw.Mesh.from_arrays(vertices, triangles, scalars=np.zeros(3, "f4"))
+        with self.assertRaises(TypeError):
+            cw.Mesh()
+
+    def test_what_the_library_refuses(self):
+        vertices, triangles = make_tetrahedron()
+        with self.fails(cw.Status.ARGUMENT):
+            cw.Mesh.from_arrays(vertices, triangles + np.uint32(1))
+        vertices[1, 1] = np.nan
+        with self.fails(cw.Status.ARGUMENT):
+            cw.Mesh.from_arrays(vertices, triangles)
+
+    def test_a_mesh_without_anything(self):
+        mesh = cw.Mesh.from_arrays([], [])
+        self.assertEqual((mesh.vertices.shape, mesh.triangles.shape), ((0, 3), (0, 3)))
+        self.assertEqual(mesh.world_vertices().shape, (0, 3))
+        with self.fails(cw.Status.ARGUMENT):
+            cw.write(self.folder / "nothing.ply", mesh)
+
+
+class OtherPackages(Case):
+    def test_without_the_package_the_error_says_what_to_install(self):
+        mesh = cw.extract(make_ball(), 0)
+        with unittest.mock.patch.dict(sys.modules, {"trimesh": None, "pyvista": None}):
+            with self.assertRaisesRegex(ImportError, "pip install trimesh"):
+                mesh.to_trimesh()
+            with self.assertRaisesRegex(ImportError, "pip install pyvista"):
+                mesh.to_pyvista()
+
+    def test_trimesh_gets_world_coordinates(self):
+        """Calls a stand-in of trimesh.Trimesh, unless the package is there."""
+        mesh = cw.extract(cw.Volume(make_ball(), origin=(1000, 0, 0)), 0)
+        try:
+            made = mesh.to_trimesh()
+            self.assertTrue(made.is_watertight)
+            self.assertTrue(np.allclose(made.bounds, mesh.bounds))
+        except ImportError:
+            stub = types.SimpleNamespace(Trimesh=lambda **given: types.SimpleNamespace(**given))
+            with unittest.mock.patch.dict(sys.modules, {"trimesh": stub}):
+                made = mesh.to_trimesh()
+            self.assertTrue(np.array_equal(made.vertices, mesh.world_vertices()))
+            self.assertTrue(np.array_equal(made.faces, mesh.triangles))
+            self.assertIs(made.process, False)
+
+    def test_pyvista_gets_a_surface_of_vtk(self):
+        """Builds a vtkPolyData by a stand-in of pyvista.PolyData, unless the package is there."""
+        mesh = cw.extract(make_ball(), 0)
+        try:
+            surface = mesh.to_pyvista()
+        except ImportError:
+            try:
+                stub = make_polydata_stub()
+            except ImportError:
+                self.skipTest("neither pyvista nor VTK")
+            with unittest.mock.patch.dict(sys.modules, {"pyvista": stub}):
+                surface = mesh.to_pyvista()
+            self.assertEqual(surface.GetNumberOfPolys(), len(mesh.triangles))
+            self.assertEqual(surface.find_open_edges(), 0)
+            self.assertEqual(surface.point_data["Normals"].shape, (len(mesh.vertices), 3))
+            return
+        self.assertEqual((surface.n_points, surface.n_open_edges), (len(mesh.vertices), 0))
+
+
+def make_polydata_stub():
+    """Returns a module with PolyData(points, faces) as pyvista has it, on VTK itself."""
+    from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+    from vtkmodules.vtkFiltersCore import vtkFeatureEdges
+
+    class PolyData(vtkPolyData):
+        def __init__(self, points, faces):
+            places, cells = vtkPoints(), vtkCellArray()
+            places.SetData(numpy_to_vtk(points, deep=True))
+            cells.ImportLegacyFormat(numpy_to_vtkIdTypeArray(faces, deep=True))
+            self.SetPoints(places)
+            self.SetPolys(cells)
+            self.point_data = {}
+
+        def find_open_edges(self):
+            edges = vtkFeatureEdges()
+            edges.SetInputData(self)
+            edges.FeatureEdgesOff()
+            edges.ManifoldEdgesOff()
+            edges.Update()
+            return edges.GetOutput().GetNumberOfCells()
+
+    return types.SimpleNamespace(PolyData=PolyData)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,245 @@
+"""Tests that volumes are views of arrays, whatever their strides and types."""
+
+import array as buffers
+import gc
+import weakref
+
+import cubewright as cw
+import numpy as np
+from support import Case, main, make_ball
+
+TYPES = ("u1", "i1", "u2", "i2", "u4", "i4", "f4", "f8")
+
+
+def address_of(volume):
+    return volume._resolved.data
+
+
+class Sharing(Case):
+    def test_no_voxel_is_copied(self):
+        for kind in TYPES:
+            ball = make_ball().clip(-100, 100).astype(kind)
+            volume = cw.Volume(ball)
+            self.assertEqual(address_of(volume), ball.ctypes.data, kind)
+            self.assertIs(volume.array, ball)
+
+    def test_bool_arrays_are_bytes_in_the_same_memory(self):
+        mask = make_ball() > 0
+        volume = cw.Volume(mask)
+        self.assertEqual((address_of(volume), volume.dtype), (mask.ctypes.data, np.uint8))
+        self.assertTrue(cw.check(cw.extract(volume, 0.5)).holds)
+
+    def test_any_strides_give_the_mesh_of_a_copy(self):
+        ball = make_ball()
+        z, y, x = ball.shape
+        larger = np.full((2 * z, 3 * y, 2 * x + 1), 7.0, "f4")
+        larger[::2, 1::3, 1::2] = ball
+        reversed_ball = ball[::-1, ::-1, ::-1].copy()
+        record = np.zeros(ball.shape, [("other", "f4"), ("value", "f4")])
+        record["value"] = ball
+        views = {
+            "reversed": reversed_ball[::-1, ::-1, ::-1],
+            "some reversed": ball[::-1, :, ::-1].copy()[::-1, :, ::-1],
+            "Fortran": np.asfortranarray(ball),
+            "transposed": ball.transpose(1, 2, 0).copy().transpose(2, 0, 1),
+            "every second": larger[::2, 1::3, 1::2],
+            "a field of records": record["value"],
+        }
+        expected = cw.extract(ball, 0)
+        for name, view in views.items():
+            with self.subTest(name):
+                self.assertTrue(np.array_equal(view, ball))
+                volume = cw.Volume(view)
+                self.assertEqual(address_of(volume), view.ctypes.data)
+                self.same_mesh(cw.extract(volume, 0), expected)
+
+    def test_values_written_later_are_seen(self):
+        ball = make_ball()
+        volume = cw.Volume(ball)
+        before = cw.extract(volume, 0)
+        ball -= 2
+        self.assertLess(cw.check(cw.extract(volume, 0)).quality["volume_mm3"], cw.check(before).quality["volume_mm3"])
+
+    def test_read_only_arrays_and_buffers_are_shared(self):
+        ball = make_ball()
+        ball.flags.writeable = False
+        self.assertEqual(address_of(cw.Volume(ball)), ball.ctypes.data)
+        numbers = buffers.array("f", make_ball().ravel())
+        view = memoryview(numbers).cast("B").cast("f", make_ball().shape)
+        self.assertEqual(address_of(cw.Volume(view)), np.asarray(view).ctypes.data)
+        self.same_mesh(cw.extract(cw.Volume(view), 0), cw.extract(ball, 0))
+
+    def test_a_volume_keeps_its_array_alive_and_lets_it_go(self):
+        ball = make_ball()
+        alive = weakref.ref(ball)
+        volume = cw.Volume(ball)
+        del ball
+        gc.collect()
+        self.assertIsNotNone(alive())
+        del volume
+        gc.collect()
+        self.assertIsNone(alive())
+
+    def test_the_array_of_a_read_volume_keeps_its_memory(self):
+        gc.collect()
+        before = cw.memory_used()
+        voxels = cw.make("sphere", dims=32).array
+        gc.collect()
+        self.assertGreaterEqual(cw.memory_used(), before + voxels.nbytes)
+        self.assertGreater(voxels.max(), 20)
+        del voxels
+        gc.collect()
+        self.assertEqual(cw.memory_used(), before)
+
+    def test_strides_beyond_2_GB_are_followed(self):
+        big = np.zeros((1100, 1400, 1500), np.uint8)  # pages of zeros take no memory
+        self.assertGreater(big.nbytes, 2**31)
+        big[-8:-4, -8:-4, -8:-4] = 1
+        mesh = cw.extract(cw.Volume(big[-16:]), 0.5)
+        self.assertTrue(np.allclose(mesh.bounds.mean(axis=0), [1493.5, 1393.5, 9.5]))
+        apart = big[4::543]  # 0, 0 and then the block, 1.1 GB from slice to slice
+        apart[-1, 5:9, 5:9] = 1
+        self.assertEqual(cw.check(cw.extract(apart, 0.5)).quality["components"], 1)
+
+
+class Copies(Case):
+    def test_only_what_c_cannot_address_is_copied(self):
+        ball = make_ball()
+        room = np.zeros(ball.nbytes + 1, np.uint8)
+        unaligned = room[1:].view("f4").reshape(ball.shape)
+        unaligned[...] = ball
+        for name, odd in {
+            "swapped": ball.astype(ball.dtype.newbyteorder()),
+            "not aligned": unaligned,
+            "repeated": np.broadcast_to(ball[:, :, :1], ball.shape),
+        }.items():
+            with self.subTest(name):
+                volume = cw.Volume(odd)
+                self.assertNotEqual(address_of(volume), odd.ctypes.data)
+                self.same_mesh(cw.extract(volume, 0), cw.extract(np.ascontiguousarray(odd, "f4"), 0))
+                with self.assertRaisesRegex(ValueError, "byte-swapped, not aligned"):
+                    cw.Volume(odd, copy=False)
+
+    def test_a_constant_of_one_repeated_voxel_is_read_within_its_memory(self):
+        self.assertEqual(len(cw.extract(np.broadcast_to(np.float32(1), (9, 9, 9)), 5).triangles), 0)
+
+    def test_copy_true_copies(self):
+        ball = make_ball()
+        volume = cw.Volume(ball, copy=True)
+        self.assertFalse(np.shares_memory(volume.array, ball))
+
+
+class Frames(Case):
+    def test_the_axes_of_spacing_and_origin_are_x_y_z(self):
+        volume = cw.Volume(make_ball(), spacing=(0.5, 1, 2), origin=(-5, 6, 7))
+        self.assertEqual(volume.spacing, (0.5, 1, 2))
+        self.assertEqual(volume.origin, (-5, 6, 7))
+        self.assertEqual(volume.world((2, 3, 4)), (-4, 9, 15))
+        self.assertEqual(volume.index((-4, 9, 15)), (2, 3, 4))
+        self.assertEqual(volume.sample((-4, 9, 15)), volume.array[4, 3, 2])
+
+    def test_an_affine_moves_the_mesh(self):
+        turn = np.array([[0, -1, 0, 3.0], [1, 0, 0, 4], [0, 0, 1, 5], [0, 0, 0, 1]])
+        plain, turned = cw.extract(make_ball(), 0), cw.extract(cw.Volume(make_ball(), affine=turn), 0)
+        moved = plain.world_vertices() @ turn[:3, :3].T + turn[:3, 3]
+        self.assertTrue(np.allclose(moved, turned.world_vertices(), atol=1e-5))
+        self.assertTrue(np.array_equal(turned.affine, turn))
+
+    def test_units_of_a_ten_thousandth_and_of_ten_thousand_scale_the_mesh(self):
+        plain = cw.extract(make_ball(), 0)
+        for unit in (1e-4, 1e4):
+            mesh = cw.extract(cw.Volume(make_ball(), spacing=unit), 0)
+            self.assertTrue(np.array_equal(mesh.triangles, plain.triangles))
+            self.assertTrue(np.allclose(mesh.world_vertices() / unit, plain.world_vertices(), rtol=1e-5))
+            self.assertTrue(cw.check(mesh).holds)
+
+    def test_slope_and_intercept_are_of_the_isovalue(self):
+        ball = make_ball()
+        scaled = cw.Volume((ball * 100).astype("i2"), slope=0.01, intercept=5)
+        self.assertEqual(scaled.sample((3, 4, 5)), 0.01 * scaled.array[5, 4, 3] + 5)
+        self.assertEqual(cw.check(cw.extract(scaled, 5)).quality["components"], 1)
+
+    def test_nodata_and_nan_are_outside(self):
+        ball = make_ball()
+        missing = ball.copy()
+        missing[:6] = np.nan
+        numbers = np.where(np.isnan(missing), -999, missing).astype("f4")
+        with_nan, with_number = cw.extract(missing, 0), cw.extract(cw.Volume(numbers, nodata=-999), 0)
+        self.same_mesh(with_nan, with_number)
+        self.assertTrue(cw.check(with_nan).holds)
+
+    def test_rectilinear_planes(self):
+        ball = make_ball()
+        planes = [np.arange(n) ** 1.1 for n in ball.shape[::-1]]
+        volume = cw.Volume(ball, coordinates=planes)
+        self.assertEqual(volume.kind, "rectilinear")
+        self.assertTrue(cw.check(cw.extract(volume, 0)).holds)
+
+    def test_components_and_steps(self):
+        ball = make_ball()
+        several = np.stack([np.stack([ball, ball - 1], axis=-1), np.stack([ball - 2, ball - 3], axis=-1)])
+        volume = cw.Volume(several, components=True, steps=True)
+        self.assertEqual((volume.components, volume.steps, volume.shape), (2, 2, ball.shape))
+        for step in (0, 1):
+            for component in (0, 1):
+                mesh = cw.extract(volume, 0, component=component, step=step)
+                self.same_mesh(mesh, cw.extract(ball - np.float32(2 * step + component), 0))
+        planar = np.stack([ball, ball - 1])
+        self.same_mesh(
+            cw.extract(cw.Volume(np.moveaxis(planar, 0, -1), components=True), 0, component=1),
+            cw.extract(ball - np.float32(1), 0),
+        )
+        with self.fails(cw.Status.ARGUMENT):
+            cw.extract(volume, 0, step=2)
+
+    def test_level_sets_are_low_inside(self):
+        ball = make_ball()
+        self.same_mesh(cw.extract(cw.Volume(-ball, level_set=True), 0), cw.extract(-ball, 0, inside="below"))
+
+    def test_statistics(self):
+        volume = cw.make("ct-head", dims=32, type="i16")
+        found = volume.statistics(bins=64)
+        self.assertEqual(found.min, volume.array.min())
+        self.assertEqual(found.counts.sum(), volume.array.size)
+        self.assertTrue(found.min < found.otsu < found.max)
+
+
+class Mistakes(Case):
+    def test_wrong_types(self):
+        for dtype in ("f2", "i8", "u8", "c8", "U3", "O", "M8[s]"):
+            with self.subTest(dtype), self.assertRaisesRegex(TypeError, "8 to 32 bit"):
+                cw.Volume(np.zeros((4, 4, 4), dtype))
+        with self.assertRaisesRegex(TypeError, "filled"):
+            cw.Volume(np.ma.masked_less(make_ball(), 0))
+        with self.assertRaises(TypeError):
+            cw.Volume(make_ball(), spacings=1)
+        with self.assertRaises(TypeError):
+            cw.Volume(make_ball(), spacing="1mm")
+        with self.assertRaises(TypeError):
+            cw.Volume(make_ball(), spacing=1, affine=np.eye(4))
+
+    def test_wrong_shapes(self):
+        for shape in ((4,), (4, 4), (4, 4, 4, 3)):
+            with self.subTest(shape), self.assertRaisesRegex(ValueError, "axes"):
+                cw.Volume(np.zeros(shape, "f4"))
+        with self.assertRaisesRegex(ValueError, "empty"):
+            cw.Volume(np.zeros((4, 0, 4), "f4"))
+        with self.fails(cw.Status.ARGUMENT):
+            cw.extract(np.zeros((1, 4, 4), "f4"), 0)
+
+    def test_wrong_frames(self):
+        for spacing in (0, -1, (1, 1), (1, 1, np.nan), np.inf):
+            with self.subTest(spacing), self.assertRaises(ValueError):
+                cw.Volume(make_ball(), spacing=spacing)
+        with self.fails(cw.Status.ARGUMENT, "affine"):
+            cw.Volume(make_ball(), affine=np.zeros((3, 4)) + 1)
+        with self.assertRaisesRegex(ValueError, "shape"):
+            cw.Volume(make_ball(), affine=np.eye(3))
+        with self.assertRaises(ValueError):
+            cw.Volume(make_ball(), slope=0)
+        with self.assertRaises(ValueError):
+            cw.Volume(make_ball(), coordinates=[np.arange(3.0)] * 3)
+
+
+if __name__ == "__main__":
+    main()
