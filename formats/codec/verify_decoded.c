@@ -113,10 +113,12 @@ cw_status cwi_verify(const cw_mesh *mesh, const cwi_quantization_grid *grid,
     bool *shared = cwi_alloc_zeroed(mesh->vertex_count, sizeof *shared);
     if (places)
         put_places(mesh, grid, decoded, places);
-    cw_status st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu vertices", count);
+    cw_status st = CW_OK;
     if (places && map && shared && cwi_weld(places, count, map)) {
         mark_shared(map, mesh->vertex_count, shared);
         st = compare_arrays(mesh, decoded, map, shared, normal_degrees, err);
+    } else {
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu vertices", count);
     }
     cwi_free(shared);
     cwi_free(places);

@@ -53,7 +53,7 @@ CW_NEEDLE_RATIO = 20.0
 CW_PRINT_MAX_MM = 400.0
 CW_PRINT_MIN_MM = 5.0
 CW_SIMPLIFIER_SLAB = 524288
-CW_VERSION = '0.1.0'
+CW_VERSION = '0.2.0'
 CW_WEB_MAX_TRIANGLES = 1000000
 
 
@@ -2467,6 +2467,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_pvd_is": (c_bool, [c_char_p]),
     "cw_pvd_write": (c_int, [c_char_p, POINTER(cw_pvd_entry), c_size_t, POINTER(cw_write_desc), POINTER(cw_error)]),
     "cw_mesh_format": (POINTER(cw_format), [c_char_p, c_char_p]),
+    "cw_volume_format": (POINTER(cw_format), [c_char_p, c_char_p]),
     "cw_formats": (POINTER(cw_format), [POINTER(c_size_t)]),
     "cw_hard_at": (POINTER(cw_hard), [c_size_t]),
     "cw_hard_find": (c_bool, [c_char_p, POINTER(c_size_t)]),
