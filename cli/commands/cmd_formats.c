@@ -120,7 +120,7 @@ static void print_module_licences(const char *name, const char *module)
                                      used > 0 ? ", " : "", row->licences);
     }
     printf("%-13s", name);
-    cli_print_wrapped(text, 13);
+    cli_print_wrapped(stdout, text, 13);
 }
 
 /* Prints the libraries that this build links, with their licences: a line for the library, and
