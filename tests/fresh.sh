@@ -166,6 +166,18 @@ use_packages() {
         cubewright check head.glb --deep -q
         cubewright render head.nrrd --iso 300 -o head.png --size 600x600 -q"
     [ "$(wc -c <"$1/results/head.png")" -gt 10000 ] || fail "head.png is blank"
+    must "the Python package" "$1" "
+        cd /results
+        python3 -c 'import cubewright; print(cubewright.__version__)'
+        cd /src/tests/python && python3 -B -W error test_guide.py"
+    must "manual pages and completion" "$1" "
+        cd /results
+        man cubewright-extract | grep -e '--iso'
+        man 3 cubewright | grep cw_extract
+        sh /src/tests/completion/completion.sh /usr/bin bash"
+    must "a C program" "$1" "
+        cd /results
+        cc /src/tests/unit/test_api_is_c.c \$(pkg-config --cflags --libs cubewright) -o user && ./user"
 }
 
 # A root a stage, from one bare system.
@@ -259,6 +271,7 @@ for stage in $stages; do
         cp -a "$builder/packages" "$root/packages"
         rm -rf --one-file-system "$builder"
         must "apt-get install ./*.deb" "$root" "apt-get update -qq && apt-get install -y -qq /packages/*.deb"
+        must "what users have" "$root" "apt-get install -y -qq --no-install-recommends man-db bash-completion gcc libc6-dev pkg-config"
         ours=$(cd "$root/packages" && ls *.deb | sed 's/_.*//' | tr '\n' ' ')
         # what they need stays: without and with them the same files stand beside them
         must "removing them" "$root" "apt-get purge -y -qq $ours"

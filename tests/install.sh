@@ -66,8 +66,8 @@ cmp s.stl t.stl
 if [ -f "$build/pages" ]; then
     for file in man/man1/cubewright.1 man/man1/cubewright-extract.1 man/man3/cubewright.3 \
         bash-completion/completions/cubewright fish/vendor_completions.d/cubewright.fish; do
-        test -s "usr/share/$file" || { echo "$file is not installed"; exit 1; }
+        test -s "$prefix/share/$file" || { echo "$file is not installed"; exit 1; }
     done
-    find usr/share/zsh -name _cubewright | grep -q . || { echo "no completion of zsh"; exit 1; }
+    find "$prefix/share/zsh" -name _cubewright | grep -q . || { echo "no completion of zsh"; exit 1; }
 fi
 echo "the installed library and program work"
