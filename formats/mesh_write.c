@@ -26,6 +26,8 @@ const cw_format *cw_mesh_format(const char *path, const char *name)
 {
     size_t count;
     const cw_format *all = cw_formats(&count);
+    if (!path && !name)
+        return NULL;
     const size_t n = find_writer(path, name);
     return n < count ? &all[n] : NULL;
 }

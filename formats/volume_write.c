@@ -19,7 +19,7 @@ const cw_format *cw_volume_format(const char *path, const char *name)
 {
     size_t count;
     const cw_format *all = cw_formats(&count);
-    for (size_t n = 0; cwi_format_at(n); n++)
+    for (size_t n = 0; (path || name) && cwi_format_at(n); n++)
         if (is_wanted(cwi_format_at(n), path, name))
             return n < count ? &all[n] : NULL;
     return NULL;

@@ -102,19 +102,22 @@ static cw_status inspect_target(const char *path, bool no_clobber, bool *exists,
     return CW_OK;
 }
 
-cw_status cwi_open_parent(char *path, int *folder, char name[CWI_FILE_NAME_BYTES],
+cw_status cwi_open_parent(const char *path, int *folder, char name[CWI_FILE_NAME_BYTES],
                           cw_error *err)
 {
-    char *slash = strrchr(path, '/');
+    const char *slash = strrchr(path, '/');
     const char *last = slash ? slash + 1 : path;
+    char parent[PATH_MAX] = ".";
     if (!*last)
         return cwi_fail(err, CW_ERR_OUTPUT, "it names no file");
     if (strlen(last) >= CWI_FILE_NAME_BYTES)
         return fail_system(err, "it cannot be made", ENAMETOOLONG);
     strcpy(name, last);
-    if (slash)
-        slash[slash == path] = '\0'; /* the root keeps its slash */
-    const char *parent = slash ? path : ".";
+    const int length = (int)(slash == path) + (slash ? (int)(slash - path) : 0);
+    if (length >= PATH_MAX)
+        return fail_system(err, "its folder cannot be opened", ENAMETOOLONG);
+    if (slash) /* the root keeps its slash */
+        snprintf(parent, sizeof parent, "%.*s", length, path);
     *folder = open(parent, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (*folder < 0 && errno == EACCES) /* a folder with write but no list permission */
         *folder = open(parent, O_PATH | O_DIRECTORY | O_CLOEXEC);
@@ -180,12 +183,9 @@ static void close_and_free(cwi_outfile **f)
 /* Opens the folder of a path, or of the file that a link there leads to. */
 static cw_status open_real_parent(cwi_outfile *f, const char *path, cw_error *err)
 {
-    char *real = realpath(path, NULL);
-    if (!real)
-        real = cwi_strdup(path);
-    cw_status st = real ? cwi_open_parent(real, &f->folder, f->name, err)
-                        : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for its name");
-    free(real); /* realpath allocates with malloc, and so does cwi_strdup */
+    char *real = realpath(path, NULL); /* NULL: there is no file yet */
+    cw_status st = cwi_open_parent(real ? real : path, &f->folder, f->name, err);
+    free(real);
     return st;
 }
 

@@ -121,7 +121,7 @@ static void close_and_free(cwi_outfolder **out)
         atomic_store(&slots[f->slot].state, SLOT_FREE);
     if (f->parent >= 0)
         close(f->parent);
-    free(f->path);
+    cwi_free(f->path);
     cwi_free(f);
     *out = NULL;
 }
@@ -198,10 +198,8 @@ static cw_status open_beside(cwi_outfolder *f, cw_error *err)
     cw_status st = inspect_target(f, &exists, err);
     if (st != CW_OK)
         return st;
-    char *real = exists ? realpath(f->path, NULL) : cwi_strdup(f->path);
-    if (!real)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for its name");
-    st = cwi_open_parent(real, &f->parent, f->name, err);
+    char *real = exists ? realpath(f->path, NULL) : NULL;
+    st = cwi_open_parent(real ? real : f->path, &f->parent, f->name, err);
     free(real);
     return st == CW_OK ? make_temporary(f, err) : st;
 }

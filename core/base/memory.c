@@ -3,6 +3,8 @@
 #define _DEFAULT_SOURCE /* madvise */
 #include "core/base/memory.h"
 
+#include "core/base/status.h"
+
 #ifdef __linux__
 #include <malloc.h>
 #endif
@@ -35,6 +37,7 @@ struct cwi_memory_account {
     atomic_size_t refused;      /* size of the last request beyond the limit */
     atomic_size_t refused_left; /* bytes that were left then */
     bool (*next_fails)(void);   /* callback for cwi_alloc_fail_after() */
+    cw_allocator allocator;     /* of the caller; without functions: malloc() */
 };
 
 static cwi_memory_account own_account = {.next_fails = fail_by_request};
@@ -110,9 +113,101 @@ void cwi_memory_give(size_t bytes)
         ;
 }
 
+/* --- the caller's allocator --------------------------------------------------------------- */
+
+enum { HEADER = 64 }; /* bytes before an array of the caller's allocator: the array's size */
+
+cw_status cw_allocator_set(const cw_allocator *allocator, cw_error *err)
+{
+    CWI_REQUIRE(err, account);
+    if (allocator && (!allocator->allocate || !allocator->release))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the allocator has no function '%s'",
+                        allocator->allocate ? "release" : "allocate");
+    const size_t used = cw_memory_used();
+    if (used > 0)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "arrays of %zu bytes are alive; an allocator is set before the first "
+                        "or after the last",
+                        used);
+    account->allocator = allocator ? *allocator : (cw_allocator){0};
+    return CW_OK;
+}
+
+static void *allocate_by_caller(size_t bytes)
+{
+    const cw_allocator *a = &account->allocator;
+    char *memory = bytes <= PTRDIFF_MAX - HEADER ? a->allocate(a->user, bytes + HEADER) : NULL;
+    if (!memory)
+        return NULL;
+    memcpy(memory, &bytes, sizeof bytes);
+    return memory + HEADER;
+}
+
+static size_t caller_size(const void *memory)
+{
+    size_t bytes = 0;
+    if (memory)
+        memcpy(&bytes, (const char *)memory - HEADER, sizeof bytes);
+    return bytes;
+}
+
+static void free_by_caller(void *memory)
+{
+    const cw_allocator *a = &account->allocator;
+    if (memory)
+        a->release(a->user, (char *)memory - HEADER, caller_size(memory) + HEADER);
+}
+
+static void *reallocate_by_caller(void *memory, size_t bytes)
+{
+    void *moved = allocate_by_caller(bytes);
+    const size_t before = caller_size(memory);
+    if (moved && memory)
+        memcpy(moved, memory, before < bytes ? before : bytes);
+    if (moved)
+        free_by_caller(memory);
+    return moved;
+}
+
+static bool has_caller_allocator(void)
+{
+    return account->allocator.allocate != NULL;
+}
+
+/* --- malloc, or that ----------------------------------------------------------------------- */
+
+static void *allocate_bytes(size_t bytes)
+{
+    return has_caller_allocator() ? allocate_by_caller(bytes) : malloc(bytes);
+}
+
+static void *allocate_zeroed(size_t bytes)
+{
+    if (!has_caller_allocator())
+        return calloc(bytes, 1);
+    void *memory = allocate_by_caller(bytes);
+    return memory ? memset(memory, 0, bytes) : NULL;
+}
+
+static void *reallocate_bytes(void *memory, size_t bytes)
+{
+    return has_caller_allocator() ? reallocate_by_caller(memory, bytes)
+                                  : realloc(memory, bytes);
+}
+
+static void free_bytes(void *memory)
+{
+    if (has_caller_allocator())
+        free_by_caller(memory);
+    else
+        free(memory);
+}
+
 /* Returns the true size of allocated memory; 0: unknown, and then it is not counted. */
 static size_t room_of(void *memory)
 {
+    if (has_caller_allocator())
+        return caller_size(memory);
 #ifdef __linux__
     return malloc_usable_size(memory);
 #else
@@ -183,8 +278,9 @@ static void wish_large_pages(char *memory, size_t bytes)
 void *cwi_alloc_array(size_t count, size_t size)
 {
     size_t bytes;
-    return take_array(count, size, &bytes) ? count_memory(malloc(bytes ? bytes : 1), bytes)
-                                           : NULL;
+    return take_array(count, size, &bytes)
+               ? count_memory(allocate_bytes(bytes ? bytes : 1), bytes)
+               : NULL;
 }
 
 void *cwi_alloc_zeroed(size_t count, size_t size)
@@ -192,7 +288,7 @@ void *cwi_alloc_zeroed(size_t count, size_t size)
     size_t bytes;
     if (!take_array(count, size, &bytes))
         return NULL;
-    char *memory = count_memory(calloc(bytes ? bytes : 1, 1), bytes);
+    char *memory = count_memory(allocate_zeroed(bytes ? bytes : 1), bytes);
     wish_large_pages(memory, bytes);
     return memory;
 }
@@ -203,8 +299,8 @@ void *cwi_alloc_large(size_t count, size_t size)
     size_t bytes;
     if (!take_array(count, size, &bytes))
         return NULL;
-    if (bytes < 2 * page || bytes > PTRDIFF_MAX - page)
-        return count_memory(malloc(bytes ? bytes : 1), bytes);
+    if (bytes < 2 * page || bytes > PTRDIFF_MAX - page || has_caller_allocator())
+        return count_memory(allocate_bytes(bytes ? bytes : 1), bytes);
     const size_t whole = (bytes + page - 1) / page * page;
     void *memory = count_memory(aligned_alloc(page, whole), bytes);
     wish_large_pages(memory, whole);
@@ -230,7 +326,7 @@ void *cwi_realloc_array(void *memory, size_t count, size_t size)
     const size_t more = bytes > before ? bytes - before : 0;
     if (!cwi_memory_take(more))
         return NULL;
-    void *moved = realloc(memory, bytes ? bytes : 1);
+    void *moved = reallocate_bytes(memory, bytes ? bytes : 1);
     if (moved)
         count_memory(moved, before + more);
     else
@@ -241,7 +337,7 @@ void *cwi_realloc_array(void *memory, size_t count, size_t size)
 void cwi_free(void *memory)
 {
     cwi_memory_give(room_of(memory));
-    free(memory);
+    free_bytes(memory);
 }
 
 char *cwi_strdup(const char *text)

@@ -80,6 +80,25 @@ CW_API void cw_memory_limit(size_t bytes);
 /* Returns the number of bytes that arrays take now. */
 CW_API size_t cw_memory_used(void);
 
+/* An allocator of the caller's, in place of malloc() and free(). Both functions are called from
+ * any thread, also in the sandboxed processes that readers fork. */
+typedef struct cw_allocator {
+    /* Allocates `bytes`, more than 0, at a multiple of 64. Returns NULL when there are none. */
+    void *(*allocate)(void *user, size_t bytes);
+    /* Frees memory of allocate(), which was asked for so many bytes. Never called with NULL. */
+    void (*release)(void *user, void *memory, size_t bytes);
+    void *user;
+} cw_allocator;
+
+/* Sets the allocator of all arrays that calls in this process make from now on, those of meshes,
+ * volumes and pictures included. Each array takes 64 bytes more. Libraries behind modules, such
+ * as OpenVDB and CGAL, allocate some memory by themselves.
+ *
+ * allocator  copied; NULL means malloc() and free() again
+ * Returns    CW_ERR_ARGUMENT  a function is missing; or arrays are alive, so that another allocator
+ *                             would have to free them: call this before anything else */
+CW_NODISCARD CW_API cw_status cw_allocator_set(const cw_allocator *allocator, cw_error *err);
+
 /* Returns the fields of a status' row in CW_STATUS_TABLE. An unknown status reads as
  * CW_ERR_BACKEND. */
 CW_API int cw_status_exit_code(cw_status status);

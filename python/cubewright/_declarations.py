@@ -291,6 +291,19 @@ cw_progress._fields_ = [
 ]
 
 
+class cw_allocator(Structure):
+    allocate: Any
+    release: Any
+    user: Any
+
+
+cw_allocator._fields_ = [
+    ("allocate", CFUNCTYPE(c_void_p, c_void_p, c_size_t)),
+    ("release", CFUNCTYPE(None, c_void_p, c_void_p, c_size_t)),
+    ("user", c_void_p),
+]
+
+
 class cw_feature(Structure):
     name: bytes | None
     about: bytes | None
@@ -2316,6 +2329,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_version": (c_char_p, []),
     "cw_memory_limit": (None, [c_size_t]),
     "cw_memory_used": (c_size_t, []),
+    "cw_allocator_set": (c_int, [POINTER(cw_allocator), POINTER(cw_error)]),
     "cw_status_exit_code": (c_int, [c_int]),
     "cw_status_name": (c_char_p, [c_int]),
     "cw_status_text": (c_char_p, [c_int]),

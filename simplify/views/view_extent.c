@@ -26,10 +26,9 @@ cw_status cw_simplify_views_error(const cw_simplify_view *views, size_t view_cou
                                   double pixels, const double *points, size_t count,
                                   double *error_mm, cw_error *err)
 {
-    CWI_REQUIRE(err);
+    CWI_REQUIRE(err, error_mm);
     CWI_REQUIRE_ARRAY(err, points, count);
     CWI_REQUIRE_ARRAY(err, views, view_count);
-    CWI_REQUIRE_ARRAY(err, error_mm, count);
     cw_status st = CW_OK;
     *error_mm = 0;
     for (size_t n = 0; n < view_count * count && st == CW_OK; n++) {

@@ -5,6 +5,7 @@
 # 2. Every folder of sources is a room of rooms.txt, with 30 files at most, C and C++ alone.
 # 3. No two sources have one base name.
 # 4. No two definitions have one internal name (cwi_, CWI_).
+# 5. No message of a library names an option of the command line: it names a field, as desc->max_bytes.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 cd "${1:-$here/../..}" || exit 1
@@ -33,6 +34,12 @@ awk -f "$here/names.awk" $(grep -v -e '_stub\.c$' -e '^cli/' "$folder/sources") 
 awk '{ count[$1]++; places[$1] = places[$1] " " $2 }
     END { for (name in count) if (count[name] > 1) { print name " is defined twice:" places[name]; found = 1 }
     exit found }' "$folder/names" || bad=1
+
+# The window is a program's; its help names keys.
+# shellcheck disable=SC2046
+grep -nE '^[^/]*"[^"]*--[a-z]' $(grep -v -e '^cli/' -e '^viewer/window/' "$folder/sources") /dev/null |
+    sed 's/$/: a library names no option of the command line/' >"$folder/options"
+[ ! -s "$folder/options" ] || { cat "$folder/options"; bad=1; }
 
 [ $bad = 0 ] && echo "$(wc -l <"$folder/sources") sources in $(sed 's|/[^/]*$||' "$folder/sources" | sort -u | wc -l) rooms"
 exit $bad

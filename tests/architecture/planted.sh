@@ -58,4 +58,8 @@ expect_fault 'CWI_FIVE is defined twice'
 build_house
 for n in $(seq 31); do touch "viewer/scene/file_$n.c"; done
 expect_fault 'viewer/scene: 31 files'
+
+build_house
+echo 'static const char hint[] = "say --memory 8G";' >core/base/three.c
+expect_fault 'core/base/three.c:1:'
 exit $bad
