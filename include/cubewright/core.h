@@ -85,7 +85,7 @@ CW_API size_t cw_memory_used(void);
 typedef struct cw_allocator {
     /* Allocates `bytes`, more than 0, at a multiple of 64. Returns NULL when there are none. */
     void *(*allocate)(void *user, size_t bytes);
-    /* Frees memory of allocate(), which was asked for so many bytes. Never called with NULL. */
+    /* Frees memory of allocate(); bytes as they were there. Never called with NULL. */
     void (*release)(void *user, void *memory, size_t bytes);
     void *user;
 } cw_allocator;
