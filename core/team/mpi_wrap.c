@@ -7,6 +7,7 @@
 #include "core/base/status.h"
 #include "core/team/mpi_watch.h"
 
+#include <limits.h>
 #include <mpi.h>
 #include <pthread.h>
 #include <string.h>
@@ -39,11 +40,23 @@ static int await_request(MPI_Request *request)
     return code;
 }
 
+/* MPI counts bytes by int. */
+static cw_status check_bytes(size_t bytes, cw_error *err)
+{
+    return bytes <= INT_MAX
+               ? CW_OK
+               : cwi_fail(err, CW_ERR_LIMIT, "ranks exchange %zu bytes; up to %d were expected",
+                          bytes, INT_MAX);
+}
+
 static cw_status gather_bytes(void *user, const void *mine, size_t bytes, void *all,
                               cw_error *err)
 {
     MPI_Request request;
     (void)user;
+    cw_status st = check_bytes(bytes, err);
+    if (st != CW_OK)
+        return st;
     int code = MPI_Iallgather(mine, (int)bytes, MPI_BYTE, all, (int)bytes, MPI_BYTE,
                               MPI_COMM_WORLD, &request);
     if (code == MPI_SUCCESS)
@@ -55,6 +68,9 @@ static cw_status broadcast_bytes(void *user, int from, void *bytes, size_t size,
 {
     MPI_Request request;
     (void)user;
+    cw_status st = check_bytes(size, err);
+    if (st != CW_OK)
+        return st;
     int code = MPI_Ibcast(bytes, (int)size, MPI_BYTE, from, MPI_COMM_WORLD, &request);
     if (code == MPI_SUCCESS)
         code = await_request(&request);
