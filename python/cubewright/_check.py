@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _declarations as c
-from ._errors import call
+from ._errors import call, name_keywords
 from ._extract import AnyVolume, extract, take_inside
 from ._library import lib
 from ._mesh import Mesh, take_mesh
@@ -167,7 +167,7 @@ class Measurer:
                 lib.cw_grade_name(row.grade).decode(),
                 row.number,
                 row.text.decode("utf-8", "replace"),
-                row.advice.decode() if row.advice else None,
+                name_keywords(row.advice) if row.advice else None,
             )
             for row in rows[:count]
         ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import enum
+import re
 from collections.abc import Callable
 from ctypes import byref
 from typing import Any
@@ -51,9 +52,32 @@ class Error(Exception):
         return Error, (self.status, self.message)
 
 
+# What messages of the library name, and the keyword that stands for it.
+KEYWORDS = {
+    "desc->gaps = CW_GAPS_INTERPOLATE": "gaps='interpolate'",
+    "desc->gaps = CW_GAPS_ALLOW": "gaps='allow'",
+    "desc->tilt = CW_TILT_KEEP": "tilt='keep'",
+    "desc->claim.rule = CW_CLAIM_OVERRIDE": "input_override=True",
+    "desc->claim.unit": "input_unit=",
+    "desc->spacing_mm": "spacing=",
+    "desc->max_bytes": "memory_limit()",
+    "desc->no_sandbox": "sandbox=False",
+    "desc->snap = 0.5": "snap=0.5",
+    "cw_self_intersections()": "deep=True",
+}
+
+
+def name_keywords(message: bytes) -> str:
+    """Returns a message of the library with keywords in place of C's fields: series= for desc->series."""
+    text = message.decode("utf-8", "replace")
+    for field, keyword in KEYWORDS.items():
+        text = text.replace(field, keyword)
+    return re.sub(r"desc->(\w+)", r"\1=", text)
+
+
 def call(function: Callable[..., int], *arguments: Any) -> None:
     """Calls a function whose last argument is a cw_error. Raises Error unless it returns CW_OK."""
     error = c.cw_error()
     status = function(*arguments, byref(error))
     if status != Status.OK:
-        raise Error(Status(status), error.message.decode("utf-8", "replace"))
+        raise Error(Status(status), name_keywords(error.message))

@@ -8,7 +8,7 @@ from ctypes import byref, c_char_p, pointer, string_at
 from typing import Any, Union
 
 from . import _declarations as c
-from ._errors import call
+from ._errors import call, name_keywords
 from ._library import lib
 from ._memory import Owner
 from ._mesh import Mesh
@@ -146,7 +146,7 @@ def read_volume(
     if note is not None:
         if not callable(note):
             raise TypeError(f"note must be callable, not {type(note).__name__}")
-        desc.note = _NOTE(lambda _user, text: note((text or b"").decode("utf-8", "replace")))
+        desc.note = _NOTE(lambda _user, text: note(name_keywords(text or b"")))
     out, form = Owner(c.cw_volume(), lib.cw_volume_free), c_char_p()
     try:
         reporter.call(lib.cw_volume_read, take_path("path", path), byref(desc), byref(out.struct), byref(form))

@@ -123,7 +123,7 @@ class Volumes(Case):
         cw.write(path, cw.Volume(make_ball(8)))
         with self.fails(cw.Status.CANCELLED):
             cw.read_volume(path, progress=lambda step, done: False)
-        with self.fails(cw.Status.LIMIT):
+        with self.fails(cw.Status.LIMIT, "the limit is 10 (max_voxels=)"):
             cw.read_volume(path, max_voxels=10)
         path.write_bytes(path.read_bytes()[:-100])
         with self.fails(cw.Status.FORMAT):
