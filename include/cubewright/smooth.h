@@ -22,7 +22,7 @@ typedef struct cw_smooth_desc {
     cw_progress progress; /* default: none */
 } cw_smooth_desc;
 
-#define CW_SMOOTH_MAX_ITERATIONS ((size_t)100000)
+#define CW_SMOOTH_MAX_ITERATIONS ((size_t)1000)
 
 /* Facts on a finished smoothing. */
 typedef struct cw_smooth_facts {
@@ -48,10 +48,11 @@ typedef struct cw_smooth_facts {
  * precision. So no point of either surface is farther than that from the other.
  *
  * Each iteration moves all vertices toward the mean of their neighbours, and then away from it by
- * slightly more, which keeps large shapes. Afterwards each closed component moves along its normals
- * until it has its first volume again, as far as max_move_mm allows. Components with a fixed border
- * keep the volume on one side in the same way. Vertices also move along the surface: triangles
- * become more regular, and attributes move with their vertices.
+ * slightly more, which keeps large shapes. Vertices also move along the surface: triangles become
+ * more regular, and attributes move with their vertices. Afterwards moves are cut to max_move_mm,
+ * first their part along the surface. Each closed component moves along its normals until it has
+ * its first volume again, as far as max_move_mm allows. Components with a fixed border keep the
+ * volume on one side in the same way.
  *
  * The result does not depend on the unit. 1e-4 mm is as good as 1e4 mm.
  *

