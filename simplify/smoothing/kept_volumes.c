@@ -52,7 +52,7 @@ void cwi_volumes_gradients(cwi_kept_volumes *volumes, const double *places,
 {
     const cw_mesh *mesh = volumes->mesh;
     for (size_t n = 0; n < volumes->count; n++)
-        volumes->items[n].area = 0;
+        volumes->items[n].area = volumes->items[n].now = 0;
     for (size_t n = 0; n < 3 * mesh->vertex_count; n++)
         gradients[n] = 0;
     for (size_t t = 0; t < mesh->triangle_count; t++) {
@@ -61,8 +61,13 @@ void cwi_volumes_gradients(cwi_kept_volumes *volumes, const double *places,
                      *r = places + 3 * (size_t)corners[2];
         const double pq[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]},
                      pr[3] = {r[0] - p[0], r[1] - p[1], r[2] - p[2]};
+        cwi_kept_volume *item = &volumes->items[volumes->component[corners[0]]];
+        const float *first = mesh->positions + 3 * (size_t)item->reference;
+        const double from[3] = {p[0] - (double)first[0], p[1] - (double)first[1],
+                                p[2] - (double)first[2]};
         double area[3];
         cwi_cross(pq, pr, area);
+        item->now += cwi_dot(from, area) / 6;
         for (int c = 0; c < 3; c++)
             for (size_t a = 0; a < 3; a++)
                 gradients[3 * (size_t)corners[c] + a] += area[a] / 6;

@@ -33,7 +33,7 @@ void cwi_volumes_free(cwi_kept_volumes *volumes);
  * places  vertices x 3 */
 void cwi_volumes_measure(cwi_kept_volumes *volumes, const double *places);
 
-/* Finds the gradient of the volume at each vertex, and the area of each component.
+/* Measures the volumes, too, and finds their gradient at each vertex and the area of each component.
  * is_border  of each vertex: those at a border add to no area
  * gradients  vertices x 3: a normal that is as long as a third of the area around the vertex */
 void cwi_volumes_gradients(cwi_kept_volumes *volumes, const double *places,

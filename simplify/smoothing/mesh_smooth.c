@@ -156,7 +156,6 @@ static void limit_and_keep_volumes(cwi_smoother *s)
     cwi_kept_volumes *volumes = &s->volumes;
     double *gradients = s->to;
     for (int round = 0; round < VOLUME_ROUNDS; round++) {
-        cwi_volumes_measure(volumes, s->from);
         cwi_volumes_gradients(volumes, s->from, s->rings.is_border, gradients);
         for (size_t v = 0; v < s->mesh->vertex_count; v++) {
             const cwi_kept_volume *item = &volumes->items[volumes->component[v]];

@@ -4,6 +4,8 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/bvh.h"
+#include "core/geometry/triangle_intersect.h"
 
 #include <cubewright/quality.h>
 
@@ -12,20 +14,33 @@
 /* Rounds that put back the triangles that meet alone; later ones put back those around them, too. */
 enum { NARROW_ROUNDS = 4 };
 
+typedef enum vertex_state { MOVED, BACK, JUST_BACK, GOES_BACK } vertex_state;
+
 typedef struct undo_state {
     cwi_smoother *s;
-    cw_mesh moved;       /* the mesh at the new places; borrowed */
-    cw_crossings before; /* of the mesh as it was */
-    bool has_before;
-    bool *is_back; /* of each vertex */
-    size_t back;   /* vertices that are back */
+    uint8_t *states; /* of each vertex; JUST_BACK: since the last search */
+    size_t back;     /* vertices that are back */
 } undo_state;
+
+/* Triangles that a search looks at. A zeroed struct is valid and empty. */
+typedef struct selection {
+    uint32_t *ids;       /* numbers in the mesh; NULL: all of them */
+    uint32_t *triangles; /* count x 3 vertices */
+    size_t count;
+} selection;
+
+static void free_selection(selection *chosen)
+{
+    cwi_free(chosen->ids);
+    cwi_free(chosen->triangles);
+    *chosen = (selection){0};
+}
 
 static void put_back(undo_state *u, uint32_t v)
 {
-    if (u->is_back[v])
+    if (u->states[v] != MOVED)
         return;
-    u->is_back[v] = true;
+    u->states[v] = JUST_BACK;
     u->back++;
     memcpy(u->s->rounded + 3 * (size_t)v, u->s->mesh->positions + 3 * (size_t)v,
            3 * sizeof *u->s->rounded);
@@ -38,7 +53,7 @@ static void put_triangle_back(undo_state *u, size_t t)
 }
 
 /* Returns true if the area of a triangle is not 0 in double precision. */
-static bool has_area(const float *positions, const uint32_t *corners)
+static bool has_size(const float *positions, const uint32_t *corners)
 {
     double edges[2][3];
     for (size_t c = 0; c < 2; c++)
@@ -53,104 +68,179 @@ static bool has_area(const float *positions, const uint32_t *corners)
     return false;
 }
 
+/* Puts back the triangles that lost their area, which may flatten those beside them. */
 static void put_flat_triangles_back(undo_state *u)
 {
     const cw_mesh *mesh = u->s->mesh;
-    for (size_t t = 0; t < mesh->triangle_count; t++) {
-        const uint32_t *corners = mesh->triangles + 3 * t;
-        if (!has_area(u->s->rounded, corners) && has_area(mesh->positions, corners))
-            put_triangle_back(u, t);
-    }
+    size_t back;
+    do {
+        back = u->back;
+        for (size_t t = 0; t < mesh->triangle_count; t++) {
+            const uint32_t *corners = mesh->triangles + 3 * t;
+            if (!has_size(u->s->rounded, corners) && has_size(mesh->positions, corners))
+                put_triangle_back(u, t);
+        }
+    } while (u->back != back);
 }
 
-static int compare_pairs(const uint32_t *a, const uint32_t *b)
+static bool has_changed(const undo_state *u, size_t t)
 {
-    const int i = a[0] == b[0];
-    return a[i] < b[i] ? -1 : a[i] > b[i];
+    const uint32_t *v = u->s->mesh->triangles + 3 * t;
+    return u->states[v[0]] == JUST_BACK || u->states[v[1]] == JUST_BACK ||
+           u->states[v[2]] == JUST_BACK;
 }
 
-/* Puts back the triangles of pairs that did not meet before. Pairs are in rising order. */
-static void put_pairs_back(undo_state *u, const cw_crossings *now)
-{
-    size_t old = 0;
-    for (size_t n = 0; n < now->count; n++) {
-        const uint32_t *pair = now->pairs + 2 * n;
-        while (old < u->before.count && compare_pairs(u->before.pairs + 2 * old, pair) < 0)
-            old++;
-        if (old < u->before.count && compare_pairs(u->before.pairs + 2 * old, pair) == 0)
-            continue;
-        put_triangle_back(u, pair[0]);
-        put_triangle_back(u, pair[1]);
-    }
-}
-
-/* Puts back the triangles around all vertices that are back. */
-static cw_status put_surroundings_back(undo_state *u, cw_error *err)
+/* Puts back the triangles around vertices that were put back since the last search. */
+static void put_surroundings_back(undo_state *u)
 {
     const cw_mesh *mesh = u->s->mesh;
-    bool *touched = cwi_alloc_zeroed(mesh->triangle_count, sizeof *touched);
-    if (!touched)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to mark %zu triangles",
-                        mesh->triangle_count);
-    for (size_t n = 0; n < 3 * mesh->triangle_count; n++)
-        touched[n / 3] = touched[n / 3] || u->is_back[mesh->triangles[n]];
     for (size_t t = 0; t < mesh->triangle_count; t++)
-        if (touched[t])
-            put_triangle_back(u, t);
-    cwi_free(touched);
-    return CW_OK;
+        for (size_t c = 0; c < 3 && has_changed(u, t); c++) {
+            const uint32_t v = mesh->triangles[3 * t + c];
+            if (u->states[v] == MOVED)
+                u->states[v] = GOES_BACK;
+        }
+    for (uint32_t v = 0; v < mesh->vertex_count; v++)
+        if (u->states[v] == GOES_BACK) {
+            u->states[v] = MOVED;
+            put_back(u, v);
+        }
 }
 
-static cw_status find_crossings(undo_state *u, const cw_mesh *mesh, const cw_progress *progress,
-                                cw_smooth_facts *facts, cw_crossings *out, cw_error *err)
+/* Sorts the boxes of triangles with a vertex that was put back since the last search. */
+static cw_status sort_changed(const undo_state *u, cwi_boxes *tree, cw_error *err)
 {
-    const cw_crossings_desc desc = {.threads = u->s->desc.threads, .progress = *progress};
-    cw_status st = cw_self_intersections(mesh, &desc, out, err);
-    facts->undecided = facts->undecided || out->undecided;
+    const cw_mesh *mesh = u->s->mesh;
+    size_t count = 0, n = 0;
+    for (size_t t = 0; t < mesh->triangle_count; t++)
+        count += has_changed(u, t);
+    float(*boxes)[6] = cwi_alloc_array(count, sizeof *boxes);
+    if (!boxes)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the boxes of %zu triangles",
+                        count);
+    for (size_t t = 0; t < mesh->triangle_count; t++)
+        if (has_changed(u, t))
+            cwi_boxes_triangle(u->s->rounded, mesh->triangles + 3 * t, boxes[n++]);
+    cw_status st = cwi_boxes_build(tree, (const float(*)[6])boxes, count, err);
+    cwi_free(boxes);
     return st;
 }
 
-/* Looks for triangles that meet, and puts them back. The mesh before is looked at when first
- * needed. */
-static cw_status undo_round(undo_state *u, const cw_progress *progress, cw_smooth_facts *facts,
-                            cw_error *err)
+typedef struct overlap {
+    const cwi_boxes *tree;
+    float box[6];
+    bool found;
+} overlap;
+
+static bool visit_node(void *context, size_t node)
 {
-    cw_crossings now = {0};
-    cw_status st = find_crossings(u, &u->moved, progress, facts, &now, err);
-    if (st == CW_OK && now.count && !u->has_before) {
-        st = find_crossings(u, u->s->mesh, progress, facts, &u->before, err);
-        u->has_before = true;
+    overlap *o = context;
+    o->found = cwi_boxes_meeting(&o->tree->nodes[node], o->box) != 0;
+    return !o->found;
+}
+
+/* Selects the triangles that changed, and those whose boxes meet theirs: all pairs of which one
+ * triangle changed are among them. */
+static cw_status select_near_changed(const undo_state *u, selection *chosen, cw_error *err)
+{
+    const cw_mesh *mesh = u->s->mesh;
+    cwi_boxes tree = {0};
+    cw_status st = sort_changed(u, &tree, err);
+    overlap o = {.tree = &tree};
+    chosen->ids = cwi_alloc_array(mesh->triangle_count, sizeof *chosen->ids);
+    for (size_t t = 0; t < mesh->triangle_count && chosen->ids && st == CW_OK; t++) {
+        cwi_boxes_triangle(u->s->rounded, mesh->triangles + 3 * t, o.box);
+        o.found = false;
+        cwi_boxes_visit(&tree, o.box, 0, visit_node, &o);
+        if (o.found)
+            chosen->ids[chosen->count++] = (uint32_t)t;
     }
+    chosen->triangles = cwi_alloc_array(chosen->count, 3 * sizeof *chosen->triangles);
+    if (st == CW_OK && (!chosen->ids || !chosen->triangles))
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to select from %zu triangles",
+                      mesh->triangle_count);
+    for (size_t n = 0; n < chosen->count && st == CW_OK; n++)
+        memcpy(chosen->triangles + 3 * n, mesh->triangles + 3 * (size_t)chosen->ids[n],
+               3 * sizeof *chosen->triangles);
+    cwi_boxes_free(&tree);
+    return st;
+}
+
+/* Returns true if two triangles of the mesh met before anything moved. */
+static bool met_before(const cw_mesh *mesh, uint32_t a, uint32_t b)
+{
+    const uint32_t *v = mesh->triangles + 3 * (size_t)a, *w = mesh->triangles + 3 * (size_t)b;
+    return cwi_has_area(mesh->positions, v) && cwi_has_area(mesh->positions, w) &&
+           cwi_triangles_meet(mesh->positions, v, w);
+}
+
+/* Puts back the triangles of pairs that did not meet before. */
+static void put_pairs_back(undo_state *u, const cw_crossings *found, const selection *chosen)
+{
+    for (size_t n = 0; n < found->count; n++) {
+        uint32_t a = found->pairs[2 * n], b = found->pairs[2 * n + 1];
+        if (chosen->ids) {
+            a = chosen->ids[a];
+            b = chosen->ids[b];
+        }
+        if (met_before(u->s->mesh, a, b))
+            continue;
+        put_triangle_back(u, a);
+        put_triangle_back(u, b);
+    }
+}
+
+/* Looks for triangles that meet, and puts them back. The first search looks at all triangles,
+ * later ones near those that changed. */
+static cw_status undo_round(undo_state *u, bool is_first, const cw_progress *progress,
+                            cw_smooth_facts *facts, cw_error *err)
+{
+    const cw_crossings_desc desc = {.threads = u->s->desc.threads, .progress = *progress};
+    selection chosen = {0};
+    cw_crossings found = {0};
+    cw_mesh moved = {.vertex_count = u->s->mesh->vertex_count,
+                     .triangle_count = u->s->mesh->triangle_count,
+                     .positions = u->s->rounded,
+                     .triangles = u->s->mesh->triangles};
+    cw_status st = is_first ? CW_OK : select_near_changed(u, &chosen, err);
+    if (st == CW_OK && !is_first) {
+        moved.triangle_count = chosen.count;
+        moved.triangles = chosen.triangles;
+    }
+    for (size_t v = 0; v < moved.vertex_count; v++)
+        u->states[v] = u->states[v] == MOVED ? MOVED : BACK;
     if (st == CW_OK)
-        put_pairs_back(u, &now);
-    cw_crossings_free(&now);
+        st = cw_self_intersections(&moved, &desc, &found, err);
+    facts->undecided = facts->undecided || found.undecided;
+    if (st == CW_OK)
+        put_pairs_back(u, &found, &chosen);
+    cw_crossings_free(&found);
+    free_selection(&chosen);
     return st;
 }
 
 cw_status cwi_smooth_undo_crossings(cwi_smoother *s, cw_smooth_facts *facts,
                                     const cw_progress *progress, cw_error *err)
 {
-    undo_state u = {.s = s, .moved = *s->mesh};
-    u.moved.positions = s->rounded;
-    u.is_back = cwi_alloc_zeroed(s->mesh->vertex_count, sizeof *u.is_back);
-    cw_status st = u.is_back ? CW_OK
-                             : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to mark %zu vertices",
-                                        s->mesh->vertex_count);
+    undo_state u = {.s = s};
+    u.states = cwi_alloc_zeroed(s->mesh->vertex_count, sizeof *u.states);
+    cw_status st = u.states ? CW_OK
+                            : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to mark %zu vertices",
+                                       s->mesh->vertex_count);
     bool is_done = false;
     double share = 0.5; /* of each round: half of the rest */
     for (int round = 0; st == CW_OK && !is_done; round++) {
         const cwi_part_progress part = {progress, 1 - 2 * share, share};
         const cw_progress part_progress = cwi_progress_part(&part);
-        const size_t back = u.back;
         put_flat_triangles_back(&u);
-        st = undo_round(&u, &part_progress, facts, err);
+        const size_t back = u.back;
+        st = undo_round(&u, round == 0, &part_progress, facts, err);
         is_done = u.back == back;
         if (st == CW_OK && !is_done && round >= NARROW_ROUNDS)
-            st = put_surroundings_back(&u, err);
+            put_surroundings_back(&u);
         share /= 2;
     }
     facts->put_back = u.back;
-    cw_crossings_free(&u.before);
-    cwi_free(u.is_back);
+    cwi_free(u.states);
     return st;
 }
