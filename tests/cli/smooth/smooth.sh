@@ -1,4 +1,5 @@
 # Smoother meshes: what is printed and reported, what stays, and the same bytes for any number of threads.
+cubewright version --features | grep -q '^glb *yes' || { echo "this build has no glTF" >&2; exit 77; }
 cubewright make sphere -o s.nrrd --dims 32 --noise 0.4 -q
 cubewright extract s.nrrd --iso 0 -o s.glb -q
 cubewright smooth s.glb -o a.ply

@@ -1,4 +1,5 @@
 /* Smoothing of meshes: noise falls, shapes keep their volume, and no vertex leaves its ball. */
+#include "support/hostile.h"
 #include "support/surface.h"
 
 #include "core/base/memory.h"
@@ -349,6 +350,29 @@ static void flipped_triangles_are_counted(void **state)
     cw_mesh_free(&m);
 }
 
+/* Surfaces that extractors break on keep their topology, and get no new defect. */
+static void hostile_surfaces_stay_sound(void **state)
+{
+    (void)state;
+    const test_hostile *h;
+    for (size_t n = 0; (h = test_hostile_at(n)); n += TEST_IS_SLOW ? 3 : 1) {
+        cw_volume volume;
+        cw_error err = {0};
+        assert_ok(test_hostile_make(h, &volume, &err), err);
+        const cw_extract_desc desc = {.isovalue = h->isovalue, .leave_open = n % 2};
+        cw_mesh mesh = test_extract(&volume, &desc, NULL), out;
+        assert_ok(cwi_mesh_copy(&mesh, &out, &err), err);
+        const cw_smooth_facts facts = smooth(&out, NULL);
+        const char *fault = test_reduced_fault(&mesh, &out);
+        if (fault)
+            fail_msg("hostile case %zu: %s", n, fault);
+        assert_false(facts.undecided);
+        cw_mesh_free(&out);
+        cw_mesh_free(&mesh);
+        cw_volume_free(&volume);
+    }
+}
+
 /* Normals follow, and nothing else does. */
 static void attributes_stay_and_normals_follow(void **state)
 {
@@ -511,6 +535,7 @@ int main(void)
         cmocka_unit_test(threads_do_not_matter),
         cmocka_unit_test(no_triangles_meet_that_did_not_before),
         cmocka_unit_test(flipped_triangles_are_counted),
+        cmocka_unit_test(hostile_surfaces_stay_sound),
         cmocka_unit_test(attributes_stay_and_normals_follow),
         cmocka_unit_test(odd_meshes_are_smoothed),
         cmocka_unit_test(bad_arguments_are_named),
