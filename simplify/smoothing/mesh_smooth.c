@@ -15,7 +15,7 @@
  * iteration. See simplify/smoothing.md. */
 static const double SHRINK = 0.63, PASS_BAND = 0.05;
 
-enum { DEFAULT_ITERATIONS = 10, VOLUME_ROUNDS = 4 };
+enum { DEFAULT_ITERATIONS = 10, VOLUME_ROUNDS = 4, ROUNDING_STEPS = 8 };
 
 /* The default limit, as a fraction of the mean length of the edges. */
 static const double DEFAULT_MOVE = 0.5;
@@ -163,8 +163,9 @@ static void limit_and_keep_volumes(cwi_smoother *s)
             double *normal = gradients + 3 * v;
             if (!cwi_normalise(normal))
                 memset(normal, 0, 3 * sizeof *normal);
-            const double gain =
+            double gain =
                 stays || !(item->area > 0) ? 0 : (item->before - item->now) / item->area;
+            gain = cwi_greater(-s->limit, cwi_lesser(s->limit, gain));
             for (size_t a = 0; a < 3; a++)
                 s->from[3 * v + a] += gain * normal[a];
             limit_move(s, v, normal);
@@ -173,7 +174,7 @@ static void limit_and_keep_volumes(cwi_smoother *s)
 }
 
 /* Rounds places to single precision. Where that leads out of the ball, the next numbers toward the
- * first place are taken. */
+ * first place are taken: once or twice, or else the first place itself. */
 static void round_places(cwi_smoother *s)
 {
     for (size_t v = 0; v < s->mesh->vertex_count; v++) {
@@ -181,9 +182,9 @@ static void round_places(cwi_smoother *s)
         float *place = s->rounded + 3 * v;
         for (size_t a = 0; a < 3; a++)
             place[a] = (float)s->from[3 * v + a];
-        while (!(measure_move(place, first) <= s->limit))
+        for (int step = 0; !(measure_move(place, first) <= s->limit); step++)
             for (int a = 0; a < 3; a++)
-                place[a] = nextafterf(place[a], first[a]);
+                place[a] = step < ROUNDING_STEPS ? nextafterf(place[a], first[a]) : first[a];
     }
 }
 
