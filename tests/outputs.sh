@@ -56,6 +56,8 @@ run simplify-count simplify out/gyroid.stl -o out/simple-count.ply --triangles 2
 run simplify-ratio simplify out/noisy.ply -o out/simple-ratio.ply --ratio 0.3 --keep-border
 run simplify-lod simplify out/gyroid.stl -o out/levels.glb --lod 4k,2k,1k
 run simplify-field simplify out/gyroid.stl -o out/simple-field.ply --error 0.2mm --source in/gyroid.nrrd --iso 0
+run smooth smooth out/noisy.ply -o out/smooth.ply --max-move 0.5mm
+run smooth-open smooth out/gyroid-open.ply -o out/smooth-open.ply -n 30 --no-keep-border
 run hollow hollow out/sphere.stl -o out/hollow.stl --wall 3mm --drain 4mm@-z --voxel 1mm
 run offset offset out/torus.stl -o out/offset.stl --by 1mm --voxel 1mm
 run rebuild offset out/torus.stl -o out/rebuild.stl --by 0 --voxel 1mm

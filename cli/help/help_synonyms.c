@@ -18,11 +18,10 @@ const cli_synonym cli_synonyms[] = {
     {"label|segment|mask|atlas", NULL, "--labels|--names|label|--inside",
      "'extract --labels all' makes a closed mesh of each label of a label map or a mask. An "
      "isovalue joins all labels above it."},
-    {"smooth|denois|filter|laplacian|taubin|gaussian", NULL,
-     "--smooth-labels|--snap|--placement|--min-volume|--drop-components|--noise",
-     "cubewright smooths the surfaces of labels; it does not smooth or denoise other volumes "
-     "and meshes. --snap removes thin triangles, and --min-volume and --drop-components remove "
-     "small components."},
+    {"smooth|denois|filter|laplacian|taubin|gaussian|fairing|noisy", "smooth",
+     "smooth|--smooth-labels|--snap|--placement|--min-volume|--drop-components|--noise",
+     "'smooth' smooths meshes, and 'extract --labels' smooths the surfaces of labels; cubewright "
+     "does not denoise volumes. --min-volume and --drop-components remove small components."},
     {"hole|watertight|repair|heal|leak", "closed", "closed|--open|--orient|--by|--profile",
      "cubewright does not fill holes of a mesh. 'extract' makes closed meshes, 'check' finds "
      "open edges, and 'offset --by 0' rebuilds closed meshes that intersect themselves."},

@@ -37,6 +37,34 @@ cw_status cwi_mesh_alloc(cw_mesh *mesh, size_t vertices, size_t triangles, bool 
     return cwi_mesh_renew(mesh, vertices, triangles, normals, err);
 }
 
+/* Returns a copy of an array, or NULL where there is none. Sets *failed when memory is out. */
+static void *copy_array(const void *array, size_t count, size_t size, bool *failed)
+{
+    void *copy = array ? cwi_alloc_large(count, size) : NULL;
+    if (copy && count)
+        memcpy(copy, array, count * size);
+    *failed = *failed || (array && !copy);
+    return copy;
+}
+
+cw_status cwi_mesh_copy(const cw_mesh *mesh, cw_mesh *copy, cw_error *err)
+{
+    const size_t vertices = mesh->vertex_count, triangles = mesh->triangle_count;
+    bool failed = false;
+    *copy = *mesh;
+    copy->positions = copy_array(mesh->positions, vertices, 3 * sizeof(float), &failed);
+    copy->normals = copy_array(mesh->normals, vertices, 3 * sizeof(float), &failed);
+    copy->triangles = copy_array(mesh->triangles, triangles, 3 * sizeof(uint32_t), &failed);
+    copy->scalars = copy_array(mesh->scalars, vertices, sizeof(float), &failed);
+    copy->colors = copy_array(mesh->colors, vertices, 4, &failed);
+    copy->labels = copy_array(mesh->labels, vertices, sizeof(uint32_t), &failed);
+    if (!failed)
+        return CW_OK;
+    cw_mesh_free(copy);
+    return cwi_fail(err, CW_ERR_NO_MEMORY,
+                    "no memory for a mesh of %zu vertices, %zu triangles", vertices, triangles);
+}
+
 void cw_mesh_free(cw_mesh *mesh)
 {
     if (!mesh)

@@ -19,6 +19,7 @@
 #include <cubewright/quality.h>
 #include <cubewright/render.h>
 #include <cubewright/simplify.h>
+#include <cubewright/smooth.h>
 #include <cubewright/spool.h>
 #include <cubewright/stream.h>
 #include <cubewright/team.h>

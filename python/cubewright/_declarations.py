@@ -2322,6 +2322,50 @@ class cw_simplifier(Structure):
     pass
 
 
+class cw_smooth_desc(Structure):
+    iterations: int
+    max_move_mm: float
+    move_border: bool
+    allow_crossings: bool
+    threads: int
+    progress: Any
+
+
+cw_smooth_desc._fields_ = [
+    ("iterations", c_size_t),
+    ("max_move_mm", c_double),
+    ("move_border", c_bool),
+    ("allow_crossings", c_bool),
+    ("threads", c_int),
+    ("progress", cw_progress),
+]
+
+
+class cw_smooth_facts(Structure):
+    limit_mm: float
+    max_mm: float
+    mean_mm: float
+    volume_before_mm3: float
+    volume_after_mm3: float
+    flipped: int
+    border: int
+    put_back: int
+    undecided: bool
+
+
+cw_smooth_facts._fields_ = [
+    ("limit_mm", c_double),
+    ("max_mm", c_double),
+    ("mean_mm", c_double),
+    ("volume_before_mm3", c_double),
+    ("volume_after_mm3", c_double),
+    ("flipped", c_size_t),
+    ("border", c_size_t),
+    ("put_back", c_size_t),
+    ("undecided", c_bool),
+]
+
+
 cw_slice = cw_clip
 
 # The result and the arguments of each function.
@@ -2557,6 +2601,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_simplifier_take": (c_int, [c_void_p, POINTER(cw_slab), POINTER(cw_error)]),
     "cw_simplifier_finish": (c_int, [POINTER(cw_simplifier), POINTER(cw_mesh), POINTER(cw_simplify_facts), POINTER(cw_error)]),
     "cw_simplify_available": (c_bool, []),
+    "cw_mesh_smooth": (c_int, [POINTER(cw_mesh), POINTER(cw_smooth_desc), POINTER(cw_smooth_facts), POINTER(cw_error)]),
 }
 
 VARIABLES: dict[str, Any] = {

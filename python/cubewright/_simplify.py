@@ -1,9 +1,10 @@
-"""Simplification, offsets and hollowing of meshes."""
+"""Simplification, smoothing, offsets and hollowing of meshes."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from ctypes import byref
+from dataclasses import dataclass
 
 from . import _declarations as c
 from ._errors import call
@@ -56,6 +57,70 @@ def simplify(
     out = Mesh._from_c(c.cw_mesh())
     reporter.call(lib.cw_simplify, byref(source), byref(desc), byref(out._struct), None)
     return out
+
+
+@dataclass(frozen=True)
+class Smoothed:
+    """A smoothed mesh, and what smoothing did to it. Lengths are in mm."""
+
+    mesh: Mesh
+    limit: float  # how far a vertex was allowed to move
+    max_move: float
+    mean_move: float
+    volume_before: float  # mm3, of closed components
+    volume_after: float
+    flipped: int  # triangles that turned by 90 degrees or more
+    border: int  # vertices at open edges
+    put_back: int  # vertices that stay because their triangles would meet others or lose their area
+    undecided: bool  # too many triangles are in one place to look for all that meet
+
+
+def smooth(
+    mesh: Mesh,
+    *,
+    iterations: int = 10,
+    max_move: float = 0.0,
+    keep_border: bool = True,
+    allow_intersections: bool = False,
+    threads: int = 0,
+    progress: Progress = None,
+) -> Smoothed:
+    """Returns a smoother mesh: noise goes, and so does fine detail. Smoothing moves the surface.
+
+    iterations  1 to 1000; more remove longer waves
+    max_move    mm: no vertex is farther from its first place; 0: half the mean edge
+    keep_border keep open edges as they are; else they move along themselves
+    allow_intersections  of triangles that did not meet before
+
+    Closed components keep their volume, as far as max_move allows. Normals are computed again if
+    there are any; scalars, colors and labels stay with their vertices. Vertices at equal positions
+    count as different ones: weld() them first.
+    Raises Error: ARGUMENT, LIMIT, NO_MEMORY, CANCELLED.
+    """
+    take_mesh("mesh", mesh)
+    reporter = Reporter(progress)
+    desc = c.cw_smooth_desc(
+        iterations=take_count("iterations", iterations, 1, 1000),
+        max_move_mm=take_length("max_move", max_move),
+        move_border=not take_flag("keep_border", keep_border),
+        allow_crossings=take_flag("allow_intersections", allow_intersections),
+        threads=take_threads(threads),
+        progress=reporter.struct,
+    )
+    out, facts = mesh.copy(), c.cw_smooth_facts()
+    reporter.call(lib.cw_mesh_smooth, byref(out._struct), byref(desc), byref(facts))
+    return Smoothed(
+        mesh=out,
+        limit=facts.limit_mm,
+        max_move=facts.max_mm,
+        mean_move=facts.mean_mm,
+        volume_before=facts.volume_before_mm3,
+        volume_after=facts.volume_after_mm3,
+        flipped=facts.flipped,
+        border=facts.border,
+        put_back=facts.put_back,
+        undecided=facts.undecided,
+    )
 
 
 def offset(

@@ -113,6 +113,42 @@ class Coordinates(Case):
         self.assertLess(np.abs(world - far - near.world_vertices()).max(), 1e-5)
         self.assertLess(np.abs(moved.vertices).max(), 100)
 
+    def test_smooth_removes_noise_within_its_limit(self):
+        ball = cw.extract(make_ball(), 0)
+        rng = np.random.default_rng(3)
+        noisy = ball.copy()
+        noisy.vertices[:] += rng.normal(0, 0.15, noisy.vertices.shape)
+        first = noisy.vertices.copy()
+        found = cw.smooth(noisy, max_move=0.4, threads=2)
+        self.assertIsInstance(found, cw.Smoothed)
+        np.testing.assert_array_equal(noisy.vertices, first)
+        moves = np.linalg.norm(found.mesh.vertices.astype("f8") - first, axis=1)
+        self.assertLessEqual(moves.max(), 0.4)
+        self.assertEqual((found.limit, found.border, found.undecided), (0.4, 0, False))
+        self.assertAlmostEqual(found.max_move, moves.max(), 9)
+        self.assertAlmostEqual(found.mean_move, moves.mean(), 9)
+        self.assertAlmostEqual(found.volume_after / found.volume_before, 1, 5)
+
+        def find_noise(mesh):
+            radii = np.linalg.norm(mesh.world_vertices() - 11.5, axis=1)
+            return radii.std()
+
+        self.assertLess(find_noise(found.mesh), 0.6 * find_noise(noisy))
+        np.testing.assert_array_equal(found.mesh.triangles, noisy.triangles)
+        normals = found.mesh.normals
+        self.assertFalse(np.array_equal(normals, noisy.normals))
+        np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1, atol=1e-6)
+        self.assertEqual(cw.smooth(noisy, iterations=1).mesh.vertices.shape, first.shape)
+        for wrong in (
+            lambda: cw.smooth(noisy, iterations=0),
+            lambda: cw.smooth(noisy, max_move=-1),
+            lambda: cw.smooth(noisy, max_move=float("nan")),
+        ):
+            self.assertRaises(ValueError, wrong)
+        self.assertRaises(TypeError, lambda: cw.smooth(first))
+        with self.fails(cw.Status.CANCELLED):
+            cw.smooth(noisy, progress=lambda *_: False)
+
     def test_weld_merges_corners(self):
         mesh = cw.extract(make_ball(), 0)
         corners = mesh.vertices[mesh.triangles.ravel()]

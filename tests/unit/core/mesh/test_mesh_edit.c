@@ -1,5 +1,5 @@
 /* Meshes edited in place: what is left is as it was. */
-#include "support/support.h"
+#include "support/surface.h"
 
 #include "core/base/memory.h"
 #include "core/mesh/mesh.h"
@@ -322,6 +322,36 @@ static void failures_leave_the_mesh_as_it_was(void **state)
     cw_mesh_free(&soup);
 }
 
+static void copies_have_arrays_of_their_own(void **state)
+{
+    (void)state;
+    cw_mesh cube, soup, copy, lone = {.vertex_count = 0};
+    cw_error err = {0};
+    test_make_cube(&cube);
+    make_soup(&cube, &soup);
+    soup.origin[1] = 4;
+    for (long n = 0;; n++) {
+        cwi_alloc_fail_after(n);
+        const cw_status st = cwi_mesh_copy(&soup, &copy, &err);
+        const bool failed = cwi_alloc_fail_after(-1);
+        assert_int_equal(st, failed ? CW_ERR_NO_MEMORY : CW_OK);
+        assert_int_equal(copy.vertex_count, failed ? 0 : soup.vertex_count);
+        if (!failed)
+            break;
+        assert_true(!copy.positions && !copy.labels && n < 6);
+    }
+    test_assert_same_mesh(&soup, &copy);
+    assert_true(copy.positions != soup.positions && copy.origin[1] == 4);
+    assert_memory_equal(copy.colors, soup.colors, 4 * soup.vertex_count);
+    assert_memory_equal(copy.scalars, soup.scalars, sizeof(float) * soup.vertex_count);
+    assert_memory_equal(copy.labels, soup.labels, sizeof(uint32_t) * soup.vertex_count);
+    cw_mesh_free(&copy);
+    assert_ok(cwi_mesh_copy(&lone, &copy, &err), err);
+    cw_mesh_free(&copy);
+    cw_mesh_free(&cube);
+    cw_mesh_free(&soup);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -334,6 +364,7 @@ int main(void)
         cmocka_unit_test(components_that_are_far_away_go),
         cmocka_unit_test(volumes_do_not_depend_on_the_order),
         cmocka_unit_test(failures_leave_the_mesh_as_it_was),
+        cmocka_unit_test(copies_have_arrays_of_their_own),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,79 @@
+/* Smoothing of noisy meshes: every vertex moves, within a stated distance. */
+#ifndef CUBEWRIGHT_SMOOTH_H
+#define CUBEWRIGHT_SMOOTH_H
+
+#include <cubewright/mesh.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Settings of a smoothing. Zero-initialise the struct and set what you need; a zero field means
+ * the default named beside it. */
+typedef struct cw_smooth_desc {
+    size_t iterations;  /* at most CW_SMOOTH_MAX_ITERATIONS; default: 10. More remove longer
+                             waves of noise, and more detail */
+    double max_move_mm; /* how far a vertex may move from its first place; default: half the
+                             mean length of the edges */
+    bool move_border;   /* default: vertices at open edges stay to the bit. Else they move along
+                             their border, and neither the volume nor the border is kept */
+    bool allow_crossings; /* default: no triangles meet that did not meet before */
+    int threads;          /* default: all that OpenMP offers */
+    cw_progress progress; /* default: none */
+} cw_smooth_desc;
+
+#define CW_SMOOTH_MAX_ITERATIONS ((size_t)1000)
+
+/* Facts on a finished smoothing. */
+typedef struct cw_smooth_facts {
+    double limit_mm;          /* max_move_mm, or its default for this mesh */
+    double max_mm, mean_mm;   /* how far vertices moved, those that stayed included */
+    double volume_before_mm3; /* signed sums over closed parts; of open parts the volume between
+                                 the surface and a vertex of the part */
+    double volume_after_mm3;
+    size_t flipped;  /* triangles whose direction changed by 90 degrees or more, or that lost
+                            their area */
+    size_t border;   /* vertices at open edges; they stay by default */
+    size_t put_back; /* vertices that stayed because their triangles would meet others or lose
+                            their area */
+    bool undecided;  /* too many triangles are in one place to look for all that meet: see
+                            cw_crossings */
+} cw_smooth_facts;
+
+/* Smooths a mesh: removes noise from the positions of its vertices. Triangles, scalars, colours and
+ * labels stay as they are. Normals are computed again by cw_mesh_normals() if there are any.
+ *
+ * Smoothing moves the surface. It is meant for meshes without a source: noise and fine detail are the
+ * same to it. No vertex is farther than max_move_mm from its first place, in double and in single
+ * precision. So no point of either surface is farther than that from the other.
+ *
+ * Each iteration moves all vertices toward the mean of their neighbours, and then away from it by
+ * slightly more, which keeps large shapes. Vertices also move along the surface: triangles become
+ * more regular, and attributes move with their vertices. Afterwards moves are cut to max_move_mm,
+ * first their part along the surface. Each closed component moves along its normals until it has
+ * its first volume again, as far as max_move_mm allows. Components with a fixed border keep the
+ * volume on one side in the same way.
+ *
+ * The result does not depend on the unit. 1e-4 mm is as good as 1e4 mm.
+ *
+ * mesh     in place: its arrays stay where they are; unchanged on failure. Vertices at equal
+ *          positions count as different ones, and their edges as open: weld them first
+ * desc     borrowed; NULL means all defaults
+ * facts    may be NULL
+ *
+ * Returns  CW_ERR_ARGUMENT  too many iterations; max_move_mm is negative or not finite; or as
+ *                           cw_mesh_check()
+ *          CW_ERR_LIMIT     beyond 2^32 / 3 triangles
+ *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
+ * Cost     about 0.4 us for each triangle, and 0.01 us more for each iteration; then as
+ *          cw_self_intersections(). About 80 bytes for each triangle
+ * Threads  reentrant; the same to the bit for any number of threads
+ * Source   [Taubin1995], with equal weights; see simplify/smoothing.md */
+CW_NODISCARD CW_API cw_status cw_mesh_smooth(cw_mesh *mesh, const cw_smooth_desc *desc,
+                                             cw_smooth_facts *facts, cw_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,279 @@
+/* Smooths a mesh by Taubin's two passes in turn [Taubin1995]. Then vertices go back into a ball around
+ * their first place, and components get their volumes back. */
+#include "simplify/smoothing/mesh_smooth.h"
+
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
+#include "core/base/status.h"
+#include "core/geometry/vec3.h"
+
+#include <float.h>
+#include <string.h>
+
+/* The fraction of the way to the mean of the neighbours, and the pass band: waves of this eigenvalue
+ * keep their size, shorter ones shrink, longer ones grow by a factor of at most 1.0003 each
+ * iteration. See simplify/smoothing.md. */
+static const double SHRINK = 0.63, PASS_BAND = 0.05;
+
+enum { DEFAULT_ITERATIONS = 10, VOLUME_ROUNDS = 4, ROUNDING_STEPS = 8 };
+
+/* The default limit, as a fraction of the mean length of the edges. */
+static const double DEFAULT_MOVE = 0.5;
+
+static const size_t MAX_TRIANGLES = UINT32_MAX / 3;
+
+/* Shares of the progress: neighbours, passes, and the search for triangles that meet. */
+static const double RINGS_SHARE = 0.1, PASSES_SHARE = 0.5;
+
+static double measure_move(const float *place, const float *first)
+{
+    const double d[3] = {(double)place[0] - (double)first[0],
+                         (double)place[1] - (double)first[1],
+                         (double)place[2] - (double)first[2]};
+    return sqrt(cwi_dot(d, d));
+}
+
+/* Returns the mean over triangles of the mean length of their sides. */
+static double mean_edge(const cw_mesh *mesh)
+{
+    double sum = 0;
+    for (size_t t = 0; t < mesh->triangle_count; t++)
+        for (size_t c = 0; c < 3; c++)
+            sum += measure_move(mesh->positions + 3 * (size_t)mesh->triangles[3 * t + c],
+                                mesh->positions +
+                                    3 * (size_t)mesh->triangles[3 * t + (c + 1) % 3]);
+    return mesh->triangle_count ? sum / (3 * (double)mesh->triangle_count) : 0;
+}
+
+static cw_status resolve_desc(const cw_mesh *mesh, const cw_smooth_desc *desc,
+                              cw_smooth_desc *out, cw_error *err)
+{
+    *out = desc ? *desc : (cw_smooth_desc){0};
+    if (out->iterations > CW_SMOOTH_MAX_ITERATIONS)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "iterations is %zu; it must be at most %zu",
+                        out->iterations, CW_SMOOTH_MAX_ITERATIONS);
+    if (!(out->max_move_mm >= 0) || !isfinite(out->max_move_mm))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "max_move_mm is %g; it must be finite, and 0 or more",
+                        out->max_move_mm);
+    cw_status st = cw_mesh_check(mesh, err);
+    if (st != CW_OK)
+        return st;
+    if (mesh->triangle_count > MAX_TRIANGLES || mesh->vertex_count > UINT32_MAX)
+        return cwi_fail(err, CW_ERR_LIMIT,
+                        "%zu triangles and %zu vertices; at most %zu and %u are smoothed",
+                        mesh->triangle_count, mesh->vertex_count, MAX_TRIANGLES, UINT32_MAX);
+    if (out->iterations == 0)
+        out->iterations = DEFAULT_ITERATIONS;
+    if (out->max_move_mm == 0)
+        out->max_move_mm = DEFAULT_MOVE * mean_edge(mesh);
+    return CW_OK;
+}
+
+static cw_status alloc_places(cwi_smoother *s, cw_error *err)
+{
+    const size_t numbers = 3 * s->mesh->vertex_count;
+    s->from = cwi_alloc_large(numbers, sizeof *s->from);
+    s->to = cwi_alloc_large(numbers, sizeof *s->to);
+    s->rounded = cwi_alloc_large(numbers, sizeof *s->rounded);
+    if (!s->from || !s->to || !s->rounded)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to smooth %zu vertices",
+                        s->mesh->vertex_count);
+    for (size_t n = 0; n < numbers; n++)
+        s->from[n] = (double)s->mesh->positions[n];
+    return CW_OK;
+}
+
+static void average_part(void *context, size_t k)
+{
+    const cwi_smoother *s = context;
+    const cwi_rings *r = &s->rings;
+    for (size_t v = k * CWI_RING_PART; v < (k + 1) * CWI_RING_PART && v < r->vertices; v++) {
+        const double *here = s->from + 3 * v;
+        const uint32_t *neighbours = r->neighbours + r->begin[v], count = r->count[v];
+        double *to = s->to + 3 * v, sum[3] = {0};
+        memcpy(to, here, 3 * sizeof *to);
+        if (count < 2 || (r->is_border[v] && !s->desc.move_border))
+            continue;
+        for (uint32_t i = 0; i < count; i++)
+            for (size_t a = 0; a < 3; a++)
+                sum[a] += s->from[3 * (size_t)neighbours[i] + a];
+        for (int a = 0; a < 3; a++)
+            to[a] += s->factor * (sum[a] / count - here[a]);
+    }
+}
+
+/* Moves vertices toward the mean of their neighbours, and away from it, in turn. */
+static cw_status average_all(cwi_smoother *s, cw_error *err)
+{
+    const double grow = 1 / (PASS_BAND - 1 / SHRINK);
+    const size_t passes = 2 * s->desc.iterations;
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < passes && st == CW_OK; n++) {
+        const cwi_part_progress part = {.whole = &s->desc.progress,
+                                        .from = RINGS_SHARE +
+                                                PASSES_SHARE * (double)n / (double)passes,
+                                        .share = PASSES_SHARE / (double)passes};
+        const cw_progress progress = cwi_progress_part(&part);
+        double *const before = s->from;
+        s->factor = n % 2 ? grow : SHRINK;
+        st = cwi_each_layer((s->rings.vertices + CWI_RING_PART - 1) / CWI_RING_PART,
+                            16 * CWI_RING_PART, s->desc.threads, &progress, "smoothing",
+                            average_part, s, err);
+        s->from = s->to;
+        s->to = before;
+    }
+    return st;
+}
+
+/* Pulls a place into the ball around its first one. The part of a move along the surface is cut
+ * first: the part along the normal is what removes noise.
+ * normal  of the surface there, or 0 */
+static void limit_move(const cwi_smoother *s, size_t v, const double normal[3])
+{
+    const float *first = s->mesh->positions + 3 * v;
+    double *place = s->from + 3 * v, move[3], along[3];
+    for (int a = 0; a < 3; a++)
+        move[a] = place[a] - (double)first[a];
+    if (!(sqrt(cwi_dot(move, move)) > s->limit))
+        return;
+    double out = cwi_dot(move, normal);
+    for (int a = 0; a < 3; a++)
+        along[a] = move[a] - out * normal[a];
+    const double length = sqrt(cwi_dot(along, along));
+    out = cwi_greater(-s->limit, cwi_lesser(s->limit, out));
+    const double left = sqrt(cwi_greater(0, s->limit * s->limit - out * out));
+    const double fraction = length > left ? left / length : 1;
+    for (int a = 0; a < 3; a++)
+        place[a] = (double)first[a] + out * normal[a] + fraction * along[a];
+}
+
+/* Pulls all places into their balls, and moves each component along its normals to its first volume
+ * by Newton's method: the gain for a move of 1 mm is the area. Each needs the other again, so both
+ * take turns. Moving borders leave no volume to keep. */
+static void limit_and_keep_volumes(cwi_smoother *s)
+{
+    cwi_kept_volumes *volumes = &s->volumes;
+    double *gradients = s->to;
+    for (int round = 0; round < VOLUME_ROUNDS; round++) {
+        cwi_volumes_gradients(volumes, s->from, s->rings.is_border, gradients);
+        for (size_t v = 0; v < s->mesh->vertex_count; v++) {
+            const cwi_kept_volume *item = &volumes->items[volumes->component[v]];
+            const bool stays = s->rings.is_border[v] || (item->is_open && s->desc.move_border);
+            double *normal = gradients + 3 * v;
+            if (!cwi_normalise(normal))
+                memset(normal, 0, 3 * sizeof *normal);
+            double gain =
+                stays || !(item->area > 0) ? 0 : (item->before - item->now) / item->area;
+            gain = cwi_greater(-s->limit, cwi_lesser(s->limit, gain));
+            for (size_t a = 0; a < 3; a++)
+                s->from[3 * v + a] += gain * normal[a];
+            limit_move(s, v, normal);
+        }
+    }
+}
+
+/* Rounds places to single precision. Where that leads out of the ball, the next numbers toward the
+ * first place are taken: once or twice, or else the first place itself. */
+static void round_places(cwi_smoother *s)
+{
+    for (size_t v = 0; v < s->mesh->vertex_count; v++) {
+        const float *first = s->mesh->positions + 3 * v;
+        float *place = s->rounded + 3 * v;
+        for (size_t a = 0; a < 3; a++)
+            place[a] = (float)s->from[3 * v + a];
+        for (int step = 0; !(measure_move(place, first) <= s->limit); step++)
+            for (int a = 0; a < 3; a++)
+                place[a] = step < ROUNDING_STEPS ? nextafterf(place[a], first[a]) : first[a];
+    }
+}
+
+static void find_normal(const float *positions, const uint32_t *corners, double normal[3])
+{
+    double edges[2][3];
+    for (size_t c = 0; c < 2; c++)
+        for (size_t a = 0; a < 3; a++)
+            edges[c][a] = (double)positions[3 * (size_t)corners[c + 1] + a] -
+                          (double)positions[3 * (size_t)corners[0] + a];
+    cwi_cross(edges[0], edges[1], normal);
+}
+
+static void count_facts(cwi_smoother *s, cw_smooth_facts *facts)
+{
+    const cw_mesh *mesh = s->mesh;
+    double sum = 0;
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        const double move = measure_move(s->rounded + 3 * v, mesh->positions + 3 * v);
+        facts->max_mm = cwi_greater(facts->max_mm, move);
+        sum += move;
+        facts->border += s->rings.is_border[v];
+    }
+    facts->mean_mm = mesh->vertex_count ? sum / (double)mesh->vertex_count : 0;
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
+        double before[3], after[3];
+        find_normal(mesh->positions, mesh->triangles + 3 * t, before);
+        find_normal(s->rounded, mesh->triangles + 3 * t, after);
+        facts->flipped +=
+            cwi_normalise(before) && (!cwi_normalise(after) || !(cwi_dot(before, after) > 0));
+    }
+    for (size_t n = 0; n < 3 * mesh->vertex_count; n++)
+        s->from[n] = (double)s->rounded[n];
+    cwi_volumes_measure(&s->volumes, s->from);
+    facts->volume_before_mm3 = cwi_volumes_sum(&s->volumes, true);
+    facts->volume_after_mm3 = cwi_volumes_sum(&s->volumes, false);
+    facts->limit_mm = s->desc.max_move_mm;
+}
+
+/* Finds the new positions, and leaves the mesh as it is. */
+static cw_status smooth_places(cwi_smoother *s, cw_smooth_facts *facts, cw_error *err)
+{
+    const cwi_part_progress first = {&s->desc.progress, 0, RINGS_SHARE},
+                            last = {&s->desc.progress, RINGS_SHARE + PASSES_SHARE,
+                                    1 - RINGS_SHARE - PASSES_SHARE};
+    const cw_progress first_progress = cwi_progress_part(&first),
+                      last_progress = cwi_progress_part(&last);
+    /* The last digits of a distance depend on how it is computed. */
+    s->limit = s->desc.max_move_mm * (1 - 8 * DBL_EPSILON);
+    cw_status st = cwi_rings_find(s->mesh, s->desc.threads, &first_progress, &s->rings, err);
+    if (st == CW_OK)
+        st = alloc_places(s, err);
+    if (st == CW_OK)
+        st = cwi_volumes_find(s->mesh, s->rings.is_border, s->from, &s->volumes, err);
+    if (st == CW_OK)
+        st = average_all(s, err);
+    if (st != CW_OK)
+        return st;
+    limit_and_keep_volumes(s);
+    round_places(s);
+    if (!s->desc.allow_crossings)
+        st = cwi_smooth_undo_crossings(s, facts, &last_progress, err);
+    if (st == CW_OK)
+        count_facts(s, facts);
+    return st;
+}
+
+cw_status cw_mesh_smooth(cw_mesh *mesh, const cw_smooth_desc *desc, cw_smooth_facts *facts,
+                         cw_error *err)
+{
+    CWI_REQUIRE(err, mesh);
+    cwi_smoother s = {.mesh = mesh};
+    cw_smooth_facts found = {0};
+    cw_status st = resolve_desc(mesh, desc, &s.desc, err);
+    if (st == CW_OK)
+        st = smooth_places(&s, &found, err);
+    if (st == CW_OK && mesh->normals) {
+        cw_mesh moved = *mesh; /* with the same normals, which are the last thing to fail */
+        moved.positions = s.rounded;
+        st = cw_mesh_normals(&moved, err);
+    }
+    if (st == CW_OK && mesh->vertex_count)
+        memcpy(mesh->positions, s.rounded, 3 * mesh->vertex_count * sizeof *mesh->positions);
+    if (facts)
+        *facts = st == CW_OK ? found : (cw_smooth_facts){0};
+    cwi_rings_free(&s.rings);
+    cwi_volumes_free(&s.volumes);
+    cwi_free(s.from);
+    cwi_free(s.to);
+    cwi_free(s.rounded);
+    return st;
+}

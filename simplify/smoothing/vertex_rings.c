@@ -1,0 +1,125 @@
+/* Finds the neighbours of each vertex by a counting sort of the sides of triangles. */
+#include "simplify/smoothing/vertex_rings.h"
+
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
+#include "core/base/status.h"
+
+#include <stdlib.h>
+
+/* Longer lists are sorted by qsort(), to keep hostile meshes from quadratic time. */
+enum { SHORT_LIST = 64 };
+
+static bool is_collapsed(const uint32_t *corners)
+{
+    return corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
+}
+
+/* Counts the sides at each vertex, two for each triangle, and places the lists one after the
+ * other. */
+static void place_lists(const cw_mesh *mesh, cwi_rings *r)
+{
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
+        const uint32_t *corners = mesh->triangles + 3 * t;
+        for (int c = 0; c < 3 && !is_collapsed(corners); c++)
+            r->begin[corners[c] + (size_t)1] += 2;
+    }
+    for (size_t v = 0; v < r->vertices; v++)
+        r->begin[v + 1] += r->begin[v];
+}
+
+static void fill_lists(const cw_mesh *mesh, cwi_rings *r)
+{
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
+        const uint32_t *corners = mesh->triangles + 3 * t;
+        for (int c = 0; c < 3 && !is_collapsed(corners); c++) {
+            const uint32_t v = corners[c];
+            uint32_t *list = r->neighbours + r->begin[v] + r->count[v];
+            list[0] = corners[(c + 1) % 3];
+            list[1] = corners[(c + 2) % 3];
+            r->count[v] += 2;
+        }
+    }
+}
+
+static int compare_vertices(const void *a, const void *b)
+{
+    const uint32_t v = *(const uint32_t *)a, w = *(const uint32_t *)b;
+    return v < w ? -1 : v > w;
+}
+
+static void sort_list(uint32_t *list, uint32_t count)
+{
+    if (count > SHORT_LIST) {
+        qsort(list, count, sizeof *list, compare_vertices);
+        return;
+    }
+    for (uint32_t i = 1; i < count; i++) {
+        const uint32_t vertex = list[i];
+        uint32_t n = i;
+        for (; n > 0 && list[n - 1] > vertex; n--)
+            list[n] = list[n - 1];
+        list[n] = vertex;
+    }
+}
+
+/* Keeps one of each neighbour, or only those that a single triangle has. */
+static uint32_t shorten_list(uint32_t *list, uint32_t count, bool single)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0, same; i < count; i += same) {
+        for (same = 1; i + same < count && list[i + same] == list[i];)
+            same++;
+        if (!single || same == 1)
+            list[kept++] = list[i];
+    }
+    return kept;
+}
+
+static bool has_single(const uint32_t *list, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++)
+        if ((i == 0 || list[i - 1] != list[i]) && (i + 1 == count || list[i + 1] != list[i]))
+            return true;
+    return false;
+}
+
+static void finish_part(void *context, size_t k)
+{
+    const cwi_rings *r = context;
+    for (size_t v = k * CWI_RING_PART; v < (k + 1) * CWI_RING_PART && v < r->vertices; v++) {
+        uint32_t *list = r->neighbours + r->begin[v];
+        sort_list(list, r->count[v]);
+        r->is_border[v] = has_single(list, r->count[v]);
+        r->count[v] = shorten_list(list, r->count[v], r->is_border[v]);
+    }
+}
+
+cw_status cwi_rings_find(const cw_mesh *mesh, int threads, const cw_progress *progress,
+                         cwi_rings *rings, cw_error *err)
+{
+    const size_t count = mesh->vertex_count;
+    *rings = (cwi_rings){.vertices = count};
+    rings->begin = cwi_alloc_zeroed(count + 1, sizeof *rings->begin);
+    rings->count = cwi_alloc_zeroed(count, sizeof *rings->count);
+    rings->is_border = cwi_alloc_zeroed(count, sizeof *rings->is_border);
+    if (rings->begin && rings->count && rings->is_border) {
+        place_lists(mesh, rings);
+        rings->neighbours = cwi_alloc_large(rings->begin[count], sizeof *rings->neighbours);
+    }
+    if (!rings->neighbours)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the neighbours of %zu vertices",
+                        count);
+    fill_lists(mesh, rings);
+    return cwi_each_layer((count + CWI_RING_PART - 1) / CWI_RING_PART, 8 * CWI_RING_PART,
+                          threads, progress, "smoothing", finish_part, rings, err);
+}
+
+void cwi_rings_free(cwi_rings *rings)
+{
+    cwi_free(rings->begin);
+    cwi_free(rings->count);
+    cwi_free(rings->neighbours);
+    cwi_free(rings->is_border);
+    *rings = (cwi_rings){0};
+}

@@ -1,0 +1,28 @@
+/* The neighbours of each vertex, and the borders of a mesh. */
+#ifndef SIMPLIFY_SMOOTHING_VERTEX_RINGS_H
+#define SIMPLIFY_SMOOTHING_VERTEX_RINGS_H
+
+#include <cubewright/mesh.h>
+
+/* Vertices that one thread works on at a time. */
+enum { CWI_RING_PART = 1 << 13 };
+
+/* Neighbours of a vertex are those at the other ends of its edges, each once and in rising order.
+ * A vertex at an open edge has the ends of its open edges alone. */
+typedef struct cwi_rings {
+    size_t vertices;
+    size_t *begin;        /* first neighbour of each vertex; vertices + 1 */
+    uint32_t *count;      /* neighbours of each vertex */
+    uint32_t *neighbours; /* with gaps between those of two vertices */
+    bool *is_border;      /* whether the vertex is at an open edge */
+} cwi_rings;
+
+/* Finds the neighbours. Triangles that name a vertex twice have no edges.
+ * rings  filled; free them with cwi_rings_free(), also after failure
+ * Returns CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
+CW_NODISCARD cw_status cwi_rings_find(const cw_mesh *mesh, int threads,
+                                      const cw_progress *progress, cwi_rings *rings,
+                                      cw_error *err);
+void cwi_rings_free(cwi_rings *rings);
+
+#endif
