@@ -43,16 +43,21 @@ CW_NODISCARD CW_API cw_status cw_team_join(cw_team *team, cw_error *err);
  * team  zeroed; may be NULL */
 CW_API void cw_team_leave(cw_team *team);
 
-/* Gathers and broadcasts bytes as the functions of the team do; for a process alone, too.
+/* Gathers bytes as the function of the team does; for a process alone, too.
  *
  * mine     what this process gives, `bytes` bytes
+ * bytes    number of bytes of each process
  * all      filled with what all gave, in the order of ranks
- * from     rank of the process that sends
- * bytes    number of bytes of each process; to broadcast, what is sent, filled in the others
- * size     number of bytes to broadcast
  * Returns  what the team's function returned */
 CW_NODISCARD CW_API cw_status cw_team_gather(const cw_team *team, const void *mine,
                                              size_t bytes, void *all, cw_error *err);
+
+/* Copies bytes of one process to all others; for a process alone, too.
+ *
+ * from     rank of the process that sends
+ * bytes    what is sent; filled in the others
+ * size     number of bytes
+ * Returns  what the team's function returned */
 CW_NODISCARD CW_API cw_status cw_team_broadcast(const cw_team *team, int from, void *bytes,
                                                 size_t size, cw_error *err);
 

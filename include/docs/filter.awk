@@ -219,12 +219,20 @@ function find_declaration_end(at)
     return at
 }
 
-function read_declaration(at, end,   text)
+# Reads a declaration as one line; replacement has what CW_DEPRECATED says about it.
+function read_declaration(at, end,   text, advice)
 {
     for (text = ""; at <= end; at++)
         text = text " " line[at]
     sub(/^ */, "", text)
     sub(/\/\*.*/, "", text)
+    advice = ""
+    if (match(text, /CW_DEPRECATED\("[^"]*"\) */)) {
+        advice = substr(text, RSTART + 15, RLENGTH - 15)
+        sub(/"\).*/, "", advice)
+        sub(/CW_DEPRECATED\("[^"]*"\) */, "", text)
+    }
+    replacement[text] = advice
     return text
 }
 
@@ -318,14 +326,20 @@ function tell_line(at, declaration, names,   text)
             return "@param " subject " " text
         }
         if (kinds[at] == "Returns")
-            return returns_value(declaration) ? "@return " text : text
+            return returns_value(declaration) ? "@return " tell_success(declaration) text : text
         return "@" tolower(kinds[at]) " " text
     }
     if (kinds[at] == "Returns" && text ~ /^CW_ERR_/)
         return "<br>" text
     if (kinds[at] == "prose" && returns_value(declaration))
-        sub(/\. Returns /, ". @return ", text)
+        sub(/\. Returns /, ". @return " tell_success(declaration), text)
     return text
+}
+
+# Results that are a status are named after success.
+function tell_success(declaration)
+{
+    return declaration ~ /^(CW_[A-Z]+ )+cw_status / ? "CW_OK, or " : ""
 }
 
 function returns_value(declaration)
@@ -355,7 +369,9 @@ function tell_comment(first, last, declaration,   at, own, text, usual, names, d
     }
     ending = " " tell_usual(first, last, "")
     if (returns_value(declaration) && !documented && texts[first] ~ /^Returns /)
-        ending = ending "@return " tell_first_sentence(first, last)
+        ending = ending "@return " tell_first_sentence(first, last) " "
+    if (replacement[declaration] != "")
+        ending = ending "@deprecated " escape_text(replacement[declaration]) " "
 }
 
 # Tells the usual parameters that wait, up to one of a subject.

@@ -15,6 +15,7 @@ make_docs() { # INPUT...: prints the warnings
 }
 
 make_docs "\"$root/include/cubewright\" \"$root/include/docs\"" >warnings || { cat warnings; bad=1; }
+pages=$(find html -name '*.html' | wc -l)
 for page in index volume_8h structcw__mesh; do
     [ -s html/$page.html ] || { echo "html/$page.html is missing"; bad=1; }
 done
@@ -46,5 +47,10 @@ plant result 's/^ \* Returns  CW_ERR_ARGUMENT as cw_mesh_check(); CW_ERR_NO_MEMO
     'return type of member cw_mesh_normals is not documented'
 plant struct '/^\/\* Counts and volumes of dropped/d' '^typedef struct cw_drop_counts' 'cw_drop_counts is not documented'
 
-[ $bad = 0 ] && echo "$(find html -name '*.html' | wc -l) pages; six planted mistakes were reported"
+# What is deprecated says what to use.
+sed 's/^CW_API void cw_mesh_free/CW_DEPRECATED("use cw_mesh_end()") &/' "$root/include/cubewright/mesh.h" >mesh.h
+make_docs "$folder/mesh.h" >warnings || { cat warnings; bad=1; }
+grep -q 'use cw_mesh_end()' html/deprecated.html || { echo "deprecated.html lacks cw_mesh_free"; bad=1; }
+
+[ $bad = 0 ] && echo "$pages pages; six planted mistakes were reported"
 exit $bad
