@@ -10,7 +10,7 @@
 # mutants     clang, the same: every reader on mutants of its corpus
 # threads     clang, thread sanitizer: the tests of code with threads
 # rooms       gcc: every room linked with the rooms it may use alone, to prove the walls
-# minimal     gcc, debug at -O1, no C++ library: unit tests at their full length, an installed copy
+# minimal     gcc, debug at -O1, no C++ library: unit tests at their full length, an installed copy, the ABI
 # fresh       a bare Debian: the quickstart, and builds that lack packages (fresh.sh)
 set -eu
 cd "$(dirname "$0")/.."

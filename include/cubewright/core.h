@@ -63,7 +63,12 @@ typedef enum cw_status {
  * Each call that takes a cw_error begins by clearing it: after a success the status is CW_OK and
  * the message is empty. NULL is allowed in its place. Other pointers that are NULL fail with
  * CW_ERR_ARGUMENT, unless the call says that they may be. Functions named _free take NULL; those
- * that look something up find nothing for it. */
+ * that look something up find nothing for it.
+ *
+ * Pointers to const are borrowed until the call returns, unless it says for how long. NULL in
+ * place of a desc means all defaults. Those of field.h, hard.h, level_set.h and simplify.h,
+ * cw_fit_desc and cw_label_simplify_desc are required. threads is the number of threads; 0 means
+ * all that OpenMP offers. */
 typedef struct cw_error {
     cw_status status;  /* what the call returned */
     char message[512]; /* for a person; empty after a success */
