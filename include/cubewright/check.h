@@ -99,7 +99,7 @@ CW_API const cw_paint *cw_check_paints(size_t *count);
  *
  * defects    triangle_count sets of cw_defect, as the checks leave them
  * distances  vertex_count, mm, such as cw_field_distance_desc.worst; or NULL. Kept as scalars
- * full_mm    the distance that is shown in red, above 0
+ * full_mm    the distance that is shown in red; 0: distances are not shown
  * out        filled on success, emptied on failure; free it with cw_mesh_free()
  * Returns    CW_ERR_ARGUMENT as cw_mesh_check(); CW_ERR_LIMIT; CW_ERR_NO_MEMORY */
 CW_NODISCARD CW_API cw_status cw_check_paint(const cw_mesh *mesh, const uint8_t *defects,

@@ -199,7 +199,7 @@ CW_NODISCARD CW_API cw_status cw_volume_visit(const char *path, const cw_read_de
  * paths       path_count of them
  * path_count  1 or more
  * files       set to an array of *count, to be freed with cw_steps_free()
- * Returns     CW_ERR_ARGUMENT  several paths, and one is a slice, or there is a layout
+ * Returns     CW_ERR_ARGUMENT  no path; several paths, and one is a slice, or there is a layout
  *             CW_ERR_IO        a pattern among several paths that nothing matches; CW_ERR_LIMIT;
  *                              CW_ERR_NO_MEMORY; as cw_pvd_read()
  *             CW_ERR_FORMAT    a .pvd file of meshes */

@@ -52,7 +52,8 @@ CW_NODISCARD CW_API cw_status cw_overlay_draw(const cw_overlay *overlay, const c
 /* Computes the length that a scale bar states, in mm, and its length in pixels of a picture of
  * a scene.
  * length_mm, length_px  set to the length
- * Returns               as cw_render() */
+ * Returns               CW_ERR_ARGUMENT  the image is empty or has another aspect ratio;
+ *                       as cw_render() */
 CW_NODISCARD CW_API cw_status cw_scale_bar(const cw_scene *scene, const cw_image *image,
                                            double *length_mm, double *length_px, cw_error *err);
 
