@@ -747,8 +747,9 @@ static cw_status list_paths(const char *const *paths, size_t path_count,
 cw_status cw_steps_list(const char *const *paths, size_t path_count, const cw_read_desc *desc,
                         char ***files, size_t *count, cw_error *err)
 {
-    CWI_REQUIRE(err, files, count);
-    CWI_REQUIRE_ARRAY(err, paths, path_count);
+    CWI_REQUIRE(err, files, count, paths);
+    if (path_count == 0)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "path_count is 0: at least one path is needed");
     const cw_read_desc d = desc ? *desc : (cw_read_desc){0};
     const bool several = path_count > 1, pattern = cwi_files_is_pattern(paths[0]);
     cwi_names names = {0};

@@ -36,11 +36,11 @@ typedef struct cw_findings {
     const cw_quality *field;       /* cw_quality_measure() of the field's own surface */
     size_t missing; /* components of that surface with nothing of the mesh near them; from_field
                        is without them */
-    double missing_mm3,
-        missing_mm; /* volume that the largest encloses; how far the mesh is from one */
+    double missing_mm3, missing_mm; /* volume that the largest encloses; how far the mesh is
+                                       from one */
     const cw_distance *to_reference, *from_reference; /* cw_distance_to_mesh() both ways */
     double tolerance_mm; /* for the distances; 0: no limit, distances are only reported */
-    bool has_normals;
+    bool has_normals;    /* the mesh has normals */
 } cw_findings;
 
 /* Grades, from the worst to the best. */
@@ -52,35 +52,40 @@ typedef enum cw_grade {
     CW_GRADE_NOTE, /* not promised; for information */
 } cw_grade;
 
+/* A judgement of one property. */
 typedef struct cw_verdict {
-    const char *name; /* "closed"; static */
-    cw_grade grade;
+    const char *name;   /* "closed"; static */
+    cw_grade grade;     /* how it stands */
     double number;      /* the count or measure behind it */
     char text[200];     /* one line for people */
     const char *advice; /* what to do about it; NULL: nothing. Static */
 } cw_verdict;
 
-enum { CW_MAX_VERDICTS = 24 };
+enum { CW_MAX_VERDICTS = 24 }; /* maximum of cw_check_judge() */
 
 /* Returns true if a profile asks for cw_self_intersections(); without it the verdict is
  * unknown. */
 CW_API bool cw_check_wants_crossings(cw_profile profile);
 
-/* Judges the findings. Returns the number of verdicts written, the worst first. */
+/* Judges the findings. Returns the number of verdicts written, the worst first.
+ * findings  borrowed
+ * verdicts  filled with up to CW_MAX_VERDICTS */
 CW_API size_t cw_check_judge(const cw_findings *findings, cw_profile profile,
                              cw_verdict verdicts[CW_MAX_VERDICTS]);
 
-/* Returns true if no verdict is a failure or unknown. */
+/* Returns true if no verdict is a failure or unknown.
+ * verdicts  count of them, from cw_check_judge() */
 CW_API bool cw_check_holds(const cw_verdict *verdicts, size_t count);
 
-/* Returns "fail", "unknown", "warn", "ok" or "note". */
+/* Returns "fail", "unknown", "warn", "ok" or "note".
+ * grade  a grade */
 CW_API const char *cw_grade_name(cw_grade grade);
 
 /* A colour (red, green, blue) for each defect, for cw_check_paint(). */
 typedef struct cw_paint {
-    cw_defect defect;
+    cw_defect defect;         /* the defect that it shows */
     const char *name, *color; /* "open edges", "red"; static */
-    uint8_t rgb[3];
+    uint8_t rgb[3];           /* sRGB */
 } cw_paint;
 
 /* Returns the paints by priority: the first one wins where a triangle has several defects. */
@@ -94,6 +99,7 @@ CW_API const cw_paint *cw_check_paints(size_t *count);
  *
  * defects    triangle_count sets of cw_defect, as the checks leave them
  * distances  vertex_count, mm, such as cw_field_distance_desc.worst; or NULL. Kept as scalars
+ * full_mm    the distance that is shown in red; 0: distances are not shown
  * out        filled on success, emptied on failure; free it with cw_mesh_free()
  * Returns    CW_ERR_ARGUMENT as cw_mesh_check(); CW_ERR_LIMIT; CW_ERR_NO_MEMORY */
 CW_NODISCARD CW_API cw_status cw_check_paint(const cw_mesh *mesh, const uint8_t *defects,

@@ -11,16 +11,23 @@
 extern "C" {
 #endif
 
+/* The version of the headers; cw_version() returns that of the library. */
 #define CW_VERSION "0.2.0"
 
 #if defined(__GNUC__)
-#define CW_API                 __attribute__((visibility("default")))
+/* Marks what the library exports. */
+#define CW_API __attribute__((visibility("default")))
+/* Marks a function that takes a format as printf does: numbers of that and of its first argument. */
 #define CW_PRINTF(text, first) __attribute__((format(printf, text, first)))
-#define CW_NODISCARD           __attribute__((warn_unused_result)) /* a status to be looked at */
+/* Marks a function whose status is to be looked at. */
+#define CW_NODISCARD __attribute__((warn_unused_result))
+/* Marks a function or a field that a later version leaves out; text names what to use. */
+#define CW_DEPRECATED(text) __attribute__((deprecated(text)))
 #else
 #define CW_API
 #define CW_PRINTF(text, first)
 #define CW_NODISCARD
+#define CW_DEPRECATED(text)
 #endif
 
 /* One row per status: constant, exit code of the command line, name in JSON, text for people.
@@ -42,6 +49,7 @@ extern "C" {
     X(CW_ERR_EMPTY, 9, "empty", "the result is empty: no surface at this isovalue")            \
     X(CW_ERR_CANCELLED, 130, "interrupted", "interrupted; partial files are removed")
 
+/* The outcome of a call. */
 typedef enum cw_status {
 #define CW_STATUS_ENUM(name, exit_code, json, text) name,
     CW_STATUS_TABLE(CW_STATUS_ENUM)
@@ -55,10 +63,15 @@ typedef enum cw_status {
  * Each call that takes a cw_error begins by clearing it: after a success the status is CW_OK and
  * the message is empty. NULL is allowed in its place. Other pointers that are NULL fail with
  * CW_ERR_ARGUMENT, unless the call says that they may be. Functions named _free take NULL; those
- * that look something up find nothing for it. */
+ * that look something up find nothing for it.
+ *
+ * Pointers to const are borrowed until the call returns, unless it says for how long. NULL in
+ * place of a desc means all defaults. Those of field.h, hard.h, level_set.h and simplify.h,
+ * cw_fit_desc and cw_label_simplify_desc are required. threads is the number of threads; 0 means
+ * all that OpenMP offers. */
 typedef struct cw_error {
-    cw_status status;
-    char message[512];
+    cw_status status;  /* what the call returned */
+    char message[512]; /* for a person; empty after a success */
 } cw_error;
 
 /* A progress callback, with which the caller can also stop a call. Zeroed: no callback. */
@@ -66,7 +79,7 @@ typedef struct cw_progress {
     /* Called on the calling thread: the step's name and the share of it done, 0 to 1.
      * Return false to cancel: the call then fails with CW_ERR_CANCELLED. */
     bool (*report)(void *user, const char *step, double done);
-    void *user;
+    void *user; /* passed to report */
 } cw_progress;
 
 /* Returns the version of the library at run time, such as "0.2.0". */
@@ -74,7 +87,8 @@ CW_API const char *cw_version(void);
 
 /* Limits the total size of the arrays of all calls in this process. Calls that need more fail
  * with CW_ERR_NO_MEMORY. Memory of other libraries is counted by estimates; the program itself
- * is not counted. 0 means no limit, as at the start. Only Linux counts. */
+ * is not counted. 0 means no limit, as at the start. Only Linux counts.
+ * bytes  the limit; 0: none */
 CW_API void cw_memory_limit(size_t bytes);
 
 /* Returns the number of bytes that arrays take now. */

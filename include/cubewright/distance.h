@@ -12,9 +12,9 @@ extern "C" {
 /* Distances of the points of a mesh, in millimetres of the world. Mean, rms, bias and p99 are
  * weighted by the area of the mesh's surface, not by its vertices. */
 typedef struct cw_distance {
-    double max_mm, rms_mm, mean_mm;
-    double p99_mm;    /* 99 % of the area is nearer; known to 0.2 % */
-    double bias_mm;   /* mean with a sign, positive outside; from a mesh: 0 */
+    double max_mm, rms_mm, mean_mm; /* the largest; root of the mean square; mean */
+    double p99_mm;                  /* 99 % of the area is nearer; known to 0.2 % */
+    double bias_mm;                 /* mean with a sign, positive outside; from a mesh: 0 */
     double bound_mm;  /* from a mesh: no point is farther than this; from a field: 0 */
     double where[3];  /* the point of the mesh, in the world, with the distance max */
     size_t triangle;  /* the triangle with that point */
@@ -108,9 +108,9 @@ CW_NODISCARD CW_API cw_status cw_distance_to_mesh(const cw_mesh *mesh, const cw_
 
 /* Two meshes compared both ways, as one or in parts. A zeroed struct compares nothing yet. */
 typedef struct cw_mesh_comparison {
-    cw_distance to_reference;   /* of the points of the mesh */
-    cw_distance from_reference; /* of the points of the reference */
-    double area_mm2, reference_area_mm2;
+    cw_distance to_reference;            /* of the points of the mesh */
+    cw_distance from_reference;          /* of the points of the reference */
+    double area_mm2, reference_area_mm2; /* areas that were compared */
 } cw_mesh_comparison;
 
 /* Measures a mesh and its reference both ways, and adds that to what was compared before: parts
@@ -118,6 +118,7 @@ typedef struct cw_mesh_comparison {
  * bounds are the largest of all parts, rms and mean are by area, and p99 is the largest of the
  * parts', which bounds that of all.
  *
+ * reference   borrowed
  * desc        as in cw_distance_to_mesh(); `worst` must be NULL
  * comparison  zeroed before the first part; as it was on failure
  * Returns     as cw_distance_to_mesh() */
@@ -125,10 +126,10 @@ CW_NODISCARD CW_API cw_status cw_mesh_compare(const cw_mesh *mesh, const cw_mesh
                                               const cw_mesh_distance_desc *desc,
                                               cw_mesh_comparison *comparison, cw_error *err);
 
-/* The root of the mean of both squared rms: a symmetric distance. */
+/* Returns the root of the mean of both squared rms: a symmetric distance, in mm. */
 CW_API double cw_mesh_comparison_rms(const cw_mesh_comparison *comparison);
 
-/* The larger of both maxima: the Hausdorff distance, as far as it was sampled. */
+/* Returns the larger of both maxima: the Hausdorff distance in mm, as far as it was sampled. */
 CW_API double cw_mesh_comparison_max(const cw_mesh_comparison *comparison);
 
 #ifdef __cplusplus

@@ -45,8 +45,8 @@ typedef struct cw_snap_counts {
 
 /* The size of an extraction's result, known in advance; with snapping the maximum. */
 typedef struct cw_extract_counts {
-    size_t vertices;
-    size_t triangles;
+    size_t vertices;     /* of the mesh */
+    size_t triangles;    /* of the mesh */
     size_t border_loops; /* loops along which the surface meets the volume's border */
     size_t bytes;        /* of the mesh and the working memory, together */
     cw_snap_counts snap; /* known after extraction; before it, and without snapping, zero */
@@ -136,7 +136,9 @@ CW_NODISCARD CW_API cw_status cw_extract_slabs(const cw_volume *volume,
                                                cw_slab_sink sink, cw_extract_counts *counts,
                                                cw_error *err);
 
-/* Counts what cw_extract() would make, without making it; same arguments and errors. */
+/* Counts what cw_extract() would make, without making it. The counts are exact, but
+ * with snap the maximum.
+ * Returns  as cw_extract() */
 CW_NODISCARD CW_API cw_status cw_extract_predict(const cw_volume *volume,
                                                  const cw_extract_desc *desc,
                                                  cw_extract_counts *counts, cw_error *err);
@@ -154,12 +156,18 @@ CW_NODISCARD CW_API cw_status cw_extract_predict(const cw_volume *volume,
 typedef struct cw_extractor cw_extractor;
 
 /* Prepares to extract from a volume, which is borrowed. It must stay unchanged until the
- * extractor is freed. Free with cw_extractor_free(). Errors as cw_extract(). */
+ * extractor is freed.
+ * out      set to the extractor; free it with cw_extractor_free()
+ * Returns  as cw_extract() */
 CW_NODISCARD CW_API cw_status cw_extractor_new(const cw_volume *volume, cw_extractor **out,
                                                cw_error *err);
-CW_API void cw_extractor_free(cw_extractor *extractor); /* harmless on NULL */
 
-/* Extracts and predicts as cw_extract() and cw_extract_predict(). */
+/* Frees an extractor, and the meshes that it took back. Harmless on NULL. */
+CW_API void cw_extractor_free(cw_extractor *extractor);
+
+/* Extracts and predicts as cw_extract() and cw_extract_predict().
+ * mesh     filled on success, emptied on failure; free it with cw_mesh_free()
+ * Returns  as cw_extract() */
 CW_NODISCARD CW_API cw_status cw_extractor_extract(cw_extractor *extractor,
                                                    const cw_extract_desc *desc, cw_mesh *mesh,
                                                    cw_extract_counts *counts, cw_error *err);
@@ -170,7 +178,8 @@ CW_NODISCARD CW_API cw_status cw_extractor_predict(cw_extractor *extractor,
 /* Takes back a mesh of this extractor or any other, in place of cw_mesh_free(). The next
  * surface is written to its memory, so the system need not clear and hand out new pages. This
  * saves a fifth to an eighth of an extraction's time where surfaces are large. The memory is
- * held until then, or until the extractor is freed. */
+ * held until then, or until the extractor is freed.
+ * mesh  emptied; its memory belongs to the extractor */
 CW_API void cw_extractor_recycle(cw_extractor *extractor, cw_mesh *mesh);
 
 /* Options for taking normals from a field. Zero fields mean the default named beside them. */

@@ -23,6 +23,7 @@ extern "C" {
     X(CW_FIELD_CT_HEAD, "ct-head", 300, -1024, 2000, 240,                                      \
       "a CT head phantom in HU: skin at -300, bone at 300")
 
+/* The fields. */
 typedef enum cw_field {
 #define CW_FIELD_ENUM(name, text, iso, low, high, span, about) name,
     CW_FIELD_TABLE(CW_FIELD_ENUM)
@@ -32,18 +33,22 @@ typedef enum cw_field {
 
 /* Options of cw_field_sample(). Zero fields mean the default named beside them. */
 typedef struct cw_field_desc {
-    cw_field field;
-    size_t dim[3]; /* voxels; default 64 each */
-    cw_type type;  /* CW_U8 first: name it */
+    cw_field field; /* default: the sphere */
+    size_t dim[3];  /* voxels; default 64 each */
+    cw_type type;   /* CW_U8 first: name it */
     double noise;  /* standard deviation of Gaussian noise, in the field's unit; default none */
     uint64_t seed; /* of the noise */
     int threads;   /* default: all */
     cw_progress progress; /* default: none */
 } cw_field_desc;
 
+/* Returns the fields of a row of CW_FIELD_TABLE; static. */
 CW_API const char *cw_field_name(cw_field field);
 CW_API const char *cw_field_about(cw_field field);
 CW_API double cw_field_isovalue(cw_field field);
+
+/* Finds a field by its name. Returns false if none has it.
+ * field  set on success */
 CW_API bool cw_field_find(const char *name, cw_field *field);
 
 /* Returns the field's value at a world point in millimetres. */
@@ -70,7 +75,7 @@ typedef enum cw_label_field {
 
 /* Options of cw_label_field_sample(). Zero fields mean the default named beside them. */
 typedef struct cw_label_field_desc {
-    cw_label_field field;
+    cw_label_field field; /* default: cells */
     size_t dim[3];        /* voxels; default 64 each */
     cw_type type;         /* CW_U8 first: name it; it has to hold the labels */
     size_t labels;        /* number of points, one to a cell of a lattice; default 100 */
@@ -92,8 +97,8 @@ CW_NODISCARD CW_API cw_status cw_label_field_sample(const cw_label_field_desc *d
  * over its area. */
 typedef struct cw_field_error {
     size_t samples, missed; /* points measured; points from which no surface was reached */
-    double max_mm, rms_mm;
-    double p99_mm; /* 99 % of the area is nearer; known to a thousandth of a voxel */
+    double max_mm, rms_mm;  /* the largest distance; root of the mean square */
+    double p99_mm;          /* 99 % of the area is nearer; known to a thousandth of a voxel */
 } cw_field_error;
 
 /* Measures a mesh at its vertices and in the middle of its triangles. Each point walks along the
@@ -110,15 +115,17 @@ CW_NODISCARD CW_API cw_status cw_field_measure(cw_field field, double isovalue, 
 
 /* Distances of vertices from that surface, and angles between their normals and its own. */
 typedef struct cw_field_vertex_error {
-    size_t count, missed; /* measured; without a surface that is reached */
-    double mean_mm, max_mm;
-    bool has_normals;
+    size_t count, missed;     /* measured; without a surface that is reached */
+    double mean_mm, max_mm;   /* distances */
+    bool has_normals;         /* the mesh has normals; if not, the angles are 0 */
     double mean_deg, max_deg; /* between lines: their directions do not matter */
 } cw_field_vertex_error;
 
 /* Measures every n-th vertex of a mesh, as cw_field_measure() does.
- * every    n; 1: all vertices
- * Returns  as cw_field_measure(), and CW_ERR_ARGUMENT for an `every` of 0 */
+ * voxel_mm  as in cw_field_measure()
+ * every     n; 1: all vertices
+ * out       filled on success
+ * Returns   as cw_field_measure(), and CW_ERR_ARGUMENT for an `every` of 0 */
 CW_NODISCARD CW_API cw_status cw_field_measure_vertices(cw_field field, double isovalue,
                                                         double voxel_mm, const cw_mesh *mesh,
                                                         size_t every,

@@ -13,11 +13,11 @@ extern "C" {
 
 /* The layout of a file without a header. */
 typedef struct cw_raw_layout {
-    size_t dim[3]; /* required */
-    cw_type type;
+    size_t dim[3];     /* required */
+    cw_type type;      /* default CW_U8 */
     size_t components; /* 0 means 1; interleaved */
     size_t steps;      /* 0 means 1 */
-    bool big_endian;
+    bool big_endian;   /* default: little-endian */
     uint64_t offset;   /* number of bytes before the first voxel */
     double spacing[3]; /* mm; all 0 means 1 each, and the unit is then unknown */
 } cw_raw_layout;
@@ -44,6 +44,7 @@ typedef enum cw_tilt {
     X(CW_UNIT_IN, "in", 25.4)                                                                  \
     X(CW_UNIT_FT, "ft", 304.8)
 
+/* A unit of coordinates. */
 typedef enum cw_unit {
 #define CW_UNIT_ENUM(constant, name, mm) constant,
     CW_UNIT_TABLE(CW_UNIT_ENUM)
@@ -51,14 +52,15 @@ typedef enum cw_unit {
         CW_UNIT_COUNT
 } cw_unit;
 
+/* Returns the name of a unit, such as "cm", and its millimetres. */
 CW_API const char *cw_unit_name(cw_unit unit);
 CW_API double cw_unit_mm(cw_unit unit);
 
 /* The meaning of coordinates in a file. Zeroed: LPS millimetres, +Z up. */
 typedef struct cw_axes {
-    cw_unit unit;
-    bool ras;  /* x to the right and y to the front; default: to the left and to the back */
-    bool y_up; /* (x, y, z) stands as (x, z, -y) */
+    cw_unit unit; /* default: millimetres */
+    bool ras;     /* x to the right and y to the front; default: to the left and to the back */
+    bool y_up;    /* (x, y, z) stands as (x, z, -y) */
 } cw_axes;
 
 /* The rule for a file that contradicts its reader's caller. */
@@ -73,7 +75,7 @@ typedef enum cw_claim_rule {
 typedef struct cw_claim {
     bool has_unit, has_frame, has_up; /* which of these are stated */
     cw_axes axes;                     /* unit; ras; y_up */
-    cw_claim_rule rule;
+    cw_claim_rule rule;               /* where the file says something else */
 } cw_claim;
 
 /* Options of reading a volume. Zero-initialise the struct; a zero field means the default named
@@ -109,8 +111,8 @@ typedef struct cw_read_desc {
 
     /* Slices in files of their own (TIFF, DICOM). */
     const char *series; /* label or UID, as from cw_series_list(); default: the only one */
-    cw_gaps gaps;
-    cw_tilt tilt;
+    cw_gaps gaps;       /* missing or uneven slices; default: CW_ERR_UNSAFE */
+    cw_tilt tilt;       /* shifted slices; default: they stay where they are */
 
     /* Libraries run in a sandboxed process without rights, so a file that breaks one breaks
      * nothing else. */
@@ -120,7 +122,7 @@ typedef struct cw_read_desc {
     /* Called on the calling thread with one line for each finding and decision: a tilt, slices
      * left out, the choice among several arrays. Default: none. */
     void (*note)(void *user, const char *text);
-    void *note_user;
+    void *note_user;      /* passed to note */
     cw_progress progress; /* default: none */
 } cw_read_desc;
 
@@ -165,8 +167,9 @@ CW_NODISCARD CW_API cw_status cw_volume_read(const char *path, const cw_read_des
 
 /* A user of slices. A status other than CW_OK ends the visit, which then returns it. */
 typedef struct cw_slice_visitor {
+    /* Called once, on the calling thread; the source is valid during the call. */
     cw_status (*visit)(void *user, const cw_slice_source *source, cw_error *err);
-    void *user;
+    void *user; /* passed to visit */
 } cw_slice_visitor;
 
 /* Opens a volume for cw_extract_stream(): calls the visitor once, with a source that is valid
@@ -174,9 +177,10 @@ typedef struct cw_slice_visitor {
  * inflated on the way. desc->max_bytes is for the whole and not used.
  *
  * component, step  that the slices have
- * Returns  as cw_volume_read(), or what the visitor returned
- *          CW_ERR_UNSUPPORTED  a format, or an order of its axes, whose slices are not read by
- *                              themselves */
+ * visitor          borrowed
+ * Returns          as cw_volume_read(), or what the visitor returned
+ *                  CW_ERR_UNSUPPORTED  a format, or an order of its axes, whose slices are not read by
+ *                                      themselves */
 CW_NODISCARD CW_API cw_status cw_volume_visit(const char *path, const cw_read_desc *desc,
                                               size_t component, size_t step,
                                               const cw_slice_visitor *visitor,
@@ -192,24 +196,28 @@ CW_NODISCARD CW_API cw_status cw_volume_visit(const char *path, const cw_read_de
  * pattern of slices (DICOM images, TIFF files of one page), for a pattern with a layout (raw),
  * and for any other path that is not a pattern.
  *
- * files    set to an array of *count, to be freed with cw_steps_free()
- * Returns  CW_ERR_ARGUMENT  several paths, and one is a slice, or there is a layout
- *          CW_ERR_IO        a pattern among several paths that nothing matches; CW_ERR_LIMIT;
- *                           CW_ERR_NO_MEMORY; as cw_pvd_read()
- *          CW_ERR_FORMAT    a .pvd file of meshes */
+ * paths       path_count of them
+ * path_count  1 or more
+ * files       set to an array of *count, to be freed with cw_steps_free()
+ * Returns     CW_ERR_ARGUMENT  no path; several paths, and one is a slice, or there is a layout
+ *             CW_ERR_IO        a pattern among several paths that nothing matches; CW_ERR_LIMIT;
+ *                              CW_ERR_NO_MEMORY; as cw_pvd_read()
+ *             CW_ERR_FORMAT    a .pvd file of meshes */
 CW_NODISCARD CW_API cw_status cw_steps_list(const char *const *paths, size_t path_count,
                                             const cw_read_desc *desc, char ***files,
                                             size_t *count, cw_error *err);
+
+/* Frees a list of files. Harmless on NULL. */
 CW_API void cw_steps_free(char **files, size_t count);
 
 /* A named array of values in a file, or a grid of OpenVDB. */
 typedef struct cw_array {
-    char name[64];
-    char type[32]; /* as the file calls it: "Float32", "unsigned_char" */
-    size_t components;
-    bool of_cells;   /* one value for each cell; else for each sample */
-    bool is_read;    /* cw_volume_read() can read it by its name */
-    bool is_default; /* the array that is read when none is named */
+    char name[64];     /* for cw_read_desc.array */
+    char type[32];     /* as the file calls it: "Float32", "unsigned_char" */
+    size_t components; /* values per sample or cell */
+    bool of_cells;     /* one value for each cell; else for each sample */
+    bool is_read;      /* cw_volume_read() can read it by its name */
+    bool is_default;   /* the array that is read when none is named */
 } cw_array;
 
 /* Lists the arrays of a file of VTK or a group of Zarr, the quantities of PLOT3D or the grids of
@@ -220,6 +228,8 @@ typedef struct cw_array {
  * Returns  as cw_volume_read() for a header */
 CW_NODISCARD CW_API cw_status cw_arrays_list(const char *path, const cw_read_desc *desc,
                                              cw_array **arrays, size_t *count, cw_error *err);
+
+/* Frees a list of arrays. Harmless on NULL. */
 CW_API void cw_arrays_free(cw_array *arrays);
 
 /* One of the sizes in which a file holds its volume. */
@@ -235,6 +245,8 @@ typedef struct cw_level {
  * Returns  as cw_volume_read() for a header */
 CW_NODISCARD CW_API cw_status cw_levels_list(const char *path, const cw_read_desc *desc,
                                              cw_level **levels, size_t *count, cw_error *err);
+
+/* Frees a list of levels. Harmless on NULL. */
 CW_API void cw_levels_free(cw_level *levels);
 
 /* A series of images in a folder of DICOM files. */
@@ -242,8 +254,8 @@ typedef struct cw_series {
     char label[32];    /* value for cw_read_desc.series: its number, and .1, .2 ... when images
                           of several sizes, types or directions have that number */
     char modality[20]; /* "CT"; may be empty */
-    size_t images;
-    cw_volume shape;     /* as it would be read, without voxels; with a status other than CW_OK
+    size_t images;     /* number of images */
+    cw_volume shape;   /* as it would be read, without voxels; with a status other than CW_OK
                             only type and dim, which then counts the images */
     double tilt_degrees; /* of the row of slices against their normal */
     cw_status status;    /* result of reading it so: CW_OK, CW_ERR_UNSAFE, ... */
@@ -257,6 +269,8 @@ typedef struct cw_series {
  * Returns  CW_ERR_UNSUPPORTED when the build has no DICOM; as cw_volume_read() */
 CW_NODISCARD CW_API cw_status cw_series_list(const char *path, const cw_read_desc *desc,
                                              cw_series **series, size_t *count, cw_error *err);
+
+/* Frees a list of series. Harmless on NULL. */
 CW_API void cw_series_free(cw_series *series);
 
 /* Reads the names and colours of labels from a file: a colour table of FreeSurfer or 3D Slicer,
@@ -283,17 +297,20 @@ CW_NODISCARD CW_API cw_status cw_label_table_read(const char *path, cw_label_tab
  * .ctab, .label, .txt, .csv, .tsv or .json, or with "_semicolon.txt" or "_dseg.tsv" behind the
  * stem. Beside a.nii.gz the stems are "a.nii" and "a". Files with other content, links and
  * unreadable files are passed over.
- * table_path  set to the path for cw_label_table_read(), or to NULL if there is none; free it
- *             with free()
- * Returns     CW_ERR_NO_MEMORY
- * Cost        each such file is read, .txt and .json as a whole */
+ * volume_path  path of the volume
+ * table_path   set to the path for cw_label_table_read(), or to NULL if there is none; free it
+ *              with free()
+ * Returns      CW_ERR_NO_MEMORY
+ * Cost         each such file is read, .txt and .json as a whole */
 CW_NODISCARD CW_API cw_status cw_label_table_beside(const char *volume_path, char **table_path,
                                                     cw_error *err);
 
 /* Parses a layout written as on the command line, for example
  * "dims=512x512x300,type=u16le,offset=62,spacing=0.5x0.5x1,components=1,steps=1".
  * Type is one of the eight with an optional le or be; le when left out.
- * Returns CW_ERR_ARGUMENT naming the key that is wrong. */
+ * text     as above
+ * layout   filled on success
+ * Returns  CW_ERR_ARGUMENT naming the key that is wrong. */
 CW_NODISCARD CW_API cw_status cw_raw_layout_parse(const char *text, cw_raw_layout *layout,
                                                   cw_error *err);
 
@@ -326,8 +343,8 @@ typedef struct cw_mesh_file {
                            glTF): no part of the scene, left out */
     size_t hidden;      /* meshes of glTF hidden by a scale of 0, such as those that an
                            animation shows later: left out */
-    size_t supports, support_triangles; /* placed objects of 3MF for support, and ... */
-    size_t others, other_triangles;     /* ... those of type "other": left out */
+    size_t supports, support_triangles; /* placed objects of 3MF for support: left out */
+    size_t others, other_triangles;     /* placed objects of 3MF of type "other": left out */
 } cw_mesh_file;
 
 /* Reads a mesh: all parts of the file, merged, in LPS millimetres.
@@ -398,13 +415,15 @@ typedef struct cw_part {
  *
  * parts    set to an array of *count, which owns the meshes: free it with cw_parts_free().
  *          Names are NULL where the file has none; bytes other than printable UTF-8 become '_'.
+ * file     as in cw_mesh_read()
  * Returns  as cw_mesh_read()
  * Cost     that of cw_mesh_read() and, if there are several, as much memory once more */
 CW_NODISCARD CW_API cw_status cw_parts_read(const char *path, const cw_mesh_read_desc *desc,
                                             cw_part **parts, size_t *count, cw_mesh_file *file,
                                             cw_error *err);
 
-/* Frees parts and their meshes. Harmless on NULL. */
+/* Frees parts and their meshes. Harmless on NULL.
+ * parts  count of them, or NULL */
 CW_API void cw_parts_free(cw_part *parts, size_t count);
 
 /* The storage of meshes in glTF. Each but the first needs an extension of glTF that viewers
@@ -421,7 +440,7 @@ typedef struct cw_compressed {
     int bits;                  /* bits of a coordinate; 0: positions are unchanged */
     double step_mm;            /* step of the grid */
     double error_mm;           /* the largest move of a vertex */
-    double normal_degrees;     /* ... and the largest turn of a normal */
+    double normal_degrees;     /* the largest turn of a normal */
     size_t merged;             /* vertices that fell onto another: only with bits stated */
     size_t flat;               /* triangles that lost their area: only with bits stated */
     size_t dropped;            /* triangles with a vertex twice, which Draco cannot store;
@@ -433,7 +452,7 @@ typedef struct cw_compressed {
 
 /* A line on the origin of a mesh, for the file's own record. */
 typedef struct cw_provenance {
-    const char *key, *value;
+    const char *key, *value; /* UTF-8 */
 } cw_provenance;
 
 /* Options of writing a volume or mesh. Zero-initialise the struct. */
@@ -459,8 +478,8 @@ typedef struct cw_write_desc {
                               that each triangle separates: the one behind it, then the one
                               that it faces; CW_ERR_ARGUMENT for other formats; default: none */
     const cw_provenance *provenance; /* in the extras of a glTF file; default: none */
-    size_t provenance_count;
-    cw_progress progress; /* default: none */
+    size_t provenance_count;         /* number of lines */
+    cw_progress progress;            /* default: none */
 } cw_write_desc;
 
 /* Writes a volume to a file beside the path, flushes it, then renames it. So the path holds
@@ -570,7 +589,7 @@ CW_NODISCARD CW_API cw_status cw_mesh_optimize(cw_mesh *mesh, cw_error *err);
 /* A file of a time series, with its time. */
 typedef struct cw_pvd_entry {
     const char *path; /* as this program names it */
-    double time;
+    double time;      /* in any unit */
 } cw_pvd_entry;
 
 /* Reads a .pvd file, in the order of times; an entry without a time has time 0. Entries name
@@ -583,6 +602,8 @@ typedef struct cw_pvd_entry {
  *          CW_ERR_UNSUPPORTED  several files of one time; CW_ERR_LIMIT; CW_ERR_NO_MEMORY */
 CW_NODISCARD CW_API cw_status cw_pvd_read(const char *path, const cw_read_desc *desc,
                                           cw_pvd_entry **entries, size_t *count, cw_error *err);
+
+/* Frees a list of entries. Harmless on NULL. */
 CW_API void cw_pvd_free(cw_pvd_entry *entries, size_t count);
 
 /* Returns true if the content of a file is that of a .pvd file. */
@@ -591,6 +612,7 @@ CW_API bool cw_pvd_is(const char *path);
 /* Writes a .pvd file, which ParaView opens as a time series. It lists files, such as .vtp, with
  * the time of each, by names relative to its own folder. Files of one time in a row are parts
  * of it. The files need not exist. Only no_clobber of desc counts.
+ * entries  count of them, borrowed
  * Returns  CW_ERR_ARGUMENT  no entries, a time that is not finite, a file that cannot be named
  *                           from the .pvd's folder because one of both paths goes up by ".."
  *          CW_ERR_OUTPUT as cw_mesh_write() */
@@ -614,11 +636,11 @@ typedef enum cw_keeps {
 
 /* A format that this build or another one reads or writes. */
 typedef struct cw_format {
-    const char *name;       /* "nrrd" */
-    const char *extensions; /* ".nrrd .nhdr" */
-    const char *about;
-    bool reads_volume, writes_volume, reads_mesh, writes_mesh;
-    bool in_this_build;
+    const char *name;                                          /* "nrrd" */
+    const char *extensions;                                    /* ".nrrd .nhdr" */
+    const char *about;                                         /* for people */
+    bool reads_volume, writes_volume, reads_mesh, writes_mesh; /* in any build */
+    bool in_this_build; /* false: calls that need it return CW_ERR_UNSUPPORTED */
     const char *reason; /* why it is not in this build; "" when it is */
     const char *lost;   /* information that writing drops; "" for nothing */
     unsigned keeps;     /* parts of a written mesh that the file keeps: cw_keeps flags */
@@ -628,7 +650,7 @@ typedef struct cw_format {
  * one of the path's extension. Returns NULL when there is none. */
 CW_API const cw_format *cw_mesh_format(const char *path, const char *name);
 
-/* The same for a volume. */
+/* Returns the format in which a volume is written, in the same way. */
 CW_API const cw_format *cw_volume_format(const char *path, const char *name);
 
 /* Returns all formats, in_this_build or not; *count rows, static. */

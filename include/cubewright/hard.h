@@ -9,17 +9,21 @@
 extern "C" {
 #endif
 
+/* A hard case: a field, and how it is sampled. */
 typedef struct cw_hard {
     const char *name, *about; /* the name begins with "hard/" */
-    double isovalue;
-    double scale; /* integer types store the value times this; 0: floats only */
-    double spacing_mm;
+    double isovalue;          /* of its surface */
+    double scale;             /* integer types store the value times this; 0: floats only */
+    double spacing_mm;        /* between samples */
     double first_mm; /* place of the first sample along each axis; 0: the volume is centred on
                         zero */
 } cw_hard;
 
 /* Returns the n-th case; NULL after the last. */
 CW_API const cw_hard *cw_hard_at(size_t n);
+
+/* Finds a case by its name. Returns false if none has it.
+ * n  set to its number on success */
 CW_API bool cw_hard_find(const char *name, size_t *n);
 
 /* Returns the voxel value that stores a value of the n-th case in a volume of a type. Floats

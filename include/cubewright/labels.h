@@ -28,26 +28,26 @@ typedef struct cw_labels_desc {
 
 /* The interface of two labels: triangles of cw_label_surfaces.mesh. */
 typedef struct cw_label_patch {
-    uint32_t labels[2]; /* triangles wind counter-clockwise seen from labels[1]. The background
+    uint32_t labels[2];  /* triangles wind counter-clockwise seen from labels[1]. The background
                            is the second, of other labels the larger */
-    size_t first, count;
+    size_t first, count; /* its triangles in the mesh: the first, and their number */
 } cw_label_patch;
 
 /* A label that occurs. */
 typedef struct cw_label_count {
-    uint32_t label;
-    size_t voxels;
+    uint32_t label; /* its number */
+    size_t voxels;  /* number of its voxels */
 } cw_label_count;
 
 /* All interfaces of a label map, which share their vertices. A zeroed struct is valid and
  * empty. */
 typedef struct cw_label_surfaces {
-    cw_mesh mesh; /* without normals; not a manifold where three labels meet */
-    size_t patch_count;
+    cw_mesh mesh;            /* without normals; not a manifold where three labels meet */
+    size_t patch_count;      /* number of patches */
     cw_label_patch *patches; /* in rising order of both labels */
-    size_t label_count;
-    cw_label_count *labels; /* rising, without the background */
-    uint32_t background;
+    size_t label_count;      /* number of labels */
+    cw_label_count *labels;  /* rising, without the background */
+    uint32_t background;     /* the label of what is no object */
 } cw_label_surfaces;
 
 /* Extracts the interfaces between all labels of a volume in one pass.
@@ -99,19 +99,24 @@ CW_NODISCARD CW_API cw_status cw_extract_labels_stream(const cw_slice_source *so
 
 /* Counts the voxels of all labels but the background.
  *
- * volume   as for cw_extract_labels()
- * counts   set to *count of them, in rising order; free it with cw_label_counts_free()
- * Returns  as cw_extract_labels()
- * Cost     one pass over the voxels */
+ * volume      as for cw_extract_labels()
+ * background  the label that is not counted
+ * counts      set to *count of them, in rising order; free it with cw_label_counts_free()
+ * Returns     as cw_extract_labels()
+ * Cost        one pass over the voxels */
 CW_NODISCARD CW_API cw_status cw_label_counts(const cw_volume *volume, uint32_t background,
                                               cw_label_count **counts, size_t *count,
                                               cw_error *err);
+
+/* Frees the counts of cw_label_counts(). Harmless on NULL. */
 CW_API void cw_label_counts_free(cw_label_count *counts);
 
+/* Frees the surfaces and zeroes the struct. Harmless on a zeroed or already freed one. */
 CW_API void cw_label_surfaces_free(cw_label_surfaces *surfaces);
 
 /* Copies the closed mesh of one label out of the interfaces, seen from outside. A label without
  * voxels gives an empty mesh and CW_OK.
+ * label    one of surfaces->labels
  * mesh     filled on success, emptied on failure; free it with cw_mesh_free()
  * Returns  CW_ERR_NO_MEMORY
  * Cost     in proportion to the patches, and to the label's triangles */
@@ -138,7 +143,7 @@ CW_NODISCARD CW_API cw_status cw_label_colored_mesh(const cw_label_surfaces *sur
                                                     const uint8_t (*colors)[4], cw_mesh *mesh,
                                                     cw_error *err);
 
-/* Computes the area of a patch in square millimetres. */
+/* Returns the area of a patch in square millimetres. */
 CW_API double cw_label_patch_area(const cw_label_surfaces *surfaces,
                                   const cw_label_patch *patch);
 

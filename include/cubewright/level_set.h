@@ -141,7 +141,7 @@ typedef struct cw_hollow_desc {
 
 /* Facts on a finished hollowing. */
 typedef struct cw_hollow_facts {
-    double voxel_mm;
+    double voxel_mm;                 /* size of the voxels that were used */
     size_t cavities, sealed;         /* cavities made; of these, cavities without a drain */
     double removed_mm3;              /* volume of the mesh minus volume of the result */
     double wall_min_mm, wall_max_mm; /* the smallest and largest distance of points of the

@@ -14,16 +14,16 @@ extern "C" {
  * are small numbers near zero, so single precision keeps micrometres however far the scan
  * stands from the scanner's zero. Triangles wind counter-clockwise seen from outside. */
 typedef struct cw_mesh {
-    double origin[3];
-    size_t vertex_count;
-    size_t triangle_count;
-    float *positions;    /* vertex_count x 3 */
-    float *normals;      /* vertex_count x 3, unit length, outward; or NULL */
-    uint32_t *triangles; /* triangle_count x 3, each below vertex_count */
-    float *scalars;      /* vertex_count; or NULL */
-    uint8_t *colors;     /* vertex_count x 4, sRGB and linear alpha; or NULL */
-    uint32_t *labels;    /* vertex_count; or NULL */
-    double affine[3][4]; /* of the volume it came from, see cw_volume; all 0: none */
+    double origin[3];      /* world point that is added to all positions, LPS millimetres */
+    size_t vertex_count;   /* number of vertices */
+    size_t triangle_count; /* number of triangles */
+    float *positions;      /* vertex_count x 3 */
+    float *normals;        /* vertex_count x 3, unit length, outward; or NULL */
+    uint32_t *triangles;   /* triangle_count x 3, each below vertex_count */
+    float *scalars;        /* vertex_count; or NULL */
+    uint8_t *colors;       /* vertex_count x 4, sRGB and linear alpha; or NULL */
+    uint32_t *labels;      /* vertex_count; or NULL */
+    double affine[3][4];   /* of the volume it came from, see cw_volume; all 0: none */
 } cw_mesh;
 
 /* Frees the arrays and zeroes the struct. Harmless on a zeroed or already freed mesh. */
@@ -33,7 +33,7 @@ CW_API void cw_mesh_free(cw_mesh *mesh);
  * vertex_count, positions finite. Returns CW_ERR_ARGUMENT naming the first error. */
 CW_NODISCARD CW_API cw_status cw_mesh_check(const cw_mesh *mesh, cw_error *err);
 
-/* Computes the world box of the vertices; returns false (and zeros) for a mesh without
+/* Computes the world box of the vertices. Returns false, and zeros, for a mesh without
  * vertices. */
 CW_API bool cw_mesh_bounds(const cw_mesh *mesh, double min[3], double max[3]);
 
@@ -58,10 +58,11 @@ CW_NODISCARD CW_API cw_status cw_mesh_weld(cw_mesh *mesh, size_t *merged, cw_err
 /* Leaves out small components (sets of triangles joined by vertices): those whose box has a
  * diagonal shorter than diagonal_mm. Then leaves out vertices that no triangle names.
  *
- * mesh     in place, as in cw_mesh_weld()
- * dropped, kept   components; may be NULL
- * Returns  CW_ERR_ARGUMENT  diagonal_mm is negative or NaN, or as cw_mesh_check();
- *          CW_ERR_NO_MEMORY */
+ * mesh           in place, as in cw_mesh_weld()
+ * diagonal_mm    0 or more
+ * dropped, kept  components; may be NULL
+ * Returns        CW_ERR_ARGUMENT  diagonal_mm is negative or NaN, or as cw_mesh_check();
+ *                CW_ERR_NO_MEMORY */
 CW_NODISCARD CW_API cw_status cw_mesh_drop_components(cw_mesh *mesh, double diagonal_mm,
                                                       size_t *dropped, size_t *kept,
                                                       cw_error *err);
@@ -85,10 +86,11 @@ typedef struct cw_drop_counts {
  * between it and the middle of its box, signed by the side that is seen from there. That is
  * zero where the component is flat.
  *
- * mesh     in place, as in cw_mesh_weld()
- * counts   may be NULL
- * Returns  CW_ERR_ARGUMENT  least_mm3 is negative or NaN, or as cw_mesh_check();
- *          CW_ERR_NO_MEMORY */
+ * mesh       in place, as in cw_mesh_weld()
+ * least_mm3  0 or more
+ * counts     may be NULL
+ * Returns    CW_ERR_ARGUMENT  least_mm3 is negative or NaN, or as cw_mesh_check();
+ *            CW_ERR_NO_MEMORY */
 CW_NODISCARD CW_API cw_status cw_mesh_drop_volumes(cw_mesh *mesh, double least_mm3,
                                                    cw_drop_counts *counts, cw_error *err);
 
@@ -116,14 +118,15 @@ typedef struct cw_slab {
     double along[3];     /* a direction: all vertices x of the mesh that are in neither plane */
     double low, high;    /* have low < along . x < high; infinite at the ends */
     size_t triangles;    /* of the whole surface */
-    bool last;
+    bool last;           /* no slab follows */
 } cw_slab;
 
 /* A receiver of slabs, one after the other. A status other than CW_OK stops the maker, which
  * then returns it. The slab belongs to the maker and is invalid after the call. */
 typedef struct cw_slab_sink {
+    /* Takes one slab, on the calling thread. */
     cw_status (*take)(void *user, const cw_slab *slab, cw_error *err);
-    void *user;
+    void *user; /* passed to take */
 } cw_slab_sink;
 
 #ifdef __cplusplus

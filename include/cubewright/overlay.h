@@ -40,6 +40,7 @@ typedef struct cw_overlay {
 
 /* Draws an overlay on the picture of a scene. Deterministic on any machine.
  *
+ * overlay  borrowed
  * scene    as it was rendered, borrowed
  * image    of that scene, of any size with the same aspect ratio
  * Returns  CW_ERR_ARGUMENT  the image has another aspect ratio; the scene has no transfer
@@ -49,7 +50,10 @@ CW_NODISCARD CW_API cw_status cw_overlay_draw(const cw_overlay *overlay, const c
                                               cw_image *image, cw_error *err);
 
 /* Computes the length that a scale bar states, in mm, and its length in pixels of a picture of
- * a scene. */
+ * a scene.
+ * length_mm, length_px  set to the length
+ * Returns               CW_ERR_ARGUMENT  the image is empty or has another aspect ratio;
+ *                       as cw_render() */
 CW_NODISCARD CW_API cw_status cw_scale_bar(const cw_scene *scene, const cw_image *image,
                                            double *length_mm, double *length_px, cw_error *err);
 
@@ -66,6 +70,7 @@ typedef struct cw_label_slices {
 
 /* Draws labels over the picture of a scene of slices, where the slices have values.
  *
+ * labels   borrowed
  * scene    as it was rendered, borrowed; without a mesh
  * picture  of that scene
  * Returns  CW_ERR_ARGUMENT  the mode is not slices, the picture has another size, the opacity is
@@ -79,16 +84,20 @@ CW_NODISCARD CW_API cw_status cw_label_slices_draw(const cw_label_slices *labels
                                                    cw_error *err);
 
 /* Copies one image into another, with its upper left corner at column x, row y. Parts outside
- * are left out. */
+ * are left out.
+ * onto  the image that is changed
+ * x, y  place of the upper left corner, which may lie outside */
 CW_API void cw_image_place(cw_image *onto, const cw_image *image, ptrdiff_t x, ptrdiff_t y);
 
 /* Makes a sheet of images, row by row, on a background. Cells are as large as the largest
  * image; images stand in the middle of their cells.
- * columns  0: as many as make the sheet about square
- * gap_px   between cells
- * sheet    the new image; free it with cw_image_free()
- * Returns  CW_ERR_ARGUMENT  no images, or an empty one; CW_ERR_LIMIT  a sheet of more than
- *          16384 pixels a side; CW_ERR_NO_MEMORY */
+ * images      count of them, borrowed
+ * columns     0: as many as make the sheet about square
+ * gap_px      between cells
+ * background  sRGB and alpha
+ * sheet       the new image; free it with cw_image_free()
+ * Returns     CW_ERR_ARGUMENT  no images, or an empty one; CW_ERR_LIMIT  a sheet of more than
+ *             16384 pixels a side; CW_ERR_NO_MEMORY */
 CW_NODISCARD CW_API cw_status cw_image_tile(const cw_image *images, size_t count,
                                             size_t columns, size_t gap_px,
                                             const uint8_t background[4], cw_image *sheet,

@@ -10,7 +10,7 @@ extern "C" {
 
 /* A picture as a renderer draws it, in floats. A zeroed struct is a valid empty picture. */
 typedef struct cw_picture {
-    size_t width, height;
+    size_t width, height; /* pixels */
     float *pixels; /* height x width x 4, top row first: red, green, blue as displayed (sRGB; 1
                       is full), times the fourth, opacity */
 } cw_picture;
@@ -19,21 +19,29 @@ typedef struct cw_picture {
  * CW_ERR_NO_MEMORY. */
 CW_NODISCARD CW_API cw_status cw_picture_alloc(cw_picture *picture, size_t width, size_t height,
                                                cw_error *err);
+
+/* Frees the pixels and zeroes the picture. Harmless on a zeroed or already freed one. */
 CW_API void cw_picture_free(cw_picture *picture);
 
 /* An image as it is shown, in bytes. A zeroed struct is a valid empty image. */
 typedef struct cw_image {
-    size_t width, height;
+    size_t width, height; /* pixels */
     uint8_t *pixels; /* height x width x 4: sRGB and alpha, not premultiplied; top row first */
 } cw_image;
 
+/* Allocates zeroed pixels.
+ * image    filled on success; free it with cw_image_free()
+ * Returns  as cw_picture_alloc() */
 CW_NODISCARD CW_API cw_status cw_image_alloc(cw_image *image, size_t width, size_t height,
                                              cw_error *err);
+
+/* Frees the pixels and zeroes the image. Harmless on a zeroed or already freed one. */
 CW_API void cw_image_free(cw_image *image);
 
 /* Blends a picture over a background that changes from top to bottom, and rounds it to bytes.
  * background  top and bottom, sRGB and alpha
- * image       allocated and filled on success */
+ * image       allocated and filled on success; free it with cw_image_free()
+ * Returns     CW_ERR_ARGUMENT for an empty picture; CW_ERR_NO_MEMORY */
 CW_NODISCARD CW_API cw_status cw_picture_show(const cw_picture *picture,
                                               const uint8_t background[2][4], cw_image *image,
                                               cw_error *err);
@@ -50,7 +58,9 @@ typedef struct cw_comparison {
 } cw_comparison;
 
 /* Compares two pictures of one size.
+ * reference   borrowed
  * background  top and bottom, sRGB
+ * out         filled on success
  * Returns     CW_ERR_ARGUMENT for empty pictures or different sizes; CW_ERR_NO_MEMORY
  * Source      [Sharma2005], [Wang2004] */
 CW_NODISCARD CW_API cw_status cw_picture_compare(const cw_picture *picture,
@@ -59,21 +69,30 @@ CW_NODISCARD CW_API cw_status cw_picture_compare(const cw_picture *picture,
                                                  cw_comparison *out, cw_error *err);
 
 /* Makes a picture of the amplified difference of two, per channel, over black or white,
- * whichever shows more of it. Returns CW_ERR_ARGUMENT as above and for a factor that is not
- * above 0; CW_ERR_NO_MEMORY */
+ * whichever shows more of it.
+ * a, b        borrowed
+ * amplify     factor of the difference
+ * difference  filled on success; free it with cw_picture_free()
+ * Returns     CW_ERR_ARGUMENT as above and for a factor that is not above 0;
+ *             CW_ERR_NO_MEMORY */
 CW_NODISCARD CW_API cw_status cw_picture_difference(const cw_picture *a, const cw_picture *b,
                                                     double amplify, cw_picture *difference,
                                                     cw_error *err);
 
 /* Makes a picture with one on the left, another on the right, and a thin white line between
  * them.
- * share    fraction of the width for the left picture, 0 to 1
- * Returns  CW_ERR_ARGUMENT as above; CW_ERR_NO_MEMORY */
+ * left, right  borrowed
+ * share        fraction of the width for the left picture, 0 to 1
+ * both         filled on success; free it with cw_picture_free()
+ * Returns      CW_ERR_ARGUMENT as above; CW_ERR_NO_MEMORY */
 CW_NODISCARD CW_API cw_status cw_picture_split(const cw_picture *left, const cw_picture *right,
                                                double share, cw_picture *both, cw_error *err);
 
 /* Counts the pixels whose red, green or blue differ by more than a tolerance, of 255.
- * Returns CW_ERR_ARGUMENT for images of different sizes. */
+ * a, b       borrowed
+ * tolerance  0 to 255
+ * differ     set to the number of pixels
+ * Returns    CW_ERR_ARGUMENT for images of different sizes. */
 CW_NODISCARD CW_API cw_status cw_image_compare(const cw_image *a, const cw_image *b,
                                                int tolerance, size_t *differ, cw_error *err);
 

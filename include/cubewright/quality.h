@@ -34,13 +34,14 @@ typedef enum cw_defect {
 #define CW_NEEDLE_RATIO  20.0
 #define CW_CAP_ANGLE_DEG 160.0
 
+/* Numbers of bins of cw_shapes. */
 enum { CW_ANGLE_BINS = 18, CW_ASPECT_BINS = 9, CW_LENGTH_BINS = 20 };
 
 /* The shapes of triangles with an area. The aspect ratio is the circumradius over twice the
  * radius of the inscribed circle: 1 for equal sides. */
 typedef struct cw_shapes {
-    double min_angle_deg, max_angle_deg, max_aspect;
-    double min_edge_mm, max_edge_mm;
+    double min_angle_deg, max_angle_deg, max_aspect; /* extremes of all triangles */
+    double min_edge_mm, max_edge_mm;                 /* the shortest and the longest edge */
     size_t angles[CW_ANGLE_BINS];   /* all three of each triangle, 10 degrees per bin */
     size_t smallest[CW_ANGLE_BINS]; /* the smallest of each triangle, 60 / 18 degrees per bin */
     size_t aspects[CW_ASPECT_BINS]; /* up to cw_aspect_ends, and beyond */
@@ -53,31 +54,32 @@ extern CW_API const double cw_aspect_ends[CW_ASPECT_BINS - 1];
 /* Facts on one mesh, counted from its triangles as indexed, unless welded. Edges are unordered
  * vertex pairs of triangles; triangles that name a vertex twice have no edges. */
 typedef struct cw_quality {
-    size_t vertices, triangles, edges;
-    size_t components;           /* sets of triangles joined by vertices */
-    size_t unused_vertices;      /* in no triangle, as indexed */
-    size_t merged_vertices;      /* in a triangle, but welded to another vertex */
-    size_t open_edges;           /* in one triangle */
-    size_t border_loops;         /* closed chains of open edges */
-    size_t nonmanifold_edges;    /* in more than two triangles */
-    size_t misoriented_edges;    /* in two triangles that run through it the same way */
-    size_t nonmanifold_vertices; /* their triangles form more than one fan */
-    size_t duplicates;           /* triangles with the same vertices as an earlier one */
-    size_t degenerate;           /* triangles of zero area in double precision */
-    size_t needles, caps;        /* triangles: see above */
-    size_t cavities;    /* closed, oriented components facing inward, inside one solid */
-    size_t inside_out;  /* closed, oriented components facing inward, other than cavities */
-    size_t nested;      /* closed, oriented components facing outward, inside another one */
-    size_t open_inward; /* open, oriented components that seem to face inward */
-    size_t to_turn;     /* components that cw_mesh_orient() would turn round */
-    int64_t euler;      /* used vertices - edges + triangles */
-    int64_t genus;      /* handles of all components; -1 unless an oriented manifold */
-    double area_mm2;
+    size_t vertices, triangles, edges; /* all vertices, also unused ones; triangles; edges */
+    size_t components;                 /* sets of triangles joined by vertices */
+    size_t unused_vertices;            /* in no triangle, as indexed */
+    size_t merged_vertices;            /* in a triangle, but welded to another vertex */
+    size_t open_edges;                 /* in one triangle */
+    size_t border_loops;               /* closed chains of open edges */
+    size_t nonmanifold_edges;          /* in more than two triangles */
+    size_t misoriented_edges;          /* in two triangles that run through it the same way */
+    size_t nonmanifold_vertices;       /* their triangles form more than one fan */
+    size_t duplicates;                 /* triangles with the same vertices as an earlier one */
+    size_t degenerate;                 /* triangles of zero area in double precision */
+    size_t needles, caps;              /* triangles: see above */
+    size_t cavities;       /* closed, oriented components facing inward, inside one solid */
+    size_t inside_out;     /* closed, oriented components facing inward, other than cavities */
+    size_t nested;         /* closed, oriented components facing outward, inside another one */
+    size_t open_inward;    /* open, oriented components that seem to face inward */
+    size_t to_turn;        /* components that cw_mesh_orient() would turn round */
+    int64_t euler;         /* used vertices - edges + triangles */
+    int64_t genus;         /* handles of all components; -1 unless an oriented manifold */
+    double area_mm2;       /* of all triangles */
     double volume_mm3;     /* of closed meshes; signed, positive when triangles wind outward */
     double min[3], max[3]; /* world box, mm */
-    cw_shapes shapes;
+    cw_shapes shapes;      /* shapes of triangles */
 } cw_quality;
 
+/* Options of a measurement. Zero fields mean the default named beside them. */
 typedef struct cw_quality_desc {
     cw_weld weld;     /* default: as indexed */
     bool shells;      /* also count the fields from cavities to to_turn; default: 0 */
@@ -96,7 +98,8 @@ CW_NODISCARD CW_API cw_status cw_quality_measure(const cw_mesh *mesh,
                                                  cw_error *err);
 
 /* Returns the bytes that measuring takes beside the mesh; for one with open edges a third
- * more. */
+ * more.
+ * vertices, triangles  counts of the mesh */
 CW_API size_t cw_quality_bytes(size_t vertices, size_t triangles);
 
 /* A measurement of a surface that comes in chunks, such as those of cw_extract_stream(). It holds
@@ -104,13 +107,15 @@ CW_API size_t cw_quality_bytes(size_t vertices, size_t triangles);
  * name them or wait for their positions. */
 typedef struct cw_quality_stream cw_quality_stream;
 
+/* Options of cw_quality_stream_new(). Zero fields mean the default named beside them. */
 typedef struct cw_quality_stream_desc {
     int threads;      /* default: all */
     size_t max_bytes; /* limit of the memory for the front; default: none */
 } cw_quality_stream_desc;
 
 /* Begins a measurement; free it with cw_quality_stream_free(). desc: NULL means all defaults.
- * Returns CW_ERR_NO_MEMORY */
+ * out      set to the measurement
+ * Returns  CW_ERR_NO_MEMORY */
 CW_NODISCARD CW_API cw_status cw_quality_stream_new(const cw_quality_stream_desc *desc,
                                                     cw_quality_stream **out, cw_error *err);
 
@@ -131,10 +136,12 @@ CW_API cw_chunk_sink cw_quality_stream_sink(cw_quality_stream *stream);
 CW_NODISCARD CW_API cw_status cw_quality_stream_finish(cw_quality_stream *stream,
                                                        cw_quality *out, cw_error *err);
 
-/* Returns the bytes of the arrays that it holds at present. */
+/* Returns the bytes of the arrays that a measurement holds at present.
+ * stream  borrowed */
 CW_API size_t cw_quality_stream_bytes(const cw_quality_stream *stream);
 
-CW_API void cw_quality_stream_free(cw_quality_stream *stream); /* harmless on NULL */
+/* Frees a measurement. Harmless on NULL. */
+CW_API void cw_quality_stream_free(cw_quality_stream *stream);
 
 /* Counts of cw_mesh_orient(). */
 typedef struct cw_orient_counts {
@@ -155,16 +162,19 @@ CW_NODISCARD CW_API cw_status cw_mesh_orient(cw_mesh *mesh, int threads,
                                              cw_orient_counts *counts, cw_error *err);
 
 /* Returns true if there are no open, non-manifold or misoriented edges and no non-manifold
- * vertices. */
+ * vertices.
+ * quality  from cw_quality_measure() */
 CW_API bool cw_quality_is_closed_manifold(const cw_quality *quality);
 
 /* Holds a mesh to the topology of the one that it was made from: as many components and border
  * loops, the same Euler number, and no more non-manifold edges, non-manifold vertices and
  * triangles without area. Both must be measured with the same weld.
- * Returns  CW_ERR_CHECK, naming the first that differs and both counts */
+ * before, after  borrowed
+ * Returns        CW_ERR_CHECK, naming the first that differs and both counts */
 CW_NODISCARD CW_API cw_status cw_quality_compare(const cw_quality *before,
                                                  const cw_quality *after, cw_error *err);
 
+/* Options of cw_self_intersections(). Zero fields mean the default named beside them. */
 typedef struct cw_crossings_desc {
     cw_weld weld;     /* the rule that makes triangles neighbours; default: as indexed */
     int threads;      /* default: all */
@@ -174,7 +184,7 @@ typedef struct cw_crossings_desc {
 
 /* Pairs of triangles that meet. A zeroed struct is valid and empty. */
 typedef struct cw_crossings {
-    size_t count;
+    size_t count;    /* number of pairs */
     uint32_t *pairs; /* count x 2 triangles, the lower first, in rising order */
     bool undecided;  /* too many triangles are in one place: some pairs were not checked */
 } cw_crossings;
@@ -193,23 +203,26 @@ CW_NODISCARD CW_API cw_status cw_self_intersections(const cw_mesh *mesh,
                                                     const cw_crossings_desc *desc,
                                                     cw_crossings *out, cw_error *err);
 
+/* Frees the pairs and zeroes the struct. Harmless on a zeroed or already freed one. */
 CW_API void cw_crossings_free(cw_crossings *crossings);
 
 /* The same facts, computed by CGAL. Self-intersections are those of cw_self_intersections(). */
 typedef struct cw_cgal_facts {
     bool is_polygon_mesh; /* an oriented 2-manifold, maybe open; if not, all else is 0 */
-    bool closed;
-    bool bounds_volume; /* closed, and no shell inside out, nested or meeting another */
-    bool outward;       /* bounds_volume, and the outermost shells face outward */
-    size_t components;  /* joined by edges */
-    size_t border_loops, self_intersections, degenerate, needles, caps;
-    double area_mm2, volume_mm3; /* volume: of closed meshes */
+    bool closed;          /* no open edges */
+    bool bounds_volume;   /* closed, and no shell inside out, nested or meeting another */
+    bool outward;         /* bounds_volume, and the outermost shells face outward */
+    size_t components;    /* joined by edges */
+    size_t border_loops, self_intersections, degenerate, needles, caps; /* as in cw_quality */
+    double area_mm2, volume_mm3; /* area; volume of closed meshes */
 } cw_cgal_facts;
 
 /* Returns true if this build has the module with CGAL. That module is under the GPL. */
 CW_API bool cw_quality_has_cgal(void);
 
 /* Asks CGAL's Polygon Mesh Processing; takes ten times as long as our own checks.
+ * weld     the rule by which vertices count as one
+ * out      filled on success
  * Returns  as cw_quality_measure(); CW_ERR_UNSUPPORTED without the module; CW_ERR_BACKEND with
  *          CGAL's message when it fails */
 CW_NODISCARD CW_API cw_status cw_quality_ask_cgal(const cw_mesh *mesh, cw_weld weld,
@@ -217,7 +230,11 @@ CW_NODISCARD CW_API cw_status cw_quality_ask_cgal(const cw_mesh *mesh, cw_weld w
 
 /* Computes the one-sided Hausdorff distance from a mesh to a reference by CGAL, within the
  * tolerance.
- * Returns  as cw_quality_ask_cgal(); CW_ERR_BACKEND for a mesh that is no oriented manifold */
+ * reference     borrowed
+ * tolerance_mm  above 0
+ * out_mm        set to the distance
+ * Returns       as cw_quality_ask_cgal(); CW_ERR_BACKEND for a mesh that is no oriented
+ *               manifold */
 CW_NODISCARD CW_API cw_status cw_distance_by_cgal(const cw_mesh *mesh, const cw_mesh *reference,
                                                   double tolerance_mm, double *out_mm,
                                                   cw_error *err);

@@ -53,6 +53,7 @@ extern "C" {
     X(CW_MODE_REFERENCE, "reference", "the rendering integral itself, on the CPU",             \
       "Sabella 1988; Max 1995")
 
+/* The render modes. */
 typedef enum cw_mode {
 #define CW_MODE_ENUM(name, text, about, source) name,
     CW_MODE_TABLE(CW_MODE_ENUM)
@@ -60,9 +61,11 @@ typedef enum cw_mode {
         CW_MODE_COUNT
 } cw_mode;
 
+/* Returns the fields of a row of CW_MODE_TABLE; static. */
 CW_API const char *cw_mode_name(cw_mode mode);
 CW_API const char *cw_mode_about(cw_mode mode);
 CW_API const char *cw_mode_source(cw_mode mode);
+
 /* Returns true for the intensity projections: mip, minip, average and local-mip. */
 CW_API bool cw_mode_is_intensity(cw_mode mode);
 
@@ -82,20 +85,21 @@ typedef enum cw_backend {
     CW_BACKEND_COUNT
 } cw_backend;
 
+/* Maximum numbers of lights, clip planes and slices of a scene. */
 enum { CW_MAX_LIGHTS = 4, CW_MAX_CLIPS = 12, CW_MAX_SLICES = 4 };
 
 /* A light from far away. */
 typedef struct cw_light {
     double direction[3]; /* towards the light, of any length, in the camera's frame: x to the
                             right, y up, z to the eye */
-    float color[3];
+    float color[3];      /* linear, 1 is full */
 } cw_light;
 
 /* A clip plane: it keeps the points with normal . p >= distance, p in the world, LPS
  * millimetres. */
 typedef struct cw_clip {
-    double normal[3];
-    double distance_mm;
+    double normal[3];   /* of any length but 0 */
+    double distance_mm; /* from the world's zero, in units of the normal's length */
 } cw_clip;
 
 /* A slice to draw: all p with normal . p = distance. */
@@ -171,7 +175,7 @@ typedef enum cw_shadow {
 /* A scene. Zero-initialise it and set what you need; a zero field means the default named
  * beside it. Memory behind pointers is borrowed. */
 typedef struct cw_scene {
-    cw_mode mode;
+    cw_mode mode;                /* default: mesh */
     const cw_volume *volume;     /* see cw_mode_draws(); required for all modes but mesh */
     const cw_mesh *mesh;         /* also drawn, opaque, in any mode; required for mesh */
     const cw_transfer *transfer; /* required for all modes but mesh */
@@ -187,7 +191,7 @@ typedef struct cw_scene {
     cw_light lights[CW_MAX_LIGHTS]; /* light_count of them */
     size_t light_count;             /* default: one, white, from the eye; for meshes without a
                                        material, studio lights */
-    cw_material material;
+    cw_material material;           /* default: as named beside its fields */
     double gradient_sigma; /* standard deviation of a Gaussian that smooths the field before
                               its gradient is taken, in units of the smallest spacing, at most
                               16, on evenly spaced volumes; default 0: none */
@@ -206,8 +210,8 @@ typedef struct cw_scene {
     cw_cue_form cue_form;        /* default: linear */
     float background[2][3];      /* top and bottom, for depth_cue and slices; sRGB */
     cw_clip clips[CW_MAX_CLIPS]; /* clip_count planes: points kept by all of them are drawn */
-    size_t clip_count;
-    bool cut_away; /* leave out what all of them would keep, draw the rest */
+    size_t clip_count;           /* default: none */
+    bool cut_away;               /* leave out what all of them would keep, draw the rest */
 
     /* rays and slices */
     double step_vox;        /* distance of samples along a ray, or of slices of a texture, in
@@ -271,7 +275,7 @@ typedef struct cw_scene {
 
     /* mesh */
     float color[4]; /* sRGB and opacity of a mesh without colours; default a bone white */
-    cw_tint tint;
+    cw_tint tint;   /* default: its colours */
     double tint_low, tint_high; /* both 0: the range of the scalars */
     bool wireframe;             /* edges drawn over the triangles; faint where they are dense */
     bool same_inside;           /* the inside of a mesh, seen through a cut or a clear surface,
@@ -291,14 +295,19 @@ typedef struct cw_scene {
 typedef struct cw_renderer cw_renderer;
 
 /* Makes a renderer.
- * Returns  CW_ERR_UNSUPPORTED  this build has no GL, the machine has no driver, or none with
- *                              OpenGL 3.3: the message names the packages; CW_ERR_NO_MEMORY */
+ * backend   the backend that draws
+ * renderer  set to the renderer; free it with cw_renderer_free()
+ * Returns   CW_ERR_UNSUPPORTED  this build has no GL, the machine has no driver, or none with
+ *                               OpenGL 3.3: the message names the packages; CW_ERR_NO_MEMORY */
 CW_NODISCARD CW_API cw_status cw_renderer_new(cw_backend backend, cw_renderer **renderer,
                                               cw_error *err);
+
+/* Frees a renderer and its uploads. Harmless on NULL. */
 CW_API void cw_renderer_free(cw_renderer *renderer);
 
 /* Returns the name of the device that drew the last picture, or before the first will draw:
- * "CPU", or the name that GL reports. Valid as long as the renderer. */
+ * "CPU", or the name that GL reports. Valid as long as the renderer.
+ * renderer  borrowed */
 CW_API const char *cw_renderer_name(const cw_renderer *renderer);
 
 /* Draws a scene. Deterministic: the same scene gives the same picture on the same machine, and
@@ -321,6 +330,7 @@ typedef enum cw_pick_kind {
     CW_PICK_MESH
 } cw_pick_kind;
 
+/* The point that a pixel shows. */
 typedef struct cw_picked {
     cw_pick_kind kind; /* CW_PICK_NOTHING: all below is 0 */
     double point[3];   /* in the world, LPS millimetres */
@@ -340,6 +350,7 @@ typedef struct cw_picked {
  * translucent mesh is picked like an opaque one.
  *
  * pixel    from the picture's upper left corner, y down
+ * picked   filled on success
  * Returns  as cw_render(), and CW_ERR_ARGUMENT for a pixel that is not a number
  * Cost     in proportion to the triangles (a million: some 10 ms), and to the cells met */
 CW_NODISCARD CW_API cw_status cw_pick(const cw_scene *scene, const double pixel[2],
@@ -351,7 +362,9 @@ CW_NODISCARD CW_API cw_status cw_pick(const cw_scene *scene, const double pixel[
  * right on the picture's left and the front up. Coronal ones are seen from the front, right on
  * the left, the head up. Sagittal ones are seen from the left, the front on the picture's left,
  * the head up. Oblique ones are seen like those they are closest to.
- * Returns CW_ERR_ARGUMENT for a slice that misses the volume or has no direction, for an
+ * slice    borrowed
+ * aspect   above 0
+ * Returns  CW_ERR_ARGUMENT for a slice that misses the volume or has no direction, for an
  * invalid aspect, and as cw_volume_resolve(). */
 CW_NODISCARD CW_API cw_status cw_slice_camera(const cw_volume *volume, const cw_slice *slice,
                                               double aspect, cw_camera *camera, cw_error *err);

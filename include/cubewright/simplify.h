@@ -13,7 +13,7 @@ extern "C" {
 
 /* A view of a surface, for which the surface is simplified. */
 typedef struct cw_simplify_view {
-    cw_camera camera;
+    cw_camera camera;     /* the view's camera */
     size_t width, height; /* pixels; default: 1280 x 720 */
     float *depth;         /* width x height, top row first: for the middle of each pixel, the
                              depth of the visible point before the eye, in mm along the line of
@@ -22,9 +22,12 @@ typedef struct cw_simplify_view {
 
 /* Draws the depths of one more mesh, or slab, into a view. Free them with
  * cw_simplify_view_free(), which is harmless where there are none.
+ * view     its depths are made, or added to
  * Returns  CW_ERR_ARGUMENT for an invalid camera; CW_ERR_NO_MEMORY */
 CW_NODISCARD CW_API cw_status cw_simplify_view_draw(cw_simplify_view *view, const cw_mesh *mesh,
                                                     cw_error *err);
+
+/* Frees the depths of a view; the camera and the size stay. Harmless where there are none. */
 CW_API void cw_simplify_view_free(cw_simplify_view *view);
 
 /* Targets and limits of a simplification. Zero-initialise the struct and set what you need; a
@@ -40,28 +43,30 @@ typedef struct cw_simplify_desc {
        includes places more than twice error_mm behind the view's depths. Points nearer to an
        eye than a thousandth of the way to its target count as at that distance. */
     const cw_simplify_view *views; /* view_count of them, borrowed until the call returns */
-    size_t view_count;
-    double pixel_error; /* above 0 when there are views */
-    double normal_deg;  /* vertices that a view sees are joined only while the normals around
+    size_t view_count;             /* default: no views */
+    double pixel_error;            /* above 0 when there are views */
+    double normal_deg; /* vertices that a view sees are joined only while the normals around
                            them are within this angle of their mean, for the sake of shading;
                            default: 180, any */
-    size_t triangles;   /* stop at this number of triangles; default: no limit */
+    size_t triangles;  /* stop at this number of triangles; default: no limit */
     double ratio; /* the same as a fraction of the input's; above 0, below 1; default: none */
     bool allow_crossings; /* default: no triangles meet that did not meet before */
     bool keep_border;     /* borders of open surfaces stay to the bit, so that parts cut from
                              one whole still fit together; default: borders are simplified,
                              too */
-    /* Weights of attributes whose loss counts as a distance, in percent of the diagonal of the
-       mesh's box. They are for the largest possible difference: of a colour from none to full,
-       of scalars from the minimum to the maximum, of normals by a length of 1. Default: 0. */
-    float normal_weight, color_weight, scalar_weight;
-    int threads;          /* default: all that OpenMP offers */
-    cw_progress progress; /* default: none */
+    float normal_weight, color_weight, scalar_weight; /* weights of attributes whose loss counts
+                               as a distance, in percent of the diagonal of the mesh's box. They
+                               are for the largest possible difference: of a colour from none to
+                               full, of scalars from the minimum to the maximum, of normals by a
+                               length of 1. Default: 0 */
+    int threads;                                      /* default: all that OpenMP offers */
+    cw_progress progress;                             /* default: none */
 } cw_simplify_desc;
 
 /* Computes the error that a view allows at a world point: no place within it is seen more than
  * `pixels` away from the point. Infinite where the view does not see the point.
- * Returns  CW_ERR_ARGUMENT for an invalid camera, and pixels that are not above 0 */
+ * error_mm  set to the error
+ * Returns   CW_ERR_ARGUMENT for an invalid camera, and pixels that are not above 0 */
 CW_NODISCARD CW_API cw_status cw_simplify_view_error(const cw_simplify_view *view,
                                                      double pixels, const double point[3],
                                                      double *error_mm, cw_error *err);
@@ -70,6 +75,7 @@ CW_NODISCARD CW_API cw_status cw_simplify_view_error(const cw_simplify_view *vie
  * `pixels` on all sides. false is certain, true is not.
  *
  * points   count x 3, in the world; count is 1 to 8
+ * seen     set to false where no part can be seen
  * Returns  CW_ERR_ARGUMENT  an invalid camera, pixels that are not above 0, no points or
  *                           more than 8 */
 CW_NODISCARD CW_API cw_status cw_simplify_view_sees(const cw_simplify_view *view, double pixels,
@@ -104,6 +110,7 @@ CW_NODISCARD CW_API cw_status cw_simplify_views_box(const cw_volume *volume,
  * view does not see count as 0.
  *
  * distance_mm  vertex_count, such as cw_mesh_distance_desc.worst
+ * pixels       set to the distance
  * Returns      CW_ERR_ARGUMENT for an unusable camera */
 CW_NODISCARD CW_API cw_status cw_simplify_view_distance(const cw_simplify_view *view,
                                                         const cw_mesh *mesh,
@@ -126,7 +133,7 @@ CW_NODISCARD CW_API cw_status cw_simplify_cull(cw_mesh *mesh, const cw_simplify_
 
 /* Facts on a finished simplification. */
 typedef struct cw_simplify_facts {
-    size_t vertices, triangles;
+    size_t vertices, triangles; /* of the result */
     size_t cut;    /* vertices of the input whose triangles are no single fan: they stay where
                       they are, and everything around them */
     size_t passes; /* 1, and 1 more for each time that error_mm needed more care */
@@ -164,9 +171,9 @@ CW_NODISCARD CW_API cw_status cw_simplify(const cw_mesh *mesh, const cw_simplify
  * all take hardly longer than the last.
  *
  * triangles  levels, each fewer than the one before; desc has neither these, nor ratio or error
+ * levels     number of levels
  * out        levels; filled on success, emptied on failure
  * facts      levels, or NULL
- *
  * Returns    CW_ERR_ARGUMENT when the numbers do not fall; else as cw_simplify() */
 CW_NODISCARD CW_API cw_status cw_simplify_levels(const cw_mesh *mesh,
                                                  const cw_simplify_desc *desc,
@@ -195,21 +202,28 @@ typedef struct cw_simplifier cw_simplifier;
 #define CW_SIMPLIFIER_SLAB ((size_t)1 << 19)
 
 /* Makes a simplifier. Free it with cw_simplifier_free().
- * desc      copied; an error, or else triangles or a ratio
- * Returns   CW_ERR_ARGUMENT for both or none, and as cw_simplify() */
+ * desc     copied; an error, or else triangles or a ratio
+ * out      set to the simplifier
+ * Returns  CW_ERR_ARGUMENT for both or none, and as cw_simplify() */
 CW_NODISCARD CW_API cw_status cw_simplifier_new(const cw_simplify_desc *desc,
                                                 cw_simplifier **out, cw_error *err);
-CW_API void cw_simplifier_free(cw_simplifier *simplifier); /* harmless on NULL */
 
-/* Takes the next slab; for cw_slab_sink. After an error the simplifier can only be freed. */
+/* Frees a simplifier. Harmless on NULL. */
+CW_API void cw_simplifier_free(cw_simplifier *simplifier);
+
+/* Takes the next slab; for cw_slab_sink. After an error the simplifier can only be freed.
+ * simplifier  a cw_simplifier
+ * slab        borrowed
+ * Returns     as cw_simplify() */
 CW_NODISCARD CW_API cw_status cw_simplifier_take(void *simplifier, const cw_slab *slab,
                                                  cw_error *err);
 
 /* Makes the result, without normals: cw_extract_normals() adds them. Empty when no slab came.
  *
- * out       filled on success, emptied on failure; free it with cw_mesh_free()
- * facts     may be NULL
- * Returns   CW_ERR_ARGUMENT when the last slab is missing; else as cw_simplify() */
+ * simplifier  used up: it can only be freed
+ * out         filled on success, emptied on failure; free it with cw_mesh_free()
+ * facts       may be NULL
+ * Returns     CW_ERR_ARGUMENT when the last slab is missing; else as cw_simplify() */
 CW_NODISCARD CW_API cw_status cw_simplifier_finish(cw_simplifier *simplifier, cw_mesh *out,
                                                    cw_simplify_facts *facts, cw_error *err);
 

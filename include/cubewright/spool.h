@@ -17,10 +17,13 @@ typedef struct cw_mesh_spool cw_mesh_spool;
 
 /* Makes an empty spool in the folder of a path (that of the file to write, say). A vertex takes
  * 12 bytes of the disk, with normals 24, and a triangle takes 12.
- * Returns CW_ERR_OUTPUT  the folder cannot be written; CW_ERR_NO_MEMORY */
+ * out      set to the spool
+ * Returns  CW_ERR_OUTPUT  the folder cannot be written; CW_ERR_NO_MEMORY */
 CW_NODISCARD CW_API cw_status cw_mesh_spool_new(const char *path, cw_mesh_spool **out,
                                                 cw_error *err);
-CW_API void cw_mesh_spool_free(cw_mesh_spool *spool); /* harmless on NULL */
+
+/* Frees a spool and its temporary files. Harmless on NULL. */
+CW_API void cw_mesh_spool_free(cw_mesh_spool *spool);
 
 /* Returns the sink that appends chunks to a spool. It returns CW_ERR_OUTPUT when the disk is
  * full, and CW_ERR_ARGUMENT for a chunk that does not follow the last one. */
@@ -30,7 +33,8 @@ CW_API cw_chunk_sink cw_mesh_spool_sink(cw_mesh_spool *spool);
  * until the spool changes. */
 CW_API const cw_mesh *cw_mesh_spool_frame(const cw_mesh_spool *spool);
 
-/* Computes the box around the vertices, as cw_mesh_bounds() does. */
+/* Computes the box around the vertices, as cw_mesh_bounds() does. Returns false, and zeros, where
+ * there are none. */
 CW_API bool cw_mesh_spool_bounds(const cw_mesh_spool *spool, double min[3], double max[3]);
 
 /* Gives the surface of a spool away again, in chunks of up to 16384 triangles.
@@ -95,12 +99,14 @@ typedef struct cw_fragment {
 
 /* Writes a part that is in a spool as a fragment: its facts, arrays and a checksum. It appears at
  * the path only when it is complete.
- * Returns CW_ERR_OUTPUT; CW_ERR_IO; CW_ERR_NO_MEMORY */
+ * fragment  borrowed
+ * Returns   CW_ERR_OUTPUT; CW_ERR_IO; CW_ERR_NO_MEMORY */
 CW_NODISCARD CW_API cw_status cw_fragment_write(const char *path, const cw_fragment *fragment,
                                                 const cw_mesh_spool *spool, cw_error *err);
 
 /* Reads the facts of a fragment, and checks the size of its file.
- * Returns CW_ERR_IO, CW_ERR_FORMAT: it is no fragment, or not complete */
+ * fragment  filled on success
+ * Returns   CW_ERR_IO, CW_ERR_FORMAT: it is no fragment, or not complete */
 CW_NODISCARD CW_API cw_status cw_fragment_read(const char *path, cw_fragment *fragment,
                                                cw_error *err);
 

@@ -16,7 +16,7 @@ typedef struct cw_slice_source {
     /* Reads `count` slices, from slice `first` on, to packed memory. It is called on the calling
      * thread, for slices in rising order. After a look ahead it starts again. */
     cw_status (*read)(void *user, size_t first, size_t count, void *to, cw_error *err);
-    void *user;
+    void *user; /* passed to read */
 } cw_slice_source;
 
 /* A piece of a surface, in the order of cw_extract(). The triangles of a chunk, and of all later
@@ -30,8 +30,9 @@ typedef struct cw_mesh_chunk {
 /* A receiver of chunks, one after the other. A status other than CW_OK stops the maker, which
  * then returns it. The chunk belongs to the maker and is invalid after the call. */
 typedef struct cw_chunk_sink {
+    /* Takes one chunk, on the calling thread. */
     cw_status (*take)(void *user, const cw_mesh_chunk *chunk, cw_error *err);
-    void *user;
+    void *user; /* passed to take */
 } cw_chunk_sink;
 
 /* Options of an extraction by slices. Zero fields mean the default named beside them. */
@@ -72,10 +73,9 @@ CW_NODISCARD CW_API cw_status cw_extract_stream(const cw_slice_source *source,
 
 /* Counts of a part of a surface. */
 typedef struct cw_part_counts {
-    size_t vertices, triangles;
-    bool has_inside,
-        has_outside; /* samples on each side were found. A volume whose parts all have
-                                     one side only has no surface */
+    size_t vertices, triangles;   /* of the part */
+    bool has_inside, has_outside; /* samples on each side were found. A volume whose parts all
+                                     have one side only has no surface */
 } cw_part_counts;
 
 /* Extracts a part of the surface of cw_extract_stream(): the layers of cells of part `part`, from 0,
@@ -85,8 +85,9 @@ typedef struct cw_part_counts {
  * last: vertex number vertices + n of a part is vertex n of those behind it. So a part's numbers, plus
  * the vertices of all parts before it, are those of the whole surface.
  *
- * counts   what was made; may be NULL
- * Returns  as cw_extract_stream(); CW_ERR_ARGUMENT: part is not below parts */
+ * part, parts  number of the part from 0; number of all parts
+ * counts       what was made; may be NULL
+ * Returns      as cw_extract_stream(); CW_ERR_ARGUMENT: part is not below parts */
 CW_NODISCARD CW_API cw_status cw_extract_stream_part(const cw_slice_source *source,
                                                      const cw_stream_desc *desc, size_t part,
                                                      size_t parts, cw_chunk_sink sink,
@@ -103,6 +104,7 @@ CW_NODISCARD CW_API cw_status cw_extract_stream_part(const cw_slice_source *sour
  *     cw_extract_stream_normals(&source, &normals_desc, 0, &mesh, &err);
  *
  * triangles  minimum of a slab, as in cw_extract_slabs()
+ * sink       called on the calling thread; not at all for a volume without a crossing
  * counts     what was made; bytes are those of the largest slab and of the working memory. May be NULL
  * Returns    as cw_extract_stream(). CW_ERR_LIMIT also for max_bytes below what the largest slab
  *            needs, before the sink is called */
@@ -116,14 +118,18 @@ CW_NODISCARD CW_API cw_status cw_extract_stream_slabs(const cw_slice_source *sou
  * vertices, and some slices.
  *
  * max_bytes  limit of the working memory, without the mesh; 0: none
- * Returns    as cw_extract_normals(); CW_ERR_LIMIT: max_bytes is too low; or what source returned */
+ * mesh       its normals are replaced, or added; unchanged on failure
+ * Returns    as cw_extract_normals(); CW_ERR_LIMIT: max_bytes is too low; or what source
+ *            returned */
 CW_NODISCARD CW_API cw_status cw_extract_stream_normals(const cw_slice_source *source,
                                                         const cw_normals_desc *desc,
                                                         size_t max_bytes, cw_mesh *mesh,
                                                         cw_error *err);
 
 /* Returns the working memory of cw_extract_stream() in bytes, without that of the source and the
- * sink. minimum: with one layer at a time, which max_bytes has to allow. */
+ * sink. minimum: with one layer at a time, which max_bytes has to allow.
+ * shape    as in cw_slice_source
+ * minimum  true: with one layer at a time */
 CW_API size_t cw_extract_stream_bytes(const cw_volume *shape, const cw_stream_desc *desc,
                                       bool minimum);
 

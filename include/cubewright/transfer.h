@@ -9,23 +9,24 @@
 extern "C" {
 #endif
 
-enum { CW_TRANSFER_POINTS = 64 };
+enum { CW_TRANSFER_POINTS = 64 }; /* maximum number of points of each kind */
 
 /* A colour (sRGB, 0 to 1) and an opacity (0 to 1) at a value, in the unit of the voxels. */
 typedef struct cw_color_point {
-    double value;
-    float color[3];
+    double value;   /* in the unit of the voxels */
+    float color[3]; /* sRGB */
 } cw_color_point;
 
+/* An opacity at a value; a factor at a length of the gradient. */
 typedef struct cw_opacity_point {
-    double value;
-    float opacity;
+    double value;  /* in the unit of the voxels */
+    float opacity; /* 0 to 1 */
 } cw_opacity_point;
 
 /* An index at a value: a number that stands for the material there, such as its density. */
 typedef struct cw_index_point {
-    double value;
-    float index;
+    double value; /* in the unit of the voxels */
+    float index;  /* any finite number */
 } cw_index_point;
 
 /* A transfer function: linear between points, constant beyond the ends. The values of the
@@ -43,14 +44,14 @@ typedef struct cw_index_point {
  * of a surface is the length of that gradient times surface_mm, at most 1. Diffuse and specular
  * reflection are multiplied by it, so that the inside of a material has ambient light only. */
 typedef struct cw_transfer {
-    size_t color_count, opacity_count, gradient_count, index_count;
-    cw_color_point colors[CW_TRANSFER_POINTS];
-    cw_opacity_point opacities[CW_TRANSFER_POINTS];
+    size_t color_count, opacity_count, gradient_count, index_count; /* numbers of points */
+    cw_color_point colors[CW_TRANSFER_POINTS];                      /* default: white */
+    cw_opacity_point opacities[CW_TRANSFER_POINTS];                 /* default: transparent */
     cw_opacity_point gradients[CW_TRANSFER_POINTS]; /* value: length of the gradient, per mm, or
                                                        with indices the strength of the surface;
                                                        opacity: a factor of the extinction
                                                        coefficient */
-    cw_index_point indices[CW_TRANSFER_POINTS];
+    cw_index_point indices[CW_TRANSFER_POINTS];     /* default: no surfaces of materials */
     double surface_mm; /* the width over which an index changes by 1 at a surface of full
                           strength; default: twice the volume's smallest spacing */
     double unit_mm;    /* default: the volume's smallest spacing */
@@ -61,15 +62,20 @@ typedef struct cw_transfer {
  * not finite, for too many points, and for a unit_mm or surface_mm that is not a length. */
 CW_NODISCARD CW_API cw_status cw_transfer_check(const cw_transfer *transfer, cw_error *err);
 
-/* Computes the colour and opacity of a value, and the factor of a gradient's length. */
+/* Computes the colour and opacity of a value.
+ * color    set to sRGB, 0 to 1
+ * opacity  set to 0 to 1 */
 CW_API void cw_transfer_at(const cw_transfer *transfer, double value, double color[3],
                            double *opacity);
+
+/* Returns the factor of a gradient's length.
+ * gradient_per_mm  length of the gradient; with indices, strength of the surface */
 CW_API double cw_transfer_gradient_factor(const cw_transfer *transfer, double gradient_per_mm);
 
-/* Computes the index of a value; the value itself without indices. */
+/* Returns the index of a value; the value itself without indices. */
 CW_API double cw_transfer_index(const cw_transfer *transfer, double value);
 
-enum { CW_MAX_MATERIALS = 8 };
+enum { CW_MAX_MATERIALS = 8 }; /* maximum of cw_transfer_set_materials() */
 
 /* A material as a class of values [Drebin1988]. The fraction of it rises from 0 at values[0] to
  * 1 at values[1], and falls from 1 at values[2] to 0 at values[3]; in between it is linear. The
@@ -87,14 +93,15 @@ typedef struct cw_material_class {
  * be. Fractions whose sum is above 1 are divided by it; where it is below 1 the rest is clear,
  * with index 0. Curves that are not linear are kept to 1/512, or as exactly as
  * CW_TRANSFER_POINTS allow.
- * count    1 to CW_MAX_MATERIALS
- * Returns  CW_ERR_ARGUMENT, naming the material, for values that decrease or are not numbers,
- *          no finite value at all, and colours, opacities and indices out of range */
+ * materials  count of them, borrowed
+ * count      1 to CW_MAX_MATERIALS
+ * Returns    CW_ERR_ARGUMENT, naming the material, for values that decrease or are not numbers,
+ *            no finite value at all, and colours, opacities and indices out of range */
 CW_NODISCARD CW_API cw_status cw_transfer_set_materials(cw_transfer *transfer,
                                                         const cw_material_class *materials,
                                                         size_t count, cw_error *err);
 
-/* Returns the name of the n-th preset; NULL after the last. */
+/* Returns the name of the n-th preset, or its description; NULL after the last. */
 CW_API const char *cw_transfer_preset_name(size_t n);
 CW_API const char *cw_transfer_preset_about(size_t n);
 
@@ -118,6 +125,8 @@ CW_NODISCARD CW_API cw_status cw_transfer_box(const cw_volume *volume,
                                               const cw_transfer *transfer, int threads,
                                               double low[3], double high[3], cw_error *err);
 
+enum { CW_TRANSFER_TEXT = 20480 }; /* bytes that the text of one takes at most */
+
 /* Reads or writes a transfer function as JSON, in a file or as text:
  *     {"schema": "cubewright-transfer-1", "unit_mm": 1,
  *      "colors": [[-1000, "#000000"], [300, "#ffeedd"]],
@@ -131,7 +140,6 @@ CW_NODISCARD CW_API cw_status cw_transfer_box(const cw_volume *volume,
  * text     as in a file; when written, at most CW_TRANSFER_TEXT bytes with the final 0
  * Returns  CW_ERR_IO; CW_ERR_FORMAT, with the line or the field that is wrong; CW_ERR_OUTPUT;
  *          CW_ERR_ARGUMENT as cw_transfer_check() */
-enum { CW_TRANSFER_TEXT = 20480 };
 CW_NODISCARD CW_API cw_status cw_transfer_read(const char *path, cw_transfer *transfer,
                                                cw_error *err);
 CW_NODISCARD CW_API cw_status cw_transfer_write(const char *path, const cw_transfer *transfer,

@@ -20,6 +20,7 @@ extern "C" {
     X(CW_F32, float, "f32")                                                                    \
     X(CW_F64, double, "f64")
 
+/* The types of voxels. */
 typedef enum cw_type {
 #define CW_TYPE_ENUM(name, ctype, text) name,
     CW_TYPE_TABLE(CW_TYPE_ENUM)
@@ -56,20 +57,20 @@ typedef struct cw_cells {
 
 /* A box of voxels with one value. All its sizes and places count in leaves. */
 typedef struct cw_tile {
-    uint32_t at[3], size[3];
-    double value; /* as stored, before slope and intercept */
+    uint32_t at[3], size[3]; /* its first leaf; number of leaves along each axis */
+    double value;            /* as stored, before slope and intercept */
 } cw_tile;
 
 /* A sparse grid: voxels are stored in blocks ("leaves") of 8 x 8 x 8, regions of one value in
  * tiles. All other voxels, also beyond dim, have the background's value. No voxel is stored
  * twice. */
 typedef struct cw_sparse {
-    size_t leaf_count;
+    size_t leaf_count;           /* number of leaves */
     const uint32_t (*leaves)[3]; /* the voxels of leaf n are data + n * 512 voxels, x fastest;
                                     the first of them is voxel 8 * leaves[n] */
-    size_t tile_count;
-    const cw_tile *tiles;
-    double background; /* as stored */
+    size_t tile_count;           /* number of tiles */
+    const cw_tile *tiles;        /* in any order */
+    double background;           /* as stored */
 } cw_sparse;
 
 /* A view of voxels. A zeroed struct is a valid empty volume; fields left zero mean the default
@@ -98,11 +99,11 @@ typedef struct cw_volume {
     const cw_cells *cells;        /* an irregular grid's; else NULL */
     const cw_sparse *sparse;      /* a sparse grid's; else NULL */
     double slope, intercept;      /* value = slope * voxel + intercept; slope 0 means 1 */
-    bool has_nodata; /* voxels equal to nodata, before scaling, are outside the domain */
-    double nodata;
-    unsigned known;           /* cw_known flags */
-    double said_unit_mm;      /* the file's own unit before conversion to mm; 0: mm */
-    bool said_ras;            /* true if the file's own x and y went to the right and the
+    bool has_nodata;     /* voxels equal to nodata, before scaling, are outside the domain */
+    double nodata;       /* only with has_nodata */
+    unsigned known;      /* cw_known flags */
+    double said_unit_mm; /* the file's own unit before conversion to mm; 0: mm */
+    bool said_ras;       /* true if the file's own x and y went to the right and the
                                  front */
     void *owned, *owned_grid; /* memory freed by cw_volume_free(), of voxels and of coordinates,
                                  cells or leaves; NULL for a borrowed view */
@@ -110,16 +111,21 @@ typedef struct cw_volume {
 
 /* An index box: first voxel and number of voxels along each axis. */
 typedef struct cw_box {
-    size_t first[3];
-    size_t count[3];
+    size_t first[3]; /* index of the first voxel */
+    size_t count[3]; /* number of voxels */
 } cw_box;
 
+/* Returns the bytes of a voxel of a type; 0 for an unknown type. */
 CW_API size_t cw_type_size(cw_type type);
+
+/* Returns the name of a type, such as "i16"; static. */
 CW_API const char *cw_type_name(cw_type type);
 
 /* Makes a volume that owns zeroed, packed voxels: dim, components and steps as given (both 0
  * mean 1), identity affine. Write the voxels through cw_volume_voxels().
- * Returns CW_ERR_ARGUMENT for a zero dim, CW_ERR_LIMIT when the size overflows,
+ * dim                voxels along x, y, z
+ * components, steps  values per voxel, time steps; 0 means 1
+ * Returns            CW_ERR_ARGUMENT for a zero dim, CW_ERR_LIMIT when the size overflows,
  * CW_ERR_NO_MEMORY. */
 CW_NODISCARD CW_API cw_status cw_volume_alloc(cw_volume *volume, cw_type type,
                                               const size_t dim[3], size_t components,
@@ -128,7 +134,8 @@ CW_NODISCARD CW_API cw_status cw_volume_alloc(cw_volume *volume, cw_type type,
 /* Frees what the volume owns and zeroes it. Harmless on a zeroed or already freed volume. */
 CW_API void cw_volume_free(cw_volume *volume);
 
-/* Returns the owned voxels, for writing; NULL for a borrowed view. */
+/* Returns the owned voxels, for writing; NULL for a borrowed view.
+ * volume  a volume that owns its voxels */
 CW_API void *cw_volume_voxels(cw_volume *volume);
 
 /* Copies *in to *out with every defaulted field filled in, so that other functions need no
@@ -141,7 +148,8 @@ CW_NODISCARD CW_API cw_status cw_volume_resolve(const cw_volume *in, cw_volume *
                                                 cw_error *err);
 
 /* Makes a borrowed view of one component at one time step.
- * Returns CW_ERR_ARGUMENT when it does not exist. */
+ * component, step  from 0
+ * Returns          CW_ERR_ARGUMENT when it does not exist. */
 CW_NODISCARD CW_API cw_status cw_volume_select(const cw_volume *in, size_t component,
                                                size_t step, cw_volume *out, cw_error *err);
 
@@ -149,13 +157,14 @@ CW_NODISCARD CW_API cw_status cw_volume_select(const cw_volume *in, size_t compo
  * the sum of their squares, scaled, computed in double precision and stored as CW_F32. NaN
  * where a component has no value.
  *
+ * step     from 0
  * out      owns its voxels, and borrows coordinates or cells of *in; free it before *in
  * Returns  CW_ERR_ARGUMENT  no such step, or one component; as cw_volume_resolve()
  *          CW_ERR_UNSUPPORTED on a sparse grid; CW_ERR_LIMIT; CW_ERR_NO_MEMORY */
 CW_NODISCARD CW_API cw_status cw_volume_magnitude(const cw_volume *in, size_t step, int threads,
                                                   cw_volume *out, cw_error *err);
 
-enum { CW_LABELS_MAX = 255 };
+enum { CW_LABELS_MAX = 255 }; /* maximum number of values that are listed */
 
 /* Labels of a volume: whole numbers that stand for objects, not for amounts. */
 typedef struct cw_labels {
@@ -169,20 +178,24 @@ typedef struct cw_labels {
  * values of another one must meet three conditions. They are whole numbers from 0, in any type, and at least three. Of neighbours along x that are not both the most frequent value, 7 in 10 are equal.
  * Of those that differ, 2 in 10 skip a value that occurs. A smooth picture skips none, and a
  * noisy one has no equal neighbours. At most 2^22 voxels are examined, in rows spread evenly.
- * Returns CW_ERR_ARGUMENT as cw_volume_resolve(). */
+ * out      filled on success
+ * Returns  CW_ERR_ARGUMENT as cw_volume_resolve(). */
 CW_NODISCARD CW_API cw_status cw_volume_labels(const cw_volume *volume, cw_labels *out,
                                                cw_error *err);
 
 /* Makes a borrowed view of the voxels inside a box; its affine leaves them where they were.
- * Returns CW_ERR_ARGUMENT when the box is empty or leaves the volume. */
+ * box      borrowed
+ * Returns  CW_ERR_ARGUMENT when the box is empty or leaves the volume. */
 CW_NODISCARD CW_API cw_status cw_volume_crop(const cw_volume *in, const cw_box *box,
                                              cw_volume *out, cw_error *err);
 
 /* Makes a borrowed view of every step[a]-th voxel along axis a, starting with the first, for a
  * quick look. Each voxel stays where it was. Values are picked, not averaged. Up to step[a] - 1
- * voxels at the far end are beyond the view. Returns CW_ERR_ARGUMENT for a step of 0, for a
- * step other than 1 that leaves a single voxel (at most dim[a] - 1 is allowed), and when the
- * affine leaves the range of doubles; CW_ERR_UNSUPPORTED on a rectilinear grid. */
+ * voxels at the far end are beyond the view.
+ * step     1 or more along each axis
+ * Returns  CW_ERR_ARGUMENT for a step of 0, for a step other than 1 that leaves a single
+ *          voxel (at most dim[a] - 1 is allowed), and when the affine leaves the range of
+ *          doubles; CW_ERR_UNSUPPORTED on a rectilinear grid. */
 CW_NODISCARD CW_API cw_status cw_volume_coarsen(const cw_volume *in, const size_t step[3],
                                                 cw_volume *out, cw_error *err);
 
@@ -197,21 +210,28 @@ CW_NODISCARD CW_API cw_status cw_volume_densify(const cw_volume *sparse, size_t 
                                                 cw_volume *dense, cw_error *err);
 
 /* Returns the (scaled) value of one voxel of the first component and step; slow, for tests and
- * probes. NaN outside the volume, and on a sparse grid. */
+ * probes. NaN outside the volume, and on a sparse grid.
+ * i, j, k  the index */
 CW_API double cw_volume_value(const cw_volume *volume, size_t i, size_t j, size_t k);
 
-/* Computes the world point of a (fractional) index, or the millimetres between neighbours along
- * each axis; on a rectilinear grid their mean. */
+/* Computes the world point of a (fractional) index.
+ * index  place in voxels, from the middle of the first
+ * world  set to the point, LPS millimetres */
 CW_API void cw_volume_to_world(const cw_volume *volume, const double index[3], double world[3]);
+
+/* Computes the millimetres between neighbours along each axis; on a rectilinear grid their mean.
+ * spacing_mm  set to them */
 CW_API void cw_volume_spacing(const cw_volume *volume, double spacing_mm[3]);
 
 /* Computes the world positions of the corners of a volume that has samples. Corner n has the
  * last index along axis a where n >> a & 1, else the first. The corners of an irregular grid
- * are those of the smallest axis-aligned box around its samples. */
+ * are those of the smallest axis-aligned box around its samples.
+ * corners  set to eight world points */
 CW_API void cw_volume_corners(const cw_volume *volume, double corners[8][3]);
 
-/* Computes the (fractional) index of a world point. Returns CW_ERR_ARGUMENT when the affine
- * cannot be inverted. */
+/* Computes the (fractional) index of a world point.
+ * index    set to the index
+ * Returns  CW_ERR_ARGUMENT when the affine cannot be inverted. */
 CW_NODISCARD CW_API cw_status cw_volume_to_index(const cw_volume *volume, const double world[3],
                                                  double index[3], cw_error *err);
 
@@ -241,6 +261,8 @@ typedef struct cw_statistics {
 CW_NODISCARD CW_API cw_status cw_volume_statistics(const cw_volume *volume, size_t bin_count,
                                                    int threads, cw_statistics *out,
                                                    cw_error *err);
+
+/* Frees the bins and zeroes the struct. Harmless on a zeroed or already freed one. */
 CW_API void cw_statistics_free(cw_statistics *statistics);
 
 /* Joins the statistics of several volumes, such as the steps of a series, into bin_count bins
@@ -254,7 +276,10 @@ CW_NODISCARD CW_API cw_status cw_statistics_join(const cw_statistics *parts, siz
 /* Finds the levels that separate the histogram into level_count + 1 classes (level_count is 1
  * to 3) with the largest variance between classes: [Otsu1979], and [Liao2001] for more than one
  * level.
- * Returns false when the histogram has too few filled bins. */
+ * Returns false when the histogram has too few filled bins.
+ * statistics   borrowed, with bins
+ * level_count  1 to 3
+ * levels       set to level_count values, rising */
 CW_API bool cw_statistics_otsu(const cw_statistics *statistics, int level_count,
                                double *levels);
 

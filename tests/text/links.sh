@@ -13,7 +13,7 @@ anchors_of() { # as Git hosts make them of headings
     sed -n 's/^##* //p' "$1" | tr '[:upper:]' '[:lower:]' | sed 's/[^a-z0-9 _-]//g; s/ /-/g'
 }
 
-for document in ./*.md ./*/*.md ./tests/*/*.md; do
+for document in ./*.md ./*/*.md ./include/docs/*.md ./tests/*/*.md; do
     case $document in ./build/*) continue ;; esac
     sed 's/`[^`]*`//g' "$document" | grep -o '](\([^)]*\))' | sed 's/^](//; s/)$//' >"$folder/links"
     while IFS= read -r link; do

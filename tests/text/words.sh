@@ -27,7 +27,8 @@ check_document() { # NAME FILE
 }
 
 for document in README.md CONTRIBUTING.md CHANGELOG.md SECURITY.md cli/README.md cli/recipes.md \
-    cli/keys.md cli/reports.md tests/bench/README.md python/README.md; do
+    cli/keys.md cli/reports.md tests/bench/README.md python/README.md include/docs/README.md \
+    include/docs/volumes_and_meshes.md include/docs/calls.md; do
     check_document "$document" "$root/$document"
 done
 

@@ -68,13 +68,13 @@ static void check_limits(const char *name, const cw_read_desc *desc, const cw_vo
     d.max_bytes = count_bytes(whole) - 1;
     if (d.max_bytes > 0)
         assert_fails(cw_volume_read(test_path(name), &d, &v, NULL, &err), CW_ERR_LIMIT,
-                     "(--memory)", err);
+                     "(desc->max_bytes)", err);
     d.max_bytes++;
     assert_ok(cw_volume_read(test_path(name), &d, &v, NULL, &err), err);
     cw_volume_free(&v);
     if (--d.max_voxels > 0)
         assert_fails(cw_volume_read(test_path(name), &d, &v, NULL, &err), CW_ERR_LIMIT,
-                     "(--max-voxels)", err);
+                     "(desc->max_voxels)", err);
 }
 
 /* Slices that are compared with those of a volume. */

@@ -316,8 +316,8 @@ static void limits_stop_before_the_mesh_is_made(void **state)
     assert_fails(cw_extract(&v, &d, &mesh, NULL, &err), CW_ERR_LIMIT, "triangles", err);
     assert_null(mesh.positions);
     d = (cw_extract_desc){.max_bytes = counts.bytes - 1};
-    assert_fails(cw_extract(&v, &d, &mesh, NULL, &err), CW_ERR_LIMIT, "are left (--memory)",
-                 err);
+    assert_fails(cw_extract(&v, &d, &mesh, NULL, &err), CW_ERR_LIMIT,
+                 "are left (desc->max_bytes)", err);
     d = (cw_extract_desc){.max_bytes = counts.bytes + 60 * counts.triangles, .extra_bytes = 60};
     mesh = test_extract(&v, &d, NULL);
     cw_mesh_free(&mesh);

@@ -268,7 +268,7 @@ static void test_too_large(void **state)
     (void)state;
     assert_fails(cw_extract(&v, &(cw_extract_desc){.isovalue = 1, .max_bytes = 10000000}, &m,
                             NULL, &err),
-                 CW_ERR_LIMIT, "--memory", err);
+                 CW_ERR_LIMIT, "max_bytes", err);
 }
 
 static void test_nothing_there(void **state)
@@ -292,9 +292,9 @@ static void test_refusals(void **state)
     assert_fails(cw_extract(&v, &(cw_extract_desc){.snap = 0.3}, &m, NULL, &err),
                  CW_ERR_UNSUPPORTED, "a sparse grid", err);
     assert_fails(cw_extract(&v, &(cw_extract_desc){.max_triangles = 100}, &m, NULL, &err),
-                 CW_ERR_LIMIT, "--max-triangles", err);
+                 CW_ERR_LIMIT, "max_triangles", err);
     assert_fails(cw_extract(&v, &(cw_extract_desc){.max_bytes = 100000}, &m, NULL, &err),
-                 CW_ERR_LIMIT, "--memory", err);
+                 CW_ERR_LIMIT, "max_bytes", err);
     assert_fails(cw_extract(&v, &(cw_extract_desc){.isovalue = NAN}, &m, NULL, &err),
                  CW_ERR_ARGUMENT, "not finite", err);
     assert_fails(cw_volume_crop(&v, &(cw_box){{0, 0, 0}, {8, 8, 8}}, &v, &err),

@@ -303,14 +303,14 @@ static void limits_and_failures_are_reported(void **state)
                      CW_ERR_UNSUPPORTED);
     d.extract = (cw_extract_desc){.isovalue = 4, .max_triangles = 1000};
     assert_int_equal(cw_extract_stream_slabs(&source, &d, 1, sink, NULL, &err), CW_ERR_LIMIT);
-    assert_non_null(strstr(err.message, "--max-triangles"));
+    assert_non_null(strstr(err.message, "max_triangles"));
     d.extract = (cw_extract_desc){.isovalue = 4, .max_bytes = 10000};
     assert_int_equal(cw_extract_stream_slabs(&source, &d, 1, sink, NULL, &err), CW_ERR_LIMIT);
     assert_non_null(strstr(err.message, "slices of 40 x 40 voxels need"));
     d.extract.max_bytes = cw_extract_stream_bytes(&source.shape, &d, true);
     assert_int_equal(cw_extract_stream_slabs(&source, &d, 1 << 19, sink, NULL, &err),
                      CW_ERR_LIMIT);
-    assert_non_null(strstr(err.message, "(--memory)"));
+    assert_non_null(strstr(err.message, "(desc->max_bytes)"));
     assert_int_equal(kept.count, 0);
     s.fail_at = 59;
     d.extract.max_bytes = 0;
@@ -320,7 +320,7 @@ static void limits_and_failures_are_reported(void **state)
     cw_mesh mesh = test_extract(&v, &d.extract, NULL);
     assert_int_equal(cw_extract_stream_normals(&source, NULL, 10000, &mesh, &err),
                      CW_ERR_LIMIT);
-    assert_non_null(strstr(err.message, "(--memory)"));
+    assert_non_null(strstr(err.message, "(max_bytes)"));
     s.fail_at = 59;
     assert_int_equal(cw_extract_stream_normals(&source, NULL, 0, &mesh, &err), CW_ERR_IO);
     assert_null(mesh.normals);

@@ -195,7 +195,8 @@ static void folders_without_slices_tell_what_they_hold(void **state)
                    "none of its 3 files is a slice; volumes by themselves: 2 (nrrd), name one "
                    "of them, or the steps of a series by a pattern in quotes, '");
     assert_int_equal(symlink("c.txt", test_path("d.dcm")), 0);
-    assert_refused(NULL, CW_ERR_FORMAT, "; 1 links were left out, --allow-external follows");
+    assert_refused(NULL, CW_ERR_FORMAT,
+                   "; 1 links were left out, desc->allow_external follows");
 }
 
 static void what_is_no_image_is_told(void **state)
@@ -246,14 +247,14 @@ static void links_are_left_out(void **state)
     assert_ok(cw_volume_read(test_path("89.dcm"), &desc, &v, NULL, &err), err);
     assert_int_equal(v.dim[2], 2);
     cw_volume_free(&v);
-    assert_string_equal(notes, "left out: 1 links; --allow-external follows them\n");
+    assert_string_equal(notes, "left out: 1 links; desc->allow_external follows them\n");
     assert_int_equal(unlink(test_path("89.dcm")), 0);
     assert_int_equal(unlink(test_path("88.dcm")), 0);
-    assert_refused(NULL, CW_ERR_IO, "no file, only 1 links; --allow-external follows them");
+    assert_refused(NULL, CW_ERR_IO, "no file, only 1 links; desc->allow_external follows them");
     test_file_write(test_path("readme.md"), "hello", 5);
     assert_refused(NULL, CW_ERR_FORMAT,
                    "none of its 1 files is a slice in a format that is read (DICOM, TIFF); 1 "
-                   "links were left out, --allow-external follows them");
+                   "links were left out, desc->allow_external follows them");
 }
 
 static void here_or_in_a_sandbox_is_the_same(void **state)

@@ -74,7 +74,7 @@ static void slices_shifted_unevenly_are_refused(void **state)
         snprintf(name, sizeof name, "%d.dcm", s);
         write_field_slice(name, s, &upright, p);
     }
-    assert_refused(NULL, CW_ERR_UNSAFE, "unevenly, by up to 1.5 mm; --tilt keep");
+    assert_refused(NULL, CW_ERR_UNSAFE, "unevenly, by up to 1.5 mm; desc->tilt = CW_TILT_KEEP");
     cw_volume v = read_all(&(cw_read_desc){.tilt = CW_TILT_KEEP});
     assert_int_equal(v.dim[2], 4);
     cw_volume_free(&v);

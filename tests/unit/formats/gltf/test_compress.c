@@ -286,7 +286,7 @@ static void draco_files_keep_the_mesh(void **state)
     assert_fails(cw_mesh_read(test_path("a.drc"), &few, &back, NULL, &err), CW_ERR_LIMIT,
                  "the most allowed", err);
     assert_fails(cw_mesh_read(test_path("a.drc"), &little, &back, NULL, &err), CW_ERR_LIMIT,
-                 "(--memory)", err);
+                 "(desc->max_bytes)", err);
     assert_fails(cw_mesh_write(test_path("b.drc"), &mesh,
                                &(cw_write_desc){.compression = CW_COMPRESS_MESHOPT}, &err),
                  CW_ERR_ARGUMENT, "one form only", err);

@@ -374,7 +374,7 @@ static void only_files_are_opened(void **state)
     assert_fails(read_back("a.nhdr", &v, &err), CW_ERR_IO, "a named pipe, not a file", err);
     assert_fails(read_back("none.nrrd", &v, &err), CW_ERR_IO, "No such file", err);
     assert_fails(read_back("empty.nrrd", &v, &err), CW_ERR_IO, "the file is empty", err);
-    assert_fails(read_back("odd.xyz", &v, &err), CW_ERR_FORMAT, "--raw", err);
+    assert_fails(read_back("odd.xyz", &v, &err), CW_ERR_FORMAT, "(desc->raw)", err);
     const cw_read_desc odd = {.reader = "jpeg"};
     assert_fails(cw_volume_read(test_path("a.nrrd"), &odd, &v, NULL, &err), CW_ERR_ARGUMENT,
                  "nrrd, nifti, metaimage", err);
@@ -502,9 +502,9 @@ static void limits_name_the_value_and_the_limit(void **state)
     const cw_read_desc voxels = {.max_voxels = 11}, bytes = {.max_bytes = 11};
     put_file("a.nrrd", U8_3D "\n", counting, 12);
     assert_fails(cw_volume_read(test_path("a.nrrd"), &voxels, &v, NULL, &err), CW_ERR_LIMIT,
-                 "'sizes' asks for 12 voxels; the limit is 11 (--max-voxels)", err);
+                 "'sizes' asks for 12 voxels; the limit is 11 (desc->max_voxels)", err);
     assert_fails(cw_volume_read(test_path("a.nrrd"), &bytes, &v, NULL, &err), CW_ERR_LIMIT,
-                 "12 bytes of voxels; the limit is 11 bytes (--memory)", err);
+                 "12 bytes of voxels; the limit is 11 bytes (desc->max_bytes)", err);
 }
 
 static void the_header_alone_is_checked_but_holds_no_voxels(void **state)

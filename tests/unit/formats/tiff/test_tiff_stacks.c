@@ -129,6 +129,8 @@ static void slices_are_one_volume_and_stacks_are_steps(void **state)
         cw_steps_free(files, count);
     }
     const char *const mixed[] = {one, slice};
+    assert_fails(cw_steps_list(series[0], 0, NULL, &files, &count, &err), CW_ERR_ARGUMENT,
+                 "path_count is 0", err);
     assert_fails(cw_steps_list(mixed, 2, NULL, &files, &count, &err), CW_ERR_ARGUMENT,
                  "cut_8.tif: is a slice, and of several files each must be a volume", err);
     assert_fails(cw_steps_list(series[1], 2, &raw, &files, &count, &err), CW_ERR_ARGUMENT,

@@ -522,9 +522,9 @@ static void limits_and_what_is_for_even_grids_are_told(void **state)
         const char *words;
     } cases[] = {
         {{.max_voxels = 3}, CW_ERR_LIMIT, "'NumberOfPoints' asks for 4 voxels; the limit is 3"},
-        {{.max_bytes = 100}, CW_ERR_LIMIT, "the limit is 100 bytes (--memory)"},
+        {{.max_bytes = 100}, CW_ERR_LIMIT, "the limit is 100 bytes (desc->max_bytes)"},
         {{.region = &box}, CW_ERR_UNSUPPORTED, "a crop on an irregular grid is not supported"},
-        {{.spacing_mm = {1, 1, 1}}, CW_ERR_ARGUMENT, "a spacing is given (--spacing)"},
+        {{.spacing_mm = {1, 1, 1}}, CW_ERR_ARGUMENT, "a spacing is given (desc->spacing_mm)"},
     };
     cw_volume v;
     cw_error err = {0};

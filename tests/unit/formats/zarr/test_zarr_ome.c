@@ -203,7 +203,7 @@ static void the_first_solid_array_of_a_group_is_taken(void **state)
     put_array("group/a10", 2, 3, (const size_t[3]){5, 6, 7});
     assert_ok(cw_volume_read(test_path("group"), &desc, &v, NULL, &err), err);
     assert_int_equal(v.dim[0], 4);
-    assert_string_equal(note, "the array 'a2/deep' is taken; --array takes 'a1', 'a10'");
+    assert_string_equal(note, "the array 'a2/deep' is taken; desc->array takes 'a1', 'a10'");
     cw_volume_free(&v);
     desc.array = "a10";
     assert_ok(cw_volume_read(test_path("group"), &desc, &v, NULL, &err), err);
@@ -258,7 +258,7 @@ static void labels_bring_names_and_colours(void **state)
     cw_volume_free(&v);
     desc = (cw_read_desc){.note = keep_note, .note_user = note};
     assert_ok(cw_volume_read(test_path("image"), &desc, &v, NULL, &err), err);
-    assert_string_equal(note, "label maps of it, for --array: 'labels/organs'");
+    assert_string_equal(note, "label maps of it, for desc->array: 'labels/organs'");
     cw_volume_free(&v);
 }
 
