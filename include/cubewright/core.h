@@ -101,7 +101,7 @@ typedef struct cw_allocator {
     void *(*allocate)(void *user, size_t bytes);
     /* Frees memory of allocate(); bytes as they were there. Never called with NULL. */
     void (*release)(void *user, void *memory, size_t bytes);
-    void *user;
+    void *user; /* passed to both */
 } cw_allocator;
 
 /* Sets the allocator of all arrays that calls in this process make from now on, those of meshes,

@@ -22,6 +22,7 @@ typedef struct cw_smooth_desc {
     cw_progress progress; /* default: none */
 } cw_smooth_desc;
 
+/* Maximum of cw_smooth_desc.iterations. */
 #define CW_SMOOTH_MAX_ITERATIONS ((size_t)1000)
 
 /* Facts on a finished smoothing. */
@@ -30,7 +31,7 @@ typedef struct cw_smooth_facts {
     double max_mm, mean_mm;   /* how far vertices moved, those that stayed included */
     double volume_before_mm3; /* signed sums over closed parts; of open parts the volume between
                                  the surface and a vertex of the part */
-    double volume_after_mm3;
+    double volume_after_mm3;  /* the same, of the smoothed mesh */
     size_t flipped;  /* triangles whose direction changed by 90 degrees or more, or that lost
                             their area */
     size_t border;   /* vertices at open edges; they stay by default */
