@@ -176,7 +176,7 @@ static void test_refusals(void **state)
     const dialect plain = {0};
     write_both(plain, plain);
     assert_fails(cw_volume_read(solution, &(cw_read_desc){.reader = "plot3d"}, &v, NULL, &err),
-                 CW_ERR_ARGUMENT, "--points", err);
+                 CW_ERR_ARGUMENT, "desc->points", err);
     assert_fails(
         cw_volume_read(solution, &(cw_read_desc){.points = "none.xyz"}, &v, NULL, &err),
         CW_ERR_IO, "none.xyz", err);
