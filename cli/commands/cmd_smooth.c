@@ -289,12 +289,10 @@ static cw_status deliver_result(run_state *s, cw_error *err)
         .unpromised = true,
         .found = s->found,
         .tell_dropped = true};
-    cw_part *parts = calloc(s->pieces.count, sizeof *parts);
-    if (!parts)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", s->pieces.count);
-    for (size_t n = 0; n < s->pieces.count; n++)
-        parts[n] = (cw_part){.mesh = &s->pieces.piece[n].out, .name = s->pieces.piece[n].name};
-    cw_status st = cli_deliver(&s->report, &how, parts, s->pieces.count, 0, s->start, err);
+    cw_part *parts = NULL;
+    cw_status st = cli_list_parts(&s->pieces, &parts, err);
+    if (st == CW_OK)
+        st = cli_deliver(&s->report, &how, parts, s->pieces.count, 0, s->start, err);
     free(parts);
     return st;
 }

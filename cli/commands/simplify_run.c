@@ -366,12 +366,10 @@ static cw_status deliver_parts(run_state *s, const cw_part *parts, size_t count,
 
 static cw_status deliver_result(run_state *s, cw_error *err)
 {
-    cw_part *parts = calloc(s->pieces.count, sizeof *parts);
-    if (!parts)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", s->pieces.count);
-    for (size_t n = 0; n < s->pieces.count; n++)
-        parts[n] = (cw_part){.mesh = &s->pieces.piece[n].out, .name = s->pieces.piece[n].name};
-    cw_status st = deliver_parts(s, parts, s->pieces.count, false, err);
+    cw_part *parts = NULL;
+    cw_status st = cli_list_parts(&s->pieces, &parts, err);
+    if (st == CW_OK)
+        st = deliver_parts(s, parts, s->pieces.count, false, err);
     free(parts);
     return st;
 }

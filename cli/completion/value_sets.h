@@ -8,7 +8,7 @@
 typedef struct cli_value_set {
     const char *name; /* of functions in scripts: lower case and '_' */
     const char *what; /* a word for it, such as "volume" */
-    bool has_files;   /* of the extensions; if there are none, of any name */
+    bool has_files;   /* offers files of the extensions; of any name without extensions */
     bool has_folders; /* folders are values; else they only lead to files */
     bool is_output;   /* a file that need not exist: extensions complete its name */
 } cli_value_set;

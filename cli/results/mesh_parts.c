@@ -127,6 +127,16 @@ cw_status cli_compare_pieces(const cli_pieces *p, int threads, cli_comparison *c
     return in_file(p, st, err);
 }
 
+cw_status cli_list_parts(const cli_pieces *p, cw_part **parts, cw_error *err)
+{
+    *parts = calloc(p->count, sizeof **parts);
+    if (!*parts)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", p->count);
+    for (size_t n = 0; n < p->count; n++)
+        (*parts)[n] = (cw_part){.mesh = &p->piece[n].out, .name = p->piece[n].name};
+    return CW_OK;
+}
+
 void cli_free_pieces(cli_pieces *p)
 {
     for (size_t n = 0; n < p->count; n++)

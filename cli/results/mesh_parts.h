@@ -41,6 +41,9 @@ CW_NODISCARD cw_status cli_hold_pieces(const cli_pieces *p, int threads, cw_erro
 CW_NODISCARD cw_status cli_compare_pieces(const cli_pieces *p, int threads, cli_comparison *c,
                                           cw_error *err);
 
+/* Lists what came out as parts to write; free the list with free(). */
+CW_NODISCARD cw_status cli_list_parts(const cli_pieces *p, cw_part **parts, cw_error *err);
+
 /* Harmless on zeroed ones. */
 void cli_free_pieces(cli_pieces *p);
 

@@ -37,7 +37,7 @@ cw_status cwi_mesh_alloc(cw_mesh *mesh, size_t vertices, size_t triangles, bool 
     return cwi_mesh_renew(mesh, vertices, triangles, normals, err);
 }
 
-/* Returns a copy of an array, or NULL where there is none. Sets *failed when memory is out. */
+/* Copies an array; the copy of NULL is NULL. Sets *failed when memory is out. */
 static void *copy_array(const void *array, size_t count, size_t size, bool *failed)
 {
     void *copy = array ? cwi_alloc_large(count, size) : NULL;

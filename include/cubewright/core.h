@@ -97,7 +97,7 @@ CW_API size_t cw_memory_used(void);
 /* An allocator of the caller's, in place of malloc() and free(). Both functions are called from
  * any thread, also in the sandboxed processes that readers fork. */
 typedef struct cw_allocator {
-    /* Allocates `bytes`, more than 0, at a multiple of 64. Returns NULL when there are none. */
+    /* Allocates `bytes`, more than 0, at a multiple of 64. Returns NULL when memory is out. */
     void *(*allocate)(void *user, size_t bytes);
     /* Frees memory of allocate(); bytes as they were there. Never called with NULL. */
     void (*release)(void *user, void *memory, size_t bytes);

@@ -77,7 +77,7 @@ static double largest_move(const cw_mesh *m, const float *first)
     return largest;
 }
 
-static cw_smooth_facts smooth(cw_mesh *m, const cw_smooth_desc *desc)
+static cw_smooth_facts smooth_mesh(cw_mesh *m, const cw_smooth_desc *desc)
 {
     cw_smooth_facts facts;
     cw_error err = {0};
@@ -96,7 +96,7 @@ static void noise_of_a_sphere_falls(void **state)
     for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
         cw_mesh m = noisy_sphere(64, 0.2, 1);
         const double before = rms_error(&m, 1);
-        const cw_smooth_facts facts = smooth(&m, &rows[n].desc);
+        const cw_smooth_facts facts = smooth_mesh(&m, &rows[n].desc);
         assert_near(before, 0.2, 0.01);
         assert_true(rms_error(&m, 1) < before / rows[n].times);
         assert_true(facts.flipped < 4); /* of thin triangles that the noise had turned over */
@@ -116,7 +116,7 @@ static void volumes_are_kept(void **state)
         cw_mesh m = noisy_sphere(n, 0, 1);
         const double before = test_measure(&m).volume_mm3;
         const cw_smooth_facts facts =
-            smooth(&m, &(cw_smooth_desc){.iterations = 50, .max_move_mm = 20});
+            smooth_mesh(&m, &(cw_smooth_desc){.iterations = 50, .max_move_mm = 20});
         assert_within(test_measure(&m).volume_mm3, before, 2e-7);
         assert_within(facts.volume_before_mm3, before, 1e-9);
         assert_within(facts.volume_after_mm3, before, 2e-7);
@@ -144,7 +144,7 @@ static void components_keep_their_volumes(void **state)
             n < 3 * large.triangle_count
                 ? large.triangles[n]
                 : small.triangles[n - 3 * large.triangle_count] + (uint32_t)split;
-    smooth(&both, &(cw_smooth_desc){.max_move_mm = 2});
+    smooth_mesh(&both, &(cw_smooth_desc){.max_move_mm = 2});
     const cw_mesh parts[2] = {{.vertex_count = split,
                                .triangle_count = large.triangle_count,
                                .positions = both.positions,
@@ -171,7 +171,7 @@ static void no_vertex_moves_farther_than_allowed(void **state)
             m.positions[3 * v + 1] += 300;
         float *first = copy_positions(&m);
         const cw_smooth_facts facts =
-            smooth(&m, &(cw_smooth_desc){.iterations = 30, .max_move_mm = limits[n]});
+            smooth_mesh(&m, &(cw_smooth_desc){.iterations = 30, .max_move_mm = limits[n]});
         assert_true(largest_move(&m, first) <= limits[n]);
         assert_near(facts.max_mm, largest_move(&m, first), 1e-12);
         if (limits[n] >= 0.001 && limits[n] < 1)
@@ -193,7 +193,7 @@ static void default_limit_is_half_an_edge(void **state)
         sum += hypot(hypot((double)p[0] - (double)q[0], (double)p[1] - (double)q[1]),
                      (double)p[2] - (double)q[2]);
     }
-    const cw_smooth_facts facts = smooth(&m, NULL);
+    const cw_smooth_facts facts = smooth_mesh(&m, NULL);
     assert_within(facts.limit_mm, sum / (6 * (double)m.triangle_count), 1e-9);
     assert_true(facts.max_mm <= facts.limit_mm);
     cw_mesh_free(&m);
@@ -213,7 +213,7 @@ static void borders_stay_unless_they_may_move(void **state)
         for (size_t v = 0; v < m.vertex_count; v++)
             m.positions[3 * v] += first[3 * v] += (float)(0.5 * cwi_gaussian(1, v));
         memcpy(m.positions, first, 3 * m.vertex_count * sizeof *first);
-        const cw_smooth_facts facts = smooth(
+        const cw_smooth_facts facts = smooth_mesh(
             &m, &(cw_smooth_desc){.move_border = moves, .max_move_mm = 3, .iterations = 5});
         for (size_t c = 0; c < 3 * m.triangle_count; c++) { /* open edges, the slow way */
             const size_t at = c - c % 3;
@@ -246,11 +246,11 @@ static void scales_give_the_same_shape(void **state)
     (void)state;
     static const double scales[] = {1e-4, 1e4};
     cw_mesh one = noisy_sphere(24, 0.5, 1);
-    const cw_smooth_facts facts = smooth(&one, NULL);
+    const cw_smooth_facts facts = smooth_mesh(&one, NULL);
     for (int n = 0; n < 2; n++) {
         const double scale = scales[n];
         cw_mesh m = noisy_sphere(24, 0.5, scale);
-        const cw_smooth_facts scaled = smooth(&m, NULL);
+        const cw_smooth_facts scaled = smooth_mesh(&m, NULL);
         for (size_t c = 0; c < 3 * m.vertex_count; c++)
             assert_near((double)m.positions[c] / scale, (double)one.positions[c], 2e-5);
         assert_within(scaled.mean_mm / scale, facts.mean_mm, 1e-5);
@@ -270,8 +270,8 @@ static void threads_do_not_matter(void **state)
     cw_mesh many = one;
     many.positions = copy_positions(&one);
     many.normals = cwi_alloc_array(one.vertex_count, 3 * sizeof *many.normals);
-    const cw_smooth_facts a = smooth(&one, &(cw_smooth_desc){.threads = 1}),
-                          b = smooth(&many, &(cw_smooth_desc){.threads = 5});
+    const cw_smooth_facts a = smooth_mesh(&one, &(cw_smooth_desc){.threads = 1}),
+                          b = smooth_mesh(&many, &(cw_smooth_desc){.threads = 5});
     assert_true(one.vertex_count > 1 << 14);
     test_assert_same_mesh(&one, &many);
     assert_memory_equal(&a, &b, offsetof(cw_smooth_facts, undecided));
@@ -294,9 +294,9 @@ static void no_triangles_meet_that_did_not_before(void **state)
             cw_crossings before, after;
             cw_error err = {0};
             assert_ok(cw_self_intersections(&m, NULL, &before, &err), err);
-            const cw_smooth_facts facts =
-                smooth(&m, &(cw_smooth_desc){
-                               .allow_crossings = allow, .iterations = 60, .max_move_mm = 9});
+            const cw_smooth_facts facts = smooth_mesh(
+                &m, &(cw_smooth_desc){
+                        .allow_crossings = allow, .iterations = 60, .max_move_mm = 9});
             assert_ok(cw_self_intersections(&m, NULL, &after, &err), err);
             size_t more = 0, old = 0;
             for (size_t i = 0; i < after.count; i++) {
@@ -325,7 +325,7 @@ static void flipped_triangles_are_counted(void **state)
     cw_mesh m = noisy_sphere(16, 3, 1);
     float *first = copy_positions(&m);
     const cw_smooth_facts facts =
-        smooth(&m, &(cw_smooth_desc){.max_move_mm = 20, .allow_crossings = true});
+        smooth_mesh(&m, &(cw_smooth_desc){.max_move_mm = 20, .allow_crossings = true});
     size_t flipped = 0;
     for (size_t t = 0; t < m.triangle_count; t++) {
         double normals[2][3];
@@ -362,7 +362,7 @@ static void hostile_surfaces_stay_sound(void **state)
         const cw_extract_desc desc = {.isovalue = h->isovalue, .leave_open = n % 2};
         cw_mesh mesh = test_extract(&volume, &desc, NULL), out;
         assert_ok(cwi_mesh_copy(&mesh, &out, &err), err);
-        const cw_smooth_facts facts = smooth(&out, NULL);
+        const cw_smooth_facts facts = smooth_mesh(&out, NULL);
         const char *fault = test_reduced_fault(&mesh, &out);
         if (fault)
             fail_msg("hostile case %zu: %s", n, fault);
@@ -389,7 +389,7 @@ static void attributes_stay_and_normals_follow(void **state)
         m.labels[v] = (uint32_t)v + 7;
         memset(m.colors + 4 * v, (int)(v % 251), 4);
     }
-    smooth(&m, NULL);
+    smooth_mesh(&m, NULL);
     assert_ptr_equal(m.positions, arrays.positions);
     assert_ptr_equal(m.normals, arrays.normals);
     float *normals = cwi_alloc_array(m.vertex_count, 3 * sizeof *normals);
@@ -409,7 +409,7 @@ static void odd_meshes_are_smoothed(void **state)
     (void)state;
     cw_error err = {0};
     cw_mesh none = {0};
-    cw_smooth_facts facts = smooth(&none, NULL);
+    cw_smooth_facts facts = smooth_mesh(&none, NULL);
     assert_true(facts.limit_mm == 0 && facts.max_mm == 0);
 
     /* an edge of three triangles, a collapsed one, one without area, and a lone vertex */
@@ -419,7 +419,7 @@ static void odd_meshes_are_smoothed(void **state)
     cw_mesh odd = {
         .vertex_count = 7, .triangle_count = 6, .positions = positions, .triangles = triangles};
     memcpy(first, positions, sizeof first);
-    smooth(&odd, &(cw_smooth_desc){.move_border = true, .max_move_mm = 0.5});
+    smooth_mesh(&odd, &(cw_smooth_desc){.move_border = true, .max_move_mm = 0.5});
     assert_memory_equal(positions + 15, first + 15, 3 * sizeof(float));
     assert_ok(cw_mesh_check(&odd, &err), err);
 
@@ -428,7 +428,7 @@ static void odd_meshes_are_smoothed(void **state)
     test_make_cube(&cube);
     for (size_t c = 0; c < 24; c++)
         cube.positions[c] = cube.positions[c] > 0.5f ? FLT_MAX : -FLT_MAX;
-    smooth(&cube, &(cw_smooth_desc){.allow_crossings = true});
+    smooth_mesh(&cube, &(cw_smooth_desc){.allow_crossings = true});
     assert_ok(cw_mesh_check(&cube, &err), err);
     cw_mesh_free(&cube);
 }
