@@ -8,8 +8,8 @@
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
 #include "core/mesh/mesh.h"
+#include "simplify/blocks/distance_proof.h"
 #include "simplify/blocks/partition.h"
-#include "simplify/quality/mesh_within.h"
 
 #include <math.h>
 #include <string.h>
@@ -135,6 +135,21 @@ static cw_status find_normals(cwi_passes *p, cw_error *err)
                          m->vertex_count);
 }
 
+cw_status cwi_passes_limits(const cwi_passes *p, const cw_mesh *m, double **limits,
+                            cw_error *err)
+{
+    *limits = NULL;
+    if (!p->views.count)
+        return CW_OK;
+    *limits = cwi_alloc_array(m->triangle_count, sizeof **limits);
+    if (!*limits)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu triangles",
+                        m->triangle_count);
+    for (size_t t = 0; t < m->triangle_count; t++)
+        (*limits)[t] = fmin(p->error, limit_of(p, m, t, 0));
+    return CW_OK;
+}
+
 /* At a point, what is allowed on all triangles around it. What is simplified may come into view
  * on its way: so views are wider here by as much as that is. */
 static cw_status allow_distances(cwi_passes *p, cw_error *err)
@@ -158,18 +173,6 @@ static cw_status allow_distances(cwi_passes *p, cw_error *err)
     return CW_OK;
 }
 
-static void sort_around(cwi_passes *p)
-{
-    const cw_mesh *m = &p->input;
-    memset(p->first, 0, (m->vertex_count + 2) * sizeof *p->first);
-    for (size_t c = 0; c < 3 * m->triangle_count; c++)
-        p->first[m->triangles[c] + 2]++;
-    for (size_t v = 0; v < m->vertex_count; v++)
-        p->first[v + 2] += p->first[v + 1];
-    for (size_t c = 0; c < 3 * m->triangle_count; c++)
-        p->around[p->first[m->triangles[c] + 1]++] = (uint32_t)(c / 3);
-}
-
 cw_status cwi_passes_remember(cwi_passes *p, const cw_mesh *input, cw_error *err)
 {
     const size_t vertices = input->vertex_count;
@@ -183,13 +186,12 @@ cw_status cwi_passes_remember(cwi_passes *p, const cw_mesh *input, cw_error *err
     if (!p->first || !p->around || !p->next || !p->care || !p->lists)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu triangles",
                         input->triangle_count);
-    sort_around(p);
+    cwi_fans_sort(input->triangles, input->triangle_count, vertices, p->first, p->around);
     for (size_t v = 0; v < vertices; v++)
         p->next[v] = (uint32_t)v; /* in no list */
-    p->original = (cwi_original){.points = input->positions,
-                                 .corners = input->triangles,
-                                 .first = p->first,
-                                 .around = p->around,
+    p->original = (cwi_original){.vertices = vertices,
+                                 .fans = {input->positions, input->triangles, p->first,
+                                          p->around},
                                  .next = p->next,
                                  .care = p->care};
     cw_status st = allow_distances(p, err);
@@ -225,27 +227,7 @@ static const cwi_original *original_of(const cwi_passes *p)
 
 /* --- keeping the error -------------------------------------------------------------------- */
 
-/* A part of the input and what became of it. */
-typedef struct part {
-    const cwi_mesh_block *from;
-    cw_mesh input;         /* a view of it */
-    const uint32_t *names; /* of its vertices in all of the input; NULL: their numbers */
-    cwi_mesh_block *left;
-    float cost; /* how far it went */
-    size_t target;
-    int threads;
-} part;
-
-/* Own triangles of a block as a mesh. */
-static cw_mesh view_block(const cwi_mesh_block *b)
-{
-    return (cw_mesh){.vertex_count = b->vertices,
-                     .triangle_count = b->own,
-                     .positions = b->points,
-                     .triangles = b->corners};
-}
-
-static cw_status run_once(const cwi_passes *p, const part *x, float cost, cw_error *err)
+static cw_status run_once(const cwi_passes *p, const cwi_part *x, float cost, cw_error *err)
 {
     cwi_decimater *d;
     cw_status st = p->openmesh->open(x->from, &p->block_desc, original_of(p), &d, err);
@@ -272,7 +254,7 @@ enum { MARK = 0x80 };
 
 /* Marks the vertices of the part of the input that is too far from the result. Those held for
  * other parts are these parts' business. */
-static size_t mark_input(const cwi_passes *p, const part *x, const uint8_t *beyond)
+static size_t mark_input(const cwi_passes *p, const cwi_part *x, const uint8_t *beyond)
 {
     const uint8_t *held = x->names ? x->from->held : NULL;
     size_t broken = 0;
@@ -288,7 +270,7 @@ static size_t mark_input(const cwi_passes *p, const part *x, const uint8_t *beyo
 
 /* Marks the points listed around the triangles of the result that are too far from
  * the input. */
-static size_t mark_result(const cwi_passes *p, const part *x, const uint8_t *beyond,
+static size_t mark_result(const cwi_passes *p, const cwi_part *x, const uint8_t *beyond,
                           uint8_t *near)
 {
     const cwi_mesh_block *left = x->left;
@@ -308,7 +290,7 @@ static size_t mark_result(const cwi_passes *p, const part *x, const uint8_t *bey
 }
 
 /* More care for the marked points of the part; false when all had the most already. */
-static bool take_care(const cwi_passes *p, const part *x)
+static bool take_care(const cwi_passes *p, const cwi_part *x)
 {
     bool more = false;
     for (size_t t = 0; t < x->left->own; t++)
@@ -325,76 +307,22 @@ static bool take_care(const cwi_passes *p, const part *x)
     return more;
 }
 
-/* The result, and with it what is in the way: it is part of the surface, too. */
-static cw_status add_obstacles(const part *x, cw_mesh *mesh, cw_error *err)
-{
-    const cwi_mesh_block *from = x->from, *left = x->left;
-    const size_t more = from->triangles - from->own;
-    cw_status st =
-        cwi_mesh_alloc(mesh, left->vertices + 3 * more, left->own + more, false, err);
-    if (st != CW_OK)
-        return st;
-    memcpy(mesh->positions, left->points, 3 * left->vertices * sizeof *left->points);
-    memcpy(mesh->triangles, left->corners, 3 * left->own * sizeof *left->corners);
-    for (size_t c = 0; c < 3 * more; c++) {
-        const size_t v = left->vertices + c;
-        memcpy(mesh->positions + 3 * v,
-               from->points + 3 * (size_t)from->corners[3 * from->own + c], 3 * sizeof(float));
-        mesh->triangles[3 * left->own + c] = (uint32_t)v;
-    }
-    return CW_OK;
-}
-
-/* Finds the distances that triangles of a mesh must keep; NULL where one holds for all. */
-static cw_status find_limits(const cwi_passes *p, const cw_mesh *m, double **limits,
-                             cw_error *err)
-{
-    *limits = NULL;
-    if (!p->views.count)
-        return CW_OK;
-    *limits = cwi_alloc_array(m->triangle_count, sizeof **limits);
-    if (!*limits)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu triangles",
-                        m->triangle_count);
-    for (size_t t = 0; t < m->triangle_count; t++)
-        (*limits)[t] = fmin(p->error, limit_of(p, m, t, 0));
-    return CW_OK;
-}
-
-static cw_status find_beyond(const cwi_passes *p, const cw_mesh *mesh, const cw_mesh *reference,
-                             int threads, uint8_t *beyond, cw_error *err)
-{
-    double *limits;
-    cw_status st = find_limits(p, mesh, &limits, err);
-    if (st == CW_OK)
-        st = cwi_mesh_within(mesh, reference, p->error, limits, threads, &p->poll, beyond, err);
-    cwi_free(limits);
-    return st;
-}
-
 /* Whether the result keeps the distance; where it does not, more care is taken the
  * next time. */
-static cw_status judge_part(const cwi_passes *p, const part *x, bool *kept, bool *hope,
+static cw_status judge_part(const cwi_passes *p, const cwi_part *x, bool *kept, bool *hope,
                             cw_error *err)
 {
-    const cw_mesh result = view_block(x->left);
-    cw_mesh all = {0};
     uint8_t *input_beyond = cwi_alloc_array(x->input.triangle_count, 1);
-    uint8_t *beyond = cwi_alloc_array(result.triangle_count, 1);
-    uint8_t *near = cwi_alloc_zeroed(result.vertex_count, 1);
+    uint8_t *beyond = cwi_alloc_array(x->left->own, 1);
+    uint8_t *near = cwi_alloc_zeroed(x->left->vertices, 1);
     cw_status st = input_beyond && beyond && near
-                       ? add_obstacles(x, &all, err)
+                       ? cwi_part_prove(p, x, input_beyond, beyond, err)
                        : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error");
-    if (st == CW_OK)
-        st = find_beyond(p, &x->input, &all, x->threads, input_beyond, err);
-    if (st == CW_OK)
-        st = find_beyond(p, &result, &x->input, x->threads, beyond, err);
     if (st == CW_OK) {
         const size_t broken = mark_input(p, x, input_beyond) + mark_result(p, x, beyond, near);
         *kept = broken == 0;
         *hope = *kept || take_care(p, x);
     }
-    cw_mesh_free(&all);
     cwi_free(input_beyond);
     cwi_free(beyond);
     cwi_free(near);
@@ -403,7 +331,7 @@ static cw_status judge_part(const cwi_passes *p, const part *x, bool *kept, bool
 
 /* Collapses look at what is near them only. Where that was not enough the part is done again
  * with more care; when that does not help, it stays as it was. */
-static cw_status keep_part(const cwi_passes *p, const part *x, size_t *repeats, cw_error *err)
+static cw_status keep_part(const cwi_passes *p, const cwi_part *x, size_t *repeats, cw_error *err)
 {
     cw_status st = CW_OK;
     for (bool kept = x->left->own == 0, hope = true; st == CW_OK && !kept;) {
@@ -463,8 +391,8 @@ static void keep_block(void *context, size_t n)
     crew *c = context;
     const cwi_passes *p = c->passes;
     cw_error *err = c->errors + n;
-    const part x = {.from = c->blocks + n,
-                    .input = view_block(c->blocks + n),
+    const cwi_part x = {.from = c->blocks + n,
+                    .input = cwi_block_view(c->blocks + n),
                     .names = c->blocks[n].names,
                     .left = c->left + n,
                     .cost = c->cost,
@@ -637,7 +565,7 @@ cw_status cwi_passes_whole(cwi_passes *p, const cwi_mesh_block *whole, const siz
 {
     begin_pass(p);
     cw_status st = run_levels(p, whole, targets, levels, left, cut, err);
-    const part x = {.from = whole,
+    const cwi_part x = {.from = whole,
                     .input = p->input,
                     .left = left,
                     .cost = INFINITY,

@@ -69,6 +69,14 @@ void cwi_block_number(cwi_mesh_block *block)
         block->names[v] = (uint32_t)v;
 }
 
+cw_mesh cwi_block_view(const cwi_mesh_block *b)
+{
+    return (cw_mesh){.vertex_count = b->vertices,
+                     .triangle_count = b->own,
+                     .positions = b->points,
+                     .triangles = b->corners};
+}
+
 static float corner_coordinate(const cwi_mesh_block *b, size_t corner, int axis)
 {
     return b->points[3 * (size_t)b->corners[corner] + (size_t)axis];

@@ -4,10 +4,15 @@
 
 #include "simplify/collapse/openmesh_wrap.h"
 
+#include <cubewright/mesh.h>
+
 void cwi_block_free(cwi_mesh_block *block);
 
 /* All of the block's triangles are its own, and they may be anywhere. */
 void cwi_block_span(cwi_mesh_block *block);
+
+/* Own triangles of a block as a mesh. Borrows all. */
+cw_mesh cwi_block_view(const cwi_mesh_block *block);
 
 /* Vertices get their numbers for names. */
 void cwi_block_number(cwi_mesh_block *block);

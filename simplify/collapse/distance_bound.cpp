@@ -2,7 +2,7 @@
 // beyond it.
 #include "simplify/collapse/distance_bound.hpp"
 
-#include "simplify/collapse/surface_walk.hpp"
+#include "core/geometry/triangle_cover.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,6 +37,21 @@ float triangle_square(const Vec &p, const Vec &a, const Vec &b, const Vec &c)
                     segment_square(p - b, c - b));
 }
 
+// A walk on the original, and the triangles that it led to.
+struct Passage {
+    cwi_walk walk;
+    std::vector<uint32_t> passed; // some more than once
+};
+
+double find_passed(void *context, const double p[3], const float *facet[3])
+{
+    Passage *passage = static_cast<Passage *>(context);
+    const double square = cwi_walk_to(&passage->walk, p);
+    cwi_walk_facet(&passage->walk, passage->walk.at, facet);
+    passage->passed.push_back(passage->walk.at);
+    return square;
+}
+
 } // namespace
 
 // Makes room for at most `most` numbers, of which half stays empty.
@@ -62,7 +77,7 @@ uint32_t Numbers::of(uint32_t vertex, bool *fresh)
 }
 
 Bound::Bound(const cwi_mesh_block &block, const cwi_original *original_, double error_)
-    : original(original_), error(float(error_))
+    : original(original_), error(float(error_)), overlay(original_)
 {
     if (!original || !block.lists)
         return;
@@ -128,8 +143,8 @@ bool Bound::is_near(const Vec &place, float square)
         least = std::min(least, s);
     }
     least = INFINITY;
-    for (uint32_t i = original->first[start]; i < original->first[start + 1]; i++) {
-        const uint32_t t = original->around[i], *c = corners(t);
+    for (uint32_t i = original->fans.first[start]; i < original->fans.first[start + 1]; i++) {
+        const uint32_t t = original->fans.around[i], *c = corners(t);
         const float s = triangle_square(place, point(c[0]), point(c[1]), point(c[2]));
         nearest = s < least ? t : nearest;
         least = std::min(least, s);
@@ -153,15 +168,27 @@ bool Bound::are_listed(const Star &star, float distance)
     return true;
 }
 
-bool Bound::is_star_near(const Star &star, float distance)
+// Whether the spokes are whose bits are set.
+bool Bound::is_star_near(const Star &star, uint32_t spokes, float distance)
 {
-    Walk walk(original, nearest, distance);
-    for (const Spoke &s : star.spokes) {
-        const float *const corner[3] = {star.place.data(), s.pa.data(), s.pb.data()};
-        if (!walk.is_near(corner))
+    const double square = double(distance) * double(distance);
+    Passage passage = {{&original->fans, square, nearest}, {}};
+    cwi_cover cover = {find_passed, &passage, square, {}};
+    for (size_t n = 0; n < star.spokes.size(); n++) {
+        const Spoke &s = star.spokes[n];
+        if (n < 32 && !(spokes >> n & 1))
+            continue;
+        double corner[3][3];
+        for (unsigned k = 0; k < 3; k++) {
+            corner[0][k] = double(star.place[k]);
+            corner[1][k] = double(s.pa[k]);
+            corner[2][k] = double(s.pb[k]);
+        }
+        passage.walk.at = nearest;
+        if (!cwi_is_covered(&cover, corner))
             return false;
     }
-    under.swap(walk.passed);
+    under.swap(passage.passed);
     std::sort(under.begin(), under.end());
     under.erase(std::unique(under.begin(), under.end()), under.end());
     return true;
@@ -194,7 +221,7 @@ void Bound::see_points(const Vec &place)
     size_t most = 3 * under.size();
     bool fresh;
     for (uint32_t p : points)
-        most += 1 + 2 * (original->first[p + 1] - original->first[p]);
+        most += 1 + 2 * (original->fans.first[p + 1] - original->fans.first[p]);
     numbers.clear(most);
     seen.clear();
     for (uint32_t p : points) {
@@ -223,13 +250,36 @@ bool Bound::is_original_near(const Surface &surface, const Star &star)
     add_around(surface, star);
     see_points(star.place);
     for (uint32_t n = 0; n < points.size(); n++)
-        for (uint32_t i = original->first[points[n]]; i < original->first[points[n] + 1]; i++)
-            if (!is_triangle_near(original->around[i], n, star.place))
+        for (uint32_t i = original->fans.first[points[n]]; i < original->fans.first[points[n] + 1]; i++)
+            if (!is_triangle_near(original->fans.around[i], n, star.place))
                 return false;
     for (uint32_t t : under)
         if (!is_triangle_near(t, uint32_t(points.size()), star.place))
             return false;
     return true;
+}
+
+// Whether the original's triangles in doubt are, and those under spokes in doubt.
+bool Bound::are_doubts_near(const Surface &surface, const Star &star)
+{
+    add_around(surface, star);
+    numbers.clear(3 * (overlay.triangles_in_doubt.size() + under.size()));
+    seen.clear();
+    for (const std::vector<uint32_t> *triangles : {&overlay.triangles_in_doubt, &under})
+        for (uint32_t t : *triangles)
+            if (!is_triangle_near(t, 0, star.place))
+                return false;
+    return true;
+}
+
+// The exact bounds decide where crossing edges do not.
+bool Bound::is_covered(const Surface &surface, const Star &star, float distance)
+{
+    if (!overlay.lay(star))
+        return is_star_near(star, UINT32_MAX, distance) && is_original_near(surface, star);
+    return overlay.compare(points, distance) ||
+           (is_star_near(star, overlay.spokes_in_doubt, distance) &&
+            are_doubts_near(surface, star));
 }
 
 // Runs the checks that refuse most for the least work first.
@@ -240,8 +290,7 @@ bool Bound::is_kept(const Surface &surface, const Star &star)
     collect(star);
     const float distance = allowed();
     return distance > 0 && is_straight() && is_near(star.place, distance * distance) &&
-           are_listed(star, distance) && is_star_near(star, distance) &&
-           is_original_near(surface, star);
+           are_listed(star, distance) && is_covered(surface, star, distance);
 }
 
 void Bound::change(const Star &star)

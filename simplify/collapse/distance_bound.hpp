@@ -2,7 +2,7 @@
 #ifndef SIMPLIFY_COLLAPSE_DISTANCE_BOUND_HPP
 #define SIMPLIFY_COLLAPSE_DISTANCE_BOUND_HPP
 
-#include "simplify/collapse/collapse_checks.hpp"
+#include "simplify/collapse/star_overlay.hpp"
 #include "simplify/collapse/triangle_packet.hpp"
 
 namespace cw
@@ -50,12 +50,12 @@ public:
 private:
     Vec point(uint32_t p) const
     {
-        return Vec(original->points + 3 * size_t(p));
+        return Vec(original->fans.points + 3 * size_t(p));
     }
 
     const uint32_t *corners(uint32_t triangle) const
     {
-        return original->corners + 3 * size_t(triangle);
+        return original->fans.corners + 3 * size_t(triangle);
     }
 
     void collect(uint32_t face);
@@ -64,17 +64,20 @@ private:
     bool is_straight() const;
     bool is_near(const Vec &place, float square);
     bool are_listed(const Star &star, float distance);
-    bool is_star_near(const Star &star, float distance);
+    bool is_star_near(const Star &star, uint32_t spokes, float distance);
     void add_around(const Surface &surface, const Star &star);
     void see_points(const Vec &place);
     bool is_triangle_near(uint32_t triangle, uint32_t first, const Vec &place);
     bool is_original_near(const Surface &surface, const Star &star);
+    bool are_doubts_near(const Surface &surface, const Star &star);
+    bool is_covered(const Surface &surface, const Star &star, float distance);
 
     const cwi_original *original;
     float error;
     bool asked = false;                     // also of a block without triangles
     std::vector<uint32_t> heads;            // first point of a face's list
     std::vector<uint32_t> points, spoke_of; // of the star; the nearest spoke
+    Overlay overlay;
     std::vector<uint32_t> under;            // triangles of the original under the star
     uint32_t nearest;                       // triangle of the original to the moved vertex
     Facets facets;                          // the star's, then those around, from its vertex

@@ -3,6 +3,8 @@
 #ifndef SIMPLIFY_COLLAPSE_OPENMESH_WRAP_H
 #define SIMPLIFY_COLLAPSE_OPENMESH_WRAP_H
 
+#include "core/geometry/surface_walk.h"
+
 #include <cubewright/core.h>
 
 #ifdef __cplusplus
@@ -66,15 +68,13 @@ enum { CWI_MAX_CARE = 4 };
 /* Surface before it was simplified, which the result must stay near: each of its points belongs
  * to the list of a triangle that it is near to. */
 typedef struct cwi_original {
-    const float *points;     /* vertices x 3 */
-    const uint32_t *corners; /* of its triangles, x 3 */
-    const uint32_t *first;   /* vertices + 1: the triangles around a vertex are */
-    const uint32_t *around;  /* around[first[v]] .. around[first[v + 1] - 1] */
-    uint32_t *next;          /* vertices: the next point in a list; UINT32_MAX ends it */
-    const uint8_t *care;     /* vertices: how often the distance is halved around them */
-    const float *allowed;    /* vertices: the distance there; NULL: the block's everywhere */
-    const float *normals;    /* vertices x 3: 0 where the next does not matter; or NULL */
-    float straight;          /* cosine: how far they are from the mean of those joined */
+    size_t vertices;
+    cwi_fans fans;
+    uint32_t *next;       /* vertices: the next point in a list; UINT32_MAX ends it */
+    const uint8_t *care;  /* vertices: how often the distance is halved around them */
+    const float *allowed; /* vertices: the distance there; NULL: the block's everywhere */
+    const float *normals; /* vertices x 3: 0 where the next does not matter; or NULL */
+    float straight;       /* cosine: how far they are from the mean of those joined */
 } cwi_original;
 
 typedef struct cwi_mesh_block {

@@ -1,0 +1,116 @@
+/* Steps from triangle to triangle of a surface, across sides and corners, to where a point is
+ * near. */
+#ifndef CORE_GEOMETRY_SURFACE_WALK_H
+#define CORE_GEOMETRY_SURFACE_WALK_H
+
+#include "core/geometry/point_triangle.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Triangles, and for each vertex the triangles around it. */
+typedef struct cwi_fans {
+    const float *points;     /* vertices x 3 */
+    const uint32_t *corners; /* triangles x 3 */
+    const uint32_t *first;   /* vertices + 1: the triangles around vertex v are */
+    const uint32_t *around;  /* around[first[v]] .. around[first[v + 1] - 1] */
+} cwi_fans;
+
+/* Sorts the triangles around vertices.
+ * first   vertices + 2, set: one more than is needed then
+ * around  3 x triangles, set */
+void cwi_fans_sort(const uint32_t *corners, size_t triangles, size_t vertices, uint32_t *first,
+                   uint32_t *around);
+
+typedef struct cwi_walk {
+    const cwi_fans *fans;
+    double enough; /* the square of a distance: corners are not crossed for less */
+    uint32_t at;   /* the triangle where the walk stands */
+} cwi_walk;
+
+/* Sets the corners of the triangle where a walk stands. */
+static inline void cwi_walk_facet(const cwi_walk *w, uint32_t triangle, const float *facet[3])
+{
+    const uint32_t *c = w->fans->corners + 3 * (size_t)triangle;
+    for (int k = 0; k < 3; k++)
+        facet[k] = w->fans->points + 3 * (size_t)c[k];
+}
+
+static inline double cwi_walk_square(const cwi_walk *w, uint32_t triangle, const double p[3])
+{
+    const float *facet[3];
+    cwi_walk_facet(w, triangle, facet);
+    return cwi_facet_square(facet[0], facet[1], facet[2], p);
+}
+
+static inline bool cwi_walk_take(cwi_walk *w, uint32_t triangle, const double p[3],
+                                 double *least)
+{
+    const double square = cwi_walk_square(w, triangle, p);
+    if (!(square < *least))
+        return false;
+    *least = square;
+    w->at = triangle;
+    return true;
+}
+
+/* Crosses a side if that leads nearer. */
+static inline bool cwi_walk_cross(cwi_walk *w, uint32_t from, uint32_t to, const double p[3],
+                                  double *least)
+{
+    const cwi_fans *f = w->fans;
+    for (uint32_t n = f->first[from]; n < f->first[from + 1]; n++) {
+        const uint32_t t = f->around[n], *c = f->corners + 3 * (size_t)t;
+        if (t != w->at && (c[0] == to || c[1] == to || c[2] == to) &&
+            cwi_walk_take(w, t, p, least))
+            return true;
+    }
+    return false;
+}
+
+/* Crosses a side that the point is beyond. */
+static inline bool cwi_walk_step(cwi_walk *w, const double p[3], double *least)
+{
+    const uint32_t *c = w->fans->corners + 3 * (size_t)w->at;
+    const float *f[3];
+    cwi_walk_facet(w, w->at, f);
+    const cwi_facet_view view = cwi_facet_look(f[0], f[1], f[2], p);
+    return (view.in_c < 0 && cwi_walk_cross(w, c[0], c[1], p, least)) ||
+           (view.in_a < 0 && cwi_walk_cross(w, c[1], c[2], p, least)) ||
+           (view.in_b < 0 && cwi_walk_cross(w, c[2], c[0], p, least));
+}
+
+/* Goes to the nearest triangle at a corner. */
+static inline bool cwi_walk_jump(cwi_walk *w, const double p[3], double *least)
+{
+    const cwi_fans *f = w->fans;
+    const uint32_t start = w->at, *c = f->corners + 3 * (size_t)start;
+    for (int k = 0; k < 3; k++)
+        for (uint32_t n = f->first[c[k]]; n < f->first[c[k] + 1]; n++)
+            cwi_walk_take(w, f->around[n], p, least);
+    return w->at != start;
+}
+
+/* Walks to a triangle near a point, and returns the square of the point's distance from it. Sides
+ * are crossed as far as that helps. Folds of the surface can keep the nearest triangle out of
+ * sight: if what was found is too far, triangles at corners are looked at, too. */
+static inline double cwi_walk_to(cwi_walk *w, const double p[3])
+{
+    double least = cwi_walk_square(w, w->at, p);
+    while (cwi_walk_step(w, p, &least)) {
+    }
+    while (least > w->enough && cwi_walk_jump(w, p, &least)) {
+    }
+    return least;
+}
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

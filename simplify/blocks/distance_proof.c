@@ -1,0 +1,235 @@
+/* Proves distances between a part of a surface and what became of it. Lists say where on one
+ * surface a triangle of the other lies: from there short walks find the triangles it is near. What
+ * they do not prove is searched for in a tree of boxes. */
+#include "simplify/blocks/distance_proof.h"
+
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
+#include "core/base/status.h"
+#include "core/geometry/surface_walk.h"
+#include "core/geometry/triangle_cover.h"
+#include "core/mesh/mesh.h"
+#include "simplify/blocks/partition.h"
+#include "simplify/quality/mesh_within.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { CHUNK = 512 };
+
+static const uint32_t NOT_KNOWN = UINT32_MAX;
+
+static cw_status no_memory(cw_error *err)
+{
+    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error");
+}
+
+/* Triangles of a mesh, a surface, and where walks to them begin there. */
+typedef struct walks {
+    const cw_mesh *mesh;
+    const cwi_fans *surface;
+    const uint32_t *begin; /* triangles: one of the surface, or NOT_KNOWN */
+    double limit;
+    const double *limits; /* triangles; or NULL */
+    uint8_t *beyond;
+} walks;
+
+static double find_facet(void *context, const double p[3], const float *facet[3])
+{
+    cwi_walk *walk = context;
+    const double square = cwi_walk_to(walk, p);
+    cwi_walk_facet(walk, walk->at, facet);
+    return square;
+}
+
+static bool is_near_facet(const cwi_walk *walk, const double corners[3][3])
+{
+    for (int k = 0; k < 3; k++)
+        if (!(cwi_walk_square(walk, walk->at, corners[k]) <= walk->enough))
+            return false;
+    return true;
+}
+
+static bool is_within(const walks *w, size_t t)
+{
+    const double limit = w->limits ? w->limits[t] : w->limit;
+    cwi_walk walk = {w->surface, limit * limit, w->begin[t]};
+    cwi_cover cover = {.nearest = find_facet, .context = &walk, .square = walk.enough};
+    double corners[3][3];
+    for (size_t k = 0; k < 3; k++)
+        for (size_t a = 0; a < 3; a++)
+            corners[k][a] =
+                (double)w->mesh->positions[3 * (size_t)w->mesh->triangles[3 * t + k] + a];
+    return walk.at != NOT_KNOWN && (is_near_facet(&walk, (const double(*)[3])corners) ||
+                                    cwi_is_covered(&cover, (const double(*)[3])corners));
+}
+
+static void walk_chunk(void *context, size_t chunk)
+{
+    const walks *w = context;
+    for (size_t t = CHUNK * chunk; t < CHUNK * (chunk + 1) && t < w->mesh->triangle_count; t++)
+        w->beyond[t] = !is_within(w, t);
+}
+
+/* --- what walks leave ---------------------------------------------------------------------- */
+
+/* Copies the triangles that are not proven yet. */
+static cw_status take_unproven(const walks *w, size_t count, cw_mesh *mesh, double *limits,
+                               cw_error *err)
+{
+    const cw_status st = cwi_mesh_alloc(mesh, 3 * count, count, false, err);
+    for (size_t t = 0, n = 0; t < w->mesh->triangle_count && st == CW_OK; t++) {
+        if (!w->beyond[t])
+            continue;
+        for (size_t k = 0; k < 3; k++) {
+            const size_t from = w->mesh->triangles[3 * t + k], to = 3 * n + k;
+            memcpy(mesh->positions + 3 * to, w->mesh->positions + 3 * from, 3 * sizeof(float));
+            mesh->triangles[to] = (uint32_t)to;
+        }
+        if (w->limits)
+            limits[n] = w->limits[t];
+        n++;
+    }
+    return st;
+}
+
+static cw_status search_unproven(const cwi_passes *p, const walks *w, const cw_mesh *reference,
+                                 int threads, cw_error *err)
+{
+    const size_t triangles = w->mesh->triangle_count;
+    size_t count = 0;
+    for (size_t t = 0; t < triangles; t++)
+        count += w->beyond[t];
+    if (count == 0)
+        return CW_OK;
+    cw_mesh mesh = {0};
+    double *limits = w->limits ? cwi_alloc_array(count, sizeof *limits) : NULL;
+    uint8_t *beyond = cwi_alloc_array(count, 1);
+    cw_status st = beyond && !limits == !w->limits ? CW_OK : no_memory(err);
+    if (st == CW_OK)
+        st = take_unproven(w, count, &mesh, limits, err);
+    if (st == CW_OK)
+        st = cwi_mesh_within(&mesh, reference, w->limit, limits, threads, &p->poll, beyond,
+                             err);
+    for (size_t t = 0, n = 0; t < triangles && st == CW_OK; t++)
+        if (w->beyond[t])
+            w->beyond[t] = beyond[n++];
+    cw_mesh_free(&mesh);
+    cwi_free(limits);
+    cwi_free(beyond);
+    return st;
+}
+
+/* Sets beyond for the triangles of a mesh. The reference is all of the surface that is known to
+ * be near, and some of it is in fans. */
+static cw_status find_beyond(const cwi_passes *p, const cw_mesh *mesh, const cwi_fans *fans,
+                             const uint32_t *begin, const cw_mesh *reference, int threads,
+                             uint8_t *beyond, cw_error *err)
+{
+    double *limits = NULL;
+    cw_status st = cwi_passes_limits(p, mesh, &limits, err);
+    const walks w = {mesh, fans, begin, p->error, limits, beyond};
+    if (st == CW_OK)
+        st = cwi_each_layer((mesh->triangle_count + CHUNK - 1) / CHUNK, CHUNK * CHUNK, threads,
+                            &p->poll, "keeping the error", walk_chunk, (void *)&w, err);
+    if (st == CW_OK)
+        st = search_unproven(p, &w, reference, threads, err);
+    cwi_free(limits);
+    return st;
+}
+
+/* --- both ways ----------------------------------------------------------------------------- */
+
+/* The result, and with it what is in the way: it is part of the surface, too. */
+static cw_status add_obstacles(const cwi_part *x, cw_mesh *mesh, cw_error *err)
+{
+    const cwi_mesh_block *from = x->from, *left = x->left;
+    const size_t more = from->triangles - from->own;
+    cw_status st =
+        cwi_mesh_alloc(mesh, left->vertices + 3 * more, left->own + more, false, err);
+    if (st != CW_OK)
+        return st;
+    memcpy(mesh->positions, left->points, 3 * left->vertices * sizeof *left->points);
+    memcpy(mesh->triangles, left->corners, 3 * left->own * sizeof *left->corners);
+    for (size_t c = 0; c < 3 * more; c++) {
+        const size_t v = left->vertices + c;
+        memcpy(mesh->positions + 3 * v,
+               from->points + 3 * (size_t)from->corners[3 * from->own + c], 3 * sizeof(float));
+        mesh->triangles[3 * left->own + c] = (uint32_t)v;
+    }
+    return CW_OK;
+}
+
+/* Begins at the triangle of the result that lists a corner. */
+static cw_status begin_at_result(const cwi_passes *p, const cwi_part *x, uint32_t *begin,
+                                 cw_error *err)
+{
+    uint32_t *place = cwi_alloc_zeroed(p->input.vertex_count, sizeof *place);
+    if (!place)
+        return no_memory(err);
+    for (size_t t = 0; t < x->left->own; t++)
+        for (uint32_t v = x->left->lists[t]; v != UINT32_MAX; v = p->next[v])
+            place[v] = (uint32_t)t + 1;
+    for (size_t t = 0; t < x->input.triangle_count; t++) {
+        begin[t] = NOT_KNOWN;
+        for (size_t k = 0; k < 3 && begin[t] == NOT_KNOWN; k++) {
+            const uint32_t v = x->input.triangles[3 * t + k];
+            begin[t] = place[x->names ? x->names[v] : v] - 1;
+        }
+    }
+    cwi_free(place);
+    return CW_OK;
+}
+
+/* Begins at a triangle of the input around a point that is listed. */
+static void begin_at_input(const cwi_passes *p, const cwi_mesh_block *left, uint32_t *begin)
+{
+    for (size_t t = 0; t < left->own; t++) {
+        const uint32_t v = left->lists[t];
+        begin[t] = v != UINT32_MAX ? p->around[p->first[v]] : NOT_KNOWN;
+    }
+}
+
+static cw_status prove_input(const cwi_passes *p, const cwi_part *x, uint8_t *beyond,
+                             cw_error *err)
+{
+    const cwi_mesh_block *left = x->left;
+    cw_mesh all = {0};
+    uint32_t *begin = cwi_alloc_array(x->input.triangle_count, sizeof *begin);
+    uint32_t *first = cwi_alloc_array(left->vertices + 2, sizeof *first);
+    uint32_t *around = cwi_alloc_array(3 * left->own, sizeof *around);
+    const cwi_fans fans = {left->points, left->corners, first, around};
+    cw_status st = begin && first && around ? add_obstacles(x, &all, err) : no_memory(err);
+    if (st == CW_OK)
+        st = begin_at_result(p, x, begin, err);
+    if (st == CW_OK) {
+        cwi_fans_sort(left->corners, left->own, left->vertices, first, around);
+        st = find_beyond(p, &x->input, &fans, begin, &all, x->threads, beyond, err);
+    }
+    cw_mesh_free(&all);
+    cwi_free(begin);
+    cwi_free(first);
+    cwi_free(around);
+    return st;
+}
+
+static cw_status prove_result(const cwi_passes *p, const cwi_part *x, uint8_t *beyond,
+                              cw_error *err)
+{
+    const cw_mesh result = cwi_block_view(x->left);
+    uint32_t *begin = cwi_alloc_array(result.triangle_count, sizeof *begin);
+    if (!begin)
+        return no_memory(err);
+    begin_at_input(p, x->left, begin);
+    const cw_status st = find_beyond(p, &result, &p->original.fans, begin, &x->input,
+                                     x->threads, beyond, err);
+    cwi_free(begin);
+    return st;
+}
+
+cw_status cwi_part_prove(const cwi_passes *p, const cwi_part *x, uint8_t *input_beyond,
+                         uint8_t *left_beyond, cw_error *err)
+{
+    const cw_status st = prove_input(p, x, input_beyond, err);
+    return st == CW_OK ? prove_result(p, x, left_beyond, err) : st;
+}

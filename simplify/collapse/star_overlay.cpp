@@ -1,0 +1,206 @@
+// Compares a star with the original where their edges cross.
+#include "simplify/collapse/star_overlay.hpp"
+
+#include <cmath>
+#include <new>
+
+namespace cw
+{
+
+namespace
+{
+
+float clamp_share(float share)
+{
+    return std::min(1.0f, std::max(0.0f, share));
+}
+
+// Twice the area between two ways, seen along the axis.
+float turn(const Vec &a, const Vec &b)
+{
+    return a[0] * b[1] - a[1] * b[0];
+}
+
+// The square of the distance between two edges.
+float edges_square(const Vec &p, const Vec &q, const Vec &a, const Vec &b)
+{
+    const Vec u = q - p, v = b - a, w = p - a;
+    const float uu = u | u, uv = u | v, vv = v | v, uw = u | w, vw = v | w,
+                area = uu * vv - uv * uv;
+    const float first = area > 1e-6f * uu * vv ? clamp_share((uv * vw - vv * uw) / area) : 0,
+                t = vv > 0 ? clamp_share((uv * first + vw) / vv) : 0,
+                s = uu > 0 ? clamp_share((uv * t - uw) / uu) : 0;
+    return (w + s * u - t * v).sqrnorm();
+}
+
+} // namespace
+
+Overlay::Overlay(const cwi_original *original_) : original(original_), numbers(nullptr, cwi_free)
+{
+    if (!original)
+        return;
+    numbers.reset(
+        static_cast<uint32_t *>(cwi_alloc_zeroed(original->vertices, sizeof(uint32_t))));
+    if (!numbers)
+        throw std::bad_alloc();
+}
+
+// Where triangles differ much in size, normals of length 1 may see a fan where areas do not.
+bool Overlay::lay(const Star &star_)
+{
+    Vec by_area(0), even(0);
+    star = &star_;
+    center = star->place;
+    if (!star->closed || star->spokes.size() > MOST_SPOKES)
+        return false;
+    for (const Spoke &s : star->spokes) {
+        by_area += s.normal;
+        even += s.normal / s.normal.norm();
+    }
+    return lay_along(*star, by_area) || lay_along(*star, even);
+}
+
+bool Overlay::lay_along(const Star &star_, Vec axis)
+{
+    const float length = axis.norm();
+    if (!(length > 0))
+        return false;
+    axes[2] = axis / length;
+    axes[0] = axes[2] % (std::abs(axes[2][0]) < std::abs(axes[2][1]) ? Vec(1, 0, 0)
+                                                                     : Vec(0, 1, 0));
+    axes[0].normalize();
+    axes[1] = axes[2] % axes[0];
+    corners_a.clear();
+    corners_b.clear();
+    fours.assign((star_.spokes.size() + 3) / 4, Four{});
+    int rounds = 0;
+    for (const Spoke &s : star_.spokes) {
+        if (!add_spoke(s))
+            return false;
+        rounds += corners_a.back()[1] < 0 && corners_b.back()[1] >= 0;
+    }
+    return rounds == 1;
+}
+
+bool Overlay::add_spoke(const Spoke &s)
+{
+    const Vec to_a = s.pa - center, to_b = s.pb - center;
+    const Vec a(to_a | axes[0], to_a | axes[1], to_a | axes[2]),
+        b(to_b | axes[0], to_b | axes[1], to_b | axes[2]);
+    const size_t lane = corners_a.size() % 4;
+    Four &f = fours[corners_a.size() / 4];
+    for (unsigned k = 0; k < 2; k++)
+        f.ray[k][lane] = a[k];
+    f.out[0][lane] = b[1] - a[1];
+    f.out[1][lane] = a[0] - b[0];
+    f.reach[lane] = turn(a, b);
+    corners_a.push_back(a);
+    corners_b.push_back(b);
+    return turn(a, b) > 0;
+}
+
+uint32_t Overlay::locate(uint32_t vertex)
+{
+    uint32_t &number = numbers.get()[vertex];
+    if (number < vertices.size() && vertices[number] == vertex)
+        return number;
+    number = uint32_t(vertices.size());
+    const Vec way = Vec(original->fans.points + 3 * size_t(vertex)) - center;
+    Place p = {{way | axes[0], way | axes[1], way | axes[2]}, 0, 0, 0};
+    for (size_t n = 0; n < fours.size(); n++) {
+        const Four &f = fours[n];
+        const cwi_mask left = f.ray[0] * p.at[1] >= f.ray[1] * p.at[0],
+                       ahead = f.ray[0] * p.at[0] + f.ray[1] * p.at[1] > 0,
+                       beyond = f.out[0] * p.at[0] + f.out[1] * p.at[1] > f.reach;
+        p.left |= cwi_mask_bits(&left) << 4 * n;
+        p.ahead |= cwi_mask_bits(&ahead) << 4 * n;
+        p.beyond |= cwi_mask_bits(&beyond) << 4 * n;
+    }
+    vertices.push_back(vertex);
+    places.push_back(p);
+    return number;
+}
+
+// Whether edges that cross, as seen along the axis, are near each other there; true, too, where
+// only the lines cross.
+bool Overlay::is_crossing_near(const Place &p, const Place &q, const Vec &a, const Vec &b) const
+{
+    const Vec along = b - a;
+    const float from = turn(along, p.at - a), to = turn(along, q.at - a);
+    if ((from < 0) == (to < 0))
+        return true;
+    const Vec c = p.at + from / (from - to) * (q.at - p.at) - a;
+    const float share = (c[0] * along[0] + c[1] * along[1]) /
+                        (along[0] * along[0] + along[1] * along[1]);
+    return !(share >= 0 && share <= 1) || (c - share * along).sqrnorm() <= square ||
+           edges_square(p.at, q.at, a, b) <= square;
+}
+
+// Those around a corner.
+void Overlay::doubt_spokes(uint32_t corner)
+{
+    for (size_t n = 0; n < star->spokes.size(); n++)
+        if (star->spokes[n].a == corner || star->spokes[n].b == corner)
+            spokes_in_doubt |= 1u << n;
+}
+
+// Those on both sides of an edge.
+void Overlay::doubt_triangles(uint32_t from, uint32_t to)
+{
+    for (uint32_t n = original->fans.first[from]; n < original->fans.first[from + 1]; n++) {
+        const uint32_t *c = original->fans.corners + 3 * size_t(original->fans.around[n]);
+        if (c[0] == to || c[1] == to || c[2] == to)
+            triangles_in_doubt.push_back(original->fans.around[n]);
+    }
+}
+
+bool Overlay::is_edge_near(uint32_t i, uint32_t j)
+{
+    const Place &p = places[i], &q = places[j];
+    bool near = true;
+    for (uint32_t left = (p.left ^ q.left) & (p.ahead | q.ahead); left; left &= left - 1) {
+        const unsigned n = unsigned(__builtin_ctz(left));
+        if (is_crossing_near(p, q, Vec(0), corners_a[n]))
+            continue;
+        near = false;
+        doubt_spokes(star->spokes[n].a);
+    }
+    for (uint32_t left = p.beyond ^ q.beyond; left; left &= left - 1) {
+        const unsigned n = unsigned(__builtin_ctz(left));
+        if (is_crossing_near(p, q, corners_a[n], corners_b[n]))
+            continue;
+        near = false;
+        spokes_in_doubt |= 1u << n;
+    }
+    return near;
+}
+
+// Each edge between two points is looked at from one of them. Rounding errors are a few parts in
+// 2^24 of the lengths between points.
+bool Overlay::compare(const std::vector<uint32_t> &points, float distance)
+{
+    float reach = 0;
+    for (const Vec &a : corners_a)
+        reach = std::max(reach, a.sqrnorm());
+    const float sure = std::max(0.0f, distance - 2e-6f * std::sqrt(reach));
+    square = sure * sure;
+    spokes_in_doubt = 0;
+    triangles_in_doubt.clear();
+    vertices.clear();
+    places.clear();
+    for (uint32_t p : points)
+        locate(p);
+    for (uint32_t i = 0; i < points.size(); i++)
+        for (uint32_t n = original->fans.first[points[i]]; n < original->fans.first[points[i] + 1]; n++) {
+            const uint32_t *c = original->fans.corners + 3 * size_t(original->fans.around[n]);
+            const int at = c[0] == points[i] ? 0 : c[1] == points[i] ? 1 : 2;
+            const uint32_t j = locate(c[(at + 1) % 3]), k = locate(c[(at + 2) % 3]);
+            if ((j >= points.size() || j > i) && !is_edge_near(i, j))
+                doubt_triangles(vertices[i], vertices[j]);
+            if (j >= points.size() && k >= points.size() && !is_edge_near(j, k))
+                triangles_in_doubt.push_back(original->fans.around[n]);
+        }
+    return triangles_in_doubt.empty();
+}
+
+} // namespace cw

@@ -1,0 +1,68 @@
+// A star and the original below it, seen along the star's normal.
+#ifndef SIMPLIFY_COLLAPSE_STAR_OVERLAY_HPP
+#define SIMPLIFY_COLLAPSE_STAR_OVERLAY_HPP
+
+#include "core/geometry/bvh.h"
+#include "simplify/collapse/collapse_checks.hpp"
+
+#include <memory>
+
+namespace cw
+{
+
+// Edges cut a star and the original into common pieces. A piece of either is near the other if its
+// corners are, as the distance from one triangle is convex [Tang2009]. Corners are vertices,
+// which others look at, and places where edges cross.
+class Overlay
+{
+public:
+    explicit Overlay(const cwi_original *original);
+
+    // Lays a star out. Returns false if it does not open like a fan along its normal.
+    bool lay(const Star &star);
+
+    // Compares edges of the original's triangles at points with edges of the star that they
+    // cross. Notes the triangles and the spokes at edges that are not within the distance for
+    // certain. Returns true if all are.
+    bool compare(const std::vector<uint32_t> &points, float distance);
+
+    uint32_t spokes_in_doubt;                 // bit n: spoke n
+    std::vector<uint32_t> triangles_in_doubt; // of the original
+
+private:
+    enum { MOST_SPOKES = 32 };
+
+    // A vertex of the original in the star's frame. Bit n: it is to the left of the ray to
+    // corner a of spoke n, on its side of the center, or beyond the outer side of spoke n.
+    struct Place {
+        Vec at;
+        uint32_t left, ahead, beyond;
+    };
+
+    // Rays and outer sides of four spokes.
+    struct Four {
+        cwi_lanes ray[2], out[2], reach;
+    };
+
+    bool lay_along(const Star &star, Vec axis);
+    bool add_spoke(const Spoke &spoke);
+    uint32_t locate(uint32_t vertex);
+    bool is_edge_near(uint32_t i, uint32_t j);
+    void doubt_triangles(uint32_t from, uint32_t to);
+    bool is_crossing_near(const Place &p, const Place &q, const Vec &a, const Vec &b) const;
+    void doubt_spokes(uint32_t corner);
+
+    const cwi_original *original;
+    std::unique_ptr<uint32_t, void (*)(void *)> numbers; // vertices: their place, if it is theirs
+    std::vector<uint32_t> vertices;                      // that have a place
+    std::vector<Place> places;
+    std::vector<Four> fours;
+    std::vector<Vec> corners_a, corners_b; // of the spokes
+    Vec center, axes[3];                   // of the frame
+    const Star *star;
+    float square; // of the distance
+};
+
+} // namespace cw
+
+#endif
