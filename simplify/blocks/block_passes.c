@@ -563,10 +563,13 @@ static cw_status run_levels(const cwi_passes *p, const cwi_mesh_block *whole,
 cw_status cwi_passes_whole(cwi_passes *p, const cwi_mesh_block *whole, const size_t *targets,
                            size_t levels, cwi_mesh_block *left, size_t *cut, cw_error *err)
 {
+    cwi_mesh_block all = *whole;
+    if (targets[0])
+        all.open = NULL; /* costs ended the pass before, too */
     begin_pass(p);
-    cw_status st = run_levels(p, whole, targets, levels, left, cut, err);
-    const cwi_part x = {.from = whole,
-                    .input = p->input,
+    cw_status st = run_levels(p, &all, targets, levels, left, cut, err);
+    const cwi_part x = {.from = &all,
+                        .input = p->input,
                     .left = left,
                     .cost = INFINITY,
                     .target = targets[0],

@@ -43,6 +43,7 @@ void cwi_block_free(cwi_mesh_block *block)
     cwi_free(block->names);
     cwi_free(block->held);
     cwi_free(block->seam);
+    cwi_free(block->open);
     cwi_free(block->quadrics);
     cwi_free(block->values);
     cwi_free(block->areas);
@@ -416,6 +417,7 @@ static void join_vertices(const cwi_mesh_block *b, uint32_t *place, uint32_t *to
             place[name] = (uint32_t)n;
         whole->names[n] = (uint32_t)name;
         whole->seam[n] = b->held[v] || (b->seam && b->seam[v]);
+        whole->open[n] = b->held[v] || !b->open || b->open[v];
         memcpy(whole->points + 3 * n, b->points + 3 * v, 3 * sizeof *whole->points);
         join_vertex(b, v, whole, n, known);
     }
@@ -431,6 +433,7 @@ static bool alloc_joined(const cwi_mesh_block *blocks, size_t count, cwi_mesh_bl
     whole->points = cwi_alloc_array(3 * vertices, sizeof *whole->points);
     whole->names = cwi_alloc_array(vertices, sizeof *whole->names);
     whole->seam = cwi_alloc_array(vertices, sizeof *whole->seam);
+    whole->open = cwi_alloc_array(vertices, sizeof *whole->open);
     whole->quadrics = cwi_alloc_array(vertices, sizeof *whole->quadrics);
     whole->corners = cwi_alloc_array(3 * triangles, sizeof *whole->corners);
     if (count && blocks[0].lists)
@@ -442,8 +445,8 @@ static bool alloc_joined(const cwi_mesh_block *blocks, size_t count, cwi_mesh_bl
         if (!whole->areas || !whole->trends)
             return false;
     }
-    return whole->points && whole->names && whole->seam && whole->quadrics && whole->corners &&
-           (!count || !blocks[0].lists || whole->lists);
+    return whole->points && whole->names && whole->seam && whole->open && whole->quadrics &&
+           whole->corners && (!count || !blocks[0].lists || whole->lists);
 }
 
 cw_status cwi_blocks_join(const cwi_mesh_block *blocks, size_t count, size_t names,

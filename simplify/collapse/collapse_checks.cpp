@@ -81,14 +81,17 @@ Box Star::box(const Spoke &spoke) const
     return box;
 }
 
-bool Shape::is_kept(const Star &star) const
+bool Shape::is_inside(const Vec &place) const
 {
     for (unsigned k = 0; k < 3; k++)
-        if (!(star.place[k] >= low[k] && star.place[k] < high[k]))
+        if (!(place[k] >= low[k] && place[k] < high[k]))
             return false;
-    const float height = star.place | along;
-    if (!(height >= from && height <= to))
-        return false;
+    const float height = place | along;
+    return height >= from && height <= to;
+}
+
+bool Shape::is_kept(const Star &star) const
+{
     for (const Spoke &s : star.spokes) {
         const float now = s.normal.sqrnorm(), before = s.old_normal.sqrnorm(),
                     turn = s.normal | s.old_normal;

@@ -43,6 +43,7 @@ public:
     {
     }
 
+    bool is_inside(const Vec &place) const;
     bool is_kept(const Star &star) const;
 
 private:

@@ -28,6 +28,7 @@ struct alignas(64) Node {
     Vec point;
     uint32_t changed; // when it last did
     bool held, border;
+    bool open; // edges at it may be collapsed where there is more room
 };
 
 } // namespace
@@ -51,11 +52,14 @@ struct cwi_decimater {
             cut += unsound[v];
             nodes[v].point = surface.point(handle);
             nodes[v].border = surface.is_boundary(handle);
+            nodes[v].open = !block.open || block.open[v];
             nodes[v].held = unsound[v] || (block.held && block.held[v]) ||
                             (desc.keep_border && nodes[v].border);
         }
         add_quadrics(block);
         fill_queue();
+        for (Node &n : nodes)
+            n.open = n.held;
     }
 
     void run(float most, size_t least_triangles)
@@ -213,8 +217,9 @@ private:
         for (uint32_t e = 0; e < edges; e++) {
             poll_often();
             const HalfedgeHandle h = surface.halfedge_handle(EdgeHandle(int(e)), 0);
-            if (node(surface.from_vertex_handle(h)).held ||
-                node(surface.to_vertex_handle(h)).held)
+            const Node &u = node(surface.from_vertex_handle(h)),
+                       &v = node(surface.to_vertex_handle(h));
+            if (u.held || v.held || !(u.open || v.open))
                 continue;
             queue.append(Queue::entry(propose(EdgeHandle(int(e))).cost, e));
             waiting[e] = true;
@@ -259,13 +264,17 @@ private:
 
     void try_to_collapse(const Proposal &p)
     {
+        const VertexHandle kept = surface.to_vertex_handle(p.halfedge);
+        const Node &gone = node(surface.from_vertex_handle(p.halfedge));
+        Node &stays = node(kept);
+        if (!shape.is_inside(p.place)) {
+            stays.open = true;
+            return;
+        }
         if (!surface.is_collapse_ok(p.halfedge) || !star.gather(surface, p.halfedge, p.place) ||
             !shape.is_kept(star) || !bound.is_kept(surface, star) ||
             (contact && contact->arises(surface, star)))
             return;
-        const VertexHandle kept = surface.to_vertex_handle(p.halfedge);
-        const Node &gone = node(surface.from_vertex_handle(p.halfedge));
-        Node &stays = node(kept);
         bound.change(star);
         if (trends.is_asked())
             keep_trends(p);
@@ -276,6 +285,7 @@ private:
         stays.quadric = moved(p.quadric, p.place - gone.point);
         stays.point = p.place;
         stays.border |= gone.border;
+        stays.open |= gone.open;
         stays.changed = ++tick;
         live -= star.gone.size();
         for (auto e = surface.cve_iter(kept); e.is_valid(); ++e)
@@ -369,6 +379,7 @@ void take_vertices(const cwi_decimater &d, cwi_mesh_block &out, std::vector<uint
     out.points = array<float>(3 * out.vertices);
     out.names = array<uint32_t>(out.vertices);
     out.held = array<uint8_t>(out.vertices);
+    out.open = array<uint8_t>(out.vertices);
     out.quadrics = array<cwi_quadric>(out.vertices);
     for (size_t v = 0; v < numbers.size(); v++) {
         const size_t n = numbers[v];
@@ -378,6 +389,7 @@ void take_vertices(const cwi_decimater &d, cwi_mesh_block &out, std::vector<uint
             out.points[3 * n + k] = d.surface.point(VertexHandle(int(v)))[k];
         out.names[n] = d.names[v];
         out.held[n] = d.nodes[v].held;
+        out.open[n] = d.nodes[v].open;
         out.quadrics[n] = d.nodes[v].quadric;
     }
     if (d.trends.is_asked())

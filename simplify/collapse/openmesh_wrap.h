@@ -86,6 +86,8 @@ typedef struct cwi_mesh_block {
     uint8_t *held;         /* vertices: must stay, with all edges to them. NULL: none */
     uint8_t *seam;         /* vertices: were held before, when borders between two of them were
                               not counted. NULL: none */
+    uint8_t *open;         /* vertices: edges at them are to be tried; the others were tried
+                              before. NULL: all are */
     cwi_quadric *quadrics; /* vertices; NULL: from the triangles */
     size_t attributes;     /* that count; 0: the next three are NULL */
     float *values;         /* vertices x attributes; NULL where there are trends */

@@ -1,6 +1,7 @@
 // Compares a star with the original where their edges cross.
 #include "simplify/collapse/star_overlay.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <new>
 
@@ -123,7 +124,8 @@ uint32_t Overlay::locate(uint32_t vertex)
 
 // Whether edges that cross, as seen along the axis, are near each other there; true, too, where
 // only the lines cross.
-bool Overlay::is_crossing_near(const Place &p, const Place &q, const Vec &a, const Vec &b) const
+bool Overlay::is_crossing_near(const Place &p, const Place &q, const Vec &a, const Vec &b,
+                               bool *crosses) const
 {
     const Vec along = b - a;
     const float from = turn(along, p.at - a), to = turn(along, q.at - a);
@@ -132,7 +134,10 @@ bool Overlay::is_crossing_near(const Place &p, const Place &q, const Vec &a, con
     const Vec c = p.at + from / (from - to) * (q.at - p.at) - a;
     const float share = (c[0] * along[0] + c[1] * along[1]) /
                         (along[0] * along[0] + along[1] * along[1]);
-    return !(share >= 0 && share <= 1) || (c - share * along).sqrnorm() <= square ||
+    if (!(share >= 0 && share <= 1))
+        return true;
+    *crosses = true;
+    return (c - share * along).sqrnorm() <= square ||
            edges_square(p.at, q.at, a, b) <= square;
 }
 
@@ -154,20 +159,23 @@ void Overlay::doubt_triangles(uint32_t from, uint32_t to)
     }
 }
 
-bool Overlay::is_edge_near(uint32_t i, uint32_t j)
+// Rays and sides are left out that the edge cannot cross: both ends are behind the center, beyond
+// the outer side at the ray, or to the right of the side.
+bool Overlay::is_edge_near(uint32_t i, uint32_t j, bool *crosses)
 {
     const Place &p = places[i], &q = places[j];
     bool near = true;
-    for (uint32_t left = (p.left ^ q.left) & (p.ahead | q.ahead); left; left &= left - 1) {
+    for (uint32_t left = (p.left ^ q.left) & (p.ahead | q.ahead) & ~(p.beyond & q.beyond); left;
+         left &= left - 1) {
         const unsigned n = unsigned(__builtin_ctz(left));
-        if (is_crossing_near(p, q, Vec(0), corners_a[n]))
+        if (is_crossing_near(p, q, Vec(0), corners_a[n], crosses))
             continue;
         near = false;
         doubt_spokes(star->spokes[n].a);
     }
-    for (uint32_t left = p.beyond ^ q.beyond; left; left &= left - 1) {
+    for (uint32_t left = (p.beyond ^ q.beyond) & (p.left | q.left); left; left &= left - 1) {
         const unsigned n = unsigned(__builtin_ctz(left));
-        if (is_crossing_near(p, q, corners_a[n], corners_b[n]))
+        if (is_crossing_near(p, q, corners_a[n], corners_b[n], crosses))
             continue;
         near = false;
         spokes_in_doubt |= 1u << n;
@@ -175,7 +183,54 @@ bool Overlay::is_edge_near(uint32_t i, uint32_t j)
     return near;
 }
 
-// Each edge between two points is looked at from one of them. Rounding errors are a few parts in
+// Adds the triangles on the other side of an edge, if no point is at them.
+void Overlay::look_across(uint32_t i, uint32_t j, uint32_t own)
+{
+    const uint32_t from = vertices[i], to = vertices[j];
+    for (uint32_t n = original->fans.first[from]; n < original->fans.first[from + 1]; n++) {
+        const uint32_t t = original->fans.around[n], *c = original->fans.corners + 3 * size_t(t);
+        if ((c[0] == to || c[1] == to || c[2] == to) && locate(c[0]) >= own &&
+            locate(c[1]) >= own && locate(c[2]) >= own &&
+            std::find(outer.begin(), outer.end(), t) == outer.end())
+            outer.push_back(t);
+    }
+}
+
+// Each edge between two points is looked at from one of them.
+void Overlay::compare_fan(uint32_t i, uint32_t own)
+{
+    const uint32_t hub = vertices[i];
+    for (uint32_t n = original->fans.first[hub]; n < original->fans.first[hub + 1]; n++) {
+        const uint32_t *c = original->fans.corners + 3 * size_t(original->fans.around[n]);
+        const int at = c[0] == hub ? 0 : c[1] == hub ? 1 : 2;
+        const uint32_t j = locate(c[(at + 1) % 3]), k = locate(c[(at + 2) % 3]);
+        bool crosses = false;
+        if ((j >= own || j > i) && !is_edge_near(i, j, &crosses))
+            doubt_triangles(hub, vertices[j]);
+        if (j < own || k < own)
+            continue;
+        crosses = false;
+        if (!is_edge_near(j, k, &crosses))
+            triangles_in_doubt.push_back(original->fans.around[n]);
+        else if (crosses)
+            look_across(j, k, own);
+    }
+}
+
+void Overlay::compare_outer(uint32_t triangle, uint32_t own)
+{
+    const uint32_t *c = original->fans.corners + 3 * size_t(triangle);
+    for (int k = 0; k < 3; k++) {
+        const uint32_t i = locate(c[k]), j = locate(c[(k + 1) % 3]);
+        bool crosses = false;
+        if (!is_edge_near(i, j, &crosses))
+            triangles_in_doubt.push_back(triangle);
+        else if (crosses)
+            look_across(i, j, own);
+    }
+}
+
+// Rounding errors are a few parts in
 // 2^24 of the lengths between points.
 bool Overlay::compare(const std::vector<uint32_t> &points, float distance)
 {
@@ -188,18 +243,14 @@ bool Overlay::compare(const std::vector<uint32_t> &points, float distance)
     triangles_in_doubt.clear();
     vertices.clear();
     places.clear();
+    outer.clear();
     for (uint32_t p : points)
         locate(p);
-    for (uint32_t i = 0; i < points.size(); i++)
-        for (uint32_t n = original->fans.first[points[i]]; n < original->fans.first[points[i] + 1]; n++) {
-            const uint32_t *c = original->fans.corners + 3 * size_t(original->fans.around[n]);
-            const int at = c[0] == points[i] ? 0 : c[1] == points[i] ? 1 : 2;
-            const uint32_t j = locate(c[(at + 1) % 3]), k = locate(c[(at + 2) % 3]);
-            if ((j >= points.size() || j > i) && !is_edge_near(i, j))
-                doubt_triangles(vertices[i], vertices[j]);
-            if (j >= points.size() && k >= points.size() && !is_edge_near(j, k))
-                triangles_in_doubt.push_back(original->fans.around[n]);
-        }
+    const uint32_t own = uint32_t(points.size());
+    for (uint32_t i = 0; i < own; i++)
+        compare_fan(i, own);
+    for (size_t n = 0; n < outer.size(); n++)
+        compare_outer(outer[n], own);
     return triangles_in_doubt.empty();
 }
 

@@ -47,9 +47,13 @@ private:
     bool lay_along(const Star &star, Vec axis);
     bool add_spoke(const Spoke &spoke);
     uint32_t locate(uint32_t vertex);
-    bool is_edge_near(uint32_t i, uint32_t j);
+    bool is_edge_near(uint32_t i, uint32_t j, bool *crosses);
+    void compare_fan(uint32_t i, uint32_t own);
+    void compare_outer(uint32_t triangle, uint32_t own);
+    void look_across(uint32_t i, uint32_t j, uint32_t own);
     void doubt_triangles(uint32_t from, uint32_t to);
-    bool is_crossing_near(const Place &p, const Place &q, const Vec &a, const Vec &b) const;
+    bool is_crossing_near(const Place &p, const Place &q, const Vec &a, const Vec &b,
+                          bool *crosses) const;
     void doubt_spokes(uint32_t corner);
 
     const cwi_original *original;
@@ -57,6 +61,7 @@ private:
     std::vector<uint32_t> vertices;                      // that have a place
     std::vector<Place> places;
     std::vector<Four> fours;
+    std::vector<uint32_t> outer; // triangles of the original across the star, no point at them
     std::vector<Vec> corners_a, corners_b; // of the spokes
     Vec center, axes[3];                   // of the frame
     const Star *star;
