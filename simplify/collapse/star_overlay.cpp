@@ -95,6 +95,8 @@ bool Overlay::add_spoke(const Spoke &s)
     f.out[0][lane] = b[1] - a[1];
     f.out[1][lane] = a[0] - b[0];
     f.reach[lane] = turn(a, b);
+    f.slope[0][lane] = (a[2] * b[1] - b[2] * a[1]) / turn(a, b);
+    f.slope[1][lane] = (b[2] * a[0] - a[2] * b[0]) / turn(a, b);
     corners_a.push_back(a);
     corners_b.push_back(b);
     return turn(a, b) > 0;
@@ -107,19 +109,47 @@ uint32_t Overlay::locate(uint32_t vertex)
         return number;
     number = uint32_t(vertices.size());
     const Vec way = Vec(original->fans.points + 3 * size_t(vertex)) - center;
-    Place p = {{way | axes[0], way | axes[1], way | axes[2]}, 0, 0, 0};
+    vertices.push_back(vertex);
+    places.push_back({{way | axes[0], way | axes[1], way | axes[2]}, 0, 0, 0, 0});
+    return number;
+}
+
+void Overlay::look(Place &p) const
+{
     for (size_t n = 0; n < fours.size(); n++) {
         const Four &f = fours[n];
         const cwi_mask left = f.ray[0] * p.at[1] >= f.ray[1] * p.at[0],
                        ahead = f.ray[0] * p.at[0] + f.ray[1] * p.at[1] > 0,
                        beyond = f.out[0] * p.at[0] + f.out[1] * p.at[1] > f.reach;
+        const cwi_lanes height = p.at[2] - f.slope[0] * p.at[0] - f.slope[1] * p.at[1];
+        const cwi_mask near = (height <= f.thickness) & (-height <= f.thickness);
         p.left |= cwi_mask_bits(&left) << 4 * n;
         p.ahead |= cwi_mask_bits(&ahead) << 4 * n;
         p.beyond |= cwi_mask_bits(&beyond) << 4 * n;
+        p.near |= cwi_mask_bits(&near) << 4 * n;
     }
-    vertices.push_back(vertex);
-    places.push_back(p);
-    return number;
+}
+
+// Of the planes of the spokes, less what rounding may make of heights above them.
+void Overlay::set_thickness(float sure, float reach)
+{
+    for (size_t n = 0; n < corners_a.size(); n++) {
+        Four &f = fours[n / 4];
+        const float steep = std::abs(f.slope[0][n % 4]) + std::abs(f.slope[1][n % 4]);
+        f.thickness[n % 4] = sure - 2e-6f * reach * steep;
+    }
+}
+
+void Overlay::locate_fans(uint32_t own)
+{
+    for (uint32_t i = 0; i < own; i++) {
+        const uint32_t hub = vertices[i];
+        for (uint32_t n = original->fans.first[hub]; n < original->fans.first[hub + 1]; n++)
+            for (size_t k = 0; k < 3; k++)
+                locate(original->fans.corners[3 * size_t(original->fans.around[n]) + k]);
+    }
+    for (Place &p : places)
+        look(p);
 }
 
 // Whether edges that cross, as seen along the axis, are near each other there; true, too, where
@@ -136,7 +166,8 @@ bool Overlay::is_crossing_near(const Place &p, const Place &q, const Vec &a, con
                         (along[0] * along[0] + along[1] * along[1]);
     if (!(share >= 0 && share <= 1))
         return true;
-    *crosses = true;
+    if (crosses)
+        *crosses = true;
     return (c - share * along).sqrnorm() <= square ||
            edges_square(p.at, q.at, a, b) <= square;
 }
@@ -164,23 +195,37 @@ void Overlay::doubt_triangles(uint32_t from, uint32_t to)
 bool Overlay::is_edge_near(uint32_t i, uint32_t j, bool *crosses)
 {
     const Place &p = places[i], &q = places[j];
+    const uint32_t flat = crosses ? 0 : p.near & q.near;
     bool near = true;
-    for (uint32_t left = (p.left ^ q.left) & (p.ahead | q.ahead) & ~(p.beyond & q.beyond); left;
-         left &= left - 1) {
+    for (uint32_t left =
+             (p.left ^ q.left) & (p.ahead | q.ahead) & ~(p.beyond & q.beyond) & ~flat;
+         left; left &= left - 1) {
         const unsigned n = unsigned(__builtin_ctz(left));
         if (is_crossing_near(p, q, Vec(0), corners_a[n], crosses))
             continue;
         near = false;
         doubt_spokes(star->spokes[n].a);
     }
-    for (uint32_t left = (p.beyond ^ q.beyond) & (p.left | q.left); left; left &= left - 1) {
+    for (uint32_t left = (p.beyond ^ q.beyond) & (p.left | q.left) & ~(p.near & q.near); left;
+         left &= left - 1) {
         const unsigned n = unsigned(__builtin_ctz(left));
-        if (is_crossing_near(p, q, corners_a[n], corners_b[n], crosses))
+        if (is_crossing_near(p, q, corners_a[n], corners_b[n], nullptr))
             continue;
         near = false;
         spokes_in_doubt |= 1u << n;
     }
     return near;
+}
+
+// Whether one of three vertices has one of the first places.
+bool Overlay::has_point(const uint32_t v[3], uint32_t own) const
+{
+    for (int k = 0; k < 3; k++) {
+        const uint32_t number = numbers.get()[v[k]];
+        if (number < own && vertices[number] == v[k])
+            return true;
+    }
+    return false;
 }
 
 // Adds the triangles on the other side of an edge, if no point is at them.
@@ -189,8 +234,7 @@ void Overlay::look_across(uint32_t i, uint32_t j, uint32_t own)
     const uint32_t from = vertices[i], to = vertices[j];
     for (uint32_t n = original->fans.first[from]; n < original->fans.first[from + 1]; n++) {
         const uint32_t t = original->fans.around[n], *c = original->fans.corners + 3 * size_t(t);
-        if ((c[0] == to || c[1] == to || c[2] == to) && locate(c[0]) >= own &&
-            locate(c[1]) >= own && locate(c[2]) >= own &&
+        if ((c[0] == to || c[1] == to || c[2] == to) && !has_point(c, own) &&
             std::find(outer.begin(), outer.end(), t) == outer.end())
             outer.push_back(t);
     }
@@ -205,11 +249,10 @@ void Overlay::compare_fan(uint32_t i, uint32_t own)
         const int at = c[0] == hub ? 0 : c[1] == hub ? 1 : 2;
         const uint32_t j = locate(c[(at + 1) % 3]), k = locate(c[(at + 2) % 3]);
         bool crosses = false;
-        if ((j >= own || j > i) && !is_edge_near(i, j, &crosses))
+        if ((j >= own || j > i) && !is_edge_near(i, j, nullptr))
             doubt_triangles(hub, vertices[j]);
         if (j < own || k < own)
             continue;
-        crosses = false;
         if (!is_edge_near(j, k, &crosses))
             triangles_in_doubt.push_back(original->fans.around[n]);
         else if (crosses)
@@ -220,6 +263,11 @@ void Overlay::compare_fan(uint32_t i, uint32_t own)
 void Overlay::compare_outer(uint32_t triangle, uint32_t own)
 {
     const uint32_t *c = original->fans.corners + 3 * size_t(triangle);
+    const size_t known = places.size();
+    for (int k = 0; k < 3; k++)
+        locate(c[k]);
+    for (size_t n = known; n < places.size(); n++)
+        look(places[n]);
     for (int k = 0; k < 3; k++) {
         const uint32_t i = locate(c[k]), j = locate(c[(k + 1) % 3]);
         bool crosses = false;
@@ -237,7 +285,9 @@ bool Overlay::compare(const std::vector<uint32_t> &points, float distance)
     float reach = 0;
     for (const Vec &a : corners_a)
         reach = std::max(reach, a.sqrnorm());
-    const float sure = std::max(0.0f, distance - 2e-6f * std::sqrt(reach));
+    reach = std::sqrt(reach);
+    const float sure = std::max(0.0f, distance - 2e-6f * reach);
+    set_thickness(sure, reach);
     square = sure * sure;
     spokes_in_doubt = 0;
     triangles_in_doubt.clear();
@@ -247,6 +297,7 @@ bool Overlay::compare(const std::vector<uint32_t> &points, float distance)
     for (uint32_t p : points)
         locate(p);
     const uint32_t own = uint32_t(points.size());
+    locate_fans(own);
     for (uint32_t i = 0; i < own; i++)
         compare_fan(i, own);
     for (size_t n = 0; n < outer.size(); n++)

@@ -33,23 +33,28 @@ private:
     enum { MOST_SPOKES = 32 };
 
     // A vertex of the original in the star's frame. Bit n: it is to the left of the ray to
-    // corner a of spoke n, on its side of the center, or beyond the outer side of spoke n.
+    // corner a of spoke n, on its side of the center, beyond the outer side of spoke n, or near
+    // the plane of spoke n, along the axis.
     struct Place {
         Vec at;
-        uint32_t left, ahead, beyond;
+        uint32_t left, ahead, beyond, near;
     };
 
-    // Rays and outer sides of four spokes.
+    // Rays, outer sides and planes of four spokes.
     struct Four {
-        cwi_lanes ray[2], out[2], reach;
+        cwi_lanes ray[2], out[2], reach, slope[2], thickness;
     };
 
     bool lay_along(const Star &star, Vec axis);
     bool add_spoke(const Spoke &spoke);
     uint32_t locate(uint32_t vertex);
+    void look(Place &place) const;
+    void set_thickness(float sure, float reach);
+    void locate_fans(uint32_t own);
     bool is_edge_near(uint32_t i, uint32_t j, bool *crosses);
     void compare_fan(uint32_t i, uint32_t own);
     void compare_outer(uint32_t triangle, uint32_t own);
+    bool has_point(const uint32_t v[3], uint32_t own) const;
     void look_across(uint32_t i, uint32_t j, uint32_t own);
     void doubt_triangles(uint32_t from, uint32_t to);
     bool is_crossing_near(const Place &p, const Place &q, const Vec &a, const Vec &b,
