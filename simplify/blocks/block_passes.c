@@ -63,12 +63,13 @@ static void forget_passes(cwi_passes *p)
 {
     cwi_free(p->first);
     cwi_free(p->around);
+    cwi_free(p->across);
     cwi_free(p->next);
     cwi_free(p->care);
     cwi_free(p->allowed);
     cwi_free(p->normals);
     cwi_free(p->lists);
-    p->first = p->around = p->next = p->lists = NULL;
+    p->first = p->around = p->across = p->next = p->lists = NULL;
     p->care = NULL;
     p->allowed = NULL;
     p->normals = NULL;
@@ -173,6 +174,17 @@ static cw_status allow_distances(cwi_passes *p, cw_error *err)
     return CW_OK;
 }
 
+static void look_across(cwi_passes *p)
+{
+    for (size_t v = 0; v < p->input.vertex_count; v++)
+        for (size_t n = p->first[v]; n < p->first[v + 1]; n++) {
+            const uint32_t *c = p->input.triangles + 3 * (size_t)p->around[n];
+            const size_t at = c[0] == v ? 0 : c[1] == v ? 1 : 2;
+            p->across[2 * n] = c[(at + 1) % 3];
+            p->across[2 * n + 1] = c[(at + 2) % 3];
+        }
+}
+
 cw_status cwi_passes_remember(cwi_passes *p, const cw_mesh *input, cw_error *err)
 {
     const size_t vertices = input->vertex_count;
@@ -180,20 +192,23 @@ cw_status cwi_passes_remember(cwi_passes *p, const cw_mesh *input, cw_error *err
     p->input = *input;
     p->first = cwi_alloc_array(vertices + 2, sizeof *p->first);
     p->around = cwi_alloc_array(3 * input->triangle_count, sizeof *p->around);
+    p->across = cwi_alloc_array(6 * input->triangle_count, sizeof *p->across);
     p->next = cwi_alloc_array(vertices, sizeof *p->next);
     p->care = cwi_alloc_zeroed(vertices, sizeof *p->care);
     p->lists = cwi_alloc_array(vertices, sizeof *p->lists);
-    if (!p->first || !p->around || !p->next || !p->care || !p->lists)
+    if (!p->first || !p->around || !p->across || !p->next || !p->care || !p->lists)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu triangles",
                         input->triangle_count);
     cwi_fans_sort(input->triangles, input->triangle_count, vertices, p->first, p->around);
+    look_across(p);
     for (size_t v = 0; v < vertices; v++)
         p->next[v] = (uint32_t)v; /* in no list */
-    p->original = (cwi_original){.vertices = vertices,
-                                 .fans = {input->positions, input->triangles, p->first,
-                                          p->around},
-                                 .next = p->next,
-                                 .care = p->care};
+    p->original =
+        (cwi_original){.vertices = vertices,
+                       .fans = {input->positions, input->triangles, p->first, p->around},
+                       .across = p->across,
+                       .next = p->next,
+                       .care = p->care};
     cw_status st = allow_distances(p, err);
     if (st == CW_OK)
         st = find_normals(p, err);
@@ -331,7 +346,8 @@ static cw_status judge_part(const cwi_passes *p, const cwi_part *x, bool *kept, 
 
 /* Collapses look at what is near them only. Where that was not enough the part is done again
  * with more care; when that does not help, it stays as it was. */
-static cw_status keep_part(const cwi_passes *p, const cwi_part *x, size_t *repeats, cw_error *err)
+static cw_status keep_part(const cwi_passes *p, const cwi_part *x, size_t *repeats,
+                           cw_error *err)
 {
     cw_status st = CW_OK;
     for (bool kept = x->left->own == 0, hope = true; st == CW_OK && !kept;) {
@@ -392,11 +408,11 @@ static void keep_block(void *context, size_t n)
     const cwi_passes *p = c->passes;
     cw_error *err = c->errors + n;
     const cwi_part x = {.from = c->blocks + n,
-                    .input = cwi_block_view(c->blocks + n),
-                    .names = c->blocks[n].names,
-                    .left = c->left + n,
-                    .cost = c->cost,
-                    .threads = 1};
+                        .input = cwi_block_view(c->blocks + n),
+                        .names = c->blocks[n].names,
+                        .left = c->left + n,
+                        .cost = c->cost,
+                        .threads = 1};
     cw_status st = c->target ? CW_OK : run_once(p, &x, c->cost, err);
     if (st == CW_OK)
         st = keep_part(p, &x, c->repeats + n, err);
@@ -570,9 +586,9 @@ cw_status cwi_passes_whole(cwi_passes *p, const cwi_mesh_block *whole, const siz
     cw_status st = run_levels(p, &all, targets, levels, left, cut, err);
     const cwi_part x = {.from = &all,
                         .input = p->input,
-                    .left = left,
-                    .cost = INFINITY,
-                    .target = targets[0],
-                    .threads = p->desc->threads};
+                        .left = left,
+                        .cost = INFINITY,
+                        .target = targets[0],
+                        .threads = p->desc->threads};
     return st == CW_OK && p->next ? keep_part(p, &x, &p->repeats, err) : st;
 }

@@ -22,7 +22,7 @@ typedef struct cwi_passes {
     cwi_views views;       /* where it is less */
     cw_mesh input;         /* a view of what the distance is kept from */
     cwi_original original; /* the same; next is NULL without an error to keep */
-    uint32_t *first, *around, *next;
+    uint32_t *first, *around, *across, *next;
     uint8_t *care;
     float *allowed;  /* NULL without views */
     float *normals;  /* of what a view sees; NULL where they do not matter */

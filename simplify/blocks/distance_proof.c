@@ -109,8 +109,8 @@ static cw_status search_unproven(const cwi_passes *p, const walks *w, const cw_m
     if (st == CW_OK)
         st = take_unproven(w, count, &mesh, limits, err);
     if (st == CW_OK)
-        st = cwi_mesh_within(&mesh, reference, w->limit, limits, threads, &p->poll, beyond,
-                             err);
+        st =
+            cwi_mesh_within(&mesh, reference, w->limit, limits, threads, &p->poll, beyond, err);
     for (size_t t = 0, n = 0; t < triangles && st == CW_OK; t++)
         if (w->beyond[t])
             w->beyond[t] = beyond[n++];
@@ -221,8 +221,8 @@ static cw_status prove_result(const cwi_passes *p, const cwi_part *x, uint8_t *b
     if (!begin)
         return no_memory(err);
     begin_at_input(p, x->left, begin);
-    const cw_status st = find_beyond(p, &result, &p->original.fans, begin, &x->input,
-                                     x->threads, beyond, err);
+    const cw_status st =
+        find_beyond(p, &result, &p->original.fans, begin, &x->input, x->threads, beyond, err);
     cwi_free(begin);
     return st;
 }

@@ -250,7 +250,8 @@ bool Bound::is_original_near(const Surface &surface, const Star &star)
     add_around(surface, star);
     see_points(star.place);
     for (uint32_t n = 0; n < points.size(); n++)
-        for (uint32_t i = original->fans.first[points[n]]; i < original->fans.first[points[n] + 1]; i++)
+        for (uint32_t i = original->fans.first[points[n]];
+             i < original->fans.first[points[n] + 1]; i++)
             if (!is_triangle_near(original->fans.around[i], n, star.place))
                 return false;
     for (uint32_t t : under)

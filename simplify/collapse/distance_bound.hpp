@@ -78,12 +78,12 @@ private:
     std::vector<uint32_t> heads;            // first point of a face's list
     std::vector<uint32_t> points, spoke_of; // of the star; the nearest spoke
     Overlay overlay;
-    std::vector<uint32_t> under;            // triangles of the original under the star
-    uint32_t nearest;                       // triangle of the original to the moved vertex
-    Facets facets;                          // the star's, then those around, from its vertex
-    Numbers numbers;                        // of the points, then of others at their triangles
-    std::vector<Facets::Seen> seen;         // all of these
-    std::vector<uint32_t> marks;            // faces of the star and around have the last number
+    std::vector<uint32_t> under;    // triangles of the original under the star
+    uint32_t nearest;               // triangle of the original to the moved vertex
+    Facets facets;                  // the star's, then those around, from its vertex
+    Numbers numbers;                // of the points, then of others at their triangles
+    std::vector<Facets::Seen> seen; // all of these
+    std::vector<uint32_t> marks;    // faces of the star and around have the last number
     uint32_t mark = 0;
 };
 

@@ -70,6 +70,8 @@ enum { CWI_MAX_CARE = 4 };
 typedef struct cwi_original {
     size_t vertices;
     cwi_fans fans;
+    const uint32_t
+        *across;          /* 2 for each of fans.around: the triangle's other corners in order */
     uint32_t *next;       /* vertices: the next point in a list; UINT32_MAX ends it */
     const uint8_t *care;  /* vertices: how often the distance is halved around them */
     const float *allowed; /* vertices: the distance there; NULL: the block's everywhere */

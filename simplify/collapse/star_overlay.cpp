@@ -36,7 +36,8 @@ float edges_square(const Vec &p, const Vec &q, const Vec &a, const Vec &b)
 
 } // namespace
 
-Overlay::Overlay(const cwi_original *original_) : original(original_), numbers(nullptr, cwi_free)
+Overlay::Overlay(const cwi_original *original_)
+    : original(original_), numbers(nullptr, cwi_free)
 {
     if (!original)
         return;
@@ -67,8 +68,8 @@ bool Overlay::lay_along(const Star &star_, Vec axis)
     if (!(length > 0))
         return false;
     axes[2] = axis / length;
-    axes[0] = axes[2] % (std::abs(axes[2][0]) < std::abs(axes[2][1]) ? Vec(1, 0, 0)
-                                                                     : Vec(0, 1, 0));
+    axes[0] =
+        axes[2] % (std::abs(axes[2][0]) < std::abs(axes[2][1]) ? Vec(1, 0, 0) : Vec(0, 1, 0));
     axes[0].normalize();
     axes[1] = axes[2] % axes[0];
     corners_a.clear();
@@ -142,11 +143,12 @@ void Overlay::set_thickness(float sure, float reach)
 
 void Overlay::locate_fans(uint32_t own)
 {
+    across.clear();
     for (uint32_t i = 0; i < own; i++) {
-        const uint32_t hub = vertices[i];
-        for (uint32_t n = original->fans.first[hub]; n < original->fans.first[hub + 1]; n++)
-            for (size_t k = 0; k < 3; k++)
-                locate(original->fans.corners[3 * size_t(original->fans.around[n]) + k]);
+        const uint32_t *first = original->fans.first + vertices[i];
+        for (const uint32_t *v = original->across + 2 * size_t(first[0]);
+             v < original->across + 2 * size_t(first[1]); v++)
+            across.push_back(locate(*v));
     }
     for (Place &p : places)
         look(p);
@@ -162,14 +164,13 @@ bool Overlay::is_crossing_near(const Place &p, const Place &q, const Vec &a, con
     if ((from < 0) == (to < 0))
         return true;
     const Vec c = p.at + from / (from - to) * (q.at - p.at) - a;
-    const float share = (c[0] * along[0] + c[1] * along[1]) /
-                        (along[0] * along[0] + along[1] * along[1]);
+    const float share =
+        (c[0] * along[0] + c[1] * along[1]) / (along[0] * along[0] + along[1] * along[1]);
     if (!(share >= 0 && share <= 1))
         return true;
     if (crosses)
         *crosses = true;
-    return (c - share * along).sqrnorm() <= square ||
-           edges_square(p.at, q.at, a, b) <= square;
+    return (c - share * along).sqrnorm() <= square || edges_square(p.at, q.at, a, b) <= square;
 }
 
 // Those around a corner.
@@ -233,21 +234,20 @@ void Overlay::look_across(uint32_t i, uint32_t j, uint32_t own)
 {
     const uint32_t from = vertices[i], to = vertices[j];
     for (uint32_t n = original->fans.first[from]; n < original->fans.first[from + 1]; n++) {
-        const uint32_t t = original->fans.around[n], *c = original->fans.corners + 3 * size_t(t);
+        const uint32_t t = original->fans.around[n],
+                       *c = original->fans.corners + 3 * size_t(t);
         if ((c[0] == to || c[1] == to || c[2] == to) && !has_point(c, own) &&
             std::find(outer.begin(), outer.end(), t) == outer.end())
             outer.push_back(t);
     }
 }
 
-// Each edge between two points is looked at from one of them.
-void Overlay::compare_fan(uint32_t i, uint32_t own)
+// Each edge between two points is looked at from one of them. Returns the end of the fan's others.
+const uint32_t *Overlay::compare_fan(uint32_t i, uint32_t own, const uint32_t *others)
 {
     const uint32_t hub = vertices[i];
     for (uint32_t n = original->fans.first[hub]; n < original->fans.first[hub + 1]; n++) {
-        const uint32_t *c = original->fans.corners + 3 * size_t(original->fans.around[n]);
-        const int at = c[0] == hub ? 0 : c[1] == hub ? 1 : 2;
-        const uint32_t j = locate(c[(at + 1) % 3]), k = locate(c[(at + 2) % 3]);
+        const uint32_t j = *others++, k = *others++;
         bool crosses = false;
         if ((j >= own || j > i) && !is_edge_near(i, j, nullptr))
             doubt_triangles(hub, vertices[j]);
@@ -258,6 +258,7 @@ void Overlay::compare_fan(uint32_t i, uint32_t own)
         else if (crosses)
             look_across(j, k, own);
     }
+    return others;
 }
 
 void Overlay::compare_outer(uint32_t triangle, uint32_t own)
@@ -298,8 +299,9 @@ bool Overlay::compare(const std::vector<uint32_t> &points, float distance)
         locate(p);
     const uint32_t own = uint32_t(points.size());
     locate_fans(own);
+    const uint32_t *others = across.data();
     for (uint32_t i = 0; i < own; i++)
-        compare_fan(i, own);
+        others = compare_fan(i, own, others);
     for (size_t n = 0; n < outer.size(); n++)
         compare_outer(outer[n], own);
     return triangles_in_doubt.empty();

@@ -52,7 +52,7 @@ private:
     void set_thickness(float sure, float reach);
     void locate_fans(uint32_t own);
     bool is_edge_near(uint32_t i, uint32_t j, bool *crosses);
-    void compare_fan(uint32_t i, uint32_t own);
+    const uint32_t *compare_fan(uint32_t i, uint32_t own, const uint32_t *others);
     void compare_outer(uint32_t triangle, uint32_t own);
     bool has_point(const uint32_t v[3], uint32_t own) const;
     void look_across(uint32_t i, uint32_t j, uint32_t own);
@@ -62,9 +62,11 @@ private:
     void doubt_spokes(uint32_t corner);
 
     const cwi_original *original;
-    std::unique_ptr<uint32_t, void (*)(void *)> numbers; // vertices: their place, if it is theirs
-    std::vector<uint32_t> vertices;                      // that have a place
+    std::unique_ptr<uint32_t, void (*)(void *)>
+        numbers;                    // vertices: their place, if it is theirs
+    std::vector<uint32_t> vertices; // that have a place
     std::vector<Place> places;
+    std::vector<uint32_t> across; // places of the other corners of triangles at points
     std::vector<Four> fours;
     std::vector<uint32_t> outer; // triangles of the original across the star, no point at them
     std::vector<Vec> corners_a, corners_b; // of the spokes
