@@ -119,7 +119,7 @@ cw_status cwi_finish_mesh(const cw_mesh *mesh, const cwi_mesh_block *from, cw_me
 }
 
 static cw_status run_passes(cwi_passes *p, const cw_mesh *mesh, const size_t *targets,
-                            size_t levels, cwi_mesh_block *left, size_t *cut, cw_error *err)
+                            size_t levels, cwi_mesh_block *left, cw_error *err)
 {
     cwi_mesh_block whole = {0};
     cw_status st = begin_block(mesh, &whole, err);
@@ -134,7 +134,7 @@ static cw_status run_passes(cwi_passes *p, const cw_mesh *mesh, const size_t *ta
     if (st == CW_OK)
         st = cwi_passes_seams(p, &whole, targets[0], err);
     if (st == CW_OK)
-        st = cwi_passes_whole(p, &whole, targets, levels, left, cut, err);
+        st = cwi_passes_whole(p, &whole, targets, levels, left, err);
     cwi_block_free(&whole);
     return st;
 }
@@ -147,7 +147,6 @@ static cw_status simplify_levels(const cw_mesh *mesh, const cw_simplify_desc *de
     cw_mesh scaled = {0};
     double scale = 1;
     cwi_mesh_block *left = cwi_alloc_zeroed(levels, sizeof *left);
-    size_t cut = 0;
     cw_status st = left ? check_desc(mesh, desc, err)
                         : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu levels", levels);
     if (st == CW_OK)
@@ -157,10 +156,11 @@ static cw_status simplify_levels(const cw_mesh *mesh, const cw_simplify_desc *de
     if (st == CW_OK)
         cwi_passes_place(&p, mesh->origin, scale);
     if (st == CW_OK)
-        st = run_passes(&p, &scaled, targets, levels, left, &cut, err);
+        st = run_passes(&p, &scaled, targets, levels, left, err);
     cwi_free(scaled.positions);
     for (size_t n = 0; n < levels && st == CW_OK; n++) {
         cwi_scale_points(left[n].points, left[n].vertices, 1 / scale, left[n].points);
+        const size_t cut = left[n].cut;
         st = cwi_finish_mesh(mesh, left + n, out + n, err);
         cwi_block_free(left + n);
         if (st == CW_OK)

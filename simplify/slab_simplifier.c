@@ -166,7 +166,7 @@ static cw_status add_slab(cw_simplifier *s, cwi_slab_block *slab, cw_error *err)
     return st == CW_OK ? name_seams(s, slab, b, err) : st;
 }
 
-static cw_status join_slabs(cw_simplifier *s, cwi_mesh_block *left, size_t *cut, cw_error *err)
+static cw_status join_slabs(cw_simplifier *s, cwi_mesh_block *left, cw_error *err)
 {
     const size_t target = cwi_simplify_target(&s->desc, s->triangles);
     cwi_mesh_block whole;
@@ -180,7 +180,7 @@ static cw_status join_slabs(cw_simplifier *s, cwi_mesh_block *left, size_t *cut,
     if (st == CW_OK)
         st = cwi_passes_seams(&s->passes, &whole, target, err);
     if (st == CW_OK)
-        st = cwi_passes_whole(&s->passes, &whole, &target, 1, left, cut, err);
+        st = cwi_passes_whole(&s->passes, &whole, &target, 1, left, err);
     cwi_block_free(&whole);
     return st;
 }
@@ -252,11 +252,12 @@ static cw_status finish_mesh(cw_simplifier *s, cw_mesh *out, size_t *cut, cw_err
     cwi_mesh_block left = {.vertices = w->vertices,
                            .triangles = w->triangles,
                            .points = w->points,
-                           .corners = w->corners};
+                           .corners = w->corners,
+                           .cut = w->cut};
     cw_status st = CW_OK;
-    *cut = w->cut;
     if (s->desc.error_mm == 0)
-        st = join_slabs(s, &left, cut, err);
+        st = join_slabs(s, &left, err);
+    *cut = left.cut;
     if (st == CW_OK)
         st = cwi_finish_mesh(&s->frame, &left, out, err);
     cwi_scale_points(out->positions, out->vertex_count, 1 / s->scale, out->positions);

@@ -429,7 +429,6 @@ cw_status cwi_window_take(cwi_slab_window *w, cwi_passes *p, cwi_slab_block *sla
     const float along[3] = {b->along[0], b->along[1], b->along[2]}, to = b->to;
     const size_t to_end = 0;
     joiner j = {0};
-    size_t cut = 0;
     cw_status st = merge_input(w, p, slab, err);
     if (st == CW_OK)
         st = cwi_passes_list(p, b, err);
@@ -441,10 +440,10 @@ cw_status cwi_window_take(cwi_slab_window *w, cwi_passes *p, cwi_slab_block *sla
     whole.from = (float)begin;
     whole.to = to;
     if (st == CW_OK)
-        st = cwi_passes_whole(p, &whole, &to_end, 1, &left, &cut, err);
+        st = cwi_passes_whole(p, &whole, &to_end, 1, &left, err);
     memcpy(left.along, along, sizeof along);
     w->end = end;
-    w->cut += cut;
+    w->cut += left.cut;
     w->reach = fmax(w->reach, slab->longest);
     if (st == CW_OK)
         st = shut_window(w, p, &j, &left, err);

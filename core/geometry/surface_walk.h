@@ -27,28 +27,30 @@ typedef struct cwi_fans {
 void cwi_fans_sort(const uint32_t *corners, size_t triangles, size_t vertices, uint32_t *first,
                    uint32_t *around);
 
-typedef struct cwi_walk {
+typedef struct cwi_surface_walk {
     const cwi_fans *fans;
     double enough; /* the square of a distance: corners are not crossed for less */
     uint32_t at;   /* the triangle where the walk stands */
-} cwi_walk;
+} cwi_surface_walk;
 
 /* Sets the corners of the triangle where a walk stands. */
-static inline void cwi_walk_facet(const cwi_walk *w, uint32_t triangle, const float *facet[3])
+static inline void cwi_walk_facet(const cwi_surface_walk *w, uint32_t triangle,
+                                  const float *facet[3])
 {
     const uint32_t *c = w->fans->corners + 3 * (size_t)triangle;
     for (int k = 0; k < 3; k++)
         facet[k] = w->fans->points + 3 * (size_t)c[k];
 }
 
-static inline double cwi_walk_square(const cwi_walk *w, uint32_t triangle, const double p[3])
+static inline double cwi_walk_square(const cwi_surface_walk *w, uint32_t triangle,
+                                     const double p[3])
 {
     const float *facet[3];
     cwi_walk_facet(w, triangle, facet);
     return cwi_facet_square(facet[0], facet[1], facet[2], p);
 }
 
-static inline bool cwi_walk_take(cwi_walk *w, uint32_t triangle, const double p[3],
+static inline bool cwi_walk_take(cwi_surface_walk *w, uint32_t triangle, const double p[3],
                                  double *least)
 {
     const double square = cwi_walk_square(w, triangle, p);
@@ -60,8 +62,8 @@ static inline bool cwi_walk_take(cwi_walk *w, uint32_t triangle, const double p[
 }
 
 /* Crosses a side if that leads nearer. */
-static inline bool cwi_walk_cross(cwi_walk *w, uint32_t from, uint32_t to, const double p[3],
-                                  double *least)
+static inline bool cwi_walk_cross(cwi_surface_walk *w, uint32_t from, uint32_t to,
+                                  const double p[3], double *least)
 {
     const cwi_fans *f = w->fans;
     for (uint32_t n = f->first[from]; n < f->first[from + 1]; n++) {
@@ -74,7 +76,7 @@ static inline bool cwi_walk_cross(cwi_walk *w, uint32_t from, uint32_t to, const
 }
 
 /* Crosses a side that the point is beyond. */
-static inline bool cwi_walk_step(cwi_walk *w, const double p[3], double *least)
+static inline bool cwi_walk_step(cwi_surface_walk *w, const double p[3], double *least)
 {
     const uint32_t *c = w->fans->corners + 3 * (size_t)w->at;
     const float *f[3];
@@ -86,7 +88,7 @@ static inline bool cwi_walk_step(cwi_walk *w, const double p[3], double *least)
 }
 
 /* Goes to the nearest triangle at a corner. */
-static inline bool cwi_walk_jump(cwi_walk *w, const double p[3], double *least)
+static inline bool cwi_walk_jump(cwi_surface_walk *w, const double p[3], double *least)
 {
     const cwi_fans *f = w->fans;
     const uint32_t start = w->at, *c = f->corners + 3 * (size_t)start;
@@ -99,7 +101,7 @@ static inline bool cwi_walk_jump(cwi_walk *w, const double p[3], double *least)
 /* Walks to a triangle near a point, and returns the square of the point's distance from it. Sides
  * are crossed as far as that helps. Folds of the surface can keep the nearest triangle out of
  * sight: if what was found is too far, triangles at corners are looked at, too. */
-static inline double cwi_walk_to(cwi_walk *w, const double p[3])
+static inline double cwi_walk_to(cwi_surface_walk *w, const double p[3])
 {
     double least = cwi_walk_square(w, w->at, p);
     while (cwi_walk_step(w, p, &least)) {

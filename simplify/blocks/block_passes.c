@@ -242,7 +242,9 @@ static const cwi_original *original_of(const cwi_passes *p)
 
 /* --- keeping the error -------------------------------------------------------------------- */
 
-static cw_status run_once(const cwi_passes *p, const cwi_part *x, float cost, cw_error *err)
+/* Without blocks. */
+static cw_status run_once(const cwi_passes *p, const cwi_block_part *x, float cost,
+                          cw_error *err)
 {
     cwi_decimater *d;
     cw_status st = p->openmesh->open(x->from, &p->block_desc, original_of(p), &d, err);
@@ -269,7 +271,7 @@ enum { MARK = 0x80 };
 
 /* Marks the vertices of the part of the input that is too far from the result. Those held for
  * other parts are these parts' business. */
-static size_t mark_input(const cwi_passes *p, const cwi_part *x, const uint8_t *beyond)
+static size_t mark_input(const cwi_passes *p, const cwi_block_part *x, const uint8_t *beyond)
 {
     const uint8_t *held = x->names ? x->from->held : NULL;
     size_t broken = 0;
@@ -285,7 +287,7 @@ static size_t mark_input(const cwi_passes *p, const cwi_part *x, const uint8_t *
 
 /* Marks the points listed around the triangles of the result that are too far from
  * the input. */
-static size_t mark_result(const cwi_passes *p, const cwi_part *x, const uint8_t *beyond,
+static size_t mark_result(const cwi_passes *p, const cwi_block_part *x, const uint8_t *beyond,
                           uint8_t *near)
 {
     const cwi_mesh_block *left = x->left;
@@ -305,7 +307,7 @@ static size_t mark_result(const cwi_passes *p, const cwi_part *x, const uint8_t 
 }
 
 /* More care for the marked points of the part; false when all had the most already. */
-static bool take_care(const cwi_passes *p, const cwi_part *x)
+static bool take_care(const cwi_passes *p, const cwi_block_part *x)
 {
     bool more = false;
     for (size_t t = 0; t < x->left->own; t++)
@@ -324,14 +326,14 @@ static bool take_care(const cwi_passes *p, const cwi_part *x)
 
 /* Whether the result keeps the distance; where it does not, more care is taken the
  * next time. */
-static cw_status judge_part(const cwi_passes *p, const cwi_part *x, bool *kept, bool *hope,
-                            cw_error *err)
+static cw_status judge_part(const cwi_passes *p, const cwi_block_part *x, bool *kept,
+                            bool *hope, cw_error *err)
 {
     uint8_t *input_beyond = cwi_alloc_array(x->input.triangle_count, 1);
     uint8_t *beyond = cwi_alloc_array(x->left->own, 1);
     uint8_t *near = cwi_alloc_zeroed(x->left->vertices, 1);
     cw_status st = input_beyond && beyond && near
-                       ? cwi_part_prove(p, x, input_beyond, beyond, err)
+                       ? cwi_block_part_prove(p, x, input_beyond, beyond, err)
                        : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error");
     if (st == CW_OK) {
         const size_t broken = mark_input(p, x, input_beyond) + mark_result(p, x, beyond, near);
@@ -344,10 +346,18 @@ static cw_status judge_part(const cwi_passes *p, const cwi_part *x, bool *kept, 
     return st;
 }
 
+static cw_status run_part(const cwi_passes *p, const cwi_block_part *x, cw_error *err)
+{
+    return run_once(p, x, x->cost, err);
+}
+
+/* Makes what is left of a part from where it began. */
+typedef cw_status again(const cwi_passes *p, const cwi_block_part *x, cw_error *err);
+
 /* Collapses look at what is near them only. Where that was not enough the part is done again
  * with more care; when that does not help, it stays as it was. */
-static cw_status keep_part(const cwi_passes *p, const cwi_part *x, size_t *repeats,
-                           cw_error *err)
+static cw_status keep_part(const cwi_passes *p, const cwi_block_part *x, again *run_again,
+                           size_t *repeats, cw_error *err)
 {
     cw_status st = CW_OK;
     for (bool kept = x->left->own == 0, hope = true; st == CW_OK && !kept;) {
@@ -356,7 +366,7 @@ static cw_status keep_part(const cwi_passes *p, const cwi_part *x, size_t *repea
             break;
         put_back(p, x->left);
         cwi_block_free(x->left);
-        st = run_once(p, x, hope ? x->cost : -1, err);
+        st = hope ? run_again(p, x, err) : run_once(p, x, -1, err);
         kept = !hope;
         ++*repeats;
     }
@@ -367,6 +377,7 @@ static cw_status keep_part(const cwi_passes *p, const cwi_part *x, size_t *repea
 
 typedef struct crew {
     const cwi_passes *passes;
+    bool proves; /* whether each block is held against its part of the input */
     cwi_mesh_block *blocks, *left;
     cwi_decimater **decimaters;
     cw_status *statuses;
@@ -407,15 +418,15 @@ static void keep_block(void *context, size_t n)
     crew *c = context;
     const cwi_passes *p = c->passes;
     cw_error *err = c->errors + n;
-    const cwi_part x = {.from = c->blocks + n,
-                        .input = cwi_block_view(c->blocks + n),
-                        .names = c->blocks[n].names,
-                        .left = c->left + n,
-                        .cost = c->cost,
-                        .threads = 1};
-    cw_status st = c->target ? CW_OK : run_once(p, &x, c->cost, err);
-    if (st == CW_OK)
-        st = keep_part(p, &x, c->repeats + n, err);
+    const cwi_block_part x = {.from = c->blocks + n,
+                              .input = cwi_block_view(c->blocks + n),
+                              .names = c->blocks[n].names,
+                              .left = c->left + n,
+                              .cost = c->cost,
+                              .threads = 1};
+    cw_status st = c->target ? CW_OK : run_part(p, &x, err);
+    if (st == CW_OK && c->proves)
+        st = keep_part(p, &x, run_part, c->repeats + n, err);
     c->statuses[n] = st;
     cwi_block_free(c->blocks + n);
 }
@@ -516,36 +527,44 @@ static void keep_known(const uint8_t *seam, cwi_mesh_block *left)
         left->seam[v] &= seam[left->names[v]];
 }
 
-static cw_status run_blocks(cwi_passes *p, cwi_mesh_block *whole, size_t target, double share,
+/* Cuts, runs and joins. If *out is *whole, that is freed once it is cut. */
+static cw_status run_blocks(const cwi_passes *p, cwi_mesh_block *whole, size_t target,
+                            double share, bool proves, cwi_mesh_block *out, size_t *repeats,
                             cw_error *err)
 {
     const size_t names = whole->vertices;
-    crew c = {.passes = p};
-    size_t repeats = 0;
-    begin_pass(p);
+    crew c = {.passes = p, .proves = proves};
+    size_t most = 0;
     cw_status st = cwi_blocks_cut(whole, CWI_BLOCK, share, &c.blocks, &c.count, err);
     if (st != CW_OK)
         return st;
     c.target = first_target(&c, target);
     uint8_t *seam = whole->seam;
-    whole->seam = NULL;
-    cwi_block_free(whole);
+    if (out == whole) {
+        whole->seam = NULL;
+        cwi_block_free(whole);
+    }
     st = run_crew(&c, err);
     for (size_t n = 0; n < c.count && st == CW_OK; n++)
-        repeats = c.repeats[n] > repeats ? c.repeats[n] : repeats;
-    p->repeats += repeats;
+        most = c.repeats[n] > most ? c.repeats[n] : most;
+    *repeats += most;
     if (st == CW_OK)
-        st = cwi_blocks_join(c.left, c.count, names, whole, err);
+        st = cwi_blocks_join(c.left, c.count, names, out, err);
     if (st == CW_OK)
-        keep_known(seam, whole);
-    cwi_free(seam);
+        keep_known(seam, out);
+    if (out == whole)
+        cwi_free(seam);
     free_crew(&c);
     return st;
 }
 
+/* Puts the cuts of a second pass where the first had none. */
+static const double OTHER_SHARE = 7.0 / 16;
+
 cw_status cwi_passes_blocks(cwi_passes *p, cwi_mesh_block *whole, size_t target, cw_error *err)
 {
-    return run_blocks(p, whole, target, 0.5, err);
+    begin_pass(p);
+    return run_blocks(p, whole, target, 0.5, true, whole, &p->repeats, err);
 }
 
 cw_status cwi_passes_seams(cwi_passes *p, cwi_mesh_block *whole, size_t target, cw_error *err)
@@ -553,20 +572,21 @@ cw_status cwi_passes_seams(cwi_passes *p, cwi_mesh_block *whole, size_t target, 
     if (p->next || whole->triangles <= CWI_BLOCK || whole->triangles <= target + target / 4)
         return CW_OK;
     cwi_block_number(whole);
-    return run_blocks(p, whole, target, 7.0 / 16, err);
+    cwi_free(whole->open); /* costs ended the pass before */
+    whole->open = NULL;
+    return run_blocks(p, whole, target, OTHER_SHARE, false, whole, &p->repeats, err);
 }
 
 /* --- the last pass ------------------------------------------------------------------------ */
 
 static cw_status run_levels(const cwi_passes *p, const cwi_mesh_block *whole,
                             const size_t *targets, size_t levels, cwi_mesh_block *left,
-                            size_t *cut, cw_error *err)
+                            cw_error *err)
 {
     cwi_decimater *d;
     cw_status st = p->openmesh->open(whole, &p->block_desc, original_of(p), &d, err);
     if (st != CW_OK)
         return st;
-    *cut = p->openmesh->cut(d);
     for (size_t n = 0; n < levels && st == CW_OK; n++) {
         st = p->openmesh->run(d, INFINITY, targets[n], err);
         if (st == CW_OK)
@@ -576,19 +596,47 @@ static cw_status run_levels(const cwi_passes *p, const cwi_mesh_block *whole,
     return st;
 }
 
-cw_status cwi_passes_whole(cwi_passes *p, const cwi_mesh_block *whole, const size_t *targets,
-                           size_t levels, cwi_mesh_block *left, size_t *cut, cw_error *err)
+/* Tries edges in seams again: those inside of blocks that are cut elsewhere, and then the rest. */
+static cw_status run_seams(const cwi_passes *p, const cwi_block_part *x, cw_error *err)
+{
+    cwi_mesh_block from = *x->from, joined = {0};
+    size_t none = 0;
+    cw_status st = run_blocks(p, &from, 0, OTHER_SHARE, false, &joined, &none, err);
+    const cwi_block_part rest = {.from = &joined, .left = x->left, .cost = x->cost};
+    if (st == CW_OK)
+        st = run_part(p, &rest, err);
+    cwi_block_free(&joined);
+    return st;
+}
+
+static bool has_seams(const cwi_mesh_block *whole)
+{
+    return whole->open && whole->own == whole->triangles && whole->triangles > CWI_BLOCK;
+}
+
+/* As far as the error allows, or to a number of triangles: then costs ended the pass before, too,
+ * and all edges are tried. */
+static cw_status run_to_error(cwi_passes *p, const cwi_mesh_block *whole, size_t target,
+                              cwi_mesh_block *left, cw_error *err)
 {
     cwi_mesh_block all = *whole;
-    if (targets[0])
-        all.open = NULL; /* costs ended the pass before, too */
+    const cwi_block_part x = {.from = &all,
+                              .input = p->input,
+                              .left = left,
+                              .cost = INFINITY,
+                              .target = target,
+                              .threads = p->desc->threads};
+    again *const run = !target && has_seams(whole) ? run_seams : run_part;
+    if (target)
+        all.open = NULL;
+    const cw_status st = run(p, &x, err);
+    return st == CW_OK ? keep_part(p, &x, run, &p->repeats, err) : st;
+}
+
+cw_status cwi_passes_whole(cwi_passes *p, const cwi_mesh_block *whole, const size_t *targets,
+                           size_t levels, cwi_mesh_block *left, cw_error *err)
+{
     begin_pass(p);
-    cw_status st = run_levels(p, &all, targets, levels, left, cut, err);
-    const cwi_part x = {.from = &all,
-                        .input = p->input,
-                        .left = left,
-                        .cost = INFINITY,
-                        .target = targets[0],
-                        .threads = p->desc->threads};
-    return st == CW_OK && p->next ? keep_part(p, &x, &p->repeats, err) : st;
+    return p->next ? run_to_error(p, whole, targets[0], left, err)
+                   : run_levels(p, whole, targets, levels, left, err);
 }

@@ -70,10 +70,10 @@ CW_NODISCARD cw_status cwi_passes_seams(cwi_passes *passes, cwi_mesh_block *whol
 /* Simplifies all of a block, seams included, down to each of the targets in turn.
  * targets  levels, falling; 0: as far as the error allows
  * left     levels; with an error to keep, one
- * cut      vertices that are no single fan */
+ */
 CW_NODISCARD cw_status cwi_passes_whole(cwi_passes *passes, const cwi_mesh_block *whole,
                                         const size_t *targets, size_t levels,
-                                        cwi_mesh_block *left, size_t *cut, cw_error *err);
+                                        cwi_mesh_block *left, cw_error *err);
 
 /* Returns the number of triangles to keep, of a mesh with `triangles` of them; 0: none is
  * set. */

@@ -36,13 +36,13 @@ typedef struct walks {
 
 static double find_facet(void *context, const double p[3], const float *facet[3])
 {
-    cwi_walk *walk = context;
+    cwi_surface_walk *walk = context;
     const double square = cwi_walk_to(walk, p);
     cwi_walk_facet(walk, walk->at, facet);
     return square;
 }
 
-static bool is_near_facet(const cwi_walk *walk, const double corners[3][3])
+static bool is_near_facet(const cwi_surface_walk *walk, const double corners[3][3])
 {
     for (int k = 0; k < 3; k++)
         if (!(cwi_walk_square(walk, walk->at, corners[k]) <= walk->enough))
@@ -53,7 +53,7 @@ static bool is_near_facet(const cwi_walk *walk, const double corners[3][3])
 static bool is_within(const walks *w, size_t t)
 {
     const double limit = w->limits ? w->limits[t] : w->limit;
-    cwi_walk walk = {w->surface, limit * limit, w->begin[t]};
+    cwi_surface_walk walk = {w->surface, limit * limit, w->begin[t]};
     cwi_cover cover = {.nearest = find_facet, .context = &walk, .square = walk.enough};
     double corners[3][3];
     for (size_t k = 0; k < 3; k++)
@@ -141,7 +141,7 @@ static cw_status find_beyond(const cwi_passes *p, const cw_mesh *mesh, const cwi
 /* --- both ways ----------------------------------------------------------------------------- */
 
 /* The result, and with it what is in the way: it is part of the surface, too. */
-static cw_status add_obstacles(const cwi_part *x, cw_mesh *mesh, cw_error *err)
+static cw_status add_obstacles(const cwi_block_part *x, cw_mesh *mesh, cw_error *err)
 {
     const cwi_mesh_block *from = x->from, *left = x->left;
     const size_t more = from->triangles - from->own;
@@ -161,7 +161,7 @@ static cw_status add_obstacles(const cwi_part *x, cw_mesh *mesh, cw_error *err)
 }
 
 /* Begins at the triangle of the result that lists a corner. */
-static cw_status begin_at_result(const cwi_passes *p, const cwi_part *x, uint32_t *begin,
+static cw_status begin_at_result(const cwi_passes *p, const cwi_block_part *x, uint32_t *begin,
                                  cw_error *err)
 {
     uint32_t *place = cwi_alloc_zeroed(p->input.vertex_count, sizeof *place);
@@ -190,7 +190,7 @@ static void begin_at_input(const cwi_passes *p, const cwi_mesh_block *left, uint
     }
 }
 
-static cw_status prove_input(const cwi_passes *p, const cwi_part *x, uint8_t *beyond,
+static cw_status prove_input(const cwi_passes *p, const cwi_block_part *x, uint8_t *beyond,
                              cw_error *err)
 {
     const cwi_mesh_block *left = x->left;
@@ -213,7 +213,7 @@ static cw_status prove_input(const cwi_passes *p, const cwi_part *x, uint8_t *be
     return st;
 }
 
-static cw_status prove_result(const cwi_passes *p, const cwi_part *x, uint8_t *beyond,
+static cw_status prove_result(const cwi_passes *p, const cwi_block_part *x, uint8_t *beyond,
                               cw_error *err)
 {
     const cw_mesh result = cwi_block_view(x->left);
@@ -227,8 +227,8 @@ static cw_status prove_result(const cwi_passes *p, const cwi_part *x, uint8_t *b
     return st;
 }
 
-cw_status cwi_part_prove(const cwi_passes *p, const cwi_part *x, uint8_t *input_beyond,
-                         uint8_t *left_beyond, cw_error *err)
+cw_status cwi_block_part_prove(const cwi_passes *p, const cwi_block_part *x,
+                               uint8_t *input_beyond, uint8_t *left_beyond, cw_error *err)
 {
     const cw_status st = prove_input(p, x, input_beyond, err);
     return st == CW_OK ? prove_result(p, x, left_beyond, err) : st;

@@ -5,7 +5,7 @@
 #include "simplify/blocks/block_passes.h"
 
 /* A part of the input and what became of it. */
-typedef struct cwi_part {
+typedef struct cwi_block_part {
     const cwi_mesh_block *from;
     cw_mesh input;         /* a view of it */
     const uint32_t *names; /* of its vertices in all of the input; NULL: their numbers */
@@ -13,13 +13,13 @@ typedef struct cwi_part {
     float cost; /* how far it went */
     size_t target;
     int threads;
-} cwi_part;
+} cwi_block_part;
 
 /* Finds the triangles of both that are farther from the other than allowed, or may be.
  * input_beyond  one for each of the part's input, set to 0 or 1
  * left_beyond   one for each of the part's own triangles that are left */
-CW_NODISCARD cw_status cwi_part_prove(const cwi_passes *passes, const cwi_part *part,
-                                      uint8_t *input_beyond, uint8_t *left_beyond,
-                                      cw_error *err);
+CW_NODISCARD cw_status cwi_block_part_prove(const cwi_passes *passes,
+                                            const cwi_block_part *part, uint8_t *input_beyond,
+                                            uint8_t *left_beyond, cw_error *err);
 
 #endif

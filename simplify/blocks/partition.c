@@ -237,7 +237,10 @@ static bool alloc_vertices(cwi_mesh_block *b, const cwi_mesh_block *whole)
         b->quadrics = cwi_alloc_array(b->vertices, sizeof *b->quadrics);
     if (whole->seam)
         b->seam = cwi_alloc_array(b->vertices, sizeof *b->seam);
-    return b->points && b->held && !b->quadrics == !whole->quadrics && !b->seam == !whole->seam;
+    if (whole->open)
+        b->open = cwi_alloc_array(b->vertices, sizeof *b->open);
+    return b->points && b->held && !b->quadrics == !whole->quadrics &&
+           !b->seam == !whole->seam && !b->open == !whole->open;
 }
 
 /* Copies a vertex to a block. Its quadric and trends go to one block only, of those with a
@@ -250,6 +253,8 @@ static void copy_vertex(const plan *p, cwi_mesh_block *b, size_t v, bool own)
     b->held[v] = p->held[from] != FREE;
     if (b->seam)
         b->seam[v] = w->seam[from];
+    if (b->open)
+        b->open[v] = w->open[from];
     if (!b->quadrics)
         return;
     const bool given = own && p->held[from] != GIVEN;

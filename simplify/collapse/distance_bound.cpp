@@ -39,7 +39,7 @@ float triangle_square(const Vec &p, const Vec &a, const Vec &b, const Vec &c)
 
 // A walk on the original, and the triangles that it led to.
 struct Passage {
-    cwi_walk walk;
+    cwi_surface_walk walk;
     std::vector<uint32_t> passed; // some more than once
 };
 

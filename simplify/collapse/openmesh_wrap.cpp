@@ -337,11 +337,6 @@ float next(const cwi_decimater *decimater)
     return decimater->queue.empty() ? INFINITY : Queue::cost(decimater->queue.top());
 }
 
-size_t cut(const cwi_decimater *decimater)
-{
-    return decimater->cut;
-}
-
 void close(cwi_decimater *decimater)
 {
     delete decimater;
@@ -418,6 +413,7 @@ void take_triangles(const cwi_decimater &d, cwi_mesh_block &out,
 cw_status take(const cwi_decimater *decimater, cwi_mesh_block *out, cw_error *err)
 {
     *out = cwi_mesh_block{};
+    out->cut = decimater->cut;
     return guard(err, "OpenMesh", [&] {
         std::vector<uint32_t> numbers;
         take_vertices(*decimater, *out, numbers);
@@ -428,5 +424,4 @@ cw_status take(const cwi_decimater *decimater, cwi_mesh_block *out, cw_error *er
 
 } // namespace
 
-const cwi_openmesh_functions cwi_module_openmesh = {open, run,  triangles, next,
-                                                    cut,  take, close};
+const cwi_openmesh_functions cwi_module_openmesh = {open, run, triangles, next, take, close};

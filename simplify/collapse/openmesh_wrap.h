@@ -96,7 +96,8 @@ typedef struct cwi_mesh_block {
     float *areas;          /* vertices: of the triangles whose mean the trends are */
     cwi_trend *trends;     /* vertices x attributes; NULL: from the triangles */
     uint32_t *lists;       /* own: first point of a list; NULL without an original */
-    float low[3], high[3]; /* vertices are moved to low <= x < high only */
+    size_t cut; /* vertices that were no single fan, or at an edge of more than two */
+    float low[3], high[3];    /* vertices are moved to low <= x < high only */
     float along[3], from, to; /* and to from <= along . x <= to */
 } cwi_mesh_block;
 
@@ -119,8 +120,6 @@ typedef struct cwi_openmesh_functions {
     size_t (*triangles)(const cwi_decimater *decimater);
     /* The cost of the next collapse to try; infinite when there is none. */
     float (*next)(const cwi_decimater *decimater);
-    /* Vertices of the block that are no single fan, or at an edge of more than two. */
-    size_t (*cut)(const cwi_decimater *decimater);
     /* Takes the remaining triangles, own ones only, in arrays from cwi_alloc_array(). */
     cw_status (*take)(const cwi_decimater *decimater, cwi_mesh_block *out, cw_error *err);
     void (*close)(cwi_decimater *decimater);
