@@ -23,8 +23,8 @@ static const cli_extract_args defaults = {.check = true, .measure = true};
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
-     "Mesh to write, in the format of its extension; may hold {level}, {step}, {stem}, {parent}, and of "
-     "labels {label} and {name}",
+     "Mesh to write, in the format of its extension; may hold {level}, {step}, {stem}, {parent}, of "
+     "--lod {lod}, and of labels {label} and {name}",
      offsetof(cli_extract_args, output), CLI_VALUES_MESH_OUTPUT},
     {"iso", 'i', CLI_NUMBERS, "V[,V...]",
      "Isovalue, or several, in the unit of the values (required; in level sets 0)",
