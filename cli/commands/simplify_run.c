@@ -3,8 +3,8 @@
 #include "cli/commands/simplify_run.h"
 
 #include "cli/framework/console.h"
-#include "cli/framework/name_template.h"
 #include "cli/framework/quantity.h"
+#include "cli/results/detail_levels.h"
 #include "cli/results/mesh_comparison.h"
 #include "cli/results/mesh_parts.h"
 #include "cli/results/output_names.h"
@@ -13,10 +13,7 @@
 
 #include <cubewright/simplify.h>
 
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 typedef struct run_state {
     const cli_simplify_args *args;
@@ -24,9 +21,6 @@ typedef struct run_state {
     cli_mesh mesh;
     cli_volume source;
     cli_pieces pieces;
-    cw_mesh lod[CLI_MAX_COUNTS]; /* levels of the only piece, until they are its result */
-    char lod_names[CLI_MAX_COUNTS][24];
-    bool unordered; /* it was told that meshoptimizer is not there */
     double error_mm, drop_mm;
     cli_outputs outputs;
     cli_report report;
@@ -57,12 +51,8 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_count(j, "triangles", args->triangles);
     if (args->ratio.given)
         cli_json_number(j, "ratio", args->ratio.value);
-    if (args->lod.count) {
-        cli_json_open(j, "lod", '[');
-        for (size_t n = 0; n < args->lod.count; n++)
-            cli_json_count(j, NULL, args->lod.n[n]);
-        cli_json_close(j, ']');
-    }
+    if (args->lod.count)
+        cli_json_lod(j, &args->lod);
     if (args->drop.given) {
         cli_json_number(j, "drop_components_mm", s->drop_mm);
         cli_json_count(j, "dropped_components", s->pieces.dropped);
@@ -129,11 +119,9 @@ static cw_status check_args(run_state *s, cw_error *err)
         return cwi_fail(err, CW_ERR_UNSUPPORTED,
                         "simplify needs OpenMesh, which this build lacks: install "
                         "libopenmesh-dev and build again");
-    const cli_lod_files files = cli_lod_files_of(args->output, args->written.format);
     st = args->lod.count
-             ? cli_name_lod_outputs(&s->outputs, args->output, args->common.inputs[0],
-                                    args->lod.count,
-                                    files == CLI_LOD_APART ? CLI_LOD_APART : CLI_LOD_BOTH, err)
+             ? cli_name_detail_levels(&s->outputs, args->output, args->written.format,
+                                      args->common.inputs[0], &args->lod, err)
              : cli_name_output(&s->outputs, args->output, args->common.inputs[0], err);
     return st == CW_OK ? check_outputs(s, err) : st;
 }
@@ -215,20 +203,11 @@ static size_t target_of(const run_state *s)
 
 static void tell_missed(run_state *s, size_t target, size_t triangles)
 {
-    if (target && s->pieces.triangles <= target)
-        cli_say("%s: already has no more than the %s triangles requested", s->mesh.path,
-                cli_count(target));
-    if (!target || triangles <= target)
-        return;
-    if (s->args->error.given)
+    if (s->args->error.given && target && triangles > target)
         cli_say("%s: %s triangles, not %s: fewer would exceed the error limit of %.6g mm",
                 s->mesh.path, cli_count(triangles), cli_count(target), s->error_mm);
     else
-        cli_report_warn(&s->report,
-                        "%s triangles were requested, %s are left: removing more would tear "
-                        "the surface%s, flip it or make it intersect itself",
-                        cli_count(target), cli_count(triangles),
-                        s->args->keep_border ? ", move its border" : "");
+        cli_tell_missed(&s->report, &s->pieces, target, triangles, s->args->keep_border);
 }
 
 /* Returns the settings for a mesh of that number of triangles, without its target. */
@@ -283,18 +262,19 @@ static cw_status simplify_parts(run_state *s, cw_error *err)
     return CW_OK;
 }
 
-static cw_status simplify_levels(run_state *s, cw_error *err)
+static cw_status simplify_levels(void *state, cw_mesh *levels, cw_error *err)
 {
+    run_state *s = state;
     const cli_counts *lod = &s->args->lod;
     const cw_simplify_desc desc = simplify_desc(s, s->pieces.triangles);
     size_t triangles = 0;
     cli_report_begin(&s->report);
     cw_status st = cw_simplify_levels(&s->pieces.piece->input, &desc, lod->n, lod->count,
-                                      s->lod, NULL, err);
+                                      levels, NULL, err);
     if (st != CW_OK)
         return cwi_fail_in(err, st, s->mesh.path);
     for (size_t n = 0; n < lod->count; n++)
-        triangles += s->lod[n].triangle_count;
+        triangles += levels[n].triangle_count;
     cli_report_end(&s->report, "simplify", s->pieces.triangles, triangles);
     return CW_OK;
 }
@@ -335,20 +315,6 @@ static cw_status shade_mesh(run_state *s, cw_error *err)
     return CW_OK;
 }
 
-/* Levels are for drawing: their triangles and vertices are put in the order that is fast. */
-static cw_status order_for_drawing(run_state *s, cw_error *err)
-{
-    cw_error why = {0};
-    const cw_status st = cw_mesh_optimize(&s->pieces.piece->out, &why);
-    if (st == CW_ERR_UNSUPPORTED) {
-        if (!s->unordered)
-            cli_say("levels are not optimised for fast drawing: %s", why.message);
-        s->unordered = true;
-        return CW_OK;
-    }
-    return st == CW_OK ? CW_OK : cwi_fail(err, st, "%s: %s", s->mesh.path, why.message);
-}
-
 static cw_status deliver_parts(run_state *s, const cw_part *parts, size_t count, bool levels,
                                cw_error *err)
 {
@@ -374,74 +340,64 @@ static cw_status deliver_result(run_state *s, cw_error *err)
     return st;
 }
 
-/* Measures what became of the pieces, shades it and writes it. */
-static cw_status finish_result(run_state *s, cli_made *made, cw_error *err)
+/* Checks and measures what became of the pieces, and shades it. */
+static cw_status finish_pieces(run_state *s, cli_made *made, cw_error *err)
 {
     cw_status st = cli_hold_pieces(&s->pieces, s->threads, err);
     if (st == CW_OK)
         st = measure_error(s, made, err);
-    if (st == CW_OK)
-        st = shade_mesh(s, err);
-    if (st == CW_OK && s->args->lod.count)
-        st = order_for_drawing(s, err);
+    return st == CW_OK ? shade_mesh(s, err) : st;
+}
+
+/* A level is the result of the only piece for a while. */
+static cw_status finish_level(void *state, cli_made *made, cw_mesh *level, cw_error *err)
+{
+    run_state *s = state;
+    s->pieces.piece->out = *level;
+    cw_status st = finish_pieces(s, made, err);
+    *level = s->pieces.piece->out;
+    s->pieces.piece->out = (cw_mesh){0};
+    return st;
+}
+
+static cw_status deliver_levels(void *state, size_t file, const cw_part *parts, size_t count,
+                                cw_error *err)
+{
+    run_state *s = state;
+    cw_status st = deliver_parts(s, parts, count, file == s->args->lod.count, err);
+    s->start = cli_seconds();
+    return st;
+}
+
+static cw_status make_levels(run_state *s, cw_error *err)
+{
+    cli_detail_levels levels = {.lod = &s->args->lod,
+                                .name = s->args->written.name,
+                                .files = &s->outputs,
+                                .report = &s->report,
+                                .pieces = &s->pieces,
+                                .keeps_border = s->args->keep_border,
+                                .make = simplify_levels,
+                                .finish = finish_level,
+                                .deliver = deliver_levels,
+                                .user = s};
+    cw_status st = cli_make_detail_levels(&levels, err);
+    cli_free_detail_levels(&levels);
+    return st;
+}
+
+static cw_status make_result(run_state *s, cw_error *err)
+{
+    cli_made *made = cli_report_next(&s->report, s->outputs.path[0], 0);
+    cw_status st = simplify_parts(s, err);
+    if (st != CW_OK)
+        return st;
+    st = finish_pieces(s, made, err);
     if (st == CW_OK)
         st = deliver_result(s, err);
     if (st != CW_OK)
         made->error = *err;
     return st;
-}
-
-/* One file with all levels; names of nodes are as those of the files. */
-static cw_status deliver_levels(run_state *s, cw_error *err)
-{
-    const size_t count = s->args->lod.count;
-    const char *path = s->outputs.path[count];
-    char names[CLI_MAX_COUNTS][256],
-        *stem = cli_stem(s->args->written.name ? s->args->written.name : path);
-    cw_part parts[CLI_MAX_COUNTS];
-    cli_made *made = cli_report_next(&s->report, path, 0);
-    made->name = "all";
-    if (!stem)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for names");
-    for (size_t n = 0; n < count; n++) {
-        const cli_comparison *c = &s->report.made[n].compared;
-        snprintf(names[n], sizeof names[n], "%.200s-lod%zu", stem, n);
-        parts[n] = (cw_part){
-            .mesh = &s->lod[n],
-            .name = names[n],
-            .level = n,
-            .max_error_mm = cw_mesh_comparison_max(&c->with_input),
-            .rms_error_mm = cw_mesh_comparison_rms(&c->with_input),
-        };
-    }
-    cw_status st = deliver_parts(s, parts, count, true, err);
-    if (st != CW_OK)
-        made->error = *err;
-    free(stem);
-    return st;
-}
-
-/* Each level is the result of the only piece for a while. */
-static cw_status make_levels(run_state *s, cw_error *err)
-{
-    const size_t count = s->args->lod.count;
-    cw_status st = CW_OK;
-    for (size_t n = 0; n < count && st == CW_OK; n++) {
-        cli_made *made = cli_report_next(&s->report, s->outputs.path[n], 0);
-        snprintf(s->lod_names[n], sizeof s->lod_names[n], "lod%zu", n);
-        made->name = s->lod_names[n];
-        if (n == 0)
-            st = simplify_levels(s, err);
-        if (st != CW_OK)
-            return st;
-        tell_missed(s, s->args->lod.n[n], s->lod[n].triangle_count);
-        s->pieces.piece->out = s->lod[n];
-        st = finish_result(s, made, err);
-        s->lod[n] = s->pieces.piece->out;
-        s->pieces.piece->out = (cw_mesh){0};
-        s->start = cli_seconds();
-    }
-    return st == CW_OK && s->outputs.count > count ? deliver_levels(s, err) : st;
 }
 
 static cw_status simplify_mesh(void *state, cw_error *err)
@@ -452,17 +408,11 @@ static cw_status simplify_mesh(void *state, cw_error *err)
         st = read_inputs(s, err);
     if (st != CW_OK)
         return st;
-    if (s->args->lod.count)
-        return make_levels(s, err);
-    cli_made *made = cli_report_next(&s->report, s->outputs.path[0], 0);
-    st = simplify_parts(s, err);
-    return st == CW_OK ? finish_result(s, made, err) : st;
+    return s->args->lod.count ? make_levels(s, err) : make_result(s, err);
 }
 
 static void free_state(run_state *s)
 {
-    for (size_t n = 0; n < CLI_MAX_COUNTS; n++)
-        cw_mesh_free(&s->lod[n]);
     cli_free_pieces(&s->pieces);
     cli_free_mesh(&s->mesh);
     cli_free_volume(&s->source);

@@ -19,12 +19,12 @@
 
 enum { DEFAULT_FPS = 10 };
 
-static const cli_extract_args defaults = {.check = true};
+static const cli_extract_args defaults = {.check = true, .measure = true};
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
-     "Mesh to write, in the format of its extension; may hold {level}, {step}, {stem}, {parent}, and of "
-     "labels {label} and {name}",
+     "Mesh to write, in the format of its extension; may hold {level}, {step}, {stem}, {parent}, of "
+     "--lod {lod}, and of labels {label} and {name}",
      offsetof(cli_extract_args, output), CLI_VALUES_MESH_OUTPUT},
     {"iso", 'i', CLI_NUMBERS, "V[,V...]",
      "Isovalue, or several, in the unit of the values (required; in level sets 0)",
@@ -48,10 +48,6 @@ static const cli_option options[] = {
     {"per-label", 0, CLI_FLAG, NULL,
      "Simplify each label by itself: interfaces of neighbours then part (off: together)",
      offsetof(cli_extract_args, per_label)},
-    {"lod", 0, CLI_COUNTS, "N[,N...]",
-     "Levels of detail: triangles of all surfaces, such as 50k,12k,3k; a file each, and in glTF "
-     "one with all (none)",
-     offsetof(cli_extract_args, lod)},
     {"table", 0, CLI_TEXT, "FILE",
      "Write a CSV of the labels: name, colour, volumes, area, components, neighbours",
      offsetof(cli_extract_args, table), CLI_VALUES_CSV},
@@ -96,6 +92,13 @@ static const cli_option options[] = {
      "Error limit as with --simplify, and measured both ways; with --camera out of sight "
      "(off)",
      offsetof(cli_extract_args, pixel.most)},
+    {"lod", 0, CLI_COUNTS, "N[,N...]",
+     "Triangle counts of levels of detail, such as 50k,12k,3k, of labels in all: a file each, "
+     "and a glTF with all (none)",
+     offsetof(cli_extract_args, lod)},
+    {"measure", 0, CLI_FLAG, NULL,
+     "Measure the error of --simplify and --lod, which takes a while (on; --no-measure)",
+     offsetof(cli_extract_args, measure)},
     CLI_HEADED("Only what cameras see"),
     {"camera", 0, CLI_TEXT, "FILE[,FILE...]",
      "Keep only the detail that these cameras need: .json files of 'render', or the text of "
@@ -190,7 +193,7 @@ static void name_step(const cli_extract_run *s, const cli_moment *moment, cw_err
         cwi_fail(err, why.status, "step %zu: %s", moment->number, why.message);
 }
 
-static cli_delivery describe_delivery(const cli_extract_run *s)
+cli_delivery cli_extract_describe_delivery(const cli_extract_run *s)
 {
     return (cli_delivery){.input = s->input.volume.path,
                           .write = cli_extract_write_desc(s->args),
@@ -208,7 +211,7 @@ static cw_status deliver_level(cli_extract_run *s, size_t level, const cw_part *
 {
     char text[32], simplify[64];
     cw_provenance provenance[CLI_EXTRACT_PROVENANCE];
-    cli_delivery how = describe_delivery(s);
+    cli_delivery how = cli_extract_describe_delivery(s);
     how.write.provenance = provenance;
     how.write.provenance_count = cli_extract_provenance(s, level, text, simplify, provenance);
     /* each step was measured by itself; a surface in a spool was on its way */
@@ -254,7 +257,7 @@ static cw_status make_surface(cli_extract_run *s, const cli_moment *moment, size
     cli_made *made = begin_surface(s, moment, n);
     if (s->input.volume.streams)
         return finish_surface(s, moment, made, stream_surface(s, moment, n, made, err), err);
-    const cli_delivery how = describe_delivery(s);
+    const cli_delivery how = cli_extract_describe_delivery(s);
     cw_mesh mesh = {0};
     cw_extract_counts counts = {0};
     cw_status st = cli_extract_make(s, made, &mesh, &counts, err);
@@ -287,6 +290,8 @@ static cw_status make_surfaces(cli_extract_run *s, const cli_moment *moment, siz
                                cw_error *err)
 {
     const size_t levels = s->args->iso.count;
+    if (s->args->lod.count)
+        return cli_extract_make_lod(s, err);
     for (size_t n = 0; n < levels; n++) {
         cw_status st = make_surface(s, moment, n, err);
         if (st != CW_OK && (st != CW_ERR_EMPTY || levels * s->input.series.count == 1))
@@ -422,6 +427,12 @@ static cw_status plan_frames(cli_extract_run *s, cw_error *err)
     return cli_frames_reserve(&s->output.frames, s->input.series.count, err);
 }
 
+/* Returns the name of the report's list of meshes; NULL: there is one mesh, and no list. */
+static const char *name_results(const cli_extract_args *args, bool is_list)
+{
+    return args->lod.count ? "levels" : is_list ? "surfaces" : NULL;
+}
+
 static cw_status plan_steps(cli_extract_run *s, cw_error *err)
 {
     const cli_extract_args *args = s->args;
@@ -430,9 +441,12 @@ static cw_status plan_steps(cli_extract_run *s, cw_error *err)
     steps.given = steps.given || args->animate;
     cw_status st = cli_find_series(&s->input.series, &args->common, &args->input, &steps, err);
     if (st == CW_OK)
+        st = cli_extract_check_lod_steps(s, err);
+    if (st == CW_OK)
         st = cli_extract_check_outputs(s, err);
-    const size_t surfaces = s->input.series.count * args->iso.count;
-    s->output.report.several = surfaces > 1 || s->input.series.given ? "surfaces" : NULL;
+    const size_t surfaces =
+        args->lod.count ? args->lod.count : s->input.series.count * args->iso.count;
+    s->output.report.several = name_results(args, surfaces > 1 || s->input.series.given);
     if (st == CW_OK)
         st = cli_report_reserve(&s->output.report, surfaces + 1, err);
     return st == CW_OK ? plan_frames(s, err) : st;
@@ -470,7 +484,7 @@ static cw_status run_extract(void *p, cw_error *err)
         cli_is_level_set(args->common.inputs[0], &args->input))
         args->iso.count = 1; /* 0 */
     s.output.report.command = "extract";
-    s.output.report.several = args->iso.count > 1 ? "surfaces" : NULL;
+    s.output.report.several = name_results(args, args->iso.count > 1);
     s.output.report.params = cli_extract_put_params;
     s.output.report.facts = cli_extract_put_series;
     s.output.report.args = &s;

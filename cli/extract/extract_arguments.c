@@ -3,6 +3,7 @@
 
 #include "cli/extract/label_run.h"
 #include "cli/extract/stream_run.h"
+#include "cli/results/detail_levels.h"
 #include "cli/results/pvd_list.h"
 #include "core/base/status.h"
 
@@ -55,7 +56,11 @@ cw_status cli_extract_check_outputs(cli_extract_run *s, cw_error *err)
         files ? (const char *const *)s->input.series.files.path : args->common.inputs;
     cli_series named = s->input.series;
     named.count = args->animate ? 1 : named.count;
-    cw_status st = cli_name_outputs(&s->output.files, args->output, &named, &args->iso, err);
+    cw_status st =
+        args->lod.count
+            ? cli_name_detail_levels(&s->output.files, args->output, args->format,
+                                     args->common.inputs[0], &args->lod, err)
+            : cli_name_outputs(&s->output.files, args->output, &named, &args->iso, err);
     if (st == CW_OK)
         st = check_report(s, inputs, count, err);
     if (st == CW_OK)
@@ -81,7 +86,8 @@ static cw_status check_animation(const cli_extract_args *args, cw_error *err)
 /* Returns the name of the option that asks for fewer triangles. */
 static const char *name_reducer(const cli_extract_args *args)
 {
-    return args->pixel.camera       ? "--camera"
+    return args->lod.count          ? "--lod"
+           : args->pixel.camera     ? "--camera"
            : args->pixel.most.given ? "--max-error"
                                     : "--simplify";
 }
@@ -95,6 +101,56 @@ static cw_status check_pixels(cli_extract_run *s, cw_error *err)
     if ((args->pixel.camera || args->pixel.most.given) &&
         (args->simplify.error.given || args->simplify.triangles))
         return cwi_fail(err, CW_ERR_ARGUMENT, "%s or --simplify, not both", name_reducer(args));
+    return CW_OK;
+}
+
+/* Refuses options that make several surfaces, or a simplified one of another kind. */
+static cw_status check_lod(const cli_extract_args *args, cw_error *err)
+{
+    const struct {
+        bool is_given;
+        const char *option;
+    } refused[] = {
+        {args->simplify.error.given || args->simplify.triangles, "--simplify"},
+        {args->pixel.most.given, "--max-error"},
+        {args->pixel.camera != NULL, "--camera"},
+        {args->pixel.pixels.given, "--pixel-error"},
+        {args->pixel.cull, "--cull"},
+        {args->pixel.shading.given, "--shading"},
+        {args->pixel.size.count > 0, "--size"},
+        {args->snap.value > 0, "--snap"},
+        {args->steps.given, "--steps"},
+        {args->animate, "--animate"},
+        {args->pvd != NULL, "--pvd"},
+        {args->prove_crop, "--prove-crop"},
+    };
+    if (!args->lod.count)
+        return CW_OK;
+    for (size_t n = 0; n < sizeof refused / sizeof *refused; n++)
+        if (refused[n].is_given)
+            return cwi_fail(err, CW_ERR_ARGUMENT, "--lod cannot be combined with %s",
+                            refused[n].option);
+    if (args->iso.count > 1)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--lod makes levels of detail of one surface; --iso lists %zu",
+                        args->iso.count);
+    return cli_check_lod(&args->lod, err);
+}
+
+cw_status cli_extract_check_lod_steps(const cli_extract_run *s, cw_error *err)
+{
+    if (s->args->lod.count && s->input.series.count > 1)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--lod makes levels of detail of one surface; there are %zu time steps",
+                        s->input.series.count);
+    return CW_OK;
+}
+
+static cw_status check_measure(const cli_extract_args *args, cw_error *err)
+{
+    if (!args->measure && !args->lod.count && !args->simplify.error.given &&
+        !args->simplify.triangles)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--no-measure is for --simplify and --lod");
     return CW_OK;
 }
 
@@ -136,7 +192,11 @@ cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--stream always cannot be combined with %s, which needs all in memory",
                         cli_find_unstreamed(args));
-    st = check_pixels(s, err);
+    st = check_lod(args, err);
+    if (st == CW_OK)
+        st = check_measure(args, err);
+    if (st == CW_OK)
+        st = check_pixels(s, err);
     if (st == CW_OK)
         st = check_crop(args, err);
     if (st != CW_OK)
@@ -147,7 +207,7 @@ cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--snap or %s, not both: each removes thin triangles",
                         name_reducer(args));
-    if (cli_extract_is_simplified(args) && !cw_simplify_available())
+    if ((cli_extract_is_simplified(args) || args->lod.count) && !cw_simplify_available())
         return cwi_fail(
             err, CW_ERR_UNSUPPORTED,
             "%s needs OpenMesh, which this build lacks: install libopenmesh-dev and "

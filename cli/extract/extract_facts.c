@@ -2,6 +2,10 @@
  * into the records of its files. */
 #include "cli/extract/extract_run.h"
 
+#include "cli/results/detail_levels.h"
+
+#include "core/volume/volume.h"
+
 #include <math.h>
 #include <stdio.h>
 
@@ -63,6 +67,11 @@ bool cli_extract_is_simplified(const cli_extract_args *args)
            args->pixel.most.given;
 }
 
+bool cli_extract_shades_levels(const cli_extract_run *s)
+{
+    return cwi_volume_expect_dense(&s->input.volume.view, "normals", NULL) == CW_OK;
+}
+
 double cli_extract_shading(const cli_extract_args *args)
 {
     return args->pixel.shading.given ? args->pixel.shading.value : SHADING;
@@ -100,6 +109,8 @@ void cli_extract_put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_number(j, "simplify_error_mm", cli_extract_error_mm(s));
     else if (args->simplify.triangles)
         cli_json_count(j, "simplify_triangles", args->simplify.triangles);
+    if (args->lod.count)
+        cli_json_lod(j, &args->lod);
     if (args->least.given)
         cli_json_number(j, "min_volume_mm3", cli_extract_least_mm3(s));
     put_pixels(j, s);

@@ -23,7 +23,7 @@ typedef struct cli_extract_args {
     cli_amount least;
     cli_pixel_args pixel;
     int inside, normals, progress, topology, placement, accel;
-    bool open, no_clobber, local, check, animate, prove_crop;
+    bool open, no_clobber, local, check, measure, animate, prove_crop;
     const char *part, *manifest, *queue;
     size_t parts;
     int stream;
@@ -73,6 +73,9 @@ CW_NODISCARD cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err)
 /* Names and checks the outputs, once it is known of which steps there will be one. */
 CW_NODISCARD cw_status cli_extract_check_outputs(cli_extract_run *s, cw_error *err);
 
+/* Fails for several steps beside --lod. */
+CW_NODISCARD cw_status cli_extract_check_lod_steps(const cli_extract_run *s, cw_error *err);
+
 cw_write_desc cli_extract_write_desc(const cli_extract_args *args);
 
 /* ---- facts ------------------------------------------------------------------------------- */
@@ -93,6 +96,9 @@ double cli_extract_least_mm3(const cli_extract_run *s);
 
 bool cli_extract_is_low(const cli_extract_run *s);
 bool cli_extract_is_simplified(const cli_extract_args *args);
+
+/* Returns true if levels of detail get normals of the field; else they keep those of the surface. */
+bool cli_extract_shades_levels(const cli_extract_run *s);
 
 /* How far normals may turn, in degrees. */
 double cli_extract_shading(const cli_extract_args *args);
@@ -127,5 +133,11 @@ CW_NODISCARD cw_status cli_extract_prove(cli_extract_run *s, cli_made *made,
 /* Measures what --crop saved, if that is asked for. */
 CW_NODISCARD cw_status cli_extract_prove_crop(cli_extract_run *s, const cli_moment *moment,
                                               cli_made *made, cw_error *err);
+
+/* Returns how the surfaces of the run are written, without the record of their making. */
+cli_delivery cli_extract_describe_delivery(const cli_extract_run *s);
+
+/* Makes and writes the levels of detail of the surface: --lod. */
+CW_NODISCARD cw_status cli_extract_make_lod(cli_extract_run *s, cw_error *err);
 
 #endif

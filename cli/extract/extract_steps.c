@@ -35,7 +35,8 @@ cli_wanted cli_extract_wants(const cli_extract_run *s, double iso)
                     .simple_topology = s->args->topology,
                     .cubic_placement = s->args->placement,
                     .snap = s->args->snap.value,
-                    .no_normals = s->args->normals,
+                    .no_normals = s->args->normals ||
+                                  (s->args->lod.count && cli_extract_shades_levels(s)),
                     .threads = (int)s->args->input.threads,
                     .max_triangles = s->args->max_triangles,
                     .extra_bytes = s->args->check  ? cli_check_bytes()
@@ -203,7 +204,7 @@ cw_status cli_extract_judge(cli_extract_run *s, cli_made *made, const cw_mesh *m
                         "%s triangles were requested, %s are left: removing more would tear "
                         "the surface, flip it or make it intersect itself",
                         cli_count(args->simplify.triangles), cli_count(mesh->triangle_count));
-    if (!args->check)
+    if (!args->check || !args->measure)
         return CW_OK;
     if (s->input.volume.streams) {
         cli_say(

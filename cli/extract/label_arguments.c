@@ -59,6 +59,7 @@ cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
         {args->pixel.cull, "--cull"},
         {args->pixel.shading.given, "--shading"},
         {args->pixel.size.count > 0, "--size"},
+        {!args->measure, "--no-measure"},
         {args->fps.given, "--fps"},
         {args->steps.given, "--steps"},
         {args->animate, "--animate"},
@@ -72,7 +73,6 @@ cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
                : args->table          ? fail_without("--table", err)
                : args->shared_faces   ? fail_without("--shared-faces", err)
                : args->per_label      ? fail_without("--per-label", err)
-               : args->lod.count      ? fail_without("--lod", err)
                : args->require_labels ? fail_without("--require-labels", err)
                                       : CW_OK;
     for (size_t n = 0; n < sizeof refused / sizeof *refused; n++)

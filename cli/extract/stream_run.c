@@ -27,6 +27,7 @@ const char *cli_find_unstreamed(const cli_extract_args *args)
         {"--min-volume beside --simplify", args->least.given && has_simplify(args)},
         {"--snap", args->snap.value > 0},
         {"--animate", args->animate},
+        {"--lod", args->lod.count > 0},
         {"--prove-crop", args->prove_crop},
         {"--compress", args->compress.kind != 0 && !has_simplify(args)},
         {"--component mag", args->input.component.magnitude},

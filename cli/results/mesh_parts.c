@@ -28,6 +28,18 @@ static void measure_box(cli_pieces *p)
     p->diagonal_mm = hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
 }
 
+cw_status cli_take_surface(cli_pieces *p, const char *path, const cw_mesh *mesh, cw_error *err)
+{
+    *p = (cli_pieces){.path = path, .piece = calloc(1, sizeof *p->piece)};
+    if (!p->piece)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a surface");
+    p->piece->input = *mesh;
+    p->count = 1;
+    p->triangles = mesh->triangle_count;
+    measure_box(p);
+    return CW_OK;
+}
+
 /* Those without triangles go. */
 static cw_status weld_parts(cli_pieces *p, const cli_mesh *m, cw_error *err)
 {
@@ -90,6 +102,7 @@ cw_status cli_measure_pieces(cli_pieces *p, int threads, cw_error *err)
 {
     const cw_quality_desc desc = {.weld = CW_WELD_LOCAL, .threads = threads};
     cw_status st = CW_OK;
+    p->triangles = 0;
     for (size_t n = 0; n < p->count && st == CW_OK; n++) {
         st = cw_quality_measure(&p->piece[n].input, &desc, &p->piece[n].before, err);
         p->triangles += p->piece[n].input.triangle_count;

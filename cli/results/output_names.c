@@ -238,12 +238,18 @@ static char *with_lod(const char *text)
 cw_status cli_name_lod_outputs(cli_outputs *outputs, const char *text, const char *input,
                                size_t levels, cli_lod_files files, cw_error *err)
 {
-    char *stem = NULL, *plain = NULL, *made = NULL, number[24] = "0";
+    enum { LOD = 1, FIELDS = 3 };
+    char *stem = NULL, *parent = cli_parent(input), *plain = NULL, *made = NULL,
+         number[24] = "0";
     cw_status st = reserve_names(outputs, levels + 1, &stem, input, err);
-    cli_part parts[] = {{.name = "stem", .value = stem}, {.name = "lod", .value = number}};
+    cli_part parts[FIELDS] = {{.name = "stem", .value = stem},
+                              [LOD] = {.name = "lod", .value = number},
+                              {.name = "parent", .value = parent}};
+    if (st == CW_OK && !parent)
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
     if (st == CW_OK) /* only to see whether there is a {lod} in it */
-        st = cli_fill_template(text, parts, 2, &plain, err);
-    const bool apart = parts[1].used;
+        st = cli_fill_template(text, parts, FIELDS, &plain, err);
+    const bool apart = parts[LOD].used;
     if (st == CW_OK && apart && files == CLI_LOD_TOGETHER)
         st = cwi_fail(err, CW_ERR_ARGUMENT,
                       "this format holds all levels of --lod in one output; '%s' holds {lod}",
@@ -252,12 +258,13 @@ cw_status cli_name_lod_outputs(cli_outputs *outputs, const char *text, const cha
         st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
     for (size_t n = 0; n < levels && st == CW_OK && files != CLI_LOD_TOGETHER; n++) {
         snprintf(number, sizeof number, "%zu", n);
-        st = add_output(outputs, apart ? text : made, parts, 2, err);
+        st = add_output(outputs, apart ? text : made, parts, FIELDS, err);
     }
     if (st == CW_OK && !apart && files != CLI_LOD_APART)
-        st = add_output(outputs, text, parts, 2, err);
+        st = add_output(outputs, text, parts, FIELDS, err);
     free(made);
     free(plain);
+    free(parent);
     free(stem);
     return st;
 }

@@ -49,14 +49,14 @@ typedef enum cli_lod_files {
     CLI_LOD_TOGETHER
 } cli_lod_files;
 
-/* Returns the files of levels of a label map: glTF has both kinds, a mesh of neuroglancer is all
+/* Returns the files of levels: glTF has both kinds, a mesh of neuroglancer is all
  * levels together. */
 cli_lod_files cli_lod_files_of(const char *output, const char *format);
 
 /* Checks the counts of --lod: each at least 1, and fewer than the one before. */
 CW_NODISCARD cw_status cli_check_lod(const cli_counts *lod, cw_error *err);
 
-/* Names one output a level of detail: {lod} (its number, from 0) and {stem} are filled in. A
+/* Names one output a level of detail: {lod} (its number, from 0), {stem} and {parent} are filled in. A
  * text without {lod} gets "-lod0" and so on in front of its extension, and, with both kinds of
  * files, is itself the name of one more output, the last. Together there is that one alone.
  * Free it with cli_free_outputs(). */

@@ -22,7 +22,7 @@ from ._mesh import Mesh
 from ._progress import Progress
 from ._read import read_mesh, read_volume
 from ._render import render, write_png
-from ._simplify import Smoothed, hollow, offset, simplify, smooth, weld
+from ._simplify import Smoothed, hollow, offset, simplify, simplify_levels, smooth, weld
 from ._volume import Label, Statistics, Volume
 from ._write import Written, write
 
@@ -60,6 +60,7 @@ __all__ = [
     "render",
     "report",
     "simplify",
+    "simplify_levels",
     "smooth",
     "weld",
     "write",

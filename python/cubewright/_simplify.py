@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from ctypes import byref
+from collections.abc import Iterable, Sequence
+from ctypes import byref, c_size_t
 from dataclasses import dataclass
 
 from . import _declarations as c
 from ._errors import call
 from ._library import lib
 from ._mesh import ARRAYS, Mesh, take_mesh
-from ._options import take_count, take_flag, take_length, take_number, take_numbers, take_threads
+from ._options import (
+    name_type,
+    take_count,
+    take_flag,
+    take_length,
+    take_number,
+    take_numbers,
+    take_threads,
+)
 from ._progress import Progress, Reporter
 
 
@@ -57,6 +65,50 @@ def simplify(
     out = Mesh._from_c(c.cw_mesh())
     reporter.call(lib.cw_simplify, byref(source), byref(desc), byref(out._struct), None)
     return out
+
+
+def simplify_levels(
+    mesh: Mesh,
+    triangles: Sequence[int],
+    *,
+    normal_weight: float = 0.0,
+    color_weight: float = 0.0,
+    scalar_weight: float = 0.0,
+    allow_intersections: bool = False,
+    keep_border: bool = False,
+    threads: int = 0,
+    progress: Progress = None,
+) -> list[Mesh]:
+    """Returns levels of detail of a mesh, each made from the one before.
+
+    triangles  number of each level, fewer than of the one before. Other arguments, and what stays
+               the same, are as of simplify()
+
+    Raises Error: ARGUMENT (the numbers do not fall), UNSUPPORTED, LIMIT, NO_MEMORY, CANCELLED.
+    """
+    source = take_mesh("mesh", mesh)
+    reporter = Reporter(progress)
+    if isinstance(triangles, (str, bytes)) or not isinstance(triangles, Iterable):
+        raise TypeError(f"triangles must be whole numbers, not {name_type(triangles)}")
+    counts = [take_count("triangles", each, 1) for each in triangles]
+    if not counts:
+        raise ValueError("triangles is empty; a number for each level was expected")
+    desc = c.cw_simplify_desc(
+        normal_weight=take_number("normal_weight", normal_weight),
+        color_weight=take_number("color_weight", color_weight),
+        scalar_weight=take_number("scalar_weight", scalar_weight),
+        allow_crossings=take_flag("allow_intersections", allow_intersections),
+        keep_border=take_flag("keep_border", keep_border),
+        threads=take_threads(threads),
+        progress=reporter.struct,
+    )
+    out = (c.cw_mesh * len(counts))()
+    levels = [Mesh._from_c(each) for each in out]
+    numbers = (c_size_t * len(counts))(*counts)
+    reporter.call(
+        lib.cw_simplify_levels, byref(source), byref(desc), numbers, len(counts), out, None
+    )
+    return levels
 
 
 @dataclass(frozen=True)

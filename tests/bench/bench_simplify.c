@@ -1,12 +1,17 @@
 /* Compares cw_simplify() with other programs' simplifiers: time, memory, and the result.
  *
- * bench_simplify [--inputs sphere,gyroid,head,bone] [--targets 50,10,2] [--peers
- * cubewright,...]
- *                [--threads N] [--repeat 1] [--triangles 1000000] [--data FOLDER] [--csv FILE]
+ * bench_simplify [--inputs sphere,gyroid,head,bone] [--targets 50,10,2] [--error 0.1,0.2mm]
+ *                [--peers cubewright,...] [--threads N] [--repeat 1] [--triangles 1000000]
+ *                [--data FOLDER] [--csv FILE]
  *
  * Prints a JSON line a case on stdout, a table on stderr; --csv writes the same once more.
  * Targets are percents of the triangles; --threads is for ours, the others have one;
  * --triangles is about how many the made inputs have. Scans are measured where FOLDER has them.
+ *
+ * --error lists limits in millimetres, and replaces the default targets. For each,
+ * `cubewright-error` simplifies within the limit, and the other programs to as many triangles. Of
+ * the peers two take an error: `meshoptimizer-error` is no bound. `cgal-envelope` is a bound one
+ * way; it takes minutes for a hundred thousand triangles, and runs if --peers names it.
  *
  * Times are medians, the programs taking turns; they contain the copy into a program's own data
  * structure (build_s) and the copy of the result. peak_mb is what the process grew by.
@@ -19,7 +24,8 @@
 #define _GNU_SOURCE /* memfd_create */
 #include <cubewright/cubewright.h>
 
-#include "simplify_peers.h"
+#include "bench_process.h"
+#include "simplify_programs.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -27,64 +33,12 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
 enum { MAX_RUNS = 99, MAX_PATH = 4096 };
 
-/* ---- programs and inputs ----------------------------------------------------------------- */
-
-static int our_threads;
-
-/* Without normals, as the others. */
-static bool ask_ours(const cw_mesh *in, const cw_simplify_desc *desc, cw_mesh *out)
-{
-    cw_mesh bare = *in;
-    cw_error err = {0};
-    bare.normals = NULL;
-    const cw_status st = cw_simplify(&bare, desc, out, NULL, &err);
-    if (st != CW_OK)
-        fprintf(stderr, "%s\n", err.message);
-    return st == CW_OK;
-}
-
-static bool ours(const cw_mesh *in, size_t triangles, cw_mesh *out, double *build_s)
-{
-    *build_s = 0;
-    return ask_ours(in, &(cw_simplify_desc){.triangles = triangles, .threads = our_threads},
-                    out);
-}
-
-static bool ours_crossing(const cw_mesh *in, size_t triangles, cw_mesh *out, double *build_s)
-{
-    const cw_simplify_desc desc = {
-        .triangles = triangles, .threads = our_threads, .allow_crossings = true};
-    *build_s = 0;
-    return ask_ours(in, &desc, out);
-}
-enum { OURS, OURS_CROSSING, MESHOPT, VTK, OPENMESH, CGAL, PROGRAMS };
-
-static const struct {
-    const char *name;
-    bench_simplifier *simplify;
-} programs[PROGRAMS] = {
-    [OURS] = {"cubewright", ours},
-    [OURS_CROSSING] = {"cubewright-crossing", ours_crossing}, /* allow_crossings */
-    [MESHOPT] = {"meshoptimizer", bench_meshopt},
-    [VTK] = {"vtk", bench_vtk},
-    [OPENMESH] = {"openmesh", bench_openmesh},
-    [CGAL] = {"cgal", bench_cgal},
-};
-
-static bool is_here(int program)
-{
-    const bool ours_is = cw_simplify_available();
-    const bool here[PROGRAMS] = {
-        ours_is, ours_is, bench_has_meshopt, bench_has_vtk, bench_has_openmesh, bench_has_cgal};
-    return here[program];
-}
+/* ---- inputs ------------------------------------------------------------------------------ */
 
 /* Made inputs have about a million triangles at the number of voxels along each axis given
  * here, and others in proportion to its square. */
@@ -103,8 +57,7 @@ static const struct {
 
 enum { INPUTS = sizeof inputs / sizeof *inputs };
 
-/* ---------------------------------------------------------------- processes and
- * their results */
+/* ---- what peers share -------------------------------------------------------------------- */
 
 double bench_now_s(void)
 {
@@ -120,91 +73,6 @@ bool bench_mesh_alloc(cw_mesh *mesh, size_t vertices, size_t triangles)
     mesh->positions = malloc((3 * vertices + 1) * sizeof(float));
     mesh->triangles = malloc((3 * triangles + 1) * sizeof(uint32_t));
     return mesh->positions && mesh->triangles;
-}
-
-/* Memory that a child's answers can be read from. */
-static void *shared_new(size_t bytes)
-{
-    void *p = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (p == MAP_FAILED) {
-        perror("bench_simplify");
-        exit(1);
-    }
-    return p;
-}
-
-/* Whether work came to its end, and said so. */
-static bool in_child(bool (*work)(void *task), void *task)
-{
-    int status = 1;
-    fflush(NULL);
-    const pid_t child = fork();
-    if (child == 0) {
-        const bool done = work(task);
-        fflush(NULL);
-        _exit(done ? 0 : 1);
-    }
-    return child > 0 && waitpid(child, &status, 0) == child && status == 0;
-}
-
-/* Meshes go from process to process in files without names: this, positions, triangles. */
-typedef struct mesh_head {
-    double origin[3];
-    uint64_t vertices, triangles;
-} mesh_head;
-
-static bool put(int file, const void *data, size_t bytes)
-{
-    for (const char *p = data; bytes > 0;) {
-        const ssize_t n = write(file, p, bytes);
-        if (n <= 0)
-            return false;
-        p += n;
-        bytes -= (size_t)n;
-    }
-    return true;
-}
-
-static bool put_mesh(int file, const cw_mesh *mesh)
-{
-    mesh_head head = {.vertices = mesh->vertex_count, .triangles = mesh->triangle_count};
-    memcpy(head.origin, mesh->origin, sizeof head.origin);
-    return put(file, &head, sizeof head) &&
-           put(file, mesh->positions, 12 * mesh->vertex_count) &&
-           put(file, mesh->triangles, 12 * mesh->triangle_count);
-}
-
-/* A mesh that stands in such a file. */
-typedef struct seen_mesh {
-    cw_mesh mesh;
-    void *map;
-    size_t bytes;
-} seen_mesh;
-
-static seen_mesh see_mesh(int file)
-{
-    struct stat st;
-    seen_mesh m = {0};
-    if (fstat(file, &st) != 0 || (size_t)st.st_size < sizeof(mesh_head))
-        return m;
-    m.bytes = (size_t)st.st_size;
-    m.map = mmap(NULL, m.bytes, PROT_READ, MAP_SHARED, file, 0);
-    if (m.map == MAP_FAILED)
-        return (seen_mesh){0};
-    const mesh_head *head = m.map;
-    memcpy(m.mesh.origin, head->origin, sizeof head->origin);
-    m.mesh.vertex_count = head->vertices;
-    m.mesh.triangle_count = head->triangles;
-    m.mesh.positions = (float *)(head + 1);
-    m.mesh.triangles = (uint32_t *)(m.mesh.positions + 3 * head->vertices);
-    return m;
-}
-
-static void unsee_mesh(seen_mesh *m)
-{
-    if (m->map)
-        munmap(m->map, m->bytes);
-    *m = (seen_mesh){0};
 }
 
 /* ---- making an input --------------------------------------------------------------------- */
@@ -242,15 +110,22 @@ static bool make_input(void *task)
         st = cw_extract(&volume, &desc, &mesh, NULL, &err);
     if (st != CW_OK)
         fprintf(stderr, "%s\n", err.message);
-    return st == CW_OK && put_mesh(m->file, &mesh);
+    return st == CW_OK && bench_put_mesh(m->file, &mesh);
 }
 
 /* ---- one run of one program -------------------------------------------------------------- */
 
+/* A target of a case. */
+typedef struct aim {
+    size_t triangles;
+    double percent;  /* of the input's triangles */
+    double error_mm; /* 0: the triangles alone */
+} aim;
+
 typedef struct running {
     const cw_mesh *in;
     int program, file;
-    size_t triangles;
+    aim target;
     double wall_s, cpu_s, build_s, peak_mb;
 } running;
 
@@ -291,7 +166,10 @@ static bool run_program(void *task)
         return false;
     getrusage(RUSAGE_SELF, &before);
     const double begin = bench_now_s();
-    const bool done = programs[r->program].simplify(r->in, r->triangles, &out, &r->build_s);
+    const bool done = bench_programs[r->program].within
+                          ? bench_programs[r->program].within(r->in, r->target.error_mm, &out)
+                          : bench_programs[r->program].simplify(r->in, r->target.triangles,
+                                                                &out, &r->build_s);
     r->wall_s = bench_now_s() - begin;
     getrusage(RUSAGE_SELF, &after);
     r->cpu_s = seconds(after.ru_utime) + seconds(after.ru_stime) - seconds(before.ru_utime) -
@@ -300,7 +178,7 @@ static bool run_program(void *task)
     if (!done)
         return false;
     memcpy(out.origin, r->in->origin, sizeof out.origin);
-    return put_mesh(r->file, &out);
+    return bench_put_mesh(r->file, &out);
 }
 
 /* ---- what became of the mesh ------------------------------------------------------------- */
@@ -396,7 +274,7 @@ static double over(double a, double b)
 
 static void print_csv_head(FILE *csv)
 {
-    fputs("input,input_triangles,percent,program,threads", csv);
+    fputs("input,input_triangles,error_mm,percent,program,threads", csv);
 #define HEAD(name, format, value) fputs("," name, csv);
     FIELDS(HEAD)
 #undef HEAD
@@ -405,71 +283,72 @@ static void print_csv_head(FILE *csv)
 
 static void print_table_head(void)
 {
-    fprintf(
-        stderr, "%-7s %5s %-19s %8s %8s %7s %7s %9s %9s %8s %6s %9s %6s %8s %7s %7s %7s %7s\n",
-        "input", "%", "program", "s", "cpu s", "build s", "MB", "triangles", "rms %", "max mm",
-        "n-m", "crossing", "parts", "euler", "t/our", "t/mopt", "rms/our", "rms/mop");
+    fprintf(stderr,
+            "%-7s %5s %5s %-19s %8s %8s %7s %7s %9s %9s %8s %6s %9s %6s %8s %7s %7s %7s %7s\n",
+            "input", "mm", "%", "program", "s", "cpu s", "build s", "MB", "triangles", "rms %",
+            "max mm", "n-m", "crossing", "parts", "euler", "t/our", "t/mopt", "rms/our",
+            "rms/mop");
 }
 
-static void print_table(const char *input, double percent, int program, const row *r,
+static void print_table(const char *input, const aim *target, int program, const row *r,
                         const row *own, const row *meshopt)
 {
     const judging *j = &r->found;
-    fprintf(stderr,
-            "%-7s %5g %-19s %8.3f %8.3f %7.3f %7.0f %9zu %9.5f %8.4f %6zu %9zu %6zu %8lld "
-            "%7.2f %7.2f %7.2f %7.2f\n",
-            input, percent, programs[program].name, r->wall_s, r->cpu_s, r->build_s, r->peak_mb,
-            j->quality.triangles, j->rms_percent, j->max_mm, j->quality.nonmanifold_edges,
-            j->crossings, j->quality.components, (long long)j->quality.euler,
-            over(r->wall_s, own->wall_s), over(r->wall_s, meshopt->wall_s),
-            over(j->rms_percent, own->found.rms_percent),
-            over(j->rms_percent, meshopt->found.rms_percent));
+    fprintf(
+        stderr,
+        "%-7s %5g %5.3g %-19s %8.3f %8.3f %7.3f %7.0f %9zu %9.5f %8.4f %6zu %9zu %6zu %8lld "
+        "%7.2f %7.2f %7.2f %7.2f\n",
+        input, target->error_mm, target->percent, bench_programs[program].name, r->wall_s,
+        r->cpu_s, r->build_s, r->peak_mb, j->quality.triangles, j->rms_percent, j->max_mm,
+        j->quality.nonmanifold_edges, j->crossings, j->quality.components,
+        (long long)j->quality.euler, over(r->wall_s, own->wall_s),
+        over(r->wall_s, meshopt->wall_s), over(j->rms_percent, own->found.rms_percent),
+        over(j->rms_percent, meshopt->found.rms_percent));
 }
 
-static void print_row(const char *input, size_t triangles, double percent, int program,
+static void print_row(const char *input, size_t triangles, const aim *target, int program,
                       const row *rows, FILE *csv)
 {
     const row *r = &rows[program], *own = &rows[OURS], *meshopt = &rows[MESHOPT];
-    const int threads = program == OURS || program == OURS_CROSSING ? our_threads : 1;
-    printf("{\"input\": \"%s\", \"input_triangles\": %zu, \"percent\": %g, "
-           "\"program\": \"%s\", \"threads\": %d",
-           input, triangles, percent, programs[program].name, threads);
+    const int threads = program <= OURS_CROSSING ? bench_our_threads : 1;
+    printf("{\"input\": \"%s\", \"input_triangles\": %zu, \"error_mm\": %g, "
+           "\"percent\": %.4g, \"program\": \"%s\", \"threads\": %d",
+           input, triangles, target->error_mm, target->percent, bench_programs[program].name,
+           threads);
 #define JSON(name, format, value) printf(", \"" name "\": " format, value);
     FIELDS(JSON)
 #undef JSON
     printf("}\n");
     fflush(stdout);
     if (csv) {
-        fprintf(csv, "%s,%zu,%g,%s,%d", input, triangles, percent, programs[program].name,
-                threads);
+        fprintf(csv, "%s,%zu,%g,%.4g,%s,%d", input, triangles, target->error_mm,
+                target->percent, bench_programs[program].name, threads);
 #define CSV(name, format, value) fprintf(csv, "," format, value);
         FIELDS(CSV)
 #undef CSV
         fputc('\n', csv);
         fflush(csv);
     }
-    print_table(input, percent, program, r, own, meshopt);
+    print_table(input, target, program, r, own, meshopt);
 }
 
 /* ---- cases ------------------------------------------------------------------------------- */
 
 typedef struct settings {
-    const char *inputs, *targets, *peers, *data;
+    const char *inputs, *targets, *errors, *peers, *data;
     size_t triangles;
     int repeat;
     FILE *csv;
 } settings;
 
 /* One more run of a program; the mesh of the first is judged. */
-static bool run_once(const cw_mesh *in, int program, size_t triangles, row *r)
+static bool run_once(const cw_mesh *in, int program, const aim *target, row *r)
 {
-    running *task = shared_new(sizeof *task);
-    *task = (running){.in = in,
-                      .program = program,
-                      .file = memfd_create("result", 0),
-                      .triangles = triangles};
-    in_child(warm, task);
-    bool done = task->file >= 0 && in_child(run_program, task);
+    running *task = bench_shared_new(sizeof *task);
+    *task = (running){
+        .in = in, .program = program, .file = memfd_create("result", 0), .target = *target};
+    bench_in_child(warm, task);
+    bool done = task->file >= 0 && bench_in_child(run_program, task);
     if (done) {
         r->walls[r->runs] = task->wall_s;
         r->cpus[r->runs] = task->cpu_s;
@@ -477,13 +356,13 @@ static bool run_once(const cw_mesh *in, int program, size_t triangles, row *r)
         r->peak_mb = fmax(r->peak_mb, task->peak_mb);
     }
     if (done && r->runs == 1) {
-        seen_mesh out = see_mesh(task->file);
-        judging *j = shared_new(sizeof *j);
+        bench_seen_mesh out = bench_see_mesh(task->file);
+        judging *j = bench_shared_new(sizeof *j);
         *j = (judging){.in = in, .out = &out.mesh};
-        done = out.map && in_child(judge, j);
+        done = out.map && bench_in_child(judge, j);
         r->found = *j;
         munmap(j, sizeof *j);
-        unsee_mesh(&out);
+        bench_unsee_mesh(&out);
     }
     close(task->file);
     munmap(task, sizeof *task);
@@ -511,17 +390,31 @@ static bool listed(const char *list, const char *name)
     return !*list;
 }
 
-static void measure(const char *input, const cw_mesh *in, double percent, const settings *s)
+/* Returns true if a program takes part in a case: those that take an error need one, and ours
+ * leads then. CGAL's envelope takes minutes, and has to be named. */
+static bool takes_part(int program, const aim *target, const settings *s)
+{
+    if (!bench_is_here(program) || (bench_programs[program].within && target->error_mm == 0))
+        return false;
+    if (program == CGAL_ENVELOPE && !*s->peers)
+        return false;
+    return program == OURS_ERROR || listed(s->peers, bench_programs[program].name);
+}
+
+static void measure(const char *input, const cw_mesh *in, aim target, const settings *s)
 {
     static row rows[PROGRAMS];
-    const size_t triangles = (size_t)((double)in->triangle_count * percent / 100);
     memset(rows, 0, sizeof rows);
     for (int n = 0; n < s->repeat; n++)
         for (int p = 0; p < PROGRAMS; p++) {
             row *r = &rows[p];
-            r->asked = is_here(p) && listed(s->peers, programs[p].name);
+            r->asked = takes_part(p, &target, s);
             if (r->asked && !r->failed)
-                r->failed = !run_once(in, p, triangles, r);
+                r->failed = !run_once(in, p, &target, r);
+            if (p == OURS_ERROR && r->asked) {
+                target.triangles = r->found.quality.triangles;
+                target.percent = 100 * (double)target.triangles / (double)in->triangle_count;
+            }
         }
     for (int p = 0; p < PROGRAMS; p++) {
         row *r = &rows[p];
@@ -531,16 +424,41 @@ static void measure(const char *input, const cw_mesh *in, double percent, const 
     }
     for (int p = 0; p < PROGRAMS; p++)
         if (rows[p].failed)
-            fprintf(stderr, "%-7s %5g %-19s failed\n", input, percent, programs[p].name);
+            fprintf(stderr, "%-7s %5g %-19s failed\n", input, target.error_mm,
+                    bench_programs[p].name);
         else if (rows[p].asked)
-            print_row(input, in->triangle_count, percent, p, rows, s->csv);
+            print_row(input, in->triangle_count, &target, p, rows, s->csv);
+}
+
+/* Reads the next number of a list, and what follows it up to a comma. Returns false at the end. */
+static bool read_next(const char **list, double *value)
+{
+    char *end;
+    *value = strtod(*list, &end);
+    if (end == *list)
+        return false;
+    *list = end + strcspn(end, ",");
+    *list += **list == ',';
+    return true;
+}
+
+static void measure_targets(const char *input, const cw_mesh *in, const settings *s)
+{
+    const char *percents = s->targets, *errors = s->errors;
+    double value;
+    while (read_next(&percents, &value) && value > 0 && value < 100) {
+        const double triangles = (double)in->triangle_count * value / 100;
+        measure(input, in, (aim){.triangles = (size_t)triangles, .percent = value}, s);
+    }
+    while (read_next(&errors, &value) && value > 0)
+        measure(input, in, (aim){.error_mm = value}, s);
 }
 
 static void tell_input(const char *name, const cw_mesh *in)
 {
-    judging *j = shared_new(sizeof *j);
+    judging *j = bench_shared_new(sizeof *j);
     *j = (judging){.out = in};
-    if (in_child(judge, j))
+    if (bench_in_child(judge, j))
         fprintf(stderr,
                 "%s: %zu triangles, diagonal %.2f mm, %zu parts, euler %lld, %zu crossings, "
                 "%zu non-manifold edges\n",
@@ -552,25 +470,19 @@ static void tell_input(const char *name, const cw_mesh *in)
 /* False: the input cannot be had. */
 static bool measure_input(int input, const settings *s)
 {
-    making *task = shared_new(sizeof *task);
+    making *task = bench_shared_new(sizeof *task);
     *task =
         (making){.input = input, .file = memfd_create("input", 0), .triangles = s->triangles};
     snprintf(task->folder, sizeof task->folder, "%s", s->data ? s->data : "");
-    seen_mesh in = {0};
-    if (in_child(make_input, task))
-        in = see_mesh(task->file);
+    bench_seen_mesh in = {0};
+    if (bench_in_child(make_input, task))
+        in = bench_see_mesh(task->file);
     if (in.map) {
         tell_input(inputs[input].name, &in.mesh);
-        const char *next = s->targets;
-        for (char *end; *next; next = *end ? end + 1 : end) {
-            const double percent = strtod(next, &end);
-            if (end == next || !(percent > 0 && percent < 100))
-                break;
-            measure(inputs[input].name, &in.mesh, percent, s);
-        }
+        measure_targets(inputs[input].name, &in.mesh, s);
     }
     const bool had = in.map;
-    unsee_mesh(&in);
+    bench_unsee_mesh(&in);
     close(task->file);
     munmap(task, sizeof *task);
     return had;
@@ -578,13 +490,14 @@ static bool measure_input(int input, const settings *s)
 
 int main(int argc, char **argv)
 {
-    settings s = {.inputs = "", .targets = "50,10,2", .peers = ""};
+    settings s = {.inputs = "", .peers = ""};
     const char *threads = "0", *repeat = "1", *triangles = "1000000", *csv = NULL;
     const struct {
         const char *name, **value;
-    } options[] = {{"--inputs", &s.inputs}, {"--targets", &s.targets},  {"--peers", &s.peers},
-                   {"--data", &s.data},     {"--threads", &threads},    {"--repeat", &repeat},
-                   {"--csv", &csv},         {"--triangles", &triangles}};
+    } options[] = {
+        {"--inputs", &s.inputs}, {"--targets", &s.targets}, {"--error", &s.errors},
+        {"--peers", &s.peers},   {"--data", &s.data},       {"--threads", &threads},
+        {"--repeat", &repeat},   {"--csv", &csv},           {"--triangles", &triangles}};
     enum { OPTIONS = sizeof options / sizeof *options };
     for (int a = 1; a < argc; a += 2) {
         int o = 0;
@@ -594,7 +507,9 @@ int main(int argc, char **argv)
             return fprintf(stderr, "unknown option, or no value: %s\n", argv[a]), 2;
         *options[o].value = argv[a + 1];
     }
-    our_threads = atoi(threads);
+    s.targets = s.targets ? s.targets : s.errors ? "" : "50,10,2";
+    s.errors = s.errors ? s.errors : "";
+    bench_our_threads = atoi(threads);
     s.triangles = strtoul(triangles, NULL, 10);
     s.repeat = atoi(repeat) < 1 ? 1 : atoi(repeat) > MAX_RUNS ? MAX_RUNS : atoi(repeat);
     if (csv && !(s.csv = fopen(csv, "w")))

@@ -15,11 +15,21 @@ extern "C" {
 typedef bool bench_simplifier(const cw_mesh *in, size_t triangles, cw_mesh *out,
                               double *build_s);
 
+/* Reduces a mesh as far as an error in millimetres lets it. */
+typedef bool bench_bounded_simplifier(const cw_mesh *in, double error_mm, cw_mesh *out);
+
 bench_simplifier bench_meshopt;  /* meshopt_simplify */
 bench_simplifier bench_vtk;      /* vtkQuadricDecimation */
 bench_simplifier bench_openmesh; /* DecimaterT, ModQuadricT, ModNormalFlippingT at 90 degrees */
 bench_simplifier bench_cgal;     /* edge_collapse, GarlandHeckbert_plane_policies,
                                     Bounded_normal_change_placement */
+
+/* meshopt_simplify with target_error: the root of what its quadrics add up to. It is no bound. */
+bench_bounded_simplifier bench_meshopt_error;
+
+/* bench_cgal with Polyhedral_envelope_filter: the result is within the error of the input, and the
+ * other way has no bound. The input must be closed. */
+bench_bounded_simplifier bench_cgal_envelope;
 
 /* Which of them are in this build. */
 extern const bool bench_has_meshopt, bench_has_vtk, bench_has_openmesh, bench_has_cgal;

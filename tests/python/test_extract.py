@@ -73,6 +73,22 @@ class Surfaces(Case):
         with self.fails(cw.Status.ARGUMENT):
             cw.simplify(mesh)
 
+    def test_levels_of_detail(self):
+        self.need("simplify")
+        mesh = cw.extract(make_ball(), 0)
+        levels = cw.simplify_levels(mesh, np.array([400, 100]), threads=2)
+        self.assertEqual([len(level.triangles) for level in levels], [400, 100])
+        coarse = levels.pop()
+        del levels
+        gc.collect()
+        self.assertTrue(cw.check(coarse, profile="print").holds)
+        with self.fails(cw.Status.ARGUMENT):
+            cw.simplify_levels(mesh, [100, 400])
+        with self.fails(cw.Status.CANCELLED):
+            cw.simplify_levels(mesh, [400], progress=lambda *_: False)
+        for wrong, error in (([], ValueError), ([0], ValueError), (400, TypeError), ("9", TypeError)):
+            self.assertRaises(error, cw.simplify_levels, mesh, wrong)
+
     def test_offset_and_hollow(self):
         self.need("level-set")
         mesh = cw.extract(make_ball(), 0)

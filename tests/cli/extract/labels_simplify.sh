@@ -26,4 +26,3 @@ bad --simplify 0
 bad --lod 1k,2k
 bad --lod 1k --simplify 2k
 bad --lod 1k -o 'bad-{label}.ply'
-cubewright extract cells.nrrd --iso 1 --lod 1k -o bad.ply || echo "exit $?"

@@ -1,0 +1,153 @@
+/* Makes the levels of detail of a surface for `extract --lod`: extracts it, simplifies it level
+ * by level, measures each against it, and writes them. */
+#include "cli/extract/extract_run.h"
+
+#include "cli/framework/console.h"
+#include "cli/inputs/extract_surface.h"
+#include "cli/results/detail_levels.h"
+#include "core/base/status.h"
+
+#include <stdio.h>
+
+/* The full surface, and the run that makes levels of it. */
+typedef struct lod_run {
+    cli_extract_run *run;
+    cw_mesh full;
+    cw_extract_counts counts;
+    cli_pieces pieces; /* the full surface is the only one */
+} lod_run;
+
+static cw_status extract_full(lod_run *r, cw_error *err)
+{
+    cli_extract_run *s = r->run;
+    const char *path = s->input.volume.path;
+    cli_made *made = s->output.report.made;
+    made->iso = s->args->iso.value[0];
+    cw_status st = cli_extract_make(s, made, &r->full, &r->counts, err);
+    if (st != CW_OK)
+        return st;
+    cli_say("%s: %s triangles were extracted", path, cli_count(r->full.triangle_count));
+    st = cli_take_surface(&r->pieces, path, &r->full, err);
+    return st == CW_OK && s->args->check
+               ? cli_measure_pieces(&r->pieces, (int)s->args->input.threads, err)
+               : st;
+}
+
+static cw_status make_levels(void *state, cw_mesh *levels, cw_error *err)
+{
+    lod_run *r = state;
+    cli_report *report = &r->run->output.report;
+    const cli_counts *lod = &r->run->args->lod;
+    size_t triangles = 0;
+    cw_status st = extract_full(r, err);
+    if (st != CW_OK)
+        return st;
+    const cw_simplify_desc desc = {
+        .threads = (int)r->run->args->input.threads,
+        .progress = cli_progress((double)r->full.triangle_count / 1e6, "Mtriangle")};
+    cli_report_begin(report);
+    st = cw_simplify_levels(&r->full, &desc, lod->n, lod->count, levels, NULL, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, r->pieces.path);
+    for (size_t n = 0; n < lod->count; n++)
+        triangles += levels[n].triangle_count;
+    cli_report_end(report, "simplify", r->full.triangle_count, triangles);
+    return CW_OK;
+}
+
+/* Measures how far a level is from the full surface, both ways. The distance to the field takes
+ * minutes where a level is far from it. */
+static cw_status measure_level(lod_run *r, cli_made *made, const cw_mesh *level, cw_error *err)
+{
+    cli_report *report = &r->run->output.report;
+    made->compared.other = "the full surface";
+    cli_report_begin(report);
+    cw_status st =
+        cli_compare_pieces(&r->pieces, (int)r->run->args->input.threads, &made->compared, err);
+    if (st == CW_OK)
+        cli_report_end(report, "measure", r->full.triangle_count, level->triangle_count);
+    return st;
+}
+
+static cw_status hold_level(lod_run *r, cli_made *made, cw_mesh *level, cw_error *err)
+{
+    const cli_extract_args *args = r->run->args;
+    r->pieces.piece->out = *level;
+    cw_status st = cli_hold_pieces(&r->pieces, (int)args->input.threads, err);
+    if (st == CW_OK && args->measure)
+        st = measure_level(r, made, level, err);
+    r->pieces.piece->out = (cw_mesh){0};
+    return st;
+}
+
+static cw_status finish_level(void *state, cli_made *made, cw_mesh *level, cw_error *err)
+{
+    lod_run *r = state;
+    cli_extract_run *s = r->run;
+    const cw_normals_desc normals = {.inside_is_low = cli_extract_is_low(s),
+                                     .threads = (int)s->args->input.threads};
+    made->iso = s->args->iso.value[0];
+    cw_status st = s->args->check ? hold_level(r, made, level, err) : CW_OK;
+    if (st != CW_OK || s->args->normals || !cli_extract_shades_levels(s))
+        return st;
+    cli_report_begin(&s->output.report);
+    st = cw_extract_normals(&s->input.volume.view, &normals, level, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, s->input.volume.path);
+    cli_report_end(&s->output.report, "normals", level->triangle_count, level->triangle_count);
+    return CW_OK;
+}
+
+/* Writes "to 50000, 12000 triangles", for the record of a file. */
+static void print_counts(const cli_counts *lod, size_t first, size_t end, char *text,
+                         size_t size)
+{
+    size_t used = (size_t)snprintf(text, size, "to ");
+    for (size_t n = first; n < end && used < size; n++)
+        used += (size_t)snprintf(text + used, size - used, "%s%zu", n > first ? ", " : "",
+                                 lod->n[n]);
+    if (used < size)
+        snprintf(text + used, size - used, " triangles");
+}
+
+static cw_status deliver_levels(void *state, size_t file, const cw_part *parts, size_t count,
+                                cw_error *err)
+{
+    lod_run *r = state;
+    cli_extract_run *s = r->run;
+    const cli_counts *lod = &s->args->lod;
+    const bool all = file == lod->count;
+    char iso[32], unused[64], simplified[CLI_MAX_COUNTS * 24];
+    cw_provenance lines[CLI_EXTRACT_PROVENANCE];
+    cli_delivery how = cli_extract_describe_delivery(s);
+    const size_t line_count = cli_extract_provenance(s, 0, iso, unused, lines);
+    print_counts(lod, all ? 0 : file, all ? file : file + 1, simplified, sizeof simplified);
+    lines[line_count] = (cw_provenance){"simplified", simplified};
+    how.write.provenance = lines;
+    how.write.provenance_count = line_count + 1;
+    how.unchecked = how.unchecked || all; /* each was by itself */
+    how.parts = all ? "levels" : NULL;
+    cw_status st = cli_deliver(&s->output.report, &how, parts, count, r->counts.border_loops,
+                               s->output.start, err);
+    s->output.start = cli_seconds();
+    return st;
+}
+
+cw_status cli_extract_make_lod(cli_extract_run *s, cw_error *err)
+{
+    lod_run r = {.run = s};
+    cli_detail_levels levels = {.lod = &s->args->lod,
+                                .name = s->args->name,
+                                .files = &s->output.files,
+                                .report = &s->output.report,
+                                .pieces = &r.pieces,
+                                .make = make_levels,
+                                .finish = finish_level,
+                                .deliver = deliver_levels,
+                                .user = &r};
+    cw_status st = cli_make_detail_levels(&levels, err);
+    cli_free_detail_levels(&levels);
+    cli_free_pieces(&r.pieces);
+    cw_mesh_free(&r.full);
+    return st;
+}

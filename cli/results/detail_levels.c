@@ -1,0 +1,120 @@
+/* Makes the levels of detail of one mesh: finishes each, orders it for drawing, and delivers a
+ * file a level and one with all. */
+#include "cli/results/detail_levels.h"
+
+#include "cli/framework/console.h"
+#include "cli/framework/name_template.h"
+#include "cli/framework/quantity.h"
+#include "core/base/status.h"
+
+#include <cubewright/simplify.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+
+/* Names in the report, which outlives the levels. */
+static const char *const level_names[CLI_MAX_COUNTS] = {
+    "lod0", "lod1", "lod2",  "lod3",  "lod4",  "lod5",  "lod6",  "lod7",
+    "lod8", "lod9", "lod10", "lod11", "lod12", "lod13", "lod14", "lod15"};
+
+cw_status cli_name_detail_levels(cli_outputs *files, const char *output, const char *format,
+                                 const char *input, const cli_counts *lod, cw_error *err)
+{
+    const bool apart = cli_lod_files_of(output, format) == CLI_LOD_APART;
+    return cli_name_lod_outputs(files, output, input, lod->count,
+                                apart ? CLI_LOD_APART : CLI_LOD_BOTH, err);
+}
+
+void cli_tell_missed(cli_report *report, const cli_pieces *pieces, size_t target,
+                     size_t triangles, bool keeps_border)
+{
+    if (target && pieces->triangles <= target)
+        cli_say("%s: already has no more than the %s triangles requested", pieces->path,
+                cli_count(target));
+    if (target && triangles > target)
+        cli_report_warn(report,
+                        "%s triangles were requested, %s are left: removing more would tear "
+                        "the surface%s, flip it or make it intersect itself",
+                        cli_count(target), cli_count(triangles),
+                        keeps_border ? ", move its border" : "");
+}
+
+void cli_json_lod(cli_json *j, const cli_counts *lod)
+{
+    cli_json_open(j, "lod", '[');
+    for (size_t n = 0; n < lod->count; n++)
+        cli_json_count(j, NULL, lod->n[n]);
+    cli_json_close(j, ']');
+}
+
+/* Levels are for drawing: their triangles and vertices are put in the order that is fast. */
+static cw_status order_for_drawing(cli_detail_levels *d, cw_mesh *level, cw_error *err)
+{
+    cw_error why = {0};
+    const cw_status st = cw_mesh_optimize(level, &why);
+    if (st == CW_ERR_UNSUPPORTED) {
+        if (!d->is_unordered)
+            cli_say("levels are not optimised for fast drawing: %s", why.message);
+        d->is_unordered = true;
+        return CW_OK;
+    }
+    return st == CW_OK ? CW_OK : cwi_fail(err, st, "%s: %s", d->pieces->path, why.message);
+}
+
+static cw_status make_level(cli_detail_levels *d, size_t n, cli_made *made, cw_error *err)
+{
+    cw_mesh *level = &d->mesh[n];
+    cw_status st = n == 0 ? d->make(d->user, d->mesh, err) : CW_OK;
+    if (st != CW_OK)
+        return st;
+    cli_tell_missed(d->report, d->pieces, d->lod->n[n], level->triangle_count, d->keeps_border);
+    st = d->finish(d->user, made, level, err);
+    if (st == CW_OK)
+        st = order_for_drawing(d, level, err);
+    const cw_part part = {.mesh = level, .name = d->pieces->piece->name};
+    return st == CW_OK ? d->deliver(d->user, n, &part, 1, err) : st;
+}
+
+/* Writes one file with all levels. Names of nodes are as those of the files. */
+static cw_status deliver_together(cli_detail_levels *d, const char *path, cw_error *err)
+{
+    char names[CLI_MAX_COUNTS][256], *stem = cli_stem(d->name ? d->name : path);
+    cw_part parts[CLI_MAX_COUNTS];
+    if (!stem)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for names");
+    for (size_t n = 0; n < d->lod->count; n++) {
+        const cw_mesh_comparison *c = &d->report->made[n].compared.with_input;
+        snprintf(names[n], sizeof names[n], "%.200s-lod%zu", stem, n);
+        parts[n] = (cw_part){
+            .mesh = &d->mesh[n],
+            .name = names[n],
+            .level = n,
+            .max_error_mm = cw_mesh_comparison_max(c),
+            .rms_error_mm = cw_mesh_comparison_rms(c),
+        };
+    }
+    cw_status st = d->deliver(d->user, d->lod->count, parts, d->lod->count, err);
+    free(stem);
+    return st;
+}
+
+cw_status cli_make_detail_levels(cli_detail_levels *d, cw_error *err)
+{
+    const size_t count = d->lod->count;
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < d->files->count && st == CW_OK; n++) {
+        cli_made *made = cli_report_next(d->report, d->files->path[n], 0);
+        made->name = n < count ? level_names[n] : "all";
+        st = n < count ? make_level(d, n, made, err)
+                       : deliver_together(d, d->files->path[n], err);
+        if (st != CW_OK)
+            made->error = *err;
+    }
+    return st;
+}
+
+void cli_free_detail_levels(cli_detail_levels *d)
+{
+    for (size_t n = 0; n < CLI_MAX_COUNTS; n++)
+        cw_mesh_free(&d->mesh[n]);
+}
