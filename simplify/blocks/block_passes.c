@@ -614,21 +614,17 @@ static bool has_seams(const cwi_mesh_block *whole)
     return whole->open && whole->own == whole->triangles && whole->triangles > CWI_BLOCK;
 }
 
-/* As far as the error allows, or to a number of triangles: then costs ended the pass before, too,
- * and all edges are tried. */
+/* As far as the error allows. */
 static cw_status run_to_error(cwi_passes *p, const cwi_mesh_block *whole, size_t target,
                               cwi_mesh_block *left, cw_error *err)
 {
-    cwi_mesh_block all = *whole;
-    const cwi_block_part x = {.from = &all,
+    const cwi_block_part x = {.from = whole,
                               .input = p->input,
                               .left = left,
                               .cost = INFINITY,
                               .target = target,
                               .threads = p->desc->threads};
-    again *const run = !target && has_seams(whole) ? run_seams : run_part;
-    if (target)
-        all.open = NULL;
+    again *const run = has_seams(whole) ? run_seams : run_part;
     const cw_status st = run(p, &x, err);
     return st == CW_OK ? keep_part(p, &x, run, &p->repeats, err) : st;
 }
@@ -636,7 +632,10 @@ static cw_status run_to_error(cwi_passes *p, const cwi_mesh_block *whole, size_t
 cw_status cwi_passes_whole(cwi_passes *p, const cwi_mesh_block *whole, const size_t *targets,
                            size_t levels, cwi_mesh_block *left, cw_error *err)
 {
+    cwi_mesh_block all = *whole;
+    if (targets[0])
+        all.open = NULL; /* costs ended the pass before: all edges are tried again */
     begin_pass(p);
-    return p->next ? run_to_error(p, whole, targets[0], left, err)
-                   : run_levels(p, whole, targets, levels, left, err);
+    return p->next ? run_to_error(p, &all, targets[0], left, err)
+                   : run_levels(p, &all, targets, levels, left, err);
 }

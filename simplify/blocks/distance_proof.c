@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/geometry/bvh.h"
 #include "core/geometry/surface_walk.h"
 #include "core/geometry/triangle_cover.h"
 #include "core/mesh/mesh.h"
@@ -73,50 +74,111 @@ static void walk_chunk(void *context, size_t chunk)
 
 /* --- what walks leave ---------------------------------------------------------------------- */
 
-/* Copies the triangles that are not proven yet. */
-static cw_status take_unproven(const walks *w, size_t count, cw_mesh *mesh, double *limits,
-                               cw_error *err)
+/* Copies some triangles of a mesh, each with corners of its own. */
+static cw_status copy_triangles(const cw_mesh *from, const uint32_t *chosen, size_t count,
+                                cw_mesh *out, cw_error *err)
 {
-    const cw_status st = cwi_mesh_alloc(mesh, 3 * count, count, false, err);
-    for (size_t t = 0, n = 0; t < w->mesh->triangle_count && st == CW_OK; t++) {
-        if (!w->beyond[t])
-            continue;
-        for (size_t k = 0; k < 3; k++) {
-            const size_t from = w->mesh->triangles[3 * t + k], to = 3 * n + k;
-            memcpy(mesh->positions + 3 * to, w->mesh->positions + 3 * from, 3 * sizeof(float));
-            mesh->triangles[to] = (uint32_t)to;
-        }
-        if (w->limits)
-            limits[n] = w->limits[t];
-        n++;
+    const cw_status st = cwi_mesh_alloc(out, 3 * count, count, false, err);
+    for (size_t c = 0; c < 3 * count && st == CW_OK; c++) {
+        const uint32_t v = from->triangles[3 * (size_t)chosen[c / 3] + c % 3];
+        memcpy(out->positions + 3 * c, from->positions + 3 * (size_t)v, 3 * sizeof(float));
+        out->triangles[c] = (uint32_t)c;
     }
+    return st;
+}
+
+static size_t list_unproven(const walks *w, uint32_t *unproven)
+{
+    size_t count = 0;
+    for (size_t t = 0; t < w->mesh->triangle_count; t++)
+        if (w->beyond[t])
+            unproven[count++] = (uint32_t)t;
+    return count;
+}
+
+/* Boxes as wide as the distance around triangles. */
+static cw_status make_boxes(const walks *w, const cw_mesh *mesh, cwi_boxes *tree, cw_error *err)
+{
+    float(*boxes)[6] = cwi_alloc_array(mesh->triangle_count, sizeof *boxes);
+    if (!boxes)
+        return no_memory(err);
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
+        cwi_boxes_triangle(mesh->positions, mesh->triangles + 3 * t, boxes[t]);
+        for (int a = 0; a < 3; a++) {
+            boxes[t][a] -= (float)(1.001 * w->limit);
+            boxes[t][a + 3] += (float)(1.001 * w->limit);
+        }
+    }
+    const cw_status st =
+        cwi_boxes_build(tree, (const float(*)[6])boxes, mesh->triangle_count, err);
+    cwi_free(boxes);
+    return st;
+}
+
+static bool find_any(void *context, size_t node)
+{
+    (void)node;
+    *(bool *)context = true;
+    return false;
+}
+
+/* Takes what is near a mesh of a reference. */
+static cw_status take_near(const walks *w, const cw_mesh *mesh, const cw_mesh *reference,
+                           cw_mesh *near, cw_error *err)
+{
+    cwi_boxes tree = {0};
+    uint32_t *chosen = cwi_alloc_array(reference->triangle_count, sizeof *chosen);
+    size_t count = 0;
+    cw_status st = chosen ? make_boxes(w, mesh, &tree, err) : no_memory(err);
+    for (size_t t = 0; t < reference->triangle_count && st == CW_OK; t++) {
+        float box[6];
+        bool found = false;
+        cwi_boxes_triangle(reference->positions, reference->triangles + 3 * t, box);
+        cwi_boxes_visit(&tree, box, 0, find_any, &found);
+        if (found)
+            chosen[count++] = (uint32_t)t;
+    }
+    if (st == CW_OK)
+        st = copy_triangles(reference, chosen, count, near, err);
+    cwi_boxes_free(&tree);
+    cwi_free(chosen);
+    return st;
+}
+
+static cw_status search_near(const cwi_passes *p, const walks *w, const uint32_t *unproven,
+                             size_t count, const cw_mesh *reference, int threads, cw_error *err)
+{
+    cw_mesh mesh = {0}, near = {0};
+    double *limits = w->limits ? cwi_alloc_array(count, sizeof *limits) : NULL;
+    uint8_t *beyond = cwi_alloc_array(count, 1);
+    cw_status st = beyond && !limits == !w->limits ? CW_OK : no_memory(err);
+    for (size_t n = 0; n < count && limits; n++)
+        limits[n] = w->limits[unproven[n]];
+    if (st == CW_OK)
+        st = copy_triangles(w->mesh, unproven, count, &mesh, err);
+    if (st == CW_OK)
+        st = take_near(w, &mesh, reference, &near, err);
+    if (st == CW_OK && near.triangle_count)
+        st = cwi_mesh_within(&mesh, &near, w->limit, limits, threads, &p->poll, beyond, err);
+    for (size_t n = 0; n < count && st == CW_OK && near.triangle_count; n++)
+        w->beyond[unproven[n]] = beyond[n];
+    cw_mesh_free(&mesh);
+    cw_mesh_free(&near);
+    cwi_free(limits);
+    cwi_free(beyond);
     return st;
 }
 
 static cw_status search_unproven(const cwi_passes *p, const walks *w, const cw_mesh *reference,
                                  int threads, cw_error *err)
 {
-    const size_t triangles = w->mesh->triangle_count;
-    size_t count = 0;
-    for (size_t t = 0; t < triangles; t++)
-        count += w->beyond[t];
-    if (count == 0)
-        return CW_OK;
-    cw_mesh mesh = {0};
-    double *limits = w->limits ? cwi_alloc_array(count, sizeof *limits) : NULL;
-    uint8_t *beyond = cwi_alloc_array(count, 1);
-    cw_status st = beyond && !limits == !w->limits ? CW_OK : no_memory(err);
-    if (st == CW_OK)
-        st = take_unproven(w, count, &mesh, limits, err);
-    if (st == CW_OK)
-        st =
-            cwi_mesh_within(&mesh, reference, w->limit, limits, threads, &p->poll, beyond, err);
-    for (size_t t = 0, n = 0; t < triangles && st == CW_OK; t++)
-        if (w->beyond[t])
-            w->beyond[t] = beyond[n++];
-    cw_mesh_free(&mesh);
-    cwi_free(limits);
-    cwi_free(beyond);
+    uint32_t *unproven = cwi_alloc_array(w->mesh->triangle_count, sizeof *unproven);
+    if (!unproven)
+        return no_memory(err);
+    const size_t count = list_unproven(w, unproven);
+    const cw_status st =
+        count ? search_near(p, w, unproven, count, reference, threads, err) : CW_OK;
+    cwi_free(unproven);
     return st;
 }
 
