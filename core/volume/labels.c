@@ -25,7 +25,7 @@ typedef struct run {
     size_t pairs;
 } run;
 
-/* What the rows have of a small whole number. */
+/* Counts of a small whole number in the rows. */
 typedef struct tally {
     uint32_t pairs;
     uint32_t runs; /* later its rank among the values */

@@ -7,11 +7,10 @@
 /* The components of a mesh; arrays of vertex_count. A component is known by its root. */
 typedef struct cwi_shells {
     uint32_t *part;       /* union-find: vertices that share triangles; afterwards each root */
-    const uint32_t *used; /* not 0: in a triangle */
+    const uint8_t *used;  /* not 0: in a triangle */
     const double *volume; /* of a root's component: signed, seen from the root */
     const double *area;   /* of it */
-    uint8_t
-        *unbounded; /* why it bounds no volume: 1 it is open, 2 or 3 not oriented; used up */
+    uint8_t *unbounded; /* why it bounds no volume: CWI_OPEN, CWI_UNORIENTED or both; used up */
 } cwi_shells;
 
 /* Counts cavities, inside_out, nested and open_inward, and marks the triangles of the last
