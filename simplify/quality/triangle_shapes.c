@@ -25,7 +25,10 @@ typedef struct sides {
 typedef struct figures {
     double length[3][CWI_SHAPE_BLOCK];
     double cosine[3][CWI_SHAPE_BLOCK]; /* of the angle at each corner, times the two sides */
-    double angle[3][CWI_SHAPE_BLOCK];  /* within NEAR_DEG */
+    double least[CWI_SHAPE_BLOCK], most[CWI_SHAPE_BLOCK]; /* angles, within NEAR_DEG */
+    int bin[4][CWI_SHAPE_BLOCK]; /* of the angles, and of the least one */
+    double
+        off_centre[CWI_SHAPE_BLOCK]; /* the farthest of them from its bin's centre, in bins */
     double aspect[CWI_SHAPE_BLOCK], twice_area[CWI_SHAPE_BLOCK], volume[CWI_SHAPE_BLOCK];
 } figures;
 
@@ -99,7 +102,7 @@ static void find_sides(const cwi_shape_block *b, figures *f)
 
 /* The arc tangent between 0 and 1 as an odd polynomial: an interpolation at Chebyshev nodes, off
  * by at most 4.2e-7. */
-static double short_atan(double r)
+static inline double short_atan(double r)
 {
     const double s = r * r;
     return r * (0.9999992256 +
@@ -109,18 +112,51 @@ static double short_atan(double r)
                                s * (0.083126453 + s * (-0.0363604309 + s * 0.0076483539))))));
 }
 
-/* Finds angles nearly, and aspects: a b c (a + b + c) / (4 K)^2, where K is the area. */
-static void find_shapes(const cwi_shape_block *b, figures *f)
+/* Selects without a branch, so that loops become vector instructions; off by rounding. */
+static inline double near_lesser(double a, double b)
 {
-    const double degrees = 180 / CWI_PI;
-    for (int n = 0; n < 3; n++)
-        for (size_t i = 0; i < b->count; i++) {
-            const double y = f->twice_area[i], x = fabs(f->cosine[n][i]);
-            const double r = cwi_lesser(x, y) / cwi_greater(x, y);
-            const double flat = short_atan(r), steep = y > x ? CWI_PI / 2 - flat : flat;
-            f->angle[n][i] = degrees * (f->cosine[n][i] < 0 ? CWI_PI - steep : steep);
-        }
-    for (size_t i = 0; i < b->count; i++) {
+    return 0.5 * (a + b - fabs(a - b));
+}
+
+static inline double near_greater(double a, double b)
+{
+    return 0.5 * (a + b + fabs(a - b));
+}
+
+/* Nearly atan2(y, x) for y >= 0, in degrees. */
+static inline double near_angle(double y, double x)
+{
+    const double flat = fabs(x);
+    const double turned = CWI_PI / 4 - short_atan(near_lesser(flat, y) / near_greater(flat, y));
+    const double acute = CWI_PI / 4 + copysign(turned, y - flat);
+    return 180 / CWI_PI * (CWI_PI / 2 - copysign(CWI_PI / 2 - acute, x));
+}
+
+/* Finds the bin of an angle; returns the distance from its centre, in bins. */
+static inline double find_bin(double angle, double bins_per_degree, int *bin)
+{
+    const double at = bins_per_degree * angle;
+    *bin = (int)at;
+    return fabs(at - (double)*bin - 0.5);
+}
+
+/* Finds angles nearly, and aspects: a b c (a + b + c) / (4 K)^2, where K is the area. */
+static void find_shapes(const cwi_shape_block *block, figures *f)
+{
+    const double per_degree = CW_ANGLE_BINS / 180.0, of_smallest = CW_ANGLE_BINS / 60.0;
+    for (size_t i = 0; i < block->count; i++) {
+        const double y = f->twice_area[i];
+        const double a = near_angle(y, f->cosine[0][i]), b = near_angle(y, f->cosine[1][i]),
+                     c = near_angle(y, f->cosine[2][i]);
+        f->least[i] = near_lesser(a, near_lesser(b, c));
+        f->most[i] = near_greater(a, near_greater(b, c));
+        const double of_a = find_bin(a, per_degree, &f->bin[0][i]),
+                     of_b = find_bin(b, per_degree, &f->bin[1][i]),
+                     of_c = find_bin(c, per_degree, &f->bin[2][i]),
+                     of_least = find_bin(f->least[i], of_smallest, &f->bin[3][i]);
+        f->off_centre[i] = near_greater(near_greater(of_a, of_b), near_greater(of_c, of_least));
+    }
+    for (size_t i = 0; i < block->count; i++) {
         const double l0 = f->length[0][i], l1 = f->length[1][i], l2 = f->length[2][i];
         const double quarter = 2 * f->twice_area[i];
         f->aspect[i] = (l0 / quarter) * (l1 / quarter) * l2 * (l0 + l1 + l2);
@@ -131,14 +167,6 @@ static size_t bin_of(double value, double step)
 {
     const double bin = value / step;
     return bin < CW_ANGLE_BINS ? (size_t)bin : CW_ANGLE_BINS - 1;
-}
-
-/* Whether both ends of an angle's error are in one bin. */
-static bool is_within_bin(double angle, double bins_per_degree)
-{
-    const double low = bins_per_degree * (angle - NEAR_DEG);
-    const double high = bins_per_degree * (angle + NEAR_DEG);
-    return low > 0 && (int)low == (int)high;
 }
 
 static void count_exact_angles(const figures *f, size_t i, cwi_shape_sum *p, double *largest)
@@ -161,22 +189,16 @@ static void count_exact_angles(const figures *f, size_t i, cwi_shape_sum *p, dou
  * correct angles tell enough. largest: on the right side of CW_CAP_ANGLE_DEG, a bin's end */
 static void count_angles(const figures *f, size_t i, cwi_shape_sum *p, double *largest)
 {
-    const double a = f->angle[0][i], b = f->angle[1][i], c = f->angle[2][i];
-    const double per_degree = CW_ANGLE_BINS / 180.0, of_smallest = CW_ANGLE_BINS / 60.0;
-    const double least = cwi_lesser(a, cwi_lesser(b, c));
-    const double most = cwi_greater(a, cwi_greater(b, c));
-    if (!is_within_bin(a, per_degree) || !is_within_bin(b, per_degree) ||
-        !is_within_bin(c, per_degree) || !is_within_bin(least, of_smallest) ||
-        least - NEAR_DEG < p->shapes.min_angle_deg ||
-        most + NEAR_DEG > p->shapes.max_angle_deg) {
+    const double sure = 0.5 - NEAR_DEG * CW_ANGLE_BINS / 60.0;
+    if (!(f->off_centre[i] < sure) || f->least[i] - NEAR_DEG < p->shapes.min_angle_deg ||
+        f->most[i] + NEAR_DEG > p->shapes.max_angle_deg) {
         count_exact_angles(f, i, p, largest);
         return;
     }
-    p->shapes.angles[(int)(per_degree * a)]++;
-    p->shapes.angles[(int)(per_degree * b)]++;
-    p->shapes.angles[(int)(per_degree * c)]++;
-    p->shapes.smallest[(int)(of_smallest * least)]++;
-    *largest = most;
+    for (int n = 0; n < 3; n++)
+        p->shapes.angles[f->bin[n][i]]++;
+    p->shapes.smallest[f->bin[3][i]]++;
+    *largest = f->most[i];
 }
 
 static void count_aspect(double aspect, cwi_shape_sum *p)
