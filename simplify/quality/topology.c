@@ -20,18 +20,9 @@ typedef struct work {
     cwi_vertex_ranges ranges;
     uint32_t *part;     /* union-find: vertices that share triangles */
     uint8_t *used;      /* whether a vertex is in a triangle that names three */
-    double *volume;     /* of the component whose root a vertex is, seen from that vertex */
-    double *area;       /* of that component */
-    uint8_t *unbounded; /* of that component: why it bounds no volume */
+    uint8_t *unbounded; /* why the edges from a vertex to higher ones bound no volume */
     cwi_stop stop;
-    cw_progress progress; /* asks stop */
 } work;
-
-/* Asks in every 65536th turn of a loop whether to go on. */
-static bool goes_on(const work *w, size_t turn)
-{
-    return turn % 65536 || cwi_progress(&w->progress, "checking", -1, NULL) == CW_OK;
-}
 
 /* Of the vertices as indexed: in no triangle, or at the place of another one. */
 static bool count_used(const work *w, cw_quality *q)
@@ -51,39 +42,6 @@ static bool count_used(const work *w, cw_quality *q)
     const bool ok = seen;
     cwi_free(seen);
     return ok;
-}
-
-/* Moves what edges say of their vertices to the roots of the components. */
-static void gather_unbounded(const work *w)
-{
-    for (uint32_t v = 0; v < w->vertices; v++) {
-        const uint32_t root = cwi_sets_find(w->part, v);
-        if (root != v) {
-            w->unbounded[root] |= w->unbounded[v];
-            w->unbounded[v] = 0;
-        }
-    }
-}
-
-static void measure_components(const work *w)
-{
-    for (size_t t = 0; t < w->triangles && goes_on(w, t); t++)
-        if (!cwi_is_collapsed(&w->welded, t)) {
-            const uint32_t root = cwi_sets_find(w->part, w->vertex[3 * t]);
-            cwi_add_triangle(w->welded.mesh, t, root, &w->volume[root], &w->area[root]);
-        }
-}
-
-static bool measure_shells(work *w, const cw_quality_desc *d, cw_quality *q)
-{
-    w->volume = cwi_alloc_zeroed(w->vertices, sizeof *w->volume);
-    w->area = cwi_alloc_zeroed(w->vertices, sizeof *w->area);
-    if (!w->volume || !w->area)
-        return false;
-    gather_unbounded(w);
-    measure_components(w);
-    const cwi_shells shells = {w->part, w->used, w->volume, w->area, w->unbounded};
-    return !w->stop.stopped && cwi_measure_shells(&w->welded, &shells, d, q);
 }
 
 static bool prepare_arrays(work *w, const cw_quality_desc *d)
@@ -122,7 +80,8 @@ static bool measure_topology(work *w, const cw_quality_desc *d, cw_quality *q)
     q->genus =
         oriented ? (int64_t)q->components - (q->euler + (int64_t)q->border_loops) / 2 : -1;
     cwi_vertex_ranges_free(&w->ranges);
-    return !d->shells || measure_shells(w, d, q);
+    const cwi_shells shells = {w->part, w->used, w->unbounded};
+    return !d->shells || cwi_measure_shells(&w->welded, &shells, d, q);
 }
 
 static void free_work(work *w)
@@ -131,8 +90,6 @@ static void free_work(work *w)
     cwi_vertex_ranges_free(&w->ranges);
     cwi_free(w->part);
     cwi_free(w->used);
-    cwi_free(w->volume);
-    cwi_free(w->area);
     cwi_free(w->unbounded);
 }
 
@@ -144,7 +101,7 @@ cw_status cw_quality_measure(const cw_mesh *mesh, const cw_quality_desc *desc, c
     const cw_progress progress = d.progress;
     work w = {0};
     cwi_stop_init(&w.stop, &progress);
-    d.progress = w.progress = cwi_stop_progress(&w.stop);
+    d.progress = cwi_stop_progress(&w.stop);
     cw_quality q = {.vertices = mesh->vertex_count, .triangles = mesh->triangle_count};
     memset(out, 0, sizeof *out);
     cw_status st = cwi_welded_init(&w.welded, mesh, d.weld, err);
@@ -167,8 +124,8 @@ size_t cw_quality_bytes(size_t vertices, size_t triangles)
 {
     const work *w = NULL;
     const size_t triangle = 3 * sizeof *w->ranges.triangle;
-    const size_t vertex = sizeof *w->part + sizeof *w->used + sizeof *w->volume +
-                          sizeof *w->area + sizeof *w->unbounded;
+    const size_t vertex = sizeof *w->part + sizeof *w->used + sizeof *w->unbounded +
+                          2 * sizeof(double); /* of its component */
     return triangle * triangles + vertex * vertices;
 }
 
