@@ -14,7 +14,7 @@
 #include <string.h>
 
 /* Triangles that are measured by themselves, and whose sums are then joined in order: so sums
- * do not depend on threads. Slots to find a component among those of so many triangles. */
+ * do not depend on threads. SLOTS is the size of a table of the components of a chunk. */
 enum { CHUNK = 4096, SLOTS = 4 * CHUNK };
 
 /* Triangles that look for rays together, and rays that they may find. */
