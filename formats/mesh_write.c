@@ -236,13 +236,26 @@ static cw_status write_shared(const char *path, const cwi_parts *parts,
     return st;
 }
 
+/* Asks for consent once nothing is left to do but to put the files in place. */
+static cw_status ask_consent(const cw_write_consent *consent, cwi_mesh_output *out,
+                             cw_error *err)
+{
+    cw_status st = out->side ? cwi_outfile_finish(out->side, err) : CW_OK;
+    if (st == CW_OK && out->file)
+        st = cwi_outfile_finish(out->file, err);
+    return st == CW_OK ? consent->ask(consent->user, err) : st;
+}
+
 static cw_status write_parts(const char *path, const cwi_parts *parts,
                              const cwi_format_driver *f, const cw_write_desc *d,
-                             cwi_mesh_output *out, cw_error *err)
+                             const cw_write_consent *consent, cwi_mesh_output *out,
+                             cw_error *err)
 {
     cw_status st = open_output(path, f, d, out, err);
     if (st == CW_OK)
         st = f->write.write(parts, out, err);
+    if (st == CW_OK && consent)
+        st = ask_consent(consent, out, err);
     if (st == CW_OK && out->side)
         st = cwi_outfile_commit(&out->side, err);
     if (st == CW_OK)
@@ -254,12 +267,17 @@ static cw_status write_parts(const char *path, const cwi_parts *parts,
 
 static cw_status write_by_team(const char *path, const cwi_parts *parts,
                                const cwi_format_driver *f, const cw_team *team,
-                               const cw_write_desc *d, cwi_mesh_output *out, cw_error *err)
+                               const cw_write_desc *d, const cw_write_consent *consent,
+                               cwi_mesh_output *out, cw_error *err)
 {
+    cw_status asked = consent ? consent->ask(consent->user, err) : CW_OK;
+    asked = cw_team_agree(team, asked, err);
+    if (asked != CW_OK)
+        return asked;
     if (f->write.shares && !d->text)
         return write_shared(path, parts, f, team, d, out, err);
     const bool writes = team->rank == 0;
-    cw_status st = writes ? write_parts(path, parts, f, d, out, err) : CW_OK;
+    cw_status st = writes ? write_parts(path, parts, f, d, NULL, out, err) : CW_OK;
     return cw_team_agree(team, st, err);
 }
 
@@ -272,8 +290,9 @@ static const cw_team *find_team(const cw_part *parts, size_t count)
     return team;
 }
 
-cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
-                         const cw_write_desc *desc, cw_error *err)
+cw_status cw_parts_write_with_consent(const char *path, const cw_part *parts, size_t count,
+                                      const cw_write_desc *desc,
+                                      const cw_write_consent *consent, cw_error *err)
 {
     CWI_REQUIRE(err, path);
     CWI_REQUIRE_ARRAY(err, parts, count);
@@ -308,10 +327,16 @@ cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
     if (team)
         st = cw_team_agree(team, st, err);
     if (st == CW_OK)
-        st = team ? write_by_team(path, &placed, f, team, &d, &out, err)
-                  : write_parts(path, &placed, f, &d, &out, err);
+        st = team ? write_by_team(path, &placed, f, team, &d, consent, &out, err)
+                  : write_parts(path, &placed, f, &d, consent, &out, err);
     cwi_parts_free(&placed);
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
+}
+
+cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
+                         const cw_write_desc *desc, cw_error *err)
+{
+    return cw_parts_write_with_consent(path, parts, count, desc, NULL, err);
 }
 
 cw_status cw_mesh_write(const char *path, const cw_mesh *mesh, const cw_write_desc *desc,

@@ -12,7 +12,7 @@
  * writer of a file, threads, buffers. */
 enum { CLI_BESIDE_SLICES = 10 << 20 };
 
-/* Returns the bytes that the check of a surface takes for a triangle. */
+/* Returns the bytes that checking and writing a surface take for a triangle. */
 size_t cli_check_bytes(void);
 
 /* A volume whose surface is to be made slice by slice. */

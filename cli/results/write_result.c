@@ -1,25 +1,19 @@
-/* Checks a mesh, writes it to its file, and prints its summary line. */
+/* Checks a mesh and writes it to its file, at the same time where memory allows. */
 #include "cli/results/write_result.h"
 
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
-#include "cli/results/mesh_comparison.h"
+#include "cli/results/summary_line.h"
+#include "core/base/beside.h"
 #include "core/base/status.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
-/* Parts of the mesh that is delivered, and their counts. */
-typedef struct load {
-    const cw_part *parts;
-    size_t part_count, vertices, triangles;
-} load;
-
-static load count_load(const cw_part *parts, size_t part_count)
+static cli_load count_load(const cw_part *parts, size_t part_count)
 {
-    load l = {.parts = parts, .part_count = part_count};
+    cli_load l = {.parts = parts, .part_count = part_count};
     for (size_t p = 0; p < part_count; p++) {
         l.vertices += parts[p].mesh->vertex_count;
         l.triangles += parts[p].mesh->triangle_count;
@@ -106,7 +100,7 @@ static cw_status find_facing(const cw_mesh *mesh, int threads, cw_quality *q, cw
     return CW_OK;
 }
 
-static cw_status check_mesh(cli_report *report, const cli_delivery *how, const load *l,
+static cw_status check_mesh(cli_report *report, const cli_delivery *how, const cli_load *l,
                             cli_made *made, cw_error *err)
 {
     const cw_quality_desc desc = {.threads = how->threads,
@@ -135,7 +129,7 @@ static cw_status check_mesh(cli_report *report, const cli_delivery *how, const l
 
 /* --- writing ----------------------------------------------------------------------------- */
 
-static void warn_of_loss(cli_report *report, const cli_made *made, const load *l,
+static void warn_of_loss(cli_report *report, const cli_made *made, const cli_load *l,
                          const cw_write_loss *loss)
 {
     if (loss->merged_vertices || loss->flat_triangles)
@@ -159,217 +153,150 @@ static void tell_dropped(const cli_made *made)
         cli_say("%s: left out, because the format cannot hold them: %s", made->path, list);
 }
 
-static cw_status write_mesh(cli_report *report, const cli_delivery *how, const load *l,
-                            cli_made *made, cw_error *err)
-{
-    cw_write_desc desc = how->write;
+/* A mesh that is written, perhaps while another thread checks it. */
+typedef struct writing {
+    cli_report *report;
+    const cli_delivery *how;
+    const cli_load *load;
+    cli_made *made;
+    cw_write_desc desc;
     cw_write_loss loss;
-    desc.progress = cli_progress((double)l->triangles / 1e6, "Mtriangle");
-    desc.compressed = &made->compressed;
-    cli_set_compress(how->compress, l->parts, l->part_count, how->voxel_mm, &desc);
-    cli_report_begin(report);
-    cw_status st = cw_parts_write_loss(made->path, l->parts, l->part_count, &desc, &loss, err);
-    if (st == CW_OK)
-        st = cw_parts_write(made->path, l->parts, l->part_count, &desc, err);
-    if (st != CW_OK)
-        return st;
+    cw_status status;
+    cw_error error;
+} writing;
+
+/* A check on the calling thread beside the writing on another one. */
+typedef struct delivery {
+    cwi_beside beside;
+    writing writing;
+    cw_status checked;
+    cw_error error; /* of the check */
+    bool refused;   /* atomic: the writing is in vain */
+} delivery;
+
+static writing plan_writing(cli_report *report, const cli_delivery *how, const cli_load *l,
+                            cli_made *made)
+{
+    return (writing){.report = report, .how = how, .load = l, .made = made, .desc = how->write};
+}
+
+static void write_bytes(writing *w, const cw_write_consent *consent)
+{
+    const cli_load *l = w->load;
+    w->desc.compressed = &w->made->compressed;
+    cli_set_compress(w->how->compress, l->parts, l->part_count, w->how->voxel_mm, &w->desc);
+    w->status = cw_parts_write_loss(w->made->path, l->parts, l->part_count, &w->desc, &w->loss,
+                                    &w->error);
+    if (w->status == CW_OK)
+        w->status = cw_parts_write_with_consent(w->made->path, l->parts, l->part_count,
+                                                &w->desc, consent, &w->error);
+}
+
+/* Reports what was written. */
+static cw_status end_writing(const writing *w, cw_error *err)
+{
+    cli_made *made = w->made;
+    const cli_load *l = w->load;
+    if (w->status != CW_OK) {
+        if (err)
+            *err = w->error;
+        return w->status;
+    }
     made->written = true;
-    made->local = desc.local;
-    made->compression = desc.compression        ? desc.compression
+    made->local = w->desc.local;
+    made->compression = w->desc.compression     ? w->desc.compression
                         : made->compressed.bits ? CW_COMPRESS_DRACO /* a format of that alone */
                                                 : CW_COMPRESS_NONE;
     memcpy(made->origin, l->parts->mesh->origin, sizeof made->origin);
-    made->dropped = how->tell_dropped ? loss.dropped : 0;
-    warn_of_loss(report, made, l, &loss);
+    made->dropped = w->how->tell_dropped ? w->loss.dropped : 0;
+    warn_of_loss(w->report, made, l, &w->loss);
     tell_dropped(made);
-    cli_report_end(report, "write", l->triangles, l->triangles);
+    cli_report_end(w->report, "write", l->triangles, l->triangles);
     return CW_OK;
 }
 
-/* --- the line ---------------------------------------------------------------------------- */
-
-/* "1 472 302 triangles" */
-static void print_count(size_t count, const char *noun)
+static cw_status write_mesh(cli_report *report, const cli_delivery *how, const cli_load *l,
+                            cli_made *made, cw_error *err)
 {
-    cli_result("%s %s%s", cli_count(count), noun, count == 1 ? "" : "s");
+    writing w = plan_writing(report, how, l, made);
+    w.desc.progress = cli_progress((double)l->triangles / 1e6, "Mtriangle");
+    cli_report_begin(report);
+    write_bytes(&w, NULL);
+    return end_writing(&w, err);
 }
 
-/* " (2 non-manifold edges, 1 non-manifold vertex)", without the zero counts. */
-static void print_defects(size_t edges, const char *edge, size_t vertices)
+static void check_own(void *context)
 {
-    cli_result(" (");
-    if (edges)
-        print_count(edges, edge);
-    if (vertices)
-        cli_result("%s%s non-manifold %s", edges ? ", " : "", cli_count(vertices),
-                   vertices == 1 ? "vertex" : "vertices");
-    cli_result(")");
+    delivery *d = context;
+    const writing *w = &d->writing;
+    d->checked = check_mesh(w->report, w->how, w->load, w->made, &d->error);
+    cli_report_begin(w->report);
+    if (d->checked != CW_OK)
+        __atomic_store_n(&d->refused, true, __ATOMIC_RELAXED);
 }
 
-static void print_facing(const cw_quality *q)
+/* The file appears once the check holds. */
+static cw_status await_check(void *user, cw_error *err)
 {
-    if (q->to_turn && q->to_turn == q->components)
-        cli_result("; inside out (--orient flips it)");
-    else if (q->to_turn)
-        cli_result("; %s shell%s the wrong way (--orient flips %s)", cli_count(q->to_turn),
-                   q->to_turn == 1 ? " faces" : "s face", q->to_turn == 1 ? "it" : "them");
+    delivery *d = user;
+    cwi_beside_wait(&d->beside);
+    return d->checked == CW_OK ? CW_OK : cwi_fail(err, d->checked, "the check does not hold");
 }
 
-/* The topology of a mesh that need not be closed or manifold. */
-static void print_findings(const cw_quality *q)
+static void write_aside(void *context)
 {
-    cli_result("%s", q->open_edges ? "open" : "closed");
-    if (q->open_edges)
-        print_defects(q->open_edges, "open edge", 0);
-    if (q->nonmanifold_edges || q->nonmanifold_vertices) {
-        cli_result(", not manifold");
-        print_defects(q->nonmanifold_edges, "non-manifold edge", q->nonmanifold_vertices);
-    } else {
-        cli_result(", manifold");
-    }
-    if (q->misoriented_edges) {
-        cli_result(", not consistently oriented");
-        print_defects(q->misoriented_edges, "misoriented edge", 0);
-    }
-    if (q->degenerate) {
-        cli_result(", ");
-        print_count(q->degenerate, "triangle");
-        cli_result(" without area");
-    }
-    print_facing(q);
+    delivery *d = context;
+    write_bytes(&d->writing, &(cw_write_consent){await_check, d});
 }
 
-static void print_topology(const cli_delivery *how, const cw_quality *q)
+/* Draws no bar, as the check does. */
+static bool is_wanted(void *user, const char *step, double done)
 {
-    if (how->unpromised)
-        print_findings(q);
-    else if (how->open)
-        cli_result("%s, manifold", q->open_edges ? "open at the volume's border" : "closed");
-    else
-        cli_result("closed, manifold");
-    cli_result("; ");
+    const delivery *d = user;
+    (void)step, (void)done;
+    return !__atomic_load_n(&d->refused, __ATOMIC_RELAXED) && !cli_interrupted();
 }
 
-/* Triangles, vertices and components, then the parts that hold them. */
-static void print_counts(const cli_delivery *how, const cli_made *made, const load *l)
+static cw_status check_then_write(cli_report *report, const cli_delivery *how,
+                                  const cli_load *l, cli_made *made, cw_error *err)
 {
-    print_count(l->triangles, "triangle");
-    cli_result(", %s %s", cli_count(l->vertices), l->vertices == 1 ? "vertex" : "vertices");
-    if (made->measured) {
-        cli_result(", ");
-        print_count(made->quality.components, "component");
-    }
-    if (l->part_count > 1)
-        cli_result(" in %zu %s", l->part_count, how->parts ? how->parts : "parts");
+    cw_status st = how->unchecked ? CW_OK : check_mesh(report, how, l, made, err);
+    return st == CW_OK ? write_mesh(report, how, l, made, err) : st;
 }
 
-static void print_box(const cli_delivery *how, const cw_quality *q, size_t border_loops)
+/* Writes the mesh while it is checked. One after the other takes less memory: that is tried
+ * where memory runs out. */
+static cw_status check_and_write(cli_report *report, const cli_delivery *how, const cli_load *l,
+                                 cli_made *made, cw_error *err)
 {
-    cli_result("; box %.6g x %.6g x %.6g mm", q->max[0] - q->min[0], q->max[1] - q->min[1],
-               q->max[2] - q->min[2]);
-    if (border_loops && !how->open && !how->unpromised)
-        cli_result("; capped at %s opening%s on the volume's border", cli_count(border_loops),
-                   border_loops == 1 ? "" : "s");
+    delivery d = {.writing = plan_writing(report, how, l, made)};
+    d.writing.desc.progress = (cw_progress){.report = is_wanted, .user = &d};
+    cwi_beside_run(&d.beside, check_own, write_aside, &d);
+    if (d.checked == CW_ERR_NO_MEMORY)
+        return check_then_write(report, how, l, made, err);
+    if (d.checked == CW_OK && d.writing.status == CW_ERR_NO_MEMORY)
+        return write_mesh(report, how, l, made, err);
+    if (d.checked == CW_OK)
+        return end_writing(&d.writing, err);
+    if (err)
+        *err = d.error;
+    return d.checked;
 }
 
-static void print_compressed(const cli_made *made)
+/* Whether the writer takes as little memory as the check, so that both may run at a time. */
+static bool writes_in_passing(const cli_delivery *how, const cli_made *made)
 {
-    const cw_compressed *c = &made->compressed;
-    cli_result("; compressed by %s", cli_compression_name(made->compression));
-    if (c->bits)
-        cli_result(" to %d bits, error at most %.3g mm", c->bits, c->error_mm);
-    else
-        cli_result(", positions unchanged");
-    if (c->fragments)
-        cli_result(", in steps of %.3g mm, %s fragment%s", c->step_mm, cli_count(c->fragments),
-                   c->fragments == 1 ? "" : "s");
-    if (c->dropped) {
-        cli_result(", ");
-        print_count(c->dropped, "triangle");
-        cli_result(c->fragments ? " smaller than a step left out"
-                                : " with a repeated vertex left out");
-    }
-    cli_result(", verified by decoding");
+    static const char *const formats[] = {"glb", "gltf", "stl", "ply", "obj", "off"};
+    const cw_format *f = cw_mesh_format(made->path, how->write.format);
+    if (!f || how->write.compression || (how->compress && how->compress->kind))
+        return false;
+    for (size_t n = 0; n < sizeof formats / sizeof *formats; n++)
+        if (strcmp(f->name, formats[n]) == 0)
+            return true;
+    return false;
 }
 
-/* The larger distance of both directions; the root mean square of both. */
-static void print_distance(const cli_comparison *c)
-{
-    const cw_distance *to = &c->with_input.to_reference, *from = &c->with_input.from_reference;
-    const double percent = c->diagonal_mm > 0 ? 100 / c->diagonal_mm : 0;
-    const double most = fmax(to->max_mm, from->max_mm), p99 = fmax(to->p99_mm, from->p99_mm);
-    const double rms = cw_mesh_comparison_rms(&c->with_input);
-    cli_result("; distance to %s, both ways, at most %.3g mm (%.2g %% of the diagonal), "
-               "RMS %.3g mm (%.2g %%), 99 %% within %.3g mm (%.2g %%)",
-               c->other ? c->other : "the input", most, percent * most, rms, percent * rms, p99,
-               percent * p99);
-    if (c->promised_mm > 0)
-        cli_result(", within the limit of %.6g mm", c->promised_mm);
-}
-
-static void print_comparison(const cli_comparison *c)
-{
-    if (c->made)
-        print_distance(c);
-    if (c->has_field)
-        cli_result("; distance to the volume's isosurface at most %.3g mm, RMS %.3g mm",
-                   c->to_field.max_mm, c->to_field.rms_mm);
-    if (c->has_full_field)
-        cli_result(" (full surface: at most %.3g mm, RMS %.3g mm)", c->full_to_field.max_mm,
-                   c->full_to_field.rms_mm);
-}
-
-/* The last step is shown as long as the one before it. */
-static void print_times(const load *l)
-{
-    const cw_part *first = l->parts, *last = first + l->part_count - 1;
-    cli_result("; animation of %.6g s", 2 * last->time_s - last[-1].time_s - first->time_s);
-}
-
-/* Facts of the command, in words. */
-static void print_facts(const cli_delivery *how, const cli_made *made)
-{
-    if (made->timed)
-        cli_result("; at time %.6g s", made->moment->time_s);
-    if (made->snapped)
-        cli_result("; %s %s merged by --snap, error at most %.3g mm (%.2g voxels)",
-                   cli_count(made->snap.vertices),
-                   made->snap.vertices == 1 ? "vertex" : "vertices", made->snap.max_error_mm,
-                   made->snap.max_error_voxels);
-    print_comparison(&made->compared);
-    if (made->local)
-        cli_result("; coordinates relative to %.15g, %.15g, %.15g mm", made->origin[0],
-                   made->origin[1], made->origin[2]);
-    if (made->compression)
-        print_compressed(made);
-    if (how->found)
-        cli_result("%s", how->found);
-    if (how->preview)
-        cli_result("; a preview");
-}
-
-/* "NAME: topology; counts; box; further facts; size; time": the time stands alone. */
-static void print_summary(const cli_delivery *how, const cli_made *made, const load *l,
-                          size_t border_loops, double start)
-{
-    struct stat info = {0};
-    if (made->written)
-        cli_result("%s: ", made->path);
-    else
-        cli_result("step %zu: ", made->moment->number);
-    if (made->measured)
-        print_topology(how, &made->quality);
-    print_counts(how, made, l);
-    if (made->measured)
-        print_box(how, &made->quality, border_loops);
-    if (how->write.animated && made->written)
-        print_times(l);
-    print_facts(how, made);
-    if (made->written && stat(made->path, &info) == 0)
-        cli_result("; %s", cli_bytes(S_ISDIR(info.st_mode) ? (double)made->compressed.bytes
-                                                           : (double)info.st_size));
-    cli_result("; %.2f s\n", cli_seconds() - start);
-}
+/* --- delivery ---------------------------------------------------------------------------- */
 
 /* Fails when compression merged vertices or flattened triangles. Bits that were given are used
  * all the same, so the file is already written. */
@@ -388,13 +315,13 @@ static cw_status hold_to_shape(const cli_made *made, cw_error *err)
 cw_status cli_deliver(cli_report *report, const cli_delivery *how, const cw_part *parts,
                       size_t part_count, size_t border_loops, double start, cw_error *err)
 {
-    const load l = count_load(parts, part_count);
+    const cli_load l = count_load(parts, part_count);
     cli_made *made = &report->made[report->made_count - 1];
-    cw_status st = how->unchecked ? CW_OK : check_mesh(report, how, &l, made, err);
+    const bool together = !how->unchecked && writes_in_passing(how, made);
+    cw_status st = together ? check_and_write(report, how, &l, made, err)
+                            : check_then_write(report, how, &l, made, err);
     if (st == CW_OK)
-        st = write_mesh(report, how, &l, made, err);
-    if (st == CW_OK)
-        print_summary(how, made, &l, border_loops, start);
+        cli_print_summary(how, made, &l, border_loops, start);
     return st == CW_OK ? hold_to_shape(made, err) : st;
 }
 
@@ -402,10 +329,10 @@ cw_status cli_deliver_step(cli_report *report, const cli_delivery *how, const cw
                            size_t border_loops, double start, cw_error *err)
 {
     const cw_part part = {.mesh = mesh};
-    const load l = count_load(&part, 1);
+    const cli_load l = count_load(&part, 1);
     cli_made *made = &report->made[report->made_count - 1];
     cw_status st = how->unchecked ? CW_OK : check_mesh(report, how, &l, made, err);
     if (st == CW_OK)
-        print_summary(how, made, &l, border_loops, start);
+        cli_print_summary(how, made, &l, border_loops, start);
     return st;
 }

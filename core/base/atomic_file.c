@@ -369,8 +369,10 @@ static bool cannot_sync(int number)
     return number == EINVAL || number == ENOTSUP || number == EROFS;
 }
 
-static cw_status finish_bytes(cwi_outfile *f, cw_error *err)
+cw_status cwi_outfile_finish(cwi_outfile *f, cw_error *err)
 {
+    if (f->fd < 0 && !f->failure)
+        return CW_OK;
     cw_status st = f->failure ? fail_write(f, err) : flush_file(f, err);
     if (st != CW_OK)
         return st;
@@ -415,7 +417,7 @@ static cw_status put_in_place(cwi_outfile *f, cw_error *err)
 
 cw_status cwi_outfile_commit(cwi_outfile **f, cw_error *err)
 {
-    cw_status st = finish_bytes(*f, err);
+    cw_status st = cwi_outfile_finish(*f, err);
     if (st == CW_OK && !(*f)->joined)
         st = put_in_place(*f, err);
     close_and_free(f);

@@ -50,6 +50,10 @@ uint64_t cwi_outfile_size(const cwi_outfile *f);
 CW_NODISCARD cw_status cwi_outfile_patch(cwi_outfile *f, uint64_t at, const void *bytes,
                                          size_t size, cw_error *err);
 
+/* Flushes to the disk and closes, so that all that is left of the commit is the rename. Later
+ * writes fail. Same errors as the commit. */
+CW_NODISCARD cw_status cwi_outfile_finish(cwi_outfile *f, cw_error *err);
+
 /* Flushes to the disk and renames. Frees and NULLs the file, on failure too: the temporary is
  * then removed and the path unchanged. */
 CW_NODISCARD cw_status cwi_outfile_commit(cwi_outfile **f, cw_error *err);

@@ -78,6 +78,28 @@ void cw_mesh_free(cw_mesh *mesh)
     memset(mesh, 0, sizeof *mesh);
 }
 
+/* Whether all numbers are finite. There is no early exit, so that the compiler can look at
+ * several at a time. */
+static bool are_finite(const float *numbers, size_t count)
+{
+    const uint32_t exponent = 0x7f800000; /* all of its bits: infinite or not a number */
+    uint32_t bad = 0;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t bits;
+        memcpy(&bits, &numbers[i], sizeof bits);
+        bad |= (bits & exponent) == exponent;
+    }
+    return !bad;
+}
+
+static bool are_below(const uint32_t *numbers, size_t count, size_t limit)
+{
+    uint32_t most = 0;
+    for (size_t i = 0; i < count; i++)
+        most = numbers[i] > most ? numbers[i] : most;
+    return !count || most < limit;
+}
+
 cw_status cw_mesh_check(const cw_mesh *mesh, cw_error *err)
 {
     CWI_REQUIRE(err, mesh);
@@ -87,11 +109,13 @@ cw_status cw_mesh_check(const cw_mesh *mesh, cw_error *err)
     for (int a = 0; a < 3; a++)
         if (!isfinite(mesh->origin[a]))
             return cwi_fail(err, CW_ERR_ARGUMENT, "the mesh's origin is not finite");
-    for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
+    const bool finite = are_finite(mesh->positions, 3 * mesh->vertex_count);
+    for (size_t i = 0; i < 3 * mesh->vertex_count && !finite; i++)
         if (!isfinite(mesh->positions[i]))
             return cwi_fail(err, CW_ERR_ARGUMENT, "the position of vertex %zu is not finite",
                             i / 3);
-    for (size_t i = 0; i < 3 * mesh->triangle_count; i++)
+    const bool below = are_below(mesh->triangles, 3 * mesh->triangle_count, mesh->vertex_count);
+    for (size_t i = 0; i < 3 * mesh->triangle_count && !below; i++)
         if (mesh->triangles[i] >= mesh->vertex_count)
             return cwi_fail(err, CW_ERR_ARGUMENT, "triangle %zu names vertex %u of %zu", i / 3,
                             mesh->triangles[i], mesh->vertex_count);
@@ -102,15 +126,16 @@ bool cw_mesh_bounds(const cw_mesh *mesh, double min[3], double max[3])
 {
     if (!mesh || !min || !max)
         return false;
-    for (int a = 0; a < 3; a++) {
-        float low = INFINITY, high = -INFINITY;
-        for (size_t v = 0; v < mesh->vertex_count; v++) {
-            const float p = mesh->positions[3 * v + (size_t)a];
-            low = p < low ? p : low;
-            high = p > high ? p : high;
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t v = 0; v < mesh->vertex_count; v++)
+        for (size_t a = 0; a < 3; a++) {
+            const float p = mesh->positions[3 * v + a];
+            low[a] = p < low[a] ? p : low[a];
+            high[a] = p > high[a] ? p : high[a];
         }
-        min[a] = mesh->vertex_count ? mesh->origin[a] + (double)low : 0;
-        max[a] = mesh->vertex_count ? mesh->origin[a] + (double)high : 0;
+    for (int a = 0; a < 3; a++) {
+        min[a] = mesh->vertex_count ? mesh->origin[a] + (double)low[a] : 0;
+        max[a] = mesh->vertex_count ? mesh->origin[a] + (double)high[a] : 0;
     }
     return mesh->vertex_count > 0;
 }

@@ -13,61 +13,137 @@ enum { MAX_VOXELS = 1 << 22, MAX_CHANGES = 3 * (MAX_VOXELS / 10), FEWEST_LABELS 
  * and photographs. */
 static const double EQUAL_SHARE = 0.7, SKIPPING_SHARE = 0.2;
 
-/* Neighbours along x that are equal, one of each pair, or that differ. */
+/* Whole numbers from LOW to HIGH are tallied in a table; all others are listed and sorted. */
+enum { LOW = INT16_MIN, HIGH = UINT16_MAX, SMALL_VALUES = HIGH - LOW + 1 };
+
+/* Voxels of a row that are converted at a time. */
+enum { PIECE = 256 };
+
+/* Neighbours along x that are equal, one of each pair. */
 typedef struct run {
     double value;
     size_t pairs;
 } run;
 
-typedef struct change {
-    double from, to;
-} change;
+/* Counts of a small whole number in the rows. */
+typedef struct tally {
+    uint32_t pairs;
+    uint32_t runs; /* later its rank among the values */
+} tally;
 
 /* Runs of equal values in the rows that are examined, and the changes between them. */
 typedef struct census {
-    run *runs; /* later one of each value, rising */
-    change *changes;
-    size_t run_count, change_count;
-    bool too_many; /* changes, for a label map */
+    tally *small; /* SMALL_VALUES */
+    run *runs;    /* of other values; later one of each value, rising */
+    size_t run_count, listed;
+    size_t changes;  /* between neighbours along x */
+    size_t skipping; /* of them, those between values that are no neighbours in rank */
+    bool is_ranked;  /* the values have ranks: changes are compared, and no run is added */
+    bool too_many;   /* changes, for a label map */
     bool is_starved;
-    bool is_whole; /* all values are whole numbers */
+    bool is_whole;  /* all values are whole numbers */
+    bool must_list; /* values are needed even when some are not whole numbers */
 } census;
 
-/* Makes room for one more element; capacities are powers of two. */
-static void *grow_array(census *c, void *array, size_t count, size_t size)
+static bool is_small(double value)
 {
-    if (count & (count - 1))
-        return array;
-    void *grown = cwi_realloc_array(array, count ? 2 * count : 1, size);
-    c->is_starved = c->is_starved || !grown;
-    return grown ? grown : array;
+    return value >= LOW && value <= HIGH && value == (double)(int)value;
+}
+
+static tally *tally_of(const census *c, double value)
+{
+    return c->small + ((int)value - LOW);
+}
+
+/* Lists a run; capacities are powers of two. */
+static void list_run(census *c, double value, size_t pairs)
+{
+    if (!(c->listed & (c->listed - 1))) {
+        run *grown = cwi_realloc_array(c->runs, c->listed ? 2 * c->listed : 1, sizeof *c->runs);
+        c->is_starved = c->is_starved || !grown;
+        c->runs = grown ? grown : c->runs;
+    }
+    if (!c->is_starved)
+        c->runs[c->listed++] = (run){value, pairs};
 }
 
 static void add_run(census *c, double value, size_t pairs)
 {
-    c->is_whole = c->is_whole && value == floor(value);
+    if (c->is_ranked)
+        return;
     c->too_many = c->too_many || c->run_count == MAX_CHANGES;
-    c->runs = grow_array(c, c->runs, c->run_count, sizeof *c->runs);
-    if (!c->too_many && !c->is_starved)
-        c->runs[c->run_count++] = (run){value, pairs};
+    if (c->too_many)
+        return;
+    c->run_count++;
+    if (is_small(value)) {
+        tally *t = tally_of(c, value);
+        t->pairs += (uint32_t)pairs;
+        t->runs++;
+        return;
+    }
+    c->is_whole = c->is_whole && value == floor(value);
+    list_run(c, value, pairs);
+}
+
+static int compare_runs(const void *a, const void *b)
+{
+    const double x = ((const run *)a)->value, y = ((const run *)b)->value;
+    return (x > y) - (x < y);
+}
+
+static size_t rank_of(const census *c, double value)
+{
+    if (is_small(value))
+        return tally_of(c, value)->runs;
+    const run key = {.value = value};
+    const run *at = bsearch(&key, c->runs, c->listed, sizeof *c->runs, compare_runs);
+    return (size_t)(at - c->runs);
 }
 
 static void add_change(census *c, double from, double to)
 {
-    c->changes = grow_array(c, c->changes, c->change_count, sizeof *c->changes);
-    if (c->change_count < MAX_CHANGES && !c->is_starved)
-        c->changes[c->change_count++] = (change){from, to};
+    if (!c->is_ranked) {
+        c->changes++;
+        return;
+    }
+    const size_t a = rank_of(c, from), b = rank_of(c, to);
+    c->skipping += a + 1 < b || b + 1 < a;
+}
+
+/* Converts `count` voxels of a row from `i` on. */
+static void load_piece(const cw_volume *v, size_t i, size_t j, size_t k, size_t count,
+                       double *piece)
+{
+    const char *p = cwi_voxel_address(v, i, j, k);
+    switch (v->type) {
+#define CASE(name, ctype, text)                                                                \
+    case name:                                                                                 \
+        for (size_t n = 0; n < count; n++)                                                     \
+            piece[n] = (double)*(const ctype *)(p + (ptrdiff_t)n * v->stride[0]);              \
+        break;
+        CW_TYPE_TABLE(CASE)
+#undef CASE
+    default:
+        memset(piece, 0, count * sizeof *piece);
+    }
+}
+
+/* Whether further rows can matter. */
+static bool goes_on(const census *c)
+{
+    return !c->too_many && !c->is_starved && (c->is_whole || c->must_list);
 }
 
 /* Adds a row. Voxels without a value end a run, and are in no pair. */
 static void count_row(const cw_volume *v, size_t j, size_t k, census *c)
 {
-    const char *p = cwi_voxel_address(v, 0, j, k);
-    double last = NAN;
+    double piece[PIECE], last = NAN;
     size_t pairs = 0;
-    for (size_t i = 0; i < v->dim[0] && !c->too_many && !c->is_starved;
-         i++, p += v->stride[0]) {
-        const double value = cwi_voxel_at(v->type, p);
+    for (size_t i = 0; i < v->dim[0] && goes_on(c); i++) {
+        const size_t left = v->dim[0] - i;
+        if (i % PIECE == 0)
+            load_piece(v, i, j, k, left < PIECE ? left : PIECE, piece);
+        const double value = piece[i % PIECE];
         const bool has_value = value == value && !(v->has_nodata && value == v->nodata);
         if (has_value && value == last) {
             pairs++;
@@ -84,85 +160,87 @@ static void count_row(const cw_volume *v, size_t j, size_t k, census *c)
         add_run(c, last, pairs);
 }
 
-static int compare_runs(const void *a, const void *b)
-{
-    const double x = ((const run *)a)->value, y = ((const run *)b)->value;
-    return (x > y) - (x < y);
-}
-
-/* Goes through at most MAX_VOXELS voxels, in rows spread evenly, and joins the runs of each
- * value. */
+/* Goes through at most MAX_VOXELS voxels, in rows spread evenly. */
 static void count_rows(const cw_volume *v, census *c)
 {
     const size_t rows = v->dim[1] * v->dim[2], per_row = v->dim[0];
     const size_t most = MAX_VOXELS / per_row ? MAX_VOXELS / per_row : 1;
     const size_t by = (rows + most - 1) / most;
-    size_t values = 0;
-    for (size_t row = 0; row < rows && !c->too_many && !c->is_starved; row += by)
+    for (size_t row = 0; row < rows && goes_on(c); row += by)
         count_row(v, row % v->dim[1], row / v->dim[1], c);
-    if (c->run_count == 0)
+}
+
+/* Joins the runs of each value, in rising order, and ranks the small ones. */
+static void rank_values(census *c)
+{
+    size_t values = 0;
+    for (int n = LOW; n <= HIGH && !c->is_starved; n++)
+        if (tally_of(c, n)->runs)
+            list_run(c, n, tally_of(c, n)->pairs);
+    if (c->is_starved || c->listed == 0)
         return;
-    qsort(c->runs, c->run_count, sizeof *c->runs, compare_runs);
-    for (size_t n = 0; n < c->run_count; n++) {
+    qsort(c->runs, c->listed, sizeof *c->runs, compare_runs);
+    for (size_t n = 0; n < c->listed; n++) {
         if (values > 0 && c->runs[values - 1].value == c->runs[n].value)
             c->runs[values - 1].pairs += c->runs[n].pairs;
         else
             c->runs[values++] = c->runs[n];
     }
-    c->run_count = values;
-}
-
-static size_t rank_of(const census *c, double value)
-{
-    const run key = {.value = value};
-    const run *at = bsearch(&key, c->runs, c->run_count, sizeof *c->runs, compare_runs);
-    return (size_t)(at - c->runs);
+    c->listed = values;
+    for (size_t n = 0; n < values; n++)
+        if (is_small(c->runs[n].value))
+            tally_of(c, c->runs[n].value)->runs = (uint32_t)n;
+    c->is_ranked = true;
 }
 
 /* Returns true if neighbours are as in a label map. The value that most equal pairs have is the
  * background, and does not count. */
-static bool is_label_map(const census *c)
+static bool is_label_map(const cw_volume *v, census *c)
 {
-    size_t equal = 0, largest = 0, skipping = 0;
-    for (size_t n = 0; n < c->run_count; n++) {
+    size_t equal = 0, largest = 0;
+    for (size_t n = 0; n < c->listed; n++) {
         equal += c->runs[n].pairs;
         largest = c->runs[n].pairs > largest ? c->runs[n].pairs : largest;
     }
     equal -= largest;
-    for (size_t n = 0; n < c->change_count; n++) {
-        const size_t a = rank_of(c, c->changes[n].from), b = rank_of(c, c->changes[n].to);
-        skipping += a + 1 < b || b + 1 < a;
-    }
-    const double apart = (double)c->change_count;
-    return equal > 0 && (double)equal >= EQUAL_SHARE * ((double)equal + apart) &&
-           (double)skipping >= SKIPPING_SHARE * apart;
+    const double apart = (double)c->changes;
+    if (equal == 0 || (double)equal < EQUAL_SHARE * ((double)equal + apart))
+        return false;
+    count_rows(v, c);
+    return (double)c->skipping >= SKIPPING_SHARE * apart;
+}
+
+/* Whether the values that were counted are those of a label map. */
+static bool is_found(const cw_volume *v, census *c)
+{
+    return !c->too_many && c->is_whole && c->listed >= FEWEST_LABELS &&
+           v->slope * c->runs[0].value + v->intercept >= 0 && is_label_map(v, c);
 }
 
 cw_status cw_volume_labels(const cw_volume *volume, cw_labels *out, cw_error *err)
 {
     CWI_REQUIRE(err, volume, out);
     cw_volume v;
-    census c = {.is_whole = true};
     cw_status st = cw_volume_resolve(volume, &v, err);
     *out = (cw_labels){0};
-    const bool known = v.known & CW_KNOWN_LABELS;
     if (st != CW_OK || v.sparse || v.cells)
         return st;
+    census c = {.is_whole = true, .must_list = v.known & CW_KNOWN_LABELS};
+    c.small = cwi_alloc_zeroed(SMALL_VALUES, sizeof *c.small);
+    c.is_starved = !c.small;
     count_rows(&v, &c);
+    if (c.must_list || (c.is_whole && !c.too_many))
+        rank_values(&c);
     if (c.is_starved)
         st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to count labels");
     if (st == CW_OK) {
-        out->found =
-            known || (!c.too_many && c.is_whole && c.run_count >= FEWEST_LABELS &&
-                      v.slope * c.runs[0].value + v.intercept >= 0 && is_label_map(&c));
-        out->more = out->found && (c.too_many || c.run_count > CW_LABELS_MAX);
-        out->count = !out->found                   ? 0
-                     : c.run_count < CW_LABELS_MAX ? c.run_count
-                                                   : CW_LABELS_MAX;
+        out->found = c.must_list || is_found(&v, &c);
+        out->more = out->found && (c.too_many || c.listed > CW_LABELS_MAX);
+        out->count = !out->found ? 0 : c.listed < CW_LABELS_MAX ? c.listed : CW_LABELS_MAX;
     }
     for (size_t n = 0; n < out->count; n++)
         out->value[n] = v.slope * c.runs[n].value + v.intercept;
+    cwi_free(c.small);
     cwi_free(c.runs);
-    cwi_free(c.changes);
     return st;
 }

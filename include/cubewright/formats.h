@@ -546,6 +546,25 @@ CW_NODISCARD CW_API cw_status cw_parts_write(const char *path, const cw_part *pa
                                              size_t count, const cw_write_desc *desc,
                                              cw_error *err);
 
+/* The last word on a file that is about to appear at its path. */
+typedef struct cw_write_consent {
+    cw_status (*ask)(void *user, cw_error *err); /* CW_OK: the file may appear */
+    void *user;                                  /* for ask */
+} cw_write_consent;
+
+/* Writes as cw_parts_write(), and asks for consent when all bytes are on the disk. Without it
+ * the path keeps its old file. So a mesh can be checked by one thread while another one writes
+ * it: ask waits for the verdict. It is called once, on the calling thread; a failure before
+ * calls it never. A team is asked before it writes.
+ *
+ * consent  borrowed
+ * Returns  as cw_parts_write(), or as consent->ask() */
+CW_NODISCARD CW_API cw_status cw_parts_write_with_consent(const char *path,
+                                                          const cw_part *parts, size_t count,
+                                                          const cw_write_desc *desc,
+                                                          const cw_write_consent *consent,
+                                                          cw_error *err);
+
 /* The parts of a mesh that a file will not hold, above all the digits of world coordinates that
  * single precision loses. */
 typedef struct cw_write_loss {

@@ -1576,6 +1576,17 @@ cw_write_desc._fields_ = [
 ]
 
 
+class cw_write_consent(Structure):
+    ask: Any
+    user: Any
+
+
+cw_write_consent._fields_ = [
+    ("ask", CFUNCTYPE(c_int, c_void_p, POINTER(cw_error))),
+    ("user", c_void_p),
+]
+
+
 class cw_write_loss(Structure):
     step_mm: float
     merged_vertices: int
@@ -2516,6 +2527,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_volume_write": (c_int, [c_char_p, POINTER(cw_volume), POINTER(cw_write_desc), POINTER(cw_error)]),
     "cw_mesh_write": (c_int, [c_char_p, POINTER(cw_mesh), POINTER(cw_write_desc), POINTER(cw_error)]),
     "cw_parts_write": (c_int, [c_char_p, POINTER(cw_part), c_size_t, POINTER(cw_write_desc), POINTER(cw_error)]),
+    "cw_parts_write_with_consent": (c_int, [c_char_p, POINTER(cw_part), c_size_t, POINTER(cw_write_desc), POINTER(cw_write_consent), POINTER(cw_error)]),
     "cw_mesh_write_loss": (c_int, [c_char_p, POINTER(cw_mesh), POINTER(cw_write_desc), POINTER(cw_write_loss), POINTER(cw_error)]),
     "cw_parts_write_loss": (c_int, [c_char_p, POINTER(cw_part), c_size_t, POINTER(cw_write_desc), POINTER(cw_write_loss), POINTER(cw_error)]),
     "cw_mesh_write_check": (c_int, [c_char_p, POINTER(cw_write_desc), POINTER(cw_error)]),

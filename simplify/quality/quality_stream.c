@@ -7,6 +7,7 @@
 #include "core/base/text.h"
 #include "core/geometry/union_find.h"
 #include "simplify/quality/triangle_shapes.h"
+#include "simplify/quality/vertex_ranges.h"
 #include "simplify/quality/vertex_stars.h"
 
 #include <math.h>
@@ -80,15 +81,19 @@ static void sum_shapes(void *context, size_t k)
     const shape_work *work = context;
     const cw_quality_stream *s = work->stream;
     const size_t begin = s->shaped + k * CWI_SHAPE_CHUNK, chunk_end = begin + CWI_SHAPE_CHUNK;
+    cwi_shape_block block = {0};
     cwi_shape_sum_init(&work->sums[k]);
     for (size_t t = begin; t < chunk_end && t < work->end; t++) {
         const uint32_t *c = s->triangles + 3 * t;
-        double corners[3][3];
         for (int n = 0; n < 3; n++)
             for (int a = 0; a < 3; a++)
-                corners[n][a] = (double)s->positions[3 * (c[n] - s->placed) + (size_t)a];
-        cwi_shape_sum_add(&work->sums[k], (const double(*)[3])corners, is_collapsed(c));
+                block.corner[n][a][block.count] =
+                    (double)s->positions[3 * (c[n] - s->placed) + (size_t)a];
+        block.collapsed[block.count++] = is_collapsed(c);
+        if (block.count == CWI_SHAPE_BLOCK)
+            cwi_shape_sum_add(&work->sums[k], &block);
     }
+    cwi_shape_sum_add(&work->sums[k], &block);
 }
 
 /* Adds the shapes of triangles whose vertices came, and that follow each other. The sums are
@@ -136,18 +141,30 @@ static void drop_sets(cw_quality_stream *s, uint32_t count)
         sets[v] = sets[v + count] - count;
 }
 
-/* Measures the topology around vertices that are final. */
+/* Measures the topology around the next vertices that are final. */
+static bool measure_next(cw_quality_stream *s, size_t count)
+{
+    const uint32_t begin = (uint32_t)s->settled, end = (uint32_t)(s->settled + count);
+    cwi_vertex_ranges ranges;
+    const cwi_stars stars = {.triangles = s->triangles,
+                             .count = s->held,
+                             .ranges = &ranges,
+                             .begin = begin,
+                             .end = end,
+                             .threads = s->desc.threads};
+    const bool ok =
+        cwi_vertex_ranges_init(&ranges, s->triangles, s->held, begin, end, s->desc.threads) &&
+        cwi_measure_stars(&stars, &s->q, &s->border);
+    cwi_vertex_ranges_free(&ranges);
+    return ok && cwi_border_join(&s->border);
+}
+
 static bool settle_vertices(cw_quality_stream *s)
 {
     const size_t part = s->set_count / STEPS, step = part > MIN_STEP ? part : MIN_STEP;
     while (s->settled < s->final) {
         const size_t left = s->final - s->settled, count = left < step ? left : step;
-        const cwi_stars stars = {.triangles = s->triangles,
-                                 .count = s->held,
-                                 .begin = (uint32_t)s->settled,
-                                 .end = (uint32_t)(s->settled + count),
-                                 .threads = s->desc.threads};
-        if (!cwi_measure_stars(&stars, &s->q, &s->border) || !cwi_border_join(&s->border))
+        if (!measure_next(s, count))
             return false;
         drop_sets(s, (uint32_t)count);
         s->settled += count;

@@ -7,29 +7,149 @@
 #include "core/geometry/exact_predicates.h"
 #include "core/geometry/union_find.h"
 #include "core/geometry/vec3.h"
+#include "simplify/quality/triangle_shapes.h"
+#include "simplify/quality/vertex_stars.h"
 
 #include <math.h>
 #include <string.h>
+
+/* Triangles that are measured by themselves, and whose sums are then joined in order: so sums
+ * do not depend on threads. SLOTS is the size of a table of the components of a chunk. */
+enum { CHUNK = 4096, SLOTS = 4 * CHUNK };
+
+/* Triangles that look for rays together, and rays that they may find. */
+enum { BLOCK = 64, MOST_FOUND = 128 };
+
+/* Sums over the triangles of a component, seen from its root. */
+typedef struct sum {
+    uint32_t root;
+    double volume, area;
+} sum;
+
+/* The components of a chunk of triangles. */
+typedef struct chunk_sums {
+    sum *sums;
+    size_t count;
+    bool failed;
+} chunk_sums;
+
+/* A ray from a vertex of a closed shell along +x. */
+typedef struct ray {
+    uint32_t shell; /* its root, where the ray starts */
+    int winding;    /* how often the other shells wind around the start */
+    uint32_t met;   /* triangles of other closed shells */
+} ray;
 
 typedef struct work {
     const cwi_welded *welded;
     const cwi_shells *shells;
     uint32_t *part;
-    cwi_boxes tree;
-    uint32_t *closed; /* the roots of closed shells */
-    int *around;      /* how often the other shells wind around each of these */
-    size_t *depth;    /* how many triangles of closed ones a ray from it meets */
-    size_t count;
+    double *volume, *area; /* of each root's component: signed, seen from the root */
+    chunk_sums *chunks;
+    ray *rays; /* of all closed shells */
+    size_t ray_count;
+    cwi_boxes tree; /* of the starts of the rays */
 } work;
 
-/* A ray from a vertex along +x, met with the triangles of other shells. */
-typedef struct ray {
+/* Rays that may meet the triangles of a block. */
+typedef struct found_rays {
     const work *w;
-    uint32_t shell; /* where it starts */
-    const float *start;
-    int winding;
-    size_t met; /* triangles of closed shells */
-} ray;
+    uint32_t ray[MOST_FOUND];
+    float start[3][MOST_FOUND];
+    const float *box; /* around the block, from low to high */
+    size_t count;
+    bool too_many;
+} found_rays;
+
+/* A triangle that looks for rays by itself. */
+typedef struct seeker {
+    work *w;
+    size_t triangle;
+    const float *box;
+} seeker;
+
+/* --- components --------------------------------------------------------------------------- */
+
+static size_t chunk_count(const work *w)
+{
+    return (w->welded->mesh->triangle_count + CHUNK - 1) / CHUNK;
+}
+
+static size_t chunk_end(const work *w, size_t k)
+{
+    const size_t count = w->welded->mesh->triangle_count, end = (k + 1) * CHUNK;
+    return end < count ? end : count;
+}
+
+/* Names each vertex's root once and for all, so that threads may read it, and moves there what
+ * edges say of their vertices. */
+static void name_roots(work *w)
+{
+    uint8_t *unbounded = w->shells->unbounded;
+    for (uint32_t v = 0; v < w->welded->mesh->vertex_count; v++) {
+        const uint32_t root = w->part[v] = cwi_sets_find(w->part, v);
+        if (root != v) {
+            unbounded[root] |= unbounded[v];
+            unbounded[v] = 0;
+        }
+    }
+}
+
+/* Returns the sum of a root among those of a chunk; a new one follows the others. */
+static sum *find_sum(chunk_sums *c, uint16_t *slots, uint32_t root)
+{
+    uint32_t at = root * 2654435769u >> 18; /* to 14 bits, as many as SLOTS has */
+    while (slots[at] && c->sums[slots[at] - 1].root != root)
+        at = (at + 1) % SLOTS;
+    if (!slots[at]) {
+        c->sums[c->count] = (sum){.root = root};
+        slots[at] = (uint16_t)++c->count;
+    }
+    return &c->sums[slots[at] - 1];
+}
+
+static void sum_chunk(void *context, size_t k)
+{
+    const work *w = context;
+    chunk_sums *c = &w->chunks[k];
+    uint16_t slots[SLOTS] = {0};
+    sum *last = NULL;
+    c->sums = cwi_alloc_array(CHUNK, sizeof *c->sums);
+    c->failed = !c->sums;
+    for (size_t t = k * CHUNK; t < chunk_end(w, k) && c->sums; t++) {
+        if (cwi_is_collapsed(w->welded, t))
+            continue;
+        const uint32_t root = w->part[w->welded->vertex[3 * t]];
+        if (!last || last->root != root)
+            last = find_sum(c, slots, root);
+        cwi_add_triangle(w->welded->mesh, t, root, &last->volume, &last->area);
+    }
+    if (c->sums && c->count < CHUNK) {
+        sum *fitting = cwi_realloc_array(c->sums, c->count, sizeof *c->sums);
+        c->sums = fitting ? fitting : c->sums;
+    }
+}
+
+/* Finds the area and the volume of each component. */
+static bool measure_components(work *w, const cw_quality_desc *d)
+{
+    w->chunks = cwi_alloc_zeroed(chunk_count(w), sizeof *w->chunks);
+    bool ok = w->chunks && cwi_each_layer(chunk_count(w), CHUNK * 32, d->threads, &d->progress,
+                                          "checking", sum_chunk, w, NULL) == CW_OK;
+    for (size_t k = 0; k < chunk_count(w) && w->chunks; k++) {
+        const chunk_sums *c = &w->chunks[k];
+        ok = ok && !c->failed;
+        for (size_t n = 0; n < c->count && ok; n++) {
+            w->volume[c->sums[n].root] += c->sums[n].volume;
+            w->area[c->sums[n].root] += c->sums[n].area;
+        }
+        cwi_free(c->sums);
+    }
+    cwi_free(w->chunks);
+    return ok;
+}
+
+/* --- rays --------------------------------------------------------------------------------- */
 
 static int sign_of(float x)
 {
@@ -58,60 +178,163 @@ static int winding_of(const float *const corner[3], const float *start)
     return winding;
 }
 
-static void meet_triangle(ray *r, uint32_t triangle)
+static const float *start_of(const work *w, uint32_t k)
 {
-    const cwi_welded *w = r->w->welded;
-    const uint32_t *v = w->vertex + 3 * (size_t)triangle;
-    const float *corner[3];
-    if (r->w->part[v[0]] == r->shell)
+    return w->welded->points + 3 * (size_t)w->rays[k].shell;
+}
+
+static bool starts_in(const float start[3], const float box[6])
+{
+    return start[1] >= box[1] && start[1] <= box[4] && start[2] >= box[2] &&
+           start[2] <= box[5] && start[0] <= box[3];
+}
+
+/* Counts a triangle, unless it is of the ray's shell. One without area meets no ray. */
+static void meet_ray(work *w, uint32_t k, size_t triangle)
+{
+    const uint32_t *v = w->welded->vertex + 3 * triangle;
+    const float *corner[3], *start = start_of(w, k);
+    if (w->part[v[0]] == w->rays[k].shell)
         return;
     for (int n = 0; n < 3; n++)
-        corner[n] = w->points + 3 * (size_t)v[n];
-    const int winding = winding_of(corner, r->start);
-    if (winding && winding * cwi_orient3d(corner[0], corner[1], corner[2], r->start) < 0) {
-        r->winding += winding;
-        r->met += !r->w->shells->unbounded[r->w->part[v[0]]];
+        corner[n] = w->welded->points + 3 * (size_t)v[n];
+    const int winding = winding_of(corner, start);
+    if (winding && winding * cwi_orient3d(corner[0], corner[1], corner[2], start) < 0) {
+        __atomic_fetch_add(&w->rays[k].winding, winding, __ATOMIC_RELAXED);
+        if (!w->shells->unbounded[w->part[v[0]]])
+            __atomic_fetch_add(&w->rays[k].met, 1, __ATOMIC_RELAXED);
     }
 }
 
-static void box_around(const ray *r, float box[6])
+static bool find_rays(void *context, size_t node)
 {
-    const float *s = r->start;
-    const float ends[6] = {s[0], s[1], s[2], INFINITY, s[1], s[2]};
-    memcpy(box, ends, sizeof ends);
-}
-
-static bool meet_node(void *context, size_t node)
-{
-    ray *r = context;
-    const cwi_boxes *tree = &r->w->tree;
-    float box[6];
-    box_around(r, box);
-    const unsigned meeting = cwi_boxes_meeting(&tree->nodes[node], box);
-    for (size_t c = 0; meeting >> c; c++)
-        if (meeting >> c & 1)
-            meet_triangle(r, tree->order[node * CWI_WIDTH + c]);
+    found_rays *f = context;
+    for (size_t c = 0; c < CWI_WIDTH && node * CWI_WIDTH + c < f->w->ray_count; c++) {
+        const uint32_t k = f->w->tree.order[node * CWI_WIDTH + c];
+        const float *start = start_of(f->w, k);
+        if (!starts_in(start, f->box))
+            continue;
+        if (f->count == MOST_FOUND) {
+            f->too_many = true;
+            return false;
+        }
+        for (int a = 0; a < 3; a++)
+            f->start[a][f->count] = start[a];
+        f->ray[f->count++] = k;
+    }
     return true;
 }
 
-static void wind_around(void *context, size_t k)
+static bool meet_rays(void *context, size_t node)
+{
+    const seeker *s = context;
+    for (size_t c = 0; c < CWI_WIDTH && node * CWI_WIDTH + c < s->w->ray_count; c++) {
+        const uint32_t k = s->w->tree.order[node * CWI_WIDTH + c];
+        if (starts_in(start_of(s->w, k), s->box))
+            meet_ray(s->w, k, s->triangle);
+    }
+    return true;
+}
+
+static void meet_found(work *w, const found_rays *f, size_t triangle, const float box[6])
+{
+    for (size_t n = 0; n < f->count; n++) {
+        const float x = f->start[0][n], y = f->start[1][n], z = f->start[2][n];
+        if ((y >= box[1]) & (y <= box[4]) & (z >= box[2]) & (z <= box[5]) & (x <= box[3]))
+            meet_ray(w, f->ray[n], triangle);
+    }
+}
+
+/* Rays that run along +x into a box start within it or before it. */
+static void visit_starts(const work *w, const float box[6], bool (*visit)(void *, size_t),
+                         void *context)
+{
+    const float before[6] = {-INFINITY, box[1], box[2], box[3], box[4], box[5]};
+    cwi_boxes_visit(&w->tree, before, 0, visit, context);
+}
+
+/* Lets the triangles of a block meet the rays near it. Neighbours in number mostly are
+ * neighbours in space: they look for rays together, unless they find too many. */
+static void meet_block(work *w, size_t first, size_t count)
+{
+    float boxes[BLOCK][6],
+        around[6] = {INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY};
+    found_rays found;
+    for (size_t i = 0; i < count; i++) {
+        cwi_boxes_triangle(w->welded->points, w->welded->vertex + 3 * (first + i), boxes[i]);
+        for (int a = 0; a < 3; a++) {
+            around[a] = boxes[i][a] < around[a] ? boxes[i][a] : around[a];
+            around[a + 3] = boxes[i][a + 3] > around[a + 3] ? boxes[i][a + 3] : around[a + 3];
+        }
+    }
+    found.w = w;
+    found.box = around;
+    found.count = 0;
+    found.too_many = false;
+    visit_starts(w, around, find_rays, &found);
+    for (size_t i = 0; i < count && found.count; i++)
+        if (found.too_many)
+            visit_starts(w, boxes[i], meet_rays, &(seeker){w, first + i, boxes[i]});
+        else
+            meet_found(w, &found, first + i, boxes[i]);
+}
+
+static void meet_chunk(void *context, size_t k)
 {
     work *w = context;
-    ray r = {w, w->closed[k], w->welded->points + 3 * (size_t)w->closed[k], 0, 0};
-    float box[6];
-    box_around(&r, box);
-    cwi_boxes_visit(&w->tree, box, 0, meet_node, &r);
-    w->around[k] = r.winding;
-    w->depth[k] = r.met;
+    for (size_t t = k * CHUNK; t < chunk_end(w, k); t += BLOCK) {
+        const size_t left = chunk_end(w, k) - t;
+        meet_block(w, t, left < BLOCK ? left : BLOCK);
+    }
 }
+
+static bool is_closed(const work *w, uint32_t v)
+{
+    return w->part[v] == v && w->shells->used[v] && !w->shells->unbounded[v];
+}
+
+/* Sends a ray from each closed shell. Returns false when memory is out. */
+static bool start_rays(work *w)
+{
+    const size_t vertices = w->welded->mesh->vertex_count;
+    size_t count = 0;
+    for (uint32_t v = 0; v < vertices; v++)
+        count += is_closed(w, v);
+    w->rays = cwi_alloc_zeroed(count, sizeof *w->rays);
+    float(*boxes)[6] = cwi_alloc_array(count, sizeof *boxes);
+    for (uint32_t v = 0; v < vertices && w->rays && boxes; v++)
+        if (is_closed(w, v)) {
+            w->rays[w->ray_count].shell = v;
+            memcpy(boxes[w->ray_count], w->welded->points + 3 * (size_t)v, 3 * sizeof(float));
+            memcpy(boxes[w->ray_count++] + 3, w->welded->points + 3 * (size_t)v,
+                   3 * sizeof(float));
+        }
+    const bool ok =
+        w->rays && boxes &&
+        cwi_boxes_build(&w->tree, (const float(*)[6])boxes, w->ray_count, NULL) == CW_OK;
+    cwi_free(boxes);
+    return ok;
+}
+
+/* Counts how often other shells wind around each closed shell. */
+static bool wind_around(work *w, const cw_quality_desc *d, const cw_quality *q)
+{
+    if (!start_rays(w))
+        return false;
+    return !w->ray_count || q->components < 2 ||
+           cwi_each_layer(chunk_count(w), CHUNK * 32, d->threads, &d->progress, "checking",
+                          meet_chunk, w, NULL) == CW_OK;
+}
+
+/* --- verdicts ----------------------------------------------------------------------------- */
 
 /* An open shell has no volume for certain. One that has a tenth of a sphere's of its area, seen
  * from a point of its own, is nearly closed, and its sign tells how it faces. */
 static void find_open_inward(const work *w, uint8_t *wrong, cw_quality *q)
 {
     for (size_t v = 0; v < w->welded->mesh->vertex_count; v++) {
-        const double area = w->shells->area[v], whole = area * sqrt(area) / (6 * sqrt(CWI_PI));
-        wrong[v] = wrong[v] == 1 && w->shells->volume[v] < -0.1 * whole;
+        const double area = w->area[v], whole = area * sqrt(area) / (6 * sqrt(CWI_PI));
+        wrong[v] = wrong[v] == 1 && w->volume[v] < -0.1 * whole;
         q->open_inward += wrong[v];
     }
 }
@@ -125,14 +348,15 @@ static void judge_shells(const work *w, const cw_quality_desc *d, cw_quality *q)
 {
     uint8_t *found = w->shells->unbounded; /* has served its purpose */
     find_open_inward(w, found, q);
-    for (size_t k = 0; k < w->count; k++) {
-        const bool inward = w->shells->volume[w->closed[k]] < 0;
-        q->cavities += inward && w->around[k] == 1;
-        q->inside_out += inward && w->around[k] != 1;
-        q->nested += !inward && w->around[k] != 0;
-        found[w->closed[k]] = (w->around[k] != (inward ? 1 : 0) ? WRONG : 0) |
-                              (inward != (w->depth[k] % 2 == 1) ? TURN : 0);
-        q->to_turn += (found[w->closed[k]] & TURN) != 0;
+    for (size_t k = 0; k < w->ray_count; k++) {
+        const ray *r = &w->rays[k];
+        const bool inward = w->volume[r->shell] < 0;
+        q->cavities += inward && r->winding == 1;
+        q->inside_out += inward && r->winding != 1;
+        q->nested += !inward && r->winding != 0;
+        found[r->shell] = (r->winding != (inward ? 1 : 0) ? WRONG : 0) |
+                          (inward != (r->met % 2 == 1) ? TURN : 0);
+        q->to_turn += (found[r->shell] & TURN) != 0;
     }
     for (size_t t = 0; t < w->welded->mesh->triangle_count && (d->defects || d->turn); t++) {
         const uint8_t here = found[w->part[w->welded->vertex[3 * t]]];
@@ -143,36 +367,23 @@ static void judge_shells(const work *w, const cw_quality_desc *d, cw_quality *q)
     }
 }
 
-/* Roots are found once and for all, so that threads may read them. */
-static void list_closed(work *w)
-{
-    const size_t vertices = w->welded->mesh->vertex_count;
-    for (uint32_t v = 0; v < vertices; v++) {
-        w->part[v] = cwi_sets_find(w->part, v);
-        if (w->part[v] == v && w->shells->used[v] && !w->shells->unbounded[v])
-            w->closed[w->count++] = v;
-    }
-}
-
 bool cwi_measure_shells(const cwi_welded *welded, const cwi_shells *shells,
                         const cw_quality_desc *desc, cw_quality *q)
 {
     const size_t vertices = welded->mesh->vertex_count;
     work w = {.welded = welded, .shells = shells, .part = shells->part};
-    w.closed = cwi_alloc_array(vertices, sizeof *w.closed);
-    w.around = cwi_alloc_zeroed(vertices, sizeof *w.around);
-    w.depth = cwi_alloc_zeroed(vertices, sizeof *w.depth);
-    bool ok = w.closed && w.around && w.depth && cwi_welded_sort(welded, &w.tree);
+    w.volume = cwi_alloc_zeroed(vertices, sizeof *w.volume);
+    w.area = cwi_alloc_zeroed(vertices, sizeof *w.area);
+    bool ok = w.volume && w.area;
     if (ok) {
-        list_closed(&w);
-        ok = cwi_each_layer(w.count, 1 << 12, desc->threads, &desc->progress, "checking",
-                            wind_around, &w, NULL) == CW_OK;
+        name_roots(&w);
+        ok = measure_components(&w, desc) && wind_around(&w, desc, q);
     }
     if (ok)
         judge_shells(&w, desc, q);
     cwi_boxes_free(&w.tree);
-    cwi_free(w.closed);
-    cwi_free(w.around);
-    cwi_free(w.depth);
+    cwi_free(w.rays);
+    cwi_free(w.volume);
+    cwi_free(w.area);
     return ok;
 }

@@ -18,31 +18,47 @@ const double cw_aspect_ends[CW_ASPECT_BINS - 1] = {1.25, 1.5, 2, 3, 5, 10, 30, 1
 typedef struct sides {
     double from[3][3]; /* the corners */
     double side[3][3];
-    double length[3];
-    double twice_area;
     double normal[3]; /* as long as twice the area */
 } sides;
+
+/* Figures of the triangles of a block. */
+typedef struct figures {
+    double length[3][CWI_SHAPE_BLOCK];
+    double cosine[3][CWI_SHAPE_BLOCK]; /* of the angle at each corner, times the two sides */
+    double least[CWI_SHAPE_BLOCK], most[CWI_SHAPE_BLOCK]; /* angles, within NEAR_DEG */
+    int bin[4][CWI_SHAPE_BLOCK]; /* of the angles, and of the least one */
+    double
+        off_centre[CWI_SHAPE_BLOCK]; /* the farthest of them from its bin's centre, in bins */
+    double aspect[CWI_SHAPE_BLOCK], twice_area[CWI_SHAPE_BLOCK], volume[CWI_SHAPE_BLOCK];
+} figures;
+
+/* Bins of lengths by the leading bits of the square of a length: eight of its fraction. */
+typedef struct length_bins {
+    uint8_t *bin; /* or UNSURE, where bins meet */
+    uint64_t first;
+} length_bins;
+
+enum { UNSURE = 255, DROPPED_BITS = 52 - 8 };
 
 typedef struct work {
     const cwi_welded *welded;
     uint8_t *defects;
     cwi_shape_sum *parts;
     double bins_per_octave, shortest; /* of the histogram of lengths */
+    length_bins lengths;
 } work;
 
-/* Finds the sides and the normal from the corners. */
-static void find_sides(sides *s)
-{
-    for (int n = 0; n < 3; n++)
-        for (int a = 0; a < 3; a++)
-            s->side[n][a] = s->from[(n + 1) % 3][a] - s->from[n][a];
-    cwi_cross(s->side[0], s->side[1], s->normal);
-}
+/* The angles of figures are off by at most 2.5e-5 degrees. Any nearer than this to the end of a
+ * bin, or to an extreme, is computed by atan2(). */
+static const double NEAR_DEG = 1e-4;
 
 static void load_sides(const cw_mesh *mesh, size_t triangle, sides *s)
 {
     cwi_corners(mesh, triangle, s->from);
-    find_sides(s);
+    for (int n = 0; n < 3; n++)
+        for (int a = 0; a < 3; a++)
+            s->side[n][a] = s->from[(n + 1) % 3][a] - s->from[n][a];
+    cwi_cross(s->side[0], s->side[1], s->normal);
 }
 
 void cwi_add_triangle(const cw_mesh *mesh, size_t triangle, uint32_t vertex, double *volume,
@@ -56,19 +72,109 @@ void cwi_add_triangle(const cw_mesh *mesh, size_t triangle, uint32_t vertex, dou
     *area += sqrt(cwi_dot(s.normal, s.normal)) / 2;
 }
 
+/* --- one block ---------------------------------------------------------------------------- */
+
+/* Finds lengths, areas, volumes and cosines from the corners. */
+static void find_sides(const cwi_shape_block *b, figures *f)
+{
+    for (size_t i = 0; i < b->count; i++) {
+        const double x = b->corner[0][0][i], y = b->corner[0][1][i], z = b->corner[0][2][i];
+        const double u[3] = {b->corner[1][0][i] - x, b->corner[1][1][i] - y,
+                             b->corner[1][2][i] - z};
+        const double v[3] = {b->corner[2][0][i] - b->corner[1][0][i],
+                             b->corner[2][1][i] - b->corner[1][1][i],
+                             b->corner[2][2][i] - b->corner[1][2][i]};
+        const double w[3] = {x - b->corner[2][0][i], y - b->corner[2][1][i],
+                             z - b->corner[2][2][i]};
+        const double normal[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                                  u[0] * v[1] - u[1] * v[0]};
+        f->length[0][i] = sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+        f->length[1][i] = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+        f->length[2][i] = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+        f->cosine[0][i] = -(u[0] * w[0] + u[1] * w[1] + u[2] * w[2]);
+        f->cosine[1][i] = -(v[0] * u[0] + v[1] * u[1] + v[2] * u[2]);
+        f->cosine[2][i] = -(w[0] * v[0] + w[1] * v[1] + w[2] * v[2]);
+        f->twice_area[i] =
+            sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+        f->volume[i] = (normal[0] * x + normal[1] * y + normal[2] * z) / 6;
+    }
+}
+
+/* The arc tangent between 0 and 1 as an odd polynomial: an interpolation at Chebyshev nodes, off
+ * by at most 4.2e-7. */
+static inline double short_atan(double r)
+{
+    const double s = r * r;
+    return r * (0.9999992256 +
+                s * (-0.3332567804 +
+                     s * (0.1987204027 +
+                          s * (-0.1344786406 +
+                               s * (0.083126453 + s * (-0.0363604309 + s * 0.0076483539))))));
+}
+
+/* Selects without a branch, so that loops become vector instructions; off by rounding. */
+static inline double near_lesser(double a, double b)
+{
+    return 0.5 * (a + b - fabs(a - b));
+}
+
+static inline double near_greater(double a, double b)
+{
+    return 0.5 * (a + b + fabs(a - b));
+}
+
+/* Nearly atan2(y, x) for y >= 0, in degrees. */
+static inline double near_angle(double y, double x)
+{
+    const double flat = fabs(x);
+    const double turned = CWI_PI / 4 - short_atan(near_lesser(flat, y) / near_greater(flat, y));
+    const double acute = CWI_PI / 4 + copysign(turned, y - flat);
+    return 180 / CWI_PI * (CWI_PI / 2 - copysign(CWI_PI / 2 - acute, x));
+}
+
+/* Finds the bin of an angle; returns the distance from its centre, in bins. */
+static inline double find_bin(double angle, double bins_per_degree, int *bin)
+{
+    const double at = bins_per_degree * angle;
+    *bin = (int)at;
+    return fabs(at - (double)*bin - 0.5);
+}
+
+/* Finds angles nearly, and aspects: a b c (a + b + c) / (4 K)^2, where K is the area. */
+static void find_shapes(const cwi_shape_block *block, figures *f)
+{
+    const double per_degree = CW_ANGLE_BINS / 180.0, of_smallest = CW_ANGLE_BINS / 60.0;
+    for (size_t i = 0; i < block->count; i++) {
+        const double y = f->twice_area[i];
+        const double a = near_angle(y, f->cosine[0][i]), b = near_angle(y, f->cosine[1][i]),
+                     c = near_angle(y, f->cosine[2][i]);
+        f->least[i] = near_lesser(a, near_lesser(b, c));
+        f->most[i] = near_greater(a, near_greater(b, c));
+        const double of_a = find_bin(a, per_degree, &f->bin[0][i]),
+                     of_b = find_bin(b, per_degree, &f->bin[1][i]),
+                     of_c = find_bin(c, per_degree, &f->bin[2][i]),
+                     of_least = find_bin(f->least[i], of_smallest, &f->bin[3][i]);
+        f->off_centre[i] = near_greater(near_greater(of_a, of_b), near_greater(of_c, of_least));
+    }
+    for (size_t i = 0; i < block->count; i++) {
+        const double l0 = f->length[0][i], l1 = f->length[1][i], l2 = f->length[2][i];
+        const double quarter = 2 * f->twice_area[i];
+        f->aspect[i] = (l0 / quarter) * (l1 / quarter) * l2 * (l0 + l1 + l2);
+    }
+}
+
 static size_t bin_of(double value, double step)
 {
     const double bin = value / step;
     return bin < CW_ANGLE_BINS ? (size_t)bin : CW_ANGLE_BINS - 1;
 }
 
-static void count_angles(const sides *s, cwi_shape_sum *p, double *largest)
+static void count_exact_angles(const figures *f, size_t i, cwi_shape_sum *p, double *largest)
 {
     const double degrees = 180 / acos(-1.0);
     double least = 180, most = 0;
     for (int n = 0; n < 3; n++) {
-        const double cosine = -cwi_dot(s->side[n], s->side[(n + 2) % 3]);
-        const double angle = degrees * atan2(s->twice_area, cosine);
+        const double angle = degrees * atan2(f->twice_area[i], f->cosine[n][i]);
         p->shapes.angles[bin_of(angle, 180.0 / CW_ANGLE_BINS)]++;
         least = cwi_lesser(least, angle);
         most = cwi_greater(most, angle);
@@ -79,11 +185,24 @@ static void count_angles(const sides *s, cwi_shape_sum *p, double *largest)
     *largest = most;
 }
 
-/* a b c (a + b + c) / (4 K)^2, where K is the area. */
-static void count_aspect(const sides *s, cwi_shape_sum *p)
+/* Counts the angles of a triangle. Almost all are far from the end of a bin: there the nearly
+ * correct angles tell enough. largest: on the right side of CW_CAP_ANGLE_DEG, a bin's end */
+static void count_angles(const figures *f, size_t i, cwi_shape_sum *p, double *largest)
 {
-    const double *l = s->length, quarter = 2 * s->twice_area;
-    const double aspect = (l[0] / quarter) * (l[1] / quarter) * l[2] * (l[0] + l[1] + l[2]);
+    const double sure = 0.5 - NEAR_DEG * CW_ANGLE_BINS / 60.0;
+    if (!(f->off_centre[i] < sure) || f->least[i] - NEAR_DEG < p->shapes.min_angle_deg ||
+        f->most[i] + NEAR_DEG > p->shapes.max_angle_deg) {
+        count_exact_angles(f, i, p, largest);
+        return;
+    }
+    for (int n = 0; n < 3; n++)
+        p->shapes.angles[f->bin[n][i]]++;
+    p->shapes.smallest[f->bin[3][i]]++;
+    *largest = f->most[i];
+}
+
+static void count_aspect(double aspect, cwi_shape_sum *p)
+{
     size_t bin = 0;
     while (bin < CW_ASPECT_BINS - 1 && aspect > cw_aspect_ends[bin])
         bin++;
@@ -96,46 +215,40 @@ void cwi_shape_sum_init(cwi_shape_sum *p)
     *p = (cwi_shape_sum){.shapes = {.min_angle_deg = 180, .min_edge_mm = INFINITY}};
 }
 
-static unsigned add_shape(sides *s, bool collapsed, cwi_shape_sum *p)
+/* Returns the defects of a triangle. */
+static unsigned add_shape(const figures *f, size_t i, bool collapsed, cwi_shape_sum *p)
 {
-    double largest, low, high;
-    s->twice_area = sqrt(cwi_dot(s->normal, s->normal));
-    for (int n = 0; n < 3; n++)
-        s->length[n] = sqrt(cwi_dot(s->side[n], s->side[n]));
-    low = cwi_lesser(s->length[0], cwi_lesser(s->length[1], s->length[2]));
-    high = cwi_greater(s->length[0], cwi_greater(s->length[1], s->length[2]));
-    p->area += s->twice_area / 2;
-    p->volume += cwi_dot(s->normal, s->from[0]) / 6;
-    if (!(s->twice_area > 0) || collapsed) {
+    const double l0 = f->length[0][i], l1 = f->length[1][i], l2 = f->length[2][i];
+    const double low = cwi_lesser(l0, cwi_lesser(l1, l2));
+    const double high = cwi_greater(l0, cwi_greater(l1, l2));
+    double largest;
+    p->area += f->twice_area[i] / 2;
+    p->volume += f->volume[i];
+    if (!(f->twice_area[i] > 0) || collapsed) {
         p->degenerate++;
         return CW_DEFECT_DEGENERATE;
     }
     p->shapes.min_edge_mm = cwi_lesser(p->shapes.min_edge_mm, low);
     p->shapes.max_edge_mm = cwi_greater(p->shapes.max_edge_mm, high);
-    count_angles(s, p, &largest);
-    count_aspect(s, p);
+    count_angles(f, i, p, &largest);
+    count_aspect(f->aspect[i], p);
     const bool cap = largest > CW_CAP_ANGLE_DEG, needle = high > CW_NEEDLE_RATIO * low;
     p->caps += cap;
     p->needles += needle && !cap;
     return cap || needle ? CW_DEFECT_SLIVER : 0;
 }
 
-void cwi_shape_sum_add(cwi_shape_sum *p, const double corners[3][3], bool collapsed)
+void cwi_shape_sum_add(cwi_shape_sum *p, cwi_shape_block *block)
 {
-    sides s;
-    memcpy(s.from, corners, sizeof s.from);
-    find_sides(&s);
-    add_shape(&s, collapsed, p);
+    figures f;
+    find_sides(block, &f);
+    find_shapes(block, &f);
+    for (size_t i = 0; i < block->count; i++)
+        block->defects[i] = (uint8_t)add_shape(&f, i, block->collapsed[i], p);
+    block->count = 0;
 }
 
-static void measure_triangle(const work *w, size_t t, cwi_shape_sum *p)
-{
-    sides s;
-    load_sides(w->welded->mesh, t, &s);
-    const unsigned defects = add_shape(&s, cwi_is_collapsed(w->welded, t), p);
-    if (w->defects)
-        w->defects[t] |= (uint8_t)defects;
-}
+/* --- a mesh ------------------------------------------------------------------------------- */
 
 static size_t end_of(const work *w, size_t k)
 {
@@ -143,29 +256,84 @@ static size_t end_of(const work *w, size_t k)
     return end < count ? end : count;
 }
 
+static void load_block(const cwi_welded *w, size_t first, size_t count, cwi_shape_block *b)
+{
+    b->count = count;
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t *corner = w->mesh->triangles + 3 * (first + i);
+        for (int n = 0; n < 3; n++) {
+            const float *p = w->mesh->positions + 3 * (size_t)corner[n];
+            b->corner[n][0][i] = (double)p[0];
+            b->corner[n][1][i] = (double)p[1];
+            b->corner[n][2][i] = (double)p[2];
+        }
+        b->collapsed[i] = cwi_is_collapsed(w, first + i);
+    }
+}
+
 static void measure_chunk(void *context, size_t k)
 {
     const work *w = context;
-    cwi_shape_sum *p = &w->parts[k];
-    cwi_shape_sum_init(p);
-    for (size_t t = k * CHUNK; t < end_of(w, k); t++)
-        measure_triangle(w, t, p);
+    cwi_shape_block block;
+    cwi_shape_sum_init(&w->parts[k]);
+    for (size_t t = k * CHUNK; t < end_of(w, k); t += CWI_SHAPE_BLOCK) {
+        const size_t left = end_of(w, k) - t;
+        const size_t count = left < CWI_SHAPE_BLOCK ? left : CWI_SHAPE_BLOCK;
+        load_block(w->welded, t, count, &block);
+        cwi_shape_sum_add(&w->parts[k], &block);
+        for (size_t i = 0; i < count && w->defects; i++)
+            w->defects[t + i] |= block.defects[i];
+    }
+}
+
+/* --- lengths ------------------------------------------------------------------------------ */
+
+static uint64_t key_of(double square)
+{
+    uint64_t bits;
+    memcpy(&bits, &square, sizeof bits);
+    return bits >> DROPPED_BITS;
+}
+
+/* Fills in which bin each key stands for. Keys at the end of a bin, as far as rounding may
+ * reach, are UNSURE. */
+static bool fill_length_bins(work *w, double longest)
+{
+    static const double BELOW = 1 - 1e-9, ABOVE = 1 + 1e-9;
+    length_bins *l = &w->lengths;
+    l->first = key_of(w->shortest * w->shortest * BELOW);
+    const size_t keys = key_of(longest * longest * ABOVE) + 1 - l->first;
+    l->bin = cwi_alloc_zeroed(keys, 1);
+    for (int n = 1; n < CW_LENGTH_BINS && w->bins_per_octave > 0 && l->bin; n++) {
+        const double end = w->shortest * exp2(n / w->bins_per_octave);
+        const size_t low = key_of(end * end * BELOW) - l->first;
+        const size_t high = key_of(end * end * ABOVE) - l->first;
+        for (size_t key = low; key < keys; key++)
+            l->bin[key] = key <= high || l->bin[key] == UNSURE ? UNSURE : (uint8_t)n;
+    }
+    return l->bin;
+}
+
+static size_t length_bin(const work *w, double square)
+{
+    const uint8_t sure = w->lengths.bin[key_of(square) - w->lengths.first];
+    if (sure != UNSURE)
+        return sure;
+    const double bin = w->bins_per_octave * log2(sqrt(square) / w->shortest);
+    return bin < CW_LENGTH_BINS ? (size_t)bin : CW_LENGTH_BINS - 1;
 }
 
 static void count_lengths(void *context, size_t k)
 {
     const work *w = context;
+    size_t *bins = w->parts[k].shapes.lengths;
     for (size_t t = k * CHUNK; t < end_of(w, k); t++) {
         sides s;
         load_sides(w->welded->mesh, t, &s);
         if (!(cwi_dot(s.normal, s.normal) > 0) || cwi_is_collapsed(w->welded, t))
             continue;
-        for (int n = 0; n < 3; n++) {
-            const double length = sqrt(cwi_dot(s.side[n], s.side[n]));
-            const double bin = w->bins_per_octave * log2(length / w->shortest);
-            w->parts[k]
-                .shapes.lengths[bin < CW_LENGTH_BINS ? (size_t)bin : CW_LENGTH_BINS - 1]++;
-        }
+        for (int n = 0; n < 3; n++)
+            bins[length_bin(w, cwi_dot(s.side[n], s.side[n]))]++;
     }
 }
 
@@ -193,7 +361,7 @@ void cwi_shape_sum_join(const cwi_shape_sum *p, cw_quality *q)
     add_bins(s->aspects, p->shapes.aspects, CW_ASPECT_BINS);
 }
 
-/* False when the call was cancelled. */
+/* Returns false when the call was cancelled. */
 static bool share_out(work *w, size_t chunks, const cw_quality_desc *desc,
                       void (*run)(void *, size_t))
 {
@@ -218,11 +386,14 @@ bool cwi_measure_shapes(const cwi_welded *welded, const cw_quality_desc *desc, c
     w.bins_per_octave = s->max_edge_mm > s->min_edge_mm
                             ? CW_LENGTH_BINS / log2(s->max_edge_mm / s->min_edge_mm)
                             : 0;
-    done = done && share_out(&w, chunks, desc, count_lengths);
+    if (done && q->degenerate < count)
+        done =
+            fill_length_bins(&w, s->max_edge_mm) && share_out(&w, chunks, desc, count_lengths);
     for (size_t k = 0; k < chunks; k++)
         add_bins(s->lengths, w.parts[k].shapes.lengths, CW_LENGTH_BINS);
     if (q->degenerate == count)
         s->min_angle_deg = s->min_edge_mm = 0;
     cwi_free(w.parts);
+    cwi_free(w.lengths.bin);
     return done;
 }

@@ -21,8 +21,19 @@ typedef struct cwi_shape_sum {
 
 void cwi_shape_sum_init(cwi_shape_sum *sum);
 
-/* Adds a triangle. collapsed: it names a vertex twice */
-void cwi_shape_sum_add(cwi_shape_sum *sum, const double corners[3][3], bool collapsed);
+/* Triangles that are measured together, so that the compiler can use vector instructions. */
+enum { CWI_SHAPE_BLOCK = 64 };
+
+typedef struct cwi_shape_block {
+    size_t count;
+    double corner[3][3][CWI_SHAPE_BLOCK]; /* of each corner, each axis */
+    bool collapsed[CWI_SHAPE_BLOCK];      /* the triangle names a vertex twice */
+    uint8_t defects[CWI_SHAPE_BLOCK];     /* set: degenerate or sliver, bits of cw_defect */
+} cwi_shape_block;
+
+/* Adds the triangles of a block, in order: the sum does not depend on how they are put into
+ * blocks. Empties the block. */
+void cwi_shape_sum_add(cwi_shape_sum *sum, cwi_shape_block *block);
 
 /* Adds a sum to those of a mesh, whose shapes begin as those of an empty sum. */
 void cwi_shape_sum_join(const cwi_shape_sum *sum, cw_quality *q);

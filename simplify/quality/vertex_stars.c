@@ -3,12 +3,19 @@
 
 #include "core/base/parallel.h"
 #include "core/geometry/union_find.h"
+#include "simplify/quality/vertex_ranges.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Vertices that one thread measures at a time, and triangles of a star without an allocation. */
-enum { PART = 2048, SMALL_STAR = 24 };
+/* Triangles of a star without an allocation, and of one whose triangles are ordered by search. */
+enum { SMALL_STAR = 24 };
+
+/* A triangle around the vertex at hand. */
+typedef struct leaf {
+    uint32_t next, last; /* its other vertices, in its direction */
+    uint32_t triangle;
+} leaf;
 
 /* An edge from the vertex at hand, as a side of one triangle around it. */
 typedef struct spoke {
@@ -17,25 +24,43 @@ typedef struct spoke {
     bool leaves;       /* the triangle runs through it away from the vertex */
 } spoke;
 
-/* Arrays for one star: twice, once and once as long as its triangles. */
-typedef struct scratch {
-    spoke *spokes;
+/* The triangles around a vertex. */
+typedef struct star {
+    uint32_t vertex;
+    size_t count;
+    leaf *leaves;
+    spoke *spokes;   /* 2 x count, in the order of edges */
     uint32_t *fan;   /* union-find of triangles that share an edge at the vertex */
     uint32_t *label; /* number of the fan that a triangle names, if it has open edges */
-} scratch;
+} star;
 
+/* Counts of the vertices of one range. */
 typedef struct part {
     cw_quality counts;
+    size_t joined;     /* sets of vertices; or sides of open edges */
     cwi_border border; /* ends as found, none joined */
     bool failed;
 } part;
 
 typedef struct work {
     const cwi_stars *stars;
-    uint32_t *begin;  /* first of each vertex in `around`; range + 2 */
-    uint32_t *around; /* triangles */
     part *parts;
+    uint32_t *loops; /* of sides: union-find, when loops are counted and nothing else */
+    bool keeps_border;
 } work;
+
+/* The vertices of a range, and the triangles around them. */
+typedef struct range {
+    uint32_t first, size;
+    const uint32_t *triangle;
+    size_t triangle_count;
+    uint32_t begin[CWI_RANGE_VERTICES + 2]; /* first of each vertex in leaves */
+    bool is_named[CWI_RANGE_VERTICES];      /* by any triangle */
+    bool is_bad[CWI_RANGE_VERTICES];        /* several fans */
+    leaf *leaves;
+} range;
+
+/* --- one star ----------------------------------------------------------------------------- */
 
 static uint32_t other_of(const spoke *s)
 {
@@ -50,7 +75,9 @@ static uint32_t third_of(const spoke *s)
 static int compare_spokes(const void *a, const void *b)
 {
     const spoke *s = a, *t = b;
-    return s->key < t->key ? -1 : s->key > t->key;
+    if (s->key != t->key)
+        return s->key < t->key ? -1 : 1;
+    return s->triangle < t->triangle ? -1 : s->triangle > t->triangle;
 }
 
 static void sort_spokes(spoke *s, size_t count)
@@ -68,40 +95,39 @@ static void sort_spokes(spoke *s, size_t count)
     }
 }
 
-static bool is_collapsed(const uint32_t *c)
+static void make_spokes(star *s)
 {
-    return c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
-}
-
-/* Returns the number of triangles of the star that have edges. */
-static uint32_t gather_spokes(const work *w, uint32_t vertex, scratch *s)
-{
-    const uint32_t slot = vertex - w->stars->begin;
-    uint32_t count = 0;
-    for (uint32_t i = w->begin[slot]; i < w->begin[slot + 1]; i++) {
-        const uint32_t *c = w->stars->triangles + 3 * (size_t)w->around[i];
-        if (is_collapsed(c))
-            continue;
-        const int n = c[0] == vertex ? 0 : c[1] == vertex ? 1 : 2;
-        const uint32_t next = c[(n + 1) % 3], last = c[(n + 2) % 3];
-        s->spokes[2 * count] = (spoke){(uint64_t)next << 32 | last, count, true};
-        s->spokes[2 * count + 1] = (spoke){(uint64_t)last << 32 | next, count, false};
-        s->fan[count] = count;
-        count++;
+    for (uint32_t n = 0; n < s->count; n++) {
+        const uint64_t next = s->leaves[n].next, last = s->leaves[n].last;
+        s->spokes[2 * n] = (spoke){next << 32 | last, n, true};
+        s->spokes[2 * n + 1] = (spoke){last << 32 | next, n, false};
+        s->fan[n] = n;
     }
-    sort_spokes(s->spokes, 2 * (size_t)count);
-    return count;
+    sort_spokes(s->spokes, 2 * s->count);
 }
 
-/* Counts an edge at its lower vertex, and triangles at the edge of their two lower vertices. */
-static void count_edge(const spoke *s, size_t count, cw_quality *q)
+/* Puts the triangles of a usual star in order: a closed fan, in which each one begins at the
+ * edge where the one before it ends. Returns false for any other star. A closed fan has at least
+ * three triangles, and no edge twice: two would be duplicates. */
+static bool order_closed_fan(star *s)
 {
-    q->edges++;
-    q->open_edges += count == 1;
-    q->nonmanifold_edges += count > 2;
-    q->misoriented_edges += count == 2 && s[0].leaves == s[1].leaves;
-    for (size_t i = 1; i < count; i++)
-        q->duplicates += s[i].key == s[i - 1].key && third_of(&s[i]) > other_of(&s[i]);
+    leaf *l = s->leaves;
+    if (s->count < 3 || s->count > SMALL_STAR)
+        return false;
+    for (size_t k = 1; k < s->count; k++) {
+        const uint32_t at = l[k - 1].last;
+        size_t found = 0, matches = 0;
+        for (size_t j = k; j < s->count; j++) {
+            matches += l[j].next == at;
+            found = l[j].next == at ? j : found;
+        }
+        if (matches != 1 || at == l[0].next)
+            return false;
+        const leaf swap = l[k];
+        l[k] = l[found];
+        l[found] = swap;
+    }
+    return l[s->count - 1].last == l[0].next;
 }
 
 /* Returns the number of spokes along the same edge as the first. */
@@ -113,19 +139,65 @@ static size_t count_along(const spoke *s, size_t left)
     return count;
 }
 
-static bool keep_open_ends(part *p, uint32_t vertex, scratch *s, uint32_t triangles)
+static void mark_triangle(const work *w, uint32_t triangle, cw_defect defect)
 {
-    memset(s->label, 0xff, triangles * sizeof *s->label);
-    for (size_t i = 0, along; i < 2 * (size_t)triangles; i += along) {
-        along = count_along(s->spokes + i, 2 * (size_t)triangles - i);
+    __atomic_fetch_or(&w->stars->defects[triangle], (uint8_t)defect, __ATOMIC_RELAXED);
+}
+
+static void mark_edge(const work *w, const star *s, const spoke *first, size_t along,
+                      cw_defect defect)
+{
+    for (size_t n = 0; n < along && w->stars->defects; n++)
+        mark_triangle(w, s->leaves[first[n].triangle].triangle, defect);
+}
+
+/* A triangle counts at the edge of its two lower vertices. */
+static void count_duplicates(const work *w, const star *s, const spoke *first, size_t along,
+                             cw_quality *q)
+{
+    for (size_t n = 1; n < along; n++)
+        if (first[n].key == first[n - 1].key && third_of(&first[n]) > other_of(&first[n])) {
+            q->duplicates++;
+            mark_edge(w, s, first + n - 1, 2, CW_DEFECT_DUPLICATE);
+        }
+}
+
+/* Counts an edge at its lower vertex. */
+static void count_edge(const work *w, const star *s, const spoke *first, size_t along,
+                       cw_quality *q)
+{
+    const bool is_misoriented = along == 2 && first[0].leaves == first[1].leaves;
+    q->edges++;
+    if (along == 1) {
+        q->open_edges++;
+        mark_edge(w, s, first, along, CW_DEFECT_OPEN);
+    } else if (along > 2) {
+        q->nonmanifold_edges++;
+        mark_edge(w, s, first, along, CW_DEFECT_NONMANIFOLD);
+    } else if (is_misoriented) {
+        q->misoriented_edges++;
+        mark_edge(w, s, first, along, CW_DEFECT_MISORIENTED);
+    }
+    if (w->stars->unbounded && (along != 2 || is_misoriented))
+        w->stars->unbounded[s->vertex] |= along == 1 ? CWI_OPEN : CWI_UNORIENTED;
+    count_duplicates(w, s, first, along, q);
+}
+
+/* Goes through the open edges of a star, and labels the fans that have some. */
+static bool keep_open_ends(part *p, star *s)
+{
+    const size_t spokes = 2 * s->count;
+    memset(s->label, 0xff, s->count * sizeof *s->label);
+    for (size_t i = 0, along; i < spokes; i += along) {
+        along = count_along(s->spokes + i, spokes - i);
         if (along > 1)
             continue;
         const uint32_t root = cwi_sets_find(s->fan, s->spokes[i].triangle);
         const uint32_t other = other_of(&s->spokes[i]);
         if (s->label[root] == UINT32_MAX)
             s->label[root] = p->border.fans++;
-        const cwi_open_end end = {.low = vertex < other ? vertex : other,
-                                  .high = vertex < other ? other : vertex,
+        const cwi_open_end end = {.low = s->vertex < other ? s->vertex : other,
+                                  .high = s->vertex < other ? other : s->vertex,
                                   .fan = s->label[root]};
         if (!cwi_border_push(&p->border, end))
             return false;
@@ -133,112 +205,242 @@ static bool keep_open_ends(part *p, uint32_t vertex, scratch *s, uint32_t triang
     return true;
 }
 
-static bool measure_spokes(part *p, uint32_t vertex, scratch *s, uint32_t triangles)
+/* The number of a side: that of its triangle's corner where it begins. */
+static uint32_t side_of(const work *w, const star *s, const spoke *open)
 {
-    uint32_t fans = triangles;
+    const uint32_t triangle = s->leaves[open->triangle].triangle;
+    const uint32_t from = open->leaves ? s->vertex : other_of(open);
+    const uint32_t *corner = w->stars->triangles + 3 * (size_t)triangle;
+    return 3 * triangle + (corner[0] == from ? 0 : corner[1] == from ? 1 : 2);
+}
+
+/* Joins the open edges of each fan: they belong to one loop. */
+static void join_open_sides(const work *w, part *p, star *s)
+{
+    const size_t spokes = 2 * s->count;
+    memset(s->label, 0xff, s->count * sizeof *s->label);
+    for (size_t i = 0, along; i < spokes; i += along) {
+        along = count_along(s->spokes + i, spokes - i);
+        if (along > 1)
+            continue;
+        const uint32_t root = cwi_sets_find(s->fan, s->spokes[i].triangle);
+        const uint32_t side = side_of(w, s, &s->spokes[i]);
+        if (s->label[root] == UINT32_MAX)
+            s->label[root] = side;
+        p->joined += cwi_sets_join_shared(w->loops, s->label[root], side);
+    }
+}
+
+/* Measures a star edge by edge; returns false when memory is out. */
+static bool measure_edges(const work *w, part *p, star *s, size_t *fans)
+{
+    const size_t spokes = 2 * s->count;
     bool is_open = false;
-    for (size_t i = 0, along; i < 2 * (size_t)triangles; i += along) {
+    make_spokes(s);
+    *fans = s->count;
+    for (size_t i = 0, along; i < spokes; i += along) {
         const spoke *first = s->spokes + i;
-        along = count_along(first, 2 * (size_t)triangles - i);
+        along = count_along(first, spokes - i);
         is_open = is_open || along == 1;
-        if (other_of(first) > vertex)
-            count_edge(first, along, &p->counts);
+        if (other_of(first) > s->vertex && !w->loops)
+            count_edge(w, s, first, along, &p->counts);
         for (size_t n = 1; n < along; n++) {
             const uint32_t one = cwi_sets_find(s->fan, first->triangle),
                            other = cwi_sets_find(s->fan, first[n].triangle);
-            fans -= one != other;
+            *fans -= one != other;
             cwi_sets_join(s->fan, one, other);
         }
     }
-    p->counts.components += fans > 0;
-    p->counts.nonmanifold_vertices += fans > 1;
-    return !is_open || keep_open_ends(p, vertex, s, triangles);
+    if (is_open && w->loops)
+        join_open_sides(w, p, s);
+    return !is_open || !w->keeps_border || keep_open_ends(p, s);
 }
 
-static bool measure_star(const work *w, part *p, uint32_t vertex)
+static bool measure_any_star(const work *w, part *p, star *s, size_t *fans)
 {
     spoke spokes[2 * SMALL_STAR];
     uint32_t fan[SMALL_STAR], label[SMALL_STAR];
-    const uint32_t slot = vertex - w->stars->begin;
-    const size_t count = w->begin[slot + 1] - w->begin[slot];
-    scratch s = {spokes, fan, label};
-    p->counts.unused_vertices += !count;
-    if (count <= SMALL_STAR)
-        return measure_spokes(p, vertex, &s, gather_spokes(w, vertex, &s));
-    s.spokes = cwi_alloc_array(2 * count, sizeof *s.spokes);
-    s.fan = cwi_alloc_array(count, sizeof *s.fan);
-    s.label = cwi_alloc_array(count, sizeof *s.label);
-    const bool ok = s.spokes && s.fan && s.label &&
-                    measure_spokes(p, vertex, &s, gather_spokes(w, vertex, &s));
-    cwi_free(s.spokes);
-    cwi_free(s.fan);
-    cwi_free(s.label);
+    s->spokes = spokes;
+    s->fan = fan;
+    s->label = label;
+    if (s->count <= SMALL_STAR)
+        return measure_edges(w, p, s, fans);
+    s->spokes = cwi_alloc_array(2 * s->count, sizeof *s->spokes);
+    s->fan = cwi_alloc_array(s->count, sizeof *s->fan);
+    s->label = cwi_alloc_array(s->count, sizeof *s->label);
+    const bool ok = s->spokes && s->fan && s->label && measure_edges(w, p, s, fans);
+    cwi_free(s->spokes);
+    cwi_free(s->fan);
+    cwi_free(s->label);
     return ok;
 }
 
-static void measure_part(void *context, size_t k)
+/* Returns the number of fans around a vertex; sets *failed when memory is out. */
+static size_t measure_star(const work *w, part *p, star *s)
 {
-    const work *w = context;
-    part *p = &w->parts[k];
-    const size_t begin = w->stars->begin + k * PART, all = w->stars->end;
-    const size_t end = begin + PART < all ? begin + PART : all;
-    for (size_t v = begin; v < end && !p->failed; v++)
-        p->failed = !measure_star(w, p, (uint32_t)v);
+    size_t fans = 0;
+    if (order_closed_fan(s)) {
+        for (size_t n = 0; n < s->count && !w->loops; n++)
+            p->counts.edges += s->leaves[n].next > s->vertex;
+        return 1;
+    }
+    p->failed = !measure_any_star(w, p, s, &fans);
+    return fans;
 }
 
-/* Files triangles under their vertices of the range: a counting sort. */
-static bool file_triangles(work *w)
+/* --- a range of vertices ------------------------------------------------------------------ */
+
+static bool is_collapsed(const uint32_t *c)
 {
-    const cwi_stars *s = w->stars;
-    const size_t range = s->end - s->begin, corners = 3 * s->count;
-    w->begin = cwi_alloc_zeroed(range + 2, sizeof *w->begin);
-    if (!w->begin)
-        return false;
-    for (size_t i = 0; i < corners; i++) {
-        const uint32_t slot = s->triangles[i] - s->begin; /* wraps round below the range */
-        if (slot < range)
-            w->begin[slot + 2]++;
-    }
-    for (size_t v = 2; v < range + 2; v++)
-        w->begin[v] += w->begin[v - 1];
-    w->around = cwi_alloc_array(w->begin[range + 1], sizeof *w->around);
-    for (size_t i = 0; i < corners && w->around; i++) {
-        const uint32_t slot = s->triangles[i] - s->begin;
-        if (slot < range)
-            w->around[w->begin[slot + 1]++] = (uint32_t)(i / 3);
-    }
-    return w->around;
+    return c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
 }
+
+/* Joins the corners of a triangle, and counts it, in the range of its first one. */
+static void join_corners(const work *w, part *p, const uint32_t *c)
+{
+    p->joined += cwi_sets_join_shared(w->stars->sets, c[0], c[1]);
+    p->joined += cwi_sets_join_shared(w->stars->sets, c[0], c[2]);
+    p->counts.euler++;
+}
+
+/* Counts the triangles around each vertex, and sums the counts. */
+static void count_leaves(const work *w, part *p, range *r)
+{
+    memset(r->begin, 0, sizeof r->begin);
+    memset(r->is_named, 0, sizeof r->is_named);
+    memset(r->is_bad, 0, sizeof r->is_bad);
+    for (size_t i = 0; i < r->triangle_count; i++) {
+        const uint32_t *c = w->stars->triangles + 3 * (size_t)r->triangle[i];
+        const bool counts = !is_collapsed(c);
+        for (int n = 0; n < 3; n++) {
+            const uint32_t slot = c[n] - r->first; /* wraps round below the range */
+            if (slot < r->size) {
+                r->begin[slot + 2] += counts;
+                r->is_named[slot] = true;
+            }
+        }
+        if (counts && w->stars->sets && !w->loops && c[0] - r->first < r->size)
+            join_corners(w, p, c);
+    }
+    for (size_t v = 2; v < (size_t)r->size + 2; v++)
+        r->begin[v] += r->begin[v - 1];
+}
+
+/* Files the triangles under their vertices of the range: a counting sort. */
+static bool file_leaves(const work *w, part *p, range *r)
+{
+    count_leaves(w, p, r);
+    r->leaves = cwi_alloc_array(r->begin[r->size + 1], sizeof *r->leaves);
+    for (size_t i = 0; i < r->triangle_count && r->leaves; i++) {
+        const uint32_t *c = w->stars->triangles + 3 * (size_t)r->triangle[i];
+        if (is_collapsed(c))
+            continue;
+        for (int n = 0; n < 3; n++) {
+            const uint32_t slot = c[n] - r->first;
+            if (slot < r->size)
+                r->leaves[r->begin[slot + 1]++] =
+                    (leaf){c[(n + 1) % 3], c[(n + 2) % 3], r->triangle[i]};
+        }
+    }
+    return r->leaves;
+}
+
+static void measure_vertex(const work *w, part *p, range *r, uint32_t slot)
+{
+    star s = {.vertex = r->first + slot,
+              .count = r->begin[slot + 1] - r->begin[slot],
+              .leaves = r->leaves + r->begin[slot]};
+    if (!s.count) {
+        p->counts.unused_vertices += !r->is_named[slot];
+        return;
+    }
+    const size_t fans = measure_star(w, p, &s);
+    p->counts.components++;
+    p->counts.nonmanifold_vertices += fans > 1;
+    r->is_bad[slot] = fans > 1;
+    if (w->stars->used)
+        w->stars->used[s.vertex] = 1;
+}
+
+/* Marks all triangles at vertices with several fans. */
+static void mark_bad_vertices(const work *w, const range *r)
+{
+    for (size_t i = 0; i < r->triangle_count; i++)
+        for (int n = 0; n < 3; n++) {
+            const uint32_t slot =
+                w->stars->triangles[3 * (size_t)r->triangle[i] + (size_t)n] - r->first;
+            if (slot < r->size && r->is_bad[slot])
+                mark_triangle(w, r->triangle[i], CW_DEFECT_NONMANIFOLD);
+        }
+}
+
+static void measure_range(void *context, size_t k)
+{
+    const work *w = context;
+    const cwi_stars *s = w->stars;
+    part *p = &w->parts[k];
+    const size_t first = s->begin + k * CWI_RANGE_VERTICES, left = s->end - first;
+    range r = {.first = (uint32_t)first,
+               .size = (uint32_t)(left < CWI_RANGE_VERTICES ? left : CWI_RANGE_VERTICES),
+               .triangle = s->ranges->triangle + s->ranges->begin[k],
+               .triangle_count = s->ranges->begin[k + 1] - s->ranges->begin[k]};
+    p->failed = !file_leaves(w, p, &r);
+    for (uint32_t slot = 0; slot < r.size && !p->failed; slot++)
+        measure_vertex(w, p, &r, slot);
+    if (p->counts.nonmanifold_vertices && s->defects && !p->failed)
+        mark_bad_vertices(w, &r);
+    cwi_free(r.leaves);
+}
+
+/* --- all of them -------------------------------------------------------------------------- */
 
 static bool add_part(const part *p, cw_quality *q, cwi_border *border)
 {
     const cw_quality *c = &p->counts;
     q->edges += c->edges;
-    q->components += c->components;
+    q->components += c->components - p->joined;
     q->unused_vertices += c->unused_vertices;
     q->open_edges += c->open_edges;
     q->nonmanifold_edges += c->nonmanifold_edges;
     q->misoriented_edges += c->misoriented_edges;
     q->nonmanifold_vertices += c->nonmanifold_vertices;
     q->duplicates += c->duplicates;
-    q->euler += (int64_t)c->components - (int64_t)c->edges;
-    return !p->failed && cwi_border_append(border, &p->border);
+    q->euler += c->euler + (int64_t)c->components - (int64_t)c->edges;
+    return !p->failed && (!border || cwi_border_append(border, &p->border));
+}
+
+static bool measure_ranges(work *w)
+{
+    const cwi_stars *s = w->stars;
+    const cw_progress silent = {0};
+    w->parts = cwi_alloc_zeroed(s->ranges->count, sizeof *w->parts);
+    return w->parts && cwi_each_layer(s->ranges->count, CWI_RANGE_VERTICES * 64, s->threads,
+                                      s->progress ? s->progress : &silent, "checking",
+                                      measure_range, w, NULL) == CW_OK;
 }
 
 bool cwi_measure_stars(const cwi_stars *stars, cw_quality *q, cwi_border *border)
 {
-    const size_t parts = (stars->end - stars->begin + PART - 1) / PART;
-    const cw_progress silent = {0};
-    work w = {.stars = stars, .parts = cwi_alloc_zeroed(parts, sizeof *w.parts)};
-    bool ok = w.parts && file_triangles(&w) &&
-              cwi_each_layer(parts, PART * 64, stars->threads, &silent, NULL, measure_part, &w,
-                             NULL) == CW_OK;
-    for (size_t k = 0; k < parts && w.parts; k++) {
+    work w = {.stars = stars, .keeps_border = border};
+    bool ok = measure_ranges(&w);
+    for (size_t k = 0; k < stars->ranges->count && w.parts; k++) {
         ok = ok && add_part(&w.parts[k], q, border);
         cwi_border_free(&w.parts[k].border);
     }
     cwi_free(w.parts);
-    cwi_free(w.begin);
-    cwi_free(w.around);
+    return ok;
+}
+
+bool cwi_count_loops(const cwi_stars *stars, size_t open_edges, size_t *loops)
+{
+    work w = {.stars = stars, .loops = cwi_sets_alloc(3 * stars->count)};
+    bool ok = w.loops && measure_ranges(&w);
+    *loops = open_edges;
+    for (size_t k = 0; k < stars->ranges->count && w.parts; k++) {
+        ok = ok && !w.parts[k].failed;
+        *loops -= w.parts[k].joined;
+    }
+    cwi_free(w.parts);
+    cwi_free(w.loops);
     return ok;
 }

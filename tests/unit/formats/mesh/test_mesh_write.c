@@ -3,6 +3,10 @@
 #define _GNU_SOURCE /* mkfifo, setrlimit */
 #include "support/support.h"
 
+#include "core/base/status.h"
+
+#include <stdio.h>
+
 #include "core/base/memory.h"
 #include "core/base/module.h"
 
@@ -426,6 +430,66 @@ static void loss_fails_as_writing_does(void **state)
 
 #define CASE(test) cmocka_unit_test_setup_teardown(test, test_folder_make, test_folder_remove)
 
+/* An answer, and what the path held when it was asked for. */
+typedef struct answer {
+    const char *path;
+    cw_status status;
+    size_t asked;
+    long size_before;
+} answer;
+
+static long file_size(const char *path)
+{
+    FILE *f = fopen(path, "rb");
+    if (!f)
+        return -1;
+    fseek(f, 0, SEEK_END);
+    const long size = ftell(f);
+    fclose(f);
+    return size;
+}
+
+static cw_status give_answer(void *user, cw_error *err)
+{
+    answer *a = user;
+    a->asked++;
+    a->size_before = file_size(a->path);
+    return a->status == CW_OK ? CW_OK : cwi_fail(err, a->status, "no consent");
+}
+
+static void a_file_appears_with_consent_only(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"a.stl", "a.ply", "a.obj", "a.off", "a.vtp"};
+    cw_mesh mesh;
+    test_make_cube(&mesh);
+    const cw_part part = {.mesh = &mesh};
+    for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
+        const char *path = test_path(names[n]);
+        answer a = {.path = path, .status = CW_ERR_CHECK};
+        const cw_write_consent consent = {give_answer, &a};
+        cw_error err = {0};
+        assert_fails(cw_parts_write_with_consent(path, &part, 1, NULL, &consent, &err),
+                     CW_ERR_CHECK, "no consent", err);
+        assert_int_equal(a.asked, 1);
+        assert_int_equal(file_size(path), -1);
+        a.status = CW_OK;
+        assert_ok(cw_parts_write_with_consent(path, &part, 1, NULL, &consent, &err), err);
+        assert_int_equal(a.asked, 2);
+        assert_int_equal(a.size_before, -1);
+        const long whole = file_size(path);
+        assert_true(whole > 0);
+        a.status = CW_ERR_CANCELLED;
+        mesh.triangle_count--;
+        assert_fails(cw_parts_write_with_consent(path, &part, 1, NULL, &consent, &err),
+                     CW_ERR_CANCELLED, "no consent", err);
+        mesh.triangle_count++;
+        assert_int_equal(a.size_before, whole);
+        assert_int_equal(file_size(path), whole);
+    }
+    cw_mesh_free(&mesh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -442,6 +506,7 @@ int main(void)
         CASE(what_a_format_does_not_keep_is_told),
         CASE(what_was_not_there_cannot_be_lost),
         CASE(loss_fails_as_writing_does),
+        CASE(a_file_appears_with_consent_only),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

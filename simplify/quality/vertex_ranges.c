@@ -1,0 +1,113 @@
+/* Files triangles under ranges of vertices: a counting sort on threads. */
+#include "simplify/quality/vertex_ranges.h"
+
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
+
+/* Shares of the triangles that threads file: at most, and of how many triangles at least. Each
+ * share counts each range. */
+enum { MOST_SHARES = 64, LEAST_SHARE = 1 << 14 };
+
+typedef struct work {
+    const uint32_t *triangles;
+    size_t triangle_count, share; /* triangles of a share */
+    uint32_t begin, size;         /* the vertices */
+    cwi_vertex_ranges *ranges;
+    uint32_t *counts; /* of each share: triangles of each range, later the next one's place */
+} work;
+
+/* Finds the ranges of a triangle's corners, each once; returns how many. */
+static unsigned find_ranges(const work *w, size_t triangle, uint32_t found[3])
+{
+    const uint32_t *corner = w->triangles + 3 * triangle;
+    unsigned count = 0;
+    for (int n = 0; n < 3; n++) {
+        const uint32_t slot = corner[n] - w->begin; /* wraps round below the vertices */
+        const uint32_t range = slot / CWI_RANGE_VERTICES;
+        const bool again = (count > 0 && found[0] == range) || (count > 1 && found[1] == range);
+        if (slot < w->size && !again)
+            found[count++] = range;
+    }
+    return count;
+}
+
+static size_t end_of(const work *w, size_t share)
+{
+    const size_t end = (share + 1) * w->share;
+    return end < w->triangle_count ? end : w->triangle_count;
+}
+
+static void count_share(void *context, size_t k)
+{
+    const work *w = context;
+    uint32_t *counts = w->counts + k * w->ranges->count, found[3];
+    for (size_t t = k * w->share; t < end_of(w, k); t++)
+        for (unsigned n = find_ranges(w, t, found); n > 0; n--)
+            counts[found[n - 1]]++;
+}
+
+static void file_share(void *context, size_t k)
+{
+    const work *w = context;
+    uint32_t *place = w->counts + k * w->ranges->count, found[3];
+    for (size_t t = k * w->share; t < end_of(w, k); t++)
+        for (unsigned n = find_ranges(w, t, found); n > 0; n--)
+            w->ranges->triangle[place[found[n - 1]]++] = (uint32_t)t;
+}
+
+/* Turns counts into places: by range, then by share. */
+static void sum_counts(const work *w, size_t shares)
+{
+    uint32_t place = 0;
+    for (size_t r = 0; r < w->ranges->count; r++) {
+        w->ranges->begin[r] = place;
+        for (size_t k = 0; k < shares; k++) {
+            uint32_t *count = w->counts + k * w->ranges->count + r;
+            const uint32_t next = place + *count;
+            *count = place;
+            place = next;
+        }
+    }
+    w->ranges->begin[w->ranges->count] = place;
+}
+
+static bool run_shares(work *w, size_t shares, int threads, void (*run)(void *, size_t))
+{
+    const cw_progress silent = {0};
+    return cwi_each_layer(shares, w->share * 8, threads, &silent, NULL, run, w, NULL) == CW_OK;
+}
+
+bool cwi_vertex_ranges_init(cwi_vertex_ranges *ranges, const uint32_t *triangles, size_t count,
+                            uint32_t begin, uint32_t end, int threads)
+{
+    const size_t even = (count + MOST_SHARES - 1) / MOST_SHARES;
+    work w = {.triangles = triangles,
+              .triangle_count = count,
+              .share = even > LEAST_SHARE ? even : LEAST_SHARE,
+              .begin = begin,
+              .size = end - begin,
+              .ranges = ranges};
+    const size_t shares = (count + w.share - 1) / w.share;
+    *ranges = (cwi_vertex_ranges){.count = ((size_t)w.size + CWI_RANGE_VERTICES - 1) /
+                                           CWI_RANGE_VERTICES};
+    w.counts = cwi_alloc_zeroed(shares * ranges->count, sizeof *w.counts);
+    ranges->begin = cwi_alloc_array(ranges->count + 1, sizeof *ranges->begin);
+    bool ok = w.counts && ranges->begin && run_shares(&w, shares, threads, count_share);
+    if (ok) {
+        sum_counts(&w, shares);
+        ranges->triangle =
+            cwi_alloc_array(ranges->begin[ranges->count], sizeof *ranges->triangle);
+        ok = ranges->triangle && run_shares(&w, shares, threads, file_share);
+    }
+    cwi_free(w.counts);
+    if (!ok)
+        cwi_vertex_ranges_free(ranges);
+    return ok;
+}
+
+void cwi_vertex_ranges_free(cwi_vertex_ranges *ranges)
+{
+    cwi_free(ranges->begin);
+    cwi_free(ranges->triangle);
+    *ranges = (cwi_vertex_ranges){0};
+}
