@@ -31,47 +31,60 @@ typedef struct cwi_facet_view {
     double square, in_a, in_b, in_c;
 } cwi_facet_view;
 
+/* Changes the point of a view. a: corner of the triangle */
+static inline void cwi_facet_turn(cwi_facet_view *f, const float a[3], const double p[3])
+{
+    double x[3], y[3];
+    for (int k = 0; k < 3; k++) {
+        f->ap[k] = p[k] - (double)a[k];
+        f->bp[k] = f->ap[k] - f->ab[k];
+    }
+    cwi_cross(f->ab, f->ap, x);
+    cwi_cross(f->ap, f->ac, y);
+    f->in_c = cwi_dot(x, f->normal);
+    f->in_b = cwi_dot(y, f->normal);
+    f->in_a = f->square - f->in_b - f->in_c;
+}
+
 static inline cwi_facet_view cwi_facet_look(const float a[3], const float b[3],
                                             const float c[3], const double p[3])
 {
     cwi_facet_view f;
-    double x[3], y[3];
     for (int k = 0; k < 3; k++) {
         f.ab[k] = (double)b[k] - (double)a[k];
         f.ac[k] = (double)c[k] - (double)a[k];
-        f.ap[k] = p[k] - (double)a[k];
         f.bc[k] = f.ac[k] - f.ab[k];
-        f.bp[k] = f.ap[k] - f.ab[k];
     }
     cwi_cross(f.ab, f.ac, f.normal);
-    cwi_cross(f.ab, f.ap, x);
-    cwi_cross(f.ap, f.ac, y);
     f.square = cwi_dot(f.normal, f.normal);
-    f.in_c = cwi_dot(x, f.normal);
-    f.in_b = cwi_dot(y, f.normal);
-    f.in_a = f.square - f.in_b - f.in_c;
+    cwi_facet_turn(&f, a, p);
     return f;
 }
 
 /* Returns the square of the point's distance from the triangle. The nearest point is in the
  * triangle's plane, or on a side that the point is beyond. The signs of the three areas decide.
  * Without an area all sides are tried. */
+static inline double cwi_facet_view_square(const cwi_facet_view *f)
+{
+    double best = INFINITY;
+    if (f->square > 0 && f->in_a >= 0 && f->in_b >= 0 && f->in_c >= 0) {
+        const double height = cwi_dot(f->ap, f->normal);
+        return height * height / f->square;
+    }
+    if (!(f->in_c >= 0) || !(f->square > 0))
+        best = cwi_segment_square(f->ap, f->ab);
+    if (!(f->in_b >= 0) || !(f->square > 0))
+        best = cwi_lesser(best, cwi_segment_square(f->ap, f->ac));
+    if (!(f->in_a >= 0) || !(f->square > 0))
+        best = cwi_lesser(best, cwi_segment_square(f->bp, f->bc));
+    return best;
+}
+
 static inline double cwi_facet_square(const float a[3], const float b[3], const float c[3],
                                       const double p[3])
 {
     const cwi_facet_view f = cwi_facet_look(a, b, c, p);
-    double best = INFINITY;
-    if (f.square > 0 && f.in_a >= 0 && f.in_b >= 0 && f.in_c >= 0) {
-        const double height = cwi_dot(f.ap, f.normal);
-        return height * height / f.square;
-    }
-    if (!(f.in_c >= 0) || !(f.square > 0))
-        best = cwi_segment_square(f.ap, f.ab);
-    if (!(f.in_b >= 0) || !(f.square > 0))
-        best = cwi_lesser(best, cwi_segment_square(f.ap, f.ac));
-    if (!(f.in_a >= 0) || !(f.square > 0))
-        best = cwi_lesser(best, cwi_segment_square(f.bp, f.bc));
-    return best;
+    return cwi_facet_view_square(&f);
 }
 
 /* Computes the weights of the corners for the triangle's point that is closest to p. */

@@ -50,51 +50,62 @@ static inline double cwi_walk_square(const cwi_surface_walk *w, uint32_t triangl
     return cwi_facet_square(facet[0], facet[1], facet[2], p);
 }
 
-static inline bool cwi_walk_take(cwi_surface_walk *w, uint32_t triangle, const double p[3],
-                                 double *least)
+/* A triangle seen from the point that is walked to. */
+static inline cwi_facet_view cwi_walk_look(const cwi_surface_walk *w, uint32_t triangle,
+                                           const double p[3])
 {
-    const double square = cwi_walk_square(w, triangle, p);
+    const float *f[3];
+    cwi_walk_facet(w, triangle, f);
+    return cwi_facet_look(f[0], f[1], f[2], p);
+}
+
+/* Goes to a triangle if it is nearer. */
+static inline bool cwi_walk_take(cwi_surface_walk *w, uint32_t triangle, const double p[3],
+                                 cwi_facet_view *view, double *least)
+{
+    const cwi_facet_view other = cwi_walk_look(w, triangle, p);
+    const double square = cwi_facet_view_square(&other);
     if (!(square < *least))
         return false;
     *least = square;
+    *view = other;
     w->at = triangle;
     return true;
 }
 
 /* Crosses a side if that leads nearer. */
 static inline bool cwi_walk_cross(cwi_surface_walk *w, uint32_t from, uint32_t to,
-                                  const double p[3], double *least)
+                                  const double p[3], cwi_facet_view *view, double *least)
 {
     const cwi_fans *f = w->fans;
     for (uint32_t n = f->first[from]; n < f->first[from + 1]; n++) {
         const uint32_t t = f->around[n], *c = f->corners + 3 * (size_t)t;
         if (t != w->at && (c[0] == to || c[1] == to || c[2] == to) &&
-            cwi_walk_take(w, t, p, least))
+            cwi_walk_take(w, t, p, view, least))
             return true;
     }
     return false;
 }
 
 /* Crosses a side that the point is beyond. */
-static inline bool cwi_walk_step(cwi_surface_walk *w, const double p[3], double *least)
+static inline bool cwi_walk_step(cwi_surface_walk *w, const double p[3], cwi_facet_view *view,
+                                 double *least)
 {
     const uint32_t *c = w->fans->corners + 3 * (size_t)w->at;
-    const float *f[3];
-    cwi_walk_facet(w, w->at, f);
-    const cwi_facet_view view = cwi_facet_look(f[0], f[1], f[2], p);
-    return (view.in_c < 0 && cwi_walk_cross(w, c[0], c[1], p, least)) ||
-           (view.in_a < 0 && cwi_walk_cross(w, c[1], c[2], p, least)) ||
-           (view.in_b < 0 && cwi_walk_cross(w, c[2], c[0], p, least));
+    return (view->in_c < 0 && cwi_walk_cross(w, c[0], c[1], p, view, least)) ||
+           (view->in_a < 0 && cwi_walk_cross(w, c[1], c[2], p, view, least)) ||
+           (view->in_b < 0 && cwi_walk_cross(w, c[2], c[0], p, view, least));
 }
 
 /* Goes to the nearest triangle at a corner. */
-static inline bool cwi_walk_jump(cwi_surface_walk *w, const double p[3], double *least)
+static inline bool cwi_walk_jump(cwi_surface_walk *w, const double p[3], cwi_facet_view *view,
+                                 double *least)
 {
     const cwi_fans *f = w->fans;
     const uint32_t start = w->at, *c = f->corners + 3 * (size_t)start;
     for (int k = 0; k < 3; k++)
         for (uint32_t n = f->first[c[k]]; n < f->first[c[k] + 1]; n++)
-            cwi_walk_take(w, f->around[n], p, least);
+            cwi_walk_take(w, f->around[n], p, view, least);
     return w->at != start;
 }
 
@@ -103,10 +114,11 @@ static inline bool cwi_walk_jump(cwi_surface_walk *w, const double p[3], double 
  * sight: if what was found is too far, triangles at corners are looked at, too. */
 static inline double cwi_walk_to(cwi_surface_walk *w, const double p[3])
 {
-    double least = cwi_walk_square(w, w->at, p);
-    while (cwi_walk_step(w, p, &least)) {
+    cwi_facet_view view = cwi_walk_look(w, w->at, p);
+    double least = cwi_facet_view_square(&view);
+    while (cwi_walk_step(w, p, &view, &least)) {
     }
-    while (least > w->enough && cwi_walk_jump(w, p, &least)) {
+    while (least > w->enough && cwi_walk_jump(w, p, &view, &least)) {
     }
     return least;
 }

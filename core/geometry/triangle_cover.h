@@ -131,9 +131,13 @@ static inline unsigned cwi_piece_far(const cwi_triangle_piece *piece,
                                      const float *const facet[3], double square)
 {
     unsigned far = 0;
-    for (int n = 0; n < piece->count; n++)
-        if (!(cwi_facet_square(facet[0], facet[1], facet[2], piece->p[n]) <= square))
+    cwi_facet_view view = cwi_facet_look(facet[0], facet[1], facet[2], piece->p[0]);
+    for (int n = 0; n < piece->count; n++) {
+        if (n)
+            cwi_facet_turn(&view, facet[0], piece->p[n]);
+        if (!(cwi_facet_view_square(&view) <= square))
             far |= 1u << n;
+    }
     return far;
 }
 
