@@ -1,4 +1,5 @@
 /* Runs two pieces of work at the same time, on the calling thread and on another one. */
+#define _POSIX_C_SOURCE 200809L /* pthread_sigmask */
 #include "core/base/beside.h"
 
 #include <signal.h>

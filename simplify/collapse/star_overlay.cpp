@@ -11,6 +11,9 @@ namespace cw
 namespace
 {
 
+// The share of the distance for crossings: exact bounds decide about the rest.
+const float STRICTER = 0.95f;
+
 float clamp_share(float share)
 {
     return std::min(1.0f, std::max(0.0f, share));
@@ -287,7 +290,7 @@ bool Overlay::compare(const std::vector<uint32_t> &points, float distance)
     for (const Vec &a : corners_a)
         reach = std::max(reach, a.sqrnorm());
     reach = std::sqrt(reach);
-    const float sure = std::max(0.0f, distance - 2e-6f * reach);
+    const float sure = std::max(0.0f, STRICTER * distance - 2e-6f * reach);
     set_thickness(sure, reach);
     square = sure * sure;
     spokes_in_doubt = 0;
