@@ -183,38 +183,6 @@ static void name_rest(cwi_slab_window *w, joiner *j)
     }
 }
 
-/* Finished triangles that reach into the window, behind its own. */
-static cw_status add_finished(const cwi_slab_window *w, cwi_mesh_block *b, cw_error *err)
-{
-    const size_t more = w->finished_count, vertices = b->vertices + 3 * more;
-    float *points = cwi_realloc_array(b->points, 3 * vertices, sizeof *points);
-    b->points = points ? points : b->points;
-    uint32_t *corners =
-        cwi_realloc_array(b->corners, 3 * (b->triangles + more), sizeof *corners);
-    b->corners = corners ? corners : b->corners;
-    uint32_t *names = cwi_realloc_array(b->names, vertices, sizeof *names);
-    b->names = names ? names : b->names;
-    uint8_t *seam = cwi_realloc_array(b->seam, vertices, 1);
-    b->seam = seam ? seam : b->seam;
-    cwi_quadric *quadrics = cwi_realloc_array(b->quadrics, vertices, sizeof *quadrics);
-    b->quadrics = quadrics ? quadrics : b->quadrics;
-    uint8_t *held = cwi_realloc_array(b->held, vertices, 1);
-    b->held = held ? held : b->held;
-    if (!points || !corners || !names || !seam || !quadrics || !held)
-        return no_memory(err);
-    if (more)
-        memcpy(points + 3 * b->vertices, w->finished, 9 * more * sizeof *points);
-    for (size_t v = b->vertices; v < vertices; v++) {
-        corners[3 * b->triangles + v - b->vertices] = (uint32_t)v;
-        names[v] = NONE;
-        seam[v] = held[v] = 1;
-        quadrics[v] = (cwi_quadric){.c = 0};
-    }
-    b->vertices = vertices;
-    b->triangles += more;
-    return CW_OK;
-}
-
 /* Held are now the seam above, and what the finished result begins at. */
 static cw_status hold_vertices(const joiner *j, cwi_mesh_block *b, cw_error *err)
 {
@@ -248,7 +216,7 @@ static cw_status open_window(cwi_slab_window *w, cwi_slab_block *slab, joiner *j
     if (st == CW_OK)
         st = hold_vertices(j, whole, err);
     if (st == CW_OK)
-        st = add_finished(w, whole, err);
+        st = cwi_block_obstruct(whole, w->finished, w->finished_count, err);
     return st;
 }
 
@@ -344,6 +312,7 @@ static cw_status take_rest(cwi_slab_window *w, const joiner *j, const cwi_mesh_b
     rest.corners = cwi_alloc_array(3 * rest.triangles, sizeof *rest.corners);
     rest.names = cwi_alloc_array(rest.vertices, sizeof *rest.names);
     rest.held = cwi_alloc_array(rest.vertices, 1);
+    rest.open = cwi_alloc_array(rest.vertices, 1);
     rest.quadrics = cwi_alloc_array(rest.vertices, sizeof *rest.quadrics);
     rest.lists = cwi_alloc_array(rest.triangles, sizeof *rest.lists);
     cwi_block_free(&w->rest);
@@ -352,14 +321,15 @@ static cw_status take_rest(cwi_slab_window *w, const joiner *j, const cwi_mesh_b
     w->rest = rest;
     w->placed = cwi_alloc_array(rest.vertices, sizeof *w->placed);
     w->rank = cwi_alloc_array(rest.vertices, sizeof *w->rank);
-    if (!rest.points || !rest.corners || !rest.names || !rest.held || !rest.quadrics ||
-        !rest.lists || !w->placed || !w->rank)
+    if (!rest.points || !rest.corners || !rest.names || !rest.held || !rest.open ||
+        !rest.quadrics || !rest.lists || !w->placed || !w->rank)
         return no_memory(err);
     for (size_t v = 0; v < left->vertices; v++) {
         const size_t n = number[v];
         if (number[v] == NONE)
             continue;
         memcpy(rest.points + 3 * n, left->points + 3 * v, 3 * sizeof *rest.points);
+        rest.open[n] = left->open[v];
         rest.quadrics[n] = left->quadrics[v];
         w->placed[n] = placed[v];
         w->rank[n] = is_above(j, left->names[v]) ? j->slab->rank[left->names[v]] : NONE;

@@ -596,22 +596,52 @@ static cw_status run_levels(const cwi_passes *p, const cwi_mesh_block *whole,
     return st;
 }
 
+/* Whether blocks that are cut elsewhere pay. */
+static bool has_seams(const cwi_mesh_block *whole)
+{
+    return whole->open && whole->own > CWI_BLOCK;
+}
+
+/* What is in the way of a block, and its planes, for one that was joined of its parts. */
+static cw_status restore_limits(const cwi_mesh_block *whole, cwi_mesh_block *joined,
+                                cw_error *err)
+{
+    const size_t more = whole->triangles - whole->own;
+    float *points = cwi_alloc_array(9 * more, sizeof *points);
+    joined->held = cwi_alloc_zeroed(joined->vertices, sizeof *joined->held);
+    cw_status st = points && joined->held
+                       ? CW_OK
+                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify seams");
+    for (size_t c = 0; c < 3 * more && st == CW_OK; c++)
+        memcpy(points + 3 * c, whole->points + 3 * (size_t)whole->corners[3 * whole->own + c],
+               3 * sizeof *points);
+    for (size_t v = 0; v < joined->vertices && st == CW_OK; v++) {
+        const size_t name = joined->names[v];
+        joined->held[v] = whole->held && whole->held[name];
+        joined->names[v] = whole->names[name];
+    }
+    memcpy(joined->along, whole->along, sizeof joined->along);
+    joined->from = whole->from;
+    joined->to = whole->to;
+    if (st == CW_OK)
+        st = cwi_block_obstruct(joined, points, more, err);
+    cwi_free(points);
+    return st;
+}
+
 /* Tries edges in seams again: those inside of blocks that are cut elsewhere, and then the rest. */
 static cw_status run_seams(const cwi_passes *p, const cwi_block_part *x, cw_error *err)
 {
     cwi_mesh_block from = *x->from, joined = {0};
     size_t none = 0;
     cw_status st = run_blocks(p, &from, 0, OTHER_SHARE, false, &joined, &none, err);
+    if (st == CW_OK)
+        st = restore_limits(x->from, &joined, err);
     const cwi_block_part rest = {.from = &joined, .left = x->left, .cost = x->cost};
     if (st == CW_OK)
         st = run_part(p, &rest, err);
     cwi_block_free(&joined);
     return st;
-}
-
-static bool has_seams(const cwi_mesh_block *whole)
-{
-    return whole->open && whole->own == whole->triangles && whole->triangles > CWI_BLOCK;
 }
 
 /* As far as the error allows. */

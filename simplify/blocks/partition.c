@@ -78,6 +78,46 @@ cw_mesh cwi_block_view(const cwi_mesh_block *b)
                      .triangles = b->corners};
 }
 
+/* Makes an array longer; keeps it where there is no memory for that. */
+static bool grow_array(void **array, size_t count, size_t size)
+{
+    void *longer = cwi_realloc_array(*array, count, size);
+    *array = longer ? longer : *array;
+    return longer;
+}
+
+static bool grow_vertices(cwi_mesh_block *b, size_t vertices)
+{
+    return grow_array((void **)&b->points, 3 * vertices, sizeof *b->points) &&
+           grow_array((void **)&b->names, vertices, sizeof *b->names) &&
+           grow_array((void **)&b->seam, vertices, sizeof *b->seam) &&
+           grow_array((void **)&b->open, vertices, sizeof *b->open) &&
+           grow_array((void **)&b->held, vertices, sizeof *b->held) &&
+           grow_array((void **)&b->quadrics, vertices, sizeof *b->quadrics);
+}
+
+cw_status cwi_block_obstruct(cwi_mesh_block *b, const float *points, size_t count,
+                             cw_error *err)
+{
+    const size_t vertices = b->vertices + 3 * count;
+    if (count == 0)
+        return CW_OK;
+    if (!grow_vertices(b, vertices) ||
+        !grow_array((void **)&b->corners, 3 * (b->triangles + count), sizeof *b->corners))
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu triangles in the way", count);
+    memcpy(b->points + 3 * b->vertices, points, 9 * count * sizeof *points);
+    for (size_t v = b->vertices; v < vertices; v++) {
+        b->corners[3 * b->triangles + v - b->vertices] = (uint32_t)v;
+        b->names[v] = NOT_THERE;
+        b->seam[v] = b->held[v] = 1;
+        b->open[v] = 0;
+        b->quadrics[v] = (cwi_quadric){.c = 0};
+    }
+    b->vertices = vertices;
+    b->triangles += count;
+    return CW_OK;
+}
+
 static float corner_coordinate(const cwi_mesh_block *b, size_t corner, int axis)
 {
     return b->points[3 * (size_t)b->corners[corner] + (size_t)axis];
@@ -86,7 +126,7 @@ static float corner_coordinate(const cwi_mesh_block *b, size_t corner, int axis)
 static void find_middles(plan *p)
 {
     const cwi_mesh_block *b = p->whole;
-    for (size_t t = 0; t < b->triangles; t++)
+    for (size_t t = 0; t < b->own; t++)
         for (int a = 0; a < 3; a++)
             p->middles[3 * t + (size_t)a] =
                 (corner_coordinate(b, 3 * t, a) + corner_coordinate(b, 3 * t + 1, a) +
@@ -155,7 +195,7 @@ static void divide_leaf(plan *p, leaf *l, leaf *other)
 static void make_leaves(plan *p)
 {
     size_t step = p->count;
-    p->leaves[0] = (leaf){.end = p->whole->triangles};
+    p->leaves[0] = (leaf){.end = p->whole->own};
     for (int a = 0; a < 3; a++) {
         p->leaves[0].low[a] = -INFINITY;
         p->leaves[0].high[a] = INFINITY;
@@ -181,7 +221,8 @@ static bool reaches_box(const leaf *l, const float box[6])
     return true;
 }
 
-/* Calls put for each triangle that leaves a leaf, and each other leaf that it reaches. */
+/* Calls put for each triangle that leaves a leaf, and each other leaf that it reaches; and for
+ * those that are in no leaf. */
 static void each_obstacle(plan *p, void (*put)(plan *p, size_t to, uint32_t triangle))
 {
     float box[6];
@@ -197,6 +238,12 @@ static void each_obstacle(plan *p, void (*put)(plan *p, size_t to, uint32_t tria
                 if (m != n && reaches_box(p->leaves + m, box))
                     put(p, m, p->order[i]);
         }
+    for (size_t t = p->whole->own; t < p->whole->triangles; t++) {
+        cwi_boxes_triangle(p->whole->points, p->whole->corners + 3 * t, box);
+        for (size_t m = 0; m < p->count; m++)
+            if (reaches_box(p->leaves + m, box))
+                put(p, m, (uint32_t)t);
+    }
 }
 
 static void count_obstacle(plan *p, size_t to, uint32_t triangle)
@@ -352,18 +399,18 @@ cw_status cwi_blocks_cut(const cwi_mesh_block *whole, size_t most, double share,
                          cwi_mesh_block **out, size_t *count, cw_error *err)
 {
     plan p = {.whole = whole, .count = 1, .share = share};
-    while (p.count * most < whole->triangles)
+    while (p.count * most < whole->own)
         p.count *= 2;
     *count = p.count;
-    p.order = cwi_alloc_array(whole->triangles, sizeof *p.order);
-    p.spare = cwi_alloc_array(whole->triangles, sizeof *p.spare);
-    p.middles = cwi_alloc_array(3 * whole->triangles, sizeof *p.middles);
+    p.order = cwi_alloc_array(whole->own, sizeof *p.order);
+    p.spare = cwi_alloc_array(whole->own, sizeof *p.spare);
+    p.middles = cwi_alloc_array(3 * whole->own, sizeof *p.middles);
     p.leaves = cwi_alloc_array(p.count, sizeof *p.leaves);
     p.held = cwi_alloc_zeroed(whole->vertices, sizeof *p.held);
     p.first = cwi_alloc_zeroed(p.count + 2, sizeof *p.first);
     *out = cwi_alloc_zeroed(p.count, sizeof **out);
     bool ok = p.order && p.spare && p.middles && p.leaves && p.held && p.first && *out;
-    for (size_t t = 0; t < whole->triangles && ok; t++)
+    for (size_t t = 0; t < whole->own && ok; t++)
         p.order[t] = (uint32_t)t;
     for (size_t v = 0; v < whole->vertices && ok && whole->held; v++)
         p.held[v] = whole->held[v] ? HELD : FREE;

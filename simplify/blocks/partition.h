@@ -17,12 +17,19 @@ cw_mesh cwi_block_view(const cwi_mesh_block *block);
 /* Vertices get their numbers for names. */
 void cwi_block_number(cwi_mesh_block *block);
 
+/* Puts triangles behind a block's own, in the way: each with vertices of its own, which are
+ * held. The block has all arrays of a joined one, and no attributes.
+ * points     count x 9: of their corners
+ * Returns    CW_ERR_NO_MEMORY */
+CW_NODISCARD cw_status cwi_block_obstruct(cwi_mesh_block *block, const float *points,
+                                          size_t count, cw_error *err);
+
 /* Shares the triangles of a block out to blocks of about `most` at the most: boxes that fill
  * space, divided where a share of the triangles is below. Triangles that do not lie in
  * one box are held: they stay in one block, and are in the way in the others that they reach.
  * What moves inside one box then never meets what moves inside another.
  *
- * whole      its triangles are all its own; vertices are named by their numbers
+ * whole      vertices are named by their numbers; triangles behind its own are in the way
  * share      of a box's triangles, about a half: with others of it places are others
  * out        *count blocks; free each, and the array with cwi_free()
  * Returns    CW_ERR_NO_MEMORY */
