@@ -510,6 +510,25 @@ static void seams_of_many_blocks_are_sound(void **state)
     cw_mesh_free(&mesh);
 }
 
+/* The same within an error: seams in blocks that are cut elsewhere, and then the rest. */
+static void seams_keep_the_error(void **state)
+{
+    (void)state;
+    cw_mesh mesh = noisy_gyroid(44, 0.05, true);
+    cw_simplify_desc desc = {.threads = 1, .error_mm = 0.02};
+    cw_mesh one = simplify(&mesh, &desc);
+    desc.threads = 3;
+    cw_mesh three = simplify(&mesh, &desc);
+    test_assert_same_mesh(&one, &three);
+    test_assert_sound(&mesh, &one);
+    test_bound_is_measured(&mesh, &one, desc.error_mm);
+    test_bound_is_measured(&one, &mesh, desc.error_mm);
+    assert_true(one.triangle_count < mesh.triangle_count);
+    cw_mesh_free(&one);
+    cw_mesh_free(&three);
+    cw_mesh_free(&mesh);
+}
+
 static void levels_follow_each_other(void **state)
 {
     (void)state;
@@ -733,12 +752,12 @@ static void it_can_be_stopped(void **state)
 }
 
 #if !CWI_SANITIZED
-/* Sets each allocation in turn to fail. */
-static void starve(const cw_mesh *mesh, const cw_simplify_desc *desc)
+/* Sets each allocation in turn to fail, or one in so many. */
+static void starve(const cw_mesh *mesh, const cw_simplify_desc *desc, long step)
 {
     cw_mesh out;
     bool failed = true;
-    for (long n = 0; failed; n++) {
+    for (long n = 0; failed; n += step) {
         cw_error err = {0};
         cwi_alloc_fail_after(n);
         const cw_status st = cw_simplify(mesh, desc, &out, NULL, &err);
@@ -761,8 +780,10 @@ static void running_out_of_memory_is_told(void **state)
     assert_true(several_blocks.triangle_count > 40000);
     starve(&several_blocks,
            &(cw_simplify_desc){
-               .ratio = 0.95, .allow_crossings = true, .normal_weight = 1, .threads = 1});
-    starve(&small, &(cw_simplify_desc){.error_mm = 1, .threads = 1});
+               .ratio = 0.95, .allow_crossings = true, .normal_weight = 1, .threads = 1},
+           1);
+    starve(&several_blocks, &(cw_simplify_desc){.error_mm = 1e-4, .threads = 1}, 20);
+    starve(&small, &(cw_simplify_desc){.error_mm = 1, .threads = 1}, 1);
     cw_mesh_free(&several_blocks);
     cw_mesh_free(&small);
 }
@@ -796,6 +817,7 @@ int main(void)
         cmocka_unit_test(nothing_vanishes),
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(seams_of_many_blocks_are_sound),
+        cmocka_unit_test(seams_keep_the_error),
         cmocka_unit_test(levels_follow_each_other),
         cmocka_unit_test(what_vertices_carry_comes_along),
         cmocka_unit_test(what_is_carried_is_blended_and_rounded),

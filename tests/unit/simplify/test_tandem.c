@@ -167,6 +167,29 @@ static void thin_slabs_stay_sound(void **state)
     cw_volume_free(&v);
 }
 
+/* Windows whose seams are cut into blocks once more, with finished triangles in the way. */
+static void windows_of_many_blocks_are_sound(void **state)
+{
+    (void)state;
+    cw_volume v = noisy_gyroid(52, 0.05);
+    cw_mesh whole = test_extract(&v, NULL, NULL), out[2];
+    for (int n = 0; n < (TEST_IS_SLOW ? 1 : 2); n++) {
+        const cw_extract_desc extract = {.threads = n ? 3 : 1};
+        const cw_simplify_desc desc = {.error_mm = 0.01, .threads = n ? 3 : 1};
+        out[n] = run(&v, &extract, &desc, whole.triangle_count / 2);
+    }
+    test_assert_sound(&whole, out);
+    test_bound_is_measured(&whole, out, 0.01);
+    test_bound_is_measured(out, &whole, 0.01);
+    if (!TEST_IS_SLOW) {
+        test_assert_same_mesh(out, out + 1);
+        cw_mesh_free(out + 1);
+    }
+    cw_mesh_free(out);
+    cw_mesh_free(&whole);
+    cw_volume_free(&v);
+}
+
 static void threads_change_nothing(void **state)
 {
     (void)state;
@@ -271,6 +294,7 @@ int main(void)
         cmocka_unit_test(a_box_needs_few_triangles),
         cmocka_unit_test(an_error_is_kept),
         cmocka_unit_test(thin_slabs_stay_sound),
+        cmocka_unit_test(windows_of_many_blocks_are_sound),
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(wishes_that_make_no_sense_are_refused),
         cmocka_unit_test(slabs_that_are_missing_are_noticed),
