@@ -22,6 +22,26 @@ from ._options import (
 from ._progress import Progress, Reporter
 
 
+def _describe(
+    normal_weight: float,
+    color_weight: float,
+    scalar_weight: float,
+    allow_intersections: bool,
+    keep_border: bool,
+    threads: int,
+    reporter: Reporter,
+) -> c.cw_simplify_desc:
+    return c.cw_simplify_desc(
+        normal_weight=take_number("normal_weight", normal_weight),
+        color_weight=take_number("color_weight", color_weight),
+        scalar_weight=take_number("scalar_weight", scalar_weight),
+        allow_crossings=take_flag("allow_intersections", allow_intersections),
+        keep_border=take_flag("keep_border", keep_border),
+        threads=take_threads(threads),
+        progress=reporter.struct,
+    )
+
+
 def simplify(
     mesh: Mesh,
     *,
@@ -50,18 +70,18 @@ def simplify(
     """
     source = take_mesh("mesh", mesh)
     reporter = Reporter(progress)
-    desc = c.cw_simplify_desc(
-        error_mm=take_length("error", error),
-        triangles=take_count("triangles", triangles),
-        ratio=take_number("ratio", ratio),
-        normal_weight=take_number("normal_weight", normal_weight),
-        color_weight=take_number("color_weight", color_weight),
-        scalar_weight=take_number("scalar_weight", scalar_weight),
-        allow_crossings=take_flag("allow_intersections", allow_intersections),
-        keep_border=take_flag("keep_border", keep_border),
-        threads=take_threads(threads),
-        progress=reporter.struct,
+    desc = _describe(
+        normal_weight,
+        color_weight,
+        scalar_weight,
+        allow_intersections,
+        keep_border,
+        threads,
+        reporter,
     )
+    desc.error_mm = take_length("error", error)
+    desc.triangles = take_count("triangles", triangles)
+    desc.ratio = take_number("ratio", ratio)
     out = Mesh._from_c(c.cw_mesh())
     reporter.call(lib.cw_simplify, byref(source), byref(desc), byref(out._struct), None)
     return out
@@ -93,14 +113,14 @@ def simplify_levels(
     counts = [take_count("triangles", each, 1) for each in triangles]
     if not counts:
         raise ValueError("triangles is empty; a number for each level was expected")
-    desc = c.cw_simplify_desc(
-        normal_weight=take_number("normal_weight", normal_weight),
-        color_weight=take_number("color_weight", color_weight),
-        scalar_weight=take_number("scalar_weight", scalar_weight),
-        allow_crossings=take_flag("allow_intersections", allow_intersections),
-        keep_border=take_flag("keep_border", keep_border),
-        threads=take_threads(threads),
-        progress=reporter.struct,
+    desc = _describe(
+        normal_weight,
+        color_weight,
+        scalar_weight,
+        allow_intersections,
+        keep_border,
+        threads,
+        reporter,
     )
     out = (c.cw_mesh * len(counts))()
     levels = [Mesh._from_c(each) for each in out]

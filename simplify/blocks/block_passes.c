@@ -602,7 +602,7 @@ static bool has_seams(const cwi_mesh_block *whole)
     return whole->open && whole->own > CWI_BLOCK;
 }
 
-/* What is in the way of a block, and its planes, for one that was joined of its parts. */
+/* Holds vertices of a block that was joined of its parts, and puts what was in their way there. */
 static cw_status restore_limits(const cwi_mesh_block *whole, cwi_mesh_block *joined,
                                 cw_error *err)
 {

@@ -752,7 +752,7 @@ static void it_can_be_stopped(void **state)
 }
 
 #if !CWI_SANITIZED
-/* Sets each allocation in turn to fail, or one in so many. */
+/* Sets every step-th allocation in turn to fail. */
 static void starve(const cw_mesh *mesh, const cw_simplify_desc *desc, long step)
 {
     cw_mesh out;
