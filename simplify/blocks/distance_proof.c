@@ -252,6 +252,23 @@ static void begin_at_input(const cwi_passes *p, const cwi_mesh_block *left, uint
     }
 }
 
+/* Begins elsewhere as triangles at a corner do. */
+static cw_status begin_as_neighbours(const cw_mesh *mesh, uint32_t *begin, cw_error *err)
+{
+    uint32_t *at = cwi_alloc_array(mesh->vertex_count, sizeof *at);
+    if (!at)
+        return no_memory(err);
+    memset(at, 0xff, mesh->vertex_count * sizeof *at);
+    for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
+        if (begin[c / 3] != NOT_KNOWN)
+            at[mesh->triangles[c]] = begin[c / 3];
+    for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
+        if (begin[c / 3] == NOT_KNOWN)
+            begin[c / 3] = at[mesh->triangles[c]];
+    cwi_free(at);
+    return CW_OK;
+}
+
 static cw_status prove_input(const cwi_passes *p, const cwi_block_part *x, uint8_t *beyond,
                              cw_error *err)
 {
@@ -264,6 +281,8 @@ static cw_status prove_input(const cwi_passes *p, const cwi_block_part *x, uint8
     cw_status st = begin && first && around ? add_obstacles(x, &all, err) : no_memory(err);
     if (st == CW_OK)
         st = begin_at_result(p, x, begin, err);
+    if (st == CW_OK)
+        st = begin_as_neighbours(&x->input, begin, err);
     if (st == CW_OK) {
         cwi_fans_sort(left->corners, left->own, left->vertices, first, around);
         st = find_beyond(p, &x->input, &fans, begin, &all, x->threads, beyond, err);
@@ -283,8 +302,10 @@ static cw_status prove_result(const cwi_passes *p, const cwi_block_part *x, uint
     if (!begin)
         return no_memory(err);
     begin_at_input(p, x->left, begin);
-    const cw_status st =
-        find_beyond(p, &result, &p->original.fans, begin, &x->input, x->threads, beyond, err);
+    cw_status st = begin_as_neighbours(&result, begin, err);
+    if (st == CW_OK)
+        st = find_beyond(p, &result, &p->original.fans, begin, &x->input, x->threads, beyond,
+                         err);
     cwi_free(begin);
     return st;
 }

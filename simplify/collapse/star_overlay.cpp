@@ -58,11 +58,13 @@ bool Overlay::lay(const Star &star_)
     center = star->place;
     if (!star->closed || star->spokes.size() > MOST_SPOKES)
         return false;
-    for (const Spoke &s : star->spokes) {
+    for (const Spoke &s : star->spokes)
         by_area += s.normal;
+    if (lay_along(*star, by_area))
+        return true;
+    for (const Spoke &s : star->spokes)
         even += s.normal / s.normal.norm();
-    }
-    return lay_along(*star, by_area) || lay_along(*star, even);
+    return lay_along(*star, even);
 }
 
 bool Overlay::lay_along(const Star &star_, Vec axis)
@@ -282,8 +284,7 @@ void Overlay::compare_outer(uint32_t triangle, uint32_t own)
     }
 }
 
-// Rounding errors are a few parts in
-// 2^24 of the lengths between points.
+// Rounding errors are a few parts in 2^24 of the lengths between points.
 bool Overlay::compare(const std::vector<uint32_t> &points, float distance)
 {
     float reach = 0;
