@@ -7,6 +7,7 @@
 #include "core/geometry/vec3.h"
 #include "simplify/quality/surface_sampling.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -123,11 +124,12 @@ static inline double near_greater(double a, double b)
     return 0.5 * (a + b + fabs(a - b));
 }
 
-/* Nearly atan2(y, x) for y >= 0, in degrees. */
+/* Nearly atan2(y, x) for y >= 0, in degrees; finite, too, where both are 0. */
 static inline double near_angle(double y, double x)
 {
     const double flat = fabs(x);
-    const double turned = CWI_PI / 4 - short_atan(near_lesser(flat, y) / near_greater(flat, y));
+    const double turned =
+        CWI_PI / 4 - short_atan(near_lesser(flat, y) / (near_greater(flat, y) + DBL_MIN));
     const double acute = CWI_PI / 4 + copysign(turned, y - flat);
     return 180 / CWI_PI * (CWI_PI / 2 - copysign(CWI_PI / 2 - acute, x));
 }
