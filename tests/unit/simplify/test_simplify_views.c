@@ -277,7 +277,7 @@ static void what_is_seen_keeps_its_shading(void **state)
         cw_mesh_free(&out);
     }
     assert_true(count[1][0] > 5 * count[0][0]);
-    assert_true(2 * count[1][0] > 3 * count[1][1]); /* which grade from fine to coarse */
+    assert_true(4 * count[1][0] > 5 * count[1][1]); /* which grade from fine to coarse */
     cw_simplify_view_free(&view);
     cw_mesh_free(&mesh);
     cw_volume_free(&volume);
