@@ -242,19 +242,28 @@ static const cwi_original *original_of(const cwi_passes *p)
 
 /* --- keeping the error -------------------------------------------------------------------- */
 
-/* Without blocks. */
+/* Runs down to each of the targets in turn, while costs are at most so large. */
+static cw_status run_levels(const cwi_passes *p, const cwi_mesh_block *whole, float cost,
+                            const size_t *targets, size_t levels, cwi_mesh_block *left,
+                            cw_error *err)
+{
+    cwi_decimater *d;
+    cw_status st = p->openmesh->open(whole, &p->block_desc, original_of(p), &d, err);
+    if (st != CW_OK)
+        return st;
+    for (size_t n = 0; n < levels && st == CW_OK; n++) {
+        st = p->openmesh->run(d, cost, targets[n], err);
+        if (st == CW_OK)
+            st = p->openmesh->take(d, left + n, err);
+    }
+    p->openmesh->close(d);
+    return st;
+}
+
 static cw_status run_once(const cwi_passes *p, const cwi_block_part *x, float cost,
                           cw_error *err)
 {
-    cwi_decimater *d;
-    cw_status st = p->openmesh->open(x->from, &p->block_desc, original_of(p), &d, err);
-    if (st != CW_OK)
-        return st;
-    st = p->openmesh->run(d, cost, x->target, err);
-    if (st == CW_OK)
-        st = p->openmesh->take(d, x->left, err);
-    p->openmesh->close(d);
-    return st;
+    return run_levels(p, x->from, cost, &x->target, 1, x->left, err);
 }
 
 /* Lists of the pass become what they were before. */
@@ -552,6 +561,10 @@ static cw_status run_blocks(const cwi_passes *p, cwi_mesh_block *whole, size_t t
         st = cwi_blocks_join(c.left, c.count, names, out, err);
     if (st == CW_OK)
         keep_known(seam, out);
+    if (st == CW_OK && target) { /* costs ended it: all edges are to be tried again */
+        cwi_free(out->open);
+        out->open = NULL;
+    }
     if (out == whole)
         cwi_free(seam);
     free_crew(&c);
@@ -572,29 +585,10 @@ cw_status cwi_passes_seams(cwi_passes *p, cwi_mesh_block *whole, size_t target, 
     if (p->next || whole->triangles <= CWI_BLOCK || whole->triangles <= target + target / 4)
         return CW_OK;
     cwi_block_number(whole);
-    cwi_free(whole->open); /* costs ended the pass before */
-    whole->open = NULL;
     return run_blocks(p, whole, target, OTHER_SHARE, false, whole, &p->repeats, err);
 }
 
 /* --- the last pass ------------------------------------------------------------------------ */
-
-static cw_status run_levels(const cwi_passes *p, const cwi_mesh_block *whole,
-                            const size_t *targets, size_t levels, cwi_mesh_block *left,
-                            cw_error *err)
-{
-    cwi_decimater *d;
-    cw_status st = p->openmesh->open(whole, &p->block_desc, original_of(p), &d, err);
-    if (st != CW_OK)
-        return st;
-    for (size_t n = 0; n < levels && st == CW_OK; n++) {
-        st = p->openmesh->run(d, INFINITY, targets[n], err);
-        if (st == CW_OK)
-            st = p->openmesh->take(d, left + n, err);
-    }
-    p->openmesh->close(d);
-    return st;
-}
 
 /* Whether blocks that are cut elsewhere pay. */
 static bool has_seams(const cwi_mesh_block *whole)
@@ -662,10 +656,7 @@ static cw_status run_to_error(cwi_passes *p, const cwi_mesh_block *whole, size_t
 cw_status cwi_passes_whole(cwi_passes *p, const cwi_mesh_block *whole, const size_t *targets,
                            size_t levels, cwi_mesh_block *left, cw_error *err)
 {
-    cwi_mesh_block all = *whole;
-    if (targets[0])
-        all.open = NULL; /* costs ended the pass before: all edges are tried again */
     begin_pass(p);
-    return p->next ? run_to_error(p, &all, targets[0], left, err)
-                   : run_levels(p, &all, targets, levels, left, err);
+    return p->next ? run_to_error(p, whole, targets[0], left, err)
+                   : run_levels(p, whole, INFINITY, targets, levels, left, err);
 }

@@ -4,7 +4,7 @@
 
 #include <cubewright/mesh.h>
 
-/* Returns memory that a child's answers can be read from. Ends the program when there is none. */
+/* Returns memory that a child's answers can be read from. Ends the program without memory. */
 void *bench_shared_new(size_t bytes);
 
 /* Runs work in a child. Returns true if it came to its end, and said so. */
@@ -16,7 +16,7 @@ bool bench_put_mesh(int file, const cw_mesh *mesh);
 /* A mesh that stands in such a file. */
 typedef struct bench_seen_mesh {
     cw_mesh mesh;
-    void *map; /* NULL: there is none */
+    void *map; /* NULL: not mapped */
     size_t bytes;
 } bench_seen_mesh;
 
