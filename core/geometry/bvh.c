@@ -1,4 +1,4 @@
-/* Builds a tree of boxes with eight children per node, sorted along a Morton curve, and visits
+/* Builds a tree of boxes with eight children per node, sorted along a Hilbert curve, and visits
  * overlaps. */
 #include "core/geometry/bvh.h"
 
@@ -12,16 +12,57 @@ typedef struct keyed {
     uint32_t item;
 } keyed;
 
-/* Spreads 16 bits so that two zeros follow each. */
-static uint64_t spread_bits(uint64_t x)
+enum { KEY_BITS = 16 }; /* of each coordinate */
+
+static unsigned rotate_left(unsigned octant, unsigned by)
 {
-    x = (x | x << 16) & UINT64_C(0x0000ff0000ff);
-    x = (x | x << 8) & UINT64_C(0x00f00f00f00f);
-    x = (x | x << 4) & UINT64_C(0x0c30c30c30c3);
-    return (x | x << 2) & UINT64_C(0x249249249249);
+    return (octant << by | octant >> (3 - by)) & 7;
 }
 
-/* Sets each key: the place of the box's middle on the curve through a cube of 2^16 places an
+static unsigned gray_code(unsigned rank)
+{
+    return rank ^ rank >> 1;
+}
+
+static unsigned gray_rank(unsigned code)
+{
+    return code ^ code >> 1 ^ code >> 2;
+}
+
+/* Returns the corner of an octant's own cube where the curve begins, if the octant comes at a
+ * rank. */
+static unsigned entry_corner(unsigned rank)
+{
+    return rank ? gray_code((rank - 1) & ~1u) : 0;
+}
+
+/* Returns the axis along which the curve in an octant leads from its begin to its end. */
+static unsigned exit_axis(unsigned rank)
+{
+    const unsigned next = rank & 1 ? rank : rank ? rank - 1 : 0;
+    return next & 1 ? (next & 2 ? (next & 4 ? 0 : 2) : 1) : 0;
+}
+
+/* Computes the rank of a place on a Hilbert curve. A cube's octants are visited in the order of
+ * a Gray code. In each the curve is the same, but turned and mirrored so that it begins beside
+ * the end of the one before [Hamilton2006]. */
+static uint64_t hilbert_key(const uint32_t place[3])
+{
+    unsigned entry = 0, axis = 0;
+    uint64_t key = 0;
+    for (int bit = KEY_BITS - 1; bit >= 0; bit--) {
+        const unsigned octant =
+            (place[0] >> bit & 1) | (place[1] >> bit & 1) << 1 | (place[2] >> bit & 1) << 2;
+        const unsigned turn = (axis + 1) % 3;
+        const unsigned rank = gray_rank(rotate_left(octant ^ entry, (3 - turn) % 3));
+        key = key << 3 | rank;
+        entry ^= rotate_left(entry_corner(rank), turn);
+        axis = (axis + exit_axis(rank) + 1) % 3;
+    }
+    return key;
+}
+
+/* Sets each key: the rank of the box's middle on the curve through a cube of 2^16 places an
  * edge. */
 static void set_keys(const float (*boxes)[6], size_t count, keyed *keys)
 {
@@ -32,14 +73,14 @@ static void set_keys(const float (*boxes)[6], size_t count, keyed *keys)
     for (size_t n = 0; n < count; n++)
         for (int a = 0; a < 3; a++)
             high = fmax(high, (double)boxes[n][a] + (double)boxes[n][a + 3] - low[a]);
-    const double scale = high > 0 ? 65535 / high : 0;
+    const double scale = high > 0 ? ((1 << KEY_BITS) - 1) / high : 0;
     for (size_t n = 0; n < count; n++) {
-        uint64_t key = 0;
+        uint32_t place[3];
         for (int a = 0; a < 3; a++) {
             const double x = (double)boxes[n][a] + (double)boxes[n][a + 3] - low[a];
-            key |= spread_bits((uint64_t)(x * scale)) << a;
+            place[a] = (uint32_t)(x * scale);
         }
-        keys[n] = (keyed){key, (uint32_t)n};
+        keys[n] = (keyed){hilbert_key(place), (uint32_t)n};
     }
 }
 

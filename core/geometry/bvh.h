@@ -38,7 +38,7 @@ typedef struct cwi_boxes {
  * boxes    count x 6: low x, y, z, high x, y, z; finite; fewer than 2^32
  * Returns  CW_ERR_NO_MEMORY; free with cwi_boxes_free()
  * Cost     28 bytes an item, 32 more meanwhile
- * Source   the curve [Morton1966] */
+ * Source   the curve's ranks [Hamilton2006] */
 CW_NODISCARD cw_status cwi_boxes_build(cwi_boxes *tree, const float (*boxes)[6], size_t count,
                                        cw_error *err);
 void cwi_boxes_free(cwi_boxes *tree);

@@ -262,6 +262,46 @@ static void search_triangle(const search *s, const corner c[3], size_t t, int de
     search_triangle(s, (corner[]){ca, bc, c[2]}, t, depth + 1, e);
 }
 
+/* Where facets of a reference are looked for: from the one found before. */
+typedef struct covering {
+    const reference *r;
+    uint32_t slot;
+} covering;
+
+static double nearest_facet(void *context, const double p[3], const float *corners[3])
+{
+    covering *c = context;
+    const double square = seek_nearest(c->r, p, &c->slot);
+    const facet *f = c->r->facets + c->slot;
+    corners[0] = f->a;
+    corners[1] = f->b;
+    corners[2] = f->c;
+    return square;
+}
+
+static bool is_near_facet(const search *s, const corner c[3], uint32_t slot, double square)
+{
+    return square_from(s, c[0].p, slot) <= square && square_from(s, c[1].p, slot) <= square &&
+           square_from(s, c[2].p, slot) <= square;
+}
+
+static bool is_within(const search *s, const corner c[3], double limit)
+{
+    covering facets = {s->r, c[0].slot};
+    cwi_cover cover = {.nearest = nearest_facet, .context = &facets, .square = limit * limit};
+    double p[3][3];
+    for (int n = 0; n < 3; n++) {
+        if (c[n].distance > limit)
+            return false;
+        for (int k = 0; k < 3; k++)
+            p[n][k] = c[n].p[k] - s->r->shift[k];
+    }
+    for (int n = 0; n < 3; n++)
+        if (is_near_facet(s, c, c[n].slot, limit * limit))
+            return true;
+    return cwi_is_covered(&cover, (const double(*)[3])p);
+}
+
 static void begin_triangle(const search *s, size_t t, corner c[3])
 {
     double p[3][3];
@@ -285,7 +325,10 @@ static void search_chunk(void *context, size_t chunk)
          t++) {
         corner c[3];
         begin_triangle(s, t, c);
-        search_triangle(s, c, t, 0, e);
+        if (is_within(s, c, limit_of(s, e)))
+            e->bound = cwi_greater(e->bound, limit_of(s, e));
+        else
+            search_triangle(s, c, t, 0, e);
     }
 }
 
@@ -461,23 +504,6 @@ cw_status cw_distance_to_mesh(const cw_mesh *mesh, const cw_mesh *reference_mesh
     return st;
 }
 
-/* Where facets of a reference are looked for: from the one found before. */
-typedef struct covering {
-    const reference *r;
-    uint32_t slot;
-} covering;
-
-static double nearest_facet(void *context, const double p[3], const float *corners[3])
-{
-    covering *c = context;
-    const double square = seek_nearest(c->r, p, &c->slot);
-    const facet *f = c->r->facets + c->slot;
-    corners[0] = f->a;
-    corners[1] = f->b;
-    corners[2] = f->c;
-    return square;
-}
-
 typedef struct judgement {
     search search;
     uint32_t *slots; /* the search's, to be written */
@@ -499,40 +525,15 @@ static void find_chunk(void *context, size_t chunk)
     }
 }
 
-static bool is_near_facet(const search *s, const corner c[3], uint32_t slot)
-{
-    const double square = s->floor * s->floor;
-    return square_from(s, c[0].p, slot) <= square && square_from(s, c[1].p, slot) <= square &&
-           square_from(s, c[2].p, slot) <= square;
-}
-
-static bool is_within(const search *s, const corner c[3])
-{
-    covering facets = {s->r, c[0].slot};
-    cwi_cover cover = {
-        .nearest = nearest_facet, .context = &facets, .square = s->floor * s->floor};
-    double p[3][3];
-    for (int n = 0; n < 3; n++) {
-        if (c[n].distance > s->floor)
-            return false;
-        for (int k = 0; k < 3; k++)
-            p[n][k] = c[n].p[k] - s->r->shift[k];
-    }
-    for (int n = 0; n < 3; n++)
-        if (is_near_facet(s, c, c[n].slot))
-            return true;
-    return cwi_is_covered(&cover, (const double(*)[3])p);
-}
-
 static void judge_chunk(void *context, size_t chunk)
 {
     const judgement *j = context;
-    search s = j->search;
-    for (size_t t = CHUNK * chunk; t < CHUNK * (chunk + 1) && t < s.mesh->triangle_count; t++) {
+    const search *s = &j->search;
+    for (size_t t = CHUNK * chunk; t < CHUNK * (chunk + 1) && t < s->mesh->triangle_count;
+         t++) {
         corner c[3];
-        s.floor = j->limits ? j->limits[t] : s.floor;
-        begin_triangle(&s, t, c);
-        j->beyond[t] = !is_within(&s, c);
+        begin_triangle(s, t, c);
+        j->beyond[t] = !is_within(s, c, j->limits ? j->limits[t] : s->floor);
     }
 }
 
