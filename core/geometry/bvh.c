@@ -43,23 +43,37 @@ static unsigned exit_axis(unsigned rank)
     return next & 1 ? (next & 2 ? (next & 4 ? 0 : 2) : 1) : 0;
 }
 
-/* Computes the rank of a place on a Hilbert curve. A cube's octants are visited in the order of
- * a Gray code. In each the curve is the same, but turned and mirrored so that it begins beside
- * the end of the one before [Hamilton2006]. */
-static uint64_t hilbert_key(const uint32_t place[3])
+/* Hilbert's curve visits the octants of a cube in the order of a Gray code. In each octant the
+ * curve is the same, but mirrored (entry, 0 to 7) and turned (axis, 0 to 2), so that it begins
+ * beside the end of the one before [Hamilton2006]. A cube is known by 8 axis + entry. */
+typedef struct hilbert {
+    uint8_t rank[24][8]; /* by cube and octant: the octant's rank */
+    uint8_t cube[24][8]; /* by cube and octant: how the octant is mirrored and turned */
+} hilbert;
+
+static void make_curve(hilbert *h)
 {
-    unsigned entry = 0, axis = 0;
-    uint64_t key = 0;
+    for (unsigned cube = 0; cube < 24; cube++)
+        for (unsigned octant = 0; octant < 8; octant++) {
+            const unsigned entry = cube % 8, axis = cube / 8, turn = (axis + 1) % 3;
+            const unsigned rank = gray_rank(rotate_left(octant ^ entry, (3 - turn) % 3));
+            const unsigned inner = entry ^ rotate_left(entry_corner(rank), turn);
+            h->rank[cube][octant] = (uint8_t)rank;
+            h->cube[cube][octant] = (uint8_t)(8 * ((turn + exit_axis(rank)) % 3) + inner);
+        }
+}
+
+static uint64_t find_rank(const hilbert *h, const uint32_t place[3])
+{
+    unsigned cube = 0;
+    uint64_t rank = 0;
     for (int bit = KEY_BITS - 1; bit >= 0; bit--) {
         const unsigned octant =
             (place[0] >> bit & 1) | (place[1] >> bit & 1) << 1 | (place[2] >> bit & 1) << 2;
-        const unsigned turn = (axis + 1) % 3;
-        const unsigned rank = gray_rank(rotate_left(octant ^ entry, (3 - turn) % 3));
-        key = key << 3 | rank;
-        entry ^= rotate_left(entry_corner(rank), turn);
-        axis = (axis + exit_axis(rank) + 1) % 3;
+        rank = rank << 3 | h->rank[cube][octant];
+        cube = h->cube[cube][octant];
     }
-    return key;
+    return rank;
 }
 
 /* Sets each key: the rank of the box's middle on the curve through a cube of 2^16 places an
@@ -67,6 +81,8 @@ static uint64_t hilbert_key(const uint32_t place[3])
 static void set_keys(const float (*boxes)[6], size_t count, keyed *keys)
 {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high = 0;
+    hilbert curve;
+    make_curve(&curve);
     for (size_t n = 0; n < count; n++)
         for (int a = 0; a < 3; a++)
             low[a] = fmin(low[a], (double)boxes[n][a] + (double)boxes[n][a + 3]);
@@ -80,7 +96,7 @@ static void set_keys(const float (*boxes)[6], size_t count, keyed *keys)
             const double x = (double)boxes[n][a] + (double)boxes[n][a + 3] - low[a];
             place[a] = (uint32_t)(x * scale);
         }
-        keys[n] = (keyed){hilbert_key(place), (uint32_t)n};
+        keys[n] = (keyed){find_rank(&curve, place), (uint32_t)n};
     }
 }
 

@@ -120,10 +120,12 @@ static inline size_t cwi_boxes_nodes(const cwi_boxes *tree)
 }
 
 /* Computes lower bounds of the squares of a point's distances from eight boxes: the boxes are
- * widened by slack. A point is beyond at most one of a box's ends. */
-static inline void cwi_boxes_squares(const cwi_boxes_node *n, const float p[3], float slack,
-                                     float squares[CWI_WIDTH])
+ * widened by slack. A point is beyond at most one of a box's ends. Returns bit c where the square
+ * of box c is less than a limit. */
+static inline unsigned cwi_boxes_squares(const cwi_boxes_node *n, const float p[3], float slack,
+                                         float limit, float squares[CWI_WIDTH])
 {
+    unsigned less = 0;
     for (int c = 0; c < CWI_WIDTH; c += 4) {
         cwi_lanes sum = {0, 0, 0, 0};
         for (int a = 0; a < 3; a++) {
@@ -136,8 +138,11 @@ static inline void cwi_boxes_squares(const cwi_boxes_node *n, const float p[3], 
                 (cwi_lanes)(((cwi_mask)below & is_below) | ((cwi_mask)above & is_above));
             sum += d * d;
         }
+        const cwi_mask is_less = sum < limit;
+        less |= cwi_mask_bits(&is_less) << c;
         memcpy(squares + c, &sum, sizeof sum);
     }
+    return less;
 }
 
 /* Lowers *square, a squared distance, to the minimum that `measure` finds among items in reach.
@@ -166,12 +171,13 @@ static inline void cwi_boxes_nearest(const cwi_boxes *tree, const double point[3
             continue;
         float squares[CWI_WIDTH];
         const size_t child = e.node * CWI_WIDTH, base = depth;
-        cwi_boxes_squares(tree->nodes + tree->first[e.level] + e.node, p, slack, squares);
-        for (size_t c = 0; c < CWI_WIDTH; c++) {
-            if (!((double)squares[c] * (1 - 0x1p-20) < *square))
-                continue;
+        unsigned near = cwi_boxes_squares(tree->nodes + tree->first[e.level] + e.node, p, slack,
+                                          (float)(*square * (1 + 0x1p-19)), squares);
+        for (; near; near &= near - 1) {
+            const size_t c = (size_t)__builtin_ctz(near);
             if (e.level == 0) {
-                measure(context, child + c, square);
+                if ((double)squares[c] * (1 - 0x1p-20) < *square)
+                    measure(context, child + c, square);
                 continue;
             }
             const struct entry found = {squares[c], e.level - 1, child + c};
