@@ -4,8 +4,8 @@
  * reference is a convex function, so over a triangle T it is largest in a corner of T; and
  * whatever the distance from R is, the distance from the whole reference is not larger. The
  * same holds for the two parts into which a line cuts T, one with R and one with its neighbour.
- * It does not grow faster than the way gone either. A triangle that these bounds do not clear
- * is divided into four. */
+ * It does not grow faster than the way gone either. A triangle is cut up along the sides of the
+ * reference below it first; one that this does not clear is divided into four. */
 #include <cubewright/distance.h>
 
 #include "core/base/memory.h"
