@@ -2,6 +2,7 @@
  * the meshes that they made. */
 #define _GNU_SOURCE /* getloadavg */
 #include "cli/bench/bench.h"
+#include "cli/inputs/level_choice.h"
 
 #include "cli/framework/console.h"
 #include "cli/framework/temp_folder.h"
@@ -225,10 +226,13 @@ static cw_status open_file(cli_bench *b, cw_error *err)
     if (st != CW_OK)
         return st;
     c->inside_is_low = cli_inside_is_low(b->inside, &b->volume.whole);
+    if (!b->iso.given)
+        return cli_find_level(&b->volume, b->input, &c->iso, &c->level, err);
+    cli_number iso = b->iso; /* a name is another number for each file */
+    st = cli_choose_level(&b->volume, b->input, &iso, err);
     c->level = "as asked for";
-    c->iso = b->iso.value;
-    return b->iso.given ? CW_OK
-                        : cli_find_level(&b->volume, b->threads, &c->iso, &c->level, err);
+    c->iso = iso.value;
+    return st;
 }
 
 static cw_status open_case(cli_bench *b, cw_error *err)

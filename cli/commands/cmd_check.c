@@ -4,6 +4,7 @@
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "cli/inputs/extract_surface.h"
+#include "cli/inputs/level_choice.h"
 #include "cli/inputs/mesh_input.h"
 #include "cli/results/check_verdicts.h"
 #include "cli/results/output_names.h"
@@ -45,7 +46,8 @@ static const cli_option options[] = {
     {"source", 's', CLI_TEXT, "VOLUME",
      "Volume to measure the distance to, and to compare the topology with; needs --iso",
      offsetof(check_args, source), CLI_VALUES_VOLUME},
-    {"iso", 'i', CLI_NUMBER, "V", "Isovalue of the source's surface",
+    {"iso", 'i', CLI_LEVEL, "V",
+     "Isovalue of the source's surface: a number, or a name as for 'extract'",
      offsetof(check_args, iso)},
     {"inside", 0, CLI_CHOICE, "above/below", "Which values of the source are inside (above)",
      offsetof(check_args, inside)},
@@ -72,6 +74,7 @@ static const cli_option options[] = {
 /* State of the command: inputs and measurements; findings point into it. */
 typedef struct run_state {
     const check_args *args;
+    cli_number iso; /* of args, as a number */
     cli_mesh mesh, reference;
     cli_volume volume;
     uint8_t *defects; /* of each triangle; NULL unless they are painted */
@@ -104,7 +107,7 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
     cli_json_text(j, "profile", profiles[args->profile]);
     cli_json_bool(j, "deep", args->deep);
     if (args->source) {
-        cli_json_number(j, "iso", args->iso.value);
+        cli_json_number(j, "iso", s->iso.value);
         cli_json_text(j, "inside", args->inside ? "below" : "above");
         cli_json_bool(j, "open", args->open);
         if (args->least.given)
@@ -203,6 +206,8 @@ static cw_status read_inputs(run_state *s, cw_error *err)
     const cli_input source = cli_source_input(&args->input);
     if (st == CW_OK && args->source)
         st = cli_read_volume(args->source, &source, false, &s->volume, err);
+    if (st == CW_OK && args->source)
+        st = cli_choose_level(&s->volume, &source, &s->iso, err);
     if (st == CW_OK)
         cli_report_end(&s->report, "read", 1, s->mesh.mesh.triangle_count);
     return st;
@@ -314,7 +319,7 @@ static cw_status compare_with_field(run_state *s, cw_error *err)
     cw_mesh surface = {0};
     cw_extract_counts counts;
     const cw_field_distance_desc desc = {
-        .isovalue = args->iso.value,
+        .isovalue = s->iso.value,
         .inside_is_low = args->inside,
         .leave_open = args->open,
         .worst = s->distances,
@@ -327,7 +332,7 @@ static cw_status compare_with_field(run_state *s, cw_error *err)
     if (st != CW_OK)
         return in_mesh(s, st, err);
     s->findings.to_field = &s->to_field;
-    const cli_wanted wanted = {.extract = {.isovalue = args->iso.value,
+    const cli_wanted wanted = {.extract = {.isovalue = s->iso.value,
                                            .inside_is_low = args->inside,
                                            .leave_open = args->open,
                                            .no_normals = true,
@@ -498,7 +503,7 @@ static void free_state(run_state *s)
 static cw_status check_mesh(void *state, cw_error *err)
 {
     run_state *s = state;
-    cli_report_next(&s->report, s->args->defects, s->args->iso.value);
+    cli_report_next(&s->report, s->args->defects, s->iso.value);
     cw_status st = check_args_of(s, err);
     if (st == CW_OK)
         st = read_inputs(s, err);
@@ -510,7 +515,7 @@ static cw_status check_mesh(void *state, cw_error *err)
 static cw_status run_check(void *p, cw_error *err)
 {
     const check_args *args = p;
-    run_state s = {.args = args, .start = cli_seconds()};
+    run_state s = {.args = args, .iso = args->iso, .start = cli_seconds()};
     s.report.command = "check";
     s.report.params = put_params;
     s.report.facts = put_facts;

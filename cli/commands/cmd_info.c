@@ -8,6 +8,7 @@
 #include "cli/framework/console.h"
 #include "cli/framework/field_names.h"
 #include "cli/framework/quantity.h"
+#include "cli/inputs/level_choice.h"
 #include "cli/inputs/time_series.h"
 #include "cli/inputs/volume_input.h"
 #include "core/base/status.h"
@@ -33,7 +34,7 @@ typedef struct info_args {
 static const cli_option options[] = {
     {"histogram", 0, CLI_COUNT, "N", "Print a histogram of the values with N bins (0)",
      offsetof(info_args, histogram)},
-    {"iso", 'i', CLI_NUMBERS, "V[,V...]",
+    {"iso", 'i', CLI_LEVELS, "V[,V...]",
      "Predict the mesh, file sizes, memory and time of 'extract' at isovalues; reads all voxels (none)",
      offsetof(info_args, iso)},
     {"names", 0, CLI_TEXT, "FILE",
@@ -51,7 +52,7 @@ static const cli_option options[] = {
 };
 
 /* Between how many kinds of values levels are sought, and in how many bins. */
-enum { MAX_LEVELS = 3, OTSU_BINS = 512 };
+enum { MAX_LEVELS = 3, TISSUES = CLI_LEVEL_METAL - CLI_LEVEL_BONE + 1 };
 
 /* As many as readers take. */
 enum { MAX_COMPONENTS = 16 };
@@ -66,7 +67,7 @@ typedef struct facts {
     cli_volume volume;
     cw_series series;    /* of a DICOM image; else no images */
     cw_statistics range; /* and the bins asked for */
-    level levels[MAX_LEVELS + 2];
+    level levels[MAX_LEVELS + 2 + TISSUES];
     int level_count;
     cli_label_facts labels;
     cli_scales scales;
@@ -77,13 +78,23 @@ typedef struct facts {
     double (*ranges)[2]; /* array_count x MAX_COMPONENTS: of those that are read */
 } facts;
 
+/* Adds the isovalues of a CT that are in the range of its values. */
+static void add_tissues(facts *f, const cw_statistics *s)
+{
+    for (cli_level n = CLI_LEVEL_BONE; n <= CLI_LEVEL_METAL; n++) {
+        const double value = cli_hounsfield_level(n);
+        if (cli_is_hounsfield(&f->volume.whole, s) && s->min < value && s->max >= value)
+            f->levels[f->level_count++] = (level){.name = cli_level_text(n, 0), .value = value};
+    }
+}
+
 /* otsu parts two classes; dark, medium and bright part four [Otsu1979, Liao2001]. */
 static cw_status find_levels(facts *f, int threads, cw_error *err)
 {
     static const char *const names[] = {"otsu", "dark", "medium", "bright"};
     cw_statistics s;
     double values[MAX_LEVELS + 1];
-    cw_status st = cw_volume_statistics(&f->volume.view, OTSU_BINS, threads, &s, err);
+    cw_status st = cw_volume_statistics(&f->volume.view, CLI_LEVEL_BINS, threads, &s, err);
     if (st != CW_OK)
         return st;
     int count = cw_statistics_otsu(&s, 1, values) ? 1 : 0;
@@ -92,7 +103,10 @@ static cw_status find_levels(facts *f, int threads, cw_error *err)
     if (f->volume.whole.known & CW_KNOWN_LEVEL_SET)
         f->levels[f->level_count++] = (level){.name = "zero", .value = 0};
     for (int n = 0; n < count; n++)
-        f->levels[f->level_count++] = (level){.name = names[n], .value = values[n]};
+        f->levels[f->level_count++] =
+            (level){.name = names[n], .value = cli_round_level(values[n])};
+    if (count)
+        add_tissues(f, &s);
     cw_statistics_free(&s);
     return CW_OK;
 }
@@ -199,11 +213,13 @@ static cw_status find_arrays(const info_args *args, facts *f, cw_error *err)
 static cw_status predict_extract(const info_args *args, size_t program_bytes, facts *f,
                                  cw_error *err)
 {
-    const cli_predict_desc desc = {.iso = &args->iso,
+    cli_numbers iso = args->iso;
+    cw_status st = cli_choose_levels(&f->volume, &args->input, &iso, err);
+    const cli_predict_desc desc = {.iso = &iso,
                                    .input = &args->input,
                                    .program_bytes = program_bytes,
                                    .read_seconds = f->read_seconds};
-    return args->iso.count ? cli_predict(&desc, &f->volume, &f->predictions, err) : CW_OK;
+    return st == CW_OK && iso.count ? cli_predict(&desc, &f->volume, &f->predictions, err) : st;
 }
 
 static cw_status find_facts(const info_args *args, facts *f, cw_error *err)

@@ -45,7 +45,7 @@ static const cli_option options[] = {
     {"source", 's', CLI_TEXT, "VOLUME",
      "Volume to take normals from (off: carry over the input's)",
      offsetof(cli_simplify_args, source), CLI_VALUES_VOLUME},
-    {"iso", 'i', CLI_NUMBER, "V",
+    {"iso", 'i', CLI_LEVEL, "V",
      "Isovalue of the source, to measure the distance to its surface, too",
      offsetof(cli_simplify_args, iso)},
     {"inside", 0, CLI_CHOICE, "above/below", "Which values of the source are inside (above)",

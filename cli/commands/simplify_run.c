@@ -1,6 +1,7 @@
 /* Runs the command simplify: reads the mesh, simplifies its parts or levels of detail,
  * measures the error, and writes the result. */
 #include "cli/commands/simplify_run.h"
+#include "cli/inputs/level_choice.h"
 
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
@@ -17,6 +18,7 @@
 
 typedef struct run_state {
     const cli_simplify_args *args;
+    cli_number iso; /* of args, as a number */
     int threads;
     cli_mesh mesh;
     cli_volume source;
@@ -68,7 +70,7 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
     if (args->source)
         cli_json_text(j, "inside", args->inside ? "below" : "above");
     if (args->iso.given)
-        cli_json_number(j, "iso", args->iso.value);
+        cli_json_number(j, "iso", s->iso.value);
     cli_json_written(j, &args->written, made->path);
 }
 
@@ -173,6 +175,8 @@ static cw_status read_inputs(run_state *s, cw_error *err)
         st = cli_orient_mesh(&s->mesh, s->threads, err);
     if (st == CW_OK && args->source)
         st = cli_read_volume(args->source, &source, false, &s->source, err);
+    if (st == CW_OK && args->source)
+        st = cli_choose_level(&s->source, &source, &s->iso, err);
     if (st == CW_OK)
         st = take_pieces(s, err);
     for (size_t n = 0; n < s->pieces.count && st == CW_OK && args->source; n++)
@@ -290,7 +294,7 @@ static cw_status measure_error(run_state *s, cli_made *made, cw_error *err)
     c->promised_mm = s->error_mm;
     cw_status st = cli_compare_pieces(&s->pieces, s->threads, c, err);
     for (size_t n = 0; n < s->pieces.count && st == CW_OK && s->args->iso.given; n++) {
-        st = cli_compare_with_field(&s->pieces.piece[n].out, &s->source, s->args->iso.value,
+        st = cli_compare_with_field(&s->pieces.piece[n].out, &s->source, s->iso.value,
                                     s->args->inside, s->threads, c, err);
         st = st == CW_OK ? st : cwi_fail_in(err, st, s->mesh.path);
     }
@@ -422,7 +426,10 @@ static void free_state(run_state *s)
 cw_status cli_run_simplify(void *p, cw_error *err)
 {
     const cli_simplify_args *args = p;
-    run_state s = {.args = args, .threads = (int)args->input.threads, .start = cli_seconds()};
+    run_state s = {.args = args,
+                   .iso = args->iso,
+                   .threads = (int)args->input.threads,
+                   .start = cli_seconds()};
     s.report.command = "simplify";
     s.report.several = args->lod.count ? "levels" : NULL;
     s.report.params = put_params;

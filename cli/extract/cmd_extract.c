@@ -8,6 +8,7 @@
 #include "cli/framework/batch.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
+#include "cli/inputs/level_choice.h"
 #include "cli/results/pvd_list.h"
 #include "core/base/status.h"
 
@@ -26,8 +27,9 @@ static const cli_option options[] = {
      "Mesh to write, in the format of its extension; may hold {level}, {step}, {stem}, {parent}, of "
      "--lod {lod}, and of labels {label} and {name}",
      offsetof(cli_extract_args, output), CLI_VALUES_MESH_OUTPUT},
-    {"iso", 'i', CLI_NUMBERS, "V[,V...]",
-     "Isovalue, or several, in the unit of the values (required; in level sets 0)",
+    {"iso", 'i', CLI_LEVELS, "V[,V...]",
+     "Isovalue, or several: numbers, 40% (of the range), otsu, dark, medium, bright, half; of a CT "
+     "bone, skin, soft, lung, metal (required; in level sets 0)",
      offsetof(cli_extract_args, iso)},
     {"labels", 'l', CLI_TEXT, "all/LIST",
      "Extract labels of a label map instead: all, or a list such as 1,5,7-9,Liver (none)",
@@ -335,7 +337,8 @@ static cw_status read_volume(cli_extract_run *s, const cli_moment *moment, cw_er
     if (st != CW_OK)
         return st;
     const cw_volume *v = &s->input.volume.view;
-    if (!s->output.report.input)
+    st = cli_choose_levels(&s->input.volume, &input, s->iso, err);
+    if (st == CW_OK && !s->output.report.input)
         st = cli_tell_labels(&s->input.volume, s->args->iso.value, s->args->iso.count,
                              cli_extract_is_low(s), err);
     if (st != CW_OK)
@@ -473,7 +476,7 @@ static cw_status extract_surfaces(void *state, cw_error *err)
 static cw_status run_extract(void *p, cw_error *err)
 {
     cli_extract_args *args = p;
-    cli_extract_run s = {.args = args, .output.start = cli_seconds()};
+    cli_extract_run s = {.args = args, .iso = &args->iso, .output.start = cli_seconds()};
     if (cw_team_is_started() && !args->part && !args->queue) /* else each rank is a worker */
         return cli_extract_ranks(args, err);
     if (args->part || args->manifest || args->queue || args->parts)

@@ -58,6 +58,7 @@ typedef struct cli_extract_output {
 /* A run of the command. */
 typedef struct cli_extract_run {
     const cli_extract_args *args;
+    cli_numbers *iso; /* of args: names become numbers when a volume is read */
     cli_extract_plan plan;
     cli_extract_input input;
     cli_extract_output output;

@@ -7,6 +7,7 @@
 #include "cli/extract/part_lease.h"
 #include "cli/extract/stream_run.h"
 #include "cli/framework/console.h"
+#include "cli/framework/quantity.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 
@@ -66,6 +67,12 @@ static cw_status check_job(const cli_extract_args *args, const char *how, cw_err
     if (args->iso.count != 1 || args->common.input_count != 1 || args->steps.given)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "%s is for one volume, one step and one isovalue (--iso V)", how);
+    if (args->iso.level[0] != CLI_LEVEL_NUMBER)
+        return cwi_fail(
+            err, CW_ERR_ARGUMENT,
+            "%s: each part reads a part of the voxels, and --iso %s is of all; give "
+            "its number, which 'cubewright extract' says without %s",
+            how, cli_level_text(args->iso.level[0], args->iso.value[0]), how);
     const cw_write_desc desc = cli_extract_write_desc(args);
     return args->output ? cw_mesh_write_check(args->output, &desc, err) : CW_OK;
 }

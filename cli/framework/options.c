@@ -172,6 +172,8 @@ size_t cli_option_size(const cli_option *o)
         [CLI_CHOICE] = sizeof(int),
         [CLI_NUMBER] = sizeof(cli_number),
         [CLI_NUMBERS] = sizeof(cli_numbers),
+        [CLI_LEVEL] = sizeof(cli_number),
+        [CLI_LEVELS] = sizeof(cli_numbers),
         [CLI_COUNT] = sizeof(size_t),
         [CLI_COUNTS] = sizeof(cli_counts),
         [CLI_BYTES] = sizeof(size_t),
@@ -217,6 +219,14 @@ static void print_numbers(const double *n, size_t count, char *text, size_t size
         used += (size_t)snprintf(text + used, size - used, "%s%.17g", i ? "," : "", n[i]);
 }
 
+static void print_levels(const cli_numbers *n, char *text, size_t size)
+{
+    size_t used = 0;
+    for (size_t i = 0; i < n->count && used < size; i++)
+        used += (size_t)snprintf(text + used, size - used, "%s%s", i ? "," : "",
+                                 cli_level_text(n->level[i], n->value[i]));
+}
+
 bool cli_option_text(const cli_option *o, const void *args, char *text, size_t size)
 {
     const void *field = (const char *)args + o->offset;
@@ -236,6 +246,15 @@ bool cli_option_text(const cli_option *o, const void *args, char *text, size_t s
     case CLI_NUMBERS:
         print_numbers(((const cli_numbers *)field)->value, ((const cli_numbers *)field)->count,
                       text, size);
+        break;
+    case CLI_LEVEL:
+        if (((const cli_number *)field)->given)
+            snprintf(text, size, "%s",
+                     cli_level_text(((const cli_number *)field)->level,
+                                    ((const cli_number *)field)->value));
+        break;
+    case CLI_LEVELS:
+        print_levels(field, text, size);
         break;
     case CLI_LENGTHS:
         print_numbers(((const cli_lengths *)field)->mm,
@@ -280,6 +299,10 @@ static bool store_value(const cli_option *o, const char *text, void *field)
         return cli_parse_number(text, field);
     case CLI_NUMBERS:
         return cli_parse_numbers(text, field);
+    case CLI_LEVEL:
+        return cli_parse_level(text, field);
+    case CLI_LEVELS:
+        return cli_parse_levels(text, field);
     case CLI_COUNT:
         return cli_parse_count(text, 1000, field);
     case CLI_COUNTS:
@@ -318,6 +341,11 @@ static const char *describe_expected(const cli_option *o)
         return "a number";
     case CLI_NUMBERS:
         return "a number, or up to 64 by comma such as 50,300";
+    case CLI_LEVEL:
+        return "an isovalue such as 300, 40% (of the range), otsu or bone (of a CT)";
+    case CLI_LEVELS:
+        return "up to 64 isovalues by comma, such as 50,300, 40% (of the range), otsu or bone "
+               "(of a CT)";
     case CLI_COUNT:
         return "a whole number such as 500, 50k or 2M";
     case CLI_COUNTS:

@@ -12,6 +12,8 @@ typedef enum cli_kind {
     CLI_CHOICE,    /* int: the position in value, names parted by '/' */
     CLI_NUMBER,    /* cli_number */
     CLI_NUMBERS,   /* cli_numbers: 300 or 50,300 */
+    CLI_LEVEL,     /* cli_number: 300, 40%, otsu, bone; a name waits for a volume */
+    CLI_LEVELS,    /* cli_numbers: several of them by comma */
     CLI_COUNT,     /* size_t: 50k, 100M */
     CLI_COUNTS,    /* cli_counts: 50k,12k,3k */
     CLI_BYTES,     /* size_t: 512M, 8G (1024s) */
@@ -28,9 +30,25 @@ typedef enum cli_kind {
     CLI_HEADING,   /* no option: the name of those below it in the help */
 } cli_kind;
 
+/* How an isovalue is named. All but numbers become one when a volume is read. */
+typedef enum cli_level {
+    CLI_LEVEL_NUMBER,
+    CLI_LEVEL_PERCENT, /* of the range of the values, as the number beside it says */
+    CLI_LEVEL_OTSU,    /* those of cw_statistics_otsu(): of one level */
+    CLI_LEVEL_DARK,    /* of three */
+    CLI_LEVEL_MEDIUM,
+    CLI_LEVEL_BRIGHT,
+    CLI_LEVEL_BONE, /* in Hounsfield units, from here on */
+    CLI_LEVEL_SKIN,
+    CLI_LEVEL_SOFT,
+    CLI_LEVEL_LUNG,
+    CLI_LEVEL_METAL,
+} cli_level;
+
 typedef struct cli_number {
     bool given;
     double value;
+    cli_level level;
 } cli_number;
 
 enum { CLI_MAX_NUMBERS = 64 };
@@ -38,6 +56,7 @@ enum { CLI_MAX_NUMBERS = 64 };
 typedef struct cli_numbers {
     size_t count; /* 0: none given */
     double value[CLI_MAX_NUMBERS];
+    cli_level level[CLI_MAX_NUMBERS];
 } cli_numbers;
 
 enum { CLI_MAX_COUNTS = 16 };

@@ -29,6 +29,79 @@ bool cli_parse_numbers(const char *text, cli_numbers *out)
     return false;
 }
 
+/* Names of levels without a number of their own. */
+static const struct {
+    const char *name;
+    cli_level level;
+} level_names[] = {
+    {"otsu", CLI_LEVEL_OTSU},     {"dark", CLI_LEVEL_DARK}, {"medium", CLI_LEVEL_MEDIUM},
+    {"bright", CLI_LEVEL_BRIGHT}, {"bone", CLI_LEVEL_BONE}, {"skin", CLI_LEVEL_SKIN},
+    {"soft", CLI_LEVEL_SOFT},     {"lung", CLI_LEVEL_LUNG}, {"metal", CLI_LEVEL_METAL},
+};
+
+enum { LEVEL_NAMES = sizeof level_names / sizeof *level_names };
+
+static bool skip_word(const char **text, const char *word)
+{
+    const size_t length = strlen(word);
+    const bool found = strncmp(*text, word, length) == 0;
+    *text += found ? length : 0;
+    return found;
+}
+
+/* Parses what follows half: nothing, or the two values that the level is between. */
+static bool parse_half(const char **text, double *value, cli_level *level)
+{
+    double a, b;
+    *value = 50;
+    *level = CLI_LEVEL_PERCENT;
+    if (**text != ':')
+        return true;
+    ++*text;
+    if (!cwi_parse_double(text, &a) || !skip_word(text, ":") || !cwi_parse_double(text, &b))
+        return false;
+    *value = a / 2 + b / 2;
+    *level = CLI_LEVEL_NUMBER;
+    return isfinite(*value);
+}
+
+static bool parse_one_level(const char **text, double *value, cli_level *level)
+{
+    *value = 0;
+    *level = CLI_LEVEL_NUMBER;
+    for (size_t n = 0; n < LEVEL_NAMES; n++)
+        if (skip_word(text, level_names[n].name)) {
+            *level = level_names[n].level;
+            return true;
+        }
+    if (skip_word(text, "half"))
+        return parse_half(text, value, level);
+    if (!cwi_parse_double(text, value) || !isfinite(*value))
+        return false;
+    *value += 0.0; /* -0 is 0 */
+    if (skip_word(text, "%"))
+        *level = CLI_LEVEL_PERCENT;
+    return *level == CLI_LEVEL_NUMBER || (*value >= 0 && *value <= 100);
+}
+
+bool cli_parse_level(const char *text, cli_number *out)
+{
+    out->given = parse_one_level(&text, &out->value, &out->level) && *text == '\0';
+    return out->given;
+}
+
+bool cli_parse_levels(const char *text, cli_numbers *out)
+{
+    for (out->count = 0; out->count < CLI_MAX_NUMBERS; text++) {
+        const size_t n = out->count++;
+        if (!parse_one_level(&text, &out->value[n], &out->level[n]))
+            return false;
+        if (*text != ',')
+            return *text == '\0';
+    }
+    return false;
+}
+
 /* A number and its unit, as millimetres; *text moves behind it. *unit: whether there
  * was one. */
 static bool parse_length(const char **text, double *mm, bool *unit)
@@ -284,4 +357,17 @@ const char *cli_number_text(double value)
             break;
     }
     return text;
+}
+
+const char *cli_level_text(cli_level level, double value)
+{
+    if (level == CLI_LEVEL_PERCENT) {
+        char *text = next_buffer();
+        snprintf(text, LONGEST, "%s%%", cli_number_text(value));
+        return text;
+    }
+    for (size_t n = 0; n < LEVEL_NAMES; n++)
+        if (level_names[n].level == level)
+            return level_names[n].name;
+    return cli_number_text(value);
 }

@@ -6,6 +6,13 @@
 
 bool cli_parse_number(const char *text, cli_number *out);
 bool cli_parse_numbers(const char *text, cli_numbers *out);
+
+/* Isovalues: numbers, and names that wait for a volume. half:100:300 is the number between. */
+bool cli_parse_level(const char *text, cli_number *out);
+bool cli_parse_levels(const char *text, cli_numbers *out);
+
+/* Returns a level as it is typed, in static memory as of cli_number_text(). */
+const char *cli_level_text(cli_level level, double value);
 bool cli_parse_lengths(const char *text, cli_lengths *out);
 bool cli_parse_length(const char *text, cli_length *out);
 

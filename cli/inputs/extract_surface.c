@@ -1,5 +1,5 @@
 /* Extracts the surface of a volume that was read, whole or simplified slab by slab, within
- * the memory that is left; suggests an isovalue by Otsu. */
+ * the memory that is left. */
 #include "cli/inputs/extract_surface.h"
 
 #include "cli/framework/console.h"
@@ -166,24 +166,4 @@ cw_status cli_extract_simplified(const cli_volume *volume, const cli_wanted *wan
         return st;
     st = cw_extract_normals(&volume->view, &normals, mesh, err);
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
-}
-
-cw_status cli_find_level(const cli_volume *volume, int threads, double *iso, const char **how,
-                         cw_error *err)
-{
-    enum { OTSU_BINS = 1024 };
-    cw_statistics statistics;
-    *iso = 0;
-    *how = "of level sets";
-    if (volume->whole.known & CW_KNOWN_LEVEL_SET)
-        return CW_OK;
-    *how = "otsu";
-    cw_status st = cw_volume_statistics(&volume->view, OTSU_BINS, threads, &statistics, err);
-    if (st != CW_OK)
-        return st;
-    const bool found = cw_statistics_otsu(&statistics, 1, iso);
-    cw_statistics_free(&statistics);
-    return found ? CW_OK
-                 : cwi_fail(err, CW_ERR_EMPTY,
-                            "%s: no isovalue separates its values; give --iso V", volume->path);
 }

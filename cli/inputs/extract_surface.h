@@ -66,9 +66,4 @@ CW_NODISCARD cw_status cli_extract_simplified(const cli_volume *volume,
                                               cw_extract_counts *counts,
                                               cw_drop_counts *dropped, cw_error *err);
 
-/* The level where nobody said one: of level sets 0, else by Otsu. how  is set to a word for
- * it. CW_ERR_EMPTY: no level parts the values. */
-CW_NODISCARD cw_status cli_find_level(const cli_volume *volume, int threads, double *iso,
-                                      const char **how, cw_error *err);
-
 #endif

@@ -1,6 +1,7 @@
 /* Runs the command render: opens the steps, makes the scene of each turn, draws it on OpenGL
  * or the CPU, and writes the pictures. */
 #include "cli/render/render_run.h"
+#include "cli/inputs/level_choice.h"
 
 #include "cli/framework/console.h"
 #include "cli/framework/name_template.h"
@@ -224,12 +225,16 @@ static cw_status extract_shown(cli_pictures *p, cw_error *err)
 {
     const render_args *args = p->args;
     cw_mesh_free(&p->source.mesh);
-    return cli_extract_surface(&p->source.volume, NULL,
-                               &(cw_extract_desc){.isovalue = args->iso.value,
-                                                  .inside_is_low = cli_inside_is_low(
-                                                      args->inside, &p->source.volume.whole),
-                                                  .threads = (int)args->input.threads},
-                               &p->source.mesh, NULL, err);
+    if (!p->iso.given)
+        p->iso = args->iso;
+    cw_status st = cli_choose_level(&p->source.volume, &args->input, &p->iso, err);
+    const cw_extract_desc desc = {.isovalue = p->iso.value,
+                                  .inside_is_low =
+                                      cli_inside_is_low(args->inside, &p->source.volume.whole),
+                                  .threads = (int)args->input.threads};
+    return st == CW_OK
+               ? cli_extract_surface(&p->source.volume, NULL, &desc, &p->source.mesh, NULL, err)
+               : st;
 }
 
 static cw_status read_beside(cli_pictures *p, cw_error *err)

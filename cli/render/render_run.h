@@ -54,6 +54,7 @@ typedef struct cli_split {
 typedef struct cli_pictures {
     const cli_command *command;
     const render_args *args;
+    cli_number iso;    /* of args, as a number */
     cli_source source; /* its mesh: what is seen beside the volume, or by itself */
     cw_mode mode;
     cli_label_look look; /* labels: NULL where none are drawn */

@@ -5,6 +5,7 @@
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "cli/inputs/extract_surface.h"
+#include "cli/inputs/level_choice.h"
 #include "cli/inputs/synthetic_input.h"
 #include "cli/report/study.h"
 #include "cli/results/output_names.h"
@@ -38,7 +39,8 @@ static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
      "Page to write, a .html file; may hold {stem} and {parent}", offsetof(report_args, output),
      CLI_VALUES_HTML},
-    {"iso", 'i', CLI_NUMBER, "V", "Isovalue (otsu, as 'info' suggests; of a field its own)",
+    {"iso", 'i', CLI_LEVEL, "V",
+     "Isovalue: a number, or a name as for 'extract' (otsu; of a field its own)",
      offsetof(report_args, iso)},
     {"inside", 0, CLI_CHOICE, CLI_INSIDE_CHOICES,
      "Which values are inside the solid (auto: above; in level sets below)",
@@ -240,10 +242,16 @@ static cw_status find_level(run_state *s, cw_error *err)
 {
     cli_study *study = &s->study;
     if (!s->args->iso.given && !study->is_field)
-        return cli_find_level(&s->volume, study->threads, &study->iso, &study->level, err);
-    study->level = s->args->iso.given ? "as asked for" : "the field's own";
-    study->iso = s->args->iso.given ? s->args->iso.value : cw_field_isovalue(study->field);
-    return CW_OK;
+        return cli_find_level(&s->volume, &s->args->input, &study->iso, &study->level, err);
+    if (!s->args->iso.given) {
+        study->level = "the field's own";
+        study->iso = cw_field_isovalue(study->field);
+        return CW_OK;
+    }
+    study->level = "as asked for";
+    cw_status st = cli_choose_level(&s->volume, &s->args->input, &s->args->iso, err);
+    study->iso = s->args->iso.value;
+    return st;
 }
 
 /* The drawn volume is not the coarsened one: render reads all voxels. */

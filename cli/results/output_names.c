@@ -64,9 +64,9 @@ static cw_status check_levels(const cli_numbers *levels, cw_error *err)
 {
     for (size_t n = 0; n < levels->count; n++)
         for (size_t m = 0; m < n; m++)
-            if (levels->value[m] == levels->value[n])
+            if (levels->value[m] == levels->value[n] && levels->level[m] == levels->level[n])
                 return cwi_fail(err, CW_ERR_ARGUMENT, "--iso lists %s twice",
-                                cli_number_text(levels->value[n]));
+                                cli_level_text(levels->level[n], levels->value[n]));
     return CW_OK;
 }
 
@@ -116,7 +116,7 @@ static cw_status name_levels(cli_outputs *outputs, const char *text, const cli_m
     parts[PARENT].value = parent;
     parts[STEP].value = number;
     for (size_t n = 0; n < levels->count && st == CW_OK; n++) {
-        parts[LEVEL].value = cli_number_text(levels->value[n]);
+        parts[LEVEL].value = cli_level_text(levels->level[n], levels->value[n]);
         st = add_output(outputs, text, parts, PARTS, err);
     }
     free(parent);

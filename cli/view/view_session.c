@@ -1,6 +1,7 @@
 /* Opens and closes the file of a session, goes to its steps, and chooses mode, isovalue,
  * camera and transfer function for it. */
 #define _GNU_SOURCE /* strdup */
+#include "cli/inputs/level_choice.h"
 #include "cli/view/view.h"
 
 #include "cli/framework/console.h"
@@ -146,6 +147,8 @@ static cw_status read_step(view *v, size_t step, cw_error *err)
         if (st == CW_OK)
             st = view_look_for_labels(v, err);
     }
+    if (st == CW_OK)
+        st = cli_choose_level(&s->volume, &v->state.args.input, &v->state.args.iso, err);
     if (st != CW_OK)
         return st;
     v->has_volume = cli_need_drawable(s, &v->state.args.input, &why) == CW_OK;

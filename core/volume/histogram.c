@@ -1,4 +1,6 @@
-/* Computes histograms of volumes, and Otsu thresholds from them [Otsu1979], [Liao2001]. */
+/* Computes histograms of volumes, whole or in parts, and Otsu thresholds from them [Otsu1979], [Liao2001]. */
+#include "core/volume/histogram.h"
+
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
@@ -85,6 +87,7 @@ static cw_status each_row(const cw_volume *v, int threads, bool bins, cw_statist
         cw_statistics s = *total;
         double *values = cwi_alloc_array(v->dim[0], sizeof *values);
         s.bins = bins ? cwi_alloc_zeroed(s.bin_count, sizeof *s.bins) : NULL;
+        s.finite = s.not_finite = s.nodata = 0;
         const bool ready = values && (s.bins || !bins);
 #pragma omp for schedule(static)
         for (size_t k = 0; k < v->dim[2]; k++)
@@ -203,6 +206,37 @@ static void bin_shorts(const cw_volume *v, const uint64_t *counts, cw_statistics
     }
 }
 
+cw_statistics cwi_statistics_of(const cw_volume *shape)
+{
+    return (cw_statistics){.min = INFINITY,
+                           .max = -INFINITY,
+                           .quantum = is_integer(shape->type) ? fabs(shape->slope) : 0};
+}
+
+cw_status cwi_statistics_scan(cw_statistics *s, const cw_volume *part, int threads,
+                              cw_error *err)
+{
+    return each_row(part, threads, false, s, err);
+}
+
+cw_status cwi_statistics_divide(cw_statistics *s, size_t bin_count, cw_error *err)
+{
+    if (!s->finite)
+        s->min = s->max = 0;
+    if (!bin_count || !s->finite)
+        return CW_OK;
+    set_bins(s, bin_count);
+    s->bins = cwi_alloc_zeroed(s->bin_count, sizeof *s->bins);
+    return s->bins ? CW_OK
+                   : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bins", s->bin_count);
+}
+
+cw_status cwi_statistics_count(cw_statistics *s, const cw_volume *part, int threads,
+                               cw_error *err)
+{
+    return s->bins ? each_row(part, threads, true, s, err) : CW_OK;
+}
+
 /* Computes the range first, then the bins; for short types both from the frequencies of all
  * numbers. */
 static cw_status gather_histogram(const cw_volume *v, size_t bin_count, int threads,
@@ -215,19 +249,13 @@ static cw_status gather_histogram(const cw_volume *v, size_t bin_count, int thre
     if (counts)
         scan_shorts(v, counts, s);
     else
-        st = each_row(v, threads, false, s, err);
-    if (!s->finite)
-        s->min = s->max = 0;
-    if (st == CW_OK && bin_count && s->finite) {
-        set_bins(s, bin_count);
-        s->bins = cwi_alloc_zeroed(s->bin_count, sizeof *s->bins);
-        if (!s->bins)
-            st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bins", s->bin_count);
-        else if (counts)
-            bin_shorts(v, counts, s);
-        else
-            st = each_row(v, threads, true, s, err);
-    }
+        st = cwi_statistics_scan(s, v, threads, err);
+    if (st == CW_OK)
+        st = cwi_statistics_divide(s, bin_count, err);
+    if (st == CW_OK && counts && s->bins)
+        bin_shorts(v, counts, s);
+    else if (st == CW_OK)
+        st = cwi_statistics_count(s, v, threads, err);
     cwi_free(counts);
     return st;
 }
@@ -245,8 +273,7 @@ cw_status cw_volume_statistics(const cw_volume *volume, size_t bin_count, int th
         v.dim[0] = v.dim[1] = CWI_LEAF;
         v.dim[2] = CWI_LEAF * v.sparse->leaf_count;
     }
-    cw_statistics s = {.min = INFINITY, .max = -INFINITY};
-    s.quantum = is_integer(v.type) ? fabs(v.slope) : 0;
+    cw_statistics s = cwi_statistics_of(&v);
     st = gather_histogram(&v, bin_count, threads, &s, err);
     if (st == CW_OK)
         *out = s;

@@ -25,7 +25,8 @@ typedef enum cwi_dicom_has {
     CWI_DICOM_POSITION = 1,
     CWI_DICOM_ORIENTATION = 2,
     CWI_DICOM_SPACING = 4,
-    CWI_DICOM_BETWEEN = 8
+    CWI_DICOM_BETWEEN = 8,
+    CWI_DICOM_RESCALED = 16 /* to Hounsfield units, if it is a CT */
 } cwi_dicom_has;
 
 typedef struct cwi_dicom_frame {

@@ -252,8 +252,12 @@ void take_plane(DcmItem *item, cwi_dicom_frame *f)
     }
     if (number_of(item, DCM_RescaleSlope, 0, &value))
         f->slope = value;
-    if (number_of(item, DCM_RescaleIntercept, 0, &value))
+    if (number_of(item, DCM_RescaleIntercept, 0, &value)) {
+        const OFString type = text_of(item, DCM_RescaleType);
         f->intercept = value;
+        if (type.empty() || type == "HU")
+            f->has |= CWI_DICOM_RESCALED;
+    }
 }
 
 cwi_dicom_frame plain_frame(DcmItem *data)

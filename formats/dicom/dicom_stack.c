@@ -344,6 +344,8 @@ static void set_frame(const sorting *s, const double along[3], double step, cwi_
         v->affine[r][3] = f->position[r];
     }
     v->known = CW_KNOWN_UNIT | CW_KNOWN_FRAME;
+    if (f->has & CWI_DICOM_RESCALED && strcmp(s->planes[0].file->modality, "CT") == 0)
+        v->known |= CW_KNOWN_HOUNSFIELD;
 }
 
 static cw_status make_room(const sorting *s, size_t slots, cwi_stack *stack, cw_error *err)

@@ -126,6 +126,16 @@ CW_NODISCARD CW_API cw_status cw_extract_stream_normals(const cw_slice_source *s
                                                         size_t max_bytes, cw_mesh *mesh,
                                                         cw_error *err);
 
+/* Computes what cw_volume_statistics() does from slices, which are read twice, once if bin_count
+ * is 0.
+ * source    borrowed
+ * threads   0 means all
+ * Returns   as cw_volume_statistics(), or what source returned; free out with
+ *           cw_statistics_free() */
+CW_NODISCARD CW_API cw_status cw_stream_statistics(const cw_slice_source *source,
+                                                   size_t bin_count, int threads,
+                                                   cw_statistics *out, cw_error *err);
+
 /* Returns the working memory of cw_extract_stream() in bytes, without that of the source and the
  * sink. minimum: with one layer at a time, which max_bytes has to allow.
  * shape    as in cw_slice_source

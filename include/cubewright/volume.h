@@ -34,8 +34,9 @@ typedef enum cw_type {
 typedef enum cw_known {
     CW_KNOWN_UNIT = 1,
     CW_KNOWN_FRAME = 2,
-    CW_KNOWN_LEVEL_SET = 4, /* values are distances from the surface at 0, negative inside */
-    CW_KNOWN_LABELS = 8     /* values are the numbers of labels */
+    CW_KNOWN_LEVEL_SET = 4,  /* values are distances from the surface at 0, negative inside */
+    CW_KNOWN_LABELS = 8,     /* values are the numbers of labels */
+    CW_KNOWN_HOUNSFIELD = 16 /* values of a CT are in Hounsfield units */
 } cw_known;
 
 /* Cells of an irregular grid; their corners are numbered as VTK's cells of that name. */

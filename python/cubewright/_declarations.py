@@ -92,6 +92,7 @@ class cw_known(enum.IntEnum):
     CW_KNOWN_FRAME = 2
     CW_KNOWN_LEVEL_SET = 4
     CW_KNOWN_LABELS = 8
+    CW_KNOWN_HOUNSFIELD = 16
 
 
 class cw_shape(enum.IntEnum):
@@ -2452,6 +2453,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_extract_stream_part": (c_int, [POINTER(cw_slice_source), POINTER(cw_stream_desc), c_size_t, c_size_t, cw_chunk_sink, POINTER(cw_part_counts), POINTER(cw_error)]),
     "cw_extract_stream_slabs": (c_int, [POINTER(cw_slice_source), POINTER(cw_stream_desc), c_size_t, cw_slab_sink, POINTER(cw_extract_counts), POINTER(cw_error)]),
     "cw_extract_stream_normals": (c_int, [POINTER(cw_slice_source), POINTER(cw_normals_desc), c_size_t, POINTER(cw_mesh), POINTER(cw_error)]),
+    "cw_stream_statistics": (c_int, [POINTER(cw_slice_source), c_size_t, c_int, POINTER(cw_statistics), POINTER(cw_error)]),
     "cw_extract_stream_bytes": (c_size_t, [POINTER(cw_volume), POINTER(cw_stream_desc), c_bool]),
     "cw_quality_measure": (c_int, [POINTER(cw_mesh), POINTER(cw_quality_desc), POINTER(cw_quality), POINTER(cw_error)]),
     "cw_quality_bytes": (c_size_t, [c_size_t, c_size_t]),

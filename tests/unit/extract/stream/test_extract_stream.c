@@ -418,6 +418,76 @@ static void slices_are_read_once(void **state)
     cw_volume_free(&v);
 }
 
+/* 20 slices, of which some are read at a time, of numbers that are no data, and not finite. */
+static cw_volume make_slices(cw_type type)
+{
+    cw_volume v;
+    cw_error err = {0};
+    const size_t dim[3] = {601, 593, 20};
+    assert_ok(cw_volume_alloc(&v, type, dim, 1, 1, &err), err);
+    v.slope = -2.02;
+    v.intercept = 7;
+    v.has_nodata = true;
+    v.nodata = 3;
+    for (size_t n = 0; n < dim[0] * dim[1] * dim[2]; n++) {
+        const int x = rand() % 100;
+        if (type == CW_F32)
+            ((float *)v.data)[n] = x == 5 ? NAN : x == 6 ? INFINITY : 0.37f * (float)x;
+        else if (type == CW_I16)
+            ((int16_t *)v.data)[n] = (int16_t)(x * x - 1000);
+        else
+            ((uint32_t *)v.data)[n] = (uint32_t)(x * x);
+    }
+    return v;
+}
+
+static void statistics_are_those_of_the_volume(void **state)
+{
+    (void)state;
+    const cw_type types[] = {CW_F32, CW_I16, CW_U32};
+    const size_t bins[] = {0, 1, 512};
+    for (size_t t = 0; t < 3; t++)
+        for (size_t b = 0; b < 3; b++) {
+            cw_volume v = make_slices(types[t]);
+            slices s = {.volume = &v};
+            const cw_slice_source source = source_of(&s);
+            cw_statistics whole, parts;
+            cw_error err = {0};
+            assert_ok(cw_volume_statistics(&v, bins[b], 1, &whole, &err), err);
+            assert_ok(cw_stream_statistics(&source, bins[b], 2, &parts, &err), err);
+            assert_true(s.most < v.dim[2]);
+            assert_true(whole.min == parts.min && whole.max == parts.max);
+            assert_true(whole.finite == parts.finite && whole.nodata == parts.nodata);
+            assert_true(whole.not_finite == parts.not_finite);
+            assert_true(whole.quantum == parts.quantum);
+            assert_true(whole.bin_width == parts.bin_width || bins[b] == 0);
+            assert_int_equal(whole.bin_count, parts.bin_count);
+            assert_true(!whole.bins == !parts.bins);
+            if (whole.bins)
+                assert_memory_equal(whole.bins, parts.bins,
+                                    whole.bin_count * sizeof *whole.bins);
+            cw_statistics_free(&whole);
+            cw_statistics_free(&parts);
+            cw_volume_free(&v);
+        }
+}
+
+static void statistics_fail_as_their_source(void **state)
+{
+    (void)state;
+    cw_volume v = make_slices(CW_I16);
+    slices s = {.volume = &v, .fail_at = 12};
+    cw_slice_source source = source_of(&s);
+    cw_statistics statistics;
+    cw_error err = {0};
+    assert_int_equal(cw_stream_statistics(&source, 9, 1, &statistics, &err), CW_ERR_IO);
+    assert_null(statistics.bins);
+    source.shape.stride[2] = 0;
+    assert_int_equal(cw_stream_statistics(&source, 9, 1, &statistics, &err), CW_ERR_ARGUMENT);
+    assert_int_equal(cw_stream_statistics(NULL, 9, 1, &statistics, &err), CW_ERR_ARGUMENT);
+    cw_volume_free(&v);
+}
+
 static void limits_and_failures_are_reported(void **state)
 {
     (void)state;
@@ -490,6 +560,8 @@ int main(void)
         cmocka_unit_test(rectilinear_grids_are_the_same),
         cmocka_unit_test(slices_closer_than_positions_tell_are_the_same),
         cmocka_unit_test(slices_are_read_once),
+        cmocka_unit_test(statistics_are_those_of_the_volume),
+        cmocka_unit_test(statistics_fail_as_their_source),
         cmocka_unit_test(limits_and_failures_are_reported),
         cmocka_unit_test(a_lack_of_memory_is_reported),
     };
