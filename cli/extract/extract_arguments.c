@@ -3,6 +3,7 @@
 
 #include "cli/extract/label_run.h"
 #include "cli/extract/stream_run.h"
+#include "cli/inputs/volume_prepare.h"
 #include "cli/results/detail_levels.h"
 #include "cli/results/pvd_list.h"
 #include "core/base/status.h"
@@ -161,9 +162,11 @@ static cw_status check_crop(const cli_extract_args *args, cw_error *err)
         return CW_OK;
     if (!input->crop.given)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--prove-crop needs --crop");
-    if (input->preview || input->coarsen || args->snap.value > 0)
+    if (input->preview || input->coarsen || args->snap.value > 0 || cli_find_preparation(input))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--prove-crop cannot be combined with %s",
-                        args->snap.value > 0 ? "--snap" : "a preview");
+                        args->snap.value > 0          ? "--snap"
+                        : cli_find_preparation(input) ? cli_find_preparation(input)
+                                                      : "a preview");
     return CW_OK;
 }
 

@@ -2,8 +2,8 @@
  * into the records of its files. */
 #include "cli/extract/extract_run.h"
 
+#include "cli/inputs/volume_prepare.h"
 #include "cli/results/detail_levels.h"
-
 #include "core/volume/volume.h"
 
 #include <math.h>
@@ -100,6 +100,7 @@ void cli_extract_put_params(cli_json *j, const void *p, const cli_made *made)
     const cli_extract_args *args = s->args;
     const size_t *step = s->input.volume.coarsen;
     cli_json_number(j, "iso", made->iso);
+    cli_json_preparation(j, &args->input);
     cli_json_text(j, "inside", cli_extract_is_low(s) ? "below" : "above");
     cli_json_bool(j, "open", args->open);
     cli_json_text(j, "topology", args->topology ? "simple" : "field");

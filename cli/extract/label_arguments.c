@@ -66,6 +66,8 @@ cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
         {args->pvd != NULL, "--pvd"},
         {args->prove_crop, "--prove-crop"},
         {args->input.component.magnitude, "--component mag"},
+        {args->input.resample.given, "--resample"},
+        {args->input.denoise.given, "--denoise"},
     };
     if (!args->labels)
         return args->names            ? fail_without("--names", err)

@@ -31,6 +31,8 @@ const char *cli_find_unstreamed(const cli_extract_args *args)
         {"--prove-crop", args->prove_crop},
         {"--compress", args->compress.kind != 0 && !has_simplify(args)},
         {"--component mag", args->input.component.magnitude},
+        {"--resample", args->input.resample.given},
+        {"--denoise", args->input.denoise.given},
     };
     for (size_t n = 0; n < sizeof options / sizeof *options; n++)
         if (options[n].given)

@@ -173,6 +173,8 @@ size_t cli_option_size(const cli_option *o)
         [CLI_NUMBER] = sizeof(cli_number),
         [CLI_NUMBERS] = sizeof(cli_numbers),
         [CLI_LEVEL] = sizeof(cli_number),
+        [CLI_RESAMPLE] = sizeof(cli_resample),
+        [CLI_DENOISE] = sizeof(cli_denoise),
         [CLI_LEVELS] = sizeof(cli_numbers),
         [CLI_COUNT] = sizeof(size_t),
         [CLI_COUNTS] = sizeof(cli_counts),
@@ -256,6 +258,14 @@ bool cli_option_text(const cli_option *o, const void *args, char *text, size_t s
     case CLI_LEVELS:
         print_levels(field, text, size);
         break;
+    case CLI_RESAMPLE:
+        if (((const cli_resample *)field)->given)
+            snprintf(text, size, "%s", cli_resample_text(field));
+        break;
+    case CLI_DENOISE:
+        if (((const cli_denoise *)field)->given)
+            snprintf(text, size, "%s", cli_denoise_text(field));
+        break;
     case CLI_LENGTHS:
         print_numbers(((const cli_lengths *)field)->mm,
                       ((const cli_lengths *)field)->given ? 3 : 0, text, size);
@@ -303,6 +313,10 @@ static bool store_value(const cli_option *o, const char *text, void *field)
         return cli_parse_level(text, field);
     case CLI_LEVELS:
         return cli_parse_levels(text, field);
+    case CLI_RESAMPLE:
+        return cli_parse_resample(text, field);
+    case CLI_DENOISE:
+        return cli_parse_denoise(text, field);
     case CLI_COUNT:
         return cli_parse_count(text, 1000, field);
     case CLI_COUNTS:
@@ -346,6 +360,12 @@ static const char *describe_expected(const cli_option *o)
     case CLI_LEVELS:
         return "up to 64 isovalues by comma, such as 50,300, 40% (of the range), otsu or bone "
                "(of a CT)";
+    case CLI_RESAMPLE:
+        return "iso, or a length above 0 such as 0.5mm or 1x1x2mm; then a kernel, if not linear: "
+               "0.5mm:cubic, iso:lanczos";
+    case CLI_DENOISE:
+        return "gauss with a width such as gauss:0.7vox or gauss:0.5mm, or median with a radius of "
+               "1 to 3 voxels such as median:1";
     case CLI_COUNT:
         return "a whole number such as 500, 50k or 2M";
     case CLI_COUNTS:

@@ -23,6 +23,8 @@ typedef enum cli_kind {
     CLI_SIZES,     /* cli_sizes: 64, 1280x720 or 512x512x300 */
     CLI_RANGES,    /* cli_ranges: 10:50,0:99,20:40 in voxels, -30mm:30mm,... in the world */
     CLI_REDUCTION, /* cli_reduction */
+    CLI_RESAMPLE,  /* cli_resample: iso, 0.5mm, 1x1x2mm; then a kernel: 0.5mm:cubic */
+    CLI_DENOISE,   /* cli_denoise: gauss:0.7vox, gauss:0.5mm, median:1 */
     CLI_STEPS,     /* cli_steps: 0:20:2, 0,3,7 or all */
     CLI_WEIGHTS,   /* cli_weights: normal:0.5,color:1; value has the names, parted by '/' */
     CLI_COMPONENT, /* cli_component: its number from 0, or mag */
@@ -98,6 +100,20 @@ typedef struct cli_reduction {
     cli_length error; /* given, or else: */
     size_t triangles; /* 0: neither was said */
 } cli_reduction;
+
+/* New distances between voxels. */
+typedef struct cli_resample {
+    bool given, iso; /* iso: the least of the old ones along every axis; else: */
+    double mm[3];
+    int kernel; /* cw_kernel */
+} cli_resample;
+
+/* A filter against noise. */
+typedef struct cli_denoise {
+    bool given;
+    size_t radius;    /* of a median in voxels; 0: a Gaussian of this width: */
+    cli_length width; /* millimetres or voxels */
+} cli_denoise;
 
 /* Selection among the values of a voxel. */
 typedef struct cli_component {
@@ -189,8 +205,9 @@ typedef struct cli_option {
     }
 
 /* Headings of options that a command must know before it opens a file. */
-#define CLI_READING "Reading"
-#define CLI_LIMITS  "Limits and messages"
+#define CLI_PREPARING "Preparing the volume"
+#define CLI_READING   "Reading"
+#define CLI_LIMITS    "Limits and messages"
 
 enum { CLI_MAX_OPTIONS = 128 }; /* rows of a command's table */
 

@@ -4,6 +4,8 @@
 
 #include "core/base/text.h"
 
+#include <cubewright/filter.h>
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -370,4 +372,64 @@ const char *cli_level_text(cli_level level, double value)
         if (level_names[n].level == level)
             return level_names[n].name;
     return cli_number_text(value);
+}
+
+static bool parse_kernel(const char *text, int *kernel)
+{
+    for (*kernel = 0; *kernel < CW_KERNEL_COUNT; ++*kernel)
+        if (strcmp(text, cw_kernel_name((cw_kernel)*kernel)) == 0)
+            return true;
+    return false;
+}
+
+bool cli_parse_resample(const char *text, cli_resample *out)
+{
+    char lengths[128];
+    cli_lengths mm;
+    const char *colon = strchr(text, ':');
+    const size_t size = colon ? (size_t)(colon - text) : strlen(text);
+    *out = (cli_resample){.given = size < sizeof lengths};
+    if (!out->given)
+        return false;
+    memcpy(lengths, text, size);
+    lengths[size] = '\0';
+    out->iso = strcmp(lengths, "iso") == 0;
+    out->given = out->iso || cli_parse_lengths(lengths, &mm);
+    for (int a = 0; a < 3 && out->given && !out->iso; a++)
+        out->mm[a] = mm.mm[a];
+    return out->given = out->given && (!colon || parse_kernel(colon + 1, &out->kernel));
+}
+
+bool cli_parse_denoise(const char *text, cli_denoise *out)
+{
+    *out = (cli_denoise){0};
+    if (skip_word(&text, "median:"))
+        out->given =
+            cli_parse_count(text, 1000, &out->radius) && out->radius >= 1 && out->radius <= 3;
+    else if (skip_word(&text, "gauss:"))
+        out->given = cli_parse_length(text, &out->width) && out->width.unit != CLI_PERCENT;
+    return out->given;
+}
+
+const char *cli_resample_text(const cli_resample *r)
+{
+    static char text[128];
+    const char *kernel = cw_kernel_name((cw_kernel)r->kernel);
+    if (r->iso)
+        snprintf(text, sizeof text, "iso:%s", kernel);
+    else
+        snprintf(text, sizeof text, "%sx%sx%smm:%s", cli_number_text(r->mm[0]),
+                 cli_number_text(r->mm[1]), cli_number_text(r->mm[2]), kernel);
+    return text;
+}
+
+const char *cli_denoise_text(const cli_denoise *d)
+{
+    static char text[64];
+    if (d->radius)
+        snprintf(text, sizeof text, "median:%zu", d->radius);
+    else
+        snprintf(text, sizeof text, "gauss:%s%s", cli_number_text(d->width.value),
+                 d->width.unit == CLI_VOXELS ? "vox" : "mm");
+    return text;
 }

@@ -7,8 +7,8 @@
 const cli_synonym cli_synonyms[] = {
     {"threshold|level|contour|isolevel|isocontour|cutoff", "isovalue", "isovalue|--iso", NULL},
     {"hounsfield|hu|ct number", NULL, "hounsfield|--iso|--tf",
-     "In CT volumes the isovalue is in Hounsfield units; 'cubewright info FILE' suggests "
-     "some."},
+     "In CT volumes the isovalue is in Hounsfield units: a number, or bone, skin, soft, lung or "
+     "metal."},
     {"decimat|reduc|low-poly|low poly|lowpoly|poly count|polycount|polygon count|face count",
      "simplify", "simplify|--triangles|--ratio|--error", NULL},
     {"lod|level of detail|levels of detail", NULL, "--lod", NULL},
@@ -18,16 +18,20 @@ const cli_synonym cli_synonyms[] = {
     {"label|segment|mask|atlas", NULL, "--labels|--names|label|--inside",
      "'extract --labels all' makes a closed mesh of each label of a label map or a mask. An "
      "isovalue joins all labels above it."},
-    {"smooth|denois|filter|laplacian|taubin|gaussian|fairing|noisy", "smooth",
-     "smooth|--smooth-labels|--snap|--placement|--min-volume|--drop-components|--noise",
-     "'smooth' smooths meshes, and 'extract --labels' smooths the surfaces of labels; cubewright "
-     "does not denoise volumes. --min-volume and --drop-components remove small components."},
+    {"denois|despeckl", NULL, "--denoise|smooth|--min-volume|--drop-components",
+     "'extract --denoise' smooths the values of volumes, 'smooth' meshes. --min-volume and "
+     "--drop-components remove small components."},
+    {"smooth|filter|laplacian|taubin|gaussian|fairing|noisy", "smooth",
+     "smooth|--denoise|--smooth-labels|--snap|--placement|--min-volume|--drop-components|--noise",
+     "'smooth' smooths meshes, 'extract --denoise' the values of volumes, and 'extract --labels' "
+     "the surfaces of labels. --min-volume and --drop-components remove small components."},
     {"hole|watertight|repair|heal|leak", "closed", "closed|--open|--orient|--by|--profile",
      "cubewright does not fill holes of a mesh. 'extract' makes closed meshes, 'check' finds "
      "open edges, and 'offset --by 0' rebuilds closed meshes that intersect themselves."},
-    {"resampl|downsampl|subsampl|resolution|thin out", "coarsen",
-     "--coarsen|--preview|--crop|--size",
-     "cubewright does not resample volumes. --coarsen uses every N-th voxel of each axis."},
+    {"resampl|downsampl|upsampl|isotropic|interpol|subsampl|resolution|thin out", "resample",
+     "--resample|--coarsen|--preview|--crop|--size",
+     "--resample samples a volume at other distances. --coarsen uses every N-th voxel of each "
+     "axis."},
     {"slice thickness|voxel size|pixel size|pixel spacing", "spacing", "--spacing|--voxel",
      NULL},
     {"roi|region of interest|subvolume|sub-volume|trim", "crop", "--crop|--clip-box|--clip",

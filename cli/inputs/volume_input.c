@@ -3,6 +3,8 @@
 #define _GNU_SOURCE /* sysconf names */
 #include "cli/inputs/volume_input.h"
 
+#include "cli/inputs/volume_prepare.h"
+
 #include "cli/framework/console.h"
 #include "cli/framework/field_names.h"
 #include "cli/framework/quantity.h"
@@ -12,6 +14,8 @@
 
 #include <math.h>
 #include <sha2.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -361,6 +365,8 @@ cw_status cli_choose_step(const cli_input *input, size_t step, cli_volume *volum
                           cw_error *err)
 {
     cw_status st = select_view(input, step, volume, err);
+    if (st == CW_OK)
+        st = cli_prepare_volume(input, volume, err);
     const cw_volume all = volume->view;
     if (st == CW_OK && input->coarsen_view)
         st = cw_volume_coarsen(&all, volume->coarsen, &volume->view, err);
@@ -380,7 +386,7 @@ static bool needs_slices(const cli_input *input, const cw_volume *part, size_t l
     for (int a = 0; a < 3; a++)
         voxels *= (double)part->dim[a];
     const double bytes = voxels * (double)cw_type_size(part->type);
-    return input->may_stream && !part->cells && !part->sparse &&
+    return input->may_stream && !cli_find_preparation(input) && !part->cells && !part->sparse &&
            input->stream != CLI_STREAM_NEVER &&
            (input->stream == CLI_STREAM_ALWAYS ||
             bytes + cli_bytes_beside(voxels, limit) > (double)limit);
@@ -410,7 +416,8 @@ static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_inp
         return cwi_fail_in(err, st, path);
     desc->region = input->crop.given ? &box : NULL;
     choose_coarsening(pick_coarsening(input), &part, volume->coarsen);
-    if (input->sample && !part.cells && !part.sparse && !cwi_is_rectilinear(&part))
+    if (input->sample && !cli_find_preparation(input) && !part.cells && !part.sparse &&
+        !cwi_is_rectilinear(&part))
         choose_sample(&part, cli_memory_limit(input), volume->coarsen);
     if (needs_slices(input, &part, desc->max_bytes))
         return view_shape(&part, volume, err);
@@ -464,12 +471,23 @@ cw_read_desc cli_read_desc(const cli_input *input)
     return desc;
 }
 
+void cli_note_volume(cli_volume *volume, const char *format, ...)
+{
+    char text[256];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    take_note(volume, text);
+}
+
 void cli_free_volume(cli_volume *volume)
 {
     cw_label_table_free(&volume->labels);
     cw_volume_free(&volume->whole);
     cw_volume_free(&volume->voxels);
     cw_volume_free(&volume->magnitude);
+    cw_volume_free(&volume->prepared);
 }
 
 /* The layout that --raw states, if it does, for the description. */

@@ -8,6 +8,7 @@
 #include <cubewright/distance.h>
 #include <cubewright/extract.h>
 #include <cubewright/field.h>
+#include <cubewright/filter.h>
 #include <cubewright/formats.h>
 #include <cubewright/hard.h>
 #include <cubewright/label_table.h>

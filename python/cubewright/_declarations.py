@@ -150,6 +150,13 @@ class cw_label_field(enum.IntEnum):
     CW_LABEL_SPHERES = 1
 
 
+class cw_kernel(enum.IntEnum):
+    CW_KERNEL_LINEAR = 0
+    CW_KERNEL_CUBIC = 1
+    CW_KERNEL_LANCZOS = 2
+    CW_KERNEL_COUNT = 3
+
+
 class cw_gaps(enum.IntEnum):
     CW_GAPS_STOP = 0
     CW_GAPS_INTERPOLATE = 1
@@ -1152,6 +1159,19 @@ cw_field_vertex_error._fields_ = [
     ("has_normals", c_bool),
     ("mean_deg", c_double),
     ("max_deg", c_double),
+]
+
+
+class cw_filter_desc(Structure):
+    threads: int
+    max_bytes: int
+    progress: Any
+
+
+cw_filter_desc._fields_ = [
+    ("threads", c_int),
+    ("max_bytes", c_size_t),
+    ("progress", cw_progress),
 ]
 
 
@@ -2486,6 +2506,10 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_label_field_sample": (c_int, [POINTER(cw_label_field_desc), POINTER(cw_volume), POINTER(cw_error)]),
     "cw_field_measure": (c_int, [c_int, c_double, c_double, POINTER(cw_mesh), POINTER(cw_field_error), POINTER(cw_error)]),
     "cw_field_measure_vertices": (c_int, [c_int, c_double, c_double, POINTER(cw_mesh), c_size_t, POINTER(cw_field_vertex_error), POINTER(cw_error)]),
+    "cw_kernel_name": (c_char_p, [c_int]),
+    "cw_volume_gauss": (c_int, [POINTER(cw_volume), POINTER(c_double), POINTER(cw_filter_desc), POINTER(cw_volume), POINTER(cw_error)]),
+    "cw_volume_median": (c_int, [POINTER(cw_volume), c_size_t, POINTER(cw_filter_desc), POINTER(cw_volume), POINTER(cw_error)]),
+    "cw_volume_resample": (c_int, [POINTER(cw_volume), POINTER(c_double), c_int, POINTER(cw_filter_desc), POINTER(cw_volume), POINTER(cw_error)]),
     "cw_label_table_free": (None, [POINTER(cw_label_table)]),
     "cw_label_find": (POINTER(cw_label), [POINTER(cw_label_table), c_uint32, c_uint32]),
     "cw_label_find_name": (POINTER(cw_label), [POINTER(cw_label_table), c_char_p]),

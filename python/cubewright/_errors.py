@@ -64,6 +64,8 @@ KEYWORDS = {
     "desc->no_sandbox": "sandbox=False",
     "desc->snap = 0.5": "snap=0.5",
     "cw_self_intersections()": "deep=True",
+    "sigma_voxels[": "sigma[",
+    "spacing_mm[": "spacing[",
 }
 
 

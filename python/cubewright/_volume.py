@@ -30,6 +30,9 @@ KINDS = {number: kind for kind, number in TYPES.items()}
 AFFINE = c_double * 4 * 3
 
 
+KERNELS = ("linear", "cubic", "lanczos")
+
+
 @dataclass(frozen=True)
 class Statistics:
     """Range and frequencies of the values of one component and step, after slope and intercept.
@@ -268,6 +271,46 @@ class Volume:
         call(lib.cw_volume_densify, byref(self._struct), limit, byref(out.struct))
         return Volume._from_c(out)
 
+    def smooth(self, sigma: float | Sequence[float], *, threads: int = 0) -> Volume:
+        """Smooths the first component and step with a Gaussian, into a new volume.
+
+        sigma   standard deviation in voxels: of all axes, or of x, y and z
+        Raises  Error: UNSUPPORTED for grids that are not even
+        """
+        widths = (c_double * 3)(*take_axes("sigma", sigma))
+        return self._filter(lib.cw_volume_gauss, widths, threads=threads)
+
+    def median(self, radius: int = 1, *, threads: int = 0) -> Volume:
+        """Replaces each value of the first component and step by the median of a cube of voxels.
+
+        radius  1 to 3: cubes of 3, 5 or 7 voxels
+        Raises  Error: UNSUPPORTED for grids that are not even
+        """
+        return self._filter(lib.cw_volume_median, take_count("radius", radius, 1, 3), threads=threads)
+
+    def resample(
+        self, spacing: float | Sequence[float], kernel: str = "linear", *, threads: int = 0
+    ) -> Volume:
+        """Samples the first component and step at other distances, into a new volume.
+
+        spacing  millimetres between voxels: of all axes, or of x, y and z; 0 leaves an axis
+        kernel   linear, cubic or lanczos
+        Raises   Error: UNSUPPORTED for irregular and sparse grids, and rectilinear ones if the
+                 kernel is not linear
+        """
+        if kernel not in KERNELS:
+            raise ValueError(f"kernel is {kernel!r}; one of {', '.join(KERNELS)} was expected")
+        distances = (c_double * 3)(*take_axes("spacing", spacing))
+        return self._filter(
+            lib.cw_volume_resample, distances, KERNELS.index(kernel), threads=threads
+        )
+
+    def _filter(self, function: Any, *arguments: Any, threads: int) -> Volume:
+        out = Owner(c.cw_volume(), lib.cw_volume_free)
+        desc = c.cw_filter_desc(threads=take_threads(threads))
+        call(function, byref(self._struct), *arguments, byref(desc), byref(out.struct))
+        return Volume._from_c(out)
+
     def _select(self, component: int, step: int) -> c.cw_volume:
         """Returns a view of one component and step; valid as long as self."""
         out = c.cw_volume()
@@ -285,6 +328,11 @@ class Volume:
         more = f", {self.components} components" if self.components > 1 else ""
         more += f", {self.steps} steps" if self.steps > 1 else ""
         return f"<cubewright.Volume (z, y, x) {self.shape} {self.dtype}{more}, {spacing} mm, {self.kind}>"
+
+
+def take_axes(name: str, value: Any) -> list[float]:
+    """Returns three numbers: those of a sequence, or one for all axes."""
+    return take_numbers(name, [value] * 3 if np.ndim(value) == 0 else value, 3)
 
 
 def take_voxels(array: Any, axes: int, copy: bool | None) -> npt.NDArray[Any]:

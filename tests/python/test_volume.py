@@ -15,6 +15,33 @@ def address_of(volume):
     return volume._resolved.data
 
 
+class Filters(Case):
+    def test_values_of_single_voxels_go(self):
+        voxels = np.zeros((9, 8, 7), "i2")
+        voxels[4, 4, 3] = 1000
+        self.assertEqual(cw.Volume(voxels).median().array.max(), 0)
+        self.assertEqual(cw.Volume(voxels).median(2, threads=1).array.max(), 0)
+        smooth = cw.Volume(voxels.astype("f4")).smooth((0, 0, 1)).array
+        self.assertEqual(np.count_nonzero(smooth), 9)
+        self.assertAlmostEqual(float(smooth.sum()), 1000, places=2)
+
+    def test_slopes_stay_when_voxels_become_smaller(self):
+        voxels = np.arange(20, dtype="f8") + np.zeros((4, 5, 1))
+        for kernel in ("linear", "cubic"):
+            fine = cw.Volume(voxels, spacing=(2, 1, 1)).resample((0.5, 0, 0), kernel)
+            self.assertEqual((fine.shape, fine.spacing), ((4, 5, 77), (0.5, 1, 1)))
+            self.assertTrue(np.allclose(fine.array[0, 0, 8:69], np.arange(8, 69) / 4))
+
+    def test_arguments_are_named(self):
+        volume = cw.Volume(np.zeros((3, 3, 3), "f4"))
+        with self.assertRaisesRegex(ValueError, "kernel is 'spline'; one of linear, cubic"):
+            volume.resample(1, "spline")
+        with self.assertRaisesRegex(ValueError, "radius"):
+            volume.median(4)
+        with self.assertRaisesRegex(cw.Error, r"^sigma.0. is -1; 0 to 64"):
+            volume.smooth(-1)
+
+
 class Sharing(Case):
     def test_no_voxel_is_copied(self):
         for kind in TYPES:

@@ -1,0 +1,126 @@
+/* Resamples and denoises the voxels of a volume that was read. */
+#include "cli/inputs/volume_prepare.h"
+
+#include "cli/framework/console.h"
+#include "cli/framework/quantity.h"
+#include "core/base/status.h"
+
+#include <cubewright/filter.h>
+
+#include <math.h>
+
+const char *cli_find_preparation(const cli_input *input)
+{
+    return input->resample.given ? "--resample" : input->denoise.given ? "--denoise" : NULL;
+}
+
+static void find_spacing(const cw_volume *v, double mm[3])
+{
+    for (int a = 0; a < 3; a++) {
+        const size_t n = v->dim[a];
+        const double *at = v->coordinates[a],
+                     unit = at && n > 1 ? (at[n - 1] - at[0]) / (double)(n - 1) : 1;
+        mm[a] =
+            unit * sqrt(v->affine[0][a] * v->affine[0][a] + v->affine[1][a] * v->affine[1][a] +
+                        v->affine[2][a] * v->affine[2][a]);
+    }
+}
+
+static cw_filter_desc filter_desc(const cli_input *input, const cli_volume *volume)
+{
+    const size_t *n = volume->view.dim;
+    return (cw_filter_desc){
+        .threads = (int)input->threads,
+        .max_bytes = volume->memory_left,
+        .progress = cli_progress((double)n[0] * (double)n[1] * (double)n[2] / 1e6, "Mvoxel")};
+}
+
+/* Makes a filtered volume the view, and frees the one before. */
+static void take_filtered(cli_volume *volume, cw_volume *made)
+{
+    const size_t bytes = made->dim[0] * made->dim[1] * made->dim[2] * cw_type_size(made->type);
+    const cw_volume *old = &volume->prepared;
+    if (old->data)
+        volume->memory_left +=
+            old->dim[0] * old->dim[1] * old->dim[2] * cw_type_size(old->type);
+    volume->memory_left = volume->memory_left > bytes ? volume->memory_left - bytes : 1;
+    cw_volume_free(&volume->prepared);
+    volume->prepared = *made;
+    volume->view = *made;
+    volume->view.owned = volume->view.owned_grid = NULL;
+}
+
+static cw_status resample_view(const cli_input *input, cli_volume *volume, cw_error *err)
+{
+    const cli_resample *r = &input->resample;
+    const cw_filter_desc desc = filter_desc(input, volume);
+    double old[3], mm[3];
+    cw_volume made;
+    find_spacing(&volume->view, old);
+    for (int a = 0; a < 3; a++)
+        mm[a] = r->iso ? fmin(fmin(old[0], old[1]), old[2]) : r->mm[a];
+    cw_status st =
+        cw_volume_resample(&volume->view, mm, (cw_kernel)r->kernel, &desc, &made, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, "--resample");
+    cli_note_volume(volume,
+                    "resampled from %g x %g x %g mm to %g x %g x %g mm, %zu x %zu x %zu "
+                    "voxels, %s",
+                    old[0], old[1], old[2], mm[0], mm[1], mm[2], made.dim[0], made.dim[1],
+                    made.dim[2], cw_kernel_name((cw_kernel)r->kernel));
+    take_filtered(volume, &made);
+    return CW_OK;
+}
+
+static cw_status smooth_view(const cli_input *input, cli_volume *volume, cw_error *err)
+{
+    const cli_length *width = &input->denoise.width;
+    const cw_filter_desc desc = filter_desc(input, volume);
+    double mm[3], sigma[3];
+    cw_volume made;
+    find_spacing(&volume->view, mm);
+    for (int a = 0; a < 3; a++)
+        sigma[a] = width->unit == CLI_VOXELS ? width->value
+                   : mm[a] > 0               ? width->value / mm[a]
+                                             : 0;
+    cw_status st = cw_volume_gauss(&volume->view, sigma, &desc, &made, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, "--denoise");
+    cli_note_volume(volume, "denoised by a Gaussian of %.3g x %.3g x %.3g voxels", sigma[0],
+                    sigma[1], sigma[2]);
+    take_filtered(volume, &made);
+    return CW_OK;
+}
+
+static cw_status sort_view(const cli_input *input, cli_volume *volume, cw_error *err)
+{
+    const size_t radius = input->denoise.radius;
+    const cw_filter_desc desc = filter_desc(input, volume);
+    cw_volume made;
+    cw_status st = cw_volume_median(&volume->view, radius, &desc, &made, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, "--denoise");
+    cli_note_volume(volume, "denoised by the median of %zu x %zu x %zu voxels", 2 * radius + 1,
+                    2 * radius + 1, 2 * radius + 1);
+    take_filtered(volume, &made);
+    return CW_OK;
+}
+
+cw_status cli_prepare_volume(const cli_input *input, cli_volume *volume, cw_error *err)
+{
+    cw_status st = CW_OK;
+    if (input->resample.given)
+        st = resample_view(input, volume, err);
+    if (st == CW_OK && input->denoise.given)
+        st = input->denoise.radius ? sort_view(input, volume, err)
+                                   : smooth_view(input, volume, err);
+    return st;
+}
+
+void cli_json_preparation(cli_json *j, const cli_input *input)
+{
+    if (input->resample.given)
+        cli_json_text(j, "resample", cli_resample_text(&input->resample));
+    if (input->denoise.given)
+        cli_json_text(j, "denoise", cli_denoise_text(&input->denoise));
+}

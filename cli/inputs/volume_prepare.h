@@ -1,0 +1,19 @@
+/* Preparation of the voxels of a volume before its surface is made: other distances between them,
+ * less noise. In this order, whatever the order of the options. */
+#ifndef CLI_INPUTS_VOLUME_PREPARE_H
+#define CLI_INPUTS_VOLUME_PREPARE_H
+
+#include "cli/inputs/volume_input.h"
+
+/* Returns the option that changes voxels, such as "--denoise"; NULL: none was given. */
+const char *cli_find_preparation(const cli_input *input);
+
+/* Prepares the view of a volume that was read, and says what it did. A view that was made before
+ * is freed. Errors do not name the file. */
+CW_NODISCARD cw_status cli_prepare_volume(const cli_input *input, cli_volume *volume,
+                                          cw_error *err);
+
+/* Writes the options as text, such as "median:1", into reports: those that were given. */
+void cli_json_preparation(cli_json *j, const cli_input *input);
+
+#endif

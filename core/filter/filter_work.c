@@ -1,0 +1,118 @@
+/* Loads and stores the values of filters, and makes their results. */
+#include "core/filter/filter_work.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/volume/volume.h"
+
+#include <math.h>
+
+cw_status cwi_filter_input(const cw_volume *volume, const char *what, cw_volume *in,
+                           cw_error *err)
+{
+    cw_status st = cw_volume_select(volume, 0, 0, in, err);
+    return st == CW_OK ? cwi_volume_expect_even(in, what, err) : st;
+}
+
+cw_status cwi_filter_result(const cw_volume *in, const size_t dim[3],
+                            const cw_filter_desc *desc, size_t work, cw_volume *out,
+                            cw_error *err)
+{
+    const size_t limit = desc->max_bytes;
+    size_t bytes = cw_type_size(in->type);
+    bool fits = true;
+    for (int a = 0; a < 3; a++)
+        fits = fits && cwi_size_mul(bytes, dim[a], &bytes);
+    fits = fits && cwi_size_add(bytes, work, &bytes);
+    if (limit && (!fits || bytes > limit))
+        return cwi_fail(
+            err, CW_ERR_LIMIT,
+            "%zu x %zu x %zu voxels and the work on them exceed the limit of %zu bytes", dim[0],
+            dim[1], dim[2], limit);
+    cw_status st = cw_volume_alloc(out, in->type, dim, 1, 1, err);
+    if (st != CW_OK)
+        return st;
+    for (int a = 0; a < 3; a++)
+        for (int c = 0; c < 4; c++)
+            out->affine[a][c] = in->affine[a][c];
+    out->slope = in->slope;
+    out->intercept = in->intercept;
+    out->has_nodata = in->has_nodata;
+    out->nodata = in->nodata;
+    out->known = in->known;
+    out->said_unit_mm = in->said_unit_mm;
+    out->said_ras = in->said_ras;
+    return CW_OK;
+}
+
+/* Returns true if a stored number is a value. */
+static bool is_value(const cw_volume *v, double x)
+{
+    return isfinite(x) && !(v->has_nodata && x == v->nodata);
+}
+
+bool cwi_filter_has_gaps(const cw_volume *in, int threads)
+{
+    bool found = false;
+    if (!in->has_nodata && in->type != CW_F32 && in->type != CW_F64)
+        return false;
+    threads = cwi_threads(threads);
+#pragma omp parallel for schedule(static) num_threads(threads) reduction(|| : found)
+    for (size_t row = 0; row < in->dim[1] * in->dim[2]; row++) {
+        const char *p = cwi_voxel_address(in, 0, row % in->dim[1], row / in->dim[1]);
+        for (size_t i = 0; i < in->dim[0]; i++)
+            found = found ||
+                    !is_value(in, cwi_voxel_at(in->type, p + (ptrdiff_t)i * in->stride[0]));
+    }
+    return found;
+}
+
+void cwi_filter_load(const cw_volume *in, size_t j, size_t k, double *values, double *valid)
+{
+    const char *p = cwi_voxel_address(in, 0, j, k);
+    switch (in->type) {
+#define CASE(name, ctype, text)                                                                \
+    case name:                                                                                 \
+        for (size_t i = 0; i < in->dim[0]; i++)                                                \
+            values[i] = (double)*(const ctype *)(p + (ptrdiff_t)i * in->stride[0]);            \
+        break;
+        CW_TYPE_TABLE(CASE)
+#undef CASE
+    default:
+        break;
+    }
+    for (size_t i = 0; i < in->dim[0] && valid; i++) {
+        valid[i] = is_value(in, values[i]) ? 1 : 0;
+        values[i] = valid[i] > 0 ? values[i] : 0;
+    }
+}
+
+/* Sets the numbers that a type can hold. */
+static void find_limits(cw_type type, double *low, double *high)
+{
+    const int bits = 8 * (int)cw_type_size(type);
+    const bool is_signed = type == CW_I8 || type == CW_I16 || type == CW_I32;
+    *low = is_signed ? -ldexp(1, bits - 1) : 0;
+    *high = ldexp(1, is_signed ? bits - 1 : bits) - 1;
+}
+
+void cwi_filter_store(const cw_volume *out, void *voxel, double value)
+{
+    if (out->type != CW_F32 && out->type != CW_F64) {
+        double low, high;
+        find_limits(out->type, &low, &high);
+        const double exact = value;
+        value = fmin(fmax(rint(value), low), high);
+        if (out->has_nodata && value == out->nodata)
+            value += (exact >= value && value < high) || value <= low ? 1 : -1;
+    } else if (out->has_nodata && value == out->nodata) {
+        value = out->type == CW_F32 ? (double)nextafterf((float)value, INFINITY)
+                                    : nextafter(value, INFINITY);
+    }
+    cwi_voxel_put(out->type, voxel, value);
+}
+
+void cwi_filter_store_gap(const cw_volume *out, void *voxel)
+{
+    cwi_voxel_put(out->type, voxel, out->has_nodata ? out->nodata : (double)NAN);
+}

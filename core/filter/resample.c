@@ -1,0 +1,152 @@
+/* Samples a volume at other distances, by a kernel along each axis. */
+#include "core/base/status.h"
+#include "core/filter/separable.h"
+#include "core/volume/volume.h"
+
+#include <math.h>
+
+static const double MOST = 1e9; /* samples along an axis */
+
+static double linear_kernel(double x, double width)
+{
+    return fmax(0, 1 - fabs(x) / width);
+}
+
+/* The cubic through the samples that is exact for squares: a is -1/2 [Keys1981]. */
+static double cubic_kernel(double x, double width)
+{
+    const double d = fabs(x) / width;
+    return d < 1 ? (1.5 * d - 2.5) * d * d + 1 : d < 2 ? ((-0.5 * d + 2.5) * d - 4) * d + 2 : 0;
+}
+
+static double sinc(double x)
+{
+    const double pi = 3.14159265358979323846;
+    return x == 0 ? 1 : sin(pi * x) / (pi * x);
+}
+
+static double lanczos_kernel(double x, double width)
+{
+    const double d = fabs(x) / width;
+    return d < 3 ? sinc(d) * sinc(d / 3) : 0;
+}
+
+typedef struct kernel {
+    const char *name;
+    double (*weight)(double x, double width);
+    double reach;
+} kernel;
+
+static const kernel kernels[CW_KERNEL_COUNT] = {
+    [CW_KERNEL_LINEAR] = {"linear", linear_kernel, 1},
+    [CW_KERNEL_CUBIC] = {"cubic", cubic_kernel, 2},
+    [CW_KERNEL_LANCZOS] = {"lanczos", lanczos_kernel, 3},
+};
+
+const char *cw_kernel_name(cw_kernel k)
+{
+    return (unsigned)k < CW_KERNEL_COUNT ? kernels[k].name : NULL;
+}
+
+static double column_length(const cw_volume *v, int axis)
+{
+    return sqrt(v->affine[0][axis] * v->affine[0][axis] +
+                v->affine[1][axis] * v->affine[1][axis] +
+                v->affine[2][axis] * v->affine[2][axis]);
+}
+
+/* Places along an axis, in units of the affine's column. */
+typedef struct axis {
+    double first, step; /* of the output */
+    size_t count;
+} axis;
+
+/* Returns the mean distance between samples in units of the affine's column. */
+static double mean_step(const cw_volume *in, int a)
+{
+    const size_t n = in->dim[a];
+    const double *at = in->coordinates[a];
+    return at && n > 1 ? (at[n - 1] - at[0]) / (double)(n - 1) : 1;
+}
+
+static cw_status plan_axis(const cw_volume *in, int a, double spacing, axis *out, cw_error *err)
+{
+    const double length = column_length(in, a), old = mean_step(in, a);
+    const double step = spacing > 0 && length > 0 ? spacing / length : old;
+    const double steps = (double)(in->dim[a] - 1) * old / step;
+    if (!(steps < MOST))
+        return cwi_fail(err, CW_ERR_LIMIT,
+                        "spacing_mm[%d] of %g makes more than %g samples along an axis", a,
+                        spacing, MOST);
+    *out = (axis){.first = in->coordinates[a] ? in->coordinates[a][0] : 0,
+                  .step = step,
+                  .count = (size_t)(steps + 1e-6) + 1};
+    return CW_OK;
+}
+
+static cw_status set_weights(cwi_axis_weights *w, const cw_volume *in, int a, const axis *x,
+                             const kernel *k, cw_error *err)
+{
+    const double wider = fmax(1, x->step / mean_step(in, a)), reach = k->reach * wider;
+    const double most = floor(2 * reach) + 1;
+    const size_t samples = in->dim[a], taps = most < (double)samples ? (size_t)most : samples;
+    cw_status st = cwi_axis_weights_init(w, x->count, taps, err);
+    for (size_t n = 0; n < x->count && st == CW_OK; n++) {
+        const double at = x->first + (double)n * x->step;
+        const double place = samples < 2 ? 0 : cwi_coordinate_index(in, a, at);
+        cwi_axis_weights_set(w, n, place, samples, reach, k->weight, wider);
+    }
+    return st;
+}
+
+/* The first voxel stays where it is. */
+static void set_affine(const cw_volume *in, const axis x[3], cw_volume *out)
+{
+    for (int r = 0; r < 3; r++)
+        for (int a = 0; a < 3; a++) {
+            out->affine[r][3] += in->affine[r][a] * x[a].first;
+            out->affine[r][a] = in->affine[r][a] * x[a].step;
+        }
+}
+
+static cw_status check_desc(const cw_volume *in, const double spacing[3], cw_kernel k,
+                            cw_error *err)
+{
+    for (int a = 0; a < 3; a++)
+        if (!(spacing[a] >= 0) || !isfinite(spacing[a]))
+            return cwi_fail(err, CW_ERR_ARGUMENT,
+                            "spacing_mm[%d] is %g; 0 or a length was expected", a, spacing[a]);
+    if (!cw_kernel_name(k))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "kernel is %d; a cw_kernel was expected", (int)k);
+    if (k != CW_KERNEL_LINEAR && cwi_is_rectilinear(in))
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "a rectilinear grid is resampled with the linear kernel only");
+    return CW_OK;
+}
+
+cw_status cw_volume_resample(const cw_volume *volume, const double spacing[3], cw_kernel k,
+                             const cw_filter_desc *desc, cw_volume *out, cw_error *err)
+{
+    CWI_REQUIRE(err, volume, spacing, out);
+    const cw_filter_desc none = {0}, *d = desc ? desc : &none;
+    cwi_axis_weights w[3] = {{0}};
+    axis x[3];
+    cw_volume in;
+    *out = (cw_volume){0};
+    cw_status st = cw_volume_select(volume, 0, 0, &in, err);
+    if (st == CW_OK)
+        st = cwi_volume_expect_dense(&in, "resampling", err);
+    if (st == CW_OK)
+        st = check_desc(&in, spacing, k, err);
+    for (int a = 0; a < 3 && st == CW_OK; a++)
+        st = plan_axis(&in, a, spacing[a], x + a, err);
+    for (int a = 0; a < 3 && st == CW_OK; a++)
+        st = set_weights(w + a, &in, a, x + a, kernels + k, err);
+    if (st == CW_OK)
+        st = cwi_separable_filter(&in, w, d, "resampling", out, err);
+    if (st == CW_OK)
+        set_affine(&in, x, out);
+    for (int a = 0; a < 3; a++)
+        cwi_axis_weights_free(w + a);
+    return st;
+}

@@ -1,0 +1,72 @@
+/* Volumes made ready for extraction: less noise, other distances between voxels. */
+#ifndef CUBEWRIGHT_FILTER_H
+#define CUBEWRIGHT_FILTER_H
+
+#include <cubewright/volume.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Options of all filters. Zero fields mean the default named beside them. */
+typedef struct cw_filter_desc {
+    int threads;          /* default: all. The result is the same for any number */
+    size_t max_bytes;     /* memory for the result and the work on it; default: no limit */
+    cw_progress progress; /* default: none */
+} cw_filter_desc;
+
+/* Kernels for values between samples. */
+typedef enum cw_kernel {
+    CW_KERNEL_LINEAR, /* never leaves the range of the values around */
+    CW_KERNEL_CUBIC,  /* through the samples, with continuous slopes [Keys1981] */
+    CW_KERNEL_LANCZOS, /* of three lobes: sharper, with faint ripples beside edges [Duchon1979] */
+    CW_KERNEL_COUNT
+} cw_kernel;
+
+/* Returns the name of a kernel, such as "linear"; static. NULL for an unknown one. */
+CW_API const char *cw_kernel_name(cw_kernel kernel);
+
+/* Smooths the first component and step with a Gaussian. Voxels without a value (no data, not
+ * finite) stay so, and the others are means of those that have one. Beyond the border values go
+ * on as they are there. The type, the scaling and the frame are kept; integers are rounded.
+ * volume        an even grid; borrowed
+ * sigma_voxels  standard deviation along each axis in voxels, 0 to 64; 0 leaves an axis as it is
+ * desc          borrowed; NULL means all defaults
+ * out           set to a volume that owns its voxels; free with cw_volume_free()
+ * Returns       CW_ERR_ARGUMENT; CW_ERR_UNSUPPORTED for other grids; CW_ERR_LIMIT: max_bytes is too
+ *               low; CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
+ * Cost          8 sigma + 1 products a voxel and axis */
+CW_NODISCARD CW_API cw_status cw_volume_gauss(const cw_volume *volume,
+                                              const double sigma_voxels[3],
+                                              const cw_filter_desc *desc, cw_volume *out,
+                                              cw_error *err);
+
+/* Replaces each value of the first component and step by the median of a cube of voxels around.
+ * Noise of single voxels goes, and flat edges stay where they are; what is thinner than half of
+ * the cube goes as well. Voxels without a value stay so, and do not count; of an even number of
+ * values the lower one in the middle is taken.
+ * radius   1 to 3: cubes of 3, 5 or 7 voxels
+ * Returns  and all else as cw_volume_gauss()
+ * Cost     about 150 comparisons a voxel for radius 1, thousands for 3
+ * Source   medians from the extremes that cannot be one, after [Smith1996] */
+CW_NODISCARD CW_API cw_status cw_volume_median(const cw_volume *volume, size_t radius,
+                                               const cw_filter_desc *desc, cw_volume *out,
+                                               cw_error *err);
+
+/* Samples the first component and step at other distances. The first voxel stays where it is; the
+ * last is at most one new distance short of the old one. Where voxels become larger, kernels grow
+ * with them, so that what is finer fades instead of becoming patterns. No data are where the
+ * nearest sample has none.
+ * volume      an even grid; a rectilinear one with CW_KERNEL_LINEAR, which becomes even; borrowed
+ * spacing_mm  new distance along each axis; 0: as it is
+ * Returns     and all else as cw_volume_gauss() */
+CW_NODISCARD CW_API cw_status cw_volume_resample(const cw_volume *volume,
+                                                 const double spacing_mm[3], cw_kernel kernel,
+                                                 const cw_filter_desc *desc, cw_volume *out,
+                                                 cw_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
