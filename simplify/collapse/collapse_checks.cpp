@@ -61,6 +61,8 @@ bool Star::gather(const Surface &surface, HalfedgeHandle collapsed, const Vec &t
     const HalfedgeHandle back = surface.opposite_halfedge_handle(collapsed);
     vertex = uint32_t(v.idx());
     place = to;
+    old[0] = surface.point(u);
+    old[1] = surface.point(v);
     closed = true;
     spokes.clear();
     gone.clear();

@@ -28,6 +28,7 @@ struct Star {
 
     uint32_t vertex; // that stays
     Vec place;
+    Vec old[2];  // places of both ends of the edge
     bool closed; // the triangles go all the way round
     std::vector<Spoke> spokes;
     std::vector<uint32_t> gone; // triangles at the edge

@@ -9,6 +9,7 @@
 #include "simplify/collapse/distance_bound.hpp"
 #include "simplify/collapse/edge_heap.hpp"
 #include "simplify/collapse/halfedge_mesh.hpp"
+#include "simplify/collapse/small_shells.hpp"
 
 #include <cmath>
 #include <memory>
@@ -38,8 +39,8 @@ struct cwi_decimater {
                   const cwi_original *original)
         : taken(TRIANGLE_BYTES * block.triangles),
           names(block.names, block.names + block.vertices), nodes(block.vertices),
-          trends(block), live(block.own), shape(block), bound(block, original, desc.error),
-          progress(*desc.progress)
+          trends(block), live(block.own), shape(block), shells(block),
+          bound(block, original, desc.error), progress(*desc.progress)
     {
         poll();
         const std::vector<uint8_t> unsound = connect(block, surface);
@@ -99,6 +100,7 @@ struct cwi_decimater {
     uint32_t tick = 0;
     size_t live;
     Shape shape;
+    SmallShells shells;
     Bound bound;
     std::unique_ptr<Contact> contact;
     Star star;
@@ -272,10 +274,12 @@ private:
             return;
         }
         if (!surface.is_collapse_ok(p.halfedge) || !star.gather(surface, p.halfedge, p.place) ||
-            !shape.is_kept(star) || !bound.is_kept(surface, star) ||
+            !shape.is_kept(star) || shells.turns(surface, star, &stays.open) ||
+            !bound.is_kept(surface, star) || shells.sweeps(surface, star) ||
             (contact && contact->arises(surface, star)))
             return;
         bound.change(star);
+        shells.change(star);
         if (trends.is_asked())
             keep_trends(p);
         surface.set_point(kept, p.place);

@@ -49,6 +49,38 @@ static cw_mesh noisy_gyroid(size_t n, double noise, bool open)
     return mesh;
 }
 
+static cw_quality measure_shells(const cw_mesh *mesh)
+{
+    cw_quality q;
+    cw_error err = {0};
+    assert_ok(cw_quality_measure(mesh, &(cw_quality_desc){.shells = true}, &q, &err), err);
+    return q;
+}
+
+/* Of small shells all of one side moves at once: it must not pass through the other. */
+static void shells_face_where_they_did(void **state)
+{
+    (void)state;
+    const cw_field_desc field = {
+        .field = CW_FIELD_MARSCHNER_LOBB, .dim = {30, 30, 30}, .type = CW_F32, .noise = 0.4};
+    cw_volume volume;
+    cw_error err = {0};
+    assert_ok(cw_field_sample(&field, &volume, &err), err);
+    cw_mesh mesh = test_extract(&volume, &(cw_extract_desc){.isovalue = 0.5}, NULL);
+    const cw_quality before = measure_shells(&mesh);
+    const cw_simplify_desc descs[] = {{.ratio = 0.05}, {.error_mm = 0.2}};
+    assert_true(before.components > 100 && before.inside_out == 0);
+    for (size_t n = 0; n < 2; n++) {
+        cw_mesh out = simplify(&mesh, descs + n);
+        const cw_quality after = measure_shells(&out);
+        assert_int_equal(after.components, before.components);
+        assert_int_equal(after.cavities + after.inside_out, before.cavities);
+        cw_mesh_free(&out);
+    }
+    cw_mesh_free(&mesh);
+    cw_volume_free(&volume);
+}
+
 /* Large enough for several blocks. */
 static void topology_stays(void **state)
 {
@@ -803,6 +835,7 @@ static void a_build_without_openmesh_says_so(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(shells_face_where_they_did),
         cmocka_unit_test(topology_stays),
         cmocka_unit_test(hostile_surfaces_stay_sound),
         cmocka_unit_test(broken_meshes_become_no_worse),
