@@ -23,6 +23,7 @@ typedef struct check_args {
     cli_number iso;
     cli_length tolerance;
     cli_amount least;
+    bool fill_voids;
     int profile, inside, progress;
     bool deep, open, histogram;
 } check_args;
@@ -57,6 +58,9 @@ static const cli_option options[] = {
     {"min-volume", 0, CLI_VOLUME, "V",
      "Leave out components of the source's surface that enclose less: 500mm3, 30vox (none)",
      offsetof(check_args, least)},
+    {"fill-voids", 0, CLI_FLAG, NULL,
+     "Leave out the cavities of the source's surface, and all inside them (off)",
+     offsetof(check_args, fill_voids)},
     {"reference", 0, CLI_TEXT, "MESH", "Mesh to measure the distance to, both ways",
      offsetof(check_args, reference), CLI_VALUES_MESH},
     {"tolerance", 0, CLI_LENGTH, "L",
@@ -112,6 +116,8 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_bool(j, "open", args->open);
         if (args->least.given)
             cli_json_number(j, "min_volume_mm3", least_mm3(s));
+        if (args->fill_voids)
+            cli_json_bool(j, "fill_voids", true);
     }
     if (args->tolerance.given)
         cli_json_number(j, "tolerance_mm", s->findings.tolerance_mm);
@@ -185,6 +191,8 @@ static cw_status check_args_of(run_state *s, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--iso needs a volume: --source VOLUME");
     if (args->least.given && !args->source)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--min-volume needs a volume: --source VOLUME");
+    if (args->fill_voids && !args->source)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--fill-voids needs a volume: --source VOLUME");
     if (args->tolerance.given && !args->source && !args->reference)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--tolerance needs something to measure from: --source or --reference");
@@ -337,7 +345,8 @@ static cw_status compare_with_field(run_state *s, cw_error *err)
                                            .leave_open = args->open,
                                            .no_normals = true,
                                            .threads = desc.threads},
-                               .least_mm3 = least_mm3(s)};
+                               .least_mm3 = least_mm3(s),
+                               .fill_voids = args->fill_voids};
     st = cli_extract_wanted(&s->volume, NULL, &wanted, &surface, &counts, NULL, err);
     if (st == CW_OK)
         st = measure_from_field(s, &surface, err);

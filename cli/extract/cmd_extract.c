@@ -74,6 +74,9 @@ static const cli_option options[] = {
      "Leave out components that enclose less, and all inside them: 500mm3, 0.5ml, 30vox "
      "(none)",
      offsetof(cli_extract_args, least)},
+    {"fill-voids", 0, CLI_FLAG, NULL,
+     "Leave out the cavities of solids, and all inside them (off)",
+     offsetof(cli_extract_args, fill_voids)},
     {"normals", 0, CLI_CHOICE, "field/none",
      "Vertex normals from the field's gradient, or none (field)",
      offsetof(cli_extract_args, normals)},

@@ -39,10 +39,11 @@ cli_wanted cli_extract_wants(const cli_extract_run *s, double iso)
                                   (s->args->lod.count && cli_extract_shades_levels(s)),
                     .threads = (int)s->args->input.threads,
                     .max_triangles = s->args->max_triangles,
-                    .extra_bytes = s->args->check  ? cli_check_bytes()
-                                   : least_mm3 > 0 ? DROP_BYTES
-                                                   : 0},
+                    .extra_bytes = s->args->check || s->args->fill_voids ? cli_check_bytes()
+                                   : least_mm3 > 0                       ? DROP_BYTES
+                                                                         : 0},
         .least_mm3 = least_mm3,
+        .fill_voids = s->args->fill_voids,
     };
 }
 
@@ -92,7 +93,7 @@ static cw_status extract_for_views(cli_extract_run *s, const cli_wanted *w,
     cw_status st = CW_OK;
     for (size_t n = 0; n < s->plan.view_count; n++)
         cw_simplify_view_free(s->plan.views + n);
-    if (cull && !(w->least_mm3 > 0))
+    if (cull && !cli_wants_whole(w))
         st = cli_seen_part(&s->input.volume, s->plan.views, s->plan.view_count, &part, err);
     if (st == CW_OK)
         st = cli_draw_views(&part, w, s->plan.views, s->plan.view_count, err);
@@ -112,7 +113,8 @@ static cw_status extract_for_views(cli_extract_run *s, const cli_wanted *w,
 cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
                            cw_extract_counts *counts, cw_error *err)
 {
-    const cli_wanted w = cli_extract_wants(s, made->iso);
+    cli_wanted w = cli_extract_wants(s, made->iso);
+    w.filled = &made->voids;
     cw_drop_counts *dropped = &made->components;
     double error;
     cw_status st = find_error(s, &error, err);
@@ -135,6 +137,11 @@ cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
     made->least_mm3 = w.least_mm3;
     if (w.least_mm3 > 0)
         cli_tell_components(s->input.volume.path, w.least_mm3, dropped);
+    made->fills_voids = w.fill_voids;
+    if (w.fill_voids)
+        cli_say("%s: %s void%s filled, %.6g mm3", s->input.volume.path,
+                cli_count(made->voids.dropped), made->voids.dropped == 1 ? "" : "s",
+                made->voids.dropped_mm3);
     if (s->args->pixel.cull)
         cli_say("%s: %.3g %% of the voxels are in bricks that cameras see; %s triangles in "
                 "them that no camera sees are left out",

@@ -130,7 +130,7 @@ cw_status cli_draw_views(const cli_volume *volume, const cli_wanted *wanted,
     drawn all = {views, count};
     w.extract.max_bytes = volume->memory_left;
     w.extract.no_normals = true;
-    if (w.least_mm3 > 0)
+    if (cli_wants_whole(&w))
         return draw_whole(volume, &w, &all, err);
     cw_status st = cw_extract_slabs(&volume->view, &w.extract, CW_SIMPLIFIER_SLAB,
                                     (cw_slab_sink){draw_slab, &all}, NULL, err);

@@ -25,6 +25,7 @@ const cli_synonym cli_synonyms[] = {
      "smooth|--denoise|--smooth-labels|--snap|--placement|--min-volume|--drop-components|--noise",
      "'smooth' smooths meshes, 'extract --denoise' the values of volumes, and 'extract --labels' "
      "the surfaces of labels. --min-volume and --drop-components remove small components."},
+    {"cavit|enclosed|hollow inside", "void", "--fill-voids|--min-volume", NULL},
     {"hole|watertight|repair|heal|leak", "closed", "closed|--open|--orient|--by|--profile",
      "cubewright does not fill holes of a mesh. 'extract' makes closed meshes, 'check' finds "
      "open edges, and 'offset --by 0' rebuilds closed meshes that intersect themselves."},

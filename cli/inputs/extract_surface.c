@@ -85,6 +85,11 @@ cw_status cli_extract_surface(const cli_volume *volume, cw_extractor *extractor,
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
 }
 
+bool cli_wants_whole(const cli_wanted *wanted)
+{
+    return wanted->least_mm3 > 0 || wanted->fill_voids;
+}
+
 cw_status cli_fail_dropped(double least_mm3, const cw_drop_counts *dropped, cw_error *err)
 {
     return cwi_fail(err, CW_ERR_EMPTY,
@@ -97,12 +102,16 @@ cw_status cli_extract_wanted(const cli_volume *volume, cw_extractor *extractor,
                              cw_drop_counts *dropped, cw_error *err)
 {
     cw_drop_counts own, *d = dropped ? dropped : &own;
+    const int threads = wanted->extract.threads;
     cw_status st = cli_extract_surface(volume, extractor, &wanted->extract, mesh, counts, err);
     *d = (cw_drop_counts){0};
-    if (st != CW_OK || !(wanted->least_mm3 > 0))
+    if (st != CW_OK || !cli_wants_whole(wanted))
         return st;
-    st = cw_mesh_drop_volumes(mesh, wanted->least_mm3, d, err);
-    if (st == CW_OK && !d->kept)
+    if (wanted->least_mm3 > 0)
+        st = cw_mesh_drop_volumes(mesh, wanted->least_mm3, d, err);
+    if (st == CW_OK && wanted->fill_voids)
+        st = cw_mesh_fill_voids(mesh, threads, wanted->filled, err);
+    if (st == CW_OK && wanted->least_mm3 > 0 && !d->kept)
         st = cli_fail_dropped(wanted->least_mm3, d, err);
     if (st == CW_OK)
         return CW_OK;
@@ -159,7 +168,7 @@ cw_status cli_extract_simplified(const cli_volume *volume, const cli_wanted *wan
     const cw_extract_desc *d = &wanted->extract;
     const cw_normals_desc normals = {.inside_is_low = d->inside_is_low, .threads = d->threads};
     const bool dense = cwi_volume_expect_dense(&volume->view, "slabs", NULL) == CW_OK;
-    cw_status st = dense && !(wanted->least_mm3 > 0)
+    cw_status st = dense && !cli_wants_whole(wanted)
                        ? simplify_slabs(volume, d, simplify, mesh, counts, err)
                        : simplify_whole(volume, wanted, simplify, mesh, counts, dropped, err);
     if (st != CW_OK || !dense || d->no_normals)

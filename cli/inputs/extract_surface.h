@@ -41,8 +41,13 @@ CW_NODISCARD cw_status cli_extract_surface(const cli_volume *volume, cw_extracto
 /* Settings of a surface to extract. */
 typedef struct cli_wanted {
     cw_extract_desc extract;
-    double least_mm3; /* components that enclose less are left out; default: none is */
+    double least_mm3;       /* components that enclose less are left out; default: none is */
+    bool fill_voids;        /* closed components in others are left out, too */
+    cw_drop_counts *filled; /* set to their counts; may be NULL */
 } cli_wanted;
+
+/* Returns true if components are left out: all of the surface is needed to tell which. */
+bool cli_wants_whole(const cli_wanted *wanted);
 
 /* Fails with CW_ERR_EMPTY: all components enclose less than a volume. */
 cw_status cli_fail_dropped(double least_mm3, const cw_drop_counts *dropped, cw_error *err);

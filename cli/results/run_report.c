@@ -252,6 +252,13 @@ static void put_facts(cli_json *j, const cli_made *m)
         put_comparison(j, &m->compared);
     if (m->least_mm3 > 0)
         put_dropped_components(j, m->least_mm3, &m->components);
+    if (m->fills_voids) {
+        cli_json_open(j, "voids_filled", '{');
+        cli_json_count(j, "count", m->voids.dropped);
+        cli_json_count(j, "dropped_triangles", m->voids.triangles);
+        cli_json_number(j, "filled_mm3", m->voids.dropped_mm3);
+        cli_json_close(j, '}');
+    }
     if (m->crop.made)
         put_crop(j, &m->crop);
     if (m->proof.made)

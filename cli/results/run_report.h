@@ -79,6 +79,8 @@ typedef struct cli_made {
     cli_comparison compared;
     double least_mm3; /* what components had to enclose; 0: nothing was left out for that */
     cw_drop_counts components; /* when something was */
+    bool fills_voids;
+    cw_drop_counts voids; /* when they were filled */
     cli_proof proof;
     cli_crop_proof crop;
     char warning[CLI_MAX_WARNINGS][512];

@@ -161,6 +161,17 @@ typedef struct cw_orient_counts {
 CW_NODISCARD CW_API cw_status cw_mesh_orient(cw_mesh *mesh, int threads,
                                              cw_orient_counts *counts, cw_error *err);
 
+/* Fills the voids of solids: leaves out closed components that face inward, then those inside
+ * others, which were islands in the voids, and vertices that no triangle names. Open and
+ * non-manifold components stay. Triangles are joined by the vertices that they name.
+ * mesh     in place, as in cw_mesh_weld(); its closed components face the right way
+ * threads  0 means all
+ * counts   of components; dropped_mm3 is what the solids gain, largest_mm3 the largest component
+ *          that was left out, least_kept_mm3 is not set. May be NULL
+ * Returns  as cw_quality_measure() */
+CW_NODISCARD CW_API cw_status cw_mesh_fill_voids(cw_mesh *mesh, int threads,
+                                                 cw_drop_counts *counts, cw_error *err);
+
 /* Returns true if there are no open, non-manifold or misoriented edges and no non-manifold
  * vertices.
  * quality  from cw_quality_measure() */

@@ -2483,6 +2483,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_quality_stream_bytes": (c_size_t, [POINTER(cw_quality_stream)]),
     "cw_quality_stream_free": (None, [POINTER(cw_quality_stream)]),
     "cw_mesh_orient": (c_int, [POINTER(cw_mesh), c_int, POINTER(cw_orient_counts), POINTER(cw_error)]),
+    "cw_mesh_fill_voids": (c_int, [POINTER(cw_mesh), c_int, POINTER(cw_drop_counts), POINTER(cw_error)]),
     "cw_quality_is_closed_manifold": (c_bool, [POINTER(cw_quality)]),
     "cw_quality_compare": (c_int, [POINTER(cw_quality), POINTER(cw_quality), POINTER(cw_error)]),
     "cw_self_intersections": (c_int, [POINTER(cw_mesh), POINTER(cw_crossings_desc), POINTER(cw_crossings), POINTER(cw_error)]),

@@ -43,6 +43,7 @@ def extract(
     snap: float = 0.0,
     normals: str = "field",
     min_volume: float = 0.0,
+    fill_voids: bool = False,
     simplify: int | float | None = None,
     component: int = 0,
     step: int = 0,
@@ -65,6 +66,7 @@ def extract(
     snap        up to 0.5: merge vertices closer to a sample than this fraction of an edge
     normals     'field' for the gradient's, or 'none'
     min_volume  leave out components that enclose less, in cubic millimetres
+    fill_voids  leave out the cavities of solids, and all inside them
     simplify    a float: error limit in mm; an int: triangle count. See simplify()
     component, step  of volumes with several, from 0
     max_triangles, max_bytes  fail beyond, before more memory is taken; 0: no limit
@@ -96,10 +98,13 @@ def extract_by(function: Callable[..., int], place: Any, source: Volume, **optio
         progress=reporter.struct,
     )
     least = take_length("min_volume", options["min_volume"])
+    fills = take_flag("fill_voids", options["fill_voids"])
     mesh = Mesh._from_c(c.cw_mesh())
     reporter.call(function, place, byref(desc), byref(mesh._struct), None)
     if least > 0:
         call(lib.cw_mesh_drop_volumes, byref(mesh._struct), least, None)
+    if fills:
+        call(lib.cw_mesh_fill_voids, byref(mesh._struct), take_threads(options["threads"]), None)
     target = options["simplify"]
     return mesh if target is None else reduce_surface(mesh, target, options["threads"], options["progress"])
 
@@ -132,6 +137,7 @@ class Extractor:
         snap: float = 0.0,
         normals: str = "field",
         min_volume: float = 0.0,
+        fill_voids: bool = False,
         simplify: int | float | None = None,
         max_triangles: int = 0,
         max_bytes: int = 0,

@@ -41,6 +41,13 @@ class Surfaces(Case):
         speck[1, 1, 1] = 5
         self.assertEqual(cw.check(cw.extract(speck, 0)).quality["components"], 2)
         self.same_mesh(cw.extract(speck, 0, min_volume=10), cw.extract(ball, 0))
+
+    def test_voids_are_filled(self):
+        ball = make_ball()
+        z, y, x = ball.shape
+        hollow = ball.copy()
+        hollow[z // 2, y // 2, x // 2] = -1
+        self.same_mesh(cw.extract(hollow, 0, fill_voids=True), cw.extract(ball, 0))
         for more in ({"topology": "simple"}, {"placement": "cubic"}, {"inside": "below"}):
             self.assertTrue(cw.check(cw.extract(ball, 0, **more)).holds, more)
 

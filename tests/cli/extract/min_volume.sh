@@ -29,3 +29,13 @@ bad lone.nrrd --iso 0 -o bad.ply --min-volume 1e6vox
 bad ct.nrrd --iso 300 -o bad.ply --min-volume 0
 bad ct.nrrd --iso 300 -o bad.ply --min-volume 5mm
 ls *.ply
+
+# Voids are filled: solids lose their cavities, and all inside them.
+cubewright make sphere -o ball.nrrd --dims 24 --noise 9 -q
+cubewright check "$(cubewright extract ball.nrrd --iso 0 -o all.ply -q && echo all.ply)" | grep -o '^all.ply: [^;]*'
+cubewright extract ball.nrrd --iso 0 -o filled.ply --fill-voids --json r.json
+sed -n -e '/"voids_filled"/,/}/p' -e '/"fill_voids"/p' r.json
+cubewright check filled.ply --source ball.nrrd --iso 0 --fill-voids | grep -o -e '^filled.ply: [^;]*' -e 'topology *as the field.*'
+cubewright check filled.ply --fill-voids || echo "exit $?"
+bad ct.nrrd --iso 300 -o bad.ply --fill-voids --stream always
+bad ct.nrrd --labels all -o bad.ply --fill-voids
