@@ -26,9 +26,16 @@ typedef struct search {
     const cwi_patch *patch;
     const cwi_metric *metric;
     double u[3];
-    double best;  /* mm, of the nearest point found */
-    double limit; /* best less the slack: what is not nearer than this does not matter */
+    double best;   /* mm, of the nearest point found */
+    double limit;  /* best less the slack: what is not nearer than this does not matter */
+    double looser; /* the slack's factor */
+    size_t boxes;  /* looked at */
 } search;
+
+/* After so many boxes the slack is doubled: where samples equal the isovalue, surfaces meet and
+ * touch in ways that no box clears, and a point could take millions. What is found is on the
+ * surface all the same. */
+enum { PATIENCE = 4096 };
 
 static double clamp_between(double x, double low, double high)
 {
@@ -190,13 +197,18 @@ static double press_bound(const search *s, const box *b, const double x[3], doub
     return side * pull;
 }
 
+static double slack_of(const search *s, double distance)
+{
+    return s->looser * cwi_slack(s->metric, distance);
+}
+
 static void offer_point(search *s, const double x[3], double margin)
 {
     const double way[3] = {x[0] - s->u[0], x[1] - s->u[1], x[2] - s->u[2]};
     const double d = metric_length(s->metric, way) + margin;
     if (d < s->best) {
         s->best = d;
-        s->limit = d - cwi_slack(s->metric, d);
+        s->limit = d - slack_of(s, d);
     }
 }
 
@@ -366,6 +378,10 @@ static void search_halves(search *s, const box *b, const double middle[3], const
 static void search_box(search *s, box b, double *start)
 {
     double middle[3], half[3], x[3], before;
+    if (++s->boxes % PATIENCE == 0) {
+        s->looser *= 2;
+        s->limit = s->best - slack_of(s, s->best);
+    }
     do {
         if (!(s->limit > 0) || !clip_box(s, &b))
             return;
@@ -381,7 +397,7 @@ static void search_box(search *s, box b, double *start)
         const double d = metric_length(s->metric, way);
         if (d - r >= s->limit)
             return;
-        if (2 * r < cwi_slack(s->metric, d)) { /* a point is here, no nearer one matters */
+        if (2 * r < slack_of(s, d)) { /* a point is here, no nearer one matters */
             offer_point(s, middle, r);
             return;
         }
@@ -397,10 +413,10 @@ static void search_box(search *s, box b, double *start)
 bool cwi_patch_nearest(const cwi_patch *patch, const cwi_metric *metric, const double u[3],
                        double *distance)
 {
-    search s = {.patch = patch, .metric = metric, .best = *distance};
+    search s = {.patch = patch, .metric = metric, .best = *distance, .looser = 1};
     double start[3] = {u[0], u[1], u[2]};
     memcpy(s.u, u, sizeof s.u);
-    s.limit = s.best - cwi_slack(metric, s.best);
+    s.limit = s.best - slack_of(&s, s.best);
     search_box(&s, (box){{0, 0, 0}, {1, 1, 1}}, start);
     const bool nearer = s.best < *distance;
     *distance = s.best;
