@@ -32,9 +32,9 @@ typedef struct search {
     size_t boxes;  /* looked at */
 } search;
 
-/* After so many boxes the slack is doubled: where samples equal the isovalue, surfaces meet and
- * touch in ways that no box clears, and a point could take millions. What is found is on the
- * surface all the same. */
+/* Number of boxes after which the slack is doubled. Where samples equal the isovalue, patches touch
+ * each other along edges and faces of cells: no box clears those, and a point could take millions
+ * of boxes. The point that is found is on the surface with any slack. */
 enum { PATIENCE = 4096 };
 
 static double clamp_between(double x, double low, double high)
