@@ -23,7 +23,8 @@ typedef enum cw_kernel {
     CW_KERNEL_COUNT
 } cw_kernel;
 
-/* Returns the name of a kernel, such as "linear"; static. NULL for an unknown one. */
+/* Returns the name of a kernel, such as "linear"; static. NULL for an unknown one.
+ * kernel  any number */
 CW_API const char *cw_kernel_name(cw_kernel kernel);
 
 /* Smooths the first component and step with a Gaussian. Voxels without a value (no data, not
@@ -45,8 +46,11 @@ CW_NODISCARD CW_API cw_status cw_volume_gauss(const cw_volume *volume,
  * Noise of single voxels goes, and flat edges stay where they are; what is thinner than half of
  * the cube goes as well. Voxels without a value stay so, and do not count; of an even number of
  * values the lower one in the middle is taken.
+ * volume   an even grid; borrowed
  * radius   1 to 3: cubes of 3, 5 or 7 voxels
- * Returns  and all else as cw_volume_gauss()
+ * desc     borrowed; NULL means all defaults
+ * out      set to a volume that owns its voxels; free with cw_volume_free()
+ * Returns  as cw_volume_gauss()
  * Cost     about 150 comparisons a voxel for radius 1, thousands for 3
  * Source   medians from the extremes that cannot be one, after [Smith1996] */
 CW_NODISCARD CW_API cw_status cw_volume_median(const cw_volume *volume, size_t radius,
@@ -59,7 +63,10 @@ CW_NODISCARD CW_API cw_status cw_volume_median(const cw_volume *volume, size_t r
  * nearest sample has none.
  * volume      an even grid; a rectilinear one with CW_KERNEL_LINEAR, which becomes even; borrowed
  * spacing_mm  new distance along each axis; 0: as it is
- * Returns     and all else as cw_volume_gauss() */
+ * kernel      between samples
+ * desc        borrowed; NULL means all defaults
+ * out         set to a volume that owns its voxels; free with cw_volume_free()
+ * Returns     as cw_volume_gauss() */
 CW_NODISCARD CW_API cw_status cw_volume_resample(const cw_volume *volume,
                                                  const double spacing_mm[3], cw_kernel kernel,
                                                  const cw_filter_desc *desc, cw_volume *out,

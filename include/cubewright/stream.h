@@ -128,10 +128,11 @@ CW_NODISCARD CW_API cw_status cw_extract_stream_normals(const cw_slice_source *s
 
 /* Computes what cw_volume_statistics() does from slices, which are read twice, once if bin_count
  * is 0.
- * source    borrowed
- * threads   0 means all
- * Returns   as cw_volume_statistics(), or what source returned; free out with
- *           cw_statistics_free() */
+ * source     borrowed
+ * bin_count  as in cw_volume_statistics(); 0: range only
+ * threads    0 means all
+ * out        set on success; free with cw_statistics_free()
+ * Returns    as cw_volume_statistics(), or what source returned */
 CW_NODISCARD CW_API cw_status cw_stream_statistics(const cw_slice_source *source,
                                                    size_t bin_count, int threads,
                                                    cw_statistics *out, cw_error *err);
