@@ -1,8 +1,8 @@
 /* Replaces values of a volume by the median of those around.
  *
- * Of 27 values any 15 hold at least one that is not the median: their least has 14 above it, and
- * their greatest 14 below. Both are left out, the next value joins, and so on until all have been
- * seen [Smith1996]. */
+ * The least of any 15 of 27 values has 14 above it, so it is not their median, and neither is the
+ * greatest. Both are left out, the next value joins, and so on until all have been seen
+ * [Smith1996]. */
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
