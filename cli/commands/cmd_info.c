@@ -81,9 +81,11 @@ typedef struct facts {
 /* Adds the isovalues of a CT that are in the range of its values. */
 static void add_tissues(facts *f, const cw_statistics *s)
 {
+    if (!cli_is_hounsfield(&f->volume.whole, s))
+        return;
     for (cli_level n = CLI_LEVEL_BONE; n <= CLI_LEVEL_METAL; n++) {
         const double value = cli_hounsfield_level(n);
-        if (cli_is_hounsfield(&f->volume.whole, s) && s->min < value && s->max >= value)
+        if (s->min < value && s->max >= value)
             f->levels[f->level_count++] = (level){.name = cli_level_text(n, 0), .value = value};
     }
 }

@@ -14,18 +14,6 @@ const char *cli_find_preparation(const cli_input *input)
     return input->resample.given ? "--resample" : input->denoise.given ? "--denoise" : NULL;
 }
 
-static void find_spacing(const cw_volume *v, double mm[3])
-{
-    for (int a = 0; a < 3; a++) {
-        const size_t n = v->dim[a];
-        const double *at = v->coordinates[a],
-                     unit = at && n > 1 ? (at[n - 1] - at[0]) / (double)(n - 1) : 1;
-        mm[a] =
-            unit * sqrt(v->affine[0][a] * v->affine[0][a] + v->affine[1][a] * v->affine[1][a] +
-                        v->affine[2][a] * v->affine[2][a]);
-    }
-}
-
 static cw_filter_desc filter_desc(const cli_input *input, const cli_volume *volume)
 {
     const size_t *n = volume->view.dim;
@@ -56,7 +44,7 @@ static cw_status resample_view(const cli_input *input, cli_volume *volume, cw_er
     const cw_filter_desc desc = filter_desc(input, volume);
     double old[3], mm[3];
     cw_volume made;
-    find_spacing(&volume->view, old);
+    cw_volume_spacing(&volume->view, old);
     for (int a = 0; a < 3; a++)
         mm[a] = r->iso ? fmin(fmin(old[0], old[1]), old[2]) : r->mm[a];
     cw_status st =
@@ -78,7 +66,7 @@ static cw_status smooth_view(const cli_input *input, cli_volume *volume, cw_erro
     const cw_filter_desc desc = filter_desc(input, volume);
     double mm[3], sigma[3];
     cw_volume made;
-    find_spacing(&volume->view, mm);
+    cw_volume_spacing(&volume->view, mm);
     for (int a = 0; a < 3; a++)
         sigma[a] = width->unit == CLI_VOXELS ? width->value
                    : mm[a] > 0               ? width->value / mm[a]

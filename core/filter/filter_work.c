@@ -87,21 +87,17 @@ void cwi_filter_load(const cw_volume *in, size_t j, size_t k, double *values, do
     }
 }
 
-/* Sets the numbers that a type can hold. */
-static void find_limits(cw_type type, double *low, double *high)
-{
-    const int bits = 8 * (int)cw_type_size(type);
-    const bool is_signed = type == CW_I8 || type == CW_I16 || type == CW_I32;
-    *low = is_signed ? -ldexp(1, bits - 1) : 0;
-    *high = ldexp(1, is_signed ? bits - 1 : bits) - 1;
-}
+/* The least and the greatest number of each integer type. */
+static const double limits[CW_TYPE_COUNT][2] = {
+    [CW_U8] = {0, UINT8_MAX},           [CW_I8] = {INT8_MIN, INT8_MAX},
+    [CW_U16] = {0, UINT16_MAX},         [CW_I16] = {INT16_MIN, INT16_MAX},
+    [CW_U32] = {0, (double)UINT32_MAX}, [CW_I32] = {INT32_MIN, INT32_MAX},
+};
 
 void cwi_filter_store(const cw_volume *out, void *voxel, double value)
 {
     if (out->type != CW_F32 && out->type != CW_F64) {
-        double low, high;
-        find_limits(out->type, &low, &high);
-        const double exact = value;
+        const double low = limits[out->type][0], high = limits[out->type][1], exact = value;
         value = fmin(fmax(rint(value), low), high);
         if (out->has_nodata && value == out->nodata)
             value += (exact >= value && value < high) || value <= low ? 1 : -1;

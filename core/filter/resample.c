@@ -19,7 +19,7 @@ static double cubic_kernel(double x, double width)
     return d < 1 ? (1.5 * d - 2.5) * d * d + 1 : d < 2 ? ((-0.5 * d + 2.5) * d - 4) * d + 2 : 0;
 }
 
-static double sinc(double x)
+static double compute_sinc(double x)
 {
     const double pi = 3.14159265358979323846;
     return x == 0 ? 1 : sin(pi * x) / (pi * x);
@@ -28,7 +28,7 @@ static double sinc(double x)
 static double lanczos_kernel(double x, double width)
 {
     const double d = fabs(x) / width;
-    return d < 3 ? sinc(d) * sinc(d / 3) : 0;
+    return d < 3 ? compute_sinc(d) * compute_sinc(d / 3) : 0;
 }
 
 typedef struct kernel {
@@ -48,38 +48,29 @@ const char *cw_kernel_name(cw_kernel k)
     return (unsigned)k < CW_KERNEL_COUNT ? kernels[k].name : NULL;
 }
 
-static double column_length(const cw_volume *v, int axis)
-{
-    return sqrt(v->affine[0][axis] * v->affine[0][axis] +
-                v->affine[1][axis] * v->affine[1][axis] +
-                v->affine[2][axis] * v->affine[2][axis]);
-}
-
 /* Places along an axis, in units of the affine's column. */
 typedef struct axis {
     double first, step; /* of the output */
+    double wider;       /* how much its voxels are, at least 1 */
     size_t count;
 } axis;
 
-/* Returns the mean distance between samples in units of the affine's column. */
-static double mean_step(const cw_volume *in, int a)
-{
-    const size_t n = in->dim[a];
-    const double *at = in->coordinates[a];
-    return at && n > 1 ? (at[n - 1] - at[0]) / (double)(n - 1) : 1;
-}
-
 static cw_status plan_axis(const cw_volume *in, int a, double spacing, axis *out, cw_error *err)
 {
-    const double length = column_length(in, a), old = mean_step(in, a);
-    const double step = spacing > 0 && length > 0 ? spacing / length : old;
-    const double steps = (double)(in->dim[a] - 1) * old / step;
+    const size_t last = in->dim[a] - 1;
+    const double *at = in->coordinates[a];
+    double mm[3];
+    cw_volume_spacing(in, mm);
+    const double old = at && last ? (at[last] - at[0]) / (double)last : 1;
+    const double step = spacing > 0 && mm[a] > 0 ? old * (spacing / mm[a]) : old;
+    const double steps = (double)last * old / step;
     if (!(steps < MOST))
         return cwi_fail(err, CW_ERR_LIMIT,
                         "spacing_mm[%d] of %g makes more than %g samples along an axis", a,
                         spacing, MOST);
-    *out = (axis){.first = in->coordinates[a] ? in->coordinates[a][0] : 0,
+    *out = (axis){.first = at ? at[0] : 0,
                   .step = step,
+                  .wider = fmax(1, step / old),
                   .count = (size_t)(steps + 1e-6) + 1};
     return CW_OK;
 }
@@ -87,14 +78,14 @@ static cw_status plan_axis(const cw_volume *in, int a, double spacing, axis *out
 static cw_status set_weights(cwi_axis_weights *w, const cw_volume *in, int a, const axis *x,
                              const kernel *k, cw_error *err)
 {
-    const double wider = fmax(1, x->step / mean_step(in, a)), reach = k->reach * wider;
+    const double reach = k->reach * x->wider;
     const double most = floor(2 * reach) + 1;
     const size_t samples = in->dim[a], taps = most < (double)samples ? (size_t)most : samples;
     cw_status st = cwi_axis_weights_init(w, x->count, taps, err);
     for (size_t n = 0; n < x->count && st == CW_OK; n++) {
         const double at = x->first + (double)n * x->step;
         const double place = samples < 2 ? 0 : cwi_coordinate_index(in, a, at);
-        cwi_axis_weights_set(w, n, place, samples, reach, k->weight, wider);
+        cwi_axis_weights_set(w, n, place, samples, reach, k->weight, x->wider);
     }
     return st;
 }

@@ -38,7 +38,7 @@ private:
     std::vector<uint8_t> held;       // vertices: at a seam
     std::vector<uint32_t> vertex_of; // shells: one of their vertices
     std::vector<Box> boxes;          // shells: around all their places so far
-    std::unique_ptr<Nearby> nearby;  // small shells; NULL: there are none
+    std::unique_ptr<Nearby> nearby;  // tree of the small shells, or NULL
 };
 
 } // namespace cw

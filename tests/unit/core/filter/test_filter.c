@@ -44,7 +44,7 @@ static bool is_gap(const cw_volume *v, double x)
     return !isfinite(x) || (v->has_nodata && x == v->nodata);
 }
 
-static size_t clamped(long n, size_t count)
+static size_t clamp_index(long n, size_t count)
 {
     return n < 0 ? 0 : n < (long)count ? (size_t)n : count - 1;
 }
@@ -66,7 +66,7 @@ static double mean_around(const cw_volume *v, const size_t at[3], const double s
                 size_t p[3];
                 for (int a = 0; a < 3; a++) {
                     const double t = sigma[a] > 0 ? (double)by[a] / sigma[a] : 0;
-                    p[a] = clamped((long)at[a] + by[a], v->dim[a]);
+                    p[a] = clamp_index((long)at[a] + by[a], v->dim[a]);
                     exponent += t * t / 2;
                 }
                 const double value = stored_at(v, p[0], p[1], p[2]), w = exp(-exponent);
@@ -129,9 +129,9 @@ static double median_around(const cw_volume *v, const size_t at[3], long radius)
     for (long z = -radius; z <= radius; z++)
         for (long y = -radius; y <= radius; y++)
             for (long x = -radius; x <= radius; x++) {
-                const double value = stored_at(v, clamped((long)at[0] + x, v->dim[0]),
-                                               clamped((long)at[1] + y, v->dim[1]),
-                                               clamped((long)at[2] + z, v->dim[2]));
+                const double value = stored_at(v, clamp_index((long)at[0] + x, v->dim[0]),
+                                               clamp_index((long)at[1] + y, v->dim[1]),
+                                               clamp_index((long)at[2] + z, v->dim[2]));
                 if (!is_gap(v, value))
                     values[count++] = value;
             }
@@ -320,7 +320,7 @@ static void results_do_not_depend_on_threads(void **state)
     cw_volume_free(&v);
 }
 
-static bool refuse(void *user, const char *step, double share)
+static bool refuse_progress(void *user, const char *step, double share)
 {
     (void)user;
     (void)step;
@@ -356,7 +356,7 @@ static void bad_arguments_are_named(void **state)
           CW_ERR_LIMIT, "100 bytes");
     FAILS(cw_volume_gauss(&v, one, &(cw_filter_desc){.max_bytes = 1000}, &out, &err),
           CW_ERR_LIMIT, "1000 bytes");
-    const cw_filter_desc stopped = {.progress = {.report = refuse}};
+    const cw_filter_desc stopped = {.progress = {.report = refuse_progress}};
     assert_int_equal(cw_volume_gauss(&v, one, &stopped, &out, &err), CW_ERR_CANCELLED);
     assert_null(out.data);
     assert_int_equal(cw_volume_median(&v, 1, &stopped, &out, &err), CW_ERR_CANCELLED);

@@ -24,7 +24,7 @@ static cw_mesh make_onion(bool open)
     return mesh;
 }
 
-static cw_quality measure(const cw_mesh *mesh)
+static cw_quality measure_shells(const cw_mesh *mesh)
 {
     cw_quality q;
     cw_error err = {0};
@@ -38,11 +38,11 @@ static void only_outer_shells_stay(void **state)
     cw_mesh mesh = make_onion(false);
     cw_drop_counts counts;
     cw_error err = {0};
-    const cw_quality before = measure(&mesh);
+    const cw_quality before = measure_shells(&mesh);
     const size_t triangles = mesh.triangle_count;
     assert_int_equal(before.components, 5);
     assert_ok(cw_mesh_fill_voids(&mesh, 0, &counts, &err), err);
-    const cw_quality after = measure(&mesh);
+    const cw_quality after = measure_shells(&mesh);
     assert_int_equal(after.components, 2);
     assert_true(after.cavities == 0 && after.nested == 0 && after.inside_out == 0);
     assert_int_equal(after.unused_vertices, 0);
