@@ -6,6 +6,7 @@
 #include "cli/results/mesh_parts.h"
 #include "cli/results/mesh_write_options.h"
 #include "cli/results/output_names.h"
+#include "cli/results/smoothed.h"
 #include "cli/results/write_result.h"
 #include "core/base/status.h"
 #include "core/mesh/mesh.h"
@@ -22,8 +23,9 @@ typedef struct smooth_args {
     cli_compress compress;
     cli_written written;
     const char *output, *json;
-    size_t iterations;
-    cli_length max_move;
+    size_t iterations; /* OWN_ITERATIONS: those of the method */
+    cli_length max_move, width;
+    int method;
     int progress;
     bool keep_border, allow_intersections, merge, orient, measure;
 } smooth_args;
@@ -34,6 +36,7 @@ typedef struct run_state {
     cli_mesh mesh;
     cli_pieces pieces;
     double max_move_mm; /* 0: half the mean edge of each part */
+    double width_mm;    /* 0: a multiple of it */
     cw_smooth_facts facts;
     bool is_smoothed;
     char found[320]; /* for the line */
@@ -42,19 +45,27 @@ typedef struct run_state {
     double start;
 } run_state;
 
-/* Smaller changes of the volume are rounding to single precision. */
-static const double UNCHANGED_PERCENT = 1e-4;
+#define OWN_ITERATIONS SIZE_MAX
 
-static const smooth_args defaults = {.iterations = 10, .keep_border = true, .measure = true};
+static const smooth_args defaults = {
+    .iterations = OWN_ITERATIONS, .keep_border = true, .measure = true};
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
      "Mesh to write, in the format of its extension; may hold {stem}",
      offsetof(smooth_args, output), CLI_VALUES_MESH_OUTPUT},
     CLI_HEADED("Smoothing"),
+    {"method", 0, CLI_CHOICE, "taubin/hc/fair",
+     "How vertices move: taubin keeps large shapes, hc a little more detail, fair removes waves by "
+     "their length (taubin)",
+     offsetof(smooth_args, method)},
     {"iterations", 'n', CLI_COUNT, "N",
-     "Number of iterations: more remove longer waves of noise, and more detail (10)",
+     "Number of iterations: more remove longer waves of noise, and more detail (10; of fair 3)",
      offsetof(smooth_args, iterations)},
+    {"width", 0, CLI_LENGTH, "L",
+     "Of --method fair: waves of this length keep half of their height, shorter ones less (6 mean "
+     "edges)",
+     offsetof(smooth_args, width)},
     {"max-move", 'm', CLI_LENGTH, "L",
      "How far a vertex may move: 0.1mm, 0.05% of the box's diagonal, or 0.5vox where the file "
      "tells the voxels (half the mean edge)",
@@ -87,7 +98,10 @@ static const cli_option options[] = {
 static void put_params(cli_json *j, const void *p, const cli_made *made)
 {
     const run_state *s = p;
-    cli_json_count(j, "iterations", s->args->iterations);
+    cli_json_text(j, "method", cw_smooth_method_name((cw_smooth_method)s->args->method));
+    cli_json_count(j, "iterations", s->facts.iterations);
+    if (s->args->method == CW_SMOOTH_FAIR)
+        cli_json_number(j, "width_mm", s->facts.width_mm);
     cli_json_number(j, "max_move_mm", s->facts.limit_mm);
     cli_json_bool(j, "keep_border", s->args->keep_border);
     cli_json_bool(j, "allow_intersections", s->args->allow_intersections);
@@ -104,36 +118,22 @@ static void put_facts(cli_json *j, const void *p)
         cli_json_mesh_file(j, "input", &s->mesh);
     if (!s->is_smoothed)
         return;
-    cli_json_open(j, "smooth", '{');
-    cli_json_number(j, "max_mm", s->facts.max_mm);
-    cli_json_number(j, "mean_mm", s->facts.mean_mm);
-    cli_json_number(j, "volume_before_mm3", s->facts.volume_before_mm3);
-    cli_json_number(j, "volume_after_mm3", s->facts.volume_after_mm3);
-    cli_json_count(j, "flipped", s->facts.flipped);
-    cli_json_count(j, "border_vertices", s->facts.border);
-    cli_json_count(j, "put_back", s->facts.put_back);
-    cli_json_close(j, '}');
+    cli_json_smoothed(j, &s->facts);
 }
 
-/* Prints moves, and what they did to volume and triangles. An open surface encloses no volume. */
 static void tell_facts(run_state *s)
 {
     const cw_smooth_facts *f = &s->facts;
-    const size_t size = sizeof s->found;
-    size_t used =
-        (size_t)snprintf(s->found, size, "; vertices moved by at most %.3g mm, mean %.3g mm",
-                         f->max_mm, f->mean_mm);
-    const double change = 100 * (f->volume_after_mm3 / f->volume_before_mm3 - 1);
-    if (!f->border && f->volume_before_mm3 != 0)
-        used += (size_t)snprintf(s->found + used, size - used,
-                                 "; volume %.6g mm3, changed by %.2g %%", f->volume_after_mm3,
-                                 fabs(change) < UNCHANGED_PERCENT ? 0 : change);
-    snprintf(s->found + used, size - used, "; %s triangle%s flipped", cli_count(f->flipped),
-             f->flipped == 1 ? "" : "s");
+    char text[CLI_SMOOTHED_TEXT];
+    cli_smoothed_text(f, text);
+    snprintf(s->found, sizeof s->found, "; %s", text);
     if (f->border)
         cli_say("%s: %s vertices at borders %s", s->mesh.path, cli_count(f->border),
                 s->args->keep_border ? "stay (--no-keep-border smooths them)"
                                      : "move along them");
+    if (f->junction)
+        cli_say("%s: %s vertices at edges of three or more triangles %s", s->mesh.path,
+                cli_count(f->junction), s->args->keep_border ? "stay" : "move along them");
     if (f->put_back)
         cli_say("%s: %s vertices stay, because their triangles would intersect others or lose "
                 "their area",
@@ -147,9 +147,12 @@ static void tell_facts(run_state *s)
 
 static cw_status check_values(const smooth_args *args, cw_error *err)
 {
-    if (args->iterations < 1 || args->iterations > CW_SMOOTH_MAX_ITERATIONS)
+    if (args->iterations != OWN_ITERATIONS &&
+        (args->iterations < 1 || args->iterations > CW_SMOOTH_MAX_ITERATIONS))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--iterations %zu: expected 1 to %zu",
                         args->iterations, CW_SMOOTH_MAX_ITERATIONS);
+    if (args->width.given && args->method != CW_SMOOTH_FAIR)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--width is for --method fair");
     if (!args->output)
         return cwi_fail(err, CW_ERR_ARGUMENT, "smooth needs an output: -o FILE");
     return cli_check_compress(&args->compress, false, err);
@@ -187,17 +190,24 @@ static double voxel_side(const cw_mesh *mesh)
     return cbrt(product);
 }
 
-static cw_status resolve_max_move(run_state *s, cw_error *err)
+/* Finds a length in mm, 0 where none is given. */
+static cw_status resolve_length(const run_state *s, const char *option,
+                                const cli_length *length, double *mm, cw_error *err)
 {
-    const cli_length *move = &s->args->max_move;
     const double voxel_mm = voxel_side(&s->pieces.piece->input);
-    if (move->given && move->unit == CLI_VOXELS && !(voxel_mm > 0))
+    if (length->given && length->unit == CLI_VOXELS && !(voxel_mm > 0))
         return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "%s: --max-move: the file tells no voxels; give mm, or %% of its box's "
+                        "%s: %s: the file tells no voxels; give mm, or %% of its box's "
                         "diagonal",
-                        s->mesh.path);
-    s->max_move_mm = move->given ? cli_length_mm(move, s->pieces.diagonal_mm, voxel_mm) : 0;
+                        s->mesh.path, option);
+    *mm = length->given ? cli_length_mm(length, s->pieces.diagonal_mm, voxel_mm) : 0;
     return CW_OK;
+}
+
+static cw_status resolve_lengths(run_state *s, cw_error *err)
+{
+    cw_status st = resolve_length(s, "--max-move", &s->args->max_move, &s->max_move_mm, err);
+    return st == CW_OK ? resolve_length(s, "--width", &s->args->width, &s->width_mm, err) : st;
 }
 
 static cw_status read_input(run_state *s, cw_error *err)
@@ -217,19 +227,22 @@ static cw_status read_input(run_state *s, cw_error *err)
         st = cli_measure_pieces(&s->pieces, s->threads, err);
     if (st == CW_OK)
         cli_report_end(&s->report, "read", 1, s->pieces.triangles);
-    return st == CW_OK ? resolve_max_move(s, err) : st;
+    return st == CW_OK ? resolve_lengths(s, err) : st;
 }
 
 /* Adds the facts of a part to those of others. Until the last is there, mean_mm is a sum. */
 static void add_facts(cw_smooth_facts *sum, const cw_smooth_facts *f, size_t vertices)
 {
     sum->limit_mm = fmax(sum->limit_mm, f->limit_mm);
+    sum->width_mm = fmax(sum->width_mm, f->width_mm);
+    sum->iterations = f->iterations;
     sum->max_mm = fmax(sum->max_mm, f->max_mm);
     sum->mean_mm += f->mean_mm * (double)vertices;
     sum->volume_before_mm3 += f->volume_before_mm3;
     sum->volume_after_mm3 += f->volume_after_mm3;
     sum->flipped += f->flipped;
     sum->border += f->border;
+    sum->junction += f->junction;
     sum->put_back += f->put_back;
     sum->undecided = sum->undecided || f->undecided;
 }
@@ -242,7 +255,9 @@ static cw_status smooth_pieces(run_state *s, cw_error *err)
     for (size_t n = 0; n < s->pieces.count && st == CW_OK; n++) {
         cli_piece *p = &s->pieces.piece[n];
         const cw_smooth_desc desc = {
-            .iterations = s->args->iterations,
+            .method = (cw_smooth_method)s->args->method,
+            .iterations = s->args->iterations == OWN_ITERATIONS ? 0 : s->args->iterations,
+            .width_mm = s->width_mm,
             .max_move_mm = s->max_move_mm,
             .move_border = !s->args->keep_border,
             .allow_crossings = s->args->allow_intersections,

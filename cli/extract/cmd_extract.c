@@ -77,6 +77,12 @@ static const cli_option options[] = {
     {"fill-voids", 0, CLI_FLAG, NULL,
      "Leave out the cavities of solids, and all inside them (off)",
      offsetof(cli_extract_args, fill_voids)},
+    {"smooth", 0, CLI_SMOOTHING, "METHOD",
+     "Smooth the surface: taubin or hc, with their iterations (taubin:10), or fair, with the length "
+     "of waves that keep half (fair:4vox) (off)",
+     offsetof(cli_extract_args, smooth)},
+    {"max-move", 0, CLI_LENGTH, "L", "How far --smooth may move a vertex (0.5vox)",
+     offsetof(cli_extract_args, max_move)},
     {"normals", 0, CLI_CHOICE, "field/none",
      "Vertex normals from the field's gradient, or none (field)",
      offsetof(cli_extract_args, normals)},
@@ -102,7 +108,7 @@ static const cli_option options[] = {
      "and a glTF with all (none)",
      offsetof(cli_extract_args, lod)},
     {"measure", 0, CLI_FLAG, NULL,
-     "Measure the error of --simplify and --lod, which takes a while (on; --no-measure)",
+     "Measure the error of --simplify, --lod and --smooth, which takes a while (on; --no-measure)",
      offsetof(cli_extract_args, measure)},
     CLI_HEADED("Only what cameras see"),
     {"camera", 0, CLI_TEXT, "FILE[,FILE...]",
@@ -214,11 +220,11 @@ cli_delivery cli_extract_describe_delivery(const cli_extract_run *s)
 static cw_status deliver_level(cli_extract_run *s, size_t level, const cw_part *parts,
                                size_t count, size_t border_loops, cw_error *err)
 {
-    char text[32], simplify[64];
+    cli_making making;
     cw_provenance provenance[CLI_EXTRACT_PROVENANCE];
     cli_delivery how = cli_extract_describe_delivery(s);
     how.write.provenance = provenance;
-    how.write.provenance_count = cli_extract_provenance(s, level, text, simplify, provenance);
+    how.write.provenance_count = cli_extract_provenance(s, level, &making, provenance);
     /* each step was measured by itself; a surface in a spool was on its way */
     how.unchecked = how.unchecked || how.write.animated || parts->spool;
     how.parts = how.write.animated ? "steps" : NULL;
@@ -270,7 +276,7 @@ static cw_status make_surface(cli_extract_run *s, const cli_moment *moment, size
         return finish_surface(s, moment, made, stream_surface(s, moment, n, made, err), err);
     made->snapped = st == CW_OK && s->args->snap.value > 0;
     made->snap = made->snapped ? counts.snap : (cw_snap_counts){0};
-    if (st == CW_OK && cli_extract_is_simplified(s->args))
+    if (st == CW_OK && (cli_extract_is_simplified(s->args) || s->args->smooth.given))
         st = cli_extract_judge(s, made, &mesh, &counts, err);
     if (st == CW_OK)
         st = cli_extract_prove(s, made, &mesh, counts.bytes, err);

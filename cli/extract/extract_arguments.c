@@ -150,8 +150,9 @@ cw_status cli_extract_check_lod_steps(const cli_extract_run *s, cw_error *err)
 static cw_status check_measure(const cli_extract_args *args, cw_error *err)
 {
     if (!args->measure && !args->lod.count && !args->simplify.error.given &&
-        !args->simplify.triangles)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--no-measure is for --simplify and --lod");
+        !args->simplify.triangles && !args->smooth.given)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--no-measure is for --simplify, --lod and --smooth");
     return CW_OK;
 }
 
@@ -195,6 +196,10 @@ cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--stream always cannot be combined with %s, which needs all in memory",
                         cli_find_unstreamed(args));
+    if (args->max_move.given && !args->smooth.given)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--max-move is for --smooth");
+    if (args->smooth.given && args->pixel.cull)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--cull cannot be combined with --smooth");
     st = check_lod(args, err);
     if (st == CW_OK)
         st = check_measure(args, err);

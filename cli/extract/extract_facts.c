@@ -13,6 +13,9 @@
  * in 100. */
 static const double SHADING = 1.5;
 
+/* How far smoothing may move a vertex, in voxels, unless --max-move says it. */
+static const double DEFAULT_MOVE = 0.5;
+
 double cli_volume_voxel_mm(const cli_volume *volume)
 {
     const double *spacing = volume->spacing;
@@ -77,6 +80,19 @@ double cli_extract_shading(const cli_extract_args *args)
     return args->pixel.shading.given ? args->pixel.shading.value : SHADING;
 }
 
+cw_smooth_desc cli_extract_smoothing(const cli_extract_run *s)
+{
+    const cli_smoothing *smooth = &s->args->smooth;
+    const cli_length *most = &s->args->max_move;
+    return (cw_smooth_desc){
+        .method = (cw_smooth_method)smooth->method,
+        .iterations = smooth->iterations,
+        .width_mm = smooth->width.given ? cli_extract_length_mm(s, &smooth->width) : 0,
+        .max_move_mm = most->given ? cli_extract_length_mm(s, most)
+                                   : DEFAULT_MOVE * cli_extract_voxel_mm(s),
+    };
+}
+
 static void put_pixels(cli_json *j, const cli_extract_run *s)
 {
     const cli_pixel_args *a = &s->args->pixel;
@@ -116,6 +132,10 @@ void cli_extract_put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_number(j, "min_volume_mm3", cli_extract_least_mm3(s));
     if (args->fill_voids)
         cli_json_bool(j, "fill_voids", true);
+    if (args->smooth.given) {
+        cli_json_text(j, "smooth", cli_smoothing_text(&args->smooth));
+        cli_json_number(j, "max_move_mm", cli_extract_smoothing(s).max_move_mm);
+    }
     put_pixels(j, s);
     cli_json_text(j, "normals", args->normals ? "none" : "field");
     if (args->iso.count > 1)
@@ -141,24 +161,34 @@ void cli_extract_put_series(cli_json *j, const void *p)
     cli_json_close(j, ']');
 }
 
-size_t cli_extract_provenance(const cli_extract_run *s, size_t n, char level[32],
-                              char simplify[64], cw_provenance lines[CLI_EXTRACT_PROVENANCE])
+size_t cli_extract_provenance(const cli_extract_run *s, size_t n, cli_making *making,
+                              cw_provenance lines[CLI_EXTRACT_PROVENANCE])
 {
     const cli_extract_args *args = s->args;
-    snprintf(level, 32, "%.9g", args->iso.value[n]);
-    lines[0] = (cw_provenance){"isovalue", level};
-    lines[1] = (cw_provenance){"inside", cli_extract_is_low(s) ? "below" : "above"};
-    lines[2] = (cw_provenance){"topology", args->topology ? "simple" : "field"};
-    lines[3] = (cw_provenance){"placement", args->placement ? "cubic" : "linear"};
+    char *simplify = making->simplify;
+    size_t count = 0;
+    snprintf(making->level, sizeof making->level, "%.9g", args->iso.value[n]);
+    lines[count++] = (cw_provenance){"isovalue", making->level};
+    lines[count++] = (cw_provenance){"inside", cli_extract_is_low(s) ? "below" : "above"};
+    lines[count++] = (cw_provenance){"topology", args->topology ? "simple" : "field"};
+    lines[count++] = (cw_provenance){"placement", args->placement ? "cubic" : "linear"};
+    if (args->smooth.given) {
+        snprintf(making->smooth, sizeof making->smooth, "by %s, %.9g mm at most",
+                 cli_smoothing_text(&args->smooth), cli_extract_smoothing(s).max_move_mm);
+        lines[count++] = (cw_provenance){"smoothed", making->smooth};
+    }
     if (args->pixel.pixels.given)
-        snprintf(simplify, 64, "to %.9g pixels of %zu cameras", args->pixel.pixels.value,
-                 s->plan.view_count);
+        snprintf(simplify, sizeof making->simplify, "to %.9g pixels of %zu cameras",
+                 args->pixel.pixels.value, s->plan.view_count);
     else if (args->pixel.most.given)
-        snprintf(simplify, 64, "to %.9g mm", cli_extract_length_mm(s, &args->pixel.most));
+        snprintf(simplify, sizeof making->simplify, "to %.9g mm",
+                 cli_extract_length_mm(s, &args->pixel.most));
     else if (args->simplify.error.given)
-        snprintf(simplify, 64, "to %.9g mm", cli_extract_error_mm(s));
+        snprintf(simplify, sizeof making->simplify, "to %.9g mm", cli_extract_error_mm(s));
     else
-        snprintf(simplify, 64, "to %zu triangles", args->simplify.triangles);
-    lines[4] = (cw_provenance){"simplified", simplify};
-    return cli_extract_is_simplified(args) ? 5 : 4;
+        snprintf(simplify, sizeof making->simplify, "to %zu triangles",
+                 args->simplify.triangles);
+    if (cli_extract_is_simplified(args))
+        lines[count++] = (cw_provenance){"simplified", simplify};
+    return count;
 }

@@ -22,6 +22,8 @@ typedef struct cli_extract_args {
     cli_counts lod;
     cli_amount least;
     bool fill_voids;
+    cli_smoothing smooth;
+    cli_length max_move;
     cli_pixel_args pixel;
     int inside, normals, progress, topology, placement, accel;
     bool open, no_clobber, local, check, measure, animate, prove_crop;
@@ -65,7 +67,7 @@ typedef struct cli_extract_run {
     cli_extract_output output;
 } cli_extract_run;
 
-enum { CLI_EXTRACT_PROVENANCE = 5 };
+enum { CLI_EXTRACT_PROVENANCE = 6 };
 
 /* ---- arguments --------------------------------------------------------------------------- */
 
@@ -93,6 +95,9 @@ double cli_extract_voxel_mm(const cli_extract_run *s);
 double cli_extract_length_mm(const cli_extract_run *s, const cli_length *length);
 double cli_extract_error_mm(const cli_extract_run *s);
 
+/* Returns the settings of --smooth. */
+cw_smooth_desc cli_extract_smoothing(const cli_extract_run *s);
+
 /* Returns the minimum volume that a component encloses; 0: no minimum. */
 double cli_extract_least_mm3(const cli_extract_run *s);
 
@@ -109,10 +114,15 @@ double cli_extract_shading(const cli_extract_args *args);
 void cli_extract_put_params(cli_json *j, const void *p, const cli_made *made);
 void cli_extract_put_series(cli_json *j, const void *p);
 
+/* Texts of a record. */
+typedef struct cli_making {
+    char level[32], smooth[96], simplify[64];
+} cli_making;
+
 /* How the surface of level n was made, for the file's own record; how many lines. Not of what:
  * names of files may be names of patients. */
-size_t cli_extract_provenance(const cli_extract_run *s, size_t n, char level[32],
-                              char simplify[64], cw_provenance lines[CLI_EXTRACT_PROVENANCE]);
+size_t cli_extract_provenance(const cli_extract_run *s, size_t n, cli_making *making,
+                              cw_provenance lines[CLI_EXTRACT_PROVENANCE]);
 
 /* ---- a surface --------------------------------------------------------------------------- */
 
@@ -122,8 +132,8 @@ cli_wanted cli_extract_wants(const cli_extract_run *run, double iso);
 CW_NODISCARD cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
                                         cw_extract_counts *counts, cw_error *err);
 
-/* Reports how many triangles a simplified surface had before, and measures its distance from
- * the field if the voxels are in memory. */
+/* Reports how many triangles a simplified surface had before, and measures the distance of a
+ * simplified or smoothed one from the field if the voxels are in memory. */
 CW_NODISCARD cw_status cli_extract_judge(cli_extract_run *s, cli_made *made,
                                          const cw_mesh *mesh, const cw_extract_counts *counts,
                                          cw_error *err);

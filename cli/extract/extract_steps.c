@@ -6,6 +6,7 @@
 #include "cli/framework/console.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/results/mesh_comparison.h"
+#include "cli/results/smoothed.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 
@@ -36,7 +37,8 @@ cli_wanted cli_extract_wants(const cli_extract_run *s, double iso)
                     .cubic_placement = s->args->placement,
                     .snap = s->args->snap.value,
                     .no_normals = s->args->normals ||
-                                  (s->args->lod.count && cli_extract_shades_levels(s)),
+                                  (s->args->lod.count && cli_extract_shades_levels(s) &&
+                                   !s->args->smooth.given),
                     .threads = (int)s->args->input.threads,
                     .max_triangles = s->args->max_triangles,
                     .extra_bytes = s->args->check || s->args->fill_voids ? cli_check_bytes()
@@ -44,6 +46,8 @@ cli_wanted cli_extract_wants(const cli_extract_run *s, double iso)
                                                                          : 0},
         .least_mm3 = least_mm3,
         .fill_voids = s->args->fill_voids,
+        .smooths = s->args->smooth.given,
+        .smooth = s->args->smooth.given ? cli_extract_smoothing(s) : (cw_smooth_desc){0},
     };
 }
 
@@ -110,11 +114,24 @@ static cw_status extract_for_views(cli_extract_run *s, const cli_wanted *w,
                     simplify->error_mm, mesh, &p->culled, err);
 }
 
+static void tell_smoothing(cli_extract_run *s, const cli_made *made)
+{
+    const cw_smooth_facts *f = &made->smoothed;
+    char text[CLI_SMOOTHED_TEXT];
+    cli_smoothed_text(f, text);
+    cli_say("%s: smoothed by %s: %s", s->input.volume.path,
+            cli_smoothing_text(&s->args->smooth), text);
+    if (f->undecided)
+        cli_report_warn(&s->output.report, "too many triangles are in one place: new "
+                                           "intersections there were not looked for");
+}
+
 cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
                            cw_extract_counts *counts, cw_error *err)
 {
     cli_wanted w = cli_extract_wants(s, made->iso);
     w.filled = &made->voids;
+    w.smoothed = &made->smoothed;
     cw_drop_counts *dropped = &made->components;
     double error;
     cw_status st = find_error(s, &error, err);
@@ -142,6 +159,9 @@ cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
         cli_say("%s: %s void%s filled, %.6g mm3", s->input.volume.path,
                 cli_count(made->voids.dropped), made->voids.dropped == 1 ? "" : "s",
                 made->voids.dropped_mm3);
+    made->is_smoothed = w.smooths;
+    if (w.smooths)
+        tell_smoothing(s, made);
     if (s->args->pixel.cull)
         cli_say("%s: %.3g %% of the voxels are in bricks that cameras see; %s triangles in "
                 "them that no camera sees are left out",
@@ -204,8 +224,10 @@ cw_status cli_extract_judge(cli_extract_run *s, cli_made *made, const cw_mesh *m
                             const cw_extract_counts *counts, cw_error *err)
 {
     const cli_extract_args *args = s->args;
-    cli_say("%s: %s triangles were extracted, and simplified to %s", s->input.volume.path,
-            cli_count(counts->triangles), cli_count(mesh->triangle_count));
+    const bool is_simplified = cli_extract_is_simplified(args);
+    if (is_simplified)
+        cli_say("%s: %s triangles were extracted, and simplified to %s", s->input.volume.path,
+                cli_count(counts->triangles), cli_count(mesh->triangle_count));
     if (args->simplify.triangles && mesh->triangle_count > args->simplify.triangles)
         cli_report_warn(&s->output.report,
                         "%s triangles were requested, %s are left: removing more would tear "
@@ -221,7 +243,7 @@ cw_status cli_extract_judge(cli_extract_run *s, cli_made *made, const cw_mesh *m
         return CW_OK;
     }
     cw_status st = measure_from_field(s, made, mesh, err);
-    return st == CW_OK && !s->plan.view_count && !args->pixel.most.given
+    return st == CW_OK && is_simplified && !s->plan.view_count && !args->pixel.most.given
                ? measure_from_full(s, made, mesh, counts, err)
                : st;
 }

@@ -88,7 +88,8 @@ static cw_status finish_level(void *state, cli_made *made, cw_mesh *level, cw_er
                                      .threads = (int)s->args->input.threads};
     made->iso = s->args->iso.value[0];
     cw_status st = s->args->check ? hold_level(r, made, level, err) : CW_OK;
-    if (st != CW_OK || s->args->normals || !cli_extract_shades_levels(s))
+    if (st != CW_OK || s->args->normals || s->args->smooth.given ||
+        !cli_extract_shades_levels(s))
         return st;
     cli_report_begin(&s->output.report);
     st = cw_extract_normals(&s->input.volume.view, &normals, level, err);
@@ -117,10 +118,11 @@ static cw_status deliver_levels(void *state, size_t file, const cw_part *parts, 
     cli_extract_run *s = r->run;
     const cli_counts *lod = &s->args->lod;
     const bool all = file == lod->count;
-    char iso[32], unused[64], simplified[CLI_MAX_COUNTS * 24];
+    cli_making making;
+    char simplified[CLI_MAX_COUNTS * 24];
     cw_provenance lines[CLI_EXTRACT_PROVENANCE];
     cli_delivery how = cli_extract_describe_delivery(s);
-    const size_t line_count = cli_extract_provenance(s, 0, iso, unused, lines);
+    const size_t line_count = cli_extract_provenance(s, 0, &making, lines);
     print_counts(lod, all ? 0 : file, all ? file : file + 1, simplified, sizeof simplified);
     lines[line_count] = (cw_provenance){"simplified", simplified};
     how.write.provenance = lines;

@@ -64,10 +64,10 @@ static void put_input(cli_json *j, const cli_volume *v)
 
 static void put_job(cli_json *j, const cli_extract_run *run, size_t parts)
 {
-    char level[32], simplify[64];
+    cli_making making;
     cw_provenance lines[CLI_EXTRACT_PROVENANCE];
     const cli_made made = {.iso = run->args->iso.value[0]};
-    const size_t count = cli_extract_provenance(run, 0, level, simplify, lines);
+    const size_t count = cli_extract_provenance(run, 0, &making, lines);
     cli_json_open(j, NULL, '{');
     cli_json_text(j, "schema", schema);
     cli_json_text(j, "version", CW_VERSION);

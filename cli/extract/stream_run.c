@@ -26,6 +26,7 @@ const char *cli_find_unstreamed(const cli_extract_args *args)
         {"--camera", args->pixel.camera != NULL},
         {"--min-volume beside --simplify", args->least.given && has_simplify(args)},
         {"--fill-voids", args->fill_voids},
+        {"--smooth", args->smooth.given},
         {"--snap", args->snap.value > 0},
         {"--animate", args->animate},
         {"--lod", args->lod.count > 0},

@@ -175,6 +175,7 @@ size_t cli_option_size(const cli_option *o)
         [CLI_LEVEL] = sizeof(cli_number),
         [CLI_RESAMPLE] = sizeof(cli_resample),
         [CLI_DENOISE] = sizeof(cli_denoise),
+        [CLI_SMOOTHING] = sizeof(cli_smoothing),
         [CLI_LEVELS] = sizeof(cli_numbers),
         [CLI_COUNT] = sizeof(size_t),
         [CLI_COUNTS] = sizeof(cli_counts),
@@ -266,6 +267,10 @@ bool cli_option_text(const cli_option *o, const void *args, char *text, size_t s
         if (((const cli_denoise *)field)->given)
             snprintf(text, size, "%s", cli_denoise_text(field));
         break;
+    case CLI_SMOOTHING:
+        if (((const cli_smoothing *)field)->given)
+            snprintf(text, size, "%s", cli_smoothing_text(field));
+        break;
     case CLI_LENGTHS:
         print_numbers(((const cli_lengths *)field)->mm,
                       ((const cli_lengths *)field)->given ? 3 : 0, text, size);
@@ -317,6 +322,8 @@ static bool store_value(const cli_option *o, const char *text, void *field)
         return cli_parse_resample(text, field);
     case CLI_DENOISE:
         return cli_parse_denoise(text, field);
+    case CLI_SMOOTHING:
+        return cli_parse_smoothing(text, field);
     case CLI_COUNT:
         return cli_parse_count(text, 1000, field);
     case CLI_COUNTS:
@@ -366,6 +373,9 @@ static const char *describe_expected(const cli_option *o)
     case CLI_DENOISE:
         return "gauss with a width such as gauss:0.7vox or gauss:0.5mm, or median with a radius of "
                "1 to 3 voxels such as median:1";
+    case CLI_SMOOTHING:
+        return "taubin or hc, with their iterations from 1 to 1000 such as taubin:10, or fair, with "
+               "a length such as fair:4vox or fair:2mm";
     case CLI_COUNT:
         return "a whole number such as 500, 50k or 2M";
     case CLI_COUNTS:

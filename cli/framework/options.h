@@ -25,6 +25,7 @@ typedef enum cli_kind {
     CLI_REDUCTION, /* cli_reduction */
     CLI_RESAMPLE,  /* cli_resample: iso, 0.5mm, 1x1x2mm; then a kernel: 0.5mm:cubic */
     CLI_DENOISE,   /* cli_denoise: gauss:0.7vox, gauss:0.5mm, median:1 */
+    CLI_SMOOTHING, /* cli_smoothing: taubin, hc:20, fair:2vox */
     CLI_STEPS,     /* cli_steps: 0:20:2, 0,3,7 or all */
     CLI_WEIGHTS,   /* cli_weights: normal:0.5,color:1; value has the names, parted by '/' */
     CLI_COMPONENT, /* cli_component: its number from 0, or mag */
@@ -114,6 +115,14 @@ typedef struct cli_denoise {
     size_t radius;    /* of a median in voxels; 0: a Gaussian of this width: */
     cli_length width; /* millimetres or voxels */
 } cli_denoise;
+
+/* How a surface is smoothed. */
+typedef struct cli_smoothing {
+    bool given;
+    int method;        /* cw_smooth_method */
+    size_t iterations; /* 0: the method's own */
+    cli_length width;  /* of fair; not given: its own */
+} cli_smoothing;
 
 /* Selection among the values of a voxel. */
 typedef struct cli_component {

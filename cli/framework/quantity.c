@@ -5,6 +5,7 @@
 #include "core/base/text.h"
 
 #include <cubewright/filter.h>
+#include <cubewright/smooth.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -411,6 +412,24 @@ bool cli_parse_denoise(const char *text, cli_denoise *out)
     return out->given;
 }
 
+bool cli_parse_smoothing(const char *text, cli_smoothing *out)
+{
+    *out = (cli_smoothing){0};
+    for (int m = 0; m < CW_SMOOTH_METHOD_COUNT && !out->given; m++) {
+        const char *rest = text;
+        out->given = skip_word(&rest, cw_smooth_method_name((cw_smooth_method)m)) &&
+                     (*rest == '\0' || *rest == ':');
+        out->method = m;
+        if (!out->given || *rest == '\0')
+            continue;
+        out->given = m == CW_SMOOTH_FAIR ? cli_parse_length(rest + 1, &out->width)
+                                         : cli_parse_count(rest + 1, 1000, &out->iterations) &&
+                                               out->iterations >= 1 &&
+                                               out->iterations <= CW_SMOOTH_MAX_ITERATIONS;
+    }
+    return out->given;
+}
+
 const char *cli_resample_text(const cli_resample *r)
 {
     static char text[128];
@@ -431,5 +450,20 @@ const char *cli_denoise_text(const cli_denoise *d)
     else
         snprintf(text, sizeof text, "gauss:%s%s", cli_number_text(d->width.value),
                  d->width.unit == CLI_VOXELS ? "vox" : "mm");
+    return text;
+}
+
+const char *cli_smoothing_text(const cli_smoothing *s)
+{
+    static char text[64];
+    static const char *const units[] = {"mm", "%", "vox"};
+    const char *method = cw_smooth_method_name((cw_smooth_method)s->method);
+    if (s->iterations)
+        snprintf(text, sizeof text, "%s:%zu", method, s->iterations);
+    else if (s->width.given)
+        snprintf(text, sizeof text, "%s:%s%s", method, cli_number_text(s->width.value),
+                 units[s->width.unit]);
+    else
+        snprintf(text, sizeof text, "%s", method);
     return text;
 }

@@ -14,9 +14,13 @@ bool cli_parse_levels(const char *text, cli_numbers *out);
 bool cli_parse_resample(const char *text, cli_resample *out);
 bool cli_parse_denoise(const char *text, cli_denoise *out);
 
+/* The name of a method; then a colon and iterations, or the width of fair. */
+bool cli_parse_smoothing(const char *text, cli_smoothing *out);
+
 /* Return these as they are typed, in static memory. */
 const char *cli_resample_text(const cli_resample *resample);
 const char *cli_denoise_text(const cli_denoise *denoise);
+const char *cli_smoothing_text(const cli_smoothing *smoothing);
 
 /* Returns a level as it is typed, in static memory as of cli_number_text(). */
 const char *cli_level_text(cli_level level, double value);

@@ -23,8 +23,8 @@ const cli_synonym cli_synonyms[] = {
      "--drop-components remove small components."},
     {"smooth|filter|laplacian|taubin|gaussian|fairing|noisy", "smooth",
      "smooth|--denoise|--smooth-labels|--snap|--placement|--min-volume|--drop-components|--noise",
-     "'smooth' smooths meshes, 'extract --denoise' the values of volumes, and 'extract --labels' "
-     "the surfaces of labels. --min-volume and --drop-components remove small components."},
+     "'smooth' and 'extract --smooth' smooth meshes, 'extract --denoise' the values of volumes, and "
+     "'extract --labels' the surfaces of labels. --min-volume and --drop-components remove small components."},
     {"cavit|enclosed|hollow inside", "void", "--fill-voids|--min-volume", NULL},
     {"hole|watertight|repair|heal|leak", "closed", "closed|--open|--orient|--by|--profile",
      "cubewright does not fill holes of a mesh. 'extract' makes closed meshes, 'check' finds "

@@ -87,7 +87,7 @@ cw_status cli_extract_surface(const cli_volume *volume, cw_extractor *extractor,
 
 bool cli_wants_whole(const cli_wanted *wanted)
 {
-    return wanted->least_mm3 > 0 || wanted->fill_voids;
+    return wanted->least_mm3 > 0 || wanted->fill_voids || wanted->smooths;
 }
 
 cw_status cli_fail_dropped(double least_mm3, const cw_drop_counts *dropped, cw_error *err)
@@ -95,6 +95,14 @@ cw_status cli_fail_dropped(double least_mm3, const cw_drop_counts *dropped, cw_e
     return cwi_fail(err, CW_ERR_EMPTY,
                     "no component encloses %.6g mm3: the largest of %zu encloses %.6g",
                     least_mm3, dropped->dropped, dropped->largest_mm3);
+}
+
+static cw_status smooth_surface(const cli_wanted *wanted, cw_mesh *mesh, cw_error *err)
+{
+    cw_smooth_desc desc = wanted->smooth;
+    desc.threads = wanted->extract.threads;
+    desc.progress = cli_progress((double)mesh->triangle_count / 1e6, "Mtriangle");
+    return cw_mesh_smooth(mesh, &desc, wanted->smoothed, err);
 }
 
 cw_status cli_extract_wanted(const cli_volume *volume, cw_extractor *extractor,
@@ -113,6 +121,8 @@ cw_status cli_extract_wanted(const cli_volume *volume, cw_extractor *extractor,
         st = cw_mesh_fill_voids(mesh, threads, wanted->filled, err);
     if (st == CW_OK && wanted->least_mm3 > 0 && !d->kept)
         st = cli_fail_dropped(wanted->least_mm3, d, err);
+    if (st == CW_OK && wanted->smooths)
+        st = smooth_surface(wanted, mesh, err);
     if (st == CW_OK)
         return CW_OK;
     cw_mesh_free(mesh);
@@ -171,7 +181,7 @@ cw_status cli_extract_simplified(const cli_volume *volume, const cli_wanted *wan
     cw_status st = dense && !cli_wants_whole(wanted)
                        ? simplify_slabs(volume, d, simplify, mesh, counts, err)
                        : simplify_whole(volume, wanted, simplify, mesh, counts, dropped, err);
-    if (st != CW_OK || !dense || d->no_normals)
+    if (st != CW_OK || !dense || d->no_normals || wanted->smooths)
         return st;
     st = cw_extract_normals(&volume->view, &normals, mesh, err);
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);

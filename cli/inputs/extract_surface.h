@@ -6,6 +6,7 @@
 
 #include <cubewright/extract.h>
 #include <cubewright/simplify.h>
+#include <cubewright/smooth.h>
 #include <cubewright/stream.h>
 
 /* Memory beside the slices and the program so far, when a surface is made slice by slice: the
@@ -44,15 +45,18 @@ typedef struct cli_wanted {
     double least_mm3;       /* components that enclose less are left out; default: none is */
     bool fill_voids;        /* closed components in others are left out, too */
     cw_drop_counts *filled; /* set to their counts; may be NULL */
+    bool smooths;           /* then, by this: */
+    cw_smooth_desc smooth;
+    cw_smooth_facts *smoothed; /* set to what that did; may be NULL */
 } cli_wanted;
 
-/* Returns true if components are left out: all of the surface is needed to tell which. */
+/* Returns true if components are left out, or all is smoothed: the surface is needed as a whole. */
 bool cli_wants_whole(const cli_wanted *wanted);
 
 /* Fails with CW_ERR_EMPTY: all components enclose less than a volume. */
 cw_status cli_fail_dropped(double least_mm3, const cw_drop_counts *dropped, cw_error *err);
 
-/* The same without the components that are too small.
+/* The same without the components that are too small, and smoothed, if it is to be.
  * dropped   may be NULL
  * Returns   CW_ERR_EMPTY also when all are, and how much the largest encloses */
 CW_NODISCARD cw_status cli_extract_wanted(const cli_volume *volume, cw_extractor *extractor,
@@ -61,8 +65,8 @@ CW_NODISCARD cw_status cli_extract_wanted(const cli_volume *volume, cw_extractor
                                           cw_error *err);
 
 /* The same, simplified slab by slab while it is extracted, so that all of it never is in
- * memory, unless components are to be left out: these are known when all is there. With normals
- * of the field, unless there are to be none.
+ * memory, unless it is needed as a whole. With normals of the field, unless there are to be none,
+ * or the surface is smoothed.
  * simplify  as for cw_simplifier_new()
  * counts    of the surface as it came */
 CW_NODISCARD cw_status cli_extract_simplified(const cli_volume *volume,

@@ -6,6 +6,7 @@
 #include "cli/framework/quantity.h"
 #include "cli/results/check_verdicts.h"
 #include "cli/results/compress_options.h"
+#include "cli/results/smoothed.h"
 #include "core/base/atomic_file.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
@@ -259,6 +260,8 @@ static void put_facts(cli_json *j, const cli_made *m)
         cli_json_number(j, "filled_mm3", m->voids.dropped_mm3);
         cli_json_close(j, '}');
     }
+    if (m->is_smoothed)
+        cli_json_smoothed(j, &m->smoothed);
     if (m->crop.made)
         put_crop(j, &m->crop);
     if (m->proof.made)

@@ -7,6 +7,7 @@
 
 #include <cubewright/check.h>
 #include <cubewright/extract.h>
+#include <cubewright/smooth.h>
 
 #include <stdio.h>
 
@@ -81,6 +82,8 @@ typedef struct cli_made {
     cw_drop_counts components; /* when something was */
     bool fills_voids;
     cw_drop_counts voids; /* when they were filled */
+    bool is_smoothed;
+    cw_smooth_facts smoothed; /* when it was */
     cli_proof proof;
     cli_crop_proof crop;
     char warning[CLI_MAX_WARNINGS][512];

@@ -277,6 +277,13 @@ class cw_pick_kind(enum.IntEnum):
     CW_PICK_MESH = 3
 
 
+class cw_smooth_method(enum.IntEnum):
+    CW_SMOOTH_TAUBIN = 0
+    CW_SMOOTH_HC = 1
+    CW_SMOOTH_FAIR = 2
+    CW_SMOOTH_METHOD_COUNT = 3
+
+
 class cw_error(Structure):
     status: int
     message: Any
@@ -2361,6 +2368,8 @@ class cw_smooth_desc(Structure):
     allow_crossings: bool
     threads: int
     progress: Any
+    method: int
+    width_mm: float
 
 
 cw_smooth_desc._fields_ = [
@@ -2370,29 +2379,37 @@ cw_smooth_desc._fields_ = [
     ("allow_crossings", c_bool),
     ("threads", c_int),
     ("progress", cw_progress),
+    ("method", c_int),
+    ("width_mm", c_double),
 ]
 
 
 class cw_smooth_facts(Structure):
     limit_mm: float
+    width_mm: float
+    iterations: int
     max_mm: float
     mean_mm: float
     volume_before_mm3: float
     volume_after_mm3: float
     flipped: int
     border: int
+    junction: int
     put_back: int
     undecided: bool
 
 
 cw_smooth_facts._fields_ = [
     ("limit_mm", c_double),
+    ("width_mm", c_double),
+    ("iterations", c_size_t),
     ("max_mm", c_double),
     ("mean_mm", c_double),
     ("volume_before_mm3", c_double),
     ("volume_after_mm3", c_double),
     ("flipped", c_size_t),
     ("border", c_size_t),
+    ("junction", c_size_t),
     ("put_back", c_size_t),
     ("undecided", c_bool),
 ]
@@ -2640,6 +2657,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_simplifier_take": (c_int, [c_void_p, POINTER(cw_slab), POINTER(cw_error)]),
     "cw_simplifier_finish": (c_int, [POINTER(cw_simplifier), POINTER(cw_mesh), POINTER(cw_simplify_facts), POINTER(cw_error)]),
     "cw_simplify_available": (c_bool, []),
+    "cw_smooth_method_name": (c_char_p, [c_int]),
     "cw_mesh_smooth": (c_int, [POINTER(cw_mesh), POINTER(cw_smooth_desc), POINTER(cw_smooth_facts), POINTER(cw_error)]),
 }
 

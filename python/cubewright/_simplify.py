@@ -12,6 +12,7 @@ from ._library import lib
 from ._mesh import ARRAYS, Mesh, take_mesh
 from ._options import (
     name_type,
+    take_choice,
     take_count,
     take_flag,
     take_length,
@@ -20,6 +21,8 @@ from ._options import (
     take_threads,
 )
 from ._progress import Progress, Reporter
+
+SMOOTH_METHODS = ("taubin", "hc", "fair")
 
 
 def _describe(
@@ -143,6 +146,7 @@ class Smoothed:
     volume_after: float
     flipped: int  # triangles that turned by 90 degrees or more
     border: int  # vertices at open edges
+    junction: int  # other vertices at edges of three or more triangles
     put_back: int  # vertices that stay because their triangles would meet others or lose their area
     undecided: bool  # too many triangles are in one place to look for all that meet
 
@@ -150,7 +154,9 @@ class Smoothed:
 def smooth(
     mesh: Mesh,
     *,
-    iterations: int = 10,
+    method: str = "taubin",
+    iterations: int | None = None,
+    width: float = 0.0,
     max_move: float = 0.0,
     keep_border: bool = True,
     allow_intersections: bool = False,
@@ -159,9 +165,13 @@ def smooth(
 ) -> Smoothed:
     """Returns a smoother mesh: noise goes, and so does fine detail. Smoothing moves the surface.
 
-    iterations  1 to 1000; more remove longer waves
+    method      "taubin": keeps large shapes; "hc": a little more detail; "fair": waves fade by
+                their length, and vertices hardly move along the surface
+    iterations  1 to 1000; more remove longer waves; default: 10, of "fair" 3
+    width       mm, of "fair": waves of this length keep half of their height; 0: 6 mean edges
     max_move    mm: no vertex is farther from its first place; 0: half the mean edge
-    keep_border keep open edges as they are; else they move along themselves
+    keep_border keep open edges, and those of three or more triangles, as they are; else they
+                move along themselves
     allow_intersections  of triangles that did not meet before
 
     Closed components keep their volume, as far as max_move allows. Normals are computed again if
@@ -171,8 +181,13 @@ def smooth(
     """
     take_mesh("mesh", mesh)
     reporter = Reporter(progress)
+    kind = take_choice("method", method, SMOOTH_METHODS)
+    if width and method != "fair":
+        raise ValueError(f"width is for method='fair', not for {method!r}")
     desc = c.cw_smooth_desc(
-        iterations=take_count("iterations", iterations, 1, 1000),
+        method=kind,
+        iterations=0 if iterations is None else take_count("iterations", iterations, 1, 1000),
+        width_mm=take_length("width", width),
         max_move_mm=take_length("max_move", max_move),
         move_border=not take_flag("keep_border", keep_border),
         allow_crossings=take_flag("allow_intersections", allow_intersections),
@@ -190,6 +205,7 @@ def smooth(
         volume_after=facts.volume_after_mm3,
         flipped=facts.flipped,
         border=facts.border,
+        junction=facts.junction,
         put_back=facts.put_back,
         undecided=facts.undecided,
     )

@@ -1,29 +1,29 @@
-/* Smooths a mesh by Taubin's two passes in turn [Taubin1995]. Then vertices go back into a ball around
- * their first place, and components get their volumes back. */
+/* Smooths a mesh: its vertices move by one of the methods. Then they go back into a ball around their
+ * first place, and components get their volumes back. */
 #include "simplify/smoothing/mesh_smooth.h"
 
 #include "core/base/memory.h"
-#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
 
 #include <float.h>
 #include <string.h>
 
-/* The fraction of the way to the mean of the neighbours, and the pass band: waves of this eigenvalue
- * keep their size, shorter ones shrink, longer ones grow by a factor of at most 1.0003 each
- * iteration. See simplify/smoothing.md. */
-static const double SHRINK = 0.63, PASS_BAND = 0.05;
+enum { DEFAULT_ITERATIONS = 10, DEFAULT_STEPS = 3, VOLUME_ROUNDS = 4, ROUNDING_STEPS = 8 };
 
-enum { DEFAULT_ITERATIONS = 10, VOLUME_ROUNDS = 4, ROUNDING_STEPS = 8 };
-
-/* The default limit, as a fraction of the mean length of the edges. */
-static const double DEFAULT_MOVE = 0.5;
+/* The default limit and width, in mean lengths of the edges. */
+static const double DEFAULT_MOVE = 0.5, DEFAULT_WIDTH = 6;
 
 static const size_t MAX_TRIANGLES = UINT32_MAX / 3;
 
-/* Shares of the progress: neighbours, passes, and the search for triangles that meet. */
-static const double RINGS_SHARE = 0.1, PASSES_SHARE = 0.5;
+/* Shares of the progress: neighbours, moves, and the search for triangles that meet. */
+static const double RINGS_SHARE = 0.1, MOVES_SHARE = 0.5;
+
+const char *cw_smooth_method_name(cw_smooth_method method)
+{
+    static const char *const names[] = {"taubin", "hc", "fair"};
+    return (size_t)method < CW_SMOOTH_METHOD_COUNT ? names[method] : NULL;
+}
 
 static double measure_move(const float *place, const float *first)
 {
@@ -49,6 +49,9 @@ static cw_status resolve_desc(const cw_mesh *mesh, const cw_smooth_desc *desc,
                               cw_smooth_desc *out, cw_error *err)
 {
     *out = desc ? *desc : (cw_smooth_desc){0};
+    if (!cw_smooth_method_name(out->method))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "method is %d; it must be 0 to %d",
+                        (int)out->method, CW_SMOOTH_METHOD_COUNT - 1);
     if (out->iterations > CW_SMOOTH_MAX_ITERATIONS)
         return cwi_fail(err, CW_ERR_ARGUMENT, "iterations is %zu; it must be at most %zu",
                         out->iterations, CW_SMOOTH_MAX_ITERATIONS);
@@ -56,6 +59,12 @@ static cw_status resolve_desc(const cw_mesh *mesh, const cw_smooth_desc *desc,
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "max_move_mm is %g; it must be finite, and 0 or more",
                         out->max_move_mm);
+    if (!(out->width_mm >= 0) || !isfinite(out->width_mm))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "width_mm is %g; it must be finite, and 0 or more", out->width_mm);
+    if (out->width_mm > 0 && out->method != CW_SMOOTH_FAIR)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "width_mm is for CW_SMOOTH_FAIR, not for %s",
+                        cw_smooth_method_name(out->method));
     cw_status st = cw_mesh_check(mesh, err);
     if (st != CW_OK)
         return st;
@@ -64,9 +73,11 @@ static cw_status resolve_desc(const cw_mesh *mesh, const cw_smooth_desc *desc,
                         "%zu triangles and %zu vertices; at most %zu and %u are smoothed",
                         mesh->triangle_count, mesh->vertex_count, MAX_TRIANGLES, UINT32_MAX);
     if (out->iterations == 0)
-        out->iterations = DEFAULT_ITERATIONS;
+        out->iterations = out->method == CW_SMOOTH_FAIR ? DEFAULT_STEPS : DEFAULT_ITERATIONS;
     if (out->max_move_mm == 0)
         out->max_move_mm = DEFAULT_MOVE * mean_edge(mesh);
+    if (out->width_mm == 0)
+        out->width_mm = DEFAULT_WIDTH * mean_edge(mesh);
     return CW_OK;
 }
 
@@ -84,50 +95,9 @@ static cw_status alloc_places(cwi_smoother *s, cw_error *err)
     return CW_OK;
 }
 
-static void average_part(void *context, size_t k)
-{
-    const cwi_smoother *s = context;
-    const cwi_rings *r = &s->rings;
-    for (size_t v = k * CWI_RING_PART; v < (k + 1) * CWI_RING_PART && v < r->vertices; v++) {
-        const double *here = s->from + 3 * v;
-        const uint32_t *neighbours = r->neighbours + r->begin[v], count = r->count[v];
-        double *to = s->to + 3 * v, sum[3] = {0};
-        memcpy(to, here, 3 * sizeof *to);
-        if (count < 2 || (r->is_border[v] && !s->desc.move_border))
-            continue;
-        for (uint32_t i = 0; i < count; i++)
-            for (size_t a = 0; a < 3; a++)
-                sum[a] += s->from[3 * (size_t)neighbours[i] + a];
-        for (int a = 0; a < 3; a++)
-            to[a] += s->factor * (sum[a] / count - here[a]);
-    }
-}
-
-/* Moves vertices toward the mean of their neighbours, and away from it, in turn. */
-static cw_status average_all(cwi_smoother *s, cw_error *err)
-{
-    const double grow = 1 / (PASS_BAND - 1 / SHRINK);
-    const size_t passes = 2 * s->desc.iterations;
-    cw_status st = CW_OK;
-    for (size_t n = 0; n < passes && st == CW_OK; n++) {
-        const cwi_part_progress part = {.whole = &s->desc.progress,
-                                        .from = RINGS_SHARE +
-                                                PASSES_SHARE * (double)n / (double)passes,
-                                        .share = PASSES_SHARE / (double)passes};
-        const cw_progress progress = cwi_progress_part(&part);
-        double *const before = s->from;
-        s->factor = n % 2 ? grow : SHRINK;
-        st = cwi_each_layer((s->rings.vertices + CWI_RING_PART - 1) / CWI_RING_PART,
-                            16 * CWI_RING_PART, s->desc.threads, &progress, "smoothing",
-                            average_part, s, err);
-        s->from = s->to;
-        s->to = before;
-    }
-    return st;
-}
-
-/* Pulls a place into the ball around its first one. The part of a move along the surface is cut
- * first: the part along the normal is what removes noise.
+/* Pulls a place into the ball around its first one. By averages vertices also move along the surface:
+ * that part of a move is cut first, as the part along the normal is what removes noise. Fairing
+ * hardly moves along the surface, and its moves are cut as they are.
  * normal  of the surface there, or 0 */
 static void limit_move(const cwi_smoother *s, size_t v, const double normal[3])
 {
@@ -137,7 +107,7 @@ static void limit_move(const cwi_smoother *s, size_t v, const double normal[3])
         move[a] = place[a] - (double)first[a];
     if (!(sqrt(cwi_dot(move, move)) > s->limit))
         return;
-    double out = cwi_dot(move, normal);
+    double out = s->desc.method == CW_SMOOTH_FAIR ? 0 : cwi_dot(move, normal);
     for (int a = 0; a < 3; a++)
         along[a] = move[a] - out * normal[a];
     const double length = sqrt(cwi_dot(along, along));
@@ -156,10 +126,11 @@ static void limit_and_keep_volumes(cwi_smoother *s)
     cwi_kept_volumes *volumes = &s->volumes;
     double *gradients = s->to;
     for (int round = 0; round < VOLUME_ROUNDS; round++) {
-        cwi_volumes_gradients(volumes, s->from, s->rings.is_border, gradients);
+        cwi_volumes_gradients(volumes, s->from, s->rings.rim, gradients);
         for (size_t v = 0; v < s->mesh->vertex_count; v++) {
             const cwi_kept_volume *item = &volumes->items[volumes->component[v]];
-            const bool stays = s->rings.is_border[v] || (item->is_open && s->desc.move_border);
+            const bool stays = s->rings.rim[v] != CWI_RIM_NONE || item->is_branched ||
+                               (item->is_open && s->desc.move_border);
             double *normal = gradients + 3 * v;
             if (!cwi_normalise(normal))
                 memset(normal, 0, 3 * sizeof *normal);
@@ -206,7 +177,8 @@ static void count_facts(cwi_smoother *s, cw_smooth_facts *facts)
         const double move = measure_move(s->rounded + 3 * v, mesh->positions + 3 * v);
         facts->max_mm = cwi_greater(facts->max_mm, move);
         sum += move;
-        facts->border += s->rings.is_border[v];
+        facts->border += s->rings.rim[v] == CWI_RIM_OPEN;
+        facts->junction += s->rings.rim[v] == CWI_RIM_JUNCTION;
     }
     facts->mean_mm = mesh->vertex_count ? sum / (double)mesh->vertex_count : 0;
     for (size_t t = 0; t < mesh->triangle_count; t++) {
@@ -222,15 +194,19 @@ static void count_facts(cwi_smoother *s, cw_smooth_facts *facts)
     facts->volume_before_mm3 = cwi_volumes_sum(&s->volumes, true);
     facts->volume_after_mm3 = cwi_volumes_sum(&s->volumes, false);
     facts->limit_mm = s->desc.max_move_mm;
+    facts->width_mm = s->desc.method == CW_SMOOTH_FAIR ? s->desc.width_mm : 0;
+    facts->iterations = s->desc.iterations;
 }
 
 /* Finds the new positions, and leaves the mesh as it is. */
 static cw_status smooth_places(cwi_smoother *s, cw_smooth_facts *facts, cw_error *err)
 {
     const cwi_part_progress first = {&s->desc.progress, 0, RINGS_SHARE},
-                            last = {&s->desc.progress, RINGS_SHARE + PASSES_SHARE,
-                                    1 - RINGS_SHARE - PASSES_SHARE};
+                            moves = {&s->desc.progress, RINGS_SHARE, MOVES_SHARE},
+                            last = {&s->desc.progress, RINGS_SHARE + MOVES_SHARE,
+                                    1 - RINGS_SHARE - MOVES_SHARE};
     const cw_progress first_progress = cwi_progress_part(&first),
+                      moves_progress = cwi_progress_part(&moves),
                       last_progress = cwi_progress_part(&last);
     /* The last digits of a distance depend on how it is computed. */
     s->limit = s->desc.max_move_mm * (1 - 8 * DBL_EPSILON);
@@ -238,9 +214,10 @@ static cw_status smooth_places(cwi_smoother *s, cw_smooth_facts *facts, cw_error
     if (st == CW_OK)
         st = alloc_places(s, err);
     if (st == CW_OK)
-        st = cwi_volumes_find(s->mesh, s->rings.is_border, s->from, &s->volumes, err);
+        st = cwi_volumes_find(s->mesh, s->rings.rim, s->from, &s->volumes, err);
     if (st == CW_OK)
-        st = average_all(s, err);
+        st = s->desc.method == CW_SMOOTH_FAIR ? cwi_smooth_fair(s, &moves_progress, err)
+                                              : cwi_smooth_average(s, &moves_progress, err);
     if (st != CW_OK)
         return st;
     limit_and_keep_volumes(s);

@@ -14,9 +14,21 @@ typedef struct cwi_smoother {
     cwi_kept_volumes volumes;
     double *from, *to; /* vertices x 3; from has the places so far */
     double limit;      /* max_move_mm, less what rounding may add to a distance */
-    double factor;     /* of this pass: the fraction of the way to the mean of the neighbours */
     float *rounded;    /* vertices x 3: the result */
 } cwi_smoother;
+
+/* Returns true if a vertex is not to move: at a rim that stays or ends there, or with too few
+ * neighbours. */
+bool cwi_smooth_is_fixed(const cwi_smoother *s, size_t v);
+
+/* Moves the places by CW_SMOOTH_TAUBIN or CW_SMOOTH_HC.
+ * Returns  CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
+CW_NODISCARD cw_status cwi_smooth_average(cwi_smoother *s, const cw_progress *progress,
+                                          cw_error *err);
+
+/* Moves the places by CW_SMOOTH_FAIR. Returns the same */
+CW_NODISCARD cw_status cwi_smooth_fair(cwi_smoother *s, const cw_progress *progress,
+                                       cw_error *err);
 
 /* Puts vertices back to their first places until no triangles meet that did not meet before, and
  * none has lost its area.

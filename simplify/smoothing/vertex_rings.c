@@ -1,4 +1,4 @@
-/* Finds the neighbours of each vertex by a counting sort of the sides of triangles. */
+/* Finds the neighbours of each vertex, and rims, by a counting sort of the sides of triangles. */
 #include "simplify/smoothing/vertex_rings.h"
 
 #include "core/base/memory.h"
@@ -63,25 +63,35 @@ static void sort_list(uint32_t *list, uint32_t count)
     }
 }
 
-/* Keeps one of each neighbour, or only those that a single triangle has. */
-static uint32_t shorten_list(uint32_t *list, uint32_t count, bool single)
+/* Returns how many entries from i on name the same neighbour: the triangles at the edge to it. */
+static uint32_t count_same(const uint32_t *list, uint32_t count, uint32_t i)
+{
+    uint32_t same = 1;
+    while (i + same < count && list[i + same] == list[i])
+        same++;
+    return same;
+}
+
+/* Keeps one of each neighbour, or only those at a rim. */
+static uint32_t shorten_list(uint32_t *list, uint32_t count, bool of_rim)
 {
     uint32_t kept = 0;
     for (uint32_t i = 0, same; i < count; i += same) {
-        for (same = 1; i + same < count && list[i + same] == list[i];)
-            same++;
-        if (!single || same == 1)
+        same = count_same(list, count, i);
+        if (!of_rim || same != 2)
             list[kept++] = list[i];
     }
     return kept;
 }
 
-static bool has_single(const uint32_t *list, uint32_t count)
+static cwi_rim find_rim(const uint32_t *list, uint32_t count)
 {
-    for (uint32_t i = 0; i < count; i++)
-        if ((i == 0 || list[i - 1] != list[i]) && (i + 1 == count || list[i + 1] != list[i]))
-            return true;
-    return false;
+    cwi_rim rim = CWI_RIM_NONE;
+    for (uint32_t i = 0, same; i < count && rim != CWI_RIM_OPEN; i += same) {
+        same = count_same(list, count, i);
+        rim = same == 1 ? CWI_RIM_OPEN : same > 2 ? CWI_RIM_JUNCTION : rim;
+    }
+    return rim;
 }
 
 static void finish_part(void *context, size_t k)
@@ -90,8 +100,8 @@ static void finish_part(void *context, size_t k)
     for (size_t v = k * CWI_RING_PART; v < (k + 1) * CWI_RING_PART && v < r->vertices; v++) {
         uint32_t *list = r->neighbours + r->begin[v];
         sort_list(list, r->count[v]);
-        r->is_border[v] = has_single(list, r->count[v]);
-        r->count[v] = shorten_list(list, r->count[v], r->is_border[v]);
+        r->rim[v] = (uint8_t)find_rim(list, r->count[v]);
+        r->count[v] = shorten_list(list, r->count[v], r->rim[v] != CWI_RIM_NONE);
     }
 }
 
@@ -102,8 +112,8 @@ cw_status cwi_rings_find(const cw_mesh *mesh, int threads, const cw_progress *pr
     *rings = (cwi_rings){.vertices = count};
     rings->begin = cwi_alloc_zeroed(count + 1, sizeof *rings->begin);
     rings->count = cwi_alloc_zeroed(count, sizeof *rings->count);
-    rings->is_border = cwi_alloc_zeroed(count, sizeof *rings->is_border);
-    if (rings->begin && rings->count && rings->is_border) {
+    rings->rim = cwi_alloc_zeroed(count, sizeof *rings->rim);
+    if (rings->begin && rings->count && rings->rim) {
         place_lists(mesh, rings);
         rings->neighbours = cwi_alloc_large(rings->begin[count], sizeof *rings->neighbours);
     }
@@ -120,6 +130,6 @@ void cwi_rings_free(cwi_rings *rings)
     cwi_free(rings->begin);
     cwi_free(rings->count);
     cwi_free(rings->neighbours);
-    cwi_free(rings->is_border);
+    cwi_free(rings->rim);
     *rings = (cwi_rings){0};
 }

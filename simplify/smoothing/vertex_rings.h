@@ -1,4 +1,4 @@
-/* The neighbours of each vertex, and the borders of a mesh. */
+/* The neighbours of each vertex, and the rims of a mesh: its borders and junctions. */
 #ifndef SIMPLIFY_SMOOTHING_VERTEX_RINGS_H
 #define SIMPLIFY_SMOOTHING_VERTEX_RINGS_H
 
@@ -7,14 +7,21 @@
 /* Vertices that one thread works on at a time. */
 enum { CWI_RING_PART = 1 << 13 };
 
+/* Edges that a vertex is at. */
+typedef enum cwi_rim {
+    CWI_RIM_NONE,     /* edges of two triangles alone */
+    CWI_RIM_OPEN,     /* an edge of one triangle */
+    CWI_RIM_JUNCTION, /* an edge of three or more, and none of one */
+} cwi_rim;
+
 /* Neighbours of a vertex are those at the other ends of its edges, each once and in rising order.
- * A vertex at an open edge has the ends of its open edges alone. */
+ * A vertex at a rim has the ends of the rim's edges alone. */
 typedef struct cwi_rings {
     size_t vertices;
     size_t *begin;        /* first neighbour of each vertex; vertices + 1 */
     uint32_t *count;      /* neighbours of each vertex */
     uint32_t *neighbours; /* with gaps between those of two vertices */
-    bool *is_border;      /* whether the vertex is at an open edge */
+    uint8_t *rim;         /* of each vertex, a cwi_rim */
 } cwi_rings;
 
 /* Finds the neighbours. Triangles that name a vertex twice have no edges.

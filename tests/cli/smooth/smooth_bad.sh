@@ -17,6 +17,10 @@ try s.off -o x.stl --max-move=-1mm
 try s.off -o x.stl --max-move nan
 try s.off -o x.stl --max-move 5kg
 try s.off -o x.stl --max-move 0.5vox
+try s.off -o x.stl --method loop
+try s.off -o x.stl --width 2mm
+try s.off -o x.stl --method fair --width 0mm
+try s.off -o x.stl --method fair --width 2vox
 try s.off -o x.xyz
 try s.off -o s.off
 try s.off -o x.stl --json s.off
