@@ -1,4 +1,5 @@
 /* The command smooth: its options, the work part by part, and what is printed and reported. */
+#include "cli/commands/smooth_together.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
@@ -247,32 +248,52 @@ static void add_facts(cw_smooth_facts *sum, const cw_smooth_facts *f, size_t ver
     sum->undecided = sum->undecided || f->undecided;
 }
 
-static cw_status smooth_pieces(run_state *s, cw_error *err)
+static cw_status copy_pieces(run_state *s, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < s->pieces.count && st == CW_OK; n++)
+        st = cwi_mesh_copy(&s->pieces.piece[n].input, &s->pieces.piece[n].out, err);
+    return st;
+}
+
+static cw_status smooth_apart(run_state *s, cw_smooth_desc desc, cw_error *err)
 {
     size_t vertices = 0;
     cw_status st = CW_OK;
-    cli_report_begin(&s->report);
     for (size_t n = 0; n < s->pieces.count && st == CW_OK; n++) {
-        cli_piece *p = &s->pieces.piece[n];
-        const cw_smooth_desc desc = {
-            .method = (cw_smooth_method)s->args->method,
-            .iterations = s->args->iterations == OWN_ITERATIONS ? 0 : s->args->iterations,
-            .width_mm = s->width_mm,
-            .max_move_mm = s->max_move_mm,
-            .move_border = !s->args->keep_border,
-            .allow_crossings = s->args->allow_intersections,
-            .threads = s->threads,
-            .progress = cli_progress((double)p->input.triangle_count / 1e6, "Mtriangle")};
+        cw_mesh *out = &s->pieces.piece[n].out;
         cw_smooth_facts facts = {0};
-        st = cwi_mesh_copy(&p->input, &p->out, err);
-        if (st == CW_OK)
-            st = cw_mesh_smooth(&p->out, &desc, &facts, err);
-        add_facts(&s->facts, &facts, p->out.vertex_count);
-        vertices += p->out.vertex_count;
+        desc.progress = cli_progress((double)out->triangle_count / 1e6, "Mtriangle");
+        st = cw_mesh_smooth(out, &desc, &facts, err);
+        add_facts(&s->facts, &facts, out->vertex_count);
+        vertices += out->vertex_count;
     }
+    s->facts.mean_mm /= (double)vertices;
+    return st;
+}
+
+static cw_status smooth_pieces(run_state *s, cw_error *err)
+{
+    const smooth_args *args = s->args;
+    const cw_smooth_desc desc = {
+        .method = (cw_smooth_method)args->method,
+        .iterations = args->iterations == OWN_ITERATIONS ? 0 : args->iterations,
+        .width_mm = s->width_mm,
+        .max_move_mm = s->max_move_mm,
+        .move_border = !args->keep_border,
+        .allow_crossings = args->allow_intersections,
+        .threads = s->threads,
+        .progress = cli_progress((double)s->pieces.triangles / 1e6, "Mtriangle")};
+    cli_report_begin(&s->report);
+    cw_status st = copy_pieces(s, err);
+    const bool together = st == CW_OK && cli_share_vertices(&s->pieces);
+    if (together)
+        cli_say("%s: its parts share vertices, and are smoothed together", s->mesh.path);
+    if (st == CW_OK)
+        st = together ? cli_smooth_together(&s->pieces, &desc, &s->facts, err)
+                      : smooth_apart(s, desc, err);
     if (st != CW_OK)
         return cwi_fail_in(err, st, s->mesh.path);
-    s->facts.mean_mm /= (double)vertices;
     s->is_smoothed = true;
     cli_report_end(&s->report, "smooth", s->pieces.triangles, s->pieces.triangles);
     tell_facts(s);

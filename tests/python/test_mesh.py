@@ -138,9 +138,15 @@ class Coordinates(Case):
         normals = found.mesh.normals
         self.assertFalse(np.array_equal(normals, noisy.normals))
         np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1, atol=1e-6)
+        fair = cw.smooth(noisy, method="fair", width=8, max_move=0.4)
+        self.assertLess(fair.mean_move, found.mean_move)
+        self.assertEqual((fair.junction, fair.border), (0, 0))
         self.assertEqual(cw.smooth(noisy, iterations=1).mesh.vertices.shape, first.shape)
         for wrong in (
             lambda: cw.smooth(noisy, iterations=0),
+            lambda: cw.smooth(noisy, method="loop"),
+            lambda: cw.smooth(noisy, width=2),
+            lambda: cw.smooth(noisy, method="fair", width=-2),
             lambda: cw.smooth(noisy, max_move=-1),
             lambda: cw.smooth(noisy, max_move=float("nan")),
         ):
