@@ -8,6 +8,7 @@
 #include "cli/inputs/mesh_input.h"
 #include "cli/results/check_verdicts.h"
 #include "cli/results/output_names.h"
+#include "cli/results/printability.h"
 #include "cli/results/run_report.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -24,6 +25,7 @@ typedef struct check_args {
     cli_length tolerance;
     cli_amount least;
     bool fill_voids;
+    cli_printer printer;
     int profile, inside, progress;
     bool deep, open, histogram;
 } check_args;
@@ -43,6 +45,7 @@ static const cli_option options[] = {
      "File to write the mesh to, with defects and distances painted: .ply, .glb or .gltf",
      offsetof(check_args, defects), CLI_VALUES_DEFECTS},
     CLI_JSON_OPTION(check_args),
+    CLI_PRINTER_OPTIONS(check_args),
     CLI_HEADED("Distance to a source or a reference"),
     {"source", 's', CLI_TEXT, "VOLUME",
      "Volume to measure the distance to, and to compare the topology with; needs --iso",
@@ -82,10 +85,12 @@ typedef struct run_state {
     cli_mesh mesh, reference;
     cli_volume volume;
     uint8_t *defects; /* of each triangle; NULL unless they are painted */
-    float *distances; /* largest around each vertex; NULL: nothing to measure from */
+    float *distances; /* largest around each vertex, or how much walls and gaps lack of their
+                         limits; NULL: nothing to measure from */
     cw_quality quality, field;
     cw_crossings crossings;
     cw_cgal_facts cgal;
+    cw_print_facts print;
     cw_distance to_field, from_field, to_reference, from_reference;
     cw_findings findings;
     cw_verdict verdicts[CW_MAX_VERDICTS];
@@ -121,6 +126,8 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
     }
     if (args->tolerance.given)
         cli_json_number(j, "tolerance_mm", s->findings.tolerance_mm);
+    if (s->findings.print)
+        cli_json_printer(j, &s->print.limits);
 }
 
 static void put_facts(cli_json *j, const void *p)
@@ -136,6 +143,8 @@ static void put_facts(cli_json *j, const void *p)
         return;
     cli_json_text(j, "profile", profiles[s->args->profile]);
     cli_json_verdicts(j, s->verdicts, s->verdict_count);
+    if (s->findings.print)
+        cli_json_print(j, &s->print);
     cli_json_errors(j, &s->findings);
     if (s->findings.missing) {
         cli_json_open(j, "missing", '{');
@@ -199,6 +208,9 @@ static cw_status check_args_of(run_state *s, cw_error *err)
     if (args->tolerance.unit == CLI_VOXELS && !args->source)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--tolerance in voxels needs a volume: --source VOLUME");
+    st = cli_check_printer(&args->printer, args->profile == CW_PROFILE_PRINT, err);
+    if (st != CW_OK)
+        return st;
     return args->defects ? check_defects_path(args, err) : CW_OK;
 }
 
@@ -388,16 +400,58 @@ static double tolerance_mm(const run_state *s)
     return cli_length_mm(&s->args->tolerance, diagonal, voxel);
 }
 
+/* Returns true if walls and gaps are painted: distances from something have precedence. */
+static bool paints_walls(const check_args *args)
+{
+    return args->defects && args->profile == CW_PROFILE_PRINT && !args->source &&
+           !args->reference;
+}
+
+/* Finds how much walls and gaps lack of their limits, at each vertex. */
+static cw_status measure_walls(run_state *s, cw_print_desc *desc, cw_error *err)
+{
+    const size_t count = s->mesh.mesh.vertex_count;
+    desc->wall = s->distances;
+    desc->gap = cwi_alloc_array(count, sizeof *desc->gap);
+    cw_status st =
+        desc->gap ? cw_print_measure(&s->mesh.mesh, desc, &s->print, err)
+                  : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to paint %zu vertices", count);
+    const double wall = s->print.limits.min_wall_mm, gap = s->print.limits.min_gap_mm;
+    for (size_t v = 0; v < count && st == CW_OK; v++)
+        s->distances[v] =
+            (float)fmax(0, fmax(wall - (double)desc->wall[v], gap - (double)desc->gap[v]));
+    cwi_free(desc->gap);
+    return st;
+}
+
+/* Open meshes have no walls, and do not meet the profile. */
+static cw_status measure_print(run_state *s, cw_error *err)
+{
+    const cw_mesh *mesh = &s->mesh.mesh;
+    cw_print_desc desc =
+        cli_printer_desc(&s->args->printer, (int)s->args->input.threads, mesh->triangle_count);
+    if (s->args->profile != CW_PROFILE_PRINT || !cw_quality_is_closed_manifold(&s->quality))
+        return CW_OK;
+    cli_report_begin(&s->report);
+    cw_status st = paints_walls(s->args) ? measure_walls(s, &desc, err)
+                                         : cw_print_measure(mesh, &desc, &s->print, err);
+    s->findings.print = st == CW_OK ? &s->print : NULL;
+    if (st == CW_OK)
+        cli_report_end(&s->report, "print", mesh->triangle_count, 0);
+    return in_mesh(s, st, err);
+}
+
 /* Without triangles there is nothing to measure from or to: the verdict says so. */
 static cw_status measure_all(run_state *s, cw_error *err)
 {
     const check_args *args = s->args;
     const cw_mesh *mesh = &s->mesh.mesh;
+    const bool has_distances = args->source || args->reference || paints_walls(args);
     if (args->defects) {
         s->defects = cwi_alloc_zeroed(mesh->triangle_count + 1, 1);
-        if (args->source || args->reference)
+        if (has_distances)
             s->distances = cwi_alloc_zeroed(mesh->vertex_count + 1, sizeof *s->distances);
-        if (!s->defects || ((args->source || args->reference) && !s->distances))
+        if (!s->defects || (has_distances && !s->distances))
             return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to paint %zu triangles",
                             mesh->triangle_count);
     }
@@ -407,6 +461,8 @@ static cw_status measure_all(run_state *s, cw_error *err)
     cw_status st = measure_mesh(s, err);
     if (st == CW_OK && mesh->triangle_count)
         st = ask_cgal(s, err);
+    if (st == CW_OK && mesh->triangle_count)
+        st = measure_print(s, err);
     if (st == CW_OK && mesh->triangle_count && args->source)
         st = compare_with_field(s, err);
     if (st == CW_OK && mesh->triangle_count && args->reference)
@@ -429,7 +485,9 @@ static cw_status paint_defects(run_state *s, cw_error *err)
 {
     const cw_distance *to = s->args->source ? &s->to_field : &s->to_reference;
     const double tolerance = s->findings.tolerance_mm;
-    const double full = tolerance > 0 ? tolerance : to->max_mm;
+    const double full = paints_walls(s->args) ? s->print.limits.min_wall_mm
+                        : tolerance > 0       ? tolerance
+                                              : to->max_mm;
     cw_mesh painted;
     cli_made *made = &s->report.made[0];
     cw_status st = cw_check_paint(&s->mesh.mesh, s->defects, s->distances, full, &painted, err);
@@ -440,7 +498,9 @@ static cw_status paint_defects(run_state *s, cw_error *err)
         return st;
     made->written = true;
     cli_result("%s: the mesh with its defects painted", s->args->defects);
-    if (s->distances)
+    if (paints_walls(s->args))
+        cli_result(", thin walls and narrow gaps from grey at their limits to red at 0");
+    else if (s->distances)
         cli_result(", distances from grey at 0 to red at %.4g mm", full);
     cli_result("\n");
     name_paints(s);

@@ -34,6 +34,13 @@ static const struct {
     {"cw_self_intersections()", "--deep"},
     {"cw_check_paint()", "--defects"},
     {"cw_mesh_drop_volumes()", "--min-volume"},
+    {"cw_mesh_offset()", "'offset'"},
+    {"cw_mesh_fill_voids()", "'extract --fill-voids'"},
+    {"min_wall_mm", "--wall"},
+    {"min_gap_mm", "--gap"},
+    {"overhang_deg", "--overhang"},
+    {"layer_mm", "--layer"},
+    {"plate_mm", "--plate"},
 };
 
 const char *cli_name_options(const char *message, char to[CLI_MESSAGE])

@@ -1,5 +1,6 @@
 /* The page: one file of HTML that needs no other, and is well-formed XML as well. */
 #include "cli/framework/console.h"
+#include "cli/framework/field_names.h"
 #include "cli/framework/quantity.h"
 #include "cli/report/study.h"
 
@@ -441,6 +442,41 @@ static void put_quality(FILE *out, const cli_study *s)
     fputs("</div>\n", out);
 }
 
+static void put_verdict(FILE *out, const cw_verdict *v)
+{
+    fputs("<tr><td>", out);
+    cli_put_html(out, cw_grade_name(v->grade));
+    fputs("</td><td class=\"w\">", out);
+    cli_put_html(out, v->name);
+    fputs("</td><td class=\"w\">", out);
+    cli_put_html(out, v->text);
+    if (v->advice && v->grade < CW_GRADE_OK) {
+        fputs("<br/>\xe2\x86\x92 ", out);
+        cli_put_html(out, cli_name_options(v->advice, (char[CLI_MESSAGE]){0}));
+    }
+    fputs("</td></tr>", out);
+}
+
+static void put_print(FILE *out, const cli_study *s)
+{
+    const cli_print_study *p = &s->print;
+    fputs("<section id=\"print\">\n<h2>As a print</h2>\n", out);
+    if (*p->why) {
+        fputs("<p class=\"quiet\">Left out: ", out);
+        cli_put_html(out, p->why);
+        fputs(".</p>\n</section>\n", out);
+        return;
+    }
+    fputs(
+        "<p>The plain surface as <code>check --profile print</code> sees it, which takes the "
+        "limits of a printer as well.</p>\n<div class=\"wide\"><table><thead><tr><th>grade</th>"
+        "<th class=\"w\">of</th><th class=\"w\">measured</th></tr></thead><tbody>",
+        out);
+    for (size_t n = 0; n < p->verdict_count; n++)
+        put_verdict(out, &p->verdicts[n]);
+    fputs("</tbody></table></div>\n</section>\n", out);
+}
+
 void cli_put_page(FILE *out, const void *study)
 {
     const cli_study *s = study;
@@ -459,5 +495,6 @@ void cli_put_page(FILE *out, const void *study)
     for (int f = 0; f < CLI_FAMILY_COUNT; f++)
         put_family(out, s, (cli_family)f);
     put_quality(out, s);
+    put_print(out, s);
     fprintf(out, "</main>\n<script>\n%s</script></body></html>\n", cli_page_script);
 }

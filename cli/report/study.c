@@ -196,6 +196,8 @@ cw_status cli_study_run(cli_study *s, cw_error *err)
     cli_console_listen(&listener);
     if (st == CW_OK)
         st = run_points(s, err);
+    if (st == CW_OK)
+        st = cli_study_print(s, err);
     cli_console_listen(NULL);
     if (st == CW_OK)
         st = tell_commands(s, err);

@@ -5,6 +5,7 @@
 
 #include "cli/render/scene_options.h"
 
+#include <cubewright/check.h>
 #include <cubewright/distance.h>
 #include <cubewright/extract.h>
 #include <cubewright/field.h>
@@ -82,6 +83,14 @@ enum {
     CLI_STUDY_HEIGHT = 240
 };
 
+/* The plain surface as a print. */
+typedef struct cli_print_study {
+    char why[CLI_WHY_CAPACITY]; /* it was not measured; empty: it was */
+    cw_print_facts facts;       /* of closed surfaces */
+    cw_verdict verdicts[CW_MAX_VERDICTS];
+    size_t verdict_count;
+} cli_print_study;
+
 typedef struct cli_study {
     /* what is studied: set before cli_study_run() */
     cli_volume *volume;
@@ -104,6 +113,7 @@ typedef struct cli_study {
     double voxel_mm;
     const char *suffix; /* of meshes: ".glb", or ".stl" in builds without */
     double start, deadline, seconds;
+    cli_print_study print;
     cw_mesh full; /* the plain surface, of all voxels */
     bool part_chosen;
     cli_volume part;     /* borrowed: what is simplified and compressed, the volume or a box */
@@ -134,6 +144,10 @@ double cli_point_error(const cli_study *study, const cli_point *point); /* NaN: 
 /* Marks those of the points that no other one beats: no cost above its own, no error above its
  * own, and one of them below. What is not finite is beaten. */
 void cli_pareto(const double *cost, const double *error, size_t count, bool *front);
+
+/* Judges the plain surface as a print. What keeps it from that is kept, too.
+ * Returns  CW_ERR_CANCELLED  by who waits for it */
+CW_NODISCARD cw_status cli_study_print(cli_study *study, cw_error *err);
 
 /* For the runs of families. */
 cli_point *cli_add_point(cli_study *study, cli_family family, int rank, const char *group,

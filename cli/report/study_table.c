@@ -1,6 +1,8 @@
 /* The points as rows of numbers, and as JSON. */
 #include "cli/framework/console.h"
 #include "cli/report/study.h"
+#include "cli/results/check_verdicts.h"
+#include "cli/results/printability.h"
 
 #include "core/base/text.h"
 
@@ -198,5 +200,13 @@ void cli_put_study_json(FILE *out, const void *study)
     for (int f = 0; f < CLI_FAMILY_COUNT; f++)
         json_family(&j, s, (cli_family)f);
     cli_json_close(&j, ']');
+    cli_json_open(&j, "as_print", '{');
+    if (*s->print.why)
+        cli_json_text(&j, "left_out", s->print.why);
+    else
+        cli_json_verdicts(&j, s->print.verdicts, s->print.verdict_count);
+    if (s->print.facts.area_mm2 > 0)
+        cli_json_print(&j, &s->print.facts);
+    cli_json_close(&j, '}');
     cli_json_close(&j, '}');
 }

@@ -3,6 +3,7 @@
 #define CUBEWRIGHT_CHECK_H
 
 #include <cubewright/distance.h>
+#include <cubewright/print.h>
 #include <cubewright/quality.h>
 
 #ifdef __cplusplus
@@ -31,6 +32,7 @@ typedef struct cw_findings {
     const cw_quality *quality;     /* cw_quality_measure(), welded, with shells; required */
     const cw_crossings *crossings; /* cw_self_intersections() */
     const cw_cgal_facts *cgal;     /* cw_quality_ask_cgal() */
+    const cw_print_facts *print;   /* cw_print_measure() */
     const cw_distance *to_field;   /* cw_distance_to_field() */
     const cw_distance *from_field; /* cw_distance_to_mesh() from the field's own surface */
     const cw_quality *field;       /* cw_quality_measure() of the field's own surface */
@@ -61,7 +63,7 @@ typedef struct cw_verdict {
     const char *advice; /* what to do about it; NULL: nothing. Static */
 } cw_verdict;
 
-enum { CW_MAX_VERDICTS = 24 }; /* maximum of cw_check_judge() */
+enum { CW_MAX_VERDICTS = 32 }; /* maximum of cw_check_judge() */
 
 /* Returns true if a profile asks for cw_self_intersections(); without it the verdict is
  * unknown. */

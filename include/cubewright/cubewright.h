@@ -17,6 +17,7 @@
 #include <cubewright/mesh.h>
 #include <cubewright/overlay.h>
 #include <cubewright/picture.h>
+#include <cubewright/print.h>
 #include <cubewright/quality.h>
 #include <cubewright/render.h>
 #include <cubewright/simplify.h>

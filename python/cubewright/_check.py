@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from ctypes import POINTER, byref, c_float, c_uint8, pointer
 from dataclasses import dataclass
 from typing import Any
@@ -16,7 +16,7 @@ from ._errors import call, name_keywords
 from ._extract import AnyVolume, extract, take_inside
 from ._library import lib
 from ._mesh import Mesh, take_mesh
-from ._options import take_choice, take_flag, take_length, take_number, take_threads
+from ._options import take_choice, take_flag, take_length, take_number, take_numbers, take_threads
 from ._progress import Progress, Reporter
 from ._volume import Volume, take_volume
 
@@ -45,6 +45,8 @@ class Check:
                measured, each a dict with max_mm, rms_mm, mean_mm, p99_mm, bias_mm and more
     missing    components of the source's surface that the mesh lacks
     intersections  pairs of triangles that meet; None: not looked for
+    print      of a closed mesh and 'print', walls, gaps, overhangs and more by the names of
+               cw_print_facts; a wall_mm or gap_mm of None: there is none. Else None
     defects    (m,) uint8, for each triangle bits of 1 open, 2 non-manifold, 4 misoriented,
                8 duplicate, 16 no area, 32 sliver, 64 inside out, 128 intersecting
     """
@@ -56,6 +58,7 @@ class Check:
     distances: dict[str, dict[str, Any]]
     missing: int
     intersections: int | None
+    print: dict[str, Any] | None
     defects: npt.NDArray[np.uint8]
 
     def __repr__(self) -> str:
@@ -76,6 +79,20 @@ def unpack(struct: ctypes.Structure) -> dict[str, Any]:
     return values
 
 
+def unpack_print(facts: c.cw_print_facts) -> dict[str, Any]:
+    """Returns the measurements of a print, and its limits beside them, as JSON can hold them."""
+    limits = ("min_wall_mm", "min_gap_mm", "overhang_deg", "layer_mm", "plate_mm")
+    values: dict[str, Any] = {}
+    for field in facts._fields_:
+        value = getattr(facts, field[0])
+        if field[0] == "limits":
+            values.update((name, getattr(value, name)) for name in limits)
+            values["plate_mm"] = list(values["plate_mm"])
+        else:
+            values[field[0]] = list(value) if isinstance(value, ctypes.Array) else value
+    return {name: None if value == np.inf else value for name, value in values.items()}
+
+
 class Measurer:
     """Measures one mesh, and holds what the findings point to."""
 
@@ -85,6 +102,7 @@ class Measurer:
         self.defects = np.zeros(mesh.triangle_count, np.uint8)
         self.quality = c.cw_quality()
         self.crossings = c.cw_crossings()
+        self.print = c.cw_print_facts()
         self.distances: dict[str, c.cw_distance] = {}
 
     def call(self, function: Callable[..., int], desc: Any, before: tuple[Any, ...], after: tuple[Any, ...]) -> None:
@@ -103,6 +121,12 @@ class Measurer:
             wanted = c.cw_crossings_desc(weld=local, defects=marks)
             self.call(lib.cw_self_intersections, wanted, (byref(self.mesh),), (byref(self.crossings),))
             self.findings.crossings = pointer(self.crossings)
+
+    def measure_print(self, desc: c.cw_print_desc) -> None:
+        """Measures walls, gaps and the rest; an open mesh has none, and does not meet the profile."""
+        if self.mesh.triangle_count and lib.cw_quality_is_closed_manifold(byref(self.quality)):
+            self.call(lib.cw_print_measure, desc, (byref(self.mesh),), (byref(self.print),))
+            self.findings.print = pointer(self.print)
 
     def measure_mesh_distance(
         self, name: str, mesh: c.cw_mesh, other: c.cw_mesh, desc: Any, each: Any = None
@@ -179,8 +203,23 @@ class Measurer:
             distances={name: unpack(d) for name, d in self.distances.items()},
             missing=self.findings.missing,
             intersections=self.crossings.count if self.findings.crossings else None,
+            print=unpack_print(self.print) if self.findings.print else None,
             defects=self.defects,
         )
+
+
+def take_printer(
+    wall: float, gap: float, overhang: float, layer: float, plate: Sequence[float] | None
+) -> c.cw_print_desc:
+    desc = c.cw_print_desc(
+        min_wall_mm=take_length("wall", wall),
+        min_gap_mm=take_length("gap", gap),
+        overhang_deg=take_number("overhang", overhang),
+        layer_mm=take_length("layer", layer),
+    )
+    if plate is not None:
+        desc.plate_mm[:] = take_numbers("plate", plate, 3)
+    return desc
 
 
 def check(
@@ -194,6 +233,11 @@ def check(
     open: bool = False,
     reference: Mesh | None = None,
     tolerance: float = 0.0,
+    wall: float = 0.0,
+    gap: float = 0.0,
+    overhang: float = 0.0,
+    layer: float = 0.0,
+    plate: Sequence[float] | None = None,
     threads: int = 0,
     progress: Progress = None,
 ) -> Check:
@@ -204,6 +248,11 @@ def check(
     source     a volume to measure the distance to; needs iso, as for extract()
     reference  a mesh to measure the distance to, both ways
     tolerance  largest distance allowed, mm; 0: distances are reported only
+    wall       of 'print', mm: walls below are thin; 0: 0.8
+    gap        the same of gaps; 0: 0.4
+    overhang   degrees from the vertical that need no support; 0: 45
+    layer      height of a layer, mm; 0: 0.2
+    plate      width, depth and height that can be printed, mm; None: not looked at
 
     A mesh that is bad is no error: see Check.holds. Vertices at equal positions count as one.
     Raises Error: ARGUMENT, UNSUPPORTED, LIMIT, NO_MEMORY, CANCELLED.
@@ -216,9 +265,12 @@ def check(
     m.findings.tolerance_mm = take_length("tolerance", tolerance)
     if tolerance and source is None and reference is None:
         raise TypeError("tolerance needs something to measure from: source or reference")
+    printer = take_printer(wall, gap, overhang, layer, plate)
     other = None if reference is None else take_mesh("reference", reference)
     try:
         m.measure_defects(take_flag("deep", deep) or bool(lib.cw_check_wants_crossings(wanted)))
+        if PROFILES[wanted] == "print":
+            m.measure_print(printer)
         if source is not None:
             volume = take_volume(source)
             low = take_inside(inside, volume)
@@ -234,7 +286,7 @@ def report(mesh: Mesh, **options: Any) -> dict[str, Any]:
     """Returns the numbers of check() as a dict that json.dumps() takes. Options are check()'s.
 
     Keys: version, mesh (vertices, triangles, bounds_mm), profile, holds, verdicts, quality,
-    distances, missing, intersections.
+    distances, missing, intersections, print.
 
     This is not the page of `cubewright report`. That page, with its study of extraction,
     simplification and rendering, is made by the command alone; the library has no function for it.
@@ -254,4 +306,5 @@ def report(mesh: Mesh, **options: Any) -> dict[str, Any]:
         "distances": result.distances,
         "missing": result.missing,
         "intersections": result.intersections,
+        "print": result.print,
     }

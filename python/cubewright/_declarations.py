@@ -37,7 +37,7 @@ CW_LABELS_MAX = 255
 CW_ANGLE_BINS = 18
 CW_ASPECT_BINS = 9
 CW_LENGTH_BINS = 20
-CW_MAX_VERDICTS = 24
+CW_MAX_VERDICTS = 32
 CW_TEAM_MAX = 4096
 CW_TRANSFER_POINTS = 64
 CW_MAX_MATERIALS = 8
@@ -685,6 +685,76 @@ cw_mesh_comparison._fields_ = [
 ]
 
 
+class cw_print_desc(Structure):
+    min_wall_mm: float
+    min_gap_mm: float
+    overhang_deg: float
+    layer_mm: float
+    plate_mm: Any
+    wall: Any
+    gap: Any
+    threads: int
+    progress: Any
+
+
+cw_print_desc._fields_ = [
+    ("min_wall_mm", c_double),
+    ("min_gap_mm", c_double),
+    ("overhang_deg", c_double),
+    ("layer_mm", c_double),
+    ("plate_mm", c_double * 3),
+    ("wall", POINTER(c_float)),
+    ("gap", POINTER(c_float)),
+    ("threads", c_int),
+    ("progress", cw_progress),
+]
+
+
+class cw_print_facts(Structure):
+    limits: Any
+    area_mm2: float
+    wall_mm: float
+    wall_at: Any
+    thin_mm2: float
+    gap_mm: float
+    gap_at: Any
+    narrow_mm2: float
+    overhang_mm2: float
+    islands: int
+    island_at: Any
+    trapped: int
+    trapped_mm3: float
+    volume_mm3: float
+    center: Any
+    foot_mm2: float
+    margin_mm: float
+    tip_deg: float
+    fits: bool
+
+
+cw_print_facts._fields_ = [
+    ("limits", cw_print_desc),
+    ("area_mm2", c_double),
+    ("wall_mm", c_double),
+    ("wall_at", c_double * 3),
+    ("thin_mm2", c_double),
+    ("gap_mm", c_double),
+    ("gap_at", c_double * 3),
+    ("narrow_mm2", c_double),
+    ("overhang_mm2", c_double),
+    ("islands", c_size_t),
+    ("island_at", c_double * 3),
+    ("trapped", c_size_t),
+    ("trapped_mm3", c_double),
+    ("volume_mm3", c_double),
+    ("center", c_double * 3),
+    ("foot_mm2", c_double),
+    ("margin_mm", c_double),
+    ("tip_deg", c_double),
+    ("fits", c_bool),
+]
+
+
 class cw_extract_desc(Structure):
     isovalue: float
     inside_is_low: bool
@@ -1028,6 +1098,7 @@ class cw_findings(Structure):
     quality: Any
     crossings: Any
     cgal: Any
+    print: Any
     to_field: Any
     from_field: Any
     field: Any
@@ -1044,6 +1115,7 @@ cw_findings._fields_ = [
     ("quality", POINTER(cw_quality)),
     ("crossings", POINTER(cw_crossings)),
     ("cgal", POINTER(cw_cgal_facts)),
+    ("print", POINTER(cw_print_facts)),
     ("to_field", POINTER(cw_distance)),
     ("from_field", POINTER(cw_distance)),
     ("field", POINTER(cw_quality)),
@@ -2477,6 +2549,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_mesh_compare": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), POINTER(cw_mesh_distance_desc), POINTER(cw_mesh_comparison), POINTER(cw_error)]),
     "cw_mesh_comparison_rms": (c_double, [POINTER(cw_mesh_comparison)]),
     "cw_mesh_comparison_max": (c_double, [POINTER(cw_mesh_comparison)]),
+    "cw_print_measure": (c_int, [POINTER(cw_mesh), POINTER(cw_print_desc), POINTER(cw_print_facts), POINTER(cw_error)]),
     "cw_extract": (c_int, [POINTER(cw_volume), POINTER(cw_extract_desc), POINTER(cw_mesh), POINTER(cw_extract_counts), POINTER(cw_error)]),
     "cw_extract_slabs": (c_int, [POINTER(cw_volume), POINTER(cw_extract_desc), c_size_t, cw_slab_sink, POINTER(cw_extract_counts), POINTER(cw_error)]),
     "cw_extract_predict": (c_int, [POINTER(cw_volume), POINTER(cw_extract_desc), POINTER(cw_extract_counts), POINTER(cw_error)]),

@@ -64,6 +64,13 @@ KEYWORDS = {
     "desc->no_sandbox": "sandbox=False",
     "desc->snap = 0.5": "snap=0.5",
     "cw_self_intersections()": "deep=True",
+    "cw_mesh_offset()": "offset()",
+    "cw_mesh_fill_voids()": "extract(..., fill_voids=True)",
+    "min_wall_mm": "wall",
+    "min_gap_mm": "gap",
+    "overhang_deg": "overhang",
+    "layer_mm": "layer",
+    "plate_mm": "plate",
     "sigma_voxels[": "sigma[",
     "spacing_mm[": "spacing[",
 }

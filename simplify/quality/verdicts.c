@@ -203,6 +203,95 @@ static void judge_crossings(bench *b)
                     x->count == 1 ? "s" : "");
 }
 
+/* A verdict on an area with thin walls or narrow gaps. */
+static void judge_width(bench *b, const char *name, const char *one, double least,
+                        const double at[3], double below_mm2, double limit, const char *advice)
+{
+    const double share = 100 * below_mm2 / b->f->print->area_mm2;
+    cw_verdict *v =
+        add_verdict(b, name, below_mm2 > 0 ? CW_GRADE_WARN : CW_GRADE_OK, below_mm2);
+    if (below_mm2 > 0) {
+        say_finding(v,
+                    "%.3g mm2 (%.2g %%) of the surface is at %ss below %g mm; the least is "
+                    "%.3g mm, at %.6g, %.6g, %.6g",
+                    below_mm2, share, one, limit, least, at[0], at[1], at[2]);
+        v->advice = advice;
+    } else if (isfinite(least))
+        say_finding(v, "no %s is below %g mm; the least is %.4g mm, at %.6g, %.6g, %.6g", one,
+                    limit, least, at[0], at[1], at[2]);
+    else
+        say_finding(v, "no %s is below %g mm", one, limit);
+}
+
+static void judge_support(bench *b)
+{
+    const cw_print_facts *p = b->f->print;
+    cw_verdict *v = add_verdict(b, "overhangs", CW_GRADE_NOTE, p->overhang_mm2);
+    say_finding(
+        v, "%.4g mm2 (%.2g %%) of the surface leans more than %g degrees from the vertical",
+        p->overhang_mm2, 100 * p->overhang_mm2 / p->area_mm2, p->limits.overhang_deg);
+    v = add_verdict(b, "islands", p->islands ? CW_GRADE_WARN : CW_GRADE_OK, (double)p->islands);
+    if (!p->islands) {
+        say_finding(v, "nothing begins in the air");
+        return;
+    }
+    say_finding(v, "%zu part%s in the air; the tallest at %.6g, %.6g, %.6g", p->islands,
+                p->islands == 1 ? " begins" : "s begin", p->island_at[0], p->island_at[1],
+                p->island_at[2]);
+    v->advice = "supports hold them, or another side down";
+}
+
+static void judge_stand(bench *b)
+{
+    const cw_print_facts *p = b->f->print;
+    const cw_quality *q = b->f->quality;
+    const bool stands = p->margin_mm > 0;
+    double at[3];
+    for (int a = 0; a < 3; a++) /* without digits that are rounding alone */
+        at[a] = fabs(p->center[a]) < 1e-6 * (q->max[a] - q->min[a]) ? 0 : p->center[a];
+    cw_verdict *v =
+        add_verdict(b, "stability", stands ? CW_GRADE_OK : CW_GRADE_WARN, p->tip_deg);
+    if (stands)
+        say_finding(v,
+                    "stands on %.4g mm2, and tips over at %.3g degrees; the centre of mass is "
+                    "at %.6g, %.6g, %.6g",
+                    p->foot_mm2, p->tip_deg, at[0], at[1], at[2]);
+    else {
+        say_finding(v,
+                    "tips over as it stands, on %.4g mm2; the centre of mass is at %.6g, %.6g, "
+                    "%.6g",
+                    p->foot_mm2, at[0], at[1], at[2]);
+        v->advice = "turn it, support it, or cut a flat base";
+    }
+    if (p->limits.plate_mm[0] == 0)
+        return;
+    v = add_verdict(b, "plate", p->fits ? CW_GRADE_OK : CW_GRADE_FAIL, 0);
+    say_finding(v, "%s a plate of %g x %g x %g mm", p->fits ? "fits" : "does not fit",
+                p->limits.plate_mm[0], p->limits.plate_mm[1], p->limits.plate_mm[2]);
+    v->advice = p->fits ? NULL : "print it smaller, turned, or in pieces";
+}
+
+static void judge_print(bench *b)
+{
+    const cw_print_facts *p = b->f->print;
+    if (!p || !(p->area_mm2 > 0))
+        return;
+    judge_width(b, "walls", "wall", p->wall_mm, p->wall_at, p->thin_mm2, p->limits.min_wall_mm,
+                "print it larger, or let cw_mesh_offset() grow it");
+    judge_width(b, "gaps", "gap", p->gap_mm, p->gap_at, p->narrow_mm2, p->limits.min_gap_mm,
+                "they may close in print");
+    judge_support(b);
+    cw_verdict *v =
+        add_verdict(b, "trapped", p->trapped ? CW_GRADE_WARN : CW_GRADE_OK, p->trapped_mm3);
+    if (p->trapped) {
+        say_finding(v, "%zu closed cavit%s of %.4g mm3", p->trapped,
+                    p->trapped == 1 ? "y" : "ies", p->trapped_mm3);
+        v->advice = "cw_mesh_fill_voids() fills them; else resin and powder stay inside";
+    } else
+        say_finding(v, "no closed cavity");
+    judge_stand(b);
+}
+
 static void judge_look(bench *b)
 {
     const cw_quality *q = b->f->quality;
@@ -343,6 +432,7 @@ size_t cw_check_judge(const cw_findings *findings, cw_profile profile,
     judge_crossings(&b);
     judge_triangles(&b);
     judge_shapes(&b);
+    judge_print(&b);
     judge_look(&b);
     judge_topology(&b);
     judge_missing(&b);

@@ -20,6 +20,23 @@ class Checks(Case):
         flipped = cw.Mesh.from_arrays(mesh.vertices, mesh.triangles[:, ::-1].copy())
         self.assertEqual(cw.check(flipped).quality["inside_out"], 1)
 
+    def test_prints_are_measured(self):
+        mesh = cw.extract(make_ball(), 0)
+        found = cw.check(mesh, profile="print", wall=100, plate=(5, 50, 50))
+        names = {verdict.name: verdict.grade for verdict in found.verdicts}
+        self.assertEqual((names["walls"], names["plate"], names["islands"]), ("warn", "fail", "ok"))
+        size = np.ptp(mesh.vertices[:, 2])
+        self.assertLess(abs(found.print["wall_mm"] / size - 1), 0.02)
+        self.assertIsNone(found.print["gap_mm"])
+        self.assertEqual((found.print["min_wall_mm"], found.print["plate_mm"]), (100, [5, 50, 50]))
+        self.assertFalse(found.print["fits"])
+        json.dumps(cw.report(mesh, profile="print"), allow_nan=False)
+        self.assertIsNone(cw.check(mesh).print)
+        self.assertRaises(ValueError, lambda: cw.check(mesh, profile="print", wall=-1))
+        self.assertRaises(ValueError, lambda: cw.check(mesh, profile="print", plate=(1, 2)))
+        with self.fails(cw.Status.ARGUMENT):
+            cw.check(mesh, profile="print", plate=(1, 2, 0))
+
     def test_distances_to_a_source_name_missing_components(self):
         ball = make_ball()
         speck = ball.copy()

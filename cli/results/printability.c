@@ -1,0 +1,93 @@
+/* Reads the limits of a printer, and writes what they mean for a mesh. */
+#include "cli/results/printability.h"
+
+#include "cli/framework/console.h"
+#include "core/base/status.h"
+
+#include <math.h>
+
+cw_status cli_check_printer(const cli_printer *printer, bool prints, cw_error *err)
+{
+    const struct {
+        const char *option;
+        const cli_length *length;
+        bool is_given;
+    } rows[] = {
+        {"--wall", &printer->wall, printer->wall.given},
+        {"--gap", &printer->gap, printer->gap.given},
+        {"--layer", &printer->layer, printer->layer.given},
+        {"--overhang", NULL, printer->overhang.given},
+        {"--plate", NULL, printer->plate.given},
+    };
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
+        if (rows[n].is_given && !prints)
+            return cwi_fail(err, CW_ERR_ARGUMENT, "%s is for --profile print", rows[n].option);
+        if (rows[n].is_given && rows[n].length && rows[n].length->unit != CLI_MM)
+            return cwi_fail(err, CW_ERR_ARGUMENT, "%s is a length of the print: give mm",
+                            rows[n].option);
+    }
+    const double lean = printer->overhang.value;
+    if (printer->overhang.given && !(lean > 0 && lean < 90))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--overhang %g: expected degrees above 0 and below 90", lean);
+    return CW_OK;
+}
+
+cw_print_desc cli_printer_desc(const cli_printer *printer, int threads, size_t triangles)
+{
+    cw_print_desc desc = {
+        .min_wall_mm = printer->wall.value,
+        .min_gap_mm = printer->gap.value,
+        .layer_mm = printer->layer.value,
+        .overhang_deg = printer->overhang.value,
+        .threads = threads,
+        .progress = cli_progress((double)triangles / 1e6, "Mtriangle"),
+    };
+    for (int a = 0; a < 3 && printer->plate.given; a++)
+        desc.plate_mm[a] = printer->plate.mm[a];
+    return desc;
+}
+
+void cli_json_printer(cli_json *j, const cw_print_desc *limits)
+{
+    cli_json_number(j, "min_wall_mm", limits->min_wall_mm);
+    cli_json_number(j, "min_gap_mm", limits->min_gap_mm);
+    cli_json_number(j, "overhang_deg", limits->overhang_deg);
+    cli_json_number(j, "layer_mm", limits->layer_mm);
+    if (limits->plate_mm[0] > 0)
+        cli_json_numbers(j, "plate_mm", limits->plate_mm, 3);
+}
+
+static void put_width(cli_json *j, const char *key, double least, const double at[3],
+                      double below)
+{
+    cli_json_open(j, key, '{');
+    if (isfinite(least)) {
+        cli_json_number(j, "least_mm", least);
+        cli_json_numbers(j, "at", at, 3);
+    }
+    cli_json_number(j, "below_limit_mm2", below);
+    cli_json_close(j, '}');
+}
+
+void cli_json_print(cli_json *j, const cw_print_facts *f)
+{
+    cli_json_open(j, "print", '{');
+    put_width(j, "walls", f->wall_mm, f->wall_at, f->thin_mm2);
+    put_width(j, "gaps", f->gap_mm, f->gap_at, f->narrow_mm2);
+    cli_json_number(j, "area_mm2", f->area_mm2);
+    cli_json_number(j, "overhang_mm2", f->overhang_mm2);
+    cli_json_count(j, "islands", f->islands);
+    if (f->islands)
+        cli_json_numbers(j, "island_at", f->island_at, 3);
+    cli_json_count(j, "trapped", f->trapped);
+    cli_json_number(j, "trapped_mm3", f->trapped_mm3);
+    cli_json_number(j, "volume_mm3", f->volume_mm3);
+    cli_json_numbers(j, "center_of_mass", f->center, 3);
+    cli_json_number(j, "foot_mm2", f->foot_mm2);
+    cli_json_number(j, "margin_mm", f->margin_mm);
+    cli_json_number(j, "tip_deg", f->tip_deg);
+    if (f->limits.plate_mm[0] > 0)
+        cli_json_bool(j, "fits", f->fits);
+    cli_json_close(j, '}');
+}

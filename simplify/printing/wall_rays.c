@@ -1,0 +1,366 @@
+/* Casts rays against the normals of the surface, and along them: a wall is the way to where a ray
+ * leaves the solid, a gap to where it enters again. */
+#include "simplify/printing/wall_rays.h"
+
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
+#include "core/base/status.h"
+#include "core/geometry/bvh_segment.h"
+#include "core/geometry/closest_point.h"
+#include "core/geometry/vec3.h"
+
+#include <string.h>
+
+/* Points that large triangles are divided for, at least. */
+static const double POINTS = 200000;
+
+/* Rays around the first one, and how far they are off it. */
+enum { AROUND = 6 };
+static const double OFF_DEG = 5;
+
+/* How near the end of a ray must be to facing it: sharper edges are no walls. */
+static const double FACING_DEG = 30;
+
+/* The normal of a point is that between the vertices' normals where all three agree with the
+ * triangle; else there is an edge, and it is the triangle's. */
+static const double SMOOTH_DEG = 30;
+
+/* Thin triangles may face anywhere. Those farther than this off the normals of all their vertices
+ * are not measured. */
+static const double ASTRAY_DEG = 60;
+
+/* In limits: the walls that get the rays around, and the widest gaps that are looked for. */
+static const double REACH = 4;
+
+/* Triangles that one thread measures at a time, and most parts along a side of one. */
+enum { PART = 1 << 10, MOST_PARTS = 1000 };
+
+typedef struct ray_field {
+    const cw_mesh *mesh;
+    const cw_print_desc *limits;
+    cwi_boxes tree;
+    float *normals; /* vertices x 3; 0 where there is none */
+    float *wall, *gap;
+    cwi_wall_sum *walls, *gaps; /* of each part */
+    double step;                /* between points, mm */
+    double diagonal;
+    float slack;
+    size_t parts;
+} ray_field;
+
+static void load_corners(const cw_mesh *mesh, size_t triangle, double p[3][3])
+{
+    for (size_t c = 0; c < 3; c++)
+        for (size_t a = 0; a < 3; a++)
+            p[c][a] =
+                (double)mesh->positions[3 * (size_t)mesh->triangles[3 * triangle + c] + a];
+}
+
+/* Computes the normal of a triangle, as long as twice its area. */
+static void find_area(const double p[3][3], double area[3])
+{
+    double sides[2][3];
+    for (int s = 0; s < 2; s++)
+        for (int a = 0; a < 3; a++)
+            sides[s][a] = p[s + 1][a] - p[0][a];
+    cwi_cross(sides[0], sides[1], area);
+}
+
+/* --- one ray ------------------------------------------------------------------------------ */
+
+typedef struct ray {
+    const ray_field *field;
+    size_t own; /* the triangle that it starts on */
+    double from[3], vector[3];
+    double share; /* of the vector, to the first hit so far */
+    size_t hit;
+} ray;
+
+/* Returns the share of a vector after which a ray meets a triangle, or INFINITY [Moeller1997]. */
+static double meet_triangle(const ray *r, size_t triangle)
+{
+    double p[3][3], sides[2][3], across[3], from[3], around[3];
+    load_corners(r->field->mesh, triangle, p);
+    for (int s = 0; s < 2; s++)
+        for (int a = 0; a < 3; a++)
+            sides[s][a] = p[s + 1][a] - p[0][a];
+    cwi_cross(r->vector, sides[1], across);
+    const double det = cwi_dot(sides[0], across);
+    if (det == 0)
+        return INFINITY;
+    for (int a = 0; a < 3; a++)
+        from[a] = r->from[a] - p[0][a];
+    const double u = cwi_dot(from, across) / det;
+    cwi_cross(from, sides[0], around);
+    const double v = cwi_dot(r->vector, around) / det;
+    const bool is_inside = u >= 0 && v >= 0 && u + v <= 1;
+    return is_inside ? cwi_dot(sides[1], around) / det : INFINITY;
+}
+
+static bool visit_triangle(void *context, size_t slot)
+{
+    ray *r = context;
+    const size_t triangle = r->field->tree.order[slot];
+    if (triangle == r->own)
+        return true;
+    const double share = meet_triangle(r, triangle);
+    if (share > 0 && share < r->share) {
+        r->share = share;
+        r->hit = triangle;
+    }
+    return true;
+}
+
+/* Returns the way of a ray to the surface, up to `most`, or INFINITY: where it meets none, or where
+ * the surface does not face it. Looks near by first, as long rays meet many boxes.
+ * side  1: the ray leaves the solid there; -1: it enters */
+static double cast_ray(const ray_field *f, size_t own, const double from[3],
+                       const double direction[3], double side, double first, double most)
+{
+    ray r = {.field = f, .own = own, .hit = SIZE_MAX};
+    memcpy(r.from, from, sizeof r.from);
+    for (double reach = cwi_lesser(first, most);; reach = cwi_lesser(4 * reach, most)) {
+        for (int a = 0; a < 3; a++)
+            r.vector[a] = reach * direction[a];
+        const cwi_boxes_segment segment = cwi_boxes_segment_of(r.from, r.vector, f->slack);
+        r.share = 1;
+        cwi_boxes_pierce(&f->tree, &segment, visit_triangle, &r);
+        if (r.hit != SIZE_MAX) {
+            double p[3][3], normal[3];
+            load_corners(f->mesh, r.hit, p);
+            find_area((const double(*)[3])p, normal);
+            const bool faces = cwi_normalise(normal) && side * cwi_dot(normal, direction) >=
+                                                            cos(FACING_DEG * CWI_PI / 180);
+            return faces ? r.share * reach : INFINITY;
+        }
+        if (reach >= most)
+            return INFINITY;
+    }
+}
+
+/* --- a point ------------------------------------------------------------------------------ */
+
+/* Finds two directions across a unit vector. */
+static void find_across(const double d[3], double across[2][3])
+{
+    const int a = fabs(d[0]) < 0.6 ? 0 : 1;
+    const double axis[3] = {a == 0, a == 1, 0};
+    cwi_cross(d, axis, across[0]);
+    cwi_normalise(across[0]);
+    cwi_cross(d, across[0], across[1]);
+}
+
+/* Returns the wall or gap at a point. direction: unit, into it */
+static double measure_point(const ray_field *f, size_t own, const double from[3],
+                            const double direction[3], double side, double limit, double most)
+{
+    double least = cast_ray(f, own, from, direction, side, REACH * limit, most);
+    if (!(least < REACH * limit))
+        return least;
+    double across[2][3];
+    const double along = cos(OFF_DEG * CWI_PI / 180), off = sin(OFF_DEG * CWI_PI / 180);
+    find_across(direction, across);
+    for (int n = 0; n < AROUND; n++) {
+        const double turn = 2 * CWI_PI * n / AROUND;
+        double d[3];
+        for (int a = 0; a < 3; a++)
+            d[a] = along * direction[a] +
+                   off * (cos(turn) * across[0][a] + sin(turn) * across[1][a]);
+        least = cwi_lesser(least, cast_ray(f, own, from, d, side, least, least));
+    }
+    return least;
+}
+
+/* Finds the normal between those of the corners, if they agree with the triangle's. Returns false
+ * for a triangle that goes astray.
+ * weights  of the corners   flat  of the triangle, unit */
+static bool find_normal(const ray_field *f, size_t triangle, const double weights[3],
+                        const double flat[3], double normal[3])
+{
+    double least = 1, most = -1;
+    memset(normal, 0, 3 * sizeof *normal);
+    for (size_t c = 0; c < 3; c++) {
+        const float *n = f->normals + 3 * (size_t)f->mesh->triangles[3 * triangle + c];
+        const double corner[3] = {(double)n[0], (double)n[1], (double)n[2]};
+        least = cwi_lesser(least, cwi_dot(corner, flat));
+        most = cwi_greater(most, cwi_dot(corner, flat));
+        for (int a = 0; a < 3; a++)
+            normal[a] += weights[c] * corner[a];
+    }
+    if (least < cos(SMOOTH_DEG * CWI_PI / 180) || !cwi_normalise(normal))
+        memcpy(normal, flat, 3 * sizeof *normal);
+    return most >= cos(ASTRAY_DEG * CWI_PI / 180);
+}
+
+static void add_measure(cwi_wall_sum *sum, double measured, double limit, const double at[3],
+                        double area)
+{
+    if (measured < sum->least) {
+        sum->least = measured;
+        memcpy(sum->at, at, sizeof sum->at);
+    }
+    if (measured < limit)
+        sum->below += area;
+}
+
+/* --- a triangle --------------------------------------------------------------------------- */
+
+/* Points of equal area: `columns` along the longest side, `rows` toward the corner opposite. */
+typedef struct point_grid {
+    size_t apex; /* corner opposite of the longest side */
+    size_t columns, rows;
+} point_grid;
+
+static size_t count_parts(double length, double step)
+{
+    const double parts = ceil(length / step);
+    return parts > MOST_PARTS ? MOST_PARTS : parts > 1 ? (size_t)parts : 1;
+}
+
+static point_grid divide_triangle(const double p[3][3], double twice_area, double step)
+{
+    point_grid g = {0};
+    double longest = -1;
+    for (size_t c = 0; c < 3; c++) {
+        double side[3];
+        for (int a = 0; a < 3; a++)
+            side[a] = p[(c + 2) % 3][a] - p[(c + 1) % 3][a];
+        const double length = sqrt(cwi_dot(side, side));
+        if (length > longest) {
+            longest = length;
+            g.apex = c;
+        }
+    }
+    g.columns = count_parts(longest, step);
+    g.rows = count_parts(twice_area / longest, step);
+    return g;
+}
+
+static void measure_triangle(ray_field *f, size_t triangle, cwi_wall_sum *walls,
+                             cwi_wall_sum *gaps)
+{
+    double p[3][3], flat[3];
+    load_corners(f->mesh, triangle, p);
+    find_area((const double(*)[3])p, flat);
+    const double twice = sqrt(cwi_dot(flat, flat));
+    double least[2] = {INFINITY, INFINITY};
+    const cw_print_desc *limits = f->limits;
+    if (twice > 0 && cwi_normalise(flat)) {
+        const point_grid g = divide_triangle((const double(*)[3])p, twice, f->step);
+        const double area = twice / 2 / (double)(g.columns * g.rows);
+        for (size_t n = 0; n < g.columns * g.rows; n++) {
+            const double along = ((double)(n % g.columns) + 0.5) / (double)g.columns,
+                         up = 1 - sqrt(1 - ((double)(n / g.columns) + 0.5) / (double)g.rows);
+            double weights[3], at[3], normal[3], inward[3];
+            weights[g.apex] = up;
+            weights[(g.apex + 1) % 3] = (1 - up) * (1 - along);
+            weights[(g.apex + 2) % 3] = (1 - up) * along;
+            for (int a = 0; a < 3; a++)
+                at[a] = weights[0] * p[0][a] + weights[1] * p[1][a] + weights[2] * p[2][a];
+            if (!find_normal(f, triangle, weights, flat, normal))
+                break;
+            for (int a = 0; a < 3; a++)
+                inward[a] = -normal[a];
+            const double wall = measure_point(f, triangle, at, inward, 1, limits->min_wall_mm,
+                                              f->diagonal),
+                         gap = measure_point(f, triangle, at, normal, -1, limits->min_gap_mm,
+                                             REACH * limits->min_gap_mm);
+            add_measure(walls, wall, limits->min_wall_mm, at, area);
+            add_measure(gaps, gap, limits->min_gap_mm, at, area);
+            least[0] = cwi_lesser(least[0], wall);
+            least[1] = cwi_lesser(least[1], gap);
+        }
+    }
+    f->wall[triangle] = (float)least[0];
+    f->gap[triangle] = (float)least[1];
+}
+
+static void measure_part(void *context, size_t k)
+{
+    ray_field *f = context;
+    f->walls[k] = f->gaps[k] = (cwi_wall_sum){.least = INFINITY};
+    for (size_t t = k * PART; t < (k + 1) * PART && t < f->mesh->triangle_count; t++)
+        measure_triangle(f, t, &f->walls[k], &f->gaps[k]);
+}
+
+/* --- all ---------------------------------------------------------------------------------- */
+
+/* Finds the normals of vertices, weighted by area, and the step between points. */
+static void prepare_points(ray_field *f)
+{
+    const cw_mesh *mesh = f->mesh;
+    double twice = 0, low[3] = {INFINITY, INFINITY, INFINITY},
+           high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
+        double p[3][3], area[3];
+        load_corners(mesh, t, p);
+        find_area((const double(*)[3])p, area);
+        twice += sqrt(cwi_dot(area, area));
+        for (size_t n = 0; n < 9; n++) {
+            f->normals[3 * (size_t)mesh->triangles[3 * t + n / 3] + n % 3] +=
+                (float)area[n % 3];
+            low[n % 3] = cwi_lesser(low[n % 3], p[n / 3][n % 3]);
+            high[n % 3] = cwi_greater(high[n % 3], p[n / 3][n % 3]);
+        }
+    }
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        double normal[3];
+        for (size_t a = 0; a < 3; a++)
+            normal[a] = (double)f->normals[3 * v + a];
+        const bool has_normal = cwi_normalise(normal);
+        for (size_t a = 0; a < 3; a++)
+            f->normals[3 * v + a] = has_normal ? (float)normal[a] : 0;
+    }
+    const double size[3] = {high[0] - low[0], high[1] - low[1], high[2] - low[2]};
+    f->diagonal = sqrt(cwi_dot(size, size));
+    f->step = sqrt(twice / 2 / POINTS);
+    f->slack = f->tree.most * 0x1p-20f;
+}
+
+static cw_status alloc_field(ray_field *f, cw_error *err)
+{
+    f->parts = (f->mesh->triangle_count + PART - 1) / PART;
+    f->normals = cwi_alloc_zeroed(f->mesh->vertex_count, 3 * sizeof *f->normals);
+    f->walls = cwi_alloc_array(f->parts, sizeof *f->walls);
+    f->gaps = cwi_alloc_array(f->parts, sizeof *f->gaps);
+    return f->normals && f->walls && f->gaps
+               ? CW_OK
+               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to measure walls of %zu triangles",
+                          f->mesh->triangle_count);
+}
+
+/* Adds up parts in their order, so that threads do not matter. */
+static void add_parts(const cwi_wall_sum *parts, size_t count, cwi_wall_sum *sum)
+{
+    *sum = (cwi_wall_sum){.least = INFINITY};
+    for (size_t k = 0; k < count; k++) {
+        if (parts[k].least < sum->least) {
+            sum->least = parts[k].least;
+            memcpy(sum->at, parts[k].at, sizeof sum->at);
+        }
+        sum->below += parts[k].below;
+    }
+}
+
+cw_status cwi_measure_walls(const cw_mesh *mesh, const cw_print_desc *limits, float *wall,
+                            float *gap, cwi_wall_sum *walls, cwi_wall_sum *gaps, cw_error *err)
+{
+    ray_field f = {.mesh = mesh, .limits = limits, .wall = wall, .gap = gap};
+    cw_status st = alloc_field(&f, err);
+    if (st == CW_OK && mesh->triangle_count)
+        st = cwi_closest_build(mesh, &f.tree, err);
+    if (st == CW_OK) {
+        prepare_points(&f);
+        st = cwi_each_layer(f.parts, 1 << 16, limits->threads, &limits->progress, "walls",
+                            measure_part, &f, err);
+    }
+    if (st == CW_OK) {
+        add_parts(f.walls, f.parts, walls);
+        add_parts(f.gaps, f.parts, gaps);
+    }
+    cwi_boxes_free(&f.tree);
+    cwi_free(f.normals);
+    cwi_free(f.walls);
+    cwi_free(f.gaps);
+    return st;
+}

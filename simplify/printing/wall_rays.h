@@ -1,0 +1,26 @@
+/* Measures walls and gaps by rays from points of the surface. */
+#ifndef SIMPLIFY_PRINTING_WALL_RAYS_H
+#define SIMPLIFY_PRINTING_WALL_RAYS_H
+
+#include <cubewright/print.h>
+
+/* The thinnest of all, and the area of the surface at thin ones. Zeroed is not empty: see
+ * cwi_measure_walls(). */
+typedef struct cwi_wall_sum {
+    double least; /* mm; INFINITY: none */
+    double at[3]; /* a point of the surface, relative to the mesh's origin */
+    double below; /* mm2: area below the limit */
+} cwi_wall_sum;
+
+/* Measures at points spread over the surface.
+ * mesh     welded
+ * limits   with their defaults
+ * wall     triangle_count: the thinnest wall of each, or INFINITY
+ * gap      the same of gaps
+ * walls, gaps  set
+ * Returns  CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
+CW_NODISCARD cw_status cwi_measure_walls(const cw_mesh *mesh, const cw_print_desc *limits,
+                                         float *wall, float *gap, cwi_wall_sum *walls,
+                                         cwi_wall_sum *gaps, cw_error *err);
+
+#endif
