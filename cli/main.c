@@ -3,7 +3,9 @@
 #include "cli/framework/batch.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
+#include "cli/framework/run_config.h"
 #include "cli/inputs/volume_input.h"
+#include "cli/results/output_names.h"
 #include "core/base/atomic_file.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -107,28 +109,73 @@ static cw_status run_in_batch(const cli_command *command, cli_common *args, cw_e
     return st;
 }
 
+/* Returns true for options that name an output. */
+static bool names_output(const cli_option *o)
+{
+    static const cli_values outputs[] = {
+        CLI_VALUES_VOLUME_OUTPUT, CLI_VALUES_MESH_OUTPUT, CLI_VALUES_DEFECTS,
+        CLI_VALUES_JSON,          CLI_VALUES_JSON_LINES,  CLI_VALUES_CSV,
+        CLI_VALUES_HTML,          CLI_VALUES_PNG,         CLI_VALUES_PVD};
+    for (size_t n = 0; n < sizeof outputs / sizeof *outputs; n++)
+        if (o->kind == CLI_TEXT && o->values == outputs[n])
+            return true;
+    return false;
+}
+
+/* The file of --save-config is an output, too. */
+static cw_status check_save(const cli_common *args, const cli_said *said, cw_error *err)
+{
+    cw_status st = cli_check_output(args->save_config, args->inputs, args->input_count, err);
+    for (size_t n = 0; n < args->said_count && st == CW_OK; n++)
+        if (names_output(said[n].option))
+            st = cli_check_apart(args->save_config, said[n].value, err);
+    return st;
+}
+
+/* Runs what the words ask for. */
+static cw_status run_words(const cli_command *command, const cli_words *words, cli_common *args,
+                           const char **inputs, cw_error *err)
+{
+    if (command->defaults)
+        memcpy(args, command->defaults, command->size);
+    size_t most = 1; /* letters of flags may be together in a word */
+    for (int n = 0; n < words->count; n++)
+        most += strlen(words->words[n]);
+    args->said = calloc(most, sizeof *args->said);
+    if (!args->said)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the arguments");
+    cli_said *const said = args->said;
+    cw_status st = cli_parse(command, words->count, words->words, args, inputs, err);
+    args->said = NULL; /* the window parses more options later */
+    cli_console_start(args, CLI_PROGRESS_AUTO);
+    if (st == CW_OK && args->save_config)
+        st = check_save(args, said, err);
+    if (st == CW_OK && args->help)
+        cli_print_help(command, false);
+    else if (st == CW_OK && cli_is_batch(&args->batch))
+        st = cli_batch_run(command, args, run_in_batch, err);
+    else if (st == CW_OK)
+        st = run_parsed(command, args, err);
+    if (st == CW_OK && args->save_config)
+        st = cli_save_config(command, args, said, err);
+    free(said);
+    return st;
+}
+
 static cw_status run_command(const cli_command *command, int count, char **words, cw_error *err)
 {
+    cli_words all;
+    cw_status st = cli_read_config(command, count, words, &all, err);
     cli_common *args = calloc(1, command->size);
-    const char **inputs = calloc((size_t)count + 1, sizeof *inputs);
-    cw_status st = CW_ERR_NO_MEMORY;
-    if (args && inputs) {
-        if (command->defaults)
-            memcpy(args, command->defaults, command->size);
-        st = cli_parse(command, count, words, args, inputs, err);
-        cli_console_start(args, CLI_PROGRESS_AUTO);
-        if (st == CW_OK && args->help)
-            cli_print_help(command, false);
-        else if (st == CW_OK && cli_is_batch(&args->batch))
-            st = cli_batch_run(command, args, run_in_batch, err);
-        else if (st == CW_OK)
-            st = run_parsed(command, args, err);
-    } else {
-        cwi_fail(err, st, "no memory for the arguments");
-    }
+    const char **inputs = calloc((size_t)all.count + 1, sizeof *inputs);
+    if (st == CW_OK && args && inputs)
+        st = run_words(command, &all, args, inputs, err);
+    else if (st == CW_OK)
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the arguments");
     cli_progress_end();
     free(args);
     free(inputs);
+    cli_free_words(&all);
     return st;
 }
 

@@ -13,6 +13,12 @@ const cli_option cli_common_options[] = {
     {"verbose", 'v', CLI_LOUDER, NULL,
      "Print the time and memory of each step; -vv also the settings",
      offsetof(cli_common, verbose)},
+    {"config", 0, CLI_TEXT, "FILE",
+     "Read options from a file, such as one of --save-config; the command line comes first (none)",
+     offsetof(cli_common, config), CLI_VALUES_FILE},
+    {"save-config", 0, CLI_TEXT, "FILE",
+     "Write the inputs and options to a file when the run is done, to repeat it (none)",
+     offsetof(cli_common, save_config), CLI_VALUES_FILE},
     {"help", 'h', CLI_FLAG, NULL, "Print the options of the command",
      offsetof(cli_common, help)},
 };
@@ -425,12 +431,16 @@ static cw_status take_option(parser *p, const cli_option *o, const char *value, 
         ++*(int *)field;
     if (o->kind == CLI_FLAG)
         *(bool *)field = !off;
+    if (o->kind == CLI_FLAG && p->args->said)
+        p->args->said[p->args->said_count++] = (cli_said){.option = o, .off = off};
     if (!takes_value(o))
         return value ? cwi_fail(err, CW_ERR_ARGUMENT, "--%s takes no value", o->name) : CW_OK;
     if (!value && p->next == p->count)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--%s needs a value: %s", o->name,
                         describe_expected(o));
     value = value ? value : p->words[p->next++];
+    if (p->args->said)
+        p->args->said[p->args->said_count++] = (cli_said){.option = o, .value = value};
     if (!store_value(o, value, field))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--%s '%s': expected %s", o->name, value,
                         describe_expected(o));
@@ -488,25 +498,69 @@ static cw_status check_inputs(const cli_command *c, const cli_common *args, cw_e
                     c->name, c->usage);
 }
 
+static cw_status take_words(parser *p, cw_error *err)
+{
+    bool options_end = false;
+    cw_status st = CW_OK;
+    while (p->next < p->count && st == CW_OK) {
+        const char *word = p->words[p->next++];
+        if (options_end || word[0] != '-' || word[1] == '\0')
+            p->args->inputs[p->args->input_count++] = word;
+        else if (strcmp(word, "--") == 0)
+            options_end = true;
+        else if (word[1] == '-')
+            st = take_long(p, word, err);
+        else
+            st = take_short(p, word, err);
+    }
+    return st;
+}
+
 cw_status cli_parse(const cli_command *command, int count, char **words, void *args,
                     const char **inputs, cw_error *err)
 {
     parser p = {command, count, 0, words, args};
-    bool options_end = false;
-    cw_status st = CW_OK;
     p.args->inputs = inputs;
-    while (p.next < count && st == CW_OK) {
-        const char *word = words[p.next++];
-        if (options_end || word[0] != '-' || word[1] == '\0')
-            inputs[p.args->input_count++] = word;
-        else if (strcmp(word, "--") == 0)
-            options_end = true;
-        else if (word[1] == '-')
-            st = take_long(&p, word, err);
-        else
-            st = take_short(&p, word, err);
-    }
+    cw_status st = take_words(&p, err);
     return st == CW_OK ? check_inputs(command, p.args, err) : st;
+}
+
+cw_status cli_count_inputs(const cli_command *command, int count, char **words, size_t *inputs,
+                           cw_error *err)
+{
+    cw_error unsaid;
+    parser p = {command, count, 0, words, calloc(1, command->size)};
+    const char **places = calloc((size_t)count + 1, sizeof *places);
+    cw_status st = p.args && places
+                       ? CW_OK
+                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the arguments");
+    if (st == CW_OK) {
+        p.args->inputs = places;
+        *inputs = take_words(&p, &unsaid) == CW_OK ? p.args->input_count : 1;
+    }
+    free(p.args);
+    free(places);
+    return st;
+}
+
+const cli_option *cli_find_option(const cli_command *command, const char *name, cw_error *err)
+{
+    const cli_option *o = find_long(command, name, strlen(name));
+    if (!o && unknown_option(command, name, strlen(name), err) != CW_OK)
+        return NULL;
+    return o;
+}
+
+cw_status cli_check_value(const cli_option *option, const char *value, cw_error *err)
+{
+    void *field = calloc(1, cli_option_size(option) + 1);
+    if (!field)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a value");
+    const bool fits = store_value(option, value, field);
+    free(field);
+    return fits ? CW_OK
+                : cwi_fail(err, CW_ERR_ARGUMENT, "%s '%s': expected %s", option->name, value,
+                           describe_expected(option));
 }
 
 /* Width of the help, and the column where the texts of options begin. */

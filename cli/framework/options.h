@@ -227,6 +227,13 @@ typedef struct cli_batch {
     const char *json_lines;
 } cli_batch;
 
+/* An option as it was said. */
+typedef struct cli_said {
+    const struct cli_option *option;
+    const char *value; /* NULL: a flag */
+    bool off;          /* a flag as --no-NAME */
+} cli_said;
+
 /* First member of every command's struct. */
 typedef struct cli_common {
     bool help;
@@ -235,6 +242,9 @@ typedef struct cli_common {
     const char **inputs; /* the arguments that are no options */
     size_t input_count;
     cli_batch batch;
+    const char *config, *save_config; /* files of a run: see run_config.h */
+    struct cli_said *said; /* options are listed there as they are said; NULL: they are not */
+    size_t said_count;
     size_t processes; /* of a batch, which share threads and memory; 0: this one alone */
     bool given[CLI_MAX_OPTIONS]; /* rows of the command's table that were */
 } cli_common;
@@ -260,6 +270,17 @@ typedef struct cli_command {
  * for an unknown option; checks nothing about the number of inputs when help is asked for. */
 CW_NODISCARD cw_status cli_parse(const cli_command *command, int count, char **words,
                                  void *args, const char **inputs, cw_error *err);
+
+/* Counts the words that are no options; 1 where the words cannot be parsed. CW_ERR_NO_MEMORY */
+CW_NODISCARD cw_status cli_count_inputs(const cli_command *command, int count, char **words,
+                                        size_t *inputs, cw_error *err);
+
+/* Returns the option of a name, or NULL, and an error with the nearest name. */
+const cli_option *cli_find_option(const cli_command *command, const char *name, cw_error *err);
+
+/* Returns an error if a value is none of the option's kind. */
+CW_NODISCARD cw_status cli_check_value(const cli_option *option, const char *value,
+                                       cw_error *err);
 
 /* Whether an option was given, of that name. */
 bool cli_is_given(const cli_command *command, const cli_common *args, const char *name);

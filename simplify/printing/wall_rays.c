@@ -172,7 +172,7 @@ static double measure_point(const ray_field *f, size_t own, const double from[3]
 }
 
 /* Finds the normal between those of the corners, if they agree with the triangle's. Returns false
- * for a triangle that goes astray.
+ * for a triangle that is not to be measured.
  * weights  of the corners   flat  of the triangle, unit */
 static bool find_normal(const ray_field *f, size_t triangle, const double weights[3],
                         const double flat[3], double normal[3])
