@@ -95,6 +95,7 @@ static const cli_option options[] = {
     {"accel", 0, CLI_CHOICE, "octree/none",
      "Octree that several isovalues share; the result is the same (octree)",
      offsetof(cli_extract_args, accel)},
+    CLI_COLOR_OPTIONS(cli_extract_args),
     CLI_HEADED("Simplify while extracting"),
     {"simplify", 0, CLI_REDUCTION, "L|N",
      "Error limit (0.1mm, 0.05%, 0.5vox) or triangle count (50k) to simplify to (off)",
@@ -282,6 +283,8 @@ static cw_status make_surface(cli_extract_run *s, const cli_moment *moment, size
         st = cli_extract_prove(s, made, &mesh, counts.bytes, err);
     if (st == CW_OK)
         st = cli_extract_prove_crop(s, moment, made, err);
+    if (st == CW_OK)
+        st = cli_extract_color(s, moment, &mesh, err);
     if (st == CW_OK)
         st = s->args->animate
                  ? cli_deliver_step(&s->output.report, &how, &mesh, counts.border_loops,
@@ -485,7 +488,10 @@ static cw_status extract_surfaces(void *state, cw_error *err)
 static cw_status run_extract(void *p, cw_error *err)
 {
     cli_extract_args *args = p;
-    cli_extract_run s = {.args = args, .iso = &args->iso, .output.start = cli_seconds()};
+    cli_extract_run s = {.args = args,
+                         .iso = &args->iso,
+                         .coloring.args = &args->color,
+                         .output.start = cli_seconds()};
     if (cw_team_is_started() && !args->part && !args->queue) /* else each rank is a worker */
         return cli_extract_ranks(args, err);
     if (args->part || args->manifest || args->queue || args->parts)
@@ -510,6 +516,7 @@ static cw_status run_extract(void *p, cw_error *err)
         cw_simplify_view_free(s.plan.views + n);
     cw_extractor_free(s.input.extractor);
     cli_frames_free(&s.output.frames);
+    cli_free_coloring(&s.coloring);
     cli_free_volume(&s.input.volume);
     cli_free_outputs(&s.output.files);
     cli_free_series(&s.input.series);

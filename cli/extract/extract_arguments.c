@@ -200,7 +200,9 @@ cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--max-move is for --smooth");
     if (args->smooth.given && args->pixel.cull)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--cull cannot be combined with --smooth");
-    st = check_lod(args, err);
+    st = cli_check_color(&args->color, err);
+    if (st == CW_OK)
+        st = check_lod(args, err);
     if (st == CW_OK)
         st = check_measure(args, err);
     if (st == CW_OK)

@@ -137,6 +137,7 @@ void cli_extract_put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_number(j, "max_move_mm", cli_extract_smoothing(s).max_move_mm);
     }
     put_pixels(j, s);
+    cli_json_color(j, &s->coloring);
     cli_json_text(j, "normals", args->normals ? "none" : "field");
     if (args->iso.count > 1)
         cli_json_text(j, "accel", args->accel ? "none" : "octree");

@@ -5,6 +5,7 @@
 #include "cli/extract/pixel_proof.h"
 #include "cli/framework/quantity.h"
 #include "cli/results/animation_frames.h"
+#include "cli/results/color_by.h"
 #include "cli/results/output_names.h"
 #include "cli/results/write_result.h"
 
@@ -24,6 +25,7 @@ typedef struct cli_extract_args {
     bool fill_voids;
     cli_smoothing smooth;
     cli_length max_move;
+    cli_color_args color;
     cli_pixel_args pixel;
     int inside, normals, progress, topology, placement, accel;
     bool open, no_clobber, local, check, measure, animate, prove_crop;
@@ -64,6 +66,7 @@ typedef struct cli_extract_run {
     cli_numbers *iso; /* of args: names become numbers when a volume is read */
     cli_extract_plan plan;
     cli_extract_input input;
+    cli_coloring coloring; /* of --color-by */
     cli_extract_output output;
 } cli_extract_run;
 
@@ -137,6 +140,10 @@ CW_NODISCARD cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_m
 CW_NODISCARD cw_status cli_extract_judge(cli_extract_run *s, cli_made *made,
                                          const cw_mesh *mesh, const cw_extract_counts *counts,
                                          cw_error *err);
+
+/* Colours the surface, if that is asked for. moment: of a series; NULL: the only step */
+CW_NODISCARD cw_status cli_extract_color(cli_extract_run *s, const cli_moment *moment,
+                                         cw_mesh *mesh, cw_error *err);
 
 /* Measures what --camera and --max-error promise. bytes: that extraction took */
 CW_NODISCARD cw_status cli_extract_prove(cli_extract_run *s, cli_made *made,

@@ -248,6 +248,21 @@ cw_status cli_extract_judge(cli_extract_run *s, cli_made *made, const cw_mesh *m
                : st;
 }
 
+cw_status cli_extract_color(cli_extract_run *s, const cli_moment *moment, cw_mesh *mesh,
+                            cw_error *err)
+{
+    const cli_input *input = &s->args->input;
+    cw_sample_facts facts;
+    if (!s->args->color.by)
+        return CW_OK;
+    cli_report_begin(&s->output.report);
+    cw_status st = cli_color_mesh(&s->coloring, s->input.volume.path, input,
+                                  moment ? moment->step : input->step, mesh, &facts, err);
+    if (st == CW_OK)
+        cli_report_end(&s->output.report, "color", mesh->vertex_count, mesh->vertex_count);
+    return st;
+}
+
 static cw_status hold_to_pixels(const cli_extract_run *s, const cli_proof *p, cw_error *err)
 {
     for (size_t n = 0; n < p->count; n++)

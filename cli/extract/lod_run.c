@@ -88,6 +88,8 @@ static cw_status finish_level(void *state, cli_made *made, cw_mesh *level, cw_er
                                      .threads = (int)s->args->input.threads};
     made->iso = s->args->iso.value[0];
     cw_status st = s->args->check ? hold_level(r, made, level, err) : CW_OK;
+    if (st == CW_OK)
+        st = cli_extract_color(s, NULL, level, err);
     if (st != CW_OK || s->args->normals || s->args->smooth.given ||
         !cli_extract_shades_levels(s))
         return st;

@@ -27,6 +27,7 @@ const char *cli_find_unstreamed(const cli_extract_args *args)
         {"--min-volume beside --simplify", args->least.given && has_simplify(args)},
         {"--fill-voids", args->fill_voids},
         {"--smooth", args->smooth.given},
+        {"--color-by", args->color.by != NULL},
         {"--snap", args->snap.value > 0},
         {"--animate", args->animate},
         {"--lod", args->lod.count > 0},

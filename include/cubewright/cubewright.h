@@ -4,6 +4,7 @@
 
 #include <cubewright/camera.h>
 #include <cubewright/check.h>
+#include <cubewright/color.h>
 #include <cubewright/core.h>
 #include <cubewright/distance.h>
 #include <cubewright/extract.h>

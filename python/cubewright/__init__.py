@@ -14,6 +14,7 @@ threads at once, as long as none writes to its arrays.
 
 from ._about import Feature, Format, features, formats, make
 from ._check import Check, Verdict, check, report
+from ._color import color_by
 from ._errors import Error, Status
 from ._extract import Extractor, LabelSurfaces, Patch, extract, extract_labels
 from ._library import lib as _lib
@@ -46,6 +47,7 @@ __all__ = [
     "Volume",
     "Written",
     "check",
+    "color_by",
     "extract",
     "extract_labels",
     "features",

@@ -135,6 +135,14 @@ class cw_grade(enum.IntEnum):
     CW_GRADE_NOTE = 4
 
 
+class cw_colormap(enum.IntEnum):
+    CW_COLORMAP_VIRIDIS = 0
+    CW_COLORMAP_INFERNO = 1
+    CW_COLORMAP_COOL_WARM = 2
+    CW_COLORMAP_GRAY = 3
+    CW_COLORMAP_COUNT = 4
+
+
 class cw_field(enum.IntEnum):
     CW_FIELD_SPHERE = 0
     CW_FIELD_TORUS = 1
@@ -1158,6 +1166,30 @@ cw_paint._fields_ = [
     ("name", c_char_p),
     ("color", c_char_p),
     ("rgb", c_uint8 * 3),
+]
+
+
+class cw_sample_desc(Structure):
+    threads: int
+    progress: Any
+
+
+cw_sample_desc._fields_ = [
+    ("threads", c_int),
+    ("progress", cw_progress),
+]
+
+
+class cw_sample_facts(Structure):
+    low: float
+    high: float
+    missing: int
+
+
+cw_sample_facts._fields_ = [
+    ("low", c_double),
+    ("high", c_double),
+    ("missing", c_size_t),
 ]
 
 
@@ -2587,6 +2619,10 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_grade_name": (c_char_p, [c_int]),
     "cw_check_paints": (POINTER(cw_paint), [POINTER(c_size_t)]),
     "cw_check_paint": (c_int, [POINTER(cw_mesh), POINTER(c_uint8), POINTER(c_float), c_double, POINTER(cw_mesh), POINTER(cw_error)]),
+    "cw_colormap_name": (c_char_p, [c_int]),
+    "cw_colormap_color": (None, [c_int, c_double, POINTER(c_uint8)]),
+    "cw_mesh_sample": (c_int, [POINTER(cw_mesh), POINTER(cw_volume), POINTER(cw_sample_desc), POINTER(cw_sample_facts), POINTER(cw_error)]),
+    "cw_mesh_color": (c_int, [POINTER(cw_mesh), c_int, c_double, c_double, POINTER(cw_error)]),
     "cw_field_name": (c_char_p, [c_int]),
     "cw_field_about": (c_char_p, [c_int]),
     "cw_field_isovalue": (c_double, [c_int]),

@@ -324,8 +324,7 @@ static void move_to_world(const cw_mesh *mesh, cw_print_facts *facts)
 cw_status cw_print_measure(const cw_mesh *mesh, const cw_print_desc *desc,
                            cw_print_facts *facts, cw_error *err)
 {
-    CWI_REQUIRE(err, mesh);
-    CWI_REQUIRE(err, facts);
+    CWI_REQUIRE(err, mesh, facts);
     cw_print_desc limits;
     cw_mesh copy = {0};
     uint32_t *map = NULL;

@@ -155,6 +155,18 @@ class Coordinates(Case):
         with self.fails(cw.Status.CANCELLED):
             cw.smooth(noisy, progress=lambda *_: False)
 
+    def test_volumes_color_meshes(self):
+        ball = make_ball()
+        mesh = cw.extract(ball, 0)
+        found = cw.color_by(mesh, ball, colormap="gray", low=-1, high=1)
+        self.assertIsNone(mesh.colors)
+        self.assertLess(np.abs(found.scalars).max(), 0.2)
+        self.assertTrue((np.abs(found.colors[:, :3].astype(int) - 128) < 32).all())
+        self.assertTrue((found.colors[:, 3] == 255).all())
+        self.assertRaises(ValueError, lambda: cw.color_by(mesh, ball, colormap="jet"))
+        with self.fails(cw.Status.ARGUMENT):
+            cw.color_by(mesh, ball, low=2, high=1)
+
     def test_weld_merges_corners(self):
         mesh = cw.extract(make_ball(), 0)
         corners = mesh.vertices[mesh.triangles.ravel()]

@@ -4,6 +4,7 @@
 #include <cubewright/transfer.h>
 
 #include "core/base/status.h"
+#include "core/color/colormap.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -365,27 +366,18 @@ static void make_above(const cw_statistics *s, cw_transfer *t)
     put_opacity(t, c.high, spread_opacity(s, 0.999, 0.04));
 }
 
-/* Colours of matplotlib's maps "viridis" and "inferno" (CC0) and of Moreland's "cool to warm"
- * (public domain), evenly spaced: perceptual, for fields that have no natural colours. */
-static const unsigned viridis[] = {0x440154, 0x482878, 0x3e4a89, 0x31688e, 0x26828e,
-                                   0x1f9e89, 0x35b779, 0x6ece58, 0xb5de2b, 0xfde725};
-static const unsigned inferno[] = {0x000004, 0x1b0c41, 0x4a0c6b, 0x781c6d, 0xa52c60,
-                                   0xcf4446, 0xed6925, 0xfb9b06, 0xf7d13d, 0xfcffa4};
-static const unsigned cool_warm[] = {0x3b4cc0, 0x6f92f3, 0xaac7fd, 0xdddcdc,
-                                     0xf7b89c, 0xe7745b, 0xb40426};
-
 /* Replaces the colours by those of a map, over a range. */
-static void put_map(cw_transfer *t, const unsigned *map, size_t count, double low, double high)
+static void put_map(cw_transfer *t, cw_colormap name, double low, double high)
 {
+    const cwi_colormap *map = cwi_colormap_of(name);
     t->color_count = 0;
-    for (size_t n = 0; n < count; n++)
-        put_color(t, low + (high - low) * (double)n / (double)(count - 1), map[n]);
+    for (size_t n = 0; n < map->count; n++)
+        put_color(t, low + (high - low) * (double)n / (double)(map->count - 1), map->colors[n]);
 }
 
 /* Makes a preset for fields, with the opacities of auto and the colours of a map. Of a signed
  * quantity the map's middle is at 0. */
-static void make_field(const cw_statistics *s, const unsigned *map, size_t count,
-                       cw_transfer *t)
+static void make_field(const cw_statistics *s, cw_colormap map, cw_transfer *t)
 {
     double low = find_quantile(s, 0, 0.0005), high = find_quantile(s, 0, 0.9995);
     const double reach = fmax(-low, high);
@@ -395,24 +387,22 @@ static void make_field(const cw_statistics *s, const unsigned *map, size_t count
     } else {
         make_above(s, t);
     }
-    put_map(t, map, count, low, high > low ? high : s->max);
+    put_map(t, map, low, high > low ? high : s->max);
 }
-
-#define MAP(map) map, sizeof map / sizeof *map
 
 static void make_viridis(const cw_statistics *s, cw_transfer *t)
 {
-    make_field(s, MAP(viridis), t);
+    make_field(s, CW_COLORMAP_VIRIDIS, t);
 }
 
 static void make_inferno(const cw_statistics *s, cw_transfer *t)
 {
-    make_field(s, MAP(inferno), t);
+    make_field(s, CW_COLORMAP_INFERNO, t);
 }
 
 static void make_cool_warm(const cw_statistics *s, cw_transfer *t)
 {
-    make_field(s, MAP(cool_warm), t);
+    make_field(s, CW_COLORMAP_COOL_WARM, t);
 }
 
 static void make_auto(const cw_statistics *s, cw_transfer *t)

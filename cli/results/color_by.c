@@ -1,0 +1,130 @@
+/* Reads the volume of colours, and puts its values and colours on a surface. */
+#include "cli/results/color_by.h"
+
+#include "cli/framework/console.h"
+#include "cli/framework/quantity.h"
+#include "core/base/status.h"
+#include "core/base/text.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+static bool parse_range(const char *text, double *low, double *high)
+{
+    return cwi_parse_double(&text, low) && *text++ == ':' && cwi_parse_double(&text, high) &&
+           *text == '\0' && isfinite(*low) && isfinite(*high) && *low < *high;
+}
+
+cw_status cli_check_color(const cli_color_args *args, cw_error *err)
+{
+    double low, high;
+    if (!args->by && (args->map || args->range))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%s is for --color-by",
+                        args->range ? "--range" : "--colormap");
+    if (args->range && !parse_range(args->range, &low, &high))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--range '%s': expected two values, the lower one first, such as 0:300",
+                        args->range);
+    return CW_OK;
+}
+
+/* Parts NAME:mag and NAME:2 from a file or array of that name. */
+static void part_name(const char *by, char *name, size_t size, cli_component *component)
+{
+    const char *colon = strrchr(by, ':');
+    size_t number = 0;
+    snprintf(name, size, "%s", by);
+    if (!colon || access(by, F_OK) == 0)
+        return;
+    const bool is_magnitude = strcmp(colon + 1, "mag") == 0;
+    if (!is_magnitude && !cli_parse_count(colon + 1, 1000, &number))
+        return;
+    *component = (cli_component){.given = true, .magnitude = is_magnitude, .number = number};
+    if ((size_t)(colon - by) < size)
+        name[colon - by] = '\0';
+}
+
+/* Reads a file of that name, or else that array of the input. */
+static cw_status read_colors(cli_coloring *c, const char *path, const cli_input *input,
+                             size_t step, cw_error *err)
+{
+    static char name[4096]; /* the volume keeps it */
+    cli_input wanted = {.threads = input->threads,
+                        .memory = input->memory,
+                        .max_voxels = input->max_voxels,
+                        .no_sandbox = input->no_sandbox,
+                        .timeout_s = input->timeout_s,
+                        .allow_external = input->allow_external};
+    cli_component component = {0};
+    part_name(c->args->by, name, sizeof name, &component);
+    const bool is_file = access(name, F_OK) == 0;
+    if (!is_file) {
+        wanted = *input;
+        wanted.array = name;
+        wanted.crop.given = wanted.resample.given = wanted.denoise.given = false;
+        wanted.preview = wanted.may_stream = false;
+        wanted.coarsen = 0;
+        wanted.step = step;
+        wanted.step_chosen = true;
+    }
+    wanted.component = component;
+    cli_free_volume(&c->volume);
+    cw_status st = cli_read_volume(is_file ? name : path, &wanted, false, &c->volume, err);
+    if (st != CW_OK && !is_file) {
+        const cw_error why = *err;
+        return cwi_fail(err, st, "--color-by %s: no file has this name, and as an array: %s",
+                        name, why.message);
+    }
+    c->is_read = st == CW_OK;
+    c->step = step;
+    return st;
+}
+
+cw_status cli_color_mesh(cli_coloring *c, const char *path, const cli_input *input, size_t step,
+                         cw_mesh *mesh, cw_sample_facts *facts, cw_error *err)
+{
+    const cw_sample_desc desc = {.threads = (int)input->threads,
+                                 .progress =
+                                     cli_progress((double)mesh->vertex_count / 1e6, "Mvertex")};
+    const bool is_array = access(c->args->by, F_OK) != 0;
+    cw_status st = c->is_read && (!is_array || c->step == step)
+                       ? CW_OK
+                       : read_colors(c, path, input, step, err);
+    if (st != CW_OK)
+        return st;
+    st = cw_mesh_sample(mesh, &c->volume.view, &desc, facts, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, c->volume.path);
+    if (!c->has_range && !(c->args->range && parse_range(c->args->range, &c->low, &c->high))) {
+        c->low = facts->low;
+        c->high = facts->high;
+    }
+    c->has_range = true;
+    st = cw_mesh_color(mesh, (cw_colormap)c->args->map, c->low, c->high, err);
+    if (st != CW_OK)
+        return st;
+    cli_say("%s: values %.6g to %.6g; colours from %.6g to %.6g by %s", c->args->by, facts->low,
+            facts->high, c->low, c->high, cw_colormap_name((cw_colormap)c->args->map));
+    if (facts->missing)
+        cli_say("%s: %s vertices are outside of it, and get the lowest value", c->args->by,
+                cli_count(facts->missing));
+    return CW_OK;
+}
+
+void cli_json_color(cli_json *j, const cli_coloring *c)
+{
+    if (!c->args || !c->args->by)
+        return;
+    cli_json_text(j, "color_by", cli_shown_path(c->args->by));
+    cli_json_text(j, "colormap", cw_colormap_name((cw_colormap)c->args->map));
+    if (c->has_range)
+        cli_json_numbers(j, "range", (double[2]){c->low, c->high}, 2);
+}
+
+void cli_free_coloring(cli_coloring *c)
+{
+    cli_free_volume(&c->volume);
+    c->is_read = false;
+}
