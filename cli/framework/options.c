@@ -1,6 +1,7 @@
 /* Parses the words of the command line by a command's table of options, and prints its help. */
 #include "cli/framework/options.h"
 
+#include "cli/framework/filter_options.h"
 #include "cli/framework/quantity.h"
 #include "core/base/status.h"
 
@@ -364,8 +365,9 @@ static const char *describe_expected(const cli_option *o)
         return "iso, or a length above 0 such as 0.5mm or 1x1x2mm; then a kernel, if not linear: "
                "0.5mm:cubic, iso:lanczos";
     case CLI_DENOISE:
-        return "gauss with a width such as gauss:0.7vox or gauss:0.5mm, or median with a radius of "
-               "1 to 3 voxels such as median:1";
+        return "nlm or nlm:NOISE, aniso or aniso:STEPS (1 to 100) or aniso:STEPS:CONTRAST, "
+               "gauss:L such as gauss:0.7vox or gauss:0.5mm, bilateral:L or bilateral:L:VALUES, or "
+               "median:N (1 to 3 voxels)";
     case CLI_COUNT:
         return "a whole number such as 500, 50k or 2M";
     case CLI_COUNTS:

@@ -24,7 +24,7 @@ typedef enum cli_kind {
     CLI_RANGES,    /* cli_ranges: 10:50,0:99,20:40 in voxels, -30mm:30mm,... in the world */
     CLI_REDUCTION, /* cli_reduction */
     CLI_RESAMPLE,  /* cli_resample: iso, 0.5mm, 1x1x2mm; then a kernel: 0.5mm:cubic */
-    CLI_DENOISE,   /* cli_denoise: gauss:0.7vox, gauss:0.5mm, median:1 */
+    CLI_DENOISE,   /* cli_denoise: gauss:0.7vox, median:1, bilateral:1vox:30, aniso:10, nlm */
     CLI_STEPS,     /* cli_steps: 0:20:2, 0,3,7 or all */
     CLI_WEIGHTS,   /* cli_weights: normal:0.5,color:1; value has the names, parted by '/' */
     CLI_COMPONENT, /* cli_component: its number from 0, or mag */
@@ -108,11 +108,15 @@ typedef struct cli_resample {
     int kernel; /* cw_kernel */
 } cli_resample;
 
+typedef enum cli_filter { CLI_GAUSS, CLI_MEDIAN, CLI_BILATERAL, CLI_ANISO, CLI_NLM } cli_filter;
+
 /* A filter against noise. */
 typedef struct cli_denoise {
     bool given;
-    size_t radius;    /* of a median in voxels; 0: a Gaussian of this width: */
-    cli_length width; /* millimetres or voxels */
+    cli_filter filter;
+    size_t count;     /* radius of a median in voxels, steps of diffusion */
+    cli_length width; /* of a Gaussian or a bilateral filter: millimetres or voxels */
+    double value;     /* width of values, contrast or noise; 0: from the data */
 } cli_denoise;
 
 /* Selection among the values of a voxel. */

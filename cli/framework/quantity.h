@@ -11,13 +11,6 @@ bool cli_parse_numbers(const char *text, cli_numbers *out);
 bool cli_parse_level(const char *text, cli_number *out);
 bool cli_parse_levels(const char *text, cli_numbers *out);
 
-bool cli_parse_resample(const char *text, cli_resample *out);
-bool cli_parse_denoise(const char *text, cli_denoise *out);
-
-/* Return these as they are typed, in static memory. */
-const char *cli_resample_text(const cli_resample *resample);
-const char *cli_denoise_text(const cli_denoise *denoise);
-
 /* Returns a level as it is typed, in static memory as of cli_number_text(). */
 const char *cli_level_text(cli_level level, double value);
 bool cli_parse_lengths(const char *text, cli_lengths *out);

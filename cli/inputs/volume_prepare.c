@@ -2,12 +2,13 @@
 #include "cli/inputs/volume_prepare.h"
 
 #include "cli/framework/console.h"
-#include "cli/framework/quantity.h"
+#include "cli/framework/filter_options.h"
 #include "core/base/status.h"
 
 #include <cubewright/filter.h>
 
 #include <math.h>
+#include <stdio.h>
 
 const char *cli_find_preparation(const cli_input *input)
 {
@@ -60,36 +61,126 @@ static cw_status resample_view(const cli_input *input, cli_volume *volume, cw_er
     return CW_OK;
 }
 
-static cw_status smooth_view(const cli_input *input, cli_volume *volume, cw_error *err)
+/* Sets the width of a filter along each axis in voxels. */
+static void width_in_voxels(const cli_length *width, const cw_volume *v, double sigma[3])
 {
-    const cli_length *width = &input->denoise.width;
-    const cw_filter_desc desc = filter_desc(input, volume);
-    double mm[3], sigma[3];
-    cw_volume made;
-    cw_volume_spacing(&volume->view, mm);
+    double mm[3];
+    cw_volume_spacing(v, mm);
     for (int a = 0; a < 3; a++)
         sigma[a] = width->unit == CLI_VOXELS ? width->value
                    : mm[a] > 0               ? width->value / mm[a]
                                              : 0;
-    cw_status st = cw_volume_gauss(&volume->view, sigma, &desc, &made, err);
-    if (st != CW_OK)
-        return cwi_fail_in(err, st, "--denoise");
-    cli_note_volume(volume, "denoised by a Gaussian of %.3g x %.3g x %.3g voxels", sigma[0],
-                    sigma[1], sigma[2]);
-    take_filtered(volume, &made);
-    return CW_OK;
 }
 
-static cw_status sort_view(const cli_input *input, cli_volume *volume, cw_error *err)
+/* A value of a filter: the one that was given, or in proportion to the noise of the volume. */
+typedef struct filter_value {
+    double value;
+    char source[96]; /* for the note */
+} filter_value;
+
+static cw_status find_value(const cli_input *input, const cli_volume *volume, double factor,
+                            filter_value *out, cw_error *err)
 {
-    const size_t radius = input->denoise.radius;
+    double noise;
+    *out = (filter_value){.value = input->denoise.value};
+    if (out->value > 0)
+        return CW_OK;
+    cw_status st = cw_volume_noise(&volume->view, (int)input->threads, &noise, err);
+    out->value = factor * noise;
+    if (!(noise > 0))
+        snprintf(out->source, sizeof out->source, ": no noise was found");
+    else if (factor == 1)
+        snprintf(out->source, sizeof out->source, " (estimated)");
+    else
+        snprintf(out->source, sizeof out->source, " (%g times the noise of %.4g)", factor,
+                 noise);
+    return st;
+}
+
+static cw_status smooth_view(const cli_input *input, cli_volume *volume, cw_volume *made,
+                             cw_error *err)
+{
     const cw_filter_desc desc = filter_desc(input, volume);
+    double sigma[3];
+    width_in_voxels(&input->denoise.width, &volume->view, sigma);
+    cw_status st = cw_volume_gauss(&volume->view, sigma, &desc, made, err);
+    if (st == CW_OK)
+        cli_note_volume(volume, "denoised by a Gaussian of %.3g x %.3g x %.3g voxels", sigma[0],
+                        sigma[1], sigma[2]);
+    return st;
+}
+
+static cw_status sort_view(const cli_input *input, cli_volume *volume, cw_volume *made,
+                           cw_error *err)
+{
+    const cw_filter_desc desc = filter_desc(input, volume);
+    const size_t radius = input->denoise.count, side = 2 * radius + 1;
+    cw_status st = cw_volume_median(&volume->view, radius, &desc, made, err);
+    if (st == CW_OK)
+        cli_note_volume(volume, "denoised by the median of %zu x %zu x %zu voxels", side, side,
+                        side);
+    return st;
+}
+
+static cw_status join_similar(const cli_input *input, cli_volume *volume, cw_volume *made,
+                              cw_error *err)
+{
+    const cw_filter_desc desc = filter_desc(input, volume);
+    filter_value v;
+    double sigma[3];
+    width_in_voxels(&input->denoise.width, &volume->view, sigma);
+    cw_status st = find_value(input, volume, 2.5, &v, err);
+    if (st == CW_OK)
+        st = cw_volume_bilateral(&volume->view, sigma, v.value, &desc, made, err);
+    if (st == CW_OK)
+        cli_note_volume(volume,
+                        "denoised by a bilateral filter of %.3g x %.3g x %.3g voxels, values "
+                        "within %.4g%s",
+                        sigma[0], sigma[1], sigma[2], v.value, v.source);
+    return st;
+}
+
+static cw_status diffuse_view(const cli_input *input, cli_volume *volume, cw_volume *made,
+                              cw_error *err)
+{
+    const cw_filter_desc desc = filter_desc(input, volume);
+    const size_t steps = input->denoise.count;
+    filter_value v;
+    cw_status st = find_value(input, volume, 0.5, &v, err);
+    if (st == CW_OK)
+        st = cw_volume_aniso(&volume->view, steps, v.value, &desc, made, err);
+    if (st == CW_OK)
+        cli_note_volume(volume,
+                        "denoised by %zu steps of diffusion along edges, contrast %.4g%s",
+                        steps, v.value, v.source);
+    return st;
+}
+
+static cw_status join_alike(const cli_input *input, cli_volume *volume, cw_volume *made,
+                            cw_error *err)
+{
+    const cw_filter_desc desc = filter_desc(input, volume);
+    filter_value v;
+    cw_status st = find_value(input, volume, 1, &v, err);
+    if (st == CW_OK)
+        st = cw_volume_nlm(&volume->view, v.value, 0, &desc, made, err);
+    if (st == CW_OK)
+        cli_note_volume(volume, "denoised by non-local means, noise %.4g%s", v.value, v.source);
+    return st;
+}
+
+static cw_status denoise_view(const cli_input *input, cli_volume *volume, cw_error *err)
+{
+    cw_status (*const filters[])(const cli_input *, cli_volume *, cw_volume *,
+                                 cw_error *) = {[CLI_GAUSS] = smooth_view,
+                                                [CLI_MEDIAN] = sort_view,
+                                                [CLI_BILATERAL] = join_similar,
+                                                [CLI_ANISO] = diffuse_view,
+                                                [CLI_NLM] = join_alike};
     cw_volume made;
-    cw_status st = cw_volume_median(&volume->view, radius, &desc, &made, err);
+    cw_status st = filters[input->denoise.filter](input, volume, &made, err);
     if (st != CW_OK)
         return cwi_fail_in(err, st, "--denoise");
-    cli_note_volume(volume, "denoised by the median of %zu x %zu x %zu voxels", 2 * radius + 1,
-                    2 * radius + 1, 2 * radius + 1);
     take_filtered(volume, &made);
     return CW_OK;
 }
@@ -100,8 +191,7 @@ cw_status cli_prepare_volume(const cli_input *input, cli_volume *volume, cw_erro
     if (input->resample.given)
         st = resample_view(input, volume, err);
     if (st == CW_OK && input->denoise.given)
-        st = input->denoise.radius ? sort_view(input, volume, err)
-                                   : smooth_view(input, volume, err);
+        st = denoise_view(input, volume, err);
     return st;
 }
 

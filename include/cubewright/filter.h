@@ -57,6 +57,65 @@ CW_NODISCARD CW_API cw_status cw_volume_median(const cw_volume *volume, size_t r
                                                const cw_filter_desc *desc, cw_volume *out,
                                                cw_error *err);
 
+/* Estimates the noise of the first component and step: the standard deviation of a normal
+ * distribution that is added to each voxel by itself. It is 1.4826 times the median of how far voxels
+ * are from the mean of their six neighbours, which edges hardly change [Gasser1986]. Voxels whose
+ * neighbours all have the same value do not count. Noise that neighbours share is underestimated.
+ * volume   an even grid; borrowed
+ * sigma    set to the estimate, in the unit of the values; 0: there is none
+ * Returns  CW_ERR_ARGUMENT; CW_ERR_UNSUPPORTED for other grids; CW_ERR_NO_MEMORY */
+CW_NODISCARD CW_API cw_status cw_volume_noise(const cw_volume *volume, int threads,
+                                              double *sigma, cw_error *err);
+
+/* Replaces each value of the first component and step by a mean of those around, in which similar
+ * values weigh more: noise goes, and edges stay. A voxel at the distance d with the difference v
+ * weighs exp(-d^2 / (2 sigma_voxels^2) - v^2 / (2 sigma_value^2)), within 2.5 sigma_voxels.
+ * volume        an even grid; borrowed
+ * sigma_voxels  width in space along each axis in voxels, 0 to 4; 0 takes none along an axis
+ * sigma_value   width of the values in their unit, less than half of the edges that matter; 0: 2.5
+ *               times the noise as of cw_volume_noise()
+ * desc          borrowed; NULL means all defaults
+ * out           set to a volume that owns its voxels; free with cw_volume_free()
+ * Returns       as cw_volume_gauss()
+ * Cost          65 sigma^3 weights a voxel
+ * Source        [Tomasi1998] */
+CW_NODISCARD CW_API cw_status cw_volume_bilateral(const cw_volume *volume,
+                                                  const double sigma_voxels[3],
+                                                  double sigma_value,
+                                                  const cw_filter_desc *desc, cw_volume *out,
+                                                  cw_error *err);
+
+/* Smooths the first component and step by diffusion along edges and not across: noise goes, also that
+ * of the edge itself, and edges stay as steep as they are. Of the gradient of values, the part across
+ * the edge flows exp(-(s / contrast)^2) as much as the rest, where s is the gradient of the smoothed
+ * values, per shortest distance of voxels. Steps are stable for any distances between voxels.
+ * volume    an even grid; borrowed
+ * steps     1 to 100: each as long as a Gaussian of sqrt(2 / 7) voxels in cubes; 10 is usual
+ * contrast  edges are steeper, in the unit of the values; 0: half of the noise as of
+ *           cw_volume_noise(), as smoothing takes most of the noise
+ * desc      borrowed; NULL means all defaults
+ * out       set to a volume that owns its voxels; free with cw_volume_free()
+ * Returns   as cw_volume_gauss()
+ * Cost      three exponentials a voxel and step. A thread keeps eight slices of floats a step
+ * Source    edge-enhancing diffusion [Weickert1998], with smoothing by 1/4, 1/2, 1/4 */
+CW_NODISCARD CW_API cw_status cw_volume_aniso(const cw_volume *volume, size_t steps,
+                                              double contrast, const cw_filter_desc *desc,
+                                              cw_volume *out, cw_error *err);
+
+/* Replaces each value of the first component and step by a mean of those in a cube, in which voxels
+ * whose own neighbourhoods of 3 x 3 x 3 voxels look alike weigh more. Texture and edges stay.
+ * volume   an even grid; borrowed
+ * noise    standard deviation of the noise in the unit of the values; 0: as of cw_volume_noise()
+ * radius   of the cube, 1 to 5 voxels of the shortest distance; 0: 3
+ * desc     borrowed; NULL means all defaults
+ * out      set to a volume that owns its voxels; free with cw_volume_free()
+ * Returns  as cw_volume_gauss()
+ * Cost     a weight and ten sums a voxel of the cube
+ * Source   [Buades2005], [Coupe2008]; noise taken off as in [Buades2011] */
+CW_NODISCARD CW_API cw_status cw_volume_nlm(const cw_volume *volume, double noise,
+                                            size_t radius, const cw_filter_desc *desc,
+                                            cw_volume *out, cw_error *err);
+
 /* Samples the first component and step at other distances. The first voxel stays where it is; the
  * last is at most one new distance short of the old one. Where voxels become larger, kernels grow
  * with them, so that what is finer fades instead of becoming patterns. No data are where the

@@ -288,6 +288,48 @@ class Volume:
         """
         return self._filter(lib.cw_volume_median, take_count("radius", radius, 1, 3), threads=threads)
 
+    def bilateral(
+        self, sigma: float | Sequence[float] = 1, sigma_value: float = 0, *, threads: int = 0
+    ) -> Volume:
+        """Smooths the first component and step, and keeps edges: similar values weigh more.
+
+        sigma        standard deviation in voxels: of all axes, or of x, y and z; up to 4
+        sigma_value  standard deviation of values; 0: 2.5 times the noise
+        Raises       Error: UNSUPPORTED for grids that are not even
+        """
+        widths = (c_double * 3)(*take_axes("sigma", sigma))
+        value = take_number("sigma_value", sigma_value)
+        return self._filter(lib.cw_volume_bilateral, widths, value, threads=threads)
+
+    def anisotropic(self, steps: int = 10, contrast: float = 0, *, threads: int = 0) -> Volume:
+        """Smooths the first component and step by diffusion along edges and not across.
+
+        steps     1 to 100
+        contrast  edges are steeper, in values a voxel; 0: half of the noise
+        Raises    Error: UNSUPPORTED for grids that are not even
+        """
+        count, value = take_count("steps", steps, 1, 100), take_number("contrast", contrast)
+        return self._filter(lib.cw_volume_aniso, count, value, threads=threads)
+
+    def nlm(self, noise: float = 0, radius: int = 3, *, threads: int = 0) -> Volume:
+        """Smooths the first component and step by non-local means: of voxels with similar surroundings.
+
+        noise   standard deviation of the noise; 0: as noise() estimates it
+        radius  of the cube of voxels that are compared, 1 to 5
+        Raises  Error: UNSUPPORTED for grids that are not even
+        """
+        value, count = take_number("noise", noise), take_count("radius", radius, 1, 5)
+        return self._filter(lib.cw_volume_nlm, value, count, threads=threads)
+
+    def noise(self, *, threads: int = 0) -> float:
+        """Returns the estimated standard deviation of the noise of the first component and step.
+
+        Raises  Error: UNSUPPORTED for grids that are not even
+        """
+        out = c_double()
+        call(lib.cw_volume_noise, byref(self._struct), take_threads(threads), byref(out))
+        return out.value
+
     def resample(
         self, spacing: float | Sequence[float], kernel: str = "linear", *, threads: int = 0
     ) -> Volume:
