@@ -114,6 +114,8 @@ void cli_extract_put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_lod(j, &args->lod);
     if (args->least.given)
         cli_json_number(j, "min_volume_mm3", cli_extract_least_mm3(s));
+    if (args->largest)
+        cli_json_count(j, "largest", args->largest);
     if (args->fill_voids)
         cli_json_bool(j, "fill_voids", true);
     put_pixels(j, s);

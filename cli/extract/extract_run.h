@@ -21,6 +21,7 @@ typedef struct cli_extract_args {
     cli_reduction simplify;
     cli_counts lod;
     cli_amount least;
+    size_t largest; /* components to keep; 0: all */
     bool fill_voids;
     cli_pixel_args pixel;
     int inside, normals, progress, topology, placement, accel;

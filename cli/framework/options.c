@@ -185,6 +185,7 @@ size_t cli_option_size(const cli_option *o)
         [CLI_VOLUME] = sizeof(cli_amount),
         [CLI_SIZES] = sizeof(cli_sizes),
         [CLI_RANGES] = sizeof(cli_ranges),
+        [CLI_CROP] = sizeof(cli_ranges),
         [CLI_REDUCTION] = sizeof(cli_reduction),
         [CLI_STEPS] = sizeof(cli_steps),
         [CLI_WEIGHTS] = sizeof(cli_weights),
@@ -276,7 +277,10 @@ bool cli_option_text(const cli_option *o, const void *args, char *text, size_t s
         snprintf(text, size, "%zu", *(const size_t *)field);
         break;
     case CLI_RANGES:
-        if (((const cli_ranges *)field)->given)
+    case CLI_CROP:
+        if (((const cli_ranges *)field)->is_auto)
+            snprintf(text, size, "auto:%zu", ((const cli_ranges *)field)->margin);
+        else if (((const cli_ranges *)field)->given)
             print_ranges(field, text, size);
         break;
     case CLI_COMPONENT:
@@ -336,6 +340,8 @@ static bool store_value(const cli_option *o, const char *text, void *field)
         return cli_parse_sizes(text, field);
     case CLI_RANGES:
         return cli_parse_ranges(text, field);
+    case CLI_CROP:
+        return cli_parse_crop(text, field);
     case CLI_STEPS:
         return cli_parse_steps(text, field);
     case CLI_WEIGHTS:
@@ -387,6 +393,9 @@ static const char *describe_expected(const cli_option *o)
         return "whole numbers above 0 joined by x or comma";
     case CLI_RANGES:
         return "three ranges such as 10:50,0:99,20:40 (voxels) or -30mm:30mm,... (world)";
+    case CLI_CROP:
+        return "three ranges such as 10:50,0:99,20:40 (voxels) or -30mm:30mm,... (world), auto, or "
+               "auto with a margin in voxels such as auto:3";
     case CLI_STEPS:
         return "steps in ascending order such as 0:20:2 (ends included), 0,3,7 or all";
     case CLI_WEIGHTS:

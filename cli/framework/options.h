@@ -22,6 +22,7 @@ typedef enum cli_kind {
     CLI_VOLUME,    /* cli_amount: 500mm3, 0.5ml, 30vox; bare is mm3 */
     CLI_SIZES,     /* cli_sizes: 64, 1280x720 or 512x512x300 */
     CLI_RANGES,    /* cli_ranges: 10:50,0:99,20:40 in voxels, -30mm:30mm,... in the world */
+    CLI_CROP,      /* cli_ranges: the same, or auto, auto:3 */
     CLI_REDUCTION, /* cli_reduction */
     CLI_RESAMPLE,  /* cli_resample: iso, 0.5mm, 1x1x2mm; then a kernel: 0.5mm:cubic */
     CLI_DENOISE,   /* cli_denoise: gauss:0.7vox, median:1, bilateral:1vox:30, aniso:10, nlm */
@@ -133,6 +134,8 @@ typedef struct cli_sizes {
 /* A box: from low to high along each axis, ends included. */
 typedef struct cli_ranges {
     bool given;
+    bool is_auto; /* given is false: around what is inside, with a margin in voxels */
+    size_t margin;
     bool world; /* LPS millimetres; else voxel indices */
     double low[3], high[3];
 } cli_ranges;

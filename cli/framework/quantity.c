@@ -227,6 +227,17 @@ bool cli_parse_ranges(const char *text, cli_ranges *out)
     return out->given = *text == '\0';
 }
 
+bool cli_parse_crop(const char *text, cli_ranges *out)
+{
+    enum { MARGIN = 2 };
+    *out = (cli_ranges){.margin = MARGIN};
+    if (!skip_word(&text, "auto"))
+        return cli_parse_ranges(text, out);
+    out->is_auto = true;
+    return *text == '\0' || (skip_word(&text, ":") &&
+                             cli_parse_count(text, 1000, &out->margin) && out->margin > 0);
+}
+
 static bool parse_step(const char **text, size_t *step)
 {
     int64_t n;

@@ -25,6 +25,10 @@ bool cli_parse_reduction(const char *text, cli_reduction *out);
 double cli_length_mm(const cli_length *length, double diagonal_mm, double voxel_mm);
 bool cli_parse_sizes(const char *text, cli_sizes *out);
 bool cli_parse_ranges(const char *text, cli_ranges *out);
+
+/* Ranges, or auto with a margin: auto:3. */
+bool cli_parse_crop(const char *text, cli_ranges *out);
+
 bool cli_parse_steps(const char *text, cli_steps *out);
 
 /* A count with an optional k, M, G or T of the given thousand: 1000, or 1024 for bytes. */

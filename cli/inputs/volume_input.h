@@ -57,6 +57,9 @@ typedef struct cli_input {
     cli_ranges crop;
     cli_resample resample;
     cli_denoise denoise;
+    const char *mask;
+    cli_length mask_open, mask_close;
+    bool makes_surface; /* the command calls cli_prepare_inside() */
     cli_component component;
     size_t level; /* of an image in several sizes */
     size_t step;
@@ -100,23 +103,45 @@ typedef struct cli_input {
             CLI_INPUT_ROW(args, memory)                                                        \
     }
 
-#define CLI_INPUT_OPTIONS(args)                                                                \
-    CLI_HEADED(CLI_PREPARING),                                                                 \
-        {"resample",                                                                           \
+#define CLI_PREPARING_OPTIONS(args)                                                               \
+    CLI_HEADED(CLI_PREPARING),                                                                    \
+        {"resample",                                                                              \
+         0,                                                                                       \
+         CLI_RESAMPLE,                                                                            \
+         "iso|L[:KERNEL]",                                                                        \
+         "Sample the volume at other distances: iso, 0.5mm, 1x1x2mm; by linear, cubic or "        \
+         "lanczos, such as iso:cubic (off; linear)",                                              \
+         CLI_INPUT_ROW(args, resample)},                                                          \
+    {                                                                                             \
+        "denoise", 0, CLI_DENOISE, "FILTER",                                                      \
+            "Take noise out: gauss:L, median:N, and filters that keep edges: aniso[:STEPS[:K]], " \
+            "nlm[:NOISE], bilateral:L[:V]; L such as 0.7vox or 0.5mm (off)",                      \
+            CLI_INPUT_ROW(args, denoise)                                                          \
+    }
+
+/* Rows for a command that makes a surface: they change what is inside, with cli_prepare_inside(). */
+#define CLI_INSIDE_OPTIONS(args)                                                               \
+    {"mask",                                                                                   \
+     0,                                                                                        \
+     CLI_TEXT,                                                                                 \
+     "FILE",                                                                                   \
+     "Leave out what is outside of a mask: a volume that is 0 there, in any grid (none)",      \
+     CLI_INPUT_ROW(args, mask),                                                                \
+     CLI_VALUES_FILE},                                                                         \
+        {"mask-open",                                                                          \
          0,                                                                                    \
-         CLI_RESAMPLE,                                                                         \
-         "iso|L[:KERNEL]",                                                                     \
-         "Sample the volume at other distances: iso, 0.5mm, 1x1x2mm; by linear, cubic or "     \
-         "lanczos, such as iso:cubic (off; linear)",                                           \
-         CLI_INPUT_ROW(args, resample)},                                                       \
-        {"denoise",                                                                            \
-         0,                                                                                    \
-         CLI_DENOISE,                                                                          \
-         "FILTER",                                                                             \
-         "Take noise out: gauss:L, median:N, and filters that keep edges: aniso[:STEPS[:K]], " \
-         "nlm[:NOISE], bilateral:L[:V]; L such as 0.7vox or 0.5mm (off)",                      \
-         CLI_INPUT_ROW(args, denoise)},                                                        \
-        CLI_HEADED(CLI_READING),                                                               \
+         CLI_LENGTH,                                                                           \
+         "L",                                                                                  \
+         "Remove what is thinner than a ball of this radius: 1vox, 0.5mm (off)",               \
+         CLI_INPUT_ROW(args, mask_open)},                                                      \
+    {                                                                                          \
+        "mask-close", 0, CLI_LENGTH, "L",                                                      \
+            "Fill cracks and pores thinner than a ball of this radius: 1vox, 0.5mm (off)",     \
+            CLI_INPUT_ROW(args, mask_close)                                                    \
+    }
+
+#define CLI_READING_OPTIONS(args)                                                              \
+    CLI_HEADED(CLI_READING),                                                                   \
         {"reader",                                                                             \
          0,                                                                                    \
          CLI_TEXT,                                                                             \
@@ -184,7 +209,7 @@ typedef struct cli_input {
          CLI_INPUT_ROW(args, tilt)},                                                           \
         {"crop",                                                                               \
          0,                                                                                    \
-         CLI_RANGES,                                                                           \
+         CLI_CROP,                                                                             \
          "X:X,Y:Y,Z:Z",                                                                        \
          "Read only these voxels, ends included; with units, those in a box of LPS mm (all)",  \
          CLI_INPUT_ROW(args, crop)},                                                           \
@@ -214,6 +239,8 @@ typedef struct cli_input {
          "Stop before reading more voxels than this, such as 500M (2^40)",                     \
          CLI_INPUT_ROW(args, max_voxels)},                                                     \
         CLI_MEMORY_OPTION(args)
+
+#define CLI_INPUT_OPTIONS(args) CLI_PREPARING_OPTIONS(args), CLI_READING_OPTIONS(args)
 
 enum { CLI_MAX_NOTES = 8 };
 

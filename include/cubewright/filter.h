@@ -131,6 +131,72 @@ CW_NODISCARD CW_API cw_status cw_volume_resample(const cw_volume *volume,
                                                  const cw_filter_desc *desc, cw_volume *out,
                                                  cw_error *err);
 
+/* The values that are inside. */
+typedef struct cw_inside {
+    double level;       /* in the unit of the values; those at or above it are inside */
+    bool inside_is_low; /* default: false; true: those below it are */
+} cw_inside;
+
+/* Makes voxels of the first component and step outside where a mask is 0, has no value or ends. They
+ * become their mirror image at the level, so that the surface cuts midway between equal values, half a
+ * voxel beside the mask. Voxels that are outside, and those in the mask, keep their bytes.
+ * volume   an even grid; borrowed
+ * mask     an even grid of any size and frame: its voxel next to the world point of a voxel counts;
+ *          borrowed
+ * inside   borrowed
+ * desc     borrowed; NULL means all defaults
+ * out      set to a volume that owns its voxels; free with cw_volume_free()
+ * Returns  CW_ERR_ARGUMENT also if the type has no value on the other side of the level; as
+ *          cw_volume_gauss() */
+CW_NODISCARD CW_API cw_status cw_volume_mask(const cw_volume *volume, const cw_volume *mask,
+                                             const cw_inside *inside,
+                                             const cw_filter_desc *desc, cw_volume *out,
+                                             cw_error *err);
+
+/* Opens what is inside: removes what an ellipsoid does not fit into, such as thin bridges. Voxels
+ * that change become their mirror image at the level; all others keep their bytes, so that the
+ * surface elsewhere stays as it is. The border counts as neither side.
+ * volume         an even grid; borrowed
+ * radius_voxels  of the ellipsoid along each axis in voxels, 0 to 250. A voxel is in it whose center
+ *                is
+ * inside         borrowed
+ * desc           borrowed; NULL means all defaults
+ * out            set to a volume that owns its voxels; free with cw_volume_free()
+ * Returns        as cw_volume_mask()
+ * Cost           does not depend on the radius; 2 bytes a voxel beside the result
+ * Source         exact Euclidean distances [Felzenszwalb2012] */
+CW_NODISCARD CW_API cw_status cw_volume_open(const cw_volume *volume,
+                                             const double radius_voxels[3],
+                                             const cw_inside *inside,
+                                             const cw_filter_desc *desc, cw_volume *out,
+                                             cw_error *err);
+
+/* Closes what is inside: fills what an ellipsoid does not fit into, such as cracks and pores. The
+ * rest is as in cw_volume_open(). Voxels without a value stay so.
+ * volume         an even grid; borrowed
+ * radius_voxels  of the ellipsoid along each axis in voxels, 0 to 250
+ * inside         borrowed
+ * desc           borrowed; NULL means all defaults
+ * out            set to a volume that owns its voxels; free with cw_volume_free()
+ * Returns        as cw_volume_mask() */
+CW_NODISCARD CW_API cw_status cw_volume_close(const cw_volume *volume,
+                                              const double radius_voxels[3],
+                                              const cw_inside *inside,
+                                              const cw_filter_desc *desc, cw_volume *out,
+                                              cw_error *err);
+
+/* Finds the box of voxels that are inside, in the first component and step. With a margin of 1 or more
+ * the part of the volume in it has the same surface as the whole.
+ * volume   an even or rectilinear grid; borrowed
+ * inside   borrowed
+ * margin   voxels to add at each side, as far as the volume has them
+ * box      set on success; for cw_volume_crop()
+ * Returns  CW_ERR_EMPTY: no voxel is inside; CW_ERR_ARGUMENT; CW_ERR_UNSUPPORTED for other grids;
+ *          CW_ERR_NO_MEMORY */
+CW_NODISCARD CW_API cw_status cw_volume_inside_box(const cw_volume *volume,
+                                                   const cw_inside *inside, size_t margin,
+                                                   int threads, cw_box *box, cw_error *err);
+
 #ifdef __cplusplus
 }
 #endif

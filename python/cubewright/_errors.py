@@ -66,6 +66,8 @@ KEYWORDS = {
     "cw_self_intersections()": "deep=True",
     "sigma_voxels[": "sigma[",
     "spacing_mm[": "spacing[",
+    "radius_voxels[": "radius[",
+    "inside->level": "level",
 }
 
 
