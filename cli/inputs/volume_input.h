@@ -57,6 +57,7 @@ typedef struct cli_input {
     cli_ranges crop;
     cli_resample resample;
     cli_denoise denoise;
+    bool remove_table;
     const char *mask;
     cli_length mask_open, mask_close;
     bool makes_surface; /* the command calls cli_prepare_inside() */
@@ -103,20 +104,26 @@ typedef struct cli_input {
             CLI_INPUT_ROW(args, memory)                                                        \
     }
 
-#define CLI_PREPARING_OPTIONS(args)                                                               \
-    CLI_HEADED(CLI_PREPARING),                                                                    \
-        {"resample",                                                                              \
-         0,                                                                                       \
-         CLI_RESAMPLE,                                                                            \
-         "iso|L[:KERNEL]",                                                                        \
-         "Sample the volume at other distances: iso, 0.5mm, 1x1x2mm; by linear, cubic or "        \
-         "lanczos, such as iso:cubic (off; linear)",                                              \
-         CLI_INPUT_ROW(args, resample)},                                                          \
-    {                                                                                             \
-        "denoise", 0, CLI_DENOISE, "FILTER",                                                      \
-            "Take noise out: gauss:L, median:N, and filters that keep edges: aniso[:STEPS[:K]], " \
-            "nlm[:NOISE], bilateral:L[:V]; L such as 0.7vox or 0.5mm (off)",                      \
-            CLI_INPUT_ROW(args, denoise)                                                          \
+#define CLI_PREPARING_OPTIONS(args)                                                            \
+    CLI_HEADED(CLI_PREPARING),                                                                 \
+        {"resample",                                                                           \
+         0,                                                                                    \
+         CLI_RESAMPLE,                                                                         \
+         "iso|L[:KERNEL]",                                                                     \
+         "Sample the volume at other distances: iso, 0.5mm, 1x1x2mm; by linear, cubic or "     \
+         "lanczos, such as iso:cubic (off; linear)",                                           \
+         CLI_INPUT_ROW(args, resample)},                                                       \
+        {"denoise",                                                                            \
+         0,                                                                                    \
+         CLI_DENOISE,                                                                          \
+         "FILTER",                                                                             \
+         "Take noise out: gauss:L, median:N, and filters that keep edges: aniso[:STEPS[:K]], " \
+         "nlm[:NOISE], bilateral:L[:V]; L such as 0.7vox or 0.5mm (off)",                      \
+         CLI_INPUT_ROW(args, denoise)},                                                        \
+    {                                                                                          \
+        "remove-table", 0, CLI_FLAG, NULL,                                                     \
+            "Make air of the table of a CT, and of all else beside the body (off)",            \
+            CLI_INPUT_ROW(args, remove_table)                                                  \
     }
 
 /* Rows for a command that makes a surface: they change what is inside, with cli_prepare_inside(). */

@@ -4,6 +4,7 @@
 #include "cli/framework/console.h"
 #include "cli/framework/filter_options.h"
 #include "cli/framework/quantity.h"
+#include "cli/inputs/level_choice.h"
 #include "core/base/status.h"
 
 #include <cubewright/filter.h>
@@ -15,6 +16,7 @@ const char *cli_find_preparation(const cli_input *input)
 {
     return input->resample.given     ? "--resample"
            : input->denoise.given    ? "--denoise"
+           : input->remove_table     ? "--remove-table"
            : input->mask             ? "--mask"
            : input->mask_open.given  ? "--mask-open"
            : input->mask_close.given ? "--mask-close"
@@ -192,6 +194,37 @@ static cw_status denoise_view(const cli_input *input, cli_volume *volume, cw_err
     return CW_OK;
 }
 
+static cw_status expect_hounsfield(const cli_input *input, const cli_volume *volume,
+                                   cw_error *err)
+{
+    cw_statistics s = {0};
+    cw_status st =
+        cw_volume_statistics(&volume->view, CLI_LEVEL_BINS, (int)input->threads, &s, err);
+    if (st == CW_OK && !cli_is_hounsfield(&volume->whole, &s))
+        st = cwi_fail(err, CW_ERR_ARGUMENT,
+                      "it is for a CT in Hounsfield units, with air near -1000; these values "
+                      "are %g to %g",
+                      s.min, s.max);
+    cw_statistics_free(&s);
+    return st;
+}
+
+static cw_status remove_table(const cli_input *input, cli_volume *volume, cw_error *err)
+{
+    const cw_filter_desc desc = filter_desc(input, volume);
+    double removed_mm3 = 0;
+    cw_volume made;
+    cw_status st = expect_hounsfield(input, volume, err);
+    if (st == CW_OK)
+        st = cw_volume_remove_table(&volume->view, &desc, &made, &removed_mm3, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, "--remove-table");
+    cli_note_volume(volume, "all but the body made air: %.4g ml above -300 HU removed",
+                    removed_mm3 / 1000);
+    take_filtered(volume, &made);
+    return CW_OK;
+}
+
 cw_status cli_prepare_volume(const cli_input *input, cli_volume *volume, cw_error *err)
 {
     cw_status st = CW_OK;
@@ -199,6 +232,8 @@ cw_status cli_prepare_volume(const cli_input *input, cli_volume *volume, cw_erro
         st = resample_view(input, volume, err);
     if (st == CW_OK && input->denoise.given)
         st = denoise_view(input, volume, err);
+    if (st == CW_OK && input->remove_table)
+        st = remove_table(input, volume, err);
     return st;
 }
 
@@ -322,6 +357,8 @@ void cli_json_preparation(cli_json *j, const cli_input *input)
         cli_json_text(j, "resample", cli_resample_text(&input->resample));
     if (input->denoise.given)
         cli_json_text(j, "denoise", cli_denoise_text(&input->denoise));
+    if (input->remove_table)
+        cli_json_bool(j, "remove_table", true);
     if (input->mask)
         cli_json_text(j, "mask", cli_shown_path(input->mask));
     if (input->mask_open.given)

@@ -197,6 +197,22 @@ CW_NODISCARD CW_API cw_status cw_volume_inside_box(const cw_volume *volume,
                                                    const cw_inside *inside, size_t margin,
                                                    int threads, cw_box *box, cw_error *err);
 
+/* Removes the table of a CT, and what else lies beside the body: they become air of -1000 HU. The body
+ * is the largest component above -300 HU. What touches it goes if it is thinner than 10 mm and has more
+ * than 40 ml, as the shell of a table or of a holder. Arms that the slices do not connect with the body
+ * go, too. Cavities are filled in each slice of the third axis, so lungs and airways stay. The body
+ * keeps its bytes, and so do two voxels around it that are below -300 HU: its surface stays where it
+ * is. Where a table touches the body, what is thicker than 10 mm together with it stays.
+ * volume       an even grid, in Hounsfield units; borrowed
+ * desc         borrowed; NULL means all defaults
+ * out          set to a volume that owns its voxels; free with cw_volume_free()
+ * removed_mm3  set to the volume above -300 HU that was removed; may be NULL
+ * Returns      CW_ERR_EMPTY: nothing above -300 HU is thicker than 10 mm; as cw_volume_gauss()
+ * Cost         3 bytes a voxel beside the result, and the runs of voxels along x */
+CW_NODISCARD CW_API cw_status cw_volume_remove_table(const cw_volume *volume,
+                                                     const cw_filter_desc *desc, cw_volume *out,
+                                                     double *removed_mm3, cw_error *err);
+
 #ifdef __cplusplus
 }
 #endif

@@ -2531,6 +2531,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_volume_open": (c_int, [POINTER(cw_volume), POINTER(c_double), POINTER(cw_inside), POINTER(cw_filter_desc), POINTER(cw_volume), POINTER(cw_error)]),
     "cw_volume_close": (c_int, [POINTER(cw_volume), POINTER(c_double), POINTER(cw_inside), POINTER(cw_filter_desc), POINTER(cw_volume), POINTER(cw_error)]),
     "cw_volume_inside_box": (c_int, [POINTER(cw_volume), POINTER(cw_inside), c_size_t, c_int, POINTER(cw_box), POINTER(cw_error)]),
+    "cw_volume_remove_table": (c_int, [POINTER(cw_volume), POINTER(cw_filter_desc), POINTER(cw_volume), POINTER(c_double), POINTER(cw_error)]),
     "cw_label_table_free": (None, [POINTER(cw_label_table)]),
     "cw_label_find": (POINTER(cw_label), [POINTER(cw_label_table), c_uint32, c_uint32]),
     "cw_label_find_name": (POINTER(cw_label), [POINTER(cw_label_table), c_char_p]),

@@ -330,6 +330,17 @@ class Volume:
         call(lib.cw_volume_noise, byref(self._struct), take_threads(threads), byref(out))
         return out.value
 
+    def remove_table(self, *, threads: int = 0) -> Volume:
+        """Removes the table of a CT in Hounsfield units, and what else lies beside the body.
+
+        Raises  Error: EMPTY if nothing above -300 HU is thicker than 10 mm, UNSUPPORTED for grids
+                that are not even
+        """
+        out, removed = Owner(c.cw_volume(), lib.cw_volume_free), c_double()
+        desc = c.cw_filter_desc(threads=take_threads(threads))
+        call(lib.cw_volume_remove_table, byref(self._struct), byref(desc), byref(out.struct), byref(removed))
+        return Volume._from_c(out)
+
     def mask(self, mask: Any, level: float, inside: str = "above", *, threads: int = 0) -> Volume:
         """Makes voxels outside where a mask is 0; they become their mirror image at the level.
 

@@ -34,6 +34,16 @@ class Filters(Case):
             self.assertLess(float(np.std(made.array - wall)), 6)
             self.assertGreater(float(made.array[:, :, 14].min()), 900)
 
+    def test_tables_go(self):
+        z, y, x = np.mgrid[:20, :40, :60]
+        scan = np.where(np.hypot((x - 30) / 20, (y - 18) / 12) < 1, 40, -1000).astype("i2")
+        body = scan.copy()
+        scan[:, 36:38] = 100
+        made = cw.Volume(scan, spacing=(3, 3, 3)).remove_table()
+        self.assertTrue((made.array == body).all())
+        with self.assertRaisesRegex(cw.Error, "nothing above -300 HU"):
+            cw.Volume(scan - 2000).remove_table()
+
     def test_what_is_inside_is_changed(self):
         ball = make_ball()
         volume = cw.Volume(ball)
