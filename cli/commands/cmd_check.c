@@ -6,6 +6,7 @@
 #include "cli/inputs/extract_surface.h"
 #include "cli/inputs/level_choice.h"
 #include "cli/inputs/mesh_input.h"
+#include "cli/inputs/volume_prepare.h"
 #include "cli/results/check_verdicts.h"
 #include "cli/results/output_names.h"
 #include "cli/results/printability.h"
@@ -24,6 +25,7 @@ typedef struct check_args {
     cli_number iso;
     cli_length tolerance;
     cli_amount least;
+    size_t largest;
     bool fill_voids;
     cli_printer printer;
     int profile, inside, progress;
@@ -61,6 +63,9 @@ static const cli_option options[] = {
     {"min-volume", 0, CLI_VOLUME, "V",
      "Leave out components of the source's surface that enclose less: 500mm3, 30vox (none)",
      offsetof(check_args, least)},
+    {"largest", 0, CLI_COUNT, "N",
+     "Keep the N components of the source's surface that enclose the most (all)",
+     offsetof(check_args, largest)},
     {"fill-voids", 0, CLI_FLAG, NULL,
      "Leave out the cavities of the source's surface, and all inside them (off)",
      offsetof(check_args, fill_voids)},
@@ -71,7 +76,9 @@ static const cli_option options[] = {
      offsetof(check_args, tolerance)},
     CLI_HEADED("Reading the source"),
     CLI_CLAIM_OPTIONS("source", "the source", CLI_INPUT_ROW(check_args, source_claim)),
-    CLI_INPUT_OPTIONS(check_args),
+    CLI_PREPARING_OPTIONS(check_args),
+    CLI_INSIDE_OPTIONS(check_args),
+    CLI_READING_OPTIONS(check_args),
     {"mesh-reader", 0, CLI_TEXT, "NAME",
      "Read meshes as this format; names as in 'formats' (by content)",
      offsetof(check_args, mesh_reader), CLI_VALUES_MESH_READER},
@@ -121,6 +128,8 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_bool(j, "open", args->open);
         if (args->least.given)
             cli_json_number(j, "min_volume_mm3", least_mm3(s));
+        if (args->largest)
+            cli_json_count(j, "largest", args->largest);
         if (args->fill_voids)
             cli_json_bool(j, "fill_voids", true);
     }
@@ -200,6 +209,8 @@ static cw_status check_args_of(run_state *s, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--iso needs a volume: --source VOLUME");
     if (args->least.given && !args->source)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--min-volume needs a volume: --source VOLUME");
+    if (args->largest && !args->source)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--largest needs a volume: --source VOLUME");
     if (args->fill_voids && !args->source)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--fill-voids needs a volume: --source VOLUME");
     if (args->tolerance.given && !args->source && !args->reference)
@@ -223,11 +234,14 @@ static cw_status read_inputs(run_state *s, cw_error *err)
     if (st == CW_OK && args->reference)
         st = cli_read_reference(args->reference, args->mesh_reader, &args->input, &s->reference,
                                 err);
-    const cli_input source = cli_source_input(&args->input);
+    cli_input source = cli_source_input(&args->input);
+    source.makes_surface = true;
     if (st == CW_OK && args->source)
         st = cli_read_volume(args->source, &source, false, &s->volume, err);
     if (st == CW_OK && args->source)
         st = cli_choose_level(&s->volume, &source, &s->iso, err);
+    if (st == CW_OK && args->source)
+        st = cli_prepare_inside(&source, &s->volume, &s->iso.value, 1, args->inside, err);
     if (st == CW_OK)
         cli_report_end(&s->report, "read", 1, s->mesh.mesh.triangle_count);
     return st;
@@ -358,6 +372,7 @@ static cw_status compare_with_field(run_state *s, cw_error *err)
                                            .no_normals = true,
                                            .threads = desc.threads},
                                .least_mm3 = least_mm3(s),
+                               .largest = args->largest,
                                .fill_voids = args->fill_voids};
     st = cli_extract_wanted(&s->volume, NULL, &wanted, &surface, &counts, NULL, err);
     if (st == CW_OK)

@@ -9,6 +9,7 @@
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/inputs/level_choice.h"
+#include "cli/inputs/volume_prepare.h"
 #include "cli/results/pvd_list.h"
 #include "core/base/status.h"
 
@@ -74,6 +75,8 @@ static const cli_option options[] = {
      "Leave out components that enclose less, and all inside them: 500mm3, 0.5ml, 30vox "
      "(none)",
      offsetof(cli_extract_args, least)},
+    {"largest", 0, CLI_COUNT, "N", "Keep the N components that enclose the most (all)",
+     offsetof(cli_extract_args, largest)},
     {"fill-voids", 0, CLI_FLAG, NULL,
      "Leave out the cavities of solids, and all inside them (off)",
      offsetof(cli_extract_args, fill_voids)},
@@ -173,7 +176,9 @@ static const cli_option options[] = {
      offsetof(cli_extract_args, prove_crop)},
     CLI_BATCH_OPTIONS(cli_extract_args),
     CLI_COMPRESS_OPTIONS(cli_extract_args),
-    CLI_INPUT_OPTIONS(cli_extract_args),
+    CLI_PREPARING_OPTIONS(cli_extract_args),
+    CLI_INSIDE_OPTIONS(cli_extract_args),
+    CLI_READING_OPTIONS(cli_extract_args),
     {"stream", 0, CLI_CHOICE, "auto/always/never",
      "Read and extract slice by slice: if the volume exceeds --memory, always, or never (auto)",
      offsetof(cli_extract_args, stream)},
@@ -330,9 +335,16 @@ static void free_step(cli_extract_run *s)
 #endif
 }
 
+static cw_status prepare_inside(cli_extract_run *s, cw_error *err)
+{
+    return cli_prepare_inside(&s->args->input, &s->input.volume, s->iso->value, s->iso->count,
+                              cli_extract_is_low(s), err);
+}
+
 static cw_status read_volume(cli_extract_run *s, const cli_moment *moment, cw_error *err)
 {
     cli_input input = s->args->input;
+    input.makes_surface = true;
     input.step = moment->step;
     input.step_chosen = s->input.series.given;
     input.stream = s->args->stream;
@@ -350,6 +362,8 @@ static cw_status read_volume(cli_extract_run *s, const cli_moment *moment, cw_er
         return st;
     const cw_volume *v = &s->input.volume.view;
     st = cli_choose_levels(&s->input.volume, &input, s->iso, err);
+    if (st == CW_OK)
+        st = prepare_inside(s, err);
     if (st == CW_OK && !s->output.report.input)
         st = cli_tell_labels(&s->input.volume, s->args->iso.value, s->args->iso.count,
                              cli_extract_is_low(s), err);
@@ -373,6 +387,8 @@ static cw_status open_step(cli_extract_run *s, const cli_moment *moment, cw_erro
 
     cw_status st = held ? cli_choose_step(&s->args->input, moment->step, &s->input.volume, err)
                         : read_volume(s, moment, err);
+    if (held && st == CW_OK)
+        st = prepare_inside(s, err);
     s->input.memory = held ? s->input.memory : s->input.volume.memory_left;
     s->input.volume.memory_left =
         s->input.memory > s->output.frames.bytes ? s->input.memory - s->output.frames.bytes : 1;

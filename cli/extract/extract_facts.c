@@ -2,6 +2,7 @@
  * into the records of its files. */
 #include "cli/extract/extract_run.h"
 
+#include "cli/framework/filter_options.h"
 #include "cli/inputs/volume_prepare.h"
 #include "cli/results/detail_levels.h"
 #include "core/volume/volume.h"
@@ -130,6 +131,8 @@ void cli_extract_put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_lod(j, &args->lod);
     if (args->least.given)
         cli_json_number(j, "min_volume_mm3", cli_extract_least_mm3(s));
+    if (args->largest)
+        cli_json_count(j, "largest", args->largest);
     if (args->fill_voids)
         cli_json_bool(j, "fill_voids", true);
     if (args->smooth.given) {

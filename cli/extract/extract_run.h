@@ -22,6 +22,7 @@ typedef struct cli_extract_args {
     cli_reduction simplify;
     cli_counts lod;
     cli_amount least;
+    size_t largest; /* components to keep; 0: all */
     bool fill_voids;
     cli_smoothing smooth;
     cli_length max_move;

@@ -4,6 +4,7 @@
 #include "cli/extract/extract_proof.h"
 #include "cli/extract/small_components.h"
 #include "cli/framework/console.h"
+#include "cli/framework/filter_options.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/results/mesh_comparison.h"
 #include "cli/results/smoothed.h"
@@ -42,9 +43,10 @@ cli_wanted cli_extract_wants(const cli_extract_run *s, double iso)
                     .threads = (int)s->args->input.threads,
                     .max_triangles = s->args->max_triangles,
                     .extra_bytes = s->args->check || s->args->fill_voids ? cli_check_bytes()
-                                   : least_mm3 > 0                       ? DROP_BYTES
+                                   : least_mm3 > 0 || s->args->largest   ? DROP_BYTES
                                                                          : 0},
         .least_mm3 = least_mm3,
+        .largest = s->args->largest,
         .fill_voids = s->args->fill_voids,
         .smooths = s->args->smooth.given,
         .smooth = s->args->smooth.given ? cli_extract_smoothing(s) : (cw_smooth_desc){0},
@@ -130,8 +132,10 @@ cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
                            cw_extract_counts *counts, cw_error *err)
 {
     cli_wanted w = cli_extract_wants(s, made->iso);
+    cw_drop_counts smaller = {0};
     w.filled = &made->voids;
     w.smoothed = &made->smoothed;
+    w.smaller = &smaller;
     cw_drop_counts *dropped = &made->components;
     double error;
     cw_status st = find_error(s, &error, err);
@@ -154,6 +158,12 @@ cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
     made->least_mm3 = w.least_mm3;
     if (w.least_mm3 > 0)
         cli_tell_components(s->input.volume.path, w.least_mm3, dropped);
+    if (w.largest)
+        cli_say("%s: %s of %s components kept, of %.6g mm3 or more; the largest of the others "
+                "has %.6g mm3",
+                s->input.volume.path, cli_count(smaller.kept),
+                cli_count(smaller.kept + smaller.dropped), smaller.least_kept_mm3,
+                smaller.largest_mm3);
     made->fills_voids = w.fill_voids;
     if (w.fill_voids)
         cli_say("%s: %s void%s filled, %.6g mm3", s->input.volume.path,

@@ -1,6 +1,7 @@
 /* Checks the arguments of `extract --labels` before the label map is read. */
 #include "cli/extract/label_run.h"
 
+#include "cli/inputs/volume_prepare.h"
 #include "core/base/status.h"
 
 #include <cubewright/simplify.h>
@@ -53,6 +54,7 @@ cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
         {args->placement, "--placement"},
         {args->snap.given, "--snap"},
         {args->least.given, "--min-volume"},
+        {args->largest > 0, "--largest"},
         {args->fill_voids, "--fill-voids"},
         {args->color.by != NULL, "--color-by (labels have their own colours)"},
         {args->smooth.given, "--smooth (labels have --smooth-labels)"},
@@ -69,8 +71,7 @@ cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
         {args->pvd != NULL, "--pvd"},
         {args->prove_crop, "--prove-crop"},
         {args->input.component.magnitude, "--component mag"},
-        {args->input.resample.given, "--resample"},
-        {args->input.denoise.given, "--denoise"},
+        {cli_find_preparation(&args->input) != NULL, cli_find_preparation(&args->input)},
     };
     if (!args->labels)
         return args->names            ? fail_without("--names", err)

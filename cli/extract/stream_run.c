@@ -4,6 +4,7 @@
 
 #include "cli/extract/small_components.h"
 #include "cli/framework/console.h"
+#include "cli/inputs/volume_prepare.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 
@@ -25,6 +26,7 @@ const char *cli_find_unstreamed(const cli_extract_args *args)
         {"--max-error", args->pixel.most.given},
         {"--camera", args->pixel.camera != NULL},
         {"--min-volume beside --simplify", args->least.given && has_simplify(args)},
+        {"--largest", args->largest > 0},
         {"--fill-voids", args->fill_voids},
         {"--smooth", args->smooth.given},
         {"--color-by", args->color.by != NULL},
@@ -34,13 +36,11 @@ const char *cli_find_unstreamed(const cli_extract_args *args)
         {"--prove-crop", args->prove_crop},
         {"--compress", args->compress.kind != 0 && !has_simplify(args)},
         {"--component mag", args->input.component.magnitude},
-        {"--resample", args->input.resample.given},
-        {"--denoise", args->input.denoise.given},
     };
     for (size_t n = 0; n < sizeof options / sizeof *options; n++)
         if (options[n].given)
             return options[n].name;
-    return NULL;
+    return cli_find_preparation(&args->input);
 }
 
 /* Returns true for errors of too low a --memory. */

@@ -1,6 +1,7 @@
 /* Parses the words of the command line by a command's table of options, and prints its help. */
 #include "cli/framework/options.h"
 
+#include "cli/framework/filter_options.h"
 #include "cli/framework/quantity.h"
 #include "core/base/status.h"
 
@@ -191,6 +192,7 @@ size_t cli_option_size(const cli_option *o)
         [CLI_VOLUME] = sizeof(cli_amount),
         [CLI_SIZES] = sizeof(cli_sizes),
         [CLI_RANGES] = sizeof(cli_ranges),
+        [CLI_CROP] = sizeof(cli_ranges),
         [CLI_REDUCTION] = sizeof(cli_reduction),
         [CLI_STEPS] = sizeof(cli_steps),
         [CLI_WEIGHTS] = sizeof(cli_weights),
@@ -286,7 +288,10 @@ bool cli_option_text(const cli_option *o, const void *args, char *text, size_t s
         snprintf(text, size, "%zu", *(const size_t *)field);
         break;
     case CLI_RANGES:
-        if (((const cli_ranges *)field)->given)
+    case CLI_CROP:
+        if (((const cli_ranges *)field)->is_auto)
+            snprintf(text, size, "auto:%zu", ((const cli_ranges *)field)->margin);
+        else if (((const cli_ranges *)field)->given)
             print_ranges(field, text, size);
         break;
     case CLI_COMPONENT:
@@ -348,6 +353,8 @@ static bool store_value(const cli_option *o, const char *text, void *field)
         return cli_parse_sizes(text, field);
     case CLI_RANGES:
         return cli_parse_ranges(text, field);
+    case CLI_CROP:
+        return cli_parse_crop(text, field);
     case CLI_STEPS:
         return cli_parse_steps(text, field);
     case CLI_WEIGHTS:
@@ -377,8 +384,9 @@ static const char *describe_expected(const cli_option *o)
         return "iso, or a length above 0 such as 0.5mm or 1x1x2mm; then a kernel, if not linear: "
                "0.5mm:cubic, iso:lanczos";
     case CLI_DENOISE:
-        return "gauss with a width such as gauss:0.7vox or gauss:0.5mm, or median with a radius of "
-               "1 to 3 voxels such as median:1";
+        return "nlm or nlm:NOISE, aniso or aniso:STEPS (1 to 100) or aniso:STEPS:CONTRAST, "
+               "gauss:L such as gauss:0.7vox or gauss:0.5mm, bilateral:L or bilateral:L:VALUES, or "
+               "median:N (1 to 3 voxels)";
     case CLI_SMOOTHING:
         return "taubin or hc, with their iterations from 1 to 1000 such as taubin:10, or fair, with "
                "a length such as fair:4vox or fair:2mm";
@@ -401,6 +409,9 @@ static const char *describe_expected(const cli_option *o)
         return "whole numbers above 0 joined by x or comma";
     case CLI_RANGES:
         return "three ranges such as 10:50,0:99,20:40 (voxels) or -30mm:30mm,... (world)";
+    case CLI_CROP:
+        return "three ranges such as 10:50,0:99,20:40 (voxels) or -30mm:30mm,... (world), auto, or "
+               "auto with a margin in voxels such as auto:3";
     case CLI_STEPS:
         return "steps in ascending order such as 0:20:2 (ends included), 0,3,7 or all";
     case CLI_WEIGHTS:

@@ -22,9 +22,10 @@ typedef enum cli_kind {
     CLI_VOLUME,    /* cli_amount: 500mm3, 0.5ml, 30vox; bare is mm3 */
     CLI_SIZES,     /* cli_sizes: 64, 1280x720 or 512x512x300 */
     CLI_RANGES,    /* cli_ranges: 10:50,0:99,20:40 in voxels, -30mm:30mm,... in the world */
+    CLI_CROP,      /* cli_ranges: the same, or auto, auto:3 */
     CLI_REDUCTION, /* cli_reduction */
     CLI_RESAMPLE,  /* cli_resample: iso, 0.5mm, 1x1x2mm; then a kernel: 0.5mm:cubic */
-    CLI_DENOISE,   /* cli_denoise: gauss:0.7vox, gauss:0.5mm, median:1 */
+    CLI_DENOISE,   /* cli_denoise: gauss:0.7vox, median:1, bilateral:1vox:30, aniso:10, nlm */
     CLI_SMOOTHING, /* cli_smoothing: taubin, hc:20, fair:2vox */
     CLI_STEPS,     /* cli_steps: 0:20:2, 0,3,7 or all */
     CLI_WEIGHTS,   /* cli_weights: normal:0.5,color:1; value has the names, parted by '/' */
@@ -109,11 +110,15 @@ typedef struct cli_resample {
     int kernel; /* cw_kernel */
 } cli_resample;
 
+typedef enum cli_filter { CLI_GAUSS, CLI_MEDIAN, CLI_BILATERAL, CLI_ANISO, CLI_NLM } cli_filter;
+
 /* A filter against noise. */
 typedef struct cli_denoise {
     bool given;
-    size_t radius;    /* of a median in voxels; 0: a Gaussian of this width: */
-    cli_length width; /* millimetres or voxels */
+    cli_filter filter;
+    size_t count;     /* radius of a median in voxels, steps of diffusion */
+    cli_length width; /* of a Gaussian or a bilateral filter: millimetres or voxels */
+    double value;     /* width of values, contrast or noise; 0: from the data */
 } cli_denoise;
 
 /* How a surface is smoothed. */
@@ -138,6 +143,8 @@ typedef struct cli_sizes {
 /* A box: from low to high along each axis, ends included. */
 typedef struct cli_ranges {
     bool given;
+    bool is_auto; /* given is false: around what is inside, with a margin in voxels */
+    size_t margin;
     bool world; /* LPS millimetres; else voxel indices */
     double low[3], high[3];
 } cli_ranges;

@@ -5,7 +5,6 @@
 #include "core/base/text.h"
 
 #include <cubewright/filter.h>
-#include <cubewright/smooth.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -228,6 +227,17 @@ bool cli_parse_ranges(const char *text, cli_ranges *out)
     return out->given = *text == '\0';
 }
 
+bool cli_parse_crop(const char *text, cli_ranges *out)
+{
+    enum { MARGIN = 2 };
+    *out = (cli_ranges){.margin = MARGIN};
+    if (!skip_word(&text, "auto"))
+        return cli_parse_ranges(text, out);
+    out->is_auto = true;
+    return *text == '\0' || (skip_word(&text, ":") &&
+                             cli_parse_count(text, 1000, &out->margin) && out->margin > 0);
+}
+
 static bool parse_step(const char **text, size_t *step)
 {
     int64_t n;
@@ -373,97 +383,4 @@ const char *cli_level_text(cli_level level, double value)
         if (level_names[n].level == level)
             return level_names[n].name;
     return cli_number_text(value);
-}
-
-static bool parse_kernel(const char *text, int *kernel)
-{
-    for (*kernel = 0; *kernel < CW_KERNEL_COUNT; ++*kernel)
-        if (strcmp(text, cw_kernel_name((cw_kernel)*kernel)) == 0)
-            return true;
-    return false;
-}
-
-bool cli_parse_resample(const char *text, cli_resample *out)
-{
-    char lengths[128];
-    cli_lengths mm;
-    const char *colon = strchr(text, ':');
-    const size_t size = colon ? (size_t)(colon - text) : strlen(text);
-    *out = (cli_resample){.given = size < sizeof lengths};
-    if (!out->given)
-        return false;
-    memcpy(lengths, text, size);
-    lengths[size] = '\0';
-    out->iso = strcmp(lengths, "iso") == 0;
-    out->given = out->iso || cli_parse_lengths(lengths, &mm);
-    for (int a = 0; a < 3 && out->given && !out->iso; a++)
-        out->mm[a] = mm.mm[a];
-    return out->given = out->given && (!colon || parse_kernel(colon + 1, &out->kernel));
-}
-
-bool cli_parse_denoise(const char *text, cli_denoise *out)
-{
-    *out = (cli_denoise){0};
-    if (skip_word(&text, "median:"))
-        out->given =
-            cli_parse_count(text, 1000, &out->radius) && out->radius >= 1 && out->radius <= 3;
-    else if (skip_word(&text, "gauss:"))
-        out->given = cli_parse_length(text, &out->width) && out->width.unit != CLI_PERCENT;
-    return out->given;
-}
-
-bool cli_parse_smoothing(const char *text, cli_smoothing *out)
-{
-    *out = (cli_smoothing){0};
-    for (int m = 0; m < CW_SMOOTH_METHOD_COUNT && !out->given; m++) {
-        const char *rest = text;
-        out->given = skip_word(&rest, cw_smooth_method_name((cw_smooth_method)m)) &&
-                     (*rest == '\0' || *rest == ':');
-        out->method = m;
-        if (!out->given || *rest == '\0')
-            continue;
-        out->given = m == CW_SMOOTH_FAIR ? cli_parse_length(rest + 1, &out->width)
-                                         : cli_parse_count(rest + 1, 1000, &out->iterations) &&
-                                               out->iterations >= 1 &&
-                                               out->iterations <= CW_SMOOTH_MAX_ITERATIONS;
-    }
-    return out->given;
-}
-
-const char *cli_resample_text(const cli_resample *r)
-{
-    static char text[128];
-    const char *kernel = cw_kernel_name((cw_kernel)r->kernel);
-    if (r->iso)
-        snprintf(text, sizeof text, "iso:%s", kernel);
-    else
-        snprintf(text, sizeof text, "%sx%sx%smm:%s", cli_number_text(r->mm[0]),
-                 cli_number_text(r->mm[1]), cli_number_text(r->mm[2]), kernel);
-    return text;
-}
-
-const char *cli_denoise_text(const cli_denoise *d)
-{
-    static char text[64];
-    if (d->radius)
-        snprintf(text, sizeof text, "median:%zu", d->radius);
-    else
-        snprintf(text, sizeof text, "gauss:%s%s", cli_number_text(d->width.value),
-                 d->width.unit == CLI_VOXELS ? "vox" : "mm");
-    return text;
-}
-
-const char *cli_smoothing_text(const cli_smoothing *s)
-{
-    static char text[64];
-    static const char *const units[] = {"mm", "%", "vox"};
-    const char *method = cw_smooth_method_name((cw_smooth_method)s->method);
-    if (s->iterations)
-        snprintf(text, sizeof text, "%s:%zu", method, s->iterations);
-    else if (s->width.given)
-        snprintf(text, sizeof text, "%s:%s%s", method, cli_number_text(s->width.value),
-                 units[s->width.unit]);
-    else
-        snprintf(text, sizeof text, "%s", method);
-    return text;
 }

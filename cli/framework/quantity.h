@@ -11,17 +11,6 @@ bool cli_parse_numbers(const char *text, cli_numbers *out);
 bool cli_parse_level(const char *text, cli_number *out);
 bool cli_parse_levels(const char *text, cli_numbers *out);
 
-bool cli_parse_resample(const char *text, cli_resample *out);
-bool cli_parse_denoise(const char *text, cli_denoise *out);
-
-/* The name of a method; then a colon and iterations, or the width of fair. */
-bool cli_parse_smoothing(const char *text, cli_smoothing *out);
-
-/* Return these as they are typed, in static memory. */
-const char *cli_resample_text(const cli_resample *resample);
-const char *cli_denoise_text(const cli_denoise *denoise);
-const char *cli_smoothing_text(const cli_smoothing *smoothing);
-
 /* Returns a level as it is typed, in static memory as of cli_number_text(). */
 const char *cli_level_text(cli_level level, double value);
 bool cli_parse_lengths(const char *text, cli_lengths *out);
@@ -36,6 +25,10 @@ bool cli_parse_reduction(const char *text, cli_reduction *out);
 double cli_length_mm(const cli_length *length, double diagonal_mm, double voxel_mm);
 bool cli_parse_sizes(const char *text, cli_sizes *out);
 bool cli_parse_ranges(const char *text, cli_ranges *out);
+
+/* Ranges, or auto with a margin: auto:3. */
+bool cli_parse_crop(const char *text, cli_ranges *out);
+
 bool cli_parse_steps(const char *text, cli_steps *out);
 
 /* A count with an optional k, M, G or T of the given thousand: 1000, or 1024 for bytes. */

@@ -87,7 +87,7 @@ cw_status cli_extract_surface(const cli_volume *volume, cw_extractor *extractor,
 
 bool cli_wants_whole(const cli_wanted *wanted)
 {
-    return wanted->least_mm3 > 0 || wanted->fill_voids || wanted->smooths;
+    return wanted->least_mm3 > 0 || wanted->largest || wanted->fill_voids || wanted->smooths;
 }
 
 cw_status cli_fail_dropped(double least_mm3, const cw_drop_counts *dropped, cw_error *err)
@@ -117,6 +117,8 @@ cw_status cli_extract_wanted(const cli_volume *volume, cw_extractor *extractor,
         return st;
     if (wanted->least_mm3 > 0)
         st = cw_mesh_drop_volumes(mesh, wanted->least_mm3, d, err);
+    if (st == CW_OK && wanted->largest && mesh->triangle_count)
+        st = cw_mesh_keep_largest(mesh, wanted->largest, wanted->smaller, err);
     if (st == CW_OK && wanted->fill_voids)
         st = cw_mesh_fill_voids(mesh, threads, wanted->filled, err);
     if (st == CW_OK && wanted->least_mm3 > 0 && !d->kept)

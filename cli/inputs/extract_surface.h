@@ -43,9 +43,12 @@ CW_NODISCARD cw_status cli_extract_surface(const cli_volume *volume, cw_extracto
 typedef struct cli_wanted {
     cw_extract_desc extract;
     double least_mm3;       /* components that enclose less are left out; default: none is */
+    size_t largest;         /* components to keep; default: all */
     bool fill_voids;        /* closed components in others are left out, too */
     cw_drop_counts *filled; /* set to their counts; may be NULL */
-    bool smooths;           /* then, by this: */
+    cw_drop_counts
+        *smaller; /* set to the counts of those that `largest` leaves out; may be NULL */
+    bool smooths; /* then, by this: */
     cw_smooth_desc smooth;
     cw_smooth_facts *smoothed; /* set to what that did; may be NULL */
 } cli_wanted;

@@ -521,7 +521,9 @@ cw_status cli_read_volume(const char *path, const cli_input *input, bool header_
     desc.note = take_note;
     desc.note_user = volume;
     desc.labels = &volume->labels;
-    cw_status st = set_raw(input, &raw, &desc, err);
+    cw_status st = cli_check_inside_options(input, err);
+    if (st == CW_OK)
+        st = set_raw(input, &raw, &desc, err);
     if (st == CW_OK)
         st = read_header(path, &desc, input, volume, err);
     desc.labels = NULL; /* the header told them */

@@ -57,6 +57,10 @@ typedef struct cli_input {
     cli_ranges crop;
     cli_resample resample;
     cli_denoise denoise;
+    bool remove_table;
+    const char *mask;
+    cli_length mask_open, mask_close;
+    bool makes_surface; /* the command calls cli_prepare_inside() */
     cli_component component;
     size_t level; /* of an image in several sizes */
     size_t step;
@@ -100,120 +104,150 @@ typedef struct cli_input {
             CLI_INPUT_ROW(args, memory)                                                        \
     }
 
-#define CLI_INPUT_OPTIONS(args)                                                                 \
-    CLI_HEADED(CLI_PREPARING),                                                                  \
-        {"resample",                                                                            \
-         0,                                                                                     \
-         CLI_RESAMPLE,                                                                          \
-         "iso|L[:KERNEL]",                                                                      \
-         "Sample the volume at other distances: iso, 0.5mm, 1x1x2mm; by linear, cubic or "      \
-         "lanczos, such as iso:cubic (off; linear)",                                            \
-         CLI_INPUT_ROW(args, resample)},                                                        \
-        {"denoise",                                                                             \
-         0,                                                                                     \
-         CLI_DENOISE,                                                                           \
-         "gauss:L|median:N",                                                                    \
-         "Smooth the values: by a Gaussian such as gauss:0.7vox or gauss:0.5mm, or the median " \
-         "of all within N voxels (off)",                                                        \
-         CLI_INPUT_ROW(args, denoise)},                                                         \
-        CLI_HEADED(CLI_READING),                                                                \
-        {"reader",                                                                              \
-         0,                                                                                     \
-         CLI_TEXT,                                                                              \
-         "NAME",                                                                                \
-         "Read the file as this format; names as in 'formats' (by content)",                    \
-         CLI_INPUT_ROW(args, reader),                                                           \
-         CLI_VALUES_READER},                                                                    \
-        {"raw",                                                                                 \
-         0,                                                                                     \
-         CLI_TEXT,                                                                              \
-         "LAYOUT",                                                                              \
-         "Layout of headerless voxels: dims=64x64x93,type=u16le,offset=0,spacing=1x1x2",        \
-         CLI_INPUT_ROW(args, raw)},                                                             \
-        {"spacing",                                                                             \
-         0,                                                                                     \
-         CLI_LENGTHS,                                                                           \
-         "X[,Y,Z]",                                                                             \
-         "Distance between voxels, such as 0.5mm or 1x1x2mm (the file's)",                      \
-         CLI_INPUT_ROW(args, spacing)},                                                         \
-        CLI_CLAIM_OPTIONS("input", "the input", CLI_INPUT_ROW(args, claim)),                    \
-        {"series",                                                                              \
-         0,                                                                                     \
-         CLI_TEXT,                                                                              \
-         "N",                                                                                   \
-         "DICOM series of a folder: its number in 'info', or its UID (the only one)",           \
-         CLI_INPUT_ROW(args, series)},                                                          \
-        {"array",                                                                               \
-         0,                                                                                     \
-         CLI_TEXT,                                                                              \
-         "NAME",                                                                                \
-         "Array to read, of files with several (the file's choice, else the first with one "    \
-         "value)",                                                                              \
-         CLI_INPUT_ROW(args, array)},                                                           \
-        {"grid",                                                                                \
-         0,                                                                                     \
-         CLI_TEXT,                                                                              \
-         "NAME",                                                                                \
-         "OpenVDB grid to read (the first level set, else the first with one value)",           \
-         CLI_INPUT_ROW(args, array)},                                                           \
-        {"level",                                                                               \
-         0,                                                                                     \
-         CLI_COUNT,                                                                             \
-         "N",                                                                                   \
-         "Level of an image in several sizes (OME-Zarr), counted from the finest (0)",          \
-         CLI_INPUT_ROW(args, level)},                                                           \
-        {"points",                                                                              \
-         0,                                                                                     \
-         CLI_TEXT,                                                                              \
-         "FILE",                                                                                \
-         "File with the grid points of a PLOT3D solution",                                      \
-         CLI_INPUT_ROW(args, points),                                                           \
-         CLI_VALUES_FILE},                                                                      \
-        {"gaps",                                                                                \
-         0,                                                                                     \
-         CLI_CHOICE,                                                                            \
-         "stop/interpolate/allow",                                                              \
-         "What to do where slices are missing or uneven (stop)",                                \
-         CLI_INPUT_ROW(args, gaps)},                                                            \
-        {"tilt",                                                                                \
-         0,                                                                                     \
-         CLI_CHOICE,                                                                            \
-         "correct/keep",                                                                        \
-         "Place slices of a tilted gantry where they were, or straight above each other "       \
-         "(correct)",                                                                           \
-         CLI_INPUT_ROW(args, tilt)},                                                            \
-        {"crop",                                                                                \
-         0,                                                                                     \
-         CLI_RANGES,                                                                            \
-         "X:X,Y:Y,Z:Z",                                                                         \
-         "Read only these voxels, ends included; with units, those in a box of LPS mm (all)",   \
-         CLI_INPUT_ROW(args, crop)},                                                            \
-        {"component",                                                                           \
-         0,                                                                                     \
-         CLI_COMPONENT,                                                                         \
-         "N/mag",                                                                               \
-         "Component of voxels with several values; mag is the length of their vector (0)",      \
-         CLI_INPUT_ROW(args, component)},                                                       \
-        {"step",                                                                                \
-         0,                                                                                     \
-         CLI_COUNT,                                                                             \
-         "N",                                                                                   \
-         "Time step to read, counted from 0 (0)",                                               \
-         CLI_INPUT_ROW(args, step)},                                                            \
-        {"allow-external",                                                                      \
-         0,                                                                                     \
-         CLI_FLAG,                                                                              \
-         NULL,                                                                                  \
-         "Follow headers to files outside their folder, and links in a folder (off)",           \
-         CLI_INPUT_ROW(args, allow_external)},                                                  \
-        CLI_SANDBOX_OPTION(args), CLI_HEADED(CLI_LIMITS), CLI_TIME_OPTIONS(args),               \
-        {"max-voxels",                                                                          \
-         0,                                                                                     \
-         CLI_COUNT,                                                                             \
-         "N",                                                                                   \
-         "Stop before reading more voxels than this, such as 500M (2^40)",                      \
-         CLI_INPUT_ROW(args, max_voxels)},                                                      \
+#define CLI_PREPARING_OPTIONS(args)                                                            \
+    CLI_HEADED(CLI_PREPARING),                                                                 \
+        {"resample",                                                                           \
+         0,                                                                                    \
+         CLI_RESAMPLE,                                                                         \
+         "iso|L[:KERNEL]",                                                                     \
+         "Sample the volume at other distances: iso, 0.5mm, 1x1x2mm; by linear, cubic or "     \
+         "lanczos, such as iso:cubic (off; linear)",                                           \
+         CLI_INPUT_ROW(args, resample)},                                                       \
+        {"denoise",                                                                            \
+         0,                                                                                    \
+         CLI_DENOISE,                                                                          \
+         "FILTER",                                                                             \
+         "Take noise out: gauss:L, median:N, and filters that keep edges: aniso[:STEPS[:K]], " \
+         "nlm[:NOISE], bilateral:L[:V]; L such as 0.7vox or 0.5mm (off)",                      \
+         CLI_INPUT_ROW(args, denoise)},                                                        \
+    {                                                                                          \
+        "remove-table", 0, CLI_FLAG, NULL,                                                     \
+            "Make air of the table of a CT, and of all else beside the body (off)",            \
+            CLI_INPUT_ROW(args, remove_table)                                                  \
+    }
+
+/* Rows for a command that makes a surface: they change what is inside, with cli_prepare_inside(). */
+#define CLI_INSIDE_OPTIONS(args)                                                               \
+    {"mask",                                                                                   \
+     0,                                                                                        \
+     CLI_TEXT,                                                                                 \
+     "FILE",                                                                                   \
+     "Leave out what is outside of a mask: a volume that is 0 there, in any grid (none)",      \
+     CLI_INPUT_ROW(args, mask),                                                                \
+     CLI_VALUES_FILE},                                                                         \
+        {"mask-open",                                                                          \
+         0,                                                                                    \
+         CLI_LENGTH,                                                                           \
+         "L",                                                                                  \
+         "Remove what is thinner than a ball of this radius: 1vox, 0.5mm (off)",               \
+         CLI_INPUT_ROW(args, mask_open)},                                                      \
+    {                                                                                          \
+        "mask-close", 0, CLI_LENGTH, "L",                                                      \
+            "Fill cracks and pores thinner than a ball of this radius: 1vox, 0.5mm (off)",     \
+            CLI_INPUT_ROW(args, mask_close)                                                    \
+    }
+
+#define CLI_READING_OPTIONS(args)                                                              \
+    CLI_HEADED(CLI_READING),                                                                   \
+        {"reader",                                                                             \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "NAME",                                                                               \
+         "Read the file as this format; names as in 'formats' (by content)",                   \
+         CLI_INPUT_ROW(args, reader),                                                          \
+         CLI_VALUES_READER},                                                                   \
+        {"raw",                                                                                \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "LAYOUT",                                                                             \
+         "Layout of headerless voxels: dims=64x64x93,type=u16le,offset=0,spacing=1x1x2",       \
+         CLI_INPUT_ROW(args, raw)},                                                            \
+        {"spacing",                                                                            \
+         0,                                                                                    \
+         CLI_LENGTHS,                                                                          \
+         "X[,Y,Z]",                                                                            \
+         "Distance between voxels, such as 0.5mm or 1x1x2mm (the file's)",                     \
+         CLI_INPUT_ROW(args, spacing)},                                                        \
+        CLI_CLAIM_OPTIONS("input", "the input", CLI_INPUT_ROW(args, claim)),                   \
+        {"series",                                                                             \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "N",                                                                                  \
+         "DICOM series of a folder: its number in 'info', or its UID (the only one)",          \
+         CLI_INPUT_ROW(args, series)},                                                         \
+        {"array",                                                                              \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "NAME",                                                                               \
+         "Array to read, of files with several (the file's choice, else the first with one "   \
+         "value)",                                                                             \
+         CLI_INPUT_ROW(args, array)},                                                          \
+        {"grid",                                                                               \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "NAME",                                                                               \
+         "OpenVDB grid to read (the first level set, else the first with one value)",          \
+         CLI_INPUT_ROW(args, array)},                                                          \
+        {"level",                                                                              \
+         0,                                                                                    \
+         CLI_COUNT,                                                                            \
+         "N",                                                                                  \
+         "Level of an image in several sizes (OME-Zarr), counted from the finest (0)",         \
+         CLI_INPUT_ROW(args, level)},                                                          \
+        {"points",                                                                             \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "FILE",                                                                               \
+         "File with the grid points of a PLOT3D solution",                                     \
+         CLI_INPUT_ROW(args, points),                                                          \
+         CLI_VALUES_FILE},                                                                     \
+        {"gaps",                                                                               \
+         0,                                                                                    \
+         CLI_CHOICE,                                                                           \
+         "stop/interpolate/allow",                                                             \
+         "What to do where slices are missing or uneven (stop)",                               \
+         CLI_INPUT_ROW(args, gaps)},                                                           \
+        {"tilt",                                                                               \
+         0,                                                                                    \
+         CLI_CHOICE,                                                                           \
+         "correct/keep",                                                                       \
+         "Place slices of a tilted gantry where they were, or straight above each other "      \
+         "(correct)",                                                                          \
+         CLI_INPUT_ROW(args, tilt)},                                                           \
+        {"crop",                                                                               \
+         0,                                                                                    \
+         CLI_CROP,                                                                             \
+         "X:X,Y:Y,Z:Z",                                                                        \
+         "Read only these voxels, ends included; with units, those in a box of LPS mm (all)",  \
+         CLI_INPUT_ROW(args, crop)},                                                           \
+        {"component",                                                                          \
+         0,                                                                                    \
+         CLI_COMPONENT,                                                                        \
+         "N/mag",                                                                              \
+         "Component of voxels with several values; mag is the length of their vector (0)",     \
+         CLI_INPUT_ROW(args, component)},                                                      \
+        {"step",                                                                               \
+         0,                                                                                    \
+         CLI_COUNT,                                                                            \
+         "N",                                                                                  \
+         "Time step to read, counted from 0 (0)",                                              \
+         CLI_INPUT_ROW(args, step)},                                                           \
+        {"allow-external",                                                                     \
+         0,                                                                                    \
+         CLI_FLAG,                                                                             \
+         NULL,                                                                                 \
+         "Follow headers to files outside their folder, and links in a folder (off)",          \
+         CLI_INPUT_ROW(args, allow_external)},                                                 \
+        CLI_SANDBOX_OPTION(args), CLI_HEADED(CLI_LIMITS), CLI_TIME_OPTIONS(args),              \
+        {"max-voxels",                                                                         \
+         0,                                                                                    \
+         CLI_COUNT,                                                                            \
+         "N",                                                                                  \
+         "Stop before reading more voxels than this, such as 500M (2^40)",                     \
+         CLI_INPUT_ROW(args, max_voxels)},                                                     \
         CLI_MEMORY_OPTION(args)
+
+#define CLI_INPUT_OPTIONS(args) CLI_PREPARING_OPTIONS(args), CLI_READING_OPTIONS(args)
 
 enum { CLI_MAX_NOTES = 8 };
 

@@ -2,16 +2,26 @@
 #include "cli/inputs/volume_prepare.h"
 
 #include "cli/framework/console.h"
+#include "cli/framework/filter_options.h"
 #include "cli/framework/quantity.h"
+#include "cli/inputs/level_choice.h"
 #include "core/base/status.h"
 
 #include <cubewright/filter.h>
 
 #include <math.h>
+#include <stdio.h>
 
 const char *cli_find_preparation(const cli_input *input)
 {
-    return input->resample.given ? "--resample" : input->denoise.given ? "--denoise" : NULL;
+    return input->resample.given     ? "--resample"
+           : input->denoise.given    ? "--denoise"
+           : input->remove_table     ? "--remove-table"
+           : input->mask             ? "--mask"
+           : input->mask_open.given  ? "--mask-open"
+           : input->mask_close.given ? "--mask-close"
+           : input->crop.is_auto     ? "--crop auto"
+                                     : NULL;
 }
 
 static cw_filter_desc filter_desc(const cli_input *input, const cli_volume *volume)
@@ -60,36 +70,157 @@ static cw_status resample_view(const cli_input *input, cli_volume *volume, cw_er
     return CW_OK;
 }
 
-static cw_status smooth_view(const cli_input *input, cli_volume *volume, cw_error *err)
+/* Sets the width of a filter along each axis in voxels. */
+static void width_in_voxels(const cli_length *width, const cw_volume *v, double sigma[3])
 {
-    const cli_length *width = &input->denoise.width;
-    const cw_filter_desc desc = filter_desc(input, volume);
-    double mm[3], sigma[3];
-    cw_volume made;
-    cw_volume_spacing(&volume->view, mm);
+    double mm[3];
+    cw_volume_spacing(v, mm);
     for (int a = 0; a < 3; a++)
         sigma[a] = width->unit == CLI_VOXELS ? width->value
                    : mm[a] > 0               ? width->value / mm[a]
                                              : 0;
-    cw_status st = cw_volume_gauss(&volume->view, sigma, &desc, &made, err);
+}
+
+/* A value of a filter: the one that was given, or in proportion to the noise of the volume. */
+typedef struct filter_value {
+    double value;
+    char source[96]; /* for the note */
+} filter_value;
+
+static cw_status find_value(const cli_input *input, const cli_volume *volume, double factor,
+                            filter_value *out, cw_error *err)
+{
+    double noise;
+    *out = (filter_value){.value = input->denoise.value};
+    if (out->value > 0)
+        return CW_OK;
+    cw_status st = cw_volume_noise(&volume->view, (int)input->threads, &noise, err);
+    out->value = factor * noise;
+    if (!(noise > 0))
+        snprintf(out->source, sizeof out->source, ": no noise was found");
+    else if (factor == 1)
+        snprintf(out->source, sizeof out->source, " (estimated)");
+    else
+        snprintf(out->source, sizeof out->source, " (%g times the noise of %.4g)", factor,
+                 noise);
+    return st;
+}
+
+static cw_status smooth_view(const cli_input *input, cli_volume *volume, cw_volume *made,
+                             cw_error *err)
+{
+    const cw_filter_desc desc = filter_desc(input, volume);
+    double sigma[3];
+    width_in_voxels(&input->denoise.width, &volume->view, sigma);
+    cw_status st = cw_volume_gauss(&volume->view, sigma, &desc, made, err);
+    if (st == CW_OK)
+        cli_note_volume(volume, "denoised by a Gaussian of %.3g x %.3g x %.3g voxels", sigma[0],
+                        sigma[1], sigma[2]);
+    return st;
+}
+
+static cw_status sort_view(const cli_input *input, cli_volume *volume, cw_volume *made,
+                           cw_error *err)
+{
+    const cw_filter_desc desc = filter_desc(input, volume);
+    const size_t radius = input->denoise.count, side = 2 * radius + 1;
+    cw_status st = cw_volume_median(&volume->view, radius, &desc, made, err);
+    if (st == CW_OK)
+        cli_note_volume(volume, "denoised by the median of %zu x %zu x %zu voxels", side, side,
+                        side);
+    return st;
+}
+
+static cw_status join_similar(const cli_input *input, cli_volume *volume, cw_volume *made,
+                              cw_error *err)
+{
+    const cw_filter_desc desc = filter_desc(input, volume);
+    filter_value v;
+    double sigma[3];
+    width_in_voxels(&input->denoise.width, &volume->view, sigma);
+    cw_status st = find_value(input, volume, 2.5, &v, err);
+    if (st == CW_OK)
+        st = cw_volume_bilateral(&volume->view, sigma, v.value, &desc, made, err);
+    if (st == CW_OK)
+        cli_note_volume(volume,
+                        "denoised by a bilateral filter of %.3g x %.3g x %.3g voxels, values "
+                        "within %.4g%s",
+                        sigma[0], sigma[1], sigma[2], v.value, v.source);
+    return st;
+}
+
+static cw_status diffuse_view(const cli_input *input, cli_volume *volume, cw_volume *made,
+                              cw_error *err)
+{
+    const cw_filter_desc desc = filter_desc(input, volume);
+    const size_t steps = input->denoise.count;
+    filter_value v;
+    cw_status st = find_value(input, volume, 0.5, &v, err);
+    if (st == CW_OK)
+        st = cw_volume_aniso(&volume->view, steps, v.value, &desc, made, err);
+    if (st == CW_OK)
+        cli_note_volume(volume,
+                        "denoised by %zu steps of diffusion along edges, contrast %.4g%s",
+                        steps, v.value, v.source);
+    return st;
+}
+
+static cw_status join_alike(const cli_input *input, cli_volume *volume, cw_volume *made,
+                            cw_error *err)
+{
+    const cw_filter_desc desc = filter_desc(input, volume);
+    filter_value v;
+    cw_status st = find_value(input, volume, 1, &v, err);
+    if (st == CW_OK)
+        st = cw_volume_nlm(&volume->view, v.value, 0, &desc, made, err);
+    if (st == CW_OK)
+        cli_note_volume(volume, "denoised by non-local means, noise %.4g%s", v.value, v.source);
+    return st;
+}
+
+static cw_status denoise_view(const cli_input *input, cli_volume *volume, cw_error *err)
+{
+    cw_status (*const filters[])(const cli_input *, cli_volume *, cw_volume *,
+                                 cw_error *) = {[CLI_GAUSS] = smooth_view,
+                                                [CLI_MEDIAN] = sort_view,
+                                                [CLI_BILATERAL] = join_similar,
+                                                [CLI_ANISO] = diffuse_view,
+                                                [CLI_NLM] = join_alike};
+    cw_volume made;
+    cw_status st = filters[input->denoise.filter](input, volume, &made, err);
     if (st != CW_OK)
         return cwi_fail_in(err, st, "--denoise");
-    cli_note_volume(volume, "denoised by a Gaussian of %.3g x %.3g x %.3g voxels", sigma[0],
-                    sigma[1], sigma[2]);
     take_filtered(volume, &made);
     return CW_OK;
 }
 
-static cw_status sort_view(const cli_input *input, cli_volume *volume, cw_error *err)
+static cw_status expect_hounsfield(const cli_input *input, const cli_volume *volume,
+                                   cw_error *err)
 {
-    const size_t radius = input->denoise.radius;
+    cw_statistics s = {0};
+    cw_status st =
+        cw_volume_statistics(&volume->view, CLI_LEVEL_BINS, (int)input->threads, &s, err);
+    if (st == CW_OK && !cli_is_hounsfield(&volume->whole, &s))
+        st = cwi_fail(err, CW_ERR_ARGUMENT,
+                      "it is for a CT in Hounsfield units, with air near -1000; these values "
+                      "are %g to %g",
+                      s.min, s.max);
+    cw_statistics_free(&s);
+    return st;
+}
+
+static cw_status remove_table(const cli_input *input, cli_volume *volume, cw_error *err)
+{
     const cw_filter_desc desc = filter_desc(input, volume);
+    double removed_mm3 = 0;
     cw_volume made;
-    cw_status st = cw_volume_median(&volume->view, radius, &desc, &made, err);
+    cw_status st = expect_hounsfield(input, volume, err);
+    if (st == CW_OK)
+        st = cw_volume_remove_table(&volume->view, &desc, &made, &removed_mm3, err);
     if (st != CW_OK)
-        return cwi_fail_in(err, st, "--denoise");
-    cli_note_volume(volume, "denoised by the median of %zu x %zu x %zu voxels", 2 * radius + 1,
-                    2 * radius + 1, 2 * radius + 1);
+        return cwi_fail_in(err, st, "--remove-table");
+    cli_note_volume(volume, "all but the body made air: %.4g ml above -300 HU removed",
+                    removed_mm3 / 1000);
     take_filtered(volume, &made);
     return CW_OK;
 }
@@ -100,9 +231,124 @@ cw_status cli_prepare_volume(const cli_input *input, cli_volume *volume, cw_erro
     if (input->resample.given)
         st = resample_view(input, volume, err);
     if (st == CW_OK && input->denoise.given)
-        st = input->denoise.radius ? sort_view(input, volume, err)
-                                   : smooth_view(input, volume, err);
+        st = denoise_view(input, volume, err);
+    if (st == CW_OK && input->remove_table)
+        st = remove_table(input, volume, err);
     return st;
+}
+
+static cw_status mask_view(const cli_input *input, cli_volume *volume, const cw_inside *inside,
+                           cw_error *err)
+{
+    const cw_filter_desc desc = filter_desc(input, volume);
+    const cli_input plain = {.threads = input->threads,
+                             .memory = volume->memory_left,
+                             .max_voxels = input->max_voxels,
+                             .timeout_s = input->timeout_s,
+                             .no_sandbox = input->no_sandbox,
+                             .allow_external = input->allow_external};
+    cli_volume mask;
+    cw_volume made;
+    cw_status st = cli_read_volume(input->mask, &plain, false, &mask, err);
+    if (st != CW_OK)
+        return st;
+    st = cw_volume_mask(&volume->view, &mask.view, inside, &desc, &made, err);
+    cli_free_volume(&mask);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, "--mask");
+    cli_note_volume(volume, "masked by %s", cli_shown_path(input->mask));
+    take_filtered(volume, &made);
+    return CW_OK;
+}
+
+static cw_status change_view(const cli_input *input, cli_volume *volume, bool closes,
+                             const cw_inside *inside, cw_error *err)
+{
+    const cw_filter_desc desc = filter_desc(input, volume);
+    double radius[3];
+    cw_volume made;
+    width_in_voxels(closes ? &input->mask_close : &input->mask_open, &volume->view, radius);
+    cw_status st = closes ? cw_volume_close(&volume->view, radius, inside, &desc, &made, err)
+                          : cw_volume_open(&volume->view, radius, inside, &desc, &made, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, closes ? "--mask-close" : "--mask-open");
+    cli_note_volume(volume, "%s by a ball of %.3g x %.3g x %.3g voxels",
+                    closes ? "closed" : "opened", radius[0], radius[1], radius[2]);
+    take_filtered(volume, &made);
+    return CW_OK;
+}
+
+static double voxel_count(const cw_volume *v)
+{
+    return (double)v->dim[0] * (double)v->dim[1] * (double)v->dim[2];
+}
+
+static cw_status crop_view(const cli_input *input, cli_volume *volume, const cw_inside *inside,
+                           cw_error *err)
+{
+    const cw_volume whole = volume->view;
+    cw_box box;
+    cw_status st = cw_volume_inside_box(&whole, inside, input->crop.margin, (int)input->threads,
+                                        &box, err);
+    if (st == CW_ERR_EMPTY) /* extraction says so, with the range of the values */
+        return CW_OK;
+    if (st == CW_OK)
+        st = cw_volume_crop(&whole, &box, &volume->view, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, "--crop auto");
+    cli_note_volume(volume, "cropped to voxels %zu:%zu,%zu:%zu,%zu:%zu, %.3g %% of all",
+                    box.first[0], box.first[0] + box.count[0] - 1, box.first[1],
+                    box.first[1] + box.count[1] - 1, box.first[2],
+                    box.first[2] + box.count[2] - 1,
+                    100 * voxel_count(&volume->view) / voxel_count(&whole));
+    return CW_OK;
+}
+
+cw_status cli_check_inside_options(const cli_input *input, cw_error *err)
+{
+    const char *option = input->mask               ? "--mask"
+                         : input->mask_open.given  ? "--mask-open"
+                         : input->mask_close.given ? "--mask-close"
+                         : input->crop.is_auto     ? "--crop auto"
+                                                   : NULL;
+    if (option && !input->makes_surface)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%s is for extract and check", option);
+    if ((input->mask_open.given && input->mask_open.unit == CLI_PERCENT) ||
+        (input->mask_close.given && input->mask_close.unit == CLI_PERCENT))
+        return cwi_fail(
+            err, CW_ERR_ARGUMENT, "--mask-%s takes a length such as 1vox or 0.5mm",
+            input->mask_open.given && input->mask_open.unit == CLI_PERCENT ? "open" : "close");
+    return CW_OK;
+}
+
+cw_status cli_prepare_inside(const cli_input *input, cli_volume *volume, const double *levels,
+                             size_t count, bool inside_is_low, cw_error *err)
+{
+    cw_inside inside = {.level = levels[0], .inside_is_low = inside_is_low};
+    for (size_t n = 1; n < count; n++) /* the level that has most inside */
+        inside.level =
+            inside_is_low ? fmax(inside.level, levels[n]) : fmin(inside.level, levels[n]);
+    if (count > 1 && (input->mask_open.given || input->mask_close.given))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--mask-%s takes one isovalue; there are %zu",
+                        input->mask_open.given ? "open" : "close", count);
+    cw_status st = CW_OK;
+    if (input->mask)
+        st = mask_view(input, volume, &inside, err);
+    if (st == CW_OK && input->mask_open.given)
+        st = change_view(input, volume, false, &inside, err);
+    if (st == CW_OK && input->mask_close.given)
+        st = change_view(input, volume, true, &inside, err);
+    if (st == CW_OK && input->crop.is_auto)
+        st = crop_view(input, volume, &inside, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
+}
+
+static const char *length_text(const cli_length *l)
+{
+    static char text[64];
+    snprintf(text, sizeof text, "%s%s", cli_number_text(l->value),
+             l->unit == CLI_VOXELS ? "vox" : "mm");
+    return text;
 }
 
 void cli_json_preparation(cli_json *j, const cli_input *input)
@@ -111,4 +357,14 @@ void cli_json_preparation(cli_json *j, const cli_input *input)
         cli_json_text(j, "resample", cli_resample_text(&input->resample));
     if (input->denoise.given)
         cli_json_text(j, "denoise", cli_denoise_text(&input->denoise));
+    if (input->remove_table)
+        cli_json_bool(j, "remove_table", true);
+    if (input->mask)
+        cli_json_text(j, "mask", cli_shown_path(input->mask));
+    if (input->mask_open.given)
+        cli_json_text(j, "mask_open", length_text(&input->mask_open));
+    if (input->mask_close.given)
+        cli_json_text(j, "mask_close", length_text(&input->mask_close));
+    if (input->crop.is_auto)
+        cli_json_count(j, "crop_auto", input->crop.margin);
 }

@@ -13,6 +13,18 @@ const char *cli_find_preparation(const cli_input *input);
 CW_NODISCARD cw_status cli_prepare_volume(const cli_input *input, cli_volume *volume,
                                           cw_error *err);
 
+/* Changes what is inside, as --mask, --mask-open and --mask-close say, and crops the view as --crop auto
+ * does: after cli_prepare_volume(), once the isovalues are known.
+ * levels   isovalues, at least one
+ * Returns  CW_ERR_ARGUMENT for several isovalues where one is expected; as the filters. Errors name
+ *          the file */
+CW_NODISCARD cw_status cli_prepare_inside(const cli_input *input, cli_volume *volume,
+                                          const double *levels, size_t count,
+                                          bool inside_is_low, cw_error *err);
+
+/* Fails for these options in a command that makes no surface, or without a unit that they take. */
+CW_NODISCARD cw_status cli_check_inside_options(const cli_input *input, cw_error *err);
+
 /* Writes the options as text, such as "median:1", into reports: those that were given. */
 void cli_json_preparation(cli_json *j, const cli_input *input);
 

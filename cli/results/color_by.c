@@ -64,7 +64,7 @@ static cw_status read_colors(cli_coloring *c, const char *path, const cli_input 
         wanted = *input;
         wanted.array = name;
         wanted.crop.given = wanted.resample.given = wanted.denoise.given = false;
-        wanted.preview = wanted.may_stream = false;
+        wanted.preview = wanted.may_stream = wanted.remove_table = false;
         wanted.coarsen = 0;
         wanted.step = step;
         wanted.step_chosen = true;

@@ -10,6 +10,7 @@
 #include <cubewright/mesh.h>
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Moves element v of each array to number[v], if it has one; numbers are rising. */
@@ -286,6 +287,61 @@ cw_status cw_mesh_drop_volumes(cw_mesh *mesh, double least_mm3, cw_drop_counts *
     if (st == CW_OK && !(least_mm3 >= 0))
         st = cwi_fail(err, CW_ERR_ARGUMENT, "least_mm3 is %g; it must be 0 or more", least_mm3);
     return st == CW_OK ? drop_smaller(mesh, least_mm3, true, counts ? counts : &own, err) : st;
+}
+
+/* A component and its volume. */
+typedef struct ranked_set {
+    cwi_volume_sum volume;
+    size_t set;
+} ranked_set;
+
+/* Larger volumes come first, and of equal ones that with the first vertex. */
+static int compare_ranks(const void *a, const void *b)
+{
+    const ranked_set *x = a, *y = b;
+    return x->volume != y->volume ? (x->volume < y->volume ? 1 : -1)
+                                  : (x->set > y->set) - (x->set < y->set);
+}
+
+/* Marks all components but the largest. */
+static cw_status mark_smaller(const cw_mesh *mesh, components *c, size_t kept, cw_error *err)
+{
+    size_t count = 0;
+    ranked_set *ranks = cwi_alloc_array(c->count, sizeof *ranks);
+    if (!ranks)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to sort %zu components", c->count);
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
+        const uint32_t set = c->set[mesh->triangles[3 * t]];
+        if (!c->dropped[set])
+            ranks[count++] = (ranked_set){c->sums[set], set};
+        c->dropped[set] = true;
+    }
+    qsort(ranks, count, sizeof *ranks, compare_ranks);
+    for (size_t n = 0; n < count && n < kept; n++)
+        c->dropped[ranks[n].set] = false;
+    cwi_free(ranks);
+    return CW_OK;
+}
+
+cw_status cw_mesh_keep_largest(cw_mesh *mesh, size_t count, cw_drop_counts *counts,
+                               cw_error *err)
+{
+    CWI_REQUIRE(err, mesh);
+    components c = {0};
+    cw_drop_counts own;
+    cw_status st = cw_mesh_check(mesh, err);
+    if (st == CW_OK && count < 1)
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "count is 0; 1 or more was expected");
+    if (st == CW_OK)
+        st = find_components(mesh, &c, err);
+    if (st == CW_OK)
+        st = measure_volumes(mesh, &c, err);
+    if (st == CW_OK)
+        st = mark_smaller(mesh, &c, count, err);
+    if (st == CW_OK)
+        drop_components(mesh, &c, counts ? counts : &own);
+    free_components(&c);
+    return st;
 }
 
 cw_status cw_mesh_drop_distant(cw_mesh *mesh, const float *distance_mm, double limit_mm,

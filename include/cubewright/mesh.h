@@ -94,6 +94,16 @@ typedef struct cw_drop_counts {
 CW_NODISCARD CW_API cw_status cw_mesh_drop_volumes(cw_mesh *mesh, double least_mm3,
                                                    cw_drop_counts *counts, cw_error *err);
 
+/* Leaves out all components but those that enclose the largest volumes, and then vertices that no
+ * triangle names. Components count as in cw_mesh_drop_volumes(): a cavity is smaller than its solid,
+ * and by itself. Of equal ones the first in the mesh stays.
+ * mesh     in place, as in cw_mesh_weld()
+ * count    of components to keep, 1 or more
+ * counts   as in cw_mesh_drop_volumes(); may be NULL
+ * Returns  CW_ERR_ARGUMENT  count is 0, or as cw_mesh_check(); CW_ERR_NO_MEMORY */
+CW_NODISCARD CW_API cw_status cw_mesh_keep_largest(cw_mesh *mesh, size_t count,
+                                                   cw_drop_counts *counts, cw_error *err);
+
 /* Leaves out components none of whose vertices is within a distance of something else, and then
  * vertices that no triangle names.
  *

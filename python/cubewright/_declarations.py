@@ -1286,6 +1286,17 @@ cw_filter_desc._fields_ = [
 ]
 
 
+class cw_inside(Structure):
+    level: float
+    inside_is_low: bool
+
+
+cw_inside._fields_ = [
+    ("level", c_double),
+    ("inside_is_low", c_bool),
+]
+
+
 class cw_code(Structure):
     scheme: Any
     value: Any
@@ -2553,6 +2564,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_mesh_weld": (c_int, [POINTER(cw_mesh), POINTER(c_size_t), POINTER(cw_error)]),
     "cw_mesh_drop_components": (c_int, [POINTER(cw_mesh), c_double, POINTER(c_size_t), POINTER(c_size_t), POINTER(cw_error)]),
     "cw_mesh_drop_volumes": (c_int, [POINTER(cw_mesh), c_double, POINTER(cw_drop_counts), POINTER(cw_error)]),
+    "cw_mesh_keep_largest": (c_int, [POINTER(cw_mesh), c_size_t, POINTER(cw_drop_counts), POINTER(cw_error)]),
     "cw_mesh_drop_distant": (c_int, [POINTER(cw_mesh), POINTER(c_float), c_double, POINTER(cw_drop_counts), POINTER(c_double), POINTER(cw_error)]),
     "cw_type_size": (c_size_t, [c_int]),
     "cw_type_name": (c_char_p, [c_int]),
@@ -2636,7 +2648,16 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_kernel_name": (c_char_p, [c_int]),
     "cw_volume_gauss": (c_int, [POINTER(cw_volume), POINTER(c_double), POINTER(cw_filter_desc), POINTER(cw_volume), POINTER(cw_error)]),
     "cw_volume_median": (c_int, [POINTER(cw_volume), c_size_t, POINTER(cw_filter_desc), POINTER(cw_volume), POINTER(cw_error)]),
+    "cw_volume_noise": (c_int, [POINTER(cw_volume), c_int, POINTER(c_double), POINTER(cw_error)]),
+    "cw_volume_bilateral": (c_int, [POINTER(cw_volume), POINTER(c_double), c_double, POINTER(cw_filter_desc), POINTER(cw_volume), POINTER(cw_error)]),
+    "cw_volume_aniso": (c_int, [POINTER(cw_volume), c_size_t, c_double, POINTER(cw_filter_desc), POINTER(cw_volume), POINTER(cw_error)]),
+    "cw_volume_nlm": (c_int, [POINTER(cw_volume), c_double, c_size_t, POINTER(cw_filter_desc), POINTER(cw_volume), POINTER(cw_error)]),
     "cw_volume_resample": (c_int, [POINTER(cw_volume), POINTER(c_double), c_int, POINTER(cw_filter_desc), POINTER(cw_volume), POINTER(cw_error)]),
+    "cw_volume_mask": (c_int, [POINTER(cw_volume), POINTER(cw_volume), POINTER(cw_inside), POINTER(cw_filter_desc), POINTER(cw_volume), POINTER(cw_error)]),
+    "cw_volume_open": (c_int, [POINTER(cw_volume), POINTER(c_double), POINTER(cw_inside), POINTER(cw_filter_desc), POINTER(cw_volume), POINTER(cw_error)]),
+    "cw_volume_close": (c_int, [POINTER(cw_volume), POINTER(c_double), POINTER(cw_inside), POINTER(cw_filter_desc), POINTER(cw_volume), POINTER(cw_error)]),
+    "cw_volume_inside_box": (c_int, [POINTER(cw_volume), POINTER(cw_inside), c_size_t, c_int, POINTER(cw_box), POINTER(cw_error)]),
+    "cw_volume_remove_table": (c_int, [POINTER(cw_volume), POINTER(cw_filter_desc), POINTER(cw_volume), POINTER(c_double), POINTER(cw_error)]),
     "cw_label_table_free": (None, [POINTER(cw_label_table)]),
     "cw_label_find": (POINTER(cw_label), [POINTER(cw_label_table), c_uint32, c_uint32]),
     "cw_label_find_name": (POINTER(cw_label), [POINTER(cw_label_table), c_char_p]),

@@ -73,6 +73,8 @@ KEYWORDS = {
     "plate_mm": "plate",
     "sigma_voxels[": "sigma[",
     "spacing_mm[": "spacing[",
+    "radius_voxels[": "radius[",
+    "inside->level": "level",
 }
 
 

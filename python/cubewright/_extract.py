@@ -43,6 +43,7 @@ def extract(
     snap: float = 0.0,
     normals: str = "field",
     min_volume: float = 0.0,
+    largest: int = 0,
     fill_voids: bool = False,
     simplify: int | float | None = None,
     component: int = 0,
@@ -66,6 +67,7 @@ def extract(
     snap        up to 0.5: merge vertices closer to a sample than this fraction of an edge
     normals     'field' for the gradient's, or 'none'
     min_volume  leave out components that enclose less, in cubic millimetres
+    largest     number of components to keep, those that enclose the most; 0: all
     fill_voids  leave out the cavities of solids, and all inside them
     simplify    a float: error limit in mm; an int: triangle count. See simplify()
     component, step  of volumes with several, from 0
@@ -98,11 +100,14 @@ def extract_by(function: Callable[..., int], place: Any, source: Volume, **optio
         progress=reporter.struct,
     )
     least = take_length("min_volume", options["min_volume"])
+    largest = take_count("largest", options["largest"])
     fills = take_flag("fill_voids", options["fill_voids"])
     mesh = Mesh._from_c(c.cw_mesh())
     reporter.call(function, place, byref(desc), byref(mesh._struct), None)
     if least > 0:
         call(lib.cw_mesh_drop_volumes, byref(mesh._struct), least, None)
+    if largest > 0:
+        call(lib.cw_mesh_keep_largest, byref(mesh._struct), largest, None)
     if fills:
         call(lib.cw_mesh_fill_voids, byref(mesh._struct), take_threads(options["threads"]), None)
     target = options["simplify"]
@@ -137,6 +142,7 @@ class Extractor:
         snap: float = 0.0,
         normals: str = "field",
         min_volume: float = 0.0,
+        largest: int = 0,
         fill_voids: bool = False,
         simplify: int | float | None = None,
         max_triangles: int = 0,

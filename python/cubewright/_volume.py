@@ -14,7 +14,7 @@ from . import _declarations as c
 from ._errors import call
 from ._library import lib
 from ._memory import Owner, lend_array
-from ._options import take_count, take_flag, take_number, take_numbers, take_threads
+from ._options import take_choice, take_count, take_flag, take_number, take_numbers, take_threads
 
 TYPES: dict[str, int] = {
     "u1": c.cw_type.CW_U8,
@@ -288,6 +288,113 @@ class Volume:
         """
         return self._filter(lib.cw_volume_median, take_count("radius", radius, 1, 3), threads=threads)
 
+    def bilateral(
+        self, sigma: float | Sequence[float] = 1, sigma_value: float = 0, *, threads: int = 0
+    ) -> Volume:
+        """Smooths the first component and step, and keeps edges: similar values weigh more.
+
+        sigma        standard deviation in voxels: of all axes, or of x, y and z; up to 4
+        sigma_value  standard deviation of values; 0: 2.5 times the noise
+        Raises       Error: UNSUPPORTED for grids that are not even
+        """
+        widths = (c_double * 3)(*take_axes("sigma", sigma))
+        value = take_number("sigma_value", sigma_value)
+        return self._filter(lib.cw_volume_bilateral, widths, value, threads=threads)
+
+    def anisotropic(self, steps: int = 10, contrast: float = 0, *, threads: int = 0) -> Volume:
+        """Smooths the first component and step by diffusion along edges and not across.
+
+        steps     1 to 100
+        contrast  edges are steeper, in values a voxel; 0: half of the noise
+        Raises    Error: UNSUPPORTED for grids that are not even
+        """
+        count, value = take_count("steps", steps, 1, 100), take_number("contrast", contrast)
+        return self._filter(lib.cw_volume_aniso, count, value, threads=threads)
+
+    def nlm(self, noise: float = 0, radius: int = 3, *, threads: int = 0) -> Volume:
+        """Smooths the first component and step by non-local means: of voxels with similar surroundings.
+
+        noise   standard deviation of the noise; 0: as noise() estimates it
+        radius  of the cube of voxels that are compared, 1 to 5
+        Raises  Error: UNSUPPORTED for grids that are not even
+        """
+        value, count = take_number("noise", noise), take_count("radius", radius, 1, 5)
+        return self._filter(lib.cw_volume_nlm, value, count, threads=threads)
+
+    def noise(self, *, threads: int = 0) -> float:
+        """Returns the estimated standard deviation of the noise of the first component and step.
+
+        Raises  Error: UNSUPPORTED for grids that are not even
+        """
+        out = c_double()
+        call(lib.cw_volume_noise, byref(self._struct), take_threads(threads), byref(out))
+        return out.value
+
+    def remove_table(self, *, threads: int = 0) -> Volume:
+        """Removes the table of a CT in Hounsfield units, and what else lies beside the body.
+
+        Raises  Error: EMPTY if nothing above -300 HU is thicker than 10 mm, UNSUPPORTED for grids
+                that are not even
+        """
+        out, removed = Owner(c.cw_volume(), lib.cw_volume_free), c_double()
+        desc = c.cw_filter_desc(threads=take_threads(threads))
+        call(lib.cw_volume_remove_table, byref(self._struct), byref(desc), byref(out.struct), byref(removed))
+        return Volume._from_c(out)
+
+    def mask(self, mask: Any, level: float, inside: str = "above", *, threads: int = 0) -> Volume:
+        """Makes voxels outside where a mask is 0; they become their mirror image at the level.
+
+        mask    a Volume in any grid, or an array of shape (z, y, x) with voxels of 1 mm
+        inside  'above' or 'below' the level
+        Raises  Error: UNSUPPORTED for grids that are not even
+        """
+        other = take_volume(mask)
+        return self._filter(
+            lib.cw_volume_mask, byref(other._struct), byref(place_inside(level, inside)), threads=threads
+        )
+
+    def open(
+        self, radius: float | Sequence[float], level: float, inside: str = "above", *, threads: int = 0
+    ) -> Volume:
+        """Removes from the inside what a ball does not fit into, such as thin bridges.
+
+        radius  in voxels: of all axes, or of x, y and z; 0 to 250
+        inside  'above' or 'below' the level
+        Raises  Error: UNSUPPORTED for grids that are not even
+        """
+        radii = (c_double * 3)(*take_axes("radius", radius))
+        return self._filter(lib.cw_volume_open, radii, byref(place_inside(level, inside)), threads=threads)
+
+    def close(
+        self, radius: float | Sequence[float], level: float, inside: str = "above", *, threads: int = 0
+    ) -> Volume:
+        """Fills of the outside what a ball does not fit into, such as cracks and pores.
+
+        radius  in voxels: of all axes, or of x, y and z; 0 to 250
+        inside  'above' or 'below' the level
+        Raises  Error: UNSUPPORTED for grids that are not even
+        """
+        radii = (c_double * 3)(*take_axes("radius", radius))
+        return self._filter(lib.cw_volume_close, radii, byref(place_inside(level, inside)), threads=threads)
+
+    def crop_to(
+        self, level: float, inside: str = "above", margin: int = 2, *, threads: int = 0
+    ) -> Volume:
+        """Returns a view of the box around what is inside, in the same place of the world.
+
+        inside  'above' or 'below' the level
+        margin  voxels to add at each side, as far as there are any
+        Raises  Error: EMPTY if nothing is inside, UNSUPPORTED for irregular and sparse grids
+        """
+        box, count = c.cw_box(), take_count("margin", margin)
+        out = Owner(c.cw_volume(), lib.cw_volume_free)
+        values = place_inside(level, inside)
+        call(lib.cw_volume_inside_box, byref(self._resolved), byref(values), count, take_threads(threads), byref(box))
+        call(lib.cw_volume_crop, byref(self._resolved), byref(box), byref(out.struct))
+        view = Volume._from_c(out)
+        view._owner = (out, self)  # whose memory it shows
+        return view
+
     def resample(
         self, spacing: float | Sequence[float], kernel: str = "linear", *, threads: int = 0
     ) -> Volume:
@@ -328,6 +435,11 @@ class Volume:
         more = f", {self.components} components" if self.components > 1 else ""
         more += f", {self.steps} steps" if self.steps > 1 else ""
         return f"<cubewright.Volume (z, y, x) {self.shape} {self.dtype}{more}, {spacing} mm, {self.kind}>"
+
+
+def place_inside(level: float, inside: str) -> c.cw_inside:
+    low = take_choice("inside", inside, ("above", "below")) == 1
+    return c.cw_inside(level=take_number("level", level), inside_is_low=low)
 
 
 def take_axes(name: str, value: Any) -> list[float]:

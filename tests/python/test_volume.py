@@ -25,6 +25,44 @@ class Filters(Case):
         self.assertEqual(np.count_nonzero(smooth), 9)
         self.assertAlmostEqual(float(smooth.sum()), 1000, places=2)
 
+    def test_filters_that_keep_edges_take_noise(self):
+        noise = np.random.default_rng(1).standard_normal((24, 26, 28)).astype("f4") * 10
+        wall = np.where(np.arange(28) >= 14, 1000, 0).astype("f4")
+        volume = cw.Volume(noise + wall)
+        self.assertAlmostEqual(volume.noise(), 10, delta=1.5)
+        for made in (volume.bilateral(), volume.anisotropic(), volume.nlm(), volume.nlm(10, 2, threads=1)):
+            self.assertLess(float(np.std(made.array - wall)), 6)
+            self.assertGreater(float(made.array[:, :, 14].min()), 900)
+
+    def test_tables_go(self):
+        z, y, x = np.mgrid[:20, :40, :60]
+        scan = np.where(np.hypot((x - 30) / 20, (y - 18) / 12) < 1, 40, -1000).astype("i2")
+        body = scan.copy()
+        scan[:, 36:38] = 100
+        made = cw.Volume(scan, spacing=(3, 3, 3)).remove_table()
+        self.assertTrue((made.array == body).all())
+        with self.assertRaisesRegex(cw.Error, "nothing above -300 HU"):
+            cw.Volume(scan - 2000).remove_table()
+
+    def test_what_is_inside_is_changed(self):
+        ball = make_ball()
+        volume = cw.Volume(ball)
+        half = np.zeros(ball.shape, "u1")
+        half[: ball.shape[0] // 2] = 1
+        cut = volume.mask(half, 0).array
+        self.assertFalse((cut[ball.shape[0] // 2 :] >= 0).any())
+        self.assertTrue((cut[: ball.shape[0] // 2] == ball[: ball.shape[0] // 2]).all())
+        self.assertFalse((volume.open(100, 0).array >= 0).any())
+        self.assertGreaterEqual((volume.close(3, 0).array >= 0).sum(), (ball >= 0).sum())
+        part = volume.crop_to(0, margin=1)
+        self.assertLess(part.array.size, ball.size)
+        whole, mesh = cw.extract(volume, 0), cw.extract(part, 0, largest=1)
+        self.assertEqual(len(mesh.triangles), len(whole.triangles))
+        with self.assertRaisesRegex(cw.Error, r"^radius.0. is 999; 0 to 250"):
+            volume.open(999, 0)
+        with self.assertRaisesRegex(cw.Error, "no voxel is at or above 1e"):
+            volume.crop_to(1e9)
+
     def test_slopes_stay_when_voxels_become_smaller(self):
         voxels = np.arange(20, dtype="f8") + np.zeros((4, 5, 1))
         for kernel in ("linear", "cubic"):

@@ -1,4 +1,5 @@
 /* Filters of volumes, held against sums and sorts over whole cubes of voxels. */
+#include "support/noise_volume.h"
 #include "support/support.h"
 
 #include "core/volume/volume.h"
@@ -6,48 +7,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const cw_type types[] = {CW_U8, CW_I8, CW_U16, CW_I16, CW_U32, CW_I32, CW_F32, CW_F64};
-
-enum { TYPES = sizeof types / sizeof *types };
-
-/* Numbers of a type. With gaps every ninth has no value: no data, and of floats not a number. */
-static cw_volume make_noise(cw_type type, const size_t dim[3], bool gaps)
-{
-    cw_volume v;
-    cw_error err = {0};
-    assert_ok(cw_volume_alloc(&v, type, dim, 1, 1, &err), err);
-    char *p = cw_volume_voxels(&v);
-    const bool is_float = type == CW_F32 || type == CW_F64;
-    const int low = type == CW_I8 || type == CW_I16 || type == CW_I32 ? -100 : 0;
-    v.has_nodata = gaps;
-    v.nodata = 7;
-    for (size_t n = 0; n < dim[0] * dim[1] * dim[2]; n++, p += cw_type_size(type)) {
-        const double x = low + rand() % 120 + (is_float ? 0.25 : 0);
-        const bool gap = gaps && rand() % 9 == 0;
-        cwi_voxel_put(type, p, !gap ? (x == 7 ? 8 : x) : is_float && n % 2 ? (double)NAN : 7);
-    }
-    v.affine[0][0] = 0.5;
-    v.affine[1][1] = 2;
-    v.affine[2][2] = 0.75;
-    v.affine[0][3] = -11;
-    return v;
-}
-
-static double stored_at(const cw_volume *v, size_t i, size_t j, size_t k)
-{
-    return cwi_voxel_at(v->type, cwi_voxel_address(v, i, j, k));
-}
-
-static bool is_gap(const cw_volume *v, double x)
-{
-    return !isfinite(x) || (v->has_nodata && x == v->nodata);
-}
-
-static size_t clamp_index(long n, size_t count)
-{
-    return n < 0 ? 0 : n < (long)count ? (size_t)n : count - 1;
-}
 
 /* --- Gaussian -------------------------------------------------------------------------- */
 
@@ -101,9 +60,11 @@ static void gauss_is_the_mean_around(void **state)
     (void)state;
     const double sigmas[][3] = {{0.7, 0.7, 0.7}, {0, 1.3, 0.4}, {0, 0, 0}, {2, 0, 5}};
     srand(test_seed(3));
-    for (size_t n = 0; n < TYPES * 4; n++) {
+    for (size_t n = 0; n < NOISE_TYPES * 4; n++) {
         const double *sigma = sigmas[(n / 2) % 4];
-        cw_volume v = make_noise(types[n % TYPES], (size_t[]){7, 5, 6}, n % 3 == 0), out;
+        cw_volume v = make_noise_volume(noise_types[n % NOISE_TYPES], (size_t[]){7, 5, 6},
+                                        n % 3 == 0),
+                  out;
         cw_error err = {0};
         assert_ok(cw_volume_gauss(&v, sigma, NULL, &out, &err), err);
         assert_int_equal(out.type, v.type);
@@ -143,9 +104,11 @@ static void median_is_in_the_middle(void **state)
 {
     (void)state;
     srand(test_seed(4));
-    for (size_t n = 0; n < 3 * TYPES; n++) {
-        const size_t radius = 1 + n / TYPES;
-        cw_volume v = make_noise(types[n % TYPES], (size_t[]){19, 4, 5}, n % 2 == 1), out;
+    for (size_t n = 0; n < 3 * NOISE_TYPES; n++) {
+        const size_t radius = 1 + n / NOISE_TYPES;
+        cw_volume v = make_noise_volume(noise_types[n % NOISE_TYPES], (size_t[]){19, 4, 5},
+                                        n % 2 == 1),
+                  out;
         cw_error err = {0};
         assert_ok(cw_volume_median(&v, radius, NULL, &out, &err), err);
         for (size_t k = 0; k < v.dim[2]; k++)
@@ -168,7 +131,7 @@ static void median_is_in_the_middle(void **state)
 /* A field that is linear in the world, with scaled integers or floats. */
 static cw_volume make_slope(cw_type type, const size_t dim[3])
 {
-    cw_volume v = make_noise(type, dim, false);
+    cw_volume v = make_noise_volume(type, dim, false);
     char *p = cw_volume_voxels(&v);
     v.slope = 0.001;
     for (size_t n = 0; n < dim[0] * dim[1] * dim[2]; n++, p += cw_type_size(type)) {
@@ -223,8 +186,8 @@ static void the_same_spacing_is_the_same_volume(void **state)
     (void)state;
     srand(test_seed(5));
     for (int kernel = 0; kernel < CW_KERNEL_COUNT; kernel++)
-        for (size_t n = 0; n < TYPES; n++) {
-            cw_volume v = make_noise(types[n], (size_t[]){6, 7, 1}, true), out;
+        for (size_t n = 0; n < NOISE_TYPES; n++) {
+            cw_volume v = make_noise_volume(noise_types[n], (size_t[]){6, 7, 1}, true), out;
             const double same[3] = {0.5, 0, 0.75};
             cw_error err = {0};
             assert_ok(cw_volume_resample(&v, same, (cw_kernel)kernel, NULL, &out, &err), err);
@@ -262,7 +225,7 @@ static void stripes_fade(void **state)
 static void rectilinear_grids_become_even(void **state)
 {
     (void)state;
-    cw_volume v = make_noise(CW_F64, (size_t[]){5, 3, 4}, false), out;
+    cw_volume v = make_noise_volume(CW_F64, (size_t[]){5, 3, 4}, false), out;
     const double x[] = {0, 1, 3, 3.5, 6}, y[] = {-1, 0, 2}, z[] = {2, 3, 4, 9};
     double *p = cw_volume_voxels(&v);
     cw_error err = {0};
@@ -298,7 +261,7 @@ static void results_do_not_depend_on_threads(void **state)
 {
     (void)state;
     srand(test_seed(6));
-    cw_volume v = make_noise(CW_F32, (size_t[]){40, 30, 70}, true);
+    cw_volume v = make_noise_volume(CW_F32, (size_t[]){40, 30, 70}, true);
     for (int filter = 0; filter < 3; filter++) {
         cw_volume out[2];
         for (int n = 0; n < 2; n++) {
@@ -331,7 +294,7 @@ static bool refuse_progress(void *user, const char *step, double share)
 static void bad_arguments_are_named(void **state)
 {
     (void)state;
-    cw_volume v = make_noise(CW_U8, (size_t[]){9, 9, 9}, false), out;
+    cw_volume v = make_noise_volume(CW_U8, (size_t[]){9, 9, 9}, false), out;
     const double one[3] = {1, 1, 1};
     cw_error err = {0};
 #define FAILS(call, status, words)                                                             \

@@ -242,6 +242,41 @@ static void components_that_are_far_away_go(void **state)
     }
 }
 
+static void the_largest_components_stay(void **state)
+{
+    (void)state;
+    for (size_t count = 1; count < 5; count++) {
+        cw_mesh mesh;
+        cw_drop_counts counts;
+        cw_error err = {0};
+        make_three(&mesh);
+        assert_ok(cw_mesh_keep_largest(&mesh, count, count % 2 ? &counts : NULL, &err), err);
+        assert_int_equal(mesh.triangle_count, count == 1 ? 12 : count == 2 ? 24 : 25);
+        assert_int_equal(mesh.vertex_count, count == 1 ? 8 : count == 2 ? 16 : 19);
+        assert_true(mesh.positions[0] >= 10 || count > 1);
+        if (count == 1) {
+            assert_int_equal(counts.kept, 1);
+            assert_int_equal(counts.dropped, 2);
+            assert_within(counts.least_kept_mm3, 27, 1e-5);
+            assert_within(counts.largest_mm3, 1, 1e-5);
+        }
+        cw_mesh_free(&mesh);
+    }
+    cw_mesh mesh;
+    cw_error err = {0};
+    make_three(&mesh);
+    assert_fails(cw_mesh_keep_largest(&mesh, 0, NULL, &err), CW_ERR_ARGUMENT, "count is 0",
+                 err);
+    for (long n = 0; n < 6; n++) {
+        cwi_alloc_fail_after(n);
+        const cw_status st = cw_mesh_keep_largest(&mesh, 2, NULL, &err);
+        cwi_alloc_fail_after(-1);
+        assert_int_equal(st, CW_ERR_NO_MEMORY);
+        assert_int_equal(mesh.triangle_count, 25);
+    }
+    cw_mesh_free(&mesh);
+}
+
 /* Turns the triangles of a mesh into any order. */
 static void shuffle_triangles(cw_mesh *mesh, unsigned *seed)
 {
@@ -362,6 +397,7 @@ int main(void)
         cmocka_unit_test(small_cavities_are_filled),
         cmocka_unit_test(open_components_count_up_to_their_middle),
         cmocka_unit_test(components_that_are_far_away_go),
+        cmocka_unit_test(the_largest_components_stay),
         cmocka_unit_test(volumes_do_not_depend_on_the_order),
         cmocka_unit_test(failures_leave_the_mesh_as_it_was),
         cmocka_unit_test(copies_have_arrays_of_their_own),

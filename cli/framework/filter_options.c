@@ -1,0 +1,172 @@
+/* Parses and prints how volumes are filtered: other distances between voxels, and less noise; and
+ * how surfaces are smoothed. */
+#include "cli/framework/filter_options.h"
+
+#include "cli/framework/quantity.h"
+#include "core/base/text.h"
+
+#include <cubewright/filter.h>
+#include <cubewright/smooth.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static bool parse_kernel(const char *text, int *kernel)
+{
+    for (*kernel = 0; *kernel < CW_KERNEL_COUNT; ++*kernel)
+        if (strcmp(text, cw_kernel_name((cw_kernel)*kernel)) == 0)
+            return true;
+    return false;
+}
+
+bool cli_parse_resample(const char *text, cli_resample *out)
+{
+    char lengths[128];
+    cli_lengths mm;
+    const char *colon = strchr(text, ':');
+    const size_t size = colon ? (size_t)(colon - text) : strlen(text);
+    *out = (cli_resample){.given = size < sizeof lengths};
+    if (!out->given)
+        return false;
+    memcpy(lengths, text, size);
+    lengths[size] = '\0';
+    out->iso = strcmp(lengths, "iso") == 0;
+    out->given = out->iso || cli_parse_lengths(lengths, &mm);
+    for (int a = 0; a < 3 && out->given && !out->iso; a++)
+        out->mm[a] = mm.mm[a];
+    return out->given = out->given && (!colon || parse_kernel(colon + 1, &out->kernel));
+}
+
+enum { DEFAULT_STEPS = 10, MOST_STEPS = 100, MOST_RADIUS = 3 };
+
+/* Each field of a filter follows the one before after a colon. */
+enum { FIELDS = 3, FIELD_BYTES = 64 };
+
+static int split_fields(const char *text, char fields[FIELDS][FIELD_BYTES])
+{
+    for (int n = 0; n < FIELDS; n++) {
+        const size_t length = strcspn(text, ":");
+        if (length == 0 || length >= FIELD_BYTES)
+            return 0;
+        memcpy(fields[n], text, length);
+        fields[n][length] = '\0';
+        if (text[length] == '\0')
+            return n + 1;
+        text += length + 1;
+    }
+    return 0;
+}
+
+static bool parse_width(const char *text, cli_length *out)
+{
+    return cli_parse_length(text, out) && out->unit != CLI_PERCENT;
+}
+
+static bool parse_value(const char *text, double *out)
+{
+    return cwi_parse_double(&text, out) && *text == '\0' && isfinite(*out) && *out > 0;
+}
+
+bool cli_parse_denoise(const char *text, cli_denoise *out)
+{
+    char f[FIELDS][FIELD_BYTES];
+    const int count = split_fields(text, f);
+    *out = (cli_denoise){0};
+    if (count == 2 && strcmp(f[0], "gauss") == 0) {
+        out->filter = CLI_GAUSS;
+        return out->given = parse_width(f[1], &out->width);
+    }
+    if (count == 2 && strcmp(f[0], "median") == 0) {
+        out->filter = CLI_MEDIAN;
+        return out->given = cli_parse_count(f[1], 1000, &out->count) && out->count >= 1 &&
+                            out->count <= MOST_RADIUS;
+    }
+    if (count >= 2 && strcmp(f[0], "bilateral") == 0) {
+        out->filter = CLI_BILATERAL;
+        return out->given = parse_width(f[1], &out->width) &&
+                            (count < 3 || parse_value(f[2], &out->value));
+    }
+    if (count >= 1 && strcmp(f[0], "aniso") == 0) {
+        out->filter = CLI_ANISO;
+        out->count = DEFAULT_STEPS;
+        return out->given = (count < 2 || (cli_parse_count(f[1], 1000, &out->count) &&
+                                           out->count >= 1 && out->count <= MOST_STEPS)) &&
+                            (count < 3 || parse_value(f[2], &out->value));
+    }
+    out->filter = CLI_NLM;
+    return out->given = count >= 1 && count <= 2 && strcmp(f[0], "nlm") == 0 &&
+                        (count < 2 || parse_value(f[1], &out->value));
+}
+
+const char *cli_resample_text(const cli_resample *r)
+{
+    static char text[128];
+    const char *kernel = cw_kernel_name((cw_kernel)r->kernel);
+    if (r->iso)
+        snprintf(text, sizeof text, "iso:%s", kernel);
+    else
+        snprintf(text, sizeof text, "%sx%sx%smm:%s", cli_number_text(r->mm[0]),
+                 cli_number_text(r->mm[1]), cli_number_text(r->mm[2]), kernel);
+    return text;
+}
+
+const char *cli_denoise_text(const cli_denoise *d)
+{
+    static char text[128];
+    const char *value = d->value > 0 ? cli_number_text(d->value) : "",
+               *colon = d->value > 0 ? ":" : "",
+               *unit = d->width.unit == CLI_VOXELS ? "vox" : "mm";
+    switch (d->filter) {
+    case CLI_GAUSS:
+        snprintf(text, sizeof text, "gauss:%s%s", cli_number_text(d->width.value), unit);
+        break;
+    case CLI_MEDIAN:
+        snprintf(text, sizeof text, "median:%zu", d->count);
+        break;
+    case CLI_BILATERAL:
+        snprintf(text, sizeof text, "bilateral:%s%s%s%s", cli_number_text(d->width.value), unit,
+                 colon, value);
+        break;
+    case CLI_ANISO:
+        snprintf(text, sizeof text, "aniso:%zu%s%s", d->count, colon, value);
+        break;
+    case CLI_NLM:
+        snprintf(text, sizeof text, "nlm%s%s", colon, value);
+        break;
+    }
+    return text;
+}
+
+bool cli_parse_smoothing(const char *text, cli_smoothing *out)
+{
+    *out = (cli_smoothing){0};
+    for (int m = 0; m < CW_SMOOTH_METHOD_COUNT && !out->given; m++) {
+        const char *name = cw_smooth_method_name((cw_smooth_method)m);
+        const char *rest = text + strlen(name);
+        out->given = strncmp(text, name, strlen(name)) == 0 && (*rest == '\0' || *rest == ':');
+        out->method = m;
+        if (!out->given || *rest == '\0')
+            continue;
+        out->given = m == CW_SMOOTH_FAIR ? cli_parse_length(rest + 1, &out->width)
+                                         : cli_parse_count(rest + 1, 1000, &out->iterations) &&
+                                               out->iterations >= 1 &&
+                                               out->iterations <= CW_SMOOTH_MAX_ITERATIONS;
+    }
+    return out->given;
+}
+
+const char *cli_smoothing_text(const cli_smoothing *s)
+{
+    static char text[64];
+    static const char *const units[] = {"mm", "%", "vox"};
+    const char *method = cw_smooth_method_name((cw_smooth_method)s->method);
+    if (s->iterations)
+        snprintf(text, sizeof text, "%s:%zu", method, s->iterations);
+    else if (s->width.given)
+        snprintf(text, sizeof text, "%s:%s%s", method, cli_number_text(s->width.value),
+                 units[s->width.unit]);
+    else
+        snprintf(text, sizeof text, "%s", method);
+    return text;
+}
