@@ -51,7 +51,7 @@ CW_NODISCARD CW_API cw_status cw_volume_gauss(const cw_volume *volume,
  * desc     borrowed; NULL means all defaults
  * out      set to a volume that owns its voxels; free with cw_volume_free()
  * Returns  as cw_volume_gauss()
- * Cost     about 150 comparisons a voxel for radius 1, thousands for 3
+ * Cost     about 150 comparisons a voxel for radius 1; 50 bits that change for 2, 98 for 3
  * Source   medians from the extremes that cannot be one, after [Smith1996] */
 CW_NODISCARD CW_API cw_status cw_volume_median(const cw_volume *volume, size_t radius,
                                                const cw_filter_desc *desc, cw_volume *out,
