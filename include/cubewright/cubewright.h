@@ -19,6 +19,7 @@
 #include <cubewright/picture.h>
 #include <cubewright/quality.h>
 #include <cubewright/render.h>
+#include <cubewright/repair.h>
 #include <cubewright/simplify.h>
 #include <cubewright/smooth.h>
 #include <cubewright/spool.h>
