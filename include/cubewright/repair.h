@@ -20,7 +20,6 @@ typedef struct cw_repair_desc {
     bool flat_holes;     /* default: patches in holes go on smoothly from the surface around, so
                             that an open tube gets domes; else they have the least area */
     bool keep_crossings; /* default: triangles around crossings are replaced */
-    bool report_only;    /* leave the mesh as it is; only the facts are set */
     int threads;         /* default: all that OpenMP offers */
     cw_progress progress; /* default: none */
 } cw_repair_desc;
@@ -62,7 +61,7 @@ typedef struct cw_repair_facts {
 CW_API bool cw_repair_has_cgal(void);
 
 /* Repairs a mesh: makes it a closed, oriented manifold without crossings, as far as it can. A
- * sound mesh stays as it is, but for triangles in another order.
+ * sound mesh stays as it is.
  *
  * Vertices are welded. Repeated triangles and those without area are dropped. Triangles are
  * flipped to agree with their neighbours. Edges of more than two triangles are parted, and
@@ -81,9 +80,11 @@ CW_API bool cw_repair_has_cgal(void);
  * narrower than about wrap_mm are closed, and the surface is up to wrap_mm / 30 outside. Open
  * surfaces become thin solids.
  *
- * mesh     in place; unchanged on failure
+ * mesh     borrowed
  * desc     borrowed; NULL means all defaults
- * facts    may be NULL
+ * out      filled on success, emptied on failure; free it with cw_mesh_free(). NULL: only the facts
+ *          are set
+ * facts    may be NULL; also set with CW_ERR_EMPTY
  *
  * Returns  CW_ERR_ARGUMENT     a length is negative or not finite, or as cw_mesh_check()
  *          CW_ERR_EMPTY        nothing is left: the mesh encloses no volume
@@ -95,8 +96,9 @@ CW_API bool cw_repair_has_cgal(void);
  * Threads  reentrant; the same to the bit for any number of threads
  * Source   patches [Barequet1995], [Liepa2003]; crossings [Attene2010]; wraps [Portaneri2022]; see
  *          simplify/repair.md */
-CW_NODISCARD CW_API cw_status cw_mesh_repair(cw_mesh *mesh, const cw_repair_desc *desc,
-                                             cw_repair_facts *facts, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_mesh_repair(const cw_mesh *mesh, const cw_repair_desc *desc,
+                                             cw_mesh *out, cw_repair_facts *facts,
+                                             cw_error *err);
 
 #ifdef __cplusplus
 }

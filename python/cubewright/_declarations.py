@@ -2291,7 +2291,6 @@ class cw_repair_desc(Structure):
     wrap_mm: float
     flat_holes: bool
     keep_crossings: bool
-    report_only: bool
     threads: int
     progress: Any
 
@@ -2302,7 +2301,6 @@ cw_repair_desc._fields_ = [
     ("wrap_mm", c_double),
     ("flat_holes", c_bool),
     ("keep_crossings", c_bool),
-    ("report_only", c_bool),
     ("threads", c_int),
     ("progress", cw_progress),
 ]
@@ -2710,7 +2708,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_image_place": (None, [POINTER(cw_image), POINTER(cw_image), c_ssize_t, c_ssize_t]),
     "cw_image_tile": (c_int, [POINTER(cw_image), c_size_t, c_size_t, c_size_t, POINTER(c_uint8), POINTER(cw_image), POINTER(cw_error)]),
     "cw_repair_has_cgal": (c_bool, []),
-    "cw_mesh_repair": (c_int, [POINTER(cw_mesh), POINTER(cw_repair_desc), POINTER(cw_repair_facts), POINTER(cw_error)]),
+    "cw_mesh_repair": (c_int, [POINTER(cw_mesh), POINTER(cw_repair_desc), POINTER(cw_mesh), POINTER(cw_repair_facts), POINTER(cw_error)]),
     "cw_simplify_view_draw": (c_int, [POINTER(cw_simplify_view), POINTER(cw_mesh), POINTER(cw_error)]),
     "cw_simplify_view_free": (None, [POINTER(cw_simplify_view)]),
     "cw_simplify_view_error": (c_int, [POINTER(cw_simplify_view), c_double, POINTER(c_double), POINTER(c_double), POINTER(cw_error)]),

@@ -64,6 +64,9 @@ KEYWORDS = {
     "desc->no_sandbox": "sandbox=False",
     "desc->snap = 0.5": "snap=0.5",
     "cw_self_intersections()": "deep=True",
+    "weld_mm is": "weld is",
+    "max_hole_mm is": "fill is",
+    "wrap_mm is": "wrap is",
     "sigma_voxels[": "sigma[",
     "spacing_mm[": "spacing[",
 }

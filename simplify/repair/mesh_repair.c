@@ -290,33 +290,30 @@ static cw_status run_repair(cwi_repair *r, const cw_mesh *mesh, cw_mesh *input, 
     return st;
 }
 
-cw_status cw_mesh_repair(cw_mesh *mesh, const cw_repair_desc *desc, cw_repair_facts *facts,
-                         cw_error *err)
+cw_status cw_mesh_repair(const cw_mesh *mesh, const cw_repair_desc *desc, cw_mesh *out,
+                         cw_repair_facts *facts, cw_error *err)
 {
     CWI_REQUIRE(err, mesh);
     cwi_repair r = {.desc = desc ? *desc : (cw_repair_desc){0}};
-    cw_mesh input = {0}, out = {0};
-    cw_status st = check_input(mesh, &r.desc, err);
+    cw_mesh input = {0}, own = {0}, *made = out ? out : &own;
+    *made = (cw_mesh){0};
     if (facts)
         *facts = (cw_repair_facts){0};
+    cw_status st = check_input(mesh, &r.desc, err);
     if (st == CW_OK)
         st = run_repair(&r, mesh, &input, err);
-    const bool replaces = !r.desc.report_only && (r.facts.is_needed || r.facts.is_wrapped ||
-                                                  input.vertex_count != mesh->vertex_count);
-    if (st == CW_OK && replaces)
-        st = make_result(&r, mesh, &out, err);
+    const bool differs =
+        r.facts.is_needed || r.facts.is_wrapped || input.vertex_count != mesh->vertex_count;
+    if (st == CW_OK && out)
+        st = differs ? make_result(&r, mesh, made, err) : cwi_mesh_copy(mesh, made, err);
     if (st == CW_OK)
         st = cwi_progress(&r.desc.progress, "repair", 1, err);
-    if (st == CW_OK && replaces) {
-        cw_mesh_free(mesh);
-        *mesh = out;
-        out = (cw_mesh){0};
-    }
     if (facts && (st == CW_OK || st == CW_ERR_EMPTY))
         *facts = r.facts;
+    if (st != CW_OK)
+        cw_mesh_free(made);
     cw_mesh_free(&r.mesh);
     cw_mesh_free(&input);
-    cw_mesh_free(&out);
     cwi_free(r.twin);
     return st;
 }

@@ -34,11 +34,15 @@ static void assert_repaired(const cw_mesh *m, const char *name)
     }
 }
 
+/* Repairs a mesh in its place. */
 static cw_repair_facts repair_mesh(cw_mesh *m, const cw_repair_desc *desc)
 {
     cw_repair_facts facts;
+    cw_mesh out;
     cw_error err = {0};
-    assert_ok(cw_mesh_repair(m, desc, &facts, &err), err);
+    assert_ok(cw_mesh_repair(m, desc, &out, &facts, &err), err);
+    cw_mesh_free(m);
+    *m = out;
     return facts;
 }
 
@@ -164,14 +168,13 @@ static void sheets_leave_nothing_and_strips_are_cut(void **state)
     static const char *const sheets[] = {"sheet", "one_triangle", "folded"};
     cw_error err = {0};
     for (int n = 0; n < 3; n++) {
-        cw_mesh m = plant_mesh(sheets[n]), before = plant_mesh(sheets[n]);
+        cw_mesh m = plant_mesh(sheets[n]), out;
         cw_repair_facts facts;
-        assert_fails(cw_mesh_repair(&m, NULL, &facts, &err), CW_ERR_EMPTY,
+        assert_fails(cw_mesh_repair(&m, NULL, &out, &facts, &err), CW_ERR_EMPTY,
                      "the mesh encloses no volume", err);
         assert_true(facts.sheets == 1 && facts.is_needed && !facts.is_sound);
-        test_assert_same_mesh(&m, &before);
+        assert_true(!out.positions && !out.triangles);
         cw_mesh_free(&m);
-        cw_mesh_free(&before);
     }
     cw_mesh m = plant_mesh("moebius");
     const cw_repair_facts facts = repair_mesh(&m, NULL);
@@ -191,9 +194,10 @@ static void wraps_are_solids_around_sheets(void **state)
         const cw_repair_desc desc = {.wrap_mm = 0.5};
         cw_repair_facts facts;
         if (!cw_repair_has_cgal() && n < 2) {
-            assert_fails(cw_mesh_repair(&m, &desc, &facts, &err), CW_ERR_UNSUPPORTED, "libcgal",
-                         err);
-            test_assert_same_mesh(&m, &before);
+            cw_mesh out;
+            assert_fails(cw_mesh_repair(&m, &desc, &out, &facts, &err), CW_ERR_UNSUPPORTED,
+                         "libcgal", err);
+            assert_true(!out.positions && !out.triangles);
         } else if (cw_repair_has_cgal()) {
             facts = repair_mesh(&m, &desc);
             assert_int_equal(facts.is_wrapped, n != 2); /* a strip is repaired without */
@@ -205,7 +209,7 @@ static void wraps_are_solids_around_sheets(void **state)
         cw_mesh_free(&m);
     }
     cw_mesh m = plant_mesh("sheet");
-    assert_fails(cw_mesh_repair(&m, &(cw_repair_desc){.wrap_mm = 1e-4}, NULL, &err),
+    assert_fails(cw_mesh_repair(&m, &(cw_repair_desc){.wrap_mm = 1e-4}, NULL, NULL, &err),
                  CW_ERR_LIMIT, "wrap_mm is 0.0001: the wrap would have more than 2e+07", err);
     cw_mesh_free(&m);
 }
@@ -397,26 +401,27 @@ static void near_vertices_are_welded(void **state)
     assert_true(!facts.holes_filled && facts.is_sound);
     assert_repaired(&m, "welded");
     cw_error err = {0};
-    assert_int_equal(cw_mesh_repair(&apart, NULL, &facts, &err), CW_ERR_EMPTY);
+    assert_int_equal(cw_mesh_repair(&apart, NULL, NULL, &facts, &err), CW_ERR_EMPTY);
     assert_int_equal(facts.sheets, whole.triangle_count);
     cw_mesh_free(&whole);
     cw_mesh_free(&m);
     cw_mesh_free(&apart);
 }
 
-static void a_report_leaves_the_mesh(void **state)
+static void facts_come_without_a_mesh(void **state)
 {
     (void)state;
-    cw_mesh m = plant_mesh("fin"), before = plant_mesh("fin");
-    const cw_repair_facts facts = repair_mesh(&m, &(cw_repair_desc){.report_only = true});
+    cw_mesh m = plant_mesh("fin");
+    cw_repair_facts facts;
+    cw_error err = {0};
+    assert_ok(cw_mesh_repair(&m, NULL, NULL, &facts, &err), err);
     assert_true(facts.is_needed && facts.is_sound && facts.sheets == 1);
-    test_assert_same_mesh(&m, &before);
+    assert_ok(cw_mesh_repair(&m, NULL, NULL, NULL, &err), err);
     cw_mesh_free(&m);
     m = plant_mesh("crossed_bars");
     const cw_repair_facts kept = repair_mesh(&m, &(cw_repair_desc){.keep_crossings = true});
     assert_true(kept.crossings_before == 22 && kept.crossings_after == 22 && !kept.is_sound);
     cw_mesh_free(&m);
-    cw_mesh_free(&before);
 }
 
 static void attributes_stay_and_new_vertices_get_near_ones(void **state)
@@ -461,28 +466,28 @@ static void attributes_stay_and_new_vertices_get_near_ones(void **state)
 static void bad_arguments_are_named(void **state)
 {
     (void)state;
-    cw_mesh m = plant_mesh("cube"), none = {0};
+    cw_mesh m = plant_mesh("cube"), none = {0}, out;
     cw_repair_facts facts;
     cw_error err = {0};
-    assert_fails(cw_mesh_repair(NULL, NULL, NULL, &err), CW_ERR_ARGUMENT, "'mesh' is NULL",
-                 err);
-    assert_fails(cw_mesh_repair(&none, NULL, &facts, &err), CW_ERR_EMPTY,
+    assert_fails(cw_mesh_repair(NULL, NULL, NULL, NULL, &err), CW_ERR_ARGUMENT,
+                 "'mesh' is NULL", err);
+    assert_fails(cw_mesh_repair(&none, NULL, &out, &facts, &err), CW_ERR_EMPTY,
                  "the mesh has no triangles", err);
-    assert_fails(cw_mesh_repair(&m, &(cw_repair_desc){.weld_mm = -1}, &facts, &err),
+    assert_fails(cw_mesh_repair(&m, &(cw_repair_desc){.weld_mm = -1}, &out, &facts, &err),
                  CW_ERR_ARGUMENT, "weld_mm is -1; it must be finite, and 0 or more", err);
     assert_fails(
-        cw_mesh_repair(&m, &(cw_repair_desc){.max_hole_mm = (double)NAN}, &facts, &err),
+        cw_mesh_repair(&m, &(cw_repair_desc){.max_hole_mm = (double)NAN}, &out, &facts, &err),
         CW_ERR_ARGUMENT, "max_hole_mm is", err);
     assert_fails(
-        cw_mesh_repair(&m, &(cw_repair_desc){.wrap_mm = (double)INFINITY}, &facts, &err),
+        cw_mesh_repair(&m, &(cw_repair_desc){.wrap_mm = (double)INFINITY}, &out, &facts, &err),
         CW_ERR_ARGUMENT, "wrap_mm is inf", err);
     m.positions[5] = (float)NAN;
-    assert_fails(cw_mesh_repair(&m, NULL, &facts, &err), CW_ERR_ARGUMENT,
+    assert_fails(cw_mesh_repair(&m, NULL, &out, &facts, &err), CW_ERR_ARGUMENT,
                  "position of vertex 1 is not finite", err);
     m.positions[5] = 0;
     m.triangles[0] = 8;
-    assert_fails(cw_mesh_repair(&m, NULL, &facts, &err), CW_ERR_ARGUMENT, "triangle 0 names",
-                 err);
+    assert_fails(cw_mesh_repair(&m, NULL, &out, &facts, &err), CW_ERR_ARGUMENT,
+                 "triangle 0 names", err);
     cw_mesh_free(&m);
     test_make_cube(&m); /* the largest numbers do not overflow */
     for (size_t c = 0; c < 24; c++)
@@ -507,39 +512,40 @@ static bool count_calls(void *user, const char *step, double done)
     return ++s->calls != s->stop_at;
 }
 
-static void failures_and_cancelling_leave_the_mesh(void **state)
+static void failures_and_cancelling_leave_nothing(void **state)
 {
     (void)state;
     cw_mesh whole = extract_field(CW_FIELD_SPHERE, 8);
     test_seed(6);
-    cw_mesh broken = break_mesh(&whole, ALL_WAYS - 1, 0.1, 9), m = copy_mesh(&broken);
+    cw_mesh broken = break_mesh(&whole, ALL_WAYS - 1, 0.1, 9), m = copy_mesh(&broken), out;
     cw_repair_desc desc = {.threads = 1, .weld_mm = 1e-3};
     cw_error err = {0};
     stopper s = {0};
     desc.progress = (cw_progress){count_calls, &s};
     for (int stop = 1;; stop++) {
         s = (stopper){.stop_at = stop};
-        const cw_status st = cw_mesh_repair(&m, &desc, NULL, &err);
+        const cw_status st = cw_mesh_repair(&m, &desc, &out, NULL, &err);
         if (st == CW_OK)
             break;
         assert_int_equal(st, CW_ERR_CANCELLED);
-        test_assert_same_mesh(&m, &broken);
+        assert_true(!out.positions && !out.triangles);
     }
     assert_true(s.calls > 5 && !s.fell && s.last == 1);
     desc.progress = (cw_progress){0};
     for (long n = 0;; n++) {
-        cw_mesh_free(&m);
-        m = copy_mesh(&broken);
+        cw_mesh_free(&out);
         cwi_alloc_fail_after(n);
-        const cw_status st = cw_mesh_repair(&m, &desc, NULL, &err);
+        const cw_status st = cw_mesh_repair(&m, &desc, &out, NULL, &err);
         if (!cwi_alloc_fail_after(-1)) {
             assert_ok(st, err);
             assert_true(n > 100);
             break;
         }
         assert_int_equal(st, CW_ERR_NO_MEMORY);
-        test_assert_same_mesh(&m, &broken);
+        assert_true(!out.positions && !out.triangles);
     }
+    test_assert_same_mesh(&m, &broken);
+    cw_mesh_free(&out);
     cw_mesh_free(&whole);
     cw_mesh_free(&broken);
     cw_mesh_free(&m);
@@ -558,10 +564,10 @@ int main(void)
         cmocka_unit_test(threads_and_repetition_do_not_matter),
         cmocka_unit_test(large_holes_stay_when_a_limit_says_so),
         cmocka_unit_test(near_vertices_are_welded),
-        cmocka_unit_test(a_report_leaves_the_mesh),
+        cmocka_unit_test(facts_come_without_a_mesh),
         cmocka_unit_test(attributes_stay_and_new_vertices_get_near_ones),
         cmocka_unit_test(bad_arguments_are_named),
-        cmocka_unit_test(failures_and_cancelling_leave_the_mesh),
+        cmocka_unit_test(failures_and_cancelling_leave_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
