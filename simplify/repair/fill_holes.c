@@ -9,6 +9,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Patches of rims with more edges are made coarse first: triangles are this many times larger, then
+ * half of that, and so on. Each surface is where the next one begins, which the solver needs. */
+enum { LARGE_RIM = 100 };
+
+/* Passes of the first, coarsest patch. Each one grows: edges have the lengths of the pass before. */
+enum { FIRST_PASSES = 6 };
+static const double MAX_TIMES = 8;
+
 /* Rims, one after the other. */
 typedef struct rim_list {
     uint32_t *vertices, *beside;
@@ -214,9 +222,15 @@ static bool make_patch(const hole_fill *f, const cwi_rim *rim, cwi_hole_patch *p
     }
     patch->rim = rim->size;
     ok = ok && cwi_patch_triangulate(patch, rim, &f->around);
-    if (f->kind != CWI_PATCH_PLAIN)
-        ok = ok && cwi_patch_refine(patch, rim, &f->around) &&
-             cwi_patch_fair(patch, rim, &f->around, f->kind == CWI_PATCH_FAIR);
+    const double first = rim->size > LARGE_RIM ? MAX_TIMES : 1;
+    const bool is_fair = f->kind == CWI_PATCH_FAIR;
+    int passes = is_fair ? FIRST_PASSES : 1;
+    for (double times = first; ok && times >= 1 && f->kind != CWI_PATCH_PLAIN; times /= 2) {
+        for (int n = 0; n < passes && ok; n++)
+            ok = cwi_patch_refine(patch, rim, &f->around, times) &&
+                 cwi_patch_fair(patch, rim, &f->around, is_fair, times < first || n > 0);
+        passes = 1;
+    }
     return ok;
 }
 

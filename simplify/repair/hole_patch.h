@@ -25,6 +25,7 @@ typedef struct cwi_hole_mesh {
  * and empty. */
 typedef struct cwi_hole_patch {
     double (*points)[3];
+    double *sizes; /* of points: mean length of the edges of the mesh there; 0: not known */
     uint32_t (*triangles)[3];
     uint32_t (*neighbours)[3]; /* across the edge from each corner to the next */
     size_t count, triangle_count, rim;
@@ -48,12 +49,14 @@ bool cwi_patch_add_point(cwi_hole_patch *patch, const double point[3]);
 bool cwi_patch_triangulate(cwi_hole_patch *patch, const cwi_rim *rim,
                            const cwi_hole_mesh *around);
 
-/* Adds points until triangles are as large as those around the rim. */
-bool cwi_patch_refine(cwi_hole_patch *patch, const cwi_rim *rim, const cwi_hole_mesh *around);
+/* Adds points until triangles are as large as those around the rim, times a factor. */
+bool cwi_patch_refine(cwi_hole_patch *patch, const cwi_rim *rim, const cwi_hole_mesh *around,
+                      double times);
 
 /* Moves the points inside: to the surface of least area, about; or if fair, to one that goes on smoothly
- * from the triangles around. */
+ * from the triangles around.
+ * is_later  a coarser patch was moved before, and this one begins there */
 bool cwi_patch_fair(cwi_hole_patch *patch, const cwi_rim *rim, const cwi_hole_mesh *around,
-                    bool is_fair);
+                    bool is_fair, bool is_later);
 
 #endif

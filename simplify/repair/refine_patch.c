@@ -21,8 +21,7 @@ typedef struct refinement {
     cwi_hole_patch *patch;
     const cwi_rim *rim;
     const cwi_hole_mesh *around;
-    double *size; /* of points: length of edges that is wanted there */
-    size_t capacity;
+    double times; /* how many times larger than around the rim triangles may be */
 } refinement;
 
 typedef struct patch_side {
@@ -64,37 +63,39 @@ static double distance_between(const double a[3], const double b[3])
     return sqrt(cwi_dot(d, d));
 }
 
-/* Sets the mean length of the mesh's edges at each point of the rim. */
-static bool measure_rim(refinement *r)
+/* Returns the mean length of the mesh's edges at a vertex. */
+static double measure_edges(const refinement *r, uint32_t v)
 {
     const cw_mesh *m = r->around->mesh;
-    r->capacity = r->patch->count;
-    r->size = cwi_alloc_array(r->capacity, sizeof *r->size);
-    if (!r->size)
-        return false;
+    double sum = 0, points[2][3];
+    size_t count = 0;
+    for (uint32_t i = r->around->first[v]; i < r->around->first[v + 1]; i++) {
+        const uint32_t *corners = m->triangles + 3 * (size_t)r->around->around[i];
+        for (int k = 0; k < 3; k++) {
+            if (corners[k] == v)
+                continue;
+            for (size_t a = 0; a < 3; a++) {
+                points[0][a] = (double)m->positions[3 * (size_t)v + a];
+                points[1][a] = (double)m->positions[3 * (size_t)corners[k] + a];
+            }
+            sum += distance_between(points[0], points[1]);
+            count++;
+        }
+    }
+    return count ? sum / (double)count : 0;
+}
+
+/* Sets the sizes at the rim, and of a point in the middle of a fan. */
+static void measure_rim(refinement *r)
+{
     double mean = 0;
     for (size_t n = 0; n < r->rim->size; n++) {
-        const uint32_t v = r->rim->vertices[n];
-        double sum = 0;
-        size_t count = 0;
-        for (uint32_t i = r->around->first[v]; i < r->around->first[v + 1]; i++) {
-            const uint32_t *corners = m->triangles + 3 * (size_t)r->around->around[i];
-            for (int k = 0; k < 3; k++) {
-                double other[3];
-                if (corners[k] == v)
-                    continue;
-                for (size_t a = 0; a < 3; a++)
-                    other[a] = (double)m->positions[3 * (size_t)corners[k] + a];
-                sum += distance_between(r->patch->points[n], other);
-                count++;
-            }
-        }
-        r->size[n] = count ? sum / (double)count : 0;
-        mean += r->size[n] / (double)r->rim->size;
+        r->patch->sizes[n] = measure_edges(r, r->rim->vertices[n]);
+        mean += r->patch->sizes[n] / (double)r->rim->size;
     }
     for (size_t n = r->rim->size; n < r->patch->count; n++)
-        r->size[n] = mean;
-    return true;
+        if (r->patch->sizes[n] == 0)
+            r->patch->sizes[n] = mean;
 }
 
 /* --- flips -------------------------------------------------------------------------------- */
@@ -222,11 +223,11 @@ static bool is_too_large(const refinement *r, uint32_t t, double middle[3], doub
         middle[a] = (r->patch->points[v[0]][a] + r->patch->points[v[1]][a] +
                      r->patch->points[v[2]][a]) /
                     3;
-        *size += r->size[v[a]] / 3;
+        *size += r->patch->sizes[v[a]] / 3;
     }
     for (int k = 0; k < 3; k++) {
         const double d = DENSITY * distance_between(middle, r->patch->points[v[k]]);
-        if (!(d > *size) || !(d > r->size[v[k]]))
+        if (!(d > r->times * *size) || !(d > r->times * r->patch->sizes[v[k]]))
             return false;
     }
     return true;
@@ -240,18 +241,10 @@ static bool divide_triangle(refinement *r, uint32_t t, const double middle[3], d
                    third = second + 1;
     const uint32_t a = p->triangles[t][0], b = p->triangles[t][1], c = p->triangles[t][2];
     const uint32_t beyond[3] = {p->neighbours[t][0], p->neighbours[t][1], p->neighbours[t][2]};
-    if (p->count == r->capacity) {
-        const size_t capacity = 2 * r->capacity + 64;
-        double *sizes = cwi_realloc_array(r->size, capacity, sizeof *sizes);
-        if (!sizes)
-            return false;
-        r->size = sizes;
-        r->capacity = capacity;
-    }
     if (!cwi_patch_add_point(p, middle) || !cwi_patch_add_triangle(p, b, c, tip) ||
         !cwi_patch_add_triangle(p, c, a, tip))
         return false;
-    r->size[tip] = size;
+    p->sizes[tip] = size;
     p->triangles[t][2] = tip;
     memcpy(p->neighbours[t], (const uint32_t[3]){beyond[0], second, third}, sizeof beyond);
     memcpy(p->neighbours[second], (const uint32_t[3]){beyond[1], third, t}, sizeof beyond);
@@ -261,12 +254,15 @@ static bool divide_triangle(refinement *r, uint32_t t, const double middle[3], d
     return true;
 }
 
-bool cwi_patch_refine(cwi_hole_patch *patch, const cwi_rim *rim, const cwi_hole_mesh *around)
+bool cwi_patch_refine(cwi_hole_patch *patch, const cwi_rim *rim, const cwi_hole_mesh *around,
+                      double times)
 {
-    refinement r = {.patch = patch, .rim = rim, .around = around};
-    bool ok = find_neighbours(patch) && measure_rim(&r), divided = true;
-    if (ok)
+    refinement r = {.patch = patch, .rim = rim, .around = around, .times = times};
+    bool ok = find_neighbours(patch), divided = true;
+    if (ok) {
+        measure_rim(&r);
         flip_edges(&r);
+    }
     for (int n = 0; n < DIVIDE_ROUNDS && ok && divided; n++) {
         const size_t count = patch->triangle_count;
         divided = false;
@@ -280,6 +276,5 @@ bool cwi_patch_refine(cwi_hole_patch *patch, const cwi_rim *rim, const cwi_hole_
         if (ok)
             flip_edges(&r);
     }
-    cwi_free(r.size);
     return ok;
 }

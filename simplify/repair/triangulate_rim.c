@@ -18,6 +18,7 @@ static const double EQUAL_ANGLE = 1e-9;
 void cwi_patch_free(cwi_hole_patch *p)
 {
     cwi_free(p->points);
+    cwi_free(p->sizes);
     cwi_free(p->triangles);
     cwi_free(p->neighbours);
     *p = (cwi_hole_patch){0};
@@ -46,11 +47,14 @@ bool cwi_patch_add_point(cwi_hole_patch *p, const double point[3])
     if (p->count == p->capacity) {
         const size_t capacity = 2 * p->capacity + 64;
         void *points = cwi_realloc_array(p->points, capacity, sizeof *p->points);
-        if (!points)
+        p->points = points ? points : p->points;
+        void *sizes = cwi_realloc_array(p->sizes, capacity, sizeof *p->sizes);
+        p->sizes = sizes ? sizes : p->sizes;
+        if (!points || !sizes)
             return false;
-        p->points = points;
         p->capacity = capacity;
     }
+    p->sizes[p->count] = 0;
     memcpy(p->points[p->count++], point, sizeof *p->points);
     return true;
 }

@@ -386,6 +386,28 @@ static void large_holes_stay_when_a_limit_says_so(void **state)
     cw_mesh_free(&flat);
 }
 
+/* A sphere of 30 mm lost a cap of 10 mm: a smooth patch brings most of it back, at any resolution. */
+static void patches_continue_the_surface(void **state)
+{
+    (void)state;
+    for (size_t n = 16; n <= 64; n *= 2) {
+        cw_mesh whole = extract_field(CW_FIELD_SPHERE, n), m = copy_mesh(&whole), flat;
+        size_t kept = 0;
+        for (size_t t = 0; t < m.triangle_count; t++)
+            if (m.positions[3 * (size_t)m.triangles[3 * t]] < 20)
+                memmove(m.triangles + 3 * kept++, m.triangles + 3 * t, 3 * sizeof *m.triangles);
+        m.triangle_count = kept;
+        flat = copy_mesh(&m);
+        repair_mesh(&m, NULL);
+        repair_mesh(&flat, &(cw_repair_desc){.flat_holes = true});
+        assert_true(measure_distance(&m, &whole) < 2);
+        assert_true(measure_distance(&flat, &whole) > 6);
+        cw_mesh_free(&whole);
+        cw_mesh_free(&m);
+        cw_mesh_free(&flat);
+    }
+}
+
 /* Corners of neighbours differ by less than a micrometre. */
 static void near_vertices_are_welded(void **state)
 {
@@ -563,6 +585,7 @@ int main(void)
         cmocka_unit_test(scales_give_the_same_repair),
         cmocka_unit_test(threads_and_repetition_do_not_matter),
         cmocka_unit_test(large_holes_stay_when_a_limit_says_so),
+        cmocka_unit_test(patches_continue_the_surface),
         cmocka_unit_test(near_vertices_are_welded),
         cmocka_unit_test(facts_come_without_a_mesh),
         cmocka_unit_test(attributes_stay_and_new_vertices_get_near_ones),
