@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Steps of the solver, fewer where a coarser patch was solved before, and the square of the residual at which it stops, relative to the first. */
+/* Steps of the solver, fewer where a coarser patch was solved before. It stops at this square of the
+ * residual, relative to the first. */
 enum { MAX_STEPS = 4000, MAX_LATER_STEPS = 1000 };
 static const double ENOUGH = 1e-14;
 

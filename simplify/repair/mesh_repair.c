@@ -125,8 +125,12 @@ static cw_status close_mesh(cwi_repair *r, cwi_patch_kind kind, cw_error *err)
     if (st == CW_OK)
         st = cwi_repair_split(r, err);
     r->is_later = true;
-    return st == CW_OK ? cwi_drop_sheets(r, &r->facts.sheets, &r->facts.sheet_triangles, err)
-                       : st;
+    size_t sheets = 0, triangles = 0;
+    if (st == CW_OK)
+        st = cwi_drop_sheets(r, &sheets, &triangles, err);
+    r->facts.sheets += is_later ? 0 : sheets; /* later ones are what crossings left */
+    r->facts.sheet_triangles += is_later ? 0 : triangles;
+    return st;
 }
 
 static cw_status mend_mesh(cwi_repair *r, cw_error *err)

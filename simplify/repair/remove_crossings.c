@@ -16,6 +16,9 @@
  * precision at least. */
 static const double APART_FRACTION = 1e-3, APART_STEPS = 8, APART_MAX = 0.1;
 
+/* The first rounds unite solids; what still crosses then loses triangles. */
+enum { UNITE_ROUNDS = 2 };
+
 /* Triangles are not dropped when more than this fraction of all area would go. */
 static const double MAX_DROPPED = 0.95;
 
@@ -310,7 +313,7 @@ static bool mark_crossing(const cwi_repair *r, const cw_crossings *found, int ri
     return mark_fragments(r, marked);
 }
 
-static cw_status drop_crossing(cwi_repair *r, const cw_crossings *found, int rings,
+static cw_status drop_crossing(cwi_repair *r, const cw_crossings *found, int round,
                                bool *changed, cw_error *err)
 {
     const size_t count = r->mesh.triangle_count;
@@ -318,7 +321,7 @@ static cw_status drop_crossing(cwi_repair *r, const cw_crossings *found, int rin
     double all = 0, dropped = 0;
     cw_status st = CW_OK;
     size_t triangles = 0;
-    if (!marked || !mark_crossing(r, found, rings, marked))
+    if (!marked || !mark_crossing(r, found, (round + 1) / 2, marked))
         st = fail_memory(r, err);
     for (size_t t = 0; t < count && st == CW_OK; t++) {
         const double area = measure_area(&r->mesh, t);
@@ -346,11 +349,11 @@ cw_status cwi_remove_crossings(cwi_repair *r, int round, bool *changed, cw_error
     if (st == CW_OK && found.count && !r->desc.keep_crossings) {
         if (round == 0)
             st = move_touching(r, &found, err);
-        if (st == CW_OK && found.count)
+        if (st == CW_OK && found.count && round < UNITE_ROUNDS)
             st = unite_crossing(r, &found, &is_united, err);
         *changed = is_united;
         if (st == CW_OK && found.count && !is_united)
-            st = drop_crossing(r, &found, (round + 1) / 2, changed, err);
+            st = drop_crossing(r, &found, round, changed, err);
     }
     cw_crossings_free(&found);
     return st;

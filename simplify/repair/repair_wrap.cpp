@@ -1,19 +1,21 @@
 // CGAL's Boolean operations and alpha wraps are under the GPL, and so is this module once it is built.
+#undef NDEBUG // CGAL checks its preconditions, and throws: broken meshes must not crash it
 #include "simplify/repair/repair_wrap.h"
 
 #include "core/base/guard.hpp"
 #include "core/mesh/mesh.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/bbox.h>
 #include <CGAL/Polygon_mesh_processing/corefinement.h>
 #include <CGAL/Polygon_mesh_processing/measure.h>
 #include <CGAL/Polygon_mesh_processing/orientation.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/alpha_wrap_3.h>
+#include <CGAL/boost/graph/copy_face_graph.h>
 
 #include <array>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 namespace
@@ -23,6 +25,10 @@ namespace pmp = CGAL::Polygon_mesh_processing;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
 using Triangle = std::array<std::size_t, 3>;
+
+// Components that cannot be united are made smaller by this factor, and tried again.
+constexpr int ATTEMPTS = 3;
+constexpr double SHRINK = 0.999;
 
 // CGAL announces what it then throws; we only want to catch it.
 void say_nothing(const char *, const char *, const char *, int, const char *)
@@ -51,7 +57,13 @@ bool copy_shell(const cw_mesh &mesh, const std::vector<uint32_t> &triangles,
         if (!out.add_face(v[0], v[1], v[2]).is_valid())
             return false;
     }
-    return CGAL::is_closed(out);
+    return true;
+}
+
+bool is_solid(const Surface &surface)
+{
+    return CGAL::is_valid_polygon_mesh(surface) && CGAL::is_triangle_mesh(surface) &&
+           CGAL::is_closed(surface) && pmp::does_bound_a_volume(surface);
 }
 
 cw_status copy_out(const Surface &surface, cw_mesh *out, cw_error *err)
@@ -75,28 +87,52 @@ cw_status copy_out(const Surface &surface, cw_mesh *out, cw_error *err)
     return CW_OK;
 }
 
-// Unites one component after the other. CGAL throws when one crosses itself, which rounding to single
-// precision may cause.
-bool unite_all(std::vector<Surface> &shells, Surface &all)
+// Scales a component around the middle of its box.
+void shrink(Surface &surface, double factor)
+{
+    const auto box = pmp::bbox(surface);
+    const Kernel::Point_3 middle((box.xmin() + box.xmax()) / 2, (box.ymin() + box.ymax()) / 2,
+                                 (box.zmin() + box.zmax()) / 2);
+    for (const auto v : surface.vertices())
+        surface.point(v) = middle + factor * (surface.point(v) - middle);
+}
+
+// Unites two solids. CGAL throws when one crosses itself, and fails when the union is no manifold.
+bool unite_two(Surface all, Surface shell, Surface &united)
 {
     try {
-        for (auto &shell : shells) {
-            if (pmp::volume(shell) < 0)
-                pmp::reverse_face_orientations(shell);
-            if (all.is_empty()) {
-                all = shell;
-                continue;
-            }
-            Surface united;
-            if (!pmp::corefine_and_compute_union(
-                    all, shell, united, pmp::parameters::throw_on_self_intersection(true)))
-                return false;
-            all = std::move(united);
-        }
+        return pmp::corefine_and_compute_union(
+                   all, shell, united, pmp::parameters::throw_on_self_intersection(true)) &&
+               is_solid(united);
     } catch (const pmp::Corefinement::Self_intersection_exception &) {
         return false;
+    } catch (const CGAL::Failure_exception &) {
+        return false;
     }
-    return true;
+}
+
+// Unites one component after the other with those before. Where surfaces lie on each other, the union
+// may be no manifold, or lose a part to rounding; a component that is slightly smaller may do.
+std::size_t unite_all(std::vector<Surface> &shells, Surface &all, Surface &rest)
+{
+    std::size_t count = 0;
+    for (auto &shell : shells) {
+        bool is_united = false;
+        for (int attempt = 0; attempt < ATTEMPTS && is_solid(shell) && !is_united; attempt++) {
+            Surface united;
+            if (pmp::volume(shell) < 0)
+                pmp::reverse_face_orientations(shell);
+            if (attempt > 0)
+                shrink(shell, SHRINK);
+            is_united = all.is_empty() || unite_two(all, shell, united);
+            if (is_united)
+                all = united.is_empty() ? shell : united;
+        }
+        count += is_united;
+        if (!is_united)
+            CGAL::copy_face_graph(shell, rest);
+    }
+    return count;
 }
 
 cw_status unite(const cw_mesh *mesh, const uint32_t *shell, uint32_t shells, const bool *marked,
@@ -106,19 +142,24 @@ cw_status unite(const cw_mesh *mesh, const uint32_t *shell, uint32_t shells, con
     *is_done = false;
     return cw::guard(err, "CGAL", [&] {
         CGAL::set_error_handler(say_nothing);
+        CGAL::set_warning_handler(say_nothing);
         const cw::Taken taken(mesh->triangle_count * 400);
         std::vector<Surface> surfaces(shells);
         std::vector<std::vector<uint32_t>> triangles(shells);
         std::vector<Surface::Vertex_index> number(mesh->vertex_count);
-        Surface all;
+        Surface all, rest;
         bool ok = true;
         for (uint32_t t = 0; t < mesh->triangle_count; t++)
             if (marked[t])
                 triangles[shell[t]].push_back(t);
         for (uint32_t n = 0; n < shells && ok; n++)
             ok = copy_shell(*mesh, triangles[n], number, surfaces[n]);
-        *is_done = ok && unite_all(surfaces, all);
-        return *is_done ? copy_out(all, out, err) : CW_OK;
+        *is_done = ok && unite_all(surfaces, all, rest) > 1;
+        if (!*is_done)
+            return CW_OK;
+        CGAL::copy_face_graph(rest, all);
+        all.collect_garbage();
+        return copy_out(all, out, err);
     });
 }
 
@@ -128,6 +169,7 @@ cw_status wrap(const cw_mesh *mesh, double radius_mm, double offset_mm, cw_mesh 
     *out = cw_mesh{};
     return cw::guard(err, "CGAL", [&] {
         CGAL::set_error_handler(say_nothing);
+        CGAL::set_warning_handler(say_nothing);
         const cw::Taken taken(mesh->triangle_count * 400);
         std::vector<Kernel::Point_3> points;
         std::vector<Triangle> triangles;
