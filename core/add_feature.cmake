@@ -96,7 +96,7 @@ endfunction()
 # add_feature(NAME OPTION OPTION PACKAGES PACKAGE... ABOUT TEXT COST TEXT LICENCES TEXT [MODULE NAME]
 #   [SHIPPED PACKAGE] [LANGUAGE CXX] NEEDS VARIABLE=PACKAGE... [HEADERS FILE...] [INCLUDES FOLDER...]
 #   LIBRARIES LIBRARY... TRIAL SOURCE)
-# add_feature(NAME OPTION ... COST TEXT [MODULE NAME] LIKE FEATURE)
+# add_feature(NAME OPTION ... COST TEXT [LICENCES TEXT] [MODULE NAME] LIKE FEATURE)
 #
 # Sets HAS_<NAME>, in capitals and with _ for -, and adds a row to the table.
 # ABOUT says what the feature brings. COST ends the sentence "this build ...".
@@ -118,7 +118,9 @@ function(add_feature name)
   set(ENV{LC_ALL} C) # errors are read in English
   if(A_LIKE)
     set(reason "${reason_of_${A_LIKE}}")
-    set(A_LICENCES "${licences_of_${A_LIKE}}")
+    if(NOT A_LICENCES)
+      set(A_LICENCES "${licences_of_${A_LIKE}}")
+    endif()
   else()
     try_library(reason ${name})
   endif()

@@ -26,7 +26,7 @@ has_feature gl && has_feature window || missing="$missing|cubewright view"
 has_feature gl || missing="$missing|cubewright render.*--(layout|mode|compare)"
 has_feature level-set || missing="$missing|cubewright (hollow|offset)"
 
-for feature in cgal openmpi mpich vdb dicom jpeg2000 gl window gltf draco meshopt simplify tiff blosc isal lz4 bzip2 zstd; do
+for feature in cgal wrap openmpi mpich vdb dicom jpeg2000 gl window gltf draco meshopt simplify tiff blosc isal lz4 bzip2 zstd; do
     has_feature $feature || missing="$missing|--licences"
 done
 

@@ -26,9 +26,10 @@ const cli_synonym cli_synonyms[] = {
      "'smooth' and 'extract --smooth' smooth meshes, 'extract --denoise' the values of volumes, and "
      "'extract --labels' the surfaces of labels. --min-volume and --drop-components remove small components."},
     {"cavit|enclosed|hollow inside", "void", "--fill-voids|--min-volume", NULL},
-    {"hole|watertight|repair|heal|leak", "closed", "closed|--open|--orient|--by|--profile",
-     "cubewright does not fill holes of a mesh. 'extract' makes closed meshes, 'check' finds "
-     "open edges, and 'offset --by 0' rebuilds closed meshes that intersect themselves."},
+    {"hole|heal|fix|mend|broken", "repair", "repair|--fill|--wrap|--weld", NULL},
+    {"watertight|leak", "closed", "closed|repair|--open|--orient|--by|--profile",
+     "'repair' closes broken meshes. 'extract' makes closed meshes, 'check' finds open edges, and "
+     "'offset --by 0' rebuilds closed meshes that intersect themselves."},
     {"resampl|downsampl|upsampl|isotropic|interpol|subsampl|resolution|thin out", "resample",
      "--resample|--coarsen|--preview|--crop|--size",
      "--resample samples a volume at other distances. --coarsen uses every N-th voxel of each "

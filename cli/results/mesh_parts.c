@@ -40,38 +40,51 @@ cw_status cli_take_surface(cli_pieces *p, const char *path, const cw_mesh *mesh,
     return CW_OK;
 }
 
-/* Those without triangles go. */
-static cw_status weld_parts(cli_pieces *p, const cli_mesh *m, cw_error *err)
+/* Makes pieces of the parts that have triangles, welded or not. */
+static cw_status take_parts(cli_pieces *p, const cli_mesh *m, bool weld, cw_error *err)
 {
     const size_t count = m->parts ? m->part_count : 1;
     cw_status st = CW_OK;
+    *p = (cli_pieces){.path = m->path};
     p->piece = calloc(count ? count : 1, sizeof *p->piece);
     if (!p->piece)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", count);
     for (size_t n = 0; n < count && st == CW_OK; n++) {
-        size_t merged;
+        size_t merged = 0;
         cli_piece *piece = &p->piece[p->count];
         *piece = (cli_piece){.input = m->parts ? *m->parts[n].mesh : m->mesh,
                              .name = m->parts ? m->parts[n].name : NULL};
-        st = cw_mesh_weld(&piece->input, &merged, err);
+        if (weld)
+            st = cw_mesh_weld(&piece->input, &merged, err);
         p->merged += merged;
+        p->triangles += piece->input.triangle_count;
         p->count += st == CW_OK && piece->input.triangle_count > 0;
     }
     return st;
 }
 
-cw_status cli_weld_pieces(cli_pieces *p, const cli_mesh *mesh, cw_error *err)
+/* Measures the box of pieces, of which there must be some. */
+static cw_status finish_pieces(cli_pieces *p, cw_status st, cw_error *err)
 {
-    *p = (cli_pieces){.path = mesh->path};
-    cw_status st = weld_parts(p, mesh, err);
-    if (st == CW_OK && p->merged)
-        cli_say("%s: %s vertices at the position of another were merged", p->path,
-                cli_count(p->merged));
     if (st == CW_OK && !p->count)
         st = cwi_fail(err, CW_ERR_EMPTY, "it has no triangles");
     if (st == CW_OK)
         measure_box(p);
     return in_file(p, st, err);
+}
+
+cw_status cli_take_pieces(cli_pieces *p, const cli_mesh *mesh, cw_error *err)
+{
+    return finish_pieces(p, take_parts(p, mesh, false, err), err);
+}
+
+cw_status cli_weld_pieces(cli_pieces *p, const cli_mesh *mesh, cw_error *err)
+{
+    cw_status st = take_parts(p, mesh, true, err);
+    if (st == CW_OK && p->merged)
+        cli_say("%s: %s vertices at the position of another were merged", p->path,
+                cli_count(p->merged));
+    return finish_pieces(p, st, err);
 }
 
 cw_status cli_drop_from_pieces(cli_pieces *p, double diagonal_mm, cw_error *err)

@@ -26,6 +26,11 @@ typedef struct cli_pieces {
  * Returns  CW_ERR_EMPTY when there are no triangles */
 CW_NODISCARD cw_status cli_weld_pieces(cli_pieces *p, const cli_mesh *mesh, cw_error *err);
 
+/* Makes a piece of each part that has triangles, as it is. Free it, also after failure, with
+ * cli_free_pieces().
+ * Returns  CW_ERR_EMPTY when there are no triangles */
+CW_NODISCARD cw_status cli_take_pieces(cli_pieces *p, const cli_mesh *mesh, cw_error *err);
+
 /* Makes one piece of a surface, as it is. The piece borrows its arrays, and `path`. Free it, also
  * after failure, with cli_free_pieces(). CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cli_take_surface(cli_pieces *p, const char *path, const cw_mesh *mesh,

@@ -4,6 +4,10 @@
 
 #include <cubewright/mesh.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Allocates uninitialised positions, triangles and, if requested, normals. */
 CW_NODISCARD cw_status cwi_mesh_alloc(cw_mesh *mesh, size_t vertices, size_t triangles,
                                       bool normals, cw_error *err);
@@ -18,5 +22,9 @@ CW_NODISCARD cw_status cwi_mesh_copy(const cw_mesh *mesh, cw_mesh *copy, cw_erro
 /* Leaves out the triangles with a mark, and then vertices that no triangle names.
  * Returns  CW_ERR_NO_MEMORY, and the mesh is unchanged */
 CW_NODISCARD cw_status cwi_mesh_drop_marked(cw_mesh *mesh, const bool *marked, cw_error *err);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

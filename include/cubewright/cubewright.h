@@ -21,6 +21,7 @@
 #include <cubewright/print.h>
 #include <cubewright/quality.h>
 #include <cubewright/render.h>
+#include <cubewright/repair.h>
 #include <cubewright/simplify.h>
 #include <cubewright/smooth.h>
 #include <cubewright/spool.h>

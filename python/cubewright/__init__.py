@@ -23,6 +23,7 @@ from ._mesh import Mesh
 from ._progress import Progress
 from ._read import read_mesh, read_volume
 from ._render import render, write_png
+from ._repair import Repaired, repair
 from ._simplify import Smoothed, hollow, offset, simplify, simplify_levels, smooth, weld
 from ._volume import Label, Statistics, Volume
 from ._write import Written, write
@@ -40,6 +41,7 @@ __all__ = [
     "Mesh",
     "Patch",
     "Progress",
+    "Repaired",
     "Smoothed",
     "Statistics",
     "Status",
@@ -60,6 +62,7 @@ __all__ = [
     "read_mesh",
     "read_volume",
     "render",
+    "repair",
     "report",
     "simplify",
     "simplify_levels",

@@ -2407,6 +2407,88 @@ cw_label_slices._fields_ = [
 ]
 
 
+class cw_repair_desc(Structure):
+    weld_mm: float
+    max_hole_mm: float
+    wrap_mm: float
+    flat_holes: bool
+    keep_crossings: bool
+    threads: int
+    progress: Any
+
+
+cw_repair_desc._fields_ = [
+    ("weld_mm", c_double),
+    ("max_hole_mm", c_double),
+    ("wrap_mm", c_double),
+    ("flat_holes", c_bool),
+    ("keep_crossings", c_bool),
+    ("threads", c_int),
+    ("progress", cw_progress),
+]
+
+
+class cw_repair_facts(Structure):
+    welded: int
+    duplicates: int
+    degenerate: int
+    flipped_triangles: int
+    flipped_shells: int
+    nonmanifold_edges: int
+    twisted_edges: int
+    nonmanifold_vertices: int
+    parted_mm: float
+    sheets: int
+    sheet_triangles: int
+    holes_filled: int
+    holes_left: int
+    largest_hole_mm: float
+    largest_rim_mm: float
+    largest_fill_mm2: float
+    added_triangles: int
+    crossings_before: int
+    crossings_after: int
+    touching_vertices: int
+    united_shells: int
+    removed_triangles: int
+    is_wrapped: bool
+    lacks_cgal: bool
+    is_undecided: bool
+    is_needed: bool
+    is_sound: bool
+
+
+cw_repair_facts._fields_ = [
+    ("welded", c_size_t),
+    ("duplicates", c_size_t),
+    ("degenerate", c_size_t),
+    ("flipped_triangles", c_size_t),
+    ("flipped_shells", c_size_t),
+    ("nonmanifold_edges", c_size_t),
+    ("twisted_edges", c_size_t),
+    ("nonmanifold_vertices", c_size_t),
+    ("parted_mm", c_double),
+    ("sheets", c_size_t),
+    ("sheet_triangles", c_size_t),
+    ("holes_filled", c_size_t),
+    ("holes_left", c_size_t),
+    ("largest_hole_mm", c_double),
+    ("largest_rim_mm", c_double),
+    ("largest_fill_mm2", c_double),
+    ("added_triangles", c_size_t),
+    ("crossings_before", c_size_t),
+    ("crossings_after", c_size_t),
+    ("touching_vertices", c_size_t),
+    ("united_shells", c_size_t),
+    ("removed_triangles", c_size_t),
+    ("is_wrapped", c_bool),
+    ("lacks_cgal", c_bool),
+    ("is_undecided", c_bool),
+    ("is_needed", c_bool),
+    ("is_sound", c_bool),
+]
+
+
 class cw_simplify_view(Structure):
     camera: Any
     width: int
@@ -2772,6 +2854,8 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_label_slices_draw": (c_int, [POINTER(cw_label_slices), POINTER(cw_scene), POINTER(cw_picture), POINTER(cw_error)]),
     "cw_image_place": (None, [POINTER(cw_image), POINTER(cw_image), c_ssize_t, c_ssize_t]),
     "cw_image_tile": (c_int, [POINTER(cw_image), c_size_t, c_size_t, c_size_t, POINTER(c_uint8), POINTER(cw_image), POINTER(cw_error)]),
+    "cw_repair_has_cgal": (c_bool, []),
+    "cw_mesh_repair": (c_int, [POINTER(cw_mesh), POINTER(cw_repair_desc), POINTER(cw_mesh), POINTER(cw_repair_facts), POINTER(cw_error)]),
     "cw_simplify_view_draw": (c_int, [POINTER(cw_simplify_view), POINTER(cw_mesh), POINTER(cw_error)]),
     "cw_simplify_view_free": (None, [POINTER(cw_simplify_view)]),
     "cw_simplify_view_error": (c_int, [POINTER(cw_simplify_view), c_double, POINTER(c_double), POINTER(c_double), POINTER(cw_error)]),

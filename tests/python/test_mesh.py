@@ -167,6 +167,35 @@ class Coordinates(Case):
         with self.fails(cw.Status.ARGUMENT):
             cw.color_by(mesh, ball, low=2, high=1)
 
+    def test_repair_fills_drops_and_counts(self):
+        ball = cw.extract(make_ball(), 0)
+        triangles = np.concatenate([ball.triangles[5:], ball.triangles[50:60], ball.triangles[:1, ::-1]])
+        scalars = ball.vertices[:, 2].copy()
+        broken = cw.Mesh.from_arrays(ball.vertices, triangles, scalars=scalars, origin=ball.origin)
+        first = broken.triangles.copy()
+        found = cw.repair(broken, threads=2)
+        self.assertIsInstance(found, cw.Repaired)
+        self.assertTrue(found.sound and found.needed and not found.wrapped)
+        self.assertEqual((found.duplicates, found.flipped_triangles, found.holes_left), (10, 1, 0))
+        self.assertGreaterEqual(found.holes_filled, 1)
+        np.testing.assert_array_equal(broken.triangles, first)
+        self.assertTrue(cw.check(found.mesh, profile="print").holds)
+        self.assertEqual(len(found.mesh.scalars), len(found.mesh.vertices))
+        self.assertTrue(cw.check(cw.repair(ball).mesh, profile="print").holds)
+        self.assertFalse(cw.repair(ball).needed)
+        told = cw.repair(broken, report_only=True)
+        self.assertIsNone(told.mesh)
+        self.assertEqual(told.holes_filled, found.holes_filled)
+        self.assertEqual(cw.repair(broken, fill=0.01).holes_filled, 0)
+        for wrong in (lambda: cw.repair(broken, weld=-1), lambda: cw.repair(broken, wrap=float("inf"))):
+            self.assertRaises(ValueError, wrong)
+        self.assertRaises(TypeError, lambda: cw.repair(first))
+        sheet = cw.Mesh.from_arrays(ball.vertices, ball.triangles[:1])
+        with self.fails(cw.Status.EMPTY):
+            cw.repair(sheet)
+        with self.fails(cw.Status.CANCELLED):
+            cw.repair(broken, progress=lambda *_: False)
+
     def test_weld_merges_corners(self):
         mesh = cw.extract(make_ball(), 0)
         corners = mesh.vertices[mesh.triangles.ravel()]

@@ -1,0 +1,326 @@
+/* Drops what belongs to no surface: repeated triangles, those without area, and open sheets. */
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/geometry/triangle_intersect.h"
+#include "core/geometry/union_find.h"
+#include "core/geometry/vec3.h"
+#include "core/mesh/mesh.h"
+#include "simplify/repair/repair_state.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Rounds of flips; what is then left without area is dropped. */
+enum { FLIP_ROUNDS = 24 };
+
+/* An open component is a sheet if it would enclose less than this fraction of its area^(3/2). Of
+ * a sphere it is 0.094, and of a spherical cap 1 % as high as wide 0.0014. Closed components are
+ * sheets when only rounding is left of their volume. */
+static const double SHEET_VOLUME = 1e-4, CLOSED_SHEET_VOLUME = 1e-7;
+
+static cw_status fail_memory(const cwi_repair *r, cw_error *err)
+{
+    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to repair %zu triangles",
+                    r->mesh.triangle_count);
+}
+
+/* --- duplicates --------------------------------------------------------------------------- */
+
+typedef struct vertex_triple {
+    uint32_t v[3]; /* rising */
+    uint32_t triangle;
+    bool is_even; /* the triangle runs through them in rising order */
+} vertex_triple;
+
+static int compare_triples(const void *a, const void *b)
+{
+    const vertex_triple *s = a, *t = b;
+    for (int n = 0; n < 3; n++)
+        if (s->v[n] != t->v[n])
+            return s->v[n] < t->v[n] ? -1 : 1;
+    return s->triangle < t->triangle ? -1 : s->triangle > t->triangle;
+}
+
+static void sort_corners(vertex_triple *t)
+{
+    t->is_even = true;
+    for (int n = 0; n < 3; n++) {
+        const int a = n % 2;
+        if (t->v[a] > t->v[a + 1]) {
+            const uint32_t v = t->v[a];
+            t->v[a] = t->v[a + 1];
+            t->v[a + 1] = v;
+            t->is_even = !t->is_even;
+        }
+    }
+}
+
+/* Marks the later triangles of equal ones; with cancel also the first, where one faces it. */
+static size_t mark_duplicates(const vertex_triple *triples, size_t count, bool cancel,
+                              bool *marked)
+{
+    size_t found = 0, same;
+    for (size_t i = 0; i < count; i += same) {
+        bool faces = false;
+        for (same = 1;
+             i + same < count && !memcmp(triples[i].v, triples[i + same].v, sizeof triples->v);
+             same++) {
+            marked[triples[i + same].triangle] = true;
+            faces = faces || triples[i + same].is_even != triples[i].is_even;
+        }
+        marked[triples[i].triangle] = cancel && faces;
+        found += same - 1 + (cancel && faces);
+    }
+    return found;
+}
+
+cw_status cwi_drop_duplicates(cwi_repair *r, bool cancel, size_t *dropped, cw_error *err)
+{
+    const size_t count = r->mesh.triangle_count;
+    vertex_triple *triples = cwi_alloc_array(count, sizeof *triples);
+    bool *marked = cwi_alloc_zeroed(count, sizeof *marked);
+    cw_status st = triples && marked ? CW_OK : fail_memory(r, err);
+    for (size_t t = 0; t < count && st == CW_OK; t++) {
+        triples[t].triangle = (uint32_t)t;
+        memcpy(triples[t].v, r->mesh.triangles + 3 * t, sizeof triples->v);
+        sort_corners(&triples[t]);
+    }
+    size_t found = 0;
+    if (st == CW_OK) {
+        qsort(triples, count, sizeof *triples, compare_triples);
+        found = mark_duplicates(triples, count, cancel, marked);
+    }
+    if (found)
+        st = cwi_mesh_drop_marked(&r->mesh, marked, err);
+    if (st == CW_OK)
+        *dropped += found;
+    cwi_free(triples);
+    cwi_free(marked);
+    return st;
+}
+
+/* --- triangles without area --------------------------------------------------------------- */
+
+typedef struct edge_keys {
+    uint64_t *keys; /* of all edges, sorted */
+    size_t count;
+} edge_keys;
+
+static uint64_t key_of(uint32_t a, uint32_t b)
+{
+    return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+}
+
+static int compare_keys(const void *a, const void *b)
+{
+    const uint64_t s = *(const uint64_t *)a, t = *(const uint64_t *)b;
+    return s < t ? -1 : s > t;
+}
+
+static bool list_keys(const cw_mesh *m, edge_keys *e)
+{
+    e->count = 3 * m->triangle_count;
+    e->keys = cwi_alloc_array(e->count, sizeof *e->keys);
+    for (uint32_t c = 0; c < e->count && e->keys; c++)
+        e->keys[c] = key_of(m->triangles[c], m->triangles[cwi_corner_after(c)]);
+    if (e->keys)
+        qsort(e->keys, e->count, sizeof *e->keys, compare_keys);
+    return e->keys;
+}
+
+/* Returns the corner at which the longest edge of a triangle begins. */
+static uint32_t longest_edge(const cw_mesh *m, uint32_t t)
+{
+    uint32_t best = 3 * t;
+    double longest = -1;
+    for (uint32_t c = 3 * t; c < 3 * t + 3; c++) {
+        const float *p = m->positions + 3 * (size_t)m->triangles[c],
+                    *q = m->positions + 3 * (size_t)m->triangles[cwi_corner_after(c)];
+        double d[3];
+        for (int a = 0; a < 3; a++)
+            d[a] = (double)q[a] - (double)p[a];
+        const double square = cwi_dot(d, d);
+        if (square > longest) {
+            longest = square;
+            best = c;
+        }
+    }
+    return best;
+}
+
+/* Flips the longest edge of a triangle without area: its neighbour is divided at the vertex on that
+ * edge. Marks the triangle if that is not possible. */
+static void flip_longest(cwi_repair *r, const edge_keys *edges, uint32_t t, bool *touched,
+                         bool *marked)
+{
+    uint32_t *v = r->mesh.triangles;
+    const uint32_t c = longest_edge(&r->mesh, t), other = r->twin[c];
+    if (other == CWI_NO_TWIN) {
+        marked[t] = touched[t] = true;
+        return;
+    }
+    const uint32_t u = other / 3, p = v[c], q = v[cwi_corner_after(c)],
+                   tip = v[cwi_corner_after(cwi_corner_after(c))],
+                   far = v[cwi_corner_after(cwi_corner_after(other))];
+    if (touched[t] || touched[u])
+        return;
+    const uint64_t key = key_of(tip, far);
+    touched[t] = touched[u] = true;
+    if (tip == far ||
+        bsearch(&key, edges->keys, edges->count, sizeof *edges->keys, compare_keys)) {
+        marked[t] = true;
+        marked[u] = tip == far;
+        return;
+    }
+    const uint32_t made[2][3] = {{p, far, tip}, {far, q, tip}};
+    memcpy(v + 3 * (size_t)t, made[0], sizeof *made);
+    memcpy(v + 3 * (size_t)u, made[1], sizeof *made);
+}
+
+static cw_status flip_round(cwi_repair *r, bool give_up, size_t *found, cw_error *err)
+{
+    cw_mesh *m = &r->mesh;
+    const size_t count = m->triangle_count;
+    edge_keys edges = {0};
+    bool *touched = NULL, *marked = NULL;
+    size_t flat = 0;
+    cw_status st = CW_OK;
+    *found = 0;
+    for (size_t t = 0; t < count; t++)
+        *found += !cwi_has_area(m->positions, m->triangles + 3 * t);
+    if (!*found)
+        return CW_OK;
+    touched = cwi_alloc_zeroed(count, sizeof *touched);
+    marked = cwi_alloc_zeroed(count, sizeof *marked);
+    if (!touched || !marked || !list_keys(m, &edges))
+        st = fail_memory(r, err);
+    for (uint32_t t = 0; t < count && st == CW_OK; t++) {
+        if (touched[t] || cwi_has_area(m->positions, m->triangles + 3 * (size_t)t))
+            continue;
+        if (give_up)
+            marked[t] = true;
+        else
+            flip_longest(r, &edges, t, touched, marked);
+    }
+    for (size_t t = 0; t < count && st == CW_OK; t++)
+        flat += marked[t];
+    if (flat)
+        st = cwi_mesh_drop_marked(m, marked, err);
+    if (st == CW_OK)
+        st = cwi_repair_link(r, false, err);
+    cwi_free(touched);
+    cwi_free(marked);
+    cwi_free(edges.keys);
+    return st;
+}
+
+cw_status cwi_drop_degenerate(cwi_repair *r, size_t *dropped, cw_error *err)
+{
+    size_t found = 0;
+    cw_status st = flip_round(r, false, &found, err);
+    *dropped += found;
+    for (int n = 1; n < FLIP_ROUNDS && found && st == CW_OK; n++)
+        st = flip_round(r, false, &found, err);
+    return st == CW_OK && found ? flip_round(r, true, &found, err) : st;
+}
+
+/* --- sheets ------------------------------------------------------------------------------- */
+
+typedef struct component_size {
+    double volume, area, middle[3]; /* volume: six times */
+    size_t triangles, rim;
+} component_size;
+
+static void get_corners(const cw_mesh *m, size_t t, const double from[3], double p[3][3])
+{
+    for (size_t n = 0; n < 9; n++)
+        p[n / 3][n % 3] =
+            (double)m->positions[3 * (size_t)m->triangles[3 * t + n / 3] + n % 3] - from[n % 3];
+}
+
+static void add_tetrahedron(double p[3][3], component_size *s)
+{
+    double area[3];
+    cwi_cross(p[1], p[2], area);
+    s->volume += cwi_dot(p[0], area);
+}
+
+/* Sums areas, and the middles of rims. */
+static void add_triangle(const cwi_repair *r, uint32_t t, component_size *s)
+{
+    const double zero[3] = {0};
+    double p[3][3], e[2][3], area[3];
+    get_corners(&r->mesh, t, zero, p);
+    for (int a = 0; a < 3; a++) {
+        e[0][a] = p[1][a] - p[0][a];
+        e[1][a] = p[2][a] - p[0][a];
+    }
+    cwi_cross(e[0], e[1], area);
+    s->area += sqrt(cwi_dot(area, area)) / 2;
+    s->triangles++;
+    for (uint32_t k = 0; k < 3; k++)
+        if (r->twin[3 * t + k] == CWI_NO_TWIN) {
+            s->rim++;
+            for (int a = 0; a < 3; a++)
+                s->middle[a] += p[k][a];
+        }
+}
+
+/* Adds the volume between a triangle and the middle of the rims: of a component that is closed by
+ * fans from there. */
+static void add_volume(const cwi_repair *r, uint32_t t, component_size *s)
+{
+    double p[3][3];
+    get_corners(&r->mesh, t, s->middle, p);
+    add_tetrahedron(p, s);
+}
+
+/* Sets the middle of the rims, or a point of a closed component. */
+static void set_middle(const cw_mesh *m, uint32_t t, component_size *s)
+{
+    for (size_t a = 0; a < 3; a++)
+        s->middle[a] = s->rim ? s->middle[a] / (double)s->rim
+                              : (double)m->positions[3 * (size_t)m->triangles[3 * t] + a];
+}
+
+static bool is_sheet(const component_size *s)
+{
+    const double least = s->rim ? SHEET_VOLUME : CLOSED_SHEET_VOLUME;
+    return !(fabs(s->volume) / 6 >= least * s->area * sqrt(s->area));
+}
+
+cw_status cwi_drop_sheets(cwi_repair *r, size_t *sheets, size_t *triangles, cw_error *err)
+{
+    const size_t count = r->mesh.triangle_count;
+    uint32_t *set = cwi_sets_alloc(count);
+    component_size *sizes = cwi_alloc_zeroed(count, sizeof *sizes);
+    bool *marked = cwi_alloc_zeroed(count, sizeof *marked);
+    size_t found = 0;
+    cw_status st = set && sizes && marked ? CW_OK : fail_memory(r, err);
+    for (uint32_t c = 0; c < 3 * count && st == CW_OK; c++)
+        if (r->twin[c] != CWI_NO_TWIN)
+            cwi_sets_join(set, c / 3, r->twin[c] / 3);
+    for (uint32_t t = 0; t < count && st == CW_OK; t++)
+        add_triangle(r, t, &sizes[cwi_sets_find(set, t)]);
+    for (uint32_t t = 0; t < count && st == CW_OK; t++)
+        if (set[t] == t)
+            set_middle(&r->mesh, t, &sizes[t]);
+    for (uint32_t t = 0; t < count && st == CW_OK; t++)
+        add_volume(r, t, &sizes[cwi_sets_find(set, t)]);
+    for (uint32_t t = 0; t < count && st == CW_OK; t++) {
+        const uint32_t root = cwi_sets_find(set, t);
+        marked[t] = is_sheet(&sizes[root]);
+        found += marked[t];
+        *sheets += marked[t] && root == t;
+    }
+    *triangles += found;
+    if (found && st == CW_OK)
+        st = cwi_mesh_drop_marked(&r->mesh, marked, err);
+    if (found && st == CW_OK)
+        st = cwi_repair_link(r, false, err);
+    cwi_free(set);
+    cwi_free(sizes);
+    cwi_free(marked);
+    return st;
+}

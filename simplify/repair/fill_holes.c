@@ -1,0 +1,336 @@
+/* Fills holes: walks along their rims, and makes a patch for each. */
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/geometry/surface_walk.h"
+#include "core/geometry/vec3.h"
+#include "simplify/repair/hole_patch.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Patches of rims with more edges are made coarse first: triangles are this many times larger, then
+ * half of that, and so on. Each surface is where the next one begins, which the solver needs. */
+enum { LARGE_RIM = 100 };
+
+/* Passes of the first, coarsest patch. Each one grows: edges have the lengths of the pass before. */
+enum { FIRST_PASSES = 6 };
+static const double MAX_TIMES = 8;
+
+/* Rims, one after the other. */
+typedef struct rim_list {
+    uint32_t *vertices, *beside;
+    size_t count, capacity;
+    size_t *end; /* of each rim */
+    size_t rims, rim_capacity;
+} rim_list;
+
+/* A walk along open edges. A vertex that is met again ends a rim of its own. */
+typedef struct rim_walk {
+    const cwi_repair *r;
+    uint32_t *path;   /* corners whose edges are open, in the direction of the mesh */
+    uint32_t *at;     /* of a vertex: its place in the path + 1; 0: none */
+    uint8_t *visited; /* of a corner */
+    rim_list rims;
+} rim_walk;
+
+/* New vertices and triangles of all patches. */
+typedef struct hole_fill {
+    cwi_repair *r;
+    cwi_patch_kind kind;
+    cwi_hole_mesh around;
+    float *positions;
+    uint32_t *triangles;
+    size_t vertices, vertex_capacity, count, capacity;
+} hole_fill;
+
+static void free_rims(rim_list *l)
+{
+    cwi_free(l->vertices);
+    cwi_free(l->beside);
+    cwi_free(l->end);
+}
+
+/* Ensures that an array has room for `needed` elements. */
+static bool grow_array(void *array, size_t *capacity, size_t needed, size_t size)
+{
+    void *memory;
+    memcpy(&memory, array, sizeof memory);
+    if (needed <= *capacity)
+        return true;
+    const size_t more = needed + needed / 2 + 64;
+    memory = cwi_realloc_array(memory, more, size);
+    if (!memory)
+        return false;
+    memcpy(array, &memory, sizeof memory);
+    *capacity = more;
+    return true;
+}
+
+/* --- rims --------------------------------------------------------------------------------- */
+
+/* Adds the end of a path as a rim, in the direction of the triangles that will fill it. Two edges
+ * that lie along each other are no hole: they are joined later. */
+static bool push_rim(rim_walk *w, size_t from, size_t to)
+{
+    rim_list *l = &w->rims;
+    const size_t size = to - from;
+    size_t capacity = l->capacity;
+    if (size < 3)
+        return true;
+    if (!grow_array(&l->vertices, &capacity, l->count + size, sizeof *l->vertices) ||
+        !grow_array(&l->beside, &l->capacity, l->count + size, sizeof *l->beside) ||
+        !grow_array(&l->end, &l->rim_capacity, l->rims + 1, sizeof *l->end))
+        return false;
+    for (size_t n = 0; n < size; n++) {
+        const uint32_t c = w->path[to - 1 - n], *v = w->r->mesh.triangles;
+        l->vertices[l->count] = v[cwi_corner_after(c)];
+        l->beside[l->count++] = v[cwi_corner_after(cwi_corner_after(c))];
+    }
+    l->end[l->rims++] = l->count;
+    return true;
+}
+
+/* Returns the open edge that follows an open edge: around the fan at its end. */
+static uint32_t follow_rim(const cwi_repair *r, uint32_t corner)
+{
+    uint32_t c = cwi_corner_after(corner);
+    while (r->twin[c] != CWI_NO_TWIN)
+        c = cwi_corner_after(r->twin[c]);
+    return c;
+}
+
+static bool walk_rim(rim_walk *w, uint32_t start)
+{
+    const uint32_t *v = w->r->mesh.triangles;
+    size_t length = 0;
+    bool ok = true;
+    for (uint32_t c = start; !w->visited[c] && ok; c = follow_rim(w->r, c)) {
+        w->visited[c] = 1;
+        if (w->at[v[c]]) {
+            const size_t from = w->at[v[c]] - 1;
+            ok = push_rim(w, from, length);
+            for (size_t n = from; n < length; n++)
+                w->at[v[w->path[n]]] = 0;
+            length = from;
+        }
+        w->at[v[c]] = (uint32_t)length + 1;
+        w->path[length++] = c;
+    }
+    for (size_t n = 0; n < length; n++)
+        w->at[v[w->path[n]]] = 0;
+    return ok && push_rim(w, 0, length);
+}
+
+static bool find_rims(rim_walk *w)
+{
+    const size_t corners = 3 * w->r->mesh.triangle_count;
+    w->path = cwi_alloc_array(corners, sizeof *w->path);
+    w->at = cwi_alloc_zeroed(w->r->mesh.vertex_count, sizeof *w->at);
+    w->visited = cwi_alloc_zeroed(corners, 1);
+    bool ok = w->path && w->at && w->visited;
+    for (uint32_t c = 0; c < corners && ok; c++)
+        if (w->r->twin[c] == CWI_NO_TWIN && !w->visited[c])
+            ok = walk_rim(w, c);
+    cwi_free(w->path);
+    cwi_free(w->at);
+    cwi_free(w->visited);
+    return ok;
+}
+
+/* --- the mesh around ---------------------------------------------------------------------- */
+
+static int compare_keys(const void *a, const void *b)
+{
+    const uint64_t s = *(const uint64_t *)a, t = *(const uint64_t *)b;
+    return s < t ? -1 : s > t;
+}
+
+static bool init_around(cwi_hole_mesh *h, const cw_mesh *m)
+{
+    const size_t corners = 3 * m->triangle_count;
+    h->mesh = m;
+    h->edge_count = corners;
+    h->edges = cwi_alloc_array(corners, sizeof *h->edges);
+    h->first = cwi_alloc_zeroed(m->vertex_count + 2, sizeof *h->first);
+    h->around = cwi_alloc_array(corners, sizeof *h->around);
+    if (!h->edges || !h->first || !h->around)
+        return false;
+    for (uint32_t c = 0; c < corners; c++) {
+        const uint64_t a = m->triangles[c], b = m->triangles[cwi_corner_after(c)];
+        h->edges[c] = a < b ? a << 32 | b : b << 32 | a;
+    }
+    qsort(h->edges, corners, sizeof *h->edges, compare_keys);
+    cwi_fans_sort(m->triangles, m->triangle_count, m->vertex_count, h->first, h->around);
+    return true;
+}
+
+static void free_around(cwi_hole_mesh *h)
+{
+    cwi_free(h->edges);
+    cwi_free(h->first);
+    cwi_free(h->around);
+}
+
+/* --- patches ------------------------------------------------------------------------------ */
+
+/* Measures the diagonal of a rim's box, and its length. */
+static void measure_hole(const cw_mesh *m, const cwi_rim *rim, double *diagonal, double *length)
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    *length = 0;
+    for (size_t n = 0; n < rim->size; n++) {
+        const float *p = m->positions + 3 * (size_t)rim->vertices[n],
+                    *q = m->positions + 3 * (size_t)rim->vertices[(n + 1) % rim->size];
+        double d[3];
+        for (int a = 0; a < 3; a++) {
+            low[a] = fmin(low[a], (double)p[a]);
+            high[a] = fmax(high[a], (double)p[a]);
+            d[a] = (double)q[a] - (double)p[a];
+        }
+        *length += sqrt(cwi_dot(d, d));
+    }
+    *diagonal =
+        sqrt((high[0] - low[0]) * (high[0] - low[0]) + (high[1] - low[1]) * (high[1] - low[1]) +
+             (high[2] - low[2]) * (high[2] - low[2]));
+}
+
+static double measure_patch(const cwi_hole_patch *p)
+{
+    double sum = 0;
+    for (size_t t = 0; t < p->triangle_count; t++) {
+        double u[3], v[3], area[3];
+        for (int k = 0; k < 3; k++) {
+            const double from = p->points[p->triangles[t][0]][k];
+            u[k] = p->points[p->triangles[t][1]][k] - from;
+            v[k] = p->points[p->triangles[t][2]][k] - from;
+        }
+        cwi_cross(u, v, area);
+        sum += sqrt(cwi_dot(area, area)) / 2;
+    }
+    return sum;
+}
+
+static bool make_patch(const hole_fill *f, const cwi_rim *rim, cwi_hole_patch *patch)
+{
+    bool ok = true;
+    for (size_t n = 0; n < rim->size && ok; n++) {
+        double point[3];
+        for (size_t a = 0; a < 3; a++)
+            point[a] = (double)f->around.mesh->positions[3 * (size_t)rim->vertices[n] + a];
+        ok = cwi_patch_add_point(patch, point);
+    }
+    patch->rim = rim->size;
+    ok = ok && cwi_patch_triangulate(patch, rim, &f->around);
+    const double first = rim->size > LARGE_RIM ? MAX_TIMES : 1;
+    const bool is_fair = f->kind == CWI_PATCH_FAIR;
+    int passes = is_fair ? FIRST_PASSES : 1;
+    for (double times = first; ok && times >= 1 && f->kind != CWI_PATCH_PLAIN; times /= 2) {
+        for (int n = 0; n < passes && ok; n++)
+            ok = cwi_patch_refine(patch, rim, &f->around, times) &&
+                 cwi_patch_fair(patch, rim, &f->around, is_fair, times < first || n > 0);
+        passes = 1;
+    }
+    return ok;
+}
+
+/* Adds a patch to those that the mesh gets. */
+static bool keep_patch(hole_fill *f, const cwi_rim *rim, const cwi_hole_patch *patch)
+{
+    const size_t points = patch->count - patch->rim;
+    if (!grow_array(&f->positions, &f->vertex_capacity, f->vertices + points,
+                    3 * sizeof *f->positions) ||
+        !grow_array(&f->triangles, &f->capacity, f->count + patch->triangle_count,
+                    3 * sizeof *f->triangles))
+        return false;
+    const uint32_t base = (uint32_t)(f->around.mesh->vertex_count + f->vertices - patch->rim);
+    for (size_t t = 0; t < patch->triangle_count; t++, f->count++)
+        for (size_t k = 0; k < 3; k++) {
+            const uint32_t v = patch->triangles[t][k];
+            f->triangles[3 * f->count + k] = v < patch->rim ? rim->vertices[v] : base + v;
+        }
+    for (size_t n = patch->rim; n < patch->count; n++, f->vertices++)
+        for (size_t a = 0; a < 3; a++)
+            f->positions[3 * f->vertices + a] = (float)patch->points[n][a];
+    return true;
+}
+
+/* Returns true if a hole stays open: it is too large, and one of the input's. */
+static bool stays_open(const hole_fill *f, const cwi_rim *rim, double diagonal)
+{
+    const cwi_repair *r = f->r;
+    size_t flagged = 0;
+    if (!(r->desc.max_hole_mm > 0) || !(diagonal > r->desc.max_hole_mm))
+        return false;
+    for (size_t n = 0; n < rim->size; n++)
+        flagged += r->mesh.colors[4 * (size_t)rim->vertices[n]];
+    return !r->is_later || 2 * flagged >= rim->size;
+}
+
+static void count_hole(cwi_repair *r, double diagonal, double length, double area, bool is_open)
+{
+    if (r->is_later)
+        return;
+    r->facts.holes_filled += !is_open;
+    r->facts.holes_left += is_open;
+    if (diagonal > r->facts.largest_hole_mm) {
+        r->facts.largest_hole_mm = diagonal;
+        r->facts.largest_rim_mm = length;
+        r->facts.largest_fill_mm2 = area;
+    }
+}
+
+static bool fill_hole(hole_fill *f, const cwi_rim *rim)
+{
+    cwi_hole_patch patch = {0};
+    double diagonal, length;
+    measure_hole(f->around.mesh, rim, &diagonal, &length);
+    if (stays_open(f, rim, diagonal)) {
+        for (size_t n = 0; n < rim->size; n++)
+            f->r->mesh.colors[4 * (size_t)rim->vertices[n]] = 1;
+        count_hole(f->r, diagonal, length, 0, true);
+        return true;
+    }
+    const bool ok = make_patch(f, rim, &patch) && keep_patch(f, rim, &patch);
+    if (ok)
+        count_hole(f->r, diagonal, length, measure_patch(&patch), false);
+    cwi_patch_free(&patch);
+    return ok;
+}
+
+static cw_status fill_rims(hole_fill *f, const rim_list *rims, cw_error *err)
+{
+    size_t from = 0;
+    for (size_t n = 0; n < rims->rims; n++) {
+        const cwi_rim rim = {rims->vertices + from, rims->beside + from, rims->end[n] - from};
+        cw_status st =
+            cwi_repair_progress(f->r, "filling holes", (double)n / (double)rims->rims, err);
+        if (st != CW_OK)
+            return st;
+        if (!fill_hole(f, &rim))
+            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to fill a hole of %zu edges",
+                            rim.size);
+        from = rims->end[n];
+    }
+    f->r->facts.added_triangles += f->count;
+    return f->count
+               ? cwi_repair_append(f->r, f->positions, f->vertices, f->triangles, f->count, err)
+               : CW_OK;
+}
+
+cw_status cwi_fill_holes(cwi_repair *r, cwi_patch_kind kind, cw_error *err)
+{
+    rim_walk w = {.r = r};
+    hole_fill f = {.r = r, .kind = kind};
+    cw_status st = CW_OK;
+    if (!find_rims(&w) || (w.rims.rims && !init_around(&f.around, &r->mesh)))
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to find the holes of %zu triangles",
+                      r->mesh.triangle_count);
+    if (st == CW_OK && w.rims.rims)
+        st = fill_rims(&f, &w.rims, err);
+    free_rims(&w.rims);
+    free_around(&f.around);
+    cwi_free(f.positions);
+    cwi_free(f.triangles);
+    return st;
+}

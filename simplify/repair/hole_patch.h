@@ -1,0 +1,62 @@
+/* Patches: the triangles that fill a hole. */
+#ifndef SIMPLIFY_REPAIR_HOLE_PATCH_H
+#define SIMPLIFY_REPAIR_HOLE_PATCH_H
+
+#include "simplify/repair/repair_state.h"
+
+#define CWI_NO_NEIGHBOUR UINT32_MAX
+
+/* The rim of a hole, and the mesh beside it. Arrays of `size` elements. */
+typedef struct cwi_rim {
+    const uint32_t *vertices; /* of the mesh, in the direction of the patch's triangles */
+    const uint32_t *beside;   /* third vertex of the triangle at the edge to the next vertex */
+    size_t size;
+} cwi_rim;
+
+/* The mesh for all holes: its edges, and the triangles around vertices. */
+typedef struct cwi_hole_mesh {
+    const cw_mesh *mesh;
+    uint64_t *edges; /* sorted: the lower vertex, then the higher */
+    size_t edge_count;
+    uint32_t *first, *around; /* see cwi_fans */
+} cwi_hole_mesh;
+
+/* Points and triangles. The first points are those of the rim, in its order. A zeroed struct is valid
+ * and empty. */
+typedef struct cwi_hole_patch {
+    double (*points)[3];
+    double *sizes; /* of points: mean length of the edges of the mesh there; 0: not known */
+    uint32_t (*triangles)[3];
+    uint32_t (*neighbours)[3]; /* across the edge from each corner to the next */
+    size_t count, triangle_count, rim;
+    size_t capacity, triangle_capacity;
+} cwi_hole_patch;
+
+void cwi_patch_free(cwi_hole_patch *patch);
+
+/* Returns true if the mesh has an edge between two vertices. */
+bool cwi_hole_has_edge(const cwi_hole_mesh *around, uint32_t a, uint32_t b);
+
+/* All below return false when memory is out. */
+
+/* Adds a triangle, or a point. */
+bool cwi_patch_add_triangle(cwi_hole_patch *patch, uint32_t a, uint32_t b, uint32_t c);
+bool cwi_patch_add_point(cwi_hole_patch *patch, const double point[3]);
+
+/* Triangulates a rim whose points are in the patch. It has the smallest maximum angle between
+ * neighbours, and then the smallest area, if the rim is short. A point in the middle is added where no
+ * triangulation would do without an edge that the mesh has. */
+bool cwi_patch_triangulate(cwi_hole_patch *patch, const cwi_rim *rim,
+                           const cwi_hole_mesh *around);
+
+/* Adds points until triangles are as large as those around the rim, times a factor. */
+bool cwi_patch_refine(cwi_hole_patch *patch, const cwi_rim *rim, const cwi_hole_mesh *around,
+                      double times);
+
+/* Moves the points inside: to the surface of least area, about; or if fair, to one that goes on smoothly
+ * from the triangles around.
+ * is_later  a coarser patch was moved before, and this one begins there */
+bool cwi_patch_fair(cwi_hole_patch *patch, const cwi_rim *rim, const cwi_hole_mesh *around,
+                    bool is_fair, bool is_later);
+
+#endif

@@ -1,0 +1,323 @@
+/* Repairs a mesh: the order of the steps, and the attributes of the result. */
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/geometry/closest_point.h"
+#include "core/mesh/mesh.h"
+#include "simplify/repair/repair_state.h"
+
+#include <cubewright/quality.h>
+
+#include <math.h>
+#include <string.h>
+
+/* Rounds that remove crossings, and rounds that fill the holes after each. After FLAT_ROUNDS of the first
+ * patches are plain. */
+enum { CROSSING_ROUNDS = 12, FILL_ROUNDS = 6, FLAT_ROUNDS = 7 };
+
+static const size_t MAX_TRIANGLES = UINT32_MAX / 3;
+
+static cw_status check_length(double length, const char *name, cw_error *err)
+{
+    return length >= 0 && isfinite(length)
+               ? CW_OK
+               : cwi_fail(err, CW_ERR_ARGUMENT, "%s is %g; it must be finite, and 0 or more",
+                          name, length);
+}
+
+static cw_status check_input(const cw_mesh *mesh, const cw_repair_desc *d, cw_error *err)
+{
+    cw_status st = check_length(d->weld_mm, "weld_mm", err);
+    if (st == CW_OK)
+        st = check_length(d->max_hole_mm, "max_hole_mm", err);
+    if (st == CW_OK)
+        st = check_length(d->wrap_mm, "wrap_mm", err);
+    if (st == CW_OK)
+        st = cw_mesh_check(mesh, err);
+    if (st == CW_OK &&
+        (mesh->triangle_count > MAX_TRIANGLES || mesh->vertex_count >= UINT32_MAX))
+        st = cwi_fail(err, CW_ERR_LIMIT,
+                      "%zu triangles and %zu vertices; at most %zu and %u are repaired",
+                      mesh->triangle_count, mesh->vertex_count, MAX_TRIANGLES, UINT32_MAX - 1);
+    if (st == CW_OK && !mesh->triangle_count)
+        st = cwi_fail(err, CW_ERR_EMPTY, "the mesh has no triangles to repair");
+    return st;
+}
+
+cw_status cwi_repair_progress(cwi_repair *r, const char *step, double fraction, cw_error *err)
+{
+    const double done = r->done + fraction * (r->until - r->done);
+    return cwi_progress(&r->desc.progress, step, done, err);
+}
+
+/* Begins a step that ends when this fraction of the repair is done. */
+static cw_status begin_step(cwi_repair *r, double until, cw_error *err)
+{
+    r->done = r->until;
+    r->until = until;
+    return cwi_progress(&r->desc.progress, "repair", r->done, err);
+}
+
+/* Copies and welds the mesh. The copy of the repair has the numbers of its vertices in place of
+ * labels. */
+static cw_status copy_input(cwi_repair *r, const cw_mesh *mesh, cw_mesh *input, cw_error *err)
+{
+    const size_t triangles = mesh->triangle_count;
+    cw_status st = cwi_mesh_copy(mesh, input, err);
+    if (st == CW_OK)
+        st = cw_mesh_weld(input, &r->facts.welded, err);
+    if (st == CW_OK && r->desc.weld_mm > 0)
+        st = cwi_weld_near(input, r->desc.weld_mm, &r->facts.welded, err);
+    if (st != CW_OK)
+        return st;
+    r->facts.degenerate = triangles - input->triangle_count;
+    r->input = input;
+    r->mesh.vertex_count = r->mesh.triangle_count = 0;
+    st = cwi_repair_append(r, input->positions, input->vertex_count, input->triangles,
+                           input->triangle_count, err);
+    for (uint32_t v = 0; v < r->mesh.vertex_count && st == CW_OK; v++)
+        r->mesh.labels[v] = v;
+    return st;
+}
+
+/* --- the steps ---------------------------------------------------------------------------- */
+
+/* Drops what belongs to no surface, and joins the rest. */
+static cw_status clean_mesh(cwi_repair *r, cw_error *err)
+{
+    cw_repair_facts *f = &r->facts;
+    cw_status st = cwi_drop_duplicates(r, false, &f->duplicates, err);
+    if (st == CW_OK)
+        st = cwi_repair_link(r, true, err);
+    if (st == CW_OK)
+        st = cwi_drop_degenerate(r, &f->degenerate, err);
+    return st == CW_OK ? cwi_drop_sheets(r, &f->sheets, &f->sheet_triangles, err) : st;
+}
+
+/* Fills holes until none is left that can be filled. Triangles that face each other go: they are what
+ * is left of sheets. */
+static cw_status close_holes(cwi_repair *r, cwi_patch_kind kind, cw_error *err)
+{
+    cw_status st = CW_OK;
+    bool is_open = true;
+    for (int n = 0; n < FILL_ROUNDS && is_open && st == CW_OK; n++) {
+        const size_t added = r->facts.added_triangles;
+        size_t flat = 0, facing = 0;
+        r->done += n > 0 ? (r->until - r->done) / 2 : 0;
+        st = cwi_fill_holes(r, kind, err);
+        is_open = r->facts.added_triangles != added;
+        if (st == CW_OK && is_open)
+            st = cwi_drop_duplicates(r, true, &facing, err);
+        if (st == CW_OK && is_open)
+            st = cwi_repair_link(r, false, err);
+        if (st == CW_OK && is_open)
+            st = cwi_drop_degenerate(r, &flat, err);
+        r->is_later = true;
+    }
+    return st;
+}
+
+/* Closes the mesh, and gives all fans their vertices. */
+static cw_status close_mesh(cwi_repair *r, cwi_patch_kind kind, cw_error *err)
+{
+    const bool is_later = r->is_later;
+    cw_status st = close_holes(r, kind, err);
+    r->is_later = is_later;
+    if (st == CW_OK)
+        st = cwi_repair_split(r, err);
+    r->is_later = true;
+    size_t sheets = 0, triangles = 0;
+    if (st == CW_OK)
+        st = cwi_drop_sheets(r, &sheets, &triangles, err);
+    r->facts.sheets += is_later ? 0 : sheets; /* later ones are what crossings left */
+    r->facts.sheet_triangles += is_later ? 0 : triangles;
+    return st;
+}
+
+static cw_status mend_mesh(cwi_repair *r, cw_error *err)
+{
+    cw_status st = clean_mesh(r, err);
+    bool changed = true;
+    for (int round = 0; st == CW_OK && changed && r->mesh.triangle_count; round++) {
+        const cwi_patch_kind kind = round >= FLAT_ROUNDS              ? CWI_PATCH_PLAIN
+                                    : round > 0 || r->desc.flat_holes ? CWI_PATCH_FLAT
+                                                                      : CWI_PATCH_FAIR;
+        st = begin_step(r, 0.2 + 0.6 * (round + 1) / (CROSSING_ROUNDS + 1), err);
+        if (st == CW_OK)
+            st = close_mesh(r, kind, err);
+        if (st != CW_OK || round == CROSSING_ROUNDS || !r->mesh.triangle_count)
+            break;
+        st = cwi_remove_crossings(r, round, &changed, err);
+        if (st == CW_OK && changed)
+            st = cwi_repair_link(r, false, err);
+    }
+    if (st == CW_OK) {
+        cw_orient_counts turned;
+        st = cw_mesh_orient(&r->mesh, r->desc.threads, &turned, err);
+        r->facts.flipped_shells = turned.turned;
+    }
+    return st;
+}
+
+/* --- the result --------------------------------------------------------------------------- */
+
+/* Judges the mesh under repair. */
+static cw_status judge_mesh(cwi_repair *r, cw_error *err)
+{
+    const cw_quality_desc desc = {.threads = r->desc.threads, .shells = true};
+    const cw_crossings_desc crossings_desc = {.threads = r->desc.threads};
+    cw_quality q = {0};
+    cw_crossings found = {0};
+    cw_status st = cw_quality_measure(&r->mesh, &desc, &q, err);
+    if (st == CW_OK)
+        st = cw_self_intersections(&r->mesh, &crossings_desc, &found, err);
+    r->facts.crossings_after = found.count;
+    r->facts.is_undecided = r->facts.is_undecided || found.undecided;
+    r->facts.is_sound = st == CW_OK && r->mesh.triangle_count && !found.count &&
+                        !found.undecided && !q.degenerate && !q.inside_out &&
+                        cw_quality_is_closed_manifold(&q);
+    cw_crossings_free(&found);
+    return st;
+}
+
+static bool is_repair_needed(const cw_repair_facts *f)
+{
+    return f->duplicates || f->degenerate || f->flipped_triangles || f->flipped_shells ||
+           f->nonmanifold_edges || f->twisted_edges || f->nonmanifold_vertices || f->sheets ||
+           f->holes_filled || f->holes_left || f->crossings_before || f->is_undecided;
+}
+
+static cw_status alloc_attributes(const cw_mesh *input, cw_mesh *out, cw_error *err)
+{
+    const size_t count = out->vertex_count;
+    if (input->scalars)
+        out->scalars = cwi_alloc_array(count, sizeof *out->scalars);
+    if (input->colors)
+        out->colors = cwi_alloc_array(count, 4);
+    if (input->labels)
+        out->labels = cwi_alloc_array(count, sizeof *out->labels);
+    return (input->scalars && !out->scalars) || (input->colors && !out->colors) ||
+                   (input->labels && !out->labels)
+               ? cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the attributes of %zu vertices",
+                          count)
+               : CW_OK;
+}
+
+/* Gives a vertex the attributes of three others, by weights. */
+static void mix_attributes(const cw_mesh *input, const uint32_t from[3], const double weight[3],
+                           cw_mesh *out, size_t v)
+{
+    const int nearest = weight[0] >= weight[1] && weight[0] >= weight[2] ? 0
+                        : weight[1] >= weight[2]                         ? 1
+                                                                         : 2;
+    if (input->labels)
+        out->labels[v] = input->labels[from[nearest]];
+    if (input->scalars) {
+        double sum = 0;
+        for (int k = 0; k < 3; k++)
+            sum += weight[k] > 0 ? weight[k] * (double)input->scalars[from[k]] : 0;
+        out->scalars[v] = (float)sum;
+    }
+    for (size_t a = 0; a < 4 && input->colors; a++) {
+        double sum = 0;
+        for (int k = 0; k < 3; k++)
+            sum += weight[k] * input->colors[4 * (size_t)from[k] + a];
+        out->colors[4 * v + a] = (uint8_t)lrint(fmin(fmax(sum, 0), 255));
+    }
+}
+
+/* Sets the attributes of all vertices: those of the input keep theirs, new ones take them from the
+ * closest point. */
+static cw_status carry_attributes(const cwi_repair *r, cw_mesh *out, cw_error *err)
+{
+    const cw_mesh *input = r->input;
+    cwi_boxes tree = {0};
+    cw_status st = alloc_attributes(input, out, err);
+    if (st != CW_OK || !(input->scalars || input->colors || input->labels))
+        return st;
+    st = cwi_closest_build(input, &tree, err);
+    for (size_t v = 0; v < out->vertex_count && st == CW_OK; v++) {
+        const uint32_t source = r->mesh.labels[v], same[3] = {source, source, source};
+        if (source != CWI_NEW) {
+            mix_attributes(input, same, (const double[3]){1, 0, 0}, out, v);
+            continue;
+        }
+        double point[3];
+        for (size_t a = 0; a < 3; a++)
+            point[a] = (double)r->mesh.positions[3 * v + a];
+        const cwi_closest near = cwi_closest_find(input, &tree, point);
+        mix_attributes(input, input->triangles + 3 * near.triangle, near.share, out, v);
+    }
+    cwi_boxes_free(&tree);
+    return st;
+}
+
+static cw_status make_result(cwi_repair *r, const cw_mesh *mesh, cw_mesh *out, cw_error *err)
+{
+    cw_status st =
+        cwi_mesh_alloc(out, r->mesh.vertex_count, r->mesh.triangle_count, false, err);
+    if (st != CW_OK)
+        return st;
+    memcpy(out->origin, mesh->origin, sizeof out->origin);
+    memcpy(out->affine, mesh->affine, sizeof out->affine);
+    memcpy(out->positions, r->mesh.positions, 3 * out->vertex_count * sizeof *out->positions);
+    memcpy(out->triangles, r->mesh.triangles, 3 * out->triangle_count * sizeof *out->triangles);
+    st = carry_attributes(r, out, err);
+    return st == CW_OK && mesh->normals ? cw_mesh_normals(out, err) : st;
+}
+
+/* Repairs the copy, and wraps it if it is not sound. */
+static cw_status run_repair(cwi_repair *r, const cw_mesh *mesh, cw_mesh *input, cw_error *err)
+{
+    cw_status st = begin_step(r, 0.1, err);
+    if (st == CW_OK)
+        st = copy_input(r, mesh, input, err);
+    if (st == CW_OK)
+        st = begin_step(r, 0.2, err);
+    if (st == CW_OK)
+        st = mend_mesh(r, err);
+    if (st == CW_OK)
+        st = begin_step(r, 0.9, err);
+    if (st == CW_OK)
+        st = judge_mesh(r, err);
+    r->facts.is_needed = is_repair_needed(&r->facts);
+    if (st == CW_OK && !r->facts.is_sound && r->desc.wrap_mm > 0 && input->triangle_count) {
+        st = cwi_wrap_mesh(r, err);
+        if (st == CW_OK)
+            st = cw_mesh_orient(&r->mesh, r->desc.threads, NULL, err);
+        if (st == CW_OK)
+            st = judge_mesh(r, err);
+    }
+    if (st == CW_OK && !r->mesh.triangle_count)
+        st = cwi_fail(err, CW_ERR_EMPTY,
+                      "the mesh encloses no volume: nothing is left of its %zu triangles",
+                      mesh->triangle_count);
+    return st;
+}
+
+cw_status cw_mesh_repair(const cw_mesh *mesh, const cw_repair_desc *desc, cw_mesh *out,
+                         cw_repair_facts *facts, cw_error *err)
+{
+    CWI_REQUIRE(err, mesh);
+    cwi_repair r = {.desc = desc ? *desc : (cw_repair_desc){0}};
+    cw_mesh input = {0}, own = {0}, *made = out ? out : &own;
+    *made = (cw_mesh){0};
+    if (facts)
+        *facts = (cw_repair_facts){0};
+    cw_status st = check_input(mesh, &r.desc, err);
+    if (st == CW_OK)
+        st = run_repair(&r, mesh, &input, err);
+    const bool differs =
+        r.facts.is_needed || r.facts.is_wrapped || input.vertex_count != mesh->vertex_count;
+    if (st == CW_OK && out)
+        st = differs ? make_result(&r, mesh, made, err) : cwi_mesh_copy(mesh, made, err);
+    if (st == CW_OK)
+        st = cwi_progress(&r.desc.progress, "repair", 1, err);
+    if (facts && (st == CW_OK || st == CW_ERR_EMPTY))
+        *facts = r.facts;
+    if (st != CW_OK)
+        cw_mesh_free(made);
+    cw_mesh_free(&r.mesh);
+    cw_mesh_free(&input);
+    cwi_free(r.twin);
+    return st;
+}

@@ -1,0 +1,86 @@
+/* The mesh under repair, and the steps that work on it. */
+#ifndef SIMPLIFY_REPAIR_REPAIR_STATE_H
+#define SIMPLIFY_REPAIR_REPAIR_STATE_H
+
+#include <cubewright/repair.h>
+
+#define CWI_NO_TWIN UINT32_MAX /* of an open edge */
+#define CWI_NEW     UINT32_MAX /* the source of a vertex that the input does not have */
+
+/* Smoothness of patches: later rounds take plainer ones, which cross less. */
+typedef enum cwi_patch_kind { CWI_PATCH_FAIR, CWI_PATCH_FLAT, CWI_PATCH_PLAIN } cwi_patch_kind;
+
+typedef struct cwi_repair {
+    cw_mesh mesh; /* positions and triangles. labels: the vertex of the input, or CWI_NEW.
+                             colors: 1 in the first byte at rims of holes that stay open */
+    const cw_mesh *input; /* welded, with its attributes */
+    uint32_t *twin; /* of each corner: the corner whose edge lies along that from this corner
+                             to the next; or CWI_NO_TWIN */
+    cw_repair_desc desc;
+    cw_repair_facts facts;
+    bool is_later;      /* the holes of the input were seen */
+    double done, until; /* of the progress: now, and when the step at hand has ended */
+} cwi_repair;
+
+static inline uint32_t cwi_corner_after(uint32_t corner)
+{
+    return corner % 3 == 2 ? corner - 2 : corner + 1;
+}
+
+/* Reports progress: a fraction of the step at hand. */
+CW_NODISCARD cw_status cwi_repair_progress(cwi_repair *r, const char *step, double fraction,
+                                           cw_error *err);
+
+/* Welds vertices within a distance: each joins the nearest of those before it that stay.
+ * welded  is increased by their number */
+CW_NODISCARD cw_status cwi_weld_near(cw_mesh *mesh, double distance_mm, size_t *welded,
+                                     cw_error *err);
+
+/* Appends vertices and triangles. Triangles name the vertices of the mesh, then the new ones. */
+CW_NODISCARD cw_status cwi_repair_append(cwi_repair *r, const float *positions, size_t vertices,
+                                         const uint32_t *triangles, size_t triangle_count,
+                                         cw_error *err);
+
+/* Finds the twins of all edges: at most two triangles are joined along an edge, and run through it
+ * in opposite directions. Flips triangles for that.
+ * is_first  adds to the facts */
+CW_NODISCARD cw_status cwi_repair_link(cwi_repair *r, bool is_first, cw_error *err);
+
+/* Gives each fan of triangles around a vertex a vertex of its own, and each pair of triangles an edge
+ * of its own; then moves vertices apart that are at one place. Twins are set, before and after. */
+CW_NODISCARD cw_status cwi_repair_split(cwi_repair *r, cw_error *err);
+
+/* Drops triangles with the same vertices as an earlier one. With cancel both go where they face each
+ * other. */
+CW_NODISCARD cw_status cwi_drop_duplicates(cwi_repair *r, bool cancel, size_t *dropped,
+                                           cw_error *err);
+
+/* Flips the longest edges of triangles without area, and drops what cannot be flipped. Twins are set,
+ * before and after. */
+CW_NODISCARD cw_status cwi_drop_degenerate(cwi_repair *r, size_t *dropped, cw_error *err);
+
+/* Drops open components that would enclose next to nothing if they were closed. Twins are set, before
+ * and after. */
+CW_NODISCARD cw_status cwi_drop_sheets(cwi_repair *r, size_t *sheets, size_t *triangles,
+                                       cw_error *err);
+
+/* Fills the holes. Twins are set before, and not after. */
+CW_NODISCARD cw_status cwi_fill_holes(cwi_repair *r, cwi_patch_kind kind, cw_error *err);
+
+/* Removes what crosses: unites components, moves touching vertices apart, or drops triangles; then
+ * there are holes. Twins are set before, and not after.
+ * round     how often it was called before: later rounds drop more
+ * changed   set to false when nothing crosses */
+CW_NODISCARD cw_status cwi_remove_crossings(cwi_repair *r, int round, bool *changed,
+                                            cw_error *err);
+
+/* Unites closed components by CGAL. False when CGAL cannot.
+ * marked  of each triangle: belongs to one of the components
+ * shell   of each triangle: a number of its component, below shells */
+CW_NODISCARD cw_status cwi_unite_shells(cwi_repair *r, const uint32_t *shell, uint32_t shells,
+                                        const bool *marked, bool *is_done, cw_error *err);
+
+/* Replaces the mesh by a wrap around the input. */
+CW_NODISCARD cw_status cwi_wrap_mesh(cwi_repair *r, cw_error *err);
+
+#endif
