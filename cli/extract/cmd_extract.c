@@ -98,6 +98,11 @@ static const cli_option options[] = {
     {"accel", 0, CLI_CHOICE, "octree/none",
      "Octree that several isovalues share; the result is the same (octree)",
      offsetof(cli_extract_args, accel)},
+    {"profile", 'p', CLI_CHOICE, "none/print",
+     "Make what a print needs: closed, the largest component or those of --min-volume or --largest; "
+     "and check it as 'check' does (none)",
+     offsetof(cli_extract_args, profile)},
+    CLI_PRINTER_OPTIONS(cli_extract_args),
     CLI_COLOR_OPTIONS(cli_extract_args),
     CLI_HEADED("Simplify while extracting"),
     {"simplify", 0, CLI_REDUCTION, "L|N",
@@ -295,6 +300,8 @@ static cw_status make_surface(cli_extract_run *s, const cli_moment *moment, size
                  ? cli_deliver_step(&s->output.report, &how, &mesh, counts.border_loops,
                                     s->output.start, err)
                  : deliver_level(s, n, &(cw_part){.mesh = &mesh}, 1, counts.border_loops, err);
+    if (st == CW_OK)
+        st = cli_extract_judge_print(s, made, &mesh, err);
     if (s->args->animate && (st == CW_OK || st == CW_ERR_EMPTY))
         cli_frames_add(&s->output.frames, &mesh, moment, s->plan.fps);
     if (s->input.extractor)

@@ -147,6 +147,21 @@ cw_status cli_extract_check_lod_steps(const cli_extract_run *s, cw_error *err)
     return CW_OK;
 }
 
+static cw_status check_print(const cli_extract_args *args, cw_error *err)
+{
+    const bool prints = args->profile == CLI_PROFILE_PRINT;
+    const char *other = args->open         ? "--open"
+                        : args->pixel.cull ? "--cull"
+                        : args->lod.count  ? "--lod"
+                        : args->animate    ? "--animate"
+                        : !args->check     ? "--no-check"
+                                           : NULL;
+    if (prints && other)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--profile print cannot be combined with %s",
+                        other);
+    return cli_check_printer(&args->printer, prints, err);
+}
+
 static cw_status check_measure(const cli_extract_args *args, cw_error *err)
 {
     if (!args->measure && !args->lod.count && !args->simplify.error.given &&
@@ -201,6 +216,8 @@ cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err)
     if (args->smooth.given && args->pixel.cull)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--cull cannot be combined with --smooth");
     st = cli_check_color(&args->color, err);
+    if (st == CW_OK)
+        st = check_print(args, err);
     if (st == CW_OK)
         st = check_lod(args, err);
     if (st == CW_OK)

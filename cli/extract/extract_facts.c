@@ -81,6 +81,12 @@ double cli_extract_shading(const cli_extract_args *args)
     return args->pixel.shading.given ? args->pixel.shading.value : SHADING;
 }
 
+size_t cli_extract_largest(const cli_extract_args *args)
+{
+    const bool chooses = args->largest || args->least.given;
+    return args->profile == CLI_PROFILE_PRINT && !chooses ? 1 : args->largest;
+}
+
 cw_smooth_desc cli_extract_smoothing(const cli_extract_run *s)
 {
     const cli_smoothing *smooth = &s->args->smooth;
@@ -131,8 +137,13 @@ void cli_extract_put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_lod(j, &args->lod);
     if (args->least.given)
         cli_json_number(j, "min_volume_mm3", cli_extract_least_mm3(s));
-    if (args->largest)
-        cli_json_count(j, "largest", args->largest);
+    if (cli_extract_largest(args))
+        cli_json_count(j, "largest", cli_extract_largest(args));
+    if (args->profile == CLI_PROFILE_PRINT) {
+        cli_json_text(j, "profile", "print");
+        if (made->print.count)
+            cli_json_printer(j, &made->print.facts.limits);
+    }
     if (args->fill_voids)
         cli_json_bool(j, "fill_voids", true);
     if (args->smooth.given) {

@@ -27,6 +27,8 @@ typedef struct cli_extract_args {
     cli_smoothing smooth;
     cli_length max_move;
     cli_color_args color;
+    int profile; /* CLI_PROFILE_... */
+    cli_printer printer;
     cli_pixel_args pixel;
     int inside, normals, progress, topology, placement, accel;
     bool open, no_clobber, local, check, measure, animate, prove_crop;
@@ -35,6 +37,9 @@ typedef struct cli_extract_args {
     int stream;
     size_t max_triangles, slab;
 } cli_extract_args;
+
+/* Choices of --profile. */
+enum { CLI_PROFILE_NONE, CLI_PROFILE_PRINT };
 
 /* Decisions made before a surface is extracted. */
 typedef struct cli_extract_plan {
@@ -141,6 +146,14 @@ CW_NODISCARD cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_m
 CW_NODISCARD cw_status cli_extract_judge(cli_extract_run *s, cli_made *made,
                                          const cw_mesh *mesh, const cw_extract_counts *counts,
                                          cw_error *err);
+
+/* Judges the surface of --profile print once it is written. */
+CW_NODISCARD cw_status cli_extract_judge_print(cli_extract_run *s, cli_made *made,
+                                               const cw_mesh *mesh, cw_error *err);
+
+/* Returns the number of components to keep; 0: all. A print is the largest one, unless it is said
+ * otherwise. */
+size_t cli_extract_largest(const cli_extract_args *args);
 
 /* Colours the surface, if that is asked for. moment: of a series; NULL: the only step */
 CW_NODISCARD cw_status cli_extract_color(cli_extract_run *s, const cli_moment *moment,

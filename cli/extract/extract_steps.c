@@ -43,10 +43,10 @@ cli_wanted cli_extract_wants(const cli_extract_run *s, double iso)
                     .threads = (int)s->args->input.threads,
                     .max_triangles = s->args->max_triangles,
                     .extra_bytes = s->args->check || s->args->fill_voids ? cli_check_bytes()
-                                   : least_mm3 > 0 || s->args->largest   ? DROP_BYTES
-                                                                         : 0},
+                                   : least_mm3 > 0 || cli_extract_largest(s->args) ? DROP_BYTES
+                                                                                   : 0},
         .least_mm3 = least_mm3,
-        .largest = s->args->largest,
+        .largest = cli_extract_largest(s->args),
         .fill_voids = s->args->fill_voids,
         .smooths = s->args->smooth.given,
         .smooth = s->args->smooth.given ? cli_extract_smoothing(s) : (cw_smooth_desc){0},
@@ -270,6 +270,19 @@ cw_status cli_extract_color(cli_extract_run *s, const cli_moment *moment, cw_mes
                                   moment ? moment->step : input->step, mesh, &facts, err);
     if (st == CW_OK)
         cli_report_end(&s->output.report, "color", mesh->vertex_count, mesh->vertex_count);
+    return st;
+}
+
+cw_status cli_extract_judge_print(cli_extract_run *s, cli_made *made, const cw_mesh *mesh,
+                                  cw_error *err)
+{
+    if (s->args->profile != CLI_PROFILE_PRINT)
+        return CW_OK;
+    cli_report_begin(&s->output.report);
+    cw_status st = cli_judge_print(made->path, mesh, &s->args->printer,
+                                   (int)s->args->input.threads, &made->print, err);
+    if (st == CW_OK)
+        cli_report_end(&s->output.report, "print", mesh->triangle_count, 0);
     return st;
 }
 

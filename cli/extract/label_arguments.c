@@ -56,6 +56,7 @@ cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
         {args->least.given, "--min-volume"},
         {args->largest > 0, "--largest"},
         {args->fill_voids, "--fill-voids"},
+        {args->profile == CLI_PROFILE_PRINT, "--profile print"},
         {args->color.by != NULL, "--color-by (labels have their own colours)"},
         {args->smooth.given, "--smooth (labels have --smooth-labels)"},
         {args->pixel.most.given, "--max-error"},

@@ -30,6 +30,7 @@ const char *cli_find_unstreamed(const cli_extract_args *args)
         {"--fill-voids", args->fill_voids},
         {"--smooth", args->smooth.given},
         {"--color-by", args->color.by != NULL},
+        {"--profile print", args->profile == CLI_PROFILE_PRINT},
         {"--snap", args->snap.value > 0},
         {"--animate", args->animate},
         {"--lod", args->lod.count > 0},

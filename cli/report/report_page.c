@@ -472,8 +472,8 @@ static void put_print(FILE *out, const cli_study *s)
         "limits of a printer as well.</p>\n<div class=\"wide\"><table><thead><tr><th>grade</th>"
         "<th class=\"w\">of</th><th class=\"w\">measured</th></tr></thead><tbody>",
         out);
-    for (size_t n = 0; n < p->verdict_count; n++)
-        put_verdict(out, &p->verdicts[n]);
+    for (size_t n = 0; n < p->seen.count; n++)
+        put_verdict(out, &p->seen.verdicts[n]);
     fputs("</tbody></table></div>\n</section>\n", out);
 }
 

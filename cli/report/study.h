@@ -4,8 +4,8 @@
 #define CLI_REPORT_STUDY_H
 
 #include "cli/render/scene_options.h"
+#include "cli/results/printability.h"
 
-#include <cubewright/check.h>
 #include <cubewright/distance.h>
 #include <cubewright/extract.h>
 #include <cubewright/field.h>
@@ -86,9 +86,7 @@ enum {
 /* The plain surface as a print. */
 typedef struct cli_print_study {
     char why[CLI_WHY_CAPACITY]; /* it was not measured; empty: it was */
-    cw_print_facts facts;       /* of closed surfaces */
-    cw_verdict verdicts[CW_MAX_VERDICTS];
-    size_t verdict_count;
+    cli_printed seen;
 } cli_print_study;
 
 typedef struct cli_study {

@@ -2,7 +2,6 @@
 #include "cli/framework/console.h"
 #include "cli/report/study.h"
 #include "cli/results/check_verdicts.h"
-#include "cli/results/printability.h"
 
 #include "core/base/text.h"
 
@@ -204,9 +203,9 @@ void cli_put_study_json(FILE *out, const void *study)
     if (*s->print.why)
         cli_json_text(&j, "left_out", s->print.why);
     else
-        cli_json_verdicts(&j, s->print.verdicts, s->print.verdict_count);
-    if (s->print.facts.area_mm2 > 0)
-        cli_json_print(&j, &s->print.facts);
+        cli_json_verdicts(&j, s->print.seen.verdicts, s->print.seen.count);
+    if (s->print.seen.facts.area_mm2 > 0)
+        cli_json_print(&j, &s->print.seen.facts);
     cli_json_close(&j, '}');
     cli_json_close(&j, '}');
 }

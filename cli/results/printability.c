@@ -2,9 +2,12 @@
 #include "cli/results/printability.h"
 
 #include "cli/framework/console.h"
+#include "cli/framework/field_names.h"
 #include "core/base/status.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 cw_status cli_check_printer(const cli_printer *printer, bool prints, cw_error *err)
 {
@@ -46,6 +49,62 @@ cw_print_desc cli_printer_desc(const cli_printer *printer, int threads, size_t t
     for (int a = 0; a < 3 && printer->plate.given; a++)
         desc.plate_mm[a] = printer->plate.mm[a];
     return desc;
+}
+
+static void say_verdict(const char *name, const cw_verdict *v)
+{
+    const bool advises = v->advice && v->grade < CW_GRADE_OK;
+    if (v->grade < CW_GRADE_OK)
+        cli_say("%s: %s: %s: %s%s%s", name, cw_grade_name(v->grade), v->name, v->text,
+                advises ? "; " : "",
+                advises ? cli_name_options(v->advice, (char[CLI_MESSAGE]){0}) : "");
+}
+
+/* Names the verdicts that do not hold. */
+static cw_status hold_print(const char *name, const cli_printed *p, cw_error *err)
+{
+    char names[256] = "";
+    if (cw_check_holds(p->verdicts, p->count))
+        return CW_OK;
+    for (size_t n = 0; n < p->count; n++)
+        if (p->verdicts[n].grade == CW_GRADE_FAIL || p->verdicts[n].grade == CW_GRADE_UNKNOWN) {
+            const size_t used = strlen(names);
+            snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "",
+                     p->verdicts[n].name);
+        }
+    return cwi_fail(err, CW_ERR_CHECK, "%s: does not meet profile print: %s", name, names);
+}
+
+cw_status cli_measure_printed(const cw_mesh *mesh, const cli_printer *printer, int threads,
+                              cli_printed *out, cw_error *err)
+{
+    const cw_print_desc print = cli_printer_desc(printer, threads, mesh->triangle_count);
+    const cw_quality_desc look = {
+        .weld = CW_WELD_LOCAL, .shells = true, .threads = threads, .progress = print.progress};
+    const cw_crossings_desc meet = {
+        .weld = CW_WELD_LOCAL, .threads = threads, .progress = print.progress};
+    cw_quality quality;
+    cw_crossings crossings = {0};
+    cw_status st = cw_quality_measure(mesh, &look, &quality, err);
+    if (st == CW_OK)
+        st = cw_self_intersections(mesh, &meet, &crossings, err);
+    const bool is_solid = st == CW_OK && cw_quality_is_closed_manifold(&quality);
+    if (is_solid)
+        st = cw_print_measure(mesh, &print, &out->facts, err);
+    const cw_findings findings = {
+        .quality = &quality, .crossings = &crossings, .print = is_solid ? &out->facts : NULL};
+    out->count = st == CW_OK ? cw_check_judge(&findings, CW_PROFILE_PRINT, out->verdicts) : 0;
+    cw_crossings_free(&crossings);
+    return st;
+}
+
+cw_status cli_judge_print(const char *name, const cw_mesh *mesh, const cli_printer *printer,
+                          int threads, cli_printed *out, cw_error *err)
+{
+    cw_status st = cli_measure_printed(mesh, printer, threads, out, err);
+    for (size_t n = 0; n < out->count && st == CW_OK; n++)
+        say_verdict(name, &out->verdicts[n]);
+    return st == CW_OK ? hold_print(name, out, err) : st;
 }
 
 void cli_json_printer(cli_json *j, const cw_print_desc *limits)

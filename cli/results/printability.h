@@ -5,7 +5,7 @@
 #include "cli/framework/json_writer.h"
 #include "cli/framework/options.h"
 
-#include <cubewright/print.h>
+#include <cubewright/check.h>
 
 typedef struct cli_printer {
     cli_length wall, gap, layer;
@@ -45,12 +45,31 @@ typedef struct cli_printer {
             offsetof(type, printer.plate)                                                      \
     }
 
+/* The judgement of a print. Zeroed: none yet. */
+typedef struct cli_printed {
+    cw_print_facts facts;
+    cw_verdict verdicts[CW_MAX_VERDICTS];
+    size_t count;
+} cli_printed;
+
 /* Fails for options without --profile print, and for lengths in voxels or shares. */
 CW_NODISCARD cw_status cli_check_printer(const cli_printer *printer, bool prints,
                                          cw_error *err);
 
 /* Returns the limits. */
 cw_print_desc cli_printer_desc(const cli_printer *printer, int threads, size_t triangles);
+
+/* Measures a mesh as a print, and what it is besides. Open ones have verdicts alone.
+ * Returns  as the measurements */
+CW_NODISCARD cw_status cli_measure_printed(const cw_mesh *mesh, const cli_printer *printer,
+                                           int threads, cli_printed *out, cw_error *err);
+
+/* Judges a mesh that is to be printed: prints what is to be looked at, and keeps all of it for the
+ * report.
+ * Returns  CW_ERR_CHECK  the profile does not hold; or as the measurements */
+CW_NODISCARD cw_status cli_judge_print(const char *name, const cw_mesh *mesh,
+                                       const cli_printer *printer, int threads,
+                                       cli_printed *out, cw_error *err);
 
 /* Writes the limits into the settings of a step, and the object "print". */
 void cli_json_printer(cli_json *j, const cw_print_desc *limits);

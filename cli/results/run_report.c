@@ -262,6 +262,10 @@ static void put_facts(cli_json *j, const cli_made *m)
     }
     if (m->is_smoothed)
         cli_json_smoothed(j, &m->smoothed);
+    if (m->print.count)
+        cli_json_verdicts(j, m->print.verdicts, m->print.count);
+    if (m->print.facts.area_mm2 > 0)
+        cli_json_print(j, &m->print.facts);
     if (m->crop.made)
         put_crop(j, &m->crop);
     if (m->proof.made)

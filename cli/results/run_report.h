@@ -4,6 +4,7 @@
 #define CLI_RESULTS_RUN_REPORT_H
 
 #include "cli/inputs/time_series.h"
+#include "cli/results/printability.h"
 
 #include <cubewright/check.h>
 #include <cubewright/extract.h>
@@ -84,6 +85,7 @@ typedef struct cli_made {
     cw_drop_counts voids; /* when they were filled */
     bool is_smoothed;
     cw_smooth_facts smoothed; /* when it was */
+    cli_printed print;        /* of --profile print */
     cli_proof proof;
     cli_crop_proof crop;
     char warning[CLI_MAX_WARNINGS][512];

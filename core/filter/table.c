@@ -17,9 +17,10 @@
 
 static const double TISSUE = -300, AIR = -1000; /* HU; between air and fat; air */
 static const double BALL_MM = 5;                /* tables have shells of 1 to 8 mm */
-static const double SMALL_MM3 = 40000; /* the thin parts of a face have 35 ml, an ear 10 */
-enum { MOST_RADIUS = 250 };            /* voxels, of cwi_spread_bytes() */
-static const double EDGE = 2;          /* voxels around the body that keep what is partly air */
+static const double SMALL_MM3 = 40000;   /* the thin parts of a face have 35 ml, an ear 10 */
+static const double MOST_LOST = 1.0 / 3; /* of the component */
+enum { MOST_RADIUS = 250 };              /* voxels, of cwi_spread_bytes() */
+static const double EDGE = 2; /* voxels around the body that keep what is partly air */
 
 typedef struct work {
     const cw_volume *in;
@@ -188,13 +189,31 @@ static cw_status find_component(work *k, cw_error *err)
     return st == CW_OK ? keep_largest(k, k->tissue, err) : st;
 }
 
+/* Fails where most of the component would go: then what stays is no body. */
+static cw_status hold_body(const work *k, size_t component, cw_error *err)
+{
+    size_t lost = 0;
+    for (size_t n = 0; n < count_voxels(k); n++)
+        lost += k->tissue[n] == 1;
+    if ((double)lost <= MOST_LOST * (double)component)
+        return CW_OK;
+    return cwi_fail(err, CW_ERR_UNSAFE,
+                    "the table cannot be told from the body: %.3g of the %.3g ml above %g HU "
+                    "would go",
+                    (double)lost * k->voxel_mm3 / 1000, (double)component * k->voxel_mm3 / 1000,
+                    TISSUE);
+}
+
 static cw_status find_body(work *k, cw_error *err)
 {
     const size_t count = count_voxels(k), *dim = k->in->dim;
     const double edge[3] = {EDGE, EDGE, EDGE};
+    size_t component = 0;
     cw_status st = find_component(k, err);
     if (st != CW_OK)
         return st;
+    for (size_t n = 0; n < count; n++)
+        component += k->tissue[n];
     st = find_solid(k, k->tissue, err);
     if (st == CW_ERR_EMPTY || (st == CW_OK && misses_tissue(k))) {
         memcpy(k->body, k->tissue, count);
@@ -212,6 +231,8 @@ static cw_status find_body(work *k, cw_error *err)
         k->tissue[n] = k->body[n] ? 2 : k->tissue[n];
     if (st == CW_OK)
         st = rejoin_parts(k, k->tissue, err);
+    if (st == CW_OK)
+        st = hold_body(k, component, err);
     for (size_t n = 0; n < count && st == CW_OK; n++)
         k->body[n] = k->tissue[n] == 2;
     if (st == CW_OK)

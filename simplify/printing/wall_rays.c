@@ -22,11 +22,11 @@ static const double OFF_DEG = 5;
 static const double FACING_DEG = 30;
 
 /* The normal of a point is that between the vertices' normals where all three agree with the
- * triangle; else there is an edge, and it is the triangle's. */
-static const double SMOOTH_DEG = 30;
+ * triangle; else there is an edge, and it is the triangle's. Thin triangles may face anywhere: those
+ * lower than this fraction of their longest side need vertices that agree with each other. */
+static const double SMOOTH_DEG = 30, THIN = 0.2;
 
-/* Thin triangles may face anywhere. Those farther than this off the normals of all their vertices
- * are not measured. */
+/* Triangles farther than this off the normals of all their vertices are not measured, either. */
 static const double ASTRAY_DEG = 60;
 
 /* In limits: the walls that get the rays around, and the widest gaps that are looked for. */
@@ -171,24 +171,29 @@ static double measure_point(const ray_field *f, size_t own, const double from[3]
     return least;
 }
 
-/* Finds the normal between those of the corners, if they agree with the triangle's. Returns false
- * for a triangle that is not to be measured.
- * weights  of the corners   flat  of the triangle, unit */
+/* Finds the normal of a point of a triangle. Returns false where there is none that can be relied on.
+ * weights  of the corners   flat  of the triangle, unit   is_thin  its own normal may be anything */
 static bool find_normal(const ray_field *f, size_t triangle, const double weights[3],
-                        const double flat[3], double normal[3])
+                        const double flat[3], bool is_thin, double normal[3])
 {
-    double least = 1, most = -1;
+    const double smooth = cos(SMOOTH_DEG * CWI_PI / 180);
+    double corners[3][3], with_flat = 1, among = 1, most = -1;
     memset(normal, 0, 3 * sizeof *normal);
     for (size_t c = 0; c < 3; c++) {
         const float *n = f->normals + 3 * (size_t)f->mesh->triangles[3 * triangle + c];
-        const double corner[3] = {(double)n[0], (double)n[1], (double)n[2]};
-        least = cwi_lesser(least, cwi_dot(corner, flat));
-        most = cwi_greater(most, cwi_dot(corner, flat));
-        for (int a = 0; a < 3; a++)
-            normal[a] += weights[c] * corner[a];
+        for (int a = 0; a < 3; a++) {
+            corners[c][a] = (double)n[a];
+            normal[a] += weights[c] * corners[c][a];
+        }
+        with_flat = cwi_lesser(with_flat, cwi_dot(corners[c], flat));
+        most = cwi_greater(most, cwi_dot(corners[c], flat));
     }
-    if (least < cos(SMOOTH_DEG * CWI_PI / 180) || !cwi_normalise(normal))
-        memcpy(normal, flat, 3 * sizeof *normal);
+    for (int c = 0; c < 3; c++)
+        among = cwi_lesser(among, cwi_dot(corners[c], corners[(c + 1) % 3]));
+    const bool is_smooth = is_thin ? among >= smooth : with_flat >= smooth;
+    if (is_smooth && cwi_normalise(normal))
+        return true;
+    memcpy(normal, flat, 3 * sizeof *normal);
     return most >= cos(ASTRAY_DEG * CWI_PI / 180);
 }
 
@@ -209,6 +214,7 @@ static void add_measure(cwi_wall_sum *sum, double measured, double limit, const 
 typedef struct point_grid {
     size_t apex; /* corner opposite of the longest side */
     size_t columns, rows;
+    bool is_thin;
 } point_grid;
 
 static size_t count_parts(double length, double step)
@@ -233,6 +239,7 @@ static point_grid divide_triangle(const double p[3][3], double twice_area, doubl
     }
     g.columns = count_parts(longest, step);
     g.rows = count_parts(twice_area / longest, step);
+    g.is_thin = twice_area / longest < THIN * longest;
     return g;
 }
 
@@ -257,7 +264,7 @@ static void measure_triangle(ray_field *f, size_t triangle, cwi_wall_sum *walls,
             weights[(g.apex + 2) % 3] = (1 - up) * along;
             for (int a = 0; a < 3; a++)
                 at[a] = weights[0] * p[0][a] + weights[1] * p[1][a] + weights[2] * p[2][a];
-            if (!find_normal(f, triangle, weights, flat, normal))
+            if (!find_normal(f, triangle, weights, flat, g.is_thin, normal))
                 break;
             for (int a = 0; a < 3; a++)
                 inward[a] = -normal[a];

@@ -21,7 +21,7 @@ typedef struct cwi_kept_volumes {
 } cwi_kept_volumes;
 
 /* Finds the components and their volumes before anything moved.
- * rims       of each vertex, a cwi_rim
+ * rims       of each vertex, a cwi_vertex_rim
  * places     vertices x 3: the positions of the mesh, in double precision
  * volumes    filled; free it with cwi_volumes_free(), also after failure. It borrows the mesh
  * Returns    CW_ERR_NO_MEMORY */

@@ -84,9 +84,9 @@ static uint32_t shorten_list(uint32_t *list, uint32_t count, bool of_rim)
     return kept;
 }
 
-static cwi_rim find_rim(const uint32_t *list, uint32_t count)
+static cwi_vertex_rim find_rim(const uint32_t *list, uint32_t count)
 {
-    cwi_rim rim = CWI_RIM_NONE;
+    cwi_vertex_rim rim = CWI_RIM_NONE;
     for (uint32_t i = 0, same; i < count && rim != CWI_RIM_OPEN; i += same) {
         same = count_same(list, count, i);
         rim = same == 1 ? CWI_RIM_OPEN : same > 2 ? CWI_RIM_JUNCTION : rim;

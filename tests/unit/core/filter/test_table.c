@@ -105,6 +105,25 @@ static void nothing_solid_is_an_error(void **state)
     cw_volume_free(&v);
 }
 
+/* A thing that is a plate for the most part: what stays would be a lump on it. */
+static void what_is_mostly_thin_is_no_body(void **state)
+{
+    (void)state;
+    cw_volume v = make_scan(CW_I16, 1, 0), out;
+    cw_error err = {0};
+    int16_t *values = cw_volume_voxels(&v);
+    for (size_t n = 0; n < (size_t)NX * NY * NZ; n++) {
+        const size_t i = n % NX, j = n / NX % NY;
+        const bool is_plate = j >= 50 && j < 53 && i > 3 && i < 117,
+                   is_lump = j >= 38 && j < 53 && i >= 50 && i < 62;
+        values[n] = is_plate || is_lump ? 100 : -1000;
+    }
+    assert_fails(cw_volume_remove_table(&v, NULL, &out, NULL, &err), CW_ERR_UNSAFE,
+                 "cannot be told from the body", err);
+    assert_null(out.data);
+    cw_volume_free(&v);
+}
+
 /* A hollow head: its shell is thinner than the ball. */
 static void shells_are_filled(void **state)
 {
@@ -169,6 +188,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_body_stays_and_the_rest_is_air),
         cmocka_unit_test(nothing_solid_is_an_error),
+        cmocka_unit_test(what_is_mostly_thin_is_no_body),
         cmocka_unit_test(shells_are_filled),
         cmocka_unit_test(limits_are_kept),
     };
