@@ -41,7 +41,7 @@ const char *cli_find_unstreamed(const cli_extract_args *args)
     for (size_t n = 0; n < sizeof options / sizeof *options; n++)
         if (options[n].given)
             return options[n].name;
-    return cli_find_preparation(&args->input);
+    return cli_find_unstreamed_preparation(&args->input);
 }
 
 /* Returns true for errors of too low a --memory. */
@@ -61,6 +61,7 @@ bool cli_turn_to_slices(cli_extract_run *run, cw_status st)
     cw_extractor_free(run->input.extractor);
     run->input.extractor = NULL;
     cw_volume_free(&v->voxels);
+    cw_volume_free(&v->prepared);
     v->view.data = NULL;
     v->streams = true;
     run->input.turned = true;

@@ -385,9 +385,10 @@ static bool needs_slices(const cli_input *input, const cw_volume *part, size_t l
     double voxels = (double)part->components * (double)part->steps;
     for (int a = 0; a < 3; a++)
         voxels *= (double)part->dim[a];
-    const double bytes = voxels * (double)cw_type_size(part->type);
-    return input->may_stream && !cli_find_preparation(input) && !part->cells && !part->sparse &&
-           input->stream != CLI_STREAM_NEVER &&
+    const double copies = input->denoise.given ? 2 : 1;
+    const double bytes = copies * voxels * (double)cw_type_size(part->type);
+    return input->may_stream && !cli_find_unstreamed_preparation(input) && !part->cells &&
+           !part->sparse && input->stream != CLI_STREAM_NEVER &&
            (input->stream == CLI_STREAM_ALWAYS ||
             bytes + cli_bytes_beside(voxels, limit) > (double)limit);
 }
@@ -419,8 +420,12 @@ static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_inp
     if (input->sample && !cli_find_preparation(input) && !part.cells && !part.sparse &&
         !cwi_is_rectilinear(&part))
         choose_sample(&part, cli_memory_limit(input), volume->coarsen);
-    if (needs_slices(input, &part, desc->max_bytes))
-        return view_shape(&part, volume, err);
+    if (needs_slices(input, &part, desc->max_bytes)) {
+        st = view_shape(&part, volume, err);
+        if (st == CW_OK)
+            cli_tell_slice_filter(input, volume);
+        return st;
+    }
     if (!input->coarsen_view)
         memcpy(desc->every, volume->coarsen, sizeof desc->every);
     st = read_part(path, desc, &part, volume, err);
@@ -534,9 +539,15 @@ cw_status cli_read_volume(const char *path, const cli_input *input, bool header_
     return st;
 }
 
-cw_status cli_visit_slices(const cli_volume *volume, const cli_input *input,
-                           const cw_slice_visitor *visitor, cw_error *err)
+typedef struct slice_visit {
+    const cli_volume *volume;
+    const cli_input *input;
+} slice_visit;
+
+static cw_status visit_volume(const void *user, const cw_slice_visitor *visitor, cw_error *err)
 {
+    const cli_volume *volume = ((const slice_visit *)user)->volume;
+    const cli_input *input = ((const slice_visit *)user)->input;
     cw_raw_layout raw;
     cw_read_desc desc = cli_read_desc(input);
     cw_box box;
@@ -549,6 +560,12 @@ cw_status cli_visit_slices(const cli_volume *volume, const cli_input *input,
     return st == CW_OK ? cw_volume_visit(volume->path, &desc, input->component.number,
                                          input->step, visitor, NULL, err)
                        : cwi_fail_in(err, st, volume->path);
+}
+
+cw_status cli_visit_slices(const cli_volume *volume, const cli_input *input,
+                           const cw_slice_visitor *visitor, cw_error *err)
+{
+    return cli_visit_filtered(input, visitor, visit_volume, &(slice_visit){volume, input}, err);
 }
 
 cw_status cli_read_whole(const cli_volume *part, const cli_input *input, cli_volume *whole,

@@ -8,9 +8,11 @@
 #include "core/base/status.h"
 
 #include <cubewright/filter.h>
+#include <cubewright/slice_filter.h>
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 const char *cli_find_preparation(const cli_input *input)
 {
@@ -22,6 +24,14 @@ const char *cli_find_preparation(const cli_input *input)
            : input->mask_close.given ? "--mask-close"
            : input->crop.is_auto     ? "--crop auto"
                                      : NULL;
+}
+
+const char *cli_find_unstreamed_preparation(const cli_input *input)
+{
+    cli_input rest = *input;
+    const cli_filter filter = input->denoise.filter;
+    rest.denoise.given = input->denoise.given && filter != CLI_GAUSS && filter != CLI_MEDIAN;
+    return cli_find_preparation(&rest);
 }
 
 static cw_filter_desc filter_desc(const cli_input *input, const cli_volume *volume)
@@ -106,6 +116,19 @@ static cw_status find_value(const cli_input *input, const cli_volume *volume, do
     return st;
 }
 
+void cli_tell_slice_filter(const cli_input *input, cli_volume *volume)
+{
+    const size_t side = 2 * input->denoise.count + 1;
+    double sigma[3];
+    width_in_voxels(&input->denoise.width, &volume->view, sigma);
+    if (input->denoise.given && input->denoise.filter == CLI_GAUSS)
+        cli_note_volume(volume, "denoised by a Gaussian of %.3g x %.3g x %.3g voxels", sigma[0],
+                        sigma[1], sigma[2]);
+    if (input->denoise.given && input->denoise.filter == CLI_MEDIAN)
+        cli_note_volume(volume, "denoised by the median of %zu x %zu x %zu voxels", side, side,
+                        side);
+}
+
 static cw_status smooth_view(const cli_input *input, cli_volume *volume, cw_volume *made,
                              cw_error *err)
 {
@@ -114,8 +137,7 @@ static cw_status smooth_view(const cli_input *input, cli_volume *volume, cw_volu
     width_in_voxels(&input->denoise.width, &volume->view, sigma);
     cw_status st = cw_volume_gauss(&volume->view, sigma, &desc, made, err);
     if (st == CW_OK)
-        cli_note_volume(volume, "denoised by a Gaussian of %.3g x %.3g x %.3g voxels", sigma[0],
-                        sigma[1], sigma[2]);
+        cli_tell_slice_filter(input, volume);
     return st;
 }
 
@@ -123,12 +145,58 @@ static cw_status sort_view(const cli_input *input, cli_volume *volume, cw_volume
                            cw_error *err)
 {
     const cw_filter_desc desc = filter_desc(input, volume);
-    const size_t radius = input->denoise.count, side = 2 * radius + 1;
-    cw_status st = cw_volume_median(&volume->view, radius, &desc, made, err);
+    cw_status st = cw_volume_median(&volume->view, input->denoise.count, &desc, made, err);
     if (st == CW_OK)
-        cli_note_volume(volume, "denoised by the median of %zu x %zu x %zu voxels", side, side,
-                        side);
+        cli_tell_slice_filter(input, volume);
     return st;
+}
+
+/* A visitor of filtered slices. */
+typedef struct filtered_visit {
+    const cli_input *input;
+    const cw_slice_visitor *visitor;
+} filtered_visit;
+
+/* Filters the first slices at once: what that takes then counts to the memory of the program. */
+static cw_status take_first_slice(const cw_slice_source *source, cw_error *err)
+{
+    const size_t *dim = source->shape.dim;
+    void *slice = malloc(dim[0] * dim[1] * cw_type_size(source->shape.type));
+    cw_status st = slice
+                       ? source->read(source->user, 0, 1, slice, err)
+                       : cwi_fail(err, CW_ERR_NO_MEMORY,
+                                  "no memory for a slice of %zu x %zu voxels", dim[0], dim[1]);
+    free(slice);
+    return st;
+}
+
+static cw_status visit_filtered(void *user, const cw_slice_source *source, cw_error *err)
+{
+    const filtered_visit *v = user;
+    const cli_denoise *denoise = &v->input->denoise;
+    cw_slice_filter_desc desc = {.kind = denoise->filter == CLI_MEDIAN ? CW_SLICE_MEDIAN
+                                                                       : CW_SLICE_GAUSS,
+                                 .radius = denoise->count,
+                                 .threads = (int)v->input->threads};
+    cw_slice_filter *filter;
+    width_in_voxels(&denoise->width, &source->shape, desc.sigma_voxels);
+    cw_status st = cw_slice_filter_new(source, &desc, &filter, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, "--denoise");
+    const cw_slice_source filtered = cw_slice_filter_source(filter);
+    st = take_first_slice(&filtered, err);
+    if (st == CW_OK)
+        st = v->visitor->visit(v->visitor->user, &filtered, err);
+    cw_slice_filter_free(filter);
+    return st;
+}
+
+cw_status cli_visit_filtered(const cli_input *input, const cw_slice_visitor *visitor,
+                             cli_visit_all *visit, const void *user, cw_error *err)
+{
+    filtered_visit v = {.input = input, .visitor = visitor};
+    return visit(user, input->denoise.given ? &(cw_slice_visitor){visit_filtered, &v} : visitor,
+                 err);
 }
 
 static cw_status join_similar(const cli_input *input, cli_volume *volume, cw_volume *made,

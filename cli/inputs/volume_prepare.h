@@ -8,6 +8,20 @@
 /* Returns the option that changes voxels, such as "--denoise"; NULL: none was given. */
 const char *cli_find_preparation(const cli_input *input);
 
+/* The same without those that are made slice by slice, too: a Gaussian, a median. */
+const char *cli_find_unstreamed_preparation(const cli_input *input);
+
+/* Says what is made slice by slice, of a volume that streams. */
+void cli_tell_slice_filter(const cli_input *input, cli_volume *volume);
+
+/* Visits filtered slices, if a filter was given.
+ * visit  hands a visitor the slices of the volume */
+typedef cw_status cli_visit_all(const void *user, const cw_slice_visitor *visitor,
+                                cw_error *err);
+CW_NODISCARD cw_status cli_visit_filtered(const cli_input *input,
+                                          const cw_slice_visitor *visitor, cli_visit_all *visit,
+                                          const void *user, cw_error *err);
+
 /* Prepares the view of a volume that was read, and says what it did. A view that was made before
  * is freed. Errors do not name the file. */
 CW_NODISCARD cw_status cli_prepare_volume(const cli_input *input, cli_volume *volume,

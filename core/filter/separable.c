@@ -162,6 +162,9 @@ static bool is_gap(const work *k, size_t i, size_t j, size_t z)
     return !isfinite(x) || (in->has_nodata && x == in->nodata);
 }
 
+/* A sum of weights this near to 1 has all of them: a value then does not depend on gaps elsewhere. */
+static const double ROUNDING = 1e-12;
+
 /* Weights of kernels may be negative: where too few values are left, their sum means nothing. */
 static const double LEAST_WEIGHT = 0.25;
 
@@ -170,7 +173,8 @@ static void store_row(const work *k, const bench *b, size_t j, size_t z)
     const size_t mx = k->out->dim[0], size = cw_type_size(k->out->type);
     char *to = (char *)cw_volume_voxels(k->out) + (z * k->out->dim[1] + j) * mx * size;
     for (size_t i = 0; i < mx; i++, to += size) {
-        const double weight = k->has_gaps ? b->line[mx + i] : 1;
+        const double left = k->has_gaps ? b->line[mx + i] : 1,
+                     weight = fabs(left - 1) < ROUNDING ? 1 : left;
         if (k->has_gaps && (is_gap(k, i, j, z) || weight < LEAST_WEIGHT))
             cwi_filter_store_gap(k->out, to);
         else

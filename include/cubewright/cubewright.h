@@ -23,6 +23,7 @@
 #include <cubewright/render.h>
 #include <cubewright/repair.h>
 #include <cubewright/simplify.h>
+#include <cubewright/slice_filter.h>
 #include <cubewright/smooth.h>
 #include <cubewright/spool.h>
 #include <cubewright/stream.h>

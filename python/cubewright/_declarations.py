@@ -285,6 +285,11 @@ class cw_pick_kind(enum.IntEnum):
     CW_PICK_MESH = 3
 
 
+class cw_slice_filter_kind(enum.IntEnum):
+    CW_SLICE_GAUSS = 0
+    CW_SLICE_MEDIAN = 1
+
+
 class cw_smooth_method(enum.IntEnum):
     CW_SMOOTH_TAUBIN = 0
     CW_SMOOTH_HC = 1
@@ -2558,6 +2563,27 @@ class cw_simplifier(Structure):
     pass
 
 
+class cw_slice_filter_desc(Structure):
+    kind: int
+    sigma_voxels: Any
+    radius: int
+    slices: int
+    threads: int
+
+
+cw_slice_filter_desc._fields_ = [
+    ("kind", c_int),
+    ("sigma_voxels", c_double * 3),
+    ("radius", c_size_t),
+    ("slices", c_size_t),
+    ("threads", c_int),
+]
+
+
+class cw_slice_filter(Structure):
+    pass
+
+
 class cw_smooth_desc(Structure):
     iterations: int
     max_move_mm: float
@@ -2871,6 +2897,9 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_simplifier_take": (c_int, [c_void_p, POINTER(cw_slab), POINTER(cw_error)]),
     "cw_simplifier_finish": (c_int, [POINTER(cw_simplifier), POINTER(cw_mesh), POINTER(cw_simplify_facts), POINTER(cw_error)]),
     "cw_simplify_available": (c_bool, []),
+    "cw_slice_filter_new": (c_int, [POINTER(cw_slice_source), POINTER(cw_slice_filter_desc), POINTER(POINTER(cw_slice_filter)), POINTER(cw_error)]),
+    "cw_slice_filter_source": (cw_slice_source, [POINTER(cw_slice_filter)]),
+    "cw_slice_filter_free": (None, [POINTER(cw_slice_filter)]),
     "cw_smooth_method_name": (c_char_p, [c_int]),
     "cw_mesh_smooth": (c_int, [POINTER(cw_mesh), POINTER(cw_smooth_desc), POINTER(cw_smooth_facts), POINTER(cw_error)]),
 }

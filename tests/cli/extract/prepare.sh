@@ -30,7 +30,7 @@ try --iso 0 --resample 0mm
 try --iso 0 --resample iso:spline
 try --iso 0 --resample 1e-9mm
 try --labels all --denoise median:1
-try --iso 0 --denoise median:1 --stream always
+try --iso 0 --denoise aniso --stream always
 try --iso 0 --resample iso --crop 0:9,0:9,0:9 --prove-crop
 try --iso 0 --resample 0.1mm --memory 64M
 ls no.stl 2>&1 | sed 's/.*: No/No/'
