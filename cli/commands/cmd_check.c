@@ -538,21 +538,6 @@ static void print_facts(const run_state *s)
     cli_result("\n");
 }
 
-/* Names what does not hold: for the one line of the error. */
-static cw_status hold_to_profile(const run_state *s, cw_error *err)
-{
-    char names[256] = "";
-    if (cw_check_holds(s->verdicts, s->verdict_count))
-        return CW_OK;
-    for (const cw_verdict *v = s->verdicts; v < s->verdicts + s->verdict_count; v++)
-        if (v->grade == CW_GRADE_FAIL || v->grade == CW_GRADE_UNKNOWN) {
-            const size_t used = strlen(names);
-            snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", v->name);
-        }
-    return cwi_fail(err, CW_ERR_CHECK, "%s: does not meet profile %s: %s", s->mesh.path,
-                    profiles[s->args->profile], names);
-}
-
 static cw_status judge_mesh(run_state *s, cw_error *err)
 {
     const check_args *args = s->args;
@@ -567,7 +552,8 @@ static cw_status judge_mesh(run_state *s, cw_error *err)
         cli_print_shapes(&s->quality.shapes);
     cw_status st = args->defects ? paint_defects(s, err) : CW_OK;
     if (st == CW_OK)
-        st = hold_to_profile(s, err);
+        st = cli_hold_verdicts(s->mesh.path, profiles[args->profile], s->verdicts,
+                               s->verdict_count, err);
     if (st == CW_OK)
         cli_result("%s: meets profile %s; %.2f s\n", s->mesh.path, profiles[args->profile],
                    cli_seconds() - s->start);

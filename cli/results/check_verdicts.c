@@ -5,8 +5,10 @@
 #include "cli/framework/console.h"
 #include "cli/framework/field_names.h"
 #include "cli/framework/quantity.h"
+#include "core/base/status.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 void cli_print_verdicts(const cw_verdict *verdicts, size_t count)
@@ -18,6 +20,21 @@ void cli_print_verdicts(const cw_verdict *verdicts, size_t count)
             cli_result("  %-8s%-19s-> %s\n", "", "",
                        cli_name_options(v->advice, (char[CLI_MESSAGE]){0}));
     }
+}
+
+cw_status cli_hold_verdicts(const char *name, const char *profile, const cw_verdict *verdicts,
+                            size_t count, cw_error *err)
+{
+    char names[256] = "";
+    if (cw_check_holds(verdicts, count))
+        return CW_OK;
+    for (const cw_verdict *v = verdicts; v < verdicts + count; v++)
+        if (v->grade == CW_GRADE_FAIL || v->grade == CW_GRADE_UNKNOWN) {
+            const size_t used = strlen(names);
+            snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", v->name);
+        }
+    return cwi_fail(err, CW_ERR_CHECK, "%s: does not meet profile %s: %s", name, profile,
+                    names);
 }
 
 static void print_bar(const char *label, size_t count, size_t total)

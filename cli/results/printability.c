@@ -3,11 +3,10 @@
 
 #include "cli/framework/console.h"
 #include "cli/framework/field_names.h"
+#include "cli/results/check_verdicts.h"
 #include "core/base/status.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 cw_status cli_check_printer(const cli_printer *printer, bool prints, cw_error *err)
 {
@@ -60,21 +59,6 @@ static void say_verdict(const char *name, const cw_verdict *v)
                 advises ? cli_name_options(v->advice, (char[CLI_MESSAGE]){0}) : "");
 }
 
-/* Names the verdicts that do not hold. */
-static cw_status hold_print(const char *name, const cli_printed *p, cw_error *err)
-{
-    char names[256] = "";
-    if (cw_check_holds(p->verdicts, p->count))
-        return CW_OK;
-    for (size_t n = 0; n < p->count; n++)
-        if (p->verdicts[n].grade == CW_GRADE_FAIL || p->verdicts[n].grade == CW_GRADE_UNKNOWN) {
-            const size_t used = strlen(names);
-            snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "",
-                     p->verdicts[n].name);
-        }
-    return cwi_fail(err, CW_ERR_CHECK, "%s: does not meet profile print: %s", name, names);
-}
-
 cw_status cli_measure_printed(const cw_mesh *mesh, const cli_printer *printer, int threads,
                               cli_printed *out, cw_error *err)
 {
@@ -104,7 +88,7 @@ cw_status cli_judge_print(const char *name, const cw_mesh *mesh, const cli_print
     cw_status st = cli_measure_printed(mesh, printer, threads, out, err);
     for (size_t n = 0; n < out->count && st == CW_OK; n++)
         say_verdict(name, &out->verdicts[n]);
-    return st == CW_OK ? hold_print(name, out, err) : st;
+    return st == CW_OK ? cli_hold_verdicts(name, "print", out->verdicts, out->count, err) : st;
 }
 
 void cli_json_printer(cli_json *j, const cw_print_desc *limits)
