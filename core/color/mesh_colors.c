@@ -1,4 +1,5 @@
 /* Samples a volume at the vertices of a mesh, and colours vertices by their scalars. */
+#include "core/color/cell_sample.h"
 #include "core/color/colormap.h"
 
 #include "core/base/memory.h"
@@ -13,6 +14,7 @@ enum { PART = 1 << 12 };
 typedef struct sampling {
     const cw_mesh *mesh;
     const cw_volume *volume; /* resolved */
+    cwi_cell_sampler cells;  /* of an irregular grid */
     float *scalars;
 } sampling;
 
@@ -40,8 +42,11 @@ static void sample_part(void *context, size_t k)
         double world[3];
         for (size_t a = 0; a < 3; a++)
             world[a] = s->mesh->origin[a] + (double)s->mesh->positions[3 * v + a];
-        const double value = cw_volume_sample(s->volume, world);
-        s->scalars[v] = (float)(isnan(value) ? sample_beside(s->volume, world) : value);
+        double value = s->volume->cells ? cwi_cell_sample(&s->cells, world)
+                                        : cw_volume_sample(s->volume, world);
+        if (isnan(value) && !s->volume->cells)
+            value = sample_beside(s->volume, world);
+        s->scalars[v] = (float)value;
     }
 }
 
@@ -65,10 +70,9 @@ static cw_sample_facts fill_missing(float *scalars, size_t count)
 static cw_status resolve_volume(const cw_volume *volume, cw_volume *out, cw_error *err)
 {
     cw_status st = cw_volume_select(volume, 0, 0, out, err);
-    if (st == CW_OK && (out->sparse || out->cells))
+    if (st == CW_OK && out->sparse)
         st = cwi_fail(err, CW_ERR_UNSUPPORTED,
-                      "colours are of volumes on a grid; cw_volume_densify() makes one of a "
-                      "sparse volume");
+                      "colours of a sparse volume need cw_volume_densify() before");
     return st;
 }
 
@@ -92,8 +96,12 @@ cw_status cw_mesh_sample(cw_mesh *mesh, const cw_volume *volume, const cw_sample
     if (!s.scalars)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the scalars of %zu vertices",
                         count);
-    st = cwi_each_layer((count + PART - 1) / PART, 64 * PART, d.threads, &d.progress,
-                        "sampling", sample_part, &s, err);
+    if (view.cells)
+        st = cwi_cell_sampler_build(&view, &s.cells, err);
+    if (st == CW_OK)
+        st = cwi_each_layer((count + PART - 1) / PART, 64 * PART, d.threads, &d.progress,
+                            "sampling", sample_part, &s, err);
+    cwi_cell_sampler_free(&s.cells);
     if (st == CW_OK) {
         found = fill_missing(s.scalars, count);
         if (found.missing == count)

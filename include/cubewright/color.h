@@ -46,10 +46,11 @@ typedef struct cw_sample_facts {
  * value, get the lowest value of the others; they are counted.
  *
  * mesh     its scalars are set in place, or added; unchanged on failure
- * volume   borrowed: its first component and step; an even or rectilinear grid
+ * volume   borrowed: its first component and step; of irregular grids values are linear in the
+ *          tetrahedra into which cells are divided, so along edges as well
  * desc     borrowed; NULL means all defaults
  * facts    may be NULL
- * Returns  CW_ERR_ARGUMENT as cw_mesh_check(), cw_volume_resolve(); CW_ERR_UNSUPPORTED for other
+ * Returns  CW_ERR_ARGUMENT as cw_mesh_check(), cw_volume_resolve(); CW_ERR_UNSUPPORTED for sparse
  *          volumes; CW_ERR_EMPTY: no vertex has a value; CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
  * Threads  reentrant; the same to the bit for any number of threads */
 CW_NODISCARD CW_API cw_status cw_mesh_sample(cw_mesh *mesh, const cw_volume *volume,

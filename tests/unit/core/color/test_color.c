@@ -103,6 +103,64 @@ static void samples_without_a_value_count_as_missing(void **state)
     cw_volume_free(&v);
 }
 
+/* One cell of each shape, far from 0: linear inside and on its edges, the nearest value just outside. */
+static void cells_are_sampled(void **state)
+{
+    (void)state;
+    static const double cube[8][3] = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0},
+                                      {0, 0, 4}, {4, 0, 4}, {4, 4, 4}, {0, 4, 4}};
+    static const uint8_t corners[CW_SHAPE_COUNT][8] = {
+        [CW_TETRAHEDRON] = {0, 1, 3, 4},
+        [CW_PYRAMID] = {0, 1, 2, 3, 4},
+        [CW_WEDGE] = {0, 3, 1, 4, 7, 5},
+        [CW_HEXAHEDRON] = {0, 1, 2, 3, 4, 5, 6, 7}};
+    static const size_t counts[CW_SHAPE_COUNT] = {4, 5, 6, 8};
+    static const double at[][3] = {{1, 1, 0.5}, {0, 0, 2.5},      {1.25, 0, 0},
+                                   {0.5, 2, 1}, {0.5, 0.5, -0.1}, {2, 2, 9}};
+    enum { COUNT = sizeof at / sizeof *at };
+    for (int shape = 0; shape < CW_SHAPE_COUNT; shape++) {
+        double points[24], values[8];
+        uint32_t numbers[8];
+        const uint8_t shapes[1] = {(uint8_t)shape};
+        for (size_t c = 0; c < counts[shape]; c++) {
+            numbers[c] = (uint32_t)c;
+            for (size_t a = 0; a < 3; a++)
+                points[3 * c + a] = 1e4 + cube[corners[shape][c]][a];
+            values[c] = linear_at(points + 3 * c);
+        }
+        const cw_cells cells = {
+            .points = points, .count = 1, .shapes = shapes, .corners = numbers};
+        cw_volume v = {
+            .data = values, .type = CW_F64, .dim = {counts[shape], 1, 1}, .cells = &cells};
+        cw_mesh m;
+        cw_sample_facts facts;
+        cw_error err = {0};
+        assert_ok(cwi_mesh_alloc(&m, COUNT, 0, false, &err), err);
+        for (size_t n = 0; n < 3 * COUNT; n++)
+            m.positions[n] = (float)at[n / 3][n % 3];
+        for (int a = 0; a < 3; a++)
+            m.origin[a] = 1e4;
+        assert_ok(cw_mesh_sample(&m, &v, NULL, &facts, &err), err);
+        for (size_t n = 0; n < 4; n++) {
+            const double world[3] = {1e4 + at[n][0], 1e4 + at[n][1], 1e4 + at[n][2]};
+            assert_near((double)m.scalars[n], linear_at(world), 0.01);
+        }
+        assert_near((double)m.scalars[4], linear_at((const double[]){1e4, 1e4, 1e4}) + 1.5,
+                    0.3);
+        assert_int_equal(facts.missing, 1);
+        for (long n = 0;; n++) {
+            cwi_alloc_fail_after(n);
+            const cw_status st = cw_mesh_sample(&m, &v, NULL, NULL, &err);
+            if (!cwi_alloc_fail_after(-1))
+                break;
+            assert_fails(st, CW_ERR_NO_MEMORY, "no memory", err);
+        }
+        values[0] = NAN; /* a corner of every tetrahedron */
+        assert_int_equal(cw_mesh_sample(&m, &v, NULL, NULL, &err), CW_ERR_EMPTY);
+        cw_mesh_free(&m);
+    }
+}
+
 static void threads_do_not_matter(void **state)
 {
     (void)state;
@@ -210,6 +268,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(values_are_those_of_the_world),
         cmocka_unit_test(samples_without_a_value_count_as_missing),
+        cmocka_unit_test(cells_are_sampled),
         cmocka_unit_test(threads_do_not_matter),
         cmocka_unit_test(maps_run_from_low_to_high),
         cmocka_unit_test(scalars_become_colours),
