@@ -1,6 +1,8 @@
 /* The command convert: writes a mesh in another format, merged or split into its parts. */
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
+#include "cli/framework/filter_options.h"
+#include "cli/inputs/cut_options.h"
 #include "cli/results/mesh_write_options.h"
 #include "cli/results/output_names.h"
 #include "cli/results/write_result.h"
@@ -15,6 +17,7 @@ typedef struct convert_args {
     cli_written written;
     const char *output, *json;
     int progress;
+    cli_plane cut;
     bool merge, split, check, orient;
 } convert_args;
 
@@ -34,6 +37,10 @@ static const cli_option options[] = {
     {"orient", 0, CLI_FLAG, NULL,
      "Flip shells that face the wrong way: outer ones outward, cavities inward (off)",
      offsetof(convert_args, orient)},
+    {"cut-plane", 0, CLI_PLANE, "PLANE",
+     "Cut by a plane, keep what is above, and close it flat: z=5mm, z=10% of the box, -z=5mm keeps "
+     "what is below, or x,y,z:nx,ny,nz (off)",
+     offsetof(convert_args, cut)},
     {"check", 0, CLI_FLAG, NULL, "Measure the mesh: closed, manifold, size (on; --no-check)",
      offsetof(convert_args, check)},
     CLI_JSON_OPTION(convert_args),
@@ -46,6 +53,7 @@ static const cli_option options[] = {
 typedef struct run_state {
     const convert_args *args;
     cli_mesh mesh;
+    cw_cut_facts cut;
     cli_outputs outputs;
     cli_report report;
     double start;
@@ -64,6 +72,8 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
     cli_json_bool(j, "merge", args->merge);
     cli_json_bool(j, "split", args->split);
     cli_json_bool(j, "orient", args->orient);
+    if (args->cut.given)
+        cli_json_text(j, "cut_plane", cli_plane_text(&args->cut));
 }
 
 static void put_facts(cli_json *j, const void *p)
@@ -71,6 +81,8 @@ static void put_facts(cli_json *j, const void *p)
     const run_state *s = p;
     if (s->mesh.file.format)
         cli_json_mesh_file(j, "input", &s->mesh);
+    if (s->args->cut.given)
+        cli_json_cut(j, &s->cut);
 }
 
 /* The report is an output, too: none is written when it is the input or a mesh. */
@@ -122,6 +134,8 @@ static cw_status read_input(run_state *s, cw_error *err)
                          : cli_read_mesh(path, args->input.reader, &args->input, &s->mesh, err);
     if (st == CW_OK && args->orient)
         st = cli_orient_mesh(&s->mesh, (int)args->input.threads, err);
+    if (st == CW_OK && args->cut.given)
+        st = cli_cut_parts(&args->cut, &s->mesh, &s->cut, err);
     if (st != CW_OK)
         return st;
     cli_report_end(&s->report, "read", 1, cli_mesh_triangles(&s->mesh));

@@ -86,6 +86,10 @@ static const cli_option options[] = {
      offsetof(cli_extract_args, smooth)},
     {"max-move", 0, CLI_LENGTH, "L", "How far --smooth may move a vertex (0.5vox)",
      offsetof(cli_extract_args, max_move)},
+    {"cut-plane", 0, CLI_PLANE, "PLANE",
+     "Cut by a plane, keep what is above, and close it flat: z=5mm, z=10% of the box, -z=5mm keeps "
+     "what is below, or x,y,z:nx,ny,nz (off)",
+     offsetof(cli_extract_args, cut)},
     {"normals", 0, CLI_CHOICE, "field/none",
      "Vertex normals from the field's gradient, or none (field)",
      offsetof(cli_extract_args, normals)},

@@ -215,6 +215,8 @@ cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--max-move is for --smooth");
     if (args->smooth.given && args->pixel.cull)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--cull cannot be combined with --smooth");
+    if (args->cut.given && args->pixel.cull)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--cull cannot be combined with --cut-plane");
     st = cli_check_color(&args->color, err);
     if (st == CW_OK)
         st = check_print(args, err);

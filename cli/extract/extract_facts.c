@@ -146,6 +146,8 @@ void cli_extract_put_params(cli_json *j, const void *p, const cli_made *made)
     }
     if (args->fill_voids)
         cli_json_bool(j, "fill_voids", true);
+    if (args->cut.given)
+        cli_json_text(j, "cut_plane", cli_plane_text(&args->cut));
     if (args->smooth.given) {
         cli_json_text(j, "smooth", cli_smoothing_text(&args->smooth));
         cli_json_number(j, "max_move_mm", cli_extract_smoothing(s).max_move_mm);
@@ -192,6 +194,8 @@ size_t cli_extract_provenance(const cli_extract_run *s, size_t n, cli_making *ma
                  cli_smoothing_text(&args->smooth), cli_extract_smoothing(s).max_move_mm);
         lines[count++] = (cw_provenance){"smoothed", making->smooth};
     }
+    if (args->cut.given)
+        lines[count++] = (cw_provenance){"cut", cli_plane_text(&args->cut)};
     if (args->pixel.pixels.given)
         snprintf(simplify, sizeof making->simplify, "to %.9g pixels of %zu cameras",
                  args->pixel.pixels.value, s->plan.view_count);

@@ -25,6 +25,7 @@ typedef struct cli_extract_args {
     size_t largest; /* components to keep; 0: all */
     bool fill_voids;
     cli_smoothing smooth;
+    cli_plane cut;
     cli_length max_move;
     cli_color_args color;
     int profile; /* CLI_PROFILE_... */
@@ -76,7 +77,7 @@ typedef struct cli_extract_run {
     cli_extract_output output;
 } cli_extract_run;
 
-enum { CLI_EXTRACT_PROVENANCE = 6 };
+enum { CLI_EXTRACT_PROVENANCE = 7 };
 
 /* ---- arguments --------------------------------------------------------------------------- */
 

@@ -39,7 +39,7 @@ cli_wanted cli_extract_wants(const cli_extract_run *s, double iso)
                     .snap = s->args->snap.value,
                     .no_normals = s->args->normals ||
                                   (s->args->lod.count && cli_extract_shades_levels(s) &&
-                                   !s->args->smooth.given),
+                                   !s->args->smooth.given && !s->args->cut.given),
                     .threads = (int)s->args->input.threads,
                     .max_triangles = s->args->max_triangles,
                     .extra_bytes = s->args->check || s->args->fill_voids ? cli_check_bytes()
@@ -48,6 +48,7 @@ cli_wanted cli_extract_wants(const cli_extract_run *s, double iso)
         .least_mm3 = least_mm3,
         .largest = cli_extract_largest(s->args),
         .fill_voids = s->args->fill_voids,
+        .cut = s->args->cut.given ? &s->args->cut : NULL,
         .smooths = s->args->smooth.given,
         .smooth = s->args->smooth.given ? cli_extract_smoothing(s) : (cw_smooth_desc){0},
     };
@@ -135,6 +136,7 @@ cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
     cw_drop_counts smaller = {0};
     w.filled = &made->voids;
     w.smoothed = &made->smoothed;
+    w.cut_facts = &made->cut;
     w.smaller = &smaller;
     cw_drop_counts *dropped = &made->components;
     double error;
@@ -172,6 +174,9 @@ cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
     made->is_smoothed = w.smooths;
     if (w.smooths)
         tell_smoothing(s, made);
+    made->is_cut = w.cut != NULL;
+    if (w.cut)
+        cli_tell_cut(s->input.volume.path, w.cut, &made->cut);
     if (s->args->pixel.cull)
         cli_say("%s: %.3g %% of the voxels are in bricks that cameras see; %s triangles in "
                 "them that no camera sees are left out",
@@ -252,7 +257,8 @@ cw_status cli_extract_judge(cli_extract_run *s, cli_made *made, const cw_mesh *m
             s->input.volume.path);
         return CW_OK;
     }
-    cw_status st = measure_from_field(s, made, mesh, err);
+    /* a section is far from the isosurface, as it should be */
+    cw_status st = args->cut.given ? CW_OK : measure_from_field(s, made, mesh, err);
     return st == CW_OK && is_simplified && !s->plan.view_count && !args->pixel.most.given
                ? measure_from_full(s, made, mesh, counts, err)
                : st;

@@ -90,7 +90,7 @@ static cw_status finish_level(void *state, cli_made *made, cw_mesh *level, cw_er
     cw_status st = s->args->check ? hold_level(r, made, level, err) : CW_OK;
     if (st == CW_OK)
         st = cli_extract_color(s, NULL, level, err);
-    if (st != CW_OK || s->args->normals || s->args->smooth.given ||
+    if (st != CW_OK || s->args->normals || s->args->smooth.given || s->args->cut.given ||
         !cli_extract_shades_levels(s))
         return st;
     cli_report_begin(&s->output.report);

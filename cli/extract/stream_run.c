@@ -29,6 +29,7 @@ const char *cli_find_unstreamed(const cli_extract_args *args)
         {"--largest", args->largest > 0},
         {"--fill-voids", args->fill_voids},
         {"--smooth", args->smooth.given},
+        {"--cut-plane", args->cut.given},
         {"--color-by", args->color.by != NULL},
         {"--profile print", args->profile == CLI_PROFILE_PRINT},
         {"--snap", args->snap.value > 0},

@@ -1,5 +1,5 @@
 /* Parses and prints how volumes are filtered: other distances between voxels, and less noise; and
- * how surfaces are smoothed. */
+ * how surfaces are smoothed and cut. */
 #include "cli/framework/filter_options.h"
 
 #include "cli/framework/quantity.h"
@@ -169,4 +169,59 @@ const char *cli_smoothing_text(const cli_smoothing *s)
     else
         snprintf(text, sizeof text, "%s", method);
     return text;
+}
+
+/* Parses three numbers with commas between. */
+static bool parse_triple(const char **text, double out[3])
+{
+    for (int a = 0; a < 3; a++) {
+        if (a > 0 && *(*text)++ != ',')
+            return false;
+        if (!cwi_parse_double(text, &out[a]) || !isfinite(out[a]))
+            return false;
+    }
+    return true;
+}
+
+/* Parses a place along an axis: in mm, or percent of the box. */
+static bool parse_place(const char *text, double *place, bool *is_percent)
+{
+    static const struct {
+        const char *name;
+        double mm;
+    } units[] = {{"", 1}, {"mm", 1}, {"um", 1e-3}, {"cm", 10}, {"m", 1e3}, {"in", 25.4}};
+    if (!cwi_parse_double(&text, place) || !isfinite(*place))
+        return false;
+    *is_percent = strcmp(text, "%") == 0;
+    for (size_t u = 0; u < sizeof units / sizeof *units && !*is_percent; u++)
+        if (strcmp(text, units[u].name) == 0) {
+            *place *= units[u].mm;
+            return isfinite(*place);
+        }
+    return *is_percent;
+}
+
+bool cli_parse_plane(const char *text, cli_plane *out)
+{
+    *out = (cli_plane){.given = false};
+    if (strlen(text) >= sizeof out->text)
+        return false;
+    snprintf(out->text, sizeof out->text, "%s", text);
+    const bool is_below = *text == '-' && text[1] >= 'x';
+    const char *at = text + is_below;
+    if (*at >= 'x' && *at <= 'z') {
+        const int axis = *at - 'x';
+        out->normal[axis] = is_below ? -1 : 1;
+        out->given = at[1] == '=' && parse_place(at + 2, &out->point[axis], &out->is_percent);
+        return out->given;
+    }
+    out->given = parse_triple(&text, out->point) && *text++ == ':' &&
+                 parse_triple(&text, out->normal) && *text == '\0' &&
+                 (out->normal[0] != 0 || out->normal[1] != 0 || out->normal[2] != 0);
+    return out->given;
+}
+
+const char *cli_plane_text(const cli_plane *plane)
+{
+    return plane->text;
 }

@@ -183,6 +183,7 @@ size_t cli_option_size(const cli_option *o)
         [CLI_RESAMPLE] = sizeof(cli_resample),
         [CLI_DENOISE] = sizeof(cli_denoise),
         [CLI_SMOOTHING] = sizeof(cli_smoothing),
+        [CLI_PLANE] = sizeof(cli_plane),
         [CLI_LEVELS] = sizeof(cli_numbers),
         [CLI_COUNT] = sizeof(size_t),
         [CLI_COUNTS] = sizeof(cli_counts),
@@ -275,6 +276,10 @@ bool cli_option_text(const cli_option *o, const void *args, char *text, size_t s
         if (((const cli_denoise *)field)->given)
             snprintf(text, size, "%s", cli_denoise_text(field));
         break;
+    case CLI_PLANE:
+        if (((const cli_plane *)field)->given)
+            snprintf(text, size, "%s", cli_plane_text(field));
+        break;
     case CLI_SMOOTHING:
         if (((const cli_smoothing *)field)->given)
             snprintf(text, size, "%s", cli_smoothing_text(field));
@@ -335,6 +340,8 @@ static bool store_value(const cli_option *o, const char *text, void *field)
         return cli_parse_denoise(text, field);
     case CLI_SMOOTHING:
         return cli_parse_smoothing(text, field);
+    case CLI_PLANE:
+        return cli_parse_plane(text, field);
     case CLI_COUNT:
         return cli_parse_count(text, 1000, field);
     case CLI_COUNTS:
@@ -387,6 +394,9 @@ static const char *describe_expected(const cli_option *o)
         return "nlm or nlm:NOISE, aniso or aniso:STEPS (1 to 100) or aniso:STEPS:CONTRAST, "
                "gauss:L such as gauss:0.7vox or gauss:0.5mm, bilateral:L or bilateral:L:VALUES, or "
                "median:N (1 to 3 voxels)";
+    case CLI_PLANE:
+        return "an axis with a place, such as z=5mm, z=10% of the box, or -z=5mm to keep the other "
+               "side; or a point and a normal such as 0,0,5:0,0.1,1";
     case CLI_SMOOTHING:
         return "taubin or hc, with their iterations from 1 to 1000 such as taubin:10, or fair, with "
                "a length such as fair:4vox or fair:2mm";

@@ -27,6 +27,7 @@ typedef enum cli_kind {
     CLI_RESAMPLE,  /* cli_resample: iso, 0.5mm, 1x1x2mm; then a kernel: 0.5mm:cubic */
     CLI_DENOISE,   /* cli_denoise: gauss:0.7vox, median:1, bilateral:1vox:30, aniso:10, nlm */
     CLI_SMOOTHING, /* cli_smoothing: taubin, hc:20, fair:2vox */
+    CLI_PLANE,     /* cli_plane: z=5mm, -z=10%, 0,0,5:0,0.1,1 */
     CLI_STEPS,     /* cli_steps: 0:20:2, 0,3,7 or all */
     CLI_WEIGHTS,   /* cli_weights: normal:0.5,color:1; value has the names, parted by '/' */
     CLI_COMPONENT, /* cli_component: its number from 0, or mag */
@@ -128,6 +129,13 @@ typedef struct cli_smoothing {
     size_t iterations; /* 0: the method's own */
     cli_length width;  /* of fair; not given: its own */
 } cli_smoothing;
+
+/* A plane, and the side of it that is kept. */
+typedef struct cli_plane {
+    bool given, is_percent; /* of the box along an axis */
+    double point[3], normal[3];
+    char text[96]; /* as it was typed */
+} cli_plane;
 
 /* Selection among the values of a voxel. */
 typedef struct cli_component {

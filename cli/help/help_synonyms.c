@@ -25,6 +25,7 @@ const cli_synonym cli_synonyms[] = {
      "smooth|--denoise|--smooth-labels|--snap|--placement|--min-volume|--drop-components|--noise",
      "'smooth' and 'extract --smooth' smooth meshes, 'extract --denoise' the values of volumes, and "
      "'extract --labels' the surfaces of labels. --min-volume and --drop-components remove small components."},
+    {"slice off|plane|base|halve|section", "cut", "--cut-plane", NULL},
     {"cavit|enclosed|hollow inside", "void", "--fill-voids|--min-volume", NULL},
     {"hole|heal|fix|mend|broken", "repair", "repair|--fill|--wrap|--weld", NULL},
     {"watertight|leak", "closed", "closed|repair|--open|--orient|--by|--profile",

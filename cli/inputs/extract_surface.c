@@ -87,7 +87,8 @@ cw_status cli_extract_surface(const cli_volume *volume, cw_extractor *extractor,
 
 bool cli_wants_whole(const cli_wanted *wanted)
 {
-    return wanted->least_mm3 > 0 || wanted->largest || wanted->fill_voids || wanted->smooths;
+    return wanted->least_mm3 > 0 || wanted->largest || wanted->fill_voids || wanted->smooths ||
+           wanted->cut;
 }
 
 cw_status cli_fail_dropped(double least_mm3, const cw_drop_counts *dropped, cw_error *err)
@@ -103,6 +104,15 @@ static cw_status smooth_surface(const cli_wanted *wanted, cw_mesh *mesh, cw_erro
     desc.threads = wanted->extract.threads;
     desc.progress = cli_progress((double)mesh->triangle_count / 1e6, "Mtriangle");
     return cw_mesh_smooth(mesh, &desc, wanted->smoothed, err);
+}
+
+static cw_status cut_surface(const cli_wanted *wanted, cw_mesh *mesh, cw_error *err)
+{
+    double low[3], high[3];
+    cw_cut_facts own, *facts = wanted->cut_facts ? wanted->cut_facts : &own;
+    *facts = (cw_cut_facts){0};
+    cw_mesh_bounds(mesh, low, high);
+    return cli_cut_mesh(wanted->cut, low, high, mesh, facts, err);
 }
 
 cw_status cli_extract_wanted(const cli_volume *volume, cw_extractor *extractor,
@@ -125,6 +135,8 @@ cw_status cli_extract_wanted(const cli_volume *volume, cw_extractor *extractor,
         st = cli_fail_dropped(wanted->least_mm3, d, err);
     if (st == CW_OK && wanted->smooths)
         st = smooth_surface(wanted, mesh, err);
+    if (st == CW_OK && wanted->cut)
+        st = cut_surface(wanted, mesh, err);
     if (st == CW_OK)
         return CW_OK;
     cw_mesh_free(mesh);
@@ -183,7 +195,7 @@ cw_status cli_extract_simplified(const cli_volume *volume, const cli_wanted *wan
     cw_status st = dense && !cli_wants_whole(wanted)
                        ? simplify_slabs(volume, d, simplify, mesh, counts, err)
                        : simplify_whole(volume, wanted, simplify, mesh, counts, dropped, err);
-    if (st != CW_OK || !dense || d->no_normals || wanted->smooths)
+    if (st != CW_OK || !dense || d->no_normals || wanted->smooths || wanted->cut)
         return st;
     st = cw_extract_normals(&volume->view, &normals, mesh, err);
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);

@@ -2,6 +2,7 @@
 #ifndef CLI_INPUTS_EXTRACT_SURFACE_H
 #define CLI_INPUTS_EXTRACT_SURFACE_H
 
+#include "cli/inputs/cut_options.h"
 #include "cli/inputs/volume_input.h"
 
 #include <cubewright/extract.h>
@@ -51,6 +52,8 @@ typedef struct cli_wanted {
     bool smooths; /* then, by this: */
     cw_smooth_desc smooth;
     cw_smooth_facts *smoothed; /* set to what that did; may be NULL */
+    const cli_plane *cut;      /* plane to cut the surface by at last; default: it is not cut */
+    cw_cut_facts *cut_facts;   /* set to what that did; may be NULL */
 } cli_wanted;
 
 /* Returns true if components are left out, or all is smoothed: the surface is needed as a whole. */
@@ -59,7 +62,7 @@ bool cli_wants_whole(const cli_wanted *wanted);
 /* Fails with CW_ERR_EMPTY: all components enclose less than a volume. */
 cw_status cli_fail_dropped(double least_mm3, const cw_drop_counts *dropped, cw_error *err);
 
-/* The same without the components that are too small, and smoothed, if it is to be.
+/* The same without the components that are too small, smoothed and cut, if it is to be.
  * dropped   may be NULL
  * Returns   CW_ERR_EMPTY also when all are, and how much the largest encloses */
 CW_NODISCARD cw_status cli_extract_wanted(const cli_volume *volume, cw_extractor *extractor,

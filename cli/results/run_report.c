@@ -4,6 +4,7 @@
 
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
+#include "cli/inputs/cut_options.h"
 #include "cli/results/check_verdicts.h"
 #include "cli/results/compress_options.h"
 #include "cli/results/smoothed.h"
@@ -260,6 +261,8 @@ static void put_facts(cli_json *j, const cli_made *m)
         cli_json_number(j, "filled_mm3", m->voids.dropped_mm3);
         cli_json_close(j, '}');
     }
+    if (m->is_cut)
+        cli_json_cut(j, &m->cut);
     if (m->is_smoothed)
         cli_json_smoothed(j, &m->smoothed);
     if (m->print.count)

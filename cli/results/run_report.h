@@ -7,6 +7,7 @@
 #include "cli/results/printability.h"
 
 #include <cubewright/check.h>
+#include <cubewright/cut.h>
 #include <cubewright/extract.h>
 #include <cubewright/smooth.h>
 
@@ -83,6 +84,8 @@ typedef struct cli_made {
     cw_drop_counts components; /* when something was */
     bool fills_voids;
     cw_drop_counts voids; /* when they were filled */
+    bool is_cut;
+    cw_cut_facts cut; /* when it was */
     bool is_smoothed;
     cw_smooth_facts smoothed; /* when it was */
     cli_printed print;        /* of --profile print */

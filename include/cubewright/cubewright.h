@@ -6,6 +6,7 @@
 #include <cubewright/check.h>
 #include <cubewright/color.h>
 #include <cubewright/core.h>
+#include <cubewright/cut.h>
 #include <cubewright/distance.h>
 #include <cubewright/extract.h>
 #include <cubewright/field.h>

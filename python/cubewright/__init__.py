@@ -15,6 +15,7 @@ threads at once, as long as none writes to its arrays.
 from ._about import Feature, Format, features, formats, make
 from ._check import Check, Verdict, check, report
 from ._color import color_by
+from ._cut import Cut, cut
 from ._errors import Error, Status
 from ._extract import Extractor, LabelSurfaces, Patch, extract, extract_labels
 from ._library import lib as _lib
@@ -32,6 +33,7 @@ __version__: str = _lib.cw_version().decode()
 
 __all__ = [
     "Check",
+    "Cut",
     "Error",
     "Extractor",
     "Feature",
@@ -50,6 +52,7 @@ __all__ = [
     "Written",
     "check",
     "color_by",
+    "cut",
     "extract",
     "extract_labels",
     "features",

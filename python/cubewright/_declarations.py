@@ -1198,6 +1198,42 @@ cw_sample_facts._fields_ = [
 ]
 
 
+class cw_cut_desc(Structure):
+    point: Any
+    normal: Any
+    leave_open: bool
+    progress: Any
+
+
+cw_cut_desc._fields_ = [
+    ("point", c_double * 3),
+    ("normal", c_double * 3),
+    ("leave_open", c_bool),
+    ("progress", cw_progress),
+]
+
+
+class cw_cut_facts(Structure):
+    cut_triangles: int
+    dropped_triangles: int
+    cap_triangles: int
+    loops_closed: int
+    loops_open: int
+    area_mm2: float
+    moved_mm: float
+
+
+cw_cut_facts._fields_ = [
+    ("cut_triangles", c_size_t),
+    ("dropped_triangles", c_size_t),
+    ("cap_triangles", c_size_t),
+    ("loops_closed", c_size_t),
+    ("loops_open", c_size_t),
+    ("area_mm2", c_double),
+    ("moved_mm", c_double),
+]
+
+
 class cw_field_desc(Structure):
     field: int
     dim: Any
@@ -2743,6 +2779,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_colormap_color": (None, [c_int, c_double, POINTER(c_uint8)]),
     "cw_mesh_sample": (c_int, [POINTER(cw_mesh), POINTER(cw_volume), POINTER(cw_sample_desc), POINTER(cw_sample_facts), POINTER(cw_error)]),
     "cw_mesh_color": (c_int, [POINTER(cw_mesh), c_int, c_double, c_double, POINTER(cw_error)]),
+    "cw_mesh_cut": (c_int, [POINTER(cw_mesh), POINTER(cw_cut_desc), POINTER(cw_mesh), POINTER(cw_cut_facts), POINTER(cw_error)]),
     "cw_field_name": (c_char_p, [c_int]),
     "cw_field_about": (c_char_p, [c_int]),
     "cw_field_isovalue": (c_double, [c_int]),

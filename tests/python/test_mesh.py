@@ -167,6 +167,21 @@ class Coordinates(Case):
         with self.fails(cw.Status.ARGUMENT):
             cw.color_by(mesh, ball, low=2, high=1)
 
+    def test_cut_closes_flat(self):
+        ball = cw.extract(make_ball(), 0)
+        point = ball.vertices.mean(axis=0) + ball.origin
+        found = cw.cut(ball, point, (0, 0, 2))
+        self.assertIsInstance(found, cw.Cut)
+        self.assertEqual((found.loops_closed, found.loops_open), (1, 0))
+        self.assertGreater(found.area, 0)
+        self.assertTrue(cw.check(found.mesh, profile="print").holds)
+        self.assertEqual(cw.cut(ball, point, (1, 2, 3), leave_open=True).cap_triangles, 0)
+        with self.fails(cw.Status.ARGUMENT):
+            cw.cut(ball, point, (0, 0, 0))
+        with self.fails(cw.Status.EMPTY):
+            cw.cut(ball, (0, 0, 1e6), (0, 0, 1))
+        self.assertRaises(ValueError, lambda: cw.cut(ball, (0, 0), (0, 0, 1)))
+
     def test_repair_fills_drops_and_counts(self):
         ball = cw.extract(make_ball(), 0)
         triangles = np.concatenate([ball.triangles[5:], ball.triangles[50:60], ball.triangles[:1, ::-1]])

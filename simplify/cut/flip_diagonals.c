@@ -1,0 +1,211 @@
+/* Flips edges between the triangles of a filled section until they are Delaunay [Lawson1977]. Ears are
+ * thin, and a triangle as thin as the rounding of its corners has no direction of its own: it could
+ * cross the surface above. */
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/geometry/vec3.h"
+#include "simplify/cut/section.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { NONE = UINT32_MAX, MAX_FLIPS_EACH = 64, STEPS_A_REPORT = 4096 };
+
+/* Opposite angles must exceed 180 degrees by more than rounding, so that no edge flips twice. */
+static const double FLIP_MARGIN = 1e-9;
+
+typedef struct side_key {
+    uint64_t key; /* the lower vertex << 32 | the higher */
+    uint32_t side;
+} side_key;
+
+/* Sides are numbered 3 t + k: from corner k of triangle t to the next. */
+typedef struct flip_work {
+    const cwi_section *section;
+    uint32_t *corners; /* 3 for each triangle of the section */
+    size_t side_count;
+    uint32_t *twins; /* the same side of the other triangle; NONE: an edge of a loop */
+    uint32_t *stack; /* sides to look at */
+    bool *is_stacked;
+    size_t stack_count;
+} flip_work;
+
+static uint32_t next_side(uint32_t side)
+{
+    return side % 3 == 2 ? side - 2 : side + 1;
+}
+
+static int compare_sides(const void *a, const void *b)
+{
+    const side_key *s = a, *t = b;
+    if (s->key != t->key)
+        return s->key < t->key ? -1 : 1;
+    return (s->side > t->side) - (s->side < t->side);
+}
+
+static bool link_sides(flip_work *w)
+{
+    side_key *keys = cwi_alloc_array(w->side_count, sizeof *keys);
+    if (!keys)
+        return false;
+    for (uint32_t n = 0; n < w->side_count; n++) {
+        const uint32_t a = w->corners[n], b = w->corners[next_side(n)];
+        keys[n] = (side_key){a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a, n};
+    }
+    qsort(keys, w->side_count, sizeof *keys, compare_sides);
+    memset(w->twins, 0xff, w->side_count * sizeof *w->twins);
+    for (size_t n = 0, end; n < w->side_count; n = end) {
+        for (end = n + 1; end < w->side_count && keys[end].key == keys[n].key; end++)
+            ;
+        if (end == n + 2 && w->corners[keys[n].side] != w->corners[keys[n + 1].side]) {
+            w->twins[keys[n].side] = keys[n + 1].side;
+            w->twins[keys[n + 1].side] = keys[n].side;
+        }
+    }
+    cwi_free(keys);
+    return true;
+}
+
+static void push_side(flip_work *w, uint32_t side)
+{
+    const uint32_t twin = w->twins[side];
+    if (twin == NONE)
+        return;
+    side = side < twin ? side : twin;
+    if (!w->is_stacked[side])
+        w->stack[w->stack_count++] = side;
+    w->is_stacked[side] = true;
+}
+
+/* An angle between two edges: their dot product, and the length of their cross product. */
+typedef struct corner_angle {
+    double dot, cross;
+} corner_angle;
+
+static corner_angle measure_angle(const flip_work *w, uint32_t at, uint32_t a, uint32_t b)
+{
+    const float *p = w->section->cut->positions;
+    double u[3], v[3], cross[3];
+    for (size_t k = 0; k < 3; k++) {
+        u[k] = (double)p[3 * (size_t)a + k] - (double)p[3 * (size_t)at + k];
+        v[k] = (double)p[3 * (size_t)b + k] - (double)p[3 * (size_t)at + k];
+    }
+    cwi_cross(u, v, cross);
+    return (corner_angle){cwi_dot(u, v), sqrt(cwi_dot(cross, cross))};
+}
+
+static double measure_width(const flip_work *w, uint32_t a, uint32_t b, uint32_t c)
+{
+    const float *p = w->section->cut->positions;
+    const uint32_t corners[3] = {a, b, c};
+    double longest = 0;
+    for (size_t k = 0; k < 3; k++) {
+        double square = 0;
+        for (size_t n = 0; n < 3; n++) {
+            const double side = (double)p[3 * (size_t)corners[k] + n] -
+                                (double)p[3 * (size_t)corners[(k + 1) % 3] + n];
+            square += side * side;
+        }
+        longest = cwi_greater(longest, square);
+    }
+    return longest > 0 ? measure_angle(w, a, b, c).cross / sqrt(longest) : 0;
+}
+
+/* Returns true if the diagonal of a, d, b, c from d to c is better than that from a to b: because a
+ * triangle was as thin as the rounding, or because the sum of the angles at c and d is larger. */
+static bool is_better(const flip_work *w, uint32_t a, uint32_t b, uint32_t c, uint32_t d)
+{
+    const double thin = w->section->cut->tolerance;
+    const double before = cwi_lesser(measure_width(w, a, b, c), measure_width(w, b, a, d));
+    const double after = cwi_lesser(measure_width(w, a, d, c), measure_width(w, d, b, c));
+    if (before < thin || after < thin)
+        return after > before * (1 + FLIP_MARGIN);
+    const corner_angle one = measure_angle(w, c, a, b), two = measure_angle(w, d, a, b);
+    const double sum = one.dot * two.cross + two.dot * one.cross;
+    const double size = sqrt(one.dot * one.dot + one.cross * one.cross) *
+                        sqrt(two.dot * two.dot + two.cross * two.cross);
+    return sum < -FLIP_MARGIN * size;
+}
+
+/* Returns true if the other diagonal of the two triangles at a side is better, and inside of them. */
+static bool is_flip_better(const flip_work *w, uint32_t side)
+{
+    const uint32_t twin = w->twins[side];
+    const uint32_t a = w->corners[side], b = w->corners[next_side(side)],
+                   c = w->corners[next_side(next_side(side))],
+                   d = w->corners[next_side(next_side(twin))];
+    const cwi_section *s = w->section;
+    if (c == d || !is_better(w, a, b, c, d))
+        return false;
+    const int first = cwi_section_turn_vertices(s, a, b, c),
+              second = cwi_section_turn_vertices(s, b, a, d);
+    const int sign = first ? first : second;
+    return sign != 0 && first * second >= 0 && cwi_section_turn_vertices(s, a, d, c) == sign &&
+           cwi_section_turn_vertices(s, d, b, c) == sign;
+}
+
+static void set_twins(flip_work *w, uint32_t a, uint32_t b)
+{
+    w->twins[a] = b;
+    if (b != NONE)
+        w->twins[b] = a;
+}
+
+/* Turns a, b, c and b, a, d into a, d, c and d, b, c. */
+static void flip_side(flip_work *w, uint32_t side)
+{
+    const uint32_t twin = w->twins[side], bc = next_side(side), ca = next_side(bc),
+                   ad = next_side(twin), db = next_side(ad);
+    const uint32_t c = w->corners[ca], d = w->corners[db];
+    const uint32_t beyond_ad = w->twins[ad], beyond_bc = w->twins[bc];
+    w->corners[bc] = d; /* side: a to d; bc: d to c; ca stays */
+    w->corners[ad] = c; /* twin: b to c; ad: c to d; db stays */
+    set_twins(w, side, beyond_ad);
+    set_twins(w, twin, beyond_bc);
+    set_twins(w, bc, ad);
+    push_side(w, side);
+    push_side(w, ca);
+    push_side(w, twin);
+    push_side(w, db);
+}
+
+static cw_status flip_sides(flip_work *w, cw_error *err)
+{
+    size_t flips = MAX_FLIPS_EACH * w->side_count;
+    for (uint32_t n = 0; n < w->side_count; n++)
+        push_side(w, n);
+    for (size_t step = 0; w->stack_count && flips; step++) {
+        const uint32_t side = w->stack[--w->stack_count];
+        if (step % STEPS_A_REPORT == 0) {
+            cw_status st = cwi_progress(&w->section->cut->desc.progress, "fill", 1, err);
+            if (st != CW_OK)
+                return st;
+        }
+        w->is_stacked[side] = false;
+        if (w->twins[side] == NONE || !is_flip_better(w, side))
+            continue;
+        flip_side(w, side);
+        flips--;
+    }
+    return CW_OK;
+}
+
+cw_status cwi_section_flip(const cwi_section *s, size_t first, cw_error *err)
+{
+    flip_work w = {.section = s,
+                   .corners = s->cut->triangles + 3 * first,
+                   .side_count = 3 * (s->cut->triangle_count - first)};
+    if (!w.side_count)
+        return CW_OK;
+    w.twins = cwi_alloc_array(w.side_count, sizeof *w.twins);
+    w.stack = cwi_alloc_array(w.side_count, sizeof *w.stack);
+    w.is_stacked = cwi_alloc_zeroed(w.side_count, sizeof *w.is_stacked);
+    const bool ok = w.twins && w.stack && w.is_stacked && link_sides(&w);
+    cw_status st =
+        ok ? flip_sides(&w, err)
+           : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to flip %zu edges", w.side_count);
+    cwi_free(w.twins);
+    cwi_free(w.stack);
+    cwi_free(w.is_stacked);
+    return st;
+}

@@ -1,0 +1,203 @@
+/* Cuts a mesh by a plane: triangles are clipped, the section's edges linked to loops, and the loops
+ * filled. */
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/geometry/vec3.h"
+#include "core/mesh/mesh.h"
+#include "simplify/cut/cut_state.h"
+
+#include <string.h>
+
+static const size_t MAX_TRIANGLES = UINT32_MAX / 3;
+
+/* A vertex nearer to the plane than this fraction of the largest coordinate is in it: about four
+ * steps of single precision. */
+static const double NEARNESS = 4e-7;
+
+static cw_status check_input(const cw_mesh *mesh, const cw_cut_desc *d, cw_error *err)
+{
+    for (int a = 0; a < 3; a++) {
+        if (!isfinite(d->normal[a]))
+            return cwi_fail(err, CW_ERR_ARGUMENT, "normal[%d] is %g; it must be finite", a,
+                            d->normal[a]);
+        if (!isfinite(d->point[a]))
+            return cwi_fail(err, CW_ERR_ARGUMENT, "point[%d] is %g; it must be finite", a,
+                            d->point[a]);
+    }
+    if (d->normal[0] == 0 && d->normal[1] == 0 && d->normal[2] == 0)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "normal is 0, 0, 0; it must have a length");
+    cw_status st = cw_mesh_check(mesh, err);
+    if (st == CW_OK &&
+        (mesh->triangle_count > MAX_TRIANGLES || mesh->vertex_count > MAX_TRIANGLES))
+        st = cwi_fail(err, CW_ERR_LIMIT,
+                      "%zu triangles and %zu vertices; at most %zu of each are cut",
+                      mesh->triangle_count, mesh->vertex_count, MAX_TRIANGLES);
+    return st;
+}
+
+double cwi_cut_distance(const cwi_cut *c, size_t v)
+{
+    double sum = -c->offset;
+    for (size_t a = 0; a < 3; a++)
+        sum += c->normal[a] * (double)c->mesh->positions[3 * v + a];
+    return sum;
+}
+
+/* Sets the plane in the coordinates of the mesh's positions. */
+static void set_plane(cwi_cut *c)
+{
+    double largest = 0;
+    memcpy(c->normal, c->desc.normal, sizeof c->normal);
+    cwi_normalise(c->normal);
+    for (int a = 0; a < 3; a++) {
+        c->offset += c->normal[a] * (c->desc.point[a] - c->mesh->origin[a]);
+        c->axis = fabs(c->normal[a]) > fabs(c->normal[c->axis]) ? a : c->axis;
+    }
+    for (size_t n = 0; n < 3 * c->mesh->vertex_count; n++)
+        largest = cwi_greater(largest, fabs((double)c->mesh->positions[n]));
+    c->tolerance = NEARNESS * largest;
+}
+
+/* Finds the sides of all vertices, and tells which of them triangles have. */
+static bool find_sides(cwi_cut *c, bool has[3])
+{
+    const cw_mesh *m = c->mesh;
+    c->side = cwi_alloc_array(m->vertex_count, sizeof *c->side);
+    if (!c->side)
+        return false;
+    for (size_t v = 0; v < m->vertex_count; v++) {
+        const double distance = cwi_cut_distance(c, v);
+        c->side[v] = (int8_t)((distance > c->tolerance) - (distance < -c->tolerance));
+    }
+    for (size_t n = 0; n < 3 * m->triangle_count; n++)
+        has[c->side[m->triangles[n]] + 1] = true;
+    return true;
+}
+
+/* --- the result --------------------------------------------------------------------------- */
+
+/* Makes arrays of the attributes that the mesh has. */
+static cw_status alloc_result(const cwi_cut *c, cw_mesh *out, cw_error *err)
+{
+    const cw_mesh *m = c->mesh;
+    const size_t count = c->vertex_count;
+    cw_status st = cwi_mesh_alloc(out, count, c->triangle_count, m->normals != NULL, err);
+    if (st != CW_OK)
+        return st;
+    memcpy(out->origin, m->origin, sizeof out->origin);
+    memcpy(out->affine, m->affine, sizeof out->affine);
+    out->scalars = m->scalars ? cwi_alloc_array(count, sizeof *out->scalars) : NULL;
+    out->colors = m->colors ? cwi_alloc_array(count, 4 * sizeof *out->colors) : NULL;
+    out->labels = m->labels ? cwi_alloc_array(count, sizeof *out->labels) : NULL;
+    if ((m->scalars && !out->scalars) || (m->colors && !out->colors) ||
+        (m->labels && !out->labels))
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for attributes of %zu vertices",
+                        count);
+    return CW_OK;
+}
+
+/* Sets a vertex' normal: at a filled section halfway to the normal of the section. */
+static void set_normal(const cwi_cut *c, const cwi_cut_source *s, bool halfway, float *normal)
+{
+    double sum[3];
+    for (size_t a = 0; a < 3; a++)
+        sum[a] = (double)c->mesh->normals[3 * (size_t)s->a + a] * (1 - s->t) +
+                 (double)c->mesh->normals[3 * (size_t)s->b + a] * s->t;
+    cwi_normalise(sum);
+    for (int a = 0; a < 3 && halfway; a++)
+        sum[a] -= c->normal[a];
+    if (!cwi_normalise(sum))
+        memcpy(sum, c->normal, sizeof sum);
+    for (int a = 0; a < 3; a++)
+        normal[a] = (float)sum[a];
+}
+
+static void set_attributes(const cwi_cut *c, size_t n, cw_mesh *out)
+{
+    const cw_mesh *m = c->mesh;
+    const cwi_cut_source *s = c->sources + n;
+    const size_t a = s->a, b = s->b;
+    const bool is_same = a == b;
+    if (m->normals && is_same && !c->is_section[n])
+        memcpy(out->normals + 3 * n, m->normals + 3 * a, 3 * sizeof *m->normals);
+    else if (m->normals)
+        set_normal(c, s, !c->desc.leave_open, out->normals + 3 * n);
+    if (m->scalars)
+        out->scalars[n] =
+            is_same
+                ? m->scalars[a]
+                : (float)((double)m->scalars[a] * (1 - s->t) + (double)m->scalars[b] * s->t);
+    for (size_t k = 0; k < 4 && m->colors; k++)
+        out->colors[4 * n + k] =
+            (uint8_t)(m->colors[4 * a + k] * (1 - s->t) + m->colors[4 * b + k] * s->t + 0.5);
+    if (m->labels)
+        out->labels[n] = m->labels[s->t < 0.5 ? a : b];
+}
+
+static cw_status make_result(const cwi_cut *c, cw_mesh *out, cw_error *err)
+{
+    cw_status st = alloc_result(c, out, err);
+    if (st != CW_OK)
+        return st;
+    memcpy(out->positions, c->positions, 3 * c->vertex_count * sizeof *c->positions);
+    memcpy(out->triangles, c->triangles, 3 * c->triangle_count * sizeof *c->triangles);
+    for (size_t n = 0; n < c->vertex_count; n++)
+        if (c->sources[n].a != UINT32_MAX)
+            set_attributes(c, n, out);
+    if (!c->has_unused)
+        return CW_OK;
+    bool *marked = cwi_alloc_zeroed(out->triangle_count, sizeof *marked);
+    st = marked ? cwi_mesh_drop_marked(out, marked, err)
+                : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for marks of %zu triangles",
+                           out->triangle_count);
+    cwi_free(marked);
+    return st;
+}
+
+static cw_status cut_mesh(cwi_cut *c, cw_mesh *out, cw_error *err)
+{
+    bool has[3] = {false, false, false};
+    cw_status st = cwi_progress(&c->desc.progress, "cut", 0, err);
+    set_plane(c);
+    if (st == CW_OK && !find_sides(c, has))
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the sides of %zu vertices",
+                      c->mesh->vertex_count);
+    if (st == CW_OK && !has[CWI_CUT_ABOVE + 1])
+        st = cwi_fail(err, CW_ERR_EMPTY,
+                      "nothing is left: no triangle is above the plane of the cut");
+    if (st == CW_OK && !has[CWI_CUT_BELOW + 1])
+        return cwi_mesh_copy(c->mesh, out, err);
+    if (st == CW_OK)
+        st = cwi_cut_clip(c, err);
+    if (st == CW_OK)
+        st = cwi_cut_merge_equal(c, err);
+    if (st == CW_OK)
+        st = cwi_cut_link(c, err);
+    if (st == CW_OK)
+        st = cwi_cut_fill(c, err);
+    return st == CW_OK ? make_result(c, out, err) : st;
+}
+
+cw_status cw_mesh_cut(const cw_mesh *mesh, const cw_cut_desc *desc, cw_mesh *out,
+                      cw_cut_facts *facts, cw_error *err)
+{
+    CWI_REQUIRE(err, mesh, desc, out);
+    cwi_cut c = {.mesh = mesh, .desc = *desc};
+    *out = (cw_mesh){0};
+    cw_status st = check_input(mesh, desc, err);
+    if (st == CW_OK)
+        st = cut_mesh(&c, out, err);
+    if (st != CW_OK)
+        cw_mesh_free(out);
+    if (facts)
+        *facts = st == CW_OK ? c.facts : (cw_cut_facts){0};
+    cwi_free(c.side);
+    cwi_free(c.sources);
+    cwi_free(c.positions);
+    cwi_free(c.is_section);
+    cwi_free(c.triangles);
+    cwi_free(c.edges);
+    cwi_free(c.loop_vertices);
+    cwi_free(c.loop_ends);
+    return st;
+}
