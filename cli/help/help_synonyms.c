@@ -26,6 +26,8 @@ const cli_synonym cli_synonyms[] = {
      "'smooth' and 'extract --smooth' smooth meshes, 'extract --denoise' the values of volumes, and "
      "'extract --labels' the surfaces of labels. --min-volume and --drop-components remove small components."},
     {"cavit|enclosed|hollow inside", "void", "--fill-voids|--min-volume", NULL},
+    {"remesh|retriang|sliver|needle|fem|finite element|quality triangle", "remesh",
+     "remesh|--fem|--edge|--adaptive|--snap", NULL},
     {"hole|heal|fix|mend|broken", "repair", "repair|--fill|--wrap|--weld", NULL},
     {"watertight|leak", "closed", "closed|repair|--open|--orient|--by|--profile",
      "'repair' closes broken meshes. 'extract' makes closed meshes, 'check' finds open edges, and "
