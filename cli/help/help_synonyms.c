@@ -27,6 +27,8 @@ const cli_synonym cli_synonyms[] = {
      "'extract --labels' the surfaces of labels. --min-volume and --drop-components remove small components."},
     {"slice off|plane|base|halve|section", "cut", "--cut-plane", NULL},
     {"cavit|enclosed|hollow inside", "void", "--fill-voids|--min-volume", NULL},
+    {"remesh|retriang|sliver|needle|fem|finite element|quality triangle", "remesh",
+     "remesh|--fem|--edge|--adaptive|--snap", NULL},
     {"hole|heal|fix|mend|broken", "repair", "repair|--fill|--wrap|--weld", NULL},
     {"watertight|leak", "closed", "closed|repair|--open|--orient|--by|--profile",
      "'repair' closes broken meshes. 'extract' makes closed meshes, 'check' finds open edges, and "

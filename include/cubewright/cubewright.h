@@ -21,6 +21,7 @@
 #include <cubewright/picture.h>
 #include <cubewright/print.h>
 #include <cubewright/quality.h>
+#include <cubewright/remesh.h>
 #include <cubewright/render.h>
 #include <cubewright/repair.h>
 #include <cubewright/simplify.h>

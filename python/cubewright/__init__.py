@@ -23,6 +23,7 @@ from ._memory import memory_limit, memory_used
 from ._mesh import Mesh
 from ._progress import Progress
 from ._read import read_mesh, read_volume
+from ._remesh import Remeshed, remesh
 from ._render import render, write_png
 from ._repair import Repaired, repair
 from ._simplify import Smoothed, hollow, offset, simplify, simplify_levels, smooth, weld
@@ -43,6 +44,7 @@ __all__ = [
     "Mesh",
     "Patch",
     "Progress",
+    "Remeshed",
     "Repaired",
     "Smoothed",
     "Statistics",
@@ -64,6 +66,7 @@ __all__ = [
     "offset",
     "read_mesh",
     "read_volume",
+    "remesh",
     "render",
     "repair",
     "report",

@@ -2448,6 +2448,86 @@ cw_label_slices._fields_ = [
 ]
 
 
+class cw_remesh_desc(Structure):
+    edge_mm: float
+    shortest_mm: float
+    error_mm: float
+    feature_deg: float
+    min_angle_deg: float
+    iterations: int
+    threads: int
+    progress: Any
+    is_adaptive: bool
+
+
+cw_remesh_desc._fields_ = [
+    ("edge_mm", c_double),
+    ("shortest_mm", c_double),
+    ("error_mm", c_double),
+    ("feature_deg", c_double),
+    ("min_angle_deg", c_double),
+    ("iterations", c_size_t),
+    ("threads", c_int),
+    ("progress", cw_progress),
+    ("is_adaptive", c_bool),
+]
+
+
+class cw_remesh_facts(Structure):
+    edge_mm: float
+    shortest_mm: float
+    error_mm: float
+    feature_deg: float
+    min_angle_deg: float
+    iterations: int
+    triangles_before: int
+    triangles_after: int
+    min_edge_mm: float
+    mean_edge_mm: float
+    max_edge_mm: float
+    fitting_edges: float
+    smallest_deg: float
+    where: Any
+    below: int
+    features_before: int
+    features_after: int
+    border_before: int
+    border_after: int
+    crossings_before: int
+    crossings_after: int
+    beyond: int
+    attempts: int
+    is_undecided: bool
+
+
+cw_remesh_facts._fields_ = [
+    ("edge_mm", c_double),
+    ("shortest_mm", c_double),
+    ("error_mm", c_double),
+    ("feature_deg", c_double),
+    ("min_angle_deg", c_double),
+    ("iterations", c_size_t),
+    ("triangles_before", c_size_t),
+    ("triangles_after", c_size_t),
+    ("min_edge_mm", c_double),
+    ("mean_edge_mm", c_double),
+    ("max_edge_mm", c_double),
+    ("fitting_edges", c_double),
+    ("smallest_deg", c_double),
+    ("where", c_double * 3),
+    ("below", c_size_t),
+    ("features_before", c_size_t),
+    ("features_after", c_size_t),
+    ("border_before", c_size_t),
+    ("border_after", c_size_t),
+    ("crossings_before", c_size_t),
+    ("crossings_after", c_size_t),
+    ("beyond", c_size_t),
+    ("attempts", c_size_t),
+    ("is_undecided", c_bool),
+]
+
+
 class cw_repair_desc(Structure):
     weld_mm: float
     max_hole_mm: float
@@ -2917,6 +2997,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_label_slices_draw": (c_int, [POINTER(cw_label_slices), POINTER(cw_scene), POINTER(cw_picture), POINTER(cw_error)]),
     "cw_image_place": (None, [POINTER(cw_image), POINTER(cw_image), c_ssize_t, c_ssize_t]),
     "cw_image_tile": (c_int, [POINTER(cw_image), c_size_t, c_size_t, c_size_t, POINTER(c_uint8), POINTER(cw_image), POINTER(cw_error)]),
+    "cw_mesh_remesh": (c_int, [POINTER(cw_mesh), POINTER(cw_remesh_desc), POINTER(cw_mesh), POINTER(cw_remesh_facts), POINTER(cw_error)]),
     "cw_repair_has_cgal": (c_bool, []),
     "cw_mesh_repair": (c_int, [POINTER(cw_mesh), POINTER(cw_repair_desc), POINTER(cw_mesh), POINTER(cw_repair_facts), POINTER(cw_error)]),
     "cw_simplify_view_draw": (c_int, [POINTER(cw_simplify_view), POINTER(cw_mesh), POINTER(cw_error)]),

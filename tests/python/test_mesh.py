@@ -211,6 +211,24 @@ class Coordinates(Case):
         with self.fails(cw.Status.CANCELLED):
             cw.repair(broken, progress=lambda *_: False)
 
+    def test_remesh_makes_even_triangles(self):
+        ball = cw.extract(make_ball(), 0)
+        first = ball.triangles.copy()
+        size = float(np.ptp(ball.vertices, axis=0).max())
+        found = cw.remesh(ball, size / 15, min_angle=25, threads=2)
+        self.assertIsInstance(found, cw.Remeshed)
+        self.assertGreater(found.fitting_edges, 0.8)
+        self.assertEqual((found.beyond, found.below, found.border), (0, 0, 0))
+        self.assertTrue(cw.check(found.mesh, profile="print").holds)
+        np.testing.assert_array_equal(ball.triangles, first)
+        self.assertLess(cw.remesh(ball, size / 5, adaptive=True, error=size / 500).max_edge, size / 3)
+        for wrong in (lambda: cw.remesh(ball, -1), lambda: cw.remesh(ball, 1, error=float("inf"))):
+            self.assertRaises(ValueError, wrong)
+        with self.fails(cw.Status.ARGUMENT):
+            cw.remesh(ball, size, min_angle=50)
+        with self.fails(cw.Status.CANCELLED):
+            cw.remesh(ball, size / 15, progress=lambda *_: False)
+
     def test_weld_merges_corners(self):
         mesh = cw.extract(make_ball(), 0)
         corners = mesh.vertices[mesh.triangles.ravel()]
