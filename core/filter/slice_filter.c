@@ -167,8 +167,10 @@ cw_status cw_slice_filter_new(const cw_slice_source *source, const cw_slice_filt
 
 cw_slice_source cw_slice_filter_source(cw_slice_filter *filter)
 {
-    return (cw_slice_source){
-        .shape = filter->source.shape, .read = read_filtered, .user = filter};
+    return filter ? (cw_slice_source){.shape = filter->source.shape,
+                                      .read = read_filtered,
+                                      .user = filter}
+                  : (cw_slice_source){0};
 }
 
 void cw_slice_filter_free(cw_slice_filter *filter)

@@ -41,9 +41,9 @@ CW_NODISCARD CW_API cw_status cw_slice_filter_new(const cw_slice_source *source,
                                                   const cw_slice_filter_desc *desc,
                                                   cw_slice_filter **out, cw_error *err);
 
-/* Returns the filtered source, for cw_extract_stream() and others. It returns what the source
- * below returned, or the filter.
- * filter  borrowed: it must outlive the source */
+/* Returns the filtered source, for cw_extract_stream() and others. Reading from it returns what the
+ * source below returned, or the filter.
+ * filter  borrowed: it must outlive the source. NULL: a zeroed source */
 CW_API cw_slice_source cw_slice_filter_source(cw_slice_filter *filter);
 
 /* Frees a filter. Harmless on NULL. */
