@@ -35,7 +35,8 @@ typedef struct cw_cut_facts {
  * side. Triangles in the plane go, and the section is filled again. Edges that cross the plane get
  * one vertex, which both triangles share. All vertices of the section lie in the plane as exactly
  * as single precision allows: exactly, if the plane is normal to an axis. Where surfaces touch at a
- * vertex in the plane, it becomes one vertex for each.
+ * vertex in the plane, it becomes one vertex for each. At a plane that is normal to no axis a
+ * surface that leans on it may cross the section by rounding; cw_self_intersections() tells.
  *
  * The loops of the section are filled by triangles, each of its edges once. A loop that runs the
  * other way is a hole of the loop around it, or filled by itself if there is none. Chains of open
