@@ -7,7 +7,9 @@
 #include <math.h>
 #include <string.h>
 
-enum { NONE = UINT32_MAX, STEPS_A_REPORT = 4096, MAX_FORCED = 64 };
+#define NONE UINT32_MAX
+
+enum { STEPS_A_REPORT = 4096, MAX_FORCED = 64 };
 
 /* How strict an ear is: without nodes in it; without nodes in it by more than the tolerance; convex;
  * any. Rounding can make loops touch or cross, and then the first is not enough. */

@@ -9,7 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NONE = UINT32_MAX, MAX_FLIPS_EACH = 64, STEPS_A_REPORT = 4096 };
+#define NONE UINT32_MAX
+
+enum { MAX_FLIPS_EACH = 64, STEPS_A_REPORT = 4096 };
 
 /* Opposite angles must exceed 180 degrees by more than rounding, so that no edge flips twice. */
 static const double FLIP_MARGIN = 1e-9;

@@ -9,7 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NONE = UINT32_MAX, HOLES_A_REPORT = 64 };
+#define NONE UINT32_MAX
+
+enum { HOLES_A_REPORT = 64 };
 
 /* Mean number of rows that an edge may span. */
 static const double MAX_MEAN_SPAN = 4;

@@ -8,7 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NONE = UINT32_MAX, MAX_NEIGHBOURS = 64 };
+#define NONE UINT32_MAX
+
+enum { MAX_NEIGHBOURS = 64 };
 
 /* A triangle at a vertex that may merge. */
 typedef struct vertex_triangle {

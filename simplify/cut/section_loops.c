@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { NONE = UINT32_MAX };
+#define NONE UINT32_MAX
 
 typedef struct link_work {
     cwi_cut *cut;
