@@ -21,7 +21,7 @@ static cw_volume make_noise(cw_type type, bool gaps)
     assert_ok(cw_volume_alloc(&v, type, (size_t[]){NX, NY, NZ}, 1, 1, &err), err);
     char *p = cw_volume_voxels(&v);
     for (size_t n = 0; n < (size_t)NX * NY * NZ; n++, p += cw_type_size(type))
-        cwi_voxel_put(type, p, 100 + 30 * cwi_gaussian(11, n));
+        cwi_voxel_put(type, p, fmin(fmax(100 + 30 * cwi_gaussian(11, n), 10), 250));
     if (gaps) {
         v.has_nodata = true;
         v.nodata = 7;
