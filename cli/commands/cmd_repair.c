@@ -143,38 +143,18 @@ static cw_status check_args(run_state *s, cw_error *err)
 
 /* --- work --------------------------------------------------------------------------------- */
 
-/* Returns the mean side of the voxels from which a mesh came; 0: the file does not tell. */
-static double voxel_side(const cw_mesh *mesh)
-{
-    double product = 1;
-    for (int k = 0; k < 3; k++)
-        product *= hypot(hypot(mesh->affine[0][k], mesh->affine[1][k]), mesh->affine[2][k]);
-    return cbrt(product);
-}
-
-static cw_status resolve_length(const run_state *s, const char *option,
-                                const cli_length *length, double *mm, cw_error *err)
-{
-    const double voxel_mm = voxel_side(&s->pieces.piece->input);
-    if (length->given && length->unit == CLI_VOXELS && !(voxel_mm > 0))
-        return cwi_fail(
-            err, CW_ERR_ARGUMENT,
-            "%s: %s: the file tells no voxels; give mm, or %% of its box's diagonal",
-            s->mesh.path, option);
-    *mm = length->given ? cli_length_mm(length, s->pieces.diagonal_mm, voxel_mm) : 0;
-    return CW_OK;
-}
-
 static cw_status resolve_lengths(run_state *s, cw_error *err)
 {
     const repair_args *args = s->args;
     s->desc = (cw_repair_desc){.flat_holes = args->flat,
                                .keep_crossings = args->keep_intersections,
                                .threads = s->threads};
-    cw_status st = resolve_length(s, "--weld", &args->weld, &s->desc.weld_mm, err);
+    cw_status st = cli_find_length(&s->pieces, "--weld", &args->weld, &s->desc.weld_mm, err);
     if (st == CW_OK)
-        st = resolve_length(s, "--fill", &args->fill, &s->desc.max_hole_mm, err);
-    return st == CW_OK ? resolve_length(s, "--wrap", &args->wrap, &s->desc.wrap_mm, err) : st;
+        st = cli_find_length(&s->pieces, "--fill", &args->fill, &s->desc.max_hole_mm, err);
+    return st == CW_OK
+               ? cli_find_length(&s->pieces, "--wrap", &args->wrap, &s->desc.wrap_mm, err)
+               : st;
 }
 
 /* Fails before any work when a wrap is asked for that this build cannot make. */

@@ -182,33 +182,13 @@ static cw_status check_args(run_state *s, cw_error *err)
 
 /* --- work --------------------------------------------------------------------------------- */
 
-/* Returns the mean side of the voxels from which a mesh came; 0: the file does not tell. */
-static double voxel_side(const cw_mesh *mesh)
-{
-    double product = 1;
-    for (int k = 0; k < 3; k++)
-        product *= hypot(hypot(mesh->affine[0][k], mesh->affine[1][k]), mesh->affine[2][k]);
-    return cbrt(product);
-}
-
-/* Finds a length in mm, 0 where none is given. */
-static cw_status resolve_length(const run_state *s, const char *option,
-                                const cli_length *length, double *mm, cw_error *err)
-{
-    const double voxel_mm = voxel_side(&s->pieces.piece->input);
-    if (length->given && length->unit == CLI_VOXELS && !(voxel_mm > 0))
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "%s: %s: the file tells no voxels; give mm, or %% of its box's "
-                        "diagonal",
-                        s->mesh.path, option);
-    *mm = length->given ? cli_length_mm(length, s->pieces.diagonal_mm, voxel_mm) : 0;
-    return CW_OK;
-}
-
 static cw_status resolve_lengths(run_state *s, cw_error *err)
 {
-    cw_status st = resolve_length(s, "--max-move", &s->args->max_move, &s->max_move_mm, err);
-    return st == CW_OK ? resolve_length(s, "--width", &s->args->width, &s->width_mm, err) : st;
+    cw_status st =
+        cli_find_length(&s->pieces, "--max-move", &s->args->max_move, &s->max_move_mm, err);
+    return st == CW_OK
+               ? cli_find_length(&s->pieces, "--width", &s->args->width, &s->width_mm, err)
+               : st;
 }
 
 static cw_status read_input(run_state *s, cw_error *err)

@@ -79,7 +79,7 @@ static void put_line(const line_writer *w, const char *format, ...)
         cli_say("%s: %s", w->path, text);
 }
 
-/* Prints a count of something and what is done about it, unless there is none. */
+/* Prints a count above 0, and the step that deals with it. */
 static void put_count(const line_writer *w, size_t count, const char *one, const char *many,
                       const char *done)
 {

@@ -293,7 +293,7 @@ CW_NODISCARD cw_status cli_count_inputs(const cli_command *command, int count, c
 /* Returns the option of a name, or NULL, and an error with the nearest name. */
 const cli_option *cli_find_option(const cli_command *command, const char *name, cw_error *err);
 
-/* Returns an error if a value is none of the option's kind. */
+/* Checks a value against the kind of its option. CW_ERR_ARGUMENT, CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cli_check_value(const cli_option *option, const char *value,
                                        cw_error *err);
 

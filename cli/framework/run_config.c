@@ -381,7 +381,7 @@ static void put_quoted(FILE *out, const char *text)
     fputc('"', out);
 }
 
-/* Returns true for options of a run; how much it prints is none of it. */
+/* Returns true for options that are saved: all but those of the output on the screen. */
 static bool is_saved(const cli_option *o)
 {
     static const char *const not_saved[] = {"quiet", "help", "config", "save-config"};

@@ -4,7 +4,7 @@
 
 #include "cli/framework/options.h"
 
-/* The words of a command, with those of its file before them. Zeroed, there are none. */
+/* The words of a file, and those of the command line behind them. Zeroed: empty. */
 typedef struct cli_words {
     int count;
     char **words;
@@ -19,8 +19,8 @@ typedef struct cli_words {
  * `inputs = ["ct"]`; sections such as [extract] are of that command alone. A key `command` must be
  * the command's name.
  * Returns  CW_ERR_IO        it cannot be read
- *          CW_ERR_FORMAT    a line is none of these
- *          CW_ERR_ARGUMENT  a key is no option of the command, or its value is none of its kind
+ *          CW_ERR_FORMAT    a line is of another form
+ *          CW_ERR_ARGUMENT  the command has no option of that name, or it takes other values
  *          Errors name the file and the line. CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cli_read_config(const cli_command *command, int count, char **words,
                                        cli_words *out, cw_error *err);

@@ -153,6 +153,28 @@ cw_status cli_compare_pieces(const cli_pieces *p, int threads, cli_comparison *c
     return in_file(p, st, err);
 }
 
+/* Returns the mean side of the voxels from which a mesh came; 0: the file does not tell. */
+static double find_voxel_side(const cw_mesh *mesh)
+{
+    double product = 1;
+    for (int k = 0; k < 3; k++)
+        product *= hypot(hypot(mesh->affine[0][k], mesh->affine[1][k]), mesh->affine[2][k]);
+    return cbrt(product);
+}
+
+cw_status cli_find_length(const cli_pieces *p, const char *option, const cli_length *length,
+                          double *mm, cw_error *err)
+{
+    const double voxel_mm = find_voxel_side(&p->piece->input);
+    if (length->given && length->unit == CLI_VOXELS && !(voxel_mm > 0))
+        return cwi_fail(
+            err, CW_ERR_ARGUMENT,
+            "%s: %s: the file tells no voxels; give mm, or %% of its box's diagonal", p->path,
+            option);
+    *mm = length->given ? cli_length_mm(length, p->diagonal_mm, voxel_mm) : 0;
+    return CW_OK;
+}
+
 cw_status cli_list_parts(const cli_pieces *p, cw_part **parts, cw_error *err)
 {
     *parts = calloc(p->count, sizeof **parts);

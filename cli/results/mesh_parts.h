@@ -51,6 +51,13 @@ CW_NODISCARD cw_status cli_hold_pieces(const cli_pieces *p, int threads, cw_erro
 CW_NODISCARD cw_status cli_compare_pieces(const cli_pieces *p, int threads, cli_comparison *c,
                                           cw_error *err);
 
+/* Finds a length in mm, 0 where none is given. Shares are of the diagonal of all; voxels are those from
+ * which the first piece came, by their mean side.
+ * option   is named in the error
+ * Returns  CW_ERR_ARGUMENT for voxels that the file does not tell */
+CW_NODISCARD cw_status cli_find_length(const cli_pieces *p, const char *option,
+                                       const cli_length *length, double *mm, cw_error *err);
+
 /* Lists what came out as parts to write; free the list with free(). */
 CW_NODISCARD cw_status cli_list_parts(const cli_pieces *p, cw_part **parts, cw_error *err);
 

@@ -4,6 +4,9 @@
 
 #include <cubewright/filter.h>
 
+/* Widest Gaussians in voxels, and how far they reach in standard deviations. */
+enum { CWI_GAUSS_MOST = 64, CWI_GAUSS_REACH = 4 };
+
 /* Resolves the first component and step of a volume for a filter.
  * what     names the filter in errors
  * Returns  CW_ERR_UNSUPPORTED for grids that are not even */

@@ -1,10 +1,9 @@
 /* Smooths a volume with a Gaussian. */
 #include "core/base/status.h"
+#include "core/filter/filter_work.h"
 #include "core/filter/separable.h"
 
 #include <math.h>
-
-static const double MOST = 64, REACH = 4; /* in voxels; in standard deviations */
 
 static double gauss_kernel(double x, double sigma)
 {
@@ -13,7 +12,7 @@ static double gauss_kernel(double x, double sigma)
 
 static cw_status set_weights(cwi_axis_weights *w, size_t samples, double sigma, cw_error *err)
 {
-    const double reach = ceil(REACH * sigma);
+    const double reach = ceil(CWI_GAUSS_REACH * sigma);
     const size_t taps = 2 * (size_t)reach + 1;
     cw_status st = cwi_axis_weights_init(w, samples, taps < samples ? taps : samples, err);
     for (size_t n = 0; n < samples && st == CW_OK; n++)
@@ -30,9 +29,10 @@ cw_status cw_volume_gauss(const cw_volume *volume, const double sigma[3],
     cw_volume in;
     *out = (cw_volume){0};
     for (int a = 0; a < 3; a++)
-        if (!(sigma[a] >= 0 && sigma[a] <= MOST))
+        if (!(sigma[a] >= 0 && sigma[a] <= CWI_GAUSS_MOST))
             return cwi_fail(err, CW_ERR_ARGUMENT,
-                            "sigma_voxels[%d] is %g; 0 to %g were expected", a, sigma[a], MOST);
+                            "sigma_voxels[%d] is %g; 0 to %d were expected", a, sigma[a],
+                            CWI_GAUSS_MOST);
     cw_status st = cwi_filter_input(volume, "a Gaussian", &in, err);
     for (int a = 0; a < 3 && st == CW_OK; a++)
         st = set_weights(w + a, in.dim[a], sigma[a], err);

@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/filter/filter_work.h"
 #include "core/volume/volume.h"
 
 #include <math.h>
@@ -11,9 +12,6 @@
 
 /* Limits of the slices that are made together: their bytes, their number. */
 enum { BLOCK_BYTES = 32 << 20, MOST_SLICES = 64 };
-
-/* How far a Gaussian reaches, in standard deviations, as in gauss.c. */
-static const double REACH = 4;
 
 struct cw_slice_filter {
     cw_slice_source source;
@@ -108,10 +106,10 @@ static cw_status check_desc(const cw_slice_filter_desc *d, cw_error *err)
     if (d->kind != CW_SLICE_GAUSS && d->kind != CW_SLICE_MEDIAN)
         return cwi_fail(err, CW_ERR_ARGUMENT, "kind is %d; it must be 0 or 1", (int)d->kind);
     for (int a = 0; a < 3 && d->kind == CW_SLICE_GAUSS; a++)
-        if (!(d->sigma_voxels[a] >= 0 && d->sigma_voxels[a] <= 64))
+        if (!(d->sigma_voxels[a] >= 0 && d->sigma_voxels[a] <= CWI_GAUSS_MOST))
             return cwi_fail(err, CW_ERR_ARGUMENT,
-                            "sigma_voxels[%d] is %g; 0 to 64 were expected", a,
-                            d->sigma_voxels[a]);
+                            "sigma_voxels[%d] is %g; 0 to %d were expected", a,
+                            d->sigma_voxels[a], CWI_GAUSS_MOST);
     if (d->kind == CW_SLICE_MEDIAN && (d->radius < 1 || d->radius > 3))
         return cwi_fail(err, CW_ERR_ARGUMENT, "radius is %zu; 1 to 3 were expected", d->radius);
     return CW_OK;
@@ -143,8 +141,9 @@ cw_status cw_slice_filter_new(const cw_slice_source *source, const cw_slice_filt
     const size_t *dim = source->shape.dim;
     f->source = *source;
     f->desc = *desc;
-    f->ahead = desc->kind == CW_SLICE_GAUSS ? (size_t)ceil(REACH * desc->sigma_voxels[2])
-                                            : desc->radius;
+    f->ahead = desc->kind == CW_SLICE_GAUSS
+                   ? (size_t)ceil(CWI_GAUSS_REACH * desc->sigma_voxels[2])
+                   : desc->radius;
     f->slice_bytes = dim[0] * dim[1] * cw_type_size(source->shape.type);
     if (!f->desc.slices)
         f->desc.slices = BLOCK_BYTES / f->slice_bytes < MOST_SLICES

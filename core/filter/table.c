@@ -10,6 +10,7 @@
 #include "core/base/status.h"
 #include "core/filter/byte_runs.h"
 #include "core/filter/inside.h"
+#include "core/geometry/affine.h"
 #include "core/volume/volume.h"
 
 #include <math.h>
@@ -278,13 +279,6 @@ static cw_status make_result(work *k, double *removed_mm3, cw_error *err)
     return st;
 }
 
-static double determinant(double (*m)[4])
-{
-    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-           m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-           m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-}
-
 cw_status cw_volume_remove_table(const cw_volume *volume, const cw_filter_desc *desc,
                                  cw_volume *out, double *removed_mm3, cw_error *err)
 {
@@ -302,7 +296,7 @@ cw_status cw_volume_remove_table(const cw_volume *volume, const cw_filter_desc *
     cw_volume_spacing(&in, mm);
     for (int a = 0; a < 3; a++)
         k.radius[a] = mm[a] > 0 ? fmin(BALL_MM / mm[a], MOST_RADIUS) : 0;
-    k.voxel_mm3 = fabs(determinant(in.affine));
+    k.voxel_mm3 = fabs(cwi_affine_determinant(in.affine[0]));
     k.air = (AIR - in.intercept) / in.slope;
     k.tissue = cwi_alloc_array(count, 3);
     k.removed = cwi_alloc_zeroed(in.dim[2], sizeof *k.removed);

@@ -117,7 +117,7 @@ static void finish_diagonal(fair_system *f)
     }
 }
 
-static void assemble(fair_system *f)
+static void assemble_system(fair_system *f)
 {
     const cwi_rings *r = &f->s->rings;
     memset(f->weights, 0, r->begin[r->vertices] * sizeof *f->weights);
@@ -323,7 +323,7 @@ cw_status cwi_smooth_fair(cwi_smoother *s, const cw_progress *progress, cw_error
         f.of_rims = n % 2 == 0;
         if (f.of_rims && !s->desc.move_border)
             continue;
-        assemble(&f);
+        assemble_system(&f);
         st = solve_system(&f, &part_progress, err);
     }
     cwi_free(f.weights);

@@ -77,7 +77,7 @@ static void add_ring(cw_mesh *m, const double (*outline)[2], size_t corners, siz
         }
 }
 
-static cw_print_facts measure(const cw_mesh *m, const cw_print_desc *desc)
+static cw_print_facts measure_print(const cw_mesh *m, const cw_print_desc *desc)
 {
     cw_print_facts facts;
     cw_error err = {0};
@@ -95,17 +95,17 @@ static void walls_are_as_thick_as_they_are(void **state)
         const double tube[4][2] = {{10, 0}, {10 + t, 0}, {10 + t, 20}, {10, 20}};
         cw_mesh plate = make_empty(), ring = make_empty(), hollow = make_empty();
         BOX(&plate, -10, -15, 3, 10, 15, 3 + t);
-        cw_print_facts f = measure(&plate, NULL);
+        cw_print_facts f = measure_print(&plate, NULL);
         assert_within(f.wall_mm, t, 1e-5);
         assert_true(f.wall_at[2] == 3 || fabs(f.wall_at[2] - 3 - t) < 1e-6);
         assert_within(f.thin_mm2, t < 0.8 ? 2 * 20 * 30 : 0, 1e-5);
         assert_true(isinf(f.gap_mm) && f.narrow_mm2 == 0);
         add_ring(&ring, tube, 4, 180);
-        f = measure(&ring, NULL);
+        f = measure_print(&ring, NULL);
         assert_within(f.wall_mm, t, 0.01);
         add_box(&hollow, (const double[3]){0, 0, 0}, (const double[3]){30, 30, 30}, false);
         add_box(&hollow, (const double[3]){9, 9, 9}, (const double[3]){30 - t, 21, 21}, true);
-        f = measure(&hollow, NULL);
+        f = measure_print(&hollow, NULL);
         assert_within(f.wall_mm, t, 1e-5);
         cw_mesh_free(&plate);
         cw_mesh_free(&ring);
@@ -126,7 +126,7 @@ static void walls_of_extracted_shapes_are_known(void **state)
         cw_volume volume = test_sample(rows[n].field, 64, CW_F32);
         cw_mesh m = test_extract(&volume, NULL, NULL);
         for (double limit = 0.8; limit < 100; limit *= 100) {
-            const cw_print_facts f = measure(&m, &(cw_print_desc){.min_wall_mm = limit});
+            const cw_print_facts f = measure_print(&m, &(cw_print_desc){.min_wall_mm = limit});
             assert_within(f.wall_mm, rows[n].wall, 0.02);
             assert_true(limit < 1 ? f.thin_mm2 == 0 : f.thin_mm2 > 0.99 * f.area_mm2);
         }
@@ -155,7 +155,7 @@ static void sharp_edges_are_no_walls(void **state)
             add_triangle(&m, a, a + 3, b);
             add_triangle(&m, b, a + 3, b + 3);
         }
-        const cw_print_facts f = measure(&m, &(cw_print_desc){.min_wall_mm = 1});
+        const cw_print_facts f = measure_print(&m, &(cw_print_desc){.min_wall_mm = 1});
         assert_true(f.volume_mm3 > 0);
         assert_true(f.thin_mm2 == 0 && f.wall_mm > 1);
         cw_mesh_free(&m);
@@ -170,7 +170,7 @@ static void gaps_are_as_wide_as_they_are(void **state)
         cw_mesh m = make_empty();
         BOX(&m, 0, 0, 0, 10, 10, 10);
         BOX(&m, 10 + gaps[n], 2, 0, 20, 8, 10);
-        const cw_print_facts f = measure(&m, NULL);
+        const cw_print_facts f = measure_print(&m, NULL);
         if (gaps[n] > 1.6)
             assert_true(isinf(f.gap_mm));
         else
@@ -190,7 +190,7 @@ static void overhangs_and_feet_are_summed(void **state)
     const double cone[4][2] = {{1, 0}, {5, 0}, {15, 10}, {1, 10}};
     cw_mesh m = make_empty();
     add_ring(&m, table, 6, 360);
-    cw_print_facts f = measure(&m, NULL);
+    cw_print_facts f = measure_print(&m, NULL);
     const double circle = PI * (sin(2 * PI / 360) / (2 * PI / 360));
     assert_within(f.overhang_mm2, circle * (400 - 25), 1e-5);
     assert_within(f.foot_mm2, circle * (25 - 1), 1e-5);
@@ -201,9 +201,9 @@ static void overhangs_and_feet_are_summed(void **state)
     cw_mesh_free(&m);
     m = make_empty();
     add_ring(&m, cone, 4, 360); /* leans by 45 degrees, but for the facets' rounding */
-    f = measure(&m, &(cw_print_desc){.overhang_deg = 44.9});
+    f = measure_print(&m, &(cw_print_desc){.overhang_deg = 44.9});
     assert_within(f.overhang_mm2, circle * (15 * 15 - 5 * 5) * sqrt(2), 1e-3);
-    f = measure(&m, &(cw_print_desc){.overhang_deg = 45.1});
+    f = measure_print(&m, &(cw_print_desc){.overhang_deg = 45.1});
     assert_true(f.overhang_mm2 == 0);
     cw_mesh_free(&m);
 }
@@ -214,11 +214,11 @@ static void islands_begin_in_the_air(void **state)
     cw_mesh m = make_empty();
     BOX(&m, 0, 0, 0, 10, 10, 10);
     BOX(&m, 20, 0, 0.1, 30, 10, 10); /* within a layer of the plate */
-    assert_int_equal(measure(&m, NULL).islands, 0);
+    assert_int_equal(measure_print(&m, NULL).islands, 0);
     BOX(&m, 0, 0, 15, 10, 10, 20);
     BOX(&m, 20, 0, 12, 30, 10, 20);
     add_box(&m, (const double[3]){2, 2, 2}, (const double[3]){8, 8, 8}, true); /* a cavity */
-    cw_print_facts f = measure(&m, NULL);
+    cw_print_facts f = measure_print(&m, NULL);
     assert_int_equal(f.islands, 2);
     assert_int_equal(f.trapped, 1);
     assert_within(f.trapped_mm3, 216, 1e-6);
@@ -232,10 +232,10 @@ static void islands_begin_in_the_air(void **state)
     memcpy(outline + 6, rest, sizeof rest);
     m = make_empty();
     add_ring(&m, (const double(*)[2])outline, 8, 90);
-    f = measure(&m, NULL);
+    f = measure_print(&m, NULL);
     assert_int_equal(f.islands, 1);
     assert_near(f.island_at[2], 7, 1e-6);
-    assert_int_equal(measure(&m, &(cw_print_desc){.layer_mm = 3.5}).islands, 0);
+    assert_int_equal(measure_print(&m, &(cw_print_desc){.layer_mm = 3.5}).islands, 0);
     cw_mesh_free(&m);
 }
 
@@ -249,7 +249,7 @@ static void what_is_off_its_foot_tips_over(void **state)
         BOX(&m, 0, 0, 0, 10, 10, 10);
         BOX(&m, 0, 0, 10, reach, 10, 20);
         const double x = (10 * 5 + reach * reach / 2) / (10 + reach);
-        cw_print_facts f = measure(&m, NULL);
+        cw_print_facts f = measure_print(&m, NULL);
         assert_near(f.center[0], x, 1e-5);
         assert_near(f.center[1], 5, 1e-5);
         assert_near(f.margin_mm, 10 - x < 5 ? 10 - x : 5, 1e-5);
@@ -259,7 +259,7 @@ static void what_is_off_its_foot_tips_over(void **state)
     cw_mesh ball = make_empty();
     const double spike[3][2] = {{0.001, 0}, {5, 5}, {0.001, 10}};
     add_ring(&ball, spike, 3, 60);
-    assert_true(measure(&ball, NULL).margin_mm < 0.25);
+    assert_true(measure_print(&ball, NULL).margin_mm < 0.25);
     cw_mesh_free(&ball);
 }
 
@@ -276,7 +276,7 @@ static void plates_are_turned_by_90_degrees(void **state)
     for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
         cw_print_desc desc = {0};
         memcpy(desc.plate_mm, rows[n].plate, sizeof desc.plate_mm);
-        assert_true(measure(&m, &desc).fits == rows[n].fits);
+        assert_true(measure_print(&m, &desc).fits == rows[n].fits);
     }
     cw_mesh_free(&m);
 }
@@ -303,11 +303,11 @@ static void threads_units_and_sharing_do_not_matter(void **state)
           *other = cwi_alloc_array(3 * m.triangle_count, sizeof *other);
     cw_print_desc desc = {
         .min_wall_mm = 10, .min_gap_mm = 10, .threads = 1, .wall = wall, .gap = gap};
-    const cw_print_facts one = measure(&m, &desc);
+    const cw_print_facts one = measure_print(&m, &desc);
     desc.wall = other;
     desc.threads = 5;
     desc.gap = NULL;
-    cw_print_facts many = measure(&m, &desc);
+    cw_print_facts many = measure_print(&m, &desc);
     many.limits.threads = 1;
     assert_memory_equal(&one, &many, sizeof one);
     assert_memory_equal(wall, other, m.vertex_count * sizeof *wall);
@@ -330,7 +330,7 @@ static void threads_units_and_sharing_do_not_matter(void **state)
         memcpy(soup.positions + 3 * c, m.positions + 3 * (size_t)m.triangles[c], 12);
         soup.triangles[c] = (uint32_t)c;
     }
-    const cw_print_facts apart = measure(&soup, &desc);
+    const cw_print_facts apart = measure_print(&soup, &desc);
     assert_within(apart.wall_mm, one.wall_mm, 1e-9);
     assert_within(apart.thin_mm2, one.thin_mm2, 1e-9);
     assert_int_equal(apart.islands, one.islands);
@@ -338,9 +338,10 @@ static void threads_units_and_sharing_do_not_matter(void **state)
         assert_true(other[c] == wall[m.triangles[c]]);
     for (double scale = 1e-4; scale < 1e5; scale *= 1e8) {
         cw_mesh scaled = extract_gyroid(scale);
-        const cw_print_facts f = measure(&scaled, &(cw_print_desc){.min_wall_mm = 10 * scale,
-                                                                   .min_gap_mm = 10 * scale,
-                                                                   .layer_mm = 0.2 * scale});
+        const cw_print_facts f =
+            measure_print(&scaled, &(cw_print_desc){.min_wall_mm = 10 * scale,
+                                                    .min_gap_mm = 10 * scale,
+                                                    .layer_mm = 0.2 * scale});
         assert_within(f.wall_mm / scale, one.wall_mm, 1e-3);
         assert_within(f.thin_mm2 / scale / scale, one.thin_mm2, 1e-3);
         assert_within(f.center[0] / scale, one.center[0], 1e-4);
@@ -360,17 +361,17 @@ static void odd_meshes_are_measured(void **state)
     (void)state;
     cw_mesh m = make_empty();
     float wall[8];
-    cw_print_facts f = measure(&m, &(cw_print_desc){.wall = wall});
+    cw_print_facts f = measure_print(&m, &(cw_print_desc){.wall = wall});
     assert_true(isinf(f.wall_mm) && f.area_mm2 == 0 && f.fits);
     for (int v = 0; v < 4; v++)
         add_vertex(&m, v & 1, v >> 1, 0);
-    f = measure(&m, &(cw_print_desc){.wall = wall});
+    f = measure_print(&m, &(cw_print_desc){.wall = wall});
     assert_true(isinf(wall[3]));
     add_triangle(&m, 0, 1, 2);
     add_triangle(&m, 1, 3, 2);
     add_triangle(&m, 0, 0, 1);
     add_triangle(&m, 2, 2, 2);
-    f = measure(&m, &(cw_print_desc){.wall = wall});
+    f = measure_print(&m, &(cw_print_desc){.wall = wall});
     assert_near(f.area_mm2, 1, 1e-9);
     assert_true(isfinite(f.center[0]) && isfinite(f.margin_mm) && f.volume_mm3 == 0);
     cw_mesh_free(&m);
@@ -402,7 +403,7 @@ static void bad_arguments_are_named(void **state)
     cw_mesh_free(&m);
 }
 
-static bool cancel(void *user, const char *step, double done)
+static bool cancel_late(void *user, const char *step, double done)
 {
     (void)step;
     assert_true(done >= 0 && done <= 1);
@@ -428,7 +429,7 @@ static void memory_failures_and_cancelling_are_told(void **state)
     }
     int left = 1;
     assert_fails(
-        cw_print_measure(&m, &(cw_print_desc){.progress = {cancel, &left}}, &facts, &err),
+        cw_print_measure(&m, &(cw_print_desc){.progress = {cancel_late, &left}}, &facts, &err),
         CW_ERR_CANCELLED, "", err);
     cw_mesh_free(&m);
 }

@@ -38,7 +38,7 @@ static void check_result(const cw_mesh *in, const cw_mesh *out, const cw_remesh_
     assert_true(f->min_edge_mm <= f->mean_edge_mm && f->mean_edge_mm <= f->max_edge_mm);
 }
 
-static cw_mesh remesh(const cw_mesh *in, const cw_remesh_desc *desc, cw_remesh_facts *f)
+static cw_mesh remesh_mesh(const cw_mesh *in, const cw_remesh_desc *desc, cw_remesh_facts *f)
 {
     cw_mesh out = {0};
     cw_error err = {0};
@@ -56,7 +56,7 @@ static void edges_get_the_wanted_length(void **state)
     for (size_t n = 0; n < 6; n++) {
         cw_mesh in = extract_field(fields[n / 3], 24, false);
         cw_remesh_facts f;
-        cw_mesh out = remesh(&in, &(cw_remesh_desc){.edge_mm = edges[n % 3]}, &f);
+        cw_mesh out = remesh_mesh(&in, &(cw_remesh_desc){.edge_mm = edges[n % 3]}, &f);
         assert_true(f.fitting_edges > 0.9);
         assert_near(f.mean_edge_mm / edges[n % 3], 1, 0.05);
         assert_true(f.smallest_deg > 25);
@@ -77,7 +77,8 @@ static void features_of_a_cube_are_exact(void **state)
     double low[3], high[3];
     assert_true(cw_mesh_bounds(&in, low, high));
     const double side = high[0] - low[0];
-    cw_mesh out = remesh(&in, &(cw_remesh_desc){.edge_mm = side / 8, .min_angle_deg = 25}, &f);
+    cw_mesh out =
+        remesh_mesh(&in, &(cw_remesh_desc){.edge_mm = side / 8, .min_angle_deg = 25}, &f);
     assert_int_equal(f.features_before, 12);
     assert_int_equal(f.below, 0);
     size_t corners = 0, on_edges = 0;
@@ -123,7 +124,7 @@ static void borders_stay_in_place(void **state)
     (void)state;
     cw_mesh in = make_sheet(32, 1);
     cw_remesh_facts f;
-    cw_mesh out = remesh(&in, &(cw_remesh_desc){.edge_mm = 2}, &f);
+    cw_mesh out = remesh_mesh(&in, &(cw_remesh_desc){.edge_mm = 2}, &f);
     assert_int_equal(f.border_before, 128);
     assert_true(f.border_after > 50 && f.border_after < 90);
     assert_int_equal(f.features_after, 0);
@@ -134,7 +135,7 @@ static void borders_stay_in_place(void **state)
     cw_mesh_free(&in);
     cw_mesh_free(&out);
     in = extract_field(CW_FIELD_GYROID, 24, true);
-    out = remesh(&in, &(cw_remesh_desc){.edge_mm = 3}, &f);
+    out = remesh_mesh(&in, &(cw_remesh_desc){.edge_mm = 3}, &f);
     assert_true(f.border_after > 0 && f.border_after < f.border_before);
     cw_mesh_free(&in);
     cw_mesh_free(&out);
@@ -146,7 +147,7 @@ static void small_angles_go_or_are_told(void **state)
     (void)state;
     cw_mesh in = extract_field(CW_FIELD_GYROID, 24, false);
     cw_remesh_facts fem;
-    cw_mesh out = remesh(
+    cw_mesh out = remesh_mesh(
         &in, &(cw_remesh_desc){.edge_mm = 2.5, .error_mm = 0.4, .min_angle_deg = 25}, &fem);
     assert_true(fem.below * 100 < out.triangle_count);
     double low[3], high[3];
@@ -164,10 +165,10 @@ static void adaptive_edges_follow_curvature(void **state)
     cw_mesh in = extract_field(CW_FIELD_TORUS, 32, false);
     cw_remesh_facts fine, coarse;
     cw_remesh_desc desc = {.edge_mm = 20, .error_mm = 0.1, .is_adaptive = true};
-    cw_mesh out = remesh(&in, &desc, &fine);
+    cw_mesh out = remesh_mesh(&in, &desc, &fine);
     cw_mesh_free(&out);
     desc.error_mm = 0.4;
-    out = remesh(&in, &desc, &coarse);
+    out = remesh_mesh(&in, &desc, &coarse);
     assert_within(coarse.mean_edge_mm / fine.mean_edge_mm, 2, 0.15); /* the root of 4 */
     assert_true(fine.max_edge_mm < 10 && fine.shortest_mm == 2);
     cw_mesh_free(&in);
@@ -191,7 +192,7 @@ static void units_do_not_matter(void **state)
     cw_remesh_facts f;
     for (int n = 0; n < 3; n++) {
         scale_mesh(&in, (float)scales[n]);
-        out[n] = remesh(&in, &(cw_remesh_desc){.edge_mm = 3 * scales[n]}, &f);
+        out[n] = remesh_mesh(&in, &(cw_remesh_desc){.edge_mm = 3 * scales[n]}, &f);
         scale_mesh(&in, (float)(1 / scales[n]));
         scale_mesh(&out[n], (float)(1 / scales[n]));
     }
@@ -236,7 +237,7 @@ static void attributes_are_interpolated(void **state)
     }
     assert_ok(cw_mesh_normals(&in, &err), err);
     cw_remesh_facts f;
-    out = remesh(&in, &(cw_remesh_desc){.edge_mm = 1.5}, &f);
+    out = remesh_mesh(&in, &(cw_remesh_desc){.edge_mm = 1.5}, &f);
     assert_true(out.normals && out.scalars && out.labels && !out.colors);
     for (size_t v = 0; v < out.vertex_count; v++) {
         const double x = (double)out.positions[3 * v], y = (double)out.positions[3 * v + 1];
