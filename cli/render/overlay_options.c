@@ -70,6 +70,7 @@ static cw_status draw_marks(const cli_marks *m, const cli_label_scene *labels,
                                 .legend = legend,
                                 .legend_count = count,
                                 .caption = m->caption,
+                                .text_px = m->text_px,
                                 .statistics = statistics};
     if (st == CW_OK)
         st = cw_overlay_draw(&overlay, scene, image, err);

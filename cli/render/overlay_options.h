@@ -10,6 +10,7 @@ typedef struct cli_marks {
     bool axes, scale_bar, letters, color_bar, histogram, legend;
     const char *caption;
     int layout;
+    double text_px; /* height of capitals; 0: by the picture's height */
 } cli_marks;
 
 enum { CLI_LAYOUT_SINGLE, CLI_LAYOUT_QUAD };

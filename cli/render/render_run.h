@@ -16,8 +16,8 @@ typedef struct render_args {
     cli_turns turns;
     cli_marks marks;
     cli_label_look look;
-    const char *exec, *run, *config; /* of view alone, */
-    bool hidden;                     /* and this */
+    const char *exec, *run, *config, *recent; /* of view alone, */
+    bool hidden, light_theme;                 /* and these */
     const char *output, *json, *mesh, *save_transfer, *save_camera, *compare, *overlay;
     cli_number iso, difference, overlay_opacity;
     int inside, backend;

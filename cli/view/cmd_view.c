@@ -25,6 +25,11 @@ static const cli_option options[] = {
     {"config", 0, CLI_TEXT, "FILE|none",
      "File of default settings (~/.config/cubewright/view; with --hidden none)",
      offsetof(render_args, config), CLI_VALUES_FILE},
+    {"recent", 0, CLI_TEXT, "FILE|none",
+     "File with the list of recent files (~/.local/state/cubewright/recent; with --hidden none)",
+     offsetof(render_args, recent), CLI_VALUES_FILE},
+    {"light-theme", 0, CLI_FLAG, NULL, "Show light panels (off: dark ones)",
+     offsetof(render_args, light_theme)},
     {"hidden", 0, CLI_FLAG, NULL, "Run the commands and end, without window and display (off)",
      offsetof(render_args, hidden)},
     {"output", 'o', CLI_TEXT, "FILE",
@@ -53,11 +58,15 @@ static bool show_progress(void *user, const char *step, double done)
     const cwi_ui_rect rect = {0.5 * ((double)in->width - 320 * scale), 0.5 * (double)in->height,
                               320 * scale, 0};
     v->quits |= in->close;
+    bool is_cancelled = v->quits;
+    for (size_t k = 0; k < in->key_count; k++)
+        is_cancelled |= strcmp(in->keys[k], "Escape") == 0;
     v->ui->panel_begin(v->window, "Working", &rect, CWI_UI_FIXED, NULL);
     v->ui->progress(v->window, done, step);
+    is_cancelled |= v->ui->button(v->window, "Cancel");
     v->ui->panel_end(v->window);
     v->ui->end(v->window, NULL);
-    return !v->quits;
+    return !is_cancelled;
 }
 
 static void hear_line(void *user, const char *line)
@@ -139,7 +148,7 @@ static cw_status do_asked(view *v, const render_args *args, cw_error *err)
     if (st == CW_OK && args->output)
         st = view_frame(v, 0, err); /* lays out what came before */
     if (st == CW_OK && args->output && !v->quits)
-        st = view_picture(v, args->output, err);
+        st = view_picture(v, &(view_sheet){0}, args->output, err);
     return st;
 }
 
@@ -159,6 +168,7 @@ static cw_status run_session(view *v, const render_args *args, cw_error *err)
         v->parts[p].scale = 0.5;
     view_lay_out(v);
     cli_console_listen(&listener);
+    view_start_recent(v, args->recent);
     v->is_configuring = true;
     cw_status st = read_settings(v, args->config, err);
     v->is_configuring = false;
@@ -176,6 +186,7 @@ static void end_session(view *v)
 {
     view_close(v);
     view_close_browser(v);
+    view_end_recent(v);
     cw_renderer_free(v->renderer);
     if (v->window)
         v->ui->close(v->window);

@@ -71,7 +71,8 @@ static void show_opacities(view *v, const cwi_ui_rect *r)
     v->ui->polygon(v->window, CWI_UI_PANEL, points, n / 2, line_color, false);
     v->ui->clip_end(v->window, CWI_UI_PANEL);
     for (size_t p = 0; p < t->opacity_count; p++)
-        v->ui->disc(v->window, CWI_UI_PANEL, points[2 * p + 2], points[2 * p + 3], 4, bright,
+        v->ui->disc(v->window, CWI_UI_PANEL, points[2 * p + 2], points[2 * p + 3],
+                    4 * v->ui->scale(v->window), bright,
                     v->curve_drag != POINT || v->curve_point != (int)p);
 }
 
@@ -193,7 +194,7 @@ static void choose_color(view *v)
 
 void view_curve(view *v)
 {
-    static const cwi_ui_color back = {0, 0, 0, 0.35f};
+    static const cwi_ui_color back = {0.07f, 0.075f, 0.085f, 1};
     const double scale = v->ui->scale(v->window);
     cwi_ui_area curve, colors;
     char text[128];

@@ -15,6 +15,12 @@ static cw_status run_open(view *v, int count, char **args, cw_error *err)
     return view_open(v, (const char *const *)args, (size_t)count, err);
 }
 
+static cw_status run_sample(view *v, int count, char **args, cw_error *err)
+{
+    (void)count;
+    return view_open_sample(v, args[0], err);
+}
+
 static cw_status run_quit(view *v, int count, char **args, cw_error *err)
 {
     (void)count, (void)args, (void)err;
@@ -92,6 +98,8 @@ static cw_status run_step(view *v, int count, char **args, cw_error *err)
 static const view_verb rows[] = {
     VERB("open", "PATH...", "Open a file, a folder, or the files of a series", 1, INT_MAX,
          run_open),
+    VERB("sample", "NAME", "Open a sample: head (Debian's MRI), or a field of 'make'", 1, 1,
+         run_sample),
     VERB("next", "", "Open the next file of the folder", 0, 0, run_next),
     VERB("previous", "", "Open the previous file of the folder", 0, 0, run_previous),
     VERB("step", "N|next|previous", "Go to a step of a time series", 1, 1, run_step),

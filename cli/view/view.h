@@ -10,6 +10,7 @@
 #include <cubewright/extract.h>
 
 #include <dirent.h>
+#include <time.h>
 
 /* Parts of the window that show a picture. */
 typedef enum view_part_name {
@@ -57,18 +58,48 @@ enum { VIEW_UNDO = 64, VIEW_MESSAGE = 1024 };
 
 /* Further things that the window shows; keys switch them. */
 typedef struct view_shown {
-    bool panels, help, handles, cross, playing, about, files;
+    bool panels, help, handles, cross, playing, about, files, save_mesh, save_picture;
     int cut; /* axis that the wheel cuts along: 1 to 3; 0: none */
 } view_shown;
 
-enum { VIEW_PATH = 4096 };
+enum { VIEW_PATH = 4096, VIEW_RECENT = 10 };
 
-/* Files to open. */
+/* A file or folder to open. */
+typedef struct view_entry {
+    char *name;
+    bool is_folder, is_known; /* its extension is that of a format */
+    double bytes;
+    time_t time; /* of its last change */
+} view_entry;
+
 typedef struct view_browser {
     char folder[VIEW_PATH]; /* "": not looked at yet */
-    char **names;
+    view_entry *entries;
     size_t count;
+    char typed[VIEW_PATH], filter[256], chosen[VIEW_PATH]; /* chosen: a name */
+    bool shows_all;
 } view_browser;
+
+/* Facts on the surface as it would be saved. */
+typedef struct view_mesh_facts {
+    size_t triangles, vertices, open_edges;
+    bool is_closed;
+    bool has_error;         /* the distances are known: */
+    double max_mm, rms_mm;  /* between the mesh and what it approximates */
+    const char *error_from; /* "the field" or "the full surface" */
+} view_mesh_facts;
+
+/* The fields of the dialogs that save. */
+typedef struct view_saving {
+    char mesh_name[VIEW_PATH], picture_name[VIEW_PATH];
+    size_t mesh_format, part; /* indices of their choices */
+    double picture_size[2];
+    size_t layout, background;
+    bool has_facts; /* of the mesh with the number of triangles below */
+    size_t facts_triangles;
+    double facts_iso;
+    view_mesh_facts facts;
+} view_saving;
 
 typedef struct view_history {
     view_state states[VIEW_UNDO];
@@ -126,8 +157,9 @@ typedef struct view {
     double bar_height, panel_width, strip_height; /* of menus, settings, status */
     cw_comparison measured;
     bool is_measured;
-    bool is_preliminary; /* measured before the pictures were finished */
-    bool is_alike;       /* cli_compares_alike() */
+    bool is_preliminary;              /* measured before the pictures were finished */
+    bool is_alike;                    /* cli_compares_alike() */
+    double mode_error[CW_MODE_COUNT]; /* rmse of 255, as measured; below 0: unknown */
 
     char message[VIEW_MESSAGE];
     bool is_error;
@@ -137,10 +169,15 @@ typedef struct view {
     double frame_shown, play_next;
     char probe[256];
     view_browser browser;
+    view_saving saving;
+    char recent_path[VIEW_PATH]; /* the file with the list; "": none is kept */
+    char *recent[VIEW_RECENT];   /* paths, the latest first */
+    size_t recent_count;
 
     char **words; /* texts that options point to */
     size_t word_count;
-    char **asked; /* commands to run after this frame */
+    bool is_asked; /* what runs is out of this list, not of a script: */
+    char **asked;  /* commands to run after this frame */
     size_t asked_count;
     int depth; /* of files of commands that run others */
     int drag;  /* view_mouse.c's */
@@ -238,7 +275,39 @@ void view_print_keys(FILE *out);
 /* view_draw.c */
 CW_NODISCARD cw_status view_draw(view *v, view_level level, bool may_stop, cw_error *err);
 bool view_is_final(const view *v);
-CW_NODISCARD cw_status view_picture(view *v, const char *path, cw_error *err);
+/* Draws one part into an image of the size of its rect. */
+CW_NODISCARD cw_status view_draw_part(view *v, int part, view_level level, bool may_stop,
+                                      cw_image *image, cw_error *err);
+/* Makes the surface at the isovalue, or of labels, in v->source.mesh. */
+CW_NODISCARD cw_status view_need_surface(view *v, view_level level, cw_error *err);
+
+/* view_pictures.c */
+typedef enum view_layout {
+    VIEW_LAYOUT_SHOWN, /* that of the window */
+    VIEW_LAYOUT_SINGLE,
+    VIEW_LAYOUT_QUAD
+} view_layout;
+typedef struct view_sheet {
+    size_t width, height; /* 0: those of the window's pictures */
+    view_layout layout;
+} view_sheet;
+/* Draws the session as asked for and writes it as a .png file. */
+CW_NODISCARD cw_status view_picture(view *v, const view_sheet *wanted, const char *path,
+                                    cw_error *err);
+
+/* mesh_facts.c: the surface as it would be saved. */
+/* Makes the mesh to save and measures it.
+ * triangles   how many it has at most; 0: all of the surface
+ * simplified  free it with cw_mesh_free()
+ * mesh        set to simplified, or to the surface that is shown */
+CW_NODISCARD cw_status view_make_mesh(view *v, size_t triangles, cw_mesh *simplified,
+                                      const cw_mesh **mesh, view_mesh_facts *facts,
+                                      cw_error *err);
+void view_describe_mesh(const view_mesh_facts *facts, char *text, size_t size);
+
+/* save_panels.c: dialogs that save a mesh or a picture. */
+void view_show_save_mesh(view *v);
+void view_show_save_picture(view *v);
 
 /* view_loop.c: frames of the window. */
 CW_NODISCARD cw_status view_frame(view *v, double wait_s, cw_error *err);
@@ -248,6 +317,27 @@ CW_NODISCARD cw_status view_settle(view *v,
                                    cw_error *err); /* until all is drawn as asked for */
 CW_NODISCARD cw_status view_loop(view *v, cw_error *err);
 void view_lay_out(view *v);
+void view_place_parts(view *v, const cwi_ui_rect *area, bool is_quad);
+cwi_ui_rect view_picture_area(const view *v); /* of all parts, in the window */
+bool view_is_quad(const view *v);
+
+/* side_panel.c, compare_panel.c */
+enum { VIEW_MODE_NAMES = CW_MODE_COUNT + 8 };
+/* Lists the modes that draw what is open, by groups with headings: how many names. */
+size_t view_list_modes(const view *v, bool with_mesh, const char **names);
+void view_show_side(view *v);
+void view_show_compare(view *v); /* the section of the side panel */
+void view_show_badges(view *v);  /* on the halves of a comparison */
+
+/* recent_files.c, start_page.c */
+/* Reads the list of recent files: of that file, "none", or NULL for the user's. */
+void view_start_recent(view *v, const char *named);
+void view_end_recent(view *v);
+void view_remember_file(view *v); /* that is open */
+void view_show_recent(view *v);   /* an item for each, in the panel at hand */
+void view_show_start(view *v);
+/* Opens the head MRI of Debian ("head"), or a field by its name, made when it is not there. */
+CW_NODISCARD cw_status view_open_sample(view *v, const char *name, cw_error *err);
 
 /* view_mouse.c, view_panels.c, curve_editor.c, file_browser.c */
 void view_browse(view *v);

@@ -53,8 +53,8 @@ const view_verb *view_verb_at(size_t n)
  * by menus. */
 static bool may_run(const view *v, const char *name)
 {
-    static const char *const barred[] = {"screenshot", "turntable", "save-state",
-                                         "quit",       "next",      "previous"};
+    static const char *const barred[] = {"screenshot", "turntable", "save-state", "quit",
+                                         "next",       "previous",  "save-mesh"};
     for (size_t n = 0; v->is_monkey && n < sizeof barred / sizeof *barred; n++)
         if (strcmp(name, barred[n]) == 0)
             return false;

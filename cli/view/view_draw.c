@@ -10,7 +10,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { THIN_FROM = 96, ROUGH_MS = 70, ROUGH_SPLATS = 20000, FEW_TRIANGLES = 200000 };
+enum {
+    THIN_FROM = 96,
+    ROUGH_MS = 70,
+    ROUGH_SPLATS = 20000,
+    FEW_TRIANGLES = 200000,
+    LETTER_PX = 9
+};
 
 /* Stops a picture that nobody will look at. */
 static bool go_on(void *user, const char *step, double done)
@@ -47,7 +53,7 @@ static bool can_thin(const view *v)
 
 /* The surface at the isovalue: of many triangles another one, a quarter of them, is made faster
  * than they are drawn. Empty where it crosses nothing. */
-static cw_status need_surface(view *v, view_level level, cw_error *err)
+cw_status view_need_surface(view *v, view_level level, cw_error *err)
 {
     const render_args *args = &v->state.args;
     const bool coarse = level == VIEW_ROUGH && v->state.is_placed && can_thin(v);
@@ -220,6 +226,14 @@ static void suit_level(view_level level, cw_scene *scene)
     }
 }
 
+/* Remembers how far a mode is from its exact picture. */
+static void keep_error(view *v, const cli_split *split)
+{
+    for (int n = 0; n < 2; n++)
+        if (v->is_alike && split->sides[1 - n].mode == CW_MODE_REFERENCE)
+            v->mode_error[split->sides[n].mode] = v->measured.rmse;
+}
+
 /* Both sides of a comparison, and how far they are apart when both are final. */
 static cw_status draw_split(view *v, view_level level, const cw_progress *progress,
                             cw_scene *scene, cw_picture *out, cw_error *err)
@@ -253,6 +267,8 @@ static cw_status draw_split(view *v, view_level level, const cw_progress *progre
         v->is_measured = st == CW_OK;
         v->is_preliminary = level < VIEW_FINAL;
         v->is_alike = cli_compares_alike(&split);
+        if (v->is_measured && !v->is_preliminary)
+            keep_error(v, &split);
     }
     cw_picture_free(&sides[0]);
     cw_picture_free(&sides[1]);
@@ -264,7 +280,7 @@ static cw_status draw_split(view *v, view_level level, const cw_progress *progre
 static cw_status draw_space(view *v, view_level level, const cw_progress *progress,
                             cw_scene *scene, cw_picture *picture, cw_error *err)
 {
-    cw_status st = need_surface(v, level, err);
+    cw_status st = view_need_surface(v, level, err);
     need_box(v);
     if (st == CW_OK && !v->state.is_placed)
         st = view_place_camera(v, NULL, err);
@@ -299,17 +315,22 @@ static cw_status show_part(view *v, int part, cw_scene *scene, const cw_picture 
                            cw_image *image, cw_error *err)
 {
     static const uint8_t black[2][4] = {{0, 0, 0, 255}, {0, 0, 0, 255}};
-    static const cli_marks plain = {.scale_bar = true, .letters = true};
     uint8_t background[2][4];
     const bool space = part == VIEW_SPACE;
+    cli_marks marks = {.scale_bar = true, .letters = true};
+    if (space)
+        marks = v->state.args.marks;
+    if (!v->is_saving) /* as large as the panels' letters, at least */
+        marks.text_px =
+            (double)picture->height *
+            fmax(1.0 / 48, LETTER_PX * v->ui->scale(v->window) / v->parts[part].rect.height);
     cw_status st = cli_background(&v->state.args.scene, background, err);
     if (st == CW_OK)
         st = cw_picture_show(picture, space ? (const uint8_t(*)[4])background : black, image,
                              err);
     scene->progress = (cw_progress){0};
     if (st == CW_OK && (scene->volume || scene->mesh))
-        st = cli_mark(space ? &v->state.args.marks : &plain, v->look.labels ? &v->labels : NULL,
-                      scene, image, err);
+        st = cli_mark(&marks, v->look.labels ? &v->labels : NULL, scene, image, err);
     return st;
 }
 
@@ -325,8 +346,8 @@ static void adapt_level(view_part *part, cw_mode mode, double ms)
         part->scale = fmin(fmax(part->scale * factor, least), 0.5);
 }
 
-static cw_status draw_part(view *v, int p, view_level level, bool may_stop, cw_image *image,
-                           cw_error *err)
+cw_status view_draw_part(view *v, int p, view_level level, bool may_stop, cw_image *image,
+                         cw_error *err)
 {
     view_part *part = &v->parts[p];
     cw_scene scene = {0};
@@ -366,7 +387,7 @@ cw_status view_draw(view *v, view_level level, bool may_stop, cw_error *err)
             drop_picture(v, p);
             continue;
         }
-        cw_status st = draw_part(v, p, level, may_stop, &image, err);
+        cw_status st = view_draw_part(v, p, level, may_stop, &image, err);
         if (st == CW_OK)
             st = v->ui->keep(v->window, p, &image, err);
         cw_image_free(&image);
@@ -386,20 +407,4 @@ bool view_is_final(const view *v)
         if (v->parts[p].is_shown && v->parts[p].level < VIEW_FINAL)
             return false;
     return true;
-}
-
-cw_status view_picture(view *v, const char *path, cw_error *err)
-{
-    cw_image image = {0};
-    if (!v->path)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "no file is open to draw");
-    v->is_saving = true;
-    cw_status st = draw_part(v, VIEW_SPACE, VIEW_FINAL, false, &image, err);
-    v->is_saving = false;
-    if (st == CW_OK) /* it counts as drawn: it is what the window shows now */
-        st = v->ui->keep(v->window, VIEW_SPACE, &image, err);
-    if (st == CW_OK)
-        st = cw_image_write(path, &image, err);
-    cw_image_free(&image);
-    return st;
 }

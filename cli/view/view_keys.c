@@ -11,7 +11,12 @@ const view_key view_keys[] = {
     {"toggle about", NULL, "Help/About",
      "Show what draws the scene, and the papers it follows"},
     {"toggle files", "O", "File/Open", "Choose a file"},
-    {"screenshot", "F12", "File/Save the picture", "Save the picture as cubewright-NNN.png"},
+    {"toggle save-mesh", "Ctrl+M", "File/Save mesh...",
+     "Save the surface as a mesh, of any format and size"},
+    {"toggle save-picture", "Ctrl+P", "File/Save picture...",
+     "Save the picture in any size and layout"},
+    {"screenshot", "F12", "File/Save picture at once",
+     "Save the picture as cubewright-NNN.png"},
     {"background none; screenshot; background default", "Ctrl+F12",
      "File/Save without background", "Save the picture without its background"},
     {"turntable 36 'turn-{turn:02d}.png'", NULL, "File/Save a turntable", NULL},
@@ -49,6 +54,7 @@ const view_key view_keys[] = {
     {"toggle scale-bar", "R", "View/Scale bar", "Show or hide a scale bar in mm"},
     {"toggle letters", "T", "View/Letters", "Show or hide the directions R L A P S I"},
     {"toggle color-bar", "G", "View/Colour bar", "Show or hide the colours of the values"},
+    {"toggle light-theme", NULL, "View/Light panels", NULL},
     {"toggle panels", "Tab", "View/Panels", "Show or hide all panels"},
     {"next-mode", "M", "Scene/Next mode", "Draw in the next mode"},
     {"previous-mode", "Shift+M", "Scene/Previous mode", "Draw in the previous mode"},
@@ -76,10 +82,15 @@ bool *view_shown_flag(view *v, const char *name)
     const struct {
         const char *name;
         bool *on;
-    } flags[] = {{"panels", &v->shown.panels}, {"files", &v->shown.files},
-                 {"help", &v->shown.help},     {"handles", &v->shown.handles},
-                 {"cross", &v->shown.cross},   {"playing", &v->shown.playing},
-                 {"about", &v->shown.about}};
+    } flags[] = {{"panels", &v->shown.panels},
+                 {"files", &v->shown.files},
+                 {"help", &v->shown.help},
+                 {"handles", &v->shown.handles},
+                 {"cross", &v->shown.cross},
+                 {"playing", &v->shown.playing},
+                 {"about", &v->shown.about},
+                 {"save-mesh", &v->shown.save_mesh},
+                 {"save-picture", &v->shown.save_picture}};
     for (size_t n = 0; n < sizeof flags / sizeof *flags; n++)
         if (strcmp(flags[n].name, name) == 0)
             return flags[n].on;

@@ -11,29 +11,43 @@
 enum { STEP_MS = 150 }; /* of a time series that plays */
 static const double IDLE_S = 0.25;
 
-/* The scene alone, or in the lower right of four. */
-void view_lay_out(view *v)
+bool view_is_quad(const view *v)
 {
-    const double bar = v->bar_height;
-    const double width = fmax(1, (double)v->width - v->panel_width);
-    const double height = fmax(1, (double)v->height - bar - v->strip_height);
-    const bool quad = v->state.args.marks.layout == CLI_LAYOUT_QUAD && v->has_volume &&
-                      view_fits_mode(v, CW_MODE_SLICES);
+    return v->state.args.marks.layout == CLI_LAYOUT_QUAD && v->has_volume &&
+           view_fits_mode(v, CW_MODE_SLICES);
+}
+
+/* The scene alone, or in the lower right of four. */
+void view_place_parts(view *v, const cwi_ui_rect *area, bool is_quad)
+{
+    const double w = floor(area->width / 2), h = floor(area->height / 2);
     for (int p = 0; p < VIEW_PARTS; p++) {
         view_part *part = &v->parts[p];
         const cwi_ui_rect before = part->rect;
         const int at = p == VIEW_SPACE ? 3 : p - 1; /* of four */
-        const double w = floor(width / 2), h = floor(height / 2);
-        part->is_shown = p == VIEW_SPACE || quad;
+        const double x = at % 2 ? w + 1 : 0, y = at / 2 ? h + 1 : 0;
+        part->is_shown = p == VIEW_SPACE || is_quad;
         part->rect =
-            quad ? (cwi_ui_rect){at % 2 ? w + 1 : 0, bar + (at / 2 ? h + 1 : 0),
-                                 at % 2 ? width - w - 1 : w, at / 2 ? height - h - 1 : h}
-                 : (cwi_ui_rect){0, bar, width, height};
+            is_quad ? (cwi_ui_rect){area->x + x, area->y + y, at % 2 ? area->width - w - 1 : w,
+                                    at / 2 ? area->height - h - 1 : h}
+                    : *area;
         part->rect.width = fmax(part->rect.width, 1);
         part->rect.height = fmax(part->rect.height, 1);
         if (memcmp(&before, &part->rect, sizeof before) != 0)
             part->level = VIEW_STALE;
     }
+}
+
+cwi_ui_rect view_picture_area(const view *v)
+{
+    return (cwi_ui_rect){0, v->bar_height, fmax(1, (double)v->width - v->panel_width),
+                         fmax(1, (double)v->height - v->bar_height - v->strip_height)};
+}
+
+void view_lay_out(view *v)
+{
+    const cwi_ui_rect area = view_picture_area(v);
+    view_place_parts(v, &area, view_is_quad(v));
 }
 
 static void press_keys(view *v, const cwi_ui_input *in)
@@ -45,6 +59,7 @@ static void press_keys(view *v, const cwi_ui_input *in)
     for (size_t k = 0; k < in->key_count; k++)
         if (strcmp(in->keys[k], "Escape") == 0) {
             v->shown.help = v->shown.about = v->shown.files = false;
+            v->shown.save_mesh = v->shown.save_picture = false;
             v->shown.cut = 0;
             v->message[0] = '\0';
         }
@@ -101,6 +116,7 @@ cw_status view_frame(view *v, double wait_s, cw_error *err)
 {
     const cwi_ui_functions *ui = v->ui;
     const cwi_ui_input *in = ui->begin(v->window, wait_for(v, wait_s));
+    ui->set_theme(v->window, v->state.args.light_theme ? CWI_UI_LIGHT : CWI_UI_DARK);
     v->width = in->width;
     v->height = in->height;
     v->quits |= in->close || cli_interrupted();

@@ -271,9 +271,11 @@ static void show_cross(view *v, int part)
         return;
     }
     if (x >= r->x && x < r->x + r->width)
-        v->ui->line(v->window, CWI_UI_BEHIND, x, r->y, x, r->y + r->height, colors[across], 1);
+        v->ui->line(v->window, CWI_UI_BEHIND, x, r->y, x, r->y + r->height, colors[across],
+                    v->ui->scale(v->window));
     if (y >= r->y && y < r->y + r->height)
-        v->ui->line(v->window, CWI_UI_BEHIND, r->x, y, r->x + r->width, y, colors[up], 1);
+        v->ui->line(v->window, CWI_UI_BEHIND, r->x, y, r->x + r->width, y, colors[up],
+                    v->ui->scale(v->window));
 }
 
 static void show_handles(view *v)
@@ -291,7 +293,8 @@ static void show_handles(view *v)
         if (edges[n].shown)
             v->ui->line(v->window, CWI_UI_BEHIND, r->x + edges[n].pixels[0][0],
                         r->y + edges[n].pixels[0][1], r->x + edges[n].pixels[1][0],
-                        r->y + edges[n].pixels[1][1], edges[n].is_behind ? back : front, 1.5);
+                        r->y + edges[n].pixels[1][1], edges[n].is_behind ? back : front,
+                        1.5 * v->ui->scale(v->window));
     for (int n = 0; n < CWI_HANDLES; n++)
         if (handles[n].shown)
             v->ui->disc(v->window, CWI_UI_BEHIND, r->x + handles[n].pixel[0],
@@ -306,7 +309,8 @@ static void show_divider(view *v, const cwi_ui_input *in)
     const cwi_ui_rect *r = &v->parts[VIEW_SPACE].rect;
     const double x = r->x + v->state.share * r->width;
     const bool over = is_in(r, in->x, in->y) && is_on_divider(v, in->x - r->x);
-    v->ui->line(v->window, CWI_UI_BEHIND, x, r->y, x, r->y + r->height, white, over ? 3 : 1);
+    v->ui->line(v->window, CWI_UI_BEHIND, x, r->y, x, r->y + r->height, white,
+                (over ? 3 : 1) * v->ui->scale(v->window));
 }
 
 void view_show_parts(view *v, const cwi_ui_input *in)
@@ -321,7 +325,9 @@ void view_show_parts(view *v, const cwi_ui_input *in)
     }
     if (has_handles(v))
         show_handles(v);
-    if (v->path && v->state.args.compare && !v->state.args.difference.given &&
-        view_draws_volume(v))
+    if (!v->path || !v->state.args.compare || !view_draws_volume(v))
+        return;
+    if (!v->state.args.difference.given)
         show_divider(v, in);
+    view_show_badges(v);
 }

@@ -142,12 +142,14 @@ void view_run_asked(view *v)
     const size_t count = v->asked_count;
     v->asked = NULL;
     v->asked_count = 0;
+    v->is_asked = true;
     for (size_t n = 0; n < count; n++) {
         cw_error err = {0};
         if (view_exec(v, asked[n], &err) != CW_OK)
             view_say(v, true, err.message);
         free(asked[n]);
     }
+    v->is_asked = false;
     free(asked);
 }
 

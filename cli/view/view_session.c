@@ -155,6 +155,8 @@ static cw_status read_step(view *v, size_t step, cw_error *err)
     if (!v->has_volume)
         cli_say("shown as a surface: %s", why.message);
     v->values_come = v->transfer_is_old = true;
+    for (int m = 0; m < CW_MODE_COUNT; m++)
+        v->mode_error[m] = -1;
     return CW_OK;
 }
 
@@ -340,9 +342,11 @@ cw_status view_open(view *v, const char *const *paths, size_t count, cw_error *e
     fresh_look(v);
     name_window(v);
     v->history.count = 0;
-    if (st == CW_OK)
-        view_remember(v, "open");
-    return st;
+    if (st != CW_OK)
+        return st;
+    view_remember(v, "open");
+    view_remember_file(v);
+    return CW_OK;
 }
 
 cw_status view_go_to_step(view *v, size_t step, cw_error *err)

@@ -66,8 +66,9 @@ bool view_undo(view *v, int by)
 const cli_option *view_find_option(const view *v, const char *name)
 {
     static const char *const fixed[] = {
-        "exec",    "run",        "config",         "hidden",  "output", "memory", "max-voxels",
-        "timeout", "no-sandbox", "allow-external", "threads", "size",   "steps",  "step"};
+        "exec",    "run",        "config",  "hidden",     "output",
+        "memory",  "max-voxels", "timeout", "no-sandbox", "allow-external",
+        "threads", "size",       "steps",   "step",       "recent"};
     for (size_t n = 0; n < sizeof fixed / sizeof *fixed; n++)
         if (strcmp(fixed[n], name) == 0)
             return NULL;

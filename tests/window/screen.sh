@@ -148,6 +148,7 @@ shows '^open .*h.nrrd' "a drop"
 # The end: Ctrl+Q, and in another window what a window manager sends.
 xdotool key --window "$window" ctrl+q 2>/dev/null # it may be gone before the key comes up
 wait $program || fail "exit code $? after Ctrl+Q: $(cat err)"
+xdotool keyup q keyup ctrl # else it goes down again in the next window
 
 # A point of the transfer function, in the middle of the curve, goes up and to the right.
 cat >tf.json <<'JSON'

@@ -90,8 +90,16 @@ typedef enum cwi_ui_layer { CWI_UI_BEHIND, CWI_UI_PANEL, CWI_UI_FRONT } cwi_ui_l
 typedef enum cwi_ui_panel {
     CWI_UI_FIXED = 1, /* cannot be moved, sized or folded */
     CWI_UI_BARE = 2,  /* no title bar, as large as its content, hardly any background */
-    CWI_UI_MODAL = 4  /* in the middle, and nothing else can be used */
+    CWI_UI_MODAL = 4, /* in the middle, and nothing else can be used */
+    CWI_UI_DOCKED =
+        8, /* at the right side of rect always; its left side can be dragged: see find() */
+    CWI_UI_STRIP = 16 /* no title bar, at the lower side of rect, as high as its content */
 } cwi_ui_panel;
+
+typedef enum cwi_ui_theme { CWI_UI_DARK, CWI_UI_LIGHT } cwi_ui_theme;
+
+/* Begins a name of choice() that is a heading, not to be chosen. */
+#define CWI_UI_HEADING "\n"
 
 /* sRGB and opacity, 0 to 1 */
 typedef float cwi_ui_color[4];
@@ -126,6 +134,7 @@ typedef struct cwi_ui_functions {
     void (*set_title)(cwi_ui *ui, const char *title);
     void (*set_clipboard)(cwi_ui *ui, const char *text);
     void (*set_cursor)(cwi_ui *ui, int shape); /* 0 arrow, 1 cross, 2 hand, 3 left-right */
+    void (*set_theme)(cwi_ui *ui, cwi_ui_theme theme); /* of panels; dark at first */
 
     /* Pictures, kept in slots 0 to 15 until replaced (NULL: dropped), drawn stretched: in the
      * panel at hand, outside of panels behind them all. */
@@ -168,6 +177,9 @@ typedef struct cwi_ui_functions {
                    size_t *chosen);
     bool (*slider)(cwi_ui *ui, const char *label, double *value, double low, double high,
                    const char *format); /* such as "%.3g" */
+    /* logarithmic: 0 < low < high */
+    bool (*log_slider)(cwi_ui *ui, const char *label, double *value, double low, double high,
+                       const char *format);
     bool (*number)(cwi_ui *ui, const char *label, double *value, double per_pixel,
                    const char *format);
     bool (*color)(cwi_ui *ui, const char *label, float rgb[3]);

@@ -21,60 +21,93 @@ const ImWchar ranges[] = {0x20,   0x24f,  0x370,  0x52f,  0x2010, 0x2044,
                           0x2070, 0x209f, 0x2190, 0x21ff, 0x2200, 0x22ff,
                           0x25a0, 0x25ff, 0x2713, 0x2717, 0};
 
+/* Colours of one theme. Letters have a contrast of at least 4.5 to 1 on all that they stand on:
+ * test_ui measures it. */
+struct palette {
+    float panel, popup, bar, title, active_title; /* grey levels of backgrounds */
+    float frame, hovered_frame, active_frame, button, header;
+    float text, faint_text, border, grip;
+    ImVec4 accent, strong_accent;     /* marks */
+    float hovered, pressed, selected; /* opacities of the accent on a background */
+};
+
+const palette palettes[] = {
+    /* CWI_UI_DARK */
+    {0.115f, 0.135f, 0.135f, 0.15f, 0.19f, 0.20f, 0.25f, 0.29f, 0.25f, 0.185f, 0.92f, 0.62f,
+     0.30f, 0.35f, ImVec4(0.34f, 0.63f, 0.90f, 1), ImVec4(0.50f, 0.76f, 1, 1), 0.45f, 0.50f,
+     0.45f},
+    /* CWI_UI_LIGHT */
+    {0.95f, 0.97f, 0.90f, 0.88f, 0.82f, 0.86f, 0.82f, 0.78f, 0.82f, 0.88f, 0.10f, 0.38f, 0.62f,
+     0.60f, ImVec4(0.10f, 0.42f, 0.75f, 1), ImVec4(0.05f, 0.33f, 0.65f, 1), 0.30f, 0.40f,
+     0.35f}};
+
+/* Returns a grey with a touch of blue. */
 ImVec4 gray(float value, float alpha = 1)
 {
-    return ImVec4(value * 0.94f, value * 0.98f, value * 1.06f, alpha);
+    const float blue = value * 1.06f;
+    return ImVec4(value * 0.94f, value * 0.98f, blue < 1 ? blue : 1, alpha);
 }
 
-ImVec4 accent(float alpha = 1)
+ImVec4 faded(const ImVec4 &color, float alpha)
 {
-    return ImVec4(0.34f, 0.63f, 0.90f, alpha);
+    return ImVec4(color.x, color.y, color.z, alpha);
 }
 
-void color_backgrounds(ImVec4 *c)
+void color_backgrounds(const palette &p, ImVec4 *c)
 {
-    c[ImGuiCol_WindowBg] = gray(0.115f, 0.96f);
-    c[ImGuiCol_PopupBg] = gray(0.135f, 0.98f);
-    c[ImGuiCol_MenuBarBg] = gray(0.135f);
-    c[ImGuiCol_TitleBg] = gray(0.15f);
-    c[ImGuiCol_TitleBgActive] = gray(0.19f);
-    c[ImGuiCol_TitleBgCollapsed] = gray(0.15f, 0.9f);
+    c[ImGuiCol_WindowBg] = gray(p.panel, 0.96f);
+    c[ImGuiCol_PopupBg] = gray(p.popup, 0.98f);
+    c[ImGuiCol_MenuBarBg] = gray(p.bar);
+    c[ImGuiCol_TitleBg] = gray(p.title);
+    c[ImGuiCol_TitleBgActive] = gray(p.active_title);
+    c[ImGuiCol_TitleBgCollapsed] = gray(p.title, 0.9f);
     c[ImGuiCol_ModalWindowDimBg] = ImVec4(0, 0, 0, 0.5f);
-    c[ImGuiCol_Border] = gray(0.30f, 0.7f);
-    c[ImGuiCol_Separator] = gray(0.30f, 0.7f);
+    c[ImGuiCol_Border] = gray(p.border, 0.7f);
+    c[ImGuiCol_Separator] = gray(p.border, 0.7f);
     c[ImGuiCol_ScrollbarBg] = ImVec4(0, 0, 0, 0);
 }
 
-void color_widgets(ImVec4 *c)
+void color_widgets(const palette &p, ImVec4 *c)
 {
-    c[ImGuiCol_Text] = gray(0.92f);
-    c[ImGuiCol_TextDisabled] = gray(0.56f);
-    c[ImGuiCol_TextSelectedBg] = accent(0.45f);
-    c[ImGuiCol_FrameBg] = gray(0.20f);
-    c[ImGuiCol_FrameBgHovered] = gray(0.25f);
-    c[ImGuiCol_FrameBgActive] = gray(0.29f);
-    c[ImGuiCol_CheckMark] = accent();
-    c[ImGuiCol_SliderGrab] = accent(0.85f);
-    c[ImGuiCol_SliderGrabActive] = ImVec4(0.50f, 0.76f, 1, 1);
-    c[ImGuiCol_Button] = gray(0.25f);
-    c[ImGuiCol_ButtonHovered] = accent(0.55f);
-    c[ImGuiCol_ButtonActive] = accent(0.80f);
-    c[ImGuiCol_Header] = gray(0.185f);
-    c[ImGuiCol_HeaderHovered] = accent(0.40f);
-    c[ImGuiCol_HeaderActive] = accent(0.60f);
-    c[ImGuiCol_PlotHistogram] = accent(0.85f); /* bars of progress */
-    c[ImGuiCol_ResizeGrip] = gray(0.35f, 0.6f);
-    c[ImGuiCol_ResizeGripHovered] = accent(0.6f);
-    c[ImGuiCol_ResizeGripActive] = accent();
-    c[ImGuiCol_ScrollbarGrab] = gray(0.34f);
+    c[ImGuiCol_Text] = gray(p.text);
+    c[ImGuiCol_TextDisabled] = gray(p.faint_text);
+    c[ImGuiCol_TextSelectedBg] = faded(p.accent, p.selected);
+    c[ImGuiCol_FrameBg] = gray(p.frame);
+    c[ImGuiCol_FrameBgHovered] = gray(p.hovered_frame);
+    c[ImGuiCol_FrameBgActive] = gray(p.active_frame);
+    c[ImGuiCol_CheckMark] = p.accent;
+    c[ImGuiCol_SliderGrab] = faded(p.accent, 0.55f); /* numbers stand on it */
+    c[ImGuiCol_SliderGrabActive] = faded(p.strong_accent, 0.60f);
+    c[ImGuiCol_Button] = gray(p.button);
+    c[ImGuiCol_ButtonHovered] = faded(p.accent, p.hovered);
+    c[ImGuiCol_ButtonActive] = faded(p.accent, p.pressed);
+    c[ImGuiCol_Header] = gray(p.header);
+    c[ImGuiCol_HeaderHovered] = faded(p.accent, p.hovered);
+    c[ImGuiCol_HeaderActive] = faded(p.accent, p.pressed);
+    c[ImGuiCol_PlotHistogram] = faded(p.accent, 0.55f); /* bars of progress */
+    c[ImGuiCol_ResizeGrip] = gray(p.grip, 0.6f);
+    c[ImGuiCol_ResizeGripHovered] = faded(p.accent, 0.6f);
+    c[ImGuiCol_ResizeGripActive] = p.accent;
+    c[ImGuiCol_ScrollbarGrab] = gray(p.grip);
+    c[ImGuiCol_NavHighlight] = p.strong_accent;
+}
+
+void color_all(cwi_ui_theme theme)
+{
+    const palette &p = palettes[theme];
+    ImVec4 *colors = ImGui::GetStyle().Colors;
+    if (theme == CWI_UI_LIGHT)
+        ImGui::StyleColorsLight();
+    else
+        ImGui::StyleColorsDark();
+    color_backgrounds(p, colors);
+    color_widgets(p, colors);
 }
 
 void style_all(float scale)
 {
     ImGuiStyle &s = ImGui::GetStyle();
-    ImGui::StyleColorsDark();
-    color_backgrounds(s.Colors);
-    color_widgets(s.Colors);
+    color_all(CWI_UI_DARK);
     s.WindowRounding = s.PopupRounding = 6;
     s.FrameRounding = s.GrabRounding = s.ScrollbarRounding = 4;
     s.WindowPadding = ImVec2(10, 9);
@@ -214,6 +247,8 @@ cw_status cwi_ui_imgui_open(cwi_ui *ui, cw_error *err)
     ImGuiIO &io = ImGui::GetIO();
     io.IniFilename = io.LogFilename = nullptr;
     io.BackendPlatformName = "cubewright";
+    io.BackendFlags |=
+        ImGuiBackendFlags_HasMouseCursors; /* panels are sized at their borders */
     io.ConfigWindowsMoveFromTitleBarOnly = true;
     io.ClipboardUserData = ui;
     io.GetClipboardTextFn = paste;
@@ -303,4 +338,12 @@ int cwi_ui_imgui_cursor(const cwi_ui *ui)
     default:
         return ui->cursor;
     }
+}
+
+void cwi_ui_imgui_theme(cwi_ui *ui, cwi_ui_theme theme)
+{
+    ImGui::SetCurrentContext(ui->imgui);
+    if (theme != ui->theme)
+        color_all(theme);
+    ui->theme = theme;
 }

@@ -80,6 +80,7 @@ struct cwi_ui {
     bool has_bar;  /* bar_begin() opened one */
     bool is_ended; /* a change of the widget before has come to its end */
     int cursor;
+    cwi_ui_theme theme;
 };
 
 /* Keys (ui_keys.c). A number below 512: of ASCII what it is, of named keys 256 and more; other
@@ -140,6 +141,7 @@ void cwi_ui_imgui_begin(cwi_ui *ui);
 void cwi_ui_imgui_layout(cwi_ui *ui); /* ends widgets; the drawing is then known */
 void cwi_ui_imgui_draw(void);         /* into the framebuffer that is bound */
 int cwi_ui_imgui_cursor(const cwi_ui *ui);
+void cwi_ui_imgui_theme(cwi_ui *ui, cwi_ui_theme theme);
 
 /* A frame (ui_frame.c) */
 CW_NODISCARD cw_status cwi_ui_open(const cwi_ui_desc *desc, cwi_ui **ui, cw_error *err);

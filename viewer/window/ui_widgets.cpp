@@ -57,6 +57,22 @@ bool dragged(cwi_ui *ui, const char *label, bool is_used)
     return is_used;
 }
 
+/* Leaves room for a widget's label at its side, in panels that have a width of their own. */
+void leave_room(const char *label)
+{
+    const ImGuiWindow *window = ImGui::GetCurrentWindow();
+    const ImGuiContext *g = ImGui::GetCurrentContext();
+    if ((window->Flags & ImGuiWindowFlags_AlwaysAutoResize) ||
+        (g->NextItemData.Flags & ImGuiNextItemDataFlags_HasWidth))
+        return;
+    const float all = ImGui::GetContentRegionAvail().x;
+    const float beside = ImGui::CalcTextSize(label, nullptr, true).x;
+    const float left = all - beside - ImGui::GetStyle().ItemInnerSpacing.x;
+    ImGui::SetNextItemWidth(left < 0.35f * all   ? 0.35f * all
+                            : left > 0.62f * all ? 0.62f * all
+                                                 : left);
+}
+
 /* ---- drawing ---- */
 
 /* Returns the list to draw into. Outside all panels ImGui would open one of its own. */
@@ -175,6 +191,23 @@ void place_panel(const cwi_ui *ui, const char *title, const cwi_ui_rect *r, bool
     }
 }
 
+/* Places a panel at the right border, as high as told. Its left border can be dragged. */
+void dock_panel(const cwi_ui *ui, const cwi_ui_rect *r)
+{
+    const double least = 180 * ui->scale, most = 0.6 * static_cast<double>(ui->input.width);
+    const double narrowest = least < most ? least : most;
+    ImGui::SetNextWindowPos(point(r->x + r->width, r->y), ImGuiCond_Always, ImVec2(1, 0));
+    ImGui::SetNextWindowSize(point(r->width, r->height), ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSizeConstraints(point(narrowest, r->height), point(most, r->height));
+}
+
+/* Places a panel upon the lower border, as high as its content. */
+void place_strip(const cwi_ui_rect *r)
+{
+    ImGui::SetNextWindowPos(point(r->x, r->y + r->height), ImGuiCond_Always, ImVec2(0, 1));
+    ImGui::SetNextWindowSize(point(r->width, 0));
+}
+
 bool begin_modal(const cwi_ui *ui, const char *title, const cwi_ui_rect *r, bool *open)
 {
     const ImGuiWindowFlags flags = ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove |
@@ -193,10 +226,13 @@ ImGuiWindowFlags flags_of(unsigned flags, const cwi_ui_rect *r)
     ImGuiWindowFlags f = ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav;
     if (flags & CWI_UI_FIXED)
         f |= ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse;
-    if (flags & CWI_UI_BARE)
+    if (flags & CWI_UI_DOCKED)
+        f |= ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse;
+    if (flags & (CWI_UI_BARE | CWI_UI_STRIP))
         f |= ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-             ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
-             ImGuiWindowFlags_NoBringToFrontOnFocus;
+             ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus;
+    if (flags & CWI_UI_BARE)
+        f |= ImGuiWindowFlags_AlwaysAutoResize;
     else if (r->width <= 0 && r->height <= 0)
         f |= ImGuiWindowFlags_AlwaysAutoResize;
     return f;
@@ -219,7 +255,12 @@ bool panel_begin(cwi_ui *ui, const char *title, const cwi_ui_rect *rect, unsigne
         where.width = where.height = 0;
         ImGui::SetNextWindowBgAlpha(0.55f);
     }
-    place_panel(ui, title, &where, (flags & (CWI_UI_FIXED | CWI_UI_BARE)) != 0);
+    if (flags & CWI_UI_DOCKED)
+        dock_panel(ui, r);
+    else if (flags & CWI_UI_STRIP)
+        place_strip(r);
+    else
+        place_panel(ui, title, &where, (flags & (CWI_UI_FIXED | CWI_UI_BARE)) != 0);
     return ImGui::Begin(title, open, flags_of(flags, r));
 }
 
@@ -309,6 +350,10 @@ bool choose(cwi_ui *ui, const char *const *names, size_t count, size_t *chosen)
 {
     bool is_used = false;
     for (size_t n = 0; n < count; n++) {
+        if (names[n][0] == CWI_UI_HEADING[0]) {
+            ImGui::TextDisabled("%s", names[n] + 1);
+            continue;
+        }
         ImGui::PushID(static_cast<int>(n));
         if (ImGui::Selectable(names[n], n == *chosen)) {
             is_used = n != *chosen;
@@ -326,6 +371,7 @@ bool choice(cwi_ui *ui, const char *label, const char *const *names, size_t coun
             size_t *chosen)
 {
     bool is_used = false;
+    leave_room(label);
     const bool open = ImGui::BeginCombo(label, *chosen < count ? names[*chosen] : "",
                                         ImGuiComboFlags_HeightLarge);
     if (open) {
@@ -337,16 +383,30 @@ bool choice(cwi_ui *ui, const char *label, const char *const *names, size_t coun
     return used(ui, label, is_used);
 }
 
+bool slide(cwi_ui *ui, const char *label, double *value, double low, double high,
+           const char *format, ImGuiSliderFlags flags)
+{
+    leave_room(label);
+    const bool is_used = ImGui::SliderScalar(label, ImGuiDataType_Double, value, &low, &high,
+                                             format, flags | ImGuiSliderFlags_AlwaysClamp);
+    return dragged(ui, label, is_used);
+}
+
 bool slider(cwi_ui *ui, const char *label, double *value, double low, double high,
             const char *format)
 {
-    const bool is_used = ImGui::SliderScalar(label, ImGuiDataType_Double, value, &low, &high,
-                                             format, ImGuiSliderFlags_AlwaysClamp);
-    return dragged(ui, label, is_used);
+    return slide(ui, label, value, low, high, format, 0);
+}
+
+bool log_slider(cwi_ui *ui, const char *label, double *value, double low, double high,
+                const char *format)
+{
+    return slide(ui, label, value, low, high, format, ImGuiSliderFlags_Logarithmic);
 }
 
 bool number(cwi_ui *ui, const char *label, double *value, double per_pixel, const char *format)
 {
+    leave_room(label);
     const bool is_used =
         ImGui::DragScalar(label, ImGuiDataType_Double, value, static_cast<float>(per_pixel),
                           nullptr, nullptr, format);
@@ -367,6 +427,7 @@ bool color(cwi_ui *ui, const char *label, float rgb[3])
 
 bool input(cwi_ui *ui, const char *label, char *words, size_t size)
 {
+    leave_room(label);
     const bool is_used =
         ImGui::InputText(label, words, size, ImGuiInputTextFlags_EnterReturnsTrue);
     return dragged(ui, label, is_used);
@@ -420,11 +481,12 @@ void disable(cwi_ui *, bool on)
         ImGui::EndDisabled();
 }
 
-/* Shows a tooltip once the mouse stays on the widget before. */
+/* Shows a tooltip once the mouse stays on the widget before. While something is dragged it would
+ * cover that. */
 void tip(cwi_ui *ui, const char *words)
 {
     const double delay = 0.4;
-    if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+    if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) || ImGui::IsAnyMouseDown())
         return;
     const ImGuiContext *g = ImGui::GetCurrentContext();
     const double stayed = g->HoveredId ? static_cast<double>(g->HoveredIdTimer) : delay;
@@ -502,6 +564,7 @@ const cwi_ui_functions cwi_module_window = {
     cwi_ui_screen_title,
     cwi_ui_screen_copy,
     cwi_ui_set_cursor,
+    cwi_ui_imgui_theme,
     cwi_ui_keep,
     show,
     line,
@@ -521,6 +584,7 @@ const cwi_ui_functions cwi_module_window = {
     check,
     choice,
     slider,
+    log_slider,
     number,
     color,
     input,

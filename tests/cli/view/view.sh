@@ -69,15 +69,15 @@ differ bone.png next.png
 echo "sessions"
 view "mode composite; tf ct-skin; iso 300; orbit 30 20; dolly 1.3; clip-face 0 -20; cross 1 2 3; window -100 500;
       background #102030,white; zoom-slices 2; layout quad; point 1 0 0.7; letters on; toggle panels off;
-      save-state s.txt; print command; screenshot a.png; key Escape; capture wa.png; save-tf tf.json; save-camera c.json" >line
-cubewright view -q --hidden --size 640x480 --run s.txt --exec 'toggle panels off; screenshot b.png; key Escape; capture wb.png; save-state t.txt; key Ctrl+S; print message'
+      save-state s.txt; print command; screenshot a.png single; key Escape; capture wa.png; save-tf tf.json; save-camera c.json" >line
+cubewright view -q --hidden --size 640x480 --run s.txt --exec 'toggle panels off; screenshot b.png single; key Escape; capture wb.png; save-state t.txt; key Ctrl+S; print message'
 alike a.png b.png
 alike wa.png wb.png
 sort s.txt >a.txt
 sort t.txt >b.txt
 alike a.txt b.txt
 alike t.txt cubewright-state.txt
-sed -e 's/^cubewright view/& -q --hidden --size 640x480/' -e "s/'\$/toggle panels off; screenshot c.png; key Escape; capture wc.png'/" line >line.sh
+sed -e 's/^cubewright view/& -q --hidden --size 640x480/' -e "s/'\$/toggle panels off; screenshot c.png single; key Escape; capture wc.png'/" line >line.sh
 sh line.sh
 alike a.png c.png
 alike wa.png wc.png

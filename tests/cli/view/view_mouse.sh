@@ -81,14 +81,15 @@ echo "comparison"
 view 'toggle panels off; compare "mip|average"; wait; print compare; mouse 320 240; press; mouse 160 240; lift; print split;
       screenshot split.png; difference 20; screenshot difference.png; print compare; compare off; print compare' 2>&1
 differ split.png difference.png
-view 'mouse 600 400; wheel -20; click Compare; mouse 600 400; wheel -20; click "With the reference"; wait; print compare;
-      mouse 600 400; wheel -20; click "Left | right"; capture typed.png; key Ctrl+A; write "mip|reference"; key Enter; wait; print compare
+view 'mouse 600 400; wheel -20; click Compare; mouse 600 400; wheel -20; click "Compare with the exact picture"; wait; print compare;
+      mouse 600 400; wheel -20; click Left; click Left/mip; wait; print compare; click "Show the difference"; wait; print difference; capture typed.png
+      click "Settings/Options"; write "cell-steps"; key Enter; wait; print compare; click "Copy the numbers"; print message; click End; print compare
       compare "mip,cell-steps|reference"; mouse 300 300; mouse 301 300; print compare; wait; print compare'
 
-# A field has the title of the section it is in; boxes of one label are two.
+# A field has the title of the section it is in.
 echo "fields"
 cubewright view h.nrrd -q --hidden --size 640x1100 --exec 'click Light; wait; point-at Ambient 0.1 -1; press; lift; write 1,0,0; key Enter;
-    print light; point-at Ambient 0.05 -2.4; press; lift; print lit; key M; print mode; write x; key M; print mode'
+    print light; key M; print mode; write x; key M; print mode'
 
 # Time: keys, the slider, playing.
 echo "time"
