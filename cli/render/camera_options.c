@@ -7,6 +7,7 @@
 #include "core/base/text.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { FOV = 30 };
@@ -22,18 +23,130 @@ static bool is_json(const char *text)
     return *text == '{';
 }
 
-/* A whole camera, by itself or in a file. */
-static cw_status read_camera(const char *text, cw_camera *camera, cw_error *err)
+static bool is_words(const char *text)
 {
-    if (!is_json(text))
+    return strncmp(text, "eye ", 4) == 0;
+}
+
+static bool take_word(const char **text, const char *word)
+{
+    const size_t length = strlen(word);
+    *text += strspn(*text, " ");
+    if (strncmp(*text, word, length) != 0)
+        return false;
+    *text += length;
+    return true;
+}
+
+static bool take_vector(const char **text, const char *word, double v[3])
+{
+    return take_word(text, word) && cwi_parse_double(text, &v[0]) && *(*text)++ == ',' &&
+           cwi_parse_double(text, &v[1]) && *(*text)++ == ',' && cwi_parse_double(text, &v[2]);
+}
+
+static bool take_number(const char **text, const char *word, double *number)
+{
+    return take_word(text, word) && cwi_parse_double(text, number) && *number > 0;
+}
+
+/* "eye 1,2,3 to 4,5,6 up 0,0,1 fov 30": up may be left out; height is of parallel projection. */
+static cw_status parse_words(const char *text, cw_camera *camera, cw_error *err)
+{
+    cw_camera c = {.up = {0, 0, 1}};
+    double axes[3][3];
+    bool is_good = take_vector(&text, "eye ", c.eye) && take_vector(&text, "to ", c.target) &&
+                   (!strstr(text, " up ") || take_vector(&text, "up ", c.up));
+    is_good = is_good && (strstr(text, " fov ") ? take_number(&text, "fov ", &c.fov_deg)
+                                                : take_number(&text, "height ", &c.height_mm));
+    if (!is_good || text[strspn(text, " ")])
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "a camera such as 'eye 1,2,3 to 4,5,6 up 0,0,1 fov 30' (or height MM) "
+                        "was expected");
+    cw_status st = cw_camera_axes(&c, axes[0], axes[1], axes[2], err);
+    if (st == CW_OK)
+        *camera = c;
+    return st;
+}
+
+/* To seven digits. Numbers far below the largest are 0. */
+static void round_numbers(double *numbers, size_t count)
+{
+    double largest = 0;
+    for (size_t n = 0; n < count; n++)
+        largest = fmax(largest, fabs(numbers[n]));
+    for (size_t n = 0; n < count; n++) {
+        char text[32];
+        const char *at = text;
+        snprintf(text, sizeof text, "%.7g", fabs(numbers[n]) < 1e-9 * largest ? 0 : numbers[n]);
+        (void)!cwi_parse_double(&at, &numbers[n]);
+    }
+}
+
+void cli_round_camera(cw_camera *camera)
+{
+    double places[6];
+    memcpy(places, camera->eye, sizeof camera->eye);
+    memcpy(places + 3, camera->target, sizeof camera->target);
+    round_numbers(places, 6);
+    memcpy(camera->eye, places, sizeof camera->eye);
+    memcpy(camera->target, places + 3, sizeof camera->target);
+    round_numbers(camera->up, 3);
+    round_numbers(&camera->fov_deg, 1);
+    round_numbers(&camera->height_mm, 1);
+}
+
+/* As few digits as give the number again. */
+static void print_number(FILE *out, double number)
+{
+    char text[32];
+    for (int digits = 6; digits <= 17; digits++) {
+        const char *at = text;
+        double again;
+        snprintf(text, sizeof text, "%.*g", digits, number);
+        if (cwi_parse_double(&at, &again) && again == number)
+            break;
+    }
+    fputs(text, out);
+}
+
+static void print_vector(FILE *out, const char *word, const double v[3])
+{
+    fputs(word, out);
+    for (int a = 0; a < 3; a++) {
+        fputc(a ? ',' : ' ', out);
+        print_number(out, v[a]);
+    }
+}
+
+char *cli_write_camera(const cw_camera *c)
+{
+    const bool is_level = c->up[0] == 0 && c->up[1] == 0 && c->up[2] > 0;
+    char *text;
+    size_t size;
+    FILE *out = cwi_text_open(&text, &size);
+    if (!out)
+        return NULL;
+    print_vector(out, "eye", c->eye);
+    print_vector(out, " to", c->target);
+    if (!is_level)
+        print_vector(out, " up", c->up);
+    fputs(c->fov_deg > 0 ? " fov " : " height ", out);
+    print_number(out, c->fov_deg > 0 ? c->fov_deg : c->height_mm);
+    return cwi_text_close(out, &text) ? text : NULL;
+}
+
+cw_status cli_read_camera(const char *text, cw_camera *camera, cw_error *err)
+{
+    if (!is_json(text) && !is_words(text))
         return cw_camera_read(text, camera, err);
-    cw_status st = cw_camera_parse(text, camera, err);
+    cw_status st =
+        is_words(text) ? parse_words(text, camera, err) : cw_camera_parse(text, camera, err);
     return st == CW_OK ? st : cwi_fail_in(err, st, "--camera");
 }
 
 static bool is_whole(const char *text)
 {
-    return is_json(text) || is_file(text);
+    return is_json(text) || is_words(text) || is_file(text);
 }
 
 /* azimuth,elevation */
@@ -63,7 +176,7 @@ static const char *camera_of(const cli_scene *args, const double box[2][3])
 const char *cli_camera_title(const cli_scene *args, const double box[2][3])
 {
     const char *camera = camera_of(args, box);
-    return is_json(camera) ? "{...}" : camera;
+    return is_json(camera) ? "{...}" : is_words(camera) ? "eye ..." : camera;
 }
 
 static cw_status add_visible(const cw_volume *volume, const cw_transfer *transfer, int threads,
@@ -140,7 +253,7 @@ cw_status cli_check_camera(const cli_scene *args, const cli_turns *turns, cw_err
         return cwi_fail(err, CW_ERR_ARGUMENT, "%s is a complete camera; %s cannot change it",
                         cli_camera_title(args, box), args->ortho ? "--ortho" : "--fov");
     if (args->camera && is_whole(args->camera))
-        return is_json(args->camera) ? read_camera(args->camera, &camera, err) : CW_OK;
+        return is_file(args->camera) ? CW_OK : cli_read_camera(args->camera, &camera, err);
     fit.max[0] = fit.max[1] = fit.max[2] = 1;
     return cw_camera_fit(&fit, &camera, err);
 }
@@ -183,7 +296,7 @@ cw_status cli_find_camera(const cli_scene *args, const cli_turns *turns, size_t 
     memcpy(fit.min, box[0], sizeof fit.min);
     memcpy(fit.max, box[1], sizeof fit.max);
     if (args->camera && is_whole(args->camera)) {
-        st = read_camera(args->camera, camera, err);
+        st = cli_read_camera(args->camera, camera, err);
         if (st == CW_OK && n)
             st = cw_camera_turn(camera, camera->up, cli_turn_angle(turns, n), err);
     } else if (turns->count > 1) {

@@ -32,4 +32,15 @@ const char *cli_camera_title(const cli_scene *args, const double box[2][3]);
 /* How far turn n has gone, in degrees. */
 double cli_turn_angle(const cli_turns *turns, size_t n);
 
+/* Rounds a camera to seven digits, so that its words are short. */
+void cli_round_camera(cw_camera *camera);
+
+/* Writes a camera in words, 'eye X,Y,Z to X,Y,Z up X,Y,Z fov DEG', which give it again to the
+ * bit. Free it with free(); NULL when there is no memory. */
+char *cli_write_camera(const cw_camera *camera);
+
+/* Reads a whole camera: those words, JSON, or a .json file.
+ * Returns CW_ERR_ARGUMENT; as cw_camera_read() and cw_camera_parse() */
+CW_NODISCARD cw_status cli_read_camera(const char *text, cw_camera *camera, cw_error *err);
+
 #endif

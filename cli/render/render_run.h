@@ -16,8 +16,9 @@ typedef struct render_args {
     cli_turns turns;
     cli_marks marks;
     cli_label_look look;
-    const char *exec, *run, *config, *recent; /* of view alone, */
-    bool hidden, light_theme;                 /* and these */
+    const char *exec, *run, *config, *recent, *film; /* of view alone, */
+    bool hidden, light_theme;                        /* and these, */
+    cli_number fps;                                  /* and this */
     const char *output, *json, *mesh, *save_transfer, *save_camera, *compare, *overlay;
     cli_number iso, difference, overlay_opacity;
     int inside, backend;

@@ -35,6 +35,10 @@ static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
      "Run as --hidden, and write the last picture as a .png file",
      offsetof(render_args, output), CLI_VALUES_PNG},
+    {"film", 0, CLI_TEXT, "FILE",
+     "Save a film of key frames as pictures; -o holds {frame}: 'film-{frame:04d}.png'",
+     offsetof(render_args, film), CLI_VALUES_FILE},
+    {"fps", 0, CLI_NUMBER, "N", "Pictures a second of --film (25)", offsetof(render_args, fps)},
     {"size", 0, CLI_SIZES, "WxH", "Size of the window in pixels (1280x800)",
      offsetof(render_args, size)},
 #include "cli/render/options_what.inc"
@@ -84,6 +88,14 @@ static cw_status check_arguments(const render_args *args, cw_error *err)
                         "--size takes two numbers up to 8192, such as 1280x800");
     if (args->output && (!dot || strcmp(dot, ".png") != 0))
         return cwi_fail(err, CW_ERR_ARGUMENT, "%s: view writes .png", args->output);
+    if (args->film && !args->output)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--film needs -o with {frame}, as in 'film-{frame:04d}.png'");
+    if (args->fps.given && !args->film)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--fps is for --film");
+    if (args->fps.given && !(args->fps.value > 0 && args->fps.value <= 1000))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--fps %g: above 0, up to 1000, was expected",
+                        args->fps.value);
     if (args->common.input_count == 0 && args->output && !args->exec && !args->run)
         return cwi_fail(err, CW_ERR_ARGUMENT, "view -o needs a file to draw");
     return CW_OK;
@@ -147,6 +159,9 @@ static cw_status do_asked(view *v, const render_args *args, cw_error *err)
     }
     if (st == CW_OK && args->output)
         st = view_frame(v, 0, err); /* lays out what came before */
+    if (st == CW_OK && args->film && !v->quits)
+        return view_make_film(v, args->film, args->output,
+                              args->fps.given ? args->fps.value : 25, err);
     if (st == CW_OK && args->output && !v->quits)
         st = view_picture(v, &(view_sheet){0}, args->output, err);
     return st;
@@ -161,6 +176,7 @@ static cw_status run_session(view *v, const render_args *args, cw_error *err)
     v->state.args = *args;
     v->state.slice_zoom = 1;
     v->state.share = 0.5;
+    v->film_seconds = 2;
     v->shown = shown;
     v->width = args->size.n[0];
     v->height = args->size.n[1];

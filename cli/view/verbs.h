@@ -18,8 +18,8 @@ typedef struct view_verbs {
     const view_verb *rows;
     size_t count;
 } view_verbs;
-extern const view_verbs view_files_verbs, view_scene_verbs, view_curve_verbs, view_save_verbs,
-    view_script_verbs;
+extern const view_verbs view_files_verbs, view_scene_verbs, view_camera_verbs, view_curve_verbs,
+    view_save_verbs, view_script_verbs;
 
 #define VERB(name, takes, about, least, most, run)                                             \
     {                                                                                          \

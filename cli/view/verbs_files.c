@@ -1,4 +1,5 @@
 /* Commands that open files and go through steps. */
+#define _GNU_SOURCE /* scandir, strverscmp */
 #include "cli/view/verbs.h"
 
 #include "core/base/status.h"
@@ -7,8 +8,32 @@
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+
+static int is_plain(const struct dirent *e)
+{
+    return e->d_name[0] != '.';
+}
+
+static int by_version(const struct dirent **a, const struct dirent **b)
+{
+    return strverscmp((*a)->d_name, (*b)->d_name);
+}
+
+int view_scan(const char *folder, struct dirent ***entries)
+{
+    *entries = NULL;
+    return scandir(folder, entries, is_plain, by_version);
+}
+
+void view_free_scan(struct dirent **entries, int count)
+{
+    for (int n = 0; n < count; n++)
+        free(entries[n]);
+    free(entries);
+}
 
 static cw_status run_open(view *v, int count, char **args, cw_error *err)
 {

@@ -253,8 +253,13 @@ static cw_status run_run(view *v, int count, char **args, cw_error *err)
 
 static cw_status run_copy_command(view *v, int count, char **args, cw_error *err)
 {
-    char *line = view_command_line(v);
     (void)count, (void)args;
+    if (v->state
+            .is_placed) { /* the line is short, and gives what the window shows from now on */
+        cli_round_camera(&v->state.camera);
+        view_touch(v, 1 << VIEW_SPACE);
+    }
+    char *line = view_command_line(v);
     if (!line)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a command line");
     v->ui->set_clipboard(v->window, line);

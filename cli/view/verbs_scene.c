@@ -82,54 +82,6 @@ static cw_status run_toggle(view *v, int count, char **args, cw_error *err)
     return CW_OK;
 }
 
-/* the camera */
-
-static cw_status run_orbit(view *v, int count, char **args, cw_error *err)
-{
-    double n[2] = {0};
-    cw_status st = view_take("orbit", args, count, n, err);
-    if (st == CW_OK)
-        st = view_need_camera(v, err);
-    return st == CW_OK ? cw_camera_orbit(&v->state.camera, n[0], n[1], err) : st;
-}
-
-static cw_status run_pan(view *v, int count, char **args, cw_error *err)
-{
-    double n[2];
-    cw_status st = view_take("pan", args, count, n, err);
-    if (st == CW_OK)
-        st = view_need_camera(v, err);
-    const size_t height = (size_t)fmax(1, v->parts[VIEW_SPACE].rect.height);
-    return st == CW_OK ? cw_camera_pan(&v->state.camera, height, n[0], n[1], err) : st;
-}
-
-static cw_status run_dolly(view *v, int count, char **args, cw_error *err)
-{
-    double n;
-    cw_status st = view_take("dolly", args, count, &n, err);
-    if (st == CW_OK)
-        st = view_need_camera(v, err);
-    return st == CW_OK ? cw_camera_dolly(&v->state.camera, n, err) : st;
-}
-
-static cw_status run_roll(view *v, int count, char **args, cw_error *err)
-{
-    double n;
-    cw_status st = view_take("roll", args, count, &n, err);
-    if (st == CW_OK)
-        st = view_need_camera(v, err);
-    return st == CW_OK ? cw_camera_roll(&v->state.camera, n, err) : st;
-}
-
-static cw_status run_reset(view *v, int count, char **args, cw_error *err)
-{
-    (void)count, (void)args;
-    v->state.slice_zoom = 1;
-    view_touch(v, VIEW_ALL);
-    cw_status st = view_set(v, "zoom", "default", err);
-    return st == CW_OK ? view_set(v, "camera", "default", err) : st;
-}
-
 /* cuts, the cross-hair, slices */
 
 static void start_box(view *v)
@@ -336,12 +288,6 @@ static const view_verb rows[] = {
     EDIT("toggle", "NAME [on|off]",
          "Switch a setting on or off, or: panels, files, help, handles, cross, playing, about",
          1, 2, run_toggle),
-    VERB("orbit", "RIGHT [UP]", "Orbit the camera, in degrees", 1, 2, run_orbit),
-    VERB("pan", "RIGHT DOWN", "Move the picture, in pixels", 2, 2, run_pan),
-    VERB("dolly", "F", "Move the camera nearer, to magnify the scene by this factor", 1, 1,
-         run_dolly),
-    VERB("roll", "DEG", "Rotate the picture clockwise", 1, 1, run_roll),
-    VERB("reset", "", "Show the whole scene again", 0, 0, run_reset),
     EDIT("cut", "x|y|z VOXELS", "Cut the low side of an axis farther by this amount", 2, 2,
          run_cut),
     EDIT("clip-face", "N MM", "Move a face of the clip box: 0 to 5 for x, x, y, y, z, z", 2, 2,

@@ -3,6 +3,7 @@
 #ifndef CLI_VIEW_VIEW_H
 #define CLI_VIEW_VIEW_H
 
+#include "cli/render/camera_options.h"
 #include "cli/render/compare_options.h"
 #include "cli/render/render_run.h"
 #include "viewer/window/ui.h"
@@ -54,11 +55,11 @@ typedef struct view_state {
     size_t step;  /* of the series */
 } view_state;
 
-enum { VIEW_UNDO = 64, VIEW_MESSAGE = 1024 };
+enum { VIEW_UNDO = 64, VIEW_MESSAGE = 1024, VIEW_BOOKMARKS = 64 };
 
 /* Further things that the window shows; keys switch them. */
 typedef struct view_shown {
-    bool panels, help, handles, cross, playing, about, files, save_mesh, save_picture;
+    bool panels, help, handles, cross, playing, about, files, save_mesh, save_picture, gallery;
     int cut; /* axis that the wheel cuts along: 1 to 3; 0: none */
 } view_shown;
 
@@ -109,6 +110,29 @@ typedef struct view_history {
     bool is_drag;     /* on a picture */
 } view_history;
 
+/* Cameras that the scene was seen from: cameras[at] is the one at hand. */
+typedef struct view_cameras {
+    cw_camera cameras[VIEW_UNDO];
+    size_t count, at;
+    char verb[32];  /* of the last movement */
+    size_t gesture; /* in which it was made */
+} view_cameras;
+
+/* A view that was given a name. */
+typedef struct view_bookmark {
+    char name[32];
+    cw_camera camera;
+    char look[512]; /* commands: isovalue, cut, opacity */
+} view_bookmark;
+
+/* Thumbnails of the presets of the transfer function: how many are drawn. */
+enum { VIEW_THUMBS = 40 };
+typedef struct view_gallery {
+    size_t drawn;
+} view_gallery;
+
+typedef struct view_preview view_preview;
+
 typedef struct view {
     const cli_command *command;
     const cwi_ui_functions *ui;
@@ -145,6 +169,13 @@ typedef struct view {
 
     view_state state;
     view_history history;
+    view_cameras cameras;
+    view_bookmark bookmarks[VIEW_BOOKMARKS];
+    size_t bookmark_count;
+    double film_seconds;   /* from bookmark to bookmark */
+    bool is_filming;       /* what runs is a film: it is not to be undone */
+    view_preview *preview; /* film.c's: the film that plays; NULL: none */
+    view_gallery gallery;
     cw_mode mode;
     cw_transfer transfer; /* what is drawn with */
     cw_transfer greys;    /* and slices */
@@ -228,6 +259,9 @@ bool view_shows_surfaces(const view *v); /* of labels */
 
 /* view_state.c: undo, settings by name, and what is saved. */
 void view_remember(view *v, const char *verb);
+void view_note_camera(view *v, const char *verb); /* for camera-back, after it has moved */
+void view_put_word(FILE *out, const char *word);  /* in quotes where it needs them */
+void view_join_lines(char *text);
 bool view_undo(view *v, int by);
 const cli_option *view_find_option(const view *v, const char *name);
 CW_NODISCARD cw_status view_parse_split(const view *v, cli_split *split, cw_error *err);
@@ -247,6 +281,22 @@ const view_verb *view_verb_at(size_t n); /* NULL after the last */
 CW_NODISCARD cw_status view_monkey(view *v, uint64_t *seed,
                                    cw_error *err); /* one random input */
 CW_NODISCARD cw_status view_run(view *v, int count, char **words, cw_error *err);
+
+/* verbs_camera.c */
+void view_put_bookmarks(const view *v, FILE *out, const char *end); /* as commands */
+
+/* film.c: writes a film as pictures. The session is as before afterwards.
+ * name     a text of key frames: seconds and commands a line; or "bookmarks"
+ * pattern  of the pictures' names, with {frame}
+ * Returns  CW_ERR_FORMAT naming the line, CW_ERR_LIMIT, CW_ERR_CANCELLED, or as the commands */
+CW_NODISCARD cw_status view_make_film(view *v, const char *name, const char *pattern,
+                                      double fps, cw_error *err);
+
+/* Plays the bookmarks in the window, or stops; a frame shows the moment that has come. */
+CW_NODISCARD cw_status view_start_preview(view *v, cw_error *err);
+void view_stop_preview(view *v); /* and brings back what was before it */
+void view_drop_preview(view *v); /* when the file is closed */
+CW_NODISCARD cw_status view_run_preview(view *v, cw_error *err);
 
 /* view_script.c: commands in a text, parted by ; or lines, words in quotes, # begins a comment. */
 CW_NODISCARD cw_status view_exec(view *v, const char *text, cw_error *err);
@@ -278,6 +328,11 @@ bool view_is_final(const view *v);
 /* Draws one part into an image of the size of its rect. */
 CW_NODISCARD cw_status view_draw_part(view *v, int part, view_level level, bool may_stop,
                                       cw_image *image, cw_error *err);
+/* Returns the mode that a preset was made for: that at hand, or an intensity projection. */
+cw_mode view_preset_mode(const view *v, const char *preset);
+/* Draws the scene in the colours of a preset, small and quickly. */
+CW_NODISCARD cw_status view_draw_preset(view *v, const char *preset, size_t width,
+                                        size_t height, cw_image *image, cw_error *err);
 /* Makes the surface at the isovalue, or of labels, in v->source.mesh. */
 CW_NODISCARD cw_status view_need_surface(view *v, view_level level, cw_error *err);
 
@@ -305,7 +360,7 @@ CW_NODISCARD cw_status view_make_mesh(view *v, size_t triangles, cw_mesh *simpli
                                       cw_error *err);
 void view_describe_mesh(const view_mesh_facts *facts, char *text, size_t size);
 
-/* save_panels.c: dialogs that save a mesh or a picture. */
+/* cli/panels, save_panels.c: dialogs that save a mesh or a picture. */
 void view_show_save_mesh(view *v);
 void view_show_save_picture(view *v);
 
@@ -321,7 +376,7 @@ void view_place_parts(view *v, const cwi_ui_rect *area, bool is_quad);
 cwi_ui_rect view_picture_area(const view *v); /* of all parts, in the window */
 bool view_is_quad(const view *v);
 
-/* side_panel.c, compare_panel.c */
+/* cli/panels: side_panel.c, compare_panel.c */
 enum { VIEW_MODE_NAMES = CW_MODE_COUNT + 8 };
 /* Lists the modes that draw what is open, by groups with headings: how many names. */
 size_t view_list_modes(const view *v, bool with_mesh, const char **names);
@@ -329,7 +384,13 @@ void view_show_side(view *v);
 void view_show_compare(view *v); /* the section of the side panel */
 void view_show_badges(view *v);  /* on the halves of a comparison */
 
-/* recent_files.c, start_page.c */
+/* cli/panels: views_panel.c */
+void view_show_views(view *v); /* the section of the side panel */
+void view_show_gallery(view *v);
+void view_draw_gallery(view *v);        /* one thumbnail more, if it is shown */
+bool view_gallery_waits(const view *v); /* for thumbnails */
+
+/* cli/panels: recent_files.c, start_page.c */
 /* Reads the list of recent files: of that file, "none", or NULL for the user's. */
 void view_start_recent(view *v, const char *named);
 void view_end_recent(view *v);
@@ -339,13 +400,14 @@ void view_show_start(view *v);
 /* Opens the head MRI of Debian ("head"), or a field by its name, made when it is not there. */
 CW_NODISCARD cw_status view_open_sample(view *v, const char *name, cw_error *err);
 
-/* view_mouse.c, view_panels.c, curve_editor.c, file_browser.c */
-void view_browse(view *v);
-void view_close_browser(view *v);
-/* Lists a folder in natural order and returns the number of entries; below 0: it cannot be
- * read. */
+/* verbs_files.c: lists a folder in natural order and returns the number of entries; below 0: it
+ * cannot be read. */
 int view_scan(const char *folder, struct dirent ***entries);
 void view_free_scan(struct dirent **entries, int count);
+
+/* view_mouse.c, and of cli/panels: panels.c, curve_editor.c, file_browser.c */
+void view_browse(view *v);
+void view_close_browser(view *v);
 void view_mouse(view *v, const cwi_ui_input *in);
 void view_show_parts(view *v, const cwi_ui_input *in);
 void view_panels(view *v, const cwi_ui_input *in);

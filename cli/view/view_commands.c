@@ -40,9 +40,9 @@ cw_status view_need_camera(view *v, cw_error *err)
 
 const view_verb *view_verb_at(size_t n)
 {
-    static const view_verbs *const lists[] = {&view_files_verbs, &view_scene_verbs,
-                                              &view_curve_verbs, &view_save_verbs,
-                                              &view_script_verbs};
+    static const view_verbs *const lists[] = {&view_files_verbs,  &view_scene_verbs,
+                                              &view_camera_verbs, &view_curve_verbs,
+                                              &view_save_verbs,   &view_script_verbs};
     for (size_t l = 0; l < sizeof lists / sizeof *lists; n -= lists[l++]->count)
         if (n < lists[l]->count)
             return &lists[l]->rows[n];
@@ -53,8 +53,9 @@ const view_verb *view_verb_at(size_t n)
  * by menus. */
 static bool may_run(const view *v, const char *name)
 {
-    static const char *const barred[] = {"screenshot", "turntable", "save-state", "quit",
-                                         "next",       "previous",  "save-mesh"};
+    static const char *const barred[] = {"screenshot", "turntable", "save-state",
+                                         "quit",       "next",      "previous",
+                                         "save-mesh",  "film",      "save-film"};
     for (size_t n = 0; v->is_monkey && n < sizeof barred / sizeof *barred; n++)
         if (strcmp(name, barred[n]) == 0)
             return false;
@@ -97,9 +98,15 @@ cw_status view_run(view *v, int count, char **words, cw_error *err)
                         verb ? verb->takes : "one value", count - 1);
     if (!may_run(v, words[0]))
         return CW_OK;
+    if (v->preview && !v->is_filming && strcmp(words[0], "play-film") != 0)
+        view_stop_preview(v); /* somebody wants something else */
     cw_status st = verb ? verb->run(v, count - 1, words + 1, err)
                         : view_set(v, words[0], count > 1 ? words[1] : NULL, err);
-    if (st == CW_OK && v->path && (is_setting || verb->changes))
+    if (st != CW_OK || !v->path || v->is_filming)
+        return st;
+    if (is_setting || verb->changes)
         view_remember(v, words[0]);
-    return st;
+    if (strncmp(words[0], "camera-", strlen("camera-")) != 0)
+        view_note_camera(v, words[0]);
+    return CW_OK;
 }

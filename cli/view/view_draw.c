@@ -299,6 +299,51 @@ static cw_status draw_space(view *v, view_level level, const cw_progress *progre
     return st == CW_OK ? draw_scene(v, scene, picture, err) : st;
 }
 
+cw_mode view_preset_mode(const view *v, const char *preset)
+{
+    static const char *const of_maxima[] = {"mip", "grey", "window"};
+    const bool is_blended =
+        v->mode != CW_MODE_MESH && v->mode != CW_MODE_SLICES && !cw_mode_is_intensity(v->mode);
+    if (strcmp(preset, "xray") == 0)
+        return CW_MODE_AVERAGE;
+    for (size_t n = 0; n < sizeof of_maxima / sizeof *of_maxima; n++)
+        if (strcmp(preset, of_maxima[n]) == 0)
+            return CW_MODE_MIP;
+    return is_blended ? v->mode : cli_default_mode(&v->source);
+}
+
+cw_status view_draw_preset(view *v, const char *preset, size_t width, size_t height,
+                           cw_image *image, cw_error *err)
+{
+    static const uint8_t background[2][4] = {{8, 9, 12, 255}, {24, 28, 36, 255}};
+    render_args *args = malloc(sizeof *args);
+    const cw_mode mode = view_preset_mode(v, preset);
+    cw_scene scene = {.width = width, .height = height};
+    cw_picture picture = {0};
+    cw_transfer transfer;
+    if (!args)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a preset");
+    *args = v->state.args;
+    args->scene.transfer = preset;
+    args->scene.shift = args->scene.opacity = (cli_number){0};
+    args->iso = (cli_number){0};
+    cw_status st = v->state.is_placed ? CW_OK : view_place_camera(v, NULL, err);
+    if (st == CW_OK)
+        st = cli_fit_transfer(&args->scene, cli_drawn(&v->source), mode, &v->statistics,
+                              &transfer, err);
+    if (st == CW_OK)
+        st = space_scene(v, args, mode, &transfer, &scene, err);
+    make_rough(&scene);
+    scene.mesh = NULL;
+    if (st == CW_OK)
+        st = draw_scene(v, &scene, &picture, err);
+    if (st == CW_OK)
+        st = cw_picture_show(&picture, background, image, err);
+    cw_picture_free(&picture);
+    free(args);
+    return st;
+}
+
 static cw_status draw_slice(view *v, int part, const cw_progress *progress, cw_scene *scene,
                             cw_picture *picture, cw_error *err)
 {

@@ -41,6 +41,10 @@ const view_key view_keys[] = {
     {"toggle ortho", "5", "View/Orthographic",
      "Switch between parallel projection and perspective"},
     {"reset", "Enter", "View/See all", "Show the whole scene again"},
+    {"camera-back", "Alt+Left", "View/Earlier view",
+     "Go back to the view before the last movement"},
+    {"camera-forward", "Alt+Right", "View/Later view", "Go forward to the view after it"},
+    {"bookmark", "Ctrl+B", "View/Keep this view", "Keep the view as a bookmark"},
     {"orbit -5", "Left", NULL, "Orbit by 5 degrees"},
     {"orbit 5", "Right", NULL, NULL},
     {"orbit 0 5", "Up", NULL, NULL},
@@ -58,6 +62,7 @@ const view_key view_keys[] = {
     {"toggle panels", "Tab", "View/Panels", "Show or hide all panels"},
     {"next-mode", "M", "Scene/Next mode", "Draw in the next mode"},
     {"previous-mode", "Shift+M", "Scene/Previous mode", "Draw in the previous mode"},
+    {"toggle gallery", "Shift+P", "Scene/Presets...", "Show or hide pictures of all presets"},
     {"next-preset", "P", "Scene/Next preset", "Use the next transfer function"},
     {"toggle lit", "L", "Scene/Light", "Switch the shading of volumes on or off"},
     {"iso-by -0.01", "[", "Scene/Lower isovalue", "Lower the isovalue"},
@@ -90,7 +95,8 @@ bool *view_shown_flag(view *v, const char *name)
                  {"playing", &v->shown.playing},
                  {"about", &v->shown.about},
                  {"save-mesh", &v->shown.save_mesh},
-                 {"save-picture", &v->shown.save_picture}};
+                 {"save-picture", &v->shown.save_picture},
+                 {"gallery", &v->shown.gallery}};
     for (size_t n = 0; n < sizeof flags / sizeof *flags; n++)
         if (strcmp(flags[n].name, name) == 0)
             return flags[n].on;

@@ -59,7 +59,7 @@ static void press_keys(view *v, const cwi_ui_input *in)
     for (size_t k = 0; k < in->key_count; k++)
         if (strcmp(in->keys[k], "Escape") == 0) {
             v->shown.help = v->shown.about = v->shown.files = false;
-            v->shown.save_mesh = v->shown.save_picture = false;
+            v->shown.save_mesh = v->shown.save_picture = v->shown.gallery = false;
             v->shown.cut = 0;
             v->message[0] = '\0';
         }
@@ -76,7 +76,7 @@ static void play_steps(view *v)
 
 static double wait_for(const view *v, double wait_s)
 {
-    if (!view_is_final(v) || v->asked_count)
+    if (!view_is_final(v) || v->asked_count || v->preview || view_gallery_waits(v))
         return 0;
     return v->shown.playing && v->source.series.count > 1
                ? fmin(wait_s, fmax(0, v->play_next - v->ui->seconds(v->window)))
@@ -135,6 +135,9 @@ cw_status view_frame(view *v, double wait_s, cw_error *err)
     cw_status st = ui->end(v->window, err);
     tell_first(v);
     view_run_asked(v);
+    view_draw_gallery(v);
+    if (st == CW_OK)
+        st = view_run_preview(v, err);
     return st == CW_OK ? draw_session(v, err) : st;
 }
 

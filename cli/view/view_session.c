@@ -73,6 +73,7 @@ static void drop_surface(view *v)
 
 void view_close(view *v)
 {
+    view_drop_preview(v);
     drop_surface(v);
     view_forget_labels(v);
     v->label_note[0] = '\0';
@@ -155,6 +156,7 @@ static cw_status read_step(view *v, size_t step, cw_error *err)
     if (!v->has_volume)
         cli_say("shown as a surface: %s", why.message);
     v->values_come = v->transfer_is_old = true;
+    v->gallery.drawn = 0;
     for (int m = 0; m < CW_MODE_COUNT; m++)
         v->mode_error[m] = -1;
     return CW_OK;
@@ -341,7 +343,7 @@ cw_status view_open(view *v, const char *const *paths, size_t count, cw_error *e
         view_close(v);
     fresh_look(v);
     name_window(v);
-    v->history.count = 0;
+    v->history.count = v->cameras.count = 0;
     if (st != CW_OK)
         return st;
     view_remember(v, "open");
@@ -405,6 +407,8 @@ cw_status view_place_camera(view *v, const char *name, cw_error *err)
         return st;
     v->state.camera = camera;
     v->state.is_placed = true;
+    if (!v->is_filming)
+        view_note_camera(v, "place");
     view_touch(v, 1 << VIEW_SPACE);
     return CW_OK;
 }

@@ -63,6 +63,26 @@ bool view_undo(view *v, int by)
     return true;
 }
 
+/* Movements of one kind in one go are one view, as for view_remember(). */
+void view_note_camera(view *v, const char *verb)
+{
+    view_cameras *c = &v->cameras;
+    if (!v->state.is_placed ||
+        (c->count && memcmp(&c->cameras[c->at], &v->state.camera, sizeof(cw_camera)) == 0))
+        return;
+    const bool goes_on =
+        c->count && c->at && c->gesture == v->gesture && strcmp(c->verb, verb) == 0;
+    if (!goes_on && c->count) {
+        if (c->at + 1 == VIEW_UNDO)
+            memmove(c->cameras, c->cameras + 1, --c->at * sizeof *c->cameras);
+        c->at++;
+    }
+    c->cameras[c->at] = v->state.camera;
+    c->count = c->at + 1;
+    c->gesture = v->gesture;
+    snprintf(c->verb, sizeof c->verb, "%s", verb);
+}
+
 const cli_option *view_find_option(const view *v, const char *name)
 {
     static const char *const fixed[] = {
@@ -221,7 +241,7 @@ cw_status view_set(view *v, const char *name, const char *value, cw_error *err)
 }
 
 /* In quotes where a shell, or a script of ours, would part or read it otherwise. */
-static void put_word(FILE *out, const char *word)
+void view_put_word(FILE *out, const char *word)
 {
     if (*word && strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
                               "-_=+:,./@%") == strlen(word)) {
@@ -238,7 +258,7 @@ static void put_word(FILE *out, const char *word)
 }
 
 /* JSON has its lines for people; here it is one word of one line. */
-static void join_lines(char *text)
+void view_join_lines(char *text)
 {
     for (size_t n = strlen(text); n > 0 && text[n - 1] == '\n'; n--)
         text[n - 1] = '\0';
@@ -250,7 +270,7 @@ static void put_setting(FILE *out, bool shell, const char *name, const char *val
 {
     fprintf(out, shell ? " --%s%s" : "%s%s", name, value ? " " : "");
     if (value)
-        put_word(out, value);
+        view_put_word(out, value);
     if (!shell)
         fputc('\n', out);
 }
@@ -300,13 +320,25 @@ static void put_settings(const view *v, FILE *out, bool shell)
     const view_state *s = &v->state;
     put_options(v, out, shell, false);
     if (s->is_edited && cw_transfer_format(&s->curve, text, NULL) == CW_OK) {
-        join_lines(text);
+        view_join_lines(text);
         put_setting(out, shell, "tf", text);
     }
-    if (s->is_placed && cw_camera_format(&s->camera, text, NULL) == CW_OK) {
-        join_lines(text);
+    char *words = s->is_placed && shell ? cli_write_camera(&s->camera) : NULL;
+    if (words) {
+        put_setting(out, shell, "camera", words);
+        free(words);
+    } else if (s->is_placed && cw_camera_format(&s->camera, text, NULL) == CW_OK) {
+        view_join_lines(text);
         put_setting(out, shell, "camera", text);
     }
+}
+
+static bool is_in_middle(const view *v)
+{
+    for (int a = 0; a < 3; a++)
+        if (v->state.cross[a] != 0.5 * (v->box[0][a] + v->box[1][a]))
+            return false;
+    return true;
 }
 
 /* Writes the parts of the state that are no options. */
@@ -315,7 +347,8 @@ static void put_rest(const view *v, FILE *out, const char *end)
     const view_state *s = &v->state;
     if (s->step)
         fprintf(out, "step %zu%s", s->step, end);
-    fprintf(out, "cross %.9g %.9g %.9g%s", s->cross[0], s->cross[1], s->cross[2], end);
+    if (!is_in_middle(v))
+        fprintf(out, "cross %.9g %.9g %.9g%s", s->cross[0], s->cross[1], s->cross[2], end);
     if (s->window[0] != 0 || s->window[1] != 0)
         fprintf(out, "window %.9g %.9g%s", s->window[0], s->window[1], end);
     if (s->slice_zoom != 1)
@@ -328,7 +361,7 @@ static void put_files(const view *v, FILE *out)
 {
     for (size_t n = 0; n < v->file_count; n++) {
         fputc(' ', out);
-        put_word(out, v->files[n]);
+        view_put_word(out, v->files[n]);
     }
 }
 
@@ -348,6 +381,7 @@ cw_status view_write_state(const view *v, const char *path, cw_error *err)
     }
     put_settings(v, out, false);
     put_rest(v, out, "\n");
+    view_put_bookmarks(v, out, "\n");
     if (!cwi_text_close(out, &text))
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a state");
     cw_status st = cwi_outfile_save(path, text, size, err);
@@ -357,8 +391,8 @@ cw_status view_write_state(const view *v, const char *path, cw_error *err)
 
 char *view_command_line(const view *v)
 {
-    char *text;
-    size_t size;
+    char *text, *rest;
+    size_t size, rest_size;
     FILE *out = cwi_text_open(&text, &size);
     if (!out)
         return NULL;
@@ -366,8 +400,13 @@ char *view_command_line(const view *v)
     put_files(v, out);
     put_options(v, out, true, true);
     put_settings(v, out, true);
-    fputs(" --exec '", out);
-    put_rest(v, out, "; ");
-    fputc('\'', out);
+    FILE *commands = cwi_text_open(&rest, &rest_size);
+    if (commands)
+        put_rest(v, commands, "; ");
+    if (commands && cwi_text_close(commands, &rest)) {
+        if (*rest)
+            fprintf(out, " --exec '%s'", rest);
+        free(rest);
+    }
     return cwi_text_close(out, &text) ? text : NULL;
 }

@@ -104,6 +104,20 @@ CW_NODISCARD CW_API cw_status cw_camera_ray(const cw_camera *camera, size_t widt
                                             double origin[3], double direction[3],
                                             cw_error *err);
 
+/* Computes the camera of a smooth path through key cameras, at a time. The path goes through each
+ * key, to the bit; it rests at the first and the last, which also hold before and after. Target,
+ * and the logarithms of the distance and of the opening, stay between those of the keys around;
+ * the directions turn along a blend of quaternions.
+ * keys, times  count of each; times rise, in any unit; all keys have a perspective, or none has
+ * time         in the unit of times
+ * camera       set to the camera at that time; as it was on failure
+ * Returns      CW_ERR_ARGUMENT  no key; times that do not rise or are not finite; keys of both
+ *                               kinds; as cw_camera_axes()
+ * Source       monotone cubics [Fritsch1980], [Steffen1990]: core/README.md */
+CW_NODISCARD CW_API cw_status cw_camera_path(const cw_camera *keys, const double *times,
+                                             size_t count, double time, cw_camera *camera,
+                                             cw_error *err);
+
 enum { CW_CAMERA_TEXT = 1024 }; /* bytes that the text of a camera takes at most */
 
 /* Reads or writes a camera as JSON: in a file, or as text with the last two functions.

@@ -2777,6 +2777,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_camera_pan": (c_int, [POINTER(cw_camera), c_size_t, c_double, c_double, POINTER(cw_error)]),
     "cw_camera_project": (c_bool, [POINTER(cw_camera), c_size_t, c_size_t, POINTER(c_double), POINTER(c_double), POINTER(c_double)]),
     "cw_camera_ray": (c_int, [POINTER(cw_camera), c_size_t, c_size_t, POINTER(c_double), POINTER(c_double), POINTER(c_double), POINTER(cw_error)]),
+    "cw_camera_path": (c_int, [POINTER(cw_camera), POINTER(c_double), c_size_t, c_double, POINTER(cw_camera), POINTER(cw_error)]),
     "cw_camera_read": (c_int, [c_char_p, POINTER(cw_camera), POINTER(cw_error)]),
     "cw_camera_write": (c_int, [c_char_p, POINTER(cw_camera), POINTER(cw_error)]),
     "cw_camera_parse": (c_int, [c_char_p, POINTER(cw_camera), POINTER(cw_error)]),

@@ -98,6 +98,11 @@ typedef enum cwi_ui_panel {
 
 typedef enum cwi_ui_theme { CWI_UI_DARK, CWI_UI_LIGHT } cwi_ui_theme;
 
+/* A docked panel is at least CWI_UI_DOCKED_MIN pixels of a scale of 1 wide, and at most this part
+ * of the window, which comes first. */
+#define CWI_UI_DOCKED_MIN 180
+#define CWI_UI_DOCKED_MAX 0.6
+
 /* Begins a name of choice() that is a heading, not to be chosen. */
 #define CWI_UI_HEADING "\n"
 
@@ -136,7 +141,7 @@ typedef struct cwi_ui_functions {
     void (*set_cursor)(cwi_ui *ui, int shape); /* 0 arrow, 1 cross, 2 hand, 3 left-right */
     void (*set_theme)(cwi_ui *ui, cwi_ui_theme theme); /* of panels; dark at first */
 
-    /* Pictures, kept in slots 0 to 15 until replaced (NULL: dropped), drawn stretched: in the
+    /* Pictures, kept in slots 0 to 47 until replaced (NULL: dropped), drawn stretched: in the
      * panel at hand, outside of panels behind them all. */
     cw_status (*keep)(cwi_ui *ui, int slot, const cw_image *image, cw_error *err);
     void (*show)(cwi_ui *ui, int slot, const cwi_ui_rect *where);

@@ -41,11 +41,11 @@ const palette palettes[] = {
      0.60f, ImVec4(0.10f, 0.42f, 0.75f, 1), ImVec4(0.05f, 0.33f, 0.65f, 1), 0.30f, 0.40f,
      0.35f}};
 
-/* Returns a grey with a touch of blue. */
+/* Returns a grey with a touch of blue, which bright ones need less of. */
 ImVec4 gray(float value, float alpha = 1)
 {
-    const float blue = value * 1.06f;
-    return ImVec4(value * 0.94f, value * 0.98f, blue < 1 ? blue : 1, alpha);
+    const float tint = 0.06f * (1 - value);
+    return ImVec4(value * (1 - tint), value * (1 - tint / 3), value * (1 + tint), alpha);
 }
 
 ImVec4 faded(const ImVec4 &color, float alpha)

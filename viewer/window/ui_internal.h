@@ -15,7 +15,7 @@ extern "C" {
 #endif
 
 enum { CWI_UI_GONE = 1 << 16 }; /* a panel that ImGui did not begin, beside its flags */
-enum { CWI_UI_SLOTS = 16, CWI_UI_NAME_SIZE = 64, CWI_UI_DEPTH = 8, CWI_UI_LARGEST = 16384 };
+enum { CWI_UI_SLOTS = 48, CWI_UI_NAME_SIZE = 64, CWI_UI_DEPTH = 8, CWI_UI_LARGEST = 16384 };
 
 /* Events that wait to be taken; text is the queue's. */
 typedef struct cwi_ui_queue {

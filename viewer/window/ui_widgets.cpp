@@ -194,7 +194,8 @@ void place_panel(const cwi_ui *ui, const char *title, const cwi_ui_rect *r, bool
 /* Places a panel at the right border, as high as told. Its left border can be dragged. */
 void dock_panel(const cwi_ui *ui, const cwi_ui_rect *r)
 {
-    const double least = 180 * ui->scale, most = 0.6 * static_cast<double>(ui->input.width);
+    const double least = CWI_UI_DOCKED_MIN * ui->scale,
+                 most = CWI_UI_DOCKED_MAX * static_cast<double>(ui->input.width);
     const double narrowest = least < most ? least : most;
     ImGui::SetNextWindowPos(point(r->x + r->width, r->y), ImGuiCond_Always, ImVec2(1, 0));
     ImGui::SetNextWindowSize(point(r->width, r->height), ImGuiCond_FirstUseEver);

@@ -90,7 +90,7 @@ cp h.nrrd "it's a folder; #1/a b.nrrd"
 cubewright view "it's a folder; #1/a b.nrrd" -q --hidden --size 640x480 --exec 'print open; save-state q.txt; print command; screenshot e.png' >line
 cubewright view -q --hidden --size 640x480 --run q.txt --exec 'print open; screenshot f.png'
 alike e.png f.png
-sed -n '$p' line | sed -e 's/^cubewright view/& -q --hidden --size 640x480/' -e "s/'\$/print open'/" | sh
+sed -n '$p' line | sed -e 's/^cubewright view/& -q --hidden --size 640x480/' -e "s/\$/ --exec 'print open'/" | sh
 
 # Pictures by the way: names that are free, and all round.
 echo "pictures"

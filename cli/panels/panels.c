@@ -187,6 +187,8 @@ void view_panels(view *v, const cwi_ui_input *in)
         view_show_start(v);
     if (v->shown.files)
         view_browse(v);
+    if (v->shown.gallery && v->has_volume)
+        view_show_gallery(v);
     if (v->shown.save_mesh)
         view_show_save_mesh(v);
     if (v->shown.save_picture)

@@ -1,6 +1,6 @@
 /* Browses folders for files to open: folders first, with sizes and dates, filtered by what is
  * typed. A click chooses an entry, a second one opens it. */
-#define _GNU_SOURCE /* scandir, strverscmp, strdup, strcasestr */
+#define _GNU_SOURCE /* strdup, strcasestr */
 #include "cli/view/view.h"
 
 #include <dirent.h>
@@ -10,16 +10,6 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
-
-static int is_plain(const struct dirent *e)
-{
-    return e->d_name[0] != '.';
-}
-
-static int by_version(const struct dirent **a, const struct dirent **b)
-{
-    return strverscmp((*a)->d_name, (*b)->d_name);
-}
 
 static void forget_entries(view_browser *b)
 {
@@ -34,19 +24,6 @@ static void forget_entries(view_browser *b)
 void view_close_browser(view *v)
 {
     forget_entries(&v->browser);
-}
-
-int view_scan(const char *folder, struct dirent ***entries)
-{
-    *entries = NULL;
-    return scandir(folder, entries, is_plain, by_version);
-}
-
-void view_free_scan(struct dirent **entries, int count)
-{
-    for (int n = 0; n < count; n++)
-        free(entries[n]);
-    free(entries);
 }
 
 /* Whether a name ends as those of a format that is read. DICOM's files need no extension. */

@@ -227,6 +227,9 @@ static void show_preset(view *v)
         view_ask(v, "tf %s", chosen ? names[chosen] : "default");
     if (chosen && cw_transfer_preset_name(chosen - 1))
         v->ui->tip(v->window, cw_transfer_preset_about(chosen - 1));
+    if (v->ui->button(v->window, "Presets as pictures..."))
+        view_ask(v, "toggle gallery");
+    v->ui->tip(v->window, "Choose colours and opacities by small pictures of this volume");
 }
 
 static void show_shift(view *v)
@@ -350,8 +353,9 @@ static void show_time(view *v)
 
 void view_show_side(view *v)
 {
-    const double width =
-        fmin(PANEL_WIDTH * v->ui->scale(v->window), MAX_PANEL * (double)v->width);
+    const double scale = v->ui->scale(v->window), all = (double)v->width;
+    const double width = fmax(fmin(PANEL_WIDTH * scale, MAX_PANEL * all),
+                              fmin(CWI_UI_DOCKED_MIN * scale, CWI_UI_DOCKED_MAX * all));
     const cwi_ui_rect rect = {(double)v->width - width, v->bar_height, width,
                               (double)v->height - v->bar_height};
     cwi_ui_rect now = rect; /* somebody may have made it wider */
@@ -364,6 +368,7 @@ void view_show_side(view *v)
         show_cut(v);
         show_time(v);
         view_show_compare(v);
+        view_show_views(v);
         if (v->look.labels)
             show_options(v, "Label maps");
         show_options(v, "Light");
