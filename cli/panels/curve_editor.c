@@ -192,6 +192,29 @@ static void choose_color(view *v)
                  (unsigned)lroundf(255 * rgb[2]));
 }
 
+/* The point that was used last, in numbers. */
+void view_show_point(view *v)
+{
+    const cw_transfer *t = &v->transfer;
+    const double range = v->statistics.max - v->statistics.min;
+    if (!view_draws_volume(v) || t->opacity_count == 0 ||
+        !v->ui->section(v->window, "Curve in numbers", false))
+        return;
+    size_t n = (size_t)v->curve_point < t->opacity_count ? (size_t)v->curve_point : 0;
+    double chosen = (double)n, value = t->opacities[n].value,
+           opacity = (double)t->opacities[n].opacity;
+    if (t->opacity_count > 1 &&
+        v->ui->slider(v->window, "Point", &chosen, 0, (double)t->opacity_count - 1, "%.0f"))
+        v->curve_point = (int)lround(chosen);
+    v->ui->tip(v->window, "Point of the opacity curve, from the left");
+    if (v->ui->number(v->window, "Its value", &value, range / 400, "%.6g"))
+        view_ask(v, "point %zu %.9g %.6g", n, value, opacity);
+    v->ui->tip(v->window, "Drag, or double-click to type");
+    if (v->ui->slider(v->window, "Its opacity", &opacity, 0, 1, "%.3f"))
+        view_ask(v, "point %zu %.9g %.6g", n, value, opacity);
+    v->ui->tip(v->window, "Opacity for a path of one voxel; Ctrl and a click: type it");
+}
+
 void view_curve(view *v)
 {
     static const cwi_ui_color back = {0.07f, 0.075f, 0.085f, 1};

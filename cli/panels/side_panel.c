@@ -363,6 +363,7 @@ void view_show_side(view *v)
     v->panel_width = now.width;
     if (v->ui->panel_begin(v->window, "Settings", &rect, CWI_UI_DOCKED, NULL) && v->path) {
         show_scene(v);
+        view_show_point(v);
         show_surface(v);
         show_slices(v);
         show_cut(v);

@@ -82,6 +82,46 @@ static cw_status run_toggle(view *v, int count, char **args, cw_error *err)
     return CW_OK;
 }
 
+/* The panels that are shown, those in front first. */
+static size_t list_panels(const view *v, const char *titles[8])
+{
+    const struct {
+        bool on;
+        const char *title;
+    } panels[] = {{v->message[0] && v->is_error, "Error"},
+                  {v->shown.save_mesh, "Save mesh"},
+                  {v->shown.save_picture, "Save picture"},
+                  {v->shown.gallery, "Presets"},
+                  {v->shown.files, "Open"},
+                  {v->shown.help, "Keys"},
+                  {!v->path, "Start"},
+                  {v->shown.panels, "Settings"}};
+    size_t count = 0;
+    for (size_t n = 0; n < sizeof panels / sizeof *panels; n++)
+        if (panels[n].on)
+            titles[count++] = panels[n].title;
+    return count;
+}
+
+static cw_status run_focus(view *v, int count, char **args, cw_error *err)
+{
+    const char *titles[8];
+    const size_t panels = list_panels(v, titles);
+    (void)count;
+    if (strcmp(args[0], "off") == 0) {
+        v->ui->focus(v->window, NULL);
+    } else if (strcmp(args[0], "menus") == 0 && v->shown.panels) {
+        v->ui->focus(v->window, "");
+    } else if (strcmp(args[0], "next") == 0 && panels) {
+        v->focus_at = v->ui->focused(v->window) ? v->focus_at + 1 : 0;
+        v->ui->focus(v->window, titles[v->focus_at % panels]);
+    } else if (strcmp(args[0], "next") != 0 && strcmp(args[0], "menus") != 0) {
+        return cwi_fail(err, CW_ERR_ARGUMENT, "focus '%s': next, menus or off was expected",
+                        args[0]);
+    }
+    return v->is_asked ? CW_OK : view_take_in(v, err); /* a script's keys come at once */
+}
+
 /* cuts, the cross-hair, slices */
 
 static void start_box(view *v)
@@ -288,6 +328,8 @@ static const view_verb rows[] = {
     EDIT("toggle", "NAME [on|off]",
          "Switch a setting on or off, or: panels, files, help, handles, cross, playing, about",
          1, 2, run_toggle),
+    VERB("focus", "next|menus|off", "Let keys walk through the next panel, or the menus", 1, 1,
+         run_focus),
     EDIT("cut", "x|y|z VOXELS", "Cut the low side of an axis farther by this amount", 2, 2,
          run_cut),
     EDIT("clip-face", "N MM", "Move a face of the clip box: 0 to 5 for x, x, y, y, z, z", 2, 2,

@@ -198,6 +198,7 @@ typedef struct view {
     double start;         /* in cli_seconds() */
     bool is_told;         /* how long the first picture took */
     double frame_shown, play_next;
+    size_t focus_at; /* of the panels that are shown: the one whose widgets have the keys */
     char probe[256];
     view_browser browser;
     view_saving saving;
@@ -412,5 +413,6 @@ void view_mouse(view *v, const cwi_ui_input *in);
 void view_show_parts(view *v, const cwi_ui_input *in);
 void view_panels(view *v, const cwi_ui_input *in);
 void view_curve(view *v);
+void view_show_point(view *v); /* the section of the curve in numbers */
 
 #endif

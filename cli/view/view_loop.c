@@ -146,6 +146,8 @@ cw_status view_take_in(view *v, cw_error *err)
     cw_status st = view_frame(v, 0, err);
     while (st == CW_OK && (v->ui->pending(v->window) || v->asked_count) && !v->quits)
         st = view_frame(v, 0, err);
+    for (int n = 0; n < 3 && st == CW_OK && v->ui->focused(v->window); n++)
+        st = view_frame(v, 0, err); /* the widget that has the keys follows them */
     return st;
 }
 

@@ -37,7 +37,7 @@ typedef enum cwi_ui_kind {
 
 enum { CWI_UI_LEFT, CWI_UI_RIGHT, CWI_UI_MIDDLE, CWI_UI_BUTTONS };
 enum { CWI_UI_SHIFT = 1, CWI_UI_CTRL = 2, CWI_UI_ALT = 4 };
-enum { CWI_UI_KEY_SIZE = 32, CWI_UI_KEYS = 8 };
+enum { CWI_UI_KEY_SIZE = 32, CWI_UI_KEYS = 8, CWI_UI_SLOTS = 48 };
 
 typedef struct cwi_ui_event {
     cwi_ui_kind kind;
@@ -140,8 +140,13 @@ typedef struct cwi_ui_functions {
     void (*set_clipboard)(cwi_ui *ui, const char *text);
     void (*set_cursor)(cwi_ui *ui, int shape); /* 0 arrow, 1 cross, 2 hand, 3 left-right */
     void (*set_theme)(cwi_ui *ui, cwi_ui_theme theme); /* of panels; dark at first */
+    /* Lets keys walk through the widgets of a panel, or of the bar (""): arrows go from one to
+     * the next, Space or Enter uses it, and Escape or F6 ends it. The widget at hand has a frame.
+     * Meanwhile keys[] has none. NULL ends it. */
+    void (*focus)(cwi_ui *ui, const char *panel);
+    bool (*focused)(const cwi_ui *ui);
 
-    /* Pictures, kept in slots 0 to 47 until replaced (NULL: dropped), drawn stretched: in the
+    /* Pictures, kept in slots below CWI_UI_SLOTS until replaced (NULL: dropped), drawn stretched: in the
      * panel at hand, outside of panels behind them all. */
     cw_status (*keep)(cwi_ui *ui, int slot, const cw_image *image, cw_error *err);
     void (*show)(cwi_ui *ui, int slot, const cwi_ui_rect *where);

@@ -7,6 +7,7 @@
 #include <imgui_internal.h>
 
 #include <cfloat>
+#include <cstdio>
 #include <dlfcn.h>
 #include <unistd.h>
 
@@ -84,7 +85,7 @@ void color_widgets(const palette &p, ImVec4 *c)
     c[ImGuiCol_Header] = gray(p.header);
     c[ImGuiCol_HeaderHovered] = faded(p.accent, p.hovered);
     c[ImGuiCol_HeaderActive] = faded(p.accent, p.pressed);
-    c[ImGuiCol_PlotHistogram] = faded(p.accent, 0.55f); /* bars of progress */
+    c[ImGuiCol_PlotHistogram] = faded(p.accent, 0.40f); /* bars of progress */
     c[ImGuiCol_ResizeGrip] = gray(p.grip, 0.6f);
     c[ImGuiCol_ResizeGripHovered] = faded(p.accent, 0.6f);
     c[ImGuiCol_ResizeGripActive] = p.accent;
@@ -202,8 +203,10 @@ void tell_keys(const cwi_ui *ui, ImGuiIO &io)
 {
     for (bool &down : io.KeysDown)
         down = false;
-    if (ui->key > 0)
-        io.KeysDown[ui->key] = true;
+    const bool is_use =
+        ui->by_keyboard && !io.WantTextInput && ui->key == cwi_ui_key_number("Enter", nullptr);
+    if (ui->key > 0) /* Enter uses a widget as Space does */
+        io.KeysDown[is_use ? cwi_ui_key_number("Space", nullptr) : ui->key] = true;
     io.KeyCtrl = (ui->input.modifiers & CWI_UI_CTRL) != 0;
     io.KeyShift = (ui->input.modifiers & CWI_UI_SHIFT) != 0;
     io.KeyAlt = (ui->input.modifiers & CWI_UI_ALT) != 0;
@@ -286,6 +289,45 @@ static void forget_typed(ImGuiContext *imgui)
         imgui->InputTextState.ID = 0;
 }
 
+/* A panel by its title; "": the bar. nullptr: it is not there. */
+static ImGuiWindow *find_panel(const char *title)
+{
+    return ImGui::FindWindowByName(*title ? title : "##MainMenuBar");
+}
+
+/* Asks ImGui for the first widget of the panel, which is then laid out. */
+static void begin_walk(cwi_ui *ui)
+{
+    ImGuiContext &g = *ui->imgui;
+    ImGuiWindow *window = find_panel(ui->walked);
+    ui->begins_walk = false;
+    if (!window)
+        return;
+    window->Flags &= ~ImGuiWindowFlags_NoNav; /* those of its last frame */
+    ImGui::FocusWindow(window);
+    g.NavLayer = *ui->walked ? ImGuiNavLayer_Main : ImGuiNavLayer_Menu;
+    ImGui::NavInitWindow(window, true);
+    g.NavDisableMouseHover = true;
+}
+
+/* While keys walk through widgets, all but those that end it are ImGui's. */
+static void walk_by_keys(cwi_ui *ui)
+{
+    ImGuiContext &g = *ui->imgui;
+    if (!ui->by_keyboard)
+        return;
+    if (ui->begins_walk)
+        begin_walk(ui);
+    const bool is_idle = g.OpenPopupStack.Size == 0 && g.ActiveId == 0;
+    const int escape = cwi_ui_key_number("Escape", nullptr),
+              end = cwi_ui_key_number("F6", nullptr);
+    if (ui->key == end || (ui->key == escape && is_idle))
+        ui->by_keyboard = false;
+    if (ui->input.dx == 0 && ui->input.dy == 0)
+        g.NavDisableHighlight = false; /* people see at once which widget has the keys */
+    ui->input.key_count = 0;
+}
+
 void cwi_ui_imgui_write(const char *text)
 {
     ImGui::GetIO().AddInputCharactersUTF8(text);
@@ -295,6 +337,10 @@ void cwi_ui_imgui_begin(cwi_ui *ui)
 {
     ImGuiIO &io = ImGui::GetIO();
     const double step = ui->time - ui->before;
+    if (ui->by_keyboard)
+        io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+    else
+        io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
     io.DeltaTime = static_cast<float>(step > 1e-4 ? step : 1e-4);
     io.DisplaySize =
         ImVec2(static_cast<float>(ui->input.width), static_cast<float>(ui->input.height));
@@ -304,6 +350,7 @@ void cwi_ui_imgui_begin(cwi_ui *ui)
     ImGui::NewFrame();
     forget_typed(ui->imgui);
     ui->input.over_widget = io.WantCaptureMouse;
+    walk_by_keys(ui);
     ui->input.typing = io.WantTextInput && ui->imgui->ActiveId; /* ImGui is a frame late */
     if (ui->input.typing)
         ui->input.key_count = 0;
@@ -346,4 +393,19 @@ void cwi_ui_imgui_theme(cwi_ui *ui, cwi_ui_theme theme)
     if (theme != ui->theme)
         color_all(theme);
     ui->theme = theme;
+}
+
+void cwi_ui_imgui_focus(cwi_ui *ui, const char *panel)
+{
+    ImGui::SetCurrentContext(ui->imgui);
+    ui->by_keyboard = panel && find_panel(panel);
+    ui->begins_walk = ui->by_keyboard;
+    if (ui->by_keyboard)
+        snprintf(ui->walked, sizeof ui->walked, "%s", panel);
+    ui->settle = 3;
+}
+
+bool cwi_ui_imgui_focused(const cwi_ui *ui)
+{
+    return ui->by_keyboard;
 }

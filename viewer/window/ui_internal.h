@@ -15,7 +15,7 @@ extern "C" {
 #endif
 
 enum { CWI_UI_GONE = 1 << 16 }; /* a panel that ImGui did not begin, beside its flags */
-enum { CWI_UI_SLOTS = 48, CWI_UI_NAME_SIZE = 64, CWI_UI_DEPTH = 8, CWI_UI_LARGEST = 16384 };
+enum { CWI_UI_NAME_SIZE = 64, CWI_UI_DEPTH = 8, CWI_UI_LARGEST = 16384 };
 
 /* Events that wait to be taken; text is the queue's. */
 typedef struct cwi_ui_queue {
@@ -81,6 +81,9 @@ struct cwi_ui {
     bool is_ended; /* a change of the widget before has come to its end */
     int cursor;
     cwi_ui_theme theme;
+    bool by_keyboard; /* keys walk through the widgets of a panel: */
+    char walked[CWI_UI_NAME_SIZE];
+    bool begins_walk; /* the next frame asks for its first widget */
 };
 
 /* Keys (ui_keys.c). A number below 512: of ASCII what it is, of named keys 256 and more; other
@@ -142,6 +145,8 @@ void cwi_ui_imgui_layout(cwi_ui *ui); /* ends widgets; the drawing is then known
 void cwi_ui_imgui_draw(void);         /* into the framebuffer that is bound */
 int cwi_ui_imgui_cursor(const cwi_ui *ui);
 void cwi_ui_imgui_theme(cwi_ui *ui, cwi_ui_theme theme);
+void cwi_ui_imgui_focus(cwi_ui *ui, const char *panel);
+bool cwi_ui_imgui_focused(const cwi_ui *ui);
 
 /* A frame (ui_frame.c) */
 CW_NODISCARD cw_status cwi_ui_open(const cwi_ui_desc *desc, cwi_ui **ui, cw_error *err);

@@ -222,9 +222,11 @@ bool begin_modal(const cwi_ui *ui, const char *title, const cwi_ui_rect *r, bool
     return ImGui::BeginPopupModal(title, open, flags);
 }
 
-ImGuiWindowFlags flags_of(unsigned flags, const cwi_ui_rect *r)
+ImGuiWindowFlags flags_of(const cwi_ui *ui, unsigned flags, const cwi_ui_rect *r)
 {
-    ImGuiWindowFlags f = ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav;
+    ImGuiWindowFlags f = ImGuiWindowFlags_NoSavedSettings;
+    if (!ui->by_keyboard)
+        f |= ImGuiWindowFlags_NoNav;
     if (flags & CWI_UI_FIXED)
         f |= ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse;
     if (flags & CWI_UI_DOCKED)
@@ -262,7 +264,7 @@ bool panel_begin(cwi_ui *ui, const char *title, const cwi_ui_rect *rect, unsigne
         place_strip(r);
     else
         place_panel(ui, title, &where, (flags & (CWI_UI_FIXED | CWI_UI_BARE)) != 0);
-    return ImGui::Begin(title, open, flags_of(flags, r));
+    return ImGui::Begin(title, open, flags_of(ui, flags, r));
 }
 
 /* Notes a panel's closing button, where ImGui draws it. */
@@ -360,8 +362,11 @@ bool choose(cwi_ui *ui, const char *const *names, size_t count, size_t *chosen)
             is_used = n != *chosen;
             *chosen = n;
         }
-        if (n == *chosen && ImGui::IsWindowAppearing())
-            ImGui::SetScrollHereY();
+        if (n == *chosen) {
+            ImGui::SetItemDefaultFocus();
+            if (ImGui::IsWindowAppearing())
+                ImGui::SetScrollHereY();
+        }
         note(ui, names[n]);
         ImGui::PopID();
     }
@@ -566,6 +571,8 @@ const cwi_ui_functions cwi_module_window = {
     cwi_ui_screen_copy,
     cwi_ui_set_cursor,
     cwi_ui_imgui_theme,
+    cwi_ui_imgui_focus,
+    cwi_ui_imgui_focused,
     cwi_ui_keep,
     show,
     line,

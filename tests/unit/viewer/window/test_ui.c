@@ -622,7 +622,7 @@ static void pictures_are_shown_pixel_for_pixel(void **state)
     (void)state;
     need_window();
     cw_error err = {0};
-    for (int slot = 0; slot < 16; slot += 15)
+    for (int slot = 0; slot < CWI_UI_SLOTS; slot += CWI_UI_SLOTS - 1)
         for (uint8_t turn = 0; turn < 3; turn++) { /* the last of another size */
             cw_image image = make_picture(turn < 2 ? 61 : 40, 45, turn);
             assert_ok(u->keep(ui, slot, &image, &err), err);
@@ -634,7 +634,7 @@ static void pictures_are_shown_pixel_for_pixel(void **state)
             cw_image_free(&image);
         }
     assert_ok(u->keep(ui, 0, NULL, &err), err);
-    assert_int_equal(u->keep(ui, 16, NULL, &err), CW_ERR_ARGUMENT);
+    assert_int_equal(u->keep(ui, CWI_UI_SLOTS, NULL, &err), CW_ERR_ARGUMENT);
     assert_int_equal(u->keep(ui, -1, NULL, &err), CW_ERR_ARGUMENT);
 }
 
