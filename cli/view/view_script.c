@@ -145,8 +145,9 @@ void view_run_asked(view *v)
     v->is_asked = true;
     for (size_t n = 0; n < count; n++) {
         cw_error err = {0};
-        if (view_exec(v, asked[n], &err) != CW_OK)
-            view_say(v, true, err.message);
+        const cw_status st = view_exec(v, asked[n], &err);
+        if (st != CW_OK)
+            view_say(v, st != CW_ERR_CANCELLED, err.message);
         free(asked[n]);
     }
     v->is_asked = false;
