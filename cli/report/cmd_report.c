@@ -7,7 +7,7 @@
 #include "cli/inputs/extract_surface.h"
 #include "cli/inputs/level_choice.h"
 #include "cli/inputs/synthetic_input.h"
-#include "cli/report/study.h"
+#include "cli/report/page.h"
 #include "cli/results/output_names.h"
 #include "cli/results/run_report.h"
 #include "core/base/status.h"

@@ -1,11 +1,11 @@
 /* Runs a study: tries its settings by rank until the budget is spent, and marks the Pareto
  * front of each family. */
-#include "cli/report/study.h"
+#include "cli/study/study.h"
 
 #include "cli/framework/console.h"
 #include "cli/framework/field_names.h"
 #include "cli/framework/temp_folder.h"
-#include "cli/report/point_command.h"
+#include "cli/study/point_command.h"
 #include "core/base/status.h"
 
 #include <math.h>
@@ -13,8 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const cli_family_names[CLI_FAMILY_COUNT] = {"extraction", "simplification",
-                                                        "compression", "rendering"};
+const char *const cli_family_names[CLI_FAMILY_COUNT] = {
+    "extraction", "simplification", "compression", "rendering", "shading", "projections"};
 
 cli_point *cli_add_point(cli_study *s, cli_family family, int rank, const char *group,
                          const char *format, ...)
@@ -58,14 +58,22 @@ static cw_status try_point(cli_study *s, cli_point *p, cw_error *err)
     }
 }
 
+static void free_pictures(cli_point *p)
+{
+    free(p->drawn.bytes);
+    free(p->difference.bytes);
+    p->drawn = p->difference = (cli_png){0};
+    cli_free_packed(&p->packed);
+}
+
 static void leave_out(cli_point *p, const char *why)
 {
     snprintf(p->why, sizeof p->why, "%s", why);
     p->to_field = p->back = p->truth = (cli_gap){0};
     p->seconds = 0;
     p->peak_bytes = p->triangles = p->file_bytes = 0;
-    free(p->png);
-    p->png = NULL;
+    p->runs = 0;
+    free_pictures(p);
 }
 
 /* Tries one setting. A failure is stored in its point, and the others go on. */
@@ -98,10 +106,13 @@ static cw_status run_points(cli_study *s, cw_error *err)
     int last = 0;
     for (size_t n = 0; n < s->point_count; n++)
         last = s->points[n].rank > last ? s->points[n].rank : last;
-    for (int rank = 0; rank <= last; rank++)
+    for (int rank = 0; rank <= last && st == CW_OK; rank++) {
         for (size_t n = 0; n < s->point_count && st == CW_OK; n++)
             if (s->points[n].rank == rank && !*s->points[n].why)
                 st = run_point(s, &s->points[n], err);
+        if (rank == 0 && st == CW_OK) /* of the plain surface, which is there now */
+            st = cli_study_overview(s, err);
+    }
     return st;
 }
 
@@ -123,25 +134,33 @@ double cli_point_cost(const cli_point *p)
     case CLI_COMPRESSION:
         return (double)p->file_bytes;
     case CLI_RENDERING:
+    case CLI_SHADING:
+    case CLI_PROJECTIONS:
         return 1e3 * p->seconds;
     default:
         return p->seconds;
     }
 }
 
+const cli_gap *cli_main_gap(const cli_study *s, const cli_point *p)
+{
+    if (s->is_field && p->truth.known)
+        return &p->truth;
+    if (p->to_field.known)
+        return &p->to_field;
+    return p->back.known ? &p->back : NULL;
+}
+
 double cli_point_error(const cli_study *s, const cli_point *p)
 {
     if (!p->done)
         return NAN;
-    if (p->family == CLI_RENDERING)
+    if (cli_is_drawn(p->family))
         return p->picture.pixels ? p->picture.rmse : NAN;
     if (p->family == CLI_COMPRESSION) /* its own: beside that of the surface it is lost */
         return p->back.known ? p->back.rms_mm : NAN;
-    if (s->is_field && p->truth.known)
-        return p->truth.rms_mm;
-    if (p->to_field.known)
-        return p->to_field.rms_mm;
-    return p->back.known ? p->back.rms_mm : NAN;
+    const cli_gap *gap = cli_main_gap(s, p);
+    return gap ? gap->rms_mm : NAN;
 }
 
 cli_axis cli_study_axis(const cli_study *s, cli_family family)
@@ -150,7 +169,9 @@ cli_axis cli_study_axis(const cli_study *s, cli_family family)
         {"time", "s", NULL, "mm"},
         {"triangles", "", NULL, "mm"},
         {"size of the file", "bytes", "RMS distance from the plain surface", "mm"},
-        {"time of a picture", "ms", "RMSE of the picture", "of 255"}};
+        {"time of a picture", "ms", "RMSE of the picture", "of 255"},
+        {"time of a picture", "ms", "RMSE of the lit picture", "of 255"},
+        {"time of a picture", "ms", "RMSE of the projection", "of 255"}};
     cli_axis axis = axes[family];
     if (!axis.error)
         axis.error = s->is_field                   ? "RMS distance to the true surface"
@@ -159,19 +180,77 @@ cli_axis cli_study_axis(const cli_study *s, cli_family family)
     return axis;
 }
 
-static void mark_front(cli_study *s, cli_family family)
+/* Projections have a front for each mode: their pictures are different ones. */
+static void mark_front(cli_study *s, cli_family family, size_t reference)
 {
     double cost[CLI_MAX_POINTS], error[CLI_MAX_POINTS];
     bool front[CLI_MAX_POINTS];
     for (size_t n = 0; n < s->point_count; n++) {
         const cli_point *p = &s->points[n];
-        const bool counts = p->family == family && p->done && !p->aside;
+        const bool counts =
+            p->family == family && p->tried.reference == reference && p->done && !p->aside;
         cost[n] = counts ? cli_point_cost(p) : NAN;
         error[n] = counts ? cli_point_error(s, p) : NAN;
     }
     cli_pareto(cost, error, s->point_count, front);
     for (size_t n = 0; n < s->point_count; n++)
-        s->points[n].front = s->points[n].family == family ? front[n] : s->points[n].front;
+        s->points[n].front |= front[n];
+}
+
+/* The least cost first; of equal ones the first that was tried. */
+static int compare_costs(const void *a, const void *b)
+{
+    const cli_point *x = *(const cli_point *const *)a, *y = *(const cli_point *const *)b;
+    const double left = cli_point_cost(x), right = cli_point_cost(y);
+    return left != right ? (left > right) - (left < right) : (x > y) - (x < y);
+}
+
+static void number_points(cli_study *s, cli_family family)
+{
+    cli_point *sorted[CLI_MAX_POINTS];
+    size_t count = 0;
+    for (size_t n = 0; n < s->point_count; n++)
+        if (s->points[n].family == family && s->points[n].done)
+            sorted[count++] = &s->points[n];
+    qsort(sorted, count, sizeof *sorted, compare_costs);
+    for (size_t n = 0; n < count; n++)
+        sorted[n]->number = n + 1;
+}
+
+size_t cli_points_of(const cli_study *s, cli_family family,
+                     const cli_point *points[CLI_MAX_POINTS])
+{
+    size_t count = 0;
+    for (size_t n = 0; n < s->point_count; n++) {
+        const cli_point *p = &s->points[n];
+        if (p->family != family || !p->number)
+            continue;
+        points[p->number - 1] = p;
+        count++;
+    }
+    return count;
+}
+
+cli_cost cli_main_cost(cli_family family)
+{
+    return family == CLI_SIMPLIFICATION ? CLI_COST_TRIANGLES
+           : family == CLI_COMPRESSION  ? CLI_COST_BYTES
+                                        : CLI_COST_TIME;
+}
+
+double cli_cost_of(const cli_point *p, cli_cost cost)
+{
+    const bool mesh = !cli_is_drawn(p->family);
+    switch (cost) {
+    case CLI_COST_TIME:
+        return mesh ? p->seconds : 1e3 * p->seconds;
+    case CLI_COST_TRIANGLES:
+        return mesh ? (double)p->triangles : NAN;
+    case CLI_COST_BYTES:
+        return mesh ? (double)p->file_bytes : NAN;
+    default:
+        return p->peak_bytes ? (double)p->peak_bytes : NAN;
+    }
 }
 
 static void plan_points(cli_study *s)
@@ -198,11 +277,16 @@ cw_status cli_study_run(cli_study *s, cw_error *err)
         st = run_points(s, err);
     if (st == CW_OK)
         st = cli_study_print(s, err);
+    if (st == CW_OK)
+        st = cli_time_again(s, err);
     cli_console_listen(NULL);
     if (st == CW_OK)
         st = tell_commands(s, err);
-    for (int f = 0; f < CLI_FAMILY_COUNT && st == CW_OK; f++)
-        mark_front(s, (cli_family)f);
+    for (int f = 0; f < CLI_FAMILY_COUNT && st == CW_OK; f++) {
+        for (size_t n = 0; n < CLI_REFERENCES; n++)
+            mark_front(s, (cli_family)f, n);
+        number_points(s, (cli_family)f);
+    }
     s->seconds = cli_seconds() - s->start;
     return st;
 }
@@ -211,11 +295,17 @@ void cli_study_free(cli_study *s)
 {
     for (size_t n = 0; n < s->point_count; n++) {
         free(s->points[n].command);
-        free(s->points[n].png);
+        free_pictures(&s->points[n]);
     }
+    for (size_t n = 0; n < CLI_REFERENCES; n++) {
+        free(s->references[n].drawn.bytes);
+        cw_picture_free(&s->references[n].picture);
+    }
+    free(s->overview.object.bytes);
+    free(s->overview.slice.bytes);
+    cw_statistics_free(&s->overview.values);
     cw_renderer_free(s->renderer);
     cw_renderer_free(s->cpu);
-    cw_picture_free(&s->reference);
     cw_mesh_free(&s->part_mesh);
     cw_mesh_free(&s->full);
     cli_scratch_remove(s->folder);

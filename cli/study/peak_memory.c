@@ -1,6 +1,6 @@
 /* Measures the peak memory of a piece of work. The kernel counts the maximum that a process
  * used, and Linux lets this count be reset. */
-#include "cli/report/study.h"
+#include "cli/study/study.h"
 
 #ifdef __GLIBC__
 #include <malloc.h>

@@ -1,6 +1,6 @@
 /* Some of the triangles of a mesh. */
-#ifndef CLI_REPORT_TRIANGLE_SAMPLE_H
-#define CLI_REPORT_TRIANGLE_SAMPLE_H
+#ifndef CLI_STUDY_TRIANGLE_SAMPLE_H
+#define CLI_STUDY_TRIANGLE_SAMPLE_H
 
 #include <cubewright/mesh.h>
 

@@ -1,5 +1,5 @@
 /* Judges the plain surface as a print. */
-#include "cli/report/study.h"
+#include "cli/study/study.h"
 
 #include "cli/framework/console.h"
 #include "cli/framework/field_names.h"

@@ -1,7 +1,7 @@
 /* Extraction: where vertices are placed, which are merged, how many voxels are looked at. */
 #include "cli/framework/console.h"
 #include "cli/inputs/extract_surface.h"
-#include "cli/report/study.h"
+#include "cli/study/study.h"
 
 void cli_plan_extraction(cli_study *s)
 {
@@ -29,6 +29,7 @@ void cli_plan_extraction(cli_study *s)
         p->tried.cubic = rows[n].cubic;
         p->tried.snap = rows[n].snap;
         p->shown = n < 3 || (n == 3 && s->is_field);
+        p->turned = n == 0;
         if (rows[n].cubic && rows[n].coarsen == 1 && !s->is_field)
             p->aside = "its vertices lie where a cubic has the isovalue, but the error is "
                        "measured to a field that is linear between voxels, and would count the "
@@ -37,10 +38,9 @@ void cli_plan_extraction(cli_study *s)
     }
 }
 
-cw_status cli_try_extraction(cli_study *s, cli_point *p, cw_error *err)
+cw_status cli_run_extraction(cli_study *s, cli_point *p, cw_mesh *mesh, cw_error *err)
 {
     const size_t step[3] = {p->tried.coarsen, p->tried.coarsen, p->tried.coarsen};
-    const bool plain = p->tried.coarsen == 1 && !p->tried.cubic && p->tried.snap == 0;
     const cw_extract_desc desc = {.isovalue = s->iso,
                                   .inside_is_low = s->inside_is_low,
                                   .leave_open = s->is_field,
@@ -49,16 +49,26 @@ cw_status cli_try_extraction(cli_study *s, cli_point *p, cw_error *err)
                                   .threads = s->threads};
     cli_volume volume = *s->volume; /* borrowed */
     cw_extract_counts counts;
-    cw_mesh mesh = {0};
     cw_status st = cw_volume_coarsen(&s->volume->view, step, &volume.view, err);
     const cli_watch watch = cli_watch_memory();
     const double start = cli_seconds();
     if (st == CW_OK)
-        st = cli_extract_surface(&volume, NULL, &desc, &mesh, &counts, err);
+        st = cli_extract_surface(&volume, NULL, &desc, mesh, &counts, err);
     if (st != CW_OK)
         return st;
-    p->seconds = cli_seconds() - start;
-    p->peak_bytes = cli_watched_bytes(&watch);
+    cli_add_run(p, cli_seconds() - start);
+    if (p->runs == 1)
+        p->peak_bytes = cli_watched_bytes(&watch);
+    return CW_OK;
+}
+
+cw_status cli_try_extraction(cli_study *s, cli_point *p, cw_error *err)
+{
+    const bool plain = p->tried.coarsen == 1 && !p->tried.cubic && p->tried.snap == 0;
+    cw_mesh mesh = {0};
+    cw_status st = cli_run_extraction(s, p, &mesh, err);
+    if (st != CW_OK)
+        return st;
     if (plain) {
         s->full = mesh;
         return cli_measure_mesh(s, p, &s->full, err);

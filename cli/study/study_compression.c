@@ -1,7 +1,7 @@
 /* Compression of the plain surface's file: written, read back, and measured as it came back. */
 #include "cli/framework/console.h"
-#include "cli/report/study.h"
 #include "cli/results/compress_options.h"
+#include "cli/study/study.h"
 #include "core/base/status.h"
 
 #include <string.h>
@@ -35,21 +35,31 @@ void cli_plan_compression(cli_study *s)
     }
 }
 
-cw_status cli_try_compression(cli_study *s, cli_point *p, cw_error *err)
+cw_status cli_run_compression(cli_study *s, cli_point *p, const char **path, cw_error *err)
 {
     const cw_write_desc desc = {
         .compression = p->tried.compression,
         .bits = p->tried.bits,
         .progress = cli_progress((double)cli_part_mesh(s)->triangle_count / 1e6, "Mtriangle")};
-    const char *path = NULL;
-    cw_mesh mesh = {0};
+    *path = NULL;
     cw_status st = cli_need_part(s, err);
     const cli_watch watch = cli_watch_memory();
     const double start = cli_seconds();
     if (st == CW_OK)
-        st = cli_weigh_mesh(s, cli_part_mesh(s), &desc, &p->file_bytes, &path, err);
-    p->seconds = cli_seconds() - start;
-    p->peak_bytes = cli_watched_bytes(&watch);
+        st = cli_weigh_mesh(s, cli_part_mesh(s), &desc, &p->file_bytes, path, err);
+    if (st != CW_OK)
+        return st;
+    cli_add_run(p, cli_seconds() - start);
+    if (p->runs == 1)
+        p->peak_bytes = cli_watched_bytes(&watch);
+    return CW_OK;
+}
+
+cw_status cli_try_compression(cli_study *s, cli_point *p, cw_error *err)
+{
+    const char *path;
+    cw_mesh mesh = {0};
+    cw_status st = cli_run_compression(s, p, &path, err);
     if (st == CW_OK)
         st = cw_mesh_read(path, NULL, &mesh, NULL, err);
     if (path)

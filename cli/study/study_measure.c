@@ -1,7 +1,7 @@
 /* Measures a mesh: its distance from the truth, and the size of its file. */
 #include "cli/framework/console.h"
-#include "cli/report/study.h"
-#include "cli/report/triangle_sample.h"
+#include "cli/study/study.h"
+#include "cli/study/triangle_sample.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 
@@ -91,9 +91,12 @@ static cw_status show_errors(cli_study *s, cli_point *p, const cw_mesh *mesh,
     if (st != CW_OK)
         return st;
     p->shapes = quality.shapes;
-    return p->to_field.known
-               ? cli_draw_errors(s, plain_of(s, p), mesh, worst, &p->png, &p->png_size, err)
-               : CW_OK;
+    const float *mm = p->to_field.known ? worst : NULL;
+    if (mm)
+        st = cli_draw_mesh(s, plain_of(s, p), mesh, mm, &p->drawn, err);
+    if (st == CW_OK && p->turned)
+        st = cli_pack_errors(s, mesh, mm, &p->packed, err);
+    return st;
 }
 
 static void find_middles(const cw_mesh *mesh, float *middles)

@@ -1,10 +1,11 @@
 /* Settings tried on one volume: what each costs, how far it is from the truth, and which are
  * worth choosing. */
-#ifndef CLI_REPORT_STUDY_H
-#define CLI_REPORT_STUDY_H
+#ifndef CLI_STUDY_STUDY_H
+#define CLI_STUDY_STUDY_H
 
 #include "cli/render/scene_options.h"
 #include "cli/results/printability.h"
+#include "cli/study/packed_mesh.h"
 
 #include <cubewright/distance.h>
 #include <cubewright/extract.h>
@@ -15,11 +16,19 @@ typedef enum cli_family {
     CLI_EXTRACTION,
     CLI_SIMPLIFICATION,
     CLI_COMPRESSION,
-    CLI_RENDERING,
+    CLI_RENDERING,   /* unlit, against the rendering integral */
+    CLI_SHADING,     /* lit, against the lit integral */
+    CLI_PROJECTIONS, /* of intensities, each against its own exact one */
     CLI_FAMILY_COUNT
 } cli_family;
 
 extern const char *const cli_family_names[CLI_FAMILY_COUNT];
+
+/* Whether points of a family are pictures of the volume; else they are meshes. */
+static inline bool cli_is_drawn(cli_family family)
+{
+    return family >= CLI_RENDERING;
+}
 
 /* How far a surface is from another, in mm. */
 typedef struct cli_gap {
@@ -38,9 +47,16 @@ typedef struct cli_tried {
     int bits;
     cw_mode mode; /* rendering */
     cli_scene scene;
+    size_t reference; /* which of the study's */
 } cli_tried;
 
-enum { CLI_NAME_CAPACITY = 64, CLI_WHY_CAPACITY = 512 };
+enum { CLI_NAME_CAPACITY = 64, CLI_WHY_CAPACITY = 512, CLI_MAX_RUNS = 3 };
+
+/* A PNG in memory; zeroed: none. */
+typedef struct cli_png {
+    char *bytes; /* owned; free() */
+    size_t size;
+} cli_png;
 
 /* One setting: what it is, and what came of it. */
 typedef struct cli_point {
@@ -49,13 +65,16 @@ typedef struct cli_point {
     const char *group;            /* of its kind in the family */
     char name[CLI_NAME_CAPACITY]; /* of the setting */
     cli_tried tried;
-    bool shown; /* its mesh is drawn, its triangles' shapes are kept */
+    bool shown;  /* its mesh is drawn, its triangles' shapes are kept */
+    bool turned; /* its mesh is for the view of three dimensions, too */
 
     bool done;
     char why[CLI_WHY_CAPACITY]; /* if not: why it was left out */
     const char *aside;          /* why it is not compared with the others; NULL: it is */
     char *command;              /* that does it; owned */
-    double seconds;
+    double seconds;             /* the median of the runs */
+    size_t runs;
+    double times[CLI_MAX_RUNS];
     size_t peak_bytes; /* beyond what the process had before; 0: unknown */
     size_t triangles, file_bytes;
     size_t measured_one_of; /* one of n triangles was measured */
@@ -64,9 +83,11 @@ typedef struct cli_point {
     cli_gap truth;          /* to the surface that is known on paper */
     cw_comparison picture;
     cw_shapes shapes;
-    char *png; /* owned; NULL: none */
-    size_t png_size;
-    bool front; /* no other is both cheaper and closer */
+    cli_png drawn;      /* the mesh in colours of its error; of rendering: the picture */
+    cli_png difference; /* of rendering: to the reference, amplified */
+    cli_packed packed;  /* of a turned mesh */
+    bool front;         /* no other is both cheaper and closer */
+    size_t number;      /* in its family, by rising cost; 0: not done */
 } cli_point;
 
 /* Which number of a point is its cost, which its error; and what they are called. */
@@ -74,20 +95,41 @@ typedef struct cli_axis {
     const char *cost, *cost_unit, *error, *error_unit;
 } cli_axis;
 
-/* Limits of a study: the size of pictures, and the number of triangles that are sampled for
- * errors where a mesh has more. */
+/* Limits of a study: the size of pictures, the factor of the differences that are shown, and the
+ * number of triangles that are sampled for errors where a mesh has more. */
 enum {
     CLI_STUDY_SAMPLE = 25000,
-    CLI_MAX_POINTS = 64,
+    CLI_MAX_POINTS = 96,
     CLI_STUDY_WIDTH = 320,
-    CLI_STUDY_HEIGHT = 240
+    CLI_STUDY_HEIGHT = 240,
+    CLI_STUDY_AMPLIFY = 16
 };
+
+/* The picture that others are compared with: exact, and of their kind. */
+typedef struct cli_reference {
+    cw_transfer transfer;
+    double box[2][3];   /* that the camera sees */
+    cw_picture picture; /* empty: not yet */
+    double seconds;
+    cli_png drawn;
+} cli_reference;
+
+enum { CLI_REFERENCES = 6 }; /* unlit, lit, and those of four projections */
 
 /* The plain surface as a print. */
 typedef struct cli_print_study {
     char why[CLI_WHY_CAPACITY]; /* it was not measured; empty: it was */
     cli_printed seen;
 } cli_print_study;
+
+/* What is studied, as pictures. */
+typedef struct cli_overview {
+    char why[CLI_WHY_CAPACITY]; /* something was not drawn; empty: all was */
+    cli_png object;             /* the plain surface in the colour of bone */
+    cli_png slice;              /* through the middle of the object, with its contour */
+    char slice_words[96];       /* which slice that is */
+    cw_statistics values;       /* with bins; zeroed: none */
+} cli_overview;
 
 typedef struct cli_study {
     /* what is studied: set before cli_study_run() */
@@ -112,19 +154,19 @@ typedef struct cli_study {
     const char *suffix; /* of meshes: ".glb", or ".stl" in builds without */
     double start, deadline, seconds;
     cli_print_study print;
+    cli_overview overview;
     cw_mesh full; /* the plain surface, of all voxels */
     bool part_chosen;
     cli_volume part;     /* borrowed: what is simplified and compressed, the volume or a box */
     cw_mesh part_mesh;   /* its plain surface; of no box: empty */
     char part_words[96]; /* of commands: that box */
     char *folder;        /* for files that are measured; owned */
-    cw_renderer *renderer;    /* NULL: not yet, or none */
-    cw_renderer *cpu;         /* the same, on the CPU */
-    char backend[256];        /* its name */
-    cw_volume drawn;          /* borrowed */
-    cw_transfer transfer;     /* of drawn */
-    cw_picture reference;     /* of the rendering integral */
-    double reference_seconds; /* 0: there is none */
+    cw_renderer *renderer; /* NULL: not yet, or none */
+    cw_renderer *cpu;      /* the same, on the CPU */
+    char backend[256];     /* its name */
+    cw_volume drawn;       /* borrowed */
+    double drawn_level;    /* between two classes of its values */
+    cli_reference references[CLI_REFERENCES];
 } cli_study;
 
 /* Tries the settings, those that matter most first, until the budget is spent; what is left out
@@ -158,11 +200,20 @@ CW_NODISCARD cw_status cli_try_extraction(cli_study *study, cli_point *point, cw
 CW_NODISCARD cw_status cli_try_simplification(cli_study *study, cli_point *point,
                                               cw_error *err);
 CW_NODISCARD cw_status cli_try_compression(cli_study *study, cli_point *point, cw_error *err);
+
+/* The work of a point that is timed, which adds a run to it. */
+CW_NODISCARD cw_status cli_run_extraction(cli_study *study, cli_point *point, cw_mesh *mesh,
+                                          cw_error *err);
+CW_NODISCARD cw_status cli_run_simplification(cli_study *study, cli_point *point, cw_mesh *mesh,
+                                              cw_error *err);
+CW_NODISCARD cw_status cli_run_compression(cli_study *study, cli_point *point,
+                                           const char **path, cw_error *err);
 CW_NODISCARD cw_status cli_try_rendering(cli_study *study, cli_point *point, cw_error *err);
 
 /* Chooses the part that is simplified and compressed, and extracts it. */
 CW_NODISCARD cw_status cli_need_part(cli_study *study, cw_error *err);
 const cw_mesh *cli_part_mesh(const cli_study *study);
+double cli_part_ratio(const cli_study *study); /* of the longest sides of all and the part */
 
 /* Measures a mesh for any family: field, back, truth, and bytes of its file unless these are
  * known. For a shown point, adds its picture and the shapes of its triangles. */
@@ -175,13 +226,32 @@ CW_NODISCARD cw_status cli_weigh_mesh(cli_study *study, const cw_mesh *mesh,
                                       const cw_write_desc *desc, size_t *bytes,
                                       const char **path, cw_error *err);
 
-/* A picture of a mesh (from where all of another is seen), as a PNG in memory, in colours of
- * the distance at each vertex: from 0.001 to 1 voxel, by the logarithm. */
-CW_NODISCARD cw_status cli_draw_errors(cli_study *study, const cw_mesh *around,
-                                       const cw_mesh *mesh, const float *mm, char **png,
-                                       size_t *size, cw_error *err);
-size_t cli_share_of(const cli_study *study, double share); /* of the plain triangles */
-void cli_error_color(double share, uint8_t rgb[3]);        /* 0 to 1 along that scale */
+/* Draws a mesh (from where all of another is seen), in colours of the distance at each vertex:
+ * from 0.001 to 1 voxel, by the logarithm. mm: NULL for its own colours. */
+CW_NODISCARD cw_status cli_draw_mesh(cli_study *study, const cw_mesh *around,
+                                     const cw_mesh *mesh, const float *mm, cli_png *png,
+                                     cw_error *err);
+
+/* Packs a mesh for the view of three dimensions, with the distance at each vertex. One of more
+ * than CLI_PACKED_TRIANGLES is simplified to as many, if the time allows. */
+CW_NODISCARD cw_status cli_pack_errors(cli_study *study, const cw_mesh *mesh, const float *mm,
+                                       cli_packed *packed, cw_error *err);
+double cli_error_share(double mm, double voxel_mm); /* along the scale of colours */
+
+/* Makes a PNG in memory. */
+CW_NODISCARD cw_status cli_make_png(const cli_study *study, const cw_image *image, cli_png *png,
+                                    cw_error *err);
+
+/* Draws what is studied. What keeps it from that is kept, too.
+ * Returns  CW_ERR_CANCELLED  by who waits for it */
+CW_NODISCARD cw_status cli_study_overview(cli_study *study, cw_error *err);
+
+/* Repeats what was timed once, the fastest first, until there are CLI_MAX_RUNS of all, or the
+ * budget is spent. */
+CW_NODISCARD cw_status cli_time_again(cli_study *study, cw_error *err);
+void cli_add_run(cli_point *point, double seconds);
+size_t cli_share_of(const cw_mesh *mesh, double share); /* of its triangles, at least 1 */
+void cli_error_color(double share, uint8_t rgb[3]);     /* 0 to 1 along that scale */
 
 /* The most memory that was taken since. */
 typedef struct cli_watch {
@@ -191,14 +261,28 @@ typedef struct cli_watch {
 cli_watch cli_watch_memory(void);
 size_t cli_watched_bytes(const cli_watch *watch);
 
+/* What a family's errors are measured to: to the true surface of a field, else to the field's, else
+ * from the plain surface. NULL: it was not measured. */
+const cli_gap *cli_main_gap(const cli_study *study, const cli_point *point);
+
 /* Whether the time is up, Ctrl-C aside. */
 bool cli_time_is_up(const cli_study *study);
 
 /* A word as a shell takes it, in quotes where needed. */
 void cli_put_word(FILE *out, const char *word);
 
-/* The page, and the same facts for programs. */
-void cli_put_page(FILE *out, const void *study);
+/* What to take for which purpose, by what was measured. */
+typedef struct cli_advice {
+    const char *purpose;    /* "For print" */
+    const cli_point *point; /* the setting */
+    char why[512];          /* with measured numbers */
+    char *command;          /* owned; NULL: no memory */
+} cli_advice;
+enum { CLI_MAX_ADVICE = 4 };
+size_t cli_find_advice(const cli_study *study, cli_advice advice[CLI_MAX_ADVICE]);
+void cli_free_advice(cli_advice *advice, size_t count);
+
+/* The same facts for programs. */
 void cli_put_study_json(FILE *out, const void *study);
 void cli_put_study_csv(FILE *out, const void *study);
 
@@ -206,14 +290,19 @@ void cli_put_study_csv(FILE *out, const void *study);
 void cli_put_cell(FILE *out, const char *text);
 void cli_put_number(FILE *out, bool known, double value);
 
-/* Parts of the page. */
-extern const char *const cli_page_style[]; /* pieces; the last is NULL */
-extern const char cli_page_script[];
-void cli_put_html(FILE *out, const char *text); /* escaped */
-void cli_put_plot(FILE *out, const cli_study *study, cli_family family);
-void cli_put_shapes(FILE *out, const cw_shapes *shapes);
-size_t cli_point_number(const cli_study *study, const cli_point *point); /* in its family */
-size_t cli_family_groups(const cli_study *study, cli_family family, const char **groups,
-                         size_t most);
+/* The points of a family that are done, by their number. Returns how many there are. */
+size_t cli_points_of(const cli_study *study, cli_family family,
+                     const cli_point *points[CLI_MAX_POINTS]);
+
+/* Costs of a point that plots may have along their axis. */
+typedef enum cli_cost {
+    CLI_COST_TIME,
+    CLI_COST_TRIANGLES,
+    CLI_COST_BYTES,
+    CLI_COST_MEMORY,
+    CLI_COST_COUNT
+} cli_cost;
+cli_cost cli_main_cost(cli_family family);
+double cli_cost_of(const cli_point *point, cli_cost cost); /* NaN: not known */
 
 #endif

@@ -1,5 +1,5 @@
 /* Which settings are worth choosing: those that no other one beats. */
-#include "cli/report/study.h"
+#include "cli/study/study.h"
 
 #include <math.h>
 

@@ -1,13 +1,13 @@
 /* The part of a volume on which is tried what would take too long on all of it: as large as may
  * be, where the surface is. */
 #include "cli/inputs/extract_surface.h"
-#include "cli/report/study.h"
+#include "cli/study/study.h"
 #include "core/volume/volume.h"
 
 #include <math.h>
 
 /* Triangles that are simplified and compressed a dozen times within a minute. */
-enum { MAX_TRIANGLES = 60000, MAX_DIVISIONS = 6 };
+enum { MAX_TRIANGLES = 160000, MAX_DIVISIONS = 6 };
 
 static cw_extract_desc desc_of(const cli_study *s)
 {
@@ -109,4 +109,18 @@ cw_status cli_need_part(cli_study *s, cw_error *err)
 const cw_mesh *cli_part_mesh(const cli_study *s)
 {
     return s->part_mesh.triangle_count ? &s->part_mesh : &s->full;
+}
+
+static double find_longest_side(const cw_mesh *mesh)
+{
+    double low[3], high[3];
+    return cw_mesh_bounds(mesh, low, high)
+               ? fmax(high[0] - low[0], fmax(high[1] - low[1], high[2] - low[2]))
+               : 0;
+}
+
+double cli_part_ratio(const cli_study *s)
+{
+    const double part = find_longest_side(cli_part_mesh(s));
+    return part > 0 ? find_longest_side(&s->full) / part : 1;
 }

@@ -1,7 +1,7 @@
 /* The points as rows of numbers, and as JSON. */
 #include "cli/framework/console.h"
-#include "cli/report/study.h"
 #include "cli/results/check_verdicts.h"
+#include "cli/study/study.h"
 
 #include "core/base/text.h"
 
@@ -43,8 +43,7 @@ static void put_note(FILE *out, const cli_point *p)
 
 static void put_row(FILE *out, const cli_study *s, const cli_point *p)
 {
-    const bool mesh = p->done && p->family != CLI_RENDERING,
-               drawn = p->done && p->family == CLI_RENDERING;
+    const bool drawn = p->done && cli_is_drawn(p->family), mesh = p->done && !drawn;
     fprintf(out, "%s,", cli_family_names[p->family]);
     cli_put_cell(out, p->name);
     fprintf(out, ",%s,%s", p->done ? "yes" : "no", p->front ? "yes" : "no");
@@ -65,6 +64,9 @@ static void put_row(FILE *out, const cli_study *s, const cli_point *p)
     put_note(out, p);
     fputc(',', out);
     cli_put_cell(out, p->command);
+    fputc(',', out);
+    cli_put_cell(out, p->group);
+    cli_put_number(out, p->done, (double)p->runs);
     fputs("\r\n", out);
 }
 
@@ -74,7 +76,7 @@ void cli_put_study_csv(FILE *out, const void *study)
     fputs("family,setting,done,front,cost,error,seconds,peak_bytes,triangles,file_bytes,"
           "field_max_mm,field_rms_mm,field_p99_mm,back_max_mm,back_rms_mm,back_p99_mm,"
           "truth_max_mm,truth_rms_mm,truth_p99_mm,picture_rmse,picture_max,delta_e_mean,"
-          "delta_e_p99,note,command\r\n",
+          "delta_e_p99,note,command,group,runs\r\n",
           out);
     for (size_t n = 0; n < s->point_count; n++)
         put_row(out, s, &s->points[n]);
@@ -144,9 +146,10 @@ static void json_point(cli_json *j, const cli_study *s, const cli_point *p)
     cli_json_number(j, "cost", cli_point_cost(p));
     cli_json_number(j, "error", cli_point_error(s, p));
     cli_json_number(j, "seconds", p->seconds);
+    cli_json_numbers(j, "runs", p->times, p->runs);
     if (p->peak_bytes)
         cli_json_count(j, "peak_bytes", p->peak_bytes);
-    if (p->family == CLI_RENDERING)
+    if (cli_is_drawn(p->family))
         json_picture(j, &p->picture);
     else
         json_mesh(j, p);
@@ -168,6 +171,23 @@ static void json_family(cli_json *j, const cli_study *s, cli_family family)
             json_point(j, s, &s->points[n]);
     cli_json_close(j, ']');
     cli_json_close(j, '}');
+}
+
+static void json_advice(cli_json *j, const cli_study *s)
+{
+    cli_advice advice[CLI_MAX_ADVICE];
+    const size_t count = cli_find_advice(s, advice);
+    cli_json_open(j, "advice", '[');
+    for (size_t n = 0; n < count; n++) {
+        cli_json_open(j, NULL, '{');
+        cli_json_text(j, "purpose", advice[n].purpose);
+        cli_json_text(j, "setting", advice[n].point->name);
+        cli_json_text(j, "why", advice[n].why);
+        cli_json_text(j, "command", advice[n].command ? advice[n].command : "");
+        cli_json_close(j, '}');
+    }
+    cli_json_close(j, ']');
+    cli_free_advice(advice, count);
 }
 
 void cli_put_study_json(FILE *out, const void *study)
@@ -193,8 +213,9 @@ void cli_put_study_json(FILE *out, const void *study)
     cli_json_text(&j, "backend", s->backend);
     cli_json_number(&j, "budget_seconds", s->budget_s);
     cli_json_number(&j, "seconds", s->seconds);
-    if (s->reference_seconds > 0)
-        cli_json_number(&j, "reference_seconds", s->reference_seconds);
+    if (s->references[0].seconds > 0)
+        cli_json_number(&j, "reference_seconds", s->references[0].seconds);
+    json_advice(&j, s);
     cli_json_open(&j, "families", '[');
     for (int f = 0; f < CLI_FAMILY_COUNT; f++)
         json_family(&j, s, (cli_family)f);

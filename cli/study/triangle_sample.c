@@ -1,5 +1,5 @@
 /* Part of a mesh, for measures that would take longer of all of it than what is measured. */
-#include "cli/report/triangle_sample.h"
+#include "cli/study/triangle_sample.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"

@@ -1,7 +1,7 @@
 /* Simplification while extracting: to an error, to a share of the triangles. */
 #include "cli/framework/console.h"
 #include "cli/inputs/extract_surface.h"
-#include "cli/report/study.h"
+#include "cli/study/study.h"
 
 void cli_plan_simplification(cli_study *s)
 {
@@ -26,16 +26,17 @@ void cli_plan_simplification(cli_study *s)
         p->tried.error_vox = rows[n].error_vox;
         p->tried.share = rows[n].share;
         p->shown = n < 3;
+        p->turned = n < 2;
     }
 }
 
-size_t cli_share_of(const cli_study *s, double share)
+size_t cli_share_of(const cw_mesh *mesh, double share)
 {
-    const size_t count = (size_t)(share * (double)cli_part_mesh(s)->triangle_count);
+    const size_t count = (size_t)(share * (double)mesh->triangle_count);
     return count ? count : 1;
 }
 
-cw_status cli_try_simplification(cli_study *s, cli_point *p, cw_error *err)
+cw_status cli_run_simplification(cli_study *s, cli_point *p, cw_mesh *mesh, cw_error *err)
 {
     const cli_wanted wanted = {.extract = {.isovalue = s->iso,
                                            .inside_is_low = s->inside_is_low,
@@ -44,19 +45,27 @@ cw_status cli_try_simplification(cli_study *s, cli_point *p, cw_error *err)
     cw_status st = cli_need_part(s, err);
     const cw_simplify_desc simplify = {
         .error_mm = p->tried.error_vox * s->voxel_mm,
-        .triangles = p->tried.share > 0 ? cli_share_of(s, p->tried.share) : 0,
+        .triangles = p->tried.share > 0 ? cli_share_of(cli_part_mesh(s), p->tried.share) : 0,
         .threads = s->threads};
     cw_extract_counts counts;
-    cw_mesh mesh = {0};
     const cli_watch watch = cli_watch_memory();
     const double start = cli_seconds();
     if (st == CW_OK)
-        st = cli_extract_simplified(&s->part, &wanted, &simplify, &mesh, &counts, NULL, err);
-    if (st == CW_OK) {
-        p->seconds = cli_seconds() - start;
+        st = cli_extract_simplified(&s->part, &wanted, &simplify, mesh, &counts, NULL, err);
+    if (st != CW_OK)
+        return st;
+    cli_add_run(p, cli_seconds() - start);
+    if (p->runs == 1)
         p->peak_bytes = cli_watched_bytes(&watch);
+    return CW_OK;
+}
+
+cw_status cli_try_simplification(cli_study *s, cli_point *p, cw_error *err)
+{
+    cw_mesh mesh = {0};
+    cw_status st = cli_run_simplification(s, p, &mesh, err);
+    if (st == CW_OK)
         st = cli_measure_mesh(s, p, &mesh, err);
-    }
     cw_mesh_free(&mesh);
     return st;
 }

@@ -1,5 +1,5 @@
 /* The front of cost against error: what nothing else beats. */
-#include "cli/report/study.h"
+#include "cli/study/study.h"
 #include "support/support.h"
 
 #include <math.h>
