@@ -10,6 +10,7 @@
 #include "cli/report/page.h"
 #include "cli/results/output_names.h"
 #include "cli/results/run_report.h"
+#include "cli/study/mesh_study.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "core/volume/volume.h"
@@ -22,7 +23,7 @@
 typedef struct report_args {
     cli_common common;
     cli_input input;
-    const char *output, *json, *csv, *budget, *title;
+    const char *output, *json, *csv, *budget, *title, *source, *mesh_reader;
     cli_number iso;
     cli_sizes dims;
     int inside, progress;
@@ -53,6 +54,14 @@ static const cli_option options[] = {
     {"coarsen", 0, CLI_COUNT, "N",
      "Use every N-th voxel along each axis for meshes (1; larger above 32M voxels)",
      CLI_INPUT_ROW(report_args, coarsen)},
+    CLI_HEADED("Mesh"),
+    {"source", 's', CLI_TEXT, "VOLUME",
+     "The input is a mesh, and this the volume that it is of: report where it comes from",
+     offsetof(report_args, source), CLI_VALUES_VOLUME},
+    {"mesh-reader", 0, CLI_TEXT, "NAME",
+     "Read the mesh as this format; names as in 'formats' (by content)",
+     offsetof(report_args, mesh_reader), CLI_VALUES_MESH_READER},
+    CLI_CLAIM_OPTIONS("source", "the source", CLI_INPUT_ROW(report_args, source_claim)),
     CLI_HEADED("Output files"),
     {"title", 0, CLI_TEXT, "TEXT", "Title of the page (the input's name)",
      offsetof(report_args, title)},
@@ -73,6 +82,7 @@ typedef struct run_state {
     char field_path[64];
     cli_outputs files; /* the page */
     cli_study study;
+    cli_mesh_study mesh; /* in place of it, with --source */
 } run_state;
 
 static cw_status parse_budget(const char *text, double *seconds, cw_error *err)
@@ -109,11 +119,12 @@ static cw_status check_dims(report_args *args, cw_error *err)
 static cw_status check_outputs(const report_args *args, cw_error *err)
 {
     const char *const files[] = {args->output, args->json, args->csv};
+    const char *const inputs[] = {args->common.inputs[0], args->source};
     cw_status st = CW_OK;
     for (size_t n = 0; n < 3 && st == CW_OK; n++) {
         if (!files[n] || strcmp(files[n], "-") == 0)
             continue;
-        st = cli_check_output(files[n], args->common.inputs, 1, err);
+        st = cli_check_output(files[n], inputs, args->source ? 2 : 1, err);
         for (size_t before = 0; before < n && st == CW_OK; before++)
             if (files[before] && strcmp(files[before], "-") != 0)
                 st = cli_check_apart(files[before], files[n], err);
@@ -136,10 +147,51 @@ static cw_status check_name(const char *name, cw_error *err)
                    : CW_OK;
 }
 
+/* Fails for options that say something of a mesh, without one, or of settings, with one. */
+static cw_status check_mode(const report_args *args, cw_error *err)
+{
+    static const char *const of_meshes[] = {"mesh-reader", "source-unit", "source-up",
+                                            "source-frame", "source-override"},
+                             *const of_settings[] = {"budget", "dims", "csv"};
+    for (size_t n = 0; n < sizeof options / sizeof *options; n++) {
+        if (!args->common.given[n])
+            continue;
+        for (size_t m = 0; m < sizeof of_meshes / sizeof *of_meshes && !args->source; m++)
+            if (strcmp(options[n].name, of_meshes[m]) == 0)
+                return cwi_fail(err, CW_ERR_ARGUMENT,
+                                "--%s is for a mesh: name its volume by --source VOLUME",
+                                of_meshes[m]);
+        for (size_t m = 0; m < sizeof of_settings / sizeof *of_settings && args->source; m++)
+            if (strcmp(options[n].name, of_settings[m]) == 0)
+                return cwi_fail(
+                    err, CW_ERR_ARGUMENT,
+                    "--%s is for comparing settings; with --source there is one mesh",
+                    of_settings[m]);
+    }
+    return CW_OK;
+}
+
+/* A mesh alone has nothing that it could be held against. */
+static cw_status check_kind(const report_args *args, cw_error *err)
+{
+    const char *path = args->common.inputs[0];
+    const cw_format *volume = cw_volume_format(path, NULL), *mesh = cw_mesh_format(path, NULL);
+    return !args->source && mesh && !volume
+               ? cwi_fail(err, CW_ERR_ARGUMENT,
+                          "%s is a mesh by its name: name the volume that it is of by --source "
+                          "VOLUME",
+                          path)
+               : CW_OK;
+}
+
 static cw_status check_args(run_state *s, cw_error *err)
 {
     report_args *args = s->args;
     cw_status st = parse_budget(args->budget, &s->study.budget_s, err);
+    if (st == CW_OK)
+        st = check_mode(args, err);
+    if (st == CW_OK && !s->study.is_field)
+        st = check_kind(args, err);
     if (st != CW_OK)
         return st;
     if (!s->study.is_field && access(args->common.inputs[0], F_OK) != 0)
@@ -160,7 +212,8 @@ static cw_status check_args(run_state *s, cw_error *err)
     return st == CW_OK ? check_outputs(args, err) : st;
 }
 
-/* Repeats the given options of reading in the printed commands: the rows from --reader on. */
+/* Repeats the given options of reading in the printed commands: the rows from --reader on, and of
+ * a mesh those of its source. */
 static void put_reading(FILE *out, const report_args *args)
 {
     bool reading = false;
@@ -168,7 +221,9 @@ static void put_reading(FILE *out, const report_args *args)
         char text[4096];
         const cli_option *o = &options[n];
         reading = reading || strcmp(o->name, "reader") == 0;
-        if (!reading || !args->common.given[n])
+        const bool of_mesh =
+            strncmp(o->name, "source-", 7) == 0 || strcmp(o->name, "mesh-reader") == 0;
+        if (!(reading || of_mesh) || !args->common.given[n])
             continue;
         if (o->kind == CLI_FLAG) {
             fprintf(out, " --%s%s",
@@ -292,10 +347,63 @@ static void tell_result(const cli_study *study, const char *path)
                study->point_count - done, study->seconds);
 }
 
+/* Reads both; the mesh moves into the study. */
+static cw_status open_mesh(run_state *s, cw_error *err)
+{
+    const report_args *args = s->args;
+    cli_mesh_study *m = &s->mesh;
+    cli_input source = cli_source_input(&args->input);
+    cli_number level = args->iso;
+    cw_status st =
+        cli_read_mesh(args->common.inputs[0], args->mesh_reader, &args->input, &m->mesh, err);
+    if (st != CW_OK)
+        return st;
+    m->study.full = m->mesh.mesh;
+    m->mesh.mesh = (cw_mesh){0};
+    st = cli_read_volume(args->source, &source, false, &s->volume, err);
+    if (st == CW_OK)
+        st = tell_input(s, args->source, err);
+    if (st != CW_OK)
+        return st;
+    m->study.is_of_mesh = true;
+    m->study.volume = &s->volume;
+    m->study.threads = (int)args->input.threads;
+    m->study.coarsen = 1;
+    m->study.inside_is_low = cli_inside_is_low(args->inside, &s->volume.whole);
+    m->study.input_words = s->input_words;
+    m->study.title = args->title ? args->title : cli_shown_path(m->mesh.path);
+    if (!level.given)
+        return cli_fit_level(m, err);
+    st = cli_choose_level(&s->volume, &source, &level, err);
+    m->study.iso = level.value;
+    m->study.level = "as asked for";
+    return st;
+}
+
+static cw_status report_mesh(run_state *s, cw_error *err)
+{
+    const report_args *args = s->args;
+    const cli_mesh_study *m = &s->mesh;
+    cw_status st = open_mesh(s, err);
+    if (st == CW_OK)
+        st = cli_study_mesh(&s->mesh, err);
+    if (st == CW_OK)
+        st = cli_report_make(args->json, cli_put_mesh_json, m, err);
+    if (st == CW_OK)
+        st = cli_report_make(args->output, cli_put_mesh_page, m, err);
+    if (st == CW_OK)
+        cli_result("%s: %s against %s at %s%s: 99 %% within %.3g mm; %.1f s\n", args->output,
+                   m->mesh.path, s->volume.path, cli_number_text(m->study.iso),
+                   m->is_fitted ? " (fitted)" : "", m->to_field.p99_mm, m->study.seconds);
+    return st;
+}
+
 static cw_status run_pipeline(run_state *s, cw_error *err)
 {
     const report_args *args = s->args;
     cw_status st = check_args(s, err);
+    if (st == CW_OK && args->source)
+        return report_mesh(s, err);
     if (st == CW_OK)
         st = open_input(s, err);
     if (st == CW_OK)
@@ -325,7 +433,7 @@ static cw_status run_report_command(void *p, cw_error *err)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a report");
     s->args = args;
     /* a file of that name is meant, if there is one */
-    s->study.is_field = access(args->common.inputs[0], F_OK) != 0 &&
+    s->study.is_field = !args->source && access(args->common.inputs[0], F_OK) != 0 &&
                         cw_field_find(args->common.inputs[0], &s->study.field);
     cli_console_start(&args->common, (cli_progress_mode)args->progress);
     cli_console_reserve_stdout(args->output);
@@ -339,6 +447,7 @@ static cw_status run_report_command(void *p, cw_error *err)
         st = run_pipeline(s, err);
     cli_free_outputs(&s->files);
     cli_study_free(&s->study);
+    cli_free_mesh_study(&s->mesh);
     cli_free_volume(&s->volume);
     free(s->input_words);
     free(s->make_words);
@@ -348,7 +457,7 @@ static cw_status run_report_command(void *p, cw_error *err)
 
 const cli_command cli_report_command = {
     .name = "report",
-    .usage = "VOLUME|FIELD -o HTML [options]",
+    .usage = "VOLUME|FIELD|MESH -o HTML [options]",
     .about = "Compare the cost and error of settings on your data, on one page",
     .page = cli_page_report,
     .options = options,

@@ -8,6 +8,7 @@
 
 /* Writes the page: one file of HTML that needs no other, and is well-formed XML as well. */
 void cli_put_page(FILE *out, const void *study);
+void cli_put_mesh_page(FILE *out, const void *mesh_study);
 
 /* Everything before the contents of the page, and after it, with the scripts. */
 void cli_put_page_begin(FILE *out, const char *title);

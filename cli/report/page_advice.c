@@ -1,4 +1,4 @@
-/* What to take for which purpose, in words. */
+/* The advice of a study, in words. */
 #include "cli/report/page.h"
 
 void cli_put_advice(FILE *out, const cli_study *s)

@@ -1,4 +1,4 @@
-/* What is studied, as pictures: the object, a slice with its contour, the histogram. */
+/* Pictures of the object of a study: the object, a slice with its contour, the histogram. */
 #include "cli/framework/quantity.h"
 #include "cli/report/page.h"
 
@@ -8,12 +8,17 @@ static void put_object(FILE *out, const cli_study *s)
         return;
     fputs("<figure>", out);
     cli_put_image(out, &s->overview.object,
-                  "The plain surface of the whole object, from the front");
-    fprintf(
-        out,
-        "<figcaption><strong>The object</strong>the plain surface at the level %s, whole, from "
-        "the front: %s triangles</figcaption></figure>\n",
-        cli_number_text(s->iso), cli_count(s->full.triangle_count));
+                  s->is_of_mesh ? "The mesh, from the front"
+                                : "The plain surface of the whole object, from the front");
+    if (s->is_of_mesh)
+        fputs("<figcaption><strong>The mesh</strong>as it is, from the front: ", out);
+    else
+        fprintf(
+            out,
+            "<figcaption><strong>The object</strong>the plain surface at the level %s, whole, "
+            "from the front: ",
+            cli_number_text(s->iso));
+    fprintf(out, "%s triangles</figcaption></figure>\n", cli_count(s->full.triangle_count));
 }
 
 static void put_slice(FILE *out, const cli_study *s)
@@ -46,7 +51,9 @@ static void put_values(FILE *out, const cli_study *s)
 
 void cli_put_overview(FILE *out, const cli_study *s)
 {
-    fputs("<h2 id=\"object\">What is studied</h2>\n<div class=\"pictures\">\n", out);
+    fprintf(out, "<h2 id=\"object\">%s</h2>\n",
+            s->is_of_mesh ? "The mesh and its source" : "What is studied");
+    fputs("<div class=\"pictures\">\n", out);
     put_object(out, s);
     put_slice(out, s);
     put_values(out, s);

@@ -9,8 +9,9 @@
 static void put_gap_text(FILE *out, const cli_study *s, const cli_point *p)
 {
     fprintf(out, "level %s, %s; ", cli_number_text(s->iso),
-            *s->part_words && p->family != CLI_EXTRACTION ? "a box of the object"
-                                                          : "the whole object");
+            s->is_of_mesh                                   ? "all of it"
+            : *s->part_words && p->family != CLI_EXTRACTION ? "a box of the object"
+                                                            : "the whole object");
     const double rms = cli_point_error(s, p);
     fprintf(out, "%s triangles, %s", cli_count(p->triangles), cli_bytes((double)p->file_bytes));
     if (isfinite(rms))

@@ -57,10 +57,11 @@ static void put_tools(FILE *out, const cli_study *s)
 static void tell_mesh(const cli_study *s, const cli_point *p, char *words, size_t size)
 {
     const cli_packed *m = &p->packed;
-    size_t end = (size_t)snprintf(
-        words, size, "%s: %s triangles of %s", p->name, cli_count(m->triangles),
-        *s->part_words && p->family != CLI_EXTRACTION ? "a box of the object"
-                                                      : "the whole object");
+    const char *of = s->is_of_mesh                                   ? "all that is in the file"
+                     : *s->part_words && p->family != CLI_EXTRACTION ? "a box of the object"
+                                                                     : "the whole object";
+    size_t end = (size_t)snprintf(words, size, "%s: %s triangles of %s", p->name,
+                                  cli_count(m->triangles), of);
     if (m->made_of && end < size)
         end += (size_t)snprintf(words + end, size - end, ", thinned for this page from %s",
                                 cli_count(m->made_of));

@@ -122,7 +122,7 @@ typedef struct cli_print_study {
     cli_printed seen;
 } cli_print_study;
 
-/* What is studied, as pictures. */
+/* Pictures of the object of a study. */
 typedef struct cli_overview {
     char why[CLI_WHY_CAPACITY]; /* something was not drawn; empty: all was */
     cli_png object;             /* the plain surface in the colour of bone */
@@ -134,7 +134,8 @@ typedef struct cli_overview {
 typedef struct cli_study {
     /* what is studied: set before cli_study_run() */
     cli_volume *volume;
-    bool is_field; /* one whose surface is known on paper: */
+    bool is_of_mesh; /* the volume is the source of a mesh, which is full */
+    bool is_field;   /* one whose surface is known on paper: */
     cw_field field;
     double iso;
     const char *level; /* how that was found: "otsu", "as asked", ... */
@@ -261,8 +262,8 @@ typedef struct cli_watch {
 cli_watch cli_watch_memory(void);
 size_t cli_watched_bytes(const cli_watch *watch);
 
-/* What a family's errors are measured to: to the true surface of a field, else to the field's, else
- * from the plain surface. NULL: it was not measured. */
+/* Returns the distance that counts as a point's error: to the true surface of a field, else to the
+ * field's, else from the plain surface. NULL: none was measured. */
 const cli_gap *cli_main_gap(const cli_study *study, const cli_point *point);
 
 /* Whether the time is up, Ctrl-C aside. */
@@ -271,7 +272,7 @@ bool cli_time_is_up(const cli_study *study);
 /* A word as a shell takes it, in quotes where needed. */
 void cli_put_word(FILE *out, const char *word);
 
-/* What to take for which purpose, by what was measured. */
+/* Advice: a setting for each purpose, by the measurements. */
 typedef struct cli_advice {
     const char *purpose;    /* "For print" */
     const cli_point *point; /* the setting */

@@ -1,5 +1,5 @@
-/* What to take for print, the web, analysis and pictures: chosen by what was measured, and said
- * in words with those numbers. */
+/* Advice for print, the web, analysis and pictures: settings chosen by the measurements, with the
+ * numbers that were the reason. */
 #include "cli/framework/quantity.h"
 #include "cli/study/point_command.h"
 #include "cli/study/study.h"
@@ -12,7 +12,7 @@
 /* Printers resolve about this; a scan resolves no more than a fraction of its voxels. */
 static const double PRINT_MM = 0.1, PRINT_VOXELS = 0.25;
 
-/* What is not seen on a screen at usual sizes. */
+/* A distance that is not seen on a screen at usual sizes. */
 static const double WEB_VOXELS = 0.5;
 
 /* Of that, compression may take this much at most. */
