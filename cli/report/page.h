@@ -9,6 +9,8 @@
 /* Writes the page: one file of HTML that needs no other, and is well-formed XML as well. */
 void cli_put_page(FILE *out, const void *study);
 void cli_put_mesh_page(FILE *out, const void *mesh_study);
+void cli_put_label_page(FILE *out, const void *label_study);
+void cli_put_series_page(FILE *out, const void *series_study);
 
 /* Everything before the contents of the page, and after it, with the scripts. */
 void cli_put_page_begin(FILE *out, const char *title);

@@ -331,6 +331,7 @@
         colored.addEventListener('change', draw);
         window.addEventListener('resize', draw);
         matchMedia('(prefers-color-scheme: dark)').addEventListener('change', draw);
+        choice.parentElement.hidden = packed.length === 1;
         makeScale(gl, colors);
         view.hidden = false;
         chooseMesh(0);
