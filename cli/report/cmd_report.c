@@ -177,8 +177,8 @@ static cw_status check_args(cli_report_run *s, cw_error *err)
     return st == CW_OK ? check_outputs(args, err) : st;
 }
 
-/* Repeats the given options of reading in the printed commands: the rows from --reader on, and of
- * a mesh those of its source. */
+/* Repeats the given options of reading in the printed commands: the rows from --reader on,
+ * and of a mesh those of its source. */
 static void put_reading(FILE *out, const cli_report_args *args)
 {
     bool reading = false;

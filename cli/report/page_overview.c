@@ -42,11 +42,11 @@ static void put_values(FILE *out, const cli_study *s)
         return;
     fputs("<figure>", out);
     cli_put_histogram(out, v, s->iso);
-    fprintf(
-        out,
-        "<figcaption><strong>The values</strong>%s voxels, by the logarithm of their number; red: "
-        "the level %s (%s)</figcaption></figure>\n",
-        cli_count(v->finite), cli_number_text(s->iso), s->level);
+    fprintf(out,
+            "<figcaption><strong>The values</strong>%s voxels, by the logarithm of their "
+            "number; red: "
+            "the level %s (%s)</figcaption></figure>\n",
+            cli_count(v->finite), cli_number_text(s->iso), s->level);
 }
 
 void cli_put_overview(FILE *out, const cli_study *s)

@@ -60,23 +60,23 @@ static void put_plot(FILE *out, const cli_series_study *q)
         highest =
             fmax(highest, isfinite(value_of(q, n, volumes)) ? value_of(q, n, volumes) : 0);
     highest = highest > 0 ? 1.08 * highest : 1;
-    fprintf(
-        out,
-        "<svg class=\"plot\" viewBox=\"0 0 %d %d\" role=\"group\" aria-label=\"%s of each step\">",
-        WIDTH, HEIGHT, name);
+    fprintf(out,
+            "<svg class=\"plot\" viewBox=\"0 0 %d %d\" role=\"group\" aria-label=\"%s of each "
+            "step\">",
+            WIDTH, HEIGHT, name);
     for (double v = 0; v <= highest; v += round_step(highest)) {
         const double y = HEIGHT - BOTTOM - v / highest * (HEIGHT - BOTTOM - TOP);
-        fprintf(
-            out,
-            "<line class=\"grid\" x1=\"%d\" x2=\"%d\" y1=\"%.1f\" y2=\"%.1f\"/><text class=\"tick\" "
-            "x=\"%d\" y=\"%.1f\" text-anchor=\"end\">%.4g</text>",
-            LEFT, WIDTH - RIGHT, y, y, LEFT - 8, y + 4, v);
+        fprintf(out,
+                "<line class=\"grid\" x1=\"%d\" x2=\"%d\" y1=\"%.1f\" y2=\"%.1f\"/><text "
+                "class=\"tick\" "
+                "x=\"%d\" y=\"%.1f\" text-anchor=\"end\">%.4g</text>",
+                LEFT, WIDTH - RIGHT, y, y, LEFT - 8, y + 4, v);
     }
-    fprintf(
-        out,
-        "<text class=\"label\" x=\"%d\" y=\"%d\" text-anchor=\"middle\">step</text><text "
-        "class=\"label\" transform=\"translate(16 %d) rotate(-90)\" text-anchor=\"middle\">%s</text>",
-        (LEFT + WIDTH - RIGHT) / 2, HEIGHT - 10, (TOP + HEIGHT - BOTTOM) / 2, name);
+    fprintf(out,
+            "<text class=\"label\" x=\"%d\" y=\"%d\" text-anchor=\"middle\">step</text><text "
+            "class=\"label\" transform=\"translate(16 %d) rotate(-90)\" "
+            "text-anchor=\"middle\">%s</text>",
+            (LEFT + WIDTH - RIGHT) / 2, HEIGHT - 10, (TOP + HEIGHT - BOTTOM) / 2, name);
     const size_t every = count / 12 + 1;
     for (size_t n = 0; n < count; n++) {
         const double v = value_of(q, n, volumes),
@@ -90,11 +90,12 @@ static void put_plot(FILE *out, const cli_series_study *q)
                 "<text class=\"tick\" x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">%zu</text>", x,
                 HEIGHT - BOTTOM + 18, number);
         if (isfinite(v))
-            fprintf(
-                out,
-                "<g class=\"dot best g0\" tabindex=\"0\" data-point=\"step-%zu\"><circle cx=\"%.1f\" "
-                "cy=\"%.1f\" r=\"5\"/><title>step %zu: %.5g, %s</title></g>",
-                n, x, HEIGHT - BOTTOM - v / highest * (HEIGHT - BOTTOM - TOP), number, v, name);
+            fprintf(out,
+                    "<g class=\"dot best g0\" tabindex=\"0\" role=\"img\" "
+                    "data-point=\"step-%zu\"><circle cx=\"%.1f\" "
+                    "cy=\"%.1f\" r=\"5\"/><title>step %zu: %.5g, %s</title></g>",
+                    n, x, HEIGHT - BOTTOM - v / highest * (HEIGHT - BOTTOM - TOP), number, v,
+                    name);
     }
     fputs("</svg>\n", out);
 }
@@ -122,11 +123,11 @@ static void put_row(FILE *out, const cli_series_study *q, size_t n)
         fputs("<td data-v=\"nan\">\xe2\x80\x93</td>", out);
     fprintf(out, "<td data-v=\"%.9g\">%.5g</td><td data-v=\"%zu\">%s</td>", r->area_mm2,
             r->area_mm2 / 100, r->triangles, cli_count(r->triangles));
-    fprintf(
-        out,
-        "<td data-v=\"%zu\">%s</td><td class=\"w\">%s</td><td data-v=\"%.9g\">%s</td></tr></tbody>\n",
-        r->components, cli_count(r->components), r->closed ? "yes" : "no", r->seconds,
-        cli_seconds_text(r->seconds));
+    fprintf(out,
+            "<td data-v=\"%zu\">%s</td><td class=\"w\">%s</td><td "
+            "data-v=\"%.9g\">%s</td></tr></tbody>\n",
+            r->components, cli_count(r->components), r->closed ? "yes" : "no", r->seconds,
+            cli_seconds_text(r->seconds));
 }
 
 static void put_rows(FILE *out, const cli_series_study *q)
@@ -157,10 +158,10 @@ static void put_drawn(FILE *out, const cli_series_study *q)
         snprintf(alt, sizeof alt, "The surface of step %zu, from the front", number);
         fprintf(out, "<figure data-point=\"step-%zu\">", n);
         cli_put_image(out, &r->drawn, alt);
-        fprintf(
-            out,
-            "<figcaption><strong>Step %zu</strong>level %s, %s triangles</figcaption></figure>\n",
-            number, cli_number_text(q->study.iso), cli_count(r->triangles));
+        fprintf(out,
+                "<figcaption><strong>Step %zu</strong>level %s, %s "
+                "triangles</figcaption></figure>\n",
+                number, cli_number_text(q->study.iso), cli_count(r->triangles));
     }
     fputs("</div>\n", out);
 }

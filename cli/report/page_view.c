@@ -1,15 +1,16 @@
-/* The view of three dimensions: its meshes as text of base64, and what chooses between them. The
- * script view3d.js draws it; without it the view stays hidden. */
+/* The view of three dimensions: its meshes as text of base64, and what chooses between them.
+ * The script view3d.js draws it; without it the view stays hidden. */
 #include "cli/framework/quantity.h"
 #include "cli/report/page.h"
 
 void cli_put_view_begin(FILE *out)
 {
-    fputs(
-        "<section class=\"turns\">\n<h2 id=\"view\">In three dimensions</h2>\n<p class=\"quiet\">Drag to turn, use the "
-        "wheel or two fingers to zoom, Shift and drag to move. With the keyboard: arrow keys, + "
-        "and -, and 0 to reset.</p>\n<div class=\"view3d\" hidden=\"\" data-colors=\"",
-        out);
+    fputs("<section class=\"turns\">\n<h2 id=\"view\">In three dimensions</h2>\n<p "
+          "class=\"quiet\">Drag to turn, use the "
+          "wheel or two fingers to zoom, Shift and drag to move. With the keyboard: arrow "
+          "keys, + "
+          "and -, and 0 to reset.</p>\n<div class=\"view3d\" hidden=\"\" data-colors=\"",
+          out);
 }
 
 void cli_put_view_mesh(FILE *out, const cli_packed *p, const char *name, const char *words)
@@ -32,7 +33,8 @@ void cli_put_view_mesh(FILE *out, const cli_packed *p, const char *name, const c
 
 void cli_put_view_end(FILE *out, const char *about)
 {
-    fputs("<canvas tabindex=\"0\" role=\"img\" aria-label=\"the mesh in three dimensions\">"
+    fputs("<canvas tabindex=\"0\" role=\"application\" aria-label=\"the mesh in three "
+          "dimensions\">"
           "</canvas>\n<p class=\"quiet words\" aria-live=\"polite\"></p>\n",
           out);
     if (about)

@@ -31,8 +31,8 @@ static cw_status check_no_settings(const cli_report_args *args, const char *why,
     return refuse_options(args, names, why, err);
 }
 
-/* Fails for options that say something of a mesh or of labels, without them, or of settings, with
- * a mesh. */
+/* Fails for options that say something of a mesh or of labels, without them, or of settings,
+ * with a mesh. */
 cw_status cli_report_check_mode(const cli_report_args *args, cw_error *err)
 {
     static const char *const

@@ -36,6 +36,10 @@ static size_t count_points(const cli_study *s, bool done)
 
 static void put_intro(FILE *out, const cli_study *s)
 {
+    char left_out[64] = "none was left out";
+    if (count_points(s, false))
+        snprintf(left_out, sizeof left_out, "%zu were left out, each with its reason",
+                 count_points(s, false));
     fputs("<h1>", out);
     cli_put_html(out, s->title);
     fputs("</h1>\n<p>Speed against error: ", out);
@@ -47,11 +51,11 @@ static void put_intro(FILE *out, const cli_study *s)
         cli_put_html(out, cli_describe(s->volume));
     }
     fprintf(out,
-            "; %zu were left out, each with its reason. In every plot left is cheaper and down "
+            "; %s. In every plot left is cheaper and down "
             "is closer to the truth. Full dots, on the dashed line, are worth choosing: no "
             "other point is both cheaper and closer. They form the Pareto front. Each row has "
             "its command, to copy.</p>\n",
-            count_points(s, false));
+            left_out);
     if (s->coarsen > 1)
         fprintf(out,
                 "<p>The volume is large: for meshes only every %zu%s voxel along each axis is "

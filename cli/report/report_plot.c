@@ -171,7 +171,8 @@ static bool overlaps(double x, double y, double other_x, double other_y, double 
     return fabs(x - other_x) < width && fabs(y - other_y) < height;
 }
 
-/* How much a number at a place would hide, or be hidden by: numbers before it, dots, the frame. */
+/* How much a number at a place would hide, or be hidden by: numbers before it, dots, the
+ * frame. */
 static int count_collisions(const plot *p, size_t before, double x, double y)
 {
     enum { TEXT_WIDTH = 17, TEXT_HEIGHT = 13, DOT_WIDTH = 15, DOT_HEIGHT = 13 };
@@ -243,7 +244,8 @@ static void put_dot(FILE *out, const plot *p, const dot *d, double cost, size_t 
     put_leader(out, d);
     fprintf(
         out,
-        "<g class=\"dot%s g%zu\" tabindex=\"0\" data-point=\"%s-%zu\"><circle cx=\"%.1f\" "
+        "<g class=\"dot%s g%zu\" tabindex=\"0\" role=\"img\" data-point=\"%s-%zu\"><circle "
+        "cx=\"%.1f\" "
         "cy=\"%.1f\" r=\"%g\"/><text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">%zu</text>"
         "<title>",
         d->best ? " best" : "", group, cli_family_names[p->family], point->number, d->x, d->y,

@@ -46,8 +46,8 @@ CW_NODISCARD cw_status cli_report_check_kind(const cli_report_args *args, cw_err
 /* Whether the inputs are the steps of a series. */
 bool cli_report_is_series(const cli_report_args *args);
 
-/* Finds the word for all labels, where nobody said which, of a map of labels. labels: set to that
- * or to those of the options; NULL: it is no such map. */
+/* Finds the word for all labels, where nobody said which, of a map of labels. labels: set to
+ * that or to those of the options; NULL: it is no such map. */
 CW_NODISCARD cw_status cli_report_find_labels(cli_report_run *run, const char **labels,
                                               cw_error *err);
 

@@ -5,7 +5,7 @@
 #include "cli/inputs/label_scene.h"
 #include "cli/study/study.h"
 
-/* Pictures of so many labels, those with the most voxels; and labels that the view of three
+/* Maximum of pictures, of the labels with the most voxels; and of labels that the view of three
  * dimensions can part. */
 enum { CLI_LABEL_PICTURES = 48, CLI_LABEL_COLORS = 256 };
 
@@ -32,8 +32,8 @@ typedef struct cli_label_study {
     cli_packed packed; /* the same to be turned; its bytes are numbers of rows */
 } cli_label_study;
 
-/* Extracts, measures and draws the labels of study.volume. Free with cli_free_label_study(), also
- * after failure.
+/* Extracts, measures and draws the labels of study.volume. Free with cli_free_label_study(),
+ * also after failure.
  * Returns  as cli_find_shown_labels() and cw_extract_labels() */
 CW_NODISCARD cw_status cli_study_labels(cli_label_study *study, const cli_label_look *look,
                                         cli_volume *volume, cw_error *err);

@@ -1,4 +1,5 @@
-/* Holds a mesh against a volume: finds the level that fits, measures both ways, checks, draws. */
+/* Holds a mesh against a volume: finds the level that fits, measures both ways, checks,
+ * draws. */
 #include "cli/study/mesh_study.h"
 
 #include "cli/framework/console.h"

@@ -23,7 +23,8 @@ typedef struct cli_mesh_study {
 
 /* Finds the level whose surface is nearest to the vertices of study.full: the median of the
  * field's values there, rounded as printed.
- * Returns  CW_ERR_ARGUMENT  fewer than half of the vertices are in the volume; CW_ERR_NO_MEMORY */
+ * Returns  CW_ERR_ARGUMENT  fewer than half of the vertices are in the volume;
+ *          CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cli_fit_level(cli_mesh_study *study, cw_error *err);
 
 /* Measures the mesh, and draws it. Free with cli_free_mesh_study(), also after failure.

@@ -1,6 +1,6 @@
-/* Studies a series: extracts the surface of each step, twice. Once to measure it and to find the
- * box of all, once to draw it, so that pictures have one place and one scale and no more than a
- * step is in memory. */
+/* Studies a series: extracts the surface of each step, twice. Once to measure it and to find
+ * the box of all, once to draw it, so that pictures have one place and one scale and no more
+ * than a step is in memory. */
 #include "cli/study/series_study.h"
 
 #include "cli/framework/console.h"

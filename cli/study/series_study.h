@@ -5,7 +5,7 @@
 #include "cli/inputs/scene_source.h"
 #include "cli/study/study.h"
 
-/* Pictures of so many steps, spread evenly. */
+/* Maximum of pictures, of steps spread evenly. */
 enum { CLI_SERIES_PICTURES = 24 };
 
 typedef struct cli_series_row {
@@ -25,8 +25,8 @@ typedef struct cli_series_study {
     bool has_box;
 } cli_series_study;
 
-/* Measures and draws the surface of each step of the source, all from one place. A step without a
- * surface says so. Free with cli_free_series_study(), also after failure.
+/* Measures and draws the surface of each step of the source, all from one place. A step
+ * without a surface says so. Free with cli_free_series_study(), also after failure.
  * Returns  CW_ERR_EMPTY  no step has a surface; as cli_read_step() and cw_extract() */
 CW_NODISCARD cw_status cli_study_series(cli_series_study *study, const cli_input *input,
                                         cw_error *err);

@@ -95,8 +95,8 @@ typedef struct cli_axis {
     const char *cost, *cost_unit, *error, *error_unit;
 } cli_axis;
 
-/* Limits of a study: the size of pictures, the factor of the differences that are shown, and the
- * number of triangles that are sampled for errors where a mesh has more. */
+/* Limits of a study: the size of pictures, the factor of the differences that are shown, and
+ * the number of triangles that are sampled for errors where a mesh has more. */
 enum {
     CLI_STUDY_SAMPLE = 25000,
     CLI_MAX_POINTS = 96,
@@ -262,7 +262,8 @@ typedef struct cli_watch {
 cli_watch cli_watch_memory(void);
 size_t cli_watched_bytes(const cli_watch *watch);
 
-/* Returns the distance that counts as a point's error: to the true surface of a field, else to the
+/* Returns the distance that counts as a point's error: to the true surface of a field, else to
+ *         the
  * field's, else from the plain surface. NULL: none was measured. */
 const cli_gap *cli_main_gap(const cli_study *study, const cli_point *point);
 

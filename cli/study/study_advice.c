@@ -1,5 +1,5 @@
-/* Advice for print, the web, analysis and pictures: settings chosen by the measurements, with the
- * numbers that were the reason. */
+/* Advice for print, the web, analysis and pictures: settings chosen by the measurements, with
+ * the numbers that were the reason. */
 #include "cli/framework/quantity.h"
 #include "cli/study/point_command.h"
 #include "cli/study/study.h"
@@ -11,6 +11,9 @@
 
 /* Printers resolve about this; a scan resolves no more than a fraction of its voxels. */
 static const double PRINT_MM = 0.1, PRINT_VOXELS = 0.25;
+
+/* As near as the plain surface, or nearly so. */
+static const double BESIDE_PLAIN = 1.2;
 
 /* A distance that is not seen on a screen at usual sizes. */
 static const double WEB_VOXELS = 0.5;
@@ -118,22 +121,30 @@ static void tell_triangles(const cli_study *s, cli_advice *a)
 {
     const double whole = count_whole(s, a->point);
     const bool scaled = *s->part_words && a->point->family == CLI_SIMPLIFICATION;
-    add_text(a, "%s%s triangles in place of %s, 99 %% of the surface within %.3g mm",
-             scaled ? "about " : "", cli_count((size_t)(whole + 0.5)),
-             cli_count(s->full.triangle_count), cli_main_gap(s, a->point)->p99_mm);
+    if (a->point == &s->points[0])
+        add_text(a, "all %s triangles", cli_count(s->full.triangle_count));
+    else
+        add_text(a, "%s%s triangles in place of %s", scaled ? "about " : "",
+                 cli_count((size_t)(whole + 0.5)), cli_count(s->full.triangle_count));
+    add_text(a, ", 99 %% of the surface within %.3g mm", cli_main_gap(s, a->point)->p99_mm);
 }
 
 static bool advise_print(const cli_study *s, cli_advice *a)
 {
-    const double limit = fmax(PRINT_MM, PRINT_VOXELS * s->voxel_mm);
+    const cli_gap *plain = cli_main_gap(s, &s->points[0]);
+    const double limit = fmax(fmax(PRINT_MM, PRINT_VOXELS * s->voxel_mm),
+                              plain ? BESIDE_PLAIN * plain->p99_mm : 0);
     size_t failed = 0;
     a->purpose = "For print";
     a->point = find_lightest(s, limit);
     if (!a->point)
         return false;
     tell_triangles(s, a);
-    add_text(a, ". The limit is %.3g mm: what printers resolve, or a quarter of a voxel.",
-             limit);
+    add_text(
+        a,
+        ". The limit is %.3g mm: what printers resolve, a quarter of a voxel, or a fifth more "
+        "than the plain surface is off.",
+        limit);
     for (size_t n = 0; n < s->print.seen.count; n++)
         failed += s->print.seen.verdicts[n].grade <= CW_GRADE_UNKNOWN;
     if (failed)

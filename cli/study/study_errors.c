@@ -1,5 +1,5 @@
-/* Meshes in the colours of their error: pictures, drawn on the CPU so that every build has them,
- * and the mesh for the view of three dimensions. */
+/* Meshes in the colours of their error: pictures, drawn on the CPU so that every build has
+ * them, and the mesh for the view of three dimensions. */
 #include "cli/framework/console.h"
 #include "cli/inputs/scene_source.h"
 #include "cli/render/camera_options.h"

@@ -1,5 +1,5 @@
-/* Pictures of the object of a study: the object itself, a slice with the contour of its surface; and
- * the histogram of its values. */
+/* Pictures of the object of a study: the object itself, a slice with the contour of its
+ * surface; and the histogram of its values. */
 #include "cli/framework/console.h"
 #include "cli/framework/field_names.h"
 #include "cli/study/study.h"

@@ -240,8 +240,9 @@ static cw_status need_reference(cli_study *s, const cli_point *p, cw_error *err)
     return st;
 }
 
-/* The first picture takes what the volume takes to get there, and does not count, unless it takes
- * so long that it has to be the only one. Of slow ones one more is timed, of others three. */
+/* The first picture takes what the volume takes to get there, and does not count, unless it
+ * takes so long that it has to be the only one. Of slow ones one more is timed, of others
+ * three. */
 static cw_status draw_scene(cw_renderer *renderer, const cw_scene *scene, cw_picture *picture,
                             cli_point *p, cw_error *err)
 {
