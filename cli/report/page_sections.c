@@ -60,6 +60,19 @@ static void put_picture(FILE *out, const cli_study *s, const cli_point *p)
     fputs("</figcaption></figure>\n", out);
 }
 
+static void put_part(FILE *out, const cli_study *s)
+{
+    fputs("<figure>", out);
+    cli_put_image(
+        out, &s->part_drawn,
+        "The plain surface of a box of the object, from the front, in the colours of its "
+        "error");
+    fprintf(out,
+            "<figcaption><strong>linear, in the box</strong>level %s, a box of the object; %s "
+            "triangles: the next ones are made of it</figcaption></figure>\n",
+            cli_number_text(s->iso), cli_count(cli_part_mesh(s)->triangle_count));
+}
+
 static bool has_errors(const cli_point *p)
 {
     return p->drawn.bytes && !cli_is_drawn(p->family);
@@ -79,9 +92,16 @@ void cli_put_pictures(FILE *out, const cli_study *s)
           out);
     cli_put_ramp(out, s);
     fputs("<div class=\"pictures\">\n", out);
-    for (size_t n = 0; n < s->point_count; n++)
-        if (has_errors(&s->points[n]))
-            put_picture(out, s, &s->points[n]);
+    bool part = s->part_drawn.bytes; /* to be put before the first picture of the box */
+    for (size_t n = 0; n < s->point_count; n++) {
+        if (!has_errors(&s->points[n]))
+            continue;
+        if (part && s->points[n].family != CLI_EXTRACTION) {
+            put_part(out, s);
+            part = false;
+        }
+        put_picture(out, s, &s->points[n]);
+    }
     fputs("</div>\n", out);
 }
 

@@ -5,8 +5,8 @@
 #include "cli/inputs/label_scene.h"
 #include "cli/study/study.h"
 
-/* Maximum of pictures, of the labels with the most voxels; and of labels that the view of three
- * dimensions can part. */
+/* Maximum of pictures, of the labels with the most voxels; and of labels in the view of three
+ * dimensions. */
 enum { CLI_LABEL_PICTURES = 48, CLI_LABEL_COLORS = 256 };
 
 typedef struct cli_label_row {

@@ -301,6 +301,7 @@ void cli_study_free(cli_study *s)
         free(s->references[n].drawn.bytes);
         cw_picture_free(&s->references[n].picture);
     }
+    free(s->part_drawn.bytes);
     free(s->overview.object.bytes);
     free(s->overview.slice.bytes);
     cw_statistics_free(&s->overview.values);

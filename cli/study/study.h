@@ -161,6 +161,7 @@ typedef struct cli_study {
     cli_volume part;     /* borrowed: what is simplified and compressed, the volume or a box */
     cw_mesh part_mesh;   /* its plain surface; of no box: empty */
     char part_words[96]; /* of commands: that box */
+    cli_png part_drawn;  /* its plain surface in colours of its error; of no box: none */
     char *folder;        /* for files that are measured; owned */
     cw_renderer *renderer; /* NULL: not yet, or none */
     cw_renderer *cpu;      /* the same, on the CPU */
@@ -263,8 +264,7 @@ cli_watch cli_watch_memory(void);
 size_t cli_watched_bytes(const cli_watch *watch);
 
 /* Returns the distance that counts as a point's error: to the true surface of a field, else to
- *         the
- * field's, else from the plain surface. NULL: none was measured. */
+ * the field's, else from the plain surface. NULL: none was measured. */
 const cli_gap *cli_main_gap(const cli_study *study, const cli_point *point);
 
 /* Whether the time is up, Ctrl-C aside. */

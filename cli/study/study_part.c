@@ -1,13 +1,16 @@
 /* The part of a volume on which is tried what would take too long on all of it: as large as may
  * be, where the surface is. */
+#include "cli/framework/console.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/study/study.h"
+#include "core/base/memory.h"
+#include "core/base/status.h"
 #include "core/volume/volume.h"
 
 #include <math.h>
 
 /* Triangles that are simplified and compressed a dozen times within a minute. */
-enum { MAX_TRIANGLES = 160000, MAX_DIVISIONS = 6 };
+enum { MIN_TRIANGLES = 20000, MAX_TRIANGLES = 160000, MAX_DIVISIONS = 6 };
 
 static cw_extract_desc desc_of(const cli_study *s)
 {
@@ -61,7 +64,7 @@ static bool find_box(const cli_study *s, const cw_volume *v, size_t by, cw_box *
         if (cw_volume_crop(v, &box, &part, NULL) != CW_OK ||
             cw_extract_predict(&part, &desc, &counts, NULL) != CW_OK)
             return false;
-        if (counts.triangles > MAX_TRIANGLES || counts.triangles < MAX_TRIANGLES / 3 ||
+        if (counts.triangles > MAX_TRIANGLES || counts.triangles < MIN_TRIANGLES ||
             !(depth_of(v, &part) < least))
             continue;
         least = depth_of(v, &part);
@@ -77,6 +80,28 @@ static void tell_part(cli_study *s, const cw_box *box)
     snprintf(s->part_words, sizeof s->part_words, " --crop %zu:%zu,%zu:%zu,%zu:%zu", f[0] * by,
              (f[0] + n[0] - 1) * by, f[1] * by, (f[1] + n[1] - 1) * by, f[2] * by,
              (f[2] + n[2] - 1) * by);
+}
+
+/* The plain surface of the box: what simplified ones of it are to be compared with. */
+static cw_status draw_part(cli_study *s, cw_error *err)
+{
+    const cw_mesh *mesh = &s->part_mesh;
+    float *worst = cwi_alloc_zeroed(mesh->vertex_count, sizeof *worst);
+    const cw_field_distance_desc desc = {
+        .isovalue = s->iso,
+        .inside_is_low = s->inside_is_low,
+        .leave_open = s->is_field,
+        .worst = worst,
+        .threads = s->threads,
+        .progress = cli_progress((double)mesh->triangle_count / 1e6, "Mtriangle")};
+    cw_distance d;
+    if (!worst)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the errors of vertices");
+    cw_status st = cw_distance_to_field(mesh, &s->part.view, &desc, &d, NULL, err);
+    if (st == CW_OK)
+        st = cli_draw_mesh(s, mesh, mesh, worst, &s->part_drawn, err);
+    cwi_free(worst);
+    return st;
 }
 
 cw_status cli_need_part(cli_study *s, cw_error *err)
@@ -99,11 +124,12 @@ cw_status cli_need_part(cli_study *s, cw_error *err)
     cw_status st = cw_volume_crop(v, &box, &s->part.view, err);
     if (st == CW_OK)
         st = cli_extract_surface(&s->part, NULL, &desc, &s->part_mesh, NULL, err);
-    if (st == CW_OK)
-        tell_part(s, &box);
-    else
+    if (st != CW_OK) {
         s->part = *s->volume;
-    return st;
+        return st;
+    }
+    tell_part(s, &box);
+    return draw_part(s, err);
 }
 
 const cw_mesh *cli_part_mesh(const cli_study *s)

@@ -34,7 +34,7 @@ static const setting unlit[] = {
     {.rank = 3, .mode = CW_MODE_TEXTURE, .step = 0.5},
     {.rank = 3, .mode = CW_MODE_TEXTURE, .step = 2},
     {.rank = 3, .mode = CW_MODE_TEXTURE, .slices = 64},
-    {.rank = 4, .mode = CW_MODE_TEXTURE, .step = 1, .target = CW_TARGET_8},
+    {.rank = 3, .mode = CW_MODE_TEXTURE, .step = 1, .target = CW_TARGET_8},
     {.rank = 5, .mode = CW_MODE_TEXTURE, .step = 1, .target = CW_TARGET_16F},
     {.rank = 6, .mode = CW_MODE_SPLAT_TREE, .tree_error = 0.02},
     {.rank = 6, .mode = CW_MODE_SPLAT_TREE, .tree_error = 0.05},
@@ -57,7 +57,7 @@ static const setting lit[] = {
 };
 
 static const setting projected[] = {
-    {.rank = 3, .mode = CW_MODE_MIP, .step = 1},
+    {.rank = 2, .mode = CW_MODE_MIP, .step = 1},
     {.rank = 4, .mode = CW_MODE_AVERAGE, .step = 1},
     {.rank = 4, .mode = CW_MODE_LOCAL_MIP, .step = 1},
     {.rank = 4, .mode = CW_MODE_MINIP, .step = 1},

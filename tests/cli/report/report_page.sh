@@ -65,6 +65,27 @@ rows=$(tail -n +2 rows.csv | wc -l)
 awk -F, 'FNR > 1 && !/left out/ && !/,yes,(yes|no),/' rows.csv
 tail -n +2 rows.csv | tr -d '\r' | grep ',no,no,' | grep -v 'left out: .' | head -n 3
 
+# Times are medians of their runs: of three, or of one.
+awk '
+/^ *"seconds": / {seconds = $2 + 0}
+/^ *"runs": / {
+    gsub(/[^-0-9.e,]/, ""); n = split(substr($0, 1), t, ","); if (t[n] == "") n--
+    if (n == 3) {
+        low = t[1] < t[2] ? t[1] : t[2]; high = t[1] < t[2] ? t[2] : t[1]
+        median = t[3] < low ? low : t[3] > high ? high : t[3]
+    } else median = t[1]
+    if (n != 1 && n != 3) print n " runs"
+    if (median - seconds > 1e-9 || seconds - median > 1e-9) print "no median: " seconds " of " $0
+    many += n == 3
+}
+END {print (many > 10 ? "medians" : many " medians of three")}' facts.json
+grep -q 'median of 3' page.html && echo "said in the page"
+
+# Of a large surface a part is tried; commands are for all of it.
+cubewright report gyroid -o large.html --dims 100 --budget 8s --json large.json -q
+grep '"command": ' large.json | grep -e --crop && echo "a command is for the part"
+grep -q '"part"' large.json && ! grep -q 'in the box</strong>' large.html && echo "no picture of the part"
+
 # The front, by its definition. Settings' names have commas: they stand in quotes, and go first.
 tail -n +2 rows.csv | tr -d '\r' | sed 's/\(.*\),"\([^"]*\)",\([0-9]*\)$/\2|\1/; s/"[^"]*"//' |
     sed '/|projections,/!s/^[^|]*|//; s/|projections,/ projections,/' | awk -F, '
