@@ -244,7 +244,8 @@
             gl.uniform1i(uniforms.scale, 0);
             gl.uniform1f(uniforms.colored, colored.checked && shown.hasLevels ? 1 : 0);
             gl.drawElements(gl.TRIANGLES, shown.corners.length, gl.UNSIGNED_INT, 0);
-            view.dataset.drawn = shown.corners.length / 3; // for tests
+            view.dataset.drawn = shown.corners.length / 3; // for tests, and the next line
+            view.dataset.frames = (+view.dataset.frames || 0) + 1;
         }
 
         function draw() { // once for all events until the next frame

@@ -35,12 +35,15 @@ bool cli_time_is_up(const cli_study *s)
     return cli_seconds() >= s->deadline;
 }
 
-/* The plain surface is not held to the budget: without it there is nothing to tell. */
+/* The plain surface is not held to the budget: without it there is nothing to tell. Work for the
+ * page alone is, even that on the plain surface. */
 static bool keep_going(void *user, const char *step, double done)
 {
     const cli_study *s = user;
     (void)step;
     (void)done;
+    if (s->extra_deadline > 0 && cli_seconds() >= s->extra_deadline)
+        return false;
     return !s->points[0].done || !cli_time_is_up(s);
 }
 

@@ -154,6 +154,7 @@ typedef struct cli_study {
     double voxel_mm;
     const char *suffix; /* of meshes: ".glb", or ".stl" in builds without */
     double start, deadline, seconds;
+    double extra_deadline; /* of work for the page alone, while it runs; else 0 */
     cli_print_study print;
     cli_overview overview;
     cw_mesh full; /* the plain surface, of all voxels */

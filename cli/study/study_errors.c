@@ -135,6 +135,9 @@ static cw_status pack_colored(const cli_study *s, const cw_mesh *mesh, const flo
     return st;
 }
 
+/* Share of the budget that may go into simplifying one mesh for the page. */
+static const double PAGE_SHARE = 0.25;
+
 /* The simplified mesh has the errors of the full one, each vertex that of its closest point. */
 static cw_status simplify_and_pack(cli_study *s, const cw_mesh *mesh, const float *mm,
                                    cli_packed *packed, cw_error *err)
@@ -153,7 +156,9 @@ static cw_status simplify_and_pack(cli_study *s, const cw_mesh *mesh, const floa
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the errors of vertices");
     if (mm)
         memcpy(full.scalars, mm, mesh->vertex_count * sizeof *mm);
+    s->extra_deadline = cli_seconds() + PAGE_SHARE * s->budget_s;
     cw_status st = cw_simplify(&full, &desc, &small, NULL, err);
+    s->extra_deadline = 0;
     cwi_free(full.scalars);
     if (st == CW_OK && small.triangle_count > 2 * CLI_PACKED_TRIANGLES)
         snprintf(packed->why, sizeof packed->why,

@@ -23,7 +23,7 @@ function leastContrast() {
     }
     return Math.floor(10 * least) / 10;
 }
-function ask() {
+async function ask() {
     const said = [document.querySelectorAll('.copy').length,
         document.documentElement.scrollWidth - innerWidth,
         performance.getEntriesByType('resource').filter((e) => e.name.indexOf('data:') !== 0).length];
@@ -44,27 +44,57 @@ function ask() {
     choice.dispatchEvent(new Event('change'));
     said.push('axis:' + Array.from(plots.querySelectorAll('svg')).filter((e) => getComputedStyle(e).display !== 'none').map((e) => e.dataset.cost));
     const view = document.querySelector('.view3d'), canvas = view.querySelector('canvas');
-    const colors = () => {
+    const picture = () => {
         const copy = document.createElement('canvas'), seen = new Set();
         copy.width = canvas.width;
         copy.height = canvas.height;
         copy.getContext('2d').drawImage(canvas, 0, 0);
         const data = copy.getContext('2d').getImageData(0, 0, copy.width, copy.height).data;
-        for (let n = 0; n < data.length; n += 4)
+        let sum = 0;
+        for (let n = 0; n < data.length; n += 4) {
             seen.add(data[n] << 16 | data[n + 1] << 8 | data[n + 2]);
-        return seen.size;
+            sum = (31 * sum + data[n] + 3 * data[n + 1] + 7 * data[n + 2]) % 1e9;
+        }
+        return { colors: seen.size, sum };
     };
-    const before = colors();
-    canvas.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowLeft' }));
-    canvas.dispatchEvent(new KeyboardEvent('keydown', { key: '+' }));
-    const drawn = ['drawn:' + (view.dataset.drawn === view.querySelector('script').dataset.triangles && before > 100)];
+    const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+    const frame = async (before) => { // until one was drawn, or for too long
+        for (let n = 0; n < 60 && view.dataset.frames === before; n++)
+            await wait(50);
+    };
+    const press = (key) => canvas.dispatchEvent(new KeyboardEvent('keydown', { key }));
+    const drag = (x, y, event) => canvas.dispatchEvent(new PointerEvent(event,
+        { pointerId: 1, clientX: x, clientY: y, buttons: 1 }));
+    const first = picture(), works = [view.dataset.drawn === view.querySelector('script').dataset.triangles,
+        first.colors > 100];
+    const changes = async (act, expected) => {
+        const before = picture().sum, frames = view.dataset.frames;
+        act();
+        await (expected ? frame(frames) : wait(300));
+        works.push((picture().sum !== before) === expected);
+    };
+    await changes(() => press('ArrowLeft'), true);
+    await changes(() => press('+'), true);
+    await changes(() => press('x'), false);
+    await changes(() => canvas.dispatchEvent(new WheelEvent('wheel', { deltaY: 300, cancelable: true })), true);
+    canvas.setPointerCapture = () => {};
+    await changes(() => { drag(100, 100, 'pointerdown'); drag(160, 120, 'pointermove'); }, true);
+    drag(160, 120, 'pointerup');
+    await changes(() => drag(200, 200, 'pointermove'), false);
+    await changes(() => view.querySelector('.tools input').click(), true);
+    const turned = view.dataset.frames;
+    view.querySelector('.tools input').click();
+    view.querySelector('.tools button').click();
+    await frame(turned);
+    works.push(picture().sum === first.sum);
+    said.push('drawn:' + works.every((w) => w) + (works.every((w) => w) ? '' : works));
     const meshes = view.querySelector('select.mesh');
+    const drawn = view.dataset.frames;
     meshes.selectedIndex = meshes.options.length - 1;
     meshes.dispatchEvent(new Event('change'));
-    setTimeout(function () {
-        const last = Array.from(view.querySelectorAll('script')).pop();
-        drawn.push('last:' + (view.dataset.drawn === last.dataset.triangles));
-        document.title = 'asked ' + said.concat(drawn).join(' ') + ' ' + leastContrast();
-    }, 500);
+    await frame(drawn);
+    const last = Array.from(view.querySelectorAll('script')).pop();
+    said.push('last:' + (view.dataset.drawn === last.dataset.triangles));
+    document.title = 'asked ' + said.join(' ') + ' ' + leastContrast();
 }
 setTimeout(ask, 1000);
