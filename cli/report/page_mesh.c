@@ -37,6 +37,10 @@ static void put_intro(FILE *out, const cli_mesh_study *m)
         "surface, 99 %% of the surface within %.3g mm of the mesh. <strong>%s</strong></p>\n",
         cli_number_text(m->study.iso), m->to_field.p99_mm,
         m->to_field.p99_mm / m->study.voxel_mm, m->from_field.p99_mm, judge_distance(m));
+    if (m->is_open)
+        fputs(
+            "<p>The mesh is open, so the surface is taken as open where the volume ends, too.</p>\n",
+            out);
     if (!m->is_fitted)
         return;
     fprintf(

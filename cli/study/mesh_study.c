@@ -87,6 +87,7 @@ static cw_status measure_quality(cli_mesh_study *m, cw_error *err)
     m->findings.quality = &m->quality;
     m->findings.has_normals = mesh->normals;
     m->study.points[0].shapes = m->quality.shapes;
+    m->is_open = m->quality.open_edges > 0;
     return st;
 }
 
@@ -96,6 +97,7 @@ static cw_status measure_to_field(cli_mesh_study *m, float *worst, cw_error *err
     const cw_mesh *mesh = &m->study.full;
     const cw_field_distance_desc desc = {.isovalue = m->study.iso,
                                          .inside_is_low = m->study.inside_is_low,
+                                         .leave_open = m->is_open,
                                          .worst = worst,
                                          .threads = m->study.threads,
                                          .progress = progress_of(mesh)};
@@ -115,6 +117,7 @@ static cw_status measure_from_field(cli_mesh_study *m, cw_error *err)
     cli_point *p = &m->study.points[0];
     const cw_extract_desc extract = {.isovalue = m->study.iso,
                                      .inside_is_low = m->study.inside_is_low,
+                                     .leave_open = m->is_open,
                                      .no_normals = true,
                                      .threads = m->study.threads};
     cw_mesh surface = {0};
@@ -201,6 +204,8 @@ char *cli_check_command(const cli_mesh_study *m)
                 cli_number_text(m->study.iso));
         if (m->study.inside_is_low)
             fputs(" --inside below", out);
+        if (m->is_open)
+            fputs(" --open", out);
     }
     return cwi_text_close(out, &text) ? text : NULL;
 }
@@ -234,6 +239,7 @@ void cli_put_mesh_json(FILE *out, const void *study)
     cli_json_text(&j, "inside", m->study.inside_is_low ? "below" : "above");
     cli_json_count(&j, "vertices", m->study.full.vertex_count);
     cli_json_count(&j, "triangles", m->study.full.triangle_count);
+    cli_json_bool(&j, "open", m->is_open);
     cli_json_bool(&j, "closed", cw_quality_is_closed_manifold(&m->quality));
     cli_json_number(&j, "area_mm2", m->quality.area_mm2);
     if (cw_quality_is_closed_manifold(&m->quality))

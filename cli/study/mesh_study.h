@@ -14,6 +14,7 @@ typedef struct cli_mesh_study {
     bool is_fitted;                /* the level is the median of the field at vertices: */
     size_t fit_count, fit_outside; /* vertices looked at; of those outside the volume */
     double fit_low, fit_high;      /* a quarter of the values is below, a quarter above */
+    bool is_open; /* it has open edges, so the surface is left open where the volume ends */
     cw_quality quality;
     cw_distance to_field, from_field;
     cw_findings findings; /* points into this */

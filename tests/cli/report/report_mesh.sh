@@ -17,6 +17,8 @@ cubewright check ball.stl --source sphere.nrrd --iso "$(number_of iso ball.json)
 for key in max_mm rms_mm p99_mm; do
     [ "$(number_of $key ball.json)" = "$(number_of $key check.json)" ] && echo "$key: as of check"
 done
+OMP_NUM_THREADS=1 cubewright report ball.stl --source sphere.nrrd -o again.html -q
+cmp ball.html again.html && echo "the same bytes by one thread"
 grep -o '<strong>It is [^<]*' ball.html
 grep -c '<script type="text/plain" data-name="the mesh"' ball.html
 [ "$(grep -o 'data-triangles="[0-9]*"' ball.html | tr -dc '0-9')" = "$(number_of triangles ball.json)" ] ||
@@ -25,6 +27,13 @@ if python3 -c 'import xml.dom.minidom' 2>/dev/null; then
     python3 -c 'import xml.dom.minidom, sys; xml.dom.minidom.parse(sys.argv[1])' ball.html || echo "no XML"
 fi
 sh -c "$(sed -n 's/^  "command": "\(.*\)",$/\1/p' ball.json) -q" && echo "its command runs"
+
+# An open mesh is held against an open surface.
+cubewright extract torus.nrrd --iso -12 --open -o open.stl -q
+cubewright report open.stl --source torus.nrrd -o open.html --json open.json -q
+sed -n 's/^  "open": //p' open.json
+grep -o '<strong>It is [^<]*' open.html
+sh -c "$(sed -n 's/^  "command": "\(.*\)",$/\1/p' open.json)" | tail -n 1 | sed 's/; .*//'
 
 # Another level is another surface, and so is one of another volume.
 cubewright report ball.stl --source sphere.nrrd --iso -6 -o other.html --json other.json -q
