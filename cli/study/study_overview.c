@@ -127,8 +127,10 @@ static cw_status study_slice(cli_study *s, cw_error *err)
     const cw_volume *v = &s->volume->view;
     cw_image image = {0};
     slice seen;
-    if (cwi_volume_kind(v) || v->dim[0] < 2 || v->dim[1] < 2 || !choose_slice(s, &seen)) {
-        snprintf(o->why, sizeof o->why, "the grid is not evenly spaced, so no slice is drawn");
+    const char *kind = cwi_volume_kind(v);
+    if (kind || v->dim[0] < 2 || v->dim[1] < 2 || !choose_slice(s, &seen)) {
+        snprintf(o->why, sizeof o->why, "no slice is drawn of %s",
+                 kind ? kind : "so flat a grid");
         return CW_OK;
     }
     cw_status st = cw_image_alloc(&image, seen.width, seen.height, err);
