@@ -8,7 +8,7 @@
 #include "cli/framework/temp_folder.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/inputs/synthetic_input.h"
-#include "cli/report/triangle_sample.h"
+#include "cli/study/triangle_sample.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 

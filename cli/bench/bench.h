@@ -4,7 +4,7 @@
 #define CLI_BENCH_BENCH_H
 
 #include "cli/bench/bench_peers.h"
-#include "cli/report/study.h"
+#include "cli/study/study.h"
 
 #include <stdio.h>
 

@@ -177,7 +177,7 @@ typedef enum cli_values {
     CLI_VALUES_VOLUME, /* files to read */
     CLI_VALUES_MESH,
     CLI_VALUES_SCENE, /* volumes and meshes */
-    CLI_VALUES_STUDY, /* volumes, and fields that are known exactly */
+    CLI_VALUES_STUDY, /* volumes, meshes, and fields that are known exactly */
     CLI_VALUES_VOLUME_OUTPUT,
     CLI_VALUES_MESH_OUTPUT,
     CLI_VALUES_DEFECTS, /* meshes with colours */

@@ -3,11 +3,13 @@
 #include "cli/framework/batch.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
+#include "cli/framework/field_names.h"
 #include "cli/framework/quantity.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/inputs/level_choice.h"
 #include "cli/inputs/synthetic_input.h"
-#include "cli/report/study.h"
+#include "cli/report/page.h"
+#include "cli/report/report_run.h"
 #include "cli/results/output_names.h"
 #include "cli/results/run_report.h"
 #include "core/base/status.h"
@@ -19,61 +21,61 @@
 #include <string.h>
 #include <unistd.h>
 
-typedef struct report_args {
-    cli_common common;
-    cli_input input;
-    const char *output, *json, *csv, *budget, *title;
-    cli_number iso;
-    cli_sizes dims;
-    int inside, progress;
-} report_args;
-
 enum { DEFAULT_DIMS = 96, MAX_DIMS = 1024 };
 
 /* Of more voxels meshes are studied on every other one, or fewer. */
 static const double MAX_VOXELS = 33554432;
 
-static const report_args defaults = {.budget = "60s"};
+static const cli_report_args defaults = {.budget = "60s"};
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
-     "Page to write, a .html file; may hold {stem} and {parent}", offsetof(report_args, output),
-     CLI_VALUES_HTML},
+     "Page to write, a .html file; may hold {stem} and {parent}",
+     offsetof(cli_report_args, output), CLI_VALUES_HTML},
     {"iso", 'i', CLI_LEVEL, "V",
      "Isovalue: a number, or a name as for 'extract' (otsu; of a field its own)",
-     offsetof(report_args, iso)},
+     offsetof(cli_report_args, iso)},
     {"inside", 0, CLI_CHOICE, CLI_INSIDE_CHOICES,
      "Which values are inside the solid (auto: above; in level sets below)",
-     offsetof(report_args, inside)},
+     offsetof(cli_report_args, inside)},
     {"budget", 0, CLI_TEXT, "TIME",
      "Time after which no more settings are tried, such as 90s or 5min (60s)",
-     offsetof(report_args, budget)},
+     offsetof(cli_report_args, budget)},
     {"dims", 'd', CLI_SIZES, "N|XxYxZ", "Samples along the axes, of a field (96)",
-     offsetof(report_args, dims)},
+     offsetof(cli_report_args, dims)},
     {"coarsen", 0, CLI_COUNT, "N",
      "Use every N-th voxel along each axis for meshes (1; larger above 32M voxels)",
-     CLI_INPUT_ROW(report_args, coarsen)},
+     CLI_INPUT_ROW(cli_report_args, coarsen)},
+    {"steps", 0, CLI_STEPS, "A:B:S/N,.../all",
+     "Time steps to report, counted from 0, a row each; several files are a series, too",
+     offsetof(cli_report_args, steps)},
+    CLI_HEADED("Mesh"),
+    {"source", 's', CLI_TEXT, "VOLUME",
+     "The input is a mesh, and this the volume that it is of: report where it comes from",
+     offsetof(cli_report_args, source), CLI_VALUES_VOLUME},
+    {"mesh-reader", 0, CLI_TEXT, "NAME",
+     "Read the mesh as this format; names as in 'formats' (by content)",
+     offsetof(cli_report_args, mesh_reader), CLI_VALUES_MESH_READER},
+    CLI_CLAIM_OPTIONS("source", "the source", CLI_INPUT_ROW(cli_report_args, source_claim)),
+    CLI_HEADED("Label map"),
+    {"labels", 'l', CLI_TEXT, "LIST|all",
+     "Report these labels, as 'extract' takes them (all, where the values look like labels)",
+     offsetof(cli_report_args, labels)},
+    {"names", 0, CLI_TEXT, "FILE",
+     "Table of the labels' names and colours (in the volume, else in a file beside it)",
+     offsetof(cli_report_args, names), CLI_VALUES_FILE},
     CLI_HEADED("Output files"),
     {"title", 0, CLI_TEXT, "TEXT", "Title of the page (the input's name)",
-     offsetof(report_args, title)},
+     offsetof(cli_report_args, title)},
     {"json", 0, CLI_TEXT, "FILE", "Write the same facts as JSON; - is the standard output",
-     offsetof(report_args, json), CLI_VALUES_JSON},
+     offsetof(cli_report_args, json), CLI_VALUES_JSON},
     {"csv", 0, CLI_TEXT, "FILE",
      "Write a table with a row for each setting; - is the standard output",
-     offsetof(report_args, csv), CLI_VALUES_CSV},
-    CLI_BATCH_OPTIONS(report_args),
-    CLI_INPUT_OPTIONS(report_args),
-    CLI_PROGRESS_OPTION(report_args),
+     offsetof(cli_report_args, csv), CLI_VALUES_CSV},
+    CLI_BATCH_OPTIONS(cli_report_args),
+    CLI_INPUT_OPTIONS(cli_report_args),
+    CLI_PROGRESS_OPTION(cli_report_args),
 };
-
-typedef struct run_state {
-    report_args *args;
-    cli_volume volume;
-    char *input_words, *make_words;
-    char field_path[64];
-    cli_outputs files; /* the page */
-    cli_study study;
-} run_state;
 
 static cw_status parse_budget(const char *text, double *seconds, cw_error *err)
 {
@@ -90,7 +92,7 @@ static cw_status parse_budget(const char *text, double *seconds, cw_error *err)
     return CW_OK;
 }
 
-static cw_status check_dims(report_args *args, cw_error *err)
+static cw_status check_dims(cli_report_args *args, cw_error *err)
 {
     size_t *n = args->dims.n;
     if (args->dims.count == 2)
@@ -106,14 +108,16 @@ static cw_status check_dims(report_args *args, cw_error *err)
     return CW_OK;
 }
 
-static cw_status check_outputs(const report_args *args, cw_error *err)
+static cw_status check_outputs(const cli_report_args *args, cw_error *err)
 {
     const char *const files[] = {args->output, args->json, args->csv};
     cw_status st = CW_OK;
     for (size_t n = 0; n < 3 && st == CW_OK; n++) {
         if (!files[n] || strcmp(files[n], "-") == 0)
             continue;
-        st = cli_check_output(files[n], args->common.inputs, 1, err);
+        st = cli_check_output(files[n], args->common.inputs, args->common.input_count, err);
+        if (st == CW_OK && args->source)
+            st = cli_check_output(files[n], (const char *const *)&args->source, 1, err);
         for (size_t before = 0; before < n && st == CW_OK; before++)
             if (files[before] && strcmp(files[before], "-") != 0)
                 st = cli_check_apart(files[before], files[n], err);
@@ -123,6 +127,14 @@ static cw_status check_outputs(const report_args *args, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--json and --csv: only one of them can use the standard output");
     return st;
+}
+
+bool cli_report_given(const cli_report_args *args, const char *name)
+{
+    size_t n = 0;
+    while (strcmp(options[n].name, name) != 0)
+        n++;
+    return args->common.given[n];
 }
 
 /* Fails for a name that is no file and nearly a field's name. For other names, the reader's own
@@ -136,13 +148,18 @@ static cw_status check_name(const char *name, cw_error *err)
                    : CW_OK;
 }
 
-static cw_status check_args(run_state *s, cw_error *err)
+static cw_status check_args(cli_report_run *s, cw_error *err)
 {
-    report_args *args = s->args;
+    cli_report_args *args = s->args;
     cw_status st = parse_budget(args->budget, &s->study.budget_s, err);
+    if (st == CW_OK)
+        st = cli_report_check_mode(args, err);
+    if (st == CW_OK && !s->study.is_field)
+        st = cli_report_check_kind(args, err);
     if (st != CW_OK)
         return st;
-    if (!s->study.is_field && access(args->common.inputs[0], F_OK) != 0)
+    if (!s->study.is_field && !cli_report_is_series(args) &&
+        access(args->common.inputs[0], F_OK) != 0)
         st = check_name(args->common.inputs[0], err);
     if (st != CW_OK)
         return st;
@@ -153,22 +170,25 @@ static cw_status check_args(run_state *s, cw_error *err)
                         "-o and --json: only one of them can use the standard output");
     if (s->study.is_field && args->input.coarsen)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--coarsen is for files; --dims samples fewer");
-    if (!s->study.is_field && args->dims.count)
+    if (!s->study.is_field && !cli_report_is_series(args) && args->dims.count)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--dims is for fields, and %s is a file",
                         args->common.inputs[0]);
     st = s->study.is_field ? check_dims(args, err) : CW_OK;
     return st == CW_OK ? check_outputs(args, err) : st;
 }
 
-/* Repeats the given options of reading in the printed commands: the rows from --reader on. */
-static void put_reading(FILE *out, const report_args *args)
+/* Repeats the given options of reading in the printed commands: the rows from --reader on,
+ * and of a mesh those of its source. */
+static void put_reading(FILE *out, const cli_report_args *args)
 {
     bool reading = false;
     for (size_t n = 0; n < sizeof options / sizeof *options; n++) {
         char text[4096];
         const cli_option *o = &options[n];
         reading = reading || strcmp(o->name, "reader") == 0;
-        if (!reading || !args->common.given[n])
+        const bool of_mesh =
+            strncmp(o->name, "source-", 7) == 0 || strcmp(o->name, "mesh-reader") == 0;
+        if (!(reading || of_mesh) || !args->common.given[n])
             continue;
         if (o->kind == CLI_FLAG) {
             fprintf(out, " --%s%s",
@@ -181,7 +201,7 @@ static void put_reading(FILE *out, const report_args *args)
 }
 
 /* A name that begins with a dash would be taken for an option. */
-static cw_status tell_input(run_state *s, const char *path, cw_error *err)
+cw_status cli_report_tell_input(cli_report_run *s, const char *path, cw_error *err)
 {
     size_t size;
     char *text;
@@ -198,9 +218,9 @@ static cw_status tell_input(run_state *s, const char *path, cw_error *err)
     return good ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a command");
 }
 
-static cw_status make_field(run_state *s, cw_error *err)
+static cw_status make_field(cli_report_run *s, cw_error *err)
 {
-    const report_args *args = s->args;
+    const cli_report_args *args = s->args;
     const size_t *n = args->dims.n;
     const cw_field field = s->study.field;
     cli_volume *v = &s->volume;
@@ -218,9 +238,9 @@ static cw_status make_field(run_state *s, cw_error *err)
 }
 
 /* Reads the file. Without --coarsen, chooses a step that leaves at most MAX_VOXELS. */
-static cw_status read_file(run_state *s, cw_error *err)
+static cw_status read_file(cli_report_run *s, cw_error *err)
 {
-    report_args *args = s->args;
+    cli_report_args *args = s->args;
     const char *path = args->common.inputs[0];
     cw_volume shape;
     cw_status st = CW_OK;
@@ -238,7 +258,7 @@ static cw_status read_file(run_state *s, cw_error *err)
     return st == CW_OK ? cli_read_volume(path, &args->input, false, &s->volume, err) : st;
 }
 
-static cw_status find_level(run_state *s, cw_error *err)
+static cw_status find_level(cli_report_run *s, cw_error *err)
 {
     cli_study *study = &s->study;
     if (!s->args->iso.given && !study->is_field)
@@ -255,7 +275,7 @@ static cw_status find_level(run_state *s, cw_error *err)
 }
 
 /* The drawn volume is not the coarsened one: render reads all voxels. */
-static cw_status open_input(run_state *s, cw_error *err)
+static cw_status open_input(cli_report_run *s, cw_error *err)
 {
     cli_study *study = &s->study;
     const cli_input *input = &s->args->input;
@@ -267,7 +287,7 @@ static cw_status open_input(run_state *s, cw_error *err)
                                         : cw_volume_select(all, input->component.number,
                                                            input->step, &study->drawn, err);
     if (st == CW_OK)
-        st = tell_input(s, s->volume.path, err);
+        st = cli_report_tell_input(s, s->volume.path, err);
     if (st != CW_OK)
         return st;
     study->volume = &s->volume;
@@ -280,7 +300,7 @@ static cw_status open_input(run_state *s, cw_error *err)
     study->title = s->args->title    ? s->args->title
                    : study->is_field ? cw_field_name(study->field)
                                      : cli_shown_path(s->volume.path);
-    return find_level(s, err);
+    return CW_OK;
 }
 
 static void tell_result(const cli_study *study, const char *path)
@@ -292,12 +312,23 @@ static void tell_result(const cli_study *study, const char *path)
                study->point_count - done, study->seconds);
 }
 
-static cw_status run_pipeline(run_state *s, cw_error *err)
+static cw_status run_pipeline(cli_report_run *s, cw_error *err)
 {
-    const report_args *args = s->args;
+    const cli_report_args *args = s->args;
     cw_status st = check_args(s, err);
+    if (st == CW_OK && args->source)
+        return cli_report_mesh(s, err);
+    if (st == CW_OK && cli_report_is_series(args))
+        return cli_report_series(s, err);
+    const char *labels = NULL;
     if (st == CW_OK)
         st = open_input(s, err);
+    if (st == CW_OK)
+        st = cli_report_find_labels(s, &labels, err);
+    if (st == CW_OK && labels)
+        return cli_report_labels(s, labels, err);
+    if (st == CW_OK)
+        st = find_level(s, err);
     if (st == CW_OK)
         st = cli_study_run(&s->study, err);
     if (st == CW_OK)
@@ -313,19 +344,20 @@ static cw_status run_pipeline(run_state *s, cw_error *err)
 
 static cw_status run_report_command(void *p, cw_error *err)
 {
-    report_args *args = p;
-    if (args->common.input_count > 1)
+    cli_report_args *args = p;
+    if (args->common.input_count > 1 && args->source)
         return cwi_fail(
             err, CW_ERR_ARGUMENT,
-            "a report is about one volume; there are %zu, for which --batch makes a "
-            "report each",
+            "a report with --source is about one mesh; there are %zu, for which --batch "
+            "makes a report each",
             args->common.input_count);
-    run_state *s = calloc(1, sizeof *s);
+    cli_report_run *s = calloc(1, sizeof *s);
     if (!s)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a report");
     s->args = args;
     /* a file of that name is meant, if there is one */
-    s->study.is_field = access(args->common.inputs[0], F_OK) != 0 &&
+    s->study.is_field = !args->source && !cli_report_is_series(args) &&
+                        access(args->common.inputs[0], F_OK) != 0 &&
                         cw_field_find(args->common.inputs[0], &s->study.field);
     cli_console_start(&args->common, (cli_progress_mode)args->progress);
     cli_console_reserve_stdout(args->output);
@@ -339,6 +371,9 @@ static cw_status run_report_command(void *p, cw_error *err)
         st = run_pipeline(s, err);
     cli_free_outputs(&s->files);
     cli_study_free(&s->study);
+    cli_free_mesh_study(&s->mesh);
+    cli_free_label_study(&s->labels);
+    cli_free_series_study(&s->series);
     cli_free_volume(&s->volume);
     free(s->input_words);
     free(s->make_words);
@@ -348,15 +383,15 @@ static cw_status run_report_command(void *p, cw_error *err)
 
 const cli_command cli_report_command = {
     .name = "report",
-    .usage = "VOLUME|FIELD -o HTML [options]",
+    .usage = "VOLUME...|FIELD|MESH -o HTML [options]",
     .about = "Compare the cost and error of settings on your data, on one page",
     .page = cli_page_report,
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,
-    .max_inputs = SIZE_MAX, /* of a batch; else 1 */
+    .max_inputs = SIZE_MAX, /* of a batch or a series */
     .inputs = CLI_VALUES_STUDY,
-    .size = sizeof(report_args),
+    .size = sizeof(cli_report_args),
     .defaults = &defaults,
     .run = run_report_command,
 };

@@ -1,6 +1,6 @@
-/* Plots as SVG: cost to the right, error upwards, both by their logarithm; and bars. */
+/* Plots as SVG: cost to the right, error upwards, both by their logarithm. */
 #include "cli/framework/quantity.h"
-#include "cli/report/study.h"
+#include "cli/report/page.h"
 
 #include <math.h>
 #include <string.h>
@@ -23,7 +23,18 @@ typedef struct scale {
 typedef struct dot {
     const cli_point *point;
     double x, y;
+    bool best;             /* on the front of this cost */
+    double text_x, text_y; /* the middle of its number */
 } dot;
+
+typedef struct plot {
+    const cli_study *study;
+    cli_family family;
+    cli_cost cost;
+    cli_axis axis;
+    dot dots[CLI_MAX_POINTS];
+    size_t count;
+} plot;
 
 static double place_value(const scale *s, double value)
 {
@@ -81,15 +92,40 @@ static void put_tick(FILE *out, const scale *s, bool upright, double value, cons
                 at, at, TOP, HEIGHT - BOTTOM, at, HEIGHT - BOTTOM + 18, tick_text(value, unit));
 }
 
-/* 1, 2 and 5 of each decade; over many decades the ones alone. */
+/* Parts of a decade that may have ticks, from few to many. */
+static const struct {
+    size_t count;
+    double parts[10];
+} divisions[] = {{1, {1}},
+                 {2, {1, 3}},
+                 {3, {1, 2, 5}},
+                 {6, {1, 1.5, 2, 3, 5, 7}},
+                 {10, {1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8}}};
+
+static size_t count_ticks(const scale *s, size_t division)
+{
+    size_t count = 0;
+    for (int decade = (int)floor(s->low); decade <= (int)ceil(s->high); decade++)
+        for (size_t n = 0; n < divisions[division].count; n++) {
+            const double at = log10(divisions[division].parts[n]) + decade;
+            count += at >= s->low && at <= s->high;
+        }
+    return count;
+}
+
+/* As few as there can be, but four. Of many decades each second one, or fewer, has a tick. */
 static void put_ticks(FILE *out, const scale *s, bool upright, const char *unit)
 {
-    static const double parts[] = {1, 2, 5};
-    const bool all = s->high - s->low < 2.5;
+    enum { ENOUGH = 4, DIVISIONS = sizeof divisions / sizeof *divisions, MANY = 9 };
+    size_t division = 0;
+    while (division + 1 < DIVISIONS && count_ticks(s, division) < ENOUGH)
+        division++;
+    const int every = 1 + (int)count_ticks(s, 0) / MANY;
     for (int decade = (int)floor(s->low); decade <= (int)ceil(s->high); decade++)
-        for (size_t n = 0; n < (all ? 3 : 1); n++) {
-            const double value = parts[n] * pow(10, decade), at = log10(value);
-            if (at >= s->low && at <= s->high)
+        for (size_t n = 0; n < divisions[division].count; n++) {
+            const double value = divisions[division].parts[n] * pow(10, decade),
+                         at = log10(value);
+            if (at >= s->low && at <= s->high && decade % every == 0)
                 put_tick(out, s, upright, value, unit);
         }
 }
@@ -128,148 +164,198 @@ static size_t group_of(const char *const *groups, size_t count, const char *grou
     return n;
 }
 
-size_t cli_point_number(const cli_study *s, const cli_point *point)
+/* Whether two boxes of a size overlap, by their middles. */
+static bool overlaps(double x, double y, double other_x, double other_y, double width,
+                     double height)
 {
-    size_t number = 1;
-    for (const cli_point *p = s->points; p < point; p++)
-        number += p->family == point->family;
-    return number;
+    return fabs(x - other_x) < width && fabs(y - other_y) < height;
 }
 
-static void put_front(FILE *out, dot *dots, size_t count)
+/* How much a number at a place would hide, or be hidden by: numbers before it, dots, the
+ * frame. */
+static int count_collisions(const plot *p, size_t before, double x, double y)
+{
+    enum { TEXT_WIDTH = 17, TEXT_HEIGHT = 13, DOT_WIDTH = 15, DOT_HEIGHT = 13 };
+    int count = 0;
+    for (size_t n = 0; n < p->count; n++)
+        count += overlaps(x, y, p->dots[n].x, p->dots[n].y, DOT_WIDTH, DOT_HEIGHT);
+    for (size_t n = 0; n < before; n++)
+        count +=
+            2 * overlaps(x, y, p->dots[n].text_x, p->dots[n].text_y, TEXT_WIDTH, TEXT_HEIGHT);
+    return count + 3 * (x < LEFT + 8 || x > WIDTH - RIGHT - 4 || y < TOP + 4 ||
+                        y > HEIGHT - BOTTOM - 4);
+}
+
+/* Numbers stand around their dots, in the first of these places with the fewest collisions. */
+static void place_numbers(plot *p)
+{
+    static const double places[][2] = {
+        {13, -9},  {-13, -9},  {13, 10}, {-13, 10}, {0, -14},  {0, 15},    {17, 0},  {-17, 0},
+        {24, -12}, {-24, -12}, {24, 14}, {-24, 14}, {10, -24}, {-10, -24}, {10, 25}, {-10, 25}};
+    for (size_t n = 0; n < p->count; n++) {
+        dot *d = &p->dots[n];
+        int least = -1;
+        for (size_t at = 0; at < sizeof places / sizeof *places; at++) {
+            const double x = d->x + places[at][0], y = d->y + places[at][1];
+            const int hits = count_collisions(p, n, x, y);
+            if (least >= 0 && hits >= least)
+                continue;
+            least = hits;
+            d->text_x = x;
+            d->text_y = y;
+        }
+    }
+}
+
+/* A line through the dots of the front; projections have a front for each mode. */
+static void put_front(FILE *out, const plot *p, size_t reference)
 {
     bool drawn[CLI_MAX_POINTS] = {false};
-    const char *separator = "";
-    fputs("<polyline class=\"front\" points=\"", out);
-    for (size_t turn = 0; turn < count; turn++) {
-        size_t next = count;
-        for (size_t n = 0; n < count; n++)
-            if (dots[n].point->front && !drawn[n] &&
-                (next == count || dots[n].x < dots[next].x))
+    size_t count = 0;
+    for (size_t turn = 0; turn < p->count; turn++) {
+        size_t next = p->count;
+        for (size_t n = 0; n < p->count; n++)
+            if (p->dots[n].best && !drawn[n] &&
+                p->dots[n].point->tried.reference == reference &&
+                (next == p->count || p->dots[n].x < p->dots[next].x))
                 next = n;
-        if (next == count)
+        if (next == p->count)
             break;
         drawn[next] = true;
-        fprintf(out, "%s%.1f,%.1f", separator, dots[next].x, dots[next].y);
-        separator = " ";
+        fprintf(out, "%s%.1f,%.1f", count++ ? " " : "<polyline class=\"front\" points=\"",
+                p->dots[next].x, p->dots[next].y);
     }
-    fputs("\"/>", out);
+    if (count)
+        fputs("\"/>", out);
 }
 
-static void put_dot(FILE *out, const cli_study *s, const dot *d, const cli_axis *axis,
-                    size_t group)
+/* A line from a number to its dot, where it is not beside it. */
+static void put_leader(FILE *out, const dot *d)
 {
-    const cli_point *p = d->point;
-    fprintf(out,
-            "<g class=\"dot%s g%zu\" tabindex=\"0\"><circle cx=\"%.1f\" cy=\"%.1f\" r=\"%g\"/>"
-            "<text x=\"%.1f\" y=\"%.1f\">%zu</text><title>",
-            p->front ? " best" : "", group, d->x, d->y, p->front ? 6.0 : 5.0, d->x + 9,
-            d->y - 6, cli_point_number(s, p));
-    cli_put_html(out, p->name);
-    fprintf(out, "\n%s: %.4g %s\n%s: %.4g %s%s</title></g>", axis->cost, cli_point_cost(p),
-            axis->cost_unit, axis->error, cli_point_error(s, p), axis->error_unit,
-            p->front ? "\non the front: nothing is both cheaper and closer" : "");
+    if (hypot(d->text_x - d->x, d->text_y - d->y) > 20)
+        fprintf(out, "<line class=\"grid\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>",
+                d->x, d->y, d->text_x, d->text_y);
 }
 
-static size_t collect_dots(const cli_study *s, cli_family family, dot *dots, double *cost,
-                           double *error)
+static void put_dot(FILE *out, const plot *p, const dot *d, double cost, size_t group)
 {
-    size_t count = 0;
-    for (size_t n = 0; n < s->point_count; n++) {
-        const cli_point *p = &s->points[n];
-        if (p->family != family || !p->done || p->aside || !isfinite(cli_point_error(s, p)))
-            continue;
-        dots[count].point = p;
-        cost[count] = cli_point_cost(p);
-        error[count++] = cli_point_error(s, p);
-    }
-    return count;
+    const cli_point *point = d->point;
+    const cli_axis *axis = &p->axis;
+    put_leader(out, d);
+    fprintf(
+        out,
+        "<g class=\"dot%s g%zu\" tabindex=\"0\" role=\"img\" data-point=\"%s-%zu\"><circle "
+        "cx=\"%.1f\" "
+        "cy=\"%.1f\" r=\"%g\"/><text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">%zu</text>"
+        "<title>",
+        d->best ? " best" : "", group, cli_family_names[p->family], point->number, d->x, d->y,
+        d->best ? 6.0 : 5.0, d->text_x, d->text_y + 4, point->number);
+    cli_put_html(out, point->name);
+    fprintf(out, "\n%s: %.4g %s\n%s: %.4g %s%s</title></g>", axis->cost, cost, axis->cost_unit,
+            axis->error, cli_point_error(p->study, point), axis->error_unit,
+            d->best ? "\non the front: nothing is both cheaper and closer" : "");
 }
 
-void cli_put_plot(FILE *out, const cli_study *s, cli_family family)
+/* Fronts of this cost, which may not be the main one. */
+static void mark_best(plot *p, const double *cost, const double *error)
 {
-    dot dots[CLI_MAX_POINTS];
-    double cost[CLI_MAX_POINTS], error[CLI_MAX_POINTS];
-    const char *groups[MAX_GROUPS];
-    const cli_axis axis = cli_study_axis(s, family);
-    const size_t count = collect_dots(s, family, dots, cost, error),
-                 group_count = cli_family_groups(s, family, groups, MAX_GROUPS);
-    if (!count) {
-        fputs("<p class=\"quiet\">Nothing was measured that could be drawn.</p>", out);
-        return;
+    for (size_t r = 0; r < CLI_REFERENCES; r++) {
+        double costs[CLI_MAX_POINTS];
+        bool front[CLI_MAX_POINTS];
+        for (size_t n = 0; n < p->count; n++)
+            costs[n] = p->dots[n].point->tried.reference == r ? cost[n] : NAN;
+        cli_pareto(costs, error, p->count, front);
+        for (size_t n = 0; n < p->count; n++)
+            p->dots[n].best |= front[n];
     }
-    lift_zeros(cost, count);
-    lift_zeros(error, count);
-    const scale x = fit_scale(cost, count, LEFT, WIDTH - RIGHT),
-                y = fit_scale(error, count, HEIGHT - BOTTOM, TOP);
-    fprintf(out, "<svg class=\"plot\" viewBox=\"0 0 %d %d\" role=\"img\"><title>", WIDTH,
-            HEIGHT);
-    fprintf(out, "%s: %s against %s</title>", cli_family_names[family], axis.error, axis.cost);
-    put_ticks(out, &x, false, axis.cost_unit);
-    put_ticks(out, &y, true, axis.error_unit);
-    put_labels(out, &axis);
+}
+
+static void collect_dots(plot *p, double *cost, double *error)
+{
+    const cli_point *points[CLI_MAX_POINTS];
+    const size_t count = cli_points_of(p->study, p->family, points);
     for (size_t n = 0; n < count; n++) {
-        dots[n].x = place_value(&x, cost[n]);
-        dots[n].y = place_value(&y, error[n]);
+        if (points[n]->aside || !isfinite(cli_point_error(p->study, points[n])) ||
+            !isfinite(cli_cost_of(points[n], p->cost)))
+            continue;
+        p->dots[p->count].point = points[n];
+        cost[p->count] = cli_cost_of(points[n], p->cost);
+        error[p->count++] = cli_point_error(p->study, points[n]);
     }
-    put_front(out, dots, count);
+}
+
+static const struct {
+    const char *name, *unit;
+} costs[CLI_COST_COUNT] = {
+    {"time", "s"}, {"triangles", ""}, {"size of the file", "bytes"}, {"memory", "bytes"}};
+
+static void put_dots(FILE *out, const plot *p, const double *cost)
+{
+    const char *groups[MAX_GROUPS];
+    const size_t count = cli_family_groups(p->study, p->family, groups, MAX_GROUPS);
     for (int best = 0; best < 2; best++) /* those of the front above all others */
-        for (size_t n = 0; n < count; n++)
-            if (dots[n].point->front == best)
-                put_dot(out, s, &dots[n], &axis,
-                        group_of(groups, group_count, dots[n].point->group));
+        for (size_t n = 0; n < p->count; n++)
+            if (p->dots[n].best == best)
+                put_dot(out, p, &p->dots[n], cost[n],
+                        group_of(groups, count, p->dots[n].point->group));
+}
+
+/* Returns whether anything was drawn. */
+static bool put_plot(FILE *out, const cli_study *s, cli_family family, cli_cost kind,
+                     bool hidden)
+{
+    double cost[CLI_MAX_POINTS], told[CLI_MAX_POINTS], error[CLI_MAX_POINTS];
+    plot p = {.study = s, .family = family, .cost = kind, .axis = cli_study_axis(s, family)};
+    collect_dots(&p, cost, error);
+    if (!p.count)
+        return false;
+    if (!cli_is_drawn(family)) {
+        p.axis.cost = costs[kind].name;
+        p.axis.cost_unit = costs[kind].unit;
+    }
+    mark_best(&p, cost, error);
+    memcpy(told, cost, sizeof told);
+    lift_zeros(cost, p.count);
+    lift_zeros(error, p.count);
+    const scale x = fit_scale(cost, p.count, LEFT, WIDTH - RIGHT),
+                y = fit_scale(error, p.count, HEIGHT - BOTTOM, TOP);
+    fprintf(out,
+            "<svg class=\"plot\" data-cost=\"%d\"%s viewBox=\"0 0 %d %d\" role=\"group\" "
+            "aria-label=\"%s: %s against %s\">",
+            (int)kind, hidden ? " hidden=\"\"" : "", WIDTH, HEIGHT, cli_family_names[family],
+            p.axis.error, p.axis.cost);
+    put_ticks(out, &x, false, p.axis.cost_unit);
+    put_ticks(out, &y, true, p.axis.error_unit);
+    put_labels(out, &p.axis);
+    for (size_t n = 0; n < p.count; n++) {
+        p.dots[n].x = place_value(&x, cost[n]);
+        p.dots[n].y = place_value(&y, error[n]);
+    }
+    place_numbers(&p);
+    for (size_t r = 0; r < CLI_REFERENCES; r++)
+        put_front(out, &p, r);
+    put_dots(out, &p, told);
     fputs("</svg>\n", out);
+    return true;
 }
 
-/* Bars of shares; the axis below says where bins begin and end. */
-static void put_bars(FILE *out, const char *title, const size_t *counts, size_t bins,
-                     const char *const *ends)
+/* All plots are in the page; the choice, which the script shows, is between them. */
+void cli_put_plots(FILE *out, const cli_study *s, cli_family family)
 {
-    enum { W = 300, H = 120, BASE = 92 };
-    size_t sum = 0, most = 1;
-    for (size_t n = 0; n < bins; n++) {
-        sum += counts[n];
-        most = counts[n] > most ? counts[n] : most;
+    const cli_cost main = cli_main_cost(family);
+    fputs("<div class=\"plots\">", out);
+    if (!cli_is_drawn(family)) {
+        fputs("<label hidden=\"\">Plot the error against <select>", out);
+        for (int c = 0; c < CLI_COST_COUNT; c++)
+            fprintf(out, "<option value=\"%d\"%s>%s</option>", c,
+                    c == (int)main ? " selected=\"\"" : "", costs[c].name);
+        fputs("</select></label>\n", out);
     }
-    const double width = (double)W / (double)bins;
-    fprintf(out, "<svg class=\"bars\" viewBox=\"0 0 %d %d\" role=\"img\"><title>%s</title>", W,
-            H, title);
-    for (size_t n = 0; n < bins; n++) {
-        const double height = (double)(BASE - 4) * (double)counts[n] / (double)most;
-        fprintf(out,
-                "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"><title>%s to %s: "
-                "%.2f %% (%s)</title></rect>",
-                (double)n * width + 1, BASE - height, width - 2, height, ends[n], ends[n + 1],
-                sum ? 100 * (double)counts[n] / (double)sum : 0, cli_count(counts[n]));
-    }
-    fprintf(out, "<line class=\"base\" x1=\"0\" x2=\"%d\" y1=\"%d\" y2=\"%d\"/>", W, BASE,
-            BASE);
-    for (size_t n = 0; n <= bins; n += bins > 10 ? 6 : 1)
-        fprintf(out, "<text class=\"tick\" x=\"%.1f\" y=\"%d\" text-anchor=\"%s\">%s</text>",
-                (double)n * width, BASE + 15,
-                n == 0      ? "start"
-                : n == bins ? "end"
-                            : "middle",
-                ends[n]);
-    fprintf(out, "<text class=\"label\" x=\"0\" y=\"%d\">%s</text></svg>", H - 1, title);
-}
-
-void cli_put_shapes(FILE *out, const cw_shapes *shapes)
-{
-    char text[2][CW_ANGLE_BINS + 1][16];
-    const char *angles[CW_ANGLE_BINS + 1], *aspects[CW_ASPECT_BINS + 1];
-    for (int n = 0; n <= CW_ANGLE_BINS; n++) {
-        snprintf(text[0][n], sizeof text[0][n], "%.3g", n * 60.0 / CW_ANGLE_BINS);
-        angles[n] = text[0][n];
-    }
-    for (int n = 0; n <= CW_ASPECT_BINS; n++) {
-        if (n == 0 || n == CW_ASPECT_BINS)
-            snprintf(text[1][n], sizeof text[1][n], "%s", n ? "\xe2\x88\x9e" : "1");
-        else
-            snprintf(text[1][n], sizeof text[1][n], "%g", cw_aspect_ends[n - 1]);
-        aspects[n] = text[1][n];
-    }
-    put_bars(out, "smallest angle of each triangle, degrees", shapes->smallest, CW_ANGLE_BINS,
-             angles);
-    put_bars(out, "aspect ratio (1: equal sides)", shapes->aspects, CW_ASPECT_BINS, aspects);
+    bool any = put_plot(out, s, family, main, false);
+    for (int c = 0; c < CLI_COST_COUNT && !cli_is_drawn(family); c++)
+        if (c != (int)main)
+            any |= put_plot(out, s, family, (cli_cost)c, true);
+    if (!any)
+        fputs("<p class=\"quiet\">Nothing was measured that could be drawn.</p>", out);
+    fputs("</div>\n", out);
 }

@@ -28,5 +28,5 @@ bad a/x.nrrd --iso 0 -o out/z.stl --batch --json r.json
 bad 'c/*.nrrd' --iso 0 -o out/z.stl --batch
 bad a/x.nrrd --iso 0 --skip-existing
 bad a/x.nrrd --iso 0 -o out/z.stl --json-lines none/log.jsonl
-cubewright report a/x.nrrd b/x.nrrd -o out/r.html || echo "exit $?"
+cubewright report a/x.nrrd b/x.nrrd -o out/r.html --source a/x.nrrd || echo "exit $?"
 cubewright extract a/x.nrrd --iso 0 -o out/z.stl --json-lines a/x.nrrd || echo "exit $?"
