@@ -60,3 +60,9 @@ echo "themes"
 view 'mode mip; screenshot d.png; toggle light-theme; screenshot l.png; capture light.png; print light-theme; toggle light-theme; capture dark.png'
 cmp d.png l.png && echo "the same picture"
 cmp light.png dark.png >/dev/null || echo "other panels"
+
+# The panel's left border is dragged: from 0.6 of the window to 180 pixels; the picture has the rest.
+echo "the panel"
+view 'place Settings; mouse 385 300; wait; press; mouse 360 300; mouse 300 300; lift; wait; place Settings; screenshot p.png;
+      mouse 301 300; wait; press; mouse 0 300; lift; wait; place Settings; mouse 257 200; wait; press; mouse 630 200; lift; wait; place Settings'
+size_of p.png
