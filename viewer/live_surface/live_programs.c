@@ -1,0 +1,98 @@
+/* Compiles the compute shaders of a live surface. */
+#include "viewer/live_surface/live_internal.h"
+
+#include "core/base/status.h"
+
+#include <stdio.h>
+
+extern const char cwi_glsl_live_common[], cwi_glsl_live_ranges[], cwi_glsl_live_scan[],
+    cwi_glsl_live_count[], cwi_glsl_live_size[], cwi_glsl_live_exact[], cwi_glsl_live_plan[],
+    cwi_glsl_live_place[], cwi_glsl_live_emit[], cwi_glsl_live_build[], cwi_glsl_live_mend[];
+
+/* A program: what its source needs before it, or NULL, and what chooses among its steps. */
+static const struct {
+    const char *before, *source, *defines;
+} programs[CWI_LIVE_PASSES] = {
+    [CWI_LIVE_FIND_RANGES] = {NULL, cwi_glsl_live_ranges, ""},
+    [CWI_LIVE_SUM_BLOCKS] = {NULL, cwi_glsl_live_scan,
+                             "#define BLOCKS_STEP\n#define SUM_STEP\n"},
+    [CWI_LIVE_TOP_BLOCKS] = {NULL, cwi_glsl_live_scan,
+                             "#define BLOCKS_STEP\n#define TOP_STEP\n"},
+    [CWI_LIVE_PLACE_BLOCKS] = {NULL, cwi_glsl_live_scan, "#define BLOCKS_STEP\n"},
+    [CWI_LIVE_COUNT] = {NULL, cwi_glsl_live_count, ""},
+    [CWI_LIVE_SIZE_OPEN] = {NULL, cwi_glsl_live_size, ""},
+    [CWI_LIVE_PLAN] = {cwi_glsl_live_exact, cwi_glsl_live_plan, ""},
+    [CWI_LIVE_SUM_COUNTS] = {NULL, cwi_glsl_live_scan, "#define SUM_STEP\n"},
+    [CWI_LIVE_TOP_COUNTS] = {NULL, cwi_glsl_live_scan, "#define TOP_STEP\n"},
+    [CWI_LIVE_PLACE_COUNTS] = {NULL, cwi_glsl_live_scan, ""},
+    [CWI_LIVE_EMIT] = {cwi_glsl_live_place, cwi_glsl_live_emit, ""},
+    [CWI_LIVE_BUILD] = {cwi_glsl_live_place, cwi_glsl_live_build, ""},
+    [CWI_LIVE_SIZE_MEND] = {NULL, cwi_glsl_live_size, "#define MEND_STEP\n"},
+    [CWI_LIVE_MEND] = {NULL, cwi_glsl_live_mend, ""},
+};
+
+/* The number by which shaders know a type of voxels; 0: they do not. */
+static int number_of(cw_type type)
+{
+    static const int numbers[CW_TYPE_COUNT] = {
+        [CW_U8] = 1,  [CW_I8] = 2,  [CW_U16] = 3, [CW_I16] = 4,
+        [CW_U32] = 6, [CW_I32] = 7, [CW_F32] = 8,
+    };
+    return numbers[type];
+}
+
+static GLuint compile(cwi_live_pass pass, cw_type type, cw_error *err)
+{
+    char head[256], log[300] = "";
+    GLint is_compiled = 0;
+    snprintf(head, sizeof head, "#version 430 core\n#define TYPE %d\n%s", number_of(type),
+             programs[pass].defines);
+    const char *parts[] = {head,
+                           "#line 1 1\n",
+                           cwi_glsl_live_common,
+                           "#line 1 2\n",
+                           programs[pass].before ? programs[pass].before : "",
+                           "#line 1 3\n",
+                           programs[pass].source};
+    const GLuint shader = glCreateShader(GL_COMPUTE_SHADER);
+    glShaderSource(shader, sizeof parts / sizeof *parts, parts, NULL);
+    glCompileShader(shader);
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &is_compiled);
+    if (is_compiled)
+        return shader;
+    glGetShaderInfoLog(shader, sizeof log, NULL, log);
+    glDeleteShader(shader);
+    cwi_fail(err, CW_ERR_BACKEND, "OpenGL refuses compute shader %d: %s", (int)pass, log);
+    return 0;
+}
+
+static cw_status make_program(cwi_live *live, cwi_live_pass pass, cw_error *err)
+{
+    GLint is_linked = 0;
+    char log[300] = "";
+    const GLuint shader = compile(pass, live->key.type, err);
+    if (!shader)
+        return CW_ERR_BACKEND;
+    const GLuint program = live->programs[pass] = glCreateProgram();
+    glAttachShader(program, shader);
+    glLinkProgram(program);
+    glDeleteShader(shader);
+    glGetProgramiv(program, GL_LINK_STATUS, &is_linked);
+    if (!is_linked) {
+        glGetProgramInfoLog(program, sizeof log, NULL, log);
+        return cwi_fail(err, CW_ERR_BACKEND, "OpenGL refuses compute program %d: %s", (int)pass,
+                        log);
+    }
+    glUseProgram(program);
+    glUniform1i(glGetUniformLocation(program, "voxels"), CWI_UNIT_FREE);
+    return CW_OK;
+}
+
+cw_status cwi_live_make_programs(cwi_live *live, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (int pass = 0; pass < CWI_LIVE_PASSES && st == CW_OK; pass++)
+        if (!live->programs[pass])
+            st = make_program(live, (cwi_live_pass)pass, err);
+    return st;
+}
