@@ -112,6 +112,9 @@ live_difference live_compare(const cw_mesh *gpu, const cw_mesh *cpu)
     place *a = sort_vertices(gpu), *b = sort_vertices(cpu);
     uint32_t(*t)[3] = sort_triangles(gpu, a), (*u)[3] = sort_triangles(cpu, b);
     for (size_t v = 0; v < gpu->vertex_count; v++) {
+        if (memcmp(a[v].position, b[v].position, sizeof a[v].position) != 0 && d.positions < 9)
+            print_message("%.9g %.9g %.9g, not %.9g %.9g %.9g\n", a[v].position[0], a[v].position[1], a[v].position[2],
+                          b[v].position[0], b[v].position[1], b[v].position[2]);
         d.positions += memcmp(a[v].position, b[v].position, sizeof a[v].position) != 0;
         bool same = true;
         for (int c = 0; c < 3; c++)
@@ -120,7 +123,8 @@ live_difference live_compare(const cw_mesh *gpu, const cw_mesh *cpu)
         for (int c = 0; c < 3; c++)
             d.normal = fmax(d.normal, fabs((double)a[v].normal[c] - (double)b[v].normal[c]));
     }
-    assert_int_equal(d.positions, 0);
+    if (d.positions)
+        fail_msg("%zu of %zu positions differ", d.positions, gpu->vertex_count);
     if (memcmp(t, u, gpu->triangle_count * sizeof *t) != 0)
         fail_msg("triangles differ");
     free(a);

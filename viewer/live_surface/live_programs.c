@@ -4,6 +4,7 @@
 #include "core/base/status.h"
 
 #include <stdio.h>
+#include <string.h>
 
 extern const char cwi_glsl_live_common[], cwi_glsl_live_ranges[], cwi_glsl_live_scan[],
     cwi_glsl_live_count[], cwi_glsl_live_size[], cwi_glsl_live_exact[], cwi_glsl_live_plan[],
@@ -41,10 +42,11 @@ static int number_of(cw_type type)
     return numbers[type];
 }
 
-static GLuint compile(cwi_live_pass pass, cw_type type, cw_error *err)
+/* Starts to compile and to link; nothing is asked, so that drivers with threads for it go on to
+ * the next program meanwhile. */
+static GLuint start_program(cwi_live_pass pass, cw_type type)
 {
-    char head[256], log[300] = "";
-    GLint is_compiled = 0;
+    char head[256];
     snprintf(head, sizeof head, "#version 430 core\n#define TYPE %d\n%s", number_of(type),
              programs[pass].defines);
     const char *parts[] = {head,
@@ -54,45 +56,49 @@ static GLuint compile(cwi_live_pass pass, cw_type type, cw_error *err)
                            programs[pass].before ? programs[pass].before : "",
                            "#line 1 3\n",
                            programs[pass].source};
-    const GLuint shader = glCreateShader(GL_COMPUTE_SHADER);
+    const GLuint shader = glCreateShader(GL_COMPUTE_SHADER), program = glCreateProgram();
     glShaderSource(shader, sizeof parts / sizeof *parts, parts, NULL);
     glCompileShader(shader);
-    glGetShaderiv(shader, GL_COMPILE_STATUS, &is_compiled);
-    if (is_compiled)
-        return shader;
-    glGetShaderInfoLog(shader, sizeof log, NULL, log);
-    glDeleteShader(shader);
-    cwi_fail(err, CW_ERR_BACKEND, "OpenGL refuses compute shader %d: %s", (int)pass, log);
-    return 0;
-}
-
-static cw_status make_program(cwi_live *live, cwi_live_pass pass, cw_error *err)
-{
-    GLint is_linked = 0;
-    char log[300] = "";
-    const GLuint shader = compile(pass, live->key.type, err);
-    if (!shader)
-        return CW_ERR_BACKEND;
-    const GLuint program = live->programs[pass] = glCreateProgram();
     glAttachShader(program, shader);
     glLinkProgram(program);
     glDeleteShader(shader);
+    return program;
+}
+
+/* Waits for a program. What a shader lacks is in the log of its program, too. */
+static cw_status finish_program(GLuint program, cwi_live_pass pass, cw_error *err)
+{
+    GLint is_linked = 0;
+    GLuint shader = 0;
+    char log[4096] = "";
     glGetProgramiv(program, GL_LINK_STATUS, &is_linked);
-    if (!is_linked) {
-        glGetProgramInfoLog(program, sizeof log, NULL, log);
-        return cwi_fail(err, CW_ERR_BACKEND, "OpenGL refuses compute program %d: %s", (int)pass,
-                        log);
+    if (is_linked) {
+        glUseProgram(program);
+        glUniform1i(glGetUniformLocation(program, "voxels"), CWI_UNIT_FREE);
+        return CW_OK;
     }
-    glUseProgram(program);
-    glUniform1i(glGetUniformLocation(program, "voxels"), CWI_UNIT_FREE);
-    return CW_OK;
+    glGetAttachedShaders(program, 1, NULL, &shader);
+    glGetShaderInfoLog(shader, sizeof log, NULL, log);
+    if (!*log)
+        glGetProgramInfoLog(program, sizeof log, NULL, log);
+    const char *first = strstr(log, "error"); /* warnings may come before */
+    return cwi_fail(err, CW_ERR_BACKEND, "OpenGL refuses compute program %d: %s", (int)pass,
+                    first ? first : log);
 }
 
 cw_status cwi_live_make_programs(cwi_live *live, cw_error *err)
 {
+    bool is_new[CWI_LIVE_PASSES];
     cw_status st = CW_OK;
+    if (epoxy_has_gl_extension("GL_KHR_parallel_shader_compile"))
+        glMaxShaderCompilerThreadsKHR(UINT32_MAX);
+    for (int pass = 0; pass < CWI_LIVE_PASSES; pass++) {
+        is_new[pass] = !live->programs[pass];
+        if (is_new[pass])
+            live->programs[pass] = start_program((cwi_live_pass)pass, live->key.type);
+    }
     for (int pass = 0; pass < CWI_LIVE_PASSES && st == CW_OK; pass++)
-        if (!live->programs[pass])
-            st = make_program(live, (cwi_live_pass)pass, err);
+        if (is_new[pass])
+            st = finish_program(live->programs[pass], (cwi_live_pass)pass, err);
     return st;
 }

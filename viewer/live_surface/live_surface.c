@@ -396,11 +396,13 @@ static cw_status set_up(cwi_live *live, const cwi_live_limits *limits, cw_error 
     if (live->block_count > (size_t)1 << 23)
         return cwi_fail(err, CW_ERR_LIMIT, "%zu blocks: a live surface has at most %d",
                         live->block_count, 1 << 23);
-    cw_status st = cwi_live_upload(live, err);
+    cw_status st = cwi_live_make_programs(live, err);
+    if (st != CW_OK)
+        drop_programs(live);
+    if (st == CW_OK)
+        st = cwi_live_upload(live, err);
     if (st == CW_OK)
         st = make_buffers(live, err);
-    if (st == CW_OK)
-        st = cwi_live_make_programs(live, err);
     if (st != CW_OK)
         return st;
     glGenQueries(sizeof live->times / sizeof *live->times, live->times);

@@ -2,11 +2,11 @@
 // core/cases/cell_topology.c does: cones, and tunnels between two loops.
 layout(local_size_x = 64) in;
 
-double crossing[12], inner[4][3];
+uvec2 crossing[12], inner[12];
 uint config_at, code, inner_count, first_inner, near[8];
 int corners[54], corner_count; // of triangles: edges, or 12 and the number of a vertex inside
 ivec3 cell;
-double flat_at[2][12][2], turn[2]; // of a tunnel's loops
+uvec2 flat_bits[48], turn[2]; // of a tunnel's loops
 int flat_edge[2][12], flat_count[2];
 
 uint vertex_of(int n)
@@ -69,7 +69,7 @@ int tunnel_corner(int i)
 double edge_coordinate(int edge, int axis)
 {
     ivec3 from = edge_begin(edge);
-    return axis == edge >> 2 ? crossing[edge] : double(from[axis]);
+    return axis == edge >> 2 ? unpack(crossing[edge]) : double(from[axis]);
 }
 
 void build_discs()
@@ -81,15 +81,14 @@ void build_discs()
         int count = loop_length(l);
         if (is_cone(l) && !tube) {
             int top = 12 + int(inner_count);
-            precise double apex[3] = double[3](0.0LF, 0.0LF, 0.0LF);
-            for (int i = 0; i < count; i++) {
-                for (int a = 0; a < 3; a++)
-                    apex[a] =
-                        apex[a] + edge_coordinate(loop_edge(first + i), a) / double(count);
+            for (int i = 0; i < count; i++)
                 add_triangle(loop_edge(first + i), loop_edge(first + (i + 1) % count), top);
+            for (int a = 0; a < 3; a++) {
+                precise double apex = 0.0LF;
+                for (int i = 0; i < count; i++)
+                    apex = apex + quotient(edge_coordinate(loop_edge(first + i), a), double(count));
+                inner[3u * inner_count + uint(a)] = pack(apex);
             }
-            for (int a = 0; a < 3; a++)
-                inner[inner_count][a] = apex[a];
             inner_count++;
         }
         for (int i = 0; i < count - 2 && !is_cone(l); i++, disc += 3u)
@@ -104,7 +103,7 @@ void build_discs()
 
 bool central;
 int corner, along_axis;
-double stretch[3];
+dvec3 stretch;
 
 double mirrored(double x, int axis)
 {
@@ -112,47 +111,52 @@ double mirrored(double x, int axis)
     return y;
 }
 
-void project_point(double p[3], out double flat_x, out double flat_y)
+dvec3 mirror_point(dvec3 p)
 {
-    precise double x[3];
-    int v = (along_axis + 1) % 3, w = (along_axis + 2) % 3;
-    for (int a = 0; a < 3; a++)
-        x[a] = mirrored(p[a], a);
+    return dvec3(mirrored(p.x, 0), mirrored(p.y, 1), mirrored(p.z, 2));
+}
+
+void project_point(dvec3 p, out double flat_x, out double flat_y)
+{
+    precise dvec3 x = mirror_point(p);
     if (central) {
-        precise double sum = x[0] + x[1];
-        sum = sum + x[2];
-        precise double p0 = x[0] / sum, p1 = x[1] / sum;
-        flat_x = p0;
-        flat_y = p1;
+        precise double sum = x.x + x.y;
+        sum = sum + x.z;
+        flat_x = quotient(x.x, sum);
+        flat_y = quotient(x.y, sum);
     } else {
-        precise double d = x[v] - x[w];
-        flat_x = x[along_axis];
+        precise double d = get(x, (along_axis + 1) % 3) - get(x, (along_axis + 2) % 3);
+        flat_x = get(x, along_axis);
         flat_y = d;
     }
 }
 
 void lift_point(double flat_x, double flat_y, int n)
 {
-    int v = (along_axis + 1) % 3, w = (along_axis + 2) % 3;
-    precise double p[3];
+    dvec3 p = dvec3(0.0LF);
     if (central) {
-        precise double x[3];
-        x[0] = flat_x;
-        x[1] = flat_y;
-        x[2] = 1.0LF - flat_x;
-        x[2] = x[2] - flat_y;
-        precise double sum = x[0] / stretch[0] + x[1] / stretch[1];
-        sum = sum + x[2] / stretch[2];
+        precise double third = 1.0LF - flat_x;
+        third = third - flat_y;
+        dvec3 x = dvec3(flat_x, flat_y, third);
+        precise double sum = 0.0LF;
         for (int a = 0; a < 3; a++)
-            p[a] = x[a] / sum;
+            sum = sum + quotient(get(x, a), get(stretch, a));
+        for (int a = 0; a < 3; a++)
+            set(p, a, quotient(get(x, a), sum));
     } else {
         precise double half_y = 0.5LF * flat_y;
-        p[along_axis] = flat_x;
-        p[v] = 0.5LF + half_y;
-        p[w] = 0.5LF - half_y;
+        precise double above = 0.5LF + half_y, below = 0.5LF - half_y;
+        set(p, along_axis, flat_x);
+        set(p, (along_axis + 1) % 3, above);
+        set(p, (along_axis + 2) % 3, below);
     }
     for (int a = 0; a < 3; a++)
-        inner[n][a] = mirrored(p[a], a);
+        inner[3 * n + a] = pack(mirrored(get(p, a), a));
+}
+
+double flat_at(int loop, int n, int axis)
+{
+    return unpack(flat_bits[24 * loop + 2 * n + axis]);
 }
 
 double cross_in_plane(double ox, double oy, double ax, double ay, double bx, double by)
@@ -169,17 +173,20 @@ void flatten_loop(int i)
         first += loop_length(l);
     flat_count[i] = loop_length(loop);
     for (int n = 0; n < flat_count[i]; n++) {
-        double p[3];
+        dvec3 p = dvec3(0.0LF);
+        double x, y;
         flat_edge[i][n] = loop_edge(first + n);
         for (int a = 0; a < 3; a++)
-            p[a] = edge_coordinate(flat_edge[i][n], a);
-        project_point(p, flat_at[i][n][0], flat_at[i][n][1]);
+            set(p, a, edge_coordinate(flat_edge[i][n], a));
+        project_point(p, x, y);
+        flat_bits[24 * i + 2 * n] = pack(x);
+        flat_bits[24 * i + 2 * n + 1] = pack(y);
     }
     precise double area = 0.0LF;
     for (int n = 2; n < flat_count[i]; n++)
-        area = area + cross_in_plane(flat_at[i][0][0], flat_at[i][0][1], flat_at[i][n - 1][0],
-                                     flat_at[i][n - 1][1], flat_at[i][n][0], flat_at[i][n][1]);
-    turn[i] = area < 0.0LF ? -1.0LF : 1.0LF;
+        area = area + cross_in_plane(flat_at(i, 0, 0), flat_at(i, 0, 1), flat_at(i, n - 1, 0),
+                                     flat_at(i, n - 1, 1), flat_at(i, n, 0), flat_at(i, n, 1));
+    turn[i] = pack(area < 0.0LF ? -1.0LF : 1.0LF);
 }
 
 double measure_clearance(int i, double cx, double cy)
@@ -187,30 +194,39 @@ double measure_clearance(int i, double cx, double cy)
     double least = 1.0LF;
     for (int n = 0; n < flat_count[i]; n++) {
         int m = (n + 1) % flat_count[i];
-        double px = flat_at[i][n][0], py = flat_at[i][n][1], qx = flat_at[i][m][0],
-               qy = flat_at[i][m][1];
+        double px = flat_at(i, n, 0), py = flat_at(i, n, 1), qx = flat_at(i, m, 0),
+               qy = flat_at(i, m, 1);
         precise double dx = qx - px, dy = qy - py;
         precise double square = dx * dx + dy * dy;
-        precise double size = sqrt(square);
-        precise double clear = turn[i] * cross_in_plane(px, py, qx, qy, cx, cy);
+        double size = root_of(square);
+        precise double clear = unpack(turn[i]) * cross_in_plane(px, py, qx, qy, cx, cy);
         if (size > 0.0LF) {
-            clear = clear / size;
+            clear = quotient(clear, size);
             least = min(least, clear);
         }
     }
     return max(least, 1e-6LF);
 }
 
-const double ring_x[3] = double[3](1.0LF, -0.5LF, -0.5LF),
-             ring_y[3] = double[3](0.0LF, 0.86602540378443865LF, -0.86602540378443865LF);
+double ring_x(int i)
+{
+    return i == 0 ? 1.0LF : -0.5LF;
+}
+
+// Half the root of 3, as the bits of its double.
+double ring_y(int i)
+{
+    double y = unpack(uvec2(0xe8584caau, 0x3febb67au));
+    return i == 0 ? 0.0LF : i == 1 ? y : -y;
+}
 
 int find_farthest(int loop, double cx, double cy, int i, int j)
 {
-    precise double ex = ring_x[i] + ring_x[j], ey = ring_y[i] + ring_y[j];
+    precise double ex = ring_x(i) + ring_x(j), ey = ring_y(i) + ring_y(j);
     double most = 0.0LF;
     int found = 0;
     for (int n = 0; n < flat_count[loop]; n++) {
-        precise double p = ex * (flat_at[loop][n][0] - cx), q = ey * (flat_at[loop][n][1] - cy);
+        precise double p = ex * (flat_at(loop, n, 0) - cx), q = ey * (flat_at(loop, n, 1) - cy);
         precise double far = p + q;
         if (n == 0 || far > most) {
             most = far;
@@ -222,7 +238,7 @@ int find_farthest(int loop, double cx, double cy, int i, int j)
 
 void build_sheet(int loop, double cx, double cy, int ring)
 {
-    int step = turn[loop] > 0.0LF ? 1 : 2, count = flat_count[loop], walked = 0;
+    int step = unpack(turn[loop]) > 0.0LF ? 1 : 2, count = flat_count[loop], walked = 0;
     int i = find_farthest(loop, cx, cy, 2 * step % 3, 0);
     for (int n = 0; n < 3; n++) {
         int here = n * step % 3, following = (n + 1) * step % 3;
@@ -243,17 +259,14 @@ void find_center(int of, out double cx, out double cy)
     int count = 0;
     for (int c = 0; c < 8; c++)
         if (patch_of(c) == patch_of(of)) {
-            double p[3] = double[3](double(c & 1), double(c >> 1 & 1), double(c >> 2 & 1)), x,
-                   y;
-            project_point(p, x, y);
+            double x, y;
+            project_point(dvec3(c & 1, c >> 1 & 1, c >> 2 & 1), x, y);
             sum_x = sum_x + x;
             sum_y = sum_y + y;
             count++;
         }
-    sum_x = sum_x / double(count);
-    sum_y = sum_y / double(count);
-    cx = sum_x;
-    cy = sum_y;
+    cx = quotient(sum_x, double(count));
+    cy = quotient(sum_y, double(count));
 }
 
 int edge_between(int a, int b)
@@ -273,10 +286,10 @@ void build_tunnel()
         central = true;
         corner = tunnel_corner(end);
         for (int a = 0; a < 3; a++) {
-            double t = crossing[edge_between(corner, corner ^ 1 << a)];
+            double t = unpack(crossing[edge_between(corner, corner ^ 1 << a)]);
             precise double far = 0.5LF * mirrored(t, a);
             far = 0.5LF + far;
-            stretch[a] = far;
+            set(stretch, a, far);
         }
         find_center(tunnel_corner(1 - end), cx, cy);
     } else {
@@ -292,7 +305,7 @@ void build_tunnel()
     }
     precise double radius = 0.5LF * clear;
     for (int i = 0; i < 3; i++) {
-        precise double x = radius * ring_x[i], y = radius * ring_y[i];
+        precise double x = radius * ring_x(i), y = radius * ring_y(i);
         x = cx + x;
         y = cy + y;
         lift_point(x, y, int(inner_count) + i);
@@ -313,27 +326,23 @@ double half_at(ivec3 v, inout bool is_there)
 }
 
 // Interpolates the gradients of the corners; false where a neighbour is missing or infinite.
-bool inner_gradient(ivec3 v, double p[3], out double g[3])
+bool inner_gradient(ivec3 v, dvec3 p, out dvec3 g)
 {
     bool is_there = true;
-    precise double sum[3] = double[3](0.0LF, 0.0LF, 0.0LF);
+    precise dvec3 sum = dvec3(0.0LF), rest = dvec3(1.0LF) - p;
     for (int c = 0; c < 8; c++) {
-        precise double wx = (c & 1) != 0 ? p[0] : 1.0LF - p[0],
-                       wy = (c & 2) != 0 ? p[1] : 1.0LF - p[1],
-                       wz = (c & 4) != 0 ? p[2] : 1.0LF - p[2];
-        precise double weight = wx * wy;
-        weight = weight * wz;
+        precise double weight = ((c & 1) != 0 ? p.x : rest.x) * ((c & 2) != 0 ? p.y : rest.y);
+        weight = weight * ((c & 4) != 0 ? p.z : rest.z);
         ivec3 at = v + ivec3(c & 1, c >> 1 & 1, c >> 2);
         for (int a = 0; a < 3; a++) {
             ivec3 along = ivec3(a == 0, a == 1, a == 2);
-            precise double slope =
-                half_at(at + along, is_there) - half_at(at - along, is_there);
+            precise double slope = half_at(at + along, is_there) - half_at(at - along, is_there);
             slope = weight * slope;
-            sum[a] = sum[a] + slope;
+            slope = get(sum, a) + slope;
+            set(sum, a, slope);
         }
     }
-    for (int a = 0; a < 3; a++)
-        g[a] = sum[a];
+    g = sum;
     return is_there;
 }
 
@@ -358,17 +367,17 @@ void main()
         ivec3 from = v + edge_begin(e), to = from + ivec3(e < 4, e >= 4 && e < 8, e >= 8);
         uint a, b;
         bool has_a = fetch(from, a), has_b = fetch(to, b);
-        crossing[e] = edge_crossing(has_a, a, has_b, b);
+        crossing[e] = pack(edge_crossing(has_a, a, has_b, b));
     }
     build_discs();
     if (code >> 10 != 0u)
         build_tunnel();
     write_triangles(3u * open.z);
     for (uint i = 0u; i < inner_count; i++) {
-        double p[3] = double[3](inner[i][0], inner[i][1], inner[i][2]), g[3];
+        dvec3 p = dvec3(unpack(inner[3u * i]), unpack(inner[3u * i + 1u]), unpack(inner[3u * i + 2u])), g;
         store_position(first_inner + i, at, p);
         if (!inner_gradient(v, p, g))
-            g = double[3](0.0LF, 0.0LF, 0.0LF);
+            g = dvec3(0.0LF);
         store_gradient(first_inner + i, g, slot, 1536u | (open.x & 511u));
     }
 }

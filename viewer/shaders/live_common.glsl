@@ -31,6 +31,7 @@ layout(std430, binding = 0) readonly buffer Params
 #define MEND_CAPACITY  uint(facts[16])
 #define BLOCK_COUNT    uint(facts[17])
 #define NODATA_EXISTS (facts[18] != 0)
+#define ZERO facts[19] // for bounds of loops that compilers are not to unroll
 
 // Counters, and the sizes of dispatches that follow from them.
 layout(std430, binding = 1) buffer Totals
@@ -56,6 +57,84 @@ const uint SCAN = 1024u; // entries that a group of a scan sums
 uint group_number()
 {
     return gl_WorkGroupID.x + GROUPS_X * gl_WorkGroupID.y;
+}
+
+// ---- doubles ---------------------------------------------------------------------------------
+// NVIDIA's compiler keeps elements of arrays of doubles, whose index is no constant, as floats. So
+// arrays are of their bits, and vectors are read and written by component.
+double get(dvec3 v, int axis)
+{
+    return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
+
+void set(inout dvec3 v, int axis, double x)
+{
+    if (axis == 0)
+        v.x = x;
+    else if (axis == 1)
+        v.y = x;
+    else
+        v.z = x;
+}
+
+uvec2 pack(double x)
+{
+    return unpackDouble2x32(x);
+}
+
+double unpack(uvec2 bits)
+{
+    return packDouble2x32(bits);
+}
+
+// ---- arithmetic ------------------------------------------------------------------------------
+
+// The error of a product in double precision, exactly [Dekker1971].
+double product_error(double a, double b, double product)
+{
+    precise double big = 134217729.0LF * a;
+    precise double a_high = big - (big - a);
+    precise double a_low = a - a_high;
+    big = 134217729.0LF * b;
+    precise double b_high = big - (big - b);
+    precise double b_low = b - b_high;
+    precise double error = a_high * b_high - product;
+    error = error + a_high * b_low;
+    error = error + a_low * b_high;
+    error = error + a_low * b_low;
+    return error;
+}
+
+// A quotient as a processor rounds it: that of some GPUs has half of a double's digits.
+double quotient(double a, double b)
+{
+    precise double q = a / b;
+    if (isnan(q) || isinf(q) || isinf(b) || q == 0.0LF)
+        return q;
+    for (int n = 0; n < 2; n++) {
+        precise double product = q * b;
+        precise double rest = a - product;
+        rest = rest - product_error(q, b, product);
+        precise double more = rest / b;
+        q = q + more;
+    }
+    return q;
+}
+
+// A square root, likewise.
+double root_of(double x)
+{
+    precise double s = sqrt(x);
+    if (!(s > 0.0LF) || isinf(s))
+        return s;
+    for (int n = 0; n < 2; n++) {
+        precise double product = s * s;
+        precise double rest = x - product;
+        rest = rest - product_error(s, s, product);
+        precise double more = rest / (s + s);
+        s = s + more;
+    }
+    return s;
 }
 
 // ---- voxels ----------------------------------------------------------------------------------
@@ -107,7 +186,7 @@ double number_of(uint bits)
 {
 #if TYPE == F32
     if ((bits & 0x7f800000u) == 0u) {
-        precise double small = double(bits & 0x7fffffu) * 1.4012984643248170709e-45LF;
+        precise double small = double(bits & 0x7fffffu) * unpack(uvec2(0u, 0x36a00000u)); // 2^-149
         return (bits & 0x80000000u) != 0u ? -small : small;
     }
     return double(uintBitsToFloat(bits));

@@ -11,10 +11,12 @@ shared uint edges[1536], rows[81], part[64], cells[512], places[512];
 
 #if TYPE == U32 || TYPE == I32
 #define REAL double
+#define REAL3 dvec3
 #define HALF 0.5LF
 const REAL DIGITS_LOST = 1e-290LF;
 #else
 #define REAL float
+#define REAL3 vec3
 #define HALF 1.0
 const REAL DIGITS_LOST = 1e-30;
 #endif
@@ -53,57 +55,48 @@ REAL power_beside(REAL x)
 #endif
 }
 
-int axis_of(int axis, int n)
-{
-    return n == 0 ? axis : n == 1 ? (axis == 0 ? 1 : 0) : axis == 2 ? 1 : 2;
-}
-
 // Finds the normal from differences at both ends, in the precision of extract/dense. Returns false
 // where it is not usable.
 bool find_normal(ivec3 v, int axis, double share, out vec3 normal)
 {
     ivec3 to = v + ivec3(axis == 0, axis == 1, axis == 2);
-    precise REAL g[3], d[3];
+    precise REAL3 g = REAL3(0.0), d = REAL3(0.0);
     REAL t = REAL(share);
-    for (int n = 0; n < 3; n++) {
-        REAL p = difference(v, axis_of(axis, n)), q = difference(to, axis_of(axis, n));
+    for (int a = 0; a < 3; a++) {
+        REAL p = difference(v, a), q = difference(to, a);
         precise REAL step = q - p;
         step = t * step;
-        g[n] = p + step;
+        step = p + step;
+        g.x = a == 0 ? step : g.x;
+        g.y = a == 1 ? step : g.y;
+        g.z = a == 2 ? step : g.z;
     }
-    if (DIAGONAL) {
-        for (int n = 0; n < 3; n++) {
-            int a = axis_of(axis, n);
-            d[a] = REAL(COFACTOR(a, a)) * g[n];
-        }
-    } else {
-        for (int r = 0; r < 3; r++) {
-            precise REAL sum = REAL(COFACTOR(r, axis_of(axis, 0))) * g[0] +
-                               REAL(COFACTOR(r, axis_of(axis, 1))) * g[1];
-            d[r] = sum + REAL(COFACTOR(r, axis_of(axis, 2))) * g[2];
-        }
+    for (int r = 0; r < 3; r++) {
+        precise REAL x = REAL(COFACTOR(r, 0)) * g.x, y = REAL(COFACTOR(r, 1)) * g.y,
+                     z = REAL(COFACTOR(r, 2)) * g.z;
+        precise REAL sum = axis == 2 ? z + x : x + y; // the edge's own axis comes first
+        sum = axis == 2 ? sum + y : sum + z;
+        if (DIAGONAL)
+            sum = r == 0 ? x : r == 1 ? y : z;
+        sum = sum + REAL(0.0);
+        d.x = r == 0 ? sum : d.x;
+        d.y = r == 1 ? sum : d.y;
+        d.z = r == 2 ? sum : d.z;
     }
-    for (int r = 0; r < 3; r++)
-        d[r] = d[r] + REAL(0.0);
-    precise REAL sum = abs(d[0]) + abs(d[1]);
-    sum = sum + abs(d[2]);
-    REAL power = power_beside(sum);
-    for (int r = 0; r < 3; r++)
-        d[r] = d[r] * power;
-    precise REAL square = d[0] * d[0] + d[1] * d[1];
-    square = square + d[2] * d[2];
+    precise REAL sum = abs(d.x) + abs(d.y);
+    sum = sum + abs(d.z);
+    d = d * power_beside(sum);
+    precise REAL square = d.x * d.x + d.y * d.y;
+    square = square + d.z * d.z;
 #if TYPE == U32 || TYPE == I32
-    precise REAL root = sqrt(square);
-    precise REAL scale = 1.0LF / root;
+    REAL scale = quotient(1.0LF, root_of(square));
 #else
     // rounded once, as by a processor: GPUs' own roots and quotients are only nearly right
-    precise REAL root = float(sqrt(double(square)));
-    precise REAL scale = float(1.0LF / double(root));
+    REAL root = float(root_of(double(square)));
+    REAL scale = float(quotient(1.0LF, double(root)));
 #endif
-    for (int r = 0; r < 3; r++) {
-        precise REAL unit = d[r] * scale;
-        normal[r] = float(unit);
-    }
+    d = d * scale;
+    normal = vec3(float(d.x), float(d.y), float(d.z));
     return sum > DIGITS_LOST && square > REAL(0.0) && !isinf(square) && !isnan(square);
 }
 
@@ -145,8 +138,8 @@ void write_vertex(uint n, ivec3 at, int axis, uint slot, uint edge)
     bool has_a = fetch(v, a), has_b = fetch(to, b);
     bool within = is_within(v) && is_within(to);
     double share = edge_crossing(has_a, a, has_b, b);
-    double x[3] = double[3](0.0LF, 0.0LF, 0.0LF);
-    x[axis] = share;
+    dvec3 x = dvec3(0.0LF);
+    set(x, axis, share);
     store_position(n, at, x);
     vec3 normal;
     if (!within && !HAS_NODATA) {
@@ -161,17 +154,17 @@ void write_vertex(uint n, ivec3 at, int axis, uint slot, uint edge)
         store_normal(n, normal);
         return;
     }
-    double g[3] = double[3](0.0LF, 0.0LF, 0.0LF);
+    dvec3 g = dvec3(0.0LF);
     if (has_a && has_b) {
         for (int c = 0; c < 3; c++) {
             precise double p = slope_at(v, c, a), q = slope_at(to, c, b);
             precise double step = q - p;
             step = share * step;
             p = p + step;
-            g[c] = p;
+            set(g, c, p);
         }
     } else {
-        g[axis] = has_a == INVERT ? 1.0LF : -1.0LF;
+        set(g, axis, has_a == INVERT ? 1.0LF : -1.0LF);
     }
     store_gradient(n, g, slot, edge);
 }

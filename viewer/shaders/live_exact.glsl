@@ -141,11 +141,6 @@ Extended add(Extended a, Extended b)
     return round_bits(m, big.exponent - 32, big.negative);
 }
 
-Extended subtract(Extended a, Extended b)
-{
-    return add(a, negate(b));
-}
-
 // The quotient, bit by bit; b is not 0.
 Extended divide(Extended a, Extended b)
 {
@@ -175,4 +170,16 @@ Extended divide(Extended a, Extended b)
 int sign_of(Extended x)
 {
     return is_zero(x) ? 0 : x.negative ? -1 : 1;
+}
+
+bool is_below(Extended a, Extended b)
+{
+    int sign_a = sign_of(a), sign_b = sign_of(b);
+    if (sign_a != sign_b || sign_a == 0)
+        return sign_a < sign_b;
+    bool smaller = a.exponent != b.exponent
+                       ? a.exponent < b.exponent
+                       : is_smaller(uvec2(a.high, a.low), uvec2(b.high, b.low));
+    bool same = a.exponent == b.exponent && a.high == b.high && a.low == b.low;
+    return !same && smaller == (sign_a > 0);
 }

@@ -26,21 +26,21 @@ layout(std430, binding = 14) readonly buffer Missing
     uvec4 missing[];
 };
 
+dvec3 place_of(uint corner)
+{
+    uint at = 6u * indices[corner];
+    return dvec3(vertices[at], vertices[at + 1u], vertices[at + 2u]);
+}
+
 void add_facet(uint t, inout float normal[3])
 {
-    precise double u[3], v[3];
+    precise dvec3 u = place_of(t + 1u) - place_of(t), v = place_of(t + 2u) - place_of(t);
+    u = SCALE * u;
+    v = SCALE * v;
+    precise dvec3 p = u.yzx * v.zxy, q = u.zxy * v.yzx;
+    precise dvec3 across = p - q;
     for (int a = 0; a < 3; a++) {
-        double corner = double(vertices[6u * indices[t] + uint(a)]);
-        u[a] = double(vertices[6u * indices[t + 1u] + uint(a)]) - corner;
-        u[a] = SCALE * u[a];
-        v[a] = double(vertices[6u * indices[t + 2u] + uint(a)]) - corner;
-        v[a] = SCALE * v[a];
-    }
-    for (int a = 0; a < 3; a++) {
-        int b = (a + 1) % 3, c = (a + 2) % 3;
-        precise double p = u[b] * v[c], q = u[c] * v[b];
-        precise double across = p - q;
-        precise float sum = normal[a] + float(across);
+        precise float sum = normal[a] + float(get(across, a));
         normal[a] = sum;
     }
 }
@@ -75,9 +75,9 @@ void main()
     precise double square =
         double(normal[0]) * double(normal[0]) + double(normal[1]) * double(normal[1]);
     square = square + double(normal[2]) * double(normal[2]);
-    precise double size = sqrt(square);
+    double size = root_of(square);
     for (int a = 0; a < 3; a++) {
-        precise double unit = double(normal[a]) / size;
+        double unit = quotient(double(normal[a]), size);
         vertices[6u * of.x + 3u + uint(a)] = size > 0.0LF ? float(unit) : a == 2 ? 1.0 : 0.0;
     }
 }

@@ -94,19 +94,17 @@ double edge_crossing(bool has_a, uint a, bool has_b, uint b)
         return off_ends(inf_a && inf_b ? 0.5LF : inf_b ? 0.0LF : 1.0LF);
     precise double half_a = number_of(a) * 0.5LF, half_b = number_of(b) * 0.5LF;
     precise double above = LEVEL * 0.5LF - half_a, step = half_b - half_a;
-    precise double t = above / step;
-    return off_ends(t);
+    return off_ends(quotient(above, step));
 }
 
 // Cell coordinates from a padded sample.
-void store_position(uint n, ivec3 at, double x[3])
+void store_position(uint n, ivec3 at, dvec3 x)
 {
-    precise double p[3];
-    for (int a = 0; a < 3; a++)
-        p[a] = double(at[a] - 1) - CENTER(a) + x[a];
+    precise dvec3 p = dvec3(at - 1) - dvec3(CENTER(0), CENTER(1), CENTER(2));
+    p = p + x;
     for (int r = 0; r < 3; r++) {
-        precise double sum = AFFINE(r, 0) * p[0] + AFFINE(r, 1) * p[1];
-        sum = sum + AFFINE(r, 2) * p[2];
+        precise double sum = AFFINE(r, 0) * p.x + AFFINE(r, 1) * p.y;
+        sum = sum + AFFINE(r, 2) * p.z;
         sum = sum + 0.0LF;
         vertices[6u * n + uint(r)] = float(sum);
     }
@@ -118,37 +116,35 @@ void store_normal(uint n, vec3 normal)
         vertices[6u * n + 3u + uint(r)] = normal[r];
 }
 
-bool normalise(inout double d[3])
+bool normalise(inout dvec3 d)
 {
-    double largest = max(max(abs(d[0]), abs(d[1])), abs(d[2]));
-    if (!(largest > 0.0LF) || isinf(largest) || isnan(d[0]) || isnan(d[1]) || isnan(d[2]))
+    double largest = max(max(abs(d.x), abs(d.y)), abs(d.z));
+    if (!(largest > 0.0LF) || isinf(largest) || isnan(d.x) || isnan(d.y) || isnan(d.z))
         return false;
-    precise double e[3];
+    dvec3 e = dvec3(0.0LF);
     for (int a = 0; a < 3; a++)
-        e[a] = d[a] / largest;
-    precise double square = e[0] * e[0] + e[1] * e[1];
-    square = square + e[2] * e[2];
-    precise double size = sqrt(square);
-    for (int a = 0; a < 3; a++) {
-        precise double unit = e[a] / size;
-        d[a] = unit;
-    }
+        set(e, a, quotient(get(d, a), largest));
+    precise double square = e.x * e.x + e.y * e.y;
+    square = square + e.z * e.z;
+    double size = root_of(square);
+    for (int a = 0; a < 3; a++)
+        set(d, a, quotient(get(e, a), size));
     return true;
 }
 
 // Stores the normal of a gradient in index space. Where it vanishes the vertex is listed: its
 // normal comes from the triangles around it. slot, edge: where the vertex is.
-void store_gradient(uint n, double g[3], uint slot, uint edge)
+void store_gradient(uint n, dvec3 g, uint slot, uint edge)
 {
-    double d[3] = double[3](0.0LF, 0.0LF, 0.0LF);
+    dvec3 d = dvec3(0.0LF);
     if (normalise(g))
         for (int r = 0; r < 3; r++) {
-            precise double sum = COFACTOR(r, 0) * g[0] + COFACTOR(r, 1) * g[1];
-            sum = sum + COFACTOR(r, 2) * g[2];
-            d[r] = sum;
+            precise double sum = COFACTOR(r, 0) * g.x + COFACTOR(r, 1) * g.y;
+            sum = sum + COFACTOR(r, 2) * g.z;
+            set(d, r, sum);
         }
     if (normalise(d)) {
-        store_normal(n, vec3(float(d[0]), float(d[1]), float(d[2])));
+        store_normal(n, vec3(float(d.x), float(d.y), float(d.z)));
         return;
     }
     store_normal(n, vec3(0.0));

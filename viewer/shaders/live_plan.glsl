@@ -18,27 +18,16 @@ layout(std430, binding = 13) readonly buffer Tables
     uint tables[];
 };
 
-double values[8]; // of the corners, minus the isovalue, positive inside
+uvec2 value_bits[8]; // of the corners, minus the isovalue, positive inside
 bool finite[8], known[8];
 uint cube;
 
-// ---- faces -----------------------------------------------------------------------------------
-
-// The error of a product in double precision, exactly [Dekker1971].
-double product_error(double a, double b, double product)
+double value_of(int corner)
 {
-    precise double big = 134217729.0LF * a;
-    precise double a_high = big - (big - a);
-    precise double a_low = a - a_high;
-    big = 134217729.0LF * b;
-    precise double b_high = big - (big - b);
-    precise double b_low = b - b_high;
-    precise double error = a_high * b_high - product;
-    error = error + a_high * b_low;
-    error = error + a_low * b_high;
-    error = error + a_low * b_low;
-    return error;
+    return unpack(value_bits[corner]);
 }
+
+// ---- faces -----------------------------------------------------------------------------------
 
 // The sign of a c - b d.
 int compare_products(double a, double c, double b, double d)
@@ -69,7 +58,7 @@ bool face_is_joined(int face)
         return false;
     if (!finite[i0] || !finite[i1])
         return true;
-    int sign = compare_products(values[i0], values[i1], values[o0], values[o1]);
+    int sign = compare_products(value_of(i0), value_of(i1), value_of(o0), value_of(o1));
     return sign > 0 || (sign == 0 && ZERO_INSIDE);
 }
 
@@ -92,9 +81,19 @@ bool is_joined(int face)
 // ---- tunnels ---------------------------------------------------------------------------------
 
 const int columns[4] = int[4](0, 1, 3, 2), faces_after[4] = int[4](2, 1, 3, 0);
-double root[4]; // where a column changes sign; 2: nowhere
-double event[6];
+uvec2 root_bits[4]; // where a column changes sign; 2: nowhere
+uvec2 event_bits[6];
 int event_column[6], event_count;
+
+double root_at(int column)
+{
+    return unpack(root_bits[column]);
+}
+
+double event_at(int e)
+{
+    return unpack(event_bits[e]);
+}
 
 bool is_in(int corner)
 {
@@ -103,14 +102,14 @@ bool is_in(int corner)
 
 int column_corner(int n, double t)
 {
-    return t < root[n] ? columns[n] : columns[n] + 4;
+    return t < root_at(n) ? columns[n] : columns[n] + 4;
 }
 
 bool root_is_before(int m, int n)
 {
     bool m_leaves = is_in(columns[m]), n_leaves = is_in(columns[n]);
     if ((m - n) % 2 == 0 || m_leaves == n_leaves)
-        return root[m] < root[n];
+        return root_at(m) < root_at(n);
     return n_leaves == is_joined(faces_after[(m + 1) % 4 == n ? m : n]);
 }
 
@@ -118,10 +117,10 @@ void add_event(double t, int column)
 {
     int i = event_count++;
     for (; i > 1 && column >= 0 && root_is_before(column, event_column[i - 1]); i--) {
-        event[i] = event[i - 1];
+        event_bits[i] = event_bits[i - 1];
         event_column[i] = event_column[i - 1];
     }
-    event[i] = t;
+    event_bits[i] = pack(t);
     event_column[i] = column;
 }
 
@@ -133,11 +132,12 @@ bool start_sweep()
             return false;
     add_event(0.0LF, -1);
     for (int n = 0; n < 4; n++) {
-        root[n] = 2.0LF;
+        root_bits[n] = pack(2.0LF);
         if (is_in(columns[n]) != is_in(columns[n] + 4)) {
-            precise double low = values[columns[n]], high = values[columns[n] + 4];
-            precise double at = low / (low - high);
-            root[n] = at;
+            precise double low = value_of(columns[n]), high = value_of(columns[n] + 4);
+            precise double height = low - high;
+            double at = quotient(low, height);
+            root_bits[n] = pack(at);
             add_event(at, n);
         }
     }
@@ -153,27 +153,53 @@ bool joined_at(int e, int inside)
     return is_joined(column == -1 ? 4 : 5);
 }
 
-Extended column_slope(int n)
-{
-    return subtract(extend(values[columns[n] + 4]), extend(values[columns[n]]));
-}
+// Steps of turns_back(): what is done, where the result goes, and with what. Registers 0 to 3 are
+// the lower ends of four columns, a c b d, 4 to 7 their upper ends and then slopes, 14 and 15 the
+// bounds. They run in one loop, as compilers copy functions to wherever they are called.
+#define TIMES 0
+#define PLUS 1
+#define MINUS 2
+#define PEAK 3 // minus a register, by twice another
+#define HALF_OF 4 // a register, plus half of another
+#define STEP(what, to, x, y) (what | to << 4 | x << 8 | y << 12)
+const int step_count = 20, slope_step = 6; // after which the sign of A is known
+const int steps[20] =
+    int[20](STEP(MINUS, 4, 4, 0), STEP(MINUS, 5, 5, 1), STEP(MINUS, 6, 6, 2), STEP(MINUS, 7, 7, 3),
+            STEP(TIMES, 8, 4, 5), STEP(TIMES, 9, 6, 7), STEP(MINUS, 8, 8, 9),    // A
+            STEP(TIMES, 9, 0, 5), STEP(TIMES, 10, 1, 4), STEP(PLUS, 9, 9, 10),
+            STEP(TIMES, 10, 2, 7), STEP(MINUS, 9, 9, 10), STEP(TIMES, 10, 3, 6),
+            STEP(MINUS, 9, 9, 10),                                               // B
+            STEP(TIMES, 10, 0, 1), STEP(TIMES, 11, 2, 3), STEP(MINUS, 10, 10, 11), // C
+            STEP(PEAK, 11, 9, 8), STEP(TIMES, 12, 11, 9), STEP(HALF_OF, 12, 10, 12));
 
 bool turns_back(int inside, bool starts_joined, double t, double u)
 {
-    Extended a = extend(values[columns[inside]]), c = extend(values[columns[inside + 2]]);
-    Extended b = extend(values[columns[1 - inside]]), d = extend(values[columns[3 - inside]]);
-    Extended da = column_slope(inside), dc = column_slope(inside + 2),
-             db = column_slope(1 - inside), dd = column_slope(3 - inside);
-    Extended A = subtract(multiply(da, dc), multiply(db, dd));
-    if (starts_joined ? sign_of(A) <= 0 : sign_of(A) >= 0)
+    Extended r[16];
+    int column[4] = int[4](inside, inside + 2, 1 - inside, 3 - inside);
+    for (int n = 0; n < 4; n++) {
+        r[n] = extend(value_of(columns[column[n]]));
+        r[4 + n] = extend(value_of(columns[column[n]] + 4));
+    }
+    r[14] = extend(t);
+    r[15] = extend(u);
+    for (int n = 0; n < step_count + ZERO; n++) {
+        int step = steps[n], what = step & 15;
+        Extended x = r[step >> 8 & 15], y = r[step >> 12 & 15], z;
+        if (what == TIMES) {
+            z = multiply(x, y);
+        } else if (what == PEAK) {
+            z = divide(negate(x), scale_by(y, 1));
+        } else {
+            y.negative = y.negative != (what == MINUS);
+            z = add(x, scale_by(y, what == HALF_OF ? -1 : 0));
+        }
+        r[step >> 4 & 15] = z;
+        if (n == slope_step && (starts_joined ? sign_of(z) <= 0 : sign_of(z) >= 0))
+            return false;
+    }
+    if (!is_below(r[14], r[11]) || !is_below(r[11], r[15]))
         return false;
-    Extended B = subtract(subtract(add(multiply(a, dc), multiply(c, da)), multiply(b, dd)),
-                          multiply(d, db));
-    Extended C = subtract(multiply(a, c), multiply(b, d));
-    Extended at = divide(negate(B), scale_by(A, 1));
-    if (sign_of(subtract(at, extend(t))) <= 0 || sign_of(subtract(at, extend(u))) >= 0)
-        return false;
-    int q = sign_of(add(C, scale_by(multiply(at, B), -1)));
+    int q = sign_of(r[12]);
     return starts_joined ? q < 0 || (q == 0 && !ZERO_INSIDE) : q > 0 || (q == 0 && ZERO_INSIDE);
 }
 
@@ -243,9 +269,8 @@ bool columns_pass(uint faces)
         return false;
     if (!(finite[low] && finite[low + 4] && finite[high - 4] && finite[high]))
         return false;
-    precise double a = values[low] - values[low + 4], b = values[high - 4] - values[high];
-    precise double p = values[low] / a, q = values[high - 4] / b;
-    return p <= q;
+    precise double a = value_of(low) - value_of(low + 4), b = value_of(high - 4) - value_of(high);
+    return quotient(value_of(low), a) <= quotient(value_of(high - 4), b);
 }
 
 // Packs a plan as cwi_cell_plan_pack() does.
@@ -257,7 +282,7 @@ uint plan_cell(uint faces, uint config)
         columns_pass(faces) || !start_sweep())
         return code;
     for (int e = 0; e + 1 < event_count; e++) {
-        precise double t = event[e], u = event[e + 1];
+        precise double t = event_at(e), u = event_at(e + 1);
         precise double middle = 0.5LF * (t + u);
         bool inside[4];
         for (int n = 0; n < 4; n++)
@@ -317,7 +342,7 @@ void main()
         known[c] = fetch(first + ivec3(c & 1, c >> 1 & 1, c >> 2), bits);
         finite[c] = known[c] && is_finite(bits);
         precise double difference = number_of(bits) - LEVEL;
-        values[c] = INVERT ? -difference : difference;
+        value_bits[c] = pack(INVERT ? -difference : difference);
         cube |= known[c] && is_inside(bits) ? 1u << c : 0u;
     }
     uint faces = tables[cube] >> 11 & 63u, config = tables[cube] & 1023u, bit = 0u;
