@@ -17,7 +17,8 @@ typedef struct render_args {
     cli_marks marks;
     cli_label_look look;
     const char *exec, *run, *config; /* of view alone, */
-    bool hidden;                     /* and this */
+    bool hidden;                     /* and these */
+    int live_surface;
     const char *output, *json, *mesh, *save_transfer, *save_camera, *compare, *overlay;
     cli_number iso, difference, overlay_opacity;
     int inside, backend;

@@ -107,7 +107,10 @@ typedef struct view {
     cli_volume overlay;
     bool has_labels; /* they are found; and their surfaces are made: */
     bool has_label_mesh;
-    int mesh_level; /* 0: none, 1: of coarse, 2: of all */
+    int mesh_level;       /* 0: none, 1: of coarse, 2: of all */
+    cw_live_surface live; /* as it was drawn last in place of the mesh */
+    bool is_live;         /* it was, in the picture that is shown */
+    bool refuses_live;    /* the GPU does not extract from this volume */
     double box[2][3];
     bool has_volume;  /* that can be drawn */
     bool values_come; /* the volume's voxels are new to the renderer */
@@ -238,6 +241,8 @@ void view_print_keys(FILE *out);
 /* view_draw.c */
 CW_NODISCARD cw_status view_draw(view *v, view_level level, bool may_stop, cw_error *err);
 bool view_is_final(const view *v);
+/* Names what drew the surface: "gpu", "cpu", "cpu, coarse" or "none". */
+const char *view_name_surface(const view *v);
 CW_NODISCARD cw_status view_picture(view *v, const char *path, cw_error *err);
 
 /* view_loop.c: frames of the window. */

@@ -33,9 +33,10 @@ typedef struct settings {
 
 static int usage(void)
 {
-    fputs("bench_live_surface [--size 512] [--runs 21] [--field gyroid] [--type u16] [--noise 0] "
-          "[--periods 0] [--cpu]\n",
-          stderr);
+    fputs(
+        "bench_live_surface [--size 512] [--runs 21] [--field gyroid] [--type u16] [--noise 0] "
+        "[--periods 0] [--cpu]\n",
+        stderr);
     return 2;
 }
 
@@ -87,11 +88,13 @@ static void fill_periods(const settings *s, cw_volume *v)
     for (size_t k = 0; k < n; k++)
         for (size_t at = k * n * n; at < (k + 1) * n * n; at++) {
             const double w = 2 * 3.14159265358979323846 * s->periods / (double)n;
-            const double x = w * (double)(at % n), y = w * (double)(at / n % n), z = w * (double)k;
+            const double x = w * (double)(at % n), y = w * (double)(at / n % n),
+                         z = w * (double)k;
             const double value = sin(x) * cos(y) + sin(y) * cos(z) + sin(z) * cos(x);
             double low, high;
             const bool whole = cwi_fill_range(s->type, &low, &high);
-            cwi_fill(s->type, voxels, at, whole ? low + (value + 1.5) / 3 * (high - low) : value);
+            cwi_fill(s->type, voxels, at,
+                     whole ? low + (value + 1.5) / 3 * (high - low) : value);
         }
 }
 
@@ -106,7 +109,8 @@ static cw_status make_volume(const settings *s, cw_volume *v, double range[2], c
     if (!cw_field_find("gyroid", &gyroid))
         return CW_ERR_ARGUMENT;
     range[0] = cw_field_stored(s->periods > 0 ? gyroid : s->field, s->type, iso);
-    range[1] = cw_field_stored(s->periods > 0 ? gyroid : s->field, s->type, iso + 0.1 * fmax(fabs(iso), 1));
+    range[1] = cw_field_stored(s->periods > 0 ? gyroid : s->field, s->type,
+                               iso + 0.1 * fmax(fabs(iso), 1));
     if (s->periods <= 0)
         return cw_field_sample(&desc, v, err);
     cw_status st = cw_volume_alloc(v, s->type, desc.dim, 1, 1, err);

@@ -113,8 +113,9 @@ live_difference live_compare(const cw_mesh *gpu, const cw_mesh *cpu)
     uint32_t(*t)[3] = sort_triangles(gpu, a), (*u)[3] = sort_triangles(cpu, b);
     for (size_t v = 0; v < gpu->vertex_count; v++) {
         if (memcmp(a[v].position, b[v].position, sizeof a[v].position) != 0 && d.positions < 9)
-            print_message("%.9g %.9g %.9g, not %.9g %.9g %.9g\n", a[v].position[0], a[v].position[1], a[v].position[2],
-                          b[v].position[0], b[v].position[1], b[v].position[2]);
+            print_message("%.9g %.9g %.9g, not %.9g %.9g %.9g\n", a[v].position[0],
+                          a[v].position[1], a[v].position[2], b[v].position[0],
+                          b[v].position[1], b[v].position[2]);
         d.positions += memcmp(a[v].position, b[v].position, sizeof a[v].position) != 0;
         bool same = true;
         for (int c = 0; c < 3; c++)
@@ -151,7 +152,8 @@ size_t live_check(const cw_volume *volume, double isovalue, bool inside_is_low, 
     assert_int_equal(size[1], gpu.triangle_count);
     const live_difference d = live_compare(&gpu, &cpu);
     if (d.normal > normal)
-        fail_msg("%zu of %zu normals differ, by up to %g", d.normals, gpu.vertex_count, d.normal);
+        fail_msg("%zu of %zu normals differ, by up to %g", d.normals, gpu.vertex_count,
+                 d.normal);
     sum->normals += d.normals;
     sum->normal = fmax(sum->normal, d.normal);
     cw_mesh_free(&gpu);

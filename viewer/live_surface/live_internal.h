@@ -91,7 +91,7 @@ struct cwi_live {
     size_t blocks[3], block_count, slots, open_cells;
     bool has_ranges, has_gaps, has_surface;
     int64_t range[2]; /* of all values, as the shaders compare them */
-    double isovalue; /* of the surface that is there */
+    double isovalue;  /* of the surface that is there */
     bool inside_is_low;
     size_t vertex_count, triangle_count;
     cwi_live_params params;

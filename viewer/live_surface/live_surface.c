@@ -114,7 +114,8 @@ static size_t with_room(const cwi_live *live, size_t bytes)
 
 static cw_status need_room(cwi_live *live, cwi_live_buffer n, size_t bytes, cw_error *err)
 {
-    return bytes <= live->bytes[n] ? CW_OK : cwi_live_need(live, n, with_room(live, bytes), err);
+    return bytes <= live->bytes[n] ? CW_OK
+                                   : cwi_live_need(live, n, with_room(live, bytes), err);
 }
 
 /* Makes the buffers of active blocks and open cells. */
@@ -336,8 +337,8 @@ static cw_status count_all(cwi_live *live, const cw_live_surface *desc,
         if (slots <= live->slots && open <= live->open_cells)
             return cwi_gl_check(err);
         if (slots > live->slots)
-            live->slots = slots + slots / 4 < live->block_count ? slots + slots / 4
-                                                                : live->block_count;
+            live->slots =
+                slots + slots / 4 < live->block_count ? slots + slots / 4 : live->block_count;
         if (open > live->open_cells)
             live->open_cells = open + open / 4;
         st = fit_slots(live, err);
@@ -455,9 +456,8 @@ cw_status cwi_live_take(cwi_live **live, const cw_live_surface *desc,
     if (st != CW_OK)
         return st;
     st = need_live(live, &v, limits, err);
-    if (st == CW_OK &&
-        (times || !(*live)->has_surface || (*live)->isovalue != desc->isovalue ||
-         (*live)->inside_is_low != desc->inside_is_low))
+    if (st == CW_OK && (times || !(*live)->has_surface || (*live)->isovalue != desc->isovalue ||
+                        (*live)->inside_is_low != desc->inside_is_low))
         st = extract(*live, desc, times, err);
     if (*live)
         release();

@@ -27,9 +27,11 @@ static uint32_t pack_case(unsigned cube)
 static void pack_config(const cwi_config *c, uint32_t words[8])
 {
     memset(words, 0, 8 * sizeof *words);
-    words[0] = c->loop_count | (uint32_t)c->triangle_count << 23 | (uint32_t)c->vertex_count << 28;
+    words[0] =
+        c->loop_count | (uint32_t)c->triangle_count << 23 | (uint32_t)c->vertex_count << 28;
     for (int l = 0; l < CWI_CASE_MAX_LOOPS; l++)
-        words[0] |= (uint32_t)c->loop_length[l] << (3 + 4 * l) | (uint32_t)c->cone[l] << (19 + l);
+        words[0] |= (uint32_t)c->loop_length[l] << (3 + 4 * l) | (uint32_t)c->cone[l]
+                                                                     << (19 + l);
     for (int n = 0; n < 8; n++)
         words[1] |= (uint32_t)c->patch[n] << (3 * n);
     for (int n = 0; n < 12; n++)
@@ -58,16 +60,20 @@ static int32_t key_of_float(float x)
 /* Returns the number in the order of voxels, as shaders compare them. */
 static int32_t key_of(cw_type type, double x)
 {
-    return type == CW_F32 ? key_of_float((float)x)
-                          : (int32_t)(type == CW_U32 ? (int64_t)x - (INT64_C(1) << 31) : (int64_t)x);
+    return type == CW_F32
+               ? key_of_float((float)x)
+               : (int32_t)(type == CW_U32 ? (int64_t)x - (INT64_C(1) << 31) : (int64_t)x);
 }
 
 static void type_range(cw_type type, double range[2])
 {
     static const double ranges[CW_TYPE_COUNT][2] = {
-        [CW_U8] = {0, UINT8_MAX},           [CW_I8] = {INT8_MIN, INT8_MAX},
-        [CW_U16] = {0, UINT16_MAX},         [CW_I16] = {INT16_MIN, INT16_MAX},
-        [CW_U32] = {0, UINT32_MAX},         [CW_I32] = {INT32_MIN, INT32_MAX},
+        [CW_U8] = {0, UINT8_MAX},
+        [CW_I8] = {INT8_MIN, INT8_MAX},
+        [CW_U16] = {0, UINT16_MAX},
+        [CW_I16] = {INT16_MIN, INT16_MAX},
+        [CW_U32] = {0, UINT32_MAX},
+        [CW_I32] = {INT32_MIN, INT32_MAX},
         [CW_F32] = {-(double)FLT_MAX, (double)FLT_MAX}};
     memcpy(range, ranges[type], sizeof ranges[type]);
 }
@@ -99,7 +105,8 @@ static bool has_number(cw_type type, double x)
     double range[2];
     type_range(type, range);
     if (type == CW_F32)
-        return !isnan(x) && (isinf(x) || (x >= range[0] && x <= range[1])) && (double)(float)x == x;
+        return !isnan(x) && (isinf(x) || (x >= range[0] && x <= range[1])) &&
+               (double)(float)x == x;
     return x >= range[0] && x <= range[1] && floor(x) == x;
 }
 

@@ -52,7 +52,9 @@ static cw_status upload_layers(const cw_volume *v, texels of, cw_error *err)
 {
     const bool as_is = cwi_gl_is_packed(v);
     const size_t layer = v->dim[0] * v->dim[1] * cw_type_size(v->type);
-    const size_t fit = CHUNK_BYTES / layer, step = fit < 1 ? 1 : fit < v->dim[2] ? fit : v->dim[2];
+    const size_t fit = CHUNK_BYTES / layer, step = fit < 1           ? 1
+                                                   : fit < v->dim[2] ? fit
+                                                                     : v->dim[2];
     char *chunk = as_is ? NULL : cwi_alloc_array(step, layer);
     if (!chunk && !as_is)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the upload of a volume");
@@ -60,8 +62,8 @@ static cw_status upload_layers(const cw_volume *v, texels of, cw_error *err)
         const size_t n = v->dim[2] - k < step ? v->dim[2] - k : step;
         if (!as_is)
             copy_layers(v, k, n, chunk);
-        glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, (GLint)k, (GLsizei)v->dim[0], (GLsizei)v->dim[1],
-                        (GLsizei)n, GL_RED_INTEGER, of.type,
+        glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, (GLint)k, (GLsizei)v->dim[0],
+                        (GLsizei)v->dim[1], (GLsizei)n, GL_RED_INTEGER, of.type,
                         as_is ? cwi_voxel_address(v, 0, 0, k) : chunk);
     }
     cwi_free(chunk);
@@ -76,8 +78,8 @@ cw_status cwi_live_upload(cwi_live *live, cw_error *err)
     for (int a = 0; a < 3; a++)
         if (v->dim[a] > live->capacity.texture_edge)
             return cwi_fail(err, CW_ERR_LIMIT,
-                            "%zu voxels along %c: OpenGL holds textures of up to %zu", v->dim[a],
-                            "xyz"[a], live->capacity.texture_edge);
+                            "%zu voxels along %c: OpenGL holds textures of up to %zu",
+                            v->dim[a], "xyz"[a], live -> capacity.texture_edge);
     if (!texture_fits(of, v->dim))
         return cwi_fail(err, CW_ERR_LIMIT, "OpenGL holds no texture of %zu x %zu x %zu voxels",
                         v->dim[0], v->dim[1], v->dim[2]);

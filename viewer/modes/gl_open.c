@@ -67,8 +67,9 @@ static const char *gl_name(const cwi_gl *gl)
     return gl->name;
 }
 
-static cw_status gl_extract(cwi_gl *gl, const cw_live_surface *desc, const cwi_live_limits *limits,
-                            cwi_live_times *times, size_t size[2], cw_mesh *mesh, cw_error *err)
+static cw_status gl_extract(cwi_gl *gl, const cw_live_surface *desc,
+                            const cwi_live_limits *limits, cwi_live_times *times,
+                            size_t size[2], cw_mesh *mesh, cw_error *err)
 {
     cwi_live_mesh live;
     if (!cwi_gl_enter(gl))

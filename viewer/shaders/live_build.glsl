@@ -86,7 +86,8 @@ void build_discs()
             for (int a = 0; a < 3; a++) {
                 precise double apex = 0.0LF;
                 for (int i = 0; i < count; i++)
-                    apex = apex + quotient(edge_coordinate(loop_edge(first + i), a), double(count));
+                    apex = apex +
+                           quotient(edge_coordinate(loop_edge(first + i), a), double(count));
                 inner[3u * inner_count + uint(a)] = pack(apex);
             }
             inner_count++;
@@ -336,7 +337,8 @@ bool inner_gradient(ivec3 v, dvec3 p, out dvec3 g)
         ivec3 at = v + ivec3(c & 1, c >> 1 & 1, c >> 2);
         for (int a = 0; a < 3; a++) {
             ivec3 along = ivec3(a == 0, a == 1, a == 2);
-            precise double slope = half_at(at + along, is_there) - half_at(at - along, is_there);
+            precise double slope =
+                half_at(at + along, is_there) - half_at(at - along, is_there);
             slope = weight * slope;
             slope = get(sum, a) + slope;
             set(sum, a, slope);
@@ -374,7 +376,9 @@ void main()
         build_tunnel();
     write_triangles(3u * open.z);
     for (uint i = 0u; i < inner_count; i++) {
-        dvec3 p = dvec3(unpack(inner[3u * i]), unpack(inner[3u * i + 1u]), unpack(inner[3u * i + 2u])), g;
+        dvec3 p = dvec3(unpack(inner[3u * i]), unpack(inner[3u * i + 1u]),
+                        unpack(inner[3u * i + 2u])),
+              g;
         store_position(first_inner + i, at, p);
         if (!inner_gradient(v, p, g))
             g = dvec3(0.0LF);

@@ -30,8 +30,8 @@ layout(std430, binding = 0) readonly buffer Params
 #define OPEN_CAPACITY  uint(facts[15])
 #define MEND_CAPACITY  uint(facts[16])
 #define BLOCK_COUNT    uint(facts[17])
-#define NODATA_EXISTS (facts[18] != 0)
-#define ZERO facts[19] // for bounds of loops that compilers are not to unroll
+#define NODATA_EXISTS  (facts[18] != 0)
+#define ZERO           facts[19] // for bounds of loops that compilers are not to unroll
 
 // Counters, and the sizes of dispatches that follow from them.
 layout(std430, binding = 1) buffer Totals
@@ -44,8 +44,8 @@ layout(std430, binding = 1) buffer Totals
 #define TRIANGLES  3
 #define MISSING    4 // vertices whose gradient vanishes
 #define GAPS       5 // 1: some voxel has no value
-#define LOWEST 6 // of all values, plus 2^31
-#define HIGHEST 7
+#define LOWEST     6 // of all values, plus 2^31
+#define HIGHEST    7
 #define FOR_ACTIVE 8 // sizes of a dispatch of one group a block, and of 64 threads a group
 #define FOR_SCAN   12
 #define FOR_OPEN   16
@@ -186,7 +186,8 @@ double number_of(uint bits)
 {
 #if TYPE == F32
     if ((bits & 0x7f800000u) == 0u) {
-        precise double small = double(bits & 0x7fffffu) * unpack(uvec2(0u, 0x36a00000u)); // 2^-149
+        precise double small =
+            double(bits & 0x7fffffu) * unpack(uvec2(0u, 0x36a00000u)); // 2^-149
         return (bits & 0x80000000u) != 0u ? -small : small;
     }
     return double(uintBitsToFloat(bits));

@@ -10,14 +10,14 @@ shared uint edges[1536], rows[81], part[64], cells[512], places[512];
 // ---- vertices --------------------------------------------------------------------------------
 
 #if TYPE == U32 || TYPE == I32
-#define REAL double
+#define REAL  double
 #define REAL3 dvec3
-#define HALF 0.5LF
+#define HALF  0.5LF
 const REAL DIGITS_LOST = 1e-290LF;
 #else
-#define REAL float
+#define REAL  float
 #define REAL3 vec3
-#define HALF 1.0
+#define HALF  1.0
 const REAL DIGITS_LOST = 1e-30;
 #endif
 

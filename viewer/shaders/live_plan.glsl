@@ -156,21 +156,20 @@ bool joined_at(int e, int inside)
 // Steps of turns_back(): what is done, where the result goes, and with what. Registers 0 to 3 are
 // the lower ends of four columns, a c b d, 4 to 7 their upper ends and then slopes, 14 and 15 the
 // bounds. They run in one loop, as compilers copy functions to wherever they are called.
-#define TIMES 0
-#define PLUS 1
-#define MINUS 2
-#define PEAK 3 // minus a register, by twice another
-#define HALF_OF 4 // a register, plus half of another
+#define TIMES                0
+#define PLUS                 1
+#define MINUS                2
+#define PEAK                 3 // minus a register, by twice another
+#define HALF_OF              4 // a register, plus half of another
 #define STEP(what, to, x, y) (what | to << 4 | x << 8 | y << 12)
 const int step_count = 20, slope_step = 6; // after which the sign of A is known
-const int steps[20] =
-    int[20](STEP(MINUS, 4, 4, 0), STEP(MINUS, 5, 5, 1), STEP(MINUS, 6, 6, 2), STEP(MINUS, 7, 7, 3),
-            STEP(TIMES, 8, 4, 5), STEP(TIMES, 9, 6, 7), STEP(MINUS, 8, 8, 9),    // A
-            STEP(TIMES, 9, 0, 5), STEP(TIMES, 10, 1, 4), STEP(PLUS, 9, 9, 10),
-            STEP(TIMES, 10, 2, 7), STEP(MINUS, 9, 9, 10), STEP(TIMES, 10, 3, 6),
-            STEP(MINUS, 9, 9, 10),                                               // B
-            STEP(TIMES, 10, 0, 1), STEP(TIMES, 11, 2, 3), STEP(MINUS, 10, 10, 11), // C
-            STEP(PEAK, 11, 9, 8), STEP(TIMES, 12, 11, 9), STEP(HALF_OF, 12, 10, 12));
+const int steps[20] = int[20](
+    STEP(MINUS, 4, 4, 0), STEP(MINUS, 5, 5, 1), STEP(MINUS, 6, 6, 2), STEP(MINUS, 7, 7, 3),
+    STEP(TIMES, 8, 4, 5), STEP(TIMES, 9, 6, 7), STEP(MINUS, 8, 8, 9), // A
+    STEP(TIMES, 9, 0, 5), STEP(TIMES, 10, 1, 4), STEP(PLUS, 9, 9, 10), STEP(TIMES, 10, 2, 7),
+    STEP(MINUS, 9, 9, 10), STEP(TIMES, 10, 3, 6), STEP(MINUS, 9, 9, 10),   // B
+    STEP(TIMES, 10, 0, 1), STEP(TIMES, 11, 2, 3), STEP(MINUS, 10, 10, 11), // C
+    STEP(PEAK, 11, 9, 8), STEP(TIMES, 12, 11, 9), STEP(HALF_OF, 12, 10, 12));
 
 bool turns_back(int inside, bool starts_joined, double t, double u)
 {
@@ -269,7 +268,8 @@ bool columns_pass(uint faces)
         return false;
     if (!(finite[low] && finite[low + 4] && finite[high - 4] && finite[high]))
         return false;
-    precise double a = value_of(low) - value_of(low + 4), b = value_of(high - 4) - value_of(high);
+    precise double a = value_of(low) - value_of(low + 4),
+                   b = value_of(high - 4) - value_of(high);
     return quotient(value_of(low), a) <= quotient(value_of(high - 4), b);
 }
 

@@ -140,7 +140,7 @@ static void infinite_values_are_the_same(void **state)
     triangles += live_check(&v, 1.7, true, MENDED, &d);
     for (size_t n = 0; n < dim[0] * dim[1] * dim[2]; n++) /* subnormal and huge */
         x[n] = (float)(cwi_chance(7, n) < 0.5 ? cwi_chance(8, n) * 1e-42 - 5e-43
-                                               : (cwi_chance(9, n) - 0.5) * 6e38);
+                                              : (cwi_chance(9, n) - 0.5) * 6e38);
     triangles += live_check(&v, 0, false, MENDED, &d);
     cw_volume_free(&v);
     report("infinite", triangles, &d);
@@ -189,9 +189,10 @@ static void refuses_what_it_cannot(void **state)
     cwi_gl *gl;
     const cwi_gl_functions *f = live_functions(&gl);
     cw_volume v = test_sample(CW_FIELD_SPHERE, 40, CW_F32), doubles;
-    cw_live_surface live = {.volume = &v, .isovalue = cw_field_isovalue(CW_FIELD_SPHERE),
-                            .on_software = true};
-    const cwi_live_limits small_texture = {.texture_edge = 39}, small_buffer = {.buffer_bytes = 4096};
+    cw_live_surface live = {
+        .volume = &v, .isovalue = cw_field_isovalue(CW_FIELD_SPHERE), .on_software = true};
+    const cwi_live_limits small_texture = {.texture_edge = 39},
+                          small_buffer = {.buffer_bytes = 4096};
     const cwi_live_limits small_surface = {.buffer_bytes = (size_t)1 << 20};
     cw_error err = {0};
     cw_mesh mesh;
@@ -250,9 +251,12 @@ static void times_are_told(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_type_is_the_same),        cmocka_unit_test(hard_cases_are_the_same),
-        cmocka_unit_test(infinite_values_are_the_same), cmocka_unit_test(views_are_the_same),
-        cmocka_unit_test(lists_grow),                   cmocka_unit_test(refuses_what_it_cannot),
+        cmocka_unit_test(each_type_is_the_same),
+        cmocka_unit_test(hard_cases_are_the_same),
+        cmocka_unit_test(infinite_values_are_the_same),
+        cmocka_unit_test(views_are_the_same),
+        cmocka_unit_test(lists_grow),
+        cmocka_unit_test(refuses_what_it_cannot),
         cmocka_unit_test(times_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, live_close);
