@@ -149,6 +149,19 @@ static cw_status average_samples(const cw_picture *fine, size_t n, cw_picture *o
     return st;
 }
 
+cw_status cw_renderer_prepare(cw_renderer *r, const cw_live_surface *live, bool *ready,
+                              cw_error *err)
+{
+    CWI_REQUIRE(err, r, live, ready);
+    *ready = false;
+    if (!live->volume)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a live surface needs a volume");
+    if (r->backend == CW_BACKEND_CPU)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED, "a live surface is drawn by OpenGL alone");
+    cw_status st = need_gl(r, err);
+    return st == CW_OK ? r->functions->prepare(r->gl, live, ready, err) : st;
+}
+
 /* A stand-in for a live surface, as a mesh that the rest of the scene knows: the box around the
  * volume and its caps, with the origin of the surface's vertices. */
 typedef struct live_box {

@@ -101,8 +101,7 @@ static bool wants_live(const view *v, view_level level)
            !(view_shows_surfaces(v) && v->mode == CW_MODE_MESH);
 }
 
-/* Puts the live surface in the mesh's place. */
-static void put_live(view *v, cw_scene *scene)
+static void describe_live(view *v)
 {
     const render_args *args = &v->state.args;
     v->live = (cw_live_surface){.volume = &v->source.volume.view,
@@ -110,6 +109,27 @@ static void put_live(view *v, cw_scene *scene)
                                 .inside_is_low =
                                     cli_inside_is_low(args->inside, &v->source.volume.whole),
                                 .on_software = args->live_surface == LIVE_GPU};
+}
+
+/* Returns true if the GPU draws without a wait. Else what it needs is begun, and the CPU extracts
+ * meanwhile. Where the GPU was asked for, pictures wait for it. */
+static bool is_live_ready(view *v)
+{
+    cw_error ignored;
+    bool ready = false;
+    describe_live(v);
+    if (v->state.args.live_surface == LIVE_GPU)
+        return true;
+    if (!v->renderer || cw_renderer_prepare(v->renderer, &v->live, &ready, &ignored) == CW_OK)
+        return ready;
+    v->refuses_live = true;
+    return false;
+}
+
+/* Puts the live surface in the mesh's place. */
+static void put_live(view *v, cw_scene *scene)
+{
+    describe_live(v);
     scene->mesh = NULL;
     scene->live = &v->live;
 }
@@ -309,7 +329,7 @@ static cw_status draw_space(view *v, view_level level, const cw_progress *progre
                             cw_scene *scene, cw_picture *picture, cw_error *err)
 {
     const cw_scene plain = *scene;
-    v->is_live = wants_live(v, level);
+    v->is_live = wants_live(v, level) && is_live_ready(v);
     cw_status st = v->is_live ? CW_OK : need_surface(v, level, err);
     need_box(v);
     if (st == CW_OK && !v->state.is_placed)
@@ -335,9 +355,10 @@ static cw_status draw_space(view *v, view_level level, const cw_progress *progre
         *scene = plain;
         return draw_space(v, level, progress, scene, picture, err);
     }
-    return v->is_live && st != CW_OK && st != CW_ERR_CANCELLED
-               ? cwi_fail_in(err, st, "--live-surface gpu")
-               : st;
+    if (st == CW_OK || !v->is_live)
+        return st;
+    v->is_live = false;
+    return st == CW_ERR_CANCELLED ? st : cwi_fail_in(err, st, "--live-surface gpu");
 }
 
 static cw_status draw_slice(view *v, int part, const cw_progress *progress, cw_scene *scene,

@@ -22,6 +22,8 @@ typedef struct cwi_gl_functions {
     const char *(*name)(const cwi_gl *gl);
     void (*forget)(cwi_gl *gl);
     cw_status (*draw)(cwi_gl *gl, const cwi_frame *frame, cw_picture *picture, cw_error *err);
+    /* As cw_renderer_prepare(). */
+    cw_status (*prepare)(cwi_gl *gl, const cw_live_surface *desc, bool *ready, cw_error *err);
     /* Extracts a live surface and, unless mesh is NULL, copies it there; for tests and benches.
      * limits, times: may be NULL. The surface's size is stored in any case. */
     cw_status (*extract)(cwi_gl *gl, const cw_live_surface *desc, const cwi_live_limits *limits,

@@ -85,6 +85,7 @@ struct cwi_live {
     GLuint voxels; /* texture */
     GLuint programs[CWI_LIVE_PASSES];
     cw_type program_type;
+    bool has_programs; /* they are linked */
     GLuint buffers[CWI_LIVE_BUFFERS], array, times[4];
     size_t bytes[CWI_LIVE_BUFFERS];
     size_t counted_bytes; /* taken from the account of memory */
@@ -105,6 +106,12 @@ bool cwi_live_is_crossed(const cwi_live *live);
 
 /* Makes the programs for the voxels' type, all but those that are there. */
 CW_NODISCARD cw_status cwi_live_make_programs(cwi_live *live, cw_error *err);
+
+/* Starts to compile those that are missing, and waits for none. */
+void cwi_live_start_programs(cwi_live *live);
+
+/* Returns false while the driver still compiles in threads of its own. */
+bool cwi_live_has_programs(const cwi_live *live);
 
 /* Fills the tables of cases for the shaders: 256 words, and 8 for each configuration. */
 enum { CWI_LIVE_TABLE_WORDS = 256 + 8 * 656 };

@@ -86,19 +86,32 @@ static cw_status finish_program(GLuint program, cwi_live_pass pass, cw_error *er
                     first ? first : log);
 }
 
-cw_status cwi_live_make_programs(cwi_live *live, cw_error *err)
+void cwi_live_start_programs(cwi_live *live)
 {
-    bool is_new[CWI_LIVE_PASSES];
-    cw_status st = CW_OK;
     if (epoxy_has_gl_extension("GL_KHR_parallel_shader_compile"))
         glMaxShaderCompilerThreadsKHR(UINT32_MAX);
-    for (int pass = 0; pass < CWI_LIVE_PASSES; pass++) {
-        is_new[pass] = !live->programs[pass];
-        if (is_new[pass])
-            live->programs[pass] = start_program((cwi_live_pass)pass, live->key.type);
-    }
+    for (int pass = 0; pass < CWI_LIVE_PASSES; pass++)
+        if (!live->programs[pass])
+            live->programs[pass] = start_program((cwi_live_pass)pass, live->program_type);
+}
+
+bool cwi_live_has_programs(const cwi_live *live)
+{
+    GLint is_complete = GL_TRUE;
+    const bool asks = epoxy_has_gl_extension("GL_KHR_parallel_shader_compile");
+    for (int pass = 0; pass < CWI_LIVE_PASSES && asks && is_complete; pass++)
+        glGetProgramiv(live->programs[pass], GL_COMPLETION_STATUS_KHR, &is_complete);
+    return is_complete;
+}
+
+cw_status cwi_live_make_programs(cwi_live *live, cw_error *err)
+{
+    cw_status st = CW_OK;
+    if (live->has_programs)
+        return CW_OK;
+    cwi_live_start_programs(live);
     for (int pass = 0; pass < CWI_LIVE_PASSES && st == CW_OK; pass++)
-        if (is_new[pass])
-            st = finish_program(live->programs[pass], (cwi_live_pass)pass, err);
+        st = finish_program(live->programs[pass], (cwi_live_pass)pass, err);
+    live->has_programs = st == CW_OK;
     return st;
 }

@@ -189,6 +189,7 @@ void cwi_live_forget(cwi_live *live)
     glDeleteQueries(sizeof live->times / sizeof *live->times, live->times);
     cwi_memory_give(live->counted_bytes);
     empty.program_type = live->program_type;
+    empty.has_programs = live->has_programs;
     memcpy(empty.programs, live->programs, sizeof empty.programs);
     *live = empty;
 }
@@ -198,6 +199,7 @@ static void drop_programs(cwi_live *live)
     for (int n = 0; n < CWI_LIVE_PASSES; n++)
         glDeleteProgram(live->programs[n]);
     memset(live->programs, 0, sizeof live->programs);
+    live->has_programs = false;
 }
 
 void cwi_live_drop(cwi_live *live)
@@ -411,8 +413,8 @@ static cw_status set_up(cwi_live *live, const cwi_live_limits *limits, cw_error 
     return cwi_gl_check(err);
 }
 
-static cw_status need_live(cwi_live **live, const cw_volume *v, const cwi_live_limits *limits,
-                           cw_error *err)
+/* Makes the state, and drops what is of another volume, or of another type of voxels. */
+static cw_status make_state(cwi_live **live, const cw_volume *v, cw_error *err)
 {
     if (*live && (*live)->is_set_up && memcmp(&(*live)->key, v, sizeof *v) == 0)
         return CW_OK;
@@ -424,8 +426,17 @@ static cw_status need_live(cwi_live **live, const cw_volume *v, const cwi_live_l
         drop_programs(l);
     l->program_type = v->type;
     l->key = *v;
-    cw_status st = set_up(l, limits, err);
-    l->is_set_up = st == CW_OK;
+    return CW_OK;
+}
+
+static cw_status need_live(cwi_live **live, const cw_volume *v, const cwi_live_limits *limits,
+                           cw_error *err)
+{
+    cw_status st = make_state(live, v, err);
+    if (st == CW_OK && !(*live)->is_set_up) {
+        st = set_up(*live, limits, err);
+        (*live)->is_set_up = st == CW_OK;
+    }
     return st;
 }
 
@@ -442,17 +453,42 @@ static void release(void)
     glUseProgram(0);
 }
 
+/* Checks the context, and resolves and checks the volume. */
+static cw_status check_all(const cw_live_surface *desc, cw_volume *v, cw_error *err)
+{
+    cw_status st = cwi_live_check(desc, err);
+    if (st == CW_OK)
+        st = cw_volume_select(desc->volume, 0, 0, v, err);
+    return st == CW_OK ? check_volume(v, err) : st;
+}
+
+cw_status cwi_live_prepare(cwi_live **live, const cw_live_surface *desc, bool *ready,
+                           cw_error *err)
+{
+    cw_volume v;
+    cw_status st = check_all(desc, &v, err);
+    if (st == CW_OK)
+        st = make_state(live, &v, err);
+    if (st != CW_OK)
+        return st;
+    cwi_live_start_programs(*live);
+    if (!cwi_live_has_programs(*live))
+        return CW_OK;
+    st = need_live(live, &v, NULL, err);
+    release();
+    *ready = st == CW_OK;
+    if (st != CW_OK)
+        cwi_live_forget(*live);
+    return st;
+}
+
 cw_status cwi_live_take(cwi_live **live, const cw_live_surface *desc,
                         const cwi_live_limits *limits, cwi_live_times *times,
                         cwi_live_mesh *mesh, cw_error *err)
 {
     cw_volume v;
     memset(mesh, 0, sizeof *mesh);
-    cw_status st = cwi_live_check(desc, err);
-    if (st == CW_OK)
-        st = cw_volume_select(desc->volume, 0, 0, &v, err);
-    if (st == CW_OK)
-        st = check_volume(&v, err);
+    cw_status st = check_all(desc, &v, err);
     if (st != CW_OK)
         return st;
     st = need_live(live, &v, limits, err);

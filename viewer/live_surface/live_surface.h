@@ -28,6 +28,10 @@ CW_NODISCARD cw_status cwi_live_take(cwi_live **live, const cw_live_surface *des
                                      const cwi_live_limits *limits, cwi_live_times *times,
                                      cwi_live_mesh *mesh, cw_error *err);
 
+/* Begins what cwi_live_take() needs, as cw_renderer_prepare(). */
+CW_NODISCARD cw_status cwi_live_prepare(cwi_live **live, const cw_live_surface *desc,
+                                        bool *ready, cw_error *err);
+
 /* Copies the surface that was taken last to a mesh, as cw_extract() makes it. */
 CW_NODISCARD cw_status cwi_live_read(const cwi_live *live, cw_mesh *mesh, cw_error *err);
 

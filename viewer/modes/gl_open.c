@@ -83,6 +83,15 @@ static cw_status gl_extract(cwi_gl *gl, const cw_live_surface *desc,
     return st;
 }
 
+static cw_status gl_prepare(cwi_gl *gl, const cw_live_surface *desc, bool *ready, cw_error *err)
+{
+    if (!cwi_gl_enter(gl))
+        return cwi_fail(err, CW_ERR_BACKEND, "the OpenGL context was lost");
+    cw_status st = cwi_live_prepare(&gl->live, desc, ready, err);
+    cwi_gl_leave(gl);
+    return st;
+}
+
 CW_API extern const cwi_gl_functions cwi_module_gl;
-const cwi_gl_functions cwi_module_gl = {gl_open,   gl_close,    gl_name,
-                                        gl_forget, cwi_gl_draw, gl_extract};
+const cwi_gl_functions cwi_module_gl = {gl_open,     gl_close,   gl_name,   gl_forget,
+                                        cwi_gl_draw, gl_prepare, gl_extract};

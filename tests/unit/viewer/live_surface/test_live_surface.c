@@ -1,14 +1,17 @@
 /* Tests surfaces that OpenGL extracts against cw_extract(): the same vertices to the bit, the
  * same triangles. Normals are the same to the bit but where they come from triangles, whose sum
  * has another order. */
+#define _POSIX_C_SOURCE 199309L /* nanosleep */
 #include "support/live_surfaces.h"
 #include "support/noise_volume.h"
+#include "support/pictures.h"
 #include "support/surface.h"
 
 #include "core/synthetic/random_fill.h"
 
 #include <math.h>
 #include <string.h>
+#include <time.h>
 
 /* Largest difference of normals that are sums over triangles. */
 #define MENDED 1e-4
@@ -226,6 +229,83 @@ static void refuses_what_it_cannot(void **state)
     cw_volume_free(&v);
 }
 
+/* What a surface needs is begun, and comes without a wait in the end. */
+static void prepares(void **state)
+{
+    (void)state;
+    cwi_gl *gl;
+    const cwi_gl_functions *f = live_functions(&gl);
+    cw_volume v = test_sample(CW_FIELD_SPHERE, 20, CW_U8);
+    cw_live_surface live = {.volume = &v, .isovalue = 128, .on_software = true};
+    cw_error err = {0};
+    size_t size[2];
+    bool ready = false;
+    f->forget(gl);
+    for (int n = 0; n < 60000 && !ready; n++) {
+        const struct timespec pause = {.tv_nsec = 1000000};
+        assert_ok(f->prepare(gl, &live, &ready, &err), err);
+        nanosleep(&pause, NULL);
+    }
+    assert_true(ready);
+    assert_ok(f->extract(gl, &live, NULL, NULL, size, NULL, &err), err);
+    assert_true(size[1] > 0);
+    v.dim[2] = 1;
+    assert_fails(f->prepare(gl, &live, &ready, &err), CW_ERR_ARGUMENT, "1 voxel along z", err);
+    v.dim[2] = 20;
+    cw_volume_free(&v);
+}
+
+/* A scene's live surface looks as the mesh does. Others are refused. */
+static void scenes_have_one(void **state)
+{
+    (void)state;
+    enum { SIDE = 160 };
+    cwi_gl *gl;
+    live_functions(&gl);
+    cw_renderer *r = test_renderer(), *cpu;
+    cw_volume v = test_sample(CW_FIELD_GYROID, 40, CW_I16);
+    const cw_live_surface live = {.volume = &v, .isovalue = 100, .on_software = true};
+    const cw_extract_desc desc = {.isovalue = 100};
+    cw_mesh mesh;
+    cw_error err = {0};
+    bool ready;
+    assert_ok(cw_extract(&v, &desc, &mesh, NULL, &err), err);
+    cw_scene scene = {.mode = CW_MODE_MESH, .mesh = &mesh, .width = SIDE, .height = SIDE};
+    double min[3], max[3];
+    assert_true(cw_mesh_bounds(&mesh, min, max));
+    cw_fit_desc fit = {.aspect = 1, .fov_deg = 30};
+    memcpy(fit.min, min, sizeof min);
+    memcpy(fit.max, max, sizeof max);
+    assert_ok(cw_camera_fit(&fit, &scene.camera, &err), err);
+    cw_picture a = test_draw(r, &scene), b;
+    scene.live = &live;
+    assert_fails(cw_render(r, &scene, &b, &err), CW_ERR_ARGUMENT, "not both", err);
+    scene.mesh = NULL;
+    b = test_draw(r, &scene);
+    size_t far = 0;
+    for (size_t n = 0; n < (size_t)4 * SIDE * SIDE; n++)
+        far += fabs((double)a.pixels[n] - (double)b.pixels[n]) > 2.0 / 255;
+    assert_true(far <= SIDE * SIDE / 1000);
+    cw_picture_free(&a);
+    cw_picture_free(&b);
+    scene.wireframe = true;
+    assert_fails(cw_render(r, &scene, &b, &err), CW_ERR_UNSUPPORTED, "without wireframe", err);
+    scene.wireframe = false;
+    assert_ok(cw_renderer_new(CW_BACKEND_CPU, &cpu, &err), err);
+    assert_fails(cw_render(cpu, &scene, &b, &err), CW_ERR_UNSUPPORTED, "OpenGL alone", err);
+    assert_fails(cw_renderer_prepare(cpu, &live, &ready, &err), CW_ERR_UNSUPPORTED,
+                 "OpenGL alone", err);
+    cw_renderer_free(cpu);
+    cw_mesh_free(&mesh);
+    cw_volume_free(&v);
+}
+
+static int close_all(void **state)
+{
+    test_renderer_close(state);
+    return live_close(state);
+}
+
 /* Times of the GPU are found, and the same surface is there again. */
 static void times_are_told(void **state)
 {
@@ -258,6 +338,8 @@ int main(void)
         cmocka_unit_test(lists_grow),
         cmocka_unit_test(refuses_what_it_cannot),
         cmocka_unit_test(times_are_told),
+        cmocka_unit_test(prepares),
+        cmocka_unit_test(scenes_have_one),
     };
-    return cmocka_run_group_tests(tests, NULL, live_close);
+    return cmocka_run_group_tests(tests, NULL, close_all);
 }
