@@ -337,9 +337,9 @@ CW_API const char *cw_renderer_name(const cw_renderer *renderer);
 CW_NODISCARD CW_API cw_status cw_render(cw_renderer *renderer, const cw_scene *scene,
                                         cw_picture *picture, cw_error *err);
 
-/* Begins what a live surface needs on the GPU, its shaders and the volume's voxels, and does not
- * wait for shaders that the driver compiles meanwhile. Not needed before cw_render(), which waits
- * for them: some seconds, the first time on a machine.
+/* Begins what a live surface needs on the GPU: its shaders and the volume's voxels. Does not wait
+ * for shaders that the driver compiles meanwhile; some drivers link one in the call. Not needed
+ * before cw_render(), which waits for all: some seconds, the first time on a machine.
  *
  * ready    set to true when cw_render() would draw the surface without such a wait
  * Returns  as cw_render() of a scene with the surface, where it cannot be had */

@@ -1,4 +1,4 @@
-/* What the files of the live surface share. */
+/* Types and functions that the files of the live surface share. */
 #ifndef VIEWER_LIVE_SURFACE_LIVE_INTERNAL_H
 #define VIEWER_LIVE_SURFACE_LIVE_INTERNAL_H
 
@@ -85,7 +85,7 @@ struct cwi_live {
     GLuint voxels; /* texture */
     GLuint programs[CWI_LIVE_PASSES];
     cw_type program_type;
-    bool has_programs; /* they are linked */
+    int finished; /* programs, from the first */
     GLuint buffers[CWI_LIVE_BUFFERS], array, times[4];
     size_t bytes[CWI_LIVE_BUFFERS];
     size_t counted_bytes; /* taken from the account of memory */
@@ -104,14 +104,12 @@ CW_NODISCARD cw_status cwi_live_upload(cwi_live *live, cw_error *err);
 /* Returns true if some value is inside and some is not; without, there is no surface. */
 bool cwi_live_is_crossed(const cwi_live *live);
 
-/* Makes the programs for the voxels' type, all but those that are there. */
-CW_NODISCARD cw_status cwi_live_make_programs(cwi_live *live, cw_error *err);
-
 /* Starts to compile those that are missing, and waits for none. */
 void cwi_live_start_programs(cwi_live *live);
 
-/* Returns false while the driver still compiles in threads of its own. */
-bool cwi_live_has_programs(const cwi_live *live);
+/* Finishes the programs that were started: all, or those that need no wait. */
+CW_NODISCARD cw_status cwi_live_finish_programs(cwi_live *live, bool waits, bool *ready,
+                                                cw_error *err);
 
 /* Fills the tables of cases for the shaders: 256 words, and 8 for each configuration. */
 enum { CWI_LIVE_TABLE_WORDS = 256 + 8 * 656 };

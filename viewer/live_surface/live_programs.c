@@ -3,12 +3,17 @@
 
 #include "core/base/status.h"
 
+#include <omp.h>
 #include <stdio.h>
 #include <string.h>
 
 extern const char cwi_glsl_live_common[], cwi_glsl_live_ranges[], cwi_glsl_live_scan[],
     cwi_glsl_live_count[], cwi_glsl_live_size[], cwi_glsl_live_exact[], cwi_glsl_live_plan[],
     cwi_glsl_live_place[], cwi_glsl_live_emit[], cwi_glsl_live_build[], cwi_glsl_live_mend[];
+
+/* Seconds after which a call that does not wait finishes no further program. Drivers with threads
+ * may still link when a program is asked for its status: half a second for a large one. */
+static const double SOON_S = 0.02;
 
 /* A program: what its source needs before it, or NULL, and what chooses among its steps. */
 static const struct {
@@ -95,23 +100,26 @@ void cwi_live_start_programs(cwi_live *live)
             live->programs[pass] = start_program((cwi_live_pass)pass, live->program_type);
 }
 
-bool cwi_live_has_programs(const cwi_live *live)
+/* Returns true if the driver does not compile this program any more. */
+static bool is_complete(GLuint program)
 {
-    GLint is_complete = GL_TRUE;
-    const bool asks = epoxy_has_gl_extension("GL_KHR_parallel_shader_compile");
-    for (int pass = 0; pass < CWI_LIVE_PASSES && asks && is_complete; pass++)
-        glGetProgramiv(live->programs[pass], GL_COMPLETION_STATUS_KHR, &is_complete);
-    return is_complete;
+    GLint complete = GL_TRUE;
+    if (epoxy_has_gl_extension("GL_KHR_parallel_shader_compile"))
+        glGetProgramiv(program, GL_COMPLETION_STATUS_KHR, &complete);
+    return complete;
 }
 
-cw_status cwi_live_make_programs(cwi_live *live, cw_error *err)
+cw_status cwi_live_finish_programs(cwi_live *live, bool waits, bool *ready, cw_error *err)
 {
+    const double start = omp_get_wtime();
     cw_status st = CW_OK;
-    if (live->has_programs)
-        return CW_OK;
-    cwi_live_start_programs(live);
-    for (int pass = 0; pass < CWI_LIVE_PASSES && st == CW_OK; pass++)
-        st = finish_program(live->programs[pass], (cwi_live_pass)pass, err);
-    live->has_programs = st == CW_OK;
+    while (live->finished < CWI_LIVE_PASSES && st == CW_OK) {
+        const GLuint program = live->programs[live->finished];
+        if (!waits && (omp_get_wtime() - start > SOON_S || !is_complete(program)))
+            break;
+        st = finish_program(program, (cwi_live_pass)live->finished, err);
+        live->finished += st == CW_OK;
+    }
+    *ready = live->finished == CWI_LIVE_PASSES;
     return st;
 }

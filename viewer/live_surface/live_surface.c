@@ -189,7 +189,7 @@ void cwi_live_forget(cwi_live *live)
     glDeleteQueries(sizeof live->times / sizeof *live->times, live->times);
     cwi_memory_give(live->counted_bytes);
     empty.program_type = live->program_type;
-    empty.has_programs = live->has_programs;
+    empty.finished = live->finished;
     memcpy(empty.programs, live->programs, sizeof empty.programs);
     *live = empty;
 }
@@ -199,7 +199,7 @@ static void drop_programs(cwi_live *live)
     for (int n = 0; n < CWI_LIVE_PASSES; n++)
         glDeleteProgram(live->programs[n]);
     memset(live->programs, 0, sizeof live->programs);
-    live->has_programs = false;
+    live->finished = 0;
 }
 
 void cwi_live_drop(cwi_live *live)
@@ -399,7 +399,9 @@ static cw_status set_up(cwi_live *live, const cwi_live_limits *limits, cw_error 
     if (live->block_count > (size_t)1 << 23)
         return cwi_fail(err, CW_ERR_LIMIT, "%zu blocks: a live surface has at most %d",
                         live->block_count, 1 << 23);
-    cw_status st = cwi_live_make_programs(live, err);
+    bool ready;
+    cwi_live_start_programs(live);
+    cw_status st = cwi_live_finish_programs(live, true, &ready, err);
     if (st != CW_OK)
         drop_programs(live);
     if (st == CW_OK)
@@ -472,13 +474,15 @@ cw_status cwi_live_prepare(cwi_live **live, const cw_live_surface *desc, bool *r
     if (st != CW_OK)
         return st;
     cwi_live_start_programs(*live);
-    if (!cwi_live_has_programs(*live))
-        return CW_OK;
-    st = need_live(live, &v, NULL, err);
+    st = cwi_live_finish_programs(*live, false, ready, err);
+    if (st == CW_OK && *ready)
+        st = need_live(live, &v, NULL, err);
     release();
-    *ready = st == CW_OK;
-    if (st != CW_OK)
+    if (st != CW_OK) {
+        drop_programs(*live);
         cwi_live_forget(*live);
+        *ready = false;
+    }
     return st;
 }
 

@@ -6,7 +6,7 @@
 
 #include "viewer/gl/gl_internal.h"
 
-/* What is on the GPU for one volume: its voxels, programs for their type, and the surface. */
+/* Everything on the GPU for one volume: its voxels, programs for their type, and the surface. */
 typedef struct cwi_live cwi_live;
 
 /* A surface in buffers: its vertex array has the positions and normals, as floats, and the

@@ -1,5 +1,5 @@
-// What all passes that extract a surface on the GPU share: what is known of the volume, its voxels,
-// blocks and cells. The order of operations is that of extract/dense, and `precise` keeps it.
+// Parameters, voxels, blocks and arithmetic that all passes share which extract a surface on the
+// GPU. The order of operations is that of extract/dense, and `precise` keeps it.
 // TYPE is that of voxels: a number as in the table of live_volume.c.
 #define U32 6
 #define I32 7
@@ -121,7 +121,7 @@ double quotient(double a, double b)
     return q;
 }
 
-// A square root, likewise.
+// A square root as a processor rounds it.
 double root_of(double x)
 {
     precise double s = sqrt(x);

@@ -229,7 +229,7 @@ static void refuses_what_it_cannot(void **state)
     cw_volume_free(&v);
 }
 
-/* What a surface needs is begun, and comes without a wait in the end. */
+/* A surface is prepared in calls that do not wait, and is ready in the end. */
 static void prepares(void **state)
 {
     (void)state;
