@@ -341,6 +341,7 @@ CW_NODISCARD CW_API cw_status cw_render(cw_renderer *renderer, const cw_scene *s
  * for shaders that the driver compiles meanwhile; some drivers link one in the call. Not needed
  * before cw_render(), which waits for all: some seconds, the first time on a machine.
  *
+ * live     borrowed; the volume's voxels are read now or in a later call
  * ready    set to true when cw_render() would draw the surface without such a wait
  * Returns  as cw_render() of a scene with the surface, where it cannot be had */
 CW_NODISCARD CW_API cw_status cw_renderer_prepare(cw_renderer *renderer,

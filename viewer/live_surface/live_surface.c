@@ -28,7 +28,8 @@ static bool is_software(void)
     return found;
 }
 
-cw_status cwi_live_check(const cw_live_surface *desc, cw_error *err)
+/* Checks everything that can be known without a volume. */
+static cw_status check_opengl(const cw_live_surface *desc, cw_error *err)
 {
     GLint blocks = 0, bindings = 0;
     if (epoxy_gl_version() < 43)
@@ -109,7 +110,7 @@ cw_status cwi_live_need(cwi_live *live, cwi_live_buffer n, size_t bytes, cw_erro
 static size_t with_room(const cwi_live *live, size_t bytes)
 {
     const size_t most = live->capacity.buffer_bytes, roomy = bytes + bytes / 4;
-    return bytes <= live->bytes[0] ? bytes : roomy <= most || bytes > most ? roomy : most;
+    return roomy <= most || bytes > most ? roomy : most;
 }
 
 static cw_status need_room(cwi_live *live, cwi_live_buffer n, size_t bytes, cw_error *err)
@@ -458,7 +459,7 @@ static void release(void)
 /* Checks the context, and resolves and checks the volume. */
 static cw_status check_all(const cw_live_surface *desc, cw_volume *v, cw_error *err)
 {
-    cw_status st = cwi_live_check(desc, err);
+    cw_status st = check_opengl(desc, err);
     if (st == CW_OK)
         st = cw_volume_select(desc->volume, 0, 0, v, err);
     return st == CW_OK ? check_volume(v, err) : st;

@@ -39,7 +39,4 @@ CW_NODISCARD cw_status cwi_live_read(const cwi_live *live, cw_mesh *mesh, cw_err
 void cwi_live_forget(cwi_live *live);
 void cwi_live_drop(cwi_live *live);
 
-/* Checks everything that can be known without a volume. desc: may run on software */
-CW_NODISCARD cw_status cwi_live_check(const cw_live_surface *desc, cw_error *err);
-
 #endif
