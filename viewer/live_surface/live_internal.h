@@ -60,6 +60,9 @@ typedef enum cwi_live_pass {
     CWI_LIVE_PASSES
 } cwi_live_pass;
 
+/* Entries that a group of a scan sums, as in live_common.glsl. */
+enum { CWI_LIVE_SCAN = 1024 };
+
 /* The words of a block's record and the bytes of a vertex, as in the shaders. */
 enum { CWI_LIVE_RECORD = 100, CWI_LIVE_VERTEX_BYTES = 24, CWI_LIVE_TRIANGLE_BYTES = 12 };
 
@@ -124,5 +127,20 @@ CW_NODISCARD cw_status cwi_live_fill_params(const cwi_live *live, const cw_live_
  * CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cwi_live_need(cwi_live *live, cwi_live_buffer n, size_t bytes,
                                      cw_error *err);
+
+/* Does the same, with room to grow in what is allocated. */
+CW_NODISCARD cw_status cwi_live_need_room(cwi_live *live, cwi_live_buffer n, size_t bytes,
+                                          cw_error *err);
+
+/* Makes the buffers of listed blocks and open cells as large as live->slots and
+ * live->open_cells. */
+CW_NODISCARD cw_status cwi_live_fit_slots(cwi_live *live, cw_error *err);
+
+/* Makes all buffers but those of the surface, and the vertex array. */
+CW_NODISCARD cw_status cwi_live_make_buffers(cwi_live *live, cw_error *err);
+
+/* Extracts the surface into the buffers. */
+CW_NODISCARD cw_status cwi_live_extract(cwi_live *live, const cw_live_surface *desc,
+                                        cwi_live_times *times, cw_error *err);
 
 #endif
