@@ -300,6 +300,36 @@ static void scenes_have_one(void **state)
     cw_volume_free(&v);
 }
 
+/* Without memory for a part of it there is no surface, and nothing stays behind. */
+static void memory_runs_out(void **state)
+{
+    (void)state;
+    cwi_gl *gl;
+    const cwi_gl_functions *f = live_functions(&gl);
+    cw_volume v = make_steps(CW_U8, (const size_t[3]){50, 50, 50}, 256, 5);
+    const cw_live_surface live = {.volume = &v, .isovalue = 128, .on_software = true};
+    cw_error err = {0};
+    cw_status st = CW_ERR_NO_MEMORY;
+    size_t size[2], failed = 0;
+    f->forget(gl);
+    const size_t before = cw_memory_used();
+    for (size_t room = 1000; st != CW_OK && room < (size_t)1 << 30; room *= 2) {
+        cw_memory_limit(before + room);
+        st = f->extract(gl, &live, NULL, NULL, size, NULL, &err);
+        cw_memory_limit(0);
+        if (st != CW_OK) {
+            assert_int_equal(st, CW_ERR_NO_MEMORY);
+            assert_int_equal(cw_memory_used(), before);
+            failed++;
+        }
+    }
+    assert_int_equal(st, CW_OK);
+    assert_true(failed > 5 && size[1] > 0);
+    f->forget(gl);
+    assert_int_equal(cw_memory_used(), before);
+    cw_volume_free(&v);
+}
+
 static int close_all(void **state)
 {
     test_renderer_close(state);
@@ -340,6 +370,7 @@ int main(void)
         cmocka_unit_test(times_are_told),
         cmocka_unit_test(prepares),
         cmocka_unit_test(scenes_have_one),
+        cmocka_unit_test(memory_runs_out),
     };
     return cmocka_run_group_tests(tests, NULL, close_all);
 }
