@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/module.h"
 #include "core/base/status.h"
+#include "core/geometry/affine.h"
 #include "core/volume/volume.h"
 #include "viewer/cpu/cpu_draw.h"
 #include "viewer/cpu/cpu_mesh.h"
@@ -118,6 +119,8 @@ static cw_status draw_frame(cw_renderer *r, const cwi_frame *frame, cw_picture *
 {
     const char *kind = cwi_volume_kind(&frame->volume);
     r->drew_on_cpu = is_for_cpu(r, frame);
+    if (r->drew_on_cpu && frame->scene.live)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED, "a live surface is drawn by OpenGL alone");
     if (r->drew_on_cpu)
         return cwi_cpu_draw(&r->cpu, frame, picture, err);
     if (kind)
@@ -146,14 +149,80 @@ static cw_status average_samples(const cw_picture *fine, size_t n, cw_picture *o
     return st;
 }
 
+cw_status cw_renderer_prepare(cw_renderer *r, const cw_live_surface *live, bool *ready,
+                              cw_error *err)
+{
+    CWI_REQUIRE(err, r, live, ready);
+    *ready = false;
+    if (!live->volume)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a live surface needs a volume");
+    if (r->backend == CW_BACKEND_CPU)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED, "a live surface is drawn by OpenGL alone");
+    cw_status st = need_gl(r, err);
+    return st == CW_OK ? r->functions->prepare(r->gl, live, ready, err) : st;
+}
+
+/* A stand-in for a live surface, as a mesh that the rest of the scene knows: the box around the
+ * volume and its caps, with the origin of the surface's vertices. */
+typedef struct live_box {
+    cw_scene scene;
+    cw_mesh mesh;
+    float positions[8][3];
+    uint32_t triangles[12][3];
+} live_box;
+
+/* Caps stand this far beyond the last samples, in voxels, or less. */
+#define CAP_REACH (1.0 / 512)
+
+static cw_status make_live_box(const cw_scene *scene, live_box *box, cw_error *err)
+{
+    static const uint32_t sides[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6},
+                                          {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7},
+                                          {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    cw_volume v;
+    double center[3];
+    if (scene->mesh)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a scene has a mesh or a live surface, not both");
+    if (!scene->live->volume)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "a live surface needs a volume");
+    cw_status st = cw_volume_select(scene->live->volume, 0, 0, &v, err);
+    if (st == CW_OK && cwi_volume_kind(&v))
+        st = cwi_fail(err, CW_ERR_UNSUPPORTED,
+                      "OpenGL extracts from evenly spaced volumes, not from %s",
+                      cwi_volume_kind(&v));
+    if (st != CW_OK)
+        return st;
+    for (int a = 0; a < 3; a++)
+        center[a] = 0.5 * (double)(v.dim[a] - 1);
+    for (int n = 0; n < 8; n++)
+        for (int r = 0; r < 3; r++) {
+            double sum = 0;
+            for (int a = 0; a < 3; a++)
+                sum += v.affine[r][a] * (n >> a & 1 ? 1 : -1) * (center[a] + CAP_REACH);
+            box->positions[n][r] = (float)sum;
+        }
+    memcpy(box->triangles, sides, sizeof sides);
+    box->mesh = (cw_mesh){.positions = box->positions[0],
+                          .vertex_count = 8,
+                          .triangles = box->triangles[0],
+                          .triangle_count = 12};
+    cwi_affine_apply(v.affine[0], center, box->mesh.origin);
+    box->scene = *scene;
+    box->scene.mesh = &box->mesh;
+    return CW_OK;
+}
+
 cw_status cw_render(cw_renderer *renderer, const cw_scene *scene, cw_picture *picture,
                     cw_error *err)
 {
     CWI_REQUIRE(err, renderer, scene, picture);
     cwi_frame frame;
     cw_picture fine = {0};
+    live_box box;
     *picture = (cw_picture){0};
-    cw_status st = cwi_frame_init(&frame, scene, err);
+    cw_status st = scene->live ? make_live_box(scene, &box, err) : CW_OK;
+    if (st == CW_OK)
+        st = cwi_frame_init(&frame, scene->live ? &box.scene : scene, err);
     if (st == CW_OK)
         st = cwi_gradient_volume_take(&renderer->gradients, &frame, err);
     if (st == CW_OK)

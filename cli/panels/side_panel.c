@@ -275,8 +275,11 @@ static void show_surface(view *v)
         view_ask(v, "iso off");
     if (v->ui->slider(v->window, "Isovalue", &value, s->min, s->max, "%.5g"))
         view_ask(v, "iso %.9g", value);
-    snprintf(text, sizeof text, "%zu triangles%s", v->source.mesh.triangle_count,
-             v->mesh_level == 1 ? ", coarse" : "");
+    if (v->is_live)
+        snprintf(text, sizeof text, "extracted by the GPU");
+    else
+        snprintf(text, sizeof text, "%zu triangles%s", v->source.mesh.triangle_count,
+                 v->mesh_level == 1 ? ", coarse" : "");
     if (on)
         v->ui->text(v->window, text);
 }

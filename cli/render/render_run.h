@@ -18,7 +18,8 @@ typedef struct render_args {
     cli_label_look look;
     const char *exec, *run, *config, *recent, *film; /* of view alone, */
     bool hidden, light_theme;                        /* and these, */
-    cli_number fps;                                  /* and this */
+    cli_number fps;                                  /* and these */
+    int live_surface;
     const char *output, *json, *mesh, *save_transfer, *save_camera, *compare, *overlay;
     cli_number iso, difference, overlay_opacity;
     int inside, backend;

@@ -41,6 +41,9 @@ static const cli_option options[] = {
     {"fps", 0, CLI_NUMBER, "N", "Pictures a second of --film (25)", offsetof(render_args, fps)},
     {"size", 0, CLI_SIZES, "WxH", "Size of the window in pixels (1280x800)",
      offsetof(render_args, size)},
+    {"live-surface", 0, CLI_CHOICE, "auto/cpu/gpu",
+     "What extracts the surface while the isovalue moves (auto: the GPU where OpenGL 4.3 is one)",
+     offsetof(render_args, live_surface)},
 #include "cli/render/options_what.inc"
     CLI_HEADED("Camera"),
 #include "cli/render/options_camera.inc"

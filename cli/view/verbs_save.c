@@ -162,10 +162,15 @@ static cw_status run_save_mesh(view *v, int count, char **args, cw_error *err)
 static cw_status run_capture(view *v, int count, char **args, cw_error *err)
 {
     cw_image image = {0};
-    (void)count;
+    const bool now = count > 1;
     cw_status st = need_png(args[0], err);
-    if (st == CW_OK)
+    if (st == CW_OK && now && strcmp(args[1], "now") != 0)
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "capture takes a file and, maybe, 'now', not '%s'",
+                      args[1]);
+    if (st == CW_OK && !now)
         st = view_settle(v, err);
+    for (int n = 0; n < 2 && st == CW_OK && now; n++) /* the second shows what the first drew */
+        st = view_frame(v, 0, err);
     if (st == CW_OK)
         st = v->ui->grab(v->window, &image, err);
     if (st == CW_OK)
@@ -279,7 +284,9 @@ static const view_verb rows[] = {
          run_measure_mesh),
     VERB("save-mesh", "FILE [TRIANGLES]", "Save the surface as a mesh, simplified to TRIANGLES",
          1, 2, run_save_mesh),
-    VERB("capture", "FILE", "Save the whole window as a .png file", 1, 1, run_capture),
+    VERB("capture", "FILE [now]",
+         "Save the whole window as a .png file; now: before the picture is refined", 1, 2,
+         run_capture),
     VERB("turntable", "N FILE", "Save N pictures around the scene; FILE holds {turn}", 2, 2,
          run_turntable),
     VERB("save-state", "[FILE]", "Save the session as commands", 0, 1, run_save_state),

@@ -265,8 +265,8 @@ static cw_status run_pick(view *v, int count, char **args, cw_error *err)
     cw_status st = view_take("pick", args, count, pixel, err);
     if (st == CW_OK)
         st = view_need_open(v, err);
-    if (st == CW_OK && (part->level == VIEW_STALE || v->state.args.compare))
-        return CW_OK; /* nothing to be seen yet, or two things */
+    if (st == CW_OK && (part->level == VIEW_STALE || part->scene.live || v->state.args.compare))
+        return CW_OK; /* nothing to be seen yet, what only the GPU knows, or two things */
     if (st == CW_OK) {
         const double scale = (double)part->scene.width / fmax(part->rect.width, 1);
         const double at[2] = {pixel[0] * scale, pixel[1] * scale};

@@ -40,6 +40,8 @@ static cw_status run_print(view *v, int count, char **args, cw_error *err)
         printf("split %.6g\n", s->share);
     else if (strcmp(what, "step") == 0)
         printf("step %zu of %zu\n", s->step, v->source.series.count);
+    else if (strcmp(what, "surface") == 0)
+        printf("surface %s\n", view_name_surface(v));
     else if (strcmp(what, "triangles") == 0)
         printf("triangles %zu\n", v->source.mesh.triangle_count);
     else if (strcmp(what, "time") == 0)
@@ -246,7 +248,8 @@ static cw_status run_monkey(view *v, int count, char **args, cw_error *err)
 
 static const view_verb rows[] = {
     VERB("wait", "", "Wait until the picture is finished", 0, 0, run_wait),
-    VERB("print", "NAME", "Print a setting, or: mode, open, cross, probe, command, ...", 1, 1,
+    VERB("print", "NAME",
+         "Print a setting, or: mode, open, cross, probe, surface, command, ...", 1, 1,
          run_print),
     VERB("mouse", "X Y [KEYS]", "Move the mouse, while KEYS such as ctrl are held", 2, 3,
          run_mouse),

@@ -162,7 +162,10 @@ typedef struct view {
     cli_volume overlay;
     bool has_labels; /* they are found; and their surfaces are made: */
     bool has_label_mesh;
-    int mesh_level; /* 0: none, 1: of coarse, 2: of all */
+    int mesh_level;       /* 0: none, 1: of coarse, 2: of all */
+    cw_live_surface live; /* as it was drawn last in place of the mesh */
+    bool is_live;         /* it was, in the picture that is shown */
+    bool refuses_live;    /* the GPU does not extract from this volume */
     double box[2][3];
     bool has_volume;  /* that can be drawn */
     bool values_come; /* the volume's voxels are new to the renderer */
@@ -336,6 +339,8 @@ CW_NODISCARD cw_status view_draw_preset(view *v, const char *preset, size_t widt
                                         size_t height, cw_image *image, cw_error *err);
 /* Makes the surface at the isovalue, or of labels, in v->source.mesh. */
 CW_NODISCARD cw_status view_need_surface(view *v, view_level level, cw_error *err);
+/* Names what drew the surface: "gpu", "cpu", "cpu, coarse" or "none". */
+const char *view_name_surface(const view *v);
 
 /* view_pictures.c */
 typedef enum view_layout {

@@ -92,6 +92,63 @@ cw_status view_need_surface(view *v, view_level level, cw_error *err)
     return CW_OK;
 }
 
+enum { LIVE_AUTO, LIVE_CPU, LIVE_GPU }; /* as --live-surface names them */
+
+/* Returns true if the GPU is to extract the surface of this picture: while the isovalue moves. One
+ * that is there in full is drawn as it is. */
+static bool wants_live(const view *v, view_level level)
+{
+    const render_args *args = &v->state.args;
+    const bool is_there = v->mesh_level == 2 && v->mesh_iso == args->iso.value;
+    return level == VIEW_ROUGH && args->live_surface != LIVE_CPU && !v->refuses_live &&
+           v->state.is_placed && args->iso.given && !is_there && !v->source.is_mesh &&
+           !args->mesh && !args->compare && args->scene.hide != CLI_HIDE_MESH &&
+           !args->scene.wireframe && args->scene.tint == CW_TINT_COLORS &&
+           !(view_shows_surfaces(v) && v->mode == CW_MODE_MESH);
+}
+
+static void describe_live(view *v)
+{
+    const render_args *args = &v->state.args;
+    v->live = (cw_live_surface){.volume = &v->source.volume.view,
+                                .isovalue = args->iso.value,
+                                .inside_is_low =
+                                    cli_inside_is_low(args->inside, &v->source.volume.whole),
+                                .on_software = args->live_surface == LIVE_GPU};
+}
+
+/* Returns true if the GPU draws without a wait. Else what it needs is begun, and the CPU extracts
+ * meanwhile. Where the GPU was asked for, pictures wait for it. */
+static bool is_live_ready(view *v)
+{
+    cw_error ignored;
+    bool ready = false;
+    describe_live(v);
+    if (v->state.args.live_surface == LIVE_GPU)
+        return true;
+    if (!v->renderer || cw_renderer_prepare(v->renderer, &v->live, &ready, &ignored) == CW_OK)
+        return ready;
+    v->refuses_live = true;
+    return false;
+}
+
+/* Puts the live surface in the mesh's place. */
+static void put_live(view *v, cw_scene *scene)
+{
+    describe_live(v);
+    scene->mesh = NULL;
+    scene->live = &v->live;
+}
+
+const char *view_name_surface(const view *v)
+{
+    if (v->is_live)
+        return "gpu";
+    return v->mesh_level == 0 || !v->state.args.iso.given ? "none"
+           : v->mesh_level == 1                           ? "cpu, coarse"
+                                                          : "cpu";
+}
+
 /* Meshes have no volume to be around. */
 static void need_box(view *v)
 {
@@ -277,10 +334,19 @@ static cw_status draw_split(view *v, view_level level, const cw_progress *progre
     return st;
 }
 
+/* Returns true if another way may draw what a live surface did not: unless it was asked for, or
+ * nobody waits for it any more. */
+static bool may_replace_live(const view *v, cw_status st)
+{
+    return st != CW_OK && st != CW_ERR_CANCELLED && v->state.args.live_surface == LIVE_AUTO;
+}
+
 static cw_status draw_space(view *v, view_level level, const cw_progress *progress,
                             cw_scene *scene, cw_picture *picture, cw_error *err)
 {
-    cw_status st = view_need_surface(v, level, err);
+    const cw_scene plain = *scene;
+    v->is_live = wants_live(v, level) && is_live_ready(v);
+    cw_status st = v->is_live ? CW_OK : view_need_surface(v, level, err);
     need_box(v);
     if (st == CW_OK && !v->state.is_placed)
         st = view_place_camera(v, NULL, err);
@@ -294,9 +360,21 @@ static cw_status draw_space(view *v, view_level level, const cw_progress *progre
     st = space_scene(v, &v->state.args, v->mode, &v->transfer, scene, err);
     suit_level(level, scene);
     scene->progress = *progress;
-    if (st == CW_OK && v->mode == CW_MODE_MESH && !scene->mesh) /* an empty surface */
+    if (st == CW_OK && v->is_live)
+        put_live(v, scene);
+    if (st == CW_OK && v->mode == CW_MODE_MESH && !scene->mesh && !v->is_live) /* empty */
         return cw_picture_alloc(picture, scene->width, scene->height, err);
-    return st == CW_OK ? draw_scene(v, scene, picture, err) : st;
+    if (st == CW_OK)
+        st = draw_scene(v, scene, picture, err);
+    if (v->is_live && may_replace_live(v, st)) {
+        v->refuses_live = true;
+        *scene = plain;
+        return draw_space(v, level, progress, scene, picture, err);
+    }
+    if (st == CW_OK || !v->is_live)
+        return st;
+    v->is_live = false;
+    return st == CW_ERR_CANCELLED ? st : cwi_fail_in(err, st, "--live-surface gpu");
 }
 
 cw_mode view_preset_mode(const view *v, const char *preset)

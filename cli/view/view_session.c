@@ -69,6 +69,7 @@ static void drop_surface(view *v)
     cw_volume_free(&v->thinned);
     v->extractor = v->coarse = NULL;
     v->mesh_level = 0;
+    v->is_live = v->refuses_live = false;
 }
 
 void view_close(view *v)

@@ -13,18 +13,6 @@
 #include <math.h>
 #include <string.h>
 
-void cwi_outward(const cw_volume *volume, bool invert, double cofactor[3][3])
-{
-    const double *affine = volume->affine[0];
-    const double sign = (cwi_affine_determinant(affine) < 0) != invert ? 1 : -1;
-    double largest = 0;
-    cwi_affine_cofactor(affine, cofactor);
-    for (int i = 0; i < 9; i++)
-        largest = fmax(largest, fabs(cofactor[i / 3][i % 3]));
-    for (int i = 0; i < 9; i++)
-        cofactor[i / 3][i % 3] *= sign / largest;
-}
-
 /* --- from triangles ---------------------------------------------------------------------- */
 
 void cwi_add_facet_normal(const float *const corner[3], double scale, float normal[3])
@@ -44,17 +32,6 @@ void cwi_finish_normal(float n[3])
     const double length = sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]);
     for (int a = 0; a < 3; a++)
         n[a] = length > 0 ? (float)(n[a] / length) : a == 2;
-}
-
-double cwi_voxel_scale(const cw_volume *v)
-{
-    double largest = 0;
-    int exponent;
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++)
-            largest = fmax(largest, fabs(v->affine[r][c]));
-    frexp(largest, &exponent);
-    return ldexp(1, -exponent);
 }
 
 /* Runs in one thread, in the order of triangles: sums do not depend on the number of

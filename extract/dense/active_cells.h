@@ -3,7 +3,7 @@
 #ifndef EXTRACT_DENSE_ACTIVE_CELLS_H
 #define EXTRACT_DENSE_ACTIVE_CELLS_H
 
-#include "extract/cases/cube_numbering.h"
+#include "core/cases/cube_numbering.h"
 #include "extract/dense/cell_word.h"
 
 #include <string.h>

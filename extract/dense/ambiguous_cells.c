@@ -3,8 +3,8 @@
 #include "extract/dense/ambiguous_cells.h"
 
 #include "core/base/memory.h"
+#include "core/cases/cube_numbering.h"
 #include "core/volume/volume.h"
-#include "extract/cases/cube_numbering.h"
 #include "extract/dense/cubic_crossing.h"
 #include "extract/dense/vertex_writer.h"
 

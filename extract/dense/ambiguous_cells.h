@@ -2,7 +2,7 @@
 #ifndef EXTRACT_DENSE_AMBIGUOUS_CELLS_H
 #define EXTRACT_DENSE_AMBIGUOUS_CELLS_H
 
-#include "extract/cases/cell_topology.h"
+#include "core/cases/cell_topology.h"
 #include "extract/dense/isa_dispatch.h"
 
 /* Returns a padded sample as the decisions see it: its number minus the isovalue, positive

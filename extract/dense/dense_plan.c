@@ -4,12 +4,11 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/cases/case_tables.h"
 #include "core/geometry/affine.h"
+#include "core/volume/surface_frame.h"
 #include "core/volume/volume.h"
-#include "extract/cases/case_tables.h"
-#include "extract/common/field_normals.h"
 
-#include <math.h>
 #include <string.h>
 
 static void count_layer(void *context, size_t k)
@@ -74,27 +73,15 @@ void cwi_plan_free(cwi_plan *p)
 
 cwi_vertex_sink cwi_make_sink(const cw_volume *v, bool invert, cw_mesh *mesh)
 {
-    cwi_vertex_sink sink = {
-        .positions = mesh->positions, .normals = mesh->normals, .grid = v, .diagonal = true};
-    cwi_outward(v, invert, sink.cofactor);
-    for (int r = 0; r < 3; r++) {
-        for (int c = 0; c < 3; c++)
-            sink.affine[r][c] = v->affine[r][c];
-        sink.diagonal =
-            sink.diagonal && v->affine[r][(r + 1) % 3] == 0 && v->affine[r][(r + 2) % 3] == 0;
-        sink.centre[r] = 0.5 * (cwi_grid_coordinate(v, r, 0, 0) +
-                                cwi_grid_coordinate(v, r, (ptrdiff_t)v->dim[r] - 1, 0));
-    }
-    for (int a = 0; a < 3; a++) {
-        double square = 0;
-        for (int r = 0; r < 3; r++)
-            square += sink.cofactor[r][a] * sink.cofactor[r][a];
-        for (int r = 0; r < 3; r++) {
-            const double n = sink.cofactor[r][a] / sqrt(square) * (invert ? 1 : -1);
-            sink.cap[a][0][r] = (float)-n;
-            sink.cap[a][1][r] = (float)n;
-        }
-    }
+    cwi_vertex_sink sink = {.positions = mesh->positions, .normals = mesh->normals, .grid = v};
+    cwi_surface_frame frame;
+    cwi_surface_frame_make(v, invert, &frame);
+    sink.diagonal = frame.is_diagonal;
+    memcpy(sink.cofactor, frame.cofactor, sizeof sink.cofactor);
+    memcpy(sink.centre, frame.center, sizeof sink.centre);
+    memcpy(sink.cap, frame.cap, sizeof sink.cap);
+    for (int r = 0; r < 3; r++)
+        memcpy(sink.affine[r], v->affine[r], sizeof sink.affine[r]);
     cwi_affine_apply(v->affine[0], sink.centre, mesh->origin);
     return sink;
 }

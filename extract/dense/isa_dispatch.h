@@ -3,8 +3,8 @@
 #ifndef EXTRACT_DENSE_ISA_DISPATCH_H
 #define EXTRACT_DENSE_ISA_DISPATCH_H
 
-#include "extract/cases/case_tables.h"
-#include "extract/cases/cube_numbering.h"
+#include "core/cases/case_tables.h"
+#include "core/cases/cube_numbering.h"
 #include "extract/dense/minmax_octree.h"
 
 #include <cubewright/mesh.h>

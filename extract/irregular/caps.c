@@ -2,9 +2,9 @@
  * that coincide. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/cases/cell_topology.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/weld.h"
-#include "extract/cases/cell_topology.h"
 #include "extract/dense/edge_crossing.h"
 #include "extract/irregular/boundary_faces.h"
 

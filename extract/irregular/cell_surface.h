@@ -7,9 +7,9 @@
 #ifndef EXTRACT_IRREGULAR_CELL_SURFACE_H
 #define EXTRACT_IRREGULAR_CELL_SURFACE_H
 
+#include "core/cases/case_tables.h"
 #include "core/geometry/affine.h"
 #include "core/volume/volume.h"
-#include "extract/cases/case_tables.h"
 #include "extract/dense/bit_planes.h"
 
 #define CWI_NO_FACE UINT32_MAX

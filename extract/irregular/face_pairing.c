@@ -5,8 +5,8 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/cases/cell_topology.h"
 #include "core/geometry/vec3.h"
-#include "extract/cases/cell_topology.h"
 #include "extract/irregular/cell_surface.h"
 
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #ifndef EXTRACT_SNAP_SNAP_CLUSTER_H
 #define EXTRACT_SNAP_SNAP_CLUSTER_H
 
-#include "extract/cases/cell_topology.h"
+#include "core/cases/cell_topology.h"
 #include "extract/dense/bit_planes.h"
 
 #include <cubewright/mesh.h>

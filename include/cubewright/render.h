@@ -172,6 +172,17 @@ typedef enum cw_shadow {
     CW_SHADOW_COUNT
 } cw_shadow;
 
+/* A volume's isosurface that OpenGL extracts by itself, at full resolution, and draws as the
+ * scene's mesh: that of cw_extract(), capped, with one normal a vertex. For an isovalue that moves:
+ * vertices and triangles never leave the GPU. */
+typedef struct cw_live_surface {
+    const cw_volume *volume; /* evenly spaced, of any type but f64 */
+    double isovalue;         /* in the unit of the values */
+    bool inside_is_low;      /* default: values at or above the isovalue are inside */
+    bool on_software;        /* also where OpenGL runs on the CPU, which is slower than
+                                cw_extract(); default: refuse there */
+} cw_live_surface;
+
 /* A scene. Zero-initialise it and set what you need; a zero field means the default named
  * beside it. Memory behind pointers is borrowed. */
 typedef struct cw_scene {
@@ -281,6 +292,9 @@ typedef struct cw_scene {
     bool same_inside;           /* the inside of a mesh, seen through a cut or a clear surface,
                                    has the colour of the outside; default: a red shade of it */
     bool cap;                   /* fill the cut through a clipped mesh, which must be closed */
+    const cw_live_surface *live; /* drawn in place of a mesh, by OpenGL 4.3 alone, without
+                               wireframe and in the scene's colour; default: none. Depths of a cue
+                               are those of the volume's box */
 
     int threads;          /* default: all that OpenMP offers */
     cw_progress progress; /* default: none. Called every few milliseconds, except while GL
@@ -316,11 +330,23 @@ CW_API const char *cw_renderer_name(const cw_renderer *renderer);
  * picture  filled on success, emptied on failure; free it with cw_picture_free()
  * Returns  CW_ERR_ARGUMENT     an input of the mode is missing or out of range
  *          CW_ERR_UNSUPPORTED  the mode is not one of the backend's, or does not draw the
- *                              volume's kind of grid
+ *                              volume's kind of grid; a live surface cannot be had here
  *          CW_ERR_BACKEND      GL failed or its context was lost: make another renderer
- *          CW_ERR_LIMIT; CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
+ *          CW_ERR_LIMIT        also: a live surface is larger than OpenGL holds
+ *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
 CW_NODISCARD CW_API cw_status cw_render(cw_renderer *renderer, const cw_scene *scene,
                                         cw_picture *picture, cw_error *err);
+
+/* Begins what a live surface needs on the GPU: its shaders and the volume's voxels. Does not wait
+ * for shaders that the driver compiles meanwhile; some drivers link one in the call. Not needed
+ * before cw_render(), which waits for all: some seconds, the first time on a machine.
+ *
+ * live     borrowed; the volume's voxels are read now or in a later call
+ * ready    set to true when cw_render() would draw the surface without such a wait
+ * Returns  as cw_render() of a scene with the surface, where it cannot be had */
+CW_NODISCARD CW_API cw_status cw_renderer_prepare(cw_renderer *renderer,
+                                                  const cw_live_surface *live, bool *ready,
+                                                  cw_error *err);
 
 /* The kind of object that a pixel of a picture shows. */
 typedef enum cw_pick_kind {

@@ -2224,6 +2224,21 @@ cw_material._fields_ = [
 ]
 
 
+class cw_live_surface(Structure):
+    volume: Any
+    isovalue: float
+    inside_is_low: bool
+    on_software: bool
+
+
+cw_live_surface._fields_ = [
+    ("volume", POINTER(cw_volume)),
+    ("isovalue", c_double),
+    ("inside_is_low", c_bool),
+    ("on_software", c_bool),
+]
+
+
 class cw_scene(Structure):
     mode: int
     volume: Any
@@ -2280,6 +2295,7 @@ class cw_scene(Structure):
     wireframe: bool
     same_inside: bool
     cap: bool
+    live: Any
     threads: int
     progress: Any
 
@@ -2340,6 +2356,7 @@ cw_scene._fields_ = [
     ("wireframe", c_bool),
     ("same_inside", c_bool),
     ("cap", c_bool),
+    ("live", POINTER(cw_live_surface)),
     ("threads", c_int),
     ("progress", cw_progress),
 ]
@@ -2989,6 +3006,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_renderer_free": (None, [POINTER(cw_renderer)]),
     "cw_renderer_name": (c_char_p, [POINTER(cw_renderer)]),
     "cw_render": (c_int, [POINTER(cw_renderer), POINTER(cw_scene), POINTER(cw_picture), POINTER(cw_error)]),
+    "cw_renderer_prepare": (c_int, [POINTER(cw_renderer), POINTER(cw_live_surface), POINTER(c_bool), POINTER(cw_error)]),
     "cw_pick": (c_int, [POINTER(cw_scene), POINTER(c_double), POINTER(cw_picked), POINTER(cw_error)]),
     "cw_slice_camera": (c_int, [POINTER(cw_volume), POINTER(cw_clip), c_double, POINTER(cw_camera), POINTER(cw_error)]),
     "cw_renderer_forget": (None, [POINTER(cw_renderer)]),

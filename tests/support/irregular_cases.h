@@ -7,8 +7,8 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "extract/cases/case_tables.h"
-#include "extract/cases/cell_topology.h"
+#include "core/cases/case_tables.h"
+#include "core/cases/cell_topology.h"
 
 #include <math.h>
 #include <stdlib.h>

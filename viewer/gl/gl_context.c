@@ -26,11 +26,11 @@ static EGLDisplay first_device(void)
     return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, NULL);
 }
 
-/* Makes a context that reports its loss, where that is supported. */
-static EGLContext make_context(EGLDisplay display)
+/* Makes a context of a version that reports its loss, where that is supported. */
+static EGLContext make_version(EGLDisplay display, EGLint major, EGLint minor)
 {
     const EGLint wanted[] = {
-        EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 3,
+        EGL_CONTEXT_MAJOR_VERSION, major, EGL_CONTEXT_MINOR_VERSION, minor,
         EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
         /* left out when it is not known: */
         EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET, EGL_NONE};
@@ -41,6 +41,14 @@ static EGLContext make_context(EGLDisplay display)
     return context != EGL_NO_CONTEXT
                ? context
                : eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, plain);
+}
+
+/* Makes a context with compute shaders, else without. NVIDIA's driver gives the version that was
+ * asked for, others the newest that has all of it. */
+static EGLContext make_context(EGLDisplay display)
+{
+    const EGLContext context = make_version(display, 4, 3);
+    return context != EGL_NO_CONTEXT ? context : make_version(display, 3, 3);
 }
 
 static bool start_context(cwi_gl_context *c, EGLDisplay display)

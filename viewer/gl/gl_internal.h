@@ -100,6 +100,7 @@ struct cwi_gl {
     size_t program_count;
     cwi_gl_program programs[CWI_GL_PROGRAMS];
     void *state[CW_MODE_COUNT]; /* each mode's own */
+    struct cwi_live *live;      /* extracts live surfaces; NULL until one is drawn */
     void (*drop_states)(cwi_gl *gl);
 };
 

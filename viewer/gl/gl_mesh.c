@@ -157,11 +157,41 @@ static bool is_same(const cw_mesh *a, const cw_mesh *b)
            a->triangles == b->triangles && a->scalars == b->scalars && a->colors == b->colors;
 }
 
+/* Makes the state at the first call. */
+static cw_status need_mesh(void **state, cw_error *err)
+{
+    cwi_gl_mesh *m = *state;
+    if (!m && !(m = *state = cwi_alloc_zeroed(1, sizeof *m)))
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a mesh");
+    if (!m->ramp) {
+        make_ramp(m);
+        glGenQueries(1, &m->query);
+    }
+    return CW_OK;
+}
+
+cw_status cwi_gl_lend_mesh(void **state, GLuint array, size_t triangles, cwi_gl_mesh **mesh,
+                           cw_error *err)
+{
+    cw_status st = need_mesh(state, err);
+    if (st != CW_OK)
+        return st;
+    cwi_gl_mesh *m = *mesh = *state;
+    m->live_array = array;
+    m->live_triangles = triangles;
+    m->tint_range[0] = 0;
+    m->tint_range[1] = 1;
+    m->has_alpha = false;
+    glActiveTexture(GL_TEXTURE0 + CWI_UNIT_RAMP);
+    glBindTexture(GL_TEXTURE_2D, m->ramp);
+    return CW_OK;
+}
+
 cw_status cwi_gl_take_mesh(cwi_gl *gl, void **state, cwi_gl_mesh **mesh, cw_error *err)
 {
     const cw_scene *s = &gl->frame->scene;
     const bool expanded = s->wireframe || s->tint == CW_TINT_QUALITY;
-    cwi_gl_mesh *m = *state;
+    cwi_gl_mesh *m;
     double range[2];
     cw_status st = cwi_tint_range(s, range, err);
     if (st != CW_OK)
@@ -169,12 +199,11 @@ cw_status cwi_gl_take_mesh(cwi_gl *gl, void **state, cwi_gl_mesh **mesh, cw_erro
     if (s->mesh->triangle_count > INT32_MAX / 3)
         return cwi_fail(err, CW_ERR_LIMIT, "%zu triangles: OpenGL draws up to %d",
                         s->mesh->triangle_count, INT32_MAX / 3);
-    if (!m && !(m = *state = cwi_alloc_zeroed(1, sizeof *m)))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a mesh");
-    if (!m->ramp) {
-        make_ramp(m);
-        glGenQueries(1, &m->query);
-    }
+    st = need_mesh(state, err);
+    if (st != CW_OK)
+        return st;
+    m = *state;
+    m->live_array = 0;
     memcpy(m->tint_range, range, sizeof range);
     if (!m->is_uploaded || !is_same(&m->key, s->mesh) || m->is_expanded != expanded ||
         m->tint != s->tint) {
@@ -277,6 +306,10 @@ void cwi_gl_set_mesh(const cwi_gl *gl, GLuint program)
 
 cw_status cwi_gl_draw_whole_mesh(cwi_gl *gl, const cwi_gl_mesh *m, cw_error *err)
 {
+    if (m->live_array) {
+        glBindVertexArray(m->live_array);
+        return cwi_gl_draw_triangles(gl, m->live_triangles, true, err);
+    }
     glBindVertexArray(m->array);
     return cwi_gl_draw_triangles(gl, m->key.triangle_count, !m->is_expanded, err);
 }

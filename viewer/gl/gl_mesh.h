@@ -23,6 +23,8 @@ typedef struct cwi_gl_mesh {
     bool has_alpha; /* some vertex is translucent */
     double tint_range[2];
     GLuint array, vertices, indices, ramp, query;
+    GLuint live_array; /* of a live surface, drawn in place of what was uploaded; else 0 */
+    size_t live_triangles;
 
     /* Textures of the target's size; 0 until they are needed. Layers: a color, and the depths
      * of this layer and the one before. Windings: how often the mesh goes around points of
@@ -37,6 +39,10 @@ typedef struct cwi_gl_mesh {
 CW_NODISCARD cw_status cwi_gl_take_mesh(cwi_gl *gl, void **state, cwi_gl_mesh **mesh,
                                         cw_error *err);
 void cwi_gl_drop_mesh(void *state);
+
+/* Takes a live surface in its place: a vertex array of positions and normals, and indices. */
+CW_NODISCARD cw_status cwi_gl_lend_mesh(void **state, GLuint array, size_t triangles,
+                                        cwi_gl_mesh **mesh, cw_error *err);
 
 /* Textures of the target's size. */
 CW_NODISCARD cw_status cwi_gl_need_layers(cwi_gl *gl, cwi_gl_mesh *mesh, cw_error *err);

@@ -1,4 +1,5 @@
 /* Opens and closes the OpenGL renderer, and lists the functions of its module. */
+#include "viewer/live_surface/live_surface.h"
 #include "viewer/modes/gl_draw.h"
 
 #include "core/base/memory.h"
@@ -12,6 +13,7 @@ static void drop_states(cwi_gl *gl)
             mode->drop(gl->state[m]);
         gl->state[m] = NULL;
     }
+    cwi_live_forget(gl->live);
 }
 
 /* Memory that Mesa's software OpenGL was seen to take before anything is drawn. */
@@ -49,6 +51,7 @@ static void gl_close(cwi_gl *gl)
 {
     cwi_gl_enter(gl);
     cwi_gl_drop_scene(gl);
+    cwi_live_drop(gl->live);
     cwi_gl_drop_target(gl);
     for (size_t n = 0; n < gl->program_count; n++)
         glDeleteProgram(gl->programs[n].name);
@@ -64,5 +67,31 @@ static const char *gl_name(const cwi_gl *gl)
     return gl->name;
 }
 
+static cw_status gl_extract(cwi_gl *gl, const cw_live_surface *desc,
+                            const cwi_live_limits *limits, cwi_live_times *times,
+                            size_t size[2], cw_mesh *mesh, cw_error *err)
+{
+    cwi_live_mesh live;
+    if (!cwi_gl_enter(gl))
+        return cwi_fail(err, CW_ERR_BACKEND, "the OpenGL context was lost");
+    cw_status st = cwi_live_take(&gl->live, desc, limits, times, &live, err);
+    size[0] = live.vertex_count;
+    size[1] = live.triangle_count;
+    if (st == CW_OK && mesh)
+        st = cwi_live_read(gl->live, mesh, err);
+    cwi_gl_leave(gl);
+    return st;
+}
+
+static cw_status gl_prepare(cwi_gl *gl, const cw_live_surface *desc, bool *ready, cw_error *err)
+{
+    if (!cwi_gl_enter(gl))
+        return cwi_fail(err, CW_ERR_BACKEND, "the OpenGL context was lost");
+    cw_status st = cwi_live_prepare(&gl->live, desc, ready, err);
+    cwi_gl_leave(gl);
+    return st;
+}
+
 CW_API extern const cwi_gl_functions cwi_module_gl;
-const cwi_gl_functions cwi_module_gl = {gl_open, gl_close, gl_name, gl_forget, cwi_gl_draw};
+const cwi_gl_functions cwi_module_gl = {gl_open,     gl_close,   gl_name,   gl_forget,
+                                        cwi_gl_draw, gl_prepare, gl_extract};

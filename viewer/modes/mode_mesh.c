@@ -7,6 +7,7 @@
  * Cuts are filled where the winding number of the mesh around a plane's point is not 0: how
  * often the ray leaves the mesh behind that point, minus how often it enters it. */
 #include "viewer/gl/gl_mesh.h"
+#include "viewer/live_surface/live_surface.h"
 #include "viewer/scene/srgb.h"
 
 #include "core/base/status.h"
@@ -196,11 +197,23 @@ static bool is_translucent(const cw_scene *s, const cwi_gl_mesh *m)
     return has_colors(s) ? m->has_alpha : s->color[3] < 1;
 }
 
-/* Uploads the mesh, and prepares the filling of its cuts. */
+/* Extracts the scene's live surface. Its vertices have no colours, and no corners of their own. */
+static cw_status take_live(cwi_gl *gl, void **state, cwi_gl_mesh **m, cw_error *err)
+{
+    const cw_scene *s = &gl->frame->scene;
+    cwi_live_mesh live;
+    if (s->wireframe || s->tint != CW_TINT_COLORS)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "a live surface is drawn without wireframe and in one colour");
+    cw_status st = cwi_live_take(&gl->live, s->live, NULL, NULL, &live, err);
+    return st == CW_OK ? cwi_gl_lend_mesh(state, live.array, live.triangle_count, m, err) : st;
+}
+
+/* Uploads the mesh, or extracts it, and prepares the filling of its cuts. */
 static cw_status take_mesh(cwi_gl *gl, void **state, cwi_gl_mesh **m, cw_error *err)
 {
     const cw_scene *s = &gl->frame->scene;
-    cw_status st = cwi_gl_take_mesh(gl, state, m, err);
+    cw_status st = s->live ? take_live(gl, state, m, err) : cwi_gl_take_mesh(gl, state, m, err);
     for (size_t n = 0; draws_caps(s) && n * CWI_PLANES_A_PASS < s->clip_count; n++)
         if (st == CW_OK)
             st = count_windings(gl, *m, n, err);

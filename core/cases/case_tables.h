@@ -1,8 +1,8 @@
 /* Tables of the 256 cube cases, the resolutions of their ambiguous faces, and the cases of
  * other cells. generate_tables.c makes them. Triangles name edges of the cell, three a
  * triangle, counter-clockwise seen from outside the solid. */
-#ifndef EXTRACT_CASES_CASE_TABLES_H
-#define EXTRACT_CASES_CASE_TABLES_H
+#ifndef CORE_CASES_CASE_TABLES_H
+#define CORE_CASES_CASE_TABLES_H
 
 #include <cubewright/volume.h>
 

@@ -3,8 +3,8 @@
  * the crossings stand on their edges. */
 #include "support/support.h"
 
-#include "extract/cases/cell_topology.h"
-#include "extract/cases/cube_numbering.h"
+#include "core/cases/cell_topology.h"
+#include "core/cases/cube_numbering.h"
 #include "extract/dense/edge_crossing.h"
 
 #include <float.h>

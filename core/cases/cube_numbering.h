@@ -4,8 +4,8 @@
  * the two corners that differ in it: 0..3 along x, 4..7 along y, 8..11 along z; within an axis
  * they count the other two coordinates, the lower axis first. A case is 8 bits, one a corner,
  * set where the sample is inside. */
-#ifndef EXTRACT_CASES_CUBE_NUMBERING_H
-#define EXTRACT_CASES_CUBE_NUMBERING_H
+#ifndef CORE_CASES_CUBE_NUMBERING_H
+#define CORE_CASES_CUBE_NUMBERING_H
 
 #include <stdbool.h>
 

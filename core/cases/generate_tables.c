@@ -17,8 +17,8 @@
  *
  * The tests prove the result: every surface is bounded by exactly its face segments, and does
  * not cross itself wherever the points stand on their edges. */
-#include "extract/cases/case_tables.h"
-#include "extract/cases/cube_numbering.h"
+#include "core/cases/case_tables.h"
+#include "core/cases/cube_numbering.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -471,7 +471,7 @@ int main(void)
     for (int n = 0; n < CW_SHAPE_COUNT; n++)
         complete_shape(&shapes[n]);
     puts(
-        "/* Made by generate_tables.c: do not edit. */\n#include \"extract/cases/case_tables.h\"");
+        "/* Made by generate_tables.c: do not edit. */\n#include \"core/cases/case_tables.h\"");
     print_table("uint8_t cwi_case_count", simple_count);
     print_table("uint8_t cwi_case_ambiguous_faces", cube_ambiguous_faces);
     print_table("bool cwi_case_is_ambiguous", is_ambiguous);

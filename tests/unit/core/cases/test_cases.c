@@ -1,8 +1,8 @@
 /* The proof of the case table: whatever the program that made it did, these hold. */
 #include "support/support.h"
 
-#include "extract/cases/case_tables.h"
-#include "extract/cases/cube_numbering.h"
+#include "core/cases/case_tables.h"
+#include "core/cases/cube_numbering.h"
 #include "extract/dense/cell_bits.h"
 
 #include <stdlib.h>

@@ -1,9 +1,9 @@
 /* Resolves ambiguous cells as the trilinear interpolant does [Nielson1991]: decides which faces
  * join, finds tunnels, and builds the triangles. */
-#include "extract/cases/cell_topology.h"
+#include "core/cases/cell_topology.h"
 
+#include "core/cases/cube_numbering.h"
 #include "core/geometry/vec3.h"
-#include "extract/cases/cube_numbering.h"
 
 #include <math.h>
 #include <string.h>

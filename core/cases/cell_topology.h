@@ -6,10 +6,10 @@
  * z = t are bilinear; where their corners are alternately inside and outside, the same product
  * difference is a quadratic in t, and there is a tunnel just when it changes sign and changes
  * back between two events that already settle it (corners changing sign, or the end faces). */
-#ifndef EXTRACT_CASES_CELL_TOPOLOGY_H
-#define EXTRACT_CASES_CELL_TOPOLOGY_H
+#ifndef CORE_CASES_CELL_TOPOLOGY_H
+#define CORE_CASES_CELL_TOPOLOGY_H
 
-#include "extract/cases/case_tables.h"
+#include "core/cases/case_tables.h"
 
 #include <stddef.h>
 
