@@ -180,8 +180,10 @@ static void tell_mode(view *v)
 {
     char text[256];
     const double rmse = v->mode_error[v->mode];
-    int used = snprintf(text, sizeof text, "%s; %.0f ms", cw_mode_about(v->mode),
-                        v->parts[VIEW_SPACE].ms);
+    int used = snprintf(text, sizeof text, "%s", cw_mode_about(v->mode));
+    if (!v->state.args.compare) /* then the time is that of two pictures */
+        used += snprintf(text + used, sizeof text - (size_t)used, "; %.0f ms",
+                         v->parts[VIEW_SPACE].ms);
     if (rmse >= 0)
         used += snprintf(text + used, sizeof text - (size_t)used,
                          "; error %.3g of 255 (rmse, measured)", rmse);
