@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_BYTES = 1 << 20, MAX_KEYS = 1000, MAX_FRAMES = 1000000 };
+enum { MAX_KEYS = 1000, MAX_FRAMES = 1000000 };
 
 typedef struct key {
     double time;
@@ -87,24 +87,6 @@ static cw_status parse_film(view *v, const char *text, film *f, cw_error *err)
     if (st == CW_OK && f->count < 2)
         st = cwi_fail(err, CW_ERR_FORMAT, "a film needs at least two key frames");
     return st;
-}
-
-static cw_status read_film(const char *path, char **text, cw_error *err)
-{
-    FILE *in = fopen(path, "rb");
-    *text = in ? calloc(1, MAX_BYTES + 1) : NULL;
-    const size_t size = *text ? fread(*text, 1, MAX_BYTES + 1, in) : 0;
-    const bool is_whole = *text && !ferror(in) && size <= MAX_BYTES && strlen(*text) == size;
-    if (in)
-        fclose(in);
-    if (is_whole)
-        return CW_OK;
-    const bool was_read = *text;
-    free(*text);
-    *text = NULL;
-    return was_read
-               ? cwi_fail(err, CW_ERR_FORMAT, "a film in a text of up to 1 MiB was expected")
-               : cwi_fail(err, CW_ERR_IO, "cannot be read");
 }
 
 /* The bookmarks as a film, one after another. */
@@ -301,12 +283,15 @@ static cw_status make_keys(view *v, const char *name, film *f, cw_error *err)
     const bool of_bookmarks = strcmp(name, "bookmarks") == 0;
     char *text = NULL;
     v->is_filming = true;
-    cw_status st = of_bookmarks ? write_bookmarks(v, &text, err) : read_film(name, &text, err);
-    if (st == CW_OK)
+    cw_status st =
+        of_bookmarks ? write_bookmarks(v, &text, err) : view_read_text(name, &text, err);
+    if (st == CW_OK) {
         st = parse_film(v, text, f, err);
+        st = st == CW_OK ? st : cwi_fail_in(err, st, of_bookmarks ? "the bookmarks" : name);
+    }
     v->is_filming = false;
     free(text);
-    return st == CW_OK ? st : cwi_fail_in(err, st, of_bookmarks ? "the bookmarks" : name);
+    return st;
 }
 
 /* Brings the session back to what it was before a film. */

@@ -305,6 +305,8 @@ CW_NODISCARD cw_status view_run_preview(view *v, cw_error *err);
 /* view_script.c: commands in a text, parted by ; or lines, words in quotes, # begins a comment. */
 CW_NODISCARD cw_status view_exec(view *v, const char *text, cw_error *err);
 CW_NODISCARD cw_status view_exec_file(view *v, const char *path, cw_error *err);
+/* Reads a text of up to 1 MiB; free() it. Returns CW_ERR_IO, CW_ERR_FORMAT, naming the file */
+CW_NODISCARD cw_status view_read_text(const char *path, char **text, cw_error *err);
 /* To be run after this frame; errors become messages. */
 void view_ask(view *v, const char *format, ...) CW_PRINTF(2, 3);
 void view_ask_open(view *v, const char *path); /* whatever is in its name */

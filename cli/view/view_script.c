@@ -79,7 +79,7 @@ cw_status view_exec(view *v, const char *text, cw_error *err)
     return st;
 }
 
-static cw_status read_text(const char *path, char **text, cw_error *err)
+cw_status view_read_text(const char *path, char **text, cw_error *err)
 {
     FILE *in = fopen(path, "rb");
     *text = in ? calloc(1, MAX_BYTES + 1) : NULL;
@@ -99,7 +99,7 @@ static cw_status read_text(const char *path, char **text, cw_error *err)
 cw_status view_exec_file(view *v, const char *path, cw_error *err)
 {
     char *text;
-    cw_status st = read_text(path, &text, err);
+    cw_status st = view_read_text(path, &text, err);
     if (st == CW_OK) {
         st = view_exec(v, text, err);
         st = st == CW_OK ? st : cwi_fail_in(err, st, path);
