@@ -366,6 +366,7 @@ void view_show_side(view *v)
         view_show_point(v);
         show_surface(v);
         show_slices(v);
+        view_show_measure_section(v);
         show_cut(v);
         show_time(v);
         view_show_compare(v);

@@ -210,6 +210,7 @@ static void end_session(view *v)
         free(v->words[n]);
     for (size_t n = 0; n < v->asked_count; n++)
         free(v->asked[n]);
+    free(v->measure_points);
     free(v->words);
     free(v->asked);
     free(v);

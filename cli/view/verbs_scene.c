@@ -256,22 +256,28 @@ static void tell_picked_label(view *v, const cw_scene *scene, const cw_picked *p
         view_say(v, false, text);
 }
 
+cw_status view_pick_point(view *v, const double pixel[2], cw_picked *picked, cw_error *err)
+{
+    const view_part *part = &v->parts[VIEW_SPACE];
+    *picked = (cw_picked){0};
+    if (part->level == VIEW_STALE || v->state.args.compare)
+        return CW_OK; /* nothing to be seen yet, or two things */
+    const double scale = (double)part->scene.width / fmax(part->rect.width, 1);
+    return cw_pick(&part->scene, (const double[2]){pixel[0] * scale, pixel[1] * scale}, picked,
+                   err);
+}
+
 /* To what the mouse is on, in pixels of the 3D part. */
 static cw_status run_pick(view *v, int count, char **args, cw_error *err)
 {
     double pixel[2];
     cw_picked picked = {0};
-    view_part *part = &v->parts[VIEW_SPACE];
+    const view_part *part = &v->parts[VIEW_SPACE];
     cw_status st = view_take("pick", args, count, pixel, err);
     if (st == CW_OK)
         st = view_need_open(v, err);
-    if (st == CW_OK && (part->level == VIEW_STALE || v->state.args.compare))
-        return CW_OK; /* nothing to be seen yet, or two things */
-    if (st == CW_OK) {
-        const double scale = (double)part->scene.width / fmax(part->rect.width, 1);
-        const double at[2] = {pixel[0] * scale, pixel[1] * scale};
-        st = cw_pick(&part->scene, at, &picked, err);
-    }
+    if (st == CW_OK)
+        st = view_pick_point(v, pixel, &picked, err);
     if (st == CW_OK && picked.kind != CW_PICK_NOTHING) {
         put_cross(v, picked.point);
         tell_picked_label(v, &part->scene, &picked);

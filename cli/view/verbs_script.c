@@ -1,5 +1,6 @@
 /* Commands of scripts: printing of settings and facts, and simulated input. */
 #include "cli/view/verbs.h"
+#include "cli/view/view_measure.h"
 
 #include "core/base/status.h"
 
@@ -45,6 +46,8 @@ static cw_status run_print(view *v, int count, char **args, cw_error *err)
     else if (strcmp(what, "time") == 0)
         printf("time %.1f ms, %zu x %zu\n", v->parts[VIEW_SPACE].ms,
                v->parts[VIEW_SPACE].scene.width, v->parts[VIEW_SPACE].scene.height);
+    else if (strcmp(what, "measurements") == 0)
+        view_print_measures(v, stdout);
     else if (strcmp(what, "message") == 0)
         printf("message %s\n", v->message);
     else if (strcmp(what, "compare") == 0 && s->args.compare && v->is_measured)
@@ -246,7 +249,8 @@ static cw_status run_monkey(view *v, int count, char **args, cw_error *err)
 
 static const view_verb rows[] = {
     VERB("wait", "", "Wait until the picture is finished", 0, 0, run_wait),
-    VERB("print", "NAME", "Print a setting, or: mode, open, cross, probe, command, ...", 1, 1,
+    VERB("print", "NAME",
+         "Print a setting, or: mode, open, cross, probe, measurements, command, ...", 1, 1,
          run_print),
     VERB("mouse", "X Y [KEYS]", "Move the mouse, while KEYS such as ctrl are held", 2, 3,
          run_mouse),

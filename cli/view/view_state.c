@@ -2,6 +2,7 @@
  * line. */
 #define _GNU_SOURCE /* strdup */
 #include "cli/view/view.h"
+#include "cli/view/view_measure.h"
 
 #include "cli/render/compare_options.h"
 #include "core/base/atomic_file.h"
@@ -355,6 +356,7 @@ static void put_rest(const view *v, FILE *out, const char *end)
         fprintf(out, "zoom-slices %.9g%s", s->slice_zoom, end);
     if (s->args.compare)
         fprintf(out, "split %.6g%s", s->share, end);
+    view_put_measures(v, out, end);
 }
 
 static void put_files(const view *v, FILE *out)
