@@ -285,19 +285,6 @@ static cw_status run_pick(view *v, int count, char **args, cw_error *err)
     return st;
 }
 
-static cw_status run_window(view *v, int count, char **args, cw_error *err)
-{
-    double n[2];
-    cw_status st = view_take("window", args, count, n, err);
-    if (st == CW_OK && !(n[0] < n[1]))
-        st = cwi_fail(err, CW_ERR_ARGUMENT, "window %s %s: rising values were expected",
-                      args[0], args[1]);
-    if (st == CW_OK)
-        memcpy(v->state.window, n, sizeof n);
-    view_touch(v, VIEW_SLICES);
-    return st;
-}
-
 static cw_status run_zoom_slices(view *v, int count, char **args, cw_error *err)
 {
     double n;
@@ -345,8 +332,6 @@ static const view_verb rows[] = {
     VERB("cross-by", "x|y|z VOXELS", "Move the cross-hair", 2, 2, run_cross_by),
     VERB("pick", "X Y", "Put the cross-hair on what a pixel of the scene shows", 2, 2,
          run_pick),
-    EDIT("window", "LOW HIGH", "Set the values that are black and white in slices", 2, 2,
-         run_window),
     VERB("zoom-slices", "F", "Magnify slices by this factor", 1, 1, run_zoom_slices),
     VERB("split", "F", "Divide a comparison at this fraction of the width", 1, 1, run_split),
 };

@@ -175,7 +175,11 @@ typedef struct view {
     cli_label_scene labels;
     const char *overlay_path; /* of overlay, which has them; NULL: the volume itself */
     cli_volume overlay;
-    bool has_labels; /* they are found; and their surfaces are made: */
+    bool overlay_looks_like_labels;
+    bool has_overlay_range; /* the percentiles are known: */
+    double overlay_range[2];
+    cli_slice_labels overlay_values; /* where it is drawn as values; else volume is NULL */
+    bool has_labels;                 /* they are found; and their surfaces are made: */
     bool has_label_mesh;
     int mesh_level; /* 0: none, 1: of coarse, 2: of all */
     double box[2][3];
@@ -323,6 +327,10 @@ CW_NODISCARD cw_status view_run_preview(view *v, cw_error *err);
 CW_NODISCARD cw_status view_pick_point(view *v, const double pixel[2], cw_picked *picked,
                                        cw_error *err);
 
+/* verbs_window.c: windows of Hounsfield units by name. NULL after the last; range: black, white */
+const char *view_window_name(size_t n, double range[2]);
+bool view_is_hounsfield(const view *v);
+
 /* view_script.c: commands in a text, parted by ; or lines, words in quotes, # begins a comment. */
 CW_NODISCARD cw_status view_exec(view *v, const char *text, cw_error *err);
 CW_NODISCARD cw_status view_exec_file(view *v, const char *path, cw_error *err);
@@ -350,6 +358,7 @@ void view_print_keys(FILE *out);
 /* view_draw.c */
 CW_NODISCARD cw_status view_draw(view *v, view_level level, bool may_stop, cw_error *err);
 bool view_is_final(const view *v);
+bool view_shows_isolines(const view *v); /* of the surface, on slices */
 /* Draws one part into an image of the size of its rect. */
 CW_NODISCARD cw_status view_draw_part(view *v, int part, view_level level, bool may_stop,
                                       cw_image *image, cw_error *err);

@@ -176,7 +176,10 @@ static cw_status follow_name(view *v, const char *name, cw_error *err)
     v->is_measured = false;
     const bool had_labels = v->look.labels;
     cw_status st = view_choose_mode(v, err);
-    view_touch(v, had_labels || v->look.labels ? VIEW_ALL : 1 << VIEW_SPACE);
+    view_touch(v, had_labels || v->look.labels || s->args.marks.isolines ||
+                          strcmp(name, "isolines") == 0
+                      ? VIEW_ALL
+                      : 1 << VIEW_SPACE);
     return st == CW_OK ? view_need_labels(v, err) : st;
 }
 
