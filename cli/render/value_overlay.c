@@ -78,7 +78,7 @@ cw_status cli_overlay_range(const cli_volume *overlay, int threads, double range
     }
     cw_statistics_free(&s);
     if (st == CW_OK && !(range[0] < range[1]))
-        st = cwi_fail(err, CW_ERR_ARGUMENT, "all values are %g: there is nothing to colour",
+        st = cwi_fail(err, CW_ERR_EMPTY, "all values are %g: there is nothing to colour",
                       range[0]);
     return st == CW_OK ? st : cwi_fail_in(err, st, overlay->path);
 }

@@ -23,7 +23,7 @@ bool cli_overlay_is_labels(bool looks_like_labels, const cli_value_look *look,
 
 /* Finds the 80th and 99.9th percentiles of an overlay, between which its colours are where none are
  * given; where these are equal, all values.
- * Returns  CW_ERR_ARGUMENT  all values are the same, or there are several in a voxel */
+ * Returns  CW_ERR_EMPTY  all values are the same; CW_ERR_ARGUMENT  several in a voxel */
 CW_NODISCARD cw_status cli_overlay_range(const cli_volume *overlay, int threads,
                                          double range[2], cw_error *err);
 

@@ -49,6 +49,8 @@ static const cli_option options[] = {
     CLI_INPUT_OPTIONS(render_args),
 };
 
+_Static_assert(sizeof options / sizeof *options <= CLI_MAX_OPTIONS, "rows of options");
+
 /* Frames while something takes long: a bar, and a way to stop it. */
 static bool show_progress(void *user, const char *step, double done)
 {

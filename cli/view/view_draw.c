@@ -1,5 +1,5 @@
 /* Pictures of the parts, roughly while things move and better when they rest. */
-#include "cli/view/view.h"
+#include "cli/view/view_measure.h"
 
 #include "cli/framework/console.h"
 #include "cli/inputs/extract_surface.h"
@@ -392,6 +392,8 @@ static cw_status show_part(view *v, int part, cw_scene *scene, const cw_picture 
     scene->progress = (cw_progress){0};
     if (st == CW_OK && (scene->volume || scene->mesh))
         st = cli_mark(&marks, v->look.labels ? &v->labels : NULL, scene, image, err);
+    if (st == CW_OK && v->is_saving)
+        st = view_mark_measures(v, part, scene, marks.text_px, image, err);
     return st;
 }
 

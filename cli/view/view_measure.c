@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const float FAINT = 0.25f;
+
 const char *view_measure_name(view_measure_kind kind)
 {
     static const char *const names[] = {"off", "distance", "angle", "area"};
@@ -250,7 +252,7 @@ static void show_measure(view *v, int part, size_t number)
     const view_measure *m = &v->state.measures[number];
     const double(*points)[3] = view_measure_points(v, m);
     const bool is_near = is_near_slice(v, part, points, m->count);
-    const cwi_ui_color color = {1, 0.85f, 0.25f, is_near ? 1 : 0.25f};
+    const cwi_ui_color color = {1, 0.85f, 0.25f, is_near ? 1 : FAINT};
     double pixels[VIEW_POLYGON][2], at[2] = {0, 0};
     char value[96], text[112];
     if (!project(v, part, points, m->count, pixels))
@@ -264,6 +266,28 @@ static void show_measure(view *v, int part, size_t number)
     if (is_near)
         write_plate(v, m->kind == VIEW_MEASURE_ANGLE ? pixels[1][0] : at[0],
                     m->kind == VIEW_MEASURE_ANGLE ? pixels[1][1] : at[1], color, text);
+}
+
+cw_status view_mark_measures(const view *v, int part, const cw_scene *scene, double text_px,
+                             cw_image *image, cw_error *err)
+{
+    char value[96], texts[VIEW_MEASURES][112];
+    cw_world_mark marks[VIEW_MEASURES];
+    const size_t count = v->state.measure_count;
+    for (size_t n = 0; n < count; n++) {
+        const view_measure *m = &v->state.measures[n];
+        const double(*points)[3] = view_measure_points(v, m);
+        const bool is_near = is_near_slice(v, part, points, m->count);
+        view_measure_value(v, m, value, sizeof value);
+        snprintf(texts[n], sizeof texts[n], "%zu: %s", n + 1, value);
+        marks[n] = (cw_world_mark){.points = points,
+                                   .count = m->count,
+                                   .is_closed = m->kind == VIEW_MEASURE_AREA,
+                                   .text = is_near ? texts[n] : NULL,
+                                   .text_point = m->kind == VIEW_MEASURE_ANGLE ? 1 : m->count,
+                                   .opacity = is_near ? 1 : FAINT};
+    }
+    return count ? cw_world_marks_draw(marks, count, text_px, scene, image, err) : CW_OK;
 }
 
 /* Shows the points picked so far, and a line to the mouse. */

@@ -32,6 +32,10 @@ bool view_measure_key(view *v, const char *key);
 /* Writes what the next click does; "" without a tool. */
 void view_tool_hint(const view *v, char *text, size_t size);
 
+/* Draws the measurements on the picture of a part, for keeps. */
+CW_NODISCARD cw_status view_mark_measures(const view *v, int part, const cw_scene *scene,
+                                          double text_px, cw_image *image, cw_error *err);
+
 /* Draws the measurements over a part of the window. */
 void view_show_measures(view *v, int part, const cwi_ui_input *in);
 

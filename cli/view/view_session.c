@@ -87,7 +87,7 @@ void view_close(view *v)
     free(v->files);
     v->files = NULL;
     v->path = NULL;
-    v->state.measure_count = v->measure_point_count = v->tool_count = 0;
+    v->state.measure_count = v->tool_count = 0;
     v->file_count = 0;
     v->has_volume = false;
 }

@@ -120,6 +120,31 @@ CW_NODISCARD CW_API cw_status cw_value_slices_draw(const cw_value_slices *values
                                                    const cw_scene *scene, cw_picture *picture,
                                                    cw_error *err);
 
+/* A mark of points of the world on pictures, such as a measurement. Zero-initialise the struct and
+ * set what you need. */
+typedef struct cw_world_mark {
+    const double (*points)[3]; /* count of them, in mm of the world; a line goes through them */
+    size_t count;
+    bool is_closed;   /* the last one is joined to the first; default: it is not */
+    const char *text; /* UTF-8, on a dark plate; default none */
+    size_t
+        text_point; /* number of the point beside which the text stands; count and more: beside
+                          their middle */
+    float opacity;  /* of lines and points, up to 1; default 1 */
+} cw_world_mark;
+
+/* Draws marks on the picture of a scene, in yellow on dark. A mark with a point behind the eye is
+ * left out; nothing of the scene hides a mark.
+ * marks    count of them, borrowed; later ones are on top
+ * text_px  height of capitals; 0: 1/48 of the picture's height, at least 7
+ * scene    its camera is used; borrowed
+ * image    of that scene, of any size with the same aspect ratio
+ * Returns  CW_ERR_ARGUMENT  an empty image, or letters of another size than 0 to 1000 pixels;
+ *          CW_ERR_NO_MEMORY */
+CW_NODISCARD CW_API cw_status cw_world_marks_draw(const cw_world_mark *marks, size_t count,
+                                                  double text_px, const cw_scene *scene,
+                                                  cw_image *image, cw_error *err);
+
 /* Copies one image into another, with its upper left corner at column x, row y. Parts outside
  * are left out.
  * onto  the image that is changed

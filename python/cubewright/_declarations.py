@@ -2473,6 +2473,25 @@ cw_label_slices._fields_ = [
 ]
 
 
+class cw_world_mark(Structure):
+    points: Any
+    count: int
+    is_closed: bool
+    text: bytes | None
+    text_point: int
+    opacity: float
+
+
+cw_world_mark._fields_ = [
+    ("points", POINTER(c_double * 3)),
+    ("count", c_size_t),
+    ("is_closed", c_bool),
+    ("text", c_char_p),
+    ("text_point", c_size_t),
+    ("opacity", c_float),
+]
+
+
 class cw_remesh_desc(Structure):
     edge_mm: float
     shortest_mm: float
@@ -3022,6 +3041,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_scale_bar": (c_int, [POINTER(cw_scene), POINTER(cw_image), POINTER(c_double), POINTER(c_double), POINTER(cw_error)]),
     "cw_label_slices_draw": (c_int, [POINTER(cw_label_slices), POINTER(cw_scene), POINTER(cw_picture), POINTER(cw_error)]),
     "cw_value_slices_draw": (c_int, [POINTER(cw_value_slices), POINTER(cw_scene), POINTER(cw_picture), POINTER(cw_error)]),
+    "cw_world_marks_draw": (c_int, [POINTER(cw_world_mark), c_size_t, c_double, POINTER(cw_scene), POINTER(cw_image), POINTER(cw_error)]),
     "cw_image_place": (None, [POINTER(cw_image), POINTER(cw_image), c_ssize_t, c_ssize_t]),
     "cw_image_tile": (c_int, [POINTER(cw_image), c_size_t, c_size_t, c_size_t, POINTER(c_uint8), POINTER(cw_image), POINTER(cw_error)]),
     "cw_mesh_remesh": (c_int, [POINTER(cw_mesh), POINTER(cw_remesh_desc), POINTER(cw_mesh), POINTER(cw_remesh_facts), POINTER(cw_error)]),

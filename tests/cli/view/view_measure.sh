@@ -47,6 +47,9 @@ view "toggle panels off; layout quad; cross 5 -3 2; wait; measure-tool area; $tw
       key Enter; key Escape; $clicks print measurements; cross 5 -3 8; wait; capture faint.png; measure off; wait; capture none.png" >clicked
 awk '{ gsub(/,/, ""); printf "%d %s, %.4f of the triangle\n", $1, $2, $3 / (0.5 * ($8 - $5) * ($12 - $9)) }' clicked
 cmp -s faint.png none.png && echo "the same, but should not be"
+# Saved pictures have them.
+view 'layout quad; cross 5 -3 2; screenshot a.png; measure distance 0 -3 2 10 -3 2; screenshot b.png; undo; screenshot c.png'
+cmp a.png c.png && ! cmp -s a.png b.png && echo "drawn"
 # The panel lists and removes them.
 cubewright view ball.nrrd -q --hidden --size 640x1400 --exec 'click Measurements; wait; click Distance; measure-point 0 0 0; measure-point 0 3 4; wait;
       measure distance 0 0 0 0 0 7; wait; click "Remove 1"; print measurements; click "Copy the values"; print message; click "Remove all"; print measurements;
