@@ -123,10 +123,10 @@ CW_NODISCARD CW_API cw_status cw_value_slices_draw(const cw_value_slices *values
 /* A mark of points of the world on pictures, such as a measurement. Zero-initialise the struct and
  * set what you need. */
 typedef struct cw_world_mark {
-    const double (*points)[3]; /* count of them, in mm of the world; a line goes through them */
-    size_t count;
-    bool is_closed;   /* the last one is joined to the first; default: it is not */
-    const char *text; /* UTF-8, on a dark plate; default none */
+    const double (*points)[3]; /* in mm of the world; a line goes through them */
+    size_t count;              /* of the points */
+    bool is_closed;            /* the last one is joined to the first; default: it is not */
+    const char *text;          /* UTF-8, on a dark plate; default none */
     size_t
         text_point; /* number of the point beside which the text stands; count and more: beside
                           their middle */
