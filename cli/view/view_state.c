@@ -4,6 +4,7 @@
 #include "cli/view/view.h"
 #include "cli/view/view_measure.h"
 
+#include "cli/inputs/level_choice.h"
 #include "cli/render/compare_options.h"
 #include "core/base/atomic_file.h"
 #include "core/base/status.h"
@@ -172,6 +173,12 @@ static cw_status follow_name(view *v, const char *name, cw_error *err)
     }
     if (strcmp(name, "iso") == 0 && s->args.iso.given && !s->args.overlay)
         s->args.look.labels = NULL;
+    if (strcmp(name, "iso") == 0 && v->path && !v->source.is_mesh) { /* it may be a name */
+        cw_status found =
+            cli_choose_level(&v->source.volume, &s->args.input, &s->args.iso, err);
+        if (found != CW_OK)
+            return found;
+    }
     v->transfer_is_old = true;
     v->is_measured = false;
     const bool had_labels = v->look.labels;

@@ -33,6 +33,8 @@ done
 cubewright view straight.nrrd -q --hidden --size 320x240 --exec 'window bone' || echo "exit $?"
 
 echo "isolines"
+view 'iso bone; print iso; iso otzu'
+cubewright view straight.nrrd -q --hidden --size 320x240 --exec 'iso bone' || echo "exit $?"
 view 'layout quad; mode composite; iso 300; wait; screenshot a.png; isolines on; wait; screenshot b.png; iso 200; screenshot c.png; isolines off; iso 300;
       screenshot d.png; isolines on; mode slices; iso off; screenshot e.png'
 cmp a.png d.png && ! cmp -s a.png b.png && ! cmp -s b.png c.png && echo "an outline that moves"
