@@ -233,7 +233,7 @@ typedef struct cli_option {
 #define CLI_READING   "Reading"
 #define CLI_LIMITS    "Limits and messages"
 
-enum { CLI_MAX_OPTIONS = 128 }; /* rows of a command's table */
+enum { CLI_MAX_OPTIONS = 192 }; /* rows of a command's table */
 
 /* Options of commands that take each input by itself: see batch.h. */
 typedef struct cli_batch {

@@ -1,5 +1,5 @@
 /* Menus, panels and what is written on the window. Widgets ask for commands. */
-#include "cli/view/view.h"
+#include "cli/view/view_measure.h"
 
 #include "core/base/status.h"
 
@@ -41,7 +41,8 @@ static void show_menu(view *v, const char *menu)
 
 static void show_bar(view *v)
 {
-    static const char *const menus[] = {"File", "Edit", "View", "Scene", "Time", "Help"};
+    static const char *const menus[] = {"File",    "Edit", "View", "Scene",
+                                        "Measure", "Time", "Help"};
     v->bar_height = v->ui->bar_begin(v->window);
     for (size_t n = 0; n < sizeof menus / sizeof *menus; n++)
         show_menu(v, menus[n]);
@@ -74,7 +75,8 @@ static void show_keys(view *v)
                     "Left drag: orbit.  Middle or Shift+left: pan.  Right drag, wheel: zoom.\n"
                     "Ctrl+left: shift and opacity.  Double-click: set the cross-hair.\n"
                     "On slices: left moves the cross-hair, right sets black and white,\n"
-                    "the wheel changes the slice, Ctrl+wheel zooms.");
+                    "the wheel changes the slice, Ctrl+wheel zooms.\n"
+                    "While something is measured, clicks add its points; Escape stops.");
         v->ui->rule(v->window);
         for (size_t n = 0; n < view_key_count; n++)
             show_key(v, n);
@@ -120,7 +122,10 @@ static void describe_status(const view *v, char *line, size_t size, double width
                         : v->shown.cut == 2 ? "   wheel cuts y"
                         : v->shown.cut == 3 ? "   wheel cuts z"
                                             : "";
-    char state[64];
+    char state[64], tool[96];
+    view_tool_hint(v, tool, sizeof tool);
+    if (*tool)
+        wheel = tool;
     snprintf(state, sizeof state, "%s, %.0f ms, %s", cw_mode_name(v->mode), space->ms,
              levels[space->level]);
     snprintf(line, size, "%s   %s   %s%s", path, state, v->probe, wheel);

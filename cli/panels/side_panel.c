@@ -107,7 +107,7 @@ static void show_option(view *v, const char *name)
 /* Whether a widget of another section sets it. */
 static bool is_shown_elsewhere(const char *name)
 {
-    static const char *const names[] = {"lit", "layout"};
+    static const char *const names[] = {"lit", "layout", "isolines"};
     for (size_t n = 0; n < sizeof names / sizeof *names; n++)
         if (strcmp(name, names[n]) == 0)
             return true;
@@ -317,11 +317,49 @@ static void show_cut(view *v)
         show_option(v, "cap");
 }
 
+/* The windows of radiology, where values are in their unit. */
+static void show_windows(view *v, const double now[2])
+{
+    const char *names[MAX_NAMES] = {"by the values"};
+    double range[2];
+    size_t count = 1, chosen = 0;
+    for (const char *name; (name = view_window_name(count - 1, range)); names[count++] = name)
+        if (range[0] == now[0] && range[1] == now[1])
+            chosen = count;
+    const double *set = v->state.window;
+    if (!chosen && (set[0] != 0 || set[1] != 0))
+        names[chosen = count++] = "by hand";
+    if (!v->ui->choice(v->window, "Greys", names, count, &chosen))
+        return;
+    if (view_window_name(chosen - 1, range) || chosen == 0)
+        view_ask(v, "window %s", chosen ? names[chosen] : "auto");
+}
+
+/* Black and white, and the same as a window and its level. */
+static void show_greys(view *v)
+{
+    const cw_statistics *s = &v->statistics;
+    const double range = s->max - s->min;
+    double w[2];
+    view_grey_range(v, w);
+    double width = w[1] - w[0], level = 0.5 * (w[0] + w[1]);
+    if (view_is_hounsfield(v))
+        show_windows(v, w);
+    const bool black = v->ui->slider(v->window, "Black", &w[0], s->min, s->max, "%.5g");
+    if (v->ui->slider(v->window, "White", &w[1], s->min, s->max, "%.5g") || black)
+        view_ask(v, "window %.9g %.9g", fmin(w[0], w[1] - 1e-6 * range), w[1]);
+    const bool wider = v->ui->number(v->window, "Window", &width, range / 1000, "%.5g");
+    v->ui->tip(v->window, "From black to white");
+    if (v->ui->number(v->window, "Level", &level, range / 1000, "%.5g") || wider) {
+        width = fmax(width, 1e-6 * range);
+        view_ask(v, "window %.9g %.9g", level - 0.5 * width, level + 0.5 * width);
+    }
+    v->ui->tip(v->window, "In the middle of black and white");
+}
+
 static void show_slices(view *v)
 {
     static const char *const names[3] = {"Sagittal x", "Coronal y", "Axial z"};
-    const cw_statistics *s = &v->statistics;
-    double w[2];
     bool quad = v->state.args.marks.layout == CLI_LAYOUT_QUAD;
     double cross[3];
     if (!v->has_volume || !view_fits_mode(v, CW_MODE_SLICES) ||
@@ -335,10 +373,8 @@ static void show_slices(view *v)
                           "%.1f mm"))
             view_ask(v, "cross %.9g %.9g %.9g", cross[0], cross[1], cross[2]);
     }
-    view_grey_range(v, w);
-    const bool black = v->ui->slider(v->window, "Black", &w[0], s->min, s->max, "%.5g");
-    if (v->ui->slider(v->window, "White", &w[1], s->min, s->max, "%.5g") || black)
-        view_ask(v, "window %.9g %.9g", fmin(w[0], w[1] - 1e-6 * (s->max - s->min)), w[1]);
+    show_greys(v);
+    show_option(v, "isolines");
     v->ui->text(v->window, v->probe);
 }
 
@@ -371,12 +407,15 @@ void view_show_side(view *v)
         view_show_point(v);
         show_surface(v);
         show_slices(v);
+        view_show_measure_section(v);
         show_cut(v);
         show_time(v);
         view_show_compare(v);
         view_show_views(v);
-        if (v->look.labels)
+        if (v->look.labels && !v->overlay_values.volume)
             show_options(v, "Label maps");
+        if (v->has_volume)
+            show_options(v, "Overlay of another volume");
         show_options(v, "Light");
         show_options(v, "Sampling");
         show_options(v, "Meshes");

@@ -40,6 +40,8 @@ static const cli_option options[] = {
     CLI_INPUT_OPTIONS(render_args),
 };
 
+_Static_assert(sizeof options / sizeof *options <= CLI_MAX_OPTIONS, "rows of options");
+
 static cw_status run_render(void *p, cw_error *err)
 {
     const render_args *args = p;

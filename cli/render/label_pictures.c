@@ -22,8 +22,12 @@ static cw_status check_overlay(const render_args *args, cw_error *err)
     double opacity;
     const bool is_quad = args->marks.layout == CLI_LAYOUT_QUAD;
     const bool is_slices = args->scene.mode ? args->scene.mode == 1 + CW_MODE_SLICES : !is_quad;
-    if (args->overlay_opacity.given && !args->overlay)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--overlay-opacity is for --overlay");
+    const char *given = args->overlay_opacity.given ? "opacity"
+                        : args->values.map          ? "map"
+                        : args->values.range.count  ? "range"
+                                                    : NULL;
+    if (given && !args->overlay)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--overlay-%s is for --overlay", given);
     if (!args->overlay)
         return CW_OK;
     if (!is_slices && !is_quad)
@@ -34,7 +38,8 @@ static cw_status check_overlay(const render_args *args, cw_error *err)
                         args->compare ? "compare"
                         : args->mesh  ? "mesh"
                                       : "iso");
-    return cli_overlay_opacity(&args->overlay_opacity, &opacity, err);
+    cw_status st = cli_check_values(&args->values, &args->look, err);
+    return st == CW_OK ? cli_overlay_opacity(&args->overlay_opacity, &opacity, err) : st;
 }
 
 cw_status cli_check_label_look(const render_args *args, cw_error *err)
@@ -139,19 +144,46 @@ cw_status cli_decide_labels(cli_pictures *p, cw_error *err)
     return st;
 }
 
-/* Reads the volume of labels once, for all steps. */
+/* Finds the colours of an overlay that is no label map. */
+static cw_status open_values(cli_pictures *p, cw_error *err)
+{
+    const render_args *args = p->args;
+    double range[2] = {0};
+    cw_status st = CW_OK;
+    if (args->marks.legend || args->look.smooth)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--%s is for labels, and %s is drawn as values: --labels all",
+                        args->marks.legend ? "legend" : "smooth-labels", p->overlay.path);
+    if (args->values.range.count == 0)
+        st = cli_overlay_range(&p->overlay, (int)args->input.threads, range, err);
+    if (st == CW_OK)
+        st = cli_make_values(&p->overlay, &args->values, range, &args->overlay_opacity,
+                             &p->on_slices, err);
+    if (st == CW_OK)
+        cli_say("%s: values from %.5g to %.5g in %s", p->overlay.path, p->on_slices.values.low,
+                p->on_slices.values.high, cw_colormap_name(p->on_slices.values.map));
+    return st;
+}
+
+/* Reads the overlay once, for all steps. */
 static cw_status open_overlay(cli_pictures *p, cw_error *err)
 {
     static const cli_input all;
     double opacity;
+    char what[160];
     if (p->overlay.path)
         return CW_OK;
     cw_status st = cli_overlay_opacity(&p->args->overlay_opacity, &opacity, err);
     if (st == CW_OK)
         st = cli_read_overlay(p->args->overlay, &p->args->input, &p->overlay, err);
     if (st == CW_OK)
+        st = cli_looks_like_labels(&p->overlay, what, sizeof what, err);
+    if (st == CW_OK && !cli_overlay_is_labels(*what, &p->args->values, &p->args->look))
+        return open_values(p, err);
+    if (st == CW_OK)
         st = cli_find_shown_labels(&p->look, &all, 0, &p->overlay, &p->labels, err);
-    p->on_slices = (cli_slice_labels){&p->overlay, &all, 0, &p->labels.shown, opacity, false};
+    p->on_slices = (cli_slice_labels){
+        .volume = &p->overlay, .input = &all, .shown = &p->labels.shown, .opacity = opacity};
     return st;
 }
 
@@ -163,7 +195,12 @@ cw_status cli_open_labels(cli_pictures *p, size_t step, cw_error *err)
     if (p->args->overlay)
         return open_overlay(p, err);
     cw_status st = cli_find_shown_labels(&p->look, input, at, volume, &p->labels, err);
-    p->on_slices = (cli_slice_labels){volume, input, at, &p->labels.shown, 1, true};
+    p->on_slices = (cli_slice_labels){.volume = volume,
+                                      .input = input,
+                                      .step = at,
+                                      .shown = &p->labels.shown,
+                                      .opacity = 1,
+                                      .is_base = true};
     if (st != CW_OK || p->mode != CW_MODE_MESH)
         return st;
     cw_mesh_free(&p->source.mesh);

@@ -1,5 +1,6 @@
 /* Draws marks such as axes and a scale bar onto a picture, and slices beside it. */
 #include "cli/render/overlay_options.h"
+#include "cli/render/slice_caption.h"
 
 #include "core/base/status.h"
 
@@ -11,7 +12,7 @@ enum { BINS = 256 };
 bool cli_has_marks(const cli_marks *m)
 {
     return m->axes || m->scale_bar || m->letters || m->color_bar || m->histogram || m->legend ||
-           m->caption;
+           m->caption || m->isolines || m->values;
 }
 
 /* A label of the legend. */
@@ -71,6 +72,9 @@ static cw_status draw_marks(const cli_marks *m, const cli_label_scene *labels,
                                 .legend_count = count,
                                 .caption = m->caption,
                                 .text_px = m->text_px,
+                                .isoline = m->isolines,
+                                .values_bar = m->values,
+                                .isovalue = m->isovalue,
                                 .statistics = statistics};
     if (st == CW_OK)
         st = cw_overlay_draw(&overlay, scene, image, err);
@@ -115,7 +119,13 @@ static cw_status draw_slice(const cw_scene *scene, const cw_transfer *greys,
                             cw_image *image, cw_error *err)
 {
     static const uint8_t black[2][4] = {{0, 0, 0, 255}, {0, 0, 0, 255}};
-    static const cli_marks marks = {.scale_bar = true, .letters = true};
+    char caption[96];
+    const cli_marks marks = {.scale_bar = true,
+                             .letters = true,
+                             .caption = caption,
+                             .values = axis == 2 && labels->has_values ? &labels->values : NULL,
+                             .isolines = labels->isoline.given,
+                             .isovalue = labels->isoline.value};
     cw_picture picture;
     double middle[3], world[3];
     cw_scene s = {.mode = CW_MODE_SLICES,
@@ -131,6 +141,7 @@ static cw_status draw_slice(const cw_scene *scene, const cw_transfer *greys,
     cw_volume_to_world(s.volume, middle, world);
     s.slices[0].normal[axis] = 1;
     s.slices[0].distance_mm = world[axis];
+    cli_caption_slice(s.volume, axis, world[axis], caption, sizeof caption);
     cw_status st = cw_slice_camera(s.volume, &s.slices[0], (double)s.width / (double)s.height,
                                    &s.camera, err);
     if (st == CW_OK)

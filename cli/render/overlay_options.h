@@ -7,10 +7,12 @@
 #include <cubewright/overlay.h>
 
 typedef struct cli_marks {
-    bool axes, scale_bar, letters, color_bar, histogram, legend;
+    bool axes, scale_bar, letters, color_bar, histogram, legend, isolines;
     const char *caption;
     int layout;
-    double text_px; /* height of capitals; 0: by the picture's height */
+    double text_px;                /* height of capitals; 0: by the picture's height */
+    double isovalue;               /* of isolines */
+    const cw_value_slices *values; /* whose colours are shown as a bar, or NULL */
 } cli_marks;
 
 enum { CLI_LAYOUT_SINGLE, CLI_LAYOUT_QUAD };

@@ -29,6 +29,24 @@ static cw_status check_side_output(const char *path, const render_args *args, cw
     return st == CW_OK ? cli_check_apart(path, args->output, err) : st;
 }
 
+/* Isolines are drawn on slices that no mesh stands before. */
+static cw_status check_isolines(const render_args *args, cw_error *err)
+{
+    const bool is_slices = args->scene.mode == 1 + CW_MODE_SLICES;
+    if (!args->marks.isolines)
+        return CW_OK;
+    if (!args->iso.given)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--isolines needs an isovalue: --iso V");
+    if (!is_slices && args->marks.layout != CLI_LAYOUT_QUAD)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--isolines is for slices: --mode slices or --layout quad");
+    return is_slices && args->scene.hide != CLI_HIDE_MESH
+               ? cwi_fail(err, CW_ERR_ARGUMENT,
+                          "--isolines in the mode slices is for slices without the surface "
+                          "before them: --hide mesh")
+               : CW_OK;
+}
+
 cw_status cli_check_pictures(const render_args *args, cw_error *err)
 {
     const char *dot = args->output ? strrchr(args->output, '.') : NULL;
@@ -54,7 +72,9 @@ cw_status cli_check_pictures(const render_args *args, cw_error *err)
     if (args->difference.given && !(args->difference.value > 0))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--difference %g: above 0 was expected",
                         args->difference.value);
-    cw_status st = cli_check_camera(&args->scene, &args->turns, err);
+    cw_status st = check_isolines(args, err);
+    if (st == CW_OK)
+        st = cli_check_camera(&args->scene, &args->turns, err);
     if (st == CW_OK)
         st = cli_check_label_look(args, err);
     if (st == CW_OK)
@@ -221,13 +241,19 @@ static bool draws_volume(const cli_pictures *p)
     return p->mode != CW_MODE_MESH;
 }
 
+/* Finds the number of an isovalue that is named, in the first step. */
+static cw_status choose_iso(cli_pictures *p, cw_error *err)
+{
+    if (!p->iso.given)
+        p->iso = p->args->iso;
+    return cli_choose_level(&p->source.volume, &p->args->input, &p->iso, err);
+}
+
 static cw_status extract_shown(cli_pictures *p, cw_error *err)
 {
     const render_args *args = p->args;
     cw_mesh_free(&p->source.mesh);
-    if (!p->iso.given)
-        p->iso = args->iso;
-    cw_status st = cli_choose_level(&p->source.volume, &args->input, &p->iso, err);
+    cw_status st = choose_iso(p, err);
     const cw_extract_desc desc = {.isovalue = p->iso.value,
                                   .inside_is_low =
                                       cli_inside_is_low(args->inside, &p->source.volume.whole),
@@ -286,6 +312,10 @@ static cw_status open_step(cli_pictures *p, size_t step, cw_error *err)
         st = cli_need_drawable(&p->source, &args->input, err);
     if (st == CW_OK && p->look.labels)
         st = cli_open_labels(p, step, err);
+    if (st == CW_OK && args->marks.isolines) {
+        st = choose_iso(p, err);
+        p->on_slices.isoline = p->iso;
+    }
     if (st != CW_OK || (p->look.labels && !args->overlay))
         return st;
     if (args->mesh)
@@ -445,6 +475,11 @@ static cw_status take_picture(cli_pictures *p, size_t turn, cli_shot *shot, cw_e
 {
     uint8_t background[2][4];
     cw_image image = {0};
+    cli_marks marks = p->args->marks;
+    const bool is_slices = p->mode == CW_MODE_SLICES;
+    marks.isolines = marks.isolines && is_slices;
+    marks.values = is_slices && p->on_slices.has_values ? &p->on_slices.values : NULL;
+    marks.isovalue = p->iso.value;
     cw_status st = make_scene(p, turn, err);
     if (st == CW_OK)
         st = cli_background(&p->args->scene, background, err);
@@ -453,7 +488,7 @@ static cw_status take_picture(cli_pictures *p, size_t turn, cli_shot *shot, cw_e
                  ? draw_mesh(p, (const uint8_t(*)[4])background, &image, err)
                  : draw_scene(p, turn, shot, (const uint8_t(*)[4])background, &image, err);
     if (st == CW_OK)
-        st = cli_mark(&p->args->marks, &p->labels, &p->scene, &image, err);
+        st = cli_mark(&marks, &p->labels, &p->scene, &image, err);
     if (st == CW_OK && p->args->marks.layout == CLI_LAYOUT_QUAD)
         st = add_slices(p, &image, err);
     if (st == CW_OK)

@@ -8,6 +8,7 @@
 #include "cli/render/overlay_options.h"
 #include "cli/render/render_report.h"
 #include "cli/render/slice_labels.h"
+#include "cli/render/value_overlay.h"
 
 typedef struct render_args {
     cli_common common;
@@ -16,6 +17,7 @@ typedef struct render_args {
     cli_turns turns;
     cli_marks marks;
     cli_label_look look;
+    cli_value_look values;                           /* of overlay */
     const char *exec, *run, *config, *recent, *film; /* of view alone, */
     bool hidden, light_theme;                        /* and these, */
     cli_number fps;                                  /* and these */

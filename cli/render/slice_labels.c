@@ -8,6 +8,16 @@
 /* Labels are seen, and the scan through them. */
 static const double OVERLAY_OPACITY = 0.4;
 
+static cw_status draw_values(const cli_slice_labels *labels, const cw_scene *scene,
+                             cw_picture *picture, cw_error *err)
+{
+    cw_value_slices values = labels->values;
+    values.values = &labels->field;
+    const cw_status st = cw_value_slices_draw(&values, scene, picture, err);
+    return st == CW_OK || st == CW_ERR_CANCELLED ? st
+                                                 : cwi_fail_in(err, st, labels->volume->path);
+}
+
 cw_status cli_draw_slice_labels(const cli_slice_labels *labels, const cw_scene *scene,
                                 cw_picture *picture, cw_error *err)
 {
@@ -15,6 +25,8 @@ cw_status cli_draw_slice_labels(const cli_slice_labels *labels, const cw_scene *
     cw_status st = CW_OK;
     if (!labels->volume || labels->opacity <= 0)
         return CW_OK;
+    if (labels->has_values)
+        return draw_values(labels, scene, picture, err);
     cli_label_layers(labels->volume, labels->input, &first, &end);
     for (size_t c = first; c < end && st == CW_OK; c++) {
         cw_volume view;

@@ -1,10 +1,10 @@
-/* Labels that are drawn over slices: of the volume itself, or of another one. */
+/* Labels that are drawn over slices, of the volume itself or of another one, or its values. */
 #ifndef CLI_RENDER_SLICE_LABELS_H
 #define CLI_RENDER_SLICE_LABELS_H
 
 #include "cli/inputs/label_scene.h"
 
-#include <cubewright/render.h>
+#include <cubewright/overlay.h>
 
 /* Zeroed, there are none. */
 typedef struct cli_slice_labels {
@@ -12,8 +12,12 @@ typedef struct cli_slice_labels {
     const cli_input *input;   /* that it was read by: says which components hold labels */
     size_t step;
     const cw_label_table *shown;
-    double opacity; /* factor of their opacities */
-    bool is_base;   /* the slices are those of the label map: under the labels is black */
+    double opacity;  /* factor of their opacities */
+    bool is_base;    /* the slices are those of the label map: under the labels is black */
+    bool has_values; /* it is not labels that are drawn, but values: */
+    cw_volume field; /* the only component of the volume's voxels */
+    cw_value_slices values; /* how; its volume is field */
+    cli_number isoline;     /* of the slices' volume, drawn after them; not given: none */
 } cli_slice_labels;
 
 /* Draws the labels over the picture of a scene of slices.

@@ -52,6 +52,8 @@ static const cli_option options[] = {
     CLI_INPUT_OPTIONS(render_args),
 };
 
+_Static_assert(sizeof options / sizeof *options <= CLI_MAX_OPTIONS, "rows of options");
+
 /* Frames while something takes long: a bar, and a way to stop it. */
 static bool show_progress(void *user, const char *step, double done)
 {
@@ -213,6 +215,7 @@ static void end_session(view *v)
         free(v->words[n]);
     for (size_t n = 0; n < v->asked_count; n++)
         free(v->asked[n]);
+    free(v->measure_points);
     free(v->words);
     free(v->asked);
     free(v);

@@ -256,39 +256,32 @@ static void tell_picked_label(view *v, const cw_scene *scene, const cw_picked *p
         view_say(v, false, text);
 }
 
+cw_status view_pick_point(view *v, const double pixel[2], cw_picked *picked, cw_error *err)
+{
+    const view_part *part = &v->parts[VIEW_SPACE];
+    *picked = (cw_picked){0};
+    if (part->level == VIEW_STALE || part->scene.live || v->state.args.compare)
+        return CW_OK; /* nothing to be seen yet, or two things */
+    const double scale = (double)part->scene.width / fmax(part->rect.width, 1);
+    return cw_pick(&part->scene, (const double[2]){pixel[0] * scale, pixel[1] * scale}, picked,
+                   err);
+}
+
 /* To what the mouse is on, in pixels of the 3D part. */
 static cw_status run_pick(view *v, int count, char **args, cw_error *err)
 {
     double pixel[2];
     cw_picked picked = {0};
-    view_part *part = &v->parts[VIEW_SPACE];
+    const view_part *part = &v->parts[VIEW_SPACE];
     cw_status st = view_take("pick", args, count, pixel, err);
     if (st == CW_OK)
         st = view_need_open(v, err);
-    if (st == CW_OK && (part->level == VIEW_STALE || part->scene.live || v->state.args.compare))
-        return CW_OK; /* nothing to be seen yet, what only the GPU knows, or two things */
-    if (st == CW_OK) {
-        const double scale = (double)part->scene.width / fmax(part->rect.width, 1);
-        const double at[2] = {pixel[0] * scale, pixel[1] * scale};
-        st = cw_pick(&part->scene, at, &picked, err);
-    }
+    if (st == CW_OK)
+        st = view_pick_point(v, pixel, &picked, err);
     if (st == CW_OK && picked.kind != CW_PICK_NOTHING) {
         put_cross(v, picked.point);
         tell_picked_label(v, &part->scene, &picked);
     }
-    return st;
-}
-
-static cw_status run_window(view *v, int count, char **args, cw_error *err)
-{
-    double n[2];
-    cw_status st = view_take("window", args, count, n, err);
-    if (st == CW_OK && !(n[0] < n[1]))
-        st = cwi_fail(err, CW_ERR_ARGUMENT, "window %s %s: rising values were expected",
-                      args[0], args[1]);
-    if (st == CW_OK)
-        memcpy(v->state.window, n, sizeof n);
-    view_touch(v, VIEW_SLICES);
     return st;
 }
 
@@ -339,8 +332,6 @@ static const view_verb rows[] = {
     VERB("cross-by", "x|y|z VOXELS", "Move the cross-hair", 2, 2, run_cross_by),
     VERB("pick", "X Y", "Put the cross-hair on what a pixel of the scene shows", 2, 2,
          run_pick),
-    EDIT("window", "LOW HIGH", "Set the values that are black and white in slices", 2, 2,
-         run_window),
     VERB("zoom-slices", "F", "Magnify slices by this factor", 1, 1, run_zoom_slices),
     VERB("split", "F", "Divide a comparison at this fraction of the width", 1, 1, run_split),
 };

@@ -1,5 +1,7 @@
 /* Commands of scripts: printing of settings and facts, and simulated input. */
+#include "cli/render/slice_caption.h"
 #include "cli/view/verbs.h"
+#include "cli/view/view_measure.h"
 
 #include "core/base/status.h"
 
@@ -17,6 +19,16 @@ static void print_setting(const view *v, const char *name)
     else if (o)
         printf("%s %s\n", name,
                cli_option_text(o, &v->state.args, text, sizeof text) ? text : "default");
+}
+
+/* Prints what is written on the slices. */
+static void print_slices(const view *v)
+{
+    char text[96];
+    for (int a = 2; a >= 0 && v->has_volume; a--) {
+        cli_caption_slice(cli_drawn(&v->source), a, v->state.cross[a], text, sizeof text);
+        printf("%s\n", text);
+    }
 }
 
 static cw_status run_print(view *v, int count, char **args, cw_error *err)
@@ -47,6 +59,10 @@ static cw_status run_print(view *v, int count, char **args, cw_error *err)
     else if (strcmp(what, "time") == 0)
         printf("time %.1f ms, %zu x %zu\n", v->parts[VIEW_SPACE].ms,
                v->parts[VIEW_SPACE].scene.width, v->parts[VIEW_SPACE].scene.height);
+    else if (strcmp(what, "measurements") == 0)
+        view_print_measures(v, stdout);
+    else if (strcmp(what, "captions") == 0)
+        print_slices(v);
     else if (strcmp(what, "message") == 0)
         printf("message %s\n", v->message);
     else if (strcmp(what, "compare") == 0 && s->args.compare && v->is_measured)
@@ -248,9 +264,10 @@ static cw_status run_monkey(view *v, int count, char **args, cw_error *err)
 
 static const view_verb rows[] = {
     VERB("wait", "", "Wait until the picture is finished", 0, 0, run_wait),
-    VERB("print", "NAME",
-         "Print a setting, or: mode, open, cross, probe, surface, command, ...", 1, 1,
-         run_print),
+    VERB(
+        "print", "NAME",
+        "Print a setting, or: mode, open, cross, captions, probe, surface, measurements, command, ...",
+        1, 1, run_print),
     VERB("mouse", "X Y [KEYS]", "Move the mouse, while KEYS such as ctrl are held", 2, 3,
          run_mouse),
     VERB("press", "[BUTTON] [KEYS]", "Press a mouse button: left, right or middle", 0, 2,

@@ -40,6 +40,19 @@ typedef struct view_part {
     double ms;      /* that the last one took */
 } view_part;
 
+/* A value between points: of view.measure_points count from first on. */
+typedef enum view_measure_kind {
+    VIEW_MEASURE_NONE,
+    VIEW_MEASURE_DISTANCE,
+    VIEW_MEASURE_ANGLE,
+    VIEW_MEASURE_AREA
+} view_measure_kind;
+typedef struct view_measure {
+    view_measure_kind kind;
+    size_t first, count;
+} view_measure;
+enum { VIEW_MEASURES = 64, VIEW_POLYGON = 128 };
+
 /* State of a session that undo restores and that is saved. */
 typedef struct view_state {
     render_args args;
@@ -53,6 +66,8 @@ typedef struct view_state {
     double slice_zoom;
     double share; /* of the left side of a comparison */
     size_t step;  /* of the series */
+    view_measure measures[VIEW_MEASURES];
+    size_t measure_count;
 } view_state;
 
 enum { VIEW_UNDO = 64, VIEW_MESSAGE = 1024, VIEW_BOOKMARKS = 64 };
@@ -160,7 +175,11 @@ typedef struct view {
     cli_label_scene labels;
     const char *overlay_path; /* of overlay, which has them; NULL: the volume itself */
     cli_volume overlay;
-    bool has_labels; /* they are found; and their surfaces are made: */
+    bool overlay_looks_like_labels;
+    bool has_overlay_range; /* the percentiles are known: */
+    double overlay_range[2];
+    cli_slice_labels overlay_values; /* where it is drawn as values; else volume is NULL */
+    bool has_labels;                 /* they are found; and their surfaces are made: */
     bool has_label_mesh;
     int mesh_level;       /* 0: none, 1: of coarse, 2: of all */
     cw_live_surface live; /* as it was drawn last in place of the mesh */
@@ -179,6 +198,11 @@ typedef struct view {
     bool is_filming;       /* what runs is a film: it is not to be undone */
     view_preview *preview; /* film.c's: the film that plays; NULL: none */
     view_gallery gallery;
+    double (*measure_points)[3]; /* of all measurements, also those that undo would restore */
+    size_t measure_point_count;
+    view_measure_kind tool; /* that clicks measure with */
+    double tool_points[VIEW_POLYGON][3];
+    size_t tool_count;
     cw_mode mode;
     cw_transfer transfer; /* what is drawn with */
     cw_transfer greys;    /* and slices */
@@ -302,6 +326,14 @@ void view_stop_preview(view *v); /* and brings back what was before it */
 void view_drop_preview(view *v); /* when the file is closed */
 CW_NODISCARD cw_status view_run_preview(view *v, cw_error *err);
 
+/* verbs_scene.c: finds what a pixel of the scene shows; nothing where it is not drawn. */
+CW_NODISCARD cw_status view_pick_point(view *v, const double pixel[2], cw_picked *picked,
+                                       cw_error *err);
+
+/* verbs_window.c: windows of Hounsfield units by name. NULL after the last; range: black, white */
+const char *view_window_name(size_t n, double range[2]);
+bool view_is_hounsfield(const view *v);
+
 /* view_script.c: commands in a text, parted by ; or lines, words in quotes, # begins a comment. */
 CW_NODISCARD cw_status view_exec(view *v, const char *text, cw_error *err);
 CW_NODISCARD cw_status view_exec_file(view *v, const char *path, cw_error *err);
@@ -331,6 +363,7 @@ void view_print_keys(FILE *out);
 /* view_draw.c */
 CW_NODISCARD cw_status view_draw(view *v, view_level level, bool may_stop, cw_error *err);
 bool view_is_final(const view *v);
+bool view_shows_isolines(const view *v); /* of the surface, on slices */
 /* Draws one part into an image of the size of its rect. */
 CW_NODISCARD cw_status view_draw_part(view *v, int part, view_level level, bool may_stop,
                                       cw_image *image, cw_error *err);
@@ -397,6 +430,9 @@ void view_show_views(view *v); /* the section of the side panel */
 void view_show_gallery(view *v);
 void view_draw_gallery(view *v);        /* one thumbnail more, if it is shown */
 bool view_gallery_waits(const view *v); /* for thumbnails */
+
+/* cli/panels: measure_panel.c */
+void view_show_measure_section(view *v);
 
 /* cli/panels: recent_files.c, start_page.c */
 /* Reads the list of recent files: of that file, "none", or NULL for the user's. */

@@ -40,9 +40,9 @@ cw_status view_need_camera(view *v, cw_error *err)
 
 const view_verb *view_verb_at(size_t n)
 {
-    static const view_verbs *const lists[] = {&view_files_verbs,  &view_scene_verbs,
-                                              &view_camera_verbs, &view_curve_verbs,
-                                              &view_save_verbs,   &view_script_verbs};
+    static const view_verbs *const lists[] = {
+        &view_files_verbs, &view_scene_verbs,   &view_window_verbs, &view_camera_verbs,
+        &view_curve_verbs, &view_measure_verbs, &view_save_verbs,   &view_script_verbs};
     for (size_t l = 0; l < sizeof lists / sizeof *lists; n -= lists[l++]->count)
         if (n < lists[l]->count)
             return &lists[l]->rows[n];

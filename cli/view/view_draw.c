@@ -1,9 +1,10 @@
 /* Pictures of the parts, roughly while things move and better when they rest. */
-#include "cli/view/view.h"
+#include "cli/view/view_measure.h"
 
 #include "cli/framework/console.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/render/compare_options.h"
+#include "cli/render/slice_caption.h"
 #include "core/base/status.h"
 
 #include <math.h>
@@ -434,15 +435,30 @@ static cw_status draw_slice(view *v, int part, const cw_progress *progress, cw_s
     return st;
 }
 
+bool view_shows_isolines(const view *v)
+{
+    return v->state.args.marks.isolines && v->state.args.iso.given && !view_shows_surfaces(v);
+}
+
 static cw_status show_part(view *v, int part, cw_scene *scene, const cw_picture *picture,
                            cw_image *image, cw_error *err)
 {
     static const uint8_t black[2][4] = {{0, 0, 0, 255}, {0, 0, 0, 255}};
     uint8_t background[2][4];
     const bool space = part == VIEW_SPACE;
-    cli_marks marks = {.scale_bar = true, .letters = true};
+    char caption[96];
+    cli_marks marks = {.scale_bar = true, .letters = true, .caption = caption};
     if (space)
         marks = v->state.args.marks;
+    else if (scene->volume)
+        cli_caption_slice(scene->volume, 3 - part, v->state.cross[3 - part], caption,
+                          sizeof caption);
+    marks.isolines = view_shows_isolines(v) && scene->mode == CW_MODE_SLICES && !scene->mesh;
+    marks.isovalue = v->state.args.iso.value;
+    const cli_slice_labels over = view_slice_labels(v);
+    if (over.has_values && scene->mode == CW_MODE_SLICES && !scene->mesh &&
+        (space || part == VIEW_AXIAL))
+        marks.values = &over.values;
     if (!v->is_saving) /* as large as the panels' letters, at least */
         marks.text_px =
             (double)picture->height *
@@ -454,6 +470,8 @@ static cw_status show_part(view *v, int part, cw_scene *scene, const cw_picture 
     scene->progress = (cw_progress){0};
     if (st == CW_OK && (scene->volume || scene->mesh))
         st = cli_mark(&marks, v->look.labels ? &v->labels : NULL, scene, image, err);
+    if (st == CW_OK && v->is_saving)
+        st = view_mark_measures(v, part, scene, marks.text_px, image, err);
     return st;
 }
 

@@ -4,6 +4,7 @@
 #include "cli/framework/console.h"
 #include "core/base/status.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -39,6 +40,8 @@ void view_forget_labels(view *v)
 {
     cli_free_label_scene(&v->labels);
     cli_free_volume(&v->overlay);
+    v->overlay_values = (cli_slice_labels){0};
+    v->has_overlay_range = false;
     v->overlay_path = NULL;
     v->has_labels = v->has_label_mesh = false;
 }
@@ -68,7 +71,11 @@ static cw_status need_overlay(view *v, cw_error *err)
     view_forget_labels(v);
     if (!path)
         return CW_OK;
+    char what[160] = "";
     cw_status st = cli_read_overlay(path, &v->state.args.input, &v->overlay, err);
+    if (st == CW_OK)
+        st = cli_looks_like_labels(&v->overlay, what, sizeof what, err);
+    v->overlay_looks_like_labels = *what;
     v->overlay_path = st == CW_OK ? path : NULL;
     return st;
 }
@@ -76,6 +83,20 @@ static cw_status need_overlay(view *v, cw_error *err)
 static size_t step_of_labels(const view *v)
 {
     return v->overlay_path ? 0 : v->source.series.moments[v->state.step].step;
+}
+
+/* Makes the colours of an overlay of values; its percentiles are found once. */
+static cw_status need_values(view *v, cw_error *err)
+{
+    const render_args *args = &v->state.args;
+    cw_status st = cli_check_values(&args->values, &args->look, err);
+    if (st == CW_OK && !v->has_overlay_range && args->values.range.count == 0) {
+        st = cli_overlay_range(&v->overlay, (int)args->input.threads, v->overlay_range, err);
+        v->has_overlay_range = st == CW_OK;
+    }
+    return st == CW_OK ? cli_make_values(&v->overlay, &args->values, v->overlay_range,
+                                         &args->overlay_opacity, &v->overlay_values, err)
+                       : st;
 }
 
 cw_status view_need_labels(view *v, cw_error *err)
@@ -87,6 +108,13 @@ cw_status view_need_labels(view *v, cw_error *err)
     cw_status st = cli_overlay_opacity(&v->state.args.overlay_opacity, &opacity, err);
     if (st == CW_OK)
         st = need_overlay(v, err);
+    v->overlay_values = (cli_slice_labels){0};
+    if (st == CW_OK && v->overlay_path &&
+        !cli_overlay_is_labels(v->overlay_looks_like_labels, &v->state.args.values,
+                               &v->state.args.look))
+        return need_values(v, err);
+    if (st == CW_OK)
+        st = cli_check_values(&v->state.args.values, &v->state.args.look, err);
     const bool has_names = is_same_text(a->names, b->names);
     if (st != CW_OK ||
         (v->has_labels && has_names && is_same_text(a->labels, b->labels) &&
@@ -130,18 +158,23 @@ cw_status view_need_label_mesh(view *v, cw_error *err)
 cli_slice_labels view_slice_labels(const view *v)
 {
     double opacity = 1;
+    if (v->look.labels && v->overlay_values.volume)
+        return v->overlay_values;
     if (!v->look.labels || !v->has_labels)
         return (cli_slice_labels){0};
     if (!v->overlay_path)
-        return (cli_slice_labels){&v->source.volume,
-                                  &v->state.args.input,
-                                  step_of_labels(v),
-                                  &v->labels.shown,
-                                  1,
-                                  true};
+        return (cli_slice_labels){.volume = &v->source.volume,
+                                  .input = &v->state.args.input,
+                                  .step = step_of_labels(v),
+                                  .shown = &v->labels.shown,
+                                  .opacity = 1,
+                                  .is_base = true};
     if (cli_overlay_opacity(&v->state.args.overlay_opacity, &opacity, NULL) != CW_OK)
         opacity = 1;
-    return (cli_slice_labels){&v->overlay, &all_layers, 0, &v->labels.shown, opacity, false};
+    return (cli_slice_labels){.volume = &v->overlay,
+                              .input = &all_layers,
+                              .shown = &v->labels.shown,
+                              .opacity = opacity};
 }
 
 void view_name_label(const view *v, uint32_t value, char *text, size_t size)
@@ -161,6 +194,12 @@ void view_label_at(const view *v, const double world[3], char *text, size_t size
     uint32_t layer, value;
     const cli_slice_labels l = view_slice_labels(v);
     *text = '\0';
+    if (l.has_values) {
+        const double number = cw_volume_sample(&l.field, world);
+        if (!isnan(number))
+            snprintf(text, size, "overlay %.5g", number);
+        return;
+    }
     if (!l.volume || !cli_find_label_at(l.volume, l.input, l.step, world, &layer, &value))
         return;
     const cw_label *shown = cw_label_find(l.shown, layer, value);

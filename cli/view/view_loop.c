@@ -1,5 +1,6 @@
 /* Frames: input, what it asks for, pictures. */
 #include "cli/view/view.h"
+#include "cli/view/view_measure.h"
 
 #include "cli/framework/console.h"
 #include "core/base/status.h"
@@ -52,12 +53,15 @@ void view_lay_out(view *v)
 
 static void press_keys(view *v, const cwi_ui_input *in)
 {
+    bool is_taken[CWI_UI_KEYS] = {false};
     for (size_t k = 0; k < in->key_count; k++)
-        for (size_t n = 0; n < view_key_count; n++)
+        is_taken[k] = view_measure_key(v, in->keys[k]);
+    for (size_t k = 0; k < in->key_count; k++)
+        for (size_t n = 0; n < view_key_count && !is_taken[k]; n++)
             if (view_keys[n].key && strcmp(view_keys[n].key, in->keys[k]) == 0)
                 view_ask(v, "%s", view_keys[n].command);
     for (size_t k = 0; k < in->key_count; k++)
-        if (strcmp(in->keys[k], "Escape") == 0) {
+        if (!is_taken[k] && strcmp(in->keys[k], "Escape") == 0) {
             v->shown.help = v->shown.about = v->shown.files = false;
             v->shown.save_mesh = v->shown.save_picture = v->shown.gallery = false;
             v->shown.cut = 0;

@@ -1,5 +1,6 @@
 /* Handles the mouse on the pictures. It requests commands, like everything else. */
 #include "cli/view/view.h"
+#include "cli/view/view_measure.h"
 
 #include "viewer/interact/clip_box_handles.h"
 
@@ -7,8 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { NOTHING, ORBIT, PAN, DOLLY, SHIFT, SPLIT, CROSS, GREYS, HANDLE };
-enum { HANDLE_PX = 12, DIVIDER_PX = 6 };
+enum { NOTHING, ORBIT, PAN, DOLLY, SHIFT, SPLIT, CROSS, GREYS, POINT, HANDLE };
+enum { HANDLE_PX = 12, DIVIDER_PX = 6, CLICK_PX = 4 };
 
 static bool is_in(const cwi_ui_rect *r, double x, double y)
 {
@@ -68,7 +69,10 @@ static int begin_drag(const view *v, const cwi_ui_input *in, int part)
     const double x = in->x - r->x, y = in->y - r->y;
     const bool left = in->pressed[CWI_UI_LEFT];
     if (part != VIEW_SPACE)
-        return left ? CROSS : in->pressed[CWI_UI_RIGHT] ? GREYS : NOTHING;
+        return left && v->tool             ? POINT
+               : left                      ? CROSS
+               : in->pressed[CWI_UI_RIGHT] ? GREYS
+                                           : NOTHING;
     const int handle = left && has_handles(v) ? handle_under(v, x, y) : CWI_HANDLE_NONE;
     if (handle != CWI_HANDLE_NONE)
         return HANDLE + handle;
@@ -211,7 +215,7 @@ static int cursor_for(const view *v, const cwi_ui_input *in, int part)
 {
     enum { ARROW, CROSS_HAIR, HAND, LEFT_RIGHT };
     const cwi_ui_rect *r = &v->parts[VIEW_SPACE].rect;
-    if (part > VIEW_SPACE)
+    if (part > VIEW_SPACE || (part == VIEW_SPACE && v->tool && v->drag == NOTHING))
         return CROSS_HAIR;
     if (part != VIEW_SPACE || !v->path)
         return ARROW;
@@ -221,6 +225,30 @@ static int cursor_for(const view *v, const cwi_ui_input *in, int part)
                                  handle_under(v, in->x - r->x, in->y - r->y) != CWI_HANDLE_NONE)
                ? HAND
                : ARROW;
+}
+
+/* Measures at a click: a press and a lift at one place. Drags are what they are without a tool,
+ * so that a scene can be turned between two points. */
+static void click_tool(view *v, const cwi_ui_input *in, int part)
+{
+    const cwi_ui_rect *r = &v->parts[part < 0 ? 0 : part].rect;
+    const double x = in->x - r->x, y = in->y - r->y;
+    double point[3];
+    if (in->pressed[CWI_UI_LEFT]) {
+        const bool ends = in->twice[CWI_UI_LEFT];
+        v->drag_from[0] = !ends && part >= 0 ? in->x : -2 * CLICK_PX; /* nowhere */
+        v->drag_from[1] = in->y;
+        if (ends && v->tool == VIEW_MEASURE_AREA && v->tool_count)
+            view_ask(v, "measure-end");
+    }
+    if (!in->lifted[CWI_UI_LEFT] || part < 0 || v->drag_part != part ||
+        hypot(in->x - v->drag_from[0], in->y - v->drag_from[1]) >
+            CLICK_PX * v->ui->scale(v->window))
+        return;
+    if (part == VIEW_SPACE)
+        view_ask(v, "measure-pick %.6g %.6g", x, y);
+    else if (slice_point(v, part, x, y, point))
+        view_ask(v, "measure-point %.9g %.9g %.9g", point[0], point[1], point[2]);
 }
 
 void view_mouse(view *v, const cwi_ui_input *in)
@@ -240,9 +268,11 @@ void view_mouse(view *v, const cwi_ui_input *in)
     } else if (v->drag != NOTHING) {
         go_on_dragging(v, in);
     }
+    if (v->tool && v->path)
+        click_tool(v, in, part);
     if (!held)
         v->drag = NOTHING;
-    if (in->twice[CWI_UI_LEFT] && part == VIEW_SPACE && v->path)
+    if (in->twice[CWI_UI_LEFT] && part == VIEW_SPACE && v->path && !v->tool)
         view_ask(v, "pick %.6g %.6g", in->x - v->parts[part].rect.x,
                  in->y - v->parts[part].rect.y);
     if (in->wheel != 0 && part >= 0 && v->path)
@@ -325,6 +355,9 @@ void view_show_parts(view *v, const cwi_ui_input *in)
     }
     if (has_handles(v))
         show_handles(v);
+    for (int p = 0; p < VIEW_PARTS && v->path; p++)
+        if (v->parts[p].is_shown)
+            view_show_measures(v, p, in);
     if (!v->path || !v->state.args.compare || !view_draws_volume(v))
         return;
     if (!v->state.args.difference.given)

@@ -88,6 +88,7 @@ void view_close(view *v)
     free(v->files);
     v->files = NULL;
     v->path = NULL;
+    v->state.measure_count = v->tool_count = 0;
     v->file_count = 0;
     v->has_volume = false;
 }
@@ -272,6 +273,8 @@ static void forget_look(view *v)
     s->args.scene.shift = (cli_number){0};
     s->args.look = (cli_label_look){0};
     s->args.overlay = NULL;
+    s->args.values = (cli_value_look){0};
+    s->args.overlay_opacity = (cli_number){0};
     s->args.scene.tint_range = (cli_numbers){0};
     s->is_edited = false;
     s->window[0] = s->window[1] = 0;

@@ -2,7 +2,9 @@
  * line. */
 #define _GNU_SOURCE /* strdup */
 #include "cli/view/view.h"
+#include "cli/view/view_measure.h"
 
+#include "cli/inputs/level_choice.h"
 #include "cli/render/compare_options.h"
 #include "core/base/atomic_file.h"
 #include "core/base/status.h"
@@ -171,11 +173,20 @@ static cw_status follow_name(view *v, const char *name, cw_error *err)
     }
     if (strcmp(name, "iso") == 0 && s->args.iso.given && !s->args.overlay)
         s->args.look.labels = NULL;
+    if (strcmp(name, "iso") == 0 && v->path && !v->source.is_mesh) { /* it may be a name */
+        cw_status found =
+            cli_choose_level(&v->source.volume, &s->args.input, &s->args.iso, err);
+        if (found != CW_OK)
+            return found;
+    }
     v->transfer_is_old = true;
     v->is_measured = false;
     const bool had_labels = v->look.labels;
     cw_status st = view_choose_mode(v, err);
-    view_touch(v, had_labels || v->look.labels ? VIEW_ALL : 1 << VIEW_SPACE);
+    view_touch(v, had_labels || v->look.labels || s->args.marks.isolines ||
+                          strcmp(name, "isolines") == 0
+                      ? VIEW_ALL
+                      : 1 << VIEW_SPACE);
     return st == CW_OK ? view_need_labels(v, err) : st;
 }
 
@@ -355,6 +366,7 @@ static void put_rest(const view *v, FILE *out, const char *end)
         fprintf(out, "zoom-slices %.9g%s", s->slice_zoom, end);
     if (s->args.compare)
         fprintf(out, "split %.6g%s", s->share, end);
+    view_put_measures(v, out, end);
 }
 
 static void put_files(const view *v, FILE *out)

@@ -2,6 +2,7 @@
 #ifndef CUBEWRIGHT_OVERLAY_H
 #define CUBEWRIGHT_OVERLAY_H
 
+#include <cubewright/color.h>
 #include <cubewright/label_table.h>
 #include <cubewright/render.h>
 
@@ -14,6 +15,17 @@ typedef struct cw_legend_item {
     const char *name; /* UTF-8; one that is too wide is cut */
     uint8_t color[3]; /* sRGB */
 } cw_legend_item;
+
+/* Values to draw over slices in colours. Zero-initialise the struct and set what you need. */
+typedef struct cw_value_slices {
+    const cw_volume *values; /* on an even or rectilinear grid anywhere in the world: trilinear
+                                between voxels; nothing is drawn where one of them has no value,
+                                and beyond the outermost ones */
+    cw_colormap map;         /* default viridis */
+    double low, high; /* values of the ends of the map; nothing is drawn below low, and above
+                                high is the last colour */
+    float opacity;    /* of all colours, up to 1; default 1 */
+} cw_value_slices;
 
 /* The parts to draw on a picture. Zero-initialise the struct and set what you need. */
 typedef struct cw_overlay {
@@ -36,6 +48,13 @@ typedef struct cw_overlay {
                          at least 7 */
     uint8_t color[4]; /* sRGB and opacity of lines and letters; default white where the picture
                          is dark, black where it is bright */
+    bool isoline; /* a line where slices have the isovalue, to a part of a pixel: the surface's
+                         outline there. Only for scenes of slices without a mesh */
+    double isovalue;          /* of the isoline */
+    uint8_t isoline_color[4]; /* sRGB and opacity; default a yellow */
+    const cw_value_slices
+        *values_bar; /* the colours of values over slices: upper right, or below
+                                          the colour bar. Borrowed; default none */
 } cw_overlay;
 
 /* Draws an overlay on the picture of a scene. Deterministic on any machine.
@@ -44,8 +63,9 @@ typedef struct cw_overlay {
  * scene    as it was rendered, borrowed
  * image    of that scene, of any size with the same aspect ratio
  * Returns  CW_ERR_ARGUMENT  the image has another aspect ratio; the scene has no transfer
- *                           function or there are no statistics, where they are needed;
- *                           as cw_render() */
+ *                           function or there are no statistics, where they are needed; an
+ *                           isoline is asked for and the mode is not slices; as cw_render()
+ *          CW_ERR_UNSUPPORTED  an isoline beside a mesh; CW_ERR_NO_MEMORY */
 CW_NODISCARD CW_API cw_status cw_overlay_draw(const cw_overlay *overlay, const cw_scene *scene,
                                               cw_image *image, cw_error *err);
 
@@ -82,6 +102,48 @@ typedef struct cw_label_slices {
 CW_NODISCARD CW_API cw_status cw_label_slices_draw(const cw_label_slices *labels,
                                                    const cw_scene *scene, cw_picture *picture,
                                                    cw_error *err);
+
+/* Draws values over the picture of a scene of slices, where the slices have values: a PET over a
+ * CT, a statistical map over an MR.
+ *
+ * values   borrowed
+ * scene    as it was rendered, borrowed; without a mesh
+ * picture  of that scene
+ * Returns  CW_ERR_ARGUMENT  the mode is not slices, the picture has another size, low and high are
+ *          not finite and rising, the opacity or the map is out of range, or the values lie outside
+ *          of the volume's box
+ *          CW_ERR_UNSUPPORTED  a scene with a mesh; values on sparse or irregular grids
+ *          CW_ERR_CANCELLED; as cw_render()
+ * Cost     in proportion to the samples of the picture
+ * Threads  reentrant; the same picture for any number of threads */
+CW_NODISCARD CW_API cw_status cw_value_slices_draw(const cw_value_slices *values,
+                                                   const cw_scene *scene, cw_picture *picture,
+                                                   cw_error *err);
+
+/* A mark of points of the world on pictures, such as a measurement. Zero-initialise the struct and
+ * set what you need. */
+typedef struct cw_world_mark {
+    const double (*points)[3]; /* in mm of the world; a line goes through them */
+    size_t count;              /* of the points */
+    bool is_closed;            /* the last one is joined to the first; default: it is not */
+    const char *text;          /* UTF-8, on a dark plate; default none */
+    size_t
+        text_point; /* number of the point beside which the text stands; count and more: beside
+                          their middle */
+    float opacity;  /* of lines and points, up to 1; default 1 */
+} cw_world_mark;
+
+/* Draws marks on the picture of a scene, in yellow on dark. A mark with a point behind the eye is
+ * left out; nothing of the scene hides a mark.
+ * marks    count of them, borrowed; later ones are on top
+ * text_px  height of capitals; 0: 1/48 of the picture's height, at least 7
+ * scene    its camera is used; borrowed
+ * image    of that scene, of any size with the same aspect ratio
+ * Returns  CW_ERR_ARGUMENT  an empty image, or letters of another size than 0 to 1000 pixels;
+ *          CW_ERR_NO_MEMORY */
+CW_NODISCARD CW_API cw_status cw_world_marks_draw(const cw_world_mark *marks, size_t count,
+                                                  double text_px, const cw_scene *scene,
+                                                  cw_image *image, cw_error *err);
 
 /* Copies one image into another, with its upper left corner at column x, row y. Parts outside
  * are left out.

@@ -2421,6 +2421,23 @@ cw_legend_item._fields_ = [
 ]
 
 
+class cw_value_slices(Structure):
+    values: Any
+    map: int
+    low: float
+    high: float
+    opacity: float
+
+
+cw_value_slices._fields_ = [
+    ("values", POINTER(cw_volume)),
+    ("map", c_int),
+    ("low", c_double),
+    ("high", c_double),
+    ("opacity", c_float),
+]
+
+
 class cw_overlay(Structure):
     axes: bool
     scale_bar: bool
@@ -2433,6 +2450,10 @@ class cw_overlay(Structure):
     statistics: Any
     text_px: float
     color: Any
+    isoline: bool
+    isovalue: float
+    isoline_color: Any
+    values_bar: Any
 
 
 cw_overlay._fields_ = [
@@ -2447,6 +2468,10 @@ cw_overlay._fields_ = [
     ("statistics", POINTER(cw_statistics)),
     ("text_px", c_double),
     ("color", c_uint8 * 4),
+    ("isoline", c_bool),
+    ("isovalue", c_double),
+    ("isoline_color", c_uint8 * 4),
+    ("values_bar", POINTER(cw_value_slices)),
 ]
 
 
@@ -2461,6 +2486,25 @@ cw_label_slices._fields_ = [
     ("labels", POINTER(cw_volume)),
     ("table", POINTER(cw_label_table)),
     ("layer", c_uint32),
+    ("opacity", c_float),
+]
+
+
+class cw_world_mark(Structure):
+    points: Any
+    count: int
+    is_closed: bool
+    text: bytes | None
+    text_point: int
+    opacity: float
+
+
+cw_world_mark._fields_ = [
+    ("points", POINTER(c_double * 3)),
+    ("count", c_size_t),
+    ("is_closed", c_bool),
+    ("text", c_char_p),
+    ("text_point", c_size_t),
     ("opacity", c_float),
 ]
 
@@ -3014,6 +3058,8 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_overlay_draw": (c_int, [POINTER(cw_overlay), POINTER(cw_scene), POINTER(cw_image), POINTER(cw_error)]),
     "cw_scale_bar": (c_int, [POINTER(cw_scene), POINTER(cw_image), POINTER(c_double), POINTER(c_double), POINTER(cw_error)]),
     "cw_label_slices_draw": (c_int, [POINTER(cw_label_slices), POINTER(cw_scene), POINTER(cw_picture), POINTER(cw_error)]),
+    "cw_value_slices_draw": (c_int, [POINTER(cw_value_slices), POINTER(cw_scene), POINTER(cw_picture), POINTER(cw_error)]),
+    "cw_world_marks_draw": (c_int, [POINTER(cw_world_mark), c_size_t, c_double, POINTER(cw_scene), POINTER(cw_image), POINTER(cw_error)]),
     "cw_image_place": (None, [POINTER(cw_image), POINTER(cw_image), c_ssize_t, c_ssize_t]),
     "cw_image_tile": (c_int, [POINTER(cw_image), c_size_t, c_size_t, c_size_t, POINTER(c_uint8), POINTER(cw_image), POINTER(cw_error)]),
     "cw_mesh_remesh": (c_int, [POINTER(cw_mesh), POINTER(cw_remesh_desc), POINTER(cw_mesh), POINTER(cw_remesh_facts), POINTER(cw_error)]),

@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
+#include "viewer/image/isolines.h"
 #include "viewer/image/legend.h"
 #include "viewer/image/strokes.h"
 #include "viewer/scene/mesh_tint.h"
@@ -277,39 +278,47 @@ static void frame_box(const board *b, double left, double top, double right, dou
     cwi_pen_draw(&pen, s, 4);
 }
 
-/* Computes the colour at a fraction of the bar's range: of the volume's values, or else of the
- * mesh's tint. */
-static void bar_color(const cwi_frame *f, const double range[2], double share, double rgb[3])
+/* A bar of colours, from its low values at the bottom to high ones. */
+typedef struct color_bar {
+    double range[2], box[4];       /* left, top, right, bottom */
+    const cw_value_slices *values; /* NULL: of the scene's volume, or else of the mesh's tint */
+} color_bar;
+
+/* Computes the colour at a fraction of the bar's range. */
+static void bar_color(const board *b, const color_bar *bar, double share, double rgb[3])
 {
+    const double *range = bar->range;
+    uint8_t bytes[3];
     double opacity;
-    if (f->volume.data)
-        cw_transfer_at(&f->transfer, range[0] + share * (range[1] - range[0]), rgb, &opacity);
-    else
+    if (!bar->values && b->frame->volume.data)
+        cw_transfer_at(&b->frame->transfer, range[0] + share * (range[1] - range[0]), rgb,
+                       &opacity);
+    else if (!bar->values)
         cwi_ramp_color(share, rgb);
+    else
+        cw_colormap_color(bar->values->map, share, bytes);
+    for (int c = 0; c < 3 && bar->values; c++)
+        rgb[c] = bytes[c] / 255.0;
 }
 
-static void fill_bar(const board *b, const double range[2], const double box[4])
+static void fill_bar(const board *b, const color_bar *bar)
 {
+    const double *box = bar->box;
     cwi_pen pen = {.image = b->image, .color = {0, 0, 0, 1}};
     for (double y = floor(box[1]); y < box[3]; y++) {
         const double high = fmax(y, box[1]), low = fmin(y + 1, box[3]);
-        bar_color(b->frame, range, (box[3] - (high + low) / 2) / (box[3] - box[1]), pen.color);
+        bar_color(b, bar, (box[3] - (high + low) / 2) / (box[3] - box[1]), pen.color);
         cwi_pen_fill(&pen, box[0], high, box[2], low);
     }
     frame_box(b, box[0], box[1], box[2], box[3]);
 }
 
-static cw_status draw_color_bar(const board *b, cw_error *err)
+/* Draws a bar with round values at its left side. */
+static void draw_bar(const board *b, const color_bar *bar)
 {
-    double range[2];
-    const double right = b->width - b->margin;
-    const double box[4] = {right - 1.6 * b->text, 3.2 * b->margin, right, 0.44 * b->height};
-    if (b->frame->volume.data)
-        find_range(&b->frame->transfer, range);
-    else if (cwi_tint_range(&b->frame->scene, range, err) != CW_OK)
-        return CW_ERR_ARGUMENT;
+    const double *range = bar->range, *box = bar->box;
     const double span = range[1] - range[0], step = round_up(span / (MAX_LABELS - 2));
-    fill_bar(b, range, box);
+    fill_bar(b, bar);
     for (double n = ceil(range[0] / step - 1e-9); n * step <= range[1] + 1e-9 * span; n++) {
         const double y = box[3] - (n * step - range[0]) / span * (box[3] - box[1]);
         const cwi_stroke tick = {{box[0] - b->text / 2, y}, {box[0], y}};
@@ -318,7 +327,29 @@ static cw_status draw_color_bar(const board *b, cw_error *err)
         print_value(n * step, text);
         write_text(b, box[0] - 0.9 * b->text, y + b->text / 2, 1, b->ink, text);
     }
+}
+
+static cw_status draw_color_bar(const board *b, cw_error *err)
+{
+    const double right = b->width - b->margin;
+    color_bar bar = {.box = {right - 1.6 * b->text, 3.2 * b->margin, right, 0.44 * b->height}};
+    if (b->frame->volume.data)
+        find_range(&b->frame->transfer, bar.range);
+    else if (cwi_tint_range(&b->frame->scene, bar.range, err) != CW_OK)
+        return CW_ERR_ARGUMENT;
+    draw_bar(b, &bar);
     return CW_OK;
+}
+
+static void draw_values_bar(const board *b)
+{
+    const double right = b->width - b->margin, h = b->height;
+    const bool is_below = b->o->color_bar;
+    color_bar bar = {.values = b->o->values_bar,
+                     .range = {b->o->values_bar->low, b->o->values_bar->high},
+                     .box = {right - 1.6 * b->text, is_below ? 0.56 * h : 3.2 * b->margin,
+                             right, is_below ? h - 3.2 * b->margin : 0.44 * h}};
+    draw_bar(b, &bar);
 }
 
 /* Computes heights of bars, 0 to 1, each of the most frequent of its bins. */
@@ -422,6 +453,30 @@ static void draw_legend(board *b)
     b->right = cwi_legend_draw(&legend, b->image);
 }
 
+/* Draws the isoline, as wide as the box's edges. */
+static cw_status draw_isoline(const board *b, cw_error *err)
+{
+    static const double yellow[4] = {1, 0.8, 0.2, 1};
+    const uint8_t *c = b->o->isoline_color;
+    const bool given = c[0] || c[1] || c[2] || c[3];
+    cwi_pen pen = {.image = b->image, .width = fmax(b->text / 8, 1.2)};
+    cwi_stroke *strokes;
+    size_t count;
+    cw_status st = cwi_isolines_find(b->frame, b->image, b->o->isovalue, &strokes, &count, err);
+    const double width = pen.width;
+    pen.width = width + 1.4;
+    pen.color[3] = 0.5 * (given ? c[3] / 255.0 : 1);
+    if (st == CW_OK && count)
+        st = cwi_pen_draw_many(&pen, strokes, count, err);
+    for (int a = 0; a < 4; a++)
+        pen.color[a] = given ? c[a] / 255.0 : yellow[a];
+    pen.width = width;
+    if (st == CW_OK && count)
+        st = cwi_pen_draw_many(&pen, strokes, count, err);
+    cwi_free(strokes);
+    return st;
+}
+
 /* Draws the caption. The letter at the top moves below lines that reach it. */
 static cw_status draw_caption(board *b, cw_error *err)
 {
@@ -478,6 +533,17 @@ static cw_status check_overlay(const cw_overlay *o, const cwi_frame *f, cw_error
         return cwi_fail(err, CW_ERR_ARGUMENT, "a histogram is of a volume that is drawn");
     if (o->color_bar && !f->volume.data && f->scene.tint == CW_TINT_COLORS)
         return cwi_fail(err, CW_ERR_ARGUMENT, "a colour bar needs a volume or a tinted mesh");
+    if (o->isoline && f->scene.mode != CW_MODE_SLICES)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "isolines are drawn on slices, not in the mode %s",
+                        cw_mode_name(f->scene.mode));
+    if (o->isoline && f->scene.mesh)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "isolines are not drawn on slices with a mesh before them");
+    if (o->values_bar && !(o->values_bar->low < o->values_bar->high))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the bar of values needs a range");
+    if (o->isoline && !isfinite(o->isovalue))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "the isoline's isovalue is not a finite number");
     if (!(o->text_px >= 0 && o->text_px <= 1000))
         return cwi_fail(err, CW_ERR_ARGUMENT, "letters %g pixels high: expected up to 1000",
                         o->text_px);
@@ -532,7 +598,10 @@ cw_status cw_overlay_draw(const cw_overlay *overlay, const cw_scene *scene, cw_i
     b.margin = b.top = 1.2 * b.text;
     b.right = b.width;
     choose_ink(&b);
-    st = draw_caption(&b, err);
+    if (overlay->isoline)
+        st = draw_isoline(&b, err);
+    if (st == CW_OK)
+        st = draw_caption(&b, err);
     if (overlay->legend_count > 0)
         draw_legend(&b);
     if (overlay->axes) {
@@ -546,6 +615,8 @@ cw_status cw_overlay_draw(const cw_overlay *overlay, const cw_scene *scene, cw_i
         draw_scale_bar(&b);
     if (overlay->color_bar && st == CW_OK)
         st = draw_color_bar(&b, err);
+    if (overlay->values_bar)
+        draw_values_bar(&b);
     if (overlay->histogram)
         draw_histogram(&b);
     return st;

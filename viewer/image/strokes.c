@@ -1,6 +1,9 @@
 /* Draws antialiased strokes and rectangles onto images, a row at a time. */
 #include "viewer/image/strokes.h"
 
+#include "core/base/memory.h"
+#include "core/base/status.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -89,6 +92,41 @@ void cwi_pen_draw(const cwi_pen *pen, const cwi_stroke *strokes, size_t count)
                         clamp_number(reach - sqrt(near), 0, 1) * fmin(pen->width, 1));
         }
     }
+}
+
+/* Keeps for each pixel the distance of the nearest stroke, which only pixels near by can have. */
+cw_status cwi_pen_draw_many(const cwi_pen *pen, const cwi_stroke *strokes, size_t count,
+                            cw_error *err)
+{
+    const cw_image *image = pen->image;
+    const size_t width = image->width, all = width * image->height;
+    const double reach = pen->width / 2 + 0.5;
+    float *near = cwi_alloc_array(all, sizeof *near);
+    if (!near)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for lines on a picture");
+    for (size_t n = 0; n < all; n++)
+        near[n] = INFINITY;
+    for (size_t n = 0; n < count; n++) {
+        const cwi_stroke *s = &strokes[n];
+        size_t x[2], y[2];
+        cut_span(fmin(s->from[0], s->to[0]) - reach, fmax(s->from[0], s->to[0]) + reach, width,
+                 x);
+        cut_span(fmin(s->from[1], s->to[1]) - reach, fmax(s->from[1], s->to[1]) + reach,
+                 image->height, y);
+        for (size_t row = y[0]; row < y[1]; row++)
+            for (size_t column = x[0]; column < x[1]; column++) {
+                float *at = &near[row * width + column];
+                *at = fminf(
+                    *at, (float)square_of_distance(s, (double)column + 0.5, (double)row + 0.5));
+            }
+    }
+    for (size_t n = 0; n < all; n++)
+        if ((double)near[n] < reach * reach)
+            blend_pixel(image->pixels + 4 * n, pen->color,
+                        clamp_number(reach - sqrt((double)near[n]), 0, 1) *
+                            fmin(pen->width, 1));
+    cwi_free(near);
+    return CW_OK;
 }
 
 /* Returns the fraction of pixel n that is between two coordinates. */

@@ -24,6 +24,11 @@ typedef struct cwi_stroke {
 /* Draws strokes as one figure: where several meet, the pixel is covered once. */
 void cwi_pen_draw(const cwi_pen *pen, const cwi_stroke *strokes, size_t count);
 
+/* The same for many short strokes: its time is in proportion to their number and to the pixels, not
+ * to the product of both. CW_ERR_NO_MEMORY */
+CW_NODISCARD cw_status cwi_pen_draw_many(const cwi_pen *pen, const cwi_stroke *strokes,
+                                         size_t count, cw_error *err);
+
 /* Fills a rectangle; partly covered pixels are blended. */
 void cwi_pen_fill(const cwi_pen *pen, double left, double top, double right, double bottom);
 
