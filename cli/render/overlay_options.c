@@ -141,7 +141,7 @@ static cw_status draw_slice(const cw_scene *scene, const cw_transfer *greys,
     cw_volume_to_world(s.volume, middle, world);
     s.slices[0].normal[axis] = 1;
     s.slices[0].distance_mm = world[axis];
-    cli_caption_slice(s.volume, axis, world[axis], caption, sizeof caption);
+    cli_caption_slice(s.volume, axis, world[axis], "\n", caption, sizeof caption);
     cw_status st = cw_slice_camera(s.volume, &s.slices[0], (double)s.width / (double)s.height,
                                    &s.camera, err);
     if (st == CW_OK)

@@ -28,7 +28,8 @@ static bool find_grid_axis(const cw_volume *volume, int axis, int *along, double
     return others <= ASKEW * fabs(largest) && !volume->coordinates[0];
 }
 
-void cli_caption_slice(const cw_volume *volume, int axis, double mm, char *text, size_t size)
+void cli_caption_slice(const cw_volume *volume, int axis, double mm, const char *between,
+                       char *text, size_t size)
 {
     static const char *const names[] = {"sagittal", "coronal", "axial"};
     double index[3] = {0}, step = 1;
@@ -45,5 +46,6 @@ void cli_caption_slice(const cw_volume *volume, int axis, double mm, char *text,
         digits++;
     if (fabs(mm) < 0.5 * pow(10, -digits))
         mm = 0; /* not -0.0 */
-    snprintf(text, size, "%s%s, %c = %.*f mm", names[axis], number, 'x' + axis, digits, mm);
+    snprintf(text, size, "%s%s%s%c = %.*f mm", names[axis], number, between, 'x' + axis, digits,
+             mm);
 }

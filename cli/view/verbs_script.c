@@ -26,7 +26,7 @@ static void print_slices(const view *v)
 {
     char text[96];
     for (int a = 2; a >= 0 && v->has_volume; a--) {
-        cli_caption_slice(cli_drawn(&v->source), a, v->state.cross[a], text, sizeof text);
+        cli_caption_slice(cli_drawn(&v->source), a, v->state.cross[a], ", ", text, sizeof text);
         printf("%s\n", text);
     }
 }

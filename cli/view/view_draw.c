@@ -446,12 +446,12 @@ static cw_status show_part(view *v, int part, cw_scene *scene, const cw_picture 
     static const uint8_t black[2][4] = {{0, 0, 0, 255}, {0, 0, 0, 255}};
     uint8_t background[2][4];
     const bool space = part == VIEW_SPACE;
-    char caption[96];
+    char caption[96] = "";
     cli_marks marks = {.scale_bar = true, .letters = true, .caption = caption};
     if (space)
         marks = v->state.args.marks;
     else if (scene->volume)
-        cli_caption_slice(scene->volume, 3 - part, v->state.cross[3 - part], caption,
+        cli_caption_slice(scene->volume, 3 - part, v->state.cross[3 - part], "\n", caption,
                           sizeof caption);
     marks.isolines = view_shows_isolines(v) && scene->mode == CW_MODE_SLICES && !scene->mesh;
     marks.isovalue = v->state.args.iso.value;

@@ -218,14 +218,14 @@ static bool is_near_slice(const view *v, int part, const double (*points)[3], si
     return true;
 }
 
-/* Writes on a dark plate, beside a point. */
+/* Writes on a dark plate to the right of a point and above it, beside the lines through it. */
 static void write_plate(view *v, double x, double y, const cwi_ui_color color, const char *text)
 {
     const double scale = v->ui->scale(v->window);
     const cwi_ui_color plate = {0.04f, 0.05f, 0.07f, 0.78f * color[3]};
     double size[2];
     v->ui->text_size(v->window, text, size);
-    const cwi_ui_rect r = {x + 8 * scale, y - 0.5 * size[1] - 2 * scale, size[0] + 8 * scale,
+    const cwi_ui_rect r = {x + 5 * scale, y - size[1] - 10 * scale, size[0] + 8 * scale,
                            size[1] + 4 * scale};
     v->ui->box(v->window, CWI_UI_BEHIND, &r, plate, true);
     v->ui->write(v->window, CWI_UI_BEHIND, r.x + 4 * scale, r.y + 2 * scale, color, text);

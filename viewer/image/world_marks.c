@@ -19,17 +19,18 @@ static void draw_pass(cw_image *image, double width, const double color[4], doub
     cwi_pen_draw(&pen, strokes, count);
 }
 
-/* Writes a text to the right of a point. */
+/* Writes a text to the right of a point and above it, beside the lines that go through it. */
 static void write_plate(cw_image *image, const double at[2], double height, const char *text)
 {
     static const double no_halo[4] = {0, 0, 0, 0};
-    const double gap = 0.6 * height, left = at[0] + height;
+    const double gap = 0.6 * height, left = at[0] + 0.5 * height;
+    const double foot = at[1] - 1.2 * height; /* of the letters */
     cwi_pen pen = {.image = image};
     memcpy(pen.color, PLATE, sizeof pen.color);
-    cwi_pen_fill(&pen, left, at[1] - 0.5 * height - gap,
-                 left + cwi_text_width(height, text) + 2 * gap, at[1] + 0.5 * height + gap);
-    cwi_text_write(image, (const double[2]){left + gap, at[1] + 0.5 * height}, height, 0,
-                   YELLOW, no_halo, text);
+    cwi_pen_fill(&pen, left, foot - height - gap, left + cwi_text_width(height, text) + 2 * gap,
+                 foot + gap);
+    cwi_text_write(image, (const double[2]){left + gap, foot}, height, 0, YELLOW, no_halo,
+                   text);
 }
 
 /* Projects the points; false: one is behind the eye. */
