@@ -22,9 +22,10 @@ typedef struct flat_edge {
     bool is_kept;
 } flat_edge;
 
-/* The section passes around a vertex in the plane at the first fraction of its edges. Of short edges it
- * takes a number of tolerances, and at most the second fraction. */
-static const double PARTED_FRACTION = 1e-4, PARTED_TOLERANCES = 8, MAX_PARTED_FRACTION = 0.25;
+/* The section passes around a vertex in the plane where its edges are as high as this number of
+ * tolerances, and at most at this fraction of them. At one height edges of a vertex are apart as they are in
+ * the mesh. */
+static const double PARTED_TOLERANCES = 8, MAX_PARTED_FRACTION = 0.25;
 
 typedef struct clip_work {
     cwi_cut *cut;
@@ -220,15 +221,15 @@ static double measure_square(const float *positions, uint32_t a, uint32_t b)
 }
 
 /* Returns where an edge crosses the plane. It leaves a vertex that is in the plane, but counts as
- * below, by a small part of its length. */
+ * below, where it is a little above. */
 static double find_fraction(const cwi_cut *c, uint32_t a, uint32_t b)
 {
     const double from = cwi_cut_distance(c, a), to = cwi_cut_distance(c, b);
     if (fabs(from) > c->tolerance && fabs(to) > c->tolerance)
         return from / (from - to);
-    const double length = sqrt(measure_square(c->mesh->positions, a, b));
-    const double part = fmin(MAX_PARTED_FRACTION,
-                             fmax(PARTED_FRACTION, PARTED_TOLERANCES * c->tolerance / length));
+    const double low = fmin(from, to), rise = fmax(from, to) - low;
+    const double part =
+        fmax(0, fmin(MAX_PARTED_FRACTION, (PARTED_TOLERANCES * c->tolerance - low) / rise));
     return fabs(from) <= c->tolerance ? part : 1 - part;
 }
 

@@ -18,13 +18,20 @@ static void round_into_plane(const cwi_cut *c, const double point[3], float plac
     place[c->axis] = (float)(height / c->normal[c->axis]);
 }
 
+/* Finds the place of a vertex on its edge; above the plane, if the section passes around a vertex, and
+ * then it is moved down along the normal. */
 static void find_point(const cwi_cut *c, size_t n, double point[3])
 {
     const cwi_cut_source *s = c->sources + n;
     const float *a = c->mesh->positions + 3 * (size_t)s->a,
                 *b = c->mesh->positions + 3 * (size_t)s->b;
-    for (int k = 0; k < 3; k++)
+    double height = -c->offset;
+    for (int k = 0; k < 3; k++) {
         point[k] = (double)a[k] + s->t * ((double)b[k] - (double)a[k]);
+        height += c->normal[k] * point[k];
+    }
+    for (int k = 0; k < 3 && s->a != s->b; k++)
+        point[k] -= height * c->normal[k];
 }
 
 void cwi_cut_measure_moves(cwi_cut *c)

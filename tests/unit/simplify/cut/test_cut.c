@@ -93,7 +93,8 @@ static cw_cut_facts check_cut(const cw_mesh *m, const cw_cut_desc *d, const char
     assert_near(up + down, whole, 1e-6 * fabs(whole));
     const size_t flat = facts.dropped_triangles + other.dropped_triangles +
                         facts.cut_triangles - m->triangle_count;
-    if (flat == 0) /* triangles in the plane are the section of one half alone */
+    /* triangles in the plane, and loops around vertices at which surfaces touch, are of one half alone */
+    if (flat == 0 && facts.loops_closed == other.loops_closed)
         assert_near(facts.area_mm2, other.area_mm2, 1e-4 * facts.area_mm2 + 1e-9);
     cw_mesh_free(&above);
     cw_mesh_free(&below);
@@ -152,17 +153,18 @@ static void cut_through_vertices(unsigned seed)
                 d.normal[n % 3] = 1;
             }
             snprintf(name, sizeof name, "field %zu, vertices %d", f, n);
-            check_cut(&m, &d, name);
+            if (d.normal[0] != 0 || d.normal[1] != 0 || d.normal[2] != 0) /* not on a line */
+                check_cut(&m, &d, name);
         }
         cw_mesh_free(&m);
     }
 }
 
-/* Without care for rounding, the halves of seeds 15 to 17 cross themselves. */
+/* Without care for rounding, halves of seeds 15 to 17 and 52 cross themselves. */
 static void planes_through_vertices_leave_two_solids(void **state)
 {
     (void)state;
-    static const unsigned seeds[] = {12, 15, 16, 17};
+    static const unsigned seeds[] = {12, 15, 16, 17, 52};
     for (size_t n = 0; n < sizeof seeds / sizeof *seeds; n++)
         cut_through_vertices(seeds[n]);
 }
