@@ -22,9 +22,10 @@ typedef struct flat_edge {
     bool is_kept;
 } flat_edge;
 
-/* The section passes around a vertex in the plane at the first fraction of its edges. Of short edges it
- * takes a number of tolerances, and at most the second fraction. */
-static const double PARTED_FRACTION = 1e-4, PARTED_TOLERANCES = 8, MAX_PARTED_FRACTION = 0.25;
+/* The section passes around a vertex in the plane where its edges are as high as this number of
+ * tolerances, and at most at this fraction of them. At one height edges of a vertex are apart as they are in
+ * the mesh. */
+static const double PARTED_TOLERANCES = 8, MAX_PARTED_FRACTION = 0.25;
 
 typedef struct clip_work {
     cwi_cut *cut;
@@ -220,15 +221,15 @@ static double measure_square(const float *positions, uint32_t a, uint32_t b)
 }
 
 /* Returns where an edge crosses the plane. It leaves a vertex that is in the plane, but counts as
- * below, by a small part of its length. */
+ * below, where it is a little above. */
 static double find_fraction(const cwi_cut *c, uint32_t a, uint32_t b)
 {
     const double from = cwi_cut_distance(c, a), to = cwi_cut_distance(c, b);
     if (fabs(from) > c->tolerance && fabs(to) > c->tolerance)
         return from / (from - to);
-    const double length = sqrt(measure_square(c->mesh->positions, a, b));
-    const double part = fmin(MAX_PARTED_FRACTION,
-                             fmax(PARTED_FRACTION, PARTED_TOLERANCES * c->tolerance / length));
+    const double low = fmin(from, to), rise = fmax(from, to) - low;
+    const double part =
+        fmax(0, fmin(MAX_PARTED_FRACTION, (PARTED_TOLERANCES * c->tolerance - low) / rise));
     return fabs(from) <= c->tolerance ? part : 1 - part;
 }
 
@@ -249,48 +250,6 @@ static bool number_crossings(clip_work *w)
             return false;
     }
     w->crossing_count = count;
-    return true;
-}
-
-/* --- places ------------------------------------------------------------------------------- */
-
-/* Moves a point into the plane along the axis nearest to its normal. Its other coordinates are
- * rounded before, so only the rounding of one is left. */
-static void round_into_plane(const cwi_cut *c, const double point[3], float place[3])
-{
-    double height = c->offset;
-    for (int a = 0; a < 3; a++) {
-        place[a] = (float)point[a];
-        if (a != c->axis)
-            height -= c->normal[a] * (double)place[a];
-    }
-    place[c->axis] = (float)(height / c->normal[c->axis]);
-}
-
-static bool place_vertices(clip_work *w)
-{
-    cwi_cut *c = w->cut;
-    c->positions = cwi_alloc_array(3 * c->vertex_count, sizeof *c->positions);
-    c->is_section = cwi_alloc_array(c->vertex_count, sizeof *c->is_section);
-    if (!c->positions || !c->is_section)
-        return false;
-    for (size_t n = 0; n < c->vertex_count; n++) {
-        const cwi_cut_source *s = c->sources + n;
-        const float *a = c->mesh->positions + 3 * (size_t)s->a,
-                    *b = c->mesh->positions + 3 * (size_t)s->b;
-        double point[3], move = 0;
-        c->is_section[n] = s->a != s->b || c->side[s->a] == CWI_CUT_ON;
-        if (!c->is_section[n]) {
-            memcpy(c->positions + 3 * n, a, 3 * sizeof *a);
-            continue;
-        }
-        for (int k = 0; k < 3; k++)
-            point[k] = (double)a[k] + s->t * ((double)b[k] - (double)a[k]);
-        round_into_plane(c, point, c->positions + 3 * n);
-        for (size_t k = 0; k < 3 && s->a == s->b; k++)
-            move += pow((double)c->positions[3 * n + k] - point[k], 2);
-        c->facts.moved_mm = fmax(c->facts.moved_mm, sqrt(move));
-    }
     return true;
 }
 
@@ -408,7 +367,7 @@ cw_status cwi_cut_clip(cwi_cut *c, cw_error *err)
     if (st == CW_OK && ok)
         st = cwi_progress(&c->desc.progress, "cut", 0.3, err);
     if (st == CW_OK && ok)
-        ok = number_crossings(&w) && place_vertices(&w) && clip_triangles(&w) &&
+        ok = number_crossings(&w) && cwi_cut_place_vertices(c) && clip_triangles(&w) &&
              find_flat_edges(&w);
     if (st == CW_OK && !ok)
         st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to cut %zu triangles",

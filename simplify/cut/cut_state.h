@@ -32,6 +32,7 @@ typedef struct cwi_cut {
     size_t vertex_count, vertex_capacity;
     float *positions; /* of the result, vertex_count x 3 */
     bool *is_section; /* vertex_count: it lies in the plane */
+    double step;      /* by which vertices of the section move apart: of the last digit */
     bool has_unused;  /* vertices have merged: some are in no triangle */
     uint32_t *triangles;
     size_t triangle_count, triangle_capacity;
@@ -59,6 +60,17 @@ bool cwi_cut_add_triangle(cwi_cut *c, uint32_t a, uint32_t b, uint32_t d);
  * Returns  CW_ERR_NO_MEMORY; CW_ERR_CANCELLED; CW_ERR_LIMIT */
 CW_NODISCARD cw_status cwi_cut_clip(cwi_cut *c, cw_error *err);
 
+/* Places the vertices of the result, those of the section in the plane. Returns false when memory is
+ * out. */
+bool cwi_cut_place_vertices(cwi_cut *c);
+
+/* Raises the fact of the farthest move to that of vertices of the mesh that are in the section. */
+void cwi_cut_measure_moves(cwi_cut *c);
+
+/* Places a vertex of the section, moved by multiples of the step: along the two axes after that of
+ * the plane, and away from what is kept. It returns to the plane along its axis before that. */
+void cwi_cut_place_apart(cwi_cut *c, size_t n, const double shift[2], int lowered);
+
 /* Merges neighbours of the section at equal positions.
  * Returns  CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cwi_cut_merge_equal(cwi_cut *c, cw_error *err);
@@ -70,5 +82,30 @@ CW_NODISCARD cw_status cwi_cut_link(cwi_cut *c, cw_error *err);
 /* Fills the closed loops with triangles.
  * Returns  CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
 CW_NODISCARD cw_status cwi_cut_fill(cwi_cut *c, cw_error *err);
+
+/* Marks of vertices of the section: move it within the plane; move it away from what is kept. */
+enum { CWI_CUT_SHIFT = 1, CWI_CUT_LOWER = 2 };
+
+/* Marks the ends of edges of the section that meet as the plane's axis shows them, beyond their common
+ * ends, or are seen as a point.
+ * marks    vertex_count; marks are added
+ * count    the number of such edges and pairs
+ * Returns  CW_ERR_NO_MEMORY */
+CW_NODISCARD cw_status cwi_cut_find_edge_crossings(const cwi_cut *c, uint8_t *marks,
+                                                   size_t *count, cw_error *err);
+
+/* Marks vertices of the section whose triangles meet others beyond their common vertices and edges,
+ * or have no area; not where triangles of the mesh did already.
+ * first_cap  triangles from here on fill the section
+ * marks      vertex_count; marks are added
+ * count      the number of such triangles and pairs
+ * Returns    CW_ERR_NO_MEMORY */
+CW_NODISCARD cw_status cwi_cut_find_triangle_crossings(const cwi_cut *c, size_t first_cap,
+                                                       uint8_t *marks, size_t *count,
+                                                       cw_error *err);
+
+/* Fills the section, and moves its vertices by some steps where rounding made edges or triangles cross.
+ * Returns  CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
+CW_NODISCARD cw_status cwi_cut_fill_apart(cwi_cut *c, cw_error *err);
 
 #endif

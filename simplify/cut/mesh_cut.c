@@ -14,6 +14,10 @@ static const size_t MAX_TRIANGLES = UINT32_MAX / 3;
  * steps of single precision. */
 static const double NEARNESS = 4e-7;
 
+/* The step by which vertices of the section move apart, as a fraction of the largest coordinate: one to
+ * two units of its last digit. */
+static const double STEP = 0x1p-23;
+
 static cw_status check_input(const cw_mesh *mesh, const cw_cut_desc *d, cw_error *err)
 {
     for (int a = 0; a < 3; a++) {
@@ -56,6 +60,7 @@ static void set_plane(cwi_cut *c)
     for (size_t n = 0; n < 3 * c->mesh->vertex_count; n++)
         largest = cwi_greater(largest, fabs((double)c->mesh->positions[n]));
     c->tolerance = NEARNESS * largest;
+    c->step = STEP * largest;
 }
 
 /* Finds the sides of all vertices, and tells which of them triangles have. */
@@ -174,7 +179,7 @@ static cw_status cut_mesh(cwi_cut *c, cw_mesh *out, cw_error *err)
     if (st == CW_OK)
         st = cwi_cut_link(c, err);
     if (st == CW_OK)
-        st = cwi_cut_fill(c, err);
+        st = cwi_cut_fill_apart(c, err);
     return st == CW_OK ? make_result(c, out, err) : st;
 }
 

@@ -35,9 +35,8 @@ static cw_cut_desc reverse_plane(const cw_cut_desc *desc)
     return d;
 }
 
-/* Pairs of triangles that may cross at a plane askew: its section is flat but for rounding, and there
- * a surface that leans on it may dip into it. Hard surfaces have more of them. */
-enum { MAX_ASKEW_CROSSINGS = 16, MAX_HARD_CROSSINGS = 100 };
+/* Distance of vertices below the plane at most, as a fraction of the largest coordinate. */
+static const double MAX_BELOW = 3e-7;
 
 /* Checks that a half is closed, a manifold, oriented, without crossings, on one side of the plane. */
 static cw_quality check_half(const cw_mesh *m, const cw_cut_desc *d, const char *name)
@@ -53,9 +52,7 @@ static cw_quality check_half(const cw_mesh *m, const cw_cut_desc *d, const char 
     if (q.degenerate)
         fail_msg("%s: %zu triangles without area", name, q.degenerate);
     const size_t crossings = test_count_crossings(m);
-    const int sides = (d->normal[0] != 0) + (d->normal[1] != 0) + (d->normal[2] != 0);
-    const size_t most = strstr(name, "hard") ? MAX_HARD_CROSSINGS : MAX_ASKEW_CROSSINGS;
-    if (crossings > (sides > 1 ? most : 0))
+    if (crossings)
         fail_msg("%s: %zu crossings", name, crossings);
     for (int a = 0; a < 3; a++)
         length += d->normal[a] * d->normal[a];
@@ -68,7 +65,7 @@ static cw_quality check_half(const cw_mesh *m, const cw_cut_desc *d, const char 
         }
         lowest = fmin(lowest, height);
     }
-    assert_true(lowest > -1e-7 * largest);
+    assert_true(lowest > -MAX_BELOW * largest);
     return q;
 }
 
@@ -96,7 +93,8 @@ static cw_cut_facts check_cut(const cw_mesh *m, const cw_cut_desc *d, const char
     assert_near(up + down, whole, 1e-6 * fabs(whole));
     const size_t flat = facts.dropped_triangles + other.dropped_triangles +
                         facts.cut_triangles - m->triangle_count;
-    if (flat == 0) /* triangles in the plane are the section of one half alone */
+    /* triangles in the plane, and loops around vertices at which surfaces touch, are of one half alone */
+    if (flat == 0 && facts.loops_closed == other.loops_closed)
         assert_near(facts.area_mm2, other.area_mm2, 1e-4 * facts.area_mm2 + 1e-9);
     cw_mesh_free(&above);
     cw_mesh_free(&below);
@@ -128,12 +126,11 @@ static void random_planes_leave_two_solids(void **state)
     }
 }
 
-/* Planes through vertices, also of three, in any direction. */
-static void planes_through_vertices_leave_two_solids(void **state)
+/* Cuts fields by planes through vertices, also of three, in any direction. */
+static void cut_through_vertices(unsigned seed)
 {
-    (void)state;
     static const cw_field fields[] = {CW_FIELD_SPHERE, CW_FIELD_TORUS, CW_FIELD_GYROID};
-    test_seed(12);
+    test_seed(seed);
     for (size_t f = 0; f < 3; f++) {
         cw_mesh m = extract_field(fields[f], 16);
         for (int n = 0; n < test_rounds(80); n++) {
@@ -156,10 +153,20 @@ static void planes_through_vertices_leave_two_solids(void **state)
                 d.normal[n % 3] = 1;
             }
             snprintf(name, sizeof name, "field %zu, vertices %d", f, n);
-            check_cut(&m, &d, name);
+            if (d.normal[0] != 0 || d.normal[1] != 0 || d.normal[2] != 0) /* not on a line */
+                check_cut(&m, &d, name);
         }
         cw_mesh_free(&m);
     }
+}
+
+/* Without care for rounding, halves of seeds 15 to 17 and 52 cross themselves. */
+static void planes_through_vertices_leave_two_solids(void **state)
+{
+    (void)state;
+    static const unsigned seeds[] = {12, 15, 16, 17, 52};
+    for (size_t n = 0; n < sizeof seeds / sizeof *seeds; n++)
+        cut_through_vertices(seeds[n]);
 }
 
 static cw_cut_desc describe_plane(double x, double y, double z, double nx, double ny, double nz)
@@ -327,18 +334,25 @@ static void planes_along_faces_are_clear(void **state)
     cw_mesh_free(&m);
 }
 
+static cw_mesh extract_hard(size_t number)
+{
+    cw_volume volume;
+    cw_error err = {0};
+    const cw_hard_desc desc = {.number = number, .dim = {32, 32, 32}, .type = CW_F32};
+    assert_ok(cw_hard_sample(&desc, &volume, &err), err);
+    cw_mesh m = test_extract(
+        &volume, &(cw_extract_desc){.isovalue = (float)cw_hard_at(number)->isovalue}, NULL);
+    cw_volume_free(&volume);
+    return m;
+}
+
 /* Extracted surfaces of fields made to be hard. */
 static void hard_surfaces_leave_two_solids(void **state)
 {
     (void)state;
     test_seed(14);
     for (size_t h = 0; cw_hard_at(h); h++) {
-        cw_volume volume;
-        cw_error err = {0};
-        const cw_hard_desc desc = {.number = h, .dim = {32, 32, 32}, .type = CW_F32};
-        assert_ok(cw_hard_sample(&desc, &volume, &err), err);
-        cw_mesh m = test_extract(
-            &volume, &(cw_extract_desc){.isovalue = (float)cw_hard_at(h)->isovalue}, NULL);
+        cw_mesh m = extract_hard(h);
         double low[3], high[3];
         cw_mesh_bounds(&m, low, high);
         for (int n = 0; n < test_rounds(40) && m.triangle_count; n++) {
@@ -352,7 +366,35 @@ static void hard_surfaces_leave_two_solids(void **state)
             check_cut(&m, &d, name);
         }
         cw_mesh_free(&m);
-        cw_volume_free(&volume);
+    }
+}
+
+/* Planes at which rounding puts vertices of two loops at one place, or an edge of the section into a
+ * triangle that leans on it. */
+static void rounded_sections_do_not_cross(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        double point[3], normal[3]; /* the point from the mesh's origin */
+    } planes[] = {
+        {"hard/last-digits", {-13.833628459274223, 0, 0}, {1, 0, 0}},
+        {"hard/denormal-values",
+         {-6.9095212322113184, -3.727055360160648, -6.7574111887438448},
+         {0.29458506824448705, -0.45075914077460766, -0.4055112418718636}},
+    };
+    for (size_t n = 0; n < sizeof planes / sizeof *planes; n++) {
+        size_t h = 0;
+        while (strcmp(cw_hard_at(h)->name, planes[n].name) != 0)
+            assert_non_null(cw_hard_at(++h));
+        cw_mesh m = extract_hard(h);
+        cw_cut_desc d = {.leave_open = false};
+        for (int a = 0; a < 3; a++) {
+            d.point[a] = planes[n].point[a] + m.origin[a];
+            d.normal[a] = planes[n].normal[a];
+        }
+        check_cut(&m, &d, planes[n].name);
+        cw_mesh_free(&m);
     }
 }
 
@@ -517,6 +559,7 @@ int main(void)
         cmocka_unit_test(islands_in_holes_are_filled),
         cmocka_unit_test(planes_along_faces_are_clear),
         cmocka_unit_test(hard_surfaces_leave_two_solids),
+        cmocka_unit_test(rounded_sections_do_not_cross),
         cmocka_unit_test(open_meshes_keep_their_openings),
         cmocka_unit_test(attributes_are_interpolated),
         cmocka_unit_test(scales_give_the_same_cut),
