@@ -179,7 +179,7 @@ $ours_counts"
 draw_window() {
     make_cortex
     ln -sf $scans/ch2better.nii.gz brain.nii.gz
-    cubewright view brain.nii.gz --hidden --size 1280x812 --mode composite --no-lit --samples 2 \
+    cubewright view brain.nii.gz --hidden --size 1280x800 --mode composite --no-lit --samples 2 \
         --mesh cortex.ply --color '#e09a8c' --tf brain.json --camera 48,28 --layout quad \
         --clip '1,0,0,4;0,-1,0,-12;0,0,1,26' --cut-away -q \
         --exec 'cross 4 12 26; window 30 130; dolly 1.5; pan 0 -12; wait; capture window.png'
