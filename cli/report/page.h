@@ -26,7 +26,7 @@ void cli_put_html(FILE *out, const char *text);
 /* Bytes as base64. */
 void cli_put_base64(FILE *out, const char *bytes, size_t size);
 
-/* A picture; nothing if there is none. The text for those who do not see it is escaped. */
+/* Writes a picture, unless it is empty. The text for those who do not see it is escaped. */
 void cli_put_image(FILE *out, const cli_png *png, const char *alt);
 
 /* A command to be copied. */

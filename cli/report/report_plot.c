@@ -165,8 +165,8 @@ static size_t group_of(const char *const *groups, size_t count, const char *grou
 }
 
 /* Whether two boxes of a size overlap, by their middles. */
-static bool overlaps(double x, double y, double other_x, double other_y, double width,
-                     double height)
+static bool labels_overlap(double x, double y, double other_x, double other_y, double width,
+                           double height)
 {
     return fabs(x - other_x) < width && fabs(y - other_y) < height;
 }
@@ -178,10 +178,10 @@ static int count_collisions(const plot *p, size_t before, double x, double y)
     enum { TEXT_WIDTH = 17, TEXT_HEIGHT = 13, DOT_WIDTH = 15, DOT_HEIGHT = 13 };
     int count = 0;
     for (size_t n = 0; n < p->count; n++)
-        count += overlaps(x, y, p->dots[n].x, p->dots[n].y, DOT_WIDTH, DOT_HEIGHT);
+        count += labels_overlap(x, y, p->dots[n].x, p->dots[n].y, DOT_WIDTH, DOT_HEIGHT);
     for (size_t n = 0; n < before; n++)
-        count +=
-            2 * overlaps(x, y, p->dots[n].text_x, p->dots[n].text_y, TEXT_WIDTH, TEXT_HEIGHT);
+        count += 2 * labels_overlap(x, y, p->dots[n].text_x, p->dots[n].text_y, TEXT_WIDTH,
+                                    TEXT_HEIGHT);
     return count + 3 * (x < LEFT + 8 || x > WIDTH - RIGHT - 4 || y < TOP + 4 ||
                         y > HEIGHT - BOTTOM - 4);
 }

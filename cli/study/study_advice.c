@@ -40,7 +40,7 @@ static double count_whole(const cli_study *s, const cli_point *p)
                : (double)p->triangles;
 }
 
-/* The fewest triangles of which 99 % are within a distance. NULL: there is none. */
+/* Finds the row with the fewest triangles whose 99 % distance is within a limit; else NULL. */
 static const cli_point *find_lightest(const cli_study *s, double limit_mm)
 {
     const cli_point *best = NULL;

@@ -77,7 +77,7 @@ static bool choose_slice(const cli_study *s, slice *out)
     return true;
 }
 
-/* The value at a pixel, linear between voxels; NaN: there is none. */
+/* Interpolates the value at a pixel linearly; NaN outside of the voxels. */
 static double value_at(const slice *s, size_t x, size_t y)
 {
     const size_t size[2] = {s->width, s->height}, pixel[2] = {x, y};

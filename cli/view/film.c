@@ -106,40 +106,30 @@ static cw_status write_bookmarks(const view *v, char **text, cw_error *err)
 
 /* --- moments ------------------------------------------------------------------------------ */
 
-/* A number of all keys at a time; where some keys lack it, of the two keys around. */
-static double blend_number(const film *f, size_t at, double time, double (*get)(const void *),
-                           size_t offset, bool (*has)(const void *))
+/* Blends the double at an offset of the keys' states, over count keys from the first on. */
+static double blend_double(const film *f, size_t first, size_t count, double time,
+                           size_t offset)
 {
     double values[MAX_KEYS];
+    for (size_t n = 0; n < count; n++)
+        values[n] = *(const double *)((const char *)&f->keys[first + n].state + offset);
+    return cwi_monotone_curve(f->times + first, values, count, time);
+}
+
+static const cli_number *number_of(const key *k, size_t offset)
+{
+    return (const cli_number *)((const char *)&k->state + offset);
+}
+
+/* Blends a number of all keys; where some keys lack it, of the two keys around. */
+static double blend_number(const film *f, size_t at, double time, size_t offset)
+{
+    const size_t value = offset + offsetof(cli_number, value);
     bool is_everywhere = true;
-    for (size_t n = 0; n < f->count; n++) {
-        const void *field = (const char *)&f->keys[n].state + offset;
-        is_everywhere = is_everywhere && has(field);
-        values[n] = get(field);
-    }
-    return is_everywhere ? cwi_monotone_curve(f->times, values, f->count, time)
-                         : cwi_monotone_curve(f->times + at, values + at, 2, time);
-}
-
-static bool has_number(const void *field)
-{
-    return ((const cli_number *)field)->given;
-}
-
-static double get_number(const void *field)
-{
-    return ((const cli_number *)field)->value;
-}
-
-static bool has_double(const void *field)
-{
-    (void)field;
-    return true;
-}
-
-static double get_double(const void *field)
-{
-    return *(const double *)field;
+    for (size_t n = 0; n < f->count; n++)
+        is_everywhere = is_everywhere && number_of(&f->keys[n], offset)->given;
+    return is_everywhere ? blend_double(f, 0, f->count, time, value)
+                         : blend_double(f, at, 2, time, value);
 }
 
 /* Options that are numbers in both keys around. */
@@ -152,27 +142,26 @@ static void blend_options(const view *v, const film *f, size_t at, double time, 
             continue;
         const size_t offset = offsetof(view_state, args) + o->offset;
         cli_number *number = (cli_number *)((char *)s + offset);
-        if (has_number((const char *)&a->state + offset) &&
-            has_number((const char *)&b->state + offset))
-            number->value = blend_number(f, at, time, get_number, offset, has_number);
+        if (number_of(a, offset)->given && number_of(b, offset)->given)
+            number->value = blend_number(f, at, time, offset);
     }
 }
 
-static void blend_doubles(const film *f, size_t at, double time, size_t offset, size_t count,
+static void blend_doubles(const film *f, double time, size_t offset, size_t count,
                           view_state *s)
 {
     for (size_t n = 0; n < count; n++)
         ((double *)((char *)s + offset))[n] =
-            blend_number(f, at, time, get_double, offset + n * sizeof(double), has_double);
+            blend_double(f, 0, f->count, time, offset + n * sizeof(double));
 }
 
 static void blend_places(const film *f, size_t at, double time, view_state *s)
 {
     const view_state *a = &f->keys[at].state, *b = &f->keys[at + 1].state;
     const cli_ranges *boxes[2] = {&a->args.scene.clip_box, &b->args.scene.clip_box};
-    blend_doubles(f, at, time, offsetof(view_state, cross), 3, s);
-    blend_doubles(f, at, time, offsetof(view_state, slice_zoom), 1, s);
-    blend_doubles(f, at, time, offsetof(view_state, share), 1, s);
+    blend_doubles(f, time, offsetof(view_state, cross), 3, s);
+    blend_doubles(f, time, offsetof(view_state, slice_zoom), 1, s);
+    blend_doubles(f, time, offsetof(view_state, share), 1, s);
     if (a->window[0] < a->window[1] && b->window[0] < b->window[1])
         for (int n = 0; n < 2; n++)
             s->window[n] = cwi_monotone_curve(

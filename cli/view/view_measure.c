@@ -178,8 +178,8 @@ void view_tool_hint(const view *v, char *text, size_t size)
 /* --- over the pictures -------------------------------------------------------------------- */
 
 /* Projects points to pixels of the window; false: one is behind the eye. */
-static bool project(const view *v, int part, const double (*points)[3], size_t count,
-                    double (*pixels)[2])
+static bool project_points(const view *v, int part, const double (*points)[3], size_t count,
+                           double (*pixels)[2])
 {
     const view_part *p = &v->parts[part];
     for (size_t n = 0; n < count; n++) {
@@ -255,7 +255,7 @@ static void show_measure(view *v, int part, size_t number)
     const cwi_ui_color color = {1, 0.85f, 0.25f, is_near ? 1 : FAINT};
     double pixels[VIEW_POLYGON][2], at[2] = {0, 0};
     char value[96], text[112];
-    if (!project(v, part, points, m->count, pixels))
+    if (!project_points(v, part, points, m->count, pixels))
         return;
     draw_path(v, (const double(*)[2])pixels, m->count, m->kind == VIEW_MEASURE_AREA, color);
     for (size_t n = 0; n < m->count; n++)
@@ -298,7 +298,7 @@ static void show_tool(view *v, int part, const cwi_ui_input *in)
     const double(*points)[3] = (const double(*)[3])v->tool_points;
     double pixels[VIEW_POLYGON + 1][2];
     size_t count = v->tool_count;
-    if (!count || !project(v, part, points, count, pixels))
+    if (!count || !project_points(v, part, points, count, pixels))
         return;
     if (in->x >= r->x && in->x < r->x + r->width && in->y >= r->y && in->y < r->y + r->height &&
         !in->over_widget) {

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-static double secant(const double *times, const double *values, size_t n)
+static double find_secant(const double *times, const double *values, size_t n)
 {
     return (values[n + 1] - values[n]) / (times[n + 1] - times[n]);
 }
@@ -14,7 +14,8 @@ static double limited_slope(const double *times, const double *values, size_t co
 {
     if (n == 0 || n + 1 >= count)
         return 0;
-    const double before = secant(times, values, n - 1), after = secant(times, values, n);
+    const double before = find_secant(times, values, n - 1),
+                 after = find_secant(times, values, n);
     const double h0 = times[n] - times[n - 1], h1 = times[n + 1] - times[n];
     const double parabola = (before * h1 + after * h0) / (h0 + h1);
     if (before * after <= 0)

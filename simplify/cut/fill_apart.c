@@ -30,7 +30,7 @@ typedef struct apart_work {
 } apart_work;
 
 /* Returns a number from -1 to 1 that looks random, the same in every run. */
-static double scatter(uint32_t vertex, uint32_t round, uint32_t k)
+static double hash_to_offset(uint32_t vertex, uint32_t round, uint32_t k)
 {
     uint64_t x = ((uint64_t)vertex << 32 | round << 8 | k) + 0x9e3779b97f4a7c15u;
     x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
@@ -52,8 +52,8 @@ static void move_vertex(apart_work *w, uint32_t v, double steps)
 {
     double best[2] = {0, 0}, least = INFINITY;
     for (uint32_t k = 0; k < PLACES; k++) {
-        const double shift[2] = {steps * scatter(v, w->round, 2 * k),
-                                 steps * scatter(v, w->round, 2 * k + 1)};
+        const double shift[2] = {steps * hash_to_offset(v, w->round, 2 * k),
+                                 steps * hash_to_offset(v, w->round, 2 * k + 1)};
         cwi_cut_place_apart(w->cut, v, shift, 0);
         const double height = measure_height(w->cut, v);
         if (height < least) {

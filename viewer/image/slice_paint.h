@@ -12,7 +12,7 @@ typedef struct cwi_slice_paint {
     const char *what;        /* for messages: "labels" */
     const cw_volume *volume; /* resolved and dense: has to overlap that of the scene */
     double opacity;          /* 0 to 1, of all colours */
-    /* Finds the colour and opacity at a point of the world, 0 to 1; false: there is none. */
+    /* Finds colour and opacity, 0 to 1, at a point of the world; false where it is bare. */
     bool (*color)(const void *context, const double world[3], double rgba[4]);
     const void *context;
 } cwi_slice_paint;

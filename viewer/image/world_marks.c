@@ -34,8 +34,8 @@ static void write_plate(cw_image *image, const double at[2], double height, cons
 }
 
 /* Projects the points; false: one is behind the eye. */
-static bool project(const cw_world_mark *mark, const cw_scene *scene, const cw_image *image,
-                    double (*pixels)[2])
+static bool project_points(const cw_world_mark *mark, const cw_scene *scene,
+                           const cw_image *image, double (*pixels)[2])
 {
     for (size_t n = 0; n < mark->count; n++)
         if (!cw_camera_project(&scene->camera, image->width, image->height, mark->points[n],
@@ -85,7 +85,7 @@ cw_status cw_world_marks_draw(const cw_world_mark *marks, size_t count, double t
         pixels && strokes ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for marks");
     const double height = text_px > 0 ? text_px : fmax(round((double)image->height / 48), 7);
     for (size_t n = 0; n < count && st == CW_OK; n++)
-        if (marks[n].count && project(&marks[n], scene, image, pixels))
+        if (marks[n].count && project_points(&marks[n], scene, image, pixels))
             draw_mark(&marks[n], (const double(*)[2])pixels, strokes, height, image);
     cwi_free(pixels);
     cwi_free(strokes);
