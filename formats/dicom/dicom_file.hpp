@@ -65,6 +65,21 @@ OFString text_of(DcmItem *item, const DcmTagKey &tag, unsigned long at = 0);
 // Reads a number in any representation; returns false where there is none that is finite.
 bool number_of(DcmItem *item, const DcmTagKey &tag, unsigned long at, double *out);
 
+// Tells whether frames of a transfer syntax are compressed. DCMTK 3.6.9 asks in two parts what
+// 3.6.7 answers in one.
+template <typename Syntax>
+auto is_compressed_syntax(const Syntax &syntax)
+    -> decltype(bool(syntax.isPixelDataCompressed()))
+{
+    return syntax.usesEncapsulatedFormat() && syntax.isPixelDataCompressed();
+}
+
+template <typename Syntax, typename... None>
+bool is_compressed_syntax(const Syntax &syntax, None...)
+{
+    return syntax.isEncapsulated();
+}
+
 // Decodes a frame into file.pixels: packed, interleaved, of the layout's type.
 cw_status decode_frame(DicomFile &file, uint32_t frame, cw_error *err);
 

@@ -448,7 +448,7 @@ void check_syntax(DicomFile &d, cwi_dicom_facts *f)
     if (uid.empty()) // a file without a meta header states nothing
         return;
     if (known != EXS_Unknown &&
-        (!syntax.isEncapsulated() || known == EXS_JPEG2000LosslessOnly ||
+        (!is_compressed_syntax(syntax) || known == EXS_JPEG2000LosslessOnly ||
          known == EXS_JPEG2000 ||
          DcmCodecList::canChangeCoding(known, EXS_LittleEndianExplicit)))
         return;
@@ -477,7 +477,7 @@ cw_status open_dicom(DicomFile &d, int fd, uint64_t size, cw_error *err)
 
 bool is_compressed(DicomFile &d)
 {
-    return DcmXfer(d.data()->getOriginalXfer()).isEncapsulated();
+    return is_compressed_syntax(DcmXfer(d.data()->getOriginalXfer()));
 }
 
 const char *why_unreadable(DicomFile &d)

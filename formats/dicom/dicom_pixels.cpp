@@ -203,7 +203,22 @@ cw_status read_reals(DicomFile &d, uint32_t frame, cw_error *err)
     return read.good() ? CW_OK : fail_frame(frame, read.text(), err);
 }
 
-cw_status read_integers(DicomFile &d, uint32_t frame, cw_error *err)
+// Asks for the bytes of a frame. DCMTK 3.6.9 has to be told whether they are compressed.
+template <typename Pixels>
+auto find_frame_size(Pixels &pixels, DcmItem *item, bool compressed, Uint32 &bytes)
+    -> decltype(pixels.getUncompressedFrameSize(item, bytes, OFBool(!compressed)))
+{
+    return pixels.getUncompressedFrameSize(item, bytes, OFBool(!compressed));
+}
+
+template <typename Pixels, typename... None>
+auto find_frame_size(Pixels &pixels, DcmItem *item, bool, Uint32 &bytes, None...)
+    -> decltype(pixels.getUncompressedFrameSize(item, bytes))
+{
+    return pixels.getUncompressedFrameSize(item, bytes);
+}
+
+cw_status read_integers(DicomFile &d, uint32_t frame, bool compressed, cw_error *err)
 {
     const PixelLayout &l = d.layout;
     DcmPixelData *data = pixel_data(d);
@@ -211,7 +226,7 @@ cw_status read_integers(DicomFile &d, uint32_t frame, cw_error *err)
     Uint32 fragment = 0, bytes = 0;
     if (!data)
         return fail_short(frame, err);
-    OFCondition done = data->getUncompressedFrameSize(d.data(), bytes);
+    OFCondition done = find_frame_size(*data, d.data(), compressed, bytes);
     const size_t wanted = l.count() * cw_type_size(l.type);
     if (done.good() && bytes != wanted)
         return fail_frame(frame, "its size is not what rows, columns and bits make", err);
@@ -234,13 +249,13 @@ cw_status cw::decode_frame(DicomFile &d, uint32_t frame, cw_error *err)
     const PixelLayout &l = d.layout;
     const bool real = l.type == CW_F32 || l.type == CW_F64;
     const E_TransferSyntax syntax = d.data()->getOriginalXfer();
-    const bool compressed = DcmXfer(syntax).isEncapsulated();
+    const bool compressed = is_compressed_syntax(DcmXfer(syntax));
     d.decoded = -1;
     cw_status st = real                              ? read_reals(d, frame, err)
                    : l.allocated == 1 && !compressed ? read_bits(d, frame, err)
                    : is_jpeg2000(syntax)             ? read_jpeg2000(d, frame, err)
                    : l.allocated == 1                ? read_runs_of_bits(d, frame, err)
-                                                     : read_integers(d, frame, err);
+                                                     : read_integers(d, frame, compressed, err);
     if (st != CW_OK)
         return st;
     if (l.samples > 1 && l.by_plane && !compressed)
