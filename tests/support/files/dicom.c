@@ -201,7 +201,13 @@ static void put_pixels(const test_image *m, test_dicom *d, size_t count, unsigne
         pixels[i] = pixels[i + 1];
         pixels[i + 1] = low;
     }
-    test_dicom_bytes(d, 0x7fe00010, bits > 8 ? "OW" : "OB", pixels, bytes);
+    if (m->syntax == TEST_DICOM_HTJ2K || m->syntax == TEST_DICOM_FRAMES_DEFLATED) {
+        test_dicom_open_fragments(d); /* as the standard wants compressed pixels */
+        test_dicom_fragment(d, pixels, bytes + bytes % 2);
+        test_dicom_close_sequence(d);
+    } else {
+        test_dicom_bytes(d, 0x7fe00010, bits > 8 ? "OW" : "OB", pixels, bytes);
+    }
     free(pixels);
 }
 
