@@ -119,7 +119,7 @@ int main(void)
 }
 ]])
 
-# Dear ImGui changes with every version: 1.86 told of keys in another way than later ones.
+# Dear ImGui changes with every version: 1.86 to 1.91 have all that the window uses.
 if(CUBEWRIGHT_WINDOW)
   find_path(IMGUI_INCLUDE imgui_internal.h PATH_SUFFIXES imgui)
   find_library(IMGUI_LIBRARY imgui)
@@ -127,7 +127,7 @@ if(CUBEWRIGHT_WINDOW)
   find_path(GLFW_INCLUDE GLFW/glfw3.h)
   find_library(GLFW_LIBRARY glfw)
   if(IMGUI_INCLUDE)
-    file(STRINGS ${IMGUI_INCLUDE}/imgui.h imgui_version REGEX "define IMGUI_VERSION_NUM +186")
+    file(STRINGS ${IMGUI_INCLUDE}/imgui.h imgui_version REGEX "define IMGUI_VERSION_NUM +(18[6-9]|19[01])")
   endif()
 endif()
 set(imgui_is_known OFF)
@@ -139,7 +139,7 @@ add_feature(window OPTION CUBEWRIGHT_WINDOW SHIPPED cubewright-modules MODULE wi
   ABOUT "the window of view, by GLFW and Dear ImGui"
   COST "opens no window"
   LICENCES "GLFW (Zlib), Dear ImGui (MIT), stb (MIT), libepoxy (MIT), libpng (libpng-2.0)"
-  NEEDS "imgui_is_known=libimgui-dev (1.86)" "IMGUI_LIBRARY=libimgui-dev (1.86)" STB_LIBRARY=libstb-dev
+  NEEDS "imgui_is_known=libimgui-dev (1.86 to 1.91)" "IMGUI_LIBRARY=libimgui-dev (1.86 to 1.91)" STB_LIBRARY=libstb-dev
         GLFW_INCLUDE=libglfw3-dev GLFW_LIBRARY=libglfw3-dev EPOXY_INCLUDE=libepoxy-dev
         EPOXY_LIBRARY=libepoxy-dev
   INCLUDES ${IMGUI_INCLUDE} ${GLFW_INCLUDE} ${EPOXY_INCLUDE}
