@@ -3,8 +3,8 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "formats/text/expat_position.h"
 
-#include <expat.h>
 #include <string.h>
 
 enum { CHUNK = 1 << 16, MAX_DEPTH = 64, LONGEST_TAG = 1 << 20, OTHER = -2 };
@@ -38,17 +38,18 @@ const char *cwi_attribute(cwi_attributes a, const char *name)
 
 uint64_t cwi_xml_tag_start(const cwi_xml *x)
 {
-    return (uint64_t)XML_GetCurrentByteIndex(x->expat);
+    return (uint64_t)XML_GetCurrentByteIndex64(x->expat);
 }
 
 uint64_t cwi_xml_tag_end(const cwi_xml *x)
 {
-    return (uint64_t)(XML_GetCurrentByteIndex(x->expat) + XML_GetCurrentByteCount(x->expat));
+    return (uint64_t)XML_GetCurrentByteIndex64(x->expat) +
+           (uint64_t)XML_GetCurrentByteCount64(x->expat);
 }
 
 unsigned long cwi_xml_line(const cwi_xml *x)
 {
-    return (unsigned long)XML_GetCurrentLineNumber(x->expat);
+    return (unsigned long)XML_GetCurrentLineNumber64(x->expat);
 }
 
 void cwi_xml_stop(cwi_xml *x)
@@ -184,17 +185,17 @@ static cw_status fail_xml(const cwi_xml *x)
     if (code == XML_ERROR_NO_MEMORY)
         return cwi_fail(x->err, CW_ERR_NO_MEMORY, "no memory to read XML with");
     return cwi_fail(x->err, CW_ERR_FORMAT, "line %lu is not XML: %s",
-                    (unsigned long)XML_GetCurrentLineNumber(x->expat), XML_ErrorString(code));
+                    (unsigned long)XML_GetCurrentLineNumber64(x->expat), XML_ErrorString(code));
 }
 
 /* Checks the length of a tag, which Expat keeps in memory until it is complete. */
 static cw_status check_tag(const cwi_xml *x)
 {
-    const XML_Index at = XML_GetCurrentByteIndex(x->expat);
+    const int64_t at = XML_GetCurrentByteIndex64(x->expat);
     if (at < 0 || x->fed - (uint64_t)at <= LONGEST_TAG)
         return CW_OK;
     return cwi_fail(x->err, CW_ERR_FORMAT, "line %lu has a tag longer than 1 MiB",
-                    (unsigned long)XML_GetCurrentLineNumber(x->expat));
+                    (unsigned long)XML_GetCurrentLineNumber64(x->expat));
 }
 
 static cw_status feed_parser(cwi_xml *x, cwi_xml_source *source, void *from)

@@ -3,9 +3,9 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "formats/text/expat_position.h"
 #include "formats/tiff/tiff_file.h"
 
-#include <expat.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -295,7 +295,7 @@ static cw_status fail_xml(const parsing *p)
     if (code == XML_ERROR_NO_MEMORY)
         return cwi_fail(p->err, CW_ERR_NO_MEMORY, "no memory to read XML with");
     return cwi_fail(p->err, CW_ERR_FORMAT, "line %lu of the OME-XML is not XML: %s",
-                    (unsigned long)XML_GetCurrentLineNumber(p->expat), XML_ErrorString(code));
+                    (unsigned long)XML_GetCurrentLineNumber64(p->expat), XML_ErrorString(code));
 }
 
 /* Checks that every plane has its page. */
