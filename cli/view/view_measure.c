@@ -254,7 +254,7 @@ static void show_measure(view *v, int part, size_t number)
     const bool is_near = is_near_slice(v, part, points, m->count);
     const cwi_ui_color color = {1, 0.85f, 0.25f, is_near ? 1 : FAINT};
     double pixels[VIEW_POLYGON][2], at[2] = {0, 0};
-    char value[96], text[112];
+    char value[96], text[sizeof value + 24]; /* with a number in front */
     if (!project_points(v, part, points, m->count, pixels))
         return;
     draw_path(v, (const double(*)[2])pixels, m->count, m->kind == VIEW_MEASURE_AREA, color);
@@ -271,7 +271,7 @@ static void show_measure(view *v, int part, size_t number)
 cw_status view_mark_measures(const view *v, int part, const cw_scene *scene, double text_px,
                              cw_image *image, cw_error *err)
 {
-    char value[96], texts[VIEW_MEASURES][112];
+    char value[96], texts[VIEW_MEASURES][sizeof value + 24];
     cw_world_mark marks[VIEW_MEASURES];
     const size_t count = v->state.measure_count;
     for (size_t n = 0; n < count; n++) {

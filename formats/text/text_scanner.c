@@ -249,7 +249,7 @@ bool cwi_word_integer(const cwi_word *word, int64_t *value)
 
 cw_status cwi_scan_double(cwi_scan *s, const char *what, double *value, cw_error *err)
 {
-    cwi_word word;
+    cwi_word word = {0};
     cw_status st = cwi_scan_word(s, &word, err);
     if (st == CW_OK && !cwi_word_double(&word, value))
         return cwi_scan_fail(s, &word, what, "a number", err);
@@ -258,7 +258,7 @@ cw_status cwi_scan_double(cwi_scan *s, const char *what, double *value, cw_error
 
 cw_status cwi_scan_integer(cwi_scan *s, const char *what, int64_t *value, cw_error *err)
 {
-    cwi_word word;
+    cwi_word word = {0};
     cw_status st = cwi_scan_word(s, &word, err);
     if (st == CW_OK && !cwi_word_integer(&word, value))
         return cwi_scan_fail(s, &word, what, "a whole number", err);
