@@ -208,6 +208,19 @@ tinygltf::Node make_node(const cwi_gltf_piece &piece, const double *local_origin
     return node;
 }
 
+// Names the levels of a node to tinygltf itself. From 2.9 on it has a member for them, and writes
+// them from there alone; before, it writes the extension that the node has.
+template <typename Node>
+auto name_levels(Node &node, int first, size_t count) -> decltype(node.lods.clear())
+{
+    for (size_t n = 1; n < count; n++)
+        node.lods.push_back(first + int(n));
+}
+
+template <typename Node, typename... None> void name_levels(Node &, int, size_t, None...)
+{
+}
+
 // Adds levels to the node of level 0. It names the other nodes, and the shares of the screen
 // down to which each is shown. At that share the next level would have as many triangles to an
 // area as level 0 has on all of it. The last level is shown at any smaller share.
@@ -222,6 +235,7 @@ void add_levels(tinygltf::Node &node, const cwi_gltf_piece *levels, size_t count
     }
     coverage.push_back(tinygltf::Value(0.0));
     node.extensions[GLTF_LOD] = tinygltf::Value(Object{{"ids", tinygltf::Value(ids)}});
+    name_levels(node, first, count);
     extras["MSFT_screencoverage"] = tinygltf::Value(coverage);
 }
 
@@ -423,13 +437,38 @@ cw_status check_packed(const cwi_gltf_document &document, cw_error *err)
     return CW_OK;
 }
 
+// Checks that the JSON names the levels of each piece. A quote within a string is escaped, so that
+// no name looks like the extension.
+cw_status check_levels(const cwi_gltf_document &document, const std::string &json,
+                       cw_error *err)
+{
+    size_t at = 0;
+    for (size_t p = 0; p < document.count; p++) {
+        if (document.pieces[p].part->level > 0)
+            continue;
+        const size_t levels = count_levels(document.pieces + p, document.count - p);
+        if (levels == 1)
+            continue;
+        std::string wanted = std::string("\"") + GLTF_LOD + "\":{\"ids\":[";
+        for (size_t n = 1; n < levels; n++)
+            wanted += std::to_string(p + n) + (n + 1 < levels ? "," : "]}");
+        at = json.find(wanted, at);
+        if (at == std::string::npos)
+            return cwi_fail(err, CW_ERR_BACKEND,
+                            "tinygltf left out the %zu levels of detail of '%s'", levels - 1,
+                            document.pieces[p].part->name);
+        at += wanted.size();
+    }
+    return CW_OK;
+}
+
 } // namespace
 
 cw_status cwi_gltf_document_make(const cwi_gltf_document *document, char **json, size_t *size,
                                  cw_error *err)
 {
     return cw::guard(err, "tinygltf", [&] {
-        const cw_status st = check_packed(*document, err);
+        cw_status st = check_packed(*document, err);
         if (st != CW_OK)
             return st;
         const tinygltf::Model model = make_model(*document);
@@ -440,6 +479,9 @@ cw_status cwi_gltf_document_make(const cwi_gltf_document *document, char **json,
         while (!words.empty() && words.back() != '}')
             words.pop_back();
         name_extensions(words);
+        st = check_levels(*document, words, err);
+        if (st != CW_OK)
+            return st;
         *size = words.size();
         *json = cwi_strdup(words.c_str());
         return *json ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the JSON");

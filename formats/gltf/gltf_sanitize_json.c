@@ -6,6 +6,7 @@
 #include <string.h>
 
 enum {
+    EXTENSION_DEPTH = 4, /* {"nodes": [{"extensions": { */
     PRIMITIVE_DEPTH = 5, /* {"meshes": [{"primitives": [{ */
     MAX_DEPTH = 64,
     MAX_STRUCTURE = 32 << 20
@@ -66,6 +67,15 @@ static void hide_indices(char *json, size_t size, size_t at, size_t end)
         memset(json + at + 1, '_', end - at - 2);
 }
 
+/* Renames the extension of levels to CWI_GLTF_HIDDEN_LOD. tinygltf refuses a whole file for a
+ * node whose levels are no list, from 2.9 on. */
+static void hide_levels(char *json, size_t at, size_t end)
+{
+    static const char levels[] = "\"MSFT_lod\"";
+    if (end - at == strlen(levels) && memcmp(json + at, levels, end - at) == 0)
+        memcpy(json + at + 1, CWI_GLTF_HIDDEN_LOD, strlen(CWI_GLTF_HIDDEN_LOD));
+}
+
 cw_status cwi_gltf_blind(char *json, size_t size, cw_error *err)
 {
     size_t depth = 0, structure = 0;
@@ -74,6 +84,8 @@ cw_status cwi_gltf_blind(char *json, size_t size, cw_error *err)
             const size_t end = string_end(json, size, i);
             if (depth == 1 && is_key(json, size, end))
                 rename_key(json + i, end - i);
+            if (depth == EXTENSION_DEPTH && is_key(json, size, end))
+                hide_levels(json, i, end);
             if (depth == PRIMITIVE_DEPTH && is_key(json, size, end))
                 hide_indices(json, size, i, end);
             i = end - 1;

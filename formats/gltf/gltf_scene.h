@@ -92,10 +92,13 @@ CW_NODISCARD cw_status cwi_gltf_take_scene(const void *from, size_t size, cwi_gl
  * Returns CW_ERR_FORMAT, which names the member as "meshes[0].primitives[1].indices". */
 CW_NODISCARD cw_status cwi_gltf_check(const char *json, size_t size, cw_error *err);
 
+#define CWI_GLTF_HIDDEN_LOD "MSFT_LOD"
+
 /* Sanitizes JSON for a library that trusts it. Refuses nesting deeper than 64 and more than 32
  * MiB besides strings. Renames keys that no mesh needs (images, materials, extensions, ...), so
  * that the library ignores them. The indices of primitives become their "extras", since those
- * that Draco compressed have no view. "buffers" becomes "extras", which only describe: only
+ * that Draco compressed have no view. MSFT_lod becomes CWI_GLTF_HIDDEN_LOD, since a library may
+ * refuse what is no list of levels. "buffers" becomes "extras", which only describe: only
  * cwi_gltf_load() reads the bytes of buffers. */
 CW_NODISCARD cw_status cwi_gltf_blind(char *json, size_t size, cw_error *err);
 

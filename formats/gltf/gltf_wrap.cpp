@@ -209,7 +209,7 @@ void copy_extras(const tinygltf::Value &extras, cwi_gltf_node &node)
 
 size_t count_levels(const tinygltf::Node &node)
 {
-    const auto found = node.extensions.find(GLTF_LOD);
+    const auto found = node.extensions.find(CWI_GLTF_HIDDEN_LOD);
     if (found == node.extensions.end())
         return 0;
     const tinygltf::Value &ids = member(found->second, "ids");
