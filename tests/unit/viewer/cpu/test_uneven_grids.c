@@ -52,6 +52,7 @@ static cw_volume even_box(size_t n, double (*field)(const double p[3]))
     cw_volume v = {0};
     cw_error err = {0};
     const size_t dim[3] = {n + 1, n + 1, n + 1};
+    cw_renderer_forget(cpu); /* a freed volume may have been in the same place */
     assert_ok(cw_volume_alloc(&v, CW_F32, dim, 1, 1, &err), err);
     float *to = cw_volume_voxels(&v);
     for (size_t i = 0; i < (n + 1) * (n + 1) * (n + 1); i++) {
