@@ -169,7 +169,7 @@ class Mesh:
         Raises ImportError without the package trimesh.
         """
         try:
-            import trimesh  # type: ignore[import]
+            import trimesh  # type: ignore
         except ImportError:
             raise ImportError("Mesh.to_trimesh() needs the package trimesh: pip install trimesh") from None
         # trimesh has signed indices; a copy of unsigned ones as int64 is what it makes itself.
@@ -188,7 +188,7 @@ class Mesh:
         without the package pyvista.
         """
         try:
-            import pyvista  # type: ignore[import]
+            import pyvista  # type: ignore
         except ImportError:
             raise ImportError("Mesh.to_pyvista() needs the package pyvista: pip install pyvista") from None
         faces = np.empty((len(self.triangles), 4), np.int64)

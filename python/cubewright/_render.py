@@ -59,7 +59,7 @@ def make_camera(camera: Camera, box: npt.NDArray[np.float64], aspect: float, fov
         call(lib.cw_camera_parse, json.dumps(fields, default=list).encode(), byref(made))
     else:
         fit = c.cw_fit_desc(aspect=aspect, fov_deg=fov, margin=MARGIN)
-        fit.min[:], fit.max[:] = box.tolist()
+        fit.min[:], fit.max[:] = (list(map(float, corner)) for corner in box)
         if isinstance(camera, str):
             fit.view = take_text("camera", camera)
         else:
@@ -102,7 +102,7 @@ def make_background(background: Any) -> Any:
         raise ValueError("background has a number that is not 0 to 255")
     if colors.shape[1] == 3:
         colors = np.column_stack([colors, [255, 255]])
-    return (c_uint8 * 4 * 2)(*((c_uint8 * 4)(*row) for row in colors.tolist()))
+    return (c_uint8 * 4 * 2)(*((c_uint8 * 4)(*map(int, row)) for row in colors))
 
 
 def render(
