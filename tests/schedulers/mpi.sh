@@ -10,7 +10,9 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 HOME=$folder
-export HOME OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
+export HOME OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+# more ranks than cores, as Open MPI 4 and 5 call it
+export OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
 formats="ply stl vtp obj"
 ! cubewright version --features | grep -q '^gltf *yes' || formats="$formats glb"
 cubewright make gyroid -o ct.nrrd --dims 60 --type i16 --noise 0.2 -q
