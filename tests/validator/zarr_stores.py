@@ -25,9 +25,14 @@ for (name, compressor), kind in itertools.product(compressors.items(), types):
     smooth = numpy.indices(shape).sum(0) + generator.integers(0, 9, shape)
     values = (smooth % 2 if kind == "b1" else smooth).astype(kind)
     path = "store%d" % count
-    array = zarr.open(path, mode="w", shape=shape, chunks=chunks, dtype=kind, compressor=compressor,
-                      order="F" if count % 3 == 0 else "C", fill_value=3,
-                      dimension_separator="/" if count % 2 else ".")
+    order, separator = "F" if count % 3 == 0 else "C", "/" if count % 2 else "."
+    if zarr.__version__.startswith("2."):
+        array = zarr.open(path, mode="w", shape=shape, chunks=chunks, dtype=kind, compressor=compressor,
+                          order=order, fill_value=3, dimension_separator=separator)
+    else:  # it writes Zarr 3 unless it is told otherwise, and its open() forgets the order
+        array = zarr.create_array(path, shape=shape, chunks=chunks, dtype=kind, compressors=compressor,
+                                  order=order, fill_value=3, zarr_format=2,
+                                  chunk_key_encoding={"name": "v2", "separator": separator})
     values[tuple(slice(0, c) for c in chunks)] = array.fill_value  # such a chunk need not be written
     array[...] = values
     narrow = {"<i8": "<i4", ">u8": "<u4", "b1": "u1"}.get(kind, kind.replace(">", "<"))
