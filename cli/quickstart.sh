@@ -1,5 +1,5 @@
 #!/bin/sh
-# From a fresh Debian 12 to the mesh of a real head: installs what is missing, builds, extracts,
+# From a fresh Debian 12 or 13 to the mesh of a real head: installs what is missing, builds, extracts,
 # draws, and reports what other settings cost. Run it as root or with sudo at hand; safe to run
 # twice. Results: head.glb, head.png and head.html in the current folder.
 set -eu
