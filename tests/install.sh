@@ -42,11 +42,11 @@ if(TARGET cubewright::cubewright_static)
   target_link_libraries(user_static PRIVATE cubewright::cubewright_static)
 endif()
 END
-cmake -B user -Dversion="${version%.*}" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_C_COMPILER="$cc" >log || { cat log; exit 1; }
+cmake -G Ninja -B user -Dversion="${version%.*}" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_C_COMPILER="$cc" >log || { cat log; exit 1; }
 cmake --build user >log || { cat log; exit 1; }
 ./user/user
 [ ! -e user/user_static ] || ./user/user_static
-! cmake -B other -Dversion=9.1 -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_C_COMPILER="$cc" >log 2>&1
+! cmake -G Ninja -B other -Dversion=9.1 -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_C_COMPILER="$cc" >log 2>&1
 grep -q "cubewright-config.cmake, version: $version" log
 
 # the program
