@@ -17,6 +17,7 @@ endif()
 
 if(CUBEWRIGHT_CGAL AND CMAKE_CXX_COMPILER)
   set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE ON CACHE INTERNAL "one file, with its own -O2")
+  set(CMAKE_POLICY_DEFAULT_CMP0167 NEW) # its Boost describes itself; CMake 3.30 warns otherwise
   find_package(CGAL QUIET)
 endif()
 set(unsanitized ON)
