@@ -6,15 +6,14 @@
 #include "cli/framework/run_config.h"
 #include "cli/inputs/volume_input.h"
 #include "cli/results/output_names.h"
-#include "core/base/atomic_file.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/base/thread_pool.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 const cli_command *const cli_commands[] = {
     &cli_extract, &cli_join,    &cli_simplify,       &cli_smooth,        &cli_remesh,
@@ -97,6 +96,8 @@ static cw_status run_parsed(const cli_command *command, cli_common *args, cw_err
     if (st == CW_ERR_NO_MEMORY)
         explain_memory(err);
     cli_progress_end();
+    if (cwi_granted_threads() > 0)
+        cli_say("note: more threads were requested than can be had: %d", cwi_granted_threads());
     return st;
 }
 
@@ -187,18 +188,14 @@ static const char *command_name(const char *word)
     return strcmp(word, "--version") == 0 ? "version" : word;
 }
 
-static bool is_running; /* a command that nothing but OpenMP may end */
-
-/* OpenMP's runtime ends the process, as if a check had failed, when it gets no thread or no
- * memory. Nothing else calls exit(); but in a window, a display may that goes away. */
-static void end_early(void)
+/* Batch systems and shells say by OMP_NUM_THREADS how many threads a program should use. A list is
+ * for nested loops, which we run on one thread. */
+static void read_default_threads(void)
 {
-    if (!is_running)
-        return;
-    cli_progress_end();
-    cli_say_error("OpenMP got no thread or no memory; with -t N it takes fewer threads");
-    cwi_outfile_remove_all();
-    _exit(cw_status_exit_code(CW_ERR_NO_MEMORY));
+    const char *text = getenv("OMP_NUM_THREADS");
+    const long threads = text ? strtol(text, NULL, 10) : 0;
+    if (threads > 0)
+        cwi_set_default_threads(threads < CWI_MAX_THREADS ? (int)threads : CWI_MAX_THREADS);
 }
 
 int main(int argc, char **argv)
@@ -206,15 +203,14 @@ int main(int argc, char **argv)
     cw_error err = {0};
     cw_status st = CW_ERR_ARGUMENT;
     cli_catch_signals();
+    read_default_threads();
     const cli_command *command =
         cli_find_command(argc > 1 ? command_name(argv[1]) : "help", &err);
-    is_running = command && command != &cli_view && atexit(end_early) == 0;
     if (command)
         st = run_command(command, argc > 1 ? argc - 2 : 0, argv + (argc > 1 ? 2 : 1), &err);
     if (st == CW_OK && (fflush(stdout) != 0 || ferror(stdout)))
         st = cwi_fail(&err, CW_ERR_OUTPUT, "the standard output cannot be written");
     if (st != CW_OK)
         cli_say_error(err.message);
-    is_running = false;
     return cw_status_exit_code(st);
 }

@@ -3,7 +3,7 @@ include(core/add_feature.cmake)
 
 # The libraries that no build is without.
 quote_for_c(needed_licences "zlib (Zlib), Expat (MIT), libpng (libpng-2.0), Jansson (MIT), libmd (ISC), \
-libseccomp (LGPL-2.1), the OpenMP runtime (GPL-3.0-or-later with the GCC exception)")
+libseccomp (LGPL-2.1)")
 
 # C++ is for the wrappers of C++ libraries alone; without them no C++ compiler is needed.
 if(CUBEWRIGHT_GLTF OR CUBEWRIGHT_DRACO OR CUBEWRIGHT_DICOM OR CUBEWRIGHT_OPENVDB OR CUBEWRIGHT_CGAL

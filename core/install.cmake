@@ -6,7 +6,7 @@ install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # The libraries of a static library, as -lNAME: their users need no CMake packages of them.
 set(static_libraries "")
-foreach(library z expat png jansson seccomp gomp m dl)
+foreach(library z expat png jansson seccomp pthread m dl)
   list(APPEND static_libraries -l${library})
 endforeach()
 foreach(pair ISAL=isal LZ4=lz4 BZIP2=bz2 ZSTD=zstd)

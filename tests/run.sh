@@ -109,7 +109,7 @@ for stage in $stages; do
     threads)
         say "threads: configuring"
         configure_preset tsan build/tsan-configure.log -DCUBEWRIGHT_TESTS=ON -DCUBEWRIGHT_WERROR=ON
-        threaded='extract|label_crossings|volume|vbuffer|intensity|quality|render|distance_mesh|oracle|intersections|normals|simplify$|slabs|sparse|irregular'
+        threaded='parallel|extract|label_crossings|volume|vbuffer|intensity|quality|render|distance_mesh|oracle|intersections|normals|simplify$|slabs|sparse|irregular'
         say "threads: building"
         # shellcheck disable=SC2046 # no more programs than are run
         build_preset tsan build/tsan-build.log --target \

@@ -8,6 +8,7 @@
 #include "cli/results/run_report.h"
 #include "core/base/atomic_file.h"
 #include "core/base/status.h"
+#include "core/base/thread_pool.h"
 #include "core/volume/volume.h"
 
 #include <stdlib.h>

@@ -10,6 +10,7 @@
 #include "cli/framework/quantity.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/base/thread_pool.h"
 
 #include <cubewright/spool.h>
 

@@ -56,9 +56,17 @@ bool cwi_module_present(const char *name)
     return module_path(name, path, sizeof path);
 }
 
+/* Returns true if libraries may get fewer threads than they start while they are loaded:
+ * log4cplus, which OpenVDB needs, starts four. */
+static bool threads_are_short(void)
+{
+    enum { ENOUGH = 8 };
+    return cwi_try_threads(ENOUGH) < ENOUGH;
+}
+
 /* Loads a module first in a child process, which may die of it: constructors of C++ libraries
- * end the process when memory runs out. Returns false if the child died. Other errors are
- * reported by the loading here. */
+ * end the process when memory or threads run out. Returns false if the child died, or if there can
+ * be none. Other errors are reported by the loading here. */
 static bool survives_loading(const char *path)
 {
     int how = 0;
@@ -76,7 +84,7 @@ static bool survives_loading(const char *path)
     }
     while (child > 0 && waitpid(child, &how, 0) < 0 && errno == EINTR) {
     }
-    return child < 0 || !WIFSIGNALED(how);
+    return child > 0 && !WIFSIGNALED(how);
 }
 
 static bool tells_of_memory(const char *words)
@@ -87,7 +95,9 @@ static bool tells_of_memory(const char *words)
 
 static cw_status fail_memory(const char *name, cw_error *err)
 {
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "memory ran out while the %s module was loaded",
+    return cwi_fail(err, CW_ERR_NO_MEMORY,
+                    "memory or threads ran out while the %s module was loaded: see ulimit -v "
+                    "and -u",
                     name);
 }
 
@@ -135,16 +145,16 @@ cw_status cwi_module_load(const char *name, const void **functions, cw_error *er
     cw_status st = find_module(name, path, sizeof path, &row, err);
     if (st != CW_OK)
         return st;
-    if (cwi_memory_is_limited() && !survives_loading(path))
+    if ((cwi_memory_is_limited() || threads_are_short()) && !survives_loading(path))
         return fail_memory(name, err);
     void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     snprintf(symbol, sizeof symbol, "cwi_module_%s", name);
     *functions = module ? dlsym(module, symbol) : NULL;
-    void (*attach)(cwi_memory_account *) = NULL;
+    void (*attach)(cwi_memory_account *, cwi_thread_pool *) = NULL;
     if (*functions)
         *(void **)&attach = dlsym(module, "cwi_module_attach");
     if (!attach)
         return fail_load(name, row->packages, err);
-    attach(cwi_memory_account_get());
+    attach(cwi_memory_account_get(), cwi_thread_pool_get());
     return CW_OK;
 }

@@ -1,7 +1,7 @@
 /* Modules: shared objects that contain a large library, loaded when first needed.
  *
  * A command that does not write glTF never pays for loading tinygltf. A program that links
- * libcubewright depends on libc, libm, zlib and OpenMP alone. A module NAME is the file
+ * libcubewright depends on libc, libm and zlib alone. A module NAME is the file
  * cubewright-NAME.so in the folder `cubewright` beside the library. It exports
  * cwi_module_attach() and one constant, cwi_module_NAME, a struct of functions that its
  * NAME_wrap.h declares. It does not depend on libcubewright: the functions that it calls of it
@@ -11,6 +11,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/base/thread_pool.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -28,9 +29,9 @@ CW_NODISCARD cw_status cwi_module_find(const char *name, cw_error *err);
 /* Returns true if the file of a module exists; loads nothing. */
 bool cwi_module_present(const char *name);
 
-/* Makes a loaded module use the program's memory account. Every module exports it
+/* Makes a loaded module use the program's memory account and threads. Every module exports it
  * (module_entry.c). */
-CW_API void cwi_module_attach(cwi_memory_account *of_the_program);
+CW_API void cwi_module_attach(cwi_memory_account *account, cwi_thread_pool *pool);
 
 #ifdef __cplusplus
 }

@@ -1,105 +1,121 @@
-/* Runs work on the layers of a volume in parallel (OpenMP), with progress reports and
- * cancellation. */
-#define _GNU_SOURCE /* clock_gettime */
+/* Runs work on the layers of a volume in parallel, with progress reports and cancellation. */
 #include "core/base/parallel.h"
 
 #include "core/base/status.h"
+#include "core/base/thread_pool.h"
 
-#include <omp.h>
-#include <pthread.h>
-#include <time.h>
+#include <assert.h>
+#include <stdatomic.h>
+
+/* The loop that a thread works on. */
+static _Thread_local struct {
+    bool is_inside;
+    int number; /* of the thread in it */
+} loop;
+
+int cwi_thread_number(void)
+{
+    return loop.number;
+}
+
+typedef struct layer_job {
+    void (*work)(void *context, size_t k);
+    void *context;
+    size_t layers, turn; /* turn: how many a thread takes at a time */
+    atomic_size_t next;
+    atomic_bool is_stopped;
+    const cw_progress *progress; /* of the calling thread */
+    const char *step;
+    cw_status status;
+    cw_error *err;
+} layer_job;
+
+static void report_layer(layer_job *j, size_t layer)
+{
+    j->status = cwi_progress(j->progress, j->step, (double)layer / (double)j->layers, j->err);
+    if (j->status != CW_OK)
+        atomic_store(&j->is_stopped, true);
+}
+
+/* Works on layers until none is left. */
+static void do_share(void *context, int number)
+{
+    layer_job *j = context;
+    const bool was_inside = loop.is_inside;
+    const int outer_number = loop.number;
+    loop.is_inside = true;
+    loop.number = number;
+    while (!atomic_load_explicit(&j->is_stopped, memory_order_relaxed)) {
+        const size_t begin = atomic_fetch_add_explicit(&j->next, j->turn, memory_order_relaxed);
+        if (begin >= j->layers)
+            break;
+        if (number == 0 && begin > 0)
+            report_layer(j, begin);
+        for (size_t k = begin; k < begin + j->turn && k < j->layers; k++)
+            if (!atomic_load_explicit(&j->is_stopped, memory_order_relaxed))
+                j->work(j->context, k);
+    }
+    loop.is_inside = was_inside;
+    loop.number = outer_number;
+}
 
 /* Returns the requested number of threads, or as many as there are enough samples for. */
-static int choose_threads(size_t layers, size_t layer_size, int asked)
+static int choose_threads(size_t layers, size_t layer_size, int requested)
 {
     enum { SHARE = 1 << 19 }; /* samples that are worth one thread */
+    if (loop.is_inside)
+        return 1;
+    size_t threads = (size_t)cwi_threads(requested);
     const size_t shares = layers * layer_size / SHARE + 1;
-    const int threads = cwi_threads(asked);
-    return asked <= 0 && shares < (size_t)threads ? (int)shares : threads;
-}
-
-/* Counts the threads that have run out of layers. */
-typedef struct finishers {
-    pthread_mutex_t lock;
-    pthread_cond_t more;
-    int count;
-} finishers;
-
-static void finish_thread(finishers *f)
-{
-    pthread_mutex_lock(&f->lock);
-    f->count++;
-    pthread_cond_signal(&f->more);
-    pthread_mutex_unlock(&f->lock);
-}
-
-/* Waits up to 0.1 s for `count` threads; true when all have finished. */
-static bool wait_for_threads(finishers *f, int count)
-{
-    struct timespec until;
-    clock_gettime(CLOCK_REALTIME, &until);
-    until.tv_nsec += 100000000;
-    until.tv_sec += until.tv_nsec / 1000000000;
-    until.tv_nsec %= 1000000000;
-    pthread_mutex_lock(&f->lock);
-    while (f->count < count && pthread_cond_timedwait(&f->more, &f->lock, &until) == 0)
-        ;
-    const bool finished = f->count == count;
-    pthread_mutex_unlock(&f->lock);
-    return finished;
+    if (requested <= 0 && shares < threads)
+        threads = shares;
+    return (int)(layers < threads && layers > 0 ? layers : threads);
 }
 
 /* Runs the layers. A thread takes a few neighbouring layers at a time: they share samples, and
- * short chunks keep the threads busy to the end. There is one parallel region for all layers.
- * Waking and joining threads for every few layers cost more than it balanced. When the calling
- * thread has run out of layers, it keeps polling the caller's progress, since the other threads
- * may take long. */
+ * short turns keep the threads busy to the end. When the calling thread has run out of layers, it
+ * keeps polling the caller's progress, since the other threads may take long. */
 cw_status cwi_each_layer(size_t layers, size_t layer_size, int threads,
                          const cw_progress *progress, const char *step,
                          void (*work)(void *context, size_t k), void *context, cw_error *err)
 {
+    enum { TURNS = 16, MAX_TURN = 8 };
+    static const double poll_s = 0.1;
     threads = choose_threads(layers, layer_size, threads);
-    const size_t share = layers / ((size_t)threads * 16);
-    const size_t turn = share < 1 ? 1 : share > 8 ? 8 : share;
-    cw_status st = CW_OK;
-    size_t next = 0;
-    bool stop = false;
-    finishers others = {PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, 0};
-#pragma omp parallel num_threads(threads) if (threads > 1)
-    {
-        const bool asks = omp_get_thread_num() == 0;
-        for (bool stopped = false; !stopped;) {
-            size_t begin;
-#pragma omp atomic capture
-            {
-                begin = next;
-                next += turn;
-            }
-            if (begin >= layers)
-                break;
-            if (asks) {
-                st = cwi_progress(progress, step, (double)begin / (double)layers, err);
-                if (st != CW_OK) {
-#pragma omp atomic write
-                    stop = true;
-                }
-            }
-#pragma omp atomic read
-            stopped = stop;
-            for (size_t k = begin; k < begin + turn && k < layers && !stopped; k++)
-                work(context, k);
-        }
-        if (!asks && progress->report)
-            finish_thread(&others);
-        while (asks && progress->report && st == CW_OK &&
-               !wait_for_threads(&others, omp_get_num_threads() - 1))
-            st = cwi_progress(progress, step, 1, err);
-        if (asks && st != CW_OK) {
-#pragma omp atomic write
-            stop = true;
-        }
+    size_t turn = layers / ((size_t)threads * TURNS);
+    turn = turn < 1 ? 1 : turn > MAX_TURN ? MAX_TURN : turn;
+    layer_job j = {.work = work,
+                   .context = context,
+                   .layers = layers,
+                   .turn = turn,
+                   .progress = progress,
+                   .step = step,
+                   .err = err};
+    if (layers > 0)
+        report_layer(&j, 0);
+    if (threads < 2 || layers == 0 || j.status != CW_OK) {
+        do_share(&j, 0);
+        return j.status;
     }
-    pthread_cond_destroy(&others.more);
-    pthread_mutex_destroy(&others.lock);
-    return st;
+    cwi_job others;
+    cwi_job_start(&others, threads, do_share, &j);
+    do_share(&j, 0);
+    cwi_job_close(&others);
+    while (!cwi_job_is_lost(&others)) {
+        if (cwi_job_wait(&others, progress->report && j.status == CW_OK ? poll_s : -1))
+            return j.status;
+        report_layer(&j, layers);
+    }
+    return cwi_fail(err, CW_ERR_CANCELLED,
+                    "this process was forked while %s: the other threads are not in it", step);
+}
+
+void cwi_do_layers(size_t layers, size_t layer_size, int threads,
+                   void (*work)(void *context, size_t k), void *context)
+{
+    static const cw_progress none = {0};
+    const cw_status st =
+        cwi_each_layer(layers, layer_size, threads, &none, "", work, context, NULL);
+    assert(st == CW_OK); /* only a progress stops the loop */
+    (void)st;
 }

@@ -298,11 +298,10 @@ static cw_status fail_unprepared(cwi_sandbox *box, cw_error *err)
     const pid_t child = waitpid(box->child, &how, 0);
     box->child = 0;
     cwi_sandbox_close(box);
-    return cwi_fail(
-        err, CW_ERR_NO_MEMORY,
-        "%s cannot be loaded: its process ended (signal %d); memory is short, or the "
-        "library is damaged",
-        box->desc.library, child > 0 && WIFSIGNALED(how) ? WTERMSIG(how) : 0);
+    return cwi_fail(err, CW_ERR_NO_MEMORY,
+                    "%s cannot be loaded: its process ended (signal %d); memory or threads are "
+                    "short, or the library is damaged",
+                    box->desc.library, child > 0 && WIFSIGNALED(how) ? WTERMSIG(how) : 0);
 }
 
 static void kill_child(cwi_sandbox *box)
@@ -338,9 +337,11 @@ cw_status cwi_sandbox_run(cwi_sandbox *box, int fd, const void *request, size_t 
 
 static cw_status fail_start(cwi_sandbox *box, const char *what, cw_error *err)
 {
+    const bool is_short = errno == EAGAIN || errno == ENOMEM;
     const char *why = strerrordesc_np(errno);
     cwi_sandbox_close(box);
-    return cwi_fail(err, CW_ERR_BACKEND, "no process for %s: %s: %s", box->desc.library, what,
+    return cwi_fail(err, is_short ? CW_ERR_NO_MEMORY : CW_ERR_BACKEND,
+                    "no process for %s: %s: %s", box->desc.library, what,
                     why ? why : "unknown error");
 }
 

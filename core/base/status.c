@@ -1,7 +1,6 @@
 /* Fills in errors, describes status codes, and reports progress. */
 #include "core/base/status.h"
 
-#include <omp.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -98,9 +97,4 @@ cw_progress cwi_progress_part(const cwi_part_progress *part)
 {
     return part->whole->report ? (cw_progress){.report = report_part, .user = (void *)part}
                                : (cw_progress){0};
-}
-
-int cwi_threads(int asked)
-{
-    return asked > 0 ? asked : omp_get_max_threads();
 }

@@ -1,4 +1,4 @@
-/* Helpers of every call: errors, progress and the number of threads. */
+/* Helpers of every call: errors and progress. */
 #ifndef CORE_BASE_STATUS_H
 #define CORE_BASE_STATUS_H
 
@@ -48,9 +48,6 @@ typedef struct cwi_part_progress {
 
 /* Returns the progress that the part reports to; it borrows the part. */
 cw_progress cwi_progress_part(const cwi_part_progress *part);
-
-/* Returns the number of threads that a desc requests: all that OpenMP offers for 0 or less. */
-int cwi_threads(int asked);
 
 #ifdef __cplusplus
 }

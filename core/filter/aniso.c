@@ -10,6 +10,7 @@
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/base/stop.h"
+#include "core/base/thread_pool.h"
 #include "core/filter/edge_flow.h"
 #include "core/filter/tiles.h"
 #include "core/volume/volume.h"
@@ -234,8 +235,7 @@ static void filter_chunk(void *context, size_t chunk)
     double *memory = cwi_alloc_zeroed(bench_bytes(k), 1);
     bench b = {.values = memory, .pitch = k->in->dim[0] + 2};
     if (!memory) {
-#pragma omp atomic write
-        k->starved = true;
+        cwi_set_flag(&k->starved);
         return;
     }
     b.slice = b.pitch * (k->in->dim[1] + 2);

@@ -2,6 +2,7 @@
 #include "core/filter/filter_work.h"
 
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 
@@ -51,20 +52,31 @@ static bool is_value(const cw_volume *v, double x)
     return isfinite(x) && !(v->has_nodata && x == v->nodata);
 }
 
+typedef struct gap_search {
+    const cw_volume *in;
+    bool found;
+} gap_search;
+
+static void search_slice(void *context, size_t k)
+{
+    gap_search *search = context;
+    const cw_volume *in = search->in;
+    for (size_t j = 0; j < in->dim[1]; j++) {
+        const char *p = cwi_voxel_address(in, 0, j, k);
+        for (size_t i = 0; i < in->dim[0]; i++)
+            if (!is_value(in, cwi_voxel_at(in->type, p + (ptrdiff_t)i * in->stride[0]))) {
+                cwi_set_flag(&search->found);
+                return;
+            }
+    }
+}
+
 bool cwi_filter_has_gaps(const cw_volume *in, int threads)
 {
-    bool found = false;
-    if (!in->has_nodata && in->type != CW_F32 && in->type != CW_F64)
-        return false;
-    threads = cwi_threads(threads);
-#pragma omp parallel for schedule(static) num_threads(threads) reduction(|| : found)
-    for (size_t row = 0; row < in->dim[1] * in->dim[2]; row++) {
-        const char *p = cwi_voxel_address(in, 0, row % in->dim[1], row / in->dim[1]);
-        for (size_t i = 0; i < in->dim[0]; i++)
-            found = found ||
-                    !is_value(in, cwi_voxel_at(in->type, p + (ptrdiff_t)i * in->stride[0]));
-    }
-    return found;
+    gap_search search = {.in = in};
+    if (in->has_nodata || in->type == CW_F32 || in->type == CW_F64)
+        cwi_do_layers(in->dim[2], in->dim[0] * in->dim[1], threads, search_slice, &search);
+    return search.found;
 }
 
 void cwi_filter_load(const cw_volume *in, size_t j, size_t k, double *values, double *valid)

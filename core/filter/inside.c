@@ -38,10 +38,8 @@ cw_status cwi_check_inside(const cw_inside *inside, cw_error *err)
 static double *alloc_row(work *k)
 {
     double *row = cwi_alloc_array(2 * k->in->dim[0], sizeof *row);
-    if (!row) {
-#pragma omp atomic write
-        k->starved = true;
-    }
+    if (!row)
+        cwi_set_flag(&k->starved);
     return row;
 }
 
@@ -98,8 +96,7 @@ static double mirror_number(work *k, double stored)
         x = step_number(k, x, up);
     }
     if (cwi_value_is_inside(k->in, k->inside, x) == was || x < k->least || x > k->most) {
-#pragma omp atomic write
-        k->stuck = true;
+        cwi_set_flag(&k->stuck);
         return stored;
     }
     return x;

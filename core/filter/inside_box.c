@@ -32,10 +32,8 @@ static void box_slice(void *context, size_t z)
     work *k = context;
     const size_t nx = k->in->dim[0];
     double *row = cwi_alloc_array(2 * nx, sizeof *row);
-    if (!row) {
-#pragma omp atomic write
-        k->starved = true;
-    }
+    if (!row)
+        cwi_set_flag(&k->starved);
     for (size_t j = 0; j < k->in->dim[1] && row; j++) {
         size_t first = nx, last = 0;
         cwi_filter_load(k->in, j, z, row, row + nx);

@@ -83,8 +83,7 @@ static void filter_slice(void *context, size_t z)
     double *memory = cwi_alloc_zeroed(2 * count, sizeof *memory);
     bench b = {.rows = memory, .width = width};
     if (!memory) {
-#pragma omp atomic write
-        k->starved = true;
+        cwi_set_flag(&k->starved);
         return;
     }
     b.floats = (float *)(memory + count);

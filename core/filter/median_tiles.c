@@ -195,8 +195,7 @@ static void filter_tile(void *context, size_t n)
     size_t first[3], size[3];
     bench *b = cwi_alloc_array(1, sizeof *b);
     if (!b) {
-#pragma omp atomic write
-        k->starved = true;
+        cwi_set_flag(&k->starved);
         return;
     }
     for (int a = 0; a < 3; a++) {

@@ -69,8 +69,7 @@ static void count_row(const work *k, double *const rows[ROWS], double *const val
         /* The variance of m x - sum of m neighbours is (m^2 + m) sigma^2. */
         const double scale = sqrt((double)count * (double)count + (double)count);
         const size_t bin = find_bin(fabs(sum) / scale);
-#pragma omp atomic
-        k->counts[bin]++;
+        __atomic_fetch_add(&k->counts[bin], 1, __ATOMIC_RELAXED);
     }
 }
 
@@ -80,8 +79,7 @@ static void count_slice(void *context, size_t z)
     const size_t *dim = k->in->dim, nx = dim[0];
     double *memory = cwi_alloc_array(2 * ROWS * nx, sizeof *memory);
     if (!memory) {
-#pragma omp atomic write
-        k->starved = true;
+        cwi_set_flag(&k->starved);
         return;
     }
     for (size_t j = 0; j < dim[1]; j++) {

@@ -1,6 +1,7 @@
 /* Filters slices along x and y as they are needed, and joins them along z. A thread keeps as many
  * slices as the weights along z reach over. Each sum is in the order of its samples. */
 #include "core/filter/separable.h"
+#include "core/base/thread_pool.h"
 
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
@@ -205,8 +206,7 @@ static void filter_chunk(void *context, size_t chunk)
     double *memory = cwi_alloc_array(bench_doubles(k, sizes), sizeof *memory);
     bench b = {.row = memory, .planes = k->has_gaps ? 2 : 1};
     if (!memory) {
-#pragma omp atomic write
-        k->starved = true;
+        cwi_set_flag(&k->starved);
         return;
     }
     b.rows = b.row + sizes[0];

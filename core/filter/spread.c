@@ -99,8 +99,7 @@ static void spread_slice(void *context, size_t z)
     uint8_t *to = k->to + z * nx * ny;
     double *plane = cwi_alloc_array(nx * ny + 3 * longest, sizeof *plane);
     if (!plane) {
-#pragma omp atomic write
-        k->starved = true;
+        cwi_set_flag(&k->starved);
         return;
     }
     const envelope e = {.from = plane + nx * ny,

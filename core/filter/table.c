@@ -131,8 +131,7 @@ static void fill_slice(void *context, size_t z)
         open = cwi_alloc_zeroed(r.count, sizeof *open);
     if (!open) {
         cwi_byte_runs_free(&r);
-#pragma omp atomic write
-        k->starved = true;
+        cwi_set_flag(&k->starved);
         return;
     }
     for (size_t row = 0; row < ny; row++)

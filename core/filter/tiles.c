@@ -1,5 +1,6 @@
 /* Loads tiles of a volume, has a filter correct them, and stores the results. */
 #include "core/filter/tiles.h"
+#include "core/base/thread_pool.h"
 
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
@@ -144,8 +145,7 @@ static void filter_tile(void *context, size_t n)
     bench b = {.values = memory};
     cwi_filter_tile tile;
     if (!memory) {
-#pragma omp atomic write
-        k->starved = true;
+        cwi_set_flag(&k->starved);
         return;
     }
     b.valid = k->has_gaps ? memory + width : NULL;

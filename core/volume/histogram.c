@@ -2,10 +2,12 @@
 #include "core/volume/histogram.h"
 
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <string.h>
 
 static bool is_integer(cw_type type)
@@ -75,44 +77,83 @@ static void set_bins(cw_statistics *s, size_t bin_count)
     s->bin_width = span > 0 ? span / (double)bin_count : 1;
 }
 
-/* Calls one of the two row functions for every row. Each thread has its own sums, added in any
- * order because they are whole numbers, minima and maxima. */
+/* A count of all rows, in blocks of slices. A block has counts of its own, which are added to the
+ * totals when it is done. */
+typedef struct counting {
+    const cw_volume *v;
+    size_t slices; /* of a block */
+    bool bins, is_starved;
+    pthread_mutex_t lock; /* for the totals */
+    cw_statistics *total;
+    uint64_t *shorts;
+} counting;
+
+/* Adds the sums of a block, in any order because they are whole numbers, minima and maxima. */
+static void add_block(counting *c, const cw_statistics *s)
+{
+    cw_statistics *total = c->total;
+    pthread_mutex_lock(&c->lock);
+    for (size_t b = 0; c->bins && b < s->bin_count; b++)
+        total->bins[b] += s->bins[b];
+    if (!c->bins) {
+        total->min = fmin(total->min, s->min);
+        total->max = fmax(total->max, s->max);
+        total->finite += s->finite;
+        total->not_finite += s->not_finite;
+        total->nodata += s->nodata;
+    }
+    pthread_mutex_unlock(&c->lock);
+}
+
+static size_t block_end(const counting *c, size_t block)
+{
+    const size_t end = (block + 1) * c->slices;
+    return end < c->v->dim[2] ? end : c->v->dim[2];
+}
+
+static void count_block(void *context, size_t block)
+{
+    counting *c = context;
+    const cw_volume *v = c->v;
+    cw_statistics s = cwi_statistics_of(v);
+    double *values = cwi_alloc_array(v->dim[0], sizeof *values);
+    if (c->bins) {
+        s = *c->total;
+        s.bins = cwi_alloc_zeroed(s.bin_count, sizeof *s.bins);
+    }
+    if (!values || (c->bins && !s.bins)) {
+        cwi_set_flag(&c->is_starved);
+    } else {
+        for (size_t k = block * c->slices; k < block_end(c, block); k++)
+            for (size_t j = 0; j < v->dim[1]; j++) {
+                const size_t n = load_row(v, j, k, values, &s.nodata);
+                (c->bins ? count_row : scan_row)(values, n, &s);
+            }
+        add_block(c, &s);
+    }
+    cwi_free(values);
+    cwi_free(c->bins ? s.bins : NULL);
+}
+
+/* Divides the volume into blocks that take far longer to count than to add, and counts them. */
+static void each_block(counting *c, int threads, void (*count)(void *context, size_t block))
+{
+    enum { BLOCK_SAMPLES = 1 << 20 };
+    const size_t slice = c->v->dim[0] * c->v->dim[1];
+    c->slices = BLOCK_SAMPLES / slice + 1;
+    pthread_mutex_init(&c->lock, NULL);
+    cwi_do_layers((c->v->dim[2] + c->slices - 1) / c->slices, c->slices * slice, threads, count,
+                  c);
+    pthread_mutex_destroy(&c->lock);
+}
+
+/* Calls one of the two row functions for every row. */
 static cw_status each_row(const cw_volume *v, int threads, bool bins, cw_statistics *total,
                           cw_error *err)
 {
-    bool starved = false;
-    threads = cwi_threads(threads);
-#pragma omp parallel num_threads(threads)
-    {
-        cw_statistics s = *total;
-        double *values = cwi_alloc_array(v->dim[0], sizeof *values);
-        s.bins = bins ? cwi_alloc_zeroed(s.bin_count, sizeof *s.bins) : NULL;
-        s.finite = s.not_finite = s.nodata = 0;
-        const bool ready = values && (s.bins || !bins);
-#pragma omp for schedule(static)
-        for (size_t k = 0; k < v->dim[2]; k++)
-            for (size_t j = 0; j < v->dim[1] && ready; j++) {
-                const size_t n = load_row(v, j, k, values, &s.nodata);
-                (bins ? count_row : scan_row)(values, n, &s);
-            }
-#pragma omp critical
-        {
-            starved = starved || !ready;
-            if (bins && ready)
-                for (size_t b = 0; b < s.bin_count; b++)
-                    total->bins[b] += s.bins[b];
-            if (!bins) {
-                total->min = fmin(total->min, s.min);
-                total->max = fmax(total->max, s.max);
-                total->finite += s.finite;
-                total->not_finite += s.not_finite;
-                total->nodata += s.nodata;
-            }
-        }
-        cwi_free(values);
-        cwi_free(s.bins);
-    }
-    return starved ? cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a histogram") : CW_OK;
+    counting c = {.v = v, .bins = bins, .total = total};
+    each_block(&c, threads, count_block);
+    return c.is_starved ? cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a histogram") : CW_OK;
 }
 
 /* Returns true for types with so few numbers that the frequency of each can be counted. */
@@ -145,30 +186,34 @@ static void count_shorts(const cw_volume *v, size_t j, size_t k, uint64_t *count
     }
 }
 
+static void count_block_shorts(void *context, size_t block)
+{
+    counting *c = context;
+    uint64_t *own = cwi_alloc_zeroed(SHORTS, sizeof *own);
+    if (!own) {
+        cwi_set_flag(&c->is_starved);
+        return;
+    }
+    for (size_t k = block * c->slices; k < block_end(c, block); k++)
+        for (size_t j = 0; j < c->v->dim[1]; j++)
+            count_shorts(c->v, j, k, own);
+    pthread_mutex_lock(&c->lock);
+    for (size_t n = 0; n < SHORTS; n++)
+        c->shorts[n] += own[n];
+    pthread_mutex_unlock(&c->lock);
+    cwi_free(own);
+}
+
 /* Counts the frequency of each number, from the lowest; returns NULL without memory. */
 static uint64_t *count_all_shorts(const cw_volume *v, int threads)
 {
-    uint64_t *total = cwi_alloc_zeroed(SHORTS, sizeof *total);
-    bool starved = !total;
-    threads = cwi_threads(threads);
-#pragma omp parallel num_threads(threads) reduction(|| : starved)
-    {
-        uint64_t *own = cwi_alloc_zeroed(SHORTS, sizeof *own);
-        starved = starved || !own;
-#pragma omp for schedule(static)
-        for (size_t k = 0; k < v->dim[2]; k++)
-            for (size_t j = 0; j < v->dim[1] && own; j++)
-                count_shorts(v, j, k, own);
-#pragma omp critical
-        for (size_t n = 0; n < SHORTS && own && total; n++)
-            total[n] += own[n];
-        cwi_free(own);
-    }
-    if (starved) {
-        cwi_free(total);
-        total = NULL;
-    }
-    return total;
+    counting c = {.v = v, .shorts = cwi_alloc_zeroed(SHORTS, sizeof *c.shorts)};
+    if (c.shorts)
+        each_block(&c, threads, count_block_shorts);
+    if (!c.is_starved)
+        return c.shorts;
+    cwi_free(c.shorts);
+    return NULL;
 }
 
 static double short_at(const cw_volume *v, size_t n)

@@ -1,4 +1,5 @@
 /* Computes the lengths of the vectors of a volume's components. */
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 
@@ -28,6 +29,25 @@ static cw_status check_components(const cw_volume *v, size_t step, cw_error *err
     return v->sparse ? cwi_fail(err, CW_ERR_UNSUPPORTED, "magnitudes on a sparse grid") : CW_OK;
 }
 
+typedef struct magnitude_job {
+    const cw_volume *v;
+    size_t step;
+    float *to;
+} magnitude_job;
+
+static void measure_slice(void *context, size_t k)
+{
+    const magnitude_job *job = context;
+    const cw_volume *v = job->v;
+    for (size_t j = 0; j < v->dim[1]; j++) {
+        const char *p = cwi_voxel_address(v, 0, j, k);
+        p += (ptrdiff_t)job->step * v->step_stride;
+        float *row = job->to + (k * v->dim[1] + j) * v->dim[0];
+        for (size_t i = 0; i < v->dim[0]; i++)
+            row[i] = magnitude_at(v, p + (ptrdiff_t)i * v->stride[0]);
+    }
+}
+
 cw_status cw_volume_magnitude(const cw_volume *in, size_t step, int threads, cw_volume *out,
                               cw_error *err)
 {
@@ -40,15 +60,8 @@ cw_status cw_volume_magnitude(const cw_volume *in, size_t step, int threads, cw_
         st = cw_volume_alloc(&m, CW_F32, v.dim, 1, 1, err);
     if (st != CW_OK)
         return st;
-    float *to = cw_volume_voxels(&m);
-    threads = cwi_threads(threads);
-#pragma omp parallel for schedule(static) num_threads(threads)
-    for (size_t row = 0; row < v.dim[1] * v.dim[2]; row++) {
-        const char *p = cwi_voxel_address(&v, 0, row % v.dim[1], row / v.dim[1]);
-        p += (ptrdiff_t)step * v.step_stride;
-        for (size_t i = 0; i < v.dim[0]; i++)
-            to[row * v.dim[0] + i] = magnitude_at(&v, p + (ptrdiff_t)i * v.stride[0]);
-    }
+    magnitude_job job = {&v, step, cw_volume_voxels(&m)};
+    cwi_do_layers(v.dim[2], v.dim[0] * v.dim[1], threads, measure_slice, &job);
     for (int a = 0; a < 3; a++) {
         m.coordinates[a] = v.coordinates[a];
         for (int c = 0; c < 4; c++)

@@ -237,13 +237,10 @@ static void classify_layer(void *context, size_t b)
     cwi_range *leaves =
         c->grow ? c->grow->level[0] + b * c->grow->dim[0][1] * c->grow->dim[0][0] : NULL;
     c->engine->classify_layer(c->grid, b, leaves, &in, &out);
-    if (in) {
-#pragma omp atomic write
-        c->in = true;
-    }
+    if (in)
+        cwi_set_flag(&c->in);
     if (out) {
-#pragma omp atomic write
-        c->out = true;
+        cwi_set_flag(&c->out);
     }
 }
 

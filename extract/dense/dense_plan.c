@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/base/thread_pool.h"
 #include "core/cases/case_tables.h"
 #include "core/geometry/affine.h"
 #include "core/volume/surface_frame.h"

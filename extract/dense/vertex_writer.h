@@ -2,6 +2,7 @@
 #ifndef EXTRACT_DENSE_VERTEX_WRITER_H
 #define EXTRACT_DENSE_VERTEX_WRITER_H
 
+#include "core/base/parallel.h"
 #include "core/geometry/vec3.h"
 #include "core/volume/volume.h"
 #include "extract/dense/isa_dispatch.h"
@@ -39,10 +40,8 @@ static inline void cwi_store_normal(cwi_vertex_sink *sink, double g[3], size_t n
     const bool known = cwi_normalise(d);
     for (int r = 0; r < 3; r++)
         sink->normals[3 * (n - sink->first) + (size_t)r] = known ? (float)d[r] : 0;
-    if (!known) {
-#pragma omp atomic write
-        sink->missing = true;
-    }
+    if (!known)
+        cwi_set_flag(&sink->missing);
 }
 
 #endif

@@ -7,6 +7,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <pthread.h>
 #include <string.h>
 
 /* --- samples ----------------------------------------------------------------------------- */
@@ -15,6 +16,7 @@ enum { SAMPLE_CHUNK = 1 << 15 };
 
 typedef struct sampling {
     cwi_cells *g;
+    pthread_mutex_t lock; /* for what follows, and for the grid's largest value */
     double low[3], high[3];
     size_t bad; /* the first sample whose point is not finite */
 } sampling;
@@ -48,15 +50,14 @@ static void look_at_samples(void *context, size_t chunk)
             bad = !isfinite(p[a]) && n < bad ? n : bad;
         }
     }
-#pragma omp critical(cwi_cells_samples)
-    {
-        g->largest = fmax(g->largest, largest);
-        for (int a = 0; a < 3; a++) {
-            s->low[a] = fmin(s->low[a], low[a]);
-            s->high[a] = fmax(s->high[a], high[a]);
-        }
-        s->bad = bad < s->bad ? bad : s->bad;
+    pthread_mutex_lock(&s->lock);
+    g->largest = fmax(g->largest, largest);
+    for (int a = 0; a < 3; a++) {
+        s->low[a] = fmin(s->low[a], low[a]);
+        s->high[a] = fmax(s->high[a], high[a]);
     }
+    s->bad = bad < s->bad ? bad : s->bad;
+    pthread_mutex_unlock(&s->lock);
 }
 
 /* Sets the origin and checks the range. Positions are floats: they have to reach from the
@@ -80,6 +81,7 @@ static cw_status compare_samples(cwi_cells *g, cw_error *err)
 {
     const size_t samples = g->volume.dim[0];
     sampling s = {.g = g,
+                  .lock = PTHREAD_MUTEX_INITIALIZER,
                   .low = {INFINITY, INFINITY, INFINITY},
                   .high = {-INFINITY, -INFINITY, -INFINITY},
                   .bad = SIZE_MAX};
@@ -90,6 +92,7 @@ static cw_status compare_samples(cwi_cells *g, cw_error *err)
     cw_status st = cwi_each_layer((samples + SAMPLE_CHUNK - 1) / SAMPLE_CHUNK, SAMPLE_CHUNK,
                                   g->desc->threads, &g->desc->progress, "classifying",
                                   look_at_samples, &s, err);
+    pthread_mutex_destroy(&s.lock);
     if (st == CW_OK && s.bad != SIZE_MAX)
         st = cwi_fail(err, CW_ERR_ARGUMENT, "the point of sample %zu is not finite", s.bad);
     return st == CW_OK ? set_frame(g, &s, err) : st;
@@ -101,7 +104,8 @@ static cw_status compare_samples(cwi_cells *g, cw_error *err)
 typedef struct gathering {
     cwi_cells *g;
     size_t *elements;
-    size_t bad; /* the first cell with a corner that is not a sample */
+    pthread_mutex_t lock; /* for bad */
+    size_t bad;           /* the first cell with a corner that is not a sample */
 } gathering;
 
 static void take_corners(cwi_element *e, const uint32_t *corners)
@@ -174,8 +178,9 @@ static void gather_chunk(gathering *w, size_t chunk, bool keep)
         const int size = cwi_shapes[shape].corner_count;
         cwi_element e;
         if (!keep && !corners_exist(g, corners, size)) {
-#pragma omp critical(cwi_cells_bad)
+            pthread_mutex_lock(&w->lock);
             w->bad = n < w->bad ? n : w->bad;
+            pthread_mutex_unlock(&w->lock);
             return;
         }
         if (take_element(g, shape, corners, &e)) {
@@ -231,7 +236,7 @@ static cw_status place_elements(gathering *w, cw_error *err)
 
 cw_status cwi_cells_gather(cwi_cells *g, cw_error *err)
 {
-    gathering w = {.g = g, .bad = SIZE_MAX};
+    gathering w = {.g = g, .lock = PTHREAD_MUTEX_INITIALIZER, .bad = SIZE_MAX};
     const cw_cells *cells = g->volume.cells;
     g->chunks = (cells->count + CWI_CELL_CHUNK - 1) / CWI_CELL_CHUNK;
     cw_status st = cwi_cell_chunks(cells, CWI_CELL_CHUNK, &g->chunk_corners, err);
@@ -247,6 +252,7 @@ cw_status cwi_cells_gather(cwi_cells *g, cw_error *err)
     if (st == CW_OK)
         st = place_elements(&w, err);
     cwi_free(w.elements);
+    pthread_mutex_destroy(&w.lock);
     return st;
 }
 

@@ -106,8 +106,7 @@ static void count_faces(void *context, size_t chunk)
         for (int face = 0; face < cwi_shape_of(&p->g->elements[n])->face_count; face++)
             if (cwi_face_matters(p->g, &p->g->elements[n], face)) {
                 const uint32_t least = cwi_face_key_of(&p->g->elements[n], face).samples[0];
-#pragma omp atomic update
-                p->ends[least]++;
+                __atomic_fetch_add(&p->ends[least], 1, __ATOMIC_RELAXED);
             }
 }
 
@@ -120,9 +119,8 @@ static void fill_buckets(void *context, size_t chunk)
         for (int face = 0; face < cwi_shape_of(&p->g->elements[n])->face_count; face++)
             if (cwi_face_matters(p->g, &p->g->elements[n], face)) {
                 const cwi_face_key key = cwi_face_key_of(&p->g->elements[n], face);
-                uint32_t at;
-#pragma omp atomic capture
-                at = p->ends[key.samples[0]]++;
+                const uint32_t at =
+                    __atomic_fetch_add(&p->ends[key.samples[0]], 1, __ATOMIC_RELAXED);
                 p->faces[at] = (bucket_face){{key.samples[1], key.samples[2], key.samples[3]},
                                              (uint32_t)(n * CWI_CELL_FACES + (size_t)face)};
             }

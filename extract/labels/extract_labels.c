@@ -311,6 +311,7 @@ static void prepare_job(cwi_label_job *j, const cw_volume *v, const cw_labels_de
                                    .count = v->dim[2] + 2,
                                    .wanted_count = desc->label_count,
                                    .wanted = wanted};
+    pthread_mutex_init(&j->bad_lock, NULL);
     cwi_label_rules_make(&j->rules);
     j->is_mirrored = cwi_affine_determinant(v->affine[0]) < 0;
     for (int t = 0; t < CWI_TETS; t++)

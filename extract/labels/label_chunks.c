@@ -3,6 +3,7 @@
 #include "extract/labels/label_chunks.h"
 
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 
 #include <string.h>
 
@@ -16,6 +17,7 @@ typedef struct scan {
     uint32_t *firsts[2];  /* their first vertices */
     uint8_t *marks;       /* of a row: columns of four voxels that differ; then cubes */
     size_t next;          /* vertex */
+    bool is_bad;          /* a value was no label */
     uint64_t last_key;    /* of `last`; 0: none */
     cwi_key_count *last;
 } scan;
@@ -180,10 +182,8 @@ static void put_vertex(const cwi_label_job *j, const double place[3], uint32_t n
 /* Sets a bit of a vertex's kind; another chunk may set another one. */
 static void mark_kind(uint8_t *kind, bool is_curve, int bit)
 {
-    if (is_curve) {
-#pragma omp atomic
-        *kind |= (uint8_t)(1 << bit);
-    }
+    if (is_curve)
+        __atomic_fetch_or(kind, (uint8_t)(1 << bit), __ATOMIC_RELAXED);
 }
 
 /* Tells a cube and the one before it along an axis that they are neighbours, if the face
@@ -259,16 +259,15 @@ static bool load_layer(scan *s, size_t k)
     size_t bad[3];
     if (cwi_label_layer_load(&j->layers, k, s->labels[1], bad))
         return true;
-#pragma omp critical(cwi_labels_bad)
-    {
-        const bool is_first =
-            !j->is_bad || bad[2] < j->bad[2] ||
-            (bad[2] == j->bad[2] &&
-             (bad[1] < j->bad[1] || (bad[1] == j->bad[1] && bad[0] < j->bad[0])));
-        if (is_first)
-            memcpy(j->bad, bad, sizeof bad);
-        j->is_bad = true;
-    }
+    s->is_bad = true;
+    pthread_mutex_lock(&j->bad_lock);
+    const bool is_first = !j->is_bad || bad[2] < j->bad[2] ||
+                          (bad[2] == j->bad[2] &&
+                           (bad[1] < j->bad[1] || (bad[1] == j->bad[1] && bad[0] < j->bad[0])));
+    if (is_first)
+        memcpy(j->bad, bad, sizeof bad);
+    j->is_bad = true;
+    pthread_mutex_unlock(&j->bad_lock);
     return false;
 }
 
@@ -325,10 +324,8 @@ void cwi_label_chunk_work(void *context, size_t chunk)
         is_whole = is_whole && s.labels[i] && s.shapes[i] && s.firsts[i];
     }
     s.marks = cwi_alloc_array(j->layers.width, 1);
-    if (!is_whole || !s.marks || (!scan_chunk(&s, first, end) && !j->is_bad)) {
-#pragma omp atomic write
-        j->is_starved = true;
-    }
+    if (!is_whole || !s.marks || (!scan_chunk(&s, first, end) && !s.is_bad))
+        cwi_set_flag(&j->is_starved);
     for (int i = 0; i < 2; i++) {
         cwi_free(s.labels[i]);
         cwi_free(s.shapes[i]);

@@ -10,6 +10,8 @@
 
 #include <cubewright/labels.h>
 
+#include <pthread.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -36,7 +38,9 @@ typedef struct cwi_label_job {
     cwi_label_chunk *chunks;
     size_t first_chunk; /* of those whose slices are in memory */
     bool is_writing;    /* the second pass */
-    bool is_starved, is_bad;
+    bool is_starved;
+    pthread_mutex_t bad_lock; /* for the next two */
+    bool is_bad;
     size_t bad[3]; /* the first voxel whose value is no label */
 } cwi_label_job;
 

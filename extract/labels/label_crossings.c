@@ -148,10 +148,8 @@ static bool boxes_are_apart(const float *points, const uint32_t a[3], const uint
 
 static void hit_triangle(cwi_label_crossings *c, const uint32_t v[3])
 {
-    for (int n = 0; n < 3; n++) {
-#pragma omp atomic write
-        c->hits[v[n]] = 1;
-    }
+    for (int n = 0; n < 3; n++)
+        __atomic_store_n(&c->hits[v[n]], 1, __ATOMIC_RELAXED);
 }
 
 static bool all_back(const cwi_label_crossings *c, const uint32_t v[3])

@@ -110,8 +110,7 @@ static void box_of_ways(const motion *m, size_t triangle, float box[6])
 
 static void note_crossing(const settling *s, uint32_t triangle)
 {
-#pragma omp atomic write
-    s->crosses[triangle] = 1;
+    __atomic_store_n(&s->crosses[triangle], 1, __ATOMIC_RELAXED);
 }
 
 /* Tests two triangles. If both are to be tested, only one of them does it. */

@@ -3,6 +3,7 @@
 #include "extract/level_set/level_set.h"
 
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/geometry/union_find.h"
 #include "core/geometry/vec3.h"
@@ -208,24 +209,28 @@ static float carve_sample(const hollowing *h, double distance, const double p[3]
 
 /* Turns the level set into that of the wall. All of a wall is in leaves: tiles are in cavities,
  * as far from it as the background. */
+static void carve_leaf(void *context, size_t leaf)
+{
+    const hollowing *h = context;
+    const cw_volume *v = &h->volume;
+    const cw_sparse *sparse = v->owned_grid;
+    float *voxels = v->owned;
+    for (size_t n = 0; n < CWI_LEAF_VOXELS; n++) {
+        const size_t in[3] = {n % CWI_LEAF, n / CWI_LEAF % CWI_LEAF, n / (CWI_LEAF * CWI_LEAF)};
+        float *voxel = voxels + leaf * CWI_LEAF_VOXELS + n;
+        double p[3];
+        for (int a = 0; a < 3; a++)
+            p[a] = v->affine[a][3] +
+                   v->affine[a][a] * (double)(CWI_LEAF * sparse->leaves[leaf][a] + in[a]);
+        *voxel = carve_sample(h, (double)*voxel, p);
+    }
+}
+
 static void carve_all(hollowing *h)
 {
-    const cw_volume *v = &h->volume;
-    cw_sparse *sparse = v->owned_grid;
-    float *voxels = v->owned;
+    cw_sparse *sparse = h->volume.owned_grid;
     sparse->tile_count = 0;
-#pragma omp parallel for schedule(static) num_threads(cwi_threads(h->desc->threads))
-    for (size_t leaf = 0; leaf < sparse->leaf_count; leaf++)
-        for (size_t n = 0; n < CWI_LEAF_VOXELS; n++) {
-            const size_t in[3] = {n % CWI_LEAF, n / CWI_LEAF % CWI_LEAF,
-                                  n / (CWI_LEAF * CWI_LEAF)};
-            float *voxel = voxels + leaf * CWI_LEAF_VOXELS + n;
-            double p[3];
-            for (int a = 0; a < 3; a++)
-                p[a] = v->affine[a][3] +
-                       v->affine[a][a] * (double)(CWI_LEAF * sparse->leaves[leaf][a] + in[a]);
-            *voxel = carve_sample(h, (double)*voxel, p);
-        }
+    cwi_do_layers(sparse->leaf_count, CWI_LEAF_VOXELS, h->desc->threads, carve_leaf, h);
 }
 
 static cw_status place_rays(hollowing *h, cw_error *err)

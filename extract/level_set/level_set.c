@@ -4,7 +4,9 @@
 
 #include "core/base/memory.h"
 #include "core/base/module.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/base/thread_pool.h"
 #include "core/volume/volume.h"
 #include "extract/level_set/openvdb_distance_wrap.h"
 #include "extract/level_set/winding_rows.h"
@@ -129,6 +131,17 @@ static void sign_leaf(const build *b, const uint32_t at[3], float voxels[CWI_LEA
         }
 }
 
+static void take_leaf(void *context, size_t n)
+{
+    build *b = context;
+    int32_t at[3];
+    float *voxels = b->voxels + n * CWI_LEAF_VOXELS;
+    b->functions->take(b->distances, n, at, voxels);
+    for (int a = 0; a < 3; a++)
+        b->leaves[n][a] = (uint32_t)at[a];
+    sign_leaf(b, b->leaves[n], voxels);
+}
+
 /* Takes the leaves from OpenVDB. Places are within the grid, whose size is chosen
  * accordingly. */
 static cw_status take_leaves(build *b, cw_error *err)
@@ -138,15 +151,7 @@ static cw_status take_leaves(build *b, cw_error *err)
     b->voxels = cwi_alloc_large(b->leaf_count, CWI_LEAF_VOXELS * sizeof *b->voxels);
     if (!b->leaves || !b->voxels)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", b->leaf_count);
-#pragma omp parallel for schedule(static) num_threads(cwi_threads(b->desc->threads))
-    for (size_t n = 0; n < b->leaf_count; n++) {
-        int32_t at[3];
-        float *voxels = b->voxels + n * CWI_LEAF_VOXELS;
-        b->functions->take(b->distances, n, at, voxels);
-        for (int a = 0; a < 3; a++)
-            b->leaves[n][a] = (uint32_t)at[a];
-        sign_leaf(b, b->leaves[n], voxels);
-    }
+    cwi_do_layers(b->leaf_count, CWI_LEAF_VOXELS, b->desc->threads, take_leaf, b);
     b->functions->close(b->distances);
     b->distances = NULL;
     return CW_OK;

@@ -2,13 +2,16 @@
 // it fills enclosed hollows, even those that the mesh has.
 #include "extract/level_set/openvdb_distance_wrap.h"
 #include "core/base/guard.hpp"
+#include "core/base/thread_pool.h"
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -62,18 +65,31 @@ private:
     int last = 0;
 };
 
+// Returns the threads that TBB may use: it ends the process when the system gives it fewer. Those
+// that it has made stay.
+int find_threads(int requested)
+{
+    static std::mutex lock;
+    static int granted = 1;
+    const std::lock_guard<std::mutex> guard(lock);
+    if (requested > granted)
+        granted += cwi_try_threads(requested - granted);
+    return std::min(requested, granted);
+}
+
 using at_most = tbb::global_control;
 constexpr auto parallelism = tbb::global_control::max_allowed_parallelism;
 
 cw_status open(const cwi_distances_desc *desc, cwi_distances **out, cw_error *err)
 {
     return cw::guard(err, "OpenVDB", [&] {
-        const at_most threads(parallelism, size_t(desc->threads));
+        const int count = find_threads(desc->threads);
+        const at_most threads(parallelism, size_t(count));
         interruption stop(desc->progress);
         const auto transform = openvdb::math::Transform::createLinearTransform(1.0);
         auto made = std::make_unique<cwi_distances>();
         const float reach = float(desc->reach);
-        made->threads = desc->threads;
+        made->threads = count;
         const auto points = in_voxels(*desc);
         const triangles mesh(points.data(), points.size(),
                              reinterpret_cast<const openvdb::Vec3I *>(desc->mesh->triangles),

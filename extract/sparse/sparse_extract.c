@@ -6,6 +6,7 @@
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/base/thread_pool.h"
 #include "core/mesh/mesh.h"
 #include "core/volume/volume.h"
 #include "extract/common/extract_limits.h"
@@ -14,7 +15,6 @@
 #include "extract/dense/dense_plan.h"
 #include "extract/sparse/block_gather.h"
 
-#include <omp.h>
 #include <string.h>
 
 /* Size of a block in cells, along the axes. */
@@ -186,17 +186,8 @@ static size_t bytes_of(const sparse_plan *p, const cwi_leaf_block *b)
 static cw_status check_made(sparse_plan *p, const cwi_leaf_block *b, cw_error *err)
 {
     const cw_extract_desc *d = p->desc;
-    size_t made, bytes;
-#pragma omp atomic capture
-    {
-        p->made += b->triangles;
-        made = p->made;
-    }
-#pragma omp atomic capture
-    {
-        p->bytes += bytes_of(p, b);
-        bytes = p->bytes;
-    }
+    const size_t made = __atomic_add_fetch(&p->made, b->triangles, __ATOMIC_RELAXED);
+    size_t bytes = __atomic_add_fetch(&p->bytes, bytes_of(p, b), __ATOMIC_RELAXED);
     if (d->max_triangles && made > d->max_triangles)
         return cwi_fail(
             err, CW_ERR_LIMIT,
@@ -412,7 +403,7 @@ typedef struct turn {
 static void do_block(void *context, size_t n)
 {
     const turn *t = context;
-    worker *w = &t->plan->workers[omp_get_thread_num()];
+    worker *w = &t->plan->workers[cwi_thread_number()];
     if (w->status == CW_OK)
         w->status = t->work(t->plan, &t->plan->blocks.block[n], w, &w->error);
 }

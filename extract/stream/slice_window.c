@@ -136,13 +136,10 @@ static void classify_slice(void *context, size_t n)
         clear_rows(g, g->has, layer, end ? g->rows_y - 1 : 0, 1);
     }
     w->plan.engine->classify_rows(g, 1, layer, g->rows_y - 2, &in, &out);
-    if (in) {
-#pragma omp atomic write
-        w->in = true;
-    }
+    if (in)
+        cwi_set_flag(&w->in);
     if (out) {
-#pragma omp atomic write
-        w->out = true;
+        cwi_set_flag(&w->out);
     }
 }
 

@@ -79,7 +79,8 @@ static place end_of_bytes(const cwi_chunk_writer *c, place from, place last, siz
 
 typedef struct chunk_work {
     cwi_chunk_writer *writer;
-    cwi_vertex_sink sink;
+    cwi_vertex_sink sink; /* which each span copies */
+    bool lacks_normals;
     cwi_row_span spans[MAX_SPANS];
     size_t count;
 } chunk_work;
@@ -91,10 +92,8 @@ static void write_span(void *context, size_t n)
     cwi_vertex_sink sink = work->sink;
     w->plan.engine->write_span(&w->plan.grid, &work->spans[n], w->plan.rows,
                                &work->writer->emission, &sink, work->writer->corners);
-    if (sink.missing) {
-#pragma omp atomic write
-        work->sink.missing = true;
-    }
+    if (sink.missing)
+        cwi_set_flag(&work->lacks_normals);
 }
 
 static void shade_vertices(void *context, size_t n)
@@ -186,7 +185,7 @@ static cw_status write_chunk(cwi_chunk_writer *c, place from, place to, cw_error
     chunk.mesh.triangle_count = triangles;
     if (st == CW_OK && c->by_position)
         st = shade_chunk(c, &chunk, err);
-    if (st == CW_OK && (work.sink.missing || c->by_position))
+    if (st == CW_OK && (work.lacks_normals || c->by_position))
         st = cwi_chunk_mend_normals(c, &chunk, from.layer, to.row ? to.layer + 1 : to.layer,
                                     err);
     if (st != CW_OK)

@@ -15,7 +15,7 @@ typedef struct cwi_zarr_desc {
     bool allow_external; /* follow links that leave the store; default: refused */
     size_t
         cache_bytes; /* limit of decoded chunks that are kept between calls; default 256 MiB */
-    int threads;     /* default: all that OpenMP offers */
+    int threads;     /* default: one per processor */
 } cwi_zarr_desc;
 
 /* Opens the array of a path: a folder with .zarray, .zgroup or zarr.json, or such a file.

@@ -2,9 +2,9 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/base/thread_pool.h"
 #include "formats/zarr/zarr_handle.h"
 
-#include <omp.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -231,7 +231,7 @@ static cw_status read_chunk(boxing *b, const size_t at[CWI_ROLE_COUNT], cw_error
     const void *kept = find_kept(z, number);
     if (kept)
         return copy_overlap(b, &o, kept, false, err);
-    void **scratch = &b->scratch[omp_get_thread_num()];
+    void **scratch = &b->scratch[cwi_thread_number()];
     for (int r = 0; r < CWI_ROLE_COUNT; r++)
         if (z->dimensions[r] >= 0)
             place[z->dimensions[r]] = at[r];

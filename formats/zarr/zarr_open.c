@@ -3,6 +3,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/base/thread_pool.h"
 #include "formats/bytes/file_pattern.h"
 #include "formats/text/label_ome.h"
 #include "formats/volume/named_arrays.h"

@@ -34,7 +34,7 @@ typedef struct cw_field_distance_desc {
     double step_voxels;   /* largest distance between points along sides; default 1 */
     float *worst;         /* vertex_count values: the largest distance met in the triangles
                              around each vertex; default: not kept */
-    int threads;          /* default: all that OpenMP offers */
+    int threads;          /* default: one per processor */
     cw_progress progress; /* default: none */
 } cw_field_distance_desc;
 
@@ -77,7 +77,7 @@ typedef struct cw_mesh_distance_desc {
     bool vertices_only;   /* measure only at the vertices, all with equal weight; bound_mm is
                              then 0. Default: over the surface */
     float *worst;         /* as in cw_field_distance_desc */
-    int threads;          /* default: all that OpenMP offers */
+    int threads;          /* default: one per processor */
     cw_progress progress; /* default: none */
 } cw_mesh_distance_desc;
 

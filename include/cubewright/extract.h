@@ -26,7 +26,7 @@ typedef struct cw_extract_desc {
     bool no_normals;      /* default: one normal per vertex from the field's gradient */
     double snap;          /* up to 0.5: merge crossings within this share of an edge from one
                              sample, as below; 0.3 is usual; default: none */
-    int threads;          /* default: all that OpenMP offers */
+    int threads;          /* default: one per processor */
     size_t max_triangles; /* fail with CW_ERR_LIMIT before allocating more; default: no limit */
     size_t max_bytes;     /* the same for mesh and working memory; default: no limit */
     size_t extra_bytes;   /* per triangle: the caller's own needs, counted against max_bytes */
@@ -185,7 +185,7 @@ CW_API void cw_extractor_recycle(cw_extractor *extractor, cw_mesh *mesh);
 /* Options for taking normals from a field. Zero fields mean the default named beside them. */
 typedef struct cw_normals_desc {
     bool inside_is_low;   /* default: high values are inside */
-    int threads;          /* default: all that OpenMP offers */
+    int threads;          /* default: one per processor */
     cw_progress progress; /* default: none */
 } cw_normals_desc;
 

@@ -21,7 +21,7 @@ typedef struct cw_labels_desc {
     double max_move;        /* of a vertex by smoothing, along each axis of the grid, in voxels:
                                up to 0.5, which is the default */
     bool leave_open;        /* default: cap labels half a voxel beyond the volume's border */
-    int threads;            /* default: all that OpenMP offers */
+    int threads;            /* default: one per processor */
     size_t max_triangles; /* fail with CW_ERR_LIMIT before allocating more; default: no limit */
     cw_progress progress; /* default: none */
 } cw_labels_desc;
@@ -156,7 +156,7 @@ typedef struct cw_label_simplify_desc {
     size_t triangles;     /* stop at this number of triangles; default: no limit */
     double ratio;         /* the same as a fraction of the input's; above 0, below 1; default:
                              none */
-    int threads;          /* default: all that OpenMP offers */
+    int threads;          /* default: one per processor */
     cw_progress progress; /* default: none */
 } cw_label_simplify_desc;
 

@@ -21,7 +21,7 @@ typedef struct cw_remesh_desc {
         min_angle_deg; /* wanted smallest angle, up to 40: extra passes work on triangles below
                              it; default: none */
     size_t iterations; /* at most CW_REMESH_MAX_ITERATIONS; default: 5 */
-    int threads;       /* default: all that OpenMP offers */
+    int threads;       /* default: one per processor */
     cw_progress progress; /* default: none */
     bool is_adaptive;     /* shorter edges where the surface is curved, so that they leave it by
                              half of error_mm; default: one length everywhere */

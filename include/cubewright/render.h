@@ -296,7 +296,7 @@ typedef struct cw_scene {
                                wireframe and in the scene's colour; default: none. Depths of a cue
                                are those of the volume's box */
 
-    int threads;          /* default: all that OpenMP offers */
+    int threads;          /* default: one per processor */
     cw_progress progress; /* default: none. Called every few milliseconds, except while GL
                              compiles a shader or allocates a volume. A cancelled picture leaves
                              its uploads in place, and the next picture is as usual. The report
@@ -411,7 +411,7 @@ typedef struct cw_render_mesh_desc {
     double *depth_mm; /* not NULL: filled with height x width depths, along the line of sight,
                          of what is seen; INFINITY: nothing is. One sample a pixel only */
     bool same_inside; /* as in cw_scene; default: the inside is red */
-    int threads;      /* default: all that OpenMP offers */
+    int threads;      /* default: one per processor */
     cw_progress progress; /* default: none */
 } cw_render_mesh_desc;
 

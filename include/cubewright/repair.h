@@ -20,7 +20,7 @@ typedef struct cw_repair_desc {
     bool flat_holes;     /* default: patches in holes go on smoothly from the surface around, so
                             that an open tube gets domes; else they have the least area */
     bool keep_crossings; /* default: triangles around crossings are replaced */
-    int threads;         /* default: all that OpenMP offers */
+    int threads;         /* default: one per processor */
     cw_progress progress; /* default: none */
 } cw_repair_desc;
 

@@ -59,7 +59,7 @@ typedef struct cw_simplify_desc {
                                are for the largest possible difference: of a colour from none to
                                full, of scalars from the minimum to the maximum, of normals by a
                                length of 1. Default: 0 */
-    int threads;                                      /* default: all that OpenMP offers */
+    int threads;                                      /* default: one per processor */
     cw_progress progress;                             /* default: none */
 } cw_simplify_desc;
 

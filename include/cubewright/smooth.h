@@ -36,7 +36,7 @@ typedef struct cw_smooth_desc {
                              surfaces, stay to the bit. Else they move along these edges, and
                              neither the volume nor the border is kept */
     bool allow_crossings; /* default: no triangles meet that did not meet before */
-    int threads;          /* default: all that OpenMP offers */
+    int threads;          /* default: one per processor */
     cw_progress progress; /* default: none */
     cw_smooth_method method; /* default: CW_SMOOTH_TAUBIN */
     double width_mm; /* of CW_SMOOTH_FAIR alone: waves of this length keep half their height,

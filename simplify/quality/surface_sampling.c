@@ -8,10 +8,10 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/base/thread_pool.h"
 #include "core/geometry/vec3.h"
 
 #include <math.h>
-#include <omp.h>
 #include <string.h>
 
 enum {
@@ -166,7 +166,7 @@ static void take_distance(const work *w, tally *y, double distance, double share
         y->triangle = t;
         memcpy(y->where, p, sizeof y->where);
     }
-    w->histogram[(size_t)omp_get_thread_num() * BINS + bin_of(d)] += (uint64_t)(share * 0x1p60);
+    w->histogram[(size_t)cwi_thread_number() * BINS + bin_of(d)] += (uint64_t)(share * 0x1p60);
 }
 
 static void measure_point(const work *w, tally *y, const double p[3], double share, size_t t,

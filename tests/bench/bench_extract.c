@@ -12,10 +12,10 @@
 #define _DEFAULT_SOURCE /* madvise, clock_gettime */
 #include <cubewright/cubewright.h>
 
+#include "core/base/parallel.h"
 #include "vtk_wrap.h"
 
 #include <math.h>
-#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -120,6 +120,32 @@ static const struct {
     {"headsq-ct/headsq.mha", 1150, 500},     {"flair-mri/FLAIR.nrrd", 40, 120},
 };
 
+typedef struct filling {
+    const bench_case *c;
+    size_t n;
+    void *voxels;
+} filling;
+
+static void fill_slice(void *context, size_t k)
+{
+    const filling *f = context;
+    const bench_case *c = f->c;
+    for (size_t j = 0; j < f->n; j++)
+        for (size_t i = 0; i < f->n; i++) {
+            const size_t at[3] = {i, j, k}, voxel = (k * f->n + j) * f->n + i;
+            double p[3];
+            for (int a = 0; a < 3; a++)
+                p[a] = 2 * (double)at[a] / (double)(f->n - 1) - 1;
+            const double x = c->scale * (double)c->value(p, f->n, voxel) + c->offset;
+            if (c->type == CW_U8)
+                ((uint8_t *)f->voxels)[voxel] = (uint8_t)x;
+            else if (c->type == CW_U16)
+                ((uint16_t *)f->voxels)[voxel] = (uint16_t)x;
+            else
+                ((float *)f->voxels)[voxel] = (float)x;
+        }
+}
+
 static cw_volume make(const bench_case *c, size_t n)
 {
     cw_volume v;
@@ -128,23 +154,8 @@ static cw_volume make(const bench_case *c, size_t n)
         fprintf(stderr, "%s\n", err.message);
         exit(1);
     }
-    void *voxels = cw_volume_voxels(&v);
-#pragma omp parallel for
-    for (size_t k = 0; k < n; k++)
-        for (size_t j = 0; j < n; j++)
-            for (size_t i = 0; i < n; i++) {
-                const size_t at[3] = {i, j, k}, voxel = (k * n + j) * n + i;
-                double p[3];
-                for (int a = 0; a < 3; a++)
-                    p[a] = 2 * (double)at[a] / (double)(n - 1) - 1;
-                const double x = c->scale * (double)c->value(p, n, voxel) + c->offset;
-                if (c->type == CW_U8)
-                    ((uint8_t *)voxels)[voxel] = (uint8_t)x;
-                else if (c->type == CW_U16)
-                    ((uint16_t *)voxels)[voxel] = (uint16_t)x;
-                else
-                    ((float *)voxels)[voxel] = (float)x;
-            }
+    filling f = {c, n, cw_volume_voxels(&v)};
+    cwi_do_layers(n, n * n, 0, fill_slice, &f);
     return v;
 }
 
@@ -155,35 +166,47 @@ static double now_ms(void)
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
+enum { LINE = 8, AHEAD = 64 * LINE, HUGE_PAGE = 2 << 20, BLOCK = HUGE_PAGE / 8 }; /* words */
+
+typedef struct memory_work {
+    const uint64_t *in;
+    uint64_t *to, sum;
+    size_t words;
+} memory_work;
+
+static void read_block(void *context, size_t block)
+{
+    memory_work *w = context;
+    uint64_t sum = 0;
+    for (size_t n = block * BLOCK; n < (block + 1) * BLOCK && n < w->words; n += LINE) {
+        __builtin_prefetch(w->in + n + AHEAD);
+        for (size_t m = n; m < n + LINE && m < w->words; m++)
+            sum += w->in[m];
+    }
+    __atomic_fetch_add(&w->sum, sum, __ATOMIC_RELAXED);
+}
+
+static void write_block(void *context, size_t block)
+{
+    const memory_work *w = context;
+    for (size_t n = block * BLOCK; n < (block + 1) * BLOCK; n++)
+        w->to[n] = n;
+}
+
 /* Reads every voxel once, fetched as far ahead as pays, and writes `out` fresh bytes once. */
 static double limit_ms(const cw_volume *v, size_t out, int threads)
 {
-    const uint64_t *in = v->data;
-    const size_t words = v->dim[0] * v->dim[1] * v->dim[2] * cw_type_size(v->type) / 8;
-    const size_t huge = (size_t)2 << 20, block = huge / 8;
-    enum { LINE = 8, AHEAD = 64 * LINE };
-    const size_t bytes = (out + huge - 1) / huge * huge;
-    uint64_t sum = 0;
+    const size_t bytes = (out + HUGE_PAGE - 1) / HUGE_PAGE * HUGE_PAGE;
+    memory_work w = {.in = v->data,
+                     .words = v->dim[0] * v->dim[1] * v->dim[2] * cw_type_size(v->type) / 8};
     const double begin = now_ms();
-    uint64_t *to = aligned_alloc(huge, bytes);
-    madvise(to, bytes, MADV_HUGEPAGE);
-#pragma omp parallel num_threads(threads) reduction(+ : sum)
-    {
-#pragma omp for schedule(dynamic) nowait
-        for (size_t b = 0; b < words; b += block)
-            for (size_t n = b; n < b + block && n < words; n += LINE) {
-                __builtin_prefetch(in + n + AHEAD);
-                for (size_t m = n; m < n + LINE && m < words; m++)
-                    sum += in[m];
-            }
-#pragma omp for schedule(dynamic)
-        for (size_t b = 0; b < bytes / 8; b += block)
-            for (size_t n = b; n < b + block; n++)
-                to[n] = n;
-    }
+    w.to = aligned_alloc(HUGE_PAGE, bytes);
+    madvise(w.to, bytes, MADV_HUGEPAGE);
+    cwi_do_layers((w.words + BLOCK - 1) / BLOCK, BLOCK, threads, read_block, &w);
+    cwi_do_layers(bytes / HUGE_PAGE, BLOCK, threads, write_block, &w);
     const double end = now_ms();
-    free(to);
-    return end - begin + (sum == 42 ? 1e-9 : 0);
+    free(w.to);
+    return end - begin + (w.sum == 42 ? 1e-9 : 0);
 }
 
 /* Touches and frees memory, so that a virtual machine's host has it at hand for who comes next:

@@ -8,14 +8,16 @@
  * Gaussian noise, in the field's unit. Prints the renderer's name and, as medians over the runs,
  * the milliseconds of classifying (with lists and ambiguous cells), of the prefix sums, of vertices
  * and triangles, of all on the GPU, and of the whole call; with --cpu, those of cw_extractor. */
+#include "core/base/clock.h"
 #include "core/base/module.h"
+#include "core/base/parallel.h"
+#include "core/base/thread_pool.h"
 #include "core/synthetic/random_fill.h"
 #include "viewer/gl/gl.h"
 
 #include <cubewright/cubewright.h>
 
 #include <math.h>
-#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -79,23 +81,31 @@ static bool parse(int count, char **args, settings *s)
     return good && s->size >= 2 && s->size <= 4096 && s->runs >= 1 && s->runs <= MAX_RUNS;
 }
 
+typedef struct filling {
+    const settings *s;
+    char *voxels;
+} filling;
+
+static void fill_slice(void *context, size_t k)
+{
+    const filling *f = context;
+    const size_t n = f->s->size;
+    const double w = 2 * 3.14159265358979323846 * f->s->periods / (double)n;
+    for (size_t at = k * n * n; at < (k + 1) * n * n; at++) {
+        const double x = w * (double)(at % n), y = w * (double)(at / n % n), z = w * (double)k;
+        const double value = sin(x) * cos(y) + sin(y) * cos(z) + sin(z) * cos(x);
+        double low, high;
+        const bool whole = cwi_fill_range(f->s->type, &low, &high);
+        cwi_fill(f->s->type, f->voxels, at,
+                 whole ? low + (value + 1.5) / 3 * (high - low) : value);
+    }
+}
+
 /* Fills a volume with a gyroid of some periods, 0 to 1 around the surface at a half. */
 static void fill_periods(const settings *s, cw_volume *v)
 {
-    const size_t n = s->size;
-    char *voxels = cw_volume_voxels(v);
-#pragma omp parallel for
-    for (size_t k = 0; k < n; k++)
-        for (size_t at = k * n * n; at < (k + 1) * n * n; at++) {
-            const double w = 2 * 3.14159265358979323846 * s->periods / (double)n;
-            const double x = w * (double)(at % n), y = w * (double)(at / n % n),
-                         z = w * (double)k;
-            const double value = sin(x) * cos(y) + sin(y) * cos(z) + sin(z) * cos(x);
-            double low, high;
-            const bool whole = cwi_fill_range(s->type, &low, &high);
-            cwi_fill(s->type, voxels, at,
-                     whole ? low + (value + 1.5) / 3 * (high - low) : value);
-        }
+    filling f = {s, cw_volume_voxels(v)};
+    cwi_do_layers(s->size, 8 * s->size * s->size, 0, fill_slice, &f);
 }
 
 static cw_status make_volume(const settings *s, cw_volume *v, double range[2], cw_error *err)
@@ -151,14 +161,14 @@ static cw_status time_gpu(const settings *s, const cw_volume *v, const double ra
         return st;
     cw_live_surface live = {.volume = v, .isovalue = range[0], .on_software = true};
     cwi_live_times t;
-    const double start = omp_get_wtime();
+    const double start = cwi_now_s();
     st = f->extract(gl, &live, NULL, &t, size, NULL, err); /* uploads and compiles */
-    const double first = 1000 * (omp_get_wtime() - start);
+    const double first = 1000 * (cwi_now_s() - start);
     for (int n = 0; n < s->runs && st == CW_OK; n++) {
         live.isovalue = isovalue_of(s, range, n);
-        const double before = omp_get_wtime();
+        const double before = cwi_now_s();
         st = f->extract(gl, &live, NULL, &t, size, NULL, err);
-        parts[4][n] = 1000 * (omp_get_wtime() - before);
+        parts[4][n] = 1000 * (cwi_now_s() - before);
         parts[0][n] = t.classify_ms;
         parts[1][n] = t.scan_ms;
         parts[2][n] = t.emit_ms;
@@ -185,14 +195,14 @@ static cw_status time_cpu(const settings *s, const cw_volume *v, const double ra
     cw_status st = cw_extractor_new(v, &e, err);
     for (int n = -1; n < s->runs && st == CW_OK; n++) {
         const cw_extract_desc desc = {.isovalue = isovalue_of(s, range, n < 0 ? 0 : n)};
-        const double before = omp_get_wtime();
+        const double before = cwi_now_s();
         st = cw_extractor_extract(e, &desc, &mesh, NULL, err);
-        times[n < 0 ? 0 : n] = 1000 * (omp_get_wtime() - before);
+        times[n < 0 ? 0 : n] = 1000 * (cwi_now_s() - before);
         cw_extractor_recycle(e, &mesh);
     }
     cw_extractor_free(e);
     if (st == CW_OK)
-        printf("CPU, %d threads %.3f ms\n", omp_get_max_threads(), median(times, s->runs));
+        printf("CPU, %d threads %.3f ms\n", cwi_threads(0), median(times, s->runs));
     return st;
 }
 

@@ -19,8 +19,7 @@
  * the diagonal of the input's box. `_to_ours` and `_to_meshopt` are ratios to those programs in
  * the same case: above 1 it is slower, or farther from the input. 0: not known.
  *
- * Every step runs in a process of its own, for the memory's sake. This one only waits for them:
- * OpenMP's threads do not survive a fork, so it must never start any. */
+ * Every step runs in a process of its own, for the memory's sake. This one only waits for them. */
 #define _GNU_SOURCE /* memfd_create */
 #include <cubewright/cubewright.h>
 

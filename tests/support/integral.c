@@ -4,6 +4,7 @@
 
 #include "viewer/scene/frame_setup.h"
 
+#include "core/base/parallel.h"
 #include "core/geometry/affine.h"
 
 #include <math.h>
@@ -86,6 +87,26 @@ static void along(const cwi_frame *f, const double origin[3], const double direc
     }
 }
 
+typedef struct drawing {
+    const cwi_frame *f;
+    double step_vox;
+    cw_picture picture;
+} drawing;
+
+static void draw_row(void *context, size_t y)
+{
+    const drawing *d = context;
+    for (size_t x = 0; x < d->picture.width; x++) {
+        double origin[3], direction[3], intervals[2][2], sum[4] = {0};
+        cwi_frame_ray(d->f, (double)x + 0.5, (double)y + 0.5, origin, direction);
+        const int count = cwi_frame_clip(d->f, origin, direction, intervals);
+        for (int n = 0; n < count; n++)
+            along(d->f, origin, direction, intervals[n], d->step_vox, sum);
+        for (size_t c = 0; c < 4; c++)
+            d->picture.pixels[4 * (y * d->picture.width + x) + c] = (float)sum[c];
+    }
+}
+
 cw_picture test_integral(const cw_scene *scene, double step_vox)
 {
     cw_error err = {0};
@@ -94,16 +115,7 @@ cw_picture test_integral(const cw_scene *scene, double step_vox)
     assert_ok(cwi_frame_init(&f, scene, &err), err);
     assert_int_equal(f.volume.type, CW_F32);
     assert_ok(cw_picture_alloc(&picture, f.scene.width, f.scene.height, &err), err);
-#pragma omp parallel for schedule(dynamic)
-    for (size_t p = 0; p < picture.width * picture.height; p++) {
-        double origin[3], direction[3], intervals[2][2], sum[4] = {0};
-        cwi_frame_ray(&f, (double)(p % picture.width) + 0.5, (double)(p / picture.width) + 0.5,
-                      origin, direction);
-        const int count = cwi_frame_clip(&f, origin, direction, intervals);
-        for (int n = 0; n < count; n++)
-            along(&f, origin, direction, intervals[n], step_vox, sum);
-        for (int c = 0; c < 4; c++)
-            picture.pixels[4 * p + (size_t)c] = (float)sum[c];
-    }
+    drawing d = {&f, step_vox, picture};
+    cwi_do_layers(picture.height, picture.width << 20, 0, draw_row, &d);
     return picture;
 }

@@ -311,10 +311,8 @@ static void draw_row(void *context, size_t y)
             work->is_even ? cwi_intensity_ray(work->frame, work->ranges, at[0], at[1], depth)
                           : cwi_intensity_spans(&work->field, &spans, at[0], at[1], depth);
         double color[3], opacity;
-        if (spans.is_starved) {
-#pragma omp atomic write
-            work->is_starved = true;
-        }
+        if (spans.is_starved)
+            cwi_set_flag(&work->is_starved);
         if (isnan(value))
             continue;
         cw_transfer_at(&work->frame->transfer, value, color, &opacity);

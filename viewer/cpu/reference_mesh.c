@@ -9,11 +9,12 @@
 #include <cubewright/render.h>
 
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/base/thread_pool.h"
 #include "core/geometry/vec3.h"
 
 #include <math.h>
-#include <omp.h>
 #include <stdatomic.h>
 #include <string.h>
 
@@ -390,55 +391,62 @@ static void shade_band(const scene *s, size_t first_row, size_t row_count, const
     }
 }
 
+enum { CHUNK = 1 << 14, WORK = 8 }; /* WORK: of a vertex, in samples that are read */
+
+static void project_chunk(void *context, size_t chunk)
+{
+    const scene *s = context;
+    const size_t end = (chunk + 1) * CHUNK, count = s->mesh->vertex_count;
+    for (size_t v = chunk * CHUNK; v < (end < count ? end : count); v++)
+        s->points[v] = project_vertex(s, v);
+}
+
+static void span_chunk(void *context, size_t chunk)
+{
+    const scene *s = context;
+    const size_t end = (chunk + 1) * CHUNK, count = s->mesh->triangle_count;
+    for (size_t t = chunk * CHUNK; t < (end < count ? end : count); t++)
+        s->spans[t] = rows_of(s, t);
+}
+
 static void project_all(scene *s)
 {
-    const size_t vertices = s->mesh->vertex_count, triangles = s->mesh->triangle_count;
-#pragma omp parallel num_threads(s->d->threads)
-    {
-#pragma omp for
-        for (size_t v = 0; v < vertices; v++)
-            s->points[v] = project_vertex(s, v);
-#pragma omp for
-        for (size_t t = 0; t < triangles; t++)
-            s->spans[t] = rows_of(s, t);
-    }
+    cwi_do_layers((s->mesh->vertex_count + CHUNK - 1) / CHUNK, WORK * CHUNK, s->d->threads,
+                  project_chunk, s);
+    cwi_do_layers((s->mesh->triangle_count + CHUNK - 1) / CHUNK, WORK * CHUNK, s->d->threads,
+                  span_chunk, s);
 }
 
-static void draw_one_band(const scene *s, int band, hit *hits, cw_image *image)
+/* A picture that is drawn in bands. */
+typedef struct banding {
+    const scene *s;
+    hit *hits;        /* of each thread */
+    size_t band_hits; /* of one */
+    cw_image *image;
+} banding;
+
+static void draw_one_band(void *context, size_t band)
 {
-    const size_t first = (size_t)band * BAND_ROWS;
-    const size_t rows = image->height - first < BAND_ROWS ? image->height - first : BAND_ROWS;
+    const banding *b = context;
+    const scene *s = b->s;
+    hit *hits = b->hits + (size_t)cwi_thread_number() * b->band_hits;
+    const size_t first = band * BAND_ROWS, left = b->image->height - first;
+    const size_t rows = left < BAND_ROWS ? left : BAND_ROWS;
     const int n = s->d->samples;
     draw_band(s, (int)first * n, (int)(first + rows) * n - 1, hits);
-    for (size_t i = 0; i < rows * image->width && s->d->depth_mm; i++)
-        s->d->depth_mm[first * image->width + i] = hits[i].z;
-    shade_band(s, first, rows, hits, image);
+    for (size_t i = 0; i < rows * b->image->width && s->d->depth_mm; i++)
+        s->d->depth_mm[first * b->image->width + i] = hits[i].z;
+    shade_band(s, first, rows, hits, b->image);
 }
 
-/* Draws all bands. Only the calling thread reports progress; when it is asked to stop, other
- * bands are left out. It may get no band while the others work, so it reports once more at the
- * end. */
 static cw_status draw_bands(const scene *s, hit *hits, size_t band_hits, cw_image *image,
                             cw_error *err)
 {
-    const cw_progress *progress = &s->d->progress;
-    const int count = (int)((image->height + BAND_ROWS - 1) / BAND_ROWS);
-    cw_status st = CW_OK;
-    atomic_bool stop = false;
-    atomic_int done = 0;
-#pragma omp parallel for schedule(dynamic) num_threads(s->d->threads)
-    for (int band = 0; band < count; band++) {
-        const int thread = omp_get_thread_num();
-        if (thread == 0 && !atomic_load(&stop)) {
-            st = cwi_progress(progress, "drawing", atomic_load(&done) / (double)count, err);
-            atomic_store(&stop, st != CW_OK);
-        }
-        if (atomic_load(&stop))
-            continue;
-        draw_one_band(s, band, hits + (size_t)thread * band_hits, image);
-        atomic_fetch_add(&done, 1);
-    }
-    return st == CW_OK ? cwi_progress(progress, "drawing", 1, err) : st;
+    banding b = {s, hits, band_hits, image};
+    cw_status st =
+        cwi_each_layer((image->height + BAND_ROWS - 1) / BAND_ROWS, band_hits, s->d->threads,
+                       &s->d->progress, "drawing", draw_one_band, &b, err);
+    return st == CW_OK ? cwi_progress(&s->d->progress, "drawing", 1, err) : st;
 }
 
 static cw_status check_sizes(const cw_render_mesh_desc *d, cw_error *err)

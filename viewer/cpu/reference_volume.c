@@ -362,10 +362,8 @@ static void draw_row(void *context, size_t y)
         work->errors[y] = fmax(work->errors[y], error);
         for (size_t c = 0; c < 4; c++)
             work->picture->pixels[4 * (y * width + x) + c] = (float)out[c];
-        if (spans.is_starved) {
-#pragma omp atomic write
-            work->is_starved = true;
-        }
+        if (spans.is_starved)
+            cwi_set_flag(&work->is_starved);
     }
     cwi_spans_free(&spans);
 }

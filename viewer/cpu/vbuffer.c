@@ -536,10 +536,8 @@ static void draw_row(void *context, size_t y)
     vbuffer *b = context;
     cwi_spans spans = {0};
     for (size_t x = 0; x < b->picture->width; x++)
-        if (!draw_pixel(b, &spans, x, y)) {
-#pragma omp atomic write
-            b->is_starved = true;
-        }
+        if (!draw_pixel(b, &spans, x, y))
+            cwi_set_flag(&b->is_starved);
     cwi_spans_free(&spans);
 }
 

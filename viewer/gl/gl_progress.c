@@ -3,9 +3,8 @@
  * order. */
 #include "viewer/gl/gl_internal.h"
 
+#include "core/base/clock.h"
 #include "core/base/status.h"
-
-#include <omp.h>
 
 /* Minimum and maximum seconds between two reports. */
 static const double soon = 0.005, late = 0.012;
@@ -21,7 +20,7 @@ static bool ask_caller(void *user, const char *step, double done)
     cwi_gl_leave(gl);
     const bool goes_on = p->report(p->user, step, done);
     gl->watch.is_astray = !cwi_gl_enter(gl);
-    gl->watch.last = omp_get_wtime();
+    gl->watch.last = cwi_now_s();
     return goes_on && !gl->watch.is_astray;
 }
 
@@ -30,7 +29,7 @@ void cwi_gl_start_watch(cwi_gl *gl)
     gl->watch = (cwi_gl_watch){.rows = FIRST_ROWS,
                                .layer_rows = FIRST_ROWS,
                                .triangles = FIRST_TRIANGLES,
-                               .last = omp_get_wtime(),
+                               .last = cwi_now_s(),
                                .to = 1};
     if (gl->frame->scene.progress.report)
         gl->watch.progress = (cw_progress){ask_caller, gl};
@@ -48,7 +47,7 @@ cw_status cwi_gl_report(cwi_gl *gl, const char *step, double done, cw_error *err
 
 cw_status cwi_gl_report_soon(cwi_gl *gl, const char *step, double done, cw_error *err)
 {
-    return is_watched(gl) && omp_get_wtime() - gl->watch.last > soon
+    return is_watched(gl) && cwi_now_s() - gl->watch.last > soon
                ? cwi_gl_report(gl, step, done, err)
                : CW_OK;
 }
@@ -71,7 +70,7 @@ static cw_status report_share(cwi_gl *gl, size_t n, size_t count, cw_error *err)
 static size_t adapt_size(size_t drawn, double since, size_t least, size_t most)
 {
     glFinish();
-    const double seconds = omp_get_wtime() - since;
+    const double seconds = cwi_now_s() - since;
     const size_t next = seconds < soon ? 2 * drawn : seconds > late ? drawn / 2 : drawn;
     return next < least ? least : next > most ? most : next;
 }
@@ -85,7 +84,7 @@ static cw_status draw_bands(cwi_gl *gl, void (*draw)(void *), void *context, siz
     cw_status st = CW_OK;
     glEnable(GL_SCISSOR_TEST);
     for (size_t y = 0; y < height && st == CW_OK;) {
-        const double start = omp_get_wtime();
+        const double start = cwi_now_s();
         glScissor(0, (GLint)y, gl->target.width, (GLsizei)*rows);
         draw(context);
         y += *rows;
@@ -135,7 +134,7 @@ cw_status cwi_gl_draw_triangles(cwi_gl *gl, size_t count, bool indexed, cw_error
         draw_range(0, count, indexed);
     for (size_t n = 0; is_watched(gl) && n < count && st == CW_OK;) {
         const size_t wanted = gl->watch.triangles, left = count - n;
-        const double start = omp_get_wtime();
+        const double start = cwi_now_s();
         draw_range(n, wanted < left ? wanted : left, indexed);
         n += wanted;
         gl->watch.triangles = adapt_size(wanted, start, 64, (size_t)1 << 20);

@@ -3,6 +3,7 @@
 #include "viewer/scene/voxel_rows.h"
 
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/geometry/affine.h"
 #include "core/volume/volume.h"
@@ -98,16 +99,25 @@ static void put_row(const cw_volume *v, const cwi_gl_texels *kind, const char *f
     }
 }
 
-static void put_layers(const cw_volume *v, const cwi_gl_texels *kind, const cwi_gl_brick *b,
-                       size_t from, size_t count, char *to)
+/* Layers of a brick that are converted for an upload. */
+typedef struct layer_copy {
+    const cw_volume *v;
+    const cwi_gl_texels *kind;
+    const cwi_gl_brick *brick;
+    size_t from; /* the first layer, counted in the brick */
+    char *to;
+} layer_copy;
+
+static void put_layer(void *context, size_t k)
 {
-    const size_t row = b->count[0] * kind->size;
-#pragma omp parallel for collapse(2)
-    for (size_t k = 0; k < count; k++)
-        for (size_t j = 0; j < b->count[1]; j++)
-            put_row(v, kind,
-                    cwi_voxel_address(v, b->first[0], b->first[1] + j, b->first[2] + from + k),
-                    b->count[0], to + (k * b->count[1] + j) * row);
+    const layer_copy *c = context;
+    const cwi_gl_brick *b = c->brick;
+    const size_t row = b->count[0] * c->kind->size;
+    for (size_t j = 0; j < b->count[1]; j++)
+        put_row(
+            c->v, c->kind,
+            cwi_voxel_address(c->v, b->first[0], b->first[1] + j, b->first[2] + c->from + k),
+            b->count[0], c->to + (k * b->count[1] + j) * row);
 }
 
 static size_t layers_at_once(size_t layer_bytes, size_t layers)
@@ -158,8 +168,10 @@ static cw_status upload_brick(cwi_gl *gl, const cwi_gl_texels *kind, const cwi_g
     glTexImage3D(GL_TEXTURE_3D, 0, (GLint)kind->inner, w, h, d, 0, GL_RED, kind->type, NULL);
     for (size_t k = 0; k < b->count[2] && st == CW_OK; k += step) {
         const size_t n = b->count[2] - k < step ? b->count[2] - k : step;
+        layer_copy copy = {v, kind, b, k, chunk};
         if (!as_is)
-            put_layers(v, kind, b, k, n, chunk);
+            cwi_do_layers(n, b->count[0] * b->count[1], gl->frame->scene.threads, put_layer,
+                          &copy);
         glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, (GLint)k, w, h, (GLsizei)n, GL_RED, kind->type,
                         as_is ? cwi_voxel_address(v, 0, 0, b->first[2] + k) : chunk);
         st = cwi_gl_report_soon(gl, "uploading", (double)(k + n) / (double)b->count[2], err);
@@ -402,25 +414,28 @@ static void put_gradient_row(const cw_volume *v, const cwi_gl_brick *b, size_t j
     }
 }
 
-/* Computes layers of a brick; returns false when there is no memory for a thread's rows. */
-static bool put_gradients(const cwi_frame *f, const cwi_gl_brick *b, double scale, size_t from,
-                          size_t count, uint16_t (*out)[4])
+/* Layers of a brick whose gradients are computed for an upload. */
+typedef struct gradient_copy {
+    const cwi_frame *frame;
+    const cwi_gl_brick *brick;
+    float scale;
+    size_t from; /* the first layer, counted in the brick */
+    uint16_t (*to)[4];
+    bool is_starved;
+} gradient_copy;
+
+static void put_gradient_layer(void *context, size_t k)
 {
-    const cw_volume *v = &f->gradient_volume;
-    bool failed = false;
-#pragma omp parallel reduction(|| : failed)
-    {
-        float *rows = cwi_alloc_array(v->dim[0], 5 * sizeof *rows);
-        failed = !rows;
-#pragma omp for
-        for (size_t n = 0; n < count * b->count[1]; n++)
-            if (rows)
-                put_gradient_row(v, b, b->first[1] + n % b->count[1],
-                                 b->first[2] + from + n / b->count[1], f->shadows, (float)scale,
-                                 rows, out + n * b->count[0]);
-        cwi_free(rows);
-    }
-    return !failed;
+    gradient_copy *c = context;
+    const cwi_gl_brick *b = c->brick;
+    const cw_volume *v = &c->frame->gradient_volume;
+    float *rows = cwi_alloc_array(v->dim[0], 5 * sizeof *rows);
+    if (!rows)
+        cwi_set_flag(&c->is_starved);
+    for (size_t j = 0; j < b->count[1] && rows; j++)
+        put_gradient_row(v, b, b->first[1] + j, b->first[2] + c->from + k, c->frame->shadows,
+                         c->scale, rows, c->to + (k * b->count[1] + j) * b->count[0]);
+    cwi_free(rows);
 }
 
 static cw_status upload_gradients(cwi_gl *gl, cwi_gl_brick *b, cw_error *err)
@@ -441,7 +456,11 @@ static cw_status upload_gradients(cwi_gl *gl, cwi_gl_brick *b, cw_error *err)
                  GL_HALF_FLOAT, NULL);
     for (size_t k = 0; k < b->count[2] && st == CW_OK; k += step) {
         const size_t n = b->count[2] - k < step ? b->count[2] - k : step;
-        if (!put_gradients(gl->frame, b, scale, k, n, chunk))
+        gradient_copy copy = {
+            .frame = gl->frame, .brick = b, .scale = (float)scale, .from = k, .to = chunk};
+        cwi_do_layers(n, b->count[0] * b->count[1], gl->frame->scene.threads,
+                      put_gradient_layer, &copy);
+        if (copy.is_starved)
             st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for gradients");
         else
             glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, (GLint)k, w, h, (GLsizei)n, GL_RGBA,

@@ -1,9 +1,9 @@
 /* Compiles the compute shaders of a live surface. */
 #include "viewer/live_surface/live_internal.h"
 
+#include "core/base/clock.h"
 #include "core/base/status.h"
 
-#include <omp.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -111,11 +111,11 @@ static bool is_complete(GLuint program)
 
 cw_status cwi_live_finish_programs(cwi_live *live, bool waits, bool *ready, cw_error *err)
 {
-    const double start = omp_get_wtime();
+    const double start = cwi_now_s();
     cw_status st = CW_OK;
     while (live->finished < CWI_LIVE_PASSES && st == CW_OK) {
         const GLuint program = live->programs[live->finished];
-        if (!waits && (omp_get_wtime() - start > SOON_S || !is_complete(program)))
+        if (!waits && (cwi_now_s() - start > SOON_S || !is_complete(program)))
             break;
         st = finish_program(program, (cwi_live_pass)live->finished, err);
         live->finished += st == CW_OK;

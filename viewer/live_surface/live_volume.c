@@ -2,6 +2,7 @@
 #include "viewer/live_surface/live_internal.h"
 
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 
@@ -33,19 +34,31 @@ static bool texture_fits(texels of, const size_t dim[3])
     return got != 0;
 }
 
+typedef struct copying {
+    const cw_volume *v;
+    size_t first;
+    char *to;
+} copying;
+
+static void copy_layer(void *context, size_t k)
+{
+    const copying *c = context;
+    const cw_volume *v = c->v;
+    const size_t size = cw_type_size(v->type), row = v->dim[0] * size;
+    for (size_t j = 0; j < v->dim[1]; j++) {
+        const char *from = cwi_voxel_address(v, 0, j, c->first + k);
+        char *out = c->to + (k * v->dim[1] + j) * row;
+        if (v->stride[0] == (ptrdiff_t)size)
+            memcpy(out, from, row);
+        for (size_t i = 0; i < v->dim[0] && v->stride[0] != (ptrdiff_t)size; i++)
+            memcpy(out + i * size, from + (ptrdiff_t)i * v->stride[0], size);
+    }
+}
+
 static void copy_layers(const cw_volume *v, size_t first, size_t count, char *to)
 {
-    const size_t size = cw_type_size(v->type), row = v->dim[0] * size;
-#pragma omp parallel for collapse(2)
-    for (size_t k = 0; k < count; k++)
-        for (size_t j = 0; j < v->dim[1]; j++) {
-            const char *from = cwi_voxel_address(v, 0, j, first + k);
-            char *out = to + (k * v->dim[1] + j) * row;
-            if (v->stride[0] == (ptrdiff_t)size)
-                memcpy(out, from, row);
-            for (size_t i = 0; i < v->dim[0] && v->stride[0] != (ptrdiff_t)size; i++)
-                memcpy(out + i * size, from + (ptrdiff_t)i * v->stride[0], size);
-        }
+    copying c = {v, first, to};
+    cwi_do_layers(count, v->dim[0] * v->dim[1], 0, copy_layer, &c);
 }
 
 static cw_status upload_layers(const cw_volume *v, texels of, cw_error *err)

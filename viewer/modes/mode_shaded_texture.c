@@ -7,6 +7,7 @@
 #include "viewer/scene/cell_lattice.h"
 
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/geometry/affine.h"
 #include "core/geometry/vec3.h"
@@ -200,16 +201,25 @@ static void put_normal(const layer_job *job, const size_t at[3], uint16_t *out)
                                   sqrt(fmin(sqrt(cwi_dot(world, world)) / job->longest, 1)));
 }
 
-static void put_layer(const cwi_gl *gl, const layer_job *job, const cwi_gl_brick *b, size_t k,
-                      size_t channels, uint16_t *out)
+/* A layer of a brick whose normals are put. */
+typedef struct layer_copy {
+    const layer_job *job;
+    const cwi_gl_brick *brick;
+    size_t k, channels;
+    uint16_t *to;
+} layer_copy;
+
+static void put_normal_row(void *context, size_t j)
 {
-#pragma omp parallel for num_threads(cwi_threads(gl->frame->scene.threads))
-    for (size_t j = 0; j < b->count[1]; j++)
-        for (size_t i = 0; i < b->count[0]; i++) {
-            const size_t at[3] = {b->first[0] + i, b->first[1] + j, b->first[2] + k};
-            put_normal(job, at, out + channels * (j * b->count[0] + i));
-        }
+    const layer_copy *c = context;
+    const cwi_gl_brick *b = c->brick;
+    for (size_t i = 0; i < b->count[0]; i++) {
+        const size_t at[3] = {b->first[0] + i, b->first[1] + j, b->first[2] + c->k};
+        put_normal(c->job, at, c->to + c->channels * (j * b->count[0] + i));
+    }
 }
+
+enum { WORK = 16 }; /* of a voxel, in samples that are read */
 
 static cw_status upload_normals(cwi_gl *gl, shaded_state *t, size_t brick, cw_error *err)
 {
@@ -227,7 +237,9 @@ static cw_status upload_normals(cwi_gl *gl, shaded_state *t, size_t brick, cw_er
                  GL_UNSIGNED_SHORT, NULL);
     cw_status st = CW_OK;
     for (GLint k = 0; k < d && st == CW_OK; k++) {
-        put_layer(gl, &job, b, (size_t)k, channels, layer);
+        layer_copy copy = {&job, b, (size_t)k, channels, layer};
+        cwi_do_layers(b->count[1], WORK * b->count[0], gl->frame->scene.threads, put_normal_row,
+                      &copy);
         glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, k, w, h, 1, format, GL_UNSIGNED_SHORT, layer);
         st = cwi_gl_report_soon(gl, "uploading", (double)k / (double)d, err);
     }

@@ -3,6 +3,7 @@
 #include "viewer/modes/slab_textures.h"
 
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 
@@ -37,6 +38,8 @@ static void drop_texture_mode(void *state)
 
 /* Computes emission and extinction per unit. These are linear in the amount of a material, and
  * so may be interpolated. Without a value both are 0. */
+enum { WORK = 8 }; /* of a voxel, in samples that are read */
+
 static void classify_value(const cwi_table *t, double value, float out[4])
 {
     memset(out, 0, 4 * sizeof *out);
@@ -60,14 +63,22 @@ static double value_of(const cw_volume *v, const cwi_gl_brick *b, size_t i, size
     return v->has_nodata && x == v->nodata ? (double)NAN : v->slope * x + v->intercept;
 }
 
-static void put_layer(const cwi_gl *gl, const cwi_gl_brick *b, size_t k, float (*out)[4])
+/* A layer of a brick that is classified for an upload. */
+typedef struct layer_copy {
+    const cwi_gl *gl;
+    const cwi_gl_brick *brick;
+    size_t k; /* the layer */
+    float (*to)[4];
+} layer_copy;
+
+static void classify_row(void *context, size_t j)
 {
-    const cw_volume *v = &gl->frame->volume;
-#pragma omp parallel for num_threads(cwi_threads(gl->frame->scene.threads))
-    for (size_t j = 0; j < b->count[1]; j++)
-        for (size_t i = 0; i < b->count[0]; i++)
-            classify_value(&gl->transfer.table, value_of(v, b, i, j, k),
-                           out[j * b->count[0] + i]);
+    const layer_copy *c = context;
+    const size_t count = c->brick->count[0];
+    for (size_t i = 0; i < count; i++)
+        classify_value(&c->gl->transfer.table,
+                       value_of(&c->gl->frame->volume, c->brick, i, j, c->k),
+                       c->to[j * count + i]);
 }
 
 /* Uploads classified voxels. Half precision is relative: enough for colours that add up,
@@ -82,7 +93,9 @@ static cw_status upload_classes(cwi_gl *gl, const cwi_gl_brick *b, GLuint *name,
     glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA16F, w, h, d, 0, GL_RGBA, GL_FLOAT, NULL);
     cw_status st = CW_OK;
     for (GLint k = 0; k < d && st == CW_OK; k++) {
-        put_layer(gl, b, (size_t)k, layer);
+        layer_copy copy = {gl, b, (size_t)k, layer};
+        cwi_do_layers(b->count[1], WORK * b->count[0], gl->frame->scene.threads, classify_row,
+                      &copy);
         glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, k, w, h, 1, GL_RGBA, GL_FLOAT, layer);
         st = cwi_gl_report_soon(gl, "uploading", (double)k / (double)d, err);
     }

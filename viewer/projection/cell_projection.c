@@ -212,8 +212,7 @@ static void draw_tile(void *context, size_t n)
     projection *p = context;
     workspace *w = cwi_alloc_zeroed(1, sizeof *w);
     if (!w) {
-#pragma omp atomic write
-        p->has_failed = true;
+        cwi_set_flag(&p->has_failed);
         return;
     }
     start_tile(p, n, &w->tile);

@@ -357,10 +357,8 @@ static void draw_band(void *context, size_t number)
     b.last = cwi_alloc_array(b.rows * p->frame->scene.width, sizeof *b.last);
     if (b.last)
         fill_band(&b, number);
-    if (!b.last || b.is_starved) {
-#pragma omp atomic write
-        p->is_starved = true;
-    }
+    if (!b.last || b.is_starved)
+        cwi_set_flag(&p->is_starved);
     cwi_free(b.last);
     cwi_free(b.all);
     cwi_free(b.sorted);

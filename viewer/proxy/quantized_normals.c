@@ -3,6 +3,7 @@
 #include "viewer/proxy/quantized_normals.h"
 
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
 
@@ -106,6 +107,20 @@ static size_t put_candidates(const cwi_directions *d, size_t cell, uint16_t *to)
     return count;
 }
 
+enum { WORK = 4 }; /* of a direction, in samples */
+
+static void count_candidates(void *context, size_t cell)
+{
+    const cwi_directions *d = context;
+    d->first[cell + 1] = (uint32_t)put_candidates(d, cell, NULL);
+}
+
+static void list_candidates(void *context, size_t cell)
+{
+    const cwi_directions *d = context;
+    put_candidates(d, cell, d->candidates + d->first[cell]);
+}
+
 /* Makes the map, with about as many cells as directions. */
 static cw_status make_map(cwi_directions *d, cw_error *err)
 {
@@ -113,17 +128,13 @@ static cw_status make_map(cwi_directions *d, cw_error *err)
     d->first = cwi_alloc_zeroed(cells + 1, sizeof *d->first);
     if (!d->first)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for directions");
-#pragma omp parallel for schedule(dynamic, 16)
-    for (size_t n = 0; n < cells; n++)
-        d->first[n + 1] = (uint32_t)put_candidates(d, n, NULL);
+    cwi_do_layers(cells, WORK * d->count, 0, count_candidates, d);
     for (size_t n = 0; n < cells; n++)
         d->first[n + 1] += d->first[n];
     d->candidates = cwi_alloc_array(d->first[cells], sizeof *d->candidates);
     if (!d->candidates)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for directions");
-#pragma omp parallel for schedule(dynamic, 16)
-    for (size_t n = 0; n < cells; n++)
-        put_candidates(d, n, d->candidates + d->first[n]);
+    cwi_do_layers(cells, WORK * d->count, 0, list_candidates, d);
     return CW_OK;
 }
 

@@ -138,12 +138,10 @@ static void scan_layer(void *context, size_t k)
     const size_t *dim = work->ranges->dim;
     float *buffer = cwi_alloc_array(work->v->dim[0], 5 * sizeof *buffer);
     if (!buffer) {
-#pragma omp atomic write
-        work->has_failed = true;
+        cwi_set_flag(&work->has_failed);
     } else if (!scan_blocks(work->v, dim, k, buffer,
                             work->ranges->blocks + k * dim[1] * dim[0])) {
-#pragma omp atomic write
-        work->ranges->has_gaps = true;
+        cwi_set_flag(&work->ranges->has_gaps);
     }
     cwi_free(buffer);
 }

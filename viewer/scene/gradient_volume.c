@@ -75,8 +75,7 @@ static void smooth_plane(void *context, size_t n)
     const size_t *dim = work->dim, layer = dim[0] * dim[1], count = dim[work->axis];
     float *scratch = cwi_alloc_array((count + 2) * (work->axis ? dim[0] : 1), sizeof *scratch);
     if (!scratch) {
-#pragma omp atomic write
-        work->is_starved = true;
+        cwi_set_flag(&work->is_starved);
         return;
     }
     if (work->axis == 2)

@@ -125,8 +125,7 @@ static void fill_layer(void *context, size_t k)
     const size_t n = f->v->dim[0];
     float *buffer = cwi_alloc_array(n, (SUM_ROWS + VOXEL_ROWS) * sizeof *buffer);
     if (!buffer) {
-#pragma omp atomic write
-        f->has_failed = true;
+        cwi_set_flag(&f->has_failed);
         return;
     }
     float *rows = buffer + VOXEL_ROWS * n;

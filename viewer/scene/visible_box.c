@@ -35,8 +35,7 @@ static void count_layer(void *context, size_t n)
     const size_t nx = v->dim[0], ny = v->dim[1];
     float *buffer = cwi_alloc_array(nx, sizeof *buffer);
     if (!buffer) {
-#pragma omp atomic write
-        j->has_failed = true;
+        cwi_set_flag(&j->has_failed);
         return;
     }
     for (size_t y = 0; y < ny; y += j->step) {

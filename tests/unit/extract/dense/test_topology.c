@@ -1,5 +1,6 @@
 /* The extracted surface against the topology of the trilinear field
  * itself (support/truth.h). */
+#include "core/base/parallel.h"
 #include "support/support.h"
 #include "support/truth.h"
 
@@ -92,6 +93,18 @@ static void print_grid(const grid *g, const verdict *v)
                   v->outcome.manifold ? "" : ", and it is broken");
 }
 
+typedef struct judging {
+    const grid *grids;
+    truth_of truth;
+    verdict *verdicts;
+} judging;
+
+static void judge_grid(void *context, size_t n)
+{
+    const judging *j = context;
+    j->verdicts[n] = judge(&j->grids[n], j->truth);
+}
+
 /* Judges all of them. Any mesh that is no closed manifold fails, and any with a wrong
  * topology; the first of them is printed, fit to be pasted into a test. */
 static void judge_all(const grid *grids, int count, truth_of truth)
@@ -99,9 +112,8 @@ static void judge_all(const grid *grids, int count, truth_of truth)
     int decidable = 0, handles = 0, wrong = 0, broken = 0, first_wrong = -1, first_broken = -1;
     verdict *verdicts = malloc((size_t)count * sizeof *verdicts);
     assert_non_null(verdicts);
-#pragma omp parallel for schedule(dynamic)
-    for (int n = 0; n < count; n++)
-        verdicts[n] = judge(&grids[n], truth);
+    judging j = {grids, truth, verdicts};
+    cwi_do_layers((size_t)count, 1 << 20, 0, judge_grid, &j);
     for (int n = count; n-- > 0;) {
         decidable += verdicts[n].truth.decidable;
         handles += verdicts[n].truth.euler != 2 * (long)verdicts[n].truth.components;
