@@ -1,9 +1,10 @@
 #!/bin/sh
-# Does what the README says on machines that have nothing: bare Debian 12 roots in a temporary
+# Does what the README says on machines that have nothing: bare Debian 12 and 13 roots in a temporary
 # folder, with this machine's package sources and a clean copy of this tree.
 # sh tests/fresh.sh [STAGE...]
 #
 # root     the quickstart as root; its mesh, picture, report and features are looked at
+# trixie   after root: the same on Debian 13, and outputs of both have the same bytes
 # without  after root: each optional package left out by itself; the rest still builds
 # user     the quickstart as a user with sudo; what root has compiled is compiled no more
 # needed   needed packages alone: no C++, no OpenGL; mesh and picture all the same
@@ -11,7 +12,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 tree=$(pwd)
-stages=${*:-root without user needed packages}
+stages=${*:-root trixie without user needed packages}
 
 skip() { echo "fresh: skipped: $*"; exit 77; }
 [ "$(id -u)" = 0 ] || skip "only root can make a Debian root"
@@ -185,21 +186,36 @@ use_packages() {
         cc /src/tests/unit/test_api_is_c.c \$(pkg-config --cflags --libs cubewright) -o user && ./user"
 }
 
-# A root a stage, from one bare system.
+# make_bare RELEASE ROOT: a bare system of a release, with the tree; false when it cannot be had.
+make_bare() {
+    mkdir -p "$folder/sources.$1"
+    find /etc/apt -maxdepth 2 -path '*/sources.list*' \( -name '*.list' -o -name '*.sources' \) |
+        while read -r source; do
+            sed -e "s/bookworm/$1/g" -e "s/trixie/$1/g" "$source" >"$folder/sources.$1/${source##*/}"
+        done
+    mmdebstrap --quiet --variant=apt "$1" "$2" "$folder/sources.$1"/* >"$folder/said" 2>&1 || {
+        cat "$folder/said"
+        return 1
+    }
+    if [ -r /etc/ssl/certs/ca-certificates.crt ]; then
+        mkdir -p "$2/etc/ssl/certs"
+        cp /etc/ssl/certs/ca-certificates.crt "$2/etc/ssl/certs/"
+    fi
+    mkdir -p "$2/results"
+    copy_tree "$2"
+}
+
+# list_outputs ROOT: hashes of meshes and volumes, and of a picture that no OpenGL draws. What is printed
+# may name a library's version.
+list_outputs() {
+    must "the outputs" "$1" "cd /tmp && sh /src/tests/outputs.sh /src/build/release/bin >/results/outputs"
+    grep -v -e '\.txt$' -e 'render-' -e 'compare\.png$' -e 'turn-' "$1/results/outputs"
+}
+
+# A root a stage, most from one bare system.
 say "a bare Debian"
 mkdir "$folder/archives"
-sources=$(find /etc/apt -maxdepth 2 -path '*/sources.list*' \( -name '*.list' -o -name '*.sources' \))
-# shellcheck disable=SC2086
-mmdebstrap --quiet --variant=apt bookworm "$folder/bare" $sources >"$folder/said" 2>&1 || {
-    cat "$folder/said"
-    skip "mmdebstrap made no root from this machine's package sources"
-}
-if [ -r /etc/ssl/certs/ca-certificates.crt ]; then
-    mkdir -p "$folder/bare/etc/ssl/certs"
-    cp /etc/ssl/certs/ca-certificates.crt "$folder/bare/etc/ssl/certs/"
-fi
-mkdir -p "$folder/bare/results"
-copy_tree "$folder/bare"
+make_bare bookworm "$folder/bare" || skip "mmdebstrap made no root from this machine's package sources"
 
 for stage in $stages; do
     say "$stage"
@@ -215,6 +231,21 @@ for stage in $stages; do
             cd /tmp && mv /src/build /src/hidden
             /opt/cubewright/bin/cubewright convert /results/head.glb -o head.glb --compress draco -q
             mv /src/hidden /src/build"
+        ;;
+    trixie)
+        [ -d "$folder/root" ] || fail "trixie comes after root"
+        if ! make_bare trixie "$root"; then
+            say "skipped: this machine's package sources have no Debian 13"
+            continue
+        fi
+        must "the quickstart on Debian 13" "$root" "cd /results && sh /src/cli/quickstart.sh"
+        look_at_results "$root"
+        say "the outputs of Debian 12 and 13"
+        list_outputs "$folder/root" >"$folder/outputs.12"
+        list_outputs "$root" >"$folder/outputs.13"
+        [ "$(wc -l <"$folder/outputs.12")" -gt 60 ] || fail "there are but few outputs"
+        diff "$folder/outputs.12" "$folder/outputs.13" || fail "the outputs above differ between Debian 12 and 13"
+        rm -rf --one-file-system "$root"
         ;;
     without)
         [ -d "$folder/root" ] || fail "without comes after root"
