@@ -42,8 +42,9 @@ static double read_clock(void)
 /* Returns true for a process with the name of an MPI launcher or its daemon. */
 static bool is_launcher(pid_t process)
 {
-    static const char *const names[] = {"mpirun",          "mpiexec", "orterun",       "orted",
-                                        "hydra_pmi_proxy", "prted",   "mpirun.openmpi"};
+    static const char *const names[] = {"mpirun",  "mpiexec",         "orterun",
+                                        "orted",   "hydra_pmi_proxy", "prted",
+                                        "prterun", "mpirun.openmpi"};
     char path[64], name[32] = "";
     snprintf(path, sizeof path, "/proc/%d/comm", (int)process);
     const int file = open(path, O_RDONLY | O_CLOEXEC);
