@@ -51,6 +51,13 @@ for extension in nrrd nii nii.gz mha; do
     run volume-$extension make gyroid -o out/gyroid.$extension --dims 20 --type f32
     run volume-info-$extension info out/gyroid.$extension
 done
+cubewright make labels/cells -o in/labels.nrrd --dims 40 --labels 12 -q
+for extension in glb stl ply 3mf; do
+    run labels-$extension extract in/labels.nrrd --labels all -o out/labels.$extension
+done
+for codec in draco meshopt; do
+    run compress-$codec extract in/noisy.nii.gz --iso 300 -o out/$codec.glb --compress $codec
+done
 run simplify-error simplify out/gyroid.stl -o out/simple-error.stl --error 0.3mm
 run simplify-count simplify out/gyroid.stl -o out/simple-count.ply --triangles 2k --no-measure
 run simplify-ratio simplify out/noisy.ply -o out/simple-ratio.ply --ratio 0.3 --keep-border
