@@ -179,6 +179,31 @@ class Progress(Case):
         gc.collect()
         self.assertEqual(cw.memory_used(), before)
 
+    def test_a_forked_process_may_call_while_its_parent_does(self):
+        volume = cw.make("gyroid", dims=64)
+        wanted = cw.extract(volume, 0, threads=4).vertices.tobytes()
+        ended, differing = threading.Event(), []
+
+        def extract_until_the_end():
+            while not ended.is_set():
+                if cw.extract(volume, 0, threads=4).vertices.tobytes() != wanted:
+                    differing.append(True)
+
+        busy = threading.Thread(target=extract_until_the_end)
+        busy.start()
+        try:
+            for _ in range(10):
+                child = os.fork()
+                if child == 0:
+                    signal.alarm(100)  # in place of hanging for ever
+                    same = cw.extract(volume, 0, threads=4).vertices.tobytes() == wanted
+                    os._exit(0 if same else 1)
+                self.assertEqual(os.waitpid(child, 0)[1], 0)
+        finally:
+            ended.set()
+            busy.join()
+        self.assertFalse(differing)
+
     def test_a_handler_that_does_not_raise_lets_the_call_go_on(self):
         caught = []
         usual = signal.signal(signal.SIGINT, lambda number, frame: caught.append(number))
