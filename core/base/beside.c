@@ -1,8 +1,7 @@
 /* Runs two pieces of work at the same time, on the calling thread and on another one. */
-#define _POSIX_C_SOURCE 200809L /* pthread_sigmask */
 #include "core/base/beside.h"
 
-#include <signal.h>
+#include "core/base/thread_pool.h"
 
 static void *run_aside(void *context)
 {
@@ -19,18 +18,6 @@ static void tell_ended(cwi_beside *b)
     pthread_mutex_unlock(&b->lock);
 }
 
-/* Signals go to the calling thread, as if it were alone: the other one blocks them. */
-static bool start_thread(cwi_beside *b, pthread_t *thread)
-{
-    sigset_t all, before;
-    sigfillset(&all);
-    if (pthread_sigmask(SIG_SETMASK, &all, &before) != 0)
-        return false;
-    const bool started = pthread_create(thread, NULL, run_aside, b) == 0;
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    return started;
-}
-
 void cwi_beside_run(cwi_beside *b, void (*own)(void *context), void (*aside)(void *context),
                     void *context)
 {
@@ -38,7 +25,7 @@ void cwi_beside_run(cwi_beside *b, void (*own)(void *context), void (*aside)(voi
     *b = (cwi_beside){.aside = aside, .context = context};
     pthread_mutex_init(&b->lock, NULL);
     pthread_cond_init(&b->ended, NULL);
-    const bool started = start_thread(b, &thread);
+    const bool started = cwi_start_thread(&thread, run_aside, b);
     own(context);
     tell_ended(b);
     if (started)

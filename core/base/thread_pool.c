@@ -2,6 +2,9 @@
 #define _GNU_SOURCE /* sched_getaffinity */
 #include "core/base/thread_pool.h"
 
+#include "core/base/clock.h"
+
+#include <math.h>
 #include <sched.h>
 #include <signal.h>
 #include <stdatomic.h>
@@ -100,24 +103,25 @@ static void *serve_jobs(void *of)
     return NULL;
 }
 
-/* Makes a thread that nobody joins. Signals that a program handles go to its own threads. */
-static bool make_thread(cwi_thread_pool *p)
+bool cwi_start_thread(pthread_t *thread, void *(*run)(void *context), void *context)
 {
     static const int faults[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS, SIGPROF};
-    pthread_attr_t detached;
-    pthread_t thread;
     sigset_t blocked, before;
-    if (pthread_attr_init(&detached) != 0)
-        return false;
-    pthread_attr_setdetachstate(&detached, PTHREAD_CREATE_DETACHED);
     sigfillset(&blocked);
     for (size_t n = 0; n < sizeof faults / sizeof *faults; n++)
         sigdelset(&blocked, faults[n]);
-    pthread_sigmask(SIG_SETMASK, &blocked, &before);
-    const bool is_made = pthread_create(&thread, &detached, serve_jobs, p) == 0;
+    if (pthread_sigmask(SIG_SETMASK, &blocked, &before) != 0)
+        return false;
+    const bool is_started = pthread_create(thread, NULL, run, context) == 0;
     pthread_sigmask(SIG_SETMASK, &before, NULL);
-    pthread_attr_destroy(&detached);
-    return is_made;
+    return is_started;
+}
+
+/* Makes a thread that nobody joins. */
+static bool make_thread(cwi_thread_pool *p)
+{
+    pthread_t thread;
+    return cwi_start_thread(&thread, serve_jobs, p) && pthread_detach(thread) == 0;
 }
 
 /* Makes threads that were counted already; corrects the count when the system gives fewer. */
@@ -181,20 +185,14 @@ void cwi_job_close(cwi_job *job)
     if (cwi_job_is_lost(job))
         return;
     pthread_mutex_lock(&p->lock);
-    if (job->free_seats > 0)
-        unlist_job(p, job);
-    job->free_seats = 0;
+    unlist_job(p, job);
     pthread_mutex_unlock(&p->lock);
 }
 
 static struct timespec add_seconds(double seconds)
 {
-    struct timespec until;
-    clock_gettime(CLOCK_MONOTONIC, &until);
-    const double nanoseconds = (double)until.tv_nsec + 1e9 * seconds;
-    until.tv_sec += (time_t)(nanoseconds / 1e9);
-    until.tv_nsec = (long)(nanoseconds - 1e9 * (double)(time_t)(nanoseconds / 1e9));
-    return until;
+    const double at = cwi_now_s() + seconds;
+    return (struct timespec){.tv_sec = (time_t)at, .tv_nsec = (long)(1e9 * (at - floor(at)))};
 }
 
 bool cwi_job_wait(cwi_job *job, double seconds)
@@ -261,7 +259,7 @@ int cwi_try_threads(int count)
     int made = 0;
     count = count < CWI_MAX_THREADS ? count : CWI_MAX_THREADS;
     pthread_mutex_lock(&gate); /* they are there at the same time */
-    while (made < count && pthread_create(&threads[made], NULL, pass_gate, &gate) == 0)
+    while (made < count && cwi_start_thread(&threads[made], pass_gate, &gate))
         made++;
     pthread_mutex_unlock(&gate);
     for (int n = 0; n < made; n++)

@@ -59,6 +59,10 @@ int cwi_threads(int requested);
 /* Returns how many threads could be had when more were requested; 0 means always enough. */
 int cwi_granted_threads(void);
 
+/* Starts a thread that takes no signals but faults of its own: those that a program handles go to
+ * its other threads. Returns false when the system gives none. */
+bool cwi_start_thread(pthread_t *thread, void *(*run)(void *context), void *context);
+
 /* Returns how many threads beyond those there are could be made now, up to `count`. For libraries
  * that make their own, and end the process when they get none. */
 int cwi_try_threads(int count);

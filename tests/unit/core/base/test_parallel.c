@@ -1,6 +1,5 @@
 /* Loops on several threads: each layer once, on the threads that there are, whoever calls. */
 #define _GNU_SOURCE /* RLIMIT_AS */
-#include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/sandbox.h"
 #include "core/base/thread_pool.h"
@@ -63,11 +62,10 @@ typedef struct meeting {
     pthread_cond_t all_here;
     int wanted, here;
     record *inner; /* one for each layer: a loop within it */
-    pthread_t caller;
     bool changed_thread;
 } meeting;
 
-static void meet(void *context, size_t k)
+static void meet_others(void *context, size_t k)
 {
     meeting *m = context;
     const pthread_t self = pthread_self();
@@ -92,7 +90,7 @@ static void as_many_threads_work_as_were_requested(void **state)
     (void)state;
     for (int threads = 2; threads <= 16; threads *= 2) {
         meeting m = {PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, .wanted = threads};
-        cwi_do_layers((size_t)threads, SIZE, threads, meet, &m);
+        cwi_do_layers((size_t)threads, SIZE, threads, meet_others, &m);
         assert_int_equal(m.here, threads);
     }
 }
@@ -104,7 +102,7 @@ static void a_loop_within_a_loop_runs_where_it_is(void **state)
     meeting m = {PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, .wanted = 4,
                  .inner = inner};
     memset(inner, 0, sizeof inner);
-    cwi_do_layers(4, SIZE, 4, meet, &m);
+    cwi_do_layers(4, SIZE, 4, meet_others, &m);
     assert_false(m.changed_thread);
     for (int n = 0; n < 4; n++) {
         assert_true(each_was_done_once(&inner[n]));
@@ -191,7 +189,7 @@ static int loop_on_four(void)
 {
     meeting m = {PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, .wanted = 4};
     record r = {.threads = 4};
-    cwi_do_layers(4, SIZE, 4, meet, &m); /* waits for all four */
+    cwi_do_layers(4, SIZE, 4, meet_others, &m); /* waits for all four */
     cwi_do_layers(LAYERS, SIZE, 4, work_on_layer, &r);
     return each_was_done_once(&r) ? 0 : 1;
 }
