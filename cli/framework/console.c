@@ -13,6 +13,7 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/time.h>
+#include <time.h>
 #include <unistd.h>
 
 static struct {
@@ -145,6 +146,32 @@ static void draw_progress(double done, double now)
                 console.step, done, left);
 }
 
+/* Returns true after a signal. From then on the run knows of it, and nothing hurries it: it ends by
+ * itself, and removes what it made. */
+static bool hear_interrupt(void)
+{
+    if (interrupted)
+        setitimer(ITIMER_REAL, &(struct itimerval){0}, NULL);
+    return interrupted;
+}
+
+#if CW_TEST_HOOKS
+/* Waits for a signal in the step that CUBEWRIGHT_TEST_STEP names, for ever with
+ * CUBEWRIGHT_TEST_DEAF. The file of CUBEWRIGHT_TEST_STEP_FILE tells a test that the step is there. */
+static void await_signal_in(const char *step)
+{
+    const char *name = getenv("CUBEWRIGHT_TEST_STEP");
+    const char *path = getenv("CUBEWRIGHT_TEST_STEP_FILE");
+    if (interrupted || !name || !path || strcmp(name, step) != 0)
+        return;
+    FILE *file = fopen(path, "w");
+    if (file)
+        fclose(file);
+    while (!interrupted || getenv("CUBEWRIGHT_TEST_DEAF"))
+        nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
+}
+#endif
+
 /* Drawn five times a second at most, and not at all for steps that take less than that. */
 static bool report_progress(void *user, const char *step, double done)
 {
@@ -158,13 +185,16 @@ static bool report_progress(void *user, const char *step, double done)
         console.last_drawn = now;
         draw_progress(done < 0 ? 0 : done > 1 ? 1 : done, now);
     }
+#if CW_TEST_HOOKS
+    await_signal_in(step);
+#endif
     const cli_listener *l = &console.listener;
-    return !interrupted && (!l->progress || l->progress(l->user, step, done));
+    return !hear_interrupt() && (!l->progress || l->progress(l->user, step, done));
 }
 
 bool cli_interrupted(void)
 {
-    return interrupted;
+    return hear_interrupt();
 }
 
 cw_progress cli_progress(double total, const char *unit)
@@ -192,21 +222,28 @@ static void end_now(int number)
     _exit(cw_status_exit_code(CW_ERR_CANCELLED));
 }
 
+/* The time that a run has to hear of a signal. */
+static struct timeval grace = {.tv_usec = 600000};
+
 /* Steps that ask often end by themselves. Work inside a library may not ask for long: after
- * GRACE_US, or at a second signal, it is ended from outside. */
+ * some time, or at a second signal, it is ended from outside. */
 static void on_signal(int number)
 {
-    enum { GRACE_US = 600000 };
     if (interrupted)
         end_now(number);
+    setitimer(ITIMER_REAL, &(struct itimerval){.it_value = grace}, NULL);
     interrupted = 1;
-    setitimer(ITIMER_REAL, &(struct itimerval){.it_value.tv_usec = GRACE_US}, NULL);
 }
 
 void cli_catch_signals(void)
 {
     static const int ends[] = {SIGINT, SIGTERM, SIGHUP};
     struct sigaction action = {.sa_handler = on_signal};
+#if CW_TEST_HOOKS /* a slow machine needs longer */
+    const char *seconds = getenv("CUBEWRIGHT_TEST_GRACE");
+    if (seconds)
+        grace = (struct timeval){.tv_sec = atol(seconds)};
+#endif
     sigemptyset(&action.sa_mask);
     for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
         struct sigaction before;

@@ -2,11 +2,14 @@
 # Runs one case: sh run_case.sh CASE.sh BIN_FOLDER. The case runs in an empty folder with the
 # program first on PATH; $TESTS is this folder's parent. What it prints and its exit code must be
 # those of CASE.out, CASE.err and CASE.exit (nothing, nothing and 0 when there is no such file).
+# What a case interrupts has CUBEWRIGHT_TEST_GRACE seconds to hear of it, however slow the machine is.
 set -u
 case=${1%.sh}
 TESTS=$(cd "$(dirname "$0")/.." && pwd)
 PATH=$2:$PATH
-export TESTS PATH
+. "$TESTS/support/wait.sh"
+CUBEWRIGHT_TEST_GRACE=$limit_s
+export TESTS PATH CUBEWRIGHT_TEST_GRACE
 unset COLUMNS NO_COLOR
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -370,17 +370,18 @@ void cwi_ui_screen_leave(cwi_ui *ui)
         cwi_gl_context_leave(&ui->screen->context);
 }
 
+/* Hidden frames all take the same time: what is drawn, printed and double-clicked is the same every
+ * time, and on any machine. */
 double cwi_ui_screen_seconds(const cwi_ui *ui)
 {
-    return clock_seconds() - ui->screen->start;
+    const cwi_ui_screen *s = ui->screen;
+    return s->window ? clock_seconds() - s->start : (double)s->frames / 60;
 }
 
-/* Returns the frame's time. Hidden frames all take the same time: pictures of them are the same
- * every time. */
 double cwi_ui_screen_frame_time(const cwi_ui *ui)
 {
-    cwi_ui_screen *s = ui->screen;
-    return s->window ? cwi_ui_screen_seconds(ui) : (double)++s->frames / 60;
+    ui->screen->frames++;
+    return cwi_ui_screen_seconds(ui);
 }
 
 /* Finds the window's size. A minimised window has no pixels; the last size stays then. */
