@@ -1,5 +1,6 @@
 # A surface in parts: made in any order, by processes of their own, and joined to the same bytes.
 set -e
+. "$TESTS/support/wait.sh"
 cubewright make gyroid -o g.nrrd --dims 40x30x50 --type i16 --noise 0.2 --seed 3 -q
 for format in ply glb stl vtp obj 3mf; do
     cubewright extract g.nrrd --iso 100 -o whole.$format --name a --stream never -q
@@ -26,13 +27,16 @@ for w in 1 2 3; do cubewright extract g.nrrd --iso 100 --queue q --parts 7 -q & 
 wait
 cubewright extract g.nrrd --iso 100 --queue q --parts 7 -o queued.ply --name a -q
 cmp whole.ply queued.ply && echo "queue: the same"
-# killed at any time, it goes on where it was
+# killed at any time, it goes on where it was: at the start, after each part, and while it joins them
+has_parts_or_is_over() {
+    [ "$(find r -name '*.cwpart' 2>/dev/null | wc -l)" -ge "$1" ] || is_over "$2"
+}
 cubewright make gyroid -o h.nrrd --dims 120 --type i16 --noise 0.2 --seed 3 -q
 cubewright extract h.nrrd --iso 100 -o whole.ply --name a --stream never -q
 for n in 0 1 2 3 4 5 6 7 8 9; do
     cubewright extract h.nrrd --iso 100 --queue r --parts 9 -o resumed.ply --name a -q &
     worker=$!
-    sleep 0.0$n
+    wait_until has_parts_or_is_over $n $worker
     kill -KILL $worker 2>/dev/null || true
     wait $worker 2>/dev/null || true
     rm -f resumed.ply

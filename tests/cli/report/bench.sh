@@ -1,5 +1,6 @@
 # Speed against error: a row of each, the same in the table, in CSV and in JSON; peers that are
 # missing, that fail in every way, and that are there.
+. "$TESTS/support/wait.sh"
 mkdir tmp fakes none
 TMPDIR=$PWD/tmp
 export TMPDIR
@@ -88,6 +89,7 @@ sed -n 2p missing.csv | cut -d, -f1
 fake() { # fake SETTING [OPTION...], the program on the standard input
     setting=$1
     shift
+    [ $# -gt 0 ] || set -- --peer-timeout $limit_s
     cat >fakes/python3
     chmod +x fakes/python3
     PATH=$PWD/fakes:$PATH "$bench" bench --fields sphere --sizes 16 --repeat 1 --peers "$@" >table ||
@@ -96,7 +98,7 @@ fake() { # fake SETTING [OPTION...], the program on the standard input
 }
 fake vtkFlyingEdges3D --peer-timeout 1 <<'F'
 #!/bin/sh
-sleep 300
+exec sleep 100000
 F
 fake vtkFlyingEdges3D <<'F'
 #!/bin/sh
@@ -152,16 +154,18 @@ F
 cat >fakes/python3 <<F
 #!/bin/sh
 echo \$\$ >$PWD/started
-exec sleep 300
+exec sleep 100000
 F
 PATH=$PWD/fakes:$PATH "$bench" bench --fields sphere --sizes 16 --peers -q &
 child=$!
-n=0
-while [ ! -s started ] && [ $((n += 1)) -lt 200 ]; do sleep 0.1; done
+is_started_or_over() {
+    [ -s started ] || is_over $child
+}
+wait_until is_started_or_over
 kill -TERM $child
 wait $child
 echo "ended with $?"
-kill -0 "$(cat started)" 2>/dev/null && echo "its child lives"
+is_over "$(cat started)" || echo "its child lives"
 ls tmp
 
 # VTK itself, where it is: the same triangles in the same places, and ratios that are ratios.
@@ -170,8 +174,8 @@ for p in /usr/bin/python3 "$(command -v python3)"; do
     [ -n "$real" ] || { "$p" -c 'import vtkmodules, numpy' 2>/dev/null && real=$(dirname "$p"); }
 done
 if [ -n "$real" ]; then
-    PATH=$real:$PATH "$bench" bench --fields sphere --sizes 24 --repeat 1 --peers --threads 1 --csv peers.csv \
-        >table || echo "failed: $?"
+    PATH=$real:$PATH "$bench" bench --fields sphere --sizes 24 --repeat 1 --peers --peer-timeout $limit_s --threads 1 \
+        --csv peers.csv >table || echo "failed: $?"
     [ "$(value_of peers.csv 15 extraction vtkFlyingEdges3D)" = "$full" ] || grep VTK table
     theirs=$(value_of peers.csv 17 extraction vtkFlyingEdges3D)
     awk "BEGIN {x = $theirs / $linear; exit !(x > 0.99 && x < 1.01)}" || echo "VTK is off by $theirs"

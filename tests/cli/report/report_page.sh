@@ -1,6 +1,7 @@
 # What settings cost and how close they come: a page, JSON and CSV that say the same, a front that
 # nothing beats, and commands that do what they say.
-cubewright report sphere -o page.html --dims 20 --budget 60s --json facts.json --csv rows.csv -q ||
+. "$TESTS/support/wait.sh"
+cubewright report sphere -o page.html --dims 20 --budget ${limit_s}s --json facts.json --csv rows.csv -q ||
     exit 1
 
 # The page: well-formed, and by itself. Elements open and close in pairs; what scripts hold is not

@@ -1,5 +1,6 @@
 # Whatever info reads opens in the window: by name, by folder and by drop. The seeds of the fuzz
 # targets are files of every kind, small and odd; made volumes and meshes are of those we write.
+. "$TESTS/support/wait.sh"
 cubewright version --features | grep -q '^window *yes' || { echo "this build has no window" >&2; exit 77; }
 cubewright version --features | grep -q '^gl *yes' || { echo "this build has no OpenGL" >&2; exit 77; }
 cubewright make torus -o t.nrrd --dims 16 -q
@@ -39,7 +40,7 @@ for file in "$TESTS"/fuzz/corpus/fuzz_*/*; do
     case $file in
     *transfer*) ;;
     *) # not of several series, of which one has to be chosen
-        timeout 20 cubewright info "$file" -q >info 2>&1 && [ "$(grep -c '^  series' info)" -lt 2 ] && echo "$file" ;;
+        timeout $limit_s cubewright info "$file" -q >info 2>&1 && [ "$(grep -c '^  series' info)" -lt 2 ] && echo "$file" ;;
     esac
 done >odd
 drop_all <odd >said 2>why
