@@ -6,6 +6,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 PATH=$1:$PATH
 shell=$2
 python=/usr/bin/python3
+. "$here/../support/wait.sh"
 [ -x $python ] || { echo "skipped: no $python"; exit 77; }
 command -v "$shell" >/dev/null || { echo "skipped: no $shell"; exit 77; }
 folder=$(mktemp -d)
@@ -20,11 +21,11 @@ cubewright help --completion "$shell" >"$folder/share/$place" || exit 1
 cp "$folder/share/$place" "$folder/script/cubewright"
 bad=0
 cd "$folder/read" || exit 1
-timeout 100 $python "$here/shell.py" "$shell" "$folder/script/cubewright" || bad=1
+timeout $limit_s $python "$here/shell.py" "$shell" "$folder/script/cubewright" || bad=1
 cd "$folder/found" || exit 1
 if [ "$shell" = bash ] && [ ! -f /usr/share/bash-completion/bash_completion ]; then
     echo "not tried with the package bash-completion, which is absent"
 else
-    timeout 100 $python "$here/shell.py" "$shell" "$folder/share" || bad=1
+    timeout $limit_s $python "$here/shell.py" "$shell" "$folder/share" || bad=1
 fi
 exit $bad

@@ -5,7 +5,7 @@ import os
 import subprocess
 import sys
 
-from support import ROOT, Case, main
+from support import LIMIT_S, ROOT, Case, main
 
 from cubewright import _declarations as c
 from cubewright._library import lib
@@ -23,7 +23,7 @@ class Declarations(Case):
         self.made, self.probe = self.folder / "made.py", self.folder / "probe.c"
         generator = ROOT / "python" / "generate_declarations.py"
         command = [sys.executable, generator, self.made, "--cc", CC, "--probe", self.probe]
-        subprocess.run(command, check=True, timeout=120)
+        subprocess.run(command, check=True, timeout=LIMIT_S)
 
     def test_the_committed_file_is_what_the_generator_makes(self):
         committed = ROOT / "python" / "cubewright" / "_declarations.py"

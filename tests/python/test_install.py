@@ -4,7 +4,7 @@ import os
 import subprocess
 import sys
 
-from support import ROOT, Case, main
+from support import LIMIT_S, ROOT, Case, main
 
 CODE = """
 import cubewright as cw
@@ -19,7 +19,7 @@ def run_apart(code, folder, packages):
     environment = {name: value for name, value in os.environ.items() if name not in unset}
     environment["PYTHONPATH"] = str(packages)
     return subprocess.run(
-        [sys.executable, "-c", code], cwd=folder, env=environment, capture_output=True, text=True, timeout=120
+        [sys.executable, "-c", code], cwd=folder, env=environment, capture_output=True, text=True, timeout=LIMIT_S
     )
 
 
@@ -56,7 +56,7 @@ class Wheel(Case):
             self.skipTest("no venv or pip")
         python = packages / "bin" / "python"
         pip = [python, "-m", "pip", "install", "--no-index", "--quiet", ROOT / "python"]
-        subprocess.run(pip, check=True, timeout=120)
+        subprocess.run(pip, check=True, timeout=LIMIT_S)
         code = "import cubewright as cw; print(cw.__file__, len(cw.extract(cw.make('sphere'), 0).triangles))"
         environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
         ran = subprocess.run([python, "-c", code], cwd=self.folder, env=environment, capture_output=True, text=True)

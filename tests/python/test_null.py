@@ -8,7 +8,7 @@ import unittest
 from cubewright import Status
 from cubewright import _declarations as c
 from cubewright._library import lib
-from support import Case, main
+from support import LIMIT_S, Case, main
 
 # Functions without a status that need the pointers they are given: small computations.
 NEEDS_POINTERS = {
@@ -58,7 +58,7 @@ def call_all():
 
 class Null(Case):
     def test_every_function_takes_null(self):
-        run = subprocess.run([sys.executable, __file__, "call"], capture_output=True, text=True, timeout=100)
+        run = subprocess.run([sys.executable, __file__, "call"], capture_output=True, text=True, timeout=LIMIT_S)
         lines = run.stdout.splitlines()
         self.assertEqual(run.returncode, 0, f"it crashed in {lines[-1] if lines else '?'}: {run.stderr}")
         self.assertGreater(len(lines), 180)

@@ -9,7 +9,7 @@ import subprocess
 
 import cubewright as cw
 import numpy as np
-from support import ROOT, Case, main, make_ball
+from support import LIMIT_S, ROOT, Case, main, make_ball
 
 RECIPES = ROOT / "python" / "recipes"
 
@@ -50,7 +50,7 @@ class Recipes(Case):
         self.mesh = cw.extract(volume, 0)
 
     def run_program(self, *command):
-        ran = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=200)
+        ran = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=LIMIT_S)
         self.assertEqual(ran.returncode, 0, ran.stdout + ran.stderr)
         lines = [line.split() for line in ran.stdout.splitlines() if line]
         return {words[0]: words[1:] for words in lines}, ran.stdout

@@ -49,6 +49,14 @@ int test_rounds(int count)
     return TEST_IS_SLOW ? TEST_SOME(count) : (count + 3) / 4;
 }
 
+unsigned test_limit_s(void)
+{
+    enum { LIMIT_S = 300 };
+    const char *slow = getenv("CUBEWRIGHT_TEST_SLOW");
+    const unsigned times = slow ? (unsigned)strtoul(slow, NULL, 10) : 1;
+    return LIMIT_S * (times > 0 ? times : 1);
+}
+
 static unsigned added_seed(void)
 {
     const char *added = getenv("CUBEWRIGHT_TEST_SEED");

@@ -23,6 +23,10 @@
  * quarter, under sanitizers an eighth, and all with CUBEWRIGHT_TEST_LONG=1. */
 int test_rounds(int count);
 
+/* Returns the seconds after which something hangs: no machine is so slow. CUBEWRIGHT_TEST_SLOW=10
+ * makes them ten times as many. */
+unsigned test_limit_s(void);
+
 /* Seeds rand() and prints the seed, which ctest shows of a test that fails. The seed is `own`,
  * plus CUBEWRIGHT_TEST_SEED where that is set: other random cases of the same test. */
 unsigned test_seed(unsigned own);

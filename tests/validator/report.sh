@@ -8,16 +8,17 @@ set -u
 tests=$(cd "$(dirname "$0")" && pwd)
 PATH=$1:$PATH
 export PATH
+. "$tests/../support/wait.sh"
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
 command -v chromium >/dev/null || { echo "skip: chromium is not installed" >&2; exit 77; }
-cubewright report gyroid -o page.html --dims 16 --budget 20s --csv page.csv -q || exit 1
+cubewright report gyroid -o page.html --dims 16 --budget ${limit_s}s --csv page.csv -q || exit 1
 
 failed=0
 bad() { echo "$*"; failed=1; }
 browse() { # what remains of the page after its scripts ran
-    timeout 60 chromium --headless --no-sandbox --enable-unsafe-swiftshader --use-angle=swiftshader \
+    timeout $limit_s chromium --headless --no-sandbox --enable-unsafe-swiftshader --use-angle=swiftshader \
         --virtual-time-budget=20000 --user-data-dir="$folder/profile" \
         --hide-scrollbars "$@" 2>browser.log
 }

@@ -179,7 +179,7 @@ static bool child_does(int (*work)(void))
     int how = 0;
     const pid_t child = fork();
     if (child == 0) {
-        alarm(60); /* instead of hanging for ever */
+        alarm(test_limit_s()); /* instead of hanging for ever */
         _exit(work());
     }
     return waitpid(child, &how, 0) == child && WIFEXITED(how) && WEXITSTATUS(how) == 0;
@@ -246,7 +246,7 @@ static bool fork_in_progress(void *user, const char *step, double done)
     pthread_cond_broadcast(&f->changed);
     pthread_mutex_unlock(&f->lock);
     if (f->is_child)
-        alarm(60);
+        alarm(test_limit_s());
     else
         assert_true(waitpid(child, &how, 0) == child && WIFEXITED(how) &&
                     WEXITSTATUS(how) == 0);

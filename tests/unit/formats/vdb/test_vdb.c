@@ -251,7 +251,7 @@ static void test_damage(void **state)
         }
         test_file_write(path, copy, length);
         free(copy);
-        const cw_read_desc desc = {.max_bytes = (size_t)1 << 28, .timeout_s = 20};
+        const cw_read_desc desc = {.max_bytes = (size_t)1 << 28, .timeout_s = test_limit_s()};
         if (cw_volume_read(path, &desc, &v, NULL, &err) != CW_OK) {
             assert_true(err.message[0]);
             failed++;

@@ -7,6 +7,7 @@
 #include "support/pictures.h"
 #include "support/surface.h"
 
+#include "core/base/clock.h"
 #include "core/synthetic/random_fill.h"
 
 #include <math.h>
@@ -241,7 +242,7 @@ static void prepares(void **state)
     size_t size[2];
     bool ready = false;
     f->forget(gl);
-    for (int n = 0; n < 60000 && !ready; n++) {
+    for (const double until = cwi_now_s() + test_limit_s(); !ready && cwi_now_s() < until;) {
         const struct timespec pause = {.tv_nsec = 1000000};
         assert_ok(f->prepare(gl, &live, &ready, &err), err);
         nanosleep(&pause, NULL);
