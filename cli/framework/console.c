@@ -146,12 +146,17 @@ static void draw_progress(double done, double now)
                 console.step, done, left);
 }
 
-/* Returns true after a signal. From then on the run knows of it, and nothing hurries it: it ends by
- * itself, and removes what it made. */
+/* Seconds that a run has to hear of a signal, and then to end by itself and remove what it made. */
+static struct timeval to_hear = {.tv_usec = 600000}, to_end = {.tv_sec = 10};
+
+/* Returns true after a signal. From then on the run knows of it. */
 static bool hear_interrupt(void)
 {
-    if (interrupted)
-        setitimer(ITIMER_REAL, &(struct itimerval){0}, NULL);
+    static bool is_known;
+    if (interrupted && !is_known) {
+        is_known = true;
+        setitimer(ITIMER_REAL, &(struct itimerval){.it_value = to_end}, NULL);
+    }
     return interrupted;
 }
 
@@ -222,16 +227,13 @@ static void end_now(int number)
     _exit(cw_status_exit_code(CW_ERR_CANCELLED));
 }
 
-/* The time that a run has to hear of a signal. */
-static struct timeval grace = {.tv_usec = 600000};
-
 /* Steps that ask often end by themselves. Work inside a library may not ask for long: after
  * some time, or at a second signal, it is ended from outside. */
 static void on_signal(int number)
 {
     if (interrupted)
         end_now(number);
-    setitimer(ITIMER_REAL, &(struct itimerval){.it_value = grace}, NULL);
+    setitimer(ITIMER_REAL, &(struct itimerval){.it_value = to_hear}, NULL);
     interrupted = 1;
 }
 
@@ -242,7 +244,7 @@ void cli_catch_signals(void)
 #if CW_TEST_HOOKS /* a slow machine needs longer */
     const char *seconds = getenv("CUBEWRIGHT_TEST_GRACE");
     if (seconds)
-        grace = (struct timeval){.tv_sec = atol(seconds)};
+        to_hear = to_end = (struct timeval){.tv_sec = atol(seconds)};
 #endif
     sigemptyset(&action.sa_mask);
     for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {

@@ -77,6 +77,15 @@ void cwi_outfile_remove_all(void)
     errno = before;
 }
 
+static atomic_bool ends;
+
+/* Others fill a slot before they look at `ends`, so that one side sees what the other did. */
+void cwi_outfile_end_all(void)
+{
+    atomic_store(&ends, true);
+    cwi_outfile_remove_all();
+}
+
 static cw_status fail_system(cw_error *err, const char *what, int number)
 {
     return cwi_fail(err, CW_ERR_OUTPUT, "%s: %s", what, strerror(number));
@@ -161,6 +170,11 @@ static cw_status make_temporary(cwi_outfile *f, bool replaces, mode_t mode, cw_e
         return fail_system(err, "no file can be made in its folder", errno);
     }
     f->slot = slot_take(f->folder, f->temporary);
+    if (atomic_load(&ends)) {
+        unlinkat(f->folder, f->temporary, 0);
+        for (;;)
+            pause();
+    }
     if (replaces && fchmod(f->fd, mode) != 0 && errno != EPERM && errno != ENOTSUP)
         return fail_system(err, "its permissions cannot be kept", errno);
     return CW_OK;

@@ -70,6 +70,10 @@ CW_NODISCARD cw_status cwi_outfile_save(const char *path, const void *bytes, siz
  * at one time. */
 void cwi_outfile_remove_all(void);
 
+/* Does the same, and makes threads that open another file wait for the end of the program: for a
+ * thread that ends it while the others work. */
+void cwi_outfile_end_all(void);
+
 /* Bytes of a file's name in its folder, with the zero at the end: NAME_MAX of Linux + 1. */
 enum { CWI_FILE_NAME_BYTES = 256 };
 

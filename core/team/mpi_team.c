@@ -34,7 +34,7 @@ cw_status cw_team_join(cw_team *team, cw_error *err)
 {
     CWI_REQUIRE(err, team);
     const char *module = find_launcher();
-    const cwi_lost_rank lost = {.remove_temporaries = cwi_outfile_remove_all,
+    const cwi_lost_rank lost = {.remove_temporaries = cwi_outfile_end_all,
                                 .exit_code = cw_status_exit_code(CW_ERR_IO)};
     const void *functions = NULL;
     *team = (cw_team){.size = 1, .on_this_host = 1};
