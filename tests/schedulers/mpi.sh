@@ -2,6 +2,7 @@
 # killed. 77 where that MPI, or our module for it, is not there.
 # Usage: sh mpi.sh BIN_FOLDER openmpi|mpich
 set -eu
+. "$(dirname "$0")/../support/wait.sh"
 PATH=$1:$PATH
 mpi=$2
 cubewright version --features | grep -q "^$mpi *yes" || { echo "no module $mpi"; exit 77; }
@@ -30,11 +31,14 @@ done
 # parts that are kept: the ranks of this test are killed, and another number of ranks goes on
 cubewright make gyroid -o large.nrrd --dims 160 --type i16 --noise 0.2 -q
 cubewright extract large.nrrd --iso 100 -o whole.ply --name bone --stream never -q
-for pause in 0.2 0.4 0.6; do
+has_parts_or_is_over() {
+    [ "$(find parts -name '*.cwpart' 2>/dev/null | wc -l)" -ge "$1" ] || is_over "$2"
+}
+for parts in 1 7 13; do
     mpirun.$mpi -n 3 cubewright extract large.nrrd --iso 100 -o bone.ply --manifest "$folder/parts" --parts 20 -q \
         >killed.log 2>&1 &
     job=$!
-    sleep $pause
+    wait_until has_parts_or_is_over $parts $job
     pkill -KILL -f "manifest $folder/parts" || true
     wait $job || true
     rm -f bone.ply

@@ -2,6 +2,7 @@
 # on this machine, with ports and folders of its own; 77 where there is none.
 # Usage: sh slurm.sh BIN_FOLDER
 set -eu
+. "$(dirname "$0")/../support/wait.sh"
 PATH=$1:/usr/sbin:$PATH
 for program in slurmctld slurmd sbatch squeue; do
     command -v $program >/dev/null || { echo "no $program (Debian: slurm-wlm)"; exit 77; }
@@ -10,9 +11,11 @@ done
 folder=$(mktemp -d)
 host=$(uname -n | cut -d. -f1)
 stop() {
-    [ -s "$folder/slurmd.pid" ] && kill "$(cat "$folder/slurmd.pid")" 2>/dev/null
-    [ -s "$folder/slurmctld.pid" ] && kill "$(cat "$folder/slurmctld.pid")" 2>/dev/null
-    sleep 0.5
+    for daemon in slurmd slurmctld; do
+        [ -s "$folder/$daemon.pid" ] || continue
+        pid=$(cat "$folder/$daemon.pid")
+        kill "$pid" 2>/dev/null && wait_until is_over "$pid"
+    done
     rm -rf "$folder"
 }
 trap stop EXIT
@@ -51,10 +54,10 @@ case $(slurmd -V) in
 esac
 slurmctld >"$folder/start.log" 2>&1 && slurmd >>"$folder/start.log" 2>&1 ||
     { echo "Slurm does not start here:"; cat "$folder/start.log"; exit 77; }
-for wait in $(seq 100); do
-    sinfo -h -o %t 2>/dev/null | grep -q -E 'idle|mix' && break
-    sleep 0.2
-done
+has_node_or_none() {
+    sinfo -h -o %t 2>/dev/null | grep -q -E 'idle|mix|down|drain|inval|fail' || is_over "$(cat "$folder/slurmd.pid")"
+}
+wait_until has_node_or_none || true
 sinfo -h -o %t | grep -q -E 'idle|mix' ||
     { echo "Slurm has no node here:"; tail -n 5 "$folder"/slurm*.log; exit 77; }
 cd "$folder/work"
@@ -62,9 +65,10 @@ cubewright make gyroid -o ct.nrrd --dims 60 --type i16 --noise 0.2 -q
 cubewright extract ct.nrrd --iso 100 -o whole.ply --name bone --stream never -q
 job=$(sbatch --parsable --array=1-8 --output=part-%a.log --wrap \
     'cubewright extract ct.nrrd --iso 100 --part $SLURM_ARRAY_TASK_ID/8 --manifest parts')
-while squeue -h -j "$job" 2>/dev/null | grep -q .; do
-    sleep 0.3
-done
+has_left_the_queue() {
+    squeue -h -j "$job" >queue 2>queue.err && [ ! -s queue ] || grep -q 'Invalid job id' queue.err
+}
+wait_until has_left_the_queue
 cubewright join parts -o bone.ply || { cat part-*.log; exit 1; }
 cmp whole.ply bone.ply
 echo "Slurm: the same bytes"
