@@ -5,6 +5,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/module.h"
+#include "core/base/sandbox.h"
 
 #include <cubewright/formats.h>
 
@@ -193,6 +194,13 @@ static void assert_written_alike(const job *j, const char *bytes, size_t size)
     }
 }
 
+/* Its writer is a forked process, in which the sanitizers' allocator can wait forever for a lock that
+ * another thread held. */
+static bool is_glb_written(void)
+{
+    return cwi_module_present("gltf") && !CWI_SANITIZED;
+}
+
 static void every_team_writes_the_bytes_of_one(void **state)
 {
     (void)state;
@@ -205,7 +213,7 @@ static void every_team_writes_the_bytes_of_one(void **state)
         for (size_t f = 0; f < sizeof names / sizeof *names; f++) {
             cw_error err = {0};
             size_t size;
-            if (strcmp(names[f], "a.glb") == 0 && !cwi_module_present("gltf"))
+            if (strcmp(names[f], "a.glb") == 0 && !is_glb_written())
                 continue;
             job j = {.volume = &v, .desc = desc, .path = path, .stranger = -1};
             j.fail_after = -1;
