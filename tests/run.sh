@@ -1,27 +1,53 @@
 #!/bin/sh
 # Installs what the tests need, builds, and tests. Safe to run twice.
 #
-#   sh tests/run.sh            the release stage: every test, about five minutes on two cores
+#   sh tests/run.sh            the release stage: about five minutes on two cores, packages not counted
 #   sh tests/run.sh all        all stages, about 35 minutes
 #   sh tests/run.sh STAGE...   some of them:
 #
-# release     gcc, as users build it: every test, and the format of the code
+# release     gcc, as users build it: every room, command and format, and the format of the code
+# long        the same build: random tests at full length, drawn windows, real scans, and other people's
+#             programs, which say what they think of our files
 # sanitizers  clang, address and undefined-behaviour sanitizers: unit tests and fuzz corpora
 # mutants     clang, the same: every reader on mutants of its corpus
 # threads     clang, thread sanitizer: the tests of code with threads
 # rooms       gcc: every room linked with the rooms it may use alone, to prove the walls
-# minimal     gcc, debug at -O1, no C++ library: unit tests at their full length, an installed copy, the ABI
+# minimal     gcc, debug at -O1, no C++ library: unit tests, an installed copy, the ABI
 # fresh       a bare Debian: the quickstart, and builds that lack packages (fresh.sh)
+#
+# A test that takes longer than 1000 s hangs; on a machine that is very slow, or very busy,
+# CUBEWRIGHT_TEST_SLOW=5 allows for five times as much.
 set -eu
 cd "$(dirname "$0")/.."
 stages=${*:-release}
-[ "$stages" != all ] || stages="release rooms sanitizers mutants threads minimal fresh"
+[ "$stages" != all ] || stages="release long rooms sanitizers mutants threads minimal fresh"
 set -- # the functions of packages.sh look at $0 alone
 . cli/packages.sh
 . cli/build.sh
 mkdir -p build
 started=$(date +%s)
 say() { echo "== $* ($(($(date +%s) - started)) s)"; }
+
+# --- what the stages take -----------------------------------------------------------------------
+
+# count_seconds: seconds so far, and those of processors that ended programs had, in $wall and $processors.
+count_seconds() {
+    times >build/times # not in a subshell, which would tell its own
+    processors=$(awk 'NR == 2 { gsub(/[ms]/, " "); print int($1 * 60 + $2 + $3 * 60 + $4) }' build/times)
+    wall=$(($(date +%s) - started))
+}
+start_budget() {
+    count_seconds
+    wall_before=$wall processors_before=$processors
+}
+# add_budget STAGE: its line in the table at the end.
+add_budget() {
+    count_seconds
+    printf '   %-11s %5d s, of processors %5d s\n' "$1" $((wall - wall_before)) \
+        $((processors - processors_before)) >>build/budget
+}
+
+# --- packages -----------------------------------------------------------------------------------
 
 # The readers and validators of other people; tests that need a missing one are skipped.
 install_validators() {
@@ -37,29 +63,7 @@ install_validators() {
     fi
 }
 
-# Thousands of small files are written and read: in memory, where there is room for them.
-use_memory() {
-    free=$(df -k --output=avail /dev/shm 2>/dev/null | tail -1)
-    if [ -w /dev/shm ] && [ "${free:-0}" -gt 4000000 ]; then
-        TMPDIR=/dev/shm
-        export TMPDIR
-    fi
-}
-
-# run_tests PRESET [OPTION OF CTEST...]: progress, then the sums, or what the failed tests printed.
-run_tests() {
-    preset=$1 log=build/$1-tests.log
-    shift
-    rm -f "$log.failed"
-    { use_memory && ctest --preset "$preset" -j "$(nproc)" --no-tests=error "$@" 2>&1 || touch "$log.failed"; } |
-        tee "$log" | show_tenths '^ *[0-9]+/[0-9]+ Test' test
-    if [ -e "$log.failed" ]; then
-        grep -v -e '^ *Start ' -e ' Passed ' -e '(Skipped)' "$log"
-        say "$preset: FAILED; the log is $log"
-        exit 1
-    fi
-    sed -n '/tests passed/p; /did not run/,$p' "$log"
-}
+# --- building and testing -----------------------------------------------------------------------
 
 # configure_and_build PRESET: with the tests; warnings are errors.
 configure_and_build() {
@@ -69,37 +73,101 @@ configure_and_build() {
     build_preset "$1" "build/$1-build.log"
 }
 
+check_format() {
+    cmake --build --preset release --target format-check >build/format.log 2>&1 ||
+        { grep "error:" build/format.log; say "the code is not formatted: cmake --build --preset release --target format"; exit 1; }
+    sed -n 's/^the format of the code is not checked/== &/p' build/format.log
+}
+
+# Thousands of small files are written and read: in memory, where there is room for them.
+use_memory() {
+    free=$(df -k --output=avail /dev/shm 2>/dev/null | tail -1)
+    if [ -w /dev/shm ] && [ "${free:-0}" -gt 4000000 ]; then
+        TMPDIR=/dev/shm
+        export TMPDIR
+    fi
+}
+
+# show_tests LOG: how many have ended, every 15 s, until LOG.ended is there.
+show_tests() {
+    while [ ! -e "$1.ended" ]; do
+        waited=0
+        while [ $waited -lt 15 ] && [ ! -e "$1.ended" ]; do
+            sleep 1
+            waited=$((waited + 1))
+        done
+        sed -n 's,^ *\([0-9]*\)/\([0-9]*\) Test.*,   test \1 of \2,p' "$1" | tail -1
+    done
+}
+
+# show_failures LOG: the tests that failed, and then what they printed.
+show_failures() {
+    sed -n '/tests passed/p; /did not run/,$p; /The following tests FAILED/,$p' "$1"
+    awk '/^ *[0-9]+\/[0-9]+ Test / { failed = !/ Passed / && !/\(Skipped\)/ && !/\*\*\*Skipped/ }
+        /^ *Start / || /^[0-9]+% tests passed/ { failed = 0 }
+        failed' "$1"
+}
+
+# run_tests NAME PRESET [OPTION OF CTEST...]: progress, then the sums, or what the failed tests printed.
+run_tests() {
+    log=build/$1-tests.log name=$1 preset=$2
+    shift 2
+    say "$name: testing"
+    rm -f "$log.failed" "$log.ended"
+    : >"$log"
+    show_tests "$log" &
+    shown=$!
+    (use_memory && ctest --preset "$preset" -j "$(nproc)" --no-tests=error \
+        --timeout $((1000 * ${CUBEWRIGHT_TEST_SLOW:-1})) "$@") >"$log" 2>&1 || touch "$log.failed"
+    touch "$log.ended"
+    wait $shown
+    if [ -e "$log.failed" ]; then
+        show_failures "$log"
+        say "$name: FAILED; the log is $log"
+        exit 1
+    fi
+    sed -n '/tests passed/p; /did not run/,$p' "$log"
+}
+
 say "installing packages"
 install_packages "what the build needs" needed optional
 install_packages "what the tests need" test
 case $stages in *sanitizers* | *mutants* | *threads*) install_packages "sanitizers" sanitizer ;; esac
 case $stages in *fresh*) install_packages "what makes a bare Debian" fresh || true ;; esac
+case $stages in
+*long*)
+    install_packages "a second opinion on meshes, and MPI" heavy ||
+        echo "== CGAL or MPI cannot be had: tests that ask them will be skipped"
+    install_packages "the scan that the README shows" data ||
+        echo "== mricron-data cannot be had: the README's commands run on a synthetic head"
+    ;;
+esac
 
+rm -f build/budget
 for stage in $stages; do
+    start_budget
     case $stage in
     release)
-        install_packages "a second opinion on meshes, and MPI" heavy ||
-            echo "== CGAL or MPI cannot be had: tests that ask them will be skipped"
-        install_packages "the scan that the README shows" data ||
-            echo "== mricron-data cannot be had: the README's commands run on a synthetic head"
+        configure_and_build release
+        check_format
+        run_tests release release -LE long
+        ;;
+    long)
         install_validators >build/validators.log 2>&1 & # while the compiler works
         validators=$!
         configure_and_build release
-        cmake --build --preset release --target format-check >build/format.log 2>&1 ||
-            { grep "error:" build/format.log; say "the code is not formatted: cmake --build --preset release --target format"; exit 1; }
-        sed -n 's/^the format of the code is not checked/== &/p' build/format.log
         wait $validators || true
         cat build/validators.log
-        say "release: testing"
-        run_tests release
+        export CUBEWRIGHT_TEST_LONG=1
+        run_tests long release -L 'long|lengths'
+        unset CUBEWRIGHT_TEST_LONG
         ;;
     rooms)
         configure_and_build rooms
         ;;
     sanitizers)
         configure_and_build fuzz
-        say "sanitizers: testing"
-        run_tests fuzz -L 'unit|fuzz'
+        run_tests fuzz fuzz -L 'unit|fuzz'
         ;;
     mutants)
         [ -d build/fuzz/bin ] || configure_and_build fuzz
@@ -107,22 +175,12 @@ for stage in $stages; do
         printf '%s\n' build/fuzz/bin/fuzz_* | xargs -n 1 -P "$(nproc)" sh tests/fuzz/mutants.sh
         ;;
     threads)
-        say "threads: configuring"
-        configure_preset tsan build/tsan-configure.log -DCUBEWRIGHT_TESTS=ON -DCUBEWRIGHT_WERROR=ON
-        threaded='parallel|extract|label_crossings|volume|vbuffer|intensity|quality|render|distance_mesh|oracle|intersections|normals|simplify$|slabs|sparse|irregular'
-        say "threads: building"
-        # shellcheck disable=SC2046 # no more programs than are run
-        build_preset tsan build/tsan-build.log --target \
-            $(ctest --preset tsan -N -R "$threaded" 2>/dev/null | sed -n 's,.* unit/,,p')
-        say "threads: testing"
-        run_tests tsan -R "$threaded"
+        configure_and_build tsan
+        run_tests threads tsan -R 'parallel|extract|label_crossings|volume|vbuffer|intensity|quality|render|distance_mesh|oracle|intersections|normals|simplify$|slabs|sparse|irregular'
         ;;
     minimal)
         configure_and_build minimal
-        say "minimal: testing"
-        export CUBEWRIGHT_TEST_LONG=1
-        run_tests minimal -R 'unit|fuzz|install|examples|^abi'
-        unset CUBEWRIGHT_TEST_LONG
+        run_tests minimal minimal -R 'unit|fuzz|install|examples|^abi'
         ;;
     fresh)
         say "fresh"
@@ -135,5 +193,7 @@ for stage in $stages; do
         exit 2
         ;;
     esac
+    add_budget "$stage"
 done
+cat build/budget
 say "passed: $stages"

@@ -41,12 +41,15 @@ void test_assert_near(double value, double truth, double margin, const char *wha
     _fail(file, line);
 }
 
-int test_rounds(int count)
+bool test_is_short(void)
 {
     const char *long_run = getenv("CUBEWRIGHT_TEST_LONG");
-    if (long_run && strcmp(long_run, "1") == 0)
-        return count;
-    return TEST_IS_SLOW ? TEST_SOME(count) : (count + 3) / 4;
+    return !long_run || strcmp(long_run, "1") != 0;
+}
+
+int test_some(int count)
+{
+    return test_is_short() ? (count + 7) / 8 : count;
 }
 
 unsigned test_limit_s(void)

@@ -15,13 +15,12 @@
 
 #define PI 3.14159265358979323846
 
-/* How often a test does the same on other numbers: under sanitizers, where all takes ten times
- * as long, an eighth. */
-#define TEST_SOME(count) (TEST_IS_SLOW ? ((count) + 7) / 8 : (count))
+/* Returns true unless CUBEWRIGHT_TEST_LONG=1, which asks tests for all that they can try. */
+bool test_is_short(void);
 
-/* How many of `count` random cases a test tries, where each proves the same on other numbers: a
- * quarter, under sanitizers an eighth, and all with CUBEWRIGHT_TEST_LONG=1. */
-int test_rounds(int count);
+/* How many of `count` cases a test tries, where each proves the same on other numbers: an eighth in
+ * a short run. */
+int test_some(int count);
 
 /* Returns the seconds after which something hangs: no machine is so slow. CUBEWRIGHT_TEST_SLOW=10
  * makes them ten times as many. */

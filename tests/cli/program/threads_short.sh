@@ -1,6 +1,6 @@
 # Where the system gives few threads or none, fewer work, and that is told: with the same bytes. A library
 # that cannot be loaded without them is named (8).
-cubewright make sphere -o s.nrrd --dims 96 -q
+cubewright make sphere -o s.nrrd --dims 64 -q
 cubewright extract s.nrrd --iso 0 -o s.stl -t 2 -q
 for threads in 1 7 100000; do
     cubewright extract s.nrrd --iso 0 -o t.stl -t $threads -q || echo "-t $threads: exit $?"

@@ -47,7 +47,7 @@ static void one_after_another_as_each_by_itself(void **state)
     static const size_t sizes[][3] = {{2, 2, 2},    {7, 8, 9},     {62, 15, 17}, {63, 16, 8},
                                       {64, 40, 24}, {130, 33, 31}, {66, 5, 71},  {200, 9, 10}};
     test_seed(91);
-    for (int round = 0; round < 96; round += TEST_IS_SLOW ? 5 : 1) {
+    for (int round = 0; round < 96; round += test_is_short() ? 5 : 1) {
         cw_volume v;
         cw_extractor *extractor;
         cw_error err = {0};

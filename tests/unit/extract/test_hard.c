@@ -199,7 +199,8 @@ static void surfaces_keep_the_promise(void **state)
     (void)state;
     int broken = 0;
     for (size_t n = 0; n < ROWS; n++) {
-        for (unsigned s = TEST_IS_SLOW ? n % 9 : 0; s < SETTINGS; s += TEST_IS_SLOW ? 9 : 1)
+        for (unsigned s = test_is_short() ? n % 9 : 0; s < SETTINGS;
+             s += test_is_short() ? 9 : 1)
             broken += !keeps_promise(n, CW_F32, s);
         for (unsigned type = 0; type < CW_TYPE_COUNT; type++)
             if (type != CW_F32 && fits(n, (cw_type)type))
@@ -278,7 +279,7 @@ static void surfaces_have_the_topology_of_their_field(void **state)
 {
     (void)state;
     int wrong = 0;
-    for (size_t n = 0; n < ROWS; n += TEST_IS_SLOW ? 5 : 1) {
+    for (size_t n = 0; n < ROWS; n += test_is_short() ? 5 : 1) {
         if (rows[n].judge == NOBODY)
             continue;
         wrong += !has_its_topology(n, CW_F32);
@@ -368,7 +369,7 @@ static uint64_t cell_key(const float v[8])
                : key | (uint64_t)t.components << 20 | (uint64_t)(t.euler + 16) << 28;
 }
 
-enum { KEYS = 4096, RANDOM_CELLS = TEST_SOME(400000) };
+enum { KEYS = 4096 };
 
 typedef struct keys {
     uint64_t at[KEYS]; /* by hash; 0: free */
@@ -413,7 +414,7 @@ static void every_case_of_marching_cubes_is_there(void **state)
     add_cells_of_volume(k, &v);
     assert_int_equal(k->count, 766);
     test_seed(31);
-    for (int r = 0; r < RANDOM_CELLS; r++) {
+    for (int r = 0; r < test_some(400000); r++) {
         float corners[8];
         bool in = false, out = false;
         for (int c = 0; c < 8; c++) {

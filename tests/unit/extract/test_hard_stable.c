@@ -33,7 +33,8 @@ static void engines_and_threads_do_not_change_a_bit(void **state)
         cw_volume v = make(n, 131, 11, 10);
         cw_extract_desc d = level_of(n);
         cw_error err = {0};
-        for (int open = TEST_IS_SLOW ? n % 2 : 0; open < 2; open += TEST_IS_SLOW ? 2 : 1) {
+        for (int open = test_is_short() ? n % 2 : 0; open < 2;
+             open += test_is_short() ? 2 : 1) {
             cw_mesh plain, other;
             d.leave_open = open;
             d.threads = 1;
@@ -212,7 +213,7 @@ static void the_order_of_voxels_in_memory_does_not_change_a_bit(void **state)
         cw_volume v = make(n, 11, 10, 9);
         const cw_extract_desc d = level_of(n);
         cw_mesh mesh = test_extract(&v, &d, NULL);
-        for (int motion = 1; motion < MOTIONS; motion += TEST_IS_SLOW ? 5 : 1) {
+        for (int motion = 1; motion < MOTIONS; motion += test_is_short() ? 5 : 1) {
             cw_volume turned = turn(&v, motion), view = turned_back(&turned, &v, motion);
             cw_mesh other = test_extract(&view, &d, NULL);
             test_assert_same_mesh(&mesh, &other);
@@ -291,7 +292,7 @@ static void turned_volumes_have_the_crossings_turned(void **state)
         cw_volume v = make(n, 11, 10, 9);
         const cw_extract_desc d = level_of(n);
         const shares plain = find_shares(&v, &d, 0);
-        for (int motion = 1; motion < MOTIONS; motion += TEST_IS_SLOW ? 5 : 1) {
+        for (int motion = 1; motion < MOTIONS; motion += test_is_short() ? 5 : 1) {
             cw_volume turned = turn(&v, motion);
             const shares other = find_shares(&turned, &d, motion);
             assert_int_equal(plain.count, other.count);

@@ -153,7 +153,8 @@ static void hostile_volumes_keep_the_promise_with_every_setting(void **state)
     (void)state;
     int faulty = 0;
     for (size_t n = 0; test_hostile_at(n); n++)
-        for (unsigned s = TEST_IS_SLOW ? n % 9 : 0; s < SETTINGS; s += TEST_IS_SLOW ? 9 : 1)
+        for (unsigned s = test_is_short() ? n % 9 : 0; s < SETTINGS;
+             s += test_is_short() ? 9 : 1)
             faulty += is_faulty(test_hostile_at(n), test_frame_at(0), s);
     assert_int_equal(faulty, 0);
 }
@@ -163,8 +164,8 @@ static void hostile_volumes_keep_the_promise_in_every_frame(void **state)
     (void)state;
     int faulty = 0;
     for (size_t n = 0; test_hostile_at(n); n++)
-        for (size_t f = TEST_IS_SLOW ? 1 + n % 4 : 1; test_frame_at(f);
-             f += TEST_IS_SLOW ? 4 : 1)
+        for (size_t f = test_is_short() ? 1 + n % 4 : 1; test_frame_at(f);
+             f += test_is_short() ? 4 : 1)
             faulty +=
                 is_faulty(test_hostile_at(n), test_frame_at(f), (unsigned)(n + f) % SETTINGS);
     assert_int_equal(faulty, 0);

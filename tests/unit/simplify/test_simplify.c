@@ -86,7 +86,7 @@ static void topology_stays(void **state)
 {
     (void)state;
     static const double ratios[] = {0.3, 0.02};
-    for (int n = TEST_IS_SLOW ? 1 : 0; n < 2; n++) {
+    for (int n = test_is_short() ? 1 : 0; n < 2; n++) {
         cw_mesh mesh = noisy_gyroid(42, 0.1, n), out = reduce(&mesh, ratios[n]);
         assert_true(mesh.triangle_count > 1 << 15);
         test_assert_sound(&mesh, &out);
@@ -102,7 +102,7 @@ static void hostile_surfaces_stay_sound(void **state)
 {
     (void)state;
     const test_hostile *h;
-    for (size_t n = 0; (h = test_hostile_at(n)); n += TEST_IS_SLOW ? 3 : 1) {
+    for (size_t n = 0; (h = test_hostile_at(n)); n += test_is_short() ? 3 : 1) {
         cw_volume volume;
         cw_error err = {0};
         assert_ok(test_hostile_make(h, &volume, &err), err);
@@ -162,7 +162,7 @@ static void no_error_is_exceeded(double noise, bool open)
 static void the_error_is_never_exceeded(void **state)
 {
     (void)state;
-    if (!TEST_IS_SLOW)
+    if (!test_is_short())
         no_error_is_exceeded(0.1, false);
     no_error_is_exceeded(0.3, false);
     no_error_is_exceeded(0.1, true);
@@ -251,7 +251,7 @@ static void a_border_can_be_kept(void **state)
     static const size_t levels[] = {20000, 15000};
     cw_mesh large = noisy_gyroid(42, 0.05, true), small = noisy_gyroid(20, 0, true), out[2];
     cw_error err = {0};
-    for (int n = 0; n < 4; n += TEST_IS_SLOW ? 3 : 1) {
+    for (int n = 0; n < 4; n += test_is_short() ? 3 : 1) {
         const cw_mesh *mesh = n % 2 ? &small : &large;
         out[0] = simplify(mesh, &ways[n / 2]);
         assert_same_border(mesh, out);
@@ -297,9 +297,9 @@ static void size_does_not_matter(void **state)
 {
     (void)state;
     static const int exponents[] = {-60, 60};
-    cw_volume volume = test_sample(CW_FIELD_SPHERE, TEST_IS_SLOW ? 20 : 32, CW_F32);
+    cw_volume volume = test_sample(CW_FIELD_SPHERE, test_is_short() ? 20 : 32, CW_F32);
     cw_mesh mesh = test_extract(&volume, NULL, NULL);
-    for (int n = 0; n < 4; n += TEST_IS_SLOW ? 3 : 1) {
+    for (int n = 0; n < 4; n += test_is_short() ? 3 : 1) {
         const int exponent = exponents[n / 2];
         cw_simplify_desc desc = {
             .ratio = 0.1, .error_mm = n % 2 ? 0.1 : 0, .normal_weight = (float)(n % 2)};
@@ -322,7 +322,7 @@ static void place_does_not_matter(void **state)
 {
     (void)state;
     const cw_simplify_desc desc = {.error_mm = 0.1};
-    cw_volume volume = test_sample(CW_FIELD_SPHERE, TEST_IS_SLOW ? 20 : 32, CW_F32);
+    cw_volume volume = test_sample(CW_FIELD_SPHERE, test_is_short() ? 20 : 32, CW_F32);
     cw_mesh mesh = test_extract(&volume, NULL, NULL), near = simplify(&mesh, &desc);
     for (int a = 0; a < 3; a++)
         mesh.origin[a] = near.origin[a] = 12345.678 * (a + 1);
@@ -427,7 +427,7 @@ static double painted_wrong(const cw_mesh *mesh, const cw_mesh *out, const char 
 {
     double sum = 0;
     size_t seen = 0;
-    const size_t step = TEST_IS_SLOW ? 7 : 1;
+    const size_t step = test_is_short() ? 7 : 1;
     for (size_t v = 0; v < mesh->vertex_count; v += step) {
         const float *place = mesh->positions + 3 * v;
         for (size_t t = 0; t < out->triangle_count; t++) {
@@ -470,7 +470,7 @@ static void what_has_a_weight_stays_sharp(void **state)
         {60, "normal", in_circle, 10, {.normal_weight = 1}},
         {140, "scalar", in_circle, 10, {.scalar_weight = 1}}, /* of several blocks */
     };
-    for (size_t n = TEST_IS_SLOW ? 2 : 0; n < sizeof rows / sizeof *rows; n++) {
+    for (size_t n = test_is_short() ? 2 : 0; n < sizeof rows / sizeof *rows; n++) {
         cw_mesh mesh = make_flat(rows[n].edge);
         paint(&mesh, rows[n].what, rows[n].how);
         cw_simplify_desc desc = rows[n].desc;
@@ -510,7 +510,7 @@ static void threads_change_nothing(void **state)
 {
     (void)state;
     cw_mesh mesh = noisy_gyroid(42, 0.1, false);
-    for (int kind = TEST_IS_SLOW ? 1 : 0; kind < 3; kind += TEST_IS_SLOW ? 2 : 1) {
+    for (int kind = test_is_short() ? 1 : 0; kind < 3; kind += test_is_short() ? 2 : 1) {
         cw_simplify_desc desc = {.threads = 1, .ratio = kind == 1 ? 0.6 : 0.2};
         desc.error_mm = kind == 1 ? 0.5 : 0;
         desc.normal_weight = kind == 2 ? 0.5f : 0;
@@ -770,7 +770,7 @@ static void it_can_be_stopped(void **state)
         if (desc.threads == 1) /* otherwise others do what they do */
             assert_true(calls > mesh.triangle_count / 4096);
         /* sanitizers do not know exceptions of modules, by which C++ is left */
-        for (size_t n = 0; n < (CWI_SANITIZED ? 1 : 6); n++) {
+        for (size_t n = 0; n < (CWI_SANITIZED ? 1 : 6); n += test_is_short() ? 3 : 1) {
             const size_t at = desc.threads == 1 ? n * (calls - 1) / 5 : n;
             l = (listener){.caller = pthread_self(), .stop_at = 1 + at};
             assert_fails(cw_simplify(&mesh, &desc, &out, NULL, &err), CW_ERR_CANCELLED,
@@ -789,7 +789,7 @@ static void starve(const cw_mesh *mesh, const cw_simplify_desc *desc, long step)
 {
     cw_mesh out;
     bool failed = true;
-    for (long n = 0; failed; n += step) {
+    for (long n = 0; failed; n += step + (test_is_short() ? n / 8 : 0)) {
         cw_error err = {0};
         cwi_alloc_fail_after(n);
         const cw_status st = cw_simplify(mesh, desc, &out, NULL, &err);

@@ -150,7 +150,7 @@ static void no_picture_is_off_by_more_pixels(void **state)
     double middle[3], most = 0;
     const double size = size_of(&mesh, middle);
     test_seed(7);
-    for (int round = 0; round < 4; round += TEST_IS_SLOW ? 3 : 1) {
+    for (int round = 0; round < 4; round += test_is_short() ? 3 : 1) {
         cw_simplify_view views[2] = {random_view(&mesh, round), random_view(&mesh, round + 1)};
         const cw_simplify_desc desc = {.error_mm = 0.03 * size,
                                        .views = views,
@@ -217,7 +217,7 @@ static void depths_are_those_of_rays(void **state)
 static void what_is_hidden_is_coarser(void **state)
 {
     (void)state;
-    cw_volume volume = test_sample(CW_FIELD_SPHERE, TEST_IS_SLOW ? 16 : 24, CW_F32);
+    cw_volume volume = test_sample(CW_FIELD_SPHERE, test_is_short() ? 16 : 24, CW_F32);
     cw_mesh mesh = test_extract(&volume, &(cw_extract_desc){.inside_is_low = true}, NULL);
     double middle[3], most = 0;
     const double size = size_of(&mesh, middle);
@@ -250,7 +250,7 @@ static void what_is_hidden_is_coarser(void **state)
 static void what_is_seen_keeps_its_shading(void **state)
 {
     (void)state;
-    cw_volume volume = test_sample(CW_FIELD_SPHERE, TEST_IS_SLOW ? 30 : 40, CW_F32);
+    cw_volume volume = test_sample(CW_FIELD_SPHERE, test_is_short() ? 30 : 40, CW_F32);
     cw_mesh mesh = test_extract(&volume, &(cw_extract_desc){.inside_is_low = true}, NULL), out;
     double middle[3];
     const double size = size_of(&mesh, middle);
@@ -340,7 +340,7 @@ static cw_mesh by_slabs(const cw_volume *volume, const cw_simplify_desc *desc, i
 static void slabs_keep_it_too_for_any_number_of_threads(void **state)
 {
     (void)state;
-    cw_volume volume = noisy_gyroid(TEST_IS_SLOW ? 18 : 28);
+    cw_volume volume = noisy_gyroid(test_is_short() ? 18 : 28);
     cw_mesh mesh = test_extract(&volume, NULL, NULL);
     double middle[3], most = 0;
     const double size = size_of(&mesh, middle);

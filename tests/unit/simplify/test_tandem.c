@@ -67,7 +67,7 @@ static void a_number_of_triangles_is_met(void **state)
 {
     (void)state;
     test_seed(11);
-    for (int round = TEST_IS_SLOW ? 3 : 0; round < 4; round++) {
+    for (int round = test_is_short() ? 3 : 0; round < 4; round++) {
         cw_volume v = noisy_gyroid(32, 0.05);
         const cw_extract_desc extract = {.leave_open = round & 1};
         const cw_simplify_desc desc = {.ratio = 0.1};
@@ -94,7 +94,7 @@ static void a_number_of_triangles_is_met(void **state)
 static void a_box_needs_few_triangles(void **state)
 {
     (void)state;
-    enum { X = TEST_IS_SLOW ? 28 : 48, Z = 30 };
+    enum { X = 28, Z = 30 };
     static float values[Z][X][X];
     for (size_t k = 0; k < Z; k++)
         for (size_t j = 0; j < X; j++)
@@ -123,7 +123,7 @@ static void an_error_is_kept(void **state)
 {
     (void)state;
     test_seed(12);
-    for (int round = TEST_IS_SLOW ? 3 : 0; round < 4; round++) {
+    for (int round = test_is_short() ? 3 : 0; round < 4; round++) {
         cw_volume v = noisy_column(16, 22, round ? 0.02 : 0);
         const cw_extract_desc extract = {.leave_open = round & 1};
         const cw_simplify_desc desc = {.error_mm = round & 2 ? 0.8 : 0.3};
@@ -173,7 +173,7 @@ static void windows_of_many_blocks_are_sound(void **state)
     (void)state;
     cw_volume v = noisy_gyroid(52, 0.05);
     cw_mesh whole = test_extract(&v, NULL, NULL), out[2];
-    for (int n = 0; n < (TEST_IS_SLOW ? 1 : 2); n++) {
+    for (int n = 0; n < (test_is_short() ? 1 : 2); n++) {
         const cw_extract_desc extract = {.threads = n ? 3 : 1};
         const cw_simplify_desc desc = {.error_mm = 0.01, .threads = n ? 3 : 1};
         out[n] = run(&v, &extract, &desc, whole.triangle_count / 2);
@@ -181,7 +181,7 @@ static void windows_of_many_blocks_are_sound(void **state)
     test_assert_sound(&whole, out);
     test_bound_is_measured(&whole, out, 0.01);
     test_bound_is_measured(out, &whole, 0.01);
-    if (!TEST_IS_SLOW) {
+    if (!test_is_short()) {
         test_assert_same_mesh(out, out + 1);
         cw_mesh_free(out + 1);
     }
@@ -193,8 +193,8 @@ static void windows_of_many_blocks_are_sound(void **state)
 static void threads_change_nothing(void **state)
 {
     (void)state;
-    cw_volume v = noisy_gyroid(TEST_IS_SLOW ? 18 : 28, 0.05);
-    const size_t slab = TEST_IS_SLOW ? 1000 : 7000;
+    cw_volume v = noisy_gyroid(test_is_short() ? 18 : 28, 0.05);
+    const size_t slab = test_is_short() ? 1000 : 7000;
     for (int kind = 0; kind < 2; kind++) {
         cw_mesh out[2];
         for (int n = 0; n < 2; n++) {

@@ -135,7 +135,7 @@ static void stopped_pictures_leave_a_whole_renderer(void **state)
         cw_picture wanted = test_draw(r, &scene);
         int stops = 0;
         for (int n = 0; n < 200 && stop_at(n, scene, &wanted);
-             n = n < 2 ? n + 1 : (TEST_IS_SLOW ? 8 : 2) * n)
+             n = n < 2 ? n + 1 : (test_is_short() ? 8 : 2) * n)
             stops++;
         if (stops < 2)
             fail_msg("%s asks %d times whether to go on", cw_mode_name(modes[m]), stops);

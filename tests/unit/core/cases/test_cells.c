@@ -335,7 +335,7 @@ static void ties_of_tunnels_go_to_the_side_of_zero(void **state)
     (void)state;
     int ties[2] = {0};
     test_seed(4);
-    for (int n = 0; n < TEST_SOME(1000000); n++) {
+    for (int n = 0; n < test_some(1000000); n++) {
         double values[8];
         const unsigned cube = make_tied_values(values);
         if (!cwi_case_is_ambiguous[cube])

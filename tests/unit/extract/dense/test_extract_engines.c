@@ -55,17 +55,17 @@ static void fill(void *voxels, cw_type type, size_t count)
 static void every_engine_gives_the_same_bytes(void **state)
 {
     (void)state;
-    enum { EDGE = TEST_IS_SLOW ? 3 : 6 };
-    double *memory = malloc(sizeof *memory * (EDGE * EDGE * 200 + 8));
+    const size_t edge = test_is_short() ? 3 : 6;
+    double *memory = malloc(sizeof *memory * (edge * edge * 200 + 8));
     test_seed(23);
     for (size_t width = 2; width <= 200; width++)
         for (int type = 0; type < CW_TYPE_COUNT; type++) {
             const size_t bytes = cw_type_size((cw_type)type), shift = (size_t)rand() % 8;
             char *voxels = (char *)memory + shift * bytes;
-            fill(voxels, (cw_type)type, width * EDGE * EDGE);
+            fill(voxels, (cw_type)type, width * edge * edge);
             cw_volume v = {.data = voxels,
                            .type = (cw_type)type,
-                           .dim = {width, EDGE, EDGE},
+                           .dim = {width, edge, edge},
                            .affine = {{0.7}, {0, -1.3}, {0, 0, 2}},
                            .slope = rand() % 4 ? 1 : -1,
                            .has_nodata = rand() % 8 == 0,
@@ -170,7 +170,7 @@ static void no_data_is_as_nan(void **state)
     (void)state;
     static const size_t sizes[][3] = {{70, 9, 12}, {64, 20, 7}, {130, 8, 9}, {5, 40, 40}};
     test_seed(41);
-    for (int round = 0; round < (TEST_IS_SLOW ? 12 : 96); round++) {
+    for (int round = 0; round < (test_is_short() ? 12 : 96); round++) {
         cw_volume v[2];
         cw_extractor *x;
         cw_error err = {0};
@@ -214,7 +214,7 @@ static void no_data_is_as_nan(void **state)
 static void a_gap_elsewhere_changes_nothing_of_an_open_surface(void **state)
 {
     (void)state;
-    for (int round = 0; round < (TEST_IS_SLOW ? 8 : 64); round++) {
+    for (int round = 0; round < (test_is_short() ? 8 : 64); round++) {
         const cw_extract_desc d = {.isovalue = 0, .leave_open = true, .threads = 1 + round % 3};
         const cw_field_desc desc = {.field = CW_FIELD_GYROID,
                                     .dim = {60 + (size_t)round % 32 * 9, 13, 11},

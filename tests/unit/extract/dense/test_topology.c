@@ -170,7 +170,7 @@ static grid *make_grids(int count, size_t nx, size_t ny, size_t nz)
 static void random_grids_have_the_topology_of_their_field(void **state)
 {
     (void)state;
-    const int count = test_rounds(1000);
+    const int count = test_some(1000);
     grid *grids = make_grids(count, 5, 5, 5);
     for (int n = 0; n < count; n++)
         for (size_t i = 0; i < 125; i++)
@@ -197,12 +197,12 @@ static float next_magnitude(int kind)
 static void single_cells_have_the_topology_of_their_field(void **state)
 {
     (void)state;
-    enum { EACH = TEST_SOME(48) };
-    grid *grids = make_grids(256 * EACH, 2, 2, 2);
-    for (int n = 0; n < 256 * EACH; n++)
+    const int each = test_some(48);
+    grid *grids = make_grids(256 * each, 2, 2, 2);
+    for (int n = 0; n < 256 * each; n++)
         for (int i = 0; i < 8; i++)
             grids[n].voxels[i] = next_magnitude(n / 256) * (n % 256 >> i & 1 ? 1 : -1);
-    judge_all(grids, 256 * EACH, test_topology_of);
+    judge_all(grids, 256 * each, test_topology_of);
     free(grids);
 }
 
@@ -222,15 +222,15 @@ static int count_ambiguous_faces(int signs)
 static void cells_with_several_ambiguous_faces_have_their_tunnels(void **state)
 {
     (void)state;
-    enum { COUNT = TEST_SOME(16000) };
-    grid *grids = make_grids(COUNT, 2, 2, 2);
-    for (int n = 0, signs = 0; n < COUNT; signs = (signs + 1) % 256) {
+    const int count = test_some(16000);
+    grid *grids = make_grids(count, 2, 2, 2);
+    for (int n = 0, signs = 0; n < count; signs = (signs + 1) % 256) {
         const int faces = count_ambiguous_faces(signs);
-        for (int times = faces == 6 ? 16 : faces > 1; times > 0 && n < COUNT; times--, n++)
+        for (int times = faces == 6 ? 16 : faces > 1; times > 0 && n < count; times--, n++)
             for (int i = 0; i < 8; i++)
                 grids[n].voxels[i] = next_magnitude(2 + n) * (signs >> i & 1 ? 1 : -1);
     }
-    judge_all(grids, COUNT, test_topology_of);
+    judge_all(grids, count, test_topology_of);
     free(grids);
 }
 
@@ -240,9 +240,9 @@ static void cells_with_several_ambiguous_faces_have_their_tunnels(void **state)
 static void nearly_tied_faces_are_decided_alike_from_both_sides(void **state)
 {
     (void)state;
-    enum { COUNT = TEST_SOME(4000) };
-    grid *grids = make_grids(COUNT, 3, 2, 2);
-    for (int n = 0; n < COUNT; n++) {
+    const int count = test_some(4000);
+    grid *grids = make_grids(count, 3, 2, 2);
+    for (int n = 0; n < count; n++) {
         grid *g = &grids[n];
         for (size_t i = 0; i < 12; i++)
             g->voxels[i] = next_value();
@@ -260,7 +260,7 @@ static void nearly_tied_faces_are_decided_alike_from_both_sides(void **state)
         for (int up = (int)(5 * next_unit()) - 2; up != 0; up += up < 0 ? 1 : -1)
             f[u + v] = nextafterf(f[u + v], up < 0 ? -1e9f : 1e9f);
     }
-    judge_all(grids, COUNT, test_topology_counted);
+    judge_all(grids, count, test_topology_counted);
     free(grids);
 }
 
@@ -270,9 +270,9 @@ static void nearly_tied_faces_are_decided_alike_from_both_sides(void **state)
 static void separable_fields_have_their_topology(void **state)
 {
     (void)state;
-    enum { COUNT = 600 };
-    grid *grids = make_grids(COUNT, 5, 5, 5);
-    for (int n = 0; n < COUNT; n++) {
+    const int count = 600;
+    grid *grids = make_grids(count, 5, 5, 5);
+    for (int n = 0; n < count; n++) {
         float factor[3][5];
         const float level = 0.05f + 0.2f * (float)next_unit();
         for (int i = 0; i < 15; i++)
@@ -286,7 +286,7 @@ static void separable_fields_have_their_topology(void **state)
             grids[n].voxels[i] = n & 8 ? v - level : level - v;
         }
     }
-    judge_all(grids, COUNT, test_topology_of);
+    judge_all(grids, count, test_topology_of);
     free(grids);
 }
 
@@ -299,7 +299,7 @@ static test_truth whole_number_truth(const float *voxels, const size_t dim[3], f
 static void whole_numbers_have_the_topology_of_their_field(void **state)
 {
     (void)state;
-    const int count = test_rounds(1000);
+    const int count = test_some(1000);
     grid *grids = make_grids(count, 5, 5, 5);
     for (int n = 0; n < count; n++)
         for (size_t i = 0; i < 125; i++)

@@ -128,7 +128,7 @@ static void spheres_are_closed_and_of_second_order(void **state)
     for (int cut = 0; cut < TEST_CUT_COUNT; cut++) {
         const double coarse = measure_sphere((test_cut)cut, 15);
         assert_true(coarse < 0.02);
-        if (!TEST_IS_SLOW)
+        if (!test_is_short())
             assert_true(measure_sphere((test_cut)cut, 30) < 0.35 * coarse);
     }
 }
@@ -181,7 +181,7 @@ static void any_field_gives_a_sound_surface(void **state)
 {
     (void)state;
     test_seed(3);
-    for (int round = 0; round < 36; round += TEST_IS_SLOW ? 7 : 1)
+    for (int round = 0; round < 36; round += test_is_short() ? 7 : 1)
         for (int cut = 0; cut < TEST_CUT_COUNT; cut++) {
             test_grid g;
             cw_extract_counts counts;

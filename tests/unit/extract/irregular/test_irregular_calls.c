@@ -7,7 +7,7 @@ static void threads_do_not_change_a_byte(void **state)
 {
     (void)state;
     test_seed(10);
-    for (int round = 0; round < TEST_SOME(6); round++) {
+    for (int round = 0; round < test_some(6); round++) {
         test_grid g;
         test_grid_make(&g, TEST_MIXED, 22, 0.2);
         fill_with_noise(&g, round);

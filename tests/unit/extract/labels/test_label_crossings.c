@@ -89,7 +89,7 @@ static void tangles_are_found_as_among_all(void **state)
     (void)state;
     size_t back = 0, moved = 0;
     test_seed(11);
-    for (int n = 0; n < test_rounds(400); n++) {
+    for (int n = 0; n < test_some(400); n++) {
         cw_volume v = {0};
         cw_label_surfaces s, plain;
         cw_error err = {0};

@@ -85,7 +85,7 @@ static void noise_comes_back(void **state)
 {
     (void)state;
     static const double voxels[] = {1.3, 2.1, 0.7};
-    for (size_t n = 0; n < (size_t)TEST_SOME(3); n++) {
+    for (size_t n = 0; n < (size_t)test_some(3); n++) {
         cw_mesh mesh = make_noise(6, n + 1), back;
         cw_offset_facts facts;
         cw_error err = {0};
@@ -135,7 +135,7 @@ static void specks_come_back(void **state)
                           .triangle_count = 8 * SPECKS,
                           .positions = positions,
                           .triangles = triangles};
-    for (int n = 0; n < TEST_SOME(4); n++) {
+    for (int n = 0; n < test_some(4); n++) {
         const double voxel = 0.9 + 0.13 * n;
         assert_ok(
             cw_mesh_offset(&mesh, &(cw_offset_desc){.voxel_mm = voxel}, &back, &facts, &err),
@@ -152,7 +152,7 @@ static void specks_come_back(void **state)
 static void threads_change_nothing(void **state)
 {
     (void)state;
-    cw_mesh mesh = make_noise(TEST_IS_SLOW ? 4 : 7, 9), one, three;
+    cw_mesh mesh = make_noise(test_is_short() ? 4 : 7, 9), one, three;
     cw_error err = {0};
     assert_ok(cw_mesh_offset(&mesh, &(cw_offset_desc){.voxel_mm = 1.3, .threads = 1}, &one,
                              NULL, &err),
@@ -198,8 +198,8 @@ static void what_is_lost_is_told(void **state)
 static void running_out_of_memory_is_told(void **state)
 {
     (void)state;
-    cw_mesh mesh = make_noise(TEST_IS_SLOW ? 3 : 4, 2), back;
-    for (long n = 0;; n += 1 + n / (TEST_IS_SLOW ? 4 : 16)) {
+    cw_mesh mesh = make_noise(test_is_short() ? 3 : 4, 2), back;
+    for (long n = 0;; n += 1 + n / (test_is_short() ? 4 : 16)) {
         cw_error err = {0};
         const cw_offset_desc desc = {.voxel_mm = 1.7, .threads = 1};
         cwi_alloc_fail_after(n);
@@ -221,7 +221,7 @@ static void running_out_of_memory_is_told(void **state)
 static void it_can_be_stopped(void **state)
 {
     (void)state;
-    cw_mesh mesh = make_noise(TEST_IS_SLOW ? 4 : 6, 3), back;
+    cw_mesh mesh = make_noise(test_is_short() ? 4 : 6, 3), back;
     cw_error err = {0};
     for (int n = 0, st = CW_ERR_CANCELLED; st != CW_OK; n = n + 1 + n / 2) {
         int polls = n;

@@ -72,7 +72,7 @@ static void a_mesh_comes_back_within_half_a_voxel(void **state)
     } rows[] = {{CW_FIELD_SPHERE, 32, 2.6, 0.5, 0.5},
                 {CW_FIELD_TORUS, 32, 1.8, 0.5, 0.5},
                 {CW_FIELD_GYROID, 20, 1.7, 0.5, 0.5}};
-    for (size_t n = 0; n < (size_t)TEST_SOME(3); n++) {
+    for (size_t n = 0; n < (size_t)test_some(3); n++) {
         const double voxel = rows[n].voxel;
         cw_mesh mesh = surface_of(rows[n].field, rows[n].dim), back = offset(&mesh, 0, voxel);
         const cw_quality before = test_measure(&mesh), after = test_measure(&back);
@@ -127,7 +127,7 @@ static cw_mesh make_turned_cube(float side, double angle, const double axis[3])
 static void edges_and_corners_come_back(void **state)
 {
     (void)state;
-    for (int n = TEST_IS_SLOW ? 7 : 0; n < 16; n += TEST_IS_SLOW ? 8 : 1) {
+    for (int n = test_is_short() ? 7 : 0; n < 16; n += test_is_short() ? 8 : 1) {
         const double voxel = 0.5 + 0.07 * (n % 8);
         cw_mesh cube = n < 8 ? make_cube(12)
                              : make_turned_cube(12, 0.2 * n, (const double[]){1, 0.3 * n, 2}),
@@ -266,7 +266,7 @@ static void what_overlaps_becomes_one(void **state)
         triangles[i] = ball.triangles[i];
         triangles[3 * t + i] = ball.triangles[i] + (uint32_t)v;
     }
-    cw_mesh one = offset(&pair, 0, TEST_IS_SLOW ? 2 : 1);
+    cw_mesh one = offset(&pair, 0, test_is_short() ? 2 : 1);
     const cw_quality q = test_measure(&one);
     assert_int_equal(q.components, 1);
     assert_int_equal(q.euler, 2);
@@ -285,7 +285,7 @@ static void a_sphere_becomes_a_larger_or_smaller_one(void **state)
     (void)state;
     static const double rows[] = {4, 0.4, -0.4, -12};
     cw_mesh ball = surface_of(CW_FIELD_SPHERE, 64);
-    for (int n = 0; n < 4; n += TEST_IS_SLOW ? 3 : 1) {
+    for (int n = 0; n < 4; n += test_is_short() ? 3 : 1) {
         cw_mesh out = offset(&ball, rows[n], 2);
         for (size_t v = 0; v < out.vertex_count; v++) {
             const float *p = out.positions + 3 * v;
@@ -303,7 +303,7 @@ static void a_sphere_becomes_a_larger_or_smaller_one(void **state)
 static void a_cube_becomes_a_round_box(void **state)
 {
     (void)state;
-    const double s = 20, r = 3, voxel = TEST_IS_SLOW ? 0.4 : 0.3;
+    const double s = 20, r = 3, voxel = test_is_short() ? 0.4 : 0.3;
     cw_mesh cube = make_cube(20), out = offset(&cube, r, voxel), in = offset(&cube, -r, voxel);
     const double round =
         s * s * s + 6 * s * s * r + 3 * PI * s * r * r + 4 / 3.0 * PI * r * r * r;
@@ -320,7 +320,7 @@ static void far_from_zero_nothing_changes(void **state)
     cw_mesh ball = surface_of(CW_FIELD_SPHERE, 32), far = ball;
     for (int a = 0; a < 3; a++)
         far.origin[a] += 1e6;
-    const double voxel = TEST_IS_SLOW ? 2 : 1;
+    const double voxel = test_is_short() ? 2 : 1;
     cw_mesh near_out = offset(&ball, 2, voxel), far_out = offset(&far, 2, voxel);
     assert_int_equal(near_out.vertex_count, far_out.vertex_count);
     for (int a = 0; a < 3; a++)
@@ -478,8 +478,10 @@ static void cavities_that_stay_sealed_are_counted(void **state)
         triangles[36 + i] = cube.triangles[i] + 8;
     }
     const cw_drain drains[] = {{2, {0, 1, 0}}, {2, {-1, 0, 0}}};
-    cw_hollow_desc desc = {
-        .wall_mm = 1, .voxel_mm = TEST_IS_SLOW ? 0.5 : 0, .drains = drains, .drain_count = 1};
+    cw_hollow_desc desc = {.wall_mm = 1,
+                           .voxel_mm = test_is_short() ? 0.5 : 0,
+                           .drains = drains,
+                           .drain_count = 1};
     cw_hollow_facts facts;
     cw_mesh out = hollow(&pair, &desc, &facts);
     assert_true(facts.cavities == 2 && facts.sealed == 1);
@@ -501,9 +503,9 @@ static void threads_change_nothing(void **state)
     static const cw_drain down = {8, {1, 2, -3}};
     cw_mesh mesh = surface_of(CW_FIELD_TORUS, 32), first = {0}, out;
     cw_error err = {0};
-    for (int threads = 1; threads <= 4; threads += TEST_IS_SLOW ? 2 : 1) {
+    for (int threads = 1; threads <= 4; threads += test_is_short() ? 2 : 1) {
         const cw_hollow_desc desc = {.wall_mm = 3,
-                                     .voxel_mm = TEST_IS_SLOW ? 1.5 : 1,
+                                     .voxel_mm = test_is_short() ? 1.5 : 1,
                                      .drains = &down,
                                      .drain_count = 1,
                                      .threads = threads};
@@ -613,7 +615,7 @@ static void running_out_of_memory_is_told(void **state)
         for (long n = 0;; n += 1 + n / 8) {
             cw_error err = {0};
             const cw_hollow_desc desc = {.wall_mm = 8,
-                                         .voxel_mm = TEST_IS_SLOW ? 4 : 0,
+                                         .voxel_mm = test_is_short() ? 4 : 0,
                                          .drains = &down,
                                          .drain_count = drains,
                                          .threads = 1};

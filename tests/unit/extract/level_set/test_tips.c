@@ -192,7 +192,7 @@ static void tips_needles_grooves_and_fins_come_back(void **state)
     (void)state;
     int count = 0, refined = 0;
     for (int n = 0; n < SHAPES; n++)
-        for (int t = 0; t < TEST_SOME(3); t++, count++) {
+        for (int t = 0; t < test_some(3); t++, count++) {
             shape s;
             make_shape(&s, n, 0.7 * t);
             assert_comes_back(&s.mesh, 1 + 0.13 * t, &refined);

@@ -236,7 +236,7 @@ static void the_error_reported_is_the_error(void **state)
     (void)state;
     for (int n = 0; n < SMOOTH; n++) {
         const double snap = 0.3;
-        pair p = extract_smooth(n, TEST_IS_SLOW ? 16 : 24, snap);
+        pair p = extract_smooth(n, test_is_short() ? 16 : 24, snap);
         const cw_snap_counts *r = &p.after.snap;
         double most = 0, sum = 0;
         for (size_t v = 0; v < p.plain.vertex_count; v++) {
@@ -305,7 +305,7 @@ static void hostile_volumes_keep_their_topology(void **state)
     (void)state;
     int changed = 0;
     for (size_t n = 0; test_hostile_at(n); n++)
-        for (unsigned s = 0; s < 16; s += TEST_IS_SLOW ? 7 : 1)
+        for (unsigned s = 0; s < 16; s += test_is_short() ? 7 : 1)
             changed += is_changed(test_hostile_at(n), test_frame_at(0), s);
     assert_int_equal(changed, 0);
 }
@@ -315,8 +315,8 @@ static void hostile_volumes_keep_their_topology_in_every_frame(void **state)
     (void)state;
     int changed = 0;
     for (size_t n = 0; test_hostile_at(n); n++)
-        for (size_t f = TEST_IS_SLOW ? 1 + n % 4 : 1; test_frame_at(f);
-             f += TEST_IS_SLOW ? 4 : 1)
+        for (size_t f = test_is_short() ? 1 + n % 4 : 1; test_frame_at(f);
+             f += test_is_short() ? 4 : 1)
             changed += is_changed(test_hostile_at(n), test_frame_at(f), (unsigned)(n + f) % 16);
     assert_int_equal(changed, 0);
 }
@@ -392,7 +392,7 @@ static void an_extractor_snaps_the_same(void **state)
     cw_extractor *e;
     cw_error err = {0};
     assert_ok(cw_extractor_new(&v, &e, &err), err);
-    for (int iso = -8; iso <= 8; iso += TEST_IS_SLOW ? 6 : 2) {
+    for (int iso = -8; iso <= 8; iso += test_is_short() ? 6 : 2) {
         const cw_extract_desc d = {.isovalue = iso, .snap = 0.4, .leave_open = iso % 4 == 0};
         cw_mesh once = test_extract(&v, &d, NULL), again;
         assert_ok(cw_extractor_extract(e, &d, &again, NULL, &err), err);

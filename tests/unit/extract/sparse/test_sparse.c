@@ -100,7 +100,7 @@ static void test_fields_and_types(void **state)
     } types[] = {{CW_F32, 1}, {CW_F64, 1}, {CW_I16, 100}, {CW_U8, 10}};
     (void)state;
     for (size_t f = 0; f < 3; f++)
-        for (size_t t = TEST_IS_SLOW ? f : 0; t < 4; t += TEST_IS_SLOW ? 3 : 1) {
+        for (size_t t = test_is_short() ? f : 0; t < 4; t += test_is_short() ? 3 : 1) {
             const double scale = f == 2 ? 1 : types[t].scale, far = 3;
             cw_volume dense = make_dense(fields[f], types[t].type, scale, far);
             cw_volume sparse =
@@ -319,7 +319,7 @@ static void test_overlaps(void **state)
 {
     (void)state;
     bool refused = false;
-    for (uint32_t round = 0; round < 60; round += TEST_IS_SLOW ? 5 : 1) {
+    for (uint32_t round = 0; round < 60; round += test_is_short() ? 5 : 1) {
         cw_tile tiles[40];
         cw_error err = {0};
         cw_mesh m;

@@ -204,7 +204,7 @@ static void noise_is_the_same_from_slices(void **state)
 {
     (void)state;
     static const cw_type types[] = {CW_U8, CW_I16, CW_F32, CW_F64};
-    for (int n = 0; n < 4; n++) {
+    for (int n = 0; n < 4; n += test_is_short() ? 2 : 1) {
         cw_volume v = make_noise(types[n], (const size_t[3]){37, 19, 23 + (size_t)n}, 5,
                                  11 + (uint64_t)n);
         assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 2});
@@ -226,7 +226,7 @@ static void noise_is_the_same_from_slices(void **state)
 static void vanishing_gradients_are_repaired_across_slabs(void **state)
 {
     (void)state;
-    for (uint64_t seed = 0; seed < 8; seed++) {
+    for (uint64_t seed = 0; seed < (test_is_short() ? 3 : 8); seed++) {
         cw_volume v = make_noise(CW_U8, (const size_t[3]){70, 9, 13}, 2, seed);
         assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 0.5});
         assert_same_for_layers(&v, &(cw_extract_desc){.isovalue = 1, .leave_open = true});
@@ -258,7 +258,7 @@ static void open_surfaces_around_gaps_are_the_same(void **state)
 {
     (void)state;
     static const size_t every[] = {2, 3, 5, 7, 12, 19, 50};
-    for (size_t n = 0; n < sizeof every / sizeof *every; n++) {
+    for (size_t n = 0; n < sizeof every / sizeof *every; n += test_is_short() ? 3 : 1) {
         cw_volume v = make_noise(CW_F32, (const size_t[3]){67, 15, 26}, 6, 30 + n);
         cw_volume gaps = make_noise(CW_F32, v.dim, (unsigned)every[n], 60 + n);
         float *voxels = cw_volume_voxels(&v);
@@ -334,7 +334,7 @@ static void large_layers_are_cut_between_rows(void **state)
     cw_mesh whole = test_extract(&v, &d, &made);
     assert_true(12 * whole.triangle_count > 5 * (4 << 20));
     const cwi_engine *engine;
-    for (size_t n = 0; (engine = cwi_engine_at(n)); n++)
+    for (size_t n = 0; (engine = cwi_engine_at(n)); n += test_is_short() ? 3 : 1)
         assert_streamed(&whole, &made, &v, &d, 1 + 4 * (n % 2), engine);
     cw_mesh_free(&whole);
     cw_volume_free(&v);

@@ -243,7 +243,7 @@ static void normals_are_those_of_a_volume_in_memory(void **state)
     static const cw_type types[] = {CW_U8, CW_U16, CW_F32};
     for (size_t n = 0; n < 6; n++) {
         cw_volume v =
-            make_noise(types[n % 3], (const size_t[3]){60, 50, 33 + n}, 3 + (unsigned)n, n);
+            make_noise(types[n % 3], (const size_t[3]){36, 30, 33 + n}, 3 + (unsigned)n, n);
         const cw_normals_desc d = {.inside_is_low = n & 1, .threads = 1 + (int)(n & 1)};
         cw_extract_desc desc = {
             .isovalue = 1.5, .inside_is_low = n & 1, .leave_open = n & 2, .no_normals = true};

@@ -100,7 +100,7 @@ static void every_format_is_the_same_from_a_spool(void **state)
     static const char *const names[] = {"a.ply", "a.stl", "a.obj",  "a.off",
                                         "a.vtp", "a.glb", "a.gltf", "a.3mf"};
     static const double far[3] = {4e5, -3e5, 1e3};
-    for (int n = 0; n < 4; n++) {
+    for (int n = 0; n < 4; n += test_is_short() ? 3 : 1) {
         cw_mesh mesh = make_mesh(n % 2 == 0);
         if (n >= 2)
             memcpy(mesh.origin, far, sizeof far);

@@ -143,7 +143,7 @@ static void levels_of_labels_are_closed_and_in_place(void **state)
         skip();
     const cw_label_field_desc field = {.dim = {16, 18, 20}, .type = CW_U8, .labels = 8};
     assert_ok(cw_label_field_sample(&field, &volume, &err), err);
-    for (size_t levels = 1; levels <= MOST_LEVELS; levels++) {
+    for (size_t levels = 1; levels <= MOST_LEVELS; levels += test_is_short() ? 2 : 1) {
         label_levels *l = make_levels(&volume, NULL, levels);
         check_labels(l, (cw_write_desc){0}, false);
         check_labels(l, (cw_write_desc){.bits = 10}, false);
@@ -161,7 +161,7 @@ static void random_label_maps_stay_closed(void **state)
     if (!cwi_module_present("draco"))
         skip();
     srand(test_seed(31));
-    for (int round = 0; round < test_rounds(24); round++) {
+    for (int round = 0; round < test_some(24); round++) {
         enum { EDGE = 7 };
         uint8_t voxels[EDGE * EDGE * EDGE];
         for (size_t i = 0; i < sizeof voxels; i++)
@@ -191,7 +191,7 @@ static void units_and_places_do_not_matter(void **state)
     } rows[] = {{1e-4, 0}, {1e-4, 3}, {1, 123456.789}, {1e4, -5e6}, {1, 0}};
     if (!cwi_module_present("draco"))
         skip();
-    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r += test_is_short() ? 2 : 1) {
         cw_error err = {0};
         cw_compressed told = {0};
         cw_volume v = test_sample(CW_FIELD_GYROID, 16, CW_F32);

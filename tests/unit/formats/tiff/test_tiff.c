@@ -363,7 +363,7 @@ static void a_cut_is_never_a_volume(void **state)
                   1);
         add_bytes(&t, (test_page){.bits = 8}, 2);
         save(&t, "a.tif");
-        check_some_cuts("a.tif", "a.tif", 0, TEST_IS_SLOW ? 7 : 1);
+        check_some_cuts("a.tif", "a.tif", 0, test_is_short() ? 7 : 1);
     }
 }
 

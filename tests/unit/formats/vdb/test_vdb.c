@@ -234,7 +234,7 @@ static void test_damage(void **state)
     char *bytes = test_file_read(write_kind("several"), &size);
     const char *path = test_path("b.vdb");
     uint32_t random = 1;
-    for (int round = 0; round < 120; round += TEST_IS_SLOW ? 7 : 1, rounds++) {
+    for (int round = 0; round < 120; round += test_is_short() ? 7 : 1, rounds++) {
         cw_error err = {0};
         cw_volume v;
         cw_mesh m;

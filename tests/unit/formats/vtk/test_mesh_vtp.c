@@ -191,7 +191,7 @@ static void a_cut_is_never_a_mesh(void **state)
     for (unsigned n = 0; n < FORM_COUNT; n++) {
         const dialect d = {.form = (form)n, .packing = n % 2 ? ZLIB : PLAIN};
         make_file(&d, "Float32", "Int64", &file);
-        for (size_t cut = 1; cut + 1 < file.size; cut += TEST_IS_SLOW ? 7 : 1) {
+        for (size_t cut = 1; cut + 1 < file.size; cut += test_is_short() ? 7 : 1) {
             cw_mesh mesh;
             cw_error err = {0};
             if (read_bytes("a.vtp", file.at, cut, &mesh, NULL, &err) != CW_ERR_FORMAT)
@@ -209,7 +209,7 @@ static void no_byte_is_trusted(void **state)
     for (unsigned n = 0; n < 2; n++) {
         const dialect d = {.form = n ? APPENDED_RAW : ASCII, .packing = n ? ZLIB : PLAIN};
         make_file(&d, "Float32", "Int32", &file);
-        for (size_t i = 0; i < file.size; i += TEST_IS_SLOW ? 9 : 1) {
+        for (size_t i = 0; i < file.size; i += test_is_short() ? 9 : 1) {
             cw_mesh mesh;
             cw_error err = {0};
             const unsigned char kept = file.at[i];

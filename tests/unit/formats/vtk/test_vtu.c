@@ -159,7 +159,7 @@ static void a_cut_is_never_a_grid(void **state)
             continue;
         make_file(&d, &file);
         save(&file, "a.vtu");
-        check_some_cuts("a.vtu", "a.vtu", 0, TEST_IS_SLOW ? 7 : 1);
+        check_some_cuts("a.vtu", "a.vtu", 0, test_is_short() ? 7 : 1);
     }
 }
 
@@ -173,7 +173,7 @@ static void no_byte_is_trusted(void **state)
                            .packing = n & 2 ? ZLIB : PLAIN,
                            .wide = n & 4};
         make_file(&d, &file);
-        for (size_t i = 0; i < file.size; i += TEST_IS_SLOW ? 9 : 1) {
+        for (size_t i = 0; i < file.size; i += test_is_short() ? 9 : 1) {
             cw_volume v;
             cw_error err = {0};
             const unsigned char kept = file.at[i];

@@ -123,7 +123,7 @@ static void every_kind_of_array_is_read_voxel_for_voxel(void **state)
 {
     (void)state;
     char names[160][16];
-    const int rounds = TEST_SOME(160);
+    const int rounds = test_some(160);
     test_seed(7);
     for (int n = 0; n < rounds; n++) {
         cw_volume v;

@@ -179,7 +179,7 @@ static void spheres_that_meet_are_simplified(void **state)
     enum { SIDE = 32 };
     cw_volume v = {0};
     uint32_t *to = make_map(&v, SIDE, SIDE, SIDE);
-    for (int step = 0; step < 6; step++) {
+    for (int step = 0; step < 6; step += test_is_short() ? 3 : 1) {
         fill_spheres(to, SIDE, 5 + 2.2 * step);
         for (int plain = 0; plain < 2; plain++) {
             const double left = check_map(&v, &(cw_labels_desc){.no_smoothing = plain},
@@ -196,7 +196,7 @@ static void random_maps_are_simplified(void **state)
 {
     (void)state;
     test_seed(11);
-    for (int n = 0; n < test_rounds(240); n++) {
+    for (int n = 0; n < test_some(240); n++) {
         static const uint32_t counts[] = {2, 3, 5, 50};
         cw_volume v = {0};
         size_t dim[3];
@@ -218,10 +218,10 @@ static void random_maps_are_simplified(void **state)
 static void cells_are_simplified_to_a_fifth(void **state)
 {
     (void)state;
-    enum { SIDE = 64 };
+    const size_t side = test_is_short() ? 40 : 64;
     cw_volume v = {0};
     test_seed(5);
-    fill_cells(make_map(&v, SIDE, SIDE, SIDE), SIDE, 30);
+    fill_cells(make_map(&v, side, side, side), side, test_is_short() ? 8 : 30);
     assert_true(check_map(&v, NULL, &(cw_label_simplify_desc){.ratio = 0.2}) <= 0.2001);
     assert_true(check_map(&v, NULL, &(cw_label_simplify_desc){.error_mm = 0.25}) < 0.2);
     cw_volume_free(&v);
@@ -241,7 +241,7 @@ static void errors_are_promises(void **state)
             fill_cells(to, SIDE, 12);
         else
             fill_spheres(to, SIDE, 13);
-        for (double error = 0.02; error < 3; error *= 4) {
+        for (double error = 0.02; error < 3; error *= test_is_short() ? 64 : 4) {
             const double left =
                 check_map(&v, NULL, &(cw_label_simplify_desc){.error_mm = error});
             assert_true(left < before);
@@ -305,7 +305,7 @@ static void borders_stay_borders(void **state)
 static void threads_change_nothing(void **state)
 {
     (void)state;
-    enum { SIDE = 40 };
+    enum { SIDE = 28 };
     cw_volume v = {0};
     cw_label_surfaces s, one, many;
     cw_error err = {0};
@@ -428,7 +428,7 @@ static void memory_that_is_out_is_an_error(void **state)
     assert_ok(cw_extract_labels(&v, NULL, &s, &err), err);
     for (int k = 0; k < 2; k++) {
         bool failed = true;
-        for (long n = 0; failed; n++) {
+        for (long n = 0; failed; n += test_is_short() ? 1 + n / 8 : 1) {
             cw_label_simplify_desc desc = descs[k];
             desc.threads = 1;
             cwi_alloc_fail_after(n);
@@ -454,7 +454,7 @@ static void calls_can_be_cancelled(void **state)
     assert_ok(cw_extract_labels(&v, NULL, &s, &err), err);
     cw_status st = CW_ERR_CANCELLED;
     int polls = 0;
-    for (; st != CW_OK; polls++) {
+    for (; st != CW_OK; polls += test_is_short() ? 1 + polls / 4 : 1) {
         int left = polls;
         st = cw_label_simplify(&s,
                                &(cw_label_simplify_desc){.error_mm = 0.2,

@@ -100,7 +100,7 @@ static void walls_are_as_thick_as_they_are(void **state)
         assert_true(f.wall_at[2] == 3 || fabs(f.wall_at[2] - 3 - t) < 1e-6);
         assert_within(f.thin_mm2, t < 0.8 ? 2 * 20 * 30 : 0, 1e-5);
         assert_true(isinf(f.gap_mm) && f.narrow_mm2 == 0);
-        add_ring(&ring, tube, 4, 180);
+        add_ring(&ring, tube, 4, test_is_short() ? 60 : 180);
         f = measure_print(&ring, NULL);
         assert_within(f.wall_mm, t, 0.01);
         add_box(&hollow, (const double[3]){0, 0, 0}, (const double[3]){30, 30, 30}, false);
@@ -122,7 +122,7 @@ static void walls_of_extracted_shapes_are_known(void **state)
         cw_field field;
         double wall;
     } rows[] = {{CW_FIELD_SPHERE, 60}, {CW_FIELD_TORUS, 20}};
-    for (size_t n = 0; n < 2; n++) {
+    for (size_t n = test_is_short() ? 1 : 0; n < 2; n++) {
         cw_volume volume = test_sample(rows[n].field, 64, CW_F32);
         cw_mesh m = test_extract(&volume, NULL, NULL);
         for (double limit = 0.8; limit < 100; limit *= 100) {
@@ -186,12 +186,13 @@ static void gaps_are_as_wide_as_they_are(void **state)
 static void overhangs_and_feet_are_summed(void **state)
 {
     (void)state;
+    const size_t facets = test_is_short() ? 90 : 360;
     const double table[8][2] = {{1, 0}, {5, 0}, {5, 10}, {20, 10}, {20, 12}, {1, 12}};
     const double cone[4][2] = {{1, 0}, {5, 0}, {15, 10}, {1, 10}};
     cw_mesh m = make_empty();
-    add_ring(&m, table, 6, 360);
+    add_ring(&m, table, 6, facets);
     cw_print_facts f = measure_print(&m, NULL);
-    const double circle = PI * (sin(2 * PI / 360) / (2 * PI / 360));
+    const double circle = PI * (sin(2 * PI / (double)facets) / (2 * PI / (double)facets));
     assert_within(f.overhang_mm2, circle * (400 - 25), 1e-5);
     assert_within(f.foot_mm2, circle * (25 - 1), 1e-5);
     assert_near(f.center[0], 0, 1e-4);
@@ -200,7 +201,7 @@ static void overhangs_and_feet_are_summed(void **state)
     assert_int_equal(f.islands, 0);
     cw_mesh_free(&m);
     m = make_empty();
-    add_ring(&m, cone, 4, 360); /* leans by 45 degrees, but for the facets' rounding */
+    add_ring(&m, cone, 4, facets); /* leans by 45 degrees, but for the facets' rounding */
     f = measure_print(&m, &(cw_print_desc){.overhang_deg = 44.9});
     assert_within(f.overhang_mm2, circle * (15 * 15 - 5 * 5) * sqrt(2), 1e-3);
     f = measure_print(&m, &(cw_print_desc){.overhang_deg = 45.1});
@@ -283,7 +284,7 @@ static void plates_are_turned_by_90_degrees(void **state)
 
 static cw_mesh extract_gyroid(double scale)
 {
-    cw_volume volume = test_sample(CW_FIELD_GYROID, 40, CW_F32);
+    cw_volume volume = test_sample(CW_FIELD_GYROID, test_is_short() ? 24 : 40, CW_F32);
     cw_mesh m = test_extract(&volume, NULL, NULL);
     cw_volume_free(&volume);
     for (size_t c = 0; c < 3 * m.vertex_count; c++)
@@ -417,7 +418,7 @@ static void memory_failures_and_cancelling_are_told(void **state)
     cw_print_facts facts;
     cw_error err;
     BOX(&m, 0, 0, 0, 10, 10, 10);
-    for (long n = 0;; n++) {
+    for (long n = 0;; n += test_is_short() ? 1 + n / 8 : 1) {
         cwi_alloc_fail_after(n);
         const cw_status st = cw_print_measure(&m, &(cw_print_desc){.threads = 1}, &facts, &err);
         if (!cwi_alloc_fail_after(-1)) {

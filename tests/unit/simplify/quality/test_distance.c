@@ -115,7 +115,7 @@ static void coarse_meshes_are_as_far_as_formulas_say(void **state)
     } cases[] = {{CW_FIELD_SPHERE, 8, 128, to_sphere},
                  {CW_FIELD_TORUS, 12, 128, to_torus},
                  {CW_FIELD_GYROID, 14, 128, to_gyroid}};
-    for (size_t n = 0; n < sizeof cases / sizeof *cases; n += TEST_IS_SLOW ? 2 : 1) {
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n += test_is_short() ? 2 : 1) {
         const size_t fine = cases[n].volume;
         cw_volume coarse = test_sample(cases[n].field, cases[n].mesh, CW_F32), inner,
                   volume = test_sample(cases[n].field, fine, CW_F32);

@@ -192,25 +192,25 @@ static size_t verdicts_agree(const cw_mesh *mesh, const cw_mesh *reference, doub
 static void what_is_within_is_so_everywhere(void **state)
 {
     (void)state;
-    enum { DIM = TEST_IS_SLOW ? 5 : 7 };
+    const size_t dim = test_is_short() ? 5 : 7;
     test_seed(9);
     cw_mesh soup = make_soup(60, 3), other = make_soup(40, 2);
     soup.origin[1] = 1e6 - 1; /* each mesh with a zero of its own */
     other.origin[1] = 1e6;
     size_t beyond = 0, asked = 0;
-    for (double limit = 0.5; limit < 5; limit *= TEST_IS_SLOW ? 4 : 1.5) {
+    for (double limit = 0.5; limit < 5; limit *= test_is_short() ? 4 : 1.5) {
         beyond += verdicts_agree(&other, &soup, limit);
         asked += other.triangle_count;
     }
     assert_true(beyond > 0 && beyond < asked);
     const cw_field_desc field = {
-        .field = CW_FIELD_GYROID, .dim = {DIM, DIM, DIM}, .type = CW_F32, .noise = 0.3};
+        .field = CW_FIELD_GYROID, .dim = {dim, dim, dim}, .type = CW_F32, .noise = 0.3};
     cw_volume v;
     cw_error err = {0};
     assert_ok(cw_field_sample(&field, &v, &err), err);
     cw_mesh rough = test_extract(&v, NULL, NULL),
             level = test_extract(&v, &(cw_extract_desc){.isovalue = 0.1f}, NULL);
-    for (double limit = TEST_IS_SLOW ? 1.2 : 0.4; limit < 5; limit *= 3)
+    for (double limit = test_is_short() ? 1.2 : 0.4; limit < 5; limit *= 3)
         verdicts_agree(&rough, &level, limit);
     cw_mesh_free(&level);
     cw_mesh_free(&rough);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { EDGE = 5, POINTS = 24, LINES = 12, ROUNDS = TEST_IS_SLOW ? 3 : 12 };
+enum { EDGE = 5, POINTS = 24, LINES = 12 };
 
 /* A grid, and the nearest point of its surface seen so far. */
 typedef struct truth {
@@ -204,7 +204,7 @@ static void compare(const cw_volume *v, const cw_mesh *mesh, bool open, double l
 static void compare_random_grids(bool open, bool gaps)
 {
     test_seed(18);
-    for (int round = 0; round < ROUNDS; round++) {
+    for (int round = 0; round < test_some(12); round++) {
         cw_volume v = make_grid(round);
         float *x = cw_volume_voxels(&v);
         if (gaps)

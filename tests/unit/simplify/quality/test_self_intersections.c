@@ -109,7 +109,7 @@ static void threads_change_nothing(void **state)
 {
     (void)state;
     cw_mesh mesh;
-    scatter(&mesh, TEST_IS_SLOW ? 500 : 3000, TEST_IS_SLOW ? 30 : 60, 1, 7);
+    scatter(&mesh, test_is_short() ? 500 : 3000, test_is_short() ? 30 : 60, 1, 7);
     cw_crossings one = find(&mesh, 1), three = find(&mesh, 3);
     assert_true(one.count > 100);
     assert_int_equal(one.count, three.count);

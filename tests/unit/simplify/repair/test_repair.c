@@ -289,7 +289,7 @@ static void broken_scans_become_solids(void **state)
     test_seed(1);
     for (int field = 0; field < 2; field++) {
         cw_mesh whole = extract_field(fields[field], field ? 12 : 16);
-        for (int ways = 0; ways < ALL_WAYS; ways += TEST_IS_SLOW ? 5 : 1) {
+        for (int ways = 0; ways < ALL_WAYS; ways += test_is_short() ? 5 : 1) {
             char name[32];
             cw_mesh m = break_mesh(&whole, ways, 0.03, 2);
             snprintf(name, sizeof name, "field %d, ways %d", field, ways);
@@ -313,7 +313,7 @@ static void hopeless_meshes_become_solids(void **state)
     (void)state;
     cw_mesh whole = extract_field(CW_FIELD_GYROID, 12);
     test_seed(2);
-    for (int n = 0; n < TEST_SOME(8); n++) {
+    for (int n = 0; n < test_some(8); n++) {
         cw_mesh m = break_mesh(&whole, DELETED | DOUBLED | FLIPPED | CROSSING, 0.3, 8);
         const cw_repair_facts facts = repair_mesh(&m, NULL);
         assert_true(facts.is_sound && facts.crossings_before > 0);

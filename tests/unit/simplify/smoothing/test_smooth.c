@@ -355,7 +355,7 @@ static void hostile_surfaces_stay_sound(void **state)
 {
     (void)state;
     const test_hostile *h;
-    for (size_t n = 0; (h = test_hostile_at(n)); n += TEST_IS_SLOW ? 3 : 1) {
+    for (size_t n = 0; (h = test_hostile_at(n)); n += test_is_short() ? 3 : 1) {
         cw_volume volume;
         cw_error err = {0};
         assert_ok(test_hostile_make(h, &volume, &err), err);

@@ -80,7 +80,7 @@ static void errors_are_not_above_those_of_opengl(void **state)
     for (size_t c = 0; c < sizeof examples / sizeof *examples; c++) {
         cw_volume volume = {0};
         test_field(&volume, EDGE, EDGE, EDGE, cube, examples[c].field);
-        for (size_t n = 0; n < VIEWS; n++) {
+        for (size_t n = 0; n < VIEWS; n += test_is_short() ? 3 : 1) {
             const cw_scene scene =
                 scene_of(&volume, &examples[c].transfer,
                          test_view(views[n][0], views[n][1], (n + c) % 2 ? 30 : 0, 50));

@@ -87,7 +87,7 @@ static void large_volumes_are_lit_as_small_ones(void **state)
                               .gradients = {{0, 0.2f}, {20, 1}}};
     make_bytes(&bytes, 260, 260, 250); /* more than 2^24 */
     static const cw_mode modes[] = {CW_MODE_COMPOSITE, CW_MODE_TEXTURE};
-    for (size_t m = 0; m < TEST_SOME(sizeof modes / sizeof *modes); m++) {
+    for (size_t m = 0; m < (size_t)test_some(sizeof modes / sizeof *modes); m++) {
         cw_scene scene = {.mode = modes[m],
                           .volume = &bytes,
                           .transfer = &soft,
@@ -136,9 +136,9 @@ static void lean_pictures_are_as_others(void **state)
     for (size_t d = 0; d < sizeof dims / sizeof *dims; d++) {
         cw_volume bytes = {0};
         make_bytes(&bytes, dims[d][0], dims[d][1], dims[d][2]);
-        for (size_t n = TEST_IS_SLOW ? d : 0;
+        for (size_t n = test_is_short() ? d : 0;
              n < sizeof types / sizeof *types * (sizeof modes / sizeof *modes);
-             n += TEST_IS_SLOW ? 3 : 1) {
+             n += test_is_short() ? 3 : 1) {
             const cw_type type = types[n % (sizeof types / sizeof *types)];
             const cw_mode mode = modes[n / (sizeof types / sizeof *types)];
             cw_picture lean = draw_as(&bytes, type, mode, true);

@@ -345,7 +345,7 @@ static void meshes_are_hit_nearest_first(void **state)
 {
     (void)state;
     cw_mesh mesh = {0};
-    const int step = TEST_IS_SLOW ? 5 : 1;
+    const int step = test_is_short() ? 5 : 1;
     int hits = 0, cuts = 0;
     make_sphere(&mesh, 15);
     for (int way = 0; way < 8; way++) {

@@ -31,7 +31,7 @@ static void nearest_is_nearest(void **state)
     test_seed(1);
     for (int c = 0; c < COUNTS; c++) {
         assert_ok(cwi_directions_make(counts[c], &d, &err), err);
-        for (int n = 0; n < TEST_SOME(3000); n++) {
+        for (int n = 0; n < test_some(3000); n++) {
             double v[3], most = 0;
             vector_of(n, v);
             if (n == 13) /* 0, 0, 0 */
