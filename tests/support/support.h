@@ -19,7 +19,7 @@
 bool test_is_short(void);
 
 /* How many of `count` cases a test tries, where each proves the same on other numbers: an eighth in
- * a short run. */
+ * a short run, and under sanitizers, where all takes seven times as long, a quarter of that. */
 int test_some(int count);
 
 /* Returns the seconds after which something hangs: no machine is so slow. CUBEWRIGHT_TEST_SLOW=10
