@@ -2,7 +2,6 @@
 #include "support/surface.h"
 
 #include "core/base/memory.h"
-#include "core/geometry/exact_predicates.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -158,62 +157,6 @@ static void triangles_without_area_and_empty_meshes_have_none(void **state)
     cw_mesh_free(&mesh);
 }
 
-static int sign_of(long long x)
-{
-    return (x > 0) - (x < 0);
-}
-
-/* Whole numbers up to 2^20 have exact determinants in 64 bits; adding one far away point's
- * multiples makes near ties. */
-static void signs_are_exact(void **state)
-{
-    (void)state;
-    uint32_t seed = 1;
-    size_t ties = 0;
-    for (int round = 0; round < 200000; round++) {
-        long long p[4][3], u[3][3];
-        float f[4][3];
-        const uint32_t range = round % 2 ? 1u << 20 : 4;
-        for (int n = 0; n < 4; n++)
-            for (int a = 0; a < 3; a++)
-                p[n][a] = next(&seed) % range;
-        if (round % 4 == 1) /* nearly in the plane of the others */
-            for (int a = 0; a < 3; a++)
-                p[3][a] = (p[1][a] + p[2][a]) / 2 + next(&seed) % 2;
-        for (int n = 0; n < 4; n++)
-            for (int a = 0; a < 3; a++) {
-                f[n][a] = (float)p[n][a];
-                if (n)
-                    u[n - 1][a] = p[n][a] - p[0][a];
-            }
-        const long long det = u[0][0] * (u[1][1] * u[2][2] - u[1][2] * u[2][1]) +
-                              u[0][1] * (u[1][2] * u[2][0] - u[1][0] * u[2][2]) +
-                              u[0][2] * (u[1][0] * u[2][1] - u[1][1] * u[2][0]);
-        ties += det == 0;
-        assert_int_equal(cwi_orient3d(f[0], f[1], f[2], f[3]), sign_of(det));
-        assert_int_equal(cwi_orient3d(f[1], f[0], f[2], f[3]), -sign_of(det));
-        assert_int_equal(cwi_orient2d(f[0], f[1], f[2], 2),
-                         sign_of(u[0][0] * u[1][1] - u[0][1] * u[1][0]));
-    }
-    assert_true(ties > 1000);
-}
-
-/* Where doubles lose all of it: a step of the smallest float beside the largest ones. */
-static void signs_are_exact_at_the_limits(void **state)
-{
-    (void)state;
-    const float tiny = 1e-45f, huge = 3e38f;
-    const float a[3] = {0, 0, 0}, b[3] = {huge, huge, 0}, c[3] = {-huge, -huge, tiny};
-    const float d[3] = {huge, huge, tiny}, e[3] = {huge, 0, 0};
-    assert_int_equal(cwi_orient3d(a, b, c, d), 0);
-    assert_int_equal(cwi_orient3d(a, b, e, c), -1);
-    assert_int_equal(cwi_orient3d(a, e, b, c), 1);
-    assert_int_equal(cwi_seen_along(a, b, c), 0);
-    assert_int_equal(cwi_seen_along(a, a, b), -1);
-    const float f[3] = {tiny, 0, 0}, g[3] = {0, tiny, 0}, h[3] = {0, 0, tiny};
-    assert_int_equal(cwi_orient3d(a, f, g, h), 1);
-}
-
 static void memory_running_out_and_cancelling_are_errors(void **state)
 {
     (void)state;
@@ -248,8 +191,6 @@ int main(void)
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(a_heap_of_slivers_is_given_up_in_time),
         cmocka_unit_test(triangles_without_area_and_empty_meshes_have_none),
-        cmocka_unit_test(signs_are_exact),
-        cmocka_unit_test(signs_are_exact_at_the_limits),
         cmocka_unit_test(memory_running_out_and_cancelling_are_errors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
