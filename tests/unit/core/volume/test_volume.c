@@ -679,10 +679,11 @@ int main(void)
         cmocka_unit_test(otsu_parts_classes),
         cmocka_unit_test(scaled_integers_fall_into_their_own_bins),
         cmocka_unit_test(statistics_do_not_depend_on_threads),
-        cmocka_unit_test(counts_of_threads_are_added_one_after_another),
         cmocka_unit_test(joined_statistics_are_those_of_the_whole),
         cmocka_unit_test(fields_are_the_same_bytes_for_any_number_of_threads),
         cmocka_unit_test(integer_fields_keep_their_level),
+        /* last, as it sets the allocator */
+        cmocka_unit_test(counts_of_threads_are_added_one_after_another),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

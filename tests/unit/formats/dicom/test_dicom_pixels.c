@@ -68,6 +68,44 @@ static void slices_with_a_scale_each_become_values(void **state)
     cw_volume_free(&v);
 }
 
+/* Two slices are missing between slices of different scales: values are interpolated, not pixels. */
+static void slices_between_scales_are_made_of_values(void **state)
+{
+    (void)state;
+    static const char *const slopes[] = {"0.5", "0.25", "2.125"}, *const intercepts[] = {
+                                                                      "-3", "8", "-100"};
+    static const int places[] = {0, 1, 4};
+    const double factor[] = {0.5, 0.25, 2.125}, start[] = {-3, 8, -100};
+    for (int n = 0; n < 3; n++) {
+        char name[16], place[16];
+        snprintf(name, sizeof name, "%d", n);
+        snprintf(place, sizeof place, "0\\0\\%d", places[n]);
+        test_image_write(&(test_image){.instance = n,
+                                       .position = place,
+                                       .slope = slopes[n],
+                                       .intercept = intercepts[n],
+                                       .padding = "11"},
+                         name);
+    }
+    const cw_read_desc desc = {.gaps = CW_GAPS_INTERPOLATE};
+    cw_volume v = read_all(&desc);
+    assert_int_equal(v.dim[2], 5);
+    for (size_t k = 0; k < 5; k++)
+        for (size_t n = 0; n < PIXELS; n++) {
+            const double value = cw_volume_value(&v, n % COLUMNS, n / COLUMNS, k);
+            const size_t low = k < 1 ? k : 1;
+            const double share = k < 1 ? 0 : (double)(k - 1) / 3,
+                         below = factor[low] * (double)n + start[low],
+                         above = factor[2] * (double)n + start[2];
+            if (n == 11)
+                assert_true(isnan(value));
+            else
+                assert_near(value, below + share * (above - below), 1e-4);
+        }
+    cw_volume_free(&v);
+    check_regions("", &desc);
+}
+
 static void padding_is_no_data(void **state)
 {
     (void)state;
@@ -185,6 +223,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(every_kind_of_pixel_is_read),
         TEST(slices_with_a_scale_each_become_values),
+        TEST(slices_between_scales_are_made_of_values),
         TEST(padding_is_no_data),
         TEST(padding_of_either_neighbour_is_no_data),
         TEST(a_key_that_is_the_same_for_all_orders_nothing),

@@ -286,7 +286,8 @@ static void scaling_is_kept_beside_the_voxels(void **state)
     (void)state;
     const struct {
         double slope, intercept, value_of_11;
-    } cases[] = {{0, 5, 11}, {NAN, 5, 11}, {2, NAN, 11}, {2, -1024, -1002}, {-1, 0, -11}};
+    } cases[] = {{0, 5, 11},        {NAN, 5, 11},      {2, NAN, 11},
+                 {2, -1024, -1002}, {1, -1024, -1013}, {-1, 0, -11}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         nifti_file f = make_nifti(1);
         cw_volume v;
