@@ -390,6 +390,46 @@ static void meshes_are_hit_nearest_first(void **state)
     cw_mesh_free(&mesh);
 }
 
+/* Two squares and a mesh of half opacity between them: what is not drawn is not hit. */
+static void clear_triangles_are_looked_through(void **state)
+{
+    (void)state;
+    static float points[36];
+    static uint32_t triangles[18];
+    static uint8_t colors[48];
+    for (uint32_t n = 0; n < 12; n++) {
+        points[3 * n] = n % 2 ? 4 : -4;
+        points[3 * n + 1] = (float)(2 * (n / 4)); /* away from the camera */
+        points[3 * n + 2] = n / 2 % 2 ? 4 : -4;
+    }
+    for (uint32_t n = 0; n < 18; n++) {
+        static const uint32_t corners[6] = {0, 1, 2, 1, 3, 2};
+        triangles[n] = n / 6 * 4 + corners[n % 6];
+    }
+    const cw_mesh squares = {.vertex_count = 12,
+                             .triangle_count = 6,
+                             .positions = points,
+                             .triangles = triangles,
+                             .colors = colors};
+    cw_scene scene = scene_of(CW_MODE_MESH, NULL, NULL, true);
+    scene.mesh = &squares;
+    scene.camera = (cw_camera){{0, -50, 0}, {0, 0, 0}, {0, 0, 1}, .height_mm = 30};
+    for (int clear = 0; clear <= 3; clear++) { /* of the squares, from the front */
+        for (int n = 0; n < 12; n++)
+            colors[4 * n + 3] = n / 4 < clear ? 0 : 128;
+        const cw_picked p = pick(&scene, 19, 14);
+        assert_int_equal(p.kind, clear < 3 ? CW_PICK_MESH : CW_PICK_NOTHING);
+        if (clear < 3)
+            assert_near(p.point[1], 2 * clear, 1e-9);
+    }
+    colors[3] = 1; /* a corner of the first: it fades to 0 along the diagonal */
+    assert_near(pick(&scene, 19, 16).point[1], 0, 1e-9);
+    assert_int_equal(pick(&scene, 21, 14).kind, CW_PICK_NOTHING);
+    scene.tint = CW_TINT_QUALITY; /* colours are not used */
+    scene.color[3] = 0.5f;
+    assert_near(pick(&scene, 21, 14).point[1], 0, 1e-9);
+}
+
 /* A cube from straight on: rays through edges, corners and diagonals meet it, and of its inside
  * there is no doubt either. */
 static void edges_have_no_cracks(void **state)
@@ -499,6 +539,7 @@ int main(void)
         cmocka_unit_test(slices_are_hit_nearest_first),
         cmocka_unit_test(slices_have_holes_where_there_is_no_value),
         cmocka_unit_test(meshes_are_hit_nearest_first),
+        cmocka_unit_test(clear_triangles_are_looked_through),
         cmocka_unit_test(edges_have_no_cracks),
         cmocka_unit_test(of_mesh_and_volume_the_nearer_is_seen),
         cmocka_unit_test(impossible_places_are_refused),
