@@ -425,9 +425,10 @@ static void clear_triangles_are_looked_through(void **state)
     colors[3] = 1; /* a corner of the first: it fades to 0 along the diagonal */
     assert_near(pick(&scene, 19, 16).point[1], 0, 1e-9);
     assert_int_equal(pick(&scene, 21, 14).kind, CW_PICK_NOTHING);
-    scene.tint = CW_TINT_QUALITY; /* colours are not used */
-    scene.color[3] = 0.5f;
-    assert_near(pick(&scene, 21, 14).point[1], 0, 1e-9);
+    scene.tint = CW_TINT_QUALITY; /* the mesh's colours are not used */
+    assert_int_equal(pick(&scene, 21, 14).kind, CW_PICK_MESH);
+    scene.color[0] = 1; /* without opacity */
+    assert_int_equal(pick(&scene, 21, 14).kind, CW_PICK_NOTHING);
 }
 
 /* A cube from straight on: rays through edges, corners and diagonals meet it, and of its inside
