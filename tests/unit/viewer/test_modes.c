@@ -197,6 +197,117 @@ static void size_does_not_matter(void **state)
     }
 }
 
+enum { CHANGES = 14 };
+
+/* Changes one thing of a scene, so that a picture differs from the last one in nothing else. */
+static void change_scene(int change, cw_scene *s, cw_volume *v, cw_transfer *t)
+{
+    switch (change) {
+    case 1:
+        t->unit_mm = 3;
+        break;
+    case 2: /* the spacing, with opacities that are per millimetre since the last change */
+        for (int n = 0; n < 12; n++)
+            v->affine[n / 4][n % 4] *= 1.5;
+        break;
+    case 3:
+        t->opacities[0].opacity += 0.05f;
+        break;
+    case 4:
+        t->colors[0].color[1] = 0.9f;
+        break;
+    case 5:
+        v->slope = -1;
+        break;
+    case 6: /* with the slope, from 0 to 1 again */
+        v->intercept = 1;
+        break;
+    case 7:
+        v->has_nodata = true;
+        v->nodata = cw_volume_value(v, 7, 6, 7) * v->slope - v->intercept * v->slope;
+        break;
+    case 8: /* other voxels, of the same number */
+        v->data = (const char *)v->data + v->stride[2];
+        break;
+    case 9:
+        v->dim[0] -= 3;
+        break;
+    case 10:
+        v->affine[0][3] += 1;
+        break;
+    case 11:
+        s->lit = true;
+        break;
+    case 12:
+        s->step_vox = 1;
+        break;
+    case 13:
+        s->no_preintegration = true;
+        break;
+    default:
+        break;
+    }
+}
+
+/* Draws a scene changed up to here; returns false for what the renderer does not draw. */
+static bool draw_changed(cw_renderer *r, cw_mode mode, const cw_volume *field, int changes,
+                         cw_picture *picture)
+{
+    cw_volume v = *field;
+    cw_transfer soft = test_soft_transfer();
+    cw_scene s = scene_of(mode, &v, &soft);
+    cw_error err = {0};
+    s.camera.height_mm = 24;
+    s.width = s.height = SIDE / 2;
+    s.threshold = 0.5;
+    for (int change = 1; change <= changes; change++)
+        change_scene(change, &s, &v, &soft);
+    const cw_status st = cw_render(r, &s, picture, &err);
+    assert_true(st == CW_OK || st == CW_ERR_UNSUPPORTED);
+    return st == CW_OK;
+}
+
+/* Returns how many pictures the renderer draws of a mode. */
+static int check_kept_state(cw_renderer *r, cw_mode mode, const cw_volume *field)
+{
+    cw_picture kept[CHANGES] = {{0}}, alone;
+    int drawn = 0;
+    cw_renderer_forget(r);
+    while (drawn < CHANGES && draw_changed(r, mode, field, drawn, &kept[drawn]))
+        drawn++;
+    for (int n = 0; n < drawn; n++) {
+        cw_renderer_forget(r);
+        assert_true(draw_changed(r, mode, field, n, &alone));
+        const test_gap gap = test_compare(&kept[n], &alone);
+        if (gap.max > 1e-3)
+            fail_msg("%s, change %d: %g of 255 off", cw_mode_name(mode), n, gap.max);
+        cw_picture_free(&alone);
+        cw_picture_free(&kept[n]);
+    }
+    return drawn;
+}
+
+/* A renderer keeps tables, textures and trees. With any one thing changed it draws what a renderer
+ * draws that keeps nothing: first the CPU's, then that of OpenGL. */
+static void pictures_do_not_depend_on_those_before(void **state)
+{
+    (void)state;
+    cw_volume field = {0};
+    cw_renderer *cpu;
+    cw_error err = {0};
+    int drawn = 0;
+    test_field(&field, 14, 13, 16, (const double[]){1, 1.2, 0.9}, test_blobs);
+    field.dim[2]--; /* room to move by a slice */
+    assert_ok(cw_renderer_new(CW_BACKEND_CPU, &cpu, &err), err);
+    for (int mode = CW_MODE_COMPOSITE; mode < CW_MODE_COUNT; mode++)
+        drawn += check_kept_state(cpu, (cw_mode)mode, &field);
+    assert_int_equal(drawn, 7 * CHANGES);
+    cw_renderer_free(cpu);
+    for (int mode = CW_MODE_COMPOSITE; mode < CW_MODE_COUNT; mode++)
+        check_kept_state(test_renderer(), (cw_mode)mode, &field);
+    cw_volume_free(&field);
+}
+
 /* The distance to the middle, from -1 there. */
 static double ball(const double p[3], const double q[3])
 {
@@ -295,6 +406,7 @@ int main(void)
         cmocka_unit_test(ramps_are_as_opaque_as_they_are),
         cmocka_unit_test(meshes_hide_what_is_behind),
         cmocka_unit_test(size_does_not_matter),
+        cmocka_unit_test(pictures_do_not_depend_on_those_before),
         cmocka_unit_test(one_sided_light_falls_from_the_side_of_low_values),
         cmocka_unit_test(one_sided_light_is_the_references),
     };
