@@ -160,6 +160,59 @@ static void components_keep_their_volumes(void **state)
     cw_mesh_free(&both);
 }
 
+/* Returns the volume between a surface and zero. While the rim stays, it changes as the volume between
+ * the surface and any other point does. */
+static double volume_to_zero(const cw_mesh *m)
+{
+    double sum = 0;
+    for (size_t t = 0; t < m->triangle_count; t++) {
+        const float *p[3];
+        for (size_t c = 0; c < 3; c++)
+            p[c] = m->positions + 3 * (size_t)m->triangles[3 * t + c];
+        for (int a = 0; a < 3; a++) {
+            const int b = (a + 1) % 3, c = (a + 2) % 3;
+            sum += (double)p[0][a] *
+                   ((double)p[1][b] * (double)p[2][c] - (double)p[1][c] * (double)p[2][b]);
+        }
+    }
+    return sum / 6;
+}
+
+/* A coarse sphere without its top, which smoothing shrinks. Where the rim moves, no volume is left to
+ * keep. */
+static void bowls_keep_what_they_hold(void **state)
+{
+    (void)state;
+    for (int method = 0; method < CW_SMOOTH_METHOD_COUNT; method++)
+        for (int moves = 0; moves < 2; moves++) {
+            cw_mesh m = noisy_sphere(12, 0, 1);
+            size_t kept = 0;
+            for (size_t t = 0; t < m.triangle_count; t++) {
+                const uint32_t *corners = m.triangles + 3 * t;
+                bool is_top = false;
+                for (int c = 0; c < 3; c++)
+                    is_top = is_top || m.positions[3 * (size_t)corners[c] + 2] > 15;
+                if (!is_top)
+                    memmove(m.triangles + 3 * kept++, corners, 3 * sizeof *corners);
+            }
+            m.triangle_count = kept;
+            const double before = volume_to_zero(&m);
+            const cw_smooth_desc desc = {.method = (cw_smooth_method)method,
+                                         .iterations = 20,
+                                         .max_move_mm = 5,
+                                         .width_mm = method == CW_SMOOTH_FAIR ? 30 : 0,
+                                         .move_border = moves};
+            const cw_smooth_facts facts = smooth_mesh(&m, &desc);
+            assert_true(facts.border > 10 && facts.max_mm > 0.1);
+            const double change = volume_to_zero(&m) / before - 1;
+            if (moves)
+                assert_true(fabs(change) > 1e-3);
+            else
+                assert_near(change, 0, 1e-6);
+            cw_mesh_free(&m);
+        }
+}
+
 /* By any way to compute a distance, and at limits below the spacing of single precision. */
 static void no_vertex_moves_farther_than_allowed(void **state)
 {
@@ -528,6 +581,7 @@ int main(void)
         cmocka_unit_test(noise_of_a_sphere_falls),
         cmocka_unit_test(volumes_are_kept),
         cmocka_unit_test(components_keep_their_volumes),
+        cmocka_unit_test(bowls_keep_what_they_hold),
         cmocka_unit_test(no_vertex_moves_farther_than_allowed),
         cmocka_unit_test(default_limit_is_half_an_edge),
         cmocka_unit_test(borders_stay_unless_they_may_move),
