@@ -79,3 +79,9 @@ cubewright extract g.nrrd --iso -1e6 --part 1/2 --manifest full -q
 cubewright extract g.nrrd --iso -1e6 --part 2/2 --manifest full -q
 try cubewright join full -o no.ply
 ls no.* m3/.cubewright* 2>/dev/null || echo "nothing is left behind"
+# a file that exists is kept
+cubewright extract g.nrrd --iso 100 --part 1/1 --manifest one -q
+echo old >old.ply
+try cubewright join one -o old.ply --no-clobber
+cat old.ply
+cubewright join one -o old.ply -q && cmp -n 3 old.ply whole.ply && echo "replaced"
