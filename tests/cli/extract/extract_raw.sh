@@ -7,6 +7,10 @@ cubewright extract s.raw --raw $layout --iso 32767.5 -o a.stl
 cubewright extract s.raw --raw $layout --spacing 4,4,4 --iso 32767.5 -o b.stl
 cubewright extract s.nii --iso 32767.5 -o c.stl -q
 cubewright extract s.raw --raw $layout --spacing 500um --iso 32767.5 -o d.stl
+for spacing in 0.5mm 500000nm 0.05cm 0.0005m; do
+    cubewright extract s.raw --raw $layout --spacing $spacing --iso 32767.5 -o e.stl -q
+    cmp d.stl e.stl && echo "500um is $spacing"
+done
 # three numbers are parted by 'x' or by commas
 cubewright extract s.raw --raw dims=21,20,19,type=u16le,offset=100 --spacing 4x4x4 --iso 32767.5 -o e.stl -q
 cmp b.stl e.stl && echo same file

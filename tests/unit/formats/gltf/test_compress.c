@@ -3,6 +3,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/module.h"
+#include "formats/codec/draco_wrap.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -295,6 +296,59 @@ static void draco_files_keep_the_mesh(void **state)
     cw_mesh_free(&mesh);
 }
 
+/* Gives an attribute another number. It stands behind the kind of the attribute, the type of its
+ * numbers, how many there are, and whether they are normalized. */
+static void renumber_attribute(char *bytes, size_t size, const char head[4], int number)
+{
+    size_t found = 0;
+    for (size_t i = 0; i + 5 <= size; i++)
+        if (memcmp(bytes + i, head, 4) == 0) {
+            bytes[i + 4] = (char)number;
+            found++;
+        }
+    assert_int_equal(found, 1);
+}
+
+/* Draco's numbers of attributes are not their places: other programs leave numbers out, or write the
+ * attributes in another order. */
+static void draco_attributes_are_found_by_their_numbers(void **state)
+{
+    (void)state;
+    static const char position[4] = {0, 9, 3, 0}, normal[4] = {1, 9, 3, 0},
+                      color[4] = {2, 2, 4, 1};
+    const cwi_draco_functions *draco;
+    cw_mesh mesh = make_gyroid(6), before, after;
+    cwi_arrays arrays = {0};
+    cw_error err = {0};
+    size_t size;
+    if (is_there(CW_COMPRESS_DRACO)) {
+        before = write_and_read(&mesh, (cw_write_desc){0}, NULL, "a.drc");
+        char *bytes = test_file_read(test_path("a.drc"), &size);
+        renumber_attribute(bytes, size, position, 2);
+        renumber_attribute(bytes, size, normal, 7);
+        renumber_attribute(bytes, size, color, 0);
+        test_file_write(test_path("b.drc"), bytes, size);
+        assert_ok(cw_mesh_read(test_path("b.drc"), NULL, &after, NULL, &err), err);
+        assert_int_equal(after.vertex_count, before.vertex_count);
+        const size_t count = before.vertex_count;
+        assert_memory_equal(after.positions, before.positions, 12 * count);
+        assert_memory_equal(after.normals, before.normals, 12 * count);
+        assert_memory_equal(after.colors, before.colors, 4 * count);
+
+        const cwi_draco_ids ids = {.position = 2, .normal = 7, .color = 0}; /* as in glTF */
+        assert_ok(cwi_draco_functions_load(&draco, &err), err);
+        assert_ok(draco->decode(bytes, size, &ids, SIZE_MAX, NULL, &arrays, &err), err);
+        assert_int_equal(arrays.vertex_count, count);
+        assert_non_null(arrays.positions);
+        assert_memory_equal(arrays.normals, before.normals, 12 * count);
+        cwi_arrays_free(&arrays);
+        free(bytes);
+        cw_mesh_free(&before);
+        cw_mesh_free(&after);
+    }
+    cw_mesh_free(&mesh);
+}
+
 /* Every byte turned round, and every length: an error or a mesh. */
 static void damaged_draco_files_are_an_error_or_a_mesh(void **state)
 {
@@ -571,6 +625,7 @@ int main(void)
         TEST(draco_takes_any_unit_place_and_bits),
         TEST(draco_leaves_out_triangles_with_a_vertex_twice),
         TEST(draco_files_keep_the_mesh),
+        TEST(draco_attributes_are_found_by_their_numbers),
         TEST(damaged_draco_files_are_an_error_or_a_mesh),
         TEST(what_cannot_be_kept_is_not_promised),
         TEST(meshopt_has_more_than_16_bits),

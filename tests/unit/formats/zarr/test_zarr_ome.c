@@ -59,6 +59,47 @@ static void put_image(int version)
     put_array("image/small/1", version, 5, (const size_t[5]){2, 3, 2, 3, 4});
 }
 
+/* By the names of the standard, and short ones that programs write. */
+static void each_unit_has_its_length(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *unit;
+        double mm;
+    } cases[] = {{"angstrom", 1e-7},  {"femtometer", 1e-12},
+                 {"picometer", 1e-9}, {"nanometer", 1e-6},
+                 {"nm", 1e-6},        {"micrometer", 1e-3},
+                 {"micron", 1e-3},    {"um", 1e-3},
+                 {"\xc2\xb5m", 1e-3}, {"\xce\xbcm", 1e-3},
+                 {"millimeter", 1},   {"mm", 1},
+                 {"centimeter", 10},  {"cm", 10},
+                 {"decimeter", 100},  {"meter", 1e3},
+                 {"m", 1e3},          {"decameter", 1e4},
+                 {"hectometer", 1e5}, {"kilometer", 1e6},
+                 {"inch", 25.4},      {"foot", 12 * 25.4},
+                 {"yard", 36 * 25.4}, {"mile", 1760 * 36 * 25.4}};
+    static const double scales[3] = {5, 3, 2}; /* along x, y, z */
+    put_array("image/0", 3, 3, (const size_t[3]){2, 2, 2});
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        char text[512];
+        cw_volume v;
+        cw_error err = {0};
+        snprintf(text, sizeof text,
+                 "{\"version\": \"0.5\", \"multiscales\": [{\"axes\": ["
+                 "{\"name\": \"z\", \"type\": \"space\", \"unit\": \"%s\"},"
+                 "{\"name\": \"y\", \"type\": \"space\", \"unit\": \"%s\"},"
+                 "{\"name\": \"x\", \"type\": \"space\", \"unit\": \"%s\"}],"
+                 "\"datasets\": [{\"path\": \"0\", \"coordinateTransformations\": ["
+                 "{\"type\": \"scale\", \"scale\": [2, 3, 5]}]}]}]}",
+                 cases[n].unit, cases[n].unit, cases[n].unit);
+        put_group("image", 3, text);
+        assert_ok(cw_volume_read(test_path("image"), NULL, &v, NULL, &err), err);
+        for (int a = 0; a < 3; a++)
+            assert_within(v.affine[a][a], scales[a] * cases[n].mm, 1e-12);
+        cw_volume_free(&v);
+    }
+}
+
 static void a_level_has_its_size_and_frame(void **state)
 {
     (void)state;
@@ -295,6 +336,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(a_level_has_its_size_and_frame, test_folder_make,
+                                        test_folder_remove),
+        cmocka_unit_test_setup_teardown(each_unit_has_its_length, test_folder_make,
                                         test_folder_remove),
         cmocka_unit_test_setup_teardown(levels_are_listed, test_folder_make,
                                         test_folder_remove),
