@@ -57,6 +57,10 @@ static void imagej_calibrates_values(void **state)
     read_good("a.tif", &v);
     assert_true(cw_volume_value(&v, 1, 0, 1) == 2.0 * 11 - 32768);
     cw_volume_free(&v);
+    save_described("a.tif", "ImageJ=1.53t\nimages=2\ncf=0\nc0=-32768.0\nc1=1.0\n", 2);
+    read_good("a.tif", &v); /* signed numbers, which ImageJ stores without a sign */
+    assert_true(cw_volume_value(&v, 1, 0, 1) == 11 - 32768);
+    cw_volume_free(&v);
     save_described("a.tif", "ImageJ=1.53t\nimages=2\ncf=3\nc0=1\nc1=2\n", 2);
     read_good("a.tif", &v);
     assert_non_null(strstr(notes, "calibration by function 3 is left out"));

@@ -170,23 +170,27 @@ static void time_steps_keep_their_length(void **state)
     }
 }
 
+/* A scale, a shift, and each without the other. */
 static void scaling_goes_into_nifti_only(void **state)
 {
     (void)state;
-    cw_volume v = make_volume(CW_I16, 1, 1), back;
-    cw_error err = {0};
-    v.slope = 2;
-    v.intercept = -1024;
-    assert_fails(cw_volume_write(test_path("a.nrrd"), &v, NULL, &err), CW_ERR_ARGUMENT,
-                 ".nii has", err);
-    assert_fails(cw_volume_write(test_path("a.mha"), &v, NULL, &err), CW_ERR_ARGUMENT,
-                 ".nii has", err);
-    assert_int_equal(test_folder_entries(), 0);
-    assert_ok(cw_volume_write(test_path("a.nii"), &v, NULL, &err), err);
-    assert_ok(read_back("a.nii", &back, &err), err);
-    assert_true(back.slope == 2 && back.intercept == -1024);
-    cw_volume_free(&back);
-    cw_volume_free(&v);
+    static const double scalings[][2] = {{2, -1024}, {1, -1024}, {2, 0}};
+    for (size_t n = 0; n < sizeof scalings / sizeof *scalings; n++) {
+        cw_volume v = make_volume(CW_I16, 1, 1), back;
+        cw_error err = {0};
+        v.slope = scalings[n][0];
+        v.intercept = scalings[n][1];
+        assert_fails(cw_volume_write(test_path("a.nrrd"), &v, NULL, &err), CW_ERR_ARGUMENT,
+                     ".nii has", err);
+        assert_fails(cw_volume_write(test_path("a.mha"), &v, NULL, &err), CW_ERR_ARGUMENT,
+                     ".nii has", err);
+        assert_int_equal(test_folder_entries(), n > 0);
+        assert_ok(cw_volume_write(test_path("a.nii"), &v, NULL, &err), err);
+        assert_ok(read_back("a.nii", &back, &err), err);
+        assert_true(back.slope == v.slope && back.intercept == v.intercept);
+        cw_volume_free(&back);
+        cw_volume_free(&v);
+    }
 }
 
 static void what_is_not_known_is_not_claimed(void **state)
