@@ -102,7 +102,7 @@ show_tests() {
 
 # show_failures LOG: the tests that failed, and then what they printed.
 show_failures() {
-    sed -n '/tests passed/p; /did not run/,$p; /The following tests FAILED/,$p' "$1"
+    sed -n -e '/tests passed/p' -e '/The following tests/,$p' "$1"
     awk '/^ *[0-9]+\/[0-9]+ Test / { failed = !/ Passed / && !/\(Skipped\)/ && !/\*\*\*Skipped/ }
         /^ *Start / || /^[0-9]+% tests passed/ { failed = 0 }
         failed' "$1"
