@@ -8,6 +8,7 @@
 # without  after root: each optional package left out by itself; the rest still builds
 # user     the quickstart as a user with sudo; what root has compiled is compiled no more
 # needed   needed packages alone: no C++, no OpenGL; mesh and picture all the same
+# tests    when it is asked for: the second command, `sh tests/run.sh`, on Debian 12 and 13
 # packages the Debian packages: made twice with the same bytes, installed, used, removed without a trace
 set -eu
 cd "$(dirname "$0")/.."
@@ -296,6 +297,18 @@ for stage in $stages; do
         inside "$root" "$cubewright version --features" >"$folder/features"
         for feature in simplify vdb gl window glb dicom tiff draco isal; do
             grep -q "^$feature  *no: not found: " "$folder/features" || fail "no reason why $feature is missing"
+        done
+        ;;
+    tests)
+        for release in bookworm trixie; do
+            if ! make_bare $release "$root-$release"; then
+                say "skipped: this machine's package sources have no $release"
+                continue
+            fi
+            must "the tests on $release" "$root-$release" "cd /src && sh tests/run.sh"
+            sed -n -e '/tests passed/p' -e '/did not run/,$p' "$folder/said"
+            rm -rf --one-file-system "$root-$release"
+            say "the tests of $release passed"
         done
         ;;
     packages)
