@@ -96,7 +96,8 @@ show_tests() {
             sleep 1
             waited=$((waited + 1))
         done
-        sed -n 's,^ *\([0-9]*\)/\([0-9]*\) Test.*,   test \1 of \2,p' "$1" | tail -1
+        ended=$(sed -n 's,^ *\([0-9]*\)/\([0-9]*\) Test.*,test \1 of \2,p' "$1" | tail -1)
+        echo "   ${ended:-tests are running} ($(($(date +%s) - started)) s)"
     done
 }
 

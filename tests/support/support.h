@@ -15,11 +15,12 @@
 
 #define PI 3.14159265358979323846
 
-/* Returns true unless CUBEWRIGHT_TEST_LONG=1, which asks tests for all that they can try. */
+/* Returns true unless CUBEWRIGHT_TEST_LONG is 1 or more: then tests try all that they can. */
 bool test_is_short(void);
 
 /* How many of `count` cases a test tries, where each proves the same on other numbers: an eighth in
- * a short run, and under sanitizers, where all takes seven times as long, a quarter of that. */
+ * a short run, and under sanitizers, where all takes seven times as long, a quarter of that. With
+ * CUBEWRIGHT_TEST_LONG=10 it is ten times the count. */
 int test_some(int count);
 
 /* Returns the seconds after which something hangs: no machine is so slow. CUBEWRIGHT_TEST_SLOW=10

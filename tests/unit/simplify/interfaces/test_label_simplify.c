@@ -231,16 +231,16 @@ static void cells_are_simplified_to_a_fifth(void **state)
 static void errors_are_promises(void **state)
 {
     (void)state;
-    enum { SIDE = 32 };
+    const size_t side = test_is_short() ? 20 : 32;
     cw_volume v = {0};
     test_seed(9);
-    uint32_t *to = make_map(&v, SIDE, SIDE, SIDE);
+    uint32_t *to = make_map(&v, side, side, side);
     for (int n = 0; n < 2; n++) {
         double before = 1;
         if (n == 0)
-            fill_cells(to, SIDE, 12);
+            fill_cells(to, side, test_is_short() ? 5 : 12);
         else
-            fill_spheres(to, SIDE, 13);
+            fill_spheres(to, side, 0.4 * (double)side);
         for (double error = 0.02; error < 3; error *= test_is_short() ? 64 : 4) {
             const double left =
                 check_map(&v, NULL, &(cw_label_simplify_desc){.error_mm = error});
