@@ -115,7 +115,7 @@ def judge(folder, room):
     if seen:
         return "release", seen
     os.environ["CUBEWRIGHT_TEST_LONG"] = "1"
-    seen = ask(folder, "-L", "^(long|lengths)$")
+    seen = ask(folder, "-L", "^(long|again)$")
     return ("long", seen) if seen else ("none", "")
 
 

@@ -160,7 +160,7 @@ for stage in $stages; do
         wait $validators || true
         cat build/validators.log
         export CUBEWRIGHT_TEST_LONG=1
-        run_tests long release -L 'long|lengths'
+        run_tests long release -L 'long|again'
         unset CUBEWRIGHT_TEST_LONG
         ;;
     rooms)
@@ -168,7 +168,7 @@ for stage in $stages; do
         ;;
     sanitizers)
         configure_and_build fuzz
-        run_tests fuzz fuzz -L 'unit|fuzz'
+        run_tests sanitizers fuzz -L 'unit|fuzz'
         ;;
     mutants)
         [ -d build/fuzz/bin ] || configure_and_build fuzz

@@ -284,7 +284,7 @@ static void plates_are_turned_by_90_degrees(void **state)
 
 static cw_mesh extract_gyroid(double scale)
 {
-    cw_volume volume = test_sample(CW_FIELD_GYROID, test_is_short() ? 24 : 40, CW_F32);
+    cw_volume volume = test_sample(CW_FIELD_GYROID, test_is_short() ? 16 : 40, CW_F32);
     cw_mesh m = test_extract(&volume, NULL, NULL);
     cw_volume_free(&volume);
     for (size_t c = 0; c < 3 * m.vertex_count; c++)
