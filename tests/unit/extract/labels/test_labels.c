@@ -117,7 +117,7 @@ static void random_maps_are_right(void **state)
 {
     (void)state;
     test_seed(7);
-    for (int n = 0; n < (test_is_short() ? 40 : 1000); n++) {
+    for (int n = 0; n < (test_is_short() ? 40 : 300); n++) {
         static const uint32_t counts[] = {2, 3, 5, 50};
         cw_volume v = {0};
         size_t dim[3];

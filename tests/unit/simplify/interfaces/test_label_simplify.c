@@ -196,7 +196,7 @@ static void random_maps_are_simplified(void **state)
 {
     (void)state;
     test_seed(11);
-    for (int n = 0; n < test_some(240); n++) {
+    for (int n = 0; n < test_some(80); n++) {
         static const uint32_t counts[] = {2, 3, 5, 50};
         cw_volume v = {0};
         size_t dim[3];
@@ -428,7 +428,7 @@ static void memory_that_is_out_is_an_error(void **state)
     assert_ok(cw_extract_labels(&v, NULL, &s, &err), err);
     for (int k = 0; k < 2; k++) {
         bool failed = true;
-        for (long n = 0; failed; n += test_is_short() ? 1 + n / 8 : 1) {
+        for (long n = 0; failed; n += 1 + n / (test_is_short() ? 8 : 64)) {
             cw_label_simplify_desc desc = descs[k];
             desc.threads = 1;
             cwi_alloc_fail_after(n);
@@ -454,7 +454,7 @@ static void calls_can_be_cancelled(void **state)
     assert_ok(cw_extract_labels(&v, NULL, &s, &err), err);
     cw_status st = CW_ERR_CANCELLED;
     int polls = 0;
-    for (; st != CW_OK; polls += test_is_short() ? 1 + polls / 4 : 1) {
+    for (; st != CW_OK; polls += 1 + polls / (test_is_short() ? 4 : 32)) {
         int left = polls;
         st = cw_label_simplify(&s,
                                &(cw_label_simplify_desc){.error_mm = 0.2,
