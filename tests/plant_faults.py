@@ -5,11 +5,10 @@
 Works in FOLDER, on a clone of this tree's last commit without CGAL, which takes minutes to compile.
 The places are drawn at random, from as many rooms as there are faults. A place whose object file stays
 the same is drawn again. Each fault alone meets the tests of its folder, then the short ones of its room.
-Faults that survive are then planted all at once, and the whole release stage is run: each test that
-fails is run again without a fault, and with each fault alone. This repeats until all survivors
-together fail no test. The long stage then does the same with what is left. Tests that cannot see a fault
-in the code (of its comments, walls and documents) or that only repeat others on other machines
-are left out.
+Faults that survive are then planted all at once, and the whole release stage is run. The tests that
+fail are run again without a fault, and with each fault alone. The long stage then does the same with
+what is left. Tests that cannot see a fault in the code (of its comments, walls and documents) or that
+only repeat others on other machines are left out.
 
 FOLDER/build/faults.json keeps what was found: a run that was stopped goes on from there. A test that
 hangs has seen the fault. Faults that no test sees show what is untested, or what nobody can see.
@@ -30,8 +29,8 @@ LEFT_OUT = re.compile(
     "text/(comments|versions|links)|architecture|abi|docs|features|linked|readme|schedulers/(parallel|slurm|dask|lost_host)"
 )
 SHORT = 2.0  # seconds of a test that a fault meets alone
-HANGS = {"near": 120, "release": 300, "long": 900}  # seconds
-LIMITS = {resource.RLIMIT_AS: 16 << 30, resource.RLIMIT_FSIZE: 4 << 30}  # bytes that a fault may take
+HANGS = {"near": 200, "release": 300, "long": 900}  # seconds
+MEMORY = 16 << 30  # bytes that a fault may take
 
 
 def raise_number(text):
@@ -124,7 +123,8 @@ def find_tests(folder):
     """Name, labels and seconds of each test that can see a fault."""
     temporary = folder / "build/release/Testing/Temporary"
     costs = {}
-    for words in map(str.split, (temporary / "CTestCostData.txt").read_text().splitlines()):
+    known = temporary / "CTestCostData.txt"  # of runs before
+    for words in map(str.split, known.read_text().splitlines() if known.exists() else []):
         if len(words) == 3:
             costs[words[0]] = float(words[2])
     shown = subprocess.run(["ctest", "--preset", "release", "--show-only=json-v1"], cwd=folder, check=True,
@@ -202,40 +202,59 @@ def meet_near(folder, generator, paths, objects, tests):
     for near in sort_near(folder, fault, tests):
         seen = ask(folder, near, "near", "--stop-on-failure")
         if seen:
-            return fault | {"stage": "release", "test": seen[0]["name"]}
-    return fault | {"stage": "none", "test": ""}
+            return fault | {"stage": "release", "test": seen[0]["name"], "missed": []}
+    return fault | {"stage": "none", "test": "", "missed": []}
+
+
+def drop_unfit(folder, faults, tests, save):
+    """Takes back what tests have seen that fail without a fault, too."""
+    plant(folder, [])
+    build(folder)
+    names = {fault["test"] for fault in faults}
+    unfit = {test["name"] for test in ask(folder, [t for t in tests if t["name"] in names], "release")}
+    print("fail without a fault:", " ".join(sorted(unfit)) or "none", flush=True)
+    for fault in faults:
+        if fault["test"] in unfit:
+            fault.update(stage="none", test="")
+    save()
+    return [test for test in tests if test["name"] not in unfit]
 
 
 def meet_stage(folder, faults, tests, stage, save):
     """Asks a stage about faults that no test has seen, first about all at once."""
-    while True:
-        left = [fault for fault in faults if fault["stage"] == "none"]
-        plant(folder, left)
-        if not left or not build(folder):
-            return
-        failed = ask(folder, tests, stage)
-        print(f"{stage}: {len(left)} faults at once fail {' '.join(test['name'] for test in failed)}", flush=True)
-        plant(folder, [])
+    left = [fault for fault in faults if fault["stage"] == "none" and stage not in fault["missed"]]
+    plant(folder, left)
+    if not left or not build(folder):
+        return
+    failed = ask(folder, tests, stage)
+    print(f"{stage}: {len(left)} faults at once fail {' '.join(test['name'] for test in failed)}", flush=True)
+    plant(folder, [])
+    build(folder)
+    unfit = ask(folder, failed, stage)
+    print("fail without a fault:", " ".join(test["name"] for test in unfit) or "none", flush=True)
+    failed = [test for test in failed if test not in unfit]
+    short = [test for test in failed if test["cost"] < SHORT]
+    for part in (short, [test for test in failed if test not in short]):
+        unseen = [fault for fault in left if fault["stage"] == "none"]
+        plant(folder, unseen)
         build(folder)
-        unfit = ask(folder, failed, stage)  # they fail without a fault
-        failed = [test for test in failed if test not in unfit]
-        tests = [test for test in tests if test not in unfit]
-        for fault in left if failed else []:
+        for fault in unseen if ask(folder, part, stage, "--stop-on-failure") else []:
             plant(folder, [fault])
             build(folder)
-            seen = ask(folder, failed, stage, "--stop-on-failure")
+            seen = ask(folder, part, stage, "--stop-on-failure")
             if seen:
                 fault.update(stage=stage, test=seen[0]["name"])
-                save()
-        if not failed or all(fault["stage"] == "none" for fault in left):
-            return
+            save()
+    for fault in left:
+        fault["missed"] += [stage] if fault["stage"] == "none" else []
+    save()
 
 
 # --- the whole --------------------------------------------------------------------------------------
 
 
 def prepare(folder):
-    """A clone that is built, and the tests that pass in it."""
+    """A clone that is built."""
     if not folder.exists():
         subprocess.run(["git", "clone", "-q", ROOT, folder], check=True)
     (folder / "build").mkdir(exist_ok=True)
@@ -243,15 +262,6 @@ def prepare(folder):
     if not run(folder, "cmake", "--preset", "release", "-DCUBEWRIGHT_TESTS=ON",
                "-DCUBEWRIGHT_CGAL=OFF") or not build(folder):
         sys.exit(f"the clone does not build: see {folder}/build/plant.log")
-    clean = folder / "build/clean.json"
-    if not clean.exists():
-        run(folder, "ctest", "--preset", "release", "-j", str(os.cpu_count()), "-LE", "long")
-        failed = folder / "build/release/Testing/Temporary/LastTestsFailed.log"
-        lines = failed.read_text().splitlines() if failed.exists() else []
-        clean.write_text(json.dumps([line.split(":", 1)[1] for line in lines]))
-    unfit = json.loads(clean.read_text())
-    print("fail without a fault:", " ".join(unfit) or "none", flush=True)
-    return [test for test in find_tests(folder) if test["name"] not in unfit]
 
 
 def show(number, fault):
@@ -263,9 +273,9 @@ def main():
     folder = pathlib.Path(sys.argv[1]).resolve()
     count = int(sys.argv[2]) if len(sys.argv) > 2 else 50
     seed = int(sys.argv[3]) if len(sys.argv) > 3 else 1
-    for name, limit in LIMITS.items():
-        resource.setrlimit(name, (limit, limit))
-    tests = prepare(folder)
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    prepare(folder)
+    tests = find_tests(folder)
     objects = find_objects(folder)
     rooms = sorted({os.path.dirname(path) for path in objects})
     random.Random(seed).shuffle(rooms)
@@ -281,6 +291,7 @@ def main():
         faults.append(meet_near(folder, random.Random(f"{seed}/{number}"), paths, objects, tests))
         save()
         show(number, faults[-1])
+    tests = drop_unfit(folder, faults, tests, save)
     meet_stage(folder, faults, [test for test in tests if "long" not in test["labels"]], "release", save)
     meet_stage(folder, faults, [test for test in tests if {"long", "lengths"} & set(test["labels"])], "long", save)
     plant(folder, [])
