@@ -6,9 +6,10 @@ Works in FOLDER, on a clone of this tree's last commit without CGAL, which takes
 The places are drawn at random, from as many rooms as there are faults. A place whose object file stays
 the same is drawn again. Each fault alone meets the tests of its folder, then the short ones of its room.
 Faults that survive are then planted all at once, and the whole release stage is run. The tests that
-fail are run again without a fault, and with each fault alone. The long stage then does the same with
-what is left. Tests that cannot see a fault in the code (of its comments, walls and documents) or that
-only repeat others on other machines are left out.
+fail are run again without a fault, and with fewer and fewer faults, until each stands alone. The long
+stage then does the same with what is left, but runs at full length the unit tests of those folders
+alone. Tests that cannot see a fault in the code (of its comments, walls and documents) or that only
+repeat others on other machines are left out.
 
 FOLDER/build/faults.json keeps what was found: a run that was stopped goes on from there. A test that
 hangs has seen the fault. Faults that no test sees show what is untested, or what nobody can see.
@@ -181,6 +182,13 @@ def sort_near(folder, fault, tests):
     return own, room
 
 
+def find_long(folder, faults, tests):
+    """The long stage: of tests at full length only those of the survivors' folders."""
+    places = {os.path.dirname(fault["path"]) for fault in faults if fault["stage"] == "none"}
+    return [test for test in tests if "long" in test["labels"] or
+            ("lengths" in test["labels"] and find_folder(folder, test) in places)]
+
+
 def is_compiled(folder, fault, objects):
     """Whether the fault compiles, and into something else than the code without it."""
     outputs = [folder / "build/release" / name for name in objects[fault["path"]]]
@@ -220,9 +228,22 @@ def drop_unfit(folder, faults, tests, save):
     return [test for test in tests if test["name"] not in unfit]
 
 
+def find_guilty(folder, faults, tests, stage):
+    """Of faults that together fail some of these tests: halves them until each stands alone."""
+    plant(folder, faults)
+    build(folder)
+    failed = ask(folder, tests, stage, *(["--stop-on-failure"] if len(faults) == 1 else []))
+    if failed and len(faults) == 1:
+        faults[0].update(stage=stage, test=failed[0]["name"])
+    elif failed:
+        find_guilty(folder, faults[: len(faults) // 2], failed, stage)
+        find_guilty(folder, faults[len(faults) // 2 :], failed, stage)
+
+
 def meet_stage(folder, faults, tests, stage, save):
     """Asks a stage about faults that no test has seen, first about all at once."""
     left = [fault for fault in faults if fault["stage"] == "none" and stage not in fault["missed"]]
+    left.sort(key=lambda fault: fault["path"])
     plant(folder, left)
     if not left or not build(folder):
         return
@@ -232,19 +253,7 @@ def meet_stage(folder, faults, tests, stage, save):
     build(folder)
     unfit = ask(folder, failed, stage)
     print("fail without a fault:", " ".join(test["name"] for test in unfit) or "none", flush=True)
-    failed = [test for test in failed if test not in unfit]
-    short = [test for test in failed if test["cost"] < SHORT]
-    for part in (short, [test for test in failed if test not in short]):
-        unseen = [fault for fault in left if fault["stage"] == "none"]
-        plant(folder, unseen)
-        build(folder)
-        for fault in unseen if ask(folder, part, stage, "--stop-on-failure") else []:
-            plant(folder, [fault])
-            build(folder)
-            seen = ask(folder, part, stage, "--stop-on-failure")
-            if seen:
-                fault.update(stage=stage, test=seen[0]["name"])
-            save()
+    find_guilty(folder, left, [test for test in failed if test not in unfit], stage)
     for fault in left:
         fault["missed"] += [stage] if fault["stage"] == "none" else []
     save()
@@ -293,7 +302,7 @@ def main():
         show(number, faults[-1])
     tests = drop_unfit(folder, faults, tests, save)
     meet_stage(folder, faults, [test for test in tests if "long" not in test["labels"]], "release", save)
-    meet_stage(folder, faults, [test for test in tests if {"long", "lengths"} & set(test["labels"])], "long", save)
+    meet_stage(folder, faults, find_long(folder, faults, tests), "long", save)
     plant(folder, [])
     for number, fault in enumerate(faults):
         show(number, fault)
