@@ -34,6 +34,16 @@ static double tilt(const point *at)
     return (at->p[0] + sqrt(3.0) * at->p[1] + sqrt(7.0) * at->p[2]) / sqrt(11.0);
 }
 
+static double sheet(const point *at)
+{
+    return 0.5 - fabs(at->p[2]);
+}
+
+static double wire(const point *at)
+{
+    return 0.5 - hypot(at->p[0], at->p[1]);
+}
+
 static double tilted_sheet(const point *at)
 {
     return 0.5 - fabs(tilt(at));
@@ -67,8 +77,9 @@ static double spike(const point *at)
 /* Half a voxel holds of any distance: what has slope 1 cannot leave the line between two
  * samples a voxel apart by more. Of a ball the second derivative along an edge is at most one
  * over the distance to its middle, and the line is off by an eighth of that. Both as long as
- * samples are right: half a step of theirs comes on top. */
-static const double ANY = 0.5 + 1e-3, ROUND = 1 / (8 * (8 / 3.0 - 1)) + 1e-3;
+ * samples are right: half a step of theirs comes on top. A sample in the middle is less than a voxel
+ * from the middle. */
+static const double ANY = 0.5 + 1e-3, ROUND = 1 / (8 * (8 / 3.0 - 1)) + 1e-3, MIDDLE = 1;
 
 /* In which unit differences from the isovalue are handed to the judge, so that floats hold them
  * and ties are whole numbers; 0 stands for 1. */
@@ -104,9 +115,9 @@ static const row rows[] = {
     JUDGED("double-cone", TIES),
     JUDGED("near-saddle-face", COUNT),
     {"hard/near-saddle-inside", TUNNELS, 0, NULL, 0},
-    JUDGED("sheet", TIES),
+    {"hard/sheet", TIES, 0, sheet, MIDDLE},
     JUDGED("sheet-askew", TIES),
-    JUDGED("wire", TIES),
+    {"hard/wire", TIES, 0, wire, MIDDLE},
     JUDGED("wire-askew", TIES),
     {"hard/tilted-sheet", PICTURES, 0, tilted_sheet, ANY},
     {"hard/thinner-sheet", PICTURES, 0, thinner_sheet, ANY},

@@ -302,8 +302,10 @@ static void limits_stop_before_the_mesh_is_made(void **state)
     cw_volume v = test_sample(CW_FIELD_SPHERE, 32, CW_F32);
     cw_mesh mesh;
     cw_error err = {0};
-    cw_extract_counts counts, made;
+    cw_extract_counts counts, made, bare;
     assert_ok(cw_extract_predict(&v, NULL, &counts, &err), err);
+    assert_ok(cw_extract_predict(&v, &(cw_extract_desc){.no_normals = true}, &bare, &err), err);
+    assert_int_equal(counts.bytes - bare.bytes, counts.vertices * 3 * sizeof(float));
     mesh = test_extract(&v, NULL, &made);
     assert_int_equal(counts.triangles, mesh.triangle_count);
     assert_int_equal(counts.vertices, mesh.vertex_count);

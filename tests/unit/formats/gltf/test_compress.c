@@ -281,7 +281,16 @@ static void draco_files_keep_the_mesh(void **state)
     assert_true(file.local && file.axes.unit == CW_UNIT_M);
     assert_true(back.origin[1] == -7.25);
     assert_true(distance_between(&mesh, &back) < 0.1);
+    size_t size; /* of the file; its bytes count, too */
+    free(test_file_read(test_path("a.drc"), &size));
+    cw_mesh_read_desc exact = {.no_sandbox = true};
+    exact.max_bytes = size + 28 * back.vertex_count + 12 * back.triangle_count;
     cw_mesh_free(&back);
+    assert_ok(cw_mesh_read(test_path("a.drc"), &exact, &back, NULL, &err), err);
+    cw_mesh_free(&back);
+    exact.max_bytes--;
+    assert_fails(cw_mesh_read(test_path("a.drc"), &exact, &back, NULL, &err), CW_ERR_LIMIT,
+                 "(desc->max_bytes)", err);
     const cw_mesh_read_desc few = {.max_triangles = mesh.triangle_count - 1},
                             little = {.max_bytes = 20000};
     assert_fails(cw_mesh_read(test_path("a.drc"), &few, &back, NULL, &err), CW_ERR_LIMIT,

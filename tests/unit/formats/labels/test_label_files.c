@@ -89,12 +89,14 @@ static const struct {
      "\xef\xbb\xbf################\n# IDX   -R-  -G-  -B-  -A--  VIS MSH  LABEL\n"
      "    0     0    0    0        0  0  0    \"Clear Label\"\n"
      "   12   255    8  186        1  1  1    \"corpus \"callosum\"\"\n"
-     "   13   255    8  186     0.50  1  0    \"\"\n",
+     "   13   255    8  186     0.50  1  0    \"\"\n"
+     "   14     1    2    3        1  1  1    \"x\"\n",
      "itk-snap",
-     3,
+     4,
      {{0, "Clear Label", "#00000000", true, NULL},
       {12, "corpus \"callosum\"", "#ff08baff", false, NULL},
-      {13, NULL, "#ff08ba80", true, NULL}}},
+      {13, NULL, "#ff08ba80", true, NULL},
+      {14, "x", "#010203ff", false, NULL}}},
     {"a.csv",
      "Name,Color_G,LabelValue,Color_R,Color_B,Type_CodingScheme,Type_CodeValue,"
      "Type_CodeMeaning,Category_CodeMeaning,Region_CodeValue\n"

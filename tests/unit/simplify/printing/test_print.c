@@ -270,8 +270,9 @@ static void plates_are_turned_by_90_degrees(void **state)
     static const struct {
         double plate[3];
         bool fits;
-    } rows[] = {{{0, 0, 0}, true},     {{20, 30, 10}, true},   {{30, 20, 10}, true},
-                {{19, 40, 10}, false}, {{40, 40, 9.9}, false}, {{25, 25, 50}, false}};
+    } rows[] = {{{0, 0, 0}, true},       {{20, 30, 10}, true},   {{30, 20, 10}, true},
+                {{19, 40, 10}, false},   {{40, 40, 9.9}, false}, {{25, 25, 50}, false},
+                {{0.9, 0.8, 0.7}, false}};
     cw_mesh m = make_empty();
     BOX(&m, 5, 5, 5, 25, 35, 15);
     for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
