@@ -78,7 +78,7 @@ static void volumes_take_each_others_place(void **state)
     cw_volume_free(&ramp);
 }
 
-/* The same scene, the same bytes, from this renderer and another. */
+/* The same scene, the same bytes, from this renderer and another, which drew a lower picture before. */
 static void pictures_repeat(void **state)
 {
     (void)state;
@@ -89,6 +89,10 @@ static void pictures_repeat(void **state)
     const cw_transfer soft = test_soft_transfer();
     test_field(&blobs, 32, 32, 32, cube, test_blobs);
     assert_ok(cw_renderer_new(CW_BACKEND_EGL, &other, &err), err);
+    cw_scene low = small_scene(&blobs, &soft);
+    low.height /= 2;
+    cw_picture before = test_draw(other, &low);
+    cw_picture_free(&before);
     for (int m = 0; m < CW_MODE_SLICES; m++) {
         cw_scene scene = small_scene(&blobs, &soft);
         scene.mode = (cw_mode)m;
