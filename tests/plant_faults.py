@@ -184,7 +184,7 @@ def find_long(folder, faults, tests):
     """The long stage: of tests at full length only those of the survivors' folders."""
     places = {os.path.dirname(fault["path"]) for fault in faults if fault["stage"] == "none"}
     return [test for test in tests if "long" in test["labels"] or
-            ("lengths" in test["labels"] and find_folder(folder, test) in places)]
+            ("again" in test["labels"] and find_folder(folder, test) in places)]
 
 
 def is_compiled(folder, fault, objects):
