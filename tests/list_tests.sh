@@ -5,7 +5,7 @@
 # With --check FOLDER: is every test of that build in the list?
 set -eu
 cd "$(dirname "$0")/.."
-list=tests/README.md heading='## Tests and their seconds'
+list=tests/README.md heading='## Tests and their seconds' # the last of the page
 
 if [ "${1:-}" = --check ]; then
     code=0
@@ -28,7 +28,7 @@ done | awk '
     awk -v heading="$heading" '
     function end_row() { if (row) printf "| %s | %s | %d | %.0f |%s |\n", group, stage, count, sum, names }
     BEGIN {
-        print heading "\n"
+        print "\n" heading "\n"
         print "Seconds of wall time on two idle cores, two tests at a time. `sh tests/list_tests.sh` makes this list.\n"
         print "| group | stage | tests | seconds | each |"
         print "| --- | --- | --- | --- | --- |"
@@ -36,5 +36,6 @@ done | awk '
     $1 " " $2 != row { end_row(); row = $1 " " $2; stage = $1; group = $2; count = sum = 0; names = "" }
     { count++; sum += $4; names = names sprintf("%s %s %.1f", count > 1 ? "," : "", $3, $4) }
     END { end_row() }' >build/list
-sed -i "/^$heading/,\$d" $list
+sed -i -e "/^$heading/,\$d" $list
+sed -i -e :end -e '/^\n*$/{$d;N;b end' -e '}' $list # no empty lines before it
 cat build/list >>$list

@@ -90,7 +90,7 @@ static void walls_are_as_thick_as_they_are(void **state)
 {
     (void)state;
     static const double walls[] = {0.3, 0.79, 1, 2.5, 8};
-    for (size_t n = 0; n < sizeof walls / sizeof *walls; n++) {
+    for (size_t n = 0; n < sizeof walls / sizeof *walls; n += test_is_short() ? 2 : 1) {
         const double t = walls[n];
         const double tube[4][2] = {{10, 0}, {10 + t, 0}, {10 + t, 20}, {10, 20}};
         cw_mesh plate = make_empty(), ring = make_empty(), hollow = make_empty();
