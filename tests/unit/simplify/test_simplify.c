@@ -102,7 +102,7 @@ static void hostile_surfaces_stay_sound(void **state)
 {
     (void)state;
     const test_hostile *h;
-    for (size_t n = 0; (h = test_hostile_at(n)); n += test_is_short() ? 3 : 1) {
+    for (size_t n = 0; (h = test_hostile_at(n)); n += test_is_short() ? 5 : 1) {
         cw_volume volume;
         cw_error err = {0};
         assert_ok(test_hostile_make(h, &volume, &err), err);
@@ -789,7 +789,7 @@ static void starve(const cw_mesh *mesh, const cw_simplify_desc *desc, long step)
 {
     cw_mesh out;
     bool failed = true;
-    for (long n = 0; failed; n += step + (test_is_short() ? n / 8 : 0)) {
+    for (long n = 0; failed; n += step + (test_is_short() ? n / 4 : 0)) {
         cw_error err = {0};
         cwi_alloc_fail_after(n);
         const cw_status st = cw_simplify(mesh, desc, &out, NULL, &err);

@@ -362,7 +362,7 @@ static void slices_give_the_same_surfaces(void **state)
             for (size_t n = 0; n < 20 * 13 * heights[h]; n++)
                 to[n] = n > 0 && rand() % 4 ? to[n - 1] : (uint32_t)rand() % 9;
             assert_ok(cw_extract_labels(&v, &desc, &whole, &err), err);
-            for (size_t chunks = 0; chunks < 4; chunks += test_is_short() ? 2 : 1) {
+            for (size_t chunks = 0; chunks < 4; chunks += test_is_short() ? 3 : 1) {
                 slices s = {.volume = &v};
                 const cw_slice_source source = source_of(&s);
                 cw_label_surfaces got;
