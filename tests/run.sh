@@ -1,8 +1,8 @@
 #!/bin/sh
 # Installs what the tests need, builds, and tests. Safe to run twice.
 #
-#   sh tests/run.sh            the release stage: about five minutes on two cores, packages not counted
-#   sh tests/run.sh all        all stages, about 40 minutes
+#   sh tests/run.sh            the release stage: about five and a half minutes on two cores, packages not counted
+#   sh tests/run.sh all        all stages, about 45 minutes
 #   sh tests/run.sh STAGE...   some of them:
 #
 # release     gcc, as users build it: every room, command and format, and the format of the code

@@ -94,14 +94,15 @@ static void a_number_of_triangles_is_met(void **state)
 static void a_box_needs_few_triangles(void **state)
 {
     (void)state;
-    enum { X = 28, Z = 30 };
-    static float values[Z][X][X];
+    enum { MOST = 48, Z = 30 };
+    static float values[Z * MOST * MOST];
+    const size_t x = test_is_short() ? 28 : MOST;
     for (size_t k = 0; k < Z; k++)
-        for (size_t j = 0; j < X; j++)
-            for (size_t i = 0; i < X; i++)
-                values[k][j][i] =
-                    i >= 4 && i < X - 4 && j >= 4 && j < X - 4 && k >= 4 && k < Z - 5;
-    const cw_volume volume = {.data = values, .type = CW_F32, .dim = {X, X, Z}};
+        for (size_t j = 0; j < x; j++)
+            for (size_t i = 0; i < x; i++)
+                values[(k * x + j) * x + i] =
+                    i >= 4 && i < x - 4 && j >= 4 && j < x - 4 && k >= 4 && k < Z - 5;
+    const cw_volume volume = {.data = values, .type = CW_F32, .dim = {x, x, Z}};
     const cw_extract_desc extract = {.isovalue = 0.5, .no_normals = true};
     const cw_mesh full = test_extract(&volume, &extract, NULL);
     const size_t target = full.triangle_count / 50;

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static uint32_t next(uint32_t *seed)
+static uint32_t next_number(uint32_t *seed)
 {
     *seed = *seed * 1664525u + 1013904223u;
     return *seed >> 8;
@@ -29,10 +29,10 @@ static void signs_are_exact(void **state)
         const uint32_t range = round % 2 ? 1u << 20 : 4;
         for (int n = 0; n < 4; n++)
             for (int a = 0; a < 3; a++)
-                p[n][a] = next(&seed) % range;
+                p[n][a] = next_number(&seed) % range;
         if (round % 4 == 1) /* nearly in the plane of the others */
             for (int a = 0; a < 3; a++)
-                p[3][a] = (p[1][a] + p[2][a]) / 2 + next(&seed) % 2;
+                p[3][a] = (p[1][a] + p[2][a]) / 2 + next_number(&seed) % 2;
         for (int n = 0; n < 4; n++)
             for (int a = 0; a < 3; a++) {
                 f[n][a] = (float)p[n][a];
@@ -76,8 +76,9 @@ static void signs_are_exact_at_the_limits(void **state)
 static void shear_rows(long long u[3][3], int rows, uint32_t *seed)
 {
     for (int turn = 0; turn < 60; turn++) {
-        const int i = (int)next(seed) % rows, j = (i + 1 + (int)next(seed) % (rows - 1)) % rows;
-        const long long times = (long long)(next(seed) % 7) - 3;
+        const int i = (int)next_number(seed) % rows,
+                  j = (i + 1 + (int)next_number(seed) % (rows - 1)) % rows;
+        const long long times = (long long)(next_number(seed) % 7) - 3;
         bool fits = true;
         for (int a = 0; a < rows; a++)
             fits = fits && llabs(u[i][a] + times * u[j][a]) < 1 << 20;
@@ -90,9 +91,9 @@ static void shear_rows(long long u[3][3], int rows, uint32_t *seed)
  * powers that differ much, coordinates are no whole numbers of one unit. */
 static void place_points(long long u[3][3], int power, uint32_t *seed, float f[4][3])
 {
-    const uint32_t turn = next(seed);
+    const uint32_t turn = next_number(seed);
     for (uint32_t a = 0; a < 3; a++) {
-        const long long start = next(seed) % (1 << 20);
+        const long long start = next_number(seed) % (1 << 20);
         const int exponent = power * ((int)((a + turn) % 3) - 1);
         f[0][a] = ldexpf((float)start, exponent);
         for (int n = 0; n < 3; n++)
@@ -137,10 +138,11 @@ static void points_far_from_each_other_keep_their_line(void **state)
     uint32_t seed = 1;
     for (int round = 0; round < 3000; round++) {
         const int axis = round % 3, x = (axis + 1) % 3, y = (axis + 2) % 3;
-        const float along[2] = {(float)(1 + next(&seed)), (float)(1 + next(&seed))};
+        const float along[2] = {(float)(1 + next_number(&seed)),
+                                (float)(1 + next_number(&seed))};
         float p[3][3] = {{0}};
         for (int n = 0; n < 3; n++) {
-            const int exponent = (int)(next(&seed) % 61) - 30;
+            const int exponent = (int)(next_number(&seed) % 61) - 30;
             p[n][x] = ldexpf(along[0], exponent);
             p[n][y] = ldexpf(along[1], exponent);
         }
