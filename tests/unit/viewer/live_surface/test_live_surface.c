@@ -107,9 +107,8 @@ static void each_type_is_the_same(void **state)
     static const cw_type types[] = {CW_U32, CW_I32, CW_U16, CW_I8, CW_U8, CW_I16, CW_F32};
     live_difference d = {0};
     size_t triangles = 0;
-    for (int n = 0; n < (int)(sizeof types / sizeof *types); n += !test_is_short() ? 1
-                                                                  : CWI_SANITIZED  ? 7
-                                                                                   : 3) {
+    const int step = !test_is_short() ? 1 : CWI_SANITIZED ? 7 : 3;
+    for (int n = 0; n < (int)(sizeof types / sizeof *types); n += step) {
         triangles += check_fields(types[n], n, &d);
         triangles += check_noise(types[n], n, &d);
         triangles += check_gaps(types[n], &d);
