@@ -210,7 +210,7 @@ make_bare() {
 # may name a library's version.
 list_outputs() {
     must "the outputs" "$1" "cd /tmp && sh /src/tests/outputs.sh /src/build/release/bin >/results/outputs"
-    grep -v -e '\.txt$' -e 'render-' -e 'compare\.png$' -e 'turn-' "$1/results/outputs"
+    grep -v -e '\.txt$' -e '\.out$' -e 'render-' -e 'compare\.png$' -e 'turn-' "$1/results/outputs"
 }
 
 # A root a stage, most from one bare system.
