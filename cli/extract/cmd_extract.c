@@ -160,12 +160,8 @@ static const cli_option options[] = {
     {"manifest", 0, CLI_TEXT, "DIR",
      "Folder of the parts of --part, or of mpirun, and of the record of their job; made if need be",
      offsetof(cli_extract_args, manifest), CLI_VALUES_FOLDER},
-    {"queue", 0, CLI_TEXT, "DIR",
-     "Make all parts in DIR, with any number of processes that say the same; then -o. What was "
-     "interrupted goes on when it is run again",
-     offsetof(cli_extract_args, queue), CLI_VALUES_FOLDER},
     {"parts", 0, CLI_COUNT, "N",
-     "Number of parts of --queue, or of mpirun with --manifest (one for 64 slices)",
+     "Number of parts of mpirun with --manifest (one for 64 slices)",
      offsetof(cli_extract_args, parts)},
     CLI_HEADED("Output file"),
     {"format", 0, CLI_TEXT, "NAME", "Format to write; names as in 'formats' (by extension)",
@@ -519,9 +515,9 @@ static cw_status run_extract(void *p, cw_error *err)
                          .iso = &args->iso,
                          .coloring.args = &args->color,
                          .output.start = cli_seconds()};
-    if (cw_team_is_started() && !args->part && !args->queue) /* else each rank is a worker */
+    if (cw_team_is_started() && !args->part) /* else each rank is a worker */
         return cli_extract_ranks(args, err);
-    if (args->part || args->manifest || args->queue || args->parts)
+    if (args->part || args->manifest || args->parts)
         return cli_extract_part(args, err);
     if (args->labels)
         return cli_extract_labels(args, err);

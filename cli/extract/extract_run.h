@@ -33,7 +33,7 @@ typedef struct cli_extract_args {
     cli_pixel_args pixel;
     int inside, normals, progress, topology, placement, accel;
     bool open, no_clobber, local, check, measure, animate, prove_crop;
-    const char *part, *manifest, *queue;
+    const char *part, *manifest;
     size_t parts;
     int stream;
     size_t max_triangles, slab;

@@ -1,10 +1,9 @@
 /* Extracts a surface in parts. Parts need nothing of each other: any scheduler can run them, in any
  * order, and again. */
-#define _GNU_SOURCE /* nanosleep */
 #include "cli/extract/part_run.h"
 
 #include "cli/extract/part_join.h"
-#include "cli/extract/part_lease.h"
+#include "cli/extract/part_manifest.h"
 #include "cli/extract/stream_run.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
@@ -17,7 +16,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 /* A part on its way. */
@@ -29,8 +27,6 @@ typedef struct part_run {
     char path[CLI_FRAGMENT_PATH];
     cw_mesh_spool *spool;
     cw_part_counts counts;
-    cli_lease lease; /* of --queue */
-    cw_progress bar;
     double start; /* of the part */
 } part_run;
 
@@ -80,26 +76,16 @@ static cw_status check_job(const cli_extract_args *args, const char *how, cw_err
 
 static cw_status check_args(const cli_extract_args *args, cw_error *err)
 {
-    if (args->queue && (args->part || args->manifest))
+    if (args->parts)
         return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--queue makes all parts; --part and --manifest make one");
-    if (args->parts && !args->queue)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--parts is for --queue; --part K/N states both");
-    if (!args->queue && (!args->part || !args->manifest))
+                        "--parts is for mpirun with --manifest; --part K/N states both");
+    if (!args->part || !args->manifest)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--part K/N and --manifest DIR belong together");
-    if (args->output && !args->queue)
+    if (args->output)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--part writes into --manifest, not -o; 'cubewright join DIR -o FILE' "
                         "makes the file of all parts");
-    return check_job(args, args->queue ? "--queue" : "--part", err);
-}
-
-/* Shows progress, and renews the lease. */
-static bool report_progress(void *user, const char *step, double done)
-{
-    part_run *p = user;
-    cli_renew_lease(&p->lease);
-    return !p->bar.report || p->bar.report(p->bar.user, step, done);
+    return check_job(args, "--part", err);
 }
 
 static cw_status extract_slices(void *user, const cw_slice_source *source, cw_error *err)
@@ -107,8 +93,6 @@ static cw_status extract_slices(void *user, const cw_slice_source *source, cw_er
     part_run *p = user;
     cw_stream_desc d;
     cw_status st = cli_plan_slices(&p->run, p->run.args->iso.value[0], source, &d, err);
-    p->bar = d.extract.progress;
-    d.extract.progress = (cw_progress){.report = report_progress, .user = p};
     return st == CW_OK ? cw_extract_stream_part(source, &d, p->part, p->parts,
                                                 cw_mesh_spool_sink(p->spool), &p->counts, err)
                        : st;
@@ -162,45 +146,6 @@ static cw_status make_part(part_run *p, cw_error *err)
     return CW_OK;
 }
 
-/* Makes the parts that are neither there nor leased. *left: those that others are making */
-static cw_status make_free_parts(part_run *p, size_t *left, cw_error *err)
-{
-    cw_status st = CW_OK;
-    *left = 0;
-    for (p->part = 0; p->part < p->parts && st == CW_OK; p->part++) {
-        st = cli_name_fragment(p->folder, p->part, p->parts, p->path, err);
-        if (st == CW_OK && is_made(p)) {
-            cli_clear_lease(p->folder, p->part, p->parts);
-            continue;
-        }
-        if (st != CW_OK)
-            continue;
-        if (!cli_take_lease(p->folder, p->part, p->parts, &p->lease)) {
-            ++*left;
-            continue;
-        }
-        if (!is_made(p)) /* it was not made in between */
-            st = make_fragment(p, err);
-        cli_drop_lease(&p->lease);
-    }
-    return st;
-}
-
-/* Makes parts until all are there, whoever makes them. */
-static cw_status run_queue(part_run *p, cw_error *err)
-{
-    const cw_progress wait = cli_progress(0, "");
-    size_t left = 0;
-    cw_status st = make_free_parts(p, &left, err);
-    while (st == CW_OK && left) {
-        nanosleep(&(struct timespec){.tv_nsec = 200000000}, NULL);
-        st = cwi_progress(&wait, "waiting", 0, err);
-        if (st == CW_OK)
-            st = make_free_parts(p, &left, err);
-    }
-    return st;
-}
-
 /* Layers of a part, if the number of parts is not stated: parts of a size that is soon made. */
 enum { PART_LAYERS = 64 };
 
@@ -224,38 +169,19 @@ static void end_job(part_run *p)
     cli_free_volume(&p->run.input.volume);
 }
 
-static cli_joined describe_file(const part_run *p, const cw_write_desc *desc, double start,
-                                char text[CLI_PARTS_TEXT])
-{
-    return (cli_joined){.output = p->run.args->output,
-                        .from = cli_count_parts(p->parts, text),
-                        .desc = desc,
-                        .manifest = &p->manifest,
-                        .input = &p->run.args->input,
-                        .check = p->run.args->check,
-                        .start = start};
-}
-
 cw_status cli_extract_part(const cli_extract_args *args, cw_error *err)
 {
-    part_run p = {.run.args = args, .folder = args->queue ? args->queue : args->manifest};
-    const double start = cli_seconds();
-    char text[CLI_PARTS_TEXT];
+    part_run p = {.run.args = args, .folder = args->manifest};
     cli_console_start(&args->common, (cli_progress_mode)args->progress);
     cw_status st = check_args(args, err);
-    if (st == CW_OK && args->part)
+    if (st == CW_OK)
         st = parse_part(args->part, &p.part, &p.parts, err);
     if (st == CW_OK)
-        st = begin_job(&p, args->part ? p.parts : args->parts, err);
+        st = begin_job(&p, p.parts, err);
     if (st == CW_OK)
         st = cli_settle_manifest(p.folder, &p.manifest, err);
     if (st == CW_OK)
-        st = args->queue ? run_queue(&p, err) : make_part(&p, err);
-    if (st == CW_OK && args->queue && args->output) {
-        const cw_write_desc desc = cli_extract_write_desc(args);
-        const cli_joined joined = describe_file(&p, &desc, start, text);
-        st = cli_join_parts(p.folder, &joined, err);
-    }
+        st = make_part(&p, err);
     end_job(&p);
     return st;
 }
@@ -348,7 +274,13 @@ static cw_status work_together(part_run *p, const cw_team *team, double start, c
         st = gather_sides(team, &p->counts, err);
     if (st == CW_OK)
         st = cw_mesh_spool_share(p->spool, team, err);
-    const cli_joined joined = describe_file(p, &desc, start, text);
+    const cli_joined joined = {.output = args->output,
+                               .from = text,
+                               .desc = &desc,
+                               .manifest = &p->manifest,
+                               .input = &args->input,
+                               .check = args->check,
+                               .start = start};
     snprintf(text, sizeof text, "%d processes", team->size);
     return st == CW_OK ? cli_write_joined(&joined, p->spool, &p->counts, team, err) : st;
 }

@@ -4,8 +4,7 @@
 
 #include "cli/extract/extract_run.h"
 
-/* extract --part K/N --manifest DIR: makes the fragment of a part, unless it is there.
- * extract --queue DIR: makes all parts, together with other processes, and then the file of -o. */
+/* extract --part K/N --manifest DIR: makes the fragment of a part, unless it is there. */
 CW_NODISCARD cw_status cli_extract_part(const cli_extract_args *args, cw_error *err);
 
 /* mpirun -n N ... extract -o FILE: makes the part of this rank, and with the others the file. With

@@ -23,7 +23,6 @@ lod --pvd x.pvd
 lod --crop 0:7,0:15,0:15 --prove-crop
 lod --stream always
 try s.nrrd --iso 0 --lod 200,100 --part 1/2 --manifest parts
-lod --queue parts
 lod --memory 1kB
 lod --labels all
 lod --json x-lod1.ply

@@ -38,9 +38,6 @@ cmp a.ply b.ply && echo "turned to slices: the same"
 for k in 3 1 2; do cubewright extract h.nrrd --iso 32767.5 --part $k/3 --manifest m --min-volume 1vox -q; done
 cubewright join m -o b.ply --name a
 cmp a.ply b.ply && echo "parts: the same"
-rm b.ply
-cubewright extract h.nrrd --iso 32767.5 --queue q --parts 5 --min-volume 1vox -o b.ply --name a -q
-cmp a.ply b.ply && echo "queue: the same"
 # errors say what is wrong
 try() { "$@" -q || echo "exit $?"; }
 try cubewright extract h.nrrd --iso 32767.5 --part 1/3 --manifest m --min-volume 2vox

@@ -22,35 +22,22 @@ wait
 cubewright join m3 -o joined.ply --name a
 cmp whole.ply joined.ply
 cubewright extract g.nrrd --iso 100 --part 2/3 --manifest m3
-# a queue: workers share the parts, and one of them writes the file
-for w in 1 2 3; do cubewright extract g.nrrd --iso 100 --queue q --parts 7 -q & done
-wait
-cubewright extract g.nrrd --iso 100 --queue q --parts 7 -o queued.ply --name a -q
-cmp whole.ply queued.ply && echo "queue: the same"
-# killed at any time, it goes on where it was: at the start, after each part, and while it joins them
-has_parts_or_is_over() {
-    [ "$(find r -name '*.cwpart' 2>/dev/null | wc -l)" -ge "$1" ] || is_over "$2"
+# killed at any time, it is made when it is run again
+has_begun_or_is_over() {
+    [ -n "$(find r -type f ! -name '*.cwpart' ! -name manifest.json 2>/dev/null)" ] || is_over "$1"
 }
 cubewright make gyroid -o h.nrrd --dims 120 --type i16 --noise 0.2 --seed 3 -q
 cubewright extract h.nrrd --iso 100 -o whole.ply --name a --stream never -q
-for n in 0 1 2 3 4 5 6 7 8 9; do
-    cubewright extract h.nrrd --iso 100 --queue r --parts 9 -o resumed.ply --name a -q &
+for k in 1 2 3 4 5 6 7 8 9; do
+    cubewright extract h.nrrd --iso 100 --part $k/9 --manifest r -q &
     worker=$!
-    wait_until has_parts_or_is_over $n $worker
+    [ $((k % 2)) = 0 ] || wait_until has_begun_or_is_over $worker
     kill -KILL $worker 2>/dev/null || true
     wait $worker 2>/dev/null || true
-    rm -f resumed.ply
+    cubewright extract h.nrrd --iso 100 --part $k/9 --manifest r -q
 done
-cubewright extract h.nrrd --iso 100 --queue r --parts 9 -o resumed.ply --name a -q
-cmp whole.ply resumed.ply && echo "killed ten times: the same"
-ls r/*.lease 2>/dev/null || echo "no lease is left"
-# a lease whose worker is dead, or silent for a minute, counts no more
-rm r/part-3-of-9.cwpart r/part-5-of-9.cwpart
-echo "elsewhere 1" >r/part-3-of-9.lease
-touch -d '2 minutes ago' r/part-3-of-9.lease
-echo "$(uname -n) 999999999" >r/part-5-of-9.lease
-cubewright extract h.nrrd --iso 100 --queue r --parts 9 -o resumed.ply --name a -q
-cmp whole.ply resumed.ply && echo "dead workers: the same"
+cubewright join r -o resumed.ply --name a -q
+cmp whole.ply resumed.ply && echo "killed nine times: the same"
 # errors say what is wrong
 try() { "$@" -q || echo "exit $?"; }
 try cubewright extract g.nrrd --iso 101 --part 2/3 --manifest m3
@@ -60,7 +47,6 @@ try cubewright extract g.nrrd --iso 100 --part 1/3
 try cubewright extract g.nrrd --iso 100 --part 1/3 --manifest m3 -o a.ply
 try cubewright extract g.nrrd --iso 100 --part 1/3 --manifest m3 --simplify 50%
 try cubewright extract g.nrrd --iso 100,200 --part 1/3 --manifest m3
-try cubewright extract g.nrrd --iso 100 --part 1/3 --queue q
 try cubewright extract g.nrrd --iso 100 --parts 3 --part 1/3 --manifest m3
 printf 'x' | dd of=m3/part-2-of-3.cwpart bs=1 seek=5000 conv=notrunc 2>/dev/null
 try cubewright join m3 -o no.ply
