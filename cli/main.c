@@ -16,10 +16,10 @@
 #include <string.h>
 
 const cli_command *const cli_commands[] = {
-    &cli_extract, &cli_join,    &cli_simplify,       &cli_smooth,        &cli_remesh,
-    &cli_repair,  &cli_convert, &cli_hollow,         &cli_offset,        &cli_check,
-    &cli_info,    &cli_render,  &cli_report_command, &cli_bench_command, &cli_view,
-    &cli_make,    &cli_formats, &cli_help,           &cli_version,       NULL};
+    &cli_extract, &cli_join,    &cli_simplify,       &cli_smooth, &cli_remesh,
+    &cli_repair,  &cli_convert, &cli_hollow,         &cli_offset, &cli_check,
+    &cli_info,    &cli_render,  &cli_report_command, &cli_view,   &cli_make,
+    &cli_formats, &cli_help,    &cli_version,        NULL};
 
 const cli_command *cli_find_command(const char *name, cw_error *err)
 {

@@ -4,15 +4,15 @@
 
 #include "cli/framework/options.h"
 
-extern const cli_command cli_bench_command, cli_check, cli_convert, cli_extract, cli_formats,
-    cli_help, cli_hollow, cli_info, cli_join, cli_make, cli_offset, cli_remesh, cli_render,
-    cli_repair, cli_report_command, cli_simplify, cli_smooth, cli_version, cli_view;
+extern const cli_command cli_check, cli_convert, cli_extract, cli_formats, cli_help, cli_hollow,
+    cli_info, cli_join, cli_make, cli_offset, cli_remesh, cli_render, cli_repair,
+    cli_report_command, cli_simplify, cli_smooth, cli_version, cli_view;
 
 /* The long help of each command: help/NAME.txt, as core/embed.cmake puts it into
  * the program. */
-extern const char cli_page_bench[], cli_page_check[], cli_page_convert[], cli_page_extract[],
-    cli_page_formats[], cli_page_help[], cli_page_hollow[], cli_page_info[], cli_page_join[],
-    cli_page_make[], cli_page_offset[], cli_page_remesh[], cli_page_render[], cli_page_repair[],
+extern const char cli_page_check[], cli_page_convert[], cli_page_extract[], cli_page_formats[],
+    cli_page_help[], cli_page_hollow[], cli_page_info[], cli_page_join[], cli_page_make[],
+    cli_page_offset[], cli_page_remesh[], cli_page_render[], cli_page_repair[],
     cli_page_report[], cli_page_simplify[], cli_page_smooth[], cli_page_version[],
     cli_page_view[];
 

@@ -289,10 +289,6 @@ void cli_free_advice(cli_advice *advice, size_t count);
 void cli_put_study_json(FILE *out, const void *study);
 void cli_put_study_csv(FILE *out, const void *study);
 
-/* Cells of CSV: text in quotes; a comma and a number, or nothing if it is not known. */
-void cli_put_cell(FILE *out, const char *text);
-void cli_put_number(FILE *out, bool known, double value);
-
 /* The points of a family that are done, by their number. Returns how many there are. */
 size_t cli_points_of(const cli_study *study, cli_family family,
                      const cli_point *points[CLI_MAX_POINTS]);

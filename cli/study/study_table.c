@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-void cli_put_cell(FILE *out, const char *text)
+static void put_cell(FILE *out, const char *text)
 {
     fputc('"', out);
     for (; *text; text++) {
@@ -19,7 +19,7 @@ void cli_put_cell(FILE *out, const char *text)
     fputc('"', out);
 }
 
-void cli_put_number(FILE *out, bool known, double value)
+static void put_number(FILE *out, bool known, double value)
 {
     fputc(',', out);
     if (known && isfinite(value))
@@ -28,9 +28,9 @@ void cli_put_number(FILE *out, bool known, double value)
 
 static void put_gap(FILE *out, const cli_gap *gap)
 {
-    cli_put_number(out, gap->known, gap->max_mm);
-    cli_put_number(out, gap->known, gap->rms_mm);
-    cli_put_number(out, gap->known, gap->p99_mm);
+    put_number(out, gap->known, gap->max_mm);
+    put_number(out, gap->known, gap->rms_mm);
+    put_number(out, gap->known, gap->p99_mm);
 }
 
 /* Never with the first letter of somebody else's words: spreadsheets take some for formulas. */
@@ -38,35 +38,35 @@ static void put_note(FILE *out, const cli_point *p)
 {
     char note[sizeof p->why + 16];
     snprintf(note, sizeof note, "left out: %s", p->why);
-    cli_put_cell(out, !p->done ? note : p->aside ? p->aside : "");
+    put_cell(out, !p->done ? note : p->aside ? p->aside : "");
 }
 
 static void put_row(FILE *out, const cli_study *s, const cli_point *p)
 {
     const bool drawn = p->done && cli_is_drawn(p->family), mesh = p->done && !drawn;
     fprintf(out, "%s,", cli_family_names[p->family]);
-    cli_put_cell(out, p->name);
+    put_cell(out, p->name);
     fprintf(out, ",%s,%s", p->done ? "yes" : "no", p->front ? "yes" : "no");
-    cli_put_number(out, p->done, p->done ? cli_point_cost(p) : 0);
-    cli_put_number(out, p->done, cli_point_error(s, p));
-    cli_put_number(out, p->done, p->seconds);
-    cli_put_number(out, p->peak_bytes > 0, (double)p->peak_bytes);
-    cli_put_number(out, mesh, (double)p->triangles);
-    cli_put_number(out, mesh, (double)p->file_bytes);
+    put_number(out, p->done, p->done ? cli_point_cost(p) : 0);
+    put_number(out, p->done, cli_point_error(s, p));
+    put_number(out, p->done, p->seconds);
+    put_number(out, p->peak_bytes > 0, (double)p->peak_bytes);
+    put_number(out, mesh, (double)p->triangles);
+    put_number(out, mesh, (double)p->file_bytes);
     put_gap(out, &p->to_field);
     put_gap(out, &p->back);
     put_gap(out, &p->truth);
-    cli_put_number(out, drawn, p->picture.rmse);
-    cli_put_number(out, drawn, p->picture.max);
-    cli_put_number(out, drawn, p->picture.delta_e_mean);
-    cli_put_number(out, drawn, p->picture.delta_e_p99);
+    put_number(out, drawn, p->picture.rmse);
+    put_number(out, drawn, p->picture.max);
+    put_number(out, drawn, p->picture.delta_e_mean);
+    put_number(out, drawn, p->picture.delta_e_p99);
     fputc(',', out);
     put_note(out, p);
     fputc(',', out);
-    cli_put_cell(out, p->command);
+    put_cell(out, p->command);
     fputc(',', out);
-    cli_put_cell(out, p->group);
-    cli_put_number(out, p->done, (double)p->runs);
+    put_cell(out, p->group);
+    put_number(out, p->done, (double)p->runs);
     fputs("\r\n", out);
 }
 

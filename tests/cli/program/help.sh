@@ -5,7 +5,7 @@ cubewright help exit
 cubewright help environment >page && grep -q NO_COLOR page || echo "no page on the environment"
 cubewright help library >page && grep -q pkg-config page || echo "no page on the library"
 awk 'length > 96 { print "library: a long line: " $0 }' page
-for c in extract simplify smooth remesh repair convert hollow offset info render report bench view make formats help version; do
+for c in extract simplify smooth remesh repair convert hollow offset info render report view make formats help version; do
     cubewright $c -h >short || exit
     cubewright help $c >long || exit
     grep -q -e '--quiet' short && grep -q "^cubewright $c" long || echo "$c lacks its help"
