@@ -146,8 +146,11 @@ static cw_status run_words(const cli_command *command, const cli_words *words, c
     if (!args->said)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the arguments");
     cli_said *const said = args->said;
+    args->config_inputs = words->inputs;
+    args->config_input_count = words->input_count;
     cw_status st = cli_parse(command, words->count, words->words, args, inputs, err);
     args->said = NULL; /* the window parses more options later */
+    cli_keep_run(command, args, said);
     cli_console_start(args, CLI_PROGRESS_AUTO);
     if (st == CW_OK && args->save_config)
         st = check_save(args, said, err);
@@ -158,7 +161,7 @@ static cw_status run_words(const cli_command *command, const cli_words *words, c
     else if (st == CW_OK)
         st = run_parsed(command, args, err);
     if (st == CW_OK && args->save_config)
-        st = cli_save_config(command, args, said, err);
+        st = cli_save_config(args->save_config, err);
     free(said);
     return st;
 }
@@ -168,7 +171,7 @@ static cw_status run_command(const cli_command *command, int count, char **words
     cli_words all;
     cw_status st = cli_read_config(command, count, words, &all, err);
     cli_common *args = calloc(1, command->size);
-    const char **inputs = calloc((size_t)all.count + 1, sizeof *inputs);
+    const char **inputs = calloc((size_t)all.count + all.input_count + 1, sizeof *inputs);
     if (st == CW_OK && args && inputs)
         st = run_words(command, &all, args, inputs, err);
     else if (st == CW_OK)

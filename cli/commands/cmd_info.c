@@ -8,6 +8,7 @@
 #include "cli/framework/console.h"
 #include "cli/framework/field_names.h"
 #include "cli/framework/quantity.h"
+#include "cli/framework/run_config.h"
 #include "cli/inputs/level_choice.h"
 #include "cli/inputs/time_series.h"
 #include "cli/inputs/volume_input.h"
@@ -438,9 +439,7 @@ static void print_json(const facts *f, bool predicted)
 {
     const cw_statistics *r = &f->range;
     cli_json j = {.out = stdout};
-    cli_json_open(&j, NULL, '{');
-    cli_json_text(&j, "schema", "cubewright-info-1");
-    cli_json_text(&j, "version", cw_version());
+    cli_json_begin(&j, "cubewright-info-1");
     cli_json_input(&j, "input", &f->volume);
     if (f->series.images) {
         cli_json_open(&j, "series", '{');
@@ -530,9 +529,7 @@ static void json_shape(cli_json *j, const cw_series *s)
 static void print_series_json(const char *path, const cw_series *series, size_t count)
 {
     cli_json j = {.out = stdout};
-    cli_json_open(&j, NULL, '{');
-    cli_json_text(&j, "schema", "cubewright-series-1");
-    cli_json_text(&j, "version", cw_version());
+    cli_json_begin(&j, "cubewright-series-1");
     cli_json_text(&j, "path", cli_shown_path(path));
     cli_json_open(&j, "series", '[');
     for (size_t n = 0; n < count; n++) {
@@ -610,9 +607,7 @@ static void open_list(const info_args *args, size_t count, cli_json *j)
         printf("%zu files, a time step each\n", count);
         return;
     }
-    cli_json_open(j, NULL, '{');
-    cli_json_text(j, "schema", "cubewright-steps-1");
-    cli_json_text(j, "version", cw_version());
+    cli_json_begin(j, "cubewright-steps-1");
     cli_json_open(j, "steps", '[');
 }
 

@@ -15,10 +15,11 @@ const cli_option cli_common_options[] = {
      "Print the time and memory of each step; -vv also the settings",
      offsetof(cli_common, verbose)},
     {"config", 0, CLI_TEXT, "FILE",
-     "Read options from a file, such as one of --save-config; the command line comes first (none)",
-     offsetof(cli_common, config), CLI_VALUES_FILE},
+     "Read the options of a run from a file of --save-config or --json; the command line comes first "
+     "(none)",
+     offsetof(cli_common, config), CLI_VALUES_JSON_INPUT},
     {"save-config", 0, CLI_TEXT, "FILE",
-     "Write the inputs and options to a file when the run is done, to repeat it (none)",
+     "Write the inputs and options as JSON when the run is done, to repeat it (none)",
      offsetof(cli_common, save_config), CLI_VALUES_FILE},
     {"help", 'h', CLI_FLAG, NULL, "Print the options of the command",
      offsetof(cli_common, help)},
@@ -373,9 +374,11 @@ static bool store_value(const cli_option *o, const char *text, void *field)
     }
 }
 
-static const char *describe_expected(const cli_option *o)
+const char *cli_expected(const cli_option *o)
 {
     switch (o->kind) {
+    case CLI_FLAG:
+        return "true or false";
     case CLI_CHOICE:
         return o->value;
     case CLI_NUMBER:
@@ -458,13 +461,13 @@ static cw_status take_option(parser *p, const cli_option *o, const char *value, 
         return value ? cwi_fail(err, CW_ERR_ARGUMENT, "--%s takes no value", o->name) : CW_OK;
     if (!value && p->next == p->count)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--%s needs a value: %s", o->name,
-                        describe_expected(o));
+                        cli_expected(o));
     value = value ? value : p->words[p->next++];
     if (p->args->said)
         p->args->said[p->args->said_count++] = (cli_said){.option = o, .value = value};
     if (!store_value(o, value, field))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--%s '%s': expected %s", o->name, value,
-                        describe_expected(o));
+                        cli_expected(o));
     return CW_OK;
 }
 
@@ -543,25 +546,10 @@ cw_status cli_parse(const cli_command *command, int count, char **words, void *a
     parser p = {command, count, 0, words, args};
     p.args->inputs = inputs;
     cw_status st = take_words(&p, err);
+    if (p.args->input_count == 0)
+        for (size_t n = 0; n < p.args->config_input_count; n++)
+            inputs[p.args->input_count++] = p.args->config_inputs[n];
     return st == CW_OK ? check_inputs(command, p.args, err) : st;
-}
-
-cw_status cli_count_inputs(const cli_command *command, int count, char **words, size_t *inputs,
-                           cw_error *err)
-{
-    cw_error unsaid;
-    parser p = {command, count, 0, words, calloc(1, command->size)};
-    const char **places = calloc((size_t)count + 1, sizeof *places);
-    cw_status st = p.args && places
-                       ? CW_OK
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the arguments");
-    if (st == CW_OK) {
-        p.args->inputs = places;
-        *inputs = take_words(&p, &unsaid) == CW_OK ? p.args->input_count : 1;
-    }
-    free(p.args);
-    free(places);
-    return st;
 }
 
 const cli_option *cli_find_option(const cli_command *command, const char *name, cw_error *err)
@@ -572,16 +560,13 @@ const cli_option *cli_find_option(const cli_command *command, const char *name, 
     return o;
 }
 
-cw_status cli_check_value(const cli_option *option, const char *value, cw_error *err)
+bool cli_value_fits(const cli_option *option, const char *value)
 {
-    void *field = calloc(1, cli_option_size(option) + 1);
-    if (!field)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a value");
-    const bool fits = store_value(option, value, field);
+    void *field = calloc(1, cli_option_size(option));
+    const bool fits =
+        !field || store_value(option, value, field); /* else parsing will say it */
     free(field);
-    return fits ? CW_OK
-                : cwi_fail(err, CW_ERR_ARGUMENT, "%s '%s': expected %s", option->name, value,
-                           describe_expected(option));
+    return fits;
 }
 
 /* Width of the help, and the column where the texts of options begin. */

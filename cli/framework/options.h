@@ -258,6 +258,8 @@ typedef struct cli_common {
     size_t input_count;
     cli_batch batch;
     const char *config, *save_config; /* files of a run: see run_config.h */
+    const char *const *config_inputs; /* of --config, which count if the words have none */
+    size_t config_input_count;
     struct cli_said *said; /* options are listed there as they are said; NULL: they are not */
     size_t said_count;
     size_t processes; /* of a batch, which share threads and memory; 0: this one alone */
@@ -286,16 +288,12 @@ typedef struct cli_command {
 CW_NODISCARD cw_status cli_parse(const cli_command *command, int count, char **words,
                                  void *args, const char **inputs, cw_error *err);
 
-/* Counts the words that are no options; 1 where the words cannot be parsed. CW_ERR_NO_MEMORY */
-CW_NODISCARD cw_status cli_count_inputs(const cli_command *command, int count, char **words,
-                                        size_t *inputs, cw_error *err);
-
 /* Returns the option of a name, or NULL, and an error with the nearest name. */
 const cli_option *cli_find_option(const cli_command *command, const char *name, cw_error *err);
 
-/* Checks a value against the kind of its option. CW_ERR_ARGUMENT, CW_ERR_NO_MEMORY */
-CW_NODISCARD cw_status cli_check_value(const cli_option *option, const char *value,
-                                       cw_error *err);
+/* Returns whether a value is of the option's kind, and the words for that kind. */
+bool cli_value_fits(const cli_option *option, const char *value);
+const char *cli_expected(const cli_option *option);
 
 /* Whether an option was given, of that name. */
 bool cli_is_given(const cli_command *command, const cli_common *args, const char *name);

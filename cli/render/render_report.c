@@ -2,6 +2,7 @@
  * pictures. */
 #include "cli/render/render_report.h"
 
+#include "cli/framework/run_config.h"
 #include "cli/results/run_report.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
@@ -183,10 +184,7 @@ static void put_report(FILE *out, const cli_render_report *r, cw_status status,
                        const cw_error *err)
 {
     cli_json j = {.out = out};
-    cli_json_open(&j, NULL, '{');
-    cli_json_text(&j, "schema", "cubewright-render-1");
-    cli_json_text(&j, "tool", "cubewright");
-    cli_json_text(&j, "version", cw_version());
+    cli_json_begin(&j, "cubewright-render-1");
     if (r->volume)
         cli_json_input(&j, "input", r->volume);
     cli_json_text(&j, "mode", cw_mode_name(r->mode));

@@ -4,6 +4,7 @@
 
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
+#include "cli/framework/run_config.h"
 #include "cli/inputs/cut_options.h"
 #include "cli/results/check_verdicts.h"
 #include "cli/results/compress_options.h"
@@ -379,10 +380,7 @@ static void put_warnings(cli_json *j, const cli_report *r)
 static void put_report(FILE *out, const cli_report *r, cw_status status, const cw_error *err)
 {
     cli_json j = {.out = out};
-    cli_json_open(&j, NULL, '{');
-    cli_json_text(&j, "schema", "cubewright-report-1");
-    cli_json_text(&j, "tool", "cubewright");
-    cli_json_text(&j, "version", cw_version());
+    cli_json_begin(&j, "cubewright-report-1");
     put_features(&j);
     cli_json_text(&j, "command", r->command);
     if (r->input)

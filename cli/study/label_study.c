@@ -2,6 +2,7 @@
 #include "cli/study/label_study.h"
 
 #include "cli/framework/console.h"
+#include "cli/framework/run_config.h"
 #include "cli/framework/temp_folder.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -249,10 +250,7 @@ void cli_put_label_json(FILE *out, const void *study)
 {
     const cli_label_study *l = study;
     cli_json j = {.out = out};
-    cli_json_open(&j, NULL, '{');
-    cli_json_text(&j, "schema", "cubewright-labels-1");
-    cli_json_text(&j, "tool", "cubewright");
-    cli_json_text(&j, "version", cw_version());
+    cli_json_begin(&j, "cubewright-labels-1");
     cli_json_input(&j, "input", l->study.volume);
     cli_json_number(&j, "max_move_voxels", l->scene.max_move);
     cli_json_count(&j, "triangles", l->triangles);

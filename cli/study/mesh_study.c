@@ -4,6 +4,7 @@
 
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
+#include "cli/framework/run_config.h"
 #include "cli/framework/temp_folder.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/inputs/level_choice.h"
@@ -225,10 +226,7 @@ void cli_put_mesh_json(FILE *out, const void *study)
     const cli_mesh_study *m = study;
     cli_json j = {.out = out};
     char *command = cli_check_command(m);
-    cli_json_open(&j, NULL, '{');
-    cli_json_text(&j, "schema", "cubewright-provenance-1");
-    cli_json_text(&j, "tool", "cubewright");
-    cli_json_text(&j, "version", cw_version());
+    cli_json_begin(&j, "cubewright-provenance-1");
     cli_json_mesh_file(&j, "input", &m->mesh);
     cli_json_count(&j, "file_bytes", m->file_bytes);
     cli_json_input(&j, "source", m->study.volume);

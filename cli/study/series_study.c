@@ -4,6 +4,7 @@
 #include "cli/study/series_study.h"
 
 #include "cli/framework/console.h"
+#include "cli/framework/run_config.h"
 #include "cli/framework/temp_folder.h"
 #include "cli/inputs/extract_surface.h"
 #include "core/base/memory.h"
@@ -151,10 +152,7 @@ void cli_put_series_json(FILE *out, const void *study)
 {
     const cli_series_study *q = study;
     cli_json j = {.out = out};
-    cli_json_open(&j, NULL, '{');
-    cli_json_text(&j, "schema", "cubewright-surfaces-1");
-    cli_json_text(&j, "tool", "cubewright");
-    cli_json_text(&j, "version", cw_version());
+    cli_json_begin(&j, "cubewright-surfaces-1");
     cli_json_number(&j, "iso", q->study.iso);
     cli_json_text(&j, "level", q->study.level);
     cli_json_text(&j, "inside", q->study.inside_is_low ? "below" : "above");

@@ -1,5 +1,6 @@
 /* The points as rows of numbers, and as JSON. */
 #include "cli/framework/console.h"
+#include "cli/framework/run_config.h"
 #include "cli/results/check_verdicts.h"
 #include "cli/study/study.h"
 
@@ -194,10 +195,7 @@ void cli_put_study_json(FILE *out, const void *study)
 {
     const cli_study *s = study;
     cli_json j = {.out = out};
-    cli_json_open(&j, NULL, '{');
-    cli_json_text(&j, "schema", "cubewright-study-1");
-    cli_json_text(&j, "tool", "cubewright");
-    cli_json_text(&j, "version", cw_version());
+    cli_json_begin(&j, "cubewright-study-1");
     cli_json_input(&j, "input", s->volume);
     if (s->is_field)
         cli_json_text(&j, "field", cw_field_name(s->field));

@@ -31,7 +31,7 @@ END
 cubewright extract map.nrrd --labels all --names names.csv -o map.obj --table map.csv --json map.json
 grep -e '^o ' -e '^usemtl' -e '^mtllib' map.obj
 cat map.mtl map.csv
-sed -n -e '/"names"/,/}/p' -e '/"params"/,/}/p' map.json
+sed '/^  "run"/,/^  }/d' map.json | sed -n -e '/"names"/,/}/p' -e '/"params"/,/}/p'
 sed -n '/"labels": \[/,/^  \]/p' map.json | sed -n '1,24p'
 # the table gives the same names and colours again
 cubewright extract map.nrrd --labels all --names map.csv -o map.ply -q --table again.csv

@@ -19,7 +19,7 @@ for f in stl ply obj glb; do
     cubewright extract far.nhdr --iso 0 -o local.$f --local
 done
 for options in '-o world.stl' '-o local.stl --local' '-o world.glb'; do
-    cubewright extract far.nhdr --iso 0 $options -q --json - | sed -n '/"output"/,/"status"/p'
+    cubewright extract far.nhdr --iso 0 $options -q --json - | sed -n '/"output": \[/,/"status"/p'
 done
 grep -a -h origin local.ply local.obj
 head -c 80 local.stl | tr -d '\000'; echo

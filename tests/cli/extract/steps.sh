@@ -21,7 +21,7 @@ ls *.glb *.stl && rm ./*.glb ./*.stl r.json
 mkdir vtp
 cubewright extract 4d.nrrd --iso 0.5,9 --steps 0:2 -o 'vtp/{step}_{level}.vtp' --pvd run.pvd --json r.json | tail -n 1
 grep DataSet run.pvd
-sed -n '/"pvd"/,/}/p' r.json
+sed -n '/"name": "pvd"/,/}/p' r.json
 cubewright extract 4d.nrrd --iso 99 --steps 0:1 -o 'vtp/{step}.vtp' --pvd none.pvd -q
 ls *.pvd
 

@@ -1,55 +1,58 @@
-# A run in a file: saved, repeated to the same bytes, changed on the command line; what is no run is
-# refused, with its line.
+# A run in a file: saved, repeated to the same bytes, changed on the command line; a report repeats its
+# run; what is no run is refused, with its field.
 cubewright make sphere -o s.nrrd --dims 24 --noise 0.3 -q
-cubewright extract s.nrrd --iso 0 --smooth taubin:5 --min-volume 100mm3 --normals none -o a.ply -q --name ball --save-config run.toml
-cat run.toml
+cubewright extract s.nrrd --iso 0 --smooth taubin:5 --min-volume 100mm3 --normals none -o a.ply -q --name ball --save-config run.json
+cat run.json
 mv a.ply first.ply
-cubewright extract --config run.toml -q && cmp a.ply first.ply && echo "repeated"
-cubewright extract --config run.toml --save-config again.toml -q && cmp run.toml again.toml && echo "saved again"
+cubewright extract --config run.json -q && cmp a.ply first.ply && echo "repeated"
+cubewright extract --config run.json --save-config again.json -q && cmp run.json again.json && echo "saved again"
 # the command line comes first, and inputs of its own count alone
-cubewright extract --config=run.toml --smooth hc -o b.ply -q && cmp -s a.ply b.ply || echo "another surface"
+cubewright extract --config=run.json --smooth hc -o b.ply -q && cmp -s a.ply b.ply || echo "another surface"
 cubewright make torus -o t.nrrd --dims 24 -q
-cubewright extract t.nrrd --config run.toml -o t.ply -q && cubewright check t.ply -q && cubewright check t.ply | grep -o '1 handle'
+cubewright extract t.nrrd --config run.json -o t.ply -q && cubewright check t.ply -q && cubewright check t.ply | grep -o '1 handle'
+# a report holds its run; without times and the sizes of memory it is the same
+facts() { grep -v -E '"(seconds|peak_bytes)"' "$1"; }
+cubewright simplify a.ply --ratio 0.5 -v -o half.ply --json half.json >log 2>&1
+facts half.json >first.json
+mv half.ply first.ply
+cubewright simplify --config half.json -q && cmp half.ply first.ply && facts half.json | cmp first.json - && echo "a report repeats its run"
+cubewright info s.nrrd --json >info.json && cubewright info --config info.json | cmp info.json - && echo "info too"
 # by hand
-cat >hand.toml <<'E'
-# sections are of one command
-[simplify]
-ratio = 0.5
-[extract]
-inputs = [
-    "s.nrrd", # the ball
-]
-iso = [0, 5]
-normals = 'none'
-output = "h-{level}.ply"
-check = false
-smooth = "fair:4vox"
-threads = 2
-E
-cubewright extract --config hand.toml -q && ls h-*
-cubewright simplify a.ply --config hand.toml -o half.ply | cut -d: -f1
+cat >hand.json <<'J'
+{"inputs": ["s.nrrd"],
+ "options": {"iso": [0, 2.5], "normals": "none", "output": "h-{level}.ply", "check": false,
+             "smooth": "fair:4vox", "threads": 2, "max-triangles": 100000000}}
+J
+cubewright extract --config hand.json -q && ls h-*
 bad() {
-    printf '%b' "$1" >bad.toml
-    cubewright extract --config bad.toml
+    printf '%b' "$1" >bad.json
+    cubewright extract --config bad.json
     echo "$?"
 }
-bad 'iso = 5\nisoo = 5\n'
-bad '\n\niso = "five"\n'
-bad 'open = maybe\n'
-bad 'command = "check"\n'
-bad 'config = "x"\n'
-bad 'verbose = true\n'
-bad 'iso 5\n'
-bad '= 5\n'
-bad 'iso = \n'
-bad 'iso = "5\n'
-bad 'iso = "a\\q"\n'
-bad 'iso = [5 6]\n'
-bad 'iso = [5\n'
-bad 'iso = 5 6\n'
-bad '[extract\n'
-bad 'iso = 5\0\n'
-cubewright extract --config none.toml
+bad '{"options": {"iso": 5, "isoo": 5}}'
+bad '{"options": {"iso": "five"}}'
+bad '{"options": {"iso": true}}'
+bad '{"options": {"iso": [5, [6]]}}'
+bad '{"options": {"iso": []}}'
+bad '{"options": {"open": "maybe"}}'
+bad '{"options": {"open": 1}}'
+bad '{"options": {"config": "x"}}'
+bad '{"options": {"verbose": true}}'
+bad '{"options": ["iso"]}'
+bad '{"command": "check"}'
+bad '{"command": 5}'
+bad '{"inputs": "s.nrrd"}'
+bad '{"inputs": ["s.nrrd", 5]}'
+bad '{"iso": 5}'
+bad '{"run": 5}'
+bad '[5]'
+bad '{"options": {"iso": 5, "iso": 6}}'
+bad '{"options":\n {"iso" 5}}'
+bad '{"options": {"output": "a\\u0000"}}'
+bad ''
+cubewright simplify --config run.json
+echo "$?"
+cubewright extract --config none.json
 echo "$?"
 cubewright extract s.nrrd --config
 echo "$?"
@@ -57,7 +60,7 @@ cubewright extract s.nrrd --iso 0 -o c.ply --save-config s.nrrd
 echo "$?"
 cubewright extract s.nrrd --iso 0 -o c.ply --save-config c.ply
 echo "$?"
-cubewright extract s.nrrd --iso 99 -o c.ply --save-config failed.toml -q
+cubewright extract s.nrrd --iso 99 -o c.ply --save-config failed.json -q
 echo "$?"
-ls c.ply failed.toml 2>/dev/null
+ls c.ply failed.json 2>/dev/null
 exit 0

@@ -93,4 +93,4 @@ mixed() { # the area between both, of 40 at first
         END { print (sum < 45 ? "sharp" : "dull") }'
 }
 cubewright simplify halves.ply -o plain.ply --triangles 150 --no-measure --ascii -q && mixed plain.ply
-cubewright simplify halves.ply -o sharp.ply --triangles 150 --attributes color:1 --ascii --json - -q | grep -A2 '"attributes"' && mixed sharp.ply
+cubewright simplify halves.ply -o sharp.ply --triangles 150 --attributes color:1 --ascii --json - -q | grep -A2 '"attributes": {' && mixed sharp.ply
