@@ -1,7 +1,6 @@
 /* The command convert: writes a mesh in another format, merged or split into its parts. */
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
-#include "cli/framework/filter_options.h"
 #include "cli/inputs/cut_options.h"
 #include "cli/results/mesh_write_options.h"
 #include "cli/results/output_names.h"

@@ -232,7 +232,7 @@ void cli_value_extensions(cli_values values, char text[CLI_EXTENSIONS_SIZE])
 
 bool cli_option_takes_value(const cli_option *o)
 {
-    return o->kind != CLI_FLAG && o->kind != CLI_LOUDER && o->kind != CLI_HEADING;
+    return o->kind->parse != NULL;
 }
 
 bool cli_option_is_negated(const cli_option *o)

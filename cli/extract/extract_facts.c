@@ -2,7 +2,6 @@
  * into the records of its files. */
 #include "cli/extract/extract_run.h"
 
-#include "cli/framework/filter_options.h"
 #include "cli/inputs/volume_prepare.h"
 #include "cli/results/detail_levels.h"
 #include "core/volume/volume.h"

@@ -4,7 +4,6 @@
 #include "cli/extract/extract_proof.h"
 #include "cli/extract/small_components.h"
 #include "cli/framework/console.h"
-#include "cli/framework/filter_options.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/results/mesh_comparison.h"
 #include "cli/results/smoothed.h"

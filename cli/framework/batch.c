@@ -49,7 +49,7 @@ bool cli_is_batch(const cli_batch *b)
 }
 
 /* Finds the field of an option by its name; NULL where the command does not have it. */
-static void *find_field(const batch_run *r, const char *name, cli_kind kind)
+static void *find_field(const batch_run *r, const char *name, const cli_kind *kind)
 {
     for (size_t n = 0; n < r->command->option_count; n++) {
         const cli_option *o = &r->command->options[n];

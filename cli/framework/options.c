@@ -1,8 +1,6 @@
 /* Parses the words of the command line by a command's table of options, and prints its help. */
 #include "cli/framework/options.h"
 
-#include "cli/framework/filter_options.h"
-#include "cli/framework/quantity.h"
 #include "core/base/status.h"
 
 #include <stdio.h>
@@ -121,319 +119,17 @@ bool cli_is_given(const cli_command *command, const cli_common *args, const char
            args->given[o - command->options];
 }
 
-static bool takes_value(const cli_option *o)
-{
-    return o->kind != CLI_FLAG && o->kind != CLI_LOUDER;
-}
-
-/* "above/below": the position of a word in it, or -1. */
-static int find_choice(const char *choices, const char *word)
-{
-    const size_t length = strlen(word);
-    for (int n = 0; choices; n++) {
-        const char *slash = strchr(choices, '/');
-        const size_t here = slash ? (size_t)(slash - choices) : strlen(choices);
-        if (here == length && strncmp(choices, word, length) == 0)
-            return n;
-        choices = slash ? slash + 1 : NULL;
-    }
-    return -1;
-}
-
-static bool store_weight(const char *names, char *item, cli_weights *out)
-{
-    cli_number weight;
-    char *colon = strchr(item, ':');
-    if (!colon || !cli_parse_number(colon + 1, &weight) || !(weight.value > 0))
-        return false;
-    *colon = '\0';
-    const int n = find_choice(names, item);
-    if (n < 0 || out->of[n] > 0)
-        return false;
-    out->of[n] = weight.value;
-    return true;
-}
-
-static bool store_weights(const char *names, const char *text, cli_weights *out)
-{
-    *out = (cli_weights){.given = true};
-    for (;; text++) {
-        char item[64];
-        const size_t length = strcspn(text, ",");
-        if (length >= sizeof item)
-            return false;
-        memcpy(item, text, length);
-        item[length] = '\0';
-        if (!store_weight(names, item, out))
-            return false;
-        text += length;
-        if (!*text)
-            return true;
-    }
-}
-
-size_t cli_option_size(const cli_option *o)
-{
-    static const size_t sizes[] = {
-        [CLI_FLAG] = sizeof(bool),
-        [CLI_TEXT] = sizeof(const char *),
-        [CLI_CHOICE] = sizeof(int),
-        [CLI_NUMBER] = sizeof(cli_number),
-        [CLI_NUMBERS] = sizeof(cli_numbers),
-        [CLI_LEVEL] = sizeof(cli_number),
-        [CLI_RESAMPLE] = sizeof(cli_resample),
-        [CLI_DENOISE] = sizeof(cli_denoise),
-        [CLI_SMOOTHING] = sizeof(cli_smoothing),
-        [CLI_PLANE] = sizeof(cli_plane),
-        [CLI_LEVELS] = sizeof(cli_numbers),
-        [CLI_COUNT] = sizeof(size_t),
-        [CLI_COUNTS] = sizeof(cli_counts),
-        [CLI_BYTES] = sizeof(size_t),
-        [CLI_LENGTHS] = sizeof(cli_lengths),
-        [CLI_LENGTH] = sizeof(cli_length),
-        [CLI_VOLUME] = sizeof(cli_amount),
-        [CLI_SIZES] = sizeof(cli_sizes),
-        [CLI_RANGES] = sizeof(cli_ranges),
-        [CLI_CROP] = sizeof(cli_ranges),
-        [CLI_REDUCTION] = sizeof(cli_reduction),
-        [CLI_STEPS] = sizeof(cli_steps),
-        [CLI_WEIGHTS] = sizeof(cli_weights),
-        [CLI_COMPONENT] = sizeof(cli_component),
-        [CLI_LOUDER] = sizeof(int),
-        [CLI_HEADING] = 0,
-    };
-    return sizes[o->kind];
-}
-
-/* The n-th of "above/below". */
-static void print_choice(const char *choices, int n, char *text, size_t size)
-{
-    for (; n > 0 && choices; n--) {
-        choices = strchr(choices, '/');
-        choices = choices ? choices + 1 : NULL;
-    }
-    snprintf(text, size, "%.*s", choices ? (int)strcspn(choices, "/") : 0, choices);
-}
-
-static void print_ranges(const cli_ranges *r, char *text, size_t size)
-{
-    const char *unit = r->world ? "mm" : "";
-    size_t used = 0;
-    for (int a = 0; a < 3 && used < size; a++)
-        used += (size_t)snprintf(text + used, size - used, "%s%.17g%s:%.17g%s", a ? "," : "",
-                                 r->low[a], unit, r->high[a], unit);
-}
-
-static void print_numbers(const double *n, size_t count, char *text, size_t size)
-{
-    size_t used = 0;
-    *text = '\0';
-    for (size_t i = 0; i < count && used < size; i++)
-        used += (size_t)snprintf(text + used, size - used, "%s%.17g", i ? "," : "", n[i]);
-}
-
-static void print_levels(const cli_numbers *n, char *text, size_t size)
-{
-    size_t used = 0;
-    for (size_t i = 0; i < n->count && used < size; i++)
-        used += (size_t)snprintf(text + used, size - used, "%s%s", i ? "," : "",
-                                 cli_level_text(n->level[i], n->value[i]));
-}
-
 bool cli_option_text(const cli_option *o, const void *args, char *text, size_t size)
 {
-    const void *field = (const char *)args + o->offset;
     *text = '\0';
-    switch (o->kind) {
-    case CLI_TEXT:
-        snprintf(text, size, "%s",
-                 *(const char *const *)field ? *(const char *const *)field : "");
-        break;
-    case CLI_CHOICE:
-        print_choice(o->value, *(const int *)field, text, size);
-        break;
-    case CLI_NUMBER:
-        print_numbers(&((const cli_number *)field)->value, ((const cli_number *)field)->given,
-                      text, size);
-        break;
-    case CLI_NUMBERS:
-        print_numbers(((const cli_numbers *)field)->value, ((const cli_numbers *)field)->count,
-                      text, size);
-        break;
-    case CLI_LEVEL:
-        if (((const cli_number *)field)->given)
-            snprintf(text, size, "%s",
-                     cli_level_text(((const cli_number *)field)->level,
-                                    ((const cli_number *)field)->value));
-        break;
-    case CLI_LEVELS:
-        print_levels(field, text, size);
-        break;
-    case CLI_RESAMPLE:
-        if (((const cli_resample *)field)->given)
-            snprintf(text, size, "%s", cli_resample_text(field));
-        break;
-    case CLI_DENOISE:
-        if (((const cli_denoise *)field)->given)
-            snprintf(text, size, "%s", cli_denoise_text(field));
-        break;
-    case CLI_PLANE:
-        if (((const cli_plane *)field)->given)
-            snprintf(text, size, "%s", cli_plane_text(field));
-        break;
-    case CLI_SMOOTHING:
-        if (((const cli_smoothing *)field)->given)
-            snprintf(text, size, "%s", cli_smoothing_text(field));
-        break;
-    case CLI_LENGTHS:
-        print_numbers(((const cli_lengths *)field)->mm,
-                      ((const cli_lengths *)field)->given ? 3 : 0, text, size);
-        break;
-    case CLI_COUNT:
-    case CLI_BYTES:
-        snprintf(text, size, "%zu", *(const size_t *)field);
-        break;
-    case CLI_RANGES:
-    case CLI_CROP:
-        if (((const cli_ranges *)field)->is_auto)
-            snprintf(text, size, "auto:%zu", ((const cli_ranges *)field)->margin);
-        else if (((const cli_ranges *)field)->given)
-            print_ranges(field, text, size);
-        break;
-    case CLI_COMPONENT:
-        if (((const cli_component *)field)->magnitude)
-            snprintf(text, size, "mag");
-        else
-            snprintf(text, size, "%zu", ((const cli_component *)field)->number);
-        break;
-    default:
-        break;
-    }
+    if (o->kind->print)
+        o->kind->print(o, (const char *)args + o->offset, text, size);
     return *text != '\0';
-}
-
-static bool store_component(const char *text, cli_component *out)
-{
-    *out = (cli_component){.given = true, .magnitude = strcmp(text, "mag") == 0};
-    return out->magnitude || cli_parse_count(text, 1000, &out->number);
-}
-
-/* Stores a value in its field; false when the text is not one of its kind. */
-static bool store_value(const cli_option *o, const char *text, void *field)
-{
-    switch (o->kind) {
-    case CLI_TEXT:
-        *(const char **)field = text;
-        return *text != '\0';
-    case CLI_CHOICE:
-        return (*(int *)field = find_choice(o->value, text)) >= 0;
-    case CLI_NUMBER:
-        return cli_parse_number(text, field);
-    case CLI_NUMBERS:
-        return cli_parse_numbers(text, field);
-    case CLI_LEVEL:
-        return cli_parse_level(text, field);
-    case CLI_LEVELS:
-        return cli_parse_levels(text, field);
-    case CLI_RESAMPLE:
-        return cli_parse_resample(text, field);
-    case CLI_DENOISE:
-        return cli_parse_denoise(text, field);
-    case CLI_SMOOTHING:
-        return cli_parse_smoothing(text, field);
-    case CLI_PLANE:
-        return cli_parse_plane(text, field);
-    case CLI_COUNT:
-        return cli_parse_count(text, 1000, field);
-    case CLI_COUNTS:
-        return cli_parse_counts(text, field);
-    case CLI_BYTES:
-        return cli_parse_count(text, 1024, field);
-    case CLI_LENGTHS:
-        return cli_parse_lengths(text, field);
-    case CLI_LENGTH:
-        return cli_parse_length(text, field);
-    case CLI_VOLUME:
-        return cli_parse_amount(text, field);
-    case CLI_REDUCTION:
-        return cli_parse_reduction(text, field);
-    case CLI_SIZES:
-        return cli_parse_sizes(text, field);
-    case CLI_RANGES:
-        return cli_parse_ranges(text, field);
-    case CLI_CROP:
-        return cli_parse_crop(text, field);
-    case CLI_STEPS:
-        return cli_parse_steps(text, field);
-    case CLI_WEIGHTS:
-        return store_weights(o->value, text, field);
-    case CLI_COMPONENT:
-        return store_component(text, field);
-    default:
-        return false;
-    }
 }
 
 const char *cli_expected(const cli_option *o)
 {
-    switch (o->kind) {
-    case CLI_FLAG:
-        return "true or false";
-    case CLI_CHOICE:
-        return o->value;
-    case CLI_NUMBER:
-        return "a number";
-    case CLI_NUMBERS:
-        return "a number, or up to 64 by comma such as 50,300";
-    case CLI_LEVEL:
-        return "an isovalue such as 300, 40% (of the range), otsu or bone (of a CT)";
-    case CLI_LEVELS:
-        return "up to 64 isovalues by comma, such as 50,300, 40% (of the range), otsu or bone "
-               "(of a CT)";
-    case CLI_RESAMPLE:
-        return "iso, or a length above 0 such as 0.5mm or 1x1x2mm; then a kernel, if not linear: "
-               "0.5mm:cubic, iso:lanczos";
-    case CLI_DENOISE:
-        return "nlm or nlm:NOISE, aniso or aniso:STEPS (1 to 100) or aniso:STEPS:CONTRAST, "
-               "gauss:L such as gauss:0.7vox or gauss:0.5mm, bilateral:L or bilateral:L:VALUES, or "
-               "median:N (1 to 3 voxels)";
-    case CLI_PLANE:
-        return "an axis with a place, such as z=5mm, z=10% of the box, or -z=5mm to keep the other "
-               "side; or a point and a normal such as 0,0,5:0,0.1,1";
-    case CLI_SMOOTHING:
-        return "taubin or hc, with their iterations from 1 to 1000 such as taubin:10, or fair, with "
-               "a length such as fair:4vox or fair:2mm";
-    case CLI_COUNT:
-        return "a whole number such as 500, 50k or 2M";
-    case CLI_COUNTS:
-        return "up to 16 whole numbers by comma such as 50k,12k,3k";
-    case CLI_BYTES:
-        return "a size such as 512M or 8G";
-    case CLI_LENGTHS:
-        return "a length above 0 such as 0.5mm or 12um, or three of them by comma or x";
-    case CLI_LENGTH:
-        return "a length above 0 such as 0.1mm, 0.05% (of the box's diagonal) or 0.5vox";
-    case CLI_VOLUME:
-        return "a volume above 0 such as 500mm3, 0.5ml or 30vox";
-    case CLI_REDUCTION:
-        return "an error with its unit such as 0.1mm, 0.05% (of the box's diagonal) or 0.5vox, "
-               "or a number of triangles such as 50k";
-    case CLI_SIZES:
-        return "whole numbers above 0 joined by x or comma";
-    case CLI_RANGES:
-        return "three ranges such as 10:50,0:99,20:40 (voxels) or -30mm:30mm,... (world)";
-    case CLI_CROP:
-        return "three ranges such as 10:50,0:99,20:40 (voxels) or -30mm:30mm,... (world), auto, or "
-               "auto with a margin in voxels such as auto:3";
-    case CLI_STEPS:
-        return "steps in ascending order such as 0:20:2 (ends included), 0,3,7 or all";
-    case CLI_WEIGHTS:
-        return "weights above 0, each once, such as normal:0.5,color:1,scalar:1";
-    case CLI_COMPONENT:
-        return "a whole number from 0, or mag";
-    default:
-        return "a text that is not empty";
-    }
+    return o->kind->expected ? o->kind->expected : o->value;
 }
 
 typedef struct parser {
@@ -457,7 +153,7 @@ static cw_status take_option(parser *p, const cli_option *o, const char *value, 
         *(bool *)field = !off;
     if (o->kind == CLI_FLAG && p->args->said)
         p->args->said[p->args->said_count++] = (cli_said){.option = o, .off = off};
-    if (!takes_value(o))
+    if (!o->kind->parse)
         return value ? cwi_fail(err, CW_ERR_ARGUMENT, "--%s takes no value", o->name) : CW_OK;
     if (!value && p->next == p->count)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--%s needs a value: %s", o->name,
@@ -465,7 +161,7 @@ static cw_status take_option(parser *p, const cli_option *o, const char *value, 
     value = value ? value : p->words[p->next++];
     if (p->args->said)
         p->args->said[p->args->said_count++] = (cli_said){.option = o, .value = value};
-    if (!store_value(o, value, field))
+    if (!o->kind->parse(o, value, field))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--%s '%s': expected %s", o->name, value,
                         cli_expected(o));
     return CW_OK;
@@ -496,7 +192,7 @@ static cw_status take_short(parser *p, const char *word, cw_error *err)
             return cwi_fail(err, CW_ERR_ARGUMENT,
                             "%s has no option -%c; 'cubewright %s -h' lists them",
                             p->command->name, *c, p->command->name);
-        if (takes_value(o))
+        if (o->kind->parse)
             return take_option(p, o, c[1] ? c + 1 : NULL, false, err);
         cw_status st = take_option(p, o, NULL, false, err);
         if (st != CW_OK)
@@ -562,9 +258,9 @@ const cli_option *cli_find_option(const cli_command *command, const char *name, 
 
 bool cli_value_fits(const cli_option *option, const char *value)
 {
-    void *field = calloc(1, cli_option_size(option));
+    void *field = calloc(1, option->kind->size);
     const bool fits =
-        !field || store_value(option, value, field); /* else parsing will say it */
+        !field || option->kind->parse(option, value, field); /* else parsing will say it */
     free(field);
     return fits;
 }

@@ -6,34 +6,46 @@
 
 #include <stdio.h>
 
-typedef enum cli_kind {
-    CLI_FLAG,      /* bool; --x and --no-x */
-    CLI_TEXT,      /* const char * */
-    CLI_CHOICE,    /* int: the position in value, names parted by '/' */
-    CLI_NUMBER,    /* cli_number */
-    CLI_NUMBERS,   /* cli_numbers: 300 or 50,300 */
-    CLI_LEVEL,     /* cli_number: 300, 40%, otsu, bone; a name waits for a volume */
-    CLI_LEVELS,    /* cli_numbers: several of them by comma */
-    CLI_COUNT,     /* size_t: 50k, 100M */
-    CLI_COUNTS,    /* cli_counts: 50k,12k,3k */
-    CLI_BYTES,     /* size_t: 512M, 8G (1024s) */
-    CLI_LENGTHS,   /* cli_lengths: one for all axes or three; 0.5mm, 1x1x2, bare is mm */
-    CLI_LENGTH,    /* cli_length: 0.1mm, 0.05% of the box's diagonal, 0.5vox; bare is mm */
-    CLI_VOLUME,    /* cli_amount: 500mm3, 0.5ml, 30vox; bare is mm3 */
-    CLI_SIZES,     /* cli_sizes: 64, 1280x720 or 512x512x300 */
-    CLI_RANGES,    /* cli_ranges: 10:50,0:99,20:40 in voxels, -30mm:30mm,... in the world */
-    CLI_CROP,      /* cli_ranges: the same, or auto, auto:3 */
-    CLI_REDUCTION, /* cli_reduction */
-    CLI_RESAMPLE,  /* cli_resample: iso, 0.5mm, 1x1x2mm; then a kernel: 0.5mm:cubic */
-    CLI_DENOISE,   /* cli_denoise: gauss:0.7vox, median:1, bilateral:1vox:30, aniso:10, nlm */
-    CLI_SMOOTHING, /* cli_smoothing: taubin, hc:20, fair:2vox */
-    CLI_PLANE,     /* cli_plane: z=5mm, -z=10%, 0,0,5:0,0.1,1 */
-    CLI_STEPS,     /* cli_steps: 0:20:2, 0,3,7 or all */
-    CLI_WEIGHTS,   /* cli_weights: normal:0.5,color:1; value has the names, parted by '/' */
-    CLI_COMPONENT, /* cli_component: its number from 0, or mag */
-    CLI_LOUDER,    /* int, counts up */
-    CLI_HEADING,   /* no option: the name of those below it in the help */
+struct cli_option;
+
+/* A kind of options. Rows of tables name kinds by the macros below. */
+typedef struct cli_kind {
+    size_t size; /* of the field */
+    /* Stores the value of a text in a field; false: it is not of this kind. NULL: takes no value */
+    bool (*parse)(const struct cli_option *option, const char *text, void *field);
+    /* Prints a field as it would be typed, or nothing if it was not; NULL: nothing */
+    void (*print)(const struct cli_option *option, const void *field, char *text, size_t size);
+    const char *expected; /* for errors; NULL: the row's `value` */
 } cli_kind;
+
+extern const cli_kind cli_kind_flag, cli_kind_text, cli_kind_choice, cli_kind_number,
+    cli_kind_numbers, cli_kind_level, cli_kind_levels, cli_kind_count, cli_kind_counts,
+    cli_kind_bytes, cli_kind_lengths, cli_kind_length, cli_kind_volume, cli_kind_sizes,
+    cli_kind_ranges, cli_kind_crop, cli_kind_reduction, cli_kind_steps, cli_kind_weights,
+    cli_kind_component, cli_kind_louder, cli_kind_heading;
+
+#define CLI_FLAG      (&cli_kind_flag)    /* bool; --x and --no-x */
+#define CLI_TEXT      (&cli_kind_text)    /* const char * */
+#define CLI_CHOICE    (&cli_kind_choice)  /* int: the position in value, names parted by '/' */
+#define CLI_NUMBER    (&cli_kind_number)  /* cli_number */
+#define CLI_NUMBERS   (&cli_kind_numbers) /* cli_numbers: 300 or 50,300 */
+#define CLI_LEVEL     (&cli_kind_level)   /* cli_number: 300, 40%, otsu; names need a volume */
+#define CLI_LEVELS    (&cli_kind_levels)  /* cli_numbers: several of them by comma */
+#define CLI_COUNT     (&cli_kind_count)   /* size_t: 50k, 100M */
+#define CLI_COUNTS    (&cli_kind_counts)  /* cli_counts: 50k,12k,3k */
+#define CLI_BYTES     (&cli_kind_bytes)   /* size_t: 512M, 8G (1024s) */
+#define CLI_LENGTHS   (&cli_kind_lengths) /* cli_lengths: 0.5mm, 1x1x2; a bare one is in mm */
+#define CLI_LENGTH    (&cli_kind_length)  /* cli_length: 0.1mm, 0.05% of a diagonal, 0.5vox */
+#define CLI_VOLUME    (&cli_kind_volume)  /* cli_amount: 500mm3, 0.5ml, 30vox; bare is mm3 */
+#define CLI_SIZES     (&cli_kind_sizes)   /* cli_sizes: 64, 1280x720 or 512x512x300 */
+#define CLI_RANGES    (&cli_kind_ranges)  /* cli_ranges: 10:50,0:99,20:40 in voxels, or in mm */
+#define CLI_CROP      (&cli_kind_crop)    /* cli_ranges: the same, or auto, auto:3 */
+#define CLI_REDUCTION (&cli_kind_reduction) /* cli_reduction */
+#define CLI_STEPS     (&cli_kind_steps)     /* cli_steps: 0:20:2, 0,3,7 or all */
+#define CLI_WEIGHTS   (&cli_kind_weights)   /* cli_weights: normal:0.5; value has the names */
+#define CLI_COMPONENT (&cli_kind_component) /* cli_component: its number from 0, or mag */
+#define CLI_LOUDER    (&cli_kind_louder)    /* int, counts up */
+#define CLI_HEADING   (&cli_kind_heading)   /* no option: the name of those below in the help */
 
 /* How an isovalue is named. All but numbers become one when a volume is read. */
 typedef enum cli_level {
@@ -104,39 +116,6 @@ typedef struct cli_reduction {
     size_t triangles; /* 0: neither was said */
 } cli_reduction;
 
-/* New distances between voxels. */
-typedef struct cli_resample {
-    bool given, iso; /* iso: the least of the old ones along every axis; else: */
-    double mm[3];
-    int kernel; /* cw_kernel */
-} cli_resample;
-
-typedef enum cli_filter { CLI_GAUSS, CLI_MEDIAN, CLI_BILATERAL, CLI_ANISO, CLI_NLM } cli_filter;
-
-/* A filter against noise. */
-typedef struct cli_denoise {
-    bool given;
-    cli_filter filter;
-    size_t count;     /* radius of a median in voxels, steps of diffusion */
-    cli_length width; /* of a Gaussian or a bilateral filter: millimetres or voxels */
-    double value;     /* width of values, contrast or noise; 0: from the data */
-} cli_denoise;
-
-/* How a surface is smoothed. */
-typedef struct cli_smoothing {
-    bool given;
-    int method;        /* cw_smooth_method */
-    size_t iterations; /* 0: the method's own */
-    cli_length width;  /* of fair; not given: its own */
-} cli_smoothing;
-
-/* A plane, and the side of it that is kept. */
-typedef struct cli_plane {
-    bool given, is_percent; /* of the box along an axis */
-    double point[3], normal[3];
-    char text[96]; /* as it was typed */
-} cli_plane;
-
 /* Selection among the values of a voxel. */
 typedef struct cli_component {
     bool given, magnitude; /* of the vector that they all are; else: */
@@ -203,7 +182,7 @@ typedef enum cli_values {
 typedef struct cli_option {
     const char *name; /* without the dashes */
     char letter;      /* of the short form; 0: none */
-    cli_kind kind;
+    const cli_kind *kind;
     const char *value; /* what help calls the value; for CLI_CHOICE the choices */
     const char *about; /* for help; the default stands in brackets at the end */
     size_t offset;     /* of its field in the command's struct */
@@ -297,9 +276,6 @@ const char *cli_expected(const cli_option *option);
 
 /* Whether an option was given, of that name. */
 bool cli_is_given(const cli_command *command, const cli_common *args, const char *name);
-
-/* The size of an option's field. */
-size_t cli_option_size(const cli_option *option);
 
 /* The value of an option that is no flag, as it would be said on the command line; of texts,
  * choices, numbers, counts, lengths and ranges. false: nothing was said. */

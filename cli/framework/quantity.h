@@ -24,6 +24,7 @@ bool cli_parse_reduction(const char *text, cli_reduction *out);
 /* In millimetres, shares of a diagonal and voxels resolved. */
 double cli_length_mm(const cli_length *length, double diagonal_mm, double voxel_mm);
 bool cli_parse_sizes(const char *text, cli_sizes *out);
+
 bool cli_parse_ranges(const char *text, cli_ranges *out);
 
 /* Ranges, or auto with a margin: auto:3. */

@@ -2,7 +2,6 @@
 #include "cli/inputs/cut_options.h"
 
 #include "cli/framework/console.h"
-#include "cli/framework/filter_options.h"
 #include "cli/framework/quantity.h"
 #include "core/base/status.h"
 

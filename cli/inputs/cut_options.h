@@ -4,6 +4,7 @@
 
 #include "cli/framework/json_writer.h"
 #include "cli/framework/options.h"
+#include "cli/inputs/filter_options.h"
 #include "cli/inputs/mesh_input.h"
 
 #include <cubewright/cut.h>

@@ -3,6 +3,7 @@
 #define CLI_INPUTS_EXTRACT_SURFACE_H
 
 #include "cli/inputs/cut_options.h"
+#include "cli/inputs/filter_options.h"
 #include "cli/inputs/volume_input.h"
 
 #include <cubewright/extract.h>

@@ -5,6 +5,7 @@
 
 #include "cli/framework/json_writer.h"
 #include "cli/framework/options.h"
+#include "cli/inputs/filter_options.h"
 
 #include <cubewright/formats.h>
 

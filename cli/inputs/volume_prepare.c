@@ -2,7 +2,6 @@
 #include "cli/inputs/volume_prepare.h"
 
 #include "cli/framework/console.h"
-#include "cli/framework/filter_options.h"
 #include "cli/framework/quantity.h"
 #include "cli/inputs/level_choice.h"
 #include "core/base/status.h"

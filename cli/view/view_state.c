@@ -105,7 +105,7 @@ const cli_option *view_find_option(const view *v, const char *name)
 static bool is_default(const view *v, const cli_option *o)
 {
     return memcmp((const char *)&v->state.args + o->offset,
-                  (const char *)v->command->defaults + o->offset, cli_option_size(o)) == 0;
+                  (const char *)v->command->defaults + o->offset, o->kind->size) == 0;
 }
 
 /* An option as on the command line; "off" and "none" take back what was set. */
@@ -120,7 +120,7 @@ static cw_status parse_setting(view *v, const cli_option *o, const char *value, 
     bare.min_inputs = 0;
     if (off && !flag) {
         memcpy((char *)args + o->offset, (const char *)v->command->defaults + o->offset,
-               cli_option_size(o));
+               o->kind->size);
         args->common.given[o - v->command->options] = false;
         return CW_OK;
     }

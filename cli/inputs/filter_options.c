@@ -1,6 +1,6 @@
 /* Parses and prints how volumes are filtered: other distances between voxels, and less noise; and
  * how surfaces are smoothed and cut. */
-#include "cli/framework/filter_options.h"
+#include "cli/inputs/filter_options.h"
 
 #include "cli/framework/quantity.h"
 #include "core/base/text.h"
@@ -20,8 +20,10 @@ static bool parse_kernel(const char *text, int *kernel)
     return false;
 }
 
-bool cli_parse_resample(const char *text, cli_resample *out)
+static bool parse_resample(const cli_option *o, const char *text, void *field)
 {
+    cli_resample *out = field;
+    (void)o;
     char lengths[128];
     cli_lengths mm;
     const char *colon = strchr(text, ':');
@@ -68,8 +70,10 @@ static bool parse_value(const char *text, double *out)
     return cwi_parse_double(&text, out) && *text == '\0' && isfinite(*out) && *out > 0;
 }
 
-bool cli_parse_denoise(const char *text, cli_denoise *out)
+static bool parse_denoise(const cli_option *o, const char *text, void *field)
 {
+    cli_denoise *out = field;
+    (void)o;
     char f[FIELDS][FIELD_BYTES];
     const int count = split_fields(text, f);
     *out = (cli_denoise){0};
@@ -138,8 +142,10 @@ const char *cli_denoise_text(const cli_denoise *d)
     return text;
 }
 
-bool cli_parse_smoothing(const char *text, cli_smoothing *out)
+static bool parse_smoothing(const cli_option *o, const char *text, void *field)
 {
+    cli_smoothing *out = field;
+    (void)o;
     *out = (cli_smoothing){0};
     for (int m = 0; m < CW_SMOOTH_METHOD_COUNT && !out->given; m++) {
         const char *name = cw_smooth_method_name((cw_smooth_method)m);
@@ -201,8 +207,10 @@ static bool parse_place(const char *text, double *place, bool *is_percent)
     return *is_percent;
 }
 
-bool cli_parse_plane(const char *text, cli_plane *out)
+static bool parse_plane(const cli_option *o, const char *text, void *field)
 {
+    cli_plane *out = field;
+    (void)o;
     *out = (cli_plane){.given = false};
     if (strlen(text) >= sizeof out->text)
         return false;
@@ -225,3 +233,34 @@ const char *cli_plane_text(const cli_plane *plane)
 {
     return plane->text;
 }
+
+/* --- the kinds ---------------------------------------------------------------------------- */
+
+/* Defines print_NAME(), which prints what cli_NAME_text() returns. */
+#define PRINTER(name)                                                                          \
+    static void print_##name(const cli_option *o, const void *field, char *text, size_t size)  \
+    {                                                                                          \
+        const cli_##name *value = field;                                                       \
+        (void)o;                                                                               \
+        if (value->given)                                                                      \
+            snprintf(text, size, "%s", cli_##name##_text(value));                              \
+    }
+PRINTER(resample)
+PRINTER(denoise)
+PRINTER(smoothing)
+PRINTER(plane)
+
+/* clang-format off */
+const cli_kind cli_kind_resample = {sizeof(cli_resample), parse_resample, print_resample,
+    "iso, or a length above 0 such as 0.5mm or 1x1x2mm; then a kernel, if not linear: 0.5mm:cubic, "
+    "iso:lanczos"};
+const cli_kind cli_kind_denoise = {sizeof(cli_denoise), parse_denoise, print_denoise,
+    "nlm or nlm:NOISE, aniso or aniso:STEPS (1 to 100) or aniso:STEPS:CONTRAST, gauss:L such as "
+    "gauss:0.7vox or gauss:0.5mm, bilateral:L or bilateral:L:VALUES, or median:N (1 to 3 voxels)"};
+const cli_kind cli_kind_smoothing = {sizeof(cli_smoothing), parse_smoothing, print_smoothing,
+    "taubin or hc, with their iterations from 1 to 1000 such as taubin:10, or fair, with a length such "
+    "as fair:4vox or fair:2mm"};
+const cli_kind cli_kind_plane = {sizeof(cli_plane), parse_plane, print_plane,
+    "an axis with a place, such as z=5mm, z=10% of the box, or -z=5mm to keep the other side; or a "
+    "point and a normal such as 0,0,5:0,0.1,1"};
+/* clang-format on */
