@@ -35,7 +35,7 @@ static void blend_attributes(const carrier *c, const uint32_t corner[3], const d
         if (m->scalars)
             scalar += share[k] * (double)m->scalars[from];
     }
-    const double length = sqrt(cwi_dot(normal, normal));
+    const double length = cwi_length(normal);
     for (size_t a = 0; a < 3 && m->normals; a++)
         to->normals[3 * v + a] = length > 0 ? (float)(normal[a] / length)
                                             : m->normals[3 * (size_t)corner[nearest] + a];

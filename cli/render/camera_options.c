@@ -5,6 +5,7 @@
 #include "cli/inputs/scene_source.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/geometry/vec3.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -161,8 +162,7 @@ static const char *choose_view(const double box[2][3])
 {
     static const double FLAT = 0.3; /* of the second smallest size */
     double size[3];
-    for (int a = 0; a < 3; a++)
-        size[a] = box[1][a] - box[0][a];
+    cwi_sub(box[1], box[0], size);
     if (size[2] < FLAT * fmin(size[0], size[1]))
         return "0,60";
     return size[0] < FLAT * fmin(size[1], size[2]) ? "60,0" : "front";
@@ -272,13 +272,11 @@ static cw_status fit_all(const cli_turns *turns, const cw_fit_desc *first, size_
             return st;
         if (m == turns->count)
             break;
-        for (int a = 0; a < 3; a++)
-            away[a] = c.eye[a] - c.target[a];
+        cwi_sub(c.eye, c.target, away);
         most[0] = fmax(most[0], hypot(hypot(away[0], away[1]), away[2]));
         most[1] = fmax(most[1], c.height_mm);
     }
-    for (int a = 0; a < 3; a++)
-        away[a] = camera->eye[a] - camera->target[a];
+    cwi_sub(camera->eye, camera->target, away);
     far = hypot(hypot(away[0], away[1]), away[2]);
     for (int a = 0; a < 3; a++)
         camera->eye[a] = camera->target[a] + away[a] * (most[0] / far);

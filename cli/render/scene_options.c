@@ -6,6 +6,7 @@
 #include "cli/framework/quantity.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/geometry/vec3.h"
 #include "core/volume/volume.h"
 
 #include <math.h>
@@ -262,7 +263,7 @@ static cw_status parse_planes(const char *option, const char *text, size_t most,
             return cwi_fail(err, CW_ERR_ARGUMENT,
                             "--%s: %zu planes at most, with those of a --clip-box", option,
                             most);
-        const double length = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+        const double length = cwi_length(p);
         out[(*count)++] =
             (cw_clip){{p[0] / length, p[1] / length, p[2] / length}, p[3] / length};
     }

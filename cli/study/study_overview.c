@@ -4,6 +4,7 @@
 #include "cli/framework/field_names.h"
 #include "cli/study/study.h"
 #include "core/base/status.h"
+#include "core/geometry/vec3.h"
 #include "core/volume/volume.h"
 
 #include <math.h>
@@ -59,8 +60,7 @@ static bool choose_slice(const cli_study *s, slice *out)
     cw_volume whole;
     if (cw_volume_resolve(v, &whole, NULL) != CW_OK || !cw_mesh_bounds(&s->full, low, high))
         return false;
-    for (int a = 0; a < 3; a++)
-        middle[a] = 0.5 * (low[a] + high[a]);
+    cwi_midpoint(low, high, middle);
     if (cw_volume_to_index(v, middle, index, NULL) != CW_OK)
         return false;
     cw_volume_spacing(v, spacing);

@@ -6,6 +6,7 @@
 #include "cli/render/compare_options.h"
 #include "cli/render/slice_caption.h"
 #include "core/base/status.h"
+#include "core/geometry/vec3.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -158,8 +159,7 @@ static void need_box(view *v)
         return;
     cli_find_box(NULL, &v->source.mesh, box);
     memcpy(v->box, box, sizeof box);
-    for (int a = 0; a < 3; a++)
-        v->state.cross[a] = 0.5 * (v->box[0][a] + v->box[1][a]);
+    cwi_midpoint(v->box[0], v->box[1], v->state.cross);
 }
 
 static bool is_slow(cw_mode mode)

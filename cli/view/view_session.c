@@ -8,6 +8,7 @@
 #include "cli/inputs/extract_surface.h"
 #include "cli/inputs/mesh_input.h"
 #include "core/base/status.h"
+#include "core/geometry/vec3.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -234,8 +235,7 @@ static void fresh_look(view *v)
     if (!cli_find_box(v->has_volume ? cli_drawn(&v->source) : NULL,
                       v->source.mesh.triangle_count ? &v->source.mesh : NULL, box))
         memset(box, 0, sizeof v->box);
-    for (int a = 0; a < 3; a++)
-        v->state.cross[a] = 0.5 * (box[0][a] + box[1][a]);
+    cwi_midpoint(box[0], box[1], v->state.cross);
     v->state.is_placed = false;
     view_touch(v, VIEW_ALL);
 }

@@ -31,8 +31,7 @@ cw_status cw_camera_axes(const cw_camera *camera, double right[3], double up[3],
                          double forward[3], cw_error *err)
 {
     CWI_REQUIRE(err, camera, right, up, forward);
-    for (int a = 0; a < 3; a++)
-        forward[a] = camera->target[a] - camera->eye[a];
+    cwi_sub(camera->target, camera->eye, forward);
     if (!cwi_to_unit(forward))
         return cwi_fail(err, CW_ERR_ARGUMENT, "the camera's eye and target must be apart");
     cwi_cross(forward, camera->up, right);
@@ -144,8 +143,7 @@ cw_status cw_camera_turn(cw_camera *camera, const double axis[3], double degrees
     if (!cwi_to_unit(unit) || !isfinite(degrees))
         return cwi_fail(err, CW_ERR_ARGUMENT, "a turn of %g degrees about (%g, %g, %g)",
                         degrees, axis[0], axis[1], axis[2]);
-    for (int a = 0; a < 3; a++)
-        arm[a] = camera->eye[a] - camera->target[a];
+    cwi_sub(camera->eye, camera->target, arm);
     rotate_vector(arm, unit, degrees);
     rotate_vector(camera->up, unit, degrees);
     for (int a = 0; a < 3; a++)

@@ -111,7 +111,7 @@ cw_status cw_camera_pan(cw_camera *camera, size_t height, double right_px, doubl
 static void find_turning_axis(const cw_camera *c, const axes *a, double axis[3])
 {
     static const double little = 1e-6;
-    const double lean = cwi_dot(c->up, a->forward) / sqrt(cwi_dot(c->up, c->up));
+    const double lean = cwi_dot(c->up, a->forward) / cwi_length(c->up);
     memcpy(axis, c->up, 3 * sizeof *axis);
     if (fabs(lean) > little || fabs(a->right[2]) > little)
         return;
@@ -126,7 +126,7 @@ static double clamp_climb(const axes *a, const double axis[3], double degrees)
     static const double most = 90 - 1e-4;
     double level[3];
     cwi_cross(a->forward, axis, level);
-    const double now = atan2(-cwi_dot(a->forward, axis), sqrt(cwi_dot(level, level)));
+    const double now = atan2(-cwi_dot(a->forward, axis), cwi_length(level));
     const double elevation = now * 180 / CWI_PI;
     return fmin(fmax(elevation + degrees, -most), most) - elevation;
 }

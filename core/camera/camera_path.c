@@ -47,8 +47,7 @@ static cw_status find_pose(const cw_camera *c, pose *p, cw_error *err)
     cw_status st = cw_camera_axes(c, axes[0], axes[1], axes[2], err);
     if (st != CW_OK)
         return st;
-    for (int a = 0; a < 3; a++)
-        away[a] = c->eye[a] - c->target[a];
+    cwi_sub(c->eye, c->target, away);
     memcpy(p->target, c->target, sizeof p->target);
     p->log_distance = log(hypot(hypot(away[0], away[1]), away[2]));
     p->log_opening = log(c->fov_deg > 0 ? c->fov_deg : c->height_mm);

@@ -19,6 +19,7 @@
  * not cross itself wherever the points stand on their edges. */
 #include "core/cases/case_tables.h"
 #include "core/cases/cube_numbering.h"
+#include "core/geometry/vec3.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -193,8 +194,7 @@ static void trace_patches(const shape *s, int cell_case, int joined, uint8_t pat
 
 static void edge_midpoint(const shape *s, int edge, double p[3])
 {
-    for (int a = 0; a < 3; a++)
-        p[a] = 0.5 * (s->at[s->edge[edge][0]][a] + s->at[s->edge[edge][1]][a]);
+    cwi_midpoint(s->at[s->edge[edge][0]], s->at[s->edge[edge][1]], p);
 }
 
 static bool has_edge(const shape *s, int face, int edge)

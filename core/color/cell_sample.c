@@ -16,8 +16,7 @@ static const double OUTSIDE = 0.1;
 static void load_point(const cwi_cell_sampler *s, uint32_t corner, double p[3])
 {
     const double *from = s->volume->cells->points + 3 * (size_t)corner;
-    for (int a = 0; a < 3; a++)
-        p[a] = from[a] - s->center[a];
+    cwi_sub(from, s->center, p);
 }
 
 static const cwi_cell_shape *shape_of(const cw_cells *cells, size_t cell)
@@ -115,11 +114,9 @@ static void try_corners(search *q, const uint32_t corners[4])
     for (int n = 0; n < 3; n++) {
         double p[3];
         load_point(q->sampler, corners[n + 1], p);
-        for (int a = 0; a < 3; a++)
-            side[n][a] = p[a] - first[a];
+        cwi_sub(p, first, side[n]);
     }
-    for (int a = 0; a < 3; a++)
-        to[a] = q->point[a] - first[a];
+    cwi_sub(q->point, first, to);
     for (int n = 0; n < 3; n++)
         cwi_cross(side[(n + 1) % 3], side[(n + 2) % 3], crossed[n]);
     const double volume = cwi_dot(side[0], crossed[0]);
@@ -178,8 +175,7 @@ double cwi_cell_sample(const cwi_cell_sampler *s, const double world[3])
 {
     search q = {.sampler = s, .least = -INFINITY};
     double sum = 0, all = 0;
-    for (int a = 0; a < 3; a++)
-        q.point[a] = world[a] - s->center[a];
+    cwi_sub(world, s->center, q.point);
     const float p[3] = {(float)q.point[0], (float)q.point[1], (float)q.point[2]},
                 box[6] = {p[0], p[1], p[2], p[0], p[1], p[2]};
     if (s->tree.count)

@@ -19,8 +19,7 @@ static inline double cwi_segment_square(const double from[3], const double along
 {
     const double t = cwi_segment_nearest(from, along);
     double way[3];
-    for (int k = 0; k < 3; k++)
-        way[k] = from[k] - t * along[k];
+    cwi_add_scaled(from, -t, along, way);
     return cwi_dot(way, way);
 }
 

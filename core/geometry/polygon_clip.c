@@ -1,6 +1,8 @@
 /* Clips a convex polygon by a plane across an axis (Sutherland-Hodgman). */
 #include "core/geometry/polygon_clip.h"
 
+#include "core/geometry/vec3.h"
+
 #include <string.h>
 
 void cwi_polygon_clip(const cwi_polygon *in, int a, double at, int by, cwi_polygon *out)
@@ -13,8 +15,7 @@ void cwi_polygon_clip(const cwi_polygon *in, int a, double at, int by, cwi_polyg
             memcpy(out->p[out->count++], p, sizeof out->p[0]);
         if (!((u < 0 && v > 0) || (u > 0 && v < 0)) || out->count == CWI_POLYGON_MAX)
             continue;
-        for (int k = 0; k < 3; k++)
-            out->p[out->count][k] = p[k] + u / (u - v) * (q[k] - p[k]);
+        cwi_lerp(p, q, u / (u - v), out->p[out->count]);
         out->count++;
     }
 }

@@ -87,8 +87,7 @@ static inline bool cwi_piece_cut(cwi_triangle_piece *piece, const double normal[
         if (cwi_opposite(height[n], height[m])) {
             const double t = height[n] / (height[n] - height[m]);
             double cut[3];
-            for (int k = 0; k < 3; k++)
-                cut[k] = whole.p[n][k] + t * (whole.p[m][k] - whole.p[n][k]);
+            cwi_lerp(whole.p[n], whole.p[m], t, cut);
             cwi_piece_add(piece, cut);
             cwi_piece_add(above, cut);
         }

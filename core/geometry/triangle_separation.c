@@ -14,18 +14,12 @@
 
 typedef double vector[3];
 
-static void subtract_vectors(const double a[3], const double b[3], vector out)
-{
-    for (int i = 0; i < 3; i++)
-        out[i] = a[i] - b[i];
-}
-
 /* ---- no corner in common ---------------------------------------------------------------- */
 
 /* Returns true if the projections of the triangles on a line do not meet. */
 static bool axis_separates(const double axis[3], const cwi_triangle *s, const cwi_triangle *t)
 {
-    const double length = sqrt(cwi_dot(axis, axis));
+    const double length = cwi_length(axis);
     const double a = cwi_dot(axis, s->p[0]), b = cwi_dot(axis, s->p[1]),
                  c = cwi_dot(axis, s->p[2]);
     const double d = cwi_dot(axis, t->p[0]), e = cwi_dot(axis, t->p[1]),
@@ -58,8 +52,8 @@ static bool are_apart(const cwi_triangle *s, const cwi_triangle *t)
     if (axis_separates(axis, s, t))
         return true;
     for (int i = 0; i < 3; i++) {
-        subtract_vectors(s->p[(i + 1) % 3], s->p[i], s_sides[i]);
-        subtract_vectors(t->p[(i + 1) % 3], t->p[i], t_sides[i]);
+        cwi_sub(s->p[(i + 1) % 3], s->p[i], s_sides[i]);
+        cwi_sub(t->p[(i + 1) % 3], t->p[i], t_sides[i]);
     }
     cwi_cross(s_sides[0], s_sides[1], m);
     cwi_cross(t_sides[0], t_sides[1], n);
@@ -77,8 +71,8 @@ static bool are_apart(const cwi_triangle *s, const cwi_triangle *t)
 
 static bool unit_direction(const double from[3], const double to[3], vector out)
 {
-    subtract_vectors(to, from, out);
-    const double length = sqrt(cwi_dot(out, out));
+    cwi_sub(to, from, out);
+    const double length = cwi_length(out);
     for (int i = 0; i < 3; i++)
         out[i] /= length;
     return length > 0;
@@ -88,8 +82,7 @@ static bool unit_direction(const double from[3], const double to[3], vector out)
  * A plane through a side of each may touch both, along two lines. */
 static bool parts_cones(const double axis[3], vector s[2], vector t[2], bool through_sides)
 {
-    const double length = sqrt(cwi_dot(axis, axis)), flat = FLAT * length,
-                 slope = SLOPE * length;
+    const double length = cwi_length(axis), flat = FLAT * length, slope = SLOPE * length;
     const double a = cwi_dot(axis, s[0]), b = cwi_dot(axis, s[1]), c = cwi_dot(axis, t[0]),
                  d = cwi_dot(axis, t[1]);
     if (!(length > SLOPE))
@@ -144,14 +137,14 @@ static bool cones_apart(const cwi_triangle *s, const cwi_triangle *t)
 static bool hinge_is_open(const cwi_triangle *s, const cwi_triangle *t)
 {
     vector hinge, u, v, m, n, across;
-    subtract_vectors(s->p[1], s->p[0], hinge);
-    subtract_vectors(s->p[2], s->p[0], u);
-    subtract_vectors(t->p[2], t->p[0], v);
+    cwi_sub(s->p[1], s->p[0], hinge);
+    cwi_sub(s->p[2], s->p[0], u);
+    cwi_sub(t->p[2], t->p[0], v);
     cwi_cross(hinge, u, m);
     cwi_cross(hinge, v, n);
     cwi_cross(m, n, across);
-    const double cosine = cwi_dot(m, n), sine = sqrt(cwi_dot(across, across));
-    const double size = sqrt(cwi_dot(m, m)) * sqrt(cwi_dot(n, n));
+    const double cosine = cwi_dot(m, n), sine = cwi_length(across);
+    const double size = cwi_length(m) * cwi_length(n);
     return size > 0 && (cosine < 0 || sine > SLOPE * size);
 }
 
@@ -175,10 +168,9 @@ bool cwi_triangles_apart(const cwi_triangle *s, const cwi_triangle *t, int share
 static void try_side(const double p[3], const double q[3], double nearest[3])
 {
     vector d, at;
-    subtract_vectors(q, p, d);
+    cwi_sub(q, p, d);
     const double t = cwi_lesser(cwi_greater(-cwi_dot(p, d) / cwi_dot(d, d), 0), 1);
-    for (int a = 0; a < 3; a++)
-        at[a] = p[a] + t * d[a];
+    cwi_add_scaled(p, t, d, at);
     if (cwi_dot(at, at) < cwi_dot(nearest, nearest))
         memcpy(nearest, at, sizeof at);
 }

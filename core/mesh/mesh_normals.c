@@ -14,8 +14,7 @@ static void add_triangle(const cw_mesh *mesh, const uint32_t *corners, double (*
     for (int c = 0; c < 3; c++) {
         const float *p = mesh->positions + 3 * (size_t)corners[c];
         const float *q = mesh->positions + 3 * (size_t)corners[(c + 1) % 3];
-        for (int a = 0; a < 3; a++)
-            edges[c][a] = (double)q[a] - (double)p[a];
+        cwi_sub_points(q, p, edges[c]);
         squares[c] = cwi_dot(edges[c], edges[c]);
     }
     cwi_cross(edges[0], edges[1], normal);

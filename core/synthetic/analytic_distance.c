@@ -149,7 +149,7 @@ static double angle_deg(const float n[3], const double g[3])
     const double normal[3] = {(double)n[0], (double)n[1], (double)n[2]};
     double cross[3];
     cwi_cross(normal, g, cross);
-    return atan2(sqrt(cwi_dot(cross, cross)), fabs(cwi_dot(normal, g))) * DEGREES;
+    return atan2(cwi_length(cross), fabs(cwi_dot(normal, g))) * DEGREES;
 }
 
 cw_status cw_field_measure_vertices(cw_field field, double isovalue, double voxel_mm,

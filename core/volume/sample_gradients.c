@@ -56,7 +56,7 @@ static void add_edge(fitting *f, uint32_t sample, uint32_t other)
     place_of(f, other, q);
     for (int a = 0; a < 3; a++)
         q[a] = (q[a] - p[a]) * f->length_scale;
-    const double length = sqrt(cwi_dot(q, q));
+    const double length = cwi_length(q);
     if (!(length > 0))
         return;
     for (int a = 0; a < 3; a++)

@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/union_find.h"
+#include "core/geometry/vec3.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -94,12 +95,10 @@ int cwi_cap_vertices(const cwi_cells *g, const cwi_border_face *face, const cwi_
 
 static double square_of(const cwi_cells *g, uint32_t face, cwi_cap_corner a, cwi_cap_corner b)
 {
-    double p[3], q[3], square = 0;
+    double p[3], q[3];
     cwi_place_of(g, cwi_sample_at(g, face, a.at), p);
     cwi_place_of(g, cwi_sample_at(g, face, b.at), q);
-    for (int i = 0; i < 3; i++)
-        square += (p[i] - q[i]) * (p[i] - q[i]);
-    return square;
+    return cwi_distance_sq(p, q);
 }
 
 /* Finds a corner that is on no edge of the face together with two others. Of five corners it is

@@ -2,6 +2,7 @@
  * assembles what the first pass counted, and smooths what the second one wrote. */
 #include "extract/labels/extract_labels.h"
 
+#include "core/geometry/vec3.h"
 #include "extract/labels/label_chunks.h"
 #include "extract/labels/label_smooth.h"
 #include "extract/labels/label_untangle.h"
@@ -46,8 +47,7 @@ static void place_vertex(const void *context, const double place[3], double poin
     for (int a = 0; a < 3; a++)
         at[a] = find_coordinate(v, a, place[a]);
     cwi_affine_apply(v->affine[0], at, world);
-    for (int a = 0; a < 3; a++)
-        point[a] = world[a] - j->out->mesh.origin[a];
+    cwi_sub(world, j->out->mesh.origin, point);
 }
 
 static void place_part(void *context, size_t n)

@@ -108,7 +108,7 @@ double cw_label_patch_area(const cw_label_surfaces *s, const cw_label_patch *pat
             v[a] = (double)p[2][a] - (double)p[0][a];
         }
         cwi_cross(u, v, normal);
-        area += sqrt(cwi_dot(normal, normal)) / 2;
+        area += cwi_length(normal) / 2;
     }
     return area;
 }

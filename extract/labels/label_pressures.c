@@ -110,7 +110,7 @@ static void measure_patch(void *context, size_t n)
         for (int a = 0; a < 3; a++)
             from[a] = (double)p[0][a] - middle[a];
         volume += cwi_dot(from, normal);
-        const double area = sqrt(cwi_dot(normal, normal));
+        const double area = cwi_length(normal);
         areas += area;
         if (s->is_first)
             add_directions(s, t, n, normal, area);
@@ -234,7 +234,7 @@ static void find_curve_move(const presser *s, uint32_t vertex, float move[3])
             find_normal(s, t, p, normal);
             for (int a = 0; a < 3; a++)
                 sum[a] += difference * normal[a];
-            area += sqrt(cwi_dot(normal, normal));
+            area += cwi_length(normal);
         }
     }
     for (int a = 0; a < 3; a++)

@@ -25,8 +25,7 @@ void cwi_adaptive_from_mesh(const cwi_adaptive *a, const cw_mesh *m, uint32_t ve
 
 void cwi_adaptive_to_mesh(const cwi_adaptive *a, const double place[3], double p[3])
 {
-    for (int k = 0; k < 3; k++)
-        p[k] = a->corner[k] + a->voxel * place[k];
+    cwi_add_scaled(a->corner, a->voxel, place, p);
 }
 
 bool cwi_adaptive_is_inside(const cwi_adaptive *a, const double place[3])
@@ -41,8 +40,7 @@ static double distance_at(const cwi_adaptive *a, const double place[3])
     double p[3];
     cwi_adaptive_to_mesh(a, place, p);
     const cwi_closest c = cwi_closest_find(a->mesh, &a->tree, p);
-    const double way[3] = {p[0] - c.point[0], p[1] - c.point[1], p[2] - c.point[2]};
-    return sqrt(cwi_dot(way, way));
+    return cwi_distance(p, c.point);
 }
 
 static void measure_point(cwi_adaptive *a, size_t n)

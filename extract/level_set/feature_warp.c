@@ -109,8 +109,7 @@ static bool is_inside(const warping *g, const double p[3])
 static bool is_thin(const warping *g, const double x[3], const double in[3], bool inside)
 {
     double at[3], p[3];
-    for (int a = 0; a < 3; a++)
-        at[a] = x[a] + thin * in[a];
+    cwi_add_scaled(x, thin, in, at);
     if (distance_at(g, at) * (inside ? -1 : 1) > 0.7 * thin)
         return false;
     to_mesh(g, at, p);
@@ -130,8 +129,7 @@ static bool step_in(const warping *g, const double x[3], const double in[3], boo
         if (is_inside(g, p) != inside)
             continue;
         const cwi_closest c = cwi_closest_find(g->mesh, &g->tree, p);
-        const double way[3] = {p[0] - c.point[0], p[1] - c.point[1], p[2] - c.point[2]};
-        m->value = fmax(sqrt(cwi_dot(way, way)), least * g->warp->voxel) * (inside ? -1 : 1);
+        m->value = fmax(cwi_distance(p, c.point), least * g->warp->voxel) * (inside ? -1 : 1);
         for (int a = 0; a < 3; a++)
             m->way[a] = at[a] - m->at[a];
         return true;
@@ -172,8 +170,7 @@ static void consider_part(warping *g, const double from[3], const double way[3],
     for (int a = 0; a < 3; a++)
         along += (at[a] - from[a]) * way[a] / cwi_dot(way, way);
     along = fmax(begin + rim, fmin(end - rim, along));
-    for (int a = 0; a < 3; a++)
-        x[a] = from[a] + along * way[a];
+    cwi_add_scaled(from, along, way, x);
     if (always || is_thin(g, x, in, inside))
         consider_move(g, at, x, in, inside, EDGE);
 }
@@ -206,7 +203,7 @@ static void follow_edge(warping *g, const uint32_t ends[2], const double in[3], 
 static void consider_corner(warping *g, uint32_t v, const double edge_in[3], bool inside,
                             bool always)
 {
-    const double *n = g->corners[v], length = sqrt(cwi_dot(n, n));
+    const double *n = g->corners[v], length = cwi_length(n);
     const bool is_pointed = length < pointed * n[3];
     double x[3], in[3];
     uint32_t at[3];
@@ -257,7 +254,7 @@ static void consider_edge(warping *g, const side *s, const side *t)
         return;
     const bool inside = is_convex(g, s, t), always = cosine <= sharp;
     double in[3] = {m[0] + n[0], m[1] + n[1], m[2] + n[2]};
-    const double length = sqrt(cwi_dot(in, in));
+    const double length = cwi_length(in);
     if (!(length > 1e-6))
         return;
     for (int a = 0; a < 3; a++)
@@ -495,7 +492,7 @@ static double angle_between(const double u[3], const double v[3])
 {
     double n[3];
     cwi_cross(u, v, n);
-    return atan2(sqrt(cwi_dot(n, n)), cwi_dot(u, v));
+    return atan2(cwi_length(n), cwi_dot(u, v));
 }
 
 static void find_normal(warping *g, size_t t)
@@ -507,7 +504,7 @@ static void find_normal(warping *g, size_t t)
             way[k][a] = (double)vertex_position(g, v[(k + 1) % 3])[a] -
                         (double)vertex_position(g, v[k])[a];
     cwi_cross(way[0], way[1], n);
-    const double length = sqrt(cwi_dot(n, n));
+    const double length = cwi_length(n);
     for (int a = 0; a < 3; a++)
         n[a] = length > 0 ? n[a] / length : 0;
     for (int k = 0; k < 3; k++) {

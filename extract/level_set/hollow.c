@@ -53,7 +53,7 @@ static cw_status check_desc(const cw_hollow_desc *d, cw_error *err)
                         "voxels not below",
                         d->wall_mm, d->voxel_mm);
     for (size_t n = 0; n < d->drain_count; n++) {
-        const double length = sqrt(cwi_dot(d->drains[n].direction, d->drains[n].direction)),
+        const double length = cwi_length(d->drains[n].direction),
                      width = d->drains[n].diameter_mm;
         if (!(width > 0 && isfinite(width) && length > 0 && isfinite(length)))
             return cwi_fail(err, CW_ERR_ARGUMENT,
@@ -138,11 +138,11 @@ static cw_status find_cavities(hollowing *h, cw_error *err)
 
 static double distance_to_ray(const ray *r, const double p[3])
 {
-    const double to[3] = {p[0] - r->from[0], p[1] - r->from[1], p[2] - r->from[2]};
+    double to[3], off[3];
+    cwi_sub(p, r->from, to);
     const double along = cwi_greater(cwi_dot(to, r->along), 0);
-    const double off[3] = {to[0] - along * r->along[0], to[1] - along * r->along[1],
-                           to[2] - along * r->along[2]};
-    return sqrt(cwi_dot(off, off)) - r->radius;
+    cwi_add_scaled(to, -along, r->along, off);
+    return cwi_length(off) - r->radius;
 }
 
 /* Returns how far a vertex of the largest cavity's surface is along a ray; other vertices do
@@ -157,7 +157,7 @@ static double measure_depth(const hollowing *h, const ray *r, size_t vertex, dou
  * the one nearest to their middle. */
 static void place_ray(const hollowing *h, const cw_drain *drain, ray *r)
 {
-    const double length = sqrt(cwi_dot(drain->direction, drain->direction));
+    const double length = cwi_length(drain->direction);
     double p[3], middle[3] = {0}, farthest = -INFINITY, nearest = INFINITY, count = 0;
     r->radius = drain->diameter_mm / 2;
     for (int a = 0; a < 3; a++)
@@ -173,9 +173,9 @@ static void place_ray(const hollowing *h, const cw_drain *drain, ray *r)
         }
     for (size_t v = 0; v < h->inner.vertex_count; v++)
         if (measure_depth(h, r, v, p) >= farthest) {
-            const double to[3] = {p[0] - middle[0], p[1] - middle[1], p[2] - middle[2]};
-            if (cwi_dot(to, to) < nearest) {
-                nearest = cwi_dot(to, to);
+            const double square = cwi_distance_sq(p, middle);
+            if (square < nearest) {
+                nearest = square;
                 memcpy(r->from, p, sizeof p);
             }
         }

@@ -62,7 +62,7 @@ static void place_of(const cw_mesh *m, uint32_t v, double x[3])
 
 static bool scale_to_one(double n[3])
 {
-    const double length = sqrt(cwi_dot(n, n));
+    const double length = cwi_length(n);
     for (int a = 0; a < 3; a++)
         n[a] = length > 0 ? n[a] / length : 0;
     return length > 0;
@@ -82,7 +82,8 @@ static void normal_of(const cw_mesh *m, size_t triangle, double n[3])
 
 static cwi_closest find_closest(const sharpener *s, const double x[3])
 {
-    const double p[3] = {x[0] - s->shift[0], x[1] - s->shift[1], x[2] - s->shift[2]};
+    double p[3];
+    cwi_sub(x, s->shift, p);
     cwi_closest c = cwi_closest_find(s->from, &s->tree, p);
     for (int a = 0; a < 3; a++)
         c.point[a] += s->shift[a];
@@ -107,8 +108,7 @@ static plane plane_near(const sharpener *s, const double x[3])
 static bool is_on_surface(const sharpener *s, const double x[3])
 {
     const cwi_closest c = find_closest(s, x);
-    const double way[3] = {x[0] - c.point[0], x[1] - c.point[1], x[2] - c.point[2]};
-    return fabs(sqrt(cwi_dot(way, way)) - fabs(s->offset)) <= off * s->voxel;
+    return fabs(cwi_distance(x, c.point) - fabs(s->offset)) <= off * s->voxel;
 }
 
 static void find_planes(void *context, size_t chunk)
@@ -150,7 +150,7 @@ static void meet_three(const plane *const p[3], const double away[3], double way
 static bool take_way(const sharpener *s, const double x[3], const double way[3], cut *c)
 {
     const double to[3] = {x[0] + way[0], x[1] + way[1], x[2] + way[2]};
-    if (!(sqrt(cwi_dot(way, way)) <= reach * s->voxel) || !is_on_surface(s, to))
+    if (!(cwi_length(way) <= reach * s->voxel) || !is_on_surface(s, to))
         return false;
     for (int a = 0; a < 3; a++)
         c->x[a] = (float)to[a];
@@ -191,8 +191,7 @@ static void cut_side(const sharpener *s, uint32_t u, uint32_t v, cut *c)
         return;
     place_of(s->mesh, u, x);
     place_of(s->mesh, v, y);
-    for (int a = 0; a < 3; a++)
-        middle[a] = (x[a] + y[a]) / 2;
+    cwi_midpoint(x, y, middle);
     meet_two(p[0], p[1], p[0]->at - cwi_dot(p[0]->n, middle),
              p[1]->at - cwi_dot(p[1]->n, middle), way);
     c->is_on = take_way(s, middle, way, c) && is_apart(s, c, x) && is_apart(s, c, y);
@@ -315,12 +314,6 @@ static point cut_point(const cut *c)
     return (point){{(double)c->x[0], (double)c->x[1], (double)c->x[2]}, c->vertex};
 }
 
-static double square_between(const point *p, const point *q)
-{
-    const double way[3] = {q->x[0] - p->x[0], q->x[1] - p->x[1], q->x[2] - p->x[2]};
-    return cwi_dot(way, way);
-}
-
 typedef struct part {
     const point *corner[3];
 } part;
@@ -360,7 +353,7 @@ static int divide_by_cuts(const point v[3], const point *const m[3], part parts[
         parts[n++] = (part){{p, pq, r}};
         parts[n++] = (part){{pq, q, r}};
     } else if (cuts == 2) {
-        const bool is_short = square_between(p, qr) <= square_between(pq, r);
+        const bool is_short = cwi_distance_sq(p->x, qr->x) <= cwi_distance_sq(pq->x, r->x);
         parts[n++] = (part){{pq, q, qr}};
         parts[n++] = is_short ? (part){{p, pq, qr}} : (part){{p, pq, r}};
         parts[n++] = is_short ? (part){{p, qr, r}} : (part){{pq, qr, r}};
@@ -407,7 +400,7 @@ static bool is_sound(const sharpener *s, const part *p, const plane *const plane
         v[a] = p->corner[2]->x[a] - p->corner[0]->x[a];
     }
     for (int k = 0; k < 3; k++)
-        longest = fmax(longest, square_between(p->corner[k], p->corner[(k + 1) % 3]));
+        longest = fmax(longest, cwi_distance_sq(p->corner[k]->x, p->corner[(k + 1) % 3]->x));
     cwi_cross(u, v, n);
     if (!(cwi_dot(n, n) > longest * low * low * s->voxel * s->voxel) || !scale_to_one(n))
         return false;
@@ -445,7 +438,7 @@ static void restore_some(const sharpener *s, size_t t, const division *d)
     double least = INFINITY;
     for (size_t k = 0; k < 3; k++) {
         cut *side = side_of(s, t, k);
-        const double square = square_between(&d->v[k], &d->v[(k + 1) % 3]);
+        const double square = cwi_distance_sq(d->v[k].x, d->v[(k + 1) % 3].x);
         if (side->is_on && square < least) {
             least = square;
             shortest = side;
@@ -659,8 +652,7 @@ cw_status cwi_sharpen(const cw_mesh *from, const cw_offset_desc *desc, double vo
 {
     sharpener s = {.from = from, .mesh = mesh, .offset = desc->offset_mm, .voxel = voxel_mm};
     bool is_clear = false;
-    for (int a = 0; a < 3; a++)
-        s.shift[a] = from->origin[a] - mesh->origin[a];
+    cwi_sub(from->origin, mesh->origin, s.shift);
     cw_status st = CW_OK;
     if (!make_room(&s))
         st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the edges of %zu triangles",

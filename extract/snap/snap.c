@@ -173,7 +173,7 @@ static void merge_normals(const cwi_snapping *s, const cwi_cluster *c)
     for (int m = 0; m < c->count; m++)
         for (size_t a = 0; a < 3; a++)
             sum[a] += (double)normals[3 * (size_t)c->member[m] + a];
-    const double length = sqrt(cwi_dot(sum, sum));
+    const double length = cwi_length(sum);
     for (int a = 0; a < 3 && length > 1e-3; a++)
         to[a] = (float)(sum[a] / length);
 }
@@ -281,9 +281,8 @@ static void try_triangle(const cwi_snapping *s, const uint32_t corner[3], distan
 
 static void measure_distances(const cwi_snapping *s, const distances *d, double distance[2])
 {
-    distance[1] = sqrt(cwi_dot(d->nearest[1], d->nearest[1]));
-    distance[0] =
-        s->edge > 0 ? s->edge * distance[1] : sqrt(cwi_dot(d->nearest[0], d->nearest[0]));
+    distance[1] = cwi_length(d->nearest[1]);
+    distance[0] = s->edge > 0 ? s->edge * distance[1] : cwi_length(d->nearest[0]);
 }
 
 /* Measures how far a merged vertex has moved, and how far the surface is now from its old

@@ -74,7 +74,7 @@ static void find_normal(cone *o)
         for (int a = 0; a < 3; a++)
             sum[a] += across[a];
     }
-    const double length = sqrt(cwi_dot(sum, sum));
+    const double length = cwi_length(sum);
     for (int a = 0; a < 3; a++)
         o->normal[a] = sum[a] / length;
 }

@@ -69,7 +69,7 @@ static double angle_between(const float *a, const float *b)
                  v[3] = {(double)b[0], (double)b[1], (double)b[2]};
     double w[3];
     cwi_cross(u, v, w);
-    return atan2(sqrt(cwi_dot(w, w)), cwi_dot(u, v)) * DEGREES;
+    return atan2(cwi_length(w), cwi_dot(u, v)) * DEGREES;
 }
 
 /* Marks places with several vertices of the mesh. There a decoded vertex cannot be assigned to

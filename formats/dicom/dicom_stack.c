@@ -231,7 +231,7 @@ static double off_row(const sorting *s, const cwi_dicom_plane *p, const double a
     for (int r = 0; r < 3; r++)
         off[r] = p->frame.position[r] - first->frame.position[r] -
                  (p->distance - first->distance) * along[r];
-    return sqrt(cwi_dot(off, off));
+    return cwi_length(off);
 }
 
 static double smaller_spacing(const sorting *s)

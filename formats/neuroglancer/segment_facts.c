@@ -120,7 +120,7 @@ static facts measure_part(const cwi_part *part)
             w[a] = p[2][a] - p[0][a];
         }
         cwi_cross(u, w, normal);
-        f.area_mm2 += sqrt(cwi_dot(normal, normal)) / 2;
+        f.area_mm2 += cwi_length(normal) / 2;
         f.volume_mm3 += cwi_dot(p[0], normal) / 6;
     }
     f.is_closed = sum == 0;
@@ -137,7 +137,7 @@ double cwi_mean_edge(const cwi_part *part)
             find_corner(part, t, (k + 1) % 3, q);
             for (int a = 0; a < 3; a++)
                 q[a] -= p[a];
-            sum += sqrt(cwi_dot(q, q));
+            sum += cwi_length(q);
         }
     return sum / (3 * (double)part->mesh.triangle_count);
 }

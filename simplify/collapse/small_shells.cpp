@@ -32,8 +32,7 @@ double solid_angle(const Vec &p, const Vec &q, const Vec &r)
     const double a[3] = {double(p[0]), double(p[1]), double(p[2])},
                  b[3] = {double(q[0]), double(q[1]), double(q[2])},
                  c[3] = {double(r[0]), double(r[1]), double(r[2])};
-    const double la = std::sqrt(cwi_dot(a, a)), lb = std::sqrt(cwi_dot(b, b)),
-                 lc = std::sqrt(cwi_dot(c, c));
+    const double la = cwi_length(a), lb = cwi_length(b), lc = cwi_length(c);
     return 2 * std::atan2(volume(p, q, r), la * lb * lc + cwi_dot(a, b) * lc +
                                                cwi_dot(b, c) * la + cwi_dot(c, a) * lb);
 }

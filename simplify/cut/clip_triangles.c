@@ -2,6 +2,7 @@
  * vertices in the plane, but around those at which surfaces touch. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/vec3.h"
 #include "simplify/cut/cut_state.h"
 
 #include <math.h>
@@ -211,15 +212,6 @@ static bool number_kept(clip_work *w)
     return true;
 }
 
-static double measure_square(const float *positions, uint32_t a, uint32_t b)
-{
-    const float *p = positions + 3 * (size_t)a, *q = positions + 3 * (size_t)b;
-    double sum = 0;
-    for (int k = 0; k < 3; k++)
-        sum += pow((double)p[k] - (double)q[k], 2);
-    return sum;
-}
-
 /* Returns where an edge crosses the plane. It leaves a vertex that is in the plane, but counts as
  * below, where it is a little above. */
 static double find_fraction(const cwi_cut *c, uint32_t a, uint32_t b)
@@ -285,8 +277,10 @@ static bool clip_triangle(clip_work *w, const uint32_t *corners, const uint32_t 
     c->facts.cut_triangles++;
     if (count == 3)
         return cwi_cut_add_triangle(c, part[0], part[1], part[2]);
-    const bool turns = measure_square(c->positions, part[1], part[3]) <
-                       measure_square(c->positions, part[0], part[2]);
+    const bool turns = cwi_point_distance_sq(c->positions + 3 * (size_t)part[1],
+                                             c->positions + 3 * (size_t)part[3]) <
+                       cwi_point_distance_sq(c->positions + 3 * (size_t)part[0],
+                                             c->positions + 3 * (size_t)part[2]);
     const int f = turns ? 1 : 0;
     return cwi_cut_add_triangle(c, part[f], part[f + 1], part[f + 2]) &&
            cwi_cut_add_triangle(c, part[f], part[f + 2], part[(f + 3) % 4]);

@@ -93,7 +93,7 @@ static corner_angle measure_angle(const flip_work *w, uint32_t at, uint32_t a, u
         v[k] = (double)p[3 * (size_t)b + k] - (double)p[3 * (size_t)at + k];
     }
     cwi_cross(u, v, cross);
-    return (corner_angle){cwi_dot(u, v), sqrt(cwi_dot(cross, cross))};
+    return (corner_angle){cwi_dot(u, v), cwi_length(cross)};
 }
 
 static double measure_width(const flip_work *w, uint32_t a, uint32_t b, uint32_t c)

@@ -1,5 +1,6 @@
 /* Places the vertices of a cut: those of the section lie in the plane but for rounding. */
 #include "core/base/memory.h"
+#include "core/geometry/vec3.h"
 #include "simplify/cut/cut_state.h"
 
 #include <math.h>
@@ -38,14 +39,11 @@ void cwi_cut_measure_moves(cwi_cut *c)
 {
     for (size_t n = 0; n < c->vertex_count; n++) {
         const cwi_cut_source *s = c->sources + n;
-        double move = 0;
         if (!c->is_section[n] || s->a != s->b)
             continue;
-        for (size_t k = 0; k < 3; k++)
-            move += pow((double)c->positions[3 * n + k] -
-                            (double)c->mesh->positions[3 * (size_t)s->a + k],
-                        2);
-        c->facts.moved_mm = fmax(c->facts.moved_mm, sqrt(move));
+        const double move_sq =
+            cwi_point_distance_sq(c->positions + 3 * n, c->mesh->positions + 3 * (size_t)s->a);
+        c->facts.moved_mm = fmax(c->facts.moved_mm, sqrt(move_sq));
     }
 }
 

@@ -45,7 +45,7 @@ static void add_triangle(const cwi_complex *c, size_t triangle, cwi_label_quadri
         v[k] = p[2][k] - p[0][k];
     }
     cwi_cross(u, v, n);
-    const double area = sqrt(cwi_dot(n, n)) / 2;
+    const double area = cwi_length(n) / 2;
     if (!cwi_to_unit(n))
         return;
     const double m[6] = {n[0] * n[0], n[0] * n[1], n[0] * n[2],
@@ -136,8 +136,7 @@ static void find_least_along(const cwi_label_quadric *q, const double p[3], cons
     const double bend = cwi_dot(ad, d) + pull;
     const double fall = -cwi_dot(ap, d) - cwi_dot(q->b, d) + pull / 2;
     const double t = cwi_lesser(cwi_greater(fall / bend, 0), 1);
-    for (int k = 0; k < 3; k++)
-        place[k] = p[k] + t * d[k];
+    cwi_add_scaled(p, t, d, place);
 }
 
 /* Finds the best place for two inner vertices. A place far from both is not used. */
@@ -148,8 +147,7 @@ static void find_least_between(const cwi_label_quadric *q, const double p[3], co
     for (int k = 0; k < 3; k++)
         place[k] = middle[k] = p[k] + d[k] / 2;
     find_least(q, place);
-    for (int k = 0; k < 3; k++)
-        displacement[k] = place[k] - middle[k];
+    cwi_sub(place, middle, displacement);
     if (!(cwi_dot(displacement, displacement) <= 4 * cwi_dot(d, d)))
         memcpy(place, middle, sizeof middle);
 }
@@ -170,8 +168,7 @@ cwi_label_move cwi_label_move_plan(const cwi_complex *c, const cwi_label_quadric
     q.c += dropped->c;
     get_point(c, move.keep, p);
     get_point(c, move.drop, other);
-    for (int k = 0; k < 3; k++)
-        d[k] = other[k] - p[k];
+    cwi_sub(other, p, d);
     memcpy(place, p, sizeof p);
     if (c->orders[move.keep] == CWI_ORDER_INNER)
         find_least_between(&q, p, d, place);

@@ -28,19 +28,13 @@ static void find_normal(const double p[3], const double a[3], const double b[3],
     cwi_cross(u, v, n);
 }
 
-static double find_square(const double a[3], const double b[3])
-{
-    const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-    return cwi_dot(d, d);
-}
-
 /* Computes the ratio of a triangle's height to its longest side. */
 static double find_shape(const double normal[3], const double p[3], const double a[3],
                          const double b[3])
 {
-    const double longest =
-        cwi_greater(find_square(a, b), cwi_greater(find_square(p, a), find_square(p, b)));
-    return longest > 0 ? sqrt(cwi_dot(normal, normal)) / longest : 0;
+    const double longest = cwi_greater(
+        cwi_distance_sq(a, b), cwi_greater(cwi_distance_sq(p, a), cwi_distance_sq(p, b)));
+    return longest > 0 ? cwi_length(normal) / longest : 0;
 }
 
 static void grow_box(float box[6], const double p[3])
@@ -112,7 +106,7 @@ static bool add_ring(cwi_star *star, const cwi_complex *c, const cwi_ring *ring,
         if (old > 0 && !(turn > 0 && turn * turn >= MIN_COSINE * MIN_COSINE * now * old))
             return false;
         shapes->after = cwi_lesser(shapes->after, find_shape(spoke->normal, place, a, b));
-        spoke->scale = sqrt(find_square(place, a) * find_square(place, b));
+        spoke->scale = sqrt(cwi_distance_sq(place, a) * cwi_distance_sq(place, b));
         put_box(star, star->spoke_boxes, star->spoke_count++,
                 (const double *const[3]){place, a, b}, 3);
         if (is_moved)

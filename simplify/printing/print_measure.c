@@ -78,7 +78,7 @@ static triangle_look look_at(const cw_mesh *mesh, size_t t)
     cwi_cross(sides[0], sides[1], look.area);
     for (int a = 0; a < 3; a++)
         look.area[a] /= 2;
-    look.length = sqrt(cwi_dot(look.area, look.area));
+    look.length = cwi_length(look.area);
     return look;
 }
 

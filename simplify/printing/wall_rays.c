@@ -88,8 +88,7 @@ static double meet_triangle(const ray *r, size_t triangle)
     const double det = cwi_dot(sides[0], across);
     if (det == 0)
         return INFINITY;
-    for (int a = 0; a < 3; a++)
-        from[a] = r->from[a] - p[0][a];
+    cwi_sub(r->from, p[0], from);
     const double u = cwi_dot(from, across) / det;
     cwi_cross(from, sides[0], around);
     const double v = cwi_dot(r->vector, around) / det;
@@ -231,7 +230,7 @@ static point_grid divide_triangle(const double p[3][3], double twice_area, doubl
         double side[3];
         for (int a = 0; a < 3; a++)
             side[a] = p[(c + 2) % 3][a] - p[(c + 1) % 3][a];
-        const double length = sqrt(cwi_dot(side, side));
+        const double length = cwi_length(side);
         if (length > longest) {
             longest = length;
             g.apex = c;
@@ -249,7 +248,7 @@ static void measure_triangle(ray_field *f, size_t triangle, cwi_wall_sum *walls,
     double p[3][3], flat[3];
     load_corners(f->mesh, triangle, p);
     find_area((const double(*)[3])p, flat);
-    const double twice = sqrt(cwi_dot(flat, flat));
+    const double twice = cwi_length(flat);
     double least[2] = {INFINITY, INFINITY};
     const cw_print_desc *limits = f->limits;
     if (twice > 0 && cwi_normalise(flat)) {
@@ -302,7 +301,7 @@ static void prepare_points(ray_field *f)
         double p[3][3], area[3];
         load_corners(mesh, t, p);
         find_area((const double(*)[3])p, area);
-        twice += sqrt(cwi_dot(area, area));
+        twice += cwi_length(area);
         for (size_t n = 0; n < 9; n++) {
             f->normals[3 * (size_t)mesh->triangles[3 * t + n / 3] + n % 3] +=
                 (float)area[n % 3];
@@ -319,7 +318,7 @@ static void prepare_points(ray_field *f)
             f->normals[3 * v + a] = has_normal ? (float)normal[a] : 0;
     }
     const double size[3] = {high[0] - low[0], high[1] - low[1], high[2] - low[2]};
-    f->diagonal = sqrt(cwi_dot(size, size));
+    f->diagonal = cwi_length(size);
     f->step = sqrt(twice / 2 / POINTS);
     f->slack = f->tree.most * 0x1p-20f;
 }

@@ -18,7 +18,7 @@ static double area_of(const cw_mesh *m)
             v[a] = (double)m->positions[3 * (size_t)c[2] + a] - p;
         }
         cwi_cross(u, v, normal);
-        sum += 0.5 * sqrt(cwi_dot(normal, normal));
+        sum += 0.5 * cwi_length(normal);
     }
     return sum;
 }

@@ -74,7 +74,8 @@ static double measure_point(const void *context, const double p[3], uint32_t *hi
                             bool *missed)
 {
     const reference *r = context;
-    const double x[3] = {p[0] - r->shift[0], p[1] - r->shift[1], p[2] - r->shift[2]};
+    double x[3];
+    cwi_sub(p, r->shift, x);
     *missed = false;
     return sqrt(seek_nearest(r, x, hint));
 }
@@ -99,12 +100,6 @@ typedef struct search {
     extreme *extremes;              /* one a chunk */
 } search;
 
-static double way_between(const double a[3], const double b[3])
-{
-    const double way[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-    return sqrt(cwi_dot(way, way));
-}
-
 /* Facets that points of a triangle are nearest to, and the corners' squared distances. */
 typedef struct choice {
     int count;
@@ -114,7 +109,8 @@ typedef struct choice {
 
 static double square_from(const search *s, const double p[3], uint32_t slot)
 {
-    const double x[3] = {p[0] - s->r->shift[0], p[1] - s->r->shift[1], p[2] - s->r->shift[2]};
+    double x[3];
+    cwi_sub(p, s->r->shift, x);
     return facet_square(s->r->facets + slot, x);
 }
 
@@ -194,8 +190,8 @@ static double bound_by_way(const corner c[3])
 {
     double bound = INFINITY;
     for (int n = 0; n < 3; n++) {
-        const double way = cwi_greater(way_between(c[n].p, c[(n + 1) % 3].p),
-                                       way_between(c[n].p, c[(n + 2) % 3].p));
+        const double way = cwi_greater(cwi_distance(c[n].p, c[(n + 1) % 3].p),
+                                       cwi_distance(c[n].p, c[(n + 2) % 3].p));
         bound = cwi_lesser(bound, c[n].distance + way);
     }
     return bound;
@@ -293,8 +289,7 @@ static bool is_within(const search *s, const corner c[3], double limit)
     for (int n = 0; n < 3; n++) {
         if (c[n].distance > limit)
             return false;
-        for (int k = 0; k < 3; k++)
-            p[n][k] = c[n].p[k] - s->r->shift[k];
+        cwi_sub(c[n].p, s->r->shift, p[n]);
     }
     for (int n = 0; n < 3; n++)
         if (is_near_facet(s, c, c[n].slot, limit * limit))
@@ -373,7 +368,7 @@ static void set_boxes(reference *r, const cw_mesh *mesh, float (*boxes)[6])
         double p[3][3];
         cwi_corners(mesh, t, p);
         for (int c = 0; c < 3; c++)
-            r->side += way_between(p[c], p[(c + 1) % 3]);
+            r->side += cwi_distance(p[c], p[(c + 1) % 3]);
         for (int a = 0; a < 3; a++) {
             boxes[t][a] = (float)cwi_lesser(cwi_lesser(p[0][a], p[1][a]), p[2][a]);
             boxes[t][a + 3] = (float)cwi_greater(cwi_greater(p[0][a], p[1][a]), p[2][a]);
@@ -403,8 +398,7 @@ static cw_status make_reference(reference *r, const cw_mesh *mesh, const double 
     cw_status st = CW_OK;
     float(*boxes)[6] = cwi_alloc_array(count, sizeof *boxes);
     r->facets = cwi_alloc_array(count, sizeof *r->facets);
-    for (int a = 0; a < 3; a++)
-        r->shift[a] = mesh->origin[a] - origin[a];
+    cwi_sub(mesh->origin, origin, r->shift);
     if (!boxes || !r->facets)
         st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a reference of %zu triangles",
                       count);

@@ -58,7 +58,7 @@ static double area_of(const double p[3][3])
         b[k] = p[2][k] - p[0][k];
     }
     cwi_cross(a, b, n);
-    return 0.5 * sqrt(cwi_dot(n, n));
+    return 0.5 * cwi_length(n);
 }
 
 /* Into how many parts the sides of a triangle are divided. */

@@ -70,7 +70,7 @@ void cwi_add_triangle(const cw_mesh *mesh, size_t triangle, uint32_t vertex, dou
     for (size_t a = 0; a < 3; a++)
         s.from[0][a] -= (double)mesh->positions[3 * (size_t)vertex + a];
     *volume += cwi_dot(s.normal, s.from[0]) / 6;
-    *area += sqrt(cwi_dot(s.normal, s.normal)) / 2;
+    *area += cwi_length(s.normal) / 2;
 }
 
 /* --- one block ---------------------------------------------------------------------------- */

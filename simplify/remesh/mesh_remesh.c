@@ -64,7 +64,7 @@ static double measure_area(const cw_mesh *m)
         const uint32_t *v = m->triangles + 3 * t;
         cwi_largest_cosine(m->positions + 3 * (size_t)v[0], m->positions + 3 * (size_t)v[1],
                            m->positions + 3 * (size_t)v[2], normal);
-        sum += sqrt(cwi_dot(normal, normal)) / 2;
+        sum += cwi_length(normal) / 2;
     }
     return sum;
 }
@@ -135,8 +135,8 @@ static void measure_edges(const cwi_remesh *r, cw_remesh_facts *f)
         if (cwi_is_dead(r, c / 3) || (r->twin[c] != CWI_NONE && r->twin[c] < c))
             continue;
         const uint32_t a = r->triangles[c], b = r->triangles[cwi_after(c)];
-        const double length = sqrt(cwi_square_between(r->positions + 3 * (size_t)a,
-                                                      r->positions + 3 * (size_t)b)),
+        const double length = sqrt(cwi_point_distance_sq(r->positions + 3 * (size_t)a,
+                                                         r->positions + 3 * (size_t)b)),
                      relative = cwi_relative_length(r, a, b);
         f->min_edge_mm = cwi_lesser(f->min_edge_mm, length);
         f->max_edge_mm = cwi_greater(f->max_edge_mm, length);
@@ -159,7 +159,7 @@ static double angle_at(const cw_mesh *m, size_t t, size_t corner)
         to[1][k] = (double)m->positions[3 * (size_t)v[(corner + 2) % 3] + k] - at;
     }
     cwi_cross(to[0], to[1], cross);
-    return atan2(sqrt(cwi_dot(cross, cross)), cwi_dot(to[0], to[1])) * 180 / CWI_PI;
+    return atan2(cwi_length(cross), cwi_dot(to[0], to[1])) * 180 / CWI_PI;
 }
 
 static void measure_angles(const cw_mesh *m, cw_remesh_facts *f)

@@ -355,7 +355,7 @@ static void close_triangle(cwi_remesh *r, uint32_t corner, uint32_t to)
 static bool is_tiny(const cwi_remesh *r, uint32_t a, uint32_t b)
 {
     const double limit = TINY * r->limit_mm;
-    return cwi_square_between(r->positions + 3 * (size_t)a, r->positions + 3 * (size_t)b) <
+    return cwi_point_distance_sq(r->positions + 3 * (size_t)a, r->positions + 3 * (size_t)b) <
            limit * limit;
 }
 

@@ -67,8 +67,8 @@ static uint32_t follow_curve(const cwi_remesh *r, uint32_t (*ends)[2], const uin
     const double reach = r->desc.error_mm;
     uint32_t last = start;
     while (counts[next] == 2 && next != start &&
-           cwi_square_between(r->positions + 3 * (size_t)start,
-                              r->positions + 3 * (size_t)next) < reach * reach) {
+           cwi_point_distance_sq(r->positions + 3 * (size_t)start,
+                                 r->positions + 3 * (size_t)next) < reach * reach) {
         const uint32_t after = ends[next][0] == last ? ends[next][1] : ends[next][0];
         last = next;
         next = after;
@@ -114,8 +114,8 @@ static size_t mark_chain(cwi_remesh *r, uint32_t (*ends)[2], uint32_t start)
         for (bool goes_on = true; goes_on;) {
             const uint32_t next = ends[at][0] == last ? ends[at][1] : ends[at][0];
             if (pass == 0)
-                length += sqrt(cwi_square_between(r->positions + 3 * (size_t)at,
-                                                  r->positions + 3 * (size_t)next));
+                length += sqrt(cwi_point_distance_sq(r->positions + 3 * (size_t)at,
+                                                     r->positions + 3 * (size_t)next));
             else
                 count += (r->scratch[at] = 1);
             if (length >= r->desc.edge_mm)

@@ -54,7 +54,7 @@ static bool find_centre(const cwi_remesh *r, uint32_t v, double centre[3])
         const double size = (double)r->sizes[v] + (double)r->sizes[b] + (double)r->sizes[c];
         if (cwi_largest_cosine(p, q, o, cross) > 1)
             continue;
-        const double weight = sqrt(cwi_dot(cross, cross)) / (size * size);
+        const double weight = cwi_length(cross) / (size * size);
         for (int k = 0; k < 3; k++) {
             sum[k] += weight * ((double)q[k] + (double)o[k] - 2 * (double)p[k]) / 3;
             normal[k] += cross[k];
@@ -136,7 +136,7 @@ static void move_to_place(cwi_remesh *r, const relaxation *x, uint32_t v)
 {
     const float *p = r->positions + 3 * (size_t)v, *place = x->places + 3 * (size_t)v;
     const double least = LEAST_MOVE * (double)r->sizes[v];
-    if (!(cwi_square_between(p, place) > least * least))
+    if (!(cwi_point_distance_sq(p, place) > least * least))
         return;
     const double cosine = allowed_cosine(r, v);
     if (cwi_move_vertex(r, v, place, x->sizes[v], cosine))

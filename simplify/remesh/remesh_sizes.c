@@ -26,7 +26,7 @@ static void add_edge(const cwi_remesh *r, uint32_t corner, double *tensors)
         first[k] = (double)r->surface.normals[3 * (size_t)(corner / 3) + k];
         second[k] = (double)r->surface.normals[3 * (size_t)(twin / 3) + k];
     }
-    const double length = sqrt(cwi_dot(along, along));
+    const double length = cwi_length(along);
     if (!cwi_normalise(along))
         return;
     cwi_cross(first, second, cross);
@@ -53,7 +53,7 @@ static void sum_tensors(const cwi_remesh *r, double *tensors)
         double normal[3];
         cwi_largest_cosine(r->positions + 3 * (size_t)v[0], r->positions + 3 * (size_t)v[1],
                            r->positions + 3 * (size_t)v[2], normal);
-        const double area = sqrt(cwi_dot(normal, normal)) / 6;
+        const double area = cwi_length(normal) / 6;
         for (int k = 0; k < 3; k++)
             tensors[TENSOR * (size_t)v[k] + 6] += area;
     }
@@ -103,8 +103,8 @@ static double length_for(const cwi_remesh *r, double curvature)
 
 static void limit_growth(const cwi_remesh *r, uint32_t a, uint32_t b)
 {
-    const double length = GROWTH * sqrt(cwi_square_between(r->positions + 3 * (size_t)a,
-                                                           r->positions + 3 * (size_t)b));
+    const double length = GROWTH * sqrt(cwi_point_distance_sq(r->positions + 3 * (size_t)a,
+                                                              r->positions + 3 * (size_t)b));
     float *sizes = r->sizes_wanted;
     sizes[a] = (float)cwi_lesser((double)sizes[a], (double)sizes[b] + length);
     sizes[b] = (float)cwi_lesser((double)sizes[b], (double)sizes[a] + length);

@@ -3,6 +3,7 @@
 #define SIMPLIFY_REMESH_REMESH_STATE_H
 
 #include "core/geometry/bvh.h"
+#include "core/geometry/vec3.h"
 
 #include <cubewright/remesh.h>
 
@@ -89,19 +90,12 @@ static inline bool cwi_is_dead(const cwi_remesh *r, size_t triangle)
     return r->bits[triangle] & CWI_DEAD;
 }
 
-static inline double cwi_square_between(const float *a, const float *b)
-{
-    const double x = (double)a[0] - (double)b[0], y = (double)a[1] - (double)b[1],
-                 z = (double)a[2] - (double)b[2];
-    return x * x + y * y + z * z;
-}
-
 /* Returns the length of an edge, in units of the length wanted there. */
 static inline double cwi_relative_length(const cwi_remesh *r, uint32_t a, uint32_t b)
 {
     const double wanted = ((double)r->sizes[a] + (double)r->sizes[b]) / 2;
-    return sqrt(
-               cwi_square_between(r->positions + 3 * (size_t)a, r->positions + 3 * (size_t)b)) /
+    return sqrt(cwi_point_distance_sq(r->positions + 3 * (size_t)a,
+                                      r->positions + 3 * (size_t)b)) /
            wanted;
 }
 

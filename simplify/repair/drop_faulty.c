@@ -137,10 +137,7 @@ static uint32_t longest_edge(const cw_mesh *m, uint32_t t)
     for (uint32_t c = 3 * t; c < 3 * t + 3; c++) {
         const float *p = m->positions + 3 * (size_t)m->triangles[c],
                     *q = m->positions + 3 * (size_t)m->triangles[cwi_corner_after(c)];
-        double d[3];
-        for (int a = 0; a < 3; a++)
-            d[a] = (double)q[a] - (double)p[a];
-        const double square = cwi_dot(d, d);
+        const double square = cwi_point_distance_sq(p, q);
         if (square > longest) {
             longest = square;
             best = c;
@@ -257,7 +254,7 @@ static void add_triangle(const cwi_repair *r, uint32_t t, component_size *s)
         e[1][a] = p[2][a] - p[0][a];
     }
     cwi_cross(e[0], e[1], area);
-    s->area += sqrt(cwi_dot(area, area)) / 2;
+    s->area += cwi_length(area) / 2;
     s->triangles++;
     for (uint32_t k = 0; k < 3; k++)
         if (r->twin[3 * t + k] == CWI_NO_TWIN) {

@@ -75,7 +75,7 @@ static double measure_cotangent(const double p[3], const double q[3], const doub
         v[a] = r[a] - p[a];
     }
     cwi_cross(u, v, normal);
-    const double twice = sqrt(cwi_dot(normal, normal)), along = cwi_dot(u, v);
+    const double twice = cwi_length(normal), along = cwi_dot(u, v);
     *area = twice / 2;
     if (!(fabs(along) < MAX_COTANGENT * twice))
         return along < 0 ? -MAX_COTANGENT : MAX_COTANGENT;

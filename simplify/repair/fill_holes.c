@@ -188,7 +188,7 @@ static void measure_hole(const cw_mesh *m, const cwi_rim *rim, double *diagonal,
             high[a] = fmax(high[a], (double)p[a]);
             d[a] = (double)q[a] - (double)p[a];
         }
-        *length += sqrt(cwi_dot(d, d));
+        *length += cwi_length(d);
     }
     *diagonal =
         sqrt((high[0] - low[0]) * (high[0] - low[0]) + (high[1] - low[1]) * (high[1] - low[1]) +
@@ -206,7 +206,7 @@ static double measure_patch(const cwi_hole_patch *p)
             v[k] = p->points[p->triangles[t][2]][k] - from;
         }
         cwi_cross(u, v, area);
-        sum += sqrt(cwi_dot(area, area)) / 2;
+        sum += cwi_length(area) / 2;
     }
     return sum;
 }

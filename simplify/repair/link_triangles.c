@@ -77,8 +77,7 @@ static void measure_angles(const cw_mesh *m, uint64_t key, fin *fins, size_t cou
 {
     const float *p = m->positions + 3 * (key >> 32), *q = m->positions + 3 * (key & UINT32_MAX);
     double along[3], x[3], y[3], pick[3] = {0};
-    for (int a = 0; a < 3; a++)
-        along[a] = (double)q[a] - (double)p[a];
+    cwi_sub_points(q, p, along);
     cwi_normalise(along);
     const int axis = fabs(along[0]) < 0.6 ? 0 : 1;
     pick[axis] = 1;
@@ -89,8 +88,7 @@ static void measure_angles(const cw_mesh *m, uint64_t key, fin *fins, size_t cou
         const uint32_t third = cwi_corner_after(cwi_corner_after(fins[n].corner));
         const float *s = m->positions + 3 * (size_t)m->triangles[third];
         double from[3];
-        for (int a = 0; a < 3; a++)
-            from[a] = (double)s[a] - (double)p[a];
+        cwi_sub_points(s, p, from);
         fins[n].angle = atan2(cwi_dot(from, y), cwi_dot(from, x));
     }
 }

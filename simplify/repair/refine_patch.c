@@ -57,12 +57,6 @@ static bool find_neighbours(cwi_hole_patch *p)
     return true;
 }
 
-static double distance_between(const double a[3], const double b[3])
-{
-    const double d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-    return sqrt(cwi_dot(d, d));
-}
-
 /* Returns the mean length of the mesh's edges at a vertex. */
 static double measure_edges(const refinement *r, uint32_t v)
 {
@@ -78,7 +72,7 @@ static double measure_edges(const refinement *r, uint32_t v)
                 points[0][a] = (double)m->positions[3 * (size_t)v + a];
                 points[1][a] = (double)m->positions[3 * (size_t)corners[k] + a];
             }
-            sum += distance_between(points[0], points[1]);
+            sum += cwi_distance(points[0], points[1]);
             count++;
         }
     }
@@ -148,7 +142,7 @@ static double cotangent_at(const cwi_hole_patch *p, uint32_t tip, uint32_t a, ui
         v[k] = p->points[b][k] - p->points[tip][k];
     }
     cwi_cross(u, v, area);
-    const double sine = sqrt(cwi_dot(area, area)), cosine = cwi_dot(u, v);
+    const double sine = cwi_length(area), cosine = cwi_dot(u, v);
     return sine > 0 ? cosine / sine : cosine < 0 ? -1e30 : 1e30;
 }
 
@@ -226,7 +220,7 @@ static bool is_too_large(const refinement *r, uint32_t t, double middle[3], doub
         *size += r->patch->sizes[v[a]] / 3;
     }
     for (int k = 0; k < 3; k++) {
-        const double d = DENSITY * distance_between(middle, r->patch->points[v[k]]);
+        const double d = DENSITY * cwi_distance(middle, r->patch->points[v[k]]);
         if (!(d > r->times * *size) || !(d > r->times * r->patch->sizes[v[k]]))
             return false;
     }

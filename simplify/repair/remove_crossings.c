@@ -127,10 +127,7 @@ static void count_moves(touching *t)
     cw_repair_facts *f = &t->r->facts;
     for (size_t v = 0; v < t->r->mesh.vertex_count; v++) {
         const float *p = t->r->mesh.positions + 3 * v, *q = t->before + 3 * v;
-        double d[3];
-        for (int a = 0; a < 3; a++)
-            d[a] = (double)p[a] - (double)q[a];
-        const double square = cwi_dot(d, d);
+        const double square = cwi_point_distance_sq(p, q);
         f->touching_vertices += square > 0;
         f->parted_mm = fmax(f->parted_mm, sqrt(square));
     }
@@ -250,7 +247,7 @@ static double measure_area(const cw_mesh *m, size_t t)
         e[k / 3][k % 3] = (double)m->positions[3 * (size_t)v[k / 3 + 1] + k % 3] -
                           (double)m->positions[3 * (size_t)v[0] + k % 3];
     cwi_cross(e[0], e[1], area);
-    return sqrt(cwi_dot(area, area)) / 2;
+    return cwi_length(area) / 2;
 }
 
 /* Marks triangles that share a vertex with a marked one. */

@@ -249,7 +249,7 @@ static double move_inward(float *p, const surroundings *s)
         direction[a] = s->sum[a] / s->count;
         largest = fmax(largest, fabs((double)p[a]));
     }
-    length = sqrt(cwi_dot(direction, direction));
+    length = cwi_length(direction);
     if (!(length > FLAT * shortest) || !cwi_normalise(direction))
         return 0;
     const double step = fmin(fmax(PART_FRACTION * shortest, PART_STEPS * largest * 0x1p-24),
@@ -259,7 +259,7 @@ static double move_inward(float *p, const surroundings *s)
         p[a] = (float)(before + step * direction[a]);
         moved[a] = (double)p[a] - before;
     }
-    return sqrt(cwi_dot(moved, moved));
+    return cwi_length(moved);
 }
 
 static cw_status move_apart(cwi_repair *r, cw_error *err)

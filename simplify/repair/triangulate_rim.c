@@ -92,7 +92,7 @@ static double measure_triangle(const double a[3], const double b[3], const doubl
         v[k] = c[k] - a[k];
     }
     cwi_cross(u, v, normal);
-    const double area = sqrt(cwi_dot(normal, normal)) / 2;
+    const double area = cwi_length(normal) / 2;
     if (!cwi_normalise(normal))
         memset(normal, 0, 3 * sizeof *normal);
     return area;

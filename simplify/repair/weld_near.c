@@ -2,6 +2,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/lattice_map.h"
+#include "core/geometry/vec3.h"
 #include "core/mesh/mesh.h"
 #include "simplify/repair/repair_state.h"
 
@@ -45,14 +46,6 @@ static bool init_map(near_map *n, double distance_mm)
     return n->next && n->map;
 }
 
-static double measure_square(const float *p, const float *q)
-{
-    double square = 0;
-    for (int a = 0; a < 3; a++)
-        square += ((double)p[a] - (double)q[a]) * ((double)p[a] - (double)q[a]);
-    return square;
-}
-
 /* Finds the nearest vertex that stays within the distance; UINT32_MAX: none. at: cell + 1 */
 static uint32_t find_near(const near_map *n, const float *p, const uint32_t at[3])
 {
@@ -65,7 +58,7 @@ static uint32_t find_near(const near_map *n, const float *p, const uint32_t at[3
         if (cell == CWI_NO_PLACE)
             continue;
         for (uint32_t v = n->first[cell]; v != UINT32_MAX; v = n->next[v]) {
-            const double square = measure_square(p, n->mesh->positions + 3 * (size_t)v);
+            const double square = cwi_point_distance_sq(p, n->mesh->positions + 3 * (size_t)v);
             if (square < least || (square == least && v < best)) {
                 least = square;
                 best = v;

@@ -67,7 +67,7 @@ static double measure_area(const cw_mesh *m)
             e[k / 3][k % 3] = (double)m->positions[3 * (size_t)v[k / 3 + 1] + k % 3] -
                               (double)m->positions[3 * (size_t)v[0] + k % 3];
         cwi_cross(e[0], e[1], area);
-        sum += sqrt(cwi_dot(area, area)) / 2;
+        sum += cwi_length(area) / 2;
     }
     return sum;
 }

@@ -60,13 +60,11 @@ static void add_triangle(fair_system *f, const uint32_t *corners)
     for (size_t c = 0; c < 3; c++) {
         const double *p = f->s->from + 3 * (size_t)corners[(c + 1) % 3],
                      *q = f->s->from + 3 * (size_t)corners[(c + 2) % 3];
-        for (int a = 0; a < 3; a++)
-            side[c][a] = q[a] - p[a];
+        cwi_sub(q, p, side[c]);
         squares += cwi_dot(side[c], side[c]);
     }
     cwi_cross(side[0], side[1], area);
-    const double twice = sqrt(cwi_dot(area, area)),
-                 counted = cwi_greater(twice, LEAST_AREA * squares);
+    const double twice = cwi_length(area), counted = cwi_greater(twice, LEAST_AREA * squares);
     for (size_t c = 0; c < 3 && counted > 0; c++) {
         const uint32_t v = corners[(c + 1) % 3], w = corners[(c + 2) % 3];
         const double half_cotangent =
@@ -92,8 +90,7 @@ static void assemble_rims(fair_system *f)
         for (uint32_t i = 0; i < r->count[v] && r->rim[v] != CWI_RIM_NONE; i++) {
             const double *p = f->s->from + 3 * v,
                          *q = f->s->from + 3 * (size_t)r->neighbours[r->begin[v] + i];
-            const double edge[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
-            const double length = sqrt(cwi_dot(edge, edge));
+            const double length = cwi_distance(p, q);
             f->weights[r->begin[v] + i] = length > 0 ? 1 / length : 0;
             f->mass[v] += length / 2;
         }

@@ -75,7 +75,7 @@ void cwi_volumes_gradients(cwi_kept_volumes *volumes, const double *places, cons
     for (size_t n = 0; n < mesh->vertex_count; n++) {
         const double *gradient = gradients + 3 * n;
         if (rims[n] == CWI_RIM_NONE)
-            volumes->items[volumes->component[n]].area += sqrt(cwi_dot(gradient, gradient));
+            volumes->items[volumes->component[n]].area += cwi_length(gradient);
     }
 }
 

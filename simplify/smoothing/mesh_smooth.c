@@ -27,10 +27,7 @@ const char *cw_smooth_method_name(cw_smooth_method method)
 
 static double measure_move(const float *place, const float *first)
 {
-    const double d[3] = {(double)place[0] - (double)first[0],
-                         (double)place[1] - (double)first[1],
-                         (double)place[2] - (double)first[2]};
-    return sqrt(cwi_dot(d, d));
+    return sqrt(cwi_point_distance_sq(place, first));
 }
 
 /* Returns the mean over triangles of the mean length of their sides. */
@@ -105,12 +102,12 @@ static void limit_move(const cwi_smoother *s, size_t v, const double normal[3])
     double *place = s->from + 3 * v, move[3], along[3];
     for (int a = 0; a < 3; a++)
         move[a] = place[a] - (double)first[a];
-    if (!(sqrt(cwi_dot(move, move)) > s->limit))
+    if (!(cwi_length(move) > s->limit))
         return;
     double out = s->desc.method == CW_SMOOTH_FAIR ? 0 : cwi_dot(move, normal);
     for (int a = 0; a < 3; a++)
         along[a] = move[a] - out * normal[a];
-    const double length = sqrt(cwi_dot(along, along));
+    const double length = cwi_length(along);
     out = cwi_greater(-s->limit, cwi_lesser(s->limit, out));
     const double left = sqrt(cwi_greater(0, s->limit * s->limit - out * out));
     const double fraction = length > left ? left / length : 1;

@@ -26,11 +26,10 @@ static void see_perspective(cwi_view_tolerance *v, const cw_camera *c, const dou
     for (int n = 0; n < 2; n++)
         v->slope[n] = (0.5 * size[n] + pixels) / k;
     const double corner = hypot(hypot(v->slope[0], v->slope[1]), 1), a = pixels / (k * corner);
-    for (int n = 0; n < 3; n++)
-        away[n] = c->target[n] - c->eye[n];
+    cwi_sub(c->target, c->eye, away);
     v->rate = a / (1 + a);
     v->pixel = 1 / k;
-    v->nearest = NEAREST * sqrt(cwi_dot(away, away));
+    v->nearest = NEAREST * cwi_length(away);
 }
 
 static void see_parallel(cwi_view_tolerance *v, const cw_camera *c, const double size[2],

@@ -9,6 +9,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/vec3.h"
 #include "core/volume/volume.h"
 
 #include <math.h>
@@ -56,7 +57,7 @@ static void find_planes(cwi_beams *b)
     const cwi_frame *f = b->frame;
     for (size_t a = 0; a < 3; a++) {
         const double *m = f->index_from_eye + 4 * a;
-        const double length = sqrt(cwi_dot(m, m));
+        const double length = cwi_length(m);
         for (int side = 0; side < 2; side++) {
             double *p = b->planes[b->plane_count++];
             for (int c = 0; c < 3; c++)
@@ -429,8 +430,7 @@ static void sample_means(const beam *m, const step *s, found *f)
 static void take_sample(const beam *m, const step *s, found *f)
 {
     *f = (found){.depth = 0};
-    for (int a = 0; a < 3; a++)
-        f->index[a] = m->ray->index[a] + s->at * m->ray->slope[a];
+    cwi_add_scaled(m->ray->index, s->at, m->ray->slope, f->index);
     if (s->level == 0 && s->blend == 0)
         sample_point(m, s, f);
     else

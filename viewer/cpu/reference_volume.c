@@ -7,6 +7,7 @@
  * on. */
 #include "viewer/cpu/reference_volume.h"
 
+#include "core/geometry/vec3.h"
 #include "viewer/rays/ray_traversal.h"
 #include "viewer/scene/lighting.h"
 
@@ -102,8 +103,7 @@ static double classify_value(const medium *m, double x, double color[3])
     const cwi_linear *l = m->linear;
     const double value = clamp_number(cwi_cubic_at(m->value, x), l->low, l->high) - l->origin;
     const double opacity = clamp_number(l->opacity + value * l->opacity_slope, 0, 1);
-    for (int c = 0; c < 3; c++)
-        color[c] = l->color[c] + value * l->color_slope[c];
+    cwi_add_scaled(l->color, value, l->color_slope, color);
     return cwi_frame_extinction(m->reference->frame, opacity);
 }
 
@@ -162,8 +162,7 @@ static passage join_passages(const passage *front, const passage *back)
 {
     const double light = exp(-front->depth);
     passage p = {.depth = front->depth + back->depth};
-    for (int c = 0; c < 3; c++)
-        p.color[c] = front->color[c] + light * back->color[c];
+    cwi_add_scaled(front->color, light, back->color, p.color);
     return p;
 }
 

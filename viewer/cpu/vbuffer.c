@@ -103,7 +103,7 @@ static void change_by_gradient(const state *s, double x, const double gradient[3
     const cwi_frame *f = s->b->frame;
     double color[3] = {(double)(*glow)[0], (double)(*glow)[1], (double)(*glow)[2]};
     if (f->transfer.gradient_count > 0)
-        (*glow)[3] *= (float)cwi_frame_gradient_factor(f, sqrt(cwi_dot(gradient, gradient)));
+        (*glow)[3] *= (float)cwi_frame_gradient_factor(f, cwi_length(gradient));
     if (f->scene.lit) {
         cwi_lighting_shade(s->lighting, distance_at(s, x), gradient, cwi_cubic_at(s->shadow, x),
                            color);

@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/geometry/vec3.h"
 #include "viewer/scene/slice.h"
 
 #include <math.h>
@@ -36,8 +37,7 @@ static sample take_sample(const search *s, double x, double y)
     const double t = cwi_slice_hit(f, s->slices, s->slice_count, origin, direction, &number);
     if (t == INFINITY)
         return (sample){NAN, 0};
-    for (int a = 0; a < 3; a++)
-        eye[a] = origin[a] + t * direction[a];
+    cwi_add_scaled(origin, t, direction, eye);
     cwi_frame_to_world(f, eye, world);
     return (sample){(float)cw_volume_sample(&f->volume, world), (uint8_t)number};
 }

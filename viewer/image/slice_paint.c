@@ -3,6 +3,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/geometry/vec3.h"
 #include "core/volume/volume.h"
 #include "viewer/scene/slice.h"
 
@@ -27,8 +28,7 @@ static void add_sample(const painting *p, double x, double y, double sum[4])
     const double t = cwi_slice_hit(f, p->slices, p->slice_count, origin, direction, &number);
     if (t == INFINITY)
         return;
-    for (int a = 0; a < 3; a++)
-        eye[a] = origin[a] + t * direction[a];
+    cwi_add_scaled(origin, t, direction, eye);
     cwi_frame_to_world(f, eye, world);
     if (!p->paint->color(p->paint->context, world, rgba))
         return;

@@ -5,34 +5,21 @@
 
 #include <string.h>
 
-static void subtract(const double a[3], const double b[3], double out[3])
-{
-    for (int c = 0; c < 3; c++)
-        out[c] = a[c] - b[c];
-}
-
-static double length_of(const double v[3])
-{
-    return sqrt(cwi_dot(v, v));
-}
-
 double cwi_measure_distance(const double from[3], const double to[3])
 {
-    double d[3];
-    subtract(to, from, d);
-    return length_of(d);
+    return cwi_distance(from, to);
 }
 
 /* The arc cosine would lose half of the digits near 0 and 180 degrees. */
 double cwi_measure_angle(const double from[3], const double corner[3], const double to[3])
 {
     double a[3], b[3], across[3];
-    subtract(from, corner, a);
-    subtract(to, corner, b);
+    cwi_sub(from, corner, a);
+    cwi_sub(to, corner, b);
     cwi_cross(a, b, across);
-    if (length_of(a) == 0 || length_of(b) == 0)
+    if (cwi_length(a) == 0 || cwi_length(b) == 0)
         return NAN;
-    return atan2(length_of(across), cwi_dot(a, b)) * 180 / CWI_PI;
+    return atan2(cwi_length(across), cwi_dot(a, b)) * 180 / CWI_PI;
 }
 
 /* Measures from the first point: coordinates far from the origin keep their digits. */
@@ -41,8 +28,8 @@ void cwi_measure_vector_area(const double (*points)[3], size_t count, double are
     memset(area, 0, 3 * sizeof *area);
     for (size_t n = 1; n + 1 < count; n++) {
         double a[3], b[3], across[3];
-        subtract(points[n], points[0], a);
-        subtract(points[n + 1], points[0], b);
+        cwi_sub(points[n], points[0], a);
+        cwi_sub(points[n + 1], points[0], b);
         cwi_cross(a, b, across);
         for (int c = 0; c < 3; c++)
             area[c] += 0.5 * across[c];
@@ -53,7 +40,7 @@ double cwi_measure_area(const double (*points)[3], size_t count)
 {
     double area[3];
     cwi_measure_vector_area(points, count, area);
-    return length_of(area);
+    return cwi_length(area);
 }
 
 double cwi_measure_bend(const double (*points)[3], size_t count)
@@ -67,7 +54,7 @@ double cwi_measure_bend(const double (*points)[3], size_t count)
             mean[c] += (points[n][c] - points[0][c]) / (double)count;
     for (size_t n = 0; n < count; n++) {
         double d[3];
-        subtract(points[n], points[0], d);
+        cwi_sub(points[n], points[0], d);
         bend = fmax(bend, fabs(cwi_dot(normal, d) - cwi_dot(normal, mean)));
     }
     return bend;
@@ -78,7 +65,7 @@ static bool find_axes(const double (*points)[3], size_t count, double x[3], doub
 {
     double normal[3];
     cwi_measure_vector_area(points, count, normal);
-    for (size_t n = 1; n + 1 < count && length_of(normal) == 0; n++)
+    for (size_t n = 1; n + 1 < count && cwi_length(normal) == 0; n++)
         cwi_measure_vector_area(points + n - 1, 3, normal);
     if (!cwi_normalise(normal))
         return false;
@@ -108,7 +95,7 @@ bool cwi_measure_crosses(const double (*points)[3], size_t count)
             for (int n = 0; n < 4; n++)
                 for (int a = 0; a < 2; a++) {
                     double d[3];
-                    subtract(points[ends[n]], points[0], d);
+                    cwi_sub(points[ends[n]], points[0], d);
                     at[n][a] = cwi_dot(axes[a], d);
                 }
             if (side_of(at[0], at[1], at[2]) * side_of(at[0], at[1], at[3]) < 0 &&

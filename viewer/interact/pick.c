@@ -1,5 +1,6 @@
 /* Finds the nearest thing seen at a pixel: a mesh, a slice, or a volume as its mode shows
  * it. */
+#include "core/geometry/vec3.h"
 #include "viewer/interact/pick_mesh.h"
 #include "viewer/interact/pick_volume.h"
 #include "viewer/scene/gradient_volume.h"
@@ -21,8 +22,7 @@ typedef struct place {
 static void take_point(const place *at, cw_pick_kind kind, double t, cw_picked *out)
 {
     double eye[3];
-    for (int a = 0; a < 3; a++)
-        eye[a] = at->origin[a] + t * at->direction[a];
+    cwi_add_scaled(at->origin, t, at->direction, eye);
     *out = (cw_picked){.kind = kind, .depth_mm = -eye[2] * at->frame->unit_mm};
     cwi_frame_to_world(at->frame, eye, out->point);
 }

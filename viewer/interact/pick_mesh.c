@@ -25,7 +25,7 @@ static void find_across(double axes[3][3])
     double side[3] = {0};
     side[least] = 1;
     cwi_cross(d, side, axes[0]);
-    const double length = sqrt(cwi_dot(axes[0], axes[0]));
+    const double length = cwi_length(axes[0]);
     for (int a = 0; a < 3; a++)
         axes[0][a] /= length;
     cwi_cross(d, axes[0], axes[1]);
@@ -43,8 +43,7 @@ static sight look_along(const cwi_frame *f, const double origin[3], const double
     find_across(s.axes);
     for (int a = 0; a < 3; a++) {
         double way[3];
-        for (int b = 0; b < 3; b++)
-            way[b] = s.mesh->origin[b] - eye[b];
+        cwi_sub(s.mesh->origin, eye, way);
         s.from[a] = cwi_dot(way, s.axes[a]);
     }
     s.kept_count = cwi_frame_keep(f, origin, direction, all, s.kept);

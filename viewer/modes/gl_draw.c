@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/vec3.h"
 
 #include <math.h>
 #include <string.h>
@@ -66,7 +67,7 @@ static void put_lights(const cw_scene *s, frame_block *b)
 {
     for (size_t n = 0; n < s->light_count; n++) {
         const double *d = s->lights[n].direction;
-        const double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        const double length = cwi_length(d);
         for (int a = 0; a < 3 && length > 0; a++)
             b->light_direction[n][a] = (float)(d[a] / length);
         memcpy(b->light_color[n], s->lights[n].color, sizeof s->lights[n].color);

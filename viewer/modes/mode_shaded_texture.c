@@ -197,8 +197,7 @@ static void put_normal(const layer_job *job, const size_t at[3], uint16_t *out)
         n < t->directions.count && cwi_dot(t->directions.all[n], world) < 0;
     out[0] = (uint16_t)(n | (is_opposite ? OPPOSITE : 0) | (marked ? BOUNDARY : 0));
     if (t->normals_key.has_lengths)
-        out[1] = (uint16_t)lround(UINT16_MAX *
-                                  sqrt(fmin(sqrt(cwi_dot(world, world)) / job->longest, 1)));
+        out[1] = (uint16_t)lround(UINT16_MAX * sqrt(fmin(cwi_length(world) / job->longest, 1)));
 }
 
 /* A layer of a brick whose normals are put. */
@@ -287,10 +286,9 @@ static cw_status need_normals(cwi_gl *gl, shaded_state *t, cw_error *err)
 static void find_to_eye(const cwi_frame *f, double to_eye[3])
 {
     double middle[3], eye[3];
-    for (int a = 0; a < 3; a++)
-        middle[a] = (f->low[a] + f->high[a]) / 2;
+    cwi_midpoint(f->low, f->high, middle);
     cwi_affine_apply(f->eye_from_index, middle, eye);
-    const double length = sqrt(cwi_dot(eye, eye));
+    const double length = cwi_length(eye);
     for (int a = 0; a < 3; a++)
         to_eye[a] = f->perspective && length > 0 ? -eye[a] / length : a == 2;
 }
@@ -328,7 +326,7 @@ typedef struct reflection {
 static void add_light(const shades_key *key, const cw_light *light, const double n[3],
                       reflection *r)
 {
-    const double length = sqrt(cwi_dot(light->direction, light->direction));
+    const double length = cwi_length(light->direction);
     double to_light[3], half[3];
     for (int a = 0; a < 3; a++) {
         to_light[a] = length > 0 ? light->direction[a] / length : 0;
@@ -338,7 +336,7 @@ static void add_light(const shades_key *key, const cw_light *light, const double
     if (key->one_sided && !(facing > 0))
         return;
     const double diffuse = (double)key->material.diffuse * fabs(facing);
-    const double size = sqrt(cwi_dot(half, half));
+    const double size = cwi_length(half);
     const double specular = size > 0 ? fmin(fabs(cwi_dot(n, half)) / size, 1) : 0;
     const double shine =
         (double)key->material.specular * pow(specular, (double)key->material.shininess);

@@ -108,13 +108,12 @@ static int choose_axis(const cwi_frame *f)
 {
     int best = 0;
     double most = -1, middle[3], view[3] = {0, 0, 1};
-    for (int a = 0; a < 3; a++)
-        middle[a] = (f->low[a] + f->high[a]) / 2;
+    cwi_midpoint(f->low, f->high, middle);
     if (f->perspective)
         cwi_affine_apply(f->eye_from_index, middle, view);
     for (int a = 0; a < 3; a++) {
         const double *normal = f->index_from_eye + (ptrdiff_t)4 * a;
-        const double slope = fabs(cwi_dot(normal, view)) / sqrt(cwi_dot(normal, normal));
+        const double slope = fabs(cwi_dot(normal, view)) / cwi_length(normal);
         if (slope > most) {
             most = slope;
             best = a;

@@ -160,8 +160,7 @@ static bool has_room(band *b)
 static void point_on(const double origin[3], const double direction[3], double depth,
                      double p[3])
 {
-    for (int a = 0; a < 3; a++)
-        p[a] = origin[a] + depth * direction[a];
+    cwi_add_scaled(origin, depth, direction, p);
 }
 
 /* Adds a part of a ray. In a box both values are shifted by two thirds of what the value in the
@@ -245,7 +244,7 @@ static void blend_segment(blending *b, const fragment *f, double near, double fa
     if (!(whole[3] > 0))
         return;
     if (frame->transfer.gradient_count > 0)
-        scale *= cwi_frame_gradient_factor(frame, sqrt(cwi_dot(gradient, gradient)));
+        scale *= cwi_frame_gradient_factor(frame, cwi_length(gradient));
     if (frame->scene.lit) {                             /* light is linear in the colour */
         const double middle = (near + far) / 2 * along; /* from depths to the way on the ray */
         cwi_lighting_shade(&b->lighting, middle, gradient, 1, base);

@@ -79,8 +79,7 @@ static void draw_outline(solid *s, int axis, int side, polygon *out)
         if (!s->is_cut || (a >= 0) == (b >= 0))
             continue;
         double cut[3];
-        for (int c = 0; c < 3; c++)
-            cut[c] = p[c] + a / (a - b) * (q[c] - p[c]);
+        cwi_lerp(p, q, a / (a - b), cut);
         project_point(f, cut, at);
         add_corner(out, at);
         if (axis == 2 || (axis == 1 && (corner[n] ^ corner[(n + 1) % 4]) == 4))

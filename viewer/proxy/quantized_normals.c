@@ -36,7 +36,7 @@ static void unfold_octahedron(double u, double v, double out[3])
     out[0] = x;
     out[1] = y;
     out[2] = 1 - fabs(x) - fabs(y);
-    const double length = sqrt(cwi_dot(out, out));
+    const double length = cwi_length(out);
     for (int a = 0; a < 3; a++)
         out[a] /= length;
 }

@@ -70,8 +70,7 @@ void cwi_cell_load(const cw_cells *cells, uint8_t shape, const uint32_t *corners
     for (int c = 0; c < cell->count; c++) {
         const double *p = cells->points + 3 * (size_t)corners[c];
         cell->corners[c] = corners[c];
-        for (int a = 0; a < 3; a++)
-            cell->points[c][a] = p[a] - origin[a];
+        cwi_sub(p, origin, cell->points[c]);
     }
 }
 
@@ -92,12 +91,6 @@ void cwi_cell_part(const cwi_mapped_cell *cell, int number, cwi_mapped_cell *par
 }
 
 /* --- kinds ------------------------------------------------------------------------------- */
-
-static void subtract(const double a[3], const double b[3], double d[3])
-{
-    for (int k = 0; k < 3; k++)
-        d[k] = a[k] - b[k];
-}
 
 static double determinant_of(const double a[3], const double b[3], const double c[3])
 {
@@ -147,7 +140,7 @@ cwi_map_kind cwi_cell_map_of(const cwi_mapped_cell *cell)
         const uint8_t *apex = apexes[cell->shape][n];
         double edges[3][3];
         for (int k = 0; k < 3; k++)
-            subtract(cell->points[apex[k + 1]], cell->points[apex[0]], edges[k]);
+            cwi_sub(cell->points[apex[k + 1]], cell->points[apex[0]], edges[k]);
         const double d = determinant_of(edges[0], edges[1], edges[2]);
         is_right = is_right || d > least;
         is_left = is_left || d < -least;
@@ -300,8 +293,8 @@ bool cwi_cell_line(const cwi_mapped_cell *cell, const double origin[3],
 {
     double columns[3][3], from[3];
     for (int k = 0; k < 3; k++)
-        subtract(cell->points[spanning[cell->shape][k]], cell->points[0], columns[k]);
-    subtract(origin, cell->points[0], from);
+        cwi_sub(cell->points[spanning[cell->shape][k]], cell->points[0], columns[k]);
+    cwi_sub(origin, cell->points[0], from);
     return solve_columns((const double(*)[3])columns, from, start) &&
            solve_columns((const double(*)[3])columns, direction, slope);
 }
@@ -386,8 +379,8 @@ static int cross_patch(const double *const p[4], const across *view, const doubl
 static int cross_triangle(const double *const p[3], const double direction[3], double *t)
 {
     double u[3], v[3], normal[3];
-    subtract(p[1], p[0], u);
-    subtract(p[2], p[0], v);
+    cwi_sub(p[1], p[0], u);
+    cwi_sub(p[2], p[0], v);
     cwi_cross(u, v, normal);
     *t = cwi_dot(normal, p[0]) / cwi_dot(normal, direction);
     return isfinite(*t);
@@ -416,7 +409,7 @@ int cwi_cell_crossings(const cwi_mapped_cell *cell, const double origin[3],
     int count = 0;
     look_along(direction, &view);
     for (int c = 0; c < cell->count; c++)
-        subtract(cell->points[c], origin, points[c]);
+        cwi_sub(cell->points[c], origin, points[c]);
     for (int f = 0; f < s->face_count; f++) {
         const double *p[4];
         for (int n = 0; n < 4; n++)

@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/geometry/cubic.h"
+#include "core/geometry/vec3.h"
 #include "core/volume/cell_shapes.h"
 #include "core/volume/volume.h"
 
@@ -343,8 +344,7 @@ static void place_in_cell(const cwi_spans *s, double t, double u[3])
 {
     double point[3], found[3] = {u[0], u[1], u[2]};
     if (s->is_linear) {
-        for (int a = 0; a < 3; a++)
-            u[a] = s->line[0][a] + t * s->line[1][a];
+        cwi_add_scaled(s->line[0], t, s->line[1], u);
         return;
     }
     point_at(s, t, point);

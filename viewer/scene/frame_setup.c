@@ -344,7 +344,7 @@ static cw_status set_clips(cwi_frame *f, cw_error *err)
 {
     for (size_t n = 0; n < f->scene.clip_count; n++) {
         const cw_clip *c = &f->scene.clips[n];
-        const double length = sqrt(cwi_dot(c->normal, c->normal));
+        const double length = cwi_length(c->normal);
         if (!isnormal(length) || !isfinite(c->distance_mm))
             return cwi_fail(err, CW_ERR_ARGUMENT,
                             "plane %zu that clips has no direction or place", n);
@@ -373,7 +373,7 @@ static void choose_unit(cwi_frame *f, const double min[3], const double max[3])
 {
     const double d[3] = {max[0] - min[0], max[1] - min[1], max[2] - min[2]};
     if (!f->volume.data)
-        f->unit_mm = sqrt(cwi_dot(d, d)) / MESH_UNITS;
+        f->unit_mm = cwi_length(d) / MESH_UNITS;
     if (!isnormal(f->unit_mm))
         f->unit_mm = 1;
 }

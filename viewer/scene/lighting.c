@@ -92,7 +92,7 @@ void cwi_lighting_shade(const cwi_lighting *l, double t, const double gradient[3
 {
     double n[3] = {gradient[0], gradient[1], gradient[2]}, face[3] = {0};
     double light[3];
-    const double length = sqrt(cwi_dot(n, n));
+    const double length = cwi_length(n);
     const double strength = l->surface > 0 ? fmin(length * l->surface, 1) : 1;
     const double share = find_face(l, t, face);
     cwi_to_unit(n);

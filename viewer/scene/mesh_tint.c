@@ -45,12 +45,11 @@ double cwi_triangle_shape(const cw_mesh *mesh, size_t triangle)
     for (size_t e = 0; e < 3; e++) {
         const float *from = mesh->positions + 3 * (size_t)corner[e];
         const float *to = mesh->positions + 3 * (size_t)corner[(e + 1) % 3];
-        for (int a = 0; a < 3; a++)
-            side[e][a] = (double)to[a] - (double)from[a];
+        cwi_sub_points(to, from, side[e]);
         squares += cwi_dot(side[e], side[e]);
     }
     cwi_cross(side[0], side[1], normal);
-    return squares > 0 ? 2 * sqrt(3) * sqrt(cwi_dot(normal, normal)) / squares : 0;
+    return squares > 0 ? 2 * sqrt(3) * cwi_length(normal) / squares : 0;
 }
 
 static void find_range(const cw_mesh *mesh, double range[2])

@@ -59,7 +59,7 @@ static float classify(const job *w, float coordinate, const size_t at[3])
     cwi_lattice_gradient(&f->gradient_volume, at, gradient);
     for (int a = 0; a < 3; a++)
         eye[a] = f->gradient_volume.slope * cwi_dot(w->to_eye[a], gradient);
-    const double length = sqrt(cwi_dot(eye, eye));
+    const double length = cwi_length(eye);
     return extinction * (float)cwi_frame_gradient_factor(f, isfinite(length) ? length : 0);
 }
 

@@ -22,7 +22,7 @@ static const double oblique[3] = {0.70, 0.50, 0.95};
 
 static cw_status make_unit(cw_slice *s, cw_error *err)
 {
-    const double length = sqrt(cwi_dot(s->normal, s->normal));
+    const double length = cwi_length(s->normal);
     if (!isnormal(length) || !isfinite(s->distance_mm))
         return cwi_fail(err, CW_ERR_ARGUMENT, "a slice has no direction or place");
     for (int a = 0; a < 3; a++)
@@ -176,8 +176,7 @@ double cwi_slice_hit(const cwi_frame *f, const cw_slice *slices, size_t count,
             (slices[n].distance_mm - cwi_dot(slices[n].normal, f->eye_mm)) / f->unit_mm;
         const double slope = cwi_dot(normal, direction);
         const double t = (distance - cwi_dot(normal, origin)) / slope;
-        for (int a = 0; a < 3; a++)
-            p[a] = origin[a] + t * direction[a];
+        cwi_add_scaled(origin, t, direction, p);
         if (!(fabs(slope) >= 1e-6 && t < nearest && -p[2] >= f->near) || !has_value(f, p))
             continue;
         nearest = t;
