@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/triangle.h"
 #include "simplify/blocks/partition.h"
 
 #include <math.h>
@@ -76,9 +77,8 @@ static double longest_edge(const cwi_mesh_block *b)
 {
     double longest = 0;
     for (size_t c = 0; c < 3 * b->triangles; c++) {
-        const size_t next = c % 3 == 2 ? c - 2 : c + 1;
         const float *p = b->points + 3 * (size_t)b->corners[c],
-                    *q = b->points + 3 * (size_t)b->corners[next];
+                    *q = b->points + 3 * (size_t)b->corners[cwi_corner_next((uint32_t)c)];
         const double d[3] = {(double)(q[0] - p[0]), (double)(q[1] - p[1]),
                              (double)(q[2] - p[2])};
         longest = fmax(longest, d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);

@@ -5,6 +5,7 @@
 #include "cli/framework/console.h"
 #include "cli/results/mesh_comparison.h"
 #include "core/base/status.h"
+#include "core/mesh/mesh_triangle.h"
 
 #include <float.h>
 #include <math.h>
@@ -74,13 +75,6 @@ cw_status cli_prove_error(const cli_volume *volume, const cli_wanted *wanted,
 
 /* --- a part of the volume ----------------------------------------------------------------- */
 
-static void world_of(const cw_mesh *m, size_t triangle, size_t corner, double world[3])
-{
-    const float *p = m->positions + 3 * (size_t)m->triangles[3 * triangle + corner];
-    for (int a = 0; a < 3; a++)
-        world[a] = m->origin[a] + (double)p[a];
-}
-
 /* Whether a triangle lies in the cells of a volume. */
 static cw_status is_inside(const cw_volume *v, const cw_mesh *m, size_t triangle, bool *inside,
                            cw_error *err)
@@ -88,7 +82,7 @@ static cw_status is_inside(const cw_volume *v, const cw_mesh *m, size_t triangle
     double middle[3] = {0, 0, 0}, index[3];
     for (size_t k = 0; k < 3; k++) {
         double world[3];
-        world_of(m, triangle, k, world);
+        cwi_mesh_world(m, m->triangles[3 * triangle + k], world);
         for (int a = 0; a < 3; a++)
             middle[a] += world[a] / 3;
     }
@@ -111,8 +105,8 @@ static cw_status compare_parts(const cw_volume *v, const cw_mesh *part, const cw
             return st;
         for (size_t k = 0; k < 3 && inside && next < part->triangle_count; k++) {
             double p[3], q[3];
-            world_of(part, next, k, p);
-            world_of(whole, t, k, q);
+            cwi_mesh_world(part, part->triangles[3 * next + k], p);
+            cwi_mesh_world(whole, whole->triangles[3 * t + k], q);
             const double apart = hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]);
             proof->apart_mm = fmax(proof->apart_mm, apart);
         }

@@ -13,6 +13,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/mesh/mesh_triangle.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -35,8 +36,7 @@ static size_t sample_field(const cli_mesh_study *m, size_t every, double *values
     size_t count = 0;
     for (size_t v = 0; v < mesh->vertex_count; v += every) {
         double world[3];
-        for (size_t a = 0; a < 3; a++)
-            world[a] = mesh->origin[a] + (double)mesh->positions[3 * v + a];
+        cwi_mesh_world(mesh, v, world);
         values[count] = cw_volume_sample(&m->study.volume->view, world);
         count += isfinite(values[count]);
     }

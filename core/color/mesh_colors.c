@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/mesh/mesh_triangle.h"
 
 #include <math.h>
 #include <string.h>
@@ -40,8 +41,7 @@ static void sample_part(void *context, size_t k)
     const sampling *s = context;
     for (size_t v = k * PART; v < (k + 1) * PART && v < s->mesh->vertex_count; v++) {
         double world[3];
-        for (size_t a = 0; a < 3; a++)
-            world[a] = s->mesh->origin[a] + (double)s->mesh->positions[3 * v + a];
+        cwi_mesh_world(s->mesh, v, world);
         double value = s->volume->cells ? cwi_cell_sample(&s->cells, world)
                                         : cw_volume_sample(s->volume, world);
         if (isnan(value) && !s->volume->cells)

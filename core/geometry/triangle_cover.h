@@ -9,7 +9,7 @@
 #define CORE_GEOMETRY_TRIANGLE_COVER_H
 
 #include "core/geometry/point_triangle.h"
-#include "core/geometry/vec3.h"
+#include "core/geometry/triangle.h"
 
 #include <stdbool.h>
 #include <string.h>
@@ -199,12 +199,7 @@ static inline bool cwi_piece_covered(const cwi_cover *c, cwi_triangle_piece *pie
 static inline bool cwi_is_covered(cwi_cover *c, const double corners[3][3])
 {
     cwi_triangle_piece whole;
-    double ab[3], ac[3];
-    for (int k = 0; k < 3; k++) {
-        ab[k] = corners[1][k] - corners[0][k];
-        ac[k] = corners[2][k] - corners[0][k];
-    }
-    cwi_cross(ab, ac, c->normal);
+    cwi_triangle_normal(corners[0], corners[1], corners[2], c->normal);
     whole.count = 3;
     whole.cuts = CWI_PIECE_CUTS;
     memcpy(whole.p, corners, 3 * sizeof *whole.p);

@@ -3,6 +3,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/mesh_triangle.h"
 
 #include <cubewright/field.h>
 
@@ -70,27 +71,16 @@ static void add_distance(sum *s, double mm, double area, double voxel_mm)
     s->bins[bin < BINS - 1 ? (size_t)bin : BINS - 1] += area;
 }
 
-static void vertex_of(const cw_mesh *m, size_t vertex, double p[3])
-{
-    for (size_t a = 0; a < 3; a++)
-        p[a] = m->origin[a] + (double)m->positions[3 * vertex + a];
-}
-
 /* Adds the corners of a triangle and its middle, with the weights that integrate quadratic
  * functions exactly: 1/12 and 3/4. */
 static void add_triangle(sum *s, cw_field field, double iso, double voxel_mm, const cw_mesh *m,
                          size_t t)
 {
-    double c[3][3], middle[3], u[3], v[3], g[3];
+    double c[3][3], middle[3], normal[3], g[3];
     for (size_t n = 0; n < 3; n++)
-        vertex_of(m, m->triangles[3 * t + n], c[n]);
-    for (int a = 0; a < 3; a++) {
-        middle[a] = (c[0][a] + c[1][a] + c[2][a]) / 3;
-        u[a] = c[1][a] - c[0][a];
-        v[a] = c[2][a] - c[0][a];
-    }
-    double normal[3];
-    cwi_cross(u, v, normal);
+        cwi_mesh_world(m, m->triangles[3 * t + n], c[n]);
+    cwi_triangle_centroid(c[0], c[1], c[2], middle);
+    cwi_triangle_normal(c[0], c[1], c[2], normal);
     const double area = 0.5 * hypot(hypot(normal[0], normal[1]), normal[2]);
     for (int n = 0; n < 3; n++)
         add_distance(s, walk_to_surface(field, iso, voxel_mm, c[n], g), area / 12, voxel_mm);
@@ -164,7 +154,7 @@ cw_status cw_field_measure_vertices(cw_field field, double isovalue, double voxe
         st = cwi_fail(err, CW_ERR_ARGUMENT, "every 0th vertex; 1 or more was expected");
     for (size_t v = 0; v < mesh->vertex_count && st == CW_OK; v += every) {
         double p[3], g[3];
-        vertex_of(mesh, v, p);
+        cwi_mesh_world(mesh, v, p);
         const double mm = walk_to_surface(field, isovalue, voxel_mm, p, g);
         if (isnan(mm)) {
             e.missed++;

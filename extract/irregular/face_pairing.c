@@ -6,6 +6,7 @@
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/cases/cell_topology.h"
+#include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
 #include "extract/irregular/cell_surface.h"
 
@@ -313,19 +314,6 @@ static void join_across(orientation *o, uint32_t face)
     o->turned[a > b ? a : b] = turned;
 }
 
-/* Returns six times the volume of the tetrahedron between four points. */
-static double volume_of(const double *o, const double *a, const double *b, const double *c)
-{
-    double u[3], v[3], w[3], across[3];
-    for (int i = 0; i < 3; i++) {
-        u[i] = a[i] - o[i];
-        v[i] = b[i] - o[i];
-        w[i] = c[i] - o[i];
-    }
-    cwi_cross(u, v, across);
-    return cwi_dot(across, w);
-}
-
 /* Measures volumes: fans of triangles in faces, seen from corner 0; a quadrangle is halved both
  * ways. In the space of the points, where the longest side is 1. */
 static void measure_chunk(void *context, size_t chunk)
@@ -348,9 +336,9 @@ static void measure_chunk(void *context, size_t chunk)
             const uint8_t *c = s->faces[face];
             const int size = s->face_size[face];
             for (int i = 0; i < size; i++)
-                o->volume[n] +=
-                    volume_of(p[0], p[c[i]], p[c[(i + 1) % size]], p[c[(i + 2) % size]]) /
-                    (size == 4 ? 2 : 3);
+                o->volume[n] += cwi_tetrahedron_sixfold(p[0], p[c[i]], p[c[(i + 1) % size]],
+                                                        p[c[(i + 2) % size]]) /
+                                (size == 4 ? 2 : 3);
         }
     }
 }

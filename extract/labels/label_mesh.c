@@ -1,6 +1,7 @@
 /* Copies meshes out of the interfaces: the closed one of a label, or that of a patch. */
 #include <cubewright/labels.h>
 
+#include "core/mesh/mesh_triangle.h"
 #include "extract/labels/key_counts.h"
 
 #include "core/base/memory.h"
@@ -98,17 +99,7 @@ cw_status cw_label_patch_mesh(const cw_label_surfaces *s, const cw_label_patch *
 double cw_label_patch_area(const cw_label_surfaces *s, const cw_label_patch *patch)
 {
     double area = 0;
-    for (size_t t = patch->first; t < patch->first + patch->count; t++) {
-        const float *p[3];
-        double u[3], v[3], normal[3];
-        for (size_t c = 0; c < 3; c++)
-            p[c] = s->mesh.positions + 3 * (size_t)s->mesh.triangles[3 * t + c];
-        for (int a = 0; a < 3; a++) {
-            u[a] = (double)p[1][a] - (double)p[0][a];
-            v[a] = (double)p[2][a] - (double)p[0][a];
-        }
-        cwi_cross(u, v, normal);
-        area += cwi_length(normal) / 2;
-    }
+    for (size_t t = patch->first; t < patch->first + patch->count; t++)
+        area += cwi_mesh_area(&s->mesh, t);
     return area;
 }

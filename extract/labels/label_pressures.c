@@ -7,6 +7,7 @@
 #include "core/base/status.h"
 #include "core/geometry/affine.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/mesh_triangle.h"
 
 #include <math.h>
 #include <string.h>
@@ -62,18 +63,10 @@ typedef struct presser {
     bool is_first;     /* round */
 } presser;
 
-/* Computes twice the area vector of a triangle. */
-static inline void find_normal(const presser *s, size_t t, const float *p[3], double normal[3])
+/* Computes a triangle's normal on the outside, as long as twice its area. */
+static inline void find_normal(const presser *s, size_t t, double normal[3])
 {
-    const cw_mesh *mesh = &s->surfaces->mesh;
-    double u[3], v[3];
-    for (int c = 0; c < 3; c++)
-        p[c] = mesh->positions + 3 * (size_t)mesh->triangles[3 * t + (size_t)c];
-    for (int a = 0; a < 3; a++) {
-        u[a] = (double)p[1][a] - (double)p[0][a];
-        v[a] = (double)p[2][a] - (double)p[0][a];
-    }
-    cwi_cross(u, v, normal);
+    cwi_mesh_normal(&s->surfaces->mesh, t, normal);
     for (int a = 0; a < 3; a++)
         normal[a] *= s->side;
 }
@@ -104,11 +97,10 @@ static void measure_patch(void *context, size_t n)
                               0.5 * (double)s->dim[2]};
     double volume = 0, areas = 0;
     for (size_t t = patch->first; t < patch->first + patch->count; t++) {
-        const float *p[3];
         double normal[3], from[3];
-        find_normal(s, t, p, normal);
-        for (int a = 0; a < 3; a++)
-            from[a] = (double)p[0][a] - middle[a];
+        find_normal(s, t, normal);
+        cwi_mesh_corner(&s->surfaces->mesh, t, 0, from);
+        cwi_sub(from, middle, from);
         volume += cwi_dot(from, normal);
         const double area = cwi_length(normal);
         areas += area;
@@ -227,11 +219,10 @@ static void find_curve_move(const presser *s, uint32_t vertex, float move[3])
         }
         for (size_t t = net->around[k]; t < end; t++) {
             const uint32_t *v = f->mesh.triangles + 3 * t;
-            const float *p[3];
             double normal[3];
             if (v[0] != vertex && v[1] != vertex && v[2] != vertex)
                 continue;
-            find_normal(s, t, p, normal);
+            find_normal(s, t, normal);
             for (int a = 0; a < 3; a++)
                 sum[a] += difference * normal[a];
             area += cwi_length(normal);

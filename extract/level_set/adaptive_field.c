@@ -7,6 +7,7 @@
 #include "core/geometry/closest_point.h"
 #include "core/geometry/point_in_mesh.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/mesh_triangle.h"
 #include "extract/level_set/level_set.h"
 
 #include <math.h>
@@ -117,15 +118,8 @@ double cwi_adaptive_least(const cwi_adaptive *a)
 static void find_normals(cwi_adaptive *a)
 {
     const cw_mesh *m = a->mesh;
-    for (size_t t = 0; t < m->triangle_count; t++) {
-        const uint32_t *v = m->triangles + 3 * t;
-        double way[2][3];
-        for (int k = 0; k < 2; k++)
-            for (int x = 0; x < 3; x++)
-                way[k][x] = (double)m->positions[3 * (size_t)v[k + 1] + (size_t)x] -
-                            (double)m->positions[3 * (size_t)v[0] + (size_t)x];
-        cwi_cross(way[0], way[1], a->normals[t]);
-    }
+    for (size_t t = 0; t < m->triangle_count; t++)
+        cwi_mesh_normal(m, t, a->normals[t]);
 }
 
 cw_status cwi_adaptive_init(cwi_adaptive *a, const cw_mesh *mesh, const cw_volume *volume,

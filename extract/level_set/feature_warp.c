@@ -7,6 +7,7 @@
 #include "core/geometry/closest_point.h"
 #include "core/geometry/point_in_mesh.h"
 #include "core/geometry/polygon_clip.h"
+#include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
 #include "core/volume/volume.h"
 #include "extract/level_set/level_set.h"
@@ -405,12 +406,8 @@ static bool has_area(const cwi_polygon *p)
 {
     double sum[3] = {0};
     for (int n = 1; n + 1 < p->count; n++) {
-        double u[3], v[3], c[3];
-        for (int a = 0; a < 3; a++) {
-            u[a] = p->p[n][a] - p->p[0][a];
-            v[a] = p->p[n + 1][a] - p->p[0][a];
-        }
-        cwi_cross(u, v, c);
+        double c[3];
+        cwi_triangle_normal(p->p[0], p->p[n], p->p[n + 1], c);
         for (int a = 0; a < 3; a++)
             sum[a] += c[a];
     }

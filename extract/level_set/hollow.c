@@ -1,5 +1,6 @@
 /* Hollows a solid: offsets its surface inward by the wall's thickness, and carves drains from
  * the cavity outward. */
+#include "core/mesh/mesh_triangle.h"
 #include "extract/level_set/level_set.h"
 
 #include "core/base/memory.h"
@@ -92,19 +93,11 @@ static cw_status take_surface(hollowing *h, double isovalue, bool normals, cw_me
     return cw_extract(&h->volume, &desc, out, NULL, err);
 }
 
-static void point_of(const cw_mesh *m, size_t vertex, double p[3])
-{
-    for (size_t a = 0; a < 3; a++)
-        p[a] = m->origin[a] + (double)m->positions[3 * vertex + a];
-}
-
 /* Returns the signed volume under a triangle; the mesh's origin is the tip. */
-static double volume_under(const cw_mesh *m, const uint32_t corner[3])
+static double volume_under(const cw_mesh *m, size_t t)
 {
     double p[3][3], normal[3];
-    for (size_t n = 0; n < 3; n++)
-        for (size_t a = 0; a < 3; a++)
-            p[n][a] = (double)m->positions[3 * (size_t)corner[n] + a];
+    cwi_mesh_corners(m, t, p);
     cwi_cross(p[1], p[2], normal);
     return cwi_dot(p[0], normal) / 6;
 }
@@ -122,8 +115,8 @@ static cw_status find_cavities(hollowing *h, cw_error *err)
         cwi_sets_join(h->set, c[0], c[1]);
         cwi_sets_join(h->set, c[0], c[2]);
     }
-    for (const uint32_t *c = m->triangles; c < m->triangles + 3 * m->triangle_count; c += 3)
-        h->size[cwi_sets_find(h->set, c[0])] += volume_under(m, c);
+    for (size_t t = 0; t < m->triangle_count; t++)
+        h->size[cwi_sets_find(h->set, m->triangles[3 * t])] += volume_under(m, t);
     for (uint32_t v = 0; v < m->vertex_count; v++) {
         h->set[v] = cwi_sets_find(h->set, v);
         h->facts.cavities += h->size[v] > 0;
@@ -149,7 +142,7 @@ static double distance_to_ray(const ray *r, const double p[3])
  * not count. */
 static double measure_depth(const hollowing *h, const ray *r, size_t vertex, double p[3])
 {
-    point_of(&h->inner, vertex, p);
+    cwi_mesh_world(&h->inner, vertex, p);
     return h->set[vertex] == h->largest ? cwi_dot(p, r->along) : -INFINITY;
 }
 
@@ -188,7 +181,7 @@ static void count_sealed(hollowing *h)
         double p[3], *size = &h->size[h->set[v]], nearest = INFINITY;
         if (!(*size > 0))
             continue;
-        point_of(&h->inner, v, p);
+        cwi_mesh_world(&h->inner, v, p);
         for (size_t n = 0; n < h->desc->drain_count; n++)
             nearest = fmin(nearest, distance_to_ray(&h->rays[n], p));
         if (nearest < 0) {

@@ -7,6 +7,7 @@
 #include "core/base/status.h"
 #include "core/geometry/closest_point.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/mesh_triangle.h"
 
 #include <cubewright/quality.h>
 
@@ -68,18 +69,6 @@ static bool scale_to_one(double n[3])
     return length > 0;
 }
 
-static void normal_of(const cw_mesh *m, size_t triangle, double n[3])
-{
-    double p[3][3], u[3], v[3];
-    for (size_t k = 0; k < 3; k++)
-        place_of(m, m->triangles[3 * triangle + k], p[k]);
-    for (int a = 0; a < 3; a++) {
-        u[a] = p[1][a] - p[0][a];
-        v[a] = p[2][a] - p[0][a];
-    }
-    cwi_cross(u, v, n);
-}
-
 static cwi_closest find_closest(const sharpener *s, const double x[3])
 {
     double p[3];
@@ -97,7 +86,7 @@ static plane plane_near(const sharpener *s, const double x[3])
     const cwi_closest c = find_closest(s, x);
     plane p = {0};
     if (s->offset == 0)
-        normal_of(s->from, c.triangle, p.n);
+        cwi_mesh_normal(s->from, c.triangle, p.n);
     for (int a = 0; a < 3 && s->offset != 0; a++)
         p.n[a] = (x[a] - c.point[a]) * (s->offset < 0 ? -1 : 1);
     if (scale_to_one(p.n))
@@ -395,10 +384,8 @@ static void divide_triangle(const sharpener *s, size_t t, division *d)
 static bool is_sound(const sharpener *s, const part *p, const plane *const planes[3])
 {
     double u[3], v[3], n[3], longest = 0, best = -1;
-    for (int a = 0; a < 3; a++) {
-        u[a] = p->corner[1]->x[a] - p->corner[0]->x[a];
-        v[a] = p->corner[2]->x[a] - p->corner[0]->x[a];
-    }
+    cwi_sub(p->corner[1]->x, p->corner[0]->x, u);
+    cwi_sub(p->corner[2]->x, p->corner[0]->x, v);
     for (int k = 0; k < 3; k++)
         longest = fmax(longest, cwi_distance_sq(p->corner[k]->x, p->corner[(k + 1) % 3]->x));
     cwi_cross(u, v, n);

@@ -8,6 +8,7 @@
  * Otherwise every triangle near it is tested. Where a line along a side separates the shadows
  * of two triangles, a plane separates them. The rest, mostly above or below the cone, is
  * compared in space, triangle by triangle. */
+#include "core/geometry/triangle.h"
 #include "core/geometry/triangle_separation.h"
 #include "core/geometry/vec3.h"
 #include "extract/snap/snap_cluster.h"
@@ -172,12 +173,8 @@ static bool is_outside_box(const cone *o, const double *const x[3])
 /* Returns true if a triangle's shadow turns left. */
 static bool faces_up(const cone *o, const double *const x[3])
 {
-    double u[3], v[3], across[3];
-    for (int a = 0; a < 3; a++) {
-        u[a] = x[1][a] - x[0][a];
-        v[a] = x[2][a] - x[0][a];
-    }
-    cwi_cross(u, v, across);
+    double across[3];
+    cwi_triangle_normal(x[0], x[1], x[2], across);
     return cwi_dot(o->normal, across) > FLAT;
 }
 

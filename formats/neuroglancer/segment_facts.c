@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
 
 #include <math.h>
@@ -110,16 +111,12 @@ static facts measure_part(const cwi_part *part)
     uint64_t sum = 0;
     for (size_t t = 0; t < part->mesh.triangle_count; t++) {
         const uint32_t *v = part->mesh.triangles + 3 * t;
-        double p[3][3], u[3], w[3], normal[3];
+        double p[3][3], normal[3];
         for (size_t k = 0; k < 3; k++) {
             find_corner(part, t, k, p[k]);
             sum += hash_edge(v[k], v[(k + 1) % 3]) - hash_edge(v[(k + 1) % 3], v[k]);
         }
-        for (int a = 0; a < 3; a++) {
-            u[a] = p[1][a] - p[0][a];
-            w[a] = p[2][a] - p[0][a];
-        }
-        cwi_cross(u, w, normal);
+        cwi_triangle_normal(p[0], p[1], p[2], normal);
         f.area_mm2 += cwi_length(normal) / 2;
         f.volume_mm3 += cwi_dot(p[0], normal) / 6;
     }

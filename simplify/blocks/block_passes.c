@@ -8,6 +8,7 @@
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
 #include "core/mesh/mesh.h"
+#include "core/mesh/mesh_triangle.h"
 #include "simplify/blocks/distance_proof.h"
 #include "simplify/blocks/partition.h"
 
@@ -84,10 +85,8 @@ void cwi_passes_free(cwi_passes *p)
 
 static double limit_of(const cwi_passes *p, const cw_mesh *m, size_t t, double margin)
 {
-    const uint32_t *c = m->triangles + 3 * t;
-    const float *const corners[3] = {m->positions + 3 * (size_t)c[0],
-                                     m->positions + 3 * (size_t)c[1],
-                                     m->positions + 3 * (size_t)c[2]};
+    const float *const corners[3] = {cwi_mesh_point(m, t, 0), cwi_mesh_point(m, t, 1),
+                                     cwi_mesh_point(m, t, 2)};
     return cwi_views_limit(&p->views, corners, p->error, margin);
 }
 

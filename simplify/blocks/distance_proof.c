@@ -10,6 +10,7 @@
 #include "core/geometry/surface_walk.h"
 #include "core/geometry/triangle_cover.h"
 #include "core/mesh/mesh.h"
+#include "core/mesh/mesh_triangle.h"
 #include "simplify/blocks/partition.h"
 #include "simplify/quality/mesh_within.h"
 
@@ -57,10 +58,7 @@ static bool is_within(const walks *w, size_t t)
     cwi_surface_walk walk = {w->surface, limit * limit, w->begin[t]};
     cwi_cover cover = {.nearest = find_facet, .context = &walk, .square = walk.enough};
     double corners[3][3];
-    for (size_t k = 0; k < 3; k++)
-        for (size_t a = 0; a < 3; a++)
-            corners[k][a] =
-                (double)w->mesh->positions[3 * (size_t)w->mesh->triangles[3 * t + k] + a];
+    cwi_mesh_corners(w->mesh, t, corners);
     return walk.at != NOT_KNOWN && (is_near_facet(&walk, (const double(*)[3])corners) ||
                                     cwi_is_covered(&cover, (const double(*)[3])corners));
 }

@@ -2,6 +2,8 @@
 // are no single fan.
 #include "simplify/collapse/halfedge_mesh.hpp"
 
+#include "core/geometry/triangle.h"
+
 namespace cw
 {
 
@@ -31,7 +33,7 @@ public:
 
     uint32_t to(uint32_t side) const
     {
-        return corners[side % 3 == 2 ? side - 2 : side + 1];
+        return corners[cwi_corner_next(side)];
     }
 
     uint32_t around(uint32_t vertex) const

@@ -3,6 +3,7 @@
  * cross the surface above. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
 #include "simplify/cut/section.h"
 
@@ -32,11 +33,6 @@ typedef struct flip_work {
     size_t stack_count;
 } flip_work;
 
-static uint32_t next_side(uint32_t side)
-{
-    return side % 3 == 2 ? side - 2 : side + 1;
-}
-
 static int compare_sides(const void *a, const void *b)
 {
     const side_key *s = a, *t = b;
@@ -51,7 +47,7 @@ static bool link_sides(flip_work *w)
     if (!keys)
         return false;
     for (uint32_t n = 0; n < w->side_count; n++) {
-        const uint32_t a = w->corners[n], b = w->corners[next_side(n)];
+        const uint32_t a = w->corners[n], b = w->corners[cwi_corner_next(n)];
         keys[n] = (side_key){a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a, n};
     }
     qsort(keys, w->side_count, sizeof *keys, compare_sides);
@@ -88,10 +84,8 @@ static corner_angle measure_angle(const flip_work *w, uint32_t at, uint32_t a, u
 {
     const float *p = w->section->cut->positions;
     double u[3], v[3], cross[3];
-    for (size_t k = 0; k < 3; k++) {
-        u[k] = (double)p[3 * (size_t)a + k] - (double)p[3 * (size_t)at + k];
-        v[k] = (double)p[3 * (size_t)b + k] - (double)p[3 * (size_t)at + k];
-    }
+    cwi_sub_points(p + 3 * (size_t)a, p + 3 * (size_t)at, u);
+    cwi_sub_points(p + 3 * (size_t)b, p + 3 * (size_t)at, v);
     cwi_cross(u, v, cross);
     return (corner_angle){cwi_dot(u, v), cwi_length(cross)};
 }
@@ -101,15 +95,10 @@ static double measure_width(const flip_work *w, uint32_t a, uint32_t b, uint32_t
     const float *p = w->section->cut->positions;
     const uint32_t corners[3] = {a, b, c};
     double longest = 0;
-    for (size_t k = 0; k < 3; k++) {
-        double square = 0;
-        for (size_t n = 0; n < 3; n++) {
-            const double side = (double)p[3 * (size_t)corners[k] + n] -
-                                (double)p[3 * (size_t)corners[(k + 1) % 3] + n];
-            square += side * side;
-        }
-        longest = cwi_greater(longest, square);
-    }
+    for (size_t k = 0; k < 3; k++)
+        longest =
+            cwi_greater(longest, cwi_point_distance_sq(p + 3 * (size_t)corners[k],
+                                                       p + 3 * (size_t)corners[(k + 1) % 3]));
     return longest > 0 ? measure_angle(w, a, b, c).cross / sqrt(longest) : 0;
 }
 
@@ -133,9 +122,8 @@ static bool is_better(const flip_work *w, uint32_t a, uint32_t b, uint32_t c, ui
 static bool is_flip_better(const flip_work *w, uint32_t side)
 {
     const uint32_t twin = w->twins[side];
-    const uint32_t a = w->corners[side], b = w->corners[next_side(side)],
-                   c = w->corners[next_side(next_side(side))],
-                   d = w->corners[next_side(next_side(twin))];
+    const uint32_t a = w->corners[side], b = w->corners[cwi_corner_next(side)],
+                   c = w->corners[cwi_corner_prev(side)], d = w->corners[cwi_corner_prev(twin)];
     const cwi_section *s = w->section;
     if (c == d || !is_better(w, a, b, c, d))
         return false;
@@ -156,8 +144,8 @@ static void set_twins(flip_work *w, uint32_t a, uint32_t b)
 /* Turns a, b, c and b, a, d into a, d, c and d, b, c. */
 static void flip_side(flip_work *w, uint32_t side)
 {
-    const uint32_t twin = w->twins[side], bc = next_side(side), ca = next_side(bc),
-                   ad = next_side(twin), db = next_side(ad);
+    const uint32_t twin = w->twins[side], bc = cwi_corner_next(side), ca = cwi_corner_next(bc),
+                   ad = cwi_corner_next(twin), db = cwi_corner_next(ad);
     const uint32_t c = w->corners[ca], d = w->corners[db];
     const uint32_t beyond_ad = w->twins[ad], beyond_bc = w->twins[bc];
     w->corners[bc] = d; /* side: a to d; bc: d to c; ca stays */

@@ -1,6 +1,7 @@
 /* Computes quadrics of planes and lines [Garland1997], and the places where they are least. */
 #include "simplify/interfaces/label_quadrics.h"
 
+#include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
 
 #include <string.h>
@@ -37,14 +38,10 @@ static void add_form(cwi_label_quadric *q, const double m[6], const double p[3],
 
 static void add_triangle(const cwi_complex *c, size_t triangle, cwi_label_quadric *quadrics)
 {
-    double p[3][3], u[3], v[3], n[3];
+    double p[3][3], n[3];
     for (size_t k = 0; k < 3; k++)
         get_point(c, c->corners[3 * triangle + k], p[k]);
-    for (int k = 0; k < 3; k++) {
-        u[k] = p[1][k] - p[0][k];
-        v[k] = p[2][k] - p[0][k];
-    }
-    cwi_cross(u, v, n);
+    cwi_triangle_normal(p[0], p[1], p[2], n);
     const double area = cwi_length(n) / 2;
     if (!cwi_to_unit(n))
         return;

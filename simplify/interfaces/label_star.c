@@ -1,6 +1,7 @@
 /* Makes the star of a collapse: triangles before and after, their turns and shapes. */
 #include "simplify/interfaces/label_star.h"
 
+#include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
 
 #include <string.h>
@@ -16,16 +17,6 @@ static void get_point(const cwi_complex *c, uint32_t vertex, double p[3])
 {
     for (size_t k = 0; k < 3; k++)
         p[k] = (double)c->points[3 * (size_t)vertex + k];
-}
-
-static void find_normal(const double p[3], const double a[3], const double b[3], double n[3])
-{
-    double u[3], v[3];
-    for (int k = 0; k < 3; k++) {
-        u[k] = a[k] - p[k];
-        v[k] = b[k] - p[k];
-    }
-    cwi_cross(u, v, n);
 }
 
 /* Computes the ratio of a triangle's height to its longest side. */
@@ -89,7 +80,7 @@ static bool add_ring(cwi_star *star, const cwi_complex *c, const cwi_ring *ring,
         double a[3], b[3], before[3];
         get_point(c, s->a, a);
         get_point(c, s->b, b);
-        find_normal(w, a, b, before);
+        cwi_triangle_normal(w, a, b, before);
         shapes->before = cwi_lesser(shapes->before, find_shape(before, w, a, b));
         if (s->a == other || s->b == other) {
             if (center == star->move.keep)
@@ -100,7 +91,7 @@ static bool add_ring(cwi_star *star, const cwi_complex *c, const cwi_ring *ring,
         }
         cwi_star_spoke *spoke = &star->spokes[star->spoke_count];
         *spoke = (cwi_star_spoke){s->triangle, s->a, s->b, c->patches[s->triangle], {0}, 0};
-        find_normal(place, a, b, spoke->normal);
+        cwi_triangle_normal(place, a, b, spoke->normal);
         const double now = cwi_dot(spoke->normal, spoke->normal), old = cwi_dot(before, before),
                      turn = cwi_dot(spoke->normal, before);
         if (old > 0 && !(turn > 0 && turn * turn >= MIN_COSINE * MIN_COSINE * now * old))

@@ -1,5 +1,6 @@
 /* Finds triangles that a star would cross, or pass. Planes with margins of error clear nearly
  * all pairs, exact signs decide the rest. */
+#include "core/geometry/triangle.h"
 #include "simplify/interfaces/label_star.h"
 
 #include "core/geometry/triangle_intersect.h"
@@ -58,10 +59,8 @@ static bool triples_meet(const cwi_complex *c, const corner_triple *mine,
     double u[3], v[3], normal[3];
     if (is_beside(other, mine, spoke->normal, spoke->scale))
         return false;
-    for (int k = 0; k < 3; k++) {
-        u[k] = other->p[1][k] - other->p[0][k];
-        v[k] = other->p[2][k] - other->p[0][k];
-    }
+    cwi_sub(other->p[1], other->p[0], u);
+    cwi_sub(other->p[2], other->p[0], v);
     cwi_cross(u, v, normal);
     if (is_beside(mine, other, normal, sqrt(cwi_dot(u, u) * cwi_dot(v, v))))
         return false;
@@ -118,29 +117,16 @@ static bool meets_itself(const cwi_star *star, const cwi_complex *c)
 
 /* ---- a star and others ------------------------------------------------------------------ */
 
-/* Computes six times the signed volume of a tetrahedron. */
-static double find_volume(const double a[3], const double b[3], const double c[3],
-                          const double d[3])
-{
-    double u[3], v[3], w[3], n[3];
-    for (int k = 0; k < 3; k++) {
-        u[k] = b[k] - a[k];
-        v[k] = c[k] - a[k];
-        w[k] = d[k] - a[k];
-    }
-    cwi_cross(u, v, n);
-    return cwi_dot(n, w);
-}
-
 /* Returns true if a point is in a closed tetrahedron. A flat one holds nothing. */
 static bool is_swept(const cwi_swept *s, const double p[3])
 {
-    const double volume = find_volume(s->p[0], s->p[1], s->p[2], s->p[3]);
+    const double volume = cwi_tetrahedron_sixfold(s->p[0], s->p[1], s->p[2], s->p[3]);
     const double sign = volume < 0 ? -1 : 1, doubt = 1e-9 * fabs(volume);
-    return volume != 0 && sign * find_volume(p, s->p[1], s->p[2], s->p[3]) >= -doubt &&
-           sign * find_volume(s->p[0], p, s->p[2], s->p[3]) >= -doubt &&
-           sign * find_volume(s->p[0], s->p[1], p, s->p[3]) >= -doubt &&
-           sign * find_volume(s->p[0], s->p[1], s->p[2], p) >= -doubt;
+    return volume != 0 &&
+           sign * cwi_tetrahedron_sixfold(p, s->p[1], s->p[2], s->p[3]) >= -doubt &&
+           sign * cwi_tetrahedron_sixfold(s->p[0], p, s->p[2], s->p[3]) >= -doubt &&
+           sign * cwi_tetrahedron_sixfold(s->p[0], s->p[1], p, s->p[3]) >= -doubt &&
+           sign * cwi_tetrahedron_sixfold(s->p[0], s->p[1], s->p[2], p) >= -doubt;
 }
 
 /* A search for triangles near a star. */
@@ -158,10 +144,9 @@ static bool passes_triangle(const cwi_star *star, const corner_triple *other)
 {
     double middle[3];
     float box[6];
-    for (int k = 0; k < 3; k++) {
-        middle[k] = (other->p[0][k] + other->p[1][k] + other->p[2][k]) / 3;
+    cwi_triangle_centroid(other->p[0], other->p[1], other->p[2], middle);
+    for (int k = 0; k < 3; k++)
         box[k] = box[k + 3] = (float)middle[k];
-    }
     for (size_t n = 0; CWI_WIDTH * n < star->swept_count; n++)
         for (unsigned near = cwi_boxes_meeting(&star->swept_boxes[n], box); near;
              near &= near - 1) {

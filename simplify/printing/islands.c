@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
 
 #include <stdlib.h>
@@ -73,7 +74,7 @@ static void list_lower(sweep *s)
     for (int pass = 0; pass < 2; pass++) {
         for (size_t side = 0; side < 3 * mesh->triangle_count; side++) {
             const uint32_t v = mesh->triangles[side],
-                           w = mesh->triangles[side % 3 == 2 ? side - 2 : side + 1];
+                           w = mesh->triangles[cwi_corner_next((uint32_t)side)];
             const uint32_t a = s->rank[v], b = s->rank[w];
             const uint32_t high = a > b ? v : w, low_rank = a > b ? b : a;
             if (v == w)

@@ -1,4 +1,5 @@
 /* Measures the printability of a mesh: walls, gaps, islands, overhangs, cavities, and how it stands. */
+#include "core/mesh/mesh_triangle.h"
 #include "simplify/printing/islands.h"
 #include "simplify/printing/wall_rays.h"
 
@@ -69,13 +70,8 @@ typedef struct triangle_look {
 static triangle_look look_at(const cw_mesh *mesh, size_t t)
 {
     triangle_look look;
-    double sides[2][3];
-    for (size_t n = 0; n < 9; n++)
-        look.corner[n / 3][n % 3] =
-            (double)mesh->positions[3 * (size_t)mesh->triangles[3 * t + n / 3] + n % 3];
-    for (int n = 0; n < 6; n++)
-        sides[n / 3][n % 3] = look.corner[n / 3 + 1][n % 3] - look.corner[0][n % 3];
-    cwi_cross(sides[0], sides[1], look.area);
+    cwi_mesh_corners(mesh, t, look.corner);
+    cwi_mesh_normal(mesh, t, look.area);
     for (int a = 0; a < 3; a++)
         look.area[a] /= 2;
     look.length = cwi_length(look.area);

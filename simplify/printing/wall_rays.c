@@ -8,6 +8,7 @@
 #include "core/geometry/bvh_segment.h"
 #include "core/geometry/closest_point.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/mesh_triangle.h"
 
 #include <string.h>
 
@@ -48,24 +49,6 @@ typedef struct ray_field {
     size_t parts;
 } ray_field;
 
-static void load_corners(const cw_mesh *mesh, size_t triangle, double p[3][3])
-{
-    for (size_t c = 0; c < 3; c++)
-        for (size_t a = 0; a < 3; a++)
-            p[c][a] =
-                (double)mesh->positions[3 * (size_t)mesh->triangles[3 * triangle + c] + a];
-}
-
-/* Computes the normal of a triangle, as long as twice its area. */
-static void find_area(const double p[3][3], double area[3])
-{
-    double sides[2][3];
-    for (int s = 0; s < 2; s++)
-        for (int a = 0; a < 3; a++)
-            sides[s][a] = p[s + 1][a] - p[0][a];
-    cwi_cross(sides[0], sides[1], area);
-}
-
 /* --- one ray ------------------------------------------------------------------------------ */
 
 typedef struct ray {
@@ -80,7 +63,7 @@ typedef struct ray {
 static double meet_triangle(const ray *r, size_t triangle)
 {
     double p[3][3], sides[2][3], across[3], from[3], around[3];
-    load_corners(r->field->mesh, triangle, p);
+    cwi_mesh_corners(r->field->mesh, triangle, p);
     for (int s = 0; s < 2; s++)
         for (int a = 0; a < 3; a++)
             sides[s][a] = p[s + 1][a] - p[0][a];
@@ -126,8 +109,8 @@ static double cast_ray(const ray_field *f, size_t own, const double from[3],
         cwi_boxes_pierce(&f->tree, &segment, visit_triangle, &r);
         if (r.hit != SIZE_MAX) {
             double p[3][3], normal[3];
-            load_corners(f->mesh, r.hit, p);
-            find_area((const double(*)[3])p, normal);
+            cwi_mesh_corners(f->mesh, r.hit, p);
+            cwi_triangle_normal(p[0], p[1], p[2], normal);
             const bool faces = cwi_normalise(normal) && side * cwi_dot(normal, direction) >=
                                                             cos(FACING_DEG * CWI_PI / 180);
             return faces ? r.share * reach : INFINITY;
@@ -246,8 +229,8 @@ static void measure_triangle(ray_field *f, size_t triangle, cwi_wall_sum *walls,
                              cwi_wall_sum *gaps)
 {
     double p[3][3], flat[3];
-    load_corners(f->mesh, triangle, p);
-    find_area((const double(*)[3])p, flat);
+    cwi_mesh_corners(f->mesh, triangle, p);
+    cwi_triangle_normal(p[0], p[1], p[2], flat);
     const double twice = cwi_length(flat);
     double least[2] = {INFINITY, INFINITY};
     const cw_print_desc *limits = f->limits;
@@ -299,8 +282,8 @@ static void prepare_points(ray_field *f)
            high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         double p[3][3], area[3];
-        load_corners(mesh, t, p);
-        find_area((const double(*)[3])p, area);
+        cwi_mesh_corners(mesh, t, p);
+        cwi_triangle_normal(p[0], p[1], p[2], area);
         twice += cwi_length(area);
         for (size_t n = 0; n < 9; n++) {
             f->normals[3 * (size_t)mesh->triangles[3 * t + n / 3] + n % 3] +=

@@ -1,6 +1,7 @@
 /* Meshes compared both ways, part by part. */
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/mesh_triangle.h"
 
 #include <cubewright/distance.h>
 
@@ -9,17 +10,8 @@
 static double area_of(const cw_mesh *m)
 {
     double sum = 0;
-    for (size_t t = 0; t < m->triangle_count; t++) {
-        const uint32_t *c = m->triangles + 3 * t;
-        double u[3], v[3], normal[3];
-        for (size_t a = 0; a < 3; a++) {
-            const double p = (double)m->positions[3 * (size_t)c[0] + a];
-            u[a] = (double)m->positions[3 * (size_t)c[1] + a] - p;
-            v[a] = (double)m->positions[3 * (size_t)c[2] + a] - p;
-        }
-        cwi_cross(u, v, normal);
-        sum += 0.5 * cwi_length(normal);
-    }
+    for (size_t t = 0; t < m->triangle_count; t++)
+        sum += cwi_mesh_area(m, t);
     return sum;
 }
 

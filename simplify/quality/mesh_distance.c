@@ -236,8 +236,7 @@ static double bound_of(const search *s, const corner c[3], size_t t, extreme *e)
     bound = cwi_lesser(bound, bound_by(s, c, &choices, limit_of(s, e)));
     if (bound <= limit_of(s, e))
         return bound;
-    for (int k = 0; k < 3; k++)
-        p[k] = (c[0].p[k] + c[1].p[k] + c[2].p[k]) / 3;
+    cwi_triangle_centroid(c[0].p, c[1].p, c[2].p, p);
     choose_triangles(s, c, measure_at(s, p, c[0].slot, t, e).slot, &choices);
     return cwi_lesser(bound, bound_by(s, c, &choices, limit_of(s, e)));
 }
@@ -300,7 +299,7 @@ static bool is_within(const search *s, const corner c[3], double limit)
 static void begin_triangle(const search *s, size_t t, corner c[3])
 {
     double p[3][3];
-    cwi_corners(s->mesh, t, p);
+    cwi_mesh_corners(s->mesh, t, p);
     for (size_t n = 0; n < 3; n++) {
         const size_t v = s->mesh->triangles[3 * t + n];
         memcpy(c[n].p, p[n], sizeof c[n].p);
@@ -366,7 +365,7 @@ static void set_boxes(reference *r, const cw_mesh *mesh, float (*boxes)[6])
     float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         double p[3][3];
-        cwi_corners(mesh, t, p);
+        cwi_mesh_corners(mesh, t, p);
         for (int c = 0; c < 3; c++)
             r->side += cwi_distance(p[c], p[(c + 1) % 3]);
         for (int a = 0; a < 3; a++) {
@@ -384,10 +383,10 @@ static void set_boxes(reference *r, const cw_mesh *mesh, float (*boxes)[6])
 static void set_facets(reference *r, const cw_mesh *mesh)
 {
     for (size_t s = 0; s < r->tree.count; s++) {
-        const uint32_t *v = mesh->triangles + 3 * (size_t)r->tree.order[s];
-        memcpy(r->facets[s].a, mesh->positions + 3 * (size_t)v[0], sizeof r->facets[s].a);
-        memcpy(r->facets[s].b, mesh->positions + 3 * (size_t)v[1], sizeof r->facets[s].b);
-        memcpy(r->facets[s].c, mesh->positions + 3 * (size_t)v[2], sizeof r->facets[s].c);
+        const size_t t = r->tree.order[s];
+        memcpy(r->facets[s].a, cwi_mesh_point(mesh, t, 0), sizeof r->facets[s].a);
+        memcpy(r->facets[s].b, cwi_mesh_point(mesh, t, 1), sizeof r->facets[s].b);
+        memcpy(r->facets[s].c, cwi_mesh_point(mesh, t, 2), sizeof r->facets[s].c);
     }
 }
 

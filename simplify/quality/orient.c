@@ -3,6 +3,7 @@
 
 #include "core/base/status.h"
 #include "core/geometry/union_find.h"
+#include "core/mesh/mesh_triangle.h"
 
 static void turn_triangle(uint32_t *corner)
 {
@@ -16,19 +17,11 @@ static void turn_triangle(uint32_t *corner)
 static bool normals_agree(const cw_mesh *m, size_t t)
 {
     const uint32_t *corner = m->triangles + 3 * t;
-    double u[3], v[3], n[3], sum[3];
-    for (size_t a = 0; a < 3; a++) {
-        const double p = (double)m->positions[3 * (size_t)corner[0] + a];
-        u[a] = (double)m->positions[3 * (size_t)corner[1] + a] - p;
-        v[a] = (double)m->positions[3 * (size_t)corner[2] + a] - p;
-        sum[a] = 0;
-        for (int c = 0; c < 3; c++)
-            sum[a] += (double)m->normals[3 * (size_t)corner[c] + a];
-    }
-    n[0] = u[1] * v[2] - u[2] * v[1];
-    n[1] = u[2] * v[0] - u[0] * v[2];
-    n[2] = u[0] * v[1] - u[1] * v[0];
-    return n[0] * sum[0] + n[1] * sum[1] + n[2] * sum[2] >= 0;
+    double normal[3], sum[3] = {0};
+    cwi_mesh_normal(m, t, normal);
+    for (size_t n = 0; n < 9; n++)
+        sum[n % 3] += (double)m->normals[3 * (size_t)corner[n / 3] + n % 3];
+    return cwi_dot(normal, sum) >= 0;
 }
 
 typedef struct work {

@@ -50,17 +50,6 @@ typedef struct work {
     uint64_t *histogram; /* threads x BINS: area, in 2^-60 of the whole */
 } work;
 
-static double area_of(const double p[3][3])
-{
-    double a[3], b[3], n[3];
-    for (int k = 0; k < 3; k++) {
-        a[k] = p[1][k] - p[0][k];
-        b[k] = p[2][k] - p[0][k];
-    }
-    cwi_cross(a, b, n);
-    return 0.5 * cwi_length(n);
-}
-
 /* Into how many parts the sides of a triangle are divided. */
 static uint32_t parts_of(const work *w, const double p[3][3])
 {
@@ -92,8 +81,8 @@ static size_t count_points(work *w)
     w->area = 0;
     for (size_t t = 0; t < w->s->mesh->triangle_count; t++) {
         double p[3][3];
-        cwi_corners(w->s->mesh, t, p);
-        w->area += area_of((const double(*)[3])p);
+        cwi_mesh_corners(w->s->mesh, t, p);
+        w->area += cwi_triangle_area(p[0], p[1], p[2]);
         count += points_of(parts_of(w, (const double(*)[3])p));
     }
     return count;
@@ -111,7 +100,7 @@ static size_t cut_chunks(work *w)
             points = 0;
         }
         double p[3][3];
-        cwi_corners(w->s->mesh, t, p);
+        cwi_mesh_corners(w->s->mesh, t, p);
         points += points_of(parts_of(w, (const double(*)[3])p));
     }
     if (w->tallies)
@@ -250,10 +239,11 @@ static void measure_divided(const work *w, tally *y, const double q[3][3], size_
 static void measure_triangle(const work *w, tally *y, size_t t, side *sides, uint32_t *hint)
 {
     double p[3][3];
-    cwi_corners(w->s->mesh, t, p);
+    cwi_mesh_corners(w->s->mesh, t, p);
     const double(*q)[3] = (const double(*)[3])p;
     const uint32_t n = parts_of(w, q);
-    const double share = w->area > 0 ? area_of(q) / w->area / ((double)n * n) : 0;
+    const double share =
+        w->area > 0 ? cwi_triangle_area(q[0], q[1], q[2]) / w->area / ((double)n * n) : 0;
     for (int c = 0; c < 3; c++)
         take_distance(w, y, (double)w->vertex[w->s->mesh->triangles[3 * t + (size_t)c]],
                       share / 20, p[c], t);

@@ -2,6 +2,8 @@
 #ifndef SIMPLIFY_QUALITY_SURFACE_SAMPLING_H
 #define SIMPLIFY_QUALITY_SURFACE_SAMPLING_H
 
+#include "core/mesh/mesh_triangle.h"
+
 #include <cubewright/distance.h>
 
 /* The most points at which a mesh is measured: beyond, steps grow. */
@@ -33,15 +35,5 @@ typedef struct cwi_sampling {
  * Returns CW_ERR_NO_MEMORY, CW_ERR_CANCELLED. */
 CW_NODISCARD cw_status cwi_sample_mesh(const cwi_sampling *sampling, cw_distance *out,
                                        float *per_vertex, cw_error *err);
-
-/* The three corners of a triangle, relative to the mesh's origin. */
-static inline void cwi_corners(const cw_mesh *mesh, size_t triangle, double p[3][3])
-{
-    for (int c = 0; c < 3; c++)
-        for (int a = 0; a < 3; a++)
-            p[c][a] =
-                (double)mesh->positions[3 * (size_t)mesh->triangles[3 * triangle + (size_t)c] +
-                                        (size_t)a];
-}
 
 #endif

@@ -55,7 +55,7 @@ static const double NEAR_DEG = 1e-4;
 
 static void load_sides(const cw_mesh *mesh, size_t triangle, sides *s)
 {
-    cwi_corners(mesh, triangle, s->from);
+    cwi_mesh_corners(mesh, triangle, s->from);
     for (int n = 0; n < 3; n++)
         for (int a = 0; a < 3; a++)
             s->side[n][a] = s->from[(n + 1) % 3][a] - s->from[n][a];

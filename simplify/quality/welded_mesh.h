@@ -31,9 +31,4 @@ static inline bool cwi_is_collapsed(const cwi_welded *welded, size_t triangle)
     return v[0] == v[1] || v[1] == v[2] || v[2] == v[0];
 }
 
-static inline uint32_t cwi_next_corner(uint32_t corner)
-{
-    return corner % 3 == 2 ? corner - 2 : corner + 1;
-}
-
 #endif

@@ -134,7 +134,7 @@ static void measure_edges(const cwi_remesh *r, cw_remesh_facts *f)
     for (uint32_t c = 0; c < 3 * r->triangle_count; c++) {
         if (cwi_is_dead(r, c / 3) || (r->twin[c] != CWI_NONE && r->twin[c] < c))
             continue;
-        const uint32_t a = r->triangles[c], b = r->triangles[cwi_after(c)];
+        const uint32_t a = r->triangles[c], b = r->triangles[cwi_corner_next(c)];
         const double length = sqrt(cwi_point_distance_sq(r->positions + 3 * (size_t)a,
                                                          r->positions + 3 * (size_t)b)),
                      relative = cwi_relative_length(r, a, b);
@@ -152,12 +152,9 @@ static void measure_edges(const cwi_remesh *r, cw_remesh_facts *f)
 static double angle_at(const cw_mesh *m, size_t t, size_t corner)
 {
     double to[2][3], cross[3];
-    const uint32_t *v = m->triangles + 3 * t;
-    for (size_t k = 0; k < 3; k++) {
-        const double at = (double)m->positions[3 * (size_t)v[corner] + k];
-        to[0][k] = (double)m->positions[3 * (size_t)v[(corner + 1) % 3] + k] - at;
-        to[1][k] = (double)m->positions[3 * (size_t)v[(corner + 2) % 3] + k] - at;
-    }
+    for (size_t k = 0; k < 2; k++)
+        cwi_sub_points(cwi_mesh_point(m, t, (corner + 1 + k) % 3), cwi_mesh_point(m, t, corner),
+                       to[k]);
     cwi_cross(to[0], to[1], cross);
     return atan2(cwi_length(cross), cwi_dot(to[0], to[1])) * 180 / CWI_PI;
 }
@@ -174,9 +171,7 @@ static void measure_angles(const cw_mesh *m, cw_remesh_facts *f)
             if (!(angle < f->smallest_deg))
                 continue;
             f->smallest_deg = angle;
-            for (size_t k = 0; k < 3; k++)
-                f->where[k] = m->origin[k] +
-                              (double)m->positions[3 * (size_t)m->triangles[3 * t + c] + k];
+            cwi_mesh_world(m, m->triangles[3 * t + c], f->where);
         }
         f->below += smallest < f->min_angle_deg;
     }

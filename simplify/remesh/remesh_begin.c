@@ -70,7 +70,7 @@ static cw_status link_triangles(cwi_remesh *r, cw_error *err)
         return report_no_memory(r, err);
     cw_status st = CW_OK;
     for (uint32_t c = 0; c < count && st == CW_OK; c++) {
-        const uint32_t a = r->triangles[c], b = r->triangles[cwi_after(c)];
+        const uint32_t a = r->triangles[c], b = r->triangles[cwi_corner_next(c)];
         ends[c] = (edge_end){a < b ? a : b, a < b ? b : a, c};
         r->twin[c] = CWI_NONE;
         if (a == b)
@@ -102,12 +102,12 @@ static cw_status check_fans(cwi_remesh *r, cw_error *err)
         if (start == CWI_NONE)
             continue;
         float count = 1;
-        while ((across = r->twin[cwi_before(c)]) != CWI_NONE && across != start) {
+        while ((across = r->twin[cwi_corner_prev(c)]) != CWI_NONE && across != start) {
             c = across;
             count += 1;
         }
         for (c = start; across == CWI_NONE && r->twin[c] != CWI_NONE; count += 1)
-            c = cwi_after(r->twin[c]);
+            c = cwi_corner_next(r->twin[c]);
         if (count < r->sizes[v])
             return refuse_mesh(err, "several fans of triangles meet", v);
     }
@@ -134,7 +134,7 @@ static cw_status list_curves(cwi_remesh *r, cw_error *err)
             continue;
         uint32_t *v = m->triangles + 3 * m->triangle_count++;
         v[0] = r->triangles[c];
-        v[1] = v[2] = r->triangles[cwi_after(c)];
+        v[1] = v[2] = r->triangles[cwi_corner_next(c)];
     }
     return cwi_closest_build(m, &r->curves.tree, err);
 }
@@ -232,7 +232,7 @@ static void attach_samples(cwi_remesh *r)
     for (uint32_t c = 0; c < 3 * r->triangle_count; c++)
         if (cwi_is_sharp(r, c)) {
             r->scratch[r->triangles[c]] = c;
-            r->scratch[r->triangles[cwi_after(c)]] = c;
+            r->scratch[r->triangles[cwi_corner_next(c)]] = c;
         }
     for (size_t t = 0; t < r->triangle_count; t++)
         r->first_sample[t] = CWI_NONE;

@@ -53,7 +53,7 @@ static void add_fresh(cwi_replacement *p, uint32_t id, uint32_t a, uint32_t b, u
 /* Returns the bits of sharp edges of a corner's triangle, as if the corner was its first. */
 static unsigned turned_bits(const cwi_remesh *r, uint32_t corner)
 {
-    const uint32_t b = cwi_after(corner), c = cwi_after(b);
+    const uint32_t b = cwi_corner_next(corner), c = cwi_corner_next(b);
     return (unsigned)cwi_is_sharp(r, corner) | (unsigned)cwi_is_sharp(r, b) << 1 |
            (unsigned)cwi_is_sharp(r, c) << 2;
 }
@@ -112,8 +112,8 @@ static cw_status make_room(cwi_remesh *r, cw_error *err)
 static void plan_halves(const cwi_remesh *r, cwi_replacement *p, uint32_t corner,
                         uint32_t middle, uint32_t new_id)
 {
-    const uint32_t a = r->triangles[corner], b = r->triangles[cwi_after(corner)],
-                   c = r->triangles[cwi_before(corner)];
+    const uint32_t a = r->triangles[corner], b = r->triangles[cwi_corner_next(corner)],
+                   c = r->triangles[cwi_corner_prev(corner)];
     const unsigned bits = turned_bits(r, corner);
     p->old[p->old_count++] = corner / 3;
     add_fresh(p, corner / 3, a, middle, c, (bits & 1) | (bits & 4));
@@ -123,7 +123,8 @@ static void plan_halves(const cwi_remesh *r, cwi_replacement *p, uint32_t corner
 /* Divides the triangle of a corner: it keeps the first half of the edge, a new one gets the second. */
 static void divide_triangle(cwi_remesh *r, uint32_t corner, uint32_t middle, uint32_t new_id)
 {
-    const uint32_t next = cwi_after(corner), last = cwi_before(corner), base = 3 * new_id;
+    const uint32_t next = cwi_corner_next(corner), last = cwi_corner_prev(corner),
+                   base = 3 * new_id;
     const bool is_sharp = cwi_is_sharp(r, corner), is_next_sharp = cwi_is_sharp(r, next);
     r->triangles[base] = middle;
     r->triangles[base + 1] = r->triangles[next];
@@ -150,7 +151,7 @@ cw_status cwi_split_edge(cwi_remesh *r, uint32_t corner, bool *is_done, cw_error
     cwi_replacement *p = &r->patch;
     const uint32_t twin = r->twin[corner], middle = (uint32_t)r->vertex_count,
                    id = (uint32_t)r->triangle_count, a = r->triangles[corner],
-                   b = r->triangles[cwi_after(corner)];
+                   b = r->triangles[cwi_corner_next(corner)];
     begin_patch(p);
     for (size_t k = 0; k < 3; k++)
         p->place[k] = (float)(((double)r->positions[3 * (size_t)a + k] +
@@ -198,7 +199,7 @@ static star_walk begin_walk(const cwi_remesh *r, uint32_t vertex)
 static bool walk_on(const cwi_remesh *r, star_walk *w)
 {
     if (!w->is_back) {
-        const uint32_t across = r->twin[cwi_before(w->corner)];
+        const uint32_t across = r->twin[cwi_corner_prev(w->corner)];
         if (across != CWI_NONE) {
             w->corner = across;
             return across != w->start;
@@ -209,7 +210,7 @@ static bool walk_on(const cwi_remesh *r, star_walk *w)
     const uint32_t across = r->twin[w->corner];
     if (across == CWI_NONE)
         return false;
-    w->corner = cwi_after(across);
+    w->corner = cwi_corner_next(across);
     return true;
 }
 
@@ -228,7 +229,8 @@ static bool are_neighbours(const cwi_remesh *r, uint32_t a, uint32_t b)
 {
     star_walk w = begin_walk(r, a);
     do {
-        if (r->triangles[cwi_after(w.corner)] == b || r->triangles[cwi_before(w.corner)] == b)
+        if (r->triangles[cwi_corner_next(w.corner)] == b ||
+            r->triangles[cwi_corner_prev(w.corner)] == b)
             return true;
     } while (walk_on(r, &w));
     return false;
@@ -247,14 +249,14 @@ static bool read_star(const cwi_remesh *r, uint32_t vertex, uint32_t to, collaps
     s->ring_count = s->shared = 0;
     s->is_edge_sharp = false;
     for (size_t n = 0; n < s->count; n++) {
-        const uint32_t c = s->corners[n], next = r->triangles[cwi_after(c)],
-                       last = r->triangles[cwi_before(c)];
+        const uint32_t c = s->corners[n], next = r->triangles[cwi_corner_next(c)],
+                       last = r->triangles[cwi_corner_prev(c)];
         s->ring[s->ring_count++] = next;
         if (n + 1 == s->count && s->is_border)
             s->ring[s->ring_count++] = last;
         s->shared += next == to || last == to;
         s->is_edge_sharp = s->is_edge_sharp || (next == to && cwi_is_sharp(r, c)) ||
-                           (last == to && cwi_is_sharp(r, cwi_before(c)));
+                           (last == to && cwi_is_sharp(r, cwi_corner_prev(c)));
     }
     return s->shared > 0 && s->count > s->shared;
 }
@@ -274,16 +276,16 @@ static bool is_collapse_simple(const cwi_remesh *r, uint32_t to, const collapse_
     size_t common = 0;
     star_walk w = begin_walk(r, to);
     do {
-        common += is_in_ring(s, r->triangles[cwi_after(w.corner)]);
-        if (r->twin[cwi_before(w.corner)] == CWI_NONE)
-            common += is_in_ring(s, r->triangles[cwi_before(w.corner)]);
+        common += is_in_ring(s, r->triangles[cwi_corner_next(w.corner)]);
+        if (r->twin[cwi_corner_prev(w.corner)] == CWI_NONE)
+            common += is_in_ring(s, r->triangles[cwi_corner_prev(w.corner)]);
     } while (walk_on(r, &w));
     if (common != s->shared || (s->is_border && w.is_border && s->shared == 2))
         return false;
     bool is_border;
     for (size_t n = 0; n < s->count; n++) {
-        const uint32_t c = s->corners[n], next = r->triangles[cwi_after(c)],
-                       last = r->triangles[cwi_before(c)];
+        const uint32_t c = s->corners[n], next = r->triangles[cwi_corner_next(c)],
+                       last = r->triangles[cwi_corner_prev(c)];
         if (next != to && last != to)
             continue;
         const size_t triangles = count_star(r, next == to ? last : next, &is_border);
@@ -298,10 +300,10 @@ static bool is_merged_sharp(const cwi_remesh *r, uint32_t to, uint32_t neighbour
                             const collapse_star *s)
 {
     for (size_t n = 0; n < s->count; n++) {
-        const uint32_t c = s->corners[n], next = r->triangles[cwi_after(c)],
-                       last = r->triangles[cwi_before(c)];
+        const uint32_t c = s->corners[n], next = r->triangles[cwi_corner_next(c)],
+                       last = r->triangles[cwi_corner_prev(c)];
         if ((next == to && last == neighbour) || (next == neighbour && last == to))
-            return cwi_is_sharp(r, cwi_after(c));
+            return cwi_is_sharp(r, cwi_corner_next(c));
     }
     return false;
 }
@@ -314,8 +316,8 @@ static bool plan_collapse(const cwi_remesh *r, uint32_t to, const collapse_star 
 {
     begin_patch(p);
     for (size_t n = 0; n < s->count; n++) {
-        const uint32_t c = s->corners[n], next = r->triangles[cwi_after(c)],
-                       last = r->triangles[cwi_before(c)];
+        const uint32_t c = s->corners[n], next = r->triangles[cwi_corner_next(c)],
+                       last = r->triangles[cwi_corner_prev(c)];
         p->old[p->old_count++] = c / 3;
         if (next == to || last == to)
             continue;
@@ -332,7 +334,7 @@ static bool plan_collapse(const cwi_remesh *r, uint32_t to, const collapse_star 
 /* Removes a triangle of a collapsed edge: its two other edges become one. */
 static void close_triangle(cwi_remesh *r, uint32_t corner, uint32_t to)
 {
-    const uint32_t next = cwi_after(corner), last = cwi_before(corner);
+    const uint32_t next = cwi_corner_next(corner), last = cwi_corner_prev(corner);
     const bool goes_to_next = r->triangles[next] == to;
     const uint32_t other = r->triangles[goes_to_next ? last : next];
     const uint32_t a = r->twin[next], b = r->twin[goes_to_next ? last : corner];
@@ -341,11 +343,11 @@ static void close_triangle(cwi_remesh *r, uint32_t corner, uint32_t to)
     join_corners(r, a, b);
     if (a != CWI_NONE) {
         set_sharp(r, a, is_sharp);
-        r->corner[other] = r->triangles[a] == other ? a : cwi_after(a);
+        r->corner[other] = r->triangles[a] == other ? a : cwi_corner_next(a);
     }
     if (b != CWI_NONE) {
         set_sharp(r, b, is_sharp);
-        r->corner[other] = r->triangles[b] == other ? b : cwi_after(b);
+        r->corner[other] = r->triangles[b] == other ? b : cwi_corner_next(b);
     }
     r->bits[corner / 3] = CWI_DEAD;
 }
@@ -378,13 +380,13 @@ bool cwi_collapse_edge(cwi_remesh *r, uint32_t vertex, uint32_t to, double longe
     uint32_t kept = CWI_NONE;
     for (size_t n = 0; n < s.count; n++) {
         const uint32_t c = s.corners[n];
-        if (r->triangles[cwi_after(c)] == to || r->triangles[cwi_before(c)] == to)
+        if (r->triangles[cwi_corner_next(c)] == to || r->triangles[cwi_corner_prev(c)] == to)
             continue;
         kept = c;
     }
     for (size_t n = 0; n < s.count; n++) {
         const uint32_t c = s.corners[n];
-        if (r->triangles[cwi_after(c)] == to || r->triangles[cwi_before(c)] == to)
+        if (r->triangles[cwi_corner_next(c)] == to || r->triangles[cwi_corner_prev(c)] == to)
             close_triangle(r, c, to);
         else
             r->triangles[c] = to;
@@ -436,15 +438,15 @@ bool cwi_flip_edge(cwi_remesh *r, uint32_t corner, bool by_angle)
     if (twin == CWI_NONE || cwi_is_sharp(r, corner))
         return false;
     const uint32_t a = r->triangles[corner], b = r->triangles[twin],
-                   c = r->triangles[cwi_before(corner)], d = r->triangles[cwi_before(twin)],
-                   t = corner / 3, u = twin / 3;
+                   c = r->triangles[cwi_corner_prev(corner)],
+                   d = r->triangles[cwi_corner_prev(twin)], t = corner / 3, u = twin / 3;
     if (c == d)
         return false;
     cwi_replacement *p = &r->patch;
-    const unsigned ca = cwi_is_sharp(r, cwi_before(corner)),
-                   ad = cwi_is_sharp(r, cwi_after(twin)),
-                   db = cwi_is_sharp(r, cwi_before(twin)),
-                   bc = cwi_is_sharp(r, cwi_after(corner));
+    const unsigned ca = cwi_is_sharp(r, cwi_corner_prev(corner)),
+                   ad = cwi_is_sharp(r, cwi_corner_next(twin)),
+                   db = cwi_is_sharp(r, cwi_corner_prev(twin)),
+                   bc = cwi_is_sharp(r, cwi_corner_next(corner));
     begin_patch(p);
     p->old[p->old_count++] = t;
     p->old[p->old_count++] = u;
@@ -459,8 +461,10 @@ bool cwi_flip_edge(cwi_remesh *r, uint32_t corner, bool by_angle)
                        evens_valences(r, (const uint32_t[]){a, b}, (const uint32_t[]){c, d});
     if (!is_wanted || are_neighbours(r, c, d) || !cwi_patch_fits(r, p))
         return false;
-    const uint32_t to_ca = r->twin[cwi_before(corner)], to_ad = r->twin[cwi_after(twin)],
-                   to_db = r->twin[cwi_before(twin)], to_bc = r->twin[cwi_after(corner)];
+    const uint32_t to_ca = r->twin[cwi_corner_prev(corner)],
+                   to_ad = r->twin[cwi_corner_next(twin)],
+                   to_db = r->twin[cwi_corner_prev(twin)],
+                   to_bc = r->twin[cwi_corner_next(corner)];
     put_triangle(r, t, p->fresh[0], p->sharp[0]);
     put_triangle(r, u, p->fresh[1], p->sharp[1]);
     join_corners(r, 3 * t, to_ca);
@@ -485,8 +489,8 @@ bool cwi_move_vertex(cwi_remesh *r, uint32_t vertex, const float place[3], float
     for (size_t n = 0; n < count; n++) {
         const uint32_t c = corners[n];
         p->old[p->old_count++] = c / 3;
-        add_fresh(p, c / 3, vertex, r->triangles[cwi_after(c)], r->triangles[cwi_before(c)],
-                  turned_bits(r, c));
+        add_fresh(p, c / 3, vertex, r->triangles[cwi_corner_next(c)],
+                  r->triangles[cwi_corner_prev(c)], turned_bits(r, c));
     }
     p->moved = vertex;
     memcpy(p->place, place, sizeof p->place);

@@ -92,7 +92,7 @@ static void count_edges(cwi_remesh *r, uint32_t (*ends)[2])
     for (uint32_t c = 0; c < 3 * r->triangle_count; c++) {
         if (!cwi_is_sharp(r, c) || (r->twin[c] != CWI_NONE && r->twin[c] < c))
             continue;
-        const uint32_t v[2] = {r->triangles[c], r->triangles[cwi_after(c)]};
+        const uint32_t v[2] = {r->triangles[c], r->triangles[cwi_corner_next(c)]};
         for (int k = 0; k < 2; k++) {
             const uint8_t found = r->freedom[v[k]];
             if (found < 2)
@@ -140,7 +140,7 @@ static bool drop_short_chains(cwi_remesh *r, uint32_t (*ends)[2])
             marked += mark_chain(r, ends, v);
     for (uint32_t c = 0; c < 3 * r->triangle_count && marked; c++)
         if (r->twin[c] != CWI_NONE &&
-            (r->scratch[r->triangles[c]] || r->scratch[r->triangles[cwi_after(c)]]))
+            (r->scratch[r->triangles[c]] || r->scratch[r->triangles[cwi_corner_next(c)]]))
             r->bits[c / 3] &= (uint8_t) ~(CWI_SHARP << c % 3);
     return marked > 0;
 }

@@ -23,7 +23,8 @@ static uint32_t extreme_edge(const cwi_remesh *r, size_t t, bool longest, double
     uint32_t best = (uint32_t)(3 * t);
     for (uint32_t k = 0; k < 3; k++) {
         const uint32_t c = (uint32_t)(3 * t + k);
-        const double here = cwi_relative_length(r, r->triangles[c], r->triangles[cwi_after(c)]);
+        const double here =
+            cwi_relative_length(r, r->triangles[c], r->triangles[cwi_corner_next(c)]);
         if (k == 0 || (longest ? here > *length : here < *length)) {
             *length = here;
             best = c;
@@ -57,7 +58,7 @@ cw_status cwi_split_long(cwi_remesh *r, cw_error *err)
 /* Collapses the edge of a corner to one of its ends; to the one that is less free first. */
 static bool collapse_corner(cwi_remesh *r, uint32_t corner, double longest, double cosine)
 {
-    const uint32_t a = r->triangles[corner], b = r->triangles[cwi_after(corner)];
+    const uint32_t a = r->triangles[corner], b = r->triangles[cwi_corner_next(corner)];
     const bool to_b = r->freedom[b] >= r->freedom[a];
     return cwi_collapse_edge(r, to_b ? a : b, to_b ? b : a, longest, cosine) ||
            cwi_collapse_edge(r, to_b ? b : a, to_b ? a : b, longest, cosine);
@@ -157,7 +158,7 @@ static bool move_for_angle(cwi_remesh *r, uint32_t v)
         for (size_t n = 0; n < 2 * count; n++) {
             const uint32_t c = corners[n / 2];
             const float *p = r->positions + 3 * (size_t)v,
-                        *q = r->positions + 3 * (size_t)r->triangles[cwi_after(c)];
+                        *q = r->positions + 3 * (size_t)r->triangles[cwi_corner_next(c)];
             const double share = n % 2 ? -step : step;
             double from[3];
             float to[3], size = r->sizes[v];

@@ -228,7 +228,7 @@ size_t cwi_list_star(const cwi_remesh *r, uint32_t vertex, uint32_t corners[CWI_
         *is_border = across == CWI_NONE;
         if (*is_border)
             break;
-        c = cwi_after(across);
+        c = cwi_corner_next(across);
     } while (c != start);
     start = c;
     size_t count = 0;
@@ -236,7 +236,7 @@ size_t cwi_list_star(const cwi_remesh *r, uint32_t vertex, uint32_t corners[CWI_
         if (count == CWI_MAX_STAR)
             return 0;
         corners[count++] = c;
-        const uint32_t across = r->twin[cwi_before(c)];
+        const uint32_t across = r->twin[cwi_corner_prev(c)];
         if (across == CWI_NONE)
             break;
         c = across;

@@ -47,8 +47,8 @@ static bool find_centre(const cwi_remesh *r, uint32_t v, double centre[3])
     double sum[3] = {0}, normal[3] = {0}, weights = 0;
     const float *p = r->positions + 3 * (size_t)v;
     for (size_t n = 0; n < count; n++) {
-        const uint32_t b = r->triangles[cwi_after(corners[n])],
-                       c = r->triangles[cwi_before(corners[n])];
+        const uint32_t b = r->triangles[cwi_corner_next(corners[n])],
+                       c = r->triangles[cwi_corner_prev(corners[n])];
         const float *q = r->positions + 3 * (size_t)b, *o = r->positions + 3 * (size_t)c;
         double cross[3];
         const double size = (double)r->sizes[v] + (double)r->sizes[b] + (double)r->sizes[c];
@@ -78,8 +78,8 @@ static bool find_middle(const cwi_remesh *r, uint32_t v, double middle[3])
     int found = 0;
     memset(middle, 0, 3 * sizeof *middle);
     for (size_t n = 0; n < count; n++) {
-        const uint32_t c = corners[n], d = cwi_before(c);
-        const uint32_t ends[2] = {r->triangles[cwi_after(c)], r->triangles[d]};
+        const uint32_t c = corners[n], d = cwi_corner_prev(c);
+        const uint32_t ends[2] = {r->triangles[cwi_corner_next(c)], r->triangles[d]};
         const bool is_last = n + 1 == count && is_border;
         for (int e = 0; e < 2; e++) {
             if (e == 0 ? !cwi_is_sharp(r, c) : !(is_last && cwi_is_sharp(r, d)))

@@ -18,7 +18,7 @@ enum { SWEEPS = 6, SMOOTHINGS = 2, TENSOR = 7 }; /* six numbers of a tensor, and
 static void add_edge(const cwi_remesh *r, uint32_t corner, double *tensors)
 {
     const uint32_t twin = r->twin[corner],
-                   v[2] = {r->triangles[corner], r->triangles[cwi_after(corner)]};
+                   v[2] = {r->triangles[corner], r->triangles[cwi_corner_next(corner)]};
     const float *p = r->positions + 3 * (size_t)v[0], *q = r->positions + 3 * (size_t)v[1];
     double along[3], first[3], second[3], cross[3];
     for (size_t k = 0; k < 3; k++) {
@@ -64,7 +64,7 @@ static void spread_tensors(const cwi_remesh *r, const double *from, double *to)
 {
     memcpy(to, from, TENSOR * r->vertex_count * sizeof *to);
     for (uint32_t c = 0; c < 3 * r->triangle_count; c++) {
-        const uint32_t a = r->triangles[c], b = r->triangles[cwi_after(c)];
+        const uint32_t a = r->triangles[c], b = r->triangles[cwi_corner_next(c)];
         if (r->freedom[a] != CWI_FREE || r->freedom[b] != CWI_FREE)
             continue;
         for (size_t k = 0; k < TENSOR; k++)
@@ -116,7 +116,7 @@ static void sweep_sizes(const cwi_remesh *r, bool is_backward)
     const size_t corners = 3 * r->triangle_count;
     for (size_t n = 0; n < corners; n++) {
         const uint32_t c = (uint32_t)(is_backward ? corners - 1 - n : n);
-        limit_growth(r, r->triangles[c], r->triangles[cwi_after(c)]);
+        limit_growth(r, r->triangles[c], r->triangles[cwi_corner_next(c)]);
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/geometry/bvh.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/mesh_triangle.h"
 
 #include <cubewright/remesh.h>
 
@@ -69,16 +70,6 @@ typedef struct cwi_remesh {
     uint8_t *scratch_to; /* number of the fresh triangle */
     cwi_replacement patch;
 } cwi_remesh;
-
-static inline uint32_t cwi_after(uint32_t corner)
-{
-    return corner % 3 == 2 ? corner - 2 : corner + 1;
-}
-
-static inline uint32_t cwi_before(uint32_t corner)
-{
-    return corner % 3 == 0 ? corner + 2 : corner - 1;
-}
 
 static inline bool cwi_is_sharp(const cwi_remesh *r, uint32_t corner)
 {

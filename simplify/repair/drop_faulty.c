@@ -123,7 +123,7 @@ static bool list_keys(const cw_mesh *m, edge_keys *e)
     e->count = 3 * m->triangle_count;
     e->keys = cwi_alloc_array(e->count, sizeof *e->keys);
     for (uint32_t c = 0; c < e->count && e->keys; c++)
-        e->keys[c] = key_of(m->triangles[c], m->triangles[cwi_corner_after(c)]);
+        e->keys[c] = key_of(m->triangles[c], m->triangles[cwi_corner_next(c)]);
     if (e->keys)
         qsort(e->keys, e->count, sizeof *e->keys, compare_keys);
     return e->keys;
@@ -136,7 +136,7 @@ static uint32_t longest_edge(const cw_mesh *m, uint32_t t)
     double longest = -1;
     for (uint32_t c = 3 * t; c < 3 * t + 3; c++) {
         const float *p = m->positions + 3 * (size_t)m->triangles[c],
-                    *q = m->positions + 3 * (size_t)m->triangles[cwi_corner_after(c)];
+                    *q = m->positions + 3 * (size_t)m->triangles[cwi_corner_next(c)];
         const double square = cwi_point_distance_sq(p, q);
         if (square > longest) {
             longest = square;
@@ -157,9 +157,8 @@ static void flip_longest(cwi_repair *r, const edge_keys *edges, uint32_t t, bool
         marked[t] = touched[t] = true;
         return;
     }
-    const uint32_t u = other / 3, p = v[c], q = v[cwi_corner_after(c)],
-                   tip = v[cwi_corner_after(cwi_corner_after(c))],
-                   far = v[cwi_corner_after(cwi_corner_after(other))];
+    const uint32_t u = other / 3, p = v[c], q = v[cwi_corner_next(c)],
+                   tip = v[cwi_corner_prev(c)], far = v[cwi_corner_prev(other)];
     if (touched[t] || touched[u])
         return;
     const uint64_t key = key_of(tip, far);
@@ -229,32 +228,12 @@ typedef struct component_size {
     size_t triangles, rim;
 } component_size;
 
-static void get_corners(const cw_mesh *m, size_t t, const double from[3], double p[3][3])
-{
-    for (size_t n = 0; n < 9; n++)
-        p[n / 3][n % 3] =
-            (double)m->positions[3 * (size_t)m->triangles[3 * t + n / 3] + n % 3] - from[n % 3];
-}
-
-static void add_tetrahedron(double p[3][3], component_size *s)
-{
-    double area[3];
-    cwi_cross(p[1], p[2], area);
-    s->volume += cwi_dot(p[0], area);
-}
-
 /* Sums areas, and the middles of rims. */
 static void add_triangle(const cwi_repair *r, uint32_t t, component_size *s)
 {
-    const double zero[3] = {0};
-    double p[3][3], e[2][3], area[3];
-    get_corners(&r->mesh, t, zero, p);
-    for (int a = 0; a < 3; a++) {
-        e[0][a] = p[1][a] - p[0][a];
-        e[1][a] = p[2][a] - p[0][a];
-    }
-    cwi_cross(e[0], e[1], area);
-    s->area += cwi_length(area) / 2;
+    double p[3][3];
+    cwi_mesh_corners(&r->mesh, t, p);
+    s->area += cwi_triangle_area(p[0], p[1], p[2]);
     s->triangles++;
     for (uint32_t k = 0; k < 3; k++)
         if (r->twin[3 * t + k] == CWI_NO_TWIN) {
@@ -268,9 +247,12 @@ static void add_triangle(const cwi_repair *r, uint32_t t, component_size *s)
  * fans from there. */
 static void add_volume(const cwi_repair *r, uint32_t t, component_size *s)
 {
-    double p[3][3];
-    get_corners(&r->mesh, t, s->middle, p);
-    add_tetrahedron(p, s);
+    double p[3][3], area[3];
+    cwi_mesh_corners(&r->mesh, t, p);
+    for (int k = 0; k < 3; k++)
+        cwi_sub(p[k], s->middle, p[k]);
+    cwi_cross(p[1], p[2], area);
+    s->volume += cwi_dot(p[0], area);
 }
 
 /* Sets the middle of the rims, or a point of a closed component. */

@@ -70,10 +70,8 @@ static double measure_cotangent(const double p[3], const double q[3], const doub
                                 double *area)
 {
     double u[3], v[3], normal[3];
-    for (int a = 0; a < 3; a++) {
-        u[a] = q[a] - p[a];
-        v[a] = r[a] - p[a];
-    }
+    cwi_sub(q, p, u);
+    cwi_sub(r, p, v);
     cwi_cross(u, v, normal);
     const double twice = cwi_length(normal), along = cwi_dot(u, v);
     *area = twice / 2;

@@ -2,6 +2,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/surface_walk.h"
+#include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
 #include "simplify/repair/hole_patch.h"
 
@@ -84,8 +85,8 @@ static bool push_rim(rim_walk *w, size_t from, size_t to)
         return false;
     for (size_t n = 0; n < size; n++) {
         const uint32_t c = w->path[to - 1 - n], *v = w->r->mesh.triangles;
-        l->vertices[l->count] = v[cwi_corner_after(c)];
-        l->beside[l->count++] = v[cwi_corner_after(cwi_corner_after(c))];
+        l->vertices[l->count] = v[cwi_corner_next(c)];
+        l->beside[l->count++] = v[cwi_corner_prev(c)];
     }
     l->end[l->rims++] = l->count;
     return true;
@@ -94,9 +95,9 @@ static bool push_rim(rim_walk *w, size_t from, size_t to)
 /* Returns the open edge that follows an open edge: around the fan at its end. */
 static uint32_t follow_rim(const cwi_repair *r, uint32_t corner)
 {
-    uint32_t c = cwi_corner_after(corner);
+    uint32_t c = cwi_corner_next(corner);
     while (r->twin[c] != CWI_NO_TWIN)
-        c = cwi_corner_after(r->twin[c]);
+        c = cwi_corner_next(r->twin[c]);
     return c;
 }
 
@@ -157,7 +158,7 @@ static bool init_around(cwi_hole_mesh *h, const cw_mesh *m)
     if (!h->edges || !h->first || !h->around)
         return false;
     for (uint32_t c = 0; c < corners; c++) {
-        const uint64_t a = m->triangles[c], b = m->triangles[cwi_corner_after(c)];
+        const uint64_t a = m->triangles[c], b = m->triangles[cwi_corner_next(c)];
         h->edges[c] = a < b ? a << 32 | b : b << 32 | a;
     }
     qsort(h->edges, corners, sizeof *h->edges, compare_keys);
@@ -199,14 +200,8 @@ static double measure_patch(const cwi_hole_patch *p)
 {
     double sum = 0;
     for (size_t t = 0; t < p->triangle_count; t++) {
-        double u[3], v[3], area[3];
-        for (int k = 0; k < 3; k++) {
-            const double from = p->points[p->triangles[t][0]][k];
-            u[k] = p->points[p->triangles[t][1]][k] - from;
-            v[k] = p->points[p->triangles[t][2]][k] - from;
-        }
-        cwi_cross(u, v, area);
-        sum += cwi_length(area) / 2;
+        const uint32_t *v = p->triangles[t];
+        sum += cwi_triangle_area(p->points[v[0]], p->points[v[1]], p->points[v[2]]);
     }
     return sum;
 }

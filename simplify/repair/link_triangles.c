@@ -50,7 +50,7 @@ static void list_halves(link_work *w)
 {
     const uint32_t *v = w->r->mesh.triangles;
     for (uint32_t c = 0; c < w->count; c++) {
-        const uint64_t from = v[c], to = v[cwi_corner_after(c)];
+        const uint64_t from = v[c], to = v[cwi_corner_next(c)];
         w->halves[c] = (half_edge){from < to ? from << 32 | to : to << 32 | from, c};
     }
     qsort(w->halves, w->count, sizeof *w->halves, compare_halves);
@@ -85,7 +85,7 @@ static void measure_angles(const cw_mesh *m, uint64_t key, fin *fins, size_t cou
     cwi_normalise(x);
     cwi_cross(along, x, y);
     for (size_t n = 0; n < count; n++) {
-        const uint32_t third = cwi_corner_after(cwi_corner_after(fins[n].corner));
+        const uint32_t third = cwi_corner_prev(fins[n].corner);
         const float *s = m->positions + 3 * (size_t)m->triangles[third];
         double from[3];
         cwi_sub_points(s, p, from);

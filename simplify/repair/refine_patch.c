@@ -1,6 +1,7 @@
 /* Adds points to a patch until its triangles are as large as those around it [Liepa2003], and flips
  * edges so that no triangle is thin. */
 #include "core/base/memory.h"
+#include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
 #include "simplify/repair/hole_patch.h"
 
@@ -126,21 +127,14 @@ static bool has_patch_edge(const cwi_hole_patch *p, uint32_t t, uint32_t a, uint
 static void compute_normal(const cwi_hole_patch *p, uint32_t a, uint32_t b, uint32_t c,
                            double normal[3])
 {
-    double u[3], v[3];
-    for (int k = 0; k < 3; k++) {
-        u[k] = p->points[b][k] - p->points[a][k];
-        v[k] = p->points[c][k] - p->points[a][k];
-    }
-    cwi_cross(u, v, normal);
+    cwi_triangle_normal(p->points[a], p->points[b], p->points[c], normal);
 }
 
 static double cotangent_at(const cwi_hole_patch *p, uint32_t tip, uint32_t a, uint32_t b)
 {
     double u[3], v[3], area[3];
-    for (int k = 0; k < 3; k++) {
-        u[k] = p->points[a][k] - p->points[tip][k];
-        v[k] = p->points[b][k] - p->points[tip][k];
-    }
+    cwi_sub(p->points[a], p->points[tip], u);
+    cwi_sub(p->points[b], p->points[tip], v);
     cwi_cross(u, v, area);
     const double sine = cwi_length(area), cosine = cwi_dot(u, v);
     return sine > 0 ? cosine / sine : cosine < 0 ? -1e30 : 1e30;
@@ -213,12 +207,10 @@ static bool is_too_large(const refinement *r, uint32_t t, double middle[3], doub
 {
     const uint32_t *v = r->patch->triangles[t];
     *size = 0;
-    for (int a = 0; a < 3; a++) {
-        middle[a] = (r->patch->points[v[0]][a] + r->patch->points[v[1]][a] +
-                     r->patch->points[v[2]][a]) /
-                    3;
-        *size += r->patch->sizes[v[a]] / 3;
-    }
+    cwi_triangle_centroid(r->patch->points[v[0]], r->patch->points[v[1]],
+                          r->patch->points[v[2]], middle);
+    for (int k = 0; k < 3; k++)
+        *size += r->patch->sizes[v[k]] / 3;
     for (int k = 0; k < 3; k++) {
         const double d = DENSITY * cwi_distance(middle, r->patch->points[v[k]]);
         if (!(d > r->times * *size) || !(d > r->times * r->patch->sizes[v[k]]))

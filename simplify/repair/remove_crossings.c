@@ -86,13 +86,12 @@ static void measure_stars(touching *t)
     const cw_mesh *m = &t->r->mesh;
     for (size_t n = 0; n < m->triangle_count; n++) {
         const uint32_t *v = m->triangles + 3 * n;
-        double p[3][3], edges[3][3], area[3];
+        double edges[3][3], area[3];
         if (!t->meets[v[0]] && !t->meets[v[1]] && !t->meets[v[2]])
             continue;
-        for (size_t k = 0; k < 9; k++)
-            p[k / 3][k % 3] = (double)m->positions[3 * (size_t)v[k / 3] + k % 3];
-        for (int k = 0; k < 9; k++)
-            edges[k / 3][k % 3] = p[(k / 3 + 1) % 3][k % 3] - p[k / 3][k % 3];
+        for (size_t k = 0; k < 3; k++)
+            cwi_sub_points(cwi_mesh_point(m, n, (k + 1) % 3), cwi_mesh_point(m, n, k),
+                           edges[k]);
         cwi_cross(edges[0], edges[1], area);
         for (int k = 0; k < 6; k++) {
             const uint32_t w = v[k % 3];
@@ -239,17 +238,6 @@ static cw_status unite_crossing(cwi_repair *r, const cw_crossings *found, bool *
 
 /* --- triangles that go -------------------------------------------------------------------- */
 
-static double measure_area(const cw_mesh *m, size_t t)
-{
-    const uint32_t *v = m->triangles + 3 * t;
-    double e[2][3], area[3];
-    for (size_t k = 0; k < 6; k++)
-        e[k / 3][k % 3] = (double)m->positions[3 * (size_t)v[k / 3 + 1] + k % 3] -
-                          (double)m->positions[3 * (size_t)v[0] + k % 3];
-    cwi_cross(e[0], e[1], area);
-    return cwi_length(area) / 2;
-}
-
 /* Marks triangles that share a vertex with a marked one. */
 static void grow_marks(const cw_mesh *m, bool *is_near, bool *marked)
 {
@@ -280,7 +268,7 @@ static bool mark_fragments(const cwi_repair *r, bool *marked)
     }
     for (uint32_t t = 0; t < count && ok; t++)
         if (!marked[t])
-            area[cwi_sets_find(part, t)] += measure_area(&r->mesh, t);
+            area[cwi_sets_find(part, t)] += cwi_mesh_area(&r->mesh, t);
     for (uint32_t t = 0; t < count && ok; t++) {
         double *most = &largest[cwi_sets_find(whole, t)];
         *most = fmax(*most, area[t]);
@@ -321,7 +309,7 @@ static cw_status drop_crossing(cwi_repair *r, const cw_crossings *found, int rou
     if (!marked || !mark_crossing(r, found, (round + 1) / 2, marked))
         st = fail_memory(r, err);
     for (size_t t = 0; t < count && st == CW_OK; t++) {
-        const double area = measure_area(&r->mesh, t);
+        const double area = cwi_mesh_area(&r->mesh, t);
         all += area;
         dropped += marked[t] ? area : 0;
         triangles += marked[t];

@@ -2,6 +2,8 @@
 #ifndef SIMPLIFY_REPAIR_REPAIR_STATE_H
 #define SIMPLIFY_REPAIR_REPAIR_STATE_H
 
+#include "core/mesh/mesh_triangle.h"
+
 #include <cubewright/repair.h>
 
 #define CWI_NO_TWIN UINT32_MAX /* of an open edge */
@@ -21,11 +23,6 @@ typedef struct cwi_repair {
     bool is_later;      /* the holes of the input were seen */
     double done, until; /* of the progress: now, and when the step at hand has ended */
 } cwi_repair;
-
-static inline uint32_t cwi_corner_after(uint32_t corner)
-{
-    return corner % 3 == 2 ? corner - 2 : corner + 1;
-}
 
 /* Reports progress: a fraction of the step at hand. */
 CW_NODISCARD cw_status cwi_repair_progress(cwi_repair *r, const char *step, double fraction,

@@ -59,8 +59,8 @@ static void join_fans(const cwi_repair *r, uint32_t *fan)
         const uint32_t other = r->twin[c];
         if (other == CWI_NO_TWIN || other < c)
             continue;
-        cwi_sets_join(fan, c, cwi_corner_after(other));
-        cwi_sets_join(fan, cwi_corner_after(c), other);
+        cwi_sets_join(fan, c, cwi_corner_next(other));
+        cwi_sets_join(fan, cwi_corner_next(c), other);
     }
 }
 
@@ -144,7 +144,7 @@ static size_t list_edges(const cwi_repair *r, paired_edge *edges)
     const uint32_t *v = r->mesh.triangles;
     size_t count = 0;
     for (uint32_t c = 0; c < 3 * r->mesh.triangle_count; c++) {
-        const uint64_t from = v[c], to = v[cwi_corner_after(c)];
+        const uint64_t from = v[c], to = v[cwi_corner_next(c)];
         if (r->twin[c] == CWI_NO_TWIN || c < r->twin[c])
             edges[count++] = (paired_edge){from < to ? from << 32 | to : to << 32 | from, c};
     }
@@ -160,7 +160,7 @@ static size_t divide_sides(cwi_repair *r, uint32_t corner, uint32_t middle, uint
     for (int n = 0; n < 2; n++) {
         if (sides[n] == CWI_NO_TWIN)
             continue;
-        const uint32_t next = cwi_corner_after(sides[n]), last = cwi_corner_after(next);
+        const uint32_t next = cwi_corner_next(sides[n]), last = cwi_corner_next(next);
         uint32_t *v = r->mesh.triangles, *to = added + 3 * count++;
         to[0] = middle;
         to[1] = v[next];
@@ -278,7 +278,7 @@ static cw_status move_apart(cwi_repair *r, cw_error *err)
             shares[v] = shares[map[v]] = true;
     }
     for (uint32_t c = 0; c < 3 * m->triangle_count && st == CW_OK; c++) {
-        const uint32_t v = m->triangles[c], next = m->triangles[cwi_corner_after(c)];
+        const uint32_t v = m->triangles[c], next = m->triangles[cwi_corner_next(c)];
         if (shares[v])
             add_neighbour(m->positions + 3 * (size_t)v, m->positions + 3 * (size_t)next,
                           &around[v]);

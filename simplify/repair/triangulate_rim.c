@@ -1,6 +1,7 @@
 /* Triangulates the rim of a hole: by dynamic programming [Barequet1995] with the weights of
  * [Liepa2003], after ears were cut off a long rim. */
 #include "core/base/memory.h"
+#include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
 #include "simplify/repair/hole_patch.h"
 
@@ -86,12 +87,7 @@ typedef struct polygon_cells {
 static double measure_triangle(const double a[3], const double b[3], const double c[3],
                                double normal[3])
 {
-    double u[3], v[3];
-    for (int k = 0; k < 3; k++) {
-        u[k] = b[k] - a[k];
-        v[k] = c[k] - a[k];
-    }
-    cwi_cross(u, v, normal);
+    cwi_triangle_normal(a, b, c, normal);
     const double area = cwi_length(normal) / 2;
     if (!cwi_normalise(normal))
         memset(normal, 0, 3 * sizeof *normal);
@@ -229,10 +225,8 @@ static double measure_ear(const ear_ring *e, uint32_t a, uint32_t b, uint32_t c)
 {
     const double(*x)[3] = (const double(*)[3])e->patch->points;
     double u[3], v[3], normal[3];
-    for (int k = 0; k < 3; k++) {
-        u[k] = x[a][k] - x[b][k];
-        v[k] = x[c][k] - x[b][k];
-    }
+    cwi_sub(x[a], x[b], u);
+    cwi_sub(x[c], x[b], v);
     cwi_cross(v, u, normal);
     if (!(cwi_dot(normal, e->facing) > 0) || !cwi_normalise(u) || !cwi_normalise(v))
         return -2;

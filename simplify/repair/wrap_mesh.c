@@ -60,15 +60,8 @@ cw_status cwi_unite_shells(cwi_repair *r, const uint32_t *shell, uint32_t shells
 static double measure_area(const cw_mesh *m)
 {
     double sum = 0;
-    for (size_t t = 0; t < m->triangle_count; t++) {
-        const uint32_t *v = m->triangles + 3 * t;
-        double e[2][3], area[3];
-        for (size_t k = 0; k < 6; k++)
-            e[k / 3][k % 3] = (double)m->positions[3 * (size_t)v[k / 3 + 1] + k % 3] -
-                              (double)m->positions[3 * (size_t)v[0] + k % 3];
-        cwi_cross(e[0], e[1], area);
-        sum += cwi_length(area) / 2;
-    }
+    for (size_t t = 0; t < m->triangle_count; t++)
+        sum += cwi_mesh_area(m, t);
     return sum;
 }
 

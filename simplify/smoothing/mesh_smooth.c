@@ -4,7 +4,9 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/mesh_triangle.h"
 
 #include <float.h>
 #include <string.h>
@@ -36,9 +38,8 @@ static double mean_edge(const cw_mesh *mesh)
     double sum = 0;
     for (size_t t = 0; t < mesh->triangle_count; t++)
         for (size_t c = 0; c < 3; c++)
-            sum += measure_move(mesh->positions + 3 * (size_t)mesh->triangles[3 * t + c],
-                                mesh->positions +
-                                    3 * (size_t)mesh->triangles[3 * t + (c + 1) % 3]);
+            sum +=
+                measure_move(cwi_mesh_point(mesh, t, c), cwi_mesh_point(mesh, t, (c + 1) % 3));
     return mesh->triangle_count ? sum / (3 * (double)mesh->triangle_count) : 0;
 }
 
@@ -158,12 +159,8 @@ static void round_places(cwi_smoother *s)
 
 static void find_normal(const float *positions, const uint32_t *corners, double normal[3])
 {
-    double edges[2][3];
-    for (size_t c = 0; c < 2; c++)
-        for (size_t a = 0; a < 3; a++)
-            edges[c][a] = (double)positions[3 * (size_t)corners[c + 1] + a] -
-                          (double)positions[3 * (size_t)corners[0] + a];
-    cwi_cross(edges[0], edges[1], normal);
+    cwi_facet_normal(positions + 3 * (size_t)corners[0], positions + 3 * (size_t)corners[1],
+                     positions + 3 * (size_t)corners[2], normal);
 }
 
 static void count_facts(cwi_smoother *s, cw_smooth_facts *facts)

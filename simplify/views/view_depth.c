@@ -3,6 +3,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/mesh/mesh.h"
+#include "core/mesh/mesh_triangle.h"
 #include "simplify/views/view_tolerance.h"
 
 #include <math.h>
@@ -81,11 +82,8 @@ cw_status cw_simplify_view_draw(cw_simplify_view *view, const cw_mesh *mesh, cw_
         spot s[3];
         bool whole = true;
         for (size_t k = 0; k < 3; k++) {
-            const float *p = mesh->positions + 3 * (size_t)mesh->triangles[3 * t + k];
-            const double world[3] = {mesh->origin[0] + (double)p[0],
-                                     mesh->origin[1] + (double)p[1],
-                                     mesh->origin[2] + (double)p[2]};
-            double depth;
+            double world[3], depth;
+            cwi_mesh_world(mesh, mesh->triangles[3 * t + k], world);
             whole = cwi_view_project(&v, world, &s[k].x, &s[k].y, &depth) && whole;
             s[k].linear = view->camera.fov_deg > 0 ? 1 / depth : depth;
         }

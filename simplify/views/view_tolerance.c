@@ -6,6 +6,7 @@
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
 #include "core/mesh/mesh.h"
+#include "core/mesh/mesh_triangle.h"
 
 #include <math.h>
 
@@ -242,10 +243,8 @@ static void mark_unseen(const cwi_views *views, const cw_mesh *m, double margin,
 {
     *count = 0;
     for (size_t t = 0; t < m->triangle_count; t++) {
-        const uint32_t *c = m->triangles + 3 * t;
-        const float *const corners[3] = {m->positions + 3 * (size_t)c[0],
-                                         m->positions + 3 * (size_t)c[1],
-                                         m->positions + 3 * (size_t)c[2]};
+        const float *const corners[3] = {cwi_mesh_point(m, t, 0), cwi_mesh_point(m, t, 1),
+                                         cwi_mesh_point(m, t, 2)};
         unseen[t] = !isfinite(cwi_views_limit(views, corners, margin, margin));
         *count += unseen[t];
     }

@@ -5,6 +5,7 @@
  * Coordinates are rounded to 1/256 of a sample, as GPUs do. Within a range of 2^17 samples the
  * edge functions of such points are exact in double, and with the top-left rule every sample of
  * a surface belongs to exactly one of its triangles: no cracks, no double hits. */
+#include "core/mesh/mesh_triangle.h"
 #include "viewer/scene/srgb.h"
 #include <cubewright/render.h>
 
@@ -247,13 +248,9 @@ static void draw_band(const scene *s, int first, int last, hit *hits)
 /* Computes the triangle's own normal, on the visible side. */
 static void facet_normal(const cw_mesh *mesh, facet *f)
 {
-    double side[2][3];
-    const uint32_t *corner = mesh->triangles + 3 * f->triangle;
-    for (int e = 0; e < 2; e++)
-        for (size_t a = 0; a < 3; a++)
-            side[e][a] = (double)mesh->positions[3 * (size_t)corner[e + 1] + a] -
-                         (double)mesh->positions[3 * (size_t)corner[0] + a];
-    cwi_cross(side[f->is_back], side[!f->is_back], f->normal);
+    cwi_facet_normal(cwi_mesh_point(mesh, f->triangle, 0),
+                     cwi_mesh_point(mesh, f->triangle, f->is_back ? 2 : 1),
+                     cwi_mesh_point(mesh, f->triangle, f->is_back ? 1 : 2), f->normal);
     cwi_to_unit(f->normal);
 }
 

@@ -2,6 +2,7 @@
 #include "viewer/interact/pick_mesh.h"
 
 #include "core/geometry/vec3.h"
+#include "core/mesh/mesh_triangle.h"
 
 #include <math.h>
 #include <string.h>
@@ -69,11 +70,10 @@ static bool side_of(const double a[2], const double b[2], double *area)
 
 static bool meet_triangle(const sight *s, size_t triangle, double *z, double share[3])
 {
-    const uint32_t *corner = s->mesh->triangles + 3 * triangle;
     const float *p[3];
     double at[3][2], area[3];
-    for (int n = 0; n < 3; n++) {
-        p[n] = s->mesh->positions + 3 * (size_t)corner[n];
+    for (size_t n = 0; n < 3; n++) {
+        p[n] = cwi_mesh_point(s->mesh, triangle, n);
         at[n][0] = position_along(s, p[n], 0);
         at[n][1] = position_along(s, p[n], 1);
     }

@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
 #include "core/volume/cell_shapes.h"
 
@@ -25,20 +26,6 @@ typedef struct job {
 
 static const double boxes_of[CW_SHAPE_COUNT] = {1.0 / 6, 1.0 / 3, 1.0 / 2, 1};
 
-/* Returns six times the volume of a tetrahedron between an origin and three points. */
-static double corner_determinant(const double *o, const double *a, const double *b,
-                                 const double *c)
-{
-    double u[3], v[3], w[3], across[3];
-    for (int k = 0; k < 3; k++) {
-        u[k] = a[k] - o[k];
-        v[k] = b[k] - o[k];
-        w[k] = c[k] - o[k];
-    }
-    cwi_cross(u, v, across);
-    return cwi_dot(across, w);
-}
-
 /* Computes a cell's volume by the divergence theorem; faces of four corners are two
  * triangles. */
 static double cell_volume(const cwi_cell_shape *s, const double *points,
@@ -50,8 +37,8 @@ static double cell_volume(const cwi_cell_shape *s, const double *points,
         p[c] = points + 3 * (size_t)corners[c];
     for (int f = 0; f < s->face_count; f++)
         for (int n = 2; n < s->face_size[f]; n++)
-            sum += corner_determinant(p[0], p[s->faces[f][0]], p[s->faces[f][n - 1]],
-                                      p[s->faces[f][n]]);
+            sum += cwi_tetrahedron_sixfold(p[0], p[s->faces[f][0]], p[s->faces[f][n - 1]],
+                                           p[s->faces[f][n]]);
     return fabs(sum) / 6;
 }
 

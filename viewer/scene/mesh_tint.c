@@ -1,5 +1,6 @@
 /* Computes the colour ramp in CIELAB, the shape of triangles, and the range of a tint. */
 #include "viewer/scene/mesh_tint.h"
+#include "core/mesh/mesh_triangle.h"
 #include "viewer/scene/srgb.h"
 
 #include "core/base/status.h"
@@ -41,11 +42,9 @@ void cwi_ramp_color(double share, double srgb[3])
 double cwi_triangle_shape(const cw_mesh *mesh, size_t triangle)
 {
     double side[3][3], squares = 0, normal[3];
-    const uint32_t *corner = mesh->triangles + 3 * triangle;
     for (size_t e = 0; e < 3; e++) {
-        const float *from = mesh->positions + 3 * (size_t)corner[e];
-        const float *to = mesh->positions + 3 * (size_t)corner[(e + 1) % 3];
-        cwi_sub_points(to, from, side[e]);
+        cwi_sub_points(cwi_mesh_point(mesh, triangle, (e + 1) % 3),
+                       cwi_mesh_point(mesh, triangle, e), side[e]);
         squares += cwi_dot(side[e], side[e]);
     }
     cwi_cross(side[0], side[1], normal);

@@ -1,0 +1,65 @@
+/* Triangles of three points: normals, the middle, and the order of corners. Corners of all
+ * triangles of a mesh are numbered: corner c is corner c % 3 of triangle c / 3. */
+#ifndef CORE_GEOMETRY_TRIANGLE_H
+#define CORE_GEOMETRY_TRIANGLE_H
+
+#include "core/geometry/vec3.h"
+
+#include <stdint.h>
+
+/* Computes (b - a) x (c - a): along the normal, and as long as twice the area. */
+static inline void cwi_triangle_normal(const double a[3], const double b[3], const double c[3],
+                                       double normal[3])
+{
+    double u[3], v[3];
+    cwi_sub(b, a, u);
+    cwi_sub(c, a, v);
+    cwi_cross(u, v, normal);
+}
+
+static inline double cwi_triangle_area(const double a[3], const double b[3], const double c[3])
+{
+    double normal[3];
+    cwi_triangle_normal(a, b, c, normal);
+    return cwi_length(normal) / 2;
+}
+
+static inline void cwi_triangle_centroid(const double a[3], const double b[3],
+                                         const double c[3], double out[3])
+{
+    for (int k = 0; k < 3; k++)
+        out[k] = (a[k] + b[k] + c[k]) / 3;
+}
+
+/* Computes the same vector for positions of a mesh, which are floats. */
+static inline void cwi_facet_normal(const float a[3], const float b[3], const float c[3],
+                                    double normal[3])
+{
+    double u[3], v[3];
+    cwi_sub_points(b, a, u);
+    cwi_sub_points(c, a, v);
+    cwi_cross(u, v, normal);
+}
+
+/* Returns six times the volume of a tetrahedron: the determinant of a - o, b - o and c - o. */
+static inline double cwi_tetrahedron_sixfold(const double o[3], const double a[3],
+                                             const double b[3], const double c[3])
+{
+    double normal[3], w[3];
+    cwi_triangle_normal(o, a, b, normal);
+    cwi_sub(c, o, w);
+    return cwi_dot(normal, w);
+}
+
+/* Returns the next corner of the same triangle, or the one before it. */
+static inline uint32_t cwi_corner_next(uint32_t corner)
+{
+    return corner % 3 == 2 ? corner - 2 : corner + 1;
+}
+
+static inline uint32_t cwi_corner_prev(uint32_t corner)
+{
+    return corner % 3 == 0 ? corner + 2 : corner - 1;
+}
+
+#endif
