@@ -3,6 +3,7 @@
 #include "simplify/attribute_weights.h"
 
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 #include "simplify/collapse/openmesh_wrap.h"
 
 #include <math.h>
@@ -41,7 +42,7 @@ static double unit_of(const cw_mesh *mesh)
 {
     double low[3], high[3];
     cw_mesh_bounds(mesh, low, high);
-    return 0.01 * hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+    return 0.01 * cwi_box_diagonal(low, high);
 }
 
 static double range_of(const float *numbers, size_t count)

@@ -13,6 +13,7 @@
 #include "cli/results/run_report.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -410,7 +411,7 @@ static double tolerance_mm(const run_state *s)
     const double *spacing = s->volume.spacing;
     double low[3], high[3];
     cw_mesh_bounds(&s->mesh.mesh, low, high);
-    const double diagonal = hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+    const double diagonal = cwi_box_diagonal(low, high);
     const double voxel = cbrt(spacing[0] * spacing[1] * spacing[2]);
     return cli_length_mm(&s->args->tolerance, diagonal, voxel);
 }

@@ -5,6 +5,7 @@
 #include "cli/framework/console.h"
 #include "cli/results/mesh_comparison.h"
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 #include "core/mesh/mesh_triangle.h"
 
 #include <float.h>
@@ -29,7 +30,7 @@ static double diagonal_of(const cw_mesh *mesh)
 {
     double low[3], high[3];
     cw_mesh_bounds(mesh, low, high);
-    return hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+    return cwi_box_diagonal(low, high);
 }
 
 /* The mesh's distance from the field says little without that of the full surface, which the

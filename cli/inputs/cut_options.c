@@ -4,6 +4,7 @@
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 
 #include <math.h>
 
@@ -50,17 +51,14 @@ static cw_mesh *find_part(cli_mesh *m, size_t n)
 cw_status cli_cut_parts(const cli_plane *plane, cli_mesh *m, cw_cut_facts *facts, cw_error *err)
 {
     const size_t count = m->parts ? m->part_count : 1;
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double low[3], high[3];
     size_t kept = 0;
     cw_status st = CW_OK;
+    cwi_box_clear(low, high);
     for (size_t n = 0; n < count; n++) {
         double box[2][3];
-        if (!cw_mesh_bounds(find_part(m, n), box[0], box[1]))
-            continue;
-        for (int a = 0; a < 3; a++) {
-            low[a] = fmin(low[a], box[0][a]);
-            high[a] = fmax(high[a], box[1][a]);
-        }
+        if (cw_mesh_bounds(find_part(m, n), box[0], box[1]))
+            cwi_box_join(low, high, box[0], box[1]);
     }
     for (size_t n = 0; n < count && st == CW_OK; n++) {
         cw_mesh *part = find_part(m, n);

@@ -5,6 +5,7 @@
 #include "cli/framework/console.h"
 #include "cli/inputs/mesh_input.h"
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 #include "core/volume/volume.h"
 
 #include <math.h>
@@ -135,30 +136,17 @@ const cw_volume *cli_drawn(const cli_source *source)
     return source->volume.view.sparse ? &source->dense : &source->volume.view;
 }
 
-static void grow_box(double box[2][3], const double point[3])
-{
-    for (int a = 0; a < 3; a++) {
-        box[0][a] = fmin(box[0][a], point[a]);
-        box[1][a] = fmax(box[1][a], point[a]);
-    }
-}
-
 bool cli_find_box(const cw_volume *volume, const cw_mesh *mesh, double box[2][3])
 {
     double point[2][3];
-    for (int a = 0; a < 3; a++) {
-        box[0][a] = INFINITY;
-        box[1][a] = -INFINITY;
-    }
-    if (mesh && cw_mesh_bounds(mesh, point[0], point[1])) {
-        grow_box(box, point[0]);
-        grow_box(box, point[1]);
-    }
+    cwi_box_clear(box[0], box[1]);
+    if (mesh && cw_mesh_bounds(mesh, point[0], point[1]))
+        cwi_box_join(box[0], box[1], point[0], point[1]);
     double corners[8][3];
     if (volume && volume->cells)
         cw_volume_corners(volume, corners);
     for (int n = 0; n < 8 && volume && volume->cells; n++)
-        grow_box(box, corners[n]);
+        cwi_box_add(box[0], box[1], corners[n]);
     for (int n = 0; n < 8 && volume && !volume->cells; n++) {
         double index[3];
         for (int a = 0; a < 3; a++)
@@ -166,7 +154,7 @@ bool cli_find_box(const cw_volume *volume, const cw_mesh *mesh, double box[2][3]
                        : n >> a & 1        ? (double)volume->dim[a] - 1
                                            : 0;
         cw_volume_to_world(volume, index, point[0]);
-        grow_box(box, point[0]);
+        cwi_box_add(box[0], box[1], point[0]);
     }
     return box[0][0] <= box[1][0];
 }

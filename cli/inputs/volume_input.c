@@ -10,6 +10,7 @@
 #include "cli/framework/quantity.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/geometry/box.h"
 #include "core/volume/volume.h"
 
 #include <math.h>
@@ -169,7 +170,8 @@ static bool clip_range(double low, double high, size_t size, size_t *first, size
 /* The box of indices around a box of the world. */
 static cw_status box_from_world(const cw_volume *v, cli_ranges *r, cw_error *err)
 {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double low[3], high[3];
+    cwi_box_clear(low, high);
     for (int corner = 0; corner < 8; corner++) {
         double world[3], index[3];
         for (int a = 0; a < 3; a++)
@@ -177,10 +179,7 @@ static cw_status box_from_world(const cw_volume *v, cli_ranges *r, cw_error *err
         cw_status st = cw_volume_to_index(v, world, index, err);
         if (st != CW_OK)
             return st;
-        for (int a = 0; a < 3; a++) {
-            low[a] = fmin(low[a], index[a]);
-            high[a] = fmax(high[a], index[a]);
-        }
+        cwi_box_add(low, high, index);
     }
     memcpy(r->low, low, sizeof low);
     memcpy(r->high, high, sizeof high);

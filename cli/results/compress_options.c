@@ -3,6 +3,7 @@
 
 #include "cli/framework/quantity.h"
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 
 #include <math.h>
 
@@ -37,16 +38,14 @@ cw_status cli_check_compress(const cli_compress *c, bool voxels, cw_error *err)
 
 static double diagonal_of(const cw_part *parts, size_t count)
 {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double low[3], high[3];
+    cwi_box_clear(low, high);
     for (size_t p = 0; p < count; p++) {
         double from[3], to[3];
-        cw_mesh_bounds(parts[p].mesh, from, to);
-        for (int a = 0; a < 3 && parts[p].mesh->vertex_count; a++) {
-            low[a] = fmin(low[a], from[a]);
-            high[a] = fmax(high[a], to[a]);
-        }
+        if (cw_mesh_bounds(parts[p].mesh, from, to))
+            cwi_box_join(low, high, from, to);
     }
-    return hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+    return cwi_box_diagonal(low, high);
 }
 
 void cli_set_compress(const cli_compress *c, const cw_part *parts, size_t count,

@@ -3,6 +3,7 @@
 
 #include "cli/framework/console.h"
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 
 #include <math.h>
 
@@ -37,21 +38,18 @@ cw_status cli_compare_with_field(const cw_mesh *mesh, const cli_volume *volume, 
 
 cw_status cli_check_place(const cli_volume *volume, const cw_mesh *mesh, cw_error *err)
 {
-    double corners[8][3], low[3], high[3];
+    double corners[8][3], low[3], high[3], from[3], to[3];
     cw_volume_corners(&volume->view, corners);
     cw_mesh_bounds(mesh, low, high);
-    for (int a = 0; a < 3; a++) {
-        double from = INFINITY, to = -INFINITY;
-        for (int n = 0; n < 8; n++) {
-            from = fmin(from, corners[n][a]);
-            to = fmax(to, corners[n][a]);
-        }
-        if (low[a] > to || high[a] < from)
+    cwi_box_clear(from, to);
+    for (int n = 0; n < 8; n++)
+        cwi_box_add(from, to, corners[n]);
+    for (int a = 0; a < 3; a++)
+        if (low[a] > to[a] || high[a] < from[a])
             return cwi_fail(
                 err, CW_ERR_ARGUMENT,
                 "%s: the mesh is not in this volume: along %c it is at %g to %g mm, "
                 "the volume at %g to %g",
-                volume->path, "xyz"[a], low[a], high[a], from, to);
-    }
+                volume->path, "xyz"[a], low[a], high[a], from[a], to[a]);
     return CW_OK;
 }

@@ -5,6 +5,7 @@
 #include "cli/framework/quantity.h"
 #include "cli/results/mesh_comparison.h"
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,16 +17,14 @@ static cw_status in_file(const cli_pieces *p, cw_status st, cw_error *err)
 
 static void measure_box(cli_pieces *p)
 {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double low[3], high[3];
+    cwi_box_clear(low, high);
     for (size_t n = 0; n < p->count; n++) {
         double from[3], to[3];
         cw_mesh_bounds(&p->piece[n].input, from, to);
-        for (int a = 0; a < 3; a++) {
-            low[a] = fmin(low[a], from[a]);
-            high[a] = fmax(high[a], to[a]);
-        }
+        cwi_box_join(low, high, from, to);
     }
-    p->diagonal_mm = hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+    p->diagonal_mm = cwi_box_diagonal(low, high);
 }
 
 cw_status cli_take_surface(cli_pieces *p, const char *path, const cw_mesh *mesh, cw_error *err)

@@ -6,6 +6,7 @@
 #include "cli/results/summary_line.h"
 #include "core/base/beside.h"
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -76,10 +77,7 @@ void cli_add_quality(cw_quality *sum, const cw_quality *q)
     sum->genus = sum->genus < 0 || q->genus < 0 ? -1 : sum->genus + q->genus;
     sum->area_mm2 += q->area_mm2;
     sum->volume_mm3 += q->volume_mm3;
-    for (int a = 0; a < 3; a++) {
-        sum->min[a] = fmin(sum->min[a], q->min[a]);
-        sum->max[a] = fmax(sum->max[a], q->max[a]);
-    }
+    cwi_box_join(sum->min, sum->max, q->min, q->max);
 }
 
 /* Which way shells face. Those that are open as indexed may be closed once vertices at the same

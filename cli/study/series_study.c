@@ -9,6 +9,7 @@
 #include "cli/inputs/extract_surface.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -31,10 +32,9 @@ static cw_status extract_step(cli_series_study *q, const cli_input *input, size_
 
 static void grow_box(cli_series_study *q, const cw_quality *quality)
 {
-    for (int a = 0; a < 3; a++) {
-        q->box[0][a] = q->has_box ? fmin(q->box[0][a], quality->min[a]) : quality->min[a];
-        q->box[1][a] = q->has_box ? fmax(q->box[1][a], quality->max[a]) : quality->max[a];
-    }
+    if (!q->has_box)
+        cwi_box_clear(q->box[0], q->box[1]);
+    cwi_box_join(q->box[0], q->box[1], quality->min, quality->max);
     q->has_box = true;
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 #include "core/geometry/vec3.h"
 #include "core/volume/cell_shapes.h"
 #include "core/volume/volume.h"
@@ -28,14 +29,12 @@ static const cwi_cell_shape *shape_of(const cw_cells *cells, size_t cell)
 static void find_box(const cwi_cell_sampler *s, size_t cell, float box[6])
 {
     const cw_cells *cells = s->volume->cells;
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double low[3], high[3];
+    cwi_box_clear(low, high);
     for (size_t c = 0; c < shape_of(cells, cell)->corner_count; c++) {
         double p[3];
         load_point(s, cells->corners[s->begin[cell] + c], p);
-        for (int a = 0; a < 3; a++) {
-            low[a] = cwi_lesser(low[a], p[a]);
-            high[a] = cwi_greater(high[a], p[a]);
-        }
+        cwi_box_add(low, high, p);
     }
     for (int a = 0; a < 3; a++) {
         const double beside = OUTSIDE * (high[a] - low[a]);
@@ -47,13 +46,10 @@ static void find_box(const cwi_cell_sampler *s, size_t cell, float box[6])
 /* Finds a point in the middle of all, so that single precision holds the boxes. */
 static void find_center(cwi_cell_sampler *s, size_t samples)
 {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double low[3], high[3];
+    cwi_box_clear(low, high);
     for (size_t n = 0; n < samples; n++)
-        for (size_t a = 0; a < 3; a++) {
-            const double x = s->volume->cells->points[3 * n + a];
-            low[a] = cwi_lesser(low[a], x);
-            high[a] = cwi_greater(high[a], x);
-        }
+        cwi_box_add(low, high, s->volume->cells->points + 3 * n);
     for (int a = 0; a < 3; a++)
         s->center[a] = low[a] <= high[a] ? (low[a] + high[a]) / 2 : 0;
 }

@@ -3,6 +3,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 
 #include <math.h>
 #include <string.h>
@@ -126,16 +127,12 @@ bool cw_mesh_bounds(const cw_mesh *mesh, double min[3], double max[3])
 {
     if (!mesh || !min || !max)
         return false;
-    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (size_t v = 0; v < mesh->vertex_count; v++)
-        for (size_t a = 0; a < 3; a++) {
-            const float p = mesh->positions[3 * v + a];
-            low[a] = p < low[a] ? p : low[a];
-            high[a] = p > high[a] ? p : high[a];
-        }
+    double low[3], high[3];
+    cwi_box_clear(low, high);
+    cwi_box_add_points(low, high, mesh->positions, mesh->vertex_count);
     for (int a = 0; a < 3; a++) {
-        min[a] = mesh->vertex_count ? mesh->origin[a] + (double)low[a] : 0;
-        max[a] = mesh->vertex_count ? mesh->origin[a] + (double)high[a] : 0;
+        min[a] = mesh->vertex_count ? mesh->origin[a] + low[a] : 0;
+        max[a] = mesh->vertex_count ? mesh->origin[a] + high[a] : 0;
     }
     return mesh->vertex_count > 0;
 }

@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/affine.h"
+#include "core/geometry/box.h"
 
 #include <math.h>
 #include <string.h>
@@ -408,17 +409,11 @@ void cw_volume_to_world(const cw_volume *volume, const double index[3], double w
 /* The smallest box around the samples of an irregular grid. */
 static void find_box_of_cells(const cw_volume *v, double low[3], double high[3])
 {
-    for (int a = 0; a < 3; a++) {
-        low[a] = INFINITY;
-        high[a] = -INFINITY;
-    }
+    cwi_box_clear(low, high);
     for (size_t n = 0; n < v->dim[0]; n++) {
         double world[3];
         cw_volume_to_world(v, v->cells->points + 3 * n, world);
-        for (int a = 0; a < 3; a++) {
-            low[a] = fmin(low[a], world[a]);
-            high[a] = fmax(high[a], world[a]);
-        }
+        cwi_box_add(low, high, world);
     }
 }
 

@@ -2,6 +2,7 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 #include "core/volume/cell_shapes.h"
 #include "extract/irregular/cell_surface.h"
 
@@ -37,25 +38,19 @@ static void look_at_samples(void *context, size_t chunk)
     const size_t end = begin + SAMPLE_CHUNK < last ? begin + SAMPLE_CHUNK : last;
     double largest = 0, low[3], high[3];
     size_t bad = SIZE_MAX;
-    memcpy(low, g->volume.cells->points + 3 * begin, sizeof low);
-    memcpy(high, low, sizeof high);
+    cwi_box_clear(low, high);
     for (size_t n = begin; n < end; n++) {
         const double x = cwi_stored_at(g, (uint32_t)n), *p = g->volume.cells->points + 3 * n;
         g->sides[n] = side_of(g, x);
         if (isfinite(x) && fabs(x) > largest)
             largest = fabs(x);
-        for (int a = 0; a < 3; a++) {
-            low[a] = p[a] < low[a] ? p[a] : low[a];
-            high[a] = p[a] > high[a] ? p[a] : high[a];
+        cwi_box_add(low, high, p);
+        for (int a = 0; a < 3; a++)
             bad = !isfinite(p[a]) && n < bad ? n : bad;
-        }
     }
     pthread_mutex_lock(&s->lock);
     g->largest = fmax(g->largest, largest);
-    for (int a = 0; a < 3; a++) {
-        s->low[a] = fmin(s->low[a], low[a]);
-        s->high[a] = fmax(s->high[a], high[a]);
-    }
+    cwi_box_join(s->low, s->high, low, high);
     s->bad = bad < s->bad ? bad : s->bad;
     pthread_mutex_unlock(&s->lock);
 }
@@ -80,11 +75,8 @@ static cw_status set_frame(cwi_cells *g, const sampling *s, cw_error *err)
 static cw_status compare_samples(cwi_cells *g, cw_error *err)
 {
     const size_t samples = g->volume.dim[0];
-    sampling s = {.g = g,
-                  .lock = PTHREAD_MUTEX_INITIALIZER,
-                  .low = {INFINITY, INFINITY, INFINITY},
-                  .high = {-INFINITY, -INFINITY, -INFINITY},
-                  .bad = SIZE_MAX};
+    sampling s = {.g = g, .lock = PTHREAD_MUTEX_INITIALIZER, .bad = SIZE_MAX};
+    cwi_box_clear(s.low, s.high);
     g->sides = cwi_alloc_array(samples, sizeof *g->sides);
     if (!g->sides)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the sides of %zu samples",

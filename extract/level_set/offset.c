@@ -1,4 +1,5 @@
 /* Offsets or remeshes a mesh by its level set, and refines voxels until the result holds. */
+#include "core/geometry/box.h"
 #include "extract/common/field_normals.h"
 #include "extract/level_set/adaptive_field.h"
 #include "extract/level_set/feature_warp.h"
@@ -19,8 +20,7 @@ static const double usual = 1.0 / 256, finest = 1.0 / 512;
 
 static double choose_voxel(const cw_offset_desc *d, const cw_quality *q)
 {
-    const double diagonal =
-        hypot(hypot(q->max[0] - q->min[0], q->max[1] - q->min[1]), q->max[2] - q->min[2]);
+    const double diagonal = cwi_box_diagonal(q->min, q->max);
     const double reach = fabs(d->offset_mm);
     double voxel = usual * diagonal;
     if (reach > 0)

@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 #include "core/geometry/triangle_intersect.h"
 #include "core/mesh/weld.h"
 
@@ -14,18 +15,15 @@ enum { MIN_EXPONENT = -126 }; /* decoders make the power in single precision */
 
 cwi_quantization_grid cwi_grid_around(const cwi_parts *parts)
 {
-    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double low[3], high[3];
     cwi_quantization_grid grid = {0};
-    for (size_t p = 0; p < parts->count; p++) {
-        const cw_mesh *mesh = &parts->items[p].mesh;
-        for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
-            low[i % 3] = fminf(low[i % 3], mesh->positions[i]);
-            high[i % 3] = fmaxf(high[i % 3], mesh->positions[i]);
-        }
-    }
+    cwi_box_clear(low, high);
+    for (size_t p = 0; p < parts->count; p++)
+        cwi_box_add_points(low, high, parts->items[p].mesh.positions,
+                           parts->items[p].mesh.vertex_count);
     for (int a = 0; a < 3; a++) {
-        grid.low[a] = low[a];
-        grid.range = fmaxf(grid.range, high[a] - low[a]);
+        grid.low[a] = (float)low[a];
+        grid.range = fmaxf(grid.range, (float)high[a] - (float)low[a]);
     }
     if (!(grid.range > 0)) /* a single point */
         grid.range = 1;

@@ -1,5 +1,6 @@
 /* Compresses the parts of a glTF file on one common grid that keeps the tolerance and the
  * shape. Everything compressed is decoded again and compared with the original. */
+#include "core/geometry/box.h"
 #include "formats/gltf/gltf_pack.h"
 
 #include "core/base/clock.h"
@@ -116,10 +117,7 @@ static cw_status add_block(cwi_gltf_plan *plan, unsigned char *bytes, size_t siz
 static void describe_draco(cwi_gltf_piece *piece, const cwi_quantization_grid *grid,
                            const cwi_arrays *decoded)
 {
-    for (int a = 0; a < 3; a++) {
-        piece->low[a] = INFINITY;
-        piece->high[a] = -INFINITY;
-    }
+    cwi_box_clear(piece->low, piece->high);
     for (size_t i = 0; i < 3 * decoded->vertex_count; i++) {
         const double at = cwi_grid_decode(grid, decoded->places[i], (int)(i % 3));
         piece->low[i % 3] = fmin(piece->low[i % 3], at);

@@ -1,5 +1,6 @@
 /* Lays out the arrays of a glTF file: accessors, their bytes, bounds and places in the
  * buffer. */
+#include "core/geometry/box.h"
 #include "formats/gltf/gltf_pack.h"
 
 #include "core/base/memory.h"
@@ -96,15 +97,11 @@ double cwi_gltf_stored(const cwi_gltf_plan *plan, float coordinate, int axis)
 static void find_bounds(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
 {
     const cw_mesh *m = &piece->part->mesh;
-    float low[3], high[3];
-    if (piece->part->spool)
-        cwi_spool_range(piece->part->spool, low, high);
-    for (int a = 0; a < 3; a++) {
-        piece->low[a] = piece->part->spool ? (double)low[a] : INFINITY;
-        piece->high[a] = piece->part->spool ? (double)high[a] : -INFINITY;
-    }
-    if (piece->part->spool)
+    cwi_box_clear(piece->low, piece->high);
+    if (piece->part->spool) {
+        cwi_spool_range(piece->part->spool, piece->low, piece->high);
         return;
+    }
     for (size_t i = 0; i < 3 * m->vertex_count; i++) {
         const int a = (int)(i % 3);
         const double x = cwi_gltf_stored(plan, m->positions[i], a);

@@ -5,6 +5,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 #include "formats/mesh/unnamed_file.h"
 
 #include <math.h>
@@ -43,10 +44,7 @@ cw_status cw_mesh_spool_new(const char *path, cw_mesh_spool **out, cw_error *err
         st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a spool");
     for (int n = 0; n < CWI_SPOOL_FILES && st == CW_OK; n++)
         st = cwi_unnamed_open(s->folder, &s->mine.files[n], err);
-    for (int a = 0; a < 3 && st == CW_OK; a++) {
-        s->low[a] = INFINITY;
-        s->high[a] = -INFINITY;
-    }
+    cwi_box_clear(s->low, s->high);
     if (st != CW_OK) {
         cw_mesh_spool_free(s);
         *out = NULL;
@@ -75,20 +73,6 @@ cw_status cwi_write_elements(int file, size_t first, const void *from, size_t co
                              err);
 }
 
-static void widen_bounds(cw_mesh_spool *s, const cw_mesh *m)
-{
-    for (int a = 0; a < 3; a++) {
-        float low = s->low[a], high = s->high[a];
-        for (size_t v = 0; v < m->vertex_count; v++) {
-            const float p = m->positions[3 * v + (size_t)a];
-            low = p < low ? p : low;
-            high = p > high ? p : high;
-        }
-        s->low[a] = low;
-        s->high[a] = high;
-    }
-}
-
 static cw_status take_chunk(void *user, const cw_mesh_chunk *chunk, cw_error *err)
 {
     cw_mesh_spool *s = user;
@@ -109,7 +93,7 @@ static cw_status take_chunk(void *user, const cw_mesh_chunk *chunk, cw_error *er
         s->has_normals = m->normals != NULL;
     memcpy(all->origin, m->origin, sizeof all->origin);
     memcpy(all->affine, m->affine, sizeof all->affine);
-    widen_bounds(s, m);
+    cwi_box_add_points(s->low, s->high, m->positions, m->vertex_count);
     cw_status st = cwi_write_elements(s->mine.files[CWI_SPOOL_POSITIONS], all->vertex_count,
                                       m->positions, m->vertex_count, err);
     if (st == CW_OK && m->normals)
@@ -141,13 +125,13 @@ bool cw_mesh_spool_bounds(const cw_mesh_spool *s, double min[3], double max[3])
         return false;
     const bool any = s->frame.vertex_count > 0;
     for (int a = 0; a < 3; a++) {
-        min[a] = any ? s->frame.origin[a] + (double)s->low[a] : 0;
-        max[a] = any ? s->frame.origin[a] + (double)s->high[a] : 0;
+        min[a] = any ? s->frame.origin[a] + s->low[a] : 0;
+        max[a] = any ? s->frame.origin[a] + s->high[a] : 0;
     }
     return any;
 }
 
-void cwi_spool_range(const cw_mesh_spool *s, float low[3], float high[3])
+void cwi_spool_range(const cw_mesh_spool *s, double low[3], double high[3])
 {
     memcpy(low, s->low, sizeof s->low);
     memcpy(high, s->high, sizeof s->high);

@@ -27,7 +27,7 @@ struct cw_mesh_spool {
     char *folder;
     bool has_normals;
     cw_mesh frame;
-    float low[3], high[3]; /* of the positions */
+    double low[3], high[3]; /* of the positions */
 };
 
 /* Reads or writes `count` elements of an array's file. */
@@ -44,7 +44,7 @@ CW_NODISCARD cw_status cwi_spool_read(const cw_mesh_spool *spool, int array, siz
 unsigned cwi_spool_arrays(const cw_mesh_spool *spool);
 
 /* Returns the range of the positions of a spool with vertices. */
-void cwi_spool_range(const cw_mesh_spool *spool, float low[3], float high[3]);
+void cwi_spool_range(const cw_mesh_spool *spool, double low[3], double high[3]);
 
 /* Returns the folder of a spool's temporary files. */
 const char *cwi_spool_folder(const cw_mesh_spool *spool);

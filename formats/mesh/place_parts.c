@@ -129,11 +129,11 @@ static void choose_arrays(cwi_parts *parts, unsigned keeps)
 /* Finds the box of a spool with the part's origin, to the bit that of the same mesh. */
 static void bound_spool(const cwi_part *part, double min[3], double max[3])
 {
-    float low[3], high[3];
+    double low[3], high[3];
     cwi_spool_range(part->spool, low, high);
     for (int a = 0; a < 3; a++) {
-        min[a] = part->mesh.origin[a] + (double)low[a];
-        max[a] = part->mesh.origin[a] + (double)high[a];
+        min[a] = part->mesh.origin[a] + low[a];
+        max[a] = part->mesh.origin[a] + high[a];
     }
 }
 

@@ -4,6 +4,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 #include "formats/mesh/mesh_spool.h"
 
 #include <errno.h>
@@ -18,7 +19,7 @@
 typedef struct member {
     uint64_t vertices, triangles;
     double origin[3], affine[3][4];
-    float low[3], high[3];
+    double low[3], high[3];
     int32_t has_normals;
     char names[CWI_SPOOL_FILES][CWI_FILE_NAME_BYTES]; /* of its files, in the shared folder */
 } member;
@@ -142,10 +143,7 @@ static void join_frames(cw_mesh_spool *s, const member *members, int count)
         memcpy(s->frame.origin, m->origin, sizeof m->origin);
         memcpy(s->frame.affine, m->affine, sizeof m->affine);
         s->has_normals = m->has_normals;
-        for (int a = 0; a < 3; a++) {
-            s->low[a] = fminf(s->low[a], m->low[a]);
-            s->high[a] = fmaxf(s->high[a], m->high[a]);
-        }
+        cwi_box_join(s->low, s->high, m->low, m->high);
     }
 }
 

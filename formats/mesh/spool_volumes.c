@@ -399,13 +399,13 @@ static cw_status copy_kept(volume_pass *p, cw_error *err)
 
 static float find_largest(const cw_mesh_spool *spool)
 {
-    float low[3], high[3], largest = 0;
+    double low[3], high[3], largest = 0;
     cwi_spool_range(spool, low, high);
     for (int a = 0; a < 3 && cw_mesh_spool_frame(spool)->vertex_count; a++) {
-        largest = fmaxf(largest, fabsf(low[a]));
-        largest = fmaxf(largest, fabsf(high[a]));
+        largest = fmax(largest, fabs(low[a]));
+        largest = fmax(largest, fabs(high[a]));
     }
-    return largest;
+    return (float)largest;
 }
 
 cw_status cw_mesh_spool_drop_volumes(const cw_mesh_spool *spool, const cw_spool_drop_desc *desc,

@@ -2,6 +2,7 @@
 #include "formats/neuroglancer/lod_grid.h"
 
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 
 #include <math.h>
 
@@ -11,17 +12,11 @@ static const double DIAGONALS = 20000; /* the default tolerance is the diagonal 
 
 static void find_box(const cwi_parts *parts, double low[3], double high[3])
 {
-    for (int a = 0; a < 3; a++) {
-        low[a] = INFINITY;
-        high[a] = -INFINITY;
-    }
+    cwi_box_clear(low, high);
     for (size_t p = 0; p < parts->count; p++) {
         double from[3], to[3];
         cwi_part_bounds(&parts->items[p], from, to);
-        for (int a = 0; a < 3; a++) {
-            low[a] = fmin(low[a], from[a]);
-            high[a] = fmax(high[a], to[a]);
-        }
+        cwi_box_join(low, high, from, to);
     }
 }
 

@@ -1,6 +1,7 @@
 /* Makes the star of a collapse: triangles before and after, their turns and shapes. */
 #include "simplify/interfaces/label_star.h"
 
+#include "core/geometry/box.h"
 #include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
 
@@ -28,27 +29,23 @@ static double find_shape(const double normal[3], const double p[3], const double
     return longest > 0 ? cwi_length(normal) / longest : 0;
 }
 
-static void grow_box(float box[6], const double p[3])
-{
-    for (int k = 0; k < 3; k++) {
-        box[k] = p[k] < (double)box[k] ? (float)p[k] : box[k];
-        box[k + 3] = p[k] > (double)box[k + 3] ? (float)p[k] : box[k + 3];
-    }
-}
-
 static void put_box(cwi_star *star, cwi_boxes_node *nodes, size_t n,
                     const double *const *points, int count)
 {
-    float box[6] = {INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY};
+    double low[3], high[3];
+    float box[6];
     if (n % CWI_WIDTH == 0)
         cwi_boxes_clear(&nodes[n / CWI_WIDTH]);
+    cwi_box_clear(low, high);
     for (int i = 0; i < count; i++)
-        grow_box(box, points[i]);
-    cwi_boxes_put(nodes, n, box);
+        cwi_box_add(low, high, points[i]);
     for (int k = 0; k < 3; k++) {
+        box[k] = (float)low[k];
+        box[k + 3] = (float)high[k];
         star->box[k] = box[k] < star->box[k] ? box[k] : star->box[k];
         star->box[k + 3] = box[k + 3] > star->box[k + 3] ? box[k + 3] : star->box[k + 3];
     }
+    cwi_boxes_put(nodes, n, box);
 }
 
 static void add_swept(cwi_star *star, const double w[3], const double a[3], const double b[3],

@@ -1,4 +1,5 @@
 /* Measures the printability of a mesh: walls, gaps, islands, overhangs, cavities, and how it stands. */
+#include "core/geometry/box.h"
 #include "core/mesh/mesh_triangle.h"
 #include "simplify/printing/islands.h"
 #include "simplify/printing/wall_rays.h"
@@ -84,21 +85,6 @@ static bool is_on_plate(const triangle_look *look, double bottom, double layer)
         if (look->corner[c][2] - bottom >= layer)
             return false;
     return true;
-}
-
-/* Finds the box of the triangles. */
-static void find_box(const cw_mesh *mesh, double low[3], double high[3])
-{
-    for (int a = 0; a < 3; a++) {
-        low[a] = INFINITY;
-        high[a] = -INFINITY;
-    }
-    for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
-        for (size_t a = 0; a < 3; a++) {
-            const double x = (double)mesh->positions[3 * (size_t)mesh->triangles[c] + a];
-            low[a] = cwi_lesser(low[a], x);
-            high[a] = cwi_greater(high[a], x);
-        }
 }
 
 /* Adds up area, overhangs, the foot, the volume and its centre. Volumes are measured from the middle
@@ -271,7 +257,9 @@ static cw_status measure_welded(cw_mesh *mesh, const uint32_t *map, const cw_pri
     double low[3], high[3];
     cwi_islands islands;
     cw_drop_counts voids = {0};
-    find_box(mesh, low, high);
+    cwi_box_clear(low, high);
+    for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
+        cwi_box_add_points(low, high, mesh->positions + 3 * (size_t)mesh->triangles[c], 1);
     sum_triangles(mesh, limits, low, high, facts);
     cw_status st = measure_stand(mesh, limits, low[2], facts, err);
     if (st == CW_OK)

@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 #include "core/geometry/bvh_segment.h"
 #include "core/geometry/closest_point.h"
 #include "core/geometry/vec3.h"
@@ -278,19 +279,18 @@ static void measure_part(void *context, size_t k)
 static void prepare_points(ray_field *f)
 {
     const cw_mesh *mesh = f->mesh;
-    double twice = 0, low[3] = {INFINITY, INFINITY, INFINITY},
-           high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double twice = 0, low[3], high[3];
+    cwi_box_clear(low, high);
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         double p[3][3], area[3];
         cwi_mesh_corners(mesh, t, p);
         cwi_triangle_normal(p[0], p[1], p[2], area);
         twice += cwi_length(area);
-        for (size_t n = 0; n < 9; n++) {
+        for (size_t n = 0; n < 9; n++)
             f->normals[3 * (size_t)mesh->triangles[3 * t + n / 3] + n % 3] +=
                 (float)area[n % 3];
-            low[n % 3] = cwi_lesser(low[n % 3], p[n / 3][n % 3]);
-            high[n % 3] = cwi_greater(high[n % 3], p[n / 3][n % 3]);
-        }
+        for (int k = 0; k < 3; k++)
+            cwi_box_add(low, high, p[k]);
     }
     for (size_t v = 0; v < mesh->vertex_count; v++) {
         double normal[3];
@@ -300,8 +300,7 @@ static void prepare_points(ray_field *f)
         for (size_t a = 0; a < 3; a++)
             f->normals[3 * v + a] = has_normal ? (float)normal[a] : 0;
     }
-    const double size[3] = {high[0] - low[0], high[1] - low[1], high[2] - low[2]};
-    f->diagonal = cwi_length(size);
+    f->diagonal = cwi_distance(low, high);
     f->step = sqrt(twice / 2 / POINTS);
     f->slack = f->tree.most * 0x1p-20f;
 }

@@ -11,6 +11,7 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 #include "core/geometry/bvh.h"
 #include "core/geometry/point_triangle.h"
 #include "core/geometry/triangle_cover.h"
@@ -362,21 +363,19 @@ static cw_status find_bound(search *s, const cw_mesh_distance_desc *d, cw_distan
 
 static void set_boxes(reference *r, const cw_mesh *mesh, float (*boxes)[6])
 {
-    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double low[3], high[3];
+    cwi_box_clear(low, high);
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         double p[3][3];
         cwi_mesh_corners(mesh, t, p);
-        for (int c = 0; c < 3; c++)
+        for (int c = 0; c < 3; c++) {
             r->side += cwi_distance(p[c], p[(c + 1) % 3]);
-        for (int a = 0; a < 3; a++) {
-            boxes[t][a] = (float)cwi_lesser(cwi_lesser(p[0][a], p[1][a]), p[2][a]);
-            boxes[t][a + 3] = (float)cwi_greater(cwi_greater(p[0][a], p[1][a]), p[2][a]);
-            low[a] = fminf(low[a], boxes[t][a]);
-            high[a] = fmaxf(high[a], boxes[t][a + 3]);
+            cwi_box_add(low, high, p[c]);
         }
+        cwi_boxes_triangle(mesh->positions, mesh->triangles + 3 * t, boxes[t]);
     }
-    for (int a = 0; a < 3; a++)
-        r->diagonal = hypot(r->diagonal, (double)high[a] - (double)low[a]);
+    if (mesh->triangle_count)
+        r->diagonal = cwi_box_diagonal(low, high);
     r->side /= 3 * (double)mesh->triangle_count;
 }
 

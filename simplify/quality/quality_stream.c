@@ -5,6 +5,7 @@
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/geometry/box.h"
 #include "core/geometry/union_find.h"
 #include "simplify/quality/triangle_shapes.h"
 #include "simplify/quality/vertex_ranges.h"
@@ -24,7 +25,7 @@ struct cw_quality_stream {
     cw_quality q; /* so far; vertices and triangles are those that came */
     cwi_border border;
     double origin[3];
-    float low[3], high[3];
+    double low[3], high[3];
     size_t joined;          /* vertices that triangles joined to others */
     size_t named, named_by; /* one above the highest vertex named, and the triangle */
 
@@ -305,11 +306,7 @@ static cw_status check_chunk(cw_quality_stream *s, const cw_mesh_chunk *chunk, c
 
 static void append_vertices(cw_quality_stream *s, const cw_mesh *m)
 {
-    for (size_t i = 0; i < 3 * m->vertex_count; i++) {
-        const float p = m->positions[i];
-        s->low[i % 3] = p < s->low[i % 3] ? p : s->low[i % 3];
-        s->high[i % 3] = p > s->high[i % 3] ? p : s->high[i % 3];
-    }
+    cwi_box_add_points(s->low, s->high, m->positions, m->vertex_count);
     if (m->vertex_count)
         memcpy(s->positions + 3 * (s->q.vertices - s->placed), m->positions,
                m->vertex_count * VERTEX_BYTES);
@@ -375,10 +372,7 @@ cw_status cw_quality_stream_new(const cw_quality_stream_desc *desc, cw_quality_s
     s->desc = desc ? *desc : (cw_quality_stream_desc){0};
     s->q.shapes.min_angle_deg = 180;
     s->q.shapes.min_edge_mm = INFINITY;
-    for (int a = 0; a < 3; a++) {
-        s->low[a] = INFINITY;
-        s->high[a] = -INFINITY;
-    }
+    cwi_box_clear(s->low, s->high);
     return CW_OK;
 }
 
@@ -400,8 +394,8 @@ static void derive_totals(cw_quality_stream *s)
     if (q->degenerate == q->triangles)
         q->shapes.min_angle_deg = q->shapes.min_edge_mm = 0;
     for (int a = 0; a < 3; a++) {
-        q->min[a] = q->vertices ? s->origin[a] + (double)s->low[a] : 0;
-        q->max[a] = q->vertices ? s->origin[a] + (double)s->high[a] : 0;
+        q->min[a] = q->vertices ? s->origin[a] + s->low[a] : 0;
+        q->max[a] = q->vertices ? s->origin[a] + s->high[a] : 0;
     }
 }
 

@@ -1,6 +1,7 @@
 /* Fills holes: walks along their rims, and makes a patch for each. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 #include "core/geometry/surface_walk.h"
 #include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
@@ -178,22 +179,16 @@ static void free_around(cwi_hole_mesh *h)
 /* Measures the diagonal of a rim's box, and its length. */
 static void measure_hole(const cw_mesh *m, const cwi_rim *rim, double *diagonal, double *length)
 {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double low[3], high[3];
     *length = 0;
+    cwi_box_clear(low, high);
     for (size_t n = 0; n < rim->size; n++) {
         const float *p = m->positions + 3 * (size_t)rim->vertices[n],
                     *q = m->positions + 3 * (size_t)rim->vertices[(n + 1) % rim->size];
-        double d[3];
-        for (int a = 0; a < 3; a++) {
-            low[a] = fmin(low[a], (double)p[a]);
-            high[a] = fmax(high[a], (double)p[a]);
-            d[a] = (double)q[a] - (double)p[a];
-        }
-        *length += cwi_length(d);
+        cwi_box_add_points(low, high, p, 1);
+        *length += sqrt(cwi_point_distance_sq(p, q));
     }
-    *diagonal =
-        sqrt((high[0] - low[0]) * (high[0] - low[0]) + (high[1] - low[1]) * (high[1] - low[1]) +
-             (high[2] - low[2]) * (high[2] - low[2]));
+    *diagonal = cwi_distance(low, high);
 }
 
 static double measure_patch(const cwi_hole_patch *p)

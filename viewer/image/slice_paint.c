@@ -3,6 +3,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 #include "core/geometry/vec3.h"
 #include "core/volume/volume.h"
 #include "viewer/scene/slice.h"
@@ -61,7 +62,8 @@ static void paint_row(void *context, size_t row)
 /* Returns true if the box of b's voxels, in voxels of a, lies beyond a's voxels along an axis. */
 static bool is_beyond(const cw_volume *a, const cw_volume *b)
 {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double low[3], high[3];
+    cwi_box_clear(low, high);
     for (int n = 0; n < 8; n++) {
         double corner[3], world[3], index[3];
         for (int c = 0; c < 3; c++)
@@ -69,10 +71,7 @@ static bool is_beyond(const cw_volume *a, const cw_volume *b)
         cw_volume_to_world(b, corner, world);
         if (cw_volume_to_index(a, world, index, NULL) != CW_OK)
             return false;
-        for (int c = 0; c < 3; c++) {
-            low[c] = fmin(low[c], index[c]);
-            high[c] = fmax(high[c], index[c]);
-        }
+        cwi_box_add(low, high, index);
     }
     for (int c = 0; c < 3; c++)
         if (high[c] < -0.5 || low[c] > (double)a->dim[c] - 0.5)

@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/geometry/box.h"
 #include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
 #include "core/volume/cell_shapes.h"
@@ -51,17 +52,14 @@ static void add_cell(const cwi_cell_shape *s, double boxes, const double *points
     size->volume += volume;
     size->boxes += boxes;
     for (int c = 0; c < s->corner_count; c++)
-        for (size_t a = 0; a < 3; a++) {
-            const double x = points[3 * (size_t)corners[c] + a];
-            size->low[a] = cwi_lesser(size->low[a], x);
-            size->high[a] = cwi_greater(size->high[a], x);
-        }
+        cwi_box_add(size->low, size->high, points + 3 * (size_t)corners[c]);
 }
 
 static cwi_cells_size empty_size(void)
 {
-    return (cwi_cells_size){.low = {INFINITY, INFINITY, INFINITY},
-                            .high = {-INFINITY, -INFINITY, -INFINITY}};
+    cwi_cells_size size = {0};
+    cwi_box_clear(size.low, size.high);
+    return size;
 }
 
 static bool corners_exist(const cwi_cell_shape *s, const uint32_t *corners, size_t samples)
@@ -102,10 +100,7 @@ static cw_status join_chunks(const job *work, size_t count, cwi_cells_size *size
                             work->volume->dim[0]);
         size->volume += c->size.volume;
         size->boxes += c->size.boxes;
-        for (int a = 0; a < 3; a++) {
-            size->low[a] = fmin(size->low[a], c->size.low[a]);
-            size->high[a] = fmax(size->high[a], c->size.high[a]);
-        }
+        cwi_box_join(size->low, size->high, c->size.low, c->size.high);
     }
     for (int a = 0; a < 3 && size->boxes == 0; a++)
         size->low[a] = size->high[a] = 0;

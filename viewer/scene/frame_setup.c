@@ -371,9 +371,8 @@ static void find_faces(cwi_frame *f)
 
 static void choose_unit(cwi_frame *f, const double min[3], const double max[3])
 {
-    const double d[3] = {max[0] - min[0], max[1] - min[1], max[2] - min[2]};
     if (!f->volume.data)
-        f->unit_mm = cwi_length(d) / MESH_UNITS;
+        f->unit_mm = cwi_distance(min, max) / MESH_UNITS;
     if (!isnormal(f->unit_mm))
         f->unit_mm = 1;
 }
