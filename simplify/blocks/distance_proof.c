@@ -7,10 +7,10 @@
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/geometry/bvh.h"
-#include "core/geometry/surface_walk.h"
 #include "core/geometry/triangle_cover.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/mesh_triangle.h"
+#include "core/mesh/surface_walk.h"
 #include "simplify/blocks/partition.h"
 #include "simplify/quality/mesh_within.h"
 

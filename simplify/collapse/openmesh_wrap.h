@@ -3,7 +3,7 @@
 #ifndef SIMPLIFY_COLLAPSE_OPENMESH_WRAP_H
 #define SIMPLIFY_COLLAPSE_OPENMESH_WRAP_H
 
-#include "core/geometry/surface_walk.h"
+#include "core/mesh/surface_walk.h"
 
 #include <cubewright/core.h>
 

@@ -3,6 +3,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/corner_table.h"
 #include "simplify/cut/cut_state.h"
 
 #include <math.h>
@@ -84,11 +85,6 @@ static bool add_edge(cwi_cut *c, uint32_t start, uint32_t end)
     c->edges = room;
     c->edges[c->edge_count++] = (cwi_cut_edge){start, end};
     return true;
-}
-
-static uint64_t make_key(uint32_t a, uint32_t b)
-{
-    return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
 }
 
 static int compare_keys(const void *a, const void *b)
@@ -192,7 +188,7 @@ static bool gather_crossings(clip_work *w)
             if (!room)
                 return false;
             w->crossings = room;
-            w->crossings[w->crossing_count++] = make_key(v, next);
+            w->crossings[w->crossing_count++] = cwi_edge_key(v, next);
         }
     }
     return true;
@@ -249,7 +245,7 @@ static bool number_crossings(clip_work *w)
 
 static uint32_t find_crossing(const clip_work *w, uint32_t a, uint32_t b)
 {
-    const uint64_t key = make_key(a, b);
+    const uint64_t key = cwi_edge_key(a, b);
     const uint64_t *found =
         bsearch(&key, w->crossings, w->crossing_count, sizeof key, compare_keys);
     return w->first_crossing + (uint32_t)(found - w->crossings);
@@ -300,7 +296,7 @@ static bool add_flat_edges(clip_work *w, const uint32_t *corners, const uint32_t
             return false;
         w->flat_edges = room;
         w->flat_edges[w->flat_count++] = (flat_edge){
-            make_key(corners[k], corners[next]), {numbers[k], numbers[next]}, is_kept_one};
+            cwi_edge_key(corners[k], corners[next]), {numbers[k], numbers[next]}, is_kept_one};
     }
     return true;
 }

@@ -5,69 +5,48 @@
 #include "core/base/status.h"
 #include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/corner_table.h"
 #include "simplify/cut/section.h"
 
-#include <stdlib.h>
 #include <string.h>
-
-#define NONE UINT32_MAX
 
 enum { MAX_FLIPS_EACH = 64, STEPS_A_REPORT = 4096 };
 
 /* Opposite angles must exceed 180 degrees by more than rounding, so that no edge flips twice. */
 static const double FLIP_MARGIN = 1e-9;
 
-typedef struct side_key {
-    uint64_t key; /* the lower vertex << 32 | the higher */
-    uint32_t side;
-} side_key;
-
 /* Sides are numbered 3 t + k: from corner k of triangle t to the next. */
 typedef struct flip_work {
     const cwi_section *section;
     uint32_t *corners; /* 3 for each triangle of the section */
     size_t side_count;
-    uint32_t *twins; /* the same side of the other triangle; NONE: an edge of a loop */
+    uint32_t *twins; /* the same side of the other triangle; CWI_NO_CORNER: an edge of a loop */
     uint32_t *stack; /* sides to look at */
     bool *is_stacked;
     size_t stack_count;
 } flip_work;
 
-static int compare_sides(const void *a, const void *b)
-{
-    const side_key *s = a, *t = b;
-    if (s->key != t->key)
-        return s->key < t->key ? -1 : 1;
-    return (s->side > t->side) - (s->side < t->side);
-}
-
 static bool link_sides(flip_work *w)
 {
-    side_key *keys = cwi_alloc_array(w->side_count, sizeof *keys);
-    if (!keys)
+    cwi_side *sides = cwi_alloc_array(w->side_count, sizeof *sides);
+    if (!sides)
         return false;
-    for (uint32_t n = 0; n < w->side_count; n++) {
-        const uint32_t a = w->corners[n], b = w->corners[cwi_corner_next(n)];
-        keys[n] = (side_key){a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a, n};
-    }
-    qsort(keys, w->side_count, sizeof *keys, compare_sides);
+    cwi_sides_list(w->corners, w->side_count, sides);
     memset(w->twins, 0xff, w->side_count * sizeof *w->twins);
-    for (size_t n = 0, end; n < w->side_count; n = end) {
-        for (end = n + 1; end < w->side_count && keys[end].key == keys[n].key; end++)
-            ;
-        if (end == n + 2 && w->corners[keys[n].side] != w->corners[keys[n + 1].side]) {
-            w->twins[keys[n].side] = keys[n + 1].side;
-            w->twins[keys[n + 1].side] = keys[n].side;
-        }
+    for (size_t n = 0, along; n < w->side_count; n += along) {
+        const uint32_t a = sides[n].corner;
+        along = cwi_sides_along(sides, w->side_count, n);
+        if (along == 2 && w->corners[a] != w->corners[sides[n + 1].corner])
+            cwi_twins_join(w->twins, a, sides[n + 1].corner);
     }
-    cwi_free(keys);
+    cwi_free(sides);
     return true;
 }
 
 static void push_side(flip_work *w, uint32_t side)
 {
     const uint32_t twin = w->twins[side];
-    if (twin == NONE)
+    if (twin == CWI_NO_CORNER)
         return;
     side = side < twin ? side : twin;
     if (!w->is_stacked[side])
@@ -137,7 +116,7 @@ static bool is_flip_better(const flip_work *w, uint32_t side)
 static void set_twins(flip_work *w, uint32_t a, uint32_t b)
 {
     w->twins[a] = b;
-    if (b != NONE)
+    if (b != CWI_NO_CORNER)
         w->twins[b] = a;
 }
 
@@ -172,7 +151,7 @@ static cw_status flip_sides(flip_work *w, cw_error *err)
                 return st;
         }
         w->is_stacked[side] = false;
-        if (w->twins[side] == NONE || !is_flip_better(w, side))
+        if (w->twins[side] == CWI_NO_CORNER || !is_flip_better(w, side))
             continue;
         flip_side(w, side);
         flips--;

@@ -24,7 +24,8 @@ typedef struct spoke {
     bool leaves;       /* the triangle runs through it away from the vertex */
 } spoke;
 
-/* The triangles around a vertex. */
+/* The triangles around a vertex. Not a corner table: a star is found from the triangles of one range, so
+ * that ranges run on threads and a surface may pass by in chunks. */
 typedef struct star {
     uint32_t vertex;
     size_t count;

@@ -3,9 +3,9 @@
 #include "core/base/status.h"
 #include "core/geometry/closest_point.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/corner_table.h"
 #include "simplify/remesh/remesh_state.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* Fraction of the allowed distance that the work may use: it is checked at points alone, and the
@@ -20,20 +20,6 @@ static cw_status report_no_memory(const cwi_remesh *r, cw_error *err)
 
 /* --- links -------------------------------------------------------------------------------- */
 
-typedef struct edge_end {
-    uint32_t low, high, corner;
-} edge_end;
-
-static int compare_ends(const void *a, const void *b)
-{
-    const edge_end *p = a, *q = b;
-    if (p->low != q->low)
-        return p->low < q->low ? -1 : 1;
-    if (p->high != q->high)
-        return p->high < q->high ? -1 : 1;
-    return p->corner < q->corner ? -1 : p->corner > q->corner;
-}
-
 static cw_status refuse_mesh(cw_error *err, const char *what, uint32_t vertex)
 {
     return cwi_fail(err, CW_ERR_FORMAT,
@@ -41,23 +27,19 @@ static cw_status refuse_mesh(cw_error *err, const char *what, uint32_t vertex)
                     what, (unsigned)vertex);
 }
 
-/* Joins the two corners of each edge. */
-static cw_status pair_ends(cwi_remesh *r, const edge_end *ends, size_t count, cw_error *err)
+/* Joins the two sides along each edge. */
+static cw_status pair_sides(cwi_remesh *r, const cwi_side *sides, size_t count, cw_error *err)
 {
-    for (size_t n = 0, after; n < count; n = after) {
-        after = n + 1;
-        while (after < count && ends[after].low == ends[n].low &&
-               ends[after].high == ends[n].high)
-            after++;
-        if (after - n > 2)
-            return refuse_mesh(err, "an edge has more than two triangles", ends[n].low);
-        if (after - n == 1)
+    for (size_t n = 0, along; n < count; n += along) {
+        const uint32_t a = sides[n].corner, low = (uint32_t)(sides[n].key >> 32);
+        along = cwi_sides_along(sides, count, n);
+        if (along > 2)
+            return refuse_mesh(err, "an edge has more than two triangles", low);
+        if (along == 1)
             continue;
-        const uint32_t a = ends[n].corner, b = ends[n + 1].corner;
-        if (r->triangles[a] == r->triangles[b])
-            return refuse_mesh(err, "neighbours wind in opposite ways", ends[n].low);
-        r->twin[a] = b;
-        r->twin[b] = a;
+        if (r->triangles[a] == r->triangles[sides[n + 1].corner])
+            return refuse_mesh(err, "neighbours wind in opposite ways", low);
+        cwi_twins_join(r->twin, a, sides[n + 1].corner);
     }
     return CW_OK;
 }
@@ -65,22 +47,20 @@ static cw_status pair_ends(cwi_remesh *r, const edge_end *ends, size_t count, cw
 static cw_status link_triangles(cwi_remesh *r, cw_error *err)
 {
     const size_t count = 3 * r->triangle_count;
-    edge_end *ends = cwi_alloc_array(count, sizeof *ends);
-    if (!ends)
-        return report_no_memory(r, err);
     cw_status st = CW_OK;
     for (uint32_t c = 0; c < count && st == CW_OK; c++) {
-        const uint32_t a = r->triangles[c], b = r->triangles[cwi_corner_next(c)];
-        ends[c] = (edge_end){a < b ? a : b, a < b ? b : a, c};
         r->twin[c] = CWI_NONE;
-        if (a == b)
-            st = refuse_mesh(err, "a triangle names a vertex twice", a);
+        if (r->triangles[c] == r->triangles[cwi_corner_next(c)])
+            st = refuse_mesh(err, "a triangle names a vertex twice", r->triangles[c]);
     }
+    cwi_side *sides = st == CW_OK ? cwi_alloc_array(count, sizeof *sides) : NULL;
+    if (st == CW_OK && !sides)
+        st = report_no_memory(r, err);
     if (st == CW_OK) {
-        qsort(ends, count, sizeof *ends, compare_ends);
-        st = pair_ends(r, ends, count, err);
+        cwi_sides_list(r->triangles, count, sides);
+        st = pair_sides(r, sides, count, err);
     }
-    cwi_free(ends);
+    cwi_free(sides);
     return st;
 }
 

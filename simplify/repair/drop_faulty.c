@@ -4,6 +4,7 @@
 #include "core/geometry/triangle_intersect.h"
 #include "core/geometry/union_find.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/corner_table.h"
 #include "core/mesh/mesh.h"
 #include "simplify/repair/repair_state.h"
 
@@ -102,33 +103,6 @@ cw_status cwi_drop_duplicates(cwi_repair *r, bool cancel, size_t *dropped, cw_er
 
 /* --- triangles without area --------------------------------------------------------------- */
 
-typedef struct edge_keys {
-    uint64_t *keys; /* of all edges, sorted */
-    size_t count;
-} edge_keys;
-
-static uint64_t key_of(uint32_t a, uint32_t b)
-{
-    return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
-}
-
-static int compare_keys(const void *a, const void *b)
-{
-    const uint64_t s = *(const uint64_t *)a, t = *(const uint64_t *)b;
-    return s < t ? -1 : s > t;
-}
-
-static bool list_keys(const cw_mesh *m, edge_keys *e)
-{
-    e->count = 3 * m->triangle_count;
-    e->keys = cwi_alloc_array(e->count, sizeof *e->keys);
-    for (uint32_t c = 0; c < e->count && e->keys; c++)
-        e->keys[c] = key_of(m->triangles[c], m->triangles[cwi_corner_next(c)]);
-    if (e->keys)
-        qsort(e->keys, e->count, sizeof *e->keys, compare_keys);
-    return e->keys;
-}
-
 /* Returns the corner at which the longest edge of a triangle begins. */
 static uint32_t longest_edge(const cw_mesh *m, uint32_t t)
 {
@@ -148,12 +122,12 @@ static uint32_t longest_edge(const cw_mesh *m, uint32_t t)
 
 /* Flips the longest edge of a triangle without area: its neighbour is divided at the vertex on that
  * edge. Marks the triangle if that is not possible. */
-static void flip_longest(cwi_repair *r, const edge_keys *edges, uint32_t t, bool *touched,
+static void flip_longest(cwi_repair *r, const uint64_t *edges, uint32_t t, bool *touched,
                          bool *marked)
 {
     uint32_t *v = r->mesh.triangles;
     const uint32_t c = longest_edge(&r->mesh, t), other = r->twin[c];
-    if (other == CWI_NO_TWIN) {
+    if (other == CWI_NO_CORNER) {
         marked[t] = touched[t] = true;
         return;
     }
@@ -161,10 +135,8 @@ static void flip_longest(cwi_repair *r, const edge_keys *edges, uint32_t t, bool
                    tip = v[cwi_corner_prev(c)], far = v[cwi_corner_prev(other)];
     if (touched[t] || touched[u])
         return;
-    const uint64_t key = key_of(tip, far);
     touched[t] = touched[u] = true;
-    if (tip == far ||
-        bsearch(&key, edges->keys, edges->count, sizeof *edges->keys, compare_keys)) {
+    if (tip == far || cwi_edge_exists(edges, 3 * r->mesh.triangle_count, tip, far)) {
         marked[t] = true;
         marked[u] = tip == far;
         return;
@@ -178,7 +150,7 @@ static cw_status flip_round(cwi_repair *r, bool give_up, size_t *found, cw_error
 {
     cw_mesh *m = &r->mesh;
     const size_t count = m->triangle_count;
-    edge_keys edges = {0};
+    uint64_t *edges = NULL;
     bool *touched = NULL, *marked = NULL;
     size_t flat = 0;
     cw_status st = CW_OK;
@@ -189,7 +161,7 @@ static cw_status flip_round(cwi_repair *r, bool give_up, size_t *found, cw_error
         return CW_OK;
     touched = cwi_alloc_zeroed(count, sizeof *touched);
     marked = cwi_alloc_zeroed(count, sizeof *marked);
-    if (!touched || !marked || !list_keys(m, &edges))
+    if (!touched || !marked || !(edges = cwi_edge_keys(m->triangles, 3 * count)))
         st = fail_memory(r, err);
     for (uint32_t t = 0; t < count && st == CW_OK; t++) {
         if (touched[t] || cwi_has_area(m->positions, m->triangles + 3 * (size_t)t))
@@ -197,7 +169,7 @@ static cw_status flip_round(cwi_repair *r, bool give_up, size_t *found, cw_error
         if (give_up)
             marked[t] = true;
         else
-            flip_longest(r, &edges, t, touched, marked);
+            flip_longest(r, edges, t, touched, marked);
     }
     for (size_t t = 0; t < count && st == CW_OK; t++)
         flat += marked[t];
@@ -207,7 +179,7 @@ static cw_status flip_round(cwi_repair *r, bool give_up, size_t *found, cw_error
         st = cwi_repair_link(r, false, err);
     cwi_free(touched);
     cwi_free(marked);
-    cwi_free(edges.keys);
+    cwi_free(edges);
     return st;
 }
 
@@ -236,7 +208,7 @@ static void add_triangle(const cwi_repair *r, uint32_t t, component_size *s)
     s->area += cwi_triangle_area(p[0], p[1], p[2]);
     s->triangles++;
     for (uint32_t k = 0; k < 3; k++)
-        if (r->twin[3 * t + k] == CWI_NO_TWIN) {
+        if (r->twin[3 * t + k] == CWI_NO_CORNER) {
             s->rim++;
             for (int a = 0; a < 3; a++)
                 s->middle[a] += p[k][a];
@@ -278,7 +250,7 @@ cw_status cwi_drop_sheets(cwi_repair *r, size_t *sheets, size_t *triangles, cw_e
     size_t found = 0;
     cw_status st = set && sizes && marked ? CW_OK : fail_memory(r, err);
     for (uint32_t c = 0; c < 3 * count && st == CW_OK; c++)
-        if (r->twin[c] != CWI_NO_TWIN)
+        if (r->twin[c] != CWI_NO_CORNER)
             cwi_sets_join(set, c / 3, r->twin[c] / 3);
     for (uint32_t t = 0; t < count && st == CW_OK; t++)
         add_triangle(r, t, &sizes[cwi_sets_find(set, t)]);

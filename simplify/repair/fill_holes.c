@@ -2,13 +2,12 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/box.h"
-#include "core/geometry/surface_walk.h"
 #include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/corner_table.h"
 #include "simplify/repair/hole_patch.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Patches of rims with more edges are made coarse first: triangles are this many times larger, then
@@ -97,7 +96,7 @@ static bool push_rim(rim_walk *w, size_t from, size_t to)
 static uint32_t follow_rim(const cwi_repair *r, uint32_t corner)
 {
     uint32_t c = cwi_corner_next(corner);
-    while (r->twin[c] != CWI_NO_TWIN)
+    while (r->twin[c] != CWI_NO_CORNER)
         c = cwi_corner_next(r->twin[c]);
     return c;
 }
@@ -132,7 +131,7 @@ static bool find_rims(rim_walk *w)
     w->visited = cwi_alloc_zeroed(corners, 1);
     bool ok = w->path && w->at && w->visited;
     for (uint32_t c = 0; c < corners && ok; c++)
-        if (w->r->twin[c] == CWI_NO_TWIN && !w->visited[c])
+        if (w->r->twin[c] == CWI_NO_CORNER && !w->visited[c])
             ok = walk_rim(w, c);
     cwi_free(w->path);
     cwi_free(w->at);
@@ -142,27 +141,16 @@ static bool find_rims(rim_walk *w)
 
 /* --- the mesh around ---------------------------------------------------------------------- */
 
-static int compare_keys(const void *a, const void *b)
-{
-    const uint64_t s = *(const uint64_t *)a, t = *(const uint64_t *)b;
-    return s < t ? -1 : s > t;
-}
-
 static bool init_around(cwi_hole_mesh *h, const cw_mesh *m)
 {
     const size_t corners = 3 * m->triangle_count;
     h->mesh = m;
     h->edge_count = corners;
-    h->edges = cwi_alloc_array(corners, sizeof *h->edges);
+    h->edges = cwi_edge_keys(m->triangles, corners);
     h->first = cwi_alloc_zeroed(m->vertex_count + 2, sizeof *h->first);
     h->around = cwi_alloc_array(corners, sizeof *h->around);
     if (!h->edges || !h->first || !h->around)
         return false;
-    for (uint32_t c = 0; c < corners; c++) {
-        const uint64_t a = m->triangles[c], b = m->triangles[cwi_corner_next(c)];
-        h->edges[c] = a < b ? a << 32 | b : b << 32 | a;
-    }
-    qsort(h->edges, corners, sizeof *h->edges, compare_keys);
     cwi_fans_sort(m->triangles, m->triangle_count, m->vertex_count, h->first, h->around);
     return true;
 }

@@ -16,9 +16,9 @@ typedef struct cwi_rim {
 /* The mesh for all holes: its edges, and the triangles around vertices. */
 typedef struct cwi_hole_mesh {
     const cw_mesh *mesh;
-    uint64_t *edges; /* sorted: the lower vertex, then the higher */
+    uint64_t *edges; /* see cwi_edge_keys() */
     size_t edge_count;
-    uint32_t *first, *around; /* see cwi_fans */
+    uint32_t *first, *around; /* see cwi_fans_sort() */
 } cwi_hole_mesh;
 
 /* Points and triangles. The first points are those of the rim, in its order. A zeroed struct is valid
@@ -33,9 +33,6 @@ typedef struct cwi_hole_patch {
 } cwi_hole_patch;
 
 void cwi_patch_free(cwi_hole_patch *patch);
-
-/* Returns true if the mesh has an edge between two vertices. */
-bool cwi_hole_has_edge(const cwi_hole_mesh *around, uint32_t a, uint32_t b);
 
 /* All below return false when memory is out. */
 

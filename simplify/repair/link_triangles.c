@@ -3,6 +3,7 @@
 #include "core/base/status.h"
 #include "core/geometry/union_find.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/corner_table.h"
 #include "simplify/repair/repair_state.h"
 
 #include <math.h>
@@ -11,12 +12,6 @@
 
 /* Triangles around an edge that are paired one by one; of more the rest stays open. */
 enum { MAX_AROUND = 32 };
-
-/* A side of a triangle. */
-typedef struct half_edge {
-    uint64_t key; /* the lower vertex, then the higher */
-    uint32_t corner;
-} half_edge;
 
 /* A side at an edge of more than two triangles. */
 typedef struct fin {
@@ -28,7 +23,7 @@ typedef struct fin {
 
 typedef struct link_work {
     cwi_repair *r;
-    half_edge *halves;
+    cwi_side *sides;
     size_t count;
     uint32_t *patch; /* of triangles: union-find along edges of two triangles */
     uint32_t *queue; /* triangles in the order in which they were reached */
@@ -37,38 +32,6 @@ typedef struct link_work {
 } link_work;
 
 enum { REACHED = 1, TO_FLIP = 2 };
-
-static int compare_halves(const void *a, const void *b)
-{
-    const half_edge *s = a, *t = b;
-    if (s->key != t->key)
-        return s->key < t->key ? -1 : 1;
-    return s->corner < t->corner ? -1 : s->corner > t->corner;
-}
-
-static void list_halves(link_work *w)
-{
-    const uint32_t *v = w->r->mesh.triangles;
-    for (uint32_t c = 0; c < w->count; c++) {
-        const uint64_t from = v[c], to = v[cwi_corner_next(c)];
-        w->halves[c] = (half_edge){from < to ? from << 32 | to : to << 32 | from, c};
-    }
-    qsort(w->halves, w->count, sizeof *w->halves, compare_halves);
-}
-
-static size_t count_equal(const link_work *w, size_t i)
-{
-    size_t n = 1;
-    while (i + n < w->count && w->halves[i + n].key == w->halves[i].key)
-        n++;
-    return n;
-}
-
-static void join_corners(cwi_repair *r, uint32_t a, uint32_t b)
-{
-    r->twin[a] = b;
-    r->twin[b] = a;
-}
 
 /* --- edges of more than two triangles ----------------------------------------------------- */
 
@@ -120,13 +83,13 @@ static void pair_fins(link_work *w, size_t first, size_t count)
     fin fins[MAX_AROUND];
     const size_t size = count < MAX_AROUND ? count : MAX_AROUND;
     for (size_t n = 0; n < size; n++) {
-        const half_edge *h = &w->halves[first + n];
-        fins[n] =
-            (fin){.corner = h->corner,
-                  .patch = cwi_sets_find(w->patch, h->corner / 3),
-                  .runs_forward = w->r->mesh.triangles[h->corner] == (uint32_t)(h->key >> 32)};
+        const cwi_side *side = &w->sides[first + n];
+        fins[n] = (fin){.corner = side->corner,
+                        .patch = cwi_sets_find(w->patch, side->corner / 3),
+                        .runs_forward =
+                            w->r->mesh.triangles[side->corner] == (uint32_t)(side->key >> 32)};
     }
-    measure_angles(&w->r->mesh, w->halves[first].key, fins, size);
+    measure_angles(&w->r->mesh, w->sides[first].key, fins, size);
     qsort(fins, size, sizeof *fins, compare_fins);
     for (size_t pairs = 0; pairs < size / 2; pairs++) {
         int best = 0;
@@ -144,7 +107,7 @@ static void pair_fins(link_work *w, size_t first, size_t count)
         if (best == 0)
             break;
         fins[a].is_paired = fins[b].is_paired = true;
-        join_corners(w->r, fins[a].corner, fins[b].corner);
+        cwi_twins_join(w->r->twin, fins[a].corner, fins[b].corner);
     }
 }
 
@@ -152,15 +115,15 @@ static void join_edges(link_work *w)
 {
     size_t along;
     for (size_t i = 0; i < w->count; i += along) {
-        along = count_equal(w, i);
+        along = cwi_sides_along(w->sides, w->count, i);
         if (along != 2)
             continue;
-        const uint32_t a = w->halves[i].corner, b = w->halves[i + 1].corner;
-        join_corners(w->r, a, b);
+        const uint32_t a = w->sides[i].corner, b = w->sides[i + 1].corner;
+        cwi_twins_join(w->r->twin, a, b);
         cwi_sets_join(w->patch, a / 3, b / 3);
     }
     for (size_t i = 0; i < w->count; i += along) {
-        along = count_equal(w, i);
+        along = cwi_sides_along(w->sides, w->count, i);
         if (along <= 2)
             continue;
         w->parted++;
@@ -173,7 +136,7 @@ static void join_edges(link_work *w)
 static void cut_edge(cwi_repair *r, uint32_t corner)
 {
     const uint32_t other = r->twin[corner];
-    r->twin[corner] = r->twin[other] = CWI_NO_TWIN;
+    r->twin[corner] = r->twin[other] = CWI_NO_CORNER;
 }
 
 /* Reaches the neighbours of a triangle; cuts edges at which one side would have to be both. */
@@ -182,7 +145,7 @@ static size_t reach_neighbours(link_work *w, uint32_t t, size_t end)
     const cwi_repair *r = w->r;
     for (uint32_t c = 3 * t; c < 3 * t + 3; c++) {
         const uint32_t other = r->twin[c];
-        if (other == CWI_NO_TWIN)
+        if (other == CWI_NO_CORNER)
             continue;
         const uint32_t u = other / 3;
         const bool disagrees = r->mesh.triangles[c] == r->mesh.triangles[other];
@@ -207,7 +170,7 @@ static void flip_triangle(cwi_repair *r, uint32_t t)
     twin[0] = twin[2];
     twin[2] = corner;
     for (uint32_t c = 0; c < 3; c++)
-        if (twin[c] != CWI_NO_TWIN)
+        if (twin[c] != CWI_NO_CORNER)
             r->twin[twin[c]] = 3 * t + c;
 }
 
@@ -240,16 +203,16 @@ cw_status cwi_repair_link(cwi_repair *r, bool is_first, cw_error *err)
     link_work w = {.r = r, .count = corners};
     cwi_free(r->twin);
     r->twin = cwi_alloc_array(corners, sizeof *r->twin);
-    w.halves = cwi_alloc_array(corners, sizeof *w.halves);
+    w.sides = cwi_alloc_array(corners, sizeof *w.sides);
     w.patch = cwi_sets_alloc(triangles);
     w.queue = cwi_alloc_array(triangles, sizeof *w.queue);
     w.state = cwi_alloc_zeroed(triangles, 1);
     cw_status st = CW_OK;
-    if (!r->twin || !w.halves || !w.patch || !w.queue || !w.state)
+    if (!r->twin || !w.sides || !w.patch || !w.queue || !w.state)
         st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to join %zu triangles", triangles);
     if (st == CW_OK) {
         memset(r->twin, 0xff, corners * sizeof *r->twin);
-        list_halves(&w);
+        cwi_sides_list(r->mesh.triangles, corners, w.sides);
         join_edges(&w);
         agree_triangles(&w);
     }
@@ -258,7 +221,7 @@ cw_status cwi_repair_link(cwi_repair *r, bool is_first, cw_error *err)
         r->facts.twisted_edges += w.cut;
         r->facts.flipped_triangles += w.flipped;
     }
-    cwi_free(w.halves);
+    cwi_free(w.sides);
     cwi_free(w.patch);
     cwi_free(w.queue);
     cwi_free(w.state);

@@ -3,6 +3,7 @@
 #include "core/base/memory.h"
 #include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/corner_table.h"
 #include "simplify/repair/hole_patch.h"
 
 #include <math.h>
@@ -175,7 +176,8 @@ static bool flip_edge(refinement *r, uint32_t t, int k)
         has_patch_edge(p, t, tip, far))
         return false;
     if (tip < r->rim->size && far < r->rim->size &&
-        cwi_hole_has_edge(r->around, r->rim->vertices[tip], r->rim->vertices[far]))
+        cwi_edge_exists(r->around->edges, r->around->edge_count, r->rim->vertices[tip],
+                        r->rim->vertices[far]))
         return false;
     const uint32_t beyond_b = p->neighbours[t][(k + 1) % 3], /* edge b, tip */
         beyond_a = p->neighbours[t][(k + 2) % 3],            /* edge tip, a */

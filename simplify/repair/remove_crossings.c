@@ -195,12 +195,12 @@ static bool list_shells(const cwi_repair *r, const cw_crossings *found, shell_li
     if (!s->root || !s->number || !s->is_bad || !s->crosses || !s->marked)
         return false;
     for (uint32_t c = 0; c < 3 * count; c++)
-        if (r->twin[c] != CWI_NO_TWIN)
+        if (r->twin[c] != CWI_NO_CORNER)
             cwi_sets_join(s->root, c / 3, r->twin[c] / 3);
     for (uint32_t t = 0; t < count; t++)
         s->root[t] = cwi_sets_find(s->root, t);
     for (uint32_t c = 0; c < 3 * count; c++)
-        if (r->twin[c] == CWI_NO_TWIN)
+        if (r->twin[c] == CWI_NO_CORNER)
             s->is_bad[s->root[c / 3]] = true;
     for (size_t n = 0; n < found->count; n++) {
         const uint32_t a = s->root[found->pairs[2 * n]], b = s->root[found->pairs[2 * n + 1]];
@@ -260,7 +260,7 @@ static bool mark_fragments(const cwi_repair *r, bool *marked)
     const bool ok = whole && part && area && largest;
     for (uint32_t c = 0; c < 3 * count && ok; c++) {
         const uint32_t other = r->twin[c];
-        if (other == CWI_NO_TWIN)
+        if (other == CWI_NO_CORNER)
             continue;
         cwi_sets_join(whole, c / 3, other / 3);
         if (!marked[c / 3] && !marked[other / 3])

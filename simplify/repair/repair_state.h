@@ -2,12 +2,12 @@
 #ifndef SIMPLIFY_REPAIR_REPAIR_STATE_H
 #define SIMPLIFY_REPAIR_REPAIR_STATE_H
 
+#include "core/mesh/corner_table.h"
 #include "core/mesh/mesh_triangle.h"
 
 #include <cubewright/repair.h>
 
-#define CWI_NO_TWIN UINT32_MAX /* of an open edge */
-#define CWI_NEW     UINT32_MAX /* the source of a vertex that the input does not have */
+#define CWI_NEW UINT32_MAX /* the source of a vertex that the input does not have */
 
 /* Smoothness of patches: later rounds take plainer ones, which cross less. */
 typedef enum cwi_patch_kind { CWI_PATCH_FAIR, CWI_PATCH_FLAT, CWI_PATCH_PLAIN } cwi_patch_kind;
@@ -17,7 +17,7 @@ typedef struct cwi_repair {
                              colors: 1 in the first byte at rims of holes that stay open */
     const cw_mesh *input; /* welded, with its attributes */
     uint32_t *twin; /* of each corner: the corner whose edge lies along that from this corner
-                             to the next; or CWI_NO_TWIN */
+                             to the next; or CWI_NO_CORNER */
     cw_repair_desc desc;
     cw_repair_facts facts;
     bool is_later;      /* the holes of the input were seen */

@@ -7,7 +7,6 @@
 #include "simplify/repair/repair_state.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* How far parted vertices move: this fraction of their shortest edge, but at least as many steps of
@@ -57,7 +56,7 @@ static void join_fans(const cwi_repair *r, uint32_t *fan)
     const uint32_t corners = (uint32_t)(3 * r->mesh.triangle_count);
     for (uint32_t c = 0; c < corners; c++) {
         const uint32_t other = r->twin[c];
-        if (other == CWI_NO_TWIN || other < c)
+        if (other == CWI_NO_CORNER || other < c)
             continue;
         cwi_sets_join(fan, c, cwi_corner_next(other));
         cwi_sets_join(fan, cwi_corner_next(c), other);
@@ -125,30 +124,16 @@ static cw_status split_fans(cwi_repair *r, size_t *copies, cw_error *err)
 
 /* --- edges that two pairs of triangles still share ---------------------------------------- */
 
-typedef struct paired_edge {
-    uint64_t key;
-    uint32_t corner;
-} paired_edge;
-
-static int compare_edges(const void *a, const void *b)
-{
-    const paired_edge *s = a, *t = b;
-    if (s->key != t->key)
-        return s->key < t->key ? -1 : 1;
-    return s->corner < t->corner ? -1 : s->corner > t->corner;
-}
-
 /* Lists an edge for each pair of triangles, and for each open one. */
-static size_t list_edges(const cwi_repair *r, paired_edge *edges)
+static size_t list_edges(const cwi_repair *r, cwi_side *edges)
 {
     const uint32_t *v = r->mesh.triangles;
     size_t count = 0;
     for (uint32_t c = 0; c < 3 * r->mesh.triangle_count; c++) {
-        const uint64_t from = v[c], to = v[cwi_corner_next(c)];
-        if (r->twin[c] == CWI_NO_TWIN || c < r->twin[c])
-            edges[count++] = (paired_edge){from < to ? from << 32 | to : to << 32 | from, c};
+        if (r->twin[c] == CWI_NO_CORNER || c < r->twin[c])
+            edges[count++] = (cwi_side){cwi_edge_key(v[c], v[cwi_corner_next(c)]), c};
     }
-    qsort(edges, count, sizeof *edges, compare_edges);
+    cwi_sides_sort(edges, count);
     return count;
 }
 
@@ -158,7 +143,7 @@ static size_t divide_sides(cwi_repair *r, uint32_t corner, uint32_t middle, uint
     const uint32_t sides[2] = {corner, r->twin[corner]};
     size_t count = 0;
     for (int n = 0; n < 2; n++) {
-        if (sides[n] == CWI_NO_TWIN)
+        if (sides[n] == CWI_NO_CORNER)
             continue;
         const uint32_t next = cwi_corner_next(sides[n]), last = cwi_corner_next(next);
         uint32_t *v = r->mesh.triangles, *to = added + 3 * count++;
@@ -175,7 +160,7 @@ static cw_status divide_shared_edges(cwi_repair *r, size_t *divided, cw_error *e
 {
     cw_mesh *m = &r->mesh;
     const size_t corners = 3 * m->triangle_count;
-    paired_edge *edges = cwi_alloc_array(corners, sizeof *edges);
+    cwi_side *edges = cwi_alloc_array(corners, sizeof *edges);
     bool *is_used = cwi_alloc_zeroed(m->triangle_count, sizeof *is_used);
     float *points = NULL;
     uint32_t *added = NULL;
@@ -196,14 +181,14 @@ static cw_status divide_shared_edges(cwi_repair *r, size_t *divided, cw_error *e
         const uint32_t corner = edges[n].corner, other = r->twin[corner];
         const bool is_shared = (n > 0 && edges[n].key == edges[n - 1].key) ||
                                (n + 1 < count && edges[n].key == edges[n + 1].key);
-        if (!is_shared || is_used[corner / 3] || (other != CWI_NO_TWIN && is_used[other / 3]))
+        if (!is_shared || is_used[corner / 3] || (other != CWI_NO_CORNER && is_used[other / 3]))
             continue;
         const float *p = m->positions + 3 * (edges[n].key >> 32),
                     *q = m->positions + 3 * (edges[n].key & UINT32_MAX);
         for (int a = 0; a < 3; a++)
             points[3 * vertices + (size_t)a] = (float)(((double)p[a] + (double)q[a]) / 2);
         is_used[corner / 3] = true;
-        if (other != CWI_NO_TWIN)
+        if (other != CWI_NO_CORNER)
             is_used[other / 3] = true;
         triangles += divide_sides(r, corner, (uint32_t)(m->vertex_count + vertices),
                                   added + 3 * triangles);

@@ -3,10 +3,10 @@
 #include "core/base/memory.h"
 #include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/corner_table.h"
 #include "simplify/repair/hole_patch.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Vertices of a rim that is triangulated at best; it takes a sixth of the cube of this number of
@@ -58,18 +58,6 @@ bool cwi_patch_add_point(cwi_hole_patch *p, const double point[3])
     p->sizes[p->count] = 0;
     memcpy(p->points[p->count++], point, sizeof *p->points);
     return true;
-}
-
-static int compare_keys(const void *a, const void *b)
-{
-    const uint64_t s = *(const uint64_t *)a, t = *(const uint64_t *)b;
-    return s < t ? -1 : s > t;
-}
-
-bool cwi_hole_has_edge(const cwi_hole_mesh *around, uint32_t a, uint32_t b)
-{
-    const uint64_t key = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
-    return bsearch(&key, around->edges, around->edge_count, sizeof key, compare_keys);
 }
 
 /* A polygon inside the rim that is left to triangulate: `size` vertices of the rim. */
@@ -244,7 +232,8 @@ static bool cut_ears(ear_ring *e, double min_cosine, size_t *cut)
         const bool is_open = !was_cut && n + 1 < e->size && e->size - *cut > MAX_EXACT;
         const uint32_t a = kept ? e->vertex[kept - 1] : 0, c = is_open ? e->vertex[n + 1] : 0;
         was_cut = is_open && measure_ear(e, a, b, c) >= min_cosine &&
-                  !cwi_hole_has_edge(e->around, e->rim->vertices[a], e->rim->vertices[c]);
+                  !cwi_edge_exists(e->around->edges, e->around->edge_count, e->rim->vertices[a],
+                                   e->rim->vertices[c]);
         if (!was_cut) {
             e->vertex[kept] = b;
             memcpy(e->outside[kept++], e->outside[n], sizeof *e->outside);
@@ -297,8 +286,9 @@ static void mark_taken(const ear_ring *e, bool *is_taken)
 {
     for (size_t i = 0; i < e->size; i++)
         for (size_t j = i + 2; j < e->size; j++)
-            is_taken[i * e->size + j] = cwi_hole_has_edge(
-                e->around, e->rim->vertices[e->vertex[i]], e->rim->vertices[e->vertex[j]]);
+            is_taken[i * e->size + j] =
+                cwi_edge_exists(e->around->edges, e->around->edge_count,
+                                e->rim->vertices[e->vertex[i]], e->rim->vertices[e->vertex[j]]);
 }
 
 bool cwi_patch_triangulate(cwi_hole_patch *patch, const cwi_rim *rim,

@@ -15,7 +15,8 @@ typedef enum cwi_vertex_rim {
 } cwi_vertex_rim;
 
 /* Neighbours of a vertex are those at the other ends of its edges, each once and in rising order.
- * A vertex at a rim has the ends of the rim's edges alone. */
+ * A vertex at a rim has the ends of the rim's edges alone. Not a corner table: smoothing reads
+ * neighbours, never triangles, in every step. */
 typedef struct cwi_rings {
     size_t vertices;
     size_t *begin;        /* first neighbour of each vertex; vertices + 1 */

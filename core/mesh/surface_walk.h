@@ -1,31 +1,22 @@
 /* Steps from triangle to triangle of a surface, across sides and corners, to where a point is
  * near. */
-#ifndef CORE_GEOMETRY_SURFACE_WALK_H
-#define CORE_GEOMETRY_SURFACE_WALK_H
+#ifndef CORE_MESH_SURFACE_WALK_H
+#define CORE_MESH_SURFACE_WALK_H
 
 #include "core/geometry/point_triangle.h"
-
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "core/mesh/corner_table.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* Triangles, and for each vertex the triangles around it. */
+/* Triangles, and for each vertex the triangles around it, as cwi_fans_sort() makes them. */
 typedef struct cwi_fans {
     const float *points;     /* vertices x 3 */
     const uint32_t *corners; /* triangles x 3 */
-    const uint32_t *first;   /* vertices + 1: the triangles around vertex v are */
-    const uint32_t *around;  /* around[first[v]] .. around[first[v + 1] - 1] */
+    const uint32_t *first;   /* vertices + 1 */
+    const uint32_t *around;
 } cwi_fans;
-
-/* Sorts the triangles around vertices.
- * first   vertices + 2, set: one more than is needed then
- * around  3 x triangles, set */
-void cwi_fans_sort(const uint32_t *corners, size_t triangles, size_t vertices, uint32_t *first,
-                   uint32_t *around);
 
 typedef struct cwi_surface_walk {
     const cwi_fans *fans;

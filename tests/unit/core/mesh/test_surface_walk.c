@@ -2,7 +2,7 @@
 #include "support/surface.h"
 
 #include "core/base/memory.h"
-#include "core/geometry/surface_walk.h"
+#include "core/mesh/surface_walk.h"
 
 #include <math.h>
 #include <stdlib.h>
