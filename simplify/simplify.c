@@ -14,8 +14,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { MAXIMUM = 1 << 30 };
-
 bool cw_simplify_available(void)
 {
     return cwi_module_present("openmesh");
@@ -23,11 +21,7 @@ bool cw_simplify_available(void)
 
 static cw_status check_desc(const cw_mesh *mesh, const cw_simplify_desc *d, cw_error *err)
 {
-    if (mesh->triangle_count > MAXIMUM || mesh->vertex_count > MAXIMUM)
-        return cwi_fail(err, CW_ERR_LIMIT,
-                        "%zu triangles and %zu vertices; at most 2^30 of either are simplified",
-                        mesh->triangle_count, mesh->vertex_count);
-    cw_status st = cw_mesh_check(mesh, err);
+    cw_status st = cwi_mesh_check_size(mesh, "simplified", err);
     return st == CW_OK ? cwi_attributes_check(mesh, d, err) : st;
 }
 

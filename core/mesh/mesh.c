@@ -123,6 +123,17 @@ cw_status cw_mesh_check(const cw_mesh *mesh, cw_error *err)
     return CW_OK;
 }
 
+cw_status cwi_mesh_check_size(const cw_mesh *mesh, const char *done, cw_error *err)
+{
+    cw_status st = cw_mesh_check(mesh, err);
+    if (st == CW_OK &&
+        (mesh->triangle_count > CWI_MAX_TRIANGLES || mesh->vertex_count > CWI_MAX_TRIANGLES))
+        st = cwi_fail(err, CW_ERR_LIMIT,
+                      "%zu triangles and %zu vertices; at most %zu of each are %s",
+                      mesh->triangle_count, mesh->vertex_count, CWI_MAX_TRIANGLES, done);
+    return st;
+}
+
 bool cw_mesh_bounds(const cw_mesh *mesh, double min[3], double max[3])
 {
     if (!mesh || !min || !max)

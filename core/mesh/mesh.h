@@ -8,6 +8,15 @@
 extern "C" {
 #endif
 
+/* Maximum of triangles, and of vertices, that algorithms number. 32 bits then number all corners of
+ * triangles, and UINT32_MAX is left to mean none. */
+#define CWI_MAX_TRIANGLES ((size_t)UINT32_MAX / 3)
+
+/* Checks a mesh, and that it is not beyond that maximum. done: what is done to it, for the message
+ * Returns CW_ERR_ARGUMENT as cw_mesh_check(); CW_ERR_LIMIT */
+CW_NODISCARD cw_status cwi_mesh_check_size(const cw_mesh *mesh, const char *done,
+                                           cw_error *err);
+
 /* Allocates uninitialised positions, triangles and, if requested, normals. */
 CW_NODISCARD cw_status cwi_mesh_alloc(cw_mesh *mesh, size_t vertices, size_t triangles,
                                       bool normals, cw_error *err);

@@ -180,7 +180,7 @@ typedef struct cw_label_simplify_desc {
  *          emptied on failure. Free it with cw_label_surfaces_free()
  * Returns  CW_ERR_ARGUMENT  no target; a target that is negative or not finite; patches that do
  *          not cover the triangles; a triangle that names a vertex twice; as cw_mesh_check()
- *          CW_ERR_LIMIT  more than 2^30 vertices or triangles; CW_ERR_NO_MEMORY;
+ *          CW_ERR_LIMIT  beyond 2^32 / 3 triangles or vertices; CW_ERR_NO_MEMORY;
  *          CW_ERR_CANCELLED
  * Cost     a few microseconds of one processor for a triangle that is removed
  * Threads  the same bytes for any number

@@ -65,7 +65,7 @@ typedef struct cw_print_facts {
  * facts    filled
  * Returns  CW_ERR_ARGUMENT  a limit is negative or not finite; overhang_deg is 90 or more; a side
  *                           of plate_mm is 0 beside others; or as cw_mesh_check()
- *          CW_ERR_LIMIT     beyond 2^32 / 3 triangles
+ *          CW_ERR_LIMIT     beyond 2^32 / 3 triangles or vertices
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
  * Cost     about 10 us for each point; 130 bytes for each triangle
  * Threads  reentrant; the same to the bit for any number of threads

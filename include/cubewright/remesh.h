@@ -78,7 +78,7 @@ typedef struct cw_remesh_facts {
  *                           cw_mesh_check()
  *          CW_ERR_FORMAT    the mesh is no oriented manifold; cw_mesh_repair() makes it one
  *          CW_ERR_EMPTY     the mesh has no triangles
- *          CW_ERR_LIMIT     more than 2^32 / 6 triangles, in the mesh or expected; edge_mm is too
+ *          CW_ERR_LIMIT     beyond 2^32 / 3 triangles, in the mesh or expected; edge_mm is too
  *                           short for single precision
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
  * Cost     about 30 us for each triangle of the larger mesh, 25 s for a million; each attempt

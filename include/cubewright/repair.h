@@ -89,7 +89,7 @@ CW_API bool cw_repair_has_cgal(void);
  * Returns  CW_ERR_ARGUMENT     a length is negative or not finite, or as cw_mesh_check()
  *          CW_ERR_EMPTY        nothing is left: the mesh encloses no volume
  *          CW_ERR_UNSUPPORTED  wrap_mm is needed, and this build has no CGAL
- *          CW_ERR_LIMIT        beyond 2^32 / 3 triangles; wrap_mm is too small for the mesh
+ *          CW_ERR_LIMIT        beyond 2^32 / 3 triangles or vertices; wrap_mm is too small for the mesh
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED; CW_ERR_BACKEND with CGAL's message when it fails
  * Cost     about 5 us for each triangle, and 3 us for each round that removes crossings;
  *          large holes take longer

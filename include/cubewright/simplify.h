@@ -158,7 +158,7 @@ typedef struct cw_simplify_facts {
  *                              weight of an attribute that the mesh lacks; views without
  *                              error_mm; an invalid camera; or as cw_mesh_check()
  *          CW_ERR_UNSUPPORTED  this build has no OpenMesh
- *          CW_ERR_LIMIT        more than 2^30 vertices or triangles
+ *          CW_ERR_LIMIT        beyond 2^32 / 3 triangles or vertices
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
  * Cost     about two microseconds of one processor for a triangle that is removed
  * Threads  reentrant; the same to the bit for any number of threads

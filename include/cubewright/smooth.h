@@ -88,7 +88,7 @@ typedef struct cw_smooth_facts {
  * Returns  CW_ERR_ARGUMENT  an unknown method; too many iterations; max_move_mm or width_mm is
  *                           negative or not finite; width_mm without CW_SMOOTH_FAIR; or as
  *                           cw_mesh_check()
- *          CW_ERR_LIMIT     beyond 2^32 / 3 triangles
+ *          CW_ERR_LIMIT     beyond 2^32 / 3 triangles or vertices
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
  * Cost     about 0.4 us for each triangle, and 0.01 us more for each iteration; CW_SMOOTH_FAIR 0.5
  *          us more for each step. Then as cw_self_intersections(). About 80 bytes for each

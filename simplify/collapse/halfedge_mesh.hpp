@@ -1,4 +1,5 @@
-// OpenMesh's half-edges, as lean as they can be, made from arrays.
+// OpenMesh's half-edges, as lean as they can be, made from arrays. Not a corner table: OpenMesh
+// collapses on links of its own.
 #ifndef SIMPLIFY_COLLAPSE_HALFEDGE_MESH_HPP
 #define SIMPLIFY_COLLAPSE_HALFEDGE_MESH_HPP
 

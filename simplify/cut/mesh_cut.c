@@ -8,8 +8,6 @@
 
 #include <string.h>
 
-static const size_t MAX_TRIANGLES = UINT32_MAX / 3;
-
 /* A vertex nearer to the plane than this fraction of the largest coordinate is in it: about four
  * steps of single precision. */
 static const double NEARNESS = 4e-7;
@@ -30,13 +28,7 @@ static cw_status check_input(const cw_mesh *mesh, const cw_cut_desc *d, cw_error
     }
     if (d->normal[0] == 0 && d->normal[1] == 0 && d->normal[2] == 0)
         return cwi_fail(err, CW_ERR_ARGUMENT, "normal is 0, 0, 0; it must have a length");
-    cw_status st = cw_mesh_check(mesh, err);
-    if (st == CW_OK &&
-        (mesh->triangle_count > MAX_TRIANGLES || mesh->vertex_count > MAX_TRIANGLES))
-        st = cwi_fail(err, CW_ERR_LIMIT,
-                      "%zu triangles and %zu vertices; at most %zu of each are cut",
-                      mesh->triangle_count, mesh->vertex_count, MAX_TRIANGLES);
-    return st;
+    return cwi_mesh_check_size(mesh, "cut", err);
 }
 
 double cwi_cut_distance(const cwi_cut *c, size_t v)

@@ -17,7 +17,8 @@ enum { CWI_RING_TRIANGLES = 96, CWI_RING_NEIGHBOURS = 2 * CWI_RING_TRIANGLES };
 #define CWI_NO_INDEX UINT32_MAX
 
 /* Triangles, vertices and edges with indices that stay. A side of a triangle has the number of
- * the corner across from it. */
+ * the corner across from it. Not a corner table: an edge may have any number of triangles, and
+ * collapses take triangles away. */
 typedef struct cwi_complex {
     size_t vertex_count, triangle_count, edge_count; /* at first */
     size_t live;                                     /* triangles left */

@@ -12,8 +12,6 @@
 #include <math.h>
 #include <string.h>
 
-#define MAX_ELEMENTS ((size_t)1 << 30)
-
 /* Passes after which failing places get no more care by steps, but stay as they are. */
 enum { GENTLE_PASSES = 4 };
 
@@ -56,11 +54,7 @@ static cw_status check_patches(const cw_label_surfaces *s, cw_error *err)
 
 static cw_status check_surfaces(const cw_label_surfaces *s, cw_error *err)
 {
-    if (s->mesh.triangle_count > MAX_ELEMENTS || s->mesh.vertex_count > MAX_ELEMENTS)
-        return cwi_fail(err, CW_ERR_LIMIT,
-                        "%zu triangles and %zu vertices; at most 2^30 of either are simplified",
-                        s->mesh.triangle_count, s->mesh.vertex_count);
-    cw_status st = cw_mesh_check(&s->mesh, err);
+    cw_status st = cwi_mesh_check_size(&s->mesh, "simplified", err);
     if (st == CW_OK)
         st = check_patches(s, err);
     for (size_t t = 0; t < s->mesh.triangle_count && st == CW_OK; t++) {

@@ -18,8 +18,6 @@
 static const double DEFAULT_WALL = 0.8, DEFAULT_GAP = 0.4, DEFAULT_OVERHANG = 45,
                     DEFAULT_LAYER = 0.2;
 
-static const size_t MAX_TRIANGLES = UINT32_MAX / 3;
-
 /* --- options ------------------------------------------------------------------------------ */
 
 static cw_status take_limit(const char *name, double value, double otherwise, double *out,
@@ -315,12 +313,7 @@ cw_status cw_print_measure(const cw_mesh *mesh, const cw_print_desc *desc,
     *facts = (cw_print_facts){.wall_mm = INFINITY, .gap_mm = INFINITY, .fits = true};
     cw_status st = resolve_desc(desc, &limits, err);
     if (st == CW_OK)
-        st = cw_mesh_check(mesh, err);
-    if (st == CW_OK &&
-        (mesh->triangle_count > MAX_TRIANGLES || mesh->vertex_count >= UINT32_MAX))
-        st = cwi_fail(err, CW_ERR_LIMIT,
-                      "%zu triangles and %zu vertices; at most %zu and %u are measured",
-                      mesh->triangle_count, mesh->vertex_count, MAX_TRIANGLES, UINT32_MAX - 1);
+        st = cwi_mesh_check_size(mesh, "measured", err);
     if (st != CW_OK)
         return st;
     if (mesh->triangle_count) {

@@ -153,7 +153,7 @@ cw_status cw_check_paint(const cw_mesh *mesh, const uint8_t *defects, const floa
     copies c = {0};
     *out = (cw_mesh){0};
     cw_status st = cw_mesh_check(mesh, err);
-    if (st == CW_OK && mesh->triangle_count > UINT32_MAX / 3)
+    if (st == CW_OK && mesh->triangle_count > CWI_MAX_TRIANGLES)
         st = cwi_fail(err, CW_ERR_LIMIT, "%zu triangles are too many to paint",
                       mesh->triangle_count);
     if (st == CW_OK && !make_copies(&c, mesh, defects))

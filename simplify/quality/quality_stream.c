@@ -7,6 +7,7 @@
 #include "core/base/text.h"
 #include "core/geometry/box.h"
 #include "core/geometry/union_find.h"
+#include "core/mesh/mesh.h"
 #include "simplify/quality/triangle_shapes.h"
 #include "simplify/quality/vertex_ranges.h"
 #include "simplify/quality/vertex_stars.h"
@@ -257,7 +258,7 @@ static cw_status make_room(cw_quality_stream *s, size_t vertices, cw_error *err)
     if (st == CW_OK)
         st = grow_array(s, (void **)&s->triangles, &s->triangle_capacity, s->held + 1,
                         TRIANGLE_BYTES, err);
-    if (st == CW_OK && s->triangle_capacity > UINT32_MAX / 3)
+    if (st == CW_OK && s->triangle_capacity > CWI_MAX_TRIANGLES)
         st = cwi_fail(err, CW_ERR_LIMIT, "%zu triangles at once are more than can be numbered",
                       s->triangle_capacity);
     return st;

@@ -6,6 +6,7 @@
 #include "core/base/status.h"
 #include "core/geometry/bvh.h"
 #include "core/geometry/triangle_intersect.h"
+#include "core/mesh/mesh.h"
 #include "core/mesh/weld.h"
 
 /* Chooses the points that are compared to weld vertices: positions, or world points. */
@@ -40,7 +41,7 @@ cw_status cwi_welded_init(cwi_welded *w, const cw_mesh *mesh, cw_weld how, cw_er
 {
     *w = (cwi_welded){.mesh = mesh};
     cw_status st = cw_mesh_check(mesh, err);
-    if (st == CW_OK && mesh->triangle_count > UINT32_MAX / 3)
+    if (st == CW_OK && mesh->triangle_count > CWI_MAX_TRIANGLES)
         st = cwi_fail(err, CW_ERR_LIMIT, "%zu triangles are more than the checks can number",
                       mesh->triangle_count);
     if (st == CW_OK && !(choose_points(w, how) && weld_corners(w, how)))

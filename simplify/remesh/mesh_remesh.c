@@ -17,8 +17,6 @@ static const double ERRORS = 10,
                     SHORTEST = 10; /* the edge is divided by these for the defaults */
 static const double DEFAULT_FEATURE = 40, LARGEST_ANGLE = 40; /* degrees */
 
-static const size_t MAX_TRIANGLES = UINT32_MAX / 6;
-
 /* Lengths of edges, in wanted ones, that count as fitting. */
 static const double LEAST_FIT = 0.8, MOST_FIT = 1.33;
 
@@ -82,10 +80,10 @@ static cw_status check_size(const cw_mesh *m, const cw_remesh_desc *d, cw_error 
                         "precision; expected %g mm or more",
                         shortest, largest, largest * 0x1p-16);
     const double expected = measure_area(m) / (sqrt(0.1875) * d->edge_mm * d->edge_mm);
-    return expected > (double)MAX_TRIANGLES
+    return expected > (double)CWI_MAX_TRIANGLES
                ? cwi_fail(err, CW_ERR_LIMIT,
                           "edges of %g mm need about %.3g triangles; at most %zu are made",
-                          d->edge_mm, expected, MAX_TRIANGLES)
+                          d->edge_mm, expected, CWI_MAX_TRIANGLES)
                : CW_OK;
 }
 
@@ -95,15 +93,11 @@ static cw_status resolve_desc(const cw_mesh *mesh, const cw_remesh_desc *desc,
     *d = *desc;
     cw_status st = check_desc(d, err);
     if (st == CW_OK)
-        st = cw_mesh_check(mesh, err);
+        st = cwi_mesh_check_size(mesh, "remeshed", err);
     if (st != CW_OK)
         return st;
     if (!mesh->triangle_count)
         return cwi_fail(err, CW_ERR_EMPTY, "the mesh has no triangles to remesh");
-    if (mesh->triangle_count > MAX_TRIANGLES || mesh->vertex_count > MAX_TRIANGLES)
-        return cwi_fail(err, CW_ERR_LIMIT,
-                        "%zu triangles and %zu vertices; at most %zu of each are remeshed",
-                        mesh->triangle_count, mesh->vertex_count, MAX_TRIANGLES);
     d->error_mm = d->error_mm > 0 ? d->error_mm : d->edge_mm / ERRORS;
     d->feature_deg = d->feature_deg > 0 ? d->feature_deg : DEFAULT_FEATURE;
     d->iterations = d->iterations ? d->iterations : DEFAULT_ITERATIONS;

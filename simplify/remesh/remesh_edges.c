@@ -2,11 +2,10 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/mesh.h"
 #include "simplify/remesh/remesh_state.h"
 
 #include <string.h>
-
-static const size_t MAX_TRIANGLES = UINT32_MAX / 3;
 
 /* Cosine of 25 degrees: flips toward six neighbours may make angles this small. */
 static const double FLIP_COSINE = 0.9063;
@@ -93,9 +92,9 @@ static bool grow_triangles(cwi_remesh *r, size_t capacity)
 /* Makes room for a vertex and two triangles. */
 static cw_status make_room(cwi_remesh *r, cw_error *err)
 {
-    if (r->triangle_count + 2 > MAX_TRIANGLES)
+    if (r->triangle_count + 2 > CWI_MAX_TRIANGLES)
         return cwi_fail(err, CW_ERR_LIMIT, "remeshing needs more than %zu triangles",
-                        MAX_TRIANGLES);
+                        CWI_MAX_TRIANGLES);
     const bool has_vertices =
         r->vertex_count < r->vertex_capacity ||
         grow_vertices(r, r->vertex_capacity + r->vertex_capacity / 2 + 64);

@@ -14,8 +14,6 @@
  * patches are plain. */
 enum { CROSSING_ROUNDS = 12, FILL_ROUNDS = 6, FLAT_ROUNDS = 7 };
 
-static const size_t MAX_TRIANGLES = UINT32_MAX / 3;
-
 static cw_status check_length(double length, const char *name, cw_error *err)
 {
     return length >= 0 && isfinite(length)
@@ -32,12 +30,7 @@ static cw_status check_input(const cw_mesh *mesh, const cw_repair_desc *d, cw_er
     if (st == CW_OK)
         st = check_length(d->wrap_mm, "wrap_mm", err);
     if (st == CW_OK)
-        st = cw_mesh_check(mesh, err);
-    if (st == CW_OK &&
-        (mesh->triangle_count > MAX_TRIANGLES || mesh->vertex_count >= UINT32_MAX))
-        st = cwi_fail(err, CW_ERR_LIMIT,
-                      "%zu triangles and %zu vertices; at most %zu and %u are repaired",
-                      mesh->triangle_count, mesh->vertex_count, MAX_TRIANGLES, UINT32_MAX - 1);
+        st = cwi_mesh_check_size(mesh, "repaired", err);
     if (st == CW_OK && !mesh->triangle_count)
         st = cwi_fail(err, CW_ERR_EMPTY, "the mesh has no triangles to repair");
     return st;

@@ -3,6 +3,7 @@
 #include "core/base/status.h"
 #include "core/geometry/union_find.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/mesh.h"
 #include "core/mesh/weld.h"
 #include "simplify/repair/repair_state.h"
 
@@ -22,9 +23,9 @@ cw_status cwi_repair_append(cwi_repair *r, const float *positions, size_t vertic
     cw_mesh *m = &r->mesh;
     const size_t all = m->vertex_count + vertices,
                  all_triangles = m->triangle_count + triangle_count;
-    if (all >= UINT32_MAX || all_triangles > UINT32_MAX / 3)
-        return cwi_fail(err, CW_ERR_LIMIT, "the repaired mesh has more than %u triangles",
-                        UINT32_MAX / 3);
+    if (all >= UINT32_MAX || all_triangles > CWI_MAX_TRIANGLES)
+        return cwi_fail(err, CW_ERR_LIMIT, "the repaired mesh has more than %zu triangles",
+                        CWI_MAX_TRIANGLES);
     float *points = cwi_realloc_array(m->positions, all, 3 * sizeof *points);
     m->positions = points ? points : m->positions;
     uint32_t *source = cwi_realloc_array(m->labels, all, sizeof *source);

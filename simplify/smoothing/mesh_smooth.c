@@ -6,6 +6,7 @@
 #include "core/base/status.h"
 #include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/mesh.h"
 #include "core/mesh/mesh_triangle.h"
 
 #include <float.h>
@@ -15,8 +16,6 @@ enum { DEFAULT_ITERATIONS = 10, DEFAULT_STEPS = 3, VOLUME_ROUNDS = 4, ROUNDING_S
 
 /* The default limit and width, in mean lengths of the edges. */
 static const double DEFAULT_MOVE = 0.5, DEFAULT_WIDTH = 6;
-
-static const size_t MAX_TRIANGLES = UINT32_MAX / 3;
 
 /* Shares of the progress: neighbours, moves, and the search for triangles that meet. */
 static const double RINGS_SHARE = 0.1, MOVES_SHARE = 0.5;
@@ -63,13 +62,9 @@ static cw_status resolve_desc(const cw_mesh *mesh, const cw_smooth_desc *desc,
     if (out->width_mm > 0 && out->method != CW_SMOOTH_FAIR)
         return cwi_fail(err, CW_ERR_ARGUMENT, "width_mm is for CW_SMOOTH_FAIR, not for %s",
                         cw_smooth_method_name(out->method));
-    cw_status st = cw_mesh_check(mesh, err);
+    cw_status st = cwi_mesh_check_size(mesh, "smoothed", err);
     if (st != CW_OK)
         return st;
-    if (mesh->triangle_count > MAX_TRIANGLES || mesh->vertex_count > UINT32_MAX)
-        return cwi_fail(err, CW_ERR_LIMIT,
-                        "%zu triangles and %zu vertices; at most %zu and %u are smoothed",
-                        mesh->triangle_count, mesh->vertex_count, MAX_TRIANGLES, UINT32_MAX);
     if (out->iterations == 0)
         out->iterations = out->method == CW_SMOOTH_FAIR ? DEFAULT_STEPS : DEFAULT_ITERATIONS;
     if (out->max_move_mm == 0)
