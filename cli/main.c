@@ -3,6 +3,7 @@
 #include "cli/framework/batch.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
+#include "cli/framework/option_rules.h"
 #include "cli/framework/run_config.h"
 #include "cli/inputs/volume_input.h"
 #include "cli/results/output_names.h"
@@ -14,30 +15,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-const cli_command *const cli_commands[] = {
-    &cli_extract, &cli_join,    &cli_simplify,       &cli_smooth, &cli_remesh,
-    &cli_repair,  &cli_convert, &cli_hollow,         &cli_offset, &cli_check,
-    &cli_info,    &cli_render,  &cli_report_command, &cli_view,   &cli_make,
-    &cli_formats, &cli_help,    &cli_version,        NULL};
-
-const cli_command *cli_find_command(const char *name, cw_error *err)
-{
-    const char *names[32] = {0};
-    for (size_t n = 0; cli_commands[n]; n++) {
-        if (strcmp(name, cli_commands[n]->name) == 0)
-            return cli_commands[n];
-        names[n] = cli_commands[n]->name;
-    }
-    const char *nearest = cli_nearest(name, names);
-    if (nearest)
-        cwi_fail(err, CW_ERR_ARGUMENT, "'%s' is not a command; did you mean '%s'?", name,
-                 nearest);
-    else
-        cwi_fail(err, CW_ERR_ARGUMENT, "'%s' is not a command; 'cubewright help' lists them",
-                 name);
-    return NULL;
-}
 
 /* Where a command has --memory, it is a limit to the whole process: what it has taken by now,
  * and what stacks and buffers will, comes off. Less than CLI_MIN_MEMORY is a limit to voxels and surface
@@ -152,6 +129,8 @@ static cw_status run_words(const cli_command *command, const cli_words *words, c
     args->said = NULL; /* the window parses more options later */
     cli_keep_run(command, args, said);
     cli_console_start(args, CLI_PROGRESS_AUTO);
+    if (st == CW_OK && !args->help)
+        st = cli_check_rules(command, args, err);
     if (st == CW_OK && args->save_config)
         st = check_save(args, said, err);
     if (st == CW_OK && args->help)

@@ -51,7 +51,7 @@ static const cli_option options[] = {
     CLI_PRINTER_OPTIONS(check_args),
     CLI_HEADED("Distance to a source or a reference"),
     {"source", 's', CLI_TEXT, "VOLUME",
-     "Volume to measure the distance to, and to compare the topology with; needs --iso",
+     "Volume to measure the distance to, and to compare the topology with",
      offsetof(check_args, source), CLI_VALUES_VOLUME},
     {"iso", 'i', CLI_LEVEL, "V",
      "Isovalue of the source's surface: a number, or a name as for 'extract'",
@@ -84,6 +84,13 @@ static const cli_option options[] = {
      "Read meshes as this format; names as in 'formats' (by content)",
      offsetof(check_args, mesh_reader), CLI_VALUES_MESH_READER},
     CLI_PROGRESS_OPTION(check_args),
+};
+
+static const cli_rule rules[] = {
+    {"source", CLI_NEEDS, "iso"},
+    {"iso min-volume largest fill-voids", CLI_NEEDS, "source"},
+    {"tolerance", CLI_NEEDS, "source reference"},
+    CLI_PRINTER_RULES,
 };
 
 /* State of the command: inputs and measurements; findings point into it. */
@@ -203,24 +210,10 @@ static cw_status check_args_of(run_state *s, cw_error *err)
     if (st != CW_OK)
         return st;
     s->report.path = args->json;
-    if (args->source && !args->iso.given)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--source needs the isovalue of its surface: --iso V");
-    if (args->iso.given && !args->source)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--iso needs a volume: --source VOLUME");
-    if (args->least.given && !args->source)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--min-volume needs a volume: --source VOLUME");
-    if (args->largest && !args->source)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--largest needs a volume: --source VOLUME");
-    if (args->fill_voids && !args->source)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--fill-voids needs a volume: --source VOLUME");
-    if (args->tolerance.given && !args->source && !args->reference)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--tolerance needs something to measure from: --source or --reference");
     if (args->tolerance.unit == CLI_VOXELS && !args->source)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--tolerance in voxels needs a volume: --source VOLUME");
-    st = cli_check_printer(&args->printer, args->profile == CW_PROFILE_PRINT, err);
+    st = cli_check_printer(&args->printer, err);
     if (st != CW_OK)
         return st;
     return args->defects ? check_defects_path(args, err) : CW_OK;
@@ -608,6 +601,8 @@ const cli_command cli_check = {
     .page = cli_page_check,
     .options = options,
     .option_count = sizeof options / sizeof *options,
+    .rules = rules,
+    .rule_count = sizeof rules / sizeof *rules,
     .min_inputs = 1,
     .max_inputs = 1,
     .inputs = CLI_VALUES_MESH,

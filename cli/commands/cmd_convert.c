@@ -49,6 +49,12 @@ static const cli_option options[] = {
     CLI_PROGRESS_OPTION(convert_args),
 };
 
+static const cli_rule rules[] = {
+    {NULL, CLI_NEEDS, "output"},
+    {"merge", CLI_EXCLUDES, "split"},
+    CLI_COMPRESS_RULES,
+};
+
 typedef struct run_state {
     const convert_args *args;
     cli_mesh mesh;
@@ -111,10 +117,6 @@ static cw_status check_args(run_state *s, cw_error *err)
     st = cli_check_compress(&args->compress, false, err);
     if (st != CW_OK)
         return st;
-    if (!args->output)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "convert needs an output: -o FILE");
-    if (args->merge && args->split)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--merge and --split exclude each other");
     if (args->split)
         return CW_OK;
     st = cli_name_output(&s->outputs, args->output, input[0], err);
@@ -219,6 +221,8 @@ const cli_command cli_convert = {
     .page = cli_page_convert,
     .options = options,
     .option_count = sizeof options / sizeof *options,
+    .rules = rules,
+    .rule_count = sizeof rules / sizeof *rules,
     .min_inputs = 1,
     .max_inputs = 1,
     .inputs = CLI_VALUES_MESH,

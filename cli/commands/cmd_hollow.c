@@ -14,6 +14,12 @@ static const cli_option options[] = {
     CLI_SOLID_OPTIONS,
 };
 
+static const cli_rule rules[] = {
+    {NULL, CLI_NEEDS, "output"},
+    {NULL, CLI_NEEDS, "wall"},
+    CLI_COMPRESS_RULES,
+};
+
 const cli_command cli_hollow = {
     .name = "hollow",
     .usage = "MESH -o MESH --wall L [--drain D@AXIS,...] [options]",
@@ -21,6 +27,8 @@ const cli_command cli_hollow = {
     .page = cli_page_hollow,
     .options = options,
     .option_count = sizeof options / sizeof *options,
+    .rules = rules,
+    .rule_count = sizeof rules / sizeof *rules,
     .min_inputs = 1,
     .max_inputs = 1,
     .inputs = CLI_VALUES_MESH,

@@ -47,6 +47,10 @@ static const cli_option options[] = {
      offsetof(make_args, threads)},
 };
 
+static const cli_rule rules[] = {
+    {NULL, CLI_NEEDS, "output list"},
+};
+
 static cw_status list_subjects(void)
 {
     cli_made_field s;
@@ -181,8 +185,6 @@ static cw_status run_make(void *p, cw_error *err)
                         "make needs a field; 'cubewright make --list' lists them");
     if (!find_subject(args->common.inputs[0], &s))
         return unknown_subject(args->common.inputs[0], err);
-    if (!args->output)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "make needs an output: -o FILE");
     if (args->dims.count == 2)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--dims takes one number or three, not two");
     if (args->dims.count == 1)
@@ -197,6 +199,8 @@ const cli_command cli_make = {
     .page = cli_page_make,
     .options = options,
     .option_count = sizeof options / sizeof *options,
+    .rules = rules,
+    .rule_count = sizeof rules / sizeof *rules,
     .max_inputs = 1,
     .inputs = CLI_VALUES_MADE_FIELD,
     .size = sizeof(make_args),

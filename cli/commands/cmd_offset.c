@@ -19,6 +19,12 @@ static const cli_option options[] = {
     CLI_SOLID_OPTIONS,
 };
 
+static const cli_rule rules[] = {
+    {NULL, CLI_NEEDS, "output"},
+    {NULL, CLI_NEEDS, "by"},
+    CLI_COMPRESS_RULES,
+};
+
 const cli_command cli_offset = {
     .name = "offset",
     .usage = "MESH -o MESH --by L [options]",
@@ -26,6 +32,8 @@ const cli_command cli_offset = {
     .page = cli_page_offset,
     .options = options,
     .option_count = sizeof options / sizeof *options,
+    .rules = rules,
+    .rule_count = sizeof rules / sizeof *rules,
     .min_inputs = 1,
     .max_inputs = 1,
     .inputs = CLI_VALUES_MESH,

@@ -88,6 +88,13 @@ static const cli_option options[] = {
     CLI_PROGRESS_OPTION(remesh_args),
 };
 
+static const cli_rule rules[] = {
+    {NULL, CLI_NEEDS, "output"},
+    {NULL, CLI_NEEDS, "edge"},
+    {"shortest", CLI_NEEDS, "adaptive"},
+    CLI_COMPRESS_RULES,
+};
+
 /* --- the report --------------------------------------------------------------------------- */
 
 static void put_params(cli_json *j, const void *p, const cli_made *made)
@@ -203,12 +210,6 @@ static cw_status check_values(const remesh_args *args, cw_error *err)
     if (args->iterations > CW_REMESH_MAX_ITERATIONS)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--iterations %zu: expected 1 to %zu",
                         args->iterations, CW_REMESH_MAX_ITERATIONS);
-    if (!args->output)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "remesh needs an output: -o FILE");
-    if (!args->edge.given)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "remesh needs the length of edges: --edge 1mm");
-    if (args->shortest.given && !args->adaptive)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--shortest is for --adaptive");
     cw_status st = check_degrees("--features", &args->features, 180, err);
     if (st == CW_OK)
         st = check_degrees("--min-angle", &args->min_angle, 40, err);
@@ -391,6 +392,8 @@ const cli_command cli_remesh = {
     .page = cli_page_remesh,
     .options = options,
     .option_count = sizeof options / sizeof *options,
+    .rules = rules,
+    .rule_count = sizeof rules / sizeof *rules,
     .min_inputs = 1,
     .max_inputs = 1,
     .inputs = CLI_VALUES_MESH,

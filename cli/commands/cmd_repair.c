@@ -78,6 +78,12 @@ static const cli_option options[] = {
     CLI_PROGRESS_OPTION(repair_args),
 };
 
+static const cli_rule rules[] = {
+    {NULL, CLI_NEEDS, "output report-only"},
+    {"output", CLI_EXCLUDES, "report-only"},
+    CLI_COMPRESS_RULES,
+};
+
 /* --- the report --------------------------------------------------------------------------- */
 
 static void put_params(cli_json *j, const void *p, const cli_made *made)
@@ -110,12 +116,6 @@ static void put_facts(cli_json *j, const void *p)
 
 static cw_status check_values(const repair_args *args, cw_error *err)
 {
-    if (!args->output && !args->report_only)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "repair needs an output: -o FILE; or --report-only");
-    if (args->output && args->report_only)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--report-only writes no mesh; leave out -o %s",
-                        args->output);
     return cli_check_compress(&args->compress, false, err);
 }
 
@@ -352,6 +352,8 @@ const cli_command cli_repair = {
     .page = cli_page_repair,
     .options = options,
     .option_count = sizeof options / sizeof *options,
+    .rules = rules,
+    .rule_count = sizeof rules / sizeof *rules,
     .min_inputs = 1,
     .max_inputs = 1,
     .inputs = CLI_VALUES_MESH,

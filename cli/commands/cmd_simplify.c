@@ -68,25 +68,14 @@ static const cli_option options[] = {
     CLI_PROGRESS_OPTION(cli_simplify_args),
 };
 
-static cw_status check_lod(const cli_simplify_args *args, cw_error *err)
-{
-    if (args->error.given || args->triangles || args->ratio.given)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--lod has its own targets; --error, --triangles and --ratio are for a "
-                        "single mesh");
-    return cli_check_lod(&args->lod, err);
-}
-
-static cw_status check_targets(const cli_simplify_args *args, cw_error *err)
-{
-    if (args->lod.count)
-        return check_lod(args, err);
-    if (!args->error.given && !args->triangles && !args->ratio.given)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "simplify needs a target: --error 0.1mm, --triangles 50k, --ratio 0.25 "
-                        "or --lod 50k,12k,3k");
-    return CW_OK;
-}
+static const cli_rule rules[] = {
+    {NULL, CLI_NEEDS, "error triangles ratio lod"},
+    {NULL, CLI_NEEDS, "output"},
+    {"lod", CLI_EXCLUDES, "error triangles ratio"},
+    {"iso", CLI_NEEDS, "source"},
+    {"iso", CLI_EXCLUDES, "no-measure"},
+    CLI_COMPRESS_RULES,
+};
 
 static cw_status check_values(const cli_simplify_args *args, cw_error *err)
 {
@@ -98,24 +87,15 @@ static cw_status check_values(const cli_simplify_args *args, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--ratio %g: a fraction above 0 and below 1 was expected",
                         args->ratio.value);
-    if (args->iso.given && !args->source)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--iso needs a volume: --source VOLUME");
-    if (args->iso.given && !args->measure)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--iso is for measuring; it cannot be combined with --no-measure");
     return CW_OK;
 }
 
 cw_status cli_check_simplify_args(const cli_simplify_args *args, cw_error *err)
 {
-    cw_status st = check_targets(args, err);
+    cw_status st = args->lod.count ? cli_check_lod(&args->lod, err) : CW_OK;
     if (st == CW_OK)
         st = check_values(args, err);
-    if (st == CW_OK)
-        st = cli_check_compress(&args->compress, false, err);
-    if (st == CW_OK && !args->output)
-        st = cwi_fail(err, CW_ERR_ARGUMENT, "simplify needs an output: -o FILE");
-    return st;
+    return st == CW_OK ? cli_check_compress(&args->compress, false, err) : st;
 }
 
 const cli_command cli_simplify = {
@@ -125,6 +105,8 @@ const cli_command cli_simplify = {
     .page = cli_page_simplify,
     .options = options,
     .option_count = sizeof options / sizeof *options,
+    .rules = rules,
+    .rule_count = sizeof rules / sizeof *rules,
     .min_inputs = 1,
     .max_inputs = 1,
     .inputs = CLI_VALUES_MESH,

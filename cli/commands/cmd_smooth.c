@@ -94,6 +94,12 @@ static const cli_option options[] = {
     CLI_PROGRESS_OPTION(smooth_args),
 };
 
+static const cli_rule rules[] = {
+    {NULL, CLI_NEEDS, "output"},
+    {"width", CLI_NEEDS, "method=fair"},
+    CLI_COMPRESS_RULES,
+};
+
 /* --- the report --------------------------------------------------------------------------- */
 
 static void put_params(cli_json *j, const void *p, const cli_made *made)
@@ -152,10 +158,6 @@ static cw_status check_values(const smooth_args *args, cw_error *err)
         (args->iterations < 1 || args->iterations > CW_SMOOTH_MAX_ITERATIONS))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--iterations %zu: expected 1 to %zu",
                         args->iterations, CW_SMOOTH_MAX_ITERATIONS);
-    if (args->width.given && args->method != CW_SMOOTH_FAIR)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--width is for --method fair");
-    if (!args->output)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "smooth needs an output: -o FILE");
     return cli_check_compress(&args->compress, false, err);
 }
 
@@ -359,6 +361,8 @@ const cli_command cli_smooth = {
     .page = cli_page_smooth,
     .options = options,
     .option_count = sizeof options / sizeof *options,
+    .rules = rules,
+    .rule_count = sizeof rules / sizeof *rules,
     .min_inputs = 1,
     .max_inputs = 1,
     .inputs = CLI_VALUES_MESH,

@@ -195,22 +195,15 @@ static cw_status parse_by(const char *text, wishes *w, cw_error *err)
 static cw_status parse_wishes(const cli_solid_args *args, bool hollow, wishes *w, cw_error *err)
 {
     cw_status st = CW_OK;
-    if (hollow && !args->wall.given)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "hollow needs a wall thickness: --wall 2mm");
     if (hollow && args->wall.unit == CLI_VOXELS)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--wall: a mesh has no voxels; give mm, or %% of its box's diagonal");
-    if (!hollow && !args->by)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "offset needs a distance: --by 1mm");
     if (args->drain)
         st = parse_drains(args->drain, w, err);
     if (st == CW_OK && args->by)
         st = parse_by(args->by, w, err);
     if (st == CW_OK && args->voxel && strcmp(args->voxel, "auto") != 0)
         st = parse_length("--voxel", args->voxel, &w->voxel, err);
-    if (st == CW_OK && !args->output)
-        st = cwi_fail(err, CW_ERR_ARGUMENT, "%s needs an output: -o FILE",
-                      hollow ? "hollow" : "offset");
     return st;
 }
 

@@ -2,6 +2,7 @@
 #include "cli/completion/completion.h"
 #include "cli/completion/value_sets.h"
 #include "cli/framework/commands.h"
+#include "cli/framework/option_rules.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -61,7 +62,7 @@ static void print_option(const cli_command *c, const cli_option *o)
         putchar('\'');
     }
     fputs(" -d ", stdout);
-    print_quoted(o->about);
+    print_quoted(cli_option_about(c, o));
     putchar('\n');
     if (cli_option_is_negated(o) && o >= c->options && o < c->options + c->option_count)
         printf("complete -c cubewright -n '__cubewright_negates %s' -l no-%s -d 'Switch --%s "

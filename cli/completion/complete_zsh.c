@@ -2,6 +2,7 @@
 #include "cli/completion/completion.h"
 #include "cli/completion/value_sets.h"
 #include "cli/framework/commands.h"
+#include "cli/framework/option_rules.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -81,8 +82,9 @@ static void print_value(const cli_option *o)
     }
 }
 
-static void print_option(const cli_option *o)
+static void print_option(const cli_command *c, const cli_option *o)
 {
+    const char *about = cli_option_about(c, o);
     const bool takes = cli_option_takes_value(o);
     if (o->kind == CLI_HEADING)
         return;
@@ -94,7 +96,7 @@ static void print_option(const cli_option *o)
                o->name, takes ? "=" : "");
     else
         printf("--%s%s[", o->name, takes ? "=" : "");
-    print_quoted(o->about, strlen(o->about), "\\[]:");
+    print_quoted(about, strlen(about), "\\[]:");
     putchar(']');
     if (takes)
         print_value(o);
@@ -105,9 +107,9 @@ static void print_command(const cli_command *c)
 {
     printf("\n_cubewright_command_%s()\n{\n    local -a specs=(\n", c->name);
     for (size_t n = 0; n < c->option_count; n++)
-        print_option(&c->options[n]);
+        print_option(c, &c->options[n]);
     for (size_t n = 0; n < cli_common_option_count; n++)
-        print_option(&cli_common_options[n]);
+        print_option(c, &cli_common_options[n]);
     puts("    )\n    [[ $PREFIX == --no* ]] && specs+=(");
     for (size_t n = 0; n < c->option_count; n++)
         if (cli_option_is_negated(&c->options[n]))

@@ -196,6 +196,12 @@ static const cli_option options[] = {
     CLI_PROGRESS_OPTION(cli_extract_args),
 };
 
+static const cli_rule rules[] = {
+    CLI_COMPRESS_RULES,
+    CLI_PRINTER_RULES,
+    {"range colormap", CLI_NEEDS, "color-by"},
+};
+
 /* The next surface of the report; frames have no file of their own. */
 static cli_made *begin_surface(cli_extract_run *s, const cli_moment *moment, size_t level)
 {
@@ -553,6 +559,8 @@ const cli_command cli_extract = {
     .page = cli_page_extract,
     .options = options,
     .option_count = sizeof options / sizeof *options,
+    .rules = rules,
+    .rule_count = sizeof rules / sizeof *rules,
     .min_inputs = 1,
     .max_inputs = SIZE_MAX,
     .inputs = CLI_VALUES_VOLUME,

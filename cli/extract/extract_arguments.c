@@ -159,7 +159,7 @@ static cw_status check_print(const cli_extract_args *args, cw_error *err)
     if (prints && other)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--profile print cannot be combined with %s",
                         other);
-    return cli_check_printer(&args->printer, prints, err);
+    return cli_check_printer(&args->printer, err);
 }
 
 static cw_status check_measure(const cli_extract_args *args, cw_error *err)

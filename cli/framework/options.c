@@ -1,6 +1,7 @@
 /* Parses the words of the command line by a command's table of options, and prints its help. */
 #include "cli/framework/options.h"
 
+#include "cli/framework/option_rules.h"
 #include "core/base/status.h"
 
 #include <stdio.h>
@@ -251,7 +252,7 @@ cw_status cli_parse(const cli_command *command, int count, char **words, void *a
 const cli_option *cli_find_option(const cli_command *command, const char *name, cw_error *err)
 {
     const cli_option *o = find_long(command, name, strlen(name));
-    if (!o && unknown_option(command, name, strlen(name), err) != CW_OK)
+    if (!o && err && unknown_option(command, name, strlen(name), err) != CW_OK)
         return NULL;
     return o;
 }
@@ -310,7 +311,7 @@ static size_t print_head(const cli_option *o)
     return broken ? HELP_WIDTH : column;
 }
 
-static void print_option(const cli_option *o)
+static void print_option(const cli_command *command, const cli_option *o)
 {
     if (o->kind == CLI_HEADING) {
         printf("\n%s\n", o->name);
@@ -321,7 +322,7 @@ static void print_option(const cli_option *o)
         printf("\n%*s", TEXT_COLUMN, "");
     else
         printf("%*s", (int)(TEXT_COLUMN - length), "");
-    cli_print_wrapped(stdout, o->about, TEXT_COLUMN);
+    cli_print_wrapped(stdout, cli_option_about(command, o), TEXT_COLUMN);
 }
 
 void cli_print_help(const cli_command *command, bool long_form)
@@ -334,7 +335,7 @@ void cli_print_help(const cli_command *command, bool long_form)
         printf("%s\n", command->about);
     puts("\nOptions (the default in brackets)");
     for (size_t n = 0; (o = option_at(command, n)); n++)
-        print_option(o);
+        print_option(command, o);
     if (long_form && command->print_more)
         command->print_more(stdout);
     if (!long_form)

@@ -189,6 +189,14 @@ typedef struct cli_option {
     cli_values values; /* for completion; 0: see cli_values */
 } cli_option;
 
+/* A rule between options. Names are parted by blanks: NAME, no-NAME for a flag that is off, or
+ * NAME=VALUE for a choice. */
+typedef struct cli_rule {
+    const char *options; /* NULL: the command itself, in each run */
+    enum { CLI_NEEDS, CLI_EXCLUDES } relation;
+    const char *others; /* needed: one of these; excluded: each of these */
+} cli_rule;
+
 /* A row that is no option: the options below it stand under this name in the help. */
 #define CLI_HEADED(name)                                                                       \
     {                                                                                          \
@@ -252,6 +260,8 @@ typedef struct cli_command {
     const char *page;  /* the long help, help/NAME.txt: paragraphs and examples */
     const cli_option *options;
     size_t option_count;
+    const cli_rule *rules; /* between options; see option_rules.h */
+    size_t rule_count;
     size_t min_inputs, max_inputs;
     cli_values inputs; /* for completion */
     bool slices;       /* the input may be slices, which a shell may make many arguments of */
@@ -267,7 +277,7 @@ typedef struct cli_command {
 CW_NODISCARD cw_status cli_parse(const cli_command *command, int count, char **words,
                                  void *args, const char **inputs, cw_error *err);
 
-/* Returns the option of a name, or NULL, and an error with the nearest name. */
+/* Returns the option of a name, or NULL, and an error with the nearest name; err may be NULL. */
 const cli_option *cli_find_option(const cli_command *command, const char *name, cw_error *err);
 
 /* Returns whether a value is of the option's kind, and the words for that kind. */

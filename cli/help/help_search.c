@@ -3,6 +3,7 @@
 #include "cli/help/help_search.h"
 
 #include "cli/framework/commands.h"
+#include "cli/framework/option_rules.h"
 #include "cli/view/view.h"
 #include "core/base/status.h"
 
@@ -192,10 +193,10 @@ static void print_commands(size_t first, const cli_option *o)
         printf(" and %zu more", count - shown);
 }
 
-static void print_found(const cli_option *o)
+static void print_found(const cli_command *c, const cli_option *o)
 {
     printf(": --%s%s%s: %s\n", o->name, o->value ? " " : "", o->value ? o->value : "",
-           o->about);
+           c ? cli_option_about(c, o) : o->about);
 }
 
 /* Options that were not already printed with an earlier command. */
@@ -211,7 +212,7 @@ static size_t search_options(size_t command, const query *q)
         if (!is_new)
             continue;
         print_commands(command, o);
-        print_found(o);
+        print_found(c, o);
         found++;
     }
     return found;
@@ -253,7 +254,7 @@ static size_t search_common(const query *q)
     for (size_t n = 0; n < cli_common_option_count; n++)
         if (option_fits(&cli_common_options[n], q)) {
             printf("every command");
-            print_found(&cli_common_options[n]);
+            print_found(NULL, &cli_common_options[n]);
             found++;
         }
     return found;

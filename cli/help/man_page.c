@@ -3,6 +3,7 @@
 #include "cli/help/man_page.h"
 
 #include "cli/framework/commands.h"
+#include "cli/framework/option_rules.h"
 #include "cli/help/roff_text.h"
 #include "core/base/status.h"
 
@@ -41,7 +42,7 @@ static void print_about(const char *about)
     putchar('\n');
 }
 
-static void print_option(const cli_option *o)
+static void print_option(const cli_command *c, const cli_option *o)
 {
     if (o->kind == CLI_HEADING) {
         cli_roff_heading(o->name, strlen(o->name), true);
@@ -62,7 +63,7 @@ static void print_option(const cli_option *o)
         fputs(*v ? "\\:" : "", stdout);
     }
     puts(o->value ? "\\fP" : "");
-    print_text(o->about);
+    print_text(cli_option_about(c, o));
     putchar('\n');
 }
 
@@ -143,9 +144,9 @@ static cw_status print_command(const cli_command *c, cw_error *err)
         puts("A flag \\fB\\-\\-\\fP\\fINAME\\fP is switched off by "
              "\\fB\\-\\-no\\-\\fP\\fINAME\\fP.");
     for (size_t n = 0; n < c->option_count; n++)
-        print_option(&c->options[n]);
+        print_option(c, &c->options[n]);
     for (size_t n = 0; n < cli_common_option_count; n++)
-        print_option(&cli_common_options[n]);
+        print_option(c, &cli_common_options[n]);
     const cw_status st = print_more(c, err);
     cli_roff_page(c->page, CLI_ROFF_EXAMPLES, true);
     print_exit_status();
@@ -179,7 +180,7 @@ static void print_program(void)
     }
     puts(".SH OPTIONS\nEvery command has these options.");
     for (size_t n = 0; n < cli_common_option_count; n++)
-        print_option(&cli_common_options[n]);
+        print_option(&cli_help, &cli_common_options[n]);
     print_exit_status();
     const char *headings = strstr(cli_page_environment, "\n\n"); /* behind its introduction */
     cli_roff_page(headings ? headings : cli_page_environment, CLI_ROFF_TEXT, false);

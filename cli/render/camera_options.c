@@ -244,8 +244,6 @@ cw_status cli_check_camera(const cli_scene *args, const cli_turns *turns, cw_err
     if (args->zoom.given && !(isnormal(args->zoom.value) && args->zoom.value > 0))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--zoom %g: above 0 was expected",
                         args->zoom.value);
-    if (args->ortho && args->fov.given)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--ortho or --fov, not both");
     if (args->fov.given && !(args->fov.value > 0 && args->fov.value < 180))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--fov %g: 0 to 180 degrees were expected",
                         args->fov.value);

@@ -40,6 +40,17 @@ static const cli_option options[] = {
     CLI_INPUT_OPTIONS(render_args),
 };
 
+static const cli_rule rules[] = {
+    {NULL, CLI_NEEDS, "output"},
+    {"mesh", CLI_EXCLUDES, "iso"},
+    {"difference", CLI_NEEDS, "compare"},
+    {"compare", CLI_EXCLUDES, "layout=quad overlay"},
+    {"isolines", CLI_NEEDS, "iso"},
+    {"isolines", CLI_NEEDS, "mode=slices layout=quad"},
+    {"overlay-opacity overlay-map overlay-range", CLI_NEEDS, "overlay"},
+    CLI_SCENE_RULES,
+};
+
 _Static_assert(sizeof options / sizeof *options <= CLI_MAX_OPTIONS, "rows of options");
 
 static cw_status run_render(void *p, cw_error *err)
@@ -66,6 +77,8 @@ const cli_command cli_render = {
     .page = cli_page_render,
     .options = options,
     .option_count = sizeof options / sizeof *options,
+    .rules = rules,
+    .rule_count = sizeof rules / sizeof *rules,
     .min_inputs = 1,
     .max_inputs = SIZE_MAX,
     .inputs = CLI_VALUES_SCENE,

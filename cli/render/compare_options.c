@@ -3,6 +3,7 @@
 #define _GNU_SOURCE /* strdup, asprintf */
 #include "cli/render/compare_options.h"
 
+#include "cli/framework/option_rules.h"
 #include "core/base/status.h"
 
 #include <stdio.h>
@@ -60,6 +61,8 @@ static cw_status parse_side(const cli_command *command, const render_args *args,
     bare.min_inputs = 0;
     if (st == CW_OK)
         st = cli_parse(&bare, side->word_count, side->words, &side->args, nothing, err);
+    if (st == CW_OK)
+        st = cli_check_rules(&bare, &side->args, err);
     /* options are looked up by where their row stands, which both tables share */
     side->args.common.inputs = args->common.inputs;
     side->args.common.input_count = args->common.input_count;

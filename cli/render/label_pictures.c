@@ -22,22 +22,14 @@ static cw_status check_overlay(const render_args *args, cw_error *err)
     double opacity;
     const bool is_quad = args->marks.layout == CLI_LAYOUT_QUAD;
     const bool is_slices = args->scene.mode ? args->scene.mode == 1 + CW_MODE_SLICES : !is_quad;
-    const char *given = args->overlay_opacity.given ? "opacity"
-                        : args->values.map          ? "map"
-                        : args->values.range.count  ? "range"
-                                                    : NULL;
-    if (given && !args->overlay)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--overlay-%s is for --overlay", given);
     if (!args->overlay)
         return CW_OK;
     if (!is_slices && !is_quad)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--overlay is drawn over slices: --mode slices or --layout quad");
-    if (args->compare || (is_slices && (args->iso.given || args->mesh)))
+    if (is_slices && (args->iso.given || args->mesh))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--overlay cannot be combined with --%s",
-                        args->compare ? "compare"
-                        : args->mesh  ? "mesh"
-                                      : "iso");
+                        args->mesh ? "mesh" : "iso");
     cw_status st = cli_check_values(&args->values, &args->look, err);
     return st == CW_OK ? cli_overlay_opacity(&args->overlay_opacity, &opacity, err) : st;
 }

@@ -33,14 +33,7 @@ static cw_status check_side_output(const char *path, const render_args *args, cw
 static cw_status check_isolines(const render_args *args, cw_error *err)
 {
     const bool is_slices = args->scene.mode == 1 + CW_MODE_SLICES;
-    if (!args->marks.isolines)
-        return CW_OK;
-    if (!args->iso.given)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--isolines needs an isovalue: --iso V");
-    if (!is_slices && args->marks.layout != CLI_LAYOUT_QUAD)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--isolines is for slices: --mode slices or --layout quad");
-    return is_slices && args->scene.hide != CLI_HIDE_MESH
+    return args->marks.isolines && is_slices && args->scene.hide != CLI_HIDE_MESH
                ? cwi_fail(err, CW_ERR_ARGUMENT,
                           "--isolines in the mode slices is for slices without the surface "
                           "before them: --hide mesh")
@@ -50,23 +43,15 @@ static cw_status check_isolines(const render_args *args, cw_error *err)
 cw_status cli_check_pictures(const render_args *args, cw_error *err)
 {
     const char *dot = args->output ? strrchr(args->output, '.') : NULL;
-    if (!args->output)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "render needs an output: -o FILE");
     if (!dot || strcmp(dot, ".png") != 0)
         return cwi_fail(err, CW_ERR_ARGUMENT, "%s: render writes .png", args->output);
     if (args->size.count != 2)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--size takes two numbers, such as 1280x720");
     if (args->samples > 4)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--samples %zu: expected 1 to 4", args->samples);
-    if (args->mesh && args->iso.given)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--iso or --mesh, not both");
-    if (args->difference.given && !args->compare)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--difference is for --compare");
     if (args->difference.given && cli_has_marks(&args->marks))
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--difference cannot be combined with marks on the picture");
-    if (args->marks.layout == CLI_LAYOUT_QUAD && args->compare)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--layout quad or --compare, not both");
     if (args->marks.layout == CLI_LAYOUT_QUAD && (args->size.n[0] < 2 || args->size.n[1] < 2))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--layout quad needs 2 x 2 pixels");
     if (args->difference.given && !(args->difference.value > 0))

@@ -323,9 +323,6 @@ static cw_status add_clips(const cli_scene *args, const cli_subject *subject, cw
         st = add_clip_box(&args->clip_box, subject->whole, s, err);
     if (st == CW_OK)
         st = parse_planes("clip", args->clips, CW_MAX_CLIPS, s->clips, &s->clip_count, err);
-    if (st == CW_OK && args->cut_away && s->clip_count == 0)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--cut-away needs something to be cut: --clip-box or --clip");
     s->cut_away = args->cut_away;
     return st;
 }
@@ -369,9 +366,6 @@ static cw_status add_depth_cue(const cli_scene *args, cw_scene *s, cw_error *err
     cw_status st = take_share("depth-cue", &args->depth_cue, 1, &s->depth_cue, err);
     if (st != CW_OK)
         return st;
-    if ((range->count || args->cue_form) && !args->depth_cue.given)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--depth-cue-%s needs --depth-cue",
-                        range->count ? "range" : "form");
     if (range->count && (range->count != 2 || !(range->value[0] < range->value[1])))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--depth-cue-range takes two rising numbers");
     if (args->cue_form == CW_CUE_EXPONENTIAL && args->depth_cue.value >= 1)
@@ -504,8 +498,6 @@ static cw_status add_mesh(const cli_scene *args, cw_scene *s, cw_error *err)
         s->color[c] = (float)rgba[c] / 255;
     if (range->count && (range->count != 2 || !(range->value[0] < range->value[1])))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--tint-range takes two rising numbers");
-    if (range->count && args->tint != CW_TINT_SCALARS)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--tint-range is for --tint scalars");
     s->tint = (cw_tint)args->tint;
     s->tint_low = range->count ? range->value[0] : 0;
     s->tint_high = range->count ? range->value[1] : 0;

@@ -102,4 +102,12 @@ CW_NODISCARD cw_status cli_make_scene(const cli_scene *args, const cli_subject *
                                       cw_mode mode, const cw_transfer *transfer,
                                       cw_scene *scene, cw_error *err);
 
+/* Rules of commands with the options of scenes. */
+#define CLI_SCENE_RULES                                                                        \
+    {"ortho", CLI_EXCLUDES, "fov"}, {"cut-away", CLI_NEEDS, "clip-box clip"},                  \
+        {"depth-cue-range depth-cue-form", CLI_NEEDS, "depth-cue"},                            \
+    {                                                                                          \
+        "tint-range", CLI_NEEDS, "tint=scalars"                                                \
+    }
+
 #endif

@@ -77,6 +77,15 @@ static const cli_option options[] = {
     CLI_PROGRESS_OPTION(cli_report_args),
 };
 
+static const cli_rule rules[] = {
+    {NULL, CLI_NEEDS, "output"},
+    {"source", CLI_EXCLUDES, "budget dims csv labels names steps"},
+    {"mesh-reader source-unit source-up source-frame source-override", CLI_NEEDS, "source"},
+    {"steps", CLI_EXCLUDES, "budget dims csv labels names"},
+    {"names", CLI_NEEDS, "labels"},
+    {"labels", CLI_EXCLUDES, "budget dims csv iso inside coarsen"},
+};
+
 static cw_status parse_budget(const char *text, double *seconds, cw_error *err)
 {
     const char *at = text;
@@ -163,8 +172,6 @@ static cw_status check_args(cli_report_run *s, cw_error *err)
         st = check_name(args->common.inputs[0], err);
     if (st != CW_OK)
         return st;
-    if (!args->output)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "report needs an output: -o FILE");
     if (strcmp(args->output, "-") == 0 && args->json && strcmp(args->json, "-") == 0)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "-o and --json: only one of them can use the standard output");
@@ -388,6 +395,8 @@ const cli_command cli_report_command = {
     .page = cli_page_report,
     .options = options,
     .option_count = sizeof options / sizeof *options,
+    .rules = rules,
+    .rule_count = sizeof rules / sizeof *rules,
     .min_inputs = 1,
     .max_inputs = SIZE_MAX, /* of a batch or a series */
     .inputs = CLI_VALUES_STUDY,

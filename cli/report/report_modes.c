@@ -23,40 +23,13 @@ static cw_status refuse_options(const cli_report_args *args, const char *const *
     return CW_OK;
 }
 
-/* Fails for options of comparing settings, and of their level. */
-static cw_status check_no_settings(const cli_report_args *args, const char *why, cw_error *err)
-{
-    static const char *const names[] = {"budget", "dims",    "csv", "iso",
-                                        "inside", "coarsen", NULL};
-    return refuse_options(args, names, why, err);
-}
-
-/* Fails for options that say something of a mesh or of labels, without them, or of settings,
- * with a mesh. */
+/* Fails for options of settings, of labels and of names with the files of a series. */
 cw_status cli_report_check_mode(const cli_report_args *args, cw_error *err)
 {
-    static const char *const
-        of_mesh[] = {"mesh-reader",  "source-unit",     "source-up",
-                     "source-frame", "source-override", NULL},
-        *const of_settings[] = {"budget", "dims", "csv", "labels", "names", "steps", NULL},
-        *const of_series[] = {"budget",          "dims",      "csv",
-                              "labels",          "names",     "mesh-reader",
-                              "source-unit",     "source-up", "source-frame",
-                              "source-override", NULL},
-        *const of_names[] = {"names", NULL};
-    if (args->source)
-        return refuse_options(args, of_settings,
-                              "does nothing with --source, where there is one mesh", err);
-    if (cli_report_is_series(args))
-        return refuse_options(args, of_series, "does nothing for the steps of a series", err);
-    cw_status st =
-        refuse_options(args, of_mesh, "is for a mesh, whose volume --source VOLUME names", err);
-    if (st == CW_OK && !args->labels)
-        st = refuse_options(args, of_names, "needs the labels: --labels LIST, or all", err);
-    return st == CW_OK && args->labels
-               ? check_no_settings(args, "does nothing for labels, which are all extracted",
-                                   err)
-               : st;
+    static const char *const names[] = {"budget", "dims", "csv", "labels", "names", NULL};
+    return cli_report_is_series(args)
+               ? refuse_options(args, names, "cannot be combined with several files", err)
+               : CW_OK;
 }
 
 /* A mesh alone has nothing that it could be held against. */
@@ -148,11 +121,11 @@ cw_status cli_report_labels(cli_report_run *s, const char *labels, cw_error *err
     l->study.volume = &s->volume;
     l->study.threads = (int)args->input.threads;
     l->study.title = args->title ? args->title : cli_shown_path(s->volume.path);
-    cw_status st =
-        check_no_settings(args,
-                          "does nothing for labels; with --iso a level of their numbers is "
-                          "studied",
-                          err);
+    static const char *const of_settings[] = {"budget", "dims",    "csv",
+                                              "inside", "coarsen", NULL};
+    cw_status st = refuse_options(
+        args, of_settings,
+        "does nothing for labels; with --iso a level of their numbers is studied", err);
     if (st == CW_OK)
         st = cli_study_labels(l, &look, &s->volume, err);
     if (st == CW_OK)

@@ -20,9 +20,6 @@ static bool parse_range(const char *text, double *low, double *high)
 cw_status cli_check_color(const cli_color_args *args, cw_error *err)
 {
     double low, high;
-    if (!args->by && (args->map || args->range))
-        return cwi_fail(err, CW_ERR_ARGUMENT, "%s is for --color-by",
-                        args->range ? "--range" : "--colormap");
     if (args->range && !parse_range(args->range, &low, &high))
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--range '%s': expected two values, the lower one first, such as 0:300",

@@ -15,18 +15,8 @@ const char *cli_compression_name(cw_compression kind)
 
 cw_status cli_check_compress(const cli_compress *c, bool voxels, cw_error *err)
 {
-    const char *lonely = c->kind              ? NULL
-                         : c->tolerance.given ? "tolerance"
-                         : c->bits            ? "bits"
-                         : c->level           ? "level"
-                                              : NULL;
-    if (lonely)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--%s is for --compress", lonely);
-    if (c->bits && c->tolerance.given)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--bits or --tolerance, not both");
-    if (c->level && (c->kind != CW_COMPRESS_DRACO || c->level > 10))
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--level %zu: 1 to 10 was expected, with --compress draco", c->level);
+    if (c->effort > 10)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--effort %zu: 1 to 10 was expected", c->effort);
     if (c->bits > 30)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--bits %zu: 1 to 30 was expected", c->bits);
     if (c->tolerance.given && !(c->tolerance.value > 0))
@@ -53,7 +43,7 @@ void cli_set_compress(const cli_compress *c, const cw_part *parts, size_t count,
 {
     desc->compression = (cw_compression)c->kind;
     desc->bits = (int)c->bits;
-    desc->level = (int)c->level;
+    desc->level = (int)c->effort;
     if (c->tolerance.given)
         desc->tolerance_mm = cli_length_mm(&c->tolerance, diagonal_of(parts, count), voxel_mm);
 }

@@ -9,7 +9,7 @@
 typedef struct cli_compress {
     int kind; /* cw_compression */
     cli_length tolerance;
-    size_t bits, level;
+    size_t bits, effort; /* effort: Draco's, from 1 to 10; 0: its own */
 } cli_compress;
 
 /* Rows for a command whose struct has the field `compress`. */
@@ -38,11 +38,17 @@ typedef struct cli_compress {
          "tolerance)",                                                                         \
          CLI_COMPRESS_ROW(args, bits)},                                                        \
     {                                                                                          \
-        "level", 0, CLI_COUNT, "N", "Effort of Draco, from 1 (fast) to 10 (small) (7)",        \
-            CLI_COMPRESS_ROW(args, level)                                                      \
+        "effort", 0, CLI_COUNT, "N", "Effort of Draco, from 1 (fast) to 10 (small) (7)",       \
+            CLI_COMPRESS_ROW(args, effort)                                                     \
     }
 
-/* Refuses what contradicts itself. voxels: whether a tolerance may be told in them. */
+#define CLI_COMPRESS_RULES                                                                     \
+    {"tolerance bits", CLI_NEEDS, "compress"}, {"effort", CLI_NEEDS, "compress=draco"},        \
+    {                                                                                          \
+        "bits", CLI_EXCLUDES, "tolerance"                                                      \
+    }
+
+/* Refuses values out of range. voxels: whether a tolerance may be told in them. */
 CW_NODISCARD cw_status cli_check_compress(const cli_compress *compress, bool voxels,
                                           cw_error *err);
 

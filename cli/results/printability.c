@@ -8,26 +8,17 @@
 
 #include <math.h>
 
-cw_status cli_check_printer(const cli_printer *printer, bool prints, cw_error *err)
+cw_status cli_check_printer(const cli_printer *printer, cw_error *err)
 {
     const struct {
         const char *option;
         const cli_length *length;
-        bool is_given;
     } rows[] = {
-        {"--wall", &printer->wall, printer->wall.given},
-        {"--gap", &printer->gap, printer->gap.given},
-        {"--layer", &printer->layer, printer->layer.given},
-        {"--overhang", NULL, printer->overhang.given},
-        {"--plate", NULL, printer->plate.given},
-    };
-    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
-        if (rows[n].is_given && !prints)
-            return cwi_fail(err, CW_ERR_ARGUMENT, "%s is for --profile print", rows[n].option);
-        if (rows[n].is_given && rows[n].length && rows[n].length->unit != CLI_MM)
+        {"--wall", &printer->wall}, {"--gap", &printer->gap}, {"--layer", &printer->layer}};
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
+        if (rows[n].length->given && rows[n].length->unit != CLI_MM)
             return cwi_fail(err, CW_ERR_ARGUMENT, "%s is a length of the print: give mm",
                             rows[n].option);
-    }
     const double lean = printer->overhang.value;
     if (printer->overhang.given && !(lean > 0 && lean < 90))
         return cwi_fail(err, CW_ERR_ARGUMENT,

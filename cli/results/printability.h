@@ -45,6 +45,11 @@ typedef struct cli_printer {
             offsetof(type, printer.plate)                                                      \
     }
 
+#define CLI_PRINTER_RULES                                                                      \
+    {                                                                                          \
+        "wall gap overhang layer plate", CLI_NEEDS, "profile=print"                            \
+    }
+
 /* The judgement of a print. Zeroed: none yet. */
 typedef struct cli_printed {
     cw_print_facts facts;
@@ -52,9 +57,8 @@ typedef struct cli_printed {
     size_t count;
 } cli_printed;
 
-/* Fails for options without --profile print, and for lengths in voxels or shares. */
-CW_NODISCARD cw_status cli_check_printer(const cli_printer *printer, bool prints,
-                                         cw_error *err);
+/* Fails for lengths in voxels or shares, and for values out of range. */
+CW_NODISCARD cw_status cli_check_printer(const cli_printer *printer, cw_error *err);
 
 /* Returns the limits. */
 cw_print_desc cli_printer_desc(const cli_printer *printer, int threads, size_t triangles);

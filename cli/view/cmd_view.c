@@ -52,6 +52,12 @@ static const cli_option options[] = {
     CLI_INPUT_OPTIONS(render_args),
 };
 
+static const cli_rule rules[] = {
+    {"film", CLI_NEEDS, "output"},
+    {"fps", CLI_NEEDS, "film"},
+    CLI_SCENE_RULES,
+};
+
 _Static_assert(sizeof options / sizeof *options <= CLI_MAX_OPTIONS, "rows of options");
 
 /* Frames while something takes long: a bar, and a way to stop it. */
@@ -93,11 +99,6 @@ static cw_status check_arguments(const render_args *args, cw_error *err)
                         "--size takes two numbers up to 8192, such as 1280x800");
     if (args->output && (!dot || strcmp(dot, ".png") != 0))
         return cwi_fail(err, CW_ERR_ARGUMENT, "%s: view writes .png", args->output);
-    if (args->film && !args->output)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--film needs -o with {frame}, as in 'film-{frame:04d}.png'");
-    if (args->fps.given && !args->film)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--fps is for --film");
     if (args->fps.given && !(args->fps.value > 0 && args->fps.value <= 1000))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--fps %g: above 0, up to 1000, was expected",
                         args->fps.value);
@@ -266,6 +267,8 @@ const cli_command cli_view = {
     .page = cli_page_view,
     .options = options,
     .option_count = sizeof options / sizeof *options,
+    .rules = rules,
+    .rule_count = sizeof rules / sizeof *rules,
     .max_inputs = SIZE_MAX,
     .inputs = CLI_VALUES_SCENE,
     .size = sizeof(render_args),

@@ -4,6 +4,7 @@
 #include "cli/view/view.h"
 #include "cli/view/view_measure.h"
 
+#include "cli/framework/option_rules.h"
 #include "cli/inputs/level_choice.h"
 #include "cli/render/compare_options.h"
 #include "core/base/atomic_file.h"
@@ -220,6 +221,8 @@ static cw_status try_scene(view *v, cw_error *err)
         st = cli_background(&args->scene, background, err);
     if (st == CW_OK && v->path)
         st = view_need_transfer(v, err);
+    if (st == CW_OK && v->path)
+        st = cli_check_rules(v->command, args, err);
     if (st == CW_OK && v->path && (v->state.is_placed || !subject.volume))
         st = cli_make_scene(&args->scene, &subject, v->mode, &v->transfer, &scene, err);
     if (st == CW_OK && args->compare) {

@@ -45,7 +45,7 @@ def make_write_desc(options: dict[str, Any], reporter: Reporter) -> c.cw_write_d
         compression=take_choice("compress", options["compress"], COMPRESSIONS),
         tolerance_mm=take_length("tolerance", options["tolerance"]),
         bits=take_count("bits", options["bits"], 0, 30),
-        level=take_count("level", options["level"], 0, 10),
+        level=take_count("effort", options["effort"], 0, 10),
         progress=reporter.struct,
     )
     desc.axes.unit = take_choice("unit", options["unit"], UNITS)
@@ -69,7 +69,7 @@ def write(
     compress: str = "none",
     tolerance: float = 0.0,
     bits: int = 0,
-    level: int = 0,
+    effort: int = 0,
     progress: Progress = None,
 ) -> Written:
     """Writes a mesh, several named meshes, or a volume, in the format of the path's suffix.
@@ -83,7 +83,7 @@ def write(
     unit, frame, up  of the coordinates in the file; glTF is always in metres, +Y up
     compress    of glTF: 'none', 'quantize', 'draco' or 'meshopt'; tolerance is the largest move
                 of a vertex, mm (default 1/20,000 of the diagonal), bits a number in its place
-    level       effort of Draco, 1 to 10; 0: 7
+    effort      effort of Draco, 1 to 10; 0: 7
 
     Raises Error: ARGUMENT, OUTPUT, UNSUPPORTED, LIMIT, CHECK, NO_MEMORY, CANCELLED.
     """

@@ -1,0 +1,15 @@
+/* Rules between the options of a command: parsing, help, completion and search read one table. */
+#ifndef CLI_FRAMEWORK_OPTION_RULES_H
+#define CLI_FRAMEWORK_OPTION_RULES_H
+
+#include "cli/framework/options.h"
+
+/* Checks all rules of a command on its struct. An option counts where its field is not the default.
+ * Returns  CW_ERR_ARGUMENT  "--max-move needs --smooth METHOD", "--cull cannot be combined with --snap" */
+CW_NODISCARD cw_status cli_check_rules(const cli_command *command, const void *args,
+                                       cw_error *err);
+
+/* Returns the text of an option for help, with its rules behind it; in static memory. */
+const char *cli_option_about(const cli_command *command, const cli_option *option);
+
+#endif

@@ -1,0 +1,173 @@
+/* Tests the tables of options of all commands: their names, letters, kinds and rules. */
+#define _DEFAULT_SOURCE /* strsep */
+#include "cli/framework/commands.h"
+#include "cli/framework/option_rules.h"
+#include "support/support.h"
+
+#include <string.h>
+
+enum { ROWS = CLI_MAX_OPTIONS + 8 };
+
+/* Lists a command's options, the common ones last. Returns how many there are. */
+static size_t list_options(const cli_command *c, const cli_option *options[ROWS])
+{
+    size_t count = 0;
+    for (size_t n = 0; n < c->option_count + cli_common_option_count; n++) {
+        const cli_option *o =
+            n < c->option_count ? &c->options[n] : &cli_common_options[n - c->option_count];
+        if (o->kind != CLI_HEADING)
+            options[count++] = o;
+    }
+    return count;
+}
+
+/* `view` has an option --config of its own, for its settings. */
+static bool may_be_twice(const cli_command *c, const char *name)
+{
+    return strcmp(c->name, "view") == 0 && strcmp(name, "config") == 0;
+}
+
+static void no_command_has_a_name_or_a_letter_twice(void **state)
+{
+    const cli_option *options[ROWS];
+    (void)state;
+    for (size_t n = 0; cli_commands[n]; n++) {
+        const cli_command *c = cli_commands[n];
+        assert_true(c->option_count <= CLI_MAX_OPTIONS);
+        const size_t count = list_options(c, options);
+        for (size_t a = 0; a < count; a++)
+            for (size_t b = a + 1; b < count; b++) {
+                const bool same_name = strcmp(options[a]->name, options[b]->name) == 0 &&
+                                       !may_be_twice(c, options[a]->name);
+                const bool same_letter =
+                    options[a]->letter && options[a]->letter == options[b]->letter;
+                if (same_name || same_letter)
+                    fail_msg("%s: --%s and --%s", c->name, options[a]->name, options[b]->name);
+            }
+    }
+}
+
+/* Checks each name of a list: NAME, no-NAME of a flag, or NAME=VALUE of a choice. */
+static void check_names(const cli_command *c, const char *names)
+{
+    char list[512], *next = list;
+    snprintf(list, sizeof list, "%s", names ? names : "");
+    for (char *name; (name = strsep(&next, " ")) != NULL;) {
+        char *value = name;
+        strsep(&value, "=");
+        const bool is_off = !cli_find_option(c, name, NULL) && strncmp(name, "no-", 3) == 0;
+        const cli_option *o = cli_find_option(c, name + (is_off ? 3 : 0), NULL);
+        if (*name && !o)
+            fail_msg("%s has no option '%s', which a rule names", c->name, name);
+        else if (o && is_off && o->kind != CLI_FLAG)
+            fail_msg("%s: '%s' is of no flag", c->name, name);
+        else if (o && value && (o->kind != CLI_CHOICE || !cli_value_fits(o, value)))
+            fail_msg("%s: --%s has no choice '%s'", c->name, name, value);
+    }
+}
+
+static void rules_name_options_that_exist(void **state)
+{
+    size_t count = 0;
+    (void)state;
+    for (size_t n = 0; cli_commands[n]; n++)
+        for (size_t r = 0; r < cli_commands[n]->rule_count; r++, count++) {
+            check_names(cli_commands[n], cli_commands[n]->rules[r].options);
+            check_names(cli_commands[n], cli_commands[n]->rules[r].others);
+            assert_true(strlen(cli_commands[n]->rules[r].others) > 0);
+        }
+    assert_true(count > 40);
+}
+
+/* A command with each form of a rule. */
+typedef struct sample_args {
+    cli_common common;
+    bool fast, measure;
+    const char *file;
+    int mode;
+    cli_number width, height;
+} sample_args;
+
+static const sample_args sample_defaults = {.measure = true, .mode = 1};
+
+static const cli_option sample_options[] = {
+    {"fast", 0, CLI_FLAG, NULL, "Hurry (off)", offsetof(sample_args, fast)},
+    {"measure", 0, CLI_FLAG, NULL, "Measure (on)", offsetof(sample_args, measure)},
+    {"file", 0, CLI_TEXT, "FILE", "File (none)", offsetof(sample_args, file)},
+    {"mode", 0, CLI_CHOICE, "low/middle/high", "Mode (middle)", offsetof(sample_args, mode)},
+    {"width", 0, CLI_NUMBER, "W", "Width (1)", offsetof(sample_args, width)},
+    {"height", 0, CLI_NUMBER, "H", "Height (1)", offsetof(sample_args, height)},
+};
+
+static const cli_rule sample_rules[] = {
+    {NULL, CLI_NEEDS, "file fast"},
+    {"width height", CLI_NEEDS, "mode=high"},
+    {"fast", CLI_EXCLUDES, "no-measure height"},
+    {"mode=low", CLI_EXCLUDES, "file"},
+};
+
+static const cli_command sample = {
+    .name = "sample",
+    .usage = "",
+    .options = sample_options,
+    .option_count = sizeof sample_options / sizeof *sample_options,
+    .rules = sample_rules,
+    .rule_count = sizeof sample_rules / sizeof *sample_rules,
+    .size = sizeof(sample_args),
+    .defaults = &sample_defaults,
+};
+
+static void rules_are_checked_and_told(void **state)
+{
+    static const struct {
+        const char *words[4];
+        const char *message; /* NULL: the rules are kept */
+    } rows[] = {
+        {{NULL}, "sample needs --file FILE or --fast"},
+        {{"--no-fast"}, "sample needs --file FILE or --fast"},
+        {{"--fast"}, NULL},
+        {{"--file=a", "--mode=middle"}, NULL},
+        {{"--file=a", "--width=2"}, "--width needs --mode high"},
+        {{"--file=a", "--height=2", "--mode=high"}, NULL},
+        {{"--fast", "--no-measure"}, "--fast cannot be combined with --no-measure"},
+        {{"--fast", "--measure"}, NULL},
+        {{"--fast", "--mode=high", "--height=2"}, "--fast cannot be combined with --height"},
+        {{"--file=a", "--mode=low"}, "--mode low cannot be combined with --file"},
+    };
+    (void)state;
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
+        sample_args args = sample_defaults;
+        const char *inputs[4];
+        int count = 0;
+        cw_error err = {0};
+        while (count < 4 && rows[n].words[count])
+            count++;
+        assert_ok(cli_parse(&sample, count, (char **)rows[n].words, &args, inputs, &err), err);
+        const cw_status st = cli_check_rules(&sample, &args, &err);
+        assert_int_equal(st, rows[n].message ? CW_ERR_ARGUMENT : CW_OK);
+        if (rows[n].message)
+            assert_string_equal(err.message, rows[n].message);
+    }
+}
+
+static void help_tells_the_rules(void **state)
+{
+    (void)state;
+    assert_string_equal(cli_option_about(&sample, &sample_options[0]),
+                        "Hurry (off); not with --no-measure, --height");
+    assert_string_equal(cli_option_about(&sample, &sample_options[4]),
+                        "Width (1); needs --mode high");
+    assert_string_equal(cli_option_about(&sample, &sample_options[5]),
+                        "Height (1); needs --mode high; not with --fast");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(no_command_has_a_name_or_a_letter_twice),
+        cmocka_unit_test(rules_name_options_that_exist),
+        cmocka_unit_test(rules_are_checked_and_told),
+        cmocka_unit_test(help_tells_the_rules),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
