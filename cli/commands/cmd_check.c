@@ -345,7 +345,6 @@ static cw_status compare_with_field(run_state *s, cw_error *err)
     const check_args *args = s->args;
     const cw_mesh *mesh = &s->mesh.mesh;
     cw_mesh surface = {0};
-    cw_extract_counts counts;
     const cw_field_distance_desc desc = {
         .isovalue = s->iso.value,
         .inside_is_low = args->inside,
@@ -360,15 +359,15 @@ static cw_status compare_with_field(run_state *s, cw_error *err)
     if (st != CW_OK)
         return in_mesh(s, st, err);
     s->findings.to_field = &s->to_field;
-    const cli_wanted wanted = {.extract = {.isovalue = s->iso.value,
-                                           .inside_is_low = args->inside,
-                                           .leave_open = args->open,
-                                           .no_normals = true,
-                                           .threads = desc.threads},
-                               .least_mm3 = least_mm3(s),
-                               .largest = args->largest,
-                               .fill_voids = args->fill_voids};
-    st = cli_extract_wanted(&s->volume, NULL, &wanted, &surface, &counts, NULL, err);
+    const cw_pipeline_desc pipeline = {.extract = {.isovalue = s->iso.value,
+                                                   .inside_is_low = args->inside,
+                                                   .leave_open = args->open,
+                                                   .no_normals = true,
+                                                   .threads = desc.threads},
+                                       .min_volume_mm3 = least_mm3(s),
+                                       .largest = args->largest,
+                                       .fill_voids = args->fill_voids};
+    st = cli_make_surface(&s->volume, NULL, &pipeline, &surface, NULL, err);
     if (st == CW_OK)
         st = measure_from_field(s, &surface, err);
     cw_mesh_free(&surface);

@@ -4,7 +4,6 @@
 #include "cli/extract/label_run.h"
 #include "cli/extract/part_run.h"
 #include "cli/extract/stream_run.h"
-#include "cli/extract/stream_simplify.h"
 #include "cli/framework/batch.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
@@ -253,17 +252,13 @@ static cw_status deliver_level(cli_extract_run *s, size_t level, const cw_part *
 static cw_status stream_surface(cli_extract_run *s, const cli_moment *moment, size_t level,
                                 cli_made *made, cw_error *err)
 {
-    cw_mesh_spool *spool = NULL;
-    cw_mesh mesh = {0};
-    cw_extract_counts counts = {0};
-    cw_status st = cli_extract_is_simplified(s->args)
-                       ? cli_simplify_streamed(s, moment, made, &mesh, &counts, err)
-                       : cli_extract_streamed(s, moment, made, &spool, &counts, err);
-    const cw_part part = {.mesh = spool ? cw_mesh_spool_frame(spool) : &mesh, .spool = spool};
+    cli_streamed out;
+    cw_status st = cli_extract_streamed(s, moment, made, &out, err);
+    const cw_part part = {.mesh = out.spool ? cw_mesh_spool_frame(out.spool) : &out.mesh,
+                          .spool = out.spool};
     if (st == CW_OK)
-        st = deliver_level(s, level, &part, 1, counts.border_loops, err);
-    cw_mesh_spool_free(spool);
-    cw_mesh_free(&mesh);
+        st = deliver_level(s, level, &part, 1, made->facts.extracted.border_loops, err);
+    cli_free_streamed(&out);
     return st;
 }
 
@@ -287,25 +282,23 @@ static cw_status make_surface(cli_extract_run *s, const cli_moment *moment, size
         return finish_surface(s, moment, made, stream_surface(s, moment, n, made, err), err);
     const cli_delivery how = cli_extract_describe_delivery(s);
     cw_mesh mesh = {0};
-    cw_extract_counts counts = {0};
-    cw_status st = cli_extract_make(s, made, &mesh, &counts, err);
+    const cw_extract_counts *counts = &made->facts.extracted;
+    cw_status st = cli_extract_make(s, moment, made, &mesh, err);
     if (st != CW_OK && cli_turn_to_slices(s, st))
         return finish_surface(s, moment, made, stream_surface(s, moment, n, made, err), err);
     made->snapped = st == CW_OK && s->args->snap.value > 0;
-    made->snap = made->snapped ? counts.snap : (cw_snap_counts){0};
+    made->snap = made->snapped ? counts->snap : (cw_snap_counts){0};
     if (st == CW_OK && (cli_extract_is_simplified(s->args) || s->args->smooth.given))
-        st = cli_extract_judge(s, made, &mesh, &counts, err);
+        st = cli_extract_judge(s, made, &mesh, err);
     if (st == CW_OK)
-        st = cli_extract_prove(s, made, &mesh, counts.bytes, err);
+        st = cli_extract_prove(s, made, &mesh, err);
     if (st == CW_OK)
         st = cli_extract_prove_crop(s, moment, made, err);
     if (st == CW_OK)
-        st = cli_extract_color(s, moment, &mesh, err);
-    if (st == CW_OK)
         st = s->args->animate
-                 ? cli_deliver_step(&s->output.report, &how, &mesh, counts.border_loops,
+                 ? cli_deliver_step(&s->output.report, &how, &mesh, counts->border_loops,
                                     s->output.start, err)
-                 : deliver_level(s, n, &(cw_part){.mesh = &mesh}, 1, counts.border_loops, err);
+                 : deliver_level(s, n, &(cw_part){.mesh = &mesh}, 1, counts->border_loops, err);
     if (st == CW_OK)
         st = cli_extract_judge_print(s, made, &mesh, err);
     if (s->args->animate && (st == CW_OK || st == CW_ERR_EMPTY))

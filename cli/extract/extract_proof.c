@@ -11,17 +11,18 @@
 #include <float.h>
 #include <math.h>
 
-cw_status cli_extract_full(const cli_volume *volume, const cli_wanted *wanted, cli_proof *proof,
-                           cw_mesh *full, cw_error *err)
+cw_status cli_extract_full(const cli_volume *volume, const cli_surface_settings *settings,
+                           cli_proof *proof, cw_mesh *full, cw_error *err)
 {
-    cw_extract_counts counts;
+    const cw_pipeline_desc desc = cli_describe_full(settings);
+    cw_pipeline_facts facts;
     const double start = cli_seconds();
-    cw_status st = cli_extract_wanted(volume, NULL, wanted, full, &counts, NULL, err);
+    cw_status st = cli_make_surface(volume, NULL, &desc, full, &facts, err);
     if (st != CW_OK)
         return st;
     proof->made = true;
     proof->full_seconds = cli_seconds() - start;
-    proof->full_bytes = counts.bytes;
+    proof->full_bytes = facts.extracted.bytes;
     proof->full_triangles = full->triangle_count;
     return CW_OK;
 }
@@ -35,33 +36,32 @@ static double diagonal_of(const cw_mesh *mesh)
 
 /* The mesh's distance from the field says little without that of the full surface, which the
  * extractor leaves between the samples. */
-static cw_status measure_full(const cli_volume *volume, const cli_wanted *wanted, int threads,
+static cw_status measure_full(const cli_volume *volume, const cw_extract_desc *d,
                               const cw_mesh *full, cli_comparison *compared, cw_error *err)
 {
     cli_comparison c = {0};
-    const cw_extract_desc *d = &wanted->extract;
-    cw_status st =
-        cli_compare_with_field(full, volume, d->isovalue, d->inside_is_low, threads, &c, err);
+    cw_status st = cli_compare_with_field(full, volume, d->isovalue, d->inside_is_low,
+                                          d->threads, &c, err);
     compared->has_full_field = st == CW_OK;
     compared->full_to_field = c.to_field;
     return st;
 }
 
-cw_status cli_prove_error(const cli_volume *volume, const cli_wanted *wanted,
-                          const cw_simplify_desc *simplify, const cw_mesh *mesh,
-                          cli_proof *proof, cli_comparison *compared, cw_error *err)
+cw_status cli_prove_error(const cli_volume *volume, const cli_surface_settings *settings,
+                          const cw_mesh *mesh, cli_proof *proof, cli_comparison *compared,
+                          cw_error *err)
 {
-    const double promised = simplify->error_mm;
+    const double promised = settings->simplify.error_mm;
     cw_mesh full;
-    cw_status st = cli_extract_full(volume, wanted, proof, &full, err);
+    cw_status st = cli_extract_full(volume, settings, proof, &full, err);
     if (st != CW_OK)
         return st;
     compared->promised_mm = proof->promised_mm = promised;
     compared->diagonal_mm = diagonal_of(&full);
     compared->other = "the full surface";
-    st = cli_compare(mesh, &full, promised / 20, simplify->threads, compared, err);
+    st = cli_compare(mesh, &full, promised / 20, settings->simplify.threads, compared, err);
     if (st == CW_OK && compared->has_field)
-        st = measure_full(volume, wanted, simplify->threads, &full, compared, err);
+        st = measure_full(volume, &settings->desc.extract, &full, compared, err);
     cw_mesh_free(&full);
     if (st != CW_OK)
         return cwi_fail_in(err, st, volume->path);
@@ -126,15 +126,15 @@ static double rounding_of(const cw_mesh *part, const cw_mesh *whole)
     return 4 * FLT_EPSILON * (diagonal_of(part) + diagonal_of(whole));
 }
 
-static cw_status extract_open(const cli_volume *volume, const cli_wanted *wanted, cw_mesh *mesh,
-                              size_t *bytes, double *seconds, cw_error *err)
+static cw_status extract_open(const cli_volume *volume, const cw_extract_desc *extract,
+                              cw_mesh *mesh, size_t *bytes, double *seconds, cw_error *err)
 {
-    cw_extract_desc desc = wanted->extract;
+    cw_extract_desc desc = *extract;
     cw_extract_counts counts = {0};
     const double start = cli_seconds();
     desc.leave_open = true;
     desc.no_normals = true;
-    cw_status st = cli_extract_surface(volume, NULL, &desc, mesh, &counts, err);
+    cw_status st = cli_extract_surface(volume, &desc, mesh, &counts, err);
     *bytes += counts.bytes;
     *seconds += cli_seconds() - start;
     return st;
@@ -146,7 +146,7 @@ static size_t voxels_of(const cw_volume *v)
 }
 
 cw_status cli_prove_crop(const cli_volume *part, const cli_input *input,
-                         const cli_wanted *wanted, cli_crop_proof *proof, cw_error *err)
+                         const cw_extract_desc *extract, cli_crop_proof *proof, cw_error *err)
 {
     cli_volume whole;
     cw_mesh some = {0}, all = {0};
@@ -157,10 +157,10 @@ cw_status cli_prove_crop(const cli_volume *part, const cli_input *input,
     proof->whole_voxels = st == CW_OK ? voxels_of(&whole.view) : 0;
     proof->whole_bytes = proof->whole_voxels * voxel;
     if (st == CW_OK)
-        st = extract_open(part, wanted, &some, &proof->bytes, &proof->seconds, err);
+        st = extract_open(part, extract, &some, &proof->bytes, &proof->seconds, err);
     if (st == CW_OK)
-        st =
-            extract_open(&whole, wanted, &all, &proof->whole_bytes, &proof->whole_seconds, err);
+        st = extract_open(&whole, extract, &all, &proof->whole_bytes, &proof->whole_seconds,
+                          err);
     proof->triangles = some.triangle_count;
     proof->whole_triangles = all.triangle_count;
     if (st == CW_OK) {

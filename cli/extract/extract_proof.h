@@ -7,23 +7,23 @@
 
 /* Extracts the full surface, and notes in the proof what it is and costs. Free it with
  * cw_mesh_free(). */
-CW_NODISCARD cw_status cli_extract_full(const cli_volume *volume, const cli_wanted *wanted,
-                                        cli_proof *proof, cw_mesh *full, cw_error *err);
+CW_NODISCARD cw_status cli_extract_full(const cli_volume *volume,
+                                        const cli_surface_settings *settings, cli_proof *proof,
+                                        cw_mesh *full, cw_error *err);
 
 /* Measures how far a mesh is from the full surface, and that from it.
  * Where the mesh was measured from the field, the full surface is, too.
- * simplify  with the error that was promised; 0: none was
- * Returns   CW_ERR_CHECK when one of the two is farther */
-CW_NODISCARD cw_status cli_prove_error(const cli_volume *volume, const cli_wanted *wanted,
-                                       const cw_simplify_desc *simplify, const cw_mesh *mesh,
-                                       cli_proof *proof, cli_comparison *compared,
-                                       cw_error *err);
+ * Returns   CW_ERR_CHECK when one of the two is farther than the error that was promised, if any was */
+CW_NODISCARD cw_status cli_prove_error(const cli_volume *volume,
+                                       const cli_surface_settings *settings,
+                                       const cw_mesh *mesh, cli_proof *proof,
+                                       cli_comparison *compared, cw_error *err);
 
 /* Reads and extracts the whole volume, too: its triangles in the cells that --crop left must be
  * those of the part, one for one, but for the part's caps.
  * Returns   CW_ERR_CHECK when one is not */
 CW_NODISCARD cw_status cli_prove_crop(const cli_volume *part, const cli_input *input,
-                                      const cli_wanted *wanted, cli_crop_proof *proof,
+                                      const cw_extract_desc *extract, cli_crop_proof *proof,
                                       cw_error *err);
 
 #endif

@@ -136,17 +136,24 @@ size_t cli_extract_provenance(const cli_extract_run *s, size_t n, cli_making *ma
 
 /* ---- a surface --------------------------------------------------------------------------- */
 
-/* Returns the settings of the surface at an isovalue. */
-cli_wanted cli_extract_wants(const cli_extract_run *run, double iso);
+/* Computes the settings of the surface at an isovalue. They point into each other. */
+CW_NODISCARD cw_status cli_extract_describe(const cli_extract_run *run, double iso,
+                                            cli_surface_settings *settings, cw_error *err);
 
-CW_NODISCARD cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
-                                        cw_extract_counts *counts, cw_error *err);
+/* Runs the pipeline on the volume at hand, fills made->facts, and says what the stages did.
+ * moment: of a series; NULL: the only step */
+CW_NODISCARD cw_status cli_extract_run_pipeline(cli_extract_run *s, const cli_moment *moment,
+                                                cli_made *made, cw_pipeline_sink sink,
+                                                cw_error *err);
+
+/* Does the same for one surface. */
+CW_NODISCARD cw_status cli_extract_make(cli_extract_run *s, const cli_moment *moment,
+                                        cli_made *made, cw_mesh *mesh, cw_error *err);
 
 /* Reports how many triangles a simplified surface had before, and measures the distance of a
  * simplified or smoothed one from the field if the voxels are in memory. */
 CW_NODISCARD cw_status cli_extract_judge(cli_extract_run *s, cli_made *made,
-                                         const cw_mesh *mesh, const cw_extract_counts *counts,
-                                         cw_error *err);
+                                         const cw_mesh *mesh, cw_error *err);
 
 /* Judges the surface of --profile print once it is written. */
 CW_NODISCARD cw_status cli_extract_judge_print(cli_extract_run *s, cli_made *made,
@@ -156,13 +163,9 @@ CW_NODISCARD cw_status cli_extract_judge_print(cli_extract_run *s, cli_made *mad
  * otherwise. */
 size_t cli_extract_largest(const cli_extract_args *args);
 
-/* Colours the surface, if that is asked for. moment: of a series; NULL: the only step */
-CW_NODISCARD cw_status cli_extract_color(cli_extract_run *s, const cli_moment *moment,
-                                         cw_mesh *mesh, cw_error *err);
-
-/* Measures what --camera and --max-error promise. bytes: that extraction took */
+/* Measures what --camera and --max-error promise. */
 CW_NODISCARD cw_status cli_extract_prove(cli_extract_run *s, cli_made *made,
-                                         const cw_mesh *mesh, size_t bytes, cw_error *err);
+                                         const cw_mesh *mesh, cw_error *err);
 
 /* Measures what --crop saved, if that is asked for. */
 CW_NODISCARD cw_status cli_extract_prove_crop(cli_extract_run *s, const cli_moment *moment,

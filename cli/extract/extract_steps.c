@@ -4,6 +4,7 @@
 #include "cli/extract/extract_proof.h"
 #include "cli/extract/small_components.h"
 #include "cli/framework/console.h"
+#include "cli/inputs/cut_options.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/results/mesh_comparison.h"
 #include "cli/results/smoothed.h"
@@ -26,31 +27,16 @@ static size_t voxel_count(const cw_volume *v)
 /* That dropping components takes a triangle, if each has 8 triangles or more. */
 enum { DROP_BYTES = 10 };
 
-cli_wanted cli_extract_wants(const cli_extract_run *s, double iso)
+static cw_status find_error(const cli_extract_run *s, double *error, cw_error *err)
 {
-    const double least_mm3 = cli_extract_least_mm3(s);
-    return (cli_wanted){
-        .extract = {.isovalue = iso,
-                    .inside_is_low = cli_extract_is_low(s),
-                    .leave_open = s->args->open,
-                    .simple_topology = s->args->topology,
-                    .cubic_placement = s->args->placement,
-                    .snap = s->args->snap.value,
-                    .no_normals = s->args->normals ||
-                                  (s->args->lod.count && cli_extract_shades_levels(s) &&
-                                   !s->args->smooth.given && !s->args->cut.given),
-                    .threads = (int)s->args->input.threads,
-                    .max_triangles = s->args->max_triangles,
-                    .extra_bytes = s->args->check || s->args->fill_voids ? cli_check_bytes()
-                                   : least_mm3 > 0 || cli_extract_largest(s->args) ? DROP_BYTES
-                                                                                   : 0},
-        .least_mm3 = least_mm3,
-        .largest = cli_extract_largest(s->args),
-        .fill_voids = s->args->fill_voids,
-        .cut = s->args->cut.given ? &s->args->cut : NULL,
-        .smooths = s->args->smooth.given,
-        .smooth = s->args->smooth.given ? cli_extract_smoothing(s) : (cw_smooth_desc){0},
-    };
+    const cli_extract_args *args = s->args;
+    *error = args->simplify.error.given ? cli_extract_error_mm(s) : 0;
+    if (args->pixel.most.given)
+        *error = cli_extract_length_mm(s, &args->pixel.most);
+    else if (args->pixel.pixels.given)
+        return cli_widest_error(&s->input.volume, s->plan.views, s->plan.view_count,
+                                args->pixel.pixels.value, error, err);
+    return CW_OK;
 }
 
 /* error_mm  of the surface as it is extracted; with cameras: out of their sight */
@@ -69,56 +55,53 @@ static cw_simplify_desc simplify_desc(const cli_extract_run *s, double error)
     };
 }
 
-static cw_status find_error(const cli_extract_run *s, double *error, cw_error *err)
+cw_status cli_extract_describe(const cli_extract_run *s, double iso, cli_surface_settings *set,
+                               cw_error *err)
 {
     const cli_extract_args *args = s->args;
-    *error = args->simplify.error.given ? cli_extract_error_mm(s) : 0;
-    if (args->pixel.most.given)
-        *error = cli_extract_length_mm(s, &args->pixel.most);
-    else if (args->pixel.pixels.given)
-        return cli_widest_error(&s->input.volume, s->plan.views, s->plan.view_count,
-                                args->pixel.pixels.value, error, err);
+    const double least_mm3 = cli_extract_least_mm3(s);
+    const size_t largest = cli_extract_largest(args);
+    double error;
+    cw_status st = find_error(s, &error, err);
+    if (st != CW_OK)
+        return st;
+    set->smooth = args->smooth.given ? cli_extract_smoothing(s) : (cw_smooth_desc){0};
+    set->cut = cli_cut_desc(&args->cut);
+    set->simplify = simplify_desc(s, error);
+    set->desc = (cw_pipeline_desc){
+        .extract = {.isovalue = iso,
+                    .inside_is_low = cli_extract_is_low(s),
+                    .leave_open = args->open,
+                    .simple_topology = args->topology,
+                    .cubic_placement = args->placement,
+                    .snap = args->snap.value,
+                    .no_normals = args->normals,
+                    .threads = (int)args->input.threads,
+                    .max_triangles = args->max_triangles,
+                    .extra_bytes = args->check || args->fill_voids ? cli_check_bytes()
+                                   : least_mm3 > 0 || largest      ? DROP_BYTES
+                                                                   : 0},
+        .min_volume_mm3 = least_mm3,
+        .largest = largest,
+        .fill_voids = args->fill_voids,
+        .smooth = args->smooth.given ? &set->smooth : NULL,
+        .cut = args->cut.given ? &set->cut : NULL,
+        .simplify = cli_extract_is_simplified(args) ? &set->simplify : NULL,
+        .views = (cw_simplify_view *)(uintptr_t)s->plan.views,
+        .view_count = s->plan.view_count,
+        .cull = args->pixel.cull,
+        .lod = args->lod.n,
+        .lod_count = args->lod.count,
+        .layers = args->slab,
+    };
     return CW_OK;
 }
 
-/* Returns the margin around a picture, in pixels, so that rounding loses no triangle of it. */
-static double pixels_around(const cli_extract_run *s)
-{
-    return 1 + (s->args->pixel.pixels.given ? s->args->pixel.pixels.value : 0);
-}
-
-/* Depths of the surface first, then what they leave of it. To be culled, it is extracted where
- * it may be seen only, unless all of a component counts. */
-static cw_status extract_for_views(cli_extract_run *s, const cli_wanted *w,
-                                   const cw_simplify_desc *simplify, cli_made *made,
-                                   cw_mesh *mesh, cw_extract_counts *counts, cw_error *err)
-{
-    const bool cull = s->args->pixel.cull;
-    cli_proof *p = &made->proof;
-    cli_volume part = s->input.volume;
-    cw_status st = CW_OK;
-    for (size_t n = 0; n < s->plan.view_count; n++)
-        cw_simplify_view_free(s->plan.views + n);
-    if (cull && !cli_wants_whole(w))
-        st = cli_seen_part(&s->input.volume, s->plan.views, s->plan.view_count, &part, err);
-    if (st == CW_OK)
-        st = cli_draw_views(&part, w, s->plan.views, s->plan.view_count, err);
-    if (st == CW_OK)
-        st = cli_extract_is_simplified(s->args)
-                 ? cli_extract_simplified(&part, w, simplify, mesh, counts, &made->components,
-                                          err)
-                 : cli_extract_wanted(&part, NULL, w, mesh, counts, &made->components, err);
-    if (st != CW_OK || !cull)
-        return st;
-    p->voxels = voxel_count(&s->input.volume.view);
-    p->seen_voxels = voxel_count(&part.view);
-    return cli_cull(&s->input.volume, s->plan.views, s->plan.view_count, pixels_around(s),
-                    simplify->error_mm, mesh, &p->culled, err);
-}
+/* --- a run of the pipeline ------------------------------------------------------------------ */
 
 static void tell_smoothing(cli_extract_run *s, const cli_made *made)
 {
-    const cw_smooth_facts *f = &made->smoothed;
+    const cw_smooth_facts *f = &made->facts.smoothed;
     char text[CLI_SMOOTHED_TEXT];
     cli_smoothed_text(f, text);
     cli_say("%s: smoothed by %s: %s", s->input.volume.path,
@@ -128,61 +111,127 @@ static void tell_smoothing(cli_extract_run *s, const cli_made *made)
                                            "intersections there were not looked for");
 }
 
-cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
-                           cw_extract_counts *counts, cw_error *err)
+static bool has_run(const cli_made *made, cw_stage stage)
 {
-    cli_wanted w = cli_extract_wants(s, made->iso);
-    cw_drop_counts smaller = {0};
-    w.filled = &made->voids;
-    w.smoothed = &made->smoothed;
-    w.cut_facts = &made->cut;
-    w.smaller = &smaller;
-    cw_drop_counts *dropped = &made->components;
-    double error;
-    cw_status st = find_error(s, &error, err);
-    if (st != CW_OK)
-        return st;
-    const cw_simplify_desc simplify = simplify_desc(s, error);
-    cli_report_begin(&s->output.report);
-    if (s->plan.view_count)
-        st = extract_for_views(s, &w, &simplify, made, mesh, counts, err);
-    else if (cli_extract_is_simplified(s->args))
-        st =
-            cli_extract_simplified(&s->input.volume, &w, &simplify, mesh, counts, dropped, err);
-    else
-        st = cli_extract_wanted(&s->input.volume, s->input.extractor, &w, mesh, counts, dropped,
-                                err);
-    if (st != CW_OK)
-        return st;
-    cli_report_end(&s->output.report, "extract", voxel_count(&s->input.volume.view),
-                   mesh->triangle_count);
-    made->least_mm3 = w.least_mm3;
-    if (w.least_mm3 > 0)
-        cli_tell_components(s->input.volume.path, w.least_mm3, dropped);
-    if (w.largest)
+    return made->facts.ran >> stage & 1;
+}
+
+/* Says what the stages did. */
+static void tell_stages(cli_extract_run *s, cli_made *made, const cli_surface_settings *set)
+{
+    const cw_pipeline_facts *f = &made->facts;
+    const char *path = s->input.volume.path;
+    made->least_mm3 = set->desc.min_volume_mm3;
+    if (has_run(made, CW_STAGE_MIN_VOLUME))
+        cli_tell_components(path, set->desc.min_volume_mm3, &f->small);
+    if (has_run(made, CW_STAGE_LARGEST))
         cli_say("%s: %s of %s components kept, of %.6g mm3 or more; the largest of the others "
                 "has %.6g mm3",
-                s->input.volume.path, cli_count(smaller.kept),
-                cli_count(smaller.kept + smaller.dropped), smaller.least_kept_mm3,
-                smaller.largest_mm3);
-    made->fills_voids = w.fill_voids;
-    if (w.fill_voids)
-        cli_say("%s: %s void%s filled, %.6g mm3", s->input.volume.path,
-                cli_count(made->voids.dropped), made->voids.dropped == 1 ? "" : "s",
-                made->voids.dropped_mm3);
-    made->is_smoothed = w.smooths;
-    if (w.smooths)
+                path, cli_count(f->others.kept), cli_count(f->others.kept + f->others.dropped),
+                f->others.least_kept_mm3, f->others.largest_mm3);
+    if (has_run(made, CW_STAGE_FILL_VOIDS))
+        cli_say("%s: %s void%s filled, %.6g mm3", path, cli_count(f->voids.dropped),
+                f->voids.dropped == 1 ? "" : "s", f->voids.dropped_mm3);
+    if (has_run(made, CW_STAGE_SMOOTH))
         tell_smoothing(s, made);
-    made->is_cut = w.cut != NULL;
-    if (w.cut)
-        cli_tell_cut(s->input.volume.path, w.cut, &made->cut);
-    if (s->args->pixel.cull)
+    if (has_run(made, CW_STAGE_CUT))
+        cli_tell_cut(path, &s->args->cut, &f->cut);
+    if (has_run(made, CW_STAGE_CULL))
         cli_say("%s: %.3g %% of the voxels are in bricks that cameras see; %s triangles in "
                 "them that no camera sees are left out",
-                s->input.volume.path,
-                100 * (double)made->proof.seen_voxels / (double)made->proof.voxels,
-                cli_count(made->proof.culled));
+                path, 100 * (double)f->seen_voxels / (double)f->voxels, cli_count(f->culled));
+    if (has_run(made, CW_STAGE_COLOR))
+        cli_tell_coloring(&s->coloring, f);
+}
+
+/* A run, and what its callbacks need. */
+typedef struct making {
+    cli_extract_run *run;
+    const cli_moment *moment; /* of a series; NULL: the only step */
+    size_t triangles;         /* of the surface so far */
+    size_t vertices;          /* to colour */
+    bool is_reported;         /* the step "extract" is in the report */
+} making;
+
+/* Ends the step "extract", which reaches to the levels of detail, and to the colours. */
+static void report_extraction(making *m)
+{
+    if (!m->is_reported)
+        cli_report_end(&m->run->output.report, "extract",
+                       voxel_count(&m->run->input.volume.view), m->triangles);
+    m->is_reported = true;
+    cli_report_begin(&m->run->output.report);
+}
+
+static cw_progress begin_stage(void *user, cw_stage stage, size_t count, const char *unit)
+{
+    making *m = user;
+    if (stage == CW_STAGE_LOD || (stage == CW_STAGE_COLOR && !m->run->args->lod.count)) {
+        report_extraction(m);
+        m->vertices = count;
+    }
+    return cli_stage_progress(NULL, stage, count, unit);
+}
+
+static void end_stage(void *user, cw_stage stage, size_t before, size_t after)
+{
+    making *m = user;
+    (void)before;
+    m->triangles = after;
+    if (stage == CW_STAGE_COLOR && !m->run->args->lod.count)
+        cli_report_end(&m->run->output.report, "color", m->vertices, m->vertices);
+}
+
+static cw_status open_colors(void *user, const cw_volume **volume, cw_error *err)
+{
+    making *m = user;
+    cli_extract_run *s = m->run;
+    const cli_input *input = &s->args->input;
+    return cli_open_coloring(&s->coloring, s->input.volume.path, input,
+                             m->moment ? m->moment->step : input->step, volume, err);
+}
+
+cw_status cli_extract_run_pipeline(cli_extract_run *s, const cli_moment *moment, cli_made *made,
+                                   cw_pipeline_sink sink, cw_error *err)
+{
+    cli_surface_settings set;
+    making m = {.run = s, .moment = moment};
+    cw_status st = cli_extract_describe(s, made->iso, &set, err);
+    if (st != CW_OK)
+        return st;
+    cw_pipeline_color color = {0};
+    if (s->args->color.by)
+        color = cli_describe_coloring(&s->coloring);
+    color.open = open_colors;
+    color.user = &m;
+    set.desc.color = s->args->color.by ? &color : NULL;
+    set.desc.watch = (cw_pipeline_watch){begin_stage, end_stage, &m};
+    cli_report_begin(&s->output.report);
+    st = cli_run_pipeline(&s->input.volume, s->plan.view_count ? NULL : s->input.extractor,
+                          &set.desc, sink, &made->facts, err);
+    if (st != CW_OK)
+        return st;
+    report_extraction(&m);
+    tell_stages(s, made, &set);
     return CW_OK;
+}
+
+/* Moves the surface of the pipeline into a mesh. */
+static cw_status take_mesh(void *user, cw_pipeline_surface *surface,
+                           const cw_pipeline_facts *facts, cw_error *err)
+{
+    (void)facts;
+    (void)err;
+    *(cw_mesh *)user = *surface->mesh;
+    *surface->mesh = (cw_mesh){0};
+    return CW_OK;
+}
+
+cw_status cli_extract_make(cli_extract_run *s, const cli_moment *moment, cli_made *made,
+                           cw_mesh *mesh, cw_error *err)
+{
+    *mesh = (cw_mesh){0};
+    return cli_extract_run_pipeline(s, moment, made, (cw_pipeline_sink){take_mesh, mesh}, err);
 }
 
 /* The distance from the field would not tell of cubic crossings. */
@@ -209,12 +258,12 @@ static cw_status measure_from_field(cli_extract_run *s, cli_made *made, const cw
 /* The full surface is extracted for that, which --simplify is there to do without: only one of
  * a size that costs little memory and time. */
 static cw_status measure_from_full(cli_extract_run *s, cli_made *made, const cw_mesh *mesh,
-                                   const cw_extract_counts *counts, cw_error *err)
+                                   cw_error *err)
 {
-    const cli_wanted w = cli_extract_wants(s, made->iso);
+    const cw_extract_counts *counts = &made->facts.extracted;
     const bool fits = counts->triangles <= MAX_COMPARED &&
                       counts->triangles < s->input.volume.memory_left / COMPARED_BYTES;
-    double error;
+    cli_surface_settings set;
     if (!fits) {
         cli_say("%s: the full surface has %s triangles: the distance to it is not measured "
                 "(--max-error does)",
@@ -222,12 +271,10 @@ static cw_status measure_from_full(cli_extract_run *s, cli_made *made, const cw_
         return CW_OK;
     }
     cli_report_begin(&s->output.report);
-    cw_status st = find_error(s, &error, err);
-    const cw_simplify_desc simplify = simplify_desc(s, error);
+    cw_status st = cli_extract_describe(s, made->iso, &set, err);
     made->proof.bytes = counts->bytes;
     if (st == CW_OK)
-        st = cli_prove_error(&s->input.volume, &w, &simplify, mesh, &made->proof,
-                             &made->compared, err);
+        st = cli_prove_error(&s->input.volume, &set, mesh, &made->proof, &made->compared, err);
     if (st == CW_OK)
         cli_report_end(&s->output.report, "prove", made->proof.full_triangles,
                        mesh->triangle_count);
@@ -235,8 +282,9 @@ static cw_status measure_from_full(cli_extract_run *s, cli_made *made, const cw_
 }
 
 cw_status cli_extract_judge(cli_extract_run *s, cli_made *made, const cw_mesh *mesh,
-                            const cw_extract_counts *counts, cw_error *err)
+                            cw_error *err)
 {
+    const cw_extract_counts *counts = &made->facts.extracted;
     const cli_extract_args *args = s->args;
     const bool is_simplified = cli_extract_is_simplified(args);
     if (is_simplified)
@@ -259,23 +307,8 @@ cw_status cli_extract_judge(cli_extract_run *s, cli_made *made, const cw_mesh *m
     /* a section is far from the isosurface, as it should be */
     cw_status st = args->cut.given ? CW_OK : measure_from_field(s, made, mesh, err);
     return st == CW_OK && is_simplified && !s->plan.view_count && !args->pixel.most.given
-               ? measure_from_full(s, made, mesh, counts, err)
+               ? measure_from_full(s, made, mesh, err)
                : st;
-}
-
-cw_status cli_extract_color(cli_extract_run *s, const cli_moment *moment, cw_mesh *mesh,
-                            cw_error *err)
-{
-    const cli_input *input = &s->args->input;
-    cw_sample_facts facts;
-    if (!s->args->color.by)
-        return CW_OK;
-    cli_report_begin(&s->output.report);
-    cw_status st = cli_color_mesh(&s->coloring, s->input.volume.path, input,
-                                  moment ? moment->step : input->step, mesh, &facts, err);
-    if (st == CW_OK)
-        cli_report_end(&s->output.report, "color", mesh->vertex_count, mesh->vertex_count);
-    return st;
 }
 
 cw_status cli_extract_judge_print(cli_extract_run *s, cli_made *made, const cw_mesh *mesh,
@@ -314,23 +347,24 @@ static cw_status hold_to_pixels(const cli_extract_run *s, const cli_proof *p, cw
 
 /* The promise was kept by bounds, all over; here it is seen from outside. */
 cw_status cli_extract_prove(cli_extract_run *s, cli_made *made, const cw_mesh *mesh,
-                            size_t bytes, cw_error *err)
+                            cw_error *err)
 {
-    const cli_wanted w = cli_extract_wants(s, made->iso);
+    cli_surface_settings set;
     cli_proof *p = &made->proof;
-    double error;
+    p->culled = made->facts.culled;
+    p->voxels = has_run(made, CW_STAGE_CULL) ? made->facts.voxels : 0;
+    p->seen_voxels = has_run(made, CW_STAGE_CULL) ? made->facts.seen_voxels : 0;
     if (!s->args->check || !(s->plan.view_count || s->args->pixel.most.given))
         return CW_OK;
     cli_report_begin(&s->output.report);
-    cw_status st = find_error(s, &error, err);
-    const cw_simplify_desc simplify = simplify_desc(s, error);
+    cw_status st = cli_extract_describe(s, made->iso, &set, err);
     if (st == CW_OK)
-        st = s->plan.view_count ? cli_prove_views(&s->input.volume, &w, &simplify, mesh, p, err)
-                                : cli_prove_error(&s->input.volume, &w, &simplify, mesh, p,
-                                                  &made->compared, err);
+        st = s->plan.view_count
+                 ? cli_prove_views(&s->input.volume, &set, mesh, p, err)
+                 : cli_prove_error(&s->input.volume, &set, mesh, p, &made->compared, err);
     if (st != CW_OK)
         return st;
-    p->bytes = bytes;
+    p->bytes = made->facts.extracted.bytes;
     cli_report_end(&s->output.report, "prove", p->full_triangles, mesh->triangle_count);
     return hold_to_pixels(s, p, err);
 }
@@ -338,14 +372,16 @@ cw_status cli_extract_prove(cli_extract_run *s, cli_made *made, const cw_mesh *m
 cw_status cli_extract_prove_crop(cli_extract_run *s, const cli_moment *moment, cli_made *made,
                                  cw_error *err)
 {
-    const cli_wanted w = cli_extract_wants(s, made->iso);
     const cli_crop_proof *p = &made->crop;
+    cli_surface_settings set;
     cli_input input = s->args->input;
     if (!s->args->prove_crop)
         return CW_OK;
     input.step = moment->step;
     cli_report_begin(&s->output.report);
-    cw_status st = cli_prove_crop(&s->input.volume, &input, &w, &made->crop, err);
+    cw_status st = cli_extract_describe(s, made->iso, &set, err);
+    if (st == CW_OK)
+        st = cli_prove_crop(&s->input.volume, &input, &set.desc.extract, &made->crop, err);
     if (st != CW_OK)
         return st;
     cli_report_end(&s->output.report, "prove crop", p->whole_triangles, p->triangles);

@@ -13,46 +13,46 @@
 typedef struct lod_run {
     cli_extract_run *run;
     cw_mesh full;
-    cw_extract_counts counts;
+    cw_mesh *levels;
+    size_t triangles;  /* of all levels */
     cli_pieces pieces; /* the full surface is the only one */
 } lod_run;
 
-static cw_status extract_full(lod_run *r, cw_error *err)
+/* Moves a level out of the pipeline; with the last, the surface that all were made of. */
+static cw_status take_level(void *user, cw_pipeline_surface *surface,
+                            const cw_pipeline_facts *facts, cw_error *err)
 {
-    cli_extract_run *s = r->run;
-    const char *path = s->input.volume.path;
-    cli_made *made = s->output.report.made;
-    made->iso = s->args->iso.value[0];
-    cw_status st = cli_extract_make(s, made, &r->full, &r->counts, err);
-    if (st != CW_OK)
-        return st;
-    cli_say("%s: %s triangles were extracted", path, cli_count(r->full.triangle_count));
-    st = cli_take_surface(&r->pieces, path, &r->full, err);
-    return st == CW_OK && s->args->check
-               ? cli_measure_pieces(&r->pieces, (int)s->args->input.threads, err)
-               : st;
+    lod_run *r = user;
+    (void)facts;
+    (void)err;
+    r->levels[surface->level] = *surface->mesh;
+    r->triangles += surface->mesh->triangle_count;
+    *surface->mesh = (cw_mesh){0};
+    if (surface->level + 1 < r->run->args->lod.count)
+        return CW_OK;
+    r->full = *surface->full;
+    *surface->full = (cw_mesh){0};
+    return CW_OK;
 }
 
 static cw_status make_levels(void *state, cw_mesh *levels, cw_error *err)
 {
     lod_run *r = state;
-    cli_report *report = &r->run->output.report;
-    const cli_counts *lod = &r->run->args->lod;
-    size_t triangles = 0;
-    cw_status st = extract_full(r, err);
+    cli_extract_run *s = r->run;
+    const char *path = s->input.volume.path;
+    cli_made *made = s->output.report.made;
+    made->iso = s->args->iso.value[0];
+    r->levels = levels;
+    cw_status st =
+        cli_extract_run_pipeline(s, NULL, made, (cw_pipeline_sink){take_level, r}, err);
     if (st != CW_OK)
         return st;
-    const cw_simplify_desc desc = {
-        .threads = (int)r->run->args->input.threads,
-        .progress = cli_progress((double)r->full.triangle_count / 1e6, "Mtriangle")};
-    cli_report_begin(report);
-    st = cw_simplify_levels(&r->full, &desc, lod->n, lod->count, levels, NULL, err);
-    if (st != CW_OK)
-        return cwi_fail_in(err, st, r->pieces.path);
-    for (size_t n = 0; n < lod->count; n++)
-        triangles += levels[n].triangle_count;
-    cli_report_end(report, "simplify", r->full.triangle_count, triangles);
-    return CW_OK;
+    cli_report_end(&s->output.report, "simplify", r->full.triangle_count, r->triangles);
+    cli_say("%s: %s triangles were extracted", path, cli_count(r->full.triangle_count));
+    st = cli_take_surface(&r->pieces, path, &r->full, err);
+    return st == CW_OK && s->args->check
+               ? cli_measure_pieces(&r->pieces, (int)s->args->input.threads, err)
+               : st;
 }
 
 /* Measures how far a level is from the full surface, both ways. The distance to the field takes
@@ -83,22 +83,8 @@ static cw_status hold_level(lod_run *r, cli_made *made, cw_mesh *level, cw_error
 static cw_status finish_level(void *state, cli_made *made, cw_mesh *level, cw_error *err)
 {
     lod_run *r = state;
-    cli_extract_run *s = r->run;
-    const cw_normals_desc normals = {.inside_is_low = cli_extract_is_low(s),
-                                     .threads = (int)s->args->input.threads};
-    made->iso = s->args->iso.value[0];
-    cw_status st = s->args->check ? hold_level(r, made, level, err) : CW_OK;
-    if (st == CW_OK)
-        st = cli_extract_color(s, NULL, level, err);
-    if (st != CW_OK || s->args->normals || s->args->smooth.given || s->args->cut.given ||
-        !cli_extract_shades_levels(s))
-        return st;
-    cli_report_begin(&s->output.report);
-    st = cw_extract_normals(&s->input.volume.view, &normals, level, err);
-    if (st != CW_OK)
-        return cwi_fail_in(err, st, s->input.volume.path);
-    cli_report_end(&s->output.report, "normals", level->triangle_count, level->triangle_count);
-    return CW_OK;
+    made->iso = r->run->args->iso.value[0];
+    return r->run->args->check ? hold_level(r, made, level, err) : CW_OK;
 }
 
 /* Writes "to 50000, 12000 triangles", for the record of a file. */
@@ -131,8 +117,9 @@ static cw_status deliver_levels(void *state, size_t file, const cw_part *parts, 
     how.write.provenance_count = line_count + 1;
     how.unchecked = how.unchecked || all; /* each was by itself */
     how.parts = all ? "levels" : NULL;
-    cw_status st = cli_deliver(&s->output.report, &how, parts, count, r->counts.border_loops,
-                               s->output.start, err);
+    cw_status st =
+        cli_deliver(&s->output.report, &how, parts, count,
+                    s->output.report.made->facts.extracted.border_loops, s->output.start, err);
     s->output.start = cli_seconds();
     return st;
 }

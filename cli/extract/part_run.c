@@ -91,8 +91,13 @@ static cw_status check_args(const cli_extract_args *args, cw_error *err)
 static cw_status extract_slices(void *user, const cw_slice_source *source, cw_error *err)
 {
     part_run *p = user;
-    cw_stream_desc d;
-    cw_status st = cli_plan_slices(&p->run, p->run.args->iso.value[0], source, &d, err);
+    cli_surface_settings set;
+    cw_status st = cli_plan_slices(&p->run, p->run.args->iso.value[0], source, &set, err);
+    const size_t *dim = source->shape.dim;
+    cw_stream_desc d = {.extract = set.desc.extract, .layers = set.desc.layers};
+    d.extract.extra_bytes = 0;
+    d.extract.progress =
+        cli_stage_progress(NULL, CW_STAGE_EXTRACT, dim[0] * dim[1] * dim[2], "voxel");
     return st == CW_OK ? cw_extract_stream_part(source, &d, p->part, p->parts,
                                                 cw_mesh_spool_sink(p->spool), &p->counts, err)
                        : st;

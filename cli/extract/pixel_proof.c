@@ -96,73 +96,6 @@ cw_status cli_widest_error(const cli_volume *volume, const cw_simplify_view *vie
     return cw_simplify_views_error(views, count, pixels, corners[0], 8, error_mm, err);
 }
 
-typedef struct drawn {
-    cw_simplify_view *views;
-    size_t count;
-} drawn;
-
-static cw_status draw_slab(void *p, const cw_slab *slab, cw_error *err)
-{
-    const drawn *d = p;
-    cw_status st = CW_OK;
-    for (size_t n = 0; n < d->count && st == CW_OK; n++)
-        st = cw_simplify_view_draw(d->views + n, slab->mesh, err);
-    return st;
-}
-
-static cw_status draw_whole(const cli_volume *volume, const cli_wanted *wanted, drawn *all,
-                            cw_error *err)
-{
-    cw_mesh mesh;
-    cw_extract_counts counts;
-    cw_status st = cli_extract_wanted(volume, NULL, wanted, &mesh, &counts, NULL, err);
-    if (st == CW_OK)
-        st = draw_slab(all, &(cw_slab){.mesh = &mesh}, err);
-    cw_mesh_free(&mesh);
-    return st;
-}
-
-/* Which components are large enough is known when all is there. */
-cw_status cli_draw_views(const cli_volume *volume, const cli_wanted *wanted,
-                         cw_simplify_view *views, size_t count, cw_error *err)
-{
-    cli_wanted w = *wanted;
-    drawn all = {views, count};
-    w.extract.max_bytes = volume->memory_left;
-    w.extract.no_normals = true;
-    if (cli_wants_whole(&w))
-        return draw_whole(volume, &w, &all, err);
-    cw_status st = cw_extract_slabs(&volume->view, &w.extract, CW_SIMPLIFIER_SLAB,
-                                    (cw_slab_sink){draw_slab, &all}, NULL, err);
-    return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
-}
-
-/* --- what no view sees -------------------------------------------------------------------- */
-
-cw_status cli_seen_part(const cli_volume *volume, const cw_simplify_view *views, size_t count,
-                        cli_volume *part, cw_error *err)
-{
-    const cw_volume *v = &volume->view;
-    cw_box box;
-    *part = *volume;
-    if (cwi_volume_expect_dense(v, "bricks", NULL) != CW_OK)
-        return CW_OK;
-    cw_status st = cw_simplify_views_box(v, views, count, &box, err);
-    if (st == CW_OK)
-        st = cw_volume_crop(v, &box, &part->view, err);
-    return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
-}
-
-cw_status cli_cull(const cli_volume *volume, const cw_simplify_view *views, size_t count,
-                   double pixels, double margin_mm, cw_mesh *mesh, size_t *dropped,
-                   cw_error *err)
-{
-    cw_status st = cw_simplify_cull(mesh, views, count, pixels, margin_mm, dropped, err);
-    if (st == CW_OK && !mesh->triangle_count)
-        st = cwi_fail(err, CW_ERR_EMPTY, "no camera sees anything of the surface");
-    return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
-}
-
 /* --- the proof ---------------------------------------------------------------------------- */
 
 static cw_status measure_distance(const cw_mesh *from, const cw_mesh *to,
@@ -227,12 +160,12 @@ static cw_status compare_pictures(const cw_simplify_view *view, const cw_mesh *f
     return st;
 }
 
-cw_status cli_prove_views(const cli_volume *volume, const cli_wanted *wanted,
-                          const cw_simplify_desc *simplify, const cw_mesh *mesh,
-                          cli_proof *proof, cw_error *err)
+cw_status cli_prove_views(const cli_volume *volume, const cli_surface_settings *settings,
+                          const cw_mesh *mesh, cli_proof *proof, cw_error *err)
 {
+    const cw_simplify_desc *simplify = &settings->simplify;
     cw_mesh full = {0};
-    cw_status st = cli_extract_full(volume, wanted, proof, &full, err);
+    cw_status st = cli_extract_full(volume, settings, proof, &full, err);
     if (st != CW_OK)
         return st;
     proof->count = simplify->view_count;

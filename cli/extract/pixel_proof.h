@@ -24,25 +24,10 @@ CW_NODISCARD cw_status cli_widest_error(const cli_volume *volume, const cw_simpl
                                         size_t count, double pixels, double *error_mm,
                                         cw_error *err);
 
-/* The part of an even or rectilinear volume that the views may see, in whole bricks and two
- * voxels around them; of others, all. It borrows the voxels: not to be freed.
- * Returns CW_ERR_EMPTY when no view sees any. */
-CW_NODISCARD cw_status cli_seen_part(const cli_volume *volume, const cw_simplify_view *views,
-                                     size_t count, cli_volume *part, cw_error *err);
-
-/* Leaves out what no view sees of a mesh that is so near to the one whose depths were drawn. */
-CW_NODISCARD cw_status cli_cull(const cli_volume *volume, const cw_simplify_view *views,
-                                size_t count, double pixels, double margin_mm, cw_mesh *mesh,
-                                size_t *dropped, cw_error *err);
-
-/* Extracts the surface once for its depths only, slab by slab. */
-CW_NODISCARD cw_status cli_draw_views(const cli_volume *volume, const cli_wanted *wanted,
-                                      cw_simplify_view *views, size_t count, cw_error *err);
-
 /* Extracts the full surface, which is compared with the mesh: distances both ways in pixels of
  * each view, and pictures of both, drawn on the CPU. */
-CW_NODISCARD cw_status cli_prove_views(const cli_volume *volume, const cli_wanted *wanted,
-                                       const cw_simplify_desc *simplify, const cw_mesh *mesh,
-                                       cli_proof *proof, cw_error *err);
+CW_NODISCARD cw_status cli_prove_views(const cli_volume *volume,
+                                       const cli_surface_settings *settings,
+                                       const cw_mesh *mesh, cli_proof *proof, cw_error *err);
 
 #endif

@@ -47,7 +47,9 @@ cw_status cli_drop_small_components(const char *name, const cw_mesh_spool *spool
         return cwi_fail(err, st, "%s: %s (--memory)", name, why.message);
     }
     if (st == CW_OK && !counts->kept)
-        st = cli_fail_dropped(least_mm3, counts, err);
+        st = cwi_fail(err, CW_ERR_EMPTY,
+                      "no component encloses %.6g mm3: the largest of %zu encloses %.6g",
+                      least_mm3, counts->dropped, counts->largest_mm3);
     if (st != CW_OK)
         return cwi_fail_in(err, st, name);
     cli_tell_components(name, least_mm3, counts);

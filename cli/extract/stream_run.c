@@ -7,10 +7,10 @@
 #include "cli/inputs/volume_prepare.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
-
-#include <cubewright/spool.h>
+#include "core/base/text.h"
 
 #include <stdio.h>
+#include <string.h>
 
 static bool has_simplify(const cli_extract_args *args)
 {
@@ -82,158 +82,119 @@ cw_status cli_visit_moment(const cli_extract_run *run, const cli_moment *moment,
     return cli_visit_slices(v, &input, visitor, err);
 }
 
-cw_status cli_expect_surface(const cli_extract_run *run, const cli_made *made, size_t triangles,
-                             cw_error *err)
+cw_status cli_plan_slices(const cli_extract_run *run, double iso, const cw_slice_source *source,
+                          cli_surface_settings *set, cw_error *err)
 {
-    return triangles
-               ? CW_OK
-               : cwi_fail(
-                     err, CW_ERR_EMPTY,
-                     "%s: no surface at isovalue %g: it must be above the lowest value and "
-                     "at most the highest ('cubewright info' tells them)",
-                     run->input.volume.path, made->iso);
+    const cli_slices slices = {.path = run->input.volume.path,
+                               .limit = cli_memory_limit(&run->args->input),
+                               .turned = run->input.turned};
+    cw_status st = cli_extract_describe(run, iso, set, err);
+    if (st != CW_OK)
+        return st;
+    cw_stream_desc desc = {.extract = set->desc.extract, .layers = set->desc.layers};
+    desc.extract.extra_bytes = 0;
+    st = cli_limit_slices(&slices, &source->shape, &desc, err);
+    set->desc.extract.max_bytes = desc.extract.max_bytes;
+    set->desc.watch.begin = cli_stage_progress;
+    return st;
 }
 
 /* A surface on its way. */
 typedef struct streaming {
     const cli_extract_run *run;
-    const cli_made *made;
-    cw_mesh_spool *spool;
-    cw_quality_stream *check; /* NULL: it is not measured, or not yet */
-    double least_mm3; /* above 0: small components are left out when all is in the spool */
-    size_t left;      /* memory for slices or their surface */
-    cw_extract_counts counts;
+    cli_made *made;
+    cli_streamed *out;
 } streaming;
 
-/* Passes a chunk on to the spool, and to the measurement. */
-static cw_status take_chunk(void *user, const cw_mesh_chunk *chunk, cw_error *err)
+static cw_status take_surface(void *user, cw_pipeline_surface *surface,
+                              const cw_pipeline_facts *facts, cw_error *err)
 {
-    const streaming *s = user;
-    const cw_chunk_sink spool = cw_mesh_spool_sink(s->spool),
-                        check = cw_quality_stream_sink(s->check);
-    cw_status st = spool.take(spool.user, chunk, err);
-    if (st != CW_OK || !s->check)
-        return st;
-    st = check.take(check.user, chunk, err);
-    if (st == CW_ERR_LIMIT) {
-        const cw_error why = *err;
-        return cwi_fail(err, st, "%s: %s (--memory); --no-check leaves it out",
-                        s->run->input.volume.path, why.message);
-    }
-    return st;
-}
-
-cw_status cli_plan_slices(const cli_extract_run *run, double iso, const cw_slice_source *source,
-                          cw_stream_desc *desc, cw_error *err)
-{
-    const size_t *dim = source->shape.dim;
-    const cli_slices slices = {.path = run->input.volume.path,
-                               .limit = cli_memory_limit(&run->args->input),
-                               .turned = run->input.turned};
-    *desc = (cw_stream_desc){.extract = cli_extract_wants(run, iso).extract,
-                             .layers = run->args->slab};
-    desc->extract.extra_bytes = 0;
-    cw_status st = cli_limit_slices(&slices, &source->shape, desc, err);
-    desc->extract.progress =
-        cli_progress((double)dim[0] * (double)dim[1] * (double)dim[2] / 1e6, "Mvoxel");
-    return st;
-}
-
-/* Begins the measurement. A quarter of its bytes is for the work on the front. */
-static cw_status begin_check(streaming *s, size_t bytes, cw_error *err)
-{
-    const cw_quality_stream_desc check = {.threads = (int)s->run->args->input.threads,
-                                          .max_bytes = bytes / 4 * 3};
-    return cw_quality_stream_new(&check, &s->check, err);
-}
-
-/* Divides the memory that is left. Slices take a third of it at most, or what a single layer needs.
- * The front of the surface may have the rest, and half of that beside: the file is written later. */
-static cw_status share_memory(streaming *s, const cw_slice_source *source, cw_stream_desc *desc,
-                              cw_error *err)
-{
-    const size_t least = cw_extract_stream_bytes(&source->shape, desc, true),
-                 left = desc->extract.max_bytes;
-    s->left = left;
-    if (!s->run->args->check || s->least_mm3 > 0)
+    cli_streamed *out = user;
+    (void)facts;
+    (void)err;
+    out->spool = surface->spool;
+    surface->spool = NULL;
+    if (!surface->mesh)
         return CW_OK;
-    desc->extract.max_bytes = left / 3 > least ? left / 3 : least;
-    const size_t slices = cw_extract_stream_bytes(&source->shape, desc, false),
-                 rest = (left > slices ? left - slices : 0) + CLI_BESIDE_SLICES / 2;
-    return begin_check(s, rest, err);
+    out->mesh = *surface->mesh;
+    *surface->mesh = (cw_mesh){0};
+    return CW_OK;
 }
 
 static cw_status extract_slices(void *user, const cw_slice_source *source, cw_error *err)
 {
-    streaming *s = user;
-    cw_stream_desc d;
-    cw_status st = cli_plan_slices(s->run, s->made->iso, source, &d, err);
-    if (st == CW_OK)
-        st = share_memory(s, source, &d, err);
-    return st == CW_OK
-               ? cw_extract_stream(source, &d, (cw_chunk_sink){take_chunk, s}, &s->counts, err)
-               : st;
+    const streaming *s = user;
+    cli_surface_settings set;
+    cw_status st = cli_plan_slices(s->run, s->made->iso, source, &set, err);
+    if (st != CW_OK)
+        return st;
+    set.desc.check = s->run->args->check && !set.desc.simplify; /* in memory it is, later */
+    set.desc.spool_path = s->made->path;
+    s->made->least_mm3 = set.desc.min_volume_mm3;
+    return cw_pipeline_run_slices(source, &set.desc, (cw_pipeline_sink){take_surface, s->out},
+                                  &s->made->facts, err);
 }
 
-/* Moves what is kept into another spool, and measures it on the way. The slices have gone: a
- * third of the memory is for the components, and the rest for the measurement. */
-static cw_status drop_components(streaming *s, cli_made *made, cw_error *err)
+/* Names the options that help when --memory is too low. */
+static cw_status explain_limit(const cli_extract_run *run, cw_status st, cw_error *err)
 {
-    cw_mesh_spool *whole = s->spool;
-    const size_t bytes = s->run->args->check ? s->left / 3 : s->left;
-    cw_status st = CW_OK;
-    s->spool = NULL;
-    if (s->run->args->check)
-        st = begin_check(s, s->left - bytes + CLI_BESIDE_SLICES / 2, err);
-    if (st == CW_OK)
-        st = cw_mesh_spool_new(made->path, &s->spool, err);
-    if (st == CW_OK)
-        st = cli_drop_small_components(s->run->input.volume.path, whole, s->least_mm3, bytes,
-                                       (cw_chunk_sink){take_chunk, s}, &made->components, err);
-    cw_mesh_spool_free(whole);
-    if (st == CW_OK)
-        made->least_mm3 = s->least_mm3;
-    return st;
+    char needed_text[CWI_MEMORY_TEXT], left_text[CWI_MEMORY_TEXT];
+    const cw_error why = *err;
+    size_t left;
+    const size_t needed = cwi_memory_refused(&left);
+    if (st == CW_ERR_LIMIT)
+        return cwi_fail(err, st, "%s (--memory%s)", why.message,
+                        strncmp(why.message, "check: ", 7) == 0 ? ", or --no-check" : "");
+    if (st != CW_ERR_NO_MEMORY || !needed || !cli_extract_is_simplified(run->args))
+        return st;
+    cwi_print_memory(needed, needed_text);
+    cwi_print_memory(left, left_text);
+    return cwi_fail(
+        err, CW_ERR_LIMIT,
+        "simplified slice by slice, the surface does not fit: %s more were needed, %s "
+        "are left (--memory)",
+        needed_text, left_text);
 }
 
-/* Ends the measurement, and holds the surface to the promise. */
-static cw_status end_check(const streaming *s, cli_made *made, cw_error *err)
+/* Says what was left out, and holds the surface to the promise. */
+static cw_status judge_surface(cli_extract_run *run, cli_made *made, const cw_mesh *mesh,
+                               cw_error *err)
 {
+    const cw_pipeline_facts *f = &made->facts;
+    const char *path = run->input.volume.path;
     char what[32];
-    snprintf(what, sizeof what, "at %g", made->iso);
-    if (!s->check)
+    if (f->ran >> CW_STAGE_MIN_VOLUME & 1)
+        cli_tell_components(path, made->least_mm3, &f->small);
+    if (cli_extract_is_simplified(run->args))
+        return cli_extract_judge(run, made, mesh, err);
+    if (!run->args->check)
         return CW_OK;
-    cw_status st = cw_quality_stream_finish(s->check, &made->quality, err);
-    made->measured = st == CW_OK;
-    return st == CW_OK ? cli_hold_to_promise(s->run->input.volume.path, what, &made->quality,
-                                             s->run->args->open, err)
-                       : st;
+    snprintf(what, sizeof what, "at %g", made->iso);
+    made->quality = f->quality;
+    made->measured = true;
+    return cli_hold_to_promise(path, what, &made->quality, run->args->open, err);
 }
 
 cw_status cli_extract_streamed(cli_extract_run *run, const cli_moment *moment, cli_made *made,
-                               cw_mesh_spool **spool, cw_extract_counts *counts, cw_error *err)
+                               cli_streamed *out, cw_error *err)
 {
     const size_t *dim = run->input.volume.view.dim;
-    streaming s = {.run = run, .made = made, .least_mm3 = cli_extract_least_mm3(run)};
+    streaming s = {.run = run, .made = made, .out = out};
     const cw_slice_visitor visitor = {extract_slices, &s};
+    *out = (cli_streamed){0};
     cli_report_begin(&run->output.report);
-    cw_status st = cw_mesh_spool_new(made->path, &s.spool, err);
-    if (st == CW_OK)
-        st = cli_visit_moment(run, moment, &visitor, err);
-    if (st == CW_OK)
-        st = cli_expect_surface(run, made, s.counts.triangles, err);
-    if (st == CW_OK && s.least_mm3 > 0)
-        st = drop_components(&s, made, err);
-    if (st == CW_OK)
-        st = end_check(&s, made, err);
-    cw_quality_stream_free(s.check);
-    if (st != CW_OK) {
-        cw_mesh_spool_free(s.spool);
-        return st;
-    }
-    *spool = s.spool;
-    *counts = s.counts;
+    cw_status st = cli_visit_moment(run, moment, &visitor, err);
+    if (st != CW_OK)
+        return explain_limit(run, st, err);
+    const cw_mesh *mesh = out->spool ? cw_mesh_spool_frame(out->spool) : &out->mesh;
     cli_report_end(&run->output.report, "extract", dim[0] * dim[1] * dim[2],
-                   cw_mesh_spool_frame(*spool)->triangle_count);
-    return CW_OK;
+                   mesh->triangle_count);
+    return judge_surface(run, made, mesh, err);
+}
+
+void cli_free_streamed(cli_streamed *surface)
+{
+    cw_mesh_spool_free(surface->spool);
+    cw_mesh_free(&surface->mesh);
+    *surface = (cli_streamed){0};
 }

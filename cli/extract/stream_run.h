@@ -17,21 +17,25 @@ bool cli_turn_to_slices(cli_extract_run *run, cw_status st);
 CW_NODISCARD cw_status cli_visit_moment(const cli_extract_run *run, const cli_moment *moment,
                                         const cw_slice_visitor *visitor, cw_error *err);
 
-/* Returns CW_ERR_EMPTY for a surface without triangles. */
-CW_NODISCARD cw_status cli_expect_surface(const cli_extract_run *run, const cli_made *made,
-                                          size_t triangles, cw_error *err);
-
-/* Plans the extraction of slices at an isovalue within --memory. Returns CW_ERR_LIMIT when that is
- * not enough. */
+/* Computes the settings of the surface of slices at an isovalue, within --memory. Returns
+ * CW_ERR_LIMIT when that is not enough. */
 CW_NODISCARD cw_status cli_plan_slices(const cli_extract_run *run, double iso,
-                                       const cw_slice_source *source, cw_stream_desc *desc,
-                                       cw_error *err);
+                                       const cw_slice_source *source,
+                                       cli_surface_settings *settings, cw_error *err);
 
-/* Extracts a surface of the run's volume, whose voxels were not read, into a spool beside the
- * path. Free it with cw_mesh_spool_free(). Unless the run says otherwise, it measures the surface
- * on the way and holds it to the promise: CW_ERR_CHECK. */
+/* A surface of slices: simplified in memory, else in a spool beside its file. */
+typedef struct cli_streamed {
+    cw_mesh mesh;
+    cw_mesh_spool *spool; /* NULL: in memory */
+} cli_streamed;
+
+/* Makes a surface of the run's volume, whose voxels were not read. Free it with cli_free_streamed().
+ * Unless the run says otherwise, it measures the surface and holds it to the promise: CW_ERR_CHECK. */
 CW_NODISCARD cw_status cli_extract_streamed(cli_extract_run *run, const cli_moment *moment,
-                                            cli_made *made, cw_mesh_spool **spool,
-                                            cw_extract_counts *counts, cw_error *err);
+                                            cli_made *made, cli_streamed *surface,
+                                            cw_error *err);
+
+/* Harmless on a zeroed one. */
+void cli_free_streamed(cli_streamed *surface);
 
 #endif

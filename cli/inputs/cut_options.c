@@ -7,23 +7,26 @@
 #include "core/geometry/box.h"
 
 #include <math.h>
+#include <string.h>
 
-cw_cut_desc cli_cut_desc(const cli_plane *plane, const double low[3], const double high[3])
+cw_cut_desc cli_cut_desc(const cli_plane *plane)
 {
-    cw_cut_desc d = {.leave_open = false};
-    for (int a = 0; a < 3; a++) {
-        d.normal[a] = plane->normal[a];
-        d.point[a] = plane->is_percent && plane->normal[a] != 0
-                         ? low[a] + (high[a] - low[a]) * plane->point[a] / 100
-                         : plane->point[a];
-    }
+    cw_cut_desc d = {.point_is_percent = plane->is_percent};
+    memcpy(d.normal, plane->normal, sizeof d.normal);
+    memcpy(d.point, plane->point, sizeof d.point);
     return d;
 }
 
-cw_status cli_cut_mesh(const cli_plane *plane, const double low[3], const double high[3],
-                       cw_mesh *mesh, cw_cut_facts *facts, cw_error *err)
+/* Cuts a mesh in place, adds to the facts, and names the option in errors.
+ * low, high  the box of which percents are */
+static cw_status cut_mesh(const cli_plane *plane, const double low[3], const double high[3],
+                          cw_mesh *mesh, cw_cut_facts *facts, cw_error *err)
 {
-    cw_cut_desc desc = cli_cut_desc(plane, low, high);
+    cw_cut_desc desc = cli_cut_desc(plane);
+    for (int a = 0; a < 3; a++)
+        if (desc.point_is_percent && desc.normal[a] != 0)
+            desc.point[a] = low[a] + (high[a] - low[a]) * desc.point[a] / 100;
+    desc.point_is_percent = false;
     cw_mesh cut;
     cw_cut_facts f;
     desc.progress = cli_progress((double)mesh->triangle_count / 1e6, "Mtriangle");
@@ -64,7 +67,7 @@ cw_status cli_cut_parts(const cli_plane *plane, cli_mesh *m, cw_cut_facts *facts
         cw_mesh *part = find_part(m, n);
         st = cw_mesh_weld(part, NULL, err);
         if (st == CW_OK)
-            st = cli_cut_mesh(plane, low, high, part, facts, err);
+            st = cut_mesh(plane, low, high, part, facts, err);
         kept += st == CW_OK;
         if (st == CW_ERR_EMPTY && count > 1) {
             facts->dropped_triangles += part->triangle_count;

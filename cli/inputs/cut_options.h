@@ -9,14 +9,8 @@
 
 #include <cubewright/cut.h>
 
-/* Returns the settings of --cut-plane for what is in a world box. */
-cw_cut_desc cli_cut_desc(const cli_plane *plane, const double low[3], const double high[3]);
-
-/* Cuts a mesh in place, adds to the facts, and names the option in errors.
- * low, high  the box of which percents are */
-CW_NODISCARD cw_status cli_cut_mesh(const cli_plane *plane, const double low[3],
-                                    const double high[3], cw_mesh *mesh, cw_cut_facts *facts,
-                                    cw_error *err);
+/* Returns the settings of --cut-plane. */
+cw_cut_desc cli_cut_desc(const cli_plane *plane);
 
 /* Cuts all parts of a mesh that was read, by one plane, and says so. Vertices at equal positions are
  * merged first. Parts of which nothing is left stay as empty ones.

@@ -244,7 +244,7 @@ static cw_status extract_shown(cli_pictures *p, cw_error *err)
                                       cli_inside_is_low(args->inside, &p->source.volume.whole),
                                   .threads = (int)args->input.threads};
     return st == CW_OK
-               ? cli_extract_surface(&p->source.volume, NULL, &desc, &p->source.mesh, NULL, err)
+               ? cli_extract_surface(&p->source.volume, &desc, &p->source.mesh, NULL, err)
                : st;
 }
 

@@ -79,35 +79,38 @@ static cw_status read_colors(cli_coloring *c, const char *path, const cli_input 
     return st;
 }
 
-cw_status cli_color_mesh(cli_coloring *c, const char *path, const cli_input *input, size_t step,
-                         cw_mesh *mesh, cw_sample_facts *facts, cw_error *err)
+cw_status cli_open_coloring(cli_coloring *c, const char *path, const cli_input *input,
+                            size_t step, const cw_volume **volume, cw_error *err)
 {
-    const cw_sample_desc desc = {.threads = (int)input->threads,
-                                 .progress =
-                                     cli_progress((double)mesh->vertex_count / 1e6, "Mvertex")};
     const bool is_array = access(c->args->by, F_OK) != 0;
-    cw_status st = c->is_read && (!is_array || c->step == step)
-                       ? CW_OK
-                       : read_colors(c, path, input, step, err);
-    if (st != CW_OK)
-        return st;
-    st = cw_mesh_sample(mesh, &c->volume.view, &desc, facts, err);
-    if (st != CW_OK)
-        return cwi_fail_in(err, st, c->volume.path);
-    if (!c->has_range && !(c->args->range && parse_range(c->args->range, &c->low, &c->high))) {
-        c->low = facts->low;
-        c->high = facts->high;
-    }
+    *volume = &c->volume.view;
+    return c->is_read && (!is_array || c->step == step)
+               ? CW_OK
+               : read_colors(c, path, input, step, err);
+}
+
+cw_pipeline_color cli_describe_coloring(const cli_coloring *c)
+{
+    cw_pipeline_color color = {.map = (cw_colormap)c->args->map,
+                               .has_range = c->has_range,
+                               .low = c->low,
+                               .high = c->high};
+    if (!c->has_range && c->args->range)
+        color.has_range = parse_range(c->args->range, &color.low, &color.high);
+    return color;
+}
+
+void cli_tell_coloring(cli_coloring *c, const cw_pipeline_facts *f)
+{
     c->has_range = true;
-    st = cw_mesh_color(mesh, (cw_colormap)c->args->map, c->low, c->high, err);
-    if (st != CW_OK)
-        return st;
-    cli_say("%s: values %.6g to %.6g; colours from %.6g to %.6g by %s", c->args->by, facts->low,
-            facts->high, c->low, c->high, cw_colormap_name((cw_colormap)c->args->map));
-    if (facts->missing)
+    c->low = f->color_low;
+    c->high = f->color_high;
+    cli_say("%s: values %.6g to %.6g; colours from %.6g to %.6g by %s", c->args->by,
+            f->color.low, f->color.high, c->low, c->high,
+            cw_colormap_name((cw_colormap)c->args->map));
+    if (f->color.missing)
         cli_say("%s: %s vertices are outside of it, and get the lowest value", c->args->by,
-                cli_count(facts->missing));
-    return CW_OK;
+                cli_count(f->color.missing));
 }
 
 void cli_json_color(cli_json *j, const cli_coloring *c)

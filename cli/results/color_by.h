@@ -5,7 +5,7 @@
 #include "cli/framework/json_writer.h"
 #include "cli/inputs/volume_input.h"
 
-#include <cubewright/color.h>
+#include <cubewright/pipeline.h>
 
 typedef struct cli_color_args {
     const char *by, *range;
@@ -47,13 +47,18 @@ typedef struct cli_coloring {
 /* Fails for a range that is none, and for a map or range without a volume. */
 CW_NODISCARD cw_status cli_check_color(const cli_color_args *args, cw_error *err);
 
-/* Samples the volume at the vertices, and colours them. Reads it before, for the first mesh and for
- * each step that has one of its own.
- * path   of the input whose array it may be; input  how that is read
- * facts  set */
-CW_NODISCARD cw_status cli_color_mesh(cli_coloring *coloring, const char *path,
-                                      const cli_input *input, size_t step, cw_mesh *mesh,
-                                      cw_sample_facts *facts, cw_error *err);
+/* Sets *volume to the volume of colours. Reads it before, for the first mesh and for each step that
+ * has one of its own.
+ * path   of the input whose array it may be; input  how that is read */
+CW_NODISCARD cw_status cli_open_coloring(cli_coloring *coloring, const char *path,
+                                         const cli_input *input, size_t step,
+                                         const cw_volume **volume, cw_error *err);
+
+/* Returns the settings of the pipeline, without its callback: the map, and its range if it is known. */
+cw_pipeline_color cli_describe_coloring(const cli_coloring *coloring);
+
+/* Says what the pipeline did, and keeps the range for the next surface. */
+void cli_tell_coloring(cli_coloring *coloring, const cw_pipeline_facts *facts);
 
 /* Writes the settings. */
 void cli_json_color(cli_json *j, const cli_coloring *coloring);

@@ -245,6 +245,25 @@ static void put_crop(cli_json *j, const cli_crop_proof *p)
     cli_json_close(j, '}');
 }
 
+/* Writes what the stages of the pipeline did. */
+static void put_stages(cli_json *j, const cli_made *m)
+{
+    const cw_pipeline_facts *f = &m->facts;
+    if (f->ran >> CW_STAGE_MIN_VOLUME & 1)
+        put_dropped_components(j, m->least_mm3, &f->small);
+    if (f->ran >> CW_STAGE_FILL_VOIDS & 1) {
+        cli_json_open(j, "voids_filled", '{');
+        cli_json_count(j, "count", f->voids.dropped);
+        cli_json_count(j, "dropped_triangles", f->voids.triangles);
+        cli_json_number(j, "filled_mm3", f->voids.dropped_mm3);
+        cli_json_close(j, '}');
+    }
+    if (f->ran >> CW_STAGE_CUT & 1)
+        cli_json_cut(j, &f->cut);
+    if (f->ran >> CW_STAGE_SMOOTH & 1)
+        cli_json_smoothed(j, &f->smoothed);
+}
+
 static void put_facts(cli_json *j, const cli_made *m)
 {
     if (m->measured)
@@ -253,19 +272,7 @@ static void put_facts(cli_json *j, const cli_made *m)
         put_snap(j, &m->snap);
     if (m->compared.made || m->compared.has_field)
         put_comparison(j, &m->compared);
-    if (m->least_mm3 > 0)
-        put_dropped_components(j, m->least_mm3, &m->components);
-    if (m->fills_voids) {
-        cli_json_open(j, "voids_filled", '{');
-        cli_json_count(j, "count", m->voids.dropped);
-        cli_json_count(j, "dropped_triangles", m->voids.triangles);
-        cli_json_number(j, "filled_mm3", m->voids.dropped_mm3);
-        cli_json_close(j, '}');
-    }
-    if (m->is_cut)
-        cli_json_cut(j, &m->cut);
-    if (m->is_smoothed)
-        cli_json_smoothed(j, &m->smoothed);
+    put_stages(j, m);
     if (m->print.count)
         cli_json_verdicts(j, m->print.verdicts, m->print.count);
     if (m->print.facts.area_mm2 > 0)

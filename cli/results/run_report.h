@@ -7,9 +7,7 @@
 #include "cli/results/printability.h"
 
 #include <cubewright/check.h>
-#include <cubewright/cut.h>
-#include <cubewright/extract.h>
-#include <cubewright/smooth.h>
+#include <cubewright/pipeline.h>
 
 #include <stdio.h>
 
@@ -80,15 +78,9 @@ typedef struct cli_made {
     unsigned dropped;         /* what the file does not hold of it: cw_keeps flags */
     double origin[3];         /* when it is local: the places in the file are relative to it */
     cli_comparison compared;
-    double least_mm3; /* what components had to enclose; 0: nothing was left out for that */
-    cw_drop_counts components; /* when something was */
-    bool fills_voids;
-    cw_drop_counts voids; /* when they were filled */
-    bool is_cut;
-    cw_cut_facts cut; /* when it was */
-    bool is_smoothed;
-    cw_smooth_facts smoothed; /* when it was */
-    cli_printed print;        /* of --profile print */
+    double least_mm3;        /* what components had to enclose */
+    cw_pipeline_facts facts; /* of the stages that ran */
+    cli_printed print;       /* of --profile print */
     cli_proof proof;
     cli_crop_proof crop;
     char warning[CLI_MAX_WARNINGS][512];

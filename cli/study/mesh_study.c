@@ -124,7 +124,7 @@ static cw_status measure_from_field(cli_mesh_study *m, cw_error *err)
     cw_mesh surface = {0};
     cw_extract_counts counts;
     cli_say_v("distance from the surface");
-    cw_status st = cli_extract_surface(m->study.volume, NULL, &extract, &surface, &counts, err);
+    cw_status st = cli_extract_surface(m->study.volume, &extract, &surface, &counts, err);
     const cw_mesh_distance_desc back = {
         .vertices_only = true, .threads = m->study.threads, .progress = progress_of(&surface)};
     if (st == CW_OK)

@@ -25,7 +25,7 @@ static cw_status extract_step(cli_series_study *q, const cli_input *input, size_
     cw_status st = cli_read_step(&q->source, input, step, err);
     const double start = cli_seconds();
     if (st == CW_OK)
-        st = cli_extract_surface(&q->source.volume, NULL, &desc, mesh, &counts, err);
+        st = cli_extract_surface(&q->source.volume, &desc, mesh, &counts, err);
     *seconds = cli_seconds() - start;
     return st;
 }

@@ -53,7 +53,7 @@ cw_status cli_run_extraction(cli_study *s, cli_point *p, cw_mesh *mesh, cw_error
     const cli_watch watch = cli_watch_memory();
     const double start = cli_seconds();
     if (st == CW_OK)
-        st = cli_extract_surface(&volume, NULL, &desc, mesh, &counts, err);
+        st = cli_extract_surface(&volume, &desc, mesh, &counts, err);
     if (st != CW_OK)
         return st;
     cli_add_run(p, cli_seconds() - start);

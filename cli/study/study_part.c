@@ -123,7 +123,7 @@ cw_status cli_need_part(cli_study *s, cw_error *err)
         return CW_OK;
     cw_status st = cw_volume_crop(v, &box, &s->part.view, err);
     if (st == CW_OK)
-        st = cli_extract_surface(&s->part, NULL, &desc, &s->part_mesh, NULL, err);
+        st = cli_extract_surface(&s->part, &desc, &s->part_mesh, NULL, err);
     if (st != CW_OK) {
         s->part = *s->volume;
         return st;

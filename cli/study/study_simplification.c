@@ -38,20 +38,20 @@ size_t cli_share_of(const cw_mesh *mesh, double share)
 
 cw_status cli_run_simplification(cli_study *s, cli_point *p, cw_mesh *mesh, cw_error *err)
 {
-    const cli_wanted wanted = {.extract = {.isovalue = s->iso,
-                                           .inside_is_low = s->inside_is_low,
-                                           .leave_open = s->is_field,
-                                           .threads = s->threads}};
     cw_status st = cli_need_part(s, err);
     const cw_simplify_desc simplify = {
         .error_mm = p->tried.error_vox * s->voxel_mm,
         .triangles = p->tried.share > 0 ? cli_share_of(cli_part_mesh(s), p->tried.share) : 0,
         .threads = s->threads};
-    cw_extract_counts counts;
+    const cw_pipeline_desc pipeline = {.extract = {.isovalue = s->iso,
+                                                   .inside_is_low = s->inside_is_low,
+                                                   .leave_open = s->is_field,
+                                                   .threads = s->threads},
+                                       .simplify = &simplify};
     const cli_watch watch = cli_watch_memory();
     const double start = cli_seconds();
     if (st == CW_OK)
-        st = cli_extract_simplified(&s->part, &wanted, &simplify, mesh, &counts, NULL, err);
+        st = cli_make_surface(&s->part, NULL, &pipeline, mesh, NULL, err);
     if (st != CW_OK)
         return st;
     cli_add_run(p, cli_seconds() - start);

@@ -13,6 +13,8 @@ extern "C" {
 typedef struct cw_cut_desc {
     double point[3];  /* a world point of the plane, LPS millimetres; 0, 0, 0 is the origin */
     double normal[3]; /* of any length above 0; what lies on the side it points to is kept */
+    bool point_is_percent; /* along each axis that the normal has, point is a percentage of the way
+                              from the low to the high end of the mesh's box; default: world */
     bool leave_open;  /* default: the section is closed by flat triangles */
     cw_progress progress; /* default: none */
 } cw_cut_desc;

@@ -39,10 +39,22 @@ double cwi_cut_distance(const cwi_cut *c, size_t v)
     return sum;
 }
 
+/* Turns percentages of the mesh's box into a world point. */
+static void place_point(cwi_cut *c)
+{
+    cw_cut_desc *d = &c->desc;
+    double low[3], high[3];
+    cw_mesh_bounds(c->mesh, low, high);
+    for (int a = 0; a < 3; a++)
+        if (d->point_is_percent && d->normal[a] != 0)
+            d->point[a] = low[a] + (high[a] - low[a]) * d->point[a] / 100;
+}
+
 /* Sets the plane in the coordinates of the mesh's positions. */
 static void set_plane(cwi_cut *c)
 {
     double largest = 0;
+    place_point(c);
     memcpy(c->normal, c->desc.normal, sizeof c->normal);
     cwi_normalise(c->normal);
     for (int a = 0; a < 3; a++) {

@@ -1,0 +1,149 @@
+/* The recipe: runs the stages of the table, and gives the finished surfaces away. */
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "extract/pipeline/stages.h"
+
+cw_progress cwi_begin_stage(const cwi_pipeline *p, cw_stage stage, size_t count,
+                            const char *unit)
+{
+    const cw_pipeline_watch *w = &p->desc->watch;
+    return w->begin ? w->begin(w->user, stage, count, unit) : (cw_progress){0};
+}
+
+static size_t count_triangles(const cwi_pipeline *p, const cw_mesh *mesh)
+{
+    return p->spool ? cw_mesh_spool_frame(p->spool)->triangle_count : mesh->triangle_count;
+}
+
+/* Runs the wanted stages from one to another on a surface, the last not included. finishes: those
+ * for finished surfaces; else the others */
+static cw_status run_stages(cwi_pipeline *p, cw_mesh *mesh, bool finishes, cw_error *err)
+{
+    const unsigned stages = cw_pipeline_stages(p->desc);
+    const cw_pipeline_watch *w = &p->desc->watch;
+    cw_status st = CW_OK;
+    for (int s = 0; s < CW_STAGE_COUNT && st == CW_OK; s++) {
+        const cwi_stage *stage = cwi_stage_of((cw_stage)s);
+        if (!(stages >> s & 1) || stage->finishes != finishes)
+            continue;
+        const size_t before = count_triangles(p, mesh);
+        st = stage->run(p, mesh, err);
+        p->facts.ran |= 1u << s;
+        if (st == CW_OK && w->end)
+            w->end(w->user, (cw_stage)s, before, count_triangles(p, mesh));
+    }
+    return st;
+}
+
+/* Finishes a surface, and gives it away. */
+static cw_status finish_surface(cwi_pipeline *p, cw_mesh *mesh, size_t level,
+                                cw_pipeline_sink sink, cw_error *err)
+{
+    cw_pipeline_surface surface = {.mesh = p->spool ? NULL : mesh,
+                                   .spool = p->spool,
+                                   .level = level,
+                                   .full = p->levels ? &p->mesh : NULL};
+    cw_status st = run_stages(p, mesh, true, err);
+    if (st == CW_OK)
+        st = sink.take(sink.user, &surface, &p->facts, err);
+    if (p->spool && !surface.spool)
+        p->spool = NULL;
+    return st;
+}
+
+/* Makes the surface or its levels of detail, finishes each, and gives it away. */
+static cw_status run_pipeline(cwi_pipeline *p, cw_pipeline_sink sink, cw_error *err)
+{
+    const size_t levels = p->desc->lod_count;
+    cw_status st = run_stages(p, &p->mesh, false, err);
+    for (size_t n = 0; n < levels && st == CW_OK; n++)
+        st = finish_surface(p, &p->levels[n], n, sink, err);
+    return st == CW_OK && !levels ? finish_surface(p, &p->mesh, 0, sink, err) : st;
+}
+
+static void free_pipeline(cwi_pipeline *p)
+{
+    for (size_t n = 0; p->levels && n < p->desc->lod_count; n++)
+        cw_mesh_free(&p->levels[n]);
+    cwi_free(p->levels);
+    cw_mesh_free(&p->mesh);
+    cw_mesh_spool_free(p->spool);
+}
+
+static cw_status start(cwi_pipeline *p, cw_surface_source source, cw_pipeline_sink sink,
+                       cw_pipeline_facts *facts, cw_error *err)
+{
+    const cw_pipeline_desc *d = p->desc;
+    if (facts)
+        *facts = (cw_pipeline_facts){0};
+    if (!sink.take)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "sink.take is NULL");
+    cw_status st = cw_pipeline_check(source, cw_pipeline_stages(d), NULL, NULL, err);
+    if (st != CW_OK)
+        return st;
+    p->spoiled = cwi_spoils(d);
+    p->simplify = d->simplify ? *d->simplify : (cw_simplify_desc){0};
+    p->simplify.views = d->views;
+    p->simplify.view_count = d->view_count;
+    p->simplify.threads = d->extract.threads;
+    st = run_pipeline(p, sink, err);
+    if (facts)
+        *facts = p->facts;
+    free_pipeline(p);
+    return st;
+}
+
+cw_status cw_pipeline_run(const cw_volume *volume, cw_extractor *extractor,
+                          const cw_pipeline_desc *desc, cw_pipeline_sink sink,
+                          cw_pipeline_facts *facts, cw_error *err)
+{
+    CWI_REQUIRE(err, volume, desc);
+    cwi_pipeline p = {.desc = desc, .volume = volume, .part = *volume, .extractor = extractor};
+    return start(&p, CW_SOURCE_MEMORY, sink, facts, err);
+}
+
+cw_status cw_pipeline_run_slices(const cw_slice_source *source, const cw_pipeline_desc *desc,
+                                 cw_pipeline_sink sink, cw_pipeline_facts *facts, cw_error *err)
+{
+    CWI_REQUIRE(err, source, desc);
+    cwi_pipeline p = {.desc = desc, .slices = source};
+    return start(&p, CW_SOURCE_SLICES, sink, facts, err);
+}
+
+static cw_status take_mesh(void *user, cw_pipeline_surface *surface,
+                           const cw_pipeline_facts *facts, cw_error *err)
+{
+    (void)facts;
+    (void)err;
+    *(cw_mesh *)user = *surface->mesh;
+    *surface->mesh = (cw_mesh){0};
+    return CW_OK;
+}
+
+cw_status cw_pipeline_mesh(const cw_volume *volume, cw_extractor *extractor,
+                           const cw_pipeline_desc *desc, cw_mesh *mesh,
+                           cw_pipeline_facts *facts, cw_error *err)
+{
+    CWI_REQUIRE(err, volume, desc, mesh);
+    *mesh = (cw_mesh){0};
+    if (desc->lod_count)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "lod_count is %zu; one surface has no levels",
+                        desc->lod_count);
+    return cw_pipeline_run(volume, extractor, desc, (cw_pipeline_sink){take_mesh, mesh}, facts,
+                           err);
+}
+
+cw_status cwi_make_full(const cwi_pipeline *p, const cw_volume *volume, bool no_normals,
+                        cw_mesh *mesh, cw_error *err)
+{
+    cw_pipeline_desc desc = *p->desc;
+    desc.simplify = NULL;
+    desc.views = NULL;
+    desc.view_count = 0;
+    desc.cull = desc.check = false;
+    desc.color = NULL;
+    desc.lod_count = 0;
+    desc.extract.no_normals = desc.extract.no_normals || no_normals;
+    desc.watch.end = NULL;
+    return cw_pipeline_mesh(volume, NULL, &desc, mesh, NULL, err);
+}

@@ -1,0 +1,24 @@
+/* The stages that move or cut the surface: smoothing, and the cut by a plane. */
+#include "core/base/status.h"
+#include "extract/pipeline/stages.h"
+
+cw_status cwi_smooth(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
+{
+    cw_smooth_desc desc = *p->desc->smooth;
+    desc.threads = p->desc->extract.threads;
+    desc.progress = cwi_begin_stage(p, CW_STAGE_SMOOTH, mesh->triangle_count, "triangle");
+    return cw_mesh_smooth(mesh, &desc, &p->facts.smoothed, err);
+}
+
+cw_status cwi_cut_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
+{
+    cw_cut_desc desc = *p->desc->cut;
+    cw_mesh cut;
+    desc.progress = cwi_begin_stage(p, CW_STAGE_CUT, mesh->triangle_count, "triangle");
+    cw_status st = cw_mesh_cut(mesh, &desc, &cut, &p->facts.cut, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, "cut_plane");
+    cw_mesh_free(mesh);
+    *mesh = cut;
+    return CW_OK;
+}

@@ -1,0 +1,204 @@
+/* The table of stages, and which of them go together. A new stage is a row here, in
+ * CW_STAGE_TABLE, and a function. */
+#include "extract/pipeline/stages.h"
+
+#include "core/base/status.h"
+#include "core/volume/volume.h"
+
+static bool wants_views(const cw_pipeline_desc *d)
+{
+    return d->view_count > 0;
+}
+
+static bool wants_surface(const cw_pipeline_desc *d)
+{
+    (void)d;
+    return true;
+}
+
+static bool wants_min_volume(const cw_pipeline_desc *d)
+{
+    return d->min_volume_mm3 > 0;
+}
+
+static bool wants_largest(const cw_pipeline_desc *d)
+{
+    return d->largest > 0;
+}
+
+static bool wants_voids_filled(const cw_pipeline_desc *d)
+{
+    return d->fill_voids;
+}
+
+static bool wants_smoothing(const cw_pipeline_desc *d)
+{
+    return d->smooth != NULL;
+}
+
+static bool wants_cut(const cw_pipeline_desc *d)
+{
+    return d->cut != NULL;
+}
+
+static bool wants_simplification(const cw_pipeline_desc *d)
+{
+    return d->simplify != NULL;
+}
+
+static bool wants_culling(const cw_pipeline_desc *d)
+{
+    return d->cull;
+}
+
+static bool wants_levels(const cw_pipeline_desc *d)
+{
+    return d->lod_count > 0;
+}
+
+static bool wants_normals(const cw_pipeline_desc *d)
+{
+    return !d->extract.no_normals && (d->simplify || d->lod_count);
+}
+
+static bool wants_color(const cw_pipeline_desc *d)
+{
+    return d->color != NULL;
+}
+
+static bool wants_check(const cw_pipeline_desc *d)
+{
+    return d->check;
+}
+
+/* Short names for the table. */
+enum {
+    WHOLE = CWI_WHOLE_MESH,
+    VOXELS = CWI_VOXELS,
+    SINGLE = CWI_ONE_SURFACE,
+    CLOSED = CWI_CLOSED,
+    SPOOL = CWI_SPOOL,
+    NORMALS = CWI_FIELD_NORMALS,
+    DISTANCE = CWI_FIELD_DISTANCE,
+    OPEN = CWI_CLOSEDNESS,
+};
+
+/* clang-format off */
+/* The recipe: stages run in this order. */
+static const cwi_stage STAGES[CW_STAGE_COUNT] = {
+    /*                        is wanted             needs                    spoils              finishes  function */
+    [CW_STAGE_VIEWS]      = {wants_views,          VOXELS | SINGLE,         0,                  false, cwi_draw_views},
+    [CW_STAGE_EXTRACT]    = {wants_surface,        0,                       0,                  false, cwi_extract_surface},
+    [CW_STAGE_MIN_VOLUME] = {wants_min_volume,     WHOLE | SPOOL | SINGLE,  0,                  false, cwi_drop_small},
+    [CW_STAGE_LARGEST]    = {wants_largest,        WHOLE | SINGLE,          0,                  false, cwi_keep_largest},
+    [CW_STAGE_FILL_VOIDS] = {wants_voids_filled,   WHOLE | SINGLE,          0,                  false, cwi_fill_voids},
+    [CW_STAGE_SMOOTH]     = {wants_smoothing,      WHOLE | SINGLE | CLOSED, NORMALS,            false, cwi_smooth},
+    [CW_STAGE_CUT]        = {wants_cut,            WHOLE | SINGLE | CLOSED, NORMALS | DISTANCE, false, cwi_cut_surface},
+    [CW_STAGE_SIMPLIFY]   = {wants_simplification, 0,                       0,                  false, cwi_simplify_surface},
+    [CW_STAGE_CULL]       = {wants_culling,        WHOLE | VOXELS | SINGLE, OPEN,               false, cwi_cull_surface},
+    [CW_STAGE_LOD]        = {wants_levels,         WHOLE,                   0,                  false, cwi_make_levels},
+    [CW_STAGE_NORMALS]    = {wants_normals,        0,                       0,                  true,  cwi_add_normals},
+    [CW_STAGE_COLOR]      = {wants_color,          WHOLE | SINGLE,          0,                  true,  cwi_color_surface},
+    [CW_STAGE_CHECK]      = {wants_check,          0,                       0,                  true,  cwi_check_surface},
+};
+/* clang-format on */
+
+static const char *const names[CW_STAGE_COUNT] = {
+#define CW_X(name, text) text,
+    CW_STAGE_TABLE(CW_X)
+#undef CW_X
+};
+
+const char *cw_stage_name(cw_stage stage)
+{
+    return (unsigned)stage < CW_STAGE_COUNT ? names[stage] : NULL;
+}
+
+const cwi_stage *cwi_stage_of(cw_stage stage)
+{
+    return &STAGES[stage];
+}
+
+unsigned cw_pipeline_stages(const cw_pipeline_desc *desc)
+{
+    unsigned stages = 0;
+    for (int s = 0; s < CW_STAGE_COUNT; s++)
+        stages |= STAGES[s].is_wanted(desc) ? 1u << s : 0;
+    return stages;
+}
+
+unsigned cwi_spoils(const cw_pipeline_desc *desc)
+{
+    const unsigned stages = cw_pipeline_stages(desc);
+    unsigned spoils = 0;
+    for (int s = 0; s < CW_STAGE_COUNT; s++)
+        spoils |= stages >> s & 1 ? STAGES[s].spoils : 0;
+    return spoils;
+}
+
+bool cwi_needs_whole(const cw_pipeline_desc *desc)
+{
+    const unsigned stages = cw_pipeline_stages(desc);
+    bool needs = false;
+    for (int s = 0; s < CW_STAGE_SIMPLIFY; s++)
+        needs = needs || (stages >> s & 1 && STAGES[s].needs & CWI_WHOLE_MESH);
+    return needs;
+}
+
+bool cwi_adds_normals(const cwi_pipeline *p)
+{
+    return wants_normals(p->desc) && !(p->spoiled & CWI_FIELD_NORMALS) &&
+           (p->slices || cwi_volume_expect_dense(p->volume, "normals", NULL) == CW_OK);
+}
+
+/* --- rules ---------------------------------------------------------------------------------- */
+
+/* Returns why a source excludes a stage; NULL: it does not. */
+static const char *find_objection(cw_surface_source source, cw_stage stage, unsigned stages)
+{
+    const unsigned needs = STAGES[stage].needs;
+    const bool in_pieces = source == CW_SOURCE_SLICES || source == CW_SOURCE_PARTS;
+    if (source == CW_SOURCE_LABELS && needs & CWI_ONE_SURFACE)
+        return "is for a single surface; labels share their interfaces";
+    if (source == CW_SOURCE_PARTS && stage == CW_STAGE_SIMPLIFY)
+        return "is for the whole surface; join the parts before";
+    if (in_pieces && needs & CWI_SPOOL)
+        return source == CW_SOURCE_SLICES && stages & 1u << CW_STAGE_SIMPLIFY
+                   ? "beside simplify needs the whole surface in memory"
+                   : NULL;
+    if (in_pieces && needs & CWI_WHOLE_MESH)
+        return "needs the whole surface in memory";
+    return in_pieces && needs & CWI_VOXELS ? "needs all voxels in memory" : NULL;
+}
+
+cw_status cw_pipeline_check(cw_surface_source source, unsigned stages, cw_stage *first,
+                            cw_stage *second, cw_error *err)
+{
+    cw_stage own[2];
+    first = first ? first : &own[0];
+    second = second ? second : &own[1];
+    for (int s = 0; s < CW_STAGE_COUNT; s++) {
+        const char *why = stages >> s & 1 ? find_objection(source, (cw_stage)s, stages) : NULL;
+        *first = *second = (cw_stage)s;
+        if (why)
+            return cwi_fail(err, CW_ERR_ARGUMENT, "%s %s", names[s], why);
+    }
+    for (int s = 0; s < CW_STAGE_COUNT; s++)
+        for (int t = 0; t < CW_STAGE_COUNT; t++)
+            if (stages >> s & 1 && stages >> t & 1 && STAGES[s].needs & CWI_CLOSED &&
+                STAGES[t].spoils & CWI_CLOSEDNESS) {
+                *first = (cw_stage)t;
+                *second = (cw_stage)s;
+                return cwi_fail(err, CW_ERR_ARGUMENT,
+                                "%s cannot be combined with %s, which needs a closed surface",
+                                names[t], names[s]);
+            }
+    if (stages & 1u << CW_STAGE_LOD &&
+        stages & (1u << CW_STAGE_SIMPLIFY | 1u << CW_STAGE_VIEWS)) {
+        *first = CW_STAGE_LOD;
+        *second = stages & 1u << CW_STAGE_VIEWS ? CW_STAGE_VIEWS : CW_STAGE_SIMPLIFY;
+        return cwi_fail(err, CW_ERR_ARGUMENT, "lod simplifies by itself, without %s",
+                        names[*second]);
+    }
+    return CW_OK;
+}

@@ -1,0 +1,88 @@
+/* Declares the stages of the pipeline: a stage is a row of the table in stages.c and a function. */
+#ifndef EXTRACT_PIPELINE_STAGES_H
+#define EXTRACT_PIPELINE_STAGES_H
+
+#include <cubewright/pipeline.h>
+
+/* What a stage needs of a surface. */
+enum {
+    CWI_WHOLE_MESH = 1,  /* the surface in memory as a whole */
+    CWI_VOXELS = 2,      /* the volume that it came from, in memory */
+    CWI_ONE_SURFACE = 4, /* a surface without neighbours that share its triangles */
+    CWI_CLOSED = 8,      /* no part of it was left out that cameras do not see */
+    CWI_SPOOL = 16,      /* with CWI_WHOLE_MESH: a surface in a spool does as well */
+};
+
+/* What a stage takes from a surface. */
+enum {
+    CWI_FIELD_NORMALS = 1,  /* normals of the field are no longer those of the surface */
+    CWI_FIELD_DISTANCE = 2, /* the surface is no longer near the isosurface, as it should be */
+    CWI_CLOSEDNESS = 4,     /* it is open */
+};
+
+/* A run of the pipeline: the surface and what is known of it. */
+typedef struct cwi_pipeline {
+    const cw_pipeline_desc *desc;
+    cw_simplify_desc simplify;     /* with the views and the threads of the run */
+    const cw_volume *volume;       /* in memory; or NULL */
+    cw_volume part;                /* of the volume: what the views may see; else all of it */
+    cw_extractor *extractor;       /* of the volume; or NULL */
+    const cw_slice_source *slices; /* or NULL */
+    cw_mesh mesh;
+    cw_mesh_spool *spool; /* the surface, of slices; or NULL */
+    cw_mesh *levels;      /* lod_count; NULL: there is one surface */
+    bool is_simplified;   /* while it was extracted */
+    bool is_checked;      /* the same */
+    unsigned spoiled;     /* by the stages that are asked for */
+    cw_pipeline_facts facts;
+} cwi_pipeline;
+
+/* A stage. */
+typedef struct cwi_stage {
+    bool (*is_wanted)(const cw_pipeline_desc *desc);
+    unsigned needs, spoils;
+    /* Works on each finished surface: those of levels of detail, too. */
+    bool finishes;
+    cw_status (*run)(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
+} cwi_stage;
+
+/* Returns the row of a stage. */
+const cwi_stage *cwi_stage_of(cw_stage stage);
+
+/* Returns what the wanted stages spoil. */
+unsigned cwi_spoils(const cw_pipeline_desc *desc);
+
+/* Returns true if the surface is needed as a whole before it can be simplified. */
+bool cwi_needs_whole(const cw_pipeline_desc *desc);
+
+/* Returns true if vertices get normals of the field once the surface is finished. */
+bool cwi_adds_normals(const cwi_pipeline *p);
+
+/* Reports the begin of a stage. Returns its progress. */
+cw_progress cwi_begin_stage(const cwi_pipeline *p, cw_stage stage, size_t count,
+                            const char *unit);
+
+/* Makes the surface without what simplifies, colours or measures it. mesh: filled on success */
+CW_NODISCARD cw_status cwi_make_full(const cwi_pipeline *p, const cw_volume *volume,
+                                     bool no_normals, cw_mesh *mesh, cw_error *err);
+
+/* Fails with CW_ERR_EMPTY if all components are small. */
+CW_NODISCARD cw_status cwi_expect_kept(const cwi_pipeline *p, cw_error *err);
+
+/* The functions of the rows, each in a file of its own or with its like. */
+cw_status cwi_draw_views(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
+cw_status cwi_extract_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
+cw_status cwi_extract_slices(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
+cw_status cwi_drop_small(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
+cw_status cwi_keep_largest(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
+cw_status cwi_fill_voids(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
+cw_status cwi_smooth(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
+cw_status cwi_cut_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
+cw_status cwi_simplify_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
+cw_status cwi_cull_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
+cw_status cwi_make_levels(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
+cw_status cwi_add_normals(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
+cw_status cwi_color_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
+cw_status cwi_check_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
+
+#endif

@@ -1,0 +1,185 @@
+/* A volume to a finished surface in one call: extraction, and the stages that follow it. */
+#ifndef CUBEWRIGHT_PIPELINE_H
+#define CUBEWRIGHT_PIPELINE_H
+
+#include <cubewright/color.h>
+#include <cubewright/cut.h>
+#include <cubewright/extract.h>
+#include <cubewright/quality.h>
+#include <cubewright/simplify.h>
+#include <cubewright/smooth.h>
+#include <cubewright/spool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The stages, in the order in which they run: constant, and name. */
+#define CW_STAGE_TABLE(X)                                                                      \
+    X(CW_STAGE_VIEWS, "camera")                                                                \
+    X(CW_STAGE_EXTRACT, "extract")                                                             \
+    X(CW_STAGE_MIN_VOLUME, "min_volume")                                                       \
+    X(CW_STAGE_LARGEST, "largest")                                                             \
+    X(CW_STAGE_FILL_VOIDS, "fill_voids")                                                       \
+    X(CW_STAGE_SMOOTH, "smooth")                                                               \
+    X(CW_STAGE_CUT, "cut_plane")                                                               \
+    X(CW_STAGE_SIMPLIFY, "simplify")                                                           \
+    X(CW_STAGE_CULL, "cull")                                                                   \
+    X(CW_STAGE_LOD, "lod")                                                                     \
+    X(CW_STAGE_NORMALS, "normals")                                                             \
+    X(CW_STAGE_COLOR, "color_by")                                                              \
+    X(CW_STAGE_CHECK, "check")
+
+/* Identifies a stage. */
+typedef enum cw_stage {
+#define CW_X(name, text) name,
+    CW_STAGE_TABLE(CW_X)
+#undef CW_X
+        CW_STAGE_COUNT
+} cw_stage;
+
+/* Returns the name of a stage, such as "fill_voids"; static. NULL for an unknown one.
+ * stage  any number */
+CW_API const char *cw_stage_name(cw_stage stage);
+
+/* Where a surface comes from. Which stages may follow depends on it. */
+typedef enum cw_surface_source {
+    CW_SOURCE_MEMORY, /* a volume in memory */
+    CW_SOURCE_SLICES, /* slices that are read one after the other: the surface is never whole */
+    CW_SOURCE_PARTS,  /* parts of a surface, by several processes, joined later */
+    CW_SOURCE_LABELS, /* a label map: several surfaces that share their interfaces */
+    CW_SOURCE_COUNT
+} cw_surface_source;
+
+/* How vertices get their colours: from the values of a volume. */
+typedef struct cw_pipeline_color {
+    /* Sets *volume to the volume, which is borrowed until the pipeline ends. It is called when the
+     * surface is there, so that both need not be in memory while that is made. */
+    cw_status (*open)(void *user, const cw_volume **volume, cw_error *err);
+    void *user;       /* passed to open */
+    cw_colormap map;  /* default: viridis */
+    bool has_range;   /* default: the ends of the map are the lowest and highest value found */
+    double low, high; /* values of its ends, with has_range */
+} cw_pipeline_color;
+
+/* Watches a run. Zeroed, nothing does. */
+typedef struct cw_pipeline_watch {
+    /* A stage begins, on `count` things named by `unit`: "voxel", "triangle" or "vertex". Returns
+     * the progress that it reports to; a zeroed one: none. May be NULL */
+    cw_progress (*begin)(void *user, cw_stage stage, size_t count, const char *unit);
+    /* A stage has ended. May be NULL */
+    void (*end)(void *user, cw_stage stage, size_t triangles_before, size_t triangles_after);
+    void *user; /* passed to both */
+} cw_pipeline_watch;
+
+/* Settings of a surface. Zero-initialise the struct and set what you need; a stage whose field is
+ * zero does not run. All pointers are borrowed until the call returns. */
+typedef struct cw_pipeline_desc {
+    cw_extract_desc extract;      /* its threads are those of all stages */
+    double min_volume_mm3;        /* leave out components that enclose less */
+    size_t largest;               /* keep so many components, those that enclose the most */
+    bool fill_voids;              /* leave out the cavities of solids, and what is in them */
+    const cw_smooth_desc *smooth; /* smooth the surface */
+    const cw_cut_desc *cut;       /* cut it by a plane */
+    const cw_simplify_desc *simplify; /* simplify it, for these views instead of its own: */
+    cw_simplify_view *views; /* view_count; their depths are drawn anew, and stay: free them
+                                       with cw_simplify_view_free() */
+    size_t view_count;       /* default: no views */
+    bool cull;               /* leave out what none of the views sees */
+    const size_t *lod;       /* lod_count triangle counts, falling: levels of detail */
+    size_t lod_count;        /* default: no levels, but one surface */
+    const cw_pipeline_color *color; /* colour its vertices */
+    bool check;                     /* measure it: facts.quality */
+    size_t layers;           /* of slices that are extracted together; as cw_stream_desc */
+    const char *spool_path;  /* of slices: temporary files stand in the folder of this path */
+    cw_pipeline_watch watch; /* default: none */
+} cw_pipeline_desc;
+
+/* Results of the stages that ran: `ran` has a bit 1u << stage for each. */
+typedef struct cw_pipeline_facts {
+    unsigned ran;
+    cw_extract_counts extracted;  /* of the surface as it came from the volume */
+    cw_drop_counts small;         /* CW_STAGE_MIN_VOLUME */
+    cw_drop_counts others;        /* CW_STAGE_LARGEST */
+    cw_drop_counts voids;         /* CW_STAGE_FILL_VOIDS */
+    cw_smooth_facts smoothed;     /* CW_STAGE_SMOOTH */
+    cw_cut_facts cut;             /* CW_STAGE_CUT */
+    size_t culled;                /* triangles: CW_STAGE_CULL */
+    size_t voxels, seen_voxels;   /* of all, and of the bricks that the views see */
+    cw_sample_facts color;        /* CW_STAGE_COLOR: of the surface given away last */
+    double color_low, color_high; /* the ends of its map */
+    cw_quality quality;           /* CW_STAGE_CHECK: of the surface given away last */
+} cw_pipeline_facts;
+
+/* A finished surface, or a level of detail. */
+typedef struct cw_pipeline_surface {
+    cw_mesh *mesh; /* to take it, move the struct and zero it; NULL: it is in the spool */
+    cw_mesh_spool *spool; /* of slices; NULL else. To take it, set it to NULL */
+    size_t level;         /* of detail, from 0 */
+    cw_mesh *full;        /* of levels: the surface that they were made of; else NULL */
+} cw_pipeline_surface;
+
+/* Receives finished surfaces, one after the other. A status other than CW_OK stops the pipeline,
+ * which returns it. */
+typedef struct cw_pipeline_sink {
+    cw_status (*take)(void *user, cw_pipeline_surface *surface, const cw_pipeline_facts *facts,
+                      cw_error *err); /* on the calling thread */
+    void *user;                       /* passed to take */
+} cw_pipeline_sink;
+
+/* Returns the stages that the settings ask for, a bit 1u << stage for each. */
+CW_API unsigned cw_pipeline_stages(const cw_pipeline_desc *desc);
+
+/* Finds out whether stages go together, on a source: some need the whole surface in memory, some
+ * a single surface, and a culled surface is no longer closed.
+ *
+ * stages   as of cw_pipeline_stages()
+ * first, second  set to the stages that exclude each other, or to one stage twice that the
+ *          source excludes; may be NULL
+ * Returns  CW_ERR_ARGUMENT naming them and the reason */
+CW_NODISCARD CW_API cw_status cw_pipeline_check(cw_surface_source source, unsigned stages,
+                                                cw_stage *first, cw_stage *second,
+                                                cw_error *err);
+
+/* Makes the surface of a volume at an isovalue, runs the stages of CW_STAGE_TABLE that the settings
+ * ask for, and gives the result away: one surface, or each level of detail.
+ *
+ * Where it can, a surface is simplified slab by slab while it is extracted, and is never whole.
+ * A simplified surface gets normals of the field, unless it was smoothed or cut.
+ *
+ * volume     borrowed; as in cw_extract()
+ * extractor  of this volume, for one of several surfaces; NULL: this one by itself
+ * desc       borrowed
+ * sink       takes the result; without it, use cw_pipeline_mesh()
+ * facts      may be NULL
+ *
+ * Returns  CW_ERR_EMPTY  no surface at this isovalue, with the range of the values; or nothing is
+ *                        left of it after a stage; or as cw_pipeline_check(), as the functions
+ *                        of the stages, and as sink
+ * Threads  reentrant; the same to the bit for any number of threads */
+CW_NODISCARD CW_API cw_status cw_pipeline_run(const cw_volume *volume, cw_extractor *extractor,
+                                              const cw_pipeline_desc *desc,
+                                              cw_pipeline_sink sink, cw_pipeline_facts *facts,
+                                              cw_error *err);
+
+/* Does the same for one surface, and fills a mesh with it; desc->lod_count is 0.
+ * mesh  filled on success, emptied on failure; free it with cw_mesh_free() */
+CW_NODISCARD CW_API cw_status cw_pipeline_mesh(const cw_volume *volume, cw_extractor *extractor,
+                                               const cw_pipeline_desc *desc, cw_mesh *mesh,
+                                               cw_pipeline_facts *facts, cw_error *err);
+
+/* Does the same from slices: the result is in a spool, or simplified in memory.
+ *
+ * source   borrowed; as in cw_extract_stream()
+ * desc     extract.max_bytes limits the memory for slices, components and check together
+ * Returns  as cw_pipeline_run(), cw_extract_stream(), cw_mesh_spool_new() */
+CW_NODISCARD CW_API cw_status cw_pipeline_run_slices(const cw_slice_source *source,
+                                                     const cw_pipeline_desc *desc,
+                                                     cw_pipeline_sink sink,
+                                                     cw_pipeline_facts *facts, cw_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
