@@ -195,10 +195,32 @@ static const cli_option options[] = {
     CLI_PROGRESS_OPTION(cli_extract_args),
 };
 
+/* Rules between stages of the surface are not here: extract_stages.c asks cw_pipeline_check(). */
 static const cli_rule rules[] = {
     CLI_COMPRESS_RULES,
     CLI_PRINTER_RULES,
     {"range colormap", CLI_NEEDS, "color-by"},
+    {"names smooth-labels table shared-faces per-label require-labels", CLI_NEEDS, "labels"},
+    {"labels", CLI_EXCLUDES,
+     "iso inside topology placement snap profile=print max-error pixel-error shading size no-measure fps "
+     "steps animate pvd prove-crop component=mag resample denoise remove-table mask mask-open mask-close"},
+    {"per-label", CLI_NEEDS, "simplify"},
+    {"per-label", CLI_EXCLUDES, "shared-faces"},
+    {"lod", CLI_EXCLUDES,
+     "simplify max-error pixel-error shading size snap steps animate pvd prove-crop shared-faces"},
+    {"simplify", CLI_EXCLUDES, "camera max-error"},
+    {"pixel-error cull shading size", CLI_NEEDS, "camera"},
+    {"camera", CLI_NEEDS, "pixel-error cull"},
+    {"shading", CLI_NEEDS, "pixel-error"},
+    {"snap", CLI_EXCLUDES, "simplify max-error pixel-error cull"},
+    {"max-move", CLI_NEEDS, "smooth"},
+    {"no-measure", CLI_NEEDS, "simplify lod smooth"},
+    {"profile=print", CLI_EXCLUDES, "open cull lod animate no-check"},
+    {"fps", CLI_NEEDS, "animate"},
+    {"pvd", CLI_EXCLUDES, "animate"},
+    {"prove-crop", CLI_NEEDS, "crop"},
+    {"prove-crop", CLI_EXCLUDES,
+     "preview coarsen snap resample denoise remove-table mask mask-open mask-close"},
 };
 
 /* The next surface of the report; frames have no file of their own. */
@@ -354,15 +376,15 @@ static cw_status read_volume(cli_extract_run *s, const cli_moment *moment, cw_er
     input.step = moment->step;
     input.step_chosen = s->input.series.given;
     input.stream = s->args->stream;
-    input.may_stream = !cli_find_unstreamed(s->args);
+    input.may_stream = !cli_find_unstreamed(s->args, CW_SOURCE_SLICES);
     free_step(s);
     s->input.turned = false;
     cli_report_begin(&s->output.report);
     cw_status st = cli_read_volume(moment->path, &input, false, &s->input.volume, err);
-    if (st == CW_ERR_LIMIT && cli_find_unstreamed(s->args)) {
+    if (st == CW_ERR_LIMIT && cli_find_unstreamed(s->args, CW_SOURCE_SLICES)) {
         const cw_error why = *err;
         return cwi_fail(err, st, "%s; %s needs all voxels in memory", why.message,
-                        cli_find_unstreamed(s->args));
+                        cli_find_unstreamed(s->args, CW_SOURCE_SLICES));
     }
     if (st != CW_OK)
         return st;

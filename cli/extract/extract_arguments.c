@@ -2,8 +2,6 @@
 #include "cli/extract/extract_run.h"
 
 #include "cli/extract/label_run.h"
-#include "cli/extract/stream_run.h"
-#include "cli/inputs/volume_prepare.h"
 #include "cli/results/detail_levels.h"
 #include "cli/results/pvd_list.h"
 #include "core/base/status.h"
@@ -71,11 +69,6 @@ cw_status cli_extract_check_outputs(cli_extract_run *s, cw_error *err)
 
 static cw_status check_animation(const cli_extract_args *args, cw_error *err)
 {
-    if (args->pvd && args->animate)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--pvd lists files, and --animate writes only one");
-    if (args->fps.given && !args->animate)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--fps is for --animate");
     if (args->fps.given && !(args->fps.value > 0))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--fps %g: it must be above 0", args->fps.value);
     if (args->animate && args->iso.count > 1)
@@ -93,45 +86,9 @@ static const char *name_reducer(const cli_extract_args *args)
                                     : "--simplify";
 }
 
-static cw_status check_pixels(cli_extract_run *s, cw_error *err)
-{
-    const cli_extract_args *args = s->args;
-    cw_status st = cli_read_views(&args->pixel, s->plan.views, &s->plan.view_count, err);
-    if (st != CW_OK)
-        return st;
-    if ((args->pixel.camera || args->pixel.most.given) &&
-        (args->simplify.error.given || args->simplify.triangles))
-        return cwi_fail(err, CW_ERR_ARGUMENT, "%s or --simplify, not both", name_reducer(args));
-    return CW_OK;
-}
-
-/* Refuses options that make several surfaces, or a simplified one of another kind. */
 static cw_status check_lod(const cli_extract_args *args, cw_error *err)
 {
-    const struct {
-        bool is_given;
-        const char *option;
-    } refused[] = {
-        {args->simplify.error.given || args->simplify.triangles, "--simplify"},
-        {args->pixel.most.given, "--max-error"},
-        {args->pixel.camera != NULL, "--camera"},
-        {args->pixel.pixels.given, "--pixel-error"},
-        {args->pixel.cull, "--cull"},
-        {args->pixel.shading.given, "--shading"},
-        {args->pixel.size.count > 0, "--size"},
-        {args->snap.value > 0, "--snap"},
-        {args->steps.given, "--steps"},
-        {args->animate, "--animate"},
-        {args->pvd != NULL, "--pvd"},
-        {args->prove_crop, "--prove-crop"},
-    };
-    if (!args->lod.count)
-        return CW_OK;
-    for (size_t n = 0; n < sizeof refused / sizeof *refused; n++)
-        if (refused[n].is_given)
-            return cwi_fail(err, CW_ERR_ARGUMENT, "--lod cannot be combined with %s",
-                            refused[n].option);
-    if (args->iso.count > 1)
+    if (args->lod.count && args->iso.count > 1)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--lod makes levels of detail of one surface; --iso lists %zu",
                         args->iso.count);
@@ -147,45 +104,6 @@ cw_status cli_extract_check_lod_steps(const cli_extract_run *s, cw_error *err)
     return CW_OK;
 }
 
-static cw_status check_print(const cli_extract_args *args, cw_error *err)
-{
-    const bool prints = args->profile == CLI_PROFILE_PRINT;
-    const char *other = args->open         ? "--open"
-                        : args->pixel.cull ? "--cull"
-                        : args->lod.count  ? "--lod"
-                        : args->animate    ? "--animate"
-                        : !args->check     ? "--no-check"
-                                           : NULL;
-    if (prints && other)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--profile print cannot be combined with %s",
-                        other);
-    return cli_check_printer(&args->printer, err);
-}
-
-static cw_status check_measure(const cli_extract_args *args, cw_error *err)
-{
-    if (!args->measure && !args->lod.count && !args->simplify.error.given &&
-        !args->simplify.triangles && !args->smooth.given)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--no-measure is for --simplify, --lod and --smooth");
-    return CW_OK;
-}
-
-static cw_status check_crop(const cli_extract_args *args, cw_error *err)
-{
-    const cli_input *input = &args->input;
-    if (!args->prove_crop)
-        return CW_OK;
-    if (!input->crop.given)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--prove-crop needs --crop");
-    if (input->preview || input->coarsen || args->snap.value > 0 || cli_find_preparation(input))
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--prove-crop cannot be combined with %s",
-                        args->snap.value > 0          ? "--snap"
-                        : cli_find_preparation(input) ? cli_find_preparation(input)
-                                                      : "a preview");
-    return CW_OK;
-}
-
 cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err)
 {
     const cli_extract_args *args = s->args;
@@ -193,8 +111,6 @@ cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err)
     cw_status st = check_report(s, input, args->common.input_count, err);
     if (st == CW_OK)
         st = cli_check_compress(&args->compress, true, err);
-    if (st == CW_OK)
-        st = cli_check_label_args(args, err);
     if (st != CW_OK)
         return st;
     if (!args->output)
@@ -207,35 +123,22 @@ cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--snap is a fraction of an edge from 0 to %g, not %g",
                         CW_EXTRACT_MAX_SNAP, args->snap.value);
-    if (args->stream == CLI_STREAM_ALWAYS && cli_find_unstreamed(args))
+    const char *unstreamed = cli_find_unstreamed(args, CW_SOURCE_SLICES);
+    if (args->stream == CLI_STREAM_ALWAYS && unstreamed)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--stream always cannot be combined with %s, which needs all in memory",
-                        cli_find_unstreamed(args));
-    if (args->max_move.given && !args->smooth.given)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--max-move is for --smooth");
-    if (args->smooth.given && args->pixel.cull)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--cull cannot be combined with --smooth");
-    if (args->cut.given && args->pixel.cull)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--cull cannot be combined with --cut-plane");
-    st = cli_check_color(&args->color, err);
+                        unstreamed);
+    st = cli_check_stages(args, CW_SOURCE_MEMORY, err);
     if (st == CW_OK)
-        st = check_print(args, err);
+        st = cli_check_color(&args->color, err);
+    if (st == CW_OK)
+        st = cli_check_printer(&args->printer, err);
     if (st == CW_OK)
         st = check_lod(args, err);
     if (st == CW_OK)
-        st = check_measure(args, err);
-    if (st == CW_OK)
-        st = check_pixels(s, err);
-    if (st == CW_OK)
-        st = check_crop(args, err);
+        st = cli_read_views(&args->pixel, s->plan.views, &s->plan.view_count, err);
     if (st != CW_OK)
         return st;
-    if (args->pixel.cull && args->snap.value > 0)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--cull cannot be combined with --snap");
-    if (cli_extract_is_simplified(args) && args->snap.value > 0)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--snap or %s, not both: each removes thin triangles",
-                        name_reducer(args));
     if ((cli_extract_is_simplified(args) || args->lod.count) && !cw_simplify_available())
         return cwi_fail(
             err, CW_ERR_UNSUPPORTED,

@@ -84,6 +84,14 @@ enum { CLI_EXTRACT_PROVENANCE = 7 };
 /* Everything about them that can be refused before the input is touched. */
 CW_NODISCARD cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err);
 
+/* Refuses stages that exclude each other, or that a source excludes: labels, or the volume. */
+CW_NODISCARD cw_status cli_check_stages(const cli_extract_args *args, cw_surface_source source,
+                                        cw_error *err);
+
+/* Returns an option that needs the whole volume or surface in memory; NULL: slices, or parts of
+ * them, suffice. In static memory. */
+const char *cli_find_unstreamed(const cli_extract_args *args, cw_surface_source source);
+
 /* Names and checks the outputs, once it is known of which steps there will be one. */
 CW_NODISCARD cw_status cli_extract_check_outputs(cli_extract_run *s, cw_error *err);
 

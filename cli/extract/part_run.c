@@ -48,8 +48,8 @@ static cw_status parse_part(const char *text, size_t *part, size_t *parts, cw_er
 /* Refuses what is not made in parts. how: the option, or launcher, that asks for parts */
 static cw_status check_job(const cli_extract_args *args, const char *how, cw_error *err)
 {
-    const char *unstreamed = cli_find_unstreamed(args);
-    if (cli_extract_is_simplified(args) && !args->pixel.pixels.given && !args->pixel.most.given)
+    const char *unstreamed = cli_find_unstreamed(args, CW_SOURCE_PARTS);
+    if (args->simplify.error.given || args->simplify.triangles)
         return cwi_fail(
             err, CW_ERR_ARGUMENT,
             "%s cannot be combined with --simplify: join the parts, then 'cubewright "

@@ -21,16 +21,8 @@ enum { MAX_SIDE = 16384, MAX_PATH = 4096, SHOWN = 2 }; /* SHOWN: a difference in
 static cw_status check_arguments(const cli_pixel_args *a, cw_error *err)
 {
     const size_t *n = a->size.n;
-    if (!a->camera && (a->pixels.given || a->shading.given || a->size.count || a->cull))
-        return cwi_fail(err, CW_ERR_ARGUMENT, "%s is for the pictures of --camera",
-                        a->pixels.given    ? "--pixel-error"
-                        : a->shading.given ? "--shading"
-                        : a->cull          ? "--cull"
-                                           : "--size");
-    if (a->camera && !a->pixels.given && (!a->cull || a->shading.given || a->most.given))
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--camera needs --pixel-error: how many pixels the surface may move%s",
-                        a->cull ? "" : "; or --cull");
+    if (a->camera && !a->pixels.given && a->most.given)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--camera and --max-error need --pixel-error");
     if (a->pixels.given && !(isfinite(a->pixels.value) && a->pixels.value > 0))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--pixel-error %g: it must be above 0",
                         a->pixels.value);

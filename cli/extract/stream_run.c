@@ -12,39 +12,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static bool has_simplify(const cli_extract_args *args)
-{
-    return args->simplify.error.given || args->simplify.triangles;
-}
-
-const char *cli_find_unstreamed(const cli_extract_args *args)
-{
-    const struct {
-        const char *name;
-        bool given;
-    } options[] = {
-        {"--max-error", args->pixel.most.given},
-        {"--camera", args->pixel.camera != NULL},
-        {"--min-volume beside --simplify", args->least.given && has_simplify(args)},
-        {"--largest", args->largest > 0},
-        {"--fill-voids", args->fill_voids},
-        {"--smooth", args->smooth.given},
-        {"--cut-plane", args->cut.given},
-        {"--color-by", args->color.by != NULL},
-        {"--profile print", args->profile == CLI_PROFILE_PRINT},
-        {"--snap", args->snap.value > 0},
-        {"--animate", args->animate},
-        {"--lod", args->lod.count > 0},
-        {"--prove-crop", args->prove_crop},
-        {"--compress", args->compress.kind != 0 && !has_simplify(args)},
-        {"--component mag", args->input.component.magnitude},
-    };
-    for (size_t n = 0; n < sizeof options / sizeof *options; n++)
-        if (options[n].given)
-            return options[n].name;
-    return cli_find_unstreamed_preparation(&args->input);
-}
-
 /* Returns true for errors of too low a --memory. */
 static bool exceeds_memory(cw_status st)
 {
@@ -57,7 +24,7 @@ bool cli_turn_to_slices(cli_extract_run *run, cw_status st)
     const cli_extract_args *args = run->args;
     cli_volume *v = &run->input.volume;
     if (!exceeds_memory(st) || args->stream == CLI_STREAM_NEVER || args->max_triangles ||
-        v->view.cells || v->view.sparse || cli_find_unstreamed(args))
+        v->view.cells || v->view.sparse || cli_find_unstreamed(args, CW_SOURCE_SLICES))
         return false;
     cw_extractor_free(run->input.extractor);
     run->input.extractor = NULL;
@@ -121,6 +88,28 @@ static cw_status take_surface(void *user, cw_pipeline_surface *surface,
     return CW_OK;
 }
 
+/* Names the options that help when --memory is too low. */
+static cw_status explain_limit(const cli_extract_run *run, cw_status st, cw_error *err)
+{
+    char needed_text[CWI_MEMORY_TEXT], left_text[CWI_MEMORY_TEXT];
+    const cw_error why = *err;
+    size_t left;
+    const size_t needed = cwi_memory_refused(&left);
+    if (st == CW_ERR_LIMIT && strncmp(why.message, "check: ", 7) == 0)
+        return cwi_fail(err, st, "%s (--memory); --no-check leaves it out", why.message + 7);
+    if (st == CW_ERR_LIMIT)
+        return cwi_fail(err, st, "%s (--memory)", why.message);
+    if (st != CW_ERR_NO_MEMORY || !needed || !cli_extract_is_simplified(run->args))
+        return st;
+    cwi_print_memory(needed, needed_text);
+    cwi_print_memory(left, left_text);
+    return cwi_fail(
+        err, CW_ERR_LIMIT,
+        "simplified slice by slice, the surface does not fit: %s more were needed, %s "
+        "are left (--memory)",
+        needed_text, left_text);
+}
+
 static cw_status extract_slices(void *user, const cw_slice_source *source, cw_error *err)
 {
     const streaming *s = user;
@@ -131,29 +120,9 @@ static cw_status extract_slices(void *user, const cw_slice_source *source, cw_er
     set.desc.check = s->run->args->check && !set.desc.simplify; /* in memory it is, later */
     set.desc.spool_path = s->made->path;
     s->made->least_mm3 = set.desc.min_volume_mm3;
-    return cw_pipeline_run_slices(source, &set.desc, (cw_pipeline_sink){take_surface, s->out},
-                                  &s->made->facts, err);
-}
-
-/* Names the options that help when --memory is too low. */
-static cw_status explain_limit(const cli_extract_run *run, cw_status st, cw_error *err)
-{
-    char needed_text[CWI_MEMORY_TEXT], left_text[CWI_MEMORY_TEXT];
-    const cw_error why = *err;
-    size_t left;
-    const size_t needed = cwi_memory_refused(&left);
-    if (st == CW_ERR_LIMIT)
-        return cwi_fail(err, st, "%s (--memory%s)", why.message,
-                        strncmp(why.message, "check: ", 7) == 0 ? ", or --no-check" : "");
-    if (st != CW_ERR_NO_MEMORY || !needed || !cli_extract_is_simplified(run->args))
-        return st;
-    cwi_print_memory(needed, needed_text);
-    cwi_print_memory(left, left_text);
-    return cwi_fail(
-        err, CW_ERR_LIMIT,
-        "simplified slice by slice, the surface does not fit: %s more were needed, %s "
-        "are left (--memory)",
-        needed_text, left_text);
+    st = cw_pipeline_run_slices(source, &set.desc, (cw_pipeline_sink){take_surface, s->out},
+                                &s->made->facts, err);
+    return cli_explain_stages(s->run->input.volume.path, explain_limit(s->run, st, err), err);
 }
 
 /* Says what was left out, and holds the surface to the promise. */
@@ -185,7 +154,7 @@ cw_status cli_extract_streamed(cli_extract_run *run, const cli_moment *moment, c
     cli_report_begin(&run->output.report);
     cw_status st = cli_visit_moment(run, moment, &visitor, err);
     if (st != CW_OK)
-        return explain_limit(run, st, err);
+        return st;
     const cw_mesh *mesh = out->spool ? cw_mesh_spool_frame(out->spool) : &out->mesh;
     cli_report_end(&run->output.report, "extract", dim[0] * dim[1] * dim[2],
                    mesh->triangle_count);

@@ -4,10 +4,6 @@
 
 #include "cli/extract/extract_run.h"
 
-/* Returns an option of the run that needs the whole volume or surface in memory; NULL: slices
- * suffice. */
-const char *cli_find_unstreamed(const cli_extract_args *args);
-
 /* Lets go of the voxels if a status says that --memory was too low beside them, and slices
  * suffice. Returns false if not. */
 bool cli_turn_to_slices(cli_extract_run *run, cw_status st);

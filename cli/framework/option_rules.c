@@ -124,6 +124,18 @@ cw_status cli_check_rules(const cli_command *command, const void *args, cw_error
     return CW_OK;
 }
 
+const char *cli_find_given(const cli_command *command, const void *args, const char *names)
+{
+    static char text[2 * NAME_BYTES];
+    term t;
+    while (next_term(command, &names, &t))
+        if (is_met(command, args, &t)) {
+            print_term(&t, false, text, sizeof text);
+            return text;
+        }
+    return NULL;
+}
+
 /* --- words -------------------------------------------------------------------------------- */
 
 /* Returns true if one of the names is that of an option. */

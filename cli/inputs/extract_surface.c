@@ -6,6 +6,7 @@
 #include "core/base/status.h"
 #include "core/base/text.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* A closed surface has half as many vertices as triangles. It is written at the same time: what
@@ -68,12 +69,33 @@ cw_progress cli_stage_progress(void *user, cw_stage stage, size_t count, const c
     return cli_progress((double)count / 1e6, million);
 }
 
-/* Puts the file's name in front of an error, and that it is about a preview. */
+void cli_name_stage(cw_stage stage, char name[CLI_STAGE_BYTES])
+{
+    snprintf(name, CLI_STAGE_BYTES, "--%s", cw_stage_name(stage));
+    for (char *c = name; *c; c++)
+        *c = *c == '_' ? '-' : *c;
+}
+
+cw_status cli_explain_stages(const char *path, cw_status st, cw_error *err)
+{
+    char option[CLI_STAGE_BYTES];
+    const cw_error why = *err;
+    for (int s = 0; s < CW_STAGE_COUNT; s++) {
+        const char *name = cw_stage_name((cw_stage)s);
+        const size_t length = strlen(name);
+        if (strncmp(why.message, name, length) != 0 || why.message[length] != ':')
+            continue;
+        cli_name_stage((cw_stage)s, option);
+        cwi_fail(err, st, "%s%s", option, why.message + length);
+    }
+    return st == CW_OK ? st : cwi_fail_in(err, st, path);
+}
+
 static cw_status explain(const cli_volume *volume, cw_status st, cw_error *err)
 {
     if (st == CW_ERR_EMPTY && cli_is_preview(volume))
         cwi_fail_in(err, st, "preview");
-    return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
+    return cli_explain_stages(volume->path, st, err);
 }
 
 cw_status cli_run_pipeline(const cli_volume *volume, cw_extractor *extractor,

@@ -40,6 +40,15 @@ size_t cli_slices_bytes(const cw_volume *shape, const cw_stream_desc *desc, size
 CW_NODISCARD cw_status cli_limit_slices(const cli_slices *slices, const cw_volume *shape,
                                         cw_stream_desc *desc, cw_error *err);
 
+enum { CLI_STAGE_BYTES = 64 };
+
+/* Writes the option of a stage: "--min-volume" of "min_volume". */
+void cli_name_stage(cw_stage stage, char name[CLI_STAGE_BYTES]);
+
+/* Puts a file's name in front of an error of the pipeline, and calls stages by their options. Returns
+ * the status. */
+cw_status cli_explain_stages(const char *path, cw_status st, cw_error *err);
+
 /* Returns the progress of a stage: for a watch without other needs. user: unused */
 cw_progress cli_stage_progress(void *user, cw_stage stage, size_t count, const char *unit);
 

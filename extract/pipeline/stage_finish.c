@@ -27,8 +27,9 @@ cw_status cwi_color_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
         .threads = p->desc->extract.threads,
         .progress = cwi_begin_stage(p, CW_STAGE_COLOR, mesh->vertex_count, "vertex")};
     cw_status st = c->open(c->user, &volume, err);
-    if (st == CW_OK)
-        st = cw_mesh_sample(mesh, volume, &sample, &f->color, err);
+    if (st != CW_OK)
+        return st;
+    st = cw_mesh_sample(mesh, volume, &sample, &f->color, err);
     if (st != CW_OK)
         return cwi_fail_in(err, st, "color_by");
     if (is_first) {

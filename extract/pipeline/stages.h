@@ -4,7 +4,7 @@
 
 #include <cubewright/pipeline.h>
 
-/* What a stage needs of a surface. */
+/* Needs of a stage. */
 enum {
     CWI_WHOLE_MESH = 1,  /* the surface in memory as a whole */
     CWI_VOXELS = 2,      /* the volume that it came from, in memory */
@@ -13,7 +13,7 @@ enum {
     CWI_SPOOL = 16,      /* with CWI_WHOLE_MESH: a surface in a spool does as well */
 };
 
-/* What a stage takes from a surface. */
+/* Properties of a surface that a stage spoils. */
 enum {
     CWI_FIELD_NORMALS = 1,  /* normals of the field are no longer those of the surface */
     CWI_FIELD_DISTANCE = 2, /* the surface is no longer near the isosurface, as it should be */

@@ -75,14 +75,14 @@ typedef struct cw_pipeline_watch {
 /* Settings of a surface. Zero-initialise the struct and set what you need; a stage whose field is
  * zero does not run. All pointers are borrowed until the call returns. */
 typedef struct cw_pipeline_desc {
-    cw_extract_desc extract;      /* its threads are those of all stages */
-    double min_volume_mm3;        /* leave out components that enclose less */
-    size_t largest;               /* keep so many components, those that enclose the most */
-    bool fill_voids;              /* leave out the cavities of solids, and what is in them */
-    const cw_smooth_desc *smooth; /* smooth the surface */
-    const cw_cut_desc *cut;       /* cut it by a plane */
+    cw_extract_desc extract; /* its threads are those of all stages */
+    double min_volume_mm3;   /* leave out components that enclose less */
+    size_t largest;          /* components to keep, those that enclose the most; default: all */
+    bool fill_voids;         /* leave out the cavities of solids, and what is in them */
+    const cw_smooth_desc *smooth;     /* smooth the surface */
+    const cw_cut_desc *cut;           /* cut it by a plane */
     const cw_simplify_desc *simplify; /* simplify it, for these views instead of its own: */
-    cw_simplify_view *views; /* view_count; their depths are drawn anew, and stay: free them
+    cw_simplify_view *views; /* view_count; their depths are replaced, and stay: free them
                                        with cw_simplify_view_free() */
     size_t view_count;       /* default: no views */
     bool cull;               /* leave out what none of the views sees */
@@ -95,9 +95,9 @@ typedef struct cw_pipeline_desc {
     cw_pipeline_watch watch; /* default: none */
 } cw_pipeline_desc;
 
-/* Results of the stages that ran: `ran` has a bit 1u << stage for each. */
+/* Results of the stages that ran; those of others are zero. */
 typedef struct cw_pipeline_facts {
-    unsigned ran;
+    unsigned ran;                 /* a bit 1u << stage for each stage that ran */
     cw_extract_counts extracted;  /* of the surface as it came from the volume */
     cw_drop_counts small;         /* CW_STAGE_MIN_VOLUME */
     cw_drop_counts others;        /* CW_STAGE_LARGEST */
@@ -127,12 +127,14 @@ typedef struct cw_pipeline_sink {
     void *user;                       /* passed to take */
 } cw_pipeline_sink;
 
-/* Returns the stages that the settings ask for, a bit 1u << stage for each. */
+/* Returns the stages that the settings ask for, a bit 1u << stage for each.
+ * desc  borrowed */
 CW_API unsigned cw_pipeline_stages(const cw_pipeline_desc *desc);
 
 /* Finds out whether stages go together, on a source: some need the whole surface in memory, some
  * a single surface, and a culled surface is no longer closed.
  *
+ * source   where the surface comes from
  * stages   as of cw_pipeline_stages()
  * first, second  set to the stages that exclude each other, or to one stage twice that the
  *          source excludes; may be NULL
@@ -162,8 +164,11 @@ CW_NODISCARD CW_API cw_status cw_pipeline_run(const cw_volume *volume, cw_extrac
                                               cw_pipeline_sink sink, cw_pipeline_facts *facts,
                                               cw_error *err);
 
-/* Does the same for one surface, and fills a mesh with it; desc->lod_count is 0.
- * mesh  filled on success, emptied on failure; free it with cw_mesh_free() */
+/* Does the same for one surface, and fills a mesh with it.
+ * desc     borrowed; lod_count is 0
+ * mesh     filled on success, emptied on failure; free it with cw_mesh_free()
+ * facts    may be NULL
+ * Returns  as cw_pipeline_run() */
 CW_NODISCARD CW_API cw_status cw_pipeline_mesh(const cw_volume *volume, cw_extractor *extractor,
                                                const cw_pipeline_desc *desc, cw_mesh *mesh,
                                                cw_pipeline_facts *facts, cw_error *err);
@@ -172,6 +177,8 @@ CW_NODISCARD CW_API cw_status cw_pipeline_mesh(const cw_volume *volume, cw_extra
  *
  * source   borrowed; as in cw_extract_stream()
  * desc     extract.max_bytes limits the memory for slices, components and check together
+ * sink     takes the result
+ * facts    may be NULL
  * Returns  as cw_pipeline_run(), cw_extract_stream(), cw_mesh_spool_new() */
 CW_NODISCARD CW_API cw_status cw_pipeline_run_slices(const cw_slice_source *source,
                                                      const cw_pipeline_desc *desc,

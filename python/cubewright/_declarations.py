@@ -285,16 +285,41 @@ class cw_pick_kind(enum.IntEnum):
     CW_PICK_MESH = 3
 
 
-class cw_slice_filter_kind(enum.IntEnum):
-    CW_SLICE_GAUSS = 0
-    CW_SLICE_MEDIAN = 1
-
-
 class cw_smooth_method(enum.IntEnum):
     CW_SMOOTH_TAUBIN = 0
     CW_SMOOTH_HC = 1
     CW_SMOOTH_FAIR = 2
     CW_SMOOTH_METHOD_COUNT = 3
+
+
+class cw_stage(enum.IntEnum):
+    CW_STAGE_VIEWS = 0
+    CW_STAGE_EXTRACT = 1
+    CW_STAGE_MIN_VOLUME = 2
+    CW_STAGE_LARGEST = 3
+    CW_STAGE_FILL_VOIDS = 4
+    CW_STAGE_SMOOTH = 5
+    CW_STAGE_CUT = 6
+    CW_STAGE_SIMPLIFY = 7
+    CW_STAGE_CULL = 8
+    CW_STAGE_LOD = 9
+    CW_STAGE_NORMALS = 10
+    CW_STAGE_COLOR = 11
+    CW_STAGE_CHECK = 12
+    CW_STAGE_COUNT = 13
+
+
+class cw_surface_source(enum.IntEnum):
+    CW_SOURCE_MEMORY = 0
+    CW_SOURCE_SLICES = 1
+    CW_SOURCE_PARTS = 2
+    CW_SOURCE_LABELS = 3
+    CW_SOURCE_COUNT = 4
+
+
+class cw_slice_filter_kind(enum.IntEnum):
+    CW_SLICE_GAUSS = 0
+    CW_SLICE_MEDIAN = 1
 
 
 class cw_error(Structure):
@@ -1201,6 +1226,7 @@ cw_sample_facts._fields_ = [
 class cw_cut_desc(Structure):
     point: Any
     normal: Any
+    point_is_percent: bool
     leave_open: bool
     progress: Any
 
@@ -1208,6 +1234,7 @@ class cw_cut_desc(Structure):
 cw_cut_desc._fields_ = [
     ("point", c_double * 3),
     ("normal", c_double * 3),
+    ("point_is_percent", c_bool),
     ("leave_open", c_bool),
     ("progress", cw_progress),
 ]
@@ -2509,6 +2536,263 @@ cw_world_mark._fields_ = [
 ]
 
 
+class cw_simplify_view(Structure):
+    camera: Any
+    width: int
+    height: int
+    depth: Any
+
+
+cw_simplify_view._fields_ = [
+    ("camera", cw_camera),
+    ("width", c_size_t),
+    ("height", c_size_t),
+    ("depth", POINTER(c_float)),
+]
+
+
+class cw_simplify_desc(Structure):
+    error_mm: float
+    views: Any
+    view_count: int
+    pixel_error: float
+    normal_deg: float
+    triangles: int
+    ratio: float
+    allow_crossings: bool
+    keep_border: bool
+    normal_weight: float
+    color_weight: float
+    scalar_weight: float
+    threads: int
+    progress: Any
+
+
+cw_simplify_desc._fields_ = [
+    ("error_mm", c_double),
+    ("views", POINTER(cw_simplify_view)),
+    ("view_count", c_size_t),
+    ("pixel_error", c_double),
+    ("normal_deg", c_double),
+    ("triangles", c_size_t),
+    ("ratio", c_double),
+    ("allow_crossings", c_bool),
+    ("keep_border", c_bool),
+    ("normal_weight", c_float),
+    ("color_weight", c_float),
+    ("scalar_weight", c_float),
+    ("threads", c_int),
+    ("progress", cw_progress),
+]
+
+
+class cw_simplify_facts(Structure):
+    vertices: int
+    triangles: int
+    cut: int
+    passes: int
+
+
+cw_simplify_facts._fields_ = [
+    ("vertices", c_size_t),
+    ("triangles", c_size_t),
+    ("cut", c_size_t),
+    ("passes", c_size_t),
+]
+
+
+class cw_simplifier(Structure):
+    pass
+
+
+class cw_smooth_desc(Structure):
+    iterations: int
+    max_move_mm: float
+    move_border: bool
+    allow_crossings: bool
+    threads: int
+    progress: Any
+    method: int
+    width_mm: float
+
+
+cw_smooth_desc._fields_ = [
+    ("iterations", c_size_t),
+    ("max_move_mm", c_double),
+    ("move_border", c_bool),
+    ("allow_crossings", c_bool),
+    ("threads", c_int),
+    ("progress", cw_progress),
+    ("method", c_int),
+    ("width_mm", c_double),
+]
+
+
+class cw_smooth_facts(Structure):
+    limit_mm: float
+    width_mm: float
+    iterations: int
+    max_mm: float
+    mean_mm: float
+    volume_before_mm3: float
+    volume_after_mm3: float
+    flipped: int
+    border: int
+    junction: int
+    put_back: int
+    undecided: bool
+
+
+cw_smooth_facts._fields_ = [
+    ("limit_mm", c_double),
+    ("width_mm", c_double),
+    ("iterations", c_size_t),
+    ("max_mm", c_double),
+    ("mean_mm", c_double),
+    ("volume_before_mm3", c_double),
+    ("volume_after_mm3", c_double),
+    ("flipped", c_size_t),
+    ("border", c_size_t),
+    ("junction", c_size_t),
+    ("put_back", c_size_t),
+    ("undecided", c_bool),
+]
+
+
+class cw_pipeline_color(Structure):
+    open: Any
+    user: Any
+    map: int
+    has_range: bool
+    low: float
+    high: float
+
+
+cw_pipeline_color._fields_ = [
+    ("open", CFUNCTYPE(c_int, c_void_p, POINTER(POINTER(cw_volume)), POINTER(cw_error))),
+    ("user", c_void_p),
+    ("map", c_int),
+    ("has_range", c_bool),
+    ("low", c_double),
+    ("high", c_double),
+]
+
+
+class cw_pipeline_watch(Structure):
+    begin: Any
+    end: Any
+    user: Any
+
+
+cw_pipeline_watch._fields_ = [
+    ("begin", CFUNCTYPE(cw_progress, c_void_p, c_int, c_size_t, c_char_p)),
+    ("end", CFUNCTYPE(None, c_void_p, c_int, c_size_t, c_size_t)),
+    ("user", c_void_p),
+]
+
+
+class cw_pipeline_desc(Structure):
+    extract: Any
+    min_volume_mm3: float
+    largest: int
+    fill_voids: bool
+    smooth: Any
+    cut: Any
+    simplify: Any
+    views: Any
+    view_count: int
+    cull: bool
+    lod: Any
+    lod_count: int
+    color: Any
+    check: bool
+    layers: int
+    spool_path: bytes | None
+    watch: Any
+
+
+cw_pipeline_desc._fields_ = [
+    ("extract", cw_extract_desc),
+    ("min_volume_mm3", c_double),
+    ("largest", c_size_t),
+    ("fill_voids", c_bool),
+    ("smooth", POINTER(cw_smooth_desc)),
+    ("cut", POINTER(cw_cut_desc)),
+    ("simplify", POINTER(cw_simplify_desc)),
+    ("views", POINTER(cw_simplify_view)),
+    ("view_count", c_size_t),
+    ("cull", c_bool),
+    ("lod", POINTER(c_size_t)),
+    ("lod_count", c_size_t),
+    ("color", POINTER(cw_pipeline_color)),
+    ("check", c_bool),
+    ("layers", c_size_t),
+    ("spool_path", c_char_p),
+    ("watch", cw_pipeline_watch),
+]
+
+
+class cw_pipeline_facts(Structure):
+    ran: int
+    extracted: Any
+    small: Any
+    others: Any
+    voids: Any
+    smoothed: Any
+    cut: Any
+    culled: int
+    voxels: int
+    seen_voxels: int
+    color: Any
+    color_low: float
+    color_high: float
+    quality: Any
+
+
+cw_pipeline_facts._fields_ = [
+    ("ran", c_uint),
+    ("extracted", cw_extract_counts),
+    ("small", cw_drop_counts),
+    ("others", cw_drop_counts),
+    ("voids", cw_drop_counts),
+    ("smoothed", cw_smooth_facts),
+    ("cut", cw_cut_facts),
+    ("culled", c_size_t),
+    ("voxels", c_size_t),
+    ("seen_voxels", c_size_t),
+    ("color", cw_sample_facts),
+    ("color_low", c_double),
+    ("color_high", c_double),
+    ("quality", cw_quality),
+]
+
+
+class cw_pipeline_surface(Structure):
+    mesh: Any
+    spool: Any
+    level: int
+    full: Any
+
+
+cw_pipeline_surface._fields_ = [
+    ("mesh", POINTER(cw_mesh)),
+    ("spool", POINTER(cw_mesh_spool)),
+    ("level", c_size_t),
+    ("full", POINTER(cw_mesh)),
+]
+
+
+class cw_pipeline_sink(Structure):
+    take: Any
+    user: Any
+
+
+cw_pipeline_sink._fields_ = [
+    ("take", CFUNCTYPE(c_int, c_void_p, POINTER(cw_pipeline_surface), POINTER(cw_pipeline_facts), POINTER(cw_error))),
+    ("user", c_void_p),
+]
+
+
 class cw_remesh_desc(Structure):
     edge_mm: float
     shortest_mm: float
@@ -2671,75 +2955,6 @@ cw_repair_facts._fields_ = [
 ]
 
 
-class cw_simplify_view(Structure):
-    camera: Any
-    width: int
-    height: int
-    depth: Any
-
-
-cw_simplify_view._fields_ = [
-    ("camera", cw_camera),
-    ("width", c_size_t),
-    ("height", c_size_t),
-    ("depth", POINTER(c_float)),
-]
-
-
-class cw_simplify_desc(Structure):
-    error_mm: float
-    views: Any
-    view_count: int
-    pixel_error: float
-    normal_deg: float
-    triangles: int
-    ratio: float
-    allow_crossings: bool
-    keep_border: bool
-    normal_weight: float
-    color_weight: float
-    scalar_weight: float
-    threads: int
-    progress: Any
-
-
-cw_simplify_desc._fields_ = [
-    ("error_mm", c_double),
-    ("views", POINTER(cw_simplify_view)),
-    ("view_count", c_size_t),
-    ("pixel_error", c_double),
-    ("normal_deg", c_double),
-    ("triangles", c_size_t),
-    ("ratio", c_double),
-    ("allow_crossings", c_bool),
-    ("keep_border", c_bool),
-    ("normal_weight", c_float),
-    ("color_weight", c_float),
-    ("scalar_weight", c_float),
-    ("threads", c_int),
-    ("progress", cw_progress),
-]
-
-
-class cw_simplify_facts(Structure):
-    vertices: int
-    triangles: int
-    cut: int
-    passes: int
-
-
-cw_simplify_facts._fields_ = [
-    ("vertices", c_size_t),
-    ("triangles", c_size_t),
-    ("cut", c_size_t),
-    ("passes", c_size_t),
-]
-
-
-class cw_simplifier(Structure):
-    pass
-
-
 class cw_slice_filter_desc(Structure):
     kind: int
     sigma_voxels: Any
@@ -2759,60 +2974,6 @@ cw_slice_filter_desc._fields_ = [
 
 class cw_slice_filter(Structure):
     pass
-
-
-class cw_smooth_desc(Structure):
-    iterations: int
-    max_move_mm: float
-    move_border: bool
-    allow_crossings: bool
-    threads: int
-    progress: Any
-    method: int
-    width_mm: float
-
-
-cw_smooth_desc._fields_ = [
-    ("iterations", c_size_t),
-    ("max_move_mm", c_double),
-    ("move_border", c_bool),
-    ("allow_crossings", c_bool),
-    ("threads", c_int),
-    ("progress", cw_progress),
-    ("method", c_int),
-    ("width_mm", c_double),
-]
-
-
-class cw_smooth_facts(Structure):
-    limit_mm: float
-    width_mm: float
-    iterations: int
-    max_mm: float
-    mean_mm: float
-    volume_before_mm3: float
-    volume_after_mm3: float
-    flipped: int
-    border: int
-    junction: int
-    put_back: int
-    undecided: bool
-
-
-cw_smooth_facts._fields_ = [
-    ("limit_mm", c_double),
-    ("width_mm", c_double),
-    ("iterations", c_size_t),
-    ("max_mm", c_double),
-    ("mean_mm", c_double),
-    ("volume_before_mm3", c_double),
-    ("volume_after_mm3", c_double),
-    ("flipped", c_size_t),
-    ("border", c_size_t),
-    ("junction", c_size_t),
-    ("put_back", c_size_t),
-    ("undecided", c_bool),
-]
 
 
 cw_slice = cw_clip
@@ -3062,9 +3223,6 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_world_marks_draw": (c_int, [POINTER(cw_world_mark), c_size_t, c_double, POINTER(cw_scene), POINTER(cw_image), POINTER(cw_error)]),
     "cw_image_place": (None, [POINTER(cw_image), POINTER(cw_image), c_ssize_t, c_ssize_t]),
     "cw_image_tile": (c_int, [POINTER(cw_image), c_size_t, c_size_t, c_size_t, POINTER(c_uint8), POINTER(cw_image), POINTER(cw_error)]),
-    "cw_mesh_remesh": (c_int, [POINTER(cw_mesh), POINTER(cw_remesh_desc), POINTER(cw_mesh), POINTER(cw_remesh_facts), POINTER(cw_error)]),
-    "cw_repair_has_cgal": (c_bool, []),
-    "cw_mesh_repair": (c_int, [POINTER(cw_mesh), POINTER(cw_repair_desc), POINTER(cw_mesh), POINTER(cw_repair_facts), POINTER(cw_error)]),
     "cw_simplify_view_draw": (c_int, [POINTER(cw_simplify_view), POINTER(cw_mesh), POINTER(cw_error)]),
     "cw_simplify_view_free": (None, [POINTER(cw_simplify_view)]),
     "cw_simplify_view_error": (c_int, [POINTER(cw_simplify_view), c_double, POINTER(c_double), POINTER(c_double), POINTER(cw_error)]),
@@ -3080,11 +3238,20 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_simplifier_take": (c_int, [c_void_p, POINTER(cw_slab), POINTER(cw_error)]),
     "cw_simplifier_finish": (c_int, [POINTER(cw_simplifier), POINTER(cw_mesh), POINTER(cw_simplify_facts), POINTER(cw_error)]),
     "cw_simplify_available": (c_bool, []),
+    "cw_smooth_method_name": (c_char_p, [c_int]),
+    "cw_mesh_smooth": (c_int, [POINTER(cw_mesh), POINTER(cw_smooth_desc), POINTER(cw_smooth_facts), POINTER(cw_error)]),
+    "cw_stage_name": (c_char_p, [c_int]),
+    "cw_pipeline_stages": (c_uint, [POINTER(cw_pipeline_desc)]),
+    "cw_pipeline_check": (c_int, [c_int, c_uint, POINTER(c_int), POINTER(c_int), POINTER(cw_error)]),
+    "cw_pipeline_run": (c_int, [POINTER(cw_volume), POINTER(cw_extractor), POINTER(cw_pipeline_desc), cw_pipeline_sink, POINTER(cw_pipeline_facts), POINTER(cw_error)]),
+    "cw_pipeline_mesh": (c_int, [POINTER(cw_volume), POINTER(cw_extractor), POINTER(cw_pipeline_desc), POINTER(cw_mesh), POINTER(cw_pipeline_facts), POINTER(cw_error)]),
+    "cw_pipeline_run_slices": (c_int, [POINTER(cw_slice_source), POINTER(cw_pipeline_desc), cw_pipeline_sink, POINTER(cw_pipeline_facts), POINTER(cw_error)]),
+    "cw_mesh_remesh": (c_int, [POINTER(cw_mesh), POINTER(cw_remesh_desc), POINTER(cw_mesh), POINTER(cw_remesh_facts), POINTER(cw_error)]),
+    "cw_repair_has_cgal": (c_bool, []),
+    "cw_mesh_repair": (c_int, [POINTER(cw_mesh), POINTER(cw_repair_desc), POINTER(cw_mesh), POINTER(cw_repair_facts), POINTER(cw_error)]),
     "cw_slice_filter_new": (c_int, [POINTER(cw_slice_source), POINTER(cw_slice_filter_desc), POINTER(POINTER(cw_slice_filter)), POINTER(cw_error)]),
     "cw_slice_filter_source": (cw_slice_source, [POINTER(cw_slice_filter)]),
     "cw_slice_filter_free": (None, [POINTER(cw_slice_filter)]),
-    "cw_smooth_method_name": (c_char_p, [c_int]),
-    "cw_mesh_smooth": (c_int, [POINTER(cw_mesh), POINTER(cw_smooth_desc), POINTER(cw_smooth_facts), POINTER(cw_error)]),
 }
 
 VARIABLES: dict[str, Any] = {
