@@ -7,7 +7,7 @@ cw_progress cwi_begin_stage(const cwi_pipeline *p, cw_stage stage, size_t count,
                             const char *unit)
 {
     const cw_pipeline_watch *w = &p->desc->watch;
-    return w->begin ? w->begin(w->user, stage, count, unit) : (cw_progress){0};
+    return w->begin ? w->begin(w->user, stage, count, unit) : p->desc->extract.progress;
 }
 
 static size_t count_triangles(const cwi_pipeline *p, const cw_mesh *mesh)

@@ -122,7 +122,7 @@ const cwi_stage *cwi_stage_of(cw_stage stage)
 unsigned cw_pipeline_stages(const cw_pipeline_desc *desc)
 {
     unsigned stages = 0;
-    for (int s = 0; s < CW_STAGE_COUNT; s++)
+    for (int s = 0; desc && s < CW_STAGE_COUNT; s++)
         stages |= STAGES[s].is_wanted(desc) ? 1u << s : 0;
     return stages;
 }
@@ -175,11 +175,14 @@ cw_status cw_pipeline_check(cw_surface_source source, unsigned stages, cw_stage 
                             cw_stage *second, cw_error *err)
 {
     cw_stage own[2];
+    CWI_REQUIRE(err);
     first = first ? first : &own[0];
     second = second ? second : &own[1];
     for (int s = 0; s < CW_STAGE_COUNT; s++) {
         const char *why = stages >> s & 1 ? find_objection(source, (cw_stage)s, stages) : NULL;
         *first = *second = (cw_stage)s;
+        if (why && STAGES[s].needs & CWI_SPOOL && source == CW_SOURCE_SLICES)
+            *second = CW_STAGE_SIMPLIFY;
         if (why)
             return cwi_fail(err, CW_ERR_ARGUMENT, "%s %s", names[s], why);
     }

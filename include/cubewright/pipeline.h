@@ -65,7 +65,7 @@ typedef struct cw_pipeline_color {
 /* Watches a run. Zeroed, nothing does. */
 typedef struct cw_pipeline_watch {
     /* A stage begins, on `count` things named by `unit`: "voxel", "triangle" or "vertex". Returns
-     * the progress that it reports to; a zeroed one: none. May be NULL */
+     * the progress that it reports to. NULL: all report to that of desc->extract */
     cw_progress (*begin)(void *user, cw_stage stage, size_t count, const char *unit);
     /* A stage has ended. May be NULL */
     void (*end)(void *user, cw_stage stage, size_t triangles_before, size_t triangles_after);
@@ -75,7 +75,7 @@ typedef struct cw_pipeline_watch {
 /* Settings of a surface. Zero-initialise the struct and set what you need; a stage whose field is
  * zero does not run. All pointers are borrowed until the call returns. */
 typedef struct cw_pipeline_desc {
-    cw_extract_desc extract; /* its threads are those of all stages */
+    cw_extract_desc extract; /* its threads and progress are those of all stages */
     double min_volume_mm3;   /* leave out components that enclose less */
     size_t largest;          /* components to keep, those that enclose the most; default: all */
     bool fill_voids;         /* leave out the cavities of solids, and what is in them */
@@ -128,7 +128,7 @@ typedef struct cw_pipeline_sink {
 } cw_pipeline_sink;
 
 /* Returns the stages that the settings ask for, a bit 1u << stage for each.
- * desc  borrowed */
+ * desc  borrowed; NULL asks for none */
 CW_API unsigned cw_pipeline_stages(const cw_pipeline_desc *desc);
 
 /* Finds out whether stages go together, on a source: some need the whole surface in memory, some

@@ -17,7 +17,7 @@ from ._check import Check, Verdict, check, report
 from ._color import color_by
 from ._cut import Cut, cut
 from ._errors import Error, Status
-from ._extract import Extractor, LabelSurfaces, Patch, extract, extract_labels
+from ._extract import Extractor, LabelSurfaces, Patch, Settings, extract, extract_labels, extract_levels
 from ._library import lib as _lib
 from ._memory import memory_limit, memory_used
 from ._mesh import Mesh
@@ -46,6 +46,7 @@ __all__ = [
     "Progress",
     "Remeshed",
     "Repaired",
+    "Settings",
     "Smoothed",
     "Statistics",
     "Status",
@@ -57,6 +58,7 @@ __all__ = [
     "cut",
     "extract",
     "extract_labels",
+    "extract_levels",
     "features",
     "formats",
     "hollow",

@@ -27,6 +27,14 @@ class Cut:
     moved: float  # mm: the farthest that a vertex moved into the plane
 
 
+def describe_cut(point: Sequence[float], normal: Sequence[float], *, leave_open: bool = False) -> c.cw_cut_desc:
+    return c.cw_cut_desc(
+        point=tuple(take_numbers("point", point, 3)),
+        normal=tuple(take_numbers("normal", normal, 3)),
+        leave_open=take_flag("leave_open", leave_open),
+    )
+
+
 def cut(
     mesh: Mesh,
     point: Sequence[float],
@@ -46,12 +54,8 @@ def cut(
     """
     source = take_mesh("mesh", mesh)
     reporter = Reporter(progress)
-    desc = c.cw_cut_desc(
-        point=tuple(take_numbers("point", point, 3)),
-        normal=tuple(take_numbers("normal", normal, 3)),
-        leave_open=take_flag("leave_open", leave_open),
-        progress=reporter.struct,
-    )
+    desc = describe_cut(point, normal, leave_open=leave_open)
+    desc.progress = reporter.struct
     out = Mesh._from_c(c.cw_mesh())
     facts = c.cw_cut_facts()
     reporter.call(lib.cw_mesh_cut, byref(source), byref(desc), byref(out._struct), byref(facts))

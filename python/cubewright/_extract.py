@@ -4,24 +4,29 @@ from __future__ import annotations
 
 import threading
 import weakref
-from collections.abc import Callable, Iterable
-from ctypes import POINTER, byref, c_uint32
+from collections.abc import Iterable, Sequence
+from ctypes import POINTER, byref, c_size_t, c_uint32, memmove, memset, pointer, sizeof
 from dataclasses import dataclass
 from typing import Any, Union
 
 import numpy.typing as npt
 
 from . import _declarations as c
-from ._errors import call
+from ._color import COLORMAPS
+from ._cut import describe_cut
+from ._errors import Error, Status, call
 from ._library import lib
 from ._memory import Owner
 from ._mesh import Mesh
-from ._options import take_choice, take_count, take_flag, take_length, take_number, take_threads
+from ._options import take_choice, take_count, take_flag, take_length, take_number, take_numbers, take_threads
 from ._progress import Progress, Reporter
-from ._simplify import simplify as simplify_mesh
+from ._simplify import describe_smoothing, take_counts
 from ._volume import Volume, take_volume
 
 INSIDE = ("above", "below")
+
+_TAKE: Any = dict(c.cw_pipeline_sink._fields_)["take"]  # type: ignore[arg-type]
+_OPEN: Any = dict(c.cw_pipeline_color._fields_)["open"]  # type: ignore[arg-type]
 
 AnyVolume = Union[Volume, "npt.NDArray[Any]"]
 
@@ -30,6 +35,66 @@ def take_inside(inside: str, volume: Volume) -> bool:
     """Returns whether low values are inside. 'auto' is above, in level sets below."""
     choice = take_choice("inside", inside, ("auto", *INSIDE))
     return volume.level_set if choice == 0 else choice == 2
+
+
+@dataclass(frozen=True)
+class Settings:
+    """The settings of a surface: the keywords of extract()."""
+
+    inside: str = "auto"
+    open: bool = False
+    topology: str = "field"
+    placement: str = "linear"
+    snap: float = 0.0
+    normals: str = "field"
+    min_volume: float = 0.0
+    largest: int = 0
+    fill_voids: bool = False
+    smooth: str | dict[str, Any] | None = None
+    cut_plane: tuple[Sequence[float], Sequence[float]] | None = None
+    simplify: int | float | None = None
+    color_by: AnyVolume | None = None
+    colormap: str = "viridis"
+    color_range: tuple[float, float] | None = None
+    max_triangles: int = 0
+    max_bytes: int = 0
+    threads: int = 0
+    progress: Progress = None
+
+    def describe(self, iso: float, source: Volume, reporter: Reporter) -> c.cw_pipeline_desc:
+        """Returns the descriptor of the pipeline. It keeps alive what it points to, but for the reporter."""
+        threads = take_threads(self.threads)
+        desc = c.cw_pipeline_desc(
+            extract=c.cw_extract_desc(
+                isovalue=take_number("iso", iso),
+                inside_is_low=take_inside(self.inside, source),
+                leave_open=take_flag("open", self.open),
+                simple_topology=take_choice("topology", self.topology, ("field", "simple")) == 1,
+                cubic_placement=take_choice("placement", self.placement, ("linear", "cubic")) == 1,
+                no_normals=take_choice("normals", self.normals, ("field", "none")) == 1,
+                snap=take_number("snap", self.snap),
+                threads=threads,
+                max_triangles=take_count("max_triangles", self.max_triangles),
+                max_bytes=take_count("max_bytes", self.max_bytes),
+                progress=reporter.struct,
+            ),
+            min_volume_mm3=take_length("min_volume", self.min_volume),
+            largest=take_count("largest", self.largest),
+            fill_voids=take_flag("fill_voids", self.fill_voids),
+        )
+        if self.smooth is not None:
+            how = {"method": self.smooth} if isinstance(self.smooth, str) else self.smooth
+            desc.smooth = pointer(describe_smoothing(**how))
+        if self.cut_plane is not None:
+            point, normal = self.cut_plane
+            desc.cut = pointer(describe_cut(point, normal))
+        if isinstance(self.simplify, float):
+            desc.simplify = pointer(c.cw_simplify_desc(error_mm=take_length("simplify", self.simplify)))
+        elif self.simplify is not None:
+            desc.simplify = pointer(c.cw_simplify_desc(triangles=take_count("simplify", self.simplify, 1)))
+        if self.color_by is not None:
+            desc.color = pointer(describe_coloring(self.color_by, self.colormap, self.color_range))
+        return desc
 
 
 def extract(
@@ -45,7 +110,12 @@ def extract(
     min_volume: float = 0.0,
     largest: int = 0,
     fill_voids: bool = False,
+    smooth: str | dict[str, Any] | None = None,
+    cut_plane: tuple[Sequence[float], Sequence[float]] | None = None,
     simplify: int | float | None = None,
+    color_by: AnyVolume | None = None,
+    colormap: str = "viridis",
+    color_range: tuple[float, float] | None = None,
     component: int = 0,
     step: int = 0,
     max_triangles: int = 0,
@@ -56,7 +126,8 @@ def extract(
     """Extracts the surface where the trilinear field of a volume equals an isovalue.
 
     The mesh is a closed manifold, unless open, with vertices in the volume's world (LPS mm). It
-    is the same to the bit for any number of threads, and for any strides of the array.
+    is the same to the bit for any number of threads, and for any strides of the array. The stages
+    run in the order in which they stand here.
 
     volume      a Volume, or an array of shape (z, y, x) with voxels of 1 mm
     iso         in the unit of the values, after slope and intercept
@@ -69,7 +140,11 @@ def extract(
     min_volume  leave out components that enclose less, in cubic millimetres
     largest     number of components to keep, those that enclose the most; 0: all
     fill_voids  leave out the cavities of solids, and all inside them
+    smooth      a method, or a dict of the keywords of smooth(): {"method": "hc", "iterations": 5}
+    cut_plane   (point, normal) as of cut(): what is above stays, and is closed flat
     simplify    a float: error limit in mm; an int: triangle count. See simplify()
+    color_by    another volume, whose values become scalars and colours. See color_by()
+    colormap, color_range  the map, and the values of its ends; None: those of the vertices
     component, step  of volumes with several, from 0
     max_triangles, max_bytes  fail beyond, before more memory is taken; 0: no limit
     threads     0: all; progress: see Progress
@@ -77,41 +152,75 @@ def extract(
     A volume without a crossing gives a mesh without triangles. Raises Error: ARGUMENT, UNSUPPORTED,
     LIMIT, NO_MEMORY, CANCELLED.
     """
-    options = {name: value for name, value in locals().items() if name not in ("volume", "component", "step")}
+    options = {name: value for name, value in locals().items() if name in Settings.__dataclass_fields__}
+    return run_pipeline(volume, iso, Settings(**options), component, step)
+
+
+def extract_levels(
+    volume: AnyVolume, iso: float, triangles: Sequence[int], *, component: int = 0, step: int = 0, **options: Any
+) -> list[Mesh]:
+    """Extracts a surface, and returns levels of detail of it, each made from the one before.
+
+    triangles  number of each level, fewer than of the one before
+    options    as of extract(), but simplify. Normals are those of the field
+
+    Raises Error as extract(), and EMPTY for a volume without a crossing.
+    """
+    levels: list[Mesh] = []
+    counts = take_counts(triangles)
     source = take_volume(volume)
     view = source._select(component, step)
-    return extract_by(lib.cw_extract, byref(view), source, **options)
+    settings = Settings(**options)
+    reporter = Reporter(settings.progress)
+    desc = settings.describe(iso, source, reporter)
+    desc.lod, desc.lod_count = (c_size_t * len(counts))(*counts), len(counts)
+
+    def take_level(_user: int | None, surface: Any, _facts: Any, _err: Any) -> int:
+        mesh = Mesh._from_c(c.cw_mesh())
+        memmove(byref(mesh._struct), surface.contents.mesh, sizeof(c.cw_mesh))
+        memset(surface.contents.mesh, 0, sizeof(c.cw_mesh))
+        levels.append(mesh)
+        return 0
+
+    sink = c.cw_pipeline_sink(take=_TAKE(take_level))
+    reporter.call(lib.cw_pipeline_run, byref(view), None, byref(desc), sink, None)
+    return levels
 
 
-def extract_by(function: Callable[..., int], place: Any, source: Volume, **options: Any) -> Mesh:
-    """Extracts by a function of the library; place is what it takes first, a volume or extractor."""
-    reporter = Reporter(options["progress"])
-    desc = c.cw_extract_desc(
-        isovalue=take_number("iso", options["iso"]),
-        inside_is_low=take_inside(options["inside"], source),
-        leave_open=take_flag("open", options["open"]),
-        simple_topology=take_choice("topology", options["topology"], ("field", "simple")) == 1,
-        cubic_placement=take_choice("placement", options["placement"], ("linear", "cubic")) == 1,
-        no_normals=take_choice("normals", options["normals"], ("field", "none")) == 1,
-        snap=take_number("snap", options["snap"]),
-        threads=take_threads(options["threads"]),
-        max_triangles=take_count("max_triangles", options["max_triangles"]),
-        max_bytes=take_count("max_bytes", options["max_bytes"]),
-        progress=reporter.struct,
-    )
-    least = take_length("min_volume", options["min_volume"])
-    largest = take_count("largest", options["largest"])
-    fills = take_flag("fill_voids", options["fill_voids"])
+def run_pipeline(
+    volume: AnyVolume, iso: float, settings: Settings, component: int = 0, step: int = 0, extractor: Any = None
+) -> Mesh:
+    """Runs the pipeline for one surface."""
+    source = take_volume(volume)
+    view = source._select(component, step)
+    reporter = Reporter(settings.progress)
+    desc = settings.describe(iso, source, reporter)
     mesh = Mesh._from_c(c.cw_mesh())
-    reporter.call(function, place, byref(desc), byref(mesh._struct), None)
-    if least > 0:
-        call(lib.cw_mesh_drop_volumes, byref(mesh._struct), least, None)
-    if largest > 0:
-        call(lib.cw_mesh_keep_largest, byref(mesh._struct), largest, None)
-    if fills:
-        call(lib.cw_mesh_fill_voids, byref(mesh._struct), take_threads(options["threads"]), None)
-    target = options["simplify"]
-    return mesh if target is None else reduce_surface(mesh, target, options["threads"], options["progress"])
+    try:
+        reporter.call(lib.cw_pipeline_mesh, byref(view), extractor, byref(desc), byref(mesh._struct), None)
+    except Error as error:
+        if error.status != Status.EMPTY or settings.color_by is not None:
+            raise
+    return mesh
+
+
+def describe_coloring(volume: AnyVolume, colormap: str, ends: tuple[float, float] | None) -> c.cw_pipeline_color:
+    source = take_volume(volume)
+    view = source._select(0, 0)
+
+    def open_volume(_user: int | None, out: Any, _err: Any) -> int:
+        out[0] = pointer(view)
+        return 0
+
+    color = c.cw_pipeline_color(
+        open=_OPEN(open_volume),
+        map=take_choice("colormap", colormap, COLORMAPS),
+    )
+    if ends is not None:
+        color.low, color.high = take_numbers("color_range", ends, 2)
+        color.has_range = True
+    color.kept = (source, view)
+    return color
 
 
 class Extractor:
@@ -124,6 +233,7 @@ class Extractor:
 
     def __init__(self, volume: AnyVolume, *, component: int = 0, step: int = 0) -> None:
         self.volume = take_volume(volume)
+        self._component, self._step = component, step
         self._view = self.volume._select(component, step)  # borrowed by the extractor
         self._extractor = POINTER(c.cw_extractor)()
         self._lock = threading.Lock()
@@ -131,43 +241,17 @@ class Extractor:
         call(lib.cw_extractor_new, byref(self._view), byref(self._extractor))
         weakref.finalize(self, lib.cw_extractor_free, self._extractor).atexit = False
 
-    def extract(
-        self,
-        iso: float,
-        *,
-        inside: str = "auto",
-        open: bool = False,
-        topology: str = "field",
-        placement: str = "linear",
-        snap: float = 0.0,
-        normals: str = "field",
-        min_volume: float = 0.0,
-        largest: int = 0,
-        fill_voids: bool = False,
-        simplify: int | float | None = None,
-        max_triangles: int = 0,
-        max_bytes: int = 0,
-        threads: int = 0,
-        progress: Progress = None,
-    ) -> Mesh:
+    def extract(self, iso: float, **options: Any) -> Mesh:
         """Extracts the surface at an isovalue; options and errors as of extract()."""
-        options = {name: value for name, value in locals().items() if name != "self"}
+        settings = Settings(**options)
         if self._user == threading.get_ident():
             raise RuntimeError("an extractor cannot be used by the progress callback of its own call")
         with self._lock:
             self._user = threading.get_ident()
             try:
-                return extract_by(lib.cw_extractor_extract, self._extractor, self.volume, **options)
+                return run_pipeline(self.volume, iso, settings, self._component, self._step, self._extractor)
             finally:
                 self._user = 0
-
-
-def reduce_surface(mesh: Mesh, target: int | float, threads: int, progress: Progress) -> Mesh:
-    if len(mesh.triangles) == 0:
-        return mesh
-    if isinstance(target, float):
-        return simplify_mesh(mesh, error=target, threads=threads, progress=progress)
-    return simplify_mesh(mesh, triangles=target, threads=threads, progress=progress)
 
 
 @dataclass(frozen=True)

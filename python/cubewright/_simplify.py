@@ -45,6 +45,16 @@ def _describe(
     )
 
 
+def take_counts(triangles: Sequence[int]) -> list[int]:
+    """Returns the triangle counts of levels of detail."""
+    if isinstance(triangles, (str, bytes)) or not isinstance(triangles, Iterable):
+        raise TypeError(f"triangles must be whole numbers, not {name_type(triangles)}")
+    counts = [take_count("triangles", each, 1) for each in triangles]
+    if not counts:
+        raise ValueError("triangles is empty; a number for each level was expected")
+    return counts
+
+
 def simplify(
     mesh: Mesh,
     *,
@@ -111,11 +121,7 @@ def simplify_levels(
     """
     source = take_mesh("mesh", mesh)
     reporter = Reporter(progress)
-    if isinstance(triangles, (str, bytes)) or not isinstance(triangles, Iterable):
-        raise TypeError(f"triangles must be whole numbers, not {name_type(triangles)}")
-    counts = [take_count("triangles", each, 1) for each in triangles]
-    if not counts:
-        raise ValueError("triangles is empty; a number for each level was expected")
+    counts = take_counts(triangles)
     desc = _describe(
         normal_weight,
         color_weight,
@@ -151,6 +157,28 @@ class Smoothed:
     undecided: bool  # too many triangles are in one place to look for all that meet
 
 
+def describe_smoothing(
+    *,
+    method: str = "taubin",
+    iterations: int | None = None,
+    width: float = 0.0,
+    max_move: float = 0.0,
+    keep_border: bool = True,
+    allow_intersections: bool = False,
+) -> c.cw_smooth_desc:
+    kind = take_choice("method", method, SMOOTH_METHODS)
+    if width and method != "fair":
+        raise ValueError(f"width is for method='fair', not for {method!r}")
+    return c.cw_smooth_desc(
+        method=kind,
+        iterations=0 if iterations is None else take_count("iterations", iterations, 1, 1000),
+        width_mm=take_length("width", width),
+        max_move_mm=take_length("max_move", max_move),
+        move_border=not take_flag("keep_border", keep_border),
+        allow_crossings=take_flag("allow_intersections", allow_intersections),
+    )
+
+
 def smooth(
     mesh: Mesh,
     *,
@@ -181,19 +209,16 @@ def smooth(
     """
     take_mesh("mesh", mesh)
     reporter = Reporter(progress)
-    kind = take_choice("method", method, SMOOTH_METHODS)
-    if width and method != "fair":
-        raise ValueError(f"width is for method='fair', not for {method!r}")
-    desc = c.cw_smooth_desc(
-        method=kind,
-        iterations=0 if iterations is None else take_count("iterations", iterations, 1, 1000),
-        width_mm=take_length("width", width),
-        max_move_mm=take_length("max_move", max_move),
-        move_border=not take_flag("keep_border", keep_border),
-        allow_crossings=take_flag("allow_intersections", allow_intersections),
-        threads=take_threads(threads),
-        progress=reporter.struct,
+    desc = describe_smoothing(
+        method=method,
+        iterations=iterations,
+        width=width,
+        max_move=max_move,
+        keep_border=keep_border,
+        allow_intersections=allow_intersections,
     )
+    desc.threads = take_threads(threads)
+    desc.progress = reporter.struct
     out, facts = mesh.copy(), c.cw_smooth_facts()
     reporter.call(lib.cw_mesh_smooth, byref(out._struct), byref(desc), byref(facts))
     return Smoothed(

@@ -51,6 +51,34 @@ class Surfaces(Case):
         for more in ({"topology": "simple"}, {"placement": "cubic"}, {"inside": "below"}):
             self.assertTrue(cw.check(cw.extract(ball, 0, **more)).holds, more)
 
+    def test_stages_are_the_functions_of_the_package(self):
+        head = cw.make("ct-head", dims=32, type="i16", noise=150)
+        mesh = cw.extract(head, 300, min_volume=100, largest=20, fill_voids=True)
+        smooth = {"method": "hc", "iterations": 4}
+        smoothed = cw.extract(head, 300, min_volume=100, largest=20, fill_voids=True, smooth=smooth)
+        self.same_mesh(smoothed, cw.smooth(mesh, **smooth).mesh)
+        plane = ((0, 0, 10), (0, 0.5, 1))
+        whole = cw.extract(head, 300)
+        self.same_mesh(cw.extract(head, 300, cut_plane=plane), cw.cut(whole, *plane).mesh)
+        paint = cw.make("sphere", dims=32)
+        painted = cw.extract(head, 300, color_by=paint, colormap="inferno", color_range=(-60, 40))
+        expected = cw.color_by(whole, paint, colormap="inferno", low=-60, high=40)
+        np.testing.assert_array_equal(painted.colors, expected.colors)
+        np.testing.assert_array_equal(painted.scalars, expected.scalars)
+        self.same_mesh(cw.Extractor(head).extract(300, smooth="taubin"), cw.extract(head, 300, smooth="taubin"))
+
+    def test_levels_come_from_a_volume_at_once(self):
+        if not cw.features()["simplify"].available:
+            self.skipTest("this build has no OpenMesh")
+        head = cw.make("ct-head", dims=32, type="i16")
+        levels = cw.extract_levels(head, 300, [4000, 1000], largest=1)
+        self.assertEqual([len(each.triangles) for each in levels], [4000, 1000])
+        for wanted, level in zip(cw.simplify_levels(cw.extract(head, 300, largest=1), [4000, 1000]), levels):
+            np.testing.assert_array_equal(wanted.vertices, level.vertices)
+            np.testing.assert_array_equal(wanted.triangles, level.triangles)
+        with self.assertRaises(cw.Error):
+            cw.extract_levels(head, 300, [4000, 1000], simplify=500)
+
     def test_an_extractor_gives_the_meshes_of_extract(self):
         ball = make_ball()
         gc.collect()

@@ -1,0 +1,387 @@
+/* The pipeline: its stages, in their order, are the calls that a user would make one by one. */
+#include "support/surface.h"
+
+#include "core/base/status.h"
+
+#include <cubewright/pipeline.h>
+
+#include <string.h>
+
+enum { SIDE = 32 };
+static const double ISO = 300;
+
+/* A head full of noise: fragments, cavities, and a border. */
+static cw_volume make_noisy(void)
+{
+    cw_volume v;
+    cw_error err = {0};
+    const cw_field_desc desc = {.field = CW_FIELD_CT_HEAD,
+                                .dim = {SIDE, SIDE, SIDE},
+                                .type = CW_I16,
+                                .noise = 150,
+                                .seed = 3};
+    assert_ok(cw_field_sample(&desc, &v, &err), err);
+    return v;
+}
+
+static cw_volume make_paint(void)
+{
+    cw_volume v;
+    cw_error err = {0};
+    const cw_field_desc desc = {.dim = {SIDE, SIDE, SIDE}, .type = CW_F32};
+    assert_ok(cw_field_sample(&desc, &v, &err), err);
+    return v;
+}
+
+static cw_status open_paint(void *user, const cw_volume **volume, cw_error *err)
+{
+    (void)err;
+    *volume = user;
+    return CW_OK;
+}
+
+/* --- by hand -------------------------------------------------------------------------------- */
+
+static void simplify_by_hand(cw_mesh *mesh, const cw_simplify_desc *desc)
+{
+    cw_mesh reduced;
+    cw_error err = {0};
+    assert_ok(cw_simplify(mesh, desc, &reduced, NULL, &err), err);
+    cw_mesh_free(mesh);
+    *mesh = reduced;
+}
+
+/* Does what the settings ask for by one call after the other. */
+static cw_mesh make_by_hand(const cw_volume *v, const cw_pipeline_desc *d)
+{
+    cw_mesh mesh, cut;
+    cw_error err = {0};
+    cw_sample_facts sampled;
+    assert_ok(cw_extract(v, &d->extract, &mesh, NULL, &err), err);
+    if (d->min_volume_mm3 > 0)
+        assert_ok(cw_mesh_drop_volumes(&mesh, d->min_volume_mm3, NULL, &err), err);
+    if (d->largest)
+        assert_ok(cw_mesh_keep_largest(&mesh, d->largest, NULL, &err), err);
+    if (d->fill_voids)
+        assert_ok(cw_mesh_fill_voids(&mesh, 1, NULL, &err), err);
+    if (d->smooth)
+        assert_ok(cw_mesh_smooth(&mesh, d->smooth, NULL, &err), err);
+    if (d->cut) {
+        assert_ok(cw_mesh_cut(&mesh, d->cut, &cut, NULL, &err), err);
+        cw_mesh_free(&mesh);
+        mesh = cut;
+    }
+    if (d->simplify)
+        simplify_by_hand(&mesh, d->simplify);
+    if (d->simplify && !d->smooth && !d->cut)
+        assert_ok(cw_extract_normals(v, NULL, &mesh, &err), err);
+    if (d->color) {
+        assert_ok(cw_mesh_sample(&mesh, d->color->user, NULL, &sampled, &err), err);
+        assert_ok(cw_mesh_color(&mesh, d->color->map, sampled.low, sampled.high, &err), err);
+    }
+    return mesh;
+}
+
+static void assert_same_colors(const cw_mesh *a, const cw_mesh *b)
+{
+    assert_int_equal(!a->colors, !b->colors);
+    if (a->colors)
+        assert_memory_equal(a->colors, b->colors, 4 * a->vertex_count);
+    if (a->scalars)
+        assert_memory_equal(a->scalars, b->scalars, a->vertex_count * sizeof *a->scalars);
+}
+
+/* The stages of each row are those of the bits, and so is the result. */
+static void stages_are_the_calls_one_after_the_other(void **state)
+{
+    (void)state;
+    cw_volume volume = make_noisy(), paint = make_paint();
+    const cw_smooth_desc smooth = {.method = CW_SMOOTH_HC, .iterations = 4};
+    const cw_cut_desc cut = {
+        .point = {0, 0, 40}, .normal = {0, 0, 1}, .point_is_percent = true};
+    const cw_simplify_desc simplify = {.triangles = 1500};
+    const cw_pipeline_color color = {.open = open_paint, .user = &paint};
+    for (unsigned bits = 0; bits < 128; bits++) {
+        cw_pipeline_desc d = {.extract = {.isovalue = ISO},
+                              .min_volume_mm3 = bits & 1 ? 100 : 0,
+                              .largest = bits & 2 ? 30 : 0,
+                              .fill_voids = bits & 4,
+                              .smooth = bits & 8 ? &smooth : NULL,
+                              .cut = bits & 16 ? &cut : NULL,
+                              .simplify =
+                                  bits & 32 && cw_simplify_available() ? &simplify : NULL,
+                              .color = bits & 64 ? &color : NULL};
+        const bool by_slabs = d.simplify && !(bits & 31);
+        cw_pipeline_facts facts;
+        cw_mesh mesh;
+        cw_error err = {0};
+        if (by_slabs || (test_is_short() && bits * 37 % 128 >= 32))
+            continue;
+        cw_mesh expected = make_by_hand(&volume, &d);
+        assert_ok(cw_pipeline_mesh(&volume, NULL, &d, &mesh, &facts, &err), err);
+        test_assert_same_mesh(&expected, &mesh);
+        assert_same_colors(&expected, &mesh);
+        assert_int_equal(facts.ran, cw_pipeline_stages(&d));
+        assert_int_equal(facts.ran >> CW_STAGE_MIN_VOLUME & 1, bits & 1);
+        assert_true(!(bits & 1) || facts.small.dropped > 0);
+        assert_true(!(bits & 2) || facts.others.kept > 0);
+        assert_true(!(bits & 8) || facts.smoothed.max_mm > 0);
+        assert_true(!(bits & 16) || facts.cut.area_mm2 > 0);
+        cw_mesh_free(&expected);
+        cw_mesh_free(&mesh);
+    }
+    cw_volume_free(&volume);
+    cw_volume_free(&paint);
+}
+
+/* --- slices --------------------------------------------------------------------------------- */
+
+static cw_status read_slices(void *user, size_t first, size_t count, void *to, cw_error *err)
+{
+    const cw_volume *v = user;
+    const size_t slice = (size_t)v->stride[2];
+    (void)err;
+    memcpy(to, (const char *)v->data + first * slice, count * slice);
+    return CW_OK;
+}
+
+static cw_slice_source source_of(cw_volume *v)
+{
+    cw_slice_source source = {.shape = *v, .read = read_slices, .user = v};
+    source.shape.data = NULL;
+    return source;
+}
+
+/* Takes a mesh, or counts the triangles of a spool. */
+typedef struct taken {
+    cw_mesh mesh;
+    size_t surfaces, spooled, stop_at;
+} taken;
+
+static cw_status take_surface(void *user, cw_pipeline_surface *surface,
+                              const cw_pipeline_facts *facts, cw_error *err)
+{
+    taken *t = user;
+    (void)facts;
+    assert_int_equal(surface->level, t->surfaces);
+    if (++t->surfaces == t->stop_at)
+        return cwi_fail(err, CW_ERR_CANCELLED, "enough");
+    if (surface->spool)
+        t->spooled = cw_mesh_spool_frame(surface->spool)->triangle_count;
+    if (!surface->mesh)
+        return CW_OK;
+    cw_mesh_free(&t->mesh);
+    t->mesh = *surface->mesh;
+    *surface->mesh = (cw_mesh){0};
+    return CW_OK;
+}
+
+static void slices_give_the_surface_of_the_volume(void **state)
+{
+    (void)state;
+    cw_volume volume = make_noisy();
+    const cw_slice_source source = source_of(&volume);
+    const cw_simplify_desc simplify = {.error_mm = 1};
+    for (unsigned bits = 0; bits < 3; bits++) {
+        const bool reduces = bits & 2;
+        const cw_pipeline_desc d = {.extract = {.isovalue = ISO},
+                                    .min_volume_mm3 = bits & 1 ? 100 : 0,
+                                    .simplify = reduces ? &simplify : NULL,
+                                    .check = true,
+                                    .spool_path = test_path("surface")};
+        cw_pipeline_facts facts, whole;
+        taken t = {0};
+        cw_mesh mesh;
+        cw_error err = {0};
+        if (reduces && !cw_simplify_available())
+            continue;
+        assert_ok(cw_pipeline_mesh(&volume, NULL, &d, &mesh, &whole, &err), err);
+        assert_ok(cw_pipeline_run_slices(&source, &d, (cw_pipeline_sink){take_surface, &t},
+                                         &facts, &err),
+                  err);
+        assert_int_equal(t.surfaces, 1);
+        if (reduces)
+            test_assert_same_mesh(&mesh, &t.mesh);
+        else
+            assert_int_equal(t.spooled, mesh.triangle_count);
+        assert_memory_equal(&facts.small, &whole.small, sizeof facts.small);
+        assert_int_equal(facts.quality.triangles, whole.quality.triangles);
+        assert_int_equal(facts.quality.components, whole.quality.components);
+        assert_int_equal(facts.ran, whole.ran);
+        cw_mesh_free(&mesh);
+        cw_mesh_free(&t.mesh);
+    }
+    cw_volume_free(&volume);
+}
+
+/* --- levels and sinks ----------------------------------------------------------------------- */
+
+static void levels_are_given_away_one_by_one(void **state)
+{
+    (void)state;
+    cw_volume volume = make_noisy();
+    const size_t counts[3] = {4000, 2000, 1500};
+    const cw_pipeline_desc d = {.extract = {.isovalue = ISO}, .lod = counts, .lod_count = 3};
+    cw_mesh full, levels[3];
+    taken t = {0};
+    cw_error err = {0};
+    if (!cw_simplify_available())
+        skip();
+    const cw_extract_desc bare = {.isovalue = ISO, .no_normals = true};
+    assert_ok(cw_extract(&volume, &bare, &full, NULL, &err), err);
+    assert_ok(cw_simplify_levels(&full, &(cw_simplify_desc){0}, counts, 3, levels, NULL, &err),
+              err);
+    assert_ok(cw_extract_normals(&volume, NULL, &levels[2], &err), err);
+    assert_ok(
+        cw_pipeline_run(&volume, NULL, &d, (cw_pipeline_sink){take_surface, &t}, NULL, &err),
+        err);
+    assert_int_equal(t.surfaces, 3);
+    test_assert_same_mesh(&levels[2], &t.mesh);
+    cw_mesh_free(&t.mesh);
+    t = (taken){.stop_at = 2};
+    assert_fails(
+        cw_pipeline_run(&volume, NULL, &d, (cw_pipeline_sink){take_surface, &t}, NULL, &err),
+        CW_ERR_CANCELLED, "enough", err);
+    assert_int_equal(t.surfaces, 2);
+    cw_mesh_free(&t.mesh);
+    assert_fails(cw_pipeline_mesh(&volume, NULL, &d, &full, NULL, &err), CW_ERR_ARGUMENT,
+                 "lod_count is 3", err);
+    for (size_t n = 0; n < 3; n++)
+        cw_mesh_free(&levels[n]);
+    cw_mesh_free(&full);
+    cw_volume_free(&volume);
+}
+
+/* The stages that ran, in their order. */
+typedef struct watched {
+    cw_stage stages[CW_STAGE_COUNT];
+    size_t count;
+} watched;
+
+static void note_stage(void *user, cw_stage stage, size_t before, size_t after)
+{
+    watched *w = user;
+    (void)before;
+    assert_true(after > 0);
+    w->stages[w->count++] = stage;
+}
+
+static void stages_run_in_the_order_of_the_table(void **state)
+{
+    (void)state;
+    cw_volume volume = make_noisy();
+    const cw_smooth_desc smooth = {.iterations = 1};
+    watched w = {.count = 0};
+    const cw_pipeline_desc d = {.extract = {.isovalue = ISO},
+                                .largest = 2,
+                                .fill_voids = true,
+                                .smooth = &smooth,
+                                .check = true,
+                                .watch = {.end = note_stage, .user = &w}};
+    cw_mesh mesh;
+    cw_error err = {0};
+    assert_ok(cw_pipeline_mesh(&volume, NULL, &d, &mesh, NULL, &err), err);
+    assert_int_equal(w.count, 5);
+    for (size_t n = 1; n < w.count; n++)
+        assert_true(w.stages[n] > w.stages[n - 1]);
+    cw_mesh_free(&mesh);
+    cw_volume_free(&volume);
+}
+
+/* --- rules ---------------------------------------------------------------------------------- */
+
+/* Stages that a source excludes, by themselves. */
+static const struct excluded {
+    cw_surface_source source;
+    unsigned stages;
+} EXCLUDED[CW_SOURCE_COUNT] = {
+    {CW_SOURCE_MEMORY, 0},
+    {CW_SOURCE_SLICES, 1u << CW_STAGE_VIEWS | 1u << CW_STAGE_LARGEST |
+                           1u << CW_STAGE_FILL_VOIDS | 1u << CW_STAGE_SMOOTH |
+                           1u << CW_STAGE_CUT | 1u << CW_STAGE_CULL | 1u << CW_STAGE_LOD |
+                           1u << CW_STAGE_COLOR},
+    {CW_SOURCE_PARTS, 1u << CW_STAGE_VIEWS | 1u << CW_STAGE_LARGEST |
+                          1u << CW_STAGE_FILL_VOIDS | 1u << CW_STAGE_SMOOTH |
+                          1u << CW_STAGE_CUT | 1u << CW_STAGE_CULL | 1u << CW_STAGE_LOD |
+                          1u << CW_STAGE_COLOR | 1u << CW_STAGE_SIMPLIFY},
+    {CW_SOURCE_LABELS, 1u << CW_STAGE_VIEWS | 1u << CW_STAGE_MIN_VOLUME |
+                           1u << CW_STAGE_LARGEST | 1u << CW_STAGE_FILL_VOIDS |
+                           1u << CW_STAGE_SMOOTH | 1u << CW_STAGE_CUT | 1u << CW_STAGE_CULL |
+                           1u << CW_STAGE_COLOR},
+};
+
+static void sources_exclude_what_they_cannot_give(void **state)
+{
+    (void)state;
+    for (size_t n = 0; n < CW_SOURCE_COUNT; n++)
+        for (int s = 0; s < CW_STAGE_COUNT; s++) {
+            cw_stage first = CW_STAGE_COUNT, second = CW_STAGE_COUNT;
+            cw_error err = {0};
+            const bool allowed = !(EXCLUDED[n].stages >> s & 1);
+            const cw_status st =
+                cw_pipeline_check(EXCLUDED[n].source, 1u << s, &first, &second, &err);
+            if ((st == CW_OK) != allowed)
+                fail_msg("source %zu, stage %s: %s", n, cw_stage_name((cw_stage)s),
+                         err.message);
+            if (allowed)
+                continue;
+            assert_int_equal(first, s);
+            assert_int_equal(second, s);
+            assert_ptr_equal(strstr(err.message, cw_stage_name((cw_stage)s)), err.message);
+        }
+}
+
+static void stages_exclude_each_other(void **state)
+{
+    (void)state;
+    static const struct {
+        cw_surface_source source;
+        cw_stage first, second;
+    } rows[] = {
+        {CW_SOURCE_MEMORY, CW_STAGE_CULL, CW_STAGE_SMOOTH},
+        {CW_SOURCE_MEMORY, CW_STAGE_CULL, CW_STAGE_CUT},
+        {CW_SOURCE_MEMORY, CW_STAGE_LOD, CW_STAGE_SIMPLIFY},
+        {CW_SOURCE_MEMORY, CW_STAGE_LOD, CW_STAGE_VIEWS},
+        {CW_SOURCE_SLICES, CW_STAGE_MIN_VOLUME, CW_STAGE_SIMPLIFY},
+    };
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
+        cw_stage first, second;
+        cw_error err = {0};
+        assert_int_equal(cw_pipeline_check(rows[n].source,
+                                           1u << rows[n].first | 1u << rows[n].second, &first,
+                                           &second, &err),
+                         CW_ERR_ARGUMENT);
+        assert_int_equal(first, rows[n].first);
+        assert_int_equal(second, rows[n].second);
+    }
+}
+
+static void an_empty_surface_tells_the_range(void **state)
+{
+    (void)state;
+    cw_volume volume = make_noisy();
+    cw_mesh mesh;
+    cw_error err = {0};
+    cw_pipeline_desc d = {.extract = {.isovalue = 1e6}};
+    assert_fails(cw_pipeline_mesh(&volume, NULL, &d, &mesh, NULL, &err), CW_ERR_EMPTY,
+                 "no surface at isovalue 1e+06: values are -", err);
+    d = (cw_pipeline_desc){.extract = {.isovalue = ISO}, .min_volume_mm3 = 1e9};
+    assert_fails(cw_pipeline_mesh(&volume, NULL, &d, &mesh, NULL, &err), CW_ERR_EMPTY,
+                 "no component encloses 1e+09 mm3", err);
+    cw_volume_free(&volume);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(stages_are_the_calls_one_after_the_other),
+        cmocka_unit_test_setup_teardown(slices_give_the_surface_of_the_volume, test_folder_make,
+                                        test_folder_remove),
+        cmocka_unit_test(levels_are_given_away_one_by_one),
+        cmocka_unit_test(stages_run_in_the_order_of_the_table),
+        cmocka_unit_test(sources_exclude_what_they_cannot_give),
+        cmocka_unit_test(stages_exclude_each_other),
+        cmocka_unit_test(an_empty_surface_tells_the_range),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
