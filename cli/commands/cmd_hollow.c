@@ -9,8 +9,7 @@ static const cli_option options[] = {
      "Diameter and direction of drain holes out of the largest cavity: 4mm@-z, or "
      "4mm@-z,3mm@+x (none)",
      offsetof(cli_solid_args, drain)},
-    {"measure", 0, CLI_FLAG, NULL, "Measure the thickness of the wall (on; --no-measure)",
-     offsetof(cli_solid_args, measure)},
+    CLI_MESH_MEASURE("Measure the thickness of the wall (on; --no-measure)"),
     CLI_SOLID_OPTIONS,
 };
 

@@ -13,9 +13,8 @@ static const cli_option options[] = {
      "Use smaller voxels where --by 0 would be off by more than half of one (on; "
      "--no-refine)",
      offsetof(cli_solid_args, refine)},
-    {"measure", 0, CLI_FLAG, NULL,
-     "Measure how far the result deviates from its distance (on; --no-measure)",
-     offsetof(cli_solid_args, measure)},
+    CLI_MESH_MEASURE(
+        "Measure how far the result deviates from its distance (on; --no-measure)"),
     CLI_SOLID_OPTIONS,
 };
 

@@ -1,58 +1,42 @@
 /* The command remesh: its options, the work part by part, and what is printed and reported. */
+#include "cli/commands/mesh_command.h"
 #include "cli/commands/smooth_together.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
-#include "cli/results/mesh_comparison.h"
-#include "cli/results/mesh_parts.h"
-#include "cli/results/mesh_write_options.h"
-#include "cli/results/output_names.h"
-#include "cli/results/write_result.h"
 #include "core/base/status.h"
 
 #include <cubewright/remesh.h>
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 typedef struct remesh_args {
-    cli_common common;
-    cli_input input;
-    cli_compress compress;
-    cli_written written;
-    const char *output, *json;
+    cli_mesh_args mesh;
     cli_length edge, shortest, error;
     cli_number features, min_angle;
     size_t iterations; /* 0: those of the library */
-    int progress;
-    bool adaptive, fem, merge, measure;
+    bool adaptive, fem;
 } remesh_args;
 
-typedef struct run_state {
-    const remesh_args *args;
-    int threads;
-    cli_mesh mesh;
-    cli_pieces pieces;
+typedef struct remesh_state {
     cw_remesh_desc desc;
     cw_remesh_facts facts; /* of all parts; mean and fraction are sums until the last one */
-    bool is_remeshed;
-    char found[256]; /* for the line */
-    cli_outputs outputs;
-    cli_report report;
-    double start;
-} run_state;
+} remesh_state;
+
+static const remesh_args *args_of(const cli_mesh_run *r)
+{
+    return (const remesh_args *)r->args;
+}
 
 /* The smallest angle of --fem, degrees. */
 static const double FEM_ANGLE = 25;
 
-static const remesh_args defaults = {.measure = true};
+static const remesh_args defaults = {.mesh.measure = true};
 
 static const cli_option options[] = {
-    {"output", 'o', CLI_TEXT, "FILE",
-     "Mesh to write, in the format of its extension; may hold {stem}",
-     offsetof(remesh_args, output), CLI_VALUES_MESH_OUTPUT},
+    CLI_MESH_OUTPUT(""),
     CLI_HEADED("Triangles"),
     {"edge", 'e', CLI_LENGTH, "L",
      "Length of edges, or the longest with --adaptive: 1mm, 0.5% of the box's diagonal, 2vox "
@@ -76,16 +60,9 @@ static const cli_option options[] = {
     {"features", 0, CLI_NUMBER, "DEG",
      "Keep edges where the surface turns by more than this (40); 180 keeps borders alone",
      offsetof(remesh_args, features)},
-    {"merge", 0, CLI_FLAG, NULL,
-     "Join all parts to one mesh (off: each by itself, where the format has parts)",
-     offsetof(remesh_args, merge)},
-    {"measure", 0, CLI_FLAG, NULL, "Measure the distance to the input (on; --no-measure)",
-     offsetof(remesh_args, measure)},
-    CLI_JSON_OPTION(remesh_args),
-    CLI_WRITTEN_OPTIONS(remesh_args),
-    CLI_COMPRESS_OPTIONS(remesh_args),
-    CLI_MESH_INPUT_OPTIONS(remesh_args),
-    CLI_PROGRESS_OPTION(remesh_args),
+    CLI_MESH_MERGE,
+    CLI_MESH_MEASURE("Measure the distance to the input (on; --no-measure)"),
+    CLI_MESH_COMMON,
 };
 
 static const cli_rule rules[] = {
@@ -97,28 +74,25 @@ static const cli_rule rules[] = {
 
 /* --- the report --------------------------------------------------------------------------- */
 
-static void put_params(cli_json *j, const void *p, const cli_made *made)
+static void put_params(cli_json *j, const cli_mesh_run *r, const cli_made *made)
 {
-    const run_state *s = p;
+    const remesh_state *s = r->state;
     cli_json_number(j, "edge_mm", s->desc.edge_mm);
-    cli_json_bool(j, "adaptive", s->args->adaptive);
+    cli_json_bool(j, "adaptive", args_of(r)->adaptive);
     cli_json_number(j, "shortest_mm", s->facts.shortest_mm);
     cli_json_number(j, "error_mm", s->facts.error_mm);
     cli_json_number(j, "features_deg", s->facts.feature_deg);
     cli_json_number(j, "min_angle_deg", s->desc.min_angle_deg);
     cli_json_count(j, "iterations", s->facts.iterations);
-    cli_json_bool(j, "merge", s->args->merge);
-    cli_json_count(j, "merged_vertices", s->pieces.merged);
-    cli_json_written(j, &s->args->written, made->path);
+    cli_json_bool(j, "merge", r->args->merge);
+    cli_json_count(j, "merged_vertices", r->pieces.merged);
+    cli_json_written(j, &r->args->written, made->path);
 }
 
-static void put_facts(cli_json *j, const void *p)
+static void put_facts(cli_json *j, const cli_mesh_run *r)
 {
-    const run_state *s = p;
-    const cw_remesh_facts *f = &s->facts;
-    if (s->mesh.file.format)
-        cli_json_mesh_file(j, "input", &s->mesh);
-    if (!s->is_remeshed)
+    const cw_remesh_facts *f = &((const remesh_state *)r->state)->facts;
+    if (!r->is_made)
         return;
     cli_json_open(j, "remesh", '{');
     cli_json_count(j, "triangles_before", f->triangles_before);
@@ -174,24 +148,26 @@ static void add_facts(cw_remesh_facts *sum, const cw_remesh_facts *f, bool is_fi
     *sum = all;
 }
 
-static void tell_facts(run_state *s)
+static cw_status tell_facts(cli_mesh_run *r, cw_error *err)
 {
-    const cw_remesh_facts *f = &s->facts;
-    snprintf(s->found, sizeof s->found,
+    const cw_remesh_facts *f = &((const remesh_state *)r->state)->facts;
+    (void)err;
+    snprintf(r->found, sizeof r->found,
              "; edges %.3g mm on average, %.1f %% of them fit; smallest angle %.1f degrees",
              f->mean_edge_mm, 100 * f->fitting_edges, f->smallest_deg);
     if (f->features_after || f->border_after)
-        cli_say("%s: %s edges at features and %s at borders are kept", s->mesh.path,
+        cli_say("%s: %s edges at features and %s at borders are kept", r->mesh.path,
                 cli_count(f->features_after), cli_count(f->border_after));
     if (f->below)
-        cli_report_warn(&s->report,
+        cli_report_warn(&r->report,
                         "%s triangles have an angle below %g degrees; the smallest, %.2g "
                         "degrees, is at %.6g %.6g %.6g mm",
                         cli_count(f->below), f->min_angle_deg, f->smallest_deg, f->where[0],
                         f->where[1], f->where[2]);
     if (f->is_undecided)
-        cli_report_warn(&s->report, "too many triangles are in one place: new intersections "
+        cli_report_warn(&r->report, "too many triangles are in one place: new intersections "
                                     "there were not looked for");
+    return CW_OK;
 }
 
 /* --- what is asked for -------------------------------------------------------------------- */
@@ -205,184 +181,87 @@ static cw_status check_degrees(const char *option, const cli_number *number, dou
                           option, number->value, most);
 }
 
-static cw_status check_values(const remesh_args *args, cw_error *err)
+static cw_status check_values(cli_mesh_run *r, cw_error *err)
 {
+    const remesh_args *args = args_of(r);
     if (args->iterations > CW_REMESH_MAX_ITERATIONS)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--iterations %zu: expected 1 to %zu",
                         args->iterations, CW_REMESH_MAX_ITERATIONS);
     cw_status st = check_degrees("--features", &args->features, 180, err);
-    if (st == CW_OK)
-        st = check_degrees("--min-angle", &args->min_angle, 40, err);
-    return st == CW_OK ? cli_check_compress(&args->compress, false, err) : st;
-}
-
-/* The report is an output, too: none is written when it is the input or the mesh. */
-static cw_status check_args(run_state *s, cw_error *err)
-{
-    const remesh_args *args = s->args;
-    cw_status st =
-        args->json ? cli_check_output(args->json, args->common.inputs, 1, err) : CW_OK;
-    if (st != CW_OK)
-        return st;
-    s->report.path = args->json;
-    st = check_values(args, err);
-    if (st == CW_OK)
-        st = cli_name_output(&s->outputs, args->output, args->common.inputs[0], err);
-    if (st == CW_OK && args->json) {
-        st = cli_check_apart(args->json, s->outputs.path[0], err);
-        s->report.path = st == CW_OK ? args->json : NULL;
-    }
-    const cw_write_desc desc = cli_written_desc(&args->written, &args->compress, &s->mesh);
-    return st == CW_OK ? cli_check_outputs(&s->outputs, args->common.inputs, 1, &desc, err)
-                       : st;
+    return st == CW_OK ? check_degrees("--min-angle", &args->min_angle, 40, err) : st;
 }
 
 /* --- work --------------------------------------------------------------------------------- */
 
-static cw_status resolve_desc(run_state *s, cw_error *err)
+static cw_status resolve_desc(cli_mesh_run *r, cw_error *err)
 {
-    const remesh_args *args = s->args;
-    cw_remesh_desc *d = &s->desc;
+    const remesh_args *args = args_of(r);
+    cw_remesh_desc *d = &((remesh_state *)r->state)->desc;
     *d = (cw_remesh_desc){.iterations = args->iterations,
-                          .threads = s->threads,
+                          .threads = r->threads,
                           .is_adaptive = args->adaptive,
                           .feature_deg = args->features.given ? args->features.value : 0,
                           .min_angle_deg = args->min_angle.given ? args->min_angle.value
                                            : args->fem           ? FEM_ANGLE
                                                                  : 0};
-    cw_status st = cli_find_length(&s->pieces, "--edge", &args->edge, &d->edge_mm, err);
+    cw_status st = cli_find_length(&r->pieces, "--edge", &args->edge, &d->edge_mm, err);
     if (st == CW_OK)
-        st = cli_find_length(&s->pieces, "--shortest", &args->shortest, &d->shortest_mm, err);
-    return st == CW_OK ? cli_find_length(&s->pieces, "--error", &args->error, &d->error_mm, err)
+        st = cli_find_length(&r->pieces, "--shortest", &args->shortest, &d->shortest_mm, err);
+    return st == CW_OK ? cli_find_length(&r->pieces, "--error", &args->error, &d->error_mm, err)
                        : st;
 }
 
-static cw_status read_input(run_state *s, cw_error *err)
+static cw_status remesh_pieces(cli_mesh_run *r, cw_error *err)
 {
-    const remesh_args *args = s->args;
-    const char *path = args->common.inputs[0], *reader = args->input.reader;
-    const cw_format *format = cw_mesh_format(args->output, args->written.format);
-    const bool parts = !args->merge && format && format->keeps & CW_KEEPS_PARTS;
-    cli_report_begin(&s->report);
-    cw_status st = parts ? cli_read_parts(path, reader, &args->input, &s->mesh, err)
-                         : cli_read_mesh(path, reader, &args->input, &s->mesh, err);
-    if (st == CW_OK)
-        st = cli_weld_pieces(&s->pieces, &s->mesh, err);
-    if (st == CW_OK)
-        st = cli_measure_pieces(&s->pieces, s->threads, err);
-    if (st == CW_OK)
-        cli_report_end(&s->report, "read", 1, s->pieces.triangles);
-    return st == CW_OK ? resolve_desc(s, err) : st;
-}
-
-static cw_status remesh_pieces(run_state *s, cw_error *err)
-{
+    remesh_state *s = r->state;
     cw_status st = CW_OK;
-    cli_report_begin(&s->report);
-    if (cli_share_vertices(&s->pieces))
-        cli_report_warn(&s->report, "its parts share vertices, and each is remeshed by itself: "
+    if (cli_share_vertices(&r->pieces))
+        cli_report_warn(&r->report, "its parts share vertices, and each is remeshed by itself: "
                                     "they do not fit together afterwards");
-    for (size_t n = 0; n < s->pieces.count && st == CW_OK; n++) {
-        cli_piece *p = &s->pieces.piece[n];
+    for (size_t n = 0; n < r->pieces.count && st == CW_OK; n++) {
+        cli_piece *p = &r->pieces.piece[n];
         cw_remesh_facts facts = {0};
         s->desc.progress = cli_progress((double)p->input.triangle_count / 1e6, "Mtriangle");
         st = cw_mesh_remesh(&p->input, &s->desc, &p->out, &facts, err);
         add_facts(&s->facts, &facts, n == 0);
     }
     if (st != CW_OK)
-        return cwi_fail_in(err, st, s->mesh.path);
+        return st;
     s->facts.mean_edge_mm /= (double)s->facts.triangles_after;
     s->facts.fitting_edges /= (double)s->facts.triangles_after;
-    s->is_remeshed = true;
-    cli_report_end(&s->report, "remesh", s->pieces.triangles, s->pieces.triangles);
-    tell_facts(s);
+    /* the measurement has other rounding errors than the work */
+    r->promised_mm = s->facts.error_mm * (1 + 1e-6);
     return CW_OK;
 }
 
-/* Measures the distance both ways, and holds it to the limit. The measurement has other rounding
- * errors than the work. */
-static cw_status measure_result(run_state *s, cli_made *made, cw_error *err)
-{
-    cw_status st = cli_hold_pieces(&s->pieces, s->threads, err);
-    if (st != CW_OK || !s->args->measure)
-        return st;
-    cli_report_begin(&s->report);
-    made->compared.promised_mm = s->facts.error_mm * (1 + 1e-6);
-    st = cli_compare_pieces(&s->pieces, s->threads, &made->compared, err);
-    if (st == CW_OK)
-        cli_report_end(&s->report, "measure", s->pieces.triangles, s->pieces.triangles);
-    return st;
-}
-
-static cw_status deliver_result(run_state *s, cw_error *err)
-{
-    const cli_delivery how = {
-        .input = s->mesh.path,
-        .write = cli_written_desc(&s->args->written, &s->args->compress, &s->mesh),
-        .compress = &s->args->compress,
-        .threads = s->threads,
-        .unpromised = true,
-        .found = s->found,
-        .tell_dropped = true};
-    cw_part *parts = NULL;
-    cw_status st = cli_list_parts(&s->pieces, &parts, err);
-    if (st == CW_OK)
-        st = cli_deliver(&s->report, &how, parts, s->pieces.count, 0, s->start, err);
-    free(parts);
-    return st;
-}
-
 /* Fails if triangles meet that did not meet before. */
-static cw_status judge_result(const run_state *s, cw_error *err)
+static cw_status judge_result(cli_mesh_run *r, cw_error *err)
 {
-    const cw_remesh_facts *f = &s->facts;
+    const cw_remesh_facts *f = &((const remesh_state *)r->state)->facts;
     return f->crossings_after <= f->crossings_before
                ? CW_OK
                : cwi_fail(err, CW_ERR_CHECK,
                           "%s: %zu pairs of triangles intersect, and %zu did before; a smaller "
                           "--error or --edge helps",
-                          s->outputs.path[0], f->crossings_after, f->crossings_before);
+                          r->outputs.path[0], f->crossings_after, f->crossings_before);
 }
 
-static cw_status remesh_mesh(void *state, cw_error *err)
-{
-    run_state *s = state;
-    cw_status st = check_args(s, err);
-    if (st == CW_OK)
-        st = read_input(s, err);
-    if (st != CW_OK)
-        return st;
-    cli_made *made = cli_report_next(&s->report, s->outputs.path[0], 0);
-    st = remesh_pieces(s, err);
-    if (st == CW_OK)
-        st = measure_result(s, made, err);
-    if (st == CW_OK)
-        st = deliver_result(s, err);
-    if (st == CW_OK)
-        st = judge_result(s, err);
-    if (st != CW_OK)
-        made->error = *err;
-    return st;
-}
+static const cli_mesh_command remesh = {
+    .name = "remesh",
+    .holds_topology = true,
+    .check = check_values,
+    .resolve = resolve_desc,
+    .work = remesh_pieces,
+    .tell = tell_facts,
+    .judge = judge_result,
+    .put_params = put_params,
+    .put_facts = put_facts,
+};
 
-static cw_status run_remesh(void *p, cw_error *err)
+static cw_status run_remesh(void *args, cw_error *err)
 {
-    const remesh_args *args = p;
-    run_state s = {.args = args, .threads = (int)args->input.threads, .start = cli_seconds()};
-    s.report.command = "remesh";
-    s.report.params = put_params;
-    s.report.facts = put_facts;
-    s.report.args = &s;
-    const cli_run run = {.common = &args->common,
-                         .progress = args->progress,
-                         .json = args->json,
-                         .body = remesh_mesh,
-                         .state = &s};
-    cw_status st = cli_run_reported(&run, &s.report, err);
-    cli_free_pieces(&s.pieces);
-    cli_free_mesh(&s.mesh);
-    cli_free_outputs(&s.outputs);
-    return st;
+    remesh_state state = {0};
+    return cli_run_mesh_command(&remesh, args, &state, 1, err);
 }
 
 const cli_command cli_remesh = {

@@ -1,16 +1,11 @@
-/* The command simplify: its options and the checks of their values; simplify_run.c does the
- * work. */
+/* The command simplify: its options; simplify_run.c does the work. */
 #include "cli/commands/simplify_run.h"
 #include "cli/framework/commands.h"
-#include "cli/results/output_names.h"
-#include "core/base/status.h"
 
-static const cli_simplify_args defaults = {.measure = true};
+static const cli_simplify_args defaults = {.mesh.measure = true};
 
 static const cli_option options[] = {
-    {"output", 'o', CLI_TEXT, "FILE",
-     "Mesh to write, in the format of its extension; may hold {stem}, with --lod {lod}",
-     offsetof(cli_simplify_args, output), CLI_VALUES_MESH_OUTPUT},
+    CLI_MESH_OUTPUT(", with --lod {lod}"),
     CLI_HEADED("Target"),
     {"error", 'e', CLI_LENGTH, "L", "Error limit: 0.1mm, or 0.05% of the box's diagonal",
      offsetof(cli_simplify_args, error)},
@@ -35,37 +30,30 @@ static const cli_option options[] = {
     {"drop-components", 0, CLI_LENGTH, "L",
      "Leave out components with a shorter box diagonal at the start, such as 2mm (none)",
      offsetof(cli_simplify_args, drop)},
-    {"merge", 0, CLI_FLAG, NULL,
-     "Join all parts to one mesh (off: each by itself, where the format has parts)",
-     offsetof(cli_simplify_args, merge)},
-    {"orient", 0, CLI_FLAG, NULL,
-     "Flip shells that face the wrong way: outer ones outward, cavities inward (off)",
-     offsetof(cli_simplify_args, orient)},
+    CLI_MESH_MERGE,
+    CLI_MESH_ORIENT,
     CLI_HEADED("Source volume and error"),
     {"source", 's', CLI_TEXT, "VOLUME",
      "Volume to take normals from (off: carry over the input's)",
-     offsetof(cli_simplify_args, source), CLI_VALUES_VOLUME},
+     offsetof(cli_mesh_args, source), CLI_VALUES_VOLUME},
     {"iso", 'i', CLI_LEVEL, "V",
      "Isovalue of the source, to measure the distance to its surface, too",
      offsetof(cli_simplify_args, iso)},
     {"inside", 0, CLI_CHOICE, "above/below", "Which values of the source are inside (above)",
      offsetof(cli_simplify_args, inside)},
-    {"measure", 0, CLI_FLAG, NULL,
-     "Measure the error, which takes longer than simplifying (on; --no-measure)",
-     offsetof(cli_simplify_args, measure)},
-    CLI_JSON_OPTION(cli_simplify_args),
-    CLI_WRITTEN_OPTIONS(cli_simplify_args),
-    CLI_COMPRESS_OPTIONS(cli_simplify_args),
+    CLI_MESH_MEASURE(
+        "Measure the error, which takes longer than simplifying (on; --no-measure)"),
+    CLI_MESH_WRITING,
     CLI_HEADED("Reading the source"),
-    CLI_CLAIM_OPTIONS("source", "the source", CLI_INPUT_ROW(cli_simplify_args, source_claim)),
-    CLI_INPUT_OPTIONS(cli_simplify_args),
+    CLI_CLAIM_OPTIONS("source", "the source", CLI_INPUT_ROW(cli_mesh_args, source_claim)),
+    CLI_INPUT_OPTIONS(cli_mesh_args),
     {"max-triangles", 0, CLI_COUNT, "N",
      "Stop before reading more triangles than this, such as 100M (no limit)",
-     CLI_INPUT_ROW(cli_simplify_args, max_triangles)},
+     CLI_INPUT_ROW(cli_mesh_args, max_triangles)},
     {"mesh-reader", 0, CLI_TEXT, "NAME",
      "Read the mesh as this format; names as in 'formats' (by content)",
      offsetof(cli_simplify_args, mesh_reader), CLI_VALUES_MESH_READER},
-    CLI_PROGRESS_OPTION(cli_simplify_args),
+    CLI_PROGRESS_OPTION(cli_mesh_args),
 };
 
 static const cli_rule rules[] = {
@@ -76,27 +64,6 @@ static const cli_rule rules[] = {
     {"iso", CLI_EXCLUDES, "no-measure"},
     CLI_COMPRESS_RULES,
 };
-
-static cw_status check_values(const cli_simplify_args *args, cw_error *err)
-{
-    if (args->error.unit == CLI_VOXELS || args->drop.unit == CLI_VOXELS)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--%s: a mesh has no voxels; give mm, or %% of its box's diagonal",
-                        args->error.unit == CLI_VOXELS ? "error" : "drop-components");
-    if (args->ratio.given && !(args->ratio.value > 0 && args->ratio.value < 1))
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--ratio %g: a fraction above 0 and below 1 was expected",
-                        args->ratio.value);
-    return CW_OK;
-}
-
-cw_status cli_check_simplify_args(const cli_simplify_args *args, cw_error *err)
-{
-    cw_status st = args->lod.count ? cli_check_lod(&args->lod, err) : CW_OK;
-    if (st == CW_OK)
-        st = check_values(args, err);
-    return st == CW_OK ? cli_check_compress(&args->compress, false, err) : st;
-}
 
 const cli_command cli_simplify = {
     .name = "simplify",

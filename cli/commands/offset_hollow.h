@@ -3,18 +3,14 @@
 #ifndef CLI_COMMANDS_OFFSET_HOLLOW_H
 #define CLI_COMMANDS_OFFSET_HOLLOW_H
 
-#include "cli/results/mesh_write_options.h"
+#include "cli/commands/mesh_command.h"
 
 typedef struct cli_solid_args {
-    cli_common common;
-    cli_input input;
-    cli_compress compress;
-    cli_written written;
-    const char *output, *json, *voxel;
+    cli_mesh_args mesh;
+    const char *voxel;
     const char *drain, *by; /* of hollow, and of offset */
     cli_length wall;        /* of hollow */
-    int progress;
-    bool measure, sharp, refine;
+    bool sharp, refine;
 } cli_solid_args;
 
 /* Rows that both commands have. */
@@ -25,16 +21,7 @@ typedef struct cli_solid_args {
      "L",                                                                                      \
      "Voxel size of the level set: auto, 0.2mm or 0.1% of the box's diagonal (auto)",          \
      offsetof(cli_solid_args, voxel)},                                                         \
-        {"output",                                                                             \
-         'o',                                                                                  \
-         CLI_TEXT,                                                                             \
-         "FILE",                                                                               \
-         "Mesh to write, in the format of its extension; may hold {stem}",                     \
-         offsetof(cli_solid_args, output),                                                     \
-         CLI_VALUES_MESH_OUTPUT},                                                              \
-        CLI_JSON_OPTION(cli_solid_args), CLI_WRITTEN_OPTIONS(cli_solid_args),                  \
-        CLI_COMPRESS_OPTIONS(cli_solid_args), CLI_MESH_INPUT_OPTIONS(cli_solid_args),          \
-        CLI_PROGRESS_OPTION(cli_solid_args)
+        CLI_MESH_OUTPUT(""), CLI_MESH_COMMON
 
 extern const cli_solid_args cli_solid_defaults;
 
