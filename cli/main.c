@@ -57,7 +57,7 @@ static void explain_memory(cw_error *err)
     size_t left;
     const size_t asked = cwi_memory_refused(&left);
     const cw_error said = *err;
-    if (!asked)
+    if (!asked || strstr(said.message, "were needed"))
         return;
     cwi_print_memory(asked, asked_text);
     cwi_print_memory(left, left_text);
@@ -121,7 +121,7 @@ static cw_status run_words(const cli_command *command, const cli_words *words, c
         most += strlen(words->words[n]);
     args->said = calloc(most, sizeof *args->said);
     if (!args->said)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the arguments");
+        return cwi_fail_memory(err);
     cli_said *const said = args->said;
     args->config_inputs = words->inputs;
     args->config_input_count = words->input_count;
@@ -154,7 +154,7 @@ static cw_status run_command(const cli_command *command, int count, char **words
     if (st == CW_OK && args && inputs)
         st = run_words(command, &all, args, inputs, err);
     else if (st == CW_OK)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the arguments");
+        st = cwi_fail_memory(err);
     cli_progress_end();
     free(args);
     free(inputs);

@@ -304,9 +304,7 @@ static cw_status part_missing(run_state *s, cw_mesh *surface, const cw_mesh_dist
     const double near = 0.25 * cbrt(spacing[0] * spacing[1] * spacing[2]);
     float *distance = calloc(surface->vertex_count + 1, sizeof *distance);
     cw_drop_counts missing = {0};
-    cw_status st = distance ? CW_OK
-                            : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu distances",
-                                       surface->vertex_count);
+    cw_status st = distance ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK)
         st = cw_distance_to_mesh(surface, &s->mesh.mesh, back, &s->from_field, distance, err);
     for (size_t v = 0; st == CW_OK && v < surface->vertex_count; v++)
@@ -421,9 +419,8 @@ static cw_status measure_walls(run_state *s, cw_print_desc *desc, cw_error *err)
     const size_t count = s->mesh.mesh.vertex_count;
     desc->wall = s->distances;
     desc->gap = cwi_alloc_array(count, sizeof *desc->gap);
-    cw_status st =
-        desc->gap ? cw_print_measure(&s->mesh.mesh, desc, &s->print, err)
-                  : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to paint %zu vertices", count);
+    cw_status st = desc->gap ? cw_print_measure(&s->mesh.mesh, desc, &s->print, err)
+                             : cwi_fail_memory(err);
     const double wall = s->print.limits.min_wall_mm, gap = s->print.limits.min_gap_mm;
     for (size_t v = 0; v < count && st == CW_OK; v++)
         s->distances[v] =
@@ -460,8 +457,7 @@ static cw_status measure_all(run_state *s, cw_error *err)
         if (has_distances)
             s->distances = cwi_alloc_zeroed(mesh->vertex_count + 1, sizeof *s->distances);
         if (!s->defects || (has_distances && !s->distances))
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to paint %zu triangles",
-                            mesh->triangle_count);
+            return cwi_fail_memory(err);
     }
     s->findings.quality = &s->quality;
     s->findings.tolerance_mm = tolerance_mm(s);

@@ -12,6 +12,7 @@
 #include "cli/inputs/level_choice.h"
 #include "cli/inputs/time_series.h"
 #include "cli/inputs/volume_input.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 
@@ -205,7 +206,7 @@ static cw_status find_arrays(const info_args *args, facts *f, cw_error *err)
     }
     f->ranges = calloc(f->array_count * MAX_COMPONENTS, sizeof *f->ranges);
     if (!f->ranges)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the ranges of arrays");
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < f->array_count && st == CW_OK; n++)
         if (is_reached(f, n))
             st = find_ranges(args, f->arrays[n].name, f->ranges + n * MAX_COMPONENTS, err);

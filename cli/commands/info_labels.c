@@ -2,6 +2,7 @@
 #include "cli/commands/info_labels.h"
 
 #include "cli/framework/quantity.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <stdio.h>
@@ -23,7 +24,7 @@ static cw_status add_counts(cli_label_facts *facts, uint32_t layer,
     cli_counted_label *grown =
         realloc(facts->labels, (facts->count + count + 1) * sizeof *grown);
     if (!grown)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu labels", count);
+        return cwi_fail_memory(err);
     facts->labels = grown;
     for (size_t n = 0; n < count; n++)
         facts->labels[facts->count++] =

@@ -93,7 +93,7 @@ static cw_status measure_headers(predictor *p, cw_error *err)
     char *folder, *name = cli_stem(p->volume->path);
     cw_status st = cli_scratch_make(&folder, err);
     if (st == CW_OK && !name)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of a file");
+        st = cwi_fail_memory(err);
     if (st == CW_OK) {
         const size_t ply = write_sample(folder, name, "ply", &p->volume->whole),
                      glb = write_sample(folder, name, "glb", &p->volume->whole);

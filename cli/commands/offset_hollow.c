@@ -155,7 +155,7 @@ static cw_status parse_drains(const char *text, wishes *w, cw_error *err)
 {
     char *copy = malloc(strlen(text) + 1), *next = copy;
     if (!copy)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for drains");
+        return cwi_fail_memory(err);
     strcpy(copy, text);
     cw_status st = CW_OK;
     while (next && st == CW_OK) {
@@ -327,7 +327,7 @@ static cw_status measure_distance(cli_mesh_run *r, cw_error *err)
     cw_distance d;
     float *each = cwi_alloc_array(p->out.vertex_count, sizeof *each);
     cw_status st = each ? cw_distance_to_mesh(&p->out, &p->input, &desc, &d, each, err)
-                        : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for distances");
+                        : cwi_fail_memory(err);
     if (st == CW_OK) {
         double least = d.max_mm;
         for (size_t n = 0; n < p->out.vertex_count; n++)

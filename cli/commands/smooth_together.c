@@ -107,8 +107,7 @@ static cw_status keep_single(cw_mesh *mesh, cw_error *err)
     size_t kept = 0;
     sorted_triangle *sorted = cwi_alloc_array(mesh->triangle_count, sizeof *sorted);
     if (!sorted)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to join %zu triangles",
-                        mesh->triangle_count);
+        return cwi_fail_memory(err);
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         sort_corners(mesh->triangles + 3 * t, &sorted[t]);
         sorted[t].number = (uint32_t)t;
@@ -132,7 +131,7 @@ static cw_status join_pieces(const cli_pieces *p, joined *j, cw_error *err)
 {
     size_t places = 0, begin = 0, done = 0, triangles = 0;
     if (!weld_pieces(p, j))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to join %zu vertices", j->count);
+        return cwi_fail_memory(err);
     for (size_t v = 0; v < j->count; v++)
         places += j->map[v] == v;
     for (size_t n = 0; n < p->count; n++)

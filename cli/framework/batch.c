@@ -6,6 +6,7 @@
 #include "cli/framework/json_writer.h"
 #include "cli/framework/name_template.h"
 #include "cli/framework/temp_folder.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <errno.h>
@@ -67,7 +68,7 @@ static cw_status add_job(batch_run *r, const char *input, cw_error *err)
         const size_t capacity = r->capacity ? 2 * r->capacity : 64;
         job *grown = realloc(r->jobs, capacity * sizeof *grown);
         if (!grown)
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu inputs", capacity);
+            return cwi_fail_memory(err);
         r->jobs = grown;
         r->capacity = capacity;
     }
@@ -94,7 +95,7 @@ static cw_status list_jobs(batch_run *r, cw_error *err)
     cw_status st = CW_OK;
     r->globs = calloc(r->args->input_count, sizeof *r->globs);
     if (!r->globs)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the inputs");
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < r->args->input_count && st == CW_OK; n++)
         st = add_input(r, r->args->inputs[n], err);
     return st;
@@ -139,7 +140,7 @@ static cw_status check_outputs(const batch_run *r, const char *text, cw_error *e
     cw_status st = CW_OK;
     const job **sorted = calloc(r->count, sizeof *sorted);
     if (!sorted)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the names of outputs");
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < r->count; n++)
         sorted[n] = &r->jobs[n];
     qsort(sorted, r->count, sizeof *sorted, compare_outputs);
@@ -164,7 +165,7 @@ static cw_status name_outputs(batch_run *r, cw_error *err)
     for (size_t n = 0; n < r->count; n++) {
         r->jobs[n].output = fill_output(*text, r->jobs[n].input);
         if (!r->jobs[n].output)
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the names of outputs");
+            return cwi_fail_memory(err);
     }
     return check_outputs(r, *text, err);
 }

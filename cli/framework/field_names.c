@@ -12,6 +12,7 @@ static const struct {
     {"desc->claim.rule = CW_CLAIM_OVERRIDE", "--input-override"},
     {"desc->claim.unit", "--input-unit"},
     {"desc->max_bytes", "--memory"},
+    {"cw_memory_limit()", "--memory"},
     {"(max_bytes)", "(--memory)"},
     {"desc->max_triangles", "--max-triangles"},
     {"desc->max_voxels", "--max-voxels"},

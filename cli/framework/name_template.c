@@ -2,6 +2,7 @@
 #define _GNU_SOURCE /* strndup */
 #include "cli/framework/name_template.h"
 
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 
@@ -87,7 +88,7 @@ cw_status cli_fill_template(const char *text, cli_part *parts, size_t part_count
     FILE *stream = cwi_text_open(out, &size);
     cw_status st = stream ? fill_template(stream, text, parts, part_count, err) : CW_OK;
     if (!cwi_text_close(stream, out) && st == CW_OK)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
+        st = cwi_fail_memory(err);
     if (st != CW_OK) {
         free(*out);
         *out = NULL;

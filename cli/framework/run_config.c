@@ -3,6 +3,7 @@
 #include "cli/framework/run_config.h"
 
 #include "core/base/atomic_file.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 
@@ -98,7 +99,7 @@ static cw_status take_option(const config *c, const char *name, const json_t *va
                         c->path, field);
     char *word = make_word(o, value, &fits);
     if (!word)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the options of %s", c->path);
+        return cwi_fail_memory(err);
     c->out->words[c->out->count++] = word;
     c->out->owned_count++;
     return fits ? CW_OK : fail_value(c, field, value, cli_expected(o), err);
@@ -127,7 +128,7 @@ static cw_status take_inputs(const config *c, const json_t *inputs, cw_error *er
         return fail_value(c, "inputs", inputs, "a list of texts", err);
     c->out->inputs = calloc(json_array_size(inputs) + 1, sizeof *c->out->inputs);
     if (!c->out->inputs)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the inputs of %s", c->path);
+        return cwi_fail_memory(err);
     json_array_foreach(inputs, n, input)
     {
         if (!json_is_string(input))
@@ -205,7 +206,7 @@ cw_status cli_read_config(const cli_command *command, int count, char **words, c
     const size_t most = json_object_size(json_object_get(run ? run : out->root, "options"));
     out->words = calloc((size_t)count + most + 1, sizeof *out->words);
     if (!out->words)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the arguments");
+        return cwi_fail_memory(err);
     if (st == CW_OK && c.path)
         st = take_run(&c, run ? run : out->root, err);
     for (int n = 0; n < count; n++)
@@ -287,7 +288,7 @@ cw_status cli_save_config(const char *path, cw_error *err)
     if (out)
         put_run(&(cli_json){.out = out}, NULL);
     if (!cwi_text_close(out, &text))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "%s: no memory to write it", path);
+        return cwi_fail_in(err, cwi_fail_memory(err), path);
     cw_status st = cwi_outfile_save(path, text, size, err);
     free(text);
     return st;

@@ -2,6 +2,7 @@
 #define _GNU_SOURCE /* mkdtemp, strdup, unlinkat */
 #include "cli/framework/temp_folder.h"
 
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <dirent.h>
@@ -20,7 +21,7 @@ cw_status cli_scratch_make(char **folder, cw_error *err)
         return cwi_fail(err, CW_ERR_OUTPUT, "a temporary folder cannot be made in %s",
                         base && *base ? base : "/tmp");
     *folder = strdup(path);
-    return *folder ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a path");
+    return *folder ? CW_OK : cwi_fail_memory(err);
 }
 
 void cli_scratch_remove(char *folder)

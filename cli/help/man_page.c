@@ -5,6 +5,7 @@
 #include "cli/framework/commands.h"
 #include "cli/framework/option_rules.h"
 #include "cli/help/roff_text.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <ctype.h>
@@ -113,14 +114,13 @@ static cw_status print_more(const cli_command *c, cw_error *err)
     if (!c->print_more)
         return CW_OK;
     if (!out)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the page of %s", c->name);
+        return cwi_fail_memory(err);
     c->print_more(out);
     const bool is_whole = fclose(out) == 0;
     if (is_whole)
         cli_roff_page(text, CLI_ROFF_TEXT, false);
     free(text);
-    return is_whole ? CW_OK
-                    : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the page of %s", c->name);
+    return is_whole ? CW_OK : cwi_fail_memory(err);
 }
 
 static bool has_flags(const cli_command *c)

@@ -4,6 +4,7 @@
 
 #include "cli/framework/options.h"
 #include "cli/framework/quantity.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <ctype.h>
@@ -31,7 +32,7 @@ static cw_status add_chosen(const char *option, cli_label_choice *choice,
         const size_t capacity = choice->capacity ? 2 * choice->capacity : 16;
         cli_chosen_label *grown = realloc(choice->labels, capacity * sizeof *grown);
         if (!grown)
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu labels", capacity);
+            return cwi_fail_memory(err);
         choice->labels = grown;
         choice->capacity = capacity;
     }
@@ -140,7 +141,7 @@ cw_status cli_labels_of_layer(const cli_label_choice *choice, uint32_t layer, ui
     *count = 0;
     *values = calloc(choice->count + 1, sizeof **values);
     if (!*values)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu labels", choice->count);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < choice->count; n++)
         if (choice->labels[n].of_all_layers || choice->labels[n].layer == layer)
             (*values)[(*count)++] = choice->labels[n].value;

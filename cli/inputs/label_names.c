@@ -4,6 +4,7 @@
 
 #include "cli/framework/console.h"
 #include "cli/framework/field_names.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <cubewright/formats.h>
@@ -24,7 +25,7 @@ static cw_status read_stated(const char *path, cli_label_names *names, cw_error 
     cw_status st = cw_label_table_read(path, &names->table, &names->format, err);
     names->path = st == CW_OK ? strdup(path) : NULL;
     if (st == CW_OK && !names->path)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of a file");
+        st = cwi_fail_memory(err);
     return st;
 }
 

@@ -57,7 +57,7 @@ static cw_status add_counted(cli_label_scene *s, uint32_t layer, const cw_label_
     cw_status st = CW_OK;
     size_t *voxels = realloc(s->voxels, (s->shown.count + count + 1) * sizeof *voxels);
     if (!voxels)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu labels", count);
+        return cwi_fail_memory(err);
     s->voxels = voxels;
     for (size_t n = 0; n < count && st == CW_OK; n++) {
         char name[CLI_LABEL_NAME];
@@ -194,7 +194,7 @@ static cw_status append_mesh(cw_mesh *mesh, const cw_mesh *more, cw_error *err)
     GROW(triangles, sum.triangle_count, t, 3)
 #undef GROW
     if (!is_whole)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the surfaces of labels");
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < more->vertex_count; n++)
         for (int a = 0; a < 3; a++)
             sum.positions[3 * (v + n) + (size_t)a] +=
@@ -212,8 +212,7 @@ static cw_status list_colors(const cli_label_scene *s, uint32_t layer,
 {
     *colors = calloc(surfaces->label_count + 1, sizeof **colors);
     if (!*colors)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu colours",
-                        surfaces->label_count);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < surfaces->label_count; n++) {
         const cw_label *label = cw_label_find(&s->shown, layer, surfaces->labels[n].label);
         if (label && !label->hidden)

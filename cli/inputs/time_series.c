@@ -2,13 +2,14 @@
  * files agree. */
 #include "cli/inputs/time_series.h"
 
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <stdlib.h>
 
 static cw_status fail_memory(cw_error *err)
 {
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the steps of a series");
+    return cwi_fail_memory(err);
 }
 
 static cw_status check_known(const cw_volume *first, const char *first_path,

@@ -4,6 +4,7 @@
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "cli/inputs/level_choice.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <cubewright/filter.h>
@@ -161,10 +162,7 @@ static cw_status take_first_slice(const cw_slice_source *source, cw_error *err)
 {
     const size_t *dim = source->shape.dim;
     void *slice = malloc(dim[0] * dim[1] * cw_type_size(source->shape.type));
-    cw_status st = slice
-                       ? source->read(source->user, 0, 1, slice, err)
-                       : cwi_fail(err, CW_ERR_NO_MEMORY,
-                                  "no memory for a slice of %zu x %zu voxels", dim[0], dim[1]);
+    cw_status st = slice ? source->read(source->user, 0, 1, slice, err) : cwi_fail_memory(err);
     free(slice);
     return st;
 }

@@ -4,6 +4,7 @@
 #include "cli/render/compare_options.h"
 
 #include "cli/framework/option_rules.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <stdio.h>
@@ -37,7 +38,7 @@ static cw_status add_word(char **words, int *count, const char *item, cw_error *
         return cwi_fail(err, CW_ERR_ARGUMENT, "--compare: at most %d settings a side",
                         MAX_WORDS);
     if (asprintf(&words[*count], "--%s%s", mode ? "mode=" : "", item) < 0)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a comparison");
+        return cwi_fail_memory(err);
     ++*count;
     return CW_OK;
 }
@@ -48,7 +49,7 @@ static cw_status parse_side(const cli_command *command, const render_args *args,
 {
     const char *nothing[MAX_WORDS + 2] = {0};
     char *copy = strndup(text, length), *next = copy;
-    cw_status st = copy ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a comparison");
+    cw_status st = copy ? CW_OK : cwi_fail_memory(err);
     while (st == CW_OK && next) {
         const char *item = strsep(&next, ",");
         st = add_word(side->words, &side->word_count, item, err);

@@ -2,6 +2,7 @@
 #include "cli/render/overlay_options.h"
 #include "cli/render/slice_caption.h"
 
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <stdlib.h>
@@ -37,7 +38,7 @@ static cw_status list_legend(const cli_label_scene *s, const cw_scene *scene,
     *count = 0;
     if (!entries || !*items) {
         free(entries);
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a legend of %zu labels", all);
+        return cwi_fail_memory(err);
     }
     for (size_t n = 0; n < all; n++) {
         const cw_label *label = &s->shown.labels[n];

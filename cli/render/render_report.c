@@ -4,6 +4,7 @@
 
 #include "cli/framework/run_config.h"
 #include "cli/results/run_report.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 
@@ -218,9 +219,8 @@ cw_status cli_render_report_write(const char *path, const cli_render_report *rep
     FILE *out = cwi_text_open(&text, &size);
     if (out)
         put_report(out, report, status, err);
-    cw_status st = cwi_text_close(out, &text)
-                       ? cli_report_save(path, text, size, &why)
-                       : cwi_fail(&why, CW_ERR_NO_MEMORY, "no memory for the report");
+    cw_status st = cwi_text_close(out, &text) ? cli_report_save(path, text, size, &why)
+                                              : cwi_fail_memory(&why);
     free(text);
     if (status != CW_OK)
         return status;

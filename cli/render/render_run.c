@@ -11,6 +11,7 @@
 #include "cli/render/compare_options.h"
 #include "cli/render/label_pictures.h"
 #include "cli/results/output_names.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 #include <cubewright/render.h>
@@ -123,7 +124,7 @@ static cw_status plan_split(cli_pictures *p, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--compare is for the modes of volumes");
     p->split = calloc(1, sizeof *p->split);
     if (!p->split)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a comparison");
+        return cwi_fail_memory(err);
     cw_status st = cli_parse_split(p->command, args, p->split, err);
     p->mode = p->split->sides[0].mode;
     if (st == CW_OK && !cli_compares_alike(p->split))
@@ -174,7 +175,7 @@ static cw_status fill_name(const cli_pictures *p, const cli_moment *moment, size
                         {"stem", stem, false, false},
                         {"parent", parent, false, false}};
     cw_status st = stem && parent ? cli_fill_template(p->args->output, parts, 4, name, err)
-                                  : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
+                                  : cwi_fail_memory(err);
     free(parent);
     free(stem);
     if (st == CW_OK && p->args->turns.count > 1 && !parts[1].used)
@@ -208,8 +209,7 @@ static cw_status plan_pictures(cli_pictures *p, cw_error *err)
     const size_t turns = p->args->turns.count > 1 ? p->args->turns.count : 1;
     p->shots = calloc(p->source.series.count * turns, sizeof *p->shots);
     if (!p->shots)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu pictures",
-                        p->source.series.count * turns);
+        return cwi_fail_memory(err);
     cw_status st = CW_OK;
     for (size_t s = 0; s < p->source.series.count; s++)
         for (size_t n = 0; n < turns && st == CW_OK; n++) {

@@ -12,6 +12,7 @@
 #include "cli/report/report_run.h"
 #include "cli/results/output_names.h"
 #include "cli/results/run_report.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "core/volume/volume.h"
@@ -222,7 +223,7 @@ cw_status cli_report_tell_input(cli_report_run *s, const char *path, cw_error *e
     const bool good = cwi_text_close(out, &text) && word;
     free(word);
     s->input_words = text;
-    return good ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a command");
+    return good ? CW_OK : cwi_fail_memory(err);
 }
 
 static cw_status make_field(cli_report_run *s, cw_error *err)
@@ -238,7 +239,7 @@ static cw_status make_field(cli_report_run *s, cw_error *err)
     v->path = s->field_path;
     s->make_words = malloc(256);
     if (!s->make_words)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a command");
+        return cwi_fail_memory(err);
     snprintf(s->make_words, 256, "cubewright make %s --dims %zux%zux%zu -o %s",
              cw_field_name(field), n[0], n[1], n[2], s->field_path);
     return CW_OK;
@@ -360,7 +361,7 @@ static cw_status run_report_command(void *p, cw_error *err)
             args->common.input_count);
     cli_report_run *s = calloc(1, sizeof *s);
     if (!s)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a report");
+        return cwi_fail_memory(err);
     s->args = args;
     /* a file of that name is meant, if there is one */
     s->study.is_field = !args->source && !cli_report_is_series(args) &&

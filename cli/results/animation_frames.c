@@ -2,6 +2,7 @@
  * bytes. */
 #include "cli/results/animation_frames.h"
 
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <stdio.h>
@@ -12,9 +13,7 @@ cw_status cli_frames_reserve(cli_frames *f, size_t count, cw_error *err)
     f->frames = calloc(count, sizeof *f->frames);
     f->parts = calloc(count, sizeof *f->parts);
     f->room = count;
-    return f->frames && f->parts
-               ? CW_OK
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu frames", count);
+    return f->frames && f->parts ? CW_OK : cwi_fail_memory(err);
 }
 
 void cli_frames_free(cli_frames *f)

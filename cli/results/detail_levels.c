@@ -5,6 +5,7 @@
 #include "cli/framework/console.h"
 #include "cli/framework/name_template.h"
 #include "cli/framework/quantity.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <cubewright/simplify.h>
@@ -81,7 +82,7 @@ static cw_status deliver_together(cli_detail_levels *d, const char *path, cw_err
     char names[CLI_MAX_COUNTS][256], *stem = cli_stem(d->name ? d->name : path);
     cw_part parts[CLI_MAX_COUNTS];
     if (!stem)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for names");
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < d->lod->count; n++) {
         const cw_mesh_comparison *c = &d->report->made[n].compared.with_input;
         snprintf(names[n], sizeof names[n], "%.200s-lod%zu", stem, n);

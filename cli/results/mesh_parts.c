@@ -4,6 +4,7 @@
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "cli/results/mesh_comparison.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/box.h"
 
@@ -31,7 +32,7 @@ cw_status cli_take_surface(cli_pieces *p, const char *path, const cw_mesh *mesh,
 {
     *p = (cli_pieces){.path = path, .piece = calloc(1, sizeof *p->piece)};
     if (!p->piece)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a surface");
+        return cwi_fail_memory(err);
     p->piece->input = *mesh;
     p->count = 1;
     p->triangles = mesh->triangle_count;
@@ -47,7 +48,7 @@ static cw_status take_parts(cli_pieces *p, const cli_mesh *m, bool weld, cw_erro
     *p = (cli_pieces){.path = m->path};
     p->piece = calloc(count ? count : 1, sizeof *p->piece);
     if (!p->piece)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", count);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < count && st == CW_OK; n++) {
         size_t merged = 0;
         cli_piece *piece = &p->piece[p->count];
@@ -178,7 +179,7 @@ cw_status cli_list_parts(const cli_pieces *p, cw_part **parts, cw_error *err)
 {
     *parts = calloc(p->count, sizeof **parts);
     if (!*parts)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", p->count);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < p->count; n++)
         (*parts)[n] = (cw_part){.mesh = &p->piece[n].out, .name = p->piece[n].name};
     return CW_OK;

@@ -5,6 +5,7 @@
 
 #include "cli/framework/name_template.h"
 #include "cli/framework/quantity.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <stdio.h>
@@ -93,7 +94,7 @@ static cw_status reserve_names(cli_outputs *outputs, size_t count, char **stem,
     *stem = cli_stem(input);
     if (outputs->path && *stem)
         return CW_OK;
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
+    return cwi_fail_memory(err);
 }
 
 /* The next name, of the parts as they are now. */
@@ -109,8 +110,7 @@ static cw_status name_levels(cli_outputs *outputs, const char *text, const cli_m
                              const cli_numbers *levels, cli_part parts[PARTS], cw_error *err)
 {
     char number[24], *stem = cli_stem(moment->path), *parent = cli_parent(moment->path);
-    cw_status st =
-        stem && parent ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
+    cw_status st = stem && parent ? CW_OK : cwi_fail_memory(err);
     snprintf(number, sizeof number, "%zu", moment->number);
     parts[STEM].value = stem;
     parts[PARENT].value = parent;
@@ -151,7 +151,7 @@ cw_status cli_name_outputs(cli_outputs *outputs, const char *text, const cli_ser
     cw_status st = check_levels(levels, err);
     outputs->path = calloc(levels->count * series->count + 1, sizeof *outputs->path);
     if (st == CW_OK && !outputs->path)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the names of outputs");
+        st = cwi_fail_memory(err);
     for (size_t n = 0; n < series->count && st == CW_OK; n++)
         st = name_levels(outputs, text, &series->moments[n], levels, parts, err);
     return st == CW_OK ? check_told_apart(text, series, levels, parts, err) : st;
@@ -181,7 +181,7 @@ cw_status cli_name_part_outputs(cli_outputs *outputs, const char *text, const ch
         {.name = "layer", .value = layer}, {.name = "parent", .value = parent}};
     const size_t field_count = count > 0 && parts[0].label ? 6 : 3;
     if (st == CW_OK && !parent)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
+        st = cwi_fail_memory(err);
     for (size_t n = 0; n < count && st == CW_OK; n++) {
         to_file_name(parts[n].name, n + 1, name);
         snprintf(number, sizeof number, "%zu", n + 1);
@@ -246,7 +246,7 @@ cw_status cli_name_lod_outputs(cli_outputs *outputs, const char *text, const cha
                               [LOD] = {.name = "lod", .value = number},
                               {.name = "parent", .value = parent}};
     if (st == CW_OK && !parent)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
+        st = cwi_fail_memory(err);
     if (st == CW_OK) /* only to see whether there is a {lod} in it */
         st = cli_fill_template(text, parts, FIELDS, &plain, err);
     const bool apart = parts[LOD].used;
@@ -255,7 +255,7 @@ cw_status cli_name_lod_outputs(cli_outputs *outputs, const char *text, const cha
                       "this format holds all levels of --lod in one output; '%s' holds {lod}",
                       text);
     if (st == CW_OK && !apart && !(made = with_lod(text)))
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
+        st = cwi_fail_memory(err);
     for (size_t n = 0; n < levels && st == CW_OK && files != CLI_LOD_TOGETHER; n++) {
         snprintf(number, sizeof number, "%zu", n);
         st = add_output(outputs, apart ? text : made, parts, FIELDS, err);
@@ -276,7 +276,7 @@ cw_status cli_name_output(cli_outputs *outputs, const char *text, const char *in
     cw_status st = reserve_names(outputs, 1, &stem, input, err);
     cli_part parts[] = {{.name = "stem", .value = stem}, {.name = "parent", .value = parent}};
     if (st == CW_OK && !parent)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
+        st = cwi_fail_memory(err);
     if (st == CW_OK)
         st = add_output(outputs, text, parts, 2, err);
     free(parent);
@@ -298,8 +298,7 @@ static cw_status check_all_apart(const cli_outputs *outputs, cw_error *err)
     cw_status st = CW_OK;
     place *places = calloc(outputs->count ? outputs->count : 1, sizeof *places);
     if (!places)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu outputs",
-                        outputs->count);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < outputs->count && st == CW_OK; n++) {
         places[n] = find_place(outputs->path[n]);
         for (size_t m = 0; m < n && st == CW_OK; m++)

@@ -2,6 +2,7 @@
 #include "cli/results/pvd_list.h"
 
 #include "cli/framework/console.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <stdlib.h>
@@ -38,7 +39,7 @@ cw_status cli_write_pvd(cli_report *report, const char *path, const cw_write_des
 {
     cw_pvd_entry *entries = calloc(report->made_count + 1, sizeof *entries);
     if (!entries)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the list of files");
+        return cwi_fail_memory(err);
     const size_t count = list_written(report, entries);
     cw_status st = count ? cw_pvd_write(path, entries, count, desc, err) : CW_OK;
     if (st == CW_OK && count) {

@@ -10,6 +10,7 @@
 #include "cli/results/compress_options.h"
 #include "cli/results/smoothed.h"
 #include "core/base/atomic_file.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 
@@ -38,8 +39,7 @@ cw_status cli_report_reserve(cli_report *report, size_t meshes, cw_error *err)
     cli_step *step = reallocarray(report->steps, steps, sizeof *step);
     report->steps = step ? step : report->steps;
     if (!made || !step)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the report of %zu meshes",
-                        meshes);
+        return cwi_fail_memory(err);
     report->step_room = steps;
     return CW_OK;
 }
@@ -423,9 +423,8 @@ cw_status cli_report_make(const char *path, void (*put)(FILE *out, const void *w
     FILE *out = cwi_text_open(&text, &size);
     if (out)
         put(out, what);
-    cw_status st = cwi_text_close(out, &text)
-                       ? cli_report_save(path, text, size, err)
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the report");
+    cw_status st = cwi_text_close(out, &text) ? cli_report_save(path, text, size, err)
+                                              : cwi_fail_memory(err);
     free(text);
     return st;
 }
@@ -441,9 +440,8 @@ static cw_status write_report(const cli_report *report, cw_status status, cw_err
     FILE *out = cwi_text_open(&text, &size);
     if (out)
         put_report(out, report, status, err);
-    cw_status st = cwi_text_close(out, &text)
-                       ? cli_report_save(report->path, text, size, &why)
-                       : cwi_fail(&why, CW_ERR_NO_MEMORY, "no memory for the report");
+    cw_status st = cwi_text_close(out, &text) ? cli_report_save(report->path, text, size, &why)
+                                              : cwi_fail_memory(&why);
     free(text);
     if (status != CW_OK)
         return status;

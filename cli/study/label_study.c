@@ -28,7 +28,7 @@ static cw_status color_mesh(cw_mesh *mesh, const uint8_t color[4], cw_error *err
     cwi_free(mesh->colors);
     mesh->colors = cwi_alloc_array(mesh->vertex_count, 4);
     if (!mesh->colors)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the colours of a label");
+        return cwi_fail_memory(err);
     for (size_t v = 0; v < mesh->vertex_count; v++) {
         memcpy(mesh->colors + 4 * v, color, 3);
         mesh->colors[4 * v + 3] = 255;
@@ -79,8 +79,7 @@ static cw_status color_surfaces(const cli_label_study *l, const cw_label_surface
 {
     uint8_t(*colors)[4] = cwi_alloc_zeroed(surfaces->label_count + 1, sizeof *colors);
     if (!colors)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu colours",
-                        surfaces->label_count);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < surfaces->label_count; n++) {
         const cw_label *label =
             cw_label_find(&l->scene.shown, layer, surfaces->labels[n].label);
@@ -99,7 +98,7 @@ static cw_status pack_labels(cli_label_study *l, const cw_mesh *mesh, uint32_t l
 {
     uint8_t *bytes = cwi_alloc_array(mesh->vertex_count + 1, 1);
     if (!bytes)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the labels of vertices");
+        return cwi_fail_memory(err);
     for (size_t v = 0; v < mesh->vertex_count; v++)
         bytes[v] = (uint8_t)find_row(l, layer, mesh->labels[v]);
     cw_status st = cli_pack_mesh(mesh, bytes, &l->packed, err);
@@ -205,8 +204,7 @@ cw_status cli_study_labels(cli_label_study *l, const cli_label_look *look, cli_v
         return st;
     l->rows = calloc(l->scene.shown.count + 1, sizeof *l->rows);
     if (!l->rows)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu labels",
-                        l->scene.shown.count);
+        return cwi_fail_memory(err);
     cli_label_layers(volume, l->input, &first, &end);
     for (size_t c = first; c < end; c++)
         l->layers += has_labels(l, (uint32_t)c);

@@ -49,7 +49,7 @@ cw_status cli_fit_level(cli_mesh_study *m, cw_error *err)
                  looked_at = (vertices + every - 1) / every;
     double *values = cwi_alloc_array(looked_at + 1, sizeof *values);
     if (!values)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu values", looked_at);
+        return cwi_fail_memory(err);
     const size_t count = sample_field(m, every, values);
     m->fit_count = looked_at;
     m->fit_outside = looked_at - count;
@@ -167,9 +167,7 @@ cw_status cli_study_mesh(cli_mesh_study *m, cw_error *err)
     if (!s->full.triangle_count)
         return cwi_fail(err, CW_ERR_EMPTY, "%s: the mesh has no triangles", m->mesh.path);
     float *worst = cwi_alloc_zeroed(s->full.vertex_count, sizeof *worst);
-    cw_status st =
-        worst ? cli_check_place(s->volume, &s->full, err)
-              : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the errors of vertices");
+    cw_status st = worst ? cli_check_place(s->volume, &s->full, err) : cwi_fail_memory(err);
     if (st == CW_OK)
         st = cli_scratch_make(&s->folder, err);
     if (st == CW_OK)

@@ -95,8 +95,7 @@ cw_status cli_pack_mesh(const cw_mesh *mesh, const uint8_t *values, cli_packed *
     cwi_free(number);
     cwi_free(order);
     if (!p->bytes)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to pack %zu triangles",
-                        mesh->triangle_count);
+        return cwi_fail_memory(err);
     char *fitting = realloc(p->bytes, p->size + 1);
     p->bytes = fitting ? fitting : p->bytes;
     return CW_OK;

@@ -100,8 +100,7 @@ cw_status cli_study_series(cli_series_study *q, const cli_input *input, cw_error
     s->start = cli_seconds();
     s->deadline = INFINITY;
     q->rows = calloc(count + 1, sizeof *q->rows);
-    cw_status st = q->rows ? cli_scratch_make(&s->folder, err)
-                           : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu steps", count);
+    cw_status st = q->rows ? cli_scratch_make(&s->folder, err) : cwi_fail_memory(err);
     for (size_t n = 0; n < count && st == CW_OK; n++)
         st = measure_step(q, input, n, err);
     if (st == CW_OK && !q->has_box)

@@ -6,6 +6,7 @@
 #include "cli/framework/field_names.h"
 #include "cli/framework/temp_folder.h"
 #include "cli/study/point_command.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <math.h>
@@ -124,7 +125,7 @@ static cw_status tell_commands(cli_study *s, cw_error *err)
     for (size_t n = 0; n < s->point_count; n++) {
         s->points[n].command = cli_point_command(s, &s->points[n]);
         if (!s->points[n].command)
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a command");
+            return cwi_fail_memory(err);
     }
     return CW_OK;
 }

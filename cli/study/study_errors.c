@@ -104,7 +104,7 @@ cw_status cli_draw_mesh(cli_study *s, const cw_mesh *around, const cw_mesh *mesh
     cw_image image = {0};
     uint8_t *colors = mm ? cwi_alloc_array(mesh->vertex_count, 4) : NULL;
     if (mm && !colors)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a picture");
+        return cwi_fail_memory(err);
     if (mm) {
         color_errors(s, mesh, mm, colors);
         colored.colors = colors;
@@ -125,7 +125,7 @@ static cw_status pack_colored(const cli_study *s, const cw_mesh *mesh, const flo
 {
     uint8_t *bytes = mm ? cwi_alloc_array(mesh->vertex_count, 1) : NULL;
     if (mm && !bytes)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the errors of vertices");
+        return cwi_fail_memory(err);
     for (size_t v = 0; v < mesh->vertex_count && mm; v++) {
         const double share = cli_error_share((double)mm[v], s->voxel_mm);
         bytes[v] = (uint8_t)(255 * fmin(fmax(share, 0), 1) + 0.5);
@@ -153,7 +153,7 @@ static cw_status simplify_and_pack(cli_study *s, const cw_mesh *mesh, const floa
     full.labels = NULL;
     full.scalars = mm ? cwi_alloc_array(mesh->vertex_count, sizeof *mm) : NULL;
     if (mm && !full.scalars)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the errors of vertices");
+        return cwi_fail_memory(err);
     if (mm)
         memcpy(full.scalars, mm, mesh->vertex_count * sizeof *mm);
     s->extra_deadline = cli_seconds() + PAGE_SHARE * s->budget_s;

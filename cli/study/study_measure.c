@@ -163,7 +163,7 @@ cw_status cli_measure_mesh(cli_study *s, cli_point *p, const cw_mesh *mesh, cw_e
     cli_sample sample = {0};
     cw_status st = CW_OK;
     if (p->shown && !worst)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the errors of vertices");
+        return cwi_fail_memory(err);
     p->triangles = mesh->triangle_count;
     if (!p->file_bytes)
         st = cli_weigh_mesh(s, mesh, NULL, &p->file_bytes, NULL, err);

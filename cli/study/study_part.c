@@ -96,7 +96,7 @@ static cw_status draw_part(cli_study *s, cw_error *err)
         .progress = cli_progress((double)mesh->triangle_count / 1e6, "Mtriangle")};
     cw_distance d;
     if (!worst)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the errors of vertices");
+        return cwi_fail_memory(err);
     cw_status st = cw_distance_to_field(mesh, &s->part.view, &desc, &d, NULL, err);
     if (st == CW_OK)
         st = cli_draw_mesh(s, mesh, mesh, worst, &s->part_drawn, err);

@@ -80,7 +80,7 @@ cw_status cli_take_sample(const cw_mesh *mesh, size_t most, double voxel_mm, cli
     if (good)
         take_triangles(s, mesh, number, room);
     cwi_free(number);
-    return good ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a sample");
+    return good ? CW_OK : cwi_fail_memory(err);
 }
 
 void cli_free_sample(cli_sample *s)

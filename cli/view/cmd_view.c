@@ -4,6 +4,7 @@
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/view/view.h"
+#include "core/base/memory.h"
 #include "core/base/module.h"
 #include "core/base/status.h"
 
@@ -231,7 +232,7 @@ static cw_status run_view(void *p, cw_error *err)
         return st;
     view *v = calloc(1, sizeof *v);
     if (!v)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a session");
+        return cwi_fail_memory(err);
     v->start = start;
     st = open_window(v, args, err);
     if (st == CW_OK)

@@ -5,6 +5,7 @@
 
 #include "cli/framework/console.h"
 #include "cli/framework/name_template.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "core/geometry/monotone_curve.h"
@@ -71,12 +72,12 @@ static cw_status parse_film(view *v, const char *text, film *f, cw_error *err)
     f->keys = calloc(MAX_KEYS, sizeof *f->keys);
     f->times = calloc(MAX_KEYS, sizeof *f->times);
     if (!f->keys || !f->times)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a film");
+        return cwi_fail_memory(err);
     for (size_t number = 1; *text && st == CW_OK; number++) {
         const size_t length = strcspn(text, "\n");
         char *line = strndup(text, length);
         char where[32];
-        st = line ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a film");
+        st = line ? CW_OK : cwi_fail_memory(err);
         if (st == CW_OK && !is_nothing(line))
             st = add_key(v, f, line + strspn(line, " \t"), err);
         snprintf(where, sizeof where, "line %zu", number);
@@ -99,9 +100,7 @@ static cw_status write_bookmarks(const view *v, char **text, cw_error *err)
         view_put_word(out, v->bookmarks[n].name);
         fputc('\n', out);
     }
-    return out && cwi_text_close(out, text)
-               ? CW_OK
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a film");
+    return out && cwi_text_close(out, text) ? CW_OK : cwi_fail_memory(err);
 }
 
 /* --- moments ------------------------------------------------------------------------------ */
@@ -302,7 +301,7 @@ cw_status view_make_film(view *v, const char *name, const char *pattern, double 
         return cwi_fail(err, CW_ERR_ARGUMENT, "no file is open to make a film of");
     view_state *before = malloc(sizeof *before);
     if (!before)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a film");
+        return cwi_fail_memory(err);
     *before = v->state;
     cw_status st = make_keys(v, name, &f, err);
     v->is_filming = true;
@@ -329,7 +328,7 @@ cw_status view_start_preview(view *v, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT, "no file is open to make a film of");
     view_preview *p = calloc(1, sizeof *p);
     if (!p)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a film");
+        return cwi_fail_memory(err);
     p->before = v->state;
     cw_status st = make_keys(v, "bookmarks", &p->film, err);
     p->start = v->ui->seconds(v->window);

@@ -3,6 +3,7 @@
 #include "cli/view/verbs.h"
 
 #include "core/base/atomic_file.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 
@@ -233,7 +234,7 @@ static cw_status run_save_film(view *v, int count, char **args, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT, "a film needs at least two bookmarks");
     FILE *out = cwi_text_open(&text, &size);
     if (!out)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a film");
+        return cwi_fail_memory(err);
     fputs("# cubewright view: a film; seconds, and the commands of that moment\n", out);
     for (size_t n = 0; n < v->bookmark_count; n++) {
         const view_bookmark *b = &v->bookmarks[n];
@@ -245,7 +246,7 @@ static cw_status run_save_film(view *v, int count, char **args, cw_error *err)
         fprintf(out, "%s%s\n", *b->look ? "; " : "", b->look);
     }
     if (!cwi_text_close(out, &text))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a film");
+        return cwi_fail_memory(err);
     cw_status st = cwi_outfile_save(args[0], text, size, err);
     free(text);
     if (st == CW_OK)

@@ -2,6 +2,7 @@
 #include "cli/view/verbs.h"
 #include "cli/view/view_measure.h"
 
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 
@@ -125,7 +126,7 @@ static cw_status run_copy(view *v, int count, char **args, cw_error *err)
     if (out)
         view_print_measures(v, out);
     if (!out || !cwi_text_close(out, &text))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for measurements");
+        return cwi_fail_memory(err);
     v->ui->set_clipboard(v->window, text);
     view_say(v, false, "the measurements are copied");
     free(text);

@@ -4,6 +4,7 @@
 #include "cli/framework/name_template.h"
 #include "cli/framework/quantity.h"
 #include "cli/results/output_names.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 
@@ -266,7 +267,7 @@ static cw_status run_copy_command(view *v, int count, char **args, cw_error *err
     }
     char *line = view_command_line(v);
     if (!line)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a command line");
+        return cwi_fail_memory(err);
     v->ui->set_clipboard(v->window, line);
     free(line);
     view_say(v, false, "the command line is in the clipboard");

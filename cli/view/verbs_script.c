@@ -3,6 +3,7 @@
 #include "cli/view/verbs.h"
 #include "cli/view/view_measure.h"
 
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <stdio.h>
@@ -72,7 +73,7 @@ static cw_status run_print(view *v, int count, char **args, cw_error *err)
     else if (strcmp(what, "command") == 0) {
         char *line = view_command_line(v);
         if (!line)
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a command line");
+            return cwi_fail_memory(err);
         puts(line);
         free(line);
     } else if (strcmp(what, "camera") == 0 && s->is_placed &&

@@ -5,6 +5,7 @@
 #include "cli/inputs/extract_surface.h"
 #include "cli/render/compare_options.h"
 #include "cli/render/slice_caption.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
 
@@ -401,7 +402,7 @@ cw_status view_draw_preset(view *v, const char *preset, size_t width, size_t hei
     cw_picture picture = {0};
     cw_transfer transfer;
     if (!args)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a preset");
+        return cwi_fail_memory(err);
     *args = v->state.args;
     args->scene.transfer = preset;
     args->scene.shift = args->scene.opacity = (cli_number){0};

@@ -2,6 +2,7 @@
  * fainter those before and behind it. */
 #include "cli/view/view_measure.h"
 
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "viewer/interact/measure.h"
 
@@ -71,7 +72,7 @@ cw_status view_add_measure(view *v, view_measure_kind kind, const double (*point
     double(*all)[3] =
         realloc(v->measure_points, (v->measure_point_count + count) * sizeof *all);
     if (!all)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a measurement");
+        return cwi_fail_memory(err);
     v->measure_points = all;
     memcpy(all + v->measure_point_count, points, count * sizeof *all);
     s->measures[s->measure_count++] = (view_measure){kind, v->measure_point_count, count};

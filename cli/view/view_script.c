@@ -4,6 +4,7 @@
 #include "cli/view/view.h"
 
 #include "cli/framework/field_names.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <ctype.h>
@@ -70,8 +71,7 @@ cw_status view_exec(view *v, const char *text, cw_error *err)
 {
     const size_t size = strlen(text) + 1;
     char *room = malloc(2 * size), **words = malloc(size * sizeof *words);
-    cw_status st =
-        room && words ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for commands");
+    cw_status st = room && words ? CW_OK : cwi_fail_memory(err);
     while (st == CW_OK && *text)
         st = run_first(v, &text, words, room, err);
     free(words);

@@ -7,6 +7,7 @@
 #include "cli/framework/console.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/inputs/mesh_input.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
 
@@ -317,7 +318,7 @@ static cw_status copy_paths(const char *const *paths, size_t count, char ***copi
     for (size_t n = 0; n < count && all; n++)
         free(all[n]);
     free(all);
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the names of %zu files", count);
+    return cwi_fail_memory(err);
 }
 
 cw_status view_open(view *v, const char *const *paths, size_t count, cw_error *err)

@@ -8,6 +8,7 @@
 #include "cli/inputs/level_choice.h"
 #include "cli/render/compare_options.h"
 #include "core/base/atomic_file.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 
@@ -133,7 +134,7 @@ static cw_status parse_setting(view *v, const cli_option *o, const char *value, 
                         o->value ? o->value : "a text");
     char *word = malloc(strlen(o->name) + (value ? strlen(value) : 0) + 8);
     if (!word)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a setting");
+        return cwi_fail_memory(err);
     if (flag)
         sprintf(word, off ? "--no-%s" : "--%s", o->name);
     else
@@ -141,7 +142,7 @@ static cw_status parse_setting(view *v, const cli_option *o, const char *value, 
     words[0] = (char *)view_keep_text(v, word);
     free(word);
     if (!words[0])
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a setting");
+        return cwi_fail_memory(err);
     const size_t count = args->common.input_count;
     const char **before = args->common.inputs;
     args->common.input_count = 0;
@@ -386,7 +387,7 @@ cw_status view_write_state(const view *v, const char *path, cw_error *err)
     size_t size;
     FILE *out = cwi_text_open(&text, &size);
     if (!out)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a state");
+        return cwi_fail_memory(err);
     fputs("# cubewright view: a state; 'cubewright view --run' this file\n", out);
     put_options(v, out, false, true);
     if (v->path) {
@@ -398,7 +399,7 @@ cw_status view_write_state(const view *v, const char *path, cw_error *err)
     put_rest(v, out, "\n");
     view_put_bookmarks(v, out, "\n");
     if (!cwi_text_close(out, &text))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a state");
+        return cwi_fail_memory(err);
     cw_status st = cwi_outfile_save(path, text, size, err);
     free(text);
     return st;

@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 
 #include "core/base/status.h"
+#include "core/base/text.h"
 
 #ifdef __linux__
 #include <malloc.h>
@@ -18,6 +19,9 @@
  * thread. */
 static _Thread_local long allocations_left = -1;
 static _Thread_local bool one_failed;
+
+/* Size of this thread's last request that failed, for its message; 0: none since. */
+static _Thread_local size_t failed_bytes;
 
 static bool fail_by_request(void)
 {
@@ -36,6 +40,7 @@ struct cwi_memory_account {
     atomic_size_t limit;        /* 0: none */
     atomic_size_t refused;      /* size of the last request beyond the limit */
     atomic_size_t refused_left; /* bytes that were left then */
+    atomic_size_t failed;       /* size of the last request that failed, of any thread */
     bool (*next_fails)(void);   /* callback for cwi_alloc_fail_after() */
     cw_allocator allocator;     /* of the caller; without functions: malloc() */
 };
@@ -89,6 +94,31 @@ size_t cwi_memory_left(void)
     return !most ? SIZE_MAX : most > now ? most - now : 0;
 }
 
+/* Keeps the size of a request that failed. Returns NULL. */
+static void *note_failure(size_t bytes)
+{
+    failed_bytes = bytes;
+    atomic_store(&account->failed, bytes);
+    return NULL;
+}
+
+cw_status cwi_fail_memory(cw_error *err)
+{
+    char needed_text[CWI_MEMORY_TEXT], left_text[CWI_MEMORY_TEXT];
+    const size_t of_any = atomic_exchange(&account->failed, 0);
+    const size_t needed = failed_bytes ? failed_bytes : of_any;
+    failed_bytes = 0;
+    if (!needed)
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory");
+    cwi_print_memory(needed, needed_text);
+    if (needed != atomic_load(&account->refused))
+        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory: %s were needed", needed_text);
+    cwi_print_memory(atomic_load(&account->refused_left), left_text);
+    return cwi_fail(err, CW_ERR_NO_MEMORY,
+                    "no memory: %s were needed, and cw_memory_limit() leaves %s", needed_text,
+                    left_text);
+}
+
 bool cwi_memory_take(size_t bytes)
 {
     const size_t most = atomic_load_explicit(&account->limit, memory_order_relaxed);
@@ -99,6 +129,7 @@ bool cwi_memory_take(size_t bytes)
     atomic_fetch_sub_explicit(&account->used, bytes, memory_order_relaxed);
     atomic_store(&account->refused_left, most > before ? most - before : 0);
     atomic_store(&account->refused, bytes);
+    note_failure(bytes);
     return false;
 }
 
@@ -221,6 +252,8 @@ static size_t room_of(void *memory)
 static void *count_memory(void *memory, size_t taken)
 {
     const size_t has = room_of(memory);
+    if (!memory)
+        note_failure(taken);
     if (has > taken)
         atomic_fetch_add_explicit(&account->used, has - taken, memory_order_relaxed);
     else
@@ -252,7 +285,9 @@ bool cwi_size_add(size_t a, size_t b, size_t *out)
  * them, and compilers warn. */
 static bool is_usable(size_t count, size_t size, size_t *bytes)
 {
-    return cwi_size_mul(count, size, bytes) && *bytes <= PTRDIFF_MAX && !account->next_fails();
+    if (!cwi_size_mul(count, size, bytes) || *bytes > PTRDIFF_MAX)
+        return note_failure(SIZE_MAX) != NULL;
+    return !account->next_fails() || note_failure(*bytes) != NULL;
 }
 
 /* Computes the size as is_usable(), and takes the bytes. */
@@ -329,8 +364,10 @@ void *cwi_realloc_array(void *memory, size_t count, size_t size)
     void *moved = reallocate_bytes(memory, bytes ? bytes : 1);
     if (moved)
         count_memory(moved, before + more);
-    else
+    else {
         cwi_memory_give(more);
+        note_failure(more);
+    }
     return moved;
 }
 

@@ -50,6 +50,10 @@ size_t cwi_memory_left(void);
  * none. */
 size_t cwi_memory_refused(size_t *left);
 
+/* Fails with CW_ERR_NO_MEMORY: says how much the last allocation that failed had asked for, and what
+ * cw_memory_limit() left. Allocations by malloc() are not known. */
+cw_status cwi_fail_memory(cw_error *err);
+
 /* Copies a string; returns NULL when memory is out. */
 char *cwi_strdup(const char *text);
 

@@ -121,6 +121,12 @@ static void memory_has_a_limit(void **state)
     assert_null(cwi_renew_large(NULL, 4, MIB));
     assert_int_equal(cwi_memory_refused(&left), 4 * MIB);
     assert_true(left <= 3 * MIB && left == cwi_memory_left());
+    cw_error err = {0};
+    assert_int_equal(cwi_fail_memory(&err), CW_ERR_NO_MEMORY);
+    assert_non_null(strstr(
+        err.message, "no memory: 4 MiB were needed, and cw_memory_limit() leaves 3 MiB"));
+    assert_int_equal(cwi_fail_memory(&err), CW_ERR_NO_MEMORY);
+    assert_string_equal(err.message, "no memory");
     assert_false(cwi_memory_take(4 * (size_t)MIB));
     assert_true(cwi_memory_take(2 * (size_t)MIB));
     assert_null(cwi_alloc_array(2, MIB));
