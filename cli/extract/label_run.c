@@ -3,6 +3,7 @@
 #include "cli/extract/label_run.h"
 
 #include "cli/framework/console.h"
+#include "cli/inputs/extract_surface.h"
 #include "cli/inputs/label_scene.h"
 #include "core/base/status.h"
 
@@ -136,63 +137,6 @@ static cw_status extract_layers(cli_label_run *r, cw_error *err)
     return st;
 }
 
-/* Returns the share of its triangles that a part of all may keep; 0: no limit. */
-static double find_ratio(const cli_label_run *r, size_t all)
-{
-    const size_t wanted = r->target;
-    return wanted > 0 && wanted < all ? (double)wanted / (double)all : 0;
-}
-
-/* Simplifies the interfaces of all layers, so that neighbours still share them. */
-static cw_status simplify_together(cli_label_run *r, cw_error *err)
-{
-    const cli_extract_args *args = r->args;
-    const double ratio = find_ratio(r, r->triangles);
-    cw_status st = CW_OK;
-    if (args->per_label || (r->error_mm == 0 && ratio == 0))
-        return CW_OK;
-    const size_t before = r->triangles;
-    r->extracted = r->extracted ? r->extracted : before;
-    r->triangles = 0;
-    cli_report_begin(&r->report);
-    for (size_t n = 0; n < r->layer_count && st == CW_OK; n++) {
-        cw_label_surfaces *surfaces = &r->layers[n].surfaces, simplified;
-        const double count = (double)surfaces->mesh.triangle_count;
-        const cw_label_simplify_desc desc = {.error_mm = r->error_mm,
-                                             .ratio = ratio,
-                                             .threads = (int)args->input.threads,
-                                             .progress =
-                                                 cli_progress(count / 1e6, "Mtriangle")};
-        st = count > 0 ? cw_label_simplify(surfaces, &desc, &simplified, err) : CW_OK;
-        if (st == CW_OK && count > 0) {
-            cw_label_surfaces_free(surfaces);
-            *surfaces = simplified;
-        }
-        r->triangles += surfaces->mesh.triangle_count;
-    }
-    if (st == CW_OK)
-        cli_report_end(&r->report, "simplify", before, r->triangles);
-    return st;
-}
-
-/* Simplifies the mesh of a label by itself. */
-static cw_status simplify_item(const cli_label_run *r, cli_label_item *item, size_t all,
-                               cw_error *err)
-{
-    const cw_simplify_desc desc = {.error_mm = r->error_mm,
-                                   .ratio = find_ratio(r, all),
-                                   .threads = (int)r->args->input.threads};
-    cw_mesh simplified;
-    if (desc.error_mm == 0 && desc.ratio == 0)
-        return CW_OK;
-    cw_status st = cw_simplify(&item->mesh, &desc, &simplified, NULL, err);
-    if (st != CW_OK)
-        return st;
-    cw_mesh_free(&item->mesh);
-    item->mesh = simplified;
-    return CW_OK;
-}
-
 /* Names the labels that were chosen and have no voxels. They fail the run with
  * --require-labels. */
 static cw_status tell_missing(const cli_label_run *r, cw_error *err)
@@ -257,47 +201,111 @@ static bool needs_quality(const cli_extract_args *args)
     return args->check || args->table || args->json;
 }
 
-/* Counts the triangles of all labels: interfaces of two labels count twice. */
-static size_t count_both_sides(const cli_label_run *r)
+/* Finds the item of a label; NULL: it is left out. */
+static cli_label_item *find_item(const cli_label_run *r, size_t layer, uint32_t label)
+{
+    for (size_t n = 0; n < r->item_count; n++)
+        if (r->items[n].layer == &r->layers[layer] && r->items[n].label.value == label)
+            return &r->items[n];
+    return NULL;
+}
+
+static bool wants_label(void *user, size_t layer, uint32_t label)
+{
+    return find_item(user, layer, label) != NULL;
+}
+
+static size_t count_triangles(const cli_label_run *r)
 {
     size_t count = 0;
-    for (size_t n = 0; n < r->layer_count; n++) {
-        const cw_label_surfaces *s = &r->layers[n].surfaces;
-        for (size_t p = 0; p < s->patch_count; p++)
-            count += s->patches[p].count *
-                     (s->patches[p].labels[1] == s->background ? 1 : (size_t)2);
-    }
+    for (size_t n = 0; n < r->layer_count; n++)
+        count += r->layers[n].surfaces.mesh.triangle_count;
     return count;
 }
 
-/* Makes the mesh of each label and checks it; it is kept unless only interfaces are written. */
+static cw_progress begin_stage(void *user, cw_stage stage, size_t count, const char *unit)
+{
+    cli_label_run *r = user;
+    if (stage == CW_STAGE_SIMPLIFY || stage == CW_STAGE_LOD)
+        cli_report_begin(&r->report);
+    return cli_stage_progress(NULL, stage, count, unit);
+}
+
+static void end_stage(void *user, cw_stage stage, size_t before, size_t after)
+{
+    cli_label_run *r = user;
+    if (stage != CW_STAGE_SIMPLIFY && stage != CW_STAGE_LOD)
+        return;
+    r->extracted = r->extracted ? r->extracted : before;
+    cli_report_end(&r->report, "simplify", before, after);
+    cli_report_begin(&r->report);
+}
+
+/* Keeps the mesh of a label, and writes a level of detail that is complete. */
+static cw_status take_label(void *user, cw_pipeline_surface *surface,
+                            const cw_pipeline_facts *facts, cw_error *err)
+{
+    cli_label_run *r = user;
+    cli_label_item *item = find_item(r, surface->layer, surface->label);
+    item->quality = facts->quality;
+    cw_status st = r->args->check ? hold_item(r, item, err) : CW_OK;
+    if (!r->args->shared_faces) {
+        item->mesh = *surface->mesh;
+        *surface->mesh = (cw_mesh){0};
+    }
+    if (st != CW_OK || item != &r->items[r->item_count - 1])
+        return st;
+    r->triangles = count_triangles(r);
+    cli_report_end(&r->report, "check", r->triangles, r->triangles);
+    return r->args->lod.count ? cli_write_label_level(r, surface->level, err) : CW_OK;
+}
+
+/* Makes room for the meshes of all levels of detail. */
+static cw_status reserve_levels(cli_label_run *r, cw_error *err)
+{
+    const cli_counts *lod = &r->args->lod;
+    cw_status st = cli_report_reserve(&r->report, lod->count + 1, err);
+    r->report.several = "surfaces";
+    r->levels = calloc(lod->count * r->item_count, sizeof *r->levels);
+    return r->levels ? st
+                     : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu levels", lod->count);
+}
+
+/* Simplifies the interfaces, makes the mesh of each label and checks it. */
 static cw_status make_meshes(cli_label_run *r, cw_error *err)
 {
     const cli_extract_args *args = r->args;
-    const cw_quality_desc desc = {.threads = (int)args->input.threads};
-    const size_t both_sides = args->per_label ? count_both_sides(r) : 0;
-    cw_status st = CW_OK;
+    cw_label_surfaces **layers = calloc(r->layer_count + 1, sizeof *layers);
+    for (size_t n = 0; layers && n < r->layer_count; n++)
+        layers[n] = &r->layers[n].surfaces;
+    for (size_t n = 0; n < r->item_count; n++)
+        r->items[n].label.name = r->items[n].name; /* items stay where they are from now on */
+    const cw_pipeline_labels labels = {.layers = layers,
+                                       .layer_count = r->layer_count,
+                                       .apart = args->per_label,
+                                       .interfaces_only =
+                                           args->shared_faces && !needs_quality(args),
+                                       .wants = wants_label,
+                                       .user = r};
+    const cw_simplify_desc simplify = {.error_mm = r->error_mm, .triangles = r->target};
+    const cw_pipeline_desc desc = {
+        .extract = {.no_normals = args->normals || args->shared_faces,
+                    .threads = (int)args->input.threads},
+        .simplify = r->error_mm > 0 || r->target ? &simplify : NULL,
+        .lod = args->lod.n,
+        .lod_count = args->lod.count,
+        .check = needs_quality(args),
+        .watch = {begin_stage, end_stage, r}};
+    cw_pipeline_facts facts = {0};
     cli_report_begin(&r->report);
-    for (size_t n = 0; n < r->item_count && st == CW_OK; n++) {
-        cli_label_item *item = &r->items[n];
-        item->label.name = item->name; /* items stay where they are from now on */
-        if (args->shared_faces && !needs_quality(args))
-            continue;
-        st = cw_label_mesh(&item->layer->surfaces, item->label.value, &item->mesh, err);
-        r->extracted += args->per_label ? item->mesh.triangle_count : 0;
-        if (st == CW_OK && args->per_label)
-            st = simplify_item(r, item, both_sides, err);
-        if (st == CW_OK && needs_quality(args))
-            st = cw_quality_measure(&item->mesh, &desc, &item->quality, err);
-        if (st == CW_OK && args->check)
-            st = hold_item(r, item, err);
-        if (args->shared_faces)
-            cw_mesh_free(&item->mesh);
-        else if (st == CW_OK && !args->normals)
-            st = cw_mesh_normals(&item->mesh, err);
-    }
-    if (st == CW_OK)
-        cli_report_end(&r->report, "check", r->triangles, r->triangles);
+    cw_status st =
+        layers ? cw_pipeline_run_labels(&labels, &desc, (cw_pipeline_sink){take_label, r},
+                                        &facts, err)
+               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu layers", r->layer_count);
+    r->triangles = count_triangles(r);
+    if (args->per_label)
+        r->extracted = facts.extracted.triangles;
+    free(layers);
     return st;
 }
 
@@ -321,26 +329,6 @@ static cw_status check_side_outputs(cli_label_run *r, cw_error *err)
                : st;
 }
 
-/* Makes and writes the levels of detail, each from the one before, then all in one file. */
-static cw_status make_levels(cli_label_run *r, cw_error *err)
-{
-    const cli_counts *lod = &r->args->lod;
-    cw_status st = cli_report_reserve(&r->report, lod->count + 1, err);
-    r->report.several = "surfaces";
-    r->levels = calloc(lod->count * r->item_count, sizeof *r->levels);
-    if (!r->levels)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu levels", lod->count);
-    for (size_t n = 0; n < lod->count && st == CW_OK; n++) {
-        r->target = lod->n[n];
-        st = simplify_together(r, err);
-        if (st == CW_OK)
-            st = make_meshes(r, err);
-        if (st == CW_OK)
-            st = cli_write_label_level(r, n, err);
-    }
-    return st == CW_OK ? cli_write_label_levels(r, err) : st;
-}
-
 static cw_status run_labels(void *state, cw_error *err)
 {
     cli_label_run *r = state;
@@ -355,17 +343,15 @@ static cw_status run_labels(void *state, cw_error *err)
     if (st == CW_OK)
         st = extract_layers(r, err);
     if (st == CW_OK)
-        st = simplify_together(r, err);
-    if (st == CW_OK)
         st = tell_missing(r, err);
     if (st == CW_OK)
         st = list_items(r, err);
     if (st == CW_OK && r->args->lod.count)
-        st = make_levels(r, err);
-    else if (st == CW_OK)
+        st = reserve_levels(r, err);
+    if (st == CW_OK)
         st = make_meshes(r, err);
-    if (st == CW_OK && !r->args->lod.count)
-        st = cli_write_labels(r, err);
+    if (st == CW_OK)
+        st = r->args->lod.count ? cli_write_label_levels(r, err) : cli_write_labels(r, err);
     return st == CW_OK ? cli_write_label_table(r, err) : st;
 }
 

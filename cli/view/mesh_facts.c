@@ -11,13 +11,28 @@
 
 #include <stdio.h>
 
+/* Makes the surface that `extract --simplify` makes; of a mesh that was read or drawn, a simplified one. */
+static cw_status reduce_surface(const view *v, const cw_mesh *full,
+                                const cw_simplify_desc *desc, cw_mesh *mesh, cw_error *err)
+{
+    const render_args *args = &v->state.args;
+    const cw_pipeline_desc pipeline = {
+        .extract = {.isovalue = args->iso.value,
+                    .inside_is_low = cli_inside_is_low(args->inside, &v->source.volume.whole),
+                    .threads = desc->threads},
+        .simplify = desc};
+    if (v->source.is_mesh || !args->iso.given || view_shows_surfaces(v))
+        return cw_simplify(full, desc, mesh, NULL, err);
+    return cli_make_surface(&v->source.volume, NULL, &pipeline, mesh, NULL, err);
+}
+
 static cw_status simplify_surface(const view *v, const cw_mesh *full, size_t triangles,
                                   cw_mesh *mesh, view_mesh_facts *facts, cw_error *err)
 {
     const cw_simplify_desc desc = {.triangles = triangles,
                                    .threads = (int)v->state.args.input.threads};
     cw_mesh_comparison c = {0};
-    cw_status st = cw_simplify(full, &desc, mesh, NULL, err);
+    cw_status st = reduce_surface(v, full, &desc, mesh, err);
     if (st == CW_OK)
         st = cw_mesh_compare(mesh, full, &(cw_mesh_distance_desc){.threads = desc.threads}, &c,
                              err);

@@ -35,7 +35,13 @@ static cw_status run_stages(cwi_pipeline *p, cw_mesh *mesh, bool finishes, cw_er
     return st;
 }
 
-/* Finishes a surface, and gives it away. */
+cw_status cwi_finish_surface(cwi_pipeline *p, cw_pipeline_surface *surface,
+                             cw_pipeline_sink sink, cw_error *err)
+{
+    cw_status st = run_stages(p, surface->mesh ? surface->mesh : &p->mesh, true, err);
+    return st == CW_OK ? sink.take(sink.user, surface, &p->facts, err) : st;
+}
+
 static cw_status finish_surface(cwi_pipeline *p, cw_mesh *mesh, size_t level,
                                 cw_pipeline_sink sink, cw_error *err)
 {
@@ -43,11 +49,8 @@ static cw_status finish_surface(cwi_pipeline *p, cw_mesh *mesh, size_t level,
                                    .spool = p->spool,
                                    .level = level,
                                    .full = p->levels ? &p->mesh : NULL};
-    cw_status st = run_stages(p, mesh, true, err);
-    if (st == CW_OK)
-        st = sink.take(sink.user, &surface, &p->facts, err);
-    if (p->spool && !surface.spool)
-        p->spool = NULL;
+    cw_status st = cwi_finish_surface(p, &surface, sink, err);
+    p->spool = surface.spool;
     return st;
 }
 
@@ -70,23 +73,26 @@ static void free_pipeline(cwi_pipeline *p)
     cw_mesh_spool_free(p->spool);
 }
 
-static cw_status start(cwi_pipeline *p, cw_surface_source source, cw_pipeline_sink sink,
-                       cw_pipeline_facts *facts, cw_error *err)
+cw_status cwi_begin_pipeline(cwi_pipeline *p, cw_surface_source source, cw_pipeline_sink sink,
+                             cw_error *err)
 {
     const cw_pipeline_desc *d = p->desc;
-    if (facts)
-        *facts = (cw_pipeline_facts){0};
     if (!sink.take)
         return cwi_fail(err, CW_ERR_ARGUMENT, "sink.take is NULL");
-    cw_status st = cw_pipeline_check(source, cw_pipeline_stages(d), NULL, NULL, err);
-    if (st != CW_OK)
-        return st;
     p->spoiled = cwi_spoils(d);
     p->simplify = d->simplify ? *d->simplify : (cw_simplify_desc){0};
     p->simplify.views = d->views;
     p->simplify.view_count = d->view_count;
     p->simplify.threads = d->extract.threads;
-    st = run_pipeline(p, sink, err);
+    return cw_pipeline_check(source, cw_pipeline_stages(d), NULL, NULL, err);
+}
+
+static cw_status start(cwi_pipeline *p, cw_surface_source source, cw_pipeline_sink sink,
+                       cw_pipeline_facts *facts, cw_error *err)
+{
+    cw_status st = cwi_begin_pipeline(p, source, sink, err);
+    if (st == CW_OK)
+        st = run_pipeline(p, sink, err);
     if (facts)
         *facts = p->facts;
     free_pipeline(p);

@@ -58,7 +58,7 @@ static bool wants_levels(const cw_pipeline_desc *d)
 
 static bool wants_normals(const cw_pipeline_desc *d)
 {
-    return !d->extract.no_normals && (d->simplify || d->lod_count);
+    return !d->extract.no_normals;
 }
 
 static bool wants_color(const cw_pipeline_desc *d)
@@ -147,7 +147,8 @@ bool cwi_needs_whole(const cw_pipeline_desc *desc)
 
 bool cwi_adds_normals(const cwi_pipeline *p)
 {
-    return wants_normals(p->desc) && !(p->spoiled & CWI_FIELD_NORMALS) &&
+    return (p->desc->simplify || p->desc->lod_count) && !p->desc->extract.no_normals &&
+           !(p->spoiled & CWI_FIELD_NORMALS) &&
            (p->slices || cwi_volume_expect_dense(p->volume, "normals", NULL) == CW_OK);
 }
 

@@ -28,6 +28,7 @@ typedef struct cwi_pipeline {
     cw_volume part;                /* of the volume: what the views may see; else all of it */
     cw_extractor *extractor;       /* of the volume; or NULL */
     const cw_slice_source *slices; /* or NULL */
+    const cw_pipeline_labels *labels; /* or NULL */
     cw_mesh mesh;
     cw_mesh_spool *spool; /* the surface, of slices; or NULL */
     cw_mesh *levels;      /* lod_count; NULL: there is one surface */
@@ -61,6 +62,14 @@ bool cwi_adds_normals(const cwi_pipeline *p);
 /* Reports the begin of a stage. Returns its progress. */
 cw_progress cwi_begin_stage(const cwi_pipeline *p, cw_stage stage, size_t count,
                             const char *unit);
+
+/* Checks the settings, and sets what follows from them. */
+CW_NODISCARD cw_status cwi_begin_pipeline(cwi_pipeline *p, cw_surface_source source,
+                                          cw_pipeline_sink sink, cw_error *err);
+
+/* Finishes a surface by the stages that do, and gives it away. */
+CW_NODISCARD cw_status cwi_finish_surface(cwi_pipeline *p, cw_pipeline_surface *surface,
+                                          cw_pipeline_sink sink, cw_error *err);
 
 /* Makes the surface without what simplifies, colours or measures it. mesh: filled on success */
 CW_NODISCARD cw_status cwi_make_full(const cwi_pipeline *p, const cw_volume *volume,

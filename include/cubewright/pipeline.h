@@ -5,6 +5,7 @@
 #include <cubewright/color.h>
 #include <cubewright/cut.h>
 #include <cubewright/extract.h>
+#include <cubewright/labels.h>
 #include <cubewright/quality.h>
 #include <cubewright/simplify.h>
 #include <cubewright/smooth.h>
@@ -116,6 +117,8 @@ typedef struct cw_pipeline_surface {
     cw_mesh *mesh; /* to take it, move the struct and zero it; NULL: it is in the spool */
     cw_mesh_spool *spool; /* of slices; NULL else. To take it, set it to NULL */
     size_t level;         /* of detail, from 0 */
+    size_t layer;         /* of labels, from 0 */
+    uint32_t label;       /* of labels: whose surface it is */
     cw_mesh *full;        /* of levels: the surface that they were made of; else NULL */
 } cw_pipeline_surface;
 
@@ -181,6 +184,38 @@ CW_NODISCARD CW_API cw_status cw_pipeline_mesh(const cw_volume *volume, cw_extra
  * facts    may be NULL
  * Returns  as cw_pipeline_run(), cw_extract_stream(), cw_mesh_spool_new() */
 CW_NODISCARD CW_API cw_status cw_pipeline_run_slices(const cw_slice_source *source,
+                                                     const cw_pipeline_desc *desc,
+                                                     cw_pipeline_sink sink,
+                                                     cw_pipeline_facts *facts, cw_error *err);
+
+/* The interfaces of label maps, and the labels whose surfaces are to be finished. */
+typedef struct cw_pipeline_labels {
+    cw_label_surfaces *const
+        *layers; /* layer_count, such as of cw_extract_labels(): several where
+                                         labels overlap. They are simplified in place */
+    size_t layer_count;
+    bool apart; /* simplify each label by itself: interfaces then part. Default: together */
+    bool interfaces_only; /* stop when the interfaces are finished: no surface is given away */
+    /* Returns false for labels that are left out. Default: none is */
+    bool (*wants)(void *user, size_t layer, uint32_t label);
+    void *user; /* passed to wants */
+} cw_pipeline_labels;
+
+/* Finishes the surfaces of labels: simplifies all interfaces together, makes the closed mesh of each
+ * label, and gives one after the other away. Of several levels of detail each is made from the one
+ * before; the layers then are those of the last.
+ *
+ * Stages that need a single surface are refused. Of desc->simplify error_mm and triangles count: the
+ * number of triangles is that of all interfaces, or with `apart` of all surfaces. Vertices get normals
+ * of the triangles around them, unless desc->extract.no_normals.
+ *
+ * labels   borrowed
+ * desc     borrowed; of extract only no_normals, threads and progress count
+ * sink     takes the surfaces, by level, layer and label
+ * facts    may be NULL; extracted.triangles are those before simplification
+ * Returns  as cw_pipeline_check(), cw_label_simplify(), cw_simplify(), cw_label_mesh(), and as sink
+ * Threads  reentrant; the same to the bit for any number of threads */
+CW_NODISCARD CW_API cw_status cw_pipeline_run_labels(const cw_pipeline_labels *labels,
                                                      const cw_pipeline_desc *desc,
                                                      cw_pipeline_sink sink,
                                                      cw_pipeline_facts *facts, cw_error *err);

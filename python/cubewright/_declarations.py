@@ -2771,6 +2771,8 @@ class cw_pipeline_surface(Structure):
     mesh: Any
     spool: Any
     level: int
+    layer: int
+    label: int
     full: Any
 
 
@@ -2778,6 +2780,8 @@ cw_pipeline_surface._fields_ = [
     ("mesh", POINTER(cw_mesh)),
     ("spool", POINTER(cw_mesh_spool)),
     ("level", c_size_t),
+    ("layer", c_size_t),
+    ("label", c_uint32),
     ("full", POINTER(cw_mesh)),
 ]
 
@@ -2789,6 +2793,25 @@ class cw_pipeline_sink(Structure):
 
 cw_pipeline_sink._fields_ = [
     ("take", CFUNCTYPE(c_int, c_void_p, POINTER(cw_pipeline_surface), POINTER(cw_pipeline_facts), POINTER(cw_error))),
+    ("user", c_void_p),
+]
+
+
+class cw_pipeline_labels(Structure):
+    layers: Any
+    layer_count: int
+    apart: bool
+    interfaces_only: bool
+    wants: Any
+    user: Any
+
+
+cw_pipeline_labels._fields_ = [
+    ("layers", POINTER(POINTER(cw_label_surfaces))),
+    ("layer_count", c_size_t),
+    ("apart", c_bool),
+    ("interfaces_only", c_bool),
+    ("wants", CFUNCTYPE(c_bool, c_void_p, c_size_t, c_uint32)),
     ("user", c_void_p),
 ]
 
@@ -3246,6 +3269,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_pipeline_run": (c_int, [POINTER(cw_volume), POINTER(cw_extractor), POINTER(cw_pipeline_desc), cw_pipeline_sink, POINTER(cw_pipeline_facts), POINTER(cw_error)]),
     "cw_pipeline_mesh": (c_int, [POINTER(cw_volume), POINTER(cw_extractor), POINTER(cw_pipeline_desc), POINTER(cw_mesh), POINTER(cw_pipeline_facts), POINTER(cw_error)]),
     "cw_pipeline_run_slices": (c_int, [POINTER(cw_slice_source), POINTER(cw_pipeline_desc), cw_pipeline_sink, POINTER(cw_pipeline_facts), POINTER(cw_error)]),
+    "cw_pipeline_run_labels": (c_int, [POINTER(cw_pipeline_labels), POINTER(cw_pipeline_desc), cw_pipeline_sink, POINTER(cw_pipeline_facts), POINTER(cw_error)]),
     "cw_mesh_remesh": (c_int, [POINTER(cw_mesh), POINTER(cw_remesh_desc), POINTER(cw_mesh), POINTER(cw_remesh_facts), POINTER(cw_error)]),
     "cw_repair_has_cgal": (c_bool, []),
     "cw_mesh_repair": (c_int, [POINTER(cw_mesh), POINTER(cw_repair_desc), POINTER(cw_mesh), POINTER(cw_repair_facts), POINTER(cw_error)]),

@@ -281,11 +281,77 @@ static void stages_run_in_the_order_of_the_table(void **state)
     cw_mesh mesh;
     cw_error err = {0};
     assert_ok(cw_pipeline_mesh(&volume, NULL, &d, &mesh, NULL, &err), err);
-    assert_int_equal(w.count, 5);
+    assert_int_equal(w.count, 6); /* normals, too */
     for (size_t n = 1; n < w.count; n++)
         assert_true(w.stages[n] > w.stages[n - 1]);
     cw_mesh_free(&mesh);
     cw_volume_free(&volume);
+}
+
+/* --- labels --------------------------------------------------------------------------------- */
+
+static bool wants_odd(void *user, size_t layer, uint32_t label)
+{
+    (void)user;
+    (void)layer;
+    return label % 2;
+}
+
+/* Compares the surfaces of labels with those made by hand. */
+typedef struct taken_labels {
+    const cw_label_surfaces *expected;
+    uint32_t last;
+    size_t count;
+} taken_labels;
+
+static cw_status compare_label(void *user, cw_pipeline_surface *surface,
+                               const cw_pipeline_facts *facts, cw_error *err)
+{
+    taken_labels *t = user;
+    cw_mesh mesh;
+    assert_true(surface->label > t->last);
+    t->last = surface->label;
+    t->count++;
+    assert_ok(cw_label_mesh(t->expected, surface->label, &mesh, err), *err);
+    assert_ok(cw_mesh_normals(&mesh, err), *err);
+    test_assert_same_mesh(&mesh, surface->mesh);
+    assert_true(cw_quality_is_closed_manifold(&facts->quality));
+    cw_mesh_free(&mesh);
+    return CW_OK;
+}
+
+static void labels_are_simplified_together_and_given_away_apart(void **state)
+{
+    (void)state;
+    uint8_t voxels[16][16][16];
+    for (size_t n = 0; n < sizeof voxels; n++) /* four slabs of four labels, along x */
+        (&voxels[0][0][0])[n] = (uint8_t)(1 + n % 16 / 4);
+    cw_volume volume = {.data = voxels, .type = CW_U8, .dim = {16, 16, 16}};
+    for (int a = 0; a < 3; a++)
+        volume.affine[a][a] = 1;
+    cw_label_surfaces surfaces, *layers[1] = {&surfaces}, expected;
+    const cw_pipeline_labels labels = {.layers = layers, .layer_count = 1, .wants = wants_odd};
+    const cw_simplify_desc simplify = {.error_mm = 0.2};
+    const cw_label_simplify_desc by_hand = {.error_mm = 0.2};
+    const cw_pipeline_desc d = {.simplify = &simplify, .check = true};
+    cw_pipeline_facts facts;
+    cw_error err = {0};
+    assert_ok(cw_extract_labels(&volume, NULL, &surfaces, &err), err);
+    const size_t before = surfaces.mesh.triangle_count;
+    assert_ok(cw_label_simplify(&surfaces, &by_hand, &expected, &err), err);
+    taken_labels t = {.expected = &expected};
+    assert_ok(cw_pipeline_run_labels(&labels, &d, (cw_pipeline_sink){compare_label, &t}, &facts,
+                                     &err),
+              err);
+    assert_int_equal(t.count, 2);
+    assert_int_equal(facts.extracted.triangles, before);
+    assert_true(surfaces.mesh.triangle_count < before);
+    const cw_pipeline_desc wrong = {.largest = 1};
+    assert_fails(cw_pipeline_run_labels(&labels, &wrong, (cw_pipeline_sink){compare_label, &t},
+                                        NULL, &err),
+                 CW_ERR_ARGUMENT, "largest is for a single surface", err);
+    cw_label_surfaces_free(&surfaces);
+    cw_label_surfaces_free(&expected);
 }
 
 /* --- rules ---------------------------------------------------------------------------------- */
@@ -379,6 +445,7 @@ int main(void)
                                         test_folder_remove),
         cmocka_unit_test(levels_are_given_away_one_by_one),
         cmocka_unit_test(stages_run_in_the_order_of_the_table),
+        cmocka_unit_test(labels_are_simplified_together_and_given_away_apart),
         cmocka_unit_test(sources_exclude_what_they_cannot_give),
         cmocka_unit_test(stages_exclude_each_other),
         cmocka_unit_test(an_empty_surface_tells_the_range),
