@@ -190,10 +190,9 @@ CW_NODISCARD CW_API cw_status cw_pipeline_run_slices(const cw_slice_source *sour
 
 /* The interfaces of label maps, and the labels whose surfaces are to be finished. */
 typedef struct cw_pipeline_labels {
-    cw_label_surfaces *const
-        *layers; /* layer_count, such as of cw_extract_labels(): several where
-                                         labels overlap. They are simplified in place */
-    size_t layer_count;
+    /* layer_count, such as of cw_extract_labels(); they are simplified in place */
+    cw_label_surfaces *const *layers;
+    size_t layer_count; /* 1, or more where labels overlap */
     bool apart; /* simplify each label by itself: interfaces then part. Default: together */
     bool interfaces_only; /* stop when the interfaces are finished: no surface is given away */
     /* Returns false for labels that are left out. Default: none is */

@@ -47,7 +47,20 @@ static void no_command_has_a_name_or_a_letter_twice(void **state)
     }
 }
 
-/* Checks each name of a list: NAME, no-NAME of a flag, or NAME=VALUE of a choice. */
+/* Returns true if an option prints a value as it was typed, so that a rule can name it. */
+static bool has_value(const cli_option *o, const char *value)
+{
+    char field[256] = "", text[256] = "";
+    assert_true(o->kind->size <= sizeof field);
+    if (o->kind == CLI_CHOICE)
+        return cli_value_fits(o, value);
+    if (!o->kind->parse || !o->kind->print || !o->kind->parse(o, value, field))
+        return false;
+    o->kind->print(o, field, text, sizeof text);
+    return strcmp(text, value) == 0;
+}
+
+/* Checks each name of a list: NAME, no-NAME of a flag, or NAME=VALUE. */
 static void check_names(const cli_command *c, const char *names)
 {
     char list[512], *next = list;
@@ -61,8 +74,8 @@ static void check_names(const cli_command *c, const char *names)
             fail_msg("%s has no option '%s', which a rule names", c->name, name);
         else if (o && is_off && o->kind != CLI_FLAG)
             fail_msg("%s: '%s' is of no flag", c->name, name);
-        else if (o && value && (o->kind != CLI_CHOICE || !cli_value_fits(o, value)))
-            fail_msg("%s: --%s has no choice '%s'", c->name, name, value);
+        else if (o && value && !has_value(o, value))
+            fail_msg("%s: --%s has no value '%s'", c->name, name, value);
     }
 }
 
