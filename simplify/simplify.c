@@ -5,8 +5,8 @@
 #include "core/base/memory.h"
 #include "core/base/module.h"
 #include "core/base/status.h"
+#include "core/mesh/attribute_transfer.h"
 #include "core/mesh/mesh.h"
-#include "simplify/attribute_transfer.h"
 #include "simplify/attribute_weights.h"
 #include "simplify/blocks/block_passes.h"
 #include "simplify/blocks/partition.h"
@@ -158,7 +158,7 @@ static cw_status simplify_levels(const cw_mesh *mesh, const cw_simplify_desc *de
         st = cwi_finish_mesh(mesh, left + n, out + n, err);
         cwi_block_free(left + n);
         if (st == CW_OK)
-            st = cwi_carry(mesh, desc->threads, &p.poll, out + n, err);
+            st = cwi_carry(mesh, NULL, desc->threads, &p.poll, out + n, err);
         if (st == CW_OK && facts)
             facts[n] = (cw_simplify_facts){.vertices = out[n].vertex_count,
                                            .triangles = out[n].triangle_count,

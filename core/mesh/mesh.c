@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/box.h"
+#include "core/mesh/mesh_attributes.h"
 
 #include <math.h>
 #include <string.h>
@@ -38,32 +39,19 @@ cw_status cwi_mesh_alloc(cw_mesh *mesh, size_t vertices, size_t triangles, bool 
     return cwi_mesh_renew(mesh, vertices, triangles, normals, err);
 }
 
-/* Copies an array; the copy of NULL is NULL. Sets *failed when memory is out. */
-static void *copy_array(const void *array, size_t count, size_t size, bool *failed)
-{
-    void *copy = array ? cwi_alloc_large(count, size) : NULL;
-    if (copy && count)
-        memcpy(copy, array, count * size);
-    *failed = *failed || (array && !copy);
-    return copy;
-}
-
 cw_status cwi_mesh_copy(const cw_mesh *mesh, cw_mesh *copy, cw_error *err)
 {
     const size_t vertices = mesh->vertex_count, triangles = mesh->triangle_count;
-    bool failed = false;
-    *copy = *mesh;
-    copy->positions = copy_array(mesh->positions, vertices, 3 * sizeof(float), &failed);
-    copy->normals = copy_array(mesh->normals, vertices, 3 * sizeof(float), &failed);
-    copy->triangles = copy_array(mesh->triangles, triangles, 3 * sizeof(uint32_t), &failed);
-    copy->scalars = copy_array(mesh->scalars, vertices, sizeof(float), &failed);
-    copy->colors = copy_array(mesh->colors, vertices, 4, &failed);
-    copy->labels = copy_array(mesh->labels, vertices, sizeof(uint32_t), &failed);
-    if (!failed)
-        return CW_OK;
-    cw_mesh_free(copy);
-    return cwi_fail(err, CW_ERR_NO_MEMORY,
-                    "no memory for a mesh of %zu vertices, %zu triangles", vertices, triangles);
+    cw_status st = cwi_mesh_alloc(copy, vertices, triangles, false, err);
+    if (st != CW_OK)
+        return st;
+    memcpy(copy->origin, mesh->origin, sizeof copy->origin);
+    memcpy(copy->affine, mesh->affine, sizeof copy->affine);
+    if (vertices)
+        memcpy(copy->positions, mesh->positions, 3 * vertices * sizeof *copy->positions);
+    if (triangles)
+        memcpy(copy->triangles, mesh->triangles, 3 * triangles * sizeof *copy->triangles);
+    return cwi_attributes_copy(mesh, copy, err);
 }
 
 void cw_mesh_free(cw_mesh *mesh)
@@ -71,11 +59,8 @@ void cw_mesh_free(cw_mesh *mesh)
     if (!mesh)
         return;
     cwi_free(mesh->positions);
-    cwi_free(mesh->normals);
     cwi_free(mesh->triangles);
-    cwi_free(mesh->scalars);
-    cwi_free(mesh->colors);
-    cwi_free(mesh->labels);
+    cwi_attributes_free(mesh);
     memset(mesh, 0, sizeof *mesh);
 }
 

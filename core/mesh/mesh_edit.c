@@ -5,6 +5,7 @@
 #include "core/geometry/union_find.h"
 #include "core/mesh/enclosed_volume.h"
 #include "core/mesh/mesh.h"
+#include "core/mesh/mesh_attributes.h"
 #include "core/mesh/weld.h"
 
 #include <cubewright/mesh.h>
@@ -12,26 +13,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Moves element v of each array to number[v], if it has one; numbers are rising. */
-static void move_vertices(cw_mesh *m, const uint32_t *number, size_t count)
-{
-    for (size_t v = 0; v < m->vertex_count; v++) {
-        const size_t to = number[v];
-        if (number[v] == UINT32_MAX || to == v)
-            continue;
-        memcpy(m->positions + 3 * to, m->positions + 3 * v, 3 * sizeof *m->positions);
-        if (m->normals)
-            memcpy(m->normals + 3 * to, m->normals + 3 * v, 3 * sizeof *m->normals);
-        if (m->colors)
-            memcpy(m->colors + 4 * to, m->colors + 4 * v, 4 * sizeof *m->colors);
-        if (m->scalars)
-            m->scalars[to] = m->scalars[v];
-        if (m->labels)
-            m->labels[to] = m->labels[v];
-    }
-    m->vertex_count = count;
-}
 
 /* Leaves out the vertices that no triangle names; number has room for all. */
 static void drop_unused(cw_mesh *m, uint32_t *number)
@@ -45,7 +26,7 @@ static void drop_unused(cw_mesh *m, uint32_t *number)
             number[v] = count++;
     for (size_t c = 0; c < 3 * m->triangle_count; c++)
         m->triangles[c] = number[m->triangles[c]];
-    move_vertices(m, number, count);
+    cwi_mesh_move_vertices(m, number, count);
 }
 
 cw_status cwi_mesh_drop_marked(cw_mesh *mesh, const bool *marked, cw_error *err)
@@ -57,8 +38,7 @@ cw_status cwi_mesh_drop_marked(cw_mesh *mesh, const bool *marked, cw_error *err)
                         mesh->vertex_count);
     for (size_t t = 0; t < mesh->triangle_count; t++)
         if (!marked[t])
-            memmove(mesh->triangles + 3 * kept++, mesh->triangles + 3 * t,
-                    3 * sizeof *mesh->triangles);
+            cwi_mesh_move_triangle(mesh, t, kept++);
     mesh->triangle_count = kept;
     drop_unused(mesh, number);
     cwi_free(number);
@@ -81,10 +61,11 @@ cw_status cw_mesh_weld(cw_mesh *mesh, size_t *merged, cw_error *err)
     for (size_t v = 0; v < mesh->vertex_count; v++)
         count += map[v] != v;
     for (size_t t = 0; t < mesh->triangle_count; t++) {
-        const uint32_t *from = mesh->triangles + 3 * t;
-        const uint32_t c[3] = {map[from[0]], map[from[1]], map[from[2]]};
+        uint32_t *c = mesh->triangles + 3 * t;
+        for (int k = 0; k < 3; k++)
+            c[k] = map[c[k]];
         if (c[0] != c[1] && c[1] != c[2] && c[2] != c[0])
-            memcpy(mesh->triangles + 3 * kept++, c, sizeof c);
+            cwi_mesh_move_triangle(mesh, t, kept++);
     }
     mesh->triangle_count = kept;
     drop_unused(mesh, map);
@@ -236,7 +217,7 @@ static void drop_components(cw_mesh *mesh, components *c, cw_drop_counts *counts
         c->met[set] = true;
         counts->triangles += !keep;
         if (keep)
-            memmove(mesh->triangles + 3 * triangles++, corners, 3 * sizeof *corners);
+            cwi_mesh_move_triangle(mesh, t, triangles++);
     }
     if (c->sums)
         counts->dropped_mm3 = cwi_volume_mm3(&c->unit, dropped);

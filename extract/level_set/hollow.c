@@ -1,5 +1,6 @@
 /* Hollows a solid: offsets its surface inward by the wall's thickness, and carves drains from
  * the cavity outward. */
+#include "core/mesh/mesh_attributes.h"
 #include "core/mesh/mesh_triangle.h"
 #include "extract/level_set/level_set.h"
 
@@ -243,31 +244,16 @@ static cw_status place_rays(hollowing *h, cw_error *err)
 /* Appends the cavities' surfaces, turned inside out, to the mesh. */
 static cw_status join_surfaces(const hollowing *h, cw_mesh *out, cw_error *err)
 {
-    const cw_mesh *m = h->mesh, *in = &h->inner;
-    const size_t v = m->vertex_count, t = m->triangle_count;
-    if (v + in->vertex_count > UINT32_MAX)
-        return cwi_fail(err, CW_ERR_LIMIT, "the result has %zu vertices; a mesh holds %u",
-                        v + in->vertex_count, UINT32_MAX);
-    cw_status st =
-        cwi_mesh_alloc(out, v + in->vertex_count, t + in->triangle_count, m->normals, err);
+    const size_t v = h->mesh->vertex_count, t = h->mesh->triangle_count;
+    cw_status st = cwi_mesh_copy(h->mesh, out, err);
+    if (st == CW_OK)
+        st = cwi_mesh_append(out, &h->inner, err);
     if (st != CW_OK)
         return st;
-    memcpy(out->origin, m->origin, sizeof out->origin);
-    memcpy(out->affine, m->affine, sizeof out->affine);
-    memcpy(out->positions, m->positions, 3 * v * sizeof *out->positions);
-    memcpy(out->triangles, m->triangles, 3 * t * sizeof *out->triangles);
-    if (m->normals)
-        memcpy(out->normals, m->normals, 3 * v * sizeof *out->normals);
-    for (size_t n = 0; n < in->vertex_count; n++)
-        for (size_t a = 0; a < 3; a++) {
-            const double at = (double)in->positions[3 * n + a] + (in->origin[a] - m->origin[a]);
-            out->positions[3 * (v + n) + a] = (float)at;
-            if (m->normals)
-                out->normals[3 * (v + n) + a] = -in->normals[3 * n + a];
-        }
-    for (size_t n = 0; n < in->triangle_count; n++)
-        for (size_t c = 0; c < 3; c++)
-            out->triangles[3 * (t + n) + c] = (uint32_t)v + in->triangles[3 * n + 2 - c];
+    for (size_t n = t; n < out->triangle_count; n++)
+        cwi_mesh_swap_corners(out, n, 0, 2);
+    for (size_t n = 3 * v; n < 3 * out->vertex_count && out->normals; n++)
+        out->normals[n] = -out->normals[n];
     return CW_OK;
 }
 

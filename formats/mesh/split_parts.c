@@ -4,6 +4,8 @@
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "core/geometry/union_find.h"
+#include "core/mesh/mesh.h"
+#include "core/mesh/mesh_attributes.h"
 #include "formats/mesh/place_parts.h"
 
 static const uint32_t NONE = UINT32_MAX;
@@ -75,49 +77,31 @@ static void count_elements(split *s)
             s->new[v] = (uint32_t)s->held[s->part_of[s->run_of[v]]].mesh.vertex_count++;
 }
 
-/* Allocates the arrays that the whole has. */
-static bool make_arrays(const cw_mesh *whole, cw_mesh *m)
+static void copy_vertex(const split *s, size_t v)
 {
-    const size_t n = m->vertex_count;
-    m->positions = cwi_alloc_array(n, 3 * sizeof *m->positions);
-    m->triangles = cwi_alloc_array(m->triangle_count, 3 * sizeof *m->triangles);
-    m->normals = whole->normals ? cwi_alloc_array(n, 3 * sizeof *m->normals) : NULL;
-    m->colors = whole->colors ? cwi_alloc_array(n, 4) : NULL;
-    m->scalars = whole->scalars ? cwi_alloc_array(n, sizeof *m->scalars) : NULL;
-    m->labels = whole->labels ? cwi_alloc_array(n, sizeof *m->labels) : NULL;
-    return m->positions && m->triangles && !m->normals == !whole->normals &&
-           !m->colors == !whole->colors && !m->scalars == !whole->scalars &&
-           !m->labels == !whole->labels;
-}
-
-static void copy_vertex(const cw_mesh *from, size_t v, cw_mesh *to, size_t n)
-{
-    memcpy(to->positions + 3 * n, from->positions + 3 * v, 3 * sizeof *to->positions);
-    if (to->normals)
-        memcpy(to->normals + 3 * n, from->normals + 3 * v, 3 * sizeof *to->normals);
-    if (to->colors)
-        memcpy(to->colors + 4 * n, from->colors + 4 * v, 4);
-    if (to->scalars)
-        to->scalars[n] = from->scalars[v];
-    if (to->labels)
-        to->labels[n] = from->labels[v];
+    cw_mesh *to = &s->held[s->part_of[s->run_of[v]]].mesh;
+    const size_t n = s->new[v];
+    memcpy(to->positions + 3 * n, s->whole->positions + 3 * v, 3 * sizeof *to->positions);
+    cwi_attributes_put(s->whole, v, to, n);
 }
 
 static void copy_elements(split *s)
 {
     for (size_t v = 0; v < s->whole->vertex_count; v++)
         if (s->run_of[v] != NONE)
-            copy_vertex(s->whole, v, &s->held[s->part_of[s->run_of[v]]].mesh, s->new[v]);
+            copy_vertex(s, v);
     for (size_t p = 0; p < s->count; p++)
         s->held[p].mesh.triangle_count = 0;
     for (size_t run = 0; run < s->run_count; run++) {
         if (s->part_of[run] == NONE)
             continue;
         cw_mesh *m = &s->held[s->part_of[run]].mesh;
-        uint32_t *to = m->triangles + 3 * m->triangle_count;
-        for (size_t i = 3 * run_start(s, run); i < 3 * run_start(s, run + 1); i++)
-            *to++ = s->new[s->whole->triangles[i]];
-        m->triangle_count += run_start(s, run + 1) - run_start(s, run);
+        for (size_t t = run_start(s, run); t < run_start(s, run + 1); t++) {
+            const uint32_t *from = s->whole->triangles + 3 * t;
+            for (size_t k = 0; k < 3; k++)
+                m->triangles[3 * m->triangle_count + k] = s->new[from[k]];
+            cwi_attributes_put_triangle(s->whole, t, from, m, m->triangle_count++);
+        }
     }
 }
 
@@ -126,10 +110,11 @@ static bool take_apart(split *s)
     count_elements(s);
     for (size_t p = 0; p < s->count; p++) {
         cw_mesh *m = &s->held[p].mesh;
+        if (cwi_mesh_alloc(m, m->vertex_count, m->triangle_count, false, NULL) != CW_OK ||
+            cwi_attributes_alloc(s->whole, m, NULL) != CW_OK)
+            return false;
         memcpy(m->origin, s->whole->origin, sizeof m->origin);
         memcpy(m->affine, s->whole->affine, sizeof m->affine);
-        if (!make_arrays(s->whole, m))
-            return false;
     }
     copy_elements(s);
     return true;
@@ -171,9 +156,11 @@ static bool make_parts(split *s)
 static cw_status limit_memory(const cwi_mesh_input *in, const cw_mesh *m, cw_error *err)
 {
     const uint64_t limit = in->desc.max_bytes;
-    const uint64_t vertex = 12 + (m->normals ? 12 : 0) + (m->colors ? 4 : 0) +
-                            (m->scalars ? 4 : 0) + (m->labels ? 4 : 0) +
-                            sizeof(uint32_t) * 2 /* run_of, new */;
+    uint64_t vertex = 12 + sizeof(uint32_t) * 2 /* run_of, new */;
+    for (size_t n = 0; n < cwi_attribute_count(m); n++) {
+        const cw_attribute row = cwi_attribute_at(m, n);
+        vertex += row.data && row.on == CW_ON_VERTICES ? cwi_attribute_bytes(&row) : 0;
+    }
     const uint64_t bytes = vertex * m->vertex_count + 12 * (uint64_t)m->triangle_count;
     if (!limit || in->marks.count <= 1 || in->bytes + bytes <= limit)
         return CW_OK;

@@ -47,7 +47,8 @@ typedef struct cw_cut_facts {
  *
  * Vertices that stay keep their attributes. New ones take them from the ends of their edge,
  * interpolated, and the label of the nearer end. Normals at the section are halfway between those
- * of the surface and of the section.
+ * of the surface and of the section. Parts of triangles keep what is on triangles, and their new corners
+ * interpolate what is on corners. Both are 0 in the triangles that fill the section.
  *
  * mesh     borrowed
  * desc     borrowed

@@ -105,7 +105,7 @@ typedef struct cw_offset_facts {
  * counted. Edges that are kept to half a voxel are not restored, and there are more triangles
  * there. This takes one to three times the time again. For a mesh that crosses itself or has
  * solids inside solids, only the distance of the result from it is checked. no_sharpen leaves
- * out all of this; no_refine leaves out smaller and divided voxels.
+ * out all of this; no_refine leaves out smaller and divided voxels. Attributes are not kept.
  *
  * out       filled on success, with normals; emptied on failure; free it with cw_mesh_free()
  * facts     may be NULL
@@ -157,7 +157,7 @@ typedef struct cw_hollow_facts {
  * facing inward. With drains everything is rebuilt from the level set: edges and details lose
  * as much as cw_level_set_from_mesh() states. They are not restored as by cw_mesh_offset(),
  * which uses the mesh's own planes. Beside drains and around cavities those are not the planes
- * of the result. Scalars, colours and labels are not kept.
+ * of the result. Other attributes are not kept.
  *
  * out      filled on success, emptied on failure; free it with cw_mesh_free()
  * facts    may be NULL

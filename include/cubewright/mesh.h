@@ -2,11 +2,40 @@
 #ifndef CUBEWRIGHT_MESH_H
 #define CUBEWRIGHT_MESH_H
 
-#include <cubewright/core.h>
+#include <cubewright/volume.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* The elements of a mesh that an attribute has values for. Corner 3 t + k is corner k of triangle t. */
+typedef enum cw_on {
+    CW_ON_VERTICES,
+    CW_ON_CORNERS,
+    CW_ON_TRIANGLES,
+    CW_ON_PARTS, /* one element: a mesh is a part */
+    CW_ON_COUNT
+} cw_on;
+
+/* How a value between others is made of them, by weights. Whole numbers are rounded. */
+typedef enum cw_interpolation {
+    CW_INTERPOLATE_LINEAR,    /* the weighted mean */
+    CW_INTERPOLATE_DIRECTION, /* the mean, then of length 1 */
+    CW_INTERPOLATE_COLOR,     /* the mean of the stored numbers, sRGB as it is */
+    CW_INTERPOLATE_NEAREST, /* the value with the largest weight, the first of equal ones: for ids */
+    CW_INTERPOLATE_COUNT
+} cw_interpolation;
+
+/* Values on the elements of a mesh, under a name. What welds, drops, cuts, repairs, copies and joins
+ * meshes carries them. */
+typedef struct cw_attribute {
+    char name[32];                  /* ends with 0; no two of a mesh have the same */
+    cw_on on;                       /* its elements */
+    cw_type type;                   /* of each number */
+    uint32_t components;            /* numbers of an element: 1 to 4, or 16 */
+    cw_interpolation interpolation; /* between elements */
+    void *data;                     /* elements x components; the mesh frees it */
+} cw_attribute;
 
 /* Vertices and triangles. A zeroed struct is a valid empty mesh.
  *
@@ -14,20 +43,40 @@ extern "C" {
  * are small numbers near zero, so single precision keeps micrometres however far the scan
  * stands from the scanner's zero. Triangles wind counter-clockwise seen from outside. */
 typedef struct cw_mesh {
-    double origin[3];      /* world point that is added to all positions, LPS millimetres */
-    size_t vertex_count;   /* number of vertices */
-    size_t triangle_count; /* number of triangles */
-    float *positions;      /* vertex_count x 3 */
-    float *normals;        /* vertex_count x 3, unit length, outward; or NULL */
-    uint32_t *triangles;   /* triangle_count x 3, each below vertex_count */
-    float *scalars;        /* vertex_count; or NULL */
-    uint8_t *colors;       /* vertex_count x 4, sRGB and linear alpha; or NULL */
-    uint32_t *labels;      /* vertex_count; or NULL */
-    double affine[3][4];   /* of the volume it came from, see cw_volume; all 0: none */
+    double origin[3];         /* world point that is added to all positions, LPS millimetres */
+    size_t vertex_count;      /* number of vertices */
+    size_t triangle_count;    /* number of triangles */
+    float *positions;         /* vertex_count x 3 */
+    float *normals;           /* vertex_count x 3, unit length, outward; or NULL */
+    uint32_t *triangles;      /* triangle_count x 3, each below vertex_count */
+    float *scalars;           /* vertex_count; or NULL */
+    uint8_t *colors;          /* vertex_count x 4, sRGB and linear alpha; or NULL */
+    uint32_t *labels;         /* vertex_count; or NULL */
+    double affine[3][4];      /* of the volume it came from, see cw_volume; all 0: none */
+    cw_attribute *attributes; /* attribute_count more, see cw_mesh_attribute_add() */
+    size_t attribute_count;   /* number of further attributes */
 } cw_mesh;
 
 /* Frees the arrays and zeroes the struct. Harmless on a zeroed or already freed mesh. */
 CW_API void cw_mesh_free(cw_mesh *mesh);
+
+/* Adds an attribute whose values are all 0, for the vertices and triangles that the mesh has.
+ *
+ * mesh     gets one attribute more; unchanged on failure
+ * like     its name, elements, type, components and interpolation; its data is not read. The names
+ *          normals, scalars, colors and labels are those of the mesh's own arrays
+ * out      set to the new row of mesh->attributes, until the next is added or removed; may be NULL
+ * Returns  CW_ERR_ARGUMENT: the name is empty, too long or in use, or a field has no such value;
+ *          CW_ERR_NO_MEMORY */
+CW_NODISCARD CW_API cw_status cw_mesh_attribute_add(cw_mesh *mesh, const cw_attribute *like,
+                                                    cw_attribute **out, cw_error *err);
+
+/* Returns the attribute of this name, or NULL. The mesh's own arrays are not among them. */
+CW_API cw_attribute *cw_mesh_attribute_find(const cw_mesh *mesh, const char *name);
+
+/* Removes the attribute of this name, if there is one, and frees its values.
+ * mesh  has one attribute less then; NULL is allowed */
+CW_API void cw_mesh_attribute_remove(cw_mesh *mesh, const char *name);
 
 /* Checks the properties that other functions rely on: arrays present, every index below
  * vertex_count, positions finite. Returns CW_ERR_ARGUMENT naming the first error. */

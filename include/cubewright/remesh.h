@@ -65,8 +65,9 @@ typedef struct cw_remesh_facts {
  * are any that did not meet before, it is all done again, with half of the freedom around
  * them, up to 4 times. What is left is in the facts.
  *
- * Scalars and colours are interpolated at the closest point of the input, labels are those of the
- * nearest corner there, and normals are computed again by cw_mesh_normals(), if there are any.
+ * Attributes of vertices and corners are interpolated at the closest point of the input, labels are
+ * those of the nearest corner there, and triangles take those of the triangle closest to their middle.
+ * Normals are computed again by cw_mesh_normals(), if there are any.
  *
  * mesh     borrowed; an oriented manifold, open or closed. Vertices at equal positions count as
  *          different ones: weld them first

@@ -71,9 +71,9 @@ CW_API bool cw_repair_has_cgal(void);
  * cross each other are united by CGAL. Around other crossings triangles are removed, and the holes
  * are filled by patches of least area, up to 12 times. At last shells are flipped as by cw_mesh_orient().
  *
- * Vertices that stay keep their position and attributes. New ones take scalars and colours from the
- * closest point of the mesh, interpolated, and the label of the nearest corner there. Normals are
- * computed again by cw_mesh_normals() if there are any.
+ * Vertices and triangles that stay keep their attributes. New vertices take theirs from the closest
+ * point of the mesh, interpolated, and the label of the nearest corner there; new triangles those of
+ * the triangle closest to their middle. Normals are computed again by cw_mesh_normals() if there are any.
  *
  * What is left is in the facts: is_sound says if the result is sound. With wrap_mm a mesh that is not
  * sound is wrapped instead. The wrap is a closed manifold without crossings around everything: gaps

@@ -143,8 +143,8 @@ typedef struct cw_simplify_facts {
  *
  * The result has as many components, handles and border loops as the input. It has no new edge
  * of three triangles. No triangle of the result is without area. None meets another triangle
- * that is not its neighbour, unless triangles of the input did. Scalars, colours, labels and
- * normals are those of the closest point of the input.
+ * that is not its neighbour, unless triangles of the input did. Attributes of vertices and corners are
+ * those of the closest point of the input; triangles take those of the triangle closest to their middle.
  *
  * With triangles or ratio alone the result may have more triangles than requested. That happens
  * where every edge that is left would break one of these rules.

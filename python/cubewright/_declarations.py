@@ -103,6 +103,22 @@ class cw_shape(enum.IntEnum):
     CW_SHAPE_COUNT = 4
 
 
+class cw_on(enum.IntEnum):
+    CW_ON_VERTICES = 0
+    CW_ON_CORNERS = 1
+    CW_ON_TRIANGLES = 2
+    CW_ON_PARTS = 3
+    CW_ON_COUNT = 4
+
+
+class cw_interpolation(enum.IntEnum):
+    CW_INTERPOLATE_LINEAR = 0
+    CW_INTERPOLATE_DIRECTION = 1
+    CW_INTERPOLATE_COLOR = 2
+    CW_INTERPOLATE_NEAREST = 3
+    CW_INTERPOLATE_COUNT = 4
+
+
 class cw_weld(enum.IntEnum):
     CW_WELD_NONE = 0
     CW_WELD_WORLD = 1
@@ -412,84 +428,6 @@ cw_fit_desc._fields_ = [
 ]
 
 
-class cw_mesh(Structure):
-    origin: Any
-    vertex_count: int
-    triangle_count: int
-    positions: Any
-    normals: Any
-    triangles: Any
-    scalars: Any
-    colors: Any
-    labels: Any
-    affine: Any
-
-
-cw_mesh._fields_ = [
-    ("origin", c_double * 3),
-    ("vertex_count", c_size_t),
-    ("triangle_count", c_size_t),
-    ("positions", POINTER(c_float)),
-    ("normals", POINTER(c_float)),
-    ("triangles", POINTER(c_uint32)),
-    ("scalars", POINTER(c_float)),
-    ("colors", POINTER(c_uint8)),
-    ("labels", POINTER(c_uint32)),
-    ("affine", (c_double * 4) * 3),
-]
-
-
-class cw_drop_counts(Structure):
-    dropped: int
-    kept: int
-    triangles: int
-    dropped_mm3: float
-    largest_mm3: float
-    least_kept_mm3: float
-
-
-cw_drop_counts._fields_ = [
-    ("dropped", c_size_t),
-    ("kept", c_size_t),
-    ("triangles", c_size_t),
-    ("dropped_mm3", c_double),
-    ("largest_mm3", c_double),
-    ("least_kept_mm3", c_double),
-]
-
-
-class cw_slab(Structure):
-    mesh: Any
-    seam: Any
-    along: Any
-    low: float
-    high: float
-    triangles: int
-    last: bool
-
-
-cw_slab._fields_ = [
-    ("mesh", POINTER(cw_mesh)),
-    ("seam", POINTER(c_uint8)),
-    ("along", c_double * 3),
-    ("low", c_double),
-    ("high", c_double),
-    ("triangles", c_size_t),
-    ("last", c_bool),
-]
-
-
-class cw_slab_sink(Structure):
-    take: Any
-    user: Any
-
-
-cw_slab_sink._fields_ = [
-    ("take", CFUNCTYPE(c_int, c_void_p, POINTER(cw_slab), POINTER(cw_error))),
-    ("user", c_void_p),
-]
-
-
 class cw_cells(Structure):
     points: Any
     count: int
@@ -634,6 +572,107 @@ cw_statistics._fields_ = [
     ("bin_count", c_size_t),
     ("bin_width", c_double),
     ("bins", POINTER(c_uint64)),
+]
+
+
+class cw_attribute(Structure):
+    name: Any
+    on: int
+    type: int
+    components: int
+    interpolation: int
+    data: Any
+
+
+cw_attribute._fields_ = [
+    ("name", c_char * 32),
+    ("on", c_int),
+    ("type", c_int),
+    ("components", c_uint32),
+    ("interpolation", c_int),
+    ("data", c_void_p),
+]
+
+
+class cw_mesh(Structure):
+    origin: Any
+    vertex_count: int
+    triangle_count: int
+    positions: Any
+    normals: Any
+    triangles: Any
+    scalars: Any
+    colors: Any
+    labels: Any
+    affine: Any
+    attributes: Any
+    attribute_count: int
+
+
+cw_mesh._fields_ = [
+    ("origin", c_double * 3),
+    ("vertex_count", c_size_t),
+    ("triangle_count", c_size_t),
+    ("positions", POINTER(c_float)),
+    ("normals", POINTER(c_float)),
+    ("triangles", POINTER(c_uint32)),
+    ("scalars", POINTER(c_float)),
+    ("colors", POINTER(c_uint8)),
+    ("labels", POINTER(c_uint32)),
+    ("affine", (c_double * 4) * 3),
+    ("attributes", POINTER(cw_attribute)),
+    ("attribute_count", c_size_t),
+]
+
+
+class cw_drop_counts(Structure):
+    dropped: int
+    kept: int
+    triangles: int
+    dropped_mm3: float
+    largest_mm3: float
+    least_kept_mm3: float
+
+
+cw_drop_counts._fields_ = [
+    ("dropped", c_size_t),
+    ("kept", c_size_t),
+    ("triangles", c_size_t),
+    ("dropped_mm3", c_double),
+    ("largest_mm3", c_double),
+    ("least_kept_mm3", c_double),
+]
+
+
+class cw_slab(Structure):
+    mesh: Any
+    seam: Any
+    along: Any
+    low: float
+    high: float
+    triangles: int
+    last: bool
+
+
+cw_slab._fields_ = [
+    ("mesh", POINTER(cw_mesh)),
+    ("seam", POINTER(c_uint8)),
+    ("along", c_double * 3),
+    ("low", c_double),
+    ("high", c_double),
+    ("triangles", c_size_t),
+    ("last", c_bool),
+]
+
+
+class cw_slab_sink(Structure):
+    take: Any
+    user: Any
+
+
+cw_slab_sink._fields_ = [
+    ("take", CFUNCTYPE(c_int, c_void_p, POINTER(cw_slab), POINTER(cw_error))),
+    ("user", c_void_p),
 ]
 
 
@@ -3027,15 +3066,6 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_camera_write": (c_int, [c_char_p, POINTER(cw_camera), POINTER(cw_error)]),
     "cw_camera_parse": (c_int, [c_char_p, POINTER(cw_camera), POINTER(cw_error)]),
     "cw_camera_format": (c_int, [POINTER(cw_camera), POINTER(c_char), POINTER(cw_error)]),
-    "cw_mesh_free": (None, [POINTER(cw_mesh)]),
-    "cw_mesh_check": (c_int, [POINTER(cw_mesh), POINTER(cw_error)]),
-    "cw_mesh_bounds": (c_bool, [POINTER(cw_mesh), POINTER(c_double), POINTER(c_double)]),
-    "cw_mesh_normals": (c_int, [POINTER(cw_mesh), POINTER(cw_error)]),
-    "cw_mesh_weld": (c_int, [POINTER(cw_mesh), POINTER(c_size_t), POINTER(cw_error)]),
-    "cw_mesh_drop_components": (c_int, [POINTER(cw_mesh), c_double, POINTER(c_size_t), POINTER(c_size_t), POINTER(cw_error)]),
-    "cw_mesh_drop_volumes": (c_int, [POINTER(cw_mesh), c_double, POINTER(cw_drop_counts), POINTER(cw_error)]),
-    "cw_mesh_keep_largest": (c_int, [POINTER(cw_mesh), c_size_t, POINTER(cw_drop_counts), POINTER(cw_error)]),
-    "cw_mesh_drop_distant": (c_int, [POINTER(cw_mesh), POINTER(c_float), c_double, POINTER(cw_drop_counts), POINTER(c_double), POINTER(cw_error)]),
     "cw_type_size": (c_size_t, [c_int]),
     "cw_type_name": (c_char_p, [c_int]),
     "cw_volume_alloc": (c_int, [POINTER(cw_volume), c_int, POINTER(c_size_t), c_size_t, c_size_t, POINTER(cw_error)]),
@@ -3058,6 +3088,18 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_statistics_free": (None, [POINTER(cw_statistics)]),
     "cw_statistics_join": (c_int, [POINTER(cw_statistics), c_size_t, c_size_t, POINTER(cw_statistics), POINTER(cw_error)]),
     "cw_statistics_otsu": (c_bool, [POINTER(cw_statistics), c_int, POINTER(c_double)]),
+    "cw_mesh_free": (None, [POINTER(cw_mesh)]),
+    "cw_mesh_attribute_add": (c_int, [POINTER(cw_mesh), POINTER(cw_attribute), POINTER(POINTER(cw_attribute)), POINTER(cw_error)]),
+    "cw_mesh_attribute_find": (POINTER(cw_attribute), [POINTER(cw_mesh), c_char_p]),
+    "cw_mesh_attribute_remove": (None, [POINTER(cw_mesh), c_char_p]),
+    "cw_mesh_check": (c_int, [POINTER(cw_mesh), POINTER(cw_error)]),
+    "cw_mesh_bounds": (c_bool, [POINTER(cw_mesh), POINTER(c_double), POINTER(c_double)]),
+    "cw_mesh_normals": (c_int, [POINTER(cw_mesh), POINTER(cw_error)]),
+    "cw_mesh_weld": (c_int, [POINTER(cw_mesh), POINTER(c_size_t), POINTER(cw_error)]),
+    "cw_mesh_drop_components": (c_int, [POINTER(cw_mesh), c_double, POINTER(c_size_t), POINTER(c_size_t), POINTER(cw_error)]),
+    "cw_mesh_drop_volumes": (c_int, [POINTER(cw_mesh), c_double, POINTER(cw_drop_counts), POINTER(cw_error)]),
+    "cw_mesh_keep_largest": (c_int, [POINTER(cw_mesh), c_size_t, POINTER(cw_drop_counts), POINTER(cw_error)]),
+    "cw_mesh_drop_distant": (c_int, [POINTER(cw_mesh), POINTER(c_float), c_double, POINTER(cw_drop_counts), POINTER(c_double), POINTER(cw_error)]),
     "cw_distance_to_field": (c_int, [POINTER(cw_mesh), POINTER(cw_volume), POINTER(cw_field_distance_desc), POINTER(cw_distance), POINTER(c_float), POINTER(cw_error)]),
     "cw_distance_to_mesh": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), POINTER(cw_mesh_distance_desc), POINTER(cw_distance), POINTER(c_float), POINTER(cw_error)]),
     "cw_mesh_compare": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), POINTER(cw_mesh_distance_desc), POINTER(cw_mesh_comparison), POINTER(cw_error)]),

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _declarations as c
+from ._attributes import Attributes
 from ._errors import call
 from ._library import lib
 from ._memory import Owner, find_address, lend_array
@@ -41,6 +42,7 @@ class Mesh:
 
     _struct: c.cw_mesh
     _owner: object
+    _attributes: Attributes | None
 
     def __init__(self) -> None:
         raise TypeError("a mesh is made by extract(), read_mesh() or Mesh.from_arrays()")
@@ -51,6 +53,7 @@ class Mesh:
         mesh = cls.__new__(cls)
         mesh._struct = struct
         mesh._owner = Owner(struct, lib.cw_mesh_free) if owner is None else owner
+        mesh._attributes = None
         return mesh
 
     @classmethod
@@ -135,6 +138,13 @@ class Mesh:
         return self._array("labels")
 
     @property
+    def attributes(self) -> Attributes:
+        """Further attributes, name -> array of (rows, components); may be set."""
+        if self._attributes is None:
+            self._attributes = Attributes(self._struct, self._owner)
+        return self._attributes
+
+    @property
     def origin(self) -> npt.NDArray[np.float64]:
         """(3,) world point to which vertices are relative; writing to it moves the mesh."""
         return np.ctypeslib.as_array(self._struct.origin)
@@ -161,6 +171,7 @@ class Mesh:
         arrays = {name: np.array(value) for name in ARRAYS if (value := self._array(name)) is not None}
         copied = Mesh.from_arrays(**arrays, origin=self.origin)
         copied._struct.affine = self._struct.affine
+        copied.attributes.update_from(self.attributes)
         return copied
 
     def to_trimesh(self) -> Any:

@@ -60,6 +60,12 @@ bool cwi_cut_add_triangle(cwi_cut *c, uint32_t a, uint32_t b, uint32_t d)
     if (!room)
         return false;
     c->triangles = room;
+    room =
+        cwi_cut_reserve(c->parents, c->triangle_count, &c->parent_capacity, sizeof *c->parents);
+    if (!room)
+        return false;
+    c->parents = room;
+    c->parents[c->triangle_count] = c->parent;
     memcpy(c->triangles + 3 * c->triangle_count++, corners, sizeof corners);
     return true;
 }
@@ -315,6 +321,7 @@ static bool clip_triangles(clip_work *w)
             numbers[k] = w->numbers[corners[k]];
         }
         c->facts.dropped_triangles += !kept;
+        c->parent = (uint32_t)t;
         if (!add_flat_edges(w, corners, numbers, kept))
             return false;
         if (kept)
@@ -323,6 +330,7 @@ static bool clip_triangles(clip_work *w)
         if (!ok)
             return false;
     }
+    c->parent = UINT32_MAX;
     return true;
 }
 

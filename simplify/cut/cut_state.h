@@ -36,6 +36,9 @@ typedef struct cwi_cut {
     bool has_unused;  /* vertices have merged: some are in no triangle */
     uint32_t *triangles;
     size_t triangle_count, triangle_capacity;
+    uint32_t *parents; /* of triangles: that of the mesh it is a part of; UINT32_MAX: of none */
+    size_t parent_capacity;
+    uint32_t parent;     /* of triangles that are added now */
     cwi_cut_edge *edges; /* of the section */
     size_t edge_count, edge_capacity;
 

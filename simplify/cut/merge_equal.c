@@ -150,8 +150,10 @@ static void drop_collapsed(cwi_cut *c)
     size_t kept = 0;
     for (size_t t = 0; t < c->triangle_count; t++) {
         const uint32_t *v = c->triangles + 3 * t;
-        if (v[0] != v[1] && v[1] != v[2] && v[2] != v[0])
-            memmove(c->triangles + 3 * kept++, v, 3 * sizeof *v);
+        if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0])
+            continue;
+        c->parents[kept] = c->parents[t];
+        memmove(c->triangles + 3 * kept++, v, 3 * sizeof *v);
     }
     c->triangle_count = kept;
     kept = 0;

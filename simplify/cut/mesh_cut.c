@@ -4,6 +4,7 @@
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
 #include "core/mesh/mesh.h"
+#include "core/mesh/mesh_attributes.h"
 #include "simplify/cut/cut_state.h"
 
 #include <string.h>
@@ -85,26 +86,6 @@ static bool find_sides(cwi_cut *c, bool has[3])
 
 /* --- the result --------------------------------------------------------------------------- */
 
-/* Makes arrays of the attributes that the mesh has. */
-static cw_status alloc_result(const cwi_cut *c, cw_mesh *out, cw_error *err)
-{
-    const cw_mesh *m = c->mesh;
-    const size_t count = c->vertex_count;
-    cw_status st = cwi_mesh_alloc(out, count, c->triangle_count, m->normals != NULL, err);
-    if (st != CW_OK)
-        return st;
-    memcpy(out->origin, m->origin, sizeof out->origin);
-    memcpy(out->affine, m->affine, sizeof out->affine);
-    out->scalars = m->scalars ? cwi_alloc_array(count, sizeof *out->scalars) : NULL;
-    out->colors = m->colors ? cwi_alloc_array(count, 4 * sizeof *out->colors) : NULL;
-    out->labels = m->labels ? cwi_alloc_array(count, sizeof *out->labels) : NULL;
-    if ((m->scalars && !out->scalars) || (m->colors && !out->colors) ||
-        (m->labels && !out->labels))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for attributes of %zu vertices",
-                        count);
-    return CW_OK;
-}
-
 /* Sets a vertex' normal: at a filled section halfway to the normal of the section. */
 static void set_normal(const cwi_cut *c, const cwi_cut_source *s, bool halfway, float *normal)
 {
@@ -123,36 +104,45 @@ static void set_normal(const cwi_cut *c, const cwi_cut_source *s, bool halfway, 
 
 static void set_attributes(const cwi_cut *c, size_t n, cw_mesh *out)
 {
-    const cw_mesh *m = c->mesh;
     const cwi_cut_source *s = c->sources + n;
-    const size_t a = s->a, b = s->b;
-    const bool is_same = a == b;
-    if (m->normals && is_same && !c->is_section[n])
-        memcpy(out->normals + 3 * n, m->normals + 3 * a, 3 * sizeof *m->normals);
-    else if (m->normals)
+    if (s->a == s->b)
+        cwi_attributes_put(c->mesh, s->a, out, n);
+    else
+        cwi_attributes_mix(c->mesh, (const uint32_t[2]){s->a, s->b},
+                           (const double[2]){1 - s->t, s->t}, 2, out, n);
+    if (c->mesh->normals && (s->a != s->b || c->is_section[n]))
         set_normal(c, s, !c->desc.leave_open, out->normals + 3 * n);
-    if (m->scalars)
-        out->scalars[n] =
-            is_same
-                ? m->scalars[a]
-                : (float)((double)m->scalars[a] * (1 - s->t) + (double)m->scalars[b] * s->t);
-    for (size_t k = 0; k < 4 && m->colors; k++)
-        out->colors[4 * n + k] =
-            (uint8_t)(m->colors[4 * a + k] * (1 - s->t) + m->colors[4 * b + k] * s->t + 0.5);
-    if (m->labels)
-        out->labels[n] = m->labels[s->t < 0.5 ? a : b];
+}
+
+/* Gives triangles the attributes of those that they are parts of; those of the section keep 0. */
+static void set_triangle_attributes(const cwi_cut *c, cw_mesh *out)
+{
+    for (size_t t = 0; t < out->triangle_count; t++) {
+        uint32_t same[3];
+        for (size_t k = 0; k < 3; k++) {
+            const cwi_cut_source *s = c->sources + out->triangles[3 * t + k];
+            same[k] = s->a == s->b ? s->a : UINT32_MAX;
+        }
+        if (c->parents[t] != UINT32_MAX)
+            cwi_attributes_put_triangle(c->mesh, c->parents[t], same, out, t);
+    }
 }
 
 static cw_status make_result(const cwi_cut *c, cw_mesh *out, cw_error *err)
 {
-    cw_status st = alloc_result(c, out, err);
+    cw_status st = cwi_mesh_alloc(out, c->vertex_count, c->triangle_count, false, err);
+    if (st == CW_OK)
+        st = cwi_attributes_alloc(c->mesh, out, err);
     if (st != CW_OK)
         return st;
+    memcpy(out->origin, c->mesh->origin, sizeof out->origin);
+    memcpy(out->affine, c->mesh->affine, sizeof out->affine);
     memcpy(out->positions, c->positions, 3 * c->vertex_count * sizeof *c->positions);
     memcpy(out->triangles, c->triangles, 3 * c->triangle_count * sizeof *c->triangles);
     for (size_t n = 0; n < c->vertex_count; n++)
         if (c->sources[n].a != UINT32_MAX)
             set_attributes(c, n, out);
+    set_triangle_attributes(c, out);
     if (!c->has_unused)
         return CW_OK;
     bool *marked = cwi_alloc_zeroed(out->triangle_count, sizeof *marked);
@@ -205,6 +195,7 @@ cw_status cw_mesh_cut(const cw_mesh *mesh, const cw_cut_desc *desc, cw_mesh *out
     cwi_free(c.positions);
     cwi_free(c.is_section);
     cwi_free(c.triangles);
+    cwi_free(c.parents);
     cwi_free(c.edges);
     cwi_free(c.loop_vertices);
     cwi_free(c.loop_ends);

@@ -3,14 +3,8 @@
 
 #include "core/base/status.h"
 #include "core/geometry/union_find.h"
+#include "core/mesh/mesh_attributes.h"
 #include "core/mesh/mesh_triangle.h"
-
-static void turn_triangle(uint32_t *corner)
-{
-    const uint32_t second = corner[1];
-    corner[1] = corner[2];
-    corner[2] = second;
-}
 
 /* Whether the normals at a triangle's corners point to the side from which it is seen to wind
  * counter-clockwise. */
@@ -63,7 +57,7 @@ static void turn_shells(work *w, cw_orient_counts *counts)
     for (size_t t = 0; t < m->triangle_count; t++)
         if (w->turn[t]) {
             w->turned[cwi_sets_find(w->shell, m->triangles[3 * t])] = 1;
-            turn_triangle(m->triangles + 3 * t);
+            cwi_mesh_swap_corners(w->mesh, t, 1, 2);
             counts->triangles++;
         }
     turn_normals(w);

@@ -3,7 +3,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
-#include "simplify/attribute_transfer.h"
+#include "core/mesh/attribute_transfer.h"
 #include "simplify/remesh/remesh_state.h"
 
 #include <cubewright/quality.h>
@@ -274,7 +274,7 @@ static cw_status finish_result(const cwi_remesh *r, const cw_mesh *mesh, cw_mesh
     cw_mesh from = *r->input;
     from.normals = NULL;
     const cw_progress none = {0};
-    cw_status st = cwi_carry(&from, r->desc.threads, &none, out, err);
+    cw_status st = cwi_carry(&from, NULL, r->desc.threads, &none, out, err);
     return st == CW_OK && mesh->normals ? cw_mesh_normals(out, err) : st;
 }
 

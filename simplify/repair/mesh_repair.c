@@ -2,6 +2,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/closest_point.h"
+#include "core/mesh/attribute_transfer.h"
 #include "core/mesh/mesh.h"
 #include "simplify/repair/repair_state.h"
 
@@ -51,9 +52,14 @@ static cw_status begin_step(cwi_repair *r, double until, cw_error *err)
 }
 
 /* Copies and welds the mesh. The copy of the repair has the numbers of its vertices in place of
- * labels. */
+ * labels, and those of its triangles as an attribute. */
 static cw_status copy_input(cwi_repair *r, const cw_mesh *mesh, cw_mesh *input, cw_error *err)
 {
+    const cw_attribute source = {.name = "source",
+                                 .on = CW_ON_TRIANGLES,
+                                 .type = CW_U32,
+                                 .components = 1,
+                                 .interpolation = CW_INTERPOLATE_NEAREST};
     const size_t triangles = mesh->triangle_count;
     cw_status st = cwi_mesh_copy(mesh, input, err);
     if (st == CW_OK)
@@ -64,11 +70,14 @@ static cw_status copy_input(cwi_repair *r, const cw_mesh *mesh, cw_mesh *input, 
         return st;
     r->facts.degenerate = triangles - input->triangle_count;
     r->input = input;
-    r->mesh.vertex_count = r->mesh.triangle_count = 0;
-    st = cwi_repair_append(r, input->positions, input->vertex_count, input->triangles,
-                           input->triangle_count, err);
+    st = cw_mesh_attribute_add(&r->mesh, &source, NULL, err);
+    if (st == CW_OK)
+        st = cwi_repair_append(r, input->positions, input->vertex_count, input->triangles,
+                               input->triangle_count, err);
     for (uint32_t v = 0; v < r->mesh.vertex_count && st == CW_OK; v++)
         r->mesh.labels[v] = v;
+    for (uint32_t t = 0; t < r->mesh.triangle_count && st == CW_OK; t++)
+        ((uint32_t *)r->mesh.attributes->data)[t] = t;
     return st;
 }
 
@@ -179,71 +188,6 @@ static bool is_repair_needed(const cw_repair_facts *f)
            f->holes_filled || f->holes_left || f->crossings_before || f->is_undecided;
 }
 
-static cw_status alloc_attributes(const cw_mesh *input, cw_mesh *out, cw_error *err)
-{
-    const size_t count = out->vertex_count;
-    if (input->scalars)
-        out->scalars = cwi_alloc_array(count, sizeof *out->scalars);
-    if (input->colors)
-        out->colors = cwi_alloc_array(count, 4);
-    if (input->labels)
-        out->labels = cwi_alloc_array(count, sizeof *out->labels);
-    return (input->scalars && !out->scalars) || (input->colors && !out->colors) ||
-                   (input->labels && !out->labels)
-               ? cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the attributes of %zu vertices",
-                          count)
-               : CW_OK;
-}
-
-/* Gives a vertex the attributes of three others, by weights. */
-static void mix_attributes(const cw_mesh *input, const uint32_t from[3], const double weight[3],
-                           cw_mesh *out, size_t v)
-{
-    const int nearest = weight[0] >= weight[1] && weight[0] >= weight[2] ? 0
-                        : weight[1] >= weight[2]                         ? 1
-                                                                         : 2;
-    if (input->labels)
-        out->labels[v] = input->labels[from[nearest]];
-    if (input->scalars) {
-        double sum = 0;
-        for (int k = 0; k < 3; k++)
-            sum += weight[k] > 0 ? weight[k] * (double)input->scalars[from[k]] : 0;
-        out->scalars[v] = (float)sum;
-    }
-    for (size_t a = 0; a < 4 && input->colors; a++) {
-        double sum = 0;
-        for (int k = 0; k < 3; k++)
-            sum += weight[k] * input->colors[4 * (size_t)from[k] + a];
-        out->colors[4 * v + a] = (uint8_t)lrint(fmin(fmax(sum, 0), 255));
-    }
-}
-
-/* Sets the attributes of all vertices: those of the input keep theirs, new ones take them from the
- * closest point. */
-static cw_status carry_attributes(const cwi_repair *r, cw_mesh *out, cw_error *err)
-{
-    const cw_mesh *input = r->input;
-    cwi_boxes tree = {0};
-    cw_status st = alloc_attributes(input, out, err);
-    if (st != CW_OK || !(input->scalars || input->colors || input->labels))
-        return st;
-    st = cwi_closest_build(input, &tree, err);
-    for (size_t v = 0; v < out->vertex_count && st == CW_OK; v++) {
-        const uint32_t source = r->mesh.labels[v], same[3] = {source, source, source};
-        if (source != CWI_NEW) {
-            mix_attributes(input, same, (const double[3]){1, 0, 0}, out, v);
-            continue;
-        }
-        double point[3];
-        for (size_t a = 0; a < 3; a++)
-            point[a] = (double)r->mesh.positions[3 * v + a];
-        const cwi_closest near = cwi_closest_find(input, &tree, point);
-        mix_attributes(input, input->triangles + 3 * near.triangle, near.share, out, v);
-    }
-    cwi_boxes_free(&tree);
-    return st;
-}
-
 static cw_status make_result(cwi_repair *r, const cw_mesh *mesh, cw_mesh *out, cw_error *err)
 {
     cw_status st =
@@ -254,7 +198,11 @@ static cw_status make_result(cwi_repair *r, const cw_mesh *mesh, cw_mesh *out, c
     memcpy(out->affine, mesh->affine, sizeof out->affine);
     memcpy(out->positions, r->mesh.positions, 3 * out->vertex_count * sizeof *out->positions);
     memcpy(out->triangles, r->mesh.triangles, 3 * out->triangle_count * sizeof *out->triangles);
-    st = carry_attributes(r, out, err);
+    cw_mesh from = *r->input;
+    from.normals = NULL;
+    const cwi_sources sources = {r->mesh.labels, r->mesh.attributes->data};
+    const cw_progress none = {0};
+    st = cwi_carry(&from, &sources, r->desc.threads, &none, out, err);
     return st == CW_OK && mesh->normals ? cw_mesh_normals(out, err) : st;
 }
 

@@ -7,13 +7,14 @@
 
 #include <cubewright/repair.h>
 
-#define CWI_NEW UINT32_MAX /* the source of a vertex that the input does not have */
+#define CWI_NEW UINT32_MAX /* the source of what the input does not have */
 
 /* Smoothness of patches: later rounds take plainer ones, which cross less. */
 typedef enum cwi_patch_kind { CWI_PATCH_FAIR, CWI_PATCH_FLAT, CWI_PATCH_PLAIN } cwi_patch_kind;
 
 typedef struct cwi_repair {
     cw_mesh mesh; /* positions and triangles. labels: the vertex of the input, or CWI_NEW.
+                             attributes[0]: the triangle of the input, or CWI_NEW.
                              colors: 1 in the first byte at rims of holes that stay open */
     const cw_mesh *input; /* welded, with its attributes */
     uint32_t *twin; /* of each corner: the corner whose edge lies along that from this corner

@@ -34,16 +34,20 @@ cw_status cwi_repair_append(cwi_repair *r, const float *positions, size_t vertic
     m->colors = flags ? flags : m->colors;
     uint32_t *corners = cwi_realloc_array(m->triangles, all_triangles, 3 * sizeof *corners);
     m->triangles = corners ? corners : m->triangles;
-    if (!points || !source || !flags || !corners)
+    uint32_t *parents = cwi_realloc_array(m->attributes->data, all_triangles, sizeof *parents);
+    m->attributes->data = parents ? parents : m->attributes->data;
+    if (!points || !source || !flags || !corners || !parents)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu triangles", all_triangles);
     if (vertices) {
         memcpy(points + 3 * m->vertex_count, positions, 3 * vertices * sizeof *points);
         memset(source + m->vertex_count, 0xff, vertices * sizeof *source);
         memset(flags + 4 * m->vertex_count, 0, 4 * vertices);
     }
-    if (triangle_count)
+    if (triangle_count) {
         memcpy(corners + 3 * m->triangle_count, triangles,
                3 * triangle_count * sizeof *corners);
+        memset(parents + m->triangle_count, 0xff, triangle_count * sizeof *parents);
+    }
     m->vertex_count = all;
     m->triangle_count = all_triangles;
     return CW_OK;

@@ -345,5 +345,76 @@ def make_polydata_stub():
     return types.SimpleNamespace(PolyData=PolyData)
 
 
+class Attributes(Case):
+    def test_rows_tell_the_elements(self):
+        mesh = cw.extract(make_ball(), 0)
+        vertices, triangles = len(mesh.vertices), len(mesh.triangles)
+        mesh.attributes["heights"] = mesh.vertices[:, 2]
+        mesh.attributes["ids"] = np.arange(triangles)
+        mesh.attributes["uv"] = np.random.default_rng(1).random((3 * triangles, 2), dtype="f4")
+        mesh.attributes["frame"] = np.eye(4).reshape(1, 16)
+        self.assertEqual(list(mesh.attributes), ["heights", "ids", "uv", "frame"])
+        shapes = {name: array.shape for name, array in mesh.attributes.items()}
+        self.assertEqual(
+            shapes, {"heights": (vertices, 1), "ids": (triangles, 1), "uv": (3 * triangles, 2), "frame": (1, 16)}
+        )
+        self.assertEqual(mesh.attributes["ids"].dtype, np.uint32)
+        self.assertTrue((mesh.attributes["ids"][:, 0] == np.arange(triangles)).all())
+        copied = mesh.copy()
+        mesh.attributes["ids"][0] = 99
+        self.assertEqual((mesh.attributes["ids"][0], copied.attributes["ids"][0]), (99, 0))
+        self.assertTrue((copied.attributes["uv"] == mesh.attributes["uv"]).all())
+
+    def test_a_cut_carries_them(self):
+        mesh = cw.extract(make_ball(), 0)
+        mesh.attributes["place"] = mesh.vertices
+        mesh.attributes.add("ids", np.arange(1, len(mesh.triangles) + 1), on="triangles")
+        half = cw.cut(mesh, point=(0.1, 0.2, 0.3), normal=(1, 2, 3)).mesh
+        self.assertLess(np.abs(half.attributes["place"] - half.vertices).max(), 1e-4)
+        ids = half.attributes["ids"][:, 0]
+        old = mesh.vertices[mesh.triangles].mean(1)
+        new = half.vertices[half.triangles].mean(1)
+        self.assertLess(np.linalg.norm(new[ids > 0] - old[ids[ids > 0] - 1], axis=1).max(), 1)
+
+    def test_arrays_outlive_removal_and_mesh_and_then_memory_is_freed(self):
+        gc.collect()
+        before = cw.memory_used()
+        for mesh in (cw.extract(make_ball(), 0), cw.Mesh.from_arrays(*make_tetrahedron())):
+            mesh.attributes.add("x", np.full(len(mesh.vertices), 5.0), on="vertices")
+            removed = mesh.attributes["x"]
+            mesh.attributes["x"] = mesh.vertices
+            self.assertEqual(mesh.attributes["x"].shape[1], 3)
+            del mesh.attributes["x"]
+            self.assertEqual(len(mesh.attributes), 0)
+            mesh.attributes.add("y", np.ones(len(mesh.vertices)), on="vertices")
+            kept = mesh.attributes["y"]
+            del mesh
+            gc.collect()
+            self.assertTrue((removed == 5).all() and (kept == 1).all())
+            del removed, kept
+        gc.collect()
+        self.assertEqual(cw.memory_used(), before)
+
+    def test_what_does_not_fit_is_refused(self):
+        mesh = cw.Mesh.from_arrays(*make_tetrahedron())  # 4 vertices and 4 triangles
+        for values, words in ((np.ones(4), "vertices and triangles"), (np.ones(5), "no elements")):
+            with self.assertRaisesRegex(ValueError, words):
+                mesh.attributes["x"] = values
+        with self.assertRaisesRegex(ValueError, "no corners"):
+            mesh.attributes.add("x", np.ones(4), on="corners")
+        with self.assertRaisesRegex(ValueError, "32 bits"):
+            mesh.attributes.add("x", np.full(4, 2**40), on="vertices")
+        with self.assertRaises(TypeError):
+            mesh.attributes.add("x", np.array(list("abcd")), on="vertices")
+        with self.assertRaises(ValueError):
+            mesh.attributes.add("x", np.ones(4), on="vertices", interpolation="cubic")
+        with self.assertRaisesRegex(cw.Error, "5 components"):
+            mesh.attributes.add("x", np.ones((4, 5)), on="vertices")
+        with self.assertRaisesRegex(cw.Error, "in use"):
+            mesh.attributes.add("normals", np.ones((4, 3)), on="vertices")
+        with self.assertRaises(KeyError):
+            mesh.attributes["x"]
+
+
 if __name__ == "__main__":
     main()

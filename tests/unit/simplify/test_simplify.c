@@ -1,11 +1,11 @@
 /* Simplification: what it must not change, and what it promises. */
+#include "core/mesh/attribute_transfer.h"
 #include "support/hostile.h"
 #include "support/planted.h"
 #include "support/surface.h"
 
 #include "core/base/memory.h"
 #include "core/base/sandbox.h"
-#include "simplify/attribute_transfer.h"
 #include "simplify/attribute_weights.h"
 
 #include <math.h>
@@ -644,7 +644,7 @@ static void what_is_carried_is_blended_and_rounded(void **state)
                           .labels = labels};
     cw_mesh to = {.vertex_count = 3, .positions = points};
     cw_error err = {0};
-    assert_ok(cwi_carry(&from, 1, &(cw_progress){0}, &to, &err), err);
+    assert_ok(cwi_carry(&from, NULL, 1, &(cw_progress){0}, &to, &err), err);
     for (size_t v = 0; v < 3; v++) {
         const double *s = shares[v], length = sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
         assert_int_equal(to.labels[v], nearest[v]);
