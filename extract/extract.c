@@ -157,6 +157,7 @@ cw_status cw_extract(const cw_volume *volume, const cw_extract_desc *desc, cw_me
                      cw_extract_counts *counts, cw_error *err)
 {
     CWI_REQUIRE(err, volume, mesh);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     return cwi_extract_with(cwi_engine_best(), volume, desc, mesh, counts, err);
 }
 
@@ -164,6 +165,7 @@ cw_status cw_extract_predict(const cw_volume *volume, const cw_extract_desc *des
                              cw_extract_counts *counts, cw_error *err)
 {
     CWI_REQUIRE(err, volume);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cwi_plan p;
     cw_status st = cwi_plan_init(&p, cwi_engine_best(), volume, err);
     if (st == CW_OK)
@@ -207,6 +209,7 @@ cw_status cw_extractor_extract(cw_extractor *e, const cw_extract_desc *desc, cw_
                                cw_extract_counts *counts, cw_error *err)
 {
     CWI_REQUIRE(err, e, mesh);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     return extract_planned(e, desc, mesh, counts, err);
 }
 
@@ -226,5 +229,6 @@ cw_status cw_extractor_predict(cw_extractor *e, const cw_extract_desc *desc,
                                cw_extract_counts *counts, cw_error *err)
 {
     CWI_REQUIRE(err, e);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     return predict_planned(e, desc, counts, err);
 }

@@ -110,6 +110,7 @@ cw_status cw_extract_slabs(const cw_volume *volume, const cw_extract_desc *desc,
                            cw_error *err)
 {
     CWI_REQUIRE(err, volume);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cw_extract_desc d = desc ? *desc : (cw_extract_desc){0};
     const size_t max_bytes = d.max_bytes;
     cwi_plan p = {0};

@@ -169,6 +169,7 @@ cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc, cw_mesh 
                        cw_mesh_file *file, cw_error *err)
 {
     CWI_REQUIRE(err, path, mesh);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cwi_mesh_input in = {.desc = resolve_desc(desc)};
     cw_mesh_file said = {0};
     cw_status st = read_file(path, &in, mesh, &said, err);
@@ -182,6 +183,7 @@ cw_status cw_parts_read(const char *path, const cw_mesh_read_desc *desc, cw_part
                         size_t *count, cw_mesh_file *file, cw_error *err)
 {
     CWI_REQUIRE(err, path, parts, count);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cwi_mesh_input in = {.desc = resolve_desc(desc)};
     cw_mesh_file said = {0};
     cw_mesh mesh;

@@ -295,6 +295,7 @@ cw_status cw_parts_write_with_consent(const char *path, const cw_part *parts, si
                                       const cw_write_consent *consent, cw_error *err)
 {
     CWI_REQUIRE(err, path);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     CWI_REQUIRE_ARRAY(err, parts, count);
     cw_write_desc d = desc ? *desc : (cw_write_desc){0};
     const cwi_format_driver *f;
@@ -336,6 +337,7 @@ cw_status cw_parts_write_with_consent(const char *path, const cw_part *parts, si
 cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
                          const cw_write_desc *desc, cw_error *err)
 {
+    CWI_REQUIRE_VERSION(err, desc, 0);
     return cw_parts_write_with_consent(path, parts, count, desc, NULL, err);
 }
 
@@ -343,6 +345,7 @@ cw_status cw_mesh_write(const char *path, const cw_mesh *mesh, const cw_write_de
                         cw_error *err)
 {
     CWI_REQUIRE(err, path, mesh);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     return cw_parts_write(path, &(cw_part){.mesh = mesh}, 1, desc, err);
 }
 
@@ -371,6 +374,7 @@ cw_status cw_parts_write_loss(const char *path, const cw_part *parts, size_t cou
                               const cw_write_desc *desc, cw_write_loss *loss, cw_error *err)
 {
     CWI_REQUIRE(err, path, loss);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     CWI_REQUIRE_ARRAY(err, parts, count);
     const cw_write_desc d = desc ? *desc : (cw_write_desc){0};
     const cwi_format_driver *f;
@@ -393,12 +397,14 @@ cw_status cw_mesh_write_loss(const char *path, const cw_mesh *mesh, const cw_wri
                              cw_write_loss *loss, cw_error *err)
 {
     CWI_REQUIRE(err, path, mesh, loss);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     return cw_parts_write_loss(path, &(cw_part){.mesh = mesh}, 1, desc, loss, err);
 }
 
 cw_status cw_mesh_write_check(const char *path, const cw_write_desc *desc, cw_error *err)
 {
     CWI_REQUIRE(err, path);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_write_desc d = desc ? *desc : (cw_write_desc){0};
     cwi_mesh_output out = {0};
     const cwi_format_driver *f;

@@ -395,6 +395,7 @@ cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *
                          const char **format, cw_error *err)
 {
     CWI_REQUIRE(err, path, volume);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_read_desc d = desc ? *desc : (cw_read_desc){0};
     cwi_array_list arrays = {0};
     opened o = {0};
@@ -452,6 +453,7 @@ cw_status cw_volume_visit(const char *path, const cw_read_desc *desc, size_t com
                           cw_error *err)
 {
     CWI_REQUIRE(err, path, visitor);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_read_desc d = desc ? *desc : (cw_read_desc){0};
     claimed_visit claimed = {.path = path, .claim = &d.claim, .visitor = visitor};
     cwi_slice_visit visit = {
@@ -480,6 +482,7 @@ cw_status cw_arrays_list(const char *path, const cw_read_desc *desc, cw_array **
                          size_t *count, cw_error *err)
 {
     CWI_REQUIRE(err, path, arrays, count);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cw_read_desc d = desc ? *desc : (cw_read_desc){0};
     cwi_array_list list = {0};
     opened o = {0};
@@ -515,6 +518,7 @@ cw_status cw_levels_list(const char *path, const cw_read_desc *desc, cw_level **
                          size_t *count, cw_error *err)
 {
     CWI_REQUIRE(err, path, levels, count);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_read_desc d = desc ? *desc : (cw_read_desc){0};
     opened o = {0};
     *levels = NULL;
@@ -535,6 +539,7 @@ cw_status cw_series_list(const char *path, const cw_read_desc *desc, cw_series *
                          size_t *count, cw_error *err)
 {
     CWI_REQUIRE(err, path, series, count);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_read_desc defaults = {0};
     opened o = {0};
     *series = NULL;
@@ -748,6 +753,7 @@ cw_status cw_steps_list(const char *const *paths, size_t path_count, const cw_re
                         char ***files, size_t *count, cw_error *err)
 {
     CWI_REQUIRE(err, files, count, paths);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     if (path_count == 0)
         return cwi_fail(err, CW_ERR_ARGUMENT, "path_count is 0: at least one path is needed");
     const cw_read_desc d = desc ? *desc : (cw_read_desc){0};

@@ -98,6 +98,7 @@ cw_status cw_volume_write(const char *path, const cw_volume *volume, const cw_wr
                           cw_error *err)
 {
     CWI_REQUIRE(err, path, volume);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_write_desc defaults = {0};
     const driver *f;
     cw_volume v;

@@ -186,6 +186,7 @@ cw_status cw_simplify(const cw_mesh *mesh, const cw_simplify_desc *desc, cw_mesh
                       cw_simplify_facts *facts, cw_error *err)
 {
     CWI_REQUIRE(err, mesh, desc, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     const size_t target = cwi_simplify_target(desc, mesh->triangle_count);
     *out = (cw_mesh){0};
     if (desc->error_mm == 0 && desc->ratio == 0 && desc->triangles == 0)
@@ -199,6 +200,7 @@ cw_status cw_simplify_levels(const cw_mesh *mesh, const cw_simplify_desc *desc,
                              cw_simplify_facts *facts, cw_error *err)
 {
     CWI_REQUIRE(err, mesh, desc);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     CWI_REQUIRE_ARRAY(err, triangles, levels);
     CWI_REQUIRE_ARRAY(err, out, levels);
     for (size_t n = 0; n < levels; n++)

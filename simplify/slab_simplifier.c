@@ -190,6 +190,7 @@ static cw_status join_slabs(cw_simplifier *s, cwi_mesh_block *left, cw_error *er
 cw_status cw_simplifier_new(const cw_simplify_desc *desc, cw_simplifier **out, cw_error *err)
 {
     CWI_REQUIRE(err, desc, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     *out = NULL;
     if ((desc->error_mm == 0) == (desc->ratio == 0 && desc->triangles == 0))
         return cwi_fail(err, CW_ERR_ARGUMENT,

@@ -29,6 +29,16 @@ cw_status cwi_fail_in(cw_error *err, cw_status status, const char *subject);
 bool cwi_begin_call(cw_error *err, const char *function, const char *names,
                     const void *const *pointers, size_t count);
 
+/* Returns CW_ERR_ARGUMENT from the calling function when a struct of the caller, which may be NULL, has a
+ * later version than the newest one that the function knows. */
+#define CWI_REQUIRE_VERSION(err, desc, newest)                                                 \
+    do {                                                                                       \
+        if ((desc) && (desc)->version > (newest))                                              \
+            return cwi_fail(err, CW_ERR_ARGUMENT,                                              \
+                            "%s: %s->version is %u; this library knows up to %u", __func__,    \
+                            #desc, (unsigned)(desc)->version, (unsigned)(newest));             \
+    } while (0)
+
 /* Returns CW_ERR_ARGUMENT from the calling function when an array with elements is NULL. */
 #define CWI_REQUIRE_ARRAY(err, array, count)                                                   \
     do {                                                                                       \

@@ -165,6 +165,7 @@ cw_status cw_camera_zoom(cw_camera *camera, double factor, cw_error *err)
 cw_status cw_camera_fit(const cw_fit_desc *desc, cw_camera *camera, cw_error *err)
 {
     CWI_REQUIRE(err, desc, camera);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     int view;
     double axes[3][3]; /* right, up, forward */
     cw_camera c = {.fov_deg = desc->fov_deg, .height_mm = 1};

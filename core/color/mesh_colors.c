@@ -80,6 +80,7 @@ cw_status cw_mesh_sample(cw_mesh *mesh, const cw_volume *volume, const cw_sample
                          cw_sample_facts *facts, cw_error *err)
 {
     CWI_REQUIRE(err, mesh, volume);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_sample_desc d = desc ? *desc : (cw_sample_desc){0};
     cw_volume view;
     cw_sample_facts found = {0};

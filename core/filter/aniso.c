@@ -321,6 +321,7 @@ cw_status cw_volume_aniso(const cw_volume *volume, size_t steps, double contrast
                           const cw_filter_desc *desc, cw_volume *out, cw_error *err)
 {
     CWI_REQUIRE(err, volume, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_filter_desc none = {0}, *d = desc ? desc : &none;
     cw_volume in;
     *out = (cw_volume){0};

@@ -91,6 +91,7 @@ cw_status cw_volume_bilateral(const cw_volume *volume, const double sigma[3],
                               cw_error *err)
 {
     CWI_REQUIRE(err, volume, sigma, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_filter_desc none = {0}, *d = desc ? desc : &none;
     cwi_tile_filter filter = {
         .work_floats = CWI_TILE_WIDE, .step = "smoothing", .correct = correct_tile};

@@ -79,6 +79,7 @@ cw_status cw_volume_mask(const cw_volume *volume, const cw_volume *mask,
                          cw_error *err)
 {
     CWI_REQUIRE(err, volume, mask, inside, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_filter_desc none = {0}, *d = desc ? desc : &none;
     cw_volume in, m;
     *out = (cw_volume){0};

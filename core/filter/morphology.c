@@ -54,6 +54,7 @@ cw_status cw_volume_open(const cw_volume *volume, const double radius[3],
                          cw_error *err)
 {
     CWI_REQUIRE(err, volume, radius, inside, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     *out = (cw_volume){0};
     return change_volume(volume, radius, 0, inside, desc, out, err);
 }
@@ -63,6 +64,7 @@ cw_status cw_volume_close(const cw_volume *volume, const double radius[3],
                           cw_error *err)
 {
     CWI_REQUIRE(err, volume, radius, inside, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     *out = (cw_volume){0};
     return change_volume(volume, radius, 1, inside, desc, out, err);
 }

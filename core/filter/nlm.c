@@ -159,6 +159,7 @@ cw_status cw_volume_nlm(const cw_volume *volume, double noise, size_t radius,
                         const cw_filter_desc *desc, cw_volume *out, cw_error *err)
 {
     CWI_REQUIRE(err, volume, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_filter_desc none = {0}, *d = desc ? desc : &none;
     search s;
     cwi_tile_filter filter = {

@@ -119,6 +119,7 @@ cw_status cw_volume_resample(const cw_volume *volume, const double spacing[3], c
                              const cw_filter_desc *desc, cw_volume *out, cw_error *err)
 {
     CWI_REQUIRE(err, volume, spacing, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_filter_desc none = {0}, *d = desc ? desc : &none;
     cwi_axis_weights w[3] = {{0}};
     axis x[3];

@@ -129,6 +129,7 @@ cw_status cw_slice_filter_new(const cw_slice_source *source, const cw_slice_filt
                               cw_slice_filter **out, cw_error *err)
 {
     CWI_REQUIRE(err, source, desc, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     *out = NULL;
     cw_status st = check_desc(desc, err);
     if (st == CW_OK)

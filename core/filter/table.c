@@ -282,6 +282,7 @@ cw_status cw_volume_remove_table(const cw_volume *volume, const cw_filter_desc *
                                  cw_volume *out, double *removed_mm3, cw_error *err)
 {
     CWI_REQUIRE(err, volume, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_filter_desc none = {0};
     const cw_inside inside = {.level = TISSUE};
     cw_volume in;

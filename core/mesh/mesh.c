@@ -89,6 +89,7 @@ static bool are_below(const uint32_t *numbers, size_t count, size_t limit)
 cw_status cw_mesh_check(const cw_mesh *mesh, cw_error *err)
 {
     CWI_REQUIRE(err, mesh);
+    CWI_REQUIRE_VERSION(err, mesh, 0);
     if ((mesh->vertex_count && !mesh->positions) || (mesh->triangle_count && !mesh->triangles))
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "a mesh with elements needs positions and triangles");

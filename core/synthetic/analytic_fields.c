@@ -173,6 +173,7 @@ static void sample_layer(void *context, size_t k)
 cw_status cw_field_sample(const cw_field_desc *desc, cw_volume *volume, cw_error *err)
 {
     CWI_REQUIRE(err, desc, volume);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cw_field_desc d = *desc;
     size_t longest = 0;
     if (!is_known_field(d.field))

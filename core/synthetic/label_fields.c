@@ -124,6 +124,7 @@ cw_status cw_label_field_sample(const cw_label_field_desc *desc, cw_volume *volu
                                 cw_error *err)
 {
     CWI_REQUIRE(err, desc, volume);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cw_label_field_desc d = *desc;
     sampling s = {.desc = &d, .volume = volume, .side = 1};
     if (d.field != CW_LABEL_CELLS && d.field != CW_LABEL_SPHERES)

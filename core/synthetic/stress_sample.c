@@ -90,6 +90,7 @@ static cw_status check_desc(const cw_hard_desc *d, cw_error *err)
 cw_status cw_hard_sample(const cw_hard_desc *desc, cw_volume *volume, cw_error *err)
 {
     CWI_REQUIRE(err, desc, volume);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cw_hard_desc d = *desc;
     *volume = (cw_volume){0};
     cw_status st = check_desc(&d, err);

@@ -300,6 +300,7 @@ cw_status cw_extract_normals(const cw_volume *volume, const cw_normals_desc *des
                              cw_mesh *mesh, cw_error *err)
 {
     CWI_REQUIRE(err, volume, mesh);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_normals_desc d = desc ? *desc : (cw_normals_desc){0};
     cwi_shading s = {0};
     cw_status st = cwi_shading_init(&s, volume, &d, mesh, err);

@@ -421,6 +421,7 @@ cw_status cw_extract_labels_stream(const cw_slice_source *source, const cw_label
                                    cw_label_surfaces *surfaces, cw_error *err)
 {
     CWI_REQUIRE(err, source, surfaces);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     return cwi_extract_labels_windowed(source, 0, desc, surfaces, err);
 }
 
@@ -428,6 +429,7 @@ cw_status cw_extract_labels(const cw_volume *volume, const cw_labels_desc *desc,
                             cw_label_surfaces *surfaces, cw_error *err)
 {
     CWI_REQUIRE(err, volume, surfaces);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     return cwi_extract_labels_with(volume, desc, cwi_labels_smooth, surfaces, err);
 }
 

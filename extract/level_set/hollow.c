@@ -330,6 +330,7 @@ cw_status cw_mesh_hollow(const cw_mesh *mesh, const cw_hollow_desc *desc, cw_mes
                          cw_hollow_facts *facts, cw_error *err)
 {
     CWI_REQUIRE(err, mesh, desc, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     hollowing h = {.mesh = mesh, .desc = desc};
     *out = (cw_mesh){0};
     cw_status st = check_desc(desc, err);

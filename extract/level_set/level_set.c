@@ -428,6 +428,7 @@ cw_status cw_level_set_from_mesh(const cw_mesh *mesh, const cw_level_set_desc *d
                                  cw_volume *volume, cw_error *err)
 {
     CWI_REQUIRE(err, mesh, desc, volume);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cw_level_set_desc d = *desc;
     cw_quality q;
     *volume = (cw_volume){0};

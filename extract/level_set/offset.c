@@ -343,6 +343,7 @@ cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mes
                          cw_offset_facts *facts, cw_error *err)
 {
     CWI_REQUIRE(err, mesh, desc, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     making m = {.mesh = mesh, .desc = desc};
     cw_offset_facts found = {0};
     *out = (cw_mesh){0};

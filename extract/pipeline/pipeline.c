@@ -104,6 +104,7 @@ cw_status cw_pipeline_run(const cw_volume *volume, cw_extractor *extractor,
                           cw_pipeline_facts *facts, cw_error *err)
 {
     CWI_REQUIRE(err, volume, desc);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cwi_pipeline p = {.desc = desc, .volume = volume, .part = *volume, .extractor = extractor};
     return start(&p, CW_SOURCE_MEMORY, sink, facts, err);
 }
@@ -112,6 +113,7 @@ cw_status cw_pipeline_run_slices(const cw_slice_source *source, const cw_pipelin
                                  cw_pipeline_sink sink, cw_pipeline_facts *facts, cw_error *err)
 {
     CWI_REQUIRE(err, source, desc);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cwi_pipeline p = {.desc = desc, .slices = source};
     return start(&p, CW_SOURCE_SLICES, sink, facts, err);
 }
@@ -131,6 +133,7 @@ cw_status cw_pipeline_mesh(const cw_volume *volume, cw_extractor *extractor,
                            cw_pipeline_facts *facts, cw_error *err)
 {
     CWI_REQUIRE(err, volume, desc, mesh);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     *mesh = (cw_mesh){0};
     if (desc->lod_count)
         return cwi_fail(err, CW_ERR_ARGUMENT, "lod_count is %zu; one surface has no levels",

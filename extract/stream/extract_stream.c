@@ -229,6 +229,7 @@ cw_status cw_extract_stream_part(const cw_slice_source *source, const cw_stream_
                                  cw_part_counts *counts, cw_error *err)
 {
     CWI_REQUIRE(err, source);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_stream_desc d = desc ? *desc : (cw_stream_desc){0};
     cw_part_counts made;
     if (part >= parts)
@@ -242,5 +243,6 @@ cw_status cw_extract_stream(const cw_slice_source *source, const cw_stream_desc 
                             cw_chunk_sink sink, cw_extract_counts *counts, cw_error *err)
 {
     CWI_REQUIRE(err, source);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     return cwi_extract_stream_with(cwi_engine_best(), source, desc, sink, counts, err);
 }

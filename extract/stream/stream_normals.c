@@ -143,6 +143,7 @@ cw_status cw_extract_stream_normals(const cw_slice_source *source, const cw_norm
                                     size_t max_bytes, cw_mesh *mesh, cw_error *err)
 {
     CWI_REQUIRE(err, source, mesh);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     static const double none = 0;
     const cw_normals_desc d = desc ? *desc : (cw_normals_desc){0};
     normal_walk w = {.source = source};

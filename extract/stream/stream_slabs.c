@@ -209,6 +209,7 @@ cw_status cw_extract_stream_slabs(const cw_slice_source *source, const cw_stream
                                   cw_extract_counts *counts, cw_error *err)
 {
     CWI_REQUIRE(err, source);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cw_stream_desc d = desc ? *desc : (cw_stream_desc){0};
     cwi_slice_window window = {0};
     slab_writer s = {.window = &window};

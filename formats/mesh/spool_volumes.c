@@ -412,6 +412,7 @@ cw_status cw_mesh_spool_drop_volumes(const cw_mesh_spool *spool, const cw_spool_
                                      cw_chunk_sink kept, cw_drop_counts *counts, cw_error *err)
 {
     CWI_REQUIRE(err, spool);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_mesh *frame = cw_mesh_spool_frame(spool);
     volume_pass p = {.spool = spool,
                      .desc = desc ? *desc : (cw_spool_drop_desc){0},

@@ -126,6 +126,7 @@ cw_status cw_pvd_read(const char *path, const cw_read_desc *desc, cw_pvd_entry *
                       size_t *count, cw_error *err)
 {
     CWI_REQUIRE(err, path, entries, count);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cwi_input in = {0};
     parsing p = {.in = &in};
     cw_status st = cwi_input_open(&in, path, err);

@@ -93,6 +93,7 @@ cw_status cw_pvd_write(const char *path, const cw_pvd_entry *entries, size_t cou
                        const cw_write_desc *desc, cw_error *err)
 {
     CWI_REQUIRE(err, path);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     CWI_REQUIRE_ARRAY(err, entries, count);
     cwi_outfile *file = NULL;
     cw_status st = count ? CW_OK : cwi_fail(err, CW_ERR_ARGUMENT, "the series has no files");

@@ -19,6 +19,7 @@ typedef struct cw_camera {
 
 /* The view, box and margin to which cw_camera_fit() fits a camera. */
 typedef struct cw_fit_desc {
+    uint32_t version;      /* 0: the first version of this struct */
     const char *view;      /* a cw_view_name(); default "front" */
     double min[3], max[3]; /* corners of the box, in the world */
     double aspect;         /* width / height of the picture; 0 means 1 */

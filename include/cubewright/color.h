@@ -30,6 +30,7 @@ CW_API void cw_colormap_color(cw_colormap map, double share, uint8_t rgb[3]);
 
 /* Options of cw_mesh_sample(). Zero fields mean the default named beside them. */
 typedef struct cw_sample_desc {
+    uint32_t version;     /* 0: the first version of this struct */
     int threads;          /* default: all */
     cw_progress progress; /* default: none */
 } cw_sample_desc;

@@ -67,7 +67,8 @@ typedef enum cw_status {
  *
  * Pointers to const are borrowed until the call returns, unless it says for how long. NULL in
  * place of a desc means all defaults. Those of field.h, hard.h, level_set.h and simplify.h,
- * cw_fit_desc and cw_label_simplify_desc are required. threads is the number of threads; 0 means
+ * cw_fit_desc and cw_label_simplify_desc are required. Each desc begins with the version of its struct.
+ * A version that the library does not know fails with CW_ERR_ARGUMENT. threads is the number of threads; 0 means
  * one per processor that the process may use. Where the system gives fewer, fewer work. */
 typedef struct cw_error {
     cw_status status;  /* what the call returned */

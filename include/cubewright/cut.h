@@ -11,11 +11,13 @@ extern "C" {
 /* A plane to cut by. Zero-initialise the struct and set what you need; a zero field means the
  * default named beside it. */
 typedef struct cw_cut_desc {
+    uint32_t version; /* 0: the first version of this struct */
     double point[3];  /* a world point of the plane, LPS millimetres; 0, 0, 0 is the origin */
     double normal[3]; /* of any length above 0; what lies on the side it points to is kept */
-    bool point_is_percent; /* along each axis that the normal has, point is a percentage of the way
+    bool
+        point_is_percent; /* along each axis that the normal has, point is a percentage of the way
                               from the low to the high end of the mesh's box; default: world */
-    bool leave_open;  /* default: the section is closed by flat triangles */
+    bool leave_open;      /* default: the section is closed by flat triangles */
     cw_progress progress; /* default: none */
 } cw_cut_desc;
 

@@ -26,6 +26,7 @@ typedef struct cw_distance {
 /* Options of measuring from the surface of a volume. Zero fields mean the default named beside
  * them. */
 typedef struct cw_field_distance_desc {
+    uint32_t version;     /* 0: the first version of this struct */
     double isovalue;      /* in the unit of the values; 0 means 0 */
     bool inside_is_low;   /* default: values at or above the isovalue are inside */
     bool leave_open;      /* default: where the data end inside, their end is surface too */
@@ -70,6 +71,7 @@ CW_NODISCARD CW_API cw_status cw_distance_to_field(const cw_mesh *mesh, const cw
 
 /* Options of measuring from a mesh. Zero fields mean the default named beside them. */
 typedef struct cw_mesh_distance_desc {
+    uint32_t version;     /* 0: the first version of this struct */
     double tolerance_mm;  /* bound_mm - max_mm is at most this; default: 5 % of max_mm, or
                              1 % of the reference's average side where that is more */
     double step_mm;       /* largest distance between the points of mean, rms and p99 along

@@ -15,6 +15,7 @@ extern "C" {
 /* Options of an extraction. Zero-initialise the struct and set what you need. A zero field
  * means the default named beside it. */
 typedef struct cw_extract_desc {
+    uint32_t version;     /* 0: the first version of this struct */
     double isovalue;      /* in the unit of the values (HU for CT); 0 means 0 */
     bool inside_is_low;   /* default: values at or above the isovalue are inside */
     bool leave_open;      /* default: cap the surface where it meets the end of the data */
@@ -184,6 +185,7 @@ CW_API void cw_extractor_recycle(cw_extractor *extractor, cw_mesh *mesh);
 
 /* Options for taking normals from a field. Zero fields mean the default named beside them. */
 typedef struct cw_normals_desc {
+    uint32_t version;     /* 0: the first version of this struct */
     bool inside_is_low;   /* default: high values are inside */
     int threads;          /* default: one per processor */
     cw_progress progress; /* default: none */

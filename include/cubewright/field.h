@@ -33,9 +33,10 @@ typedef enum cw_field {
 
 /* Options of cw_field_sample(). Zero fields mean the default named beside them. */
 typedef struct cw_field_desc {
-    cw_field field; /* default: the sphere */
-    size_t dim[3];  /* voxels; default 64 each */
-    cw_type type;   /* CW_U8 first: name it */
+    uint32_t version; /* 0: the first version of this struct */
+    cw_field field;   /* default: the sphere */
+    size_t dim[3];    /* voxels; default 64 each */
+    cw_type type;     /* CW_U8 first: name it */
     double noise;  /* standard deviation of Gaussian noise, in the field's unit; default none */
     uint64_t seed; /* of the noise */
     int threads;   /* default: all */
@@ -75,6 +76,7 @@ typedef enum cw_label_field {
 
 /* Options of cw_label_field_sample(). Zero fields mean the default named beside them. */
 typedef struct cw_label_field_desc {
+    uint32_t version;     /* 0: the first version of this struct */
     cw_label_field field; /* default: cells */
     size_t dim[3];        /* voxels; default 64 each */
     cw_type type;         /* CW_U8 first: name it; it has to hold the labels */

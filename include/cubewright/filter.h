@@ -10,6 +10,7 @@ extern "C" {
 
 /* Options of all filters. Zero fields mean the default named beside them. */
 typedef struct cw_filter_desc {
+    uint32_t version;     /* 0: the first version of this struct */
     int threads;          /* default: all. The result is the same for any number */
     size_t max_bytes;     /* memory for the result and the work on it; default: no limit */
     cw_progress progress; /* default: none */

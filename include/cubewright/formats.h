@@ -81,6 +81,7 @@ typedef struct cw_claim {
 /* Options of reading a volume. Zero-initialise the struct; a zero field means the default named
  * beside it. */
 typedef struct cw_read_desc {
+    uint32_t version;         /* 0: the first version of this struct */
     const char *reader;       /* a name of cw_formats(); default: by content, then extension */
     const cw_raw_layout *raw; /* read as headerless bytes laid out so; default: by header */
     bool header_only;         /* leave data NULL and fill in everything else; for an irregular
@@ -317,6 +318,7 @@ CW_NODISCARD CW_API cw_status cw_raw_layout_parse(const char *text, cw_raw_layou
 /* Options of reading a mesh. Zero-initialise the struct; a zero field means the default named
  * beside it. */
 typedef struct cw_mesh_read_desc {
+    uint32_t version;       /* 0: the first version of this struct */
     const char *reader;     /* a name of cw_formats(); default: by content, then extension */
     bool allow_external;    /* buffers outside the .gltf file's folder; default: refused */
     uint64_t max_triangles; /* default 2^32 - 1 */
@@ -457,6 +459,7 @@ typedef struct cw_provenance {
 
 /* Options of writing a volume or mesh. Zero-initialise the struct. */
 typedef struct cw_write_desc {
+    uint32_t version;           /* 0: the first version of this struct */
     const char *format;         /* a name of cw_formats(); default: by the path's extension */
     const char *name;           /* of the object inside the file; default: the path's stem */
     bool no_clobber;            /* fail when the path exists; default: replace it */

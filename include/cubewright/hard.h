@@ -32,9 +32,10 @@ CW_API double cw_hard_stored(size_t n, cw_type type, double value);
 
 /* Options of cw_hard_sample(). Zero fields mean the default named beside them. */
 typedef struct cw_hard_desc {
-    size_t number; /* number of the case */
-    size_t dim[3]; /* voxels; default 64 each, enough to show all parts of a case */
-    cw_type type;  /* CW_U8 first: name it */
+    uint32_t version; /* 0: the first version of this struct */
+    size_t number;    /* number of the case */
+    size_t dim[3];    /* voxels; default 64 each, enough to show all parts of a case */
+    cw_type type;     /* CW_U8 first: name it */
     double noise;  /* standard deviation of Gaussian noise, in the case's unit; default none */
     uint64_t seed; /* seed of the noise and of the random parts of a case */
     int threads;   /* default: all */

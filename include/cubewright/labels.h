@@ -13,6 +13,7 @@ extern "C" {
 /* Options of an extraction of labels. Zero-initialise the struct and set what you need. A zero
  * field means the default named beside it. */
 typedef struct cw_labels_desc {
+    uint32_t version;       /* 0: the first version of this struct */
     const uint32_t *labels; /* label_count of those wanted, in any order; others count as
                                background */
     size_t label_count;     /* default: all but the background */
@@ -151,6 +152,7 @@ CW_API double cw_label_patch_area(const cw_label_surfaces *surfaces,
  * need. At least one of error_mm, triangles and ratio is needed. The first one reached ends the
  * simplification. */
 typedef struct cw_label_simplify_desc {
+    uint32_t version;     /* 0: the first version of this struct */
     double error_mm;      /* no point of a patch, before or after, is farther than this from the
                              same patch of the other surfaces; default: no such promise */
     size_t triangles;     /* stop at this number of triangles; default: no limit */

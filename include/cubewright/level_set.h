@@ -20,6 +20,7 @@ CW_API bool cw_level_set_available(void);
 
 /* Options of a level set of a mesh. Zero fields mean the default named beside them. */
 typedef struct cw_level_set_desc {
+    uint32_t version;             /* 0: the first version of this struct */
     double voxel_mm;              /* required */
     double inside_mm, outside_mm; /* distances are kept up to this far from the surface; beyond,
                                      values are exactly these; default, and minimum: 3 voxels */
@@ -59,6 +60,7 @@ CW_NODISCARD CW_API cw_status cw_level_set_from_mesh(const cw_mesh *mesh,
 
 /* Options of an offset surface. Zero fields mean the default named beside them. */
 typedef struct cw_offset_desc {
+    uint32_t version;     /* 0: the first version of this struct */
     double offset_mm;     /* outward; negative: inward; 0: the mesh's surface, rebuilt */
     double voxel_mm;      /* default: the finer of 1/256 of the box's diagonal and 1/4 of the
                              offset, but at least 1/512 of the diagonal; with max_bytes, as
@@ -128,6 +130,7 @@ typedef struct cw_drain {
 
 /* Options of hollowing a mesh. Zero fields mean the default named beside them. */
 typedef struct cw_hollow_desc {
+    uint32_t version;       /* 0: the first version of this struct */
     double wall_mm;         /* required; at least 2 voxels */
     const cw_drain *drains; /* drain_count of them */
     size_t drain_count;     /* default: none, the cavities stay closed */

@@ -37,12 +37,14 @@ typedef struct cw_attribute {
     void *data;                     /* elements x components; the mesh frees it */
 } cw_attribute;
 
-/* Vertices and triangles. A zeroed struct is a valid empty mesh.
+/* Vertices and triangles. A zeroed struct is a valid empty mesh. Zero it before a call fills it: the
+ * version says which members it has.
  *
  * The world point of vertex v is  origin + positions[3v .. 3v+2], LPS millimetres: positions
  * are small numbers near zero, so single precision keeps micrometres however far the scan
  * stands from the scanner's zero. Triangles wind counter-clockwise seen from outside. */
 typedef struct cw_mesh {
+    uint32_t version;         /* 0: the first version of this struct */
     double origin[3];         /* world point that is added to all positions, LPS millimetres */
     size_t vertex_count;      /* number of vertices */
     size_t triangle_count;    /* number of triangles */

@@ -76,6 +76,7 @@ typedef struct cw_pipeline_watch {
 /* Settings of a surface. Zero-initialise the struct and set what you need; a stage whose field is
  * zero does not run. All pointers are borrowed until the call returns. */
 typedef struct cw_pipeline_desc {
+    uint32_t version;        /* 0: the first version of this struct */
     cw_extract_desc extract; /* its threads and progress are those of all stages */
     double min_volume_mm3;   /* leave out components that enclose less */
     size_t largest;          /* components to keep, those that enclose the most; default: all */

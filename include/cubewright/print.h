@@ -11,6 +11,7 @@ extern "C" {
 /* Limits of a printer. Zero-initialise the struct and set what you need; a zero field means the
  * default named beside it. */
 typedef struct cw_print_desc {
+    uint32_t version; /* 0: the first version of this struct */
     double
         min_wall_mm; /* thinner walls count as thin; default: 0.8, two lines of most nozzles */
     double min_gap_mm; /* narrower gaps count as narrow; default: 0.4 */

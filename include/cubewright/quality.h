@@ -81,6 +81,7 @@ typedef struct cw_quality {
 
 /* Options of a measurement. Zero fields mean the default named beside them. */
 typedef struct cw_quality_desc {
+    uint32_t version; /* 0: the first version of this struct */
     cw_weld weld;     /* default: as indexed */
     bool shells;      /* also count the fields from cavities to to_turn; default: 0 */
     int threads;      /* default: all */
@@ -109,6 +110,7 @@ typedef struct cw_quality_stream cw_quality_stream;
 
 /* Options of cw_quality_stream_new(). Zero fields mean the default named beside them. */
 typedef struct cw_quality_stream_desc {
+    uint32_t version; /* 0: the first version of this struct */
     int threads;      /* default: all */
     size_t max_bytes; /* limit of the memory for the front; default: none */
 } cw_quality_stream_desc;
@@ -187,6 +189,7 @@ CW_NODISCARD CW_API cw_status cw_quality_compare(const cw_quality *before,
 
 /* Options of cw_self_intersections(). Zero fields mean the default named beside them. */
 typedef struct cw_crossings_desc {
+    uint32_t version; /* 0: the first version of this struct */
     cw_weld weld;     /* the rule that makes triangles neighbours; default: as indexed */
     int threads;      /* default: all */
     uint8_t *defects; /* triangle_count: CW_DEFECT_INTERSECTING is set; default: none kept */

@@ -11,6 +11,7 @@ extern "C" {
 /* Settings of a remeshing. Zero-initialise the struct and set what you need; a zero field means
  * the default named beside it. */
 typedef struct cw_remesh_desc {
+    uint32_t version;   /* 0: the first version of this struct */
     double edge_mm;     /* wanted length of edges; required. With is_adaptive the longest one */
     double shortest_mm; /* with is_adaptive, the shortest wanted length; default: a tenth of
                              edge_mm */

@@ -402,6 +402,7 @@ CW_API void cw_renderer_forget(cw_renderer *renderer);
 /* Options of drawing a mesh alone. Zero-initialise the struct; a zero field means the default
  * named beside it. */
 typedef struct cw_render_mesh_desc {
+    uint32_t version;         /* 0: the first version of this struct */
     cw_camera camera;         /* default (up all 0): front view of the whole mesh, 30 degrees */
     size_t width, height;     /* pixels, at most 16384; default 1280 x 720 */
     int samples;              /* a side: 1 to 4 squared samples a pixel; default 2 */

@@ -11,6 +11,7 @@ extern "C" {
 /* Settings of a repair. Zero-initialise the struct and set what you need; a zero field means the
  * default named beside it. */
 typedef struct cw_repair_desc {
+    uint32_t version;    /* 0: the first version of this struct */
     double weld_mm;      /* vertices this near to each other become one; default: those at equal
                             positions */
     double max_hole_mm;  /* the largest hole to fill: diagonal of the box around its rim;

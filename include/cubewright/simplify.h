@@ -34,7 +34,8 @@ CW_API void cw_simplify_view_free(cw_simplify_view *view);
  * zero field means the default named beside it. At least one of error_mm, triangles and ratio
  * is needed. The first one reached ends the simplification. */
 typedef struct cw_simplify_desc {
-    double error_mm; /* no point of the input or of the result is farther than this from the
+    uint32_t version; /* 0: the first version of this struct */
+    double error_mm;  /* no point of the input or of the result is farther than this from the
                         other surface; default: no such promise */
     /* A view lowers the error below error_mm where it sees the surface. Points within the lower
        error differ in the picture by at most pixel_error pixels. The same holds up to

@@ -17,6 +17,7 @@ typedef enum cw_slice_filter_kind {
 
 /* A filter of slices. Zero fields mean the default named beside them. */
 typedef struct cw_slice_filter_desc {
+    uint32_t version;          /* 0: the first version of this struct */
     cw_slice_filter_kind kind; /* default: CW_SLICE_GAUSS */
     double sigma_voxels[3];    /* of a Gaussian: as in cw_volume_gauss() */
     size_t radius;             /* of a median: as in cw_volume_median() */

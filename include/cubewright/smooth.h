@@ -27,6 +27,7 @@ CW_API const char *cw_smooth_method_name(cw_smooth_method method);
 /* Settings of a smoothing. Zero-initialise the struct and set what you need; a zero field means
  * the default named beside it. */
 typedef struct cw_smooth_desc {
+    uint32_t version;     /* 0: the first version of this struct */
     size_t iterations;    /* at most CW_SMOOTH_MAX_ITERATIONS; default: 10. More remove longer
                              waves of noise, and more detail. Of CW_SMOOTH_FAIR the steps, default
                              3: more fade waves shorter than width_mm alone */

@@ -58,6 +58,7 @@ CW_NODISCARD CW_API cw_status cw_mesh_spool_share(cw_mesh_spool *spool, const cw
 
 /* Options of cw_mesh_spool_drop_volumes(). */
 typedef struct cw_spool_drop_desc {
+    uint32_t version;     /* 0: the first version of this struct */
     double least_mm3;     /* as in cw_mesh_drop_volumes(); 0 keeps all components */
     size_t max_bytes;     /* limit of the working memory; default: none */
     cw_progress progress; /* default: none; called on the calling thread, may cancel */

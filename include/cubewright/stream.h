@@ -37,6 +37,7 @@ typedef struct cw_chunk_sink {
 
 /* Options of an extraction by slices. Zero fields mean the default named beside them. */
 typedef struct cw_stream_desc {
+    uint32_t version;        /* 0: the first version of this struct */
     cw_extract_desc extract; /* as in cw_extract(). max_bytes limits the working memory */
     size_t layers;           /* layers of cells that are extracted together; default: as many as
                                 24 bytes for each sample of a slice, and 8 MiB, hold, but at

@@ -406,6 +406,7 @@ cw_camera._fields_ = [
 
 
 class cw_fit_desc(Structure):
+    version: int
     view: bytes | None
     min: Any
     max: Any
@@ -417,6 +418,7 @@ class cw_fit_desc(Structure):
 
 
 cw_fit_desc._fields_ = [
+    ("version", c_uint32),
     ("view", c_char_p),
     ("min", c_double * 3),
     ("max", c_double * 3),
@@ -595,6 +597,7 @@ cw_attribute._fields_ = [
 
 
 class cw_mesh(Structure):
+    version: int
     origin: Any
     vertex_count: int
     triangle_count: int
@@ -610,6 +613,7 @@ class cw_mesh(Structure):
 
 
 cw_mesh._fields_ = [
+    ("version", c_uint32),
     ("origin", c_double * 3),
     ("vertex_count", c_size_t),
     ("triangle_count", c_size_t),
@@ -706,6 +710,7 @@ cw_distance._fields_ = [
 
 
 class cw_field_distance_desc(Structure):
+    version: int
     isovalue: float
     inside_is_low: bool
     leave_open: bool
@@ -717,6 +722,7 @@ class cw_field_distance_desc(Structure):
 
 
 cw_field_distance_desc._fields_ = [
+    ("version", c_uint32),
     ("isovalue", c_double),
     ("inside_is_low", c_bool),
     ("leave_open", c_bool),
@@ -729,6 +735,7 @@ cw_field_distance_desc._fields_ = [
 
 
 class cw_mesh_distance_desc(Structure):
+    version: int
     tolerance_mm: float
     step_mm: float
     vertices_only: bool
@@ -738,6 +745,7 @@ class cw_mesh_distance_desc(Structure):
 
 
 cw_mesh_distance_desc._fields_ = [
+    ("version", c_uint32),
     ("tolerance_mm", c_double),
     ("step_mm", c_double),
     ("vertices_only", c_bool),
@@ -763,6 +771,7 @@ cw_mesh_comparison._fields_ = [
 
 
 class cw_print_desc(Structure):
+    version: int
     min_wall_mm: float
     min_gap_mm: float
     overhang_deg: float
@@ -775,6 +784,7 @@ class cw_print_desc(Structure):
 
 
 cw_print_desc._fields_ = [
+    ("version", c_uint32),
     ("min_wall_mm", c_double),
     ("min_gap_mm", c_double),
     ("overhang_deg", c_double),
@@ -833,6 +843,7 @@ cw_print_facts._fields_ = [
 
 
 class cw_extract_desc(Structure):
+    version: int
     isovalue: float
     inside_is_low: bool
     leave_open: bool
@@ -848,6 +859,7 @@ class cw_extract_desc(Structure):
 
 
 cw_extract_desc._fields_ = [
+    ("version", c_uint32),
     ("isovalue", c_double),
     ("inside_is_low", c_bool),
     ("leave_open", c_bool),
@@ -906,12 +918,14 @@ class cw_extractor(Structure):
 
 
 class cw_normals_desc(Structure):
+    version: int
     inside_is_low: bool
     threads: int
     progress: Any
 
 
 cw_normals_desc._fields_ = [
+    ("version", c_uint32),
     ("inside_is_low", c_bool),
     ("threads", c_int),
     ("progress", cw_progress),
@@ -956,11 +970,13 @@ cw_chunk_sink._fields_ = [
 
 
 class cw_stream_desc(Structure):
+    version: int
     extract: Any
     layers: int
 
 
 cw_stream_desc._fields_ = [
+    ("version", c_uint32),
     ("extract", cw_extract_desc),
     ("layers", c_size_t),
 ]
@@ -1068,6 +1084,7 @@ cw_quality._fields_ = [
 
 
 class cw_quality_desc(Structure):
+    version: int
     weld: int
     shells: bool
     threads: int
@@ -1077,6 +1094,7 @@ class cw_quality_desc(Structure):
 
 
 cw_quality_desc._fields_ = [
+    ("version", c_uint32),
     ("weld", c_int),
     ("shells", c_bool),
     ("threads", c_int),
@@ -1091,11 +1109,13 @@ class cw_quality_stream(Structure):
 
 
 class cw_quality_stream_desc(Structure):
+    version: int
     threads: int
     max_bytes: int
 
 
 cw_quality_stream_desc._fields_ = [
+    ("version", c_uint32),
     ("threads", c_int),
     ("max_bytes", c_size_t),
 ]
@@ -1113,6 +1133,7 @@ cw_orient_counts._fields_ = [
 
 
 class cw_crossings_desc(Structure):
+    version: int
     weld: int
     threads: int
     defects: Any
@@ -1120,6 +1141,7 @@ class cw_crossings_desc(Structure):
 
 
 cw_crossings_desc._fields_ = [
+    ("version", c_uint32),
     ("weld", c_int),
     ("threads", c_int),
     ("defects", POINTER(c_uint8)),
@@ -1239,11 +1261,13 @@ cw_paint._fields_ = [
 
 
 class cw_sample_desc(Structure):
+    version: int
     threads: int
     progress: Any
 
 
 cw_sample_desc._fields_ = [
+    ("version", c_uint32),
     ("threads", c_int),
     ("progress", cw_progress),
 ]
@@ -1263,6 +1287,7 @@ cw_sample_facts._fields_ = [
 
 
 class cw_cut_desc(Structure):
+    version: int
     point: Any
     normal: Any
     point_is_percent: bool
@@ -1271,6 +1296,7 @@ class cw_cut_desc(Structure):
 
 
 cw_cut_desc._fields_ = [
+    ("version", c_uint32),
     ("point", c_double * 3),
     ("normal", c_double * 3),
     ("point_is_percent", c_bool),
@@ -1301,6 +1327,7 @@ cw_cut_facts._fields_ = [
 
 
 class cw_field_desc(Structure):
+    version: int
     field: int
     dim: Any
     type: int
@@ -1311,6 +1338,7 @@ class cw_field_desc(Structure):
 
 
 cw_field_desc._fields_ = [
+    ("version", c_uint32),
     ("field", c_int),
     ("dim", c_size_t * 3),
     ("type", c_int),
@@ -1322,6 +1350,7 @@ cw_field_desc._fields_ = [
 
 
 class cw_label_field_desc(Structure):
+    version: int
     field: int
     dim: Any
     type: int
@@ -1332,6 +1361,7 @@ class cw_label_field_desc(Structure):
 
 
 cw_label_field_desc._fields_ = [
+    ("version", c_uint32),
     ("field", c_int),
     ("dim", c_size_t * 3),
     ("type", c_int),
@@ -1381,12 +1411,14 @@ cw_field_vertex_error._fields_ = [
 
 
 class cw_filter_desc(Structure):
+    version: int
     threads: int
     max_bytes: int
     progress: Any
 
 
 cw_filter_desc._fields_ = [
+    ("version", c_uint32),
     ("threads", c_int),
     ("max_bytes", c_size_t),
     ("progress", cw_progress),
@@ -1475,12 +1507,14 @@ class cw_mesh_spool(Structure):
 
 
 class cw_spool_drop_desc(Structure):
+    version: int
     least_mm3: float
     max_bytes: int
     progress: Any
 
 
 cw_spool_drop_desc._fields_ = [
+    ("version", c_uint32),
     ("least_mm3", c_double),
     ("max_bytes", c_size_t),
     ("progress", cw_progress),
@@ -1554,6 +1588,7 @@ cw_claim._fields_ = [
 
 
 class cw_read_desc(Structure):
+    version: int
     reader: bytes | None
     raw: Any
     header_only: bool
@@ -1579,6 +1614,7 @@ class cw_read_desc(Structure):
 
 
 cw_read_desc._fields_ = [
+    ("version", c_uint32),
     ("reader", c_char_p),
     ("raw", POINTER(cw_raw_layout)),
     ("header_only", c_bool),
@@ -1669,6 +1705,7 @@ cw_series._fields_ = [
 
 
 class cw_mesh_read_desc(Structure):
+    version: int
     reader: bytes | None
     allow_external: bool
     max_triangles: int
@@ -1680,6 +1717,7 @@ class cw_mesh_read_desc(Structure):
 
 
 cw_mesh_read_desc._fields_ = [
+    ("version", c_uint32),
     ("reader", c_char_p),
     ("allow_external", c_bool),
     ("max_triangles", c_uint64),
@@ -1788,6 +1826,7 @@ cw_provenance._fields_ = [
 
 
 class cw_write_desc(Structure):
+    version: int
     format: bytes | None
     name: bytes | None
     no_clobber: bool
@@ -1807,6 +1846,7 @@ class cw_write_desc(Structure):
 
 
 cw_write_desc._fields_ = [
+    ("version", c_uint32),
     ("format", c_char_p),
     ("name", c_char_p),
     ("no_clobber", c_bool),
@@ -1912,6 +1952,7 @@ cw_hard._fields_ = [
 
 
 class cw_hard_desc(Structure):
+    version: int
     number: int
     dim: Any
     type: int
@@ -1922,6 +1963,7 @@ class cw_hard_desc(Structure):
 
 
 cw_hard_desc._fields_ = [
+    ("version", c_uint32),
     ("number", c_size_t),
     ("dim", c_size_t * 3),
     ("type", c_int),
@@ -1933,6 +1975,7 @@ cw_hard_desc._fields_ = [
 
 
 class cw_labels_desc(Structure):
+    version: int
     labels: Any
     label_count: int
     background: int
@@ -1945,6 +1988,7 @@ class cw_labels_desc(Structure):
 
 
 cw_labels_desc._fields_ = [
+    ("version", c_uint32),
     ("labels", POINTER(c_uint32)),
     ("label_count", c_size_t),
     ("background", c_uint32),
@@ -2001,6 +2045,7 @@ cw_label_surfaces._fields_ = [
 
 
 class cw_label_simplify_desc(Structure):
+    version: int
     error_mm: float
     triangles: int
     ratio: float
@@ -2009,6 +2054,7 @@ class cw_label_simplify_desc(Structure):
 
 
 cw_label_simplify_desc._fields_ = [
+    ("version", c_uint32),
     ("error_mm", c_double),
     ("triangles", c_size_t),
     ("ratio", c_double),
@@ -2018,6 +2064,7 @@ cw_label_simplify_desc._fields_ = [
 
 
 class cw_level_set_desc(Structure):
+    version: int
     voxel_mm: float
     inside_mm: float
     outside_mm: float
@@ -2027,6 +2074,7 @@ class cw_level_set_desc(Structure):
 
 
 cw_level_set_desc._fields_ = [
+    ("version", c_uint32),
     ("voxel_mm", c_double),
     ("inside_mm", c_double),
     ("outside_mm", c_double),
@@ -2037,6 +2085,7 @@ cw_level_set_desc._fields_ = [
 
 
 class cw_offset_desc(Structure):
+    version: int
     offset_mm: float
     voxel_mm: float
     no_sharpen: bool
@@ -2047,6 +2096,7 @@ class cw_offset_desc(Structure):
 
 
 cw_offset_desc._fields_ = [
+    ("version", c_uint32),
     ("offset_mm", c_double),
     ("voxel_mm", c_double),
     ("no_sharpen", c_bool),
@@ -2088,6 +2138,7 @@ cw_drain._fields_ = [
 
 
 class cw_hollow_desc(Structure):
+    version: int
     wall_mm: float
     drains: Any
     drain_count: int
@@ -2099,6 +2150,7 @@ class cw_hollow_desc(Structure):
 
 
 cw_hollow_desc._fields_ = [
+    ("version", c_uint32),
     ("wall_mm", c_double),
     ("drains", POINTER(cw_drain)),
     ("drain_count", c_size_t),
@@ -2450,6 +2502,7 @@ cw_picked._fields_ = [
 
 
 class cw_render_mesh_desc(Structure):
+    version: int
     camera: Any
     width: int
     height: int
@@ -2463,6 +2516,7 @@ class cw_render_mesh_desc(Structure):
 
 
 cw_render_mesh_desc._fields_ = [
+    ("version", c_uint32),
     ("camera", cw_camera),
     ("width", c_size_t),
     ("height", c_size_t),
@@ -2591,6 +2645,7 @@ cw_simplify_view._fields_ = [
 
 
 class cw_simplify_desc(Structure):
+    version: int
     error_mm: float
     views: Any
     view_count: int
@@ -2608,6 +2663,7 @@ class cw_simplify_desc(Structure):
 
 
 cw_simplify_desc._fields_ = [
+    ("version", c_uint32),
     ("error_mm", c_double),
     ("views", POINTER(cw_simplify_view)),
     ("view_count", c_size_t),
@@ -2645,6 +2701,7 @@ class cw_simplifier(Structure):
 
 
 class cw_smooth_desc(Structure):
+    version: int
     iterations: int
     max_move_mm: float
     move_border: bool
@@ -2656,6 +2713,7 @@ class cw_smooth_desc(Structure):
 
 
 cw_smooth_desc._fields_ = [
+    ("version", c_uint32),
     ("iterations", c_size_t),
     ("max_move_mm", c_double),
     ("move_border", c_bool),
@@ -2731,6 +2789,7 @@ cw_pipeline_watch._fields_ = [
 
 
 class cw_pipeline_desc(Structure):
+    version: int
     extract: Any
     min_volume_mm3: float
     largest: int
@@ -2751,6 +2810,7 @@ class cw_pipeline_desc(Structure):
 
 
 cw_pipeline_desc._fields_ = [
+    ("version", c_uint32),
     ("extract", cw_extract_desc),
     ("min_volume_mm3", c_double),
     ("largest", c_size_t),
@@ -2856,6 +2916,7 @@ cw_pipeline_labels._fields_ = [
 
 
 class cw_remesh_desc(Structure):
+    version: int
     edge_mm: float
     shortest_mm: float
     error_mm: float
@@ -2868,6 +2929,7 @@ class cw_remesh_desc(Structure):
 
 
 cw_remesh_desc._fields_ = [
+    ("version", c_uint32),
     ("edge_mm", c_double),
     ("shortest_mm", c_double),
     ("error_mm", c_double),
@@ -2936,6 +2998,7 @@ cw_remesh_facts._fields_ = [
 
 
 class cw_repair_desc(Structure):
+    version: int
     weld_mm: float
     max_hole_mm: float
     wrap_mm: float
@@ -2946,6 +3009,7 @@ class cw_repair_desc(Structure):
 
 
 cw_repair_desc._fields_ = [
+    ("version", c_uint32),
     ("weld_mm", c_double),
     ("max_hole_mm", c_double),
     ("wrap_mm", c_double),
@@ -3018,6 +3082,7 @@ cw_repair_facts._fields_ = [
 
 
 class cw_slice_filter_desc(Structure):
+    version: int
     kind: int
     sigma_voxels: Any
     radius: int
@@ -3026,6 +3091,7 @@ class cw_slice_filter_desc(Structure):
 
 
 cw_slice_filter_desc._fields_ = [
+    ("version", c_uint32),
     ("kind", c_int),
     ("sigma_voxels", c_double * 3),
     ("radius", c_size_t),

@@ -181,6 +181,7 @@ cw_status cw_mesh_cut(const cw_mesh *mesh, const cw_cut_desc *desc, cw_mesh *out
                       cw_cut_facts *facts, cw_error *err)
 {
     CWI_REQUIRE(err, mesh, desc, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cwi_cut c = {.mesh = mesh, .desc = *desc};
     *out = (cw_mesh){0};
     cw_status st = check_input(mesh, desc, err);

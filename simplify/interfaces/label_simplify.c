@@ -310,6 +310,7 @@ cw_status cw_label_simplify(const cw_label_surfaces *in, const cw_label_simplify
                             cw_label_surfaces *out, cw_error *err)
 {
     CWI_REQUIRE(err, in, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     memset(out, 0, sizeof *out);
     cw_status st = check_desc(desc, err);
     if (st == CW_OK)

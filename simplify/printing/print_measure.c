@@ -307,6 +307,7 @@ cw_status cw_print_measure(const cw_mesh *mesh, const cw_print_desc *desc,
                            cw_print_facts *facts, cw_error *err)
 {
     CWI_REQUIRE(err, mesh, facts);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cw_print_desc limits;
     cw_mesh copy = {0};
     uint32_t *map = NULL;

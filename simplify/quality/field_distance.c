@@ -259,6 +259,7 @@ cw_status cw_distance_to_field(const cw_mesh *mesh, const cw_volume *volume,
                                float *per_vertex, cw_error *err)
 {
     CWI_REQUIRE(err, mesh, volume, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_field_distance_desc none = {0}, *d = desc ? desc : &none;
     field f = {0};
     cwi_sampling sampling = {.mesh = mesh,

@@ -44,6 +44,7 @@ cw_status cw_mesh_compare(const cw_mesh *mesh, const cw_mesh *reference,
                           cw_error *err)
 {
     CWI_REQUIRE(err, mesh, reference, comparison);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cw_distance to, from;
     if (desc && desc->worst)
         return cwi_fail(err, CW_ERR_ARGUMENT, "'worst' is of one mesh; two are measured");

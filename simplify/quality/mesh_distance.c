@@ -477,6 +477,7 @@ cw_status cw_distance_to_mesh(const cw_mesh *mesh, const cw_mesh *reference_mesh
                               float *per_vertex, cw_error *err)
 {
     CWI_REQUIRE(err, mesh, reference_mesh, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_mesh_distance_desc none = {0}, *d = desc ? desc : &none;
     reference r = {0};
     memset(out, 0, sizeof *out);

@@ -367,6 +367,7 @@ cw_status cw_quality_stream_new(const cw_quality_stream_desc *desc, cw_quality_s
                                 cw_error *err)
 {
     CWI_REQUIRE(err, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cw_quality_stream *s = *out = cwi_alloc_zeroed(1, sizeof *s);
     if (!s)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to check a surface");

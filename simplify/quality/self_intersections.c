@@ -189,6 +189,7 @@ cw_status cw_self_intersections(const cw_mesh *mesh, const cw_crossings_desc *de
                                 cw_crossings *out, cw_error *err)
 {
     CWI_REQUIRE(err, mesh, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_crossings_desc d = desc ? *desc : (cw_crossings_desc){0};
     search s = {0};
     *out = (cw_crossings){0};

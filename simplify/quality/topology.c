@@ -97,6 +97,7 @@ cw_status cw_quality_measure(const cw_mesh *mesh, const cw_quality_desc *desc, c
                              cw_error *err)
 {
     CWI_REQUIRE(err, mesh, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cw_quality_desc d = desc ? *desc : (cw_quality_desc){0};
     const cw_progress progress = d.progress;
     work w = {0};

@@ -332,6 +332,7 @@ cw_status cw_mesh_remesh(const cw_mesh *mesh, const cw_remesh_desc *desc, cw_mes
                          cw_remesh_facts *facts, cw_error *err)
 {
     CWI_REQUIRE(err, mesh, desc, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cwi_remesh r = {.input = mesh};
     cw_remesh_facts found = {0};
     *out = (cw_mesh){0};

@@ -239,6 +239,7 @@ cw_status cw_mesh_repair(const cw_mesh *mesh, const cw_repair_desc *desc, cw_mes
                          cw_repair_facts *facts, cw_error *err)
 {
     CWI_REQUIRE(err, mesh);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cwi_repair r = {.desc = desc ? *desc : (cw_repair_desc){0}};
     cw_mesh input = {0}, own = {0}, *made = out ? out : &own;
     *made = (cw_mesh){0};

@@ -222,6 +222,7 @@ cw_status cw_mesh_smooth(cw_mesh *mesh, const cw_smooth_desc *desc, cw_smooth_fa
                          cw_error *err)
 {
     CWI_REQUIRE(err, mesh);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cwi_smoother s = {.mesh = mesh};
     cw_smooth_facts found = {0};
     cw_status st = resolve_desc(mesh, desc, &s.desc, err);

@@ -540,6 +540,7 @@ cw_status cw_render_mesh(const cw_mesh *mesh, const cw_render_mesh_desc *desc, c
                          cw_error *err)
 {
     CWI_REQUIRE(err, mesh, image);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cw_render_mesh_desc d;
     scene s = {0};
     *image = (cw_image){0};
