@@ -119,7 +119,7 @@ static cw_status draw_frame(cw_renderer *r, const cwi_frame *frame, cw_picture *
 {
     const char *kind = cwi_volume_kind(&frame->volume);
     r->drew_on_cpu = is_for_cpu(r, frame);
-    if (r->drew_on_cpu && frame->scene.live)
+    if (r->drew_on_cpu && frame->scene.mesh_look.live)
         return cwi_fail(err, CW_ERR_UNSUPPORTED, "a live surface is drawn by OpenGL alone");
     if (r->drew_on_cpu)
         return cwi_cpu_draw(&r->cpu, frame, picture, err);
@@ -183,9 +183,9 @@ static cw_status make_live_box(const cw_scene *scene, live_box *box, cw_error *e
     double center[3];
     if (scene->mesh)
         return cwi_fail(err, CW_ERR_ARGUMENT, "a scene has a mesh or a live surface, not both");
-    if (!scene->live->volume)
+    if (!scene->mesh_look.live->volume)
         return cwi_fail(err, CW_ERR_ARGUMENT, "a live surface needs a volume");
-    cw_status st = cw_volume_select(scene->live->volume, 0, 0, &v, err);
+    cw_status st = cw_volume_select(scene->mesh_look.live->volume, 0, 0, &v, err);
     if (st == CW_OK && cwi_volume_kind(&v))
         st = cwi_fail(err, CW_ERR_UNSUPPORTED,
                       "OpenGL extracts from evenly spaced volumes, not from %s",
@@ -220,9 +220,9 @@ cw_status cw_render(cw_renderer *renderer, const cw_scene *scene, cw_picture *pi
     cw_picture fine = {0};
     live_box box;
     *picture = (cw_picture){0};
-    cw_status st = scene->live ? make_live_box(scene, &box, err) : CW_OK;
+    cw_status st = scene->mesh_look.live ? make_live_box(scene, &box, err) : CW_OK;
     if (st == CW_OK)
-        st = cwi_frame_init(&frame, scene->live ? &box.scene : scene, err);
+        st = cwi_frame_init(&frame, scene->mesh_look.live ? &box.scene : scene, err);
     if (st == CW_OK)
         st = cwi_gradient_volume_take(&renderer->gradients, &frame, err);
     if (st == CW_OK)

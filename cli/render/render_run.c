@@ -323,7 +323,7 @@ static cw_status make_scene(cli_pictures *p, size_t turn, cw_error *err)
     p->scene = (cw_scene){.width = args->size.n[0] / part, .height = args->size.n[1] / part};
     p->scene.samples = args->samples ? (int)args->samples : draws_volume(p) ? 1 : MESH_SAMPLES;
     p->scene.progress = cli_progress((double)p->source.mesh.triangle_count / 1e6, "Mtriangle");
-    p->scene.same_inside = p->look.labels && !args->overlay;
+    p->scene.mesh_look.same_inside = p->look.labels && !args->overlay;
     cw_status st = CW_OK;
     if (!p->has_box && p->source.series.count > 1) /* what is visible moves */
         p->has_box = cli_find_box(subject.volume, subject.mesh, p->box);
@@ -347,7 +347,7 @@ static cw_status draw_mesh(cli_pictures *p, const uint8_t background[2][4], cw_i
                                 .width = s->width,
                                 .height = s->height,
                                 .samples = s->samples,
-                                .same_inside = s->same_inside,
+                                .same_inside = s->mesh_look.same_inside,
                                 .threads = s->threads,
                                 .progress = s->progress};
     memcpy(desc.background, background, sizeof desc.background);

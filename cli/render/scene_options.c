@@ -429,8 +429,8 @@ static cw_status space_slices(const cli_scene *args, const cw_volume *v, cw_scen
         high = fmax(high, depth);
     }
     cw_volume_spacing(v, spacing);
-    s->step_vox = fmax(high - low, 1e-3) / (double)args->slices /
-                  fmin(fmin(spacing[0], spacing[1]), spacing[2]);
+    s->sampling.step_vox = fmax(high - low, 1e-3) / (double)args->slices /
+                           fmin(fmin(spacing[0], spacing[1]), spacing[2]);
     return st;
 }
 
@@ -462,29 +462,30 @@ static cw_status add_steps(const cli_scene *args, const cw_volume *v, double lev
     s->gradient_sigma = args->gradient_smoothing.value;
     s->shadow =
         cli_setting_fits("shadow", s->mode, false) ? (cw_shadow)args->shadow : CW_SHADOW_NONE;
-    s->step_vox = args->step.given ? args->step.value : STEP_VOX;
-    s->stop_opacity = s->mode == CW_MODE_VBUFFER ? 0.99999f : 0.9999f;
-    s->cell_steps = args->cell_steps;
-    s->no_preintegration = !args->preintegration;
-    s->jitter = args->jitter;
-    s->exact_filter = args->exact_filter;
-    s->no_skipping = !args->skipping;
-    s->threshold = args->threshold.given ? args->threshold.value : level;
-    s->minip_inside = args->minip_inside;
-    s->texture_edge = args->texture_edge;
-    s->target = (cw_target)args->target;
-    s->colors_first = args->colors_first;
-    s->normals = args->normals ? args->normals : 1024;
-    s->direction_filter = (cw_direction_filter)args->direction_filter;
-    s->material_table = args->material_table;
-    s->mark_boundary = args->boundary;
-    s->pixel_area = args->pixel_area;
-    s->linear_opacity = args->linear_opacity;
-    s->tree_error = args->tree_error.value;
-    s->splat_budget = args->splat_budget;
-    s->splat_kernel = (cw_splat_kernel)args->splat_kernel;
-    s->splat_width = args->splat_width.value; /* 0: the kernel's own */
-    cw_status st = take_share("stop-opacity", &args->stop_opacity, 1, &s->stop_opacity, err);
+    s->sampling.step_vox = args->step.given ? args->step.value : STEP_VOX;
+    s->sampling.stop_opacity = s->mode == CW_MODE_VBUFFER ? 0.99999f : 0.9999f;
+    s->sampling.cell_steps = args->cell_steps;
+    s->sampling.no_preintegration = !args->preintegration;
+    s->sampling.jitter = args->jitter;
+    s->sampling.exact_filter = args->exact_filter;
+    s->sampling.no_skipping = !args->skipping;
+    s->intensity.threshold = args->threshold.given ? args->threshold.value : level;
+    s->intensity.minip_inside = args->minip_inside;
+    s->sampling.texture_edge = args->texture_edge;
+    s->texture.target = (cw_target)args->target;
+    s->texture.colors_first = args->colors_first;
+    s->texture.normals = args->normals ? args->normals : 1024;
+    s->texture.direction_filter = (cw_direction_filter)args->direction_filter;
+    s->texture.material_table = args->material_table;
+    s->texture.mark_boundary = args->boundary;
+    s->vbuffer.pixel_area = args->pixel_area;
+    s->projection.linear_opacity = args->linear_opacity;
+    s->splat.tree_error = s->projection.tree_error = args->tree_error.value;
+    s->splat.budget = args->splat_budget;
+    s->splat.kernel = (cw_splat_kernel)args->splat_kernel;
+    s->splat.width = args->splat_width.value; /* 0: the kernel's own */
+    cw_status st =
+        take_share("stop-opacity", &args->stop_opacity, 1, &s->sampling.stop_opacity, err);
     return st == CW_OK ? space_slices(args, v, s, err) : st;
 }
 
@@ -495,14 +496,14 @@ static cw_status add_mesh(const cli_scene *args, cw_scene *s, cw_error *err)
     if (args->color && !cli_parse_color(args->color, rgba))
         return fail_color("color", args->color, err);
     for (int c = 0; c < 4 && args->color; c++)
-        s->color[c] = (float)rgba[c] / 255;
+        s->mesh_look.color[c] = (float)rgba[c] / 255;
     if (range->count && (range->count != 2 || !(range->value[0] < range->value[1])))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--tint-range takes two rising numbers");
-    s->tint = (cw_tint)args->tint;
-    s->tint_low = range->count ? range->value[0] : 0;
-    s->tint_high = range->count ? range->value[1] : 0;
-    s->wireframe = args->wireframe;
-    s->cap = args->cap;
+    s->mesh_look.tint = (cw_tint)args->tint;
+    s->mesh_look.tint_low = range->count ? range->value[0] : 0;
+    s->mesh_look.tint_high = range->count ? range->value[1] : 0;
+    s->mesh_look.wireframe = args->wireframe;
+    s->mesh_look.cap = args->cap;
     return CW_OK;
 }
 

@@ -260,7 +260,7 @@ cw_status view_pick_point(view *v, const double pixel[2], cw_picked *picked, cw_
 {
     const view_part *part = &v->parts[VIEW_SPACE];
     *picked = (cw_picked){0};
-    if (part->level == VIEW_STALE || part->scene.live || v->state.args.compare)
+    if (part->level == VIEW_STALE || part->scene.mesh_look.live || v->state.args.compare)
         return CW_OK; /* nothing to be seen yet, or two things */
     const double scale = (double)part->scene.width / fmax(part->rect.width, 1);
     return cw_pick(&part->scene, (const double[2]){pixel[0] * scale, pixel[1] * scale}, picked,

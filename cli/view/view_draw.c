@@ -140,7 +140,7 @@ static void put_live(view *v, cw_scene *scene)
 {
     describe_live(v);
     scene->mesh = NULL;
-    scene->live = &v->live;
+    scene->mesh_look.live = &v->live;
 }
 
 const char *view_name_surface(const view *v)
@@ -179,13 +179,13 @@ static void make_rough(cw_scene *s)
     if (s->mode == CW_MODE_SPLAT)
         s->mode = CW_MODE_SPLAT_TREE;
     if (s->mode == CW_MODE_SPLAT_TREE)
-        s->splat_budget = ROUGH_SPLATS;
+        s->splat.budget = ROUGH_SPLATS;
     const bool is_coarse = s->mode == CW_MODE_TEXTURE || s->mode == CW_MODE_SHADED_TEXTURE ||
                            s->mode == CW_MODE_AVERAGE;
-    s->step_vox = fmax(s->step_vox, is_coarse ? 4 : 2);
+    s->sampling.step_vox = fmax(s->sampling.step_vox, is_coarse ? 4 : 2);
     s->samples = 1;
-    s->jitter = s->exact_filter = s->cell_steps = false;
-    s->no_preintegration = true; /* its table is made again for every curve and step */
+    s->sampling.jitter = s->sampling.exact_filter = s->sampling.cell_steps = false;
+    s->sampling.no_preintegration = true; /* its table is made again for every curve and step */
 }
 
 static cw_status space_scene(view *v, const render_args *args, cw_mode mode,
@@ -198,8 +198,8 @@ static cw_status space_scene(view *v, const render_args *args, cw_mode mode,
         .level = v->level,
         .threads = (int)args->input.threads};
     scene->camera = v->state.camera;
-    scene->same_inside = view_shows_surfaces(v);
-    scene->lean = !v->is_saving;
+    scene->mesh_look.same_inside = view_shows_surfaces(v);
+    scene->sampling.lean = !v->is_saving;
     scene->samples = args->samples ? (int)args->samples : mode == CW_MODE_MESH ? 2 : 1;
     cw_status st = cli_make_scene(&args->scene, &subject, mode, transfer, scene, err);
     if (mode == CW_MODE_SLICES && scene->slice_count == 0)
@@ -281,7 +281,7 @@ static void suit_level(view_level level, cw_scene *scene)
         make_rough(scene);
     if (level == VIEW_FAIR) {
         scene->samples = 1;
-        scene->step_vox = fmax(scene->step_vox, 1);
+        scene->sampling.step_vox = fmax(scene->sampling.step_vox, 1);
     }
 }
 

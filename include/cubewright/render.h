@@ -183,6 +183,98 @@ typedef struct cw_live_surface {
                                 cw_extract(); default: refuse there */
 } cw_live_surface;
 
+/* Settings of samples along rays, and of slices of textures. Zero fields mean the default named beside
+ * them, here and in the structs below. */
+typedef struct cw_sampling {
+    double step_vox;        /* distance of samples along a ray, or of slices of a texture, in
+                               units of the smallest spacing; default 1 */
+    bool cell_steps;        /* samples end at the faces of cells */
+    bool no_preintegration; /* sample at the middle of each step. Default: composite does so for
+                               wide transfer functions, and integrates narrow ones over each
+                               step, as the other modes do all */
+    bool jitter;            /* shift the samples of every ray by a different fraction of a
+                               step */
+    bool exact_filter;      /* trilinear interpolation by the shader, not the texture unit */
+    bool no_skipping;       /* do not skip empty space */
+    float stop_opacity;  /* rays, layers of meshes, and cells of projection on the CPU, end at
+                               this opacity; default 0.9999, vbuffer 0.99999 */
+    bool lean;           /* saves memory and time of the first picture. The shader computes
+                               gradients where it can, instead of reading them from a texture;
+                               lit rays are up to a third slower. Always so for large volumes.
+                               Where the processor draws (Mesa's llvmpipe), voxels without gaps
+                               of u8, u16, i16 or f32 are read from the caller's memory without
+                               a texture; rays are a sixth slower. texture and shaded-texture
+                               always have textures */
+    size_t texture_edge; /* maximum edge of a 3D texture, in voxels; default: GL's maximum */
+} cw_sampling;
+
+/* Settings of intensity projections. */
+typedef struct cw_intensity_look {
+    double threshold;  /* local-mip: the minimum of a maximum that counts; minip_inside: what
+                               values of the object reach */
+    bool minip_inside; /* minip: the minimum between the first and the last place of a ray
+                               whose value reaches threshold, so that the air around an object
+                               does not count. A ray that does not reach it shows nothing.
+                               Default: the minimum of the whole ray */
+} cw_intensity_look;
+
+/* Settings of texture and shaded-texture. */
+typedef struct cw_texture_look {
+    cw_target target;  /* the pixel type for blending slices */
+    bool colors_first; /* texture, shaded-texture, reference on evenly spaced volumes:
+                            interpolate the colours and extinctions of voxels, not data */
+    size_t normals;    /* shaded-texture: number of directions in the table, at most 8192;
+                               default 1024. The mode is lit whether or not lit is set */
+    cw_direction_filter direction_filter; /* shaded-texture; colors_first has the table's
+                               colours of eight voxels, whatever this is */
+    bool material_table; /* shaded-texture: a value has the mean colour and opacity of its
+                               material, the interval between two points of the opacities, as in
+                               1996. The table has a column for each material and one for what is
+                               invisible, in place of 256 for values */
+    bool mark_boundary;  /* shaded-texture: draw only cells at material boundaries, and those
+                               around them, so that no hole is left: between the values of their
+                               samples lies a point of the opacities */
+} cw_texture_look;
+
+/* Settings of vbuffer. */
+typedef struct cw_vbuffer_look {
+    bool pixel_area; /* a pixel that is wider than a cell shows the mean over its
+                               area, of evenly spaced volumes; default: what the ray through
+                               its middle meets */
+} cw_vbuffer_look;
+
+/* Settings of projection. */
+typedef struct cw_projection_look {
+    bool linear_opacity; /* opacity, not depth, is linear over a polygon, as in 1991 */
+    double tree_error; /* half the range of values of a node that is drawn whole, in the table's
+                            range 0..1 of values; 0: each cell is drawn */
+} cw_projection_look;
+
+/* Settings of splat and splat-tree. */
+typedef struct cw_splat_look {
+    cw_splat_kernel kernel; /* the blob of a voxel */
+    double width;           /* its standard deviation in voxels, 0.2 to 4;
+                           default 0.6, of a tent 0.408, of a cubic B-spline 0.577 */
+    double tree_error;      /* splat-tree: maximum error of a node, in the table's range 0..1 of
+                               values; 0: every voxel is splatted */
+    size_t budget;          /* splat-tree: approximate maximum of splats in a picture; the error
+                               is raised until they suffice; default: no limit */
+} cw_splat_look;
+
+/* Settings of meshes, in any mode. */
+typedef struct cw_mesh_look {
+    float color[4]; /* sRGB and opacity of a mesh without colours; default a bone white */
+    cw_tint tint;   /* default: its colours */
+    double tint_low, tint_high; /* both 0: the range of the scalars */
+    bool wireframe;             /* edges drawn over the triangles; faint where they are dense */
+    bool same_inside;           /* the inside of a mesh, seen through a cut or a clear surface,
+                                   has the colour of the outside; default: a red shade of it */
+    bool cap;                   /* fill the cut through a clipped mesh, which must be closed */
+    const cw_live_surface *live; /* drawn in place of a mesh, by OpenGL 4.3 alone, without
+                               wireframe and in the scene's colour; default: none. Depths of a cue
+                               are those of the volume's box */
+} cw_mesh_look;
+
 /* A scene. Zero-initialise it and set what you need; a zero field means the default named
  * beside it. Memory behind pointers is borrowed. */
 typedef struct cw_scene {
@@ -224,77 +316,18 @@ typedef struct cw_scene {
     size_t clip_count;           /* default: none */
     bool cut_away;               /* leave out what all of them would keep, draw the rest */
 
-    /* rays and slices */
-    double step_vox;        /* distance of samples along a ray, or of slices of a texture, in
-                               units of the smallest spacing; default 1 */
-    bool cell_steps;        /* samples end at the faces of cells */
-    bool no_preintegration; /* sample at the middle of each step. Default: composite does so for
-                               wide transfer functions, and integrates narrow ones over each
-                               step, as the other modes do all */
-    bool jitter;            /* shift the samples of every ray by a different fraction of a
-                               step */
-    bool exact_filter;      /* trilinear interpolation by the shader, not the texture unit */
-    bool no_skipping;       /* do not skip empty space */
-    float stop_opacity;  /* rays, layers of meshes, and cells of projection on the CPU, end at
-                               this opacity; default 0.9999, vbuffer 0.99999 */
-    double threshold;    /* local-mip: the minimum of a maximum that counts; minip_inside: what
-                               values of the object reach */
-    bool minip_inside;   /* minip: the minimum between the first and the last place of a ray
-                               whose value reaches threshold, so that the air around an object
-                               does not count. A ray that does not reach it shows nothing.
-                               Default: the minimum of the whole ray */
-    bool lean;           /* saves memory and time of the first picture. The shader computes
-                               gradients where it can, instead of reading them from a texture;
-                               lit rays are up to a third slower. Always so for large volumes.
-                               Where the processor draws (Mesa's llvmpipe), voxels without gaps
-                               of u8, u16, i16 or f32 are read from the caller's memory without
-                               a texture; rays are a sixth slower. texture and shaded-texture
-                               always have textures */
-    size_t texture_edge; /* maximum edge of a 3D texture, in voxels; default: GL's maximum */
-    cw_target target;    /* texture, shaded-texture: the pixel type for blending slices */
-    bool colors_first;   /* texture, shaded-texture, reference on evenly spaced volumes:
-                            interpolate the colours and extinctions of voxels, not data */
-    size_t normals;      /* shaded-texture: number of directions in the table, at most 8192;
-                               default 1024. The mode is lit whether or not lit is set */
-    cw_direction_filter direction_filter; /* shaded-texture; colors_first has the table's
-                               colours of eight voxels, whatever this is */
-    bool material_table; /* shaded-texture: a value has the mean colour and opacity of its
-                               material, the interval between two points of the opacities, as in
-                               1996. The table has a column for each material and one for what is
-                               invisible, in place of 256 for values */
-    bool mark_boundary;  /* shaded-texture: draw only cells at material boundaries, and those
-                               around them, so that no hole is left: between the values of their
-                               samples lies a point of the opacities */
-    bool pixel_area;     /* vbuffer: a pixel that is wider than a cell shows the mean over its
-                               area, of evenly spaced volumes; default: what the ray through
-                               its middle meets */
-    bool linear_opacity; /* projection: opacity, not depth, is linear over a polygon, as in
-                               1991 */
-    double tree_error;   /* splat-tree: maximum error of a node, in the table's range 0..1 of
-                               values; 0: every voxel is splatted. projection: half the range of
-                               values of a node that is drawn whole */
-    size_t splat_budget; /* splat-tree: approximate maximum of splats in a picture; the error
-                               is raised until they suffice; default: no limit */
-
-    cw_splat_kernel splat_kernel; /* splat, splat-tree: the blob of a voxel */
-    double splat_width; /* splat, splat-tree: its standard deviation in voxels, 0.2 to 4;
-                           default 0.6, of a tent 0.408, of a cubic B-spline 0.577 */
+    /* how modes draw */
+    cw_sampling sampling;          /* of rays and slices */
+    cw_intensity_look intensity;   /* of mip, minip, average, local-mip */
+    cw_texture_look texture;       /* of texture, shaded-texture */
+    cw_vbuffer_look vbuffer;       /* of vbuffer */
+    cw_projection_look projection; /* of projection */
+    cw_splat_look splat;           /* of splat, splat-tree */
+    cw_mesh_look mesh_look;        /* of meshes, in any mode */
 
     /* slices */
     cw_slice slices[CW_MAX_SLICES]; /* slice_count of them */
     size_t slice_count;             /* default: axial, coronal, sagittal through the middle */
-
-    /* mesh */
-    float color[4]; /* sRGB and opacity of a mesh without colours; default a bone white */
-    cw_tint tint;   /* default: its colours */
-    double tint_low, tint_high; /* both 0: the range of the scalars */
-    bool wireframe;             /* edges drawn over the triangles; faint where they are dense */
-    bool same_inside;           /* the inside of a mesh, seen through a cut or a clear surface,
-                                   has the colour of the outside; default: a red shade of it */
-    bool cap;                   /* fill the cut through a clipped mesh, which must be closed */
-    const cw_live_surface *live; /* drawn in place of a mesh, by OpenGL 4.3 alone, without
-                               wireframe and in the scene's colour; default: none. Depths of a cue
-                               are those of the volume's box */
 
     int threads;          /* default: one per processor */
     cw_progress progress; /* default: none. Called every few milliseconds, except while GL

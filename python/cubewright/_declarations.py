@@ -2357,6 +2357,119 @@ cw_live_surface._fields_ = [
 ]
 
 
+class cw_sampling(Structure):
+    step_vox: float
+    cell_steps: bool
+    no_preintegration: bool
+    jitter: bool
+    exact_filter: bool
+    no_skipping: bool
+    stop_opacity: float
+    lean: bool
+    texture_edge: int
+
+
+cw_sampling._fields_ = [
+    ("step_vox", c_double),
+    ("cell_steps", c_bool),
+    ("no_preintegration", c_bool),
+    ("jitter", c_bool),
+    ("exact_filter", c_bool),
+    ("no_skipping", c_bool),
+    ("stop_opacity", c_float),
+    ("lean", c_bool),
+    ("texture_edge", c_size_t),
+]
+
+
+class cw_intensity_look(Structure):
+    threshold: float
+    minip_inside: bool
+
+
+cw_intensity_look._fields_ = [
+    ("threshold", c_double),
+    ("minip_inside", c_bool),
+]
+
+
+class cw_texture_look(Structure):
+    target: int
+    colors_first: bool
+    normals: int
+    direction_filter: int
+    material_table: bool
+    mark_boundary: bool
+
+
+cw_texture_look._fields_ = [
+    ("target", c_int),
+    ("colors_first", c_bool),
+    ("normals", c_size_t),
+    ("direction_filter", c_int),
+    ("material_table", c_bool),
+    ("mark_boundary", c_bool),
+]
+
+
+class cw_vbuffer_look(Structure):
+    pixel_area: bool
+
+
+cw_vbuffer_look._fields_ = [
+    ("pixel_area", c_bool),
+]
+
+
+class cw_projection_look(Structure):
+    linear_opacity: bool
+    tree_error: float
+
+
+cw_projection_look._fields_ = [
+    ("linear_opacity", c_bool),
+    ("tree_error", c_double),
+]
+
+
+class cw_splat_look(Structure):
+    kernel: int
+    width: float
+    tree_error: float
+    budget: int
+
+
+cw_splat_look._fields_ = [
+    ("kernel", c_int),
+    ("width", c_double),
+    ("tree_error", c_double),
+    ("budget", c_size_t),
+]
+
+
+class cw_mesh_look(Structure):
+    color: Any
+    tint: int
+    tint_low: float
+    tint_high: float
+    wireframe: bool
+    same_inside: bool
+    cap: bool
+    live: Any
+
+
+cw_mesh_look._fields_ = [
+    ("color", c_float * 4),
+    ("tint", c_int),
+    ("tint_low", c_double),
+    ("tint_high", c_double),
+    ("wireframe", c_bool),
+    ("same_inside", c_bool),
+    ("cap", c_bool),
+    ("live", POINTER(cw_live_surface)),
+]
+
+
 class cw_scene(Structure):
     mode: int
     volume: Any
@@ -2381,39 +2494,15 @@ class cw_scene(Structure):
     clips: Any
     clip_count: int
     cut_away: bool
-    step_vox: float
-    cell_steps: bool
-    no_preintegration: bool
-    jitter: bool
-    exact_filter: bool
-    no_skipping: bool
-    stop_opacity: float
-    threshold: float
-    minip_inside: bool
-    lean: bool
-    texture_edge: int
-    target: int
-    colors_first: bool
-    normals: int
-    direction_filter: int
-    material_table: bool
-    mark_boundary: bool
-    pixel_area: bool
-    linear_opacity: bool
-    tree_error: float
-    splat_budget: int
-    splat_kernel: int
-    splat_width: float
+    sampling: Any
+    intensity: Any
+    texture: Any
+    vbuffer: Any
+    projection: Any
+    splat: Any
+    mesh_look: Any
     slices: Any
     slice_count: int
-    color: Any
-    tint: int
-    tint_low: float
-    tint_high: float
-    wireframe: bool
-    same_inside: bool
-    cap: bool
-    live: Any
     threads: int
     progress: Any
 
@@ -2442,39 +2531,15 @@ cw_scene._fields_ = [
     ("clips", cw_clip * 12),
     ("clip_count", c_size_t),
     ("cut_away", c_bool),
-    ("step_vox", c_double),
-    ("cell_steps", c_bool),
-    ("no_preintegration", c_bool),
-    ("jitter", c_bool),
-    ("exact_filter", c_bool),
-    ("no_skipping", c_bool),
-    ("stop_opacity", c_float),
-    ("threshold", c_double),
-    ("minip_inside", c_bool),
-    ("lean", c_bool),
-    ("texture_edge", c_size_t),
-    ("target", c_int),
-    ("colors_first", c_bool),
-    ("normals", c_size_t),
-    ("direction_filter", c_int),
-    ("material_table", c_bool),
-    ("mark_boundary", c_bool),
-    ("pixel_area", c_bool),
-    ("linear_opacity", c_bool),
-    ("tree_error", c_double),
-    ("splat_budget", c_size_t),
-    ("splat_kernel", c_int),
-    ("splat_width", c_double),
+    ("sampling", cw_sampling),
+    ("intensity", cw_intensity_look),
+    ("texture", cw_texture_look),
+    ("vbuffer", cw_vbuffer_look),
+    ("projection", cw_projection_look),
+    ("splat", cw_splat_look),
+    ("mesh_look", cw_mesh_look),
     ("slices", cw_clip * 4),
     ("slice_count", c_size_t),
-    ("color", c_float * 4),
-    ("tint", c_int),
-    ("tint_low", c_double),
-    ("tint_high", c_double),
-    ("wireframe", c_bool),
-    ("same_inside", c_bool),
-    ("cap", c_bool),
-    ("live", POINTER(cw_live_surface)),
     ("threads", c_int),
     ("progress", cw_progress),
 ]

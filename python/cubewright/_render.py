@@ -186,7 +186,7 @@ def render(
         height=height,
         samples=count,
         lit=take_flag("lit", lit) and not lib.cw_mode_is_intensity(MODES.index(mode)),
-        step_vox=take_number("step_length", step_length),
+        sampling=c.cw_sampling(step_vox=take_number("step_length", step_length)),
         threads=take_threads(threads),
     )
     for row, color in zip(scene.background, colors):

@@ -54,7 +54,7 @@ static void stuff_at(const cwi_frame *f, const double eye[3], double out[4])
     double index[3], value = 0, one[4];
     cwi_affine_apply(f->index_from_eye, eye, index);
     const corners c = corners_at(&f->volume, index);
-    if (!f->scene.colors_first) {
+    if (!f->scene.texture.colors_first) {
         for (int n = 0; n < 8; n++)
             value += c.share[n] * c.value[n];
         stuff_of(f, value, out);

@@ -20,10 +20,10 @@ cw_picture test_truth(cw_renderer *renderer, const cw_scene *scene)
 {
     cw_scene fine = *scene;
     fine.mode = CW_MODE_COMPOSITE;
-    fine.step_vox = 0.1;
-    fine.stop_opacity = 1;
-    fine.no_preintegration = true; /* its table would be made again each time */
-    fine.no_skipping = true;
+    fine.sampling.step_vox = 0.1;
+    fine.sampling.stop_opacity = 1;
+    fine.sampling.no_preintegration = true; /* its table would be made again each time */
+    fine.sampling.no_skipping = true;
     return test_draw(renderer, &fine);
 }
 

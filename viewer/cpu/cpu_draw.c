@@ -64,11 +64,11 @@ static cw_status draw_vbuffer(cwi_cpu *cpu, const cwi_frame *f, const double *de
                               cw_picture *picture, cw_error *err)
 {
     const char *kind = cwi_volume_kind(&f->volume);
-    if (f->scene.pixel_area && kind)
+    if (f->scene.vbuffer.pixel_area && kind)
         return cwi_fail(err, CW_ERR_UNSUPPORTED,
                         "the area of pixels is averaged for evenly spaced volumes, not for %s",
                         kind);
-    const bool needs_means = f->scene.pixel_area && cwi_beams_need_means(f);
+    const bool needs_means = f->scene.vbuffer.pixel_area && cwi_beams_need_means(f);
     cw_status st = needs_means ? take_means(cpu, f, err) : CW_OK;
     if (st != CW_OK)
         return st;
@@ -104,7 +104,8 @@ static cw_status draw_volume(cwi_cpu *cpu, const cwi_frame *f, const double *dep
 {
     const bool is_even = !cwi_volume_kind(&f->volume);
     cw_status st = is_even ? CW_OK : take_tree(cpu, f, err);
-    if (st == CW_OK && !is_even && f->scene.mode == CW_MODE_REFERENCE && f->scene.colors_first)
+    if (st == CW_OK && !is_even && f->scene.mode == CW_MODE_REFERENCE &&
+        f->scene.texture.colors_first)
         return cwi_fail(err, CW_ERR_UNSUPPORTED,
                         "colours are interpolated on evenly spaced volumes, not on %s",
                         cwi_volume_kind(&f->volume));

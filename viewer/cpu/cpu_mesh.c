@@ -12,8 +12,8 @@
 
 static bool is_clear(const cw_scene *s)
 {
-    if (s->tint != CW_TINT_COLORS || !s->mesh->colors)
-        return s->color[3] < 1;
+    if (s->mesh_look.tint != CW_TINT_COLORS || !s->mesh->colors)
+        return s->mesh_look.color[3] < 1;
     for (size_t v = 0; v < s->mesh->vertex_count; v++)
         if (s->mesh->colors[4 * v + 3] < 255)
             return true;
@@ -23,13 +23,13 @@ static bool is_clear(const cw_scene *s)
 const char *cwi_cpu_mesh_refusal(const cwi_frame *f)
 {
     const cw_scene *s = &f->scene;
-    return is_clear(s)         ? "translucent"
-           : s->clip_count > 0 ? "cut open"
-           : s->wireframe      ? "with edges"
-           : s->depth_cue > 0  ? "with a depth cue"
-           : s->one_sided      ? "lit on one side"
-           : !f->studio_light  ? "with lights or a material of their own"
-                               : NULL;
+    return is_clear(s)              ? "translucent"
+           : s->clip_count > 0      ? "cut open"
+           : s->mesh_look.wireframe ? "with edges"
+           : s->depth_cue > 0       ? "with a depth cue"
+           : s->one_sided           ? "lit on one side"
+           : !f->studio_light       ? "with lights or a material of their own"
+                                    : NULL;
 }
 
 /* Refuses settings that the CPU does not draw, so that none is ignored silently. */
@@ -77,9 +77,9 @@ static cw_status make_tinted(const cw_scene *s, const double range[2], cw_mesh *
                              cw_error *err)
 {
     const cw_mesh *mesh = s->mesh;
-    const bool apart = s->tint == CW_TINT_QUALITY;
+    const bool apart = s->mesh_look.tint == CW_TINT_QUALITY;
     *m = *mesh;
-    if (s->tint == CW_TINT_COLORS)
+    if (s->mesh_look.tint == CW_TINT_COLORS)
         return CW_OK;
     if (apart) {
         m->vertex_count = 3 * mesh->triangle_count;
@@ -100,12 +100,12 @@ static cw_status make_tinted(const cw_scene *s, const double range[2], cw_mesh *
 
 static void drop_tinted(const cw_scene *s, cw_mesh *m)
 {
-    if (s->tint == CW_TINT_QUALITY) {
+    if (s->mesh_look.tint == CW_TINT_QUALITY) {
         cwi_free(m->positions);
         cwi_free(m->normals);
         cwi_free(m->triangles);
     }
-    if (s->tint != CW_TINT_COLORS)
+    if (s->mesh_look.tint != CW_TINT_COLORS)
         cwi_free(m->colors);
 }
 
@@ -119,11 +119,11 @@ static cw_status draw_tinted(const cwi_frame *f, const cw_mesh *mesh, double *de
                              .samples = 1,
                              .background = {{255, 255, 255, 0}, {255, 255, 255, 0}},
                              .depth_mm = depth_mm,
-                             .same_inside = f->scene.same_inside,
+                             .same_inside = f->scene.mesh_look.same_inside,
                              .threads = f->scene.threads,
                              .progress = f->scene.progress};
     for (int c = 0; c < 4; c++)
-        d.color[c] = (uint8_t)lroundf(255 * f->scene.color[c]);
+        d.color[c] = (uint8_t)lroundf(255 * f->scene.mesh_look.color[c]);
     cw_status st = cw_render_mesh(mesh, &d, &image, err);
     for (size_t p = 0; st == CW_OK && p < image.width * image.height; p++)
         for (int c = 0; c < 4 && image.pixels[4 * p + 3] > 0; c++)

@@ -162,7 +162,7 @@ static void add_cell(const cw_scene *s, const cwi_walk *w, tally *t)
         end_stretch(t);
     else if (mode == CW_MODE_MIP)
         add_highest(w, v, t);
-    else if (mode == CW_MODE_MINIP && s->minip_inside)
+    else if (mode == CW_MODE_MINIP && s->intensity.minip_inside)
         add_inside(w, v, t);
     else if (mode == CW_MODE_MINIP)
         add_lowest(w, v, t);
@@ -183,7 +183,7 @@ static bool is_passed_over(const cw_scene *s, const float range[2], tally *t)
         end_stretch(t);
         return true;
     }
-    if (mode == CW_MODE_MINIP && s->minip_inside) {
+    if (mode == CW_MODE_MINIP && s->intensity.minip_inside) {
         const bool is_below = high < t->threshold;
         return t->has_value ? low >= t->extreme && (is_below || t->pending >= t->extreme)
                             : is_below;
@@ -231,7 +231,7 @@ static void add_span(const cw_scene *s, const cwi_span *span, tally *t)
 {
     double values[4], rounding = 0;
     const cw_mode mode = s->mode;
-    if (mode == CW_MODE_MINIP && s->minip_inside) {
+    if (mode == CW_MODE_MINIP && s->intensity.minip_inside) {
         add_inside_cubic(span->value, t);
         return;
     }
@@ -256,8 +256,9 @@ static void add_span(const cw_scene *s, const cwi_span *span, tally *t)
 static tally start_tally(const cw_scene *s)
 {
     const bool has_threshold =
-        s->mode == CW_MODE_LOCAL_MIP || (s->mode == CW_MODE_MINIP && s->minip_inside);
-    return (tally){.threshold = has_threshold ? s->threshold : INFINITY, .pending = INFINITY};
+        s->mode == CW_MODE_LOCAL_MIP || (s->mode == CW_MODE_MINIP && s->intensity.minip_inside);
+    return (tally){.threshold = has_threshold ? s->intensity.threshold : INFINITY,
+                   .pending = INFINITY};
 }
 
 double cwi_intensity_spans(const cwi_field *field, cwi_spans *spans, double x, double y,

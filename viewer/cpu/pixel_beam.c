@@ -495,7 +495,8 @@ void cwi_beam_pass(const cwi_beams *b, const cwi_ray *ray, double depth, double 
                    cwi_beam_shade *shade, void *context, cwi_lanes *color, float *light)
 {
     const cwi_frame *f = b->frame;
-    const double forward = -ray->direction[2], least = 1 - (double)f->scene.stop_opacity;
+    const double forward = -ray->direction[2],
+                 least = 1 - (double)f->scene.sampling.stop_opacity;
     double t[2] = {fmax(b->start, f->perspective ? f->near : -INFINITY) / forward,
                    depth / forward};
     beam m = {.b = b,

@@ -122,7 +122,7 @@ static double emitted_color(const medium *m, double x, double color[3])
     const cwi_frame *f = m->reference->frame;
     double gradient[3];
     double extinction =
-        f->scene.colors_first ? mix_classes(m, x, color) : classify_value(m, x, color);
+        f->scene.texture.colors_first ? mix_classes(m, x, color) : classify_value(m, x, color);
     for (int a = 0; a < 3 && m->reference->has_gradients; a++)
         gradient[a] = cwi_cubic_at(m->gradient[a], x);
     if (f->transfer.gradient_count > 0)
@@ -281,7 +281,7 @@ static void add_cell(medium *m, const cwi_walk *w, const cwi_ray *ray, sum *s)
     double v[8];
     if (!cwi_walk_values(w, v))
         return;
-    if (m->reference->frame->scene.colors_first) {
+    if (m->reference->frame->scene.texture.colors_first) {
         add_classes(m, w, v, ray, s);
         return;
     }

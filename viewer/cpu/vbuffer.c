@@ -486,7 +486,7 @@ static bool draw_ray(const vbuffer *b, cwi_spans *spans, double x, double y, siz
             (1 - share) * scene->background[0][c] + share * scene->background[1][c];
     for (int a = 0; a < 3; a++)
         s.slope[a] = (float)s.ray.slope[a];
-    const float least_light = 1 - scene->stop_opacity;
+    const float least_light = 1 - scene->sampling.stop_opacity;
     bool is_whole = true;
     s.scene = (cwi_batch_scene){.frame = b->frame,
                                 .table = &b->table,
@@ -587,7 +587,7 @@ static cw_status set_up(vbuffer *b, const cwi_cell_tree *tree, const cwi_mean_ce
     if (!b->is_even)
         return CW_OK;
     st = cwi_ranges_distances(b->ranges, is_visible, &b->knots, &b->distances, err);
-    b->has_beams = b->frame->scene.pixel_area && cwi_beams_are_wide(b->frame);
+    b->has_beams = b->frame->scene.vbuffer.pixel_area && cwi_beams_are_wide(b->frame);
     if (st == CW_OK && b->has_beams)
         st = cwi_beams_make(b->frame, b->ranges, b->distances, &b->corners, cells, &b->table,
                             &b->beams, err);

@@ -190,7 +190,7 @@ cw_status cwi_gl_lend_mesh(void **state, GLuint array, size_t triangles, cwi_gl_
 cw_status cwi_gl_take_mesh(cwi_gl *gl, void **state, cwi_gl_mesh **mesh, cw_error *err)
 {
     const cw_scene *s = &gl->frame->scene;
-    const bool expanded = s->wireframe || s->tint == CW_TINT_QUALITY;
+    const bool expanded = s->mesh_look.wireframe || s->mesh_look.tint == CW_TINT_QUALITY;
     cwi_gl_mesh *m;
     double range[2];
     cw_status st = cwi_tint_range(s, range, err);
@@ -206,10 +206,10 @@ cw_status cwi_gl_take_mesh(cwi_gl *gl, void **state, cwi_gl_mesh **mesh, cw_erro
     m->live_array = 0;
     memcpy(m->tint_range, range, sizeof range);
     if (!m->is_uploaded || !is_same(&m->key, s->mesh) || m->is_expanded != expanded ||
-        m->tint != s->tint) {
+        m->tint != s->mesh_look.tint) {
         m->key = *s->mesh;
         m->is_expanded = expanded;
-        m->tint = s->tint;
+        m->tint = s->mesh_look.tint;
         st = upload_mesh(gl, m, err);
     }
     glActiveTexture(GL_TEXTURE0 + CWI_UNIT_RAMP);

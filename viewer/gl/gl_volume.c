@@ -267,7 +267,7 @@ static double find_gradient_unit(const cwi_gl_volume *g, const cwi_frame *f)
 
 static bool is_there(const cwi_gl_volume *g, const cwi_frame *f)
 {
-    return g->bricks && g->edge == f->scene.texture_edge &&
+    return g->bricks && g->edge == f->scene.sampling.texture_edge &&
            memcmp(&g->key, &f->volume, sizeof g->key) == 0;
 }
 
@@ -279,7 +279,7 @@ static cw_status make_volume(cwi_gl *gl, cw_error *err)
     double range[2];
     cwi_gl_drop_scene(gl);
     g->key = gl->frame->volume;
-    g->edge = gl->frame->scene.texture_edge;
+    g->edge = gl->frame->scene.sampling.texture_edge;
     cw_status st = cwi_ranges_make(&g->key, gl->frame->scene.threads, &gl->watch.progress,
                                    &g->ranges, err);
     if (st != CW_OK)
@@ -485,7 +485,7 @@ static bool has_differences(const cwi_gl *gl)
     const size_t *dim = g->key.dim;
     return g->brick_count == 1 && !g->ranges.has_gaps && !gl->frame->gradient_version &&
            !gl->frame->shadows &&
-           (gl->frame->scene.lean || dim[0] * dim[1] * dim[2] > MAX_GRADIENTS);
+           (gl->frame->scene.sampling.lean || dim[0] * dim[1] * dim[2] > MAX_GRADIENTS);
 }
 
 cw_status cwi_gl_need_gradients(cwi_gl *gl, const char **defines, cw_error *err)

@@ -531,7 +531,7 @@ static cw_status check_overlay(const cw_overlay *o, const cwi_frame *f, cw_error
         return cwi_fail(err, CW_ERR_ARGUMENT, "a histogram needs statistics with bins");
     if (o->histogram && !f->volume.data)
         return cwi_fail(err, CW_ERR_ARGUMENT, "a histogram is of a volume that is drawn");
-    if (o->color_bar && !f->volume.data && f->scene.tint == CW_TINT_COLORS)
+    if (o->color_bar && !f->volume.data && f->scene.mesh_look.tint == CW_TINT_COLORS)
         return cwi_fail(err, CW_ERR_ARGUMENT, "a colour bar needs a volume or a tinted mesh");
     if (o->isoline && f->scene.mode != CW_MODE_SLICES)
         return cwi_fail(err, CW_ERR_ARGUMENT,

@@ -92,8 +92,8 @@ static bool meet_triangle(const sight *s, size_t triangle, double *z, double sha
 static bool is_drawn(const cwi_frame *f, size_t triangle, const double share[3])
 {
     const cw_mesh *m = f->scene.mesh;
-    if (f->scene.tint != CW_TINT_COLORS || !m->colors)
-        return f->scene.color[3] > 0;
+    if (f->scene.mesh_look.tint != CW_TINT_COLORS || !m->colors)
+        return f->scene.mesh_look.color[3] > 0;
     double opacity = 0;
     for (int n = 0; n < 3; n++)
         opacity += share[n] * m->colors[4 * (size_t)m->triangles[3 * triangle + (size_t)n] + 3];
@@ -133,7 +133,7 @@ cwi_mesh_hit cwi_pick_mesh(const cwi_frame *f, const double origin[3],
             memcpy(hit.share, share, sizeof share);
         }
     }
-    if (f->scene.cap && f->scene.clip_count > 0)
+    if (f->scene.mesh_look.cap && f->scene.clip_count > 0)
         add_caps(&s, &hit);
     hit.t /= f->unit_mm;
     return hit;

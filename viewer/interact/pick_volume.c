@@ -170,9 +170,10 @@ static double find_value_inside(const cw_scene *s, const double c[4], double val
     places[turns + 1] = 1;
     for (int n = 0; n <= turns + 1; n++) {
         const double now = n == 0 ? c[0] : cwi_cubic_at(c, places[n]);
-        const bool crosses = (before < s->threshold) != (now < s->threshold);
-        *is_inside = *is_inside || crosses || now >= s->threshold;
-        if (crosses && value == s->threshold)
+        const bool crosses =
+            (before < s->intensity.threshold) != (now < s->intensity.threshold);
+        *is_inside = *is_inside || crosses || now >= s->intensity.threshold;
+        if (crosses && value == s->intensity.threshold)
             return find_crossing(c, places[n - 1], places[n], value);
         if (*is_inside && now == value)
             return places[n];
@@ -184,7 +185,7 @@ static double find_value_inside(const cw_scene *s, const double c[4], double val
 /* Finds where a cubic of a ray shows the projection's value. */
 static double find_shown(const cw_scene *s, const double c[4], double value, bool *is_inside)
 {
-    return s->mode == CW_MODE_MINIP && s->minip_inside
+    return s->mode == CW_MODE_MINIP && s->intensity.minip_inside
                ? find_value_inside(s, c, value, is_inside)
                : find_value(c, value);
 }

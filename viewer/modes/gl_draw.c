@@ -106,7 +106,7 @@ static void put_frame(cwi_gl *gl)
         .picture = {(float)s->width, (float)s->height, (float)f->half[0], (float)f->half[1]},
         .view = {f->perspective, (float)f->near, (float)f->far, s->depth_cue},
         .cue_range = {(float)f->cue_start, (float)f->cue_end, (float)f->cue_decay},
-        .limits = {s->stop_opacity},
+        .limits = {s->sampling.stop_opacity},
         .material = {s->material.ambient, s->material.diffuse, s->material.specular,
                      s->material.shininess},
         .counts = {(int32_t)s->light_count, (int32_t)s->clip_count, s->cut_away, s->one_sided},
@@ -157,7 +157,8 @@ static cw_status draw_scene(cwi_gl *gl, const cwi_gl_mode *mode, cw_error *err)
     reset_state();
     cw_status st = cwi_gl_take_target(gl, err);
     if (st == CW_OK && gl->frame->volume.data)
-        st = cwi_gl_take_volume(gl, mode->needs_textures || !gl->frame->scene.lean, err);
+        st = cwi_gl_take_volume(gl, mode->needs_textures || !gl->frame->scene.sampling.lean,
+                                err);
     if (st == CW_OK && gl->frame->volume.data)
         st = cwi_gl_take_transfer(gl, err);
     if (st != CW_OK)

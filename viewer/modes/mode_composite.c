@@ -13,18 +13,21 @@ extern const char cwi_glsl_composite[];
  * closer to the integral than a straight line between its ends, and costs less. */
 static bool needs_segments(const cwi_gl *gl)
 {
-    return !gl->frame->scene.no_preintegration && cwi_table_is_narrow(&gl->transfer.table);
+    return !gl->frame->scene.sampling.no_preintegration &&
+           cwi_table_is_narrow(&gl->transfer.table);
 }
 
 static void describe_shader(const cw_scene *s, const cw_transfer *t, bool has_segments,
                             const char *gradients, char *defines, size_t size)
 {
     snprintf(defines, size, "%s%s%s%s%s%s%s%s%s%s", gradients,
-             has_segments ? "#define SEGMENTS\n" : "", s->no_skipping ? "" : "#define SKIP\n",
-             s->cell_steps ? "#define CELLS\n" : "", cwi_gl_ray_defines(s),
-             s->jitter ? "#define JITTER\n" : "", s->depth_cue > 0 ? "#define CUE\n" : "",
-             s->lit ? "#define LIT\n" : "", t->gradient_count ? "#define FACTOR\n" : "",
-             s->exact_filter ? "#define EXACT_FILTER\n" : "");
+             has_segments ? "#define SEGMENTS\n" : "",
+             s->sampling.no_skipping ? "" : "#define SKIP\n",
+             s->sampling.cell_steps ? "#define CELLS\n" : "", cwi_gl_ray_defines(s),
+             s->sampling.jitter ? "#define JITTER\n" : "",
+             s->depth_cue > 0 ? "#define CUE\n" : "", s->lit ? "#define LIT\n" : "",
+             t->gradient_count ? "#define FACTOR\n" : "",
+             s->sampling.exact_filter ? "#define EXACT_FILTER\n" : "");
 }
 
 static cw_status draw_composite_mode(cwi_gl *gl, void **state, cw_error *err)
@@ -37,7 +40,7 @@ static cw_status draw_composite_mode(cwi_gl *gl, void **state, cw_error *err)
     const bool has_segments = needs_segments(gl);
     cw_status st = cwi_gl_need_skip(gl, err);
     if (st == CW_OK && has_segments)
-        st = cwi_gl_need_segments(gl, s->step_vox, err);
+        st = cwi_gl_need_segments(gl, s->sampling.step_vox, err);
     if (st == CW_OK && cwi_frame_needs_gradients(gl->frame))
         st = cwi_gl_need_gradients(gl, &gradients, err);
     describe_shader(s, &gl->frame->transfer, has_segments, gradients, defines, sizeof defines);
@@ -48,7 +51,7 @@ static cw_status draw_composite_mode(cwi_gl *gl, void **state, cw_error *err)
     size_t *order = cwi_gl_order_bricks(gl);
     if (!order)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the order of bricks");
-    cwi_gl_set(program, "step_length", (float)s->step_vox);
+    cwi_gl_set(program, "step_length", (float)s->sampling.step_vox);
     cwi_gl_set_last_block(program, gl->volume.ranges.dim);
     glDisable(GL_DEPTH_TEST);
     glEnable(GL_BLEND);

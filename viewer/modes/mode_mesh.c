@@ -26,7 +26,7 @@ static const float LINE_WIDTH = 0.6f;
 
 static bool has_colors(const cw_scene *s)
 {
-    return s->tint == CW_TINT_COLORS && s->mesh->colors;
+    return s->mesh_look.tint == CW_TINT_COLORS && s->mesh->colors;
 }
 
 /* Sets the scene's colour; faces of a cut are a little darker and warmer. */
@@ -35,8 +35,8 @@ static void set_plain(const cw_scene *s, GLuint program, bool cut, bool opaque)
     static const float darker[3] = {0.86f, 0.72f, 0.62f};
     float c[4];
     for (int a = 0; a < 3; a++)
-        c[a] = (float)cwi_srgb_to_linear((double)s->color[a]) * (cut ? darker[a] : 1);
-    c[3] = opaque || (cut && has_colors(s)) ? 1 : s->color[3];
+        c[a] = (float)cwi_srgb_to_linear((double)s->mesh_look.color[a]) * (cut ? darker[a] : 1);
+    c[3] = opaque || (cut && has_colors(s)) ? 1 : s->mesh_look.color[3];
     glUniform4fv(glGetUniformLocation(program, "plain"), 1, c);
 }
 
@@ -64,9 +64,10 @@ static cw_status use_program(cwi_gl *gl, const char *vertex, const char *kind, m
     snprintf(
         defines, sizeof defines, "%s%s%s%s%s%s%s%s", kind,
         gl->frame->studio_light ? "#define STUDIO\n" : "", how.peels ? "#define PEEL\n" : "",
-        s->tint != CW_TINT_COLORS ? "#define TINTED\n" : "",
-        has_colors(s) ? "#define COLORED\n" : "", s->wireframe ? "#define EDGES\n" : "",
-        how.opaque ? "#define SOLID\n" : "", s->same_inside ? "#define SAME_INSIDE\n" : "");
+        s->mesh_look.tint != CW_TINT_COLORS ? "#define TINTED\n" : "",
+        has_colors(s) ? "#define COLORED\n" : "",
+        s->mesh_look.wireframe ? "#define EDGES\n" : "", how.opaque ? "#define SOLID\n" : "",
+        s->mesh_look.same_inside ? "#define SAME_INSIDE\n" : "");
     cw_status st = cwi_gl_use(gl, vertex, cwi_glsl_mesh, defines, program, err);
     if (st == CW_OK)
         cwi_gl_set_mesh(gl, *program);
@@ -75,7 +76,7 @@ static cw_status use_program(cwi_gl *gl, const char *vertex, const char *kind, m
 
 static bool draws_caps(const cw_scene *s)
 {
-    return s->cap && s->clip_count > 0;
+    return s->mesh_look.cap && s->clip_count > 0;
 }
 
 /* Computes winding numbers around the points of a few planes. */
@@ -194,7 +195,7 @@ static cw_status draw_opaque(cwi_gl *gl, cwi_gl_mesh *m, cw_error *err)
 
 static bool is_translucent(const cw_scene *s, const cwi_gl_mesh *m)
 {
-    return has_colors(s) ? m->has_alpha : s->color[3] < 1;
+    return has_colors(s) ? m->has_alpha : s->mesh_look.color[3] < 1;
 }
 
 /* Extracts the scene's live surface. Its vertices have no colours, and no corners of their own. */
@@ -202,10 +203,10 @@ static cw_status take_live(cwi_gl *gl, void **state, cwi_gl_mesh **m, cw_error *
 {
     const cw_scene *s = &gl->frame->scene;
     cwi_live_mesh live;
-    if (s->wireframe || s->tint != CW_TINT_COLORS)
+    if (s->mesh_look.wireframe || s->mesh_look.tint != CW_TINT_COLORS)
         return cwi_fail(err, CW_ERR_UNSUPPORTED,
                         "a live surface is drawn without wireframe and in one colour");
-    cw_status st = cwi_live_take(&gl->live, s->live, NULL, NULL, &live, err);
+    cw_status st = cwi_live_take(&gl->live, s->mesh_look.live, NULL, NULL, &live, err);
     return st == CW_OK ? cwi_gl_lend_mesh(state, live.array, live.triangle_count, m, err) : st;
 }
 
@@ -213,7 +214,8 @@ static cw_status take_live(cwi_gl *gl, void **state, cwi_gl_mesh **m, cw_error *
 static cw_status take_mesh(cwi_gl *gl, void **state, cwi_gl_mesh **m, cw_error *err)
 {
     const cw_scene *s = &gl->frame->scene;
-    cw_status st = s->live ? take_live(gl, state, m, err) : cwi_gl_take_mesh(gl, state, m, err);
+    cw_status st =
+        s->mesh_look.live ? take_live(gl, state, m, err) : cwi_gl_take_mesh(gl, state, m, err);
     for (size_t n = 0; draws_caps(s) && n * CWI_PLANES_A_PASS < s->clip_count; n++)
         if (st == CW_OK)
             st = count_windings(gl, *m, n, err);

@@ -98,7 +98,7 @@ static const char *define_mode(const cw_scene *s)
     return s->mode == CW_MODE_MIP       ? "#define MIP\n"
            : s->mode == CW_MODE_AVERAGE ? "#define AVERAGE\n"
            : s->mode != CW_MODE_MINIP   ? "#define LOCAL\n"
-           : s->minip_inside            ? "#define MINIP\n#define INSIDE\n"
+           : s->intensity.minip_inside  ? "#define MINIP\n#define INSIDE\n"
                                         : "#define MINIP\n";
 }
 
@@ -106,7 +106,8 @@ static const char *define_mode(const cw_scene *s)
 static bool can_foresee(const cwi_gl *gl)
 {
     const cw_scene *s = &gl->frame->scene;
-    return (s->mode == CW_MODE_MIP || (s->mode == CW_MODE_MINIP && !s->minip_inside)) &&
+    return (s->mode == CW_MODE_MIP ||
+            (s->mode == CW_MODE_MINIP && !s->intensity.minip_inside)) &&
            !gl->volume.ranges.has_gaps;
 }
 
@@ -120,18 +121,19 @@ static cw_status draw_brick(cwi_gl *gl, const projector *p, const cwi_gl_brick *
     const bool is_last = n + 1 == count;
     snprintf(defines, sizeof defines, "%s%s%s%s%s%s%s", cwi_gl_ray_defines(s), define_mode(s),
              n == 0 ? "#define FIRST\n" : "", is_last ? "#define LAST\n" : "",
-             can_foresee(gl) ? "#define FORESEE\n" : "", s->cell_steps ? "#define CELLS\n" : "",
-             s->exact_filter ? "#define EXACT_FILTER\n" : "");
+             can_foresee(gl) ? "#define FORESEE\n" : "",
+             s->sampling.cell_steps ? "#define CELLS\n" : "",
+             s->sampling.exact_filter ? "#define EXACT_FILTER\n" : "");
     cw_status st = cwi_gl_use(gl, cwi_glsl_screen, cwi_glsl_mip, defines, &program, err);
     if (st != CW_OK)
         return st;
     glBindFramebuffer(GL_FRAMEBUFFER, is_last ? gl->target.rays : p->framebuffer[n % 2]);
     glUniform1i(glGetUniformLocation(program, "ranges"), UNIT_RANGES);
     glUniform1i(glGetUniformLocation(program, "before"), UNIT_BEFORE);
-    cwi_gl_set(program, "step_length", (float)s->step_vox);
+    cwi_gl_set(program, "step_length", (float)s->sampling.step_vox);
     cwi_gl_set_last_block(program, p->blocks);
     cwi_gl_set(program, "threshold",
-               (float)((s->threshold - gl->volume.bias) / fabs(gl->volume.scale)));
+               (float)((s->intensity.threshold - gl->volume.bias) / fabs(gl->volume.scale)));
     cwi_gl_set(program, "rise", gl->volume.scale < 0 ? -1.0f : 1.0f);
     cwi_gl_bind_brick(program, brick);
     glActiveTexture(GL_TEXTURE0 + UNIT_RANGES);

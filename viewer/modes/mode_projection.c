@@ -424,7 +424,7 @@ static cw_status open_job(cwi_gl *gl, job *j, const char **gradients, cw_error *
     j->gl = gl;
     j->err = err;
     j->frame = gl->frame;
-    j->tolerance = needs_gradients ? -1 : (float)s->tree_error;
+    j->tolerance = needs_gradients ? -1 : (float)s->projection.tree_error;
     cwi_lattice_eye(j->frame, j->eye);
     j->vertices = cwi_alloc_array(CHUNK_VERTICES, sizeof *j->vertices);
     j->indices = cwi_alloc_array(CHUNK_INDICES, sizeof *j->indices);
@@ -433,8 +433,8 @@ static cw_status open_job(cwi_gl *gl, job *j, const char **gradients, cw_error *
     cw_status st = cwi_visible_make(&gl->transfer.table, &j->visible, err);
     if (st == CW_OK && needs_gradients)
         st = cwi_gl_need_gradients(gl, gradients, err);
-    if (st == CW_OK && !s->no_preintegration && !s->linear_opacity)
-        st = cwi_gl_need_segments(gl, s->step_vox, err);
+    if (st == CW_OK && !s->sampling.no_preintegration && !s->projection.linear_opacity)
+        st = cwi_gl_need_segments(gl, s->sampling.step_vox, err);
     return st;
 }
 
@@ -443,9 +443,9 @@ static void describe_shader(const cw_scene *s, const cw_transfer *t, const char 
 {
     snprintf(defines, size, "#define RAYS\n%s%s%s%s%s%s", gradients,
              s->clip_count ? "#define CLIPS\n" : "",
-             s->no_preintegration ? "" : "#define SEGMENTS\n",
-             s->linear_opacity ? "#define LINEAR\n" : "", s->lit ? "#define LIT\n" : "",
-             t->gradient_count ? "#define FACTOR\n" : "");
+             s->sampling.no_preintegration ? "" : "#define SEGMENTS\n",
+             s->projection.linear_opacity ? "#define LINEAR\n" : "",
+             s->lit ? "#define LIT\n" : "", t->gradient_count ? "#define FACTOR\n" : "");
 }
 
 static cw_status draw_bricks(job *j, GLuint program, cw_error *err)
@@ -479,7 +479,7 @@ static cw_status draw_projection_mode(cwi_gl *gl, void **state, cw_error *err)
         st = cwi_gl_use(gl, cwi_glsl_projection, cwi_glsl_projection, defines, &program, err);
     open_stream(j);
     if (st == CW_OK) {
-        cwi_gl_set(program, "step_length", (float)gl->frame->scene.step_vox);
+        cwi_gl_set(program, "step_length", (float)gl->frame->scene.sampling.step_vox);
         st = draw_bricks(j, program, err);
     }
     close_stream(j);

@@ -249,7 +249,7 @@ static cw_status upload_normals(cwi_gl *gl, shaded_state *t, size_t brick, cw_er
 /* Returns true if directions are interpolated, and lit in the shader. */
 static bool is_interpolated(const cw_scene *s)
 {
-    return s->direction_filter == CW_DIRECTIONS_LINEAR && !s->colors_first;
+    return s->texture.direction_filter == CW_DIRECTIONS_LINEAR && !s->texture.colors_first;
 }
 
 static cw_status need_normals(cwi_gl *gl, shaded_state *t, cw_error *err)
@@ -257,17 +257,17 @@ static cw_status need_normals(cwi_gl *gl, shaded_state *t, cw_error *err)
     const cw_scene *s = &gl->frame->scene;
     normals_key key;
     memset(&key, 0, sizeof key); /* keys are compared by their bytes */
-    key.count = s->normals;
-    key.mark_boundary = s->mark_boundary;
+    key.count = s->texture.normals;
+    key.mark_boundary = s->texture.mark_boundary;
     key.has_lengths = is_interpolated(s);
     key.gradient_version = gl->frame->gradient_version;
-    if (s->mark_boundary)
+    if (s->texture.mark_boundary)
         memcpy(&key.transfer, &gl->frame->transfer, sizeof key.transfer);
     if (t->normals && memcmp(&key, &t->normals_key, sizeof key) == 0)
         return CW_OK;
     drop_normals(t);
     memcpy(&t->normals_key, &key, sizeof key);
-    cw_status st = cwi_directions_make(s->normals, &t->directions, err);
+    cw_status st = cwi_directions_make(s->texture.normals, &t->directions, err);
     if (st != CW_OK)
         return st;
     t->normals = cwi_alloc_zeroed(gl->volume.brick_count, sizeof *t->normals);
@@ -298,9 +298,9 @@ static void fill_key(const cwi_gl *gl, shades_key *key)
     const cwi_frame *f = gl->frame;
     const layer_job job = start_layers(gl, NULL);
     memset(key, 0, sizeof *key);
-    key->count = f->scene.normals;
+    key->count = f->scene.texture.normals;
     key->is_unlit = is_interpolated(&f->scene);
-    key->by_material = f->scene.material_table;
+    key->by_material = f->scene.texture.material_table;
     key->opacity_units = f->opacity_units;
     key->light_count = f->scene.light_count;
     memcpy(key->lights, f->scene.lights, key->light_count * sizeof *key->lights);
@@ -523,10 +523,10 @@ static cw_status draw_shaded_texture(cwi_gl *gl, void **state, cw_error *err)
     if (st != CW_OK)
         return st;
     snprintf(defines, sizeof defines, "%s#define SHADES\n%s%s%s%s", gradients,
-             s->colors_first ? "#define COLORS\n" : "",
+             s->texture.colors_first ? "#define COLORS\n" : "",
              is_interpolated(s) ? "#define DIRECTIONS\n" : "",
-             s->material_table ? "#define MATERIALS\n" : "",
-             s->mark_boundary ? "#define BOUNDARY\n" : "");
+             s->texture.material_table ? "#define MATERIALS\n" : "",
+             s->texture.mark_boundary ? "#define BOUNDARY\n" : "");
     return cwi_gl_draw_slices(gl, &t->slices, defines, bind_brick, t, err);
 }
 

@@ -35,7 +35,7 @@ static cw_status draw_slices_mode(cwi_gl *gl, void **state, cw_error *err)
     char defines[64];
     snprintf(defines, sizeof defines, "#define RAYS\n%s%s",
              f->scene.clip_count ? "#define CLIPS\n" : "",
-             f->scene.exact_filter ? "#define EXACT_FILTER\n" : "");
+             f->scene.sampling.exact_filter ? "#define EXACT_FILTER\n" : "");
     cw_status st = cwi_slices_of(&f->scene, &f->volume, slices, &count, err);
     if (st == CW_OK)
         st = cwi_gl_use(gl, cwi_glsl_screen, cwi_glsl_slices, defines, &program, err);

@@ -204,7 +204,7 @@ static cw_status make_tree(const cwi_gl *gl, void **out, cw_error *err)
 static bool is_fitted(const tree *t, const walk *w)
 {
     const cwi_frame *f = w->splats.frame;
-    return t->budget == f->scene.splat_budget && t->axis == w->splats.axis &&
+    return t->budget == f->scene.splat.budget && t->axis == w->splats.axis &&
            memcmp(&t->transfer, &f->transfer, sizeof t->transfer) == 0;
 }
 
@@ -212,8 +212,8 @@ static cw_status fit_error(tree *t, const walk *w, cw_error *err)
 {
     const cwi_frame *f = w->splats.frame;
     cw_status st =
-        cwi_pyramid_fit(&t->pyramid, &w->view, f->scene.splat_budget, &t->error, err);
-    t->budget = st == CW_OK ? f->scene.splat_budget : 0;
+        cwi_pyramid_fit(&t->pyramid, &w->view, f->scene.splat.budget, &t->error, err);
+    t->budget = st == CW_OK ? f->scene.splat.budget : 0;
     t->axis = w->splats.axis;
     memcpy(&t->transfer, &f->transfer, sizeof t->transfer);
     return st;
@@ -222,9 +222,9 @@ static cw_status fit_error(tree *t, const walk *w, cw_error *err)
 static cw_status choose_error(tree *t, walk *w, cw_error *err)
 {
     const cw_scene *s = &w->splats.frame->scene;
-    const bool has_budget = s->splat_budget > 0;
+    const bool has_budget = s->splat.budget > 0;
     cw_status st = has_budget && !is_fitted(t, w) ? fit_error(t, w, err) : CW_OK;
-    w->error = (float)fmax(has_budget ? t->error : 0, s->tree_error);
+    w->error = (float)fmax(has_budget ? t->error : 0, s->splat.tree_error);
     return st;
 }
 
@@ -236,9 +236,9 @@ static cw_status draw_splat_tree(cwi_gl *gl, void **state, cw_error *err)
         return st;
     tree *t = *state;
     w.pyramid = &t->pyramid;
-    st = cwi_splats_open(&w.splats, gl,
-                         gl->frame->scene.tree_error > 0 || gl->frame->scene.splat_budget > 0,
-                         err);
+    st = cwi_splats_open(
+        &w.splats, gl,
+        gl->frame->scene.splat.tree_error > 0 || gl->frame->scene.splat.budget > 0, err);
     w.view =
         (cwi_pyramid_view){gl->frame, &gl->transfer.table, &w.splats.visible, w.splats.axis};
     if (st == CW_OK)

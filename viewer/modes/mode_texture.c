@@ -144,14 +144,14 @@ static cw_status draw_texture_mode(cwi_gl *gl, void **state, cw_error *err)
         return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for slices");
     if (cwi_frame_needs_gradients(gl->frame))
         st = cwi_gl_need_gradients(gl, &gradients, err);
-    if (st == CW_OK && s->colors_first)
+    if (st == CW_OK && s->texture.colors_first)
         st = need_classes(gl, t, err);
     if (st != CW_OK)
         return st;
     snprintf(defines, sizeof defines, "%s%s", gradients,
-             s->colors_first ? "#define COLORS\n" : "");
-    return cwi_gl_draw_slices(gl, &t->slices, defines, s->colors_first ? bind_classes : NULL, t,
-                              err);
+             s->texture.colors_first ? "#define COLORS\n" : "");
+    return cwi_gl_draw_slices(gl, &t->slices, defines,
+                              s->texture.colors_first ? bind_classes : NULL, t, err);
 }
 
 const cwi_gl_mode cwi_gl_texture_mode = {CW_MODE_TEXTURE, true, draw_texture_mode,

@@ -85,7 +85,7 @@ static void mark_brick(const cwi_gl *gl, const cwi_gl_brick *b, cwi_slabs *slabs
 {
     const size_t *dim = gl->volume.ranges.dim;
     const uint8_t *away = gl->transfer.away;
-    const bool all = gl->frame->scene.no_skipping;
+    const bool all = gl->frame->scene.sampling.no_skipping;
     size_t from[3], to[3], at[3];
     double low[3], high[3];
     blocks_of(b, dim, from, to);
@@ -260,7 +260,7 @@ static void make_color(cwi_gl_slabs *s, const cwi_gl_target *like, cw_target tar
 static cw_status begin_slabs(cwi_gl *gl, cwi_gl_slabs *s, cw_error *err)
 {
     const cwi_gl_target *t = &gl->target;
-    const cw_target target = gl->frame->scene.target;
+    const cw_target target = gl->frame->scene.texture.target;
     make_array(s);
     if (target == CW_TARGET_32F)
         return CW_OK;
@@ -277,7 +277,7 @@ static cw_status begin_slabs(cwi_gl *gl, cwi_gl_slabs *s, cw_error *err)
 static cw_status end_slabs(cwi_gl *gl, const cwi_gl_slabs *s, cw_error *err)
 {
     GLuint program;
-    if (gl->frame->scene.target == CW_TARGET_32F)
+    if (gl->frame->scene.texture.target == CW_TARGET_32F)
         return CW_OK;
     cw_status st = cwi_gl_use(gl, cwi_glsl_screen, cwi_glsl_over, "", &program, err);
     if (st != CW_OK)
@@ -294,9 +294,10 @@ static void describe_slabs(const cwi_frame *f, const char *own, char *defines, s
 {
     const cw_scene *s = &f->scene;
     snprintf(defines, size, "#define RAYS\n%s%s%s%s%s%s%s%s", own,
-             s->no_preintegration ? "" : "#define SEGMENTS\n", s->lit ? "#define LIT\n" : "",
+             s->sampling.no_preintegration ? "" : "#define SEGMENTS\n",
+             s->lit ? "#define LIT\n" : "",
              f->transfer.gradient_count ? "#define FACTOR\n" : "",
-             s->exact_filter ? "#define EXACT_FILTER\n" : "",
+             s->sampling.exact_filter ? "#define EXACT_FILTER\n" : "",
              s->clip_count ? "#define CLIPS\n" : "", s->mesh ? "#define MESH\n" : "",
              s->depth_cue > 0 ? "#define CUE\n" : "");
 }
@@ -341,8 +342,8 @@ cw_status cwi_gl_draw_slices(cwi_gl *gl, cwi_gl_slabs *slices, const char *own,
     const cw_scene *s = &gl->frame->scene;
     cw_status st = cwi_gl_need_skip(gl, err);
     describe_slabs(gl->frame, own, defines, sizeof defines);
-    if (st == CW_OK && !s->no_preintegration && !s->colors_first)
-        st = cwi_gl_need_segments(gl, s->step_vox, err);
+    if (st == CW_OK && !s->sampling.no_preintegration && !s->texture.colors_first)
+        st = cwi_gl_need_segments(gl, s->sampling.step_vox, err);
     if (st == CW_OK)
         st = begin_slabs(gl, slices, err);
     if (st == CW_OK)
@@ -350,7 +351,7 @@ cw_status cwi_gl_draw_slices(cwi_gl *gl, cwi_gl_slabs *slices, const char *own,
     if (st != CW_OK)
         return st;
     set_samplers(program);
-    cwi_gl_set(program, "thickness", (float)s->step_vox);
+    cwi_gl_set(program, "thickness", (float)s->sampling.step_vox);
     glDisable(GL_DEPTH_TEST);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);

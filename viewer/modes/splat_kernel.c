@@ -21,7 +21,7 @@ static const cwi_splat_kernel kernels[CW_SPLAT_COUNT] = {
 
 const cwi_splat_kernel *cwi_splat_kernel_of(const cw_scene *scene)
 {
-    return &kernels[scene->splat_kernel];
+    return &kernels[scene->splat.kernel];
 }
 
 /* A Gaussian, lowered to reach 0 at the end, over its integral. */
@@ -63,7 +63,7 @@ void cwi_splat_indices(const cwi_splat_kernel *of, size_t count, uint32_t *indic
 
 void cwi_splat_kernel_set(const cwi_splat_kernel *kernel, const cw_scene *scene, GLuint program)
 {
-    cwi_gl_set(program, "sigma", (float)scene->splat_width);
+    cwi_gl_set(program, "sigma", (float)scene->splat.width);
     cwi_gl_set(program, "radius", (float)kernel->reach);
-    cwi_gl_set(program, "steps", (float)(scene->splat_width / kernel->unit));
+    cwi_gl_set(program, "steps", (float)(scene->splat.width / kernel->unit));
 }

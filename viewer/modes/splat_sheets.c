@@ -136,7 +136,7 @@ static void measure_splats(cwi_splats *s)
         sum += n % 4 < 3 ? m[n] * m[n] : 0;
     s->kernel = cwi_splat_kernel_of(&s->frame->scene);
     /* of a ball around the ellipsoid, or around the rectangle */
-    s->radius = s->frame->scene.splat_width * s->kernel->reach * sqrt(sum);
+    s->radius = s->frame->scene.splat.width * s->kernel->reach * sqrt(sum);
     s->axis = choose_axis(s->frame);
     s->needs_gradients = cwi_frame_needs_gradients(s->frame);
     cwi_lattice_eye(s->frame, s->eye);

@@ -41,8 +41,8 @@ static cw_status make_segments(cwi_cell_tables *t, const cwi_frame *f, cw_error 
         return cwi_fail(err, CW_ERR_NO_MEMORY,
                         "no memory for a pre-integrated transfer function");
     cw_status st =
-        cwi_table_preintegrate(&t->table, f->scene.step_vox, t->segment_rows, f->scene.threads,
-                               &f->scene.progress, t->segments, err);
+        cwi_table_preintegrate(&t->table, f->scene.sampling.step_vox, t->segment_rows,
+                               f->scene.threads, &f->scene.progress, t->segments, err);
     if (st == CW_OK)
         turn_to_depths(t->segments, count);
     return st;
@@ -51,7 +51,9 @@ static cw_status make_segments(cwi_cell_tables *t, const cwi_frame *f, cw_error 
 cw_status cwi_cell_tables_take(cwi_cell_tables *t, const cwi_frame *f, cw_error *err)
 {
     const cw_scene *s = &f->scene;
-    const double length = s->no_preintegration || s->linear_opacity ? 0 : s->step_vox;
+    const double length = s->sampling.no_preintegration || s->projection.linear_opacity
+                              ? 0
+                              : s->sampling.step_vox;
     if (t->is_made && memcmp(&t->key, &f->transfer, sizeof t->key) == 0 &&
         t->opacity_units == f->opacity_units && (length == 0 || t->length == length))
         return CW_OK;
@@ -206,7 +208,7 @@ static glow glow_beyond(const cwi_cell_tables *t, float front, float back, float
 static inline glow glow_between(const cwi_cell_model *m, float front, float back, float extent)
 {
     const cwi_cell_tables *t = m->tables;
-    if (m->frame->scene.no_preintegration) {
+    if (m->frame->scene.sampling.no_preintegration) {
         cwi_lanes row = cwi_cell_classify(t, 0.5f * (front + back));
         const float depth = row[3] * extent;
         row[3] = 1;

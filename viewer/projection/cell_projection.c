@@ -132,8 +132,8 @@ static void start_tile(const projection *p, size_t n, cwi_tile *t)
     }
     t->near_depth = p->frame->perspective ? p->frame->near : 0;
     memcpy(t->eye, p->eye, sizeof t->eye);
-    t->tolerance = p->model.needs_gradients ? -1 : (float)s->tree_error;
-    t->min_light = 1 - s->stop_opacity;
+    t->tolerance = p->model.needs_gradients ? -1 : (float)s->projection.tree_error;
+    t->min_light = 1 - s->sampling.stop_opacity;
     t->has_gaps = p->levels[0].has_gaps;
     start_rays(p, t);
 }
@@ -220,7 +220,7 @@ static void draw_tile(void *context, size_t n)
     w->linear.tables = p->model.tables;
     w->linear.tile[0] = w->tile.x;
     w->linear.tile[1] = w->tile.y;
-    visit_blocks(p, &w->tile, p->frame->scene.linear_opacity ? &w->linear : NULL,
+    visit_blocks(p, &w->tile, p->frame->scene.projection.linear_opacity ? &w->linear : NULL,
                  p->level_count - 1, root);
     put_tile(p, &w->tile);
     cwi_free(w);

@@ -318,7 +318,7 @@ static void blend_sample(band *b, size_t x, size_t y)
     const size_t count = sort_fragments(b, last);
     const double slope = -ray.direction[2]; /* depth along the ray */
     for (int part = 0; part < ray.part_count; part++)
-        for (size_t n = 0; n < count && l.light > 1 - (double)s->stop_opacity; n++) {
+        for (size_t n = 0; n < count && l.light > 1 - (double)s->sampling.stop_opacity; n++) {
             const fragment *f = &b->all[b->sorted[n]];
             const double near = fmax(f->near, ray.parts[part][0] * slope),
                          far = fmin(f->far, ray.parts[part][1] * slope);
@@ -387,7 +387,7 @@ static cw_status draw_cells(projection *p, cw_error *err)
 cw_status cwi_uneven_projection_draw(const cwi_frame *frame, const cwi_cell_tree *tree,
                                      const double *depths, cw_picture *picture, cw_error *err)
 {
-    if (frame->scene.linear_opacity)
+    if (frame->scene.projection.linear_opacity)
         return cwi_fail(err, CW_ERR_UNSUPPORTED,
                         "opacity that is linear over polygons is for evenly spaced volumes");
     projection *p = cwi_alloc_zeroed(1, sizeof *p);

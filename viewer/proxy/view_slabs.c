@@ -34,7 +34,7 @@ static void find_depths(const cwi_frame *f, double depth[2])
 cw_status cwi_slabs_init(const cwi_frame *f, cwi_slabs *s, cw_error *err)
 {
     double depth[2];
-    *s = (cwi_slabs){.thickness = f->scene.step_vox};
+    *s = (cwi_slabs){.thickness = f->scene.sampling.step_vox};
     find_depths(f, depth);
     s->first = depth[0];
     const double extent = fmax(depth[1] - depth[0], 0);

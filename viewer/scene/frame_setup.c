@@ -39,10 +39,88 @@ static bool draws_volume(cw_mode mode)
     return mode != CW_MODE_MESH;
 }
 
-static cw_status fill_in(cw_scene *s, cw_error *err)
+static void set_defaults(cw_scene *s)
 {
     static const cw_light headlight = {{0, 0, 1}, {1, 1, 1}};
-    static const float bone[4] = {240 / 255.0f, 229 / 255.0f, 208 / 255.0f, 1};
+    static const float bone[4] = {240 / 255.0f, 229 / 255.0f, 208 / 255.0f, 1}, none[4] = {0};
+    if (s->width == 0 && s->height == 0) {
+        s->width = 1280;
+        s->height = 720;
+    }
+    if (s->samples == 0)
+        s->samples = 1;
+    if (s->light_count == 0)
+        s->lights[s->light_count++] = headlight;
+    if (!is_material_set(&s->material))
+        s->material = (cw_material){0.25f, 0.75f, 0.2f, 32};
+    if (s->sampling.step_vox == 0)
+        s->sampling.step_vox = 1;
+    if (s->sampling.stop_opacity == 0)
+        s->sampling.stop_opacity = s->mode == CW_MODE_VBUFFER ? 0.99999f : 0.9999f;
+    if (s->cue_range[0] == 0 && s->cue_range[1] == 0)
+        s->cue_range[1] = 1;
+    if (s->splat.width == 0 && (unsigned)s->splat.kernel < CW_SPLAT_COUNT)
+        s->splat.width = splat_widths[s->splat.kernel];
+    if (s->texture.normals == 0)
+        s->texture.normals = 1024;
+    if (memcmp(s->mesh_look.color, none, sizeof none) == 0)
+        memcpy(s->mesh_look.color, bone, sizeof bone);
+}
+
+/* Checks each number against its range. */
+static cw_status check_ranges(const cw_scene *s, cw_error *err)
+{
+    const float *color = s->mesh_look.color;
+    const struct {
+        const char *name;
+        double value, min, max;
+    } rows[] = {
+        {"width", (double)s->width, 1, MAX_SIZE},
+        {"height", (double)s->height, 1, MAX_SIZE},
+        {"samples", s->samples, 1, MAX_SAMPLES},
+        {"light_count", (double)s->light_count, 0, CW_MAX_LIGHTS},
+        {"clip_count", (double)s->clip_count, 0, CW_MAX_CLIPS},
+        {"slice_count", (double)s->slice_count, 0, CW_MAX_SLICES},
+        {"shadow", s->shadow, 0, CW_SHADOW_COUNT - 1},
+        {"gradient_sigma", s->gradient_sigma, 0, MAX_SIGMA},
+        {"cue_form", s->cue_form, 0, CW_CUE_COUNT - 1},
+        {"depth_cue", (double)s->depth_cue, 0, 1},
+        {"sampling.step_vox", s->sampling.step_vox, 1e-3, 1e3},
+        {"sampling.stop_opacity", (double)s->sampling.stop_opacity, 0, 1},
+        {"texture.direction_filter", s->texture.direction_filter, 0, CW_DIRECTIONS_COUNT - 1},
+        {"projection.tree_error", s->projection.tree_error, 0, 1},
+        {"splat.tree_error", s->splat.tree_error, 0, 1},
+        {"splat.kernel", s->splat.kernel, 0, CW_SPLAT_COUNT - 1},
+        {"splat.width", s->splat.width, MIN_SPLAT_WIDTH, MAX_SPLAT_WIDTH},
+        {"mesh_look.color[0]", (double)color[0], 0, 1},
+        {"mesh_look.color[1]", (double)color[1], 0, 1},
+        {"mesh_look.color[2]", (double)color[2], 0, 1},
+        {"mesh_look.color[3]", (double)color[3], 0, 1},
+    };
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
+        if (!(rows[n].value >= rows[n].min && rows[n].value <= rows[n].max))
+            return cwi_fail(err, CW_ERR_ARGUMENT, "%s is %g; expected %g to %g", rows[n].name,
+                            rows[n].value, rows[n].min, rows[n].max);
+    return CW_OK;
+}
+
+static cw_status check_cue(const cw_scene *s, cw_error *err)
+{
+    if (s->cue_form == CW_CUE_EXPONENTIAL && !(s->depth_cue < 1))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "depth_cue is %g; an exponential one must be less than 1",
+                        (double)s->depth_cue);
+    if (!(s->cue_range[0] < s->cue_range[1] && isfinite(s->cue_range[0]) &&
+          isfinite(s->cue_range[1])))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "cue_range is %g to %g; expected two rising fractions", s->cue_range[0],
+                        s->cue_range[1]);
+    return CW_OK;
+}
+
+/* Sets defaults, and checks what modes have in common. */
+static cw_status resolve_scene(cw_scene *s, cw_error *err)
+{
     if ((unsigned)s->mode >= CW_MODE_COUNT)
         return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a render mode (0 to %d)", (int)s->mode,
                         CW_MODE_COUNT - 1);
@@ -51,84 +129,9 @@ static cw_status fill_in(cw_scene *s, cw_error *err)
                         cw_mode_name(s->mode));
     if (!draws_volume(s->mode) && !s->mesh)
         return cwi_fail(err, CW_ERR_ARGUMENT, "the mode mesh needs a mesh");
-    if (s->width == 0 && s->height == 0)
-        s->width = 1280, s->height = 720;
-    if (s->samples == 0)
-        s->samples = 1;
-    if (s->samples < 1 || s->samples > MAX_SAMPLES)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "%d x %d samples a pixel: expected 1 to %d",
-                        s->samples, s->samples, MAX_SAMPLES);
-    if (s->width < 1 || s->width > MAX_SIZE || s->height < 1 || s->height > MAX_SIZE)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "a picture of %zu x %zu: expected 1 to %d pixels",
-                        s->width, s->height, MAX_SIZE);
-    if (s->light_count > CW_MAX_LIGHTS || s->clip_count > CW_MAX_CLIPS ||
-        s->slice_count > CW_MAX_SLICES)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "%zu lights, %zu planes that clip, %zu slices: at most %d, %d, %d",
-                        s->light_count, s->clip_count, s->slice_count, CW_MAX_LIGHTS,
-                        CW_MAX_CLIPS, CW_MAX_SLICES);
-    if (s->light_count == 0)
-        s->lights[s->light_count++] = headlight;
-    if (!is_material_set(&s->material))
-        s->material = (cw_material){0.25f, 0.75f, 0.2f, 32};
-    if (s->step_vox == 0)
-        s->step_vox = 1;
-    if (!(s->step_vox >= 1e-3 && s->step_vox <= 1e3))
-        return cwi_fail(err, CW_ERR_ARGUMENT, "a step of %g voxels: expected 0.001 to 1000",
-                        s->step_vox);
-    if (s->stop_opacity == 0)
-        s->stop_opacity = s->mode == CW_MODE_VBUFFER ? 0.99999f : 0.9999f;
-    if (!(s->stop_opacity > 0 && s->stop_opacity <= 1))
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "rays that end at an opacity of %g: expected up to 1",
-                        (double)s->stop_opacity);
-    if (!(s->depth_cue >= 0 && s->depth_cue <= 1))
-        return cwi_fail(err, CW_ERR_ARGUMENT, "a depth cue of %g: expected 0 to 1",
-                        (double)s->depth_cue);
-    if ((unsigned)s->shadow >= CW_SHADOW_COUNT)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a kind of shadows (0 to %d)",
-                        (int)s->shadow, CW_SHADOW_COUNT - 1);
-    if (!(s->gradient_sigma >= 0 && s->gradient_sigma <= MAX_SIGMA))
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "gradients smoothed over %g voxels: expected 0 to %d",
-                        s->gradient_sigma, MAX_SIGMA);
-    if ((unsigned)s->cue_form >= CW_CUE_COUNT)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a form of depth cues (0 to %d)",
-                        (int)s->cue_form, CW_CUE_COUNT - 1);
-    if (s->cue_form == CW_CUE_EXPONENTIAL && !(s->depth_cue < 1))
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "an exponential depth cue of %g: expected less than 1",
-                        (double)s->depth_cue);
-    if (s->cue_range[0] == 0 && s->cue_range[1] == 0)
-        s->cue_range[1] = 1;
-    if (!(s->cue_range[0] < s->cue_range[1] && isfinite(s->cue_range[0]) &&
-          isfinite(s->cue_range[1])))
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "a depth cue from %g to %g: expected two rising fractions",
-                        s->cue_range[0], s->cue_range[1]);
-    if (!(s->tree_error >= 0 && s->tree_error <= 1))
-        return cwi_fail(err, CW_ERR_ARGUMENT, "an error of nodes of %g: expected 0 to 1",
-                        s->tree_error);
-    if ((unsigned)s->splat_kernel >= CW_SPLAT_COUNT)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a kernel of splats (0 to %d)",
-                        (int)s->splat_kernel, CW_SPLAT_COUNT - 1);
-    if (s->splat_width == 0)
-        s->splat_width = splat_widths[s->splat_kernel];
-    if (!(s->splat_width >= MIN_SPLAT_WIDTH && s->splat_width <= MAX_SPLAT_WIDTH))
-        return cwi_fail(err, CW_ERR_ARGUMENT, "splats %g voxels wide: expected %g to %g",
-                        s->splat_width, MIN_SPLAT_WIDTH, MAX_SPLAT_WIDTH);
-    if ((unsigned)s->direction_filter >= CW_DIRECTIONS_COUNT)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a filter of directions (0 to %d)",
-                        (int)s->direction_filter, CW_DIRECTIONS_COUNT - 1);
-    if (s->normals == 0)
-        s->normals = 1024;
-    if (s->color[0] == 0 && s->color[1] == 0 && s->color[2] == 0 && s->color[3] == 0)
-        memcpy(s->color, bone, sizeof bone);
-    for (int c = 0; c < 4; c++)
-        if (!(s->color[c] >= 0 && s->color[c] <= 1))
-            return cwi_fail(err, CW_ERR_ARGUMENT, "a mesh's colour of %g: expected 0 to 1",
-                            (double)s->color[c]);
-    return CW_OK;
+    set_defaults(s);
+    cw_status st = check_ranges(s, err);
+    return st == CW_OK ? check_cue(s, err) : st;
 }
 
 /* Replaces the mode reference by the intensity projection whose exact picture is requested. */
@@ -384,7 +387,7 @@ cw_status cwi_frame_init(cwi_frame *frame, const cw_scene *scene, cw_error *err)
     *f = (cwi_frame){.scene = *scene,
                      .studio_light =
                          scene->light_count == 0 && !is_material_set(&scene->material)};
-    cw_status st = fill_in(&f->scene, err);
+    cw_status st = resolve_scene(&f->scene, err);
     if (st == CW_OK)
         st = choose_reference(f, err);
     if (st == CW_OK && f->scene.mesh)

@@ -70,20 +70,20 @@ cw_status cwi_tint_range(const cw_scene *scene, double range[2], cw_error *err)
 {
     range[0] = 0;
     range[1] = 1;
-    if ((unsigned)scene->tint >= CW_TINT_COUNT)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a tint (0 to %d)", (int)scene->tint,
-                        CW_TINT_COUNT - 1);
-    if (scene->tint == CW_TINT_SCALARS && !scene->mesh->scalars)
+    if ((unsigned)scene->mesh_look.tint >= CW_TINT_COUNT)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a tint (0 to %d)",
+                        (int)scene->mesh_look.tint, CW_TINT_COUNT - 1);
+    if (scene->mesh_look.tint == CW_TINT_SCALARS && !scene->mesh->scalars)
         return cwi_fail(err, CW_ERR_ARGUMENT, "the mesh has no scalars to be coloured by");
-    if (scene->tint == CW_TINT_COLORS)
+    if (scene->mesh_look.tint == CW_TINT_COLORS)
         return CW_OK;
-    if (scene->tint_low != 0 || scene->tint_high != 0) {
-        range[0] = scene->tint_low;
-        range[1] = scene->tint_high;
+    if (scene->mesh_look.tint_low != 0 || scene->mesh_look.tint_high != 0) {
+        range[0] = scene->mesh_look.tint_low;
+        range[1] = scene->mesh_look.tint_high;
         if (!(range[0] < range[1]) || !isfinite(range[1] - range[0]))
             return cwi_fail(err, CW_ERR_ARGUMENT, "colours from %g to %g: expected a range",
                             range[0], range[1]);
-    } else if (scene->tint == CW_TINT_SCALARS) {
+    } else if (scene->mesh_look.tint == CW_TINT_SCALARS) {
         find_range(scene->mesh, range);
         if (range[0] == range[1]) /* of one value: the middle colour */
             range[0] -= 0.5, range[1] += 0.5;

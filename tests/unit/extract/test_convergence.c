@@ -10,7 +10,7 @@ static double error_of(cw_scene scene, const cw_picture *truth, double step)
     cw_error err = {0};
     cw_comparison gap;
     scene.mode = CW_MODE_COMPOSITE;
-    scene.step_vox = step;
+    scene.sampling.step_vox = step;
     cw_picture picture = test_draw(test_renderer(), &scene);
     assert_ok(cw_picture_compare(&picture, truth, black, &gap, &err), err);
     cw_picture_free(&picture);
@@ -35,8 +35,8 @@ static void ray_casting_converges_to_the_reference(void **state)
                           .transfer = sharp ? &tent : &soft,
                           .width = 96,
                           .height = 96,
-                          .stop_opacity = 1,
-                          .no_preintegration = !sharp};
+                          .sampling.stop_opacity = 1,
+                          .sampling.no_preintegration = !sharp};
         cw_picture truth = test_draw(cpu, &scene);
         const double coarse = error_of(scene, &truth, 1), fine = error_of(scene, &truth, 0.25);
         const double order = log2(coarse / fine) / 2;

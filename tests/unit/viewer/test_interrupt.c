@@ -53,15 +53,16 @@ static const cw_mode modes[] = {
 static cw_scene scene_of(cw_mode mode, const cw_volume *volume, const cw_transfer *transfer,
                          const cw_mesh *mesh)
 {
-    cw_scene s = {.mode = mode, .width = SIDE, .height = SIDE, .step_vox = 1, .lit = true};
+    cw_scene s = {
+        .mode = mode, .width = SIDE, .height = SIDE, .sampling.step_vox = 1, .lit = true};
     s.volume = mode == CW_MODE_MESH ? NULL : volume;
     s.transfer = mode == CW_MODE_MESH ? NULL : transfer;
     s.mesh = mesh;
-    s.tree_error = mode == CW_MODE_SPLAT_TREE ? 0.02 : 0;
-    s.color[0] = s.color[1] = s.color[2] = 0.8f;
-    s.color[3] = mode == CW_MODE_MESH ? 0.5f : 1;
+    s.splat.tree_error = mode == CW_MODE_SPLAT_TREE ? 0.02 : 0;
+    s.mesh_look.color[0] = s.mesh_look.color[1] = s.mesh_look.color[2] = 0.8f;
+    s.mesh_look.color[3] = mode == CW_MODE_MESH ? 0.5f : 1;
     if (mode == CW_MODE_TEXTURE)
-        s.target = CW_TARGET_16F;
+        s.texture.target = CW_TARGET_16F;
     return s;
 }
 
@@ -157,7 +158,7 @@ static void watched_pictures_are_the_same(void **state)
     for (size_t m = 0; m < sizeof modes / sizeof *modes; m += CWI_SANITIZED ? 2 : 1)
         for (int edge = 0; edge < 40; edge += 30) { /* whole, and in bricks */
             cw_scene scene = scene_of(modes[m], &t.blobs, &t.soft, &t.mesh);
-            scene.texture_edge = (size_t)edge;
+            scene.sampling.texture_edge = (size_t)edge;
             cw_renderer *r = new_renderer();
             cw_picture wanted = test_draw(r, &scene);
             const cw_scene aside = {.mode = CW_MODE_SLICES,

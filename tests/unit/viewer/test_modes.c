@@ -21,7 +21,7 @@ static cw_scene scene_of(cw_mode mode, const cw_volume *volume, const cw_transfe
                       .transfer = transfer,
                       .camera = {.eye = {0, -500, 0}, .up = {0, 0, 1}, .height_mm = 10},
                       .material = {.ambient = 1},
-                      .step_vox = 0.25,
+                      .sampling.step_vox = 0.25,
                       .width = SIDE,
                       .height = SIDE};
 }
@@ -239,10 +239,10 @@ static void change_scene(int change, cw_scene *s, cw_volume *v, cw_transfer *t)
         s->lit = true;
         break;
     case 12:
-        s->step_vox = 1;
+        s->sampling.step_vox = 1;
         break;
     case 13:
-        s->no_preintegration = true;
+        s->sampling.no_preintegration = true;
         break;
     default:
         break;
@@ -259,7 +259,7 @@ static bool draw_changed(cw_renderer *r, cw_mode mode, const cw_volume *field, i
     cw_error err = {0};
     s.camera.height_mm = 24;
     s.width = s.height = SIDE / 2;
-    s.threshold = 0.5;
+    s.intensity.threshold = 0.5;
     for (int change = 1; change <= changes; change++)
         change_scene(change, &s, &v, &soft);
     const cw_status st = cw_render(r, &s, picture, &err);

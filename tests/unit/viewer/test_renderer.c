@@ -62,13 +62,13 @@ static void volumes_take_each_others_place(void **state)
     test_field(&blobs, 33, 20, 17, cube, test_blobs);
     test_field(&ramp, 33, 20, 17, cube, test_ramp);
     cw_scene scene = small_scene(&blobs, &soft);
-    scene.step_vox = 0.2; /* steps begin again in each brick */
+    scene.sampling.step_vox = 0.2; /* steps begin again in each brick */
     cw_picture first = test_draw(r, &scene);
     scene.volume = &ramp;
     cw_picture second = test_draw(r, &scene);
     assert_true(test_compare(&first, &second).max > 10);
     scene.volume = &blobs;
-    scene.texture_edge = 9;
+    scene.sampling.texture_edge = 9;
     cw_picture bricks = test_draw(r, &scene);
     assert_true(test_compare(&first, &bricks).max < 0.2);
     cw_picture_free(&first);
@@ -133,11 +133,12 @@ static void mistakes_are_named(void **state)
     FAILS(CW_ERR_ARGUMENT, "mode", bad.mode = CW_MODE_COUNT);
     FAILS(CW_ERR_ARGUMENT, "20000", bad.width = 20000);
     FAILS(CW_ERR_ARGUMENT, "samples", bad.samples = 5);
-    FAILS(CW_ERR_ARGUMENT, "step", bad.step_vox = -1);
-    FAILS(CW_ERR_ARGUMENT, "step", bad.step_vox = (double)NAN);
-    FAILS(CW_ERR_ARGUMENT, "opacity", bad.stop_opacity = 2);
-    FAILS(CW_ERR_ARGUMENT, "filter of directions", bad.direction_filter = CW_DIRECTIONS_COUNT);
-    FAILS(CW_ERR_ARGUMENT, "depth cue", bad.depth_cue = -1);
+    FAILS(CW_ERR_ARGUMENT, "step", bad.sampling.step_vox = -1);
+    FAILS(CW_ERR_ARGUMENT, "step", bad.sampling.step_vox = (double)NAN);
+    FAILS(CW_ERR_ARGUMENT, "opacity", bad.sampling.stop_opacity = 2);
+    FAILS(CW_ERR_ARGUMENT, "texture.direction_filter",
+          bad.texture.direction_filter = CW_DIRECTIONS_COUNT);
+    FAILS(CW_ERR_ARGUMENT, "depth_cue", bad.depth_cue = -1);
     FAILS(CW_ERR_ARGUMENT, "rising", bad.cue_range[0] = 2);
     FAILS(CW_ERR_ARGUMENT, "rising", bad.cue_range[1] = NAN);
     FAILS(CW_ERR_ARGUMENT, "form", bad.cue_form = CW_CUE_COUNT);

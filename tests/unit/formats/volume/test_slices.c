@@ -55,7 +55,7 @@ static void check_slice(const cw_volume *v, const cw_slice *slice, bool exact)
                       .height = SIDE,
                       .slices = {*slice},
                       .slice_count = 1,
-                      .exact_filter = exact};
+                      .sampling.exact_filter = exact};
     const double *n = slice->normal, length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     size_t inside = 0, wrong = 0;
     assert_ok(cw_slice_camera(v, slice, 1, &scene.camera, &err), err);
@@ -105,7 +105,7 @@ static void slices_have_the_colours_of_their_values(void **state)
     cw_scene scene = {
         .mode = CW_MODE_SLICES, .volume = &v, .transfer = &t, .width = SIDE, .height = SIDE};
     cw_picture whole = test_draw(r, &scene);
-    scene.texture_edge = 17;
+    scene.sampling.texture_edge = 17;
     cw_picture parts = test_draw(r, &scene);
     assert_true(test_compare(&whole, &parts).max < 0.6);
     cw_picture_free(&whole);
@@ -231,7 +231,7 @@ static void slices_hide_each_other_rightly(void **state)
                             .height = SIDE,
                             .slices = {{{0, 1, 0}, 0}, {{1, 1, 0}, 0}},
                             .slice_count = 2,
-                            .color = {0, 0, 1, 1},
+                            .mesh_look.color = {0, 0, 1, 1},
                             .material = {1, 0, 0, 1}};
     cw_picture picture = test_draw(r, &scene);
     for (size_t x = 0; x < SIDE; x++) {

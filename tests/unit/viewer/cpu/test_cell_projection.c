@@ -200,9 +200,9 @@ static void make_variant(variant *v, int setting)
         s->lights[1] = (cw_light){{-1, 1, 0}, {0, 0.5f, 1}};
         s->material = (cw_material){0.2f, 0.6f, 0.4f, 7.5f};
     }
-    s->no_preintegration = setting == MIDPOINT;
-    s->linear_opacity = setting == LINEAR || setting == LINEAR_LIT;
-    s->tree_error = setting == NODES ? 0.1 : 0;
+    s->sampling.no_preintegration = setting == MIDPOINT;
+    s->projection.linear_opacity = setting == LINEAR || setting == LINEAR_LIT;
+    s->projection.tree_error = setting == NODES ? 0.1 : 0;
 }
 
 /* Draws a variant by both, and asserts that the pictures are closer than a bound. */
@@ -279,10 +279,10 @@ static void opaque_samples_hide_little(void **state)
     const cw_transfer tent = test_tent_transfer();
     test_field(&blobs, EDGE, EDGE, EDGE, cube, test_blobs);
     cw_scene scene = scene_of(&blobs, &tent, test_view(30, 25, 30, 50));
-    scene.stop_opacity = 1;
+    scene.sampling.stop_opacity = 1;
     cw_picture whole = test_draw(cpu_renderer(), &scene);
     for (int n = 0; n < 2; n++) {
-        scene.stop_opacity = n ? 0.9f : 0;
+        scene.sampling.stop_opacity = n ? 0.9f : 0;
         cw_picture stopped = test_draw(cpu_renderer(), &scene);
         assert_true(test_compare(&stopped, &whole).max <= 255 * (n ? 0.1 : 1e-4) + 1e-3);
         cw_picture_free(&stopped);

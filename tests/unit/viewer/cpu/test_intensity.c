@@ -55,7 +55,7 @@ static void extremes_and_mean_are_exact(void **state)
             assert_true(highest >= sampled[1] - 1e-12 && highest < sampled[1] + 1e-3);
             assert_true(lowest <= sampled[0] + 1e-12 && lowest > sampled[0] - 1e-3);
             scene.mode = CW_MODE_LOCAL_MIP;
-            scene.threshold = 1e9; /* none gets there */
+            scene.intensity.threshold = 1e9; /* none gets there */
             assert_near(value_of(&scene, x, y), highest, 1e-12);
         }
     cw_volume_free(&v);
@@ -83,7 +83,7 @@ static void first_maximum_above_the_threshold_counts(void **state)
                                   (cw_camera){.eye = {0, cases[n].from_behind ? 50 : -50, 0},
                                               .up = {0, 0, 1},
                                               .height_mm = 2});
-        scene.threshold = cases[n].threshold;
+        scene.intensity.threshold = cases[n].threshold;
         if (cases[n].gap == 1) /* what is before the gap is cut off */
             scene.clips[scene.clip_count++] = (cw_clip){{0, 1, 0}, -3.5};
         assert_near(value_of(&scene, 3.5, 4.2), cases[n].value, 1e-7);
@@ -116,8 +116,8 @@ static void minimum_inside_leaves_out_the_air_around(void **state)
             cw_scene scene = scene_of(
                 CW_MODE_MINIP, &v,
                 (cw_camera){.eye = {0, behind ? 50 : -50, 0}, .up = {0, 0, 1}, .height_mm = 2});
-            scene.minip_inside = true;
-            scene.threshold = cases[n].threshold;
+            scene.intensity.minip_inside = true;
+            scene.intensity.threshold = cases[n].threshold;
             scene.clip_count = cases[n].cut > 0;
             scene.clips[0] = (cw_clip){{0, 1, 0}, cases[n].cut - 4.5};
             const double value = value_of(&scene, 3.5, 4.2);
@@ -125,7 +125,7 @@ static void minimum_inside_leaves_out_the_air_around(void **state)
                 assert_true(isnan(value));
             else
                 assert_near(value, cases[n].value, 1e-7);
-            scene.minip_inside = false; /* the threshold does nothing */
+            scene.intensity.minip_inside = false; /* the threshold does nothing */
             if (cases[n].cut == 0 && cases[n].gap < 0)
                 assert_near(value_of(&scene, 3.5, 4.2), 0, 1e-7);
             cw_volume_free(&v);
@@ -185,9 +185,9 @@ static void passing_over_blocks_changes_nothing(void **state)
     for (int mode = CW_MODE_MIP; mode <= CW_MODE_LOCAL_MIP; mode++)
         for (size_t p = 0; p < 800; p++) {
             cw_scene scene = scene_of((cw_mode)mode, &v, (cw_camera){0});
-            scene.minip_inside = p >= 400;
+            scene.intensity.minip_inside = p >= 400;
             scene.camera = (cw_camera){.eye = {35, -60, 20}, .up = {0, 0, 1}, .fov_deg = 30};
-            scene.threshold = (double[]){0.2, 0.5, 0.8}[p % 3];
+            scene.intensity.threshold = (double[]){0.2, 0.5, 0.8}[p % 3];
             const cwi_frame frame = test_frame(&scene);
             const double x = 0.4 * (double)(p % 20), y = 0.4 * (double)(p / 20 % 20);
             const double all = cwi_intensity_ray(&frame, NULL, x, y, INFINITY),

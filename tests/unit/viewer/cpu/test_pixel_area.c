@@ -44,7 +44,7 @@ static cw_picture draw_truth(cw_scene scene)
     scene.width *= MORE;
     scene.height *= MORE;
     scene.samples = 4;
-    scene.pixel_area = false;
+    scene.vbuffer.pixel_area = false;
     cw_picture fine = draw(&scene);
     for (size_t p = 0; p < fine.width * fine.height * 4; p++) {
         const size_t x = p / 4 % fine.width / MORE, y = p / 4 / fine.width / MORE;
@@ -69,9 +69,9 @@ static double rmse_of(const cw_scene *scene, const cw_picture *truth)
 static void expect_part(cw_scene scene, double part)
 {
     cw_picture truth = draw_truth(scene);
-    scene.pixel_area = false;
+    scene.vbuffer.pixel_area = false;
     const double plain = rmse_of(&scene, &truth);
-    scene.pixel_area = true;
+    scene.vbuffer.pixel_area = true;
     const double area = rmse_of(&scene, &truth);
     if (!(plain > 1 && area <= part * plain))
         fail_msg("rmse %g with areas, %g without; at most %g of it was expected", area, plain,
@@ -119,7 +119,7 @@ static void a_border_fills_its_share_of_a_pixel(void **state)
                             .camera = {.eye = {0, -200, 0}, .up = {0, 0, 1}, .height_mm = 60},
                             .width = 13,
                             .height = 13,
-                            .pixel_area = true};
+                            .vbuffer.pixel_area = true};
     cw_picture picture = draw(&scene);
     double area = 0;
     for (size_t p = 0; p < picture.width * picture.height; p++)
@@ -142,7 +142,7 @@ static void cells_wider_than_pixels_are_drawn_as_ever(void **state)
                       .height = 64,
                       .lit = true};
     cw_picture plain = draw(&scene);
-    scene.pixel_area = true;
+    scene.vbuffer.pixel_area = true;
     cw_picture area = draw(&scene);
     assert_memory_equal(area.pixels, plain.pixels, 64 * 64 * 4 * sizeof(float));
     cw_picture_free(&area);
@@ -163,7 +163,7 @@ static void threads_do_not_show(void **state)
                           .width = size,
                           .height = size,
                           .lit = true,
-                          .pixel_area = true,
+                          .vbuffer.pixel_area = true,
                           .threads = 1};
         cw_picture one = draw(&scene);
         scene.threads = 3;

@@ -403,7 +403,7 @@ static void rays_end_at_a_mesh(void **state)
         assert_near((double)both.pixels[4 * p + 3], 1, 1e-6);
     }
     cw_picture_free(&both);
-    scene.wireframe = true;
+    scene.mesh_look.wireframe = true;
     assert_fails(cw_render(r, &scene, &both, &err), CW_ERR_UNSUPPORTED, "with edges", err);
     scene.mode = CW_MODE_SPLAT;
     assert_fails(cw_render(r, &scene, &both, &err), CW_ERR_UNSUPPORTED, "splat", err);

@@ -168,7 +168,7 @@ static void even_coordinates_are_an_even_grid(void **state)
             cw_scene s = scene_of(&even, &t, modes[m]);
             s.lit = lit;
             s.depth_cue = 0.3f;
-            s.threshold = 0.6;
+            s.intensity.threshold = 0.6;
             s.clip_count = 2;
             s.clips[0] = (cw_clip){{1, 0.2, 0}, -0.6};
             s.clips[1] = (cw_clip){{-1, 0.2, 0.3}, -0.7};
@@ -239,7 +239,7 @@ static void boxes_are_an_even_grid(void **state)
             cw_scene s = scene_of(&even, &t, modes[m]);
             s.lit = lit;
             s.depth_cue = 0.3f;
-            s.threshold = 0.6;
+            s.intensity.threshold = 0.6;
             s.clip_count = 2;
             s.clips[0] = (cw_clip){{1, 0.2, 0}, -0.6};
             s.clips[1] = (cw_clip){{-1, 0.2, 0.3}, -0.7};
@@ -743,7 +743,7 @@ static void picks_are_those_of_an_even_grid(void **state)
             const double at[2] = {4 + 4.3 * (n % 3 * 3 + 1), 4 + 3.9 * (n / 3 * 3 + 1)};
             cw_error err = {0};
             cw_picked a, b;
-            s.threshold = 0.6;
+            s.intensity.threshold = 0.6;
             t.gradient_count = m % 2 ? 2 : 0;
             t.gradients[0] = (cw_opacity_point){0.1, 0.3f};
             t.gradients[1] = (cw_opacity_point){0.8, 1};

@@ -60,7 +60,7 @@ static void it_is_as_exact_as_bytes_can_show(void **state)
     blobs.affine[0][1] = 0.2;
     cw_scene scene = {.volume = &blobs, .transfer = &soft, .width = SIZE, .height = SIZE};
     expect_close(r, &scene, 0.005, 0.1);
-    scene.stop_opacity = 1;
+    scene.sampling.stop_opacity = 1;
     expect_close(r, &scene, 0.001, 0.01);
     scene.depth_cue = 0.8f;
     scene.background[0][0] = 1;
@@ -107,8 +107,11 @@ static void peaks_within_cells_are_seen(void **state)
     const cw_transfer peaks = {
         .opacity_count = 2, .opacities = {{0.7, 0}, {0.75, 0.5f}}, .unit_mm = 1};
     test_field(&v, 16, 16, 16, cube, noise);
-    const cw_scene scene = {
-        .volume = &v, .transfer = &peaks, .width = SIZE, .height = SIZE, .stop_opacity = 1};
+    const cw_scene scene = {.volume = &v,
+                            .transfer = &peaks,
+                            .width = SIZE,
+                            .height = SIZE,
+                            .sampling.stop_opacity = 1};
     expect_close(r, &scene, 0.03, 1);
     cw_volume_free(&v);
     cw_renderer_free(r);
@@ -142,7 +145,7 @@ static void rays_end_at_the_opacity_asked_for(void **state)
                                 .camera = {.eye = {0, -99, 0}, .up = {0, 0, 1}, .height_mm = 8},
                                 .width = 8,
                                 .height = 8,
-                                .stop_opacity = rows[n].asked};
+                                .sampling.stop_opacity = rows[n].asked};
         cw_picture picture = test_draw(r, &scene);
         for (size_t p = 0; p < 64; p++) {
             const double opacity = (double)picture.pixels[4 * p + 3];

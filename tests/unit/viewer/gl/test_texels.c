@@ -62,7 +62,7 @@ static void bytes_are_interpolated_as_finely_as_floats(void **state)
                           .transfer = &narrow,
                           .width = 96,
                           .height = 96,
-                          .step_vox = 0.25};
+                          .sampling.step_vox = 0.25};
         cw_picture a = test_draw(test_renderer(), &scene);
         scene.volume = &floats;
         cw_picture b = test_draw(test_renderer(), &scene);
@@ -95,7 +95,7 @@ static void large_volumes_are_lit_as_small_ones(void **state)
                           .width = 64,
                           .height = 64};
         cw_picture whole = test_draw(test_renderer(), &scene);
-        scene.texture_edge = 200;
+        scene.sampling.texture_edge = 200;
         cw_picture bricks = test_draw(test_renderer(), &scene);
         const test_gap gap = test_compare(&whole, &bricks);
         if (gap.rmse > 0.1 || gap.max > 2)
@@ -116,11 +116,11 @@ static cw_picture draw_as(const cw_volume *bytes, cw_type type, cw_mode mode, bo
                       .volume = &volume,
                       .transfer = &narrow,
                       .lit = mode == CW_MODE_COMPOSITE || mode == CW_MODE_PROJECTION,
-                      .lean = lean,
-                      .exact_filter = !lean,
+                      .sampling.lean = lean,
+                      .sampling.exact_filter = !lean,
                       .width = 48,
                       .height = 48,
-                      .step_vox = 0.5};
+                      .sampling.step_vox = 0.5};
     cw_picture picture = test_draw(test_renderer(), &scene);
     cw_volume_free(&volume);
     return picture;

@@ -421,7 +421,7 @@ static void what_cannot_be_drawn_is_refused(void **state)
     scene.mesh = &cube;
     assert_fails(cw_overlay_draw(&(cw_overlay){.color_bar = true}, &scene, &image, &err),
                  CW_ERR_ARGUMENT, "colour bar", err);
-    scene.tint = CW_TINT_QUALITY;
+    scene.mesh_look.tint = CW_TINT_QUALITY;
     assert_ok(cw_overlay_draw(&(cw_overlay){.color_bar = true}, &scene, &image, &err), err);
     assert_fails(cw_overlay_draw(&(cw_overlay){0}, &scene, &(cw_image){0}, &err),
                  CW_ERR_ARGUMENT, "empty", err);

@@ -193,11 +193,11 @@ static void extremes_are_where_they_are(void **state)
         p = pick_at(&scene, points[1]);
         assert_true(distance(p.point, points[1]) < 1e-6);
         scene.mode = CW_MODE_LOCAL_MIP;
-        scene.threshold = 5;
+        scene.intensity.threshold = 5;
         p = pick_at(&scene, points[1]);
         assert_true(distance(p.point, points[0]) < 1e-6);
         assert_near(p.value, 10, 1e-5);
-        scene.threshold = 15;
+        scene.intensity.threshold = 15;
         p = pick_at(&scene, points[1]);
         assert_true(distance(p.point, points[1]) < 1e-6);
         cw_volume_free(&v);
@@ -228,8 +228,8 @@ static void minimum_inside_is_picked_inside(void **state)
     for (int hollow = 1; hollow >= 0; hollow--) {
         cw_scene scene = scene_of(CW_MODE_MINIP, &v, &grey, true);
         scene.camera = test_view(0, 0, 0, 50);
-        scene.minip_inside = true;
-        scene.threshold = 0.5;
+        scene.intensity.minip_inside = true;
+        scene.intensity.threshold = 0.5;
         for (size_t n = 0; n < 11 * 21 * 11 && !hollow; n++)
             voxels[n] = voxels[n] > 0 ? 1 : 0;
         const double middle[3] = {0.3, 0, 0.4};
@@ -237,7 +237,7 @@ static void minimum_inside_is_picked_inside(void **state)
         assert_int_equal(p.kind, CW_PICK_VOLUME);
         assert_near(p.value, hollow ? 0.25 : 0.5, 1e-6);
         assert_near(fabs(p.point[1]), hollow ? 1 : 5.5, 1e-6);
-        scene.threshold = 1.5;
+        scene.intensity.threshold = 1.5;
         double pixel[2];
         assert_true(cw_camera_project(&scene.camera, WIDTH, HEIGHT, middle, pixel, NULL));
         assert_int_equal(pick(&scene, pixel[0], pixel[1]).kind, CW_PICK_NOTHING);
@@ -353,7 +353,7 @@ static void meshes_are_hit_nearest_first(void **state)
         scene.mesh = &mesh;
         scene.clip_count = way >= 2;
         scene.clips[0] = (cw_clip){{-1, 2, 0}, 4};
-        scene.cap = way >= 4;
+        scene.mesh_look.cap = way >= 4;
         scene.cut_away = way >= 6;
         if (way >= 6)
             scene.clips[0] = (cw_clip){{1, -2, 0}, -4};
@@ -425,9 +425,9 @@ static void clear_triangles_are_looked_through(void **state)
     colors[3] = 1; /* a corner of the first: it fades to 0 along the diagonal */
     assert_near(pick(&scene, 19, 16).point[1], 0, 1e-9);
     assert_int_equal(pick(&scene, 21, 14).kind, CW_PICK_NOTHING);
-    scene.tint = CW_TINT_QUALITY; /* the mesh's colours are not used */
+    scene.mesh_look.tint = CW_TINT_QUALITY; /* the mesh's colours are not used */
     assert_int_equal(pick(&scene, 21, 14).kind, CW_PICK_MESH);
-    scene.color[0] = 1; /* without opacity */
+    scene.mesh_look.color[0] = 1; /* without opacity */
     assert_int_equal(pick(&scene, 21, 14).kind, CW_PICK_NOTHING);
 }
 
@@ -453,7 +453,7 @@ static void edges_have_no_cracks(void **state)
     scene.camera = (cw_camera){{0, -50, 0}, {0, 0, 0}, {0, 0, 1}, .height_mm = 30};
     for (int cut = 0; cut < 2; cut++) {
         scene.clip_count = (size_t)cut;
-        scene.cap = true;
+        scene.mesh_look.cap = true;
         scene.clips[0] = (cw_clip){{0, 1, 0}, 1};
         for (double y = 11.5; y <= 18.5; y += 0.5)
             for (double x = 16.5; x <= 23.5; x += 0.5) {
@@ -498,7 +498,7 @@ static void of_mesh_and_volume_the_nearer_is_seen(void **state)
     const double on_slice[3] = {6, 0, 6};
     assert_int_equal(pick_at(&scene, on_slice).kind, CW_PICK_SLICE);
     scene.mode = CW_MODE_COMPOSITE;
-    memcpy(scene.color, (const float[4]){1, 1, 1, 0}, sizeof scene.color);
+    memcpy(scene.mesh_look.color, (const float[4]){1, 1, 1, 0}, sizeof scene.mesh_look.color);
     assert_int_equal(pick_at(&scene, middle).kind, CW_PICK_VOLUME);
     cw_mesh_free(&mesh);
     cw_volume_free(&v);

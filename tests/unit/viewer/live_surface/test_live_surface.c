@@ -281,7 +281,7 @@ static void scenes_have_one(void **state)
     memcpy(fit.max, max, sizeof max);
     assert_ok(cw_camera_fit(&fit, &scene.camera, &err), err);
     cw_picture a = test_draw(r, &scene), b;
-    scene.live = &live;
+    scene.mesh_look.live = &live;
     assert_fails(cw_render(r, &scene, &b, &err), CW_ERR_ARGUMENT, "not both", err);
     scene.mesh = NULL;
     b = test_draw(r, &scene);
@@ -291,9 +291,9 @@ static void scenes_have_one(void **state)
     assert_true(far <= SIDE * SIDE / 1000);
     cw_picture_free(&a);
     cw_picture_free(&b);
-    scene.wireframe = true;
+    scene.mesh_look.wireframe = true;
     assert_fails(cw_render(r, &scene, &b, &err), CW_ERR_UNSUPPORTED, "without wireframe", err);
-    scene.wireframe = false;
+    scene.mesh_look.wireframe = false;
     assert_ok(cw_renderer_new(CW_BACKEND_CPU, &cpu, &err), err);
     assert_fails(cw_render(cpu, &scene, &b, &err), CW_ERR_UNSUPPORTED, "OpenGL alone", err);
     assert_fails(cw_renderer_prepare(cpu, &live, &ready, &err), CW_ERR_UNSUPPORTED,

@@ -53,7 +53,7 @@ static void faces_are_lit_by_their_plane(void **state)
                           .width = PIXELS,
                           .height = PIXELS,
                           .lit = true,
-                          .step_vox = 0.1,
+                          .sampling.step_vox = 0.1,
                           .clips = {{{sign * sin(angle), sign * cos(angle), 0}, 0}},
                           .clip_count = 1,
                           .cut_away = n & 2};

@@ -28,9 +28,9 @@ static void constant_box_is_exact(void **state)
                                 .camera = straight(10),
                                 .width = 16,
                                 .height = 16,
-                                .step_vox = (double[]){1, 0.3, 2.7, 7}[n],
-                                .cell_steps = n == 1,
-                                .no_preintegration = n == 2};
+                                .sampling.step_vox = (double[]){1, 0.3, 2.7, 7}[n],
+                                .sampling.cell_steps = n == 1,
+                                .sampling.no_preintegration = n == 2};
         cw_picture picture = test_draw(r, &scene);
         const double alpha = 1 - pow(1 - 0.05, 32);
         for (size_t p = 0; p < 16 * 16; p++) {
@@ -60,7 +60,7 @@ static void rays_end_where_hardly_any_light_is_left(void **state)
                                 .camera = straight(10),
                                 .width = 4,
                                 .height = 4,
-                                .stop_opacity = asked};
+                                .sampling.stop_opacity = asked};
         cw_picture picture = test_draw(r, &scene);
         for (size_t p = 0; p < 4 * 4; p++) {
             const double light = 1 - (double)picture.pixels[4 * p + 3];
@@ -85,7 +85,7 @@ static void skipping_changes_nothing(void **state)
                       .width = 128,
                       .height = 128};
     cw_picture with = test_draw(r, &scene);
-    scene.no_skipping = true;
+    scene.sampling.no_skipping = true;
     cw_picture without = test_draw(r, &scene);
     assert_true(test_compare(&with, &without).max < 0.02);
     cw_picture_free(&with);
@@ -111,7 +111,7 @@ static test_gap measure_steps(const cw_volume *volume, const cw_transfer *transf
                       .volume = volume,
                       .transfer = transfer,
                       .lit = lit,
-                      .no_preintegration = no_preintegration,
+                      .sampling.no_preintegration = no_preintegration,
                       .width = 96,
                       .height = 96};
     assert_ok(cw_renderer_new(CW_BACKEND_CPU, &cpu, &err), err);

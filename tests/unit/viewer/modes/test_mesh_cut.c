@@ -12,9 +12,9 @@ static cw_scene cut_ball(const cw_mesh *ball)
                       .height = SIDE,
                       .clips = {{{0, 1, 0}, 0}},
                       .clip_count = 1,
-                      .color = {0.5f, 0.5f, 0.5f, 1},
+                      .mesh_look.color = {0.5f, 0.5f, 0.5f, 1},
                       .material = flat,
-                      .cap = true};
+                      .mesh_look.cap = true};
 }
 
 /* The front half of a ball is cut away: a disc is seen, of one colour, not the ball's red
@@ -28,10 +28,10 @@ static void cap_closes_a_cut_ball(void **state)
     cw_scene scene = cut_ball(&ball);
     cw_renderer_forget(r);
     cw_picture capped = test_draw(r, &scene);
-    scene.cap = false;
+    scene.mesh_look.cap = false;
     cw_picture open = test_draw(r, &scene);
-    scene.color[3] = 0.5f;
-    scene.cap = true;
+    scene.mesh_look.color[3] = 0.5f;
+    scene.mesh_look.cap = true;
     cw_picture clear = test_draw(r, &scene);
     size_t covered = 0;
     for (size_t p = 0; p < (size_t)SIDE * SIDE; p++) {
@@ -78,7 +78,7 @@ static void caps_leave_hollows_open(void **state)
         cw_scene scene = cut_ball(&both);
         cw_renderer_forget(r);
         cw_picture with = test_draw(r, &scene);
-        scene.cap = false;
+        scene.mesh_look.cap = false;
         cw_picture without = test_draw(r, &scene);
         size_t filled = 0;
         for (size_t p = 0; p < (size_t)SIDE * SIDE; p++)
@@ -150,7 +150,7 @@ static void mesh_stands_in_a_volume(void **state)
                                            .height_mm = 20},
                                 .width = SIDE,
                                 .height = SIDE,
-                                .color = {1, 0, 0, 1},
+                                .mesh_look.color = {1, 0, 0, 1},
                                 .material = flat};
         cw_picture picture = test_draw(r, &scene);
         for (size_t x = 3; x < SIDE; x += 9) {

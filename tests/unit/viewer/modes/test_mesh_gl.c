@@ -28,7 +28,7 @@ static void check_against_cpu(const cw_mesh *mesh, const cw_camera *camera)
                             .camera = *camera,
                             .width = SIDE,
                             .height = SIDE,
-                            .color = {230 / 255.f, 222 / 255.f, 209 / 255.f, 1}};
+                            .mesh_look.color = {230 / 255.f, 222 / 255.f, 209 / 255.f, 1}};
     assert_ok(cw_render_mesh(mesh, &desc, &truth, &err), err);
     cw_renderer_forget(r);
     cw_picture drawn = test_draw(r, &scene);
@@ -97,8 +97,8 @@ static void insides_may_look_as_outsides(void **state)
             .camera = {.eye = {-90, 20, 60}, .up = {0, 0, 1}, .fov_deg = 30},
             .width = SIDE,
             .height = SIDE,
-            .color = {0.8f, 0.8f, 0.8f, 1},
-            .same_inside = same};
+            .mesh_look.color = {0.8f, 0.8f, 0.8f, 1},
+            .mesh_look.same_inside = same};
         cw_picture picture = test_draw(renderers[n / 2], &scene);
         size_t red = 0, grey = 0;
         for (size_t p = 0; p < (size_t)SIDE * SIDE; p++) {
@@ -129,7 +129,7 @@ static void backends_agree(void **state)
     cw_scene scene = {.mode = CW_MODE_MESH, .mesh = &ball, .width = SIDE, .height = SIDE};
     cw_renderer_forget(r);
     for (int n = 0; n < 2 * CW_TINT_COUNT; n++) {
-        scene.tint = (cw_tint)(n / 2);
+        scene.mesh_look.tint = (cw_tint)(n / 2);
         scene.samples = n % 2 + 1;
         cw_picture a = test_draw(r, &scene), b = test_draw(cpu, &scene);
         assert_true(test_compare(&a, &b).rmse < 0.5);
@@ -138,10 +138,10 @@ static void backends_agree(void **state)
         cw_picture_free(&b);
     }
     cw_scene others[] = {scene, scene, scene, scene, scene, scene};
-    others[0].wireframe = true;
+    others[0].mesh_look.wireframe = true;
     others[1].clip_count = 1;
     others[1].clips[0].normal[0] = 1;
-    memcpy(others[2].color, (float[4]){1, 1, 1, 0.5f}, sizeof scene.color);
+    memcpy(others[2].mesh_look.color, (float[4]){1, 1, 1, 0.5f}, sizeof scene.mesh_look.color);
     others[3].depth_cue = 0.5f;
     others[4].material = flat;
     others[5].one_sided = true;
@@ -241,12 +241,12 @@ static void deep_stacks_are_peeled_to_the_end(void **state)
                       .width = 16,
                       .height = 16,
                       .material = flat,
-                      .stop_opacity = 1};
+                      .sampling.stop_opacity = 1};
     cw_renderer_forget(r);
     cw_picture picture = test_draw(r, &scene);
     assert_near((double)pixel(&picture, 8, 8)[3], 1 - pow(1 - 10 / 255.0, COUNT), 1e-5);
     cw_picture_free(&picture);
-    scene.stop_opacity = 0.9f; /* 58 layers are the first to reach it */
+    scene.sampling.stop_opacity = 0.9f; /* 58 layers are the first to reach it */
     picture = test_draw(r, &scene);
     assert_near((double)pixel(&picture, 8, 8)[3], 1 - pow(1 - 10 / 255.0, 58), 1e-5);
     cw_picture_free(&picture);
@@ -303,7 +303,7 @@ static void edges_are_as_wide_as_said(void **state)
             .height = 64,
             .samples = n % 2 ? 3 : 1,
             .material = flat,
-            .wireframe = true};
+            .mesh_look.wireframe = true};
         cw_renderer_forget(r);
         cw_picture picture = test_draw(r, &scene);
         double width = 0, diagonal = 0;
@@ -342,9 +342,9 @@ static void scalars_are_shown_by_the_ramp(void **state)
                                 .camera = straight(8),
                                 .width = 8,
                                 .height = 8,
-                                .tint = CW_TINT_SCALARS,
-                                .tint_low = 10,
-                                .tint_high = 20,
+                                .mesh_look.tint = CW_TINT_SCALARS,
+                                .mesh_look.tint_low = 10,
+                                .mesh_look.tint_high = 20,
                                 .material = flat};
         cw_renderer_forget(r);
         cw_picture picture = test_draw(r, &scene);
@@ -360,9 +360,9 @@ static void scalars_are_shown_by_the_ramp(void **state)
     }
     cw_error err = {0};
     cw_picture picture;
-    cw_scene scene = {.mode = CW_MODE_MESH, .mesh = &mesh, .tint = CW_TINT_SCALARS};
-    scene.tint_low = 2;
-    scene.tint_high = 1;
+    cw_scene scene = {.mode = CW_MODE_MESH, .mesh = &mesh, .mesh_look.tint = CW_TINT_SCALARS};
+    scene.mesh_look.tint_low = 2;
+    scene.mesh_look.tint_high = 1;
     assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_ARGUMENT, "2 to 1", err);
     free(mesh.scalars);
     mesh.scalars = NULL;
@@ -384,11 +384,11 @@ static void empty_meshes_are_no_trouble(void **state)
                       .height = 16,
                       .clips = {{{1, 0, 0}, 0.5}},
                       .clip_count = 1,
-                      .cap = true,
-                      .wireframe = true};
+                      .mesh_look.cap = true,
+                      .mesh_look.wireframe = true};
     for (int n = 0; n < 4; n++) {
         scene.mesh = n % 2 ? &cube : &nothing;
-        scene.color[0] = scene.color[3] = n < 2 ? 1 : 0.5f;
+        scene.mesh_look.color[0] = scene.mesh_look.color[3] = n < 2 ? 1 : 0.5f;
         cw_picture picture = test_draw(r, &scene);
         float most = 0;
         for (size_t p = 0; p < 4 * 16 * 16; p++)
@@ -397,10 +397,10 @@ static void empty_meshes_are_no_trouble(void **state)
         cw_picture_free(&picture);
     }
     cw_picture picture;
-    scene.color[0] = 2;
-    assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_ARGUMENT, "colour of 2", err);
-    scene.color[0] = 1;
-    scene.tint = CW_TINT_COUNT;
+    scene.mesh_look.color[0] = 2;
+    assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_ARGUMENT, "mesh_look.color[0] is 2", err);
+    scene.mesh_look.color[0] = 1;
+    scene.mesh_look.tint = CW_TINT_COUNT;
     assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_ARGUMENT, "tint", err);
     cw_mesh_free(&cube);
 }
@@ -451,7 +451,7 @@ static void shape_of_triangles_is_shown(void **state)
                             .camera = straight(20),
                             .width = 40,
                             .height = 40,
-                            .tint = CW_TINT_QUALITY,
+                            .mesh_look.tint = CW_TINT_QUALITY,
                             .material = flat};
     cw_renderer_forget(r);
     cw_picture picture = test_draw(r, &scene);
@@ -524,7 +524,7 @@ static void one_sided_meshes_are_lit_from_outside(void **state)
                           .width = 40,
                           .height = 40,
                           .one_sided = one_sided,
-                          .color = {1, 1, 1, 1},
+                          .mesh_look.color = {1, 1, 1, 1},
                           .material = {.diffuse = 0.8f, .shininess = 1},
                           .light_count = 1,
                           .lights = {{{0, 0, is_behind ? -1 : 1}, {1, 1, 1}}}};

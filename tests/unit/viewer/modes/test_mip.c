@@ -23,7 +23,7 @@ static cw_scene scene_of(cw_mode mode, const cw_volume *volume, bool perspective
                                  .up = {0, 0, 1},
                                  .fov_deg = perspective ? 30 : 0,
                                  .height_mm = 48},
-                      .threshold = 0.4,
+                      .intensity.threshold = 0.4,
                       .width = 48,
                       .height = 48};
 }
@@ -53,7 +53,7 @@ static void cells_are_exact(void **state)
     for (int m = 0; m < MODES; m++)
         for (int perspective = 0; perspective < 2; perspective++) {
             cw_scene s = scene_of(modes[m], &blobs, perspective);
-            s.cell_steps = true;
+            s.sampling.cell_steps = true;
             const test_gap gap = measure(&s);
             assert_true(modes[m] == CW_MODE_LOCAL_MIP ? gap.rmse < 1.5 : gap.max < 0.01);
         }
@@ -80,14 +80,14 @@ static void minimum_inside_shows_a_hollow(void **state)
     s.camera.eye[0] = s.camera.eye[2] = 0;
     s.camera.height_mm = 30;
     s.width = s.height = 30;
-    s.threshold = 0.5;
-    s.step_vox = 0.2;
+    s.intensity.threshold = 0.5;
+    s.sampling.step_vox = 0.2;
     for (int cells = 0; cells < 2; cells++) {
-        s.cell_steps = cells;
-        s.minip_inside = true;
+        s.sampling.cell_steps = cells;
+        s.intensity.minip_inside = true;
         cw_renderer_forget(gl);
         cw_picture inside = test_draw(gl, &s);
-        s.minip_inside = false;
+        s.intensity.minip_inside = false;
         cw_picture plain = test_draw(gl, &s);
         for (size_t n = 0; n < 30 * 30; n++) {
             const double b =
@@ -116,13 +116,13 @@ static void minima_inside_are_exact_by_cells(void **state)
     float *voxels = cw_volume_voxels(&blobs);
     for (int what = 0; what < 8; what++) {
         cw_scene s = scene_of(CW_MODE_MINIP, &blobs, what & 1);
-        s.minip_inside = s.cell_steps = true;
-        s.texture_edge = what & 2 ? 9 : 0;
+        s.intensity.minip_inside = s.sampling.cell_steps = true;
+        s.sampling.texture_edge = what & 2 ? 9 : 0;
         s.clip_count = what / 2 == 2 || what / 2 == 3;
         s.cut_away = what / 2 == 3;
         s.clips[0] = (cw_clip){{0.2, 1, 0.3}, 2};
         for (int t = 0; t < 3; t++) {
-            s.threshold = (double[]){0.1, 0.4, 0.8}[t];
+            s.intensity.threshold = (double[]){0.1, 0.4, 0.8}[t];
             assert_true(measure(&s).rmse < 0.5); /* a ray may graze the threshold */
         }
     }
@@ -130,7 +130,7 @@ static void minima_inside_are_exact_by_cells(void **state)
         if (n % 30 > 8 && n % 30 < 14)
             voxels[n] = NAN;
     cw_scene s = scene_of(CW_MODE_MINIP, &blobs, true);
-    s.minip_inside = s.cell_steps = true;
+    s.intensity.minip_inside = s.sampling.cell_steps = true;
     assert_true(measure(&s).rmse < 6); /* two pixels, as in gaps_and_cuts_are_left_out */
     cw_volume_free(&blobs);
 }
@@ -147,8 +147,8 @@ static void minima_inside_converge(void **state)
         cw_scene s = scene_of(CW_MODE_MINIP, &blobs, true);
         s.camera.eye[0] = 65;
         s.camera.eye[1] = -170;
-        s.minip_inside = true;
-        s.step_vox = (double[]){2, 0.125}[n];
+        s.intensity.minip_inside = true;
+        s.sampling.step_vox = (double[]){2, 0.125}[n];
         rmse[n] = measure(&s).rmse;
     }
     assert_true(rmse[0] < 8);
@@ -200,7 +200,7 @@ static void samples_converge(void **state)
             cw_scene s = scene_of(modes[m], &blobs, true);
             s.camera.eye[0] = 65;
             s.camera.eye[1] = -170;
-            s.step_vox = (double[]){2, 0.5}[n];
+            s.sampling.step_vox = (double[]){2, 0.5}[n];
             rmse[n] = measure(&s).rmse;
         }
         assert_true(rmse[0] < 1);
@@ -223,11 +223,11 @@ static void falling_voxels_have_the_same_values(void **state)
     for (int m = 0; m < 5; m++) {
         cw_scene s = scene_of(modes[m % MODES], &blobs, true);
         s.mode = m == MODES ? CW_MODE_MINIP : s.mode;
-        s.minip_inside = m == MODES;
-        s.cell_steps = true;
+        s.intensity.minip_inside = m == MODES;
+        s.sampling.cell_steps = true;
         const test_gap gap = measure(&s);
-        assert_true(s.mode == CW_MODE_LOCAL_MIP || s.minip_inside ? gap.rmse < 1.5
-                                                                  : gap.max < 0.01);
+        assert_true(s.mode == CW_MODE_LOCAL_MIP || s.intensity.minip_inside ? gap.rmse < 1.5
+                                                                            : gap.max < 0.01);
     }
     cw_volume_free(&blobs);
 }
@@ -239,8 +239,8 @@ static void bricks_are_as_one_texture(void **state)
     test_field(&blobs, 30, 26, 28, cube, test_blobs);
     for (int m = 0; m < 3; m++) {
         cw_scene s = scene_of(modes[m], &blobs, true);
-        s.cell_steps = true;
-        s.texture_edge = 9;
+        s.sampling.cell_steps = true;
+        s.sampling.texture_edge = 9;
         assert_true(measure(&s).max < 0.01);
     }
     cw_volume_free(&blobs);
@@ -259,7 +259,7 @@ static void gaps_and_cuts_are_left_out(void **state)
     for (int m = 0; m < 3; m++)
         for (int cut = 0; cut < 3; cut++) {
             cw_scene s = scene_of(modes[m], &blobs, cut == 1);
-            s.cell_steps = true;
+            s.sampling.cell_steps = true;
             s.clip_count = cut > 0;
             s.cut_away = cut > 1;
             s.clips[0] = (cw_clip){{0.2, 1, 0.3}, 2};

@@ -80,7 +80,7 @@ static void pass_lines_hold(void **state)
             const double *view = views[n];
             cw_scene scene = scene_of(&volume, &cases[c].transfer,
                                       test_view(view[0], view[1], (n + c) % 2 ? 30 : 0, 50));
-            scene.no_preintegration =
+            scene.sampling.no_preintegration =
                 c == 0; /* of one value there is nothing to be in a table */
             const test_gap gap = test_error(r, &scene);
             if (gap.rmse > cases[c].most)
@@ -102,16 +102,16 @@ static void simple_forms_are_near(void **state)
     cw_renderer_forget(r);
     cw_scene scene = scene_of(&blobs, &soft, test_view(30, 25, 30, 50));
     const double best = test_error(r, &scene).rmse;
-    scene.no_preintegration = true;
+    scene.sampling.no_preintegration = true;
     const double middle = test_error(r, &scene).rmse;
-    scene.linear_opacity = true;
+    scene.projection.linear_opacity = true;
     const double linear = test_error(r, &scene).rmse;
     assert_true(best < middle && middle < 0.5);
     assert_true(best < linear && linear < 2);
     for (int n = 0; n < 12; n++) { /* every shader there is does compile, and draws */
         soft.gradient_count = n / 8 * 2;
-        scene.no_preintegration = n & 1 || n >= 8;
-        scene.linear_opacity = n & 2;
+        scene.sampling.no_preintegration = n & 1 || n >= 8;
+        scene.projection.linear_opacity = n & 2;
         scene.lit = n & 4 || n & 1;
         assert_true(test_error(r, &scene).rmse < 4);
     }
@@ -133,7 +133,7 @@ static void no_jump_in_degenerate_views(void **state)
         for (int step = -8; step <= 8; step++) {
             const double turn = 45 * n + 1e-4 * step;
             cw_scene scene = scene_of(&blobs, &soft, test_view(turn, 0, 0, 50));
-            scene.no_preintegration = true;
+            scene.sampling.no_preintegration = true;
             cw_picture now = test_draw(r, &scene);
             if (before.pixels) {
                 const double gap = test_compare(&now, &before).max;
@@ -165,7 +165,7 @@ static void settings_agree_with_ray_casting(void **state)
         test_field(&blobs, EDGE, EDGE, n == 5 ? 1 : EDGE, spacing, test_blobs);
         cw_renderer_forget(r);
         cw_scene scene = scene_of(&blobs, &soft, test_view(30, 25, n % 2 ? 0 : 30, 60 * scale));
-        scene.no_preintegration = true; /* its table takes longer than the picture */
+        scene.sampling.no_preintegration = true; /* its table takes longer than the picture */
         if (n == 3)
             soft.unit_mm = 1;
         if (n == 4 || n == 11)
@@ -204,7 +204,7 @@ static void eye_inside_sees_what_is_in_front(void **state)
     test_field(&blobs, EDGE, EDGE, EDGE, cube, test_blobs);
     cw_renderer_forget(r);
     cw_scene scene = scene_of(&blobs, &soft, test_view(30, 25, 90, 8));
-    scene.no_preintegration = true;
+    scene.sampling.no_preintegration = true;
     assert_true(test_error(r, &scene).rmse < 0.5);
     cw_volume_free(&blobs);
 }
@@ -224,7 +224,7 @@ static void nodata_is_left_out(void **state)
     for (size_t n = 0; n < EDGE * EDGE * EDGE; n += 97)
         voxels[n] = -7;
     cw_scene scene = scene_of(&box, &flat, test_view(30, 25, 30, 50));
-    scene.no_preintegration = true; /* whose table takes longer than the picture */
+    scene.sampling.no_preintegration = true; /* whose table takes longer than the picture */
     assert_true(test_error(r, &scene).rmse < 0.2);
     cw_volume_free(&box);
 }
@@ -239,14 +239,14 @@ static void nodes_follow_the_tolerance(void **state)
     test_field(&blobs, EDGE, EDGE, EDGE, cube, test_blobs);
     cw_renderer_forget(r);
     cw_scene scene = scene_of(&blobs, &soft, test_view(30, 25, 30, 50));
-    scene.no_preintegration = true;
+    scene.sampling.no_preintegration = true;
     cw_picture exact = test_draw(r, &scene);
     double before = 0;
     for (int n = 0; n < 4; n++) {
-        scene.tree_error = (double[]){0.01, 0.03, 0.1, 0.3}[n];
+        scene.projection.tree_error = (double[]){0.01, 0.03, 0.1, 0.3}[n];
         cw_picture picture = test_draw(r, &scene);
         const double rmse = test_compare(&picture, &exact).rmse;
-        assert_true(rmse >= before && rmse < 200 * scene.tree_error);
+        assert_true(rmse >= before && rmse < 200 * scene.projection.tree_error);
         before = rmse;
         cw_picture_free(&picture);
     }
@@ -265,10 +265,10 @@ static void bricks_leave_no_seams(void **state)
     test_field(&blobs, EDGE, EDGE, EDGE, cube, test_blobs);
     cw_renderer_forget(r);
     cw_scene scene = scene_of(&blobs, &soft, test_view(30, 25, 30, 50));
-    scene.no_preintegration = true;
+    scene.sampling.no_preintegration = true;
     scene.lit = true;
     cw_picture whole = test_draw(r, &scene);
-    scene.texture_edge = 13;
+    scene.sampling.texture_edge = 13;
     cw_picture bricks = test_draw(r, &scene);
     assert_true(test_compare(&bricks, &whole).max < 0.05);
     cw_picture_free(&whole);
@@ -291,7 +291,7 @@ static void drawing_can_be_cancelled(void **state)
     cw_picture picture;
     test_field(&box, EDGE, EDGE, EDGE, cube, test_constant);
     cw_scene scene = scene_of(&box, &flat, test_view(30, 25, 30, 50));
-    scene.no_preintegration = true;
+    scene.sampling.no_preintegration = true;
     for (int n = 0; n < 3; n++) {
         int calls = 2;
         cw_error err = {0};

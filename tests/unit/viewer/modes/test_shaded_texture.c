@@ -22,7 +22,7 @@ static cw_scene scene_of(const cw_volume *volume, const cw_transfer *transfer, d
         .camera = {.eye = {60, -90, 45}, .up = {0, 0, 1}, .height_mm = 56, .fov_deg = fov_deg},
         .width = 64,
         .height = 64,
-        .no_preintegration = true};
+        .sampling.no_preintegration = true};
 }
 
 static void expect_near(const char *what, const cw_picture *a, const cw_picture *b, double rmse,
@@ -50,9 +50,9 @@ static void more_directions_are_nearer_to_exact(void **state)
         scene.mode = CW_MODE_TEXTURE;
         cw_picture exact = test_draw(test_renderer(), &scene);
         scene.mode = CW_MODE_SHADED_TEXTURE;
-        scene.direction_filter = CW_DIRECTIONS_NEAREST;
+        scene.texture.direction_filter = CW_DIRECTIONS_NEAREST;
         for (int n = 0; n < 5; n++) {
-            scene.normals = (size_t[]){4, 16, 64, 256, 4096}[n];
+            scene.texture.normals = (size_t[]){4, 16, 64, 256, 4096}[n];
             cw_picture picture = test_draw(test_renderer(), &scene);
             const double rmse = test_compare(&picture, &exact).rmse;
             expect_near("directions", &picture, &exact, (double[]){3, 1.5, 1, 0.9, 0.8}[n], 70);
@@ -83,13 +83,14 @@ static void interpolated_directions_converge(void **state)
         scene.lit = true;
         scene.one_sided = kind & 2;
         scene.material = (cw_material){.ambient = 0.1f, .diffuse = 0.9f};
-        scene.step_vox = 0.25;
+        scene.sampling.step_vox = 0.25;
         scene.mode = CW_MODE_REFERENCE;
         cw_picture exact = test_draw(any, &scene);
         scene.mode = CW_MODE_SHADED_TEXTURE;
         for (int n = 0; n < 5; n++) {
-            scene.normals = (size_t[]){64, 256, 1024, 4096, 4096}[n];
-            scene.direction_filter = n == 4 ? CW_DIRECTIONS_NEAREST : CW_DIRECTIONS_LINEAR;
+            scene.texture.normals = (size_t[]){64, 256, 1024, 4096, 4096}[n];
+            scene.texture.direction_filter =
+                n == 4 ? CW_DIRECTIONS_NEAREST : CW_DIRECTIONS_LINEAR;
             cw_picture picture = test_draw(any, &scene);
             *(n == 4 ? &nearest : &linear[n]) = test_compare(&picture, &exact).rmse;
             cw_picture_free(&picture);
@@ -114,7 +115,7 @@ static void gain_of(const cw_scene *scene, double gain[3])
     cwi_directions d;
     double n[3];
     assert_ok(cwi_frame_init(&f, scene, &err), err);
-    assert_ok(cwi_directions_make(scene->normals, &d, &err), err);
+    assert_ok(cwi_directions_make(scene->texture.normals, &d, &err), err);
     const size_t nearest = cwi_directions_nearest(&d, (double[]){1, 0, 0});
     for (int a = 0; a < 3; a++)
         n[a] = cwi_dot(f.axes[a], d.all[nearest]);
@@ -144,10 +145,10 @@ static void a_ramp_is_shaded_as_computed(void **state)
     for (int kind = 0; kind < 8; kind++) {
         double gain[3];
         cw_scene scene = scene_of(&ramp, &t, kind & 1 ? 28 : 0);
-        scene.colors_first = kind >> 1 & 1;
-        scene.no_preintegration = kind >> 2;
-        scene.step_vox = 0.5;
-        scene.normals = 200;
+        scene.texture.colors_first = kind >> 1 & 1;
+        scene.sampling.no_preintegration = kind >> 2;
+        scene.sampling.step_vox = 0.5;
+        scene.texture.normals = 200;
         scene.material = (cw_material){.ambient = 0.3f, .diffuse = 0.6f, .shininess = 1};
         scene.light_count = 2;
         scene.lights[0] = (cw_light){{1, 2, 3}, {1, 0.5f, 0.2f}};
@@ -175,7 +176,7 @@ static void relighting_leaves_the_texture_alone(void **state)
     test_field(&blobs, 32, 32, 32, cube, test_blobs);
     test_field(&other, 32, 32, 32, cube, test_blobs);
     cw_scene scene = scene_of(&blobs, &soft, 0);
-    scene.direction_filter = CW_DIRECTIONS_NEAREST;
+    scene.texture.direction_filter = CW_DIRECTIONS_NEAREST;
     cw_picture front = test_draw(r, &scene);
     memset(cw_volume_voxels(&blobs), 0, sizeof(float[32 * 32 * 32]));
     scene.light_count = 1;
@@ -210,10 +211,10 @@ static void boundaries_are_where_materials_meet(void **state)
     scene.camera = (cw_camera){.eye = {0, -500, 0}, .up = {0, 0, 1}, .height_mm = 20};
     scene.width = scene.height = 80; /* four samples a cell */
     for (int bricks = 0; bricks < 2; bricks++) {
-        scene.texture_edge = bricks ? 6 : 0;
-        scene.mark_boundary = false;
+        scene.sampling.texture_edge = bricks ? 6 : 0;
+        scene.texture.mark_boundary = false;
         cw_picture all = test_draw(test_renderer(), &scene);
-        scene.mark_boundary = true;
+        scene.texture.mark_boundary = true;
         cw_picture marked = test_draw(test_renderer(), &scene);
         for (size_t p = 0; p < 80 * 80; p++) {
             const size_t cell = p % 80 / 4;
@@ -247,8 +248,8 @@ static void boundaries_have_no_holes(void **state)
     for (int kind = 0; kind < 4; kind++) {
         cw_scene scene = scene_of(&v, &t, kind & 1 ? 28 : 0);
         const double distance = 117, scale = 64 / 56.0; /* samples per mm, in the middle */
-        scene.mark_boundary = true;
-        scene.step_vox = kind & 2 ? 1 : 0.25;
+        scene.texture.mark_boundary = true;
+        scene.sampling.step_vox = kind & 2 ? 1 : 0.25;
         if (kind & 1)
             scene.camera.height_mm = 2 * distance * tan(14 * 3.14159265358979 / 180);
         cw_picture p = test_draw(test_renderer(), &scene);
@@ -292,12 +293,13 @@ static void materials_have_their_means(void **state)
     scene.camera = (cw_camera){.eye = {0, -500, 0}, .up = {0, 0, 1}, .height_mm = 20};
     scene.width = scene.height = 80; /* four samples a cell */
     scene.material = (cw_material){.ambient = 1};
-    scene.material_table = true;
+    scene.texture.material_table = true;
     for (int kind = 0; kind < 6;
          kind++) { /* one side lit or both, and the three ways to look up */
         scene.one_sided = kind & 1;
-        scene.direction_filter = kind / 2 == 0 ? CW_DIRECTIONS_LINEAR : CW_DIRECTIONS_NEAREST;
-        scene.colors_first = kind / 2 == 2;
+        scene.texture.direction_filter =
+            kind / 2 == 0 ? CW_DIRECTIONS_LINEAR : CW_DIRECTIONS_NEAREST;
+        scene.texture.colors_first = kind / 2 == 2;
         cw_picture p = test_draw(test_renderer(), &scene);
         for (size_t n = 0; n < 80 * 80; n++) {
             const double value = ((double)(n % 80) + 0.5) / 80;
@@ -327,13 +329,13 @@ static void bricks_and_layers_are_shaded_alike(void **state)
         cw_volume v = {0};
         test_field(&v, 40, 36, n == 5 ? 1 : 40, cube, n == 5 ? test_ramp : test_blobs);
         cw_scene scene = scene_of(&v, &soft, n & 1 ? 28 : 0);
-        scene.colors_first = n >> 1 & 1;
-        scene.direction_filter = n == 1 ? CW_DIRECTIONS_NEAREST : CW_DIRECTIONS_LINEAR;
-        scene.material_table = n == 0;
-        scene.mark_boundary = n == 4;
-        scene.step_vox = 0.5;
+        scene.texture.colors_first = n >> 1 & 1;
+        scene.texture.direction_filter = n == 1 ? CW_DIRECTIONS_NEAREST : CW_DIRECTIONS_LINEAR;
+        scene.texture.material_table = n == 0;
+        scene.texture.mark_boundary = n == 4;
+        scene.sampling.step_vox = 0.5;
         cw_picture one = test_draw(test_renderer(), &scene);
-        scene.texture_edge = 17;
+        scene.sampling.texture_edge = 17;
         cw_picture parts = test_draw(test_renderer(), &scene);
         /* A slab that is cut in two is in two cells. */
         expect_near("bricks", &one, &parts, n == 4 ? 0.4 : 0.1, n == 4 ? 30 : 8);
@@ -352,7 +354,7 @@ static void too_many_directions_are_refused(void **state)
     const cw_transfer soft = test_soft_transfer();
     test_field(&v, 8, 8, 8, cube, test_blobs);
     cw_scene scene = scene_of(&v, &soft, 0);
-    scene.normals = 10000;
+    scene.texture.normals = 10000;
     assert_int_equal(cw_render(test_renderer(), &scene, &picture, &err), CW_ERR_ARGUMENT);
     assert_non_null(strstr(err.message, "10000 directions"));
     assert_null(picture.pixels);
@@ -371,11 +373,12 @@ static void lack_of_memory_is_told(void **state)
         long fails = 0;
         cw_scene scene = scene_of(&v, &soft, 0);
         scene.mode = kind == 0 || kind == 3 ? CW_MODE_SHADED_TEXTURE : CW_MODE_TEXTURE;
-        scene.direction_filter = kind == 3 ? CW_DIRECTIONS_NEAREST : CW_DIRECTIONS_LINEAR;
-        scene.colors_first = kind == 1;
-        scene.target = kind == 2 ? CW_TARGET_16 : CW_TARGET_32F;
-        scene.texture_edge = 12;
-        scene.normals = 100;
+        scene.texture.direction_filter =
+            kind == 3 ? CW_DIRECTIONS_NEAREST : CW_DIRECTIONS_LINEAR;
+        scene.texture.colors_first = kind == 1;
+        scene.texture.target = kind == 2 ? CW_TARGET_16 : CW_TARGET_32F;
+        scene.sampling.texture_edge = 12;
+        scene.texture.normals = 100;
         cw_picture whole = test_draw(r, &scene), picture;
         for (bool failed = true; failed; fails++) {
             cw_error err = {0};

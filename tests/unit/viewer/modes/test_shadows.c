@@ -116,7 +116,7 @@ static void modes_converge_to_the_reference(void **state)
             .lit = true,
             .shadow = (cw_shadow)n};
         cw_picture truth = test_draw(r, &scene);
-        scene.step_vox = 0.25;
+        scene.sampling.step_vox = 0.25;
         for (int m = 0; m < 3; m++) {
             scene.mode = modes[m];
             cw_picture picture = test_draw(r, &scene);
@@ -151,7 +151,7 @@ static void unusable_scenes_are_named(void **state)
     scene.mode = CW_MODE_VBUFFER;
     scene.shadow = (cw_shadow)9;
     assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_ARGUMENT,
-                 "9 is not a kind of shadows", err);
+                 "shadow is 9", err);
     scene.shadow = CW_SHADOW_AMBIENT;
     for (int n = 0; n < SIDE; n++)
         places[n] = n * n;

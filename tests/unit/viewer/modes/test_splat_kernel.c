@@ -14,7 +14,7 @@ static cw_scene scene_of(int kernel, const cw_volume *volume, const cw_transfer 
                          cw_camera camera)
 {
     return (cw_scene){.mode = CW_MODE_SPLAT,
-                      .splat_kernel = (cw_splat_kernel)kernel,
+                      .splat.kernel = (cw_splat_kernel)kernel,
                       .volume = volume,
                       .transfer = transfer,
                       .camera = camera,
@@ -79,7 +79,7 @@ static void errors_follow_the_blur(void **state)
         scene.lit = true;
         const double lit = test_error(r, &scene).rmse;
         scene.lit = false;
-        scene.splat_width = 1.2;
+        scene.splat.width = 1.2;
         const double wide = test_error(r, &scene).rmse;
         if (!(usual < most[kernel] && lit < most[kernel] && usual < wide))
             fail_msg("%s: rmse %g, lit %g, wide %g", names[kernel], usual, lit, wide);
@@ -104,7 +104,7 @@ static void nodes_join_voxels(void **state)
                                       test_view(30, 25, field ? 4 : 30, field ? 6 : 50));
             scene.mode = CW_MODE_SPLAT_TREE;
             cw_picture voxels = test_draw(r, &scene);
-            scene.tree_error = 0.02;
+            scene.splat.tree_error = 0.02;
             cw_picture nodes = test_draw(r, &scene);
             const double rmse = test_compare(&nodes, &voxels).rmse;
             if (rmse > most[field][kernel])
@@ -129,10 +129,10 @@ static void kernels_out_of_range_are_refused(void **state)
     for (int n = 0; n < 4; n++) {
         cw_scene scene = scene_of(0, &blobs, &soft, test_view(0, 0, 30, 10));
         if (n == 3)
-            scene.splat_kernel = CW_SPLAT_COUNT;
+            scene.splat.kernel = CW_SPLAT_COUNT;
         else
-            scene.splat_width = (double[]){0.1, 5, NAN}[n];
-        assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_ARGUMENT, "splats", err);
+            scene.splat.width = (double[]){0.1, 5, NAN}[n];
+        assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_ARGUMENT, "splat.", err);
         assert_null(picture.pixels);
     }
     cw_volume_free(&blobs);

@@ -62,7 +62,7 @@ static void error_rises_with_the_threshold(void **state)
         cw_picture flat = test_draw(r, &scene);
         double before = 0;
         for (size_t n = 0; n < sizeof errors / sizeof *errors; n++) {
-            scene.tree_error = errors[n];
+            scene.splat.tree_error = errors[n];
             cw_picture tree = test_draw(r, &scene);
             const double rmse = test_compare(&tree, &flat).rmse;
             if (!(rmse >= before) || (n == 0 && !view && rmse > 0.2))
@@ -88,12 +88,12 @@ static void constant_box_is_one_node(void **state)
     for (int n = 0; n < 4; n++) {
         cw_scene scene = scene_of(&box, &flat, test_view(15 * n, 10 * n, n % 2 ? 0 : 30, 110));
         cw_picture all = test_draw(r, &scene);
-        scene.tree_error = 0.01;
+        scene.splat.tree_error = 0.01;
         cw_picture one = test_draw(r, &scene);
         const size_t middle = 4 * (SIZE / 2 * SIZE + SIZE / 2) + 3;
         assert_true(test_compare(&one, &all).rmse < 1.5); /* at the border: half voxels */
         assert_true(fabs((double)(one.pixels[middle] - all.pixels[middle])) < 0.05 / 255);
-        scene.splat_budget = EDGE;
+        scene.splat.budget = EDGE;
         cw_picture few = test_draw(r, &scene);
         assert_true(test_compare(&one, &few).max == 0);
         cw_picture_free(&all);
@@ -188,7 +188,7 @@ static void budgets_refine(void **state)
     cw_picture flat = test_draw(r, &scene);
     double before = INFINITY;
     for (int n = 0; n < 5; n++) {
-        scene.splat_budget = (size_t[]){300, 1000, 3000, 10000, 1000000}[n];
+        scene.splat.budget = (size_t[]){300, 1000, 3000, 10000, 1000000}[n];
         cw_picture tree = test_draw(r, &scene);
         const double rmse = test_compare(&tree, &flat).rmse;
         assert_true(rmse <= before);
@@ -214,9 +214,9 @@ static void clips_cut_nodes(void **state)
     scene.clips[0] = (cw_clip){{1, 0.4, 0.2}, 2.3};
     for (int n = 0; n < 2; n++) {
         scene.cut_away = n;
-        scene.tree_error = 0;
+        scene.splat.tree_error = 0;
         cw_picture all = test_draw(r, &scene);
-        scene.tree_error = 0.01;
+        scene.splat.tree_error = 0.01;
         cw_picture nodes = test_draw(r, &scene);
         assert_true(test_compare(&nodes, &all).rmse < 0.6);
         cw_picture_free(&all);
@@ -235,9 +235,9 @@ static void errors_out_of_range_are_refused(void **state)
     test_field(&blobs, 4, 4, 4, cube, test_blobs);
     cw_scene scene = scene_of(&blobs, &soft, test_view(0, 0, 30, 10));
     for (int n = 0; n < 3; n++) {
-        scene.tree_error = (double[]){-0.1, 1.5, NAN}[n];
+        scene.splat.tree_error = (double[]){-0.1, 1.5, NAN}[n];
         assert_int_equal(cwi_frame_init(&frame, &scene, &err), CW_ERR_ARGUMENT);
-        assert_non_null(strstr(err.message, "error of nodes"));
+        assert_non_null(strstr(err.message, "splat.tree_error"));
     }
     cw_volume_free(&blobs);
 }

@@ -66,8 +66,8 @@ static void reflection_grows_with_the_change_of_the_index(void **state)
             .width = 8,
             .height = 8,
             .lit = true,
-            .step_vox = 0.25,
-            .stop_opacity = 1};
+            .sampling.step_vox = 0.25,
+            .sampling.stop_opacity = 1};
         cw_picture picture = draw_by_any(&scene);
         for (size_t p = 0; p < 64; p++) {
             assert_near((double)picture.pixels[4 * p + 3], seen, 1e-5);
@@ -123,9 +123,9 @@ static void modes_converge_to_the_reference(void **state)
         cw_picture truth = draw_by_any(&scene);
         for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
             scene.mode = rows[n].mode;
-            scene.step_vox = 0.5;
+            scene.sampling.step_vox = 0.5;
             cw_picture coarse = draw_by_any(&scene);
-            scene.step_vox = 0.125;
+            scene.sampling.step_vox = 0.125;
             cw_picture fine = draw_by_any(&scene);
             const double gaps[] = {test_compare(&coarse, &truth).rmse,
                                    test_compare(&fine, &truth).rmse};
@@ -153,12 +153,12 @@ static void colors_of_voxels_have_a_reference(void **state)
                       .transfer = &t,
                       .width = 48,
                       .height = 48,
-                      .colors_first = true,
+                      .texture.colors_first = true,
                       .lit = true};
     cw_picture truth = draw_by_any(&scene);
     scene.mode = CW_MODE_TEXTURE;
     for (int n = 0; n < 2; n++) {
-        scene.step_vox = n ? 0.125 : 0.5;
+        scene.sampling.step_vox = n ? 0.125 : 0.5;
         cw_picture slices = draw_by_any(&scene);
         assert_true(test_compare(&slices, &truth).rmse < (n ? 0.1 : 0.3));
         cw_picture_free(&slices);
@@ -170,7 +170,7 @@ static void colors_of_voxels_have_a_reference(void **state)
     truth = test_integral(&scene, 0.02);
     cw_picture reference = draw_by_any(&scene);
     assert_true(test_compare(&reference, &truth).max < 0.01);
-    scene.colors_first = false;
+    scene.texture.colors_first = false;
     cw_picture data = draw_by_any(&scene);
     assert_true(test_compare(&data, &truth).max > 2);
     cw_picture_free(&data);

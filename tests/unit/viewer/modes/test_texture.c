@@ -117,7 +117,7 @@ static void marks_cover_a_box_once(void **state)
         cw_scene scene = scene_of(&v, &soft, looking(view & 1, 30, view & 2 ? 40 : 0));
         scene.width = 150;
         scene.height = 96;
-        scene.step_vox = view == 3 ? 5 : 0.7;
+        scene.sampling.step_vox = view == 3 ? 5 : 0.7;
         assert_ok(cwi_frame_init(&f, &scene, &err), err);
         assert_ok(cwi_slabs_init(&f, &s, &err), err);
         cwi_slabs_mark(&s, &f, (double[]){2, 3, 4}, (double[]){5, 11, 9});
@@ -155,10 +155,11 @@ static void constant_box_is_exact(void **state)
     for (int n = 0; n < 5; n++)
         for (int view = 0; view < 4; view++) {
             cw_scene scene = scene_of(&box, &flat, looking(view & 1, 60, view & 2 ? 35 : 0));
-            scene.step_vox = (double[]){1, 0.5, 1.0 / 16, 0.73, 7.3}[n];
-            scene.no_preintegration = n % 2;
-            scene.colors_first = n == 3;         /* of half precision */
-            scene.texture_edge = n == 0 ? 9 : 0; /* what counts twice at a seam shows */
+            scene.sampling.step_vox = (double[]){1, 0.5, 1.0 / 16, 0.73, 7.3}[n];
+            scene.sampling.no_preintegration = n % 2;
+            scene.texture.colors_first = n == 3; /* of half precision */
+            scene.sampling.texture_edge =
+                n == 0 ? 9 : 0; /* what counts twice at a seam shows */
             cw_picture truth = test_integral(&scene, 100);
             cw_picture picture = test_draw(test_renderer(), &scene);
             expect_near("box", &picture, &truth, n == 3 ? 0.05 : 0.001, n == 3 ? 0.1 : 0.003);
@@ -181,9 +182,9 @@ static void ramp_is_near_the_truth(void **state)
     for (int view = 0; view < 4; view++) {
         cw_scene scene = scene_of(&ramp, &linear, looking(view & 1, 50, view & 2 ? 35 : 0));
         for (int colors = 0; colors < 2; colors++) {
-            scene.colors_first = colors;
+            scene.texture.colors_first = colors;
             cw_picture truth = test_integral(&scene, 0.15);
-            scene.step_vox = colors ? 0.5 : 1;
+            scene.sampling.step_vox = colors ? 0.5 : 1;
             cw_picture picture = test_draw(test_renderer(), &scene);
             expect_near(colors ? "ramp, colours" : "ramp", &picture, &truth, 0.05, 0.2);
             cw_picture_free(&picture);
@@ -204,9 +205,9 @@ static void slices_converge(void **state)
     for (int n = 0; n < 12; n++) {
         const int kind = n % 4, step = n / 4;
         cw_scene scene = scene_of(&blobs, &soft, looking(true, 70, kind < 2 ? 0 : 30));
-        scene.no_preintegration = kind % 2;
-        scene.colors_first = kind == 3;
-        scene.step_vox = (double[]){2, 1, 0.5}[step];
+        scene.sampling.no_preintegration = kind % 2;
+        scene.texture.colors_first = kind == 3;
+        scene.sampling.step_vox = (double[]){2, 1, 0.5}[step];
         cw_picture truth = test_integral(&scene, 0.15);
         cw_picture picture = test_draw(test_renderer(), &scene);
         const test_gap gap =
@@ -228,11 +229,11 @@ static void blending_rounds(void **state)
     const cw_transfer soft = test_soft_transfer();
     test_field(&blobs, 48, 48, 48, cube, test_blobs);
     cw_scene scene = scene_of(&blobs, &soft, looking(true, 70, 30));
-    scene.step_vox = 72.0 / 256;
+    scene.sampling.step_vox = 72.0 / 256;
     cw_picture truth = test_integral(&scene, 0.15);
     double before = 0;
     for (int n = 0; n < CW_TARGET_COUNT; n++) {
-        scene.target =
+        scene.texture.target =
             (cw_target[]){CW_TARGET_32F, CW_TARGET_16, CW_TARGET_16F, CW_TARGET_8}[n];
         cw_picture picture = test_draw(test_renderer(), &scene);
         const test_gap gap =
@@ -260,9 +261,9 @@ static void bricks_have_no_seams(void **state)
         const int kind = n % 6;
         cw_scene scene = scene_of(&blobs, &soft, looking(true, 70, kind & 1 ? 40 : 0));
         scene.lit = kind / 2 == 1;
-        scene.colors_first = kind / 2 == 2;
-        scene.step_vox = 0.2;
-        scene.texture_edge = (size_t[]){0, 17, 33}[n / 6];
+        scene.texture.colors_first = kind / 2 == 2;
+        scene.sampling.step_vox = 0.2;
+        scene.sampling.texture_edge = (size_t[]){0, 17, 33}[n / 6];
         cw_picture picture = test_draw(test_renderer(), &scene);
         if (n < 6) {
             whole[kind] = picture;
@@ -287,11 +288,11 @@ static void an_eye_inside_sees_what_is_ahead(void **state)
     cw_scene scene = scene_of(
         &blobs, &soft,
         (cw_camera){.eye = {3, -9, 4}, .target = {0, 10, 0}, .up = {0, 0, 1}, .fov_deg = 60});
-    scene.step_vox = 0.5;
+    scene.sampling.step_vox = 0.5;
     cw_picture truth = test_integral(&scene, 0.15);
     cw_picture picture = test_draw(test_renderer(), &scene);
     expect_near("inside", &picture, &truth, 0.03, 0.3);
-    scene.texture_edge = 17;
+    scene.sampling.texture_edge = 17;
     cw_picture bricks = test_draw(test_renderer(), &scene);
     expect_near("inside, bricks", &bricks, &truth, 0.03, 0.3);
     cw_picture_free(&truth);
@@ -313,7 +314,7 @@ static void any_place_is_drawn_alike(void **state)
         tilt(&v, scale);
         cw_scene scene = scene_of(&v, &soft, looking(true, 70 * scale, kind < 4 ? 0 : 35));
         cw_picture truth = test_integral(&scene, 0.15);
-        scene.step_vox = 0.5;
+        scene.sampling.step_vox = 0.5;
         cw_picture picture = test_draw(test_renderer(), &scene);
         expect_near("tilted", &picture, &truth, 0.05, 0.6);
         cw_scene rays = scene;
@@ -366,12 +367,12 @@ static void everything_else_is_as_along_rays(void **state)
         slices.cut_away = what >= 4;
         slices.clips[0] = (cw_clip){{1, 0.3, -0.2}, 1.3};
         slices.clips[1] = (cw_clip){{0.2, 1, 0.1}, what == 5 ? 50 : -3.1};
-        slices.step_vox = 0.2;
+        slices.sampling.step_vox = 0.2;
         slices.mesh = what == 2 || what == 6 ? &mesh : NULL;
         cw_scene rays = slices;
         rays.mode = CW_MODE_COMPOSITE;
-        rays.step_vox = 0.1; /* rays are lit every other step */
-        rays.stop_opacity = 1;
+        rays.sampling.step_vox = 0.1; /* rays are lit every other step */
+        rays.sampling.stop_opacity = 1;
         expect_same("slices and rays", &slices, &rays, 0.05, 1.5);
     }
     cw_volume_free(&blobs);
@@ -386,8 +387,8 @@ static void skipping_and_filters_change_nothing(void **state)
     for (int n = 0; n < 4; n++) {
         cw_scene a = scene_of(&blobs, &soft, looking(true, 90, n & 1 ? 35 : 0));
         cw_scene b = a;
-        b.no_skipping = n < 2;
-        b.exact_filter = n >= 2;
+        b.sampling.no_skipping = n < 2;
+        b.sampling.exact_filter = n >= 2;
         expect_same("skipping", &a, &b, 0.01, 0.03);
     }
     cw_volume_free(&blobs);
@@ -407,7 +408,7 @@ static void samples_without_a_value_are_empty(void **state)
     v.has_nodata = true;
     v.nodata = -7;
     cw_scene slices = scene_of(&v, &soft, looking(true, 45, 30));
-    slices.step_vox = 0.1;
+    slices.sampling.step_vox = 0.1;
     cw_scene rays = slices;
     rays.mode = CW_MODE_COMPOSITE;
     expect_same("no value", &slices, &rays, 0.15, 2);
@@ -424,10 +425,10 @@ static void too_many_slices_are_refused(void **state)
     test_field(&v, 8, 8, 8, (double[]){1, 1, 1e7}, test_blobs);
     cw_scene scene = scene_of(&v, &soft, looking(true, 1e8, 0));
     scene.width = scene.height = 8;
-    scene.no_preintegration = true;
+    scene.sampling.no_preintegration = true;
     assert_int_equal(cw_render(test_renderer(), &scene, &picture, &err), CW_ERR_LIMIT);
     assert_null(picture.pixels);
-    scene.step_vox = 1000;
+    scene.sampling.step_vox = 1000;
     assert_ok(cw_render(test_renderer(), &scene, &picture, &err), err);
     cw_picture_free(&picture);
     cw_volume_free(&v);
