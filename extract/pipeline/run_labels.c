@@ -138,6 +138,7 @@ cw_status cw_pipeline_run_labels(const cw_pipeline_labels *labels, const cw_pipe
                                  cw_pipeline_sink sink, cw_pipeline_facts *facts, cw_error *err)
 {
     CWI_REQUIRE(err, labels, desc);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cwi_pipeline p = {.desc = desc, .labels = labels};
     cw_status st = cwi_begin_pipeline(&p, CW_SOURCE_LABELS, sink, err);
     p.facts.extracted.triangles =

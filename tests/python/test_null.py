@@ -1,4 +1,5 @@
-"""Calls every function of the C library with NULL in place of each pointer: an error, and no crash."""
+"""Calls every function of the C library with NULL in place of each pointer, and each that takes options with
+a later version of them: an error, and no crash."""
 
 import ctypes
 import subprocess
@@ -56,7 +57,44 @@ def call_all():
             getattr(lib, name)(*values[:-1], None)
 
 
+LATER = 7  # than all versions of structs that there are
+
+
+def is_desc(kind):
+    return hasattr(kind, "contents") and kind._type_.__name__.endswith("_desc")
+
+
+def later_of(kind):
+    """Returns memory for a pointer, all 0 but the version of options; else as zero_of()."""
+    if is_desc(kind):
+        return ctypes.pointer(kind._type_(version=LATER))
+    if kind in (ctypes.c_char_p, ctypes.c_void_p) or hasattr(kind, "contents"):
+        return ctypes.cast(ctypes.create_string_buffer(1 << 16), kind)
+    return zero_of(kind)
+
+
+def call_later():
+    """Calls each function that takes options; prints its name before, and the message after."""
+    for name, (result, arguments) in sorted(c.FUNCTIONS.items()):
+        if not takes_error(arguments) or not any(is_desc(kind) for kind in arguments):
+            continue
+        print(name, end=" ", flush=True)
+        error = c.cw_error()
+        status = getattr(lib, name)(*[later_of(kind) for kind in arguments[:-1]], ctypes.byref(error))
+        print(status, error.message.decode(), flush=True)
+
+
 class Null(Case):
+    def test_every_function_refuses_options_of_a_later_version(self):
+        run = subprocess.run([sys.executable, __file__, "later"], capture_output=True, text=True, timeout=LIMIT_S)
+        lines = run.stdout.splitlines()
+        self.assertEqual(run.returncode, 0, f"it crashed in {lines[-1] if lines else '?'}: {run.stderr}")
+        self.assertGreater(len(lines), 60)
+        for line in lines:
+            name, status, *words = line.split()
+            self.assertEqual(int(status), Status.ARGUMENT, line)
+            self.assertIn(f"version is {LATER}; this library knows up to 0", " ".join(words), name)
+
     def test_every_function_takes_null(self):
         run = subprocess.run([sys.executable, __file__, "call"], capture_output=True, text=True, timeout=LIMIT_S)
         lines = run.stdout.splitlines()
@@ -78,5 +116,7 @@ class Null(Case):
 if __name__ == "__main__":
     if sys.argv[1:] == ["call"]:
         call_all()
+    elif sys.argv[1:] == ["later"]:
+        call_later()
     else:
         main()
