@@ -42,7 +42,8 @@ class Attributes(MutableMapping[str, npt.NDArray[Any]]):
         self._removed: list[object] = []  # memory that arrays may still use
 
     def _row(self, name: object) -> c.cw_attribute:
-        for row in self._struct.attributes[: self._struct.attribute_count]:
+        rows: list[c.cw_attribute] = self._struct.attributes[: self._struct.attribute_count]
+        for row in rows:
             if isinstance(name, str) and row.name == name.encode():
                 return row
         raise KeyError(name)
