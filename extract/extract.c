@@ -180,7 +180,7 @@ cw_status cwi_extractor_new_with(const cwi_engine *engine, size_t leaf_bytes,
     cw_extractor *e = cwi_alloc_array(1, sizeof *e);
     *out = NULL;
     if (!e)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for an extractor");
+        return cwi_fail_memory(err);
     cw_status st = cwi_plan_init(e, engine, volume, err);
     if (st == CW_OK && cwi_plan_is_dense(e))
         st = cwi_octree_init(&e->tree, &e->grid, err);

@@ -71,7 +71,7 @@ static cw_status write_slabs(cwi_plan *p, const cw_extract_desc *d, size_t trian
         return st;
     uint8_t *seam = cwi_alloc_array(most.vertices, 1);
     if (!seam)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", most.vertices);
+        st = cwi_fail_memory(err);
     memcpy(mesh.affine, p->grid.volume.affine, sizeof mesh.affine);
     cwi_writing w = {.plan = p,
                      .emission = cwi_make_emission(&p->grid.volume, d->simple_topology),
@@ -96,9 +96,7 @@ static cw_status give_whole(cwi_plan *p, const cw_extract_desc *d, cw_slab_sink 
     if (st == CW_OK && mesh.triangle_count) {
         slab.seam = seam = cwi_alloc_zeroed(mesh.vertex_count, 1);
         slab.triangles = mesh.triangle_count;
-        st = seam ? sink.take(sink.user, &slab, err)
-                  : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices",
-                             mesh.vertex_count);
+        st = seam ? sink.take(sink.user, &slab, err) : cwi_fail_memory(err);
     }
     cwi_free(seam);
     cw_mesh_free(&mesh);

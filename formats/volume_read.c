@@ -499,7 +499,7 @@ cw_status cw_arrays_list(const char *path, const cw_read_desc *desc, cw_array **
     if (st == CW_OK && !(o.reader && o.reader->volume.read_slices))
         st = read_opened(&o, &d, &shape, err);
     if (st == CW_OK && list.starved)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a list of arrays");
+        st = cwi_fail_memory(err);
     cw_volume_free(&shape);
     close_path(&o);
     if (st != CW_OK)
@@ -663,7 +663,7 @@ static cw_status add_below(const char *folder, const cwi_names *found, cwi_names
         const size_t room = strlen(folder) + strlen(found->items[i]) + 2;
         char *path = cwi_alloc_array(room, 1);
         if (!path)
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the files of a folder");
+            return cwi_fail_memory(err);
         const bool slash = folder[strlen(folder) - 1] == '/';
         snprintf(path, room, "%s%s%s", folder, slash ? "" : "/", found->items[i]);
         st = cwi_names_add(names, path, err);

@@ -56,8 +56,7 @@ static cw_status scale_mesh(const cw_mesh *mesh, double *scale, cw_mesh *scaled,
     memset(scaled->origin, 0, sizeof scaled->origin);
     scaled->positions = cwi_alloc_array(3 * mesh->vertex_count, sizeof(float));
     if (!scaled->positions)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify %zu triangles",
-                        mesh->triangle_count);
+        return cwi_fail_memory(err);
     cwi_scale_points(mesh->positions, mesh->vertex_count, *scale, scaled->positions);
     return CW_OK;
 }
@@ -70,8 +69,7 @@ static cw_status weigh_attributes(const cw_mesh *m, const cw_simplify_desc *d,
         return CW_OK;
     w->values = cwi_alloc_array(w->attributes * w->vertices, sizeof *w->values);
     if (!w->values)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for attributes of %zu vertices",
-                        w->vertices);
+        return cwi_fail_memory(err);
     cwi_attributes_weigh(m, d, w->values);
     return CW_OK;
 }
@@ -84,8 +82,7 @@ static cw_status begin_block(const cw_mesh *m, cwi_mesh_block *w, cw_error *err)
     w->names = cwi_alloc_array(w->vertices, sizeof *w->names);
     w->corners = cwi_alloc_array(3 * m->triangle_count, sizeof *w->corners);
     if (!w->points || !w->names || !w->corners)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify %zu triangles",
-                        m->triangle_count);
+        return cwi_fail_memory(err);
     if (w->vertices)
         memcpy(w->points, m->positions, 3 * w->vertices * sizeof *w->points);
     for (size_t v = 0; v < w->vertices; v++)
@@ -141,8 +138,7 @@ static cw_status simplify_levels(const cw_mesh *mesh, const cw_simplify_desc *de
     cw_mesh scaled = {0};
     double scale = 1;
     cwi_mesh_block *left = cwi_alloc_zeroed(levels, sizeof *left);
-    cw_status st = left ? check_desc(mesh, desc, err)
-                        : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu levels", levels);
+    cw_status st = left ? check_desc(mesh, desc, err) : cwi_fail_memory(err);
     if (st == CW_OK)
         st = cwi_passes_init(&p, desc, err);
     if (st == CW_OK)

@@ -122,9 +122,7 @@ cw_status cwi_slab_block_init(cwi_slab_block *s, const cw_slab *from, double sca
     cwi_block_span(b);
     set_planes(b, from, scale);
     s->longest = ok ? longest_edge(b) : 0;
-    return ok ? CW_OK
-              : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify a slab of %zu triangles",
-                         m->triangle_count);
+    return ok ? CW_OK : cwi_fail_memory(err);
 }
 
 /* --- down to a number of triangles -------------------------------------------------------- */
@@ -136,7 +134,7 @@ static cw_status name_seams(cw_simplifier *s, const cwi_slab_block *slab, cwi_me
     const size_t first[3] = {0, s->below, s->names};
     b->held = cwi_alloc_array(b->vertices, sizeof *b->held);
     if (!b->held)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", b->vertices);
+        return cwi_fail_memory(err);
     for (size_t v = 0; v < b->vertices; v++) {
         const uint32_t n = b->names[v];
         b->held[v] = slab->seam[n];
@@ -153,7 +151,7 @@ static cw_status add_slab(cw_simplifier *s, cwi_slab_block *slab, cw_error *err)
         const size_t room = 2 * s->room + 8;
         cwi_mesh_block *slabs = cwi_realloc_array(s->slabs, room, sizeof *slabs);
         if (!slabs)
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slabs", room);
+            return cwi_fail_memory(err);
         s->slabs = slabs;
         s->room = room;
     }
@@ -201,7 +199,7 @@ cw_status cw_simplifier_new(const cw_simplify_desc *desc, cw_simplifier **out, c
                         "slabs have neither normals, nor colours or scalars to weigh");
     cw_simplifier *s = cwi_alloc_zeroed(1, sizeof *s);
     if (!s)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a simplifier");
+        return cwi_fail_memory(err);
     s->desc = *desc;
     cw_status st = cwi_passes_init(&s->passes, &s->desc, err);
     if (st != CW_OK)

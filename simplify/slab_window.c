@@ -24,11 +24,6 @@ void cwi_window_free(cwi_slab_window *w)
     *w = (cwi_slab_window){0};
 }
 
-static cw_status no_memory(cw_error *err)
-{
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify across slabs");
-}
-
 static double height_along(const float along[3], const float x[3])
 {
     return (double)(x[0] * along[0] + x[1] * along[1] + x[2] * along[2]);
@@ -133,7 +128,7 @@ static cw_status merge_input(cwi_slab_window *w, cwi_passes *p, const cwi_slab_b
     p->care = NULL;
     m.number = cwi_alloc_array(w->input.vertex_count, sizeof *m.number);
     m.wanted = cwi_alloc_zeroed(w->input.vertex_count, 1);
-    cw_status st = m.number && m.wanted ? CW_OK : no_memory(err);
+    cw_status st = m.number && m.wanted ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK) {
         choose_old(w, &m, w->end - 2 * p->error);
         number_old(&m, w);
@@ -188,7 +183,7 @@ static cw_status hold_vertices(const joiner *j, cwi_mesh_block *b, cw_error *err
 {
     b->held = cwi_alloc_array(b->vertices, 1);
     if (!b->held)
-        return no_memory(err);
+        return cwi_fail_memory(err);
     for (size_t v = 0; v < b->vertices; v++) {
         b->held[v] = j->placed[b->names[v]] != NONE || is_above(j, b->names[v]);
     }
@@ -203,7 +198,7 @@ static cw_status open_window(cwi_slab_window *w, cwi_slab_block *slab, joiner *j
     j->names = slab->vertices + w->rest.vertices;
     j->placed = cwi_alloc_array(j->names, sizeof *j->placed);
     both[1].held = cwi_alloc_array(both[1].vertices, 1);
-    cw_status st = j->placed && both[1].held ? CW_OK : no_memory(err);
+    cw_status st = j->placed && both[1].held ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK) {
         memset(j->placed, 0xff, j->names * sizeof *j->placed);
         name_rest(w, j);
@@ -228,7 +223,7 @@ static cw_status make_room(cwi_slab_window *w, size_t vertices, size_t triangles
         const size_t room = (w->vertices + vertices) * 5 / 4;
         float *points = cwi_realloc_array(w->points, 3 * room, sizeof *points);
         if (!points)
-            return no_memory(err);
+            return cwi_fail_memory(err);
         w->points = points;
         w->vertex_room = room;
     }
@@ -236,7 +231,7 @@ static cw_status make_room(cwi_slab_window *w, size_t vertices, size_t triangles
         const size_t room = (w->triangles + triangles) * 5 / 4;
         uint32_t *corners = cwi_realloc_array(w->corners, 3 * room, sizeof *corners);
         if (!corners)
-            return no_memory(err);
+            return cwi_fail_memory(err);
         w->corners = corners;
         w->triangle_room = room;
     }
@@ -271,7 +266,7 @@ static cw_status keep_near(cwi_slab_window *w, const cwi_mesh_block *left, doubl
     size_t kept = 0;
     float *near = cwi_alloc_array(9 * (w->finished_count + left->triangles), sizeof *near);
     if (!near)
-        return no_memory(err);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < w->finished_count + left->triangles; n++) {
         float *to = near + 9 * kept;
         const size_t t = n - w->finished_count;
@@ -323,7 +318,7 @@ static cw_status take_rest(cwi_slab_window *w, const joiner *j, const cwi_mesh_b
     w->rank = cwi_alloc_array(rest.vertices, sizeof *w->rank);
     if (!rest.points || !rest.corners || !rest.names || !rest.held || !rest.open ||
         !rest.quadrics || !rest.lists || !w->placed || !w->rank)
-        return no_memory(err);
+        return cwi_fail_memory(err);
     for (size_t v = 0; v < left->vertices; v++) {
         const size_t n = number[v];
         if (number[v] == NONE)
@@ -351,7 +346,7 @@ static cw_status note_seam(cwi_slab_window *w, const cwi_slab_block *slab, cw_er
     w->ranks = slab->ranks[2];
     w->above = cwi_alloc_array(w->ranks, sizeof *w->above);
     if (!w->above)
-        return no_memory(err);
+        return cwi_fail_memory(err);
     memset(w->above, 0xff, w->ranks * sizeof *w->above);
     for (size_t v = 0; v < slab->vertices; v++)
         if (slab->seam[v] == 2)
@@ -365,8 +360,8 @@ static cw_status shut_window(cwi_slab_window *w, const cwi_passes *p, const join
 {
     uint32_t *placed = cwi_alloc_array(left->vertices, sizeof *placed);
     uint32_t *number = cwi_alloc_array(left->vertices, sizeof *number);
-    cw_status st =
-        placed && number ? make_room(w, left->vertices, left->triangles, err) : no_memory(err);
+    cw_status st = placed && number ? make_room(w, left->vertices, left->triangles, err)
+                                    : cwi_fail_memory(err);
     for (size_t v = 0; v < left->vertices && st == CW_OK; v++)
         placed[v] = j->placed[left->names[v]];
     for (size_t t = 0; t < left->triangles && st == CW_OK; t++)

@@ -47,7 +47,7 @@ cw_status cw_renderer_new(cw_backend backend, cw_renderer **renderer, cw_error *
                         CW_BACKEND_COUNT - 1);
     cw_renderer *r = cwi_alloc_zeroed(1, sizeof *r);
     if (!r)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a renderer");
+        return cwi_fail_memory(err);
     r->backend = backend;
     cw_status st = backend == CW_BACKEND_EGL ? need_gl(r, err) : CW_OK;
     if (st == CW_OK)

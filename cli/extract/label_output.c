@@ -4,6 +4,7 @@
 #include "cli/framework/console.h"
 #include "cli/framework/name_template.h"
 #include "cli/framework/quantity.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <stdio.h>
@@ -202,7 +203,7 @@ static cw_status write_sides(cli_label_run *r, const char *found, cw_error *err)
     cw_mesh mesh = s->mesh;
     uint32_t *sides = malloc(2 * s->mesh.triangle_count * sizeof *sides);
     if (!sides)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the labels of triangles");
+        return cwi_fail_memory(err);
     for (size_t p = 0; p < s->patch_count; p++)
         for (size_t t = s->patches[p].first; t < s->patches[p].first + s->patches[p].count; t++)
             memcpy(sides + 2 * t, s->patches[p].labels, 2 * sizeof *sides);
@@ -241,7 +242,7 @@ static cw_status write_patches(cli_label_run *r, const char *found, cw_error *er
     cw_label *labels = calloc(room + 1, sizeof *labels);
     char(*names)[2 * CLI_LABEL_NAME] = calloc(room + 1, sizeof *names);
     if (!parts || !meshes || !labels || !names)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu interfaces", room);
+        st = cwi_fail_memory(err);
     for (size_t l = 0; l < r->layer_count && st == CW_OK; l++) {
         const cli_label_layer *layer = &r->layers[l];
         for (size_t p = 0; p < layer->surfaces.patch_count && st == CW_OK; p++) {
@@ -291,7 +292,7 @@ cw_status cli_write_labels(cli_label_run *r, cw_error *err)
 {
     cw_part *parts = make_parts(r);
     if (!parts)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", r->item_count);
+        return cwi_fail_memory(err);
     cw_status st = cli_has_file_a_label(r->args->output)
                        ? name_files(r, parts, r->item_count, err)
                        : CW_OK;
@@ -312,7 +313,7 @@ static cw_status deliver_level(cli_label_run *r, size_t n, cw_error *err)
     char found[STEPS_BYTES];
     cw_part *parts = make_parts(r);
     if (!parts)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", r->item_count);
+        return cwi_fail_memory(err);
     print_steps(r, found);
     cw_status st = deliver_file(r, n, parts, r->item_count, 0, r->item_count, NULL, found, err);
     free(parts);
@@ -338,7 +339,7 @@ cw_status cli_write_label_levels(cli_label_run *r, cw_error *err)
         return CW_OK;
     cw_part *parts = calloc(count, sizeof *parts);
     if (!parts)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", count);
+        return cwi_fail_memory(err);
     for (size_t i = 0; i < count; i++) { /* the levels of a label follow each other */
         const cli_label_item *item = &r->items[i / r->level_count];
         const size_t level = i % r->level_count;

@@ -5,6 +5,7 @@
 #include "cli/framework/console.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/inputs/label_scene.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <cubewright/simplify.h>
@@ -126,7 +127,7 @@ static cw_status extract_layers(cli_label_run *r, cw_error *err)
     cli_label_layers(&r->volume, &r->args->input, &first, &end);
     r->layers = calloc(end - first, sizeof *r->layers);
     if (!r->layers)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu layers", end - first);
+        return cwi_fail_memory(err);
     cli_report_begin(&r->report);
     for (size_t c = first; c < end && st == CW_OK; c++)
         st = extract_layer(r, (uint32_t)c, err);
@@ -161,7 +162,7 @@ static cw_status list_items(cli_label_run *r, cw_error *err)
         count += r->layers[n].surfaces.label_count;
     r->items = calloc(count ? count : 1, sizeof *r->items);
     if (!r->items)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu labels", count);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < r->layer_count; n++)
         for (size_t l = 0; l < r->layers[n].surfaces.label_count; l++) {
             const cw_label_count *found = &r->layers[n].surfaces.labels[l];
@@ -267,8 +268,7 @@ static cw_status reserve_levels(cli_label_run *r, cw_error *err)
     cw_status st = cli_report_reserve(&r->report, lod->count + 1, err);
     r->report.several = "surfaces";
     r->levels = calloc(lod->count * r->item_count, sizeof *r->levels);
-    return r->levels ? st
-                     : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu levels", lod->count);
+    return r->levels ? st : cwi_fail_memory(err);
 }
 
 /* Simplifies the interfaces, makes the mesh of each label and checks it. */
@@ -298,10 +298,9 @@ static cw_status make_meshes(cli_label_run *r, cw_error *err)
         .watch = {begin_stage, end_stage, r}};
     cw_pipeline_facts facts = {0};
     cli_report_begin(&r->report);
-    cw_status st =
-        layers ? cw_pipeline_run_labels(&labels, &desc, (cw_pipeline_sink){take_label, r},
-                                        &facts, err)
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu layers", r->layer_count);
+    cw_status st = layers ? cw_pipeline_run_labels(
+                                &labels, &desc, (cw_pipeline_sink){take_label, r}, &facts, err)
+                          : cwi_fail_memory(err);
     r->triangles = count_triangles(r);
     if (args->per_label)
         r->extracted = facts.extracted.triangles;

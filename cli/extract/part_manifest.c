@@ -144,12 +144,12 @@ cw_status cli_describe_job(const cli_extract_run *run, size_t parts, cli_manifes
     *m = (cli_manifest){0};
     FILE *out = open_memstream(&m->text, &size);
     if (!out)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a manifest");
+        return cwi_fail_memory(err);
     cli_json j = {.out = out, .first = true};
     put_job(&j, run, parts);
     const bool failed = ferror(out) || fputc('\n', out) == EOF;
     if (fclose(out) != 0 || failed)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a manifest");
+        return cwi_fail_memory(err);
     return take_text(m, err);
 }
 

@@ -246,7 +246,7 @@ static cw_status gather_sides(const cw_team *team, cw_part_counts *sides, cw_err
 {
     const unsigned char mine[2] = {sides->has_inside, sides->has_outside};
     unsigned char *all = cwi_alloc_array((size_t)team->size, sizeof mine);
-    cw_status st = all ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the ranks");
+    cw_status st = all ? CW_OK : cwi_fail_memory(err);
     st = cw_team_agree(team, st, err);
     if (st == CW_OK)
         st = cw_team_gather(team, mine, sizeof mine, all, err);

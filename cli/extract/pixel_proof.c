@@ -99,8 +99,7 @@ static cw_status measure_distance(const cw_mesh *from, const cw_mesh *to,
     const cw_mesh_distance_desc how = {
         .worst = worst, .threads = d->threads, .tolerance_mm = d->error_mm};
     cw_status st = worst ? cw_distance_to_mesh(from, to, &how, &distance, NULL, err)
-                         : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu vertices",
-                                    from->vertex_count);
+                         : cwi_fail_memory(err);
     for (size_t n = 0; n < d->view_count && st == CW_OK; n++) {
         double pixels;
         st = cw_simplify_view_distance(d->views + n, from, worst, &pixels, err);

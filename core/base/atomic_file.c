@@ -228,7 +228,7 @@ static cw_status new_file(cwi_outfile **out, const char *path, cw_error *err)
         return CW_OK;
     if (f)
         close_and_free(out);
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to write a file");
+    return cwi_fail_memory(err);
 }
 
 cw_status cwi_outfile_open(cwi_outfile **out, const char *path, bool no_clobber, cw_error *err)
@@ -355,8 +355,7 @@ static cw_status print_args(cwi_outfile *f, cw_error *err, const char *format, v
         char *text = cwi_alloc_array((size_t)length + 1, 1);
         if (text)
             vsnprintf(text, (size_t)length + 1, format, again);
-        st = text ? cwi_outfile_write(f, text, (size_t)length, err)
-                  : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %d bytes of text", length);
+        st = text ? cwi_outfile_write(f, text, (size_t)length, err) : cwi_fail_memory(err);
         cwi_free(text);
     }
     va_end(again);

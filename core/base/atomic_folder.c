@@ -210,15 +210,14 @@ cw_status cwi_outfolder_open(cwi_outfolder **out, const char *path, bool no_clob
     cwi_outfolder *f = cwi_alloc_zeroed(1, sizeof *f);
     *out = NULL;
     if (!f)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to write a folder");
+        return cwi_fail_memory(err);
     f->parent = f->folder = f->fd = f->slot = -1;
     f->no_clobber = no_clobber;
     f->check = check;
     f->path = cwi_strdup(path);
     for (size_t n = f->path ? strlen(f->path) : 0; n > 1 && f->path[n - 1] == '/'; n--)
         f->path[n - 1] = '\0';
-    cw_status st = f->path ? open_beside(f, err)
-                           : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to write a folder");
+    cw_status st = f->path ? open_beside(f, err) : cwi_fail_memory(err);
     if (st != CW_OK)
         close_and_free(&f);
     *out = f;

@@ -45,7 +45,7 @@ cw_status guard(cw_error *err, const char *library, Body &&body) noexcept
     try {
         return body();
     } catch (const std::bad_alloc &) {
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "memory ran out in %s", library);
+        return cwi_fail_in(err, cwi_fail_memory(err), library);
     } catch (const Cancelled &) {
         return cwi_fail(err, CW_ERR_CANCELLED, "interrupted in %s", library);
     } catch (const std::exception &e) {

@@ -64,9 +64,7 @@ cw_status cwi_cell_sampler_build(const cw_volume *volume, cwi_cell_sampler *s, c
                         UINT32_MAX / CWI_SHAPE_CORNERS);
     float(*boxes)[6] = cwi_alloc_array(cells->count, sizeof *boxes);
     s->begin = cwi_alloc_array(cells->count, sizeof *s->begin);
-    cw_status st = boxes && s->begin ? CW_OK
-                                     : cwi_fail(err, CW_ERR_NO_MEMORY,
-                                                "no memory for %zu cells", cells->count);
+    cw_status st = boxes && s->begin ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK) {
         find_center(s, volume->dim[0] * volume->dim[1] * volume->dim[2]);
         for (size_t n = 0; n < cells->count; n++) {

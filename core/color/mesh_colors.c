@@ -95,8 +95,7 @@ cw_status cw_mesh_sample(cw_mesh *mesh, const cw_volume *volume, const cw_sample
         return st;
     s.scalars = cwi_alloc_array(count, sizeof *s.scalars);
     if (!s.scalars)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the scalars of %zu vertices",
-                        count);
+        return cwi_fail_memory(err);
     if (view.cells)
         st = cwi_cell_sampler_build(&view, &s.cells, err);
     if (st == CW_OK)
@@ -142,8 +141,7 @@ cw_status cw_mesh_color(cw_mesh *mesh, cw_colormap map, double low, double high,
         mesh->colors = cwi_alloc_array(mesh->vertex_count, 4);
     uint8_t *colors = mesh->colors;
     if (!colors)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the colours of %zu vertices",
-                        mesh->vertex_count);
+        return cwi_fail_memory(err);
     for (size_t v = 0; v < mesh->vertex_count; v++) {
         const double value = (double)mesh->scalars[v];
         const double share = high > low ? (value - low) / (high - low) : value > high ? 1 : 0;

@@ -270,7 +270,7 @@ static cw_status set_base(work *k, cw_error *err)
     const size_t *dim = k->in->dim;
     double *row = cwi_alloc_array(2 * dim[0], sizeof *row);
     if (!row)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a row of %zu voxels", dim[0]);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < dim[1] * dim[2] && !isfinite(k->base); n++) {
         cwi_filter_load(k->in, n % dim[1], n / dim[1], row, row + dim[0]);
         for (size_t i = 0; i < dim[0] && !isfinite(k->base); i++)
@@ -313,7 +313,7 @@ static cw_status run_steps(work *k, const cw_filter_desc *d, cw_error *err)
     if (st == CW_OK && stop.stopped)
         st = cwi_fail(err, CW_ERR_CANCELLED, "interrupted while smoothing");
     if (st == CW_OK && k->starved)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the slices of %zu steps", k->steps);
+        st = cwi_fail_memory(err);
     return st;
 }
 

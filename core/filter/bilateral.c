@@ -34,7 +34,7 @@ static cw_status list_neighbors(const double sigma[3], const size_t halo[3], nei
     cwi_tile_strides(halo, &row, &slice);
     *out = (neighbors){.items = cwi_alloc_array(most, sizeof *out->items)};
     if (!out->items)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu neighbours of a voxel", most);
+        return cwi_fail_memory(err);
     for (ptrdiff_t z = -h[2]; z <= h[2]; z++)
         for (ptrdiff_t y = -h[1]; y <= h[1]; y++)
             for (ptrdiff_t x = -h[0]; x <= h[0]; x++) {

@@ -60,7 +60,7 @@ cw_status cwi_byte_runs_init(const uint8_t *bytes, uint8_t value, const size_t d
     }
     if (!out->runs || !out->component) {
         cwi_byte_runs_free(out);
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for components of voxels");
+        return cwi_fail_memory(err);
     }
     for (size_t row = 0; row < rows; row++) {
         scan_row(bytes + row * nx, value, nx, out->runs + out->rows[row]);

@@ -65,7 +65,7 @@ cw_status cwi_find_inside(const cw_volume *in, const cw_inside *inside,
         cwi_each_layer(in->dim[2], in->dim[0] * in->dim[1], desc->threads, &desc->progress,
                        "finding the inside", find_in_slice, &k, err);
     if (st == CW_OK && k.starved)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a row of %zu voxels", in->dim[0]);
+        st = cwi_fail_memory(err);
     return st;
 }
 
@@ -146,7 +146,7 @@ cw_status cwi_change_inside(const cw_volume *in, const cw_inside *inside, const 
     st = cwi_each_layer(in->dim[2], in->dim[0] * in->dim[1], desc->threads, &desc->progress,
                         "changing the inside", change_slice, &k, err);
     if (st == CW_OK && k.starved)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a row of %zu voxels", in->dim[0]);
+        st = cwi_fail_memory(err);
     if (st == CW_OK && k.stuck)
         st = cwi_fail(err, CW_ERR_ARGUMENT,
                       "inside->level is %g: voxels of type %s have no value on its other side",

@@ -89,11 +89,11 @@ cw_status cw_volume_inside_box(const cw_volume *volume, const cw_inside *inside,
     work k = {
         .in = &in, .inside = inside, .boxes = cwi_alloc_zeroed(in.dim[2], sizeof *k.boxes)};
     if (!k.boxes)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu boxes", in.dim[2]);
+        return cwi_fail_memory(err);
     st = cwi_each_layer(in.dim[2], in.dim[0] * in.dim[1], threads, &(cw_progress){0},
                         "finding the inside", box_slice, &k, err);
     if (st == CW_OK && k.starved)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a row of %zu voxels", in.dim[0]);
+        st = cwi_fail_memory(err);
     if (st == CW_OK)
         join_boxes(&k, margin, box);
     cwi_free(k.boxes);

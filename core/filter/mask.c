@@ -93,7 +93,7 @@ cw_status cw_volume_mask(const cw_volume *volume, const cw_volume *mask,
     const size_t count = in.dim[0] * in.dim[1] * in.dim[2];
     work k = {.in = &in, .mask = &m, .inside = inside, .wanted = cwi_alloc_array(count, 1)};
     if (!k.wanted)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a mask of %zu voxels", count);
+        return cwi_fail_memory(err);
     st = find_wanted(&k, d, err);
     if (st == CW_OK)
         st = cwi_change_inside(&in, inside, k.wanted, count, d, out, err);

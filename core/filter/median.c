@@ -116,7 +116,7 @@ cw_status cw_volume_median(const cw_volume *volume, size_t radius, const cw_filt
     st = cwi_each_layer(in.dim[2], in.dim[0] * in.dim[1] * CUBE, d->threads, &d->progress,
                         "smoothing", filter_slice, &k, err);
     if (st == CW_OK && k.starved)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the rows around a voxel");
+        st = cwi_fail_memory(err);
     if (st != CW_OK)
         cw_volume_free(out);
     return st;

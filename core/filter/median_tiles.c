@@ -225,7 +225,7 @@ cw_status cwi_median_tiles(const cw_volume *in, size_t radius, const cw_filter_d
         cwi_each_layer(k.tiles[0] * k.tiles[1] * k.tiles[2], (size_t)COST * WIDE * HIGH * HIGH,
                        desc->threads, &desc->progress, "smoothing", filter_tile, &k, err);
     if (st == CW_OK && k.starved)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the values around a voxel");
+        st = cwi_fail_memory(err);
     if (st != CW_OK)
         cw_volume_free(out);
     return st;

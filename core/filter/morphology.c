@@ -39,7 +39,7 @@ static cw_status change_volume(const cw_volume *volume, const double radius[3], 
                         in.dim[0], in.dim[1], in.dim[2], d->max_bytes);
     uint8_t *bytes = cwi_alloc_array(count, 2), *work = bytes ? bytes + count : NULL;
     if (!bytes)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a mask of %zu voxels", count);
+        return cwi_fail_memory(err);
     st = cwi_find_inside(&in, inside, d, bytes, err);
     if (st == CW_OK)
         st = change_bytes(bytes, value, in.dim, radius, d, work, err);

@@ -125,12 +125,12 @@ cw_status cw_volume_noise(const cw_volume *volume, int threads, double *sigma, c
         return st;
     work k = {.in = &in, .counts = cwi_alloc_zeroed(BINS, sizeof *k.counts)};
     if (!k.counts)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %d bins of noise", BINS);
+        return cwi_fail_memory(err);
     k.has_gaps = cwi_filter_has_gaps(&in, threads);
     st = cwi_each_layer(in.dim[2], 8 * in.dim[0] * in.dim[1], threads, &(cw_progress){0},
                         "estimating noise", count_slice, &k, err);
     if (st == CW_OK && k.starved)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the rows around a voxel");
+        st = cwi_fail_memory(err);
     if (st == CW_OK)
         *sigma = normal * find_median(k.counts) * fabs(in.slope);
     cwi_free(k.counts);

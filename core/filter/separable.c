@@ -24,7 +24,7 @@ cw_status cwi_axis_weights_init(cwi_axis_weights *w, size_t count, size_t taps, 
     if (w->first && w->nearest && w->weights)
         return CW_OK;
     cwi_axis_weights_free(w);
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the weights of %zu samples", count);
+    return cwi_fail_memory(err);
 }
 
 void cwi_axis_weights_free(cwi_axis_weights *w)
@@ -233,8 +233,7 @@ cw_status cwi_separable_filter(const cw_volume *in, const cwi_axis_weights w[3],
         st = cwi_each_layer(chunks, CHUNK * dim[0] * dim[1], desc->threads, &desc->progress,
                             step, filter_chunk, &k, err);
     if (st == CW_OK && k.starved)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to filter %zu x %zu x %zu voxels",
-                      dim[0], dim[1], dim[2]);
+        st = cwi_fail_memory(err);
     if (st != CW_OK)
         cw_volume_free(out);
     return st;

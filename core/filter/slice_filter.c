@@ -138,7 +138,7 @@ cw_status cw_slice_filter_new(const cw_slice_source *source, const cw_slice_filt
         return st;
     cw_slice_filter *f = cwi_alloc_zeroed(1, sizeof *f);
     if (!f)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a filter");
+        return cwi_fail_memory(err);
     const size_t *dim = source->shape.dim;
     f->source = *source;
     f->desc = *desc;
@@ -158,8 +158,7 @@ cw_status cw_slice_filter_new(const cw_slice_source *source, const cw_slice_filt
     f->raw = cwi_alloc_large(f->room, f->slice_bytes);
     if (!f->raw) {
         cwi_free(f);
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for slices of %zu x %zu voxels",
-                        dim[0], dim[1]);
+        return cwi_fail_memory(err);
     }
     *out = f;
     return CW_OK;

@@ -134,6 +134,6 @@ cw_status cwi_spread_bytes(const uint8_t *from, uint8_t value, const size_t dim[
         st = cwi_each_layer(dim[2], 8 * dim[0] * dim[1], desc->threads, &desc->progress,
                             "measuring distances", spread_slice, &k, err);
     if (st == CW_OK && k.starved)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the distances of a slice");
+        st = cwi_fail_memory(err);
     return st;
 }

@@ -56,7 +56,7 @@ static cw_status keep_largest(const work *k, uint8_t *bytes, cw_error *err)
         return st;
     size_t *voxels = cwi_alloc_array(r.count, sizeof *voxels);
     if (!voxels)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for components of voxels");
+        st = cwi_fail_memory(err);
     else if (!r.count)
         st = cwi_fail(err, CW_ERR_EMPTY, "nothing above %g HU is thicker than %g mm", TISSUE,
                       2 * BALL_MM);
@@ -111,7 +111,7 @@ static cw_status rejoin_parts(const work *k, uint8_t *bytes, cw_error *err)
                     (double)voxels[r.component[n]] * k->voxel_mm3 <= SMALL_MM3)
                     fill_run(&r, row, n, 2, bytes);
     } else {
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for components of voxels");
+        st = cwi_fail_memory(err);
     }
     cwi_free(voxels);
     cwi_free(touches);
@@ -152,9 +152,7 @@ static cw_status fill_slices(work *k, cw_error *err)
     const size_t *dim = k->in->dim;
     cw_status st = cwi_each_layer(dim[2], dim[0] * dim[1], k->desc->threads, &k->desc->progress,
                                   "filling", fill_slice, k, err);
-    return st == CW_OK && k->starved
-               ? cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for components of voxels")
-               : st;
+    return st == CW_OK && k->starved ? cwi_fail_memory(err) : st;
 }
 
 /* Sets `other` to the largest component after erosion of `from`, grown again. */
@@ -307,7 +305,7 @@ cw_status cw_volume_remove_table(const cw_volume *volume, const cw_filter_desc *
         if (st == CW_OK)
             st = make_result(&k, removed_mm3, err);
     } else {
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for masks of %zu voxels", count);
+        st = cwi_fail_memory(err);
     }
     cwi_free(k.tissue);
     cwi_free(k.removed);

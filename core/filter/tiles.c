@@ -183,7 +183,7 @@ cw_status cwi_filter_tiles(const cw_volume *in, const cwi_tile_filter *filter,
     st = cwi_each_layer(count, TILE_VOXELS * filter->cost, desc->threads, &desc->progress,
                         filter->step, filter_tile, &k, err);
     if (st == CW_OK && k.starved)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %s", filter->step);
+        st = cwi_fail_memory(err);
     if (st != CW_OK)
         cw_volume_free(out);
     return st;

@@ -201,7 +201,7 @@ cw_status cwi_boxes_build(cwi_boxes *tree, const float (*boxes)[6], size_t count
     if (ok)
         return CW_OK;
     cwi_boxes_free(tree);
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a tree of %zu boxes", count);
+    return cwi_fail_memory(err);
 }
 
 void cwi_boxes_free(cwi_boxes *tree)

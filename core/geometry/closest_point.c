@@ -18,7 +18,7 @@ cw_status cwi_closest_build(const cw_mesh *m, cwi_boxes *tree, cw_error *err)
 {
     float(*boxes)[6] = cwi_alloc_array(m->triangle_count, sizeof *boxes);
     if (!boxes)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to find closest points");
+        return cwi_fail_memory(err);
     for (size_t t = 0; t < m->triangle_count; t++)
         cwi_boxes_triangle(m->positions, m->triangles + 3 * t, boxes[t]);
     cw_status st = cwi_boxes_build(tree, (const float(*)[6])boxes, m->triangle_count, err);

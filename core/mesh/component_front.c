@@ -60,8 +60,7 @@ static cw_status grow_array(void **array, size_t count, size_t element, cw_error
 {
     void *memory = cwi_realloc_array(*array, count, element);
     if (!memory)
-        return cwi_fail(err, CW_ERR_NO_MEMORY,
-                        "no memory for %zu elements of the surface's front", count);
+        return cwi_fail_memory(err);
     *array = memory;
     return CW_OK;
 }

@@ -24,9 +24,7 @@ cw_status cwi_mesh_renew(cw_mesh *mesh, size_t vertices, size_t triangles, bool 
     cw_mesh_free(mesh);
     if (!made.positions || !made.triangles || (normals && !made.normals)) {
         cw_mesh_free(&made);
-        return cwi_fail(err, CW_ERR_NO_MEMORY,
-                        "no memory for a mesh of %zu vertices, %zu triangles", vertices,
-                        triangles);
+        return cwi_fail_memory(err);
     }
     *mesh = made;
     return CW_OK;

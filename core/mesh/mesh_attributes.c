@@ -85,13 +85,6 @@ bool cwi_attributes_any(const cw_mesh *mesh, unsigned on)
 
 /* --- arrays of a mesh --------------------------------------------------------------------- */
 
-static cw_status report_no_memory(const cw_mesh *mesh, cw_error *err)
-{
-    return cwi_fail(err, CW_ERR_NO_MEMORY,
-                    "no memory for the attributes of %zu vertices, %zu triangles",
-                    mesh->vertex_count, mesh->triangle_count);
-}
-
 /* Makes the arrays that another mesh has. */
 static bool make_arrays(const cw_mesh *like, cw_mesh *mesh, void *(*alloc)(size_t, size_t))
 {
@@ -121,7 +114,7 @@ cw_status cwi_attributes_alloc(const cw_mesh *like, cw_mesh *mesh, cw_error *err
 {
     if (make_arrays(like, mesh, cwi_alloc_zeroed))
         return CW_OK;
-    cw_status st = report_no_memory(mesh, err);
+    cw_status st = cwi_fail_memory(err);
     cw_mesh_free(mesh);
     return st;
 }
@@ -129,7 +122,7 @@ cw_status cwi_attributes_alloc(const cw_mesh *like, cw_mesh *mesh, cw_error *err
 cw_status cwi_attributes_copy(const cw_mesh *from, cw_mesh *to, cw_error *err)
 {
     if (!make_arrays(from, to, cwi_alloc_large)) {
-        cw_status st = report_no_memory(to, err);
+        cw_status st = cwi_fail_memory(err);
         cw_mesh_free(to);
         return st;
     }
@@ -415,7 +408,7 @@ cw_status cwi_mesh_append(cw_mesh *mesh, const cw_mesh *other, cw_error *err)
     uint32_t *corners = cwi_realloc_array(mesh->triangles, triangles, 3 * sizeof *corners);
     mesh->triangles = corners ? corners : mesh->triangles;
     if (!points || !corners || !append_rows(mesh, other)) {
-        cw_status st = report_no_memory(other, err);
+        cw_status st = cwi_fail_memory(err);
         cw_mesh_free(mesh);
         return st;
     }
@@ -467,7 +460,7 @@ cw_status cw_mesh_attribute_add(cw_mesh *mesh, const cw_attribute *like, cw_attr
     mesh->attributes = rows ? rows : mesh->attributes;
     if (!rows || !made.data) {
         cwi_free(made.data);
-        return report_no_memory(mesh, err);
+        return cwi_fail_memory(err);
     }
     rows[mesh->attribute_count++] = made;
     if (out)

@@ -34,8 +34,7 @@ cw_status cwi_mesh_drop_marked(cw_mesh *mesh, const bool *marked, cw_error *err)
     uint32_t *number = cwi_alloc_array(mesh->vertex_count, sizeof *number);
     size_t kept = 0;
     if (!number)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to number %zu vertices",
-                        mesh->vertex_count);
+        return cwi_fail_memory(err);
     for (size_t t = 0; t < mesh->triangle_count; t++)
         if (!marked[t])
             cwi_mesh_move_triangle(mesh, t, kept++);
@@ -54,8 +53,7 @@ cw_status cw_mesh_weld(cw_mesh *mesh, size_t *merged, cw_error *err)
     uint32_t *map = cwi_alloc_array(mesh->vertex_count, sizeof *map);
     if (!map || !cwi_weld(mesh->positions, mesh->vertex_count, map)) {
         cwi_free(map);
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to weld %zu vertices",
-                        mesh->vertex_count);
+        return cwi_fail_memory(err);
     }
     size_t count = 0, kept = 0;
     for (size_t v = 0; v < mesh->vertex_count; v++)
@@ -121,8 +119,7 @@ static cw_status find_components(const cw_mesh *m, components *c, cw_error *err)
     c->dropped = cwi_alloc_zeroed(c->count, sizeof *c->dropped);
     c->met = cwi_alloc_zeroed(c->count, sizeof *c->met);
     if (!numbered || !c->boxes || !c->dropped || !c->met)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the components of %zu vertices",
-                        m->vertex_count);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < c->count; n++)
         for (size_t a = 0; a < 3; a++) {
             c->boxes[n][a] = INFINITY;
@@ -155,8 +152,7 @@ static cw_status measure_volumes(const cw_mesh *m, components *c, cw_error *err)
 {
     c->sums = cwi_alloc_zeroed(c->count, sizeof *c->sums);
     if (!c->sums)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the volumes of %zu components",
-                        c->count);
+        return cwi_fail_memory(err);
     c->unit = cwi_volume_unit_for(find_largest(m));
     for (size_t t = 0; t < m->triangle_count; t++) {
         const uint32_t set = c->set[m->triangles[3 * t]];
@@ -290,7 +286,7 @@ static cw_status mark_smaller(const cw_mesh *mesh, components *c, size_t kept, c
     size_t count = 0;
     ranked_set *ranks = cwi_alloc_array(c->count, sizeof *ranks);
     if (!ranks)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to sort %zu components", c->count);
+        return cwi_fail_memory(err);
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         const uint32_t set = c->set[mesh->triangles[3 * t]];
         if (!c->dropped[set])

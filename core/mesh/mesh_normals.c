@@ -38,8 +38,7 @@ cw_status cw_mesh_normals(cw_mesh *mesh, cw_error *err)
         cwi_free(sums);
         if (!mesh->normals)
             cwi_free(normals);
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the normals of %zu vertices",
-                        mesh->vertex_count);
+        return cwi_fail_memory(err);
     }
     for (size_t t = 0; t < mesh->triangle_count; t++)
         add_triangle(mesh, mesh->triangles + 3 * t, sums);

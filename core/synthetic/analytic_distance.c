@@ -119,7 +119,7 @@ cw_status cw_field_measure(cw_field field, double isovalue, double voxel_mm,
         return st;
     sum *s = cwi_alloc_zeroed(1, sizeof *s);
     if (!s)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to measure a mesh");
+        return cwi_fail_memory(err);
     for (size_t t = 0; t < mesh->triangle_count; t++)
         add_triangle(s, field, isovalue, voxel_mm, mesh, t);
     out->samples = s->samples;

@@ -141,8 +141,7 @@ cw_status cw_label_field_sample(const cw_label_field_desc *desc, cw_volume *volu
         s.side++;
     if (st == CW_OK) {
         s.points = cwi_alloc_array(s.side * s.side * s.side, sizeof *s.points);
-        st = s.points ? CW_OK
-                      : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu labels", d.labels);
+        st = s.points ? CW_OK : cwi_fail_memory(err);
     }
     if (st == CW_OK) {
         place_points(&s);

@@ -93,7 +93,7 @@ static cw_status name_hosts(cw_team *team, cw_error *err)
     memcpy(mine, name, length < CWI_HOST_NAME ? (size_t)length : CWI_HOST_NAME - 1);
     watch.hosts = cwi_alloc_array((size_t)team->size, sizeof *watch.hosts);
     if (!watch.hosts)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %d ranks", team->size);
+        return cwi_fail_memory(err);
     cw_status st = gather_bytes(NULL, mine, sizeof mine, watch.hosts, err);
     team->on_this_host = 0;
     for (int r = 0; r < team->size && st == CW_OK; r++)

@@ -49,7 +49,7 @@ cw_status cwi_cell_chunks(const cw_cells *cells, size_t chunk, size_t **starts, 
     const size_t chunks = (cells->count + chunk - 1) / chunk;
     *starts = cwi_alloc_array(chunks, sizeof **starts);
     if (!*starts)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu chunks of cells", chunks);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < cells->count; n++) {
         if (n % chunk == 0)
             (*starts)[n / chunk] = corner;

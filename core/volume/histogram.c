@@ -153,7 +153,7 @@ static cw_status each_row(const cw_volume *v, int threads, bool bins, cw_statist
 {
     counting c = {.v = v, .bins = bins, .total = total};
     each_block(&c, threads, count_block);
-    return c.is_starved ? cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a histogram") : CW_OK;
+    return c.is_starved ? cwi_fail_memory(err) : CW_OK;
 }
 
 /* Returns true for types with so few numbers that the frequency of each can be counted. */
@@ -272,8 +272,7 @@ cw_status cwi_statistics_divide(cw_statistics *s, size_t bin_count, cw_error *er
         return CW_OK;
     set_bins(s, bin_count);
     s->bins = cwi_alloc_zeroed(s->bin_count, sizeof *s->bins);
-    return s->bins ? CW_OK
-                   : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bins", s->bin_count);
+    return s->bins ? CW_OK : cwi_fail_memory(err);
 }
 
 cw_status cwi_statistics_count(cw_statistics *s, const cw_volume *part, int threads,
@@ -290,7 +289,7 @@ static cw_status gather_histogram(const cw_volume *v, size_t bin_count, int thre
     cw_status st = CW_OK;
     uint64_t *counts = NULL;
     if (is_short(v->type) && !(counts = count_all_shorts(v, threads)))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a histogram");
+        return cwi_fail_memory(err);
     if (counts)
         scan_shorts(v, counts, s);
     else
@@ -365,7 +364,7 @@ cw_status cw_statistics_join(const cw_statistics *parts, size_t count, size_t bi
     set_bins(out, bin_count);
     out->bins = cwi_alloc_zeroed(out->bin_count, sizeof *out->bins);
     if (!out->bins)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bins", out->bin_count);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < count; n++)
         for (size_t b = 0; b < parts[n].bin_count; b++) {
             const double middle = parts[n].min + parts[n].bin_width * ((double)b + 0.5);

@@ -125,7 +125,7 @@ static cw_status copy_label(cw_label_table *table, const cw_label *label, bool r
     if (has_name && has_category && has_type && (replaces || grow_table(table)))
         return CW_OK;
     free_label(copy);
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the names of labels");
+    return cwi_fail_memory(err);
 }
 
 cw_status cw_label_table_add(cw_label_table *table, const cw_label *label, cw_error *err)
@@ -211,9 +211,7 @@ cw_status cwi_label_table_sort(cw_label_table *table, bool refuse_repeats, cw_er
         capacity *= 2;
     label_place *places = cwi_alloc_array(table->count, sizeof *places);
     cw_label *labels = cwi_alloc_array(capacity, sizeof *labels);
-    cw_status st = places && labels ? CW_OK
-                                    : cwi_fail(err, CW_ERR_NO_MEMORY,
-                                               "no memory to sort the names of labels");
+    cw_status st = places && labels ? CW_OK : cwi_fail_memory(err);
     for (size_t n = 0; st == CW_OK && n < table->count; n++)
         places[n] = (label_place){key_of(table->labels[n].layer, table->labels[n].value), n};
     if (st == CW_OK)

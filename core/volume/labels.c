@@ -232,7 +232,7 @@ cw_status cw_volume_labels(const cw_volume *volume, cw_labels *out, cw_error *er
     if (c.must_list || (c.is_whole && !c.too_many))
         rank_values(&c);
     if (c.is_starved)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to count labels");
+        st = cwi_fail_memory(err);
     if (st == CW_OK) {
         out->found = c.must_list || is_found(&v, &c);
         out->more = out->found && (c.too_many || c.listed > CW_LABELS_MAX);

@@ -119,7 +119,7 @@ cw_status cwi_gradients_fit(const cwi_gradient_fit *fit, size_t row_count,
     double far = 0;
     fitting f = {.fit = fit, .equations = cwi_alloc_zeroed(row_count, sizeof *f.equations)};
     if (!f.equations)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu gradients", row_count);
+        return cwi_fail_memory(err);
     for (int i = 0; i < 9; i++)
         far = fmax(far, fabs(fit->volume->affine[i / 3][i % 3]) * fit->reach);
     f.value_scale = power_of_two(fit->largest);

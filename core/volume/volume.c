@@ -92,7 +92,7 @@ cw_status cw_volume_alloc(cw_volume *volume, cw_type type, const size_t dim[3],
                         dim[0], dim[1], dim[2]);
     v.owned = cwi_alloc_zeroed(bytes, 1);
     if (!v.owned)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of voxels", bytes);
+        return cwi_fail_memory(err);
     v.data = v.owned;
     set_packed_strides(&v);
     set_identity(v.affine);
@@ -223,7 +223,7 @@ cw_status cwi_volume_own_coordinates(cw_volume *v, cw_error *err)
         return CW_OK;
     double *all = cwi_alloc_array(v->dim[0] + v->dim[1] + v->dim[2], sizeof *all), *to = all;
     if (!all)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for coordinates");
+        return cwi_fail_memory(err);
     for (int a = 0; a < 3; to += v->dim[a++]) {
         memcpy(to, v->coordinates[a], v->dim[a] * sizeof *to);
         v->coordinates[a] = to;

@@ -47,7 +47,7 @@ cw_status cwi_mend_normals(cw_mesh *mesh, double scale, cw_error *err)
         return CW_OK;
     bool *missing = cwi_alloc_zeroed(mesh->vertex_count, sizeof *missing);
     if (!missing)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to repair %zu normals", count);
+        return cwi_fail_memory(err);
     for (size_t v = 0; v < mesh->vertex_count; v++) {
         const float *n = mesh->normals + 3 * v;
         missing[v] = n[0] == 0 && n[1] == 0 && n[2] == 0;
@@ -272,7 +272,7 @@ cw_status cwi_shading_init(cwi_shading *s, const cw_volume *volume, const cw_nor
     const size_t bytes = mesh->vertex_count * 3 * sizeof *s->normals;
     s->normals = cwi_alloc_zeroed(mesh->vertex_count, 3 * sizeof *s->normals);
     if (!s->normals)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu normals", mesh->vertex_count);
+        return cwi_fail_memory(err);
     if (mesh->normals)
         memcpy(s->normals, mesh->normals, bytes);
     return CW_OK;

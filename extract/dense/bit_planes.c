@@ -25,14 +25,6 @@ uint64_t *cwi_grid_plane(const cwi_bit_grid *g)
     return plane;
 }
 
-static cw_status no_memory(const cwi_bit_grid *g, cw_error *err)
-{
-    const size_t *dim = g->volume.dim;
-    return cwi_fail(err, CW_ERR_NO_MEMORY,
-                    "no memory for the bit planes of %zu x %zu x %zu voxels", dim[0], dim[1],
-                    dim[2]);
-}
-
 static cw_status allocate_planes(cwi_bit_grid *g, cw_error *err)
 {
     const size_t *dim = g->volume.dim;
@@ -45,12 +37,12 @@ static cw_status allocate_planes(cwi_bit_grid *g, cw_error *err)
     g->bricks_z = (g->rows_z - 1 + CWI_BRICK - 1) / CWI_BRICK;
     if (!cwi_size_mul(g->rows_y, g->rows_z, &g->rows) ||
         !cwi_size_mul(g->rows, 64 * g->words, &samples))
-        return no_memory(g, err);
+        return cwi_fail_memory(err);
     g->inside = cwi_grid_plane(g);
     g->busy = cwi_alloc_large(g->rows * g->masks, sizeof *g->busy);
     g->filled = cwi_alloc_zeroed(g->rows, sizeof *g->filled);
     g->layers = cwi_alloc_zeroed(g->rows_z, sizeof *g->layers);
-    return g->inside && g->busy && g->filled && g->layers ? CW_OK : no_memory(g, err);
+    return g->inside && g->busy && g->filled && g->layers ? CW_OK : cwi_fail_memory(err);
 }
 
 /* Checks the range of positions. They are floats: they cannot distinguish voxels that are too
@@ -198,7 +190,7 @@ static cw_status set_box(cwi_bit_grid *g, cw_error *err)
     const size_t layer = g->rows_y * g->words;
     g->live = cwi_alloc_zeroed(2 * layer + BEYOND, sizeof *g->live);
     if (!g->live)
-        return no_memory(g, err);
+        return cwi_fail_memory(err);
     for (size_t n = g->words; n < g->volume.dim[1] * g->words; n++)
         g->live[layer + n] = cwi_bits_between(64 * (n % g->words), 1, g->volume.dim[0]);
     return CW_OK;
@@ -215,7 +207,7 @@ cw_status cwi_grid_set_live(cwi_bit_grid *g, bool leave_open, cw_error *err)
         return set_box(g, err);
     g->live = cwi_grid_plane(g);
     if (!g->live)
-        return no_memory(g, err);
+        return cwi_fail_memory(err);
     for (size_t k = 0; k < g->rows_z; k++)
         cwi_find_live_layer(g, k);
     while (drop_pinched(g))
@@ -254,7 +246,7 @@ static cw_status plan_classification(classification *c, cwi_bit_grid *g, cwi_oct
     if (tree && !g->leaves)
         g->leaves = cwi_alloc_array(bricks * g->words, sizeof *g->leaves);
     if (tree && (!g->wanted || !g->leaves))
-        return no_memory(g, err);
+        return cwi_fail_memory(err);
     c->grow = tree && !tree->grown ? tree : NULL;
     g->everything = !tree || !tree->grown;
     if (!g->everything)
@@ -295,7 +287,7 @@ static cw_status compare_all(classification *c, cwi_bit_grid *g, const cw_extrac
 {
     g->has = cwi_grid_plane(g);
     if (!g->has)
-        return no_memory(g, err);
+        return cwi_fail_memory(err);
     g->find_values = g->everything = true;
     const cw_status st = compare_samples(c, g, desc, err);
     g->find_values = false;

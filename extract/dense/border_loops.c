@@ -348,8 +348,7 @@ cw_status cwi_border_loops_init(cwi_border_loops *b, const size_t dim[3], cw_err
     b->bits = cwi_alloc_zeroed(words, sizeof *b->bits);
     b->sets = cwi_alloc_array(2 * (ring_length(dim) + 1), sizeof *b->sets);
     if (!b->bits || !b->sets)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a border of %zu voxels",
-                        ring_length(dim));
+        return cwi_fail_memory(err);
     b->ring[0] = b->bits;
     b->ring[1] = b->ring[0] + b->ring_words + 1;
     b->row[0] = b->ring[1] + b->ring_words + 1;

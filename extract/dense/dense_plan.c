@@ -58,7 +58,7 @@ cw_status cwi_plan_count(cwi_plan *p, int threads, const cw_progress *progress, 
     if (!p->rows)
         p->rows = cwi_alloc_large(g->rows + 1, sizeof *p->rows);
     if (!p->rows)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu rows", g->rows);
+        return cwi_fail_memory(err);
     cw_status st = cwi_each_layer(g->rows_z, g->rows_y * g->words * 64, threads, progress,
                                   "counting", count_layer, p, err);
     return st == CW_OK ? number_rows(p, threads, err) : st;

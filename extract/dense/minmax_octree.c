@@ -27,8 +27,7 @@ cw_status cwi_octree_init(cwi_octree *t, const cwi_bit_grid *g, cw_error *err)
         t->level[l] = cwi_alloc_array(bricks_at(t, l), sizeof **t->level);
         t->levels = l + 1;
         if (!t->level[l])
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu octree nodes",
-                            bricks_at(t, l));
+            return cwi_fail_memory(err);
         if (bricks_at(t, l) == 1)
             return CW_OK;
         for (int a = 0; a < 3; a++)

@@ -79,8 +79,7 @@ static cw_status compare_samples(cwi_cells *g, cw_error *err)
     cwi_box_clear(s.low, s.high);
     g->sides = cwi_alloc_array(samples, sizeof *g->sides);
     if (!g->sides)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the sides of %zu samples",
-                        samples);
+        return cwi_fail_memory(err);
     cw_status st = cwi_each_layer((samples + SAMPLE_CHUNK - 1) / SAMPLE_CHUNK, SAMPLE_CHUNK,
                                   g->desc->threads, &g->desc->progress, "classifying",
                                   look_at_samples, &s, err);
@@ -221,7 +220,7 @@ static cw_status place_elements(gathering *w, cw_error *err)
                         g->count, INT32_MAX / CWI_CELL_FACES);
     g->elements = cwi_alloc_large(g->count, sizeof *g->elements);
     if (!g->elements)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu cells", g->count);
+        return cwi_fail_memory(err);
     return cwi_each_layer(g->chunks, CWI_CELL_CHUNK * 16, g->desc->threads, &g->desc->progress,
                           "gathering", keep_chunk, w, err);
 }
@@ -236,7 +235,7 @@ cw_status cwi_cells_gather(cwi_cells *g, cw_error *err)
         return st;
     w.elements = cwi_alloc_array(g->chunks, sizeof *w.elements);
     if (!w.elements)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu chunks of cells", g->chunks);
+        return cwi_fail_memory(err);
     st = cwi_each_layer(g->chunks, CWI_CELL_CHUNK * 16, g->desc->threads, &g->desc->progress,
                         "counting", count_chunk, &w, err);
     if (st == CW_OK && w.bad != SIZE_MAX)

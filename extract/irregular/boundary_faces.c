@@ -308,7 +308,7 @@ static cw_status mark_shared_sides(cwi_cells *g, cw_error *err)
     enum { MAXIMUM = 8 }; /* sides of a cap, each counted once, and diagonals */
     sides s = {.items = cwi_alloc_array(g->border_count, MAXIMUM * sizeof *s.items)};
     if (!s.items)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu caps", g->border_count);
+        return cwi_fail_memory(err);
     for (size_t b = 0; b < g->border_count; b++)
         add_sides_of(&s, g, b);
     qsort(s.items, s.count, sizeof *s.items, compare_sides);
@@ -370,8 +370,7 @@ static cw_status plan_caps(cwi_cells *g, cw_error *err)
                         g->border_count, UINT32_MAX / 4);
     uint32_t *sets = cwi_sets_alloc(4 * g->border_count);
     if (!sets)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu border faces",
-                        g->border_count);
+        return cwi_fail_memory(err);
     join_corners(g, sets);
     number_corners(g, sets);
     cwi_free(sets);
@@ -389,7 +388,7 @@ static cw_status count_loops(cwi_cells *g, cw_error *err)
 {
     uint32_t *sets = cwi_sets_alloc(g->edge_vertices);
     if (!sets)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu crossings", g->edge_vertices);
+        return cwi_fail_memory(err);
     g->counts.border_loops = 0;
     for (size_t b = 0; b < g->border_count; b++) {
         const uint32_t face = g->border[b].face;
@@ -418,7 +417,7 @@ cw_status cwi_cells_find_border(cwi_cells *g, cw_error *err)
         count += is_border(g, face);
     g->border = cwi_alloc_array(count, sizeof *g->border);
     if (!g->border)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu border faces", count);
+        return cwi_fail_memory(err);
     for (uint32_t face = 0; face < g->count * CWI_CELL_FACES; face++)
         if (is_border(g, face)) {
             cwi_border_face *border = &g->border[g->border_count++];

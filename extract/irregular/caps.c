@@ -257,6 +257,5 @@ cw_status cwi_cells_part(const cwi_cells *g, cw_mesh *mesh, cw_error *err)
     }
     cwi_free(p.met);
     cwi_free(p.sum);
-    return enough ? CW_OK
-                  : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the border's vertices");
+    return enough ? CW_OK : cwi_fail_memory(err);
 }

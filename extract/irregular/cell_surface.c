@@ -94,8 +94,7 @@ static cw_status place_crossings(cwi_cells *g, cw_error *err)
                         g->crossing_count, UINT32_MAX);
     g->crossings = cwi_sets_alloc(g->crossing_count);
     if (!g->crossings)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu crossings",
-                        g->crossing_count);
+        return cwi_fail_memory(err);
     for (uint32_t face = 0; face < g->count * CWI_CELL_FACES; face++)
         if (g->elements[face / CWI_CELL_FACES].crossed)
             join_crossings(g, face);

@@ -219,11 +219,6 @@ static size_t place_buckets(pairing *p)
     return sum;
 }
 
-static cw_status no_memory(const cwi_cells *g, cw_error *err)
-{
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the faces of %zu cells", g->count);
-}
-
 static cw_status pair_faces(pairing *p, cw_error *err)
 {
     cwi_cells *g = p->g;
@@ -238,7 +233,7 @@ static cw_status pair_faces(pairing *p, cw_error *err)
     g->pairing_bytes = count * sizeof *p->faces + g->volume.dim[0] * sizeof *p->ends;
     p->faces = cwi_alloc_large(count, sizeof *p->faces);
     if (!p->faces)
-        return no_memory(g, err);
+        return cwi_fail_memory(err);
     st = cwi_each_layer(chunks, CWI_CELL_CHUNK * 64, threads, progress, "pairing", fill_buckets,
                         p, err);
     return st == CW_OK ? cwi_each_layer((g->volume.dim[0] + SAMPLE_CHUNK - 1) / SAMPLE_CHUNK,
@@ -252,7 +247,7 @@ cw_status cwi_cells_pair_faces(cwi_cells *g, cw_error *err)
     pairing p = {.g = g};
     g->across = cwi_alloc_large(g->count, CWI_CELL_FACES * sizeof *g->across);
     p.ends = cwi_alloc_zeroed(g->volume.dim[0], sizeof *p.ends);
-    cw_status st = g->across && p.ends ? CW_OK : no_memory(g, err);
+    cw_status st = g->across && p.ends ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK) {
         memset(g->across, 0xff, g->count * CWI_CELL_FACES * sizeof *g->across);
         st = pair_faces(&p, err);
@@ -387,9 +382,7 @@ cw_status cwi_cells_orient(cwi_cells *g, cw_error *err)
                      .turned = cwi_alloc_array(g->count, sizeof *o.turned),
                      .volume = cwi_alloc_array(g->count, sizeof *o.volume)};
     cw_status st =
-        o.parent && o.turned && o.volume
-            ? orient_elements(&o, err)
-            : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to orient %zu cells", g->count);
+        o.parent && o.turned && o.volume ? orient_elements(&o, err) : cwi_fail_memory(err);
     cwi_free(o.parent);
     cwi_free(o.turned);
     cwi_free(o.volume);

@@ -31,9 +31,8 @@ cw_status cwi_cells_gradients(const cwi_cells *g, cwi_gradients *out, cw_error *
         .volume = &g->volume, .largest = g->largest, .reach = g->reach, .rows = out->rows};
     memcpy(fit.centre, g->centre, sizeof fit.centre);
     out->at = cwi_alloc_array(count, sizeof *out->at);
-    return out->rows && out->at
-               ? cwi_gradients_fit(&fit, count, out->at, &factor, err)
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu gradients", count);
+    return out->rows && out->at ? cwi_gradients_fit(&fit, count, out->at, &factor, err)
+                                : cwi_fail_memory(err);
 }
 
 void cwi_gradients_free(cwi_gradients *gradients)

@@ -22,7 +22,7 @@ static cw_status list_counts(const cwi_key_counts *table, cw_label_count **count
 {
     *counts = cwi_alloc_array(table->used, sizeof **counts);
     if (!*counts)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu labels", table->used);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < table->size; n++)
         if (table->entries[n].key)
             (*counts)[(*count)++] = (cw_label_count){(uint32_t)(table->entries[n].key - 1),
@@ -59,8 +59,7 @@ cw_status cw_label_counts(const cw_volume *volume, uint32_t background, cw_label
             is_whole = cwi_label_layer_count(&layers, labels, &table);
     }
     if (st == CW_OK)
-        st = is_whole ? list_counts(&table, counts, count, err)
-                      : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to count labels");
+        st = is_whole ? list_counts(&table, counts, count, err) : cwi_fail_memory(err);
     cwi_free(labels);
     cwi_key_counts_free(&table);
     return st;

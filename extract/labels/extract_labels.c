@@ -120,8 +120,7 @@ static cw_status list_labels(const cwi_label_job *j, size_t chunks, cw_error *er
         out->labels[out->label_count - 1].voxels += parts[n].entry->count;
     }
     cwi_free(parts);
-    return out->labels ? CW_OK
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a list of labels");
+    return out->labels ? CW_OK : cwi_fail_memory(err);
 }
 
 /* Makes the patches, and turns counts of triangles into the places of each chunk's first. */
@@ -143,8 +142,7 @@ static cw_status list_patches(const cwi_label_job *j, size_t chunks, cw_error *e
         out->mesh.triangle_count += triangles;
     }
     cwi_free(parts);
-    return out->patches ? CW_OK
-                        : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a list of patches");
+    return out->patches ? CW_OK : cwi_fail_memory(err);
 }
 
 /* Turns counts of vertices into the number of each chunk's first. */
@@ -187,8 +185,7 @@ static cw_status make_room(cwi_label_job *j, const cw_labels_desc *desc, cw_erro
     if (!mesh->positions || !mesh->triangles ||
         (!desc->no_smoothing && mesh->vertex_count > 0 &&
          !(net->neighbours && net->kinds && net->polygons && j->originals)))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu triangles",
-                        mesh->triangle_count);
+        return cwi_fail_memory(err);
     for (int a = 0; a < 3; a++)
         middle[a] =
             0.5 * (find_coordinate(v, a, 0) + find_coordinate(v, a, (double)v->dim[a] - 1));
@@ -208,7 +205,7 @@ static cw_status run_chunks(cwi_label_job *j, size_t first, size_t count,
         count, WORK * CWI_LABEL_CHUNK * v->dim[0] * v->dim[1], desc->threads, progress,
         j->is_writing ? "extracting" : "counting", cwi_label_chunk_work, j, err);
     if (st == CW_OK && j->is_starved)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for layers of labels");
+        return cwi_fail_memory(err);
     if (st == CW_OK && j->is_bad)
         return cwi_label_fail_voxel(&j->layers, j->bad, err);
     return st;
@@ -254,7 +251,7 @@ static cw_status run_job(cwi_label_job *j, const cw_labels_desc *desc,
                  chunks = (layers + CWI_LABEL_CHUNK - 1) / CWI_LABEL_CHUNK;
     j->chunks = cwi_alloc_zeroed(chunks, sizeof *j->chunks);
     if (!j->chunks)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for layers of labels");
+        return cwi_fail_memory(err);
     cw_status st = run_pass(j, chunks, desc, err);
     if (st == CW_OK)
         st = list_labels(j, chunks, err);
@@ -271,7 +268,7 @@ static cw_status run_job(cwi_label_job *j, const cw_labels_desc *desc,
         memcpy(j->originals, j->out->mesh.positions,
                3 * j->out->mesh.vertex_count * sizeof *j->originals);
         if (!cwi_label_net_finish(&j->net, &j->out->mesh))
-            st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the polygons around vertices");
+            st = cwi_fail_memory(err);
     }
     if (st == CW_OK && j->originals)
         st = smooth(&j->net, j->originals, j->out, desc, j->layers.volume->dim, err);
@@ -380,7 +377,7 @@ static cw_status extract_resolved(const cw_volume *v, cwi_label_window *window,
         prepare_job(j, v, desc, wanted);
         st = run_job(j, &resolved, smooth, err);
     } else
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for labels");
+        st = cwi_fail_memory(err);
     cwi_free(j);
     cwi_free(wanted);
     if (st != CW_OK)

@@ -119,7 +119,7 @@ cw_status cwi_label_crossings_init(cwi_label_crossings *c, const cw_labels_desc 
     c->queue = cwi_alloc_large(mesh->triangle_count, sizeof *c->queue);
     c->hits = cwi_alloc_zeroed(mesh->vertex_count, 1);
     if (!c->flags || !c->queue || !c->hits)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for triangles that cross");
+        return cwi_fail_memory(err);
     cw_status st = cwi_each_layer(parts, 8 * PART, desc->threads, &desc->progress,
                                   "looking for crossings", judge_part, c, err);
     for (size_t t = 0; t < mesh->triangle_count && st == CW_OK; t++)

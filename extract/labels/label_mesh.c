@@ -65,7 +65,7 @@ static cw_status fit_vertices(cw_mesh *mesh, bool is_whole, cw_error *err)
         return CW_OK;
     }
     cw_mesh_free(mesh);
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the mesh of a label");
+    return cwi_fail_memory(err);
 }
 
 cw_status cw_label_mesh(const cw_label_surfaces *s, uint32_t label, cw_mesh *mesh,

@@ -129,9 +129,7 @@ static cw_status alloc_painted(const cw_label_surfaces *s, size_t vertices, size
     memcpy(mesh->affine, s->mesh.affine, sizeof mesh->affine);
     mesh->colors = cwi_alloc_array(vertices, 4 * sizeof *mesh->colors);
     mesh->labels = cwi_alloc_array(vertices, sizeof *mesh->labels);
-    return mesh->colors && mesh->labels
-               ? CW_OK
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the colours of labels");
+    return mesh->colors && mesh->labels ? CW_OK : cwi_fail_memory(err);
 }
 
 cw_status cw_label_colored_mesh(const cw_label_surfaces *s, const uint8_t (*colors)[4],
@@ -144,9 +142,7 @@ cw_status cw_label_colored_mesh(const cw_label_surfaces *s, const uint8_t (*colo
                    cwi_alloc_array(size, sizeof *n.number), 0};
     size_t triangles = 0;
     memset(mesh, 0, sizeof *mesh);
-    cw_status st = patches && n.owner && n.number
-                       ? CW_OK
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the mesh of labels");
+    cw_status st = patches && n.owner && n.number ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK) {
         const size_t count = share_patches(s, colors, patches);
         const size_t vertices = count_vertices(s, patches, count, &n, &triangles);

@@ -416,9 +416,7 @@ cw_status cwi_labels_keep_volumes(cwi_label_net *net, const float *originals,
                  .side = cwi_affine_determinant(surfaces->mesh.affine[0]) < 0 ? -1 : 1,
                  .dim = dim,
                  .labels = surfaces->label_count};
-    cw_status st = prepare_presser(&s) ? press_all(&s, desc, err)
-                                       : cwi_fail(err, CW_ERR_NO_MEMORY,
-                                                  "no memory to keep the volumes of labels");
+    cw_status st = prepare_presser(&s) ? press_all(&s, desc, err) : cwi_fail_memory(err);
     cwi_free(s.directions);
     cwi_free(s.volumes);
     cwi_free(s.areas);

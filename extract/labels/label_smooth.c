@@ -130,8 +130,7 @@ cw_status cwi_labels_smooth(cwi_label_net *net, const float *originals,
                   .count = count,
                   .from = surfaces->mesh.positions,
                   .to = next};
-    cw_status st = next ? average_all(&s, err)
-                        : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to smooth labels");
+    cw_status st = next ? average_all(&s, err) : cwi_fail_memory(err);
     cwi_free(next);
     if (st == CW_OK && !desc->leave_open)
         st = cwi_labels_keep_volumes(net, originals, surfaces, desc, dim, err);

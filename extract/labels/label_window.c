@@ -26,8 +26,7 @@ cw_status cwi_label_window_open(cwi_label_window *w, const cw_slice_source *sour
                  fit = WINDOW_BYTES / slice / CWI_LABEL_CHUNK;
     w->chunks = chunks ? chunks : fit < 1 ? 1 : fit < MAX_CHUNKS ? fit : MAX_CHUNKS;
     w->slices = cwi_alloc_array(w->chunks * CWI_LABEL_CHUNK + BESIDE, slice);
-    return w->slices ? CW_OK
-                     : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for slices of labels");
+    return w->slices ? CW_OK : cwi_fail_memory(err);
 }
 
 void cwi_label_window_close(cwi_label_window *w)

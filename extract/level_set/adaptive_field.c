@@ -75,7 +75,7 @@ cw_status cwi_adaptive_measure(cwi_adaptive *a, cw_error *err)
     double(*places)[3] = cwi_realloc_array(a->places, a->points.count, sizeof *places);
     a->places = places ? places : a->places;
     if (!values || !places)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu samples", a->points.count);
+        return cwi_fail_memory(err);
     const cw_status st =
         cwi_each_layer((count + CHUNK - 1) / CHUNK, CHUNK * CHUNK, a->desc->threads,
                        &a->desc->progress, "finer samples", measure_chunk, a, err);
@@ -132,7 +132,7 @@ cw_status cwi_adaptive_init(cwi_adaptive *a, const cw_mesh *mesh, const cw_volum
     cw_status st = cwi_closest_build(mesh, &a->tree, err);
     a->normals = cwi_alloc_array(mesh->triangle_count, sizeof *a->normals);
     if (st == CW_OK && (!a->normals || !cwi_level_set_leaves(volume, &a->leaves)))
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for finer samples");
+        st = cwi_fail_memory(err);
     if (st == CW_OK)
         find_normals(a);
     return st;

@@ -272,7 +272,7 @@ static cw_status hand_over(const build *b, cw_volume *grid, cw_error *err)
                                        b->corner_count * sizeof(uint32_t) + b->count,
                                    1);
     if (!memory)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu cells", b->count);
+        return cwi_fail_memory(err);
     double *points = (double *)(void *)(memory + sizeof(cw_cells));
     uint32_t *corners = (uint32_t *)(void *)(points + 3 * samples);
     uint8_t *shapes = (uint8_t *)(void *)(corners + b->corner_count);
@@ -318,7 +318,7 @@ static cw_status build_grid(build *b, cw_error *err)
     if (st == CW_OK && !b->out_of_memory)
         each_leaf(b, add_leaf);
     if (st == CW_OK && b->out_of_memory)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for finer cells");
+        st = cwi_fail_memory(err);
     if (st == CW_OK)
         st = check_fits(b, err);
     return st == CW_OK ? cwi_adaptive_measure(b->a, err) : st;

@@ -122,8 +122,7 @@ static cw_status find_beyond(const cwi_adaptive *a, const cw_mesh *from, const c
 {
     *beyond = cwi_alloc_array(from->triangle_count, sizeof **beyond);
     if (!*beyond)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu triangles",
-                        from->triangle_count);
+        return cwi_fail_memory(err);
     memset(*beyond, 1, from->triangle_count);
     if (!from->triangle_count || !to->triangle_count)
         return CW_OK;
@@ -143,9 +142,7 @@ static cw_status find_pieces(pieces *p, const cw_mesh *from, const cw_mesh *to, 
             cut_triangle(p, from, t);
     }
     cwi_free(beyond);
-    return st == CW_OK && p->out_of_memory
-               ? cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu pieces", p->count)
-               : st;
+    return st == CW_OK && p->out_of_memory ? cwi_fail_memory(err) : st;
 }
 
 /* Divides the cells of the pieces that are beyond. */
@@ -157,7 +154,7 @@ static cw_status divide_cells(const pieces *p, const uint8_t *beyond, cwi_beyond
         if (!beyond[n] || cwi_adaptive_is_divided(p->a, c->size, c->at))
             continue;
         if (!cwi_adaptive_put(p->a, c->size, c->at))
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for finer cells");
+            return cwi_fail_memory(err);
         found->divided++;
     }
     return CW_OK;
@@ -175,9 +172,7 @@ static cw_status divide_far_cells(pieces *p, const cw_mesh *to, double limit_mm,
     memcpy(m.origin, p->a->mesh->origin, sizeof m.origin);
     for (size_t n = 0; n < m.vertex_count && triangles; n++)
         triangles[n] = (uint32_t)n;
-    cw_status st = triangles
-                       ? CW_OK
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu pieces", p->count);
+    cw_status st = triangles ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK)
         st = find_beyond(p->a, &m, to, limit_mm, &beyond, err);
     if (st == CW_OK)

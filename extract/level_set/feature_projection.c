@@ -219,9 +219,8 @@ static cw_status find_places(settling *s, cw_error *err)
     const bool ok = boxes && s->asked && s->is_asked && s->crosses;
     for (size_t t = 0; t < count && ok; t++)
         box_of_ways(s->motion, t, boxes[t]);
-    const cw_status st =
-        ok ? cwi_boxes_build(&s->tree, (const float(*)[6])boxes, count, err)
-           : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to move %zu triangles", count);
+    const cw_status st = ok ? cwi_boxes_build(&s->tree, (const float(*)[6])boxes, count, err)
+                            : cwi_fail_memory(err);
     cwi_free(boxes);
     return st;
 }
@@ -363,10 +362,7 @@ cw_status cwi_unwarp(const cwi_warp *w, const cw_mesh *mesh, int threads,
                      const cw_progress *progress, cw_mesh *surface, cw_error *err)
 {
     motion m = {.mesh = mesh, .surface = surface, .voxel = w->voxel};
-    cw_status st = make_room(&m)
-                       ? cwi_closest_build(mesh, &m.tree, err)
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to move %zu vertices",
-                                  surface->vertex_count);
+    cw_status st = make_room(&m) ? cwi_closest_build(mesh, &m.tree, err) : cwi_fail_memory(err);
     if (st == CW_OK) {
         follow_samples(w, &m);
         st = settle_vertices(&m, threads, progress, err);

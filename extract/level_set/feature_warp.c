@@ -549,7 +549,7 @@ cw_status cwi_warp_init(cwi_warp *warp, const cw_mesh *mesh, cw_volume *volume, 
         apply_moves(&g);
     }
     if (g.out_of_memory)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for samples at edges");
+        st = cwi_fail_memory(err);
     cwi_boxes_free(&g.tree);
     cwi_places_free(&g.leaves);
     cwi_free(g.normals);

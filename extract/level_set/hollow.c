@@ -111,7 +111,7 @@ static cw_status find_cavities(hollowing *h, cw_error *err)
     h->set = cwi_sets_alloc(m->vertex_count);
     h->size = cwi_alloc_zeroed(m->vertex_count, sizeof *h->size);
     if (!h->set || !h->size)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", m->vertex_count);
+        return cwi_fail_memory(err);
     for (const uint32_t *c = m->triangles; c < m->triangles + 3 * m->triangle_count; c += 3) {
         cwi_sets_join(h->set, c[0], c[1]);
         cwi_sets_join(h->set, c[0], c[2]);
@@ -231,8 +231,7 @@ static cw_status place_rays(hollowing *h, cw_error *err)
 {
     h->rays = cwi_alloc_array(h->desc->drain_count, sizeof *h->rays);
     if (!h->rays)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu drains",
-                        h->desc->drain_count);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < h->desc->drain_count; n++)
         place_ray(h, &h->desc->drains[n], &h->rays[n]);
     count_sealed(h);
@@ -264,7 +263,7 @@ static cw_status measure_wall(hollowing *h, const cw_mesh *outer, cw_error *err)
     cw_distance d;
     float *each = cwi_alloc_array(h->inner.vertex_count, sizeof *each);
     cw_status st = each ? cw_distance_to_mesh(&h->inner, outer, &desc, &d, each, err)
-                        : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for distances");
+                        : cwi_fail_memory(err);
     if (st == CW_OK) {
         h->facts.wall_max_mm = d.max_mm;
         h->facts.wall_min_mm = d.max_mm;

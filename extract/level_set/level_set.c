@@ -150,7 +150,7 @@ static cw_status take_leaves(build *b, cw_error *err)
     b->leaves = cwi_alloc_array(b->leaf_count, sizeof *b->leaves);
     b->voxels = cwi_alloc_large(b->leaf_count, CWI_LEAF_VOXELS * sizeof *b->voxels);
     if (!b->leaves || !b->voxels)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", b->leaf_count);
+        return cwi_fail_memory(err);
     cwi_do_layers(b->leaf_count, CWI_LEAF_VOXELS, b->desc->threads, take_leaf, b);
     b->functions->close(b->distances);
     b->distances = NULL;
@@ -214,9 +214,7 @@ static cw_status make_exact(build *b, cw_error *err)
     batch list = {.points = cwi_alloc_array(room, sizeof *list.points),
                   .distances = cwi_alloc_array(room, sizeof *list.distances),
                   .voxels = cwi_alloc_array(room, sizeof *list.voxels)};
-    cw_status st = list.points && list.distances && list.voxels
-                       ? CW_OK
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu voxels", room);
+    cw_status st = list.points && list.distances && list.voxels ? CW_OK : cwi_fail_memory(err);
     for (size_t n = 0; n < b->leaf_count && st == CW_OK; n++) {
         add_leaf(b, n, &list);
         if (n + 1 == b->leaf_count || list.count + CWI_LEAF_VOXELS > room)
@@ -277,7 +275,7 @@ static cw_status make_tiles(build *b, cw_error *err)
     b->tiles = cwi_alloc_array(b->leaf_count, sizeof *b->tiles);
     if (!rows || !b->tiles) {
         cwi_free(rows);
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", b->leaf_count);
+        return cwi_fail_memory(err);
     }
     memcpy(rows, b->leaves, b->leaf_count * sizeof *rows);
     qsort(rows, b->leaf_count, sizeof *rows, compare_places);
@@ -308,7 +306,7 @@ static cw_status hand_over(build *b, cw_volume *v, cw_error *err)
                                        b->leaf_count * sizeof *b->leaves,
                                    1);
     if (!memory)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", b->leaf_count);
+        return cwi_fail_memory(err);
     cw_tile *tiles = (cw_tile *)(void *)(memory + sizeof(cw_sparse));
     uint32_t(*leaves)[3] = (uint32_t(*)[3])(void *)(tiles + b->tile_count);
     memcpy(tiles, b->tiles, b->tile_count * sizeof *tiles);

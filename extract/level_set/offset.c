@@ -102,11 +102,9 @@ static cw_status find_beyond(const making *m, const cw_mesh *from, const cw_mesh
                              double limit_mm, bool *any, cw_error *err)
 {
     uint8_t *beyond = cwi_alloc_array(from->triangle_count, sizeof *beyond);
-    cw_status st = beyond
-                       ? cwi_mesh_within(from, to, limit_mm, NULL, m->desc->threads,
-                                         &m->desc->progress, beyond, err)
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu triangles",
-                                  from->triangle_count);
+    cw_status st = beyond ? cwi_mesh_within(from, to, limit_mm, NULL, m->desc->threads,
+                                            &m->desc->progress, beyond, err)
+                          : cwi_fail_memory(err);
     *any = false;
     for (size_t t = 0; t < from->triangle_count && st == CW_OK; t++)
         *any |= beyond[t];
@@ -244,9 +242,7 @@ static cw_status mend_normals(cw_mesh *mesh, cw_error *err)
 {
     float *gradients = mesh->normals;
     mesh->normals = cwi_alloc_zeroed(3 * mesh->vertex_count, sizeof *mesh->normals);
-    cw_status st = mesh->normals ? cwi_mend_normals(mesh, 1, err)
-                                 : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu normals",
-                                            mesh->vertex_count);
+    cw_status st = mesh->normals ? cwi_mend_normals(mesh, 1, err) : cwi_fail_memory(err);
     for (size_t v = 0; v < mesh->vertex_count && st == CW_OK; v++) {
         const float *g = gradients + 3 * v;
         float *n = mesh->normals + 3 * v;

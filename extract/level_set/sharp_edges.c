@@ -529,8 +529,7 @@ static cw_status make_sharp(sharpener *s, cw_error *err)
     number_cuts(s->sides, s->side_count, &vertices);
     number_cuts(s->middles, m->triangle_count, &vertices);
     if (vertices > UINT32_MAX || !make_room_for(s, vertices, triangles))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu triangles with edges",
-                        triangles);
+        return cwi_fail_memory(err);
     memcpy(s->made.positions, s->places, 3 * m->vertex_count * sizeof *m->positions);
     memcpy(s->made.normals, m->normals, 3 * m->vertex_count * sizeof *m->normals);
     put_cuts(s->sides, s->side_count, &s->made);
@@ -642,8 +641,7 @@ cw_status cwi_sharpen(const cw_mesh *from, const cw_offset_desc *desc, double vo
     cwi_sub(from->origin, mesh->origin, s.shift);
     cw_status st = CW_OK;
     if (!make_room(&s))
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the edges of %zu triangles",
-                      mesh->triangle_count);
+        st = cwi_fail_memory(err);
     if (st == CW_OK)
         st = find_cuts(&s, desc, err);
     if (st == CW_OK)

@@ -137,12 +137,12 @@ cw_status cwi_winding_init(cwi_winding *w, const cw_mesh *mesh, const double fir
     *w = (cwi_winding){.rows_y = dim[1], .rows_z = dim[2]};
     w->first = cwi_alloc_zeroed(rows + 1, sizeof *w->first);
     if (!w->first)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu rows", rows);
+        return cwi_fail_memory(err);
     each_triangle(w, &m, false);
     const size_t all = sum_rows(w, rows);
     w->cross = cwi_alloc_array(all, sizeof *w->cross);
     if (!w->cross)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu crossings", all);
+        return cwi_fail_memory(err);
     each_triangle(w, &m, true);
     memmove(w->first + 1, w->first, rows * sizeof *w->first); /* each is now where the next row
                                                                  began */

@@ -26,6 +26,6 @@ cw_status cwi_make_levels(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
         .progress = cwi_begin_stage(p, CW_STAGE_LOD, mesh->triangle_count, "triangle")};
     p->levels = cwi_alloc_zeroed(d->lod_count, sizeof *p->levels);
     if (!p->levels)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu levels", d->lod_count);
+        return cwi_fail_memory(err);
     return cw_simplify_levels(mesh, &desc, d->lod, d->lod_count, p->levels, NULL, err);
 }

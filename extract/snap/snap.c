@@ -387,7 +387,7 @@ static cw_status make_room(snap_run *run, cw_error *err)
     s->ends = cwi_alloc_large(triangles, sizeof *s->ends);
     run->sums = cwi_alloc_zeroed(s->grid->rows_z, sizeof *run->sums);
     if (!s->places || !s->into || !s->before || !s->cells || !s->ends || !run->sums)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to snap %zu vertices", vertices);
+        return cwi_fail_memory(err);
     memcpy(s->before, s->mesh->positions, 3 * vertices * sizeof *s->before);
     return CW_OK;
 }

@@ -20,7 +20,7 @@ cw_status cwi_gathering_init(cwi_gathering *g, const cwi_leaf_blocks *blocks,
         g->sample[a] = CWI_LEAF * (size_t)shape[a] + 2 * g->halo + 2;
     g->voxels = cwi_alloc_zeroed(CWI_PITCH * g->sample[1] * g->sample[2],
                                  cw_type_size(blocks->volume->type));
-    return g->voxels ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a block");
+    return g->voxels ? CW_OK : cwi_fail_memory(err);
 }
 
 void cwi_gathering_free(cwi_gathering *g)

@@ -190,12 +190,10 @@ static cw_status grow_blocks(cwi_leaf_blocks *b, size_t max_bytes, cw_error *err
     }
     cwi_leaf_block *more = cwi_realloc_array(b->block, room, sizeof *more);
     if (!more)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu blocks", room);
+        return cwi_fail_memory(err);
     b->block = more;
     b->room = room;
-    return make_table(b, 2 * room)
-               ? CW_OK
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu blocks", room);
+    return make_table(b, 2 * room) ? CW_OK : cwi_fail_memory(err);
 }
 
 static cw_status find_or_add(cwi_leaf_blocks *b, const uint32_t at[3], size_t max_bytes,
@@ -322,9 +320,7 @@ static cw_status keep_crossed(sorting *s, cw_error *err)
     b->count = kept;
     if (kept)
         qsort(b->block, kept, sizeof *b->block, by_place);
-    return make_table(b, b->slots ? b->slots : 2)
-               ? CW_OK
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu blocks", kept);
+    return make_table(b, b->slots ? b->slots : 2) ? CW_OK : cwi_fail_memory(err);
 }
 
 static cw_status note_touch(sorting *s, size_t n, const reach along[3], const uint32_t at[3],
@@ -339,7 +335,7 @@ static cw_status note_touch(sorting *s, size_t n, const reach along[3], const ui
             s->touch_room ? 2 * s->touch_room : 4 * region_count(s->blocks->volume->sparse);
         touch *more = cwi_realloc_array(s->touches, s->touch_room, sizeof *more);
         if (!more)
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", s->touch_room);
+            return cwi_fail_memory(err);
         s->touches = more;
     }
     s->touches[s->touch_count++] = (touch){block - 1, (uint32_t)n};
@@ -357,7 +353,7 @@ static cw_status list_regions(sorting *s, cw_error *err)
         return st;
     b->region = cwi_alloc_array(s->touch_count, sizeof *b->region);
     if (!b->region)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", s->touch_count);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < b->count; n++) {
         b->block[n].first = total;
         total += b->block[n].count;
@@ -383,7 +379,7 @@ cw_status cwi_blocks_init(cwi_leaf_blocks *b, const cwi_engine *engine,
     st = b->sides ? cwi_each_layer((count + TOGETHER - 1) / TOGETHER,
                                    TOGETHER * CWI_LEAF_VOXELS, desc->threads, &desc->progress,
                                    "classifying", find_sides, &s, err)
-                  : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", count);
+                  : cwi_fail_memory(err);
     if (st == CW_OK)
         st = visit_all(&s, 0, note_sides, err);
     if (st == CW_OK)

@@ -137,7 +137,7 @@ static cw_status alloc_piece(const worker *w, bool normals, cwi_block_mesh *piec
     *piece = (cwi_block_mesh){
         .memory = memory, .vertex_count = v, .triangle_count = t, .stranger_count = strangers};
     if (!memory)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu triangles", t);
+        return cwi_fail_memory(err);
     piece->positions = take_memory(&memory, v, 3 * sizeof *piece->positions);
     piece->normals = normals ? take_memory(&memory, v, 3 * sizeof *piece->normals) : NULL;
     piece->triangles = take_memory(&memory, t, 3 * sizeof *piece->triangles);
@@ -151,7 +151,7 @@ static cw_status keep_seam(const worker *w, cwi_leaf_block *b, cw_error *err)
     b->seam_count = w->seam_count;
     b->seam = cwi_alloc_array(w->seam_count, sizeof *b->seam);
     if (!b->seam)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for seams");
+        return cwi_fail_memory(err);
     memcpy(b->seam, w->seam, w->seam_count * sizeof *b->seam);
     return CW_OK;
 }
@@ -275,8 +275,7 @@ static cw_status join_block(sparse_plan *p, cwi_leaf_block *b, worker *w, cw_err
         w->number = cwi_alloc_array(w->number_room, sizeof *w->number);
     }
     if (!w->number)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices",
-                        piece->vertex_count);
+        return cwi_fail_memory(err);
     if (!place_vertices(p, b, w->number))
         return cwi_fail(err, CW_ERR_ARGUMENT, "leaves or tiles of the sparse grid overlap");
     uint32_t *to = p->mesh->triangles + 3 * b->triangles;
@@ -307,7 +306,7 @@ static cw_status set_window(cwi_bit_grid *g, size_t first, cw_error *err)
     g->live = cwi_grid_plane(g);
     if (!g->live || !window) {
         cwi_free(window);
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a block");
+        return cwi_fail_memory(err);
     }
     set_live(g, first);
     for (size_t row = 0; row < g->rows; row++) {
@@ -345,7 +344,7 @@ static cw_status init_grid(const sparse_plan *p, worker *w, cw_error *err)
     memset(g->inside, 0, g->rows * g->words * sizeof *g->inside);
     g->find_values = view.has_nodata;
     if (g->find_values && !(g->has = cwi_grid_plane(g)))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a block");
+        return cwi_fail_memory(err);
     return set_window(g, from->halo + 1, err);
 }
 
@@ -357,7 +356,7 @@ static cw_status init_worker(const sparse_plan *p, worker *w, cw_error *err)
     w->seam = cwi_alloc_array(room, sizeof *w->seam);
     w->strangers = cwi_alloc_array(room, sizeof *w->strangers);
     if (!w->seam || !w->strangers)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a block");
+        return cwi_fail_memory(err);
     cw_status st =
         cwi_gathering_init(&w->gathering, &p->blocks, p->engine, p->desc->cubic_placement, err);
     return st == CW_OK ? init_grid(p, w, err) : st;
@@ -385,7 +384,7 @@ static cw_status init_workers(sparse_plan *p, cw_error *err)
     p->threads = cwi_threads(p->desc->threads);
     p->workers = cwi_alloc_zeroed((size_t)p->threads, sizeof *p->workers);
     if (!p->workers)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %d threads", p->threads);
+        return cwi_fail_memory(err);
     cw_status st = CW_OK;
     for (int n = 0; n < p->threads && st == CW_OK; n++)
         st = init_worker(p, &p->workers[n], err);

@@ -47,7 +47,7 @@ static cw_status make_layer(const cwi_chunk_writer *c, size_t layer, size_t low,
             cwi_slice_window_layer(w, layer)[row + 1].triangle - first->triangle;
     }
     if (!s->positions[n] || (has_cells && !corners))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to repair normals");
+        return cwi_fail_memory(err);
     cwi_vertex_sink sink = c->vertices;
     sink.positions = s->positions[n];
     sink.normals = NULL;
@@ -104,8 +104,7 @@ static cw_status mend_row(const cwi_chunk_writer *c, size_t layer, size_t row, s
     const size_t low = row ? row - 1 : 0;
     surroundings s = {.first = {0}};
     bool *missing = cwi_alloc_array(count, sizeof *missing);
-    cw_status st =
-        missing ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to repair normals");
+    cw_status st = missing ? CW_OK : cwi_fail_memory(err);
     for (size_t v = 0; v < count && missing; v++)
         missing[v] = is_missing(normals + 3 * v);
     for (int n = layer ? 0 : 1; n < LAYERS && st == CW_OK; n++)

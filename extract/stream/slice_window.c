@@ -78,7 +78,7 @@ cw_status cwi_slice_window_init(cwi_slice_window *w, const cwi_engine *engine,
     w->capacity = slices_for(&w->whole, desc, w->sweeps, layers);
     w->slices = cwi_alloc_large(w->capacity, (size_t)w->whole.stride[2]);
     if (!w->slices)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slices", w->capacity);
+        return cwi_fail_memory(err);
     w->whole.data = w->slices;
     cw_volume part = w->whole;
     part.dim[2] = w->capacity;
@@ -97,8 +97,7 @@ cw_status cwi_slice_window_init(cwi_slice_window *w, const cwi_engine *engine,
     g->has = finds_values ? cwi_grid_plane(g) : NULL;
     g->live = w->sweeps ? cwi_grid_plane(g) : NULL;
     if (!w->plan.rows || !g->row_plans || (finds_values && !g->has) || (w->sweeps && !g->live))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the rows of %zu slices",
-                        w->capacity);
+        return cwi_fail_memory(err);
     /* the row after the last layer is read too: its padding has to be outside */
     clear_rows(g, g->inside, 0, 0, g->rows);
     clear_rows(g, g->has, 0, 0, g->rows);

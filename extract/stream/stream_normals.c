@@ -69,8 +69,7 @@ static cw_status sort_vertices(normal_walk *w, cw_error *err)
     w->order = cwi_alloc_array(vertices, sizeof *w->order);
     w->before = cwi_alloc_zeroed(slices + 2, sizeof *w->before);
     if (!w->slices || !w->order || !w->before)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the normals of %zu vertices",
-                        vertices);
+        return cwi_fail_memory(err);
     for (size_t v = 0; v < vertices; v++)
         if (cwi_shading_slice(&w->shading, v, &slice))
             w->before[slice + 2]++;

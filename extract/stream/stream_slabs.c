@@ -59,7 +59,7 @@ static cw_status count_surface(slab_writer *s, cw_error *err)
     cw_status st = CW_OK;
     s->counted = cwi_alloc_zeroed(last + 1, sizeof *s->counted);
     if (!s->counted)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the counts of %zu layers", last);
+        return cwi_fail_memory(err);
     s->sums = (cwi_layer_sums){.layers = s->counted, .count = last + 1};
     st = cwi_border_loops_init(&s->loops, w->whole.dim, err);
     cwi_slice_window_start(w, 0);
@@ -174,9 +174,7 @@ static cw_status make_room(slab_writer *s, const cw_extract_desc *d, size_t tria
     s->place.grid = &s->window->plan.grid.volume;
     s->mesh = mesh;
     s->seam = cwi_alloc_array(most.vertices, 1);
-    return s->seam
-               ? CW_OK
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", most.vertices);
+    return s->seam ? CW_OK : cwi_fail_memory(err);
 }
 
 static cw_status write_slabs(slab_writer *s, const cw_extract_desc *d, size_t triangles,

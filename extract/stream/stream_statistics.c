@@ -46,8 +46,7 @@ cw_status cw_stream_statistics(const cw_slice_source *source, size_t bin_count, 
     shape.slope = shape.slope != 0 ? shape.slope : 1;
     cw_statistics s = cwi_statistics_of(&shape);
     *out = (cw_statistics){0};
-    cw_status st =
-        memory ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slices", slices);
+    cw_status st = memory ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK)
         st = visit_parts(source, threads, memory, slices, cwi_statistics_scan, &s, err);
     if (st == CW_OK)

@@ -150,7 +150,7 @@ static cw_status make_room(cwi_chunk_writer *c, size_t vertices, size_t triangle
     return c->positions && c->corners && vertices <= c->vertex_room &&
                    triangles <= c->triangle_room
                ? CW_OK
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu triangles", triangles);
+               : cwi_fail_memory(err);
 }
 
 static cw_status write_chunk(cwi_chunk_writer *c, place from, place to, cw_error *err)

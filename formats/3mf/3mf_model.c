@@ -115,7 +115,7 @@ static cw_status make_slots(parsing *p, cw_error *err)
         return st;
     cwi_3mf_resource *more = cwi_alloc_zeroed(slots, sizeof *more);
     if (!more)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu resources", slots);
+        return cwi_fail_memory(err);
     for (size_t i = 0; i < m->slots; i++)
         if (m->resources[i].key)
             *find_slot(more, slots, m->resources[i].key) = m->resources[i];

@@ -81,7 +81,7 @@ static cw_status start_relationship(void *user, cwi_xml *x, cwi_attributes a, cw
                         CWI_3MF_MODELS);
     m->models[m->model_count] = cwi_strdup(target + (*target == '/'));
     if (!m->models[m->model_count])
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the names of models");
+        return cwi_fail_memory(err);
     m->model_count++;
     return CW_OK;
 }
@@ -149,7 +149,7 @@ cw_status cwi_3mf_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
     const bool stated = in->desc.max_triangles < UINT32_MAX;
     cwi_3mf *m = cwi_alloc_zeroed(1, sizeof *m);
     if (!m)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a package");
+        return cwi_fail_memory(err);
     m->in = m->build.in = in;
     m->mesh = mesh;
     m->said = said;

@@ -89,7 +89,7 @@ static cw_status write_colors(model *m, const cw_mesh *mesh, size_t id, uint32_t
 {
     uint32_t *colors = cwi_alloc_array(mesh->vertex_count, sizeof *colors);
     if (!colors)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for its colours");
+        return cwi_fail_memory(err);
     const size_t count = list_colors(mesh, colors);
     for (size_t v = 0; v < mesh->vertex_count; v++) {
         const uint32_t color = pack_color(mesh->colors + 4 * v);
@@ -171,8 +171,7 @@ static cw_status write_object(model *m, const cwi_part *given, size_t id, cw_err
     if (part.mesh.colors) {
         part.group = id - 1;
         part.numbers = numbers = cwi_alloc_array(part.mesh.vertex_count, sizeof *numbers);
-        st = numbers ? write_colors(m, &part.mesh, id - 1, numbers, err)
-                     : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for its colours");
+        st = numbers ? write_colors(m, &part.mesh, id - 1, numbers, err) : cwi_fail_memory(err);
     }
     cwi_xml_escape(part.name, name, sizeof name);
     if (st == CW_OK)

@@ -98,14 +98,13 @@ cw_status cwi_blocks_open(cwi_packed_blocks *b, cwi_stream *stream, const cwi_bl
     if (st == CW_OK)
         st = check_head(b, head, wanted, there, err);
     if (st == CW_OK && !(b->table = cwi_alloc_array(b->count, form->word_bytes)))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a table of %zu blocks", b->count);
+        return cwi_fail_memory(err);
     if (st == CW_OK)
         st = cwi_stream_read(stream, b->table, b->count * form->word_bytes, err);
     if (st == CW_OK)
         st = check_table(b, there, &most, err);
     if (st == CW_OK && !(b->packed = cwi_alloc_array((size_t)most, 1)))
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %llu bytes",
-                      (unsigned long long)most);
+        st = cwi_fail_memory(err);
     return st;
 }
 
@@ -128,12 +127,12 @@ static cw_status inflate_block(const cwi_packed_blocks *b, size_t packed, unsign
     if (packed > UINT_MAX)
         return CW_OK;
     if (inflateInit(&z) != Z_OK)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
+        return cwi_fail_memory(err);
     const int code = inflate(&z, Z_FINISH);
     *whole = code == Z_STREAM_END && z.avail_out == 0 && z.avail_in == 0;
     inflateEnd(&z);
     if (code == Z_MEM_ERROR)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
+        return cwi_fail_memory(err);
     return CW_OK;
 }
 
@@ -161,8 +160,7 @@ static cw_status decode_block(cwi_packed_blocks *b, unsigned char *to, cw_error 
 static cw_status hold_block(cwi_packed_blocks *b, cw_error *err)
 {
     if (!b->held && !(b->held = cwi_alloc_array(block_bytes(b, 0), 1)))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu bytes",
-                        block_bytes(b, 0));
+        return cwi_fail_memory(err);
     b->held_next = 0;
     b->held_bytes = block_bytes(b, b->next);
     return decode_block(b, b->held, err);

@@ -23,7 +23,7 @@ cw_status cwi_block_sink_open(cwi_block_sink *b, cwi_outfile *file, cw_error *er
     if (b->deflates && b->block && b->packed)
         return CW_OK;
     cwi_block_sink_close(b);
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to compress with");
+    return cwi_fail_memory(err);
 }
 
 void cwi_block_sink_close(cwi_block_sink *b)
@@ -46,7 +46,7 @@ cw_status cwi_block_sink_begin(cwi_block_sink *b, uint64_t bytes, cw_error *err)
     b->table_at = cwi_outfile_size(b->file);
     b->table = cwi_alloc_zeroed(b->table_bytes, 1);
     if (!b->table)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a table of %zu blocks", b->count);
+        return cwi_fail_memory(err);
     cwi_put_u64(cwi_put_u64(cwi_put_u64(b->table, b->count), BLOCK_BYTES), last);
     return cwi_outfile_write(b->file, b->table, b->table_bytes, err);
 }

@@ -22,7 +22,7 @@ cw_status cwi_sink_open(cwi_sink *s, cwi_outfile *file, cwi_packing packing, cw_
     if (s->deflates)
         return CW_OK;
     cwi_sink_close(s);
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to compress with");
+    return cwi_fail_memory(err);
 }
 
 void cwi_sink_close(cwi_sink *s)

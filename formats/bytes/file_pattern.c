@@ -210,7 +210,7 @@ static cw_status match_names(const char *pattern, cwi_names *names, cw_error *er
     const int code = glob(pattern, GLOB_NOSORT, NULL, &found);
     cw_status st = CW_OK;
     if (code == GLOB_NOSPACE)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the names that match");
+        st = cwi_fail_memory(err);
     for (size_t i = 0; st == CW_OK && code == 0 && i < found.gl_pathc; i++)
         if (stat(found.gl_pathv[i], &info) == 0 && S_ISREG(info.st_mode))
             st = cwi_names_add(names, found.gl_pathv[i], err);

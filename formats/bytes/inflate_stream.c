@@ -45,7 +45,7 @@ cw_status cwi_stream_open(cwi_stream *s, int fd, uint64_t offset, bool deflated,
     if (s->deflated)
         return CW_OK;
     cwi_stream_close(s);
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
+    return cwi_fail_memory(err);
 }
 
 cw_status cwi_stream_open_bzip2(cwi_stream *s, int fd, uint64_t offset, cw_error *err)
@@ -60,7 +60,7 @@ cw_status cwi_stream_open_bzip2(cwi_stream *s, int fd, uint64_t offset, cw_error
     if (s->deflated)
         return CW_OK;
     cwi_stream_close(s);
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to decompress with");
+    return cwi_fail_memory(err);
 }
 
 void cwi_stream_end_at(cwi_stream *s, uint64_t end)
@@ -71,14 +71,14 @@ void cwi_stream_end_at(cwi_stream *s, uint64_t end)
 cw_status cwi_stream_from_base64(cwi_stream *s, cw_error *err)
 {
     s->text = cwi_alloc_array(BUFFER_BYTES, 1);
-    return s->text ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to decode base64 with");
+    return s->text ? CW_OK : cwi_fail_memory(err);
 }
 
 cw_status cwi_stream_from_hex(cwi_stream *s, cw_error *err)
 {
     s->text = cwi_alloc_array(BUFFER_BYTES, 1);
     s->is_hex = true;
-    return s->text ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to decode text with");
+    return s->text ? CW_OK : cwi_fail_memory(err);
 }
 
 void cwi_stream_close(cwi_stream *s)
@@ -223,7 +223,7 @@ static cw_status start_next_member(cwi_stream *s, cw_error *err)
 static cw_status fail_inflate(const cwi_stream *s, int code, cw_error *err)
 {
     if (code == Z_MEM_ERROR)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
+        return cwi_fail_memory(err);
     return cwi_fail(err, CW_ERR_FORMAT, "the compressed data are damaged after %llu bytes: %s",
                     (unsigned long long)(s->given),
                     s->z.msg              ? s->z.msg

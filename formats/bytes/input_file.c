@@ -212,12 +212,12 @@ cw_status cwi_names_add(cwi_names *names, const char *name, cw_error *err)
     if ((n & (n - 1)) == 0) { /* the capacity is reached at every power of two */
         char **items = cwi_realloc_array(names->items, n ? 2 * n : 1, sizeof *items);
         if (!items)
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu file names", n + 1);
+            return cwi_fail_memory(err);
         names->items = items;
     }
     names->items[n] = cwi_strdup(name);
     if (!names->items[n])
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu file names", n + 1);
+        return cwi_fail_memory(err);
     names->count = n + 1;
     return CW_OK;
 }

@@ -48,7 +48,7 @@ static cw_status find_end(const cwi_input *in, uint64_t *end, unsigned char reco
     const size_t size = in->size < most ? (size_t)in->size : most;
     unsigned char *tail = cwi_alloc_array(size, 1);
     if (!tail)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to read an archive with");
+        return cwi_fail_memory(err);
     cw_status st = read_at(in, in->size - size, tail, size, "its end cannot be read", err);
     size_t at = size >= END ? size - END + 1 : 0;
     bool found = false;
@@ -110,7 +110,7 @@ cw_status cwi_unzip_open(cwi_unzip *z, const cwi_input *in, cw_error *err)
             "the zip archive has %llu entries in %llu bytes; at most %d in %d are read",
             (unsigned long long)count, (unsigned long long)bytes, UINT16_MAX, MAX_BYTES);
     if (st == CW_OK && !(z->directory = cwi_alloc_array((size_t)bytes, 1)))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for an archive's directory");
+        return cwi_fail_memory(err);
     z->start = start;
     z->bytes = (size_t)bytes;
     z->count = (size_t)count;
@@ -252,7 +252,7 @@ cw_status cwi_unzip_start(cwi_unzip_stream *s, const cwi_unzip *z, const cwi_unz
     if (s->inflates)
         return CW_OK;
     cwi_unzip_end(s);
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
+    return cwi_fail_memory(err);
 }
 
 void cwi_unzip_end(cwi_unzip_stream *s)
@@ -301,7 +301,7 @@ static cw_status inflate_some(cwi_unzip_stream *s, void *to, size_t size, size_t
         const int code = inflate(&s->z, Z_NO_FLUSH);
         s->ended = code == Z_STREAM_END;
         if (code == Z_MEM_ERROR)
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
+            return cwi_fail_memory(err);
         if (code != Z_OK && code != Z_STREAM_END && code != Z_BUF_ERROR)
             return fail_entry(s, s->z.msg ? s->z.msg : "it is no deflated data", err);
         if (!s->ended && s->z.avail_out == before && s->z.avail_in == input)

@@ -291,7 +291,7 @@ static cw_status find_cells(building *b, cw_error *err)
     if (st == CW_OK)
         st = take_bytes(b, b->cells, err);
     if (st == CW_OK && !(b->types = cwi_alloc_array(b->cells, 1)))
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu cells", b->cells);
+        st = cwi_fail_memory(err);
     uint8_t *types = b->types;
     for (size_t n = 0; n < g->piece_count && st == CW_OK; types += g->pieces[n++].cells) {
         st = read_types(b, n, types, err);
@@ -326,7 +326,7 @@ static cw_status allocate_grid(building *b, cw_error *err)
         return st;
     char *block = cwi_alloc_large(bytes, 1);
     if (!block)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu cells", cells);
+        return cwi_fail_memory(err);
     b->volume.owned_grid = block;
     b->grid = (cw_cells *)(void *)block;
     b->at = (double *)(void *)(b->grid + 1);
@@ -450,7 +450,7 @@ static cw_status allocate_values(building *b, cw_error *err)
     const size_t bytes = value_bytes(b) * b->volume.dim[0];
     cw_status st = take_bytes(b, bytes, err);
     if (st == CW_OK && !(b->volume.owned = cwi_alloc_zeroed(bytes, 1)))
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of values", bytes);
+        st = cwi_fail_memory(err);
     b->volume.data = b->volume.owned;
     return st;
 }
@@ -518,7 +518,7 @@ static cw_status average_values(building *b, cw_error *err)
         st = take_bytes(b, samples * sizeof(uint32_t), err);
     uint32_t *around = st == CW_OK ? cwi_alloc_zeroed(samples, sizeof *around) : NULL;
     if (st == CW_OK && !around)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu samples", samples);
+        st = cwi_fail_memory(err);
     if (st == CW_OK)
         st = add_values(b, around, err);
     double *values = b->volume.owned;
@@ -542,7 +542,7 @@ static cw_status merge_samples(building *b, cw_error *err)
     uint32_t *map = cwi_alloc_array(samples, sizeof *map);
     if (!map || !cwi_samples_map(b->at, values, bytes, samples, map, &same)) {
         cwi_free(map);
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu samples", samples);
+        return cwi_fail_memory(err);
     }
     if (same) {
         cwi_samples_drop(b->at, values, bytes, samples, map);

@@ -101,10 +101,8 @@ static cw_status verify_integers(const cw_mesh *mesh, int bits, cwi_arrays *deco
     const cwi_quantization_grid grid = {
         .range = (float)((1u << bits) - 1), .bits = bits, .step = 1};
     decoded->places = copy_integers(decoded->positions, decoded->vertex_count);
-    return decoded->places
-               ? verify_decoded(mesh, &grid, decoded, &no_normals, err)
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu decoded vertices",
-                          decoded->vertex_count);
+    return decoded->places ? verify_decoded(mesh, &grid, decoded, &no_normals, err)
+                           : cwi_fail_memory(err);
 }
 
 cw_status cwi_draco_pack_integers(const cw_mesh *mesh, int bits, const cw_write_desc *desc,
@@ -120,7 +118,7 @@ cw_status cwi_draco_pack_integers(const cw_mesh *mesh, int bits, const cw_write_
                                .places = copy_integers(mesh->positions, mesh->vertex_count),
                                .triangles = mesh->triangles};
     if (st == CW_OK && !arrays.places)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", mesh->vertex_count);
+        st = cwi_fail_memory(err);
     if (st == CW_OK)
         st =
             draco->encode(&arrays, &settings, &packed->bytes, &packed->size, &packed->ids, err);

@@ -130,7 +130,7 @@ cw_status encode(const cwi_arrays *from, const cwi_draco_settings *settings,
         *size = buffer.size();
         *bytes = static_cast<unsigned char *>(cwi_alloc_array(buffer.size(), 1));
         if (!*bytes)
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes", buffer.size());
+            return cwi_fail_memory(err);
         std::memcpy(*bytes, buffer.data(), buffer.size());
         return CW_OK;
     });
@@ -245,7 +245,7 @@ cw_status copy_mesh(const draco::Mesh &mesh, const cwi_draco_ids &ids,
         !allocate(to.triangles, to.triangle_count, 3) ||
         (normals && !allocate(to.normals, count, 3)) ||
         (colors && !allocate(to.colors, count, 4)))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", count);
+        return cwi_fail_memory(err);
     if (!(grid ? copy_triples(*positions, count, to.places)
                : copy_triples(*positions, count, to.positions)) ||
         !copy_faces(mesh, to.triangles) ||

@@ -8,18 +8,13 @@
 #include <meshoptimizer.h>
 #include <string.h>
 
-static cw_status fail_memory(cw_error *err)
-{
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to compress with");
-}
-
 static cw_status reorder_mesh(uint32_t *triangles, size_t triangle_count, size_t vertex_count,
                               bool draw, uint32_t *remap, cw_error *err)
 {
     const size_t count = 3 * triangle_count;
     uint32_t *ordered = cwi_alloc_array(count, sizeof *ordered);
     if (!ordered)
-        return fail_memory(err);
+        return cwi_fail_memory(err);
     if (draw)
         meshopt_optimizeVertexCache(ordered, triangles, count, vertex_count);
     else
@@ -39,7 +34,7 @@ static cw_status shrink_bytes(unsigned char **bytes, size_t size, cw_error *err)
 {
     unsigned char *fit = cwi_realloc_array(*bytes, size, 1);
     if (!fit)
-        return fail_memory(err);
+        return cwi_fail_memory(err);
     *bytes = fit;
     return CW_OK;
 }
@@ -50,7 +45,7 @@ static cw_status encode_vertices(const void *vertices, size_t count, size_t stri
     const size_t bound = meshopt_encodeVertexBufferBound(count, stride);
     *bytes = cwi_alloc_array(bound, 1);
     if (!*bytes)
-        return fail_memory(err);
+        return cwi_fail_memory(err);
     meshopt_encodeVertexVersion(0);
     *size = meshopt_encodeVertexBuffer(*bytes, bound, vertices, count, stride);
     return shrink_bytes(bytes, *size, err);
@@ -63,7 +58,7 @@ static cw_status encode_triangles(const uint32_t *triangles, size_t triangle_cou
     const size_t bound = meshopt_encodeIndexBufferBound(3 * triangle_count, vertex_count);
     *bytes = cwi_alloc_array(bound, 1);
     if (!*bytes)
-        return fail_memory(err);
+        return cwi_fail_memory(err);
     meshopt_encodeIndexVersion(1);
     *size = meshopt_encodeIndexBuffer(*bytes, bound, triangles, 3 * triangle_count);
     return shrink_bytes(bytes, *size, err);

@@ -121,8 +121,7 @@ static cw_status measure_part(const cwi_quantization_grid *grid, const cw_mesh *
     cwi_free(places);
     cwi_free(found);
     cwi_free(map);
-    return ok ? CW_OK
-              : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu vertices", count);
+    return ok ? CW_OK : cwi_fail_memory(err);
 }
 
 cw_status cwi_grid_measure(const cwi_quantization_grid *grid, const cwi_parts *parts,

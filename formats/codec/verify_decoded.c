@@ -118,7 +118,7 @@ cw_status cwi_verify(const cw_mesh *mesh, const cwi_quantization_grid *grid,
         mark_shared(map, mesh->vertex_count, shared);
         st = compare_arrays(mesh, decoded, map, shared, normal_degrees, err);
     } else {
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu vertices", count);
+        st = cwi_fail_memory(err);
     }
     cwi_free(shared);
     cwi_free(places);

@@ -88,8 +88,7 @@ cw_status cwi_mesh_reorder(cw_mesh *mesh, const cwi_meshopt_functions *meshopt, 
     const bool ok = remap && copy && before && order && lists[0] && lists[1];
     if (ok && listed)
         memcpy(before, mesh->triangles, 3 * listed * sizeof *before);
-    cw_status st =
-        ok ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to order %zu vertices", count);
+    cw_status st = ok ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK)
         st = meshopt->reorder(mesh->triangles, mesh->triangle_count, count, draw, remap, err);
     if (st == CW_OK) {

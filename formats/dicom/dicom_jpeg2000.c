@@ -1,4 +1,5 @@
 /* Decodes JPEG 2000 images in DICOM by OpenJPEG, since Debian's DCMTK does not. */
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/dicom/dicom.h"
 
@@ -131,7 +132,7 @@ cw_status cwi_dicom_jpeg2000(const void *data, size_t size, const cwi_dicom_imag
     opj_codec_t *codec = opj_create_decompress(jp2 ? OPJ_CODEC_JP2 : OPJ_CODEC_J2K);
     opj_stream_t *stream = open_stream(&b);
     cw_status st = codec && stream ? decode_codestream(codec, stream, m, why, pixels, err)
-                                   : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for OpenJPEG");
+                                   : cwi_fail_memory(err);
     opj_stream_destroy(stream);
     opj_destroy_codec(codec);
     return st;

@@ -88,8 +88,7 @@ static cw_status place_segments(layering *l, const cwi_input *in, cwi_planes *pl
     const cwi_stack *s = l->stack;
     cwi_stack_reader reader = {.stack = s, .in = in, .planes = planes, .file = SIZE_MAX};
     unsigned char *pixels = cwi_alloc_array(l->plane, 1);
-    cw_status st =
-        pixels ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a plane of pixels");
+    cw_status st = pixels ? CW_OK : cwi_fail_memory(err);
     for (size_t first = 0, end; first < s->slot_count && st == CW_OK; first = end) {
         for (end = first + 1;
              end < s->slot_count && s->slots[end].label == s->slots[first].label;)
@@ -112,7 +111,7 @@ cw_status cwi_dicom_find_layers(cwi_stack *stack, const cwi_input *in, cwi_plane
         .stack = stack, .layer_of = layer_of, .plane = v->dim[0] * v->dim[1], .layers = 1};
     uint8_t *seen = cwi_alloc_zeroed(v->dim[2], 1);
     if (!seen)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slices", v->dim[2]);
+        return cwi_fail_memory(err);
     const bool may_overlap = shares_places(stack, seen);
     cwi_free(seen);
     if (!may_overlap)
@@ -121,9 +120,8 @@ cw_status cwi_dicom_find_layers(cwi_stack *stack, const cwi_input *in, cwi_plane
         return cwi_fail(err, CW_ERR_LIMIT, "more voxels than an address space holds");
     l.taken = cwi_alloc_zeroed(voxels, sizeof *l.taken);
     l.own = cwi_alloc_zeroed(voxels, 1);
-    cw_status st = l.taken && l.own
-                       ? place_segments(&l, in, planes, desc, err)
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to find overlaps");
+    cw_status st =
+        l.taken && l.own ? place_segments(&l, in, planes, desc, err) : cwi_fail_memory(err);
     cwi_free(l.taken);
     cwi_free(l.own);
     v->components = l.layers;

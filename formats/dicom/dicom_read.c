@@ -80,8 +80,7 @@ static cw_status read_segments(const cwi_dicom_scan *found, size_t series, const
     if (f->kind == CWI_DICOM_IMAGE || f->kind == CWI_DICOM_FRACTIONS)
         return CW_OK;
     uint8_t *layer_of = cwi_alloc_zeroed(CWI_DICOM_SEGMENTS, 1);
-    cw_status st =
-        layer_of ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for layers of segments");
+    cw_status st = layer_of ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK && f->kind == CWI_DICOM_SEGMENTATION && !f->never_overlaps)
         st = cwi_dicom_find_layers(stack, in, planes, desc, layer_of, err);
     if (st == CW_OK && stack->shape.components > 1)
@@ -158,7 +157,7 @@ static cw_status list_found(cwi_dicom_scan *found, const cw_read_desc *desc, cw_
 {
     cw_series *all = cwi_alloc_zeroed(found->series_count, sizeof *all);
     if (!all)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu series", found->series_count);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < found->series_count; n++)
         describe_series(found, n, desc, &all[n]);
     *series = all;

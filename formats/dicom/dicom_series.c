@@ -143,7 +143,7 @@ static cw_status keep_file(cwi_dicom_scan *scan, const char *name, const cwi_dic
     cwi_dicom_segment *own = cwi_alloc_array(facts->segment_count, sizeof *own);
     cw_status st = copy && own && grow_planes(scan, facts->frame_count)
                        ? cwi_names_add(&scan->files, name, err)
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the facts of a file");
+                       : cwi_fail_memory(err);
     if (st != CW_OK) {
         cwi_free(copy);
         cwi_free(own);
@@ -318,7 +318,7 @@ static cw_status sort_into_series(cwi_dicom_scan *scan, const cwi_input *in, cw_
             cwi_dicom_series *more =
                 cwi_realloc_array(scan->series, scan->series_count + 1, sizeof *scan->series);
             if (!more)
-                return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu series", p->series);
+                return cwi_fail_memory(err);
             scan->series = more;
             scan->series[scan->series_count++] = (cwi_dicom_series){.sample = p};
         }
@@ -352,7 +352,7 @@ cw_status cwi_dicom_scan_files(cwi_dicom_scan *scan, const cwi_input *in, cwi_na
     scan->facts = cwi_alloc_zeroed(names->count, sizeof(cwi_dicom_facts *));
     scan->segments = cwi_alloc_zeroed(names->count, sizeof(cwi_dicom_segment *));
     if (!scan->facts || !scan->segments)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu files", names->count);
+        return cwi_fail_memory(err);
     for (size_t i = 0; st == CW_OK && i < names->count; i++) {
         uint64_t size;
         int fd;

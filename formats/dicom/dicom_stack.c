@@ -263,7 +263,7 @@ static cw_status lay_slices(const sorting *s, cwi_slices *slices, cw_error *err)
 {
     double *places = cwi_alloc_array(s->places, sizeof *places);
     if (!places)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu places", s->places);
+        return cwi_fail_memory(err);
     for (size_t i = 0; i < s->places; i++)
         places[i] = s->planes[i * s->steps].distance;
     cw_status st =
@@ -353,7 +353,7 @@ static cw_status make_room(const sorting *s, size_t slots, cwi_stack *stack, cw_
     stack->planes = cwi_alloc_array(s->count, sizeof *stack->planes);
     stack->slots = cwi_alloc_array(slots, sizeof *stack->slots);
     if (!stack->planes || !stack->slots)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu planes", s->count);
+        return cwi_fail_memory(err);
     stack->plane_count = s->count;
     stack->slot_count = slots;
     for (size_t i = 0; i < s->count; i++) {
@@ -552,7 +552,7 @@ static cw_status fill_fractions(const sorting *s, cwi_stack *stack, cw_error *er
     uint32_t *numbers = cwi_alloc_array(s->count, sizeof *numbers);
     size_t count;
     if (!numbers)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu segments", s->count);
+        return cwi_fail_memory(err);
     list_segments(s, numbers, &count);
     cw_status st = make_room(s, s->count, stack, err);
     if (st == CW_OK && count > MAX_SEGMENTS)
@@ -632,7 +632,7 @@ static cw_status gather_planes(cwi_dicom_scan *scan, size_t series, sorting *s, 
 {
     s->planes = cwi_alloc_array(scan->series[series].count, sizeof *s->planes);
     if (!s->planes)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu planes", s->count);
+        return cwi_fail_memory(err);
     for (size_t i = 0; i < scan->plane_count; i++)
         if (scan->planes[i].series == series) {
             cwi_dicom_frame *f = &s->planes[s->count].frame;

@@ -172,7 +172,7 @@ static cw_status take_mesh(cwi_mesh_input *in, cwi_sandbox *box, cw_mesh *mesh,
     if (st == CW_OK)
         take_comment(c.comment, mesh, said);
     if (st == CW_OK && c.colors && !(mesh->colors = cwi_alloc_array(mesh->vertex_count, 4)))
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", mesh->vertex_count);
+        st = cwi_fail_memory(err);
     if (st == CW_OK)
         st = copy_array(box, COPY_POSITIONS, mesh->positions, 12 * mesh->vertex_count, err);
     if (st == CW_OK && mesh->normals)

@@ -7,11 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static cw_status fail_memory(cw_error *err)
-{
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to compress the mesh");
-}
-
 /* Appends a part's vertices and triangles to those of the parts before it, as the file has
  * them. */
 static void put_part(const cwi_part *part, cw_mesh *whole)
@@ -44,7 +39,7 @@ static cw_status join_parts(const cwi_parts *parts, cw_mesh *whole, cw_error *er
                             first->normals, err);
     if (st == CW_OK && first->colors &&
         !(whole->colors = cwi_alloc_array(whole->vertex_count, 4)))
-        st = fail_memory(err);
+        st = cwi_fail_memory(err);
     for (size_t p = 0; p < parts->count && st == CW_OK; p++)
         put_part(&parts->items[p], whole);
     return st;

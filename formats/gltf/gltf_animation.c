@@ -64,7 +64,7 @@ cw_status cwi_gltf_plan_animation(cwi_gltf_plan *plan, cw_error *err)
     plan->keys_size = VALUES_BYTES + 4 * times;
     plan->keys = cwi_alloc_array(plan->keys_size, 1);
     if (!plan->keys)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the animation");
+        return cwi_fail_memory(err);
     put_keys(plan, plan->keys);
     d->bytes += plan->keys_size;
     return CW_OK;

@@ -155,8 +155,7 @@ static cw_status load_range(const place *p, uint64_t offset, uint64_t size,
 {
     *bytes = cwi_alloc_array((size_t)size, 1);
     if (!*bytes)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %llu bytes of a buffer",
-                        (unsigned long long)size);
+        return cwi_fail_memory(err);
     cw_status st = p->digits ? decode_base64(p->digits, offset, size, *bytes, err)
                              : read_exactly(p->fd, p->start + offset, size, *bytes, err);
     if (st != CW_OK) {
@@ -255,7 +254,7 @@ static cw_status open_unpacked(const cwi_gltf_bytes *from, const cwi_gltf_access
                         accessor);
     numbers->bytes = cwi_alloc_array(numbers->count, numbers->stride);
     if (!numbers->bytes)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu elements", numbers->count);
+        return cwi_fail_memory(err);
     memcpy(numbers->bytes, array, numbers->count * numbers->stride);
     return CW_OK;
 }
@@ -327,9 +326,7 @@ static cw_status make_zeros(const cwi_gltf_accessor *a, const char *what, int ac
             "%s (accessor %d) has %llu elements, but a file holds only %llu of them", what,
             accessor, (unsigned long long)a->count, (unsigned long long)a->sparse.count);
     *bytes = cwi_alloc_zeroed((size_t)a->count, (size_t)element);
-    return *bytes ? CW_OK
-                  : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %llu elements",
-                             (unsigned long long)a->count);
+    return *bytes ? CW_OK : cwi_fail_memory(err);
 }
 
 /* Puts values at their indices; the indices must rise. */

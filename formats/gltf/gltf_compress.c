@@ -15,11 +15,6 @@
 #include <math.h>
 #include <string.h>
 
-static cw_status fail_memory(cw_error *err)
-{
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to compress the mesh");
-}
-
 cw_status cwi_gltf_prepare_codec(const cw_write_desc *desc, cw_error *err)
 {
     const cwi_draco_functions *draco;
@@ -44,7 +39,7 @@ static cw_status copy_part(const cwi_part *part, const double origin[3], bool al
     cw_status st =
         cwi_mesh_alloc(own, m->vertex_count, m->triangle_count, all && m->normals, err);
     if (st == CW_OK && all && m->colors && !(own->colors = cwi_alloc_array(m->vertex_count, 4)))
-        st = fail_memory(err);
+        st = cwi_fail_memory(err);
     if (st != CW_OK)
         return st;
     for (size_t i = 0; i < 3 * m->vertex_count; i++)
@@ -75,7 +70,7 @@ static cw_status own_parts(cwi_gltf_plan *plan, bool all, cw_error *err)
     memcpy(origin, items[0].mesh.origin, sizeof origin);
     plan->own = cwi_alloc_zeroed(plan->parts.count, sizeof *plan->own);
     if (!plan->own)
-        return fail_memory(err);
+        return cwi_fail_memory(err);
     for (size_t p = 0; p < plan->parts.count; p++) {
         cw_mesh *own = &plan->own[p], *m = &items[p].mesh;
         cw_status st = copy_part(&items[p], origin, all, own, err);
@@ -101,7 +96,7 @@ static cw_status add_block(cwi_gltf_plan *plan, unsigned char *bytes, size_t siz
         cwi_gltf_block *blocks = cwi_realloc_array(plan->blocks, room, sizeof *blocks);
         if (!blocks) {
             cwi_free(bytes);
-            return fail_memory(err);
+            return cwi_fail_memory(err);
         }
         plan->blocks = blocks;
         plan->block_room = room;
@@ -136,7 +131,7 @@ static cw_status compress_draco(cwi_gltf_plan *plan, cwi_gltf_piece *piece,
     cwi_draco_packed packed = {0};
     cwi_gltf_plan_arrays(plan, piece);
     if (piece->part->mesh.colors && !(colors = cwi_alloc_array(count, 4)))
-        return fail_memory(err);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < piece->array_count; n++)
         for (size_t i = 0; piece->arrays[n].use == CWI_GLTF_COLOR && i < count; i++)
             cwi_gltf_put(plan, piece, &piece->arrays[n], i, colors + 4 * i);
@@ -179,7 +174,7 @@ static cw_status check_packed(const cwi_meshopt_functions *meshopt, const cwi_gl
     const float *positions = piece->part->mesh.positions;
     unsigned char *back = cwi_alloc_array((size_t)a->count, (size_t)a->stride);
     if (!back)
-        return fail_memory(err);
+        return cwi_fail_memory(err);
     cw_status st = meshopt->decode_vertices(back, (size_t)a->count, (size_t)a->stride, b->bytes,
                                             b->size, err);
     bool same = st == CW_OK && memcmp(raw, back, (size_t)(a->count * a->stride)) == 0;
@@ -197,7 +192,7 @@ static cw_status check_triangles(const cwi_meshopt_functions *meshopt, const cw_
     const size_t count = 3 * m->triangle_count;
     uint32_t *back = cwi_alloc_array(count, sizeof *back);
     if (!back)
-        return fail_memory(err);
+        return cwi_fail_memory(err);
     cw_status st = meshopt->decode_triangles(back, count, 4, b->bytes, b->size, err);
     for (size_t t = 0; st == CW_OK && t < count; t += 3) {
         const uint32_t *was = m->triangles + t;
@@ -226,7 +221,7 @@ static cw_status pack_array(cwi_gltf_plan *plan, cwi_gltf_piece *piece, cwi_gltf
                                        &b.bytes, &b.size, err);
     } else {
         raw = cwi_alloc_array((size_t)a->count, (size_t)a->stride);
-        st = raw ? CW_OK : fail_memory(err);
+        st = raw ? CW_OK : cwi_fail_memory(err);
         for (size_t i = 0; raw && i < a->count; i++)
             cwi_gltf_put(plan, piece, a, i, raw + i * a->stride);
         if (st == CW_OK)

@@ -163,7 +163,7 @@ cw_status cwi_gltf_unpack_view(cwi_gltf_unpacker *u, const cwi_gltf_view *v,
         return st;
     *bytes = cwi_alloc_array(size, 1);
     if (!*bytes)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of a buffer", size);
+        return cwi_fail_memory(err);
     memcpy(*bytes, (char *)u->box.shared + align_size(j.packed), size);
     return CW_OK;
 }
@@ -206,5 +206,5 @@ cw_status cwi_gltf_unpack_draco(cwi_gltf_unpacker *u, const cwi_draco_ids *ids,
         from += align_size(12 * points);
     if (good && ids->color >= 0)
         good = take_array(&from, &arrays->colors, 4 * points);
-    return good ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", points);
+    return good ? CW_OK : cwi_fail_memory(err);
 }

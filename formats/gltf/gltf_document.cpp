@@ -484,6 +484,6 @@ cw_status cwi_gltf_document_make(const cwi_gltf_document *document, char **json,
             return st;
         *size = words.size();
         *json = cwi_strdup(words.c_str());
-        return *json ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the JSON");
+        return *json ? CW_OK : cwi_fail_memory(err);
     });
 }

@@ -237,7 +237,7 @@ static cw_status make_pieces(cwi_gltf_plan *plan, const cwi_parts *parts, cw_err
     plan->parts = *parts;
     plan->parts.items = cwi_alloc_array(parts->count, sizeof *parts->items);
     if (!plan->pieces || !plan->parts.items)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", parts->count);
+        return cwi_fail_memory(err);
     memcpy(plan->parts.items, parts->items, parts->count * sizeof *parts->items);
     for (size_t p = 0; p < parts->count; p++)
         plan->pieces[p].part = &plan->parts.items[p];

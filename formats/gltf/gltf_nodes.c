@@ -153,7 +153,7 @@ cw_status cwi_gltf_find_instances(cwi_gltf_reader *r, cw_mesh_file *said, cw_err
     r->instances = cwi_alloc_array(count, sizeof *r->instances);
     cw_status st = stack && visited && r->world && r->instances
                        ? walk_nodes(r, stack, room, visited, said, err)
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu nodes", count);
+                       : cwi_fail_memory(err);
     cwi_free(stack);
     cwi_free(visited);
     return st;

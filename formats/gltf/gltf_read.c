@@ -130,7 +130,7 @@ static cw_status parse_json(cwi_gltf_reader *r, uint64_t at, uint64_t size, cw_e
         return cwi_fail(err, CW_ERR_LIMIT, "the JSON has more than 4 GiB");
     char *json = cwi_alloc_array((size_t)size + 1, 1);
     if (!json)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the JSON");
+        return cwi_fail_memory(err);
     cw_status st = cwi_input_read_at(r->in->file.fd, at, json, (size_t)size, &got, err);
     if (st == CW_OK)
         st = cwi_gltf_check(json, got, err);
@@ -237,8 +237,7 @@ static cw_status check_repeats(const cwi_gltf_reader *r, cw_error *err)
 {
     const size_t count = r->scene.mesh_count;
     drawing *each = cwi_alloc_zeroed(count, sizeof *each), sum = {0};
-    cw_status st =
-        each ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu meshes", count);
+    cw_status st = each ? CW_OK : cwi_fail_memory(err);
     for (size_t i = 0; i < r->instance_count && st == CW_OK; i++) {
         const int mesh = r->instances[i].mesh;
         sum.vertices += each[mesh].vertices;

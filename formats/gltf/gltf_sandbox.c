@@ -131,7 +131,7 @@ static cw_status take_uri(tape *t, char **uri, cw_error *err)
         return CW_OK;
     *uri = cwi_alloc_array((size_t)size + 1, 1);
     if (!*uri)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the scene");
+        return cwi_fail_memory(err);
     take_bytes(t, *uri, (size_t)size);
     (*uri)[size] = '\0';
     return CW_OK;
@@ -144,7 +144,7 @@ static cw_status take_column(tape *t, const column *c, cwi_gltf_scene *s, cw_err
         return cwi_fail(err, CW_ERR_BACKEND, "tinygltf's answer is not valid");
     void *array = cwi_alloc_array((size_t)count, c->size);
     if (!array)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the scene");
+        return cwi_fail_memory(err);
     take_bytes(t, array, (size_t)count * c->size);
     memcpy((char *)s + c->array, &array, sizeof array);
     *(size_t *)(void *)((char *)s + c->count) = (size_t)count;
@@ -270,7 +270,7 @@ static cw_status take_json(const void *shared, char **json, size_t *size, cw_err
     memcpy(size, shared, sizeof *size);
     *json = cwi_alloc_array(*size, 1);
     if (!*json)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the JSON");
+        return cwi_fail_memory(err);
     memcpy(*json, (const char *)shared + sizeof *size, *size);
     return CW_OK;
 }
@@ -296,7 +296,7 @@ cw_status cwi_gltf_make_json(const cwi_gltf_document *document, char **json, siz
         return st;
     st = cwi_sandbox_run(&box, -1, "", 1, err);
     if (st == CW_ERR_BACKEND && !box.open)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "memory ran out while tinygltf made the JSON");
+        st = cwi_fail_memory(err);
     if (st == CW_OK)
         st = take_json(box.shared, json, size, err);
     cwi_sandbox_close(&box);

@@ -17,7 +17,7 @@ template <typename T> cw_status allocate(T *&array, size_t &count, size_t wanted
 {
     array = static_cast<T *>(cwi_alloc_zeroed(wanted, sizeof(T)));
     count = array ? wanted : 0;
-    return array ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the scene");
+    return array ? CW_OK : cwi_fail_memory(err);
 }
 
 cw_status fail_model(cw_error *err, std::string words)
@@ -47,7 +47,7 @@ cw_status copy_buffers(const tinygltf::Value &list, cwi_gltf_scene &scene, cw_er
             continue;
         scene.buffers[i].uri = cwi_strdup(uri.Get<std::string>().c_str());
         if (!scene.buffers[i].uri)
-            st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the scene");
+            st = cwi_fail_memory(err);
     }
     return st;
 }

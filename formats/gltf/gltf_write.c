@@ -150,7 +150,7 @@ static cw_status write_buffer(const cwi_gltf_plan *plan, cwi_mesh_output *out, b
 {
     pipe *p = cwi_alloc_zeroed(1, sizeof *p);
     if (!p)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to write with");
+        return cwi_fail_memory(err);
     p->out = out;
     p->text = text;
     cw_status st = push_buffer(p, plan, err);

@@ -83,7 +83,7 @@ static cw_status read_text(const cwi_input *in, inr *n, cw_error *err)
     size_t got;
     n->text = cwi_alloc_array(MAX_HEADER, 1);
     if (!n->text)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the header");
+        return cwi_fail_memory(err);
     cw_status st = cwi_stream_head(in->fd, n->text, MAX_HEADER, &got, &n->gzipped, err);
     if (st == CW_OK && !cwi_inr_sniff((const unsigned char *)n->text, got))
         return cwi_fail(err, CW_ERR_FORMAT, "the first line is not '%s'", magic);

@@ -77,9 +77,7 @@ static cw_status print_path(const char *folder, size_t folder_length, const char
         fwrite(name, 1, stem_length, text);
         fputs(suffix, text);
     }
-    return cwi_text_close(text, path)
-               ? CW_OK
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of a table of labels");
+    return cwi_text_close(text, path) ? CW_OK : cwi_fail_memory(err);
 }
 
 cw_status cw_label_table_beside(const char *volume_path, char **table_path, cw_error *err)

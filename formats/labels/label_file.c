@@ -62,7 +62,7 @@ static cw_status read_text(cwi_label_file *file, int fd, uint64_t size, cw_error
                         (unsigned long long)size);
     file->bytes = cwi_alloc_array((size_t)size + 1, 1);
     if (!file->bytes)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a table of labels");
+        return cwi_fail_memory(err);
     cw_status st = cwi_input_read_at(fd, 0, file->bytes, (size_t)size, &got, err);
     if (st != CW_OK)
         return st;
@@ -81,14 +81,14 @@ static cw_status parse_json(cwi_label_file *file, cw_error *err)
                         "the file has %zu bytes of JSON; a table of labels has 16 MiB at most",
                         file->size);
     if (!cwi_memory_take(JSON_FACTOR * file->size))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a table of labels");
+        return cwi_fail_memory(err);
     file->json = json_loadb(file->text, file->size, 0, &why);
     if (!file->json)
         cwi_memory_give(JSON_FACTOR * file->size);
     if (file->json)
         return CW_OK;
     return json_error_code(&why) == json_error_out_of_memory
-               ? cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a table of labels")
+               ? cwi_fail_memory(err)
                : cwi_fail(err, CW_ERR_FORMAT, "line %d, column %d: %s", why.line, why.column,
                           why.text);
 }

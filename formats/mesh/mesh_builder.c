@@ -50,7 +50,7 @@ cw_status cwi_mesh_grow(cwi_mesh_input *in, void *array, size_t *room, size_t co
     memcpy(&memory, array, sizeof memory);
     memory = cwi_realloc_array(memory, next, size);
     if (!memory)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu elements of the mesh", count);
+        return cwi_fail_memory(err);
     memcpy(array, &memory, sizeof memory);
     in->bytes += (next - *room) * size;
     *room = next;
@@ -236,7 +236,7 @@ static cw_status shrink_array(void *array, size_t count, size_t size, cw_error *
     memcpy(&memory, array, sizeof memory);
     memory = cwi_realloc_array(memory, count, size);
     if (!memory)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the mesh's arrays");
+        return cwi_fail_memory(err);
     memcpy(array, &memory, sizeof memory);
     return CW_OK;
 }

@@ -292,7 +292,7 @@ static cw_status append_opened(const opened *o, cw_mesh_spool *spool, cw_error *
     piece.triangles = cwi_alloc_array(PIECE, ELEMENT_BYTES);
     cw_status st = CW_OK;
     if (!piece.positions || !piece.triangles || (o->has_normals && !piece.normals))
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a piece of the surface");
+        st = cwi_fail_memory(err);
     if (st == CW_OK)
         st = verify_sum(o, piece.positions, err);
     if (st == CW_OK)

@@ -33,7 +33,7 @@ cw_status cw_mesh_spool_new(const char *path, cw_mesh_spool **out, cw_error *err
     CWI_REQUIRE(err, path, out);
     cw_mesh_spool *s = *out = cwi_alloc_zeroed(1, sizeof *s);
     if (!s)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a spool");
+        return cwi_fail_memory(err);
     cw_status st = CW_OK;
     s->segments = &s->mine;
     s->segment_count = 1;
@@ -41,7 +41,7 @@ cw_status cw_mesh_spool_new(const char *path, cw_mesh_spool **out, cw_error *err
     for (int n = 0; n < CWI_SPOOL_FILES; n++)
         s->mine.files[n] = -1;
     if (!s->folder)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a spool");
+        st = cwi_fail_memory(err);
     for (int n = 0; n < CWI_SPOOL_FILES && st == CW_OK; n++)
         st = cwi_unnamed_open(s->folder, &s->mine.files[n], err);
     cwi_box_clear(s->low, s->high);
@@ -236,7 +236,7 @@ cw_status cwi_spool_open(cwi_spool_reader *r, const cw_mesh_spool *spool, cwi_el
         r->cache = cwi_alloc_zeroed(1, sizeof *r->cache);
     const bool ok = (m->positions || !(vertices || facets)) && (m->triangles || vertices) &&
                     (m->normals || !(vertices && spool->has_normals)) && (r->cache || !facets);
-    return ok ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a piece of the surface");
+    return ok ? CW_OK : cwi_fail_memory(err);
 }
 
 void cwi_spool_read_own(cwi_spool_reader *r)

@@ -234,7 +234,7 @@ cw_status cwi_parts_place(const cw_part *parts, size_t count, const cw_write_des
         return st;
     placed->items = cwi_alloc_zeroed(count, sizeof *placed->items);
     if (!placed->items)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", count);
+        return cwi_fail_memory(err);
     const double *from = desc->local ? parts->mesh->origin : zero;
     for (size_t i = 0; i < count; i++)
         if (parts[i].mesh->triangle_count) {

@@ -75,6 +75,5 @@ cw_status cwi_measure_loss(const cwi_part *part, cw_write_loss *loss, cw_error *
     }
     cwi_free(rounded);
     cwi_free(map);
-    return ok ? CW_OK
-              : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu vertices", count);
+    return ok ? CW_OK : cwi_fail_memory(err);
 }

@@ -192,7 +192,7 @@ cw_status cwi_parts_split(const cwi_mesh_input *in, cw_mesh *mesh, cw_part **par
     cwi_free(s.new);
     *parts = ok ? s.parts : NULL;
     *count = ok ? s.count : 0;
-    return ok ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to take the mesh apart");
+    return ok ? CW_OK : cwi_fail_memory(err);
 }
 
 void cw_parts_free(cw_part *parts, size_t count)

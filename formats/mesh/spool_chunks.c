@@ -47,9 +47,7 @@ static cw_status reserve_vertices(reading *r, size_t count, cw_error *err)
     cwi_free(r->normals);
     r->positions = cwi_alloc_array(r->room, CWI_SPOOL_ELEMENT);
     r->normals = cwi_alloc_array(r->room, CWI_SPOOL_ELEMENT);
-    return r->positions && r->normals
-               ? CW_OK
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", count);
+    return r->positions && r->normals ? CW_OK : cwi_fail_memory(err);
 }
 
 /* Gives away chunk c: its triangles, and the vertices from its lowest to that of the next. */
@@ -83,13 +81,11 @@ cw_status cw_mesh_spool_read(const cw_mesh_spool *spool, cw_chunk_sink sink, cw_
     CWI_REQUIRE(err, spool);
     reading *r = cwi_alloc_zeroed(1, sizeof *r);
     if (!r)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to read a surface back");
+        return cwi_fail_memory(err);
     r->spool = spool;
     r->chunks = (cw_mesh_spool_frame(spool)->triangle_count + CHUNK - 1) / CHUNK;
     r->lowest = cwi_alloc_array(r->chunks, sizeof *r->lowest);
-    cw_status st = r->lowest
-                       ? find_lowest(r, err)
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu chunks", r->chunks);
+    cw_status st = r->lowest ? find_lowest(r, err) : cwi_fail_memory(err);
     for (size_t c = 0; c < r->chunks && st == CW_OK; c++)
         st = give_chunk(r, c, sink, err);
     cwi_free(r->positions);

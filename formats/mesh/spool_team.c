@@ -38,7 +38,7 @@ static cw_status copy_file(int *file, const char *path, size_t elements, const c
     void *piece = cwi_alloc_array(PIECE, CWI_SPOOL_ELEMENT);
     cw_status st = to < 0 ? fail_file("no temporary file", folder, err) : CW_OK;
     if (!piece)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to copy a temporary file");
+        st = cwi_fail_memory(err);
     for (size_t n = 0; n < elements && st == CW_OK; n += PIECE) {
         const size_t count = elements - n < PIECE ? elements - n : PIECE;
         st = cwi_read_elements(*file, n, count, piece, err);
@@ -167,9 +167,7 @@ cw_status cw_mesh_spool_share(cw_mesh_spool *s, const cw_team *team, cw_error *e
     member *mine = cwi_alloc_zeroed(1, sizeof *mine);
     member *members = cwi_alloc_array(count, sizeof *members);
     cwi_spool_segment *segments = cwi_alloc_array(count, sizeof *segments);
-    cw_status st = mine && members && segments
-                       ? CW_OK
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu processes", count);
+    cw_status st = mine && members && segments ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK && s->team)
         st = cwi_fail(err, CW_ERR_ARGUMENT, "a spool that is shared already");
     st = cw_team_agree(team, st, err); /* all are done: files have names for a moment only */

@@ -100,11 +100,7 @@ static cw_status find_front(volume_pass *p, cw_error *err)
 {
     uint32_t *highest = cwi_alloc_array(p->pieces, sizeof *highest);
     p->lowest = cwi_alloc_array(p->pieces + 1, sizeof *p->lowest);
-    cw_status st =
-        highest && p->lowest
-            ? find_ends(p, highest, err)
-            : cwi_fail(err, CW_ERR_NO_MEMORY,
-                       "no memory for the ends of a surface of %zu triangles", p->triangles);
+    cw_status st = highest && p->lowest ? find_ends(p, highest, err) : cwi_fail_memory(err);
     for (size_t n = p->pieces; n-- > 0 && st == CW_OK;) {
         if (n + 1 < p->pieces && p->lowest[n + 1] < p->lowest[n])
             p->lowest[n] = p->lowest[n + 1];
@@ -219,7 +215,7 @@ static cw_status judge_vertices(volume_pass *p, cw_error *err)
     uint8_t *ring = cwi_alloc_zeroed(size, 1);
     uint32_t *links = cwi_alloc_array(PIECE, LINK_BYTES);
     if (!ring || !links)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to judge %zu vertices", p->vertices);
+        st = cwi_fail_memory(err);
     for (size_t end = p->vertices, count; end && st == CW_OK; end -= count) {
         count = (end - 1) % PIECE + 1;
         const size_t at = (end - count) * LINK_BYTES;
@@ -371,7 +367,7 @@ static cw_status begin_copying(const volume_pass *p, copying *c, cw_error *err)
     return c->numbers && c->verdicts && m->positions && m->triangles &&
                    (m->normals || !c->vertices.mesh.normals)
                ? CW_OK
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to number a surface's front");
+               : cwi_fail_memory(err);
 }
 
 static cw_status copy_kept(volume_pass *p, cw_error *err)

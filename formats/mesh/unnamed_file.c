@@ -18,7 +18,7 @@ cw_status cwi_unnamed_open(const char *folder, int *file, cw_error *err)
     if (*file < 0 && (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL)) {
         char *path = cwi_alloc_array(strlen(folder) + sizeof name, 1);
         if (!path)
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of a file");
+            return cwi_fail_memory(err);
         strcpy(path, folder);
         strcat(path, name);
         *file = mkostemp(path, O_CLOEXEC);

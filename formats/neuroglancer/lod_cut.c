@@ -74,12 +74,6 @@ static void find_cells(const cutter *c, int axis, uint32_t low, uint32_t high, u
 
 /* --- growing ----------------------------------------------------------------------------- */
 
-static cw_status fail_memory(const cwi_lod_level *level, cw_error *err)
-{
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu triangles in an octree",
-                    level->piece_count);
-}
-
 static cw_status add_vertex(cutter *c, const uint32_t at[3], uint32_t *vertex, cw_error *err)
 {
     cwi_lod_level *l = c->out;
@@ -89,7 +83,7 @@ static cw_status add_vertex(cutter *c, const uint32_t at[3], uint32_t *vertex, c
         const size_t capacity = l->vertex_capacity + l->vertex_capacity / 2 + 64;
         uint32_t *places = cwi_realloc_array(l->places, capacity, 3 * sizeof *places);
         if (!places)
-            return fail_memory(l, err);
+            return cwi_fail_memory(err);
         l->places = places;
         l->vertex_capacity = capacity;
     }
@@ -109,7 +103,7 @@ static cw_status add_piece(cutter *c, const uint32_t vertex[3], const uint32_t c
         const size_t capacity = l->piece_capacity + l->piece_capacity / 2 + 64;
         cwi_lod_piece *pieces = cwi_realloc_array(l->pieces, capacity, sizeof *pieces);
         if (!pieces)
-            return fail_memory(l, err);
+            return cwi_fail_memory(err);
         l->pieces = pieces;
         l->piece_capacity = capacity;
     }
@@ -229,8 +223,7 @@ static cw_status round_vertices(cutter *c, const cwi_part *part, cw_error *err)
     l->piece_capacity = part->mesh.triangle_count;
     l->pieces = cwi_alloc_array(l->piece_capacity, sizeof *l->pieces);
     if (!l->places || !l->pieces)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu triangles in an octree",
-                        part->mesh.triangle_count);
+        return cwi_fail_memory(err);
     for (size_t v = 0; v < part->mesh.vertex_count; v++) {
         double squares = 0;
         for (int a = 0; a < 3; a++) {
@@ -267,7 +260,7 @@ static cw_status sort_pieces(cwi_lod_level *l, cw_error *err)
         return CW_OK;
     cwi_lod_piece *other = cwi_alloc_array(l->piece_count, sizeof *other);
     if (!other)
-        return fail_memory(l, err);
+        return cwi_fail_memory(err);
     for (int shift = 0; shift < 3 * NODE_BITS && used >> shift; shift += RADIX_BITS) {
         cwi_lod_piece *from = l->pieces;
         sort_by_bits(from, l->piece_count, shift, other);

@@ -34,11 +34,6 @@ typedef struct writer {
 
 /* --- fragments --------------------------------------------------------------------------- */
 
-static cw_status fail_memory(size_t count, cw_error *err)
-{
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a fragment of %zu triangles", count);
-}
-
 /* Gives the corners of a node's triangles numbers of places, counted from the node's corner. */
 static cw_status number_corners(const writer *w, const cwi_lod_level *level, size_t first,
                                 cwi_places *places, cw_mesh *mesh, cw_error *err)
@@ -52,7 +47,7 @@ static cw_status number_corners(const writer *w, const cwi_lod_level *level, siz
                     node[a] * cwi_lod_steps(&w->grid);
         mesh->triangles[i] = cwi_places_add(places, cwi_place_key(at));
         if (mesh->triangles[i] == CWI_NO_PLACE)
-            return fail_memory(mesh->triangle_count, err);
+            return cwi_fail_memory(err);
     }
     return CW_OK;
 }
@@ -67,7 +62,7 @@ static cw_status place_vertices(const cwi_places *places, cw_mesh *mesh, cw_erro
         mesh->triangles[i] = cwi_places_add(&used, places->keys[mesh->triangles[i]]);
         if (mesh->triangles[i] == CWI_NO_PLACE) {
             cwi_places_free(&used);
-            return fail_memory(mesh->triangle_count, err);
+            return cwi_fail_memory(err);
         }
     }
     mesh->vertex_count = used.count;
@@ -78,7 +73,7 @@ static cw_status place_vertices(const cwi_places *places, cw_mesh *mesh, cw_erro
             mesh->positions[3 * v + a] = (float)at[a];
     }
     cwi_places_free(&used);
-    return mesh->positions ? CW_OK : fail_memory(mesh->triangle_count, err);
+    return mesh->positions ? CW_OK : cwi_fail_memory(err);
 }
 
 /* Makes the mesh of the pieces of one node. It has no triangles if all of them cancel out. */
@@ -89,9 +84,9 @@ static cw_status make_fragment(const writer *w, const cwi_lod_level *level, size
     mesh->triangle_count = count;
     mesh->triangles = cwi_alloc_array(count, 3 * sizeof *mesh->triangles);
     cw_status st = mesh->triangles ? number_corners(w, level, first, &places, mesh, err)
-                                   : fail_memory(count, err);
+                                   : cwi_fail_memory(err);
     if (st == CW_OK && !cwi_lod_cancel(mesh, places.keys))
-        st = fail_memory(count, err);
+        st = cwi_fail_memory(err);
     if (st == CW_OK && mesh->triangle_count)
         st = place_vertices(&places, mesh, err);
     cwi_places_free(&places);
@@ -139,7 +134,7 @@ static cw_status write_nodes(writer *w, const cwi_lod_level *level, const cwi_pa
     cw_status st = CW_OK;
     nodes->items = cwi_alloc_array(count_nodes(level), sizeof *nodes->items);
     if (!nodes->items)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the nodes of an octree");
+        return cwi_fail_memory(err);
     const uint64_t before = w->done;
     for (size_t i = 0, end; i < level->piece_count && st == CW_OK; i = end) {
         node_entry *entry = &nodes->items[nodes->count];
@@ -161,7 +156,7 @@ static cw_status add_parents(const level_nodes *finer, level_nodes *nodes, cw_er
     size_t count = 0, own = 0;
     node_entry *all = cwi_alloc_array(finer->count + nodes->count, sizeof *all);
     if (!all)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the nodes of an octree");
+        return cwi_fail_memory(err);
     for (size_t i = 0; i < finer->count; i++) {
         const uint32_t parent = finer->items[i].code >> 3;
         while (own < nodes->count && nodes->items[own].code <= parent)
@@ -236,7 +231,7 @@ static cw_status write_manifest(writer *w, const char *name, const level_nodes *
         words += 4 * levels[l].count;
     unsigned char *bytes = cwi_alloc_array(words, 4), *to = bytes;
     if (!bytes)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a manifest");
+        return cwi_fail_memory(err);
     to = cwi_put_f32x3(to, shape);
     to = cwi_put_f32x3(to, zeros); /* the origin is in the transform, in double precision */
     to = cwi_put_u32(to, (uint32_t)count);
@@ -261,8 +256,7 @@ static cw_status write_segment(writer *w, const cwi_segment *segment, cw_error *
     size_t count = 0;
     level_nodes *levels = cwi_alloc_zeroed(segment->level_count, sizeof *levels);
     if (!levels)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu levels",
-                        segment->level_count);
+        return cwi_fail_memory(err);
     snprintf(name, sizeof name, "%u", segment->id);
     cw_status st = cwi_outfolder_begin(w->out->folder, name, err);
     for (size_t l = 0; l < segment->level_count && st == CW_OK && count == l; l++) {

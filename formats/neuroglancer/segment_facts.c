@@ -33,7 +33,7 @@ static cw_status check_ids(const cwi_segments *s, cw_error *err)
     cw_status st = CW_OK;
     uint32_t *ids = cwi_alloc_array(s->count, sizeof *ids);
     if (!ids)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu segments", s->count);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < s->count; n++)
         ids[n] = s->items[n].id;
     qsort(ids, s->count, sizeof *ids, compare_ids);
@@ -55,7 +55,7 @@ cw_status cwi_segments_list(const cwi_parts *parts, cwi_segments *segments, cw_e
     size_t labels = 0;
     *segments = (cwi_segments){.items = cwi_alloc_zeroed(parts->count, sizeof(cwi_segment))};
     if (!segments->items)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu segments", parts->count);
+        return cwi_fail_memory(err);
     for (size_t p = 0; p < parts->count; p++) {
         const cwi_part *part = &parts->items[p];
         labels += part->label != NULL;
@@ -146,7 +146,7 @@ static cw_status save_text(cwi_outfolder *folder, const char *name, FILE *out, c
                            cw_error *err)
 {
     if (!cwi_text_close(out, text))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the file '%s'", name);
+        return cwi_fail_memory(err);
     cw_status st = cwi_outfolder_save(folder, name, *text, strlen(*text), err);
     free(*text);
     return st;
@@ -249,7 +249,7 @@ cw_status cwi_segment_properties_write(cwi_outfolder *folder, const cwi_segments
     bool is_closed = true;
     facts *measured = cwi_alloc_array(segments->count, sizeof *measured);
     if (!measured)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu segments", segments->count);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < segments->count; n++) {
         measured[n] = measure_part(segments->items[n].levels);
         is_closed = is_closed && measured[n].is_closed;

@@ -61,7 +61,7 @@ static cw_status read_table(cwi_stream *stream, size_t size, cw_label_table *tab
     bool is_complete = false;
     char *text = cwi_alloc_array(size + 1, 1);
     if (!text)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the names of labels");
+        return cwi_fail_memory(err);
     cw_status st = read_some(stream, text, size, &is_complete, err);
     text[size] = '\0';
     if (st == CW_OK && is_complete)

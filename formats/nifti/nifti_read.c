@@ -274,7 +274,7 @@ static cw_status name_image(const cwi_input *in, cwi_source *src, cw_error *err)
     const char *slash = strrchr(in->path, '/');
     char *name = cwi_strdup(slash ? slash + 1 : in->path);
     if (!name)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a file name");
+        return cwi_fail_memory(err);
     const bool lower = cwi_has_extension(name, ".hdr .hdr.gz");
     char *extension = NULL;
     for (char *s = name; lower && (s = strstr(s, ".hdr")); s++)

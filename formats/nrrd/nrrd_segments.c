@@ -50,7 +50,7 @@ static cw_status add_key(cwi_nrrd *n, const cwi_nrrd_segment_key *key, cw_error 
         cwi_nrrd_segment_key *keys =
             cwi_realloc_array(n->segment_keys, count ? 2 * count : 1, sizeof *keys);
         if (!keys)
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the names of segments");
+            return cwi_fail_memory(err);
         n->segment_keys = keys;
     }
     n->segment_keys[n->segment_key_count++] = *key;

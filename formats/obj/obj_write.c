@@ -57,7 +57,7 @@ static cw_status write_materials(const cwi_parts *parts, cwi_mesh_output *out, c
     const size_t length = dot && dot != name ? (size_t)(dot - out->path) : strlen(out->path);
     char *path = cwi_alloc_array(length + sizeof ".mtl", 1), material[MATERIAL_BYTES];
     if (!path)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of its materials");
+        return cwi_fail_memory(err);
     memcpy(path, out->path, length);
     memcpy(path + length, ".mtl", sizeof ".mtl");
     cw_status st = cwi_outfile_open(&out->side, path, out->desc->no_clobber, err);

@@ -250,7 +250,7 @@ cw_status cwi_ply_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
 {
     ply *p = cwi_alloc_zeroed(1, sizeof *p);
     if (!p)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the header");
+        return cwi_fail_memory(err);
     p->build.in = in;
     cw_status st = cwi_ply_parse(&in->file, &p->header, said, err);
     if (st == CW_OK)

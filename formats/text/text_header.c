@@ -26,7 +26,7 @@ cw_status cwi_lines_open(cwi_lines *lines, const cwi_input *in, cw_error *err)
     const size_t size = lines->cut ? MAX_HEADER : (size_t)in->size;
     lines->text = cwi_alloc_array(size + 1, 1);
     if (!lines->text)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the header");
+        return cwi_fail_memory(err);
     cw_status st = cwi_input_read_at(in->fd, 0, lines->text, size, &lines->size, err);
     lines->end = find_line_end(lines->text, lines->size);
     return st;

@@ -16,7 +16,7 @@ cw_status cwi_scan_open(cwi_scan *s, const cwi_input *in, uint64_t offset,
     *s = (cwi_scan){.in = in, .progress = progress, .offset = offset, .line = 1};
     s->text = cwi_alloc_array(HELD + 1, 1);
     if (!s->text)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to read with");
+        return cwi_fail_memory(err);
     s->text[0] = '\0';
     return CW_OK;
 }

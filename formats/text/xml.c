@@ -183,7 +183,7 @@ static cw_status fail_xml(const cwi_xml *x)
     if (x->status != CW_OK)
         return x->status;
     if (code == XML_ERROR_NO_MEMORY)
-        return cwi_fail(x->err, CW_ERR_NO_MEMORY, "no memory to read XML with");
+        return cwi_fail_memory(x->err);
     return cwi_fail(x->err, CW_ERR_FORMAT, "line %lu is not XML: %s",
                     (unsigned long)XML_GetCurrentLineNumber64(x->expat), XML_ErrorString(code));
 }
@@ -227,7 +227,7 @@ cw_status cwi_xml_read(const cwi_xml_rules *rules, void *user, cwi_xml_source *s
                  .err = err,
                  .expat = XML_ParserCreate_MM("UTF-8", &memory, NULL)};
     if (!x.expat)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to read XML with");
+        return cwi_fail_memory(err);
     XML_SetUserData(x.expat, &x);
     XML_SetElementHandler(x.expat, on_start, on_end);
     XML_SetStartDoctypeDeclHandler(x.expat, on_doctype);

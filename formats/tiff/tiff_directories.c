@@ -218,7 +218,7 @@ cw_status cwi_tiff_walk(cwi_tiff_file *f, cw_error *err)
         if (f->offset_count == CWI_TIFF_MAX_PAGES)
             return cwi_fail(err, CW_ERR_LIMIT, "more than %d pages", CWI_TIFF_MAX_PAGES);
         if (!add_offset(f, at, &room))
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the places of pages");
+            return cwi_fail_memory(err);
         if ((f->offset_count & (f->offset_count - 1)) == 0)
             mark = at;
         st = pass_directory(f, &at, f->offset_count, err);

@@ -293,7 +293,7 @@ static cw_status fail_xml(const parsing *p)
     if (p->status != CW_OK)
         return p->status;
     if (code == XML_ERROR_NO_MEMORY)
-        return cwi_fail(p->err, CW_ERR_NO_MEMORY, "no memory to read XML with");
+        return cwi_fail_memory(p->err);
     return cwi_fail(p->err, CW_ERR_FORMAT, "line %lu of the OME-XML is not XML: %s",
                     (unsigned long)XML_GetCurrentLineNumber64(p->expat), XML_ErrorString(code));
 }
@@ -331,7 +331,7 @@ cw_status cwi_tiff_ome(const cwi_tiff_file *f, const char *xml, cwi_tiff_facts *
                         LONGEST);
     p.expat = XML_ParserCreate_MM(NULL, &memory, NULL);
     if (!p.expat)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to read XML with");
+        return cwi_fail_memory(err);
     XML_SetUserData(p.expat, &p);
     XML_SetElementHandler(p.expat, on_start, on_end);
     XML_SetStartDoctypeDeclHandler(p.expat, on_doctype);

@@ -29,9 +29,7 @@ cw_status cwi_tiff_make_room(unsigned char **buffer, size_t *room, uint64_t byte
     cwi_free(*buffer);
     *buffer = cwi_alloc_array(bytes, 1);
     *room = *buffer ? bytes : 0;
-    return *buffer ? CW_OK
-                   : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %llu bytes of pixels",
-                              (unsigned long long)bytes);
+    return *buffer ? CW_OK : cwi_fail_memory(err);
 }
 
 /* --- uncompressed data -------------------------------------------------------------------- */

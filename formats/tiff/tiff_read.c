@@ -102,7 +102,7 @@ static cw_status take_facts(cwi_planes *planes, int fd, uint64_t file_bytes, cwi
     const size_t count = planes_of(f);
     *order = cwi_alloc_array(count, sizeof **order);
     if (!*order)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu pages", count);
+        return cwi_fail_memory(err);
     memcpy(*order, (const char *)shared + sizeof *f, count * sizeof **order);
     for (size_t i = 0; i < count; i++)
         if ((*order)[i] >= f->page_count)
@@ -164,9 +164,7 @@ static cw_status make_room(cwi_stack *stack, size_t planes, size_t slots, cw_err
     stack->slots = cwi_alloc_zeroed(slots, sizeof *stack->slots);
     stack->plane_count = planes;
     stack->slot_count = slots;
-    return stack->planes && stack->slots
-               ? CW_OK
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slices", slots);
+    return stack->planes && stack->slots ? CW_OK : cwi_fail_memory(err);
 }
 
 static int by_plane(const void *x, const void *y)
@@ -329,7 +327,7 @@ static cw_status lay_slices(const slices *s, cwi_slices *laid, cw_error *err)
 {
     double *places = cwi_alloc_array(s->files.count, sizeof *places);
     if (!places)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu places", s->files.count);
+        return cwi_fail_memory(err);
     cw_status st = find_places(s, places, err);
     if (st == CW_OK)
         st = cwi_slices_lay(places, s->files.count, "in their numbers", s->desc->gaps, laid,

@@ -117,7 +117,7 @@ static cw_status open_file(cwi_tiff_file *f, int fd, uint64_t size, cw_error *er
     f->pages = cwi_alloc_array(f->offset_count, sizeof *f->pages);
     if (!options || !f->pages) {
         TIFFOpenOptionsFree(options);
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %u pages", f->offset_count);
+        return cwi_fail_memory(err);
     }
     TIFFOpenOptionsSetMaxSingleMemAlloc(options, AT_ONCE);
     TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, f);

@@ -178,7 +178,7 @@ static cw_status make_grid(const cwi_vdb_grid *g, bool header, cw_volume *v, cw_
         sizeof(cw_sparse) + tiles * sizeof(cw_tile) + leaves * sizeof(uint32_t[3]), 1);
     v->owned_grid = memory;
     if (!memory)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", leaves);
+        return cwi_fail_memory(err);
     cw_sparse *s = v->owned_grid;
     s->leaf_count = g->leaf_count;
     s->tile_count = g->tile_count;
@@ -205,7 +205,7 @@ static cw_status read_voxels(cwi_planes *planes, uint32_t plane, cw_volume *v, c
     v->data = v->owned = cwi_alloc_large(count, leaf);
     return v->owned
                ? cwi_planes_read(planes, plane + CWI_VDB_VOXELS, 0, count, leaf, v->owned, err)
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", count);
+               : cwi_fail_memory(err);
 }
 
 static cw_status read_chosen(cwi_planes *planes, const cwi_input *in, const cwi_vdb_facts *f,
@@ -270,7 +270,7 @@ cw_status cwi_vdb_read(const cwi_input *in, const cw_read_desc *desc, cw_volume 
     cw_read_desc boxed = *desc;
     boxed.max_bytes = most < stated ? most : stated;
     cw_status st = facts ? cwi_planes_open(&planes, "openvdb", "OpenVDB", &boxed, err)
-                         : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for facts");
+                         : cwi_fail_memory(err);
     if (st == CW_OK)
         st = judge_memory(take_facts(&planes, in, facts, err), boxed.max_bytes, in->size, err);
     if (st == CW_OK)

@@ -39,9 +39,7 @@ static cw_status prepare_module(void *state, cw_error *err)
     if (st != CW_OK)
         return st;
     planes->state = planes->functions->state_new();
-    return planes->state
-               ? CW_OK
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the module %s", planes->module);
+    return planes->state ? CW_OK : cwi_fail_memory(err);
 }
 
 static cw_status work_on_request(void *state, int fd, const void *request, void *shared,

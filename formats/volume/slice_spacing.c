@@ -86,7 +86,7 @@ static cw_status lay_row(const double *places, size_t count, double steps, cwi_s
     s->step = (places[count - 1] - places[0]) / steps;
     s->items = cwi_alloc_array(s->count, sizeof *s->items);
     if (!s->items)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slices", s->count);
+        return cwi_fail_memory(err);
     for (size_t k = 0, low = 0; k < s->count; k++) {
         s->items[k] = slice_at(places, count, &low, places[0] + (double)k * s->step, s->step);
         s->made += s->items[k].t > 0;
@@ -101,7 +101,7 @@ static cw_status lay_as_even(const double *places, size_t count, cwi_slices *s, 
     s->step = count > 1 ? (places[count - 1] - places[0]) / (double)(count - 1) : 0;
     s->items = cwi_alloc_array(count, sizeof *s->items);
     if (!s->items)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slices", count);
+        return cwi_fail_memory(err);
     for (size_t k = 0; k < count; k++)
         s->items[k] = (cwi_slice){k, k, 0};
     return CW_OK;
@@ -136,7 +136,7 @@ cw_status cwi_slices_lay(const double *places, size_t count, const char *unit, c
         return lay_as_even(places, count, slices, err);
     double *sorted = measure_distances(places, count);
     if (!sorted)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slices", count);
+        return cwi_fail_memory(err);
     const double steps = find_row(places, count, sorted, unit, slices);
     cwi_free(sorted);
     if (gaps == CW_GAPS_STOP)

@@ -214,9 +214,7 @@ static cw_status alloc_planes(reading *r, cw_error *err)
     r->pixels = r->box.count[0] * r->box.count[1] * s->samples;
     r->low = cwi_alloc_array(r->box.count[1], row);
     r->high = cwi_alloc_array(r->box.count[1], row);
-    return r->low && r->high ? CW_OK
-                             : cwi_fail(err, CW_ERR_NO_MEMORY,
-                                        "no memory for planes of %zu pixels", r->pixels);
+    return r->low && r->high ? CW_OK : cwi_fail_memory(err);
 }
 
 /* Loads the voxels; `v` is the shape of the wanted part. */
@@ -228,7 +226,7 @@ static cw_status load_voxels(cw_volume v, size_t bytes, reading *r, const cw_rea
     v.owned = cwi_alloc_large(bytes, 1);
     r->voxels = v.owned;
     if (st == CW_OK && !v.owned)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of voxels", bytes);
+        st = cwi_fail_memory(err);
     else if (st == CW_OK && s->sparse)
         fill_voxels(s, r->voxels, bytes);
     if (st == CW_OK)

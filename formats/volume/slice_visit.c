@@ -42,7 +42,7 @@ static cw_status visit_component(cwi_slice_visit *v, const cw_slice_source *all,
     };
     cw_slice_source one = {.shape = all->shape, .read = read_component, .user = &c};
     if (!c.slice)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a slice");
+        return cwi_fail_memory(err);
     one.shape.components = 1;
     one.shape.component_stride = 0;
     memset(one.shape.stride, 0, sizeof one.shape.stride);

@@ -23,9 +23,7 @@ static cw_status rows_open(rows *r, const cw_volume *v, bool components_last, cw
         (r->components == 1 || v->component_stride == (ptrdiff_t)size))
         return CW_OK;
     r->buffer = cwi_alloc_array(r->bytes, 1);
-    return r->buffer
-               ? CW_OK
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of voxels", r->bytes);
+    return r->buffer ? CW_OK : cwi_fail_memory(err);
 }
 
 static const void *gather_row(const rows *r, const char *first)

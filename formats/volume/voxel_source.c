@@ -281,8 +281,7 @@ static cw_status load_voxels(const cwi_source *src, const cwi_source *wanted,
     cw_volume v = wanted->shape;
     v.owned = cwi_alloc_large(wanted->bytes, 1);
     if (!v.owned)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of %s", wanted->bytes,
-                        cwi_source_noun(wanted));
+        return cwi_fail_memory(err);
     v.data = v.owned;
     cwi_part_reading r = {.src = src, .progress = &desc->progress, .to = v.owned};
     choose_steps(src, desc, step, &fastest);

@@ -58,13 +58,13 @@ static cw_status add_entry(parsing *p, const char *name, double time, cw_error *
         const size_t capacity = p->capacity ? 2 * p->capacity : 16;
         cw_pvd_entry *entries = cwi_realloc_array(p->entries, capacity, sizeof *entries);
         if (!entries)
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a list of files");
+            return cwi_fail_memory(err);
         p->entries = entries;
         p->capacity = capacity;
     }
     char *path = path_of(p->in, name);
     if (!path)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a list of files");
+        return cwi_fail_memory(err);
     p->entries[p->count++] = (cw_pvd_entry){path, time};
     return CW_OK;
 }

@@ -48,7 +48,7 @@ static cw_status take_coordinates(const cw_volume numbers[3], bool of_cells, cw_
     double *to =
         cwi_alloc_array(numbers[0].dim[0] + numbers[1].dim[0] + numbers[2].dim[0], sizeof *to);
     if (!to)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for coordinates");
+        return cwi_fail_memory(err);
     cw_status st = CW_OK;
     shape->owned_grid = to;
     for (int a = 0; a < 3 && st == CW_OK; to += numbers[a++].dim[0]) {

@@ -387,7 +387,7 @@ cw_status cwi_vtp_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
 {
     vtp *v = cwi_alloc_zeroed(1, sizeof *v);
     if (!v)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the header");
+        return cwi_fail_memory(err);
     v->in = v->build.in = in;
     v->mesh = mesh;
     v->said = said;

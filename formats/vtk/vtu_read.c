@@ -85,7 +85,7 @@ static cw_status grow_pieces(parsing *p, cw_error *err)
     cwi_grid_piece *grid = cwi_realloc_array(p->grid, room, sizeof *grid);
     p->grid = grid ? grid : p->grid;
     if (!pieces || !grid)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu pieces", room);
+        return cwi_fail_memory(err);
     p->room = room;
     return CW_OK;
 }

@@ -311,7 +311,7 @@ cw_status cwi_zarr_read_box(cwi_zarr *z, const cwi_zarr_box *box, void *to,
         return st;
     b.scratch = cwi_alloc_zeroed((size_t)threads, sizeof *b.scratch);
     if (!b.scratch)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to read with");
+        return cwi_fail_memory(err);
     z->call++;
     drop_rows(z, b.first_chunk[CWI_AXIS_Z]);
     st = cwi_each_layer(chunks, z->array.chunk_bytes / z->array.stored_bytes, z->threads,

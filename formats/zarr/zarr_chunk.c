@@ -36,8 +36,7 @@ static cw_status decode_part(const cwi_zarr_array *a, int fd, uint64_t offset, u
         *to = cwi_alloc_large(a->chunk_bytes, 1);
     unsigned char *packed = a->chain.count ? cwi_alloc_array((size_t)size, 1) : *to;
     if (!*to || !packed)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a chunk of %zu bytes",
-                      a->chunk_bytes);
+        st = cwi_fail_memory(err);
     if (st == CW_OK)
         st = cwi_input_read_at(fd, offset, packed, (size_t)size, &got, err);
     if (st == CW_OK && got < size)
@@ -95,7 +94,7 @@ static cw_status read_index(const cwi_zarr_array *a, cwi_zarr_shard *shard, cw_e
     shard->index = cwi_alloc_array(a->shard_count, 16);
     cw_status st = CW_OK;
     if (!text || !shard->index)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the index of a shard");
+        st = cwi_fail_memory(err);
     if (st == CW_OK)
         st = cwi_input_read_at(shard->fd, a->index_at_start ? 0 : shard->size - packed, text,
                                packed, &got, err);
@@ -131,7 +130,7 @@ static cw_status take_shard(cwi_zarr *z, const char *name, uint64_t key, cwi_zar
         z->shards = cwi_alloc_zeroed(z->shard_slots, sizeof *z->shards);
     cwi_zarr_shard *s = z->shards ? find_place(z, key) : NULL;
     if (!s)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for open shards");
+        st = cwi_fail_memory(err);
     if (s && s->key != key) {
         close_shard(s);
         st = cwi_input_find_side(&z->in, name, &s->fd, &s->size, err);

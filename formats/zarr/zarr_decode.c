@@ -182,7 +182,7 @@ static cw_status decode_codec(cwi_zarr_codec codec, const unsigned char *packed,
         break;
     }
     if (starved)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a chunk of %zu bytes", capacity);
+        return cwi_fail_memory(err);
     if (!fine && codec == CWI_ZARR_CRC32C)
         return cwi_fail(err, CW_ERR_FORMAT, "a chunk is damaged: its checksum is wrong");
     return fine ? CW_OK
@@ -214,8 +214,7 @@ static cw_status decode_stages(const cwi_zarr_chain *chain, size_t size, stages 
         cwi_free(*to);
         *to = cwi_alloc_array(capacity, 1);
         if (!*to)
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a chunk of %zu bytes",
-                            capacity);
+            return cwi_fail_memory(err);
         cw_status st =
             decode_codec(chain->codecs[n - 1], s->from, s->from_size, *to, capacity, &got, err);
         if (st != CW_OK)

@@ -17,14 +17,14 @@ static cw_status parse_text(cwi_zarr_json *json, const char *text, size_t size, 
     json_error_t why;
     const size_t bytes = JSON_FACTOR * size;
     if (!cwi_memory_take(bytes))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of JSON", size);
+        return cwi_fail_memory(err);
     json->root = json_loadb(text, size, JSON_DECODE_INT_AS_REAL, &why);
     if (json->root)
         json->taken = bytes;
     else
         cwi_memory_give(bytes);
     if (!json->root && json_error_code(&why) == json_error_out_of_memory)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of JSON", size);
+        return cwi_fail_memory(err);
     if (!json->root)
         return cwi_fail(err, CW_ERR_FORMAT, "line %d, column %d: %s", why.line, why.column,
                         why.text);
@@ -42,8 +42,7 @@ static cw_status load_file(cwi_zarr_json *json, int fd, uint64_t size, cw_error 
                         (unsigned long long)size);
     char *text = cwi_alloc_array((size_t)size, 1);
     if (!text)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %llu bytes of metadata",
-                        (unsigned long long)size);
+        return cwi_fail_memory(err);
     cw_status st = cwi_input_read_at(fd, 0, text, (size_t)size, &got, err);
     if (st == CW_OK)
         st = parse_text(json, text, got, err);

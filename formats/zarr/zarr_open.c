@@ -275,7 +275,7 @@ static cw_status open_store(cwi_zarr *z, const char *path, cw_error *err)
                                         ".zmetadata"};
     z->path = cwi_strdup(path);
     if (!z->path)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a path");
+        return cwi_fail_memory(err);
     if (cwi_is_folder(path))
         return cwi_input_open_folder(&z->in, z->path, err);
     cw_status st = cwi_input_open(&z->in, z->path, err);
@@ -305,8 +305,7 @@ static cw_status make_caches(cwi_zarr *z, size_t bytes, cw_error *err)
     const size_t places = CWI_ZARR_INDEX_BYTES / index_bytes;
     z->shard_slots = (places < CWI_ZARR_SHARDS ? places : CWI_ZARR_SHARDS) + threads;
     z->spare = cwi_alloc_zeroed(z->slot_count, sizeof *z->spare);
-    return z->slots && z->spare ? CW_OK
-                                : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a cache");
+    return z->slots && z->spare ? CW_OK : cwi_fail_memory(err);
 }
 
 cw_status cwi_zarr_open_found(const char *path, const cwi_zarr_desc *desc,
@@ -315,7 +314,7 @@ cw_status cwi_zarr_open_found(const char *path, const cwi_zarr_desc *desc,
     cwi_zarr *z = cwi_alloc_zeroed(1, sizeof *z);
     *zarr = NULL;
     if (!z)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a Zarr store");
+        return cwi_fail_memory(err);
     pthread_mutex_init(&z->lock, NULL);
     z->threads = desc->threads;
     cw_status st = open_store(z, path, err);

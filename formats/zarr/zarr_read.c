@@ -127,7 +127,7 @@ static cw_status load_volume(cwi_zarr *zarr, const cw_read_desc *desc, cw_volume
     }
     v.owned = cwi_alloc_large(bytes, 1);
     if (!v.owned)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of voxels", bytes);
+        return cwi_fail_memory(err);
     v.data = v.owned;
     st = cwi_zarr_read_box(zarr, &box, v.owned, &desc->progress, err);
     if (st == CW_OK)
@@ -176,7 +176,7 @@ cw_status cwi_zarr_levels(const cwi_input *in, const cw_read_desc *desc, cw_leve
     const size_t all = st == CW_OK ? zarr->level_count : 0;
     cw_level *list = all ? cwi_alloc_zeroed(all, sizeof *list) : NULL;
     if (all && !list)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a list of levels");
+        st = cwi_fail_memory(err);
     for (size_t n = 0; st == CW_OK && n < all; n++) {
         if (n > 0) {
             cwi_zarr_close(zarr);

@@ -130,9 +130,7 @@ static cw_status find_normals(cwi_passes *p, cw_error *err)
     if (ok)
         add_normals(p, seen);
     cwi_free(seen);
-    return ok ? CW_OK
-              : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the normals of %zu vertices",
-                         m->vertex_count);
+    return ok ? CW_OK : cwi_fail_memory(err);
 }
 
 cw_status cwi_passes_limits(const cwi_passes *p, const cw_mesh *m, double **limits,
@@ -143,8 +141,7 @@ cw_status cwi_passes_limits(const cwi_passes *p, const cw_mesh *m, double **limi
         return CW_OK;
     *limits = cwi_alloc_array(m->triangle_count, sizeof **limits);
     if (!*limits)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu triangles",
-                        m->triangle_count);
+        return cwi_fail_memory(err);
     for (size_t t = 0; t < m->triangle_count; t++)
         (*limits)[t] = fmin(p->error, limit_of(p, m, t, 0));
     return CW_OK;
@@ -159,8 +156,7 @@ static cw_status allow_distances(cwi_passes *p, cw_error *err)
         return CW_OK;
     p->allowed = cwi_alloc_array(m->vertex_count, sizeof *p->allowed);
     if (!p->allowed)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu vertices",
-                        m->vertex_count);
+        return cwi_fail_memory(err);
     for (size_t v = 0; v < m->vertex_count; v++)
         p->allowed[v] = (float)p->block_desc.error;
     for (size_t t = 0; t < m->triangle_count; t++) {
@@ -196,8 +192,7 @@ cw_status cwi_passes_remember(cwi_passes *p, const cw_mesh *input, cw_error *err
     p->care = cwi_alloc_zeroed(vertices, sizeof *p->care);
     p->lists = cwi_alloc_array(vertices, sizeof *p->lists);
     if (!p->first || !p->around || !p->across || !p->next || !p->care || !p->lists)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu triangles",
-                        input->triangle_count);
+        return cwi_fail_memory(err);
     cwi_fans_sort(input->triangles, input->triangle_count, vertices, p->first, p->around);
     look_across(p);
     for (size_t v = 0; v < vertices; v++)
@@ -221,8 +216,7 @@ cw_status cwi_passes_list(cwi_passes *p, cwi_mesh_block *b, cw_error *err)
 {
     b->lists = cwi_alloc_array(b->triangles, sizeof *b->lists);
     if (!b->lists)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu triangles",
-                        b->triangles);
+        return cwi_fail_memory(err);
     memset(b->lists, 0xff, b->triangles * sizeof *b->lists);
     for (size_t c = 0; c < 3 * b->triangles; c++) {
         const uint32_t point = b->corners[c];
@@ -342,7 +336,7 @@ static cw_status judge_part(const cwi_passes *p, const cwi_block_part *x, bool *
     uint8_t *near = cwi_alloc_zeroed(x->left->vertices, 1);
     cw_status st = input_beyond && beyond && near
                        ? cwi_block_part_prove(p, x, input_beyond, beyond, err)
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error");
+                       : cwi_fail_memory(err);
     if (st == CW_OK) {
         const size_t broken = mark_input(p, x, input_beyond) + mark_result(p, x, beyond, near);
         *kept = broken == 0;
@@ -499,7 +493,7 @@ static cw_status run_crew(crew *c, cw_error *err)
     c->errors = cwi_alloc_zeroed(c->count, sizeof *c->errors);
     c->repeats = cwi_alloc_zeroed(c->count, sizeof *c->repeats);
     if (!c->left || !c->decimaters || !c->statuses || !c->errors || !c->repeats)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu blocks", c->count);
+        return cwi_fail_memory(err);
     c->cost = INFINITY;
     cw_status st = c->target ? run_to_target(c, err) : CW_OK;
     return st == CW_OK && c->passes->next ? each_block(c, keep_block, err) : st;
@@ -602,9 +596,7 @@ static cw_status restore_limits(const cwi_mesh_block *whole, cwi_mesh_block *joi
     const size_t more = whole->triangles - whole->own;
     float *points = cwi_alloc_array(9 * more, sizeof *points);
     joined->held = cwi_alloc_zeroed(joined->vertices, sizeof *joined->held);
-    cw_status st = points && joined->held
-                       ? CW_OK
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify seams");
+    cw_status st = points && joined->held ? CW_OK : cwi_fail_memory(err);
     for (size_t c = 0; c < 3 * more && st == CW_OK; c++)
         memcpy(points + 3 * c, whole->points + 3 * (size_t)whole->corners[3 * whole->own + c],
                3 * sizeof *points);

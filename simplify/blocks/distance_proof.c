@@ -21,11 +21,6 @@ enum { CHUNK = 512 };
 
 static const uint32_t NOT_KNOWN = UINT32_MAX;
 
-static cw_status no_memory(cw_error *err)
-{
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error");
-}
-
 /* Triangles of a mesh, a surface, and where walks to them begin there. */
 typedef struct walks {
     const cw_mesh *mesh;
@@ -99,7 +94,7 @@ static cw_status make_boxes(const walks *w, const cw_mesh *mesh, cwi_boxes *tree
 {
     float(*boxes)[6] = cwi_alloc_array(mesh->triangle_count, sizeof *boxes);
     if (!boxes)
-        return no_memory(err);
+        return cwi_fail_memory(err);
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         cwi_boxes_triangle(mesh->positions, mesh->triangles + 3 * t, boxes[t]);
         for (int a = 0; a < 3; a++) {
@@ -127,7 +122,7 @@ static cw_status take_near(const walks *w, const cw_mesh *mesh, const cw_mesh *r
     cwi_boxes tree = {0};
     uint32_t *chosen = cwi_alloc_array(reference->triangle_count, sizeof *chosen);
     size_t count = 0;
-    cw_status st = chosen ? make_boxes(w, mesh, &tree, err) : no_memory(err);
+    cw_status st = chosen ? make_boxes(w, mesh, &tree, err) : cwi_fail_memory(err);
     for (size_t t = 0; t < reference->triangle_count && st == CW_OK; t++) {
         float box[6];
         bool found = false;
@@ -149,7 +144,7 @@ static cw_status search_near(const cwi_passes *p, const walks *w, const uint32_t
     cw_mesh mesh = {0}, near = {0};
     double *limits = w->limits ? cwi_alloc_array(count, sizeof *limits) : NULL;
     uint8_t *beyond = cwi_alloc_array(count, 1);
-    cw_status st = beyond && !limits == !w->limits ? CW_OK : no_memory(err);
+    cw_status st = beyond && !limits == !w->limits ? CW_OK : cwi_fail_memory(err);
     for (size_t n = 0; n < count && limits; n++)
         limits[n] = w->limits[unproven[n]];
     if (st == CW_OK)
@@ -172,7 +167,7 @@ static cw_status search_unproven(const cwi_passes *p, const walks *w, const cw_m
 {
     uint32_t *unproven = cwi_alloc_array(w->mesh->triangle_count, sizeof *unproven);
     if (!unproven)
-        return no_memory(err);
+        return cwi_fail_memory(err);
     const size_t count = list_unproven(w, unproven);
     const cw_status st =
         count ? search_near(p, w, unproven, count, reference, threads, err) : CW_OK;
@@ -226,7 +221,7 @@ static cw_status begin_at_result(const cwi_passes *p, const cwi_block_part *x, u
 {
     uint32_t *place = cwi_alloc_zeroed(p->input.vertex_count, sizeof *place);
     if (!place)
-        return no_memory(err);
+        return cwi_fail_memory(err);
     for (size_t t = 0; t < x->left->own; t++)
         for (uint32_t v = x->left->lists[t]; v != UINT32_MAX; v = p->next[v])
             place[v] = (uint32_t)t + 1;
@@ -255,7 +250,7 @@ static cw_status begin_as_neighbours(const cw_mesh *mesh, uint32_t *begin, cw_er
 {
     uint32_t *at = cwi_alloc_array(mesh->vertex_count, sizeof *at);
     if (!at)
-        return no_memory(err);
+        return cwi_fail_memory(err);
     memset(at, 0xff, mesh->vertex_count * sizeof *at);
     for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
         if (begin[c / 3] != NOT_KNOWN)
@@ -276,7 +271,8 @@ static cw_status prove_input(const cwi_passes *p, const cwi_block_part *x, uint8
     uint32_t *first = cwi_alloc_array(left->vertices + 2, sizeof *first);
     uint32_t *around = cwi_alloc_array(3 * left->own, sizeof *around);
     const cwi_fans fans = {left->points, left->corners, first, around};
-    cw_status st = begin && first && around ? add_obstacles(x, &all, err) : no_memory(err);
+    cw_status st =
+        begin && first && around ? add_obstacles(x, &all, err) : cwi_fail_memory(err);
     if (st == CW_OK)
         st = begin_at_result(p, x, begin, err);
     if (st == CW_OK)
@@ -298,7 +294,7 @@ static cw_status prove_result(const cwi_passes *p, const cwi_block_part *x, uint
     const cw_mesh result = cwi_block_view(x->left);
     uint32_t *begin = cwi_alloc_array(result.triangle_count, sizeof *begin);
     if (!begin)
-        return no_memory(err);
+        return cwi_fail_memory(err);
     begin_at_input(p, x->left, begin);
     cw_status st = begin_as_neighbours(&result, begin, err);
     if (st == CW_OK)

@@ -104,7 +104,7 @@ cw_status cwi_block_obstruct(cwi_mesh_block *b, const float *points, size_t coun
         return CW_OK;
     if (!grow_vertices(b, vertices) ||
         !grow_array((void **)&b->corners, 3 * (b->triangles + count), sizeof *b->corners))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu triangles in the way", count);
+        return cwi_fail_memory(err);
     memcpy(b->points + 3 * b->vertices, points, 9 * count * sizeof *points);
     for (size_t v = b->vertices; v < vertices; v++) {
         b->corners[3 * b->triangles + v - b->vertices] = (uint32_t)v;
@@ -355,8 +355,7 @@ static cw_status fill_block(const plan *p, size_t n, uint32_t *place, cwi_mesh_b
     if (w->lists)
         b->lists = cwi_alloc_array(b->own, sizeof *b->lists);
     if (!b->corners || !b->names || !b->lists != !w->lists)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu triangles",
-                        b->triangles);
+        return cwi_fail_memory(err);
     size_t own = 0; /* vertices of own triangles come first */
     for (size_t i = 0; i < b->triangles; i++) {
         for (size_t k = 0; k < 3; k++) {
@@ -377,16 +376,14 @@ static cw_status fill_block(const plan *p, size_t n, uint32_t *place, cwi_mesh_b
             copy_vertex(p, b, v, v < own);
         place[b->names[v]] = NOT_THERE;
     }
-    return ok ? CW_OK
-              : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu triangles",
-                         b->triangles);
+    return ok ? CW_OK : cwi_fail_memory(err);
 }
 
 static cw_status fill_blocks(const plan *p, cwi_mesh_block *blocks, cw_error *err)
 {
     uint32_t *place = cwi_alloc_array(p->whole->vertices, sizeof *place);
     if (!place)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to cut a mesh into blocks");
+        return cwi_fail_memory(err);
     memset(place, 0xff, p->whole->vertices * sizeof *place);
     cw_status st = CW_OK;
     for (size_t n = 0; n < p->count && st == CW_OK; n++)
@@ -421,8 +418,7 @@ cw_status cwi_blocks_cut(const cwi_mesh_block *whole, size_t most, double share,
     cwi_free(p.spare);
     cwi_free(p.middles);
     ok = ok && find_obstacles(&p);
-    cw_status st = ok ? fill_blocks(&p, *out, err)
-                      : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to cut a mesh into blocks");
+    cw_status st = ok ? fill_blocks(&p, *out, err) : cwi_fail_memory(err);
     for (size_t n = 0; n < p.count && st != CW_OK && *out; n++)
         cwi_block_free(*out + n);
     if (st != CW_OK) {
@@ -528,5 +524,5 @@ cw_status cwi_blocks_join(const cwi_mesh_block *blocks, size_t count, size_t nam
     if (ok)
         return CW_OK;
     cwi_block_free(whole);
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to join blocks of a mesh");
+    return cwi_fail_memory(err);
 }

@@ -239,7 +239,5 @@ cw_status cwi_section_clip_ears(cwi_section *s, const cwi_section_loop *loop, cw
     cwi_free(w.is_reflex);
     cwi_free(w.after);
     cwi_free(w.first);
-    return ok ? st
-              : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to fill a loop of %zu vertices",
-                         w.left);
+    return ok ? st : cwi_fail_memory(err);
 }

@@ -368,8 +368,7 @@ cw_status cwi_cut_clip(cwi_cut *c, cw_error *err)
         ok = number_crossings(&w) && cwi_cut_place_vertices(c) && clip_triangles(&w) &&
              find_flat_edges(&w);
     if (st == CW_OK && !ok)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to cut %zu triangles",
-                      c->mesh->triangle_count);
+        st = cwi_fail_memory(err);
     if (st == CW_OK && c->vertex_count >= UINT32_MAX)
         st = cwi_fail(err, CW_ERR_LIMIT, "the cut mesh has more than %u vertices", UINT32_MAX);
     cwi_free(w.crossings);

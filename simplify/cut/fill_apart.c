@@ -145,9 +145,7 @@ cw_status cwi_cut_fill_apart(cwi_cut *c, cw_error *err)
                     .is_askew = (n[0] != 0) + (n[1] != 0) + (n[2] != 0) > 1};
     w.marks = cwi_alloc_array(c->vertex_count, sizeof *w.marks);
     w.lowered = cwi_alloc_zeroed(c->vertex_count, sizeof *w.lowered);
-    cw_status st = w.marks && w.lowered
-                       ? part_triangles(&w, err)
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to check the section");
+    cw_status st = w.marks && w.lowered ? part_triangles(&w, err) : cwi_fail_memory(err);
     if (w.round)
         cwi_cut_measure_moves(c);
     cwi_free(w.marks);

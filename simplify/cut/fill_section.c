@@ -95,9 +95,7 @@ cw_status cwi_cut_fill(cwi_cut *c, cw_error *err)
 {
     cwi_section s = {.cut = c};
     double area = 0;
-    cw_status st = make_rings(&s) ? CW_OK
-                                  : cwi_fail(err, CW_ERR_NO_MEMORY,
-                                             "no memory to fill %zu loops", c->loop_count);
+    cw_status st = make_rings(&s) ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK && s.loop_count) {
         choose_axes(&s, false);
         if (measure_loops(&s) < 0) {

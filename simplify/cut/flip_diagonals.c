@@ -170,9 +170,7 @@ cw_status cwi_section_flip(const cwi_section *s, size_t first, cw_error *err)
     w.stack = cwi_alloc_array(w.side_count, sizeof *w.stack);
     w.is_stacked = cwi_alloc_zeroed(w.side_count, sizeof *w.is_stacked);
     const bool ok = w.twins && w.stack && w.is_stacked && link_sides(&w);
-    cw_status st =
-        ok ? flip_sides(&w, err)
-           : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to flip %zu edges", w.side_count);
+    cw_status st = ok ? flip_sides(&w, err) : cwi_fail_memory(err);
     cwi_free(w.twins);
     cwi_free(w.stack);
     cwi_free(w.is_stacked);

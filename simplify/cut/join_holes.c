@@ -227,7 +227,5 @@ cw_status cwi_section_join_holes(cwi_section *s, cw_error *err)
     cwi_free(starts);
     cwi_free(rows.first);
     cwi_free(rows.entries);
-    return ok ? st
-              : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to join the holes of %zu loops",
-                         s->loop_count);
+    return ok ? st : cwi_fail_memory(err);
 }

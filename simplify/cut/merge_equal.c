@@ -188,6 +188,5 @@ cw_status cwi_cut_merge_equal(cwi_cut *c, cw_error *err)
     cwi_free(w.is_near);
     cwi_free(w.is_busy);
     cwi_free(w.items);
-    return ok ? CW_OK
-              : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to merge vertices of the section");
+    return ok ? CW_OK : cwi_fail_memory(err);
 }

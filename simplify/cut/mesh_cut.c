@@ -146,9 +146,7 @@ static cw_status make_result(const cwi_cut *c, cw_mesh *out, cw_error *err)
     if (!c->has_unused)
         return CW_OK;
     bool *marked = cwi_alloc_zeroed(out->triangle_count, sizeof *marked);
-    st = marked ? cwi_mesh_drop_marked(out, marked, err)
-                : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for marks of %zu triangles",
-                           out->triangle_count);
+    st = marked ? cwi_mesh_drop_marked(out, marked, err) : cwi_fail_memory(err);
     cwi_free(marked);
     return st;
 }
@@ -159,8 +157,7 @@ static cw_status cut_mesh(cwi_cut *c, cw_mesh *out, cw_error *err)
     cw_status st = cwi_progress(&c->desc.progress, "cut", 0, err);
     set_plane(c);
     if (st == CW_OK && !find_sides(c, has))
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the sides of %zu vertices",
-                      c->mesh->vertex_count);
+        st = cwi_fail_memory(err);
     if (st == CW_OK && !has[CWI_CUT_ABOVE + 1])
         st = cwi_fail(err, CW_ERR_EMPTY,
                       "nothing is left: no triangle is above the plane of the cut");

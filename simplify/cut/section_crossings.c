@@ -54,7 +54,7 @@ static cw_status build_tree(crossing_search *s,
 {
     float(*boxes)[6] = cwi_alloc_array(s->item_count, sizeof *boxes);
     if (!boxes)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for boxes of the section");
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < s->item_count; n++)
         set_box(s, s->items[n], boxes[n]);
     cw_status st = cwi_boxes_build(&s->tree, (const float(*)[6])boxes, s->item_count, err);
@@ -150,7 +150,7 @@ cw_status cwi_cut_find_edge_crossings(const cwi_cut *c, uint8_t *marks, size_t *
         return CW_OK;
     s.items = cwi_alloc_array(c->edge_count, sizeof *s.items);
     if (!s.items)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to check the section");
+        return cwi_fail_memory(err);
     for (uint32_t e = 0; e < c->edge_count; e++)
         s.items[s.item_count++] = e;
     cw_status st = build_tree(&s, set_edge_box, err);
@@ -320,9 +320,7 @@ cw_status cwi_cut_find_triangle_crossings(const cwi_cut *c, size_t first_cap, ui
                          .first_cap = first_cap,
                          .meets = triangles_meet};
     *count = 0;
-    cw_status st = gather_triangles(&s)
-                       ? CW_OK
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to check the section");
+    cw_status st = gather_triangles(&s) ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK && s.item_count)
         st = build_tree(&s, set_triangle_box, err);
     for (uint32_t t = 0; t < c->triangle_count && st == CW_OK && s.item_count; t++)

@@ -92,7 +92,5 @@ cw_status cwi_cut_link(cwi_cut *c, cw_error *err)
     cwi_free(w.balance);
     cwi_free(w.after);
     cwi_free(w.chain);
-    return ok ? CW_OK
-              : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to link %zu edges of the section",
-                         c->edge_count);
+    return ok ? CW_OK : cwi_fail_memory(err);
 }

@@ -111,8 +111,7 @@ static cw_status prepare_collapses(collapser *w, cw_error *err)
     w->quadrics = cwi_alloc_array(c->vertex_count, sizeof *w->quadrics);
     w->marks = cwi_alloc_zeroed(c->triangle_count, sizeof *w->marks);
     if (!w->quadrics || !w->marks || !cwi_edge_queue_init(&w->queue, c->edge_count))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify %zu triangles",
-                        c->triangle_count);
+        return cwi_fail_memory(err);
     cwi_label_quadrics_build(c, w->quadrics);
     for (size_t e = 0; e < c->edge_count; e++) {
         const cwi_label_move move = cwi_label_move_plan(c, w->quadrics, (uint32_t)e);
@@ -132,7 +131,7 @@ cw_status cwi_label_collapse(cwi_complex *c, cwi_label_samples *samples, size_t 
 {
     collapser *w = cwi_alloc_zeroed(1, sizeof *w);
     if (!w)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify label surfaces");
+        return cwi_fail_memory(err);
     w->c = c;
     w->samples = samples;
     cw_status st = prepare_collapses(w, err);

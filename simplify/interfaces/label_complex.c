@@ -228,8 +228,7 @@ cw_status cwi_complex_build(cwi_complex *c, const cw_label_surfaces *s, double s
         has_memory = number_edges(c) && alloc_edges(c) && find_curves(c);
     }
     if (!has_memory)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify %zu triangles",
-                        s->mesh.triangle_count);
+        return cwi_fail_memory(err);
     cwi_ring ring;
     for (size_t v = 0; v < c->vertex_count; v++)
         c->orders[v] = find_order(c, (uint32_t)v, &ring);

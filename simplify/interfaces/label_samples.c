@@ -79,8 +79,7 @@ cw_status cwi_label_samples_build(cwi_label_samples *s, const cwi_complex *c,
     if (s->first_sample)
         count_samples(s, c);
     if (!s->first_sample || !alloc_samples(s, c))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu triangles",
-                        c->triangle_count);
+        return cwi_fail_memory(err);
     memcpy(s->originals, c->points, 3 * c->vertex_count * sizeof *s->originals);
     fill_samples(s, c);
     return CW_OK;

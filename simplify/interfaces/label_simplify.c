@@ -142,10 +142,7 @@ static cw_status make_result(const cwi_complex *c, double scale, const cw_label_
     uint32_t *numbers = cwi_alloc_array(c->vertex_count, sizeof *numbers);
     out->patches = cwi_alloc_array(in->patch_count, sizeof *out->patches);
     out->labels = cwi_alloc_array(in->label_count, sizeof *out->labels);
-    cw_status st =
-        numbers && out->patches && out->labels
-            ? CW_OK
-            : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu patches", in->patch_count);
+    cw_status st = numbers && out->patches && out->labels ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK)
         st = cwi_mesh_alloc(&out->mesh, number_vertices(c, numbers), c->live, false, err);
     if (st == CW_OK) {
@@ -250,11 +247,10 @@ static cw_status judge_result(job *j, const cw_label_surfaces *out, bool *is_kep
 {
     const size_t before = j->in->mesh.triangle_count, after = out->mesh.triangle_count;
     uint8_t *in_beyond = cwi_alloc_array(before, 1), *out_beyond = cwi_alloc_array(after, 1);
-    cw_status st =
-        in_beyond && out_beyond
-            ? cwi_patches_measure(j->in, out, j->desc->error_mm, j->desc->threads,
-                                  &j->desc->progress, in_beyond, out_beyond, err)
-            : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu triangles", before);
+    cw_status st = in_beyond && out_beyond
+                       ? cwi_patches_measure(j->in, out, j->desc->error_mm, j->desc->threads,
+                                             &j->desc->progress, in_beyond, out_beyond, err)
+                       : cwi_fail_memory(err);
     if (st == CW_OK) {
         *is_kept = !memchr(in_beyond, 1, before) && !memchr(out_beyond, 1, after);
         if (!*is_kept)
@@ -275,8 +271,7 @@ static cw_status prepare_samples(job *j, cw_error *err)
             return st;
         j->is_failing = cwi_alloc_array(j->samples.count, sizeof *j->is_failing);
         if (!j->is_failing)
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu samples",
-                            j->samples.count);
+            return cwi_fail_memory(err);
     }
     cwi_label_samples_restart(&j->samples, &j->complex);
     return CW_OK;

@@ -31,8 +31,7 @@ cw_status cwi_moving_boxes_build(cwi_moving_boxes *m, const cwi_complex *c, cw_e
     float(*boxes)[6] = cwi_alloc_array(c->live, sizeof *boxes);
     const cw_status st = m->slots && triangles && boxes
                              ? build_tree(m, c, triangles, boxes, err)
-                             : cwi_fail(err, CW_ERR_NO_MEMORY,
-                                        "no memory for the boxes of %zu triangles", c->live);
+                             : cwi_fail_memory(err);
     cwi_free(triangles);
     cwi_free(boxes);
     return st;

@@ -61,10 +61,8 @@ cw_status cwi_patches_measure(const cw_label_surfaces *in, const cw_label_surfac
                               uint8_t *in_beyond, uint8_t *out_beyond, cw_error *err)
 {
     patch_copy before = {0}, after = {0};
-    cw_status st = make_copy(&before, in) && make_copy(&after, out)
-                       ? CW_OK
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu triangles",
-                                  in->mesh.triangle_count);
+    cw_status st =
+        make_copy(&before, in) && make_copy(&after, out) ? CW_OK : cwi_fail_memory(err);
     memset(in_beyond, 0, in->mesh.triangle_count);
     memset(out_beyond, 0, out->mesh.triangle_count);
     for (size_t p = 0; p < in->patch_count && st == CW_OK; p++) {

@@ -44,10 +44,7 @@ static cw_status alloc_sweep(sweep *s, cw_error *err)
     s->begin = cwi_alloc_zeroed(vertices + 1, sizeof *s->begin);
     s->lower = cwi_alloc_array(sides, sizeof *s->lower);
     s->set = cwi_alloc_array(vertices, sizeof *s->set);
-    return s->order && s->rank && s->begin && s->lower && s->set
-               ? CW_OK
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to find islands of %zu triangles",
-                          s->mesh->triangle_count);
+    return s->order && s->rank && s->begin && s->lower && s->set ? CW_OK : cwi_fail_memory(err);
 }
 
 static cw_status sort_vertices(sweep *s, cw_error *err)
@@ -55,7 +52,7 @@ static cw_status sort_vertices(sweep *s, cw_error *err)
     const size_t count = s->mesh->vertex_count;
     height *heights = cwi_alloc_array(count, sizeof *heights);
     if (!heights)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to sort %zu vertices", count);
+        return cwi_fail_memory(err);
     for (size_t v = 0; v < count; v++)
         heights[v] = (height){s->mesh->positions[3 * v + 2], (uint32_t)v};
     qsort(heights, count, sizeof *heights, compare_heights);
@@ -144,8 +141,7 @@ static cw_status mark_vertices(const cw_mesh *mesh, bool *faces_down, bool *is_u
 {
     double *up = cwi_alloc_zeroed(mesh->vertex_count, sizeof *up);
     if (!up)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to mark %zu vertices",
-                        mesh->vertex_count);
+        return cwi_fail_memory(err);
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         const uint32_t *v = mesh->triangles + 3 * t;
         double side[2][2];
@@ -173,8 +169,7 @@ cw_status cwi_find_islands(const cw_mesh *mesh, double bottom, double layer_mm,
     *islands = (cwi_islands){0};
     cw_status st = alloc_sweep(&s, err);
     if (st == CW_OK && !(faces_down && is_used))
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to mark %zu vertices",
-                      mesh->vertex_count);
+        st = cwi_fail_memory(err);
     if (st == CW_OK)
         st = sort_vertices(&s, err);
     if (st == CW_OK)

@@ -170,10 +170,7 @@ static cw_status measure_stand(const cw_mesh *mesh, const cw_print_desc *limits,
     plan_point *points = cwi_alloc_array(mesh->vertex_count, sizeof *points),
                *hull = cwi_alloc_array(2 * mesh->vertex_count + 2, sizeof *hull);
     uint8_t *taken = cwi_alloc_zeroed(mesh->vertex_count, 1);
-    cw_status st = points && hull && taken
-                       ? CW_OK
-                       : cwi_fail(err, CW_ERR_NO_MEMORY,
-                                  "no memory for the foot of %zu vertices", mesh->vertex_count);
+    cw_status st = points && hull && taken ? CW_OK : cwi_fail_memory(err);
     for (size_t c = 0; c < 3 * mesh->triangle_count && st == CW_OK; c++) {
         const uint32_t v = mesh->triangles[c];
         const float *p = mesh->positions + 3 * (size_t)v;
@@ -225,10 +222,7 @@ static cw_status measure_walls(const cw_mesh *mesh, const uint32_t *map,
     cwi_wall_sum walls, gaps;
     float *wall = cwi_alloc_array(mesh->triangle_count, sizeof *wall),
           *gap = cwi_alloc_array(mesh->triangle_count, sizeof *gap);
-    cw_status st = wall && gap ? CW_OK
-                               : cwi_fail(err, CW_ERR_NO_MEMORY,
-                                          "no memory to measure walls of %zu triangles",
-                                          mesh->triangle_count);
+    cw_status st = wall && gap ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK)
         st = cwi_measure_walls(mesh, limits, wall, gap, &walls, &gaps, err);
     if (st == CW_OK) {
@@ -286,8 +280,7 @@ static cw_status weld_copy(const cw_mesh *mesh, cw_mesh *copy, uint32_t **map, c
     memcpy(copy->positions, mesh->positions, 3 * mesh->vertex_count * sizeof *copy->positions);
     *map = cwi_alloc_array(mesh->vertex_count, sizeof **map);
     if (!*map || !cwi_weld(copy->positions, mesh->vertex_count, *map))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to weld %zu vertices",
-                        mesh->vertex_count);
+        return cwi_fail_memory(err);
     for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
         copy->triangles[c] = (*map)[mesh->triangles[c]];
     return CW_OK;

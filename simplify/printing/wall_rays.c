@@ -311,10 +311,7 @@ static cw_status alloc_field(ray_field *f, cw_error *err)
     f->normals = cwi_alloc_zeroed(f->mesh->vertex_count, 3 * sizeof *f->normals);
     f->walls = cwi_alloc_array(f->parts, sizeof *f->walls);
     f->gaps = cwi_alloc_array(f->parts, sizeof *f->gaps);
-    return f->normals && f->walls && f->gaps
-               ? CW_OK
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to measure walls of %zu triangles",
-                          f->mesh->triangle_count);
+    return f->normals && f->walls && f->gaps ? CW_OK : cwi_fail_memory(err);
 }
 
 /* Adds up parts in their order, so that threads do not matter. */

@@ -141,7 +141,7 @@ static cw_status fill_copies(const copies *c, const cw_mesh *mesh, const float *
     out->colors = cwi_alloc_array(c->count, 4);
     out->scalars = distances ? cwi_alloc_array(c->count, sizeof(float)) : NULL;
     if (!out->colors || (distances && !out->scalars))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to paint %u vertices", c->count);
+        return cwi_fail_memory(err);
     fill_vertices(c, mesh, distances, full_mm, out);
     return CW_OK;
 }
@@ -157,8 +157,7 @@ cw_status cw_check_paint(const cw_mesh *mesh, const uint8_t *defects, const floa
         st = cwi_fail(err, CW_ERR_LIMIT, "%zu triangles are too many to paint",
                       mesh->triangle_count);
     if (st == CW_OK && !make_copies(&c, mesh, defects))
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to paint %zu triangles",
-                      mesh->triangle_count);
+        st = cwi_fail_memory(err);
     if (st == CW_OK)
         st = fill_copies(&c, mesh, distances, full_mm, out, err);
     free_copies(&c);

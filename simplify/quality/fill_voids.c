@@ -37,10 +37,8 @@ static cw_status make_room(voids *v, cw_error *err)
     v->defects = cwi_alloc_array(triangles, 1);
     v->skipped = cwi_alloc_array(vertices, 1);
     v->goes = cwi_alloc_array(triangles, sizeof *v->goes);
-    return v->root && v->volume && v->defects && v->skipped && v->goes
-               ? CW_OK
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to fill voids of %zu triangles",
-                          triangles);
+    return v->root && v->volume && v->defects && v->skipped && v->goes ? CW_OK
+                                                                       : cwi_fail_memory(err);
 }
 
 /* Names the components of the triangles that are left, and sums their volumes. */

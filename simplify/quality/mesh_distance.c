@@ -350,8 +350,7 @@ static cw_status find_bound(search *s, const cw_mesh_distance_desc *d, cw_distan
     s->floor = out->max_mm;
     cw_status st = CW_OK;
     if (!s->extremes)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu triangles",
-                      s->mesh->triangle_count);
+        st = cwi_fail_memory(err);
     if (st == CW_OK)
         st = cwi_each_layer(chunks, CHUNK * CHUNK, d->threads, &d->progress, "largest distance",
                             search_chunk, s, err);
@@ -398,8 +397,7 @@ static cw_status make_reference(reference *r, const cw_mesh *mesh, const double 
     r->facets = cwi_alloc_array(count, sizeof *r->facets);
     cwi_sub(mesh->origin, origin, r->shift);
     if (!boxes || !r->facets)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a reference of %zu triangles",
-                      count);
+        st = cwi_fail_memory(err);
     if (st == CW_OK) {
         set_boxes(r, mesh, boxes);
         st = cwi_boxes_build(&r->tree, (const float(*)[6])boxes, count, err);
@@ -462,8 +460,7 @@ static cw_status measure_mesh(const cw_mesh *mesh, const reference *r,
                 .share = d->tolerance_mm > 0 ? 0 : 0.05};
     cw_status st = CW_OK;
     if (!slots)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu vertices",
-                      mesh->vertex_count);
+        st = cwi_fail_memory(err);
     if (st == CW_OK)
         st = cwi_sample_mesh(&sampling, out, per_vertex, err);
     if (st == CW_OK)
@@ -540,9 +537,8 @@ cw_status cwi_mesh_within(const cw_mesh *mesh, const cw_mesh *mesh_reference, do
                    .slots = slots,
                    .limits = limits,
                    .beyond = beyond};
-    cw_status st = slots ? make_reference(&r, mesh_reference, mesh->origin, err)
-                         : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu vertices",
-                                    mesh->vertex_count);
+    cw_status st =
+        slots ? make_reference(&r, mesh_reference, mesh->origin, err) : cwi_fail_memory(err);
     if (st == CW_OK)
         st = cwi_each_layer((mesh->vertex_count + CHUNK - 1) / CHUNK, CHUNK * CHUNK, threads,
                             progress, "keeping the error", find_chunk, &j, err);

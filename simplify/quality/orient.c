@@ -1,6 +1,7 @@
 /* Shells that face the wrong way, turned round. */
 #include <cubewright/quality.h>
 
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/union_find.h"
 #include "core/mesh/mesh_attributes.h"
@@ -73,10 +74,7 @@ cw_status cw_mesh_orient(cw_mesh *mesh, int threads, cw_orient_counts *counts, c
     w.shell = cwi_sets_alloc(mesh->vertex_count + 1);
     w.agree = cwi_alloc_zeroed(mesh->vertex_count + 1, sizeof *w.agree);
     w.turned = cwi_alloc_zeroed(mesh->vertex_count + 1, 1);
-    cw_status st = w.turn && w.shell && w.agree && w.turned
-                       ? CW_OK
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to orient %zu triangles",
-                                  mesh->triangle_count);
+    cw_status st = w.turn && w.shell && w.agree && w.turned ? CW_OK : cwi_fail_memory(err);
     const cw_quality_desc desc = {
         .weld = CW_WELD_LOCAL, .shells = true, .threads = threads, .turn = w.turn};
     if (st == CW_OK)

@@ -2,6 +2,7 @@
  * front: those that later chunks may still change. */
 #include <cubewright/quality.h>
 
+#include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
@@ -62,12 +63,6 @@ static uint32_t highest_of(const uint32_t *c)
 {
     const uint32_t high = c[0] > c[1] ? c[0] : c[1];
     return high > c[2] ? high : c[2];
-}
-
-static cw_status fail_memory(const cw_quality_stream *s, cw_error *err)
-{
-    return cwi_fail(err, CW_ERR_NO_MEMORY,
-                    "no memory to check a surface of %zu triangles so far", s->q.triangles);
 }
 
 /* --- area and shapes ---------------------------------------------------------------------- */
@@ -202,7 +197,7 @@ static void drop_measured(cw_quality_stream *s)
 static cw_status settle_front(cw_quality_stream *s, bool last, cw_error *err)
 {
     if (!add_shapes(s, last) || !settle_vertices(s))
-        return fail_memory(s, err);
+        return cwi_fail_memory(err);
     drop_measured(s);
     return CW_OK;
 }
@@ -234,7 +229,7 @@ static cw_status grow_array(cw_quality_stream *s, void **array, size_t *capacity
     }
     void *memory = cwi_realloc_array(*array, more, element);
     if (!memory)
-        return fail_memory(s, err);
+        return cwi_fail_memory(err);
     *array = memory;
     *capacity = more;
     return CW_OK;
@@ -370,7 +365,7 @@ cw_status cw_quality_stream_new(const cw_quality_stream_desc *desc, cw_quality_s
     CWI_REQUIRE_VERSION(err, desc, 0);
     cw_quality_stream *s = *out = cwi_alloc_zeroed(1, sizeof *s);
     if (!s)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to check a surface");
+        return cwi_fail_memory(err);
     s->desc = desc ? *desc : (cw_quality_stream_desc){0};
     s->q.shapes.min_angle_deg = 180;
     s->q.shapes.min_edge_mm = INFINITY;

@@ -161,7 +161,7 @@ static cw_status collect_pairs(const search *s, cw_crossings *out, cw_error *err
     }
     pair *pairs = failed ? NULL : cwi_alloc_array(count, sizeof *pairs);
     if (!pairs)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu pairs of triangles", count);
+        return cwi_fail_memory(err);
     for (size_t k = 0; k < s->chunk_count; k++)
         for (size_t n = 0; n < s->chunks[k].count; n++)
             pairs[out->count++] = s->chunks[k].pairs[n];
@@ -179,8 +179,7 @@ static cw_status search_chunks(search *s, const cw_crossings_desc *d, cw_error *
 static cw_status run_search(search *s, const cw_crossings_desc *d, cw_error *err)
 {
     if (!prepare_search(s))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to check %zu triangles",
-                        s->welded.mesh->triangle_count);
+        return cwi_fail_memory(err);
     cw_status st = search_chunks(s, d, err);
     return st == CW_OK && allow_more(s) ? search_chunks(s, d, err) : st;
 }

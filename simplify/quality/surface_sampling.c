@@ -379,8 +379,7 @@ cw_status cwi_sample_mesh(const cwi_sampling *sampling, cw_distance *out, float 
     const size_t vertices = sampling->mesh->vertex_count;
     cw_status st = CW_OK;
     if (!prepare_tallies(&w, threads, per_vertex))
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu triangles",
-                      sampling->mesh->triangle_count);
+        st = cwi_fail_memory(err);
     if (st == CW_OK)
         st = cwi_each_layer((vertices + CHUNK - 1) / CHUNK, WORTH, sampling->threads,
                             sampling->progress, sampling->name, measure_vertices, &w, err);

@@ -2,6 +2,7 @@
  * mesh. */
 #include <cubewright/quality.h>
 
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/stop.h"
 #include "core/geometry/union_find.h"
@@ -111,8 +112,7 @@ cw_status cw_quality_measure(const cw_mesh *mesh, const cw_quality_desc *desc, c
     if (st == CW_OK && w.stop.stopped)
         st = cwi_fail(err, CW_ERR_CANCELLED, "interrupted while checking");
     else if (st == CW_OK && !measured)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to check %zu triangles",
-                      mesh->triangle_count);
+        st = cwi_fail_memory(err);
     if (st == CW_OK) {
         cw_mesh_bounds(mesh, q.min, q.max);
         *out = q;

@@ -45,8 +45,7 @@ cw_status cwi_welded_init(cwi_welded *w, const cw_mesh *mesh, cw_weld how, cw_er
         st = cwi_fail(err, CW_ERR_LIMIT, "%zu triangles are more than the checks can number",
                       mesh->triangle_count);
     if (st == CW_OK && !(choose_points(w, how) && weld_corners(w, how)))
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to check %zu triangles",
-                      mesh->triangle_count);
+        st = cwi_fail_memory(err);
     return st;
 }
 

@@ -210,9 +210,8 @@ static cw_status make_result(const cwi_remesh *r, cw_mesh *out, cw_error *err)
         triangles += !cwi_is_dead(r, t);
     cw_mesh_free(out);
     uint32_t *numbers = cwi_alloc_array(r->vertex_count, sizeof *numbers);
-    cw_status st = numbers ? cwi_mesh_alloc(out, vertices, triangles, false, err)
-                           : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to number %zu vertices",
-                                      r->vertex_count);
+    cw_status st =
+        numbers ? cwi_mesh_alloc(out, vertices, triangles, false, err) : cwi_fail_memory(err);
     size_t n = 0;
     for (size_t v = 0; v < r->vertex_count && st == CW_OK; v++) {
         if (r->corner[v] == CWI_NONE)
@@ -283,8 +282,7 @@ static cw_status drop_loose_vertices(const cw_mesh *mesh, cw_mesh *copy, cw_erro
 {
     bool *marked = cwi_alloc_zeroed(mesh->vertex_count + mesh->triangle_count, sizeof *marked);
     if (!marked)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to mark %zu vertices",
-                        mesh->vertex_count);
+        return cwi_fail_memory(err);
     size_t used = 0;
     for (size_t n = 0; n < 3 * mesh->triangle_count; n++) {
         used += !marked[mesh->triangles[n]];

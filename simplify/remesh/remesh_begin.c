@@ -12,12 +12,6 @@
  * rest is for the points between them. */
 static const double WORK_FRACTION = 0.75;
 
-static cw_status report_no_memory(const cwi_remesh *r, cw_error *err)
-{
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to remesh %zu triangles",
-                    r->input->triangle_count);
-}
-
 /* --- links -------------------------------------------------------------------------------- */
 
 static cw_status refuse_mesh(cw_error *err, const char *what, uint32_t vertex)
@@ -55,7 +49,7 @@ static cw_status link_triangles(cwi_remesh *r, cw_error *err)
     }
     cwi_side *sides = st == CW_OK ? cwi_alloc_array(count, sizeof *sides) : NULL;
     if (st == CW_OK && !sides)
-        st = report_no_memory(r, err);
+        st = cwi_fail_memory(err);
     if (st == CW_OK) {
         cwi_sides_list(r->triangles, count, sides);
         st = pair_sides(r, sides, count, err);
@@ -108,7 +102,7 @@ static cw_status list_curves(cwi_remesh *r, cw_error *err)
     m->triangles = cwi_alloc_array(count, 3 * sizeof *m->triangles);
     r->curves.limits = cwi_alloc_array(count, sizeof *r->curves.limits);
     if (!m->triangles || !r->curves.limits)
-        return report_no_memory(r, err);
+        return cwi_fail_memory(err);
     for (uint32_t c = 0; c < 3 * r->triangle_count; c++) {
         if (!cwi_is_sharp(r, c) || (r->twin[c] != CWI_NONE && r->twin[c] < c))
             continue;
@@ -254,7 +248,7 @@ void cwi_remesh_restart(cwi_remesh *r)
 cw_status cwi_remesh_begin(cwi_remesh *r, cw_error *err)
 {
     if (!alloc_work(r) || !alloc_input(r))
-        return report_no_memory(r, err);
+        return cwi_fail_memory(err);
     copy_input(r);
     cw_status st = link_triangles(r, err);
     if (st == CW_OK)

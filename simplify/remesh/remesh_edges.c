@@ -101,10 +101,7 @@ static cw_status make_room(cwi_remesh *r, cw_error *err)
     const bool has_triangles =
         r->triangle_count + 2 <= r->triangle_capacity ||
         grow_triangles(r, r->triangle_capacity + r->triangle_capacity / 2 + 64);
-    return has_vertices && has_triangles
-               ? CW_OK
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for more than %zu triangles",
-                          r->triangle_count);
+    return has_vertices && has_triangles ? CW_OK : cwi_fail_memory(err);
 }
 
 /* Lists the halves of a triangle whose edge at a corner is divided. */

@@ -67,8 +67,7 @@ static cw_status prove_distance(tightening *x, const cw_mesh *mesh, const cw_mes
     const cw_progress none = {0};
     uint8_t *beyond = cwi_alloc_array(mesh->triangle_count, 1);
     if (!beyond)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to mark %zu triangles",
-                        mesh->triangle_count);
+        return cwi_fail_memory(err);
     cw_status st =
         cwi_mesh_within(mesh, reference, cwi_greater(r->desc.error_mm, r->rounding_mm), NULL,
                         r->desc.threads, &none, beyond, err);
@@ -103,9 +102,7 @@ cw_status cwi_remesh_prove(cwi_remesh *r, const cw_mesh *out, cw_remesh_facts *f
     tightening x = {.r = r, .tree = &r->surface.tree};
     x.marks = cwi_alloc_zeroed(r->input->triangle_count, 1);
     bool is_worse = false;
-    cw_status st = x.marks ? CW_OK
-                           : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to mark %zu triangles",
-                                      r->input->triangle_count);
+    cw_status st = x.marks ? CW_OK : cwi_fail_memory(err);
     facts->beyond = 0;
     if (st == CW_OK)
         st = prove_apart(&x, out, facts, &is_worse, err);

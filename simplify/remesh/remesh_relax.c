@@ -154,10 +154,7 @@ cw_status cwi_relax_vertices(cwi_remesh *r, cw_error *err)
     relaxation x = {.r = r};
     x.places = cwi_alloc_array(r->vertex_count, 3 * sizeof *x.places);
     x.sizes = cwi_alloc_array(r->vertex_count, sizeof *x.sizes);
-    cw_status st = x.places && x.sizes
-                       ? CW_OK
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to move %zu vertices",
-                                  r->vertex_count);
+    cw_status st = x.places && x.sizes ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK)
         st = cwi_each_layer((r->vertex_count + CHUNK - 1) / CHUNK, CHUNK * 64, r->desc.threads,
                             &(cw_progress){0}, "remesh", find_chunk, &x, err);

@@ -142,7 +142,5 @@ cw_status cwi_remesh_size(cwi_remesh *r, cw_error *err)
     }
     cwi_free(tensors);
     cwi_free(spread);
-    return has_memory ? CW_OK
-                      : cwi_fail(err, CW_ERR_NO_MEMORY,
-                                 "no memory for the sizes at %zu vertices", r->vertex_count);
+    return has_memory ? CW_OK : cwi_fail_memory(err);
 }

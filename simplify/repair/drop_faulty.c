@@ -20,12 +20,6 @@ enum { FLIP_ROUNDS = 24 };
  * sheets when only rounding is left of their volume. */
 static const double SHEET_VOLUME = 1e-4, CLOSED_SHEET_VOLUME = 1e-7;
 
-static cw_status fail_memory(const cwi_repair *r, cw_error *err)
-{
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to repair %zu triangles",
-                    r->mesh.triangle_count);
-}
-
 /* --- duplicates --------------------------------------------------------------------------- */
 
 typedef struct vertex_triple {
@@ -81,7 +75,7 @@ cw_status cwi_drop_duplicates(cwi_repair *r, bool cancel, size_t *dropped, cw_er
     const size_t count = r->mesh.triangle_count;
     vertex_triple *triples = cwi_alloc_array(count, sizeof *triples);
     bool *marked = cwi_alloc_zeroed(count, sizeof *marked);
-    cw_status st = triples && marked ? CW_OK : fail_memory(r, err);
+    cw_status st = triples && marked ? CW_OK : cwi_fail_memory(err);
     for (size_t t = 0; t < count && st == CW_OK; t++) {
         triples[t].triangle = (uint32_t)t;
         memcpy(triples[t].v, r->mesh.triangles + 3 * t, sizeof triples->v);
@@ -162,7 +156,7 @@ static cw_status flip_round(cwi_repair *r, bool give_up, size_t *found, cw_error
     touched = cwi_alloc_zeroed(count, sizeof *touched);
     marked = cwi_alloc_zeroed(count, sizeof *marked);
     if (!touched || !marked || !(edges = cwi_edge_keys(m->triangles, 3 * count)))
-        st = fail_memory(r, err);
+        st = cwi_fail_memory(err);
     for (uint32_t t = 0; t < count && st == CW_OK; t++) {
         if (touched[t] || cwi_has_area(m->positions, m->triangles + 3 * (size_t)t))
             continue;
@@ -248,7 +242,7 @@ cw_status cwi_drop_sheets(cwi_repair *r, size_t *sheets, size_t *triangles, cw_e
     component_size *sizes = cwi_alloc_zeroed(count, sizeof *sizes);
     bool *marked = cwi_alloc_zeroed(count, sizeof *marked);
     size_t found = 0;
-    cw_status st = set && sizes && marked ? CW_OK : fail_memory(r, err);
+    cw_status st = set && sizes && marked ? CW_OK : cwi_fail_memory(err);
     for (uint32_t c = 0; c < 3 * count && st == CW_OK; c++)
         if (r->twin[c] != CWI_NO_CORNER)
             cwi_sets_join(set, c / 3, r->twin[c] / 3);

@@ -286,8 +286,7 @@ static cw_status fill_rims(hole_fill *f, const rim_list *rims, cw_error *err)
         if (st != CW_OK)
             return st;
         if (!fill_hole(f, &rim))
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to fill a hole of %zu edges",
-                            rim.size);
+            return cwi_fail_memory(err);
         from = rims->end[n];
     }
     f->r->facts.added_triangles += f->count;
@@ -302,8 +301,7 @@ cw_status cwi_fill_holes(cwi_repair *r, cwi_patch_kind kind, cw_error *err)
     hole_fill f = {.r = r, .kind = kind};
     cw_status st = CW_OK;
     if (!find_rims(&w) || (w.rims.rims && !init_around(&f.around, &r->mesh)))
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to find the holes of %zu triangles",
-                      r->mesh.triangle_count);
+        st = cwi_fail_memory(err);
     if (st == CW_OK && w.rims.rims)
         st = fill_rims(&f, &w.rims, err);
     free_rims(&w.rims);

@@ -209,7 +209,7 @@ cw_status cwi_repair_link(cwi_repair *r, bool is_first, cw_error *err)
     w.state = cwi_alloc_zeroed(triangles, 1);
     cw_status st = CW_OK;
     if (!r->twin || !w.sides || !w.patch || !w.queue || !w.state)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to join %zu triangles", triangles);
+        st = cwi_fail_memory(err);
     if (st == CW_OK) {
         memset(r->twin, 0xff, corners * sizeof *r->twin);
         cwi_sides_list(r->mesh.triangles, corners, w.sides);

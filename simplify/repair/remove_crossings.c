@@ -26,12 +26,6 @@ static const double MAX_DROPPED = 0.95;
  * part that is left of it. */
 static const double MIN_FRAGMENT = 0.05;
 
-static cw_status fail_memory(const cwi_repair *r, cw_error *err)
-{
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to remove crossings of %zu triangles",
-                    r->mesh.triangle_count);
-}
-
 static cw_status find_crossings(cwi_repair *r, cw_crossings *found, cw_error *err)
 {
     const cw_crossings_desc desc = {.threads = r->desc.threads};
@@ -137,7 +131,7 @@ static cw_status move_touching(cwi_repair *r, cw_crossings *found, cw_error *err
 {
     const size_t count = found->count;
     touching t = {.r = r};
-    cw_status st = init_touching(&t) ? CW_OK : fail_memory(r, err);
+    cw_status st = init_touching(&t) ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK) {
         mark_vertices(&r->mesh, found, t.meets);
         measure_stars(&t);
@@ -224,7 +218,7 @@ static cw_status unite_crossing(cwi_repair *r, const cw_crossings *found, bool *
                                 cw_error *err)
 {
     shell_list s = {0};
-    cw_status st = list_shells(r, found, &s) ? CW_OK : fail_memory(r, err);
+    cw_status st = list_shells(r, found, &s) ? CW_OK : cwi_fail_memory(err);
     *is_done = false;
     if (st == CW_OK && s.count > 1) {
         r->facts.lacks_cgal = !cw_repair_has_cgal();
@@ -307,7 +301,7 @@ static cw_status drop_crossing(cwi_repair *r, const cw_crossings *found, int rou
     cw_status st = CW_OK;
     size_t triangles = 0;
     if (!marked || !mark_crossing(r, found, (round + 1) / 2, marked))
-        st = fail_memory(r, err);
+        st = cwi_fail_memory(err);
     for (size_t t = 0; t < count && st == CW_OK; t++) {
         const double area = cwi_mesh_area(&r->mesh, t);
         all += area;

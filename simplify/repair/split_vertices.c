@@ -37,7 +37,7 @@ cw_status cwi_repair_append(cwi_repair *r, const float *positions, size_t vertic
     uint32_t *parents = cwi_realloc_array(m->attributes->data, all_triangles, sizeof *parents);
     m->attributes->data = parents ? parents : m->attributes->data;
     if (!points || !source || !flags || !corners || !parents)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu triangles", all_triangles);
+        return cwi_fail_memory(err);
     if (vertices) {
         memcpy(points + 3 * m->vertex_count, positions, 3 * vertices * sizeof *points);
         memset(source + m->vertex_count, 0xff, vertices * sizeof *source);
@@ -77,8 +77,7 @@ static cw_status copy_vertices(cwi_repair *r, uint32_t *fan, size_t *copies, cw_
     uint32_t *copied = NULL;                                  /* the vertices that are copied */
     size_t count = 0;
     if (!owner)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the fans of %zu vertices",
-                        before);
+        return cwi_fail_memory(err);
     memset(owner, 0xff, before * sizeof *owner);
     for (uint32_t c = 0; c < corners; c++)
         if (fan[c] == c) { /* the lowest corner names the fan */
@@ -88,9 +87,7 @@ static cw_status copy_vertices(cwi_repair *r, uint32_t *fan, size_t *copies, cw_
         }
     copied = cwi_alloc_array(count, sizeof *copied);
     float *points = cwi_alloc_array(count, 3 * sizeof *points);
-    cw_status st = copied && points ? CW_OK
-                                    : cwi_fail(err, CW_ERR_NO_MEMORY,
-                                               "no memory to split %zu vertices", count);
+    cw_status st = copied && points ? CW_OK : cwi_fail_memory(err);
     size_t n = 0;
     for (uint32_t c = 0; c < corners && st == CW_OK; c++) {
         const uint32_t root = cwi_sets_find(fan, c), v = m->triangles[root];
@@ -117,8 +114,7 @@ static cw_status split_fans(cwi_repair *r, size_t *copies, cw_error *err)
 {
     uint32_t *fan = cwi_sets_alloc(3 * r->mesh.triangle_count);
     if (!fan)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the fans of %zu triangles",
-                        r->mesh.triangle_count);
+        return cwi_fail_memory(err);
     join_fans(r, fan);
     for (uint32_t c = 0; c < 3 * r->mesh.triangle_count; c++)
         fan[c] = cwi_sets_find(fan, c);
@@ -176,12 +172,7 @@ static cw_status divide_shared_edges(cwi_repair *r, size_t *divided, cw_error *e
                   (n + 1 < count && edges[n].key == edges[n + 1].key);
     points = cwi_alloc_array(shared, 3 * sizeof *points);
     added = cwi_alloc_array(shared, 6 * sizeof *added);
-    cw_status st = edges && is_used && points && added
-                       ? CW_OK
-                       : cwi_fail(err, CW_ERR_NO_MEMORY,
-                                  "no memory for the edges of %zu "
-                                  "triangles",
-                                  m->triangle_count);
+    cw_status st = edges && is_used && points && added ? CW_OK : cwi_fail_memory(err);
     for (size_t n = 0; n < count && st == CW_OK && shared; n++) {
         const uint32_t corner = edges[n].corner, other = r->twin[corner];
         const bool is_shared = (n > 0 && edges[n].key == edges[n - 1].key) ||
@@ -260,8 +251,7 @@ static cw_status move_apart(cwi_repair *r, cw_error *err)
     surroundings *around = cwi_alloc_zeroed(m->vertex_count, sizeof *around);
     cw_status st = map && shares && around && cwi_weld(m->positions, m->vertex_count, map)
                        ? CW_OK
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to part %zu vertices",
-                                  m->vertex_count);
+                       : cwi_fail_memory(err);
     for (size_t v = 0; v < m->vertex_count && st == CW_OK; v++) {
         around[v].shortest_sq = INFINITY;
         if (map[v] != v)

@@ -106,10 +106,8 @@ cw_status cwi_weld_near(cw_mesh *mesh, double distance_mm, size_t *welded, cw_er
 {
     near_map n = {.mesh = mesh};
     bool *gone = cwi_alloc_zeroed(mesh->triangle_count, sizeof *gone);
-    cw_status st = gone && init_map(&n, distance_mm) && map_vertices(&n)
-                       ? CW_OK
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to weld %zu vertices",
-                                  mesh->vertex_count);
+    cw_status st =
+        gone && init_map(&n, distance_mm) && map_vertices(&n) ? CW_OK : cwi_fail_memory(err);
     for (size_t c = 0; c < 3 * mesh->triangle_count && st == CW_OK; c++)
         mesh->triangles[c] = n.map[mesh->triangles[c]];
     for (size_t t = 0; t < mesh->triangle_count && st == CW_OK; t++) {

@@ -121,8 +121,7 @@ cw_status cwi_smooth_average(cwi_smoother *s, const cw_progress *progress, cw_er
     double *away = is_hc ? cwi_alloc_large(3 * s->rings.vertices, sizeof *away) : NULL;
     cw_status st = CW_OK;
     if (is_hc && !away)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to smooth %zu vertices",
-                        s->rings.vertices);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < passes && st == CW_OK; n++) {
         const bool is_second = n % 2;
         pass p = {.s = s, .factor = is_second ? grow : SHRINK, .away = away, .result = s->to};

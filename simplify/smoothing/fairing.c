@@ -297,7 +297,7 @@ static cw_status alloc_system(fair_system *f, cw_error *err)
     f->product = f->s->to;
     if (f->weights && f->mass && f->diagonal && f->residual && f->direction && f->sums)
         return CW_OK;
-    return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to smooth %zu vertices", count);
+    return cwi_fail_memory(err);
 }
 
 /* A wave of wavelength L fades by 1 / (1 + t (2 pi / L)^2) in each of the steps. Returns the time t

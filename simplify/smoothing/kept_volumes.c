@@ -97,8 +97,7 @@ cw_status cwi_volumes_find(const cw_mesh *mesh, const uint8_t *rims, const doubl
         number_components(mesh, volumes);
     volumes->items = cwi_alloc_zeroed(volumes->count, sizeof *volumes->items);
     if (!volumes->component || !volumes->items)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the components of %zu vertices",
-                        mesh->vertex_count);
+        return cwi_fail_memory(err);
     for (size_t n = mesh->vertex_count; n-- > 0;) {
         cwi_kept_volume *item = &volumes->items[volumes->component[n]];
         item->reference = (uint32_t)n;

@@ -81,8 +81,7 @@ static cw_status alloc_places(cwi_smoother *s, cw_error *err)
     s->to = cwi_alloc_large(numbers, sizeof *s->to);
     s->rounded = cwi_alloc_large(numbers, sizeof *s->rounded);
     if (!s->from || !s->to || !s->rounded)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to smooth %zu vertices",
-                        s->mesh->vertex_count);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < numbers; n++)
         s->from[n] = (double)s->mesh->positions[n];
     return CW_OK;

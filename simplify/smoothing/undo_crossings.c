@@ -116,8 +116,7 @@ static cw_status sort_changed(const undo_state *u, cwi_boxes *tree, cw_error *er
         count += has_changed(u, t);
     float(*boxes)[6] = cwi_alloc_array(count, sizeof *boxes);
     if (!boxes)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the boxes of %zu triangles",
-                        count);
+        return cwi_fail_memory(err);
     for (size_t t = 0; t < mesh->triangle_count; t++)
         if (has_changed(u, t))
             cwi_boxes_triangle(u->s->rounded, mesh->triangles + 3 * t, boxes[n++]);
@@ -157,8 +156,7 @@ static cw_status select_near_changed(const undo_state *u, selection *chosen, cw_
     }
     chosen->triangles = cwi_alloc_array(chosen->count, 3 * sizeof *chosen->triangles);
     if (st == CW_OK && (!chosen->ids || !chosen->triangles))
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to select from %zu triangles",
-                      mesh->triangle_count);
+        st = cwi_fail_memory(err);
     for (size_t n = 0; n < chosen->count && st == CW_OK; n++)
         memcpy(chosen->triangles + 3 * n, mesh->triangles + 3 * (size_t)chosen->ids[n],
                3 * sizeof *chosen->triangles);
@@ -224,9 +222,7 @@ cw_status cwi_smooth_undo_crossings(cwi_smoother *s, cw_smooth_facts *facts,
 {
     undo_state u = {.s = s};
     u.states = cwi_alloc_zeroed(s->mesh->vertex_count, sizeof *u.states);
-    cw_status st = u.states ? CW_OK
-                            : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to mark %zu vertices",
-                                       s->mesh->vertex_count);
+    cw_status st = u.states ? CW_OK : cwi_fail_memory(err);
     bool is_done = false;
     double share = 0.5; /* of each round: half of the rest */
     for (int round = 0; st == CW_OK && !is_done; round++) {

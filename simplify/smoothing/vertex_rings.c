@@ -118,8 +118,7 @@ cw_status cwi_rings_find(const cw_mesh *mesh, int threads, const cw_progress *pr
         rings->neighbours = cwi_alloc_large(rings->begin[count], sizeof *rings->neighbours);
     }
     if (!rings->neighbours)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the neighbours of %zu vertices",
-                        count);
+        return cwi_fail_memory(err);
     fill_lists(mesh, rings);
     return cwi_each_layer((count + CWI_RING_PART - 1) / CWI_RING_PART, 8 * CWI_RING_PART,
                           threads, progress, "smoothing", finish_part, rings, err);

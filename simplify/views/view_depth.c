@@ -27,8 +27,7 @@ static cw_status begin_depths(cw_simplify_view *view, cw_error *err)
     if (cwi_size_mul(view->width, view->height, &pixels))
         view->depth = cwi_alloc_array(pixels, sizeof *view->depth);
     if (!view->depth)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a view of %zu x %zu pixels",
-                        view->width, view->height);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < pixels; n++)
         view->depth[n] = INFINITY;
     return CW_OK;

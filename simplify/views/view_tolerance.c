@@ -175,7 +175,7 @@ cw_status cwi_views_init(cwi_views *views, const cw_simplify_desc *d, cw_error *
             "views need an error_mm: the error limit where none of them sees the surface");
     views->view = cwi_alloc_array(d->view_count, sizeof *views->view);
     if (!views->view)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu views", d->view_count);
+        return cwi_fail_memory(err);
     views->count = d->view_count;
     for (size_t n = 0; n < d->view_count && st == CW_OK; n++)
         st = cwi_view_init(views->view + n, d->views + n, d->pixel_error, err);
@@ -265,8 +265,7 @@ cw_status cw_simplify_cull(cw_mesh *mesh, const cw_simplify_view *views, size_t 
         st = cwi_views_init(&all, &desc, err);
     bool *marks = cwi_alloc_array(mesh->triangle_count, sizeof *marks);
     if (st == CW_OK && !marks)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to mark %zu triangles",
-                      mesh->triangle_count);
+        st = cwi_fail_memory(err);
     if (st == CW_OK) {
         cwi_views_place(&all, mesh->origin, 1);
         mark_unseen(&all, mesh, margin_mm, marks, &unseen);

@@ -141,7 +141,7 @@ static cw_status draw_both(cwi_cpu *cpu, const cwi_frame *f, cw_picture *picture
     cw_picture mesh = {0};
     double *depths = cwi_alloc_array(count, sizeof *depths);
     if (!depths)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the depths of a mesh");
+        return cwi_fail_memory(err);
     cw_status st = cw_picture_alloc(&mesh, picture->width, picture->height, err);
     if (st == CW_OK)
         st = cwi_cpu_draw_mesh(f, depths, &mesh, err);

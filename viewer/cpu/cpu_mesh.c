@@ -90,7 +90,7 @@ static cw_status make_tinted(const cw_scene *s, const double range[2], cw_mesh *
     }
     m->colors = cwi_alloc_array(m->vertex_count, 4);
     if (!m->colors || !m->positions || !m->triangles || (mesh->normals && !m->normals))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a mesh's colours");
+        return cwi_fail_memory(err);
     if (apart)
         tint_triangles(mesh, range, m);
     else

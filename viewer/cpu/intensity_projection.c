@@ -4,6 +4,7 @@
 
 #include "viewer/rays/ray_traversal.h"
 
+#include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/geometry/cubic.h"
@@ -339,6 +340,6 @@ cw_status cwi_intensity_draw(const cwi_frame *frame, const cwi_ranges *ranges,
         cwi_each_layer(picture->height, picture->width * CWI_RAY_SAMPLES, frame->scene.threads,
                        &frame->scene.progress, "drawing", draw_row, &work, err);
     if (st == CW_OK && work.is_starved)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the cells of a ray");
+        st = cwi_fail_memory(err);
     return st;
 }

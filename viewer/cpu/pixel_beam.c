@@ -41,7 +41,7 @@ static cw_status make_integrals(const cwi_table *t, double length, double (**out
     double(*sum)[4] = cwi_alloc_zeroed(t->count + 1, sizeof *sum);
     *out = sum;
     if (!sum)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for an averaged transfer function");
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < t->count; n++) {
         const float *row = t->rows + 4 * n;
         const double opacity = -expm1(-(double)row[3] * length);

@@ -518,8 +518,7 @@ static cw_status set_up_scene(const cw_mesh *mesh, const cw_render_mesh_desc *d,
     s->points = cwi_alloc_array(mesh->vertex_count, sizeof *s->points);
     s->spans = cwi_alloc_array(mesh->triangle_count, sizeof *s->spans);
     if (!s->points || !s->spans)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to draw %zu triangles",
-                        mesh->triangle_count);
+        return cwi_fail_memory(err);
     return CW_OK;
 }
 
@@ -528,8 +527,7 @@ static cw_status draw_scene(scene *s, cw_image *image, cw_error *err)
     const size_t n = (size_t)s->d->samples, band_hits = BAND_ROWS * n * (size_t)s->width;
     hit *hits = cwi_alloc_array((size_t)s->d->threads * band_hits, sizeof *hits);
     if (!hits)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %d threads to draw with",
-                        s->d->threads);
+        return cwi_fail_memory(err);
     project_all(s);
     cw_status st = draw_bands(s, hits, band_hits, image, err);
     cwi_free(hits);

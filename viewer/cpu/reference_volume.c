@@ -374,14 +374,14 @@ cw_status cwi_reference_draw(const cwi_frame *frame, const cwi_cell_tree *tree,
     cwi_reference reference;
     double *errors = cwi_alloc_zeroed(picture->height, sizeof *errors);
     if (!errors)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu rows", picture->height);
+        return cwi_fail_memory(err);
     cwi_reference_make(frame, tree, &reference);
     job work = {&reference, depths, picture, errors, false};
     cw_status st =
         cwi_each_layer(picture->height, picture->width * CWI_RAY_SAMPLES, frame->scene.threads,
                        &frame->scene.progress, "drawing", draw_row, &work, err);
     if (st == CW_OK && work.is_starved)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the cells of a ray");
+        st = cwi_fail_memory(err);
     double most = 0;
     for (size_t y = 0; y < picture->height; y++)
         most = fmax(most, errors[y]);

@@ -600,7 +600,7 @@ cw_status cwi_vbuffer_draw(const cwi_frame *frame, const cwi_ranges *ranges,
 {
     vbuffer *b = cwi_alloc_zeroed(1, sizeof *b);
     if (!b)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a picture");
+        return cwi_fail_memory(err);
     b->frame = frame;
     b->ranges = ranges;
     b->depths = depths;
@@ -611,7 +611,7 @@ cw_status cwi_vbuffer_draw(const cwi_frame *frame, const cwi_ranges *ranges,
                             frame->scene.threads, &frame->scene.progress, "drawing", draw_row,
                             b, err);
     if (st == CW_OK && b->is_starved)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the cells of a ray");
+        st = cwi_fail_memory(err);
     cwi_beams_free(&b->beams);
     cwi_free(b->distances);
     cwi_table_free(&b->table);

@@ -1,6 +1,7 @@
 /* A context without a display: EGL on Mesa's surfaceless platform, else on any device. */
 #include "viewer/gl/gl_context.h"
 
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <dlfcn.h>
@@ -151,7 +152,7 @@ cw_status cwi_gl_check(cw_error *err)
     while (glGetError() != GL_NO_ERROR)
         ;
     if (first == GL_OUT_OF_MEMORY)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "OpenGL ran out of memory");
+        return cwi_fail_memory(err);
     if (first != GL_NO_ERROR)
         return cwi_fail(err, CW_ERR_BACKEND, "OpenGL failed with error 0x%04x", first);
     return CW_OK;

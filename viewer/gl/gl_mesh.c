@@ -83,7 +83,7 @@ static cw_status upload_vertices(cwi_gl *gl, const cwi_gl_mesh *m, cw_error *err
     const size_t count = m->is_expanded ? 3 * m->key.triangle_count : m->key.vertex_count;
     vertex *chunk = cwi_alloc_array(CHUNK, sizeof *chunk);
     if (!chunk)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the upload of a mesh");
+        return cwi_fail_memory(err);
     glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(count * sizeof *chunk), NULL, GL_STATIC_DRAW);
     cw_status st = CW_OK;
     for (size_t first = 0; first < count && st == CW_OK; first += CHUNK) {
@@ -162,7 +162,7 @@ static cw_status need_mesh(void **state, cw_error *err)
 {
     cwi_gl_mesh *m = *state;
     if (!m && !(m = *state = cwi_alloc_zeroed(1, sizeof *m)))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a mesh");
+        return cwi_fail_memory(err);
     if (!m->ramp) {
         make_ramp(m);
         glGenQueries(1, &m->query);

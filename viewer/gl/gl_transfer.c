@@ -114,8 +114,7 @@ cw_status cwi_gl_need_segments(cwi_gl *gl, double length, cw_error *err)
     const size_t rows = t->segment_rows;
     float *all = cwi_alloc_array(rows * rows, 4 * sizeof *all);
     if (!all)
-        return cwi_fail(err, CW_ERR_NO_MEMORY,
-                        "no memory for a pre-integrated transfer function");
+        return cwi_fail_memory(err);
     cw_status st = cwi_table_preintegrate(&t->table, length, rows, gl->frame->scene.threads,
                                           &gl->watch.progress, all, err);
     if (st == CW_OK) {

@@ -141,7 +141,7 @@ static GLuint values_texture(const cwi_gl_texels *kind)
 static cw_status take_memory(cwi_gl_volume *g, size_t bytes, cw_error *err)
 {
     if (!cwi_memory_take(bytes))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to draw the volume");
+        return cwi_fail_memory(err);
     g->texture_bytes += bytes;
     return CW_OK;
 }
@@ -158,7 +158,7 @@ static cw_status upload_brick(cwi_gl *gl, const cwi_gl_texels *kind, const cwi_g
     const size_t step = layers_at_once(layer, b->count[2]);
     char *chunk = as_is ? NULL : cwi_alloc_array(step, layer);
     if (!chunk && !as_is)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the upload of a volume");
+        return cwi_fail_memory(err);
     cw_status st = take_memory(&gl->volume, layer * b->count[2], err);
     if (st != CW_OK) {
         cwi_free(chunk);
@@ -231,7 +231,7 @@ static cw_status plan_bricks(cwi_gl_volume *g, const size_t edge[3], cw_error *e
                         MAX_BRICKS);
     g->bricks = cwi_alloc_zeroed(count, sizeof *g->bricks);
     if (!g->bricks)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bricks", count);
+        return cwi_fail_memory(err);
     g->brick_count = count;
     for (size_t n = 0; n < count; n++) {
         const size_t at[3] = {n % parts[0], n / parts[0] % parts[1], n / parts[0] / parts[1]};
@@ -450,7 +450,7 @@ static cw_status upload_gradients(cwi_gl *gl, cwi_gl_brick *b, cw_error *err)
         return st;
     void *chunk = cwi_alloc_array(step, layer);
     if (!chunk)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for gradients");
+        return cwi_fail_memory(err);
     b->gradients = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_GRADIENT, true);
     glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA16F, w, h, (GLsizei)b->count[2], 0, GL_RGBA,
                  GL_HALF_FLOAT, NULL);
@@ -461,7 +461,7 @@ static cw_status upload_gradients(cwi_gl *gl, cwi_gl_brick *b, cw_error *err)
         cwi_do_layers(n, b->count[0] * b->count[1], gl->frame->scene.threads,
                       put_gradient_layer, &copy);
         if (copy.is_starved)
-            st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for gradients");
+            st = cwi_fail_memory(err);
         else
             glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, (GLint)k, w, h, (GLsizei)n, GL_RGBA,
                             GL_HALF_FLOAT, chunk);

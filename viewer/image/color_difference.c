@@ -262,7 +262,7 @@ cw_status cw_picture_compare(const cw_picture *picture, const cw_picture *refere
     double(*moments)[MOMENTS] = cwi_alloc_array(count, sizeof *moments);
     double(*blurred)[MOMENTS] = cwi_alloc_array(count, sizeof *blurred);
     if (!delta || !moments || !blurred)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu pixels", count);
+        st = cwi_fail_memory(err);
     else
         measure_colors(picture, reference, background, delta, out);
     if (out->pixels > 0) {

@@ -127,7 +127,7 @@ static cw_status collect_strokes(const search *s, const cw_image *image, cwi_str
             all += count_strokes(find_case(s, x, y));
     *strokes = cwi_alloc_array(all + 1, sizeof **strokes);
     if (!*strokes)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for isolines");
+        return cwi_fail_memory(err);
     for (size_t y = 0; y < image->height; y++)
         for (size_t x = 0; x < image->width; x++)
             *count += make_strokes(s, x, y, *strokes + *count);
@@ -149,7 +149,7 @@ cw_status cwi_isolines_find(const cwi_frame *frame, const cw_image *image, doubl
         return st;
     s.samples = cwi_alloc_array(s.columns * (image->height + 1), sizeof *s.samples);
     if (!s.samples)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for isolines");
+        return cwi_fail_memory(err);
     st = cwi_each_layer(image->height + 1, s.columns, frame->scene.threads,
                         &frame->scene.progress, "drawing isolines", sample_row, &s, err);
     if (st == CW_OK)

@@ -486,7 +486,7 @@ static cw_status draw_caption(board *b, cw_error *err)
         const size_t length = end ? (size_t)(end - line) : strlen(line);
         char *text = cwi_alloc_array(length + 1, 1);
         if (!text)
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a caption");
+            return cwi_fail_memory(err);
         memcpy(text, line, length);
         text[length] = 0;
         write_text(b, b->margin, y, 0, b->ink, text);

@@ -19,8 +19,7 @@ cw_status cw_picture_alloc(cw_picture *picture, size_t width, size_t height, cw_
                         width, height, MAX_SIZE);
     picture->pixels = cwi_alloc_zeroed(width * height, 4 * sizeof(float));
     if (!picture->pixels)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a picture of %zu x %zu", width,
-                        height);
+        return cwi_fail_memory(err);
     picture->width = width;
     picture->height = height;
     return CW_OK;

@@ -17,8 +17,7 @@ cw_status cw_image_alloc(cw_image *image, size_t width, size_t height, cw_error 
     if (cwi_size_mul(width, height, &pixels))
         image->pixels = cwi_alloc_zeroed(pixels, 4);
     if (!image->pixels)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a picture of %zu x %zu", width,
-                        height);
+        return cwi_fail_memory(err);
     image->width = width;
     image->height = height;
     return CW_OK;
@@ -56,7 +55,7 @@ static void on_flush(png_structp png)
 static void on_error(png_structp png, png_const_charp words)
 {
     writer *w = png_get_error_ptr(png);
-    w->status = w->starved ? cwi_fail(w->err, CW_ERR_NO_MEMORY, "memory ran out in libpng")
+    w->status = w->starved ? cwi_fail_memory(w->err)
                            : cwi_fail(w->err, CW_ERR_BACKEND, "libpng failed: %s", words);
     png_longjmp(png, 1);
 }
@@ -111,9 +110,7 @@ static cw_status encode_image(writer *w, const cw_image *image)
     png_infop info = png ? png_create_info_struct(png) : NULL;
     if (!info) {
         png_destroy_write_struct(&png, &info);
-        return w->status != CW_OK
-                   ? w->status
-                   : cwi_fail(w->err, CW_ERR_NO_MEMORY, "no memory to write a PNG");
+        return w->status != CW_OK ? w->status : cwi_fail_memory(w->err);
     }
     if (setjmp(png_jmpbuf(png)) == 0) {
         png_set_write_fn(png, w, on_bytes, on_flush);

@@ -103,7 +103,7 @@ cw_status cwi_pen_draw_many(const cwi_pen *pen, const cwi_stroke *strokes, size_
     const double reach = pen->width / 2 + 0.5;
     float *near = cwi_alloc_array(all, sizeof *near);
     if (!near)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for lines on a picture");
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < all; n++)
         near[n] = INFINITY;
     for (size_t n = 0; n < count; n++) {

@@ -81,8 +81,7 @@ cw_status cw_world_marks_draw(const cw_world_mark *marks, size_t count, double t
         largest = marks[n].count > largest ? marks[n].count : largest;
     double(*pixels)[2] = cwi_alloc_array(largest + 1, sizeof *pixels);
     cwi_stroke *strokes = cwi_alloc_array(largest + 1, sizeof *strokes);
-    cw_status st =
-        pixels && strokes ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for marks");
+    cw_status st = pixels && strokes ? CW_OK : cwi_fail_memory(err);
     const double height = text_px > 0 ? text_px : fmax(round((double)image->height / 48), 7);
     for (size_t n = 0; n < count && st == CW_OK; n++)
         if (marks[n].count && project_points(&marks[n], scene, image, pixels))

@@ -2,6 +2,7 @@
  * projection's value occurs, or on a slice. */
 #include "viewer/interact/pick_volume.h"
 
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/affine.h"
 #include "core/geometry/cubic.h"
@@ -272,7 +273,7 @@ cw_status cwi_pick_uneven(const cwi_frame *frame, double x, double y, double dep
         *hit = is_blended ? pick_half(&field, &spans, &ray)
                           : pick_value(&field, &spans, &ray, x, y, depth);
     if (st == CW_OK && spans.is_starved)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the cells of a ray");
+        st = cwi_fail_memory(err);
     cwi_spans_free(&spans);
     cwi_cell_tree_free(&tree);
     return st;

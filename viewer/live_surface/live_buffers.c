@@ -13,7 +13,7 @@ cw_status cwi_live_need(cwi_live *live, cwi_live_buffer n, size_t bytes, cw_erro
                         "a live surface needs %zu bytes in one buffer; OpenGL holds %zu", bytes,
                         live->capacity.buffer_bytes);
     if (!cwi_memory_take(bytes - live->bytes[n]))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a live surface");
+        return cwi_fail_memory(err);
     live->counted_bytes += bytes - live->bytes[n];
     live->bytes[n] = bytes;
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, live->buffers[n]);

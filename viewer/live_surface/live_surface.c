@@ -153,7 +153,7 @@ static cw_status make_state(cwi_live **live, const cw_volume *v, cw_error *err)
     if (*live && (*live)->is_set_up && memcmp(&(*live)->key, v, sizeof *v) == 0)
         return CW_OK;
     if (!*live && !(*live = cwi_alloc_zeroed(1, sizeof **live)))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a live surface");
+        return cwi_fail_memory(err);
     cwi_live *l = *live;
     cwi_live_forget(l);
     if (l->program_type != v->type) /* those of a type stay: they take long to compile */
@@ -247,8 +247,8 @@ cw_status cwi_live_read(const cwi_live *live, cw_mesh *mesh, cw_error *err)
     if (!triangles)
         return CW_OK;
     float *both = cwi_alloc_array(vertices, CWI_LIVE_VERTEX_BYTES);
-    cw_status st = both ? cwi_mesh_renew(mesh, vertices, triangles, true, err)
-                        : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a mesh");
+    cw_status st =
+        both ? cwi_mesh_renew(mesh, vertices, triangles, true, err) : cwi_fail_memory(err);
     if (st == CW_OK) {
         glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         glBindBuffer(GL_SHADER_STORAGE_BUFFER, live->buffers[CWI_LIVE_INDICES]);

@@ -70,7 +70,7 @@ static cw_status upload_layers(const cw_volume *v, texels of, cw_error *err)
                                                                      : v->dim[2];
     char *chunk = as_is ? NULL : cwi_alloc_array(step, layer);
     if (!chunk && !as_is)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the upload of a volume");
+        return cwi_fail_memory(err);
     for (size_t k = 0; k < v->dim[2]; k += step) {
         const size_t n = v->dim[2] - k < step ? v->dim[2] - k : step;
         if (!as_is)
@@ -97,7 +97,7 @@ cw_status cwi_live_upload(cwi_live *live, cw_error *err)
         return cwi_fail(err, CW_ERR_LIMIT, "OpenGL holds no texture of %zu x %zu x %zu voxels",
                         v->dim[0], v->dim[1], v->dim[2]);
     if (!cwi_memory_take(bytes))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the volume in OpenGL");
+        return cwi_fail_memory(err);
     live->counted_bytes += bytes;
     live->voxels = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_FREE, false);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);

@@ -22,10 +22,9 @@ enum { DRIVER_BYTES = 72 << 20 };
 static cw_status gl_open(cwi_gl **out, cw_error *err)
 {
     if (!cwi_memory_take(DRIVER_BYTES))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for OpenGL");
+        return cwi_fail_memory(err);
     cwi_gl *gl = cwi_alloc_zeroed(1, sizeof *gl);
-    cw_status st = gl ? cwi_gl_context_open(&gl->context, err)
-                      : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for OpenGL");
+    cw_status st = gl ? cwi_gl_context_open(&gl->context, err) : cwi_fail_memory(err);
     if (st != CW_OK) {
         cwi_free(gl);
         cwi_memory_give(DRIVER_BYTES);

@@ -50,7 +50,7 @@ static cw_status draw_composite_mode(cwi_gl *gl, void **state, cw_error *err)
         return st;
     size_t *order = cwi_gl_order_bricks(gl);
     if (!order)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the order of bricks");
+        return cwi_fail_memory(err);
     cwi_gl_set(program, "step_length", (float)s->sampling.step_vox);
     cwi_gl_set_last_block(program, gl->volume.ranges.dim);
     glDisable(GL_DEPTH_TEST);

@@ -70,7 +70,7 @@ static cw_status take_state(cwi_gl *gl, void **state, cw_error *err)
         return CW_OK;
     projector *p = cwi_alloc_zeroed(1, sizeof *p);
     if (!p)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for projections");
+        return cwi_fail_memory(err);
     *state = p;
     return make_ranges(&gl->volume, p, err);
 }
@@ -156,7 +156,7 @@ static cw_status draw_mip_mode(cwi_gl *gl, void **state, cw_error *err)
     cw_status st = take_state(gl, state, err);
     size_t *order = st == CW_OK ? cwi_gl_order_bricks(gl) : NULL;
     if (st == CW_OK && !order)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the order of bricks");
+        st = cwi_fail_memory(err);
     if (st == CW_OK && count > 1)
         make_found(gl, *state);
     glDisable(GL_DEPTH_TEST);

@@ -373,7 +373,7 @@ static cw_status draw_brick(job *j, const cwi_gl_brick *brick, cw_error *err)
     for (int a = 0; a < 3; a++) {
         order[a] = order_blocks(j, brick, a, &count[a]);
         if (!order[a])
-            st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the order of blocks");
+            st = cwi_fail_memory(err);
     }
     for (size_t z = 0; st == CW_OK && z < count[2]; z++) {
         cwi_gl_part(j->gl, z, count[2]);
@@ -429,7 +429,7 @@ static cw_status open_job(cwi_gl *gl, job *j, const char **gradients, cw_error *
     j->vertices = cwi_alloc_array(CHUNK_VERTICES, sizeof *j->vertices);
     j->indices = cwi_alloc_array(CHUNK_INDICES, sizeof *j->indices);
     if (!j->vertices || !j->indices)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the polygons of cells");
+        return cwi_fail_memory(err);
     cw_status st = cwi_visible_make(&gl->transfer.table, &j->visible, err);
     if (st == CW_OK && needs_gradients)
         st = cwi_gl_need_gradients(gl, gradients, err);
@@ -453,7 +453,7 @@ static cw_status draw_bricks(job *j, GLuint program, cw_error *err)
     cw_status st = CW_OK;
     size_t *order = cwi_gl_order_bricks(j->gl);
     if (!order)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the order of bricks");
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < j->gl->volume.brick_count && st == CW_OK; n++) {
         const cwi_gl_brick *brick = &j->gl->volume.bricks[order[n]];
         cwi_gl_bind_brick(program, brick);
@@ -471,7 +471,7 @@ static cw_status draw_projection_mode(cwi_gl *gl, void **state, cw_error *err)
     (void)state;
     job *j = cwi_alloc_zeroed(1, sizeof *j);
     if (!j)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the projection of cells");
+        return cwi_fail_memory(err);
     cw_status st = open_job(gl, j, &gradients, err);
     describe_shader(&gl->frame->scene, &gl->frame->transfer, gradients, defines,
                     sizeof defines);

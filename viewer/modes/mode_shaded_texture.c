@@ -229,7 +229,7 @@ static cw_status upload_normals(cwi_gl *gl, shaded_state *t, size_t brick, cw_er
     const layer_job job = start_layers(gl, t);
     uint16_t *layer = cwi_alloc_array(b->count[0] * b->count[1], channels * sizeof *layer);
     if (!layer)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for directions of gradients");
+        return cwi_fail_memory(err);
     t->normals[brick] = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_NORMALS, false);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glTexImage3D(GL_TEXTURE_3D, 0, channels == 2 ? GL_RG16UI : GL_R16UI, w, h, d, 0, format,
@@ -272,7 +272,7 @@ static cw_status need_normals(cwi_gl *gl, shaded_state *t, cw_error *err)
         return st;
     t->normals = cwi_alloc_zeroed(gl->volume.brick_count, sizeof *t->normals);
     if (!t->normals)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for directions of gradients");
+        return cwi_fail_memory(err);
     t->brick_count = gl->volume.brick_count;
     for (size_t n = 0; n < t->brick_count && st == CW_OK; n++)
         st = upload_normals(gl, t, n, err);
@@ -453,7 +453,7 @@ static cw_status make_directions(const shades_key *key, shaded_state *t, cw_erro
     const cwi_directions *d = &t->directions;
     float(*all)[4] = cwi_alloc_zeroed(d->count + 1, sizeof *all);
     if (!all)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for directions");
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < d->count; n++)
         for (int a = 0; a < 3; a++)
             all[n][a] = (float)(key->longest * cwi_dot(key->axes[a], d->all[n]));
@@ -474,7 +474,7 @@ static cw_status need_shades(const cwi_gl *gl, shaded_state *t, cw_error *err)
     const size_t rows = count_rows(&key, &t->directions), columns = count_columns(&key);
     float *all = cwi_alloc_array(rows * columns, 4 * sizeof *all);
     if (!all)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for shaded colours");
+        return cwi_fail_memory(err);
     put_shades(gl->frame, &key, &t->directions, all);
     glDeleteTextures(1, &t->shades);
     t->shades = cwi_gl_texture(GL_TEXTURE_2D, CWI_UNIT_SHADES, true);
@@ -513,7 +513,7 @@ static cw_status draw_shaded_texture(cwi_gl *gl, void **state, cw_error *err)
         *state = cwi_alloc_zeroed(1, sizeof(shaded_state));
     shaded_state *t = *state;
     if (!t)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for slices");
+        return cwi_fail_memory(err);
     if (gl->frame->transfer.gradient_count > 0)
         st = cwi_gl_need_gradients(gl, &gradients, err);
     if (st == CW_OK)

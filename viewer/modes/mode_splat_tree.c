@@ -191,7 +191,7 @@ static cw_status make_tree(const cwi_gl *gl, void **out, cw_error *err)
     const cwi_frame *f = gl->frame;
     tree *t = cwi_alloc_zeroed(1, sizeof *t);
     if (!t)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a pyramid");
+        return cwi_fail_memory(err);
     cw_status st = cwi_pyramid_make(&f->volume, gl->volume.ranges.has_gaps, f->scene.threads,
                                     &gl->watch.progress, &t->pyramid, err);
     if (st == CW_OK)

@@ -88,7 +88,7 @@ static cw_status upload_classes(cwi_gl *gl, const cwi_gl_brick *b, GLuint *name,
     const GLsizei w = (GLsizei)b->count[0], h = (GLsizei)b->count[1], d = (GLsizei)b->count[2];
     float(*layer)[4] = cwi_alloc_array(b->count[0] * b->count[1], sizeof *layer);
     if (!layer)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for classified voxels");
+        return cwi_fail_memory(err);
     *name = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_CLASSES, true);
     glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA16F, w, h, d, 0, GL_RGBA, GL_FLOAT, NULL);
     cw_status st = CW_OK;
@@ -113,7 +113,7 @@ static cw_status need_classes(cwi_gl *gl, texture_state *t, cw_error *err)
     drop_classes(t);
     t->classes = cwi_alloc_zeroed(count, sizeof *t->classes);
     if (!t->classes)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for classified voxels");
+        return cwi_fail_memory(err);
     t->class_count = count;
     t->key = gl->frame->transfer;
     t->opacity_units = gl->frame->opacity_units;
@@ -141,7 +141,7 @@ static cw_status draw_texture_mode(cwi_gl *gl, void **state, cw_error *err)
         *state = cwi_alloc_zeroed(1, sizeof(texture_state));
     texture_state *t = *state;
     if (!t)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for slices");
+        return cwi_fail_memory(err);
     if (cwi_frame_needs_gradients(gl->frame))
         st = cwi_gl_need_gradients(gl, &gradients, err);
     if (st == CW_OK && s->texture.colors_first)

@@ -52,8 +52,7 @@ static cw_status init_drawing(const cwi_frame *f, drawing *d, cw_error *err)
         return st;
     d->rects = cwi_alloc_array(CWI_SLAB_RECTS, sizeof *d->rects);
     d->first = cwi_alloc_zeroed(d->slabs.layer_count + 1, sizeof *d->first);
-    return d->rects && d->first ? CW_OK
-                                : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for slices");
+    return d->rects && d->first ? CW_OK : cwi_fail_memory(err);
 }
 
 /* Finds the blocks of cells of a brick's samples: first and last block along each axis. */
@@ -119,7 +118,7 @@ static cw_status gather_slabs(const cwi_frame *f, drawing *d, cw_error *err)
         const size_t count = cwi_slabs_rects(&d->slabs, f, n, d->rects);
         d->first[n] = d->count;
         if (!make_room(d, count * CORNERS))
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for slices");
+            return cwi_fail_memory(err);
         for (size_t i = 0; i < count; i++) {
             const cwi_slab_rect r = d->rects[i];
             const corner all[CORNERS] = {{r.left, r.bottom},  {r.right, r.bottom},
@@ -308,8 +307,7 @@ static cw_status draw_bricks(cwi_gl *gl, cwi_gl_slabs *slices, GLuint program,
 {
     drawing d;
     size_t *order = cwi_gl_order_bricks(gl);
-    cw_status st = order ? init_drawing(gl->frame, &d, err)
-                         : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the order of bricks");
+    cw_status st = order ? init_drawing(gl->frame, &d, err) : cwi_fail_memory(err);
     if (!order)
         return st;
     for (size_t n = 0; n < gl->volume.brick_count && st == CW_OK; n++) {

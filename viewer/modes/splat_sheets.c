@@ -41,7 +41,7 @@ static cw_status make_indices(cwi_splat_batch *b, const cwi_splat_kernel *kernel
     const size_t bytes = CHUNK * 3 * b->triangles * sizeof(uint32_t);
     uint32_t *all = cwi_alloc_array(CHUNK, 3 * b->triangles * sizeof *all);
     if (!all)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for splats");
+        return cwi_fail_memory(err);
     cwi_splat_indices(kernel, CHUNK, all);
     glGenVertexArrays(1, &b->array);
     glBindVertexArray(b->array);
@@ -89,7 +89,7 @@ static cw_status make_batch(cwi_splats *s, bool is_of_nodes, cw_error *err)
              is_of_nodes ? "#define NODES\n" : "", is_blob ? "" : s->kernel->defines);
     b->chunk = cwi_alloc_array(CHUNK, sizeof *b->chunk);
     if (!b->chunk)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for splats");
+        return cwi_fail_memory(err);
     cw_status st = make_indices(b, is_of_nodes ? NULL : s->kernel, err);
     if (st == CW_OK)
         st = cwi_gl_use(s->gl, cwi_glsl_splat, cwi_glsl_splat, defines, &b->program, err);
@@ -294,7 +294,7 @@ size_t *cwi_splats_order(const cwi_splats *s, cw_error *err)
     if (order)
         cwi_lattice_order(count, 0, 1, s->eye[s->axis], order);
     else
-        cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the order of sheets");
+        cwi_fail_memory(err);
     return order;
 }
 

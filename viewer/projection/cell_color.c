@@ -38,8 +38,7 @@ static cw_status make_segments(cwi_cell_tables *t, const cwi_frame *f, cw_error 
     const size_t count = t->segment_rows * t->segment_rows;
     t->segments = cwi_alloc_array(count, 4 * sizeof *t->segments);
     if (!t->segments)
-        return cwi_fail(err, CW_ERR_NO_MEMORY,
-                        "no memory for a pre-integrated transfer function");
+        return cwi_fail_memory(err);
     cw_status st =
         cwi_table_preintegrate(&t->table, f->scene.sampling.step_vox, t->segment_rows,
                                f->scene.threads, &f->scene.progress, t->segments, err);

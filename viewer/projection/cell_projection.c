@@ -236,7 +236,7 @@ static cw_status draw_tiles(projection *p, cw_error *err)
     cw_status st = cwi_each_layer(p->tiles[0] * p->tiles[1], WORK, s->threads, &s->progress,
                                   "cells", draw_tile, p, err);
     if (st == CW_OK && p->has_failed)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a tile of the picture");
+        st = cwi_fail_memory(err);
     return st;
 }
 
@@ -246,7 +246,7 @@ cw_status cwi_projection_draw(const cwi_frame *frame, const cwi_ranges *ranges,
 {
     projection *p = cwi_alloc_zeroed(1, sizeof *p);
     if (!p)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the projection of cells");
+        return cwi_fail_memory(err);
     p->frame = frame;
     p->depths = depths;
     p->picture = picture;

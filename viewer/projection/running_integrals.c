@@ -15,7 +15,7 @@ cw_status cwi_integrals_make(const cwi_frame *frame, cwi_integrals *r, cw_error 
     r->sums = cwi_alloc_zeroed(r->table.count, sizeof *r->sums);
     if (!r->sums) {
         cwi_integrals_free(r);
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a transfer function");
+        return cwi_fail_memory(err);
     }
     for (size_t n = 1; n < r->table.count; n++) {
         const float *row = r->table.rows + 4 * (n - 1);

@@ -121,8 +121,7 @@ static cw_status list_bands(projection *p, cw_error *err)
                 p->cells[starts[b + 1]++] = order[n];
     }
     cwi_free(order);
-    return p->cells ? CW_OK
-                    : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the order of cells");
+    return p->cells ? CW_OK : cwi_fail_memory(err);
 }
 
 /* --- cells to fragments -------------------------------------------------------------------- */
@@ -370,8 +369,7 @@ static cw_status draw_cells(projection *p, cw_error *err)
     const cw_scene *s = &p->frame->scene;
     p->covers = cwi_alloc_array(p->solids.count, sizeof *p->covers);
     if (!p->covers)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the order of %zu cells",
-                        p->solids.count);
+        return cwi_fail_memory(err);
     cw_status st = cwi_each_layer((p->solids.count + CHUNK - 1) / CHUNK, (size_t)CHUNK * 32,
                                   s->threads, &s->progress, "cells", cover_chunk, p, err);
     if (st == CW_OK)
@@ -380,7 +378,7 @@ static cw_status draw_cells(projection *p, cw_error *err)
         st = cwi_each_layer(p->band_count, BAND * s->width * CWI_RAY_SAMPLES, s->threads,
                             &s->progress, "drawing", draw_band, p, err);
     if (st == CW_OK && p->is_starved)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the cells of %d rows", BAND);
+        st = cwi_fail_memory(err);
     return st;
 }
 
@@ -392,7 +390,7 @@ cw_status cwi_uneven_projection_draw(const cwi_frame *frame, const cwi_cell_tree
                         "opacity that is linear over polygons is for evenly spaced volumes");
     projection *p = cwi_alloc_zeroed(1, sizeof *p);
     if (!p)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a picture");
+        return cwi_fail_memory(err);
     p->frame = frame;
     p->depths = depths;
     p->picture = picture;

@@ -127,13 +127,13 @@ static cw_status make_map(cwi_directions *d, cw_error *err)
     const size_t cells = d->edge * d->edge;
     d->first = cwi_alloc_zeroed(cells + 1, sizeof *d->first);
     if (!d->first)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for directions");
+        return cwi_fail_memory(err);
     cwi_do_layers(cells, WORK * d->count, 0, count_candidates, d);
     for (size_t n = 0; n < cells; n++)
         d->first[n + 1] += d->first[n];
     d->candidates = cwi_alloc_array(d->first[cells], sizeof *d->candidates);
     if (!d->candidates)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for directions");
+        return cwi_fail_memory(err);
     cwi_do_layers(cells, WORK * d->count, 0, list_candidates, d);
     return CW_OK;
 }
@@ -149,8 +149,7 @@ cw_status cwi_directions_make(size_t count, cwi_directions *directions, cw_error
     d->all = cwi_alloc_array(count, sizeof *d->all);
     if (d->all)
         place_directions(d);
-    cw_status st =
-        d->all ? make_map(d, err) : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for directions");
+    cw_status st = d->all ? make_map(d, err) : cwi_fail_memory(err);
     if (st != CW_OK)
         cwi_directions_free(d);
     return st;

@@ -112,7 +112,7 @@ cw_status cwi_pyramid_make(const cw_volume *volume, bool has_gaps, int threads,
         pyramid->levels[pyramid->level_count].nodes = nodes;
         if (!nodes) {
             cwi_pyramid_free(pyramid);
-            return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a pyramid of the volume");
+            return cwi_fail_memory(err);
         }
         filling work = {pyramid, pyramid->level_count++, volume, has_gaps};
         st = cwi_each_layer(dim[2], 8 * dim[0] * dim[1], threads, progress, "averaging",
@@ -232,7 +232,7 @@ cw_status cwi_pyramid_fit(const cwi_pyramid *pyramid, const cwi_pyramid_view *vi
     size_t n = 0;
     size_t *counts = cwi_alloc_array(CWI_PYRAMID_STEPS + 1, sizeof *counts);
     if (!counts)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the counts of splats");
+        return cwi_fail_memory(err);
     cwi_pyramid_counts(pyramid, view, counts);
     while (n < CWI_PYRAMID_STEPS && counts[n] > budget)
         n++;

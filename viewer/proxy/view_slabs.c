@@ -49,7 +49,7 @@ cw_status cwi_slabs_init(const cwi_frame *f, cwi_slabs *s, cw_error *err)
     const size_t longest = f->scene.width > f->scene.height ? f->scene.width : f->scene.height;
     s->tile = (longest + CWI_SLAB_TILES - 1) / CWI_SLAB_TILES;
     s->rows = cwi_alloc_zeroed(s->layer_count, sizeof *s->rows);
-    return s->rows ? CW_OK : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for slices");
+    return s->rows ? CW_OK : cwi_fail_memory(err);
 }
 
 void cwi_slabs_free(cwi_slabs *s)

@@ -84,7 +84,7 @@ static cw_status build_boxes(const job *work, cw_error *err)
     cwi_boxes *b = &work->tree->boxes;
     uint32_t *items = cwi_alloc_array(work->cells->count, sizeof *items);
     if (!items)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a list of cells");
+        return cwi_fail_memory(err);
     const size_t count = pack_boxes(work, items);
     cw_status st = cwi_boxes_build(b, (const float(*)[6])work->boxes, count, err);
     for (size_t s = 0; s < count && st == CW_OK; s++)
@@ -139,10 +139,8 @@ cw_status cwi_cell_tree_make(const cwi_frame *f, const cwi_ray *only, cwi_cell_t
         segment = cwi_cell_tree_segment(tree, only);
     job work = {cells, tree, NULL, cwi_alloc_array(cells->count, sizeof *work.boxes),
                 only ? &segment : NULL};
-    cw_status st = tree->kinds && tree->starts && work.boxes
-                       ? fill_tree(&work, f, err)
-                       : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a tree of %zu cells",
-                                  cells->count);
+    cw_status st = tree->kinds && tree->starts && work.boxes ? fill_tree(&work, f, err)
+                                                             : cwi_fail_memory(err);
     cwi_free(work.boxes);
     if (st != CW_OK)
         cwi_cell_tree_free(tree);
@@ -172,8 +170,7 @@ cw_status cwi_cell_tree_need_gradients(const cwi_frame *f, cwi_cell_tree *tree, 
     double(*fitted)[3] = cwi_alloc_array(v->dim[0], sizeof *fitted);
     float(*kept)[3] = cwi_alloc_array(v->dim[0], sizeof *kept);
     cw_status st = fitted && kept ? cwi_gradients_fit(&fit, v->dim[0], fitted, &factor, err)
-                                  : cwi_fail(err, CW_ERR_NO_MEMORY,
-                                             "no memory for %zu gradients", v->dim[0]);
+                                  : cwi_fail_memory(err);
     for (size_t n = 0; n < v->dim[0] && st == CW_OK; n++)
         for (int a = 0; a < 3; a++) {
             const float g = (float)(fitted[n][a] / factor * v->slope);

@@ -158,13 +158,13 @@ cw_status cwi_ranges_make(const cw_volume *volume, int threads, const cw_progres
     }
     ranges->blocks = cwi_alloc_array(count, sizeof *ranges->blocks);
     if (!ranges->blocks)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the ranges of %zu blocks", count);
+        return cwi_fail_memory(err);
     job work = {volume, ranges, false};
     cw_status st =
         cwi_each_layer(ranges->dim[2], volume->dim[0] * volume->dim[1] * CWI_RANGE_EDGE,
                        threads, progress, "ranges", scan_layer, &work, err);
     if (st == CW_OK && work.has_failed)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the ranges of blocks");
+        st = cwi_fail_memory(err);
     if (st != CW_OK)
         cwi_ranges_free(ranges);
     return st;
@@ -194,7 +194,7 @@ cw_status cwi_ranges_halve(const cwi_ranges *fine, cwi_ranges *coarse, cw_error 
         count *= dim[a] = (fine->dim[a] + 1) / 2;
     coarse->blocks = cwi_alloc_array(count, sizeof *coarse->blocks);
     if (!coarse->blocks)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the ranges of %zu blocks", count);
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < count; n++)
         gather_children(fine, n % dim[0], n / dim[0] % dim[1], n / dim[0] / dim[1],
                         coarse->blocks[n]);
@@ -234,7 +234,7 @@ cw_status cwi_ranges_distances(const cwi_ranges *r,
     uint8_t *d = cwi_alloc_array(wide, nz + 2); /* then the lattice without its margin */
     *distances = d;
     if (!d)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for what is empty");
+        return cwi_fail_memory(err);
     memset(d, 255, wide * (nz + 2));
 #define ROW(j, k) (d + ((k) + 1) * wide + ((j) + 1) * (nx + 2) + 1)
     for (size_t n = 0; n < nx * ny * nz; n++) {

@@ -30,7 +30,7 @@ cw_status cwi_visible_make(const cwi_table *table, cwi_visible *visible, cw_erro
     visible->count = table->count;
     visible->before = cwi_alloc_array(table->count + 1, sizeof *visible->before);
     if (!visible->before)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for what is visible");
+        return cwi_fail_memory(err);
     visible->before[0] = 0;
     for (size_t n = 0; n < table->count; n++)
         visible->before[n + 1] = visible->before[n] + (table->rows[4 * n + 3] > 0);

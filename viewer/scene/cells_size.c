@@ -118,7 +118,7 @@ cw_status cwi_cells_measure(const cw_volume *volume, int threads, cwi_cells_size
         return st;
     job work = {volume, starts, cwi_alloc_array(chunks, sizeof *work.chunks)};
     if (!work.chunks)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the size of a grid");
+        st = cwi_fail_memory(err);
     if (st == CW_OK)
         st = cwi_each_layer(chunks, (size_t)CHUNK * 16, threads, &unreported, "measuring",
                             measure_chunk, &work, err);

@@ -95,7 +95,7 @@ static cw_status smooth_axis(job *work, int axis, double sigma, cw_error *err)
     const size_t reach = (size_t)ceil(3 * sigma);
     float *weights = cwi_alloc_array(reach + 1, sizeof *weights);
     if (!weights)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a kernel");
+        return cwi_fail_memory(err);
     for (size_t n = 0; n <= reach; n++)
         weights[n] = (float)exp(-0.5 * (double)(n * n) / (sigma * sigma));
     work->axis = axis;
@@ -106,7 +106,7 @@ static cw_status smooth_axis(job *work, int axis, double sigma, cw_error *err)
                        s->threads, &s->progress, "smoothing", smooth_plane, work, err);
     cwi_free(weights);
     if (st == CW_OK && work->is_starved)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to smooth a volume");
+        st = cwi_fail_memory(err);
     return st;
 }
 
@@ -147,8 +147,7 @@ static cw_status make_volume(cwi_gradient_volume *made, const cwi_frame *f, cw_e
     cwi_gradient_volume_free(made);
     float *values = cwi_alloc_array(dim[0] * dim[1] * dim[2], sizeof *values);
     if (!values)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the indices of %zu voxels",
-                        dim[0] * dim[1] * dim[2]);
+        return cwi_fail_memory(err);
     cw_status st = make_values(f, values, err);
     if (st == CW_OK)
         made->values = values;

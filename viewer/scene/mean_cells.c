@@ -224,11 +224,11 @@ static cw_status make_level(filling *f, size_t count, bool has_gradients, int th
     l->moments = cwi_alloc_array(count, sizeof *l->moments);
     l->gradients = has_gradients ? cwi_alloc_array(count, sizeof *l->gradients) : NULL;
     if (!l->moments || (has_gradients && !l->gradients))
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu mean cells", count);
+        return cwi_fail_memory(err);
     cw_status st = cwi_each_layer(l->dim[2], 8 * l->dim[0] * l->dim[1], threads, progress,
                                   "averaging", f->level > 1 ? join_layer : fill_layer, f, err);
     if (st == CW_OK && f->has_failed)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for rows of mean cells");
+        st = cwi_fail_memory(err);
     return st;
 }
 

@@ -323,8 +323,7 @@ static cw_status make_values(const cwi_frame *f, const cwi_shadow_key *key, floa
     }
     w.extinctions = cwi_alloc_array(w.dim[0] * w.dim[1] * w.dim[2], sizeof *w.extinctions);
     w.is_dense = cwi_alloc_array(w.blocks[0] * w.blocks[1] * w.blocks[2], 1);
-    st = w.extinctions && w.is_dense ? run_job(&w, err)
-                                     : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for shadows");
+    st = w.extinctions && w.is_dense ? run_job(&w, err) : cwi_fail_memory(err);
     cwi_free(w.extinctions);
     cwi_free(w.is_dense);
     cwi_table_free(&table);
@@ -338,8 +337,7 @@ static cw_status make_shadows(cwi_shadow_volume *made, const cwi_frame *f,
     cwi_shadow_volume_free(made);
     float *values = cwi_alloc_array(count, sizeof *values);
     if (!values)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for the shadows of %zu voxels",
-                        count);
+        return cwi_fail_memory(err);
     cw_status st = make_values(f, key, values, err);
     if (st != CW_OK) {
         cwi_free(values);

@@ -48,7 +48,7 @@ cw_status cwi_table_make(const cwi_frame *frame, cwi_table *table, cw_error *err
     table->visible = cwi_alloc_array(table->count, sizeof *table->visible);
     if (!table->rows || !table->visible) {
         cwi_table_free(table);
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a transfer function");
+        return cwi_fail_memory(err);
     }
     for (size_t n = 0; n < table->count; n++) {
         float *row = table->rows + 4 * n;
@@ -243,8 +243,7 @@ cw_status cwi_table_preintegrate(const cwi_table *table, double length, size_t c
 {
     double(*sum)[4] = running_integrals(table, count);
     if (!sum)
-        return cwi_fail(err, CW_ERR_NO_MEMORY,
-                        "no memory for a pre-integrated transfer function");
+        return cwi_fail_memory(err);
     enum { WORK = 64 }; /* one entry takes as long as this number of samples elsewhere */
     integration work = {table, length, count, (const double(*)[4])sum, out};
     cw_status st = cwi_each_layer(count, WORK * count, threads, progress, "integrating",

@@ -144,7 +144,7 @@ cw_status cw_transfer_box(const cw_volume *volume, const cw_transfer *transfer, 
         st = cw_transfer_check(transfer, err);
     job *j = st == CW_OK ? cwi_alloc_zeroed(1, sizeof *j) : NULL;
     if (!j)
-        return st == CW_OK ? cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a box") : st;
+        return st == CW_OK ? cwi_fail_memory(err) : st;
     j->v = &v;
     j->step = 1;
     while (v.dim[0] * (v.dim[1] / j->step) * (v.dim[2] / j->step) > MAX_VOXELS)
@@ -155,12 +155,12 @@ cw_status cw_transfer_box(const cw_volume *volume, const cw_transfer *transfer, 
     j->rows = cwi_alloc_zeroed(j->layers * v.dim[1], sizeof *j->rows);
     uint64_t *sums = cwi_alloc_array(v.dim[0] + v.dim[1] + j->layers, sizeof *sums);
     if (!j->columns || !j->rows || !sums)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a box");
+        st = cwi_fail_memory(err);
     if (st == CW_OK)
         st = cwi_each_layer(j->layers, v.dim[0] * v.dim[1] / j->step, threads,
                             &(cw_progress){0}, "box", count_layer, j, err);
     if (st == CW_OK && j->has_failed)
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a box");
+        st = cwi_fail_memory(err);
     if (st == CW_OK) {
         find_ends(j, sums, ends);
         find_corners(&v, (const double(*)[2])ends, low, high);

@@ -17,7 +17,7 @@ static cw_status read_bytes(FILE *file, char **bytes, size_t *size, cw_error *er
 {
     *bytes = cwi_alloc_array(MAX_BYTES + 1, 1);
     if (!*bytes)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory to read it");
+        return cwi_fail_memory(err);
     *size = fread(*bytes, 1, MAX_BYTES + 1, file);
     if (ferror(file))
         return cwi_fail(err, CW_ERR_IO, "cannot be read: %s", strerror(errno));

@@ -3,6 +3,7 @@
 #include "viewer/settings/transfer_json.h"
 
 #include "core/base/atomic_file.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "viewer/settings/json.h"
@@ -301,13 +302,11 @@ cw_status cw_transfer_format(const cw_transfer *transfer, char text[CW_TRANSFER_
         return st;
     FILE *out = fmemopen(text, CW_TRANSFER_TEXT, "w");
     if (!out)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a transfer function");
+        return cwi_fail_memory(err);
     void *before = cwi_locale_c();
     put_transfer(out, transfer);
     cwi_locale_restore(before);
-    return fclose(out) == 0
-               ? CW_OK
-               : cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a transfer function");
+    return fclose(out) == 0 ? CW_OK : cwi_fail_memory(err);
 }
 
 cw_status cw_transfer_write(const char *path, const cw_transfer *transfer, cw_error *err)

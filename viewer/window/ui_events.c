@@ -1,4 +1,5 @@
 /* Queues input, and takes each frame's share of it. */
+#include "core/base/memory.h"
 #include "viewer/window/ui_internal.h"
 
 #include <math.h>
@@ -92,7 +93,7 @@ cw_status cwi_ui_feed(cwi_ui *ui, const cwi_ui_event *event, cw_error *err)
     if (st == CW_OK)
         st = check_text(event, err);
     if (st == CW_OK && !cwi_ui_queue_put(ui, event, false))
-        st = cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for input");
+        st = cwi_fail_memory(err);
     return st;
 }
 

@@ -1,4 +1,5 @@
 /* Runs a frame from begin to end: takes input, lays out widgets, and shows the result. */
+#include "core/base/memory.h"
 #include "viewer/window/ui_internal.h"
 
 static cw_status check_desc(const cwi_ui_desc *desc, cw_error *err)
@@ -33,7 +34,7 @@ cw_status cwi_ui_open(const cwi_ui_desc *desc, cwi_ui **out, cw_error *err)
         return st;
     cwi_ui *ui = cwi_alloc_zeroed(1, sizeof *ui);
     if (!ui)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a window");
+        return cwi_fail_memory(err);
     ui->input.x = ui->input.y = -1;
     ui->settle = 3;
     st = open_all(ui, desc, err);

@@ -1,5 +1,6 @@
 /* Opens the window by GLFW or, if it is hidden, a context by EGL alone. */
 #define _POSIX_C_SOURCE 200809L /* clock_gettime */
+#include "core/base/memory.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/window/ui_internal.h"
 
@@ -323,7 +324,7 @@ cw_status cwi_ui_screen_open(cwi_ui *ui, const cwi_ui_desc *desc, cw_error *err)
 {
     cwi_ui_screen *s = cwi_alloc_zeroed(1, sizeof *s);
     if (!s)
-        return cwi_fail(err, CW_ERR_NO_MEMORY, "no memory for a window");
+        return cwi_fail_memory(err);
     s->start = clock_seconds();
     ui->screen = s;
     const cw_status st = desc->hidden ? open_hidden(ui, desc, err) : open_window(ui, desc, err);

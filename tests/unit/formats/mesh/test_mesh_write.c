@@ -419,7 +419,7 @@ static void loss_fails_as_writing_does(void **state)
     for (long n = 0; n < 3; n++) {
         cwi_alloc_fail_after(n);
         assert_fails(cw_mesh_write_loss("a.stl", &mesh, NULL, &loss, &err), CW_ERR_NO_MEMORY,
-                     n ? "a.stl: no memory to compare 8 vertices" : "a.stl: no memory", err);
+                     "a.stl: no memory", err);
         cwi_alloc_fail_after(-1);
     }
     mesh.triangles[0] = 8;
