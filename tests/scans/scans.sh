@@ -1,17 +1,16 @@
 #!/bin/sh
 # Reads every real scan and holds what we say of it against what other people's readers say
-# (truth.tsv, made by truth.py): sh scans.sh BIN_FOLDER. The scans are in $CUBEWRIGHT_DATA, else
-# in shared/data beside the checkout; 77 when there is no such folder. What this build has no
-# reader for is named and passed over.
+# (truth.tsv, made by truth.py): sh scans.sh BIN_FOLDER. The scans are in $CUBEWRIGHT_DATA/data; 77
+# when there is no such folder. What this build has no reader for is named and passed over.
 set -uf
 here=$(cd "$(dirname "$0")" && pwd)
-data=${CUBEWRIGHT_DATA:-$here/../../../shared/data}
+data=${CUBEWRIGHT_DATA:-}/data
 PATH=$1:$PATH
 tab=$(printf '\t')
 failed=0 read=0 line=0 unread=
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-[ -d "$data" ] || { echo "skip: there is no folder $data" >&2; exit 77; }
+[ -d "$data" ] || { echo "skip: CUBEWRIGHT_DATA names no folder with data" >&2; exit 77; }
 data=$(cd "$data" && pwd)
 cd "$folder" || exit 1
 

@@ -32,6 +32,7 @@ points mapped through the affine in double precision:
 A star stands for what cannot be told.
 """
 import argparse
+import os
 import itertools
 import math
 import re
@@ -477,7 +478,7 @@ REFUSED = ("dicom", "ct-head-ge-dicom", "-", "refused")
 def main():
     here = Path(__file__).resolve()
     parser = argparse.ArgumentParser()
-    parser.add_argument("--data", type=Path, default=here.parents[3] / "shared/data")
+    parser.add_argument("--data", type=Path, default=Path(os.environ.get("CUBEWRIGHT_DATA", "."), "data"))
     parser.add_argument("--only", default="")
     args = parser.parse_args()
     print(*COLUMNS, sep="\t")

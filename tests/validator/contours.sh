@@ -13,7 +13,7 @@ done
 [ -n "$python" ] || { echo "skip: VTK for Python is not there" >&2; exit 77; }
 
 # and a simulation's, where the scans are
-tubes=${CUBEWRIGHT_DATA:-$here/../../../shared/data}/irregular/tubes_cfd.vtu
+tubes=${CUBEWRIGHT_DATA:-}/data/irregular/tubes_cfd.vtu
 set --
 if [ -f "$tubes" ]; then
     cp "$tubes" "$folder"

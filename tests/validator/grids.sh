@@ -14,7 +14,7 @@ done
 
 $python "$here/vtk_grids.py" "$folder" >"$folder/theirs" || exit 1
 # and a simulation's, where the scans are
-tubes=${CUBEWRIGHT_DATA:-$here/../../../shared/data}/irregular/tubes_cfd.vtu
+tubes=${CUBEWRIGHT_DATA:-}/data/irregular/tubes_cfd.vtu
 if [ -f "$tubes" ]; then
     cp "$tubes" "$folder"
     $python "$here/vtk_grids.py" --read "$folder/tubes_cfd.vtu" >>"$folder/theirs" || exit 1

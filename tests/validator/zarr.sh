@@ -1,10 +1,10 @@
 #!/bin/sh
-# Zarr stores of other writers: those that zarr-python makes here, and those of shared/conformance
-# beside the checkout: sh zarr.sh VOXELS. Every number must be the same. 77 when there is neither.
+# Zarr stores of other writers: those that zarr-python makes here, and those of CUBEWRIGHT_DATA:
+# sh zarr.sh VOXELS. Every number must be the same. 77 when there is neither.
 set -u
 voxels=$1
 here=$(cd "$(dirname "$0")" && pwd)
-stores=$here/../../../shared/conformance/zarr/neuroglancer/zarr
+stores=${CUBEWRIGHT_DATA:-}/conformance/zarr/neuroglancer/zarr
 failed=0 asked=0
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -61,6 +61,6 @@ if [ -d "$stores" ]; then
         expect "OME-Zarr 0.$version" "$(numbers u2 "$stores/ome_zarr/simple_0.$version")" "$(count_to 0 99)"
     done
 fi
-[ $asked -gt 0 ] || { echo "skip: neither python3-zarr nor shared/conformance/zarr is there" >&2; exit 77; }
+[ $asked -gt 0 ] || { echo "skip: neither python3-zarr is there nor CUBEWRIGHT_DATA/conformance/zarr" >&2; exit 77; }
 [ $failed = 0 ] && echo "$asked stores of other writers hold the same numbers"
 exit $failed
