@@ -17,25 +17,6 @@
 const char *const cli_family_names[CLI_FAMILY_COUNT] = {
     "extraction", "simplification", "compression", "rendering", "shading", "projections"};
 
-cli_point *cli_add_point(cli_study *s, cli_family family, int rank, const char *group,
-                         const char *format, ...)
-{
-    va_list args;
-    cli_point *p = &s->points[s->point_count++];
-    p->family = family;
-    p->rank = rank;
-    p->group = group;
-    va_start(args, format);
-    vsnprintf(p->name, sizeof p->name, format, args);
-    va_end(args);
-    return p;
-}
-
-bool cli_time_is_up(const cli_study *s)
-{
-    return cli_seconds() >= s->deadline;
-}
-
 /* The plain surface is not held to the budget: without it there is nothing to tell. Work for the
  * page alone is, even that on the plain surface. */
 static bool keep_going(void *user, const char *step, double done)

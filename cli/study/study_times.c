@@ -8,24 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int compare_times(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-void cli_add_run(cli_point *p, double seconds)
-{
-    double sorted[CLI_MAX_RUNS];
-    if (p->runs == CLI_MAX_RUNS)
-        return;
-    p->times[p->runs++] = seconds;
-    memcpy(sorted, p->times, sizeof sorted);
-    qsort(sorted, p->runs, sizeof *sorted, compare_times);
-    p->seconds = p->runs % 2 ? sorted[p->runs / 2]
-                             : 0.5 * (sorted[p->runs / 2 - 1] + sorted[p->runs / 2]);
-}
-
 static cw_status run_again(cli_study *s, cli_point *p, cw_error *err)
 {
     cw_mesh mesh = {0};

@@ -53,7 +53,7 @@ static cw_status simplify_slabs(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
 static cw_status extract_whole(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
 {
     cw_extract_desc d = describe_extraction(p);
-    d.no_normals = d.no_normals || (p->desc->lod_count && cwi_adds_normals(p));
+    d.no_normals = d.no_normals || (p->desc->lod_count && p->adds_normals);
     return p->extractor ? cw_extractor_extract(p->extractor, &d, mesh, &p->facts.extracted, err)
                         : cw_extract(&p->part, &d, mesh, &p->facts.extracted, err);
 }
@@ -62,7 +62,7 @@ cw_status cwi_extract_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
 {
     if (p->slices)
         return cwi_extract_slices(p, mesh, err);
-    const bool by_slabs = p->desc->simplify && !cwi_needs_whole(p->desc) &&
+    const bool by_slabs = p->desc->simplify && !p->needs_whole &&
                           cwi_volume_expect_dense(&p->part, "slabs", NULL) == CW_OK;
     cw_status st = by_slabs ? simplify_slabs(p, mesh, err) : extract_whole(p, mesh, err);
     return st == CW_OK && !mesh->triangle_count ? explain_empty(p, err) : st;

@@ -1,14 +1,8 @@
 /* The recipe: runs the stages of the table, and gives the finished surfaces away. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/volume/volume.h"
 #include "extract/pipeline/stages.h"
-
-cw_progress cwi_begin_stage(const cwi_pipeline *p, cw_stage stage, size_t count,
-                            const char *unit)
-{
-    const cw_pipeline_watch *w = &p->desc->watch;
-    return w->begin ? w->begin(w->user, stage, count, unit) : p->desc->extract.progress;
-}
 
 static size_t count_triangles(const cwi_pipeline *p, const cw_mesh *mesh)
 {
@@ -73,13 +67,39 @@ static void free_pipeline(cwi_pipeline *p)
     cw_mesh_spool_free(p->spool);
 }
 
+static cw_status make_full(const cwi_pipeline *p, const cw_volume *volume, bool no_normals,
+                           cw_mesh *mesh, cw_error *err)
+{
+    cw_pipeline_desc desc = *p->desc;
+    desc.simplify = NULL;
+    desc.views = NULL;
+    desc.view_count = 0;
+    desc.cull = desc.check = false;
+    desc.color = NULL;
+    desc.lod_count = 0;
+    desc.extract.no_normals = desc.extract.no_normals || no_normals;
+    desc.watch.end = NULL;
+    return cw_pipeline_mesh(volume, NULL, &desc, mesh, NULL, err);
+}
+
+/* Returns true if finished surfaces get normals of the field. */
+static bool adds_normals(const cwi_pipeline *p)
+{
+    const cw_pipeline_desc *d = p->desc;
+    return (d->simplify || d->lod_count) && !d->extract.no_normals && !p->labels &&
+           !(cwi_spoils(d) & CWI_FIELD_NORMALS) &&
+           (p->slices || cwi_volume_expect_dense(p->volume, "normals", NULL) == CW_OK);
+}
+
 cw_status cwi_begin_pipeline(cwi_pipeline *p, cw_surface_source source, cw_pipeline_sink sink,
                              cw_error *err)
 {
     const cw_pipeline_desc *d = p->desc;
     if (!sink.take)
         return cwi_fail(err, CW_ERR_ARGUMENT, "sink.take is NULL");
-    p->spoiled = cwi_spoils(d);
+    p->needs_whole = cwi_needs_whole(d);
+    p->adds_normals = adds_normals(p);
+    p->make_full = make_full;
     p->simplify = d->simplify ? *d->simplify : (cw_simplify_desc){0};
     p->simplify.views = d->views;
     p->simplify.view_count = d->view_count;
@@ -140,19 +160,4 @@ cw_status cw_pipeline_mesh(const cw_volume *volume, cw_extractor *extractor,
                         desc->lod_count);
     return cw_pipeline_run(volume, extractor, desc, (cw_pipeline_sink){take_mesh, mesh}, facts,
                            err);
-}
-
-cw_status cwi_make_full(const cwi_pipeline *p, const cw_volume *volume, bool no_normals,
-                        cw_mesh *mesh, cw_error *err)
-{
-    cw_pipeline_desc desc = *p->desc;
-    desc.simplify = NULL;
-    desc.views = NULL;
-    desc.view_count = 0;
-    desc.cull = desc.check = false;
-    desc.color = NULL;
-    desc.lod_count = 0;
-    desc.extract.no_normals = desc.extract.no_normals || no_normals;
-    desc.watch.end = NULL;
-    return cw_pipeline_mesh(volume, NULL, &desc, mesh, NULL, err);
 }

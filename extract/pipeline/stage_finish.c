@@ -8,7 +8,7 @@ cw_status cwi_add_normals(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
     const cw_pipeline_desc *d = p->desc;
     if (p->labels)
         return cw_mesh_normals(mesh, err);
-    if (!cwi_adds_normals(p) || !mesh->triangle_count)
+    if (!p->adds_normals || !mesh->triangle_count)
         return CW_OK;
     const cw_normals_desc desc = {
         .inside_is_low = d->extract.inside_is_low,

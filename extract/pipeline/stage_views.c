@@ -17,7 +17,7 @@ static cw_status choose_part(cwi_pipeline *p, cw_error *err)
 {
     const cw_pipeline_desc *d = p->desc;
     cw_box box;
-    if (!d->cull || cwi_needs_whole(d) ||
+    if (!d->cull || p->needs_whole ||
         cwi_volume_expect_dense(p->volume, "bricks", NULL) != CW_OK)
         return CW_OK;
     cw_status st = cw_simplify_views_box(p->volume, d->views, d->view_count, &box, err);
@@ -37,7 +37,7 @@ static cw_status draw_slab(void *user, const cw_slab *slab, cw_error *err)
 static cw_status draw_whole(const cwi_pipeline *p, cw_error *err)
 {
     cw_mesh mesh;
-    cw_status st = cwi_make_full(p, &p->part, true, &mesh, err);
+    cw_status st = p->make_full(p, &p->part, true, &mesh, err);
     if (st == CW_OK)
         st = draw_slab((void *)(uintptr_t)p->desc, &(cw_slab){.mesh = &mesh}, err);
     cw_mesh_free(&mesh);
@@ -54,7 +54,7 @@ cw_status cwi_draw_views(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
     cw_status st = choose_part(p, err);
     p->facts.voxels = count_voxels(p->volume);
     p->facts.seen_voxels = count_voxels(&p->part);
-    if (st != CW_OK || cwi_needs_whole(d))
+    if (st != CW_OK || p->needs_whole)
         return st == CW_OK ? draw_whole(p, err) : st;
     extract.no_normals = true;
     return cw_extract_slabs(&p->part, &extract, CW_SIMPLIFIER_SLAB,

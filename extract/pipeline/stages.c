@@ -3,7 +3,6 @@
 #include "extract/pipeline/stages.h"
 
 #include "core/base/status.h"
-#include "core/volume/volume.h"
 
 static bool wants_views(const cw_pipeline_desc *d)
 {
@@ -143,13 +142,6 @@ bool cwi_needs_whole(const cw_pipeline_desc *desc)
     for (int s = 0; s < CW_STAGE_SIMPLIFY; s++)
         needs = needs || (stages >> s & 1 && STAGES[s].needs & CWI_WHOLE_MESH);
     return needs;
-}
-
-bool cwi_adds_normals(const cwi_pipeline *p)
-{
-    return (p->desc->simplify || p->desc->lod_count) && !p->desc->extract.no_normals &&
-           !(p->spoiled & CWI_FIELD_NORMALS) &&
-           (p->slices || cwi_volume_expect_dense(p->volume, "normals", NULL) == CW_OK);
 }
 
 /* --- rules ---------------------------------------------------------------------------------- */

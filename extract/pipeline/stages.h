@@ -34,7 +34,11 @@ typedef struct cwi_pipeline {
     cw_mesh *levels;      /* lod_count; NULL: there is one surface */
     bool is_simplified;   /* while it was extracted */
     bool is_checked;      /* the same */
-    unsigned spoiled;     /* by the stages that are asked for */
+    bool needs_whole;     /* before it is simplified */
+    bool adds_normals;    /* those of the field, to finished surfaces */
+    /* Makes the surface without what simplifies, colours or measures it. mesh: filled on success */
+    cw_status (*make_full)(const struct cwi_pipeline *p, const cw_volume *volume,
+                           bool no_normals, cw_mesh *mesh, cw_error *err);
     cw_pipeline_facts facts;
 } cwi_pipeline;
 
@@ -56,12 +60,13 @@ unsigned cwi_spoils(const cw_pipeline_desc *desc);
 /* Returns true if the surface is needed as a whole before it can be simplified. */
 bool cwi_needs_whole(const cw_pipeline_desc *desc);
 
-/* Returns true if vertices get normals of the field once the surface is finished. */
-bool cwi_adds_normals(const cwi_pipeline *p);
-
 /* Reports the begin of a stage. Returns its progress. */
-cw_progress cwi_begin_stage(const cwi_pipeline *p, cw_stage stage, size_t count,
-                            const char *unit);
+static inline cw_progress cwi_begin_stage(const cwi_pipeline *p, cw_stage stage, size_t count,
+                                          const char *unit)
+{
+    const cw_pipeline_watch *w = &p->desc->watch;
+    return w->begin ? w->begin(w->user, stage, count, unit) : p->desc->extract.progress;
+}
 
 /* Checks the settings, and sets what follows from them. */
 CW_NODISCARD cw_status cwi_begin_pipeline(cwi_pipeline *p, cw_surface_source source,
@@ -70,10 +75,6 @@ CW_NODISCARD cw_status cwi_begin_pipeline(cwi_pipeline *p, cw_surface_source sou
 /* Finishes a surface by the stages that do, and gives it away. */
 CW_NODISCARD cw_status cwi_finish_surface(cwi_pipeline *p, cw_pipeline_surface *surface,
                                           cw_pipeline_sink sink, cw_error *err);
-
-/* Makes the surface without what simplifies, colours or measures it. mesh: filled on success */
-CW_NODISCARD cw_status cwi_make_full(const cwi_pipeline *p, const cw_volume *volume,
-                                     bool no_normals, cw_mesh *mesh, cw_error *err);
 
 /* Fails with CW_ERR_EMPTY if all components are small. */
 CW_NODISCARD cw_status cwi_expect_kept(const cwi_pipeline *p, cw_error *err);
