@@ -242,18 +242,6 @@ static void name_step(const cli_extract_run *s, const cli_moment *moment, cw_err
         cwi_fail(err, why.status, "step %zu: %s", moment->number, why.message);
 }
 
-cli_delivery cli_extract_describe_delivery(const cli_extract_run *s)
-{
-    return (cli_delivery){.input = s->input.volume.path,
-                          .write = cli_extract_write_desc(s->args),
-                          .compress = &s->args->compress,
-                          .voxel_mm = cli_extract_voxel_mm(s),
-                          .unchecked = !s->args->check,
-                          .open = s->args->open,
-                          .unpromised = s->args->pixel.cull,
-                          .preview = cli_is_preview(&s->input.volume)};
-}
-
 /* Into its file, with the record of how it was made. */
 static cw_status deliver_level(cli_extract_run *s, size_t level, const cw_part *parts,
                                size_t count, size_t border_loops, cw_error *err)

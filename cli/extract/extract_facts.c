@@ -210,3 +210,15 @@ size_t cli_extract_provenance(const cli_extract_run *s, size_t n, cli_making *ma
         lines[count++] = (cw_provenance){"simplified", simplify};
     return count;
 }
+
+cli_delivery cli_extract_describe_delivery(const cli_extract_run *s)
+{
+    return (cli_delivery){.input = s->input.volume.path,
+                          .write = cli_extract_write_desc(s->args),
+                          .compress = &s->args->compress,
+                          .voxel_mm = cli_extract_voxel_mm(s),
+                          .unchecked = !s->args->check,
+                          .open = s->args->open,
+                          .unpromised = s->args->pixel.cull,
+                          .preview = cli_is_preview(&s->input.volume)};
+}

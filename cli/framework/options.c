@@ -1,7 +1,6 @@
 /* Parses the words of the command line by a command's table of options, and prints its help. */
 #include "cli/framework/options.h"
 
-#include "cli/framework/option_rules.h"
 #include "core/base/status.h"
 
 #include <stdio.h>
@@ -66,7 +65,7 @@ const char *cli_nearest(const char *word, const char *const *names)
 }
 
 /* Row n of a command's options, the common ones last; NULL behind the end. */
-static const cli_option *option_at(const cli_command *command, size_t n)
+const cli_option *cli_option_at(const cli_command *command, size_t n)
 {
     if (n < command->option_count)
         return &command->options[n];
@@ -77,7 +76,7 @@ static const cli_option *option_at(const cli_command *command, size_t n)
 static const cli_option *find_long(const cli_command *command, const char *name, size_t length)
 {
     const cli_option *o;
-    for (size_t n = 0; (o = option_at(command, n)); n++)
+    for (size_t n = 0; (o = cli_option_at(command, n)); n++)
         if (o->kind != CLI_HEADING && strlen(o->name) == length &&
             strncmp(o->name, name, length) == 0)
             return o;
@@ -87,7 +86,7 @@ static const cli_option *find_long(const cli_command *command, const char *name,
 static const cli_option *find_short(const cli_command *command, char letter)
 {
     const cli_option *o;
-    for (size_t n = 0; (o = option_at(command, n)); n++)
+    for (size_t n = 0; (o = cli_option_at(command, n)); n++)
         if (o->letter == letter)
             return o;
     return NULL;
@@ -101,7 +100,7 @@ static cw_status unknown_option(const cli_command *command, const char *name, si
     const cli_option *o;
     size_t count = 0;
     snprintf(word, sizeof word, "%.*s", (int)(length < 63 ? length : 63), name);
-    for (size_t n = 0; (o = option_at(command, n)) && count < CLI_MAX_OPTIONS; n++)
+    for (size_t n = 0; (o = cli_option_at(command, n)) && count < CLI_MAX_OPTIONS; n++)
         if (o->kind != CLI_HEADING)
             names[count++] = o->name;
     const char *nearest = cli_nearest(word, names);
@@ -264,80 +263,4 @@ bool cli_value_fits(const cli_option *option, const char *value)
         !field || option->kind->parse(option, value, field); /* else parsing will say it */
     free(field);
     return fits;
-}
-
-/* Width of the help, and the column where the texts of options begin. */
-enum { HELP_WIDTH = 96, TEXT_COLUMN = 32 };
-
-void cli_print_wrapped(FILE *out, const char *text, size_t from)
-{
-    size_t column = from;
-    for (bool first = true; *text; first = false) {
-        const size_t length = strcspn(text, " ");
-        if (!first && column + 1 + length > HELP_WIDTH) {
-            fprintf(out, "\n%*s", (int)from, "");
-            column = from;
-        } else if (!first) {
-            fputc(' ', out);
-            column++;
-        }
-        fprintf(out, "%.*s", (int)length, text);
-        column += length;
-        text += length + (text[length] == ' ');
-    }
-    fputc('\n', out);
-}
-
-/* Prints "--mode a/b/c", after a '/' in a new line where it would be too long; returns its
- * length, or HELP_WIDTH where it took several lines. */
-static size_t print_head(const cli_option *o)
-{
-    const int start =
-        printf("  %c%c%s--%s%s", o->letter ? '-' : ' ', o->letter ? o->letter : ' ',
-               o->letter ? ", " : "  ", o->name, o->value ? " " : "");
-    size_t column = (size_t)start;
-    bool broken = false;
-    for (const char *v = o->value ? o->value : ""; *v;) {
-        const size_t length = strcspn(v, "/") + (strchr(v, '/') != NULL);
-        if (column + length > HELP_WIDTH) {
-            printf("\n%*s", start, "");
-            column = (size_t)start;
-            broken = true;
-        }
-        printf("%.*s", (int)length, v);
-        column += length;
-        v += length;
-    }
-    return broken ? HELP_WIDTH : column;
-}
-
-static void print_option(const cli_command *command, const cli_option *o)
-{
-    if (o->kind == CLI_HEADING) {
-        printf("\n%s\n", o->name);
-        return;
-    }
-    const size_t length = print_head(o);
-    if (length > TEXT_COLUMN - 2)
-        printf("\n%*s", TEXT_COLUMN, "");
-    else
-        printf("%*s", (int)(TEXT_COLUMN - length), "");
-    cli_print_wrapped(stdout, cli_option_about(command, o), TEXT_COLUMN);
-}
-
-void cli_print_help(const cli_command *command, bool long_form)
-{
-    const cli_option *o;
-    printf("cubewright %s%s%s\n", command->name, *command->usage ? " " : "", command->usage);
-    if (long_form)
-        printf("\n%s", command->page);
-    else
-        printf("%s\n", command->about);
-    puts("\nOptions (the default in brackets)");
-    for (size_t n = 0; (o = option_at(command, n)); n++)
-        print_option(command, o);
-    if (long_form && command->print_more)
-        command->print_more(stdout);
-    if (!long_form)
-        printf("\n'cubewright help %s' explains more, with examples.\n", command->name);
 }

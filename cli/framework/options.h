@@ -291,6 +291,10 @@ bool cli_is_given(const cli_command *command, const cli_common *args, const char
  * choices, numbers, counts, lengths and ranges. false: nothing was said. */
 bool cli_option_text(const cli_option *option, const void *args, char *text, size_t size);
 
+/* Returns the n-th option of a command, those that all commands have behind its own; NULL: there are
+ * no more. */
+const cli_option *cli_option_at(const cli_command *command, size_t n);
+
 /* The help of a command: the options, and in the long form its page before them. */
 void cli_print_help(const cli_command *command, bool long_form);
 

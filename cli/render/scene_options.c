@@ -16,30 +16,6 @@
 /* Pictures for keeps: the library's own is 1. */
 static const double STEP_VOX = 0.5;
 
-static bool parse_hex(const char *hex, uint8_t rgba[4])
-{
-    const size_t n = strlen(hex), size = n < 6 ? 1 : 2;
-    if ((n != 3 && n != 6 && n != 8) || strspn(hex, "0123456789abcdefABCDEF") != n)
-        return false;
-    rgba[3] = 255;
-    for (size_t c = 0; c < n / size; c++) {
-        const char digits[3] = {hex[size * c], hex[size * c + size - 1], '\0'};
-        rgba[c] = (uint8_t)strtoul(digits, NULL, 16);
-    }
-    return true;
-}
-
-bool cli_parse_color(const char *text, uint8_t rgba[4])
-{
-    static const struct {
-        const char *name, *hex;
-    } names[] = {{"white", "fff"}, {"black", "000"}, {"grey", "808080"}, {"gray", "808080"}};
-    for (size_t n = 0; n < sizeof names / sizeof *names; n++)
-        if (strcmp(text, names[n].name) == 0)
-            text = names[n].hex;
-    return parse_hex(*text == '#' ? text + 1 : text, rgba);
-}
-
 static cw_status fail_color(const char *option, const char *text, cw_error *err)
 {
     return cwi_fail(err, CW_ERR_ARGUMENT,
