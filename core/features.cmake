@@ -2,8 +2,7 @@
 include(core/add_feature.cmake)
 
 # The libraries that no build is without.
-quote_for_c(needed_licences "zlib (Zlib), Expat (MIT), libpng (libpng-2.0), Jansson (MIT), libmd (ISC), \
-libseccomp (LGPL-2.1)")
+quote_for_c(needed_licences "zlib (Zlib), Expat (MIT), libpng (libpng-2.0), Jansson (MIT), libmd (ISC)")
 
 # C++ is for the wrappers of C++ libraries alone; without them no C++ compiler is needed.
 if(CUBEWRIGHT_GLTF OR CUBEWRIGHT_DRACO OR CUBEWRIGHT_DICOM OR CUBEWRIGHT_OPENVDB OR CUBEWRIGHT_CGAL
@@ -14,6 +13,24 @@ if(CUBEWRIGHT_GLTF OR CUBEWRIGHT_DRACO OR CUBEWRIGHT_DICOM OR CUBEWRIGHT_OPENVDB
     enable_language(CXX)
   endif()
 endif()
+
+if(CUBEWRIGHT_SECCOMP)
+  find_path(SECCOMP_INCLUDE seccomp.h)
+  find_library(SECCOMP_LIBRARY seccomp)
+endif()
+add_feature(seccomp OPTION CUBEWRIGHT_SECCOMP PACKAGES libseccomp-dev
+  ABOUT "sandboxed processes for libraries that read files"
+  COST "reads files with C++ libraries only with --no-sandbox"
+  LICENCES "libseccomp (LGPL-2.1)"
+  NEEDS SECCOMP_INCLUDE=libseccomp-dev SECCOMP_LIBRARY=libseccomp-dev
+  INCLUDES ${SECCOMP_INCLUDE} LIBRARIES ${SECCOMP_LIBRARY}
+  TRIAL [[
+#include <seccomp.h>
+int main(void)
+{
+    return seccomp_init(SCMP_ACT_ALLOW) == 0;
+}
+]])
 
 if(CUBEWRIGHT_CGAL AND CMAKE_CXX_COMPILER)
   set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE ON CACHE INTERNAL "one file, with its own -O2")

@@ -6,10 +6,10 @@ install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # The libraries of a static library, as -lNAME: their users need no CMake packages of them.
 set(static_libraries "")
-foreach(library z expat png jansson seccomp pthread m dl)
+foreach(library z expat png jansson pthread m dl)
   list(APPEND static_libraries -l${library})
 endforeach()
-foreach(pair ISAL=isal LZ4=lz4 BZIP2=bz2 ZSTD=zstd)
+foreach(pair SECCOMP=seccomp ISAL=isal LZ4=lz4 BZIP2=bz2 ZSTD=zstd)
   string(REGEX MATCH "^(.*)=(.*)$" pair ${pair})
   if(HAS_${CMAKE_MATCH_1})
     list(APPEND static_libraries -l${CMAKE_MATCH_2})

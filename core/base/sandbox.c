@@ -10,7 +10,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
-#include <seccomp.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,6 +21,12 @@
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
+#ifdef CW_SECCOMP
+#include <seccomp.h>
+enum { HAS_SECCOMP = 1 };
+#else
+enum { HAS_SECCOMP = 0 };
+#endif
 
 enum { POLL_MS = 100, LAST_STDIO = 2, CHILD_FILES = 64 };
 
@@ -152,6 +157,7 @@ static bool drop_files(int *socket, bool all)
     return close_range(LAST_STDIO + 2, ~0u, 0) == 0;
 }
 
+#ifdef CW_SECCOMP
 /* Allows a few system calls. All others fail with EPERM, so a library that cannot read its
  * settings goes on without them. */
 static bool lock_system_calls(void)
@@ -178,6 +184,13 @@ static bool lock_system_calls(void)
     seccomp_release(filter);
     return good;
 }
+#else
+/* Fails: without libseccomp nothing is sandboxed. */
+static bool lock_system_calls(void)
+{
+    return false;
+}
+#endif
 
 static bool send_answer(int socket, answer *a)
 {
@@ -205,6 +218,11 @@ static cw_status shut_in(const cwi_sandbox_desc *d, cw_error *err)
     cw_status st = d->prepare ? d->prepare(d->state, err) : CW_OK;
     if (st != CW_OK || d->trusted)
         return st;
+    if (!HAS_SECCOMP)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "%s reads files in a sandbox, which this build lacks (libseccomp-dev); with "
+                        "desc->no_sandbox it is read in this process",
+                        d->library);
     set_limits(d);
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 || prctl(PR_SET_DUMPABLE, 0) != 0 ||
         !lock_system_calls())
