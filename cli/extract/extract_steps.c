@@ -339,8 +339,7 @@ static cw_status hold_to_pixels(const cli_extract_run *s, const cli_proof *p, cw
         else if (p->promised_pixels == 0 && p->views[n].apart > SAME_PICTURE)
             return cwi_fail(
                 err, CW_ERR_CHECK,
-                "%s: not as promised: without what is left out %.3g %% of the pixels "
-                "of camera %zu differ",
+                "%s: culling changed %.3g %% of the pixels of camera %zu; none may change",
                 s->input.volume.path, 100 * p->views[n].apart, n + 1);
     return CW_OK;
 }

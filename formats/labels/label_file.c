@@ -168,7 +168,7 @@ static cw_status read_table(const cwi_input *in, cw_label_table *table, const ch
         st = f->read(&file, table, err);
     else if (st == CW_OK)
         st = cwi_fail(err, CW_ERR_FORMAT,
-                      "this is no table of labels; those of FreeSurfer, ITK-SNAP, 3D Slicer, "
+                      "not a label table; those of FreeSurfer, ITK-SNAP, 3D Slicer, "
                       "BIDS, niivue, Connectome Workbench and OME-Zarr are read, and lines of "
                       "'number name'");
     if (st == CW_OK && format)

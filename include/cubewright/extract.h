@@ -21,13 +21,13 @@ typedef struct cw_extract_desc {
     bool leave_open;      /* default: cap the surface where it meets the end of the data */
     bool simple_topology; /* default: every cell has the topology of the trilinear field; simple
                              uses one table, with one rule for ambiguous faces */
-    bool cubic_placement; /* default: vertices stand where the field, linear along edges, is the
-                             isovalue; cubic: where the cubic through four samples along the
-                             edge is */
-    bool no_normals;      /* default: one normal per vertex from the field's gradient */
-    double snap;          /* up to 0.5: merge crossings within this share of an edge from one
+    bool
+        cubic_placement; /* default: linear interpolation along edges; cubic: cubic interpolation
+                             through four samples along the edge */
+    bool no_normals;     /* default: one normal per vertex from the field's gradient */
+    double snap;         /* up to 0.5: merge crossings within this share of an edge from one
                              sample, as below; 0.3 is usual; default: none */
-    int threads;          /* default: one per processor */
+    int threads;         /* default: one per processor */
     size_t max_triangles; /* fail with CW_ERR_LIMIT before allocating more; default: no limit */
     size_t max_bytes;     /* the same for mesh and working memory; default: no limit */
     size_t extra_bytes;   /* per triangle: the caller's own needs, counted against max_bytes */

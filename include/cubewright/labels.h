@@ -66,7 +66,7 @@ typedef struct cw_label_surfaces {
  * Smoothing moves vertices towards the mean of those in the cubes beside, 16 times, and those
  * on curves where three labels meet along the curves, each within max_move of where it was. Then
  * pressures, which move each interface along its normal by the difference of its labels'
- * pressures, give every label the volume of its voxels; not where borders are open. Where
+ * pressures, preserve the volume of every label's voxels, except for open borders. Where
  * triangles would cross, vertices go back. In cubes with more than one vertex they stay.
  *
  * Vertices are in the world (LPS, millimetres).

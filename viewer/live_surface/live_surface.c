@@ -41,7 +41,7 @@ static cw_status check_opengl(const cw_live_surface *desc, cw_error *err)
                         CWI_LIVE_BUFFERS, blocks < bindings ? blocks : bindings);
     if (is_software() && !desc->on_software)
         return cwi_fail(err, CW_ERR_UNSUPPORTED,
-                        "OpenGL runs on the CPU here, which is faster by itself");
+                        "OpenGL runs in software here; CPU extraction is faster");
     return CW_OK;
 }
 
@@ -68,7 +68,7 @@ static cw_status check_volume(const cw_volume *v, cw_error *err)
         return cwi_fail(err, CW_ERR_UNSUPPORTED,
                         "OpenGL extracts from evenly spaced volumes, not from %s", kind);
     if (v->type == CW_F64)
-        return cwi_fail(err, CW_ERR_UNSUPPORTED, "OpenGL extracts from no volume of doubles");
+        return cwi_fail(err, CW_ERR_UNSUPPORTED, "live surfaces do not support f64 volumes");
     cw_volume_spacing(v, spacing);
     for (int a = 0; a < 3; a++) {
         if (v->dim[a] < 2)

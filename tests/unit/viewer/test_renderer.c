@@ -144,7 +144,7 @@ static void mistakes_are_named(void **state)
     FAILS(CW_ERR_ARGUMENT, "form", bad.cue_form = CW_CUE_COUNT);
     FAILS(CW_ERR_ARGUMENT, "less than 1", bad.cue_form = CW_CUE_EXPONENTIAL; bad.depth_cue = 1);
     FAILS(CW_ERR_ARGUMENT, "light_count", bad.light_count = 9);
-    FAILS(CW_ERR_ARGUMENT, "plane 0", bad.clip_count = 1);
+    FAILS(CW_ERR_ARGUMENT, "clip plane 0", bad.clip_count = 1);
     FAILS(CW_ERR_ARGUMENT, "camera", bad.camera.up[2] = 1);
 #undef FAILS
     cw_renderer_free(cpu);

@@ -232,16 +232,16 @@ static void errors_name_the_line_and_the_field(void **state)
         {"a.json", "{\"image-label\": {\"colors\": [{\"label-value\": 1, \"rgba\": [1,2]}]}}",
          "'colors[0].rgba': four numbers"},
         {"a.json", "{\"image-label\": {\"properties\": 5}}", "'properties': an array"},
-        {"a.json", "{\"some\": 1}", "this is no table of labels"},
+        {"a.json", "{\"some\": 1}", "not a label table"},
         {"a.xml", "<LabelTable>\n<Label Key=\"x\"/></LabelTable>", "line 2: 'Key' is 'x'"},
         {"a.xml", "<LabelTable>\n<Label Key=\"1\" Red=\"2\"/></LabelTable>", "'Red' is '2'"},
         {"a.xml", "<LabelTable>\n<Label Key=\"1\">", "line 2 is not XML"},
         {"a.xml", "<a><LabelTable/></a>", "the first element is not LabelTable"},
-        {"a.xml", "<html></html>", "this is no table of labels"},
+        {"a.xml", "<html></html>", "not a label table"},
         {"a.ctbl", "# Color procedural file a\n1 2 3\n", "a procedural colour file"},
         {"a.ctbl", "1 2\n", "line 1 has 2 words"},
-        {"a.dat", "some text\n", "this is no table of labels"},
-        {"a.txt", "\n\n", "this is no table of labels"},
+        {"a.dat", "some text\n", "not a label table"},
+        {"a.txt", "\n\n", "not a label table"},
     };
     cw_label_table table = {0};
     cw_error err = {0};

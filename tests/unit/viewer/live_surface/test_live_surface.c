@@ -227,7 +227,7 @@ static void refuses_what_it_cannot(void **state)
     live.volume = &doubles;
     live.isovalue = 1;
     assert_fails(f->extract(gl, &live, NULL, NULL, size, &mesh, &err), CW_ERR_UNSUPPORTED,
-                 "doubles", err);
+                 "f64", err);
     cw_volume_free(&doubles);
     cw_volume_free(&v);
 }
