@@ -4,7 +4,7 @@
 
 #include "cli/framework/commands.h"
 #include "cli/framework/option_rules.h"
-#include "cli/view/view.h"
+#include "cli/session/view.h"
 #include "core/base/status.h"
 
 #include <ctype.h>
