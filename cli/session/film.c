@@ -95,9 +95,9 @@ static cw_status write_bookmarks(const view *v, char **text, cw_error *err)
 {
     size_t size;
     FILE *out = cwi_text_open(text, &size);
-    for (size_t n = 0; out && n < v->bookmark_count; n++) {
-        fprintf(out, "%.9g go-to ", (double)n * v->film_seconds);
-        view_put_word(out, v->bookmarks[n].name);
+    for (size_t n = 0; out && n < v->film.bookmark_count; n++) {
+        fprintf(out, "%.9g go-to ", (double)n * v->film.seconds);
+        view_put_word(out, v->film.bookmarks[n].name);
         fputc('\n', out);
     }
     return out && cwi_text_close(out, text) ? CW_OK : cwi_fail_memory(err);
@@ -210,10 +210,10 @@ static cw_status show_moment(view *v, const film *f, double time, cw_error *err)
                                  (double)f->keys[at + 1].state.step};
         v->state.step = (size_t)lround(cwi_monotone_curve(f->times + at, steps, 2, time));
     }
-    if (st == CW_OK && v->source.series.count > 1)
+    if (st == CW_OK && v->document.source.series.count > 1)
         st = view_go_to_step(v, v->state.step, err);
-    v->transfer_is_old = true;
-    v->is_measured = false;
+    v->picture.transfer_is_old = true;
+    v->picture.is_measured = false;
     view_touch(v, VIEW_ALL);
     return st == CW_OK ? view_choose_mode(v, err) : st;
 }
@@ -255,7 +255,7 @@ static cw_status write_frames(view *v, const film *f, const char *pattern, doubl
         if (st == CW_OK)
             st = show_moment(v, f, start + (double)n / fps, err);
         if (st == CW_OK)
-            st = view_picture(v, &(view_sheet){0}, path, err);
+            st = view_write_picture(v, &(view_sheet){0}, path, err);
         free(path);
         if (st == CW_OK && progress.report &&
             !progress.report(progress.user, "film", (double)(n + 1) / (double)count))
@@ -270,14 +270,14 @@ static cw_status make_keys(view *v, const char *name, film *f, cw_error *err)
 {
     const bool of_bookmarks = strcmp(name, "bookmarks") == 0;
     char *text = NULL;
-    v->is_filming = true;
+    v->film.is_running = true;
     cw_status st =
         of_bookmarks ? write_bookmarks(v, &text, err) : view_read_text(name, &text, err);
     if (st == CW_OK) {
         st = parse_film(v, text, f, err);
         st = st == CW_OK ? st : cwi_fail_in(err, st, of_bookmarks ? "the bookmarks" : name);
     }
-    v->is_filming = false;
+    v->film.is_running = false;
     free(text);
     return st;
 }
@@ -286,9 +286,10 @@ static cw_status make_keys(view *v, const char *name, film *f, cw_error *err)
 static cw_status restore_session(view *v, const view_state *before, cw_error *err)
 {
     v->state = *before;
-    v->transfer_is_old = true;
+    v->picture.transfer_is_old = true;
     view_touch(v, VIEW_ALL);
-    cw_status st = v->source.series.count > 1 ? view_go_to_step(v, before->step, err) : CW_OK;
+    cw_status st =
+        v->document.source.series.count > 1 ? view_go_to_step(v, before->step, err) : CW_OK;
     return st == CW_OK ? view_choose_mode(v, err) : st;
 }
 
@@ -297,17 +298,17 @@ cw_status view_make_film(view *v, const char *name, const char *pattern, double 
 {
     film f = {0};
     cw_error why = {0};
-    if (!v->path)
+    if (!v->document.path)
         return cwi_fail(err, CW_ERR_ARGUMENT, "no file is open to make a film of");
     view_state *before = malloc(sizeof *before);
     if (!before)
         return cwi_fail_memory(err);
     *before = v->state;
     cw_status st = make_keys(v, name, &f, err);
-    v->is_filming = true;
+    v->film.is_running = true;
     if (st == CW_OK)
         st = write_frames(v, &f, pattern, fps, err);
-    v->is_filming = false;
+    v->film.is_running = false;
     const cw_status back = restore_session(v, before, &why);
     free(before);
     free_film(&f);
@@ -324,7 +325,7 @@ struct view_preview {
 
 cw_status view_start_preview(view *v, cw_error *err)
 {
-    if (!v->path)
+    if (!v->document.path)
         return cwi_fail(err, CW_ERR_ARGUMENT, "no file is open to make a film of");
     view_preview *p = calloc(1, sizeof *p);
     if (!p)
@@ -332,7 +333,7 @@ cw_status view_start_preview(view *v, cw_error *err)
     p->before = v->state;
     cw_status st = make_keys(v, "bookmarks", &p->film, err);
     p->start = v->ui->seconds(v->window);
-    v->preview = p;
+    v->film.preview = p;
     if (st != CW_OK)
         view_stop_preview(v);
     return st;
@@ -341,25 +342,25 @@ cw_status view_start_preview(view *v, cw_error *err)
 void view_stop_preview(view *v)
 {
     cw_error why = {0};
-    if (!v->preview)
+    if (!v->film.preview)
         return;
-    if (restore_session(v, &v->preview->before, &why) != CW_OK)
+    if (restore_session(v, &v->film.preview->before, &why) != CW_OK)
         view_say(v, true, why.message);
     view_drop_preview(v);
 }
 
 void view_drop_preview(view *v)
 {
-    if (!v->preview)
+    if (!v->film.preview)
         return;
-    free_film(&v->preview->film);
-    free(v->preview);
-    v->preview = NULL;
+    free_film(&v->film.preview->film);
+    free(v->film.preview);
+    v->film.preview = NULL;
 }
 
 cw_status view_run_preview(view *v, cw_error *err)
 {
-    view_preview *p = v->preview;
+    view_preview *p = v->film.preview;
     if (!p)
         return CW_OK;
     const double time = p->film.times[0] + v->ui->seconds(v->window) - p->start;
@@ -367,8 +368,8 @@ cw_status view_run_preview(view *v, cw_error *err)
         view_stop_preview(v);
         return CW_OK;
     }
-    v->is_filming = true;
+    v->film.is_running = true;
     cw_status st = show_moment(v, &p->film, time, err);
-    v->is_filming = false;
+    v->film.is_running = false;
     return st;
 }

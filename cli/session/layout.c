@@ -6,7 +6,7 @@
 
 bool view_is_quad(const view *v)
 {
-    return v->state.args.marks.layout == CLI_LAYOUT_QUAD && v->has_volume &&
+    return v->state.args.marks.layout == CLI_LAYOUT_QUAD && v->document.has_volume &&
            view_fits_mode(v, CW_MODE_SLICES);
 }
 
@@ -15,7 +15,7 @@ void view_place_parts(view *v, const cwi_ui_rect *area, bool is_quad)
 {
     const double w = floor(area->width / 2), h = floor(area->height / 2);
     for (int p = 0; p < VIEW_PARTS; p++) {
-        view_part *part = &v->parts[p];
+        view_part *part = &v->picture.parts[p];
         const cwi_ui_rect before = part->rect;
         const int at = p == VIEW_SPACE ? 3 : p - 1; /* of four */
         const double x = at % 2 ? w + 1 : 0, y = at / 2 ? h + 1 : 0;
@@ -33,8 +33,9 @@ void view_place_parts(view *v, const cwi_ui_rect *area, bool is_quad)
 
 cwi_ui_rect view_picture_area(const view *v)
 {
-    return (cwi_ui_rect){0, v->bar_height, fmax(1, (double)v->width - v->panel_width),
-                         fmax(1, (double)v->height - v->bar_height - v->strip_height)};
+    return (cwi_ui_rect){
+        0, v->layout.bar_height, fmax(1, (double)v->layout.width - v->layout.panel_width),
+        fmax(1, (double)v->layout.height - v->layout.bar_height - v->layout.strip_height)};
 }
 
 void view_lay_out(view *v)

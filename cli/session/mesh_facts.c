@@ -18,12 +18,13 @@ static cw_status reduce_surface(const view *v, const cw_mesh *full,
     const render_args *args = &v->state.args;
     const cw_pipeline_desc pipeline = {
         .extract = {.isovalue = args->iso.value,
-                    .inside_is_low = cli_inside_is_low(args->inside, &v->source.volume.whole),
+                    .inside_is_low =
+                        cli_inside_is_low(args->inside, &v->document.source.volume.whole),
                     .threads = desc->threads},
         .simplify = desc};
-    if (v->source.is_mesh || !args->iso.given || view_shows_surfaces(v))
+    if (v->document.source.is_mesh || !args->iso.given || view_shows_surfaces(v))
         return cw_simplify(full, desc, mesh, NULL, err);
-    return cli_make_surface(&v->source.volume, NULL, &pipeline, mesh, NULL, err);
+    return cli_make_surface(&v->document.source.volume, NULL, &pipeline, mesh, NULL, err);
 }
 
 static cw_status simplify_surface(const view *v, const cw_mesh *full, size_t triangles,
@@ -49,13 +50,13 @@ static void measure_from_field(const view *v, const cw_mesh *mesh, view_mesh_fac
     const render_args *args = &v->state.args;
     const cw_field_distance_desc desc = {
         .isovalue = args->iso.value,
-        .inside_is_low = cli_inside_is_low(args->inside, &v->source.volume.whole),
+        .inside_is_low = cli_inside_is_low(args->inside, &v->document.source.volume.whole),
         .threads = (int)args->input.threads};
     cw_distance d;
-    if (v->source.is_mesh || !args->iso.given || view_shows_surfaces(v))
+    if (v->document.source.is_mesh || !args->iso.given || view_shows_surfaces(v))
         return;
-    facts->has_error =
-        cw_distance_to_field(mesh, &v->source.volume.view, &desc, &d, NULL, NULL) == CW_OK;
+    facts->has_error = cw_distance_to_field(mesh, &v->document.source.volume.view, &desc, &d,
+                                            NULL, NULL) == CW_OK;
     facts->error_from = "the field";
     facts->max_mm = d.max_mm;
     facts->rms_mm = d.rms_mm;
@@ -81,20 +82,20 @@ cw_status view_make_mesh(view *v, size_t triangles, cw_mesh *simplified, const c
 {
     *facts = (view_mesh_facts){0};
     *simplified = (cw_mesh){0};
-    *mesh = &v->source.mesh;
-    if (!v->path)
+    *mesh = &v->document.source.mesh;
+    if (!v->document.path)
         return cwi_fail(err, CW_ERR_ARGUMENT, "no file is open");
     if (!view_has_mesh(v))
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "no surface is shown: choose an isovalue, such as 'iso %.5g'",
                         view_suggest_iso(v));
     cw_status st = view_need_surface(v, VIEW_FINAL, err);
-    if (st == CW_OK && v->source.mesh.triangle_count == 0)
+    if (st == CW_OK && v->document.source.mesh.triangle_count == 0)
         st = cwi_fail(err, CW_ERR_ARGUMENT, "the surface has no triangles");
     if (st != CW_OK)
         return st;
-    if (triangles && triangles < v->source.mesh.triangle_count) {
-        st = simplify_surface(v, &v->source.mesh, triangles, simplified, facts, err);
+    if (triangles && triangles < v->document.source.mesh.triangle_count) {
+        st = simplify_surface(v, &v->document.source.mesh, triangles, simplified, facts, err);
         *mesh = simplified;
     } else {
         measure_from_field(v, *mesh, facts);

@@ -25,18 +25,18 @@ void view_start_recent(view *v, const char *named)
 {
     char line[VIEW_PATH];
     const bool is_named = named && strcmp(named, "none") != 0;
-    v->recent_count = 0;
+    v->recent.count = 0;
     if ((named && !is_named) || (!named && v->is_hidden))
         return;
     if (is_named)
-        snprintf(v->recent_path, sizeof v->recent_path, "%s", named);
-    else if (!find_state_file(v->recent_path))
+        snprintf(v->recent.path, sizeof v->recent.path, "%s", named);
+    else if (!find_state_file(v->recent.path))
         return;
-    FILE *in = fopen(v->recent_path, "rb");
-    while (in && v->recent_count < VIEW_RECENT && fgets(line, sizeof line, in)) {
+    FILE *in = fopen(v->recent.path, "rb");
+    while (in && v->recent.count < VIEW_RECENT && fgets(line, sizeof line, in)) {
         line[strcspn(line, "\n")] = '\0';
-        if (*line && (v->recent[v->recent_count] = strdup(line)))
-            v->recent_count++;
+        if (*line && (v->recent.files[v->recent.count] = strdup(line)))
+            v->recent.count++;
     }
     if (in)
         fclose(in);
@@ -44,9 +44,9 @@ void view_start_recent(view *v, const char *named)
 
 void view_end_recent(view *v)
 {
-    for (size_t n = 0; n < v->recent_count; n++)
-        free(v->recent[n]);
-    v->recent_count = 0;
+    for (size_t n = 0; n < v->recent.count; n++)
+        free(v->recent.files[n]);
+    v->recent.count = 0;
 }
 
 /* Makes the folders above a file. What fails is seen when the file is written. */
@@ -67,11 +67,11 @@ static void save_recent(const view *v)
     char *text;
     size_t size;
     FILE *out = cwi_text_open(&text, &size);
-    for (size_t n = 0; out && n < v->recent_count; n++)
-        fprintf(out, "%s\n", v->recent[n]);
-    make_folders(v->recent_path);
+    for (size_t n = 0; out && n < v->recent.count; n++)
+        fprintf(out, "%s\n", v->recent.files[n]);
+    make_folders(v->recent.path);
     if (out && cwi_text_close(out, &text)) {
-        (void)!cwi_outfile_save(v->recent_path, text, size, NULL);
+        (void)!cwi_outfile_save(v->recent.path, text, size, NULL);
         free(text);
     }
 }
@@ -79,19 +79,19 @@ static void save_recent(const view *v)
 void view_remember_file(view *v)
 {
     char whole[VIEW_PATH];
-    if (!v->recent_path[0] || v->file_count != 1 || !realpath(v->path, whole) ||
-        strchr(whole, '\n'))
+    if (!v->recent.path[0] || v->document.file_count != 1 ||
+        !realpath(v->document.path, whole) || strchr(whole, '\n'))
         return;
     size_t at = 0;
-    while (at < v->recent_count && strcmp(v->recent[at], whole) != 0)
+    while (at < v->recent.count && strcmp(v->recent.files[at], whole) != 0)
         at++;
-    char *path = at < v->recent_count ? v->recent[at] : strdup(whole);
+    char *path = at < v->recent.count ? v->recent.files[at] : strdup(whole);
     if (!path)
         return;
-    if (at == v->recent_count && at == VIEW_RECENT)
-        free(v->recent[--at]);
-    v->recent_count = at < v->recent_count ? v->recent_count : at + 1;
-    memmove(v->recent + 1, v->recent, at * sizeof *v->recent);
-    v->recent[0] = path;
+    if (at == v->recent.count && at == VIEW_RECENT)
+        free(v->recent.files[--at]);
+    v->recent.count = at < v->recent.count ? v->recent.count : at + 1;
+    memmove(v->recent.files + 1, v->recent.files, at * sizeof *v->recent.files);
+    v->recent.files[0] = path;
     save_recent(v);
 }

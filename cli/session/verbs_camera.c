@@ -27,7 +27,7 @@ static cw_status run_pan(view *v, int count, char **args, cw_error *err)
     cw_status st = view_take("pan", args, count, n, err);
     if (st == CW_OK)
         st = view_need_camera(v, err);
-    const size_t height = (size_t)fmax(1, v->parts[VIEW_SPACE].rect.height);
+    const size_t height = (size_t)fmax(1, v->picture.parts[VIEW_SPACE].rect.height);
     return st == CW_OK ? cw_camera_pan(&v->state.camera, height, n[0], n[1], err) : st;
 }
 
@@ -67,7 +67,7 @@ static cw_status go_to_camera(view *v, int by, cw_error *err)
     if (st != CW_OK)
         return st;
     const bool is_there = by < 0 ? c->at > 0 : c->at + 1 < c->count;
-    if (!is_there && v->is_asked) {
+    if (!is_there && v->script.is_asked) {
         view_say(v, false, by < 0 ? "no earlier view" : "no later view");
         return CW_OK;
     }
@@ -96,7 +96,7 @@ static cw_status run_camera_forward(view *v, int count, char **args, cw_error *e
 static size_t find_bookmark(const view *v, const char *name)
 {
     size_t n = 0;
-    while (n < v->bookmark_count && strcmp(v->bookmarks[n].name, name) != 0)
+    while (n < v->film.bookmark_count && strcmp(v->film.bookmarks[n].name, name) != 0)
         n++;
     return n;
 }
@@ -113,7 +113,7 @@ static void describe_look(const view *v, char *text, size_t size)
         const bool is_level = n == 0;
         const bool is_set = o && cli_option_text(o, &v->state.args, value, sizeof value) &&
                             !(is_level && v->state.iso_is_ours);
-        if (!is_level || !v->source.is_mesh)
+        if (!is_level || !v->document.source.is_mesh)
             used += (size_t)snprintf(text + used, size - used, "%s%s %s", used ? "; " : "",
                                      names[n], is_set ? value : "default");
     }
@@ -124,9 +124,9 @@ static cw_status run_bookmark(view *v, int count, char **args, cw_error *err)
     view_bookmark b = {0};
     if (count)
         snprintf(b.name, sizeof b.name, "%s", args[0]);
-    for (size_t n = v->bookmark_count + 1; !count; n++) { /* the first name that is free */
+    for (size_t n = v->film.bookmark_count + 1; !count; n++) { /* the first name that is free */
         snprintf(b.name, sizeof b.name, "view %zu", n);
-        if (find_bookmark(v, b.name) == v->bookmark_count)
+        if (find_bookmark(v, b.name) == v->film.bookmark_count)
             break;
     }
     if (!*b.name || (count && strlen(args[0]) >= sizeof b.name))
@@ -148,8 +148,8 @@ static cw_status run_bookmark(view *v, int count, char **args, cw_error *err)
     if (at == VIEW_BOOKMARKS)
         return cwi_fail(err, CW_ERR_LIMIT, "bookmark '%s': there are %d already", b.name,
                         VIEW_BOOKMARKS);
-    v->bookmarks[at] = b;
-    v->bookmark_count += at == v->bookmark_count;
+    v->film.bookmarks[at] = b;
+    v->film.bookmark_count += at == v->film.bookmark_count;
     return CW_OK;
 }
 
@@ -157,9 +157,10 @@ static cw_status need_bookmark(const view *v, const char *verb, const char *name
                                cw_error *err)
 {
     *at = find_bookmark(v, name);
-    return *at < v->bookmark_count ? CW_OK
-                                   : cwi_fail(err, CW_ERR_ARGUMENT,
-                                              "%s '%s': no bookmark has that name", verb, name);
+    return *at < v->film.bookmark_count
+               ? CW_OK
+               : cwi_fail(err, CW_ERR_ARGUMENT, "%s '%s': no bookmark has that name", verb,
+                          name);
 }
 
 static cw_status run_go_to(view *v, int count, char **args, cw_error *err)
@@ -170,10 +171,10 @@ static cw_status run_go_to(view *v, int count, char **args, cw_error *err)
     if (st == CW_OK)
         st = view_need_camera(v, err);
     if (st == CW_OK)
-        st = view_exec(v, v->bookmarks[n].look, err);
+        st = view_exec(v, v->film.bookmarks[n].look, err);
     if (st != CW_OK)
         return st;
-    v->state.camera = v->bookmarks[n].camera;
+    v->state.camera = v->film.bookmarks[n].camera;
     view_touch(v, 1 << VIEW_SPACE);
     return CW_OK;
 }
@@ -185,16 +186,16 @@ static cw_status run_remove_bookmark(view *v, int count, char **args, cw_error *
     cw_status st = need_bookmark(v, "remove-bookmark", args[0], &n, err);
     if (st != CW_OK)
         return st;
-    memmove(v->bookmarks + n, v->bookmarks + n + 1,
-            (--v->bookmark_count - n) * sizeof *v->bookmarks);
+    memmove(v->film.bookmarks + n, v->film.bookmarks + n + 1,
+            (--v->film.bookmark_count - n) * sizeof *v->film.bookmarks);
     return CW_OK;
 }
 
 void view_put_bookmarks(const view *v, FILE *out, const char *end)
 {
     char text[CW_CAMERA_TEXT];
-    for (size_t n = 0; n < v->bookmark_count; n++) {
-        const view_bookmark *b = &v->bookmarks[n];
+    for (size_t n = 0; n < v->film.bookmark_count; n++) {
+        const view_bookmark *b = &v->film.bookmarks[n];
         if (cw_camera_format(&b->camera, text, NULL) != CW_OK)
             continue;
         view_join_lines(text);
@@ -230,18 +231,18 @@ static cw_status run_save_film(view *v, int count, char **args, cw_error *err)
     char *text, camera[CW_CAMERA_TEXT];
     size_t size;
     (void)count;
-    if (v->bookmark_count < 2)
+    if (v->film.bookmark_count < 2)
         return cwi_fail(err, CW_ERR_ARGUMENT, "a film needs at least two bookmarks");
     FILE *out = cwi_text_open(&text, &size);
     if (!out)
         return cwi_fail_memory(err);
     fputs("# cubewright view: a film; seconds, and the commands of that moment\n", out);
-    for (size_t n = 0; n < v->bookmark_count; n++) {
-        const view_bookmark *b = &v->bookmarks[n];
+    for (size_t n = 0; n < v->film.bookmark_count; n++) {
+        const view_bookmark *b = &v->film.bookmarks[n];
         if (cw_camera_format(&b->camera, camera, NULL) != CW_OK)
             continue;
         view_join_lines(camera);
-        fprintf(out, "%.6g camera ", (double)n * v->film_seconds);
+        fprintf(out, "%.6g camera ", (double)n * v->film.seconds);
         view_put_word(out, camera);
         fprintf(out, "%s%s\n", *b->look ? "; " : "", b->look);
     }
@@ -257,7 +258,7 @@ static cw_status run_save_film(view *v, int count, char **args, cw_error *err)
 static cw_status run_play_film(view *v, int count, char **args, cw_error *err)
 {
     (void)count, (void)args;
-    if (!v->preview)
+    if (!v->film.preview)
         return view_start_preview(v, err);
     view_stop_preview(v);
     return CW_OK;
@@ -272,7 +273,7 @@ static cw_status run_film_seconds(view *v, int count, char **args, cw_error *err
         st = cwi_fail(err, CW_ERR_ARGUMENT, "film-seconds %s: 0.01 to 3600 was expected",
                       args[0]);
     if (st == CW_OK)
-        v->film_seconds = seconds;
+        v->film.seconds = seconds;
     return st;
 }
 

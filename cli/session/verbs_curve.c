@@ -16,10 +16,10 @@ static cw_status start_edit(view *v, cw_error *err)
         st = view_need_transfer(v, err);
     if (st != CW_OK)
         return st;
-    v->state.curve = v->transfer;
+    v->state.curve = v->picture.transfer;
     v->state.is_edited = true;
     s->shift = s->opacity = (cli_number){0};
-    v->transfer_is_old = true;
+    v->picture.transfer_is_old = true;
     view_touch(v, 1 << VIEW_SPACE);
     return CW_OK;
 }
@@ -41,7 +41,7 @@ static cw_status run_point(view *v, int count, char **args, cw_error *err)
     if (st == CW_OK)
         st = view_need_transfer(v, err);
     if (st == CW_OK)
-        st = need_point("point", n[0], v->transfer.opacity_count, err);
+        st = need_point("point", n[0], v->picture.transfer.opacity_count, err);
     if (st == CW_OK)
         st = start_edit(v, err);
     if (st == CW_OK)

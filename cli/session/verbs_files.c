@@ -57,19 +57,21 @@ static cw_status run_quit(view *v, int count, char **args, cw_error *err)
 static cw_status open_near(view *v, int by, cw_error *err)
 {
     struct dirent **list;
-    const char *slash = v->path ? strrchr(v->path, '/') : NULL;
+    const char *slash = v->document.path ? strrchr(v->document.path, '/') : NULL;
     char folder[4096] = ".", path[8192];
     cw_status st = view_need_open(v, err);
     if (st != CW_OK)
         return st;
     if (slash)
-        snprintf(folder, sizeof folder, "%.*s", (int)(slash - v->path + 1), v->path);
-    const char *own = slash ? slash + 1 : v->path;
+        snprintf(folder, sizeof folder, "%.*s", (int)(slash - v->document.path + 1),
+                 v->document.path);
+    const char *own = slash ? slash + 1 : v->document.path;
     const int count = view_scan(folder, &list);
     int at = 0;
     while (at < count && strcmp(list[at]->d_name, own) != 0)
         at++;
-    st = cwi_fail(err, CW_ERR_ARGUMENT, "%s: its folder has no other file to open", v->path);
+    st = cwi_fail(err, CW_ERR_ARGUMENT, "%s: its folder has no other file to open",
+                  v->document.path);
     for (int n = 1; n < count && at < count && st != CW_OK; n++) {
         struct stat info;
         cw_volume shape = {0};
@@ -101,13 +103,14 @@ static cw_status run_previous(view *v, int count, char **args, cw_error *err)
 
 static cw_status run_step(view *v, int count, char **args, cw_error *err)
 {
-    const size_t steps = v->source.series.count;
+    const size_t steps = v->document.source.series.count;
     double n = 0;
     (void)count;
     cw_status st = view_need_open(v, err);
     if (st != CW_OK || steps < 2)
-        return st == CW_OK ? cwi_fail(err, CW_ERR_ARGUMENT, "%s has no other steps", v->path)
-                           : st;
+        return st == CW_OK
+                   ? cwi_fail(err, CW_ERR_ARGUMENT, "%s has no other steps", v->document.path)
+                   : st;
     if (strcmp(args[0], "next") == 0)
         n = (double)((v->state.step + 1) % steps);
     else if (strcmp(args[0], "previous") == 0)

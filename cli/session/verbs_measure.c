@@ -52,7 +52,7 @@ static cw_status run_measure(view *v, int count, char **args, cw_error *err)
     view_measure_kind kind = VIEW_MEASURE_NONE;
     double numbers[MAX_WORDS][3];
     cw_status st = view_need_open(v, err);
-    v->gesture++;
+    v->input.gesture++;
     if (st == CW_OK && strcmp(args[0], "off") == 0)
         return remove_measures(v, count, args, err);
     if (st == CW_OK)
@@ -99,7 +99,7 @@ static cw_status run_pick(view *v, int count, char **args, cw_error *err)
     if (st == CW_OK && v->state.args.compare)
         st = cwi_fail(err, CW_ERR_ARGUMENT,
                       "measure-pick: a comparison shows two things; measure in slices");
-    if (st == CW_OK && v->parts[VIEW_SPACE].level == VIEW_STALE)
+    if (st == CW_OK && v->picture.parts[VIEW_SPACE].level == VIEW_STALE)
         st = cwi_fail(err, CW_ERR_ARGUMENT, "measure-pick: the scene is not drawn yet");
     if (st == CW_OK)
         st = view_pick_point(v, pixel, &picked, err);

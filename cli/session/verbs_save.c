@@ -19,13 +19,13 @@ static cw_status go_back(view *v, int by, cw_error *err)
 {
     const char *none = by < 0 ? "nothing to undo" : "nothing to redo";
     const bool is_done = view_undo(v, by);
-    if (!is_done && v->is_asked) { /* a key was pressed once too often */
+    if (!is_done && v->script.is_asked) { /* a key was pressed once too often */
         view_say(v, false, none);
         return CW_OK;
     }
     if (!is_done)
         return cwi_fail(err, CW_ERR_ARGUMENT, "%s", none);
-    v->transfer_is_old = true;
+    v->picture.transfer_is_old = true;
     view_touch(v, VIEW_ALL);
     return view_choose_mode(v, err);
 }
@@ -103,7 +103,7 @@ static cw_status run_screenshot(view *v, int count, char **args, cw_error *err)
         st = parse_sheet(args[n], &sheet, err);
     if (st == CW_OK)
         st = view_frame(v, 0, err); /* lays out what came before */
-    return st == CW_OK ? tell_written(v, view_picture(v, &sheet, path, err), path) : st;
+    return st == CW_OK ? tell_written(v, view_write_picture(v, &sheet, path, err), path) : st;
 }
 
 static cw_status parse_triangles(const char *word, size_t *triangles, cw_error *err)
@@ -116,19 +116,19 @@ static cw_status parse_triangles(const char *word, size_t *triangles, cw_error *
 
 static cw_status run_measure_mesh(view *v, int count, char **args, cw_error *err)
 {
-    view_saving *s = &v->saving;
+    view_measured_mesh *m = &v->document.measured;
     size_t triangles = 0;
     cw_mesh simplified;
     const cw_mesh *mesh;
     cw_status st = count ? parse_triangles(args[0], &triangles, err) : CW_OK;
-    s->has_facts = false;
+    m->is_known = false;
     if (st == CW_OK)
-        st = view_make_mesh(v, triangles, &simplified, &mesh, &s->facts, err);
+        st = view_make_mesh(v, triangles, &simplified, &mesh, &m->facts, err);
     if (st == CW_OK)
         cw_mesh_free(&simplified);
-    s->has_facts = st == CW_OK;
-    s->facts_triangles = triangles;
-    s->facts_iso = v->state.args.iso.value;
+    m->is_known = st == CW_OK;
+    m->triangles = triangles;
+    m->iso = v->state.args.iso.value;
     return st;
 }
 
@@ -145,7 +145,8 @@ static cw_status run_save_mesh(view *v, int count, char **args, cw_error *err)
     if (st == CW_OK)
         st = cw_mesh_write_check(args[0], &desc, err);
     if (st == CW_OK)
-        st = cli_check_output(args[0], (const char *const *)v->files, v->file_count, err);
+        st = cli_check_output(args[0], (const char *const *)v->document.files,
+                              v->document.file_count, err);
     if (st == CW_OK)
         st = view_make_mesh(v, triangles, &simplified, &mesh, &facts, err);
     if (st == CW_OK)
@@ -208,7 +209,7 @@ static cw_status run_turntable(view *v, int count, char **args, cw_error *err)
                 "turntable '%s': the name must hold {turn}, as in 'turn-{turn:03d}.png'",
                 args[1]);
         if (st == CW_OK)
-            st = view_picture(v, &(view_sheet){.layout = VIEW_LAYOUT_SINGLE}, path, err);
+            st = view_write_picture(v, &(view_sheet){.layout = VIEW_LAYOUT_SINGLE}, path, err);
         free(path);
         path = NULL;
         if (st == CW_OK)
@@ -232,7 +233,7 @@ static cw_status run_save_tf(view *v, int count, char **args, cw_error *err)
     if (st == CW_OK)
         st = view_need_transfer(v, err);
     if (st == CW_OK)
-        st = cw_transfer_write(args[0], &v->transfer, err);
+        st = cw_transfer_write(args[0], &v->picture.transfer, err);
     return tell_written(v, st, args[0]);
 }
 
@@ -248,12 +249,12 @@ static cw_status run_save_camera(view *v, int count, char **args, cw_error *err)
 static cw_status run_run(view *v, int count, char **args, cw_error *err)
 {
     (void)count; /* a file may run others, but not itself for ever */
-    if (v->depth >= 8)
+    if (v->script.depth >= 8)
         return cwi_fail(err, CW_ERR_LIMIT, "run %s: files run each other more than 8 deep",
                         args[0]);
-    v->depth++;
+    v->script.depth++;
     cw_status st = view_exec_file(v, args[0], err);
-    v->depth--;
+    v->script.depth--;
     return st;
 }
 

@@ -11,8 +11,8 @@
 
 static cw_status change_mode(view *v, int by, cw_error *err)
 {
-    int m = (int)v->mode;
-    if (v->mode == CW_MODE_MESH)
+    int m = (int)v->picture.mode;
+    if (v->picture.mode == CW_MODE_MESH)
         v->state.iso_is_ours = true; /* the volume comes without the surface */
     do
         m = (m + by + CW_MODE_COUNT) % CW_MODE_COUNT;
@@ -50,13 +50,13 @@ static cw_status run_iso_by(view *v, int count, char **args, cw_error *err)
     char text[32];
     (void)count;
     cw_status st = view_need_open(v, err);
-    if (st == CW_OK && v->source.is_mesh)
+    if (st == CW_OK && v->document.source.is_mesh)
         st = cwi_fail(err, CW_ERR_ARGUMENT, "a mesh has no isovalue");
     if (st == CW_OK)
         st = view_take("iso-by", args, 1, &share, err);
     if (st != CW_OK)
         return st;
-    const cw_statistics *s = &v->statistics;
+    const cw_statistics *s = &v->document.statistics;
     const cli_number *iso = &v->state.args.iso;
     const double from = iso->given ? iso->value : view_suggest_iso(v);
     snprintf(text, sizeof text, "%.17g",
@@ -88,13 +88,13 @@ static size_t list_panels(const view *v, const char *titles[8])
     const struct {
         bool on;
         const char *title;
-    } panels[] = {{v->message[0] && v->is_error, "Error"},
+    } panels[] = {{v->message.text[0] && v->message.is_error, "Error"},
                   {v->shown.save_mesh, "Save mesh"},
                   {v->shown.save_picture, "Save picture"},
                   {v->shown.gallery, "Presets"},
                   {v->shown.files, "Open"},
                   {v->shown.help, "Keys"},
-                  {!v->path, "Start"},
+                  {!v->document.path, "Start"},
                   {v->shown.panels, "Settings"}};
     size_t count = 0;
     for (size_t n = 0; n < sizeof panels / sizeof *panels; n++)
@@ -113,13 +113,13 @@ static cw_status run_focus(view *v, int count, char **args, cw_error *err)
     } else if (strcmp(args[0], "menus") == 0 && v->shown.panels) {
         v->ui->focus(v->window, "");
     } else if (strcmp(args[0], "next") == 0 && panels) {
-        v->focus_at = v->ui->focused(v->window) ? v->focus_at + 1 : 0;
-        v->ui->focus(v->window, titles[v->focus_at % panels]);
+        v->input.focus_at = v->ui->focused(v->window) ? v->input.focus_at + 1 : 0;
+        v->ui->focus(v->window, titles[v->input.focus_at % panels]);
     } else if (strcmp(args[0], "next") != 0 && strcmp(args[0], "menus") != 0) {
         return cwi_fail(err, CW_ERR_ARGUMENT, "focus '%s': next, menus or off was expected",
                         args[0]);
     }
-    return v->is_asked ? CW_OK : view_take_in(v, err); /* a script's keys come at once */
+    return v->script.is_asked ? CW_OK : view_take_in(v, err); /* a script's keys come at once */
 }
 
 /* cuts, the cross-hair, slices */
@@ -147,8 +147,8 @@ static cw_status run_face(view *v, int count, char **args, cw_error *err)
     start_box(v);
     cli_ranges *box = &v->state.args.scene.clip_box;
     const int axis = (int)n[0] / 2;
-    const double thin = 1e-3 * (v->box[1][axis] - v->box[0][axis]);
-    const double at = fmin(fmax(n[1], v->box[0][axis]), v->box[1][axis]);
+    const double thin = 1e-3 * (v->document.box[1][axis] - v->document.box[0][axis]);
+    const double at = fmin(fmax(n[1], v->document.box[0][axis]), v->document.box[1][axis]);
     if ((int)n[0] % 2)
         box->high[axis] = fmax(at, box->low[axis] + thin);
     else
@@ -167,9 +167,9 @@ static int axis_of(const char *word)
 static double voxel_mm(const view *v)
 {
     double spacing[3];
-    if (v->source.is_mesh)
-        return (v->box[1][0] - v->box[0][0]) / 256;
-    cw_volume_spacing(&v->source.volume.view, spacing);
+    if (v->document.source.is_mesh)
+        return (v->document.box[1][0] - v->document.box[0][0]) / 256;
+    cw_volume_spacing(&v->document.source.volume.view, spacing);
     return fmin(fmin(spacing[0], spacing[1]), spacing[2]);
 }
 
@@ -208,8 +208,8 @@ static cw_status run_wheel_cuts(view *v, int count, char **args, cw_error *err)
 static void put_cross(view *v, const double point[3])
 {
     for (int a = 0; a < 3; a++)
-        v->state.cross[a] = fmin(fmax(point[a], v->box[0][a]), v->box[1][a]);
-    view_touch(v, v->mode == CW_MODE_SLICES ? VIEW_ALL : VIEW_SLICES);
+        v->state.cross[a] = fmin(fmax(point[a], v->document.box[0][a]), v->document.box[1][a]);
+    view_touch(v, v->picture.mode == CW_MODE_SLICES ? VIEW_ALL : VIEW_SLICES);
 }
 
 static cw_status run_cross(view *v, int count, char **args, cw_error *err)
@@ -246,7 +246,7 @@ static void tell_picked_label(view *v, const cw_scene *scene, const cw_picked *p
 {
     char text[CLI_LABEL_NAME + 32];
     const cw_mesh *m = scene->mesh;
-    if (!v->look.labels)
+    if (!v->document.labels.look.labels)
         return;
     if (picked->kind == CW_PICK_MESH && m && m->labels && picked->number != SIZE_MAX)
         view_name_label(v, m->labels[m->triangles[3 * picked->number]], text, sizeof text);
@@ -258,7 +258,7 @@ static void tell_picked_label(view *v, const cw_scene *scene, const cw_picked *p
 
 cw_status view_pick_point(view *v, const double pixel[2], cw_picked *picked, cw_error *err)
 {
-    const view_part *part = &v->parts[VIEW_SPACE];
+    const view_part *part = &v->picture.parts[VIEW_SPACE];
     *picked = (cw_picked){0};
     if (part->level == VIEW_STALE || part->scene.mesh_look.live || v->state.args.compare)
         return CW_OK; /* nothing to be seen yet, or two things */
@@ -272,7 +272,7 @@ static cw_status run_pick(view *v, int count, char **args, cw_error *err)
 {
     double pixel[2];
     cw_picked picked = {0};
-    const view_part *part = &v->parts[VIEW_SPACE];
+    const view_part *part = &v->picture.parts[VIEW_SPACE];
     cw_status st = view_take("pick", args, count, pixel, err);
     if (st == CW_OK)
         st = view_need_open(v, err);

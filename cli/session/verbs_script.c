@@ -26,8 +26,9 @@ static void print_setting(const view *v, const char *name)
 static void print_slices(const view *v)
 {
     char text[96];
-    for (int a = 2; a >= 0 && v->has_volume; a--) {
-        cli_caption_slice(cli_drawn(&v->source), a, v->state.cross[a], ", ", text, sizeof text);
+    for (int a = 2; a >= 0 && v->document.has_volume; a--) {
+        cli_caption_slice(cli_drawn(&v->document.source), a, v->state.cross[a], ", ", text,
+                          sizeof text);
         printf("%s\n", text);
     }
 }
@@ -40,36 +41,37 @@ static cw_status run_print(view *v, int count, char **args, cw_error *err)
     bool on;
     (void)count;
     if (strcmp(what, "mode") == 0)
-        printf("mode %s\n", cw_mode_name(v->mode));
+        printf("mode %s\n", cw_mode_name(v->picture.mode));
     else if (strcmp(what, "open") == 0)
-        printf("open %s\n", v->path ? cli_shown_path(v->path) : "nothing");
+        printf("open %s\n", v->document.path ? cli_shown_path(v->document.path) : "nothing");
     else if (strcmp(what, "cross") == 0)
         printf("cross %.6g %.6g %.6g\n", s->cross[0], s->cross[1], s->cross[2]);
     else if (strcmp(what, "probe") == 0)
-        printf("probe %s\n", v->probe);
+        printf("probe %s\n", v->input.probe);
     else if (strcmp(what, "window") == 0)
         printf("window %.6g %.6g\n", s->window[0], s->window[1]);
     else if (strcmp(what, "split") == 0)
         printf("split %.6g\n", s->share);
     else if (strcmp(what, "step") == 0)
-        printf("step %zu of %zu\n", s->step, v->source.series.count);
+        printf("step %zu of %zu\n", s->step, v->document.source.series.count);
     else if (strcmp(what, "surface") == 0)
         printf("surface %s\n", view_name_surface(v));
     else if (strcmp(what, "triangles") == 0)
-        printf("triangles %zu\n", v->source.mesh.triangle_count);
+        printf("triangles %zu\n", v->document.source.mesh.triangle_count);
     else if (strcmp(what, "time") == 0)
-        printf("time %.1f ms, %zu x %zu\n", v->parts[VIEW_SPACE].ms,
-               v->parts[VIEW_SPACE].scene.width, v->parts[VIEW_SPACE].scene.height);
+        printf("time %.1f ms, %zu x %zu\n", v->picture.parts[VIEW_SPACE].ms,
+               v->picture.parts[VIEW_SPACE].scene.width,
+               v->picture.parts[VIEW_SPACE].scene.height);
     else if (strcmp(what, "measurements") == 0)
         view_print_measures(v, stdout);
     else if (strcmp(what, "captions") == 0)
         print_slices(v);
     else if (strcmp(what, "message") == 0)
-        printf("message %s\n", v->message);
-    else if (strcmp(what, "compare") == 0 && s->args.compare && v->is_measured)
-        printf("compare %s: rmse %.3g%s%s\n", s->args.compare, v->measured.rmse,
-               v->is_preliminary ? ", preliminary" : "",
-               v->is_alike ? "" : ", of different modes");
+        printf("message %s\n", v->message.text);
+    else if (strcmp(what, "compare") == 0 && s->args.compare && v->picture.is_measured)
+        printf("compare %s: rmse %.3g%s%s\n", s->args.compare, v->picture.measured.rmse,
+               v->picture.is_preliminary ? ", preliminary" : "",
+               v->picture.is_alike ? "" : ", of different modes");
     else if (strcmp(what, "command") == 0) {
         char *line = view_command_line(v);
         if (!line)
@@ -79,8 +81,9 @@ static cw_status run_print(view *v, int count, char **args, cw_error *err)
     } else if (strcmp(what, "camera") == 0 && s->is_placed &&
                cw_camera_format(&s->camera, text, err) == CW_OK)
         printf("%s\n", text);
-    else if (strcmp(what, "tf") == 0 && v->has_volume && view_need_transfer(v, err) == CW_OK &&
-             cw_transfer_format(&v->transfer, text, err) == CW_OK)
+    else if (strcmp(what, "tf") == 0 && v->document.has_volume &&
+             view_need_transfer(v, err) == CW_OK &&
+             cw_transfer_format(&v->picture.transfer, text, err) == CW_OK)
         printf("%s\n", text);
     else if (view_find_option(v, what) || view_find_flag(v, what, &on))
         print_setting(v, what);
@@ -97,7 +100,7 @@ cw_status view_frame(view *v, double wait_s, cw_error *err)
 cw_status view_take_in(view *v, cw_error *err)
 {
     cw_status st = view_frame(v, 0, err);
-    while (st == CW_OK && (v->ui->pending(v->window) || v->asked_count) && !v->quits)
+    while (st == CW_OK && (v->ui->pending(v->window) || v->script.asked_count) && !v->quits)
         st = view_frame(v, 0, err);
     for (int n = 0; n < 3 && st == CW_OK && v->ui->focused(v->window); n++)
         st = view_frame(v, 0, err); /* the widget that has the keys follows them */
@@ -282,8 +285,9 @@ static double draw_random(uint64_t *seed)
 static cw_status feed_random(view *v, uint64_t *seed, cw_error *err)
 {
     const double what = draw_random(seed), x = draw_random(seed), y = draw_random(seed);
-    cwi_ui_event e = {
-        .kind = CWI_UI_MOVE, .x = x * (double)v->width, .y = y * (double)v->height};
+    cwi_ui_event e = {.kind = CWI_UI_MOVE,
+                      .x = x * (double)v->layout.width,
+                      .y = y * (double)v->layout.height};
     char text[16];
     if (what < 0.2) {
         const view_key *k = &view_keys[(size_t)(x * (double)view_key_count)];
@@ -315,10 +319,10 @@ static cw_status run_monkey(view *v, int count, char **args, cw_error *err)
         st = cwi_fail(err, CW_ERR_ARGUMENT, "monkey %s %s: a seed and a number were expected",
                       args[0], args[1]);
     uint64_t seed = st == CW_OK ? (uint64_t)n[0] : 0;
-    v->is_monkey = true;
+    v->input.is_monkey = true;
     for (size_t k = 0; st == CW_OK && k < (size_t)n[1] && !v->quits; k++)
         st = feed_random(v, &seed, err);
-    v->is_monkey = false;
+    v->input.is_monkey = false;
     return st;
 }
 

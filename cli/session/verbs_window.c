@@ -29,7 +29,8 @@ const char *view_window_name(size_t n, double range[2])
 
 bool view_is_hounsfield(const view *v)
 {
-    return v->has_volume && cli_is_hounsfield(&v->source.volume.whole, &v->statistics);
+    return v->document.has_volume &&
+           cli_is_hounsfield(&v->document.source.volume.whole, &v->document.statistics);
 }
 
 static cw_status find_window(const view *v, const char *name, double range[2], cw_error *err)

@@ -80,22 +80,6 @@ typedef struct view_shown {
 
 enum { VIEW_PATH = 4096, VIEW_RECENT = 10 };
 
-/* A file or folder to open. */
-typedef struct view_entry {
-    char *name;
-    bool is_folder, is_known; /* its extension is that of a format */
-    double bytes;
-    time_t time; /* of its last change */
-} view_entry;
-
-typedef struct view_browser {
-    char folder[VIEW_PATH]; /* "": not looked at yet */
-    view_entry *entries;
-    size_t count;
-    char typed[VIEW_PATH], filter[256], chosen[VIEW_PATH]; /* chosen: a name */
-    bool shows_all;
-} view_browser;
-
 /* Facts on the surface as it would be saved. */
 typedef struct view_mesh_facts {
     size_t triangles, vertices, open_edges;
@@ -105,17 +89,13 @@ typedef struct view_mesh_facts {
     const char *error_from; /* "the field" or "the full surface" */
 } view_mesh_facts;
 
-/* The fields of the dialogs that save. */
-typedef struct view_saving {
-    char mesh_name[VIEW_PATH], picture_name[VIEW_PATH];
-    size_t mesh_format, part; /* indices of their choices */
-    double picture_size[2];
-    size_t layout, background;
-    bool has_facts; /* of the mesh with the number of triangles below */
-    size_t facts_triangles;
-    double facts_iso;
+/* Facts on the surface with at most that number of triangles. */
+typedef struct view_measured_mesh {
+    bool is_known;
+    size_t triangles;
+    double iso;
     view_mesh_facts facts;
-} view_saving;
+} view_measured_mesh;
 
 typedef struct view_history {
     view_state states[VIEW_UNDO];
@@ -140,115 +120,159 @@ typedef struct view_bookmark {
     char look[512]; /* commands: isovalue, cut, opacity */
 } view_bookmark;
 
-/* Thumbnails of the presets of the transfer function: how many are drawn. */
-enum { VIEW_THUMBS = 40 };
-typedef struct view_gallery {
-    size_t drawn;
-} view_gallery;
-
-typedef struct view_preview view_preview;
-
-typedef struct view view;
-struct view {
-    const cli_command *command;
-    /* Shows one frame: input, what it asks for, pictures. The window sets it. */
-    cw_status (*show_frame)(view *v, double wait_s, cw_error *err);
-    const cwi_ui_functions *ui;
-    cwi_ui *window;
-    bool is_hidden, quits, is_configuring;
-    bool is_saving; /* what is drawn is for keeps: as render draws it */
-    bool is_monkey; /* what comes in is random */
-    size_t gesture; /* counts presses of buttons and keys */
-
-    char *path;   /* the first of files; NULL: nothing is open */
-    char **files; /* what is open: a file or a folder, or the files of a series */
-    size_t file_count;
-    const char *opening; /* is being read; else NULL */
-    cli_source source;
-    cw_statistics statistics; /* of the volume, over all its steps */
-    double level;             /* between two classes of these values */
+/* The surface at the isovalue; its mesh is that of the source. */
+typedef struct view_surface {
     cw_extractor *extractor, *coarse;
-    cw_volume thinned;  /* what coarse extracts from */
-    cw_mesh old_mesh;   /* was drawn until now: its address must not come again */
-    bool mesh_is_drawn; /* the renderer holds it, and no longer the old one */
-    double mesh_iso;
-    char label_note[160]; /* why the volume is taken for a label map; "": it is not */
-    cli_label_look look;  /* as it is drawn; labels: NULL for none */
-    cli_label_look found; /* that labels are of */
-    cli_label_scene labels;
-    const char *overlay_path; /* of overlay, which has them; NULL: the volume itself */
-    cli_volume overlay;
-    bool overlay_looks_like_labels;
-    bool has_overlay_range; /* the percentiles are known: */
-    double overlay_range[2];
-    cli_slice_labels overlay_values; /* where it is drawn as values; else volume is NULL */
-    bool has_labels;                 /* they are found; and their surfaces are made: */
-    bool has_label_mesh;
-    int mesh_level;       /* 0: none, 1: of coarse, 2: of all */
+    cw_volume thinned; /* what coarse extracts from */
+    cw_mesh old_mesh;  /* was drawn until now: its address must not come again */
+    bool is_drawn;     /* the renderer holds the mesh, and no longer the old one */
+    double iso;
+    int level;            /* 0: none, 1: of coarse, 2: of all */
     cw_live_surface live; /* as it was drawn last in place of the mesh */
     bool is_live;         /* it was, in the picture that is shown */
     bool refuses_live;    /* the GPU does not extract from this volume */
-    double box[2][3];
-    bool has_volume;  /* that can be drawn */
-    bool values_come; /* the volume's voxels are new to the renderer */
+} view_surface;
 
-    view_state state;
-    view_history history;
-    view_cameras cameras;
-    view_bookmark bookmarks[VIEW_BOOKMARKS];
-    size_t bookmark_count;
-    double film_seconds;   /* from bookmark to bookmark */
-    bool is_filming;       /* what runs is a film: it is not to be undone */
-    view_preview *preview; /* film.c's: the film that plays; NULL: none */
-    view_gallery gallery;
-    double (*measure_points)[3]; /* of all measurements, also those that undo would restore */
-    size_t measure_point_count;
-    view_measure_kind tool; /* that clicks measure with */
-    double tool_points[VIEW_POLYGON][3];
-    size_t tool_count;
+/* Labels of a label map, or of an overlay. */
+typedef struct view_label_map {
+    char note[160];       /* why the volume is taken for a label map; "": it is not */
+    cli_label_look look;  /* as it is drawn; labels: NULL for none */
+    cli_label_look found; /* that the scene is of */
+    cli_label_scene scene;
+    bool has_scene; /* and its surfaces: */
+    bool has_mesh;
+} view_label_map;
+
+/* Another volume over that of the file. */
+typedef struct view_overlay {
+    const char *path; /* of the volume; NULL: labels are those of the file */
+    cli_volume volume;
+    bool looks_like_labels;
+    bool has_range; /* the percentiles are known: */
+    double range[2];
+    cli_slice_labels values; /* where it is drawn as values; else volume is NULL */
+} view_overlay;
+
+/* The file that is open, and what was made of it. */
+typedef struct view_document {
+    char *path;   /* the first of files; NULL: nothing is open */
+    char **files; /* a file or a folder, or the files of a series */
+    size_t file_count;
+    const char *opening; /* is being read; else NULL */
+    cli_source source;
+    bool has_volume;          /* that can be drawn */
+    cw_statistics statistics; /* of the volume, over all its steps */
+    double level;             /* between two classes of these values */
+    double box[2][3];
+    view_surface surface;
+    view_label_map labels;
+    view_overlay overlay;
+    view_measured_mesh measured; /* by measure-mesh */
+} view_document;
+
+/* How it is drawn, and what has been. */
+typedef struct view_picture {
+    cw_renderer *renderer;
+    bool values_come; /* the volume's voxels are new to the renderer */
     cw_mode mode;
     cw_transfer transfer; /* what is drawn with */
-    cw_transfer greys;    /* and slices */
     bool transfer_is_old;
-    view_shown shown;
-
-    cw_renderer *renderer;
+    cw_transfer greys; /* of slices */
+    bool is_saving;    /* what is drawn is for keeps: as render draws it */
     view_part parts[VIEW_PARTS];
-    size_t width, height;                         /* of the window */
-    double bar_height, panel_width, strip_height; /* of menus, settings, status */
     cw_comparison measured;
     bool is_measured;
     bool is_preliminary;              /* measured before the pictures were finished */
     bool is_alike;                    /* cli_compares_alike() */
     double mode_error[CW_MODE_COUNT]; /* rmse of 255, as measured; below 0: unknown */
+    size_t thumbs;                    /* of presets that have been drawn */
+} view_picture;
 
-    char message[VIEW_MESSAGE];
+/* Sizes in pixels of the window, and of what the panels take of it. */
+typedef struct view_sizes {
+    size_t width, height;
+    double bar_height, panel_width, strip_height; /* of menus, settings, status */
+} view_sizes;
+
+/* A note or an error to be read. */
+typedef struct view_message {
+    char text[VIEW_MESSAGE];
     bool is_error;
-    double message_until; /* in ui seconds */
-    double start;         /* in cli_seconds() */
-    bool is_told;         /* how long the first picture took */
-    double frame_shown, play_next;
-    size_t focus_at; /* of the panels that are shown: the one whose widgets have the keys */
-    char probe[256];
-    view_browser browser;
-    view_saving saving;
-    char recent_path[VIEW_PATH]; /* the file with the list; "": none is kept */
-    char *recent[VIEW_RECENT];   /* paths, the latest first */
-    size_t recent_count;
+    double until; /* in ui seconds */
+} view_message;
 
+/* State of mouse and keys. */
+typedef struct view_input {
+    size_t gesture;   /* counts presses of buttons and keys */
+    bool is_dragging; /* on a picture */
+    bool is_monkey;   /* what comes in is random */
+    size_t focus_at;  /* of the panels that are shown: the one whose widgets have the keys */
+    char probe[256];  /* the value under the mouse, in words */
+} view_input;
+
+/* Commands on their way. */
+typedef struct view_commands {
     char **words; /* texts that options point to */
     size_t word_count;
     bool is_asked; /* what runs is out of this list, not of a script: */
     char **asked;  /* commands to run after this frame */
     size_t asked_count;
+    bool is_configuring;
     int depth; /* of files of commands that run others */
-    int drag;  /* view_mouse.c's */
-    int drag_part;
-    double drag_from[2];         /* what it is measured from */
-    int curve_drag, curve_point; /* curve_editor.c's: what is dragged there, and from where */
-    bool color_drag;
-    size_t color_chosen;
-    double curve_at[2], color_at;
+} view_commands;
+
+typedef struct view_preview view_preview;
+
+/* Bookmarks, and the film of them. */
+typedef struct view_film {
+    view_bookmark bookmarks[VIEW_BOOKMARKS];
+    size_t bookmark_count;
+    double seconds;        /* from bookmark to bookmark */
+    bool is_running;       /* what runs is a film: it is not to be undone */
+    view_preview *preview; /* film.c's: the film that plays; NULL: none */
+} view_film;
+
+/* Points that were measured, and those that a tool is picking. */
+typedef struct view_measuring {
+    double (*points)[3]; /* of all measurements, also those that undo would restore */
+    size_t point_count;
+    view_measure_kind tool; /* that clicks measure with */
+    double tool_points[VIEW_POLYGON][3];
+    size_t tool_count;
+} view_measuring;
+
+/* Files that were opened before. */
+typedef struct view_recent {
+    char path[VIEW_PATH];     /* the file with the list; "": none is kept */
+    char *files[VIEW_RECENT]; /* paths, the latest first */
+    size_t count;
+} view_recent;
+
+typedef struct view_widgets view_widgets;
+typedef struct view view;
+
+struct view {
+    const cli_command *command;
+    const cwi_ui_functions *ui;
+    cwi_ui *window;
+    view_widgets *widgets; /* cli/window's: what its panels remember */
+    /* Shows one frame: input, what it asks for, pictures. The window sets it. */
+    cw_status (*show_frame)(view *v, double wait_s, cw_error *err);
+    bool is_hidden, quits;
+
+    view_document document;
+    view_state state;
+    view_history history;
+    view_cameras cameras;
+    view_picture picture;
+    view_sizes layout;
+    view_shown shown;
+    view_message message;
+    view_input input;
+    view_commands script;
+    view_film film;
+    view_measuring measuring;
+    view_recent recent;
 };
 
 /* view_session.c */
@@ -373,7 +397,7 @@ cw_mode view_preset_mode(const view *v, const char *preset);
 /* Draws the scene in the colours of a preset, small and quickly. */
 CW_NODISCARD cw_status view_draw_preset(view *v, const char *preset, size_t width,
                                         size_t height, cw_image *image, cw_error *err);
-/* Makes the surface at the isovalue, or of labels, in v->source.mesh. */
+/* Makes the surface at the isovalue, or of labels, in v->document.source.mesh. */
 CW_NODISCARD cw_status view_need_surface(view *v, view_level level, cw_error *err);
 /* Names what drew the surface: "gpu", "cpu", "cpu, coarse" or "none". */
 const char *view_name_surface(const view *v);
@@ -389,8 +413,8 @@ typedef struct view_sheet {
     view_layout layout;
 } view_sheet;
 /* Draws the session as asked for and writes it as a .png file. */
-CW_NODISCARD cw_status view_picture(view *v, const view_sheet *wanted, const char *path,
-                                    cw_error *err);
+CW_NODISCARD cw_status view_write_picture(view *v, const view_sheet *wanted, const char *path,
+                                          cw_error *err);
 
 /* mesh_facts.c: the surface as it would be saved. */
 /* Makes the mesh to save and measures it.

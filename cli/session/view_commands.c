@@ -20,13 +20,14 @@ cw_status view_take(const char *verb, char **args, int count, double *numbers, c
 
 cw_status view_need_open(const view *v, cw_error *err)
 {
-    return v->path ? CW_OK : cwi_fail(err, CW_ERR_ARGUMENT, "nothing is open");
+    return v->document.path ? CW_OK : cwi_fail(err, CW_ERR_ARGUMENT, "nothing is open");
 }
 
 cw_status view_need_volume(const view *v, cw_error *err)
 {
-    return v->has_volume ? CW_OK
-                         : cwi_fail(err, CW_ERR_ARGUMENT, "no volume on an even grid is open");
+    return v->document.has_volume
+               ? CW_OK
+               : cwi_fail(err, CW_ERR_ARGUMENT, "no volume on an even grid is open");
 }
 
 cw_status view_need_camera(view *v, cw_error *err)
@@ -56,7 +57,7 @@ static bool may_run(const view *v, const char *name)
     static const char *const barred[] = {"screenshot", "turntable", "save-state",
                                          "quit",       "next",      "previous",
                                          "save-mesh",  "film",      "save-film"};
-    for (size_t n = 0; v->is_monkey && n < sizeof barred / sizeof *barred; n++)
+    for (size_t n = 0; v->input.is_monkey && n < sizeof barred / sizeof *barred; n++)
         if (strcmp(name, barred[n]) == 0)
             return false;
     return true;
@@ -98,11 +99,11 @@ cw_status view_run(view *v, int count, char **words, cw_error *err)
                         verb ? verb->takes : "one value", count - 1);
     if (!may_run(v, words[0]))
         return CW_OK;
-    if (v->preview && !v->is_filming && strcmp(words[0], "play-film") != 0)
+    if (v->film.preview && !v->film.is_running && strcmp(words[0], "play-film") != 0)
         view_stop_preview(v); /* somebody wants something else */
     cw_status st = verb ? verb->run(v, count - 1, words + 1, err)
                         : view_set(v, words[0], count > 1 ? words[1] : NULL, err);
-    if (st != CW_OK || !v->path || v->is_filming)
+    if (st != CW_OK || !v->document.path || v->film.is_running)
         return st;
     if (is_setting || verb->changes)
         view_remember(v, words[0]);

@@ -33,23 +33,24 @@ static bool go_on(void *user, const char *step, double done)
 /* A coarser extractor beside the full one, for surfaces that move. */
 static cw_status need_extractor(view *v, bool coarse, cw_error *err)
 {
-    const cw_volume *whole = &v->source.volume.view;
-    cw_extractor **e = coarse ? &v->coarse : &v->extractor;
+    view_surface *surface = &v->document.surface;
+    const cw_volume *whole = &v->document.source.volume.view;
+    cw_extractor **e = coarse ? &surface->coarse : &surface->extractor;
     if (*e)
         return CW_OK;
     if (coarse) {
         const size_t two[3] = {2, 2, 2};
-        cw_volume_free(&v->thinned);
-        cw_status st = cw_volume_coarsen(whole, two, &v->thinned, err);
+        cw_volume_free(&surface->thinned);
+        cw_status st = cw_volume_coarsen(whole, two, &surface->thinned, err);
         if (st != CW_OK)
             return st;
     }
-    return cw_extractor_new(coarse ? &v->thinned : whole, e, err);
+    return cw_extractor_new(coarse ? &surface->thinned : whole, e, err);
 }
 
 static bool can_thin(const view *v)
 {
-    const cw_volume *w = &v->source.volume.view;
+    const cw_volume *w = &v->document.source.volume.view;
     return !w->sparse && !w->cells && !w->coordinates[0] && w->dim[0] >= THIN_FROM &&
            w->dim[1] >= THIN_FROM && w->dim[2] >= THIN_FROM;
 }
@@ -58,40 +59,41 @@ static bool can_thin(const view *v)
  * than they are drawn. Empty where it crosses nothing. */
 cw_status view_need_surface(view *v, view_level level, cw_error *err)
 {
+    view_surface *surface = &v->document.surface;
     const render_args *args = &v->state.args;
     const bool coarse = level == VIEW_ROUGH && v->state.is_placed && can_thin(v);
     cw_mesh mesh;
-    if (view_shows_surfaces(v) && v->mode == CW_MODE_MESH)
+    if (view_shows_surfaces(v) && v->picture.mode == CW_MODE_MESH)
         return view_need_label_mesh(v, err);
     const bool is_there =
-        v->mesh_iso == args->iso.value &&
-        (v->mesh_level == (coarse ? 1 : 2) ||
-         (v->mesh_level == 2 && v->source.mesh.triangle_count <= FEW_TRIANGLES));
-    if (v->source.is_mesh || !args->iso.given || is_there)
+        surface->iso == args->iso.value &&
+        (surface->level == (coarse ? 1 : 2) ||
+         (surface->level == 2 && v->document.source.mesh.triangle_count <= FEW_TRIANGLES));
+    if (v->document.source.is_mesh || !args->iso.given || is_there)
         return CW_OK;
-    const cw_extract_desc desc = {.isovalue = args->iso.value,
-                                  .inside_is_low =
-                                      cli_inside_is_low(args->inside, &v->source.volume.whole),
-                                  .threads = (int)args->input.threads,
-                                  .max_bytes = v->source.volume.memory_left};
+    const cw_extract_desc desc = {
+        .isovalue = args->iso.value,
+        .inside_is_low = cli_inside_is_low(args->inside, &v->document.source.volume.whole),
+        .threads = (int)args->input.threads,
+        .max_bytes = v->document.source.volume.memory_left};
     cw_status st = need_extractor(v, coarse, err);
     if (st != CW_OK)
         return st;
-    cw_extractor *extractor = coarse ? v->coarse : v->extractor;
-    if (v->mesh_is_drawn)
-        cw_extractor_recycle(extractor, &v->old_mesh);
+    cw_extractor *extractor = coarse ? surface->coarse : surface->extractor;
+    if (surface->is_drawn)
+        cw_extractor_recycle(extractor, &surface->old_mesh);
     st = cw_extractor_extract(extractor, &desc, &mesh, NULL, err);
     if (st != CW_OK)
         return st;
-    if (v->mesh_is_drawn)
-        v->old_mesh = v->source.mesh;
+    if (surface->is_drawn)
+        surface->old_mesh = v->document.source.mesh;
     else
-        cw_mesh_free(&v->source.mesh);
-    v->mesh_is_drawn = false;
-    v->source.mesh = mesh;
-    v->mesh_iso = args->iso.value;
-    v->mesh_level = coarse ? 1 : 2;
-    v->has_label_mesh = false;
+        cw_mesh_free(&v->document.source.mesh);
+    surface->is_drawn = false;
+    v->document.source.mesh = mesh;
+    surface->iso = args->iso.value;
+    surface->level = coarse ? 1 : 2;
+    v->document.labels.has_mesh = false;
     return CW_OK;
 }
 
@@ -101,23 +103,24 @@ enum { LIVE_AUTO, LIVE_CPU, LIVE_GPU }; /* as --live-surface names them */
  * that is there in full is drawn as it is. */
 static bool wants_live(const view *v, view_level level)
 {
+    const view_surface *surface = &v->document.surface;
     const render_args *args = &v->state.args;
-    const bool is_there = v->mesh_level == 2 && v->mesh_iso == args->iso.value;
-    return level == VIEW_ROUGH && args->live_surface != LIVE_CPU && !v->refuses_live &&
-           v->state.is_placed && args->iso.given && !is_there && !v->source.is_mesh &&
+    const bool is_there = surface->level == 2 && surface->iso == args->iso.value;
+    return level == VIEW_ROUGH && args->live_surface != LIVE_CPU && !surface->refuses_live &&
+           v->state.is_placed && args->iso.given && !is_there && !v->document.source.is_mesh &&
            !args->mesh && !args->compare && args->scene.hide != CLI_HIDE_MESH &&
            !args->scene.wireframe && args->scene.tint == CW_TINT_COLORS &&
-           !(view_shows_surfaces(v) && v->mode == CW_MODE_MESH);
+           !(view_shows_surfaces(v) && v->picture.mode == CW_MODE_MESH);
 }
 
 static void describe_live(view *v)
 {
     const render_args *args = &v->state.args;
-    v->live = (cw_live_surface){.volume = &v->source.volume.view,
-                                .isovalue = args->iso.value,
-                                .inside_is_low =
-                                    cli_inside_is_low(args->inside, &v->source.volume.whole),
-                                .on_software = args->live_surface == LIVE_GPU};
+    v->document.surface.live = (cw_live_surface){
+        .volume = &v->document.source.volume.view,
+        .isovalue = args->iso.value,
+        .inside_is_low = cli_inside_is_low(args->inside, &v->document.source.volume.whole),
+        .on_software = args->live_surface == LIVE_GPU};
 }
 
 /* Returns true if the GPU draws without a wait. Else what it needs is begun, and the CPU extracts
@@ -129,9 +132,11 @@ static bool is_live_ready(view *v)
     describe_live(v);
     if (v->state.args.live_surface == LIVE_GPU)
         return true;
-    if (!v->renderer || cw_renderer_prepare(v->renderer, &v->live, &ready, &ignored) == CW_OK)
+    if (!v->picture.renderer ||
+        cw_renderer_prepare(v->picture.renderer, &v->document.surface.live, &ready, &ignored) ==
+            CW_OK)
         return ready;
-    v->refuses_live = true;
+    v->document.surface.refuses_live = true;
     return false;
 }
 
@@ -140,27 +145,29 @@ static void put_live(view *v, cw_scene *scene)
 {
     describe_live(v);
     scene->mesh = NULL;
-    scene->mesh_look.live = &v->live;
+    scene->mesh_look.live = &v->document.surface.live;
 }
 
 const char *view_name_surface(const view *v)
 {
-    if (v->is_live)
+    const view_surface *surface = &v->document.surface;
+    if (surface->is_live)
         return "gpu";
-    return v->mesh_level == 0 || !v->state.args.iso.given ? "none"
-           : v->mesh_level == 1                           ? "cpu, coarse"
-                                                          : "cpu";
+    return surface->level == 0 || !v->state.args.iso.given ? "none"
+           : surface->level == 1                           ? "cpu, coarse"
+                                                           : "cpu";
 }
 
 /* Meshes have no volume to be around. */
 static void need_box(view *v)
 {
     double box[2][3];
-    if (v->box[0][0] < v->box[1][0] || v->source.mesh.triangle_count == 0)
+    if (v->document.box[0][0] < v->document.box[1][0] ||
+        v->document.source.mesh.triangle_count == 0)
         return;
-    cli_find_box(NULL, &v->source.mesh, box);
-    memcpy(v->box, box, sizeof box);
-    cwi_midpoint(v->box[0], v->box[1], v->state.cross);
+    cli_find_box(NULL, &v->document.source.mesh, box);
+    memcpy(v->document.box, box, sizeof box);
+    cwi_midpoint(v->document.box[0], v->document.box[1], v->state.cross);
 }
 
 static bool is_slow(cw_mode mode)
@@ -192,14 +199,18 @@ static cw_status space_scene(view *v, const render_args *args, cw_mode mode,
                              const cw_transfer *transfer, cw_scene *scene, cw_error *err)
 {
     const cli_subject subject = {
-        .volume = v->has_volume && mode != CW_MODE_MESH ? cli_drawn(&v->source) : NULL,
-        .whole = v->source.is_mesh ? NULL : &v->source.volume.whole,
-        .mesh = view_has_mesh(v) && v->source.mesh.triangle_count ? &v->source.mesh : NULL,
-        .level = v->level,
+        .volume = v->document.has_volume && mode != CW_MODE_MESH
+                      ? cli_drawn(&v->document.source)
+                      : NULL,
+        .whole = v->document.source.is_mesh ? NULL : &v->document.source.volume.whole,
+        .mesh = view_has_mesh(v) && v->document.source.mesh.triangle_count
+                    ? &v->document.source.mesh
+                    : NULL,
+        .level = v->document.level,
         .threads = (int)args->input.threads};
     scene->camera = v->state.camera;
     scene->mesh_look.same_inside = view_shows_surfaces(v);
-    scene->sampling.lean = !v->is_saving;
+    scene->sampling.lean = !v->picture.is_saving;
     scene->samples = args->samples ? (int)args->samples : mode == CW_MODE_MESH ? 2 : 1;
     cw_status st = cli_make_scene(&args->scene, &subject, mode, transfer, scene, err);
     if (mode == CW_MODE_SLICES && scene->slice_count == 0)
@@ -214,10 +225,11 @@ static void make_greys(view *v)
 {
     double w[2];
     view_grey_range(v, w);
-    v->greys = (cw_transfer){.color_count = 2,
-                             .colors = {{w[0], {0, 0, 0}}, {fmax(w[1], w[0]), {1, 1, 1}}},
-                             .opacity_count = 1,
-                             .opacities = {{w[0], 1}}};
+    v->picture.greys =
+        (cw_transfer){.color_count = 2,
+                      .colors = {{w[0], {0, 0, 0}}, {fmax(w[1], w[0]), {1, 1, 1}}},
+                      .opacity_count = 1,
+                      .opacities = {{w[0], 1}}};
 }
 
 /* Axial, coronal and sagittal slices are across z, y and x, through the cross-hair. */
@@ -225,8 +237,8 @@ static cw_status slice_scene(view *v, int part, cw_scene *scene, cw_error *err)
 {
     const int axis = 3 - part;
     *scene = (cw_scene){.mode = CW_MODE_SLICES,
-                        .volume = cli_drawn(&v->source),
-                        .transfer = &v->greys,
+                        .volume = cli_drawn(&v->document.source),
+                        .transfer = &v->picture.greys,
                         .slice_count = 1,
                         .width = scene->width,
                         .height = scene->height,
@@ -249,24 +261,24 @@ static cw_status draw_scene(view *v, const cw_scene *scene, cw_picture *picture,
     const cli_slice_labels labels = view_slice_labels(v);
     if (scene->mode == CW_MODE_SLICES && labels.is_base)
         s.transfer = &black;
-    if (st == CW_OK && !v->renderer)
-        st = cw_renderer_new(CW_BACKEND_AUTO, &v->renderer, err);
-    if (st == CW_OK && v->values_come)
-        cw_renderer_forget(v->renderer);
-    v->values_come = v->values_come && st != CW_OK;
+    if (st == CW_OK && !v->picture.renderer)
+        st = cw_renderer_new(CW_BACKEND_AUTO, &v->picture.renderer, err);
+    if (st == CW_OK && v->picture.values_come)
+        cw_renderer_forget(v->picture.renderer);
+    v->picture.values_come = v->picture.values_come && st != CW_OK;
     if (st == CW_OK)
-        st = cw_render(v->renderer, &s, picture, err);
+        st = cw_render(v->picture.renderer, &s, picture, err);
     if (st == CW_OK && scene->mode == CW_MODE_SLICES && !scene->mesh)
         st = cli_draw_slice_labels(&labels, scene, picture, err);
-    v->mesh_is_drawn = v->mesh_is_drawn || (st == CW_OK && scene->mesh);
+    v->document.surface.is_drawn = v->document.surface.is_drawn || (st == CW_OK && scene->mesh);
     return st;
 }
 
 /* Of slow modes a small picture comes before that in full size. */
 static void size_for(const view *v, const view_part *part, view_level level, cw_scene *scene)
 {
-    const bool slow = part == &v->parts[VIEW_SPACE] &&
-                      (is_slow(v->mode) ||
+    const bool slow = part == &v->picture.parts[VIEW_SPACE] &&
+                      (is_slow(v->picture.mode) ||
                        (v->state.args.compare && strstr(v->state.args.compare, "reference")));
     const double scale = level == VIEW_ROUGH          ? part->scale
                          : level == VIEW_FAIR && slow ? 0.25
@@ -289,8 +301,8 @@ static void suit_level(view_level level, cw_scene *scene)
 static void keep_error(view *v, const cli_split *split)
 {
     for (int n = 0; n < 2; n++)
-        if (v->is_alike && split->sides[1 - n].mode == CW_MODE_REFERENCE)
-            v->mode_error[split->sides[n].mode] = v->measured.rmse;
+        if (v->picture.is_alike && split->sides[1 - n].mode == CW_MODE_REFERENCE)
+            v->picture.mode_error[split->sides[n].mode] = v->picture.measured.rmse;
 }
 
 /* Both sides of a comparison, and how far they are apart when both are final. */
@@ -303,11 +315,11 @@ static cw_status draw_split(view *v, view_level level, const cw_progress *progre
     cw_status st = view_parse_split(v, &split, err);
     for (int n = 1; n >= 0 && st == CW_OK; n--) {
         cli_side *side = &split.sides[n];
-        st = cli_fit_transfer(&side->args.scene, cli_drawn(&v->source), side->mode,
-                              &v->statistics, &side->transfer, err);
+        st = cli_fit_transfer(&side->args.scene, cli_drawn(&v->document.source), side->mode,
+                              &v->document.statistics, &side->transfer, err);
         if (v->state.is_edited && !side->args.scene.transfer)
             side->transfer = v->state.curve;
-        size_for(v, &v->parts[VIEW_SPACE], level, scene);
+        size_for(v, &v->picture.parts[VIEW_SPACE], level, scene);
         if (st == CW_OK)
             st = space_scene(v, &side->args, side->mode, &side->transfer, scene, err);
         suit_level(level, scene);
@@ -319,20 +331,20 @@ static cw_status draw_split(view *v, view_level level, const cw_progress *progre
         st = cw_picture_difference(&sides[0], &sides[1], args->difference.value, out, err);
     else if (st == CW_OK)
         st = cw_picture_split(&sides[0], &sides[1], v->state.share, out, err);
-    v->is_measured = false;
+    v->picture.is_measured = false;
     if (st == CW_OK && level > VIEW_ROUGH) {
         st = cw_picture_compare(&sides[0], &sides[1], (const float(*)[3])scene->background,
-                                &v->measured, err);
-        v->is_measured = st == CW_OK;
-        v->is_preliminary = level < VIEW_FINAL;
-        v->is_alike = cli_compares_alike(&split);
-        if (v->is_measured && !v->is_preliminary)
+                                &v->picture.measured, err);
+        v->picture.is_measured = st == CW_OK;
+        v->picture.is_preliminary = level < VIEW_FINAL;
+        v->picture.is_alike = cli_compares_alike(&split);
+        if (v->picture.is_measured && !v->picture.is_preliminary)
             keep_error(v, &split);
     }
     cw_picture_free(&sides[0]);
     cw_picture_free(&sides[1]);
     cli_free_split(&split);
-    scene->transfer = &v->transfer;
+    scene->transfer = &v->picture.transfer;
     return st;
 }
 
@@ -346,9 +358,10 @@ static bool may_replace_live(const view *v, cw_status st)
 static cw_status draw_space(view *v, view_level level, const cw_progress *progress,
                             cw_scene *scene, cw_picture *picture, cw_error *err)
 {
+    view_surface *surface = &v->document.surface;
     const cw_scene plain = *scene;
-    v->is_live = wants_live(v, level) && is_live_ready(v);
-    cw_status st = v->is_live ? CW_OK : view_need_surface(v, level, err);
+    surface->is_live = wants_live(v, level) && is_live_ready(v);
+    cw_status st = surface->is_live ? CW_OK : view_need_surface(v, level, err);
     need_box(v);
     if (st == CW_OK && !v->state.is_placed)
         st = view_place_camera(v, NULL, err);
@@ -358,38 +371,40 @@ static cw_status draw_space(view *v, view_level level, const cw_progress *progre
         return st;
     if (v->state.args.compare && view_draws_volume(v))
         return draw_split(v, level, progress, scene, picture, err);
-    size_for(v, &v->parts[VIEW_SPACE], level, scene);
-    st = space_scene(v, &v->state.args, v->mode, &v->transfer, scene, err);
+    size_for(v, &v->picture.parts[VIEW_SPACE], level, scene);
+    st = space_scene(v, &v->state.args, v->picture.mode, &v->picture.transfer, scene, err);
     suit_level(level, scene);
     scene->progress = *progress;
-    if (st == CW_OK && v->is_live)
+    if (st == CW_OK && surface->is_live)
         put_live(v, scene);
-    if (st == CW_OK && v->mode == CW_MODE_MESH && !scene->mesh && !v->is_live) /* empty */
+    if (st == CW_OK && v->picture.mode == CW_MODE_MESH && !scene->mesh &&
+        !surface->is_live) /* empty */
         return cw_picture_alloc(picture, scene->width, scene->height, err);
     if (st == CW_OK)
         st = draw_scene(v, scene, picture, err);
-    if (v->is_live && may_replace_live(v, st)) {
-        v->refuses_live = true;
+    if (surface->is_live && may_replace_live(v, st)) {
+        surface->refuses_live = true;
         *scene = plain;
         return draw_space(v, level, progress, scene, picture, err);
     }
-    if (st == CW_OK || !v->is_live)
+    if (st == CW_OK || !surface->is_live)
         return st;
-    v->is_live = false;
+    surface->is_live = false;
     return st == CW_ERR_CANCELLED ? st : cwi_fail_in(err, st, "--live-surface gpu");
 }
 
 cw_mode view_preset_mode(const view *v, const char *preset)
 {
     static const char *const of_maxima[] = {"mip", "grey", "window"};
-    const bool is_blended =
-        v->mode != CW_MODE_MESH && v->mode != CW_MODE_SLICES && !cw_mode_is_intensity(v->mode);
+    const bool is_blended = v->picture.mode != CW_MODE_MESH &&
+                            v->picture.mode != CW_MODE_SLICES &&
+                            !cw_mode_is_intensity(v->picture.mode);
     if (strcmp(preset, "xray") == 0)
         return CW_MODE_AVERAGE;
     for (size_t n = 0; n < sizeof of_maxima / sizeof *of_maxima; n++)
         if (strcmp(preset, of_maxima[n]) == 0)
             return CW_MODE_MIP;
-    return is_blended ? v->mode : cli_default_mode(&v->source);
+    return is_blended ? v->picture.mode : cli_default_mode(&v->document.source);
 }
 
 cw_status view_draw_preset(view *v, const char *preset, size_t width, size_t height,
@@ -409,8 +424,8 @@ cw_status view_draw_preset(view *v, const char *preset, size_t width, size_t hei
     args->iso = (cli_number){0};
     cw_status st = v->state.is_placed ? CW_OK : view_place_camera(v, NULL, err);
     if (st == CW_OK)
-        st = cli_fit_transfer(&args->scene, cli_drawn(&v->source), mode, &v->statistics,
-                              &transfer, err);
+        st = cli_fit_transfer(&args->scene, cli_drawn(&v->document.source), mode,
+                              &v->document.statistics, &transfer, err);
     if (st == CW_OK)
         st = space_scene(v, args, mode, &transfer, &scene, err);
     make_rough(&scene);
@@ -428,7 +443,7 @@ static cw_status draw_slice(view *v, int part, const cw_progress *progress, cw_s
                             cw_picture *picture, cw_error *err)
 {
     make_greys(v);
-    size_for(v, &v->parts[part], VIEW_FINAL, scene);
+    size_for(v, &v->picture.parts[part], VIEW_FINAL, scene);
     cw_status st = slice_scene(v, part, scene, err);
     scene->progress = *progress;
     if (st == CW_OK)
@@ -460,18 +475,19 @@ static cw_status show_part(view *v, int part, cw_scene *scene, const cw_picture 
     if (over.has_values && scene->mode == CW_MODE_SLICES && !scene->mesh &&
         (space || part == VIEW_AXIAL))
         marks.values = &over.values;
-    if (!v->is_saving) /* as large as the panels' letters, at least */
+    if (!v->picture.is_saving) /* as large as the panels' letters, at least */
         marks.text_px =
-            (double)picture->height *
-            fmax(1.0 / 48, LETTER_PX * v->ui->scale(v->window) / v->parts[part].rect.height);
+            (double)picture->height * fmax(1.0 / 48, LETTER_PX * v->ui->scale(v->window) /
+                                                         v->picture.parts[part].rect.height);
     cw_status st = cli_background(&v->state.args.scene, background, err);
     if (st == CW_OK)
         st = cw_picture_show(picture, space ? (const uint8_t(*)[4])background : black, image,
                              err);
     scene->progress = (cw_progress){0};
     if (st == CW_OK && (scene->volume || scene->mesh))
-        st = cli_mark(&marks, v->look.labels ? &v->labels : NULL, scene, image, err);
-    if (st == CW_OK && v->is_saving)
+        st = cli_mark(&marks, v->document.labels.look.labels ? &v->document.labels.scene : NULL,
+                      scene, image, err);
+    if (st == CW_OK && v->picture.is_saving)
         st = view_mark_measures(v, part, scene, marks.text_px, image, err);
     return st;
 }
@@ -491,7 +507,7 @@ static void adapt_level(view_part *part, cw_mode mode, double ms)
 cw_status view_draw_part(view *v, int p, view_level level, bool may_stop, cw_image *image,
                          cw_error *err)
 {
-    view_part *part = &v->parts[p];
+    view_part *part = &v->picture.parts[p];
     cw_scene scene = {0};
     cw_picture picture = {0};
     const cw_progress progress = {may_stop ? go_on : NULL, v};
@@ -515,17 +531,17 @@ cw_status view_draw_part(view *v, int p, view_level level, bool may_stop, cw_ima
 static void drop_picture(view *v, int p)
 {
     v->ui->keep(v->window, p, NULL, NULL);
-    v->parts[p].level = VIEW_FINAL;
+    v->picture.parts[p].level = VIEW_FINAL;
 }
 
 cw_status view_draw(view *v, view_level level, bool may_stop, cw_error *err)
 {
     for (int p = 0; p < VIEW_PARTS; p++) {
         cw_image image = {0};
-        view_part *part = &v->parts[p];
+        view_part *part = &v->picture.parts[p];
         if (!part->is_shown || part->level >= level)
             continue;
-        if (!v->path || (p != VIEW_SPACE && !view_fits_mode(v, CW_MODE_SLICES))) {
+        if (!v->document.path || (p != VIEW_SPACE && !view_fits_mode(v, CW_MODE_SLICES))) {
             drop_picture(v, p);
             continue;
         }
@@ -546,7 +562,7 @@ cw_status view_draw(view *v, view_level level, bool may_stop, cw_error *err)
 bool view_is_final(const view *v)
 {
     for (int p = 0; p < VIEW_PARTS; p++)
-        if (v->parts[p].is_shown && v->parts[p].level < VIEW_FINAL)
+        if (v->picture.parts[p].is_shown && v->picture.parts[p].level < VIEW_FINAL)
             return false;
     return true;
 }

@@ -21,7 +21,7 @@ const char *view_measure_name(view_measure_kind kind)
 
 const double (*view_measure_points(const view *v, const view_measure *m))[3]
 {
-    return (const double(*)[3])v->measure_points + m->first;
+    return (const double(*)[3])v->measuring.points + m->first;
 }
 
 /* An angle reads in tenths of a degree; lengths and areas have five digits. */
@@ -63,6 +63,7 @@ static cw_status check_points(view_measure_kind kind, const double (*points)[3],
 cw_status view_add_measure(view *v, view_measure_kind kind, const double (*points)[3],
                            size_t count, cw_error *err)
 {
+    view_measuring *measuring = &v->measuring;
     view_state *s = &v->state;
     cw_status st = check_points(kind, points, count, err);
     if (st == CW_OK && s->measure_count == VIEW_MEASURES)
@@ -70,13 +71,13 @@ cw_status view_add_measure(view *v, view_measure_kind kind, const double (*point
     if (st != CW_OK)
         return st;
     double(*all)[3] =
-        realloc(v->measure_points, (v->measure_point_count + count) * sizeof *all);
+        realloc(measuring->points, (measuring->point_count + count) * sizeof *all);
     if (!all)
         return cwi_fail_memory(err);
-    v->measure_points = all;
-    memcpy(all + v->measure_point_count, points, count * sizeof *all);
-    s->measures[s->measure_count++] = (view_measure){kind, v->measure_point_count, count};
-    v->measure_point_count += count;
+    measuring->points = all;
+    memcpy(all + measuring->point_count, points, count * sizeof *all);
+    s->measures[s->measure_count++] = (view_measure){kind, measuring->point_count, count};
+    measuring->point_count += count;
     return CW_OK;
 }
 
@@ -110,54 +111,62 @@ void view_print_measures(const view *v, FILE *out)
 
 void view_choose_tool(view *v, view_measure_kind kind)
 {
-    v->tool = v->tool == kind ? VIEW_MEASURE_NONE : kind;
-    v->tool_count = 0;
+    view_measuring *measuring = &v->measuring;
+    measuring->tool = measuring->tool == kind ? VIEW_MEASURE_NONE : kind;
+    measuring->tool_count = 0;
 }
 
 static size_t points_of_tool(const view *v)
 {
-    return v->tool == VIEW_MEASURE_DISTANCE ? 2 : v->tool == VIEW_MEASURE_ANGLE ? 3 : SIZE_MAX;
+    return v->measuring.tool == VIEW_MEASURE_DISTANCE ? 2
+           : v->measuring.tool == VIEW_MEASURE_ANGLE  ? 3
+                                                      : SIZE_MAX;
 }
 
 /* Adds what was picked, as a change that undo takes back by itself. */
 cw_status view_end_tool(view *v, cw_error *err)
 {
-    if (v->tool == VIEW_MEASURE_NONE)
+    view_measuring *measuring = &v->measuring;
+    if (measuring->tool == VIEW_MEASURE_NONE)
         return cwi_fail(err, CW_ERR_ARGUMENT, "measure-end: nothing is being measured");
-    const double(*points)[3] = (const double(*)[3])v->tool_points;
-    cw_status st = view_add_measure(v, v->tool, points, v->tool_count, err);
+    const double(*points)[3] = (const double(*)[3])measuring->tool_points;
+    cw_status st = view_add_measure(v, measuring->tool, points, measuring->tool_count, err);
     if (st != CW_OK)
         return st;
-    v->tool_count = 0;
-    v->gesture++;
+    measuring->tool_count = 0;
+    v->input.gesture++;
     view_remember(v, "measure");
     return CW_OK;
 }
 
 cw_status view_add_tool_point(view *v, const double point[3], cw_error *err)
 {
-    if (v->tool == VIEW_MEASURE_NONE)
+    view_measuring *measuring = &v->measuring;
+    if (measuring->tool == VIEW_MEASURE_NONE)
         return cwi_fail(err, CW_ERR_ARGUMENT, "no tool measures: 'measure-tool distance'");
-    if (v->tool_count == VIEW_POLYGON)
+    if (measuring->tool_count == VIEW_POLYGON)
         return cwi_fail(err, CW_ERR_LIMIT, "measure: up to %d points were expected",
                         VIEW_POLYGON);
-    if (v->tool_count && cwi_measure_distance(v->tool_points[v->tool_count - 1], point) == 0)
+    if (measuring->tool_count &&
+        cwi_measure_distance(measuring->tool_points[measuring->tool_count - 1], point) == 0)
         return CW_OK; /* a click that trembled */
-    memcpy(v->tool_points[v->tool_count++], point, 3 * sizeof *point);
-    return v->tool_count == points_of_tool(v) ? view_end_tool(v, err) : CW_OK;
+    memcpy(measuring->tool_points[measuring->tool_count++], point, 3 * sizeof *point);
+    return measuring->tool_count == points_of_tool(v) ? view_end_tool(v, err) : CW_OK;
 }
 
 bool view_measure_key(view *v, const char *key)
 {
-    if (v->tool == VIEW_MEASURE_NONE)
+    view_measuring *measuring = &v->measuring;
+    if (measuring->tool == VIEW_MEASURE_NONE)
         return false;
     if (strcmp(key, "Escape") == 0) { /* the points first, then the tool */
-        if (!v->tool_count)
+        if (!measuring->tool_count)
             view_choose_tool(v, VIEW_MEASURE_NONE);
-        v->tool_count = 0;
+        measuring->tool_count = 0;
         return true;
     }
-    if (strcmp(key, "Enter") != 0 || v->tool != VIEW_MEASURE_AREA || v->tool_count == 0)
+    if (strcmp(key, "Enter") != 0 || measuring->tool != VIEW_MEASURE_AREA ||
+        measuring->tool_count == 0)
         return false;
     view_ask(v, "measure-end");
     return true;
@@ -165,15 +174,16 @@ bool view_measure_key(view *v, const char *key)
 
 void view_tool_hint(const view *v, char *text, size_t size)
 {
+    const view_measuring *measuring = &v->measuring;
     const size_t wanted = points_of_tool(v);
-    if (v->tool == VIEW_MEASURE_NONE)
+    if (measuring->tool == VIEW_MEASURE_NONE)
         *text = '\0';
     else if (wanted == SIZE_MAX)
         snprintf(text, size, "   area: %zu points; Enter or a double click ends it",
-                 v->tool_count);
+                 measuring->tool_count);
     else
-        snprintf(text, size, "   %s: click point %zu of %zu", view_measure_name(v->tool),
-                 v->tool_count + 1, wanted);
+        snprintf(text, size, "   %s: click point %zu of %zu",
+                 view_measure_name(measuring->tool), measuring->tool_count + 1, wanted);
 }
 
 /* --- over the pictures -------------------------------------------------------------------- */
@@ -182,7 +192,7 @@ void view_tool_hint(const view *v, char *text, size_t size)
 static bool project_points(const view *v, int part, const double (*points)[3], size_t count,
                            double (*pixels)[2])
 {
-    const view_part *p = &v->parts[part];
+    const view_part *p = &v->picture.parts[part];
     for (size_t n = 0; n < count; n++) {
         if (!cw_camera_project(&p->scene.camera, (size_t)p->rect.width, (size_t)p->rect.height,
                                points[n], pixels[n], NULL))
@@ -197,11 +207,11 @@ static bool project_points(const view *v, int part, const double (*points)[3], s
 static double half_slice(const view *v, int axis)
 {
     double corner[3], step = 0;
-    cw_volume_to_world(cli_drawn(&v->source), (const double[3]){0}, corner);
+    cw_volume_to_world(cli_drawn(&v->document.source), (const double[3]){0}, corner);
     for (int a = 0; a < 3; a++) {
         double index[3] = {0}, world[3];
         index[a] = 1;
-        cw_volume_to_world(cli_drawn(&v->source), index, world);
+        cw_volume_to_world(cli_drawn(&v->document.source), index, world);
         step = fmax(step, fabs(world[axis] - corner[axis]));
     }
     return 0.5 * step;
@@ -295,10 +305,10 @@ cw_status view_mark_measures(const view *v, int part, const cw_scene *scene, dou
 static void show_tool(view *v, int part, const cwi_ui_input *in)
 {
     static const cwi_ui_color color = {0.35f, 0.95f, 1, 1};
-    const cwi_ui_rect *r = &v->parts[part].rect;
-    const double(*points)[3] = (const double(*)[3])v->tool_points;
+    const cwi_ui_rect *r = &v->picture.parts[part].rect;
+    const double(*points)[3] = (const double(*)[3])v->measuring.tool_points;
     double pixels[VIEW_POLYGON + 1][2];
-    size_t count = v->tool_count;
+    size_t count = v->measuring.tool_count;
     if (!count || !project_points(v, part, points, count, pixels))
         return;
     if (in->x >= r->x && in->x < r->x + r->width && in->y >= r->y && in->y < r->y + r->height &&
@@ -311,9 +321,10 @@ static void show_tool(view *v, int part, const cwi_ui_input *in)
 
 void view_show_measures(view *v, int part, const cwi_ui_input *in)
 {
-    if (v->parts[part].level == VIEW_STALE || (!v->state.measure_count && !v->tool_count))
+    if (v->picture.parts[part].level == VIEW_STALE ||
+        (!v->state.measure_count && !v->measuring.tool_count))
         return;
-    v->ui->clip_begin(v->window, CWI_UI_BEHIND, &v->parts[part].rect);
+    v->ui->clip_begin(v->window, CWI_UI_BEHIND, &v->picture.parts[part].rect);
     for (size_t n = 0; n < v->state.measure_count; n++)
         show_measure(v, part, n);
     show_tool(v, part, in);

@@ -15,7 +15,7 @@ static cw_status draw_sheet(view *v, size_t width, size_t height, cw_image *shee
     for (size_t n = 0; n < width * height && st == CW_OK; n++)
         memcpy(sheet->pixels + 4 * n, gap, sizeof gap);
     for (int p = 0; p < VIEW_PARTS && st == CW_OK; p++) {
-        const view_part *part = &v->parts[p];
+        const view_part *part = &v->picture.parts[p];
         cw_image image = {0};
         if (!part->is_shown)
             continue;
@@ -27,11 +27,11 @@ static cw_status draw_sheet(view *v, size_t width, size_t height, cw_image *shee
     return st;
 }
 
-cw_status view_picture(view *v, const view_sheet *wanted, const char *path, cw_error *err)
+cw_status view_write_picture(view *v, const view_sheet *wanted, const char *path, cw_error *err)
 {
     cw_image sheet = {0};
     view_part before[VIEW_PARTS];
-    if (!v->path)
+    if (!v->document.path)
         return cwi_fail(err, CW_ERR_ARGUMENT, "no file is open to draw");
     const cwi_ui_rect area = view_picture_area(v);
     const size_t width = wanted->width ? wanted->width : (size_t)area.width;
@@ -39,20 +39,21 @@ cw_status view_picture(view *v, const view_sheet *wanted, const char *path, cw_e
     const bool is_quad = wanted->layout == VIEW_LAYOUT_SHOWN
                              ? view_is_quad(v)
                              : wanted->layout == VIEW_LAYOUT_QUAD;
-    if (is_quad && !(v->has_volume && view_fits_mode(v, CW_MODE_SLICES)))
+    if (is_quad && !(v->document.has_volume && view_fits_mode(v, CW_MODE_SLICES)))
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "the layout quad shows slices of a volume on an even grid, and this is "
                         "none");
     if (is_quad && (width < 4 || height < 4))
         return cwi_fail(err, CW_ERR_ARGUMENT, "the layout quad needs 4 x 4 pixels");
-    memcpy(before, v->parts, sizeof before);
+    memcpy(before, v->picture.parts, sizeof before);
     view_place_parts(v, &(cwi_ui_rect){0, 0, (double)width, (double)height}, is_quad);
-    v->is_saving = true;
+    v->picture.is_saving = true;
     cw_status st = draw_sheet(v, width, height, &sheet, err);
-    v->is_saving = false;
+    v->picture.is_saving = false;
     for (int p = 0; p < VIEW_PARTS; p++) { /* pictures of the window are those it had */
-        before[p].level = v->parts[p].level == VIEW_STALE ? VIEW_STALE : before[p].level;
-        v->parts[p] = before[p];
+        before[p].level =
+            v->picture.parts[p].level == VIEW_STALE ? VIEW_STALE : before[p].level;
+        v->picture.parts[p] = before[p];
     }
     if (st == CW_OK)
         st = cw_image_write(path, &sheet, err);

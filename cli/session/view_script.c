@@ -115,11 +115,11 @@ void view_ask(view *v, const char *format, ...)
     va_start(args, format);
     const int length = vasprintf(&text, format, args);
     va_end(args);
-    char **asked = realloc(v->asked, (v->asked_count + 1) * sizeof *asked);
+    char **asked = realloc(v->script.asked, (v->script.asked_count + 1) * sizeof *asked);
     if (asked)
-        v->asked = asked;
+        v->script.asked = asked;
     if (length >= 0 && asked)
-        v->asked[v->asked_count++] = text;
+        v->script.asked[v->script.asked_count++] = text;
     else if (length >= 0)
         free(text);
 }
@@ -138,11 +138,11 @@ void view_ask_open(view *v, const char *path)
 
 void view_run_asked(view *v)
 {
-    char **asked = v->asked; /* what they ask for is for the next frame */
-    const size_t count = v->asked_count;
-    v->asked = NULL;
-    v->asked_count = 0;
-    v->is_asked = true;
+    char **asked = v->script.asked; /* what they ask for is for the next frame */
+    const size_t count = v->script.asked_count;
+    v->script.asked = NULL;
+    v->script.asked_count = 0;
+    v->script.is_asked = true;
     for (size_t n = 0; n < count; n++) {
         cw_error err = {0};
         const cw_status st = view_exec(v, asked[n], &err);
@@ -150,7 +150,7 @@ void view_run_asked(view *v)
             view_say(v, st != CW_ERR_CANCELLED, err.message);
         free(asked[n]);
     }
-    v->is_asked = false;
+    v->script.is_asked = false;
     free(asked);
 }
 
@@ -158,7 +158,7 @@ void view_say(view *v, bool is_error, const char *text)
 {
     char message[CLI_MESSAGE];
     const double reading_s = is_error ? 30 : 6;
-    snprintf(v->message, sizeof v->message, "%s", cli_name_options(text, message));
-    v->is_error = is_error;
-    v->message_until = v->ui->seconds(v->window) + reading_s;
+    snprintf(v->message.text, sizeof v->message.text, "%s", cli_name_options(text, message));
+    v->message.is_error = is_error;
+    v->message.until = v->ui->seconds(v->window) + reading_s;
 }

@@ -18,15 +18,15 @@
 
 const char *view_keep_text(view *v, const char *text)
 {
-    for (size_t n = 0; n < v->word_count; n++)
-        if (strcmp(v->words[n], text) == 0)
-            return v->words[n];
-    char **words = realloc(v->words, (v->word_count + 1) * sizeof *words);
+    for (size_t n = 0; n < v->script.word_count; n++)
+        if (strcmp(v->script.words[n], text) == 0)
+            return v->script.words[n];
+    char **words = realloc(v->script.words, (v->script.word_count + 1) * sizeof *words);
     if (!words)
         return NULL;
-    v->words = words;
-    words[v->word_count] = strdup(text);
-    return words[v->word_count] ? words[v->word_count++] : NULL;
+    v->script.words = words;
+    words[v->script.word_count] = strdup(text);
+    return words[v->script.word_count] ? words[v->script.word_count++] : NULL;
 }
 
 /* Changes of one kind in one go, such as a slider's, are undone in one go; so are all of a
@@ -34,8 +34,8 @@ const char *view_keep_text(view *v, const char *text)
 void view_remember(view *v, const char *verb)
 {
     view_history *h = &v->history;
-    const bool goes_on = h->count && h->gesture == v->gesture &&
-                         (strcmp(h->verb, verb) == 0 || (h->is_drag && v->drag));
+    const bool goes_on = h->count && h->gesture == v->input.gesture &&
+                         (strcmp(h->verb, verb) == 0 || (h->is_drag && v->input.is_dragging));
     if (!goes_on && h->count) {
         if (h->at + 1 == VIEW_UNDO)
             memmove(h->states, h->states + 1, --h->at * sizeof *h->states);
@@ -43,8 +43,8 @@ void view_remember(view *v, const char *verb)
     }
     h->states[h->at] = v->state;
     h->count = h->at + 1;
-    h->gesture = v->gesture;
-    h->is_drag = v->drag;
+    h->gesture = v->input.gesture;
+    h->is_drag = v->input.is_dragging;
     snprintf(h->verb, sizeof h->verb, "%s", verb);
 }
 
@@ -75,7 +75,7 @@ void view_note_camera(view *v, const char *verb)
         (c->count && memcmp(&c->cameras[c->at], &v->state.camera, sizeof(cw_camera)) == 0))
         return;
     const bool goes_on =
-        c->count && c->at && c->gesture == v->gesture && strcmp(c->verb, verb) == 0;
+        c->count && c->at && c->gesture == v->input.gesture && strcmp(c->verb, verb) == 0;
     if (!goes_on && c->count) {
         if (c->at + 1 == VIEW_UNDO)
             memmove(c->cameras, c->cameras + 1, --c->at * sizeof *c->cameras);
@@ -83,7 +83,7 @@ void view_note_camera(view *v, const char *verb)
     }
     c->cameras[c->at] = v->state.camera;
     c->count = c->at + 1;
-    c->gesture = v->gesture;
+    c->gesture = v->input.gesture;
     snprintf(c->verb, sizeof c->verb, "%s", verb);
 }
 
@@ -165,7 +165,7 @@ static cw_status follow_name(view *v, const char *name, cw_error *err)
     if (strcmp(name, "layout") == 0) /* as at the start */
         v->shown.cross = s->args.marks.layout == CLI_LAYOUT_QUAD;
     if (strcmp(name, "iso") == 0 && !s->args.iso.given &&
-        s->args.scene.mode == 1 + CW_MODE_MESH && v->has_volume)
+        s->args.scene.mode == 1 + CW_MODE_MESH && v->document.has_volume)
         s->args.scene.mode = 0;
     if (strcmp(name, "labels") == 0 && s->args.look.labels &&
         !s->args.overlay) { /* they are drawn by themselves */
@@ -175,17 +175,18 @@ static cw_status follow_name(view *v, const char *name, cw_error *err)
     }
     if (strcmp(name, "iso") == 0 && s->args.iso.given && !s->args.overlay)
         s->args.look.labels = NULL;
-    if (strcmp(name, "iso") == 0 && v->path && !v->source.is_mesh) { /* it may be a name */
+    if (strcmp(name, "iso") == 0 && v->document.path &&
+        !v->document.source.is_mesh) { /* it may be a name */
         cw_status found =
-            cli_choose_level(&v->source.volume, &s->args.input, &s->args.iso, err);
+            cli_choose_level(&v->document.source.volume, &s->args.input, &s->args.iso, err);
         if (found != CW_OK)
             return found;
     }
-    v->transfer_is_old = true;
-    v->is_measured = false;
-    const bool had_labels = v->look.labels;
+    v->picture.transfer_is_old = true;
+    v->picture.is_measured = false;
+    const bool had_labels = v->document.labels.look.labels;
     cw_status st = view_choose_mode(v, err);
-    view_touch(v, had_labels || v->look.labels || s->args.marks.isolines ||
+    view_touch(v, had_labels || v->document.labels.look.labels || s->args.marks.isolines ||
                           strcmp(name, "isolines") == 0
                       ? VIEW_ALL
                       : 1 << VIEW_SPACE);
@@ -208,9 +209,11 @@ static cw_status try_scene(view *v, cw_error *err)
     const render_args *args = &v->state.args;
     uint8_t background[2][4];
     cw_scene scene = {.width = 64, .height = 64, .camera = v->state.camera};
-    const cli_subject subject = {
-        .volume = view_draws_volume(v) ? cli_drawn(&v->source) : NULL,
-        .whole = v->source.is_mesh || !v->path ? NULL : &v->source.volume.whole};
+    const cli_subject subject = {.volume = view_draws_volume(v) ? cli_drawn(&v->document.source)
+                                                                : NULL,
+                                 .whole = v->document.source.is_mesh || !v->document.path
+                                              ? NULL
+                                              : &v->document.source.volume.whole};
     cli_split split = {0};
     if (args->samples > 4)
         return cwi_fail(err, CW_ERR_ARGUMENT, "samples %zu: expected 1 to 4", args->samples);
@@ -220,12 +223,13 @@ static cw_status try_scene(view *v, cw_error *err)
     cw_status st = cli_check_camera(&args->scene, &one, err);
     if (st == CW_OK)
         st = cli_background(&args->scene, background, err);
-    if (st == CW_OK && v->path)
+    if (st == CW_OK && v->document.path)
         st = view_need_transfer(v, err);
-    if (st == CW_OK && v->path)
+    if (st == CW_OK && v->document.path)
         st = cli_check_rules(v->command, args, err);
-    if (st == CW_OK && v->path && (v->state.is_placed || !subject.volume))
-        st = cli_make_scene(&args->scene, &subject, v->mode, &v->transfer, &scene, err);
+    if (st == CW_OK && v->document.path && (v->state.is_placed || !subject.volume))
+        st = cli_make_scene(&args->scene, &subject, v->picture.mode, &v->picture.transfer,
+                            &scene, err);
     if (st == CW_OK && args->compare) {
         st = view_parse_split(v, &split, err);
         cli_free_split(&split);
@@ -237,10 +241,10 @@ cw_status view_set(view *v, const char *name, const char *value, cw_error *err)
 {
     const cli_option *o = view_find_option(v, name);
     const view_state before = v->state;
-    const cw_mode mode = v->mode;
+    const cw_mode mode = v->picture.mode;
     if (!o)
         return cwi_fail(err, CW_ERR_ARGUMENT, "'%s' is not a setting", name);
-    if (v->is_configuring && v->state.args.common.given[o - v->command->options])
+    if (v->script.is_configuring && v->state.args.common.given[o - v->command->options])
         return CW_OK; /* the command line takes precedence */
     cw_status st = parse_setting(v, o, value, err);
     if (st == CW_OK)
@@ -250,8 +254,8 @@ cw_status view_set(view *v, const char *name, const char *value, cw_error *err)
     if (st == CW_OK)
         return CW_OK;
     v->state = before;
-    v->mode = mode;
-    v->transfer_is_old = true;
+    v->picture.mode = mode;
+    v->picture.transfer_is_old = true;
     return st;
 }
 
@@ -351,7 +355,7 @@ static void put_settings(const view *v, FILE *out, bool shell)
 static bool is_in_middle(const view *v)
 {
     for (int a = 0; a < 3; a++)
-        if (v->state.cross[a] != 0.5 * (v->box[0][a] + v->box[1][a]))
+        if (v->state.cross[a] != 0.5 * (v->document.box[0][a] + v->document.box[1][a]))
             return false;
     return true;
 }
@@ -375,9 +379,9 @@ static void put_rest(const view *v, FILE *out, const char *end)
 
 static void put_files(const view *v, FILE *out)
 {
-    for (size_t n = 0; n < v->file_count; n++) {
+    for (size_t n = 0; n < v->document.file_count; n++) {
         fputc(' ', out);
-        view_put_word(out, v->files[n]);
+        view_put_word(out, v->document.files[n]);
     }
 }
 
@@ -390,7 +394,7 @@ cw_status view_write_state(const view *v, const char *path, cw_error *err)
         return cwi_fail_memory(err);
     fputs("# cubewright view: a state; 'cubewright view --run' this file\n", out);
     put_options(v, out, false, true);
-    if (v->path) {
+    if (v->document.path) {
         fputs("open", out);
         put_files(v, out);
         fputc('\n', out);

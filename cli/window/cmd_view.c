@@ -66,9 +66,9 @@ static bool show_progress(void *user, const char *step, double done)
 {
     view *v = user;
     const double now = v->ui->seconds(v->window);
-    if (now - v->frame_shown < 0.1)
+    if (now - v->widgets->clock.progress_shown < 0.1)
         return !v->quits;
-    v->frame_shown = now;
+    v->widgets->clock.progress_shown = now;
     const cwi_ui_input *in = v->ui->begin(v->window, 0);
     const double scale = v->ui->scale(v->window);
     const cwi_ui_rect rect = {0.5 * ((double)in->width - 320 * scale), 0.5 * (double)in->height,
@@ -88,7 +88,8 @@ static bool show_progress(void *user, const char *step, double done)
 static void hear_line(void *user, const char *line)
 {
     view *v = user; /* what a file is stands in the status line as well */
-    if (!v->opening || strncmp(line, v->opening, strlen(v->opening)) != 0)
+    if (!v->document.opening ||
+        strncmp(line, v->document.opening, strlen(v->document.opening)) != 0)
         view_say(v, false, line);
 }
 
@@ -170,7 +171,7 @@ static cw_status do_asked(view *v, const render_args *args, cw_error *err)
         return view_make_film(v, args->film, args->output,
                               args->fps.given ? args->fps.value : 25, err);
     if (st == CW_OK && args->output && !v->quits)
-        st = view_picture(v, &(view_sheet){0}, args->output, err);
+        st = view_write_picture(v, &(view_sheet){0}, args->output, err);
     return st;
 }
 
@@ -184,18 +185,18 @@ static cw_status run_session(view *v, const render_args *args, cw_error *err)
     v->state.args = *args;
     v->state.slice_zoom = 1;
     v->state.share = 0.5;
-    v->film_seconds = 2;
+    v->film.seconds = 2;
     v->shown = shown;
-    v->width = args->size.n[0];
-    v->height = args->size.n[1];
+    v->layout.width = args->size.n[0];
+    v->layout.height = args->size.n[1];
     for (int p = 0; p < VIEW_PARTS; p++)
-        v->parts[p].scale = 0.5;
+        v->picture.parts[p].scale = 0.5;
     view_lay_out(v);
     cli_console_listen(&listener);
     view_start_recent(v, args->recent);
-    v->is_configuring = true;
+    v->script.is_configuring = true;
     cw_status st = read_settings(v, args->config, err);
-    v->is_configuring = false;
+    v->script.is_configuring = false;
     if (st == CW_OK)
         st = open_first(v, args, err);
     if (st == CW_OK)
@@ -211,16 +212,17 @@ static void end_session(view *v)
     view_close(v);
     view_close_browser(v);
     view_end_recent(v);
-    cw_renderer_free(v->renderer);
+    cw_renderer_free(v->picture.renderer);
     if (v->window)
         v->ui->close(v->window);
-    for (size_t n = 0; n < v->word_count; n++)
-        free(v->words[n]);
-    for (size_t n = 0; n < v->asked_count; n++)
-        free(v->asked[n]);
-    free(v->measure_points);
-    free(v->words);
-    free(v->asked);
+    for (size_t n = 0; n < v->script.word_count; n++)
+        free(v->script.words[n]);
+    for (size_t n = 0; n < v->script.asked_count; n++)
+        free(v->script.asked[n]);
+    free(v->measuring.points);
+    free(v->script.words);
+    free(v->script.asked);
+    free(v->widgets);
     free(v);
 }
 
@@ -232,9 +234,14 @@ static cw_status run_view(void *p, cw_error *err)
     if (st != CW_OK)
         return st;
     view *v = calloc(1, sizeof *v);
-    if (!v)
+    view_widgets *widgets = calloc(1, sizeof *widgets);
+    if (!v || !widgets) {
+        free(widgets);
+        free(v);
         return cwi_fail_memory(err);
-    v->start = start;
+    }
+    v->widgets = widgets;
+    widgets->clock.start = start;
     st = open_window(v, args, err);
     if (st == CW_OK)
         st = run_session(v, args, err);

@@ -82,12 +82,12 @@ static bool show_side_choice(view *v, const char *name, side_text *side)
 
 static void describe_numbers(const view *v, char *text, size_t size)
 {
-    const cw_comparison *m = &v->measured;
-    snprintf(text, size,
-             "%s%srmse %.3g, max %.3g of 255\ndelta-E %.3g, 99 %% below %.3g\nSSIM %.5f",
-             v->is_preliminary ? "PRELIMINARY: the pictures are not finished\n" : "Final\n",
-             v->is_alike ? "" : "Different modes: this is not an error\n", m->rmse, m->max,
-             m->delta_e_mean, m->delta_e_p99, m->ssim);
+    const cw_comparison *m = &v->picture.measured;
+    snprintf(
+        text, size, "%s%srmse %.3g, max %.3g of 255\ndelta-E %.3g, 99 %% below %.3g\nSSIM %.5f",
+        v->picture.is_preliminary ? "PRELIMINARY: the pictures are not finished\n" : "Final\n",
+        v->picture.is_alike ? "" : "Different modes: this is not an error\n", m->rmse, m->max,
+        m->delta_e_mean, m->delta_e_p99, m->ssim);
 }
 
 static void copy_numbers(view *v)
@@ -95,7 +95,7 @@ static void copy_numbers(view *v)
     char *text;
     char numbers[512];
     describe_numbers(v, numbers, sizeof numbers);
-    if (asprintf(&text, "%s\n%s\n%s\n", cli_shown_path(v->path), v->state.args.compare,
+    if (asprintf(&text, "%s\n%s\n%s\n", cli_shown_path(v->document.path), v->state.args.compare,
                  numbers) < 0)
         return;
     v->ui->set_clipboard(v->window, text);
@@ -121,9 +121,9 @@ static void show_start(view *v)
 {
     if (v->ui->button(v->window, "Compare with the exact picture"))
         view_ask(v, "compare '%s|reference'",
-                 v->mode == CW_MODE_REFERENCE || v->mode == CW_MODE_SLICES
+                 v->picture.mode == CW_MODE_REFERENCE || v->picture.mode == CW_MODE_SLICES
                      ? "composite"
-                     : cw_mode_name(v->mode));
+                     : cw_mode_name(v->picture.mode));
     v->ui->tip(v->window, "Draw this mode on the left and its reference on the right");
 }
 
@@ -144,8 +144,9 @@ void view_show_compare(view *v)
         ask_sides(v, sides);
     show_difference(v);
     describe_numbers(v, text, sizeof text);
-    v->ui->text(v->window, v->is_measured ? text : "The difference is measured soon ...");
-    if (v->is_measured) {
+    v->ui->text(v->window,
+                v->picture.is_measured ? text : "The difference is measured soon ...");
+    if (v->picture.is_measured) {
         if (v->ui->button(v->window, "Copy the numbers"))
             copy_numbers(v);
         v->ui->same_line(v->window);
@@ -179,7 +180,7 @@ static void show_side_badge(view *v, const side_text *side, double x, double y, 
 
 void view_show_badges(view *v)
 {
-    const cwi_ui_rect *r = &v->parts[VIEW_SPACE].rect;
+    const cwi_ui_rect *r = &v->picture.parts[VIEW_SPACE].rect;
     const double gap = 8 * v->ui->scale(v->window);
     const double right = r->x + r->width - gap, top = r->y + gap;
     side_text sides[2];
@@ -187,11 +188,11 @@ void view_show_badges(view *v)
     split_text(v, sides);
     show_side_badge(v, &sides[0], r->x + gap, top, false);
     show_side_badge(v, &sides[1], right, top, true);
-    if (!v->is_measured)
+    if (!v->picture.is_measured)
         return;
-    snprintf(text, sizeof text, "rmse %.3g of 255%s%s", v->measured.rmse,
-             v->is_preliminary ? ", preliminary" : "",
-             v->is_alike ? "" : ", of different things");
+    snprintf(text, sizeof text, "rmse %.3g of 255%s%s", v->picture.measured.rmse,
+             v->picture.is_preliminary ? ", preliminary" : "",
+             v->picture.is_alike ? "" : ", of different things");
     show_badge(v, r->x + gap, r->y + r->height - 40 * v->ui->scale(v->window), false, text);
     if (!v->state.args.difference.given)
         return;

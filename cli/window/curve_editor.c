@@ -18,13 +18,14 @@ static const cwi_ui_color dim = {1, 1, 1, 0.16f}, bright = {1, 1, 1, 0.9f},
 /* Values are left to right over the range, opacities upwards. */
 static double x_of(const view *v, const cwi_ui_rect *r, double value)
 {
-    const double range = v->statistics.max - v->statistics.min;
-    return r->x + (range > 0 ? (value - v->statistics.min) / range : 0.5) * r->width;
+    const double range = v->document.statistics.max - v->document.statistics.min;
+    return r->x + (range > 0 ? (value - v->document.statistics.min) / range : 0.5) * r->width;
 }
 
 static double value_of(const view *v, const cwi_ui_rect *r, double x)
 {
-    return v->statistics.min + (x - r->x) / r->width * (v->statistics.max - v->statistics.min);
+    return v->document.statistics.min +
+           (x - r->x) / r->width * (v->document.statistics.max - v->document.statistics.min);
 }
 
 static double y_of(const cwi_ui_rect *r, double opacity)
@@ -35,7 +36,7 @@ static double y_of(const cwi_ui_rect *r, double opacity)
 /* Logarithmic, a column as high as its fullest bin. */
 static void show_histogram(view *v, const cwi_ui_rect *r)
 {
-    const cw_statistics *s = &v->statistics;
+    const cw_statistics *s = &v->document.statistics;
     double counts[COLUMNS] = {0}, most = 1;
     for (size_t c = 0; c < COLUMNS && s->bin_count; c++) {
         const size_t end = ((c + 1) * s->bin_count - 1) / COLUMNS;
@@ -54,7 +55,7 @@ static void show_histogram(view *v, const cwi_ui_rect *r)
 
 static void show_opacities(view *v, const cwi_ui_rect *r)
 {
-    const cw_transfer *t = &v->transfer;
+    const cw_transfer *t = &v->picture.transfer;
     double points[2 * (CW_TRANSFER_POINTS + 2)];
     size_t n = 0;
     if (t->opacity_count == 0)
@@ -73,7 +74,7 @@ static void show_opacities(view *v, const cwi_ui_rect *r)
     for (size_t p = 0; p < t->opacity_count; p++)
         v->ui->disc(v->window, CWI_UI_PANEL, points[2 * p + 2], points[2 * p + 3],
                     4 * v->ui->scale(v->window), bright,
-                    v->curve_drag != POINT || v->curve_point != (int)p);
+                    v->widgets->curve.drag != POINT || v->widgets->curve.point != (int)p);
 }
 
 static void show_colors(view *v, const cwi_ui_rect *r)
@@ -84,25 +85,26 @@ static void show_colors(view *v, const cwi_ui_rect *r)
         double rgb[3], opacity;
         cwi_ui_rect part = {r->x + (n - 1) * r->width / STEPS, r->y, r->width / STEPS,
                             r->height};
-        cw_transfer_at(&v->transfer, value_of(v, r, part.x + part.width), rgb, &opacity);
+        cw_transfer_at(&v->picture.transfer, value_of(v, r, part.x + part.width), rgb,
+                       &opacity);
         memcpy(colors[0], colors[1], sizeof colors[0]);
         for (int c = 0; c < 3; c++)
             colors[1][c] = (float)rgb[c];
         if (n)
             v->ui->blend(v->window, CWI_UI_PANEL, &part, colors[0], colors[1]);
     }
-    for (size_t n = 0; n < v->transfer.color_count; n++) {
-        const double x = x_of(v, r, v->transfer.colors[n].value);
+    for (size_t n = 0; n < v->picture.transfer.color_count; n++) {
+        const double x = x_of(v, r, v->picture.transfer.colors[n].value);
         if (x >= r->x && x <= r->x + r->width)
             v->ui->line(v->window, CWI_UI_PANEL, x, r->y, x, r->y + r->height, bright,
-                        v->color_chosen == n ? 3 : 1);
+                        v->widgets->curve.color == n ? 3 : 1);
     }
 }
 
 static void show_iso(view *v, const cwi_ui_rect *r)
 {
     const cli_number *iso = &v->state.args.iso;
-    if (!iso->given || v->source.is_mesh)
+    if (!iso->given || v->document.source.is_mesh)
         return;
     const double x = x_of(v, r, iso->value);
     v->ui->line(v->window, CWI_UI_PANEL, x, r->y, x, r->y + r->height, strong, 2);
@@ -117,7 +119,7 @@ static bool is_near_iso(const view *v, const cwi_ui_area *a)
 /* Where the mouse is, in value and opacity; and how near is near. */
 static void locate_pointer(const view *v, const cwi_ui_area *a, double at[2], double near[2])
 {
-    const double range = v->statistics.max - v->statistics.min;
+    const double range = v->document.statistics.max - v->document.statistics.min;
     at[0] = value_of(v, &a->rect, a->rect.x + fmin(fmax(a->x, 0), a->rect.width));
     at[1] = fmin(fmax(1 - a->y / a->rect.height, 0), 1);
     near[0] = NEAR_PX / a->rect.width * range;
@@ -126,68 +128,72 @@ static void locate_pointer(const view *v, const cwi_ui_area *a, double at[2], do
 
 static void press_point(view *v, const double at[2], const double near[2], bool on_iso)
 {
-    const size_t point = cwi_transfer_near_opacity(&v->transfer, at[0], at[1], near);
-    v->curve_drag = NOTHING;
+    view_curve_drag *curve = &v->widgets->curve;
+    const size_t point = cwi_transfer_near_opacity(&v->picture.transfer, at[0], at[1], near);
+    curve->drag = NOTHING;
     if (point != CWI_TRANSFER_NONE) {
-        v->curve_drag = POINT;
-        v->curve_point = (int)point;
+        curve->drag = POINT;
+        curve->point = (int)point;
     } else if (on_iso) {
-        v->curve_drag = ISO;
+        curve->drag = ISO;
     }
 }
 
 /* A press moves a point or the isovalue, two put a point in, the right button takes it out. */
 static void use_curve(view *v, const cwi_ui_area *a)
 {
+    view_curve_drag *curve = &v->widgets->curve;
     double at[2], near[2];
     locate_pointer(v, a, at, near);
-    const size_t point = cwi_transfer_near_opacity(&v->transfer, at[0], at[1], near);
+    const size_t point = cwi_transfer_near_opacity(&v->picture.transfer, at[0], at[1], near);
     if (a->pressed)
         press_point(v, at, near, is_near_iso(v, a));
     if (a->twice && point == CWI_TRANSFER_NONE)
         view_ask(v, "add-point %.9g %.6g", at[0], at[1]);
-    else if (a->right && point != CWI_TRANSFER_NONE && v->transfer.opacity_count > 1)
+    else if (a->right && point != CWI_TRANSFER_NONE && v->picture.transfer.opacity_count > 1)
         view_ask(v, "remove-point %zu", point);
-    else if (a->held && !a->pressed && v->curve_drag == POINT &&
-             (a->x != v->curve_at[0] || a->y != v->curve_at[1]))
-        view_ask(v, "point %d %.9g %.6g", v->curve_point, at[0], at[1]);
-    else if (a->held && v->curve_drag == ISO && a->x != v->curve_at[0])
+    else if (a->held && !a->pressed && curve->drag == POINT &&
+             (a->x != curve->at[0] || a->y != curve->at[1]))
+        view_ask(v, "point %d %.9g %.6g", curve->point, at[0], at[1]);
+    else if (a->held && curve->drag == ISO && a->x != curve->at[0])
         view_ask(v, "iso %.9g", at[0]);
     if (!a->held)
-        v->curve_drag = NOTHING;
-    v->curve_at[0] = a->x;
-    v->curve_at[1] = a->y;
+        curve->drag = NOTHING;
+    curve->at[0] = a->x;
+    curve->at[1] = a->y;
 }
 
 /* One press chooses a colour and drags it, two put one in, the right button takes it out. */
 static void use_colors(view *v, const cwi_ui_area *a)
 {
+    view_curve_drag *curve = &v->widgets->curve;
     double at[2], near[2], rgb[3], opacity;
     locate_pointer(v, a, at, near);
-    const size_t n = cwi_transfer_near_color(&v->transfer, at[0], near[0]);
-    cw_transfer_at(&v->transfer, at[0], rgb, &opacity);
+    const size_t n = cwi_transfer_near_color(&v->picture.transfer, at[0], near[0]);
+    cw_transfer_at(&v->picture.transfer, at[0], rgb, &opacity);
     if (a->pressed && n != CWI_TRANSFER_NONE)
-        v->color_chosen = n;
-    v->color_drag = a->held && (a->pressed ? n != CWI_TRANSFER_NONE : v->color_drag);
+        curve->color = n;
+    curve->drags_color = a->held && (a->pressed ? n != CWI_TRANSFER_NONE : curve->drags_color);
     if (a->twice && n == CWI_TRANSFER_NONE)
         view_ask(v, "add-color %.9g #%02x%02x%02x", at[0], (unsigned)lround(255 * rgb[0]),
                  (unsigned)lround(255 * rgb[1]), (unsigned)lround(255 * rgb[2]));
-    else if (a->right && n != CWI_TRANSFER_NONE && v->transfer.color_count > 1)
+    else if (a->right && n != CWI_TRANSFER_NONE && v->picture.transfer.color_count > 1)
         view_ask(v, "remove-color %zu", n);
-    else if (v->color_drag && !a->pressed && a->x != v->color_at)
-        view_ask(v, "move-color %zu %.9g", v->color_chosen, at[0]);
-    v->color_at = a->x;
+    else if (curve->drags_color && !a->pressed && a->x != curve->color_at)
+        view_ask(v, "move-color %zu %.9g", curve->color, at[0]);
+    curve->color_at = a->x;
 }
 
 static void choose_color(view *v)
 {
-    const cw_transfer *t = &v->transfer;
+    const view_curve_drag *curve = &v->widgets->curve;
+    const cw_transfer *t = &v->picture.transfer;
     float rgb[3];
-    if (v->color_chosen >= t->color_count)
+    if (curve->color >= t->color_count)
         return;
-    memcpy(rgb, t->colors[v->color_chosen].color, sizeof rgb);
+    memcpy(rgb, t->colors[curve->color].color, sizeof rgb);
     if (v->ui->color(v->window, "Colour of the point", rgb))
-        view_ask(v, "color-point %zu #%02x%02x%02x", v->color_chosen,
+        view_ask(v, "color-point %zu #%02x%02x%02x", curve->color,
                  (unsigned)lroundf(255 * rgb[0]), (unsigned)lroundf(255 * rgb[1]),
                  (unsigned)lroundf(255 * rgb[2]));
 }
@@ -195,17 +201,18 @@ static void choose_color(view *v)
 /* The point that was used last, in numbers. */
 void view_show_point(view *v)
 {
-    const cw_transfer *t = &v->transfer;
-    const double range = v->statistics.max - v->statistics.min;
+    view_curve_drag *curve = &v->widgets->curve;
+    const cw_transfer *t = &v->picture.transfer;
+    const double range = v->document.statistics.max - v->document.statistics.min;
     if (!view_draws_volume(v) || t->opacity_count == 0 ||
         !v->ui->section(v->window, "Curve in numbers", false))
         return;
-    size_t n = (size_t)v->curve_point < t->opacity_count ? (size_t)v->curve_point : 0;
+    size_t n = (size_t)curve->point < t->opacity_count ? (size_t)curve->point : 0;
     double chosen = (double)n, value = t->opacities[n].value,
            opacity = (double)t->opacities[n].opacity;
     if (t->opacity_count > 1 &&
         v->ui->slider(v->window, "Point", &chosen, 0, (double)t->opacity_count - 1, "%.0f"))
-        v->curve_point = (int)lround(chosen);
+        curve->point = (int)lround(chosen);
     v->ui->tip(v->window, "Point of the opacity curve, from the left");
     if (v->ui->number(v->window, "Its value", &value, range / 400, "%.6g"))
         view_ask(v, "point %zu %.9g %.6g", n, value, opacity);
@@ -238,8 +245,8 @@ void view_curve(view *v)
     } else if (curve.held) {
         view_ask(v, "iso %.9g", value_of(v, &curve.rect, curve.rect.x + curve.x));
     }
-    snprintf(text, sizeof text, "%.5g to %.5g%s", v->statistics.min, v->statistics.max,
-             curve.over ? "" : " (logarithmic counts)");
+    snprintf(text, sizeof text, "%.5g to %.5g%s", v->document.statistics.min,
+             v->document.statistics.max, curve.over ? "" : " (logarithmic counts)");
     if (curve.over)
         snprintf(text, sizeof text, "value %.5g",
                  value_of(v, &curve.rect, curve.rect.x + curve.x));

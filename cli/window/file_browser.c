@@ -23,7 +23,7 @@ static void forget_entries(view_browser *b)
 
 void view_close_browser(view *v)
 {
-    forget_entries(&v->browser);
+    forget_entries(&v->widgets->browser);
 }
 
 /* Whether a name ends as those of a format that is read. DICOM's files need no extension. */
@@ -105,13 +105,14 @@ static void enter_in_folder(view_browser *b, const char *name)
 /* Begins in the folder of the file that is open, else where the program was started. */
 static void begin_browsing(view *v)
 {
-    view_browser *b = &v->browser;
+    view_browser *b = &v->widgets->browser;
     char folder[VIEW_PATH];
-    const char *slash = v->path ? strrchr(v->path, '/') : NULL;
+    const char *slash = v->document.path ? strrchr(v->document.path, '/') : NULL;
     if (b->folder[0])
         return;
     snprintf(folder, sizeof folder, "%.*s",
-             slash && slash != v->path ? (int)(slash - v->path) : 1, slash ? v->path : ".");
+             slash && slash != v->document.path ? (int)(slash - v->document.path) : 1,
+             slash ? v->document.path : ".");
     enter_folder(b, folder);
 }
 
@@ -123,7 +124,7 @@ static void open_and_close(view *v, const char *path)
 
 static void open_entry(view *v, const view_entry *e)
 {
-    view_browser *b = &v->browser;
+    view_browser *b = &v->widgets->browser;
     char path[VIEW_PATH];
     const int length = snprintf(path, sizeof path, "%s/%s", b->folder, e->name);
     if (length < 0 || (size_t)length >= sizeof path)
@@ -137,7 +138,7 @@ static void open_entry(view *v, const view_entry *e)
 /* A path that somebody typed: a folder is entered, a file is opened. */
 static void open_typed(view *v)
 {
-    view_browser *b = &v->browser;
+    view_browser *b = &v->widgets->browser;
     struct stat info;
     if (stat(b->typed, &info) == 0 && S_ISDIR(info.st_mode))
         enter_folder(b, b->typed);
@@ -171,7 +172,7 @@ static bool is_listed(const view_browser *b, const view_entry *e)
 /* Returns the entry to open, if one is clicked again. */
 static const view_entry *show_entries(view *v)
 {
-    view_browser *b = &v->browser;
+    view_browser *b = &v->widgets->browser;
     const view_entry *opened = NULL;
     size_t listed = 0;
     for (size_t n = 0; n < b->count; n++) {
@@ -196,7 +197,7 @@ static const view_entry *show_entries(view *v)
 
 static void show_buttons(view *v)
 {
-    view_browser *b = &v->browser;
+    view_browser *b = &v->widgets->browser;
     if (v->ui->button(v->window, "Up"))
         enter_in_folder(b, "..");
     v->ui->same_line(v->window);
@@ -210,10 +211,10 @@ static void show_buttons(view *v)
 
 void view_browse(view *v)
 {
-    view_browser *b = &v->browser;
+    view_browser *b = &v->widgets->browser;
     const double scale = v->ui->scale(v->window);
     const cwi_ui_rect rect = {40 * scale, 50 * scale, 520 * scale,
-                              fmax(120, (double)v->height - 120 * scale)};
+                              fmax(120, (double)v->layout.height - 120 * scale)};
     const view_entry *opened = NULL;
     begin_browsing(v);
     if (v->ui->panel_begin(v->window, "Open", &rect, 0, &v->shown.files)) {
@@ -225,7 +226,7 @@ void view_browse(view *v)
             for (size_t n = 0; n < b->count && !opened; n++) /* Enter opens the first */
                 opened = is_listed(b, &b->entries[n]) ? &b->entries[n] : NULL;
         v->ui->tip(v->window, "Part of a name; Enter opens the first file that is left");
-        if (v->ui->section(v->window, "Recent", !v->path))
+        if (v->ui->section(v->window, "Recent", !v->document.path))
             view_show_recent(v);
         if (v->ui->section(v->window, "Folder", true)) {
             const view_entry *again = show_entries(v);

@@ -17,7 +17,7 @@ static void show_tools(view *v)
          "On a surface it is the area of the polygon between the points, not of the surface"}};
     for (size_t n = 0; n < sizeof tools / sizeof *tools; n++) {
         char label[32];
-        const bool on = v->tool == tools[n].kind;
+        const bool on = v->measuring.tool == tools[n].kind;
         snprintf(label, sizeof label, "%s%s", on ? "Stop " : "", tools[n].label);
         if (n)
             v->ui->same_line(v->window);

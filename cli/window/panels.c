@@ -44,7 +44,7 @@ static void show_bar(view *v)
 {
     static const char *const menus[] = {"File",    "Edit", "View", "Scene",
                                         "Measure", "Time", "Help"};
-    v->bar_height = v->ui->bar_begin(v->window);
+    v->layout.bar_height = v->ui->bar_begin(v->window);
     for (size_t n = 0; n < sizeof menus / sizeof *menus; n++)
         show_menu(v, menus[n]);
     v->ui->bar_end(v->window);
@@ -68,9 +68,9 @@ static void show_key(view *v, size_t n)
 static void show_keys(view *v)
 {
     const double scale = v->ui->scale(v->window);
-    const double width = fmin(620 * scale, (double)v->width - 20);
-    const cwi_ui_rect rect = {0.5 * ((double)v->width - width), 40 * scale, width,
-                              fmax(100, (double)v->height - 80 * scale)};
+    const double width = fmin(620 * scale, (double)v->layout.width - 20);
+    const cwi_ui_rect rect = {0.5 * ((double)v->layout.width - width), 40 * scale, width,
+                              fmax(100, (double)v->layout.height - 80 * scale)};
     if (v->ui->panel_begin(v->window, "Keys", &rect, 0, &v->shown.help)) {
         v->ui->text(v->window,
                     "Left drag: orbit.  Middle or Shift+left: pan.  Right drag, wheel: zoom.\n"
@@ -92,7 +92,8 @@ static void show_about(view *v)
     const cwi_ui_rect rect = {60 * scale, 60 * scale, 520 * scale, 0};
     if (v->ui->panel_begin(v->window, "About", &rect, 0, &v->shown.about)) {
         snprintf(line, sizeof line, "cubewright %s\nwindow: %s\nscene: %s", cw_version(),
-                 v->ui->name(v->window), v->renderer ? cw_renderer_name(v->renderer) : "-");
+                 v->ui->name(v->window),
+                 v->picture.renderer ? cw_renderer_name(v->picture.renderer) : "-");
         v->ui->text(v->window, line);
         v->ui->rule(v->window);
         for (int m = 0; m < CW_MODE_COUNT; m++) {
@@ -117,8 +118,8 @@ static bool fits_line(const view *v, const char *line, double width)
 static void describe_status(const view *v, char *line, size_t size, double width)
 {
     static const char *const levels[] = {"...", "rough", "refining", "done"};
-    const view_part *space = &v->parts[VIEW_SPACE];
-    const char *path = cli_shown_path(v->path), *slash = strrchr(path, '/');
+    const view_part *space = &v->picture.parts[VIEW_SPACE];
+    const char *path = cli_shown_path(v->document.path), *slash = strrchr(path, '/');
     const char *wheel = v->shown.cut == 1   ? "   wheel cuts x"
                         : v->shown.cut == 2 ? "   wheel cuts y"
                         : v->shown.cut == 3 ? "   wheel cuts z"
@@ -127,15 +128,15 @@ static void describe_status(const view *v, char *line, size_t size, double width
     view_tool_hint(v, tool, sizeof tool);
     if (*tool)
         wheel = tool;
-    snprintf(state, sizeof state, "%s, %.0f ms, %s", cw_mode_name(v->mode), space->ms,
+    snprintf(state, sizeof state, "%s, %.0f ms, %s", cw_mode_name(v->picture.mode), space->ms,
              levels[space->level]);
-    snprintf(line, size, "%s   %s   %s%s", path, state, v->probe, wheel);
+    snprintf(line, size, "%s   %s   %s%s", path, state, v->input.probe, wheel);
     if (!fits_line(v, line, width) && slash)
-        snprintf(line, size, "%s   %s   %s%s", slash + 1, state, v->probe, wheel);
+        snprintf(line, size, "%s   %s   %s%s", slash + 1, state, v->input.probe, wheel);
     if (!fits_line(v, line, width))
-        snprintf(line, size, "%s   %s%s", state, v->probe, wheel);
+        snprintf(line, size, "%s   %s%s", state, v->input.probe, wheel);
     if (!fits_line(v, line, width))
-        snprintf(line, size, "%s%s", v->probe, wheel);
+        snprintf(line, size, "%s%s", v->input.probe, wheel);
     for (size_t length = strlen(line); length > 0 && !fits_line(v, line, width);)
         line[--length] = '\0';
 }
@@ -149,12 +150,12 @@ static void show_strip(view *v)
     double letter[2];
     v->ui->text_size(v->window, "A", letter);
     const double height = letter[1] + 2 * padding;
-    const double width = fmax(1, (double)v->width - v->panel_width);
-    const cwi_ui_rect rect = {0, (double)v->height - height, width, height};
-    v->strip_height = v->shown.panels ? height : 0;
-    if (v->message[0] && !v->is_error)
-        snprintf(line, sizeof line, "%s", v->message);
-    else if (v->path && v->shown.panels)
+    const double width = fmax(1, (double)v->layout.width - v->layout.panel_width);
+    const cwi_ui_rect rect = {0, (double)v->layout.height - height, width, height};
+    v->layout.strip_height = v->shown.panels ? height : 0;
+    if (v->message.text[0] && !v->message.is_error)
+        snprintf(line, sizeof line, "%s", v->message.text);
+    else if (v->document.path && v->shown.panels)
         describe_status(v, line, sizeof line, width - 3 * padding);
     if (!v->shown.panels && !line[0])
         return;
@@ -166,33 +167,33 @@ static void show_strip(view *v)
 static void show_error(view *v)
 {
     const double scale = v->ui->scale(v->window);
-    const double width = fmin(520 * scale, (double)v->width - 16);
-    const cwi_ui_rect rect = {8 * scale, v->bar_height + 8 * scale, width, 0};
+    const double width = fmin(520 * scale, (double)v->layout.width - 16);
+    const cwi_ui_rect rect = {8 * scale, v->layout.bar_height + 8 * scale, width, 0};
     bool open = true;
-    if (!v->message[0] || !v->is_error)
+    if (!v->message.text[0] || !v->message.is_error)
         return;
     if (v->ui->panel_begin(v->window, "Error", &rect, 0, &open))
-        v->ui->text(v->window, v->message);
+        v->ui->text(v->window, v->message.text);
     v->ui->panel_end(v->window);
     if (!open)
-        v->message[0] = '\0';
+        v->message.text[0] = '\0';
 }
 
 void view_panels(view *v)
 {
-    v->bar_height = v->panel_width = v->strip_height = 0;
-    if (v->message[0] && v->ui->seconds(v->window) > v->message_until)
-        v->message[0] = '\0';
+    v->layout.bar_height = v->layout.panel_width = v->layout.strip_height = 0;
+    if (v->message.text[0] && v->ui->seconds(v->window) > v->message.until)
+        v->message.text[0] = '\0';
     if (v->shown.panels) {
         show_bar(v);
         view_show_side(v);
     }
     show_strip(v);
-    if (!v->path)
+    if (!v->document.path)
         view_show_start(v);
     if (v->shown.files)
         view_browse(v);
-    if (v->shown.gallery && v->has_volume)
+    if (v->shown.gallery && v->document.has_volume)
         view_show_gallery(v);
     if (v->shown.save_mesh)
         view_show_save_mesh(v);

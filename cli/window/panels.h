@@ -4,6 +4,67 @@
 
 #include "cli/session/view.h"
 
+#include <time.h>
+
+/* Thumbnails of the presets of the transfer function: how many are drawn. */
+enum { VIEW_THUMBS = 40 };
+
+/* Times of view_loop.c and cmd_view.c, in ui seconds but for start. */
+typedef struct view_clock {
+    double start;          /* of the program, in cli_seconds() */
+    bool is_told;          /* the time to the first picture has been printed */
+    double progress_shown; /* the last time */
+    double next_step;      /* of a series that plays */
+} view_clock;
+
+/* A drag on a picture, by view_mouse.c. */
+typedef struct view_drag {
+    int drag, part;
+    double from[2]; /* what it is measured from */
+} view_drag;
+
+/* A drag in the curve editor. */
+typedef struct view_curve_drag {
+    int drag, point;
+    bool drags_color;
+    size_t color; /* the one that was chosen */
+    double at[2], color_at;
+} view_curve_drag;
+
+/* A file or folder to open. */
+typedef struct view_entry {
+    char *name;
+    bool is_folder, is_known; /* its extension is that of a format */
+    double bytes;
+    time_t time; /* of its last change */
+} view_entry;
+
+/* The folder that the file browser shows. */
+typedef struct view_browser {
+    char folder[VIEW_PATH]; /* "": not looked at yet */
+    view_entry *entries;
+    size_t count;
+    char typed[VIEW_PATH], filter[256], chosen[VIEW_PATH]; /* chosen: a name */
+    bool shows_all;
+} view_browser;
+
+/* Fields of the dialogs that save. */
+typedef struct view_saving {
+    char mesh_name[VIEW_PATH], picture_name[VIEW_PATH];
+    size_t part; /* index of its choice */
+    double picture_size[2];
+    size_t layout, background;
+} view_saving;
+
+/* Keeps what each file of the window needs from frame to frame. */
+struct view_widgets {
+    view_clock clock;
+    view_drag mouse;
+    view_curve_drag curve;
+    view_browser browser;
+    view_saving saving;
+};
+
 /* view_loop.c */
 /* Shows one frame: takes input, runs what it asks for, and draws what is stale. */
 CW_NODISCARD cw_status view_show_frame(view *v, double wait_s, cw_error *err);

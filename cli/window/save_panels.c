@@ -33,8 +33,8 @@ static const char *extension_of(const char *path)
 /* "head.nii.gz" becomes "head.stl", in the folder that the program runs in. */
 static void suggest_name(const view *v, char *name, size_t size, const char *extension)
 {
-    const char *slash = strrchr(v->path, '/');
-    const char *base = slash && slash[1] ? slash + 1 : v->path;
+    const char *slash = strrchr(v->document.path, '/');
+    const char *base = slash && slash[1] ? slash + 1 : v->document.path;
     const size_t length = strcspn(base, ".");
     snprintf(name, size, "%.*s%s", (int)(length ? length : 1), length ? base : "a", extension);
 }
@@ -73,23 +73,22 @@ static size_t show_part_choice(view *v, view_saving *s)
     static const size_t divisors[] = {1, 2, 5, 10, 50};
     v->ui->choice(v->window, "Triangles", names, sizeof names / sizeof *names, &s->part);
     v->ui->tip(v->window, "Fewer triangles are made by simplification; its error is measured");
-    return s->part ? v->source.mesh.triangle_count / divisors[s->part] : 0;
+    return s->part ? v->document.source.mesh.triangle_count / divisors[s->part] : 0;
 }
 
 static bool are_facts_old(const view *v, size_t triangles)
 {
-    const view_saving *s = &v->saving;
-    return !s->has_facts || s->facts_triangles != triangles ||
-           s->facts_iso != v->state.args.iso.value;
+    const view_measured_mesh *m = &v->document.measured;
+    return !m->is_known || m->triangles != triangles || m->iso != v->state.args.iso.value;
 }
 
 void view_show_save_mesh(view *v)
 {
-    view_saving *s = &v->saving;
+    view_saving *s = &v->widgets->saving;
     const double scale = v->ui->scale(v->window);
     const cwi_ui_rect rect = {60 * scale, 60 * scale, 460 * scale, 0};
     char text[256];
-    if (v->path && !s->mesh_name[0])
+    if (v->document.path && !s->mesh_name[0])
         suggest_name(v, s->mesh_name, sizeof s->mesh_name, ".stl");
     if (v->ui->panel_begin(v->window, "Save mesh", &rect, 0, &v->shown.save_mesh)) {
         bool is_asked = v->ui->input(v->window, "File", s->mesh_name, sizeof s->mesh_name);
@@ -97,14 +96,14 @@ void view_show_save_mesh(view *v)
         const size_t triangles = show_part_choice(v, s);
         warn_of_old(v, s->mesh_name);
         v->ui->rule(v->window);
-        if (!v->path || !view_has_mesh(v)) {
+        if (!v->document.path || !view_has_mesh(v)) {
             v->ui->text(v->window, "No surface is shown: choose an isovalue first.");
         } else if (are_facts_old(v, triangles)) {
             if (v->ui->button(v->window, "Measure it"))
                 view_ask(v, "measure-mesh %zu", triangles);
             v->ui->tip(v->window, "Size, closedness and error before it is saved");
         } else {
-            view_describe_mesh(&s->facts, text, sizeof text);
+            view_describe_mesh(&v->document.measured.facts, text, sizeof text);
             v->ui->text(v->window, text);
         }
         v->ui->text(v->window, "Cuts are for the picture alone: the whole surface is saved.");
@@ -124,10 +123,10 @@ void view_show_save_picture(view *v)
 {
     static const char *const layouts[] = {"as shown", "single", "quad"};
     static const char *const backgrounds[] = {"as shown", "none"};
-    view_saving *s = &v->saving;
+    view_saving *s = &v->widgets->saving;
     const double scale = v->ui->scale(v->window);
     const cwi_ui_rect rect = {60 * scale, 60 * scale, 420 * scale, 0};
-    if (v->path && !s->picture_name[0])
+    if (v->document.path && !s->picture_name[0])
         suggest_name(v, s->picture_name, sizeof s->picture_name, ".png");
     const cwi_ui_rect area = view_picture_area(v);
     if (!(s->picture_size[0] > 0)) {

@@ -124,7 +124,7 @@ static size_t find_options(const view *v, const char *heading, const char *names
         if (o->kind == CLI_HEADING)
             is_here = strncmp(o->name, heading, strlen(heading)) == 0;
         else if (is_here && count < MAX_OPTIONS && !is_shown_elsewhere(o->name) &&
-                 cli_setting_fits(o->name, v->mode, view_has_mesh(v)))
+                 cli_setting_fits(o->name, v->picture.mode, view_has_mesh(v)))
             names[count++] = o->name;
     }
     return count;
@@ -179,18 +179,18 @@ size_t view_list_modes(const view *v, bool with_mesh, const char **names)
 static void tell_mode(view *v)
 {
     char text[256];
-    const double rmse = v->mode_error[v->mode];
-    int used = snprintf(text, sizeof text, "%s", cw_mode_about(v->mode));
+    const double rmse = v->picture.mode_error[v->picture.mode];
+    int used = snprintf(text, sizeof text, "%s", cw_mode_about(v->picture.mode));
     if (!v->state.args.compare) /* then the time is that of two pictures */
         used += snprintf(text + used, sizeof text - (size_t)used, "; %.0f ms",
-                         v->parts[VIEW_SPACE].ms);
+                         v->picture.parts[VIEW_SPACE].ms);
     if (rmse >= 0)
         used += snprintf(text + used, sizeof text - (size_t)used,
                          "; error %.3g of 255 (rmse, measured)", rmse);
     v->ui->text(v->window, text);
     snprintf(text, sizeof text, "%s%sAn error is known once Compare has measured it.",
-             *cw_mode_source(v->mode) ? cw_mode_source(v->mode) : "",
-             *cw_mode_source(v->mode) ? "\n" : "");
+             *cw_mode_source(v->picture.mode) ? cw_mode_source(v->picture.mode) : "",
+             *cw_mode_source(v->picture.mode) ? "\n" : "");
     v->ui->tip(v->window, text);
 }
 
@@ -201,11 +201,11 @@ static void show_mode(view *v)
     const size_t count = view_list_modes(v, true, names);
     size_t chosen = 0;
     for (size_t n = 0; n < count; n++)
-        chosen = strcmp(names[n], cw_mode_name(v->mode)) == 0 ? n : chosen;
+        chosen = strcmp(names[n], cw_mode_name(v->picture.mode)) == 0 ? n : chosen;
     if (v->ui->choice(v->window, "Mode", names, count, &chosen))
         view_ask(v, "mode %s", names[chosen]);
-    snprintf(tip, sizeof tip, "%s%s%s", cw_mode_about(v->mode),
-             *cw_mode_source(v->mode) ? "\n" : "", cw_mode_source(v->mode));
+    snprintf(tip, sizeof tip, "%s%s%s", cw_mode_about(v->picture.mode),
+             *cw_mode_source(v->picture.mode) ? "\n" : "", cw_mode_source(v->picture.mode));
     v->ui->tip(v->window, tip);
     tell_mode(v);
 }
@@ -237,7 +237,7 @@ static void show_preset(view *v)
 static void show_shift(view *v)
 {
     const cli_scene *s = &v->state.args.scene;
-    const double range = v->statistics.max - v->statistics.min;
+    const double range = v->document.statistics.max - v->document.statistics.min;
     double shift = s->shift.value, opacity = s->opacity.given ? s->opacity.value : 1;
     if (v->ui->slider(v->window, "Shift", &shift, -0.5 * range, 0.5 * range, "%.4g"))
         view_ask(v, "shift %.9g", shift);
@@ -254,7 +254,7 @@ static void show_scene(view *v)
     show_mode(v);
     if (view_draws_volume(v))
         show_preset(v);
-    if (!v->source.is_mesh)
+    if (!v->document.source.is_mesh)
         view_curve(v);
     if (view_draws_volume(v)) {
         show_shift(v);
@@ -264,12 +264,12 @@ static void show_scene(view *v)
 
 static void show_surface(view *v)
 {
-    const cw_statistics *s = &v->statistics;
+    const cw_statistics *s = &v->document.statistics;
     const cli_number *iso = &v->state.args.iso;
     bool on = iso->given;
     double value = on ? iso->value : view_suggest_iso(v);
     char text[64];
-    if (v->source.is_mesh || !v->ui->section(v->window, "Surface", true))
+    if (v->document.source.is_mesh || !v->ui->section(v->window, "Surface", true))
         return;
     if (v->ui->check(v->window, "Show the surface", &on) && on)
         view_ask(v, "iso %.9g", value);
@@ -277,11 +277,11 @@ static void show_surface(view *v)
         view_ask(v, "iso off");
     if (v->ui->slider(v->window, "Isovalue", &value, s->min, s->max, "%.5g"))
         view_ask(v, "iso %.9g", value);
-    if (v->is_live)
+    if (v->document.surface.is_live)
         snprintf(text, sizeof text, "extracted by the GPU");
     else
-        snprintf(text, sizeof text, "%zu triangles%s", v->source.mesh.triangle_count,
-                 v->mesh_level == 1 ? ", coarse" : "");
+        snprintf(text, sizeof text, "%zu triangles%s", v->document.source.mesh.triangle_count,
+                 v->document.surface.level == 1 ? ", coarse" : "");
     if (on)
         v->ui->text(v->window, text);
 }
@@ -294,7 +294,8 @@ static void show_faces(view *v)
     for (int f = 0; f < 6; f++) {
         const int a = f / 2;
         double value = box[f % 2][a];
-        if (v->ui->slider(v->window, labels[f], &value, v->box[0][a], v->box[1][a], "%.1f mm"))
+        if (v->ui->slider(v->window, labels[f], &value, v->document.box[0][a],
+                          v->document.box[1][a], "%.1f mm"))
             view_ask(v, "clip-face %d %.9g", f, value);
     }
 }
@@ -338,7 +339,7 @@ static void show_windows(view *v, const double now[2])
 /* Black and white, and the same as a window and its level. */
 static void show_greys(view *v)
 {
-    const cw_statistics *s = &v->statistics;
+    const cw_statistics *s = &v->document.statistics;
     const double range = s->max - s->min;
     double w[2];
     view_grey_range(v, w);
@@ -362,25 +363,25 @@ static void show_slices(view *v)
     static const char *const names[3] = {"Sagittal x", "Coronal y", "Axial z"};
     bool quad = v->state.args.marks.layout == CLI_LAYOUT_QUAD;
     double cross[3];
-    if (!v->has_volume || !view_fits_mode(v, CW_MODE_SLICES) ||
+    if (!v->document.has_volume || !view_fits_mode(v, CW_MODE_SLICES) ||
         !v->ui->section(v->window, "Slices", quad))
         return;
     if (v->ui->check(v->window, "Beside the scene", &quad))
         view_ask(v, "toggle quad");
     for (int a = 0; a < 3; a++) {
         memcpy(cross, v->state.cross, sizeof cross);
-        if (v->ui->slider(v->window, names[a], &cross[a], v->box[0][a], v->box[1][a],
-                          "%.1f mm"))
+        if (v->ui->slider(v->window, names[a], &cross[a], v->document.box[0][a],
+                          v->document.box[1][a], "%.1f mm"))
             view_ask(v, "cross %.9g %.9g %.9g", cross[0], cross[1], cross[2]);
     }
     show_greys(v);
     show_option(v, "isolines");
-    v->ui->text(v->window, v->probe);
+    v->ui->text(v->window, v->input.probe);
 }
 
 static void show_time(view *v)
 {
-    const size_t count = v->source.series.count;
+    const size_t count = v->document.source.series.count;
     double step = (double)v->state.step;
     bool playing = v->shown.playing;
     if (count < 2 || !v->ui->section(v->window, "Time", true))
@@ -394,15 +395,16 @@ static void show_time(view *v)
 
 void view_show_side(view *v)
 {
-    const double scale = v->ui->scale(v->window), all = (double)v->width;
+    const double scale = v->ui->scale(v->window), all = (double)v->layout.width;
     const double width = fmax(fmin(PANEL_WIDTH * scale, MAX_PANEL * all),
                               fmin(CWI_UI_DOCKED_MIN * scale, CWI_UI_DOCKED_MAX * all));
-    const cwi_ui_rect rect = {(double)v->width - width, v->bar_height, width,
-                              (double)v->height - v->bar_height};
+    const cwi_ui_rect rect = {(double)v->layout.width - width, v->layout.bar_height, width,
+                              (double)v->layout.height - v->layout.bar_height};
     cwi_ui_rect now = rect; /* somebody may have made it wider */
     (void)v->ui->find(v->window, "Settings", &now);
-    v->panel_width = now.width;
-    if (v->ui->panel_begin(v->window, "Settings", &rect, CWI_UI_DOCKED, NULL) && v->path) {
+    v->layout.panel_width = now.width;
+    if (v->ui->panel_begin(v->window, "Settings", &rect, CWI_UI_DOCKED, NULL) &&
+        v->document.path) {
         show_scene(v);
         view_show_point(v);
         show_surface(v);
@@ -412,9 +414,9 @@ void view_show_side(view *v)
         show_time(v);
         view_show_compare(v);
         view_show_views(v);
-        if (v->look.labels && !v->overlay_values.volume)
+        if (v->document.labels.look.labels && !v->document.overlay.values.volume)
             show_options(v, "Label maps");
-        if (v->has_volume)
+        if (v->document.has_volume)
             show_options(v, "Overlay of another volume");
         show_options(v, "Light");
         show_options(v, "Sampling");

@@ -9,8 +9,8 @@
 void view_show_recent(view *v)
 {
     size_t shown = 0;
-    for (size_t n = 0; n < v->recent_count; n++) {
-        const char *path = v->recent[n], *slash = strrchr(path, '/');
+    for (size_t n = 0; n < v->recent.count; n++) {
+        const char *path = v->recent.files[n], *slash = strrchr(path, '/');
         char label[VIEW_PATH + 16];
         if (access(path, R_OK) != 0)
             continue; /* it may come back, with the disk that it is on */
@@ -48,9 +48,10 @@ static void show_samples(view *v)
 void view_show_start(view *v)
 {
     const double scale = v->ui->scale(v->window);
-    const double space = fmax(1, (double)v->width - v->panel_width);
+    const double space = fmax(1, (double)v->layout.width - v->layout.panel_width);
     const double width = fmin(380 * scale, 0.9 * space);
-    const cwi_ui_rect rect = {0.5 * (space - width), v->bar_height + 40 * scale, width, 0};
+    const cwi_ui_rect rect = {0.5 * (space - width), v->layout.bar_height + 40 * scale, width,
+                              0};
     if (v->ui->panel_begin(v->window, "Start", &rect, CWI_UI_FIXED, NULL)) {
         v->ui->text(v->window, "Drop a volume, a mesh or a folder here, or:");
         if (v->ui->button(v->window, "Open..."))

@@ -25,25 +25,26 @@ static void press_keys(view *v, const cwi_ui_input *in)
             v->shown.help = v->shown.about = v->shown.files = false;
             v->shown.save_mesh = v->shown.save_picture = v->shown.gallery = false;
             v->shown.cut = 0;
-            v->message[0] = '\0';
+            v->message.text[0] = '\0';
         }
 }
 
 static void play_steps(view *v)
 {
     const double now = v->ui->seconds(v->window);
-    if (!v->shown.playing || v->source.series.count < 2 || now < v->play_next)
+    if (!v->shown.playing || v->document.source.series.count < 2 ||
+        now < v->widgets->clock.next_step)
         return;
     view_ask(v, "step next");
-    v->play_next = now + 1e-3 * STEP_MS;
+    v->widgets->clock.next_step = now + 1e-3 * STEP_MS;
 }
 
 static double wait_for(const view *v, double wait_s)
 {
-    if (!view_is_final(v) || v->asked_count || v->preview || view_gallery_waits(v))
+    if (!view_is_final(v) || v->script.asked_count || v->film.preview || view_gallery_waits(v))
         return 0;
-    return v->shown.playing && v->source.series.count > 1
-               ? fmin(wait_s, fmax(0, v->play_next - v->ui->seconds(v->window)))
+    return v->shown.playing && v->document.source.series.count > 1
+               ? fmin(wait_s, fmax(0, v->widgets->clock.next_step - v->ui->seconds(v->window)))
                : wait_s;
 }
 
@@ -55,25 +56,27 @@ static cw_status draw_session(view *v, cw_error *err)
     bool is_stale = false;
     view_level lowest = VIEW_FINAL;
     for (int p = 0; p < VIEW_PARTS; p++)
-        if (v->parts[p].is_shown) {
-            is_stale |= v->parts[p].level == VIEW_STALE;
-            lowest = v->parts[p].level < lowest ? v->parts[p].level : lowest;
+        if (v->picture.parts[p].is_shown) {
+            is_stale |= v->picture.parts[p].level == VIEW_STALE;
+            lowest = v->picture.parts[p].level < lowest ? v->picture.parts[p].level : lowest;
         }
     if (lowest == VIEW_FINAL || (!is_stale && v->ui->pending(v->window)))
         return CW_OK;
     cw_status st = view_draw(v, is_stale ? VIEW_ROUGH : lowest + 1, !is_stale, &why);
     if (st != CW_OK)
         view_say(v, true, why.message);
-    return v->is_monkey && st == CW_ERR_BACKEND ? cwi_fail(err, st, "%s", why.message) : CW_OK;
+    return v->input.is_monkey && st == CW_ERR_BACKEND ? cwi_fail(err, st, "%s", why.message)
+                                                      : CW_OK;
 }
 
 /* With -v: how long people waited for something to see. */
 static void tell_first(view *v)
 {
-    if (v->is_told || v->parts[VIEW_SPACE].level == VIEW_STALE || !v->path)
+    if (v->widgets->clock.is_told || v->picture.parts[VIEW_SPACE].level == VIEW_STALE ||
+        !v->document.path)
         return;
-    v->is_told = true;
-    cli_say_v("first picture shown after %.2f s", cli_seconds() - v->start);
+    v->widgets->clock.is_told = true;
+    cli_say_v("first picture shown after %.2f s", cli_seconds() - v->widgets->clock.start);
 }
 
 cw_status view_show_frame(view *v, double wait_s, cw_error *err)
@@ -81,12 +84,12 @@ cw_status view_show_frame(view *v, double wait_s, cw_error *err)
     const cwi_ui_functions *ui = v->ui;
     const cwi_ui_input *in = ui->begin(v->window, wait_for(v, wait_s));
     ui->set_theme(v->window, v->state.args.light_theme ? CWI_UI_LIGHT : CWI_UI_DARK);
-    v->width = in->width;
-    v->height = in->height;
+    v->layout.width = in->width;
+    v->layout.height = in->height;
     v->quits |= in->close || cli_interrupted();
     for (int b = 0; b < CWI_UI_BUTTONS; b++)
-        v->gesture += in->pressed[b] || in->lifted[b];
-    v->gesture += in->key_count;
+        v->input.gesture += in->pressed[b] || in->lifted[b];
+    v->input.gesture += in->key_count;
     if (!in->typing)
         press_keys(v, in);
     for (size_t n = 0; n < in->drop_count; n++)

@@ -19,14 +19,14 @@ static bool is_in(const cwi_ui_rect *r, double x, double y)
 static int part_under(const view *v, double x, double y)
 {
     for (int p = 0; p < VIEW_PARTS; p++)
-        if (v->parts[p].is_shown && is_in(&v->parts[p].rect, x, y))
+        if (v->picture.parts[p].is_shown && is_in(&v->picture.parts[p].rect, x, y))
             return p;
     return -1;
 }
 
 static cwi_handle_view looked_at(const view *v)
 {
-    const cwi_ui_rect *r = &v->parts[VIEW_SPACE].rect;
+    const cwi_ui_rect *r = &v->picture.parts[VIEW_SPACE].rect;
     return (cwi_handle_view){v->state.camera, (size_t)r->width, (size_t)r->height};
 }
 
@@ -42,7 +42,7 @@ static cwi_world_box clip_box(const view *v)
 
 static bool has_handles(const view *v)
 {
-    return v->shown.handles && v->path && v->state.is_placed;
+    return v->shown.handles && v->document.path && v->state.is_placed;
 }
 
 static int handle_under(const view *v, double x, double y)
@@ -57,7 +57,7 @@ static int handle_under(const view *v, double x, double y)
 
 static bool is_on_divider(const view *v, double x)
 {
-    const cwi_ui_rect *r = &v->parts[VIEW_SPACE].rect;
+    const cwi_ui_rect *r = &v->picture.parts[VIEW_SPACE].rect;
     return v->state.args.compare && !v->state.args.difference.given &&
            fabs(x - v->state.share * r->width) <= DIVIDER_PX * v->ui->scale(v->window);
 }
@@ -65,11 +65,11 @@ static bool is_on_divider(const view *v, double x)
 /* Returns the drag that a button pressed on a part begins. */
 static int begin_drag(const view *v, const cwi_ui_input *in, int part)
 {
-    const cwi_ui_rect *r = &v->parts[part].rect;
+    const cwi_ui_rect *r = &v->picture.parts[part].rect;
     const double x = in->x - r->x, y = in->y - r->y;
     const bool left = in->pressed[CWI_UI_LEFT];
     if (part != VIEW_SPACE)
-        return left && v->tool             ? POINT
+        return left && v->measuring.tool   ? POINT
                : left                      ? CROSS
                : in->pressed[CWI_UI_RIGHT] ? GREYS
                                            : NOTHING;
@@ -88,7 +88,7 @@ static int begin_drag(const view *v, const cwi_ui_input *in, int part)
 /* The point of a slice that is seen at a pixel of its part. */
 static bool slice_point(const view *v, int part, double x, double y, double point[3])
 {
-    const view_part *p = &v->parts[part];
+    const view_part *p = &v->picture.parts[part];
     const double pixel[2] = {x, y};
     double origin[3], direction[3];
     const int axis = 3 - part;
@@ -104,15 +104,15 @@ static bool slice_point(const view *v, int part, double x, double y, double poin
 static void move_cross(view *v, const cwi_ui_input *in)
 {
     double point[3];
-    const cwi_ui_rect *r = &v->parts[v->drag_part].rect;
-    if (slice_point(v, v->drag_part, in->x - r->x, in->y - r->y, point))
+    const cwi_ui_rect *r = &v->picture.parts[v->widgets->mouse.part].rect;
+    if (slice_point(v, v->widgets->mouse.part, in->x - r->x, in->y - r->y, point))
         view_ask(v, "cross %.9g %.9g %.9g", point[0], point[1], point[2]);
 }
 
 /* To the right: more of the values between black and white; down: brighter. */
 static void move_greys(view *v, const cwi_ui_input *in)
 {
-    const cw_statistics *s = &v->statistics;
+    const cw_statistics *s = &v->document.statistics;
     double w[2];
     const double range = s->max - s->min;
     view_grey_range(v, w);
@@ -127,7 +127,7 @@ static void move_greys(view *v, const cwi_ui_input *in)
 static void shift_curve(view *v, const cwi_ui_input *in)
 {
     const cli_scene *s = &v->state.args.scene;
-    const double range = v->statistics.max - v->statistics.min;
+    const double range = v->document.statistics.max - v->document.statistics.min;
     const double opacity = s->opacity.given ? s->opacity.value : 1;
     if (in->dx != 0)
         view_ask(v, "shift %.9g", s->shift.value + in->dx / 800 * range);
@@ -137,13 +137,13 @@ static void shift_curve(view *v, const cwi_ui_input *in)
 
 static void drag_handle(view *v, const cwi_ui_input *in, int handle)
 {
-    const cwi_ui_rect *r = &v->parts[VIEW_SPACE].rect;
+    const cwi_ui_rect *r = &v->picture.parts[VIEW_SPACE].rect;
     const cwi_handle_view look = looked_at(v);
     cwi_world_box bounds, box = clip_box(v);
     const double pixel[2] = {in->x - r->x, in->y - r->y};
     const int axis = handle / 2;
-    memcpy(bounds.low, v->box[0], sizeof bounds.low);
-    memcpy(bounds.high, v->box[1], sizeof bounds.high);
+    memcpy(bounds.low, v->document.box[0], sizeof bounds.low);
+    memcpy(bounds.high, v->document.box[1], sizeof bounds.high);
     const double thin = 1e-3 * (bounds.high[axis] - bounds.low[axis]);
     if (cwi_handles_drag(&look, &bounds, thin, handle, pixel, &box))
         view_ask(v, "clip-face %d %.9g", handle, handle % 2 ? box.high[axis] : box.low[axis]);
@@ -151,25 +151,26 @@ static void drag_handle(view *v, const cwi_ui_input *in, int handle)
 
 static void go_on_dragging(view *v, const cwi_ui_input *in)
 {
-    const cwi_ui_rect *r = &v->parts[VIEW_SPACE].rect;
-    if ((in->dx == 0 && in->dy == 0) || !v->path)
+    const view_drag *mouse = &v->widgets->mouse;
+    const cwi_ui_rect *r = &v->picture.parts[VIEW_SPACE].rect;
+    if ((in->dx == 0 && in->dy == 0) || !v->document.path)
         return;
-    if (v->drag == ORBIT)
+    if (mouse->drag == ORBIT)
         view_ask(v, "orbit %.6g %.6g", -in->dx * 0.4, in->dy * 0.4);
-    else if (v->drag == PAN)
+    else if (mouse->drag == PAN)
         view_ask(v, "pan %.6g %.6g", in->dx, in->dy);
-    else if (v->drag == DOLLY)
+    else if (mouse->drag == DOLLY)
         view_ask(v, "dolly %.6g", exp(-in->dy / 200));
-    else if (v->drag == SHIFT && v->has_volume)
+    else if (mouse->drag == SHIFT && v->document.has_volume)
         shift_curve(v, in);
-    else if (v->drag == SPLIT)
+    else if (mouse->drag == SPLIT)
         view_ask(v, "split %.6g", fmin(fmax((in->x - r->x) / r->width, 0), 1));
-    else if (v->drag == CROSS)
+    else if (mouse->drag == CROSS)
         move_cross(v, in);
-    else if (v->drag == GREYS)
+    else if (mouse->drag == GREYS)
         move_greys(v, in);
-    else if (v->drag >= HANDLE)
-        drag_handle(v, in, v->drag - HANDLE);
+    else if (mouse->drag >= HANDLE)
+        drag_handle(v, in, mouse->drag - HANDLE);
 }
 
 static void turn_wheel(view *v, const cwi_ui_input *in, int part)
@@ -193,19 +194,20 @@ static void probe_part(view *v, const cwi_ui_input *in, int part)
     bool there = false;
     memcpy(point, v->state.cross, sizeof point);
     if (part > VIEW_SPACE)
-        there = slice_point(v, part, in->x - v->parts[part].rect.x,
-                            in->y - v->parts[part].rect.y, point);
-    v->probe[0] = '\0';
-    if (!v->has_volume || cli_drawn(&v->source)->cells) /* the value at any point is unknown */
+        there = slice_point(v, part, in->x - v->picture.parts[part].rect.x,
+                            in->y - v->picture.parts[part].rect.y, point);
+    v->input.probe[0] = '\0';
+    if (!v->document.has_volume ||
+        cli_drawn(&v->document.source)->cells) /* the value at any point is unknown */
         return;
-    const double value = cw_volume_sample(cli_drawn(&v->source), point);
+    const double value = cw_volume_sample(cli_drawn(&v->document.source), point);
     view_label_at(v, point, label, sizeof label);
     if (view_slice_labels(v).is_base) /* values between labels mean nothing */
-        snprintf(v->probe, sizeof v->probe, "%s%.80s at %.1f, %.1f, %.1f mm",
+        snprintf(v->input.probe, sizeof v->input.probe, "%s%.80s at %.1f, %.1f, %.1f mm",
                  there ? "" : "cross-hair: ", *label ? label : "no label", point[0], point[1],
                  point[2]);
     else
-        snprintf(v->probe, sizeof v->probe, "%s %.5g at %.1f, %.1f, %.1f mm%s%.80s",
+        snprintf(v->input.probe, sizeof v->input.probe, "%s %.5g at %.1f, %.1f, %.1f mm%s%.80s",
                  there ? "value" : "cross-hair:", value, point[0], point[1], point[2],
                  *label ? ": " : "", label);
 }
@@ -213,16 +215,19 @@ static void probe_part(view *v, const cwi_ui_input *in, int part)
 /* Returns the cursor that shows the effect of a press. */
 static int cursor_for(const view *v, const cwi_ui_input *in, int part)
 {
+    const view_drag *mouse = &v->widgets->mouse;
     enum { ARROW, CROSS_HAIR, HAND, LEFT_RIGHT };
-    const cwi_ui_rect *r = &v->parts[VIEW_SPACE].rect;
-    if (part > VIEW_SPACE || (part == VIEW_SPACE && v->tool && v->drag == NOTHING))
+    const cwi_ui_rect *r = &v->picture.parts[VIEW_SPACE].rect;
+    if (part > VIEW_SPACE ||
+        (part == VIEW_SPACE && v->measuring.tool && mouse->drag == NOTHING))
         return CROSS_HAIR;
-    if (part != VIEW_SPACE || !v->path)
+    if (part != VIEW_SPACE || !v->document.path)
         return ARROW;
-    if (v->drag == SPLIT || is_on_divider(v, in->x - r->x))
+    if (mouse->drag == SPLIT || is_on_divider(v, in->x - r->x))
         return LEFT_RIGHT;
-    return v->drag >= HANDLE || (has_handles(v) &&
-                                 handle_under(v, in->x - r->x, in->y - r->y) != CWI_HANDLE_NONE)
+    return mouse->drag >= HANDLE ||
+                   (has_handles(v) &&
+                    handle_under(v, in->x - r->x, in->y - r->y) != CWI_HANDLE_NONE)
                ? HAND
                : ARROW;
 }
@@ -231,18 +236,19 @@ static int cursor_for(const view *v, const cwi_ui_input *in, int part)
  * so that a scene can be turned between two points. */
 static void click_tool(view *v, const cwi_ui_input *in, int part)
 {
-    const cwi_ui_rect *r = &v->parts[part < 0 ? 0 : part].rect;
+    view_drag *mouse = &v->widgets->mouse;
+    const cwi_ui_rect *r = &v->picture.parts[part < 0 ? 0 : part].rect;
     const double x = in->x - r->x, y = in->y - r->y;
     double point[3];
     if (in->pressed[CWI_UI_LEFT]) {
         const bool ends = in->twice[CWI_UI_LEFT];
-        v->drag_from[0] = !ends && part >= 0 ? in->x : -2 * CLICK_PX; /* nowhere */
-        v->drag_from[1] = in->y;
-        if (ends && v->tool == VIEW_MEASURE_AREA && v->tool_count)
+        mouse->from[0] = !ends && part >= 0 ? in->x : -2 * CLICK_PX; /* nowhere */
+        mouse->from[1] = in->y;
+        if (ends && v->measuring.tool == VIEW_MEASURE_AREA && v->measuring.tool_count)
             view_ask(v, "measure-end");
     }
-    if (!in->lifted[CWI_UI_LEFT] || part < 0 || v->drag_part != part ||
-        hypot(in->x - v->drag_from[0], in->y - v->drag_from[1]) >
+    if (!in->lifted[CWI_UI_LEFT] || part < 0 || mouse->part != part ||
+        hypot(in->x - mouse->from[0], in->y - mouse->from[1]) >
             CLICK_PX * v->ui->scale(v->window))
         return;
     if (part == VIEW_SPACE)
@@ -253,6 +259,7 @@ static void click_tool(view *v, const cwi_ui_input *in, int part)
 
 void view_mouse(view *v, const cwi_ui_input *in)
 {
+    view_drag *mouse = &v->widgets->mouse;
     const int part = in->over_widget ? -1 : part_under(v, in->x, in->y);
     bool pressed = false, held = false;
     for (int b = 0; b < CWI_UI_BUTTONS; b++) {
@@ -260,22 +267,23 @@ void view_mouse(view *v, const cwi_ui_input *in)
         held |= in->down[b];
     }
     probe_part(v, in, part);
-    if (pressed && part >= 0 && v->path && v->drag == NOTHING) {
-        v->drag = begin_drag(v, in, part);
-        v->drag_part = part;
-        if (v->drag == CROSS)
+    if (pressed && part >= 0 && v->document.path && mouse->drag == NOTHING) {
+        mouse->drag = begin_drag(v, in, part);
+        mouse->part = part;
+        if (mouse->drag == CROSS)
             move_cross(v, in);
-    } else if (v->drag != NOTHING) {
+    } else if (mouse->drag != NOTHING) {
         go_on_dragging(v, in);
     }
-    if (v->tool && v->path)
+    if (v->measuring.tool && v->document.path)
         click_tool(v, in, part);
     if (!held)
-        v->drag = NOTHING;
-    if (in->twice[CWI_UI_LEFT] && part == VIEW_SPACE && v->path && !v->tool)
-        view_ask(v, "pick %.6g %.6g", in->x - v->parts[part].rect.x,
-                 in->y - v->parts[part].rect.y);
-    if (in->wheel != 0 && part >= 0 && v->path)
+        mouse->drag = NOTHING;
+    v->input.is_dragging = mouse->drag != NOTHING;
+    if (in->twice[CWI_UI_LEFT] && part == VIEW_SPACE && v->document.path && !v->measuring.tool)
+        view_ask(v, "pick %.6g %.6g", in->x - v->picture.parts[part].rect.x,
+                 in->y - v->picture.parts[part].rect.y);
+    if (in->wheel != 0 && part >= 0 && v->document.path)
         turn_wheel(v, in, part);
     v->ui->set_cursor(v->window, cursor_for(v, in, part));
 }
@@ -286,7 +294,7 @@ static void show_cross(view *v, int part)
 {
     static const cwi_ui_color colors[3] = {
         {0.95f, 0.4f, 0.35f, 0.8f}, {0.45f, 0.85f, 0.4f, 0.8f}, {0.4f, 0.65f, 1, 0.8f}};
-    const view_part *p = &v->parts[part];
+    const view_part *p = &v->picture.parts[part];
     const cwi_ui_rect *r = &p->rect;
     double pixel[2];
     if (p->level == VIEW_STALE ||
@@ -311,7 +319,7 @@ static void show_cross(view *v, int part)
 static void show_handles(view *v)
 {
     static const cwi_ui_color front = {1, 0.8f, 0.3f, 0.9f}, back = {1, 0.8f, 0.3f, 0.3f};
-    const cwi_ui_rect *r = &v->parts[VIEW_SPACE].rect;
+    const cwi_ui_rect *r = &v->picture.parts[VIEW_SPACE].rect;
     const cwi_handle_view look = looked_at(v);
     const cwi_world_box box = clip_box(v);
     cwi_handle handles[CWI_HANDLES];
@@ -336,7 +344,7 @@ static void show_handles(view *v)
 static void show_divider(view *v, const cwi_ui_input *in)
 {
     static const cwi_ui_color white = {1, 1, 1, 0.9f};
-    const cwi_ui_rect *r = &v->parts[VIEW_SPACE].rect;
+    const cwi_ui_rect *r = &v->picture.parts[VIEW_SPACE].rect;
     const double x = r->x + v->state.share * r->width;
     const bool over = is_in(r, in->x, in->y) && is_on_divider(v, in->x - r->x);
     v->ui->line(v->window, CWI_UI_BEHIND, x, r->y, x, r->y + r->height, white,
@@ -346,8 +354,8 @@ static void show_divider(view *v, const cwi_ui_input *in)
 void view_show_parts(view *v, const cwi_ui_input *in)
 {
     for (int p = 0; p < VIEW_PARTS; p++) {
-        const view_part *part = &v->parts[p];
-        if (!part->is_shown || !v->path)
+        const view_part *part = &v->picture.parts[p];
+        if (!part->is_shown || !v->document.path)
             continue;
         v->ui->show(v->window, p, &part->rect);
         if (p > VIEW_SPACE || (v->shown.cross && view_fits_mode(v, CW_MODE_SLICES)))
@@ -355,10 +363,10 @@ void view_show_parts(view *v, const cwi_ui_input *in)
     }
     if (has_handles(v))
         show_handles(v);
-    for (int p = 0; p < VIEW_PARTS && v->path; p++)
-        if (v->parts[p].is_shown)
+    for (int p = 0; p < VIEW_PARTS && v->document.path; p++)
+        if (v->picture.parts[p].is_shown)
             view_show_measures(v, p, in);
-    if (!v->path || !v->state.args.compare || !view_draws_volume(v))
+    if (!v->document.path || !v->state.args.compare || !view_draws_volume(v))
         return;
     if (!v->state.args.difference.given)
         show_divider(v, in);

@@ -24,19 +24,19 @@ static void show_bookmark(view *v, const view_bookmark *b)
 
 void view_show_views(view *v)
 {
-    double seconds = v->film_seconds;
-    if (!v->ui->section(v->window, "Views and film", v->bookmark_count > 0))
+    double seconds = v->film.seconds;
+    if (!v->ui->section(v->window, "Views and film", v->film.bookmark_count > 0))
         return;
     if (v->ui->button(v->window, "Keep this view"))
         view_ask(v, "bookmark");
     v->ui->tip(v->window, "Keep the camera, the isovalue, the cut and the opacity");
-    for (size_t n = 0; n < v->bookmark_count; n++)
-        show_bookmark(v, &v->bookmarks[n]);
-    if (v->bookmark_count < 2)
+    for (size_t n = 0; n < v->film.bookmark_count; n++)
+        show_bookmark(v, &v->film.bookmarks[n]);
+    if (v->film.bookmark_count < 2)
         return;
     if (v->ui->log_slider(v->window, "From view to view", &seconds, 0.1, 60, "%.1f s"))
         view_ask(v, "film-seconds %.3g", seconds);
-    if (v->ui->button(v->window, v->preview ? "Stop" : "Play"))
+    if (v->ui->button(v->window, v->film.preview ? "Stop" : "Play"))
         view_ask(v, "play-film");
     v->ui->same_line(v->window);
     if (v->ui->button(v->window, "Save pictures"))
@@ -53,27 +53,27 @@ void view_show_views(view *v)
 /* Draws one thumbnail a frame, so that the window stays quick. */
 static void draw_next(view *v)
 {
-    view_gallery *g = &v->gallery;
-    const char *name = cw_transfer_preset_name(g->drawn);
+    size_t *drawn = &v->picture.thumbs;
+    const char *name = cw_transfer_preset_name(*drawn);
     cw_image image = {0};
-    if (!name || g->drawn >= VIEW_THUMBS)
+    if (!name || *drawn >= VIEW_THUMBS)
         return;
     if (view_draw_preset(v, name, THUMB_WIDTH, THUMB_HEIGHT, &image, NULL) == CW_OK)
-        (void)!v->ui->keep(v->window, FIRST_SLOT + (int)g->drawn, &image, NULL);
+        (void)!v->ui->keep(v->window, FIRST_SLOT + (int)*drawn, &image, NULL);
     cw_image_free(&image);
-    g->drawn++;
+    ++*drawn;
 }
 
 void view_draw_gallery(view *v)
 {
-    if (v->shown.gallery && v->has_volume)
+    if (v->shown.gallery && v->document.has_volume)
         draw_next(v);
 }
 
 bool view_gallery_waits(const view *v)
 {
-    return v->shown.gallery && v->has_volume && v->gallery.drawn < VIEW_THUMBS &&
-           cw_transfer_preset_name(v->gallery.drawn);
+    return v->shown.gallery && v->document.has_volume && v->picture.thumbs < VIEW_THUMBS &&
+           cw_transfer_preset_name(v->picture.thumbs);
 }
 
 static void show_thumb(view *v, size_t n, const char *name)
@@ -86,7 +86,7 @@ static void show_thumb(view *v, size_t n, const char *name)
     double size[2];
     v->ui->area(v->window, name, THUMB_WIDTH * scale, THUMB_HEIGHT * scale, &a);
     v->ui->tip(v->window, cw_transfer_preset_about(n));
-    if (n < v->gallery.drawn)
+    if (n < v->picture.thumbs)
         v->ui->show(v->window, FIRST_SLOT + (int)n, &a.rect);
     v->ui->text_size(v->window, name, size);
     const cwi_ui_rect under = {a.rect.x, a.rect.y + a.rect.height - size[1] - 4 * scale,
@@ -104,8 +104,9 @@ void view_show_gallery(view *v)
 {
     const double scale = v->ui->scale(v->window);
     const double width = COLUMNS * (THUMB_WIDTH + 8) * scale + 40 * scale;
-    const cwi_ui_rect rect = {60 * scale, 60 * scale, width,
-                              fmin(560 * scale, fmax(160, (double)v->height - 100 * scale))};
+    const cwi_ui_rect rect = {
+        60 * scale, 60 * scale, width,
+        fmin(560 * scale, fmax(160, (double)v->layout.height - 100 * scale))};
     if (v->ui->panel_begin(v->window, "Presets", &rect, 0, &v->shown.gallery)) {
         const char *name;
         for (size_t n = 0; n < VIEW_THUMBS && (name = cw_transfer_preset_name(n)); n++) {
