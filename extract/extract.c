@@ -101,7 +101,7 @@ static cw_status write_mesh(cwi_plan *p, const cw_extract_desc *d, cw_mesh *mesh
                      .triangles = mesh->triangles};
     st = cwi_write_dense_layers(&w, d, err);
     if (st == CW_OK && w.sink.missing)
-        st = cwi_mend_normals(mesh, cwi_voxel_scale(&p->grid.volume), err);
+        st = cwi_repair_normals(mesh, cwi_voxel_scale(&p->grid.volume), err);
     if (st == CW_OK)
         memcpy(mesh->affine, p->grid.volume.affine, sizeof mesh->affine);
     if (st == CW_OK)

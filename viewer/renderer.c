@@ -84,12 +84,6 @@ void cw_renderer_forget(cw_renderer *r)
     cwi_shadow_volume_free(&r->shadows);
 }
 
-/* Returns true if GL has no hardware: Mesa's software renderers. */
-static bool is_software(const char *name)
-{
-    return strstr(name, "llvmpipe") || strstr(name, "softpipe") || strstr(name, "swrast");
-}
-
 /* Returns true if the CPU draws a frame's cells faster than GL: where GL runs on the CPU, too,
  * small triangles take it ten times as long. A mesh with settings of GL's alone stays there. */
 static bool is_faster_on_cpu(cw_renderer *r, const cwi_frame *frame)
@@ -99,7 +93,7 @@ static bool is_faster_on_cpu(cw_renderer *r, const cwi_frame *frame)
         r->has_no_gl = need_gl(r, &ignored) != CW_OK;
     if (!r->gl)
         return true;
-    return is_software(r->functions->name(r->gl)) &&
+    return cwi_gl_is_software(r->functions->name(r->gl)) &&
            (!frame->scene.mesh || !cwi_cpu_mesh_refusal(frame));
 }
 

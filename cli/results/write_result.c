@@ -4,8 +4,8 @@
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "cli/results/summary_line.h"
-#include "core/base/beside.h"
 #include "core/base/status.h"
+#include "core/base/task_pair.h"
 #include "core/geometry/box.h"
 
 #include <math.h>
@@ -165,7 +165,7 @@ typedef struct writing {
 
 /* A check on the calling thread beside the writing on another one. */
 typedef struct delivery {
-    cwi_beside beside;
+    cwi_task_pair pair;
     writing writing;
     cw_status checked;
     cw_error error; /* of the check */
@@ -237,7 +237,7 @@ static void check_own(void *context)
 static cw_status await_check(void *user, cw_error *err)
 {
     delivery *d = user;
-    cwi_beside_wait(&d->beside);
+    cwi_task_pair_wait(&d->pair);
     return d->checked == CW_OK ? CW_OK : cwi_fail(err, d->checked, "the check does not hold");
 }
 
@@ -269,7 +269,7 @@ static cw_status check_and_write(cli_report *report, const cli_delivery *how, co
 {
     delivery d = {.writing = plan_writing(report, how, l, made)};
     d.writing.desc.progress = (cw_progress){.report = is_wanted, .user = &d};
-    cwi_beside_run(&d.beside, check_own, write_aside, &d);
+    cwi_task_pair_run(&d.pair, check_own, write_aside, &d);
     if (d.checked == CW_ERR_NO_MEMORY)
         return check_then_write(report, how, l, made, err);
     if (d.checked == CW_OK && d.writing.status == CW_ERR_NO_MEMORY)

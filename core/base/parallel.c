@@ -75,9 +75,9 @@ static int choose_threads(size_t layers, size_t layer_size, int requested)
 /* Runs the layers. A thread takes a few neighbouring layers at a time: they share samples, and
  * short turns keep the threads busy to the end. When the calling thread has run out of layers, it
  * keeps polling the caller's progress, since the other threads may take long. */
-cw_status cwi_each_layer(size_t layers, size_t layer_size, int threads,
-                         const cw_progress *progress, const char *step,
-                         void (*work)(void *context, size_t k), void *context, cw_error *err)
+cw_status cwi_parallel_for(size_t layers, size_t layer_size, int threads,
+                           const cw_progress *progress, const char *step,
+                           void (*work)(void *context, size_t k), void *context, cw_error *err)
 {
     enum { TURNS = 16, MAX_TURN = 8 };
     static const double poll_s = 0.1;
@@ -110,12 +110,12 @@ cw_status cwi_each_layer(size_t layers, size_t layer_size, int threads,
                     "this process was forked while %s: the other threads are not in it", step);
 }
 
-void cwi_do_layers(size_t layers, size_t layer_size, int threads,
-                   void (*work)(void *context, size_t k), void *context)
+void cwi_parallel_for_all(size_t layers, size_t layer_size, int threads,
+                          void (*work)(void *context, size_t k), void *context)
 {
     static const cw_progress none = {0};
     const cw_status st =
-        cwi_each_layer(layers, layer_size, threads, &none, "", work, context, NULL);
+        cwi_parallel_for(layers, layer_size, threads, &none, "", work, context, NULL);
     assert(st == CW_OK); /* only a progress stops the loop */
     (void)st;
 }

@@ -1,4 +1,4 @@
-/* Parallel work on a volume, layer by layer. */
+/* Parallel loops over the layers of a volume, or over chunks of anything. */
 #ifndef CORE_BASE_PARALLEL_H
 #define CORE_BASE_PARALLEL_H
 
@@ -15,14 +15,14 @@ extern "C" {
  *             work that one thread does in a moment
  * threads     0 means the default number
  * Returns     CW_OK, or CW_ERR_CANCELLED: then some layers were left out */
-CW_NODISCARD cw_status cwi_each_layer(size_t layers, size_t layer_size, int threads,
-                                      const cw_progress *progress, const char *step,
-                                      void (*work)(void *context, size_t k), void *context,
-                                      cw_error *err);
+CW_NODISCARD cw_status cwi_parallel_for(size_t layers, size_t layer_size, int threads,
+                                        const cw_progress *progress, const char *step,
+                                        void (*work)(void *context, size_t k), void *context,
+                                        cw_error *err);
 
 /* Does the same without progress: all layers are done. */
-void cwi_do_layers(size_t layers, size_t layer_size, int threads,
-                   void (*work)(void *context, size_t k), void *context);
+void cwi_parallel_for_all(size_t layers, size_t layer_size, int threads,
+                          void (*work)(void *context, size_t k), void *context);
 
 /* Returns the number of the thread within the loop that it works on: below cwi_threads() of the
  * threads that the loop was given, and 0 on the calling thread. */

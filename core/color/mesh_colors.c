@@ -99,8 +99,8 @@ cw_status cw_mesh_sample(cw_mesh *mesh, const cw_volume *volume, const cw_sample
     if (view.cells)
         st = cwi_cell_sampler_build(&view, &s.cells, err);
     if (st == CW_OK)
-        st = cwi_each_layer((count + PART - 1) / PART, 64 * PART, d.threads, &d.progress,
-                            "sampling", sample_part, &s, err);
+        st = cwi_parallel_for((count + PART - 1) / PART, 64 * PART, d.threads, &d.progress,
+                              "sampling", sample_part, &s, err);
     cwi_cell_sampler_free(&s.cells);
     if (st == CW_OK) {
         found = fill_missing(s.scalars, count);

@@ -308,8 +308,8 @@ static cw_status run_steps(work *k, const cw_filter_desc *d, cw_error *err)
     k->progress = cwi_stop_progress(&stop);
     st = set_base(k, err);
     if (st == CW_OK)
-        st = cwi_each_layer(chunks, k->chunk * dim[0] * dim[1] * k->steps, (int)threads,
-                            &k->progress, "smoothing", filter_chunk, k, err);
+        st = cwi_parallel_for(chunks, k->chunk * dim[0] * dim[1] * k->steps, (int)threads,
+                              &k->progress, "smoothing", filter_chunk, k, err);
     if (st == CW_OK && stop.stopped)
         st = cwi_fail(err, CW_ERR_CANCELLED, "interrupted while smoothing");
     if (st == CW_OK && k->starved)

@@ -75,7 +75,8 @@ bool cwi_filter_has_gaps(const cw_volume *in, int threads)
 {
     gap_search search = {.in = in};
     if (in->has_nodata || in->type == CW_F32 || in->type == CW_F64)
-        cwi_do_layers(in->dim[2], in->dim[0] * in->dim[1], threads, search_slice, &search);
+        cwi_parallel_for_all(in->dim[2], in->dim[0] * in->dim[1], threads, search_slice,
+                             &search);
     return search.found;
 }
 

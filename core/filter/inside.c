@@ -62,8 +62,8 @@ cw_status cwi_find_inside(const cw_volume *in, const cw_inside *inside,
 {
     work k = {.in = in, .inside = inside, .found = to};
     cw_status st =
-        cwi_each_layer(in->dim[2], in->dim[0] * in->dim[1], desc->threads, &desc->progress,
-                       "finding the inside", find_in_slice, &k, err);
+        cwi_parallel_for(in->dim[2], in->dim[0] * in->dim[1], desc->threads, &desc->progress,
+                         "finding the inside", find_in_slice, &k, err);
     if (st == CW_OK && k.starved)
         st = cwi_fail_memory(err);
     return st;
@@ -143,8 +143,8 @@ cw_status cwi_change_inside(const cw_volume *in, const cw_inside *inside, const 
     cw_status st = cwi_filter_result(in, in->dim, desc, bytes, out, err);
     if (st != CW_OK)
         return st;
-    st = cwi_each_layer(in->dim[2], in->dim[0] * in->dim[1], desc->threads, &desc->progress,
-                        "changing the inside", change_slice, &k, err);
+    st = cwi_parallel_for(in->dim[2], in->dim[0] * in->dim[1], desc->threads, &desc->progress,
+                          "changing the inside", change_slice, &k, err);
     if (st == CW_OK && k.starved)
         st = cwi_fail_memory(err);
     if (st == CW_OK && k.stuck)

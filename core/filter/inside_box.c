@@ -90,8 +90,8 @@ cw_status cw_volume_inside_box(const cw_volume *volume, const cw_inside *inside,
         .in = &in, .inside = inside, .boxes = cwi_alloc_zeroed(in.dim[2], sizeof *k.boxes)};
     if (!k.boxes)
         return cwi_fail_memory(err);
-    st = cwi_each_layer(in.dim[2], in.dim[0] * in.dim[1], threads, &(cw_progress){0},
-                        "finding the inside", box_slice, &k, err);
+    st = cwi_parallel_for(in.dim[2], in.dim[0] * in.dim[1], threads, &(cw_progress){0},
+                          "finding the inside", box_slice, &k, err);
     if (st == CW_OK && k.starved)
         st = cwi_fail_memory(err);
     if (st == CW_OK)

@@ -69,8 +69,8 @@ static cw_status find_wanted(work *k, const cw_filter_desc *d, cw_error *err)
     if (st == CW_OK)
         st = cwi_find_inside(k->in, k->inside, d, k->wanted, err);
     if (st == CW_OK)
-        st = cwi_each_layer(dim[2], dim[0] * dim[1], d->threads, &d->progress, "masking",
-                            mask_slice, k, err);
+        st = cwi_parallel_for(dim[2], dim[0] * dim[1], d->threads, &d->progress, "masking",
+                              mask_slice, k, err);
     return st;
 }
 

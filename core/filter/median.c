@@ -113,8 +113,8 @@ cw_status cw_volume_median(const cw_volume *volume, size_t radius, const cw_filt
     if (radius > 1 || cwi_filter_has_gaps(&in, d->threads))
         return cwi_median_tiles(&in, radius, d, out, err);
     work k = {.in = &in, .out = out};
-    st = cwi_each_layer(in.dim[2], in.dim[0] * in.dim[1] * CUBE, d->threads, &d->progress,
-                        "smoothing", filter_slice, &k, err);
+    st = cwi_parallel_for(in.dim[2], in.dim[0] * in.dim[1] * CUBE, d->threads, &d->progress,
+                          "smoothing", filter_slice, &k, err);
     if (st == CW_OK && k.starved)
         st = cwi_fail_memory(err);
     if (st != CW_OK)

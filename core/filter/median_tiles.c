@@ -221,9 +221,9 @@ cw_status cwi_median_tiles(const cw_volume *in, size_t radius, const cw_filter_d
               .radius = radius,
               .tiles = {(in->dim[0] + WIDE - 1) / WIDE, (in->dim[1] + HIGH - 1) / HIGH,
                         (in->dim[2] + HIGH - 1) / HIGH}};
-    cw_status st =
-        cwi_each_layer(k.tiles[0] * k.tiles[1] * k.tiles[2], (size_t)COST * WIDE * HIGH * HIGH,
-                       desc->threads, &desc->progress, "smoothing", filter_tile, &k, err);
+    cw_status st = cwi_parallel_for(k.tiles[0] * k.tiles[1] * k.tiles[2],
+                                    (size_t)COST * WIDE * HIGH * HIGH, desc->threads,
+                                    &desc->progress, "smoothing", filter_tile, &k, err);
     if (st == CW_OK && k.starved)
         st = cwi_fail_memory(err);
     if (st != CW_OK)

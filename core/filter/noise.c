@@ -127,8 +127,8 @@ cw_status cw_volume_noise(const cw_volume *volume, int threads, double *sigma, c
     if (!k.counts)
         return cwi_fail_memory(err);
     k.has_gaps = cwi_filter_has_gaps(&in, threads);
-    st = cwi_each_layer(in.dim[2], 8 * in.dim[0] * in.dim[1], threads, &(cw_progress){0},
-                        "estimating noise", count_slice, &k, err);
+    st = cwi_parallel_for(in.dim[2], 8 * in.dim[0] * in.dim[1], threads, &(cw_progress){0},
+                          "estimating noise", count_slice, &k, err);
     if (st == CW_OK && k.starved)
         st = cwi_fail_memory(err);
     if (st == CW_OK)

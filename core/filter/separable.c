@@ -230,8 +230,8 @@ cw_status cwi_separable_filter(const cw_volume *in, const cwi_axis_weights w[3],
                          (threads < chunks ? threads : chunks);
     cw_status st = cwi_filter_result(in, dim, desc, bytes, out, err);
     if (st == CW_OK)
-        st = cwi_each_layer(chunks, CHUNK * dim[0] * dim[1], desc->threads, &desc->progress,
-                            step, filter_chunk, &k, err);
+        st = cwi_parallel_for(chunks, CHUNK * dim[0] * dim[1], desc->threads, &desc->progress,
+                              step, filter_chunk, &k, err);
     if (st == CW_OK && k.starved)
         st = cwi_fail_memory(err);
     if (st != CW_OK)

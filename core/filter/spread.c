@@ -128,11 +128,11 @@ cw_status cwi_spread_bytes(const uint8_t *from, uint8_t value, const size_t dim[
     work k = {.from = from, .to = to, .value = value, .dim = dim};
     for (int a = 0; a < 3; a++)
         k.weight[a] = radius[a] > 0 ? 1 / (radius[a] * radius[a]) : 0;
-    cw_status st = cwi_each_layer(dim[1], dim[0] * dim[2], desc->threads, &desc->progress,
-                                  "measuring distances", measure_columns, &k, err);
+    cw_status st = cwi_parallel_for(dim[1], dim[0] * dim[2], desc->threads, &desc->progress,
+                                    "measuring distances", measure_columns, &k, err);
     if (st == CW_OK)
-        st = cwi_each_layer(dim[2], 8 * dim[0] * dim[1], desc->threads, &desc->progress,
-                            "measuring distances", spread_slice, &k, err);
+        st = cwi_parallel_for(dim[2], 8 * dim[0] * dim[1], desc->threads, &desc->progress,
+                              "measuring distances", spread_slice, &k, err);
     if (st == CW_OK && k.starved)
         st = cwi_fail_memory(err);
     return st;

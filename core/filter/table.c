@@ -150,8 +150,8 @@ static void fill_slice(void *context, size_t z)
 static cw_status fill_slices(work *k, cw_error *err)
 {
     const size_t *dim = k->in->dim;
-    cw_status st = cwi_each_layer(dim[2], dim[0] * dim[1], k->desc->threads, &k->desc->progress,
-                                  "filling", fill_slice, k, err);
+    cw_status st = cwi_parallel_for(dim[2], dim[0] * dim[1], k->desc->threads,
+                                    &k->desc->progress, "filling", fill_slice, k, err);
     return st == CW_OK && k->starved ? cwi_fail_memory(err) : st;
 }
 
@@ -265,8 +265,8 @@ static cw_status make_result(work *k, double *removed_mm3, cw_error *err)
     size_t removed = 0;
     cw_status st = cwi_filter_result(k->in, dim, k->desc, 3 * count_voxels(k), k->out, err);
     if (st == CW_OK)
-        st = cwi_each_layer(dim[2], dim[0] * dim[1], k->desc->threads, &k->desc->progress,
-                            "removing the table", store_slice, k, err);
+        st = cwi_parallel_for(dim[2], dim[0] * dim[1], k->desc->threads, &k->desc->progress,
+                              "removing the table", store_slice, k, err);
     for (size_t z = 0; z < dim[2] && st == CW_OK; z++)
         removed += k->removed[z];
     if (st == CW_OK && removed_mm3)

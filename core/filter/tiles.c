@@ -180,8 +180,8 @@ cw_status cwi_filter_tiles(const cw_volume *in, const cwi_tile_filter *filter,
     if (st != CW_OK)
         return st;
     k.has_gaps = cwi_filter_has_gaps(in, desc->threads);
-    st = cwi_each_layer(count, TILE_VOXELS * filter->cost, desc->threads, &desc->progress,
-                        filter->step, filter_tile, &k, err);
+    st = cwi_parallel_for(count, TILE_VOXELS * filter->cost, desc->threads, &desc->progress,
+                          filter->step, filter_tile, &k, err);
     if (st == CW_OK && k.starved)
         st = cwi_fail_memory(err);
     if (st != CW_OK)

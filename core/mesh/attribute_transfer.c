@@ -90,11 +90,11 @@ cw_status cwi_carry(const cw_mesh *from, const cwi_sources *sources, int threads
         return st;
     st = cwi_closest_build(from, &c.tree, err);
     if (st == CW_OK && cwi_attributes_any(from, 1u << CW_ON_VERTICES))
-        st = cwi_each_layer((to->vertex_count + CHUNK - 1) / CHUNK, CHUNK * 64, threads,
-                            progress, "carrying", carry_vertices, &c, err);
+        st = cwi_parallel_for((to->vertex_count + CHUNK - 1) / CHUNK, CHUNK * 64, threads,
+                              progress, "carrying", carry_vertices, &c, err);
     if (st == CW_OK && cwi_attributes_any(from, 1u << CW_ON_CORNERS | 1u << CW_ON_TRIANGLES))
-        st = cwi_each_layer((to->triangle_count + CHUNK - 1) / CHUNK, CHUNK * 64, threads,
-                            progress, "carrying", carry_triangles, &c, err);
+        st = cwi_parallel_for((to->triangle_count + CHUNK - 1) / CHUNK, CHUNK * 64, threads,
+                              progress, "carrying", carry_triangles, &c, err);
     cwi_boxes_free(&c.tree);
     return st;
 }

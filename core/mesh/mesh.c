@@ -62,6 +62,16 @@ void cw_mesh_free(cw_mesh *mesh)
     memset(mesh, 0, sizeof *mesh);
 }
 
+void cw_label_surfaces_free(cw_label_surfaces *s)
+{
+    if (!s)
+        return;
+    cw_mesh_free(&s->mesh);
+    cwi_free(s->patches);
+    cwi_free(s->labels);
+    memset(s, 0, sizeof *s);
+}
+
 /* Whether all numbers are finite. There is no early exit, so that the compiler can look at
  * several at a time. */
 static bool are_finite(const float *numbers, size_t count)

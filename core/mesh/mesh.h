@@ -2,6 +2,7 @@
 #ifndef CORE_MESH_MESH_H
 #define CORE_MESH_MESH_H
 
+#include <cubewright/labels.h>
 #include <cubewright/mesh.h>
 
 #ifdef __cplusplus

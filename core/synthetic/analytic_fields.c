@@ -193,8 +193,8 @@ cw_status cw_field_sample(const cw_field_desc *desc, cw_volume *volume, cw_error
         volume->affine[a][3] = -0.5 * spacing * (double)(d.dim[a] - 1);
     }
     volume->known = CW_KNOWN_UNIT | CW_KNOWN_FRAME;
-    st = cwi_each_layer(d.dim[2], d.dim[0] * d.dim[1], d.threads, &d.progress, "sampling",
-                        sample_layer, &(sampling){&d, volume}, err);
+    st = cwi_parallel_for(d.dim[2], d.dim[0] * d.dim[1], d.threads, &d.progress, "sampling",
+                          sample_layer, &(sampling){&d, volume}, err);
     if (st != CW_OK)
         cw_volume_free(volume);
     return st;

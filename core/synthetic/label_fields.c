@@ -148,8 +148,8 @@ cw_status cw_label_field_sample(const cw_label_field_desc *desc, cw_volume *volu
         for (int a = 0; a < 3; a++)
             volume->affine[a][3] = -0.5 * (double)(d.dim[a] - 1);
         volume->known = CW_KNOWN_UNIT | CW_KNOWN_FRAME;
-        st = cwi_each_layer(d.dim[2], d.dim[0] * d.dim[1], d.threads, &d.progress, "sampling",
-                            sample_layer, &s, err);
+        st = cwi_parallel_for(d.dim[2], d.dim[0] * d.dim[1], d.threads, &d.progress, "sampling",
+                              sample_layer, &s, err);
     }
     cwi_free(s.points);
     if (st != CW_OK)

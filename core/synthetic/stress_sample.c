@@ -103,8 +103,8 @@ cw_status cw_hard_sample(const cw_hard_desc *desc, cw_volume *volume, cw_error *
         return st;
     const cwi_hard_row *row = cwi_hard_row_at(d.number);
     place_samples(&row->hard, volume);
-    st = cwi_each_layer(d.dim[2], d.dim[0] * d.dim[1], d.threads, &d.progress, "sampling",
-                        sample_layer, &(sampling){row, &d, volume}, err);
+    st = cwi_parallel_for(d.dim[2], d.dim[0] * d.dim[1], d.threads, &d.progress, "sampling",
+                          sample_layer, &(sampling){row, &d, volume}, err);
     if (st != CW_OK)
         cw_volume_free(volume);
     return st;

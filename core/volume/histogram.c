@@ -142,8 +142,8 @@ static void each_block(counting *c, int threads, void (*count)(void *context, si
     const size_t slice = c->v->dim[0] * c->v->dim[1];
     c->slices = BLOCK_SAMPLES / slice + 1;
     pthread_mutex_init(&c->lock, NULL);
-    cwi_do_layers((c->v->dim[2] + c->slices - 1) / c->slices, c->slices * slice, threads, count,
-                  c);
+    cwi_parallel_for_all((c->v->dim[2] + c->slices - 1) / c->slices, c->slices * slice, threads,
+                         count, c);
     pthread_mutex_destroy(&c->lock);
 }
 

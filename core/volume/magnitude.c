@@ -61,7 +61,7 @@ cw_status cw_volume_magnitude(const cw_volume *in, size_t step, int threads, cw_
     if (st != CW_OK)
         return st;
     magnitude_job job = {&v, step, cw_volume_voxels(&m)};
-    cwi_do_layers(v.dim[2], v.dim[0] * v.dim[1], threads, measure_slice, &job);
+    cwi_parallel_for_all(v.dim[2], v.dim[0] * v.dim[1], threads, measure_slice, &job);
     for (int a = 0; a < 3; a++) {
         m.coordinates[a] = v.coordinates[a];
         for (int c = 0; c < 4; c++)

@@ -36,7 +36,7 @@ void cwi_finish_normal(float n[3])
 
 /* Runs in one thread, in the order of triangles: sums do not depend on the number of
  * threads. */
-cw_status cwi_mend_normals(cw_mesh *mesh, double scale, cw_error *err)
+cw_status cwi_repair_normals(cw_mesh *mesh, double scale, cw_error *err)
 {
     size_t count = 0;
     for (size_t v = 0; v < mesh->vertex_count; v++) {
@@ -288,7 +288,7 @@ cw_status cwi_shading_finish(cwi_shading *s, cw_error *err)
 {
     cw_mesh shaded = *s->mesh; /* so that a failure leaves the mesh as it was */
     shaded.normals = s->normals;
-    cw_status st = cwi_mend_normals(&shaded, cwi_voxel_scale(&s->volume), err);
+    cw_status st = cwi_repair_normals(&shaded, cwi_voxel_scale(&s->volume), err);
     if (st == CW_OK) {
         s->normals = s->mesh->normals;
         s->mesh->normals = shaded.normals;
@@ -305,8 +305,8 @@ cw_status cw_extract_normals(const cw_volume *volume, const cw_normals_desc *des
     cwi_shading s = {0};
     cw_status st = cwi_shading_init(&s, volume, &d, mesh, err);
     if (st == CW_OK)
-        st = cwi_each_layer((mesh->vertex_count + CHUNK - 1) / CHUNK, CHUNK, d.threads,
-                            &d.progress, "shading", shade_chunk, &s, err);
+        st = cwi_parallel_for((mesh->vertex_count + CHUNK - 1) / CHUNK, CHUNK, d.threads,
+                              &d.progress, "shading", shade_chunk, &s, err);
     if (st == CW_OK)
         st = cwi_shading_finish(&s, err);
     cwi_shading_free(&s);

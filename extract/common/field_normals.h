@@ -14,7 +14,7 @@ void cwi_finish_normal(float normal[3]);
 
 /* Replaces normals that are zero by those of the triangles around their vertex, weighted by
  * area. */
-CW_NODISCARD cw_status cwi_mend_normals(cw_mesh *mesh, double scale, cw_error *err);
+CW_NODISCARD cw_status cwi_repair_normals(cw_mesh *mesh, double scale, cw_error *err);
 
 /* Normals in the making, from the field around the vertices of a mesh. The field is that of a
  * volume, of which some slices may be in memory. */

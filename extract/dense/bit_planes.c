@@ -269,8 +269,8 @@ static cw_status compare_samples(classification *c, cwi_bit_grid *g,
                                  const cw_extract_desc *desc, cw_error *err)
 {
     const cw_status st =
-        cwi_each_layer(g->bricks_z, CWI_BRICK * g->volume.dim[0] * g->volume.dim[1],
-                       desc->threads, &desc->progress, "classifying", classify_layer, c, err);
+        cwi_parallel_for(g->bricks_z, CWI_BRICK * g->volume.dim[0] * g->volume.dim[1],
+                         desc->threads, &desc->progress, "classifying", classify_layer, c, err);
     if (st == CW_OK && c->grow)
         cwi_octree_grow(c->grow);
     c->grow = NULL;

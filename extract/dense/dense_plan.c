@@ -48,8 +48,8 @@ static cw_status number_rows(cwi_plan *p, int threads, cw_error *err)
     if (v > UINT32_MAX)
         return cwi_fail(err, CW_ERR_LIMIT, "the surface has %zu vertices; a mesh holds %u", v,
                         UINT32_MAX);
-    return cwi_each_layer(g->rows_z, g->rows_y * g->words * 64, threads, &(cw_progress){0},
-                          "numbering", number_layer, p, err);
+    return cwi_parallel_for(g->rows_z, g->rows_y * g->words * 64, threads, &(cw_progress){0},
+                            "numbering", number_layer, p, err);
 }
 
 cw_status cwi_plan_count(cwi_plan *p, int threads, const cw_progress *progress, cw_error *err)
@@ -59,8 +59,8 @@ cw_status cwi_plan_count(cwi_plan *p, int threads, const cw_progress *progress, 
         p->rows = cwi_alloc_large(g->rows + 1, sizeof *p->rows);
     if (!p->rows)
         return cwi_fail_memory(err);
-    cw_status st = cwi_each_layer(g->rows_z, g->rows_y * g->words * 64, threads, progress,
-                                  "counting", count_layer, p, err);
+    cw_status st = cwi_parallel_for(g->rows_z, g->rows_y * g->words * 64, threads, progress,
+                                    "counting", count_layer, p, err);
     return st == CW_OK ? number_rows(p, threads, err) : st;
 }
 
@@ -145,7 +145,7 @@ cw_status cwi_write_dense_layers(cwi_writing *w, const cw_extract_desc *d, cw_er
     const size_t large = layers / LARGE_SHARE;
     w->large = large > 2 * threads ? large - 2 * threads : 0;
     const size_t rest = layers - w->large * LARGE_SHARE;
-    return cwi_each_layer(w->large + (rest + SMALL_SHARE - 1) / SMALL_SHARE,
-                          SMALL_SHARE * g->rows_y * g->words * 64, d->threads, &d->progress,
-                          "marching", write_share, w, err);
+    return cwi_parallel_for(w->large + (rest + SMALL_SHARE - 1) / SMALL_SHARE,
+                            SMALL_SHARE * g->rows_y * g->words * 64, d->threads, &d->progress,
+                            "marching", write_share, w, err);
 }

@@ -80,9 +80,9 @@ static cw_status compare_samples(cwi_cells *g, cw_error *err)
     g->sides = cwi_alloc_array(samples, sizeof *g->sides);
     if (!g->sides)
         return cwi_fail_memory(err);
-    cw_status st = cwi_each_layer((samples + SAMPLE_CHUNK - 1) / SAMPLE_CHUNK, SAMPLE_CHUNK,
-                                  g->desc->threads, &g->desc->progress, "classifying",
-                                  look_at_samples, &s, err);
+    cw_status st = cwi_parallel_for((samples + SAMPLE_CHUNK - 1) / SAMPLE_CHUNK, SAMPLE_CHUNK,
+                                    g->desc->threads, &g->desc->progress, "classifying",
+                                    look_at_samples, &s, err);
     pthread_mutex_destroy(&s.lock);
     if (st == CW_OK && s.bad != SIZE_MAX)
         st = cwi_fail(err, CW_ERR_ARGUMENT, "the point of sample %zu is not finite", s.bad);
@@ -221,8 +221,8 @@ static cw_status place_elements(gathering *w, cw_error *err)
     g->elements = cwi_alloc_large(g->count, sizeof *g->elements);
     if (!g->elements)
         return cwi_fail_memory(err);
-    return cwi_each_layer(g->chunks, CWI_CELL_CHUNK * 16, g->desc->threads, &g->desc->progress,
-                          "gathering", keep_chunk, w, err);
+    return cwi_parallel_for(g->chunks, CWI_CELL_CHUNK * 16, g->desc->threads,
+                            &g->desc->progress, "gathering", keep_chunk, w, err);
 }
 
 cw_status cwi_cells_gather(cwi_cells *g, cw_error *err)
@@ -236,8 +236,8 @@ cw_status cwi_cells_gather(cwi_cells *g, cw_error *err)
     w.elements = cwi_alloc_array(g->chunks, sizeof *w.elements);
     if (!w.elements)
         return cwi_fail_memory(err);
-    st = cwi_each_layer(g->chunks, CWI_CELL_CHUNK * 16, g->desc->threads, &g->desc->progress,
-                        "counting", count_chunk, &w, err);
+    st = cwi_parallel_for(g->chunks, CWI_CELL_CHUNK * 16, g->desc->threads, &g->desc->progress,
+                          "counting", count_chunk, &w, err);
     if (st == CW_OK && w.bad != SIZE_MAX)
         st = refuse_corners(g, w.bad, err);
     if (st == CW_OK)

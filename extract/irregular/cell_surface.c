@@ -172,8 +172,8 @@ static cw_status make_plan(cwi_cells *g, cw_error *err)
     if (st == CW_OK)
         st = cwi_cells_orient(g, err);
     if (st == CW_OK)
-        st = cwi_each_layer(cwi_chunks_of(g), CWI_CELL_CHUNK * 64, g->desc->threads,
-                            &g->desc->progress, "planning", plan_chunk, g, err);
+        st = cwi_parallel_for(cwi_chunks_of(g), CWI_CELL_CHUNK * 64, g->desc->threads,
+                              &g->desc->progress, "planning", plan_chunk, g, err);
     if (st == CW_OK)
         st = place_crossings(g, err);
     if (st != CW_OK)
@@ -325,8 +325,8 @@ static cw_status write_parts(writing *w, cw_error *err)
     const cwi_cells *g = w->g;
     cw_status st = w->mesh->normals ? cwi_cells_gradients(g, &w->gradients, err) : CW_OK;
     if (st == CW_OK)
-        st = cwi_each_layer(cwi_chunks_of(g), CWI_CELL_CHUNK * 64, g->desc->threads,
-                            &g->desc->progress, "marching", write_chunk, w, err);
+        st = cwi_parallel_for(cwi_chunks_of(g), CWI_CELL_CHUNK * 64, g->desc->threads,
+                              &g->desc->progress, "marching", write_chunk, w, err);
     cwi_gradients_free(&w->gradients);
     if (st != CW_OK)
         return st;
@@ -334,7 +334,7 @@ static cw_status write_parts(writing *w, cw_error *err)
         cwi_cells_write_caps(g, w->mesh);
     st = cwi_cells_part(g, w->mesh, err);
     return st == CW_OK && w->mesh->normals
-               ? cwi_mend_normals(
+               ? cwi_repair_normals(
                      w->mesh, cwi_voxel_scale(&g->volume) / (g->reach > 0 ? g->reach : 1), err)
                : st;
 }

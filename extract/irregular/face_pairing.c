@@ -225,8 +225,8 @@ static cw_status pair_faces(pairing *p, cw_error *err)
     const size_t chunks = cwi_chunks_of(g);
     const cw_progress *progress = &g->desc->progress;
     const int threads = g->desc->threads;
-    cw_status st = cwi_each_layer(chunks, CWI_CELL_CHUNK * 64, threads, progress, "pairing",
-                                  count_faces, p, err);
+    cw_status st = cwi_parallel_for(chunks, CWI_CELL_CHUNK * 64, threads, progress, "pairing",
+                                    count_faces, p, err);
     if (st != CW_OK)
         return st;
     const size_t count = place_buckets(p);
@@ -234,11 +234,11 @@ static cw_status pair_faces(pairing *p, cw_error *err)
     p->faces = cwi_alloc_large(count, sizeof *p->faces);
     if (!p->faces)
         return cwi_fail_memory(err);
-    st = cwi_each_layer(chunks, CWI_CELL_CHUNK * 64, threads, progress, "pairing", fill_buckets,
-                        p, err);
-    return st == CW_OK ? cwi_each_layer((g->volume.dim[0] + SAMPLE_CHUNK - 1) / SAMPLE_CHUNK,
-                                        SAMPLE_CHUNK * 64, threads, progress, "pairing",
-                                        pair_chunk, p, err)
+    st = cwi_parallel_for(chunks, CWI_CELL_CHUNK * 64, threads, progress, "pairing",
+                          fill_buckets, p, err);
+    return st == CW_OK ? cwi_parallel_for((g->volume.dim[0] + SAMPLE_CHUNK - 1) / SAMPLE_CHUNK,
+                                          SAMPLE_CHUNK * 64, threads, progress, "pairing",
+                                          pair_chunk, p, err)
                        : st;
 }
 
@@ -360,9 +360,9 @@ static void turn_sets(orientation *o)
 static cw_status orient_elements(orientation *o, cw_error *err)
 {
     cwi_cells *g = o->g;
-    cw_status st = cwi_each_layer((g->count + CWI_CELL_CHUNK - 1) / CWI_CELL_CHUNK,
-                                  CWI_CELL_CHUNK * 64, g->desc->threads, &g->desc->progress,
-                                  "orienting", measure_chunk, o, err);
+    cw_status st = cwi_parallel_for((g->count + CWI_CELL_CHUNK - 1) / CWI_CELL_CHUNK,
+                                    CWI_CELL_CHUNK * 64, g->desc->threads, &g->desc->progress,
+                                    "orienting", measure_chunk, o, err);
     if (st != CW_OK)
         return st;
     for (uint32_t n = 0; n < g->count; n++) {

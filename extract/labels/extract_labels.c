@@ -201,7 +201,7 @@ static cw_status run_chunks(cwi_label_job *j, size_t first, size_t count,
 {
     const cw_volume *v = j->layers.volume;
     j->first_chunk = first;
-    cw_status st = cwi_each_layer(
+    cw_status st = cwi_parallel_for(
         count, WORK * CWI_LABEL_CHUNK * v->dim[0] * v->dim[1], desc->threads, progress,
         j->is_writing ? "extracting" : "counting", cwi_label_chunk_work, j, err);
     if (st == CW_OK && j->is_starved)
@@ -273,8 +273,8 @@ static cw_status run_job(cwi_label_job *j, const cw_labels_desc *desc,
     if (st == CW_OK && j->originals)
         st = smooth(&j->net, j->originals, j->out, desc, j->layers.volume->dim, err);
     if (st == CW_OK)
-        st = cwi_each_layer((j->out->mesh.vertex_count + PLACES - 1) / PLACES, PLACES,
-                            desc->threads, &desc->progress, "placing", place_part, j, err);
+        st = cwi_parallel_for((j->out->mesh.vertex_count + PLACES - 1) / PLACES, PLACES,
+                              desc->threads, &desc->progress, "placing", place_part, j, err);
     if (st == CW_OK && j->originals)
         st = cwi_labels_untangle(j->out, &j->net, j->originals, place_vertex, j, desc, err);
     cwi_label_net_free(&j->net);
@@ -428,14 +428,4 @@ cw_status cw_extract_labels(const cw_volume *volume, const cw_labels_desc *desc,
     CWI_REQUIRE(err, volume, surfaces);
     CWI_REQUIRE_VERSION(err, desc, 0);
     return cwi_extract_labels_with(volume, desc, cwi_labels_smooth, surfaces, err);
-}
-
-void cw_label_surfaces_free(cw_label_surfaces *s)
-{
-    if (!s)
-        return;
-    cw_mesh_free(&s->mesh);
-    cwi_free(s->patches);
-    cwi_free(s->labels);
-    memset(s, 0, sizeof *s);
 }

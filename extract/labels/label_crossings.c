@@ -120,8 +120,8 @@ cw_status cwi_label_crossings_init(cwi_label_crossings *c, const cw_labels_desc 
     c->hits = cwi_alloc_zeroed(mesh->vertex_count, 1);
     if (!c->flags || !c->queue || !c->hits)
         return cwi_fail_memory(err);
-    cw_status st = cwi_each_layer(parts, 8 * PART, desc->threads, &desc->progress,
-                                  "looking for crossings", judge_part, c, err);
+    cw_status st = cwi_parallel_for(parts, 8 * PART, desc->threads, &desc->progress,
+                                    "looking for crossings", judge_part, c, err);
     for (size_t t = 0; t < mesh->triangle_count && st == CW_OK; t++)
         if (c->flags[t] & CWI_POLYGON_QUEUED)
             c->queue[c->queued++] = (uint32_t)t;
@@ -241,9 +241,9 @@ static void test_part(void *context, size_t n)
 cw_status cwi_label_crossings_find(cwi_label_crossings *c, const cw_labels_desc *desc,
                                    cw_error *err)
 {
-    return cwi_each_layer((c->queued + QUEUE_PART - 1) / QUEUE_PART, 64 * QUEUE_PART,
-                          desc->threads, &desc->progress, "looking for crossings", test_part, c,
-                          err);
+    return cwi_parallel_for((c->queued + QUEUE_PART - 1) / QUEUE_PART, 64 * QUEUE_PART,
+                            desc->threads, &desc->progress, "looking for crossings", test_part,
+                            c, err);
 }
 
 void cwi_label_crossings_renew(cwi_label_crossings *c)

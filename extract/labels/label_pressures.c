@@ -265,12 +265,12 @@ static void move_part(void *context, size_t n)
 static cw_status move_all(presser *s, const cw_labels_desc *desc, cw_error *err)
 {
     const size_t vertices = s->surfaces->mesh.vertex_count;
-    cw_status st = cwi_each_layer((s->curve_count + CURVE_PART - 1) / CURVE_PART,
-                                  32 * CURVE_PART, desc->threads, &desc->progress,
-                                  "keeping volumes", find_curve_part, s, err);
+    cw_status st = cwi_parallel_for((s->curve_count + CURVE_PART - 1) / CURVE_PART,
+                                    32 * CURVE_PART, desc->threads, &desc->progress,
+                                    "keeping volumes", find_curve_part, s, err);
     if (st == CW_OK)
-        st = cwi_each_layer((vertices + PART - 1) / PART, PART, desc->threads, &desc->progress,
-                            "keeping volumes", move_part, s, err);
+        st = cwi_parallel_for((vertices + PART - 1) / PART, PART, desc->threads,
+                              &desc->progress, "keeping volumes", move_part, s, err);
     for (size_t i = 0; i < s->curve_count && st == CW_OK; i++)
         move_vertex(s, s->curve[i], s->moves[i]);
     return st;
@@ -356,8 +356,8 @@ static cw_status press_all(presser *s, const cw_labels_desc *desc, cw_error *err
     cw_status st = CW_OK;
     for (int round = 0; st == CW_OK; round++) {
         s->is_first = round == 0;
-        st = cwi_each_layer(f->patch_count, 8 * triangles, desc->threads, &desc->progress,
-                            "keeping volumes", measure_patch, s, err);
+        st = cwi_parallel_for(f->patch_count, 8 * triangles, desc->threads, &desc->progress,
+                              "keeping volumes", measure_patch, s, err);
         if (st != CW_OK || find_missing(s) || round == ROUNDS)
             break;
         if (s->is_first)

@@ -96,8 +96,8 @@ static void average_part(void *context, size_t n)
 
 static cw_status run_parts(averager *s, void (*work)(void *, size_t), cw_error *err)
 {
-    return cwi_each_layer((s->count + PART - 1) / PART, 8 * PART, s->desc->threads,
-                          &s->desc->progress, "smoothing", work, s, err);
+    return cwi_parallel_for((s->count + PART - 1) / PART, 8 * PART, s->desc->threads,
+                            &s->desc->progress, "smoothing", work, s, err);
 }
 
 /* Averages in rounds; after an even number places are where they were. */

@@ -77,8 +77,8 @@ cw_status cwi_adaptive_measure(cwi_adaptive *a, cw_error *err)
     if (!values || !places)
         return cwi_fail_memory(err);
     const cw_status st =
-        cwi_each_layer((count + CHUNK - 1) / CHUNK, CHUNK * CHUNK, a->desc->threads,
-                       &a->desc->progress, "finer samples", measure_chunk, a, err);
+        cwi_parallel_for((count + CHUNK - 1) / CHUNK, CHUNK * CHUNK, a->desc->threads,
+                         &a->desc->progress, "finer samples", measure_chunk, a, err);
     a->measured = a->points.count;
     return st;
 }

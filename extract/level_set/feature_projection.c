@@ -237,8 +237,8 @@ static cw_status settle_vertices(motion *m, int threads, const cw_progress *prog
     if (st == CW_OK)
         ask_moved(&s);
     while (st == CW_OK && s.asked_count) {
-        st = cwi_each_layer((s.asked_count + CHUNK - 1) / CHUNK, 64 * CHUNK, threads, progress,
-                            "edges", look_at_chunk, &s, err);
+        st = cwi_parallel_for((s.asked_count + CHUNK - 1) / CHUNK, 64 * CHUNK, threads,
+                              progress, "edges", look_at_chunk, &s, err);
         hold_back_all(&s);
         ask_moved(&s);
     }
@@ -337,8 +337,8 @@ static cw_status pull_vertices(motion *m, bool by_means, int threads,
     m->by_means = by_means;
     m->far = by_means ? tangled : near;
     find_means(m);
-    cw_status st = cwi_each_layer((count + CHUNK - 1) / CHUNK, 64 * CHUNK, threads, progress,
-                                  "edges", find_ways, m, err);
+    cw_status st = cwi_parallel_for((count + CHUNK - 1) / CHUNK, 64 * CHUNK, threads, progress,
+                                    "edges", find_ways, m, err);
     forget_movers(m);
     for (uint32_t v = 0; v < count && st == CW_OK; v++)
         if (m->ways[v][0] != 0 || m->ways[v][1] != 0 || m->ways[v][2] != 0)

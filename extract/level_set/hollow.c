@@ -224,7 +224,7 @@ static void carve_all(hollowing *h)
 {
     cw_sparse *sparse = h->volume.owned_grid;
     sparse->tile_count = 0;
-    cwi_do_layers(sparse->leaf_count, CWI_LEAF_VOXELS, h->desc->threads, carve_leaf, h);
+    cwi_parallel_for_all(sparse->leaf_count, CWI_LEAF_VOXELS, h->desc->threads, carve_leaf, h);
 }
 
 static cw_status place_rays(hollowing *h, cw_error *err)

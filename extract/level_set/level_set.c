@@ -151,7 +151,7 @@ static cw_status take_leaves(build *b, cw_error *err)
     b->voxels = cwi_alloc_large(b->leaf_count, CWI_LEAF_VOXELS * sizeof *b->voxels);
     if (!b->leaves || !b->voxels)
         return cwi_fail_memory(err);
-    cwi_do_layers(b->leaf_count, CWI_LEAF_VOXELS, b->desc->threads, take_leaf, b);
+    cwi_parallel_for_all(b->leaf_count, CWI_LEAF_VOXELS, b->desc->threads, take_leaf, b);
     b->functions->close(b->distances);
     b->distances = NULL;
     return CW_OK;

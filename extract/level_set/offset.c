@@ -242,7 +242,7 @@ static cw_status mend_normals(cw_mesh *mesh, cw_error *err)
 {
     float *gradients = mesh->normals;
     mesh->normals = cwi_alloc_zeroed(3 * mesh->vertex_count, sizeof *mesh->normals);
-    cw_status st = mesh->normals ? cwi_mend_normals(mesh, 1, err) : cwi_fail_memory(err);
+    cw_status st = mesh->normals ? cwi_repair_normals(mesh, 1, err) : cwi_fail_memory(err);
     for (size_t v = 0; v < mesh->vertex_count && st == CW_OK; v++) {
         const float *g = gradients + 3 * v;
         float *n = mesh->normals + 3 * v;

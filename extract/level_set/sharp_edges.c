@@ -611,8 +611,8 @@ static cw_status find_cuts(sharpener *s, const cw_offset_desc *d, cw_error *err)
     find_sides(s);
     cw_status st = cwi_closest_build(s->from, &s->tree, err);
     for (int n = 0; n < 3 && st == CW_OK; n++)
-        st = cwi_each_layer(n < 2 ? vertices : triangles, 64 * CHUNK, d->threads, &d->progress,
-                            "sharpening", steps[n], s, err);
+        st = cwi_parallel_for(n < 2 ? vertices : triangles, 64 * CHUNK, d->threads,
+                              &d->progress, "sharpening", steps[n], s, err);
     if (st != CW_OK)
         return st;
     settle_ends(s);

@@ -459,9 +459,9 @@ cw_status cwi_snap(const cwi_bit_grid *grid, const cwi_row *rows, const cw_extra
     for (size_t n = 0; n < sizeof steps / sizeof *steps && st == CW_OK; n++) {
         const snap_step *step = &steps[n];
         run.colour = step->from;
-        st = cwi_each_layer((grid->rows_z - step->from + step->every - 1) / step->every,
-                            grid->rows_y * grid->words * 64, desc->threads, &desc->progress,
-                            step->name, step->work, &run, err);
+        st = cwi_parallel_for((grid->rows_z - step->from + step->every - 1) / step->every,
+                              grid->rows_y * grid->words * 64, desc->threads, &desc->progress,
+                              step->name, step->work, &run, err);
     }
     if (st == CW_OK) {
         sum_layers(&run, counts);

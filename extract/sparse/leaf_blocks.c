@@ -376,9 +376,9 @@ cw_status cwi_blocks_init(cwi_leaf_blocks *b, const cwi_engine *engine,
     if (st != CW_OK)
         return st;
     b->sides = cwi_alloc_array(count, 1);
-    st = b->sides ? cwi_each_layer((count + TOGETHER - 1) / TOGETHER,
-                                   TOGETHER * CWI_LEAF_VOXELS, desc->threads, &desc->progress,
-                                   "classifying", find_sides, &s, err)
+    st = b->sides ? cwi_parallel_for((count + TOGETHER - 1) / TOGETHER,
+                                     TOGETHER * CWI_LEAF_VOXELS, desc->threads, &desc->progress,
+                                     "classifying", find_sides, &s, err)
                   : cwi_fail_memory(err);
     if (st == CW_OK)
         st = visit_all(&s, 0, note_sides, err);

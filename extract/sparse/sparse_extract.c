@@ -413,8 +413,8 @@ static cw_status each_block(sparse_plan *p, const char *step,
                             cw_error *err)
 {
     turn t = {p, work};
-    cw_status st = cwi_each_layer(p->blocks.count, BLOCK, p->desc->threads, &p->desc->progress,
-                                  step, do_block, &t, err);
+    cw_status st = cwi_parallel_for(p->blocks.count, BLOCK, p->desc->threads,
+                                    &p->desc->progress, step, do_block, &t, err);
     for (int n = 0; n < p->threads && st == CW_OK; n++)
         if (p->workers[n].status != CW_OK) {
             st = p->workers[n].status;
@@ -461,7 +461,7 @@ static cw_status join_blocks(sparse_plan *p, const cw_extract_counts *c, cw_mesh
     st = each_block(p, "joining", join_block, err);
     for (int n = 0; n < p->threads; n++)
         missing = missing || p->workers[n].missing;
-    return st == CW_OK && missing ? cwi_mend_normals(mesh, cwi_voxel_scale(v), err) : st;
+    return st == CW_OK && missing ? cwi_repair_normals(mesh, cwi_voxel_scale(v), err) : st;
 }
 
 /* Makes the pieces of all blocks, without joining them. */

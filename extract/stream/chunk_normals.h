@@ -5,7 +5,7 @@
 #include "extract/stream/write_chunks.h"
 
 /* Replaces normals of a chunk that are zero by those of the triangles around their vertex, to
- * the bit as cwi_mend_normals() does for the whole surface. Triangles of other chunks are made
+ * the bit as cwi_repair_normals() does for the whole surface. Triangles of other chunks are made
  * once more for it. The chunk lies in layers begin to end - 1. */
 CW_NODISCARD cw_status cwi_chunk_mend_normals(const cwi_chunk_writer *c, cw_mesh_chunk *chunk,
                                               size_t begin, size_t end, cw_error *err);

@@ -189,8 +189,9 @@ static cw_status hold_slices(cwi_slice_window *w, size_t first, size_t end, cw_e
     clear_rows(g, g->has, 0, 0, g->rows_y);
     clear_rows(g, g->has, g->rows_z - 1, 0, g->rows_y);
     slab_work work = {.window = w, .begin = 1 + kept};
-    return cwi_each_layer(w->count - kept, g->volume.dim[0] * g->volume.dim[1], w->desc.threads,
-                          &(cw_progress){0}, "classifying", classify_slice, &work, err);
+    return cwi_parallel_for(w->count - kept, g->volume.dim[0] * g->volume.dim[1],
+                            w->desc.threads, &(cw_progress){0}, "classifying", classify_slice,
+                            &work, err);
 }
 
 static bool has_gap(const cwi_slice_window *w)
@@ -299,8 +300,8 @@ static cw_status count_layers(cwi_slice_window *w, size_t last, cw_error *err)
     const cwi_bit_grid *g = &w->plan.grid;
     const size_t count = last + 1 - w->counted;
     slab_work work = {.window = w, .begin = w->counted - w->first};
-    cw_status st = cwi_each_layer(count, g->rows_y * g->words * 64, w->desc.threads,
-                                  &(cw_progress){0}, "counting", count_layer, &work, err);
+    cw_status st = cwi_parallel_for(count, g->rows_y * g->words * 64, w->desc.threads,
+                                    &(cw_progress){0}, "counting", count_layer, &work, err);
     for (size_t n = 0; n < count && st == CW_OK; n++) {
         number_layer(w, work.begin + n);
         if (w->vertices > UINT32_MAX)

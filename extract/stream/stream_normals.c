@@ -114,9 +114,9 @@ static cw_status shade_slices(normal_walk *w, size_t begin, size_t end, int thre
     w->begin = w->before[begin];
     w->end = w->before[end];
     return st == CW_OK
-               ? cwi_each_layer((w->end - w->begin + CHUNK_VERTICES - 1) / CHUNK_VERTICES,
-                                CHUNK_VERTICES, threads, &(cw_progress){0}, "shading",
-                                shade_chunk, w, err)
+               ? cwi_parallel_for((w->end - w->begin + CHUNK_VERTICES - 1) / CHUNK_VERTICES,
+                                  CHUNK_VERTICES, threads, &(cw_progress){0}, "shading",
+                                  shade_chunk, w, err)
                : st;
 }
 

@@ -116,8 +116,8 @@ static cw_status write_layers(slab_writer *s, size_t begin, size_t end, cw_error
     s->from = begin;
     if (!cwi_is_rectilinear(&w->whole))
         s->place.centre[2] = centre - (double)w->first;
-    st = cwi_each_layer(end - begin + has_seam, rows * w->plan.grid.words * 64, w->desc.threads,
-                        &(cw_progress){0}, "marching", write_layer, s, err);
+    st = cwi_parallel_for(end - begin + has_seam, rows * w->plan.grid.words * 64,
+                          w->desc.threads, &(cw_progress){0}, "marching", write_layer, s, err);
     s->place.centre[2] = centre;
     if (begin == s->begin && begin)
         cwi_mark_seam(cwi_slice_window_layer(w, begin), rows, s->vertices, 1, s->seam);

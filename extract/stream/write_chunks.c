@@ -113,9 +113,9 @@ static cw_status shade_chunk(cwi_chunk_writer *c, cw_mesh_chunk *chunk, cw_error
     c->shading.mesh = &chunk->mesh;
     c->shading.normals = c->normals;
     c->shading.first = c->window->first;
-    return cwi_each_layer((vertices + SHADED_VERTICES - 1) / SHADED_VERTICES, SHADED_VERTICES,
-                          c->window->desc.threads, &(cw_progress){0}, "shading", shade_vertices,
-                          &c->shading, err);
+    return cwi_parallel_for((vertices + SHADED_VERTICES - 1) / SHADED_VERTICES, SHADED_VERTICES,
+                            c->window->desc.threads, &(cw_progress){0}, "shading",
+                            shade_vertices, &c->shading, err);
 }
 
 /* Returns the part of the surface between two places of one layer, or between two layers. */
@@ -178,8 +178,8 @@ static cw_status write_chunk(cwi_chunk_writer *c, place from, place to, cw_error
         at = end;
     }
     const size_t samples = bytes_between(c, from, to);
-    st = cwi_each_layer(work.count, samples, w->desc.threads, &(cw_progress){0}, "marching",
-                        write_span, &work, err);
+    st = cwi_parallel_for(work.count, samples, w->desc.threads, &(cw_progress){0}, "marching",
+                          write_span, &work, err);
     chunk.mesh.triangles = c->corners;
     chunk.mesh.vertex_count = vertices;
     chunk.mesh.triangle_count = triangles;

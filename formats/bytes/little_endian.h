@@ -1,10 +1,15 @@
-/* Numbers as little-endian bytes on any machine; each function returns the end of the bytes it
- * wrote. */
+/* Numbers as little-endian bytes on any machine; each cwi_put function returns the end of
+ * the bytes it wrote. */
 #ifndef FORMATS_BYTES_LITTLE_ENDIAN_H
 #define FORMATS_BYTES_LITTLE_ENDIAN_H
 
 #include <stdint.h>
 #include <string.h>
+
+static inline uint32_t cwi_get_u32(const unsigned char *from)
+{
+    return from[0] | (uint32_t)from[1] << 8 | (uint32_t)from[2] << 16 | (uint32_t)from[3] << 24;
+}
 
 static inline unsigned char *cwi_put_u16(unsigned char *to, uint16_t value)
 {

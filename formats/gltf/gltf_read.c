@@ -4,6 +4,7 @@
 #include "core/base/module.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "formats/bytes/little_endian.h"
 #include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/gltf_wrap.h"
 
@@ -27,11 +28,6 @@ void cwi_gltf_scene_free(cwi_gltf_scene *scene)
 }
 
 /* --- the file ---------------------------------------------------------------------------- */
-
-static uint32_t u32_at(const unsigned char *b)
-{
-    return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
-}
 
 bool cwi_glb_sniff(const unsigned char *head, size_t size, uint64_t file_size)
 {
@@ -57,7 +53,7 @@ static cw_status find_chunk(const cwi_input *in, uint64_t at, uint64_t end, cons
     cw_status st = cwi_input_read_at(in->fd, at, head, sizeof head, &got, err);
     if (st != CW_OK)
         return st;
-    *size = got == sizeof head ? u32_at(head) : 0;
+    *size = got == sizeof head ? cwi_get_u32(head) : 0;
     if (got < sizeof head || memcmp(head + 4, kind, 4) != 0 || *size > end - at - CHUNK_HEADER)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "the chunk at byte %llu is not a whole one of kind %.4s",
@@ -77,10 +73,10 @@ static cw_status find_chunks(cwi_gltf_reader *r, uint64_t *json, uint64_t *json_
         return st;
     if (got < sizeof head || memcmp(head, "glTF", 4) != 0)
         return cwi_fail(err, CW_ERR_FORMAT, "the file does not begin with 'glTF'");
-    const uint64_t end = u32_at(head + 8);
-    if (u32_at(head + 4) != 2)
+    const uint64_t end = cwi_get_u32(head + 8);
+    if (cwi_get_u32(head + 4) != 2)
         return cwi_fail(err, CW_ERR_FORMAT, "it is of version %u; version 2 is read",
-                        u32_at(head + 4));
+                        cwi_get_u32(head + 4));
     if (end > in->size || end < GLB_HEADER + CHUNK_HEADER)
         return cwi_fail(err, CW_ERR_FORMAT, "the header says %llu bytes; the file has %llu",
                         (unsigned long long)end, (unsigned long long)in->size);

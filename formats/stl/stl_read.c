@@ -4,6 +4,7 @@
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "core/mesh/weld.h"
+#include "formats/bytes/little_endian.h"
 #include "formats/mesh/mesh_axes.h"
 #include "formats/mesh/mesh_reader.h"
 
@@ -14,17 +15,12 @@
 
 enum { HEADER = 80, START = 84, FACET = 50, BATCH = 64 };
 
-static uint32_t u32_at(const unsigned char *b)
-{
-    return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
-}
-
 /* Returns true if the size is that of a binary file, since binary files may also begin with
  * "solid". Some are longer than their facets; they are accepted later, if they cannot be
  * text. */
 static bool is_binary(const unsigned char *head, size_t size, uint64_t file_size)
 {
-    return size >= START && file_size == START + (uint64_t)FACET * u32_at(head + HEADER);
+    return size >= START && file_size == START + (uint64_t)FACET * cwi_get_u32(head + HEADER);
 }
 
 static bool is_text(const unsigned char *head, size_t size)
@@ -118,7 +114,7 @@ static cw_status read_binary_facets(facets *f, cwi_scan *s, size_t count, cw_err
         const unsigned char *b;
         st = cwi_scan_take(s, FACET, "a facet", &b, err);
         for (size_t i = 0; i < 9 && st == CW_OK; i++) {
-            const uint32_t bits = u32_at(b + 12 + 4 * i);
+            const uint32_t bits = cwi_get_u32(b + 12 + 4 * i);
             memcpy(&corners[9 * t + i], &bits, sizeof bits);
         }
     }
@@ -133,7 +129,7 @@ static cw_status read_binary(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file
     if (st != CW_OK)
         return st;
     char text[HEADER + 1] = "";
-    const uint32_t count = u32_at(head + HEADER);
+    const uint32_t count = cwi_get_u32(head + HEADER);
     const uint64_t held = cwi_scan_left(s) / FACET;
     memcpy(text, head, HEADER);
     take_words(text, mesh, said);

@@ -314,8 +314,8 @@ cw_status cwi_zarr_read_box(cwi_zarr *z, const cwi_zarr_box *box, void *to,
         return cwi_fail_memory(err);
     z->call++;
     drop_rows(z, b.first_chunk[CWI_AXIS_Z]);
-    st = cwi_each_layer(chunks, z->array.chunk_bytes / z->array.stored_bytes, z->threads,
-                        progress ? progress : &silent, "reading", read_nth_chunk, &b, err);
+    st = cwi_parallel_for(chunks, z->array.chunk_bytes / z->array.stored_bytes, z->threads,
+                          progress ? progress : &silent, "reading", read_nth_chunk, &b, err);
     for (int n = 0; n < threads; n++)
         cwi_free(b.scratch[n]);
     cwi_free(b.scratch);

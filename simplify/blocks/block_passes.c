@@ -437,8 +437,8 @@ static void keep_block(void *context, size_t n)
 static cw_status each_block(crew *c, void (*work)(void *context, size_t n), cw_error *err)
 {
     const cwi_passes *p = c->passes;
-    cw_status st = cwi_each_layer(c->count, CWI_BLOCK, p->desc->threads, &p->poll,
-                                  "simplifying", work, c, err);
+    cw_status st = cwi_parallel_for(c->count, CWI_BLOCK, p->desc->threads, &p->poll,
+                                    "simplifying", work, c, err);
     for (size_t n = 0; n < c->count && st == CW_OK; n++)
         if (c->statuses[n] != CW_OK)
             return cwi_fail(err, c->statuses[n], "%s", c->errors[n].message);

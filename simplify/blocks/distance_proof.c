@@ -185,8 +185,9 @@ static cw_status find_beyond(const cwi_passes *p, const cw_mesh *mesh, const cwi
     cw_status st = cwi_passes_limits(p, mesh, &limits, err);
     const walks w = {mesh, fans, begin, p->error, limits, beyond};
     if (st == CW_OK)
-        st = cwi_each_layer((mesh->triangle_count + CHUNK - 1) / CHUNK, CHUNK * CHUNK, threads,
-                            &p->poll, "keeping the error", walk_chunk, (void *)&w, err);
+        st =
+            cwi_parallel_for((mesh->triangle_count + CHUNK - 1) / CHUNK, CHUNK * CHUNK, threads,
+                             &p->poll, "keeping the error", walk_chunk, (void *)&w, err);
     if (st == CW_OK)
         st = search_unproven(p, &w, reference, threads, err);
     cwi_free(limits);

@@ -93,14 +93,6 @@ static size_t find_target(const cw_label_simplify_desc *d, size_t triangles)
 
 /* ---- results ---------------------------------------------------------------------------- */
 
-static void free_surfaces(cw_label_surfaces *s)
-{
-    cw_mesh_free(&s->mesh);
-    cwi_free(s->patches);
-    cwi_free(s->labels);
-    memset(s, 0, sizeof *s);
-}
-
 /* Numbers the vertices that are left, and returns how many there are. */
 static size_t number_vertices(const cwi_complex *c, uint32_t *numbers)
 {
@@ -157,7 +149,7 @@ static cw_status make_result(const cwi_complex *c, double scale, const cw_label_
     }
     cwi_free(numbers);
     if (st != CW_OK)
-        free_surfaces(out);
+        cw_label_surfaces_free(out);
     return st;
 }
 
@@ -295,7 +287,7 @@ static cw_status run_pass(job *j, cw_label_surfaces *out, bool *is_kept, cw_erro
     if (st == CW_OK && has_error) {
         st = judge_result(j, out, is_kept, err);
         if (st != CW_OK || !*is_kept)
-            free_surfaces(out);
+            cw_label_surfaces_free(out);
     }
     cwi_complex_free(&j->complex);
     return st;

@@ -336,8 +336,8 @@ cw_status cwi_measure_walls(const cw_mesh *mesh, const cw_print_desc *limits, fl
         st = cwi_closest_build(mesh, &f.tree, err);
     if (st == CW_OK) {
         prepare_points(&f);
-        st = cwi_each_layer(f.parts, 1 << 16, limits->threads, &limits->progress, "walls",
-                            measure_part, &f, err);
+        st = cwi_parallel_for(f.parts, 1 << 16, limits->threads, &limits->progress, "walls",
+                              measure_part, &f, err);
     }
     if (st == CW_OK) {
         add_parts(f.walls, f.parts, walls);

@@ -352,8 +352,8 @@ static cw_status find_bound(search *s, const cw_mesh_distance_desc *d, cw_distan
     if (!s->extremes)
         st = cwi_fail_memory(err);
     if (st == CW_OK)
-        st = cwi_each_layer(chunks, CHUNK * CHUNK, d->threads, &d->progress, "largest distance",
-                            search_chunk, s, err);
+        st = cwi_parallel_for(chunks, CHUNK * CHUNK, d->threads, &d->progress,
+                              "largest distance", search_chunk, s, err);
     if (st == CW_OK)
         join_results(s, chunks, out);
     cwi_free(s->extremes);
@@ -540,11 +540,11 @@ cw_status cwi_mesh_within(const cw_mesh *mesh, const cw_mesh *mesh_reference, do
     cw_status st =
         slots ? make_reference(&r, mesh_reference, mesh->origin, err) : cwi_fail_memory(err);
     if (st == CW_OK)
-        st = cwi_each_layer((mesh->vertex_count + CHUNK - 1) / CHUNK, CHUNK * CHUNK, threads,
-                            progress, "keeping the error", find_chunk, &j, err);
+        st = cwi_parallel_for((mesh->vertex_count + CHUNK - 1) / CHUNK, CHUNK * CHUNK, threads,
+                              progress, "keeping the error", find_chunk, &j, err);
     if (st == CW_OK)
-        st = cwi_each_layer((mesh->triangle_count + CHUNK - 1) / CHUNK, CHUNK * CHUNK, threads,
-                            progress, "keeping the error", judge_chunk, &j, err);
+        st = cwi_parallel_for((mesh->triangle_count + CHUNK - 1) / CHUNK, CHUNK * CHUNK,
+                              threads, progress, "keeping the error", judge_chunk, &j, err);
     cwi_boxes_free(&r.tree);
     cwi_free(r.facets);
     cwi_free(slots);

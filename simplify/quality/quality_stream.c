@@ -108,8 +108,8 @@ static bool add_shapes(cw_quality_stream *s, bool last)
     work.sums = cwi_alloc_array(sums, sizeof *work.sums);
     if (!work.sums)
         return false;
-    const bool ok = cwi_each_layer(sums, CWI_SHAPE_CHUNK * 32, s->desc.threads, &silent, NULL,
-                                   sum_shapes, &work, NULL) == CW_OK;
+    const bool ok = cwi_parallel_for(sums, CWI_SHAPE_CHUNK * 32, s->desc.threads, &silent, NULL,
+                                     sum_shapes, &work, NULL) == CW_OK;
     for (size_t k = 0; k < sums; k++)
         cwi_shape_sum_join(&work.sums[k], &s->q);
     cwi_free(work.sums);

@@ -172,8 +172,8 @@ static cw_status collect_pairs(const search *s, cw_crossings *out, cw_error *err
 
 static cw_status search_chunks(search *s, const cw_crossings_desc *d, cw_error *err)
 {
-    return cwi_each_layer(s->chunk_count, CHUNK_NODES * CWI_WIDTH * 64, d->threads,
-                          &d->progress, "self-intersections", search_chunk, s, err);
+    return cwi_parallel_for(s->chunk_count, CHUNK_NODES * CWI_WIDTH * 64, d->threads,
+                            &d->progress, "self-intersections", search_chunk, s, err);
 }
 
 static cw_status run_search(search *s, const cw_crossings_desc *d, cw_error *err)

@@ -134,8 +134,9 @@ static void sum_chunk(void *context, size_t k)
 static bool measure_components(work *w, const cw_quality_desc *d)
 {
     w->chunks = cwi_alloc_zeroed(chunk_count(w), sizeof *w->chunks);
-    bool ok = w->chunks && cwi_each_layer(chunk_count(w), CHUNK * 32, d->threads, &d->progress,
-                                          "checking", sum_chunk, w, NULL) == CW_OK;
+    bool ok =
+        w->chunks && cwi_parallel_for(chunk_count(w), CHUNK * 32, d->threads, &d->progress,
+                                      "checking", sum_chunk, w, NULL) == CW_OK;
     for (size_t k = 0; k < chunk_count(w) && w->chunks; k++) {
         const chunk_sums *c = &w->chunks[k];
         ok = ok && !c->failed;
@@ -322,8 +323,8 @@ static bool wind_around(work *w, const cw_quality_desc *d, const cw_quality *q)
     if (!start_rays(w))
         return false;
     return !w->ray_count || q->components < 2 ||
-           cwi_each_layer(chunk_count(w), CHUNK * 32, d->threads, &d->progress, "checking",
-                          meet_chunk, w, NULL) == CW_OK;
+           cwi_parallel_for(chunk_count(w), CHUNK * 32, d->threads, &d->progress, "checking",
+                            meet_chunk, w, NULL) == CW_OK;
 }
 
 /* --- verdicts ----------------------------------------------------------------------------- */

@@ -381,13 +381,13 @@ cw_status cwi_sample_mesh(const cwi_sampling *sampling, cw_distance *out, float 
     if (!prepare_tallies(&w, threads, per_vertex))
         st = cwi_fail_memory(err);
     if (st == CW_OK)
-        st = cwi_each_layer((vertices + CHUNK - 1) / CHUNK, WORTH, sampling->threads,
-                            sampling->progress, sampling->name, measure_vertices, &w, err);
+        st = cwi_parallel_for((vertices + CHUNK - 1) / CHUNK, WORTH, sampling->threads,
+                              sampling->progress, sampling->name, measure_vertices, &w, err);
     if (st == CW_OK && sampling->vertices_only)
         tally_vertices(&w);
     else if (st == CW_OK)
-        st = cwi_each_layer(w.chunks, WORTH, sampling->threads, sampling->progress,
-                            sampling->name, measure_chunk, &w, err);
+        st = cwi_parallel_for(w.chunks, WORTH, sampling->threads, sampling->progress,
+                              sampling->name, measure_chunk, &w, err);
     if (st == CW_OK)
         join_tallies(&w, threads, out);
     if (st == CW_OK && sampling->worst)

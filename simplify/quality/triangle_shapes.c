@@ -173,7 +173,7 @@ static size_t bin_of(double value, double step)
 
 static void count_exact_angles(const figures *f, size_t i, cwi_shape_sum *p, double *largest)
 {
-    const double degrees = 180 / acos(-1.0);
+    const double degrees = 180 / CWI_PI;
     double least = 180, most = 0;
     for (int n = 0; n < 3; n++) {
         const double angle = degrees * atan2(f->twice_area[i], f->cosine[n][i]);
@@ -367,8 +367,8 @@ void cwi_shape_sum_join(const cwi_shape_sum *p, cw_quality *q)
 static bool share_out(work *w, size_t chunks, const cw_quality_desc *desc,
                       void (*run)(void *, size_t))
 {
-    return cwi_each_layer(chunks, CHUNK * 64, desc->threads, &desc->progress, "checking", run,
-                          w, NULL) == CW_OK;
+    return cwi_parallel_for(chunks, CHUNK * 64, desc->threads, &desc->progress, "checking", run,
+                            w, NULL) == CW_OK;
 }
 
 bool cwi_measure_shapes(const cwi_welded *welded, const cw_quality_desc *desc, cw_quality *q)

@@ -74,7 +74,8 @@ static void sum_counts(const work *w, size_t shares)
 static bool run_shares(work *w, size_t shares, int threads, void (*run)(void *, size_t))
 {
     const cw_progress silent = {0};
-    return cwi_each_layer(shares, w->share * 8, threads, &silent, NULL, run, w, NULL) == CW_OK;
+    return cwi_parallel_for(shares, w->share * 8, threads, &silent, NULL, run, w, NULL) ==
+           CW_OK;
 }
 
 bool cwi_vertex_ranges_init(cwi_vertex_ranges *ranges, const uint32_t *triangles, size_t count,

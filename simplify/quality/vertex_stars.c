@@ -415,9 +415,9 @@ static bool measure_ranges(work *w)
     const cwi_stars *s = w->stars;
     const cw_progress silent = {0};
     w->parts = cwi_alloc_zeroed(s->ranges->count, sizeof *w->parts);
-    return w->parts && cwi_each_layer(s->ranges->count, CWI_RANGE_VERTICES * 64, s->threads,
-                                      s->progress ? s->progress : &silent, "checking",
-                                      measure_range, w, NULL) == CW_OK;
+    return w->parts && cwi_parallel_for(s->ranges->count, CWI_RANGE_VERTICES * 64, s->threads,
+                                        s->progress ? s->progress : &silent, "checking",
+                                        measure_range, w, NULL) == CW_OK;
 }
 
 bool cwi_measure_stars(const cwi_stars *stars, cw_quality *q, cwi_border *border)

@@ -156,8 +156,9 @@ cw_status cwi_relax_vertices(cwi_remesh *r, cw_error *err)
     x.sizes = cwi_alloc_array(r->vertex_count, sizeof *x.sizes);
     cw_status st = x.places && x.sizes ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK)
-        st = cwi_each_layer((r->vertex_count + CHUNK - 1) / CHUNK, CHUNK * 64, r->desc.threads,
-                            &(cw_progress){0}, "remesh", find_chunk, &x, err);
+        st =
+            cwi_parallel_for((r->vertex_count + CHUNK - 1) / CHUNK, CHUNK * 64, r->desc.threads,
+                             &(cw_progress){0}, "remesh", find_chunk, &x, err);
     for (uint32_t v = 0; v < r->vertex_count && st == CW_OK; v++) {
         if (v % (16 * CHUNK) == 0)
             st = cwi_progress(&r->desc.progress, "remesh", r->done, err);

@@ -101,9 +101,9 @@ static cw_status run_pass(pass *p, void (*work)(void *, size_t), size_t n, size_
     const cwi_part_progress part = {
         .whole = progress, .from = (double)n / (double)passes, .share = 1 / (double)passes};
     const cw_progress part_progress = cwi_progress_part(&part);
-    return cwi_each_layer((p->s->rings.vertices + CWI_RING_PART - 1) / CWI_RING_PART,
-                          16 * CWI_RING_PART, p->s->desc.threads, &part_progress, "smoothing",
-                          work, p, err);
+    return cwi_parallel_for((p->s->rings.vertices + CWI_RING_PART - 1) / CWI_RING_PART,
+                            16 * CWI_RING_PART, p->s->desc.threads, &part_progress, "smoothing",
+                            work, p, err);
 }
 
 static void take_result(cwi_smoother *s)

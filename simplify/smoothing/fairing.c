@@ -19,8 +19,6 @@ enum { MAX_STEPS = 500 };
  * ones would be too stiff for the rest. */
 static const double LEAST_AREA = 0.01;
 
-static const double PI = 3.141592653589793;
-
 /* A linear system over the free vertices, for three coordinates at once. */
 typedef struct fair_system {
     const cwi_smoother *s;
@@ -229,8 +227,8 @@ static void turn_part(void *context, size_t k)
 static cw_status each_part(const fair_system *f, void (*work)(void *, size_t), void *context,
                            const cw_progress *progress, cw_error *err)
 {
-    return cwi_each_layer(f->parts, 16 * CWI_RING_PART, f->s->desc.threads, progress,
-                          "smoothing", work, context, err);
+    return cwi_parallel_for(f->parts, 16 * CWI_RING_PART, f->s->desc.threads, progress,
+                            "smoothing", work, context, err);
 }
 
 /* Returns how far the worst coordinate has come to the tolerance: 1 when all are there. */
@@ -304,7 +302,7 @@ static cw_status alloc_system(fair_system *f, cw_error *err)
  * by which one of width_mm keeps half. */
 static double find_time(const cw_smooth_desc *desc)
 {
-    const double wave = desc->width_mm / (2 * PI);
+    const double wave = desc->width_mm / (2 * CWI_PI);
     return (pow(2, 1 / (double)desc->iterations) - 1) * wave * wave;
 }
 

@@ -120,8 +120,8 @@ cw_status cwi_rings_find(const cw_mesh *mesh, int threads, const cw_progress *pr
     if (!rings->neighbours)
         return cwi_fail_memory(err);
     fill_lists(mesh, rings);
-    return cwi_each_layer((count + CWI_RING_PART - 1) / CWI_RING_PART, 8 * CWI_RING_PART,
-                          threads, progress, "smoothing", finish_part, rings, err);
+    return cwi_parallel_for((count + CWI_RING_PART - 1) / CWI_RING_PART, 8 * CWI_RING_PART,
+                            threads, progress, "smoothing", finish_part, rings, err);
 }
 
 void cwi_rings_free(cwi_rings *rings)

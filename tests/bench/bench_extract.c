@@ -155,7 +155,7 @@ static cw_volume make(const bench_case *c, size_t n)
         exit(1);
     }
     filling f = {c, n, cw_volume_voxels(&v)};
-    cwi_do_layers(n, n * n, 0, fill_slice, &f);
+    cwi_parallel_for_all(n, n * n, 0, fill_slice, &f);
     return v;
 }
 
@@ -202,8 +202,8 @@ static double limit_ms(const cw_volume *v, size_t out, int threads)
     const double begin = now_ms();
     w.to = aligned_alloc(HUGE_PAGE, bytes);
     madvise(w.to, bytes, MADV_HUGEPAGE);
-    cwi_do_layers((w.words + BLOCK - 1) / BLOCK, BLOCK, threads, read_block, &w);
-    cwi_do_layers(bytes / HUGE_PAGE, BLOCK, threads, write_block, &w);
+    cwi_parallel_for_all((w.words + BLOCK - 1) / BLOCK, BLOCK, threads, read_block, &w);
+    cwi_parallel_for_all(bytes / HUGE_PAGE, BLOCK, threads, write_block, &w);
     const double end = now_ms();
     free(w.to);
     return end - begin + (w.sum == 42 ? 1e-9 : 0);

@@ -105,7 +105,7 @@ static void fill_slice(void *context, size_t k)
 static void fill_periods(const settings *s, cw_volume *v)
 {
     filling f = {s, cw_volume_voxels(v)};
-    cwi_do_layers(s->size, 8 * s->size * s->size, 0, fill_slice, &f);
+    cwi_parallel_for_all(s->size, 8 * s->size * s->size, 0, fill_slice, &f);
 }
 
 static cw_status make_volume(const settings *s, cw_volume *v, double range[2], cw_error *err)

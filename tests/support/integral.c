@@ -116,6 +116,6 @@ cw_picture test_integral(const cw_scene *scene, double step_vox)
     assert_int_equal(f.volume.type, CW_F32);
     assert_ok(cw_picture_alloc(&picture, f.scene.width, f.scene.height, &err), err);
     drawing d = {&f, step_vox, picture};
-    cwi_do_layers(picture.height, picture.width << 20, 0, draw_row, &d);
+    cwi_parallel_for_all(picture.height, picture.width << 20, 0, draw_row, &d);
     return picture;
 }

@@ -336,9 +336,9 @@ cw_status cwi_intensity_draw(const cwi_frame *frame, const cwi_ranges *ranges,
                 .is_even = !cwi_volume_kind(&frame->volume)};
     cwi_field_make(frame, tree, NULL, false, &work.field);
     work.field.has_gradients = false;
-    cw_status st =
-        cwi_each_layer(picture->height, picture->width * CWI_RAY_SAMPLES, frame->scene.threads,
-                       &frame->scene.progress, "drawing", draw_row, &work, err);
+    cw_status st = cwi_parallel_for(picture->height, picture->width * CWI_RAY_SAMPLES,
+                                    frame->scene.threads, &frame->scene.progress, "drawing",
+                                    draw_row, &work, err);
     if (st == CW_OK && work.is_starved)
         st = cwi_fail_memory(err);
     return st;

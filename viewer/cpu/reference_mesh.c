@@ -408,10 +408,10 @@ static void span_chunk(void *context, size_t chunk)
 
 static void project_all(scene *s)
 {
-    cwi_do_layers((s->mesh->vertex_count + CHUNK - 1) / CHUNK, WORK * CHUNK, s->d->threads,
-                  project_chunk, s);
-    cwi_do_layers((s->mesh->triangle_count + CHUNK - 1) / CHUNK, WORK * CHUNK, s->d->threads,
-                  span_chunk, s);
+    cwi_parallel_for_all((s->mesh->vertex_count + CHUNK - 1) / CHUNK, WORK * CHUNK,
+                         s->d->threads, project_chunk, s);
+    cwi_parallel_for_all((s->mesh->triangle_count + CHUNK - 1) / CHUNK, WORK * CHUNK,
+                         s->d->threads, span_chunk, s);
 }
 
 /* A picture that is drawn in bands. */
@@ -441,8 +441,8 @@ static cw_status draw_bands(const scene *s, hit *hits, size_t band_hits, cw_imag
 {
     banding b = {s, hits, band_hits, image};
     cw_status st =
-        cwi_each_layer((image->height + BAND_ROWS - 1) / BAND_ROWS, band_hits, s->d->threads,
-                       &s->d->progress, "drawing", draw_one_band, &b, err);
+        cwi_parallel_for((image->height + BAND_ROWS - 1) / BAND_ROWS, band_hits, s->d->threads,
+                         &s->d->progress, "drawing", draw_one_band, &b, err);
     return st == CW_OK ? cwi_progress(&s->d->progress, "drawing", 1, err) : st;
 }
 

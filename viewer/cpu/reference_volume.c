@@ -377,9 +377,9 @@ cw_status cwi_reference_draw(const cwi_frame *frame, const cwi_cell_tree *tree,
         return cwi_fail_memory(err);
     cwi_reference_make(frame, tree, &reference);
     job work = {&reference, depths, picture, errors, false};
-    cw_status st =
-        cwi_each_layer(picture->height, picture->width * CWI_RAY_SAMPLES, frame->scene.threads,
-                       &frame->scene.progress, "drawing", draw_row, &work, err);
+    cw_status st = cwi_parallel_for(picture->height, picture->width * CWI_RAY_SAMPLES,
+                                    frame->scene.threads, &frame->scene.progress, "drawing",
+                                    draw_row, &work, err);
     if (st == CW_OK && work.is_starved)
         st = cwi_fail_memory(err);
     double most = 0;

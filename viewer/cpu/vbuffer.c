@@ -607,9 +607,9 @@ cw_status cwi_vbuffer_draw(const cwi_frame *frame, const cwi_ranges *ranges,
     b->picture = picture;
     cw_status st = set_up(b, tree, cells, err);
     if (st == CW_OK)
-        st = cwi_each_layer(picture->height, picture->width * CWI_RAY_SAMPLES,
-                            frame->scene.threads, &frame->scene.progress, "drawing", draw_row,
-                            b, err);
+        st = cwi_parallel_for(picture->height, picture->width * CWI_RAY_SAMPLES,
+                              frame->scene.threads, &frame->scene.progress, "drawing", draw_row,
+                              b, err);
     if (st == CW_OK && b->is_starved)
         st = cwi_fail_memory(err);
     cwi_beams_free(&b->beams);

@@ -4,6 +4,18 @@
 
 #include "viewer/scene/frame_setup.h"
 
+#include <string.h>
+
+/* Returns true if a renderer's name is that of one without hardware: OpenGL runs on the CPU. */
+static inline bool cwi_gl_is_software(const char *name)
+{
+    static const char *const names[] = {"llvmpipe", "softpipe", "swrast", "SwiftShader"};
+    bool found = false;
+    for (size_t n = 0; name && n < sizeof names / sizeof *names; n++)
+        found = found || strstr(name, names[n]);
+    return found;
+}
+
 typedef struct cwi_gl cwi_gl; /* a context, and the data uploaded to it */
 
 /* Limits of a live surface below the driver's; 0: the driver's. */

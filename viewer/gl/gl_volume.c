@@ -170,8 +170,8 @@ static cw_status upload_brick(cwi_gl *gl, const cwi_gl_texels *kind, const cwi_g
         const size_t n = b->count[2] - k < step ? b->count[2] - k : step;
         layer_copy copy = {v, kind, b, k, chunk};
         if (!as_is)
-            cwi_do_layers(n, b->count[0] * b->count[1], gl->frame->scene.threads, put_layer,
-                          &copy);
+            cwi_parallel_for_all(n, b->count[0] * b->count[1], gl->frame->scene.threads,
+                                 put_layer, &copy);
         glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, (GLint)k, w, h, (GLsizei)n, GL_RED, kind->type,
                         as_is ? cwi_voxel_address(v, 0, 0, b->first[2] + k) : chunk);
         st = cwi_gl_report_soon(gl, "uploading", (double)(k + n) / (double)b->count[2], err);
@@ -458,8 +458,8 @@ static cw_status upload_gradients(cwi_gl *gl, cwi_gl_brick *b, cw_error *err)
         const size_t n = b->count[2] - k < step ? b->count[2] - k : step;
         gradient_copy copy = {
             .frame = gl->frame, .brick = b, .scale = (float)scale, .from = k, .to = chunk};
-        cwi_do_layers(n, b->count[0] * b->count[1], gl->frame->scene.threads,
-                      put_gradient_layer, &copy);
+        cwi_parallel_for_all(n, b->count[0] * b->count[1], gl->frame->scene.threads,
+                             put_gradient_layer, &copy);
         if (copy.is_starved)
             st = cwi_fail_memory(err);
         else

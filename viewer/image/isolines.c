@@ -150,8 +150,8 @@ cw_status cwi_isolines_find(const cwi_frame *frame, const cw_image *image, doubl
     s.samples = cwi_alloc_array(s.columns * (image->height + 1), sizeof *s.samples);
     if (!s.samples)
         return cwi_fail_memory(err);
-    st = cwi_each_layer(image->height + 1, s.columns, frame->scene.threads,
-                        &frame->scene.progress, "drawing isolines", sample_row, &s, err);
+    st = cwi_parallel_for(image->height + 1, s.columns, frame->scene.threads,
+                          &frame->scene.progress, "drawing isolines", sample_row, &s, err);
     if (st == CW_OK)
         st = collect_strokes(&s, image, strokes, count, err);
     cwi_free(s.samples);

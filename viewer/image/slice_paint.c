@@ -112,8 +112,8 @@ cw_status cwi_slice_paint_draw(const cwi_slice_paint *paint, const cw_scene *sce
         st = check_picture(&p, scene, err);
     if (st == CW_OK)
         st = cwi_slices_of(&p.frame.scene, &p.frame.volume, p.slices, &p.slice_count, err);
-    return st == CW_OK ? cwi_each_layer(picture->height, picture->width, p.frame.scene.threads,
-                                        &p.frame.scene.progress, "drawing over slices",
-                                        paint_row, &p, err)
+    return st == CW_OK ? cwi_parallel_for(picture->height, picture->width,
+                                          p.frame.scene.threads, &p.frame.scene.progress,
+                                          "drawing over slices", paint_row, &p, err)
                        : st;
 }

@@ -15,16 +15,6 @@ enum { FIRST_SLOTS = 1 << 15, FIRST_OPEN = 1 << 15 };
 
 /* ---- what this OpenGL can --------------------------------------------------------------- */
 
-static bool is_software(void)
-{
-    static const char *const names[] = {"llvmpipe", "softpipe", "swrast", "SwiftShader"};
-    const char *name = (const char *)glGetString(GL_RENDERER);
-    bool found = false;
-    for (size_t n = 0; name && n < sizeof names / sizeof *names; n++)
-        found = found || strstr(name, names[n]);
-    return found;
-}
-
 /* Checks everything that can be known without a volume. */
 static cw_status check_opengl(const cw_live_surface *desc, cw_error *err)
 {
@@ -39,7 +29,7 @@ static cw_status check_opengl(const cw_live_surface *desc, cw_error *err)
         return cwi_fail(err, CW_ERR_UNSUPPORTED,
                         "a live surface needs %d storage buffers; OpenGL has %d here",
                         CWI_LIVE_BUFFERS, blocks < bindings ? blocks : bindings);
-    if (is_software() && !desc->on_software)
+    if (cwi_gl_is_software((const char *)glGetString(GL_RENDERER)) && !desc->on_software)
         return cwi_fail(err, CW_ERR_UNSUPPORTED,
                         "OpenGL runs in software here; CPU extraction is faster");
     return CW_OK;

@@ -58,7 +58,7 @@ static void copy_layer(void *context, size_t k)
 static void copy_layers(const cw_volume *v, size_t first, size_t count, char *to)
 {
     copying c = {v, first, to};
-    cwi_do_layers(count, v->dim[0] * v->dim[1], 0, copy_layer, &c);
+    cwi_parallel_for_all(count, v->dim[0] * v->dim[1], 0, copy_layer, &c);
 }
 
 static cw_status upload_layers(const cw_volume *v, texels of, cw_error *err)

@@ -237,8 +237,8 @@ static cw_status upload_normals(cwi_gl *gl, shaded_state *t, size_t brick, cw_er
     cw_status st = CW_OK;
     for (GLint k = 0; k < d && st == CW_OK; k++) {
         layer_copy copy = {&job, b, (size_t)k, channels, layer};
-        cwi_do_layers(b->count[1], WORK * b->count[0], gl->frame->scene.threads, put_normal_row,
-                      &copy);
+        cwi_parallel_for_all(b->count[1], WORK * b->count[0], gl->frame->scene.threads,
+                             put_normal_row, &copy);
         glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, k, w, h, 1, format, GL_UNSIGNED_SHORT, layer);
         st = cwi_gl_report_soon(gl, "uploading", (double)k / (double)d, err);
     }

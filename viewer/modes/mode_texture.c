@@ -94,8 +94,8 @@ static cw_status upload_classes(cwi_gl *gl, const cwi_gl_brick *b, GLuint *name,
     cw_status st = CW_OK;
     for (GLint k = 0; k < d && st == CW_OK; k++) {
         layer_copy copy = {gl, b, (size_t)k, layer};
-        cwi_do_layers(b->count[1], WORK * b->count[0], gl->frame->scene.threads, classify_row,
-                      &copy);
+        cwi_parallel_for_all(b->count[1], WORK * b->count[0], gl->frame->scene.threads,
+                             classify_row, &copy);
         glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, k, w, h, 1, GL_RGBA, GL_FLOAT, layer);
         st = cwi_gl_report_soon(gl, "uploading", (double)k / (double)d, err);
     }

@@ -233,8 +233,8 @@ static cw_status draw_tiles(projection *p, cw_error *err)
     const cw_scene *s = &p->frame->scene;
     p->tiles[0] = (s->width + CWI_TILE_EDGE - 1) / CWI_TILE_EDGE;
     p->tiles[1] = (s->height + CWI_TILE_EDGE - 1) / CWI_TILE_EDGE;
-    cw_status st = cwi_each_layer(p->tiles[0] * p->tiles[1], WORK, s->threads, &s->progress,
-                                  "cells", draw_tile, p, err);
+    cw_status st = cwi_parallel_for(p->tiles[0] * p->tiles[1], WORK, s->threads, &s->progress,
+                                    "cells", draw_tile, p, err);
     if (st == CW_OK && p->has_failed)
         st = cwi_fail_memory(err);
     return st;

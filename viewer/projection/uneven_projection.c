@@ -370,13 +370,13 @@ static cw_status draw_cells(projection *p, cw_error *err)
     p->covers = cwi_alloc_array(p->solids.count, sizeof *p->covers);
     if (!p->covers)
         return cwi_fail_memory(err);
-    cw_status st = cwi_each_layer((p->solids.count + CHUNK - 1) / CHUNK, (size_t)CHUNK * 32,
-                                  s->threads, &s->progress, "cells", cover_chunk, p, err);
+    cw_status st = cwi_parallel_for((p->solids.count + CHUNK - 1) / CHUNK, (size_t)CHUNK * 32,
+                                    s->threads, &s->progress, "cells", cover_chunk, p, err);
     if (st == CW_OK)
         st = list_bands(p, err);
     if (st == CW_OK)
-        st = cwi_each_layer(p->band_count, BAND * s->width * CWI_RAY_SAMPLES, s->threads,
-                            &s->progress, "drawing", draw_band, p, err);
+        st = cwi_parallel_for(p->band_count, BAND * s->width * CWI_RAY_SAMPLES, s->threads,
+                              &s->progress, "drawing", draw_band, p, err);
     if (st == CW_OK && p->is_starved)
         st = cwi_fail_memory(err);
     return st;

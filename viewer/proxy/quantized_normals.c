@@ -128,13 +128,13 @@ static cw_status make_map(cwi_directions *d, cw_error *err)
     d->first = cwi_alloc_zeroed(cells + 1, sizeof *d->first);
     if (!d->first)
         return cwi_fail_memory(err);
-    cwi_do_layers(cells, WORK * d->count, 0, count_candidates, d);
+    cwi_parallel_for_all(cells, WORK * d->count, 0, count_candidates, d);
     for (size_t n = 0; n < cells; n++)
         d->first[n + 1] += d->first[n];
     d->candidates = cwi_alloc_array(d->first[cells], sizeof *d->candidates);
     if (!d->candidates)
         return cwi_fail_memory(err);
-    cwi_do_layers(cells, WORK * d->count, 0, list_candidates, d);
+    cwi_parallel_for_all(cells, WORK * d->count, 0, list_candidates, d);
     return CW_OK;
 }
 

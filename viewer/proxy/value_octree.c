@@ -115,8 +115,8 @@ cw_status cwi_pyramid_make(const cw_volume *volume, bool has_gaps, int threads,
             return cwi_fail_memory(err);
         }
         filling work = {pyramid, pyramid->level_count++, volume, has_gaps};
-        st = cwi_each_layer(dim[2], 8 * dim[0] * dim[1], threads, progress, "averaging",
-                            fill_layer, &work, err);
+        st = cwi_parallel_for(dim[2], 8 * dim[0] * dim[1], threads, progress, "averaging",
+                              fill_layer, &work, err);
     } while (count > 1 && st == CW_OK);
     if (st != CW_OK)
         cwi_pyramid_free(pyramid);

@@ -100,8 +100,8 @@ static cw_status fill_tree(job *work, const cwi_frame *f, cw_error *err)
     cw_status st = cwi_cell_chunks(work->cells, CHUNK, &starts, err);
     work->chunk_starts = starts;
     if (st == CW_OK)
-        st = cwi_each_layer(chunks, (size_t)CHUNK * 32, f->scene.threads, &f->scene.progress,
-                            "cells", look_at_chunk, work, err);
+        st = cwi_parallel_for(chunks, (size_t)CHUNK * 32, f->scene.threads, &f->scene.progress,
+                              "cells", look_at_chunk, work, err);
     cwi_free(starts);
     return st == CW_OK ? build_boxes(work, err) : st;
 }

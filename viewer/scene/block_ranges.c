@@ -161,8 +161,8 @@ cw_status cwi_ranges_make(const cw_volume *volume, int threads, const cw_progres
         return cwi_fail_memory(err);
     job work = {volume, ranges, false};
     cw_status st =
-        cwi_each_layer(ranges->dim[2], volume->dim[0] * volume->dim[1] * CWI_RANGE_EDGE,
-                       threads, progress, "ranges", scan_layer, &work, err);
+        cwi_parallel_for(ranges->dim[2], volume->dim[0] * volume->dim[1] * CWI_RANGE_EDGE,
+                         threads, progress, "ranges", scan_layer, &work, err);
     if (st == CW_OK && work.has_failed)
         st = cwi_fail_memory(err);
     if (st != CW_OK)

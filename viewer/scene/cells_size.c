@@ -120,8 +120,8 @@ cw_status cwi_cells_measure(const cw_volume *volume, int threads, cwi_cells_size
     if (!work.chunks)
         st = cwi_fail_memory(err);
     if (st == CW_OK)
-        st = cwi_each_layer(chunks, (size_t)CHUNK * 16, threads, &unreported, "measuring",
-                            measure_chunk, &work, err);
+        st = cwi_parallel_for(chunks, (size_t)CHUNK * 16, threads, &unreported, "measuring",
+                              measure_chunk, &work, err);
     if (st == CW_OK)
         st = join_chunks(&work, chunks, size, err);
     cwi_free(work.chunks);

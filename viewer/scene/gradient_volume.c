@@ -102,8 +102,8 @@ static cw_status smooth_axis(job *work, int axis, double sigma, cw_error *err)
     work->reach = reach;
     work->weights = weights;
     cw_status st =
-        cwi_each_layer(planes, work->dim[0] * work->dim[axis == 2 ? 2 : 1] * (2 * reach + 1),
-                       s->threads, &s->progress, "smoothing", smooth_plane, work, err);
+        cwi_parallel_for(planes, work->dim[0] * work->dim[axis == 2 ? 2 : 1] * (2 * reach + 1),
+                         s->threads, &s->progress, "smoothing", smooth_plane, work, err);
     cwi_free(weights);
     if (st == CW_OK && work->is_starved)
         st = cwi_fail_memory(err);
@@ -116,8 +116,8 @@ static cw_status make_values(const cwi_frame *f, float *values, cw_error *err)
     const size_t *dim = f->volume.dim;
     double spacing[3];
     job work = {.frame = f, .dim = dim, .values = values};
-    cw_status st = cwi_each_layer(dim[2], 4 * dim[0] * dim[1], s->threads, &s->progress,
-                                  "classifying", convert_layer, &work, err);
+    cw_status st = cwi_parallel_for(dim[2], 4 * dim[0] * dim[1], s->threads, &s->progress,
+                                    "classifying", convert_layer, &work, err);
     cw_volume_spacing(&f->volume, spacing);
     for (int a = 0; a < 3 && st == CW_OK && s->gradient_sigma > 0; a++)
         if (dim[a] > 1)

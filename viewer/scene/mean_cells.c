@@ -225,8 +225,9 @@ static cw_status make_level(filling *f, size_t count, bool has_gradients, int th
     l->gradients = has_gradients ? cwi_alloc_array(count, sizeof *l->gradients) : NULL;
     if (!l->moments || (has_gradients && !l->gradients))
         return cwi_fail_memory(err);
-    cw_status st = cwi_each_layer(l->dim[2], 8 * l->dim[0] * l->dim[1], threads, progress,
-                                  "averaging", f->level > 1 ? join_layer : fill_layer, f, err);
+    cw_status st =
+        cwi_parallel_for(l->dim[2], 8 * l->dim[0] * l->dim[1], threads, progress, "averaging",
+                         f->level > 1 ? join_layer : fill_layer, f, err);
     if (st == CW_OK && f->has_failed)
         st = cwi_fail_memory(err);
     return st;

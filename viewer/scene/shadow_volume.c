@@ -290,20 +290,20 @@ static cw_status run_job(job *w, cw_error *err)
 {
     const cw_scene *s = &w->frame->scene;
     const size_t layer = w->dim[0] * w->dim[1];
-    cw_status st = cwi_each_layer(w->dim[2], 4 * layer, s->threads, &s->progress, "classifying",
-                                  classify_layer, w, err);
+    cw_status st = cwi_parallel_for(w->dim[2], 4 * layer, s->threads, &s->progress,
+                                    "classifying", classify_layer, w, err);
     if (st == CW_OK)
-        st = cwi_each_layer(w->blocks[2], BLOCK * layer, s->threads, &s->progress,
-                            "classifying", mark_layer, w, err);
+        st = cwi_parallel_for(w->blocks[2], BLOCK * layer, s->threads, &s->progress,
+                              "classifying", mark_layer, w, err);
     if (st == CW_OK)
-        st = cwi_each_layer((w->dim[2] + 1) / 2, WORK * layer, s->threads, &s->progress,
-                            "casting shadows", shade_layer, w, err);
+        st = cwi_parallel_for((w->dim[2] + 1) / 2, WORK * layer, s->threads, &s->progress,
+                              "casting shadows", shade_layer, w, err);
     if (st == CW_OK)
-        st = cwi_each_layer((w->dim[2] + 1) / 2, layer, s->threads, &s->progress,
-                            "casting shadows", fill_layer, w, err);
+        st = cwi_parallel_for((w->dim[2] + 1) / 2, layer, s->threads, &s->progress,
+                              "casting shadows", fill_layer, w, err);
     if (st == CW_OK)
-        st = cwi_each_layer(w->dim[2] / 2, layer, s->threads, &s->progress, "casting shadows",
-                            fill_between, w, err);
+        st = cwi_parallel_for(w->dim[2] / 2, layer, s->threads, &s->progress, "casting shadows",
+                              fill_between, w, err);
     return st;
 }
 

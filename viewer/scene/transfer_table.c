@@ -246,8 +246,8 @@ cw_status cwi_table_preintegrate(const cwi_table *table, double length, size_t c
         return cwi_fail_memory(err);
     enum { WORK = 64 }; /* one entry takes as long as this number of samples elsewhere */
     integration work = {table, length, count, (const double(*)[4])sum, out};
-    cw_status st = cwi_each_layer(count, WORK * count, threads, progress, "integrating",
-                                  integrate_row, &work, err);
+    cw_status st = cwi_parallel_for(count, WORK * count, threads, progress, "integrating",
+                                    integrate_row, &work, err);
     cwi_free(sum);
     return st;
 }

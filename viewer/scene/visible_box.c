@@ -157,8 +157,8 @@ cw_status cw_transfer_box(const cw_volume *volume, const cw_transfer *transfer, 
     if (!j->columns || !j->rows || !sums)
         st = cwi_fail_memory(err);
     if (st == CW_OK)
-        st = cwi_each_layer(j->layers, v.dim[0] * v.dim[1] / j->step, threads,
-                            &(cw_progress){0}, "box", count_layer, j, err);
+        st = cwi_parallel_for(j->layers, v.dim[0] * v.dim[1] / j->step, threads,
+                              &(cw_progress){0}, "box", count_layer, j, err);
     if (st == CW_OK && j->has_failed)
         st = cwi_fail_memory(err);
     if (st == CW_OK) {

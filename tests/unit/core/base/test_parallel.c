@@ -46,12 +46,12 @@ static void each_layer_is_done_once_by_any_number_of_threads(void **state)
     static const int counts[] = {0, 1, 2, 3, 7, 64, 100000};
     for (size_t n = 0; n < sizeof counts / sizeof *counts; n++) {
         record r = {.threads = counts[n]};
-        cwi_do_layers(LAYERS, SIZE, counts[n], work_on_layer, &r);
+        cwi_parallel_for_all(LAYERS, SIZE, counts[n], work_on_layer, &r);
         assert_true(each_was_done_once(&r));
     }
     assert_int_equal(cwi_threads(100000), CWI_MAX_THREADS);
     assert_true(cwi_granted_threads() > 0);
-    cwi_do_layers(0, SIZE, 4, work_on_layer, NULL);
+    cwi_parallel_for_all(0, SIZE, 4, work_on_layer, NULL);
 }
 
 /* --- threads that must be there ------------------------------------------------------------ */
@@ -79,7 +79,7 @@ static void meet_others(void *context, size_t k)
         return;
     const int number = cwi_thread_number();
     m->inner[k].threads = 1; /* a loop within a loop has one, whose number is 0 */
-    cwi_do_layers(LAYERS, SIZE, 4, work_on_layer, &m->inner[k]);
+    cwi_parallel_for_all(LAYERS, SIZE, 4, work_on_layer, &m->inner[k]);
     if (cwi_thread_number() != number || !pthread_equal(self, pthread_self()))
         cwi_set_flag(&m->changed_thread);
 }
@@ -90,7 +90,7 @@ static void as_many_threads_work_as_were_requested(void **state)
     (void)state;
     for (int threads = 2; threads <= 16; threads *= 2) {
         meeting m = {PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, .wanted = threads};
-        cwi_do_layers((size_t)threads, SIZE, threads, meet_others, &m);
+        cwi_parallel_for_all((size_t)threads, SIZE, threads, meet_others, &m);
         assert_int_equal(m.here, threads);
     }
 }
@@ -102,7 +102,7 @@ static void a_loop_within_a_loop_runs_where_it_is(void **state)
     meeting m = {PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, .wanted = 4,
                  .inner = inner};
     memset(inner, 0, sizeof inner);
-    cwi_do_layers(4, SIZE, 4, meet_others, &m);
+    cwi_parallel_for_all(4, SIZE, 4, meet_others, &m);
     assert_false(m.changed_thread);
     for (int n = 0; n < 4; n++) {
         assert_true(each_was_done_once(&inner[n]));
@@ -117,7 +117,7 @@ static void *loop_many_times(void *bad)
 {
     for (int n = 0; n < 50; n++) {
         record r = {.threads = 3};
-        cwi_do_layers(LAYERS, SIZE, 3, work_on_layer, &r);
+        cwi_parallel_for_all(LAYERS, SIZE, 3, work_on_layer, &r);
         if (!each_was_done_once(&r))
             cwi_set_flag(bad);
     }
@@ -159,7 +159,7 @@ static void progress_comes_from_the_calling_thread_which_may_stop_the_loop(void 
         listening l = {.caller = pthread_self(), .stop_at = stop_at};
         const cw_progress progress = {hear_progress, &l};
         const cw_status st =
-            cwi_each_layer(LAYERS, SIZE, 4, &progress, "counting", work_on_layer, &r, &err);
+            cwi_parallel_for(LAYERS, SIZE, 4, &progress, "counting", work_on_layer, &r, &err);
         assert_false(l.is_elsewhere);
         assert_true(each_was_done_once(&r) || st == CW_ERR_CANCELLED);
         if (stop_at == 0)
@@ -189,8 +189,8 @@ static int loop_on_four(void)
 {
     meeting m = {PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, .wanted = 4};
     record r = {.threads = 4};
-    cwi_do_layers(4, SIZE, 4, meet_others, &m); /* waits for all four */
-    cwi_do_layers(LAYERS, SIZE, 4, work_on_layer, &r);
+    cwi_parallel_for_all(4, SIZE, 4, meet_others, &m); /* waits for all four */
+    cwi_parallel_for_all(LAYERS, SIZE, 4, work_on_layer, &r);
     return each_was_done_once(&r) ? 0 : 1;
 }
 
@@ -263,7 +263,7 @@ static void a_process_forked_within_a_loop_is_told_that_it_cannot_end(void **sta
     cw_error err = {0};
     const cw_progress progress = {fork_in_progress, &f};
     const cw_status st =
-        cwi_each_layer(LAYERS, SIZE, 4, &progress, "counting", wait_for_fork, &f, &err);
+        cwi_parallel_for(LAYERS, SIZE, 4, &progress, "counting", wait_for_fork, &f, &err);
     if (f.is_child)
         _exit(st == CW_ERR_CANCELLED && strstr(err.message, "forked") && loop_on_four() == 0
                   ? 0
@@ -287,7 +287,7 @@ static int loop_without_threads(void)
     if (setrlimit(RLIMIT_AS, &(struct rlimit){bytes, bytes}) != 0)
         return 2;
     record r = {.threads = 4};
-    cwi_do_layers(LAYERS, SIZE, 4, work_on_layer, &r);
+    cwi_parallel_for_all(LAYERS, SIZE, 4, work_on_layer, &r);
     if (!each_was_done_once(&r))
         return 3;
     return cwi_try_threads(8) == 0 && cwi_granted_threads() == 1 ? 0 : 4;

@@ -113,7 +113,7 @@ static void judge_all(const grid *grids, int count, truth_of truth)
     verdict *verdicts = malloc((size_t)count * sizeof *verdicts);
     assert_non_null(verdicts);
     judging j = {grids, truth, verdicts};
-    cwi_do_layers((size_t)count, 1 << 20, 0, judge_grid, &j);
+    cwi_parallel_for_all((size_t)count, 1 << 20, 0, judge_grid, &j);
     for (int n = count; n-- > 0;) {
         decidable += verdicts[n].truth.decidable;
         handles += verdicts[n].truth.euler != 2 * (long)verdicts[n].truth.components;

@@ -163,7 +163,7 @@ static void both_ways_agree_on_nearly_all_random_grids(void **state)
     test_seed(11);
     for (int n = 0; n < ROUNDS * 125; n++)
         rounds[n / 125].voxels[n % 125] = 2 * (float)rand() / (float)RAND_MAX - 1;
-    cwi_do_layers(ROUNDS, 1 << 20, 0, decide_round, rounds);
+    cwi_parallel_for_all(ROUNDS, 1 << 20, 0, decide_round, rounds);
     for (int r = 0; r < ROUNDS; r++)
         decidable += rounds[r].decidable;
     assert_true(decidable >= ROUNDS * 97 / 100);

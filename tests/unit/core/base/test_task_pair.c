@@ -1,10 +1,10 @@
 /* Tests work beside work: both run once, and the second sees what the first has found. */
 #include "support/support.h"
 
-#include "core/base/beside.h"
+#include "core/base/task_pair.h"
 
 typedef struct errand {
-    cwi_beside beside;
+    cwi_task_pair pair;
     int found, seen, turns;
 } errand;
 
@@ -20,7 +20,7 @@ static void find_answer(void *context)
 static void await_answer(void *context)
 {
     errand *e = context;
-    cwi_beside_wait(&e->beside);
+    cwi_task_pair_wait(&e->pair);
     e->seen = e->found;
     e->turns++;
 }
@@ -30,7 +30,7 @@ static void the_second_waits_for_what_the_first_finds(void **state)
     (void)state;
     for (int n = 0; n < 200; n++) {
         errand e = {0};
-        cwi_beside_run(&e.beside, find_answer, await_answer, &e);
+        cwi_task_pair_run(&e.pair, find_answer, await_answer, &e);
         assert_int_equal(e.seen, 42);
         assert_int_equal(e.turns, 2);
     }
