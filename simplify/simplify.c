@@ -79,14 +79,14 @@ static cw_status begin_block(const cw_mesh *m, cwi_mesh_block *w, cw_error *err)
 {
     w->vertices = m->vertex_count;
     w->points = cwi_alloc_array(3 * w->vertices, sizeof *w->points);
-    w->names = cwi_alloc_array(w->vertices, sizeof *w->names);
+    w->global_ids = cwi_alloc_array(w->vertices, sizeof *w->global_ids);
     w->corners = cwi_alloc_array(3 * m->triangle_count, sizeof *w->corners);
-    if (!w->points || !w->names || !w->corners)
+    if (!w->points || !w->global_ids || !w->corners)
         return cwi_fail_memory(err);
     if (w->vertices)
         memcpy(w->points, m->positions, 3 * w->vertices * sizeof *w->points);
     for (size_t v = 0; v < w->vertices; v++)
-        w->names[v] = (uint32_t)v;
+        w->global_ids[v] = (uint32_t)v;
     for (size_t t = 0; t < m->triangle_count; t++) {
         const uint32_t *c = m->triangles + 3 * t;
         if (c[0] != c[1] && c[1] != c[2] && c[2] != c[0])
@@ -150,7 +150,7 @@ static cw_status simplify_levels(const cw_mesh *mesh, const cw_simplify_desc *de
     cwi_free(scaled.positions);
     for (size_t n = 0; n < levels && st == CW_OK; n++) {
         cwi_scale_points(left[n].points, left[n].vertices, 1 / scale, left[n].points);
-        const size_t cut = left[n].cut;
+        const size_t cut = left[n].nonmanifold_count;
         st = cwi_finish_mesh(mesh, left + n, out + n, err);
         cwi_block_free(left + n);
         if (st == CW_OK)
@@ -173,9 +173,9 @@ static cw_status simplify_levels(const cw_mesh *mesh, const cw_simplify_desc *de
 
 size_t cwi_simplify_target(const cw_simplify_desc *d, size_t triangles)
 {
-    const bool is_share = d->ratio > 0 && d->ratio < 1;
-    const size_t share = is_share ? (size_t)(d->ratio * (double)triangles) : 0;
-    return share > d->triangles ? share : d->triangles;
+    const bool is_ratio = d->ratio > 0 && d->ratio < 1;
+    const size_t from_ratio = is_ratio ? (size_t)(d->ratio * (double)triangles) : 0;
+    return from_ratio > d->triangles ? from_ratio : d->triangles;
 }
 
 cw_status cw_simplify(const cw_mesh *mesh, const cw_simplify_desc *desc, cw_mesh *out,

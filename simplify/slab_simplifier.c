@@ -24,8 +24,8 @@ struct cw_simplifier {
     cwi_slab_window window;
     /* with a number of triangles to meet */
     cwi_mesh_block *slabs;
-    size_t count, room, triangles;
-    size_t names, below; /* of vertices in seams so far; the first of the last seam */
+    size_t count, capacity, triangles;
+    size_t id_count, below; /* of vertices in seams so far; the first of the last seam */
 };
 
 /* --- a slab as a block -------------------------------------------------------------------- */
@@ -54,8 +54,8 @@ static void number_vertices(cwi_slab_block *s, const cw_mesh *m, uint32_t *numbe
     s->vertices = b->vertices;
 }
 
-static void place_vertices(cwi_slab_block *s, const cw_slab *from, double scale,
-                           const uint32_t *number)
+static void copy_vertices(cwi_slab_block *s, const cw_slab *from, double scale,
+                          const uint32_t *number)
 {
     cwi_mesh_block *b = &s->block;
     for (size_t v = 0; v < from->mesh->vertex_count; v++) {
@@ -67,8 +67,8 @@ static void place_vertices(cwi_slab_block *s, const cw_slab *from, double scale,
         if (n == UINT32_MAX)
             continue;
         cwi_scale_points(from->mesh->positions + 3 * v, 1, scale, b->points + 3 * n);
-        b->names[n] = (uint32_t)n;
-        b->held[n] = s->seam[n] = seam;
+        b->global_ids[n] = (uint32_t)n;
+        b->locked[n] = s->seam[n] = seam;
         s->rank[n] = (uint32_t)rank;
     }
 }
@@ -109,15 +109,15 @@ cw_status cwi_slab_block_init(cwi_slab_block *s, const cw_slab *from, double sca
     if (number && b->corners)
         number_vertices(s, m, number);
     b->points = cwi_alloc_array(3 * b->vertices, sizeof *b->points);
-    b->names = cwi_alloc_array(b->vertices, sizeof *b->names);
-    b->held = cwi_alloc_array(b->vertices, sizeof *b->held);
+    b->global_ids = cwi_alloc_array(b->vertices, sizeof *b->global_ids);
+    b->locked = cwi_alloc_array(b->vertices, sizeof *b->locked);
     s->seam = cwi_alloc_array(b->vertices, sizeof *s->seam);
     s->rank = cwi_alloc_array(b->vertices, sizeof *s->rank);
     s->below = cwi_alloc_array(m->vertex_count, sizeof *s->below);
-    const bool ok = number && b->corners && b->points && b->names && b->held && s->seam &&
-                    s->rank && s->below;
+    const bool ok = number && b->corners && b->points && b->global_ids && b->locked &&
+                    s->seam && s->rank && s->below;
     if (ok)
-        place_vertices(s, from, scale, number);
+        copy_vertices(s, from, scale, number);
     cwi_free(number);
     cwi_block_span(b);
     set_planes(b, from, scale);
@@ -128,47 +128,48 @@ cw_status cwi_slab_block_init(cwi_slab_block *s, const cw_slab *from, double sca
 /* --- down to a number of triangles -------------------------------------------------------- */
 
 /* Vertices in seams get names of their own among those of all slabs; the others need none. */
-static cw_status name_seams(cw_simplifier *s, const cwi_slab_block *slab, cwi_mesh_block *b,
-                            cw_error *err)
+static cw_status number_seams(cw_simplifier *s, const cwi_slab_block *slab, cwi_mesh_block *b,
+                              cw_error *err)
 {
-    const size_t first[3] = {0, s->below, s->names};
-    b->held = cwi_alloc_array(b->vertices, sizeof *b->held);
-    if (!b->held)
+    const size_t first[3] = {0, s->below, s->id_count};
+    b->locked = cwi_alloc_array(b->vertices, sizeof *b->locked);
+    if (!b->locked)
         return cwi_fail_memory(err);
     for (size_t v = 0; v < b->vertices; v++) {
-        const uint32_t n = b->names[v];
-        b->held[v] = slab->seam[n];
-        b->names[v] = b->held[v] ? (uint32_t)(first[b->held[v]] + slab->rank[n]) : 0;
+        const uint32_t n = b->global_ids[v];
+        b->locked[v] = slab->seam[n];
+        b->global_ids[v] = b->locked[v] ? (uint32_t)(first[b->locked[v]] + slab->rank[n]) : 0;
     }
-    s->below = s->names;
-    s->names += slab->ranks[2];
+    s->below = s->id_count;
+    s->id_count += slab->ranks[2];
     return CW_OK;
 }
 
 static cw_status add_slab(cw_simplifier *s, cwi_slab_block *slab, cw_error *err)
 {
-    if (s->count == s->room) {
-        const size_t room = 2 * s->room + 8;
-        cwi_mesh_block *slabs = cwi_realloc_array(s->slabs, room, sizeof *slabs);
+    if (s->count == s->capacity) {
+        const size_t capacity = 2 * s->capacity + 8;
+        cwi_mesh_block *slabs = cwi_realloc_array(s->slabs, capacity, sizeof *slabs);
         if (!slabs)
             return cwi_fail_memory(err);
         s->slabs = slabs;
-        s->room = room;
+        s->capacity = capacity;
     }
     cwi_mesh_block *b = s->slabs + s->count++;
     *b = slab->block;
     slab->block = (cwi_mesh_block){0};
-    const double share = (double)b->triangles / (double)s->triangles,
+    const double fraction = (double)b->triangles / (double)s->triangles,
                  target = (double)cwi_simplify_target(&s->desc, s->triangles);
-    cw_status st = cwi_passes_blocks(&s->passes, b, (size_t)(SPARE * share * target) + 1, err);
-    return st == CW_OK ? name_seams(s, slab, b, err) : st;
+    cw_status st =
+        cwi_passes_blocks(&s->passes, b, (size_t)(SPARE * fraction * target) + 1, err);
+    return st == CW_OK ? number_seams(s, slab, b, err) : st;
 }
 
 static cw_status join_slabs(cw_simplifier *s, cwi_mesh_block *left, cw_error *err)
 {
     const size_t target = cwi_simplify_target(&s->desc, s->triangles);
     cwi_mesh_block whole;
-    cw_status st = cwi_blocks_join(s->slabs, s->count, s->names + 1, &whole, err);
+    cw_status st = cwi_blocks_join(s->slabs, s->count, s->id_count + 1, &whole, err);
     for (size_t n = 0; n < s->count; n++)
         cwi_block_free(s->slabs + n);
     s->count = 0;
@@ -245,18 +246,19 @@ cw_status cw_simplifier_take(void *simplifier, const cw_slab *from, cw_error *er
     return st;
 }
 
-static cw_status finish_mesh(cw_simplifier *s, cw_mesh *out, size_t *cut, cw_error *err)
+static cw_status finish_mesh(cw_simplifier *s, cw_mesh *out, size_t *nonmanifold_count,
+                             cw_error *err)
 {
     cwi_slab_window *w = &s->window;
     cwi_mesh_block left = {.vertices = w->vertices,
                            .triangles = w->triangles,
                            .points = w->points,
                            .corners = w->corners,
-                           .cut = w->cut};
+                           .nonmanifold_count = w->nonmanifold_count};
     cw_status st = CW_OK;
     if (s->desc.error_mm == 0)
         st = join_slabs(s, &left, err);
-    *cut = left.cut;
+    *nonmanifold_count = left.nonmanifold_count;
     if (st == CW_OK)
         st = cwi_finish_mesh(&s->frame, &left, out, err);
     cwi_scale_points(out->positions, out->vertex_count, 1 / s->scale, out->positions);
@@ -269,18 +271,18 @@ cw_status cw_simplifier_finish(cw_simplifier *s, cw_mesh *out, cw_simplify_facts
                                cw_error *err)
 {
     CWI_REQUIRE(err, s, out);
-    size_t cut = 0;
+    size_t nonmanifold_count = 0;
     cw_status st = CW_OK;
     *out = (cw_mesh){0};
     cwi_stop_init(&s->passes.stop, &s->desc.progress);
     if (s->scale > 0 && !s->ended)
         return cwi_fail(err, CW_ERR_ARGUMENT, "slabs are missing: there was no last one");
     if (s->scale > 0)
-        st = finish_mesh(s, out, &cut, err);
+        st = finish_mesh(s, out, &nonmanifold_count, err);
     if (st == CW_OK && facts)
         *facts = (cw_simplify_facts){.vertices = out->vertex_count,
                                      .triangles = out->triangle_count,
-                                     .cut = cut,
+                                     .cut = nonmanifold_count,
                                      .passes = 1 + s->passes.repeats};
     return st;
 }

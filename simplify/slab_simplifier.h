@@ -37,7 +37,7 @@ typedef struct cwi_slab_window {
     double reach;  /* the longest edge of the input */
     float *points; /* the result */
     uint32_t *corners;
-    size_t vertices, triangles, vertex_room, triangle_room, cut;
+    size_t vertices, triangles, vertex_capacity, triangle_capacity, nonmanifold_count;
 } cwi_slab_window;
 
 CW_NODISCARD cw_status cwi_window_take(cwi_slab_window *window, cwi_passes *passes,

@@ -42,21 +42,21 @@ typedef struct merger {
     cw_mesh *old, mesh;
     uint32_t *number; /* of the old vertices among the new; NONE: they go */
     uint32_t *next;   /* the old lists */
-    uint8_t *care;
-    uint8_t *wanted; /* old vertices */
+    uint8_t *tighten_level;
+    uint8_t *is_needed; /* old vertices */
 } merger;
 
 /* Points that the rest's triangles list, and all that may be near them. */
-static void choose_old(const cwi_slab_window *w, merger *m, double lowest)
+static void mark_needed_vertices(const cwi_slab_window *w, merger *m, double lowest)
 {
     const cw_mesh *old = m->old;
     const float *along = m->slab->block.along;
     for (size_t t = 0; t < w->rest.triangles; t++)
-        for (uint32_t v = w->rest.lists[t]; v != NONE; v = m->next[v])
-            m->wanted[v] = 1;
+        for (uint32_t v = w->rest.nearest_points[t]; v != NONE; v = m->next[v])
+            m->is_needed[v] = 1;
     for (size_t v = 0; v < old->vertex_count; v++)
         if (height_along(along, old->positions + 3 * v) >= lowest)
-            m->wanted[v] = 1;
+            m->is_needed[v] = 1;
 }
 
 /* Triangles with a vertex that is wanted, and their vertices: none reaches farther down than by
@@ -72,7 +72,7 @@ static void number_old(merger *m, const cwi_slab_window *w)
     mesh->triangle_count = m->slab->block.triangles;
     for (size_t t = 0; t < old->triangle_count; t++) {
         const uint32_t *c = old->triangles + 3 * t;
-        if (!m->wanted[c[0]] && !m->wanted[c[1]] && !m->wanted[c[2]])
+        if (!m->is_needed[c[0]] && !m->is_needed[c[1]] && !m->is_needed[c[2]])
             continue;
         memmove(old->triangles + 3 * (mesh->triangle_count++ - m->slab->block.triangles), c,
                 3 * sizeof *c);
@@ -104,14 +104,14 @@ static cw_status fill_merged(merger *m, cw_error *err)
     return CW_OK;
 }
 
-/* Lists and care of the rest in the new numbers. */
+/* Restores lists and tighten levels of the rest in the new numbers. */
 static void restore_window(cwi_slab_window *w, cwi_passes *p, const merger *m)
 {
     for (size_t v = 0; v < m->old->vertex_count; v++)
         if (m->number[v] != NONE)
-            p->care[m->number[v]] = m->care[v];
+            p->tighten_level[m->number[v]] = m->tighten_level[v];
     for (size_t t = 0; t < w->rest.triangles; t++) {
-        uint32_t v = w->rest.lists[t], *link = w->rest.lists + t;
+        uint32_t v = w->rest.nearest_points[t], *link = w->rest.nearest_points + t;
         for (; v != NONE; v = m->next[v]) {
             *link = m->number[v];
             link = p->next + m->number[v];
@@ -123,14 +123,15 @@ static void restore_window(cwi_slab_window *w, cwi_passes *p, const merger *m)
 static cw_status merge_input(cwi_slab_window *w, cwi_passes *p, const cwi_slab_block *slab,
                              cw_error *err)
 {
-    merger m = {.slab = slab, .old = &w->input, .next = p->next, .care = p->care};
+    merger m = {
+        .slab = slab, .old = &w->input, .next = p->next, .tighten_level = p->tighten_level};
     p->next = NULL; /* ours now */
-    p->care = NULL;
+    p->tighten_level = NULL;
     m.number = cwi_alloc_array(w->input.vertex_count, sizeof *m.number);
-    m.wanted = cwi_alloc_zeroed(w->input.vertex_count, 1);
-    cw_status st = m.number && m.wanted ? CW_OK : cwi_fail_memory(err);
+    m.is_needed = cwi_alloc_zeroed(w->input.vertex_count, 1);
+    cw_status st = m.number && m.is_needed ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK) {
-        choose_old(w, &m, w->end - 2 * p->error);
+        mark_needed_vertices(w, &m, w->end - 2 * p->error);
         number_old(&m, w);
         st = fill_merged(&m, err);
     }
@@ -145,9 +146,9 @@ static cw_status merge_input(cwi_slab_window *w, cwi_passes *p, const cwi_slab_b
         cw_mesh_free(&m.mesh);
     }
     cwi_free(m.number);
-    cwi_free(m.wanted);
+    cwi_free(m.is_needed);
     cwi_free(m.next);
-    cwi_free(m.care);
+    cwi_free(m.tighten_level);
     return st;
 }
 
@@ -157,35 +158,35 @@ static cw_status merge_input(cwi_slab_window *w, cwi_passes *p, const cwi_slab_b
  * those of the rest the ones behind, but in the seam between them. */
 typedef struct joiner {
     const cwi_slab_block *slab;
-    size_t names;
+    size_t id_count;
     uint32_t *placed; /* names: where they are in the result, or NONE */
 } joiner;
 
-static bool is_above(const joiner *j, uint32_t name)
+static bool is_above(const joiner *j, uint32_t id)
 {
-    return name < j->slab->vertices && j->slab->seam[name] == 2;
+    return id < j->slab->vertices && j->slab->seam[id] == 2;
 }
 
-static void name_rest(cwi_slab_window *w, joiner *j)
+static void number_rest(cwi_slab_window *w, joiner *j)
 {
     cwi_mesh_block *rest = &w->rest;
     for (size_t v = 0; v < rest->vertices; v++) {
         const uint32_t rank = w->rank[v],
                        seam = rank < j->slab->ranks[1] ? j->slab->below[rank] : NONE;
-        rest->names[v] = seam != NONE ? seam : (uint32_t)(j->slab->vertices + v);
-        rest->held[v] = seam != NONE || w->placed[v] != NONE;
-        j->placed[rest->names[v]] = w->placed[v];
+        rest->global_ids[v] = seam != NONE ? seam : (uint32_t)(j->slab->vertices + v);
+        rest->locked[v] = seam != NONE || w->placed[v] != NONE;
+        j->placed[rest->global_ids[v]] = w->placed[v];
     }
 }
 
 /* Held are now the seam above, and what the finished result begins at. */
-static cw_status hold_vertices(const joiner *j, cwi_mesh_block *b, cw_error *err)
+static cw_status lock_vertices(const joiner *j, cwi_mesh_block *b, cw_error *err)
 {
-    b->held = cwi_alloc_array(b->vertices, 1);
-    if (!b->held)
+    b->locked = cwi_alloc_array(b->vertices, 1);
+    if (!b->locked)
         return cwi_fail_memory(err);
     for (size_t v = 0; v < b->vertices; v++) {
-        b->held[v] = j->placed[b->names[v]] != NONE || is_above(j, b->names[v]);
+        b->locked[v] = j->placed[b->global_ids[v]] != NONE || is_above(j, b->global_ids[v]);
     }
     return CW_OK;
 }
@@ -195,21 +196,21 @@ static cw_status open_window(cwi_slab_window *w, cwi_slab_block *slab, joiner *j
 {
     cwi_mesh_block both[2] = {w->rest, slab->block};
     j->slab = slab;
-    j->names = slab->vertices + w->rest.vertices;
-    j->placed = cwi_alloc_array(j->names, sizeof *j->placed);
-    both[1].held = cwi_alloc_array(both[1].vertices, 1);
-    cw_status st = j->placed && both[1].held ? CW_OK : cwi_fail_memory(err);
+    j->id_count = slab->vertices + w->rest.vertices;
+    j->placed = cwi_alloc_array(j->id_count, sizeof *j->placed);
+    both[1].locked = cwi_alloc_array(both[1].vertices, 1);
+    cw_status st = j->placed && both[1].locked ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK) {
-        memset(j->placed, 0xff, j->names * sizeof *j->placed);
-        name_rest(w, j);
+        memset(j->placed, 0xff, j->id_count * sizeof *j->placed);
+        number_rest(w, j);
         for (size_t v = 0; v < both[1].vertices; v++)
-            both[1].held[v] = slab->seam[both[1].names[v]];
-        st = cwi_blocks_join(w->rest.lists ? both : both + 1, w->rest.lists ? 2 : 1, j->names,
-                             whole, err);
+            both[1].locked[v] = slab->seam[both[1].global_ids[v]];
+        st = cwi_blocks_join(w->rest.nearest_points ? both : both + 1,
+                             w->rest.nearest_points ? 2 : 1, j->id_count, whole, err);
     }
-    cwi_free(both[1].held);
+    cwi_free(both[1].locked);
     if (st == CW_OK)
-        st = hold_vertices(j, whole, err);
+        st = lock_vertices(j, whole, err);
     if (st == CW_OK)
         st = cwi_block_obstruct(whole, w->finished, w->finished_count, err);
     return st;
@@ -217,29 +218,30 @@ static cw_status open_window(cwi_slab_window *w, cwi_slab_block *slab, joiner *j
 
 /* --- what is finished --------------------------------------------------------------------- */
 
-static cw_status make_room(cwi_slab_window *w, size_t vertices, size_t triangles, cw_error *err)
+static cw_status reserve_output(cwi_slab_window *w, size_t vertices, size_t triangles,
+                                cw_error *err)
 {
-    if (w->vertices + vertices > w->vertex_room) {
-        const size_t room = (w->vertices + vertices) * 5 / 4;
-        float *points = cwi_realloc_array(w->points, 3 * room, sizeof *points);
+    if (w->vertices + vertices > w->vertex_capacity) {
+        const size_t capacity = (w->vertices + vertices) * 5 / 4;
+        float *points = cwi_realloc_array(w->points, 3 * capacity, sizeof *points);
         if (!points)
             return cwi_fail_memory(err);
         w->points = points;
-        w->vertex_room = room;
+        w->vertex_capacity = capacity;
     }
-    if (w->triangles + triangles > w->triangle_room) {
-        const size_t room = (w->triangles + triangles) * 5 / 4;
-        uint32_t *corners = cwi_realloc_array(w->corners, 3 * room, sizeof *corners);
+    if (w->triangles + triangles > w->triangle_capacity) {
+        const size_t capacity = (w->triangles + triangles) * 5 / 4;
+        uint32_t *corners = cwi_realloc_array(w->corners, 3 * capacity, sizeof *corners);
         if (!corners)
             return cwi_fail_memory(err);
         w->corners = corners;
-        w->triangle_room = room;
+        w->triangle_capacity = capacity;
     }
     return CW_OK;
 }
 
-static void place_triangle(cwi_slab_window *w, const cwi_mesh_block *left, size_t t,
-                           uint32_t *placed)
+static void append_triangle(cwi_slab_window *w, const cwi_mesh_block *left, size_t t,
+                            uint32_t *placed)
 {
     for (size_t k = 0; k < 3; k++) {
         const size_t v = left->corners[3 * t + k];
@@ -260,8 +262,8 @@ static bool is_rest(const cwi_slab_window *w, const cwi_mesh_block *left, size_t
 }
 
 /* Of finished triangles, those that a later window may come near. */
-static cw_status keep_near(cwi_slab_window *w, const cwi_mesh_block *left, double lowest,
-                           cw_error *err)
+static cw_status keep_near_triangles(cwi_slab_window *w, const cwi_mesh_block *left,
+                                     double lowest, cw_error *err)
 {
     size_t kept = 0;
     float *near = cwi_alloc_array(9 * (w->finished_count + left->triangles), sizeof *near);
@@ -288,8 +290,8 @@ static cw_status keep_near(cwi_slab_window *w, const cwi_mesh_block *left, doubl
 }
 
 /* The rest of what is left: vertices of its triangles, and all of the seam above. */
-static cw_status take_rest(cwi_slab_window *w, const joiner *j, const cwi_mesh_block *left,
-                           const uint32_t *placed, uint32_t *number, cw_error *err)
+static cw_status store_rest(cwi_slab_window *w, const joiner *j, const cwi_mesh_block *left,
+                            const uint32_t *placed, uint32_t *number, cw_error *err)
 {
     cwi_mesh_block rest = {0};
     memset(number, 0xff, left->vertices * sizeof *number);
@@ -300,24 +302,24 @@ static cw_status take_rest(cwi_slab_window *w, const joiner *j, const cwi_mesh_b
             rest.triangles += k == 0;
         }
     for (size_t v = 0; v < left->vertices; v++)
-        if (number[v] == NONE && is_above(j, left->names[v]))
+        if (number[v] == NONE && is_above(j, left->global_ids[v]))
             number[v] = (uint32_t)rest.vertices++;
-    rest.own = rest.triangles;
+    rest.interior_count = rest.triangles;
     rest.points = cwi_alloc_array(3 * rest.vertices, sizeof *rest.points);
     rest.corners = cwi_alloc_array(3 * rest.triangles, sizeof *rest.corners);
-    rest.names = cwi_alloc_array(rest.vertices, sizeof *rest.names);
-    rest.held = cwi_alloc_array(rest.vertices, 1);
+    rest.global_ids = cwi_alloc_array(rest.vertices, sizeof *rest.global_ids);
+    rest.locked = cwi_alloc_array(rest.vertices, 1);
     rest.open = cwi_alloc_array(rest.vertices, 1);
     rest.quadrics = cwi_alloc_array(rest.vertices, sizeof *rest.quadrics);
-    rest.lists = cwi_alloc_array(rest.triangles, sizeof *rest.lists);
+    rest.nearest_points = cwi_alloc_array(rest.triangles, sizeof *rest.nearest_points);
     cwi_block_free(&w->rest);
     cwi_free(w->placed);
     cwi_free(w->rank);
     w->rest = rest;
     w->placed = cwi_alloc_array(rest.vertices, sizeof *w->placed);
     w->rank = cwi_alloc_array(rest.vertices, sizeof *w->rank);
-    if (!rest.points || !rest.corners || !rest.names || !rest.held || !rest.open ||
-        !rest.quadrics || !rest.lists || !w->placed || !w->rank)
+    if (!rest.points || !rest.corners || !rest.global_ids || !rest.locked || !rest.open ||
+        !rest.quadrics || !rest.nearest_points || !w->placed || !w->rank)
         return cwi_fail_memory(err);
     for (size_t v = 0; v < left->vertices; v++) {
         const size_t n = number[v];
@@ -327,20 +329,21 @@ static cw_status take_rest(cwi_slab_window *w, const joiner *j, const cwi_mesh_b
         rest.open[n] = left->open[v];
         rest.quadrics[n] = left->quadrics[v];
         w->placed[n] = placed[v];
-        w->rank[n] = is_above(j, left->names[v]) ? j->slab->rank[left->names[v]] : NONE;
+        w->rank[n] =
+            is_above(j, left->global_ids[v]) ? j->slab->rank[left->global_ids[v]] : NONE;
     }
     for (size_t t = 0, to = 0; t < left->triangles; t++) {
         if (!is_rest(w, left, t))
             continue;
         for (size_t k = 0; k < 3; k++)
             rest.corners[3 * to + k] = number[left->corners[3 * t + k]];
-        rest.lists[to++] = left->lists[t];
+        rest.nearest_points[to++] = left->nearest_points[t];
     }
     return CW_OK;
 }
 
 /* Where the seam above has its vertices among the input's. */
-static cw_status note_seam(cwi_slab_window *w, const cwi_slab_block *slab, cw_error *err)
+static cw_status store_seam(cwi_slab_window *w, const cwi_slab_block *slab, cw_error *err)
 {
     cwi_free(w->above);
     w->ranks = slab->ranks[2];
@@ -355,25 +358,25 @@ static cw_status note_seam(cwi_slab_window *w, const cwi_slab_block *slab, cw_er
 }
 
 /* Gives the lower part to the result, and leaves the rest. */
-static cw_status shut_window(cwi_slab_window *w, const cwi_passes *p, const joiner *j,
-                             const cwi_mesh_block *left, cw_error *err)
+static cw_status finish_lower_part(cwi_slab_window *w, const cwi_passes *p, const joiner *j,
+                                   const cwi_mesh_block *left, cw_error *err)
 {
     uint32_t *placed = cwi_alloc_array(left->vertices, sizeof *placed);
     uint32_t *number = cwi_alloc_array(left->vertices, sizeof *number);
-    cw_status st = placed && number ? make_room(w, left->vertices, left->triangles, err)
+    cw_status st = placed && number ? reserve_output(w, left->vertices, left->triangles, err)
                                     : cwi_fail_memory(err);
     for (size_t v = 0; v < left->vertices && st == CW_OK; v++)
-        placed[v] = j->placed[left->names[v]];
+        placed[v] = j->placed[left->global_ids[v]];
     for (size_t t = 0; t < left->triangles && st == CW_OK; t++)
         if (!is_rest(w, left, t))
-            place_triangle(w, left, t, placed);
+            append_triangle(w, left, t, placed);
     if (st == CW_OK)
-        st = keep_near(w, left, w->end - 3 * p->error - 2 * w->reach, err);
+        st = keep_near_triangles(w, left, w->end - 3 * p->error - 2 * w->reach, err);
     if (st == CW_OK)
-        st = take_rest(w, j, left, placed, number, err);
+        st = store_rest(w, j, left, placed, number, err);
     cwi_free(placed);
     cwi_free(number);
-    return st == CW_OK ? note_seam(w, j->slab, err) : st;
+    return st == CW_OK ? store_seam(w, j->slab, err) : st;
 }
 
 /* Halfway between the slab's lowest vertex and its upper plane. */
@@ -390,7 +393,7 @@ cw_status cwi_window_take(cwi_slab_window *w, cwi_passes *p, cwi_slab_block *sla
                           cw_error *err)
 {
     cwi_mesh_block *b = &slab->block, whole = {0}, left = {0};
-    const double begin = w->rest.lists ? w->end : -INFINITY, end = middle_of(slab);
+    const double begin = w->rest.nearest_points ? w->end : -INFINITY, end = middle_of(slab);
     const float along[3] = {b->along[0], b->along[1], b->along[2]}, to = b->to;
     const size_t to_end = 0;
     joiner j = {0};
@@ -408,10 +411,10 @@ cw_status cwi_window_take(cwi_slab_window *w, cwi_passes *p, cwi_slab_block *sla
         st = cwi_passes_whole(p, &whole, &to_end, 1, &left, err);
     memcpy(left.along, along, sizeof along);
     w->end = end;
-    w->cut += left.cut;
+    w->nonmanifold_count += left.nonmanifold_count;
     w->reach = fmax(w->reach, slab->longest);
     if (st == CW_OK)
-        st = shut_window(w, p, &j, &left, err);
+        st = finish_lower_part(w, p, &j, &left, err);
     cwi_free(j.placed);
     cwi_block_free(&whole);
     cwi_block_free(&left);

@@ -123,7 +123,7 @@ static inline size_t cwi_boxes_nodes(const cwi_boxes *tree)
  * widened by slack. A point is beyond at most one of a box's ends. Returns bit c where the square
  * of box c is less than a limit. */
 static inline unsigned cwi_boxes_squares(const cwi_boxes_node *n, const float p[3], float slack,
-                                         float limit, float squares[CWI_WIDTH])
+                                         float limit, float distances_sq[CWI_WIDTH])
 {
     unsigned less = 0;
     for (int c = 0; c < CWI_WIDTH; c += 4) {
@@ -140,7 +140,7 @@ static inline unsigned cwi_boxes_squares(const cwi_boxes_node *n, const float p[
         }
         const cwi_mask is_less = sum < limit;
         less |= cwi_mask_bits(&is_less) << c;
-        memcpy(squares + c, &sum, sizeof sum);
+        memcpy(distances_sq + c, &sum, sizeof sum);
     }
     return less;
 }
@@ -150,11 +150,11 @@ static inline unsigned cwi_boxes_squares(const cwi_boxes_node *n, const float p[
  * becomes part of the loop. */
 static inline void cwi_boxes_nearest(const cwi_boxes *tree, const double point[3],
                                      void (*measure)(void *context, size_t slot,
-                                                     double *square),
-                                     void *context, double *square)
+                                                     double *distance_sq),
+                                     void *context, double *distance_sq)
 {
     struct entry {
-        float square;
+        float distance_sq;
         int level;
         size_t node;
     } stack[CWI_LEVELS * CWI_WIDTH];
@@ -167,22 +167,22 @@ static inline void cwi_boxes_nearest(const cwi_boxes *tree, const double point[3
         stack[depth++] = root;
     while (depth) {
         const struct entry e = stack[--depth];
-        if ((double)e.square * (1 - 0x1p-20) >= *square)
+        if ((double)e.distance_sq * (1 - 0x1p-20) >= *distance_sq)
             continue;
-        float squares[CWI_WIDTH];
+        float distances_sq[CWI_WIDTH];
         const size_t child = e.node * CWI_WIDTH, base = depth;
         unsigned near = cwi_boxes_squares(tree->nodes + tree->first[e.level] + e.node, p, slack,
-                                          (float)(*square * (1 + 0x1p-19)), squares);
+                                          (float)(*distance_sq * (1 + 0x1p-19)), distances_sq);
         for (; near; near &= near - 1) {
             const size_t c = (size_t)__builtin_ctz(near);
             if (e.level == 0) {
-                if ((double)squares[c] * (1 - 0x1p-20) < *square)
-                    measure(context, child + c, square);
+                if ((double)distances_sq[c] * (1 - 0x1p-20) < *distance_sq)
+                    measure(context, child + c, distance_sq);
                 continue;
             }
-            const struct entry found = {squares[c], e.level - 1, child + c};
+            const struct entry found = {distances_sq[c], e.level - 1, child + c};
             size_t s = depth++; /* the nearest one comes last, and is taken first */
-            for (; s > base && stack[s - 1].square < squares[c]; s--)
+            for (; s > base && stack[s - 1].distance_sq < distances_sq[c]; s--)
                 stack[s] = stack[s - 1];
             stack[s] = found;
         }

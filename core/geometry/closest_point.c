@@ -33,14 +33,14 @@ typedef struct search {
     size_t triangle;
 } search;
 
-static void measure_slot(void *context, size_t slot, double *square)
+static void measure_slot(void *context, size_t slot, double *distance_sq)
 {
     search *s = context;
     const float *p[3];
     load_corners(s->mesh, s->tree->order[slot], p);
     const double here = cwi_facet_square(p[0], p[1], p[2], s->point);
-    if (here < *square) {
-        *square = here;
+    if (here < *distance_sq) {
+        *distance_sq = here;
         s->triangle = s->tree->order[slot];
     }
 }
@@ -48,10 +48,10 @@ static void measure_slot(void *context, size_t slot, double *square)
 cwi_closest cwi_closest_find(const cw_mesh *mesh, const cwi_boxes *tree, const double point[3])
 {
     search s = {.mesh = mesh, .tree = tree, .point = point};
-    double square = INFINITY;
+    double distance_sq = INFINITY;
     const float *p[3];
     cwi_closest c = {0};
-    cwi_boxes_nearest(tree, point, measure_slot, &s, &square);
+    cwi_boxes_nearest(tree, point, measure_slot, &s, &distance_sq);
     c.triangle = s.triangle;
     load_corners(mesh, c.triangle, p);
     cwi_facet_nearest(p[0], p[1], p[2], point, c.share);

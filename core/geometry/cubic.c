@@ -6,10 +6,10 @@
 
 int cwi_cubic_turns(const double c[4], double x[2])
 {
-    const double square = c[2] * c[2] - 3 * c[3] * c[1];
-    if (!(square > 0))
+    const double discriminant = c[2] * c[2] - 3 * c[3] * c[1];
+    if (!(discriminant > 0))
         return 0;
-    const double q = -(c[2] + copysign(sqrt(square), c[2]));
+    const double q = -(c[2] + copysign(sqrt(discriminant), c[2]));
     const double r[2] = {q / (3 * c[3]), c[1] / q};
     const bool swap = r[1] < r[0];
     int count = 0;

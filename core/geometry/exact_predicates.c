@@ -76,12 +76,12 @@ static int exact_orient3d(const float *a, const float *b, const float *c, const 
 __extension__ typedef __int128 wide;
 enum { WHOLE_BITS = 40 };
 
-/* Returns the power of two that takes coordinates up to `most` to just below 2^40. */
-static double unit_for(float most)
+/* Returns the power of two that takes coordinates up to `max_magnitude` to just below 2^40. */
+static double unit_for(float max_magnitude)
 {
     uint64_t bits;
     double unit;
-    const double m = (double)most;
+    const double m = (double)max_magnitude;
     memcpy(&bits, &m, sizeof bits);
     bits = (uint64_t)(2 * 1023 + WHOLE_BITS - 1 - (int)(bits >> 52)) << 52;
     memcpy(&unit, &bits, sizeof unit);
@@ -91,11 +91,11 @@ static double unit_for(float most)
 /* Converts points to units of a power of two; returns false when a coordinate is not whole. */
 static bool make_whole(const float *const p[], int count, long long whole[][3])
 {
-    float most = FLT_MIN;
+    float max_magnitude = FLT_MIN;
     for (int n = 0; n < count; n++)
         for (int a = 0; a < 3; a++)
-            most = fabsf(p[n][a]) > most ? fabsf(p[n][a]) : most;
-    const double unit = unit_for(most);
+            max_magnitude = fabsf(p[n][a]) > max_magnitude ? fabsf(p[n][a]) : max_magnitude;
+    const double unit = unit_for(max_magnitude);
     for (int n = 0; n < count; n++)
         for (int a = 0; a < 3; a++) {
             const double scaled = (double)p[n][a] * unit;
@@ -155,7 +155,7 @@ static bool whole_orient2d(const float *const p[3], int x, int y, int *sign)
  * cannot under- or overflow. */
 int cwi_orient3d(const float a[3], const float b[3], const float c[3], const float d[3])
 {
-    const double unit = DBL_EPSILON / 2, share = (7 + 56 * unit) * unit;
+    const double unit = DBL_EPSILON / 2, error_factor = (7 + 56 * unit) * unit;
     double u[3], v[3], w[3], value = 0, size = 0;
     for (int i = 0; i < 3; i++) {
         u[i] = (double)b[i] - (double)a[i];
@@ -168,7 +168,7 @@ int cwi_orient3d(const float a[3], const float b[3], const float c[3], const flo
         value += u[i] * (vw - wv);
         size += fabs(u[i]) * (fabs(vw) + fabs(wv));
     }
-    if (fabs(value) > share * size)
+    if (fabs(value) > error_factor * size)
         return sign_of(value);
     int sign;
     return whole_orient3d((const float *[4]){a, b, c, d}, &sign) ? sign
@@ -189,12 +189,12 @@ static int exact_orient2d(const float *a, const float *b, const float *c, int x,
 
 int cwi_orient2d(const float a[3], const float b[3], const float c[3], int axis)
 {
-    const double unit = DBL_EPSILON / 2, share = (3 + 16 * unit) * unit;
+    const double unit = DBL_EPSILON / 2, error_factor = (3 + 16 * unit) * unit;
     const int x = (axis + 1) % 3, y = (axis + 2) % 3;
     const double left = ((double)a[x] - (double)c[x]) * ((double)b[y] - (double)c[y]);
     const double right = ((double)a[y] - (double)c[y]) * ((double)b[x] - (double)c[x]);
     const double value = left - right;
-    if (fabs(value) > share * (fabs(left) + fabs(right)))
+    if (fabs(value) > error_factor * (fabs(left) + fabs(right)))
         return sign_of(value);
     int sign;
     return whole_orient2d((const float *[3]){a, b, c}, x, y, &sign)

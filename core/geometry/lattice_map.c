@@ -11,24 +11,24 @@ static size_t slot_of(uint64_t key, size_t slots)
     return (size_t)(h ^ (h >> 31)) & (slots - 1);
 }
 
-void cwi_places_free(cwi_places *p)
+void cwi_lattice_free(cwi_lattice_map *p)
 {
     cwi_free(p->keys);
     cwi_free(p->table);
-    *p = (cwi_places){0};
+    *p = (cwi_lattice_map){0};
 }
 
-uint32_t cwi_places_find(const cwi_places *p, uint64_t key)
+uint32_t cwi_lattice_find(const cwi_lattice_map *p, uint64_t key)
 {
     if (!p->slots)
-        return CWI_NO_PLACE;
+        return CWI_NO_LATTICE_POINT;
     for (size_t s = slot_of(key, p->slots); p->table[s]; s = (s + 1) & (p->slots - 1))
         if (p->keys[p->table[s] - 1] == key)
             return p->table[s] - 1;
-    return CWI_NO_PLACE;
+    return CWI_NO_LATTICE_POINT;
 }
 
-static void enter_slot(cwi_places *p, uint32_t n)
+static void enter_slot(cwi_lattice_map *p, uint32_t n)
 {
     size_t s = slot_of(p->keys[n], p->slots);
     while (p->table[s])
@@ -36,31 +36,32 @@ static void enter_slot(cwi_places *p, uint32_t n)
     p->table[s] = n + 1;
 }
 
-static bool grow_table(cwi_places *p)
+static bool grow_table(cwi_lattice_map *p)
 {
-    const size_t room = p->room ? 2 * p->room : 256;
-    uint64_t *keys = cwi_realloc_array(p->keys, room, sizeof *keys);
+    const size_t capacity = p->capacity ? 2 * p->capacity : 256;
+    uint64_t *keys = cwi_realloc_array(p->keys, capacity, sizeof *keys);
     p->keys = keys ? keys : p->keys;
-    uint32_t *table =
-        keys && room < CWI_NO_PLACE ? cwi_alloc_zeroed(2 * room, sizeof *table) : NULL;
+    uint32_t *table = keys && capacity < CWI_NO_LATTICE_POINT
+                          ? cwi_alloc_zeroed(2 * capacity, sizeof *table)
+                          : NULL;
     if (!table)
         return false;
     cwi_free(p->table);
     p->table = table;
-    p->slots = 2 * room;
-    p->room = room;
+    p->slots = 2 * capacity;
+    p->capacity = capacity;
     for (uint32_t n = 0; n < p->count; n++)
         enter_slot(p, n);
     return true;
 }
 
-uint32_t cwi_places_add(cwi_places *p, uint64_t key)
+uint32_t cwi_lattice_add(cwi_lattice_map *p, uint64_t key)
 {
-    const uint32_t known = cwi_places_find(p, key);
-    if (known != CWI_NO_PLACE)
+    const uint32_t known = cwi_lattice_find(p, key);
+    if (known != CWI_NO_LATTICE_POINT)
         return known;
-    if (p->count == p->room && !grow_table(p))
-        return CWI_NO_PLACE;
+    if (p->count == p->capacity && !grow_table(p))
+        return CWI_NO_LATTICE_POINT;
     p->keys[p->count] = key;
     enter_slot(p, (uint32_t)p->count);
     return (uint32_t)p->count++;

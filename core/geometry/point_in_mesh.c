@@ -25,8 +25,8 @@ static int pass_edge(const ray *r, uint32_t u, uint32_t v)
     const bool from = (double)a[1] > r->from[1], to = (double)b[1] > r->from[1];
     if (from == to)
         return 0;
-    const double share = (r->from[1] - (double)a[1]) / ((double)b[1] - (double)a[1]);
-    if ((double)a[2] + share * ((double)b[2] - (double)a[2]) <= r->from[2])
+    const double fraction = (r->from[1] - (double)a[1]) / ((double)b[1] - (double)a[1]);
+    if ((double)a[2] + fraction * ((double)b[2] - (double)a[2]) <= r->from[2])
         return 0;
     return to == (u < v) ? 1 : -1;
 }

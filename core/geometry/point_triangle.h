@@ -10,24 +10,24 @@
  * that point relative to the segment's start. */
 static inline double cwi_segment_nearest(const double from[3], const double along[3])
 {
-    const double square = cwi_dot(along, along);
-    const double t = square > 0 ? cwi_dot(from, along) / square : 0;
+    const double along_sq = cwi_dot(along, along);
+    const double t = along_sq > 0 ? cwi_dot(from, along) / along_sq : 0;
     return cwi_lesser(cwi_greater(t, 0), 1);
 }
 
 static inline double cwi_segment_square(const double from[3], const double along[3])
 {
     const double t = cwi_segment_nearest(from, along);
-    double way[3];
-    cwi_add_scaled(from, -t, along, way);
-    return cwi_dot(way, way);
+    double offset[3];
+    cwi_add_scaled(from, -t, along, offset);
+    return cwi_dot(offset, offset);
 }
 
 /* A point seen from a triangle: the signed areas of the three triangles that it makes with the
  * sides, times the triangle's own area. */
 typedef struct cwi_facet_view {
     double ab[3], ac[3], bc[3], ap[3], bp[3], normal[3];
-    double square, in_a, in_b, in_c;
+    double normal_sq, in_a, in_b, in_c;
 } cwi_facet_view;
 
 /* Changes the point of a view. a: corner of the triangle */
@@ -42,7 +42,7 @@ static inline void cwi_facet_turn(cwi_facet_view *f, const float a[3], const dou
     cwi_cross(f->ap, f->ac, y);
     f->in_c = cwi_dot(x, f->normal);
     f->in_b = cwi_dot(y, f->normal);
-    f->in_a = f->square - f->in_b - f->in_c;
+    f->in_a = f->normal_sq - f->in_b - f->in_c;
 }
 
 static inline cwi_facet_view cwi_facet_look(const float a[3], const float b[3],
@@ -55,7 +55,7 @@ static inline cwi_facet_view cwi_facet_look(const float a[3], const float b[3],
         f.bc[k] = f.ac[k] - f.ab[k];
     }
     cwi_cross(f.ab, f.ac, f.normal);
-    f.square = cwi_dot(f.normal, f.normal);
+    f.normal_sq = cwi_dot(f.normal, f.normal);
     cwi_facet_turn(&f, a, p);
     return f;
 }
@@ -66,15 +66,15 @@ static inline cwi_facet_view cwi_facet_look(const float a[3], const float b[3],
 static inline double cwi_facet_view_square(const cwi_facet_view *f)
 {
     double best = INFINITY;
-    if (f->square > 0 && f->in_a >= 0 && f->in_b >= 0 && f->in_c >= 0) {
+    if (f->normal_sq > 0 && f->in_a >= 0 && f->in_b >= 0 && f->in_c >= 0) {
         const double height = cwi_dot(f->ap, f->normal);
-        return height * height / f->square;
+        return height * height / f->normal_sq;
     }
-    if (!(f->in_c >= 0) || !(f->square > 0))
+    if (!(f->in_c >= 0) || !(f->normal_sq > 0))
         best = cwi_segment_square(f->ap, f->ab);
-    if (!(f->in_b >= 0) || !(f->square > 0))
+    if (!(f->in_b >= 0) || !(f->normal_sq > 0))
         best = cwi_lesser(best, cwi_segment_square(f->ap, f->ac));
-    if (!(f->in_a >= 0) || !(f->square > 0))
+    if (!(f->in_a >= 0) || !(f->normal_sq > 0))
         best = cwi_lesser(best, cwi_segment_square(f->bp, f->bc));
     return best;
 }
@@ -88,13 +88,13 @@ static inline double cwi_facet_square(const float a[3], const float b[3], const 
 
 /* Computes the weights of the corners for the triangle's point that is closest to p. */
 static inline void cwi_facet_nearest(const float a[3], const float b[3], const float c[3],
-                                     const double p[3], double share[3])
+                                     const double p[3], double weights[3])
 {
     const cwi_facet_view f = cwi_facet_look(a, b, c, p);
-    if (f.square > 0 && f.in_a >= 0 && f.in_b >= 0 && f.in_c >= 0) {
-        share[0] = f.in_a / f.square;
-        share[1] = f.in_b / f.square;
-        share[2] = f.in_c / f.square;
+    if (f.normal_sq > 0 && f.in_a >= 0 && f.in_b >= 0 && f.in_c >= 0) {
+        weights[0] = f.in_a / f.normal_sq;
+        weights[1] = f.in_b / f.normal_sq;
+        weights[2] = f.in_c / f.normal_sq;
         return;
     }
     const double on_ab = cwi_segment_square(f.ap, f.ab), on_ac = cwi_segment_square(f.ap, f.ac),
@@ -104,9 +104,9 @@ static inline void cwi_facet_nearest(const float a[3], const float b[3], const f
     const double t = from == 1 ? cwi_segment_nearest(f.bp, f.bc)
                      : to == 2 ? cwi_segment_nearest(f.ap, f.ac)
                                : cwi_segment_nearest(f.ap, f.ab);
-    share[0] = share[1] = share[2] = 0;
-    share[from] = 1 - t;
-    share[to] = t;
+    weights[0] = weights[1] = weights[2] = 0;
+    weights[from] = 1 - t;
+    weights[to] = t;
 }
 
 #endif

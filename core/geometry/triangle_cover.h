@@ -27,8 +27,8 @@ typedef struct cwi_cover {
      * distance. If that is too large, no facet is near enough. */
     double (*nearest)(void *context, const double p[3], const float *facet[3]);
     void *context;
-    double square;    /* square of the allowed distance */
-    double normal[3]; /* of the triangle; of any length */
+    double distance_sq; /* square of the allowed distance */
+    double normal[3];   /* of the triangle; of any length */
 } cwi_cover;
 
 static inline double cwi_height(const double normal[3], const double p[3], const double at[3])
@@ -113,12 +113,12 @@ static inline bool cwi_piece_halve(cwi_triangle_piece *piece, cwi_triangle_piece
     for (int n = 0; n < piece->count; n++)
         for (int m = 0; m < n; m++) {
             const double *p = piece->p[n], *q = piece->p[m];
-            const double way[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-            if (!(cwi_dot(way, way) > longest))
+            const double side[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+            if (!(cwi_dot(side, side) > longest))
                 continue;
-            longest = cwi_dot(way, way);
+            longest = cwi_dot(side, side);
             for (int k = 0; k < 3; k++) {
-                along[k] = way[k];
+                along[k] = side[k];
                 middle[k] = (p[k] + q[k]) / 2;
             }
         }
@@ -127,14 +127,14 @@ static inline bool cwi_piece_halve(cwi_triangle_piece *piece, cwi_triangle_piece
 
 /* Returns bit n if corner n is too far from a facet. */
 static inline unsigned cwi_piece_far(const cwi_triangle_piece *piece,
-                                     const float *const facet[3], double square)
+                                     const float *const facet[3], double distance_sq)
 {
     unsigned far = 0;
     cwi_facet_view view = cwi_facet_look(facet[0], facet[1], facet[2], piece->p[0]);
     for (int n = 0; n < piece->count; n++) {
         if (n)
             cwi_facet_turn(&view, facet[0], piece->p[n]);
-        if (!(cwi_facet_view_square(&view) <= square))
+        if (!(cwi_facet_view_square(&view) <= distance_sq))
             far |= 1u << n;
     }
     return far;
@@ -181,9 +181,9 @@ static inline bool cwi_piece_covered(const cwi_cover *c, cwi_triangle_piece *pie
     const float *facet[3];
     double middle[3];
     cwi_piece_middle(piece, middle);
-    if (!(c->nearest(c->context, middle, facet) <= c->square))
+    if (!(c->nearest(c->context, middle, facet) <= c->distance_sq))
         return false;
-    for (unsigned far; (far = cwi_piece_far(piece, facet, c->square)) != 0;) {
+    for (unsigned far; (far = cwi_piece_far(piece, facet, c->distance_sq)) != 0;) {
         cwi_triangle_piece other;
         const bool cut = cwi_piece_cut_off(piece, facet, far, c->normal, &other);
         if (piece->cuts < 0 || (!cut && !cwi_piece_halve(piece, &other)) ||

@@ -185,8 +185,8 @@ void cwi_nearest_of_triangle(const cwi_triangle *t, double nearest[3])
         cwi_cross(t->p[c], t->p[(c + 1) % 3], corners[c]);
     for (int a = 0; a < 3; a++)
         n[a] = corners[0][a] + corners[1][a] + corners[2][a];
-    const double square = cwi_dot(n, n), height = cwi_dot(n, t->p[0]);
-    if (height * height >= square * cwi_dot(nearest, nearest))
+    const double normal_sq = cwi_dot(n, n), height = cwi_dot(n, t->p[0]);
+    if (height * height >= normal_sq * cwi_dot(nearest, nearest))
         return;
     bool inside = true;
     for (int c = 0; c < 3; c++)
@@ -195,5 +195,5 @@ void cwi_nearest_of_triangle(const cwi_triangle *t, double nearest[3])
             try_side(t->p[c], t->p[(c + 1) % 3], nearest);
         }
     for (int a = 0; a < 3 && inside; a++)
-        nearest[a] = height / square * n[a];
+        nearest[a] = height / normal_sq * n[a];
 }

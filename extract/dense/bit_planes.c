@@ -39,10 +39,10 @@ static cw_status allocate_planes(cwi_bit_grid *g, cw_error *err)
         !cwi_size_mul(g->rows, 64 * g->words, &samples))
         return cwi_fail_memory(err);
     g->inside = cwi_grid_plane(g);
-    g->busy = cwi_alloc_large(g->rows * g->masks, sizeof *g->busy);
+    g->mixed_words = cwi_alloc_large(g->rows * g->masks, sizeof *g->mixed_words);
     g->filled = cwi_alloc_zeroed(g->rows, sizeof *g->filled);
     g->layers = cwi_alloc_zeroed(g->rows_z, sizeof *g->layers);
-    return g->inside && g->busy && g->filled && g->layers ? CW_OK : cwi_fail_memory(err);
+    return g->inside && g->mixed_words && g->filled && g->layers ? CW_OK : cwi_fail_memory(err);
 }
 
 /* Checks the range of positions. They are floats: they cannot distinguish voxels that are too
@@ -111,7 +111,7 @@ static bool is_wanted(const cwi_bit_grid *g, size_t j, size_t k, size_t w)
 {
     if (j + 1 >= g->rows_y || k + 1 >= g->rows_z)
         return false;
-    return g->everything || cwi_grid_wanted(g, j, k)[w / 64] >> w % 64 & 1;
+    return g->all_classified || cwi_grid_active(g, j, k)[w / 64] >> w % 64 & 1;
 }
 
 bool cwi_drop_pinched_layer(const cwi_bit_grid *g, size_t k)
@@ -200,10 +200,10 @@ cw_status cwi_grid_set_live(cwi_bit_grid *g, bool leave_open, cw_error *err)
 {
     cwi_free(g->live);
     g->live = NULL;
-    g->boxed = leave_open && !g->gaps;
+    g->live_is_box = leave_open && !g->has_gaps;
     if (!leave_open)
         return CW_OK;
-    if (g->boxed)
+    if (g->live_is_box)
         return set_box(g, err);
     g->live = cwi_grid_plane(g);
     if (!g->live)
@@ -241,17 +241,17 @@ static cw_status plan_classification(classification *c, cwi_bit_grid *g, cwi_oct
                                      cw_error *err)
 {
     const size_t bricks = g->bricks_z * g->bricks_y;
-    if (tree && !g->wanted)
-        g->wanted = cwi_alloc_array(bricks * g->masks, sizeof *g->wanted);
+    if (tree && !g->active)
+        g->active = cwi_alloc_array(bricks * g->masks, sizeof *g->active);
     if (tree && !g->leaves)
         g->leaves = cwi_alloc_array(bricks * g->words, sizeof *g->leaves);
-    if (tree && (!g->wanted || !g->leaves))
+    if (tree && (!g->active || !g->leaves))
         return cwi_fail_memory(err);
     c->grow = tree && !tree->grown ? tree : NULL;
-    g->everything = !tree || !tree->grown;
-    if (!g->everything)
-        g->everything = cwi_octree_mark(tree, g) * tree->leaf_bytes >
-                        cwi_octree_leaves(tree) * cw_type_size(g->volume.type);
+    g->all_classified = !tree || !tree->grown;
+    if (!g->all_classified)
+        g->all_classified = cwi_octree_mark(tree, g) * tree->leaf_bytes >
+                            cwi_octree_leaves(tree) * cw_type_size(g->volume.type);
     return CW_OK;
 }
 
@@ -274,9 +274,9 @@ static cw_status compare_samples(classification *c, cwi_bit_grid *g,
     if (st == CW_OK && c->grow)
         cwi_octree_grow(c->grow);
     c->grow = NULL;
-    if (st == CW_OK && g->everything) {
-        g->gaps = any_gap(g);
-        g->volume.has_nodata = g->volume.has_nodata && g->gaps;
+    if (st == CW_OK && g->all_classified) {
+        g->has_gaps = any_gap(g);
+        g->volume.has_nodata = g->volume.has_nodata && g->has_gaps;
     }
     return st;
 }
@@ -288,10 +288,10 @@ static cw_status compare_all(classification *c, cwi_bit_grid *g, const cw_extrac
     g->has = cwi_grid_plane(g);
     if (!g->has)
         return cwi_fail_memory(err);
-    g->find_values = g->everything = true;
+    g->find_values = g->all_classified = true;
     const cw_status st = compare_samples(c, g, desc, err);
     g->find_values = false;
-    if (st != CW_OK || !g->gaps) {
+    if (st != CW_OK || !g->has_gaps) {
         cwi_free(g->has);
         g->has = NULL;
     }
@@ -309,11 +309,11 @@ cw_status cwi_grid_classify(cwi_bit_grid *g, const cwi_engine *engine, cwi_octre
     if (st == CW_OK && !at_once)
         st = compare_samples(&c, g, desc, err);
     /* few volumes of floats have NaN, and for few of these it matters */
-    if (st == CW_OK && (at_once || (desc->leave_open && g->gaps && !g->has)))
+    if (st == CW_OK && (at_once || (desc->leave_open && g->has_gaps && !g->has)))
         st = compare_all(&c, g, desc, err);
     if (st != CW_OK)
         return st;
-    g->crossed = g->everything ? c.in && c.out : cwi_octree_crossed(tree, g);
+    g->crossed = g->all_classified ? c.in && c.out : cwi_octree_crossed(tree, g);
     return cwi_grid_set_live(g, desc->leave_open, err);
 }
 
@@ -327,21 +327,21 @@ void cwi_grid_free(cwi_bit_grid *g)
     cwi_free(g->has);
     cwi_free(g->live);
     cwi_free(g->window);
-    cwi_free(g->busy);
+    cwi_free(g->mixed_words);
     cwi_free(g->filled);
-    cwi_free(g->wanted);
+    cwi_free(g->active);
     cwi_free(g->leaves);
     memset(g, 0, sizeof *g);
 }
 
 size_t cwi_grid_bytes(const cwi_bit_grid *g)
 {
-    const size_t planes = 1 + (g->has != NULL) + (g->live && !g->boxed);
-    const size_t box = g->boxed ? 2 * g->rows_y * g->words : 0;
+    const size_t planes = 1 + (g->has != NULL) + (g->live && !g->live_is_box);
+    const size_t box = g->live_is_box ? 2 * g->rows_y * g->words : 0;
     const size_t bricks = g->leaves ? g->bricks_z * g->bricks_y : 0;
     size_t plans = 0;
     for (size_t k = 0; k < g->rows_z; k++)
-        plans += g->layers[k].plan_room;
+        plans += g->layers[k].plan_capacity;
     return plans * sizeof *g->layers->plans + g->rows_z * sizeof *g->layers +
            (planes * g->rows * g->words + box + (g->rows + bricks) * g->masks) *
                sizeof *g->inside +

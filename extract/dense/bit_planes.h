@@ -19,7 +19,7 @@ enum { CWI_BRICK = 8 };
 /* The eight leaves in a word, bit b for leaf b: those that the octree cannot rule out and, of
  * the others, those that are inside. */
 typedef struct cwi_leaf_bits {
-    uint8_t wanted, solid;
+    uint8_t active, solid;
 } cwi_leaf_bits;
 
 /* Counts of a layer, and the plans of its ambiguous cells. */
@@ -27,7 +27,7 @@ typedef struct cwi_layer {
     size_t vertices, triangles;
     bool at_border;  /* the solid meets the volume's border here */
     uint32_t *plans; /* how its ambiguous cells resolve, in their order */
-    size_t plan_count, plan_room;
+    size_t plan_count, plan_capacity;
     bool plans_lost; /* there was no memory */
 } cwi_layer;
 
@@ -64,9 +64,10 @@ typedef struct cwi_bit_grid {
     uint64_t *window; /* of a block, whose rows are one word: four planes, of cells that are
                          live or beside a live one, and of edges of live cells along x, y and z.
                          NULL: to be found out from `live` */
-    bool roomy;       /* wherever a row of voxels begins, 64 may be read */
-    size_t masks;     /* words of a mask that has a bit for every word of a row */
-    uint64_t *busy;   /* rows x masks, found when a row is counted: bit w is set where a cell of
+    bool reads_whole_words; /* wherever a row of voxels begins, 64 may be read */
+    size_t masks;           /* words of a mask that has a bit for every word of a row */
+    uint64_t
+        *mixed_words; /* rows x masks, found when a row is counted: bit w is set where a cell of
                          word w has corners on both sides. No other word holds crossings */
     cwi_layer *layers; /* rows_z */
     size_t max_plans; /* that a layer keeps: if it has more, they are made twice. 0: no limit */
@@ -74,16 +75,16 @@ typedef struct cwi_bit_grid {
                             ambiguous cells; filled when a layer is counted. NULL: not wanted */
     size_t bricks_y, bricks_z;
     uint64_t
-        *wanted; /* bricks_z x bricks_y x masks: words with cells the octree cannot rule out */
+        *active; /* bricks_z x bricks_y x masks: words with cells the octree cannot rule out */
     cwi_leaf_bits
         *leaves;      /* bricks_z x bricks_y x words: of wanted words, and those after them */
-    bool gaps;        /* some voxel has no value: known once everything was wanted */
-    bool boxed;       /* the live cells are all but those of padding */
+    bool has_gaps;    /* some voxel has no value: known once everything was wanted */
+    bool live_is_box; /* the live cells are all but those of padding */
     bool find_values; /* `has` is filled while samples are compared */
-    bool everything;  /* all words are wanted; else the others mean nothing in the planes */
-    bool cubic;       /* crossings stand on the cubic through four samples where there is one */
-    bool simple;      /* one rule for ambiguous faces, in place of the field's topology */
-    bool crossed;     /* some samples with values are inside and some are not */
+    bool all_classified; /* all words are wanted; else the others mean nothing in the planes */
+    bool cubic;   /* crossings stand on the cubic through four samples where there is one */
+    bool simple;  /* one rule for ambiguous faces, in place of the field's topology */
+    bool crossed; /* some samples with values are inside and some are not */
 } cwi_bit_grid;
 
 /* Numbers of a row: its first vertex on x-, y- and z-edges and inside cells, and its cells'
@@ -137,7 +138,7 @@ static inline const uint64_t *cwi_grid_row(const cwi_bit_grid *g, size_t row)
 
 static inline const uint64_t *cwi_grid_busy(const cwi_bit_grid *g, size_t row)
 {
-    return g->busy + row * g->masks;
+    return g->mixed_words + row * g->masks;
 }
 
 /* Returns the row of bricks that row (j, k) of cells lies in. */
@@ -147,9 +148,9 @@ static inline size_t cwi_grid_bricks(const cwi_bit_grid *g, size_t j, size_t k)
 }
 
 /* Returns the wanted words of row (j, k) of cells. */
-static inline const uint64_t *cwi_grid_wanted(const cwi_bit_grid *g, size_t j, size_t k)
+static inline const uint64_t *cwi_grid_active(const cwi_bit_grid *g, size_t j, size_t k)
 {
-    return g->wanted + cwi_grid_bricks(g, j, k) * g->masks;
+    return g->active + cwi_grid_bricks(g, j, k) * g->masks;
 }
 
 /* The rows of bricks that touch row (j, k) of samples: one to four. */
@@ -171,20 +172,20 @@ static inline cwi_brick_rows cwi_rows_around(const cwi_bit_grid *g, size_t j, si
 }
 
 /* Returns the words of the row that cells of wanted words read, in mask word m. */
-static inline uint64_t cwi_wanted_samples(const cwi_bit_grid *g, const cwi_brick_rows *b,
+static inline uint64_t cwi_active_samples(const cwi_bit_grid *g, const cwi_brick_rows *b,
                                           size_t m)
 {
-    uint64_t wanted = 0;
+    uint64_t active = 0;
     for (size_t n = 0; n < b->count; n++)
-        wanted |= g->wanted[b->row[n] * g->masks + m];
-    return wanted;
+        active |= g->active[b->row[n] * g->masks + m];
+    return active;
 }
 
-static inline bool cwi_any_wanted(const cwi_bit_grid *g, const cwi_brick_rows *b)
+static inline bool cwi_any_active(const cwi_bit_grid *g, const cwi_brick_rows *b)
 {
     uint64_t any = 0;
     for (size_t m = 0; m < g->masks; m++)
-        any |= cwi_wanted_samples(g, b, m);
+        any |= cwi_active_samples(g, b, m);
     return any;
 }
 

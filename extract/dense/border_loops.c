@@ -81,9 +81,9 @@ static void set_bit(uint64_t *bits, size_t n)
  * border. */
 static inline uint64_t word_at(const cwi_bit_grid *g, size_t j, size_t k, size_t w)
 {
-    if (!g->everything) {
+    if (!g->all_classified) {
         const cwi_brick_rows around = cwi_rows_around(g, j, k);
-        if (w >= g->words || !(cwi_wanted_samples(g, &around, w / 64) >> w % 64 & 1))
+        if (w >= g->words || !(cwi_active_samples(g, &around, w / 64) >> w % 64 & 1))
             return 0;
     }
     return cwi_grid_row(g, k * g->rows_y + j)[w];
@@ -101,7 +101,7 @@ static void load_row(const cwi_bit_grid *g, size_t y, size_t layer, uint64_t *bi
 static unsigned find_ends(const cwi_bit_grid *g, size_t y, size_t layer)
 {
     const size_t last = g->volume.dim[0];
-    if (g->everything)
+    if (g->all_classified)
         return g->filled[layer * g->rows_y + y + 1];
     return (word_at(g, y + 1, layer, 0) & 2 ? CWI_FIRST_INSIDE : 0) |
            (word_at(g, y + 1, layer, last / 64) >> last % 64 & 1 ? CWI_LAST_INSIDE : 0);

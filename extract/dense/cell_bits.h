@@ -75,29 +75,29 @@ static inline unsigned cwi_words_set(const cwi_words *bits)
 #endif
 }
 
-/* Clears the words whose bits in `wanted` are not set. */
-static inline void cwi_keep_words(unsigned wanted, cwi_words *words)
+/* Clears the words whose bits in `active` are not set. */
+static inline void cwi_keep_words(unsigned active, cwi_words *words)
 {
 #ifdef __AVX512VPOPCNTDQ__
-    *words = (cwi_words)_mm512_maskz_mov_epi64((__mmask8)wanted, (__m512i)*words);
+    *words = (cwi_words)_mm512_maskz_mov_epi64((__mmask8)active, (__m512i)*words);
 #elif defined __AVX2__
     const __m256i bit = _mm256_setr_epi64x(1, 2, 4, 8),
-                  here = _mm256_and_si256(_mm256_set1_epi64x((long long)wanted), bit);
+                  here = _mm256_and_si256(_mm256_set1_epi64x((long long)active), bit);
     *words &= (cwi_words)_mm256_cmpeq_epi64(here, bit);
 #else
     for (int n = 0; n < CWI_WORDS; n++)
-        (*words)[n] = wanted >> n & 1 ? (*words)[n] : 0;
+        (*words)[n] = active >> n & 1 ? (*words)[n] : 0;
 #endif
 }
 
 /* Returns the sum of the wanted words: word n, bit n. */
-static inline uint64_t cwi_sum_words(unsigned wanted, const cwi_words *words)
+static inline uint64_t cwi_sum_words(unsigned active, const cwi_words *words)
 {
 #ifdef __AVX512VPOPCNTDQ__
-    return (uint64_t)_mm512_mask_reduce_add_epi64((__mmask8)wanted, (__m512i)*words);
+    return (uint64_t)_mm512_mask_reduce_add_epi64((__mmask8)active, (__m512i)*words);
 #else
     cwi_words kept = *words;
-    cwi_keep_words(wanted, &kept);
+    cwi_keep_words(active, &kept);
 #ifdef __AVX2__
     const __m128i two = _mm_add_epi64(_mm256_castsi256_si128((__m256i)kept),
                                       _mm256_extracti128_si256((__m256i)kept, 1));

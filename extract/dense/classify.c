@@ -213,7 +213,7 @@ static cwi_leaf_bits leaves_of_samples(const cwi_bit_grid *g, const cwi_brick_ro
     cwi_leaf_bits bits = {0, 0};
     for (size_t n = 0; n < b->count; n++) {
         const cwi_leaf_bits here = g->leaves[b->row[n] * g->words + w];
-        bits.wanted |= here.wanted;
+        bits.active |= here.active;
         bits.solid |= here.solid;
     }
     return bits;
@@ -284,7 +284,7 @@ void cwi_classify_layer(const cwi_bit_grid *g, size_t b, cwi_range *leaves, bool
     const size_t begin = b * CWI_BRICK;
     const size_t end = b + 1 == g->bricks_z ? g->rows_z : begin + CWI_BRICK;
     const size_t leaves_x = (g->volume.dim[0] + CWI_BRICK) / CWI_BRICK;
-    if (!g->everything) {
+    if (!g->all_classified) {
         classify_bricks(g, b);
         return;
     }

@@ -8,7 +8,7 @@
 
 /* Counts of some words of a layer; after a row's last word comes the next row's first. */
 typedef struct word_counts {
-    unsigned busy, open;        /* bit n: word n has mixed cells; has ambiguous cells */
+    unsigned mixed_words, open; /* bit n: word n has mixed cells; has ambiguous cells */
     cwi_words mixed, ambiguous; /* cells whose corners are on both sides; of these, those whose
                                    signs do not settle the rest */
     cwi_words counts;           /* fields of COUNT_BITS: edges that are crossed along each axis,
@@ -41,7 +41,7 @@ static inline void count_cells(const cwi_bit_grid *g, size_t k, size_t word,
 }
 
 /* Counts the wanted ones of successive words of layer k, from `word` on: word n, bit n. */
-static inline void count_words(const cwi_bit_grid *g, size_t k, size_t word, unsigned wanted,
+static inline void count_words(const cwi_bit_grid *g, size_t k, size_t word, unsigned active,
                                word_counts *c)
 {
     const size_t layer = g->rows_y * g->words, first = k * layer + word;
@@ -60,9 +60,9 @@ static inline void count_words(const cwi_bit_grid *g, size_t k, size_t word, uns
         cwi_load_words(g->window + k * g->rows_y + word, &any);
         c->mixed &= any;
     }
-    cwi_keep_words(wanted, &c->mixed);
-    c->busy = cwi_words_set(&c->mixed);
-    if (c->busy) {
+    cwi_keep_words(active, &c->mixed);
+    c->mixed_words = cwi_words_set(&c->mixed);
+    if (c->mixed_words) {
         count_cells(g, k, word, corner, c);
         c->open = cwi_words_set(&c->ambiguous);
     }
@@ -127,12 +127,12 @@ static uint64_t count_live_edges(const cwi_bit_grid *g, unsigned busy, size_t j,
 static inline void take_words(const cwi_bit_grid *g, const word_counts *c, int n, int count,
                               size_t j, size_t k, size_t w, cwi_row *row)
 {
-    const unsigned here = first_words((size_t)count) << n, busy = (c->busy & here) >> n;
+    const unsigned here = first_words((size_t)count) << n, busy = (c->mixed_words & here) >> n;
     const uint64_t field = (UINT64_C(1) << COUNT_BITS) - 1;
     if (!busy)
         return;
-    g->busy[(k * g->rows_y + j) * g->masks + w / 64] |= (uint64_t)busy << w % 64;
-    uint64_t sums = cwi_sum_words(c->busy & here, &c->counts);
+    g->mixed_words[(k * g->rows_y + j) * g->masks + w / 64] |= (uint64_t)busy << w % 64;
+    uint64_t sums = cwi_sum_words(c->mixed_words & here, &c->counts);
     row->triangle += sums >> 3 * COUNT_BITS;
     if (g->live && !cwi_is_whole(g, j, k))
         sums = count_live_edges(g, busy, j, k, w);
@@ -150,12 +150,12 @@ static inline void take_words(const cwi_bit_grid *g, const word_counts *c, int n
 
 /* Counts the wanted ones of CWI_WORDS words of layer k, from word w of row j on. Leaves counts,
  * not yet first numbers, in the layer's rows. */
-static void count_group(const cwi_bit_grid *g, size_t j, size_t k, size_t w, unsigned wanted,
+static void count_group(const cwi_bit_grid *g, size_t j, size_t k, size_t w, unsigned active,
                         cwi_row *rows)
 {
     word_counts c;
-    count_words(g, k, j * g->words + w, wanted, &c);
-    for (int n = 0, count; n < CWI_WORDS && c.busy >> n; n += count) {
+    count_words(g, k, j * g->words + w, active, &c);
+    for (int n = 0, count; n < CWI_WORDS && c.mixed_words >> n; n += count) {
         /* those in the same row and word of its mask */
         const size_t end = (w | 63) + 1 < g->words ? (w | 63) + 1 : g->words;
         count = end - w < (size_t)(CWI_WORDS - n) ? (int)(end - w) : CWI_WORDS - n;
@@ -191,14 +191,14 @@ static void count_all(const cwi_bit_grid *g, size_t k, cwi_row *rows)
     }
 }
 
-static void count_wanted(const cwi_bit_grid *g, size_t k, cwi_row *rows)
+static void count_active(const cwi_bit_grid *g, size_t k, cwi_row *rows)
 {
     for (size_t j = 0; j + 1 < g->rows_y; j++) {
-        const uint64_t *wanted = cwi_grid_wanted(g, j, k);
-        for (size_t w = cwi_next_marked_word(wanted, 0, g->words); w < g->words;) {
+        const uint64_t *active = cwi_grid_active(g, j, k);
+        for (size_t w = cwi_next_marked_word(active, 0, g->words); w < g->words;) {
             const size_t end = (w | 63) + 1, here = end - w < CWI_WORDS ? end - w : CWI_WORDS;
-            count_group(g, j, k, w, wanted[w / 64] >> w % 64 & first_words(here), rows);
-            w = cwi_next_marked_word(wanted, w + here, g->words);
+            count_group(g, j, k, w, active[w / 64] >> w % 64 & first_words(here), rows);
+            w = cwi_next_marked_word(active, w + here, g->words);
         }
     }
 }
@@ -225,12 +225,12 @@ static void sum_layer(cwi_row *rows, size_t count, cwi_layer *layer)
 /* Returns true if no cell of the layer can be crossed. */
 static bool is_unwanted(const cwi_bit_grid *g, size_t k)
 {
-    if (g->everything || k + 1 == g->rows_z)
+    if (g->all_classified || k + 1 == g->rows_z)
         return k + 1 == g->rows_z;
-    const uint64_t *wanted = cwi_grid_wanted(g, 0, k);
+    const uint64_t *active = cwi_grid_active(g, 0, k);
     uint64_t any = 0;
     for (size_t n = 0; n < g->bricks_y * g->masks; n++)
-        any |= wanted[n];
+        any |= active[n];
     return !any;
 }
 
@@ -241,12 +241,12 @@ void cwi_count_layer(const cwi_bit_grid *g, size_t k, cwi_row *rows)
     layer->vertices = layer->triangles = layer->plan_count = 0;
     layer->at_border = layer->plans_lost = false;
     memset(rows + first, 0, g->rows_y * sizeof *rows);
-    memset(g->busy + first * g->masks, 0, g->rows_y * g->masks * sizeof *g->busy);
+    memset(g->mixed_words + first * g->masks, 0, g->rows_y * g->masks * sizeof *g->mixed_words);
     if (is_unwanted(g, k))
         return;
-    if (g->everything)
+    if (g->all_classified)
         count_all(g, k, rows + first);
     else
-        count_wanted(g, k, rows + first);
+        count_active(g, k, rows + first);
     sum_layer(rows + first, g->rows_y, layer);
 }

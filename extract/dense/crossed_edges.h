@@ -8,14 +8,14 @@
 static inline const uint64_t *cwi_live_layer(const cwi_bit_grid *g, size_t k)
 {
     const size_t inner = k >= 1 && k < g->volume.dim[2];
-    return g->live + (g->boxed ? inner : k) * g->rows_y * g->words;
+    return g->live + (g->live_is_box ? inner : k) * g->rows_y * g->words;
 }
 
 /* Returns true if all cells of row (j, k), but the padding at its ends, are live. Then edges
  * around them have vertices wherever they are crossed, except along x toward padding. */
 static inline bool cwi_is_whole(const cwi_bit_grid *g, size_t j, size_t k)
 {
-    return g->boxed && j >= 1 && j < g->volume.dim[1] && k >= 1 && k < g->volume.dim[2];
+    return g->live_is_box && j >= 1 && j < g->volume.dim[1] && k >= 1 && k < g->volume.dim[2];
 }
 
 /* Returns the live cells of word w in row (j, k) of cells; none outside the grid. */

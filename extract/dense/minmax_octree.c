@@ -119,7 +119,7 @@ static size_t mark_below(const cwi_octree *t, int l, const size_t at[3], cwi_bit
         return 0;
     if (l == 0) {
         const size_t word = at[0] * CWI_BRICK / 64;
-        uint64_t *mask = g->wanted + (at[2] * g->bricks_y + at[1]) * g->masks;
+        uint64_t *mask = g->active + (at[2] * g->bricks_y + at[1]) * g->masks;
         mask[word / 64] |= UINT64_C(1) << word % 64;
         return 1;
     }
@@ -136,9 +136,9 @@ static cwi_leaf_bits leaf_bits(const cwi_octree *t, const cwi_bit_grid *g, size_
     for (size_t b = 0; b < 8 && 8 * w + b < t->dim[0][0]; b++) {
         bool in, out;
         find_sides(leaves + 8 * w + b, g, &in, &out);
-        const bool wanted = straddles_level(leaves + 8 * w + b, g);
-        bits.wanted |= (uint8_t)(wanted << b);
-        bits.solid |= (uint8_t)((in && !wanted) << b);
+        const bool active = straddles_level(leaves + 8 * w + b, g);
+        bits.active |= (uint8_t)(active << b);
+        bits.solid |= (uint8_t)((in && !active) << b);
     }
     return bits;
 }
@@ -151,11 +151,11 @@ size_t cwi_octree_leaves(const cwi_octree *t)
 size_t cwi_octree_mark(const cwi_octree *t, cwi_bit_grid *g)
 {
     const size_t rows = g->bricks_z * g->bricks_y;
-    memset(g->wanted, 0, rows * g->masks * sizeof *g->wanted);
+    memset(g->active, 0, rows * g->masks * sizeof *g->active);
     memset(g->leaves, 0, rows * g->words * sizeof *g->leaves);
     const size_t leaves = mark_below(t, t->levels - 1, (const size_t[3]){0, 0, 0}, g);
     for (size_t row = 0; row < rows; row++) {
-        const uint64_t *mask = g->wanted + row * g->masks;
+        const uint64_t *mask = g->active + row * g->masks;
         for (size_t w = cwi_next_marked_word(mask, 0, g->words); w < g->words;
              w = cwi_next_marked_word(mask, w + 1, g->words))
             for (size_t x = w; x < w + 2 && x < g->words; x++)

@@ -24,7 +24,7 @@ enum {
 
 /* Tetrahedra of a cube that is not one point have vertices this far from the cube's middle to
  * their own: near it, so that sheets stay apart and close to where surface nets have them. */
-static const double spread = 0.5;
+static const double NEAR_FRACTION = 0.5;
 
 /* Vertices stay at least this far inside of their cubes, in voxels. */
 #define MARGIN 1e-3
@@ -295,19 +295,19 @@ static int compare_labels(const void *a, const void *b)
 
 /* Fills in what follows from the volume and the options. wanted: room for the labels, sorted. */
 static void prepare_job(cwi_label_job *j, const cw_volume *v, const cw_labels_desc *desc,
-                        uint32_t *wanted)
+                        uint32_t *requested)
 {
     if (desc->label_count > 0)
-        memcpy(wanted, desc->labels, desc->label_count * sizeof *wanted);
-    qsort(wanted, desc->label_count, sizeof *wanted, compare_labels);
+        memcpy(requested, desc->labels, desc->label_count * sizeof *requested);
+    qsort(requested, desc->label_count, sizeof *requested, compare_labels);
     j->layers = (cwi_label_layers){.volume = v,
                                    .background = desc->background,
                                    .copies_border = desc->leave_open,
                                    .width = v->dim[0] + 2,
                                    .height = v->dim[1] + 2,
                                    .count = v->dim[2] + 2,
-                                   .wanted_count = desc->label_count,
-                                   .wanted = wanted};
+                                   .requested_count = desc->label_count,
+                                   .requested = requested};
     pthread_mutex_init(&j->bad_lock, NULL);
     cwi_label_rules_make(&j->rules);
     j->is_mirrored = cwi_affine_determinant(v->affine[0]) < 0;
@@ -316,7 +316,7 @@ static void prepare_job(cwi_label_job *j, const cw_volume *v, const cw_labels_de
             double sum = 0;
             for (int c = 0; c < 8; c++)
                 sum += j->rules.tets[t] >> c & 1 ? (c >> a & 1) - 0.5 : 0;
-            j->corners[t][a] = spread * sum / 4;
+            j->corners[t][a] = NEAR_FRACTION * sum / 4;
         }
 }
 
@@ -368,18 +368,18 @@ static cw_status extract_resolved(const cw_volume *v, cwi_label_window *window,
                         desc->label_count);
     cw_labels_desc resolved = *desc;
     resolved.max_move = resolve_max_move(v, desc->max_move);
-    uint32_t *wanted = cwi_alloc_array(desc->label_count, sizeof *wanted);
+    uint32_t *requested = cwi_alloc_array(desc->label_count, sizeof *requested);
     cwi_label_job *j = cwi_alloc_zeroed(1, sizeof *j);
-    if (wanted && j) {
+    if (requested && j) {
         j->out = surfaces;
         surfaces->background = desc->background;
         j->window = window;
-        prepare_job(j, v, desc, wanted);
+        prepare_job(j, v, desc, requested);
         st = run_job(j, &resolved, smooth, err);
     } else
         st = cwi_fail_memory(err);
     cwi_free(j);
-    cwi_free(wanted);
+    cwi_free(requested);
     if (st != CW_OK)
         cw_label_surfaces_free(surfaces);
     return st;

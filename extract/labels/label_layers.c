@@ -62,17 +62,17 @@ static size_t load_row(const cwi_label_layers *l, const char *from, uint32_t *ou
     return count;
 }
 
-static bool is_wanted(const cwi_label_layers *l, uint32_t label)
+static bool is_requested(const cwi_label_layers *l, uint32_t label)
 {
-    size_t low = 0, high = l->wanted_count;
+    size_t low = 0, high = l->requested_count;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
-        if (l->wanted[middle] < label)
+        if (l->requested[middle] < label)
             low = middle + 1;
         else
             high = middle;
     }
-    return low < l->wanted_count && l->wanted[low] == label;
+    return low < l->requested_count && l->requested[low] == label;
 }
 
 /* Replaces labels that are not wanted; runs of one label are looked up once. */
@@ -82,7 +82,7 @@ static void choose_labels(const cwi_label_layers *l, uint32_t *row, size_t count
     for (size_t i = 0; i < count; i++) {
         if (row[i] != last) {
             last = row[i];
-            becomes = is_wanted(l, last) ? last : l->background;
+            becomes = is_requested(l, last) ? last : l->background;
         }
         row[i] = becomes;
     }
@@ -117,7 +117,7 @@ bool cwi_label_layer_load(const cwi_label_layers *l, size_t k, uint32_t *out, si
             bad[0] = good, bad[1] = j, bad[2] = at;
             return false;
         }
-        if (l->wanted_count > 0)
+        if (l->requested_count > 0)
             choose_labels(l, row + 1, nx);
         row[0] = l->copies_border ? row[1] : l->background;
         row[nx + 1] = l->copies_border ? row[nx] : l->background;

@@ -14,11 +14,11 @@ typedef struct cwi_label_layers {
     const cw_volume *volume; /* resolved */
     size_t first_slice;      /* at the volume's data; those below are not in memory */
     uint32_t background;
-    bool copies_border;     /* the border has the labels beside it, not the background */
-    size_t width, height;   /* of a layer with its border */
-    size_t count;           /* of layers with the border's */
-    size_t wanted_count;    /* 0: all labels */
-    const uint32_t *wanted; /* rising */
+    bool copies_border;        /* the border has the labels beside it, not the background */
+    size_t width, height;      /* of a layer with its border */
+    size_t count;              /* of layers with the border's */
+    size_t requested_count;    /* 0: all labels */
+    const uint32_t *requested; /* rising */
 } cwi_label_layers;
 
 /* Loads layer k, counted with the border, into width x height labels. Returns false when a value

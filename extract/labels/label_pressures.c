@@ -21,16 +21,16 @@ enum {
 };
 
 /* The fraction of its volume that a label may lack. */
-static const double enough = 5e-6;
+static const double MAX_DEFICIT = 5e-6;
 
 /* The most that a label asks for, by what it lacks. */
-static const double most_times = 8;
+static const double MAX_STEP_SCALE = 8;
 
 /* The fraction that ends the smoothing of a small one. */
-static const double too_much = 0.01;
+static const double MAX_SMALL_DEFICIT = 0.01;
 
 /* The least part of a pressure's effect that is reckoned with. */
-static const double least_share = 0.2;
+static const double MIN_ALIGNMENT = 0.2;
 
 /* The sum of the triangles' area vectors around a vertex in one patch. */
 typedef struct direction {
@@ -38,7 +38,7 @@ typedef struct direction {
     uint32_t patch;
 } direction;
 
-typedef struct presser {
+typedef struct volume_solver {
     cwi_label_net *net;
     cw_label_surfaces *surfaces;
     const float *originals;
@@ -48,12 +48,12 @@ typedef struct presser {
     const size_t *dim;
     size_t labels;
     double (
-        *tries)[2]; /* of labels: the volume that lacked in the round before, and by how many
+        *requests)[2]; /* of labels: the volume that lacked in the round before, and by how many
                                 times it was asked for */
     size_t *patch_counts;    /* of labels, and the background */
     double *volumes, *areas; /* of patches: inside labels[0], signed; and of triangles */
-    double (
-        *shares)[2]; /* of patches: their vertices' normals, and areas to hold them against */
+    double (*alignments)
+        [2]; /* of patches: their vertices' normals, and areas to hold them against */
     uint32_t (*sides)[2];  /* numbers of a patch's labels; `labels`: the background */
     double *pressures;     /* 4 x (labels + 1) numbers to solve with; these come first */
     direction *directions; /* of vertices */
@@ -61,10 +61,10 @@ typedef struct presser {
     uint32_t *curve;   /* vertices on curves */
     float (*moves)[3]; /* of those */
     bool is_first;     /* round */
-} presser;
+} volume_solver;
 
 /* Computes a triangle's normal on the outside, as long as twice its area. */
-static inline void find_normal(const presser *s, size_t t, double normal[3])
+static inline void find_normal(const volume_solver *s, size_t t, double normal[3])
 {
     cwi_mesh_normal(&s->surfaces->mesh, t, normal);
     for (int a = 0; a < 3; a++)
@@ -72,8 +72,8 @@ static inline void find_normal(const presser *s, size_t t, double normal[3])
 }
 
 /* Adds a triangle to the directions of its vertices that are in one patch. */
-static void add_directions(const presser *s, size_t t, size_t patch, const double normal[3],
-                           double area)
+static void add_directions(const volume_solver *s, size_t t, size_t patch,
+                           const double normal[3], double area)
 {
     for (size_t c = 0; c < 3; c++) {
         const uint32_t v = s->surfaces->mesh.triangles[3 * t + c];
@@ -91,7 +91,7 @@ static void add_directions(const presser *s, size_t t, size_t patch, const doubl
  * has shrunk to almost nothing has a fair area after the first round only. */
 static void measure_patch(void *context, size_t n)
 {
-    const presser *s = context;
+    const volume_solver *s = context;
     const cw_label_patch *patch = &s->surfaces->patches[n];
     const double middle[3] = {0.5 * (double)s->dim[0], 0.5 * (double)s->dim[1],
                               0.5 * (double)s->dim[2]};
@@ -113,31 +113,33 @@ static void measure_patch(void *context, size_t n)
 
 /* Sums up how far apart the normals around vertices are: a vertex in a corner of three faces moves
  * each by a third of its own way. */
-static void measure_shares(const presser *s)
+static void measure_alignments(const volume_solver *s)
 {
     for (size_t v = 0; v < s->surfaces->mesh.vertex_count; v++) {
         const direction *d = &s->directions[v];
         if (s->net->kinds[v] || !(d->area > 0))
             continue;
-        double square = 0;
+        double normal_sq = 0;
         for (int a = 0; a < 3; a++)
-            square += (double)d->normal[a] * (double)d->normal[a];
-        s->shares[d->patch][0] += square / (double)d->area;
-        s->shares[d->patch][1] += (double)d->area;
+            normal_sq += (double)d->normal[a] * (double)d->normal[a];
+        s->alignments[d->patch][0] += normal_sq / (double)d->area;
+        s->alignments[d->patch][1] += (double)d->area;
     }
 }
 
-/* Turns the areas of patches into how volumes change with pressures. */
-static void weigh_areas(const presser *s)
+/* Scales the areas of patches: the weights of the graph Laplacian of labels. */
+static void scale_areas(const volume_solver *s)
 {
     for (size_t n = 0; n < s->surfaces->patch_count; n++) {
-        const double *share = s->shares[n], weight = share[1] > 0 ? share[0] / share[1] : 1;
-        s->areas[n] *= weight > least_share ? weight : least_share;
+        const double *alignment = s->alignments[n],
+                     weight = alignment[1] > 0 ? alignment[0] / alignment[1] : 1;
+        s->areas[n] *= weight > MIN_ALIGNMENT ? weight : MIN_ALIGNMENT;
     }
 }
 
-/* Multiplies by the matrix of areas: how volumes change with pressures. */
-static void apply_areas(const presser *s, const double *x, double *y)
+/* Multiplies by the graph Laplacian of labels, whose edges are patches weighted by area: how volumes
+ * change with pressures. */
+static void apply_laplacian(const volume_solver *s, const double *x, double *y)
 {
     memset(y, 0, (s->labels + 1) * sizeof *y);
     for (size_t n = 0; n < s->surfaces->patch_count; n++) {
@@ -158,33 +160,33 @@ static double dot_all(const double *x, const double *y, size_t count)
 }
 
 /* Solves for the pressures that add the missing volumes, by conjugate gradients. */
-static void solve_pressures(const presser *s)
+static void solve_pressures(const volume_solver *s)
 {
     const size_t count = s->labels + 1;
     double *x = s->pressures, *r = x + count, *p = r + count, *q = p + count;
     memset(x, 0, count * sizeof *x);
     memcpy(p, r, count * sizeof *p);
-    double rest = dot_all(r, r, count);
-    const double end = 1e-12 * rest;
-    for (int n = 0; n < SOLVER_ROUNDS && rest > end; n++) {
-        apply_areas(s, p, q);
-        const double along = dot_all(p, q, count);
-        if (!(along > 0))
+    double residual_sq = dot_all(r, r, count);
+    const double end = 1e-12 * residual_sq;
+    for (int n = 0; n < SOLVER_ROUNDS && residual_sq > end; n++) {
+        apply_laplacian(s, p, q);
+        const double curvature = dot_all(p, q, count);
+        if (!(curvature > 0))
             return;
-        const double step = rest / along;
+        const double step = residual_sq / curvature;
         for (size_t i = 0; i < count; i++) {
             x[i] += step * p[i];
             r[i] -= step * q[i];
         }
-        const double now = dot_all(r, r, count);
+        const double next_sq = dot_all(r, r, count);
         for (size_t i = 0; i < count; i++)
-            p[i] = r[i] + now / rest * p[i];
-        rest = now;
+            p[i] = r[i] + next_sq / residual_sq * p[i];
+        residual_sq = next_sq;
     }
 }
 
 /* Returns the difference of pressures across a patch. */
-static double find_difference(const presser *s, size_t patch)
+static double pressure_difference(const volume_solver *s, size_t patch)
 {
     return s->pressures[s->sides[patch][0]] - s->pressures[s->sides[patch][1]];
 }
@@ -204,7 +206,7 @@ static size_t find_patch(const cw_label_surfaces *f, size_t triangle)
 }
 
 /* Finds the move of a vertex on a curve, from the triangles around it. */
-static void find_curve_move(const presser *s, uint32_t vertex, float move[3])
+static void find_curve_move(const volume_solver *s, uint32_t vertex, float move[3])
 {
     const cwi_label_net *net = s->net;
     const cw_label_surfaces *f = s->surfaces;
@@ -215,7 +217,7 @@ static void find_curve_move(const presser *s, uint32_t vertex, float move[3])
         if (net->around[k] >= patch_end) { /* they rise */
             const size_t patch = find_patch(f, net->around[k]);
             patch_end = f->patches[patch].first + f->patches[patch].count;
-            difference = find_difference(s, patch);
+            difference = pressure_difference(s, patch);
         }
         for (size_t t = net->around[k]; t < end; t++) {
             const uint32_t *v = f->mesh.triangles + 3 * t;
@@ -234,12 +236,12 @@ static void find_curve_move(const presser *s, uint32_t vertex, float move[3])
 
 static void find_curve_part(void *context, size_t n)
 {
-    const presser *s = context;
+    const volume_solver *s = context;
     for (size_t i = n * CURVE_PART; i < (n + 1) * CURVE_PART && i < s->curve_count; i++)
         find_curve_move(s, s->curve[i], s->moves[i]);
 }
 
-static void move_vertex(const presser *s, size_t v, const float move[3])
+static void move_vertex(const volume_solver *s, size_t v, const float move[3])
 {
     float *p = s->surfaces->mesh.positions + 3 * v;
     const float *o = s->originals + 3 * v;
@@ -251,18 +253,18 @@ static void move_vertex(const presser *s, size_t v, const float move[3])
 
 static void move_part(void *context, size_t n)
 {
-    const presser *s = context;
+    const volume_solver *s = context;
     const size_t count = s->surfaces->mesh.vertex_count;
     for (size_t v = n * PART; v < (n + 1) * PART && v < count; v++) {
         const direction *d = &s->directions[v];
         if (s->net->kinds[v] || !(d->area > 0))
             continue;
-        const float by = (float)find_difference(s, d->patch) / d->area;
+        const float by = (float)pressure_difference(s, d->patch) / d->area;
         move_vertex(s, v, (float[3]){by * d->normal[0], by * d->normal[1], by * d->normal[2]});
     }
 }
 
-static cw_status move_all(presser *s, const cw_labels_desc *desc, cw_error *err)
+static cw_status move_all(volume_solver *s, const cw_labels_desc *desc, cw_error *err)
 {
     const size_t vertices = s->surfaces->mesh.vertex_count;
     cw_status st = cwi_parallel_for((s->curve_count + CURVE_PART - 1) / CURVE_PART,
@@ -291,47 +293,47 @@ static uint32_t number_of(const cw_label_surfaces *s, uint32_t label)
 }
 
 /* Computes the volumes that labels lack. Returns true if they are as good as none. */
-static bool find_missing(const presser *s)
+static bool find_volume_deficits(const volume_solver *s)
 {
     const cw_label_surfaces *f = s->surfaces;
-    double *missing = s->pressures + s->labels + 1;
+    double *deficit = s->pressures + s->labels + 1;
     bool is_full = true;
     for (size_t n = 0; n < s->labels; n++)
-        missing[n] = (double)f->labels[n].voxels;
-    missing[s->labels] = 0;
+        deficit[n] = (double)f->labels[n].voxels;
+    deficit[s->labels] = 0;
     for (size_t n = 0; n < f->patch_count; n++) {
-        missing[s->sides[n][0]] -= s->volumes[n];
-        missing[s->sides[n][1]] += s->volumes[n];
+        deficit[s->sides[n][0]] -= s->volumes[n];
+        deficit[s->sides[n][1]] += s->volumes[n];
     }
-    missing[s->labels] = 0;
+    deficit[s->labels] = 0;
     for (size_t n = 0; n < s->labels && is_full; n++)
-        is_full = fabs(missing[n]) <= enough * (double)f->labels[n].voxels;
+        is_full = fabs(deficit[n]) <= MAX_DEFICIT * (double)f->labels[n].voxels;
     return is_full;
 }
 
 /* Asks for more of labels that got less than they lacked in the round before: the bound holds some
  * of their vertices. */
-static void raise_missing(const presser *s)
+static void scale_deficits(const volume_solver *s)
 {
-    double *missing = s->pressures + s->labels + 1;
+    double *deficit = s->pressures + s->labels + 1;
     for (size_t n = 0; n < s->labels; n++) {
-        double *before = s->tries[n];
-        const double got = before[0] != 0 ? 1 - missing[n] / before[0] : 1;
-        const double times = before[1] > 0 ? before[1] : 1;
-        before[1] = got > 0.1 && got < 0.9 ? fmin(times / got, most_times)
-                    : got >= 1.1           ? 1
-                                           : times;
-        before[0] = missing[n];
-        missing[n] *= before[1];
+        double *last = s->requests[n];
+        const double gained = last[0] != 0 ? 1 - deficit[n] / last[0] : 1;
+        const double step_scale = last[1] > 0 ? last[1] : 1;
+        last[1] = gained > 0.1 && gained < 0.9 ? fmin(step_scale / gained, MAX_STEP_SCALE)
+                  : gained >= 1.1              ? 1
+                                               : step_scale;
+        last[0] = deficit[n];
+        deficit[n] *= last[1];
     }
 }
 
 /* Puts vertices of labels of a few voxels that lie in one other label, and still lack too much, back
  * to where they were: there they have their volume. Smoothing had made them flat. */
-static void restore_small(const presser *s)
+static void restore_small(const volume_solver *s)
 {
     const cw_label_surfaces *f = s->surfaces;
-    const double *missing = s->pressures + s->labels + 1;
+    const double *deficit = s->pressures + s->labels + 1;
     for (size_t n = 0; n < f->patch_count; n++)
         for (int side = 0; side < 2; side++)
             s->patch_counts[s->sides[n][side]]++;
@@ -343,13 +345,13 @@ static void restore_small(const presser *s)
             const uint32_t label = s->sides[d->patch][side];
             if (label < s->labels && s->patch_counts[label] == 1 &&
                 f->labels[label].voxels <= SMALL &&
-                fabs(missing[label]) > too_much * (double)f->labels[label].voxels)
+                fabs(deficit[label]) > MAX_SMALL_DEFICIT * (double)f->labels[label].voxels)
                 memcpy(f->mesh.positions + 3 * v, s->originals + 3 * v, 3 * sizeof(float));
         }
     }
 }
 
-static cw_status press_all(presser *s, const cw_labels_desc *desc, cw_error *err)
+static cw_status restore_volumes(volume_solver *s, const cw_labels_desc *desc, cw_error *err)
 {
     const cw_label_surfaces *f = s->surfaces;
     const size_t triangles = f->mesh.triangle_count / (f->patch_count + 1);
@@ -358,12 +360,12 @@ static cw_status press_all(presser *s, const cw_labels_desc *desc, cw_error *err
         s->is_first = round == 0;
         st = cwi_parallel_for(f->patch_count, 8 * triangles, desc->threads, &desc->progress,
                               "keeping volumes", measure_patch, s, err);
-        if (st != CW_OK || find_missing(s) || round == ROUNDS)
+        if (st != CW_OK || find_volume_deficits(s) || round == ROUNDS)
             break;
         if (s->is_first)
-            measure_shares(s);
-        weigh_areas(s);
-        raise_missing(s);
+            measure_alignments(s);
+        scale_areas(s);
+        scale_deficits(s);
         solve_pressures(s);
         st = move_all(s, desc, err);
     }
@@ -373,7 +375,7 @@ static cw_status press_all(presser *s, const cw_labels_desc *desc, cw_error *err
 }
 
 /* Lists vertices on curves, and numbers the labels of patches. */
-static bool prepare_presser(presser *s)
+static bool prepare_solver(volume_solver *s)
 {
     const cw_label_surfaces *f = s->surfaces;
     const size_t vertices = f->mesh.vertex_count;
@@ -385,13 +387,13 @@ static bool prepare_presser(presser *s)
     s->volumes = cwi_alloc_array(f->patch_count, sizeof *s->volumes);
     s->areas = cwi_alloc_array(f->patch_count, sizeof *s->areas);
     s->patch_counts = cwi_alloc_zeroed(s->labels + 1, sizeof *s->patch_counts);
-    s->tries = cwi_alloc_zeroed(s->labels, sizeof *s->tries);
-    s->shares = cwi_alloc_zeroed(f->patch_count, sizeof *s->shares);
+    s->requests = cwi_alloc_zeroed(s->labels, sizeof *s->requests);
+    s->alignments = cwi_alloc_zeroed(f->patch_count, sizeof *s->alignments);
     s->sides = cwi_alloc_array(f->patch_count, sizeof *s->sides);
     s->pressures = cwi_alloc_zeroed(4 * (s->labels + 1), sizeof *s->pressures);
     s->curve = cwi_alloc_array(s->curve_count, sizeof *s->curve);
     s->moves = cwi_alloc_array(s->curve_count, sizeof *s->moves);
-    if (!s->directions || !s->volumes || !s->areas || !s->shares || !s->tries ||
+    if (!s->directions || !s->volumes || !s->areas || !s->alignments || !s->requests ||
         !s->patch_counts || !s->sides || !s->pressures || !s->curve || !s->moves)
         return false;
     memset(s->directions, 0, vertices * sizeof *s->directions);
@@ -409,19 +411,19 @@ cw_status cwi_labels_keep_volumes(cwi_label_net *net, const float *originals,
                                   cw_label_surfaces *surfaces, const cw_labels_desc *desc,
                                   const size_t dim[3], cw_error *err)
 {
-    presser s = {.net = net,
-                 .surfaces = surfaces,
-                 .originals = originals,
-                 .bound = (float)desc->max_move,
-                 .side = cwi_affine_determinant(surfaces->mesh.affine[0]) < 0 ? -1 : 1,
-                 .dim = dim,
-                 .labels = surfaces->label_count};
-    cw_status st = prepare_presser(&s) ? press_all(&s, desc, err) : cwi_fail_memory(err);
+    volume_solver s = {.net = net,
+                       .surfaces = surfaces,
+                       .originals = originals,
+                       .bound = (float)desc->max_move,
+                       .side = cwi_affine_determinant(surfaces->mesh.affine[0]) < 0 ? -1 : 1,
+                       .dim = dim,
+                       .labels = surfaces->label_count};
+    cw_status st = prepare_solver(&s) ? restore_volumes(&s, desc, err) : cwi_fail_memory(err);
     cwi_free(s.directions);
     cwi_free(s.volumes);
     cwi_free(s.areas);
-    cwi_free(s.shares);
-    cwi_free(s.tries);
+    cwi_free(s.alignments);
+    cwi_free(s.requests);
     cwi_free(s.patch_counts);
     cwi_free(s.sides);
     cwi_free(s.pressures);

@@ -17,29 +17,30 @@ enum { CHUNK = 256 };
 /* ---- values ------------------------------------------------------------------------------ */
 
 void cwi_adaptive_from_mesh(const cwi_adaptive *a, const cw_mesh *m, uint32_t vertex,
-                            double place[3])
+                            double position[3])
 {
     const float *p = m->positions + 3 * (size_t)vertex;
     for (int k = 0; k < 3; k++)
-        place[k] = (m->origin[k] - a->mesh->origin[k] + (double)p[k] - a->corner[k]) / a->voxel;
+        position[k] =
+            (m->origin[k] - a->mesh->origin[k] + (double)p[k] - a->corner[k]) / a->voxel;
 }
 
-void cwi_adaptive_to_mesh(const cwi_adaptive *a, const double place[3], double p[3])
+void cwi_adaptive_to_mesh(const cwi_adaptive *a, const double position[3], double p[3])
 {
-    cwi_add_scaled(a->corner, a->voxel, place, p);
+    cwi_add_scaled(a->corner, a->voxel, position, p);
 }
 
-bool cwi_adaptive_is_inside(const cwi_adaptive *a, const double place[3])
+bool cwi_adaptive_is_inside(const cwi_adaptive *a, const double position[3])
 {
     double p[3];
-    cwi_adaptive_to_mesh(a, place, p);
+    cwi_adaptive_to_mesh(a, position, p);
     return cwi_is_inside(a->mesh, &a->tree, (const double(*)[3])a->normals, p);
 }
 
-static double distance_at(const cwi_adaptive *a, const double place[3])
+static double distance_at(const cwi_adaptive *a, const double position[3])
 {
     double p[3];
-    cwi_adaptive_to_mesh(a, place, p);
+    cwi_adaptive_to_mesh(a, position, p);
     const cwi_closest c = cwi_closest_find(a->mesh, &a->tree, p);
     return cwi_distance(p, c.point);
 }
@@ -47,15 +48,15 @@ static double distance_at(const cwi_adaptive *a, const double place[3])
 static void measure_point(cwi_adaptive *a, size_t n)
 {
     uint32_t at[3];
-    cwi_place_of_key(a->points.keys[n], at);
+    cwi_lattice_point(a->points.keys[n], at);
     const bool is_whole = (at[0] | at[1] | at[2]) % CWI_PARTS == 0;
     const uint32_t voxel[3] = {at[0] / CWI_PARTS, at[1] / CWI_PARTS, at[2] / CWI_PARTS};
     const float *known = is_whole ? cwi_level_set_voxel(a->volume, &a->leaves, voxel) : NULL;
-    double *place = a->places[n];
+    double *position = a->positions[n];
     bool inside;
-    if (!cwi_adaptive_place(a, at, place, &inside))
-        inside = known ? *known < 0 : cwi_adaptive_is_inside(a, place);
-    const double distance = known ? fabs((double)*known) : distance_at(a, place);
+    if (!cwi_adaptive_position(a, at, position, &inside))
+        inside = known ? *known < 0 : cwi_adaptive_is_inside(a, position);
+    const double distance = known ? fabs((double)*known) : distance_at(a, position);
     a->values[n] = (float)((inside ? -1 : 1) * fmax(distance, CWI_THIN * a->voxel));
 }
 
@@ -72,9 +73,9 @@ cw_status cwi_adaptive_measure(cwi_adaptive *a, cw_error *err)
     const size_t count = a->points.count - a->measured;
     float *values = cwi_realloc_array(a->values, a->points.count, sizeof *values);
     a->values = values ? values : a->values;
-    double(*places)[3] = cwi_realloc_array(a->places, a->points.count, sizeof *places);
-    a->places = places ? places : a->places;
-    if (!values || !places)
+    double(*positions)[3] = cwi_realloc_array(a->positions, a->points.count, sizeof *positions);
+    a->positions = positions ? positions : a->positions;
+    if (!values || !positions)
         return cwi_fail_memory(err);
     const cw_status st =
         cwi_parallel_for((count + CHUNK - 1) / CHUNK, CHUNK * CHUNK, a->desc->threads,
@@ -91,7 +92,7 @@ cw_status cwi_adaptive_measure(cwi_adaptive *a, cw_error *err)
 bool cwi_adaptive_put(cwi_adaptive *a, int size, const uint32_t at[3])
 {
     const size_t before = a->divided[size].count;
-    if (cwi_places_add(&a->divided[size], cwi_place_key(at)) == CWI_NO_PLACE)
+    if (cwi_lattice_add(&a->divided[size], cwi_lattice_key(at)) == CWI_NO_LATTICE_POINT)
         return false;
     bool ok = true;
     if (a->divided[size].count == before || size == 0)
@@ -142,11 +143,11 @@ void cwi_adaptive_free(cwi_adaptive *a)
 {
     cwi_boxes_free(&a->tree);
     cwi_free(a->normals);
-    cwi_places_free(&a->leaves);
-    cwi_places_free(&a->points);
+    cwi_lattice_free(&a->leaves);
+    cwi_lattice_free(&a->points);
     for (int n = 0; n <= CWI_DIVISIONS; n++)
-        cwi_places_free(&a->divided[n]);
-    cwi_free(a->places);
+        cwi_lattice_free(&a->divided[n]);
+    cwi_free(a->positions);
     cwi_free(a->values);
     *a = (cwi_adaptive){0};
 }

@@ -32,11 +32,12 @@ typedef struct cwi_adaptive {
     double corner[3], voxel; /* where sample 0 stands, from the mesh's origin; mm */
     cwi_boxes tree;          /* of the mesh */
     double (*normals)[3];    /* of its triangles, of any length */
-    cwi_places leaves;       /* of the volume */
-    cwi_places divided[CWI_DIVISIONS + 1]; /* cells, by their place among those of that size */
-    cwi_places points;                     /* in CWI_PARTS of a voxel */
-    double (*places)[3];                   /* where they stand, in voxels */
-    float *values;                         /* there, in mm; of the first `measured` points */
+    cwi_lattice_map leaves;  /* of the volume */
+    cwi_lattice_map
+        divided[CWI_DIVISIONS + 1]; /* cells, by their place among those of that size */
+    cwi_lattice_map points;         /* in CWI_PARTS of a voxel */
+    double (*positions)[3];         /* where they stand, in voxels */
+    float *values;                  /* there, in mm; of the first `measured` points */
     size_t measured;
 } cwi_adaptive;
 
@@ -76,16 +77,16 @@ CW_NODISCARD cw_status cwi_adaptive_measure(cwi_adaptive *a, cw_error *err);
 
 /* Finds where a point of the lattice stands, in voxels. Returns true if it was moved to be on a
  * side of the surface, and then reports that side. */
-bool cwi_adaptive_place(const cwi_adaptive *a, const uint32_t at[3], double place[3],
-                        bool *inside);
+bool cwi_adaptive_position(const cwi_adaptive *a, const uint32_t at[3], double position[3],
+                           bool *inside);
 
 /* Converts a mesh's vertex to voxels, and a place in voxels to a position from the mesh's
  * origin. */
 void cwi_adaptive_from_mesh(const cwi_adaptive *a, const cw_mesh *m, uint32_t vertex,
-                            double place[3]);
-void cwi_adaptive_to_mesh(const cwi_adaptive *a, const double place[3], double p[3]);
+                            double position[3]);
+void cwi_adaptive_to_mesh(const cwi_adaptive *a, const double position[3], double p[3]);
 
-bool cwi_adaptive_is_inside(const cwi_adaptive *a, const double place[3]);
+bool cwi_adaptive_is_inside(const cwi_adaptive *a, const double position[3]);
 
 /* Divides a cell of a size: 0 is a voxel's. Returns false without memory. */
 bool cwi_adaptive_put(cwi_adaptive *a, int size, const uint32_t at[3]);
@@ -93,7 +94,7 @@ bool cwi_adaptive_put(cwi_adaptive *a, int size, const uint32_t at[3]);
 static inline bool cwi_adaptive_is_divided(const cwi_adaptive *a, int size,
                                            const uint32_t at[3])
 {
-    return cwi_places_find(&a->divided[size], cwi_place_key(at)) != CWI_NO_PLACE;
+    return cwi_lattice_find(&a->divided[size], cwi_lattice_key(at)) != CWI_NO_LATTICE_POINT;
 }
 
 #endif

@@ -23,10 +23,10 @@ typedef struct leaf {
 /* The cells of the grid that is made; its samples are the points, all of them. */
 typedef struct build {
     cwi_adaptive *a;
-    cwi_places whole; /* voxels that may be crossed, not divided */
+    cwi_lattice_map whole; /* voxels that may be crossed, not divided */
     uint8_t *shapes;
     uint32_t *corners;
-    size_t count, room, corner_count, corner_room;
+    size_t count, capacity, corner_count, corner_capacity;
     bool out_of_memory;
 } build;
 
@@ -41,22 +41,22 @@ static int lattice_coordinate(int n, int axis)
     return n / steps[axis] % 3;
 }
 
-static bool is_divided_beside(const build *b, const leaf *l, const int way[3])
+static bool is_divided_beside(const build *b, const leaf *l, const int direction[3])
 {
     uint32_t at[3];
     for (int a = 0; a < 3; a++)
-        at[a] = l->at[a] + (uint32_t)way[a];
+        at[a] = l->at[a] + (uint32_t)direction[a];
     return cwi_adaptive_is_divided(b->a, l->size, at);
 }
 
 /* Returns true if one of the other three cells around an edge is divided. */
-static bool is_edge_cut(const build *b, const leaf *l, const int way[3])
+static bool is_edge_cut(const build *b, const leaf *l, const int direction[3])
 {
-    bool cut = is_divided_beside(b, l, way);
+    bool cut = is_divided_beside(b, l, direction);
     for (int a = 0; a < 3 && !cut; a++) {
         int beside[3] = {0, 0, 0};
-        beside[a] = way[a];
-        cut = way[a] && is_divided_beside(b, l, beside);
+        beside[a] = direction[a];
+        cut = direction[a] && is_divided_beside(b, l, beside);
     }
     return cut;
 }
@@ -70,9 +70,9 @@ static int middle_of_face(int face)
  * on. */
 static int around_face(int face, int n)
 {
-    static const int way[8][2] = {{-1, -1}, {0, -1}, {1, -1}, {1, 0},
-                                  {1, 1},   {0, 1},  {-1, 1}, {-1, 0}};
-    const int *w = way[face % 2 ? 7 - (n + 7) % 8 : n % 8];
+    static const int direction[8][2] = {{-1, -1}, {0, -1}, {1, -1}, {1, 0},
+                                        {1, 1},   {0, 1},  {-1, 1}, {-1, 0}};
+    const int *w = direction[face % 2 ? 7 - (n + 7) % 8 : n % 8];
     return middle_of_face(face) + w[0] * steps[(face / 2 + 1) % 3] +
            w[1] * steps[(face / 2 + 2) % 3];
 }
@@ -81,15 +81,15 @@ static void look_around_leaf(const build *b, leaf *l)
 {
     l->matters = cwi_adaptive_is_divided(b->a, l->size, l->at);
     for (int n = 0; n < 27; n++) {
-        const int way[3] = {lattice_coordinate(n, 0) - 1, lattice_coordinate(n, 1) - 1,
-                            lattice_coordinate(n, 2) - 1};
-        const int along = !way[0] + !way[1] + !way[2];
-        l->has[n] = along == 0 || l->matters || (along == 1 && is_edge_cut(b, l, way));
+        const int direction[3] = {lattice_coordinate(n, 0) - 1, lattice_coordinate(n, 1) - 1,
+                                  lattice_coordinate(n, 2) - 1};
+        const int along = !direction[0] + !direction[1] + !direction[2];
+        l->has[n] = along == 0 || l->matters || (along == 1 && is_edge_cut(b, l, direction));
     }
     for (int f = 0; f < 6; f++) {
-        int way[3] = {0, 0, 0};
-        way[f / 2] = f % 2 ? 1 : -1;
-        l->cut[f] = l->size < CWI_DIVISIONS && is_divided_beside(b, l, way);
+        int direction[3] = {0, 0, 0};
+        direction[f / 2] = f % 2 ? 1 : -1;
+        l->cut[f] = l->size < CWI_DIVISIONS && is_divided_beside(b, l, direction);
         for (int n = 1; n < 8; n += 2)
             l->has[middle_of_face(f)] |= l->has[around_face(f, n)];
         l->has[CENTRE] |= l->has[middle_of_face(f)];
@@ -102,8 +102,8 @@ static uint32_t find_point(build *b, const leaf *l, int n)
     for (int a = 0; a < 3; a++)
         at[a] =
             ((2 * l->at[a] + (uint32_t)lattice_coordinate(n, a)) << (CWI_DIVISIONS - l->size));
-    const uint32_t p = cwi_places_add(&b->a->points, cwi_place_key(at));
-    b->out_of_memory |= p == CWI_NO_PLACE;
+    const uint32_t p = cwi_lattice_add(&b->a->points, cwi_lattice_key(at));
+    b->out_of_memory |= p == CWI_NO_LATTICE_POINT;
     return p;
 }
 
@@ -120,14 +120,14 @@ static void each_leaf(build *b, void (*work)(build *b, const leaf *l))
 {
     leaf l = {.size = 0};
     for (size_t n = 0; n < b->whole.count && !b->out_of_memory; n++) {
-        cwi_place_of_key(b->whole.keys[n], l.at);
+        cwi_lattice_point(b->whole.keys[n], l.at);
         visit_leaf(b, &l, work);
     }
     for (l.size = 1; l.size <= CWI_DIVISIONS; l.size++) {
-        const cwi_places *divided = &b->a->divided[l.size - 1];
+        const cwi_lattice_map *divided = &b->a->divided[l.size - 1];
         for (size_t n = 0; n < 8 * divided->count && !b->out_of_memory; n++) {
             uint32_t whole[3];
-            cwi_place_of_key(divided->keys[n / 8], whole);
+            cwi_lattice_point(divided->keys[n / 8], whole);
             for (int a = 0; a < 3; a++)
                 l.at[a] = 2 * whole[a] + (n >> a & 1);
             visit_leaf(b, &l, work);
@@ -139,7 +139,7 @@ static void each_leaf(build *b, void (*work)(build *b, const leaf *l))
 
 static void add_whole(build *b, const uint32_t at[3])
 {
-    b->out_of_memory |= cwi_places_add(&b->whole, cwi_place_key(at)) == CWI_NO_PLACE;
+    b->out_of_memory |= cwi_lattice_add(&b->whole, cwi_lattice_key(at)) == CWI_NO_LATTICE_POINT;
 }
 
 /* Adds the voxels around a sample that may be crossed. A distance changes by no more than the
@@ -163,7 +163,7 @@ static void add_crossed(build *b, const uint32_t at[3], float value)
 static void find_whole(build *b)
 {
     const cw_volume *v = b->a->volume;
-    const cwi_places *divided = &b->a->divided[0];
+    const cwi_lattice_map *divided = &b->a->divided[0];
     uint32_t at[3], beside[3];
     for (size_t n = 0; n < v->sparse->leaf_count * CWI_LEAF_VOXELS; n++) {
         const uint32_t *first = v->sparse->leaves[n / CWI_LEAF_VOXELS];
@@ -174,7 +174,7 @@ static void find_whole(build *b)
         add_crossed(b, at, ((const float *)v->data)[n]);
     }
     for (size_t n = 0; n < 27 * divided->count; n++) {
-        cwi_place_of_key(divided->keys[n / 27], at);
+        cwi_lattice_point(divided->keys[n / 27], at);
         for (int a = 0; a < 3; a++)
             beside[a] = at[a] + (uint32_t)lattice_coordinate((int)(n % 27), a) - 1;
         add_whole(b, beside);
@@ -185,19 +185,19 @@ static void find_whole(build *b)
 
 static bool make_room(build *b)
 {
-    if (b->count == b->room) {
-        const size_t room = 2 * b->room + 1024;
-        uint8_t *more = cwi_realloc_array(b->shapes, room, sizeof *more);
+    if (b->count == b->capacity) {
+        const size_t capacity = 2 * b->capacity + 1024;
+        uint8_t *more = cwi_realloc_array(b->shapes, capacity, sizeof *more);
         b->shapes = more ? more : b->shapes;
-        b->room = more ? room : b->room;
+        b->capacity = more ? capacity : b->capacity;
     }
-    if (b->corner_count + 8 > b->corner_room) {
-        const size_t room = 2 * b->corner_room + 8192;
-        uint32_t *more = cwi_realloc_array(b->corners, room, sizeof *more);
+    if (b->corner_count + 8 > b->corner_capacity) {
+        const size_t capacity = 2 * b->corner_capacity + 8192;
+        uint32_t *more = cwi_realloc_array(b->corners, capacity, sizeof *more);
         b->corners = more ? more : b->corners;
-        b->corner_room = more ? room : b->corner_room;
+        b->corner_capacity = more ? capacity : b->corner_capacity;
     }
-    return b->count < b->room && b->corner_count + 8 <= b->corner_room;
+    return b->count < b->capacity && b->corner_count + 8 <= b->corner_capacity;
 }
 
 /* Adds a cell to the grid. points: of the leaf's 27 */
@@ -281,7 +281,7 @@ static cw_status hand_over(const build *b, cw_volume *grid, cw_error *err)
         memcpy(corners, b->corners, b->corner_count * sizeof *corners);
         memcpy(shapes, b->shapes, b->count);
     }
-    memcpy(points, a->places, samples * sizeof *a->places);
+    memcpy(points, a->positions, samples * sizeof *a->positions);
     *cells = (cw_cells){points, b->count, shapes, corners};
     *grid = (cw_volume){.data = a->values,
                         .type = CW_F32,
@@ -299,7 +299,7 @@ static cw_status check_fits(const build *b, cw_error *err)
 {
     const cwi_adaptive *a = b->a;
     const double point = sizeof *a->points.keys + 2 * sizeof *a->points.table +
-                         2 * sizeof *a->places + sizeof *a->values;
+                         2 * sizeof *a->positions + sizeof *a->values;
     const double bytes = 1.5 * point * (double)a->points.count +
                          2 * sizeof *b->corners * (double)b->corner_count;
     if (!a->desc->max_bytes || bytes <= (double)a->desc->max_bytes)
@@ -331,7 +331,7 @@ cw_status cwi_adaptive_grid(cwi_adaptive *a, cw_volume *grid, cw_error *err)
     cw_status st = build_grid(&b, err);
     if (st == CW_OK)
         st = hand_over(&b, grid, err);
-    cwi_places_free(&b.whole);
+    cwi_lattice_free(&b.whole);
     cwi_free(b.shapes);
     cwi_free(b.corners);
     return st;

@@ -14,19 +14,19 @@
 static const double depths[] = {0.02, 0.005, 0.001, 0};
 
 /* Maximum distance that a point moves, as a fraction of the way from the middle to the end. */
-static const double most = 0.97;
+static const double MAX_REACH = 0.97;
 
 /* The inside of an edge, a face or a cell, in which a point may be placed. */
-typedef struct room {
+typedef struct star_box {
     const cwi_adaptive *a;
     double middle[3], reach[3]; /* voxels; a reach of 0: it stays on that plane */
     bool inside;                /* the side on which the point has to be */
-    double square;              /* of the least way from the middle so far */
-    double place[3];
-} room;
+    double distance_sq;         /* of the least way from the middle so far */
+    double position[3];
+} star_box;
 
 /* Returns how many of a room's corners are inside; `of`: the number of corners. */
-static int count_inside(const room *r, int *of)
+static int count_inside(const star_box *r, int *of)
 {
     int count = 0;
     *of = 0;
@@ -45,20 +45,21 @@ static int count_inside(const room *r, int *of)
 
 /* Finds the place in the room nearest to x, and the squares of its distances from x and from
  * the middle. */
-static void keep_in(const room *r, const double x[3], double place[3], double squares[2])
+static void keep_in(const star_box *r, const double x[3], double position[3],
+                    double distances_sq[2])
 {
-    squares[0] = squares[1] = 0;
+    distances_sq[0] = distances_sq[1] = 0;
     for (int a = 0; a < 3; a++) {
-        const double reach = most * r->reach[a];
-        const double way = fmax(-reach, fmin(reach, x[a] - r->middle[a]));
-        place[a] = r->middle[a] + way;
-        squares[0] += (place[a] - x[a]) * (place[a] - x[a]);
-        squares[1] += way * way;
+        const double reach = MAX_REACH * r->reach[a];
+        const double offset = fmax(-reach, fmin(reach, x[a] - r->middle[a]));
+        position[a] = r->middle[a] + offset;
+        distances_sq[0] += (position[a] - x[a]) * (position[a] - x[a]);
+        distances_sq[1] += offset * offset;
     }
 }
 
 /* Tries a place beside x, a point of the mesh, along a triangle's normal. */
-static void step_in(room *r, const double x[3], const double normal[3])
+static void step_in(star_box *r, const double x[3], const double normal[3])
 {
     double n[3], length = 0;
     for (int a = 0; a < 3; a++) {
@@ -66,22 +67,22 @@ static void step_in(room *r, const double x[3], const double normal[3])
         length = hypot(length, n[a]);
     }
     for (size_t k = 0; k < sizeof depths / sizeof *depths && length > 0; k++) {
-        double beside[3], p[3], squares[2];
+        double beside[3], p[3], distances_sq[2];
         for (int a = 0; a < 3; a++)
             beside[a] = x[a] + depths[k] * (r->inside ? -1 : 1) * n[a] / length;
-        keep_in(r, beside, p, squares);
-        if (squares[1] >= r->square)
+        keep_in(r, beside, p, distances_sq);
+        if (distances_sq[1] >= r->distance_sq)
             return;
         if (depths[k] > 0 ? cwi_adaptive_is_inside(r->a, p) != r->inside
-                          : squares[0] > CWI_THIN * CWI_THIN)
+                          : distances_sq[0] > CWI_THIN * CWI_THIN)
             continue;
-        r->square = squares[1];
-        memcpy(r->place, p, sizeof p);
+        r->distance_sq = distances_sq[1];
+        memcpy(r->position, p, sizeof p);
         return;
     }
 }
 
-static void try_triangle(room *r, uint32_t t)
+static void try_triangle(star_box *r, uint32_t t)
 {
     const cwi_adaptive *a = r->a;
     cwi_polygon p[2] = {{.count = 3}};
@@ -101,7 +102,7 @@ static void try_triangle(room *r, uint32_t t)
 
 static bool visit_node(void *context, size_t node)
 {
-    room *r = context;
+    star_box *r = context;
     const cwi_boxes *tree = &r->a->tree;
     for (size_t s = CWI_WIDTH * node; s < CWI_WIDTH * (node + 1) && s < tree->count; s++)
         try_triangle(r, tree->order[s]);
@@ -109,7 +110,7 @@ static bool visit_node(void *context, size_t node)
 }
 
 /* Tries the triangles around the room, which is a little widened for rounding. */
-static void try_triangles(room *r)
+static void try_triangles(star_box *r)
 {
     float box[6];
     double low[3], high[3];
@@ -126,14 +127,14 @@ static void try_triangles(room *r)
     cwi_boxes_visit(&r->a->tree, box, 0, visit_node, r);
 }
 
-bool cwi_adaptive_place(const cwi_adaptive *a, const uint32_t at[3], double place[3],
-                        bool *inside)
+bool cwi_adaptive_position(const cwi_adaptive *a, const uint32_t at[3], double position[3],
+                           bool *inside)
 {
-    room r = {.a = a, .square = INFINITY};
+    star_box r = {.a = a, .distance_sq = INFINITY};
     bool stays = true;
     int of = 0;
     for (int k = 0; k < 3; k++) {
-        r.place[k] = r.middle[k] = (double)at[k] / CWI_PARTS;
+        r.position[k] = r.middle[k] = (double)at[k] / CWI_PARTS;
         r.reach[k] = at[k] % 2 ? 1.0 / CWI_PARTS : 0;
         stays &= at[k] % 2 == 0;
     }
@@ -141,6 +142,6 @@ bool cwi_adaptive_place(const cwi_adaptive *a, const uint32_t at[3], double plac
     *inside = r.inside = 2 * count < of;
     if (!stays && 2 * count != of)
         try_triangles(&r);
-    memcpy(place, r.place, sizeof r.place);
-    return r.square < INFINITY;
+    memcpy(position, r.position, sizeof r.position);
+    return r.distance_sq < INFINITY;
 }

@@ -19,7 +19,7 @@ typedef struct pieces {
         uint32_t at[3];
         int size;
     } * cells;
-    size_t count, room;
+    size_t count, capacity;
     bool out_of_memory;
 } pieces;
 
@@ -27,16 +27,16 @@ typedef struct pieces {
 
 static bool make_room(pieces *p)
 {
-    if (p->count < p->room)
+    if (p->count < p->capacity)
         return true;
-    const size_t room = 2 * p->room + 1024;
-    float *positions = cwi_realloc_array(p->positions, 9 * room, sizeof *positions);
+    const size_t capacity = 2 * p->capacity + 1024;
+    float *positions = cwi_realloc_array(p->positions, 9 * capacity, sizeof *positions);
     p->positions = positions ? positions : p->positions;
-    struct cell *cells = cwi_realloc_array(p->cells, room, sizeof *cells);
+    struct cell *cells = cwi_realloc_array(p->cells, capacity, sizeof *cells);
     p->cells = cells ? cells : p->cells;
     if (!positions || !cells)
         return false;
-    p->room = room;
+    p->capacity = capacity;
     return true;
 }
 

@@ -20,7 +20,7 @@ static const double near = 0.02, tangled = 0.15, low = 1e-4;
 /* A vertex on its way: at `from` with share 0, at from + way with share 1. */
 typedef struct mover {
     uint32_t vertex;
-    float from[3], way[3], share;
+    float from[3], displacement[3], fraction;
     bool moved; /* in this round */
 } mover;
 
@@ -30,11 +30,11 @@ typedef struct motion {
     cwi_boxes tree;
     mover *movers;
     size_t count;
-    uint32_t *mover_of; /* of vertices; UINT32_MAX: none */
-    float (*ways)[3];   /* of vertices, to the mesh */
-    float (*means)[4];  /* of vertices' neighbours: sums, and how many */
-    double voxel, far;  /* distance from which vertices are pulled */
-    bool by_means;      /* pulled to the mesh from the mean of their neighbours */
+    uint32_t *mover_of;        /* of vertices; UINT32_MAX: none */
+    float (*displacements)[3]; /* of vertices, to the mesh */
+    float (*means)[4];         /* of vertices' neighbours: sums, and how many */
+    double voxel, far;         /* distance from which vertices are pulled */
+    bool by_means;             /* pulled to the mesh from the mean of their neighbours */
 } motion;
 
 static float *vertex_position(const cw_mesh *m, uint32_t v)
@@ -42,19 +42,23 @@ static float *vertex_position(const cw_mesh *m, uint32_t v)
     return m->positions + 3 * (size_t)v;
 }
 
-static void place_vertex(const motion *m, const mover *k)
+static void move_vertex(const motion *m, const mover *k)
 {
     for (int a = 0; a < 3; a++)
-        vertex_position(m->surface, k->vertex)[a] = k->from[a] + k->share * k->way[a];
+        vertex_position(m->surface, k->vertex)[a] =
+            k->from[a] + k->fraction * k->displacement[a];
 }
 
-static void add_mover(motion *m, uint32_t v, const float way[3])
+static void add_mover(motion *m, uint32_t v, const float displacement[3])
 {
     mover *k = m->movers + m->count;
-    *k = (mover){.vertex = v, .share = 1, .moved = true, .way = {way[0], way[1], way[2]}};
+    *k = (mover){.vertex = v,
+                 .fraction = 1,
+                 .moved = true,
+                 .displacement = {displacement[0], displacement[1], displacement[2]}};
     memcpy(k->from, vertex_position(m->surface, v), sizeof k->from);
     m->mover_of[v] = (uint32_t)m->count++;
-    place_vertex(m, k);
+    move_vertex(m, k);
 }
 
 static void forget_movers(motion *m)
@@ -68,11 +72,11 @@ static void forget_movers(motion *m)
 /* State of the test of triangles that moved, for crossings. */
 typedef struct settling {
     motion *motion;
-    cwi_boxes tree;    /* of all triangles, wherever on their ways their corners stop */
-    uint32_t *asked;   /* those that moved since they were last tested */
-    uint8_t *is_asked; /* of triangles */
-    uint8_t *crosses;  /* of triangles: 1 where they cross another */
-    size_t asked_count;
+    cwi_boxes tree;      /* of all triangles, wherever on their ways their corners stop */
+    uint32_t *pending;   /* those that moved since they were last tested */
+    uint8_t *is_pending; /* of triangles */
+    uint8_t *crosses;    /* of triangles: 1 where they cross another */
+    size_t pending_count;
 } settling;
 
 /* The test of one triangle. */
@@ -95,13 +99,13 @@ static mover *mover_at(const motion *m, uint32_t vertex)
 
 /* Finds the box of a triangle's corners on their ways. Rounding keeps points between the ends
  * between them. */
-static void box_of_ways(const motion *m, size_t triangle, float box[6])
+static void box_of_paths(const motion *m, size_t triangle, float box[6])
 {
     cwi_boxes_triangle(m->surface->positions, triangle_corners(m, triangle), box);
     for (int n = 0; n < 3; n++) {
         const mover *k = mover_at(m, triangle_corners(m, triangle)[n]);
         for (int a = 0; a < 3 && k; a++) {
-            const float ends[2] = {k->from[a], k->from[a] + k->way[a]};
+            const float ends[2] = {k->from[a], k->from[a] + k->displacement[a]};
             box[a] = fminf(box[a], fminf(ends[0], ends[1]));
             box[a + 3] = fmaxf(box[a + 3], fmaxf(ends[0], ends[1]));
         }
@@ -119,7 +123,7 @@ static void test_pair(const look *l, uint32_t other)
     const settling *s = l->s;
     const motion *m = s->motion;
     const float *points = m->surface->positions;
-    if (other == l->triangle || (s->is_asked[other] && other < l->triangle))
+    if (other == l->triangle || (s->is_pending[other] && other < l->triangle))
         return;
     if (cwi_has_area(points, triangle_corners(m, other)) &&
         cwi_triangles_meet(points, triangle_corners(m, l->triangle),
@@ -144,8 +148,8 @@ static void look_at_chunk(void *context, size_t chunk)
 {
     const settling *s = context;
     const float *points = s->motion->surface->positions;
-    for (size_t n = chunk * CHUNK; n < (chunk + 1) * CHUNK && n < s->asked_count; n++) {
-        look l = {.s = s, .triangle = s->asked[n]};
+    for (size_t n = chunk * CHUNK; n < (chunk + 1) * CHUNK && n < s->pending_count; n++) {
+        look l = {.s = s, .triangle = s->pending[n]};
         const uint32_t *v = triangle_corners(s->motion, l.triangle);
         if (!cwi_has_area(points, v))
             continue;
@@ -159,25 +163,25 @@ static void hold_back(motion *m, size_t triangle)
 {
     for (size_t n = 0; n < 3; n++) {
         mover *k = mover_at(m, triangle_corners(m, triangle)[n]);
-        if (!k || k->share == 0)
+        if (!k || k->fraction == 0)
             continue;
-        k->share = k->share > 0.1f ? k->share / 2 : 0;
+        k->fraction = k->fraction > 0.1f ? k->fraction / 2 : 0;
         k->moved = true;
-        place_vertex(m, k);
+        move_vertex(m, k);
     }
 }
 
 static bool is_flat(const motion *m, size_t triangle)
 {
     const uint32_t *v = triangle_corners(m, triangle);
-    double way[3][3], n[3], longest = 0;
+    double side[3][3], n[3], longest = 0;
     for (int k = 0; k < 3; k++) {
         for (int a = 0; a < 3; a++)
-            way[k][a] = (double)vertex_position(m->surface, v[(k + 1) % 3])[a] -
-                        (double)vertex_position(m->surface, v[k])[a];
-        longest = fmax(longest, cwi_dot(way[k], way[k]));
+            side[k][a] = (double)vertex_position(m->surface, v[(k + 1) % 3])[a] -
+                         (double)vertex_position(m->surface, v[k])[a];
+        longest = fmax(longest, cwi_dot(side[k], side[k]));
     }
-    cwi_cross(way[0], way[1], n);
+    cwi_cross(side[0], side[1], n);
     return !(cwi_dot(n, n) > longest * low * low * m->voxel * m->voxel);
 }
 
@@ -185,7 +189,7 @@ static void hold_back_all(settling *s)
 {
     motion *m = s->motion;
     for (size_t t = 0; t < m->surface->triangle_count; t++)
-        if (s->crosses[t] || (s->is_asked[t] && is_flat(m, t)))
+        if (s->crosses[t] || (s->is_pending[t] && is_flat(m, t)))
             hold_back(m, t);
 }
 
@@ -195,30 +199,30 @@ static void ask_moved(settling *s)
     motion *m = s->motion;
     const size_t count = m->surface->triangle_count;
     memset(s->crosses, 0, count);
-    s->asked_count = 0;
+    s->pending_count = 0;
     for (size_t t = 0; t < count; t++) {
-        s->is_asked[t] = 0;
+        s->is_pending[t] = 0;
         for (int n = 0; n < 3; n++) {
             const mover *k = mover_at(m, triangle_corners(m, t)[n]);
-            s->is_asked[t] |= k && k->moved;
+            s->is_pending[t] |= k && k->moved;
         }
-        if (s->is_asked[t])
-            s->asked[s->asked_count++] = (uint32_t)t;
+        if (s->is_pending[t])
+            s->pending[s->pending_count++] = (uint32_t)t;
     }
     for (size_t k = 0; k < m->count; k++)
         m->movers[k].moved = false;
 }
 
-static cw_status find_places(settling *s, cw_error *err)
+static cw_status find_bounds(settling *s, cw_error *err)
 {
     const size_t count = s->motion->surface->triangle_count;
     float(*boxes)[6] = cwi_alloc_array(count, sizeof *boxes);
-    s->asked = cwi_alloc_array(count, sizeof *s->asked);
-    s->is_asked = cwi_alloc_array(count, sizeof *s->is_asked);
+    s->pending = cwi_alloc_array(count, sizeof *s->pending);
+    s->is_pending = cwi_alloc_array(count, sizeof *s->is_pending);
     s->crosses = cwi_alloc_array(count, sizeof *s->crosses);
-    const bool ok = boxes && s->asked && s->is_asked && s->crosses;
+    const bool ok = boxes && s->pending && s->is_pending && s->crosses;
     for (size_t t = 0; t < count && ok; t++)
-        box_of_ways(s->motion, t, boxes[t]);
+        box_of_paths(s->motion, t, boxes[t]);
     const cw_status st = ok ? cwi_boxes_build(&s->tree, (const float(*)[6])boxes, count, err)
                             : cwi_fail_memory(err);
     cwi_free(boxes);
@@ -233,18 +237,18 @@ static cw_status settle_vertices(motion *m, int threads, const cw_progress *prog
     settling s = {.motion = m};
     if (!m->count)
         return CW_OK;
-    cw_status st = find_places(&s, err);
+    cw_status st = find_bounds(&s, err);
     if (st == CW_OK)
         ask_moved(&s);
-    while (st == CW_OK && s.asked_count) {
-        st = cwi_parallel_for((s.asked_count + CHUNK - 1) / CHUNK, 64 * CHUNK, threads,
+    while (st == CW_OK && s.pending_count) {
+        st = cwi_parallel_for((s.pending_count + CHUNK - 1) / CHUNK, 64 * CHUNK, threads,
                               progress, "edges", look_at_chunk, &s, err);
         hold_back_all(&s);
         ask_moved(&s);
     }
     cwi_boxes_free(&s.tree);
-    cwi_free(s.asked);
-    cwi_free(s.is_asked);
+    cwi_free(s.pending);
+    cwi_free(s.is_pending);
     cwi_free(s.crosses);
     return st;
 }
@@ -253,20 +257,20 @@ static cw_status settle_vertices(motion *m, int threads, const cw_progress *prog
 
 /* Interpolates trilinearly between the moves of the samples around: on an edge of the grid, of
  * its ends. */
-static bool way_at(const cwi_warp *w, const double at[3], float way[3])
+static bool displacement_at(const cwi_warp *w, const double at[3], float displacement[3])
 {
     double sum[3] = {0};
     bool any = false;
     for (int n = 0; n < 8; n++) {
         uint32_t corner[3];
-        const double share = cwi_warp_corner(at, n, corner);
-        const cwi_move *m = share > 1e-6 ? cwi_warp_find(w, corner) : NULL;
+        const double weight = cwi_warp_corner(at, n, corner);
+        const cwi_move *m = weight > 1e-6 ? cwi_warp_find(w, corner) : NULL;
         for (int a = 0; a < 3 && m; a++)
-            sum[a] += share * m->way[a];
+            sum[a] += weight * m->displacement[a];
         any |= m != NULL;
     }
     for (int a = 0; a < 3; a++)
-        way[a] = (float)(w->voxel * sum[a]);
+        displacement[a] = (float)(w->voxel * sum[a]);
     return any;
 }
 
@@ -276,11 +280,11 @@ static void follow_samples(const cwi_warp *w, motion *m)
     for (uint32_t v = 0; v < m->surface->vertex_count; v++) {
         const float *p = vertex_position(m->surface, v);
         double at[3];
-        float way[3];
+        float displacement[3];
         for (int a = 0; a < 3; a++)
             at[a] = (m->surface->origin[a] + (double)p[a] - w->corner[a]) / w->voxel;
-        if (way_at(w, at, way))
-            add_mover(m, v, way);
+        if (displacement_at(w, at, displacement))
+            add_mover(m, v, displacement);
     }
 }
 
@@ -299,18 +303,19 @@ static void find_means(motion *m)
     }
 }
 
-static double find_way(const motion *m, const double x[3], const double y[3], float way[3])
+static double find_displacement(const motion *m, const double x[3], const double y[3],
+                                float displacement[3])
 {
     const cwi_closest c = cwi_closest_find(m->mesh, &m->tree, y);
-    double square = 0;
+    double distance_sq = 0;
     for (int a = 0; a < 3; a++) {
-        way[a] = (float)(c.point[a] - x[a]);
-        square += (c.point[a] - x[a]) * (c.point[a] - x[a]);
+        displacement[a] = (float)(c.point[a] - x[a]);
+        distance_sq += (c.point[a] - x[a]) * (c.point[a] - x[a]);
     }
-    return sqrt(square);
+    return sqrt(distance_sq);
 }
 
-static void find_ways(void *context, size_t chunk)
+static void find_displacements(void *context, size_t chunk)
 {
     motion *m = context;
     for (size_t v = chunk * CHUNK; v < (chunk + 1) * CHUNK && v < m->surface->vertex_count;
@@ -321,10 +326,10 @@ static void find_ways(void *context, size_t chunk)
             x[a] = m->surface->origin[a] + (double)p[a] - m->mesh->origin[a];
             y[a] = x[a] + (double)mean[a] / (double)mean[3] - (double)p[a];
         }
-        if (!(find_way(m, x, x, m->ways[v]) > m->far * m->voxel))
-            memset(m->ways[v], 0, sizeof m->ways[v]);
+        if (!(find_displacement(m, x, x, m->displacements[v]) > m->far * m->voxel))
+            memset(m->displacements[v], 0, sizeof m->displacements[v]);
         else if (m->by_means)
-            find_way(m, x, y, m->ways[v]);
+            find_displacement(m, x, y, m->displacements[v]);
     }
 }
 
@@ -338,11 +343,12 @@ static cw_status pull_vertices(motion *m, bool by_means, int threads,
     m->far = by_means ? tangled : near;
     find_means(m);
     cw_status st = cwi_parallel_for((count + CHUNK - 1) / CHUNK, 64 * CHUNK, threads, progress,
-                                    "edges", find_ways, m, err);
+                                    "edges", find_displacements, m, err);
     forget_movers(m);
     for (uint32_t v = 0; v < count && st == CW_OK; v++)
-        if (m->ways[v][0] != 0 || m->ways[v][1] != 0 || m->ways[v][2] != 0)
-            add_mover(m, v, m->ways[v]);
+        if (m->displacements[v][0] != 0 || m->displacements[v][1] != 0 ||
+            m->displacements[v][2] != 0)
+            add_mover(m, v, m->displacements[v]);
     return st;
 }
 
@@ -353,9 +359,9 @@ static bool make_room(motion *m)
     const size_t n = m->surface->vertex_count;
     m->movers = cwi_alloc_array(n, sizeof *m->movers);
     m->mover_of = cwi_alloc_array(n, sizeof *m->mover_of);
-    m->ways = cwi_alloc_array(n, sizeof *m->ways);
+    m->displacements = cwi_alloc_array(n, sizeof *m->displacements);
     m->means = cwi_alloc_array(n, sizeof *m->means);
-    return m->movers && m->mover_of && m->ways && m->means;
+    return m->movers && m->mover_of && m->displacements && m->means;
 }
 
 cw_status cwi_unwarp(const cwi_warp *w, const cw_mesh *mesh, int threads,
@@ -375,7 +381,7 @@ cw_status cwi_unwarp(const cwi_warp *w, const cw_mesh *mesh, int threads,
     cwi_boxes_free(&m.tree);
     cwi_free(m.movers);
     cwi_free(m.mover_of);
-    cwi_free(m.ways);
+    cwi_free(m.displacements);
     cwi_free(m.means);
     return st;
 }

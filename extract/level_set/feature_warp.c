@@ -20,18 +20,18 @@ enum { FACE, EDGE, CORNER, JOINS = 6 };
 
 /* Maximum cosines of normals: of faces that meet at less than 80 degrees, and of those that
  * meet at less than 120, which count where the part between them is thin. */
-static const double sharp = -0.17, bent = 0.5;
+static const double SHARP_COSINE = -0.17, BENT_COSINE = 0.5;
 
 /* Length of the mean of the normals around a corner, at most: a cube's is 0.58. */
-static const double pointed = 0.55;
+static const double POINTED_MEAN = 0.55;
 
 /* In voxels: the maximum thickness of thin walls and gaps; the minimum distance of a sample
  * that is moved; the distance from an edge at which its cube is determined. */
-static const double thin = 2.4, least = 0.01, beside = 0.01;
+static const double MAX_THICKNESS = 2.4, MIN_DISTANCE = 0.01, EDGE_OFFSET = 0.01;
 
 /* Pairs tried one after the other, in voxels: how deep a sample goes in from an edge or a face,
  * and how far from its old place along each axis. */
-static const double depths[][2] = {{0.25, 0.45}, {0.1, 0.45},  {0.04, 0.45}, {0.1, 0.5},
+static const double DEPTHS[][2] = {{0.25, 0.45}, {0.1, 0.45},  {0.04, 0.45}, {0.1, 0.5},
                                    {0.04, 0.52}, {0.01, 0.51}, {0.001, 9}};
 
 /* A sample that should be on a given side. */
@@ -45,11 +45,11 @@ typedef struct warping {
     const cw_mesh *mesh;
     const cw_volume *volume;
     cwi_boxes tree;
-    cwi_places leaves;    /* of the volume */
-    double (*normals)[3]; /* of triangles */
-    double (*corners)[4]; /* of vertices: normals around, weighted by angle; those weights */
-    wish *wishes;         /* sorted; NULL: thin parts count */
-    size_t wish_count, wish_room;
+    cwi_lattice_map leaves; /* of the volume */
+    double (*normals)[3];   /* of triangles */
+    double (*corners)[4];   /* of vertices: normals around, weighted by angle; those weights */
+    wish *wishes;           /* sorted; NULL: thin parts count */
+    size_t wish_count, wish_capacity;
     bool out_of_memory;
 } warping;
 
@@ -66,9 +66,9 @@ static double distance_at(const warping *g, const double at[3])
     double sum = 0;
     for (int n = 0; n < 8; n++) {
         uint32_t corner[3];
-        const double share = cwi_warp_corner(at, n, corner);
+        const double weight = cwi_warp_corner(at, n, corner);
         const float *v = voxel_at(g, corner);
-        sum += v ? share * (double)*v : (double)NAN;
+        sum += v ? weight * (double)*v : (double)NAN;
     }
     return sum / g->warp->voxel;
 }
@@ -110,8 +110,8 @@ static bool is_inside(const warping *g, const double p[3])
 static bool is_thin(const warping *g, const double x[3], const double in[3], bool inside)
 {
     double at[3], p[3];
-    cwi_add_scaled(x, thin, in, at);
-    if (distance_at(g, at) * (inside ? -1 : 1) > 0.7 * thin)
+    cwi_add_scaled(x, MAX_THICKNESS, in, at);
+    if (distance_at(g, at) * (inside ? -1 : 1) > 0.7 * MAX_THICKNESS)
         return false;
     to_mesh(g, at, p);
     return is_inside(g, p) != inside;
@@ -121,18 +121,19 @@ static bool is_thin(const warping *g, const double x[3], const double in[3], boo
 static bool step_in(const warping *g, const double x[3], const double in[3], bool inside,
                     cwi_move *m)
 {
-    for (size_t n = 0; n < sizeof depths / sizeof *depths; n++) {
+    for (size_t n = 0; n < sizeof DEPTHS / sizeof *DEPTHS; n++) {
         double at[3], p[3];
         for (int a = 0; a < 3; a++)
-            at[a] = fmax(m->at[a] - depths[n][1],
-                         fmin(m->at[a] + depths[n][1], x[a] + depths[n][0] * in[a]));
+            at[a] = fmax(m->at[a] - DEPTHS[n][1],
+                         fmin(m->at[a] + DEPTHS[n][1], x[a] + DEPTHS[n][0] * in[a]));
         to_mesh(g, at, p);
         if (is_inside(g, p) != inside)
             continue;
         const cwi_closest c = cwi_closest_find(g->mesh, &g->tree, p);
-        m->value = fmax(cwi_distance(p, c.point), least * g->warp->voxel) * (inside ? -1 : 1);
+        m->value =
+            fmax(cwi_distance(p, c.point), MIN_DISTANCE * g->warp->voxel) * (inside ? -1 : 1);
         for (int a = 0; a < 3; a++)
-            m->way[a] = at[a] - m->at[a];
+            m->displacement[a] = at[a] - m->at[a];
         return true;
     }
     return false;
@@ -147,10 +148,10 @@ static void consider_move(warping *g, const uint32_t at[3], const double x[3],
     const cwi_move *old = cwi_warp_find(g->warp, at);
     cwi_move m = {.at = {at[0], at[1], at[2]}, .rank = rank};
     for (int a = 0; a < 3; a++)
-        m.square += (x[a] - at[a]) * (x[a] - at[a]);
+        m.distance_sq += (x[a] - at[a]) * (x[a] - at[a]);
     if (!voxel || (rank == FACE && (*voxel < 0) == inside))
         return;
-    if (old && (old->rank > rank || (old->rank == rank && old->square <= m.square)))
+    if (old && (old->rank > rank || (old->rank == rank && old->distance_sq <= m.distance_sq)))
         return;
     if (step_in(g, x, in, inside, &m))
         g->out_of_memory |= !cwi_warp_put(g->warp, &m);
@@ -159,19 +160,20 @@ static void consider_move(warping *g, const uint32_t at[3], const double x[3],
 /* ---- edges and corners ------------------------------------------------------------------- */
 
 /* Considers the part of an edge that is in the cube of one sample. */
-static void consider_part(warping *g, const double from[3], const double way[3], double begin,
-                          double end, const double in[3], bool inside, bool always)
+static void consider_part(warping *g, const double from[3], const double direction[3],
+                          double begin, double end, const double in[3], bool inside,
+                          bool always)
 {
-    const double rim = 0.05 * (end - begin);
+    const double margin = 0.05 * (end - begin);
     double x[3], along = 0;
     uint32_t at[3];
     for (int a = 0; a < 3; a++)
-        x[a] = from[a] + (begin + end) / 2 * way[a];
+        x[a] = from[a] + (begin + end) / 2 * direction[a];
     nearest_sample(x, at);
     for (int a = 0; a < 3; a++)
-        along += (at[a] - from[a]) * way[a] / cwi_dot(way, way);
-    along = fmax(begin + rim, fmin(end - rim, along));
-    cwi_add_scaled(from, along, way, x);
+        along += (at[a] - from[a]) * direction[a] / cwi_dot(direction, direction);
+    along = fmax(begin + margin, fmin(end - margin, along));
+    cwi_add_scaled(from, along, direction, x);
     if (always || is_thin(g, x, in, inside))
         consider_move(g, at, x, in, inside, EDGE);
 }
@@ -180,22 +182,22 @@ static void consider_part(warping *g, const double from[3], const double way[3],
 static void follow_edge(warping *g, const uint32_t ends[2], const double in[3], bool inside,
                         bool always)
 {
-    double from[3], way[3], next[3], begin = 0;
+    double from[3], direction[3], next[3], begin = 0;
     to_grid(g, ends[0], from);
-    to_grid(g, ends[1], way);
+    to_grid(g, ends[1], direction);
     for (int a = 0; a < 3; a++) {
-        way[a] -= from[a];
-        from[a] += beside * in[a];
-        const double side = floor(from[a] + 0.5) + (way[a] > 0 ? 0.5 : -0.5);
-        next[a] = way[a] != 0 ? (side - from[a]) / way[a] : INFINITY;
+        direction[a] -= from[a];
+        from[a] += EDGE_OFFSET * in[a];
+        const double side = floor(from[a] + 0.5) + (direction[a] > 0 ? 0.5 : -0.5);
+        next[a] = direction[a] != 0 ? (side - from[a]) / direction[a] : INFINITY;
     }
     while (begin < 1) {
         const int a = next[0] <= next[1] && next[0] <= next[2] ? 0 : next[1] <= next[2] ? 1 : 2;
         const double end = fmin(next[a], 1);
         if (end > begin)
-            consider_part(g, from, way, begin, end, in, inside, always);
+            consider_part(g, from, direction, begin, end, in, inside, always);
         begin = fmax(begin, end);
-        next[a] += 1 / fabs(way[a]);
+        next[a] += 1 / fabs(direction[a]);
     }
 }
 
@@ -205,7 +207,7 @@ static void consider_corner(warping *g, uint32_t v, const double edge_in[3], boo
                             bool always)
 {
     const double *n = g->corners[v], length = cwi_length(n);
-    const bool is_pointed = length < pointed * n[3];
+    const bool is_pointed = length < POINTED_MEAN * n[3];
     double x[3], in[3];
     uint32_t at[3];
     for (int a = 0; a < 3; a++)
@@ -214,7 +216,7 @@ static void consider_corner(warping *g, uint32_t v, const double edge_in[3], boo
         return;
     to_grid(g, v, x);
     for (int a = 0; a < 3; a++)
-        x[a] += beside * in[a];
+        x[a] += EDGE_OFFSET * in[a];
     nearest_sample(x, at);
     if (always || is_pointed || is_thin(g, x, in, inside))
         consider_move(g, at, x, in, inside, CORNER);
@@ -251,9 +253,9 @@ static void consider_edge(warping *g, const side *s, const side *t)
 {
     const double *m = g->normals[s->triangle], *n = g->normals[t->triangle];
     const double cosine = cwi_dot(m, n);
-    if (!(cosine <= bent))
+    if (!(cosine <= BENT_COSINE))
         return;
-    const bool inside = is_convex(g, s, t), always = cosine <= sharp;
+    const bool inside = is_convex(g, s, t), always = cosine <= SHARP_COSINE;
     double in[3] = {m[0] + n[0], m[1] + n[1], m[2] + n[2]};
     const double length = cwi_length(in);
     if (!(length > 1e-6))
@@ -308,14 +310,14 @@ static bool is_on_side(const warping *g, const uint32_t at[3], bool inside)
 
 static void add_wish(warping *g, const uint32_t at[3], bool inside)
 {
-    if (g->wish_count == g->wish_room) {
-        const size_t room = 2 * g->wish_room + 64;
-        wish *more = cwi_realloc_array(g->wishes, room, sizeof *more);
+    if (g->wish_count == g->wish_capacity) {
+        const size_t capacity = 2 * g->wish_capacity + 64;
+        wish *more = cwi_realloc_array(g->wishes, capacity, sizeof *more);
         g->out_of_memory |= !more;
         if (!more)
             return;
         g->wishes = more;
-        g->wish_room = room;
+        g->wish_capacity = capacity;
     }
     g->wishes[g->wish_count++] = (wish){{at[0], at[1], at[2]}, inside};
 }
@@ -495,18 +497,18 @@ static double angle_between(const double u[3], const double v[3])
 static void find_normal(warping *g, size_t t)
 {
     const uint32_t *v = g->mesh->triangles + 3 * t;
-    double way[3][3], *n = g->normals[t];
+    double sides[3][3], *n = g->normals[t];
     for (int k = 0; k < 3; k++)
         for (int a = 0; a < 3; a++)
-            way[k][a] = (double)vertex_position(g, v[(k + 1) % 3])[a] -
-                        (double)vertex_position(g, v[k])[a];
-    cwi_cross(way[0], way[1], n);
+            sides[k][a] = (double)vertex_position(g, v[(k + 1) % 3])[a] -
+                          (double)vertex_position(g, v[k])[a];
+    cwi_cross(sides[0], sides[1], n);
     const double length = cwi_length(n);
     for (int a = 0; a < 3; a++)
         n[a] = length > 0 ? n[a] / length : 0;
     for (int k = 0; k < 3; k++) {
-        const double *last = way[(k + 2) % 3], back[3] = {-last[0], -last[1], -last[2]};
-        const double weight = angle_between(way[k], back);
+        const double *last = sides[(k + 2) % 3], back[3] = {-last[0], -last[1], -last[2]};
+        const double weight = angle_between(sides[k], back);
         for (int a = 0; a < 3; a++)
             g->corners[v[k]][a] += weight * n[a];
         g->corners[v[k]][3] += weight;
@@ -526,7 +528,7 @@ static void apply_moves(const warping *g)
     for (size_t n = 0; n < g->warp->count; n++) {
         cwi_move *m = g->warp->moves + n;
         if (is_alone(g, m))
-            memset(m->way, 0, sizeof m->way);
+            memset(m->displacement, 0, sizeof m->displacement);
         else
             *voxel_at(g, m->at) = (float)m->value;
     }
@@ -551,7 +553,7 @@ cw_status cwi_warp_init(cwi_warp *warp, const cw_mesh *mesh, cw_volume *volume, 
     if (g.out_of_memory)
         st = cwi_fail_memory(err);
     cwi_boxes_free(&g.tree);
-    cwi_places_free(&g.leaves);
+    cwi_lattice_free(&g.leaves);
     cwi_free(g.normals);
     cwi_free(g.corners);
     cwi_free(g.wishes);

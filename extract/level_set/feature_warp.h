@@ -17,16 +17,16 @@
 /* A sample that was moved. */
 typedef struct cwi_move {
     uint32_t at[3];
-    int rank;      /* corners go before edges, edges before faces */
-    double square; /* of the distance it is moved by, in voxels */
-    double way[3]; /* voxels */
-    double value;  /* mm */
+    int rank;               /* corners go before edges, edges before faces */
+    double distance_sq;     /* of the distance it is moved by, in voxels */
+    double displacement[3]; /* voxels */
+    double value;           /* mm */
 } cwi_move;
 
 typedef struct cwi_warp {
-    cwi_move *moves; /* in the order in which `places` numbers their samples */
-    size_t count, room;
-    cwi_places places;
+    cwi_move *moves; /* in the order in which `numbers` numbers their samples */
+    size_t count, capacity;
+    cwi_lattice_map numbers;
     double corner[3], voxel; /* where sample 0 stands in the world; mm */
 } cwi_warp;
 

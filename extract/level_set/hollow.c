@@ -167,9 +167,9 @@ static void place_ray(const hollowing *h, const cw_drain *drain, ray *r)
         }
     for (size_t v = 0; v < h->inner.vertex_count; v++)
         if (measure_depth(h, r, v, p) >= farthest) {
-            const double square = cwi_distance_sq(p, middle);
-            if (square < nearest) {
-                nearest = square;
+            const double distance_sq = cwi_distance_sq(p, middle);
+            if (distance_sq < nearest) {
+                nearest = distance_sq;
                 memcpy(r->from, p, sizeof p);
             }
         }

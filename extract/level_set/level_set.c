@@ -209,15 +209,15 @@ static void add_leaf(const build *b, size_t leaf, batch *list)
 
 static cw_status make_exact(build *b, cw_error *err)
 {
-    const size_t most = b->leaf_count * CWI_LEAF_VOXELS,
-                 room = most < BATCH ? most : (size_t)BATCH;
-    batch list = {.points = cwi_alloc_array(room, sizeof *list.points),
-                  .distances = cwi_alloc_array(room, sizeof *list.distances),
-                  .voxels = cwi_alloc_array(room, sizeof *list.voxels)};
+    const size_t max_points = b->leaf_count * CWI_LEAF_VOXELS,
+                 capacity = max_points < BATCH ? max_points : (size_t)BATCH;
+    batch list = {.points = cwi_alloc_array(capacity, sizeof *list.points),
+                  .distances = cwi_alloc_array(capacity, sizeof *list.distances),
+                  .voxels = cwi_alloc_array(capacity, sizeof *list.voxels)};
     cw_status st = list.points && list.distances && list.voxels ? CW_OK : cwi_fail_memory(err);
     for (size_t n = 0; n < b->leaf_count && st == CW_OK; n++) {
         add_leaf(b, n, &list);
-        if (n + 1 == b->leaf_count || list.count + CWI_LEAF_VOXELS > room)
+        if (n + 1 == b->leaf_count || list.count + CWI_LEAF_VOXELS > capacity)
             st = ask_openvdb(b, &list, err);
     }
     cwi_free(list.points);
@@ -258,7 +258,7 @@ static void limit_leaves(build *b)
 
 /* --- inside, and far from the surface ----------------------------------------------------- */
 
-static int compare_places(const void *a, const void *b)
+static int compare_positions(const void *a, const void *b)
 {
     const uint32_t *p = a, *q = b;
     for (int k = 2; k >= 0; k--)
@@ -278,7 +278,7 @@ static cw_status make_tiles(build *b, cw_error *err)
         return cwi_fail_memory(err);
     }
     memcpy(rows, b->leaves, b->leaf_count * sizeof *rows);
-    qsort(rows, b->leaf_count, sizeof *rows, compare_places);
+    qsort(rows, b->leaf_count, sizeof *rows, compare_positions);
     for (size_t n = 1; n < b->leaf_count; n++) {
         const uint32_t *here = rows[n - 1], *next = rows[n];
         const uint32_t gap[3] = {here[0] + 1, here[1], here[2]};
@@ -402,21 +402,22 @@ cw_status cwi_level_set_make(const cw_mesh *mesh, const cw_quality *q,
     return st;
 }
 
-bool cwi_level_set_leaves(const cw_volume *volume, cwi_places *leaves)
+bool cwi_level_set_leaves(const cw_volume *volume, cwi_lattice_map *leaves)
 {
     const cw_sparse *sparse = volume->sparse;
     bool ok = true;
     for (size_t n = 0; n < sparse->leaf_count && ok; n++)
-        ok = cwi_places_add(leaves, cwi_place_key(sparse->leaves[n])) != CWI_NO_PLACE;
+        ok =
+            cwi_lattice_add(leaves, cwi_lattice_key(sparse->leaves[n])) != CWI_NO_LATTICE_POINT;
     return ok;
 }
 
-float *cwi_level_set_voxel(const cw_volume *volume, const cwi_places *leaves,
+float *cwi_level_set_voxel(const cw_volume *volume, const cwi_lattice_map *leaves,
                            const uint32_t at[3])
 {
     const uint32_t leaf[3] = {at[0] / CWI_LEAF, at[1] / CWI_LEAF, at[2] / CWI_LEAF};
-    const uint32_t n = cwi_places_find(leaves, cwi_place_key(leaf));
-    if (n == CWI_NO_PLACE)
+    const uint32_t n = cwi_lattice_find(leaves, cwi_lattice_key(leaf));
+    if (n == CWI_NO_LATTICE_POINT)
         return NULL;
     return (float *)volume->owned + (size_t)n * CWI_LEAF_VOXELS + at[0] % CWI_LEAF +
            CWI_LEAF * (at[1] % CWI_LEAF + CWI_LEAF * (at[2] % CWI_LEAF));

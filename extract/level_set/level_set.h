@@ -30,10 +30,10 @@ CW_NODISCARD cw_status cwi_level_set_make(const cw_mesh *mesh, const cw_quality 
                                           cw_volume *volume, cw_error *err);
 
 /* Numbers a level set's leaves by their places; false: no memory. */
-bool cwi_level_set_leaves(const cw_volume *volume, cwi_places *leaves);
+bool cwi_level_set_leaves(const cw_volume *volume, cwi_lattice_map *leaves);
 
 /* Returns a sample of it; NULL: there is none. */
-float *cwi_level_set_voxel(const cw_volume *volume, const cwi_places *leaves,
+float *cwi_level_set_voxel(const cw_volume *volume, const cwi_lattice_map *leaves,
                            const uint32_t at[3]);
 
 #endif

@@ -35,7 +35,8 @@ typedef struct making {
     const cw_mesh *mesh;
     const cw_offset_desc *desc;
     cw_quality before;
-    double asked, voxel; /* side of voxels as requested, and now; half of the requested side is
+    double requested,
+        voxel; /* side of voxels as requested, and now; half of the requested side is
                             the guaranteed distance */
     cw_volume volume;
     bool is_known, overlaps; /* find_overlap() was called; the mesh overlaps */
@@ -133,8 +134,8 @@ static cw_status find_overlap(making *m, cw_error *err)
 
 /* Decides if a surface is within limit_mm of the mesh and, unless the mesh overlaps, the mesh
  * is within limit_mm of the surface. */
-static cw_status compare_places(const making *m, const cw_mesh *out, double limit_mm,
-                                bool *holds, cw_error *err)
+static cw_status compare_positions(const making *m, const cw_mesh *out, double limit_mm,
+                                   bool *holds, cw_error *err)
 {
     bool beyond = !out->triangle_count;
     cw_status st = CW_OK;
@@ -151,16 +152,16 @@ static cw_status compare_places(const making *m, const cw_mesh *out, double limi
 static cw_status judge_remesh(making *m, const cw_mesh *out, bool *holds, bool *is_near,
                               cw_error *err)
 {
-    const double limit_mm = m->asked / 2;
+    const double limit_mm = m->requested / 2;
     cw_status st = compare_topology(m, out, holds, err);
     if (st == CW_OK && *holds)
-        st = compare_places(m, out, limit_mm, holds, err);
+        st = compare_positions(m, out, limit_mm, holds, err);
     if (st == CW_OK && !*holds)
         st = find_overlap(m, err);
     if (st == CW_OK && !*holds && m->overlaps)
-        st = compare_places(m, out, limit_mm, holds, err);
+        st = compare_positions(m, out, limit_mm, holds, err);
     if (st == CW_OK && !*holds && !*is_near)
-        st = compare_places(m, out, 2 * limit_mm, is_near, err);
+        st = compare_positions(m, out, 2 * limit_mm, is_near, err);
     return st;
 }
 
@@ -228,7 +229,7 @@ static cw_status make_whole(making *m, size_t triangles, bool is_near, cw_mesh *
         is_near = false;
         st = make_either(m, out, holds, &is_near, err);
     }
-    if (st == CW_ERR_LIMIT && m->voxel < m->asked) {
+    if (st == CW_ERR_LIMIT && m->voxel < m->requested) {
         *holds = false;
         st = CW_OK;
     }
@@ -279,7 +280,7 @@ static cw_status make_adaptive(making *m, cw_mesh *out, cw_offset_facts *facts, 
         st = cwi_adaptive_init(&a, m->mesh, &m->volume, m->desc, err);
     for (int n = 0; n < MAX_ROUNDS && st == CW_OK; n++) {
         cw_mesh next = {0};
-        st = cwi_adaptive_divide(&a, out, m->asked / 2, !m->overlaps, &beyond, err);
+        st = cwi_adaptive_divide(&a, out, m->requested / 2, !m->overlaps, &beyond, err);
         if (st != CW_OK || !beyond.divided)
             break;
         st = make_divided(m, &a, &next, err);
@@ -325,9 +326,9 @@ static cw_status make_true(making *m, cw_mesh *out, cw_offset_facts *facts, cw_e
     cw_mesh_free(&whole);
     if (st != CW_OK || holds)
         return st;
-    m->voxel = m->asked;
+    m->voxel = m->requested;
     if (m->desc->no_refine) {
-        st = compare_places(m, out, m->asked / 2, &holds, err);
+        st = compare_positions(m, out, m->requested / 2, &holds, err);
         facts->is_astray = !holds;
     } else {
         st = make_adaptive(m, out, facts, err);
@@ -351,7 +352,7 @@ cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mes
     cw_status st = cwi_level_set_check(mesh, desc->threads, &m.before, err);
     if (st != CW_OK)
         return st;
-    m.voxel = m.asked = desc->voxel_mm > 0 ? desc->voxel_mm : choose_voxel(desc, &m.before);
+    m.voxel = m.requested = desc->voxel_mm > 0 ? desc->voxel_mm : choose_voxel(desc, &m.before);
     st = desc->offset_mm == 0 && !desc->no_sharpen ? make_true(&m, out, &found, err)
                                                    : make_plain(&m, out, err);
     cw_volume_free(&m.volume);
@@ -361,7 +362,7 @@ cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mes
     if (st == CW_OK) /* not of the grid in between */
         memcpy(out->affine, mesh->affine, sizeof out->affine);
     found.voxel_mm = m.voxel;
-    found.asked_mm = m.asked;
+    found.asked_mm = m.requested;
     if (facts)
         *facts = found;
     if (st != CW_OK)

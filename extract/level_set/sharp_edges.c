@@ -18,12 +18,13 @@ enum { CHUNK = 1024, ROUNDS = 12 };
 
 /* Limits as cosines: planes that meet at more than 30 degrees make an edge; a part of a
  * triangle does not turn away from all planes at the triangle's corners. */
-static const double edge = 0.866, faces = 0;
+static const double EDGE_COSINE = 0.866, FACING_COSINE = 0;
 /* Minimum volume of the parallelepiped that three planes' normals span. */
-static const double corner = 0.2;
+static const double MIN_CORNER_VOLUME = 0.2;
 /* Maxima, as fractions of a voxel: from the middle of the part that is cut to the cut; from a
  * vertex to its plane; off the surface. Minima: between vertices; a triangle's height. */
-static const double reach = 2.5, near = 0.5, off = 0.02, apart = 0.02, low = 0.002;
+static const double MAX_CUT_REACH = 2.5, MAX_PLANE_DISTANCE = 0.5, MAX_SURFACE_DISTANCE = 0.02,
+                    MIN_SPACING = 0.02, MIN_HEIGHT = 0.002;
 
 /* Plane of the surface near a vertex: n . x = at. No normal: 0. */
 typedef struct plane {
@@ -47,13 +48,13 @@ typedef struct sharpener {
     size_t side_count;
     uint32_t *first, *upper; /* sides from each vertex to one with a higher number */
     cut *sides, *middles;
-    float *places;     /* of vertices */
+    float *positions;  /* of vertices */
     uint32_t *parent;  /* of the triangles made */
     uint32_t *changed; /* triangles with a side that is cut, or a corner that is moved */
     size_t changed_count;
 } sharpener;
 
-static void place_of(const cw_mesh *m, uint32_t v, double x[3])
+static void vertex_position(const cw_mesh *m, uint32_t v, double x[3])
 {
     for (int a = 0; a < 3; a++)
         x[a] = (double)m->positions[3 * (size_t)v + a];
@@ -97,7 +98,7 @@ static plane plane_near(const sharpener *s, const double x[3])
 static bool is_on_surface(const sharpener *s, const double x[3])
 {
     const cwi_closest c = find_closest(s, x);
-    return fabs(cwi_distance(x, c.point) - fabs(s->offset)) <= off * s->voxel;
+    return fabs(cwi_distance(x, c.point) - fabs(s->offset)) <= MAX_SURFACE_DISTANCE * s->voxel;
 }
 
 static void find_planes(void *context, size_t chunk)
@@ -105,7 +106,7 @@ static void find_planes(void *context, size_t chunk)
     sharpener *s = context;
     for (size_t v = chunk * CHUNK; v < (chunk + 1) * CHUNK && v < s->mesh->vertex_count; v++) {
         double x[3];
-        place_of(s->mesh, (uint32_t)v, x);
+        vertex_position(s->mesh, (uint32_t)v, x);
         s->planes[v] = plane_near(s, x);
     }
 }
@@ -115,31 +116,33 @@ static void find_planes(void *context, size_t chunk)
 /* Finds the shortest way onto two planes that are `near_p` and `near_q` away along their
  * normals. */
 static void meet_two(const plane *p, const plane *q, double near_p, double near_q,
-                     double way[3])
+                     double displacement[3])
 {
     const double c = cwi_dot(p->n, q->n), d = 1 - c * c;
     const double along_p = (near_p - c * near_q) / d, along_q = (near_q - c * near_p) / d;
     for (int a = 0; a < 3; a++)
-        way[a] = along_p * p->n[a] + along_q * q->n[a];
+        displacement[a] = along_p * p->n[a] + along_q * q->n[a];
 }
 
-static void meet_three(const plane *const p[3], const double away[3], double way[3])
+static void meet_three(const plane *const p[3], const double away[3], double displacement[3])
 {
     double cross[3][3];
     for (int k = 0; k < 3; k++)
         cwi_cross(p[(k + 1) % 3]->n, p[(k + 2) % 3]->n, cross[k]);
     const double volume = cwi_dot(p[0]->n, cross[0]);
     for (int a = 0; a < 3; a++)
-        way[a] =
+        displacement[a] =
             (away[0] * cross[0][a] + away[1] * cross[1][a] + away[2] * cross[2][a]) / volume;
 }
 
 /* Returns true if the way from x leads to the surface, and not too far: then there is the
  * cut. */
-static bool take_way(const sharpener *s, const double x[3], const double way[3], cut *c)
+static bool accept_cut(const sharpener *s, const double x[3], const double displacement[3],
+                       cut *c)
 {
-    const double to[3] = {x[0] + way[0], x[1] + way[1], x[2] + way[2]};
-    if (!(cwi_length(way) <= reach * s->voxel) || !is_on_surface(s, to))
+    const double to[3] = {x[0] + displacement[0], x[1] + displacement[1],
+                          x[2] + displacement[2]};
+    if (!(cwi_length(displacement) <= MAX_CUT_REACH * s->voxel) || !is_on_surface(s, to))
         return false;
     for (int a = 0; a < 3; a++)
         c->x[a] = (float)to[a];
@@ -159,9 +162,10 @@ static void take_normal(const plane *const *p, int count, cut *c)
 
 static bool is_apart(const sharpener *s, const cut *c, const double x[3])
 {
-    const double way[3] = {(double)c->x[0] - x[0], (double)c->x[1] - x[1],
-                           (double)c->x[2] - x[2]};
-    return cwi_dot(way, way) >= apart * apart * s->voxel * s->voxel;
+    const double displacement[3] = {(double)c->x[0] - x[0], (double)c->x[1] - x[1],
+                                    (double)c->x[2] - x[2]};
+    return cwi_dot(displacement, displacement) >=
+           MIN_SPACING * MIN_SPACING * s->voxel * s->voxel;
 }
 
 static bool is_plane(const plane *p)
@@ -175,15 +179,15 @@ static bool is_plane(const plane *p)
 static void cut_side(const sharpener *s, uint32_t u, uint32_t v, cut *c)
 {
     const plane *p[2] = {s->planes + u, s->planes + v};
-    double x[3], y[3], middle[3], way[3];
-    if (!is_plane(p[0]) || !is_plane(p[1]) || cwi_dot(p[0]->n, p[1]->n) > edge)
+    double x[3], y[3], middle[3], displacement[3];
+    if (!is_plane(p[0]) || !is_plane(p[1]) || cwi_dot(p[0]->n, p[1]->n) > EDGE_COSINE)
         return;
-    place_of(s->mesh, u, x);
-    place_of(s->mesh, v, y);
+    vertex_position(s->mesh, u, x);
+    vertex_position(s->mesh, v, y);
     cwi_midpoint(x, y, middle);
     meet_two(p[0], p[1], p[0]->at - cwi_dot(p[0]->n, middle),
-             p[1]->at - cwi_dot(p[1]->n, middle), way);
-    c->is_on = take_way(s, middle, way, c) && is_apart(s, c, x) && is_apart(s, c, y);
+             p[1]->at - cwi_dot(p[1]->n, middle), displacement);
+    c->is_on = accept_cut(s, middle, displacement, c) && is_apart(s, c, x) && is_apart(s, c, y);
     take_normal(p, 2, c);
 }
 
@@ -234,23 +238,23 @@ static cut *side_of(const sharpener *s, size_t t, size_t k)
 static void cut_triangle(const sharpener *s, size_t t, cut *c)
 {
     const plane *p[3];
-    double x[3], middle[3] = {0}, away[3], way[3], line[3];
+    double x[3], middle[3] = {0}, away[3], displacement[3], line[3];
     int cuts = 0;
     for (size_t k = 0; k < 3; k++) {
         const uint32_t v = s->mesh->triangles[3 * t + k];
         cuts += side_of(s, t, k)->is_on;
         p[k] = s->planes + v;
-        place_of(s->mesh, v, x);
+        vertex_position(s->mesh, v, x);
         for (int a = 0; a < 3; a++)
             middle[a] += x[a] / 3;
     }
     cwi_cross(p[0]->n, p[1]->n, line);
-    if (cuts < 2 || fabs(cwi_dot(line, p[2]->n)) < corner)
+    if (cuts < 2 || fabs(cwi_dot(line, p[2]->n)) < MIN_CORNER_VOLUME)
         return;
     for (int k = 0; k < 3; k++)
         away[k] = p[k]->at - cwi_dot(p[k]->n, middle);
-    meet_three(p, away, way);
-    c->is_on = take_way(s, middle, way, c);
+    meet_three(p, away, displacement);
+    c->is_on = accept_cut(s, middle, displacement, c);
     take_normal(p, 3, c);
 }
 
@@ -267,17 +271,19 @@ static void settle_vertex(const sharpener *s, uint32_t v)
 {
     const plane *p = s->planes + v;
     double x[3];
-    place_of(s->mesh, v, x);
-    const double way = p->at - cwi_dot(p->n, x);
+    vertex_position(s->mesh, v, x);
+    const double displacement = p->at - cwi_dot(p->n, x);
     for (int a = 0; a < 3; a++)
-        x[a] += way * p->n[a];
-    for (size_t a = 0; a < 3 && fabs(way) <= near * s->voxel && is_on_surface(s, x); a++)
-        s->places[3 * (size_t)v + a] = (float)x[a];
+        x[a] += displacement * p->n[a];
+    for (size_t a = 0;
+         a < 3 && fabs(displacement) <= MAX_PLANE_DISTANCE * s->voxel && is_on_surface(s, x);
+         a++)
+        s->positions[3 * (size_t)v + a] = (float)x[a];
 }
 
 static void settle_ends(const sharpener *s)
 {
-    memcpy(s->places, s->mesh->positions, 3 * s->mesh->vertex_count * sizeof *s->places);
+    memcpy(s->positions, s->mesh->positions, 3 * s->mesh->vertex_count * sizeof *s->positions);
     for (size_t v = 0; v < s->mesh->vertex_count; v++)
         for (uint32_t n = s->first[v]; n < s->first[v + 1]; n++)
             if (s->sides[n].is_on) {
@@ -294,7 +300,7 @@ typedef struct point {
 
 static point corner_point(const sharpener *s, uint32_t v)
 {
-    const float *x = s->places + 3 * (size_t)v;
+    const float *x = s->positions + 3 * (size_t)v;
     return (point){{(double)x[0], (double)x[1], (double)x[2]}, v};
 }
 
@@ -313,15 +319,15 @@ enum { MAX_PARTS = 6 };
 static int divide_around(const point *c, const point v[3], const point *const m[3],
                          part parts[MAX_PARTS])
 {
-    const point *rim[MAX_PARTS];
+    const point *polygon[MAX_PARTS];
     int count = 0;
     for (int k = 0; k < 3; k++) {
-        rim[count++] = &v[k];
+        polygon[count++] = &v[k];
         if (m[k])
-            rim[count++] = m[k];
+            polygon[count++] = m[k];
     }
     for (int n = 0; n < count; n++)
-        parts[n] = (part){{rim[n], rim[(n + 1) % count], c}};
+        parts[n] = (part){{polygon[n], polygon[(n + 1) % count], c}};
     return count;
 }
 
@@ -389,11 +395,12 @@ static bool is_sound(const sharpener *s, const part *p, const plane *const plane
     for (int k = 0; k < 3; k++)
         longest = fmax(longest, cwi_distance_sq(p->corner[k]->x, p->corner[(k + 1) % 3]->x));
     cwi_cross(u, v, n);
-    if (!(cwi_dot(n, n) > longest * low * low * s->voxel * s->voxel) || !scale_to_one(n))
+    if (!(cwi_dot(n, n) > longest * MIN_HEIGHT * MIN_HEIGHT * s->voxel * s->voxel) ||
+        !scale_to_one(n))
         return false;
     for (int k = 0; k < 3; k++)
         best = fmax(best, cwi_dot(n, planes[k]->n));
-    return best >= faces;
+    return best >= FACING_COSINE;
 }
 
 /* Returns true if a corner of the triangle has moved. */
@@ -402,7 +409,8 @@ static bool has_moved(const sharpener *s, size_t t)
     bool has = false;
     for (size_t k = 0; k < 3; k++) {
         const size_t at = 3 * (size_t)s->mesh->triangles[3 * t + k];
-        has |= memcmp(s->places + at, s->mesh->positions + at, 3 * sizeof *s->places) != 0;
+        has |=
+            memcmp(s->positions + at, s->mesh->positions + at, 3 * sizeof *s->positions) != 0;
     }
     return has;
 }
@@ -412,7 +420,7 @@ static void restore_triangle(const sharpener *s, size_t t)
 {
     for (size_t k = 0; k < 3; k++) {
         const size_t at = 3 * (size_t)s->mesh->triangles[3 * t + k];
-        memcpy(s->places + at, s->mesh->positions + at, 3 * sizeof *s->places);
+        memcpy(s->positions + at, s->mesh->positions + at, 3 * sizeof *s->positions);
         side_of(s, t, k)->is_on = false;
     }
 }
@@ -422,12 +430,12 @@ static void restore_triangle(const sharpener *s, size_t t)
 static void restore_some(const sharpener *s, size_t t, const division *d)
 {
     cut *shortest = NULL;
-    double least = INFINITY;
+    double shortest_sq = INFINITY;
     for (size_t k = 0; k < 3; k++) {
         cut *side = side_of(s, t, k);
-        const double square = cwi_distance_sq(d->v[k].x, d->v[(k + 1) % 3].x);
-        if (side->is_on && square < least) {
-            least = square;
+        const double length_sq = cwi_distance_sq(d->v[k].x, d->v[(k + 1) % 3].x);
+        if (side->is_on && length_sq < shortest_sq) {
+            shortest_sq = length_sq;
             shortest = side;
         }
     }
@@ -530,7 +538,7 @@ static cw_status make_sharp(sharpener *s, cw_error *err)
     number_cuts(s->middles, m->triangle_count, &vertices);
     if (vertices > UINT32_MAX || !make_room_for(s, vertices, triangles))
         return cwi_fail_memory(err);
-    memcpy(s->made.positions, s->places, 3 * m->vertex_count * sizeof *m->positions);
+    memcpy(s->made.positions, s->positions, 3 * m->vertex_count * sizeof *m->positions);
     memcpy(s->made.normals, m->normals, 3 * m->vertex_count * sizeof *m->normals);
     put_cuts(s->sides, s->side_count, &s->made);
     put_cuts(s->middles, m->triangle_count, &s->made);
@@ -574,20 +582,20 @@ static bool make_room(sharpener *s)
 {
     const size_t n = s->mesh->vertex_count, t = s->mesh->triangle_count;
     s->planes = cwi_alloc_array(n, sizeof *s->planes);
-    s->places = cwi_alloc_array(3 * n, sizeof *s->places);
+    s->positions = cwi_alloc_array(3 * n, sizeof *s->positions);
     s->first = cwi_alloc_array(n + 1, sizeof *s->first);
     s->upper = cwi_alloc_array(3 * t / 2 + 1, sizeof *s->upper);
     s->sides = cwi_alloc_zeroed(3 * t / 2 + 1, sizeof *s->sides);
     s->middles = cwi_alloc_zeroed(t, sizeof *s->middles);
     s->changed = cwi_alloc_array(t, sizeof *s->changed);
-    return s->planes && s->places && s->first && s->upper && s->sides && s->middles &&
+    return s->planes && s->positions && s->first && s->upper && s->sides && s->middles &&
            s->changed;
 }
 
 static void free_room(sharpener *s)
 {
     cwi_free(s->planes);
-    cwi_free(s->places);
+    cwi_free(s->positions);
     cwi_free(s->first);
     cwi_free(s->upper);
     cwi_free(s->sides);

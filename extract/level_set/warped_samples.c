@@ -7,42 +7,42 @@
 
 double cwi_warp_corner(const double at[3], int n, uint32_t corner[3])
 {
-    double share = 1;
+    double weight = 1;
     for (int a = 0; a < 3; a++) {
         const double base = floor(at[a]), in = at[a] - base;
         corner[a] = (uint32_t)base + (n >> a & 1);
-        share *= n >> a & 1 ? in : 1 - in;
+        weight *= n >> a & 1 ? in : 1 - in;
     }
-    return share;
+    return weight;
 }
 
 cwi_move *cwi_warp_find(const cwi_warp *w, const uint32_t at[3])
 {
-    const uint32_t n = cwi_places_find(&w->places, cwi_place_key(at));
-    return n == CWI_NO_PLACE ? NULL : w->moves + n;
+    const uint32_t n = cwi_lattice_find(&w->numbers, cwi_lattice_key(at));
+    return n == CWI_NO_LATTICE_POINT ? NULL : w->moves + n;
 }
 
 bool cwi_warp_put(cwi_warp *w, const cwi_move *move)
 {
-    if (w->count == w->room) {
-        const size_t room = 2 * w->room + 256;
-        cwi_move *moves = cwi_realloc_array(w->moves, room, sizeof *moves);
+    if (w->count == w->capacity) {
+        const size_t capacity = 2 * w->capacity + 256;
+        cwi_move *moves = cwi_realloc_array(w->moves, capacity, sizeof *moves);
         if (!moves)
             return false;
         w->moves = moves;
-        w->room = room;
+        w->capacity = capacity;
     }
-    const uint32_t n = cwi_places_add(&w->places, cwi_place_key(move->at));
-    if (n == CWI_NO_PLACE)
+    const uint32_t n = cwi_lattice_add(&w->numbers, cwi_lattice_key(move->at));
+    if (n == CWI_NO_LATTICE_POINT)
         return false;
     w->moves[n] = *move;
-    w->count = w->places.count;
+    w->count = w->numbers.count;
     return true;
 }
 
 void cwi_warp_free(cwi_warp *w)
 {
     cwi_free(w->moves);
-    cwi_places_free(&w->places);
+    cwi_lattice_free(&w->numbers);
     *w = (cwi_warp){0};
 }

@@ -80,15 +80,15 @@ static void cross_rows(cwi_winding *w, const corner c[3], int turn, bool keep)
             }
             if (!in)
                 continue;
-            size_t *place = &w->first[(size_t)k * w->rows_y + (size_t)j];
+            size_t *slot = &w->first[(size_t)k * w->rows_y + (size_t)j];
             if (keep) {
                 const double all = (double)side[0] + (double)side[1] + (double)side[2];
-                w->cross[*place].x = ((double)side[0] * c[0].x + (double)side[1] * c[1].x +
-                                      (double)side[2] * c[2].x) /
-                                     all;
-                w->cross[*place].turn = turn;
+                w->cross[*slot].x = ((double)side[0] * c[0].x + (double)side[1] * c[1].x +
+                                     (double)side[2] * c[2].x) /
+                                    all;
+                w->cross[*slot].turn = turn;
             }
-            ++*place;
+            ++*slot;
         }
 }
 

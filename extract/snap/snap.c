@@ -57,25 +57,25 @@ static uint64_t inner_edges(const cwi_bit_grid *g, int axis, size_t j, size_t k,
     const uint64_t here = cwi_live_cells(g, j, k, w) & cwi_live_cells(g, j - dj, k - dk, w);
     if (axis == 0)
         return here & cwi_live_cells(g, j - 1, k, w) & cwi_live_cells(g, j, k - 1, w);
-    const uint64_t before =
+    const uint64_t cells_before =
         w ? cwi_live_cells(g, j, k, w - 1) & cwi_live_cells(g, j - dj, k - dk, w - 1) : 0;
-    return here & (here << 1 | before >> 63);
+    return here & (here << 1 | cells_before >> 63);
 }
 
 /* Stores in into[], until cells are known, a vertex's sample along x, and whether its edge is
  * an x-edge. */
 static void mark_vertex(cwi_snapping *s, size_t at[3], int axis, uint32_t v, bool inner)
 {
-    cwi_place *place = &s->places[v];
-    cwi_to_index(s, cwi_mesh_position(s, v), place->x);
-    const double t = place->x[axis] - (double)at[axis];
-    s->into[v] = (uint32_t)at[0] << 1 | (axis == 0);
-    place->near = 0;
-    if (!inner || (t > s->share && 1 - t > s->share))
+    cwi_vertex_index *index = &s->indices[v];
+    cwi_to_index(s, cwi_mesh_position(s, v), index->x);
+    const double t = index->x[axis] - (double)at[axis];
+    s->merged_into[v] = (uint32_t)at[0] << 1 | (axis == 0);
+    index->near_sample = 0;
+    if (!inner || (t > s->snap_distance && 1 - t > s->snap_distance))
         return;
     size_t to[3] = {at[0], at[1], at[2]};
-    to[axis] += t > s->share;
-    place->near = cwi_sample_number(s->grid, to[0], to[1], to[2]);
+    to[axis] += t > s->snap_distance;
+    index->near_sample = cwi_sample_number(s->grid, to[0], to[1], to[2]);
 }
 
 static void mark_row(cwi_snapping *s, size_t j, size_t k, const cwi_row *row)
@@ -93,9 +93,9 @@ static void mark_row(cwi_snapping *s, size_t j, size_t k, const cwi_row *row)
             }
         }
     for (uint32_t v = row->first[3]; v < row[1].first[0]; v++) {
-        cwi_to_index(s, cwi_mesh_position(s, v), s->places[v].x);
-        s->places[v].near = 0;
-        s->into[v] = UINT32_MAX;
+        cwi_to_index(s, cwi_mesh_position(s, v), s->indices[v].x);
+        s->indices[v].near_sample = 0;
+        s->merged_into[v] = UINT32_MAX;
     }
 }
 
@@ -115,7 +115,7 @@ static uint32_t cell_of(const cwi_snapping *s, const uint32_t triangle[3])
 {
     uint32_t low = UINT32_MAX, high = 0, inner = UINT32_MAX;
     for (int c = 0; c < 3; c++) {
-        const uint32_t code = s->into[triangle[c]];
+        const uint32_t code = s->merged_into[triangle[c]];
         if (code == UINT32_MAX) {
             inner = triangle[c];
             continue;
@@ -141,11 +141,11 @@ static void find_cells_of_row(const cwi_snapping *s, size_t row)
         count += cell != last;
         last = cell;
         words[cell / 64].has |= UINT64_C(1) << cell % 64;
-        s->ends[first + count - 1] = (uint32_t)(t + 1 - first);
+        s->triangle_ends[first + count - 1] = (uint32_t)(t + 1 - first);
     }
     for (size_t w = 1; w < s->grid->words && first < end; w++)
-        words[w].before =
-            words[w - 1].before + (uint32_t)__builtin_popcountll(words[w - 1].has);
+        words[w].cells_before =
+            words[w - 1].cells_before + (uint32_t)__builtin_popcountll(words[w - 1].has);
 }
 
 static void find_cells(void *context, size_t k)
@@ -160,7 +160,7 @@ static void reset_layer(void *context, size_t k)
     cwi_snapping *s = &((snap_run *)context)->s;
     const size_t first = k * s->grid->rows_y, end = first + s->grid->rows_y;
     for (uint32_t v = s->rows[first].first[0]; v < s->rows[end].first[0]; v++)
-        s->into[v] = v;
+        s->merged_into[v] = v;
 }
 
 /* ---- snapping --------------------------------------------------------------------------- */
@@ -184,17 +184,17 @@ static void merge_cluster(const cwi_snapping *s, const cwi_cluster *c, const dou
 {
     if (s->mesh->normals)
         merge_normals(s, c);
-    memcpy(s->places[c->member[0]].x, x, 3 * sizeof *x);
+    memcpy(s->indices[c->member[0]].x, x, 3 * sizeof *x);
     memcpy(s->mesh->positions + 3 * (size_t)c->member[0], p, 3 * sizeof *p);
-    for (int n = 0; n < c->star_count; n++) {
-        uint32_t *t = s->mesh->triangles + 3 * c->star[n];
+    for (int n = 0; n < c->fan_count; n++) {
+        uint32_t *t = s->mesh->triangles + 3 * c->fan[n];
         for (int corner = 0; corner < 3; corner++)
             if (cwi_is_member(c, t[corner]))
                 t[corner] = c->member[0];
     }
     for (int m = 0; m < c->count; m++) {
-        s->into[c->member[m]] = c->member[0];
-        s->places[c->member[m]].near |= SNAPPED;
+        s->merged_into[c->member[m]] = c->member[0];
+        s->indices[c->member[m]].near_sample |= SNAPPED;
     }
 }
 
@@ -210,13 +210,13 @@ static void snap_layer(void *context, size_t n)
     const uint64_t first = cwi_sample_number(g, 0, 0, k), end = first + in_layer;
     const uint32_t v_end = s->rows[(k + 1) * g->rows_y].first[0];
     for (uint32_t v = s->rows[(k ? k - 1 : 0) * g->rows_y].first[0]; v < v_end; v++) {
-        if (s->places[v].near < first || s->places[v].near >= end)
+        if (s->indices[v].near_sample < first || s->indices[v].near_sample >= end)
             continue;
         cwi_cluster_find(s, v, &c);
-        if (c.count > 1 && cwi_cluster_is_disc(s, &c) && cwi_cluster_place(s, &c, x, p))
+        if (c.count > 1 && cwi_cluster_is_disc(s, &c) && cwi_cluster_position(s, &c, x, p))
             merge_cluster(s, &c, x, p);
         for (int m = 0; m < c.count; m++)
-            s->places[c.member[m]].near |= SEEN;
+            s->indices[c.member[m]].near_sample |= SEEN;
     }
 }
 
@@ -231,11 +231,12 @@ typedef struct distances {
 
 static void start_from(const cwi_snapping *s, uint32_t v, distances *d)
 {
-    d->from = s->before + 3 * (size_t)v;
+    d->from = s->cells_before + 3 * (size_t)v;
     cwi_to_index(s, d->from, d->from_x);
     for (int a = 0; a < 3; a++) {
-        d->nearest[0][a] = (double)cwi_mesh_position(s, s->into[v])[a] - (double)d->from[a];
-        d->nearest[1][a] = cwi_index(s, s->into[v])[a] - d->from_x[a];
+        d->nearest[0][a] =
+            (double)cwi_mesh_position(s, s->merged_into[v])[a] - (double)d->from[a];
+        d->nearest[1][a] = cwi_index(s, s->merged_into[v])[a] - d->from_x[a];
     }
 }
 
@@ -249,17 +250,17 @@ static void add_to_sums(layer_sums *sums, int unit, double moved, double error)
 /* Returns true if a triangle may be nearer: it cannot be nearer than a box around it. */
 static bool may_be_nearer(const cwi_snapping *s, const distances *d, const cwi_triangle *t)
 {
-    double square = 0;
+    double distance_sq = 0;
     for (int a = 0; a < 3; a++) {
         const double x = t->p[0][a], y = t->p[1][a], z = t->p[2][a];
         const double low = cwi_lesser(cwi_lesser(x, y), z),
                      high = cwi_greater(cwi_greater(x, y), z);
         const double off = cwi_greater(cwi_greater(low, -high), 0);
-        square += off * off;
+        distance_sq += off * off;
     }
-    return square < cwi_dot(d->nearest[1], d->nearest[1]) ||
+    return distance_sq < cwi_dot(d->nearest[1], d->nearest[1]) ||
            (s->edge == 0 &&
-            square * s->shrink * s->shrink < cwi_dot(d->nearest[0], d->nearest[0]));
+            distance_sq * s->shrink * s->shrink < cwi_dot(d->nearest[0], d->nearest[0]));
 }
 
 static void try_triangle(const cwi_snapping *s, const uint32_t corner[3], distances *d)
@@ -290,16 +291,16 @@ static void measure_distances(const cwi_snapping *s, const distances *d, double 
  * was merged into are nearest. */
 static void measure_vertex(const cwi_snapping *s, uint32_t v, layer_sums *sums)
 {
-    size_t at[3], triangles[CWI_STAR];
+    size_t at[3], triangles[CWI_FAN];
     double moved[2], error[2];
     distances d;
     start_from(s, v, &d);
     measure_distances(s, &d, moved);
-    cwi_sample_place(s->grid, s->places[v].near & SAMPLE, at);
+    cwi_sample_index(s->grid, s->indices[v].near_sample & SAMPLE, at);
     const int count = cwi_find_triangles(s, at, 1, triangles);
     for (int own = 1; own >= 0; own--)
         for (int n = 0; n < count; n++) {
-            const uint32_t *t = s->mesh->triangles + 3 * triangles[n], to = s->into[v];
+            const uint32_t *t = s->mesh->triangles + 3 * triangles[n], to = s->merged_into[v];
             if ((t[0] == to || t[1] == to || t[2] == to) == own)
                 try_triangle(s, t, &d);
         }
@@ -315,7 +316,7 @@ static void measure_layer(void *context, size_t k)
     const cwi_snapping *s = &run->s;
     const size_t first = k * s->grid->rows_y, end = first + s->grid->rows_y;
     for (uint32_t v = s->rows[first].first[0]; v < s->rows[end].first[0]; v++)
-        if (s->places[v].near & SNAPPED)
+        if (s->indices[v].near_sample & SNAPPED)
             measure_vertex(s, v, &run->sums[k]);
 }
 
@@ -349,14 +350,14 @@ static void close_ranks(cwi_snapping *s)
     uint32_t vertices = 0;
     size_t triangles = 0;
     for (size_t v = 0; v < mesh->vertex_count; v++) {
-        if (s->into[v] != v)
+        if (s->merged_into[v] != v)
             continue;
         memmove(mesh->positions + 3 * (size_t)vertices, mesh->positions + 3 * v,
                 3 * sizeof *mesh->positions);
         if (mesh->normals)
             memmove(mesh->normals + 3 * (size_t)vertices, mesh->normals + 3 * v,
                     3 * sizeof *mesh->normals);
-        s->into[v] = vertices++;
+        s->merged_into[v] = vertices++;
     }
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         const uint32_t *from = mesh->triangles + 3 * t;
@@ -364,7 +365,7 @@ static void close_ranks(cwi_snapping *s)
             continue;
         uint32_t *to = mesh->triangles + 3 * triangles++;
         for (int c = 0; c < 3; c++)
-            to[c] = s->into[from[c]];
+            to[c] = s->merged_into[from[c]];
     }
     mesh->vertex_count = vertices;
     mesh->triangle_count = triangles;
@@ -372,7 +373,7 @@ static void close_ranks(cwi_snapping *s)
 
 size_t cwi_snap_bytes(const cwi_bit_grid *grid, size_t vertices, size_t triangles)
 {
-    return vertices * (sizeof(cwi_place) + sizeof(uint32_t) + 3 * sizeof(float)) +
+    return vertices * (sizeof(cwi_vertex_index) + sizeof(uint32_t) + 3 * sizeof(float)) +
            triangles * sizeof(uint32_t) + grid->rows * grid->words * sizeof(cwi_cell_word);
 }
 
@@ -380,26 +381,27 @@ static cw_status make_room(snap_run *run, cw_error *err)
 {
     cwi_snapping *s = &run->s;
     const size_t vertices = s->mesh->vertex_count, triangles = s->mesh->triangle_count;
-    s->places = cwi_alloc_large(vertices, sizeof *s->places);
-    s->into = cwi_alloc_large(vertices, sizeof *s->into);
-    s->before = cwi_alloc_large(vertices, 3 * sizeof *s->before);
+    s->indices = cwi_alloc_large(vertices, sizeof *s->indices);
+    s->merged_into = cwi_alloc_large(vertices, sizeof *s->merged_into);
+    s->cells_before = cwi_alloc_large(vertices, 3 * sizeof *s->cells_before);
     s->cells = cwi_alloc_zeroed(s->grid->rows, s->grid->words * sizeof *s->cells);
-    s->ends = cwi_alloc_large(triangles, sizeof *s->ends);
+    s->triangle_ends = cwi_alloc_large(triangles, sizeof *s->triangle_ends);
     run->sums = cwi_alloc_zeroed(s->grid->rows_z, sizeof *run->sums);
-    if (!s->places || !s->into || !s->before || !s->cells || !s->ends || !run->sums)
+    if (!s->indices || !s->merged_into || !s->cells_before || !s->cells || !s->triangle_ends ||
+        !run->sums)
         return cwi_fail_memory(err);
-    memcpy(s->before, s->mesh->positions, 3 * vertices * sizeof *s->before);
+    memcpy(s->cells_before, s->mesh->positions, 3 * vertices * sizeof *s->cells_before);
     return CW_OK;
 }
 
 static void free_room(snap_run *run)
 {
     cwi_snapping *s = &run->s;
-    cwi_free(s->places);
-    cwi_free(s->into);
-    cwi_free(s->before);
+    cwi_free(s->indices);
+    cwi_free(s->merged_into);
+    cwi_free(s->cells_before);
     cwi_free(s->cells);
-    cwi_free(s->ends);
+    cwi_free(s->triangle_ends);
     cwi_free(run->sums);
 }
 
@@ -407,34 +409,33 @@ static void free_room(snap_run *run)
  * once. */
 static double find_edge(const cw_volume *v)
 {
-    double square[3][3];
+    double gram[3][3];
     for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++)
-            square[a][b] = v->affine[0][a] * v->affine[0][b] +
-                           v->affine[1][a] * v->affine[1][b] +
-                           v->affine[2][a] * v->affine[2][b];
+            gram[a][b] = v->affine[0][a] * v->affine[0][b] + v->affine[1][a] * v->affine[1][b] +
+                         v->affine[2][a] * v->affine[2][b];
     for (int a = 0; a < 3; a++) {
         const int b = (a + 1) % 3;
-        if (fabs(square[a][b]) > 1e-12 * square[a][a] ||
-            fabs(square[b][b] - square[a][a]) > 1e-12 * square[a][a])
+        if (fabs(gram[a][b]) > 1e-12 * gram[a][a] ||
+            fabs(gram[b][b] - gram[a][a]) > 1e-12 * gram[a][a])
             return 0;
     }
-    return sqrt(square[0][0]);
+    return sqrt(gram[0][0]);
 }
 
 static void find_inverse(cwi_snapping *s)
 {
     const cw_volume *v = &s->grid->volume;
     const double determinant = cwi_affine_determinant(v->affine[0]);
-    double cofactor[3][3], squares = 0;
+    double cofactor[3][3], sum_sq = 0;
     cwi_affine_cofactor(v->affine[0], cofactor);
     for (int r = 0; r < 3; r++) {
         s->centre[r] = 0.5 * (double)(v->dim[r] - 1) + 1;
         for (int c = 0; c < 3; c++)
             s->inverse[r][c] = cofactor[c][r] / determinant;
-        squares += cwi_dot(s->inverse[r], s->inverse[r]);
+        sum_sq += cwi_dot(s->inverse[r], s->inverse[r]);
     }
-    s->shrink = 1 / sqrt(squares);
+    s->shrink = 1 / sqrt(sum_sq);
     s->edge = find_edge(v);
 }
 
@@ -453,7 +454,8 @@ cw_status cwi_snap(const cwi_bit_grid *grid, const cwi_row *rows, const cw_extra
         {"snapping", snap_layer, EVERY, 1},     {"snapping", snap_layer, EVERY, 2},
         {"measuring", measure_layer, 1, 0},
     };
-    snap_run run = {.s = {.grid = grid, .rows = rows, .mesh = mesh, .share = desc->snap}};
+    snap_run run = {
+        .s = {.grid = grid, .rows = rows, .mesh = mesh, .snap_distance = desc->snap}};
     find_inverse(&run.s);
     cw_status st = make_room(&run, err);
     for (size_t n = 0; n < sizeof steps / sizeof *steps && st == CW_OK; n++) {

@@ -30,7 +30,7 @@ typedef struct point {
     double u, v;
 } point;
 
-typedef struct cone {
+typedef struct new_fan {
     const cwi_snapping *s;
     const cwi_cluster *c;
     const double *apex;     /* its shadow is the origin */
@@ -39,10 +39,10 @@ typedef struct cone {
                                along the normal */
     int up, axis[2];        /* along which axis, and on to which, they fall */
     double lean[2];
-    point rim[CWI_RIM]; /* shadows */
-    bool flat;          /* shadows of its triangles do not cross */
-    uint64_t known;     /* bit v % 64 is set for every vertex v of the rim */
-} cone;
+    point link[CWI_LINK]; /* shadows */
+    bool flat;            /* shadows of its triangles do not cross */
+    uint64_t known;       /* bit v % 64 is set for every vertex v of the rim */
+} new_fan;
 
 /* A corner of a triangle that may be in the way. */
 typedef struct corner {
@@ -57,19 +57,19 @@ typedef struct obstacle {
 
 /* ---- the shadow of the cone ------------------------------------------------------------- */
 
-static const double *rim_index(const cone *o, int n)
+static const double *link_index(const new_fan *o, int n)
 {
-    return cwi_index(o->s, o->c->rim[n]);
+    return cwi_index(o->s, o->c->link[n]);
 }
 
 /* Finds the rim's normal: the sum of the normals of the triangles of any cone over it. */
-static void find_normal(cone *o)
+static void find_normal(new_fan *o)
 {
     double p[3], q[3], across[3], sum[3] = {0, 0, 0};
-    for (int n = 0; n < o->c->rim_count; n++) {
+    for (int n = 0; n < o->c->link_count; n++) {
         for (int a = 0; a < 3; a++) {
-            p[a] = rim_index(o, n)[a] - o->apex[a];
-            q[a] = rim_index(o, cwi_rim_next(o->c, n))[a] - o->apex[a];
+            p[a] = link_index(o, n)[a] - o->apex[a];
+            q[a] = link_index(o, cwi_link_next(o->c, n))[a] - o->apex[a];
         }
         cwi_cross(p, q, across);
         for (int a = 0; a < 3; a++)
@@ -80,7 +80,7 @@ static void find_normal(cone *o)
         o->normal[a] = sum[a] / length;
 }
 
-static void choose_plane(cone *o)
+static void choose_plane(new_fan *o)
 {
     const double x = fabs(o->normal[0]), y = fabs(o->normal[1]), z = fabs(o->normal[2]);
     o->up = x > y ? x > z ? 0 : 2 : y > z ? 1 : 2;
@@ -91,7 +91,7 @@ static void choose_plane(cone *o)
     }
 }
 
-static point shadow_of(const cone *o, const double x[3])
+static point shadow_of(const new_fan *o, const double x[3])
 {
     const double h = x[o->up] - o->apex[o->up];
     const int a = o->axis[0], b = o->axis[1];
@@ -106,11 +106,11 @@ static double area_of(point p, point q)
 
 /* Returns true if the shadows of the new triangles do not cross: each turns left around the
  * origin, and together they turn once. */
-static bool surrounds_apex(const cone *o)
+static bool surrounds_apex(const new_fan *o)
 {
     int turns = 0;
-    for (int n = 0; n < o->c->rim_count; n++) {
-        const point p = o->rim[n], q = o->rim[cwi_rim_next(o->c, n)];
+    for (int n = 0; n < o->c->link_count; n++) {
+        const point p = o->link[n], q = o->link[cwi_link_next(o->c, n)];
         const double sides = sqrt((p.u * p.u + p.v * p.v) * (q.u * q.u + q.v * q.v));
         if (!(area_of(p, q) > SLOPE * sides))
             return false;
@@ -119,13 +119,13 @@ static bool surrounds_apex(const cone *o)
     return turns == 1;
 }
 
-static double height_of(const cone *o, const double x[3])
+static double height_of(const new_fan *o, const double x[3])
 {
     return o->normal[0] * (x[0] - o->apex[0]) + o->normal[1] * (x[1] - o->apex[1]) +
            o->normal[2] * (x[2] - o->apex[2]);
 }
 
-static void grow_box(cone *o, const double x[3])
+static void grow_box(new_fan *o, const double x[3])
 {
     const double at[4] = {x[0], x[1], x[2], height_of(o, x)};
     for (int a = 0; a < 4; a++) {
@@ -134,7 +134,8 @@ static void grow_box(cone *o, const double x[3])
     }
 }
 
-static void make_cone(const cwi_snapping *s, const cwi_cluster *c, const double x[3], cone *o)
+static void make_cone(const cwi_snapping *s, const cwi_cluster *c, const double x[3],
+                      new_fan *o)
 {
     o->s = s;
     o->c = c;
@@ -149,15 +150,15 @@ static void make_cone(const cwi_snapping *s, const cwi_cluster *c, const double 
     grow_box(o, x);
     for (int n = 0; n < c->count; n++)
         grow_box(o, cwi_index(s, c->member[n]));
-    for (int n = 0; n < c->rim_count; n++) {
-        grow_box(o, rim_index(o, n));
-        o->rim[n] = shadow_of(o, rim_index(o, n));
-        o->known |= UINT64_C(1) << c->rim[n] % 64;
+    for (int n = 0; n < c->link_count; n++) {
+        grow_box(o, link_index(o, n));
+        o->link[n] = shadow_of(o, link_index(o, n));
+        o->known |= UINT64_C(1) << c->link[n] % 64;
     }
     o->flat = surrounds_apex(o);
 }
 
-static bool is_outside_box(const cone *o, const double *const x[3])
+static bool is_outside_box(const new_fan *o, const double *const x[3])
 {
     for (int a = 0; a < 3; a++)
         if (cwi_lesser(cwi_lesser(x[0][a], x[1][a]), x[2][a]) > o->high[a] ||
@@ -171,7 +172,7 @@ static bool is_outside_box(const cone *o, const double *const x[3])
 /* ---- one sheet -------------------------------------------------------------------------- */
 
 /* Returns true if a triangle's shadow turns left. */
-static bool faces_up(const cone *o, const double *const x[3])
+static bool faces_up(const new_fan *o, const double *const x[3])
 {
     double across[3];
     cwi_triangle_normal(x[0], x[1], x[2], across);
@@ -189,13 +190,13 @@ static void find_corners(const cwi_snapping *s, size_t triangle, const double *x
  * rim. Then a line upward would go through it and through the star, one after the other, both
  * times from inside to outside, for the surface did not cross itself. As the surface is closed,
  * the line would have come back in between, in the box, through a triangle that faces down. */
-static bool is_one_sheet(const cone *o, const size_t *near, int count)
+static bool is_one_sheet(const new_fan *o, const size_t *near_sample, int count)
 {
     if (!o->flat || o->s->grid->live)
         return false;
     for (int n = 0; n < count; n++) {
         const double *x[3];
-        find_corners(o->s, near[n], x);
+        find_corners(o->s, near_sample[n], x);
         if (!faces_up(o, x) && !is_outside_box(o, x))
             return false;
     }
@@ -206,7 +207,7 @@ static bool is_one_sheet(const cone *o, const size_t *near, int count)
 
 /* Points beyond a line are to the right of it, and not close. */
 typedef struct line {
-    double u, v, least;
+    double u, v, offset;
 } line;
 
 static line line_along(point p, point q)
@@ -217,20 +218,20 @@ static line line_along(point p, point q)
 
 static bool is_beyond(const line *l, point p)
 {
-    return l->u * p.u + l->v * p.v > l->least;
+    return l->u * p.u + l->v * p.v > l->offset;
 }
 
 /* Returns, bit by bit, the new triangles that are beyond a side of an obstacle's shadow. Ends
  * of the side that are on the rim count as beyond for the triangles that share them. */
-static uint64_t beyond_side(const cone *o, const corner *from, const corner *to)
+static uint64_t beyond_side(const new_fan *o, const corner *from, const corner *to)
 {
     const line l = line_along(from->shadow, to->shadow);
-    const int count = o->c->rim_count;
+    const int count = o->c->link_count;
     uint64_t beyond = 0;
     if (!is_beyond(&l, (point){0, 0}))
         return 0;
     for (int n = 0; n < count; n++)
-        beyond |= (uint64_t)is_beyond(&l, o->rim[n]) << n;
+        beyond |= (uint64_t)is_beyond(&l, o->link[n]) << n;
     beyond |= from->on < 0 ? 0 : UINT64_C(1) << from->on;
     beyond |= to->on < 0 ? 0 : UINT64_C(1) << to->on;
     return beyond & (beyond >> 1 | beyond << (count - 1));
@@ -238,7 +239,7 @@ static uint64_t beyond_side(const cone *o, const corner *from, const corner *to)
 
 /* Returns the new triangles that no side of an obstacle's shadow is known to separate from it.
  * It begins with the side that spans most as seen from the apex. */
-static uint64_t not_beyond(const cone *o, const obstacle *t)
+static uint64_t not_beyond(const new_fan *o, const obstacle *t)
 {
     const corner *c = t->corner;
     const double one = area_of(c[0].shadow, c[1].shadow),
@@ -248,7 +249,7 @@ static uint64_t not_beyond(const cone *o, const obstacle *t)
     const int first = sign * one > sign * two     ? sign * one > sign * three ? 0 : 2
                       : sign * two > sign * three ? 1
                                                   : 2;
-    uint64_t left = ~UINT64_C(0) >> (64 - o->c->rim_count);
+    uint64_t left = ~UINT64_C(0) >> (64 - o->c->link_count);
     for (int n = first; n < first + 3 && left; n++) {
         const corner *from = &c[n % 3], *to = &c[(n + 1) % 3];
         left &= sign < 0 ? ~beyond_side(o, from, to) : ~beyond_side(o, to, from);
@@ -268,19 +269,19 @@ static bool is_all_beyond(const line *l, const obstacle *t, int from, int to)
 
 /* Returns true if an obstacle is beyond a side of the new triangle from the rim's vertex n to
  * the next. */
-static bool is_beyond_new(const cone *o, const obstacle *t, int n)
+static bool is_beyond_new(const new_fan *o, const obstacle *t, int n)
 {
-    const int next = cwi_rim_next(o->c, n);
-    const point apex = {0, 0}, p = o->rim[n], q = o->rim[next];
-    const line outer = line_along(p, q), before = line_along(apex, p),
+    const int next = cwi_link_next(o->c, n);
+    const point apex = {0, 0}, p = o->link[n], q = o->link[next];
+    const line outer = line_along(p, q), cells_before = line_along(apex, p),
                after = line_along(q, apex);
     return area_of(p, q) > 0 &&
-           (is_all_beyond(&outer, t, n, next) || is_all_beyond(&before, t, n, n) ||
+           (is_all_beyond(&outer, t, n, next) || is_all_beyond(&cells_before, t, n, n) ||
             is_all_beyond(&after, t, next, next));
 }
 
 /* Returns the new triangles that are not known to be apart from the obstacle's shadow. */
-static uint64_t in_the_way(const cone *o, const obstacle *t)
+static uint64_t in_the_way(const new_fan *o, const obstacle *t)
 {
     uint64_t left = not_beyond(o, t);
     for (uint64_t some = left; some; some &= some - 1) {
@@ -318,29 +319,29 @@ static cwi_triangle triangle_of(const double *p, const double *q, const double *
 }
 
 /* Returns true if no new triangles cross: neighbours share a side, others the new vertex. */
-static bool is_clear_of_itself(const cone *o)
+static bool is_clear_of_itself(const new_fan *o)
 {
-    const int count = o->c->rim_count;
+    const int count = o->c->link_count;
     for (int n = 1; n < count; n++)
         for (int m = 0; m < n; m++) {
-            const bool after = n == m + 1, before = m == 0 && n + 1 == count;
-            const double *p = rim_index(o, m), *q = rim_index(o, cwi_rim_next(o->c, m)),
-                         *r = rim_index(o, n), *t = rim_index(o, cwi_rim_next(o->c, n));
+            const bool after = n == m + 1, cells_before = m == 0 && n + 1 == count;
+            const double *p = link_index(o, m), *q = link_index(o, cwi_link_next(o->c, m)),
+                         *r = link_index(o, n), *t = link_index(o, cwi_link_next(o->c, n));
             const cwi_triangle one =
                 after ? triangle_of(o->apex, q, p) : triangle_of(o->apex, p, q);
             const cwi_triangle two =
-                before ? triangle_of(o->apex, t, r) : triangle_of(o->apex, r, t);
-            if (!cwi_triangles_apart(&one, &two, after || before ? 2 : 1))
+                cells_before ? triangle_of(o->apex, t, r) : triangle_of(o->apex, r, t);
+            if (!cwi_triangles_apart(&one, &two, after || cells_before ? 2 : 1))
                 return false;
         }
     return true;
 }
 
 /* Returns true if an obstacle is clear of the new triangle from the rim's vertex n on. */
-static bool is_clear_of(const cone *o, const obstacle *t, int n)
+static bool is_clear_of(const new_fan *o, const obstacle *t, int n)
 {
-    const int next = cwi_rim_next(o->c, n);
-    const double *p = rim_index(o, n), *q = rim_index(o, next);
+    const int next = cwi_link_next(o->c, n);
+    const double *p = link_index(o, n), *q = link_index(o, next);
     int first = -1, second = -1;
     for (int a = 0; a < 3; a++) {
         first = t->corner[a].on == n ? a : first;
@@ -361,17 +362,17 @@ static bool is_clear_of(const cone *o, const obstacle *t, int n)
 
 /* ---- the whole -------------------------------------------------------------------------- */
 
-static int find_on_rim(const cone *o, uint32_t v)
+static int find_on_link(const new_fan *o, uint32_t v)
 {
     if (!(o->known >> v % 64 & 1))
         return -1;
-    int n = o->c->rim_count - 1;
-    while (n >= 0 && o->c->rim[n] != v)
+    int n = o->c->link_count - 1;
+    while (n >= 0 && o->c->link[n] != v)
         n--;
     return n;
 }
 
-static bool is_clear_of_all(const cone *o, size_t triangle)
+static bool is_clear_of_all(const new_fan *o, size_t triangle)
 {
     const double *x[3];
     obstacle t;
@@ -379,7 +380,7 @@ static bool is_clear_of_all(const cone *o, size_t triangle)
     if (is_outside_box(o, x))
         return true;
     for (size_t n = 0; n < 3; n++) {
-        const int on = find_on_rim(o, o->s->mesh->triangles[3 * triangle + n]);
+        const int on = find_on_link(o, o->s->mesh->triangles[3 * triangle + n]);
         t.corner[n] = (corner){x[n], shadow_of(o, x[n]), on};
     }
     for (uint64_t left = in_the_way(o, &t); left; left &= left - 1)
@@ -389,20 +390,20 @@ static bool is_clear_of_all(const cone *o, size_t triangle)
 }
 
 /* Triangles are listed in order, the star's too. */
-bool cwi_cone_is_clear(const cwi_snapping *s, const cwi_cluster *c, const double x[3])
+bool cwi_fan_is_clear(const cwi_snapping *s, const cwi_cluster *c, const double x[3])
 {
-    size_t near[CWI_NEAR];
-    cone o;
+    size_t near_sample[CWI_NEARBY];
+    new_fan o;
     make_cone(s, c, x, &o);
-    const int count = cwi_find_triangles(s, c->at, 2, near);
-    if (is_one_sheet(&o, near, count))
+    const int count = cwi_find_triangles(s, c->at, 2, near_sample);
+    if (is_one_sheet(&o, near_sample, count))
         return true;
     if (!o.flat && !is_clear_of_itself(&o))
         return false;
     for (int n = 0, own = 0; n < count; n++)
-        if (own < c->star_count && c->star[own] == near[n])
+        if (own < c->fan_count && c->fan[own] == near_sample[n])
             own++;
-        else if (!is_clear_of_all(&o, near[n]))
+        else if (!is_clear_of_all(&o, near_sample[n]))
             return false;
     return true;
 }

@@ -6,7 +6,7 @@ uint64_t cwi_sample_number(const cwi_bit_grid *g, size_t i, size_t j, size_t k)
     return (uint64_t)((k * g->rows_y + j) * (64 * g->words) + i + 1);
 }
 
-void cwi_sample_place(const cwi_bit_grid *g, uint64_t sample, size_t at[3])
+void cwi_sample_index(const cwi_bit_grid *g, uint64_t sample, size_t at[3])
 {
     const size_t n = (size_t)sample - 1, row = n / (64 * g->words);
     at[0] = n % (64 * g->words);
@@ -44,11 +44,11 @@ static size_t find_in_row(const cwi_snapping *s, size_t row, size_t i, unsigned 
     if (!here)
         return *end = 0;
     const size_t first = s->rows[row].triangle,
-                 n = word->before +
+                 n = word->cells_before +
                      (size_t)__builtin_popcountll(word->has & ((UINT64_C(1) << shift) - 1));
     const size_t cells = (0x4332322132212110 >> 4 * here) & 15; /* bits of `here` */
-    *end = first + s->ends[first + n + cells - 1];
-    return n ? first + s->ends[first + n - 1] : first;
+    *end = first + s->triangle_ends[first + n + cells - 1];
+    return n ? first + s->triangle_ends[first + n - 1] : first;
 }
 
 int cwi_find_triangles(const cwi_snapping *s, const size_t at[3], size_t reach, size_t *out)
@@ -89,7 +89,8 @@ static bool join_triangle(const cwi_snapping *s, cwi_cluster *c, const uint32_t 
 {
     bool grown = false;
     for (int n = 0; n < 3 && members_of(c, triangle) > 0; n++)
-        if (s->places[triangle[n]].near == c->sample && !cwi_is_member(c, triangle[n])) {
+        if (s->indices[triangle[n]].near_sample == c->sample &&
+            !cwi_is_member(c, triangle[n])) {
             c->member[c->count++] = triangle[n];
             grown = true;
         }
@@ -100,66 +101,66 @@ static bool join_triangle(const cwi_snapping *s, cwi_cluster *c, const uint32_t 
  * if some triangle has two. */
 static bool find_candidates(const cwi_snapping *s, cwi_cluster *c)
 {
-    const int around = cwi_find_triangles(s, c->at, 1, c->star);
+    const int around = cwi_find_triangles(s, c->at, 1, c->fan);
     bool joined = false;
-    c->star_count = 0;
+    c->fan_count = 0;
     for (int n = 0; n < around; n++) {
-        const uint32_t *t = s->mesh->triangles + 3 * c->star[n];
-        const int close = (s->places[t[0]].near == c->sample) +
-                          (s->places[t[1]].near == c->sample) +
-                          (s->places[t[2]].near == c->sample);
+        const uint32_t *t = s->mesh->triangles + 3 * c->fan[n];
+        const int close = (s->indices[t[0]].near_sample == c->sample) +
+                          (s->indices[t[1]].near_sample == c->sample) +
+                          (s->indices[t[2]].near_sample == c->sample);
         joined = joined || close > 1;
-        c->star[c->star_count] = c->star[n];
-        c->star_count += close > 0;
+        c->fan[c->fan_count] = c->fan[n];
+        c->fan_count += close > 0;
     }
     return joined;
 }
 
 void cwi_cluster_find(const cwi_snapping *s, uint32_t v, cwi_cluster *c)
 {
-    c->sample = s->places[v].near;
-    cwi_sample_place(s->grid, c->sample, c->at);
+    c->sample = s->indices[v].near_sample;
+    cwi_sample_index(s->grid, c->sample, c->at);
     c->count = 1;
     c->member[0] = v;
     if (!find_candidates(s, c))
         return;
     for (bool grown = true; grown;) {
         grown = false;
-        for (int n = 0; n < c->star_count; n++)
-            grown = join_triangle(s, c, s->mesh->triangles + 3 * c->star[n]) || grown;
+        for (int n = 0; n < c->fan_count; n++)
+            grown = join_triangle(s, c, s->mesh->triangles + 3 * c->fan[n]) || grown;
     }
-    const int candidates = c->star_count;
-    c->star_count = 0;
+    const int candidates = c->fan_count;
+    c->fan_count = 0;
     for (int n = 0; n < candidates; n++)
-        if (members_of(c, s->mesh->triangles + 3 * c->star[n]) > 0)
-            c->star[c->star_count++] = c->star[n];
+        if (members_of(c, s->mesh->triangles + 3 * c->fan[n]) > 0)
+            c->fan[c->fan_count++] = c->fan[n];
 }
 
 /* Finds the sides of the star's triangles opposite to a lone member, in order. Returns false
  * unless they are one closed line that visits no vertex twice. */
-static bool find_rim(const cwi_snapping *s, cwi_cluster *c)
+static bool find_link(const cwi_snapping *s, cwi_cluster *c)
 {
-    uint32_t from[CWI_STAR], to[CWI_STAR];
-    size_t owner[CWI_STAR];
+    uint32_t from[CWI_FAN], to[CWI_FAN];
+    size_t owner[CWI_FAN];
     int count = 0;
-    for (int n = 0; n < c->star_count; n++) {
-        const uint32_t *t = s->mesh->triangles + 3 * c->star[n];
+    for (int n = 0; n < c->fan_count; n++) {
+        const uint32_t *t = s->mesh->triangles + 3 * c->fan[n];
         if (members_of(c, t) != 1)
             continue;
         const int m = cwi_is_member(c, t[0]) ? 0 : cwi_is_member(c, t[1]) ? 1 : 2;
         from[count] = t[(m + 1) % 3];
         to[count] = t[(m + 2) % 3];
-        owner[count++] = c->star[n];
+        owner[count++] = c->fan[n];
     }
-    c->rim_count = 0;
-    if (count < 3 || count > CWI_RIM)
+    c->link_count = 0;
+    if (count < 3 || count > CWI_LINK)
         return false;
-    for (int n = 0, next; c->rim_count < count; n = next) {
-        c->owner[c->rim_count] = owner[n];
-        c->rim[c->rim_count++] = from[n];
+    for (int n = 0, next; c->link_count < count; n = next) {
+        c->owner[c->link_count] = owner[n];
+        c->link[c->link_count++] = from[n];
         for (next = 0; next < count && from[next] != to[n]; next++)
             ;
-        if (next == count || (next == 0 && c->rim_count < count))
+        if (next == count || (next == 0 && c->link_count < count))
             return false;
     }
     return true;
@@ -170,11 +171,11 @@ static bool find_rim(const cwi_snapping *s, cwi_cluster *c)
  * the rim must occur once. */
 bool cwi_cluster_is_disc(const cwi_snapping *s, cwi_cluster *c)
 {
-    if (!find_rim(s, c))
+    if (!find_link(s, c))
         return false;
-    for (int n = 0; n < c->rim_count; n++)
+    for (int n = 0; n < c->link_count; n++)
         for (int m = 0; m < n; m++)
-            if (c->rim[m] == c->rim[n])
+            if (c->link[m] == c->link[n])
                 return false;
-    return 2 * c->count + c->rim_count - c->star_count == 2;
+    return 2 * c->count + c->link_count - c->fan_count == 2;
 }

@@ -45,7 +45,7 @@ static double evaluate_field(const cwi_bit_grid *g, const double x[3], double gr
 static bool approach_level(const cwi_bit_grid *g, double target, const bool locked[3],
                            double x[3])
 {
-    double gradient[3], largest = 0, square = 0;
+    double gradient[3], largest = 0, gradient_sq = 0;
     const double miss = evaluate_field(g, x, gradient) - target;
     for (int a = 0; a < 3; a++) {
         gradient[a] = locked[a] ? 0 : gradient[a];
@@ -53,10 +53,10 @@ static bool approach_level(const cwi_bit_grid *g, double target, const bool lock
     }
     for (int a = 0; a < 3; a++) {
         gradient[a] /= largest;
-        square += gradient[a] * gradient[a];
+        gradient_sq += gradient[a] * gradient[a];
     }
     for (int a = 0; a < 3; a++)
-        x[a] -= miss / largest / square * gradient[a];
+        x[a] -= miss / largest / gradient_sq * gradient[a];
     return isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2]);
 }
 
@@ -77,15 +77,15 @@ static double find_middle(const cwi_snapping *s, const uint32_t *vertex, int cou
 
 /* Goes from the middle to a near place where the field has the value it had at the vertices:
  * the isovalue, where these were placed by the trilinear field. */
-static bool find_place(const cwi_snapping *s, double target, const double middle[3],
-                       const bool locked[3], double place[3])
+static bool find_position(const cwi_snapping *s, double target, const double middle[3],
+                          const bool locked[3], double index[3])
 {
-    memcpy(place, middle, 3 * sizeof *place);
+    memcpy(index, middle, 3 * sizeof *index);
     for (int step = 0; step < 3; step++) {
-        if (!approach_level(s->grid, target, locked, place))
+        if (!approach_level(s->grid, target, locked, index))
             return false;
         for (int a = 0; a < 3; a++)
-            if (fabs(place[a] - middle[a]) > 0.5 * s->share)
+            if (fabs(index[a] - middle[a]) > 0.5 * s->snap_distance)
                 return false;
     }
     return true;
@@ -153,31 +153,32 @@ static shape shape_at(const cwi_snapping *s, size_t triangle)
 
 /* Shape of a cluster's triangles before the cluster moves. */
 typedef struct looks {
-    double normal[CWI_RIM][3]; /* of the owners */
-    double worst;              /* sharpness */
+    double normal[CWI_LINK][3]; /* of the owners */
+    double worst;               /* sharpness */
 } looks;
 
-static void look_at(const cwi_snapping *s, const cwi_cluster *c, looks *before)
+static void look_at(const cwi_snapping *s, const cwi_cluster *c, looks *cells_before)
 {
-    before->worst = 0;
-    for (int n = 0; n < c->star_count; n++) {
-        const shape is = shape_at(s, c->star[n]);
-        before->worst = fmax(before->worst, is.sharpness);
-        for (int m = 0; m < c->rim_count; m++)
-            if (c->owner[m] == c->star[n])
-                memcpy(before->normal[m], is.normal, sizeof is.normal);
+    cells_before->worst = 0;
+    for (int n = 0; n < c->fan_count; n++) {
+        const shape is = shape_at(s, c->fan[n]);
+        cells_before->worst = fmax(cells_before->worst, is.sharpness);
+        for (int m = 0; m < c->link_count; m++)
+            if (c->owner[m] == c->fan[n])
+                memcpy(cells_before->normal[m], is.normal, sizeof is.normal);
     }
 }
 
 /* Returns true if, in the world, where angles matter, no new triangle is turned over, and none
  * has a smaller angle than the smallest before. */
-static bool looks_good(const cwi_snapping *s, const cwi_cluster *c, const looks *before,
+static bool looks_good(const cwi_snapping *s, const cwi_cluster *c, const looks *cells_before,
                        const float p[3])
 {
-    for (int n = 0; n < c->rim_count; n++) {
-        const shape is = shape_of(p, cwi_mesh_position(s, c->rim[n]),
-                                  cwi_mesh_position(s, c->rim[cwi_rim_next(c, n)]));
-        if (!(cwi_dot(before->normal[n], is.normal) > 0) || !(is.sharpness <= before->worst))
+    for (int n = 0; n < c->link_count; n++) {
+        const shape is = shape_of(p, cwi_mesh_position(s, c->link[n]),
+                                  cwi_mesh_position(s, c->link[cwi_link_next(c, n)]));
+        if (!(cwi_dot(cells_before->normal[n], is.normal) > 0) ||
+            !(is.sharpness <= cells_before->worst))
             return false;
     }
     return true;
@@ -192,9 +193,9 @@ static double square_from(const cwi_snapping *s, const cwi_cluster *c, const dou
     double nearest[3];
     for (int a = 0; a < 3; a++)
         nearest[a] = t.p[0][a] = x[a] - from[a];
-    for (int n = 0; n < c->rim_count && cwi_dot(nearest, nearest) > enough; n++) {
-        const double *q = cwi_index(s, c->rim[n]),
-                     *r = cwi_index(s, c->rim[cwi_rim_next(c, n)]);
+    for (int n = 0; n < c->link_count && cwi_dot(nearest, nearest) > enough; n++) {
+        const double *q = cwi_index(s, c->link[n]),
+                     *r = cwi_index(s, c->link[cwi_link_next(c, n)]);
         for (int a = 0; a < 3; a++) {
             t.p[1][a] = q[a] - from[a];
             t.p[2][a] = r[a] - from[a];
@@ -207,42 +208,44 @@ static double square_from(const cwi_snapping *s, const cwi_cluster *c, const dou
 /* Returns true if no member is left far from the new triangles. */
 static bool is_faithful(const cwi_snapping *s, const cwi_cluster *c, const double x[3])
 {
-    const double most = MAX_ERROR * s->share;
+    const double max_distance = MAX_ERROR * s->snap_distance;
     for (int m = 0; m < c->count; m++)
-        if (square_from(s, c, x, cwi_index(s, c->member[m]), most * most) > most * most)
+        if (square_from(s, c, x, cwi_index(s, c->member[m]), max_distance * max_distance) >
+            max_distance * max_distance)
             return false;
     return true;
 }
 
-static bool may_go(const cwi_snapping *s, const cwi_cluster *c, const looks *before,
-                   const double place[3], double x[3], float p[3])
+static bool may_go(const cwi_snapping *s, const cwi_cluster *c, const looks *cells_before,
+                   const double index[3], double x[3], float p[3])
 {
-    const double most = fmin(s->share + ROUNDING, FARTHEST);
+    const double max_distance = fmin(s->snap_distance + ROUNDING, FARTHEST);
     double from[3];
-    cwi_to_position(s, place, p);
+    cwi_to_position(s, index, p);
     cwi_to_index(s, p, x);
     for (int a = 0; a < 3; a++)
         from[a] = x[a] - (double)c->at[a];
-    return cwi_dot(from, from) < most * most && looks_good(s, c, before, p) &&
-           is_faithful(s, c, x) && cwi_cone_is_clear(s, c, x);
+    return cwi_dot(from, from) < max_distance * max_distance &&
+           looks_good(s, c, cells_before, p) && is_faithful(s, c, x) &&
+           cwi_fan_is_clear(s, c, x);
 }
 
-bool cwi_cluster_place(const cwi_snapping *s, const cwi_cluster *c, double x[3],
-                       float position[3])
+bool cwi_cluster_position(const cwi_snapping *s, const cwi_cluster *c, double x[3],
+                          float position[3])
 {
     uint32_t vertex[CWI_MEMBERS];
-    double middle[3], place[3];
+    double middle[3], index[3];
     bool locked[3];
-    looks before;
+    looks cells_before;
     const int count = find_voters(s, c, vertex, locked);
     if (count == 0)
         return false;
     const double target = find_middle(s, vertex, count, middle);
-    if (!find_place(s, target, middle, locked, place))
-        memcpy(place, middle, sizeof place);
-    look_at(s, c, &before);
-    bool fits = may_go(s, c, &before, place, x, position);
+    if (!find_position(s, target, middle, locked, index))
+        memcpy(index, middle, sizeof index);
+    look_at(s, c, &cells_before);
+    bool fits = may_go(s, c, &cells_before, index, x, position);
     for (int n = 0; n < count && !fits; n++)
-        fits = may_go(s, c, &before, cwi_index(s, vertex[n]), x, position);
+        fits = may_go(s, c, &cells_before, cwi_index(s, vertex[n]), x, position);
     return fits;
 }

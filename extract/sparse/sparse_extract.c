@@ -340,7 +340,7 @@ static cw_status init_grid(const sparse_plan *p, worker *w, cw_error *err)
         st = cwi_grid_set_level(g, p->desc, err);
     if (st != CW_OK)
         return st;
-    g->everything = g->roomy = true;
+    g->all_classified = g->reads_whole_words = true;
     memset(g->inside, 0, g->rows * g->words * sizeof *g->inside);
     g->find_values = view.has_nodata;
     if (g->find_values && !(g->has = cwi_grid_plane(g)))

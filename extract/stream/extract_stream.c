@@ -23,10 +23,10 @@ static size_t bytes_with(const cw_volume *whole, const cw_extract_desc *d, size_
 static size_t choose_layers(const cw_volume *whole, const cw_stream_desc *d, size_t sweeps)
 {
     const size_t samples = whole->dim[0] * whole->dim[1];
-    const size_t limit = d->extract.max_bytes, wanted = BASE_BYTES + SAMPLE_BYTES * samples;
+    const size_t limit = d->extract.max_bytes, needed = BASE_BYTES + SAMPLE_BYTES * samples;
     size_t layers = d->layers ? d->layers : MIN_LAYERS;
     while (!d->layers && layers < MAX_LAYERS &&
-           bytes_with(whole, &d->extract, sweeps, layers + 1) <= wanted)
+           bytes_with(whole, &d->extract, sweeps, layers + 1) <= needed)
         layers++;
     while (limit && layers > 1 && bytes_with(whole, &d->extract, sweeps, layers) > limit)
         layers--;
@@ -79,7 +79,7 @@ static cw_status look_ahead(cwi_slice_window *w, cw_error *err)
         return st;
     cwi_bit_grid *g = &w->plan.grid;
     w->in = w->out = false; /* of the layers that are written */
-    if (!g->gaps) {         /* then no value is sought, as in a volume in memory */
+    if (!g->has_gaps) {     /* then no value is sought, as in a volume in memory */
         g->volume.has_nodata = g->find_values = false;
         cwi_free(g->has);
         g->has = NULL;
@@ -169,7 +169,7 @@ cw_status cwi_open_slices(cwi_slice_window *w, const cwi_engine *engine,
     st = open_window(w, engine, source, d, 0, layers, err);
     if (st == CW_OK)
         st = look_ahead(w, err);
-    return st == CW_OK && w->plan.grid.gaps && d->extract.leave_open
+    return st == CW_OK && w->plan.grid.has_gaps && d->extract.leave_open
                ? open_window(w, engine, source, d, CWI_SWEEPS, layers, err)
                : st;
 }

@@ -31,8 +31,8 @@ static size_t slices_for(const cw_volume *whole, const cw_extract_desc *d, size_
 {
     size_t below, above;
     find_neighbours(whole, d, sweeps, &below, &above);
-    const size_t wanted = layers + below + above;
-    return wanted < whole->dim[2] ? wanted : whole->dim[2];
+    const size_t needed = layers + below + above;
+    return needed < whole->dim[2] ? needed : whole->dim[2];
 }
 
 size_t cwi_slice_window_bytes(const cw_volume *whole, const cw_extract_desc *d, size_t sweeps,
@@ -89,7 +89,7 @@ cw_status cwi_slice_window_init(cwi_slice_window *w, const cwi_engine *engine,
         st = cwi_grid_set_level(g, desc, err);
     if (st != CW_OK)
         return st;
-    g->everything = true;
+    g->all_classified = true;
     g->max_plans = PLANS / w->capacity;
     w->plan.rows = cwi_alloc_zeroed(g->rows, sizeof *w->plan.rows);
     g->row_plans = cwi_alloc_zeroed(g->rows, sizeof *g->row_plans);
@@ -103,7 +103,7 @@ cw_status cwi_slice_window_init(cwi_slice_window *w, const cwi_engine *engine,
     clear_rows(g, g->has, 0, 0, g->rows);
     clear_rows(g, g->live, 0, 0, g->rows);
     g->find_values = g->has != NULL;
-    g->gaps = w->sweeps > 0;
+    g->has_gaps = w->sweeps > 0;
     return w->sweeps ? CW_OK : cwi_grid_set_live(g, desc->leave_open, err);
 }
 
@@ -156,7 +156,7 @@ static void shift_layers(cwi_slice_window *w, size_t by, size_t slices)
         SHIFT(g->has, g->words);
     if (w->sweeps)
         SHIFT(g->live, g->words);
-    SHIFT(g->busy, g->masks);
+    SHIFT(g->mixed_words, g->masks);
     SHIFT(g->filled, 1);
     SHIFT(w->plan.rows, 1);
     SHIFT(g->row_plans, 1);
@@ -216,7 +216,7 @@ cw_status cwi_slice_window_scan(cwi_slice_window *w, bool all, cw_error *err)
         w->count = 0; /* slices of two steps have nothing in common */
         if (st == CW_OK)
             st = hold_slices(w, first, first + (left < w->capacity ? left : w->capacity), err);
-        g->gaps = g->gaps || (st == CW_OK && has_gap(w));
+        g->has_gaps = g->has_gaps || (st == CW_OK && has_gap(w));
     }
     return st;
 }

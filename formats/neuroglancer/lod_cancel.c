@@ -37,7 +37,7 @@ static bool is_needle(const uint32_t *triangle, const uint64_t *keys)
     double corner[3][3], side[3][3], normal[3], longest_sq = 0;
     for (int k = 0; k < 3; k++) {
         uint32_t at[3];
-        cwi_place_of_key(keys[triangle[k]], at);
+        cwi_lattice_point(keys[triangle[k]], at);
         for (int a = 0; a < 3; a++)
             corner[k][a] = at[a];
     }

@@ -36,7 +36,7 @@ typedef struct writer {
 
 /* Gives the corners of a node's triangles numbers of places, counted from the node's corner. */
 static cw_status number_corners(const writer *w, const cwi_lod_level *level, size_t first,
-                                cwi_places *places, cw_mesh *mesh, cw_error *err)
+                                cwi_lattice_map *places, cw_mesh *mesh, cw_error *err)
 {
     uint32_t node[3], at[3];
     cwi_lod_node(level->pieces[first].node, node);
@@ -45,8 +45,8 @@ static cw_status number_corners(const writer *w, const cwi_lod_level *level, siz
         for (int a = 0; a < 3; a++)
             at[a] = level->places[3 * (size_t)vertex + (size_t)a] -
                     node[a] * cwi_lod_steps(&w->grid);
-        mesh->triangles[i] = cwi_places_add(places, cwi_place_key(at));
-        if (mesh->triangles[i] == CWI_NO_PLACE)
+        mesh->triangles[i] = cwi_lattice_add(places, cwi_lattice_key(at));
+        if (mesh->triangles[i] == CWI_NO_LATTICE_POINT)
             return cwi_fail_memory(err);
     }
     return CW_OK;
@@ -54,25 +54,25 @@ static cw_status number_corners(const writer *w, const cwi_lod_level *level, siz
 
 /* Copies the places that triangles name as positions, and numbers them in the order in which
  * triangles name them. */
-static cw_status place_vertices(const cwi_places *places, cw_mesh *mesh, cw_error *err)
+static cw_status place_vertices(const cwi_lattice_map *places, cw_mesh *mesh, cw_error *err)
 {
-    cwi_places used = {0};
+    cwi_lattice_map used = {0};
     uint32_t at[3];
     for (size_t i = 0; i < 3 * mesh->triangle_count; i++) {
-        mesh->triangles[i] = cwi_places_add(&used, places->keys[mesh->triangles[i]]);
-        if (mesh->triangles[i] == CWI_NO_PLACE) {
-            cwi_places_free(&used);
+        mesh->triangles[i] = cwi_lattice_add(&used, places->keys[mesh->triangles[i]]);
+        if (mesh->triangles[i] == CWI_NO_LATTICE_POINT) {
+            cwi_lattice_free(&used);
             return cwi_fail_memory(err);
         }
     }
     mesh->vertex_count = used.count;
     mesh->positions = cwi_alloc_array(used.count, 3 * sizeof *mesh->positions);
     for (size_t v = 0; v < used.count && mesh->positions; v++) {
-        cwi_place_of_key(used.keys[v], at);
+        cwi_lattice_point(used.keys[v], at);
         for (size_t a = 0; a < 3; a++)
             mesh->positions[3 * v + a] = (float)at[a];
     }
-    cwi_places_free(&used);
+    cwi_lattice_free(&used);
     return mesh->positions ? CW_OK : cwi_fail_memory(err);
 }
 
@@ -80,7 +80,7 @@ static cw_status place_vertices(const cwi_places *places, cw_mesh *mesh, cw_erro
 static cw_status make_fragment(const writer *w, const cwi_lod_level *level, size_t first,
                                size_t count, cw_mesh *mesh, cw_error *err)
 {
-    cwi_places places = {0};
+    cwi_lattice_map places = {0};
     mesh->triangle_count = count;
     mesh->triangles = cwi_alloc_array(count, 3 * sizeof *mesh->triangles);
     cw_status st = mesh->triangles ? number_corners(w, level, first, &places, mesh, err)
@@ -89,7 +89,7 @@ static cw_status make_fragment(const writer *w, const cwi_lod_level *level, size
         st = cwi_fail_memory(err);
     if (st == CW_OK && mesh->triangle_count)
         st = place_vertices(&places, mesh, err);
-    cwi_places_free(&places);
+    cwi_lattice_free(&places);
     return st;
 }
 

@@ -1,4 +1,4 @@
-/* Simplifies a surface in passes over blocks, on threads, and repeats parts with more care
+/* Simplifies a surface in passes over blocks, on threads, and repeats parts with higher tighten levels
  * where they did not keep the distance. */
 #include "simplify/blocks/block_passes.h"
 
@@ -60,18 +60,18 @@ void cwi_passes_place(cwi_passes *p, const double origin[3], double scale)
     p->block_desc.error *= scale;
 }
 
-static void forget_passes(cwi_passes *p)
+static void free_input_lists(cwi_passes *p)
 {
     cwi_free(p->first);
     cwi_free(p->around);
     cwi_free(p->across);
     cwi_free(p->next);
-    cwi_free(p->care);
+    cwi_free(p->tighten_level);
     cwi_free(p->allowed);
     cwi_free(p->normals);
-    cwi_free(p->lists);
-    p->first = p->around = p->across = p->next = p->lists = NULL;
-    p->care = NULL;
+    cwi_free(p->saved_next);
+    p->first = p->around = p->across = p->next = p->saved_next = NULL;
+    p->tighten_level = NULL;
     p->allowed = NULL;
     p->normals = NULL;
     p->original = (cwi_original){0};
@@ -79,7 +79,7 @@ static void forget_passes(cwi_passes *p)
 
 void cwi_passes_free(cwi_passes *p)
 {
-    forget_passes(p);
+    free_input_lists(p);
     cwi_views_free(&p->views);
 }
 
@@ -169,7 +169,7 @@ static cw_status allow_distances(cwi_passes *p, cw_error *err)
     return CW_OK;
 }
 
-static void look_across(cwi_passes *p)
+static void find_opposite_corners(cwi_passes *p)
 {
     for (size_t v = 0; v < p->input.vertex_count; v++)
         for (size_t n = p->first[v]; n < p->first[v + 1]; n++) {
@@ -183,18 +183,19 @@ static void look_across(cwi_passes *p)
 cw_status cwi_passes_remember(cwi_passes *p, const cw_mesh *input, cw_error *err)
 {
     const size_t vertices = input->vertex_count;
-    forget_passes(p);
+    free_input_lists(p);
     p->input = *input;
     p->first = cwi_alloc_array(vertices + 2, sizeof *p->first);
     p->around = cwi_alloc_array(3 * input->triangle_count, sizeof *p->around);
     p->across = cwi_alloc_array(6 * input->triangle_count, sizeof *p->across);
     p->next = cwi_alloc_array(vertices, sizeof *p->next);
-    p->care = cwi_alloc_zeroed(vertices, sizeof *p->care);
-    p->lists = cwi_alloc_array(vertices, sizeof *p->lists);
-    if (!p->first || !p->around || !p->across || !p->next || !p->care || !p->lists)
+    p->tighten_level = cwi_alloc_zeroed(vertices, sizeof *p->tighten_level);
+    p->saved_next = cwi_alloc_array(vertices, sizeof *p->saved_next);
+    if (!p->first || !p->around || !p->across || !p->next || !p->tighten_level ||
+        !p->saved_next)
         return cwi_fail_memory(err);
     cwi_fans_sort(input->triangles, input->triangle_count, vertices, p->first, p->around);
-    look_across(p);
+    find_opposite_corners(p);
     for (size_t v = 0; v < vertices; v++)
         p->next[v] = (uint32_t)v; /* in no list */
     p->original =
@@ -202,28 +203,28 @@ cw_status cwi_passes_remember(cwi_passes *p, const cw_mesh *input, cw_error *err
                        .fans = {input->positions, input->triangles, p->first, p->around},
                        .across = p->across,
                        .next = p->next,
-                       .care = p->care};
+                       .tighten_level = p->tighten_level};
     cw_status st = allow_distances(p, err);
     if (st == CW_OK)
         st = find_normals(p, err);
     p->original.allowed = p->allowed;
     p->original.normals = p->normals;
-    p->original.straight = (float)cos(p->desc->normal_deg * CWI_PI / 180);
+    p->original.min_normal_cosine = (float)cos(p->desc->normal_deg * CWI_PI / 180);
     return st;
 }
 
 cw_status cwi_passes_list(cwi_passes *p, cwi_mesh_block *b, cw_error *err)
 {
-    b->lists = cwi_alloc_array(b->triangles, sizeof *b->lists);
-    if (!b->lists)
+    b->nearest_points = cwi_alloc_array(b->triangles, sizeof *b->nearest_points);
+    if (!b->nearest_points)
         return cwi_fail_memory(err);
-    memset(b->lists, 0xff, b->triangles * sizeof *b->lists);
+    memset(b->nearest_points, 0xff, b->triangles * sizeof *b->nearest_points);
     for (size_t c = 0; c < 3 * b->triangles; c++) {
         const uint32_t point = b->corners[c];
         if (p->next[point] != point)
             continue;
-        p->next[point] = b->lists[c / 3];
-        b->lists[c / 3] = point;
+        p->next[point] = b->nearest_points[c / 3];
+        b->nearest_points[c / 3] = point;
     }
     return CW_OK;
 }
@@ -236,9 +237,9 @@ static const cwi_original *original_of(const cwi_passes *p)
 /* --- keeping the error -------------------------------------------------------------------- */
 
 /* Runs down to each of the targets in turn, while costs are at most so large. */
-static cw_status run_levels(const cwi_passes *p, const cwi_mesh_block *whole, float cost,
-                            const size_t *targets, size_t levels, cwi_mesh_block *left,
-                            cw_error *err)
+static cw_status collapse_to_targets(const cwi_passes *p, const cwi_mesh_block *whole,
+                                     float cost, const size_t *targets, size_t levels,
+                                     cwi_mesh_block *left, cw_error *err)
 {
     cwi_decimater *d;
     cw_status st = p->openmesh->open(whole, &p->block_desc, original_of(p), &d, err);
@@ -253,19 +254,19 @@ static cw_status run_levels(const cwi_passes *p, const cwi_mesh_block *whole, fl
     return st;
 }
 
-static cw_status run_once(const cwi_passes *p, const cwi_block_part *x, float cost,
-                          cw_error *err)
+static cw_status collapse_within_cost(const cwi_passes *p, const cwi_block_part *x, float cost,
+                                      cw_error *err)
 {
-    return run_levels(p, x->from, cost, &x->target, 1, x->left, err);
+    return collapse_to_targets(p, x->from, cost, &x->target, 1, x->left, err);
 }
 
 /* Lists of the pass become what they were before. */
-static void put_back(const cwi_passes *p, const cwi_mesh_block *left)
+static void restore_point_lists(const cwi_passes *p, const cwi_mesh_block *left)
 {
-    for (size_t t = 0; t < left->own; t++)
-        for (uint32_t v = left->lists[t], next; v != UINT32_MAX; v = next) {
+    for (size_t t = 0; t < left->interior_count; t++)
+        for (uint32_t v = left->nearest_points[t], next; v != UINT32_MAX; v = next) {
             next = p->next[v];
-            p->next[v] = p->lists[v];
+            p->next[v] = p->saved_next[v];
         }
 }
 
@@ -275,14 +276,14 @@ enum { MARK = 0x80 };
  * other parts are these parts' business. */
 static size_t mark_input(const cwi_passes *p, const cwi_block_part *x, const uint8_t *beyond)
 {
-    const uint8_t *held = x->names ? x->from->held : NULL;
+    const uint8_t *locked = x->global_ids ? x->from->locked : NULL;
     size_t broken = 0;
     for (size_t t = 0; t < x->input.triangle_count; t++) {
         const uint32_t *c = x->input.triangles + 3 * t;
         broken += beyond[t];
         for (size_t k = 0; k < 3 && beyond[t]; k++)
-            if (!held || !held[c[k]])
-                p->care[x->names ? x->names[c[k]] : c[k]] |= MARK;
+            if (!locked || !locked[c[k]])
+                p->tighten_level[x->global_ids ? x->global_ids[c[k]] : c[k]] |= MARK;
     }
     return broken;
 }
@@ -294,45 +295,45 @@ static size_t mark_result(const cwi_passes *p, const cwi_block_part *x, const ui
 {
     const cwi_mesh_block *left = x->left;
     size_t broken = 0;
-    for (size_t t = 0; t < left->own; t++) {
+    for (size_t t = 0; t < left->interior_count; t++) {
         broken += beyond[t];
         for (size_t k = 0; k < 3 && beyond[t]; k++)
             near[left->corners[3 * t + k]] = 1;
     }
-    for (size_t t = 0; t < left->own && broken; t++) {
+    for (size_t t = 0; t < left->interior_count && broken; t++) {
         const uint32_t *c = left->corners + 3 * t;
         if (near[c[0]] || near[c[1]] || near[c[2]])
-            for (uint32_t v = left->lists[t]; v != UINT32_MAX; v = p->next[v])
-                p->care[v] |= MARK;
+            for (uint32_t v = left->nearest_points[t]; v != UINT32_MAX; v = p->next[v])
+                p->tighten_level[v] |= MARK;
     }
     return broken;
 }
 
-/* More care for the marked points of the part; false when all had the most already. */
-static bool take_care(const cwi_passes *p, const cwi_block_part *x)
+/* Raises the tighten level of the marked points of the part; returns false when all had the maximum. */
+static bool raise_tighten_levels(const cwi_passes *p, const cwi_block_part *x)
 {
     bool more = false;
-    for (size_t t = 0; t < x->left->own; t++)
-        for (uint32_t v = x->left->lists[t]; v != UINT32_MAX; v = p->next[v])
-            if (p->care[v] & MARK) {
-                p->care[v] &= (uint8_t)~MARK;
-                if (p->care[v] < CWI_MAX_CARE) {
-                    p->care[v]++;
+    for (size_t t = 0; t < x->left->interior_count; t++)
+        for (uint32_t v = x->left->nearest_points[t]; v != UINT32_MAX; v = p->next[v])
+            if (p->tighten_level[v] & MARK) {
+                p->tighten_level[v] &= (uint8_t)~MARK;
+                if (p->tighten_level[v] < CWI_MAX_TIGHTEN_LEVEL) {
+                    p->tighten_level[v]++;
                     more = true;
                 }
             }
-    for (size_t v = 0; v < p->input.vertex_count && !x->names; v++)
-        p->care[v] &= (uint8_t)~MARK; /* listed elsewhere */
+    for (size_t v = 0; v < p->input.vertex_count && !x->global_ids; v++)
+        p->tighten_level[v] &= (uint8_t)~MARK; /* listed elsewhere */
     return more;
 }
 
-/* Whether the result keeps the distance; where it does not, more care is taken the
+/* Checks whether the result keeps the distance; where it does not, raises tighten levels for the
  * next time. */
-static cw_status judge_part(const cwi_passes *p, const cwi_block_part *x, bool *kept,
-                            bool *hope, cw_error *err)
+static cw_status check_part_distance(const cwi_passes *p, const cwi_block_part *x, bool *kept,
+                                     bool *can_tighten, cw_error *err)
 {
     uint8_t *input_beyond = cwi_alloc_array(x->input.triangle_count, 1);
-    uint8_t *beyond = cwi_alloc_array(x->left->own, 1);
+    uint8_t *beyond = cwi_alloc_array(x->left->interior_count, 1);
     uint8_t *near = cwi_alloc_zeroed(x->left->vertices, 1);
     cw_status st = input_beyond && beyond && near
                        ? cwi_block_part_prove(p, x, input_beyond, beyond, err)
@@ -340,7 +341,7 @@ static cw_status judge_part(const cwi_passes *p, const cwi_block_part *x, bool *
     if (st == CW_OK) {
         const size_t broken = mark_input(p, x, input_beyond) + mark_result(p, x, beyond, near);
         *kept = broken == 0;
-        *hope = *kept || take_care(p, x);
+        *can_tighten = *kept || raise_tighten_levels(p, x);
     }
     cwi_free(input_beyond);
     cwi_free(beyond);
@@ -348,28 +349,30 @@ static cw_status judge_part(const cwi_passes *p, const cwi_block_part *x, bool *
     return st;
 }
 
-static cw_status run_part(const cwi_passes *p, const cwi_block_part *x, cw_error *err)
+static cw_status collapse_part(const cwi_passes *p, const cwi_block_part *x, cw_error *err)
 {
-    return run_once(p, x, x->cost, err);
+    return collapse_within_cost(p, x, x->cost, err);
 }
 
 /* Makes what is left of a part from where it began. */
-typedef cw_status again(const cwi_passes *p, const cwi_block_part *x, cw_error *err);
+typedef cw_status collapse_function(const cwi_passes *p, const cwi_block_part *x,
+                                    cw_error *err);
 
 /* Collapses look at what is near them only. Where that was not enough the part is done again
- * with more care; when that does not help, it stays as it was. */
-static cw_status keep_part(const cwi_passes *p, const cwi_block_part *x, again *run_again,
-                           size_t *repeats, cw_error *err)
+ * with higher tighten levels; when that does not help, it stays as it was. */
+static cw_status enforce_part_distance(const cwi_passes *p, const cwi_block_part *x,
+                                       collapse_function *collapse, size_t *repeats,
+                                       cw_error *err)
 {
     cw_status st = CW_OK;
-    for (bool kept = x->left->own == 0, hope = true; st == CW_OK && !kept;) {
-        st = judge_part(p, x, &kept, &hope, err);
+    for (bool kept = x->left->interior_count == 0, can_tighten = true; st == CW_OK && !kept;) {
+        st = check_part_distance(p, x, &kept, &can_tighten, err);
         if (st != CW_OK || kept)
             break;
-        put_back(p, x->left);
+        restore_point_lists(p, x->left);
         cwi_block_free(x->left);
-        st = hope ? run_again(p, x, err) : run_once(p, x, -1, err);
-        kept = !hope;
+        st = can_tighten ? collapse(p, x, err) : collapse_within_cost(p, x, -1, err);
+        kept = !can_tighten;
         ++*repeats;
     }
     return st;
@@ -377,7 +380,7 @@ static cw_status keep_part(const cwi_passes *p, const cwi_block_part *x, again *
 
 /* --- passes over blocks ------------------------------------------------------------------- */
 
-typedef struct crew {
+typedef struct block_batch {
     const cwi_passes *passes;
     bool proves; /* whether each block is held against its part of the input */
     cwi_mesh_block *blocks, *left;
@@ -387,11 +390,11 @@ typedef struct crew {
     size_t *repeats;
     size_t count, target;
     float cost;
-} crew;
+} block_batch;
 
 static void open_block(void *context, size_t n)
 {
-    crew *c = context;
+    block_batch *c = context;
     const cwi_passes *p = c->passes;
     c->statuses[n] = p->openmesh->open(c->blocks + n, &p->block_desc, original_of(p),
                                        c->decimaters + n, c->errors + n);
@@ -399,15 +402,15 @@ static void open_block(void *context, size_t n)
         cwi_block_free(c->blocks + n);
 }
 
-static void run_block(void *context, size_t n)
+static void collapse_block(void *context, size_t n)
 {
-    crew *c = context;
+    block_batch *c = context;
     c->statuses[n] = c->passes->openmesh->run(c->decimaters[n], c->cost, 0, c->errors + n);
 }
 
-static void take_block(void *context, size_t n)
+static void copy_out_block(void *context, size_t n)
 {
-    crew *c = context;
+    block_batch *c = context;
     const cwi_openmesh_functions *openmesh = c->passes->openmesh;
     c->statuses[n] = openmesh->take(c->decimaters[n], c->left + n, c->errors + n);
     openmesh->close(c->decimaters[n]);
@@ -415,26 +418,27 @@ static void take_block(void *context, size_t n)
 }
 
 /* Without a number of triangles to meet a block knows by itself how far to go. */
-static void keep_block(void *context, size_t n)
+static void enforce_block_distance(void *context, size_t n)
 {
-    crew *c = context;
+    block_batch *c = context;
     const cwi_passes *p = c->passes;
     cw_error *err = c->errors + n;
     const cwi_block_part x = {.from = c->blocks + n,
                               .input = cwi_block_view(c->blocks + n),
-                              .names = c->blocks[n].names,
+                              .global_ids = c->blocks[n].global_ids,
                               .left = c->left + n,
                               .cost = c->cost,
                               .threads = 1};
-    cw_status st = c->target ? CW_OK : run_part(p, &x, err);
+    cw_status st = c->target ? CW_OK : collapse_part(p, &x, err);
     if (st == CW_OK && c->proves)
-        st = keep_part(p, &x, run_part, c->repeats + n, err);
+        st = enforce_part_distance(p, &x, collapse_part, c->repeats + n, err);
     c->statuses[n] = st;
     cwi_block_free(c->blocks + n);
 }
 
 /* Runs work for all blocks on threads, and reports the error of the first block that failed. */
-static cw_status each_block(crew *c, void (*work)(void *context, size_t n), cw_error *err)
+static cw_status for_each_block(block_batch *c, void (*work)(void *context, size_t n),
+                                cw_error *err)
 {
     const cwi_passes *p = c->passes;
     cw_status st = cwi_parallel_for(c->count, CWI_BLOCK, p->desc->threads, &p->poll,
@@ -445,7 +449,7 @@ static cw_status each_block(crew *c, void (*work)(void *context, size_t n), cw_e
     return st;
 }
 
-static size_t count_left(const crew *c, float *next)
+static size_t count_left(const block_batch *c, float *next)
 {
     const cwi_openmesh_functions *openmesh = c->passes->openmesh;
     size_t left = 0;
@@ -460,32 +464,32 @@ static size_t count_left(const crew *c, float *next)
 /* Runs all blocks to the same cost: the limit rises step by step until few enough triangles are
  * left. Errors of size^4 on areas of size^2 make it rise by the cube of what the number falls
  * by; a step takes half of that way. */
-static cw_status run_to_target(crew *c, cw_error *err)
+static cw_status collapse_to_target(block_batch *c, cw_error *err)
 {
-    cw_status st = each_block(c, open_block, err);
+    cw_status st = for_each_block(c, open_block, err);
     float next;
     c->cost = 0;
     for (size_t left;
          st == CW_OK && (left = count_left(c, &next)) > c->target && next < INFINITY;) {
         const float more = (float)left / (float)c->target, step = more * sqrtf(more);
         c->cost = fmaxf(c->cost, next) * fminf(fmaxf(step, 1.1f), 8);
-        st = each_block(c, run_block, err);
+        st = for_each_block(c, collapse_block, err);
     }
-    return st == CW_OK ? each_block(c, take_block, err) : st;
+    return st == CW_OK ? for_each_block(c, copy_out_block, err) : st;
 }
 
 /* Seams between blocks stay as fine as they were: that many triangles more than the target are
  * left to the second pass. */
-static size_t first_target(const crew *c, size_t target)
+static size_t first_target(const block_batch *c, size_t target)
 {
-    size_t held = 0;
+    size_t locked = 0;
     for (size_t n = 0; n < c->count; n++)
         for (size_t v = 0; v < c->blocks[n].vertices; v++)
-            held += c->blocks[n].held[v];
-    return target ? target + 3 * held / 2 : 0;
+            locked += c->blocks[n].locked[v];
+    return target ? target + 3 * locked / 2 : 0;
 }
 
-static cw_status run_crew(crew *c, cw_error *err)
+static cw_status simplify_batch(block_batch *c, cw_error *err)
 {
     c->left = cwi_alloc_zeroed(c->count, sizeof *c->left);
     c->decimaters = cwi_alloc_zeroed(c->count, sizeof(cwi_decimater *));
@@ -495,11 +499,11 @@ static cw_status run_crew(crew *c, cw_error *err)
     if (!c->left || !c->decimaters || !c->statuses || !c->errors || !c->repeats)
         return cwi_fail_memory(err);
     c->cost = INFINITY;
-    cw_status st = c->target ? run_to_target(c, err) : CW_OK;
-    return st == CW_OK && c->passes->next ? each_block(c, keep_block, err) : st;
+    cw_status st = c->target ? collapse_to_target(c, err) : CW_OK;
+    return st == CW_OK && c->passes->next ? for_each_block(c, enforce_block_distance, err) : st;
 }
 
-static void free_crew(crew *c)
+static void free_batch(block_batch *c)
 {
     for (size_t n = 0; n < c->count; n++) {
         cwi_block_free(c->blocks + n);
@@ -516,28 +520,28 @@ static void free_crew(crew *c)
     cwi_free(c->repeats);
 }
 
-static void begin_pass(const cwi_passes *p)
+static void save_point_lists(const cwi_passes *p)
 {
     if (p->next)
-        memcpy(p->lists, p->next, p->input.vertex_count * sizeof *p->lists);
+        memcpy(p->saved_next, p->next, p->input.vertex_count * sizeof *p->saved_next);
 }
 
 /* Borders that were known before the pass are so still. */
-static void keep_known(const uint8_t *seam, cwi_mesh_block *left)
+static void keep_known_borders(const uint8_t *seam, cwi_mesh_block *left)
 {
     for (size_t v = 0; v < left->vertices && seam; v++)
-        left->seam[v] &= seam[left->names[v]];
+        left->seam[v] &= seam[left->global_ids[v]];
 }
 
 /* Cuts, runs and joins. If *out is *whole, that is freed once it is cut. */
-static cw_status run_blocks(const cwi_passes *p, cwi_mesh_block *whole, size_t target,
-                            double share, bool proves, cwi_mesh_block *out, size_t *repeats,
-                            cw_error *err)
+static cw_status simplify_in_blocks(const cwi_passes *p, cwi_mesh_block *whole, size_t target,
+                                    double cut_fraction, bool proves, cwi_mesh_block *out,
+                                    size_t *repeats, cw_error *err)
 {
-    const size_t names = whole->vertices;
-    crew c = {.passes = p, .proves = proves};
-    size_t most = 0;
-    cw_status st = cwi_blocks_cut(whole, CWI_BLOCK, share, &c.blocks, &c.count, err);
+    const size_t id_count = whole->vertices;
+    block_batch c = {.passes = p, .proves = proves};
+    size_t max_repeats = 0;
+    cw_status st = cwi_blocks_cut(whole, CWI_BLOCK, cut_fraction, &c.blocks, &c.count, err);
     if (st != CW_OK)
         return st;
     c.target = first_target(&c, target);
@@ -546,31 +550,31 @@ static cw_status run_blocks(const cwi_passes *p, cwi_mesh_block *whole, size_t t
         whole->seam = NULL;
         cwi_block_free(whole);
     }
-    st = run_crew(&c, err);
+    st = simplify_batch(&c, err);
     for (size_t n = 0; n < c.count && st == CW_OK; n++)
-        most = c.repeats[n] > most ? c.repeats[n] : most;
-    *repeats += most;
+        max_repeats = c.repeats[n] > max_repeats ? c.repeats[n] : max_repeats;
+    *repeats += max_repeats;
     if (st == CW_OK)
-        st = cwi_blocks_join(c.left, c.count, names, out, err);
+        st = cwi_blocks_join(c.left, c.count, id_count, out, err);
     if (st == CW_OK)
-        keep_known(seam, out);
+        keep_known_borders(seam, out);
     if (st == CW_OK && target) { /* costs ended it: all edges are to be tried again */
         cwi_free(out->open);
         out->open = NULL;
     }
     if (out == whole)
         cwi_free(seam);
-    free_crew(&c);
+    free_batch(&c);
     return st;
 }
 
 /* Puts the cuts of a second pass where the first had none. */
-static const double OTHER_SHARE = 7.0 / 16;
+static const double SECOND_CUT_FRACTION = 7.0 / 16;
 
 cw_status cwi_passes_blocks(cwi_passes *p, cwi_mesh_block *whole, size_t target, cw_error *err)
 {
-    begin_pass(p);
-    return run_blocks(p, whole, target, 0.5, true, whole, &p->repeats, err);
+    save_point_lists(p);
+    return simplify_in_blocks(p, whole, target, 0.5, true, whole, &p->repeats, err);
 }
 
 cw_status cwi_passes_seams(cwi_passes *p, cwi_mesh_block *whole, size_t target, cw_error *err)
@@ -578,7 +582,8 @@ cw_status cwi_passes_seams(cwi_passes *p, cwi_mesh_block *whole, size_t target, 
     if (p->next || whole->triangles <= CWI_BLOCK || whole->triangles <= target + target / 4)
         return CW_OK;
     cwi_block_number(whole);
-    return run_blocks(p, whole, target, OTHER_SHARE, false, whole, &p->repeats, err);
+    return simplify_in_blocks(p, whole, target, SECOND_CUT_FRACTION, false, whole, &p->repeats,
+                              err);
 }
 
 /* --- the last pass ------------------------------------------------------------------------ */
@@ -586,24 +591,25 @@ cw_status cwi_passes_seams(cwi_passes *p, cwi_mesh_block *whole, size_t target, 
 /* Whether blocks that are cut elsewhere pay. */
 static bool has_seams(const cwi_mesh_block *whole)
 {
-    return whole->open && whole->own > CWI_BLOCK;
+    return whole->open && whole->interior_count > CWI_BLOCK;
 }
 
 /* Holds vertices of a block that was joined of its parts, and puts what was in their way there. */
 static cw_status restore_limits(const cwi_mesh_block *whole, cwi_mesh_block *joined,
                                 cw_error *err)
 {
-    const size_t more = whole->triangles - whole->own;
+    const size_t more = whole->triangles - whole->interior_count;
     float *points = cwi_alloc_array(9 * more, sizeof *points);
-    joined->held = cwi_alloc_zeroed(joined->vertices, sizeof *joined->held);
-    cw_status st = points && joined->held ? CW_OK : cwi_fail_memory(err);
+    joined->locked = cwi_alloc_zeroed(joined->vertices, sizeof *joined->locked);
+    cw_status st = points && joined->locked ? CW_OK : cwi_fail_memory(err);
     for (size_t c = 0; c < 3 * more && st == CW_OK; c++)
-        memcpy(points + 3 * c, whole->points + 3 * (size_t)whole->corners[3 * whole->own + c],
+        memcpy(points + 3 * c,
+               whole->points + 3 * (size_t)whole->corners[3 * whole->interior_count + c],
                3 * sizeof *points);
     for (size_t v = 0; v < joined->vertices && st == CW_OK; v++) {
-        const size_t name = joined->names[v];
-        joined->held[v] = whole->held && whole->held[name];
-        joined->names[v] = whole->names[name];
+        const size_t id = joined->global_ids[v];
+        joined->locked[v] = whole->locked && whole->locked[id];
+        joined->global_ids[v] = whole->global_ids[id];
     }
     memcpy(joined->along, whole->along, sizeof joined->along);
     joined->from = whole->from;
@@ -615,23 +621,24 @@ static cw_status restore_limits(const cwi_mesh_block *whole, cwi_mesh_block *joi
 }
 
 /* Tries edges in seams again: those inside of blocks that are cut elsewhere, and then the rest. */
-static cw_status run_seams(const cwi_passes *p, const cwi_block_part *x, cw_error *err)
+static cw_status collapse_seams(const cwi_passes *p, const cwi_block_part *x, cw_error *err)
 {
     cwi_mesh_block from = *x->from, joined = {0};
     size_t none = 0;
-    cw_status st = run_blocks(p, &from, 0, OTHER_SHARE, false, &joined, &none, err);
+    cw_status st =
+        simplify_in_blocks(p, &from, 0, SECOND_CUT_FRACTION, false, &joined, &none, err);
     if (st == CW_OK)
         st = restore_limits(x->from, &joined, err);
     const cwi_block_part rest = {.from = &joined, .left = x->left, .cost = x->cost};
     if (st == CW_OK)
-        st = run_part(p, &rest, err);
+        st = collapse_part(p, &rest, err);
     cwi_block_free(&joined);
     return st;
 }
 
 /* As far as the error allows. */
-static cw_status run_to_error(cwi_passes *p, const cwi_mesh_block *whole, size_t target,
-                              cwi_mesh_block *left, cw_error *err)
+static cw_status collapse_to_error(cwi_passes *p, const cwi_mesh_block *whole, size_t target,
+                                   cwi_mesh_block *left, cw_error *err)
 {
     const cwi_block_part x = {.from = whole,
                               .input = p->input,
@@ -639,15 +646,15 @@ static cw_status run_to_error(cwi_passes *p, const cwi_mesh_block *whole, size_t
                               .cost = INFINITY,
                               .target = target,
                               .threads = p->desc->threads};
-    again *const run = has_seams(whole) ? run_seams : run_part;
+    collapse_function *const run = has_seams(whole) ? collapse_seams : collapse_part;
     const cw_status st = run(p, &x, err);
-    return st == CW_OK ? keep_part(p, &x, run, &p->repeats, err) : st;
+    return st == CW_OK ? enforce_part_distance(p, &x, run, &p->repeats, err) : st;
 }
 
 cw_status cwi_passes_whole(cwi_passes *p, const cwi_mesh_block *whole, const size_t *targets,
                            size_t levels, cwi_mesh_block *left, cw_error *err)
 {
-    begin_pass(p);
-    return p->next ? run_to_error(p, whole, targets[0], left, err)
-                   : run_levels(p, whole, INFINITY, targets, levels, left, err);
+    save_point_lists(p);
+    return p->next ? collapse_to_error(p, whole, targets[0], left, err)
+                   : collapse_to_targets(p, whole, INFINITY, targets, levels, left, err);
 }

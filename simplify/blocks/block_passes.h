@@ -23,11 +23,11 @@ typedef struct cwi_passes {
     cw_mesh input;         /* a view of what the distance is kept from */
     cwi_original original; /* the same; next is NULL without an error to keep */
     uint32_t *first, *around, *across, *next;
-    uint8_t *care;
-    float *allowed;  /* NULL without views */
-    float *normals;  /* of what a view sees; NULL where they do not matter */
-    uint32_t *lists; /* next as it was before the pass */
-    size_t repeats;  /* with more care */
+    uint8_t *tighten_level;
+    float *allowed;       /* NULL without views */
+    float *normals;       /* of what a view sees; NULL where they do not matter */
+    uint32_t *saved_next; /* next as it was before the pass */
+    size_t repeats;       /* with higher tighten levels */
 } cwi_passes;
 
 /* Free with cwi_passes_free(), also after an error. They must not move.
@@ -40,7 +40,7 @@ void cwi_passes_free(cwi_passes *passes);
 /* All places that follow are those meant by desc, less the origin, times so much. */
 void cwi_passes_place(cwi_passes *passes, const double origin[3], double scale);
 
-/* Remembers the surface that the error is kept from, with no care so far.
+/* Remembers the surface that the error is kept from, at tighten level 0.
  * input     borrowed, with its arrays */
 CW_NODISCARD cw_status cwi_passes_remember(cwi_passes *passes, const cw_mesh *input,
                                            cw_error *err);

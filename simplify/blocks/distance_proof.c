@@ -34,9 +34,9 @@ typedef struct walks {
 static double find_facet(void *context, const double p[3], const float *facet[3])
 {
     cwi_surface_walk *walk = context;
-    const double square = cwi_walk_to(walk, p);
+    const double distance_sq = cwi_walk_to(walk, p);
     cwi_walk_facet(walk, walk->at, facet);
-    return square;
+    return distance_sq;
 }
 
 static bool is_near_facet(const cwi_surface_walk *walk, const double corners[3][3])
@@ -51,7 +51,7 @@ static bool is_within(const walks *w, size_t t)
 {
     const double limit = w->limits ? w->limits[t] : w->limit;
     cwi_surface_walk walk = {w->surface, limit * limit, w->begin[t]};
-    cwi_cover cover = {.nearest = find_facet, .context = &walk, .square = walk.enough};
+    cwi_cover cover = {.nearest = find_facet, .context = &walk, .distance_sq = walk.enough};
     double corners[3][3];
     cwi_mesh_corners(w->mesh, t, corners);
     return walk.at != NOT_KNOWN && (is_near_facet(&walk, (const double(*)[3])corners) ||
@@ -200,18 +200,19 @@ static cw_status find_beyond(const cwi_passes *p, const cw_mesh *mesh, const cwi
 static cw_status add_obstacles(const cwi_block_part *x, cw_mesh *mesh, cw_error *err)
 {
     const cwi_mesh_block *from = x->from, *left = x->left;
-    const size_t more = from->triangles - from->own;
-    cw_status st =
-        cwi_mesh_alloc(mesh, left->vertices + 3 * more, left->own + more, false, err);
+    const size_t more = from->triangles - from->interior_count;
+    cw_status st = cwi_mesh_alloc(mesh, left->vertices + 3 * more, left->interior_count + more,
+                                  false, err);
     if (st != CW_OK)
         return st;
     memcpy(mesh->positions, left->points, 3 * left->vertices * sizeof *left->points);
-    memcpy(mesh->triangles, left->corners, 3 * left->own * sizeof *left->corners);
+    memcpy(mesh->triangles, left->corners, 3 * left->interior_count * sizeof *left->corners);
     for (size_t c = 0; c < 3 * more; c++) {
         const size_t v = left->vertices + c;
         memcpy(mesh->positions + 3 * v,
-               from->points + 3 * (size_t)from->corners[3 * from->own + c], 3 * sizeof(float));
-        mesh->triangles[3 * left->own + c] = (uint32_t)v;
+               from->points + 3 * (size_t)from->corners[3 * from->interior_count + c],
+               3 * sizeof(float));
+        mesh->triangles[3 * left->interior_count + c] = (uint32_t)v;
     }
     return CW_OK;
 }
@@ -220,28 +221,29 @@ static cw_status add_obstacles(const cwi_block_part *x, cw_mesh *mesh, cw_error 
 static cw_status begin_at_result(const cwi_passes *p, const cwi_block_part *x, uint32_t *begin,
                                  cw_error *err)
 {
-    uint32_t *place = cwi_alloc_zeroed(p->input.vertex_count, sizeof *place);
-    if (!place)
+    uint32_t *nearest_triangle =
+        cwi_alloc_zeroed(p->input.vertex_count, sizeof *nearest_triangle);
+    if (!nearest_triangle)
         return cwi_fail_memory(err);
-    for (size_t t = 0; t < x->left->own; t++)
-        for (uint32_t v = x->left->lists[t]; v != UINT32_MAX; v = p->next[v])
-            place[v] = (uint32_t)t + 1;
+    for (size_t t = 0; t < x->left->interior_count; t++)
+        for (uint32_t v = x->left->nearest_points[t]; v != UINT32_MAX; v = p->next[v])
+            nearest_triangle[v] = (uint32_t)t + 1;
     for (size_t t = 0; t < x->input.triangle_count; t++) {
         begin[t] = NOT_KNOWN;
         for (size_t k = 0; k < 3 && begin[t] == NOT_KNOWN; k++) {
             const uint32_t v = x->input.triangles[3 * t + k];
-            begin[t] = place[x->names ? x->names[v] : v] - 1;
+            begin[t] = nearest_triangle[x->global_ids ? x->global_ids[v] : v] - 1;
         }
     }
-    cwi_free(place);
+    cwi_free(nearest_triangle);
     return CW_OK;
 }
 
 /* Begins at a triangle of the input around a point that is listed. */
 static void begin_at_input(const cwi_passes *p, const cwi_mesh_block *left, uint32_t *begin)
 {
-    for (size_t t = 0; t < left->own; t++) {
-        const uint32_t v = left->lists[t];
+    for (size_t t = 0; t < left->interior_count; t++) {
+        const uint32_t v = left->nearest_points[t];
         begin[t] = v != UINT32_MAX ? p->around[p->first[v]] : NOT_KNOWN;
     }
 }
@@ -270,7 +272,7 @@ static cw_status prove_input(const cwi_passes *p, const cwi_block_part *x, uint8
     cw_mesh all = {0};
     uint32_t *begin = cwi_alloc_array(x->input.triangle_count, sizeof *begin);
     uint32_t *first = cwi_alloc_array(left->vertices + 2, sizeof *first);
-    uint32_t *around = cwi_alloc_array(3 * left->own, sizeof *around);
+    uint32_t *around = cwi_alloc_array(3 * left->interior_count, sizeof *around);
     const cwi_fans fans = {left->points, left->corners, first, around};
     cw_status st =
         begin && first && around ? add_obstacles(x, &all, err) : cwi_fail_memory(err);
@@ -279,7 +281,7 @@ static cw_status prove_input(const cwi_passes *p, const cwi_block_part *x, uint8
     if (st == CW_OK)
         st = begin_as_neighbours(&x->input, begin, err);
     if (st == CW_OK) {
-        cwi_fans_sort(left->corners, left->own, left->vertices, first, around);
+        cwi_fans_sort(left->corners, left->interior_count, left->vertices, first, around);
         st = find_beyond(p, &x->input, &fans, begin, &all, x->threads, beyond, err);
     }
     cw_mesh_free(&all);

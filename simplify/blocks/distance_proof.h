@@ -7,8 +7,8 @@
 /* A part of the input and what became of it. */
 typedef struct cwi_block_part {
     const cwi_mesh_block *from;
-    cw_mesh input;         /* a view of it */
-    const uint32_t *names; /* of its vertices in all of the input; NULL: their numbers */
+    cw_mesh input;              /* a view of it */
+    const uint32_t *global_ids; /* of its vertices in all of the input; NULL: their numbers */
     cwi_mesh_block *left;
     float cost; /* how far it went */
     size_t target;

@@ -24,7 +24,7 @@ void cwi_block_number(cwi_mesh_block *block);
 CW_NODISCARD cw_status cwi_block_obstruct(cwi_mesh_block *block, const float *points,
                                           size_t count, cw_error *err);
 
-/* Shares the triangles of a block out to blocks of about `most` at the most: boxes that fill
+/* Shares the triangles of a block out to blocks of about `max_triangles` at the most: boxes that fill
  * space, divided where a share of the triangles is below. Triangles that do not lie in
  * one box are held: they stay in one block, and are in the way in the others that they reach.
  * What moves inside one box then never meets what moves inside another.
@@ -33,13 +33,14 @@ CW_NODISCARD cw_status cwi_block_obstruct(cwi_mesh_block *block, const float *po
  * share      of a box's triangles, about a half: with others of it places are others
  * out        *count blocks; free each, and the array with cwi_free()
  * Returns    CW_ERR_NO_MEMORY */
-CW_NODISCARD cw_status cwi_blocks_cut(const cwi_mesh_block *whole, size_t most, double share,
-                                      cwi_mesh_block **out, size_t *count, cw_error *err);
+CW_NODISCARD cw_status cwi_blocks_cut(const cwi_mesh_block *whole, size_t max_triangles,
+                                      double cut_fraction, cwi_mesh_block **out, size_t *count,
+                                      cw_error *err);
 
 /* The blocks' own triangles as one block; held vertices of the same name become one, whose
  * quadric is the sum. `seam` is what was held.
- * names    are below this */
-CW_NODISCARD cw_status cwi_blocks_join(const cwi_mesh_block *blocks, size_t count, size_t names,
-                                       cwi_mesh_block *whole, cw_error *err);
+ * id_count  global ids are below it */
+CW_NODISCARD cw_status cwi_blocks_join(const cwi_mesh_block *blocks, size_t count,
+                                       size_t id_count, cwi_mesh_block *whole, cw_error *err);
 
 #endif

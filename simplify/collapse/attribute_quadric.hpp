@@ -15,20 +15,20 @@ namespace cw
 // with the attributes of the vertex at their best. Areas that become one are put together as
 // samples are [Chan1979]: what their means differ by is added to the quadric, so that it only
 // grows.
-class Trends
+class AttributeGradients
 {
 public:
-    explicit Trends(const cwi_mesh_block &block)
+    explicit AttributeGradients(const cwi_mesh_block &block)
         : count(block.attributes), areas(count ? block.vertices : 0),
           all(count * block.vertices)
     {
-        if (!block.trends || !count)
+        if (!block.gradients || !count)
             return;
         std::copy_n(block.areas, areas.size(), areas.begin());
-        std::copy_n(block.trends, all.size(), all.begin());
+        std::copy_n(block.gradients, all.size(), all.begin());
     }
 
-    bool is_asked() const
+    bool is_requested() const
     {
         return count > 0;
     }
@@ -43,7 +43,7 @@ public:
         return areas[vertex];
     }
 
-    const cwi_trend *of(size_t vertex) const
+    const cwi_attribute_gradient *of(size_t vertex) const
     {
         return &all[vertex * count];
     }
@@ -54,54 +54,55 @@ public:
                   Quadric &&quadric_of)
     {
         const Vec normal = ab % ac, to_b = ac % normal, to_c = normal % ab;
-        const float square = normal.sqrnorm(),
+        const float normal_sq = normal.sqrnorm(),
                     longest =
                         std::max(ab.sqrnorm(), std::max(ac.sqrnorm(), (ac - ab).sqrnorm()));
-        if (!(square > 1e-7f * longest * longest))
+        if (!(normal_sq > 1e-7f * longest * longest))
             return;
         for (size_t k = 0; k < count; k++) {
             const float a = values[corner[0] * count + k];
             const Vec slope = ((values[corner[1] * count + k] - a) * to_b +
                                (values[corner[2] * count + k] - a) * to_c) /
-                              square;
+                              normal_sq;
             std::copy_n(slope.data(), 3, joined[k].slope);
         }
         for (size_t i = 0; i < 3; i++) {
             for (size_t k = 0; k < count; k++)
                 joined[k].value = values[corner[i] * count + k];
-            cwi_trends_join(&quadric_of(corner[i]), &areas[corner[i]], &all[corner[i] * count],
-                            0.5f * std::sqrt(square), joined, count);
+            cwi_attribute_gradients_join(&quadric_of(corner[i]), &areas[corner[i]],
+                                         &all[corner[i] * count], 0.5f * std::sqrt(normal_sq),
+                                         joined, count);
         }
     }
 
     // Those of two vertices, about the first; the quadric gets what they differ by.
-    void join(size_t at, size_t other, const Vec &way, cwi_quadric &quadric)
+    void join(size_t at, size_t other, const Vec &displacement, cwi_quadric &quadric)
     {
         joined_area = areas[other];
         std::copy_n(of(other), count, joined);
-        move(-way);
-        cwi_trends_join(&quadric, &joined_area, joined, areas[at], of(at), count);
+        move(-displacement);
+        cwi_attribute_gradients_join(&quadric, &joined_area, joined, areas[at], of(at), count);
     }
 
-    // A vertex, `way` from where they were joined, has what was joined.
-    void put(size_t vertex, const Vec &way)
+    // A vertex, `displacement` from where they were joined, has what was joined.
+    void put(size_t vertex, const Vec &displacement)
     {
-        move(way);
+        move(displacement);
         areas[vertex] = joined_area;
         std::copy_n(joined, count, &all[vertex * count]);
     }
 
 private:
-    void move(const Vec &way)
+    void move(const Vec &displacement)
     {
         for (size_t k = 0; k < count; k++)
-            joined[k].value += Vec(joined[k].slope) | way;
+            joined[k].value += Vec(joined[k].slope) | displacement;
     }
 
     size_t count;
     std::vector<float> areas;
-    std::vector<cwi_trend> all; // vertices x count
-    cwi_trend joined[CWI_MAX_ATTRIBUTES];
+    std::vector<cwi_attribute_gradient> all; // vertices x count
+    cwi_attribute_gradient joined[CWI_MAX_ATTRIBUTES];
     float joined_area = 0;
 };
 

@@ -26,9 +26,9 @@ float length(const Vec &v)
 
 // On which side of a plane a point certainly is: 1, -1; 0 when that takes exact arithmetic. The
 // normal is a product of vectors whose lengths have the product `scale`.
-int clear_side(const Vec &normal, float scale, const Vec &way)
+int clear_side(const Vec &normal, float scale, const Vec &displacement)
 {
-    const float height = normal | way, doubt = 2e-6f * scale * length(way);
+    const float height = normal | displacement, doubt = 2e-6f * scale * length(displacement);
     return height > doubt ? 1 : height < -doubt ? -1 : 0;
 }
 
@@ -48,7 +48,7 @@ void add_spokes(const Surface &surface, VertexHandle center, VertexHandle other,
             continue;
         const Vec pa = surface.point(a), pb = surface.point(b), side = pb - pa;
         star.spokes.push_back({uint32_t(f.idx()), uint32_t(a.idx()), uint32_t(b.idx()), pa, pb,
-                               (pa - old) % side, (pa - star.place) % side});
+                               (pa - old) % side, (pa - star.position) % side});
     }
 }
 
@@ -60,7 +60,7 @@ bool Star::gather(const Surface &surface, HalfedgeHandle collapsed, const Vec &t
                        v = surface.to_vertex_handle(collapsed);
     const HalfedgeHandle back = surface.opposite_halfedge_handle(collapsed);
     vertex = uint32_t(v.idx());
-    place = to;
+    position = to;
     old[0] = surface.point(u);
     old[1] = surface.point(v);
     closed = true;
@@ -77,18 +77,18 @@ bool Star::gather(const Surface &surface, HalfedgeHandle collapsed, const Vec &t
 Box Star::box(const Spoke &spoke) const
 {
     Box box;
-    box.add(place);
+    box.add(position);
     box.add(spoke.pa);
     box.add(spoke.pb);
     return box;
 }
 
-bool Shape::is_inside(const Vec &place) const
+bool Shape::is_inside(const Vec &position) const
 {
     for (unsigned k = 0; k < 3; k++)
-        if (!(place[k] >= low[k] && place[k] < high[k]))
+        if (!(position[k] >= low[k] && position[k] < high[k]))
             return false;
-    const float height = place | along;
+    const float height = position | along;
     return height >= from && height <= to;
 }
 
@@ -100,8 +100,8 @@ bool Shape::is_kept(const Star &star) const
         if (!(turn > 0) || turn * turn < 0.04f * now * before)
             return false;
         const float longest =
-            std::max((s.pb - s.pa).sqrnorm(),
-                     std::max((s.pa - star.place).sqrnorm(), (s.pb - star.place).sqrnorm()));
+            std::max((s.pb - s.pa).sqrnorm(), std::max((s.pa - star.position).sqrnorm(),
+                                                       (s.pb - star.position).sqrnorm()));
         if (now < 1e-7f * longest * longest)
             return false;
     }
@@ -111,7 +111,7 @@ bool Shape::is_kept(const Star &star) const
 // --- Contact -------------------------------------------------------------------------------
 
 Contact::Contact(const cwi_mesh_block &block, const Surface &surface)
-    : own(block.own), live(block.triangles),
+    : interior_count(block.interior_count), live(block.triangles),
       corners(block.corners, block.corners + 3 * block.triangles), marks(block.triangles)
 {
 #ifdef __x86_64__
@@ -127,7 +127,7 @@ void Contact::build(const Surface &surface)
     faces.reserve(live);
     all.reserve(live);
     for (uint32_t f = 0; f < marks.size(); f++) {
-        if (f < own && surface.status(FaceHandle(int(f))).deleted())
+        if (f < interior_count && surface.status(FaceHandle(int(f))).deleted())
             continue;
         Box box;
         for (size_t k = 0; k < 3; k++)
@@ -154,13 +154,13 @@ bool has(const Corners &t, uint32_t id)
 
 // The side of a plane that all corners are on but those shared with the other triangle.
 int common_side(const Corners &t, const Corners &other, const Vec &normal, float scale,
-                const Vec &place)
+                const Vec &position)
 {
     int above = 0, below = 0, all = 0;
     for (int k = 0; k < 3; k++) {
         if (has(other, t.id[k]))
             continue;
-        const int side = clear_side(normal, scale, t.at[k] - place);
+        const int side = clear_side(normal, scale, t.at[k] - position);
         above += side > 0;
         below += side < 0;
         all++;
@@ -187,8 +187,8 @@ bool is_apart(const Corners &t, const Corners &other)
 
 void put(Eight &eight, size_t lane, const Star &star, const Spoke &s)
 {
-    const Vec along = s.pb - s.pa, way = s.pa - star.place, out = along % s.normal;
-    const float scale = 2e-6f * length(way) * length(along);
+    const Vec along = s.pb - s.pa, from_center = s.pa - star.position, out = along % s.normal;
+    const float scale = 2e-6f * length(from_center) * length(along);
     cwi_boxes_put(&eight.boxes, lane, star.box(s).side);
     eight.a[lane] = s.a;
     eight.b[lane] = s.b;
@@ -197,9 +197,9 @@ void put(Eight &eight, size_t lane, const Star &star, const Spoke &s)
         eight.side[k][lane] = out[k];
     }
     eight.face_doubt[lane] = scale;
-    eight.side_height[lane] = out | way;
+    eight.side_height[lane] = out | from_center;
     eight.side_doubt[lane] = scale * length(along);
-    eight.reach[lane] = length(way);
+    eight.reach[lane] = length(from_center);
 }
 
 // Eight numbers at a time, said so.
@@ -261,10 +261,10 @@ inline __attribute__((always_inline)) bool Contact::meets(const Surface &surface
     for (size_t n = 0; n < spokes.size(); n++) {
         unsigned near = cwi_boxes_meeting(&spokes[n].boxes, box);
         if (near)
-            near &= candidates(spokes[n], other, star.place);
+            near &= candidates(spokes[n], other, star.position);
         for (; near; near &= near - 1) {
             const Spoke &s = star.spokes[8 * n + unsigned(__builtin_ctz(near))];
-            const Corners mine = {{star.vertex, s.a, s.b}, {star.place, s.pa, s.pb}};
+            const Corners mine = {{star.vertex, s.a, s.b}, {star.position, s.pa, s.pb}};
             if (!is_apart(other, mine) && !is_apart(mine, other) &&
                 cwi_triangles_meet(surface.points()->data(), mine.id, other.id))
                 return true;
@@ -283,10 +283,10 @@ bool Contact::opens_like_a_fan(const Star &star) const
     x = axis % (std::abs(axis[0]) < std::abs(axis[1]) ? Vec(1, 0, 0) : Vec(0, 1, 0));
     int rounds = 0;
     for (const Spoke &s : star.spokes) {
-        const float scale = length(s.pa - star.place) * length(s.pb - s.pa);
+        const float scale = length(s.pa - star.position) * length(s.pb - s.pa);
         if (clear_side(s.normal, scale, axis) <= 0)
             return false;
-        rounds += (x | (s.pa - star.place)) < 0 && (x | (s.pb - star.place)) >= 0;
+        rounds += (x | (s.pa - star.position)) < 0 && (x | (s.pb - star.position)) >= 0;
     }
     return rounds == 1 && star.closed;
 }
@@ -334,7 +334,7 @@ bool Contact::arises(Surface &surface, const Star &star)
     const VertexHandle moving(int(star.vertex));
     const Vec before = surface.point(moving);
     Box all;
-    all.add(star.place);
+    all.add(star.position);
     mark++;
     spokes.resize((star.spokes.size() + 7) / 8);
     cwi_boxes_clear(&spokes.back().boxes);
@@ -347,7 +347,7 @@ bool Contact::arises(Surface &surface, const Star &star)
     }
     for (uint32_t f : star.gone)
         marks[f] = mark;
-    surface.set_point(moving, star.place);
+    surface.set_point(moving, star.position);
     const bool found = (!opens_like_a_fan(star) && star_meets_itself(surface, star)) ||
                        find_others(surface, star, all);
     surface.set_point(moving, before);

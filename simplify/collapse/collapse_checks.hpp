@@ -27,7 +27,7 @@ struct Star {
     Box box(const Spoke &spoke) const;
 
     uint32_t vertex; // that stays
-    Vec place;
+    Vec position;
     Vec old[2];  // places of both ends of the edge
     bool closed; // the triangles go all the way round
     std::vector<Spoke> spokes;
@@ -44,7 +44,7 @@ public:
     {
     }
 
-    bool is_inside(const Vec &place) const;
+    bool is_inside(const Vec &position) const;
     bool is_kept(const Star &star) const;
 
 private:
@@ -81,7 +81,7 @@ private:
     bool star_meets_itself(const Surface &surface, const Star &star) const;
     bool opens_like_a_fan(const Star &star) const;
 
-    size_t own, live, built;
+    size_t interior_count, live, built;
     std::vector<uint32_t> corners; // of triangles, x 3: faster than a walk
     std::unique_ptr<Nearby> nearby;
     std::vector<uint32_t> marks; // faces of the star have the last number

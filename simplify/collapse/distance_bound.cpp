@@ -46,19 +46,19 @@ struct Passage {
 double find_passed(void *context, const double p[3], const float *facet[3])
 {
     Passage *passage = static_cast<Passage *>(context);
-    const double square = cwi_walk_to(&passage->walk, p);
+    const double distance_sq = cwi_walk_to(&passage->walk, p);
     cwi_walk_facet(&passage->walk, passage->walk.at, facet);
     passage->passed.push_back(passage->walk.at);
-    return square;
+    return distance_sq;
 }
 
 } // namespace
 
 // Makes room for at most `most` numbers, of which half stays empty.
-void Numbers::clear(size_t most)
+void Numbers::clear(size_t max_count)
 {
     size_t size = 64;
-    while (size < 2 * most)
+    while (size < 2 * max_count)
         size *= 2;
     slots.assign(size, {UINT32_MAX, 0});
     count = 0;
@@ -79,11 +79,11 @@ uint32_t Numbers::of(uint32_t vertex, bool *fresh)
 Bound::Bound(const cwi_mesh_block &block, const cwi_original *original_, double error_)
     : original(original_), error(float(error_)), overlay(original_)
 {
-    if (!original || !block.lists)
+    if (!original || !block.nearest_points)
         return;
-    asked = true;
-    heads.assign(block.lists, block.lists + block.own);
-    marks.resize(block.own);
+    requested = true;
+    heads.assign(block.nearest_points, block.nearest_points + block.interior_count);
+    marks.resize(block.interior_count);
 }
 
 void Bound::collect(uint32_t face)
@@ -105,14 +105,15 @@ void Bound::collect(const Star &star)
 // nothing tells where the original is.
 float Bound::allowed() const
 {
-    uint8_t care = points.empty() ? uint8_t(CWI_MAX_CARE) : 0;
-    float least = error;
+    uint8_t tighten_level = points.empty() ? uint8_t(CWI_MAX_TIGHTEN_LEVEL) : 0;
+    float min_distance = error;
     for (uint32_t p : points) {
-        care = std::max(care, original->care[p]);
+        tighten_level = std::max(tighten_level, original->tighten_level[p]);
         if (original->allowed)
-            least = std::min(least, original->allowed[p]);
+            min_distance = std::min(min_distance, original->allowed[p]);
     }
-    return care < CWI_MAX_CARE ? std::ldexp(least, -care) : -1;
+    return tighten_level < CWI_MAX_TIGHTEN_LEVEL ? std::ldexp(min_distance, -tighten_level)
+                                                 : -1;
 }
 
 // Whether what is seen of the star was about as even as one that is joined.
@@ -123,33 +124,33 @@ bool Bound::is_straight() const
         return true;
     for (uint32_t p : points)
         mean += Vec(original->normals + 3 * size_t(p));
-    const float least = original->straight * mean.norm();
+    const float min_cosine = original->min_normal_cosine * mean.norm();
     for (uint32_t p : points) {
         const Vec normal(original->normals + 3 * size_t(p));
-        if (normal.sqrnorm() > 0 && !((normal | mean) >= least))
+        if (normal.sqrnorm() > 0 && !((normal | mean) >= min_cosine))
             return false;
     }
     return true;
 }
 
 // From the triangles around the nearest point: a distance that is not too small.
-bool Bound::is_near(const Vec &place, float square)
+bool Bound::is_near(const Vec &position, float distance_sq)
 {
-    float least = INFINITY;
+    float nearest_sq = INFINITY;
     uint32_t start = points[0];
     for (uint32_t p : points) {
-        const float s = (point(p) - place).sqrnorm();
-        start = s < least ? p : start;
-        least = std::min(least, s);
+        const float s = (point(p) - position).sqrnorm();
+        start = s < nearest_sq ? p : start;
+        nearest_sq = std::min(nearest_sq, s);
     }
-    least = INFINITY;
+    nearest_sq = INFINITY;
     for (uint32_t i = original->fans.first[start]; i < original->fans.first[start + 1]; i++) {
         const uint32_t t = original->fans.around[i], *c = corners(t);
-        const float s = triangle_square(place, point(c[0]), point(c[1]), point(c[2]));
-        nearest = s < least ? t : nearest;
-        least = std::min(least, s);
+        const float s = triangle_square(position, point(c[0]), point(c[1]), point(c[2]));
+        nearest = s < nearest_sq ? t : nearest;
+        nearest_sq = std::min(nearest_sq, s);
     }
-    return least <= square;
+    return nearest_sq <= distance_sq;
 }
 
 // Whether every point is near a spoke.
@@ -158,11 +159,11 @@ bool Bound::are_listed(const Star &star, float distance)
     facets.clear(distance);
     spoke_of.clear();
     for (const Spoke &s : star.spokes)
-        facets.add(Vec(0), s.pa - star.place, s.pb - star.place);
+        facets.add(Vec(0), s.pa - star.position, s.pb - star.position);
     for (uint32_t p : points) {
-        float square;
-        spoke_of.push_back(uint32_t(facets.nearest(point(p) - star.place, &square)));
-        if (!(square <= distance * distance))
+        float distance_sq;
+        spoke_of.push_back(uint32_t(facets.nearest(point(p) - star.position, &distance_sq)));
+        if (!(distance_sq <= distance * distance))
             return false;
     }
     return true;
@@ -171,16 +172,16 @@ bool Bound::are_listed(const Star &star, float distance)
 // Whether the spokes are whose bits are set.
 bool Bound::is_star_near(const Star &star, uint32_t spokes, float distance)
 {
-    const double square = double(distance) * double(distance);
-    Passage passage = {{&original->fans, square, nearest}, {}};
-    cwi_cover cover = {find_passed, &passage, square, {}};
+    const double distance_sq = double(distance) * double(distance);
+    Passage passage = {{&original->fans, distance_sq, nearest}, {}};
+    cwi_cover cover = {find_passed, &passage, distance_sq, {}};
     for (size_t n = 0; n < star.spokes.size(); n++) {
         const Spoke &s = star.spokes[n];
         if (n < 32 && !(spokes >> n & 1))
             continue;
         double corner[3][3];
         for (unsigned k = 0; k < 3; k++) {
-            corner[0][k] = double(star.place[k]);
+            corner[0][k] = double(star.position[k]);
             corner[1][k] = double(s.pa[k]);
             corner[2][k] = double(s.pb[k]);
         }
@@ -211,27 +212,27 @@ void Bound::add_around(const Surface &surface, const Star &star)
                 Vec corner[3];
                 size_t n = 0;
                 for (auto c = surface.cfv_iter(*f); c.is_valid(); ++c)
-                    corner[n++] = surface.point(*c) - star.place;
+                    corner[n++] = surface.point(*c) - star.position;
                 facets.add(corner[0], corner[1], corner[2]);
             }
 }
 
-void Bound::see_points(const Vec &place)
+void Bound::see_points(const Vec &position)
 {
-    size_t most = 3 * under.size();
+    size_t max_numbers = 3 * under.size();
     bool fresh;
     for (uint32_t p : points)
-        most += 1 + 2 * (original->fans.first[p + 1] - original->fans.first[p]);
-    numbers.clear(most);
+        max_numbers += 1 + 2 * (original->fans.first[p + 1] - original->fans.first[p]);
+    numbers.clear(max_numbers);
     seen.clear();
     for (uint32_t p : points) {
         numbers.of(p, &fresh);
-        seen.push_back(facets.look(point(p) - place));
+        seen.push_back(facets.look(point(p) - position));
     }
 }
 
 // True, too, for a triangle with a point listed before the `first`: it was asked about then.
-bool Bound::is_triangle_near(uint32_t triangle, uint32_t first, const Vec &place)
+bool Bound::is_triangle_near(uint32_t triangle, uint32_t first, const Vec &position)
 {
     uint32_t n[3];
     for (int k = 0; k < 3; k++) {
@@ -239,7 +240,7 @@ bool Bound::is_triangle_near(uint32_t triangle, uint32_t first, const Vec &place
         const uint32_t p = corners(triangle)[k];
         n[k] = numbers.of(p, &fresh);
         if (fresh)
-            seen.push_back(facets.look(point(p) - place));
+            seen.push_back(facets.look(point(p) - position));
     }
     return n[0] < first || n[1] < first || n[2] < first ||
            facets.are_near(seen[n[0]], seen[n[1]], seen[n[2]]);
@@ -248,14 +249,14 @@ bool Bound::is_triangle_near(uint32_t triangle, uint32_t first, const Vec &place
 bool Bound::is_original_near(const Surface &surface, const Star &star)
 {
     add_around(surface, star);
-    see_points(star.place);
+    see_points(star.position);
     for (uint32_t n = 0; n < points.size(); n++)
         for (uint32_t i = original->fans.first[points[n]];
              i < original->fans.first[points[n] + 1]; i++)
-            if (!is_triangle_near(original->fans.around[i], n, star.place))
+            if (!is_triangle_near(original->fans.around[i], n, star.position))
                 return false;
     for (uint32_t t : under)
-        if (!is_triangle_near(t, uint32_t(points.size()), star.place))
+        if (!is_triangle_near(t, uint32_t(points.size()), star.position))
             return false;
     return true;
 }
@@ -268,7 +269,7 @@ bool Bound::are_doubts_near(const Surface &surface, const Star &star)
     seen.clear();
     for (const std::vector<uint32_t> *triangles : {&overlay.triangles_in_doubt, &under})
         for (uint32_t t : *triangles)
-            if (!is_triangle_near(t, 0, star.place))
+            if (!is_triangle_near(t, 0, star.position))
                 return false;
     return true;
 }
@@ -286,17 +287,17 @@ bool Bound::is_covered(const Surface &surface, const Star &star, float distance)
 // Runs the checks that refuse most for the least work first.
 bool Bound::is_kept(const Surface &surface, const Star &star)
 {
-    if (!is_asked())
+    if (!is_requested())
         return true;
     collect(star);
     const float distance = allowed();
-    return distance > 0 && is_straight() && is_near(star.place, distance * distance) &&
+    return distance > 0 && is_straight() && is_near(star.position, distance * distance) &&
            are_listed(star, distance) && is_covered(surface, star, distance);
 }
 
 void Bound::change(const Star &star)
 {
-    if (!is_asked())
+    if (!is_requested())
         return;
     for (uint32_t f : star.gone)
         heads[f] = UINT32_MAX;

@@ -12,7 +12,7 @@ namespace cw
 class Numbers
 {
 public:
-    void clear(size_t most);
+    void clear(size_t max_count);
 
     // *fresh: it had none yet.
     uint32_t of(uint32_t vertex, bool *fresh);
@@ -34,9 +34,9 @@ class Bound
 public:
     Bound(const cwi_mesh_block &block, const cwi_original *original, double error);
 
-    bool is_asked() const
+    bool is_requested() const
     {
-        return asked;
+        return requested;
     }
 
     uint32_t list(uint32_t face) const
@@ -62,19 +62,19 @@ private:
     void collect(const Star &star);
     float allowed() const;
     bool is_straight() const;
-    bool is_near(const Vec &place, float square);
+    bool is_near(const Vec &position, float distance_sq);
     bool are_listed(const Star &star, float distance);
     bool is_star_near(const Star &star, uint32_t spokes, float distance);
     void add_around(const Surface &surface, const Star &star);
-    void see_points(const Vec &place);
-    bool is_triangle_near(uint32_t triangle, uint32_t first, const Vec &place);
+    void see_points(const Vec &position);
+    bool is_triangle_near(uint32_t triangle, uint32_t first, const Vec &position);
     bool is_original_near(const Surface &surface, const Star &star);
     bool are_doubts_near(const Surface &surface, const Star &star);
     bool is_covered(const Surface &surface, const Star &star, float distance);
 
     const cwi_original *original;
     float error;
-    bool asked = false;                     // also of a block without triangles
+    bool requested = false;                 // also of a block without triangles
     std::vector<uint32_t> heads;            // first point of a face's list
     std::vector<uint32_t> points, spoke_of; // of the star; the nearest spoke
     Overlay overlay;

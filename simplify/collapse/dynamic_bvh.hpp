@@ -31,8 +31,9 @@ class Nearby
 {
 public:
     // Of some triangles; their numbers are below `most`.
-    Nearby(const std::vector<uint32_t> &triangles, const std::vector<Box> &boxes, size_t most)
-        : slots(most)
+    Nearby(const std::vector<uint32_t> &triangles, const std::vector<Box> &boxes,
+           size_t capacity)
+        : slots(capacity)
     {
         cw_error err;
         if (boxes.empty())

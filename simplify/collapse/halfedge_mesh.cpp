@@ -15,15 +15,16 @@ class Sides
 {
 public:
     explicit Sides(const cwi_mesh_block &block)
-        : corners(block.corners), count(3 * block.own), first(block.vertices + 1), order(count)
+        : corners(block.corners), count(3 * block.interior_count), first(block.vertices + 1),
+          order(count)
     {
         for (size_t s = 0; s < count; s++)
             first[corners[s] + 1]++;
         for (size_t v = 0; v < block.vertices; v++)
             first[v + 1] += first[v];
-        std::vector<uint32_t> place(first.begin(), first.end() - 1);
+        std::vector<uint32_t> next_slot(first.begin(), first.end() - 1);
         for (size_t s = 0; s < count; s++)
-            order[place[corners[s]]++] = uint32_t(s);
+            order[next_slot[corners[s]]++] = uint32_t(s);
     }
 
     uint32_t from(uint32_t side) const
@@ -63,7 +64,7 @@ private:
 std::vector<HalfedgeHandle> make_edges(const cwi_mesh_block &block, const Sides &sides,
                                        Surface &surface, std::vector<uint8_t> &cut)
 {
-    std::vector<HalfedgeHandle> halfedges(3 * block.own);
+    std::vector<HalfedgeHandle> halfedges(3 * block.interior_count);
     for (uint32_t s = 0; s < halfedges.size(); s++) {
         if (halfedges[s].is_valid())
             continue;
@@ -116,7 +117,8 @@ std::vector<uint8_t> connect(const cwi_mesh_block &block, Surface &surface)
 {
     const Sides sides(block);
     std::vector<uint8_t> cut(block.vertices);
-    surface.reserve(block.vertices, 3 * block.own, block.own); // pages not used cost nothing
+    surface.reserve(block.vertices, 3 * block.interior_count,
+                    block.interior_count); // pages not used cost nothing
     for (size_t v = 0; v < block.vertices; v++)
         surface.new_vertex(Vec(block.points + 3 * v));
     make_faces(make_edges(block, sides, surface, cut), surface);

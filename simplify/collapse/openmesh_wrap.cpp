@@ -28,7 +28,7 @@ struct alignas(64) Node {
     cwi_quadric quadric;
     Vec point;
     uint32_t changed; // when it last did
-    bool held, border;
+    bool locked, border;
     bool open; // edges at it may be collapsed where there is more room
 };
 
@@ -38,9 +38,9 @@ struct cwi_decimater {
     cwi_decimater(const cwi_mesh_block &block, const cwi_block_desc &desc,
                   const cwi_original *original)
         : taken(TRIANGLE_BYTES * block.triangles),
-          names(block.names, block.names + block.vertices), nodes(block.vertices),
-          trends(block), live(block.own), shape(block), shells(block),
-          bound(block, original, desc.error), progress(*desc.progress)
+          global_ids(block.global_ids, block.global_ids + block.vertices),
+          nodes(block.vertices), gradients(block), live(block.interior_count), shape(block),
+          shells(block), bound(block, original, desc.error), progress(*desc.progress)
     {
         poll();
         const std::vector<uint8_t> unsound = connect(block, surface);
@@ -50,22 +50,22 @@ struct cwi_decimater {
         for (size_t v = 0; v < block.vertices; v++) {
             poll_often();
             const VertexHandle handle{int(v)};
-            cut += unsound[v];
+            nonmanifold_count += unsound[v];
             nodes[v].point = surface.point(handle);
             nodes[v].border = surface.is_boundary(handle);
             nodes[v].open = !block.open || block.open[v];
-            nodes[v].held = unsound[v] || (block.held && block.held[v]) ||
-                            (desc.keep_border && nodes[v].border);
+            nodes[v].locked = unsound[v] || (block.locked && block.locked[v]) ||
+                              (desc.keep_border && nodes[v].border);
         }
         add_quadrics(block);
         fill_queue();
         for (Node &n : nodes)
-            n.open = n.held;
+            n.open = n.locked;
     }
 
-    void run(float most, size_t least_triangles)
+    void run(float max_cost, size_t min_triangles)
     {
-        while (!queue.empty() && Queue::cost(queue.top()) <= most && live > least_triangles) {
+        while (!queue.empty() && Queue::cost(queue.top()) <= max_cost && live > min_triangles) {
             poll_often();
             const uint32_t e = Queue::edge(queue.top());
             if (surface.status(EdgeHandle(int(e))).deleted()) {
@@ -90,10 +90,10 @@ struct cwi_decimater {
 
     Taken taken;
     Surface surface;
-    std::vector<uint32_t> names;
+    std::vector<uint32_t> global_ids;
     std::vector<Node> nodes;
-    Trends trends;
-    size_t cut = 0;
+    AttributeGradients gradients;
+    size_t nonmanifold_count = 0;
     Queue queue;
     std::vector<uint32_t> looked_at; // edges: when their cost was
     std::vector<bool> waiting;       // edges that are in the queue
@@ -126,7 +126,7 @@ private:
     struct Proposal {
         HalfedgeHandle halfedge; // from the vertex that goes to the one that stays
         cwi_quadric quadric;     // about where the halfedge starts
-        Vec place;
+        Vec position;
         float cost;
         uint32_t changed; // the later of the two vertices
     };
@@ -145,8 +145,9 @@ private:
     // finest, count for more, and the root mean square falls. Trends are over areas.
     float weight_of(float area) const
     {
-        return trends.is_asked() ? area
-                                 : std::sqrt(area) * std::sqrt(std::sqrt(std::sqrt(area)));
+        return gradients.is_requested()
+                   ? area
+                   : std::sqrt(area) * std::sqrt(std::sqrt(std::sqrt(area)));
     }
 
     void add_face(FaceHandle f, const float *values)
@@ -162,9 +163,9 @@ private:
             normal /= length;
         for (size_t v : corner)
             add_plane(nodes[v].quadric, normal, weight_of(length / 2));
-        if (trends.is_asked())
-            trends.add_face(corner, ab, ac, values,
-                            [&](size_t v) -> cwi_quadric & { return nodes[v].quadric; });
+        if (gradients.is_requested())
+            gradients.add_face(corner, ab, ac, values,
+                               [&](size_t v) -> cwi_quadric & { return nodes[v].quadric; });
     }
 
     // The plane through an edge of the border, square to its triangle.
@@ -203,9 +204,9 @@ private:
                 continue;
             const auto a = size_t(surface.from_vertex_handle(h).idx()),
                        b = size_t(surface.to_vertex_handle(h).idx());
-            const bool both_held = block.held && block.held[a] && block.held[b],
+            const bool both_locked = block.locked && block.locked[a] && block.locked[b],
                        unknown = block.seam ? block.seam[a] && block.seam[b] : true;
-            if (unknown && !both_held)
+            if (unknown && !both_locked)
                 add_border(h);
         }
     }
@@ -221,7 +222,7 @@ private:
             const HalfedgeHandle h = surface.halfedge_handle(EdgeHandle(int(e)), 0);
             const Node &u = node(surface.from_vertex_handle(h)),
                        &v = node(surface.to_vertex_handle(h));
-            if (u.held || v.held || !(u.open || v.open))
+            if (u.locked || v.locked || !(u.open || v.open))
                 continue;
             queue.append(Queue::entry(propose(EdgeHandle(int(e))).cost, e));
             waiting[e] = true;
@@ -236,32 +237,33 @@ private:
         p.halfedge = surface.halfedge_handle(e, 0);
         const Node &u = node(surface.from_vertex_handle(p.halfedge)),
                    &v = node(surface.to_vertex_handle(p.halfedge));
-        const Vec way = v.point - u.point;
-        p.quadric = moved(v.quadric, -way);
+        const Vec displacement = v.point - u.point;
+        p.quadric = moved(v.quadric, -displacement);
         cwi_quadric_add(&p.quadric, &u.quadric);
-        if (trends.is_asked())
-            join_trends(p.halfedge, p.quadric);
-        const Vec d = u.border == v.border ? least(p.quadric, 0.5f * way)
+        if (gradients.is_requested())
+            join_gradients(p.halfedge, p.quadric);
+        const Vec d = u.border == v.border ? minimizer(p.quadric, 0.5f * displacement)
                       : u.border           ? Vec(0)
-                                           : way;
-        p.place = u.point + d;
-        p.cost = error_at(p.quadric, d) + 1e-5f * trace(p.quadric) * way.sqrnorm();
+                                           : displacement;
+        p.position = u.point + d;
+        p.cost = error_at(p.quadric, d) + 1e-5f * trace(p.quadric) * displacement.sqrnorm();
         p.changed = std::max(u.changed, v.changed);
         return p;
     }
 
-    void join_trends(HalfedgeHandle h, cwi_quadric &quadric)
+    void join_gradients(HalfedgeHandle h, cwi_quadric &quadric)
     {
         const VertexHandle u = surface.from_vertex_handle(h), v = surface.to_vertex_handle(h);
-        trends.join(size_t(u.idx()), size_t(v.idx()), node(v).point - node(u).point, quadric);
+        gradients.join(size_t(u.idx()), size_t(v.idx()), node(v).point - node(u).point,
+                       quadric);
     }
 
-    void keep_trends(const Proposal &p)
+    void store_gradients(const Proposal &p)
     {
         cwi_quadric known = p.quadric;
-        join_trends(p.halfedge, known);
-        trends.put(size_t(surface.to_vertex_handle(p.halfedge).idx()),
-                   p.place - node(surface.from_vertex_handle(p.halfedge)).point);
+        join_gradients(p.halfedge, known);
+        gradients.put(size_t(surface.to_vertex_handle(p.halfedge).idx()),
+                      p.position - node(surface.from_vertex_handle(p.halfedge)).point);
     }
 
     void try_to_collapse(const Proposal &p)
@@ -269,25 +271,25 @@ private:
         const VertexHandle kept = surface.to_vertex_handle(p.halfedge);
         const Node &gone = node(surface.from_vertex_handle(p.halfedge));
         Node &stays = node(kept);
-        if (!shape.is_inside(p.place)) {
+        if (!shape.is_inside(p.position)) {
             stays.open = true;
             return;
         }
-        if (!surface.is_collapse_ok(p.halfedge) || !star.gather(surface, p.halfedge, p.place) ||
-            !shape.is_kept(star) || shells.turns(surface, star, &stays.open) ||
-            !bound.is_kept(surface, star) || shells.sweeps(surface, star) ||
-            (contact && contact->arises(surface, star)))
+        if (!surface.is_collapse_ok(p.halfedge) ||
+            !star.gather(surface, p.halfedge, p.position) || !shape.is_kept(star) ||
+            shells.turns(surface, star, &stays.open) || !bound.is_kept(surface, star) ||
+            shells.sweeps(surface, star) || (contact && contact->arises(surface, star)))
             return;
         bound.change(star);
         shells.change(star);
-        if (trends.is_asked())
-            keep_trends(p);
-        surface.set_point(kept, p.place);
+        if (gradients.is_requested())
+            store_gradients(p);
+        surface.set_point(kept, p.position);
         surface.collapse(p.halfedge);
         if (contact)
             contact->change(surface, star);
-        stays.quadric = moved(p.quadric, p.place - gone.point);
-        stays.point = p.place;
+        stays.quadric = moved(p.quadric, p.position - gone.point);
+        stays.point = p.position;
         stays.border |= gone.border;
         stays.open |= gone.open;
         stays.changed = ++tick;
@@ -304,7 +306,7 @@ private:
         const VertexHandle other = surface.to_vertex_handle(h) == kept
                                        ? surface.from_vertex_handle(h)
                                        : surface.to_vertex_handle(h);
-        if (waiting[i] || node(other).held)
+        if (waiting[i] || node(other).locked)
             return;
         waiting[i] = true;
         queue.push(Queue::entry(cost, uint32_t(i)));
@@ -323,10 +325,10 @@ cw_status open(const cwi_mesh_block *block, const cwi_block_desc *desc,
     });
 }
 
-cw_status run(cwi_decimater *decimater, float cost, size_t least, cw_error *err)
+cw_status run(cwi_decimater *decimater, float cost, size_t min_triangles, cw_error *err)
 {
     return guard(err, "OpenMesh", [&] {
-        decimater->run(cost, least);
+        decimater->run(cost, min_triangles);
         return CW_OK;
     });
 }
@@ -354,17 +356,18 @@ template <typename T> T *array(size_t count)
     return memory;
 }
 
-void take_trends(const cwi_decimater &d, cwi_mesh_block &out,
-                 const std::vector<uint32_t> &numbers)
+void copy_gradients(const cwi_decimater &d, cwi_mesh_block &out,
+                    const std::vector<uint32_t> &numbers)
 {
-    out.attributes = d.trends.size();
+    out.attributes = d.gradients.size();
     out.areas = array<float>(out.vertices);
-    out.trends = array<cwi_trend>(out.attributes * out.vertices);
+    out.gradients = array<cwi_attribute_gradient>(out.attributes * out.vertices);
     for (size_t v = 0; v < numbers.size(); v++) {
         if (numbers[v] == UINT32_MAX)
             continue;
-        out.areas[numbers[v]] = d.trends.area(v);
-        std::copy_n(d.trends.of(v), out.attributes, out.trends + out.attributes * numbers[v]);
+        out.areas[numbers[v]] = d.gradients.area(v);
+        std::copy_n(d.gradients.of(v), out.attributes,
+                    out.gradients + out.attributes * numbers[v]);
     }
 }
 
@@ -376,8 +379,8 @@ void take_vertices(const cwi_decimater &d, cwi_mesh_block &out, std::vector<uint
         if (!v.deleted() && v.halfedge().is_valid())
             numbers[size_t(v.idx())] = uint32_t(out.vertices++);
     out.points = array<float>(3 * out.vertices);
-    out.names = array<uint32_t>(out.vertices);
-    out.held = array<uint8_t>(out.vertices);
+    out.global_ids = array<uint32_t>(out.vertices);
+    out.locked = array<uint8_t>(out.vertices);
     out.open = array<uint8_t>(out.vertices);
     out.quadrics = array<cwi_quadric>(out.vertices);
     for (size_t v = 0; v < numbers.size(); v++) {
@@ -386,38 +389,38 @@ void take_vertices(const cwi_decimater &d, cwi_mesh_block &out, std::vector<uint
             continue;
         for (unsigned k = 0; k < 3; k++)
             out.points[3 * n + k] = d.surface.point(VertexHandle(int(v)))[k];
-        out.names[n] = d.names[v];
-        out.held[n] = d.nodes[v].held;
+        out.global_ids[n] = d.global_ids[v];
+        out.locked[n] = d.nodes[v].locked;
         out.open[n] = d.nodes[v].open;
         out.quadrics[n] = d.nodes[v].quadric;
     }
-    if (d.trends.is_asked())
-        take_trends(d, out, numbers);
+    if (d.gradients.is_requested())
+        copy_gradients(d, out, numbers);
 }
 
 void take_triangles(const cwi_decimater &d, cwi_mesh_block &out,
                     const std::vector<uint32_t> &numbers)
 {
     out.corners = array<uint32_t>(3 * d.live);
-    if (d.bound.is_asked())
-        out.lists = array<uint32_t>(d.live);
+    if (d.bound.is_requested())
+        out.nearest_points = array<uint32_t>(d.live);
     for (const auto f : d.surface.faces()) {
         if (f.deleted())
             continue;
         uint32_t *corner = out.corners + 3 * out.triangles;
         for (const auto v : f.vertices())
             *corner++ = numbers[size_t(v.idx())];
-        if (out.lists)
-            out.lists[out.triangles] = d.bound.list(uint32_t(f.idx()));
+        if (out.nearest_points)
+            out.nearest_points[out.triangles] = d.bound.list(uint32_t(f.idx()));
         out.triangles++;
     }
-    out.own = out.triangles;
+    out.interior_count = out.triangles;
 }
 
 cw_status take(const cwi_decimater *decimater, cwi_mesh_block *out, cw_error *err)
 {
     *out = cwi_mesh_block{};
-    out->cut = decimater->cut;
+    out->nonmanifold_count = decimater->nonmanifold_count;
     return guard(err, "OpenMesh", [&] {
         std::vector<uint32_t> numbers;
         take_vertices(*decimater, *out, numbers);

@@ -30,21 +30,23 @@ static inline void cwi_quadric_add(cwi_quadric *q, const cwi_quadric *other)
 }
 
 /* An attribute about a vertex's own position: at d it is d slope + value. */
-typedef struct cwi_trend {
+typedef struct cwi_attribute_gradient {
     float slope[3], value;
-} cwi_trend;
+} cwi_attribute_gradient;
 
 enum { CWI_MAX_ATTRIBUTES = 8 };
 
 /* The mean over an area of `count` trends, and those of another area about the same place,
  * become the mean over both; the quadric gets what they differ by, squared and times area. */
-static inline void cwi_trends_join(cwi_quadric *q, float *area, cwi_trend *mean,
-                                   float other_area, const cwi_trend *other, size_t count)
+static inline void cwi_attribute_gradients_join(cwi_quadric *q, float *area,
+                                                cwi_attribute_gradient *mean, float other_area,
+                                                const cwi_attribute_gradient *other,
+                                                size_t count)
 {
     static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     if (!(other_area > 0))
         return;
-    const float share = other_area / (*area + other_area), weight = share * *area;
+    const float fraction = other_area / (*area + other_area), weight = fraction * *area;
     for (size_t n = 0; n < count; n++) {
         const float value = other[n].value - mean[n].value;
         float slope[3];
@@ -56,14 +58,14 @@ static inline void cwi_trends_join(cwi_quadric *q, float *area, cwi_trend *mean,
             q->b[k] += weight * slope[k] * value;
         q->c += weight * value * value;
         for (int k = 0; k < 3; k++)
-            mean[n].slope[k] += share * slope[k];
-        mean[n].value += share * value;
+            mean[n].slope[k] += fraction * slope[k];
+        mean[n].value += fraction * value;
     }
     *area += other_area;
 }
 
-/* Around points that are given so much care nothing is changed. */
-enum { CWI_MAX_CARE = 4 };
+/* Around points of this tighten level nothing is changed. */
+enum { CWI_MAX_TIGHTEN_LEVEL = 4 };
 
 /* Surface before it was simplified, which the result must stay near: each of its points belongs
  * to the list of a triangle that it is near to. */
@@ -71,21 +73,21 @@ typedef struct cwi_original {
     size_t vertices;
     cwi_fans fans;
     const uint32_t
-        *across;          /* 2 for each of fans.around: the triangle's other corners in order */
-    uint32_t *next;       /* vertices: the next point in a list; UINT32_MAX ends it */
-    const uint8_t *care;  /* vertices: how often the distance is halved around them */
-    const float *allowed; /* vertices: the distance there; NULL: the block's everywhere */
-    const float *normals; /* vertices x 3: 0 where the next does not matter; or NULL */
-    float straight;       /* cosine: how far they are from the mean of those joined */
+        *across;    /* 2 for each of fans.around: the triangle's other corners in order */
+    uint32_t *next; /* vertices: the next point in a list; UINT32_MAX ends it */
+    const uint8_t *tighten_level; /* vertices: how often the distance is halved around them */
+    const float *allowed;    /* vertices: the distance there; NULL: the block's everywhere */
+    const float *normals;    /* vertices x 3: 0 where the next does not matter; or NULL */
+    float min_normal_cosine; /* cosine: how far they are from the mean of those joined */
 } cwi_original;
 
 typedef struct cwi_mesh_block {
     size_t vertices, triangles;
-    size_t own;            /* triangles; those behind them are in the way, and stay */
+    size_t interior_count; /* triangles; those behind them are in the way, and stay */
     float *points;         /* vertices x 3 */
     uint32_t *corners;     /* triangles x 3 */
-    uint32_t *names;       /* vertices: they keep them; of those that are joined, the same */
-    uint8_t *held;         /* vertices: must stay, with all edges to them. NULL: none */
+    uint32_t *global_ids;  /* vertices: they keep them; of those that are joined, the same */
+    uint8_t *locked;       /* vertices: must stay, with all edges to them. NULL: none */
     uint8_t *seam;         /* vertices: were held before, when borders between two of them were
                               not counted. NULL: none */
     uint8_t *open;         /* vertices: edges at them are to be tried; the others were tried
@@ -94,9 +96,10 @@ typedef struct cwi_mesh_block {
     size_t attributes;     /* that count; 0: the next three are NULL */
     float *values;         /* vertices x attributes; NULL where there are trends */
     float *areas;          /* vertices: of the triangles whose mean the trends are */
-    cwi_trend *trends;     /* vertices x attributes; NULL: from the triangles */
-    uint32_t *lists;       /* own: first point of a list; NULL without an original */
-    size_t cut; /* vertices that were no single fan, or at an edge of more than two */
+    cwi_attribute_gradient *gradients; /* vertices x attributes; NULL: from the triangles */
+    uint32_t *nearest_points; /* own: first point of a list; NULL without an original */
+    size_t
+        nonmanifold_count; /* vertices that were no single fan, or at an edge of more than two */
     float low[3], high[3];    /* vertices are moved to low <= x < high only */
     float along[3], from, to; /* and to from <= along . x <= to */
 } cwi_mesh_block;
@@ -114,8 +117,8 @@ typedef struct cwi_openmesh_functions {
     cw_status (*open)(const cwi_mesh_block *block, const cwi_block_desc *desc,
                       const cwi_original *original, cwi_decimater **out, cw_error *err);
     /* Collapses edges in order of their cost, while it is at most `cost`, and there are more
-     * than `least` triangles. */
-    cw_status (*run)(cwi_decimater *decimater, float cost, size_t least, cw_error *err);
+     * than `min_triangles` triangles. */
+    cw_status (*run)(cwi_decimater *decimater, float cost, size_t min_triangles, cw_error *err);
     /* Triangles of the block's own that are left. */
     size_t (*triangles)(const cwi_decimater *decimater);
     /* The cost of the next collapse to try; infinite when there is none. */

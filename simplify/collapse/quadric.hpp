@@ -43,19 +43,19 @@ inline void add_plane(cwi_quadric &q, const Vec &normal, float weight)
     q.a[5] += n[2] * normal[2];
 }
 
-// The same quadric about a place that is `way` from the old one.
-inline cwi_quadric moved(const cwi_quadric &q, const Vec &way)
+// The same quadric about a place that is `displacement` from the old one.
+inline cwi_quadric moved(const cwi_quadric &q, const Vec &displacement)
 {
-    const Vec ad = times(q, way);
+    const Vec ad = times(q, displacement);
     cwi_quadric r = q;
     for (int k = 0; k < 3; k++)
         r.b[k] += ad[k];
-    r.c = error_at(q, way);
+    r.c = error_at(q, displacement);
     return r;
 }
 
 // Where the error is least, with a slight pull towards a place, so that there is always one.
-inline Vec least(const cwi_quadric &q, const Vec &towards)
+inline Vec minimizer(const cwi_quadric &q, const Vec &towards)
 {
     const float pull = 1e-5f * trace(q) + 1e-30f;
     const float xx = q.a[0] + pull, xy = q.a[1], xz = q.a[2], yy = q.a[3] + pull, yz = q.a[4],

@@ -64,7 +64,7 @@ bool is_between(const Surface &surface, const Star &star, const Vec &point)
     for (const Spoke &s : star.spokes) {
         corners_of(surface, s.face, point, corner);
         angle += solid_angle(corner[0], corner[1], corner[2]) -
-                 solid_angle(star.place - point, s.pa - point, s.pb - point);
+                 solid_angle(star.position - point, s.pa - point, s.pb - point);
     }
     return std::abs(angle) > CWI_PI * 2;
 }
@@ -72,19 +72,19 @@ bool is_between(const Surface &surface, const Star &star, const Vec &point)
 } // namespace
 
 SmallShells::SmallShells(const cwi_mesh_block &block)
-    : shell_of(block.own), held(block.vertices)
+    : shell_of(block.interior_count), locked(block.vertices)
 {
-    if (block.held)
-        held.assign(block.held, block.held + block.vertices);
+    if (block.locked)
+        locked.assign(block.locked, block.locked + block.vertices);
     std::vector<uint32_t> parent(block.vertices);
     std::iota(parent.begin(), parent.end(), 0);
-    for (size_t t = 0; t < block.own; t++) {
+    for (size_t t = 0; t < block.interior_count; t++) {
         const uint32_t *c = block.corners + 3 * t;
         cwi_sets_join(parent.data(), c[0], c[1]);
         cwi_sets_join(parent.data(), c[0], c[2]);
     }
     left.assign(parent.size(), 0);
-    for (size_t t = 0; t < block.own; t++) {
+    for (size_t t = 0; t < block.interior_count; t++) {
         shell_of[t] = cwi_sets_find(parent.data(), block.corners[3 * t]);
         left[shell_of[t]]++;
     }
@@ -98,7 +98,7 @@ void SmallShells::list_shells(const cwi_mesh_block &block)
     std::vector<Box> around;
     vertex_of.resize(block.vertices);
     boxes.resize(block.vertices);
-    for (size_t t = 0; t < block.own; t++)
+    for (size_t t = 0; t < block.interior_count; t++)
         for (size_t k = 0; k < 3 && left[shell_of[t]] <= LISTED; k++) {
             const uint32_t v = block.corners[3 * t + k];
             boxes[shell_of[t]].add(Vec(block.points + 3 * size_t(v)));
@@ -123,7 +123,7 @@ SmallShells::End SmallShells::collect(const Surface &surface, uint32_t first)
             if (!f.is_valid()) {
                 const size_t a = size_t(surface.from_vertex_handle(*h).idx()),
                              b = size_t(surface.to_vertex_handle(*h).idx());
-                return held[a] && held[b] ? End::SEAM : End::BORDER;
+                return locked[a] && locked[b] ? End::SEAM : End::BORDER;
             }
             if (std::find(faces.begin(), faces.end(), uint32_t(f.idx())) == faces.end())
                 faces.push_back(uint32_t(f.idx()));
@@ -143,7 +143,7 @@ bool SmallShells::turns(const Surface &surface, const Star &star, bool *open)
     double before = 0, after = 0;
     for (uint32_t f : faces) {
         Vec corner[3];
-        corners_of(surface, f, star.place, corner);
+        corners_of(surface, f, star.position, corner);
         before += volume(corner[0], corner[1], corner[2]);
         const auto is_of_star = [&](const Spoke &s) { return s.face == f; };
         const bool moves = std::any_of(star.spokes.begin(), star.spokes.end(), is_of_star) ||
@@ -158,9 +158,9 @@ bool SmallShells::sweeps(const Surface &surface, const Star &star) const
 {
     if (!nearby || !star.closed)
         return false;
-    const uint32_t own = shell_of[star.spokes[0].face];
+    const uint32_t own_shell = shell_of[star.spokes[0].face];
     Box around;
-    around.add(star.place);
+    around.add(star.position);
     for (const Spoke &s : star.spokes) {
         around.add(s.pa);
         around.add(s.pb);
@@ -169,7 +169,7 @@ bool SmallShells::sweeps(const Surface &surface, const Star &star) const
     around.add(star.old[1]);
     return nearby->any(around, [&](uint32_t shell, const float *) {
         const Vec at = surface.point(VertexHandle(int(vertex_of[shell])));
-        return shell != own && is_inside(around, at) && is_between(surface, star, at);
+        return shell != own_shell && is_inside(around, at) && is_between(surface, star, at);
     });
 }
 
@@ -181,7 +181,7 @@ void SmallShells::change(const Star &star)
     vertex_of[shell] = star.vertex;
     if (!is_listed)
         return;
-    boxes[shell].add(star.place);
+    boxes[shell].add(star.position);
     nearby->move(shell, boxes[shell]);
 }
 

@@ -35,7 +35,7 @@ private:
     std::vector<uint32_t> shell_of;  // faces
     std::vector<uint32_t> left;      // shells: their faces
     std::vector<uint32_t> faces;     // of the shell at hand
-    std::vector<uint8_t> held;       // vertices: at a seam
+    std::vector<uint8_t> locked;     // vertices: at a seam
     std::vector<uint32_t> vertex_of; // shells: one of their vertices
     std::vector<Box> boxes;          // shells: around all their places so far
     std::unique_ptr<Nearby> nearby;  // tree of the small shells, or NULL

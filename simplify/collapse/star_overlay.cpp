@@ -14,9 +14,9 @@ namespace
 // The share of the distance for crossings: exact bounds decide about the rest.
 const float STRICTER = 0.95f;
 
-float clamp_share(float share)
+float clamp_fraction(float fraction)
 {
-    return std::min(1.0f, std::max(0.0f, share));
+    return std::min(1.0f, std::max(0.0f, fraction));
 }
 
 // Twice the area between two ways, seen along the axis.
@@ -31,9 +31,9 @@ float edges_square(const Vec &p, const Vec &q, const Vec &a, const Vec &b)
     const Vec u = q - p, v = b - a, w = p - a;
     const float uu = u | u, uv = u | v, vv = v | v, uw = u | w, vw = v | w,
                 area = uu * vv - uv * uv;
-    const float first = area > 1e-6f * uu * vv ? clamp_share((uv * vw - vv * uw) / area) : 0,
-                t = vv > 0 ? clamp_share((uv * first + vw) / vv) : 0,
-                s = uu > 0 ? clamp_share((uv * t - uw) / uu) : 0;
+    const float first = area > 1e-6f * uu * vv ? clamp_fraction((uv * vw - vv * uw) / area) : 0,
+                t = vv > 0 ? clamp_fraction((uv * first + vw) / vv) : 0,
+                s = uu > 0 ? clamp_fraction((uv * t - uw) / uu) : 0;
     return (w + s * u - t * v).sqrnorm();
 }
 
@@ -55,8 +55,8 @@ bool Overlay::lay(const Star &star_)
 {
     Vec by_area(0), even(0);
     star = &star_;
-    center = star->place;
-    if (!star->closed || star->spokes.size() > MOST_SPOKES)
+    center = star->position;
+    if (!star->closed || star->spokes.size() > MAX_SPOKES)
         return false;
     for (const Spoke &s : star->spokes)
         by_area += s.normal;
@@ -114,13 +114,14 @@ uint32_t Overlay::locate(uint32_t vertex)
     if (number < vertices.size() && vertices[number] == vertex)
         return number;
     number = uint32_t(vertices.size());
-    const Vec way = Vec(original->fans.points + 3 * size_t(vertex)) - center;
+    const Vec displacement = Vec(original->fans.points + 3 * size_t(vertex)) - center;
     vertices.push_back(vertex);
-    places.push_back({{way | axes[0], way | axes[1], way | axes[2]}, 0, 0, 0, 0});
+    corners.push_back(
+        {{displacement | axes[0], displacement | axes[1], displacement | axes[2]}, 0, 0, 0, 0});
     return number;
 }
 
-void Overlay::look(Place &p) const
+void Overlay::look(Corner &p) const
 {
     for (size_t n = 0; n < fours.size(); n++) {
         const Four &f = fours[n];
@@ -146,22 +147,22 @@ void Overlay::set_thickness(float sure, float reach)
     }
 }
 
-void Overlay::locate_fans(uint32_t own)
+void Overlay::locate_fans(uint32_t point_count)
 {
     across.clear();
-    for (uint32_t i = 0; i < own; i++) {
+    for (uint32_t i = 0; i < point_count; i++) {
         const uint32_t *first = original->fans.first + vertices[i];
         for (const uint32_t *v = original->across + 2 * size_t(first[0]);
              v < original->across + 2 * size_t(first[1]); v++)
             across.push_back(locate(*v));
     }
-    for (Place &p : places)
+    for (Corner &p : corners)
         look(p);
 }
 
 // Whether edges that cross, as seen along the axis, are near each other there; true, too, where
 // only the lines cross.
-bool Overlay::is_crossing_near(const Place &p, const Place &q, const Vec &a, const Vec &b,
+bool Overlay::is_crossing_near(const Corner &p, const Corner &q, const Vec &a, const Vec &b,
                                bool *crosses) const
 {
     const Vec along = b - a;
@@ -169,13 +170,14 @@ bool Overlay::is_crossing_near(const Place &p, const Place &q, const Vec &a, con
     if ((from < 0) == (to < 0))
         return true;
     const Vec c = p.at + from / (from - to) * (q.at - p.at) - a;
-    const float share =
+    const float fraction =
         (c[0] * along[0] + c[1] * along[1]) / (along[0] * along[0] + along[1] * along[1]);
-    if (!(share >= 0 && share <= 1))
+    if (!(fraction >= 0 && fraction <= 1))
         return true;
     if (crosses)
         *crosses = true;
-    return (c - share * along).sqrnorm() <= square || edges_square(p.at, q.at, a, b) <= square;
+    return (c - fraction * along).sqrnorm() <= distance_sq ||
+           edges_square(p.at, q.at, a, b) <= distance_sq;
 }
 
 // Those around a corner.
@@ -200,7 +202,7 @@ void Overlay::doubt_triangles(uint32_t from, uint32_t to)
 // the outer side at the ray, or to the right of the side.
 bool Overlay::is_edge_near(uint32_t i, uint32_t j, bool *crosses)
 {
-    const Place &p = places[i], &q = places[j];
+    const Corner &p = corners[i], &q = corners[j];
     const uint32_t flat = crosses ? 0 : p.near & q.near;
     bool near = true;
     for (uint32_t left =
@@ -224,63 +226,63 @@ bool Overlay::is_edge_near(uint32_t i, uint32_t j, bool *crosses)
 }
 
 // Whether one of three vertices has one of the first places.
-bool Overlay::has_point(const uint32_t v[3], uint32_t own) const
+bool Overlay::has_point(const uint32_t v[3], uint32_t point_count) const
 {
     for (int k = 0; k < 3; k++) {
         const uint32_t number = numbers.get()[v[k]];
-        if (number < own && vertices[number] == v[k])
+        if (number < point_count && vertices[number] == v[k])
             return true;
     }
     return false;
 }
 
 // Adds the triangles on the other side of an edge, if no point is at them.
-void Overlay::look_across(uint32_t i, uint32_t j, uint32_t own)
+void Overlay::look_across(uint32_t i, uint32_t j, uint32_t point_count)
 {
     const uint32_t from = vertices[i], to = vertices[j];
     for (uint32_t n = original->fans.first[from]; n < original->fans.first[from + 1]; n++) {
         const uint32_t t = original->fans.around[n],
                        *c = original->fans.corners + 3 * size_t(t);
-        if ((c[0] == to || c[1] == to || c[2] == to) && !has_point(c, own) &&
+        if ((c[0] == to || c[1] == to || c[2] == to) && !has_point(c, point_count) &&
             std::find(outer.begin(), outer.end(), t) == outer.end())
             outer.push_back(t);
     }
 }
 
 // Each edge between two points is looked at from one of them. Returns the end of the fan's others.
-const uint32_t *Overlay::compare_fan(uint32_t i, uint32_t own, const uint32_t *others)
+const uint32_t *Overlay::compare_fan(uint32_t i, uint32_t point_count, const uint32_t *others)
 {
     const uint32_t hub = vertices[i];
     for (uint32_t n = original->fans.first[hub]; n < original->fans.first[hub + 1]; n++) {
         const uint32_t j = *others++, k = *others++;
         bool crosses = false;
-        if ((j >= own || j > i) && !is_edge_near(i, j, nullptr))
+        if ((j >= point_count || j > i) && !is_edge_near(i, j, nullptr))
             doubt_triangles(hub, vertices[j]);
-        if (j < own || k < own)
+        if (j < point_count || k < point_count)
             continue;
         if (!is_edge_near(j, k, &crosses))
             triangles_in_doubt.push_back(original->fans.around[n]);
         else if (crosses)
-            look_across(j, k, own);
+            look_across(j, k, point_count);
     }
     return others;
 }
 
-void Overlay::compare_outer(uint32_t triangle, uint32_t own)
+void Overlay::compare_outer(uint32_t triangle, uint32_t point_count)
 {
     const uint32_t *c = original->fans.corners + 3 * size_t(triangle);
-    const size_t known = places.size();
+    const size_t known = corners.size();
     for (int k = 0; k < 3; k++)
         locate(c[k]);
-    for (size_t n = known; n < places.size(); n++)
-        look(places[n]);
+    for (size_t n = known; n < corners.size(); n++)
+        look(corners[n]);
     for (int k = 0; k < 3; k++) {
         const uint32_t i = locate(c[k]), j = locate(c[(k + 1) % 3]);
         bool crosses = false;
         if (!is_edge_near(i, j, &crosses))
             triangles_in_doubt.push_back(triangle);
         else if (crosses)
-            look_across(i, j, own);
+            look_across(i, j, point_count);
     }
 }
 
@@ -293,21 +295,21 @@ bool Overlay::compare(const std::vector<uint32_t> &points, float distance)
     reach = std::sqrt(reach);
     const float sure = std::max(0.0f, STRICTER * distance - 2e-6f * reach);
     set_thickness(sure, reach);
-    square = sure * sure;
+    distance_sq = sure * sure;
     spokes_in_doubt = 0;
     triangles_in_doubt.clear();
     vertices.clear();
-    places.clear();
+    corners.clear();
     outer.clear();
     for (uint32_t p : points)
         locate(p);
-    const uint32_t own = uint32_t(points.size());
-    locate_fans(own);
+    const uint32_t point_count = uint32_t(points.size());
+    locate_fans(point_count);
     const uint32_t *others = across.data();
-    for (uint32_t i = 0; i < own; i++)
-        others = compare_fan(i, own, others);
+    for (uint32_t i = 0; i < point_count; i++)
+        others = compare_fan(i, point_count, others);
     for (size_t n = 0; n < outer.size(); n++)
-        compare_outer(outer[n], own);
+        compare_outer(outer[n], point_count);
     return triangles_in_doubt.empty();
 }
 

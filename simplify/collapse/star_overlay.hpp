@@ -30,12 +30,12 @@ public:
     std::vector<uint32_t> triangles_in_doubt; // of the original
 
 private:
-    enum { MOST_SPOKES = 32 };
+    enum { MAX_SPOKES = 32 };
 
     // A vertex of the original in the star's frame. Bit n: it is to the left of the ray to
     // corner a of spoke n, on its side of the center, beyond the outer side of spoke n, or near
     // the plane of spoke n, along the axis.
-    struct Place {
+    struct Corner {
         Vec at;
         uint32_t left, ahead, beyond, near;
     };
@@ -48,16 +48,16 @@ private:
     bool lay_along(const Star &star, Vec axis);
     bool add_spoke(const Spoke &spoke);
     uint32_t locate(uint32_t vertex);
-    void look(Place &place) const;
+    void look(Corner &corner) const;
     void set_thickness(float sure, float reach);
-    void locate_fans(uint32_t own);
+    void locate_fans(uint32_t point_count);
     bool is_edge_near(uint32_t i, uint32_t j, bool *crosses);
-    const uint32_t *compare_fan(uint32_t i, uint32_t own, const uint32_t *others);
-    void compare_outer(uint32_t triangle, uint32_t own);
-    bool has_point(const uint32_t v[3], uint32_t own) const;
-    void look_across(uint32_t i, uint32_t j, uint32_t own);
+    const uint32_t *compare_fan(uint32_t i, uint32_t point_count, const uint32_t *others);
+    void compare_outer(uint32_t triangle, uint32_t point_count);
+    bool has_point(const uint32_t v[3], uint32_t point_count) const;
+    void look_across(uint32_t i, uint32_t j, uint32_t point_count);
     void doubt_triangles(uint32_t from, uint32_t to);
-    bool is_crossing_near(const Place &p, const Place &q, const Vec &a, const Vec &b,
+    bool is_crossing_near(const Corner &p, const Corner &q, const Vec &a, const Vec &b,
                           bool *crosses) const;
     void doubt_spokes(uint32_t corner);
 
@@ -65,14 +65,14 @@ private:
     std::unique_ptr<uint32_t, void (*)(void *)>
         numbers;                    // vertices: their place, if it is theirs
     std::vector<uint32_t> vertices; // that have a place
-    std::vector<Place> places;
+    std::vector<Corner> corners;
     std::vector<uint32_t> across; // places of the other corners of triangles at points
     std::vector<Four> fours;
     std::vector<uint32_t> outer; // triangles of the original across the star, no point at them
     std::vector<Vec> corners_a, corners_b; // of the spokes
     Vec center, axes[3];                   // of the frame
     const Star *star;
-    float square; // of the distance
+    float distance_sq; // of the distance
 };
 
 } // namespace cw

@@ -32,15 +32,16 @@ cwi_lanes dot(const cwi_lanes a[3], const cwi_lanes b[3])
 cwi_lanes from_segment(const cwi_lanes from[3], const cwi_lanes along[3], cwi_lanes inverse)
 {
     const cwi_lanes none = {0, 0, 0, 0}, one = {1, 1, 1, 1}, t = dot(from, along) * inverse,
-                    share = lesser(choose(t > 0, t, none), one);
-    const cwi_lanes way[3] = {from[0] - share * along[0], from[1] - share * along[1],
-                              from[2] - share * along[2]};
-    return dot(way, way);
+                    fraction = lesser(choose(t > 0, t, none), one);
+    const cwi_lanes displacement[3] = {from[0] - fraction * along[0],
+                                       from[1] - fraction * along[1],
+                                       from[2] - fraction * along[2]};
+    return dot(displacement, displacement);
 }
 
-float inverse(double square)
+float inverse(double length_sq)
 {
-    return square > 0 ? float(1 / square) : 0;
+    return length_sq > 0 ? float(1 / length_sq) : 0;
 }
 
 } // namespace
@@ -64,55 +65,55 @@ void Facets::add(const Vec &a, const Vec &b, const Vec &c)
     cwi_cross(ab, ac, normal);
     cwi_cross(ac, normal, to_b);
     cwi_cross(normal, ab, to_c);
-    const double square = cwi_dot(normal, normal), scale = square > 0 ? 1 / square : 0;
+    const double normal_sq = cwi_dot(normal, normal), scale = normal_sq > 0 ? 1 / normal_sq : 0;
     for (unsigned k = 0; k < 3; k++) {
         f.a[k][lane] = a[k];
         f.ab[k][lane] = float(ab[k]);
         f.ac[k][lane] = float(ac[k]);
         f.bc[k][lane] = float(bc[k]);
         f.normal[k][lane] = float(std::sqrt(scale) * normal[k]);
-        f.b_share[k][lane] = float(scale * to_b[k]);
-        f.c_share[k][lane] = float(scale * to_c[k]);
+        f.b_weight[k][lane] = float(scale * to_b[k]);
+        f.c_weight[k][lane] = float(scale * to_c[k]);
     }
     f.ab_inverse[lane] = inverse(cwi_dot(ab, ab));
     f.ac_inverse[lane] = inverse(cwi_dot(ac, ac));
     f.bc_inverse[lane] = inverse(cwi_dot(bc, bc));
-    f.most[lane] = square > 0 ? 1 : -1;
+    f.max_sum[lane] = normal_sq > 0 ? 1 : -1;
     corners.push_back({a, b, c});
     for (const Vec &p : corners.back())
         reach = std::max(reach, p.norm());
 }
 
-cwi_lanes Facets::Four::squares(const Vec &p) const
+cwi_lanes Facets::Four::distances_sq(const Vec &p) const
 {
     cwi_lanes from_a[3], from_b[3];
     for (unsigned k = 0; k < 3; k++) {
         from_a[k] = p[k] - a[k];
         from_b[k] = from_a[k] - ab[k];
     }
-    const cwi_lanes height = dot(from_a, normal), in_b = dot(from_a, b_share),
-                    in_c = dot(from_a, c_share);
+    const cwi_lanes height = dot(from_a, normal), in_b = dot(from_a, b_weight),
+                    in_c = dot(from_a, c_weight);
     const cwi_lanes sides = lesser(
         lesser(from_segment(from_a, ab, ab_inverse), from_segment(from_a, ac, ac_inverse)),
         from_segment(from_b, bc, bc_inverse));
-    return choose((in_b >= 0) & (in_c >= 0) & (in_b + in_c <= most), height * height, sides);
+    return choose((in_b >= 0) & (in_c >= 0) & (in_b + in_c <= max_sum), height * height, sides);
 }
 
-size_t Facets::nearest(const Vec &p, float *square) const
+size_t Facets::nearest(const Vec &p, float *distance_sq) const
 {
-    cwi_lanes least = {INFINITY, INFINITY, INFINITY, INFINITY};
+    cwi_lanes smallest = {INFINITY, INFINITY, INFINITY, INFINITY};
     cwi_mask four = {0, 0, 0, 0};
     for (size_t n = 0; n < fours.size(); n++) {
-        const cwi_lanes squares = fours[n].squares(p);
-        const cwi_mask is_less = squares < least;
-        least = choose(is_less, squares, least);
+        const cwi_lanes distances_sq = fours[n].distances_sq(p);
+        const cwi_mask is_less = distances_sq < smallest;
+        smallest = choose(is_less, distances_sq, smallest);
         four = (int32_t(n) & is_less) | (four & ~is_less);
     }
     unsigned best = 0;
     for (unsigned l = 1; l < 4; l++)
-        if (least[l] < least[best])
+        if (smallest[l] < smallest[best])
             best = l;
-    *square = least[best];
+    *distance_sq = smallest[best];
     return 4 * size_t(four[best]) + best;
 }
 
@@ -122,16 +123,16 @@ Facets::Seen Facets::look(const Vec &p) const
     const float sure = distance - 1e-6f * (reach + p.norm());
     uint64_t near = 0;
     for (size_t n = 0; n < fours.size() && n < 16 && sure > 0; n++) {
-        const cwi_mask is_near = fours[n].squares(p) <= sure * sure,
+        const cwi_mask is_near = fours[n].distances_sq(p) <= sure * sure,
                        bit = is_near & cwi_mask{1, 2, 4, 8};
         near |= uint64_t(bit[0] | bit[1] | bit[2] | bit[3]) << 4 * n;
     }
     return {p, near};
 }
 
-Facets::Seen Facets::between(const Seen &a, const Seen &b, float share) const
+Facets::Seen Facets::between(const Seen &a, const Seen &b, float fraction) const
 {
-    return look(a.at + share * (b.at - a.at));
+    return look(a.at + fraction * (b.at - a.at));
 }
 
 // A facet that is near all corners is near all of the triangle. Else it is cut along a side of
@@ -185,9 +186,9 @@ int Facets::find_cut(const Seen corner[3], unsigned facet, float height[3]) cons
 bool Facets::are_cut_near(const Seen corner[3], int lone, const float height[3], int cuts) const
 {
     const int i = (lone + 1) % 3, j = (lone + 2) % 3;
-    const float own = height[lone];
-    const Seen to_i = between(corner[lone], corner[i], own / (own - height[i])),
-               to_j = between(corner[lone], corner[j], own / (own - height[j]));
+    const float own_height = height[lone];
+    const Seen to_i = between(corner[lone], corner[i], own_height / (own_height - height[i])),
+               to_j = between(corner[lone], corner[j], own_height / (own_height - height[j]));
     return are_near(corner[lone], to_i, to_j, cuts) &&
            are_near(to_i, corner[i], corner[j], cuts) && are_near(to_i, corner[j], to_j, cuts);
 }
@@ -197,9 +198,9 @@ bool Facets::are_halves_near(const Seen corner[3], int cuts) const
     float longest = -1;
     int start = 0;
     for (int k = 0; k < 3; k++) {
-        const float square = (corner[(k + 1) % 3].at - corner[k].at).sqrnorm();
-        start = square > longest ? k : start;
-        longest = std::max(longest, square);
+        const float side_sq = (corner[(k + 1) % 3].at - corner[k].at).sqrnorm();
+        start = side_sq > longest ? k : start;
+        longest = std::max(longest, side_sq);
     }
     const Seen &a = corner[start], &b = corner[(start + 1) % 3], &c = corner[(start + 2) % 3],
                middle = between(a, b, 0.5f);

@@ -32,7 +32,7 @@ public:
     void add(const Vec &a, const Vec &b, const Vec &c);
 
     // The facet nearest to a point, and the square of its distance.
-    size_t nearest(const Vec &p, float *square) const;
+    size_t nearest(const Vec &p, float *distance_sq) const;
 
     // Near is what is not farther than the distance, for certain.
     Seen look(const Vec &p) const;
@@ -45,13 +45,13 @@ private:
 
     // Seen from corner a. Shares of b and c are what the way from there makes with these.
     struct Four {
-        cwi_lanes a[3], ab[3], ac[3], bc[3], normal[3], b_share[3], c_share[3];
-        cwi_lanes ab_inverse, ac_inverse, bc_inverse, most;
+        cwi_lanes a[3], ab[3], ac[3], bc[3], normal[3], b_weight[3], c_weight[3];
+        cwi_lanes ab_inverse, ac_inverse, bc_inverse, max_sum;
 
-        cwi_lanes squares(const Vec &p) const;
+        cwi_lanes distances_sq(const Vec &p) const;
     };
 
-    Seen between(const Seen &a, const Seen &b, float share) const;
+    Seen between(const Seen &a, const Seen &b, float fraction) const;
     int find_cut(const Seen corner[3], unsigned facet, float height[3]) const;
     bool are_cut_near(const Seen corner[3], int lone, const float height[3], int cuts) const;
     bool are_halves_near(const Seen corner[3], int cuts) const;

@@ -70,30 +70,31 @@ static double find_nearest_spoke(cwi_label_samples *s, const cwi_complex *c,
                                  const cwi_star *star, uint32_t sample, double near_enough)
 {
     const uint32_t before = s->nearest[sample];
-    double p[3], least = INFINITY;
+    double p[3], min_sq = INFINITY;
     widen_point(get_original(s, s->vertices[sample]), p);
     if (before != CWI_NO_INDEX)
-        least = measure_spoke(c, star, before, p);
-    if (least <= near_enough)
-        return least;
+        min_sq = measure_spoke(c, star, before, p);
+    if (min_sq <= near_enough)
+        return min_sq;
     for (size_t i = 0; i < star->spoke_count; i++) {
         if (star->spokes[i].patch != s->patches[sample] || i == before)
             continue;
         const double distance = measure_spoke(c, star, i, p);
-        if (distance < least) {
-            least = distance;
+        if (distance < min_sq) {
+            min_sq = distance;
             s->nearest[sample] = (uint32_t)i;
         }
     }
-    return least;
+    return min_sq;
 }
 
 /* Finds the spokes near all samples. Returns false if one is too far. */
 static bool find_nearest_spokes(cwi_label_samples *s, const cwi_complex *c,
-                                const cwi_star *star, double square)
+                                const cwi_star *star, double distance_sq)
 {
     for (size_t n = 0; n < s->collected_count; n++)
-        if (!(find_nearest_spoke(s, c, star, s->collected[n], NEAR_ENOUGH * square) <= square))
+        if (!(find_nearest_spoke(s, c, star, s->collected[n], NEAR_ENOUGH * distance_sq) <=
+              distance_sq))
             return false;
     return true;
 }
@@ -104,7 +105,7 @@ static bool find_nearest_spokes(cwi_label_samples *s, const cwi_complex *c,
 typedef struct input_walk {
     cwi_label_samples *s;
     uint32_t patch, at;
-    double square; /* distances up to its root are near enough */
+    double distance_sq; /* distances up to its root are near enough */
 } input_walk;
 
 static void find_input_facet(const cwi_label_samples *s, uint32_t triangle,
@@ -122,43 +123,43 @@ static double measure_input(const cwi_label_samples *s, uint32_t triangle, const
 }
 
 /* Goes to a triangle if it is nearer than the least distance so far. */
-static bool go_if_nearer(input_walk *w, uint32_t triangle, const double p[3], double *least)
+static bool go_if_nearer(input_walk *w, uint32_t triangle, const double p[3], double *min_sq)
 {
-    const double square = measure_input(w->s, triangle, p);
-    if (!(square < *least))
+    const double distance_sq = measure_input(w->s, triangle, p);
+    if (!(distance_sq < *min_sq))
         return false;
-    *least = square;
+    *min_sq = distance_sq;
     w->at = triangle;
     return true;
 }
 
 /* Goes over the side of a triangle to its neighbour in the patch if that is nearer. */
-static bool cross_side(input_walk *w, uint32_t a, uint32_t b, const double p[3], double *least)
+static bool cross_side(input_walk *w, uint32_t a, uint32_t b, const double p[3], double *min_sq)
 {
     const cwi_label_samples *s = w->s;
     const uint32_t sample = cwi_label_samples_find(s, a, w->patch);
     for (uint32_t i = s->first_triangle[sample]; i < s->first_triangle[sample + 1]; i++) {
         const uint32_t t = s->triangles[i], *v = s->corners + 3 * (size_t)t;
         if (t != w->at && (v[0] == b || v[1] == b || v[2] == b))
-            return go_if_nearer(w, t, p, least);
+            return go_if_nearer(w, t, p, min_sq);
     }
     return false;
 }
 
 /* Goes over a side that the point is beyond. Returns false if that does not help. */
-static bool step_nearer(input_walk *w, const double p[3], double *least)
+static bool step_nearer(input_walk *w, const double p[3], double *min_sq)
 {
     const uint32_t *v = w->s->corners + 3 * (size_t)w->at;
     const float *f[3];
     find_input_facet(w->s, w->at, f);
     const cwi_facet_view view = cwi_facet_look(f[0], f[1], f[2], p);
-    return (view.in_a < 0 && cross_side(w, v[1], v[2], p, least)) ||
-           (view.in_b < 0 && cross_side(w, v[2], v[0], p, least)) ||
-           (view.in_c < 0 && cross_side(w, v[0], v[1], p, least));
+    return (view.in_a < 0 && cross_side(w, v[1], v[2], p, min_sq)) ||
+           (view.in_b < 0 && cross_side(w, v[2], v[0], p, min_sq)) ||
+           (view.in_c < 0 && cross_side(w, v[0], v[1], p, min_sq));
 }
 
 /* Goes to the nearest of the triangles around the corners. Returns false if none is nearer. */
-static bool jump_nearer(input_walk *w, const double p[3], double *least)
+static bool jump_nearer(input_walk *w, const double p[3], double *min_sq)
 {
     const cwi_label_samples *s = w->s;
     const uint32_t start = w->at;
@@ -166,7 +167,7 @@ static bool jump_nearer(input_walk *w, const double p[3], double *least)
         const uint32_t sample =
             cwi_label_samples_find(s, s->corners[3 * (size_t)start + k], w->patch);
         for (uint32_t i = s->first_triangle[sample]; i < s->first_triangle[sample + 1]; i++)
-            go_if_nearer(w, s->triangles[i], p, least);
+            go_if_nearer(w, s->triangles[i], p, min_sq);
     }
     return w->at != start;
 }
@@ -177,24 +178,24 @@ static double walk_nearest(void *context, const double p[3], const float *facet[
 {
     input_walk *w = context;
     cwi_label_samples *s = w->s;
-    double least = measure_input(s, w->at, p);
+    double min_sq = measure_input(s, w->at, p);
     do {
-        while (step_nearer(w, p, &least)) {
+        while (step_nearer(w, p, &min_sq)) {
         }
-    } while (least > w->square && jump_nearer(w, p, &least));
+    } while (min_sq > w->distance_sq && jump_nearer(w, p, &min_sq));
     if (s->triangle_marks[w->at] != s->mark) {
         s->triangle_marks[w->at] = s->mark;
         s->met[s->met_count++] = w->at;
     }
     find_input_facet(s, w->at, facet);
-    return least;
+    return min_sq;
 }
 
 /* Returns a triangle around the sample of a patch that is nearest to a point. */
 static uint32_t find_start(const cwi_label_samples *s, uint32_t patch, const double p[3])
 {
     uint32_t start = CWI_NO_INDEX;
-    double least = INFINITY;
+    double min_sq = INFINITY;
     for (size_t n = 0; n < s->collected_count; n++) {
         const uint32_t sample = s->collected[n];
         double q[3];
@@ -203,9 +204,9 @@ static uint32_t find_start(const cwi_label_samples *s, uint32_t patch, const dou
         widen_point(get_original(s, s->vertices[sample]), q);
         for (int k = 0; k < 3; k++)
             q[k] -= p[k];
-        const double square = cwi_dot(q, q);
-        if (square < least) {
-            least = square;
+        const double distance_sq = cwi_dot(q, q);
+        if (distance_sq < min_sq) {
+            min_sq = distance_sq;
             start = s->triangles[s->first_triangle[sample]];
         }
     }
@@ -214,10 +215,10 @@ static uint32_t find_start(const cwi_label_samples *s, uint32_t patch, const dou
 
 /* Returns true if all points of the new triangles are near the input. */
 static bool is_star_near(cwi_label_samples *s, const cwi_complex *c, const cwi_star *star,
-                         double square)
+                         double distance_sq)
 {
-    input_walk walk = {.s = s, .patch = CWI_NO_INDEX, .square = square};
-    cwi_cover cover = {.nearest = walk_nearest, .context = &walk, .square = square};
+    input_walk walk = {.s = s, .patch = CWI_NO_INDEX, .distance_sq = distance_sq};
+    cwi_cover cover = {.nearest = walk_nearest, .context = &walk, .distance_sq = distance_sq};
     double p[3][3];
     widen_point(star->move.place, p[0]);
     for (size_t i = 0; i < star->spoke_count; i++) {
@@ -261,13 +262,13 @@ static void add_facet(facet_list *list, const float *p, const float *a, const fl
 /* Computes the square of a point's distance from a facet's box. */
 static double measure_box(const near_facet *f, const double p[3])
 {
-    double square = 0;
+    double distance_sq = 0;
     for (int k = 0; k < 3; k++) {
         const double below = (double)f->low[k] - p[k], above = p[k] - (double)f->high[k];
         const double d = cwi_greater(cwi_greater(below, above), 0);
-        square += d * d;
+        distance_sq += d * d;
     }
-    return square;
+    return distance_sq;
 }
 
 static bool has_star_triangle(const cwi_star *star, uint32_t triangle)
@@ -303,33 +304,34 @@ static void list_facets(facet_list *list, const cwi_complex *c, const cwi_star *
 static double list_nearest(void *context, const double p[3], const float *facet[3])
 {
     const facet_list *list = context;
-    double least = INFINITY;
+    double min_sq = INFINITY;
     for (size_t n = 0; n < list->count; n++) {
         const near_facet *f = &list->items[n];
-        if (f->patch != list->patch || measure_box(f, p) >= least)
+        if (f->patch != list->patch || measure_box(f, p) >= min_sq)
             continue;
-        const double square = cwi_facet_square(f->corners[0], f->corners[1], f->corners[2], p);
-        if (square < least) {
-            least = square;
+        const double distance_sq =
+            cwi_facet_square(f->corners[0], f->corners[1], f->corners[2], p);
+        if (distance_sq < min_sq) {
+            min_sq = distance_sq;
             memcpy(facet, f->corners, sizeof f->corners);
         }
     }
-    return least;
+    return min_sq;
 }
 
 /* Returns true if one spoke is near all corners of a triangle of the input: one that is nearest
  * to a corner. */
 static bool has_near_spoke(const cwi_label_samples *s, const cwi_complex *c,
                            const cwi_star *star, const uint32_t v[3], uint32_t patch,
-                           const double p[3][3], double square)
+                           const double p[3][3], double distance_sq)
 {
     for (int n = 0; n < 3; n++) {
         const uint32_t sample = cwi_label_samples_find(s, v[n], patch);
         if (s->sample_marks[sample] != s->mark)
             continue;
         const uint32_t spoke = s->nearest[sample];
-        if (measure_spoke(c, star, spoke, p[(n + 1) % 3]) <= square &&
-            measure_spoke(c, star, spoke, p[(n + 2) % 3]) <= square)
+        if (measure_spoke(c, star, spoke, p[(n + 1) % 3]) <= distance_sq &&
+            measure_spoke(c, star, spoke, p[(n + 2) % 3]) <= distance_sq)
             return true;
     }
     return false;
@@ -352,11 +354,11 @@ static void meet_around(cwi_label_samples *s)
 /* Returns true if the input's triangles around samples of the star, and those that the star lies
  * over, are near it or what is beside it. */
 static bool is_input_near(cwi_label_samples *s, const cwi_complex *c, const cwi_star *star,
-                          double square)
+                          double distance_sq)
 {
     facet_list list;
     list.count = 0;
-    cwi_cover cover = {.nearest = list_nearest, .context = &list, .square = square};
+    cwi_cover cover = {.nearest = list_nearest, .context = &list, .distance_sq = distance_sq};
     meet_around(s);
     for (size_t n = 0; n < s->met_count; n++) {
         const uint32_t *v = s->corners + 3 * (size_t)s->met[n];
@@ -364,7 +366,7 @@ static bool is_input_near(cwi_label_samples *s, const cwi_complex *c, const cwi_
         double p[3][3];
         for (int k = 0; k < 3; k++)
             widen_point(get_original(s, v[k]), p[k]);
-        if (has_near_spoke(s, c, star, v, patch, (const double(*)[3])p, square))
+        if (has_near_spoke(s, c, star, v, patch, (const double(*)[3])p, distance_sq))
             continue;
         if (list.count == 0)
             list_facets(&list, c, star);
@@ -383,7 +385,7 @@ bool cwi_label_samples_allow(cwi_label_samples *s, const cwi_complex *c, const c
         collect_samples(s, star->spokes[i].triangle, (uint32_t)i);
     for (size_t i = 0; i < star->gone_count; i++)
         collect_samples(s, star->gone[i], CWI_NO_INDEX);
-    const double allowed = find_allowed(s), square = allowed * allowed;
-    return allowed > 0 && find_nearest_spokes(s, c, star, square) &&
-           is_star_near(s, c, star, square) && is_input_near(s, c, star, square);
+    const double allowed = find_allowed(s), distance_sq = allowed * allowed;
+    return allowed > 0 && find_nearest_spokes(s, c, star, distance_sq) &&
+           is_star_near(s, c, star, distance_sq) && is_input_near(s, c, star, distance_sq);
 }

@@ -284,7 +284,8 @@ static bool is_near_facet(const search *s, const corner c[3], uint32_t slot, dou
 static bool is_within(const search *s, const corner c[3], double limit)
 {
     covering facets = {s->r, c[0].slot};
-    cwi_cover cover = {.nearest = nearest_facet, .context = &facets, .square = limit * limit};
+    cwi_cover cover = {
+        .nearest = nearest_facet, .context = &facets, .distance_sq = limit * limit};
     double p[3][3];
     for (int n = 0; n < 3; n++) {
         if (c[n].distance > limit)

@@ -16,7 +16,7 @@ static const double MAX_CELLS = 1 << 20;
 typedef struct near_map {
     const cw_mesh *mesh;
     double low[3], cell_mm, distance_sq;
-    cwi_places cells;
+    cwi_lattice_map cells;
     uint32_t *first; /* of a cell: the last vertex that came; UINT32_MAX: none */
     size_t capacity;
     uint32_t *next; /* of a vertex: the one before it in its cell */
@@ -25,7 +25,7 @@ typedef struct near_map {
 
 static void free_map(near_map *n)
 {
-    cwi_places_free(&n->cells);
+    cwi_lattice_free(&n->cells);
     cwi_free(n->first);
     cwi_free(n->next);
     cwi_free(n->map);
@@ -54,8 +54,8 @@ static uint32_t find_near(const near_map *n, const float *p, const uint32_t at[3
     for (uint32_t k = 0; k < 27; k++) {
         const uint32_t beside[3] = {at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1,
                                     at[2] + k / 9 - 1};
-        const uint32_t cell = cwi_places_find(&n->cells, cwi_place_key(beside));
-        if (cell == CWI_NO_PLACE)
+        const uint32_t cell = cwi_lattice_find(&n->cells, cwi_lattice_key(beside));
+        if (cell == CWI_NO_LATTICE_POINT)
             continue;
         for (uint32_t v = n->first[cell]; v != UINT32_MAX; v = n->next[v]) {
             const double square = cwi_point_distance_sq(p, n->mesh->positions + 3 * (size_t)v);
@@ -70,8 +70,8 @@ static uint32_t find_near(const near_map *n, const float *p, const uint32_t at[3
 
 static bool keep_vertex(near_map *n, uint32_t v, const uint32_t at[3])
 {
-    const uint32_t cell = cwi_places_add(&n->cells, cwi_place_key(at));
-    if (cell == CWI_NO_PLACE)
+    const uint32_t cell = cwi_lattice_add(&n->cells, cwi_lattice_key(at));
+    if (cell == CWI_NO_LATTICE_POINT)
         return false;
     if (cell >= n->capacity) {
         const size_t capacity = 2 * (size_t)cell + 64;
