@@ -1,7 +1,7 @@
 /* Runs the command that the first argument names, limits its memory, and turns its status
  * into an exit code. */
+#include "cli/command_table.h"
 #include "cli/framework/batch.h"
-#include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/framework/option_rules.h"
 #include "cli/framework/run_config.h"
@@ -184,6 +184,7 @@ int main(int argc, char **argv)
 {
     cw_error err = {0};
     cw_status st = CW_ERR_ARGUMENT;
+    cli_commands = cli_command_table;
     cli_catch_signals();
     read_default_threads();
     const cli_command *command =

@@ -1,8 +1,8 @@
 # Rooms and modules. tests/architecture/rooms.txt lists the rooms, and whom each may use.
 #
-# A room is an object library of a folder. The shared library is made of all; it exports the public
-# functions alone (CW_API, core/cubewright.map). cubewright_internals is the same as a static library
-# with all functions: for the program, for modules and for tests; it is not installed.
+# A room is an object library of a folder. The shared library is made of all but those of cli; it exports
+# the public functions alone (CW_API, core/cubewright.map). cubewright_internals is the same as a static
+# library with all functions: for the program, for modules and for tests; it is not installed.
 #
 # With CUBEWRIGHT_ROOMS (preset `rooms`) each room is a shared object of its own instead, linked with
 # the rooms it may use and nothing else: a call through a wall is an undefined symbol.
@@ -48,6 +48,8 @@ endfunction()
 function(add_room_part room objects)
   if(CUBEWRIGHT_ROOMS)
     target_link_libraries(${room} PRIVATE ${objects})
+  elseif(room MATCHES "^cli")
+    target_sources(cli_objects INTERFACE $<TARGET_OBJECTS:${objects}>)
   else()
     target_link_libraries(cubewright PRIVATE ${objects})
     target_link_libraries(cubewright_internals PRIVATE ${objects})

@@ -19,8 +19,8 @@ extern const char cli_page_check[], cli_page_convert[], cli_page_extract[], cli_
 /* Pages of topics. */
 extern const char cli_page_environment[], cli_page_library[];
 
-/* In the order of help; the last is NULL. */
-extern const cli_command *const cli_commands[];
+/* All commands in the order of help; the last is NULL. The program sets it when it starts. */
+extern const cli_command *const *cli_commands;
 
 /* A page of 'help' that is not about a command. */
 typedef struct cli_topic {

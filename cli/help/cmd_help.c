@@ -15,13 +15,6 @@ typedef struct help_args {
     int shell;
 } help_args;
 
-const cli_topic cli_topics[] = {
-    {"environment", "variables of the environment, and files", cli_page_environment},
-    {"exit", "the exit codes", NULL},
-    {"library", "the library for C and C++", cli_page_library},
-    {NULL, NULL, NULL},
-};
-
 static void print_overview(void)
 {
     puts("cubewright COMMAND [options] INPUT... -o OUTPUT\n"
