@@ -60,16 +60,16 @@ static cw_status write_slabs(cwi_plan *p, const cw_extract_desc *d, size_t trian
                              cw_slab_sink sink, cw_error *err)
 {
     const cwi_layer_sums sums = sum_layers(p);
-    const cw_extract_counts most = cwi_largest_slab(&sums, triangles);
+    const cw_extract_counts max = cwi_largest_slab(&sums, triangles);
     cw_mesh mesh;
     p->counts.bytes =
-        cwi_extract_mesh_bytes(&most, false) + most.vertices + cwi_grid_bytes(&p->grid);
+        cwi_extract_mesh_bytes(&max, false) + max.vertices + cwi_grid_bytes(&p->grid);
     cw_status st = cwi_extract_check_limits(d, &p->counts, err);
     if (st == CW_OK)
-        st = cwi_mesh_alloc(&mesh, most.vertices, most.triangles, false, err);
+        st = cwi_mesh_alloc(&mesh, max.vertices, max.triangles, false, err);
     if (st != CW_OK)
         return st;
-    uint8_t *seam = cwi_alloc_array(most.vertices, 1);
+    uint8_t *seam = cwi_alloc_array(max.vertices, 1);
     if (!seam)
         st = cwi_fail_memory(err);
     memcpy(mesh.affine, p->grid.volume.affine, sizeof mesh.affine);

@@ -270,10 +270,10 @@ static cw_status write_by_team(const char *path, const cwi_parts *parts,
                                const cw_write_desc *d, const cw_write_consent *consent,
                                cwi_mesh_output *out, cw_error *err)
 {
-    cw_status asked = consent ? consent->ask(consent->user, err) : CW_OK;
-    asked = cw_team_agree(team, asked, err);
-    if (asked != CW_OK)
-        return asked;
+    cw_status consented = consent ? consent->ask(consent->user, err) : CW_OK;
+    consented = cw_team_agree(team, consented, err);
+    if (consented != CW_OK)
+        return consented;
     if (f->write.shares && !d->text)
         return write_shared(path, parts, f, team, d, out, err);
     const bool writes = team->rank == 0;

@@ -284,7 +284,7 @@ static cw_status open_path(opened *o, const char *path, const cw_read_desc *desc
 /* --- reading ------------------------------------------------------------------------------ */
 
 /* Checks that files in a row hold whole slices, the same number each. */
-static cw_status check_shares(const cw_volume *v, size_t files, cw_error *err)
+static cw_status check_part_bytes(const cw_volume *v, size_t files, cw_error *err)
 {
     const size_t slices = v->dim[2] * v->steps;
     return slices % files == 0
@@ -312,7 +312,7 @@ static cw_status read_source(opened *o, const cw_read_desc *desc, cw_volume *vol
     if (st == CW_OK && *src.note)
         cwi_note(desc, "%s", src.note);
     if (st == CW_OK && o->many)
-        st = check_shares(&src.shape, o->names.count, err);
+        st = check_part_bytes(&src.shape, o->names.count, err);
     if (o->many) {
         src.files = o->names;
         o->names = (cwi_names){0};
@@ -660,12 +660,12 @@ static cw_status add_below(const char *folder, const cwi_names *found, cwi_names
 {
     cw_status st = CW_OK;
     for (size_t i = 0; i < found->count && st == CW_OK; i++) {
-        const size_t room = strlen(folder) + strlen(found->items[i]) + 2;
-        char *path = cwi_alloc_array(room, 1);
+        const size_t capacity = strlen(folder) + strlen(found->items[i]) + 2;
+        char *path = cwi_alloc_array(capacity, 1);
         if (!path)
             return cwi_fail_memory(err);
         const bool slash = folder[strlen(folder) - 1] == '/';
-        snprintf(path, room, "%s%s%s", folder, slash ? "" : "/", found->items[i]);
+        snprintf(path, capacity, "%s%s%s", folder, slash ? "" : "/", found->items[i]);
         st = cwi_names_add(names, path, err);
         cwi_free(path);
     }

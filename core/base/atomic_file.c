@@ -148,8 +148,8 @@ void cwi_name_temporary(const char *name, char temporary[CWI_FILE_NAME_BYTES])
             random[i] = (unsigned char)rand();
     for (size_t i = 0; i < sizeof random; i++)
         word[i] = letters[random[i] % 32];
-    const int room = CWI_FILE_NAME_BYTES - 1 - (int)(sizeof "..XXXXXX.part" - 1);
-    snprintf(temporary, CWI_FILE_NAME_BYTES, ".%.*s.%s.part", room, name, word);
+    const int capacity = CWI_FILE_NAME_BYTES - 1 - (int)(sizeof "..XXXXXX.part" - 1);
+    snprintf(temporary, CWI_FILE_NAME_BYTES, ".%.*s.%s.part", capacity, name, word);
 }
 
 /* Creates the temporary. The kernel applies the umask to a new file's 0666. The mode of a
@@ -343,12 +343,12 @@ static cw_status print_args(cwi_outfile *f, cw_error *err, const char *format, v
 {
     va_list again;
     va_copy(again, args);
-    const size_t room = BUFFER_BYTES - f->used;
-    const int length = vsnprintf((char *)f->buffer + f->used, room, format, args);
+    const size_t capacity = BUFFER_BYTES - f->used;
+    const int length = vsnprintf((char *)f->buffer + f->used, capacity, format, args);
     cw_status st = CW_OK;
     if (length < 0) {
         st = fail_system(err, "text cannot be formatted", errno);
-    } else if ((size_t)length < room) {
+    } else if ((size_t)length < capacity) {
         f->used += (size_t)length;
         f->size += (size_t)length;
     } else {

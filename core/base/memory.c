@@ -90,8 +90,8 @@ size_t cwi_memory_refused(size_t *left)
 
 size_t cwi_memory_left(void)
 {
-    const size_t most = atomic_load(&account->limit), now = atomic_load(&account->used);
-    return !most ? SIZE_MAX : most > now ? most - now : 0;
+    const size_t max = atomic_load(&account->limit), now = atomic_load(&account->used);
+    return !max ? SIZE_MAX : max > now ? max - now : 0;
 }
 
 /* Keeps the size of a request that failed. Returns NULL. */
@@ -121,13 +121,13 @@ cw_status cwi_fail_memory(cw_error *err)
 
 bool cwi_memory_take(size_t bytes)
 {
-    const size_t most = atomic_load_explicit(&account->limit, memory_order_relaxed);
+    const size_t max = atomic_load_explicit(&account->limit, memory_order_relaxed);
     const size_t before =
         atomic_fetch_add_explicit(&account->used, bytes, memory_order_relaxed);
-    if (!most || (before <= most && bytes <= most - before))
+    if (!max || (before <= max && bytes <= max - before))
         return true;
     atomic_fetch_sub_explicit(&account->used, bytes, memory_order_relaxed);
-    atomic_store(&account->refused_left, most > before ? most - before : 0);
+    atomic_store(&account->refused_left, max > before ? max - before : 0);
     atomic_store(&account->refused, bytes);
     note_failure(bytes);
     return false;
@@ -235,7 +235,7 @@ static void free_bytes(void *memory)
 }
 
 /* Returns the true size of allocated memory; 0: unknown, and then it is not counted. */
-static size_t room_of(void *memory)
+static size_t capacity_of(void *memory)
 {
     if (has_caller_allocator())
         return caller_size(memory);
@@ -251,7 +251,7 @@ static size_t room_of(void *memory)
  * the memory. */
 static void *count_memory(void *memory, size_t taken)
 {
-    const size_t has = room_of(memory);
+    const size_t has = capacity_of(memory);
     if (!memory)
         note_failure(taken);
     if (has > taken)
@@ -344,9 +344,9 @@ void *cwi_alloc_large(size_t count, size_t size)
 
 void *cwi_renew_large(void *memory, size_t count, size_t size)
 {
-    const size_t room = room_of(memory), more = memory ? count / 8 : 0;
+    const size_t capacity = capacity_of(memory), more = memory ? count / 8 : 0;
     size_t bytes;
-    if (memory && is_usable(count, size, &bytes) && bytes <= room && bytes >= room / 2)
+    if (memory && is_usable(count, size, &bytes) && bytes <= capacity && bytes >= capacity / 2)
         return memory;
     cwi_free(memory);
     return cwi_alloc_large(count + more, size);
@@ -354,7 +354,7 @@ void *cwi_renew_large(void *memory, size_t count, size_t size)
 
 void *cwi_realloc_array(void *memory, size_t count, size_t size)
 {
-    const size_t before = room_of(memory);
+    const size_t before = capacity_of(memory);
     size_t bytes;
     if (!is_usable(count, size, &bytes))
         return NULL;
@@ -373,7 +373,7 @@ void *cwi_realloc_array(void *memory, size_t count, size_t size)
 
 void cwi_free(void *memory)
 {
-    cwi_memory_give(room_of(memory));
+    cwi_memory_give(capacity_of(memory));
     free_bytes(memory);
 }
 

@@ -157,15 +157,15 @@ static cw_status load_module(const char *name, const void **functions, cw_error 
 
 cw_status cwi_module_load(const char *name, const void **functions, cw_error *err)
 {
-    enum { MOST = 64 }; /* rows of features */
-    static _Atomic(const void *) loaded[MOST];
+    enum { MAX_LOADED = 64 }; /* rows of features */
+    static _Atomic(const void *) loaded[MAX_LOADED];
     const cwi_feature_row *row = cwi_find_module_row(name);
-    const size_t at = row ? (size_t)(row - cwi_feature_rows) : MOST;
-    *functions = at < MOST ? atomic_load(loaded + at) : NULL;
+    const size_t at = row ? (size_t)(row - cwi_feature_rows) : MAX_LOADED;
+    *functions = at < MAX_LOADED ? atomic_load(loaded + at) : NULL;
     if (*functions)
         return CW_OK;
     const cw_status st = load_module(name, functions, err);
-    if (st == CW_OK && at < MOST)
+    if (st == CW_OK && at < MAX_LOADED)
         atomic_store(loaded + at, *functions);
     return st;
 }

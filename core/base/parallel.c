@@ -38,7 +38,7 @@ static void report_layer(layer_job *j, size_t layer)
 }
 
 /* Works on layers until none is left. */
-static void do_share(void *context, int number)
+static void run_items(void *context, int number)
 {
     layer_job *j = context;
     const bool was_inside = loop.is_inside;
@@ -62,13 +62,13 @@ static void do_share(void *context, int number)
 /* Returns the requested number of threads, or as many as there are enough samples for. */
 static int choose_threads(size_t layers, size_t layer_size, int requested)
 {
-    enum { SHARE = 1 << 19 }; /* samples that are worth one thread */
+    enum { SAMPLES_PER_THREAD = 1 << 19 }; /* samples that are worth one thread */
     if (loop.is_inside)
         return 1;
     size_t threads = (size_t)cwi_threads(requested);
-    const size_t shares = layers * layer_size / SHARE + 1;
-    if (requested <= 0 && shares < threads)
-        threads = shares;
+    const size_t max_threads = layers * layer_size / SAMPLES_PER_THREAD + 1;
+    if (requested <= 0 && max_threads < threads)
+        threads = max_threads;
     return (int)(layers < threads && layers > 0 ? layers : threads);
 }
 
@@ -94,12 +94,12 @@ cw_status cwi_parallel_for(size_t layers, size_t layer_size, int threads,
     if (layers > 0)
         report_layer(&j, 0);
     if (threads < 2 || layers == 0 || j.status != CW_OK) {
-        do_share(&j, 0);
+        run_items(&j, 0);
         return j.status;
     }
     cwi_job others;
-    cwi_job_start(&others, threads, do_share, &j);
-    do_share(&j, 0);
+    cwi_job_start(&others, threads, run_items, &j);
+    run_items(&j, 0);
     cwi_job_close(&others);
     while (!cwi_job_is_lost(&others)) {
         if (cwi_job_wait(&others, progress->report && j.status == CW_OK ? poll_s : -1))

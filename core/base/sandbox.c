@@ -101,13 +101,13 @@ static bool receive_parcel(int socket, void *bytes, size_t size, int *fd)
 
 /* --- the child --------------------------------------------------------------------------- */
 
-static void limit_resource(__rlimit_resource_t what, uint64_t most)
+static void limit_resource(__rlimit_resource_t what, uint64_t limit)
 {
     struct rlimit now;
     if (getrlimit(what, &now) != 0)
         return;
-    if (now.rlim_max > most)
-        now.rlim_max = most;
+    if (now.rlim_max > limit)
+        now.rlim_max = limit;
     now.rlim_cur = now.rlim_max;
     setrlimit(what, &now);
 }

@@ -90,7 +90,7 @@ cw_status cwi_progress(const cw_progress *progress, const char *step, double don
 static bool report_part(void *user, const char *step, double done)
 {
     const cwi_part_progress *p = user;
-    return p->whole->report(p->whole->user, step, p->from + p->share * done);
+    return p->whole->report(p->whole->user, step, p->from + p->fraction * done);
 }
 
 cw_progress cwi_progress_part(const cwi_part_progress *part)

@@ -53,7 +53,7 @@ CW_NODISCARD cw_status cwi_progress(const cw_progress *progress, const char *ste
 /* A part of a call, whose progress is a share of the whole. */
 typedef struct cwi_part_progress {
     const cw_progress *whole;
-    double from, share;
+    double from, fraction;
 } cwi_part_progress;
 
 /* Returns the progress that the part reports to; it borrows the part. */

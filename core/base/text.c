@@ -157,19 +157,19 @@ size_t cwi_utf8_length(const char *text)
 /* Text that is written to memory: *text has room for a terminating zero. */
 typedef struct text_sink {
     char **text;
-    size_t *size, room;
+    size_t *size, capacity;
 } text_sink;
 
 static ssize_t put_text(void *to, const char *bytes, size_t size)
 {
     text_sink *sink = to;
-    if (size >= sink->room - *sink->size) {
-        const size_t room = 2 * (sink->room + size);
-        char *more = realloc(*sink->text, room);
+    if (size >= sink->capacity - *sink->size) {
+        const size_t capacity = 2 * (sink->capacity + size);
+        char *more = realloc(*sink->text, capacity);
         if (!more)
             return 0;
         *sink->text = more;
-        sink->room = room;
+        sink->capacity = capacity;
     }
     memcpy(*sink->text + *sink->size, bytes, size);
     *sink->size += size;

@@ -12,7 +12,7 @@
 
 struct cwi_thread_pool {
     pthread_mutex_t lock; /* for all that is not atomic */
-    pthread_cond_t wanted;
+    pthread_cond_t has_work;
     cwi_job *jobs; /* those with free seats */
     int threads;   /* that exist, or are being made */
     int working;   /* of these, on a job */
@@ -21,7 +21,7 @@ struct cwi_thread_pool {
 };
 
 static cwi_thread_pool own_pool = {.lock = PTHREAD_MUTEX_INITIALIZER,
-                                   .wanted = PTHREAD_COND_INITIALIZER};
+                                   .has_work = PTHREAD_COND_INITIALIZER};
 
 /* The pool of this process. Threads may load a module at the same time: each shares the same pool
  * with it. */
@@ -46,7 +46,7 @@ static void forget_threads(void)
     static const pthread_cond_t unused = PTHREAD_COND_INITIALIZER;
     cwi_thread_pool *p = pool;
     p->lock = unlocked;
-    p->wanted = unused;
+    p->has_work = unused;
     p->jobs = NULL;
     p->threads = p->working = 0;
     atomic_fetch_add(&p->forks, 1);
@@ -97,7 +97,7 @@ static void *serve_jobs(void *of)
     pthread_mutex_lock(&p->lock);
     for (;;) {
         while (!p->jobs)
-            pthread_cond_wait(&p->wanted, &p->lock);
+            pthread_cond_wait(&p->has_work, &p->lock);
         join_job(p, p->jobs);
     }
     return NULL;
@@ -140,12 +140,12 @@ static void make_threads(cwi_thread_pool *p, int count)
 /* Returns how many threads to make for all free seats. */
 static int count_missing(const cwi_thread_pool *p)
 {
-    const int idle = p->threads - p->working, most = CWI_MAX_THREADS - 1 - p->threads;
+    const int idle = p->threads - p->working, max_new = CWI_MAX_THREADS - 1 - p->threads;
     int seats = 0;
     for (const cwi_job *job = p->jobs; job; job = job->next)
         seats += job->free_seats;
     const int missing = seats > idle ? seats - idle : 0;
-    return missing < most ? missing : most;
+    return missing < max_new ? missing : max_new;
 }
 
 /* --- jobs ---------------------------------------------------------------------------------- */
@@ -172,9 +172,9 @@ void cwi_job_start(cwi_job *job, int threads, void (*run)(void *context, int num
     const int missing = count_missing(p);
     p->threads += missing;
     if (idle > 0 && idle <= job->free_seats)
-        pthread_cond_broadcast(&p->wanted);
+        pthread_cond_broadcast(&p->has_work);
     for (int n = 0; n < job->free_seats && idle > job->free_seats; n++)
-        pthread_cond_signal(&p->wanted);
+        pthread_cond_signal(&p->has_work);
     pthread_mutex_unlock(&p->lock);
     make_threads(p, missing);
 }

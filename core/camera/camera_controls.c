@@ -98,9 +98,9 @@ cw_status cw_camera_pan(cw_camera *camera, size_t height, double right_px, doubl
     const double depth = camera->fov_deg > 0 ? target_distance(camera) : 1;
     const double scale = 2 * half_height(camera) * depth / (double)height;
     for (int i = 0; i < 3; i++) {
-        const double way = scale * (down_px * a.up[i] - right_px * a.right[i]);
-        camera->eye[i] += way;
-        camera->target[i] += way;
+        const double displacement = scale * (down_px * a.up[i] - right_px * a.right[i]);
+        camera->eye[i] += displacement;
+        camera->target[i] += displacement;
     }
     return CW_OK;
 }
@@ -123,12 +123,12 @@ static void find_turning_axis(const cw_camera *c, const axes *a, double axis[3])
  * meet. */
 static double clamp_climb(const axes *a, const double axis[3], double degrees)
 {
-    static const double most = 90 - 1e-4;
+    static const double MAX_ELEVATION_DEG = 90 - 1e-4;
     double level[3];
     cwi_cross(a->forward, axis, level);
     const double now = atan2(-cwi_dot(a->forward, axis), cwi_length(level));
     const double elevation = now * 180 / CWI_PI;
-    return fmin(fmax(elevation + degrees, -most), most) - elevation;
+    return fmin(fmax(elevation + degrees, -MAX_ELEVATION_DEG), MAX_ELEVATION_DEG) - elevation;
 }
 
 cw_status cw_camera_orbit(cw_camera *camera, double right_deg, double up_deg, cw_error *err)

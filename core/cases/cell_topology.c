@@ -22,10 +22,10 @@ static int compare_products(double a, double c, double b, double d)
 {
     if (a * c != b * d)
         return a * c > b * d ? 1 : -1;
-    const double least = cwi_lesser(cwi_lesser(fabs(a), fabs(b)), cwi_lesser(fabs(c), fabs(d)));
-    const double most =
+    const double min = cwi_lesser(cwi_lesser(fabs(a), fabs(b)), cwi_lesser(fabs(c), fabs(d)));
+    const double max =
         cwi_greater(cwi_greater(fabs(a), fabs(b)), cwi_greater(fabs(c), fabs(d)));
-    if (least < PLAIN_MIN || most > PLAIN_MAX) {
+    if (min < PLAIN_MIN || max > PLAIN_MAX) {
         int exponent[4];
         a = frexp(a, &exponent[0]);
         c = frexp(c, &exponent[1]);
@@ -482,14 +482,14 @@ static void flatten_loop(const builder *b, const projection *p, int loop, flat_l
 /* Returns the smallest distance from a point inside to the lines of a polygon's sides. */
 static double measure_clearance(const flat_loop *f, const double centre[2])
 {
-    double least = 1;
+    double min = 1;
     for (int i = 0; i < f->count; i++) {
         const double *p = f->at[i], *q = f->at[(i + 1) % f->count];
         const double length = hypot(q[0] - p[0], q[1] - p[1]);
         if (length > 0)
-            least = fmin(least, f->turn * cross_in_plane(p, q, centre) / length);
+            min = fmin(min, f->turn * cross_in_plane(p, q, centre) / length);
     }
-    return fmax(least, 1e-6);
+    return fmax(min, 1e-6);
 }
 
 /* Computes the direction of corner i of the ring, counter-clockwise. */
@@ -505,15 +505,15 @@ static void ring_direction(int i, double d[2])
  * point sees the side. */
 static int find_farthest(const flat_loop *f, const double centre[2], int i, int j)
 {
-    double d[2], e[2], most = -INFINITY;
+    double d[2], e[2], max = -INFINITY;
     int found = 0;
     ring_direction(i, d);
     ring_direction(j, e);
     for (int n = 0; n < f->count; n++) {
         const double out = (d[0] + e[0]) * (f->at[n][0] - centre[0]) +
                            (d[1] + e[1]) * (f->at[n][1] - centre[1]);
-        if (out > most) {
-            most = out;
+        if (out > max) {
+            max = out;
             found = n;
         }
     }

@@ -88,7 +88,7 @@ void cwi_cell_sampler_free(cwi_cell_sampler *s)
 /* A point, and the tetrahedron so far that it is least outside of. */
 typedef struct search {
     const cwi_cell_sampler *sampler;
-    double point[3], least; /* the lowest weight of a corner */
+    double point[3], min_weight; /* the lowest weight of a corner */
     double weights[4];
     uint32_t corners[4];
 } search;
@@ -116,17 +116,17 @@ static void try_corners(search *q, const uint32_t corners[4])
     const double volume = cwi_dot(side[0], crossed[0]);
     if (volume == 0)
         return;
-    double least = 1;
+    double min_weight = 1;
     weights[0] = 1;
     for (int n = 0; n < 3; n++) {
         weights[n + 1] = cwi_dot(to, crossed[n]) / volume;
         weights[0] -= weights[n + 1];
     }
     for (int n = 0; n < 4; n++)
-        least = cwi_lesser(least, weights[n]);
-    if (!(least > q->least))
+        min_weight = cwi_lesser(min_weight, weights[n]);
+    if (!(min_weight > q->min_weight))
         return;
-    q->least = least;
+    q->min_weight = min_weight;
     for (int n = 0; n < 4; n++) {
         q->weights[n] = weights[n];
         q->corners[n] = corners[n];
@@ -162,19 +162,19 @@ static bool visit_node(void *context, size_t node)
         if (slot < tree->count)
             try_cell(q, tree->order[slot]);
     }
-    return q->least < 0; /* inside of one: that is it */
+    return q->min_weight < 0; /* inside of one: that is it */
 }
 
 double cwi_cell_sample(const cwi_cell_sampler *s, const double world[3])
 {
-    search q = {.sampler = s, .least = -INFINITY};
+    search q = {.sampler = s, .min_weight = -INFINITY};
     double sum = 0, all = 0;
     cwi_sub(world, s->center, q.point);
     const float p[3] = {(float)q.point[0], (float)q.point[1], (float)q.point[2]},
                 box[6] = {p[0], p[1], p[2], p[0], p[1], p[2]};
     if (s->tree.count)
         cwi_boxes_visit(&s->tree, box, 0, visit_node, &q);
-    if (!(q.least >= -OUTSIDE))
+    if (!(q.min_weight >= -OUTSIDE))
         return NAN;
     for (int n = 0; n < 4; n++) {
         const double weight = cwi_greater(0, q.weights[n]);

@@ -144,8 +144,10 @@ cw_status cw_mesh_color(cw_mesh *mesh, cw_colormap map, double low, double high,
         return cwi_fail_memory(err);
     for (size_t v = 0; v < mesh->vertex_count; v++) {
         const double value = (double)mesh->scalars[v];
-        const double share = high > low ? (value - low) / (high - low) : value > high ? 1 : 0;
-        cw_colormap_color(map, share, colors + 4 * v);
+        const double fraction = high > low     ? (value - low) / (high - low)
+                                : value > high ? 1
+                                               : 0;
+        cw_colormap_color(map, fraction, colors + 4 * v);
         colors[4 * v + 3] = 255;
     }
     return CW_OK;

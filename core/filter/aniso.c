@@ -18,7 +18,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST = 100, LEAST_CHUNK = 16, MOST_CHUNK = 128 };
+enum { MAX_ITERATIONS = 100, MIN_CHUNK = 16, MAX_CHUNK = 128 };
 
 /* Slices that a thread keeps of each step: of values, smoothed ones, and flows. */
 enum { RAW = 4, SMOOTH = 3, FLOWS = 1, REACH = 2 };
@@ -252,12 +252,12 @@ static void filter_chunk(void *context, size_t chunk)
 /* Sets the distances between voxels and the step, for which no weight of a voxel is negative. */
 static void set_distances(work *k)
 {
-    double mm[3], least = INFINITY, sum = 0;
+    double mm[3], min_mm = INFINITY, sum = 0;
     cw_volume_spacing(k->in, mm);
     for (int a = 0; a < 3; a++)
-        least = mm[a] > 0 && k->in->dim[a] > 1 ? fmin(least, mm[a]) : least;
+        min_mm = mm[a] > 0 && k->in->dim[a] > 1 ? fmin(min_mm, mm[a]) : min_mm;
     for (int a = 0; a < 3; a++) {
-        const double ratio = mm[a] > 0 && isfinite(least) ? fmin(least / mm[a], 1) : 1;
+        const double ratio = mm[a] > 0 && isfinite(min_mm) ? fmin(min_mm / mm[a], 1) : 1;
         k->per_voxel[a] = (float)ratio;
         sum += k->in->dim[a] > 1 ? ratio * ratio : 0;
     }
@@ -294,9 +294,11 @@ static size_t choose_threads(const work *k, const cw_filter_desc *d)
 static cw_status run_steps(work *k, const cw_filter_desc *d, cw_error *err)
 {
     const size_t *dim = k->in->dim, threads = choose_threads(k, d);
-    const size_t share = (dim[2] + threads - 1) / threads;
+    const size_t chunk_layers = (dim[2] + threads - 1) / threads;
     cwi_stop stop;
-    k->chunk = share < LEAST_CHUNK ? LEAST_CHUNK : share > MOST_CHUNK ? MOST_CHUNK : share;
+    k->chunk = chunk_layers < MIN_CHUNK   ? MIN_CHUNK
+               : chunk_layers > MAX_CHUNK ? MAX_CHUNK
+                                          : chunk_layers;
     const size_t chunks = (dim[2] + k->chunk - 1) / k->chunk;
     const size_t bytes = bench_bytes(k) * (threads < chunks ? threads : chunks);
     cw_status st = cwi_filter_result(k->in, dim, d, bytes, k->out, err);
@@ -325,9 +327,9 @@ cw_status cw_volume_aniso(const cw_volume *volume, size_t steps, double contrast
     const cw_filter_desc none = {0}, *d = desc ? desc : &none;
     cw_volume in;
     *out = (cw_volume){0};
-    if (steps < 1 || steps > MOST)
+    if (steps < 1 || steps > MAX_ITERATIONS)
         return cwi_fail(err, CW_ERR_ARGUMENT, "steps is %zu; 1 to %d were expected", steps,
-                        MOST);
+                        MAX_ITERATIONS);
     if (!(contrast >= 0 && isfinite(contrast)))
         return cwi_fail(err, CW_ERR_ARGUMENT, "contrast is %g; 0 or more was expected",
                         contrast);

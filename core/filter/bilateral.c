@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-static const double MOST = 4, REACH = 2.5; /* in voxels; in standard deviations */
+static const double MAX_RADIUS = 4, REACH = 2.5; /* in voxels; in standard deviations */
 
 /* sigma_value / noise where it is not given. */
 static const double SIMILAR = 2.5;
@@ -29,10 +29,10 @@ static cw_status list_neighbors(const double sigma[3], const size_t halo[3], nei
                                 cw_error *err)
 {
     const ptrdiff_t h[3] = {(ptrdiff_t)halo[0], (ptrdiff_t)halo[1], (ptrdiff_t)halo[2]};
-    const size_t most = (2 * halo[0] + 1) * (2 * halo[1] + 1) * (2 * halo[2] + 1);
+    const size_t max_neighbors = (2 * halo[0] + 1) * (2 * halo[1] + 1) * (2 * halo[2] + 1);
     ptrdiff_t row, slice;
     cwi_tile_strides(halo, &row, &slice);
-    *out = (neighbors){.items = cwi_alloc_array(most, sizeof *out->items)};
+    *out = (neighbors){.items = cwi_alloc_array(max_neighbors, sizeof *out->items)};
     if (!out->items)
         return cwi_fail_memory(err);
     for (ptrdiff_t z = -h[2]; z <= h[2]; z++)
@@ -99,9 +99,10 @@ cw_status cw_volume_bilateral(const cw_volume *volume, const double sigma[3],
     cw_volume in;
     *out = (cw_volume){0};
     for (int a = 0; a < 3; a++)
-        if (!(sigma[a] >= 0 && sigma[a] <= MOST))
+        if (!(sigma[a] >= 0 && sigma[a] <= MAX_RADIUS))
             return cwi_fail(err, CW_ERR_ARGUMENT,
-                            "sigma_voxels[%d] is %g; 0 to %g were expected", a, sigma[a], MOST);
+                            "sigma_voxels[%d] is %g; 0 to %g were expected", a, sigma[a],
+                            MAX_RADIUS);
     if (!(sigma_value >= 0 && isfinite(sigma_value)))
         return cwi_fail(err, CW_ERR_ARGUMENT, "sigma_value is %g; 0 or more was expected",
                         sigma_value);

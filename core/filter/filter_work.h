@@ -5,7 +5,7 @@
 #include <cubewright/filter.h>
 
 /* Widest Gaussians in voxels, and how far they reach in standard deviations. */
-enum { CWI_GAUSS_MOST = 64, CWI_GAUSS_REACH = 4 };
+enum { CWI_GAUSS_MAX = 64, CWI_GAUSS_REACH = 4 };
 
 /* Resolves the first component and step of a volume for a filter.
  * what     names the filter in errors

@@ -30,10 +30,10 @@ cw_status cw_volume_gauss(const cw_volume *volume, const double sigma[3],
     cw_volume in;
     *out = (cw_volume){0};
     for (int a = 0; a < 3; a++)
-        if (!(sigma[a] >= 0 && sigma[a] <= CWI_GAUSS_MOST))
+        if (!(sigma[a] >= 0 && sigma[a] <= CWI_GAUSS_MAX))
             return cwi_fail(err, CW_ERR_ARGUMENT,
                             "sigma_voxels[%d] is %g; 0 to %d were expected", a, sigma[a],
-                            CWI_GAUSS_MOST);
+                            CWI_GAUSS_MAX);
     cw_status st = cwi_filter_input(volume, "a Gaussian", &in, err);
     for (int a = 0; a < 3 && st == CW_OK; a++)
         st = set_weights(w + a, in.dim[a], sigma[a], err);

@@ -13,10 +13,10 @@ typedef struct work {
     const cw_volume *in;
     cw_volume *out;
     const cw_inside *inside;
-    const uint8_t *wanted;
+    const uint8_t *selected;
     uint8_t *found;
-    double mirror;      /* stored number at the level */
-    double least, most; /* of the type */
+    double mirror;    /* stored number at the level */
+    double low, high; /* of the type */
     bool is_integer, has_gaps, starved, stuck;
 } work;
 
@@ -86,7 +86,7 @@ static double mirror_number(work *k, double stored)
                up = stored < k->mirror || (stored == k->mirror && k->in->slope < 0);
     double x = 2 * k->mirror - stored;
     if (k->is_integer)
-        x = fmin(fmax(rint(x), k->least), k->most);
+        x = fmin(fmax(rint(x), k->low), k->high);
     else if (k->in->type == CW_F32)
         x = (double)(float)x;
     for (int tries = 0; tries < 4; tries++) { /* rounding takes one, no data another */
@@ -95,7 +95,7 @@ static double mirror_number(work *k, double stored)
             break;
         x = step_number(k, x, up);
     }
-    if (cwi_value_is_inside(k->in, k->inside, x) == was || x < k->least || x > k->most) {
+    if (cwi_value_is_inside(k->in, k->inside, x) == was || x < k->low || x > k->high) {
         cwi_set_flag(&k->stuck);
         return stored;
     }
@@ -108,12 +108,12 @@ static void change_slice(void *context, size_t z)
     const size_t nx = k->in->dim[0], ny = k->in->dim[1], size = cw_type_size(k->in->type);
     double *row = alloc_row(k);
     for (size_t j = 0; j < ny && row; j++) {
-        const uint8_t *wanted = k->wanted + (z * ny + j) * nx;
+        const uint8_t *selected = k->selected + (z * ny + j) * nx;
         char *to = (char *)cw_volume_voxels(k->out) + (z * ny + j) * nx * size;
         cwi_filter_load(k->in, j, z, row, row + nx);
         for (size_t i = 0; i < nx; i++, to += size)
             if (row[nx + i] > 0 &&
-                cwi_value_is_inside(k->in, k->inside, row[i]) != (wanted[i] != 0))
+                cwi_value_is_inside(k->in, k->inside, row[i]) != (selected[i] != 0))
                 cwi_voxel_put(k->out->type, to, mirror_number(k, row[i]));
             else
                 memcpy(to, cwi_voxel_address(k->in, i, j, z), size);
@@ -129,15 +129,15 @@ static void set_limits(work *k)
         [CW_U32] = {0, (double)UINT32_MAX}, [CW_I32] = {INT32_MIN, INT32_MAX},
     };
     k->is_integer = k->in->type != CW_F32 && k->in->type != CW_F64;
-    k->least = k->is_integer ? limits[k->in->type][0] : (double)-INFINITY;
-    k->most = k->is_integer ? limits[k->in->type][1] : (double)INFINITY;
+    k->low = k->is_integer ? limits[k->in->type][0] : (double)-INFINITY;
+    k->high = k->is_integer ? limits[k->in->type][1] : (double)INFINITY;
 }
 
-cw_status cwi_change_inside(const cw_volume *in, const cw_inside *inside, const uint8_t *wanted,
-                            size_t bytes, const cw_filter_desc *desc, cw_volume *out,
-                            cw_error *err)
+cw_status cwi_change_inside(const cw_volume *in, const cw_inside *inside,
+                            const uint8_t *selected, size_t bytes, const cw_filter_desc *desc,
+                            cw_volume *out, cw_error *err)
 {
-    work k = {.in = in, .out = out, .inside = inside, .wanted = wanted};
+    work k = {.in = in, .out = out, .inside = inside, .selected = selected};
     k.mirror = (inside->level - in->intercept) / in->slope;
     set_limits(&k);
     cw_status st = cwi_filter_result(in, in->dim, desc, bytes, out, err);

@@ -12,7 +12,7 @@ typedef struct work {
     const cw_volume *in, *mask;
     const cw_inside *inside;
     double to_mask[3][4]; /* from an index of the volume to one of the mask */
-    uint8_t *wanted;
+    uint8_t *selected;
 } work;
 
 /* Sets the transform from indices of the volume to those of the mask. Both are affine. */
@@ -56,18 +56,18 @@ static bool is_masked_in(const work *k, size_t i, size_t j, size_t z)
 static void mask_slice(void *context, size_t z)
 {
     const work *k = context;
-    uint8_t *to = k->wanted + z * k->in->dim[0] * k->in->dim[1];
+    uint8_t *to = k->selected + z * k->in->dim[0] * k->in->dim[1];
     for (size_t j = 0; j < k->in->dim[1]; j++)
         for (size_t i = 0; i < k->in->dim[0]; i++, to++)
             *to = *to && is_masked_in(k, i, j, z);
 }
 
-static cw_status find_wanted(work *k, const cw_filter_desc *d, cw_error *err)
+static cw_status find_selected(work *k, const cw_filter_desc *d, cw_error *err)
 {
     const size_t *dim = k->in->dim;
     cw_status st = set_transform(k, err);
     if (st == CW_OK)
-        st = cwi_find_inside(k->in, k->inside, d, k->wanted, err);
+        st = cwi_find_inside(k->in, k->inside, d, k->selected, err);
     if (st == CW_OK)
         st = cwi_parallel_for(dim[2], dim[0] * dim[1], d->threads, &d->progress, "masking",
                               mask_slice, k, err);
@@ -91,12 +91,12 @@ cw_status cw_volume_mask(const cw_volume *volume, const cw_volume *mask,
     if (st != CW_OK)
         return st;
     const size_t count = in.dim[0] * in.dim[1] * in.dim[2];
-    work k = {.in = &in, .mask = &m, .inside = inside, .wanted = cwi_alloc_array(count, 1)};
-    if (!k.wanted)
+    work k = {.in = &in, .mask = &m, .inside = inside, .selected = cwi_alloc_array(count, 1)};
+    if (!k.selected)
         return cwi_fail_memory(err);
-    st = find_wanted(&k, d, err);
+    st = find_selected(&k, d, err);
     if (st == CW_OK)
-        st = cwi_change_inside(&in, inside, k.wanted, count, d, out, err);
-    cwi_free(k.wanted);
+        st = cwi_change_inside(&in, inside, k.selected, count, d, out, err);
+    cwi_free(k.selected);
     return st;
 }

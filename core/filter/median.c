@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { LANES = 16, SIDE = 3, CUBE = 27, KEPT = CUBE / 2 + 2, MOST = 3 };
+enum { LANES = 16, SIDE = 3, CUBE = 27, KEPT = CUBE / 2 + 2, MAX_RADIUS = 3 };
 
 typedef struct work {
     const cw_volume *in;
@@ -102,9 +102,9 @@ cw_status cw_volume_median(const cw_volume *volume, size_t radius, const cw_filt
     const cw_filter_desc none = {0}, *d = desc ? desc : &none;
     cw_volume in;
     *out = (cw_volume){0};
-    if (radius < 1 || radius > MOST)
+    if (radius < 1 || radius > MAX_RADIUS)
         return cwi_fail(err, CW_ERR_ARGUMENT, "radius is %zu; 1 to %d were expected", radius,
-                        MOST);
+                        MAX_RADIUS);
     cw_status st = cwi_filter_input(volume, "a median", &in, err);
     if (st == CW_OK)
         st = cwi_filter_result(&in, in.dim, d, 0, out, err);

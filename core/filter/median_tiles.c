@@ -15,9 +15,9 @@
 enum {
     WIDE = 32,
     HIGH = 16, /* voxels of a tile along x; along y and z */
-    MOST_RADIUS = 3,
-    MOST = (WIDE + 2 * MOST_RADIUS) * (HIGH + 2 * MOST_RADIUS) * (HIGH + 2 * MOST_RADIUS),
-    WORDS = MOST / 64 + 1,
+    MAX_RADIUS = 3,
+    MAX_VALUES = (WIDE + 2 * MAX_RADIUS) * (HIGH + 2 * MAX_RADIUS) * (HIGH + 2 * MAX_RADIUS),
+    WORDS = MAX_VALUES / 64 + 1,
     NO_RANK = UINT16_MAX,
     DIGIT = 8, /* bits that a pass of sorting looks at */
     DIGITS = 1 << DIGIT
@@ -38,9 +38,9 @@ typedef struct sorted_value {
 
 /* A tile with the voxels around it, and a cube in it. */
 typedef struct bench {
-    double values[MOST], valid[MOST];
-    sorted_value sorted[MOST], swap[MOST];
-    uint16_t ranks[MOST];
+    double values[MAX_VALUES], valid[MAX_VALUES];
+    sorted_value sorted[MAX_VALUES], swap[MAX_VALUES];
+    uint16_t ranks[MAX_VALUES];
     uint64_t set[WORDS];
     size_t row, slice;         /* voxels from one to the next along y and z */
     size_t count, word, below; /* of the cube: ranks; a word; ranks in the words before */

@@ -14,7 +14,7 @@
 #include <string.h>
 
 enum {
-    MOST = 5,
+    MAX_RADIUS = 5,
     DEFAULT_RADIUS = 3,
     WIDE = CWI_TILE_WIDE,
     HIGH = CWI_TILE_HIGH,
@@ -43,19 +43,19 @@ enum { WORK = TALL * TALL * WIDE + TALL * HIGH * WIDE + 2 * VOXELS };
 static void sum_along_x(const float *restrict values, const float *restrict others,
                         float *restrict to)
 {
-    float squares[WIDE + 2];
+    float distances_sq[WIDE + 2];
 #ifndef __clang__ /* which warns where optimisation is off */
 #pragma omp simd
 #endif
     for (int i = 0; i < WIDE + 2; i++) {
         const float d = values[i - 1] - others[i - 1];
-        squares[i] = d == d ? d * d : 2;
+        distances_sq[i] = d == d ? d * d : 2;
     }
 #ifndef __clang__
 #pragma omp simd
 #endif
     for (int i = 0; i < WIDE; i++)
-        to[i] = squares[i] + squares[i + 1] + squares[i + 2];
+        to[i] = distances_sq[i] + distances_sq[i + 1] + distances_sq[i + 2];
 }
 
 static void add_rows(const float *restrict a, const float *restrict b, const float *restrict c,
@@ -143,12 +143,12 @@ static void correct_tile(const void *context, const cwi_filter_tile *tile, float
 /* The search is as far along each axis as along that of the shortest distance between voxels. */
 static void set_search(const cw_volume *in, size_t radius, search *s, size_t halo[3])
 {
-    double mm[3], least = INFINITY;
+    double mm[3], min_mm = INFINITY;
     cw_volume_spacing(in, mm);
     for (int a = 0; a < 3; a++)
-        least = mm[a] > 0 && in->dim[a] > 1 ? fmin(least, mm[a]) : least;
+        min_mm = mm[a] > 0 && in->dim[a] > 1 ? fmin(min_mm, mm[a]) : min_mm;
     for (int a = 0; a < 3; a++) {
-        const double fewer = mm[a] > 0 && isfinite(least) ? fmin(least / mm[a], 1) : 1;
+        const double fewer = mm[a] > 0 && isfinite(min_mm) ? fmin(min_mm / mm[a], 1) : 1;
         const double far = fmax(rint((double)radius * fewer), 1);
         s->radius[a] = in->dim[a] > 1 ? (ptrdiff_t)far : 0;
         halo[a] = (size_t)s->radius[a] + 1;
@@ -168,9 +168,9 @@ cw_status cw_volume_nlm(const cw_volume *volume, double noise, size_t radius,
     *out = (cw_volume){0};
     if (!(noise >= 0 && isfinite(noise)))
         return cwi_fail(err, CW_ERR_ARGUMENT, "noise is %g; 0 or more was expected", noise);
-    if (radius > MOST)
+    if (radius > MAX_RADIUS)
         return cwi_fail(err, CW_ERR_ARGUMENT, "radius is %zu; 0 to %d were expected", radius,
-                        MOST);
+                        MAX_RADIUS);
     cw_status st = cwi_filter_input(volume, "non-local means", &in, err);
     if (st == CW_OK && noise == 0)
         st = cw_volume_noise(&in, d->threads, &noise, err);

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-static const double MOST = 1e9; /* samples along an axis */
+static const double MAX_SAMPLES = 1e9; /* samples along an axis */
 
 static double linear_kernel(double x, double width)
 {
@@ -64,10 +64,10 @@ static cw_status plan_axis(const cw_volume *in, int a, double spacing, axis *out
     const double old = at && last ? (at[last] - at[0]) / (double)last : 1;
     const double step = spacing > 0 && mm[a] > 0 ? old * (spacing / mm[a]) : old;
     const double steps = (double)last * old / step;
-    if (!(steps < MOST))
+    if (!(steps < MAX_SAMPLES))
         return cwi_fail(err, CW_ERR_LIMIT,
                         "spacing_mm[%d] of %g makes more than %g samples along an axis", a,
-                        spacing, MOST);
+                        spacing, MAX_SAMPLES);
     *out = (axis){.first = at ? at[0] : 0,
                   .step = step,
                   .wider = fmax(1, step / old),
@@ -79,8 +79,9 @@ static cw_status set_weights(cwi_axis_weights *w, const cw_volume *in, int a, co
                              const kernel *k, cw_error *err)
 {
     const double reach = k->reach * x->wider;
-    const double most = floor(2 * reach) + 1;
-    const size_t samples = in->dim[a], taps = most < (double)samples ? (size_t)most : samples;
+    const double max_taps = floor(2 * reach) + 1;
+    const size_t samples = in->dim[a],
+                 taps = max_taps < (double)samples ? (size_t)max_taps : samples;
     cw_status st = cwi_axis_weights_init(w, x->count, taps, err);
     for (size_t n = 0; n < x->count && st == CW_OK; n++) {
         const double at = x->first + (double)n * x->step;

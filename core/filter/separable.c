@@ -167,7 +167,7 @@ static bool is_gap(const work *k, size_t i, size_t j, size_t z)
 static const double ROUNDING = 1e-12;
 
 /* Weights of kernels may be negative: where too few values are left, their sum means nothing. */
-static const double LEAST_WEIGHT = 0.25;
+static const double MIN_WEIGHT = 0.25;
 
 static void store_row(const work *k, const bench *b, size_t j, size_t z)
 {
@@ -176,7 +176,7 @@ static void store_row(const work *k, const bench *b, size_t j, size_t z)
     for (size_t i = 0; i < mx; i++, to += size) {
         const double left = k->has_gaps ? b->line[mx + i] : 1,
                      weight = fabs(left - 1) < ROUNDING ? 1 : left;
-        if (k->has_gaps && (is_gap(k, i, j, z) || weight < LEAST_WEIGHT))
+        if (k->has_gaps && (is_gap(k, i, j, z) || weight < MIN_WEIGHT))
             cwi_filter_store_gap(k->out, to);
         else
             cwi_filter_store(k->out, to, b->line[i] / weight);

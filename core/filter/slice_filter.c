@@ -11,14 +11,14 @@
 #include <string.h>
 
 /* Limits of the slices that are made together: their bytes, their number. */
-enum { BLOCK_BYTES = 32 << 20, MOST_SLICES = 64 };
+enum { BLOCK_BYTES = 32 << 20, MAX_SLICES = 64 };
 
 struct cw_slice_filter {
     cw_slice_source source;
     cw_slice_filter_desc desc;
     size_t ahead, slice_bytes;
     char *raw; /* slices of the source from raw_first on, packed */
-    size_t raw_first, raw_count, room;
+    size_t raw_first, raw_count, capacity;
     cw_volume made;                /* filtered slices: */
     size_t made_first, made_count; /* of the volume; made has others before them: */
     size_t made_skip;
@@ -106,10 +106,10 @@ static cw_status check_desc(const cw_slice_filter_desc *d, cw_error *err)
     if (d->kind != CW_SLICE_GAUSS && d->kind != CW_SLICE_MEDIAN)
         return cwi_fail(err, CW_ERR_ARGUMENT, "kind is %d; it must be 0 or 1", (int)d->kind);
     for (int a = 0; a < 3 && d->kind == CW_SLICE_GAUSS; a++)
-        if (!(d->sigma_voxels[a] >= 0 && d->sigma_voxels[a] <= CWI_GAUSS_MOST))
+        if (!(d->sigma_voxels[a] >= 0 && d->sigma_voxels[a] <= CWI_GAUSS_MAX))
             return cwi_fail(err, CW_ERR_ARGUMENT,
                             "sigma_voxels[%d] is %g; 0 to %d were expected", a,
-                            d->sigma_voxels[a], CWI_GAUSS_MOST);
+                            d->sigma_voxels[a], CWI_GAUSS_MAX);
     if (d->kind == CW_SLICE_MEDIAN && (d->radius < 1 || d->radius > 3))
         return cwi_fail(err, CW_ERR_ARGUMENT, "radius is %zu; 1 to 3 were expected", d->radius);
     return CW_OK;
@@ -147,15 +147,15 @@ cw_status cw_slice_filter_new(const cw_slice_source *source, const cw_slice_filt
                    : desc->radius;
     f->slice_bytes = dim[0] * dim[1] * cw_type_size(source->shape.type);
     if (!f->desc.slices)
-        f->desc.slices = BLOCK_BYTES / f->slice_bytes < MOST_SLICES
+        f->desc.slices = BLOCK_BYTES / f->slice_bytes < MAX_SLICES
                              ? BLOCK_BYTES / f->slice_bytes
-                             : MOST_SLICES;
+                             : MAX_SLICES;
     /* as many as the filter looks at, so that its window is never cut but at the ends */
     if (f->desc.slices <= f->ahead)
         f->desc.slices = f->ahead + 1;
-    f->room = f->desc.slices + 2 * f->ahead;
-    f->room = f->room < dim[2] ? f->room : dim[2];
-    f->raw = cwi_alloc_large(f->room, f->slice_bytes);
+    f->capacity = f->desc.slices + 2 * f->ahead;
+    f->capacity = f->capacity < dim[2] ? f->capacity : dim[2];
+    f->raw = cwi_alloc_large(f->capacity, f->slice_bytes);
     if (!f->raw) {
         cwi_free(f);
         return cwi_fail_memory(err);

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST = 250, FAR = 255 }; /* in voxels; a distance of none */
+enum { MAX_RADIUS = 250, FAR = 255 }; /* in voxels; a distance of none */
 
 typedef struct work {
     const uint8_t *from;
@@ -23,10 +23,10 @@ typedef struct work {
 cw_status cwi_check_radius(const double radius[3], cw_error *err)
 {
     for (int a = 0; a < 3; a++)
-        if (!(radius[a] >= 0 && radius[a] <= MOST))
+        if (!(radius[a] >= 0 && radius[a] <= MAX_RADIUS))
             return cwi_fail(err, CW_ERR_ARGUMENT,
                             "radius_voxels[%d] is %g; 0 to %d were expected", a, radius[a],
-                            MOST);
+                            MAX_RADIUS);
     return CW_OK;
 }
 
@@ -40,14 +40,14 @@ static void measure_columns(void *context, size_t j)
         uint8_t *to = k->to + z * slice + j * nx;
         for (size_t i = 0; i < nx; i++) {
             const int before = z ? to[(ptrdiff_t)i - (ptrdiff_t)slice] : FAR;
-            to[i] = (uint8_t)(from[i] == k->value ? 0 : before < MOST ? before + 1 : FAR);
+            to[i] = (uint8_t)(from[i] == k->value ? 0 : before < MAX_RADIUS ? before + 1 : FAR);
         }
     }
     for (size_t z = nz - 1; z-- > 0;) {
         uint8_t *to = k->to + z * slice + j * nx;
         for (size_t i = 0; i < nx; i++) {
             const int behind = to[i + slice];
-            if (behind < MOST && behind + 1 < to[i])
+            if (behind < MAX_RADIUS && behind + 1 < to[i])
                 to[i] = (uint8_t)(behind + 1);
         }
     }

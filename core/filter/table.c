@@ -18,9 +18,9 @@
 
 static const double TISSUE = -300, AIR = -1000; /* HU; between air and fat; air */
 static const double BALL_MM = 5;                /* tables have shells of 1 to 8 mm */
-static const double SMALL_MM3 = 40000;   /* the thin parts of a face have 35 ml, an ear 10 */
-static const double MOST_LOST = 1.0 / 3; /* of the component */
-enum { MOST_RADIUS = 250 };              /* voxels, of cwi_spread_bytes() */
+static const double SMALL_MM3 = 40000;  /* the thin parts of a face have 35 ml, an ear 10 */
+static const double MAX_LOST = 1.0 / 3; /* of the component */
+enum { MAX_RADIUS = 250 };              /* voxels, of cwi_spread_bytes() */
 static const double EDGE = 2; /* voxels around the body that keep what is partly air */
 
 typedef struct work {
@@ -193,7 +193,7 @@ static cw_status hold_body(const work *k, size_t component, cw_error *err)
     size_t lost = 0;
     for (size_t n = 0; n < count_voxels(k); n++)
         lost += k->tissue[n] == 1;
-    if ((double)lost <= MOST_LOST * (double)component)
+    if ((double)lost <= MAX_LOST * (double)component)
         return CW_OK;
     return cwi_fail(err, CW_ERR_UNSAFE,
                     "the table cannot be told from the body: %.3g of the %.3g ml above %g HU "
@@ -293,7 +293,7 @@ cw_status cw_volume_remove_table(const cw_volume *volume, const cw_filter_desc *
     const size_t count = count_voxels(&k);
     cw_volume_spacing(&in, mm);
     for (int a = 0; a < 3; a++)
-        k.radius[a] = mm[a] > 0 ? fmin(BALL_MM / mm[a], MOST_RADIUS) : 0;
+        k.radius[a] = mm[a] > 0 ? fmin(BALL_MM / mm[a], MAX_RADIUS) : 0;
     k.voxel_mm3 = fabs(cwi_affine_determinant(in.affine[0]));
     k.air = (AIR - in.intercept) / in.slope;
     k.tissue = cwi_alloc_array(count, 3);

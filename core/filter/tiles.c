@@ -56,7 +56,7 @@ void cwi_filter_load_floats(const cw_volume *in, const size_t at[3], size_t coun
                             double *base, double *values, double *valid, float *to)
 {
     /* Squares of differences must be finite: float has 3e38. */
-    static const double most = 1e15;
+    static const double MAX_DIFFERENCE = 1e15;
     const cw_volume view = view_row(in, at, count);
     const double by = 1 / unit;
     cwi_filter_load(&view, 0, 0, values, valid);
@@ -64,7 +64,9 @@ void cwi_filter_load_floats(const cw_volume *in, const size_t at[3], size_t coun
         *base = !valid || valid[i] > 0 ? values[i] : *base;
     for (size_t i = 0; i < count; i++) {
         const double x = (values[i] - *base) * by;
-        to[i] = (float)(x < -most ? -most : x > most ? most : x);
+        to[i] = (float)(x < -MAX_DIFFERENCE  ? -MAX_DIFFERENCE
+                        : x > MAX_DIFFERENCE ? MAX_DIFFERENCE
+                                             : x);
     }
     for (size_t i = 0; i < count && valid; i++)
         to[i] = valid[i] > 0 ? to[i] : NAN;

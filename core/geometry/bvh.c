@@ -166,7 +166,7 @@ static void fill_boxes(cwi_boxes *t, const float (*boxes)[6])
     }
     for (size_t n = 0; n < t->count; n++)
         for (int a = 0; a < 6; a++)
-            t->most = fmaxf(t->most, fabsf(boxes[n][a]));
+            t->max = fmaxf(t->max, fabsf(boxes[n][a]));
 }
 
 /* Lays out the levels; returns the number of nodes. */

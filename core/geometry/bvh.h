@@ -31,7 +31,7 @@ typedef struct cwi_boxes {
     cwi_boxes_node *nodes;
     int levels;
     size_t first[CWI_LEVELS]; /* node of each level; 0 holds items, the last is one node */
-    float most;               /* the largest absolute coordinate */
+    float max;                /* the largest absolute coordinate */
 } cwi_boxes;
 
 /* Sorts boxes into a tree. They are not needed afterwards.
@@ -160,7 +160,7 @@ static inline void cwi_boxes_nearest(const cwi_boxes *tree, const double point[3
     } stack[CWI_LEVELS * CWI_WIDTH];
     const struct entry root = {0, tree->levels - 1, 0};
     const float p[3] = {(float)point[0], (float)point[1], (float)point[2]};
-    const float far = fmaxf(fmaxf(fabsf(p[0]), fabsf(p[1])), fmaxf(fabsf(p[2]), tree->most));
+    const float far = fmaxf(fmaxf(fabsf(p[0]), fabsf(p[1])), fmaxf(fabsf(p[2]), tree->max));
     const float slack = far * 0x1p-21f;
     size_t depth = 0;
     if (tree->count)

@@ -38,7 +38,7 @@ static void measure_slot(void *context, size_t slot, double *distance_sq)
     search *s = context;
     const float *p[3];
     load_corners(s->mesh, s->tree->order[slot], p);
-    const double here = cwi_facet_square(p[0], p[1], p[2], s->point);
+    const double here = cwi_facet_distance_sq(p[0], p[1], p[2], s->point);
     if (here < *distance_sq) {
         *distance_sq = here;
         s->triangle = s->tree->order[slot];
@@ -54,9 +54,9 @@ cwi_closest cwi_closest_find(const cw_mesh *mesh, const cwi_boxes *tree, const d
     cwi_boxes_nearest(tree, point, measure_slot, &s, &distance_sq);
     c.triangle = s.triangle;
     load_corners(mesh, c.triangle, p);
-    cwi_facet_nearest(p[0], p[1], p[2], point, c.share);
+    cwi_facet_nearest(p[0], p[1], p[2], point, c.weights);
     for (int a = 0; a < 3; a++)
         for (int k = 0; k < 3; k++)
-            c.point[a] += c.share[k] * (double)p[k][a];
+            c.point[a] += c.weights[k] * (double)p[k][a];
     return c;
 }

@@ -12,7 +12,7 @@ extern "C" {
 
 typedef struct cwi_closest {
     size_t triangle;
-    double share[3]; /* weights of its corners in the point */
+    double weights[3]; /* weights of its corners in the point */
     double point[3];
 } cwi_closest;
 

@@ -63,7 +63,7 @@ static inline cwi_facet_view cwi_facet_look(const float a[3], const float b[3],
 /* Returns the square of the point's distance from the triangle. The nearest point is in the
  * triangle's plane, or on a side that the point is beyond. The signs of the three areas decide.
  * Without an area all sides are tried. */
-static inline double cwi_facet_view_square(const cwi_facet_view *f)
+static inline double cwi_facet_view_distance_sq(const cwi_facet_view *f)
 {
     double best = INFINITY;
     if (f->normal_sq > 0 && f->in_a >= 0 && f->in_b >= 0 && f->in_c >= 0) {
@@ -79,11 +79,11 @@ static inline double cwi_facet_view_square(const cwi_facet_view *f)
     return best;
 }
 
-static inline double cwi_facet_square(const float a[3], const float b[3], const float c[3],
-                                      const double p[3])
+static inline double cwi_facet_distance_sq(const float a[3], const float b[3], const float c[3],
+                                           const double p[3])
 {
     const cwi_facet_view f = cwi_facet_look(a, b, c, p);
-    return cwi_facet_view_square(&f);
+    return cwi_facet_view_distance_sq(&f);
 }
 
 /* Computes the weights of the corners for the triangle's point that is closest to p. */

@@ -134,7 +134,7 @@ static inline unsigned cwi_piece_far(const cwi_triangle_piece *piece,
     for (int n = 0; n < piece->count; n++) {
         if (n)
             cwi_facet_turn(&view, facet[0], piece->p[n]);
-        if (!(cwi_facet_view_square(&view) <= distance_sq))
+        if (!(cwi_facet_view_distance_sq(&view) <= distance_sq))
             far |= 1u << n;
     }
     return far;

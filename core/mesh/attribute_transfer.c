@@ -38,7 +38,7 @@ static void carry_vertices(void *context, size_t chunk)
         for (size_t a = 0; a < 3; a++)
             point[a] = (double)c->to->positions[3 * v + a];
         const cwi_closest at = cwi_closest_find(c->from, &c->tree, point);
-        cwi_attributes_mix(c->from, c->from->triangles + 3 * at.triangle, at.share, 3, c->to,
+        cwi_attributes_mix(c->from, c->from->triangles + 3 * at.triangle, at.weights, 3, c->to,
                            v);
     }
 }

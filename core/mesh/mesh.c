@@ -88,10 +88,10 @@ static bool are_finite(const float *numbers, size_t count)
 
 static bool are_below(const uint32_t *numbers, size_t count, size_t limit)
 {
-    uint32_t most = 0;
+    uint32_t max_index = 0;
     for (size_t i = 0; i < count; i++)
-        most = numbers[i] > most ? numbers[i] : most;
-    return !count || most < limit;
+        max_index = numbers[i] > max_index ? numbers[i] : max_index;
+    return !count || max_index < limit;
 }
 
 cw_status cw_mesh_check(const cw_mesh *mesh, cw_error *err)

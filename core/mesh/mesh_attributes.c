@@ -217,15 +217,15 @@ static void mix_elements(const cw_attribute *from, const size_t *elements,
         for (size_t c = 0; c < components && weights[k] != 0; c++)
             sum[c] += weights[k] * load_number(from, components * elements[k] + c);
     if (from->interpolation == CW_INTERPOLATE_DIRECTION) {
-        double square = 0;
+        double length_sq = 0;
         for (size_t c = 0; c < components; c++)
-            square += sum[c] * sum[c];
-        if (!(square > 0)) {
+            length_sq += sum[c] * sum[c];
+        if (!(length_sq > 0)) {
             copy_element(from, nearest, to, m);
             return;
         }
         for (size_t c = 0; c < components; c++)
-            sum[c] /= sqrt(square);
+            sum[c] /= sqrt(length_sq);
     }
     for (size_t c = 0; c < components; c++)
         store_number(to, components * m + c, sum[c]);

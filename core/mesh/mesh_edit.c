@@ -176,14 +176,14 @@ static cw_status measure_volumes(const cw_mesh *m, components *c, cw_error *err)
 static double measure_set(const components *c, size_t set)
 {
     const float *box = c->boxes[set];
-    double square = 0;
+    double length_sq = 0;
     if (c->sums)
         return cwi_volume_mm3(&c->unit, c->sums[set]);
     for (int a = 0; a < 3; a++) {
         const double side = (double)box[3 + a] - (double)box[a];
-        square += side * side;
+        length_sq += side * side;
     }
-    return sqrt(square);
+    return sqrt(length_sq);
 }
 
 static void count_component(cw_drop_counts *n, double size, bool keep)
@@ -221,7 +221,7 @@ static void drop_components(cw_mesh *mesh, components *c, cw_drop_counts *counts
     drop_unused(mesh, c->set);
 }
 
-static cw_status drop_smaller(cw_mesh *mesh, double least, bool by_volume,
+static cw_status drop_smaller(cw_mesh *mesh, double min_value, bool by_volume,
                               cw_drop_counts *counts, cw_error *err)
 {
     components c = {0};
@@ -230,7 +230,7 @@ static cw_status drop_smaller(cw_mesh *mesh, double least, bool by_volume,
         st = measure_volumes(mesh, &c, err);
     if (st == CW_OK) {
         for (size_t n = 0; n < c.count; n++)
-            c.dropped[n] = !(measure_set(&c, n) >= least);
+            c.dropped[n] = !(measure_set(&c, n) >= min_value);
         drop_components(mesh, &c, counts);
     }
     free_components(&c);

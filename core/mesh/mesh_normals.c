@@ -10,16 +10,16 @@
  * then exact. */
 static void add_triangle(const cw_mesh *mesh, const uint32_t *corners, double (*sums)[3])
 {
-    double edges[3][3], squares[3], normal[3];
+    double edges[3][3], lengths_sq[3], normal[3];
     for (int c = 0; c < 3; c++) {
         const float *p = mesh->positions + 3 * (size_t)corners[c];
         const float *q = mesh->positions + 3 * (size_t)corners[(c + 1) % 3];
         cwi_sub_points(q, p, edges[c]);
-        squares[c] = cwi_dot(edges[c], edges[c]);
+        lengths_sq[c] = cwi_dot(edges[c], edges[c]);
     }
     cwi_cross(edges[0], edges[1], normal);
     for (int c = 0; c < 3; c++) {
-        const double weight = squares[c] * squares[(c + 2) % 3];
+        const double weight = lengths_sq[c] * lengths_sq[(c + 2) % 3];
         for (int a = 0; a < 3 && weight > 0; a++)
             sums[corners[c]][a] += normal[a] / weight;
     }

@@ -38,7 +38,7 @@ static inline double cwi_walk_square(const cwi_surface_walk *w, uint32_t triangl
 {
     const float *facet[3];
     cwi_walk_facet(w, triangle, facet);
-    return cwi_facet_square(facet[0], facet[1], facet[2], p);
+    return cwi_facet_distance_sq(facet[0], facet[1], facet[2], p);
 }
 
 /* A triangle seen from the point that is walked to. */
@@ -52,13 +52,13 @@ static inline cwi_facet_view cwi_walk_look(const cwi_surface_walk *w, uint32_t t
 
 /* Goes to a triangle if it is nearer. */
 static inline bool cwi_walk_take(cwi_surface_walk *w, uint32_t triangle, const double p[3],
-                                 cwi_facet_view *view, double *least)
+                                 cwi_facet_view *view, double *nearest_sq)
 {
     const cwi_facet_view other = cwi_walk_look(w, triangle, p);
-    const double square = cwi_facet_view_square(&other);
-    if (!(square < *least))
+    const double distance_sq = cwi_facet_view_distance_sq(&other);
+    if (!(distance_sq < *nearest_sq))
         return false;
-    *least = square;
+    *nearest_sq = distance_sq;
     *view = other;
     w->at = triangle;
     return true;
@@ -66,13 +66,13 @@ static inline bool cwi_walk_take(cwi_surface_walk *w, uint32_t triangle, const d
 
 /* Crosses a side if that leads nearer. */
 static inline bool cwi_walk_cross(cwi_surface_walk *w, uint32_t from, uint32_t to,
-                                  const double p[3], cwi_facet_view *view, double *least)
+                                  const double p[3], cwi_facet_view *view, double *nearest_sq)
 {
     const cwi_fans *f = w->fans;
     for (uint32_t n = f->first[from]; n < f->first[from + 1]; n++) {
         const uint32_t t = f->around[n], *c = f->corners + 3 * (size_t)t;
         if (t != w->at && (c[0] == to || c[1] == to || c[2] == to) &&
-            cwi_walk_take(w, t, p, view, least))
+            cwi_walk_take(w, t, p, view, nearest_sq))
             return true;
     }
     return false;
@@ -80,23 +80,23 @@ static inline bool cwi_walk_cross(cwi_surface_walk *w, uint32_t from, uint32_t t
 
 /* Crosses a side that the point is beyond. */
 static inline bool cwi_walk_step(cwi_surface_walk *w, const double p[3], cwi_facet_view *view,
-                                 double *least)
+                                 double *nearest_sq)
 {
     const uint32_t *c = w->fans->corners + 3 * (size_t)w->at;
-    return (view->in_c < 0 && cwi_walk_cross(w, c[0], c[1], p, view, least)) ||
-           (view->in_a < 0 && cwi_walk_cross(w, c[1], c[2], p, view, least)) ||
-           (view->in_b < 0 && cwi_walk_cross(w, c[2], c[0], p, view, least));
+    return (view->in_c < 0 && cwi_walk_cross(w, c[0], c[1], p, view, nearest_sq)) ||
+           (view->in_a < 0 && cwi_walk_cross(w, c[1], c[2], p, view, nearest_sq)) ||
+           (view->in_b < 0 && cwi_walk_cross(w, c[2], c[0], p, view, nearest_sq));
 }
 
 /* Goes to the nearest triangle at a corner. */
 static inline bool cwi_walk_jump(cwi_surface_walk *w, const double p[3], cwi_facet_view *view,
-                                 double *least)
+                                 double *nearest_sq)
 {
     const cwi_fans *f = w->fans;
     const uint32_t start = w->at, *c = f->corners + 3 * (size_t)start;
     for (int k = 0; k < 3; k++)
         for (uint32_t n = f->first[c[k]]; n < f->first[c[k] + 1]; n++)
-            cwi_walk_take(w, f->around[n], p, view, least);
+            cwi_walk_take(w, f->around[n], p, view, nearest_sq);
     return w->at != start;
 }
 
@@ -106,12 +106,12 @@ static inline bool cwi_walk_jump(cwi_surface_walk *w, const double p[3], cwi_fac
 static inline double cwi_walk_to(cwi_surface_walk *w, const double p[3])
 {
     cwi_facet_view view = cwi_walk_look(w, w->at, p);
-    double least = cwi_facet_view_square(&view);
-    while (cwi_walk_step(w, p, &view, &least)) {
+    double nearest_sq = cwi_facet_view_distance_sq(&view);
+    while (cwi_walk_step(w, p, &view, &nearest_sq)) {
     }
-    while (least > w->enough && cwi_walk_jump(w, p, &view, &least)) {
+    while (nearest_sq > w->enough && cwi_walk_jump(w, p, &view, &nearest_sq)) {
     }
-    return least;
+    return nearest_sq;
 }
 
 #ifdef __cplusplus

@@ -56,8 +56,8 @@ bool cwi_weld(const float *points, size_t count, uint32_t *map)
 /* Doubles the capacity; the table is never more than half full. */
 static bool grow_table(cwi_welder *w)
 {
-    const size_t room = w->room ? 2 * w->room : 1024, slots = 2 * room;
-    float *points = cwi_realloc_array(w->points, room, 3 * sizeof *points);
+    const size_t capacity = w->capacity ? 2 * w->capacity : 1024, slots = 2 * capacity;
+    float *points = cwi_realloc_array(w->points, capacity, 3 * sizeof *points);
     if (!points)
         return false;
     w->points = points;
@@ -73,7 +73,7 @@ static bool grow_table(cwi_welder *w)
     cwi_free(w->table);
     w->table = table;
     w->slots = slots;
-    w->room = room;
+    w->capacity = capacity;
     return true;
 }
 
@@ -111,7 +111,7 @@ bool cwi_welder_add(cwi_welder *w, const float *points, size_t count, uint32_t *
     bool ok = true;
     for (size_t i = 0; ok && i < count; i += BATCH) {
         const size_t batch = count - i < BATCH ? count - i : BATCH;
-        while (ok && w->room - w->count < batch)
+        while (ok && w->capacity - w->count < batch)
             ok = grow_table(w);
         ok = ok && add_batch(w, points + 3 * i, batch, indices + i);
     }

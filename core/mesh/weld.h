@@ -17,7 +17,7 @@ bool cwi_weld(const float *points, size_t count, uint32_t *map);
 /* Points added one after another; each place is kept once. Zeroed, it has none. */
 typedef struct cwi_welder {
     float *points; /* count x 3, the first met at each place */
-    size_t count, room;
+    size_t count, capacity;
     uint32_t *table; /* of slots, a power of two: point + 1, or 0 */
     size_t slots;
 } cwi_welder;

@@ -19,15 +19,15 @@ static const double DEGREES = 180 / CWI_PI;
 
 static double field_gradient(cw_field field, const double p[3], double h, double g[3])
 {
-    double square = 0;
+    double gradient_sq = 0;
     for (int a = 0; a < 3; a++) {
         double low[3] = {p[0], p[1], p[2]}, high[3] = {p[0], p[1], p[2]};
         low[a] -= h;
         high[a] += h;
         g[a] = (cw_field_value(field, high) - cw_field_value(field, low)) / (2 * h);
-        square += g[a] * g[a];
+        gradient_sq += g[a] * g[a];
     }
-    return square;
+    return gradient_sq;
 }
 
 /* Walks to the surface by Newton's steps, none longer than a voxel, and leaves the last
@@ -38,11 +38,11 @@ static double walk_to_surface(cw_field field, double iso, double voxel_mm, const
     double p[3] = {from[0], from[1], from[2]}, length = INFINITY;
     for (int n = 0; n < NEWTON_STEPS && length > 1e-7 * voxel_mm; n++) {
         const double off = iso - cw_field_value(field, p);
-        const double square = field_gradient(field, p, 1e-4 * voxel_mm, g);
-        if (!(square > 0))
+        const double gradient_sq = field_gradient(field, p, 1e-4 * voxel_mm, g);
+        if (!(gradient_sq > 0))
             return NAN;
-        length = fabs(off) / sqrt(square);
-        const double by = off / square * (length > voxel_mm ? voxel_mm / length : 1);
+        length = fabs(off) / sqrt(gradient_sq);
+        const double by = off / gradient_sq * (length > voxel_mm ? voxel_mm / length : 1);
         for (int a = 0; a < 3; a++)
             p[a] += by * g[a];
     }
@@ -52,7 +52,7 @@ static double walk_to_surface(cw_field field, double iso, double voxel_mm, const
 }
 
 typedef struct sum {
-    double max, square, area;
+    double max, gradient_sq, area;
     size_t samples, missed;
     double bins[BINS]; /* area by distance */
 } sum;
@@ -66,7 +66,7 @@ static void add_distance(sum *s, double mm, double area, double voxel_mm)
     const double bin = mm / (HISTOGRAM_VOXELS * voxel_mm) * BINS;
     s->samples++;
     s->max = fmax(s->max, mm);
-    s->square += mm * mm * area;
+    s->gradient_sq += mm * mm * area;
     s->area += area;
     s->bins[bin < BINS - 1 ? (size_t)bin : BINS - 1] += area;
 }
@@ -126,7 +126,7 @@ cw_status cw_field_measure(cw_field field, double isovalue, double voxel_mm,
     out->missed = s->missed;
     if (s->area > 0) {
         out->max_mm = s->max;
-        out->rms_mm = sqrt(s->square / s->area);
+        out->rms_mm = sqrt(s->gradient_sq / s->area);
         out->p99_mm = find_p99(s, voxel_mm);
     }
     cwi_free(s);

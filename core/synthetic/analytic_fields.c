@@ -110,8 +110,8 @@ static double ct_head(const double p[3])
         const double root = sqrt(value);
         const double distance =
             slope > 0 ? (root - 1) * root / sqrt(slope) : -head[n].radius[0];
-        const double share = 0.5 - 0.5 * tanh(distance);
-        hu += share * (head[n].hu - hu);
+        const double fraction = 0.5 - 0.5 * tanh(distance);
+        hu += fraction * (head[n].hu - hu);
     }
     return hu;
 }
@@ -143,8 +143,9 @@ double cw_field_stored(cw_field field, cw_type type, double value)
         return value;
     if (field == CW_FIELD_CT_HEAD && cw_type_size(type) > 1)
         return value + (low == 0 ? 1024 : 0);
-    const double share = (value - fields[field].low) / (fields[field].high - fields[field].low);
-    return low + share * (high - low);
+    const double fraction =
+        (value - fields[field].low) / (fields[field].high - fields[field].low);
+    return low + fraction * (high - low);
 }
 
 typedef struct sampling {

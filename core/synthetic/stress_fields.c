@@ -253,8 +253,8 @@ static double tilted_wire(const sample *s)
     double p[3];
     from_middle(s, p);
     const double along = along_tilt(p);
-    const double square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2] - along * along;
-    return 0.5 * s->parameter - sqrt(fmax(square, 0));
+    const double distance_sq = p[0] * p[0] + p[1] * p[1] + p[2] * p[2] - along * along;
+    return 0.5 * s->parameter - sqrt(fmax(distance_sq, 0));
 }
 
 static double lone_samples(const sample *s)
@@ -311,8 +311,8 @@ static double zone_plate(const sample *s)
 {
     double p[3];
     from_middle(s, p);
-    const double square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
-    return cos(CWI_PI / 2 * square / half_extent(s)) - 0.1;
+    const double distance_sq = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
+    return cos(CWI_PI / 2 * distance_sq / half_extent(s)) - 0.1;
 }
 
 /* Ends of the number line. */

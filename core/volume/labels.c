@@ -7,11 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A label map has fewer changes along its rows than MAX_CHANGES: see EQUAL_SHARE. */
+/* A label map has fewer changes along its rows than MAX_CHANGES: see EQUAL_FRACTION. */
 enum { MAX_VOXELS = 1 << 22, MAX_CHANGES = 3 * (MAX_VOXELS / 10), FEWEST_LABELS = 3 };
 /* Limits of detection. Equal pairs are at least 0.8 in label maps, and at most 0.25 in scans
  * and photographs. */
-static const double EQUAL_SHARE = 0.7, SKIPPING_SHARE = 0.2;
+static const double EQUAL_FRACTION = 0.7, SKIPPING_FRACTION = 0.2;
 
 /* Whole numbers from LOW to HIGH are tallied in a table; all others are listed and sorted. */
 enum { LOW = INT16_MIN, HIGH = UINT16_MAX, SMALL_VALUES = HIGH - LOW + 1 };
@@ -164,8 +164,8 @@ static void count_row(const cw_volume *v, size_t j, size_t k, census *c)
 static void count_rows(const cw_volume *v, census *c)
 {
     const size_t rows = v->dim[1] * v->dim[2], per_row = v->dim[0];
-    const size_t most = MAX_VOXELS / per_row ? MAX_VOXELS / per_row : 1;
-    const size_t by = (rows + most - 1) / most;
+    const size_t max = MAX_VOXELS / per_row ? MAX_VOXELS / per_row : 1;
+    const size_t by = (rows + max - 1) / max;
     for (size_t row = 0; row < rows && goes_on(c); row += by)
         count_row(v, row % v->dim[1], row / v->dim[1], c);
 }
@@ -204,10 +204,10 @@ static bool is_label_map(const cw_volume *v, census *c)
     }
     equal -= largest;
     const double apart = (double)c->changes;
-    if (equal == 0 || (double)equal < EQUAL_SHARE * ((double)equal + apart))
+    if (equal == 0 || (double)equal < EQUAL_FRACTION * ((double)equal + apart))
         return false;
     count_rows(v, c);
-    return (double)c->skipping >= SKIPPING_SHARE * apart;
+    return (double)c->skipping >= SKIPPING_FRACTION * apart;
 }
 
 /* Whether the values that were counted are those of a label map. */

@@ -40,11 +40,11 @@ void cwi_surface_frame_make(const cw_volume *v, bool invert, cwi_surface_frame *
                                   cwi_grid_coordinate(v, r, (ptrdiff_t)v->dim[r] - 1, 0));
     }
     for (int a = 0; a < 3; a++) {
-        double square = 0;
+        double length_sq = 0;
         for (int r = 0; r < 3; r++)
-            square += frame->cofactor[r][a] * frame->cofactor[r][a];
+            length_sq += frame->cofactor[r][a] * frame->cofactor[r][a];
         for (int r = 0; r < 3; r++) {
-            const double n = frame->cofactor[r][a] / sqrt(square) * (invert ? 1 : -1);
+            const double n = frame->cofactor[r][a] / sqrt(length_sq) * (invert ? 1 : -1);
             frame->cap[a][0][r] = (float)-n;
             frame->cap[a][1][r] = (float)n;
         }

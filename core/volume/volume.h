@@ -66,14 +66,14 @@ static inline bool cwi_is_rectilinear(const cw_volume *v)
 /* Returns the place of index i + share along an axis of at least 2: the coordinate, or the
  * index itself. Beyond the ends it is extrapolated from the last two. i: -1 to dim - 1 */
 static inline double cwi_grid_coordinate(const cw_volume *v, int axis, ptrdiff_t i,
-                                         double share)
+                                         double fraction)
 {
     const double *at = v->coordinates[axis];
     const ptrdiff_t last = (ptrdiff_t)v->dim[axis] - 1;
     if (!at)
-        return (double)i + share;
+        return (double)i + fraction;
     const ptrdiff_t low = i < 0 ? 0 : i < last ? i : last - 1;
-    return at[i < 0 ? 0 : i] + (i < 0 ? share - 1 : share) * (at[low + 1] - at[low]);
+    return at[i < 0 ? 0 : i] + (i < 0 ? fraction - 1 : fraction) * (at[low + 1] - at[low]);
 }
 
 /* Returns the (fractional) index of a coordinate, the inverse of cwi_grid_coordinate(). */

@@ -134,7 +134,8 @@ static bool sample_gradient(const cwi_shading *s, const size_t at[3], double g[3
 }
 
 /* Finds the cell of a vertex, and the place in it; returns false outside the volume. */
-static bool find_cell(const cwi_shading *s, size_t vertex, size_t cell[3], double share[3])
+static bool find_cell(const cwi_shading *s, size_t vertex, size_t cell[3],
+                      double cell_fraction[3])
 {
     const cw_volume *v = &s->volume;
     double p[3];
@@ -148,7 +149,7 @@ static bool find_cell(const cwi_shading *s, size_t vertex, size_t cell[3], doubl
             return false;
         x = x < 0 ? 0 : x > last ? last : x;
         cell[a] = x < last ? (size_t)x : v->dim[a] - 2;
-        share[a] = x - (double)cell[a];
+        cell_fraction[a] = x - (double)cell[a];
     }
     return true;
 }
@@ -158,8 +159,8 @@ static bool find_cell(const cwi_shading *s, size_t vertex, size_t cell[3], doubl
 static bool interpolate_gradient(const cwi_shading *s, size_t vertex, double sum[3])
 {
     size_t cell[3];
-    double share[3], total = 0;
-    if (!find_cell(s, vertex, cell, share))
+    double cell_fraction[3], total = 0;
+    if (!find_cell(s, vertex, cell, cell_fraction))
         return false;
     for (size_t corner = 0; corner < 8; corner++) {
         size_t at[3];
@@ -167,7 +168,7 @@ static bool interpolate_gradient(const cwi_shading *s, size_t vertex, double sum
         for (int a = 0; a < 3; a++) {
             const bool high = corner >> a & 1;
             at[a] = cell[a] + high;
-            weight *= high ? share[a] : 1 - share[a];
+            weight *= high ? cell_fraction[a] : 1 - cell_fraction[a];
         }
         if (!(weight > 0) || !sample_gradient(s, at, g))
             continue;

@@ -73,11 +73,11 @@ void cwi_corner_values(const cwi_bit_grid *grid, const size_t at[3], double valu
 static void note_cell(cwi_layer *layer, size_t max_plans, uint32_t code)
 {
     if (layer->plan_count == layer->plan_capacity && !layer->plans_lost) {
-        const size_t room = layer->plan_capacity ? 2 * layer->plan_capacity : 64;
-        const bool fits = !max_plans || room <= max_plans;
-        uint32_t *more = fits ? cwi_realloc_array(layer->plans, room, sizeof *more) : NULL;
+        const size_t capacity = layer->plan_capacity ? 2 * layer->plan_capacity : 64;
+        const bool fits = !max_plans || capacity <= max_plans;
+        uint32_t *more = fits ? cwi_realloc_array(layer->plans, capacity, sizeof *more) : NULL;
         layer->plans_lost = !more;
-        layer->plan_capacity = more ? room : 0;
+        layer->plan_capacity = more ? capacity : 0;
         if (!more)
             cwi_free(layer->plans);
         layer->plans = more;

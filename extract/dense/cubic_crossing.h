@@ -71,11 +71,11 @@ static inline void cwi_cross_cubics(const double x[4][CWI_CUBICS], size_t count,
                      b = x[2][n] * turn - at, after = x[3][n] * turn - at;
         const double slope0 = (6 * b - after - 2 * before - 3 * a) / 6,
                      slope1 = (before + 3 * b + 2 * after - 6 * a) / 6;
-        const double sum = before + a + b + after, square = (before + b) / 2 - a;
+        const double sum = before + a + b + after, quadratic = (before + b) / 2 - a;
         s.power[0][n] = a;
         s.power[1][n] = slope0;
-        s.power[2][n] = square;
-        s.power[3][n] = b - a - slope0 - square;
+        s.power[2][n] = quadratic;
+        s.power[3][n] = b - a - slope0 - quadratic;
         s.low[n] = 0;
         s.high[n] = 1;
         t[n] = a / (a - b);

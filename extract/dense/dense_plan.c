@@ -116,18 +116,18 @@ cwi_emission cwi_make_emission(const cw_volume *v, bool simple)
 
 /* Number of layers that a thread writes at a time: many at first, as neighbouring shares both
  * read some samples; few at last, so that no thread waits for long. */
-enum { LARGE_SHARE = 32, SMALL_SHARE = 8 };
+enum { LARGE_CHUNK = 32, SMALL_CHUNK = 8 };
 
-static size_t begin_of_share(const cwi_writing *w, size_t share)
+static size_t begin_of_chunk(const cwi_writing *w, size_t chunk)
 {
-    const size_t large = share < w->large ? share : w->large;
-    return w->begin + large * LARGE_SHARE + (share - large) * SMALL_SHARE;
+    const size_t large = chunk < w->large ? chunk : w->large;
+    return w->begin + large * LARGE_CHUNK + (chunk - large) * SMALL_CHUNK;
 }
 
-static void write_share(void *context, size_t share)
+static void write_chunk(void *context, size_t chunk)
 {
     cwi_writing *w = context;
-    const size_t begin = begin_of_share(w, share), end = begin_of_share(w, share + 1);
+    const size_t begin = begin_of_chunk(w, chunk), end = begin_of_chunk(w, chunk + 1);
     const bool last = end >= w->end;
     const cwi_row_span span = {.begin = begin,
                                .end = last ? w->end + 1 : end,
@@ -142,10 +142,10 @@ cw_status cwi_write_dense_layers(cwi_writing *w, const cw_extract_desc *d, cw_er
     const cwi_bit_grid *g = &w->plan->grid;
     const size_t layers = w->end - w->begin, threads = (size_t)cwi_threads(d->threads);
     /* two for each thread are left for small ones */
-    const size_t large = layers / LARGE_SHARE;
+    const size_t large = layers / LARGE_CHUNK;
     w->large = large > 2 * threads ? large - 2 * threads : 0;
-    const size_t rest = layers - w->large * LARGE_SHARE;
-    return cwi_parallel_for(w->large + (rest + SMALL_SHARE - 1) / SMALL_SHARE,
-                            SMALL_SHARE * g->rows_y * g->words * 64, d->threads, &d->progress,
-                            "marching", write_share, w, err);
+    const size_t rest = layers - w->large * LARGE_CHUNK;
+    return cwi_parallel_for(w->large + (rest + SMALL_CHUNK - 1) / SMALL_CHUNK,
+                            SMALL_CHUNK * g->rows_y * g->words * 64, d->threads, &d->progress,
+                            "marching", write_chunk, w, err);
 }

@@ -254,11 +254,12 @@ static inline bool can_gather(const cw_volume *v, ptrdiff_t voxel)
 }
 
 /* Does the same as cwi_off_ends, for all lanes. */
-ALWAYS_INLINE void all_off_ends(double share[LANES])
+ALWAYS_INLINE void all_off_ends(double fraction[LANES])
 {
     for (int n = 0; n < LANES; n += 8) {
-        const __m512d t = _mm512_max_pd(_mm512_loadu_pd(share + n), _mm512_set1_pd(CWI_NUDGE));
-        _mm512_storeu_pd(share + n, _mm512_min_pd(t, _mm512_set1_pd(1 - CWI_NUDGE)));
+        const __m512d t =
+            _mm512_max_pd(_mm512_loadu_pd(fraction + n), _mm512_set1_pd(CWI_NUDGE));
+        _mm512_storeu_pd(fraction + n, _mm512_min_pd(t, _mm512_set1_pd(1 - CWI_NUDGE)));
     }
 }
 

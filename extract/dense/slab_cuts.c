@@ -31,15 +31,15 @@ size_t cwi_end_of_slab(const cwi_layer_sums *s, size_t begin, size_t triangles)
 
 cw_extract_counts cwi_largest_slab(const cwi_layer_sums *s, size_t triangles)
 {
-    cw_extract_counts most = {0};
+    cw_extract_counts max = {0};
     for (size_t k = 0, end; k + 1 < s->count; k = end) {
         end = cwi_end_of_slab(s, k, triangles);
         const size_t v = cwi_vertices_before(s, end + 1) - cwi_vertices_before(s, k),
                      t = triangles_between(s, k, end);
-        most.vertices = v > most.vertices ? v : most.vertices;
-        most.triangles = t > most.triangles ? t : most.triangles;
+        max.vertices = v > max.vertices ? v : max.vertices;
+        max.triangles = t > max.triangles ? t : max.triangles;
     }
-    return most;
+    return max;
 }
 
 /* The last row of a layer is padding: it has no vertices, and the row after it may not be

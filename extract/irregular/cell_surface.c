@@ -239,12 +239,12 @@ static double crossing_of(const cwi_cells *g, const cwi_element *e, int edge)
     return a < b ? t : 1 - t;
 }
 
-static void add_crossing(const cwi_element *e, const double shares[12], int edge, double weight,
-                         double weights[8])
+static void add_crossing(const cwi_element *e, const double fractions[12], int edge,
+                         double weight, double weights[8])
 {
     const uint8_t *corners = cwi_shape_of(e)->edges[edge];
-    weights[corners[0]] += weight * (1 - shares[edge]);
-    weights[corners[1]] += weight * shares[edge];
+    weights[corners[0]] += weight * (1 - fractions[edge]);
+    weights[corners[1]] += weight * fractions[edge];
 }
 
 /* Computes the weights of a cube's corners for a vertex inside, from its own coordinates. */
@@ -257,15 +257,15 @@ static void weigh_cube(const double p[3], double weights[8])
 
 /* Computes the weights for other cells. Only cones have a vertex inside: in the middle of their
  * loop's points. */
-static void weigh_cone(const cwi_element *e, const cwi_config *config, const double shares[12],
-                       int n, double weights[8])
+static void weigh_cone(const cwi_element *e, const cwi_config *config,
+                       const double fractions[12], int n, double weights[8])
 {
     const uint8_t *edges = config->loop_edges;
     int loop = 0;
     for (; !config->cone[loop] || n-- > 0; loop++)
         edges += config->loop_length[loop];
     for (int i = 0; i < config->loop_length[loop]; i++)
-        add_crossing(e, shares, edges[i], 1.0 / config->loop_length[loop], weights);
+        add_crossing(e, fractions, edges[i], 1.0 / config->loop_length[loop], weights);
 }
 
 static void write_triangles(const writing *w, const cwi_element *e, const cwi_cell_plan *plan,
@@ -282,7 +282,7 @@ static void write_triangles(const writing *w, const cwi_element *e, const cwi_ce
 static void write_element(const writing *w, const cwi_element *e)
 {
     const cwi_cells *g = w->g;
-    double shares[12] = {0};
+    double fractions[12] = {0};
     cwi_cell_plan plan;
     cwi_cell cell;
     cwi_cell_plan_unpack(e->plan, &plan);
@@ -292,19 +292,19 @@ static void write_element(const writing *w, const cwi_element *e)
         const uint32_t vertex = g->crossings[cwi_crossing_slot(e, edge)];
         if (vertex < e->first_vertex && !plan.vertex_count)
             continue;
-        shares[edge] = crossing_of(g, e, edge);
+        fractions[edge] = crossing_of(g, e, edge);
         double weights[8] = {0};
-        add_crossing(e, shares, edge, 1, weights);
+        add_crossing(e, fractions, edge, 1, weights);
         if (vertex >= e->first_vertex)
             write_vertex(w, e, weights, vertex);
     }
-    cwi_cell_build(&plan, shares, &cell);
+    cwi_cell_build(&plan, fractions, &cell);
     for (int n = 0; n < plan.vertex_count; n++) {
         double weights[8] = {0};
         if (e->shape == CW_HEXAHEDRON)
             weigh_cube(cell.vertices[n], weights);
         else
-            weigh_cone(e, plan.config, shares, n, weights);
+            weigh_cone(e, plan.config, fractions, n, weights);
         write_vertex(w, e, weights, e->first_inner + (size_t)n);
     }
     write_triangles(w, e, &plan, &cell);

@@ -161,7 +161,7 @@ static cw_status number_vertices(const cwi_label_job *j, size_t chunks, cw_error
     return CW_OK;
 }
 
-static cw_status make_room(cwi_label_job *j, const cw_labels_desc *desc, cw_error *err)
+static cw_status ensure_capacity(cwi_label_job *j, const cw_labels_desc *desc, cw_error *err)
 {
     const cw_volume *v = j->layers.volume;
     cwi_label_net *net = &j->net;
@@ -223,7 +223,7 @@ static cw_status run_windows(cwi_label_job *j, size_t chunks, const cw_labels_de
         const size_t count = chunks - n < w->chunks ? chunks - n : w->chunks;
         const cwi_part_progress span = {.whole = &desc->progress,
                                         .from = (double)n / (double)chunks,
-                                        .share = (double)count / (double)chunks};
+                                        .fraction = (double)count / (double)chunks};
         const cw_progress progress = cwi_progress_part(&span);
         st = cwi_label_window_move(w, &j->layers, n, count, err);
         view.data = w->slices;
@@ -260,7 +260,7 @@ static cw_status run_job(cwi_label_job *j, const cw_labels_desc *desc,
     if (st == CW_OK)
         st = number_vertices(j, chunks, err);
     if (st == CW_OK)
-        st = make_room(j, desc, err);
+        st = ensure_capacity(j, desc, err);
     j->is_writing = true;
     if (st == CW_OK)
         st = run_pass(j, chunks, desc, err);
@@ -324,7 +324,7 @@ static void prepare_job(cwi_label_job *j, const cw_volume *v, const cw_labels_de
  * rounding to single precision. */
 static double find_rounding(const cw_volume *v)
 {
-    double cofactors[3][3], extent = 0, most = 0;
+    double cofactors[3][3], extent = 0, max = 0;
     const double volume = fabs(cwi_affine_determinant(v->affine[0]));
     cwi_affine_cofactor(v->affine[0], cofactors);
     for (int b = 0; b < 3; b++) {
@@ -341,9 +341,9 @@ static double find_rounding(const cw_volume *v)
                                         find_coordinate(v, a, (double)i));
         for (int b = 0; b < 3; b++)
             slope += cofactors[b][a] * cofactors[b][a];
-        most = fmax(most, sqrt(extent * slope) / (volume * spacing));
+        max = fmax(max, sqrt(extent * slope) / (volume * spacing));
     }
-    return 0x1p-24 * most;
+    return 0x1p-24 * max;
 }
 
 /* Returns how far vertices may move, so that they stay inside of their cubes: those of two cubes

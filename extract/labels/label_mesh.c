@@ -40,7 +40,7 @@ static bool copy_patch(const cw_label_surfaces *s, const cw_label_patch *patch, 
 }
 
 /* Makes arrays for copies of triangles. One brings at most three vertices. */
-static bool make_room(const cw_label_surfaces *s, size_t triangles, cw_mesh *mesh)
+static bool ensure_capacity(const cw_label_surfaces *s, size_t triangles, cw_mesh *mesh)
 {
     memset(mesh, 0, sizeof *mesh);
     memcpy(mesh->origin, s->mesh.origin, sizeof mesh->origin);
@@ -76,7 +76,7 @@ cw_status cw_label_mesh(const cw_label_surfaces *s, uint32_t label, cw_mesh *mes
     size_t triangles = 0;
     for (size_t p = 0; p < s->patch_count; p++)
         triangles += side_of(&s->patches[p], label) >= 0 ? s->patches[p].count : 0;
-    bool is_whole = make_room(s, triangles, mesh);
+    bool is_whole = ensure_capacity(s, triangles, mesh);
     for (size_t p = 0; p < s->patch_count && is_whole; p++) {
         const int side = side_of(&s->patches[p], label);
         is_whole = side < 0 || copy_patch(s, &s->patches[p], side, &numbers, mesh);
@@ -91,7 +91,7 @@ cw_status cw_label_patch_mesh(const cw_label_surfaces *s, const cw_label_patch *
     CWI_REQUIRE(err, s, patch, mesh);
     cwi_key_counts numbers = {0};
     const bool is_whole =
-        make_room(s, patch->count, mesh) && copy_patch(s, patch, 0, &numbers, mesh);
+        ensure_capacity(s, patch->count, mesh) && copy_patch(s, patch, 0, &numbers, mesh);
     cwi_key_counts_free(&numbers);
     return fit_vertices(mesh, is_whole, err);
 }

@@ -106,7 +106,7 @@ bool cwi_adaptive_put(cwi_adaptive *a, int size, const uint32_t at[3])
     return ok;
 }
 
-double cwi_adaptive_least(const cwi_adaptive *a)
+double cwi_adaptive_min(const cwi_adaptive *a)
 {
     int size = 0;
     while (size < CWI_DIVISIONS && a->divided[size].count)

@@ -68,7 +68,7 @@ CW_NODISCARD cw_status cwi_adaptive_divide(cwi_adaptive *a, const cw_mesh *surfa
 CW_NODISCARD cw_status cwi_adaptive_grid(cwi_adaptive *a, cw_volume *grid, cw_error *err);
 
 /* Returns the side of the smallest cells, in mm. */
-double cwi_adaptive_least(const cwi_adaptive *a);
+double cwi_adaptive_min(const cwi_adaptive *a);
 
 /* ---- between adaptive*.c ----------------------------------------------------------------- */
 

@@ -183,7 +183,7 @@ static void find_whole(build *b)
 
 /* ---- cells ------------------------------------------------------------------------------- */
 
-static bool make_room(build *b)
+static bool ensure_capacity(build *b)
 {
     if (b->count == b->capacity) {
         const size_t capacity = 2 * b->capacity + 1024;
@@ -203,7 +203,7 @@ static bool make_room(build *b)
 /* Adds a cell to the grid. points: of the leaf's 27 */
 static void add_cell(build *b, const leaf *l, cw_shape shape, const int *points, int count)
 {
-    if (!make_room(b)) {
+    if (!ensure_capacity(b)) {
         b->out_of_memory = true;
         return;
     }

@@ -25,7 +25,7 @@ typedef struct pieces {
 
 /* ---- pieces ------------------------------------------------------------------------------ */
 
-static bool make_room(pieces *p)
+static bool ensure_capacity(pieces *p)
 {
     if (p->count < p->capacity)
         return true;
@@ -43,7 +43,7 @@ static bool make_room(pieces *p)
 static void add_triangle(pieces *p, const cwi_polygon *g, int n, const struct cell *cell)
 {
     const double *corners[3] = {g->p[0], g->p[n], g->p[n + 1]};
-    if (!make_room(p)) {
+    if (!ensure_capacity(p)) {
         p->out_of_memory = true;
         return;
     }

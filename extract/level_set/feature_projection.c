@@ -354,7 +354,7 @@ static cw_status pull_vertices(motion *m, bool by_means, int threads,
 
 /* ---- all of it --------------------------------------------------------------------------- */
 
-static bool make_room(motion *m)
+static bool ensure_capacity(motion *m)
 {
     const size_t n = m->surface->vertex_count;
     m->movers = cwi_alloc_array(n, sizeof *m->movers);
@@ -368,7 +368,8 @@ cw_status cwi_unwarp(const cwi_warp *w, const cw_mesh *mesh, int threads,
                      const cw_progress *progress, cw_mesh *surface, cw_error *err)
 {
     motion m = {.mesh = mesh, .surface = surface, .voxel = w->voxel};
-    cw_status st = make_room(&m) ? cwi_closest_build(mesh, &m.tree, err) : cwi_fail_memory(err);
+    cw_status st =
+        ensure_capacity(&m) ? cwi_closest_build(mesh, &m.tree, err) : cwi_fail_memory(err);
     if (st == CW_OK) {
         follow_samples(w, &m);
         st = settle_vertices(&m, threads, progress, err);

@@ -515,7 +515,7 @@ static void find_normal(warping *g, size_t t)
     }
 }
 
-static bool make_room(warping *g)
+static bool ensure_capacity(warping *g)
 {
     g->normals = cwi_alloc_array(g->mesh->triangle_count, sizeof *g->normals);
     g->corners = cwi_alloc_zeroed(g->mesh->vertex_count, sizeof *g->corners);
@@ -541,7 +541,7 @@ cw_status cwi_warp_init(cwi_warp *warp, const cw_mesh *mesh, cw_volume *volume, 
     for (int a = 0; a < 3; a++)
         warp->corner[a] = volume->affine[a][3];
     cw_status st = cwi_closest_build(mesh, &g.tree, err);
-    g.out_of_memory = st == CW_OK && !make_room(&g);
+    g.out_of_memory = st == CW_OK && !ensure_capacity(&g);
     if (st == CW_OK && !g.out_of_memory) {
         for (size_t t = 0; t < mesh->triangle_count; t++)
             find_normal(&g, t);

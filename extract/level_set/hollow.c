@@ -41,10 +41,10 @@ typedef struct hollowing {
 
 static double find_narrowest(const cw_hollow_desc *d)
 {
-    double least = d->wall_mm;
+    double min = d->wall_mm;
     for (size_t n = 0; n < d->drain_count; n++)
-        least = fmin(least, d->drains[n].diameter_mm);
-    return least;
+        min = fmin(min, d->drains[n].diameter_mm);
+    return min;
 }
 
 static cw_status check_desc(const cw_hollow_desc *d, cw_error *err)

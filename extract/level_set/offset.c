@@ -288,7 +288,7 @@ static cw_status make_adaptive(making *m, cw_mesh *out, cw_offset_facts *facts, 
             break;
         cw_mesh_free(out);
         *out = next;
-        facts->least_mm = cwi_adaptive_least(&a);
+        facts->least_mm = cwi_adaptive_min(&a);
     }
     cwi_adaptive_free(&a);
     facts->is_astray = beyond.any;

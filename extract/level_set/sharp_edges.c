@@ -578,7 +578,7 @@ static cw_status make_clear(sharpener *s, const cw_offset_desc *desc, bool *is_c
 
 /* ---- all of it --------------------------------------------------------------------------- */
 
-static bool make_room(sharpener *s)
+static bool ensure_capacity(sharpener *s)
 {
     const size_t n = s->mesh->vertex_count, t = s->mesh->triangle_count;
     s->planes = cwi_alloc_array(n, sizeof *s->planes);
@@ -648,7 +648,7 @@ cw_status cwi_sharpen(const cw_mesh *from, const cw_offset_desc *desc, double vo
     bool is_clear = false;
     cwi_sub(from->origin, mesh->origin, s.shift);
     cw_status st = CW_OK;
-    if (!make_room(&s))
+    if (!ensure_capacity(&s))
         st = cwi_fail_memory(err);
     if (st == CW_OK)
         st = find_cuts(&s, desc, err);

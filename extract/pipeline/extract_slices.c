@@ -40,12 +40,12 @@ static cw_status share_memory(const cwi_pipeline *p, streaming *s, cw_stream_des
                               cw_error *err)
 {
     const cw_volume *shape = &p->slices->shape;
-    const size_t left = d->extract.max_bytes, least = cw_extract_stream_bytes(shape, d, true);
+    const size_t left = d->extract.max_bytes, min = cw_extract_stream_bytes(shape, d, true);
     if (!p->desc->check || p->desc->min_volume_mm3 > 0)
         return CW_OK;
     if (!left)
         return cw_quality_stream_new(NULL, &s->check, err);
-    d->extract.max_bytes = left / 3 > least ? left / 3 : least;
+    d->extract.max_bytes = left / 3 > min ? left / 3 : min;
     const size_t slices = cw_extract_stream_bytes(shape, d, false);
     return begin_check(p, s, (left > slices ? left - slices : 0) + BESIDE_SLICES / 2, err);
 }

@@ -377,7 +377,7 @@ size_t cwi_snap_bytes(const cwi_bit_grid *grid, size_t vertices, size_t triangle
            triangles * sizeof(uint32_t) + grid->rows * grid->words * sizeof(cwi_cell_word);
 }
 
-static cw_status make_room(snap_run *run, cw_error *err)
+static cw_status ensure_capacity(snap_run *run, cw_error *err)
 {
     cwi_snapping *s = &run->s;
     const size_t vertices = s->mesh->vertex_count, triangles = s->mesh->triangle_count;
@@ -457,7 +457,7 @@ cw_status cwi_snap(const cwi_bit_grid *grid, const cwi_row *rows, const cw_extra
     snap_run run = {
         .s = {.grid = grid, .rows = rows, .mesh = mesh, .snap_distance = desc->snap}};
     find_inverse(&run.s);
-    cw_status st = make_room(&run, err);
+    cw_status st = ensure_capacity(&run, err);
     for (size_t n = 0; n < sizeof steps / sizeof *steps && st == CW_OK; n++) {
         const snap_step *step = &steps[n];
         run.colour = step->from;

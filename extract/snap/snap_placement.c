@@ -186,8 +186,8 @@ static bool looks_good(const cwi_snapping *s, const cwi_cluster *c, const looks 
 
 /* Returns the square of the distance from a point to the nearest point of the new triangles, or
  * to one that is near enough. */
-static double square_from(const cwi_snapping *s, const cwi_cluster *c, const double x[3],
-                          const double from[3], double enough)
+static double distance_sq_from(const cwi_snapping *s, const cwi_cluster *c, const double x[3],
+                               const double from[3], double enough)
 {
     cwi_triangle t;
     double nearest[3];
@@ -210,7 +210,7 @@ static bool is_faithful(const cwi_snapping *s, const cwi_cluster *c, const doubl
 {
     const double max_distance = MAX_ERROR * s->snap_distance;
     for (int m = 0; m < c->count; m++)
-        if (square_from(s, c, x, cwi_index(s, c->member[m]), max_distance * max_distance) >
+        if (distance_sq_from(s, c, x, cwi_index(s, c->member[m]), max_distance * max_distance) >
             max_distance * max_distance)
             return false;
     return true;

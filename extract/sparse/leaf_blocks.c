@@ -108,7 +108,7 @@ typedef struct sorting {
     const cwi_bit_grid *grid;
     size_t max_bytes;
     touch *touches;
-    size_t touch_count, touch_room;
+    size_t touch_count, touch_capacity;
 } sorting;
 
 static uint8_t sides_of(const sorting *s, const void *voxels, size_t count)
@@ -121,10 +121,10 @@ static uint8_t sides_of(const sorting *s, const void *voxels, size_t count)
 static uint8_t sides_of_value(const sorting *s, double value)
 {
     const cw_type type = s->grid->volume.type;
-    double room[64]; /* of any type */
+    double capacity[64]; /* of any type */
     for (size_t n = 0; n < 64; n++)
-        cwi_voxel_put(type, (char *)room + n * cw_type_size(type), value);
-    return sides_of(s, room, 64);
+        cwi_voxel_put(type, (char *)capacity + n * cw_type_size(type), value);
+    return sides_of(s, capacity, 64);
 }
 
 static void find_sides(void *context, size_t part)
@@ -178,8 +178,9 @@ static bool make_table(cwi_leaf_blocks *b, size_t slots)
 
 static cw_status grow_blocks(cwi_leaf_blocks *b, size_t max_bytes, cw_error *err)
 {
-    const size_t room = b->room ? 2 * b->room : 1024, bytes = room * sizeof *b->block;
-    if (room > UINT32_MAX / 2 || (max_bytes && bytes > max_bytes)) {
+    const size_t capacity = b->capacity ? 2 * b->capacity : 1024,
+                 bytes = capacity * sizeof *b->block;
+    if (capacity > UINT32_MAX / 2 || (max_bytes && bytes > max_bytes)) {
         char needed[CWI_MEMORY_TEXT], left[CWI_MEMORY_TEXT];
         cwi_print_memory(bytes, needed);
         cwi_print_memory(max_bytes ? max_bytes : UINT32_MAX / 2 * sizeof *b->block, left);
@@ -188,18 +189,18 @@ static cw_status grow_blocks(cwi_leaf_blocks *b, size_t max_bytes, cw_error *err
             "blocks around leaves and tiles need %s and more; %s are left (desc->max_bytes)",
             needed, left);
     }
-    cwi_leaf_block *more = cwi_realloc_array(b->block, room, sizeof *more);
+    cwi_leaf_block *more = cwi_realloc_array(b->block, capacity, sizeof *more);
     if (!more)
         return cwi_fail_memory(err);
     b->block = more;
-    b->room = room;
-    return make_table(b, 2 * room) ? CW_OK : cwi_fail_memory(err);
+    b->capacity = capacity;
+    return make_table(b, 2 * capacity) ? CW_OK : cwi_fail_memory(err);
 }
 
 static cw_status find_or_add(cwi_leaf_blocks *b, const uint32_t at[3], size_t max_bytes,
                              cwi_leaf_block **found, cw_error *err)
 {
-    cw_status st = b->count == b->room ? grow_blocks(b, max_bytes, err) : CW_OK;
+    cw_status st = b->count == b->capacity ? grow_blocks(b, max_bytes, err) : CW_OK;
     if (st != CW_OK)
         return st;
     uint32_t *number = &b->table[slot_of(b, at)];
@@ -330,10 +331,10 @@ static cw_status note_touch(sorting *s, size_t n, const reach along[3], const ui
     const uint32_t block = find_number(s->blocks, at);
     if (!block)
         return CW_OK;
-    if (s->touch_count == s->touch_room) {
-        s->touch_room =
-            s->touch_room ? 2 * s->touch_room : 4 * region_count(s->blocks->volume->sparse);
-        touch *more = cwi_realloc_array(s->touches, s->touch_room, sizeof *more);
+    if (s->touch_count == s->touch_capacity) {
+        s->touch_capacity = s->touch_capacity ? 2 * s->touch_capacity
+                                              : 4 * region_count(s->blocks->volume->sparse);
+        touch *more = cwi_realloc_array(s->touches, s->touch_capacity, sizeof *more);
         if (!more)
             return cwi_fail_memory(err);
         s->touches = more;

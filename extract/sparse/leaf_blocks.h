@@ -58,7 +58,7 @@ typedef struct cwi_leaf_block {
 typedef struct cwi_leaf_blocks {
     const cw_volume *volume;
     cwi_leaf_block *block; /* those that the surface may cross, by rising z, then y, then x */
-    size_t count, room;
+    size_t count, capacity;
     uint32_t *table; /* of `slots` places: a block's number and 1, by a hash of its place */
     size_t slots;
     uint32_t *region;   /* numbers of regions: leaves, then tiles */

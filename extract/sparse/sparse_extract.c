@@ -33,7 +33,7 @@ typedef struct worker {
     cwi_stranger *strangers;
     size_t seam_count, stranger_count;
     uint32_t *number; /* in the mesh, of a block's vertices */
-    size_t number_room;
+    size_t number_capacity;
     bool missing; /* some gradient vanished */
     cw_status status;
     cw_error error;
@@ -269,10 +269,10 @@ static cw_status join_block(sparse_plan *p, cwi_leaf_block *b, worker *w, cw_err
     cwi_block_mesh *piece = &b->piece;
     if (!piece->memory)
         return CW_OK;
-    if (piece->vertex_count > w->number_room) {
+    if (piece->vertex_count > w->number_capacity) {
         cwi_free(w->number);
-        w->number_room = 2 * piece->vertex_count;
-        w->number = cwi_alloc_array(w->number_room, sizeof *w->number);
+        w->number_capacity = 2 * piece->vertex_count;
+        w->number = cwi_alloc_array(w->number_capacity, sizeof *w->number);
     }
     if (!w->number)
         return cwi_fail_memory(err);
@@ -350,11 +350,11 @@ static cw_status init_grid(const sparse_plan *p, worker *w, cw_error *err)
 
 static cw_status init_worker(const sparse_plan *p, worker *w, cw_error *err)
 {
-    size_t room = 0; /* for edges in the sides: at most all of them */
+    size_t capacity = 0; /* for edges in the sides: at most all of them */
     for (size_t n = 0; n < 3; n++)
-        room += 6 * (size_t)(cells[n] + 1) * (size_t)(cells[(n + 1) % 3] + 1);
-    w->seam = cwi_alloc_array(room, sizeof *w->seam);
-    w->strangers = cwi_alloc_array(room, sizeof *w->strangers);
+        capacity += 6 * (size_t)(cells[n] + 1) * (size_t)(cells[(n + 1) % 3] + 1);
+    w->seam = cwi_alloc_array(capacity, sizeof *w->seam);
+    w->strangers = cwi_alloc_array(capacity, sizeof *w->strangers);
     if (!w->seam || !w->strangers)
         return cwi_fail_memory(err);
     cw_status st =
@@ -438,7 +438,7 @@ static cw_status number_blocks(sparse_plan *p, cw_extract_counts *c, cw_error *e
     }
     *c = (cw_extract_counts){.vertices = v, .triangles = t};
     c->bytes = 2 * cwi_extract_mesh_bytes(c, !p->desc->no_normals) + seam * sizeof(cwi_seam) +
-               p->blocks.room * sizeof *p->blocks.block; /* as pieces, and joined */
+               p->blocks.capacity * sizeof *p->blocks.block; /* as pieces, and joined */
     if (v > UINT32_MAX)
         return cwi_fail(err, CW_ERR_LIMIT, "the surface has %zu vertices; a mesh holds %u", v,
                         UINT32_MAX);

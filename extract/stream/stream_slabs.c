@@ -155,32 +155,32 @@ static cw_status write_slab(slab_writer *s, cw_slab_sink sink, cw_error *err)
 }
 
 /* Allocates the largest slab, if it is within the limits. */
-static cw_status make_room(slab_writer *s, const cw_extract_desc *d, size_t triangles,
-                           cw_extract_counts *counts, cw_error *err)
+static cw_status ensure_capacity(slab_writer *s, const cw_extract_desc *d, size_t triangles,
+                                 cw_extract_counts *counts, cw_error *err)
 {
     const cw_volume *whole = &s->window->whole;
-    const cw_extract_counts most = cwi_largest_slab(&s->sums, triangles);
+    const cw_extract_counts max = cwi_largest_slab(&s->sums, triangles);
     cw_mesh mesh;
-    counts->bytes = cwi_extract_mesh_bytes(&most, false) + most.vertices +
+    counts->bytes = cwi_extract_mesh_bytes(&max, false) + max.vertices +
                     cwi_slice_window_bytes(whole, d, s->window->sweeps, s->layers) +
                     cwi_border_loops_bytes(whole->dim) + s->sums.count * sizeof *s->counted;
     cw_status st = cwi_extract_check_limits(d, counts, err);
     if (st == CW_OK)
-        st = cwi_mesh_alloc(&mesh, most.vertices, most.triangles, false, err);
+        st = cwi_mesh_alloc(&mesh, max.vertices, max.triangles, false, err);
     if (st != CW_OK)
         return st;
     memcpy(mesh.affine, whole->affine, sizeof mesh.affine);
     s->place = cwi_make_sink(whole, s->window->plan.grid.invert, &mesh);
     s->place.grid = &s->window->plan.grid.volume;
     s->mesh = mesh;
-    s->seam = cwi_alloc_array(most.vertices, 1);
+    s->seam = cwi_alloc_array(max.vertices, 1);
     return s->seam ? CW_OK : cwi_fail_memory(err);
 }
 
 static cw_status write_slabs(slab_writer *s, const cw_extract_desc *d, size_t triangles,
                              cw_slab_sink sink, cw_extract_counts *counts, cw_error *err)
 {
-    cw_status st = make_room(s, d, triangles, counts, err);
+    cw_status st = ensure_capacity(s, d, triangles, counts, err);
     if (st != CW_OK)
         return st;
     s->emission = cwi_make_emission(&s->window->whole, d->simple_topology);
@@ -198,8 +198,8 @@ static cw_status write_slabs(slab_writer *s, const cw_extract_desc *d, size_t tr
 static size_t limit_window(const cw_slice_source *source, const cw_stream_desc *d)
 {
     const size_t limit = d->extract.max_bytes, part = limit / WINDOW_PART,
-                 least = cw_extract_stream_bytes(&source->shape, d, true);
-    return part > least ? part : least < limit ? least : limit;
+                 min = cw_extract_stream_bytes(&source->shape, d, true);
+    return part > min ? part : min < limit ? min : limit;
 }
 
 cw_status cw_extract_stream_slabs(const cw_slice_source *source, const cw_stream_desc *desc,

@@ -12,14 +12,14 @@ typedef cw_status visit(cw_statistics *statistics, const cw_volume *part, int th
 
 /* Reads all slices, some at a time. */
 static cw_status visit_parts(const cw_slice_source *source, int threads, void *memory,
-                             size_t most, visit *visit_part, cw_statistics *s, cw_error *err)
+                             size_t max, visit *visit_part, cw_statistics *s, cw_error *err)
 {
     cw_status st = CW_OK;
-    for (size_t k = 0; k < source->shape.dim[2] && st == CW_OK; k += most) {
+    for (size_t k = 0; k < source->shape.dim[2] && st == CW_OK; k += max) {
         const size_t left = source->shape.dim[2] - k;
         cw_volume read = source->shape, part;
         read.data = memory;
-        read.dim[2] = left < most ? left : most;
+        read.dim[2] = left < max ? left : max;
         st = source->read(source->user, k, read.dim[2], memory, err);
         if (st == CW_OK)
             st = cw_volume_select(&read, 0, 0, &part, err);
@@ -37,10 +37,8 @@ cw_status cw_stream_statistics(const cw_slice_source *source, size_t bin_count, 
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "shape.stride[2] is %td; the bytes of a slice were expected",
                         source->shape.stride[2]);
-    const size_t slice = (size_t)source->shape.stride[2], most = READ_BYTES / slice;
-    const size_t slices = most < 1                      ? 1
-                          : most > source->shape.dim[2] ? source->shape.dim[2]
-                                                        : most;
+    const size_t slice = (size_t)source->shape.stride[2], max = READ_BYTES / slice;
+    const size_t slices = max < 1 ? 1 : max > source->shape.dim[2] ? source->shape.dim[2] : max;
     void *memory = cwi_alloc_large(slices, slice);
     cw_volume shape = source->shape;
     shape.slope = shape.slope != 0 ? shape.slope : 1;

@@ -133,22 +133,22 @@ static cwi_row_span make_span(const cwi_chunk_writer *c, place from, place to, s
                           .first_triangle = triangle};
 }
 
-static cw_status make_room(cwi_chunk_writer *c, size_t vertices, size_t triangles,
-                           cw_error *err)
+static cw_status ensure_capacity(cwi_chunk_writer *c, size_t vertices, size_t triangles,
+                                 cw_error *err)
 {
     const bool normals = !c->window->desc.no_normals;
-    if (!c->positions || vertices > c->vertex_room) {
+    if (!c->positions || vertices > c->vertex_capacity) {
         c->positions = cwi_renew_large(c->positions, 3 * vertices, sizeof *c->positions);
         if (normals)
             c->normals = cwi_renew_large(c->normals, 3 * vertices, sizeof *c->normals);
-        c->vertex_room = c->positions && (c->normals || !normals) ? vertices : 0;
+        c->vertex_capacity = c->positions && (c->normals || !normals) ? vertices : 0;
     }
-    if (!c->corners || triangles > c->triangle_room) {
+    if (!c->corners || triangles > c->triangle_capacity) {
         c->corners = cwi_renew_large(c->corners, 3 * triangles, sizeof *c->corners);
-        c->triangle_room = c->corners ? triangles : 0;
+        c->triangle_capacity = c->corners ? triangles : 0;
     }
-    return c->positions && c->corners && vertices <= c->vertex_room &&
-                   triangles <= c->triangle_room
+    return c->positions && c->corners && vertices <= c->vertex_capacity &&
+                   triangles <= c->triangle_capacity
                ? CW_OK
                : cwi_fail_memory(err);
 }
@@ -161,7 +161,7 @@ static cw_status write_chunk(cwi_chunk_writer *c, place from, place to, cw_error
                  triangles = after->triangle - first->triangle;
     cw_mesh_chunk chunk = {
         .mesh = c->frame, .first_vertex = first->first[0], .first_triangle = first->triangle};
-    cw_status st = make_room(c, vertices, triangles, err);
+    cw_status st = ensure_capacity(c, vertices, triangles, err);
     if (st != CW_OK)
         return st;
     chunk_work work = {.writer = c, .sink = c->vertices};

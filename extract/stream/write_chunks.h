@@ -16,7 +16,7 @@ typedef struct cwi_chunk_writer {
     cw_mesh frame; /* origin and affine of every chunk */
     float *positions, *normals;
     uint32_t *corners;
-    size_t vertex_room, triangle_room;
+    size_t vertex_capacity, triangle_capacity;
 } cwi_chunk_writer;
 
 /* Bytes of a chunk, unless a single row has more. */

@@ -54,19 +54,19 @@ typedef struct cwi_3mf {
     cwi_mesh_build build;
     uint32_t *point_colors; /* index of a colour, or cwi_3mf_none; for the first color_count
                                points */
-    size_t point_color_room, point_color_count;
+    size_t point_color_capacity, point_color_count;
     bool mixed_colors; /* some point has two colours: then none are kept */
     uint32_t *colors;  /* 0xRRGGBBAA */
-    size_t color_count, color_room;
+    size_t color_count, color_capacity;
     cwi_3mf_object *objects;
-    size_t object_count, object_room;
+    size_t object_count, object_capacity;
     cwi_3mf_component *components;
-    size_t component_count, component_room;
+    size_t component_count, component_capacity;
     cwi_3mf_component *items;
-    size_t item_count, item_room;
+    size_t item_count, item_capacity;
     bool has_build;
     char *names; /* each ends with a zero */
-    size_t name_bytes, name_room;
+    size_t name_bytes, name_capacity;
     cwi_3mf_resource *resources; /* a hash table */
     size_t resource_count, slots;
     uint64_t text_left; /* bytes of XML that may still be read */

@@ -22,9 +22,9 @@ typedef struct instance {
 typedef struct placing {
     cwi_3mf *m;
     instance *instances;
-    size_t count, room;
+    size_t count, capacity;
     size_t visits;
-    uint64_t drawn, most; /* points and triangles */
+    uint64_t drawn, max; /* points and triangles */
 } placing;
 
 /* --- instances ------------------------------------------------------------------------- */
@@ -41,13 +41,13 @@ static cw_status add_instance(placing *p, size_t index, const double *place, cw_
 {
     const cwi_3mf_object *o = &p->m->objects[index];
     p->drawn += o->end_point - o->first_point + o->end_triangle - o->first_triangle;
-    if (p->drawn > p->most)
+    if (p->drawn > p->max)
         return cwi_fail(
             err, CW_ERR_LIMIT,
             "objects are placed so often that their points and triangles are more than "
             "%llu; state a limit if that is meant (desc->max_triangles)",
-            (unsigned long long)p->most);
-    cw_status st = cwi_mesh_grow(p->m->in, &p->instances, &p->room, p->count + 1,
+            (unsigned long long)p->max);
+    cw_status st = cwi_mesh_grow(p->m->in, &p->instances, &p->capacity, p->count + 1,
                                  sizeof *p->instances, err);
     if (st == CW_OK) {
         instance *i = &p->instances[p->count++];
@@ -195,14 +195,14 @@ static void move_object(cwi_mesh_build *b, const cwi_3mf_object *o, const instan
 
 /* Adds a copy of the object's points and triangles, and of the points' colours. */
 static cw_status copy_object(cwi_3mf *m, cwi_mesh_build *to, uint32_t **colors,
-                             size_t *color_room, const cwi_3mf_object *o, cw_error *err)
+                             size_t *color_capacity, const cwi_3mf_object *o, cw_error *err)
 {
     const size_t first = to->point_count, count = o->end_point - o->first_point;
     const size_t triangles = o->end_triangle - o->first_triangle;
     cw_status st = cwi_build_reserve(to, (uint64_t)first + count,
                                      (uint64_t)to->triangle_count + triangles, err);
     if (st == CW_OK && m->point_colors)
-        st = cwi_mesh_grow(m->in, colors, color_room, first + count, sizeof **colors, err);
+        st = cwi_mesh_grow(m->in, colors, color_capacity, first + count, sizeof **colors, err);
     if (st != CW_OK)
         return st;
     memcpy(to->points + 3 * first, m->build.points + 3 * o->first_point,
@@ -227,11 +227,11 @@ static cw_status copy_objects(placing *p, cw_error *err)
     cwi_3mf *m = p->m;
     cwi_mesh_build to = {.in = m->in};
     uint32_t *colors = NULL;
-    size_t color_room = 0;
+    size_t color_capacity = 0;
     cw_status st = CW_OK;
     for (size_t i = 0; i < p->count && st == CW_OK; i++) {
         const cwi_3mf_object *o = &m->objects[p->instances[i].object];
-        st = copy_object(m, &to, &colors, &color_room, o, err);
+        st = copy_object(m, &to, &colors, &color_capacity, o, err);
     }
     if (st != CW_OK) {
         cwi_build_free(&to);
@@ -273,10 +273,10 @@ static cw_status move_instances(placing *p, cw_error *err)
 /* Colours points without a colour white, as they are drawn. */
 static cw_status color_points(cwi_3mf *m, size_t count, cw_error *err)
 {
-    size_t room = 0;
+    size_t capacity = 0;
     if (!m->point_colors || m->mixed_colors)
         return CW_OK;
-    cw_status st = cwi_mesh_grow(m->in, &m->mesh->colors, &room, count, 4, err);
+    cw_status st = cwi_mesh_grow(m->in, &m->mesh->colors, &capacity, count, 4, err);
     for (size_t v = 0; v < count && st == CW_OK; v++) {
         const uint32_t index = v < m->point_color_count ? m->point_colors[v] : cwi_3mf_none;
         const uint32_t color = index == cwi_3mf_none ? UINT32_MAX : m->colors[index];
@@ -300,7 +300,7 @@ static cw_status build_mesh(placing *p, cw_error *err)
 cw_status cwi_3mf_place(cwi_3mf *m, cw_error *err)
 {
     const bool stated = m->in->desc.max_triangles < UINT32_MAX;
-    placing p = {.m = m, .most = stated ? UINT64_MAX : FREE_COUNT + m->in->file.size};
+    placing p = {.m = m, .max = stated ? UINT64_MAX : FREE_COUNT + m->in->file.size};
     cw_status st = m->has_build
                        ? find_instances(&p, err)
                        : cwi_fail(err, CW_ERR_FORMAT, "'%s' has no 'build'", m->models[0]);

@@ -202,7 +202,7 @@ static cw_status add_color(parsing *p, const char *value, cw_error *err)
     uint32_t color;
     if (!parse_color(value, &color))
         return fail_attribute(p, err, "a colour", value);
-    cw_status st = cwi_mesh_grow(m->in, &m->colors, &m->color_room, m->color_count + 1,
+    cw_status st = cwi_mesh_grow(m->in, &m->colors, &m->color_capacity, m->color_count + 1,
                                  sizeof *m->colors, err);
     if (st == CW_OK) {
         m->colors[m->color_count++] = color;
@@ -232,7 +232,7 @@ static cw_status keep_name(parsing *p, const char *name, cw_error *err)
     const size_t length = given < CWI_SCAN_AHEAD ? given : CWI_SCAN_AHEAD;
     p->object.name = m->name_bytes;
     cw_status st =
-        cwi_mesh_grow(m->in, &m->names, &m->name_room, m->name_bytes + length + 1, 1, err);
+        cwi_mesh_grow(m->in, &m->names, &m->name_capacity, m->name_bytes + length + 1, 1, err);
     if (st != CW_OK)
         return st;
     memcpy(m->names + m->name_bytes, name ? name : "", length);
@@ -296,7 +296,7 @@ static cw_status end_object(void *user, cwi_xml *x, cw_error *err)
     p->object.end_component = m->component_count;
     cw_status st = add_resource(p, p->object_id, &r, err);
     if (st == CW_OK)
-        st = cwi_mesh_grow(m->in, &m->objects, &m->object_room, m->object_count + 1,
+        st = cwi_mesh_grow(m->in, &m->objects, &m->object_capacity, m->object_count + 1,
                            sizeof *m->objects, err);
     if (st != CW_OK)
         return st;
@@ -339,7 +339,7 @@ static cw_status give_color(parsing *p, size_t point, uint32_t color, cw_error *
     cwi_3mf *m = p->m;
     if (color == cwi_3mf_none || m->mixed_colors)
         return CW_OK;
-    cw_status st = cwi_mesh_grow(m->in, &m->point_colors, &m->point_color_room,
+    cw_status st = cwi_mesh_grow(m->in, &m->point_colors, &m->point_color_capacity,
                                  m->build.point_count, sizeof *m->point_colors, err);
     if (st != CW_OK)
         return st;
@@ -418,7 +418,7 @@ static cw_status find_model(const parsing *p, const char *path, uint32_t *model,
 }
 
 static cw_status add_component(parsing *p, cwi_attributes a, cwi_3mf_component **list,
-                               size_t *count, size_t *room, cw_error *err)
+                               size_t *count, size_t *capacity, cw_error *err)
 {
     cwi_3mf_component c;
     cw_status st = find_model(p, cwi_attribute(a, "path"), &c.model, err);
@@ -427,7 +427,7 @@ static cw_status add_component(parsing *p, cwi_attributes a, cwi_3mf_component *
     if (st == CW_OK)
         st = read_place(p, cwi_attribute(a, "transform"), c.place, err);
     if (st == CW_OK)
-        st = cwi_mesh_grow(p->m->in, list, room, *count + 1, sizeof c, err);
+        st = cwi_mesh_grow(p->m->in, list, capacity, *count + 1, sizeof c, err);
     if (st == CW_OK)
         (*list)[(*count)++] = c;
     return st;
@@ -438,7 +438,8 @@ static cw_status start_component(void *user, cwi_xml *x, cwi_attributes a, cw_er
     parsing *p = user;
     cwi_3mf *m = p->m;
     (void)x;
-    return add_component(p, a, &m->components, &m->component_count, &m->component_room, err);
+    return add_component(p, a, &m->components, &m->component_count, &m->component_capacity,
+                         err);
 }
 
 /* Starts the build, in the package's own model only. */
@@ -457,7 +458,7 @@ static cw_status start_item(void *user, cwi_xml *x, cwi_attributes a, cw_error *
     (void)x;
     if (p->model > 0)
         return CW_OK;
-    return add_component(p, a, &m->items, &m->item_count, &m->item_room, err);
+    return add_component(p, a, &m->items, &m->item_count, &m->item_capacity, err);
 }
 
 /* --- the model --------------------------------------------------------------------------- */
@@ -586,7 +587,8 @@ static const cwi_xml_element elements[ELEMENT_COUNT] = {
 static cw_status take_text(void *user, int row, const char *text, size_t size, cw_error *err)
 {
     parsing *p = user;
-    const size_t room = TEXT_BYTES - 1 - p->text_bytes, n = size < room ? size : room;
+    const size_t capacity = TEXT_BYTES - 1 - p->text_bytes,
+                 n = size < capacity ? size : capacity;
     (void)err;
     if (row != E_METADATA || p->fact == NO_FACT)
         return CW_OK;

@@ -94,7 +94,7 @@ static const cwi_xml_element elements[ELEMENT_COUNT] = {
 };
 
 static const cwi_xml_rules rules = {
-    .elements = elements, .element_count = ELEMENT_COUNT, .most_elements = MAX_RELATIONSHIPS};
+    .elements = elements, .element_count = ELEMENT_COUNT, .max_elements = MAX_RELATIONSHIPS};
 
 /* Adds the models that the relationships of a part name. They are in
  * "3D/_rels/3dmodel.model.rels" for "3D/3dmodel.model". */

@@ -19,11 +19,11 @@ static const unsigned char values[256] = {
 
 /* Decodes whole groups without blanks; nearly all text consists of them. */
 static size_t decode_groups(const char *text, size_t size, size_t *used, unsigned char *to,
-                            size_t room)
+                            size_t capacity)
 {
     const unsigned char *from = (const unsigned char *)text;
     size_t i = 0, got = 0;
-    for (; size - i >= 4 && room - got >= 3; i += 4, got += 3) {
+    for (; size - i >= 4 && capacity - got >= 3; i += 4, got += 3) {
         const unsigned a = values[from[i]], b = values[from[i + 1]], c = values[from[i + 2]],
                        d = values[from[i + 3]];
         if (!(a & b & c & d & DIGIT))
@@ -59,14 +59,14 @@ static size_t take_bits(cwi_base64 *b, unsigned char value, unsigned char *to)
 }
 
 size_t cwi_base64_decode(cwi_base64 *b, const char *text, size_t size, size_t *used,
-                         unsigned char *to, size_t room)
+                         unsigned char *to, size_t capacity)
 {
     size_t got = 0;
     *used = 0;
-    while (*used < size && got < room && !b->ended && !b->wrong) {
+    while (*used < size && got < capacity && !b->ended && !b->wrong) {
         if (b->in_group == 0)
-            got += decode_groups(text + *used, size - *used, used, to + got, room - got);
-        if (*used == size || got == room)
+            got += decode_groups(text + *used, size - *used, used, to + got, capacity - got);
+        if (*used == size || got == capacity)
             break;
         const unsigned char value = values[(unsigned char)text[*used]];
         if (value & DIGIT)

@@ -17,7 +17,7 @@ typedef struct cwi_base64 {
  * skipped, and a new group starts behind padding. Returns the bytes written; *used counts
  * characters. */
 size_t cwi_base64_decode(cwi_base64 *b, const char *text, size_t size, size_t *used,
-                         unsigned char *to, size_t room);
+                         unsigned char *to, size_t capacity);
 
 /* Encodes bytes; only the last portion of a text may be no multiple of 3. Returns the
  * characters written: 4 for each 3 bytes begun. */

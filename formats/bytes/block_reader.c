@@ -33,7 +33,7 @@ static size_t block_bytes(const cwi_packed_blocks *b, size_t index)
 }
 
 /* Checks that the counts before the table give the wanted bytes. */
-static cw_status check_head(cwi_packed_blocks *b, const unsigned char *head, uint64_t wanted,
+static cw_status check_head(cwi_packed_blocks *b, const unsigned char *head, uint64_t expected,
                             uint64_t there, cw_error *err)
 {
     const uint64_t count = word_at(b, head, 0), bytes = word_at(b, head, 1);
@@ -41,12 +41,13 @@ static cw_status check_head(cwi_packed_blocks *b, const unsigned char *head, uin
     uint64_t total;
     if (count < 1 || bytes < 1 || last > bytes ||
         __builtin_mul_overflow(last ? count - 1 : count, bytes, &total) ||
-        __builtin_add_overflow(total, last, &total) || total != wanted)
+        __builtin_add_overflow(total, last, &total) || total != expected)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "the table of compressed blocks lists %llu blocks of %llu bytes, the "
                         "last of %llu; %llu bytes are needed in all",
                         (unsigned long long)count, (unsigned long long)bytes,
-                        (unsigned long long)(last ? last : bytes), (unsigned long long)wanted);
+                        (unsigned long long)(last ? last : bytes),
+                        (unsigned long long)expected);
     if (bytes > INT_MAX)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "the compressed blocks have %llu bytes each; at most %d are read",
@@ -62,12 +63,12 @@ static cw_status check_head(cwi_packed_blocks *b, const unsigned char *head, uin
 }
 
 /* Checks the table; sets *most to the size of the largest compressed block. */
-static cw_status check_table(const cwi_packed_blocks *b, uint64_t there, uint64_t *most,
+static cw_status check_table(const cwi_packed_blocks *b, uint64_t there, uint64_t *max,
                              cw_error *err)
 {
     const uint64_t ratio = codecs[b->form.codec].ratio, besides = codecs[b->form.codec].besides;
     uint64_t sum = (uint64_t)b->count * b->form.word_bytes;
-    *most = 0;
+    *max = 0;
     for (size_t i = 0; i < b->count; i++) {
         const uint64_t packed = word_at(b, b->table, i);
         if (__builtin_add_overflow(sum, packed, &sum) || sum > there)
@@ -81,29 +82,29 @@ static cw_status check_table(const cwi_packed_blocks *b, uint64_t there, uint64_
                 "packed so closely",
                 i, b->count, block_bytes(b, i), (unsigned long long)packed,
                 codecs[b->form.codec].name);
-        *most = packed > *most ? packed : *most;
+        *max = packed > *max ? packed : *max;
     }
     return CW_OK;
 }
 
 cw_status cwi_blocks_open(cwi_packed_blocks *b, cwi_stream *stream, const cwi_block_form *form,
-                          uint64_t wanted, uint64_t there, cw_error *err)
+                          uint64_t expected, uint64_t there, cw_error *err)
 {
     unsigned char head[HEAD_WORDS * 8];
     const size_t head_bytes = HEAD_WORDS * form->word_bytes;
-    uint64_t most = 0;
+    uint64_t max = 0;
     *b = (cwi_packed_blocks){.stream = stream, .form = *form};
     cw_status st = cwi_stream_read(stream, head, head_bytes, err);
     there = there > head_bytes ? there - head_bytes : 0;
     if (st == CW_OK)
-        st = check_head(b, head, wanted, there, err);
+        st = check_head(b, head, expected, there, err);
     if (st == CW_OK && !(b->table = cwi_alloc_array(b->count, form->word_bytes)))
         return cwi_fail_memory(err);
     if (st == CW_OK)
         st = cwi_stream_read(stream, b->table, b->count * form->word_bytes, err);
     if (st == CW_OK)
-        st = check_table(b, there, &most, err);
-    if (st == CW_OK && !(b->packed = cwi_alloc_array((size_t)most, 1)))
+        st = check_table(b, there, &max, err);
+    if (st == CW_OK && !(b->packed = cwi_alloc_array((size_t)max, 1)))
         st = cwi_fail_memory(err);
     return st;
 }
@@ -195,18 +196,18 @@ static cw_status settle_block(cwi_packed_blocks *b, cw_error *err)
     return st;
 }
 
-cw_status cwi_blocks_some(cwi_packed_blocks *b, unsigned char *to, size_t room, size_t *got,
+cw_status cwi_blocks_some(cwi_packed_blocks *b, unsigned char *to, size_t capacity, size_t *got,
                           cw_error *err)
 {
     cw_status st = settle_block(b, err);
-    if (st == CW_OK && b->held_next == b->held_bytes && room >= block_bytes(b, b->next)) {
+    if (st == CW_OK && b->held_next == b->held_bytes && capacity >= block_bytes(b, b->next)) {
         *got = block_bytes(b, b->next);
         return decode_block(b, to, err);
     }
     if (st == CW_OK && b->held_next == b->held_bytes)
         st = hold_block(b, err);
     const size_t rest = b->held_bytes - b->held_next;
-    *got = room < rest ? room : rest;
+    *got = capacity < rest ? capacity : rest;
     if (st == CW_OK)
         memcpy(to, b->held + b->held_next, *got);
     b->held_next += *got;

@@ -28,18 +28,18 @@ typedef struct cwi_packed_blocks {
     size_t held_bytes, held_next;
 } cwi_packed_blocks;
 
-/* Reads the table. Checks that the blocks decode to exactly `wanted` bytes, that `there` bytes
+/* Reads the table. Checks that the blocks decode to exactly `expected` bytes, that `there` bytes
  * can hold them, and that none claims a better compression than its codec can reach. Nothing
  * larger than the file is allocated.
  * Returns CW_ERR_FORMAT, CW_ERR_NO_MEMORY, CW_ERR_IO */
 CW_NODISCARD cw_status cwi_blocks_open(cwi_packed_blocks *b, cwi_stream *stream,
-                                       const cwi_block_form *form, uint64_t wanted,
+                                       const cwi_block_form *form, uint64_t expected,
                                        uint64_t there, cw_error *err);
 
 /* Decodes the next bytes: a whole block if the room is enough for it, else a part of one. The
  * rest of that block is kept until it is used up. The caller must not request more than
- * `wanted` bytes in total. Returns CW_ERR_FORMAT, CW_ERR_NO_MEMORY, CW_ERR_IO */
-CW_NODISCARD cw_status cwi_blocks_some(cwi_packed_blocks *b, unsigned char *to, size_t room,
+ * `expected` bytes in total. Returns CW_ERR_FORMAT, CW_ERR_NO_MEMORY, CW_ERR_IO */
+CW_NODISCARD cw_status cwi_blocks_some(cwi_packed_blocks *b, unsigned char *to, size_t capacity,
                                        size_t *got, cw_error *err);
 
 /* Leaves out bytes; blocks that hold nothing else are not decoded. */

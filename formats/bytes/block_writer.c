@@ -17,9 +17,9 @@ cw_status cwi_block_sink_open(cwi_block_sink *b, cwi_outfile *file, cw_error *er
     *b = (cwi_block_sink){.file = file};
     cwi_zlib_use_memory(&b->z);
     b->deflates = deflateInit(&b->z, LEVEL) == Z_OK;
-    b->packed_room = b->deflates ? deflateBound(&b->z, BLOCK_BYTES) : 0;
+    b->packed_capacity = b->deflates ? deflateBound(&b->z, BLOCK_BYTES) : 0;
     b->block = cwi_alloc_array(BLOCK_BYTES, 1);
-    b->packed = cwi_alloc_array(b->packed_room, 1);
+    b->packed = cwi_alloc_array(b->packed_capacity, 1);
     if (b->deflates && b->block && b->packed)
         return CW_OK;
     cwi_block_sink_close(b);
@@ -57,9 +57,9 @@ static cw_status flush_block(cwi_block_sink *b, cw_error *err)
     b->z.next_in = b->block;
     b->z.avail_in = (uInt)b->held;
     b->z.next_out = b->packed;
-    b->z.avail_out = (uInt)b->packed_room;
+    b->z.avail_out = (uInt)b->packed_capacity;
     deflate(&b->z, Z_FINISH); /* there is room for any output */
-    const size_t packed = b->packed_room - b->z.avail_out;
+    const size_t packed = b->packed_capacity - b->z.avail_out;
     b->held = 0;
     assert(b->next < b->count);
     cwi_put_u64(b->table + (HEAD_WORDS + b->next++) * WORD, packed);
@@ -71,7 +71,7 @@ cw_status cwi_block_sink_put(void *sink, const void *bytes, size_t size, cw_erro
     cwi_block_sink *b = sink;
     cw_status st = CW_OK;
     for (const unsigned char *from = bytes; st == CW_OK && size > 0;) {
-        const size_t room = BLOCK_BYTES - b->held, n = size < room ? size : room;
+        const size_t capacity = BLOCK_BYTES - b->held, n = size < capacity ? size : capacity;
         memcpy(b->block + b->held, from, n);
         b->held += n;
         from += n;

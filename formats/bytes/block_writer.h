@@ -12,7 +12,7 @@ typedef struct cwi_block_sink {
     z_stream z;
     bool deflates;
     unsigned char *block, *packed; /* one block, plain and compressed */
-    size_t packed_room, held;      /* bytes of the block so far */
+    size_t packed_capacity, held;  /* bytes of the block so far */
     unsigned char *table;          /* of the current array */
     size_t table_bytes, count, next;
     uint64_t table_at;

@@ -55,12 +55,12 @@ static cw_status pump_deflate(cwi_sink *s, int flush, cw_error *err)
 
 cw_status cwi_sink_write(cwi_sink *s, const void *bytes, size_t size, cw_error *err)
 {
-    const size_t most = 1 << 30;
+    const size_t max = 1 << 30;
     if (!s->deflates)
         return put_bytes(s, bytes, size, err);
     cw_status st = CW_OK;
     for (const unsigned char *p = bytes; st == CW_OK && size > 0;) {
-        const size_t n = size < most ? size : most;
+        const size_t n = size < max ? size : max;
         s->z.next_in = p;
         s->z.avail_in = (uInt)n;
         st = pump_deflate(s, Z_NO_FLUSH, err);

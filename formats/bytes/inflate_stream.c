@@ -235,7 +235,7 @@ static cw_status fail_inflate(const cwi_stream *s, int code, cw_error *err)
 static cw_status inflate_some(cwi_stream *s, unsigned char *to, size_t size, size_t *got,
                               cw_error *err)
 {
-    const uInt most = 1 << 30;
+    const uInt max = 1 << 30;
     size_t fetched = 0;
     *got = 0;
     if (s->z.avail_in == 0) {
@@ -245,7 +245,7 @@ static cw_status inflate_some(cwi_stream *s, unsigned char *to, size_t size, siz
     }
     const uInt input = s->z.avail_in;
     s->z.next_out = to;
-    s->z.avail_out = size < most ? (uInt)size : most;
+    s->z.avail_out = size < max ? (uInt)size : max;
     const uInt output = s->z.avail_out;
     const int code = s->bzip2  ? cwi_bzip2_inflate(s->bzip2, &s->z)
                      : s->isal ? cwi_isal_inflate(s->isal, &s->z)

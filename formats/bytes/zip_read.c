@@ -44,8 +44,8 @@ static cw_status read_at(const cwi_input *in, uint64_t at, void *to, size_t size
 static cw_status find_end(const cwi_input *in, uint64_t *end, unsigned char record[END],
                           cw_error *err)
 {
-    const size_t most = END + MAX_COMMENT;
-    const size_t size = in->size < most ? (size_t)in->size : most;
+    const size_t max = END + MAX_COMMENT;
+    const size_t size = in->size < max ? (size_t)in->size : max;
     unsigned char *tail = cwi_alloc_array(size, 1);
     if (!tail)
         return cwi_fail_memory(err);

@@ -35,12 +35,12 @@ static cw_status take_corners(const cwi_corner_list *list, const cwi_cell_kind *
                               size_t there, size_t base, uint32_t *to, cw_error *err)
 {
     static const uint8_t in_rows[8] = {0, 1, 3, 2, 4, 5, 7, 6};
-    const size_t wanted = cwi_shape_corners(kind->shape);
+    const size_t expected = cwi_shape_corners(kind->shape);
     const bool curved = kind->use == CWI_CELL_CURVED;
-    if (curved ? there < wanted : there != wanted)
+    if (curved ? there < expected : there != expected)
         return cwi_fail(err, CW_ERR_FORMAT, "cell %zu, a %s, has %zu corners; %s%zu expected",
-                        list->cell, kind->name, there, curved ? "at least " : "", wanted);
-    for (size_t c = 0; c < wanted; c++) {
+                        list->cell, kind->name, there, curved ? "at least " : "", expected);
+    for (size_t c = 0; c < expected; c++) {
         const size_t step = kind->use == CWI_CELL_VOXEL ? in_rows[c] : c;
         const int64_t corner = cwi_tuples_whole(&list->numbers, list->at + step);
         if (corner < 0 || (uint64_t)corner >= list->points)

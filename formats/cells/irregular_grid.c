@@ -47,16 +47,16 @@ typedef struct building {
 
 static cw_status take_bytes(building *b, uint64_t bytes, cw_error *err)
 {
-    const uint64_t most = b->desc->max_bytes;
+    const uint64_t max = b->desc->max_bytes;
     if (__builtin_add_overflow(b->bytes, bytes, &b->bytes))
         b->bytes = UINT64_MAX;
-    if (!most || b->bytes <= most)
+    if (!max || b->bytes <= max)
         return CW_OK;
-    char asked[CWI_MEMORY_TEXT], limit[CWI_MEMORY_TEXT];
-    cwi_print_memory(b->bytes, asked);
-    cwi_print_memory(most, limit);
+    char requested[CWI_MEMORY_TEXT], limit[CWI_MEMORY_TEXT];
+    cwi_print_memory(b->bytes, requested);
+    cwi_print_memory(max, limit);
     return cwi_fail(err, CW_ERR_LIMIT,
-                    "the grid takes more than %s; the limit is %s (desc->max_bytes)", asked,
+                    "the grid takes more than %s; the limit is %s (desc->max_bytes)", requested,
                     limit);
 }
 

@@ -11,7 +11,7 @@ static const double DIAGONALS = 20000; /* the default tolerance is the diagonal 
 
 static const struct {
     const char *name;
-    int most_bits;
+    int max_bits;
 } kinds[] = {[CW_COMPRESS_QUANTIZE] = {"quantize", SHORT_BITS},
              [CW_COMPRESS_DRACO] = {"Draco", CWI_MAX_GRID_BITS},
              [CW_COMPRESS_MESHOPT] = {"meshopt", EXPONENTIAL_BITS}};
@@ -21,24 +21,24 @@ cw_status cwi_grid_check_bits(const cw_write_desc *desc, cw_error *err)
     const cw_compression kind = desc->compression;
     if ((size_t)kind >= sizeof kinds / sizeof *kinds)
         return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a compression", (int)kind);
-    if (desc->bits < 0 || desc->bits > kinds[kind].most_bits)
+    if (desc->bits < 0 || desc->bits > kinds[kind].max_bits)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "%d bits a coordinate; there may be 1 to %d with %s", desc->bits,
-                        kinds[kind].most_bits, kinds[kind].name);
+                        kinds[kind].max_bits, kinds[kind].name);
     return CW_OK;
 }
 
 static double default_tolerance(const cwi_parts *parts, const cwi_quantization_grid *grid)
 {
-    double squares = 0;
+    double diagonal_sq = 0;
     for (int a = 0; a < 3; a++) {
         double high = -INFINITY;
         for (size_t p = 0; p < parts->count; p++)
             for (size_t v = 0; v < parts->items[p].mesh.vertex_count; v++)
                 high = fmax(high, (double)parts->items[p].mesh.positions[3 * v + (size_t)a]);
-        squares += (high - (double)grid->low[a]) * (high - (double)grid->low[a]);
+        diagonal_sq += (high - (double)grid->low[a]) * (high - (double)grid->low[a]);
     }
-    return sqrt(squares) / DIAGONALS;
+    return sqrt(diagonal_sq) / DIAGONALS;
 }
 
 static cw_status fail_shape(const cwi_quantization_grid *grid, const cwi_grid_harm *harm,
@@ -73,14 +73,14 @@ static double measure_error(const cwi_quantization_grid *grid, const cwi_parts *
     for (size_t p = 0; p < parts->count; p++) {
         const cw_mesh *m = &parts->items[p].mesh;
         for (size_t v = 0; v < m->vertex_count; v++) {
-            double squares = 0;
+            double diagonal_sq = 0;
             for (int a = 0; a < 3; a++) {
                 const float x = m->positions[3 * v + (size_t)a];
                 const double moved =
                     cwi_grid_decode(grid, cwi_grid_round(grid, x, a), a) - (double)x;
-                squares += moved * moved;
+                diagonal_sq += moved * moved;
             }
-            worst = squares > worst ? squares : worst;
+            worst = diagonal_sq > worst ? diagonal_sq : worst;
         }
     }
     return sqrt(worst);
@@ -91,14 +91,14 @@ static cw_status find_grid(cwi_quantization_grid *grid, const cwi_parts *parts,
                            cw_compression kind, double tolerance, bool *found,
                            cwi_grid_harm *harm, cw_error *err)
 {
-    const int most = kinds[kind].most_bits;
+    const int max = kinds[kind].max_bits;
     cw_status st = CW_OK;
     *found = false;
-    for (int bits = 1; bits <= most && st == CW_OK && !*found; bits++) {
+    for (int bits = 1; bits <= max && st == CW_OK && !*found; bits++) {
         lay_grid(grid, kind, bits);
         const bool fine =
             cwi_grid_error(grid) <= tolerance && measure_error(grid, parts) <= tolerance;
-        if (fine || bits == most)
+        if (fine || bits == max)
             st = cwi_grid_measure(grid, parts, harm, err);
         *found = fine && harm->merged == 0 && harm->flat == 0;
     }

@@ -191,17 +191,17 @@ bool is_on_grid(const draco::PointAttribute &positions, const cwi_quantization_g
 bool copy_colors(const draco::PointAttribute &from, size_t count, uint8_t *to)
 {
     const bool real = from.data_type() == draco::DT_FLOAT32;
-    const double most = real ? 1 : from.data_type() == draco::DT_UINT16 ? 65535 : 255;
+    const double max = real ? 1 : from.data_type() == draco::DT_UINT16 ? 65535 : 255;
     for (size_t i = 0; i < count; i++) {
         const draco::AttributeValueIndex at = from.mapped_index(draco::PointIndex(uint32_t(i)));
-        uint32_t whole[4] = {0, 0, 0, uint32_t(most)};
-        float share[4] = {0, 0, 0, 1};
+        uint32_t whole[4] = {0, 0, 0, uint32_t(max)};
+        float scaled[4] = {0, 0, 0, 1};
         if (at.value() >= from.size() ||
-            !(real ? from.ConvertValue<float>(at, int8_t(from.num_components()), share)
+            !(real ? from.ConvertValue<float>(at, int8_t(from.num_components()), scaled)
                    : from.ConvertValue<uint32_t>(at, int8_t(from.num_components()), whole)))
             return false;
         for (int c = 0; c < 4; c++) {
-            const double value = (real ? double(share[c]) : double(whole[c])) / most;
+            const double value = (real ? double(scaled[c]) : double(whole[c])) / max;
             to[4 * i + size_t(c)] = value >= 1  ? 255
                                     : value > 0 ? uint8_t(std::lround(255 * value))
                                                 : 0;
@@ -255,7 +255,7 @@ cw_status copy_mesh(const draco::Mesh &mesh, const cwi_draco_ids &ids,
     return CW_OK;
 }
 
-cw_status decode(const void *bytes, size_t size, const cwi_draco_ids *ids, size_t most,
+cw_status decode(const void *bytes, size_t size, const cwi_draco_ids *ids, size_t max,
                  const cwi_quantization_grid *grid, cwi_arrays *arrays, cw_error *err) noexcept
 {
     return cw::guard(err, "Draco", [&] {
@@ -271,7 +271,7 @@ cw_status decode(const void *bytes, size_t size, const cwi_draco_ids *ids, size_
         if (!decoded.ok())
             return fail_draco(err, CW_ERR_FORMAT, "decode the data", decoded.status());
         const std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
-        if (mesh->num_points() > most || mesh->num_faces() > most)
+        if (mesh->num_points() > max || mesh->num_faces() > max)
             return cwi_fail(err, CW_ERR_LIMIT, "the Draco data hold %u triangles",
                             mesh->num_faces());
         return copy_mesh(*mesh, ids ? *ids : find_all(*mesh), grid, *arrays, err);

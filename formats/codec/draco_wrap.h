@@ -43,10 +43,10 @@ typedef struct cwi_draco_functions {
                         unsigned char **bytes, size_t *size, cwi_draco_ids *ids, cw_error *err);
 
     /* Decodes the attributes that ids name; NULL: the first of each kind. Indices are below the
-     * vertex count for any input. More than `most` vertices or triangles are CW_ERR_LIMIT,
+     * vertex count for any input. More than `max` vertices or triangles are CW_ERR_LIMIT,
      * damage is CW_ERR_FORMAT. grid: NULL gives positions as floats. Otherwise they stay places
      * on this grid, on which they were encoded; CW_ERR_CHECK: it was another grid. */
-    cw_status (*decode)(const void *bytes, size_t size, const cwi_draco_ids *ids, size_t most,
+    cw_status (*decode)(const void *bytes, size_t size, const cwi_draco_ids *ids, size_t max,
                         const cwi_quantization_grid *grid, cwi_arrays *arrays, cw_error *err);
 } cwi_draco_functions;
 

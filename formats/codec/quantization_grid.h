@@ -45,7 +45,7 @@ double cwi_grid_error(const cwi_quantization_grid *grid);
 static inline uint32_t cwi_grid_round_even(const cwi_quantization_grid *grid, float coordinate,
                                            int axis)
 {
-    const float most = (float)((1u << grid->bits) - 1), inverse = most / grid->range;
+    const float max = (float)((1u << grid->bits) - 1), inverse = max / grid->range;
     const float at = (coordinate - grid->origin[axis]) * inverse + 0.5f;
     return at <= 0 ? 0 : (uint32_t)at;
 }
@@ -65,9 +65,9 @@ static inline double cwi_grid_decode(const cwi_quantization_grid *grid, uint32_t
 static inline uint32_t cwi_grid_round_dyadic(const cwi_quantization_grid *grid,
                                              float coordinate, int axis)
 {
-    const double most = (double)((1u << grid->bits) - 1);
+    const double max = (double)((1u << grid->bits) - 1);
     const double at = ((double)coordinate - (double)grid->origin[axis]) / grid->step + 0.5;
-    return at <= 0 ? 0 : at >= most ? (uint32_t)most : (uint32_t)at;
+    return at <= 0 ? 0 : at >= max ? (uint32_t)max : (uint32_t)at;
 }
 
 /* Returns the place of a coordinate, counted from 0. */

@@ -52,15 +52,15 @@ static bool parse_item(const reader *r, size_t length, double *number)
     return cwi_parse_double(&from, number);
 }
 
-/* Passes the items of a tag; reads the first `wanted` ones. */
-static bool pass_items(reader *r, uint32_t items, int wanted, double *numbers, int *found)
+/* Passes the items of a tag; reads the first `expected` ones. */
+static bool pass_items(reader *r, uint32_t items, int expected, double *numbers, int *found)
 {
     *found = 0;
     for (uint32_t n = 0; n < items; n++) {
         size_t length;
         if (!next_item(r, &length))
             return false;
-        if (*found < wanted && (uint32_t)*found == n && parse_item(r, length, numbers + n))
+        if (*found < expected && (uint32_t)*found == n && parse_item(r, length, numbers + n))
             ++*found;
         r->at += (length + 3) / 4 * 4; /* items begin at multiples of four */
     }

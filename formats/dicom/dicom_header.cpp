@@ -531,19 +531,20 @@ void take_segment(DcmItem *item, cwi_dicom_segment *s)
 }
 
 // Takes the segments of a segmentation, as many as there is room for.
-void take_segments(DcmDataset *data, cwi_dicom_facts *f, size_t room)
+void take_segments(DcmDataset *data, cwi_dicom_facts *f, size_t capacity)
 {
     DcmSequenceOfItems *sequence = nullptr;
     cwi_dicom_frame *frames = reinterpret_cast<cwi_dicom_frame *>(f + 1);
     cwi_dicom_segment *segments =
         reinterpret_cast<cwi_dicom_segment *>(frames + f->frame_count);
-    const size_t most = (room - sizeof *f - f->frame_count * sizeof *frames) / sizeof *segments;
+    const size_t max =
+        (capacity - sizeof *f - f->frame_count * sizeof *frames) / sizeof *segments;
     if (f->kind == CWI_DICOM_IMAGE)
         return;
     f->never_overlaps = text_of(data, DcmTagKey(0x0062, 0x0013)) == "NO"; // SegmentsOverlap
     if (data->findAndGetSequence(DCM_SegmentSequence, sequence).bad())
         return;
-    while (f->segment_count < sequence->card() && f->segment_count < most) {
+    while (f->segment_count < sequence->card() && f->segment_count < max) {
         take_segment(sequence->getItem(f->segment_count), segments + f->segment_count);
         f->segment_count++;
     }
@@ -552,19 +553,19 @@ void take_segments(DcmDataset *data, cwi_dicom_facts *f, size_t room)
 // Scales the fractions of a segment to 0 to 1.
 void scale_fractions(DcmDataset *data, cwi_dicom_facts *f)
 {
-    const uint32_t most = count_of(data, DCM_MaximumFractionalValue, 0);
+    const uint32_t max = count_of(data, DCM_MaximumFractionalValue, 0);
     cwi_dicom_frame *frames = reinterpret_cast<cwi_dicom_frame *>(f + 1);
     if (f->kind != CWI_DICOM_FRACTIONS)
         return;
-    if (most == 0)
+    if (max == 0)
         refuse(f, "it is a segmentation by fractions without 'MaximumFractionalValue'");
-    for (uint32_t n = 0; n < f->frame_count && most > 0; n++) {
-        frames[n].slope = 1.0 / most;
+    for (uint32_t n = 0; n < f->frame_count && max > 0; n++) {
+        frames[n].slope = 1.0 / max;
         frames[n].intercept = 0;
     }
 }
 
-cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t room, cw_error *err)
+cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t capacity, cw_error *err)
 {
     DcmDataset *data = d.data();
     d.layout = PixelLayout();
@@ -593,13 +594,13 @@ cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t room, cw_error *er
     f->deflated = d.data()->getOriginalXfer() == EXS_DeflatedLittleEndianExplicit;
     refuse(f, s.why_not);
     refuse(f, check_sizes(l));
-    if (l.frames > (room - sizeof *f) / sizeof(cwi_dicom_frame))
+    if (l.frames > (capacity - sizeof *f) / sizeof(cwi_dicom_frame))
         return cwi_fail(err, CW_ERR_LIMIT, "'NumberOfFrames' is %u; at most %zu are read",
-                        l.frames, (room - sizeof *f) / sizeof(cwi_dicom_frame));
+                        l.frames, (capacity - sizeof *f) / sizeof(cwi_dicom_frame));
     f->frame_count = l.frames;
     take_padding(data, l, f);
     take_frames(data, f);
-    take_segments(data, f, room);
+    take_segments(data, f, capacity);
     scale_fractions(data, f);
     unfold(d, f);
     return CW_OK;

@@ -12,10 +12,10 @@ typedef struct bytes {
     size_t size, at;
 } bytes;
 
-static OPJ_SIZE_T read_bytes(void *to, OPJ_SIZE_T wanted, void *user)
+static OPJ_SIZE_T read_bytes(void *to, OPJ_SIZE_T expected, void *user)
 {
     bytes *b = user;
-    const size_t left = b->size - b->at, n = wanted < left ? wanted : left;
+    const size_t left = b->size - b->at, n = expected < left ? expected : left;
     if (n == 0)
         return (OPJ_SIZE_T)-1;
     memcpy(to, b->data + b->at, n);
@@ -23,13 +23,13 @@ static OPJ_SIZE_T read_bytes(void *to, OPJ_SIZE_T wanted, void *user)
     return n;
 }
 
-static OPJ_OFF_T skip_bytes(OPJ_OFF_T wanted, void *user)
+static OPJ_OFF_T skip_bytes(OPJ_OFF_T expected, void *user)
 {
     bytes *b = user;
-    if (wanted < 0 || (size_t)wanted > b->size - b->at)
+    if (expected < 0 || (size_t)expected > b->size - b->at)
         return -1;
-    b->at += (size_t)wanted;
-    return wanted;
+    b->at += (size_t)expected;
+    return expected;
 }
 
 static OPJ_BOOL seek_bytes(OPJ_OFF_T to, void *user)

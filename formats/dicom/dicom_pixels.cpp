@@ -135,14 +135,14 @@ cw_status read_fragments(DicomFile &d, uint32_t frame, std::vector<unsigned char
 
 // Decodes runs of bytes (PackBits): n < 128 is followed by n + 1 bytes, n > 128 repeats one 257
 // - n times. Returns the number of bytes, at most room.
-size_t unpack_runs(const unsigned char *from, size_t size, unsigned char *to, size_t room)
+size_t unpack_runs(const unsigned char *from, size_t size, unsigned char *to, size_t capacity)
 {
     size_t at = 0, filled = 0;
-    while (at + 1 < size && filled < room) {
+    while (at + 1 < size && filled < capacity) {
         const unsigned n = from[at++];
         const bool repeats = n > 128;
-        const size_t wanted = n == 128 ? 0 : repeats ? 257 - n : n + 1;
-        const size_t count = std::min(wanted, room - filled);
+        const size_t expected = n == 128 ? 0 : repeats ? 257 - n : n + 1;
+        const size_t count = std::min(expected, capacity - filled);
         if (!repeats && count > size - at)
             return filled;
         if (repeats)
@@ -150,7 +150,7 @@ size_t unpack_runs(const unsigned char *from, size_t size, unsigned char *to, si
         else
             std::memcpy(to + filled, from + at, count);
         filled += count;
-        at += repeats ? 1 : wanted;
+        at += repeats ? 1 : expected;
     }
     return filled;
 }
@@ -227,10 +227,10 @@ cw_status read_integers(DicomFile &d, uint32_t frame, bool compressed, cw_error 
     if (!data)
         return fail_short(frame, err);
     OFCondition done = find_frame_size(*data, d.data(), compressed, bytes);
-    const size_t wanted = l.count() * cw_type_size(l.type);
-    if (done.good() && bytes != wanted)
+    const size_t expected = l.count() * cw_type_size(l.type);
+    if (done.good() && bytes != expected)
         return fail_frame(frame, "its size is not what rows, columns and bits make", err);
-    d.pixels.assign(wanted + wanted % 2, 0);
+    d.pixels.assign(expected + expected % 2, 0);
     if (done.good())
         done = data->getUncompressedFrame(d.data(), frame, fragment, d.pixels.data(),
                                           Uint32(d.pixels.size()), colours);

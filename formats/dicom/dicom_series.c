@@ -82,10 +82,10 @@ static cw_status check_claim(const cwi_dicom_facts *f, uint64_t file_bytes, cw_e
     const uint64_t bits = f->kind == CWI_DICOM_SEGMENTATION ? 1 : 8 * cw_type_size(f->type);
     const uint64_t frame = (uint64_t)f->columns * f->rows * f->samples * bits; /* below 2^43 */
     const uint64_t have = f->pixel_bytes ? f->pixel_bytes : file_bytes;
-    const uint64_t most = f->pixel_bytes ? have : have * MAX_COMPRESSION;
-    uint64_t wanted;
+    const uint64_t max = f->pixel_bytes ? have : have * MAX_COMPRESSION;
+    uint64_t expected;
     if (have / (f->deflated ? MAX_DEFLATION : 1) <= file_bytes &&
-        !__builtin_mul_overflow(frame, f->frame_count, &wanted) && (wanted + 7) / 8 <= most)
+        !__builtin_mul_overflow(frame, f->frame_count, &expected) && (expected + 7) / 8 <= max)
         return CW_OK;
     return cwi_fail(err, CW_ERR_FORMAT,
                     "'Rows', 'Columns' and 'NumberOfFrames' ask for %u frames of %llu bytes; "
@@ -105,9 +105,9 @@ static cw_status check_facts(const cwi_dicom_facts *f, uint64_t file_bytes, cw_e
         return CW_OK;
     if (f->refusal[0])
         return cwi_fail(err, CW_ERR_FORMAT, "%s", f->refusal);
-    const size_t room = (CWI_PLANES_SHARED - sizeof *f) / sizeof(cwi_dicom_frame);
+    const size_t capacity = (CWI_PLANES_SHARED - sizeof *f) / sizeof(cwi_dicom_frame);
     if (f->columns < 1 || f->columns > UINT16_MAX || f->rows < 1 || f->rows > UINT16_MAX ||
-        f->samples < 1 || f->samples > 16 || f->frame_count < 1 || f->frame_count > room ||
+        f->samples < 1 || f->samples > 16 || f->frame_count < 1 || f->frame_count > capacity ||
         !cw_type_size(f->type))
         return cwi_fail(err, CW_ERR_FORMAT,
                         "'Columns' %u, 'Rows' %u, 'SamplesPerPixel' %u and 'NumberOfFrames' %u "
@@ -122,14 +122,15 @@ static cw_status check_facts(const cwi_dicom_facts *f, uint64_t file_bytes, cw_e
 
 static bool grow_planes(cwi_dicom_scan *scan, size_t more)
 {
-    const size_t wanted = scan->plane_count + more;
-    if (wanted <= scan->plane_room)
+    const size_t expected = scan->plane_count + more;
+    if (expected <= scan->plane_capacity)
         return true;
-    const size_t room = 2 * scan->plane_room > wanted ? 2 * scan->plane_room : wanted;
-    cwi_dicom_plane *planes = cwi_realloc_array(scan->planes, room, sizeof *planes);
+    const size_t capacity =
+        2 * scan->plane_capacity > expected ? 2 * scan->plane_capacity : expected;
+    cwi_dicom_plane *planes = cwi_realloc_array(scan->planes, capacity, sizeof *planes);
     if (planes) {
         scan->planes = planes;
-        scan->plane_room = room;
+        scan->plane_capacity = capacity;
     }
     return planes != NULL;
 }

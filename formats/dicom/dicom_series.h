@@ -29,7 +29,7 @@ typedef struct cwi_dicom_scan {
     cwi_dicom_facts **facts;
     cwi_dicom_segment **segments; /* of each file; NULL: none */
     cwi_dicom_plane *planes;
-    size_t plane_count, plane_room;
+    size_t plane_count, plane_capacity;
     cwi_dicom_series *series;
     size_t series_count;
     size_t strangers; /* number of files that are no DICOM images */

@@ -348,7 +348,8 @@ static void set_frame(const sorting *s, const double along[3], double step, cwi_
         v->known |= CW_KNOWN_HOUNSFIELD;
 }
 
-static cw_status make_room(const sorting *s, size_t slots, cwi_stack *stack, cw_error *err)
+static cw_status ensure_capacity(const sorting *s, size_t slots, cwi_stack *stack,
+                                 cw_error *err)
 {
     stack->planes = cwi_alloc_array(s->count, sizeof *stack->planes);
     stack->slots = cwi_alloc_array(slots, sizeof *stack->slots);
@@ -376,7 +377,7 @@ static int by_file(const void *x, const void *y, void *planes)
 static cw_status fill_slots(const sorting *s, const cwi_slices *slices, cwi_stack *stack,
                             cw_error *err)
 {
-    cw_status st = make_room(s, slices->count * s->steps, stack, err);
+    cw_status st = ensure_capacity(s, slices->count * s->steps, stack, err);
     for (size_t k = 0; st == CW_OK && k < slices->count; k++)
         for (size_t t = 0; t < s->steps; t++) {
             const cwi_slice *from = &slices->items[k];
@@ -439,13 +440,11 @@ static cw_status stack_placed(sorting *s, cwi_stack *stack, cw_error *err)
 static double segment_step(const sorting *s)
 {
     const cwi_dicom_frame *f = &s->planes[0].frame;
-    double least = INFINITY;
+    double min = INFINITY;
     for (size_t i = 1; i < s->count; i++)
         if (s->planes[i].place != s->planes[i - 1].place)
-            least = fmin(least, s->planes[i].distance - s->planes[i - 1].distance);
-    return f->has & CWI_DICOM_BETWEEN && f->between > 0 ? f->between
-           : isfinite(least)                            ? least
-                                                        : 1;
+            min = fmin(min, s->planes[i].distance - s->planes[i - 1].distance);
+    return f->has & CWI_DICOM_BETWEEN && f->between > 0 ? f->between : isfinite(min) ? min : 1;
 }
 
 /* Sets the index of each plane in the row; *slices is the row's length. */
@@ -467,10 +466,10 @@ static cw_status find_segment_places(sorting *s, double step, size_t *slices, cw
 
 static uint32_t highest_segment(const sorting *s)
 {
-    uint32_t most = 0;
+    uint32_t max = 0;
     for (size_t i = 0; i < s->count; i++)
-        most = s->planes[i].frame.segment > most ? s->planes[i].frame.segment : most;
-    return most;
+        max = s->planes[i].frame.segment > max ? s->planes[i].frame.segment : max;
+    return max;
 }
 
 /* Compares by label: where segments overlap, the one of the highest number stays. */
@@ -484,7 +483,7 @@ static int by_label(const void *x, const void *y)
 
 static cw_status fill_labels(const sorting *s, cwi_stack *stack, cw_error *err)
 {
-    cw_status st = make_room(s, s->count, stack, err);
+    cw_status st = ensure_capacity(s, s->count, stack, err);
     for (size_t i = 0; st == CW_OK && i < s->count; i++) {
         const cwi_dicom_plane *p = &s->planes[i];
         if (p->frame.segment < 1 || p->frame.segment > UINT16_MAX)
@@ -503,7 +502,7 @@ static cw_status fill_labels(const sorting *s, cwi_stack *stack, cw_error *err)
 /* Fills label maps: a frame holds all segments of its place. */
 static cw_status fill_maps(const sorting *s, cwi_stack *stack, cw_error *err)
 {
-    cw_status st = make_room(s, s->count, stack, err);
+    cw_status st = ensure_capacity(s, s->count, stack, err);
     for (size_t i = 0; st == CW_OK && i < s->count; i++) {
         const cwi_dicom_plane *p = &s->planes[i];
         if (i > 0 && p->place == s->planes[i - 1].place)
@@ -554,7 +553,7 @@ static cw_status fill_fractions(const sorting *s, cwi_stack *stack, cw_error *er
     if (!numbers)
         return cwi_fail_memory(err);
     list_segments(s, numbers, &count);
-    cw_status st = make_room(s, s->count, stack, err);
+    cw_status st = ensure_capacity(s, s->count, stack, err);
     if (st == CW_OK && count > MAX_SEGMENTS)
         st = cwi_fail(err, CW_ERR_LIMIT,
                       "%zu segments by fractions; up to %d are read, a component each", count,
@@ -621,7 +620,7 @@ static cw_status stack_numbered(sorting *s, cwi_stack *stack, cw_error *err)
     set_sizes(s, s->count, stack);
     for (int a = 0; a < 3; a++)
         stack->shape.affine[a][a] = 1;
-    cw_status st = make_room(s, s->count, stack, err);
+    cw_status st = ensure_capacity(s, s->count, stack, err);
     for (size_t i = 0; st == CW_OK && i < s->count; i++)
         stack->slots[i] = (cwi_slot){.place = i, .low = i, .high = i};
     cwi_note(s->desc, "where images lie is not said: taken in the order of their numbers");

@@ -36,9 +36,9 @@ public:
     {
         return size - at;
     }
-    offile_off_t skip(offile_off_t wanted) override
+    offile_off_t skip(offile_off_t expected) override
     {
-        const int64_t step = wanted < size - at ? wanted : size - at;
+        const int64_t step = expected < size - at ? expected : size - at;
         at += step;
         return step;
     }
@@ -46,15 +46,15 @@ public:
     {
         at -= count < at ? count : at;
     }
-    offile_off_t read(void *to, offile_off_t wanted) override
+    offile_off_t read(void *to, offile_off_t expected) override
     {
         offile_off_t got = 0;
-        while (got < wanted && at < size) {
+        while (got < expected && at < size) {
             if (at < start || at >= start + filled)
                 fill();
             if (filled <= 0)
                 break;
-            const int64_t have = start + filled - at, want = wanted - got;
+            const int64_t have = start + filled - at, want = expected - got;
             const int64_t step = have < want ? have : want;
             std::memcpy(static_cast<char *>(to) + got, buffer + (at - start), step);
             at += step;

@@ -26,7 +26,7 @@ typedef enum operation {
  * replace it. */
 typedef struct request {
     operation op;
-    uint64_t most;        /* DECODE: vertices or triangles */
+    uint64_t max;         /* DECODE: vertices or triangles */
     uint64_t from, count; /* bytes of an array; DECODE: of the file */
 } request;
 
@@ -59,8 +59,8 @@ static cw_status load_draco(void *state, cw_error *err)
 static cw_status decode_file(decoder *d, const request *r, void *shared, cw_error *err)
 {
     cwi_arrays_free(&d->arrays);
-    cw_status st = d->draco->decode(shared, (size_t)r->count, NULL, (size_t)r->most, NULL,
-                                    &d->arrays, err);
+    cw_status st =
+        d->draco->decode(shared, (size_t)r->count, NULL, (size_t)r->max, NULL, &d->arrays, err);
     counts c = {.vertices = d->arrays.vertex_count,
                 .triangles = d->arrays.triangle_count,
                 .normals = d->arrays.normals != NULL,
@@ -204,8 +204,8 @@ cw_status cwi_drc_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
     if (st != CW_OK)
         return st;
     const request r = {.op = DECODE,
-                       .most = in->file.size > UINT32_MAX / MAX_GAIN ? UINT32_MAX
-                                                                     : MAX_GAIN * in->file.size,
+                       .max = in->file.size > UINT32_MAX / MAX_GAIN ? UINT32_MAX
+                                                                    : MAX_GAIN * in->file.size,
                        .count = in->file.size};
     box.progress = &in->desc.progress;
     st = read_file(in, &box, err);

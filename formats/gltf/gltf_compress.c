@@ -91,15 +91,15 @@ static cw_status own_parts(cwi_gltf_plan *plan, bool all, cw_error *err)
 static cw_status add_block(cwi_gltf_plan *plan, unsigned char *bytes, size_t size, uint64_t *at,
                            cw_error *err)
 {
-    if (plan->block_count == plan->block_room) {
-        const size_t room = plan->block_room ? 2 * plan->block_room : 8;
-        cwi_gltf_block *blocks = cwi_realloc_array(plan->blocks, room, sizeof *blocks);
+    if (plan->block_count == plan->block_capacity) {
+        const size_t capacity = plan->block_capacity ? 2 * plan->block_capacity : 8;
+        cwi_gltf_block *blocks = cwi_realloc_array(plan->blocks, capacity, sizeof *blocks);
         if (!blocks) {
             cwi_free(bytes);
             return cwi_fail_memory(err);
         }
         plan->blocks = blocks;
-        plan->block_room = room;
+        plan->block_capacity = capacity;
     }
     plan->blocks[plan->block_count++] = (cwi_gltf_block){bytes, size};
     *at = plan->document.bytes;

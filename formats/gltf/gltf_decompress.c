@@ -55,8 +55,8 @@ static cw_status unpack_draco(const cwi_gltf_unpacker *u, const job *j, char *sh
 {
     cwi_arrays a = {0};
     char *to = shared + align_size(j->packed);
-    const size_t most = j->count > j->corners ? j->count : j->corners;
-    cw_status st = u->draco->decode(shared, j->packed, &j->ids, most, NULL, &a, err);
+    const size_t max = j->count > j->corners ? j->count : j->corners;
+    cw_status st = u->draco->decode(shared, j->packed, &j->ids, max, NULL, &a, err);
     if (st == CW_OK && (a.vertex_count != j->count || 3 * a.triangle_count != j->corners))
         st = cwi_fail(
             err, CW_ERR_FORMAT,

@@ -449,15 +449,15 @@ cw_status check_levels(const cwi_gltf_document &document, const std::string &jso
         const size_t levels = count_levels(document.pieces + p, document.count - p);
         if (levels == 1)
             continue;
-        std::string wanted = std::string("\"") + GLTF_LOD + "\":{\"ids\":[";
+        std::string expected = std::string("\"") + GLTF_LOD + "\":{\"ids\":[";
         for (size_t n = 1; n < levels; n++)
-            wanted += std::to_string(p + n) + (n + 1 < levels ? "," : "]}");
-        at = json.find(wanted, at);
+            expected += std::to_string(p + n) + (n + 1 < levels ? "," : "]}");
+        at = json.find(expected, at);
         if (at == std::string::npos)
             return cwi_fail(err, CW_ERR_BACKEND,
                             "tinygltf left out the %zu levels of detail of '%s'", levels - 1,
                             document.pieces[p].part->name);
-        at += wanted.size();
+        at += expected.size();
     }
     return CW_OK;
 }

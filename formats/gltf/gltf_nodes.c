@@ -122,7 +122,7 @@ static cw_status enter_node(cwi_gltf_reader *r, visit v, bool *visited, cw_mesh_
 
 /* Walks depth first, in the order of the file. The stack cannot overflow: every node is pushed
  * by its only parent or is a root. A node that is reached in two ways is an error. */
-static cw_status walk_nodes(cwi_gltf_reader *r, visit *stack, size_t room, bool *visited,
+static cw_status walk_nodes(cwi_gltf_reader *r, visit *stack, size_t capacity, bool *visited,
                             cw_mesh_file *said, cw_error *err)
 {
     const cwi_gltf_scene *scene = &r->scene;
@@ -136,7 +136,7 @@ static cw_status walk_nodes(cwi_gltf_reader *r, visit *stack, size_t room, bool 
         if (st != CW_OK)
             break;
         const cwi_gltf_node *n = &scene->nodes[v.node];
-        if (n->end - n->first > room - count)
+        if (n->end - n->first > capacity - count)
             return cwi_fail(err, CW_ERR_FORMAT, "the nodes are no tree");
         for (size_t i = n->end; i > n->first; i--)
             stack[count++] = (visit){scene->children[i - 1], v.node, v.depth + 1};
@@ -146,13 +146,14 @@ static cw_status walk_nodes(cwi_gltf_reader *r, visit *stack, size_t room, bool 
 
 cw_status cwi_gltf_find_instances(cwi_gltf_reader *r, cw_mesh_file *said, cw_error *err)
 {
-    const size_t count = r->scene.node_count, room = r->scene.root_count + r->scene.child_count;
-    visit *stack = cwi_alloc_array(room, sizeof *stack);
+    const size_t count = r->scene.node_count,
+                 capacity = r->scene.root_count + r->scene.child_count;
+    visit *stack = cwi_alloc_array(capacity, sizeof *stack);
     bool *visited = cwi_alloc_zeroed(count, sizeof *visited);
     r->world = cwi_alloc_array(count, sizeof *r->world);
     r->instances = cwi_alloc_array(count, sizeof *r->instances);
     cw_status st = stack && visited && r->world && r->instances
-                       ? walk_nodes(r, stack, room, visited, said, err)
+                       ? walk_nodes(r, stack, capacity, visited, said, err)
                        : cwi_fail_memory(err);
     cwi_free(stack);
     cwi_free(visited);

@@ -20,7 +20,7 @@ typedef struct cwi_gltf_plan {
     bool rounded;               /* positions are on the grid, and normals are bytes */
     cwi_quantization_grid grid; /* bits 0: positions are unchanged */
     cwi_gltf_block *blocks;     /* of the whole buffer, one after another; NULL: as planned */
-    size_t block_count, block_room;
+    size_t block_count, block_capacity;
     unsigned char *keys; /* of the animation, at the end of the buffer; NULL: none */
     size_t keys_size;
     unsigned char linear[256]; /* linear values of sRGB bytes */

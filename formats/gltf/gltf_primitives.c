@@ -12,23 +12,23 @@
 
 cw_status cwi_gltf_limit(const cwi_gltf_reader *r, uint64_t count, cw_error *err)
 {
-    if (count <= r->most)
+    if (count <= r->max)
         return CW_OK;
     return cwi_fail(
         err, CW_ERR_LIMIT,
         "the scene draws its triangles so often that they are more than %llu; state "
         "a limit if that is meant (desc->max_triangles)",
-        (unsigned long long)r->most);
+        (unsigned long long)r->max);
 }
 
 static cw_status open_attribute(const cwi_gltf_reader *r, int accessor, const char *what,
-                                size_t count, int least, int most, cwi_gltf_numbers *numbers,
+                                size_t count, int min, int max, cwi_gltf_numbers *numbers,
                                 cw_error *err)
 {
     cw_status st = cwi_gltf_open_numbers(&r->bytes, &r->scene, accessor, what, numbers, err);
     if (st != CW_OK)
         return st;
-    if (numbers->numbers < least || numbers->numbers > most)
+    if (numbers->numbers < min || numbers->numbers > max)
         return cwi_fail(err, CW_ERR_FORMAT, "%s (accessor %d) has elements of %d numbers", what,
                         accessor, numbers->numbers);
     if (numbers->count != count)
@@ -82,7 +82,7 @@ static cw_status add_normals(cwi_gltf_reader *r, const cwi_gltf_instance *at, in
     cw_status st = open_attribute(r, accessor, "NORMAL", r->build.point_count - first, 3, 3,
                                   &numbers, err);
     if (st == CW_OK)
-        st = cwi_mesh_grow(r->in, &r->normals, &r->normal_room, r->build.point_count,
+        st = cwi_mesh_grow(r->in, &r->normals, &r->normal_capacity, r->build.point_count,
                            3 * sizeof *r->normals, err);
     cwi_affine_cofactor(at->place[0], cofactor);
     const double sign = cwi_affine_determinant(at->place[0]) < 0 ? -1 : 1;
@@ -139,7 +139,7 @@ static cw_status add_colors(cwi_gltf_reader *r, int accessor, size_t first, cw_e
     if (accessor >= 0)
         st = open_attribute(r, accessor, "COLOR_0", count - first, 3, 4, &numbers, err);
     if (st == CW_OK)
-        st = cwi_mesh_grow(r->in, &r->colors, &r->color_room, count, 4, err);
+        st = cwi_mesh_grow(r->in, &r->colors, &r->color_capacity, count, 4, err);
     if (st == CW_OK) {
         memset(r->colors + 4 * from, 255, 4 * (count - from));
         convert_colors(&numbers, r->colors + 4 * first);

@@ -171,7 +171,7 @@ static void describe_mesh(const cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file 
 
 /* Returns the maximum number of elements, derived from the real number of bytes. A small file
  * that draws itself many times must not take all memory. */
-static uint64_t most_elements(const cwi_gltf_reader *r)
+static uint64_t max_elements(const cwi_gltf_reader *r)
 {
     uint64_t largest = 0;
     if (r->in->desc.max_triangles < UINT32_MAX) /* the caller decides */
@@ -256,7 +256,7 @@ static cw_status build_scene(cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *sa
 {
     cw_status st = cwi_gltf_find_instances(r, said, err);
     r->shifted = st == CW_OK && is_shifted(r);
-    r->most = most_elements(r);
+    r->max = max_elements(r);
     said->parts = 0;
     if (st == CW_OK)
         st = check_repeats(r, err);

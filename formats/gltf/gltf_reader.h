@@ -22,12 +22,12 @@ typedef struct cwi_gltf_reader {
     double (*world)[12]; /* of each node */
     cwi_gltf_instance *instances;
     size_t instance_count;
-    bool shifted;  /* every instance is moved by the mesh's origin, and nothing else */
-    uint64_t most; /* maximum of vertices, and of triangles, that may be drawn */
+    bool shifted; /* every instance is moved by the mesh's origin, and nothing else */
+    uint64_t max; /* maximum of vertices, and of triangles, that may be drawn */
     cwi_mesh_build build;
     float *normals; /* room for one per point; NULL: none so far */
     uint8_t *colors;
-    size_t normal_room, color_room;
+    size_t normal_capacity, color_capacity;
     bool no_normals; /* some primitive has none: then none are kept */
 } cwi_gltf_reader;
 

@@ -78,9 +78,9 @@ static bool put_uri(tape *t, const char *uri)
 }
 
 /* Writes a scene: every array after its length, then the URIs of buffers. */
-bool cwi_gltf_put_scene(const cwi_gltf_scene *s, void *to, size_t room)
+bool cwi_gltf_put_scene(const cwi_gltf_scene *s, void *to, size_t capacity)
 {
-    tape tape_to = {.at = to, .end = (char *)to + room}, *t = &tape_to;
+    tape tape_to = {.at = to, .end = (char *)to + capacity}, *t = &tape_to;
     bool good = true;
     for (size_t n = 0; good && n < COLUMNS; n++) {
         const uint64_t count = count_of(s, &columns[n]);
@@ -231,7 +231,7 @@ cw_status cwi_gltf_parse(const char *json, size_t size, const cw_mesh_read_desc 
 typedef struct writing {
     const cwi_gltf_functions *functions; /* loaded in the child */
     const cwi_gltf_document *document;
-    size_t room;
+    size_t capacity;
 } writing;
 
 static cw_status load_writer(void *state, cw_error *err)
@@ -248,15 +248,15 @@ static cw_status make_json(void *state, int fd, const void *request, void *share
     size_t size = 0;
     (void)fd, (void)request;
     cw_status st = w->functions->document(w->document, &json, &size, err);
-    tape t = {.at = shared, .end = (char *)shared + w->room};
+    tape t = {.at = shared, .end = (char *)shared + w->capacity};
     if (st == CW_OK && (!put_bytes(&t, &size, sizeof size) || !put_bytes(&t, json, size)))
-        st = cwi_fail(err, CW_ERR_LIMIT, "the JSON takes more than %zu bytes", w->room);
+        st = cwi_fail(err, CW_ERR_LIMIT, "the JSON takes more than %zu bytes", w->capacity);
     cwi_free(json);
     return st;
 }
 
 /* Returns an upper bound, far above the JSON's size. Unused memory is never touched. */
-static size_t room_for_json(const cwi_gltf_document *d)
+static size_t capacity_for_json(const cwi_gltf_document *d)
 {
     enum { BASE = 1 << 20, PER_PIECE = 16 << 10, WORST_ESCAPE = 6 };
     size_t words = 0;
@@ -279,13 +279,13 @@ static cw_status take_json(const void *shared, char **json, size_t *size, cw_err
 cw_status cwi_gltf_make_json(const cwi_gltf_document *document, char **json, size_t *size,
                              cw_error *err)
 {
-    writing w = {.document = document, .room = room_for_json(document)};
+    writing w = {.document = document, .capacity = capacity_for_json(document)};
     cwi_sandbox box = {0};
     cwi_sandbox_desc apart = {.library = "tinygltf",
                               .prepare = load_writer,
                               .work = make_json,
                               .state = &w,
-                              .shared_bytes = w.room,
+                              .shared_bytes = w.capacity,
                               .trusted = true};
     cw_status st = cwi_sandbox_open(&box, &apart, err);
     if (st == CW_ERR_BACKEND) {

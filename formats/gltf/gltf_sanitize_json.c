@@ -29,11 +29,11 @@ static bool is_key(const char *json, size_t size, size_t at)
 
 static bool is_wanted(const char *key, size_t length)
 {
-    static const char *const wanted[] = {
+    static const char *const expected[] = {
         "asset",  "scene",     "scenes",      "nodes",
         "meshes", "accessors", "bufferViews", "extensionsRequired"};
-    for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++)
-        if (strlen(wanted[i]) == length && memcmp(key, wanted[i], length) == 0)
+    for (size_t i = 0; i < sizeof expected / sizeof *expected; i++)
+        if (strlen(expected[i]) == length && memcmp(key, expected[i], length) == 0)
             return true;
     return false;
 }

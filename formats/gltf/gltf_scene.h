@@ -83,7 +83,7 @@ void cwi_gltf_scene_free(cwi_gltf_scene *scene);
 /* Writes a scene as bytes, for transfer between processes; false when there is no room. The
  * second function reads it back into a zeroed scene that the caller frees. It returns
  * CW_ERR_BACKEND for impossible lengths, ranges or kinds. */
-bool cwi_gltf_put_scene(const cwi_gltf_scene *scene, void *to, size_t room);
+bool cwi_gltf_put_scene(const cwi_gltf_scene *scene, void *to, size_t capacity);
 CW_NODISCARD cw_status cwi_gltf_take_scene(const void *from, size_t size, cwi_gltf_scene *scene,
                                            cw_error *err);
 

@@ -17,7 +17,7 @@ typedef enum value_kind {
     INDEX,   /* into a list of the outermost object */
     INDICES,
     WHOLE,   /* a whole number from least to most, a multiple of step */
-    NUMBERS, /* up to `most` numbers; none is larger than `largest`, unless that is 0 */
+    NUMBERS, /* up to `max` numbers; none is larger than `largest`, unless that is 0 */
     BOOLEAN,
     STRING,
     STRINGS,
@@ -43,8 +43,8 @@ typedef struct rule {
     const char *key; /* NULL ends a table */
     value_kind kind;
     bool required;
-    list_name list;       /* of an index: the list it points into */
-    uint64_t least, most; /* of WHOLE; most 0: no limit */
+    list_name list;    /* of an index: the list it points into */
+    uint64_t min, max; /* of WHOLE; most 0: no limit */
     uint64_t step;
     double largest;             /* of NUMBERS */
     const char *choices;        /* words separated by blanks */
@@ -56,9 +56,9 @@ typedef struct rule {
 #define MAX_SMALL INT32_MAX
 #define ALL_CODES "5120 5121 5122 5123 5125 5126"
 
-static const rule draco_attributes[] = {{.key = "POSITION", .kind = WHOLE, .most = MAX_SMALL},
-                                        {.key = "NORMAL", .kind = WHOLE, .most = MAX_SMALL},
-                                        {.key = "COLOR_0", .kind = WHOLE, .most = MAX_SMALL},
+static const rule draco_attributes[] = {{.key = "POSITION", .kind = WHOLE, .max = MAX_SMALL},
+                                        {.key = "NORMAL", .kind = WHOLE, .max = MAX_SMALL},
+                                        {.key = "COLOR_0", .kind = WHOLE, .max = MAX_SMALL},
                                         {0}};
 static const rule draco[] = {
     {.key = "bufferView", .kind = INDEX, .list = VIEWS, .required = true},
@@ -73,7 +73,7 @@ static const rule attributes[] = {{.key = "POSITION", .kind = INDEX, .list = ACC
 static const rule primitive[] = {
     {.key = "attributes", .kind = OBJECT, .members = attributes, .required = true},
     {.key = "indices", .kind = INDEX, .list = ACCESSORS},
-    {.key = "mode", .kind = WHOLE, .most = 6},
+    {.key = "mode", .kind = WHOLE, .max = 6},
     {.key = "extensions", .kind = OBJECT, .members = primitive_extensions},
     {0}};
 static const rule mesh[] = {
@@ -82,17 +82,17 @@ static const rule mesh[] = {
 static const rule node[] = {
     {.key = "mesh", .kind = INDEX, .list = MESHES},
     {.key = "children", .kind = INDICES, .list = NODES},
-    {.key = "matrix", .kind = NUMBERS, .most = 16},
-    {.key = "translation", .kind = NUMBERS, .most = 3},
-    {.key = "rotation", .kind = NUMBERS, .most = 4, .largest = 1.001}, /* allows for rounding */
-    {.key = "scale", .kind = NUMBERS, .most = 3},
+    {.key = "matrix", .kind = NUMBERS, .max = 16},
+    {.key = "translation", .kind = NUMBERS, .max = 3},
+    {.key = "rotation", .kind = NUMBERS, .max = 4, .largest = 1.001}, /* allows for rounding */
+    {.key = "scale", .kind = NUMBERS, .max = 3},
     {.key = "extensions", .kind = OBJECT},
     {0}};
 static const rule scene[] = {{.key = "nodes", .kind = INDICES, .list = NODES}, {0}};
 
 static const rule sparse_indices[] = {
     {.key = "bufferView", .kind = INDEX, .list = VIEWS, .required = true},
-    {.key = "byteOffset", .kind = WHOLE, .most = MAX_SMALL},
+    {.key = "byteOffset", .kind = WHOLE, .max = MAX_SMALL},
     {.key = "componentType",
      .kind = NUMBER_CODE,
      .choices = "5121 5123 5125",
@@ -100,10 +100,10 @@ static const rule sparse_indices[] = {
     {0}};
 static const rule sparse_values[] = {
     {.key = "bufferView", .kind = INDEX, .list = VIEWS, .required = true},
-    {.key = "byteOffset", .kind = WHOLE, .most = MAX_SMALL},
+    {.key = "byteOffset", .kind = WHOLE, .max = MAX_SMALL},
     {0}};
 static const rule sparse[] = {
-    {.key = "count", .kind = WHOLE, .least = 1, .most = MAX_SMALL, .required = true},
+    {.key = "count", .kind = WHOLE, .min = 1, .max = MAX_SMALL, .required = true},
     {.key = "indices", .kind = OBJECT, .members = sparse_indices, .required = true},
     {.key = "values", .kind = OBJECT, .members = sparse_values, .required = true},
     {0}};
@@ -112,7 +112,7 @@ static const rule accessor[] = {
     {.key = "byteOffset", .kind = WHOLE},
     {.key = "componentType", .kind = NUMBER_CODE, .choices = ALL_CODES, .required = true},
     {.key = "normalized", .kind = BOOLEAN},
-    {.key = "count", .kind = WHOLE, .least = 1, .required = true},
+    {.key = "count", .kind = WHOLE, .min = 1, .required = true},
     {.key = "type",
      .kind = WORD,
      .choices = "SCALAR VEC2 VEC3 VEC4 MAT2 MAT3 MAT4",
@@ -122,10 +122,10 @@ static const rule accessor[] = {
 
 static const rule meshopt[] = {
     {.key = "buffer", .kind = INDEX, .list = BUFFERS, .required = true},
-    {.key = "byteOffset", .kind = WHOLE, .most = MAX_SMALL},
-    {.key = "byteLength", .kind = WHOLE, .least = 1, .most = MAX_SMALL, .required = true},
-    {.key = "byteStride", .kind = WHOLE, .least = 1, .most = 256, .required = true},
-    {.key = "count", .kind = WHOLE, .least = 1, .most = MAX_SMALL, .required = true},
+    {.key = "byteOffset", .kind = WHOLE, .max = MAX_SMALL},
+    {.key = "byteLength", .kind = WHOLE, .min = 1, .max = MAX_SMALL, .required = true},
+    {.key = "byteStride", .kind = WHOLE, .min = 1, .max = 256, .required = true},
+    {.key = "count", .kind = WHOLE, .min = 1, .max = MAX_SMALL, .required = true},
     {.key = "mode", .kind = WORD, .choices = "ATTRIBUTES TRIANGLES INDICES", .required = true},
     {.key = "filter", .kind = WORD, .choices = "NONE OCTAHEDRAL QUATERNION EXPONENTIAL"},
     {0}};
@@ -134,13 +134,13 @@ static const rule view_extensions[] = {
 static const rule view[] = {
     {.key = "buffer", .kind = INDEX, .list = BUFFERS, .required = true},
     {.key = "byteOffset", .kind = WHOLE},
-    {.key = "byteLength", .kind = WHOLE, .least = 1, .required = true},
-    {.key = "byteStride", .kind = WHOLE, .least = 4, .most = 252, .step = 4},
+    {.key = "byteLength", .kind = WHOLE, .min = 1, .required = true},
+    {.key = "byteStride", .kind = WHOLE, .min = 4, .max = 252, .step = 4},
     {.key = "extensions", .kind = OBJECT, .members = view_extensions},
     {0}};
 static const rule buffer[] = {
     {.key = "uri", .kind = STRING},
-    {.key = "byteLength", .kind = WHOLE, .least = 1, .most = UINT32_MAX, .required = true},
+    {.key = "byteLength", .kind = WHOLE, .min = 1, .max = UINT32_MAX, .required = true},
     {0}};
 
 static const rule asset[] = {{.key = "version", .kind = STRING, .required = true}, {0}};
@@ -272,7 +272,7 @@ static void show_value(const char *from, const char *end, char shown[SHOWN_BYTES
 
 /* Reports a wrong value: "nodes[3].mesh: -5 is not an index (0 to 7)". The value starts at byte
  * `start`. */
-static cw_status fail_value(walker *w, size_t start, const place *p, const char *wanted)
+static cw_status fail_value(walker *w, size_t start, const place *p, const char *expected)
 {
     char path[PATH_BYTES] = "", shown[SHOWN_BYTES];
     w->at = start;
@@ -282,31 +282,31 @@ static cw_status fail_value(walker *w, size_t start, const place *p, const char 
         return fail_broken(w);
     put_path(p, path);
     show_value(from, w->json + w->at, shown);
-    return cwi_fail(w->err, CW_ERR_FORMAT, "%s: %s is not %s", path, shown, wanted);
+    return cwi_fail(w->err, CW_ERR_FORMAT, "%s: %s is not %s", path, shown, expected);
 }
 
 static cw_status fail_index(walker *w, size_t start, const rule *r, const place *p)
 {
-    char wanted[96];
+    char expected[96];
     const size_t count = w->counts[r->list];
     if (count)
-        snprintf(wanted, sizeof wanted, "an index (0 to %zu)", count - 1);
+        snprintf(expected, sizeof expected, "an index (0 to %zu)", count - 1);
     else
-        snprintf(wanted, sizeof wanted, "an index (there are no %s)", list_names[r->list]);
-    return fail_value(w, start, p, wanted);
+        snprintf(expected, sizeof expected, "an index (there are no %s)", list_names[r->list]);
+    return fail_value(w, start, p, expected);
 }
 
 static cw_status fail_whole(walker *w, size_t start, const rule *r, const place *p)
 {
-    char wanted[96];
+    char expected[96];
     const char *kind = r->step ? "a multiple of 4" : "a whole number";
-    if (r->most)
-        snprintf(wanted, sizeof wanted, "%s (%llu to %llu)", kind, (unsigned long long)r->least,
-                 (unsigned long long)r->most);
+    if (r->max)
+        snprintf(expected, sizeof expected, "%s (%llu to %llu)", kind,
+                 (unsigned long long)r->min, (unsigned long long)r->max);
     else
-        snprintf(wanted, sizeof wanted, "%s (%llu or more)", kind,
-                 (unsigned long long)r->least);
-    return fail_value(w, start, p, wanted);
+        snprintf(expected, sizeof expected, "%s (%llu or more)", kind,
+                 (unsigned long long)r->min);
+    return fail_value(w, start, p, expected);
 }
 
 /* --- values ------------------------------------------------------------------------------ */
@@ -365,8 +365,8 @@ static cw_status check_whole(walker *w, const rule *r, const place *p)
     size_t length;
     uint64_t value;
     const char *text = look_at_bare(w, &length);
-    if (!parse_whole(text, length, &value) || value < r->least ||
-        (r->most && value > r->most) || (r->step && value % r->step))
+    if (!parse_whole(text, length, &value) || value < r->min || (r->max && value > r->max) ||
+        (r->step && value % r->step))
         return fail_whole(w, w->at, r, p);
     return skip_value(w) ? CW_OK : fail_broken(w);
 }
@@ -389,14 +389,14 @@ static cw_status check_number(walker *w, const rule *r, const place *p)
 
 static cw_status check_word(walker *w, const rule *r, const place *p)
 {
-    char wanted[128];
+    char expected[128];
     const size_t start = w->at;
     size_t length = 0;
     const char *text = r->kind == WORD ? take_string(w, &length) : take_bare(w, &length);
     if (text && is_choice(r->choices, text, length))
         return CW_OK;
-    snprintf(wanted, sizeof wanted, "one of %s", r->choices);
-    return fail_value(w, start, p, wanted);
+    snprintf(expected, sizeof expected, "one of %s", r->choices);
+    return fail_value(w, start, p, expected);
 }
 
 static cw_status check_plain(walker *w, const rule *r, const place *p)
@@ -430,11 +430,11 @@ static cw_status check_list(walker *w, const rule *r, value_kind one, const plac
     }
     if (st == CW_OK && !take_char(w, ']'))
         return fail_broken(w);
-    if (st == CW_OK && r->kind == NUMBERS && at.index != r->most) {
+    if (st == CW_OK && r->kind == NUMBERS && at.index != r->max) {
         char path[PATH_BYTES] = "";
         put_path(p, path);
         return cwi_fail(w->err, CW_ERR_FORMAT, "%s: %zu numbers; %llu were expected", path,
-                        at.index, (unsigned long long)r->most);
+                        at.index, (unsigned long long)r->max);
     }
     return st;
 }

@@ -13,10 +13,11 @@ namespace
 {
 
 // Allocates an array for C, which frees all arrays, even those of an incomplete scene.
-template <typename T> cw_status allocate(T *&array, size_t &count, size_t wanted, cw_error *err)
+template <typename T>
+cw_status allocate(T *&array, size_t &count, size_t expected, cw_error *err)
 {
-    array = static_cast<T *>(cwi_alloc_zeroed(wanted, sizeof(T)));
-    count = array ? wanted : 0;
+    array = static_cast<T *>(cwi_alloc_zeroed(expected, sizeof(T)));
+    count = array ? expected : 0;
     return array ? CW_OK : cwi_fail_memory(err);
 }
 
@@ -325,7 +326,7 @@ cw_status check_extensions(const tinygltf::Model &model, cw_error *err)
 
 // The use of an accessor in a primitive, and the types that glTF allows for it.
 struct Usage {
-    const char *name, *wanted;
+    const char *name, *expected;
     bool (*fits)(const tinygltf::Accessor &accessor, bool quantized);
 };
 
@@ -353,15 +354,15 @@ bool fits_position(const tinygltf::Accessor &a, bool quantized)
 
 bool fits_normal(const tinygltf::Accessor &a, bool quantized)
 {
-    const bool is_share = quantized && is_small(a) && !is_unsigned(a) && a.normalized;
-    return a.type == TINYGLTF_TYPE_VEC3 && (is_float(a) || is_share);
+    const bool is_fraction = quantized && is_small(a) && !is_unsigned(a) && a.normalized;
+    return a.type == TINYGLTF_TYPE_VEC3 && (is_float(a) || is_fraction);
 }
 
 bool fits_color(const tinygltf::Accessor &a, bool)
 {
-    const bool is_share = is_small(a) && is_unsigned(a) && a.normalized;
+    const bool is_fraction = is_small(a) && is_unsigned(a) && a.normalized;
     return (a.type == TINYGLTF_TYPE_VEC3 || a.type == TINYGLTF_TYPE_VEC4) &&
-           (is_float(a) || is_share);
+           (is_float(a) || is_fraction);
 }
 
 bool fits_indices(const tinygltf::Accessor &a, bool)
@@ -387,7 +388,7 @@ cw_status check_usage(const tinygltf::Model &model, const std::string &path, int
         usage.fits(model.accessors[size_t(accessor)], quantized))
         return CW_OK;
     return cwi_fail(err, CW_ERR_FORMAT, "%s.%s: accessors[%d] is not %s", path.c_str(),
-                    usage.name, accessor, usage.wanted);
+                    usage.name, accessor, usage.expected);
 }
 
 // Checks the types of accessors. Points and lines are left out, with any content.

@@ -52,7 +52,7 @@ static cw_status push_bytes(pipe *p, const unsigned char *bytes, size_t size, cw
 {
     cw_status st = CW_OK;
     while (st == CW_OK && size > 0) {
-        const size_t room = CHUNK_BYTES - p->held, step = size < room ? size : room;
+        const size_t capacity = CHUNK_BYTES - p->held, step = size < capacity ? size : capacity;
         memcpy(p->bytes + p->held, bytes, step);
         p->held += step;
         bytes += step;

@@ -13,12 +13,13 @@
 /* --- memory within limits ---------------------------------------------------------------- */
 
 /* Returns twice the capacity, or the requested one, or (near the limit) the maximum. */
-static size_t next_room(const cwi_mesh_input *in, size_t room, size_t count, size_t size)
+static size_t next_capacity(const cwi_mesh_input *in, size_t capacity, size_t count,
+                            size_t size)
 {
     const uint64_t limit = in->desc.max_bytes;
-    size_t more = room < SIZE_MAX / 2 && 2 * room > count ? 2 * room : count;
-    if (limit && (limit - in->bytes) / size < more - room)
-        more = room + (size_t)((limit - in->bytes) / size);
+    size_t more = capacity < SIZE_MAX / 2 && 2 * capacity > count ? 2 * capacity : count;
+    if (limit && (limit - in->bytes) / size < more - capacity)
+        more = capacity + (size_t)((limit - in->bytes) / size);
     return more;
 }
 
@@ -38,13 +39,13 @@ cw_status cwi_mesh_take_bytes(cwi_mesh_input *in, uint64_t bytes, cw_error *err)
     return CW_OK;
 }
 
-cw_status cwi_mesh_grow(cwi_mesh_input *in, void *array, size_t *room, size_t count,
+cw_status cwi_mesh_grow(cwi_mesh_input *in, void *array, size_t *capacity, size_t count,
                         size_t size, cw_error *err)
 {
     void *memory;
-    if (count <= *room)
+    if (count <= *capacity)
         return CW_OK;
-    const size_t next = next_room(in, *room, count, size);
+    const size_t next = next_capacity(in, *capacity, count, size);
     if (next < count)
         return fail_limit(in, err);
     memcpy(&memory, array, sizeof memory);
@@ -52,8 +53,8 @@ cw_status cwi_mesh_grow(cwi_mesh_input *in, void *array, size_t *room, size_t co
     if (!memory)
         return cwi_fail_memory(err);
     memcpy(array, &memory, sizeof memory);
-    in->bytes += (next - *room) * size;
-    *room = next;
+    in->bytes += (next - *capacity) * size;
+    *capacity = next;
     return CW_OK;
 }
 
@@ -66,9 +67,11 @@ cw_status cwi_mesh_begin_part(cwi_mesh_input *in, const char *name, size_t trian
     const size_t length = strlen(name);
     if (empty)
         m->name_bytes = m->items[--m->count].name;
-    cw_status st = cwi_mesh_grow(in, &m->items, &m->room, m->count + 2, sizeof *m->items, err);
+    cw_status st =
+        cwi_mesh_grow(in, &m->items, &m->capacity, m->count + 2, sizeof *m->items, err);
     if (st == CW_OK)
-        st = cwi_mesh_grow(in, &m->names, &m->name_room, m->name_bytes + length + 2, 1, err);
+        st =
+            cwi_mesh_grow(in, &m->names, &m->name_capacity, m->name_bytes + length + 2, 1, err);
     if (st != CW_OK)
         return st;
     if (untitled) {
@@ -106,17 +109,17 @@ cw_status cwi_build_reserve(cwi_mesh_build *b, uint64_t points, uint64_t triangl
     if (st == CW_OK)
         st = cwi_mesh_limit_triangles(b->in, triangles, err);
     if (st == CW_OK)
-        st = cwi_mesh_grow(b->in, &b->points, &b->point_room, (size_t)points,
+        st = cwi_mesh_grow(b->in, &b->points, &b->point_capacity, (size_t)points,
                            3 * sizeof *b->points, err);
     if (st == CW_OK)
-        st = cwi_mesh_grow(b->in, &b->triangles, &b->triangle_room, (size_t)triangles,
+        st = cwi_mesh_grow(b->in, &b->triangles, &b->triangle_capacity, (size_t)triangles,
                            3 * sizeof *b->triangles, err);
     return st;
 }
 
 cw_status cwi_build_point(cwi_mesh_build *b, const double point[3], cw_error *err)
 {
-    if (b->point_count == b->point_room) {
+    if (b->point_count == b->point_capacity) {
         cw_status st = cwi_build_reserve(b, (uint64_t)b->point_count + 1, 0, err);
         if (st != CW_OK)
             return st;
@@ -127,7 +130,7 @@ cw_status cwi_build_point(cwi_mesh_build *b, const double point[3], cw_error *er
 
 static cw_status add_triangle(cwi_mesh_build *b, uint32_t corner, cw_error *err)
 {
-    if (b->triangle_count == b->triangle_room ||
+    if (b->triangle_count == b->triangle_capacity ||
         b->triangle_count >= b->in->desc.max_triangles) {
         cw_status st = cwi_build_reserve(b, 0, (uint64_t)b->triangle_count + 1, err);
         if (st != CW_OK)

@@ -172,11 +172,11 @@ static cw_status read_header(opened *o, cw_error *err)
     o->has_normals = numbers[5] & HAS_NORMALS;
     o->at = HEADER_BYTES;
     o->sum = (uint32_t)crc32(0, header, HEADER_BYTES);
-    const uint64_t most = UINT64_C(1) << 40; /* elements, so that no product overflows */
-    const uint64_t elements = numbers[3] > most || numbers[4] > most
-                                  ? most * most
+    const uint64_t max = UINT64_C(1) << 40; /* elements, so that no product overflows */
+    const uint64_t elements = numbers[3] > max || numbers[4] > max
+                                  ? max * max
                                   : numbers[3] * (o->has_normals ? 2 : 1) + numbers[4];
-    if (numbers[3] > UINT32_MAX || elements > most ||
+    if (numbers[3] > UINT32_MAX || elements > max ||
         o->in.size != HEADER_BYTES + elements * ELEMENT_BYTES + CHECKSUM_BYTES)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "the fragment has %llu bytes, which its counts (%llu vertices, %llu "
@@ -224,11 +224,11 @@ static cw_status verify_sum(const opened *o, void *buffer, cw_error *err)
 {
     unsigned char stored[CHECKSUM_BYTES];
     const uint64_t end = o->in.size - CHECKSUM_BYTES;
-    const size_t most = (size_t)PIECE * ELEMENT_BYTES;
+    const size_t max = (size_t)PIECE * ELEMENT_BYTES;
     uint32_t sum = o->sum;
     cw_status st = read_bytes(o, end, stored, sizeof stored, err);
     for (uint64_t at = o->at; at < end && st == CW_OK;) {
-        const size_t size = end - at < most ? (size_t)(end - at) : most;
+        const size_t size = end - at < max ? (size_t)(end - at) : max;
         st = read_bytes(o, at, buffer, size, err);
         sum = (uint32_t)crc32(sum, buffer, (uInt)size);
         at += size;

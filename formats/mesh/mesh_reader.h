@@ -19,7 +19,7 @@ typedef struct cwi_mark {
 typedef struct cwi_marks {
     cwi_mark *items;
     char *names; /* each ends with a zero */
-    size_t count, room, name_bytes, name_room;
+    size_t count, capacity, name_bytes, name_capacity;
 } cwi_marks;
 
 /* An open file, and the limits of its mesh. */
@@ -66,7 +66,7 @@ cwi_mesh_reader cwi_drc_read;
 /* Makes an array (array is the address of its pointer) hold at least count elements of a size;
  * new elements are not initialised. room is its capacity.
  * Returns CW_ERR_LIMIT past desc.max_bytes, CW_ERR_NO_MEMORY; the array is then unchanged. */
-CW_NODISCARD cw_status cwi_mesh_grow(cwi_mesh_input *in, void *array, size_t *room,
+CW_NODISCARD cw_status cwi_mesh_grow(cwi_mesh_input *in, void *array, size_t *capacity,
                                      size_t count, size_t size, cw_error *err);
 
 /* Begins a part of that name ("": none) at a triangle. It replaces a part that has no
@@ -91,8 +91,8 @@ typedef struct cwi_mesh_build {
     cwi_mesh_input *in;  /* borrowed */
     double *points;      /* point_count x 3 */
     uint32_t *triangles; /* triangle_count x 3 */
-    size_t point_count, point_room;
-    size_t triangle_count, triangle_room;
+    size_t point_count, point_capacity;
+    size_t triangle_count, triangle_capacity;
     uint32_t first, last; /* corners of the current face */
     size_t corners;       /* ... and their number so far */
     int base;             /* the number of the first vertex in the file, for messages */

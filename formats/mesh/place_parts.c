@@ -39,13 +39,13 @@ void cwi_clean_name(const char *text, size_t size, char name[CWI_NAME_BYTES])
 void cwi_choose_name(const char *path, const cw_part *parts, size_t count,
                      const cw_write_desc *desc, char name[CWI_NAME_BYTES])
 {
-    const char *asked = desc->name ? desc->name : count == 1 ? parts->name : NULL;
-    const char *stem = asked ? asked : path, *end = stem + strlen(stem);
-    while (!asked && end > path + 1 && end[-1] == '/') /* of a folder */
+    const char *requested = desc->name ? desc->name : count == 1 ? parts->name : NULL;
+    const char *stem = requested ? requested : path, *end = stem + strlen(stem);
+    while (!requested && end > path + 1 && end[-1] == '/') /* of a folder */
         end--;
-    for (const char *c = path; !asked && c < end; c++)
+    for (const char *c = path; !requested && c < end; c++)
         stem = *c == '/' && c + 1 < end ? c + 1 : stem;
-    for (const char *c = end; !asked && c > stem + 1; c--)
+    for (const char *c = end; !requested && c > stem + 1; c--)
         if (c[-1] == '.') {
             end = c - 1;
             break;

@@ -12,7 +12,7 @@ typedef struct reading {
     size_t chunks;
     uint32_t *lowest; /* vertex that a chunk or a later one names */
     float *positions, *normals;
-    size_t room; /* vertices */
+    size_t capacity; /* vertices */
     uint32_t triangles[3 * CHUNK];
 } reading;
 
@@ -40,13 +40,13 @@ static cw_status find_lowest(reading *r, cw_error *err)
 
 static cw_status reserve_vertices(reading *r, size_t count, cw_error *err)
 {
-    if (count <= r->room)
+    if (count <= r->capacity)
         return CW_OK;
-    r->room = count + count / 2;
+    r->capacity = count + count / 2;
     cwi_free(r->positions);
     cwi_free(r->normals);
-    r->positions = cwi_alloc_array(r->room, CWI_SPOOL_ELEMENT);
-    r->normals = cwi_alloc_array(r->room, CWI_SPOOL_ELEMENT);
+    r->positions = cwi_alloc_array(r->capacity, CWI_SPOOL_ELEMENT);
+    r->normals = cwi_alloc_array(r->capacity, CWI_SPOOL_ELEMENT);
     return r->positions && r->normals ? CW_OK : cwi_fail_memory(err);
 }
 

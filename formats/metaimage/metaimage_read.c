@@ -190,15 +190,15 @@ static cw_status read_list(metaimage *m, cwi_source *src, int64_t *depth, cw_err
 static cw_status check_file_count(const metaimage *m, const cwi_source *src, int64_t depth,
                                   cw_error *err)
 {
-    size_t wanted = 1;
+    size_t expected = 1;
     if (depth < 1 || depth > (int64_t)m->dimensions)
         depth = (int64_t)m->dimensions - 1;
     for (size_t a = (size_t)depth; a < m->dimensions; a++)
-        wanted *= wanted <= INT32_MAX ? m->size[a] : 1;
-    if (src->files.count != wanted)
+        expected *= expected <= INT32_MAX ? m->size[a] : 1;
+    if (src->files.count != expected)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "'ElementDataFile' names %zu files; 'DimSize' needs %zu",
-                        src->files.count, wanted);
+                        src->files.count, expected);
     return CW_OK;
 }
 

@@ -225,14 +225,14 @@ static cw_status round_vertices(cutter *c, const cwi_part *part, cw_error *err)
     if (!l->places || !l->pieces)
         return cwi_fail_memory(err);
     for (size_t v = 0; v < part->mesh.vertex_count; v++) {
-        double squares = 0;
+        double diagonal_sq = 0;
         for (int a = 0; a < 3; a++) {
             const double at = (cwi_file_coordinate(part, v, a) - c->grid->origin[a]) / step;
             const double place = floor(at + 0.5);
             l->places[3 * v + (size_t)a] = place > 0 ? (uint32_t)place : 0;
-            squares += (place - at) * (place - at);
+            diagonal_sq += (place - at) * (place - at);
         }
-        worst = squares > worst ? squares : worst;
+        worst = diagonal_sq > worst ? diagonal_sq : worst;
     }
     l->vertex_count = part->mesh.vertex_count;
     l->move_mm = sqrt(worst) * step;

@@ -33,13 +33,13 @@ static int choose_exponent(double longest, double tolerance, uint32_t steps, siz
 cw_status cwi_lod_choose(cwi_lod_grid *grid, const cwi_parts *parts, size_t level_count,
                          const cw_write_desc *desc, cw_error *err)
 {
-    double low[3], high[3], longest = 0, squares = 0;
+    double low[3], high[3], longest = 0, diagonal_sq = 0;
     *grid = (cwi_lod_grid){.bits = desc->bits ? desc->bits : DEFAULT_BITS};
     const uint32_t steps = cwi_lod_steps(grid);
     find_box(parts, low, high);
     for (int a = 0; a < 3; a++) {
         longest = fmax(longest, high[a] - low[a]);
-        squares += (high[a] - low[a]) * (high[a] - low[a]);
+        diagonal_sq += (high[a] - low[a]) * (high[a] - low[a]);
     }
     if (!(longest > 0))
         return cwi_fail(err, CW_ERR_CHECK, "all vertices are at one place");
@@ -47,7 +47,7 @@ cw_status cwi_lod_choose(cwi_lod_grid *grid, const cwi_parts *parts, size_t leve
         return cwi_fail(err, CW_ERR_LIMIT, "a box of %.3g mm cannot be divided into steps",
                         longest);
     const double tolerance =
-        desc->tolerance_mm > 0 ? desc->tolerance_mm : sqrt(squares) / DIAGONALS;
+        desc->tolerance_mm > 0 ? desc->tolerance_mm : sqrt(diagonal_sq) / DIAGONALS;
     if (!(tolerance > 1e-33))
         return cwi_fail(err, CW_ERR_ARGUMENT, "a tolerance of %.3g mm is too small", tolerance);
     grid->step_mm = ldexp(1, choose_exponent(longest, tolerance, steps, level_count));

@@ -230,11 +230,11 @@ static cw_status read_type(const nifti *n, cwi_source *src, size_t *components, 
             break;
         src->shape.type = (cw_type)datatypes[i].type;
         *components = datatypes[i].components;
-        const int wanted = (int)(8 * *components * cw_type_size(src->shape.type));
-        if (bits == 0 || bits == wanted)
+        const int expected = (int)(8 * *components * cw_type_size(src->shape.type));
+        if (bits == 0 || bits == expected)
             return CW_OK;
         return cwi_fail(err, CW_ERR_FORMAT, "'bitpix' is %d; 'datatype' %s has %d", bits, name,
-                        wanted);
+                        expected);
     }
     return cwi_fail_type(err, "datatype", name);
 }
@@ -296,13 +296,13 @@ static cw_status name_image(const cwi_input *in, cwi_source *src, cw_error *err)
 static cw_status read_place(const cwi_input *in, const nifti *n, cwi_source *src, cw_error *err)
 {
     double offset = get_field(n, CWI_NIFTI_VOX_OFFSET, 0);
-    const double least = n->is_pair ? 0 : (double)n->layout->voxels;
+    const double min = n->is_pair ? 0 : (double)n->layout->voxels;
     if (offset == 0)
-        offset = least;
-    if (!(offset >= least && offset < 0x1p53) || offset != floor(offset))
+        offset = min;
+    if (!(offset >= min && offset < 0x1p53) || offset != floor(offset))
         return cwi_fail(err, CW_ERR_FORMAT,
                         "'vox_offset' is %g; it must be a whole number of at least %.0f",
-                        offset, least);
+                        offset, min);
     src->skip = (uint64_t)offset;
     src->encoding = n->gzipped ? CWI_DEFLATED : CWI_RAW;
     src->big_endian = n->swapped != cwi_machine_is_big_endian();
@@ -362,9 +362,9 @@ static cw_status read_qform(const nifti *n, cw_volume *shape, cw_error *err)
         st = read_spacing(n, spacing, err);
     if (st != CW_OK)
         return st;
-    const double squares = q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-    const double length = squares > 1 - 1e-7 ? sqrt(squares) : 1;
-    q[0] = length == 1 && squares < 1 ? sqrt(1 - squares) : 0;
+    const double vector_sq = q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    const double length = vector_sq > 1 - 1e-7 ? sqrt(vector_sq) : 1;
+    q[0] = length == 1 && vector_sq < 1 ? sqrt(1 - vector_sq) : 0;
     const double a = q[0], b = q[1] / length, c = q[2] / length, d = q[3] / length;
     const double rotation[3][3] = {
         {a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)},

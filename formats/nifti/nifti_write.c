@@ -21,9 +21,8 @@ static void put_field(header *h, cwi_nifti_field field, int index, double value)
 
 static const cwi_nifti_layout *choose_layout(const cw_volume *v)
 {
-    const size_t most = INT16_MAX;
-    const bool large =
-        v->dim[0] > most || v->dim[1] > most || v->dim[2] > most || v->steps > most;
+    const size_t max = INT16_MAX;
+    const bool large = v->dim[0] > max || v->dim[1] > max || v->dim[2] > max || v->steps > max;
     return &cwi_nifti_layouts[large];
 }
 

@@ -224,16 +224,16 @@ static cw_status read_skips(const cwi_nrrd *n, cwi_source *src, cw_error *err)
 static cw_status check_file_count(const cwi_nrrd *n, const cwi_source *src, int64_t depth,
                                   cw_error *err)
 {
-    size_t wanted = 1;
+    size_t expected = 1;
     if (depth < 1 || depth > (int64_t)n->dimension)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "'data file' gives its files %lld axes; 'dimension' says %zu",
                         (long long)depth, n->dimension);
     for (size_t a = (size_t)depth; a < n->dimension; a++)
-        wanted *= wanted <= INT32_MAX ? n->axis[a].size : 1;
-    if (src->files.count != wanted)
+        expected *= expected <= INT32_MAX ? n->axis[a].size : 1;
+    if (src->files.count != expected)
         return cwi_fail(err, CW_ERR_FORMAT, "'data file' names %zu files; 'sizes' needs %zu",
-                        src->files.count, wanted);
+                        src->files.count, expected);
     return CW_OK;
 }
 

@@ -97,10 +97,11 @@ static void resolve_escapes(char *text)
     *to = '\0';
 }
 
-static cw_status fail_value(const cwi_nrrd_segment_key *key, const char *wanted, cw_error *err)
+static cw_status fail_value(const cwi_nrrd_segment_key *key, const char *expected,
+                            cw_error *err)
 {
     return cwi_fail(err, CW_ERR_FORMAT, "line %zu: 'Segment%u_%s' is '%.40s'; %s expected",
-                    key->line, key->number, key_names[key->key], key->value, wanted);
+                    key->line, key->number, key_names[key->key], key->value, expected);
 }
 
 static cw_status read_whole(const cwi_nrrd_segment_key *key, uint32_t *value, cw_error *err)

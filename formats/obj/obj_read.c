@@ -15,7 +15,7 @@ typedef struct obj {
     float *normals;      /* normal_count x 3 */
     uint32_t *normal_of; /* a vertex's normal, or NONE; for the first normal_of_count
                             vertices */
-    size_t normal_count, normal_room, named, named_room;
+    size_t normal_count, normal_capacity, named, named_capacity;
     bool mixed;       /* some vertex has two normals, or a corner none: then none are kept */
     bool ours;        /* a comment of our writer was found */
     bool has_objects; /* then groups are not parts */
@@ -27,8 +27,8 @@ static cw_status read_normal(obj *o, cwi_scan *s, cw_error *err)
 {
     if (o->normal_count == UINT32_MAX - 1)
         return cwi_fail(err, CW_ERR_LIMIT, "more than %u normals", UINT32_MAX - 1);
-    cw_status st = cwi_mesh_grow(o->build.in, &o->normals, &o->normal_room, o->normal_count + 1,
-                                 3 * sizeof *o->normals, err);
+    cw_status st = cwi_mesh_grow(o->build.in, &o->normals, &o->normal_capacity,
+                                 o->normal_count + 1, 3 * sizeof *o->normals, err);
     for (size_t a = 0; a < 3 && st == CW_OK; a++) {
         double number = 0;
         st = cwi_scan_double(s, "a normal's coordinate", &number, err);
@@ -53,8 +53,8 @@ static cw_status name_normal(obj *o, uint32_t vertex, int64_t normal, cw_error *
     o->mixed = o->mixed || normal < 0 || normal >= NONE || vertex >= o->build.point_count;
     if (o->mixed)
         return CW_OK;
-    cw_status st = cwi_mesh_grow(o->build.in, &o->normal_of, &o->named_room, (size_t)vertex + 1,
-                                 sizeof *o->normal_of, err);
+    cw_status st = cwi_mesh_grow(o->build.in, &o->normal_of, &o->named_capacity,
+                                 (size_t)vertex + 1, sizeof *o->normal_of, err);
     if (st != CW_OK)
         return st;
     while (o->named <= vertex)
@@ -77,10 +77,10 @@ static bool every_vertex_has_a_normal(const obj *o, size_t vertices)
 
 static cw_status keep_normals(obj *o, cw_mesh *mesh, cw_error *err)
 {
-    size_t room = 0;
+    size_t capacity = 0;
     if (!every_vertex_has_a_normal(o, mesh->vertex_count))
         return CW_OK;
-    cw_status st = cwi_mesh_grow(o->build.in, &mesh->normals, &room, mesh->vertex_count,
+    cw_status st = cwi_mesh_grow(o->build.in, &mesh->normals, &capacity, mesh->vertex_count,
                                  3 * sizeof *mesh->normals, err);
     for (size_t v = 0; v < mesh->vertex_count && st == CW_OK; v++)
         memcpy(mesh->normals + 3 * v, o->normals + 3 * (size_t)o->normal_of[v],

@@ -65,17 +65,18 @@ static cw_status read_keyword(off *o, cwi_scan *s, cw_error *err)
  * one. */
 static cw_status check_counts(const cwi_scan *s, int64_t vertices, int64_t faces, cw_error *err)
 {
-    const uint64_t room = cwi_scan_left(s) + 1;
+    const uint64_t capacity = cwi_scan_left(s) + 1;
     if (vertices < 0 || faces < 0)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "line %zu: there cannot be %lld vertices and %lld faces", s->line,
                         (long long)vertices, (long long)faces);
-    if ((uint64_t)vertices > room / 6 || (uint64_t)faces > (room - 6 * (uint64_t)vertices) / 2)
+    if ((uint64_t)vertices > capacity / 6 ||
+        (uint64_t)faces > (capacity - 6 * (uint64_t)vertices) / 2)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "line %zu counts %lld vertices and %lld faces; the file has only %llu "
                         "bytes for them",
                         s->line, (long long)vertices, (long long)faces,
-                        (unsigned long long)(room - 1));
+                        (unsigned long long)(capacity - 1));
     return CW_OK;
 }
 
@@ -123,7 +124,7 @@ static cw_status read_counts(off *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *s
     return st == CW_OK ? cwi_scan_end_line(s, err) : st;
 }
 
-static cw_status make_room(off *o, cw_mesh *mesh, cw_error *err)
+static cw_status ensure_capacity(off *o, cw_mesh *mesh, cw_error *err)
 {
     const size_t count = (size_t)o->vertices;
     size_t normals = 0, colors = 0;
@@ -235,7 +236,7 @@ cw_status cwi_off_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
     if (st == CW_OK)
         st = read_counts(&o, &s, mesh, said, err);
     if (st == CW_OK)
-        st = make_room(&o, mesh, err);
+        st = ensure_capacity(&o, mesh, err);
     if (st == CW_OK)
         st = read_lines(&o, &s, mesh, said, err);
     if (st == CW_OK)

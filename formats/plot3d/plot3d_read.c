@@ -103,19 +103,19 @@ static cw_status describe_array(const void *file, size_t piece, cwi_grid_role ro
     return st == CW_OK && points ? cwi_names_add(&src->files, p->path, err) : st;
 }
 
-static cw_status choose_quantity(const char *wanted, size_t *quantity, cw_error *err)
+static cw_status choose_quantity(const char *expected, size_t *quantity, cw_error *err)
 {
     *quantity = 0;
-    for (size_t n = 0; n < QUANTITIES && wanted; n++)
-        if (strcmp(names[n], wanted) == 0) {
+    for (size_t n = 0; n < QUANTITIES && expected; n++)
+        if (strcmp(names[n], expected) == 0) {
             *quantity = n;
             return CW_OK;
         }
-    return wanted
+    return expected
                ? cwi_fail(err, CW_ERR_ARGUMENT,
                           "there is no array '%s'; a PLOT3D solution has Density, MomentumX, "
                           "MomentumY, MomentumZ and StagnationEnergy",
-                          wanted)
+                          expected)
                : CW_OK;
 }
 

@@ -207,7 +207,7 @@ static cw_status parse_lines(cwi_ply_header *h, cwi_lines *lines, cw_mesh_file *
 }
 
 /* Returns the minimum bytes of one element: of text, a digit and a blank each. */
-static uint64_t least_bytes(const cwi_ply_header *h, const cwi_ply_element *e)
+static uint64_t min_bytes(const cwi_ply_header *h, const cwi_ply_element *e)
 {
     uint64_t bytes = 0;
     for (size_t i = e->first; i < e->end; i++) {
@@ -222,7 +222,7 @@ static cw_status check_counts(const cwi_ply_header *h, uint64_t left, cw_error *
     left += h->text; /* the last line may have no line end */
     for (size_t i = 0; i < h->element_count; i++) {
         const cwi_ply_element *e = &h->elements[i];
-        const uint64_t bytes = least_bytes(h, e);
+        const uint64_t bytes = min_bytes(h, e);
         if (e->count && !bytes)
             return cwi_fail(err, CW_ERR_FORMAT, "element '%s' has no properties", e->name);
         if (e->count && e->count > left / bytes)

@@ -196,7 +196,7 @@ static cw_status find_roles(ply *p, cw_error *err)
     return CW_OK;
 }
 
-static cw_status make_vertex_room(ply *p, cw_mesh *mesh, size_t count, cw_error *err)
+static cw_status ensure_vertex_capacity(ply *p, cw_mesh *mesh, size_t count, cw_error *err)
 {
     cwi_mesh_input *in = p->build.in;
     size_t normals = 0, colors = 0, scalars = 0, labels = 0;
@@ -217,14 +217,14 @@ static cw_status make_vertex_room(ply *p, cw_mesh *mesh, size_t count, cw_error 
 
 /* Reserves room for triangular faces with one-byte numbers, if the file is long enough for
  * them. Lists that are empty in truth must not have taken more memory than the file's size. */
-static cw_status make_room(ply *p, cw_mesh *mesh, uint64_t file_size, cw_error *err)
+static cw_status ensure_capacity(ply *p, cw_mesh *mesh, uint64_t file_size, cw_error *err)
 {
     const cwi_ply_element *vertex = find_element(&p->header, "vertex");
     const cwi_ply_element *face = find_element(&p->header, "face");
-    const uint64_t most = file_size / 4;
-    cw_status st = make_vertex_room(p, mesh, (size_t)vertex->count, err);
+    const uint64_t max = file_size / 4;
+    cw_status st = ensure_vertex_capacity(p, mesh, (size_t)vertex->count, err);
     if (st == CW_OK && face)
-        st = cwi_build_reserve(&p->build, 0, face->count < most ? face->count : most, err);
+        st = cwi_build_reserve(&p->build, 0, face->count < max ? face->count : max, err);
     return st;
 }
 
@@ -232,7 +232,7 @@ static cw_status read_body(ply *p, cw_mesh *mesh, cw_mesh_file *said, cw_error *
 {
     cwi_mesh_input *in = p->build.in;
     cwi_scan s = {0};
-    cw_status st = make_room(p, mesh, in->file.size, err);
+    cw_status st = ensure_capacity(p, mesh, in->file.size, err);
     if (st == CW_OK)
         st = p->header.text
                  ? cwi_scan_open_text(&s, &in->file, p->header.body, &in->desc.progress, err)

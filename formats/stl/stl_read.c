@@ -41,14 +41,14 @@ typedef struct facets {
     cwi_mesh_input *in;
     cwi_welder welder;
     uint32_t *triangles;
-    size_t count, room;
+    size_t count, capacity;
 } facets;
 
 /* Counts the welder's memory when it has grown: its points and its table. */
 static cw_status limit_memory(const facets *f, cw_error *err)
 {
     const uint64_t limit = f->in->desc.max_bytes;
-    const uint64_t welder = 12 * (uint64_t)f->welder.room + 4 * (uint64_t)f->welder.slots;
+    const uint64_t welder = 12 * (uint64_t)f->welder.capacity + 4 * (uint64_t)f->welder.slots;
     if (!limit || f->in->bytes + welder <= limit)
         return CW_OK;
     char text[CWI_MEMORY_TEXT];
@@ -71,7 +71,7 @@ static cw_status check_corners(const facets *f, const float *corners, size_t cou
 /* Adds facets of nine coordinates each; there is room for them. */
 static cw_status add_facets(facets *f, const float *corners, size_t count, cw_error *err)
 {
-    const size_t room = f->welder.room;
+    const size_t capacity = f->welder.capacity;
     cw_status st = check_corners(f, corners, count, err);
     if (st != CW_OK)
         return st;
@@ -79,14 +79,14 @@ static cw_status add_facets(facets *f, const float *corners, size_t count, cw_er
         return cwi_fail(err, f->welder.count < UINT32_MAX - 1 ? CW_ERR_NO_MEMORY : CW_ERR_LIMIT,
                         "no memory or number for vertex %zu", f->welder.count);
     f->count += count;
-    return f->welder.room == room ? CW_OK : limit_memory(f, err);
+    return f->welder.capacity == capacity ? CW_OK : limit_memory(f, err);
 }
 
-static cw_status make_room(facets *f, uint64_t count, cw_error *err)
+static cw_status ensure_capacity(facets *f, uint64_t count, cw_error *err)
 {
     cw_status st = cwi_mesh_limit_triangles(f->in, count, err);
     if (st == CW_OK)
-        st = cwi_mesh_grow(f->in, &f->triangles, &f->room, (size_t)count,
+        st = cwi_mesh_grow(f->in, &f->triangles, &f->capacity, (size_t)count,
                            3 * sizeof *f->triangles, err);
     return st;
 }
@@ -137,7 +137,7 @@ static cw_status read_binary(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file
         return cwi_fail(err, CW_ERR_FORMAT,
                         "the header counts %u facets; the file has room for %llu", count,
                         (unsigned long long)held);
-    st = make_room(f, count, err);
+    st = ensure_capacity(f, count, err);
     while (st == CW_OK && f->count < count) {
         const size_t left = count - f->count;
         st = read_binary_facets(f, s, left < BATCH ? left : BATCH, err);
@@ -183,7 +183,7 @@ static cw_status read_text_facet(facets *f, cwi_scan *s, cw_error *err)
 {
     cwi_word word;
     float corners[9];
-    cw_status st = make_room(f, (uint64_t)f->count + 1, err);
+    cw_status st = ensure_capacity(f, (uint64_t)f->count + 1, err);
     if (st == CW_OK)
         st = expect_keyword(s, "normal", err);
     for (int a = 0; a < 3 && st == CW_OK; a++)

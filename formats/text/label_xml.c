@@ -122,7 +122,8 @@ static cw_status add_text(void *user, int row, const char *text, size_t size, cw
     (void)err;
     if (row != LABEL && row != CARET_LABEL && row != GIFTI_LABEL)
         return CW_OK;
-    const size_t room = NAME_BYTES - 1 - d->length, kept = size < room ? size : room;
+    const size_t capacity = NAME_BYTES - 1 - d->length,
+                 kept = size < capacity ? size : capacity;
     memcpy(d->name + d->length, text, kept);
     d->length += kept;
     return CW_OK;

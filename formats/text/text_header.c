@@ -128,31 +128,31 @@ bool cwi_next_text_word(const char **text, char word[CWI_WORD_BYTES])
 
 /* Reports an error in the text at which reading stopped, after `got` numbers: too few, too
  * many, or something that is no number. Reports nothing when all went well. */
-static cw_status check_end(const char *field, const char *text, size_t got, size_t wanted,
+static cw_status check_end(const char *field, const char *text, size_t got, size_t expected,
                            const char *by, const char *kind, cw_error *err)
 {
     double more;
     const char *s = text + strspn(text, " \t");
-    if (!*s && got == wanted)
+    if (!*s && got == expected)
         return CW_OK;
     size_t count = got;
-    while (got == wanted && cwi_parse_double(&s, &more))
+    while (got == expected && cwi_parse_double(&s, &more))
         count++;
     s += strspn(s, " \t");
     if (*s)
         return cwi_fail(err, CW_ERR_FORMAT, "'%s' holds '%.40s' where %s was expected", field,
                         s, kind);
     return cwi_fail(err, CW_ERR_FORMAT, "'%s' lists %zu numbers; '%s' says %zu", field, count,
-                    by, wanted);
+                    by, expected);
 }
 
-cw_status cwi_field_doubles(const char *field, const char *text, size_t wanted, const char *by,
-                            double *out, cw_error *err)
+cw_status cwi_field_doubles(const char *field, const char *text, size_t expected,
+                            const char *by, double *out, cw_error *err)
 {
     size_t got = 0;
-    while (got < wanted && cwi_parse_double(&text, &out[got]))
+    while (got < expected && cwi_parse_double(&text, &out[got]))
         got++;
-    return check_end(field, text, got, wanted, by, "a number", err);
+    return check_end(field, text, got, expected, by, "a number", err);
 }
 
 /* Parses a whole number; leaves *text at one such as "2.5" or one that is too large. */
@@ -165,18 +165,18 @@ static bool parse_whole(const char **text, int64_t *value)
     return true;
 }
 
-cw_status cwi_field_sizes(const char *field, const char *text, size_t wanted, const char *by,
+cw_status cwi_field_sizes(const char *field, const char *text, size_t expected, const char *by,
                           size_t *out, cw_error *err)
 {
     size_t got = 0;
     int64_t size;
-    for (; got < wanted && parse_whole(&text, &size); got++) {
+    for (; got < expected && parse_whole(&text, &size); got++) {
         if (size < 1 || size > INT32_MAX)
             return cwi_fail(err, CW_ERR_FORMAT, "'%s' holds %lld; sizes are 1 to 2147483647",
                             field, (long long)size);
         out[got] = (size_t)size;
     }
-    return check_end(field, text, got, wanted, by, "a whole number", err);
+    return check_end(field, text, got, expected, by, "a whole number", err);
 }
 
 cw_status cwi_field_integer(const char *field, const char *text, int64_t low, int64_t high,

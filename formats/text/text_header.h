@@ -35,11 +35,11 @@ int cwi_field_find(const char *const *rows, int count, const char *key, size_t l
  * behind it. Returns false at the end; words too long are cut. */
 bool cwi_next_text_word(const char **text, char word[CWI_WORD_BYTES]);
 
-/* Reads exactly `wanted` numbers, the count that the field `by` states. The message names both
+/* Reads exactly `expected` numbers, the count that the field `by` states. The message names both
  * fields. Sizes are whole numbers from 1 to 2^31 - 1. */
-CW_NODISCARD cw_status cwi_field_doubles(const char *field, const char *text, size_t wanted,
+CW_NODISCARD cw_status cwi_field_doubles(const char *field, const char *text, size_t expected,
                                          const char *by, double *out, cw_error *err);
-CW_NODISCARD cw_status cwi_field_sizes(const char *field, const char *text, size_t wanted,
+CW_NODISCARD cw_status cwi_field_sizes(const char *field, const char *text, size_t expected,
                                        const char *by, size_t *out, cw_error *err);
 
 /* Reads one whole number from low to high. */

@@ -169,9 +169,9 @@ cw_status cwi_scan_word(cwi_scan *s, cwi_word *word, cw_error *err)
     if (st != CW_OK)
         return st;
     const char *text = s->text + s->next;
-    const size_t most = s->end - s->next < CWI_SCAN_AHEAD ? s->end - s->next : CWI_SCAN_AHEAD;
+    const size_t max = s->end - s->next < CWI_SCAN_AHEAD ? s->end - s->next : CWI_SCAN_AHEAD;
     size_t n = 0;
-    while (n < most && !is_blank(text[n]) && text[n] != '\n' && !joint_size(s, text + n))
+    while (n < max && !is_blank(text[n]) && text[n] != '\n' && !joint_size(s, text + n))
         n++;
     if (n == CWI_SCAN_AHEAD)
         return cwi_fail(err, CW_ERR_FORMAT,

@@ -97,7 +97,7 @@ static int find_row(const cwi_xml *x, const char *name)
 static cw_status start_element(cwi_xml *x, const char *name, cwi_attributes a)
 {
     const cwi_xml_rules *rules = x->rules;
-    if (rules->most_elements && x->count == rules->most_elements)
+    if (rules->max_elements && x->count == rules->max_elements)
         return cwi_fail(x->err, CW_ERR_FORMAT, "more than %llu elements",
                         (unsigned long long)x->count);
     if (x->depth == MAX_DEPTH)
@@ -277,13 +277,13 @@ static const char *escape_of(char c)
     }
 }
 
-void cwi_xml_escape(const char *text, char *escaped, size_t room)
+void cwi_xml_escape(const char *text, char *escaped, size_t capacity)
 {
     size_t used = 0;
     for (; *text; text++) {
         const char *as = escape_of(*text);
         const size_t length = as ? strlen(as) : 1;
-        if (used + length >= room)
+        if (used + length >= capacity)
             break;
         memcpy(escaped + used, as ? as : text, length);
         used += length;

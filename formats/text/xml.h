@@ -26,7 +26,7 @@ typedef struct cwi_xml_element {
 typedef struct cwi_xml_rules {
     const cwi_xml_element *elements;
     int element_count;
-    uint64_t most_elements; /* of any name; 0: no limit */
+    uint64_t max_elements; /* of any name; 0: no limit */
     /* Callbacks: text of the row's element (CWI_XML_ROOT: of another one), possibly in several
      * pieces; a comment; any tag, before its element. NULL: not needed. */
     cw_status (*text)(void *user, int row, const char *text, size_t size, cw_error *err);
@@ -65,6 +65,6 @@ size_t cwi_xml_depth(const cwi_xml *x);
 #define CWI_XML_BYTES(bytes) (6 * (bytes))
 
 /* Escapes text for an element or for double quotes; text beyond the capacity is cut. */
-void cwi_xml_escape(const char *text, char *escaped, size_t room);
+void cwi_xml_escape(const char *text, char *escaped, size_t capacity);
 
 #endif

@@ -97,7 +97,7 @@ cw_status cwi_tiff_inflate(cwi_tiff_file *f, uint32_t strile, unsigned char *to,
         cwi_stream_close(&stream);
     }
     if (st == CW_OK && f->layout.predictor == FLOATS)
-        st = cwi_tiff_make_room(&f->line, &f->line_room, row_bytes, err);
+        st = cwi_tiff_ensure_capacity(&f->line, &f->line_capacity, row_bytes, err);
     for (size_t r = 0; st == CW_OK && r < bytes; r += row_bytes)
         undo_predictor(f, to + r, row_bytes, f->line);
     return st;

@@ -153,15 +153,15 @@ static cw_status read_header(cwi_tiff_file *f, uint64_t *first, cw_error *err)
     return *first ? CW_OK : cwi_fail(err, CW_ERR_FORMAT, "the file has no directory");
 }
 
-static bool add_offset(cwi_tiff_file *f, uint64_t offset, uint32_t *room)
+static bool add_offset(cwi_tiff_file *f, uint64_t offset, uint32_t *capacity)
 {
-    if (f->offset_count == *room) {
-        const uint32_t more = *room ? 2 * *room : 64;
+    if (f->offset_count == *capacity) {
+        const uint32_t more = *capacity ? 2 * *capacity : 64;
         uint64_t *offsets = cwi_realloc_array(f->offsets, more, sizeof *offsets);
         if (!offsets)
             return false;
         f->offsets = offsets;
-        *room = more;
+        *capacity = more;
     }
     f->offsets[f->offset_count++] = offset;
     return true;
@@ -208,7 +208,7 @@ bool cwi_tiff_rational(const cwi_tiff_file *f, uint16_t tag, double *value)
 cw_status cwi_tiff_walk(cwi_tiff_file *f, cw_error *err)
 {
     uint64_t at = 0, mark = 0;
-    uint32_t room = 0;
+    uint32_t capacity = 0;
     cw_status st = read_header(f, &at, err);
     while (st == CW_OK && at) {
         if (at == mark)
@@ -217,7 +217,7 @@ cw_status cwi_tiff_walk(cwi_tiff_file *f, cw_error *err)
                             (unsigned long long)at);
         if (f->offset_count == CWI_TIFF_MAX_PAGES)
             return cwi_fail(err, CW_ERR_LIMIT, "more than %d pages", CWI_TIFF_MAX_PAGES);
-        if (!add_offset(f, at, &room))
+        if (!add_offset(f, at, &capacity))
             return cwi_fail_memory(err);
         if ((f->offset_count & (f->offset_count - 1)) == 0)
             mark = at;

@@ -37,7 +37,7 @@ typedef struct cwi_tiff_file {
     cwi_tiff_layout layout;
     int64_t band; /* the band in `pixels`; -1: none */
     unsigned char *pixels, *tile, *line;
-    size_t pixel_room, tile_room, line_room;
+    size_t pixel_capacity, tile_capacity, line_capacity;
     bool guessed;   /* libtiff has guessed the bytes of the directory's strips */
     int complained; /* libtiff's complaint since cwi_tiff_listen(): 1, a warning; 2, an error */
     char complaint[200];
@@ -67,8 +67,8 @@ CW_NODISCARD cw_status cwi_tiff_inflate(cwi_tiff_file *f, uint32_t strile, unsig
                                         size_t bytes, size_t row_bytes, cw_error *err);
 
 /* Makes a buffer large enough; its content is lost. */
-CW_NODISCARD cw_status cwi_tiff_make_room(unsigned char **buffer, size_t *room, uint64_t bytes,
-                                          cw_error *err);
+CW_NODISCARD cw_status cwi_tiff_ensure_capacity(unsigned char **buffer, size_t *capacity,
+                                                uint64_t bytes, cw_error *err);
 
 /* Read values that libtiff does not return. The first is a short of a directory, 0 where there
  * is none. The second is a rational number of the first directory, which libtiff rounds to

@@ -17,18 +17,18 @@ static cw_status fail_page(const cwi_tiff_file *f, const char *why, cw_error *er
                     (uint32_t)f->page + 1, why);
 }
 
-cw_status cwi_tiff_make_room(unsigned char **buffer, size_t *room, uint64_t bytes,
-                             cw_error *err)
+cw_status cwi_tiff_ensure_capacity(unsigned char **buffer, size_t *capacity, uint64_t bytes,
+                                   cw_error *err)
 {
     if (bytes > MAX_AT_ONCE)
         return cwi_fail(err, CW_ERR_LIMIT,
                         "a strip or row of tiles takes %llu bytes; the most are %d",
                         (unsigned long long)bytes, MAX_AT_ONCE);
-    if (bytes <= *room)
+    if (bytes <= *capacity)
         return CW_OK;
     cwi_free(*buffer);
     *buffer = cwi_alloc_array(bytes, 1);
-    *room = *buffer ? bytes : 0;
+    *capacity = *buffer ? bytes : 0;
     return *buffer ? CW_OK : cwi_fail_memory(err);
 }
 
@@ -40,8 +40,8 @@ static bool is_raw(const cwi_tiff_layout *l)
 }
 
 /* Finds the place of a row, and the number of wanted rows that follow without a gap. */
-static uint64_t find_row(const cwi_tiff_file *f, uint16_t plane, uint32_t row, uint32_t wanted,
-                         uint32_t *run)
+static uint64_t find_row(const cwi_tiff_file *f, uint16_t plane, uint32_t row,
+                         uint32_t expected, uint32_t *run)
 {
     const cwi_tiff_layout *l = &f->layout;
     const uint32_t first = row / l->band_rows, from = row % l->band_rows;
@@ -53,7 +53,8 @@ static uint64_t find_row(const cwi_tiff_file *f, uint16_t plane, uint32_t row, u
     const uint64_t start = TIFFGetStrileOffset(f->tiff, before + first);
     uint64_t end = start;
     *run = 0;
-    for (uint32_t s = first; s < l->bands && *run < from + wanted; s++, *run += l->band_rows) {
+    for (uint32_t s = first; s < l->bands && *run < from + expected;
+         s++, *run += l->band_rows) {
         if (TIFFGetStrileOffset(f->tiff, before + s) != end)
             break;
         end += (uint64_t)l->band_rows * l->stored_row;
@@ -108,10 +109,10 @@ static cw_status read_raw(const cwi_tiff_file *f, uint16_t plane, uint32_t row, 
 
 /* Checks a result of libtiff, which continues over damage with a warning and returns partial
  * data. */
-static cw_status check_decoded(const cwi_tiff_file *f, tmsize_t got, size_t wanted,
+static cw_status check_decoded(const cwi_tiff_file *f, tmsize_t got, size_t expected,
                                cw_error *err)
 {
-    if (got == (tmsize_t)wanted && !f->complained)
+    if (got == (tmsize_t)expected && !f->complained)
         return CW_OK;
     return fail_page(f, f->complained ? f->complaint : "they are too few", err);
 }
@@ -143,7 +144,7 @@ static cw_status decode_tiles(cwi_tiff_file *f, uint32_t first, uint32_t rows,
     const cwi_tiff_layout *l = &f->layout;
     const size_t bytes = (size_t)TIFFTileSize64(f->tiff), tile_row = bytes / l->band_rows;
     const uint32_t across = (l->columns - 1) / l->tile_width + 1;
-    cw_status st = cwi_tiff_make_room(&f->tile, &f->tile_room, bytes, err);
+    cw_status st = cwi_tiff_ensure_capacity(&f->tile, &f->tile_capacity, bytes, err);
     for (uint32_t t = 0; st == CW_OK && t < across; t++) {
         const size_t from = t * tile_row, left = l->stored_row - from;
         cwi_tiff_listen(f);
@@ -173,7 +174,8 @@ static cw_status decode_band(cwi_tiff_file *f, uint32_t band, cw_error *err)
     if (f->band == band)
         return CW_OK;
     f->band = -1;
-    cw_status st = cwi_tiff_make_room(&f->pixels, &f->pixel_room, plane * l->planes, err);
+    cw_status st =
+        cwi_tiff_ensure_capacity(&f->pixels, &f->pixel_capacity, plane * l->planes, err);
     for (uint16_t p = 0; st == CW_OK && p < l->planes; p++) {
         const uint32_t first = (p * l->bands + band) * across;
         st = l->tiled
@@ -259,7 +261,7 @@ static void put_row(const cwi_tiff_layout *l, const unsigned char *stored, size_
 }
 
 /* Reads stored rows from one on into memory, as many as one piece holds. */
-static cw_status read_piece(cwi_tiff_file *f, uint32_t row, uint32_t most,
+static cw_status read_piece(cwi_tiff_file *f, uint32_t row, uint32_t max,
                             const unsigned char **stored, size_t *plane, uint32_t *count,
                             cw_error *err)
 {
@@ -275,9 +277,10 @@ static cw_status read_piece(cwi_tiff_file *f, uint32_t row, uint32_t most,
         return st;
     }
     const size_t fit = PIECE / (l->stored_row * l->planes);
-    *count = fit < 1 ? 1 : fit < most ? (uint32_t)fit : most;
+    *count = fit < 1 ? 1 : fit < max ? (uint32_t)fit : max;
     *plane = *count * l->stored_row;
-    st = cwi_tiff_make_room(&f->pixels, &f->pixel_room, (uint64_t)*plane * l->planes, err);
+    st = cwi_tiff_ensure_capacity(&f->pixels, &f->pixel_capacity, (uint64_t)*plane * l->planes,
+                                  err);
     for (uint16_t p = 0; st == CW_OK && p < l->planes; p++)
         st = read_raw(f, p, row, *count, f->pixels + p * *plane, err);
     *stored = f->pixels;

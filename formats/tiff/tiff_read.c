@@ -33,9 +33,9 @@ static cw_status check_claim(const cwi_tiff_facts *f, uint64_t file_bytes, cw_er
 {
     const uint64_t row = ((uint64_t)f->columns * f->samples * f->bits + 7) / 8; /* < 2^37 */
     const uint64_t ratio = f->compressed ? MAX_COMPRESSION : 1;
-    uint64_t wanted;
-    if (!__builtin_mul_overflow(row * f->rows, planes_of(f), &wanted) &&
-        wanted / ratio <= file_bytes)
+    uint64_t expected;
+    if (!__builtin_mul_overflow(row * f->rows, planes_of(f), &expected) &&
+        expected / ratio <= file_bytes)
         return CW_OK;
     return cwi_fail(err, CW_ERR_FORMAT,
                     "'ImageWidth' and 'ImageLength' ask for %llu pages of %u x %u pixels; the "
@@ -66,12 +66,12 @@ static cw_status check_numbers(const cwi_tiff_facts *f, cw_error *err)
 /* Checks the facts, which are untrusted: libtiff's process may have been taken over. */
 static cw_status check_facts(const cwi_tiff_facts *f, uint64_t file_bytes, cw_error *err)
 {
-    const uint32_t most = CWI_TIFF_MAX_PAGES;
+    const uint32_t max = CWI_TIFF_MAX_PAGES;
     if (f->columns < 1 || f->columns > INT32_MAX || f->rows < 1 || f->rows > INT32_MAX ||
         f->samples < 1 || f->samples > MAX_SAMPLES || f->bits < 1 || f->bits > 64 ||
         !cw_type_size(f->type) || f->bits > 8 * cw_type_size(f->type) || f->page_count < 1 ||
-        f->page_count > most || f->slices < 1 || f->slices > most || f->channels < 1 ||
-        f->channels > most || f->steps < 1 || f->steps > most || planes_of(f) > f->page_count ||
+        f->page_count > max || f->slices < 1 || f->slices > max || f->channels < 1 ||
+        f->channels > max || f->steps < 1 || f->steps > max || planes_of(f) > f->page_count ||
         !memchr(f->note, '\0', sizeof f->note))
         return cwi_fail(err, CW_ERR_BACKEND, "libtiff's answer is not valid");
     if (f->channels > MAX_CHANNELS || (f->channels > 1 && f->samples > 1))
@@ -158,7 +158,7 @@ static void set_frame(const cwi_tiff_facts *f, const cw_read_desc *desc, cw_volu
                  "1, and no unit is known; desc->spacing_mm states them");
 }
 
-static cw_status make_room(cwi_stack *stack, size_t planes, size_t slots, cw_error *err)
+static cw_status ensure_capacity(cwi_stack *stack, size_t planes, size_t slots, cw_error *err)
 {
     stack->planes = cwi_alloc_zeroed(planes, sizeof *stack->planes);
     stack->slots = cwi_alloc_zeroed(slots, sizeof *stack->slots);
@@ -178,7 +178,7 @@ static cw_status stack_pages(const cwi_tiff_facts *f, const uint32_t *order, cwi
                              cw_error *err)
 {
     const size_t count = planes_of(f);
-    cw_status st = make_room(stack, f->page_count, count, err);
+    cw_status st = ensure_capacity(stack, f->page_count, count, err);
     if (st != CW_OK)
         return st;
     set_sizes(f, f->slices, stack);
@@ -345,7 +345,7 @@ static cw_status stack_files(slices *s, cwi_stack *stack, cw_error *err)
     cwi_slices laid = {0};
     cw_status st = lay_slices(s, &laid, err);
     if (st == CW_OK)
-        st = make_room(stack, s->files.count, laid.count, err);
+        st = ensure_capacity(stack, s->files.count, laid.count, err);
     for (size_t i = 0; st == CW_OK && i < s->files.count; i++)
         stack->planes[i].file = i;
     for (size_t k = 0; st == CW_OK && k < laid.count; k++) {

@@ -21,9 +21,9 @@ bool cwi_vdb_sniff(const unsigned char *head, size_t size)
 /* --- the grid ----------------------------------------------------------------------------- */
 
 /* Makes untrusted text printable. */
-static void clean_text(char *text, size_t room)
+static void clean_text(char *text, size_t capacity)
 {
-    text[room - 1] = '\0';
+    text[capacity - 1] = '\0';
     for (char *c = text; *c; c++)
         if ((unsigned char)*c < ' ' || (unsigned char)*c == 127)
             *c = '?';
@@ -242,7 +242,7 @@ static cw_status read_chosen(cwi_planes *planes, const cwi_input *in, const cwi_
 /* Returns the maximum memory that the library may allocate for a file, whatever its numbers
  * claim. A leaf has a mask of 64 bytes in the file and up to 4,200 bytes in memory. A node has
  * masks of 8 KiB, and up to 32,768 tiles of 40 bytes, kept twice while they grow. */
-static uint64_t most_memory(uint64_t file_bytes)
+static uint64_t max_memory(uint64_t file_bytes)
 {
     const uint64_t base = (uint64_t)128 << 20, factor = 512;
     return file_bytes < (UINT64_MAX - base) / factor ? base + factor * file_bytes : UINT64_MAX;
@@ -251,7 +251,7 @@ static uint64_t most_memory(uint64_t file_bytes)
 /* Reports a damaged file if the memory ran out only because of that limit. */
 static cw_status judge_memory(cw_status st, uint64_t limit, uint64_t file_bytes, cw_error *err)
 {
-    if (st != CW_ERR_NO_MEMORY || limit != most_memory(file_bytes) || cwi_memory_is_limited())
+    if (st != CW_ERR_NO_MEMORY || limit != max_memory(file_bytes) || cwi_memory_is_limited())
         return st;
     return cwi_fail(
         err, CW_ERR_FORMAT,
@@ -266,9 +266,9 @@ cw_status cwi_vdb_read(const cwi_input *in, const cw_read_desc *desc, cw_volume 
     cwi_planes planes = {0};
     cwi_vdb_facts *facts = cwi_alloc_array(1, sizeof *facts);
     const uint64_t stated = desc->max_bytes ? desc->max_bytes : CWI_SANDBOX_MEMORY;
-    const uint64_t most = most_memory(in->size);
+    const uint64_t max = max_memory(in->size);
     cw_read_desc boxed = *desc;
-    boxed.max_bytes = most < stated ? most : stated;
+    boxed.max_bytes = max < stated ? max : stated;
     cw_status st = facts ? cwi_planes_open(&planes, "openvdb", "OpenVDB", &boxed, err)
                          : cwi_fail_memory(err);
     if (st == CW_OK)

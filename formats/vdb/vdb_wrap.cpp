@@ -314,9 +314,9 @@ struct state {
     content held;
 };
 
-void put_text(const std::string &from, char *to, size_t room)
+void put_text(const std::string &from, char *to, size_t capacity)
 {
-    std::snprintf(to, room, "%s", from.c_str());
+    std::snprintf(to, capacity, "%s", from.c_str());
 }
 
 void put_affine(const GridBase &grid, cwi_vdb_grid &f)

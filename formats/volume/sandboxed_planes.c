@@ -103,10 +103,10 @@ cw_status cwi_planes_facts(cwi_planes *planes, int fd, uint64_t file_bytes, cons
 cw_status cwi_planes_read(cwi_planes *planes, uint32_t plane, size_t first_row,
                           size_t row_count, size_t row_bytes, void *to, cw_error *err)
 {
-    const size_t most = CWI_PLANES_SHARED / row_bytes;
+    const size_t max = CWI_PLANES_SHARED / row_bytes;
     cw_status st = CW_OK;
     for (size_t row = 0, rows; st == CW_OK && row < row_count; row += rows) {
-        rows = row_count - row < most ? row_count - row : most;
+        rows = row_count - row < max ? row_count - row : max;
         const cwi_plane_request q = {.op = CWI_PLANE_PIXELS,
                                      .plane = plane,
                                      .first_row = (uint32_t)(first_row + row),

@@ -14,7 +14,7 @@ const char *cwi_source_noun(const cwi_source *src)
     return src->noun ? src->noun : "voxels";
 }
 
-size_t cwi_source_share(const cwi_source *src)
+size_t cwi_source_part_bytes(const cwi_source *src)
 {
     return src->files.count ? src->bytes / src->files.count : src->bytes;
 }
@@ -57,34 +57,34 @@ static uint64_t bytes_of_text(const cwi_source *src, uint64_t encoded)
 /* Returns the maximum of voxel bytes that the encoded bytes in the file can stand for. Deflate
  * expands data at most 1032 times, bzip2 by its blocks. A number and its blank take two bytes;
  * the last may lack the blank. For CWI_BLOCKS the table states the sizes. */
-static uint64_t most_bytes(const cwi_source *src, uint64_t encoded)
+static uint64_t max_bytes(const cwi_source *src, uint64_t encoded)
 {
     const uint64_t voxel = cw_type_size(src->shape.type);
-    const uint64_t most = src->encoding == CWI_ASCII   ? voxel
-                          : src->encoding == CWI_BZIP2 ? CWI_BZIP2_BLOCK / CWI_BZIP2_PACKED
-                                                       : 1032;
+    const uint64_t max = src->encoding == CWI_ASCII   ? voxel
+                         : src->encoding == CWI_BZIP2 ? CWI_BZIP2_BLOCK / CWI_BZIP2_PACKED
+                                                      : 1032;
     encoded = bytes_of_text(src, encoded);
     if (src->encoding == CWI_RAW || src->encoding == CWI_HEX)
         return src->encoding == CWI_HEX ? encoded / 2 : encoded;
     if (src->encoding == CWI_ASCII)
         encoded = encoded / 2 + 1;
-    return encoded > UINT64_MAX / most ? UINT64_MAX : encoded * most;
+    return encoded > UINT64_MAX / max ? UINT64_MAX : encoded * max;
 }
 
-static cw_status check_share(const cwi_source *src, cwi_part_file *p, cw_error *err)
+static cw_status check_part_bytes(const cwi_source *src, cwi_part_file *p, cw_error *err)
 {
-    const size_t share = cwi_source_share(src);
-    uint64_t wanted;
+    const size_t part_bytes = cwi_source_part_bytes(src);
+    uint64_t selected;
     if (src->at_end)
-        p->start = p->size > share ? p->size - share : 0;
+        p->start = p->size > part_bytes ? p->size - part_bytes : 0;
     const uint64_t encoded = p->size > p->start ? p->size - p->start : 0;
-    if (!__builtin_add_overflow(decoded_skip(src), share, &wanted) &&
-        wanted <= most_bytes(src, encoded))
+    if (!__builtin_add_overflow(decoded_skip(src), part_bytes, &selected) &&
+        selected <= max_bytes(src, encoded))
         return CW_OK;
     return cwi_fail(err, CW_ERR_FORMAT,
                     "'%s' asks for %zu bytes of %s%s%s; the file holds %llu bytes behind the "
                     "first %llu",
-                    src->size_field, share, cwi_source_noun(src),
+                    src->size_field, part_bytes, cwi_source_noun(src),
                     src->encoding == CWI_RAW ? "" : ", encoded",
                     src->files.count > 1 ? " in each file" : "", (unsigned long long)encoded,
                     (unsigned long long)p->start);
@@ -109,7 +109,7 @@ cw_status cwi_part_open_stream(const cwi_source *src, const cwi_part_file *p,
     if (st == CW_OK)
         st = cwi_stream_skip(stream, decoded_skip(src), err);
     if (st == CW_OK && src->encoding == CWI_BLOCKS)
-        st = cwi_blocks_open(blocks, stream, &src->blocks, cwi_source_share(src),
+        st = cwi_blocks_open(blocks, stream, &src->blocks, cwi_source_part_bytes(src),
                              bytes_of_text(src, p->size - p->start), err);
     return st;
 }
@@ -158,7 +158,7 @@ cw_status cwi_part_open(const cwi_source *src, const cwi_input *in, size_t index
                       (unsigned long long)src->packed,
                       (unsigned long long)(p->start < p->size ? p->size - p->start : 0));
     if (st == CW_OK)
-        st = check_share(src, p, err);
+        st = check_part_bytes(src, p, err);
     if (st == CW_OK)
         st = check_blocks(src, p, err);
     if (st != CW_OK)
@@ -167,27 +167,27 @@ cw_status cwi_part_open(const cwi_source *src, const cwi_input *in, size_t index
 }
 
 /* Decodes whole blocks directly to their place. Their ends need not be those of voxels. */
-static cw_status take_blocks(cwi_part_reading *r, size_t most, size_t *got, cw_error *err)
+static cw_status take_blocks(cwi_part_reading *r, size_t max, size_t *got, cw_error *err)
 {
     const size_t voxel = cw_type_size(r->src->shape.type);
     size_t n = 0;
     cw_status st = CW_OK;
     for (*got = 0; st == CW_OK && (*got == 0 || *got % voxel); *got += n)
-        st = cwi_blocks_some(&r->blocks, r->to + *got, most - *got, &n, err);
+        st = cwi_blocks_some(&r->blocks, r->to + *got, max - *got, &n, err);
     return st;
 }
 
-/* Reads the next voxels to their place: a portion of at most `most` bytes. */
-static cw_status take_bytes(cwi_part_reading *r, size_t most, size_t *got, cw_error *err)
+/* Reads the next voxels to their place: a portion of at most `max` bytes. */
+static cw_status take_bytes(cwi_part_reading *r, size_t max, size_t *got, cw_error *err)
 {
     const cwi_source *src = r->src;
     const size_t voxel = cw_type_size(src->shape.type);
     cw_status st;
-    *got = most < SLAB_BYTES ? most : SLAB_BYTES;
+    *got = max < SLAB_BYTES ? max : SLAB_BYTES;
     if (src->encoding == CWI_ASCII)
         return cwi_numbers_read(&r->numbers, src->shape.type, r->to, *got / voxel, err);
     if (src->encoding == CWI_BLOCKS)
-        st = take_blocks(r, most, got, err);
+        st = take_blocks(r, max, got, err);
     else
         st = cwi_stream_read(&r->stream, r->to, *got, err);
     if (st == CW_OK && src->big_endian != cwi_machine_is_big_endian())
@@ -195,11 +195,11 @@ static cw_status take_bytes(cwi_part_reading *r, size_t most, size_t *got, cw_er
     return st;
 }
 
-/* Skips the next voxels: a portion of at most `most` bytes. */
-static cw_status drop_bytes(cwi_part_reading *r, uint64_t most, size_t *got, cw_error *err)
+/* Skips the next voxels: a portion of at most `max` bytes. */
+static cw_status drop_bytes(cwi_part_reading *r, uint64_t max, size_t *got, cw_error *err)
 {
     const cw_type type = r->src->shape.type;
-    *got = most < SLAB_BYTES ? (size_t)most : SLAB_BYTES;
+    *got = max < SLAB_BYTES ? (size_t)max : SLAB_BYTES;
     if (r->src->encoding == CWI_ASCII)
         return cwi_numbers_read(&r->numbers, type, NULL, *got / cw_type_size(type), err);
     if (r->src->encoding != CWI_BLOCKS)
@@ -209,17 +209,18 @@ static cw_status drop_bytes(cwi_part_reading *r, uint64_t most, size_t *got, cw_
 }
 
 /* Reads or skips the next bytes of the part, portion by portion. */
-static cw_status pass_bytes(cwi_part_reading *r, uint64_t bytes, bool wanted, cw_error *err)
+static cw_status pass_bytes(cwi_part_reading *r, uint64_t bytes, bool selected, cw_error *err)
 {
     cw_status st = CW_OK;
     while (st == CW_OK && bytes > 0) {
         size_t n = 0;
         st = cwi_progress(r->progress, "reading", (double)r->at / (double)r->runs.end, err);
         if (st == CW_OK)
-            st = wanted ? take_bytes(r, (size_t)bytes, &n, err) : drop_bytes(r, bytes, &n, err);
+            st = selected ? take_bytes(r, (size_t)bytes, &n, err)
+                          : drop_bytes(r, bytes, &n, err);
         r->at += n;
         bytes -= n;
-        if (wanted)
+        if (selected)
             r->to += n;
     }
     return st;

@@ -29,7 +29,7 @@ typedef struct cwi_part_reading {
 const char *cwi_source_noun(const cwi_source *src);
 
 /* Returns the bytes of voxels in each file. */
-size_t cwi_source_share(const cwi_source *src);
+size_t cwi_source_part_bytes(const cwi_source *src);
 
 /* Returns the name of a file; NULL: the header's own. */
 const char *cwi_part_name(const cwi_source *src, size_t index);

@@ -147,12 +147,12 @@ cw_status cwi_check_frame(const cw_volume *v, const char *field, cw_error *err)
 static cw_status read_part(cwi_part_reading *r, const cwi_part_file *p, size_t index,
                            cw_error *err)
 {
-    const uint64_t share = cwi_source_share(r->src);
-    r->at = index * share;
+    const uint64_t part_bytes = cwi_source_part_bytes(r->src);
+    r->at = index * part_bytes;
     r->numbers = (cwi_numbers){.stream = &r->stream, .noun = cwi_source_noun(r->src)};
     cw_status st = cwi_part_open_stream(r->src, p, &r->stream, &r->blocks, err);
     if (st == CW_OK)
-        st = cwi_part_read_runs(r, r->at + share, err);
+        st = cwi_part_read_runs(r, r->at + part_bytes, err);
     if (st == CW_OK)
         st = cwi_part_check_packed(r, p->start, err);
     cwi_blocks_close(&r->blocks);
@@ -160,9 +160,9 @@ static cw_status read_part(cwi_part_reading *r, const cwi_part_file *p, size_t i
     return st;
 }
 
-static bool has_wanted(const cwi_part_reading *r, size_t index)
+static bool has_selected(const cwi_part_reading *r, size_t index)
 {
-    return r->runs.left > 0 && r->runs.next / cwi_source_share(r->src) == index;
+    return r->runs.left > 0 && r->runs.next / cwi_source_part_bytes(r->src) == index;
 }
 
 /* Opens every part and checks it, or opens the parts with wanted voxels, and reads them. A
@@ -175,7 +175,7 @@ static cw_status walk_parts(const cwi_source *src, const cwi_input *in, cwi_part
     cw_status st = CW_OK;
     for (size_t i = 0; st == CW_OK && i < count; i++) {
         cwi_part_file p;
-        if (r && !has_wanted(r, i))
+        if (r && !has_selected(r, i))
             continue;
         st = cwi_part_open(src, in, i, &p, err);
         if (st == CW_OK && r)
@@ -190,7 +190,8 @@ static cw_status walk_parts(const cwi_source *src, const cwi_input *in, cwi_part
 static cw_status check_files(const cwi_source *src, const cwi_input *in, cw_error *err)
 {
     const size_t count = src->files.count;
-    if (count && (src->bytes % count || cwi_source_share(src) % cw_type_size(src->shape.type)))
+    if (count &&
+        (src->bytes % count || cwi_source_part_bytes(src) % cw_type_size(src->shape.type)))
         return cwi_fail(err, CW_ERR_FORMAT,
                         "'%s' asks for %zu bytes, which %zu files cannot share",
                         src->size_field, src->bytes, count);
@@ -200,19 +201,19 @@ static cw_status check_files(const cwi_source *src, const cwi_input *in, cw_erro
 cw_status cwi_check_limits(const cw_volume *v, size_t bytes, const char *field,
                            const cw_read_desc *desc, cw_error *err)
 {
-    const uint64_t most = desc->max_voxels ? desc->max_voxels : (uint64_t)1 << 40;
+    const uint64_t max = desc->max_voxels ? desc->max_voxels : (uint64_t)1 << 40;
     const uint64_t voxels = bytes / cw_type_size(v->type) / v->components;
-    if (voxels > most)
+    if (voxels > max)
         return cwi_fail(err, CW_ERR_LIMIT,
                         "'%s' asks for %llu voxels; the limit is %llu (desc->max_voxels)",
-                        field, (unsigned long long)voxels, (unsigned long long)most);
+                        field, (unsigned long long)voxels, (unsigned long long)max);
     if (desc->max_bytes && bytes > desc->max_bytes) {
-        char asked[CWI_MEMORY_TEXT], limit[CWI_MEMORY_TEXT];
-        cwi_print_memory(bytes, asked);
+        char requested[CWI_MEMORY_TEXT], limit[CWI_MEMORY_TEXT];
+        cwi_print_memory(bytes, requested);
         cwi_print_memory(desc->max_bytes, limit);
         return cwi_fail(err, CW_ERR_LIMIT,
                         "'%s' asks for %s of voxels; the limit is %s (desc->max_bytes)", field,
-                        asked, limit);
+                        requested, limit);
     }
     return CW_OK;
 }
@@ -271,15 +272,15 @@ static cw_status thin_source(const cw_read_desc *desc, cwi_source *out, cw_error
     return st;
 }
 
-/* Loads the voxels. `wanted` is the source or, narrowed and thinned, a part of it. */
-static cw_status load_voxels(const cwi_source *src, const cwi_source *wanted,
+/* Loads the voxels. `selected` is the source or, narrowed and thinned, a part of it. */
+static cw_status load_voxels(const cwi_source *src, const cwi_source *selected,
                              const cwi_input *in, const cw_read_desc *desc, cw_volume *volume,
                              cw_error *err)
 {
     size_t step[3];
     int fastest;
-    cw_volume v = wanted->shape;
-    v.owned = cwi_alloc_large(wanted->bytes, 1);
+    cw_volume v = selected->shape;
+    v.owned = cwi_alloc_large(selected->bytes, 1);
     if (!v.owned)
         return cwi_fail_memory(err);
     v.data = v.owned;
@@ -326,8 +327,8 @@ static void close_reading(slice_reading *s)
 static cw_status open_next_part(slice_reading *s, cw_error *err)
 {
     cwi_part_reading *r = &s->reading;
-    const uint64_t share = cwi_source_share(r->src);
-    const size_t index = (size_t)(r->runs.next / share);
+    const uint64_t part_bytes = cwi_source_part_bytes(r->src);
+    const size_t index = (size_t)(r->runs.next / part_bytes);
     if (s->open && s->index == index && r->at <= r->runs.next)
         return CW_OK;
     close_reading(s);
@@ -336,7 +337,7 @@ static cw_status open_next_part(slice_reading *s, cw_error *err)
         return st;
     s->open = true;
     s->index = index;
-    r->at = index * share;
+    r->at = index * part_bytes;
     r->numbers = (cwi_numbers){.stream = &r->stream, .noun = cwi_source_noun(r->src)};
     return cwi_part_open_stream(r->src, &s->part, &r->stream, &r->blocks, err);
 }
@@ -346,7 +347,7 @@ static cw_status read_slices(void *user, size_t first, size_t count, void *to, c
     slice_reading *s = user;
     cwi_part_reading *r = &s->reading;
     const cwi_source *src = r->src;
-    const uint64_t share = cwi_source_share(src);
+    const uint64_t part_bytes = cwi_source_part_bytes(src);
     cw_box box = s->box;
     box.first[2] += first * s->step[2];
     box.count[2] = (count - 1) * s->step[2] + 1;
@@ -362,8 +363,8 @@ static cw_status read_slices(void *user, size_t first, size_t count, void *to, c
     while (st == CW_OK && r->runs.left > 0) {
         st = open_next_part(s, err);
         if (st == CW_OK)
-            st = cwi_part_read_runs(r, (s->index + 1) * share, err);
-        if (st == CW_OK && r->at == (s->index + 1) * share)
+            st = cwi_part_read_runs(r, (s->index + 1) * part_bytes, err);
+        if (st == CW_OK && r->at == (s->index + 1) * part_bytes)
             st = cwi_part_check_packed(r, s->part.start, err);
         if (st != CW_OK && cwi_part_name(src, s->index) && st != CW_ERR_CANCELLED)
             cwi_fail_in(err, st, cwi_part_name(src, s->index));
@@ -371,8 +372,8 @@ static cw_status read_slices(void *user, size_t first, size_t count, void *to, c
     return st;
 }
 
-/* Gives slices to the input's visitor. `wanted`: as in load_voxels() */
-static cw_status visit_slices(const cwi_source *src, const cwi_source *wanted,
+/* Gives slices to the input's visitor. `selected`: as in load_voxels() */
+static cw_status visit_slices(const cwi_source *src, const cwi_source *selected,
                               const cwi_input *in, const cw_read_desc *desc, cw_error *err)
 {
     static const cw_progress quiet = {0};
@@ -390,36 +391,36 @@ static cw_status visit_slices(const cwi_source *src, const cwi_source *wanted,
             return cwi_fail(err, CW_ERR_UNSUPPORTED,
                             "time steps are not the slowest axis of this file; it is only read "
                             "as a whole");
-    cw_status st = cwi_visit_slices(in->visit, &wanted->shape, read_slices, &s, err);
+    cw_status st = cwi_visit_slices(in->visit, &selected->shape, read_slices, &s, err);
     close_reading(&s);
     return st;
 }
 
 /* Checks the files, and makes the source of the wanted voxels: a region, every n-th of them. */
 static cw_status want_part(const cwi_source *src, const cwi_input *in, const cw_read_desc *desc,
-                           cwi_source *wanted, cw_error *err)
+                           cwi_source *selected, cw_error *err)
 {
-    *wanted = *src; /* its files are borrowed */
+    *selected = *src; /* its files are borrowed */
     cw_status st = check_files(src, in, err);
     if (st == CW_OK && desc->region)
-        st = narrow_to_region(src, desc->region, wanted, err);
+        st = narrow_to_region(src, desc->region, selected, err);
     if (st == CW_OK)
-        st = thin_source(desc, wanted, err);
-    return st == CW_OK
-               ? cwi_check_limits(&wanted->shape, wanted->bytes, wanted->size_field, desc, err)
-               : st;
+        st = thin_source(desc, selected, err);
+    return st == CW_OK ? cwi_check_limits(&selected->shape, selected->bytes,
+                                          selected->size_field, desc, err)
+                       : st;
 }
 
 cw_status cwi_source_load(const cwi_source *src, const cwi_input *in, const cw_read_desc *desc,
                           cw_volume *volume, cw_error *err)
 {
-    cwi_source wanted;
-    cw_status st = want_part(src, in, desc, &wanted, err);
+    cwi_source selected;
+    cw_status st = want_part(src, in, desc, &selected, err);
     if (st != CW_OK || !desc->header_only)
-        return st == CW_OK ? load_voxels(src, &wanted, in, desc, volume, err) : st;
-    st = cwi_volume_own_coordinates(&wanted.shape, err);
+        return st == CW_OK ? load_voxels(src, &selected, in, desc, volume, err) : st;
+    st = cwi_volume_own_coordinates(&selected.shape, err);
     if (st == CW_OK)
-        *volume = wanted.shape;
+        *volume = selected.shape;
     return st;
 }
 
@@ -427,8 +428,8 @@ cw_status cwi_source_visit(const cwi_source *src, const cwi_input *in, const cw_
                            cw_error *err)
 {
     cw_read_desc limits = *desc;
-    cwi_source wanted;
+    cwi_source selected;
     limits.max_bytes = 0; /* voxels are not read at once */
-    cw_status st = want_part(src, in, &limits, &wanted, err);
-    return st == CW_OK ? visit_slices(src, &wanted, in, desc, err) : st;
+    cw_status st = want_part(src, in, &limits, &selected, err);
+    return st == CW_OK ? visit_slices(src, &selected, in, desc, err) : st;
 }

@@ -100,7 +100,7 @@ static const cwi_xml_element elements[ELEMENT_COUNT] = {
 };
 
 static const cwi_xml_rules rules = {
-    .elements = elements, .element_count = ELEMENT_COUNT, .most_elements = 4 * MAX_FILES};
+    .elements = elements, .element_count = ELEMENT_COUNT, .max_elements = 4 * MAX_FILES};
 
 static int compare_times(const void *a, const void *b)
 {

@@ -14,7 +14,7 @@ typedef enum cwi_vti_rank {
     CWI_VTI_SEVERAL,
     CWI_VTI_ONE,
     CWI_VTI_SCALARS,
-    CWI_VTI_ASKED_FOR
+    CWI_VTI_REQUESTED
 } cwi_vti_rank;
 
 /* A DataArray of PointData or CellData. */
@@ -32,7 +32,7 @@ typedef struct cwi_vti_data {
 
 /* The choice among the arrays. */
 typedef struct cwi_vti_choice {
-    const char *wanted;   /* the name of the requested array; NULL: none */
+    const char *expected; /* the name of the requested array; NULL: none */
     cwi_array_list *list; /* list that receives the arrays; NULL: not needed */
     char others[400];     /* names and types of arrays that are not read, for messages */
 } cwi_vti_choice;

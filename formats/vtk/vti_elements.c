@@ -71,19 +71,19 @@ void cwi_vti_data_start(cwi_vti_data *data, bool of_cells, cwi_attributes a)
 
 static void note_other(cwi_vti_choice *choice, const cwi_vtk_array *array)
 {
-    const size_t used = strlen(choice->others), room = sizeof choice->others - used;
+    const size_t used = strlen(choice->others), capacity = sizeof choice->others - used;
     char text[2 * CWI_WORD_BYTES + 40];
     snprintf(text, sizeof text, "'%s' (%zu %s)", array->name, array->components,
              *array->type_name ? array->type_name : "of no type");
     if (!strstr(choice->others, text)) /* other pieces have the same */
-        snprintf(choice->others + used, room, "%s%s", used ? ", " : "", text);
+        snprintf(choice->others + used, capacity, "%s%s", used ? ", " : "", text);
 }
 
 static cwi_vti_rank rank_of(const cwi_vti_choice *choice, const cwi_vti_data *data,
                             const cwi_vtk_array *array)
 {
-    if (choice->wanted)
-        return strcmp(array->name, choice->wanted) == 0 ? CWI_VTI_ASKED_FOR : CWI_VTI_NONE;
+    if (choice->expected)
+        return strcmp(array->name, choice->expected) == 0 ? CWI_VTI_REQUESTED : CWI_VTI_NONE;
     if (*array->name && strcmp(array->name, data->scalars) == 0)
         return CWI_VTI_SCALARS;
     return array->components == 1 ? CWI_VTI_ONE : CWI_VTI_SEVERAL;
@@ -112,9 +112,9 @@ cw_status cwi_vti_data_array(cwi_vti_choice *choice, cwi_vti_data *data, cwi_att
 cw_status cwi_vti_fail_choice(const cwi_vti_choice *choice, cw_error *err)
 {
     const char *others = choice->others, *there = *others ? "; there are " : "";
-    if (choice->wanted)
+    if (choice->expected)
         return cwi_fail(err, CW_ERR_ARGUMENT, "there is no array '%.100s' that is read%s%s",
-                        choice->wanted, there, others);
+                        choice->expected, there, others);
     return cwi_fail(err, CW_ERR_FORMAT, "PointData and CellData hold no array that is read%s%s",
                     there, others);
 }

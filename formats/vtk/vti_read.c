@@ -164,7 +164,7 @@ static const cwi_xml_element elements[ELEMENT_COUNT] = {
 
 static const cwi_xml_rules rules = {.elements = elements,
                                     .element_count = ELEMENT_COUNT,
-                                    .most_elements = MAX_ELEMENTS,
+                                    .max_elements = MAX_ELEMENTS,
                                     .tag = end_text};
 
 /* --- the array ---------------------------------------------------------------------------- */
@@ -245,7 +245,7 @@ static void set_frame(const cwi_vti *v, cw_volume *shape)
 
 cw_status cwi_vti_parse(const cwi_input *in, cwi_source *src, cw_error *err)
 {
-    parsing p = {.vti = {.choice = {.wanted = in->array, .list = in->arrays}}};
+    parsing p = {.vti = {.choice = {.expected = in->array, .list = in->arrays}}};
     cwi_vti *v = &p.vti;
     src->size_field = "Extent";
     src->frame_field = "Direction, Spacing, Origin";

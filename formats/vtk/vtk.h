@@ -14,7 +14,7 @@ typedef enum cwi_vtk_rank {
     CWI_VTK_SEVERAL,
     CWI_VTK_ONE,
     CWI_VTK_SCALARS,
-    CWI_VTK_ASKED_FOR
+    CWI_VTK_REQUESTED
 } cwi_vtk_rank;
 
 typedef struct cwi_legacy_array {
@@ -52,7 +52,7 @@ typedef struct cwi_vtk {
     int version; /* the major version */
     char line[CWI_VTK_LINE_BYTES];
 
-    const char *wanted;             /* the name of the requested array; NULL: none */
+    const char *expected;           /* the name of the requested array; NULL: none */
     cwi_legacy_array points, cells; /* the best of each so far */
     cwi_legacy_array *best;         /* the best for the current kind of data; NULL: neither */
     size_t count;                   /* ... and the number of them */

@@ -173,8 +173,8 @@ static cwi_vtk_rank rank_of(const cwi_vtk *v, const cwi_legacy_array *said,
 {
     if (type->type < 0 || said->components < 1 || said->components > 16)
         return CWI_VTK_NONE;
-    if (v->wanted)
-        return strcmp(said->name, v->wanted) == 0 ? CWI_VTK_ASKED_FOR : CWI_VTK_NONE;
+    if (v->expected)
+        return strcmp(said->name, v->expected) == 0 ? CWI_VTK_REQUESTED : CWI_VTK_NONE;
     if (strcmp(said->name, "vtkGhostType") == 0)
         return CWI_VTK_NONE;
     return said->rank == CWI_VTK_SCALARS || said->components == 1 ? said->rank

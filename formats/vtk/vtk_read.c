@@ -178,24 +178,24 @@ static cw_status read_grid_field(cwi_vtk *v, int field, grid *g, cw_error *err)
 static cw_status check_count(const cwi_vtk *v, const char *field, const grid *g, cw_error *err)
 {
     const size_t cells = v->best == &v->cells;
-    size_t wanted = 1;
+    size_t expected = 1;
     if (g->kind == UNSTRUCTURED) {
-        wanted = cells ? v->grid.count : v->grid.points.count;
-        return v->count == wanted
+        expected = cells ? v->grid.count : v->grid.points.count;
+        return v->count == expected
                    ? CW_OK
                    : cwi_fail(err, CW_ERR_FORMAT, "'%s' is %zu; '%s' asks for %zu", field,
-                              v->count, cells ? "CELLS" : "POINTS", wanted);
+                              v->count, cells ? "CELLS" : "POINTS", expected);
     }
     if (!g->seen[G_DIMENSIONS])
         return cwi_fail(err, CW_ERR_FORMAT, "'DIMENSIONS' is missing in front of %s", field);
     for (int a = 0; a < 3; a++)
-        if (!cwi_size_mul(wanted, g->dim[a] > 1 ? g->dim[a] - cells : 1, &wanted))
+        if (!cwi_size_mul(expected, g->dim[a] > 1 ? g->dim[a] - cells : 1, &expected))
             return cwi_fail(err, CW_ERR_LIMIT,
                             "'DIMENSIONS' asks for more voxels than an address space holds");
-    if (v->count == wanted)
+    if (v->count == expected)
         return CW_OK;
     return cwi_fail(err, CW_ERR_FORMAT, "'%s' is %zu; 'DIMENSIONS' asks for %zu", field,
-                    v->count, wanted);
+                    v->count, expected);
 }
 
 /* Reads "POINT_DATA n" or "CELL_DATA n": the places of the arrays that follow. */
@@ -258,9 +258,9 @@ static cw_status check_found(const cwi_vtk *v, cw_error *err)
         return CW_OK;
     if (!v->best)
         return cwi_fail(err, CW_ERR_FORMAT, "'POINT_DATA' is missing, and 'CELL_DATA' too");
-    if (v->wanted)
+    if (v->expected)
         return cwi_fail(err, CW_ERR_ARGUMENT, "there is no array '%.100s' that is read%s%s",
-                        v->wanted, *v->others ? "; there are " : "", v->others);
+                        v->expected, *v->others ? "; there are " : "", v->others);
     return cwi_fail(err, CW_ERR_FORMAT,
                     "'POINT_DATA' and 'CELL_DATA' hold no array that is read%s%s",
                     *v->others ? "; there are " : "", v->others);
@@ -372,7 +372,7 @@ static cw_status read_start(cwi_vtk *v, grid *g, cw_error *err)
 cw_status cwi_vtk_read_grid(const cwi_input *in, const cw_read_desc *desc, bool *is_grid,
                             cw_volume *volume, cw_error *err)
 {
-    cwi_vtk v = {.in = in, .wanted = in->array, .to_end = true};
+    cwi_vtk v = {.in = in, .expected = in->array, .to_end = true};
     grid g = {0};
     cwi_grid_piece piece;
     cw_status st = read_start(&v, &g, err);
@@ -404,7 +404,7 @@ cw_status cwi_vtk_read_grid(const cwi_input *in, const cw_read_desc *desc, bool 
 
 cw_status cwi_vtk_parse(const cwi_input *in, cwi_source *src, cw_error *err)
 {
-    cwi_vtk v = {.in = in, .wanted = in->array};
+    cwi_vtk v = {.in = in, .expected = in->array};
     grid g = {.spacing = {1, 1, 1}};
     src->size_field = "DIMENSIONS";
     src->frame_field = "SPACING, ORIGIN";

@@ -109,14 +109,14 @@ static cw_status keep_structure(vtp *v, cwi_xml *x, cwi_attributes a, role first
     cwi_vtk_array array;
     cw_status st = cwi_vtk_xml_array(&array, a, err);
     const bool is_end = first != POINTS && strcmp(array.name, "offsets") == 0;
-    const size_t wanted = first == POINTS ? 3 : 1;
+    const size_t expected = first == POINTS ? 3 : 1;
     if (st != CW_OK || (first != POINTS && !is_end && strcmp(array.name, "connectivity") != 0))
         return st;
-    if (!array.is_known || array.components != wanted ||
+    if (!array.is_known || array.components != expected ||
         (first != POINTS && (array.type == CW_F32 || array.type == CW_F64)))
         return cwi_fail(err, CW_ERR_FORMAT,
                         "the array '%s' has %zu numbers of type '%s'; %zu %s expected",
-                        array.name, array.components, array.type_name, wanted,
+                        array.name, array.components, array.type_name, expected,
                         first == POINTS ? "were" : "whole one was");
     return keep_array(v, x, is_end ? ends : first, &array, false);
 }
@@ -159,8 +159,8 @@ static cw_status start_point_array(void *user, cwi_xml *x, cwi_attributes a, cw_
     if (st != CW_OK)
         return st;
     const role r = role_of(&array);
-    const char *wanted = r == NORMALS ? v->normals : v->scalars;
-    const bool named = *wanted && strcmp(array.name, wanted) == 0;
+    const char *expected = r == NORMALS ? v->normals : v->scalars;
+    const bool named = *expected && strcmp(array.name, expected) == 0;
     if (r == ROLE_COUNT || (r == NORMALS && !named && strcmp(array.name, "Normals") != 0))
         return CW_OK;
     return keep_array(v, x, r, &array, named);
@@ -225,7 +225,7 @@ static const cwi_xml_element elements[ELEMENT_COUNT] = {
 
 static const cwi_xml_rules rules = {.elements = elements,
                                     .element_count = ELEMENT_COUNT,
-                                    .most_elements = MAX_ELEMENTS,
+                                    .max_elements = MAX_ELEMENTS,
                                     .tag = end_text,
                                     .comment = take_comment};
 
@@ -282,13 +282,13 @@ static float to_single(double number)
 static cw_status read_attribute(vtp *v, role r, void *array, size_t size, cw_error *err)
 {
     cwi_tuples n;
-    size_t room = 0;
+    size_t capacity = 0;
     void *to;
     if (!v->has[r] || v->points == 0)
         return CW_OK;
     cw_status st = load_tuples(v, r, "NumberOfPoints", (uint64_t)v->points, &n, err);
     if (st == CW_OK)
-        st = cwi_mesh_grow(v->in, array, &room, n.count, size, err);
+        st = cwi_mesh_grow(v->in, array, &capacity, n.count, size, err);
     memcpy(&to, array, sizeof to);
     const size_t given = v->arrays[r].components;
     for (size_t i = 0; i < n.count && st == CW_OK; i++)

@@ -26,7 +26,7 @@ typedef struct parsing {
     cwi_vti_choice choice;
     cwi_grid_piece *grid;
     piece *pieces; /* count of them */
-    size_t count, room;
+    size_t count, capacity;
     cwi_vtk_array *open; /* the next tag ends its text; NULL: no wanted array */
     bool of_cells;
 } parsing;
@@ -77,16 +77,16 @@ static cw_status start_grid(void *user, cwi_xml *x, cwi_attributes a, cw_error *
 
 static cw_status grow_pieces(parsing *p, cw_error *err)
 {
-    const size_t room = p->room ? 2 * p->room : 1;
-    if (p->count < p->room)
+    const size_t capacity = p->capacity ? 2 * p->capacity : 1;
+    if (p->count < p->capacity)
         return CW_OK;
-    piece *pieces = cwi_realloc_array(p->pieces, room, sizeof *pieces);
+    piece *pieces = cwi_realloc_array(p->pieces, capacity, sizeof *pieces);
     p->pieces = pieces ? pieces : p->pieces;
-    cwi_grid_piece *grid = cwi_realloc_array(p->grid, room, sizeof *grid);
+    cwi_grid_piece *grid = cwi_realloc_array(p->grid, capacity, sizeof *grid);
     p->grid = grid ? grid : p->grid;
     if (!pieces || !grid)
         return cwi_fail_memory(err);
-    p->room = room;
+    p->capacity = capacity;
     return CW_OK;
 }
 
@@ -279,7 +279,7 @@ static const cwi_xml_element elements[ELEMENT_COUNT] = {
 
 static const cwi_xml_rules rules = {.elements = elements,
                                     .element_count = ELEMENT_COUNT,
-                                    .most_elements = MAX_ELEMENTS,
+                                    .max_elements = MAX_ELEMENTS,
                                     .tag = end_text};
 
 /* --- to a grid --------------------------------------------------------------------------- */
@@ -364,7 +364,7 @@ static cw_status read_grid(parsing *p, const cw_read_desc *desc, cw_volume *volu
 cw_status cwi_vtu_read(const cwi_input *in, const cw_read_desc *desc, bool *is_grid,
                        cw_volume *volume, cw_error *err)
 {
-    parsing p = {.in = in, .choice = {.wanted = in->array, .list = in->arrays}};
+    parsing p = {.in = in, .choice = {.expected = in->array, .list = in->arrays}};
     *is_grid = true;
     cw_status st = cwi_xml_read_file(&rules, &p, in, err);
     if (st == CW_OK)

@@ -13,12 +13,12 @@
 static void print_key(const cwi_zarr_array *a, const size_t at[CWI_ZARR_RANK],
                       char key[CWI_ZARR_KEY_BYTES])
 {
-    const size_t room = CWI_ZARR_KEY_BYTES;
-    size_t used = (size_t)snprintf(key, room, "%s%s%s", a->path, *a->path ? "/" : "",
+    const size_t capacity = CWI_ZARR_KEY_BYTES;
+    size_t used = (size_t)snprintf(key, capacity, "%s%s%s", a->path, *a->path ? "/" : "",
                                    a->has_prefix ? "c" : "");
-    for (size_t d = 0; d < a->rank && used < room; d++) {
+    for (size_t d = 0; d < a->rank && used < capacity; d++) {
         const bool separates = d > 0 || a->has_prefix;
-        used += (size_t)snprintf(key + used, room - used, "%.*s%zu", separates ? 1 : 0,
+        used += (size_t)snprintf(key + used, capacity - used, "%.*s%zu", separates ? 1 : 0,
                                  &a->separator, at[d]);
     }
 }

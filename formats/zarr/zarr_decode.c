@@ -76,10 +76,11 @@ cw_status cwi_zarr_packed_check(const cwi_zarr_chain *chain, uint64_t packed, si
         return cwi_fail(err, CW_ERR_FORMAT,
                         "a chunk has %llu bytes; its %zu bytes of numbers take %zu at most",
                         (unsigned long long)packed, size, max);
-    uint64_t most = packed;
-    for (size_t n = chain->count; n > 0 && most < size; n--)
-        most = most > UINT64_MAX / 65536 ? most : most * find_ratio(chain->codecs[n - 1]);
-    if (most < size)
+    uint64_t max_size = packed;
+    for (size_t n = chain->count; n > 0 && max_size < size; n--)
+        max_size = max_size > UINT64_MAX / 65536 ? max_size
+                                                 : max_size * find_ratio(chain->codecs[n - 1]);
+    if (max_size < size)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "a chunk has %llu bytes, too few for its %zu bytes of numbers",
                         (unsigned long long)packed, size);

@@ -86,7 +86,7 @@ bool cwi_zarr_is_absent(const json_t *object, const char *key)
 }
 
 cw_status cwi_zarr_fail(cw_error *err, const json_t *object, const char *key,
-                        const char *wanted)
+                        const char *expected)
 {
     const json_t *item = json_object_get(object, key);
     char text[64] = "missing";
@@ -95,7 +95,7 @@ cw_status cwi_zarr_fail(cw_error *err, const json_t *object, const char *key,
             json_dumpb(item, text, sizeof text - 1, JSON_ENCODE_ANY | JSON_COMPACT);
         text[size < sizeof text ? size : sizeof text - 1] = '\0';
     }
-    return cwi_fail(err, CW_ERR_FORMAT, "'%s' is %s; %s was expected", key, text, wanted);
+    return cwi_fail(err, CW_ERR_FORMAT, "'%s' is %s; %s was expected", key, text, expected);
 }
 
 cw_status cwi_zarr_numbers(const json_t *object, const char *key, size_t count, double *out,

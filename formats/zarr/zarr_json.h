@@ -34,6 +34,6 @@ CW_NODISCARD cw_status cwi_zarr_sizes(const json_t *object, const char *key, siz
 
 /* Prints "'key' is VALUE; WANTED was expected". */
 cw_status cwi_zarr_fail(cw_error *err, const json_t *object, const char *key,
-                        const char *wanted);
+                        const char *expected);
 
 #endif

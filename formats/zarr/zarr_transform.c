@@ -7,13 +7,13 @@
 
 enum { MAX_NESTING = 8, MAX_STEPS = 64 };
 
-typedef double square[CWI_ZARR_RANK][CWI_ZARR_RANK + 1];
+typedef double square_matrix[CWI_ZARR_RANK][CWI_ZARR_RANK + 1];
 
 /* Replaces the matrix of a frame by that of the frame, then `next`. */
-static void append_matrix(cwi_zarr_frame *frame, square next)
+static void append_matrix(cwi_zarr_frame *frame, square_matrix next)
 {
     const size_t rank = frame->rank;
-    square result;
+    square_matrix result;
     for (size_t r = 0; r < rank; r++)
         for (size_t c = 0; c <= rank; c++) {
             result[r][c] = c == rank ? next[r][rank] : 0;
@@ -25,7 +25,7 @@ static void append_matrix(cwi_zarr_frame *frame, square next)
 
 /* Reads a matrix of `columns` columns: rows as lists. */
 static cw_status read_rows(const json_t *step, const char *key, size_t rank, size_t columns,
-                           square out, cw_error *err)
+                           square_matrix out, cw_error *err)
 {
     const json_t *rows = json_object_get(step, key);
     if (json_array_size(rows) != rank)
@@ -44,11 +44,11 @@ static cw_status read_rows(const json_t *step, const char *key, size_t rank, siz
 }
 
 /* Reads a permutation of axes: for each axis of the output its axis of the input. */
-static cw_status read_mapping(const json_t *step, size_t rank, square out, cw_error *err)
+static cw_status read_mapping(const json_t *step, size_t rank, square_matrix out, cw_error *err)
 {
     double numbers[CWI_ZARR_RANK];
     cw_status st = cwi_zarr_numbers(step, "mapAxis", rank, numbers, err);
-    memset(out, 0, sizeof(square));
+    memset(out, 0, sizeof(square_matrix));
     for (size_t r = 0; st == CW_OK && r < rank; r++) {
         if (!(numbers[r] >= 0 && numbers[r] < (double)rank))
             return cwi_zarr_fail(err, step, "mapAxis", "a list of axes");
@@ -65,7 +65,7 @@ static cw_status apply_step(const json_t *step, cwi_zarr_frame *frame, int depth
     const size_t rank = frame->rank;
     const char *type = cwi_zarr_text(step, "type");
     double numbers[CWI_ZARR_RANK];
-    square next = {{0}};
+    square_matrix next = {{0}};
     cw_status st = CW_OK;
     for (size_t r = 0; r < rank; r++)
         next[r][r] = 1;

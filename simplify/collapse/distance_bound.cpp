@@ -25,7 +25,7 @@ float segment_square(const Vec &from, const Vec &along)
     return (from - share_near(from, along) * along).sqrnorm();
 }
 
-float triangle_square(const Vec &p, const Vec &a, const Vec &b, const Vec &c)
+float triangle_distance_sq(const Vec &p, const Vec &a, const Vec &b, const Vec &c)
 {
     const Vec ab = b - a, ac = c - a, ap = p - a, n = ab % ac;
     const float area = n.sqrnorm(), in_c = (ab % ap) | n, in_b = (ap % ac) | n;
@@ -54,7 +54,7 @@ double find_passed(void *context, const double p[3], const float *facet[3])
 
 } // namespace
 
-// Makes room for at most `most` numbers, of which half stays empty.
+// Makes room for at most `max` numbers, of which half stays empty.
 void Numbers::clear(size_t max_count)
 {
     size_t size = 64;
@@ -146,7 +146,7 @@ bool Bound::is_near(const Vec &position, float distance_sq)
     nearest_sq = INFINITY;
     for (uint32_t i = original->fans.first[start]; i < original->fans.first[start + 1]; i++) {
         const uint32_t t = original->fans.around[i], *c = corners(t);
-        const float s = triangle_square(position, point(c[0]), point(c[1]), point(c[2]));
+        const float s = triangle_distance_sq(position, point(c[0]), point(c[1]), point(c[2]));
         nearest = s < nearest_sq ? t : nearest;
         nearest_sq = std::min(nearest_sq, s);
     }

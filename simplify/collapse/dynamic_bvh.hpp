@@ -30,7 +30,7 @@ struct Box {
 class Nearby
 {
 public:
-    // Of some triangles; their numbers are below `most`.
+    // Of some triangles; their numbers are below `max`.
     Nearby(const std::vector<uint32_t> &triangles, const std::vector<Box> &boxes,
            size_t capacity)
         : slots(capacity)

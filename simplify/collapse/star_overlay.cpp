@@ -26,7 +26,7 @@ float turn(const Vec &a, const Vec &b)
 }
 
 // The square of the distance between two edges.
-float edges_square(const Vec &p, const Vec &q, const Vec &a, const Vec &b)
+float edges_distance_sq(const Vec &p, const Vec &q, const Vec &a, const Vec &b)
 {
     const Vec u = q - p, v = b - a, w = p - a;
     const float uu = u | u, uv = u | v, vv = v | v, uw = u | w, vw = v | w,
@@ -177,7 +177,7 @@ bool Overlay::is_crossing_near(const Corner &p, const Corner &q, const Vec &a, c
     if (crosses)
         *crosses = true;
     return (c - fraction * along).sqrnorm() <= distance_sq ||
-           edges_square(p.at, q.at, a, b) <= distance_sq;
+           edges_distance_sq(p.at, q.at, a, b) <= distance_sq;
 }
 
 // Those around a corner.

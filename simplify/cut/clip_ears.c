@@ -58,8 +58,8 @@ static bool make_grid(ear_work *w, uint32_t start)
         n = s->nodes[n].next;
     } while (n != start);
     const double width = high[0] - w->low[0], height = high[1] - w->low[1],
-                 wanted = (double)(count ? count : 1);
-    w->cell = fmax(sqrt(width * height / wanted), fmax(width, height) / wanted);
+                 target = (double)(count ? count : 1);
+    w->cell = fmax(sqrt(width * height / target), fmax(width, height) / target);
     if (!(w->cell > 0))
         w->cell = 1;
     w->dim[0] = (size_t)(width / w->cell) + 1;

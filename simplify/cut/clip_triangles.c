@@ -55,16 +55,16 @@ void *cwi_cut_reserve(void *array, size_t count, size_t *capacity, size_t size)
 bool cwi_cut_add_triangle(cwi_cut *c, uint32_t a, uint32_t b, uint32_t d)
 {
     const uint32_t corners[3] = {a, b, d};
-    void *room =
+    void *grown =
         cwi_cut_reserve(c->triangles, c->triangle_count, &c->triangle_capacity, sizeof corners);
-    if (!room)
+    if (!grown)
         return false;
-    c->triangles = room;
-    room =
+    c->triangles = grown;
+    grown =
         cwi_cut_reserve(c->parents, c->triangle_count, &c->parent_capacity, sizeof *c->parents);
-    if (!room)
+    if (!grown)
         return false;
-    c->parents = room;
+    c->parents = grown;
     c->parents[c->triangle_count] = c->parent;
     memcpy(c->triangles + 3 * c->triangle_count++, corners, sizeof corners);
     return true;
@@ -72,11 +72,11 @@ bool cwi_cut_add_triangle(cwi_cut *c, uint32_t a, uint32_t b, uint32_t d)
 
 static bool add_source(cwi_cut *c, uint32_t a, uint32_t b, double t)
 {
-    void *room =
+    void *grown =
         cwi_cut_reserve(c->sources, c->vertex_count, &c->vertex_capacity, sizeof *c->sources);
-    if (!room)
+    if (!grown)
         return false;
-    c->sources = room;
+    c->sources = grown;
     c->sources[c->vertex_count++] = (cwi_cut_source){a, b, t};
     return true;
 }
@@ -85,10 +85,10 @@ static bool add_edge(cwi_cut *c, uint32_t start, uint32_t end)
 {
     if (start == end) /* of a triangle that names a vertex twice */
         return true;
-    void *room = cwi_cut_reserve(c->edges, c->edge_count, &c->edge_capacity, sizeof *c->edges);
-    if (!room)
+    void *grown = cwi_cut_reserve(c->edges, c->edge_count, &c->edge_capacity, sizeof *c->edges);
+    if (!grown)
         return false;
-    c->edges = room;
+    c->edges = grown;
     c->edges[c->edge_count++] = (cwi_cut_edge){start, end};
     return true;
 }
@@ -126,11 +126,11 @@ static bool gather_corner_edges(clip_work *w)
             const uint32_t v = corners[n / 2], end = corners[(n / 2 + 1 + n % 2) % 3];
             if (c->side[v] != CWI_CUT_ON)
                 continue;
-            void *room = cwi_cut_reserve(w->corner_edges, w->corner_count, &w->corner_capacity,
-                                         sizeof *w->corner_edges);
-            if (!room)
+            void *grown = cwi_cut_reserve(w->corner_edges, w->corner_count, &w->corner_capacity,
+                                          sizeof *w->corner_edges);
+            if (!grown)
                 return false;
-            w->corner_edges = room;
+            w->corner_edges = grown;
             w->corner_edges[w->corner_count++] =
                 (corner_edge){(uint64_t)v << 32 | end, c->side[end] == CWI_CUT_ABOVE,
                               c->side[end] == CWI_CUT_ON};
@@ -189,11 +189,11 @@ static bool gather_crossings(clip_work *w)
             w->numbers[v] = 0;
             if (c->side[v] * c->side[next] >= 0)
                 continue;
-            void *room = cwi_cut_reserve(w->crossings, w->crossing_count, &w->crossing_capacity,
-                                         sizeof *w->crossings);
-            if (!room)
+            void *grown = cwi_cut_reserve(w->crossings, w->crossing_count,
+                                          &w->crossing_capacity, sizeof *w->crossings);
+            if (!grown)
                 return false;
-            w->crossings = room;
+            w->crossings = grown;
             w->crossings[w->crossing_count++] = cwi_edge_key(v, next);
         }
     }
@@ -296,11 +296,11 @@ static bool add_flat_edges(clip_work *w, const uint32_t *corners, const uint32_t
         const int next = (k + 1) % 3;
         if (c->side[corners[k]] != CWI_CUT_ON || c->side[corners[next]] != CWI_CUT_ON)
             continue;
-        void *room = cwi_cut_reserve(w->flat_edges, w->flat_count, &w->flat_capacity,
-                                     sizeof *w->flat_edges);
-        if (!room)
+        void *grown = cwi_cut_reserve(w->flat_edges, w->flat_count, &w->flat_capacity,
+                                      sizeof *w->flat_edges);
+        if (!grown)
             return false;
-        w->flat_edges = room;
+        w->flat_edges = grown;
         w->flat_edges[w->flat_count++] = (flat_edge){
             cwi_edge_key(corners[k], corners[next]), {numbers[k], numbers[next]}, is_kept_one};
     }

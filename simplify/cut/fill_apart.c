@@ -50,14 +50,14 @@ static double measure_height(const cwi_cut *c, uint32_t v)
  * section gets flatter than rounding alone leaves it. */
 static void move_vertex(apart_work *w, uint32_t v, double steps)
 {
-    double best[2] = {0, 0}, least = INFINITY;
+    double best[2] = {0, 0}, smallest = INFINITY;
     for (uint32_t k = 0; k < PLACES; k++) {
         const double shift[2] = {steps * hash_to_offset(v, w->round, 2 * k),
                                  steps * hash_to_offset(v, w->round, 2 * k + 1)};
         cwi_cut_place_apart(w->cut, v, shift, 0);
         const double height = measure_height(w->cut, v);
-        if (height < least) {
-            least = height;
+        if (height < smallest) {
+            smallest = height;
             memcpy(best, shift, sizeof best);
         }
     }

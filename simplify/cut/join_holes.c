@@ -52,11 +52,11 @@ static bool add_edge_to_rows(section_rows *r, uint32_t node)
     const double a = coordinate_v(s, node), b = coordinate_v(s, s->nodes[node].next);
     const size_t last = find_row(r, fmax(a, b));
     for (size_t row = find_row(r, fmin(a, b)); row <= last; row++) {
-        void *room =
+        void *grown =
             cwi_cut_reserve(r->entries, r->entry_count, &r->entry_capacity, sizeof *r->entries);
-        if (!room)
+        if (!grown)
             return false;
-        r->entries = room;
+        r->entries = grown;
         r->entries[r->entry_count] = (row_entry){node, r->first[row]};
         r->first[row] = (uint32_t)r->entry_count++;
     }
@@ -73,8 +73,8 @@ static bool make_rows(section_rows *r)
         high = fmax(high, v);
         length += fabs(coordinate_v(s, s->nodes[n].next) - v);
     }
-    const double most = MAX_MEAN_SPAN * (double)s->node_count * (high - low) / length;
-    const double rows = fmin(2 * sqrt((double)s->node_count), most);
+    const double max = MAX_MEAN_SPAN * (double)s->node_count * (high - low) / length;
+    const double rows = fmin(2 * sqrt((double)s->node_count), max);
     r->count = rows > 1 ? (size_t)rows : 1;
     r->low = low;
     r->height = high > low ? (high - low) / (double)r->count : 1;

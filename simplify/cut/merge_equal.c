@@ -62,11 +62,11 @@ static bool gather_items(merge_work *w)
     for (size_t n = 0; n < 3 * c->triangle_count; n++) {
         if (!w->is_near[c->triangles[n]])
             continue;
-        void *room =
+        void *grown =
             cwi_cut_reserve(w->items, w->item_count, &w->item_capacity, sizeof *w->items);
-        if (!room)
+        if (!grown)
             return false;
-        w->items = room;
+        w->items = grown;
         w->items[w->item_count++] = (vertex_triangle){c->triangles[n], (uint32_t)(n / 3)};
     }
     if (w->item_count)

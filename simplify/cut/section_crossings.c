@@ -276,10 +276,10 @@ static bool gather_triangles(crossing_search *s)
     for (uint32_t t = 0; t < c->triangle_count; t++) {
         if (!has_section_corner(s, t))
             continue;
-        void *room = cwi_cut_reserve(s->items, s->item_count, &capacity, sizeof *s->items);
-        if (!room)
+        void *grown = cwi_cut_reserve(s->items, s->item_count, &capacity, sizeof *s->items);
+        if (!grown)
             return false;
-        s->items = room;
+        s->items = grown;
         s->items[s->item_count++] = t;
         for (int k = 0; k < 3; k++)
             s->highest = fmax(s->highest, measure_height(c, find_corners(s, t)[k]));

@@ -43,13 +43,13 @@ static inline void cwi_edge_queue_sink(cwi_edge_queue *q, uint64_t entry)
 {
     size_t at = 0;
     for (size_t child = 1; child < q->count; child = 4 * at + 1) {
-        size_t least = child;
+        size_t smallest = child;
         for (size_t n = child + 1; n < child + 4 && n < q->count; n++)
-            least = q->entries[n] < q->entries[least] ? n : least;
-        if (entry <= q->entries[least])
+            smallest = q->entries[n] < q->entries[smallest] ? n : smallest;
+        if (entry <= q->entries[smallest])
             break;
-        q->entries[at] = q->entries[least];
-        at = least;
+        q->entries[at] = q->entries[smallest];
+        at = smallest;
     }
     q->entries[at] = entry;
 }

@@ -104,7 +104,7 @@ static double find_error(const cwi_label_quadric *q, const double p[3])
 
 /* Moves a place to where the quadric and the pull towards the place are least together. Solves
  * by L D L^T. */
-static void find_least(const cwi_label_quadric *q, double place[3])
+static void find_minimum(const cwi_label_quadric *q, double place[3])
 {
     const double pull = PULL * (q->a[0] + q->a[3] + q->a[5]) + 1e-300;
     double slope[3];
@@ -123,8 +123,8 @@ static void find_least(const cwi_label_quadric *q, double place[3])
 }
 
 /* Finds the best place on the edge from p along d. */
-static void find_least_along(const cwi_label_quadric *q, const double p[3], const double d[3],
-                             double place[3])
+static void find_minimum_along(const cwi_label_quadric *q, const double p[3], const double d[3],
+                               double place[3])
 {
     double ap[3], ad[3];
     multiply_matrix(q->a, p, ap);
@@ -137,13 +137,13 @@ static void find_least_along(const cwi_label_quadric *q, const double p[3], cons
 }
 
 /* Finds the best place for two inner vertices. A place far from both is not used. */
-static void find_least_between(const cwi_label_quadric *q, const double p[3], const double d[3],
-                               double place[3])
+static void find_minimum_between(const cwi_label_quadric *q, const double p[3],
+                                 const double d[3], double place[3])
 {
     double middle[3], displacement[3];
     for (int k = 0; k < 3; k++)
         place[k] = middle[k] = p[k] + d[k] / 2;
-    find_least(q, place);
+    find_minimum(q, place);
     cwi_sub(place, middle, displacement);
     if (!(cwi_dot(displacement, displacement) <= 4 * cwi_dot(d, d)))
         memcpy(place, middle, sizeof middle);
@@ -168,9 +168,9 @@ cwi_label_move cwi_label_move_plan(const cwi_complex *c, const cwi_label_quadric
     cwi_sub(other, p, d);
     memcpy(place, p, sizeof p);
     if (c->orders[move.keep] == CWI_ORDER_INNER)
-        find_least_between(&q, p, d, place);
+        find_minimum_between(&q, p, d, place);
     else if (c->orders[move.keep] == c->orders[move.drop])
-        find_least_along(&q, p, d, place);
+        find_minimum_along(&q, p, d, place);
     for (int k = 0; k < 3; k++) {
         move.place[k] = (float)place[k];
         place[k] = (double)move.place[k];

@@ -61,8 +61,8 @@ static double measure_spoke(const cwi_complex *c, const cwi_star *star, size_t n
                             const double p[3])
 {
     const cwi_star_spoke *spoke = &star->spokes[n];
-    return cwi_facet_square(star->move.place, c->points + 3 * (size_t)spoke->a,
-                            c->points + 3 * (size_t)spoke->b, p);
+    return cwi_facet_distance_sq(star->move.place, c->points + 3 * (size_t)spoke->a,
+                                 c->points + 3 * (size_t)spoke->b, p);
 }
 
 /* Finds the spoke nearest to a sample. One that it had before stays if it is near enough. */
@@ -119,7 +119,7 @@ static double measure_input(const cwi_label_samples *s, uint32_t triangle, const
 {
     const float *facet[3];
     find_input_facet(s, triangle, facet);
-    return cwi_facet_square(facet[0], facet[1], facet[2], p);
+    return cwi_facet_distance_sq(facet[0], facet[1], facet[2], p);
 }
 
 /* Goes to a triangle if it is nearer than the least distance so far. */
@@ -310,7 +310,7 @@ static double list_nearest(void *context, const double p[3], const float *facet[
         if (f->patch != list->patch || measure_box(f, p) >= min_sq)
             continue;
         const double distance_sq =
-            cwi_facet_square(f->corners[0], f->corners[1], f->corners[2], p);
+            cwi_facet_distance_sq(f->corners[0], f->corners[1], f->corners[2], p);
         if (distance_sq < min_sq) {
             min_sq = distance_sq;
             memcpy(facet, f->corners, sizeof f->corners);

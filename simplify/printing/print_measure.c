@@ -137,10 +137,11 @@ static size_t find_outline(const plan_point *points, size_t count, plan_point *h
 {
     size_t corners = 0;
     for (int side = 0; side < 2; side++) {
-        const size_t least = corners + 1;
+        const size_t min_mm = corners + 1;
         for (size_t n = 0; n < count; n++) {
             const plan_point *p = points + (side ? count - 1 - n : n);
-            while (corners > least && turn_left(hull + corners - 2, hull + corners - 1, p) <= 0)
+            while (corners > min_mm &&
+                   turn_left(hull + corners - 2, hull + corners - 1, p) <= 0)
                 corners--;
             hull[corners++] = *p;
         }
@@ -204,13 +205,13 @@ static bool fits_plate(const double size[3], const double plate[3])
 /* --- walls, islands, cavities ------------------------------------------------------------- */
 
 /* Hands the least of the triangles around to their vertices; all that were welded get the same. */
-static void spread_to_vertices(const cw_mesh *mesh, const uint32_t *map, const float *least,
+static void spread_to_vertices(const cw_mesh *mesh, const uint32_t *map, const float *min_mm,
                                float *out)
 {
     for (size_t v = 0; v < mesh->vertex_count; v++)
         out[v] = INFINITY;
     for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
-        out[mesh->triangles[c]] = fminf(out[mesh->triangles[c]], least[c / 3]);
+        out[mesh->triangles[c]] = fminf(out[mesh->triangles[c]], min_mm[c / 3]);
     for (size_t v = 0; v < mesh->vertex_count; v++)
         out[v] = out[map[v]];
 }
@@ -226,9 +227,9 @@ static cw_status measure_walls(const cw_mesh *mesh, const uint32_t *map,
     if (st == CW_OK)
         st = cwi_measure_walls(mesh, limits, wall, gap, &walls, &gaps, err);
     if (st == CW_OK) {
-        facts->wall_mm = walls.least;
+        facts->wall_mm = walls.min_mm;
         facts->thin_mm2 = walls.below;
-        facts->gap_mm = gaps.least;
+        facts->gap_mm = gaps.min_mm;
         facts->narrow_mm2 = gaps.below;
         memcpy(facts->wall_at, walls.at, sizeof facts->wall_at);
         memcpy(facts->gap_at, gaps.at, sizeof facts->gap_at);

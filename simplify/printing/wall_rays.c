@@ -35,7 +35,7 @@ static const double ASTRAY_DEG = 60;
 static const double REACH = 4;
 
 /* Triangles that one thread measures at a time, and most parts along a side of one. */
-enum { PART = 1 << 10, MOST_PARTS = 1000 };
+enum { PART = 1 << 10, MAX_PARTS = 1000 };
 
 typedef struct ray_field {
     const cw_mesh *mesh;
@@ -56,7 +56,7 @@ typedef struct ray {
     const ray_field *field;
     size_t own; /* the triangle that it starts on */
     double from[3], vector[3];
-    double share; /* of the vector, to the first hit so far */
+    double fraction; /* of the vector, to the first hit so far */
     size_t hit;
 } ray;
 
@@ -86,27 +86,28 @@ static bool visit_triangle(void *context, size_t slot)
     const size_t triangle = r->field->tree.order[slot];
     if (triangle == r->own)
         return true;
-    const double share = meet_triangle(r, triangle);
-    if (share > 0 && share < r->share) {
-        r->share = share;
+    const double fraction = meet_triangle(r, triangle);
+    if (fraction > 0 && fraction < r->fraction) {
+        r->fraction = fraction;
         r->hit = triangle;
     }
     return true;
 }
 
-/* Returns the way of a ray to the surface, up to `most`, or INFINITY: where it meets none, or where
+/* Returns the way of a ray to the surface, up to `max_reach`, or INFINITY: where it meets none, or where
  * the surface does not face it. Looks near by first, as long rays meet many boxes.
  * side  1: the ray leaves the solid there; -1: it enters */
 static double cast_ray(const ray_field *f, size_t own, const double from[3],
-                       const double direction[3], double side, double first, double most)
+                       const double direction[3], double side, double first, double max_reach)
 {
     ray r = {.field = f, .own = own, .hit = SIZE_MAX};
     memcpy(r.from, from, sizeof r.from);
-    for (double reach = cwi_lesser(first, most);; reach = cwi_lesser(4 * reach, most)) {
+    for (double reach = cwi_lesser(first, max_reach);;
+         reach = cwi_lesser(4 * reach, max_reach)) {
         for (int a = 0; a < 3; a++)
             r.vector[a] = reach * direction[a];
         const cwi_boxes_segment segment = cwi_boxes_segment_of(r.from, r.vector, f->slack);
-        r.share = 1;
+        r.fraction = 1;
         cwi_boxes_pierce(&f->tree, &segment, visit_triangle, &r);
         if (r.hit != SIZE_MAX) {
             double p[3][3], normal[3];
@@ -114,9 +115,9 @@ static double cast_ray(const ray_field *f, size_t own, const double from[3],
             cwi_triangle_normal(p[0], p[1], p[2], normal);
             const bool faces = cwi_normalise(normal) && side * cwi_dot(normal, direction) >=
                                                             cos(FACING_DEG * CWI_PI / 180);
-            return faces ? r.share * reach : INFINITY;
+            return faces ? r.fraction * reach : INFINITY;
         }
-        if (reach >= most)
+        if (reach >= max_reach)
             return INFINITY;
     }
 }
@@ -135,11 +136,12 @@ static void find_across(const double d[3], double across[2][3])
 
 /* Returns the wall or gap at a point. direction: unit, into it */
 static double measure_point(const ray_field *f, size_t own, const double from[3],
-                            const double direction[3], double side, double limit, double most)
+                            const double direction[3], double side, double limit,
+                            double max_reach)
 {
-    double least = cast_ray(f, own, from, direction, side, REACH * limit, most);
-    if (!(least < REACH * limit))
-        return least;
+    double min_mm = cast_ray(f, own, from, direction, side, REACH * limit, max_reach);
+    if (!(min_mm < REACH * limit))
+        return min_mm;
     double across[2][3];
     const double along = cos(OFF_DEG * CWI_PI / 180), off = sin(OFF_DEG * CWI_PI / 180);
     find_across(direction, across);
@@ -149,9 +151,9 @@ static double measure_point(const ray_field *f, size_t own, const double from[3]
         for (int a = 0; a < 3; a++)
             d[a] = along * direction[a] +
                    off * (cos(turn) * across[0][a] + sin(turn) * across[1][a]);
-        least = cwi_lesser(least, cast_ray(f, own, from, d, side, least, least));
+        min_mm = cwi_lesser(min_mm, cast_ray(f, own, from, d, side, min_mm, min_mm));
     }
-    return least;
+    return min_mm;
 }
 
 /* Finds the normal of a point of a triangle. Returns false where there is none that can be relied on.
@@ -160,7 +162,7 @@ static bool find_normal(const ray_field *f, size_t triangle, const double weight
                         const double flat[3], bool is_thin, double normal[3])
 {
     const double smooth = cos(SMOOTH_DEG * CWI_PI / 180);
-    double corners[3][3], with_flat = 1, among = 1, most = -1;
+    double corners[3][3], with_flat = 1, among = 1, max_cosine = -1;
     memset(normal, 0, 3 * sizeof *normal);
     for (size_t c = 0; c < 3; c++) {
         const float *n = f->normals + 3 * (size_t)f->mesh->triangles[3 * triangle + c];
@@ -169,7 +171,7 @@ static bool find_normal(const ray_field *f, size_t triangle, const double weight
             normal[a] += weights[c] * corners[c][a];
         }
         with_flat = cwi_lesser(with_flat, cwi_dot(corners[c], flat));
-        most = cwi_greater(most, cwi_dot(corners[c], flat));
+        max_cosine = cwi_greater(max_cosine, cwi_dot(corners[c], flat));
     }
     for (int c = 0; c < 3; c++)
         among = cwi_lesser(among, cwi_dot(corners[c], corners[(c + 1) % 3]));
@@ -177,14 +179,14 @@ static bool find_normal(const ray_field *f, size_t triangle, const double weight
     if (is_smooth && cwi_normalise(normal))
         return true;
     memcpy(normal, flat, 3 * sizeof *normal);
-    return most >= cos(ASTRAY_DEG * CWI_PI / 180);
+    return max_cosine >= cos(ASTRAY_DEG * CWI_PI / 180);
 }
 
 static void add_measure(cwi_wall_sum *sum, double measured, double limit, const double at[3],
                         double area)
 {
-    if (measured < sum->least) {
-        sum->least = measured;
+    if (measured < sum->min_mm) {
+        sum->min_mm = measured;
         memcpy(sum->at, at, sizeof sum->at);
     }
     if (measured < limit)
@@ -203,7 +205,7 @@ typedef struct point_grid {
 static size_t count_parts(double length, double step)
 {
     const double parts = ceil(length / step);
-    return parts > MOST_PARTS ? MOST_PARTS : parts > 1 ? (size_t)parts : 1;
+    return parts > MAX_PARTS ? MAX_PARTS : parts > 1 ? (size_t)parts : 1;
 }
 
 static point_grid divide_triangle(const double p[3][3], double twice_area, double step)
@@ -233,7 +235,7 @@ static void measure_triangle(ray_field *f, size_t triangle, cwi_wall_sum *walls,
     cwi_mesh_corners(f->mesh, triangle, p);
     cwi_triangle_normal(p[0], p[1], p[2], flat);
     const double twice = cwi_length(flat);
-    double least[2] = {INFINITY, INFINITY};
+    double min_mm[2] = {INFINITY, INFINITY};
     const cw_print_desc *limits = f->limits;
     if (twice > 0 && cwi_normalise(flat)) {
         const point_grid g = divide_triangle((const double(*)[3])p, twice, f->step);
@@ -257,18 +259,18 @@ static void measure_triangle(ray_field *f, size_t triangle, cwi_wall_sum *walls,
                                              REACH * limits->min_gap_mm);
             add_measure(walls, wall, limits->min_wall_mm, at, area);
             add_measure(gaps, gap, limits->min_gap_mm, at, area);
-            least[0] = cwi_lesser(least[0], wall);
-            least[1] = cwi_lesser(least[1], gap);
+            min_mm[0] = cwi_lesser(min_mm[0], wall);
+            min_mm[1] = cwi_lesser(min_mm[1], gap);
         }
     }
-    f->wall[triangle] = (float)least[0];
-    f->gap[triangle] = (float)least[1];
+    f->wall[triangle] = (float)min_mm[0];
+    f->gap[triangle] = (float)min_mm[1];
 }
 
 static void measure_part(void *context, size_t k)
 {
     ray_field *f = context;
-    f->walls[k] = f->gaps[k] = (cwi_wall_sum){.least = INFINITY};
+    f->walls[k] = f->gaps[k] = (cwi_wall_sum){.min_mm = INFINITY};
     for (size_t t = k * PART; t < (k + 1) * PART && t < f->mesh->triangle_count; t++)
         measure_triangle(f, t, &f->walls[k], &f->gaps[k]);
 }
@@ -302,7 +304,7 @@ static void prepare_points(ray_field *f)
     }
     f->diagonal = cwi_distance(low, high);
     f->step = sqrt(twice / 2 / POINTS);
-    f->slack = f->tree.most * 0x1p-20f;
+    f->slack = f->tree.max * 0x1p-20f;
 }
 
 static cw_status alloc_field(ray_field *f, cw_error *err)
@@ -317,10 +319,10 @@ static cw_status alloc_field(ray_field *f, cw_error *err)
 /* Adds up parts in their order, so that threads do not matter. */
 static void add_parts(const cwi_wall_sum *parts, size_t count, cwi_wall_sum *sum)
 {
-    *sum = (cwi_wall_sum){.least = INFINITY};
+    *sum = (cwi_wall_sum){.min_mm = INFINITY};
     for (size_t k = 0; k < count; k++) {
-        if (parts[k].least < sum->least) {
-            sum->least = parts[k].least;
+        if (parts[k].min_mm < sum->min_mm) {
+            sum->min_mm = parts[k].min_mm;
             memcpy(sum->at, parts[k].at, sizeof sum->at);
         }
         sum->below += parts[k].below;

@@ -7,9 +7,9 @@
 /* The thinnest of all, and the area of the surface at thin ones. Zeroed is not empty: see
  * cwi_measure_walls(). */
 typedef struct cwi_wall_sum {
-    double least; /* mm; INFINITY: none */
-    double at[3]; /* a point of the surface, relative to the mesh's origin */
-    double below; /* mm2: area below the limit */
+    double min_mm; /* mm; INFINITY: none */
+    double at[3];  /* a point of the surface, relative to the mesh's origin */
+    double below;  /* mm2: area below the limit */
 } cwi_wall_sum;
 
 /* Measures at points spread over the surface.

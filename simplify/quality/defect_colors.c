@@ -99,10 +99,10 @@ static void free_copies(copies *c)
 }
 
 /* From grey through yellow to red. */
-static void color_of(double share, uint8_t rgb[3])
+static void color_of(double fraction, uint8_t rgb[3])
 {
     static const double stops[3][3] = {{200, 200, 200}, {255, 220, 60}, {200, 0, 0}};
-    const double at = 2 * fmin(fmax(share, 0), 1);
+    const double at = 2 * fmin(fmax(fraction, 0), 1);
     const int stop = at >= 1;
     for (int a = 0; a < 3; a++)
         rgb[a] = (uint8_t)(stops[stop][a] +

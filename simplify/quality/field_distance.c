@@ -71,14 +71,14 @@ static bool is_crossed(const field *f, const double d[8])
 /* Scales the corners; missing and infinite ones become large finite numbers. */
 static void make_patch(const field *f, double d[8], cwi_patch *patch)
 {
-    double most = 0;
+    double max_distance = 0;
     bool wild = false;
     for (int n = 0; n < 8; n++)
         if (isfinite(d[n]))
-            most = cwi_greater(most, fabs(d[n]));
+            max_distance = cwi_greater(max_distance, fabs(d[n]));
         else
             wild = true;
-    const double scale = (most > 0 ? 1 / most : 1) / (wild ? BEYOND : 1);
+    const double scale = (max_distance > 0 ? 1 / max_distance : 1) / (wild ? BEYOND : 1);
     for (int n = 0; n < 8; n++)
         d[n] = isfinite(d[n]) ? d[n] * scale : isnan(d[n]) ? f->missing : copysign(1, d[n]);
     cwi_patch_init(patch, d);
@@ -124,13 +124,13 @@ static bool find_range(const field *f, const double u[3], double distance, range
 
 static long farthest_shell(const range *r, const long home[3])
 {
-    long most = 0;
+    long max_distance = 0;
     for (int a = 0; a < 3; a++) {
         const long low = home[a] - r->low[a], high = r->high[a] - home[a];
-        most = low > most ? low : most;
-        most = high > most ? high : most;
+        max_distance = low > max_distance ? low : max_distance;
+        max_distance = high > max_distance ? high : max_distance;
     }
-    return most;
+    return max_distance;
 }
 
 /* The cells at index distance n >= 1 from home, inside the range. */

@@ -29,7 +29,7 @@ static void free_voids(voids *v)
     cwi_free(v->goes);
 }
 
-static cw_status make_room(voids *v, cw_error *err)
+static cw_status ensure_capacity(voids *v, cw_error *err)
 {
     const size_t vertices = v->mesh->vertex_count, triangles = v->mesh->triangle_count;
     v->root = cwi_sets_alloc(vertices);
@@ -118,7 +118,7 @@ cw_status cw_mesh_fill_voids(cw_mesh *mesh, int threads, cw_drop_counts *counts,
     *c = (cw_drop_counts){0};
     cw_status st = cw_mesh_check(mesh, err);
     if (st == CW_OK)
-        st = make_room(&v, err);
+        st = ensure_capacity(&v, err);
     if (st == CW_OK)
         st = drop_components(&v, false, threads, c, err);
     if (st == CW_OK && c->dropped)

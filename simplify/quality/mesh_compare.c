@@ -27,10 +27,10 @@ static void add_distance(cw_distance *sum, double area_sum, const cw_distance *d
     const cw_distance was = *sum;
     if (d->max_mm > was.max_mm || was.samples == 0)
         *sum = *d;
-    const double square =
+    const double mean_sq =
         blend_by_area(was.rms_mm * was.rms_mm, area_sum, d->rms_mm * d->rms_mm, area);
     sum->max_mm = fmax(was.max_mm, d->max_mm);
-    sum->rms_mm = sqrt(square);
+    sum->rms_mm = sqrt(mean_sq);
     sum->mean_mm = blend_by_area(was.mean_mm, area_sum, d->mean_mm, area);
     sum->p99_mm = fmax(was.p99_mm, d->p99_mm);
     sum->bound_mm = fmax(was.bound_mm, d->bound_mm);

@@ -43,17 +43,17 @@ typedef struct query {
     size_t slot; /* of the nearest facet found */
 } query;
 
-static double facet_square(const facet *f, const double p[3])
+static double facet_distance_sq(const facet *f, const double p[3])
 {
-    return cwi_facet_square(f->a, f->b, f->c, p);
+    return cwi_facet_distance_sq(f->a, f->b, f->c, p);
 }
 
-static void measure_facet(void *context, size_t slot, double *square)
+static void measure_facet(void *context, size_t slot, double *found_sq)
 {
     query *q = context;
-    const double s = facet_square(q->r->facets + slot, q->point);
-    if (s < *square) {
-        *square = s;
+    const double s = facet_distance_sq(q->r->facets + slot, q->point);
+    if (s < *found_sq) {
+        *found_sq = s;
         q->slot = slot;
     }
 }
@@ -64,10 +64,10 @@ static double seek_nearest(const reference *r, const double p[3], uint32_t *hint
 {
     query q = {.r = r, .slot = *hint == UINT32_MAX ? r->tree.count / 2 : *hint};
     memcpy(q.point, p, sizeof q.point);
-    double square = facet_square(r->facets + q.slot, p);
-    cwi_boxes_nearest(&r->tree, p, measure_facet, &q, &square);
+    double found_sq = facet_distance_sq(r->facets + q.slot, p);
+    cwi_boxes_nearest(&r->tree, p, measure_facet, &q, &found_sq);
     *hint = (uint32_t)q.slot;
-    return square;
+    return found_sq;
 }
 
 /* From the whole reference; *hint as in seek(). */
@@ -96,23 +96,23 @@ typedef struct extreme {
 typedef struct search {
     const reference *r;
     const cw_mesh *mesh;
-    const uint32_t *slots;          /* of the facets nearest to vertices */
-    double floor, tolerance, share; /* known to be met; bound - max, in mm and of max */
-    extreme *extremes;              /* one a chunk */
+    const uint32_t *slots;             /* of the facets nearest to vertices */
+    double floor, tolerance, fraction; /* known to be met; bound - max, in mm and of max */
+    extreme *extremes;                 /* one a chunk */
 } search;
 
 /* Facets that points of a triangle are nearest to, and the corners' squared distances. */
 typedef struct choice {
     int count;
     uint32_t slots[4];
-    double squares[4][3];
+    double distances_sq[4][3];
 } choice;
 
-static double square_from(const search *s, const double p[3], uint32_t slot)
+static double distance_sq_from(const search *s, const double p[3], uint32_t slot)
 {
     double x[3];
     cwi_sub(p, s->r->shift, x);
-    return facet_square(s->r->facets + slot, x);
+    return facet_distance_sq(s->r->facets + slot, x);
 }
 
 static void choose_triangles(const search *s, const corner c[3], uint32_t slot, choice *choices)
@@ -123,7 +123,7 @@ static void choose_triangles(const search *s, const corner c[3], uint32_t slot, 
             return;
     choices->slots[n] = slot;
     for (int k = 0; k < 3; k++)
-        choices->squares[n][k] = square_from(s, c[k].p, slot);
+        choices->distances_sq[n][k] = distance_sq_from(s, c[k].p, slot);
     choices->count++;
 }
 
@@ -134,10 +134,11 @@ static double cut_side(const search *s, const double a[3], const double b[3],
 {
     double low = 0, high = 1, best = INFINITY;
     for (int n = 0; n < 4; n++) {
-        const double share = at_a / (at_a - at_b), t = low + (high - low) * share;
+        const double fraction = at_a / (at_a - at_b), t = low + (high - low) * fraction;
         const double p[3] = {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]),
                              a[2] + t * (b[2] - a[2])};
-        const double first = square_from(s, p, slots[0]), second = square_from(s, p, slots[1]);
+        const double first = distance_sq_from(s, p, slots[0]),
+                     second = distance_sq_from(s, p, slots[1]);
         best = cwi_lesser(best, cwi_greater(first, second));
         if (first < second) {
             low = t;
@@ -158,17 +159,18 @@ static double bound_by_two(const search *s, const corner c[3], const choice *h, 
                            double limit)
 {
     const uint32_t slots[2] = {h->slots[i], h->slots[j]};
-    const double *first = h->squares[i], *second = h->squares[j];
-    double square = 0;
+    const double *first = h->distances_sq[i], *second = h->distances_sq[j];
+    double found_sq = 0;
     for (int k = 0; k < 3; k++)
-        square = cwi_greater(square, cwi_lesser(first[k], second[k]));
-    for (int k = 0; k < 3 && square <= limit * limit; k++) {
+        found_sq = cwi_greater(found_sq, cwi_lesser(first[k], second[k]));
+    for (int k = 0; k < 3 && found_sq <= limit * limit; k++) {
         const int a = first[k] < second[k] ? k : (k + 1) % 3, b = a == k ? (k + 1) % 3 : k;
         if (first[a] < second[a] && first[b] > second[b])
-            square = cwi_greater(square, cut_side(s, c[a].p, c[b].p, slots,
-                                                  first[a] - second[a], first[b] - second[b]));
+            found_sq =
+                cwi_greater(found_sq, cut_side(s, c[a].p, c[b].p, slots, first[a] - second[a],
+                                               first[b] - second[b]));
     }
-    return square <= limit * limit ? sqrt(square) : INFINITY;
+    return found_sq <= limit * limit ? sqrt(found_sq) : INFINITY;
 }
 
 /* The least of the bounds by one or two of the chosen facets; what is below the limit
@@ -177,9 +179,9 @@ static double bound_by(const search *s, const corner c[3], const choice *h, doub
 {
     double bound = INFINITY;
     for (int i = 0; i < h->count; i++)
-        bound =
-            cwi_lesser(bound, sqrt(cwi_greater(cwi_greater(h->squares[i][0], h->squares[i][1]),
-                                               h->squares[i][2])));
+        bound = cwi_lesser(
+            bound, sqrt(cwi_greater(cwi_greater(h->distances_sq[i][0], h->distances_sq[i][1]),
+                                    h->distances_sq[i][2])));
     for (int i = 0; i < h->count; i++)
         for (int j = 0; j < i && bound > limit; j++)
             bound = cwi_lesser(bound, bound_by_two(s, c, h, i, j, limit));
@@ -191,9 +193,9 @@ static double bound_by_way(const corner c[3])
 {
     double bound = INFINITY;
     for (int n = 0; n < 3; n++) {
-        const double way = cwi_greater(cwi_distance(c[n].p, c[(n + 1) % 3].p),
-                                       cwi_distance(c[n].p, c[(n + 2) % 3].p));
-        bound = cwi_lesser(bound, c[n].distance + way);
+        const double side_length = cwi_greater(cwi_distance(c[n].p, c[(n + 1) % 3].p),
+                                               cwi_distance(c[n].p, c[(n + 2) % 3].p));
+        bound = cwi_lesser(bound, c[n].distance + side_length);
     }
     return bound;
 }
@@ -222,7 +224,7 @@ static corner middle_corner(const search *s, const corner *a, const corner *b, s
 
 static double limit_of(const search *s, const extreme *e)
 {
-    return e->max + cwi_greater(s->tolerance, s->share * e->max);
+    return e->max + cwi_greater(s->tolerance, s->fraction * e->max);
 }
 
 /* Bounds the distance without dividing the triangle; looks at its middle if need be. */
@@ -267,18 +269,19 @@ typedef struct covering {
 static double nearest_facet(void *context, const double p[3], const float *corners[3])
 {
     covering *c = context;
-    const double square = seek_nearest(c->r, p, &c->slot);
+    const double found_sq = seek_nearest(c->r, p, &c->slot);
     const facet *f = c->r->facets + c->slot;
     corners[0] = f->a;
     corners[1] = f->b;
     corners[2] = f->c;
-    return square;
+    return found_sq;
 }
 
-static bool is_near_facet(const search *s, const corner c[3], uint32_t slot, double square)
+static bool is_near_facet(const search *s, const corner c[3], uint32_t slot, double found_sq)
 {
-    return square_from(s, c[0].p, slot) <= square && square_from(s, c[1].p, slot) <= square &&
-           square_from(s, c[2].p, slot) <= square;
+    return distance_sq_from(s, c[0].p, slot) <= found_sq &&
+           distance_sq_from(s, c[1].p, slot) <= found_sq &&
+           distance_sq_from(s, c[2].p, slot) <= found_sq;
 }
 
 static bool is_within(const search *s, const corner c[3], double limit)
@@ -306,7 +309,7 @@ static void begin_triangle(const search *s, size_t t, corner c[3])
         const size_t v = s->mesh->triangles[3 * t + n];
         memcpy(c[n].p, p[n], sizeof c[n].p);
         c[n].slot = s->slots[v];
-        c[n].distance = sqrt(square_from(s, p[n], c[n].slot));
+        c[n].distance = sqrt(distance_sq_from(s, p[n], c[n].slot));
     }
 }
 
@@ -458,7 +461,7 @@ static cw_status measure_mesh(const cw_mesh *mesh, const reference *r,
                 .mesh = mesh,
                 .slots = slots,
                 .tolerance = d->tolerance_mm > 0 ? d->tolerance_mm : 0.01 * r->side,
-                .share = d->tolerance_mm > 0 ? 0 : 0.05};
+                .fraction = d->tolerance_mm > 0 ? 0 : 0.05};
     cw_status st = CW_OK;
     if (!slots)
         st = cwi_fail_memory(err);

@@ -236,7 +236,7 @@ static cw_status grow_array(cw_quality_stream *s, void **array, size_t *capacity
 }
 
 /* Makes room for vertices that come, vertices that are named, and a triangle. */
-static cw_status make_room(cw_quality_stream *s, size_t vertices, cw_error *err)
+static cw_status ensure_capacity(cw_quality_stream *s, size_t vertices, cw_error *err)
 {
     const size_t end =
         s->q.vertices + vertices > s->named ? s->q.vertices + vertices : s->named;
@@ -336,11 +336,11 @@ static cw_status append_chunk(cw_quality_stream *s, const cw_mesh_chunk *chunk, 
         return st;
     memcpy(s->origin, m->origin, sizeof s->origin);
     s->final = chunk->first_vertex;
-    st = make_room(s, m->vertex_count, err);
+    st = ensure_capacity(s, m->vertex_count, err);
     if (st == CW_OK)
         append_vertices(s, m);
     for (size_t t = 0; t < m->triangle_count && st == CW_OK; t++) {
-        st = make_room(s, 0, err);
+        st = ensure_capacity(s, 0, err);
         if (st == CW_OK)
             append_triangle(s, m->triangles + 3 * t);
     }

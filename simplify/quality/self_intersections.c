@@ -22,9 +22,9 @@ typedef struct pair {
 } pair;
 
 typedef struct chunk {
-    size_t count, room;
+    size_t count, capacity;
     pair *pairs;
-    size_t work, most_work;
+    size_t work, max_work;
     bool cut, failed;
 } chunk;
 
@@ -44,14 +44,14 @@ typedef struct visit {
 
 static void keep_pair(chunk *to, uint32_t a, uint32_t b)
 {
-    if (to->count == to->room) {
-        const size_t room = to->room ? 2 * to->room : 16;
-        pair *pairs = cwi_realloc_array(to->pairs, room, sizeof *pairs);
+    if (to->count == to->capacity) {
+        const size_t capacity = to->capacity ? 2 * to->capacity : 16;
+        pair *pairs = cwi_realloc_array(to->pairs, capacity, sizeof *pairs);
         to->failed = !pairs;
         if (!pairs)
             return;
         to->pairs = pairs;
-        to->room = room;
+        to->capacity = capacity;
     }
     to->work += COST_OF_PAIR;
     to->pairs[to->count++] = a < b ? (pair){a, b} : (pair){b, a};
@@ -88,7 +88,7 @@ static bool meet_node(void *context, size_t other)
             if (meeting >> c & 1)
                 test_pair(v, tree->order[i], tree->order[other * CWI_WIDTH + c]);
     }
-    v->to->cut = v->to->work > v->to->most_work;
+    v->to->cut = v->to->work > v->to->max_work;
     return !v->to->cut && !v->to->failed;
 }
 
@@ -97,7 +97,7 @@ static void search_chunk(void *context, size_t k)
     const search *s = context;
     chunk *to = &s->chunks[k];
     const size_t nodes = cwi_boxes_nodes(&s->tree), end = (k + 1) * CHUNK_NODES;
-    if (to->most_work == 0)
+    if (to->max_work == 0)
         return;
     to->count = to->work = 0;
     to->cut = false;
@@ -111,8 +111,10 @@ static void search_chunk(void *context, size_t k)
 
 static size_t first_allowance(const search *s)
 {
-    const size_t share = work_of_all / (s->tree.count + 1);
-    const size_t a_triangle = share < MIN_WORK ? MIN_WORK : share > MAX_WORK ? MAX_WORK : share;
+    const size_t work_per_node = work_of_all / (s->tree.count + 1);
+    const size_t a_triangle = work_per_node < MIN_WORK   ? MIN_WORK
+                              : work_per_node > MAX_WORK ? MAX_WORK
+                                                         : work_per_node;
     return CHUNK_NODES * CWI_WIDTH * a_triangle;
 }
 
@@ -123,7 +125,7 @@ static bool prepare_search(search *s)
     s->chunk_count = (cwi_boxes_nodes(&s->tree) + CHUNK_NODES - 1) / CHUNK_NODES;
     s->chunks = cwi_alloc_zeroed(s->chunk_count, sizeof *s->chunks);
     for (size_t k = 0; k < s->chunk_count && s->chunks; k++)
-        s->chunks[k].most_work = first_allowance(s);
+        s->chunks[k].max_work = first_allowance(s);
     return s->chunks;
 }
 
@@ -134,11 +136,11 @@ static bool allow_more(search *s)
     size_t cut = 0;
     for (size_t k = 0; k < s->chunk_count; k++)
         cut += s->chunks[k].cut;
-    const size_t share = cut ? work_beyond / cut : 0;
-    if (share <= first_allowance(s))
+    const size_t work_per_node = cut ? work_beyond / cut : 0;
+    if (work_per_node <= first_allowance(s))
         return false;
     for (size_t k = 0; k < s->chunk_count; k++)
-        s->chunks[k].most_work = s->chunks[k].cut ? share : 0;
+        s->chunks[k].max_work = s->chunks[k].cut ? work_per_node : 0;
     return true;
 }
 

@@ -18,7 +18,7 @@
 enum { CHUNK = 4096, SLOTS = 4 * CHUNK };
 
 /* Triangles that look for rays together, and rays that they may find. */
-enum { BLOCK = 64, MOST_FOUND = 128 };
+enum { BLOCK = 64, MAX_FOUND = 128 };
 
 /* Sums over the triangles of a component, seen from its root. */
 typedef struct sum {
@@ -54,8 +54,8 @@ typedef struct work {
 /* Rays that may meet the triangles of a block. */
 typedef struct found_rays {
     const work *w;
-    uint32_t ray[MOST_FOUND];
-    float start[3][MOST_FOUND];
+    uint32_t ray[MAX_FOUND];
+    float start[3][MAX_FOUND];
     const float *box; /* around the block, from low to high */
     size_t count;
     bool too_many;
@@ -215,7 +215,7 @@ static bool find_rays(void *context, size_t node)
         const float *start = start_of(f->w, k);
         if (!starts_in(start, f->box))
             continue;
-        if (f->count == MOST_FOUND) {
+        if (f->count == MAX_FOUND) {
             f->too_many = true;
             return false;
         }

@@ -32,7 +32,7 @@ typedef struct side {
 /* Sums and maxima of a chunk of triangles, before they are joined with those of the others. */
 typedef struct tally {
     size_t first; /* triangle; those of the next chunk follow */
-    double sum, squares, balance;
+    double sum, mean_sq, balance;
     double max, where[3];
     double here; /* the largest of the triangle at hand */
     size_t triangle, samples, missed;
@@ -142,28 +142,28 @@ static double value_of(size_t bin)
 }
 
 /* Takes a distance that stands for a share of the mesh's area. */
-static void take_distance(const work *w, tally *y, double distance, double share,
+static void take_distance(const work *w, tally *y, double distance, double weight,
                           const double p[3], size_t t)
 {
     const double d = fabs(distance);
-    y->sum += share * d;
-    y->squares += share * d * d;
-    y->balance += share * distance;
+    y->sum += weight * d;
+    y->mean_sq += weight * d * d;
+    y->balance += weight * distance;
     y->here = cwi_greater(y->here, d);
     if (d > y->max) {
         y->max = d;
         y->triangle = t;
         memcpy(y->where, p, sizeof y->where);
     }
-    w->histogram[(size_t)cwi_thread_number() * BINS + bin_of(d)] += (uint64_t)(share * 0x1p60);
+    w->histogram[(size_t)cwi_thread_number() * BINS + bin_of(d)] += (uint64_t)(weight * 0x1p60);
 }
 
-static void measure_point(const work *w, tally *y, const double p[3], double share, size_t t,
+static void measure_point(const work *w, tally *y, const double p[3], double weight, size_t t,
                           uint32_t *hint)
 {
     bool missed = false;
     const double d = w->s->measure(w->s->context, p, hint, &missed);
-    take_distance(w, y, d, share, p, t);
+    take_distance(w, y, d, weight, p, t);
     y->samples++;
     y->missed += missed;
 }
@@ -186,7 +186,7 @@ static double weight_of(uint32_t i, uint32_t j, uint32_t k)
 
 /* The middle of an undivided triangle's side, measured once for both triangles. */
 static void measure_side(const work *w, tally *y, const double p[3][3], size_t t, int c,
-                         double share, side *sides, uint32_t *hint)
+                         double weight, side *sides, uint32_t *hint)
 {
     const uint32_t *v = w->s->mesh->triangles + 3 * t, a = v[c], b = v[(c + 1) % 3];
     const uint32_t low = a < b ? a : b, high = a < b ? b : a;
@@ -200,22 +200,22 @@ static void measure_side(const work *w, tally *y, const double p[3][3], size_t t
         y->samples++;
         y->missed += s->missed;
     }
-    take_distance(w, y, s->distance, share * 2 / 15, x, t);
+    take_distance(w, y, s->distance, weight * 2 / 15, x, t);
 }
 
 /* Most triangles of a mesh that was extracted: corners, middles of sides, centroid. */
-static void measure_small(const work *w, tally *y, const double p[3][3], size_t t, double share,
-                          side *sides, uint32_t *hint)
+static void measure_small(const work *w, tally *y, const double p[3][3], size_t t,
+                          double weight, side *sides, uint32_t *hint)
 {
     double x[3];
     for (int c = 0; c < 3; c++)
-        measure_side(w, y, p, t, c, share, sides, hint);
+        measure_side(w, y, p, t, c, weight, sides, hint);
     interpolate_point(p, 1 / 3.0, 1 / 3.0, 1 / 3.0, x);
-    measure_point(w, y, x, share * 9 / 20, t, hint);
+    measure_point(w, y, x, weight * 9 / 20, t, hint);
 }
 
 static void measure_divided(const work *w, tally *y, const double q[3][3], size_t t,
-                            double share, uint32_t n, uint32_t *hint)
+                            double weight, uint32_t n, uint32_t *hint)
 {
     const uint32_t m = 2 * n;
     double x[3];
@@ -225,14 +225,14 @@ static void measure_divided(const work *w, tally *y, const double q[3][3], size_
             if (i == m || j == m || k == m)
                 continue;
             interpolate_point(q, (double)i / m, (double)j / m, (double)k / m, x);
-            measure_point(w, y, x, share * weight_of(i, j, k), t, hint);
+            measure_point(w, y, x, weight * weight_of(i, j, k), t, hint);
         }
     for (uint32_t i = 0; i < n; i++)
         for (uint32_t j = 0; i + j < n; j++)
             for (int down = 0; down <= (i + j + 1 < n); down++) {
                 const double a = (i + (1 + down) / 3.0) / n, b = (j + (1 + down) / 3.0) / n;
                 interpolate_point(q, a, b, 1 - a - b, x);
-                measure_point(w, y, x, share * 9 / 20, t, hint);
+                measure_point(w, y, x, weight * 9 / 20, t, hint);
             }
 }
 
@@ -242,15 +242,15 @@ static void measure_triangle(const work *w, tally *y, size_t t, side *sides, uin
     cwi_mesh_corners(w->s->mesh, t, p);
     const double(*q)[3] = (const double(*)[3])p;
     const uint32_t n = parts_of(w, q);
-    const double share =
+    const double weight =
         w->area > 0 ? cwi_triangle_area(q[0], q[1], q[2]) / w->area / ((double)n * n) : 0;
     for (int c = 0; c < 3; c++)
         take_distance(w, y, (double)w->vertex[w->s->mesh->triangles[3 * t + (size_t)c]],
-                      share / 20, p[c], t);
+                      weight / 20, p[c], t);
     if (n == 1)
-        measure_small(w, y, q, t, share, sides, hint);
+        measure_small(w, y, q, t, weight, sides, hint);
     else
-        measure_divided(w, y, q, t, share, n, hint);
+        measure_divided(w, y, q, t, weight, n, hint);
 }
 
 static void measure_chunk(void *context, size_t chunk)
@@ -314,27 +314,27 @@ static double find_percentile(const work *w, int threads)
 static void join_tallies(const work *w, int threads, cw_distance *out)
 {
     const cw_mesh *mesh = w->s->mesh;
-    double sum = 0, squares = 0, balance = 0;
+    double sum = 0, mean_sq = 0, balance = 0;
     size_t samples = mesh->vertex_count, missed = 0;
     for (size_t v = 0; v < mesh->vertex_count; v++)
         missed += w->missed[v];
-    double most = -1;
+    double max_distance = -1;
     for (size_t c = 0; c < w->chunks; c++) {
         const tally *y = w->tallies + c;
         sum += y->sum;
-        squares += y->squares;
+        mean_sq += y->mean_sq;
         balance += y->balance;
         samples += y->samples;
         missed += y->missed;
-        if (y->max > most) {
-            out->max_mm = most = y->max;
+        if (y->max > max_distance) {
+            out->max_mm = max_distance = y->max;
             out->triangle = y->triangle;
             for (int k = 0; k < 3; k++)
                 out->where[k] = mesh->origin[k] + y->where[k];
         }
     }
     out->mean_mm = sum;
-    out->rms_mm = sqrt(squares);
+    out->rms_mm = sqrt(mean_sq);
     out->bias_mm = w->s->is_signed ? balance : 0;
     out->p99_mm = cwi_lesser(find_percentile(w, threads), out->max_mm);
     out->triangles = mesh->triangle_count;

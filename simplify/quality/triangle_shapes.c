@@ -26,7 +26,7 @@ typedef struct sides {
 typedef struct figures {
     double length[3][CWI_SHAPE_BLOCK];
     double cosine[3][CWI_SHAPE_BLOCK]; /* of the angle at each corner, times the two sides */
-    double least[CWI_SHAPE_BLOCK], most[CWI_SHAPE_BLOCK]; /* angles, within NEAR_DEG */
+    double min_angle[CWI_SHAPE_BLOCK], max_angle[CWI_SHAPE_BLOCK]; /* angles, within NEAR_DEG */
     int bin[4][CWI_SHAPE_BLOCK]; /* of the angles, and of the least one */
     double
         off_centre[CWI_SHAPE_BLOCK]; /* the farthest of them from its bin's centre, in bins */
@@ -150,13 +150,13 @@ static void find_shapes(const cwi_shape_block *block, figures *f)
         const double y = f->twice_area[i];
         const double a = near_angle(y, f->cosine[0][i]), b = near_angle(y, f->cosine[1][i]),
                      c = near_angle(y, f->cosine[2][i]);
-        f->least[i] = near_lesser(a, near_lesser(b, c));
-        f->most[i] = near_greater(a, near_greater(b, c));
+        f->min_angle[i] = near_lesser(a, near_lesser(b, c));
+        f->max_angle[i] = near_greater(a, near_greater(b, c));
         const double of_a = find_bin(a, per_degree, &f->bin[0][i]),
                      of_b = find_bin(b, per_degree, &f->bin[1][i]),
                      of_c = find_bin(c, per_degree, &f->bin[2][i]),
-                     of_least = find_bin(f->least[i], of_smallest, &f->bin[3][i]);
-        f->off_centre[i] = near_greater(near_greater(of_a, of_b), near_greater(of_c, of_least));
+                     of_min = find_bin(f->min_angle[i], of_smallest, &f->bin[3][i]);
+        f->off_centre[i] = near_greater(near_greater(of_a, of_b), near_greater(of_c, of_min));
     }
     for (size_t i = 0; i < block->count; i++) {
         const double l0 = f->length[0][i], l1 = f->length[1][i], l2 = f->length[2][i];
@@ -174,17 +174,17 @@ static size_t bin_of(double value, double step)
 static void count_exact_angles(const figures *f, size_t i, cwi_shape_sum *p, double *largest)
 {
     const double degrees = 180 / CWI_PI;
-    double least = 180, most = 0;
+    double min_angle = 180, max_angle = 0;
     for (int n = 0; n < 3; n++) {
         const double angle = degrees * atan2(f->twice_area[i], f->cosine[n][i]);
         p->shapes.angles[bin_of(angle, 180.0 / CW_ANGLE_BINS)]++;
-        least = cwi_lesser(least, angle);
-        most = cwi_greater(most, angle);
+        min_angle = cwi_lesser(min_angle, angle);
+        max_angle = cwi_greater(max_angle, angle);
     }
-    p->shapes.smallest[bin_of(least, 60.0 / CW_ANGLE_BINS)]++;
-    p->shapes.min_angle_deg = cwi_lesser(p->shapes.min_angle_deg, least);
-    p->shapes.max_angle_deg = cwi_greater(p->shapes.max_angle_deg, most);
-    *largest = most;
+    p->shapes.smallest[bin_of(min_angle, 60.0 / CW_ANGLE_BINS)]++;
+    p->shapes.min_angle_deg = cwi_lesser(p->shapes.min_angle_deg, min_angle);
+    p->shapes.max_angle_deg = cwi_greater(p->shapes.max_angle_deg, max_angle);
+    *largest = max_angle;
 }
 
 /* Counts the angles of a triangle. Almost all are far from the end of a bin: there the nearly
@@ -192,15 +192,15 @@ static void count_exact_angles(const figures *f, size_t i, cwi_shape_sum *p, dou
 static void count_angles(const figures *f, size_t i, cwi_shape_sum *p, double *largest)
 {
     const double sure = 0.5 - NEAR_DEG * CW_ANGLE_BINS / 60.0;
-    if (!(f->off_centre[i] < sure) || f->least[i] - NEAR_DEG < p->shapes.min_angle_deg ||
-        f->most[i] + NEAR_DEG > p->shapes.max_angle_deg) {
+    if (!(f->off_centre[i] < sure) || f->min_angle[i] - NEAR_DEG < p->shapes.min_angle_deg ||
+        f->max_angle[i] + NEAR_DEG > p->shapes.max_angle_deg) {
         count_exact_angles(f, i, p, largest);
         return;
     }
     for (int n = 0; n < 3; n++)
         p->shapes.angles[f->bin[n][i]]++;
     p->shapes.smallest[f->bin[3][i]]++;
-    *largest = f->most[i];
+    *largest = f->max_angle[i];
 }
 
 static void count_aspect(double aspect, cwi_shape_sum *p)
@@ -290,10 +290,10 @@ static void measure_chunk(void *context, size_t k)
 
 /* --- lengths ------------------------------------------------------------------------------ */
 
-static uint64_t key_of(double square)
+static uint64_t key_of(double length_sq)
 {
     uint64_t bits;
-    memcpy(&bits, &square, sizeof bits);
+    memcpy(&bits, &length_sq, sizeof bits);
     return bits >> DROPPED_BITS;
 }
 
@@ -316,12 +316,12 @@ static bool fill_length_bins(work *w, double longest)
     return l->bin;
 }
 
-static size_t length_bin(const work *w, double square)
+static size_t length_bin(const work *w, double length_sq)
 {
-    const uint8_t sure = w->lengths.bin[key_of(square) - w->lengths.first];
+    const uint8_t sure = w->lengths.bin[key_of(length_sq) - w->lengths.first];
     if (sure != UNSURE)
         return sure;
-    const double bin = w->bins_per_octave * log2(sqrt(square) / w->shortest);
+    const double bin = w->bins_per_octave * log2(sqrt(length_sq) / w->shortest);
     return bin < CW_LENGTH_BINS ? (size_t)bin : CW_LENGTH_BINS - 1;
 }
 
@@ -364,8 +364,8 @@ void cwi_shape_sum_join(const cwi_shape_sum *p, cw_quality *q)
 }
 
 /* Returns false when the call was cancelled. */
-static bool share_out(work *w, size_t chunks, const cw_quality_desc *desc,
-                      void (*run)(void *, size_t))
+static bool split_bins(work *w, size_t chunks, const cw_quality_desc *desc,
+                       void (*run)(void *, size_t))
 {
     return cwi_parallel_for(chunks, CHUNK * 64, desc->threads, &desc->progress, "checking", run,
                             w, NULL) == CW_OK;
@@ -378,7 +378,7 @@ bool cwi_measure_shapes(const cwi_welded *welded, const cw_quality_desc *desc, c
     w.parts = cwi_alloc_zeroed(chunks, sizeof *w.parts);
     if (!w.parts)
         return false;
-    bool done = share_out(&w, chunks, desc, measure_chunk);
+    bool done = split_bins(&w, chunks, desc, measure_chunk);
     cw_shapes *s = &q->shapes;
     s->min_angle_deg = 180;
     s->min_edge_mm = INFINITY;
@@ -390,7 +390,7 @@ bool cwi_measure_shapes(const cwi_welded *welded, const cw_quality_desc *desc, c
                             : 0;
     if (done && q->degenerate < count)
         done =
-            fill_length_bins(&w, s->max_edge_mm) && share_out(&w, chunks, desc, count_lengths);
+            fill_length_bins(&w, s->max_edge_mm) && split_bins(&w, chunks, desc, count_lengths);
     for (size_t k = 0; k < chunks; k++)
         add_bins(s->lengths, w.parts[k].shapes.lengths, CW_LENGTH_BINS);
     if (q->degenerate == count)

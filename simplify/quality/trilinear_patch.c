@@ -139,10 +139,10 @@ static bool project_on_patch(const search *s, const box *b, const double x[3], d
             rest += g[a] * (y[a] - x[a]);
         }
         multiply_vector(inverse, g, down);
-        const double square = cwi_dot(g, down);
-        if (!(square > 0))
+        const double metric_sq = cwi_dot(g, down);
+        if (!(metric_sq > 0))
             return false;
-        *pull = rest / square;
+        *pull = rest / metric_sq;
         for (int a = 0; a < 3; a++) {
             y[a] -= *pull * down[a];
             const double out = cwi_greater(b->low[a] - y[a], y[a] - b->high[a]);
@@ -204,8 +204,8 @@ static double slack_of(const search *s, double distance)
 
 static void offer_point(search *s, const double x[3], double margin)
 {
-    const double way[3] = {x[0] - s->u[0], x[1] - s->u[1], x[2] - s->u[2]};
-    const double d = metric_length(s->metric, way) + margin;
+    const double offset[3] = {x[0] - s->u[0], x[1] - s->u[1], x[2] - s->u[2]};
+    const double d = metric_length(s->metric, offset) + margin;
     if (d < s->best) {
         s->best = d;
         s->limit = d - slack_of(s, d);
@@ -253,11 +253,11 @@ static double descend_to_patch(search *s, const box *b, double x[3])
 /* The square of the longest that a vector within the half sizes can be. */
 static double radius_squared(const cwi_metric *m, const double half[3])
 {
-    double square = 0;
+    double metric_sq = 0;
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)
-            square += fabs(m->gram[r][c]) * half[r] * half[c];
-    return square;
+            metric_sq += fabs(m->gram[r][c]) * half[r] * half[c];
+    return metric_sq;
 }
 
 /* Whether gram + pull * (second derivatives) is positive definite, the mixed ones
@@ -291,20 +291,20 @@ static bool is_plainly_convex(const cwi_metric *m, double pull, const double t[8
 static bool is_cleared(const search *s, const box *b, const double x[3], double pull)
 {
     double t[8], slope[3], far[3];
-    const double way[3] = {x[0] - s->u[0], x[1] - s->u[1], x[2] - s->u[2]};
+    const double offset[3] = {x[0] - s->u[0], x[1] - s->u[1], x[2] - s->u[2]};
     expand_field(s->patch, x, t);
-    multiply_vector((const double(*)[3])s->metric->gram, way, slope);
-    double room = (cwi_dot(way, slope) - s->limit * s->limit) / 2 + pull * t[0];
-    room -= fabs(pull) * NOTHING;
+    multiply_vector((const double(*)[3])s->metric->gram, offset, slope);
+    double slack = (cwi_dot(offset, slope) - s->limit * s->limit) / 2 + pull * t[0];
+    slack -= fabs(pull) * NOTHING;
     for (int a = 0; a < 3; a++) {
         const double down = x[a] - b->low[a], up = b->high[a] - x[a];
         slope[a] += pull * t[1 << a];
-        room += cwi_lesser(-slope[a] * down, slope[a] * up);
+        slack += cwi_lesser(-slope[a] * down, slope[a] * up);
         far[a] = cwi_greater(down, up);
     }
-    if (!(room > 0))
+    if (!(slack > 0))
         return false;
-    const double stiffness = 2 * room / radius_squared(s->metric, far);
+    const double stiffness = 2 * slack / radius_squared(s->metric, far);
     pull /= 1 + stiffness;
     if (is_plainly_convex(s->metric, pull, t, far))
         return true;
@@ -346,8 +346,8 @@ static bool may_be_near(const search *s, const double middle[3], const double ha
         linear += fabs(g[a]) * half[a];
     if (fabs(t[0]) > linear + bent)
         return false;
-    const double way[3] = {s->u[0] - middle[0], s->u[1] - middle[1], s->u[2] - middle[2]};
-    const double plane = fabs(t[0] + cwi_dot(g, way)) - bent;
+    const double offset[3] = {s->u[0] - middle[0], s->u[1] - middle[1], s->u[2] - middle[2]};
+    const double plane = fabs(t[0] + cwi_dot(g, offset)) - bent;
     if (plane > 0) {
         multiply_vector((const double(*)[3])s->metric->inverse[0], g, down);
         if (plane * plane >= s->limit * s->limit * cwi_dot(g, down))
@@ -392,9 +392,10 @@ static void search_box(search *s, box b, double *start)
         }
         if (!may_be_near(s, middle, half))
             return;
-        const double way[3] = {middle[0] - s->u[0], middle[1] - s->u[1], middle[2] - s->u[2]};
+        const double offset[3] = {middle[0] - s->u[0], middle[1] - s->u[1],
+                                  middle[2] - s->u[2]};
         const double r = sqrt(radius_squared(s->metric, half));
-        const double d = metric_length(s->metric, way);
+        const double d = metric_length(s->metric, offset);
         if (d - r >= s->limit)
             return;
         if (2 * r < slack_of(s, d)) { /* a point is here, no nearer one matters */

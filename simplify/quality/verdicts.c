@@ -183,9 +183,9 @@ bool cw_check_wants_crossings(cw_profile profile)
 static void judge_crossings(bench *b)
 {
     const cw_crossings *x = b->f->crossings;
-    const bool asked = cw_check_wants_crossings(b->profile);
+    const bool is_requested = cw_check_wants_crossings(b->profile);
     if (!x || (x->undecided && !x->count)) {
-        const cw_grade grade = asked || x ? CW_GRADE_UNKNOWN : CW_GRADE_NOTE;
+        const cw_grade grade = is_requested || x ? CW_GRADE_UNKNOWN : CW_GRADE_NOTE;
         cw_verdict *v = add_verdict(b, "self-intersections", grade, 0);
         say_finding(v,
                     x ? "undecided: too many triangles are in one place to look at every pair"
@@ -204,21 +204,21 @@ static void judge_crossings(bench *b)
 }
 
 /* A verdict on an area with thin walls or narrow gaps. */
-static void judge_width(bench *b, const char *name, const char *one, double least,
+static void judge_width(bench *b, const char *name, const char *one, double min_mm,
                         const double at[3], double below_mm2, double limit, const char *advice)
 {
-    const double share = 100 * below_mm2 / b->f->print->area_mm2;
+    const double percent = 100 * below_mm2 / b->f->print->area_mm2;
     cw_verdict *v =
         add_verdict(b, name, below_mm2 > 0 ? CW_GRADE_WARN : CW_GRADE_OK, below_mm2);
     if (below_mm2 > 0) {
         say_finding(v,
                     "%.3g mm2 (%.2g %%) of the surface is at %ss below %g mm; the least is "
                     "%.3g mm, at %.6g, %.6g, %.6g",
-                    below_mm2, share, one, limit, least, at[0], at[1], at[2]);
+                    below_mm2, percent, one, limit, min_mm, at[0], at[1], at[2]);
         v->advice = advice;
-    } else if (isfinite(least))
+    } else if (isfinite(min_mm))
         say_finding(v, "no %s is below %g mm; the least is %.4g mm, at %.6g, %.6g, %.6g", one,
-                    limit, least, at[0], at[1], at[2]);
+                    limit, min_mm, at[0], at[1], at[2]);
     else
         say_finding(v, "no %s is below %g mm", one, limit);
 }

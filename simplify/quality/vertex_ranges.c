@@ -6,11 +6,11 @@
 
 /* Shares of the triangles that threads file: at most, and of how many triangles at least. Each
  * share counts each range. */
-enum { MOST_SHARES = 64, LEAST_SHARE = 1 << 14 };
+enum { MAX_CHUNKS = 64, MIN_CHUNK = 1 << 14 };
 
 typedef struct work {
     const uint32_t *triangles;
-    size_t triangle_count, share; /* triangles of a share */
+    size_t triangle_count, chunk; /* triangles of a share */
     uint32_t begin, size;         /* the vertices */
     cwi_vertex_ranges *ranges;
     uint32_t *counts; /* of each share: triangles of each range, later the next one's place */
@@ -31,37 +31,37 @@ static unsigned find_ranges(const work *w, size_t triangle, uint32_t found[3])
     return count;
 }
 
-static size_t end_of(const work *w, size_t share)
+static size_t end_of(const work *w, size_t chunk)
 {
-    const size_t end = (share + 1) * w->share;
+    const size_t end = (chunk + 1) * w->chunk;
     return end < w->triangle_count ? end : w->triangle_count;
 }
 
-static void count_share(void *context, size_t k)
+static void count_chunk(void *context, size_t k)
 {
     const work *w = context;
     uint32_t *counts = w->counts + k * w->ranges->count, found[3];
-    for (size_t t = k * w->share; t < end_of(w, k); t++)
+    for (size_t t = k * w->chunk; t < end_of(w, k); t++)
         for (unsigned n = find_ranges(w, t, found); n > 0; n--)
             counts[found[n - 1]]++;
 }
 
-static void file_share(void *context, size_t k)
+static void file_chunk(void *context, size_t k)
 {
     const work *w = context;
     uint32_t *place = w->counts + k * w->ranges->count, found[3];
-    for (size_t t = k * w->share; t < end_of(w, k); t++)
+    for (size_t t = k * w->chunk; t < end_of(w, k); t++)
         for (unsigned n = find_ranges(w, t, found); n > 0; n--)
             w->ranges->triangle[place[found[n - 1]]++] = (uint32_t)t;
 }
 
 /* Turns counts into places: by range, then by share. */
-static void sum_counts(const work *w, size_t shares)
+static void sum_counts(const work *w, size_t chunks)
 {
     uint32_t place = 0;
     for (size_t r = 0; r < w->ranges->count; r++) {
         w->ranges->begin[r] = place;
-        for (size_t k = 0; k < shares; k++) {
+        for (size_t k = 0; k < chunks; k++) {
             uint32_t *count = w->counts + k * w->ranges->count + r;
             const uint32_t next = place + *count;
             *count = place;
@@ -71,34 +71,34 @@ static void sum_counts(const work *w, size_t shares)
     w->ranges->begin[w->ranges->count] = place;
 }
 
-static bool run_shares(work *w, size_t shares, int threads, void (*run)(void *, size_t))
+static bool run_chunks(work *w, size_t chunks, int threads, void (*run)(void *, size_t))
 {
     const cw_progress silent = {0};
-    return cwi_parallel_for(shares, w->share * 8, threads, &silent, NULL, run, w, NULL) ==
+    return cwi_parallel_for(chunks, w->chunk * 8, threads, &silent, NULL, run, w, NULL) ==
            CW_OK;
 }
 
 bool cwi_vertex_ranges_init(cwi_vertex_ranges *ranges, const uint32_t *triangles, size_t count,
                             uint32_t begin, uint32_t end, int threads)
 {
-    const size_t even = (count + MOST_SHARES - 1) / MOST_SHARES;
+    const size_t even = (count + MAX_CHUNKS - 1) / MAX_CHUNKS;
     work w = {.triangles = triangles,
               .triangle_count = count,
-              .share = even > LEAST_SHARE ? even : LEAST_SHARE,
+              .chunk = even > MIN_CHUNK ? even : MIN_CHUNK,
               .begin = begin,
               .size = end - begin,
               .ranges = ranges};
-    const size_t shares = (count + w.share - 1) / w.share;
+    const size_t chunks = (count + w.chunk - 1) / w.chunk;
     *ranges = (cwi_vertex_ranges){.count = ((size_t)w.size + CWI_RANGE_VERTICES - 1) /
                                            CWI_RANGE_VERTICES};
-    w.counts = cwi_alloc_zeroed(shares * ranges->count, sizeof *w.counts);
+    w.counts = cwi_alloc_zeroed(chunks * ranges->count, sizeof *w.counts);
     ranges->begin = cwi_alloc_array(ranges->count + 1, sizeof *ranges->begin);
-    bool ok = w.counts && ranges->begin && run_shares(&w, shares, threads, count_share);
+    bool ok = w.counts && ranges->begin && run_chunks(&w, chunks, threads, count_chunk);
     if (ok) {
-        sum_counts(&w, shares);
+        sum_counts(&w, chunks);
         ranges->triangle =
             cwi_alloc_array(ranges->begin[ranges->count], sizeof *ranges->triangle);
-        ok = ranges->triangle && run_shares(&w, shares, threads, file_share);
+        ok = ranges->triangle && run_chunks(&w, chunks, threads, file_chunk);
     }
     cwi_free(w.counts);
     if (!ok)

@@ -18,18 +18,19 @@ static const double ERRORS = 10,
 static const double DEFAULT_FEATURE = 40, LARGEST_ANGLE = 40; /* degrees */
 
 /* Lengths of edges, in wanted ones, that count as fitting. */
-static const double LEAST_FIT = 0.8, MOST_FIT = 1.33;
+static const double MIN_FIT = 0.8, MAX_FIT = 1.33;
 
 /* --- what is asked for -------------------------------------------------------------------- */
 
-static cw_status check_number(double value, double most, const char *name, cw_error *err)
+static cw_status check_number(double value, double max_value, const char *name, cw_error *err)
 {
-    if (value >= 0 && value <= most)
+    if (value >= 0 && value <= max_value)
         return CW_OK;
-    return most < DBL_MAX ? cwi_fail(err, CW_ERR_ARGUMENT, "%s is %g; it must be 0 to %g", name,
-                                     value, most)
-                          : cwi_fail(err, CW_ERR_ARGUMENT,
-                                     "%s is %g; it must be finite, and 0 or more", name, value);
+    return max_value < DBL_MAX
+               ? cwi_fail(err, CW_ERR_ARGUMENT, "%s is %g; it must be 0 to %g", name, value,
+                          max_value)
+               : cwi_fail(err, CW_ERR_ARGUMENT, "%s is %g; it must be finite, and 0 or more",
+                          name, value);
 }
 
 static cw_status check_desc(const cw_remesh_desc *d, cw_error *err)
@@ -136,7 +137,7 @@ static void measure_edges(const cwi_remesh *r, cw_remesh_facts *f)
         f->max_edge_mm = cwi_greater(f->max_edge_mm, length);
         sum += length;
         count++;
-        fitting += relative >= LEAST_FIT && relative <= MOST_FIT;
+        fitting += relative >= MIN_FIT && relative <= MAX_FIT;
     }
     f->mean_edge_mm = sum / (double)count;
     f->fitting_edges = (double)fitting / (double)count;
@@ -173,13 +174,13 @@ static void measure_angles(const cw_mesh *m, cw_remesh_facts *f)
 
 /* --- work --------------------------------------------------------------------------------- */
 
-static cw_status run_passes(cwi_remesh *r, double from, double share, cw_error *err)
+static cw_status run_passes(cwi_remesh *r, double from, double fraction, cw_error *err)
 {
     cw_status st = CW_OK;
     cwi_remesh_restart(r);
     const size_t steps = r->desc.iterations + 1;
     for (size_t n = 0; n < r->desc.iterations && st == CW_OK; n++) {
-        r->done = from + share * (double)n / (double)steps;
+        r->done = from + fraction * (double)n / (double)steps;
         st = cwi_split_long(r, err);
         if (st == CW_OK)
             st = cwi_collapse_short(r, err);
@@ -190,7 +191,7 @@ static cw_status run_passes(cwi_remesh *r, double from, double share, cw_error *
     }
     if (st != CW_OK)
         return st;
-    r->done = from + share * (double)r->desc.iterations / (double)steps;
+    r->done = from + fraction * (double)r->desc.iterations / (double)steps;
     cwi_flip_edges(r, true);
     st = cwi_relax_vertices(r, err);
     if (st == CW_OK)
@@ -251,17 +252,17 @@ static cw_status count_input(cwi_remesh *r, cw_remesh_facts *f, cw_error *err)
 static cw_status make_attempts(cwi_remesh *r, cw_mesh *out, cw_remesh_facts *f, cw_error *err)
 {
     bool is_good = false;
-    double from = 0.1, share = 0.45;
+    double from = 0.1, fraction = 0.45;
     cw_status st = CW_OK;
     for (int n = 0; n < ATTEMPTS && !is_good && st == CW_OK; n++) {
-        st = run_passes(r, from, share, err);
+        st = run_passes(r, from, fraction, err);
         if (st == CW_OK)
             st = make_result(r, out, err);
         if (st == CW_OK)
             st = cwi_remesh_prove(r, out, f, &is_good, err);
         f->attempts++;
-        from += share;
-        share /= 2;
+        from += fraction;
+        fraction /= 2;
     }
     return st;
 }

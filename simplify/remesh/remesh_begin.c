@@ -158,7 +158,7 @@ void cwi_remesh_free(cwi_remesh *r)
                             r->surface.limits,
                             r->curves.limits,
                             r->curves.mesh.triangles,
-                            r->sizes_wanted,
+                            r->target_sizes,
                             r->input_freedom,
                             r->input_twin,
                             r->input_bits,
@@ -237,7 +237,7 @@ void cwi_remesh_restart(cwi_remesh *r)
     memcpy(r->freedom, r->input_freedom, r->vertex_count);
     for (size_t v = 0; v < r->vertex_count; v++) {
         r->corner[v] = CWI_NONE;
-        r->sizes[v] = r->sizes_wanted ? r->sizes_wanted[v] : (float)r->desc.edge_mm;
+        r->sizes[v] = r->target_sizes ? r->target_sizes[v] : (float)r->desc.edge_mm;
     }
     for (uint32_t c = 0; c < 3 * r->triangle_count; c++)
         if (r->corner[r->triangles[c]] == CWI_NONE)

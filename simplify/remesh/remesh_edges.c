@@ -90,7 +90,7 @@ static bool grow_triangles(cwi_remesh *r, size_t capacity)
 }
 
 /* Makes room for a vertex and two triangles. */
-static cw_status make_room(cwi_remesh *r, cw_error *err)
+static cw_status ensure_capacity(cwi_remesh *r, cw_error *err)
 {
     if (r->triangle_count + 2 > CWI_MAX_TRIANGLES)
         return cwi_fail(err, CW_ERR_LIMIT, "remeshing needs more than %zu triangles",
@@ -141,7 +141,7 @@ static void divide_triangle(cwi_remesh *r, uint32_t corner, uint32_t middle, uin
 cw_status cwi_split_edge(cwi_remesh *r, uint32_t corner, bool *is_done, cw_error *err)
 {
     *is_done = false;
-    cw_status st = make_room(r, err);
+    cw_status st = ensure_capacity(r, err);
     if (st != CW_OK)
         return st;
     cwi_replacement *p = &r->patch;
@@ -451,11 +451,11 @@ bool cwi_flip_edge(cwi_remesh *r, uint32_t corner, bool by_angle)
     const double before = cwi_patch_cosine_before(r, p), after = cwi_patch_cosine(r, p);
     if (after > 1)
         return false;
-    const bool is_wanted =
+    const bool is_target =
         by_angle ? after < before - FLIP_GAIN
                  : after <= cwi_greater(before, FLIP_COSINE) &&
                        evens_valences(r, (const uint32_t[]){a, b}, (const uint32_t[]){c, d});
-    if (!is_wanted || are_neighbours(r, c, d) || !cwi_patch_fits(r, p))
+    if (!is_target || are_neighbours(r, c, d) || !cwi_patch_fits(r, p))
         return false;
     const uint32_t to_ca = r->twin[cwi_corner_prev(corner)],
                    to_ad = r->twin[cwi_corner_next(twin)],

@@ -159,13 +159,13 @@ static bool move_for_angle(cwi_remesh *r, uint32_t v)
             const uint32_t c = corners[n / 2];
             const float *p = r->positions + 3 * (size_t)v,
                         *q = r->positions + 3 * (size_t)r->triangles[cwi_corner_next(c)];
-            const double share = n % 2 ? -step : step;
+            const double fraction = n % 2 ? -step : step;
             double from[3];
             float to[3], size = r->sizes[v];
             for (int k = 0; k < 3; k++)
-                from[k] = (double)p[k] + share * ((double)q[k] - (double)p[k]);
+                from[k] = (double)p[k] + fraction * ((double)q[k] - (double)p[k]);
             cwi_remesh_project(r, target, from, to,
-                               target == &r->surface && r->sizes_wanted ? &size : NULL);
+                               target == &r->surface && r->target_sizes ? &size : NULL);
             has_moved |= cwi_move_vertex(r, v, to, size, cosine_around(r, v) - 1e-3);
         }
     return has_moved;

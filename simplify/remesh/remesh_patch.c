@@ -3,7 +3,7 @@
 #include "simplify/remesh/remesh_state.h"
 
 /* Cosine of the largest angle between a triangle and the input there: 60 degrees. */
-static const double LEAST_AGREEMENT = 0.5;
+static const double MIN_AGREEMENT = 0.5;
 
 typedef struct near_search {
     const cwi_target *target;
@@ -12,7 +12,7 @@ typedef struct near_search {
 
 double cwi_largest_cosine(const float *a, const float *b, const float *c, double normal[3])
 {
-    double side[3][3], square[3], cross[3], largest = -1;
+    double side[3][3], lengths_sq[3], cross[3], largest = -1;
     for (int k = 0; k < 3; k++) {
         side[0][k] = (double)b[k] - (double)a[k];
         side[1][k] = (double)c[k] - (double)b[k];
@@ -23,22 +23,23 @@ double cwi_largest_cosine(const float *a, const float *b, const float *c, double
         for (int k = 0; k < 3; k++)
             normal[k] = cross[k];
     for (int k = 0; k < 3; k++)
-        square[k] = cwi_dot(side[k], side[k]);
+        lengths_sq[k] = cwi_dot(side[k], side[k]);
     /* A triangle is flat when its height vanishes beside the rounding of positions. */
-    const double longest = cwi_greater(square[0], cwi_greater(square[1], square[2]));
+    const double longest =
+        cwi_greater(lengths_sq[0], cwi_greater(lengths_sq[1], lengths_sq[2]));
     if (!(cwi_dot(cross, cross) > longest * longest * 1e-12))
         return 2;
     for (int k = 0; k < 3; k++) {
         const int l = (k + 1) % 3;
-        largest =
-            cwi_greater(largest, -cwi_dot(side[k], side[l]) / sqrt(square[k] * square[l]));
+        largest = cwi_greater(largest,
+                              -cwi_dot(side[k], side[l]) / sqrt(lengths_sq[k] * lengths_sq[l]));
     }
     return largest;
 }
 
 /* Ends the search, by a negative square, when the point is near enough to a triangle that faces
  * the same way. */
-static void try_triangle(void *context, size_t slot, double *square)
+static void try_triangle(void *context, size_t slot, double *distance_sq)
 {
     const near_search *s = context;
     const cw_mesh *m = &s->target->mesh;
@@ -46,24 +47,24 @@ static void try_triangle(void *context, size_t slot, double *square)
     const float *n = s->target->normals ? s->target->normals + 3 * t : NULL;
     if (n && !((double)n[0] * s->normal[0] + (double)n[1] * s->normal[1] +
                    (double)n[2] * s->normal[2] >
-               LEAST_AGREEMENT))
+               MIN_AGREEMENT))
         return;
     const uint32_t *v = m->triangles + 3 * t;
     const double limit = (double)s->target->limits[t];
     const double found =
-        cwi_facet_square(m->positions + 3 * (size_t)v[0], m->positions + 3 * (size_t)v[1],
-                         m->positions + 3 * (size_t)v[2], s->point);
+        cwi_facet_distance_sq(m->positions + 3 * (size_t)v[0], m->positions + 3 * (size_t)v[1],
+                              m->positions + 3 * (size_t)v[2], s->point);
     if (found <= limit * limit)
-        *square = -1;
+        *distance_sq = -1;
 }
 
 static bool is_near(const cwi_remesh *r, const cwi_target *target, const double point[3],
                     const double normal[3])
 {
     near_search search = {target, point, normal};
-    double square = r->limit_mm * r->limit_mm * (1 + 1e-6);
-    cwi_boxes_nearest(&target->tree, point, try_triangle, &search, &square);
-    return square < 0;
+    double distance_sq = r->limit_mm * r->limit_mm * (1 + 1e-6);
+    cwi_boxes_nearest(&target->tree, point, try_triangle, &search, &distance_sq);
+    return distance_sq < 0;
 }
 
 static const float *place_of(const cwi_remesh *r, const cwi_replacement *p, uint32_t v)
@@ -71,10 +72,10 @@ static const float *place_of(const cwi_remesh *r, const cwi_replacement *p, uint
     return v == p->moved ? p->place : r->positions + 3 * (size_t)v;
 }
 
-static void mix_points(const float *a, const float *b, double share, double out[3])
+static void mix_points(const float *a, const float *b, double fraction, double out[3])
 {
     for (int k = 0; k < 3; k++)
-        out[k] = (double)a[k] + share * ((double)b[k] - (double)a[k]);
+        out[k] = (double)a[k] + fraction * ((double)b[k] - (double)a[k]);
 }
 
 /* Checks an edge at its middle, and a sharp one at its quarters, too. */
@@ -126,7 +127,7 @@ static double square_to_fresh(const cwi_remesh *r, const cwi_replacement *p, siz
     for (int k = 0; k < 3; k++)
         corner[k] = place_of(r, p, p->fresh[n][k]);
     if (!to_edges)
-        return cwi_facet_square(corner[0], corner[1], corner[2], point);
+        return cwi_facet_distance_sq(corner[0], corner[1], corner[2], point);
     for (int k = 0; k < 3; k++)
         if (p->sharp[n] >> k & 1)
             best = cwi_lesser(best, square_to_edge(corner[k], corner[(k + 1) % 3], point));

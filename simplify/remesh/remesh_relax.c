@@ -12,7 +12,7 @@
 enum { CHUNK = 1024 };
 
 /* Moves shorter than this fraction of the wanted length are not made. */
-static const double LEAST_MOVE = 1e-3;
+static const double MIN_MOVE = 1e-3;
 
 /* A move may make angles smaller down to 30 degrees; below that, not at all. */
 static const double MOVE_COSINE = 0.866;
@@ -33,7 +33,7 @@ void cwi_remesh_project(const cwi_remesh *r, const cwi_target *target, const dou
     const uint32_t *v = target->mesh.triangles + 3 * near.triangle;
     double sum = 0;
     for (int k = 0; k < 3; k++)
-        sum += near.share[k] * (double)r->sizes_wanted[v[k]];
+        sum += near.weights[k] * (double)r->target_sizes[v[k]];
     *size = (float)sum;
 }
 
@@ -102,7 +102,7 @@ static void find_place(const relaxation *x, uint32_t v)
     if (r->corner[v] == CWI_NONE || r->freedom[v] == CWI_FIXED)
         return;
     if (r->freedom[v] == CWI_FREE && find_centre(r, v, from))
-        cwi_remesh_project(r, &r->surface, from, place, r->sizes_wanted ? &x->sizes[v] : NULL);
+        cwi_remesh_project(r, &r->surface, from, place, r->target_sizes ? &x->sizes[v] : NULL);
     else if (r->freedom[v] == CWI_CURVE && find_middle(r, v, from))
         cwi_remesh_project(r, &r->curves, from, place, NULL);
 }
@@ -135,8 +135,8 @@ static double allowed_cosine(const cwi_remesh *r, uint32_t v)
 static void move_to_place(cwi_remesh *r, const relaxation *x, uint32_t v)
 {
     const float *p = r->positions + 3 * (size_t)v, *place = x->places + 3 * (size_t)v;
-    const double least = LEAST_MOVE * (double)r->sizes[v];
-    if (!(cwi_point_distance_sq(p, place) > least * least))
+    const double min_move = MIN_MOVE * (double)r->sizes[v];
+    if (!(cwi_point_distance_sq(p, place) > min_move * min_move))
         return;
     const double cosine = allowed_cosine(r, v);
     if (cwi_move_vertex(r, v, place, x->sizes[v], cosine))

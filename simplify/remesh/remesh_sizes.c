@@ -77,14 +77,14 @@ static double largest_eigenvalue(const double t[6])
 {
     const double mean = (t[0] + t[1] + t[2]) / 3;
     const double x = t[0] - mean, y = t[1] - mean, z = t[2] - mean;
-    const double square =
+    const double size_sq =
         (x * x + y * y + z * z + 2 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5])) / 6;
-    if (!(square > 0))
+    if (!(size_sq > 0))
         return fabs(mean);
-    const double size = sqrt(square);
+    const double size = sqrt(size_sq);
     const double determinant = x * (y * z - t[5] * t[5]) - t[3] * (t[3] * z - t[5] * t[4]) +
                                t[4] * (t[3] * t[5] - y * t[4]);
-    const double half = determinant / (2 * size * square);
+    const double half = determinant / (2 * size * size_sq);
     const double angle = acos(cwi_greater(-1, cwi_lesser(1, half))) / 3;
     const double high = mean + 2 * size * cos(angle),
                  low = mean + 2 * size * cos(angle + 2 * CWI_PI / 3);
@@ -95,9 +95,9 @@ static double largest_eigenvalue(const double t[6])
 static double length_for(const cwi_remesh *r, double curvature)
 {
     const double height = CHORD_FRACTION * r->desc.error_mm;
-    const double square =
+    const double length_sq =
         curvature > 0 ? 6 * height / curvature - 3 * height * height : INFINITY;
-    const double length = square > 0 ? sqrt(square) : 0;
+    const double length = length_sq > 0 ? sqrt(length_sq) : 0;
     return cwi_greater(r->desc.shortest_mm, cwi_lesser(r->desc.edge_mm, length));
 }
 
@@ -105,7 +105,7 @@ static void limit_growth(const cwi_remesh *r, uint32_t a, uint32_t b)
 {
     const double length = GROWTH * sqrt(cwi_point_distance_sq(r->positions + 3 * (size_t)a,
                                                               r->positions + 3 * (size_t)b));
-    float *sizes = r->sizes_wanted;
+    float *sizes = r->target_sizes;
     sizes[a] = (float)cwi_lesser((double)sizes[a], (double)sizes[b] + length);
     sizes[b] = (float)cwi_lesser((double)sizes[b], (double)sizes[a] + length);
 }
@@ -124,8 +124,8 @@ cw_status cwi_remesh_size(cwi_remesh *r, cw_error *err)
 {
     double *tensors = cwi_alloc_zeroed(r->vertex_count, TENSOR * sizeof *tensors),
            *spread = cwi_alloc_array(r->vertex_count, TENSOR * sizeof *spread);
-    r->sizes_wanted = cwi_alloc_array(r->vertex_count, sizeof *r->sizes_wanted);
-    const bool has_memory = tensors && spread && r->sizes_wanted;
+    r->target_sizes = cwi_alloc_array(r->vertex_count, sizeof *r->target_sizes);
+    const bool has_memory = tensors && spread && r->target_sizes;
     if (has_memory) {
         sum_tensors(r, tensors);
         for (int n = 0; n < SMOOTHINGS; n++) {
@@ -135,7 +135,7 @@ cw_status cwi_remesh_size(cwi_remesh *r, cw_error *err)
         for (size_t v = 0; v < r->vertex_count; v++) {
             const double *t = tensors + TENSOR * v;
             const double found = largest_eigenvalue(t);
-            r->sizes_wanted[v] = (float)length_for(r, t[6] > 0 ? found / t[6] : 0);
+            r->target_sizes[v] = (float)length_for(r, t[6] > 0 ? found / t[6] : 0);
         }
         for (int sweep = 0; sweep < SWEEPS; sweep++)
             sweep_sizes(r, sweep % 2);

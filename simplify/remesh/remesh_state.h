@@ -47,7 +47,7 @@ typedef struct cwi_remesh {
     cw_remesh_desc desc; /* resolved */
     const cw_mesh *input;
     cwi_target surface, curves;
-    float *sizes_wanted;  /* at each vertex of the input; or NULL: edge_mm everywhere */
+    float *target_sizes;  /* at each vertex of the input; or NULL: edge_mm everywhere */
     uint32_t *input_twin; /* twins, bits and freedom as the work begins */
     uint8_t *input_bits, *input_freedom;
     float *sample_limits; /* how far the result may be from each vertex of the input */
@@ -84,10 +84,10 @@ static inline bool cwi_is_dead(const cwi_remesh *r, size_t triangle)
 /* Returns the length of an edge, in units of the length wanted there. */
 static inline double cwi_relative_length(const cwi_remesh *r, uint32_t a, uint32_t b)
 {
-    const double wanted = ((double)r->sizes[a] + (double)r->sizes[b]) / 2;
+    const double target_length = ((double)r->sizes[a] + (double)r->sizes[b]) / 2;
     return sqrt(cwi_point_distance_sq(r->positions + 3 * (size_t)a,
                                       r->positions + 3 * (size_t)b)) /
-           wanted;
+           target_length;
 }
 
 /* Returns the largest cosine of a triangle's angles, which is that of the smallest one; 2 without

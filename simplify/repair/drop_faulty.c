@@ -105,9 +105,9 @@ static uint32_t longest_edge(const cw_mesh *m, uint32_t t)
     for (uint32_t c = 3 * t; c < 3 * t + 3; c++) {
         const float *p = m->positions + 3 * (size_t)m->triangles[c],
                     *q = m->positions + 3 * (size_t)m->triangles[cwi_corner_next(c)];
-        const double square = cwi_point_distance_sq(p, q);
-        if (square > longest) {
-            longest = square;
+        const double distance_sq = cwi_point_distance_sq(p, q);
+        if (distance_sq > longest) {
+            longest = distance_sq;
             best = c;
         }
     }
@@ -191,7 +191,7 @@ cw_status cwi_drop_degenerate(cwi_repair *r, size_t *dropped, cw_error *err)
 
 typedef struct component_size {
     double volume, area, middle[3]; /* volume: six times */
-    size_t triangles, rim;
+    size_t triangles, loop;
 } component_size;
 
 /* Sums areas, and the middles of rims. */
@@ -203,7 +203,7 @@ static void add_triangle(const cwi_repair *r, uint32_t t, component_size *s)
     s->triangles++;
     for (uint32_t k = 0; k < 3; k++)
         if (r->twin[3 * t + k] == CWI_NO_CORNER) {
-            s->rim++;
+            s->loop++;
             for (int a = 0; a < 3; a++)
                 s->middle[a] += p[k][a];
         }
@@ -225,14 +225,14 @@ static void add_volume(const cwi_repair *r, uint32_t t, component_size *s)
 static void set_middle(const cw_mesh *m, uint32_t t, component_size *s)
 {
     for (size_t a = 0; a < 3; a++)
-        s->middle[a] = s->rim ? s->middle[a] / (double)s->rim
-                              : (double)m->positions[3 * (size_t)m->triangles[3 * t] + a];
+        s->middle[a] = s->loop ? s->middle[a] / (double)s->loop
+                               : (double)m->positions[3 * (size_t)m->triangles[3 * t] + a];
 }
 
 static bool is_sheet(const component_size *s)
 {
-    const double least = s->rim ? SHEET_VOLUME : CLOSED_SHEET_VOLUME;
-    return !(fabs(s->volume) / 6 >= least * s->area * sqrt(s->area));
+    const double min_volume = s->loop ? SHEET_VOLUME : CLOSED_SHEET_VOLUME;
+    return !(fabs(s->volume) / 6 >= min_volume * s->area * sqrt(s->area));
 }
 
 cw_status cwi_drop_sheets(cwi_repair *r, size_t *sheets, size_t *triangles, cw_error *err)

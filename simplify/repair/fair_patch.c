@@ -107,10 +107,10 @@ static bool add_patch(const curvature_rows *u, entry_list *list)
 }
 
 /* Adds the triangles of the mesh around a point of the rim. Their corners stay. */
-static bool add_outside(curvature_rows *u, const cwi_rim *rim, const cwi_hole_mesh *around,
-                        uint32_t n, entry_list *list)
+static bool add_outside(curvature_rows *u, const cwi_boundary_loop *loop,
+                        const cwi_hole_mesh *around, uint32_t n, entry_list *list)
 {
-    const uint32_t v = rim->vertices[n];
+    const uint32_t v = loop->vertices[n];
     bool ok = true;
     for (uint32_t i = around->first[v]; i < around->first[v + 1] && ok; i++) {
         const uint32_t *corners = around->mesh->triangles + 3 * (size_t)around->around[i];
@@ -160,22 +160,22 @@ static bool sum_entries(curvature_rows *u, entry_list *list)
 }
 
 /* Makes the rows: of inner points, and if fair, of the rim too. */
-static bool make_rows(curvature_rows *u, const cwi_rim *rim, const cwi_hole_mesh *around,
-                      bool is_fair)
+static bool make_rows(curvature_rows *u, const cwi_boundary_loop *loop,
+                      const cwi_hole_mesh *around, bool is_fair)
 {
     const cwi_hole_patch *p = u->patch;
     entry_list list = {0};
     size_t outside = 0;
-    u->first_row = is_fair ? 0 : p->rim;
-    for (size_t n = 0; n < rim->size && is_fair; n++)
-        outside +=
-            2 * (size_t)(around->first[rim->vertices[n] + 1] - around->first[rim->vertices[n]]);
+    u->first_row = is_fair ? 0 : p->loop;
+    for (size_t n = 0; n < loop->size && is_fair; n++)
+        outside += 2 * (size_t)(around->first[loop->vertices[n] + 1] -
+                                around->first[loop->vertices[n]]);
     list.area = cwi_alloc_zeroed(p->count, sizeof *list.area);
     u->fixed = cwi_alloc_array(outside, sizeof *u->fixed);
     u->first = cwi_alloc_zeroed(p->count + 1, sizeof *u->first);
     bool ok = list.area && u->fixed && u->first && add_patch(u, &list);
-    for (uint32_t n = 0; n < rim->size && is_fair && ok; n++)
-        ok = add_outside(u, rim, around, n, &list);
+    for (uint32_t n = 0; n < loop->size && is_fair && ok; n++)
+        ok = add_outside(u, loop, around, n, &list);
     ok = ok && sum_entries(u, &list);
     cwi_free(list.entries);
     cwi_free(list.area);
@@ -226,7 +226,7 @@ static void apply_transposed(const curvature_rows *u, const double (*y)[3], doub
         for (int a = 0; a < 3; a++)
             out[row][a] -= all * y[row][a];
     }
-    memset(out, 0, u->patch->rim * sizeof *out);
+    memset(out, 0, u->patch->loop * sizeof *out);
 }
 
 static double dot_all(const double (*x)[3], const double (*y)[3], size_t count)
@@ -246,33 +246,35 @@ static bool solve_rows(const curvature_rows *u, double (*x)[3], int max_steps)
     double(*curvature)[3] = cwi_alloc_zeroed(count, sizeof *curvature);
     double(*product)[3] = cwi_alloc_zeroed(count, sizeof *product);
     const bool ok = residual && direction && curvature && product;
-    double square = 0, enough = 0;
+    double residual_sq = 0, enough = 0;
     if (ok) {
         apply_rows(u, (const double(*)[3])x, true, curvature);
         apply_transposed(u, (const double(*)[3])curvature, residual);
         for (size_t n = 0; n < count; n++)
             for (int a = 0; a < 3; a++)
                 direction[n][a] = residual[n][a] = -residual[n][a];
-        square = dot_all((const double(*)[3])residual, (const double(*)[3])residual, count);
-        enough = ENOUGH * square;
+        residual_sq =
+            dot_all((const double(*)[3])residual, (const double(*)[3])residual, count);
+        enough = ENOUGH * residual_sq;
     }
-    for (int step = 0; step < max_steps && ok && square > enough; step++) {
+    for (int step = 0; step < max_steps && ok && residual_sq > enough; step++) {
         apply_rows(u, (const double(*)[3])direction, false, curvature);
         apply_transposed(u, (const double(*)[3])curvature, product);
         const double along =
             dot_all((const double(*)[3])direction, (const double(*)[3])product, count);
         if (!(along > 0))
             break;
-        const double length = square / along, before = square;
-        for (size_t n = u->patch->rim; n < count; n++)
+        const double length = residual_sq / along, before = residual_sq;
+        for (size_t n = u->patch->loop; n < count; n++)
             for (int a = 0; a < 3; a++) {
                 x[n][a] += length * direction[n][a];
                 residual[n][a] -= length * product[n][a];
             }
-        square = dot_all((const double(*)[3])residual, (const double(*)[3])residual, count);
-        for (size_t n = u->patch->rim; n < count; n++)
+        residual_sq =
+            dot_all((const double(*)[3])residual, (const double(*)[3])residual, count);
+        for (size_t n = u->patch->loop; n < count; n++)
             for (int a = 0; a < 3; a++)
-                direction[n][a] = residual[n][a] + square / before * direction[n][a];
+                direction[n][a] = residual[n][a] + residual_sq / before * direction[n][a];
     }
     cwi_free(residual);
     cwi_free(direction);
@@ -281,23 +283,23 @@ static bool solve_rows(const curvature_rows *u, double (*x)[3], int max_steps)
     return ok;
 }
 
-static bool fair_once(cwi_hole_patch *patch, const cwi_rim *rim, const cwi_hole_mesh *around,
-                      bool is_fair, int max_steps)
+static bool fair_once(cwi_hole_patch *patch, const cwi_boundary_loop *loop,
+                      const cwi_hole_mesh *around, bool is_fair, int max_steps)
 {
     curvature_rows u = {.patch = patch};
     const bool ok =
-        make_rows(&u, rim, around, is_fair) && solve_rows(&u, patch->points, max_steps);
+        make_rows(&u, loop, around, is_fair) && solve_rows(&u, patch->points, max_steps);
     free_rows(&u);
     return ok;
 }
 
-bool cwi_patch_fair(cwi_hole_patch *patch, const cwi_rim *rim, const cwi_hole_mesh *around,
-                    bool is_fair, bool is_later)
+bool cwi_patch_fair(cwi_hole_patch *patch, const cwi_boundary_loop *loop,
+                    const cwi_hole_mesh *around, bool is_fair, bool is_later)
 {
     const int steps = is_later ? MAX_LATER_STEPS : MAX_STEPS;
-    if (patch->count == patch->rim)
+    if (patch->count == patch->loop)
         return true;
-    if ((!is_fair || !is_later) && !fair_once(patch, rim, around, false, steps))
+    if ((!is_fair || !is_later) && !fair_once(patch, loop, around, false, steps))
         return false;
-    return !is_fair || fair_once(patch, rim, around, true, steps);
+    return !is_fair || fair_once(patch, loop, around, true, steps);
 }

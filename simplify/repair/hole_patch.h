@@ -7,11 +7,11 @@
 #define CWI_NO_NEIGHBOUR UINT32_MAX
 
 /* The rim of a hole, and the mesh beside it. Arrays of `size` elements. */
-typedef struct cwi_rim {
+typedef struct cwi_boundary_loop {
     const uint32_t *vertices; /* of the mesh, in the direction of the patch's triangles */
     const uint32_t *beside;   /* third vertex of the triangle at the edge to the next vertex */
     size_t size;
-} cwi_rim;
+} cwi_boundary_loop;
 
 /* The mesh for all holes: its edges, and the triangles around vertices. */
 typedef struct cwi_hole_mesh {
@@ -28,7 +28,7 @@ typedef struct cwi_hole_patch {
     double *sizes; /* of points: mean length of the edges of the mesh there; 0: not known */
     uint32_t (*triangles)[3];
     uint32_t (*neighbours)[3]; /* across the edge from each corner to the next */
-    size_t count, triangle_count, rim;
+    size_t count, triangle_count, loop;
     size_t capacity, triangle_capacity;
 } cwi_hole_patch;
 
@@ -43,17 +43,17 @@ bool cwi_patch_add_point(cwi_hole_patch *patch, const double point[3]);
 /* Triangulates a rim whose points are in the patch. It has the smallest maximum angle between
  * neighbours, and then the smallest area, if the rim is short. A point in the middle is added where no
  * triangulation would do without an edge that the mesh has. */
-bool cwi_patch_triangulate(cwi_hole_patch *patch, const cwi_rim *rim,
+bool cwi_patch_triangulate(cwi_hole_patch *patch, const cwi_boundary_loop *loop,
                            const cwi_hole_mesh *around);
 
 /* Adds points until triangles are as large as those around the rim, times a factor. */
-bool cwi_patch_refine(cwi_hole_patch *patch, const cwi_rim *rim, const cwi_hole_mesh *around,
-                      double times);
+bool cwi_patch_refine(cwi_hole_patch *patch, const cwi_boundary_loop *loop,
+                      const cwi_hole_mesh *around, double times);
 
 /* Moves the points inside: to the surface of least area, about; or if fair, to one that goes on smoothly
  * from the triangles around.
  * is_later  a coarser patch was moved before, and this one begins there */
-bool cwi_patch_fair(cwi_hole_patch *patch, const cwi_rim *rim, const cwi_hole_mesh *around,
-                    bool is_fair, bool is_later);
+bool cwi_patch_fair(cwi_hole_patch *patch, const cwi_boundary_loop *loop,
+                    const cwi_hole_mesh *around, bool is_fair, bool is_later);
 
 #endif

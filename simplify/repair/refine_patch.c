@@ -21,7 +21,7 @@ static const double FLIP_BELOW = -1e-6;
 
 typedef struct refinement {
     cwi_hole_patch *patch;
-    const cwi_rim *rim;
+    const cwi_boundary_loop *loop;
     const cwi_hole_mesh *around;
     double times; /* how many times larger than around the rim triangles may be */
 } refinement;
@@ -82,14 +82,14 @@ static double measure_edges(const refinement *r, uint32_t v)
 }
 
 /* Sets the sizes at the rim, and of a point in the middle of a fan. */
-static void measure_rim(refinement *r)
+static void measure_loop(refinement *r)
 {
     double mean = 0;
-    for (size_t n = 0; n < r->rim->size; n++) {
-        r->patch->sizes[n] = measure_edges(r, r->rim->vertices[n]);
-        mean += r->patch->sizes[n] / (double)r->rim->size;
+    for (size_t n = 0; n < r->loop->size; n++) {
+        r->patch->sizes[n] = measure_edges(r, r->loop->vertices[n]);
+        mean += r->patch->sizes[n] / (double)r->loop->size;
     }
-    for (size_t n = r->rim->size; n < r->patch->count; n++)
+    for (size_t n = r->loop->size; n < r->patch->count; n++)
         if (r->patch->sizes[n] == 0)
             r->patch->sizes[n] = mean;
 }
@@ -111,13 +111,13 @@ static int side_toward(const cwi_hole_patch *p, uint32_t t, uint32_t neighbour)
  * a rim, the other. */
 static bool has_patch_edge(const cwi_hole_patch *p, uint32_t t, uint32_t a, uint32_t b)
 {
-    for (int way = 0; way < 2; way++) {
+    for (int forward = 0; forward < 2; forward++) {
         uint32_t at = t;
         do {
             const int k = corner_of(p, at, a);
             if (p->triangles[at][(k + 1) % 3] == b || p->triangles[at][(k + 2) % 3] == b)
                 return true;
-            at = p->neighbours[at][way ? k : (k + 2) % 3];
+            at = p->neighbours[at][forward ? k : (k + 2) % 3];
         } while (at != CWI_NO_NEIGHBOUR && at != t);
         if (at == t)
             return false;
@@ -175,9 +175,9 @@ static bool flip_edge(refinement *r, uint32_t t, int k)
     if (!(sum < FLIP_BELOW) || !keeps_facing(p, a, b, tip, far) || tip == far ||
         has_patch_edge(p, t, tip, far))
         return false;
-    if (tip < r->rim->size && far < r->rim->size &&
-        cwi_edge_exists(r->around->edges, r->around->edge_count, r->rim->vertices[tip],
-                        r->rim->vertices[far]))
+    if (tip < r->loop->size && far < r->loop->size &&
+        cwi_edge_exists(r->around->edges, r->around->edge_count, r->loop->vertices[tip],
+                        r->loop->vertices[far]))
         return false;
     const uint32_t beyond_b = p->neighbours[t][(k + 1) % 3], /* edge b, tip */
         beyond_a = p->neighbours[t][(k + 2) % 3],            /* edge tip, a */
@@ -242,13 +242,13 @@ static bool divide_triangle(refinement *r, uint32_t t, const double middle[3], d
     return true;
 }
 
-bool cwi_patch_refine(cwi_hole_patch *patch, const cwi_rim *rim, const cwi_hole_mesh *around,
-                      double times)
+bool cwi_patch_refine(cwi_hole_patch *patch, const cwi_boundary_loop *loop,
+                      const cwi_hole_mesh *around, double times)
 {
-    refinement r = {.patch = patch, .rim = rim, .around = around, .times = times};
+    refinement r = {.patch = patch, .loop = loop, .around = around, .times = times};
     bool ok = find_neighbours(patch), divided = true;
     if (ok) {
-        measure_rim(&r);
+        measure_loop(&r);
         flip_edges(&r);
     }
     for (int n = 0; n < DIVIDE_ROUNDS && ok && divided; n++) {

@@ -89,10 +89,10 @@ static void measure_stars(touching *t)
         cwi_cross(edges[0], edges[1], area);
         for (int k = 0; k < 6; k++) {
             const uint32_t w = v[k % 3];
-            const double square =
+            const double distance_sq =
                 cwi_dot(edges[k < 3 ? k : (k + 2) % 3], edges[k < 3 ? k : (k + 2) % 3]);
-            if (t->shortest_sq[w] == 0 || square < t->shortest_sq[w])
-                t->shortest_sq[w] = square;
+            if (t->shortest_sq[w] == 0 || distance_sq < t->shortest_sq[w])
+                t->shortest_sq[w] = distance_sq;
             for (int a = 0; a < 3 && k < 3; a++)
                 t->normal[w][a] += area[a];
         }
@@ -120,9 +120,9 @@ static void count_moves(touching *t)
     cw_repair_facts *f = &t->r->facts;
     for (size_t v = 0; v < t->r->mesh.vertex_count; v++) {
         const float *p = t->r->mesh.positions + 3 * v, *q = t->before + 3 * v;
-        const double square = cwi_point_distance_sq(p, q);
-        f->touching_vertices += square > 0;
-        f->parted_mm = fmax(f->parted_mm, sqrt(square));
+        const double distance_sq = cwi_point_distance_sq(p, q);
+        f->touching_vertices += distance_sq > 0;
+        f->parted_mm = fmax(f->parted_mm, sqrt(distance_sq));
     }
 }
 
@@ -264,8 +264,8 @@ static bool mark_fragments(const cwi_repair *r, bool *marked)
         if (!marked[t])
             area[cwi_sets_find(part, t)] += cwi_mesh_area(&r->mesh, t);
     for (uint32_t t = 0; t < count && ok; t++) {
-        double *most = &largest[cwi_sets_find(whole, t)];
-        *most = fmax(*most, area[t]);
+        double *max_area = &largest[cwi_sets_find(whole, t)];
+        *max_area = fmax(*max_area, area[t]);
     }
     for (uint32_t t = 0; t < count && ok; t++)
         if (!marked[t] &&

@@ -200,7 +200,7 @@ static bool triangulate_polygon(polygon_cells *p, cwi_hole_patch *patch)
 /* A ring of vertices from which ears are cut. */
 typedef struct ear_ring {
     cwi_hole_patch *patch;
-    const cwi_rim *rim;
+    const cwi_boundary_loop *loop;
     const cwi_hole_mesh *around;
     uint32_t *vertex;
     double (*outside)[3]; /* normal beyond the edge to the next vertex */
@@ -232,8 +232,8 @@ static bool cut_ears(ear_ring *e, double min_cosine, size_t *cut)
         const bool is_open = !was_cut && n + 1 < e->size && e->size - *cut > MAX_EXACT;
         const uint32_t a = kept ? e->vertex[kept - 1] : 0, c = is_open ? e->vertex[n + 1] : 0;
         was_cut = is_open && measure_ear(e, a, b, c) >= min_cosine &&
-                  !cwi_edge_exists(e->around->edges, e->around->edge_count, e->rim->vertices[a],
-                                   e->rim->vertices[c]);
+                  !cwi_edge_exists(e->around->edges, e->around->edge_count,
+                                   e->loop->vertices[a], e->loop->vertices[c]);
         if (!was_cut) {
             e->vertex[kept] = b;
             memcpy(e->outside[kept++], e->outside[n], sizeof *e->outside);
@@ -248,7 +248,7 @@ static bool cut_ears(ear_ring *e, double min_cosine, size_t *cut)
     return ok;
 }
 
-static bool shorten_rim(ear_ring *e)
+static bool shorten_loop(ear_ring *e)
 {
     static const double limits[] = {0, -0.5, -0.87, -1.5, -2.5};
     size_t level = 0, cut = 0;
@@ -270,14 +270,14 @@ static bool shorten_rim(ear_ring *e)
 
 /* --- all rims ----------------------------------------------------------------------------- */
 
-static void set_outside(const cwi_hole_patch *patch, const cwi_rim *rim, const cw_mesh *m,
-                        double (*outside)[3])
+static void set_outside(const cwi_hole_patch *patch, const cwi_boundary_loop *loop,
+                        const cw_mesh *m, double (*outside)[3])
 {
-    for (size_t n = 0; n < rim->size; n++) {
+    for (size_t n = 0; n < loop->size; n++) {
         double third[3];
         for (size_t a = 0; a < 3; a++)
-            third[a] = (double)m->positions[3 * (size_t)rim->beside[n] + a];
-        measure_triangle(patch->points[(n + 1) % rim->size], patch->points[n], third,
+            third[a] = (double)m->positions[3 * (size_t)loop->beside[n] + a];
+        measure_triangle(patch->points[(n + 1) % loop->size], patch->points[n], third,
                          outside[n]);
     }
 }
@@ -286,24 +286,24 @@ static void mark_taken(const ear_ring *e, bool *is_taken)
 {
     for (size_t i = 0; i < e->size; i++)
         for (size_t j = i + 2; j < e->size; j++)
-            is_taken[i * e->size + j] =
-                cwi_edge_exists(e->around->edges, e->around->edge_count,
-                                e->rim->vertices[e->vertex[i]], e->rim->vertices[e->vertex[j]]);
+            is_taken[i * e->size + j] = cwi_edge_exists(e->around->edges, e->around->edge_count,
+                                                        e->loop->vertices[e->vertex[i]],
+                                                        e->loop->vertices[e->vertex[j]]);
 }
 
-bool cwi_patch_triangulate(cwi_hole_patch *patch, const cwi_rim *rim,
+bool cwi_patch_triangulate(cwi_hole_patch *patch, const cwi_boundary_loop *loop,
                            const cwi_hole_mesh *around)
 {
-    ear_ring e = {.patch = patch, .rim = rim, .around = around, .size = rim->size};
+    ear_ring e = {.patch = patch, .loop = loop, .around = around, .size = loop->size};
     bool *is_taken = NULL;
-    e.vertex = cwi_alloc_array(rim->size, sizeof *e.vertex);
-    e.outside = cwi_alloc_array(rim->size, sizeof *e.outside);
+    e.vertex = cwi_alloc_array(loop->size, sizeof *e.vertex);
+    e.outside = cwi_alloc_array(loop->size, sizeof *e.outside);
     bool ok = e.vertex && e.outside;
-    for (uint32_t n = 0; n < rim->size && ok; n++)
+    for (uint32_t n = 0; n < loop->size && ok; n++)
         e.vertex[n] = n;
     if (ok) {
-        set_outside(patch, rim, around->mesh, e.outside);
-        ok = shorten_rim(&e);
+        set_outside(patch, loop, around->mesh, e.outside);
+        ok = shorten_loop(&e);
     }
     polygon_cells p = {.patch = patch,
                        .vertex = e.vertex,

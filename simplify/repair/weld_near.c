@@ -50,7 +50,7 @@ static bool init_map(near_map *n, double distance_mm)
 static uint32_t find_near(const near_map *n, const float *p, const uint32_t at[3])
 {
     uint32_t best = UINT32_MAX;
-    double least = n->distance_sq;
+    double nearest_sq = n->distance_sq;
     for (uint32_t k = 0; k < 27; k++) {
         const uint32_t beside[3] = {at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1,
                                     at[2] + k / 9 - 1};
@@ -58,9 +58,9 @@ static uint32_t find_near(const near_map *n, const float *p, const uint32_t at[3
         if (cell == CWI_NO_LATTICE_POINT)
             continue;
         for (uint32_t v = n->first[cell]; v != UINT32_MAX; v = n->next[v]) {
-            const double square = cwi_point_distance_sq(p, n->mesh->positions + 3 * (size_t)v);
-            if (square < least || (square == least && v < best)) {
-                least = square;
+            const double here_sq = cwi_point_distance_sq(p, n->mesh->positions + 3 * (size_t)v);
+            if (here_sq < nearest_sq || (here_sq == nearest_sq && v < best)) {
+                nearest_sq = here_sq;
                 best = v;
             }
         }

@@ -69,13 +69,13 @@ static double measure_area(const cw_mesh *m)
 static cw_status check_radius(const cwi_repair *r, cw_error *err)
 {
     const double area = 2 * measure_area(r->input),
-                 least = sqrt(DENSITY * area / MAX_TRIANGLES);
-    return r->desc.wrap_mm >= least
+                 smallest = sqrt(DENSITY * area / MAX_TRIANGLES);
+    return r->desc.wrap_mm >= smallest
                ? CW_OK
                : cwi_fail(err, CW_ERR_LIMIT,
                           "wrap_mm is %g: the wrap would have more than %g triangles; at least "
                           "%.3g would do",
-                          r->desc.wrap_mm, MAX_TRIANGLES, least);
+                          r->desc.wrap_mm, MAX_TRIANGLES, smallest);
 }
 
 cw_status cwi_wrap_mesh(cwi_repair *r, cw_error *err)

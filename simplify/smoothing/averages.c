@@ -27,7 +27,8 @@ typedef struct pass {
 bool cwi_smooth_is_fixed(const cwi_smoother *s, size_t v)
 {
     const uint32_t count = s->rings.count[v];
-    return s->rings.rim[v] == CWI_RIM_NONE ? count < 2 : !s->desc.move_border || count != 2;
+    return s->rings.border[v] == CWI_BORDER_NONE ? count < 2
+                                                 : !s->desc.move_border || count != 2;
 }
 
 /* Returns the mean of vectors of the neighbours. */
@@ -99,7 +100,7 @@ static cw_status run_pass(pass *p, void (*work)(void *, size_t), size_t n, size_
                           const cw_progress *progress, cw_error *err)
 {
     const cwi_part_progress part = {
-        .whole = progress, .from = (double)n / (double)passes, .share = 1 / (double)passes};
+        .whole = progress, .from = (double)n / (double)passes, .fraction = 1 / (double)passes};
     const cw_progress part_progress = cwi_progress_part(&part);
     return cwi_parallel_for((p->s->rings.vertices + CWI_RING_PART - 1) / CWI_RING_PART,
                             16 * CWI_RING_PART, p->s->desc.threads, &part_progress, "smoothing",

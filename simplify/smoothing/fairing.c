@@ -17,12 +17,12 @@ enum { MAX_STEPS = 500 };
 
 /* The least area that a triangle counts with, as a fraction of the sum of its squared sides: thin
  * ones would be too stiff for the rest. */
-static const double LEAST_AREA = 0.01;
+static const double MIN_AREA = 0.01;
 
 /* A linear system over the free vertices, for three coordinates at once. */
 typedef struct fair_system {
     const cwi_smoother *s;
-    bool of_rims;     /* rims are free, in place of the rest */
+    bool of_borders;  /* rims are free, in place of the rest */
     double time;      /* of a step, mm2 */
     double *weights;  /* of the edges to neighbours, as rings.neighbours lists them */
     double *mass;     /* of each vertex */
@@ -54,15 +54,15 @@ static void add_weight(fair_system *f, uint32_t v, uint32_t w, double weight)
 /* Adds a triangle: half the cotangent of each corner to the side opposite. */
 static void add_triangle(fair_system *f, const uint32_t *corners)
 {
-    double side[3][3], area[3], squares = 0;
+    double side[3][3], area[3], sides_sq = 0;
     for (size_t c = 0; c < 3; c++) {
         const double *p = f->s->from + 3 * (size_t)corners[(c + 1) % 3],
                      *q = f->s->from + 3 * (size_t)corners[(c + 2) % 3];
         cwi_sub(q, p, side[c]);
-        squares += cwi_dot(side[c], side[c]);
+        sides_sq += cwi_dot(side[c], side[c]);
     }
     cwi_cross(side[0], side[1], area);
-    const double twice = cwi_length(area), counted = cwi_greater(twice, LEAST_AREA * squares);
+    const double twice = cwi_length(area), counted = cwi_greater(twice, MIN_AREA * sides_sq);
     for (size_t c = 0; c < 3 && counted > 0; c++) {
         const uint32_t v = corners[(c + 1) % 3], w = corners[(c + 2) % 3];
         const double half_cotangent =
@@ -81,11 +81,11 @@ static void assemble_surface(fair_system *f)
 }
 
 /* Rims as curves: an edge weighs one by its length, and each end has half of the length. */
-static void assemble_rims(fair_system *f)
+static void assemble_borders(fair_system *f)
 {
     const cwi_rings *r = &f->s->rings;
     for (size_t v = 0; v < r->vertices; v++)
-        for (uint32_t i = 0; i < r->count[v] && r->rim[v] != CWI_RIM_NONE; i++) {
+        for (uint32_t i = 0; i < r->count[v] && r->border[v] != CWI_BORDER_NONE; i++) {
             const double *p = f->s->from + 3 * v,
                          *q = f->s->from + 3 * (size_t)r->neighbours[r->begin[v] + i];
             const double length = cwi_distance(p, q);
@@ -96,7 +96,8 @@ static void assemble_rims(fair_system *f)
 
 static bool is_free(const fair_system *f, size_t v)
 {
-    return !cwi_smooth_is_fixed(f->s, v) && f->of_rims == (f->s->rings.rim[v] != CWI_RIM_NONE);
+    return !cwi_smooth_is_fixed(f->s, v) &&
+           f->of_borders == (f->s->rings.border[v] != CWI_BORDER_NONE);
 }
 
 static void finish_diagonal(fair_system *f)
@@ -117,8 +118,8 @@ static void assemble_system(fair_system *f)
     const cwi_rings *r = &f->s->rings;
     memset(f->weights, 0, r->begin[r->vertices] * sizeof *f->weights);
     memset(f->mass, 0, r->vertices * sizeof *f->mass);
-    if (f->of_rims)
-        assemble_rims(f);
+    if (f->of_borders)
+        assemble_borders(f);
     else
         assemble_surface(f);
     finish_diagonal(f);
@@ -313,10 +314,10 @@ cw_status cwi_smooth_fair(cwi_smoother *s, const cw_progress *progress, cw_error
     for (size_t n = 0; n < 2 * s->desc.iterations && st == CW_OK; n++) {
         const cwi_part_progress part = {.whole = progress,
                                         .from = (double)n / (double)(2 * s->desc.iterations),
-                                        .share = 1 / (double)(2 * s->desc.iterations)};
+                                        .fraction = 1 / (double)(2 * s->desc.iterations)};
         const cw_progress part_progress = cwi_progress_part(&part);
-        f.of_rims = n % 2 == 0;
-        if (f.of_rims && !s->desc.move_border)
+        f.of_borders = n % 2 == 0;
+        if (f.of_borders && !s->desc.move_border)
             continue;
         assemble_system(&f);
         st = solve_system(&f, &part_progress, err);

@@ -47,8 +47,8 @@ void cwi_volumes_measure(cwi_kept_volumes *volumes, const double *places)
     }
 }
 
-void cwi_volumes_gradients(cwi_kept_volumes *volumes, const double *places, const uint8_t *rims,
-                           double *gradients)
+void cwi_volumes_gradients(cwi_kept_volumes *volumes, const double *places,
+                           const uint8_t *borders, double *gradients)
 {
     const cw_mesh *mesh = volumes->mesh;
     for (size_t n = 0; n < volumes->count; n++)
@@ -74,7 +74,7 @@ void cwi_volumes_gradients(cwi_kept_volumes *volumes, const double *places, cons
     }
     for (size_t n = 0; n < mesh->vertex_count; n++) {
         const double *gradient = gradients + 3 * n;
-        if (rims[n] == CWI_RIM_NONE)
+        if (borders[n] == CWI_BORDER_NONE)
             volumes->items[volumes->component[n]].area += cwi_length(gradient);
     }
 }
@@ -88,7 +88,7 @@ double cwi_volumes_sum(const cwi_kept_volumes *volumes, bool before)
     return sum;
 }
 
-cw_status cwi_volumes_find(const cw_mesh *mesh, const uint8_t *rims, const double *places,
+cw_status cwi_volumes_find(const cw_mesh *mesh, const uint8_t *borders, const double *places,
                            cwi_kept_volumes *volumes, cw_error *err)
 {
     *volumes = (cwi_kept_volumes){.mesh = mesh};
@@ -101,8 +101,8 @@ cw_status cwi_volumes_find(const cw_mesh *mesh, const uint8_t *rims, const doubl
     for (size_t n = mesh->vertex_count; n-- > 0;) {
         cwi_kept_volume *item = &volumes->items[volumes->component[n]];
         item->reference = (uint32_t)n;
-        item->is_open = item->is_open || rims[n] == CWI_RIM_OPEN;
-        item->is_branched = item->is_branched || rims[n] == CWI_RIM_JUNCTION;
+        item->is_open = item->is_open || borders[n] == CWI_BORDER_OPEN;
+        item->is_branched = item->is_branched || borders[n] == CWI_BORDER_JUNCTION;
     }
     cwi_volumes_measure(volumes, places);
     for (size_t n = 0; n < volumes->count; n++)

@@ -18,7 +18,7 @@ enum { DEFAULT_ITERATIONS = 10, DEFAULT_STEPS = 3, VOLUME_ROUNDS = 4, ROUNDING_S
 static const double DEFAULT_MOVE = 0.5, DEFAULT_WIDTH = 6;
 
 /* Shares of the progress: neighbours, moves, and the search for triangles that meet. */
-static const double RINGS_SHARE = 0.1, MOVES_SHARE = 0.5;
+static const double RINGS_FRACTION = 0.1, MOVES_FRACTION = 0.5;
 
 const char *cw_smooth_method_name(cw_smooth_method method)
 {
@@ -118,10 +118,10 @@ static void limit_and_keep_volumes(cwi_smoother *s)
     cwi_kept_volumes *volumes = &s->volumes;
     double *gradients = s->to;
     for (int round = 0; round < VOLUME_ROUNDS; round++) {
-        cwi_volumes_gradients(volumes, s->from, s->rings.rim, gradients);
+        cwi_volumes_gradients(volumes, s->from, s->rings.border, gradients);
         for (size_t v = 0; v < s->mesh->vertex_count; v++) {
             const cwi_kept_volume *item = &volumes->items[volumes->component[v]];
-            const bool stays = s->rings.rim[v] != CWI_RIM_NONE || item->is_branched ||
+            const bool stays = s->rings.border[v] != CWI_BORDER_NONE || item->is_branched ||
                                (item->is_open && s->desc.move_border);
             double *normal = gradients + 3 * v;
             if (!cwi_normalise(normal))
@@ -165,8 +165,8 @@ static void count_facts(cwi_smoother *s, cw_smooth_facts *facts)
         const double move = measure_move(s->rounded + 3 * v, mesh->positions + 3 * v);
         facts->max_mm = cwi_greater(facts->max_mm, move);
         sum += move;
-        facts->border += s->rings.rim[v] == CWI_RIM_OPEN;
-        facts->junction += s->rings.rim[v] == CWI_RIM_JUNCTION;
+        facts->border += s->rings.border[v] == CWI_BORDER_OPEN;
+        facts->junction += s->rings.border[v] == CWI_BORDER_JUNCTION;
     }
     facts->mean_mm = mesh->vertex_count ? sum / (double)mesh->vertex_count : 0;
     for (size_t t = 0; t < mesh->triangle_count; t++) {
@@ -189,10 +189,10 @@ static void count_facts(cwi_smoother *s, cw_smooth_facts *facts)
 /* Finds the new positions, and leaves the mesh as it is. */
 static cw_status smooth_places(cwi_smoother *s, cw_smooth_facts *facts, cw_error *err)
 {
-    const cwi_part_progress first = {&s->desc.progress, 0, RINGS_SHARE},
-                            moves = {&s->desc.progress, RINGS_SHARE, MOVES_SHARE},
-                            last = {&s->desc.progress, RINGS_SHARE + MOVES_SHARE,
-                                    1 - RINGS_SHARE - MOVES_SHARE};
+    const cwi_part_progress first = {&s->desc.progress, 0, RINGS_FRACTION},
+                            moves = {&s->desc.progress, RINGS_FRACTION, MOVES_FRACTION},
+                            last = {&s->desc.progress, RINGS_FRACTION + MOVES_FRACTION,
+                                    1 - RINGS_FRACTION - MOVES_FRACTION};
     const cw_progress first_progress = cwi_progress_part(&first),
                       moves_progress = cwi_progress_part(&moves),
                       last_progress = cwi_progress_part(&last);
@@ -202,7 +202,7 @@ static cw_status smooth_places(cwi_smoother *s, cw_smooth_facts *facts, cw_error
     if (st == CW_OK)
         st = alloc_places(s, err);
     if (st == CW_OK)
-        st = cwi_volumes_find(s->mesh, s->rings.rim, s->from, &s->volumes, err);
+        st = cwi_volumes_find(s->mesh, s->rings.border, s->from, &s->volumes, err);
     if (st == CW_OK)
         st = s->desc.method == CW_SMOOTH_FAIR ? cwi_smooth_fair(s, &moves_progress, err)
                                               : cwi_smooth_average(s, &moves_progress, err);

@@ -224,9 +224,9 @@ cw_status cwi_smooth_undo_crossings(cwi_smoother *s, cw_smooth_facts *facts,
     u.states = cwi_alloc_zeroed(s->mesh->vertex_count, sizeof *u.states);
     cw_status st = u.states ? CW_OK : cwi_fail_memory(err);
     bool is_done = false;
-    double share = 0.5; /* of each round: half of the rest */
+    double fraction = 0.5; /* of each round: half of the rest */
     for (int round = 0; st == CW_OK && !is_done; round++) {
-        const cwi_part_progress part = {progress, 1 - 2 * share, share};
+        const cwi_part_progress part = {progress, 1 - 2 * fraction, fraction};
         const cw_progress part_progress = cwi_progress_part(&part);
         put_flat_triangles_back(&u);
         const size_t back = u.back;
@@ -234,7 +234,7 @@ cw_status cwi_smooth_undo_crossings(cwi_smoother *s, cw_smooth_facts *facts,
         is_done = u.back == back;
         if (st == CW_OK && !is_done && round >= NARROW_ROUNDS)
             put_surroundings_back(&u);
-        share /= 2;
+        fraction /= 2;
     }
     facts->put_back = u.back;
     cwi_free(u.states);

@@ -73,25 +73,25 @@ static uint32_t count_same(const uint32_t *list, uint32_t count, uint32_t i)
 }
 
 /* Keeps one of each neighbour, or only those at a rim. */
-static uint32_t shorten_list(uint32_t *list, uint32_t count, bool of_rim)
+static uint32_t shorten_list(uint32_t *list, uint32_t count, bool of_border)
 {
     uint32_t kept = 0;
     for (uint32_t i = 0, same; i < count; i += same) {
         same = count_same(list, count, i);
-        if (!of_rim || same != 2)
+        if (!of_border || same != 2)
             list[kept++] = list[i];
     }
     return kept;
 }
 
-static cwi_vertex_rim find_rim(const uint32_t *list, uint32_t count)
+static cwi_vertex_border find_border(const uint32_t *list, uint32_t count)
 {
-    cwi_vertex_rim rim = CWI_RIM_NONE;
-    for (uint32_t i = 0, same; i < count && rim != CWI_RIM_OPEN; i += same) {
+    cwi_vertex_border border = CWI_BORDER_NONE;
+    for (uint32_t i = 0, same; i < count && border != CWI_BORDER_OPEN; i += same) {
         same = count_same(list, count, i);
-        rim = same == 1 ? CWI_RIM_OPEN : same > 2 ? CWI_RIM_JUNCTION : rim;
+        border = same == 1 ? CWI_BORDER_OPEN : same > 2 ? CWI_BORDER_JUNCTION : border;
     }
-    return rim;
+    return border;
 }
 
 static void finish_part(void *context, size_t k)
@@ -100,8 +100,8 @@ static void finish_part(void *context, size_t k)
     for (size_t v = k * CWI_RING_PART; v < (k + 1) * CWI_RING_PART && v < r->vertices; v++) {
         uint32_t *list = r->neighbours + r->begin[v];
         sort_list(list, r->count[v]);
-        r->rim[v] = (uint8_t)find_rim(list, r->count[v]);
-        r->count[v] = shorten_list(list, r->count[v], r->rim[v] != CWI_RIM_NONE);
+        r->border[v] = (uint8_t)find_border(list, r->count[v]);
+        r->count[v] = shorten_list(list, r->count[v], r->border[v] != CWI_BORDER_NONE);
     }
 }
 
@@ -112,8 +112,8 @@ cw_status cwi_rings_find(const cw_mesh *mesh, int threads, const cw_progress *pr
     *rings = (cwi_rings){.vertices = count};
     rings->begin = cwi_alloc_zeroed(count + 1, sizeof *rings->begin);
     rings->count = cwi_alloc_zeroed(count, sizeof *rings->count);
-    rings->rim = cwi_alloc_zeroed(count, sizeof *rings->rim);
-    if (rings->begin && rings->count && rings->rim) {
+    rings->border = cwi_alloc_zeroed(count, sizeof *rings->border);
+    if (rings->begin && rings->count && rings->border) {
         place_lists(mesh, rings);
         rings->neighbours = cwi_alloc_large(rings->begin[count], sizeof *rings->neighbours);
     }
@@ -129,6 +129,6 @@ void cwi_rings_free(cwi_rings *rings)
     cwi_free(rings->begin);
     cwi_free(rings->count);
     cwi_free(rings->neighbours);
-    cwi_free(rings->rim);
+    cwi_free(rings->border);
     *rings = (cwi_rings){0};
 }

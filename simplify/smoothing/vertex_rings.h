@@ -8,11 +8,11 @@
 enum { CWI_RING_PART = 1 << 13 };
 
 /* Edges that a vertex is at. */
-typedef enum cwi_vertex_rim {
-    CWI_RIM_NONE,     /* edges of two triangles alone */
-    CWI_RIM_OPEN,     /* an edge of one triangle */
-    CWI_RIM_JUNCTION, /* an edge of three or more, and none of one */
-} cwi_vertex_rim;
+typedef enum cwi_vertex_border {
+    CWI_BORDER_NONE,     /* edges of two triangles alone */
+    CWI_BORDER_OPEN,     /* an edge of one triangle */
+    CWI_BORDER_JUNCTION, /* an edge of three or more, and none of one */
+} cwi_vertex_border;
 
 /* Neighbours of a vertex are those at the other ends of its edges, each once and in rising order.
  * A vertex at a rim has the ends of the rim's edges alone. Not a corner table: smoothing reads
@@ -22,7 +22,7 @@ typedef struct cwi_rings {
     size_t *begin;        /* first neighbour of each vertex; vertices + 1 */
     uint32_t *count;      /* neighbours of each vertex */
     uint32_t *neighbours; /* with gaps between those of two vertices */
-    uint8_t *rim;         /* of each vertex, a cwi_vertex_rim */
+    uint8_t *border;      /* of each vertex, a cwi_vertex_border */
 } cwi_rings;
 
 /* Finds the neighbours. Triangles that name a vertex twice have no edges.

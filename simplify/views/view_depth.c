@@ -58,14 +58,14 @@ static void fill_triangle(cw_simplify_view *view, const spot s[3])
                  bottom = fmin(floor(fmax(s[0].y, fmax(s[1].y, s[2].y)) - 0.5), height - 1);
     for (double y = top; y <= bottom && area != 0; y++)
         for (double x = left; x <= right; x++) {
-            double share[3], linear = 0;
+            double weights[3], linear = 0;
             for (int k = 0; k < 3; k++) {
-                share[k] =
+                weights[k] =
                     twice_area(s + (k + 1) % 3, s + (k + 2) % 3, x + 0.5, y + 0.5) / area;
-                linear += share[k] * s[k].linear;
+                linear += weights[k] * s[k].linear;
             }
             float *at = view->depth + (size_t)y * view->width + (size_t)x;
-            if (share[0] >= -SLACK && share[1] >= -SLACK && share[2] >= -SLACK)
+            if (weights[0] >= -SLACK && weights[1] >= -SLACK && weights[2] >= -SLACK)
                 *at = fminf(*at, (float)(perspective ? 1 / linear : linear));
         }
 }

@@ -72,9 +72,9 @@ typedef struct place {
 
 static place place_of(const cwi_view_tolerance *v, const double p[3])
 {
-    const double way[3] = {p[0] - v->eye[0], p[1] - v->eye[1], p[2] - v->eye[2]};
-    return (place){{cwi_dot(way, v->axes[0]), cwi_dot(way, v->axes[1])},
-                   cwi_dot(way, v->axes[2])};
+    const double from_eye[3] = {p[0] - v->eye[0], p[1] - v->eye[1], p[2] - v->eye[2]};
+    return (place){{cwi_dot(from_eye, v->axes[0]), cwi_dot(from_eye, v->axes[1])},
+                   cwi_dot(from_eye, v->axes[2])};
 }
 
 static double pixel_at(const cwi_view_tolerance *v, double depth)
@@ -107,26 +107,26 @@ static double distance_beyond(const cwi_view_tolerance *v, const place *p, int p
 static bool is_seen(const cwi_view_tolerance *v, const place *p, int corners, double margin)
 {
     for (int plane = 0; plane < 5; plane++) {
-        double least = INFINITY;
+        double min_distance = INFINITY;
         for (int c = 0; c < corners; c++)
-            least = fmin(least, distance_beyond(v, p + c, plane));
-        if (least > margin)
+            min_distance = fmin(min_distance, distance_beyond(v, p + c, plane));
+        if (min_distance > margin)
             return false;
     }
     return true;
 }
 
 /* Decides whether a part is hidden: a surface is in front of it at all pixels around it. Each
- * of the two may move by `most`, and the other one's edge may be as far away in the picture. */
-static bool is_hidden(const cwi_view_tolerance *v, const place *p, int corners, double most,
-                      double margin)
+ * of the two may move by `max_error`, and the other one's edge may be as far away in the picture. */
+static bool is_hidden(const cwi_view_tolerance *v, const place *p, int corners,
+                      double max_error, double margin)
 {
     double nearest = INFINITY, low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (int c = 0; c < corners; c++)
         nearest = fmin(nearest, p[c].depth);
-    if (!v->depth || nearest - 2 * most - margin <= v->nearest)
+    if (!v->depth || nearest - 2 * max_error - margin <= v->nearest)
         return false;
-    const double around = 1 + 2 * v->pixels + (most + margin) / pixel_at(v, nearest);
+    const double around = 1 + 2 * v->pixels + (max_error + margin) / pixel_at(v, nearest);
     for (int c = 0; c < corners; c++) {
         const double pixel = pixel_at(v, p[c].depth),
                      at[2] = {0.5 * v->size[0] + p[c].across[0] / pixel,
@@ -136,7 +136,7 @@ static bool is_hidden(const cwi_view_tolerance *v, const place *p, int corners, 
             high[a] = fmax(high[a], fmin(floor(at[a] + around), v->size[a] - 1));
         }
     }
-    const double before = (nearest - 2 * most - margin) / v->unit;
+    const double before = (nearest - 2 * max_error - margin) / v->unit;
     for (double y = low[1]; y <= high[1]; y++)
         for (double x = low[0]; x <= high[0]; x++)
             if ((double)v->depth[(size_t)(y * v->size[0] + x)] >= before)
@@ -144,17 +144,17 @@ static bool is_hidden(const cwi_view_tolerance *v, const place *p, int corners, 
     return true;
 }
 
-static double limit_error(const cwi_view_tolerance *v, const place *p, int corners, double most,
-                          double margin)
+static double limit_error(const cwi_view_tolerance *v, const place *p, int corners,
+                          double max_error, double margin)
 {
-    double least = INFINITY;
-    if (!is_seen(v, p, corners, margin) || is_hidden(v, p, corners, most, margin))
-        return least;
+    double min_distance = INFINITY;
+    if (!is_seen(v, p, corners, margin) || is_hidden(v, p, corners, max_error, margin))
+        return min_distance;
     for (int c = 0; c < corners; c++) {
         const double depth = v->rate > 0 ? fmax(p[c].depth, v->nearest) : 0;
-        least = fmin(least, v->even + v->rate * depth);
+        min_distance = fmin(min_distance, v->even + v->rate * depth);
     }
-    return least;
+    return min_distance;
 }
 
 /* --- all of them -------------------------------------------------------------------------- */
@@ -203,19 +203,19 @@ void cwi_views_place(cwi_views *views, const double origin[3], double scale)
     }
 }
 
-double cwi_views_limit(const cwi_views *views, const float *const corners[3], double most,
+double cwi_views_limit(const cwi_views *views, const float *const corners[3], double max_error,
                        double margin)
 {
-    double least = INFINITY;
+    double min_distance = INFINITY;
     for (size_t i = 0; i < views->count; i++) {
         const cwi_view_tolerance *v = &views->view[i];
         place p[3];
         for (int c = 0; c < 3; c++)
             p[c] = place_of(v, (const double[3]){(double)corners[c][0], (double)corners[c][1],
                                                  (double)corners[c][2]});
-        least = fmin(least, limit_error(v, p, 3, most, margin));
+        min_distance = fmin(min_distance, limit_error(v, p, 3, max_error, margin));
     }
-    return least;
+    return min_distance;
 }
 
 cw_status cw_simplify_view_sees(const cw_simplify_view *view, double pixels,

@@ -44,8 +44,8 @@ void cwi_views_free(cwi_views *views);
 void cwi_views_place(cwi_views *views, const double origin[3], double scale);
 
 /* The least of what views allow anywhere on a triangle; infinite where none sees it. What a
- * view sees is wider and deeper by `margin` than it is; surfaces move by `most` at most. */
-double cwi_views_limit(const cwi_views *views, const float *const corners[3], double most,
+ * view sees is wider and deeper by `margin` than it is; surfaces move by `max_error` at most. */
+double cwi_views_limit(const cwi_views *views, const float *const corners[3], double max_error,
                        double margin);
 
 #endif

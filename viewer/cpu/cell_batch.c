@@ -13,15 +13,15 @@ static const float to_first = -0.038675134594812866f, to_second = 0.538675134594
 /* Looks up colours and extinctions of four rows. */
 static inline void glow_of_rows(const cwi_table *table, lanes rows, lanes glow[4])
 {
-    const lanes most = cwi_lanes_spread(CWI_TABLE_ROWS - 1);
-    const lanes at = cwi_lanes_max(cwi_lanes_min(rows, most), cwi_lanes_spread(0));
+    const lanes max = cwi_lanes_spread(CWI_TABLE_ROWS - 1);
+    const lanes at = cwi_lanes_max(cwi_lanes_min(rows, max), cwi_lanes_spread(0));
     const cwi_int_lanes below = __builtin_convertvector(at, cwi_int_lanes),
                         is_last = below > CWI_TABLE_ROWS - 2, n = below + is_last;
-    const lanes share = at - __builtin_convertvector(n, lanes);
+    const lanes fraction = at - __builtin_convertvector(n, lanes);
     for (int k = 0; k < 4; k++) {
         const float *row = table->rows + 4 * (ptrdiff_t)n[k];
         const lanes low = cwi_lanes_load(row), high = cwi_lanes_load(row + 4);
-        glow[k] = low + share[k] * (high - low);
+        glow[k] = low + fraction[k] * (high - low);
     }
     cwi_lanes_transpose(glow);
 }
@@ -56,12 +56,12 @@ static void change_by_depth(const cwi_batch_scene *s, lanes t, lanes glow[4])
 static lanes difference_of(const lanes front[4], const lanes back[4], lanes depth, lanes length)
 {
     const lanes rise = (front[3] - back[3]) * length;
-    lanes most = cwi_lanes_max(rise, -rise);
+    lanes max = cwi_lanes_max(rise, -rise);
     for (int c = 0; c < 3; c++) {
         const lanes turn = depth * (front[c] - back[c]);
-        most = cwi_lanes_max(most, cwi_lanes_max(turn, -turn));
+        max = cwi_lanes_max(max, cwi_lanes_max(turn, -turn));
     }
-    return most;
+    return max;
 }
 
 cwi_batch_light cwi_cell_batch_light(const cwi_batch_scene *s, const cwi_cell_batch *batch)
@@ -104,9 +104,9 @@ cwi_batch_light cwi_cell_batch_light(const cwi_batch_scene *s, const cwi_cell_ba
                 q = b * cwi_lanes_fade(to_second * a + 0.25f * b);
     out.left = cwi_lanes_fade(0.5f * (a + b));
     const lanes sum = p + q;
-    const lanes share = (1 - out.left) / cwi_lanes_choose(sum > 0, sum, one);
+    const lanes fraction = (1 - out.left) / cwi_lanes_choose(sum > 0, sum, one);
     for (int c = 0; c < 3; c++)
-        out.color[c] = share * (p * front[c] + q * back[c]);
+        out.color[c] = fraction * (p * front[c] + q * back[c]);
     out.difference =
         s->has_gradients ? difference_of(front, back, out.depth, length) : cwi_lanes_spread(0);
     return out;

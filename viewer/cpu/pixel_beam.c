@@ -29,7 +29,7 @@ static const double CELL_WIDTH = 0.25;
 static const double STEP = 0.3;
 
 /* The optical depth of a step above which it is halved, and the shortest part of a step. */
-static const double MOST_DEPTH = 0.5, LEAST_PART = 0.25;
+static const double MAX_DEPTH = 0.5, MIN_PART = 0.25;
 
 /* --- preparation --------------------------------------------------------------------------- */
 
@@ -169,18 +169,18 @@ static void cut_beam(beam *m, double t[2])
 
 /* Returns the share of a step of the beam that is on a plane's inner side. The step is a box;
  * of its three reaches towards the plane, the two shorter ones are taken as one. */
-static double share_inside(const plane_cut *c, double t, double step)
+static double fraction_inside(const plane_cut *c, double t, double step)
 {
-    double reach[3], all = 0, most = 0;
+    double reach[3], all = 0, max = 0;
     for (int a = 0; a < 2; a++)
         reach[a] = c->reach[a] + t * c->reach_slope[a];
     reach[2] = fabs(c->slope) * step / 2;
     for (int a = 0; a < 3; a++) {
         all += reach[a];
-        most = fmax(most, reach[a]);
+        max = fmax(max, reach[a]);
     }
-    const double d = c->at + t * c->slope, rest = all - most;
-    const double big = fmax(most, rest), small = fmin(most, rest);
+    const double d = c->at + t * c->slope, rest = all - max;
+    const double big = fmax(max, rest), small = fmin(max, rest);
     if (fabs(d) >= all)
         return d > 0;
     if (fabs(d) <= big - small)
@@ -196,7 +196,7 @@ static double filled_area(const beam *m, double t, double step)
     if (t - step / 2 >= m->whole[0] && t + step / 2 <= m->whole[1])
         return 1;
     for (size_t n = 0; n < m->b->plane_count; n++)
-        *(n < 6 ? &box : &clips) *= share_inside(&m->cuts[n], t, step);
+        *(n < 6 ? &box : &clips) *= fraction_inside(&m->cuts[n], t, step);
     return m->b->frame->scene.cut_away && m->b->plane_count > 6 ? box * (1 - clips)
                                                                 : box * clips;
 }
@@ -245,9 +245,9 @@ static void find_place(const cwi_mean_level *l, const cw_volume *v, const double
     const size_t stride[3] = {1, l->dim[0], l->dim[0] * l->dim[1]};
     for (int a = 0; a < 3; a++) {
         const double x = index[a] + (v->dim[a] > 1 ? 0 : 0.5);
-        const double most = (double)(l->dim[a] - 1);
+        const double max = (double)(l->dim[a] - 1);
         double q = ldexp(x, -l->shift[a]) - 0.5;
-        q = q > 0 ? q < most ? q : most : 0;
+        q = q > 0 ? q < max ? q : max : 0;
         const size_t n = (size_t)q;
         at[a] = (float)(q - (double)n);
         low[a] = n * stride[a];
@@ -278,8 +278,8 @@ static bool row_at(const cwi_cell_corners *corners, const double index[3], float
     float at[3];
     lanes even, odd;
     for (int a = 0; a < 3; a++) {
-        const double most = v->dim[a] > 1 ? (double)v->dim[a] - 2 : 0, x = index[a];
-        const ptrdiff_t cell = (ptrdiff_t)(x > 0 ? x < most ? x : most : 0);
+        const double max = v->dim[a] > 1 ? (double)v->dim[a] - 2 : 0, x = index[a];
+        const ptrdiff_t cell = (ptrdiff_t)(x > 0 ? x < max ? x : max : 0);
         const float inside = v->dim[a] > 1 ? (float)(x - (double)cell) : 0;
         first += cell * v->stride[a];
         at[a] = inside > 0 ? inside < 1 ? inside : 1 : 0;
@@ -352,8 +352,8 @@ static void sample_levels(const beam *m, const double index[3], size_t level, fl
 
 static void integral_at(const double (*sum)[4], double row, double out[4])
 {
-    const double at = row + 0.5, most = CWI_TABLE_ROWS - 1;
-    const size_t n = (size_t)(at > 0 ? at < most ? at : most : 0);
+    const double at = row + 0.5, max = CWI_TABLE_ROWS - 1;
+    const size_t n = (size_t)(at > 0 ? at < max ? at : max : 0);
     for (int c = 0; c < 4; c++)
         out[c] = sum[n][c] + (at - (double)n) * (sum[n + 1][c] - sum[n][c]);
 }
@@ -395,11 +395,11 @@ typedef struct found {
 static void sample_point(const beam *m, const step *s, found *f)
 {
     const cwi_beams *b = m->b;
-    const float most = (float)(CWI_TABLE_ROWS - 1);
+    const float max = (float)(CWI_TABLE_ROWS - 1);
     float row;
     if (!row_at(b->corners, f->index, &row))
         return;
-    row = row > 0 ? row < most ? row : most : 0;
+    row = row > 0 ? row < max ? row : max : 0;
     int32_t n = (int32_t)row;
     n = n > CWI_TABLE_ROWS - 2 ? CWI_TABLE_ROWS - 2 : n;
     const lanes low = cwi_lanes_load(b->table->rows + 4 * n),
@@ -475,16 +475,16 @@ static double empty_length(const beam *m, double t, size_t level)
     const cw_volume *v = b->corners->volume;
     size_t block = 0;
     double shortest = INFINITY;
-    int most = 0;
+    int max = 0;
     for (int a = 2; a >= 0; a--) {
         const double last = v->dim[a] > 1 ? (double)v->dim[a] - 2 : 0;
         double cell = m->ray->index[a] + t * m->ray->slope[a];
         cell = cell > 0 ? cell < last ? cell : last : 0;
         block = block * b->ranges->dim[a] + (size_t)cell / CWI_RANGE_EDGE;
         const int reach = level > 0 ? (3 << b->cells->levels[level].shift[a]) / 2 + 1 : 0;
-        most = reach > most ? reach : most;
+        max = reach > max ? reach : max;
     }
-    const double free = (double)((int)b->distances[block] - 1) * CWI_RANGE_EDGE - most;
+    const double free = (double)((int)b->distances[block] - 1) * CWI_RANGE_EDGE - max;
     for (int a = 0; a < 3 && free > 0; a++)
         if (m->ray->slope[a] != 0)
             shortest = fmin(shortest, free / fabs(m->ray->slope[a]));
@@ -495,8 +495,7 @@ void cwi_beam_pass(const cwi_beams *b, const cwi_ray *ray, double depth, double 
                    cwi_beam_shade *shade, void *context, cwi_lanes *color, float *light)
 {
     const cwi_frame *f = b->frame;
-    const double forward = -ray->direction[2],
-                 least = 1 - (double)f->scene.sampling.stop_opacity;
+    const double forward = -ray->direction[2], min = 1 - (double)f->scene.sampling.stop_opacity;
     double t[2] = {fmax(b->start, f->perspective ? f->near : -INFINITY) / forward,
                    depth / forward};
     beam m = {.b = b,
@@ -508,7 +507,7 @@ void cwi_beam_pass(const cwi_beams *b, const cwi_ray *ray, double depth, double 
     cut_beam(&m, t);
     double part = 1, first = offset;
     bool is_visible = false;
-    for (double at = t[0]; at < t[1] && m.light + m.waiting_light + m.left_light > least;) {
+    for (double at = t[0]; at < t[1] && m.light + m.waiting_light + m.left_light > min;) {
         const double wide = m.width[0] + at * m.width[1];
         step s = {0};
         choose_level(b, wide, &s);
@@ -522,7 +521,7 @@ void cwi_beam_pass(const cwi_beams *b, const cwi_ray *ray, double depth, double 
             s.length = fmin(first * part * b->step * wide, t[1] - at);
             s.at = at + s.length / 2;
             take_sample(&m, &s, &sample);
-            if (sample.depth <= MOST_DEPTH || part <= LEAST_PART)
+            if (sample.depth <= MAX_DEPTH || part <= MIN_PART)
                 break;
         }
         first = 1;
@@ -530,7 +529,7 @@ void cwi_beam_pass(const cwi_beams *b, const cwi_ray *ray, double depth, double 
         is_visible = sample.depth > 0;
         if (m.area > 0 && is_visible)
             pass_step(&m, &s, &sample, shade, context, color);
-        if (part < 1 && sample.depth < MOST_DEPTH / 4)
+        if (part < 1 && sample.depth < MAX_DEPTH / 4)
             part *= 2;
         at += s.length;
     }

@@ -202,22 +202,22 @@ static bool is_inside(const facet *f, const double e[3])
 }
 
 /* Converts edge functions at a sample to weights of the corners, which sum to 1. */
-static void find_weights(const facet *f, const double e[3], double share[3])
+static void find_weights(const facet *f, const double e[3], double weights[3])
 {
     const double b[3] = {e[0] * f->weight[0], e[1] * f->weight[1], e[2] * f->weight[2]};
     for (int c = 0; c < 3; c++)
-        share[c] = b[c] / (b[0] + b[1] + b[2]);
+        weights[c] = b[c] / (b[0] + b[1] + b[2]);
 }
 
 static void draw_row(const scene *s, const facet *f, span columns, int y, hit *row)
 {
     for (int x = columns.first; x <= columns.last; x++) {
-        double e[3], share[3];
+        double e[3], weights[3];
         edge_values(f, x + 0.5, y + 0.5, e);
         if (!is_inside(f, e))
             continue;
-        find_weights(f, e, share);
-        const double z = cwi_dot(share, f->z);
+        find_weights(f, e, weights);
+        const double z = cwi_dot(weights, f->z);
         if (z >= s->near_mm && z < row[x].z)
             row[x] = (hit){z, f->triangle};
     }
@@ -256,14 +256,14 @@ static void facet_normal(const cw_mesh *mesh, facet *f)
 
 /* Interpolates the vertices' normals, turned to the visible side. Both sides are lit, and
  * neither a wrong winding nor wrong normals make a surface black. */
-static void surface_normal(const cw_mesh *mesh, const facet *f, const double share[3],
+static void surface_normal(const cw_mesh *mesh, const facet *f, const double weights[3],
                            double n[3])
 {
     const uint32_t *corner = mesh->triangles + 3 * f->triangle;
     memset(n, 0, 3 * sizeof *n);
     for (size_t c = 0; c < 3 && mesh->normals; c++)
         for (size_t a = 0; a < 3; a++)
-            n[a] += share[c] * (double)mesh->normals[3 * (size_t)corner[c] + a];
+            n[a] += weights[c] * (double)mesh->normals[3 * (size_t)corner[c] + a];
     const double side = cwi_dot(n, f->normal);
     if (side == 0)
         memcpy(n, f->normal, 3 * sizeof *n);
@@ -274,7 +274,8 @@ static void surface_normal(const cw_mesh *mesh, const facet *f, const double sha
 
 /* Computes the linear colour of the surface itself; its inside is redder and darker, unless
  * same_inside. */
-static void surface_color(const scene *s, const facet *f, const double share[3], double rgb[3])
+static void surface_color(const scene *s, const facet *f, const double weights[3],
+                          double rgb[3])
 {
     static const double inside[3] = {0.75, 0.22, 0.17};
     const cw_mesh *mesh = s->mesh;
@@ -283,7 +284,7 @@ static void surface_color(const scene *s, const facet *f, const double share[3],
         double sum = 0;
         for (size_t c = 0; c < 3 && mesh->colors; c++)
             sum +=
-                share[c] *
+                weights[c] *
                 to_linear(mesh->colors[4 * (size_t)mesh->triangles[3 * f->triangle + c] + a]);
         rgb[a] = (mesh->colors ? sum : s->color[a]) * (is_red ? inside[a] : 1);
     }
@@ -303,11 +304,11 @@ static void to_eye(const scene *s, double x, double y, double v[3])
  * formula. */
 static void shade_sample(const scene *s, const facet *f, double x, double y, double rgb[3])
 {
-    double e[3], share[3], n[3], v[3], h[3];
+    double e[3], weights[3], n[3], v[3], h[3];
     edge_values(f, x, y, e);
-    find_weights(f, e, share);
-    surface_normal(s->mesh, f, share, n);
-    surface_color(s, f, share, rgb);
+    find_weights(f, e, weights);
+    surface_normal(s->mesh, f, weights, n);
+    surface_color(s, f, weights, rgb);
     to_eye(s, x, y, v);
     for (int a = 0; a < 3; a++)
         h[a] = v[a] + s->fill_light[a];

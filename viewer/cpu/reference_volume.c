@@ -151,9 +151,9 @@ static passage pass_medium(const medium *m, double from, double to)
         double before = 0;
         for (int i = 0; i < CWI_NODES; i++)
             before += r->inner[n][i] * extinction[i];
-        const double share = r->weight[n] * extinction[n] * exp(-before);
+        const double fraction = r->weight[n] * extinction[n] * exp(-before);
         for (int c = 0; c < 3; c++)
-            p.color[c] += share * color[n][c];
+            p.color[c] += fraction * color[n][c];
     }
     return p;
 }
@@ -168,10 +168,10 @@ static passage join_passages(const passage *front, const passage *back)
 
 static double passage_difference(const passage *a, const passage *b)
 {
-    double most = fabs(exp(-a->depth) - exp(-b->depth));
+    double max = fabs(exp(-a->depth) - exp(-b->depth));
     for (int c = 0; c < 3; c++)
-        most = fmax(most, fabs(a->color[c] - b->color[c]));
-    return most;
+        max = fmax(max, fabs(a->color[c] - b->color[c]));
+    return max;
 }
 
 static void add_passage(const medium *m, double from, double to, const passage *whole,
@@ -256,16 +256,16 @@ static void add_classes(medium *m, const cwi_walk *w, const double v[8], const c
                         sum *s)
 {
     const cwi_frame *f = m->reference->frame;
-    double corners[4][8], most = 0;
+    double corners[4][8], max = 0;
     for (int n = 0; n < 8; n++) {
         double color[3], opacity;
         cw_transfer_at(&f->transfer, v[n], color, &opacity);
         corners[3][n] = cwi_frame_extinction(f, opacity);
         for (int c = 0; c < 3; c++)
             corners[c][n] = color[c] * corners[3][n];
-        most = fmax(most, corners[3][n]);
+        max = fmax(max, corners[3][n]);
     }
-    if (!(most > 0))
+    if (!(max > 0))
         return;
     for (int c = 0; c < 4; c++)
         cwi_walk_cubic(w, corners[c], m->classes[c]);
@@ -306,10 +306,10 @@ static void add_spans(medium *m, cwi_spans *spans, const cwi_ray *ray, sum *s)
 /* Computes the background's colour. y is down; the background's first colour is on top. */
 static void background_at(const cwi_frame *f, double y, double color[3])
 {
-    const double share = y / (double)f->scene.height;
+    const double fraction = y / (double)f->scene.height;
     for (int c = 0; c < 3; c++)
-        color[c] = (1 - share) * (double)f->scene.background[0][c] +
-                   share * (double)f->scene.background[1][c];
+        color[c] = (1 - fraction) * (double)f->scene.background[0][c] +
+                   fraction * (double)f->scene.background[1][c];
 }
 
 double cwi_reference_ray(const cwi_reference *r, cwi_spans *spans, double x, double y,
@@ -382,11 +382,11 @@ cw_status cwi_reference_draw(const cwi_frame *frame, const cwi_cell_tree *tree,
                                     draw_row, &work, err);
     if (st == CW_OK && work.is_starved)
         st = cwi_fail_memory(err);
-    double most = 0;
+    double max = 0;
     for (size_t y = 0; y < picture->height; y++)
-        most = fmax(most, errors[y]);
+        max = fmax(max, errors[y]);
     if (estimate)
-        *estimate = most;
+        *estimate = max;
     cwi_free(errors);
     return st;
 }

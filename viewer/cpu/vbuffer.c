@@ -34,14 +34,14 @@ typedef cwi_lanes lanes;
 static const float to_first = -0.038675134594812866f, to_second = 0.53867513459481287f;
 
 /* Maximum optical depth for which two points are enough. */
-static const float most_depth = 0.5f;
+static const float max_depth = 0.5f;
 
 /* The maximum difference of the extinction at two points of a piece, times the piece's
  * length. */
-static const float most_steepness = 0.1f;
+static const float max_steepness = 0.1f;
 
 /* The maximum difference of the two points, where gradients count. */
-static const float most_turn = 2e-3f;
+static const float max_turn = 2e-3f;
 
 typedef struct vbuffer vbuffer;
 
@@ -214,14 +214,14 @@ static lanes glow_of_piece(const state *s, const cwi_linear *l, const double val
 static inline bool is_told(const state *s, lanes first, lanes second, float length)
 {
     const float depth = (first[3] + second[3]) * 0.5f * length;
-    if (depth > most_depth)
+    if (depth > max_depth)
         return false;
     if (!s->b->has_gradients)
         return true;
-    float most = fabsf(first[3] - second[3]) * length;
+    float max = fabsf(first[3] - second[3]) * length;
     for (int c = 0; c < 3; c++)
-        most = fmaxf(most, depth * fabsf(first[c] - second[c]));
-    return s->light * most < most_turn;
+        max = fmaxf(max, depth * fabsf(first[c] - second[c]));
+    return s->light * max < max_turn;
 }
 
 /* Passes a piece, in parts where two points do not represent it. */
@@ -237,9 +237,9 @@ static void pass_piece(state *s, const cwi_transfer_segment *piece, const double
             glow_of_piece(s, piece->linear, value, from + CWI_SECOND_POINT * width);
         const float steepness = fabsf(first[3] - second[3]) * (float)width * length;
         if (parts == 1 &&
-            (steepness > most_steepness || !is_told(s, first, second, (float)width * length))) {
+            (steepness > max_steepness || !is_told(s, first, second, (float)width * length))) {
             const float depth = (first[3] + second[3]) * 0.5f * (float)width * length;
-            parts = (int)fminf(4 + 2 * depth / most_depth, 32);
+            parts = (int)fminf(4 + 2 * depth / max_depth, 32);
             width /= parts;
             n = -1;
             continue;
@@ -405,15 +405,15 @@ static inline void add_cell(state *s)
 }
 
 /* Passes the cells of the batch in their order, until too little light is left. */
-static void pass_batch(state *s, float least_light)
+static void pass_batch(state *s, float min_light)
 {
     cwi_cell_batch *batch = &s->batch;
     const cwi_batch_light light = cwi_cell_batch_light(&s->scene, batch);
-    lanes share = {0};
-    for (int n = 0; n < batch->count && s->light > least_light; n++) {
-        if (!batch->cells[n].is_cut && light.depth[n] <= most_depth &&
-            s->light * light.difference[n] < most_turn) {
-            share[n] = s->light;
+    lanes fraction = {0};
+    for (int n = 0; n < batch->count && s->light > min_light; n++) {
+        if (!batch->cells[n].is_cut && light.depth[n] <= max_depth &&
+            s->light * light.difference[n] < max_turn) {
+            fraction[n] = s->light;
             s->light *= light.left[n];
             continue;
         }
@@ -423,16 +423,16 @@ static void pass_batch(state *s, float least_light)
         pass_in_pieces(s);
     }
     for (int c = 0; c < 3; c++)
-        s->colors[c] += share * light.color[c];
+        s->colors[c] += fraction * light.color[c];
     batch->count = 0;
 }
 
-static void draw_part(state *s, int part, float least_light)
+static void draw_part(state *s, int part, float min_light)
 {
     cwi_walk *w = &s->walk;
     cwi_walk_start(w, s->b->frame, &s->ray, part);
 
-    while (w->t < w->stop && s->light > least_light) {
+    while (w->t < w->stop && s->light > min_light) {
         {
             const int distance = s->b->distances[cwi_walk_block(w, s->b->ranges->dim)];
             if (distance > 0) {
@@ -445,21 +445,21 @@ static void draw_part(state *s, int part, float least_light)
 
         add_cell(s);
         if (s->batch.count == CWI_BATCH_CELLS)
-            pass_batch(s, least_light);
+            pass_batch(s, min_light);
     }
     if (s->batch.count > 0)
-        pass_batch(s, least_light);
+        pass_batch(s, min_light);
 }
 
 /* Draws all parts of a ray through a grid that is not even. Returns false when memory is
  * out. */
-static bool draw_spans(state *s, cwi_spans *spans, float least_light)
+static bool draw_spans(state *s, cwi_spans *spans, float min_light)
 {
     cwi_span span;
     if (!cwi_spans_start(spans, &s->b->field, &s->ray))
         return false;
     s->has_gradient = s->b->has_gradients;
-    while (s->light > least_light && cwi_spans_next(spans, &span)) {
+    while (s->light > min_light && cwi_spans_next(spans, &span)) {
         s->walk.from = span.from;
         s->walk.to = span.to;
         memcpy(s->gradient, span.gradient, sizeof s->gradient);
@@ -477,16 +477,16 @@ static bool draw_ray(const vbuffer *b, cwi_spans *spans, double x, double y, siz
     const double depth = b->depths ? b->depths[n] : INFINITY;
     cwi_lighting lighting;
     state s = {.b = b, .lighting = &lighting, .light = 1, .shadow = {1}};
-    const float share = (float)(y / (double)scene->height);
+    const float fraction = (float)(y / (double)scene->height);
     cwi_ray_make(b->frame, x, y, b->has_beams ? fmin(depth, b->beams.start) : depth, &s.ray);
     if (scene->lit)
         cwi_lighting_make(b->frame, s.ray.origin, s.ray.direction, &lighting);
     for (int c = 0; c < 3; c++)
         s.background[c] =
-            (1 - share) * scene->background[0][c] + share * scene->background[1][c];
+            (1 - fraction) * scene->background[0][c] + fraction * scene->background[1][c];
     for (int a = 0; a < 3; a++)
         s.slope[a] = (float)s.ray.slope[a];
-    const float least_light = 1 - scene->sampling.stop_opacity;
+    const float min_light = 1 - scene->sampling.stop_opacity;
     bool is_whole = true;
     s.scene = (cwi_batch_scene){.frame = b->frame,
                                 .table = &b->table,
@@ -497,11 +497,11 @@ static bool draw_ray(const vbuffer *b, cwi_spans *spans, double x, double y, siz
                                 .deepening = -s.ray.direction[2],
                                 .has_gradients = b->has_gradients};
     for (int part = 0; part < s.ray.part_count && b->is_even; part++)
-        draw_part(&s, part, least_light);
+        draw_part(&s, part, min_light);
     for (int c = 0; c < 3; c++)
         s.color[c] += s.colors[c][0] + s.colors[c][1] + s.colors[c][2] + s.colors[c][3];
     if (!b->is_even)
-        is_whole = draw_spans(&s, spans, least_light);
+        is_whole = draw_spans(&s, spans, min_light);
     if (b->has_beams)
         cwi_beam_pass(&b->beams, &s.ray, depth, offset, shade_beam, &s, &s.color, &s.light);
     for (int c = 0; c < 3; c++)

@@ -23,9 +23,9 @@ static bool is_fetched(const cw_volume *v, const cwi_gl_texels *kind)
  * process as a buffer. */
 static bool can_find(const cwi_gl *gl, size_t count)
 {
-    GLint most = 0;
-    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
-    return count <= (size_t)most && strstr(gl->name, "llvmpipe") &&
+    GLint max = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &max);
+    return count <= (size_t)max && strstr(gl->name, "llvmpipe") &&
            epoxy_has_gl_extension("GL_AMD_pinned_memory");
 }
 

@@ -59,26 +59,26 @@ void cwi_gl_part(cwi_gl *gl, size_t n, size_t count)
 }
 
 /* Reports after a fraction of a part was drawn. */
-static cw_status report_share(cwi_gl *gl, size_t n, size_t count, cw_error *err)
+static cw_status report_fraction(cwi_gl *gl, size_t n, size_t count, cw_error *err)
 {
     const cwi_gl_watch *w = &gl->watch;
-    const double share = n < count ? (double)n / (double)count : 1;
-    return cwi_gl_report(gl, "drawing", w->from + share * (w->to - w->from), err);
+    const double fraction = n < count ? (double)n / (double)count : 1;
+    return cwi_gl_report(gl, "drawing", w->from + fraction * (w->to - w->from), err);
 }
 
 /* Adapts the size: more if drawing was fast, less if it was slow. */
-static size_t adapt_size(size_t drawn, double since, size_t least, size_t most)
+static size_t adapt_size(size_t drawn, double since, size_t min, size_t max)
 {
     glFinish();
     const double seconds = cwi_now_s() - since;
     const size_t next = seconds < soon ? 2 * drawn : seconds > late ? drawn / 2 : drawn;
-    return next < least ? least : next > most ? most : next;
+    return next < min ? min : next > max ? max : next;
 }
 
 /* Draws bands. They start at even rows: values that shaders take from neighbours stay the
  * same. */
 static cw_status draw_bands(cwi_gl *gl, void (*draw)(void *), void *context, size_t *rows,
-                            size_t most, cw_error *err)
+                            size_t max, cw_error *err)
 {
     const size_t height = (size_t)gl->target.height;
     cw_status st = CW_OK;
@@ -88,8 +88,8 @@ static cw_status draw_bands(cwi_gl *gl, void (*draw)(void *), void *context, siz
         glScissor(0, (GLint)y, gl->target.width, (GLsizei)*rows);
         draw(context);
         y += *rows;
-        *rows = adapt_size(*rows, start, MIN_ROWS, most);
-        st = report_share(gl, y, height, err);
+        *rows = adapt_size(*rows, start, MIN_ROWS, max);
+        st = report_fraction(gl, y, height, err);
     }
     glDisable(GL_SCISSOR_TEST);
     return st;
@@ -133,12 +133,12 @@ cw_status cwi_gl_draw_triangles(cwi_gl *gl, size_t count, bool indexed, cw_error
     if (!is_watched(gl))
         draw_range(0, count, indexed);
     for (size_t n = 0; is_watched(gl) && n < count && st == CW_OK;) {
-        const size_t wanted = gl->watch.triangles, left = count - n;
+        const size_t requested = gl->watch.triangles, left = count - n;
         const double start = cwi_now_s();
-        draw_range(n, wanted < left ? wanted : left, indexed);
-        n += wanted;
-        gl->watch.triangles = adapt_size(wanted, start, 64, (size_t)1 << 20);
-        st = report_share(gl, n, count, err);
+        draw_range(n, requested < left ? requested : left, indexed);
+        n += requested;
+        gl->watch.triangles = adapt_size(requested, start, 64, (size_t)1 << 20);
+        st = report_fraction(gl, n, count, err);
     }
     return st;
 }

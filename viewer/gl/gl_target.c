@@ -53,14 +53,14 @@ static void make_target(cwi_gl_target *t, GLsizei width, GLsizei height)
 
 cw_status cwi_gl_take_target(cwi_gl *gl, cw_error *err)
 {
-    GLint most;
+    GLint max;
     const cw_scene *s = &gl->frame->scene;
     const GLsizei width = (GLsizei)s->width, height = (GLsizei)s->height;
-    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
-    if (width > most || height > most)
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max);
+    if (width > max || height > max)
         return cwi_fail(err, CW_ERR_LIMIT,
                         "a picture of %d x %d samples: this OpenGL draws up to %d", width,
-                        height, most);
+                        height, max);
     if (gl->target.width != width || gl->target.height != height) {
         cwi_gl_drop_target(gl);
         make_target(&gl->target, width, height);

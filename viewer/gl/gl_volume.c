@@ -183,9 +183,9 @@ static cw_status upload_brick(cwi_gl *gl, const cwi_gl_texels *kind, const cwi_g
 /* Returns true if this OpenGL makes such a texture: only a proxy texture shows that. */
 static bool texture_fits(GLenum inner, size_t w, size_t h, size_t d)
 {
-    GLint got = 0, most = 0;
-    glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most);
-    if (w > (size_t)most || h > (size_t)most || d > (size_t)most)
+    GLint got = 0, max = 0;
+    glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &max);
+    if (w > (size_t)max || h > (size_t)max || d > (size_t)max)
         return false;
     glTexImage3D(GL_PROXY_TEXTURE_3D, 0, (GLint)inner, (GLsizei)w, (GLsizei)h, (GLsizei)d, 0,
                  inner == GL_RGBA16F ? GL_RGBA : GL_RED, GL_FLOAT, NULL);
@@ -201,11 +201,11 @@ static size_t parts_of(size_t n, size_t edge)
 }
 
 /* Chooses the largest bricks of values and gradients that fit; longest axes are cut first. */
-static void choose_edges(const cw_volume *v, const cwi_gl_texels *kind, size_t asked,
+static void choose_edges(const cw_volume *v, const cwi_gl_texels *kind, size_t requested,
                          size_t edge[3])
 {
     for (int a = 0; a < 3; a++)
-        edge[a] = asked >= 2 && asked < v->dim[a] ? asked : v->dim[a];
+        edge[a] = requested >= 2 && requested < v->dim[a] ? requested : v->dim[a];
     while (!(texture_fits(kind->inner, edge[0], edge[1], edge[2]) &&
              texture_fits(GL_RGBA16F, edge[0], edge[1], edge[2]))) {
         int longest = 0;

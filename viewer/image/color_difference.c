@@ -18,10 +18,11 @@ enum { WINDOW = 5 }; /* pixels on each side of the middle */
 static const double window_sigma = 1.5;
 
 /* Returns the cube root, continued by a line near 0: CIE 15. */
-static double lightness_of(double share)
+static double lightness_of(double fraction)
 {
     const double edge = 6.0 / 29;
-    return share > edge * edge * edge ? cbrt(share) : share / (3 * edge * edge) + 4.0 / 29;
+    return fraction > edge * edge * edge ? cbrt(fraction)
+                                         : fraction / (3 * edge * edge) + 4.0 / 29;
 }
 
 /* Converts by IEC 61966-2-1. White is the matrix's result for (1, 1, 1). */
@@ -62,7 +63,7 @@ static double seventh_power(double x)
 }
 
 /* Returns the root of c^7 / (c^7 + 25^7), for a chroma c. */
-static double chroma_share(double chroma)
+static double chroma_fraction(double chroma)
 {
     return sqrt(seventh_power(chroma) / (seventh_power(chroma) + seventh_power(25)));
 }
@@ -93,7 +94,7 @@ double cwi_delta_e(const double a[3], const double b[3])
 {
     double p[2], q[2], turn, hue;
     const double chroma = (hypot(a[1], a[2]) + hypot(b[1], b[2])) / 2;
-    const double stretch = 0.5 * (1 - chroma_share(chroma));
+    const double stretch = 0.5 * (1 - chroma_fraction(chroma));
     chroma_and_hue(a, stretch, p);
     chroma_and_hue(b, stretch, q);
     compare_hues(p, q, &turn, &hue);
@@ -101,7 +102,7 @@ double cwi_delta_e(const double a[3], const double b[3])
     const double t = 1 - 0.17 * cos_deg(hue - 30) + 0.24 * cos_deg(2 * hue) +
                      0.32 * cos_deg(3 * hue + 6) - 0.20 * cos_deg(4 * hue - 63);
     const double blue = 30 * exp(-(hue - 275) / 25 * ((hue - 275) / 25));
-    const double rotation = -sin(2 * blue * CWI_PI / 180) * 2 * chroma_share(mean);
+    const double rotation = -sin(2 * blue * CWI_PI / 180) * 2 * chroma_fraction(mean);
     const double dl = (b[0] - a[0]) / (1 + 0.015 * light * light / sqrt(20 + light * light));
     const double dc = (q[0] - p[0]) / (1 + 0.045 * mean);
     const double dh =
@@ -123,12 +124,12 @@ static cw_status expect_same_size(const cw_picture *a, const cw_picture *b, cw_e
 static void show_pixel(const cw_picture *p, size_t n, const float background[2][3],
                        double rgb[3])
 {
-    const double share = ((double)(n / p->width) + 0.5) / (double)p->height;
+    const double fraction = ((double)(n / p->width) + 0.5) / (double)p->height;
     const double through = 1 - (double)p->pixels[4 * n + 3];
     for (size_t c = 0; c < 3; c++)
-        rgb[c] =
-            (double)p->pixels[4 * n + c] + through * ((1 - share) * (double)background[0][c] +
-                                                      share * (double)background[1][c]);
+        rgb[c] = (double)p->pixels[4 * n + c] +
+                 through * ((1 - fraction) * (double)background[0][c] +
+                            fraction * (double)background[1][c]);
 }
 
 static void limit_color(double rgb[3])

@@ -37,11 +37,14 @@ typedef struct column {
 static column plan_column(const cwi_legend *l)
 {
     const double lines = floor((l->bottom - l->top) / (LINE * l->text));
-    const size_t room = lines > 0 ? (size_t)lines : 0;
+    const size_t capacity = lines > 0 ? (size_t)lines : 0;
     double widest = 0;
     char name[NAME];
-    column c = {.shown = l->count <= room ? l->count : room ? room - 1 : 0, .left = l->right};
-    c.lines = l->count <= room ? l->count : room;
+    column c = {.shown = l->count <= capacity ? l->count
+                         : capacity           ? capacity - 1
+                                              : 0,
+                .left = l->right};
+    c.lines = l->count <= capacity ? l->count : capacity;
     if (c.shown < l->count)
         snprintf(c.more, sizeof c.more, "and %zu more", l->count - c.shown);
     if (c.shown < c.lines)
@@ -59,10 +62,11 @@ static column plan_column(const cwi_legend *l)
 static void draw_patch(const cwi_legend *l, const uint8_t color[3], double x, double y,
                        cw_image *image)
 {
-    const double rim = fmax(l->text / 8, 1);
+    const double outline = fmax(l->text / 8, 1);
     cwi_pen pen = {.image = image};
     memcpy(pen.color, l->halo, sizeof pen.color);
-    cwi_pen_fill(&pen, x - rim, y - l->text - rim, x + 1.2 * l->text + rim, y + rim);
+    cwi_pen_fill(&pen, x - outline, y - l->text - outline, x + 1.2 * l->text + outline,
+                 y + outline);
     for (int c = 0; c < 3; c++)
         pen.color[c] = color[c] / 255.0;
     pen.color[3] = 1;

@@ -34,14 +34,14 @@ static const double axis_colors[3][3] = {
 /* Returns the longest of 1, 2, 5 times a power of ten that is not above a length. */
 static double round_down(double length)
 {
-    const double power = pow(10, floor(log10(length) + 1e-9)), share = length / power;
-    return (share >= 5 ? 5 : share >= 2 ? 2 : 1) * power;
+    const double power = pow(10, floor(log10(length) + 1e-9)), fraction = length / power;
+    return (fraction >= 5 ? 5 : fraction >= 2 ? 2 : 1) * power;
 }
 
 static double round_up(double length)
 {
-    const double power = pow(10, floor(log10(length) + 1e-9)), share = length / power;
-    return (share <= 1 ? 1 : share <= 2 ? 2 : share <= 5 ? 5 : 10) * power;
+    const double power = pow(10, floor(log10(length) + 1e-9)), fraction = length / power;
+    return (fraction <= 1 ? 1 : fraction <= 2 ? 2 : fraction <= 5 ? 5 : 10) * power;
 }
 
 static void print_length(double mm, char text[TEXT])
@@ -285,18 +285,18 @@ typedef struct color_bar {
 } color_bar;
 
 /* Computes the colour at a fraction of the bar's range. */
-static void bar_color(const board *b, const color_bar *bar, double share, double rgb[3])
+static void bar_color(const board *b, const color_bar *bar, double fraction, double rgb[3])
 {
     const double *range = bar->range;
     uint8_t bytes[3];
     double opacity;
     if (!bar->values && b->frame->volume.data)
-        cw_transfer_at(&b->frame->transfer, range[0] + share * (range[1] - range[0]), rgb,
+        cw_transfer_at(&b->frame->transfer, range[0] + fraction * (range[1] - range[0]), rgb,
                        &opacity);
     else if (!bar->values)
-        cwi_ramp_color(share, rgb);
+        cwi_ramp_color(fraction, rgb);
     else
-        cw_colormap_color(bar->values->map, share, bytes);
+        cw_colormap_color(bar->values->map, fraction, bytes);
     for (int c = 0; c < 3 && bar->values; c++)
         rgb[c] = bytes[c] / 255.0;
 }
@@ -355,14 +355,14 @@ static void draw_values_bar(const board *b)
 /* Computes heights of bars, 0 to 1, each of the most frequent of its bins. */
 static void find_bars(const cw_statistics *s, double *bars, size_t count)
 {
-    double most = 1;
+    double max_y = 1;
     memset(bars, 0, count * sizeof *bars);
     for (size_t n = 0; n < s->bin_count; n++)
-        most = fmax(most, log1p((double)s->bins[n]));
+        max_y = fmax(max_y, log1p((double)s->bins[n]));
     for (size_t i = 0; i < count; i++)
         for (size_t n = i * s->bin_count / count; n <= ((i + 1) * s->bin_count - 1) / count;
              n++)
-            bars[i] = fmax(bars[i], log1p((double)s->bins[n]) / most);
+            bars[i] = fmax(bars[i], log1p((double)s->bins[n]) / max_y);
 }
 
 /* Finds the opacity at the ends of a range, and at the transfer function's points between. */
@@ -387,16 +387,16 @@ static size_t find_curve(const cw_transfer *t, const double range[2],
  * value. */
 static void draw_curve(const board *b, const double range[2], const double box[4])
 {
-    double points[CW_TRANSFER_POINTS + 2][2], most = 0, color[4];
+    double points[CW_TRANSFER_POINTS + 2][2], max_y = 0, color[4];
     cwi_stroke s[CW_TRANSFER_POINTS + 1];
     char text[TEXT];
     const size_t count = find_curve(&b->frame->transfer, range, points);
     for (size_t n = 0; n < count; n++)
-        most = fmax(most, points[n][1]);
+        max_y = fmax(max_y, points[n][1]);
     for (size_t n = 0; n < count; n++) {
         const double at[2] = {box[0] + (points[n][0] - range[0]) / (range[1] - range[0]) *
                                            (box[2] - box[0]),
-                              box[3] - points[n][1] / fmax(most, 1e-6) * (box[3] - box[1])};
+                              box[3] - points[n][1] / fmax(max_y, 1e-6) * (box[3] - box[1])};
         if (n > 0)
             memcpy(s[n - 1].to, at, sizeof at);
         if (n + 1 < count)
@@ -404,7 +404,7 @@ static void draw_curve(const board *b, const double range[2], const double box[4
     }
     tint_color(color, (const double[3]){1, 0.75, 0.2}, 1);
     draw_lines(b, s, count - 1, fmax(b->text / 6, 1.2), color);
-    print_value(most, text);
+    print_value(max_y, text);
     write_text(b, box[0] - b->text / 2, box[1] + b->text, 1, color, text);
 }
 

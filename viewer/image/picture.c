@@ -33,9 +33,9 @@ void cw_picture_free(cw_picture *picture)
     *picture = (cw_picture){0};
 }
 
-static uint8_t to_byte(double share)
+static uint8_t to_byte(double fraction)
 {
-    return (uint8_t)lround(255 * fmin(fmax(share, 0), 1));
+    return (uint8_t)lround(255 * fmin(fmax(fraction, 0), 1));
 }
 
 /* Composites one pixel over a background, whose colours are not premultiplied. */
@@ -56,9 +56,9 @@ cw_status cw_picture_show(const cw_picture *picture, const uint8_t background[2]
     cw_status st = cw_image_alloc(image, w, h, err);
     for (size_t y = 0; y < h && st == CW_OK; y++) {
         double row[4];
-        const double share = ((double)y + 0.5) / (double)h;
+        const double fraction = ((double)y + 0.5) / (double)h;
         for (int c = 0; c < 4; c++)
-            row[c] = ((1 - share) * background[0][c] + share * background[1][c]) / 255;
+            row[c] = ((1 - fraction) * background[0][c] + fraction * background[1][c]) / 255;
         for (size_t x = 0; x < w; x++)
             show_pixel(picture->pixels + 4 * (y * w + x), row, image->pixels + 4 * (y * w + x));
     }

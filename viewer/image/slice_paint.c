@@ -35,10 +35,10 @@ static void add_sample(const painting *p, double x, double y, double sum[4])
         return;
     const double opacity = p->paint->opacity * rgba[3];
     const double light = f->scene.depth_cue > 0 ? cwi_frame_cue(f, -eye[2]) : 1;
-    const double share = y / (double)f->scene.height; /* of the background's lower colour */
+    const double fraction = y / (double)f->scene.height; /* of the background's lower colour */
     for (int c = 0; c < 3; c++) {
-        const double behind = (1 - share) * (double)f->scene.background[0][c] +
-                              share * (double)f->scene.background[1][c];
+        const double behind = (1 - fraction) * (double)f->scene.background[0][c] +
+                              fraction * (double)f->scene.background[1][c];
         sum[c] += opacity * (light * rgba[c] + (1 - light) * behind);
     }
     sum[3] += opacity;

@@ -13,9 +13,9 @@ static double clamp_number(double x, double low, double high)
 }
 
 /* Blends a colour over a pixel; neither is premultiplied. */
-static void blend_pixel(uint8_t *pixel, const double color[4], double share)
+static void blend_pixel(uint8_t *pixel, const double color[4], double fraction)
 {
-    const double alpha = color[3] * share, below = pixel[3] / 255.0 * (1 - alpha);
+    const double alpha = color[3] * fraction, below = pixel[3] / 255.0 * (1 - alpha);
     if (alpha <= 0)
         return;
     for (int c = 0; c < 3; c++)
@@ -28,8 +28,9 @@ static double square_of_distance(const cwi_stroke *s, double x, double y)
 {
     const double d[2] = {s->to[0] - s->from[0], s->to[1] - s->from[1]};
     const double p[2] = {x - s->from[0], y - s->from[1]};
-    const double square = d[0] * d[0] + d[1] * d[1];
-    const double t = square > 0 ? clamp_number((p[0] * d[0] + p[1] * d[1]) / square, 0, 1) : 0;
+    const double length_sq = d[0] * d[0] + d[1] * d[1];
+    const double t =
+        length_sq > 0 ? clamp_number((p[0] * d[0] + p[1] * d[1]) / length_sq, 0, 1) : 0;
     const double off[2] = {p[0] - t * d[0], p[1] - t * d[1]};
     return off[0] * off[0] + off[1] * off[1];
 }

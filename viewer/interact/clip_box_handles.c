@@ -60,15 +60,15 @@ int cwi_handles_hit(const cwi_handle handles[CWI_HANDLES], const double pixel[2]
 static bool meet_axis(const double point[3], int axis, const double origin[3],
                       const double direction[3], double *coordinate, double *distance)
 {
-    static const double least = 0.0027; /* sin^2 of 3 degrees */
+    static const double MIN_SIN_SQ = 0.0027; /* sin^2 of 3 degrees */
     const double w[3] = {origin[0] - point[0], origin[1] - point[1], origin[2] - point[2]};
     const double lean = direction[axis], along = cwi_dot(w, direction);
-    const double square = 1 - lean * lean;
-    if (!(square > least))
+    const double sin_sq = 1 - lean * lean;
+    if (!(sin_sq > MIN_SIN_SQ))
         return false;
-    const double way = (w[axis] - lean * along) / square;
-    *coordinate = point[axis] + way;
-    *distance = lean * way - along;
+    const double displacement = (w[axis] - lean * along) / sin_sq;
+    *coordinate = point[axis] + displacement;
+    *distance = lean * displacement - along;
     return isfinite(*coordinate);
 }
 
@@ -123,9 +123,9 @@ static bool cut_line(const cwi_handle_view *v, const double forward[3], double e
     if (!(near > 0))
         return false;
     for (int e = 0; e < 2; e++) {
-        const double share = (near - depth[e]) / (depth[1 - e] - depth[e]);
+        const double fraction = (near - depth[e]) / (depth[1 - e] - depth[e]);
         for (int a = 0; a < 3 && depth[e] < near; a++)
-            ends[e][a] += share * (ends[1 - e][a] - ends[e][a]);
+            ends[e][a] += fraction * (ends[1 - e][a] - ends[e][a]);
     }
     return true;
 }

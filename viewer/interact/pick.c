@@ -37,7 +37,7 @@ static void take_mesh(const place *at, const cwi_mesh_hit *hit, cw_picked *out)
         return;
     out->value = 0;
     for (size_t n = 0; n < 3; n++)
-        out->value += hit->share[n] * (double)m->scalars[m->triangles[3 * hit->triangle + n]];
+        out->value += hit->weights[n] * (double)m->scalars[m->triangles[3 * hit->triangle + n]];
 }
 
 /* Returns the field at the ray's point; rounding may have put that beyond the volume's face. */

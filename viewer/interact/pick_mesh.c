@@ -21,10 +21,10 @@ typedef struct sight {
 static void find_across(double axes[3][3])
 {
     const double *d = axes[2];
-    const int least = fabs(d[0]) < fabs(d[1]) ? (fabs(d[0]) < fabs(d[2]) ? 0 : 2)
-                                              : (fabs(d[1]) < fabs(d[2]) ? 1 : 2);
+    const int min = fabs(d[0]) < fabs(d[1]) ? (fabs(d[0]) < fabs(d[2]) ? 0 : 2)
+                                            : (fabs(d[1]) < fabs(d[2]) ? 1 : 2);
     double side[3] = {0};
-    side[least] = 1;
+    side[min] = 1;
     cwi_cross(d, side, axes[0]);
     const double length = cwi_length(axes[0]);
     for (int a = 0; a < 3; a++)
@@ -43,9 +43,9 @@ static sight look_along(const cwi_frame *f, const double origin[3], const double
                        direction[2] * f->axes[2][a];
     find_across(s.axes);
     for (int a = 0; a < 3; a++) {
-        double way[3];
-        cwi_sub(s.mesh->origin, eye, way);
-        s.from[a] = cwi_dot(way, s.axes[a]);
+        double from_eye[3];
+        cwi_sub(s.mesh->origin, eye, from_eye);
+        s.from[a] = cwi_dot(from_eye, s.axes[a]);
     }
     s.kept_count = cwi_frame_keep(f, origin, direction, all, s.kept);
     for (int n = 0; n < 4; n++)
@@ -68,7 +68,7 @@ static bool side_of(const double a[2], const double b[2], double *area)
     return *area != 0 ? *area > 0 : b[1] != a[1] ? b[1] > a[1] : b[0] > a[0];
 }
 
-static bool meet_triangle(const sight *s, size_t triangle, double *z, double share[3])
+static bool meet_triangle(const sight *s, size_t triangle, double *z, double fraction[3])
 {
     const float *p[3];
     double at[3][2], area[3];
@@ -83,20 +83,21 @@ static bool meet_triangle(const sight *s, size_t triangle, double *z, double sha
     const double sum = area[0] + area[1] + area[2];
     *z = 0;
     for (int n = 0; n < 3 && sum != 0; n++) {
-        share[n] = area[n] / sum;
-        *z += share[n] * position_along(s, p[n], 2);
+        fraction[n] = area[n] / sum;
+        *z += fraction[n] * position_along(s, p[n], 2);
     }
     return sum != 0;
 }
 
-static bool is_drawn(const cwi_frame *f, size_t triangle, const double share[3])
+static bool is_drawn(const cwi_frame *f, size_t triangle, const double fraction[3])
 {
     const cw_mesh *m = f->scene.mesh;
     if (f->scene.mesh_look.tint != CW_TINT_COLORS || !m->colors)
         return f->scene.mesh_look.color[3] > 0;
     double opacity = 0;
     for (int n = 0; n < 3; n++)
-        opacity += share[n] * m->colors[4 * (size_t)m->triangles[3 * triangle + (size_t)n] + 3];
+        opacity +=
+            fraction[n] * m->colors[4 * (size_t)m->triangles[3 * triangle + (size_t)n] + 3];
     return opacity > 0;
 }
 
@@ -121,16 +122,16 @@ cwi_mesh_hit cwi_pick_mesh(const cwi_frame *f, const double origin[3],
 {
     sight s = look_along(f, origin, direction);
     cwi_mesh_hit hit = {.t = INFINITY};
-    double z, share[3];
+    double z, fraction[3];
     for (size_t n = 0; n < s.mesh->triangle_count; n++) {
-        if (!meet_triangle(&s, n, &z, share))
+        if (!meet_triangle(&s, n, &z, fraction))
             continue;
         for (int part = 0; part < s.kept_count; part++)
             s.before[part] += z < s.kept[part][0];
-        if (z < hit.t && is_kept(&s, z) && is_drawn(f, n, share)) {
+        if (z < hit.t && is_kept(&s, z) && is_drawn(f, n, fraction)) {
             hit.t = z;
             hit.triangle = n;
-            memcpy(hit.share, share, sizeof share);
+            memcpy(hit.weights, fraction, sizeof fraction);
         }
     }
     if (f->scene.mesh_look.cap && f->scene.clip_count > 0)

@@ -10,9 +10,9 @@ extern "C" {
 
 /* A point of a mesh on a ray. */
 typedef struct cwi_mesh_hit {
-    double t;        /* along the ray, in eye space; INFINITY: there is none */
-    size_t triangle; /* SIZE_MAX: a filled cut */
-    double share[3]; /* of the triangle's corners; 0 of a cut */
+    double t;          /* along the ray, in eye space; INFINITY: there is none */
+    size_t triangle;   /* SIZE_MAX: a filled cut */
+    double weights[3]; /* of the triangle's corners; 0 of a cut */
 } cwi_mesh_hit;
 
 /* Finds the nearest point of the frame's mesh that is drawn, even with an opacity that rounds

@@ -21,11 +21,12 @@ enum { STEPS = 8 }; /* of a piece of the ray between breakpoints */
 typedef struct passage {
     const cwi_frame *frame;
     cwi_knots knots;
-    double to_eye[3][3];           /* gradients */
-    double light, half;            /* fraction of it that is left; where that became a half, or
+    double to_eye[3][3]; /* gradients */
+    double light, half;  /* fraction of it that is left; where that became a half, or
                              INFINITY */
-    double most, most_at;          /* the most light that a cell took, and that cell's middle */
-    double half_value, most_value; /* of the field there */
+    double max_light,
+        max_light_depth; /* the most light that a cell took, and that cell's middle */
+    double half_value, max_light_value; /* of the field there */
 } passage;
 
 /* Computes the gradient's cubics in a cell, in eye space. */
@@ -85,10 +86,10 @@ static void pass_span(passage *p, const cwi_span *span)
     for (size_t n = 0; n < count && p->half == INFINITY; n++)
         if (pieces[n].linear->is_visible)
             pass_piece(p, span, &pieces[n]);
-    if (before - p->light > p->most) {
-        p->most = before - p->light;
-        p->most_at = (span->from + span->to) / 2;
-        p->most_value = cwi_cubic_at(span->value, 0.5);
+    if (before - p->light > p->max_light) {
+        p->max_light = before - p->light;
+        p->max_light_depth = (span->from + span->to) / 2;
+        p->max_light_value = cwi_cubic_at(span->value, 0.5);
     }
 }
 
@@ -111,9 +112,9 @@ static cwi_volume_hit find_hit(const passage *p)
     const double opacity = 1 - p->light;
     const bool is_half = p->half < INFINITY;
     return (cwi_volume_hit){is_half           ? p->half
-                            : opacity >= seen ? p->most_at
+                            : opacity >= seen ? p->max_light_depth
                                               : INFINITY,
-                            opacity, is_half ? p->half_value : p->most_value};
+                            opacity, is_half ? p->half_value : p->max_light_value};
 }
 
 cwi_volume_hit cwi_pick_blended(const cwi_frame *frame, double x, double y, double depth)

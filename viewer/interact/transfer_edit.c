@@ -54,10 +54,10 @@ size_t cwi_transfer_near_color(const cw_transfer *t, double value, double tolera
 static double distance_to_line(const double a[2], const double b[2])
 {
     const double d[2] = {b[0] - a[0], b[1] - a[1]};
-    const double square = d[0] * d[0] + d[1] * d[1];
-    const double share =
-        square > 0 ? clamp_between(-(a[0] * d[0] + a[1] * d[1]) / square, 0, 1) : 0;
-    return hypot(a[0] + share * d[0], a[1] + share * d[1]);
+    const double length_sq = d[0] * d[0] + d[1] * d[1];
+    const double fraction =
+        length_sq > 0 ? clamp_between(-(a[0] * d[0] + a[1] * d[1]) / length_sq, 0, 1) : 0;
+    return hypot(a[0] + fraction * d[0], a[1] + fraction * d[1]);
 }
 
 size_t cwi_transfer_near_segment(const cw_transfer *t, double value, double opacity,

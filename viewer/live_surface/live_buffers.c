@@ -24,11 +24,12 @@ cw_status cwi_live_need(cwi_live *live, cwi_live_buffer n, size_t bytes, cw_erro
 /* Returns a size with room to grow, but no more than fits. */
 static size_t with_room(const cwi_live *live, size_t bytes)
 {
-    const size_t most = live->capacity.buffer_bytes, roomy = bytes + bytes / 4;
-    return roomy <= most || bytes > most ? roomy : most;
+    const size_t max = live->capacity.buffer_bytes, roomy = bytes + bytes / 4;
+    return roomy <= max || bytes > max ? roomy : max;
 }
 
-cw_status cwi_live_need_room(cwi_live *live, cwi_live_buffer n, size_t bytes, cw_error *err)
+cw_status cwi_live_ensure_capacity(cwi_live *live, cwi_live_buffer n, size_t bytes,
+                                   cw_error *err)
 {
     return bytes <= live->bytes[n] ? CW_OK
                                    : cwi_live_need(live, n, with_room(live, bytes), err);

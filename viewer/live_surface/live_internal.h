@@ -129,8 +129,8 @@ CW_NODISCARD cw_status cwi_live_need(cwi_live *live, cwi_live_buffer n, size_t b
                                      cw_error *err);
 
 /* Does the same, with room to grow in what is allocated. */
-CW_NODISCARD cw_status cwi_live_need_room(cwi_live *live, cwi_live_buffer n, size_t bytes,
-                                          cw_error *err);
+CW_NODISCARD cw_status cwi_live_ensure_capacity(cwi_live *live, cwi_live_buffer n, size_t bytes,
+                                                cw_error *err);
 
 /* Makes the buffers of listed blocks and open cells as large as live->slots and
  * live->open_cells. */

@@ -163,11 +163,11 @@ cw_status cwi_live_extract(cwi_live *live, const cw_live_surface *desc, cwi_live
     if (live->triangle_count > INT32_MAX / 3)
         return cwi_fail(err, CW_ERR_LIMIT, "%zu triangles: OpenGL draws up to %d",
                         live->triangle_count, INT32_MAX / 3);
-    st = cwi_live_need_room(live, CWI_LIVE_VERTICES, CWI_LIVE_VERTEX_BYTES * live->vertex_count,
-                            err);
+    st = cwi_live_ensure_capacity(live, CWI_LIVE_VERTICES,
+                                  CWI_LIVE_VERTEX_BYTES * live->vertex_count, err);
     if (st == CW_OK)
-        st = cwi_live_need_room(live, CWI_LIVE_INDICES,
-                                CWI_LIVE_TRIANGLE_BYTES * live->triangle_count, err);
+        st = cwi_live_ensure_capacity(live, CWI_LIVE_INDICES,
+                                      CWI_LIVE_TRIANGLE_BYTES * live->triangle_count, err);
     if (st != CW_OK)
         return st;
     if (live->triangle_count)

@@ -86,23 +86,23 @@ static void corner_weights(const double at[3], float w[8])
 
 /* Computes the place in a box of a point of the picture at a depth. */
 static void place_in_box(const cwi_frame *f, const double at[2], double depth,
-                         const double low[3], const double size[3], double share[3])
+                         const double low[3], const double size[3], double fraction[3])
 {
     const double scale = f->perspective ? depth : 1;
     const double p[3] = {at[0] * scale, at[1] * scale, -depth};
-    cwi_affine_apply(f->index_from_eye, p, share);
+    cwi_affine_apply(f->index_from_eye, p, fraction);
     for (int a = 0; a < 3; a++)
-        share[a] = (share[a] - low[a]) / size[a];
+        fraction[a] = (fraction[a] - low[a]) / size[a];
 }
 
 static void weigh_vertex(const cwi_frame *f, const cwi_piece_vertex *v, const double low[3],
                          const double size[3], float front[8], float back[8])
 {
-    double share[3];
-    place_in_box(f, v->at, v->front, low, size, share);
-    corner_weights(share, front);
-    place_in_box(f, v->at, v->back, low, size, share);
-    corner_weights(share, back);
+    double fraction[3];
+    place_in_box(f, v->at, v->front, low, size, fraction);
+    corner_weights(fraction, front);
+    place_in_box(f, v->at, v->back, low, size, fraction);
+    corner_weights(fraction, back);
 }
 
 static double sum_eight(const float w[8], const float values[8])
@@ -152,11 +152,11 @@ static bool is_outside(const job *j, size_t from)
 
 static void put_pieces(job *j, const cwi_pieces *pieces, size_t from)
 {
-    double most = 0;
+    double max = 0;
     for (size_t n = 0; n < pieces->vertex_count; n++)
-        most = cwi_greater(most, pieces->vertices[n].back - pieces->vertices[n].front);
+        max = cwi_greater(max, pieces->vertices[n].back - pieces->vertices[n].front);
     for (size_t n = 0; n < pieces->vertex_count; n++)
-        j->vertices[from + n].values[2] = (float)most;
+        j->vertices[from + n].values[2] = (float)max;
     j->vertex_count = from + pieces->vertex_count;
     if (is_outside(j, from)) {
         j->vertex_count = from;

@@ -395,11 +395,11 @@ static void mean_of(const cwi_frame *f, double from, double to, double mean[4])
 static void put_column(const cwi_frame *f, const shades_key *key, size_t column, double out[4])
 {
     const cw_transfer *t = &key->transfer;
-    const double share = (double)column / (VALUE_COLUMNS - 1);
+    const double fraction = (double)column / (VALUE_COLUMNS - 1);
     double opacity;
     memset(out, 0, 4 * sizeof *out);
     if (!key->by_material) {
-        cw_transfer_at(t, key->low + (key->high - key->low) * share, out, &opacity);
+        cw_transfer_at(t, key->low + (key->high - key->low) * fraction, out, &opacity);
         out[3] = 1;
     } else if (column > 0) {
         const size_t n = column - 1; /* points that are not above */

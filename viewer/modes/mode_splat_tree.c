@@ -54,8 +54,8 @@ static bool is_clipped(const cwi_splats *s, const double eye[3], const float siz
 
 static bool is_too_near(const cwi_splats *s, const double eye[3], const float size[3])
 {
-    const float most = fmaxf(fmaxf(size[0], size[1]), size[2]);
-    return s->frame->perspective && -eye[2] <= s->radius * (1 + (double)most);
+    const float max = fmaxf(fmaxf(size[0], size[1]), size[2]);
+    return s->frame->perspective && -eye[2] <= s->radius * (1 + (double)max);
 }
 
 /* Returns the slope of the means of the nodes on both sides, or of their indices, in the unit of

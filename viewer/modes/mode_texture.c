@@ -45,8 +45,8 @@ static void classify_value(const cwi_table *t, double value, float out[4])
     memset(out, 0, 4 * sizeof *out);
     if (isnan(value))
         return;
-    const double share = fmin(fmax((value - t->low) / (t->high - t->low), 0), 1);
-    const double at = share * (double)(t->count - 1);
+    const double fraction = fmin(fmax((value - t->low) / (t->high - t->low), 0), 1);
+    const double at = fraction * (double)(t->count - 1);
     const size_t n = (size_t)fmin(floor(at), (double)t->count - 2);
     const float s = (float)(at - (double)n), *row = t->rows + 4 * n;
     for (int c = 0; c < 4; c++)

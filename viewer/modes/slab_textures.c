@@ -23,7 +23,7 @@ typedef struct drawing {
     cwi_slabs slabs;
     cwi_slab_rect *rects; /* of one layer */
     corner *corners;
-    size_t count, room;
+    size_t count, capacity;
     size_t *first; /* corner of each layer, and the end */
 } drawing;
 
@@ -98,16 +98,16 @@ static void mark_brick(const cwi_gl *gl, const cwi_gl_brick *b, cwi_slabs *slabs
                 }
 }
 
-static bool make_room(drawing *d, size_t count)
+static bool ensure_capacity(drawing *d, size_t count)
 {
-    if (d->count + count <= d->room)
+    if (d->count + count <= d->capacity)
         return true;
-    const size_t room = 2 * (d->count + count);
-    corner *more = cwi_realloc_array(d->corners, room, sizeof *more);
+    const size_t capacity = 2 * (d->count + count);
+    corner *more = cwi_realloc_array(d->corners, capacity, sizeof *more);
     if (!more)
         return false;
     d->corners = more;
-    d->room = room;
+    d->capacity = capacity;
     return true;
 }
 
@@ -117,7 +117,7 @@ static cw_status gather_slabs(const cwi_frame *f, drawing *d, cw_error *err)
     for (size_t n = 0; n < d->slabs.layer_count; n++) {
         const size_t count = cwi_slabs_rects(&d->slabs, f, n, d->rects);
         d->first[n] = d->count;
-        if (!make_room(d, count * CORNERS))
+        if (!ensure_capacity(d, count * CORNERS))
             return cwi_fail_memory(err);
         for (size_t i = 0; i < count; i++) {
             const cwi_slab_rect r = d->rects[i];

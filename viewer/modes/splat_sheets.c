@@ -107,15 +107,15 @@ static cw_status make_batch(cwi_splats *s, bool is_of_nodes, cw_error *err)
 static int choose_axis(const cwi_frame *f)
 {
     int best = 0;
-    double most = -1, middle[3], view[3] = {0, 0, 1};
+    double max = -1, middle[3], view[3] = {0, 0, 1};
     cwi_midpoint(f->low, f->high, middle);
     if (f->perspective)
         cwi_affine_apply(f->eye_from_index, middle, view);
     for (int a = 0; a < 3; a++) {
         const double *normal = f->index_from_eye + (ptrdiff_t)4 * a;
         const double slope = fabs(cwi_dot(normal, view)) / cwi_length(normal);
-        if (slope > most) {
-            most = slope;
+        if (slope > max) {
+            max = slope;
             best = a;
         }
     }

@@ -37,13 +37,13 @@ static int clamp_whole(float x, int high)
 }
 
 /* Finds the samples between two corners of a rectangle, given as -x, -y, x, y. */
-static cwi_tile_box box_of_bounds(const cwi_tile *t, cwi_lanes most)
+static cwi_tile_box box_of_bounds(const cwi_tile *t, cwi_lanes max)
 {
     cwi_tile_box box;
     const int size[2] = {t->width, t->height};
     for (int a = 0; a < 2; a++) {
-        const int low = clamp_whole(-most[a] - margin - 0.5f, size[a]) + 1;
-        const int high = clamp_whole(most[a + 2] + margin - 0.5f, size[a]);
+        const int low = clamp_whole(-max[a] - margin - 0.5f, size[a]) + 1;
+        const int high = clamp_whole(max[a + 2] + margin - 0.5f, size[a]);
         box.low[a] = low > 0 ? low : 0;
         box.high[a] = high < size[a] ? high : size[a] - 1;
     }
@@ -88,7 +88,7 @@ static cwi_lanes place_of(const cwi_tile *t, const double p[3])
 
 cwi_tile_box cwi_tile_project(const cwi_tile *t, const double low[3], const double high[3])
 {
-    cwi_lanes places[8], most = cwi_lanes_spread(-INFINITY);
+    cwi_lanes places[8], max = cwi_lanes_spread(-INFINITY);
     bool is_cut = false;
     for (int n = 0; n < 8; n++) {
         const double p[3] = {n & 1 ? high[0] : low[0], n & 2 ? high[1] : low[1],
@@ -99,8 +99,8 @@ cwi_tile_box cwi_tile_project(const cwi_tile *t, const double low[3], const doub
     if (is_cut)
         return box_of_cut(t, places);
     for (int n = 0; n < 8; n++)
-        most = cwi_lanes_max(most, project_place(places[n]));
-    return box_of_bounds(t, most);
+        max = cwi_lanes_max(max, project_place(places[n]));
+    return box_of_bounds(t, max);
 }
 
 static uint32_t row_bits(const cwi_tile_box *box)
@@ -301,15 +301,15 @@ static void make_cell(const block *b, const node *n, int corners[8], cwi_project
 
 static cwi_tile_box find_box(const block *b, const int corners[8])
 {
-    cwi_lanes places[8], most;
+    cwi_lanes places[8], max;
     for (int n = 0; n < 8; n++)
         places[n] = b->places[corners[n]];
     if (b->is_cut)
         return box_of_cut(b->tile, places);
-    most = cwi_lanes_max(places[0], places[1]);
+    max = cwi_lanes_max(places[0], places[1]);
     for (int n = 2; n < 8; n++)
-        most = cwi_lanes_max(most, places[n]);
-    return box_of_bounds(b->tile, most);
+        max = cwi_lanes_max(max, places[n]);
+    return box_of_bounds(b->tile, max);
 }
 
 /* Draws a node over the live samples of a rectangle. */

@@ -267,11 +267,11 @@ static inline cwi_lanes shade_color(const cwi_cell_model *m, const cwi_cell_ray 
         face = distance < nearest ? m->face_normal[n] : face;
         nearest = distance < nearest ? distance : nearest;
     }
-    const float share = (float)cwi_lighting_face_share((double)nearest);
-    if (share < 1 && size > 0)
-        light += (1 - share) * strength * reflect_light(m, r, gradient / size, true, color);
-    if (share > 0)
-        light += share * reflect_light(m, r, face, false, color);
+    const float mix = (float)cwi_lighting_face_fraction((double)nearest);
+    if (mix < 1 && size > 0)
+        light += (1 - mix) * strength * reflect_light(m, r, gradient / size, true, color);
+    if (mix > 0)
+        light += mix * reflect_light(m, r, face, false, color);
     light[3] = color[3];
     return light;
 }

@@ -94,7 +94,7 @@ static void start_rays(const projection *p, cwi_tile *t)
     const cw_scene *s = &p->frame->scene;
     for (int y = 0; y < t->height; y++) {
         const size_t row = t->y + (size_t)y;
-        const float share = ((float)row + 0.5f) / (float)s->height;
+        const float fraction = ((float)row + 0.5f) / (float)s->height;
         t->live[y] = 0;
         for (int x = 0; x < t->width; x++) {
             const size_t column = t->x + (size_t)x;
@@ -108,7 +108,7 @@ static void start_rays(const projection *p, cwi_tile *t)
             start_ray(p->frame, &ray, &t->rays[n]);
             for (int c = 0; c < 3; c++)
                 t->rays[n].background[c] =
-                    (1 - share) * s->background[0][c] + share * s->background[1][c];
+                    (1 - fraction) * s->background[0][c] + fraction * s->background[1][c];
             if (s->lit)
                 cwi_cell_halfway(&p->model, ray.direction, t->halfway[n]);
             t->rays[n].halfway = t->halfway[n];

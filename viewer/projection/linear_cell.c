@@ -16,8 +16,8 @@ static cwi_lanes place_in_box(const cwi_frame *f, const double at[2], double dep
     cwi_lanes place = {0};
     cwi_affine_apply(f->index_from_eye, p, index);
     for (int a = 0; a < 3; a++) {
-        const double share = (index[a] - low[a]) / (double)c->size[a];
-        place[a] = (float)cwi_lesser(cwi_greater(share, 0), 1);
+        const double fraction = (index[a] - low[a]) / (double)c->size[a];
+        place[a] = (float)cwi_lesser(cwi_greater(fraction, 0), 1);
     }
     return place;
 }
@@ -110,10 +110,10 @@ cwi_lanes cwi_linear_at(const cwi_linear_cell *l, float x, float y)
         float b = dx * t->second[0] + dy * t->second[1];
         float c = dx * t->third[0] + dy * t->third[1];
         const float a = 1 - b - c;
-        const float least = a < b ? (a < c ? a : c) : (b < c ? b : c);
-        if (!(least > best))
+        const float min = a < b ? (a < c ? a : c) : (b < c ? b : c);
+        if (!(min > best))
             continue;
-        best = least;
+        best = min;
         b = b > 0 ? b : 0;
         c = c > 0 ? c : 0;
         const float sum = (a > 0 ? a : 0) + b + c;

@@ -202,15 +202,15 @@ static int cut_cell(const cwi_solids *s, const corners *c, cwi_solid out[CWI_SOL
     for (int f = 0; f < shape->face_count; f++) {
         const int size = shape->face_size[f];
         const uint8_t *face = shape->faces[f];
-        int least = 0;
+        int min = 0;
         bool has_tip = false;
         for (int n = 0; n < size; n++) {
             has_tip = has_tip || face[n] == tip;
-            least = c->samples[face[n]][0] < c->samples[face[least]][0] ? n : least;
+            min = c->samples[face[n]][0] < c->samples[face[min]][0] ? n : min;
         }
         for (int n = 2; n < size && !has_tip; n++) {
-            const int from[4] = {tip, face[least], face[(least + n - 1) % size],
-                                 face[(least + n) % size]};
+            const int from[4] = {tip, face[min], face[(min + n - 1) % size],
+                                 face[(min + n) % size]};
             count += make_tetrahedron(s, c, from, &out[count]);
         }
     }

@@ -41,12 +41,12 @@ static void at_row(const cwi_integrals *r, double row, double out[4])
 {
     const double last = (double)r->table.count - 1, at = fmin(fmax(row, 0), last);
     const size_t n = (size_t)fmin(floor(at), last - 1);
-    const double share = at - (double)n;
+    const double fraction = at - (double)n;
     const float *rows = r->table.rows + 4 * n;
     for (size_t c = 0; c < 4; c++) {
         const double a = (double)rows[c] * (c < 3 ? (double)rows[3] : 1);
         const double b = (double)rows[c + 4] * (c < 3 ? (double)rows[7] : 1);
-        out[c] = a + share * (b - a);
+        out[c] = a + fraction * (b - a);
     }
 }
 
@@ -55,12 +55,12 @@ static void up_to_row(const cwi_integrals *r, double row, double out[4])
 {
     const double last = (double)r->table.count - 1, at = fmin(fmax(row, 0), last);
     const size_t n = (size_t)fmin(floor(at), last - 1);
-    const double share = at - (double)n, beyond = row - at;
+    const double fraction = at - (double)n, beyond = row - at;
     double here[4], low[4];
     at_row(r, (double)n, low);
     at_row(r, at, here);
     for (int c = 0; c < 4; c++)
-        out[c] = r->sums[n][c] + share * (low[c] + here[c]) / 2 + beyond * here[c];
+        out[c] = r->sums[n][c] + fraction * (low[c] + here[c]) / 2 + beyond * here[c];
 }
 
 void cwi_integrals_mean(const cwi_integrals *r, double from, double to, double mean[4])

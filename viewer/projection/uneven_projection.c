@@ -74,11 +74,11 @@ static void cover_chunk(void *context, size_t chunk)
             !cwi_knots_is_visible(&p->knots, range[0], range[1]) || !(high[0] >= 0) ||
             !(high[1] >= 0) || !(low[0] <= size[0]) || !(low[1] <= size[1]))
             continue;
-        const double share = (depth - f->near) / (f->far - f->near);
+        const double fraction = (depth - f->near) / (f->far - f->near);
         const double first = fmax(floor(low[1] / BAND), 0),
                      last = fmin(floor(high[1] / BAND), (double)p->band_count - 1);
         p->covers[n] = (cover){(uint16_t)first, (uint16_t)last,
-                               (uint16_t)(1 + fmin(fmax(share, 0), 1) * (SLOTS - 1))};
+                               (uint16_t)(1 + fmin(fmax(fraction, 0), 1) * (SLOTS - 1))};
     }
 }
 
@@ -141,7 +141,7 @@ static void ray_by_depth(const cwi_frame *f, size_t x, size_t y, double origin[3
     direction[2] = -1;
 }
 
-static bool has_room(band *b)
+static bool has_capacity(band *b)
 {
     if (b->count < b->capacity)
         return true;
@@ -168,7 +168,7 @@ static void add_fragment(band *b, const cwi_solid *s, size_t sample, const doubl
                          const double direction[3], double near, double far)
 {
     double p[3], gradient[3], values[3];
-    if (!has_room(b))
+    if (!has_capacity(b))
         return;
     fragment *f = &b->all[b->count];
     *f = (fragment){.near = near, .far = far, .next = b->last[sample]};
@@ -236,8 +236,8 @@ static void blend_segment(blending *b, const fragment *f, double near, double fa
                                 (double)f->gradient[2]};
     double ends[2], whole[4], scale = along, base[3] = {0, 0, 0}, gain[3] = {1, 1, 1};
     for (int n = 0; n < 2; n++) {
-        const double share = ((n ? far : near) - f->near) / (f->far - f->near);
-        ends[n] = (double)f->values[0] + share * (double)(f->values[1] - f->values[0]);
+        const double fraction = ((n ? far : near) - f->near) / (f->far - f->near);
+        ends[n] = (double)f->values[0] + fraction * (double)(f->values[1] - f->values[0]);
     }
     cwi_integrals_mean(&p->integrals, ends[0], ends[1], whole);
     if (!(whole[3] > 0))
@@ -302,7 +302,7 @@ static void blend_sample(band *b, size_t x, size_t y)
     const size_t sample = y * s->width + x;
     const uint32_t last = b->last[sample - b->first_row * s->width];
     float *pixel = p->picture->pixels + 4 * sample;
-    const double share = ((double)y + 0.5) / (double)s->height;
+    const double fraction = ((double)y + 0.5) / (double)s->height;
     blending l = {.p = p, .light = 1};
     cwi_ray ray;
     if (last == UINT32_MAX)
@@ -310,8 +310,8 @@ static void blend_sample(band *b, size_t x, size_t y)
     cwi_ray_make(p->frame, (double)x + 0.5, (double)y + 0.5,
                  p->depths ? p->depths[sample] : INFINITY, &ray);
     for (int c = 0; c < 3; c++)
-        l.background[c] =
-            (1 - share) * (double)s->background[0][c] + share * (double)s->background[1][c];
+        l.background[c] = (1 - fraction) * (double)s->background[0][c] +
+                          fraction * (double)s->background[1][c];
     if (s->lit)
         cwi_lighting_make(p->frame, ray.origin, ray.direction, &l.lighting);
     const size_t count = sort_fragments(b, last);

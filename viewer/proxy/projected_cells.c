@@ -238,11 +238,11 @@ static uint8_t add_vertex(cwi_pieces *out, const cwi_piece_vertex *v, double siz
 static int choose_first(const polygon *p)
 {
     int first = 0;
-    double most = -INFINITY;
+    double max = -INFINITY;
     for (int n = 0; n < p->count; n++) {
         const double along = 0.8391 * p->at[n][0] + 0.5440 * p->at[n][1];
-        if (along > most) {
-            most = along;
+        if (along > max) {
+            max = along;
             first = n;
         }
     }

@@ -83,10 +83,10 @@ static void circle_of(const cwi_directions *d, size_t cell, double middle[3], do
 /* Returns the angle between the middle of a cell and the nearest direction. */
 static double nearest_angle(const cwi_directions *d, const double v[3])
 {
-    double most = 0;
+    double max = 0;
     for (size_t n = 0; n < d->count; n++)
-        most = fmax(most, fabs(cwi_dot(d->all[n], v)));
-    return acos(fmin(most, 1));
+        max = fmax(max, fabs(cwi_dot(d->all[n], v)));
+    return acos(fmin(max, 1));
 }
 
 /* Lists, or counts when to is NULL, the directions that may be nearest to a point of a cell.
@@ -97,9 +97,9 @@ static size_t put_candidates(const cwi_directions *d, size_t cell, uint16_t *to)
     double middle[3], radius;
     size_t count = 0;
     circle_of(d, cell, middle, &radius);
-    const double most = cos(fmin(nearest_angle(d, middle) + 2 * radius + 1e-9, acos(0)));
+    const double max = cos(fmin(nearest_angle(d, middle) + 2 * radius + 1e-9, acos(0)));
     for (size_t n = 0; n < d->count; n++)
-        if (fabs(cwi_dot(d->all[n], middle)) >= most) {
+        if (fabs(cwi_dot(d->all[n], middle)) >= max) {
             if (to)
                 to[count] = (uint16_t)n;
             count++;
@@ -158,14 +158,14 @@ cw_status cwi_directions_make(size_t count, cwi_directions *directions, cw_error
 size_t cwi_directions_nearest(const cwi_directions *d, const double v[3])
 {
     size_t cell, best;
-    double most = -1;
+    double max = -1;
     if (!cell_of(d, v, &cell))
         return d->count;
     best = d->candidates[d->first[cell]];
     for (uint32_t n = d->first[cell]; n < d->first[cell + 1]; n++) {
-        const double share = fabs(cwi_dot(d->all[d->candidates[n]], v));
-        if (share > most) {
-            most = share;
+        const double fraction = fabs(cwi_dot(d->all[d->candidates[n]], v));
+        if (fraction > max) {
+            max = fraction;
             best = d->candidates[n];
         }
     }

@@ -116,7 +116,7 @@ static double size_of(const cwi_mapped_cell *cell)
 /* Returns the farthest that a corner is from its place if the map were linear. */
 static double deviation_of(const cwi_mapped_cell *cell)
 {
-    double most = 0;
+    double max = 0;
     const double(*p)[3] = cell->points;
     const uint8_t *span = spanning[cell->shape];
     for (int c = 0; c < cell->count; c++)
@@ -124,15 +124,15 @@ static double deviation_of(const cwi_mapped_cell *cell)
             double x = p[0][a];
             for (int k = 0; k < 3; k++)
                 x += reference[cell->shape][c][k] * (p[span[k]][a] - p[0][a]);
-            most = fmax(most, fabs(x - p[c][a]));
+            max = fmax(max, fabs(x - p[c][a]));
         }
-    return most;
+    return max;
 }
 
 cwi_map_kind cwi_cell_map_of(const cwi_mapped_cell *cell)
 {
     static const double flat = 1e-13; /* of the cube of the size */
-    const double size = size_of(cell), least = flat * size * size * size;
+    const double size = size_of(cell), min_axis = flat * size * size * size;
     bool is_left = false, is_right = false;
     if (!(size > 0))
         return CWI_MAP_EMPTY;
@@ -142,8 +142,8 @@ cwi_map_kind cwi_cell_map_of(const cwi_mapped_cell *cell)
         for (int k = 0; k < 3; k++)
             cwi_sub(cell->points[apex[k + 1]], cell->points[apex[0]], edges[k]);
         const double d = determinant_of(edges[0], edges[1], edges[2]);
-        is_right = is_right || d > least;
-        is_left = is_left || d < -least;
+        is_right = is_right || d > min_axis;
+        is_left = is_left || d < -min_axis;
     }
     if (is_left && is_right)
         return CWI_MAP_FOLDED;
@@ -307,10 +307,10 @@ static const double beside = 1e-3;
 /* Solves a x^2 + b x + c = 0; returns the number of roots. */
 static int solve_quadratic(double a, double b, double c, double x[2])
 {
-    const double square = b * b - 4 * a * c;
-    const double q = -0.5 * (b + copysign(sqrt(fmax(square, 0)), b));
+    const double discriminant = b * b - 4 * a * c;
+    const double q = -0.5 * (b + copysign(sqrt(fmax(discriminant, 0)), b));
     int count = 0;
-    if (square < 0)
+    if (discriminant < 0)
         return 0;
     if (fabs(a) > 1e-14 * fabs(q))
         x[count++] = q / a;
@@ -360,8 +360,8 @@ static int cross_patch(const double *const p[4], const across *view, const doubl
             const double y = roots[n];
             const double from[2] = {f[0][0] + y * c[0], f[0][1] + y * c[1]};
             const double along[2] = {b[0] + y * f[3][0], b[1] + y * f[3][1]};
-            const double square = along[0] * along[0] + along[1] * along[1];
-            const double x = -(from[0] * along[0] + from[1] * along[1]) / square;
+            const double length_sq = along[0] * along[0] + along[1] * along[1];
+            const double x = -(from[0] * along[0] + from[1] * along[1]) / length_sq;
             if (is_beside(x) || is_beside(y))
                 continue;
             const double s = swap ? y : x, r = swap ? x : y;
@@ -389,11 +389,11 @@ static int cross_triangle(const double *const p[3], const double direction[3], d
 static void look_along(const double direction[3], across *view)
 {
     const double size[3] = {fabs(direction[0]), fabs(direction[1]), fabs(direction[2])};
-    const int least = size[0] < size[1]   ? (size[0] < size[2] ? 0 : 2)
-                      : size[1] < size[2] ? 1
-                                          : 2;
+    const int min_axis = size[0] < size[1]   ? (size[0] < size[2] ? 0 : 2)
+                         : size[1] < size[2] ? 1
+                                             : 2;
     double axis[3] = {0};
-    axis[least] = 1;
+    axis[min_axis] = 1;
     cwi_cross(direction, axis, view->first);
     cwi_normalise(view->first);
     cwi_cross(direction, view->first, view->second);

@@ -67,11 +67,11 @@ void cwi_walk_start(cwi_walk *w, const cwi_frame *f, const cwi_ray *ray, int par
  * left; else it might go back and forth forever. */
 static ptrdiff_t cell_after(const cwi_walk *w, int axis)
 {
-    const ptrdiff_t most = cells_along(w->volume, axis) - 1, before = w->cell[axis];
+    const ptrdiff_t max = cells_along(w->volume, axis) - 1, before = w->cell[axis];
     ptrdiff_t cell = (ptrdiff_t)(w->index[axis] + w->t * w->slope[axis]);
     if (w->slope[axis] > 0 ? cell < before : cell > before)
         cell = before;
-    return w->volume->dim[axis] == 1 || cell < 0 ? 0 : cell > most ? most : cell;
+    return w->volume->dim[axis] == 1 || cell < 0 ? 0 : cell > max ? max : cell;
 }
 
 void cwi_walk_leap(cwi_walk *w, int edge, int distance)

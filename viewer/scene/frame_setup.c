@@ -515,10 +515,10 @@ double cwi_frame_gradient_factor(const cwi_frame *f, double length)
 
 double cwi_frame_cue(const cwi_frame *f, double depth)
 {
-    const double share = (depth - f->cue_start) / (f->cue_end - f->cue_start);
+    const double fraction = (depth - f->cue_start) / (f->cue_end - f->cue_start);
     if (f->cue_decay > 0)
         return exp(-f->cue_decay * fmax(depth - f->cue_start, 0));
-    return 1 - f->scene.depth_cue * fmin(fmax(share, 0), 1);
+    return 1 - f->scene.depth_cue * fmin(fmax(fraction, 0), 1);
 }
 
 /* Computes the matrix of the gradient of f(index(eye)): the transpose of the map's

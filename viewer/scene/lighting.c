@@ -67,7 +67,7 @@ static void add_reflection(const cwi_lighting *l, const double n[3], const doubl
     }
 }
 
-double cwi_lighting_face_share(double distance)
+double cwi_lighting_face_fraction(double distance)
 {
     return fmin(fmax(2 - fabs(distance), 0), 1);
 }
@@ -84,7 +84,7 @@ static double find_face(const cwi_lighting *l, double t, double normal[3])
                 normal[a] = l->side * l->faces[n][a];
         }
     }
-    return cwi_lighting_face_share(nearest);
+    return cwi_lighting_face_fraction(nearest);
 }
 
 void cwi_lighting_shade(const cwi_lighting *l, double t, const double gradient[3],
@@ -94,14 +94,14 @@ void cwi_lighting_shade(const cwi_lighting *l, double t, const double gradient[3
     double light[3];
     const double length = cwi_length(n);
     const double strength = l->surface > 0 ? fmin(length * l->surface, 1) : 1;
-    const double share = find_face(l, t, face);
+    const double fraction = find_face(l, t, face);
     cwi_to_unit(n);
     for (int c = 0; c < 3; c++)
         light[c] = (double)l->material.ambient * color[c];
-    if (share < 1 && length > 0)
-        add_reflection(l, n, color, (1 - share) * strength, shadow, true, light);
-    if (share > 0)
-        add_reflection(l, face, color, share, shadow, false, light);
+    if (fraction < 1 && length > 0)
+        add_reflection(l, n, color, (1 - fraction) * strength, shadow, true, light);
+    if (fraction > 0)
+        add_reflection(l, face, color, fraction, shadow, false, light);
     for (int c = 0; c < 3; c++)
         color[c] = l->shadow == CW_SHADOW_AMBIENT ? shadow * light[c] : light[c];
 }

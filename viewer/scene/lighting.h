@@ -36,7 +36,7 @@ void cwi_lighting_shade(const cwi_lighting *lighting, double t, const double gra
                         double shadow, double color[3]);
 
 /* Returns the share of the light that a clip plane has at a distance from it, 0 to 1. */
-double cwi_lighting_face_share(double distance);
+double cwi_lighting_face_fraction(double distance);
 
 #ifdef __cplusplus
 }

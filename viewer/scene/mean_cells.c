@@ -71,18 +71,18 @@ static void gather_row(const filling *f, const sums *s, size_t across, size_t to
     const size_t edge = (size_t)1 << l->shift[0], cells = cells_along(f->v, 0);
     for (size_t i = 0; i < l->dim[0]; i++) {
         const size_t first = i * edge, end = first + edge < cells ? first + edge : cells;
-        const float share = 1 / (float)((end - first) * across);
+        const float fraction = 1 / (float)((end - first) * across);
         float sum[6] = {0};
         for (size_t c = first; c < end; c++)
             for (int p = 0; p < 6; p++)
                 sum[p] += s->part[p][c];
         float *m = l->moments[to + i];
-        m[0] = share * sum[0];
-        m[1] = share * sum[1];
-        m[2] = share * sum[2];
+        m[0] = fraction * sum[0];
+        m[1] = fraction * sum[1];
+        m[2] = fraction * sum[2];
         m[3] = 0;
         for (int a = 0; a < 3 && l->gradients; a++)
-            l->gradients[to + i][a] = share * sum[3 + a];
+            l->gradients[to + i][a] = fraction * sum[3 + a];
         if (l->gradients)
             l->gradients[to + i][3] = 0;
     }

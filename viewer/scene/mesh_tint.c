@@ -30,9 +30,9 @@ static void lab_to_srgb(double lightness, double a, double b, double srgb[3])
         srgb[c] = cwi_linear_to_srgb(cwi_dot(from_xyz[c], xyz));
 }
 
-void cwi_ramp_color(double share, double srgb[3])
+void cwi_ramp_color(double fraction, double srgb[3])
 {
-    const double t = fmin(fmax(share, 0), 1), degree = CWI_PI / 180;
+    const double t = fmin(fmax(fraction, 0), 1), degree = CWI_PI / 180;
     const double lightness = 18 + 74 * t, hue = (310 - 205 * t) * degree;
     const double tint = 2 * t - 0.75; /* 0 where sRGB has least: in the teals */
     const double chroma = 27 + 30 * tint * tint;
@@ -41,14 +41,14 @@ void cwi_ramp_color(double share, double srgb[3])
 
 double cwi_triangle_shape(const cw_mesh *mesh, size_t triangle)
 {
-    double side[3][3], squares = 0, normal[3];
+    double side[3][3], sides_sq = 0, normal[3];
     for (size_t e = 0; e < 3; e++) {
         cwi_sub_points(cwi_mesh_point(mesh, triangle, (e + 1) % 3),
                        cwi_mesh_point(mesh, triangle, e), side[e]);
-        squares += cwi_dot(side[e], side[e]);
+        sides_sq += cwi_dot(side[e], side[e]);
     }
     cwi_cross(side[0], side[1], normal);
-    return squares > 0 ? 2 * sqrt(3) * cwi_length(normal) / squares : 0;
+    return sides_sq > 0 ? 2 * sqrt(3) * cwi_length(normal) / sides_sq : 0;
 }
 
 static void find_range(const cw_mesh *mesh, double range[2])

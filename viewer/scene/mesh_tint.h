@@ -11,7 +11,7 @@ extern "C" {
 /* Computes a colour of the ramp from dark to bright, for 0 to 1. Lightness (CIE L*) rises
  * evenly from 18 to 92, while the hue goes from violet over blue and green to yellow. The
  * chroma is within sRGB throughout. */
-void cwi_ramp_color(double share, double srgb[3]);
+void cwi_ramp_color(double fraction, double srgb[3]);
 
 /* Returns 4 sqrt(3) area / sum of squared edges: 1 for an equilateral triangle, 0 for a flat
  * one. */

@@ -49,8 +49,8 @@ static float classify(const job *w, float coordinate, const size_t at[3])
     double gradient[3], eye[3];
     if (coordinate != coordinate)
         return 0;
-    const float most = (float)(t->count - 1), place = coordinate * most;
-    const float row = place < 0 ? 0 : place > most ? most : place;
+    const float max = (float)(t->count - 1), place = coordinate * max;
+    const float row = place < 0 ? 0 : place > max ? max : place;
     const size_t n = (size_t)row < t->count - 2 ? (size_t)row : t->count - 2;
     const float low = t->rows[4 * n + 3], high = t->rows[4 * n + 7];
     const float extinction = low + (row - (float)n) * (high - low);
@@ -123,26 +123,26 @@ static bool is_kept(const cwi_shadow_key *key, const double p[3])
 /* Returns the number of steps from a place that stay in its empty block, at least 1. */
 static double steps_in_block(const double p[3], const double step[3])
 {
-    double least = 1e9;
+    double min = 1e9;
     for (int a = 0; a < 3; a++) {
         const double low = floor(p[a] / BLOCK) * BLOCK;
-        const double way = step[a] > 0 ? low + BLOCK - p[a] : low - p[a];
+        const double distance = step[a] > 0 ? low + BLOCK - p[a] : low - p[a];
         if (step[a] != 0)
-            least = fmin(least, way / step[a]);
+            min = fmin(min, distance / step[a]);
     }
-    return fmax(floor(least), 1);
+    return fmax(floor(min), 1);
 }
 
 /* Returns the number of steps after which a ray from a voxel leaves the volume. */
 static double steps_in_volume(const job *w, const size_t at[3], const double step[3])
 {
-    double least = INFINITY;
+    double min = INFINITY;
     for (int a = 0; a < 3; a++) {
-        const double way = step[a] > 0 ? (double)(w->dim[a] - 1 - at[a]) : -(double)at[a];
+        const double distance = step[a] > 0 ? (double)(w->dim[a] - 1 - at[a]) : -(double)at[a];
         if (step[a] != 0)
-            least = fmin(least, way / step[a]);
+            min = fmin(min, distance / step[a]);
     }
-    return least - 1e-9; /* rounding may put the last place outside */
+    return min - 1e-9; /* rounding may put the last place outside */
 }
 
 /* Returns the light that comes to a voxel along a ray of a number of steps. The first step,

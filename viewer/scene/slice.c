@@ -92,10 +92,10 @@ static bool find_extent(const cw_volume *v, const cw_slice *s, const double axes
         }
         if ((side[0] > 0) == (side[1] > 0) && side[0] != 0 && side[1] != 0)
             continue;
-        const double share = side[0] == side[1] ? 0 : side[0] / (side[0] - side[1]);
+        const double fraction = side[0] == side[1] ? 0 : side[0] / (side[0] - side[1]);
         for (int d = 0; d < 2; d++) {
-            const double at =
-                (1 - share) * cwi_dot(axes[d], ends[0]) + share * cwi_dot(axes[d], ends[1]);
+            const double at = (1 - fraction) * cwi_dot(axes[d], ends[0]) +
+                              fraction * cwi_dot(axes[d], ends[1]);
             extent[d][0] = any ? fmin(extent[d][0], at) : at;
             extent[d][1] = any ? fmax(extent[d][1], at) : at;
         }

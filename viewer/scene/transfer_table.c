@@ -52,8 +52,8 @@ cw_status cwi_table_make(const cwi_frame *frame, cwi_table *table, cw_error *err
     }
     for (size_t n = 0; n < table->count; n++) {
         float *row = table->rows + 4 * n;
-        const double share = (double)n / (double)(table->count - 1);
-        cw_transfer_at(&frame->transfer, range[0] + share * (range[1] - range[0]), color,
+        const double fraction = (double)n / (double)(table->count - 1);
+        cw_transfer_at(&frame->transfer, range[0] + fraction * (range[1] - range[0]), color,
                        &opacity);
         for (int c = 0; c < 3; c++)
             row[c] = (float)color[c];
@@ -75,8 +75,8 @@ void cwi_table_free(cwi_table *table)
 /* Returns the row of a value, not rounded. */
 static double row_of(const cwi_table *table, double value)
 {
-    const double share = (value - table->low) / (table->high - table->low);
-    return fmin(fmax(share, 0), 1) * (double)(table->count - 1);
+    const double fraction = (value - table->low) / (table->high - table->low);
+    return fmin(fmax(fraction, 0), 1) * (double)(table->count - 1);
 }
 
 bool cwi_table_is_visible(const cwi_table *table, double low, double high)
@@ -107,16 +107,16 @@ bool cwi_table_is_narrow(const cwi_table *t)
     return change > MAX_CHANGE * total;
 }
 
-/* Returns the shortest distance between two points that differ, at most `most`. */
-static double find_narrowest(const void *points, size_t row, size_t count, double most)
+/* Returns the shortest distance between two points that differ, at most `max`. */
+static double find_narrowest(const void *points, size_t row, size_t count, double max)
 {
     for (size_t n = 1; n < count; n++) {
         const double a = *(const double *)((const char *)points + (n - 1) * row);
         const double b = *(const double *)((const char *)points + n * row);
-        if (b > a && b - a < most)
-            most = b - a;
+        if (b > a && b - a < max)
+            max = b - a;
     }
-    return most;
+    return max;
 }
 
 size_t cwi_table_segment_rows(const cwi_table *table, const cw_transfer *t)
@@ -140,11 +140,11 @@ static double (*running_integrals(const cwi_table *t, size_t count))[4]
     for (size_t n = 0; sum && n <= (count - 1) * FINE; n++) {
         const double at = (double)n / fine * (double)(t->count - 1);
         const size_t i = (size_t)fmin(floor(at), (double)t->count - 2);
-        const double share = at - (double)i;
+        const double fraction = at - (double)i;
         double now[4];
         for (int c = 0; c < 4; c++)
-            now[c] = (1 - share) * (double)t->rows[4 * i + (size_t)c] +
-                     share * (double)t->rows[4 * i + 4 + (size_t)c];
+            now[c] = (1 - fraction) * (double)t->rows[4 * i + (size_t)c] +
+                     fraction * (double)t->rows[4 * i + 4 + (size_t)c];
         for (int c = 0; c < 3; c++)
             now[c] *= now[3];
         for (int c = 0; c < 4 && n > 0; c++)
@@ -159,8 +159,8 @@ static double (*running_integrals(const cwi_table *t, size_t count))[4]
  * depth, so deep ones are cut. */
 static size_t piece_count(double depth, size_t span)
 {
-    const double wanted = fmin(ceil(PIECES_PER_DEPTH * depth), MAX_PIECES);
-    return wanted < 1 ? 1 : wanted < (double)span ? (size_t)wanted : span;
+    const double requested = fmin(ceil(PIECES_PER_DEPTH * depth), MAX_PIECES);
+    return requested < 1 ? 1 : requested < (double)span ? (size_t)requested : span;
 }
 
 /* Returns the fraction of a piece's glow that leaves it: (1 - exp(-depth)) / depth. The series
@@ -186,8 +186,8 @@ static void integrate_segment(const double (*sum)[4], size_t x, size_t y, double
     double light = 1, color[3] = {0};
     size_t from = x * FINE;
     for (size_t p = 1; p <= pieces && all > 0 && light > 1e-9; p++) {
-        const size_t way = span * p / pieces;
-        const size_t to = x < y ? x * FINE + way : x * FINE - way;
+        const size_t offset = span * p / pieces;
+        const size_t to = x < y ? x * FINE + offset : x * FINE - offset;
         const double depth = scale * fabs(sum[to][3] - sum[from][3]);
         const double escape = find_escape(depth), through = 1 - depth * escape;
         for (int c = 0; c < 3; c++)
@@ -204,11 +204,11 @@ static void integrate_segment(const double (*sum)[4], size_t x, size_t y, double
 static void integrate_flat(const cwi_table *t, double at, double length, float out[4])
 {
     const size_t i = (size_t)fmin(floor(at), (double)t->count - 2);
-    const double share = at - (double)i;
+    const double fraction = at - (double)i;
     double row[4];
     for (int c = 0; c < 4; c++)
-        row[c] = (1 - share) * (double)t->rows[4 * i + (size_t)c] +
-                 share * (double)t->rows[4 * i + 4 + (size_t)c];
+        row[c] = (1 - fraction) * (double)t->rows[4 * i + (size_t)c] +
+                 fraction * (double)t->rows[4 * i + 4 + (size_t)c];
     const double opacity = -expm1(-row[3] * length);
     for (int c = 0; c < 3; c++)
         out[c] = (float)(row[c] * opacity);

@@ -91,9 +91,9 @@ static bool trim_ends(const uint64_t *sums, size_t count, double ends[2])
 static bool find_ends(const job *j, uint64_t *sums, double ends[3][2])
 {
     const cw_volume *v = j->v;
-    const size_t most = v->dim[0] + v->dim[1] + j->layers;
+    const size_t max = v->dim[0] + v->dim[1] + j->layers;
     bool is_visible = true;
-    memset(sums, 0, most * sizeof *sums);
+    memset(sums, 0, max * sizeof *sums);
     uint64_t *x = sums, *y = x + v->dim[0], *z = y + v->dim[1];
     for (size_t n = 0; n < j->layers; n++) {
         for (size_t i = 0; i < v->dim[0]; i++) {

@@ -19,7 +19,7 @@ static cw_status check_value(const char *list, size_t n, double value, double be
     return CW_OK;
 }
 
-static bool is_share(float x)
+static bool is_fraction(float x)
 {
     return x >= 0 && x <= 1;
 }
@@ -31,7 +31,7 @@ static cw_status check_opacities(const char *list, const cw_opacity_point *p, si
         cw_status st = check_value(list, n, p[n].value, n ? p[n - 1].value : -INFINITY, err);
         if (st != CW_OK)
             return st;
-        if (!is_share(p[n].opacity))
+        if (!is_fraction(p[n].opacity))
             return cwi_fail(err, CW_ERR_ARGUMENT, "point %zu of '%s' is %g, not 0 to 1", n,
                             list, (double)p[n].opacity);
     }
@@ -47,7 +47,7 @@ static cw_status check_colors(const cw_transfer *t, cw_error *err)
         if (st != CW_OK)
             return st;
         for (int c = 0; c < 3; c++)
-            if (!is_share(p->color[c]))
+            if (!is_fraction(p->color[c]))
                 return cwi_fail(err, CW_ERR_ARGUMENT, "point %zu of 'colors' is %g, not 0 to 1",
                                 n, (double)p->color[c]);
     }
@@ -100,49 +100,49 @@ cw_status cw_transfer_check(const cw_transfer *t, cw_error *err)
  * jump the side above. The points are `count` rows (at least 1) of `row` bytes that begin with
  * their value. */
 static size_t find_place(const void *points, size_t row, size_t count, double value,
-                         double *share)
+                         double *fraction)
 {
     size_t n = 0;
-    *share = 0;
+    *fraction = 0;
 #define VALUE(i) (*(const double *)((const char *)points + (i)*row))
     while (n < count && VALUE(n) <= value)
         n++;
     if (n > 0 && n < count) /* in halves: differences may be beyond what doubles hold */
-        *share = (value / 2 - VALUE(n - 1) / 2) / (VALUE(n) / 2 - VALUE(n - 1) / 2);
+        *fraction = (value / 2 - VALUE(n - 1) / 2) / (VALUE(n) / 2 - VALUE(n - 1) / 2);
 #undef VALUE
     return n;
 }
 
 double cw_transfer_index(const cw_transfer *t, double value)
 {
-    double share;
+    double fraction;
     if (t->index_count == 0)
         return value;
     const cw_index_point *p = t->indices;
-    const size_t n = find_place(p, sizeof *p, t->index_count, value, &share);
+    const size_t n = find_place(p, sizeof *p, t->index_count, value, &fraction);
     const double low = (double)p[n ? n - 1 : 0].index;
     const double high = (double)p[n < t->index_count ? n : t->index_count - 1].index;
-    return low + share * (high - low);
+    return low + fraction * (high - low);
 }
 
 static double opacity_at(const cw_opacity_point *p, size_t count, double value)
 {
-    double share;
-    const size_t n = find_place(p, sizeof *p, count, value, &share);
+    double fraction;
+    const size_t n = find_place(p, sizeof *p, count, value, &fraction);
     const cw_opacity_point *low = &p[n ? n - 1 : 0], *high = &p[n < count ? n : count - 1];
-    return (double)low->opacity + share * ((double)high->opacity - (double)low->opacity);
+    return (double)low->opacity + fraction * ((double)high->opacity - (double)low->opacity);
 }
 
 void cw_transfer_at(const cw_transfer *t, double value, double color[3], double *opacity)
 {
-    double share;
-    const size_t n = find_place(t->colors, sizeof *t->colors, t->color_count, value, &share);
+    double fraction;
+    const size_t n = find_place(t->colors, sizeof *t->colors, t->color_count, value, &fraction);
     const size_t last = t->color_count ? t->color_count - 1 : 0;
     const cw_color_point *low = &t->colors[n ? n - 1 : 0];
     const cw_color_point *high = &t->colors[n < last ? n : last];
     for (int c = 0; c < 3; c++)
-        color[c] = t->color_count ? (double)low->color[c] +
-                                        share * ((double)high->color[c] - (double)low->color[c])
+        color[c] = t->color_count ? (double)low->color[c] + fraction * ((double)high->color[c] -
+                                                                        (double)low->color[c])
                                   : 1;
     *opacity = t->opacity_count ? opacity_at(t->opacities, t->opacity_count, value) : 0;
 }

@@ -133,10 +133,10 @@ static bool is_equal(const sample *a, const sample *b)
 
 /* Halves the pieces that are farthest from a line, until all are close or there are too many
  * points. Returns the number of pieces. */
-static size_t halve_pieces(const mixture *m, piece *pieces, size_t count, size_t most)
+static size_t halve_pieces(const mixture *m, piece *pieces, size_t count, size_t max)
 {
     static const double tolerance = 1.0 / 512;
-    while (count < most) {
+    while (count < max) {
         size_t worst = 0;
         for (size_t n = 1; n < count; n++)
             worst = pieces[n].error > pieces[worst].error ? n : worst;

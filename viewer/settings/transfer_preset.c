@@ -24,15 +24,15 @@ static void put_opacity(cw_transfer *t, double value, double opacity)
 }
 
 /* Returns the value below which a fraction of the values lie, counted from a bin on. */
-static double find_quantile(const cw_statistics *s, size_t first, double share)
+static double find_quantile(const cw_statistics *s, size_t first, double fraction)
 {
     double total = 0, sum = 0;
     for (size_t b = first; b < s->bin_count; b++)
         total += (double)s->bins[b];
     for (size_t b = first; b < s->bin_count; b++) {
         const double count = (double)s->bins[b];
-        if (count > 0 && sum + count >= share * total)
-            return fmin(s->min + s->bin_width * ((double)b + (share * total - sum) / count),
+        if (count > 0 && sum + count >= fraction * total)
+            return fmin(s->min + s->bin_width * ((double)b + (fraction * total - sum) / count),
                         s->max);
         sum += count;
     }
@@ -120,9 +120,9 @@ static classes find_classes(const cw_statistics *s)
 
 /* Returns the opacity of a voxel so that a fraction of the volume's width has the given
  * opacity. */
-static double spread_opacity(const cw_statistics *s, double opacity, double share)
+static double spread_opacity(const cw_statistics *s, double opacity, double fraction)
 {
-    const double across = fmax(cbrt((double)s->finite) * share, 1);
+    const double across = fmax(cbrt((double)s->finite) * fraction, 1);
     return -expm1(log1p(-opacity) / across);
 }
 

@@ -197,7 +197,7 @@ typedef struct cwi_ui_functions {
     bool (*input)(cwi_ui *ui, const char *label, char *text, size_t size);
     void (*area)(cwi_ui *ui, const char *label, double width, double height,
                  cwi_ui_area *area); /* width 0: all there is */
-    void (*progress)(cwi_ui *ui, double share, const char *text);
+    void (*progress)(cwi_ui *ui, double fraction, const char *text);
     void (*same_line)(cwi_ui *ui);
     void (*rule)(cwi_ui *ui);
     void (*width)(cwi_ui *ui, double width); /* of the next widget, without its label */

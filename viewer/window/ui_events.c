@@ -8,19 +8,19 @@
 /* A second press within this time and distance is one of a pair. */
 static const double twice_s = 0.35, twice_pixels = 6;
 
-static bool make_room(cwi_ui_queue *q)
+static bool ensure_capacity(cwi_ui_queue *q)
 {
-    if (q->count < q->room)
+    if (q->count < q->capacity)
         return true;
-    const size_t room = q->room ? 2 * q->room : 32;
-    cwi_ui_event *items = cwi_realloc_array(q->items, room, sizeof *items);
+    const size_t capacity = q->capacity ? 2 * q->capacity : 32;
+    cwi_ui_event *items = cwi_realloc_array(q->items, capacity, sizeof *items);
     if (items)
         q->items = items;
-    double *times = items ? cwi_realloc_array(q->times, room, sizeof *times) : NULL;
+    double *times = items ? cwi_realloc_array(q->times, capacity, sizeof *times) : NULL;
     if (!times)
         return false;
     q->times = times;
-    q->room = room;
+    q->capacity = capacity;
     return true;
 }
 
@@ -46,7 +46,7 @@ bool cwi_ui_queue_put(cwi_ui *ui, const cwi_ui_event *event, bool repeats)
         return true;
     cwi_ui_event copy = *event;
     copy.text = event->text ? cwi_strdup(event->text) : NULL;
-    if ((event->text && !copy.text) || !make_room(q)) {
+    if ((event->text && !copy.text) || !ensure_capacity(q)) {
         cwi_free((char *)copy.text);
         return false;
     }
@@ -167,12 +167,12 @@ static void take_drop(cwi_ui *ui, cwi_ui_event *e)
 {
     cwi_ui_input *in = &ui->input;
     if (in->drop_count == ui->drop_room) {
-        const size_t room = 2 * ui->drop_room + 8;
-        char **drops = cwi_realloc_array(ui->drops, room, sizeof *drops);
+        const size_t capacity = 2 * ui->drop_room + 8;
+        char **drops = cwi_realloc_array(ui->drops, capacity, sizeof *drops);
         if (!drops)
             return;
         ui->drops = drops;
-        ui->drop_room = room;
+        ui->drop_room = capacity;
     }
     ui->drops[in->drop_count++] = (char *)e->text;
     in->drops = ui->drops;

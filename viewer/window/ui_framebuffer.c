@@ -114,12 +114,12 @@ static void upload_picture(cwi_ui_picture *p, const cw_image *image)
 
 static cw_status check_size(const cw_image *image, cw_error *err)
 {
-    GLint most = 0;
-    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
-    if (image->width > (size_t)most || image->height > (size_t)most)
+    GLint max = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max);
+    if (image->width > (size_t)max || image->height > (size_t)max)
         return cwi_fail(err, CW_ERR_LIMIT,
                         "a picture of %zu x %zu pixels; OpenGL here takes up to %d x %d",
-                        image->width, image->height, most, most);
+                        image->width, image->height, max, max);
     return CW_OK;
 }
 

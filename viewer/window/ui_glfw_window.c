@@ -237,18 +237,18 @@ static const char *glfw_words(void)
  * time of EGL. It reports lost contexts where that is supported. */
 static GLFWwindow *make_window(const cwi_ui_desc *desc)
 {
-    static const int ways[][2] = {{GLFW_NATIVE_CONTEXT_API, GLFW_LOSE_CONTEXT_ON_RESET},
-                                  {GLFW_NATIVE_CONTEXT_API, GLFW_NO_ROBUSTNESS},
-                                  {GLFW_EGL_CONTEXT_API, GLFW_LOSE_CONTEXT_ON_RESET},
-                                  {GLFW_EGL_CONTEXT_API, GLFW_NO_ROBUSTNESS}};
+    static const int attempts[][2] = {{GLFW_NATIVE_CONTEXT_API, GLFW_LOSE_CONTEXT_ON_RESET},
+                                      {GLFW_NATIVE_CONTEXT_API, GLFW_NO_ROBUSTNESS},
+                                      {GLFW_EGL_CONTEXT_API, GLFW_LOSE_CONTEXT_ON_RESET},
+                                      {GLFW_EGL_CONTEXT_API, GLFW_NO_ROBUSTNESS}};
     GLFWwindow *window = NULL;
     glfwDefaultWindowHints();
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     for (int n = 0; n < 4 && !window; n++) {
-        glfwWindowHint(GLFW_CONTEXT_CREATION_API, ways[n][0]);
-        glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, ways[n][1]);
+        glfwWindowHint(GLFW_CONTEXT_CREATION_API, attempts[n][0]);
+        glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, attempts[n][1]);
         window = glfwCreateWindow((int)desc->width, (int)desc->height, desc->title, NULL, NULL);
     }
     return window;

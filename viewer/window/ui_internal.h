@@ -21,7 +21,7 @@ enum { CWI_UI_NAME_SIZE = 64, CWI_UI_DEPTH = 8, CWI_UI_LARGEST = 16384 };
 typedef struct cwi_ui_queue {
     cwi_ui_event *items;
     double *times; /* when they came, in seconds */
-    size_t first, count, room;
+    size_t first, count, capacity;
 } cwi_ui_queue;
 
 /* The place of a widget. */
@@ -32,7 +32,7 @@ typedef struct cwi_ui_place {
 
 typedef struct cwi_ui_places {
     cwi_ui_place *items;
-    size_t count, room;
+    size_t count, capacity;
 } cwi_ui_places;
 
 /* A framebuffer to draw into: a window's own framebuffer does not keep what it showed. */

@@ -181,8 +181,9 @@ void place_panel(const cwi_ui *ui, const char *title, const cwi_ui_rect *r, bool
     const ImGuiWindow *window = ImGui::FindWindowByName(title);
     ImGui::SetNextWindowPos(point(r->x, r->y), when);
     const double top = window && !fixed ? static_cast<double>(window->Pos.y) : r->y;
-    const double most = static_cast<double>(ui->input.height) - top - 6 * ui->scale;
-    ImGui::SetNextWindowSizeConstraints(point(0, 0), point(FLT_MAX, most > 60 ? most : 60));
+    const double max_height = static_cast<double>(ui->input.height) - top - 6 * ui->scale;
+    ImGui::SetNextWindowSizeConstraints(point(0, 0),
+                                        point(FLT_MAX, max_height > 60 ? max_height : 60));
     if (fixed || (r->width > 0 && r->height > 0)) {
         ImGui::SetNextWindowSize(point(r->width, r->height), when);
     } else if (r->width > 0 || r->height > 0) { /* the other is the user's */
@@ -194,12 +195,13 @@ void place_panel(const cwi_ui *ui, const char *title, const cwi_ui_rect *r, bool
 /* Places a panel at the right border, as high as told. Its left border can be dragged. */
 void dock_panel(const cwi_ui *ui, const cwi_ui_rect *r)
 {
-    const double least = CWI_UI_DOCKED_MIN * ui->scale,
-                 most = CWI_UI_DOCKED_MAX * static_cast<double>(ui->input.width);
-    const double narrowest = least < most ? least : most;
+    const double min_width = CWI_UI_DOCKED_MIN * ui->scale,
+                 max_height = CWI_UI_DOCKED_MAX * static_cast<double>(ui->input.width);
+    const double narrowest = min_width < max_height ? min_width : max_height;
     ImGui::SetNextWindowPos(point(r->x + r->width, r->y), ImGuiCond_Always, ImVec2(1, 0));
     ImGui::SetNextWindowSize(point(r->width, r->height), ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSizeConstraints(point(narrowest, r->height), point(most, r->height));
+    ImGui::SetNextWindowSizeConstraints(point(narrowest, r->height),
+                                        point(max_height, r->height));
 }
 
 /* Places a panel upon the lower border, as high as its content. */
@@ -458,9 +460,9 @@ void area(cwi_ui *ui, const char *label, double width, double height, cwi_ui_are
     used(ui, label, a->lifted);
 }
 
-void progress(cwi_ui *ui, double share, const char *words)
+void progress(cwi_ui *ui, double fraction, const char *words)
 {
-    ImGui::ProgressBar(static_cast<float>(share), ImVec2(-FLT_MIN, 0), words ? words : "");
+    ImGui::ProgressBar(static_cast<float>(fraction), ImVec2(-FLT_MIN, 0), words ? words : "");
     used(ui, words ? words : "", false);
 }
 

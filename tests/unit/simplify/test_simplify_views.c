@@ -87,7 +87,7 @@ static void nearest_point(const cw_mesh *m, const double world[3], double neares
     size_t at = 0;
     for (size_t t = 0; t < m->triangle_count; t++) {
         corners_of(m, t, p);
-        const double square = cwi_facet_square(p[0], p[1], p[2], x);
+        const double square = cwi_facet_distance_sq(p[0], p[1], p[2], x);
         at = square < best ? t : at;
         best = fmin(best, square);
     }

@@ -113,8 +113,8 @@ static double measure_distance(const cw_mesh *first, size_t number, const double
 {
     const uint32_t *v = first->triangles + 3 * (number - 1);
     const float *f = first->positions;
-    return sqrt(
-        cwi_facet_square(f + 3 * (size_t)v[0], f + 3 * (size_t)v[1], f + 3 * (size_t)v[2], p));
+    return sqrt(cwi_facet_distance_sq(f + 3 * (size_t)v[0], f + 3 * (size_t)v[1],
+                                      f + 3 * (size_t)v[2], p));
 }
 
 /* Returns how far the middle of a triangle is from the first mesh's triangle whose number it has. */
