@@ -9,8 +9,7 @@ static size_t count_triangles(const cwi_pipeline *p, const cw_mesh *mesh)
     return p->spool ? cw_mesh_spool_frame(p->spool)->triangle_count : mesh->triangle_count;
 }
 
-/* Runs the wanted stages from one to another on a surface, the last not included. finishes: those
- * for finished surfaces; else the others */
+/* Runs the wanted stages on a surface. finishes: those for finished surfaces; else the others */
 static cw_status run_stages(cwi_pipeline *p, cw_mesh *mesh, bool finishes, cw_error *err)
 {
     const unsigned stages = cw_pipeline_stages(p->desc);
@@ -97,6 +96,12 @@ cw_status cwi_begin_pipeline(cwi_pipeline *p, cw_surface_source source, cw_pipel
     const cw_pipeline_desc *d = p->desc;
     if (!sink.take)
         return cwi_fail(err, CW_ERR_ARGUMENT, "sink.take is NULL");
+    CWI_REQUIRE_ARRAY(err, d->views, d->view_count);
+    CWI_REQUIRE_ARRAY(err, d->lod, d->lod_count);
+    if (d->cull && !d->view_count)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "cull needs views; view_count is 0");
+    if (d->color && !d->color->open)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "color->open is NULL");
     p->needs_whole = cwi_needs_whole(d);
     p->adds_normals = adds_normals(p);
     p->make_full = make_full;

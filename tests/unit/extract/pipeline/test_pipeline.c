@@ -431,6 +431,9 @@ static void an_empty_surface_tells_the_range(void **state)
     cw_pipeline_desc d = {.extract = {.isovalue = 1e6}};
     assert_fails(cw_pipeline_mesh(&volume, NULL, &d, &mesh, NULL, &err), CW_ERR_EMPTY,
                  "no surface at isovalue 1e+06: values are -", err);
+    d = (cw_pipeline_desc){.extract = {.isovalue = ISO}, .cull = true};
+    assert_fails(cw_pipeline_mesh(&volume, NULL, &d, &mesh, NULL, &err), CW_ERR_ARGUMENT,
+                 "cull needs views", err);
     d = (cw_pipeline_desc){.extract = {.isovalue = ISO}, .min_volume_mm3 = 1e9};
     assert_fails(cw_pipeline_mesh(&volume, NULL, &d, &mesh, NULL, &err), CW_ERR_EMPTY,
                  "no component encloses 1e+09 mm3", err);
