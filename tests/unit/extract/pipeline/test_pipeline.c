@@ -244,11 +244,11 @@ static void levels_are_given_away_one_by_one(void **state)
         CW_ERR_CANCELLED, "enough", err);
     assert_int_equal(t.surfaces, 2);
     cw_mesh_free(&t.mesh);
+    cw_mesh_free(&full);
     assert_fails(cw_pipeline_mesh(&volume, NULL, &d, &full, NULL, &err), CW_ERR_ARGUMENT,
                  "lod_count is 3", err);
     for (size_t n = 0; n < 3; n++)
         cw_mesh_free(&levels[n]);
-    cw_mesh_free(&full);
     cw_volume_free(&volume);
 }
 
