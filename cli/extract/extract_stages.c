@@ -6,6 +6,7 @@
 #include "core/base/status.h"
 
 #include <stdio.h>
+#include <string.h>
 
 /* Options that are no stages, and need the whole surface or all voxels. */
 static const char UNSTREAMED[] =
@@ -25,31 +26,39 @@ static unsigned find_stages(const cli_extract_args *args)
     return cli_extract_is_simplified(args) ? stages | 1u << CW_STAGE_SIMPLIFY : stages;
 }
 
+/* Names the options of stages that exclude each other, or one twice that the source excludes. Returns
+ * false if there are none. */
+static bool name_excluded(const cli_extract_args *args, cw_surface_source source,
+                          char first_name[CLI_STAGE_BYTES], char second_name[CLI_STAGE_BYTES])
+{
+    cw_stage first, second;
+    if (cw_pipeline_check(source, find_stages(args), &first, &second, NULL) == CW_OK)
+        return false;
+    cli_name_stage(first, first_name);
+    cli_name_stage(second, second_name);
+    return true;
+}
+
 /* Returns what a source excludes: "--largest", or "--min-volume beside --simplify". NULL: nothing */
 static const char *find_excluded(const cli_extract_args *args, cw_surface_source source)
 {
     static char text[2 * CLI_STAGE_BYTES + 16];
-    char names[2][CLI_STAGE_BYTES];
-    cw_stage first, second;
-    if (cw_pipeline_check(source, find_stages(args), &first, &second, NULL) == CW_OK)
+    char first[CLI_STAGE_BYTES], second[CLI_STAGE_BYTES];
+    if (!name_excluded(args, source, first, second))
         return NULL;
-    cli_name_stage(first, names[0]);
-    cli_name_stage(second, names[1]);
-    snprintf(text, sizeof text, first == second ? "%s" : "%s beside %s", names[0], names[1]);
+    snprintf(text, sizeof text, strcmp(first, second) == 0 ? "%s" : "%s beside %s", first,
+             second);
     return text;
 }
 
 cw_status cli_check_stages(const cli_extract_args *args, cw_surface_source source,
                            cw_error *err)
 {
-    char names[2][CLI_STAGE_BYTES];
-    cw_stage first, second;
-    if (cw_pipeline_check(source, find_stages(args), &first, &second, NULL) == CW_OK)
+    char first[CLI_STAGE_BYTES], second[CLI_STAGE_BYTES];
+    if (!name_excluded(args, source, first, second))
         return CW_OK;
-    cli_name_stage(first, names[0]);
-    cli_name_stage(second, names[1]);
     return cwi_fail(err, CW_ERR_ARGUMENT, "%s cannot be combined with %s",
-                    first == second ? "--labels" : names[0], names[1]);
+                    strcmp(first, second) == 0 ? "--labels" : first, second);
 }
 
 const char *cli_find_unstreamed(const cli_extract_args *args, cw_surface_source source)

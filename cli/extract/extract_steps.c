@@ -216,22 +216,10 @@ cw_status cli_extract_run_pipeline(cli_extract_run *s, const cli_moment *moment,
     return CW_OK;
 }
 
-/* Moves the surface of the pipeline into a mesh. */
-static cw_status take_mesh(void *user, cw_pipeline_surface *surface,
-                           const cw_pipeline_facts *facts, cw_error *err)
-{
-    (void)facts;
-    (void)err;
-    *(cw_mesh *)user = *surface->mesh;
-    *surface->mesh = (cw_mesh){0};
-    return CW_OK;
-}
-
 cw_status cli_extract_make(cli_extract_run *s, const cli_moment *moment, cli_made *made,
                            cw_mesh *mesh, cw_error *err)
 {
-    *mesh = (cw_mesh){0};
-    return cli_extract_run_pipeline(s, moment, made, (cw_pipeline_sink){take_mesh, mesh}, err);
+    return cli_extract_run_pipeline(s, moment, made, cli_mesh_sink(mesh), err);
 }
 
 /* The distance from the field would not tell of cubic crossings. */

@@ -120,8 +120,12 @@ static cw_status extract_slices(void *user, const cw_slice_source *source, cw_er
     set.desc.check = s->run->args->check && !set.desc.simplify; /* in memory it is, later */
     set.desc.spool_path = s->made->path;
     s->made->least_mm3 = set.desc.min_volume_mm3;
+    cw_error why;
     st = cw_pipeline_run_slices(source, &set.desc, (cw_pipeline_sink){take_surface, s->out},
                                 &s->made->facts, err);
+    why = *err;
+    if (st == CW_ERR_EMPTY && !s->made->facts.extracted.triangles)
+        cwi_fail(err, st, "%s ('cubewright info' tells them)", why.message);
     return cli_explain_stages(s->run->input.volume.path, explain_limit(s->run, st, err), err);
 }
 

@@ -91,7 +91,7 @@ cw_status cli_explain_stages(const char *path, cw_status st, cw_error *err)
     return st == CW_OK ? st : cwi_fail_in(err, st, path);
 }
 
-static cw_status explain(const cli_volume *volume, cw_status st, cw_error *err)
+static cw_status explain_error(const cli_volume *volume, cw_status st, cw_error *err)
 {
     if (st == CW_ERR_EMPTY && cli_is_preview(volume))
         cwi_fail_in(err, st, "preview");
@@ -106,8 +106,8 @@ cw_status cli_run_pipeline(const cli_volume *volume, cw_extractor *extractor,
     d.extract.max_bytes = memory_left(volume);
     if (!d.watch.begin)
         d.watch.begin = cli_stage_progress;
-    return explain(volume, cw_pipeline_run(&volume->view, extractor, &d, sink, facts, err),
-                   err);
+    return explain_error(volume,
+                         cw_pipeline_run(&volume->view, extractor, &d, sink, facts, err), err);
 }
 
 /* Moves the surface of the pipeline into a mesh. */
@@ -121,13 +121,17 @@ static cw_status take_mesh(void *user, cw_pipeline_surface *surface,
     return CW_OK;
 }
 
+cw_pipeline_sink cli_mesh_sink(cw_mesh *mesh)
+{
+    *mesh = (cw_mesh){0};
+    return (cw_pipeline_sink){take_mesh, mesh};
+}
+
 cw_status cli_make_surface(const cli_volume *volume, cw_extractor *extractor,
                            const cw_pipeline_desc *desc, cw_mesh *mesh,
                            cw_pipeline_facts *facts, cw_error *err)
 {
-    *mesh = (cw_mesh){0};
-    return cli_run_pipeline(volume, extractor, desc, (cw_pipeline_sink){take_mesh, mesh}, facts,
-                            err);
+    return cli_run_pipeline(volume, extractor, desc, cli_mesh_sink(mesh), facts, err);
 }
 
 cw_status cli_extract_surface(const cli_volume *volume, const cw_extract_desc *desc,

@@ -58,6 +58,9 @@ CW_NODISCARD cw_status cli_run_pipeline(const cli_volume *volume, cw_extractor *
                                         const cw_pipeline_desc *desc, cw_pipeline_sink sink,
                                         cw_pipeline_facts *facts, cw_error *err);
 
+/* Returns the sink that moves a surface into a mesh; the mesh is emptied before. */
+cw_pipeline_sink cli_mesh_sink(cw_mesh *mesh);
+
 /* Does the same for one surface. facts: may be NULL */
 CW_NODISCARD cw_status cli_make_surface(const cli_volume *volume, cw_extractor *extractor,
                                         const cw_pipeline_desc *desc, cw_mesh *mesh,

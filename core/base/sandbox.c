@@ -219,10 +219,11 @@ static cw_status shut_in(const cwi_sandbox_desc *d, cw_error *err)
     if (st != CW_OK || d->trusted)
         return st;
     if (!HAS_SECCOMP)
-        return cwi_fail(err, CW_ERR_UNSUPPORTED,
-                        "%s reads files in a sandbox, which this build lacks (libseccomp-dev); with "
-                        "desc->no_sandbox it is read in this process",
-                        d->library);
+        return cwi_fail(
+            err, CW_ERR_UNSUPPORTED,
+            "%s reads files in a sandbox, which this build lacks (libseccomp-dev); with "
+            "desc->no_sandbox it is read in this process",
+            d->library);
     set_limits(d);
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 || prctl(PR_SET_DUMPABLE, 0) != 0 ||
         !lock_system_calls())

@@ -350,7 +350,7 @@ static bool is_alike(const cw_attribute *a, const cw_attribute *b)
            a->components == b->components && a->interpolation == b->interpolation;
 }
 
-/* Returns the row of a mesh that is like another's; its data is NULL if there is none. */
+/* Returns the row of a mesh with the name and type of another's; a row without data: it has none. */
 static cw_attribute find_alike(const cw_mesh *mesh, const cw_attribute *like)
 {
     for (size_t n = 0; n < cwi_attribute_count(mesh); n++) {

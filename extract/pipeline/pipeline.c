@@ -112,8 +112,8 @@ cw_status cwi_begin_pipeline(cwi_pipeline *p, cw_surface_source source, cw_pipel
     return cw_pipeline_check(source, cw_pipeline_stages(d), NULL, NULL, err);
 }
 
-static cw_status start(cwi_pipeline *p, cw_surface_source source, cw_pipeline_sink sink,
-                       cw_pipeline_facts *facts, cw_error *err)
+static cw_status start_pipeline(cwi_pipeline *p, cw_surface_source source,
+                                cw_pipeline_sink sink, cw_pipeline_facts *facts, cw_error *err)
 {
     cw_status st = cwi_begin_pipeline(p, source, sink, err);
     if (st == CW_OK)
@@ -131,7 +131,7 @@ cw_status cw_pipeline_run(const cw_volume *volume, cw_extractor *extractor,
     CWI_REQUIRE(err, volume, desc);
     CWI_REQUIRE_VERSION(err, desc, 0);
     cwi_pipeline p = {.desc = desc, .volume = volume, .part = *volume, .extractor = extractor};
-    return start(&p, CW_SOURCE_MEMORY, sink, facts, err);
+    return start_pipeline(&p, CW_SOURCE_MEMORY, sink, facts, err);
 }
 
 cw_status cw_pipeline_run_slices(const cw_slice_source *source, const cw_pipeline_desc *desc,
@@ -140,7 +140,7 @@ cw_status cw_pipeline_run_slices(const cw_slice_source *source, const cw_pipelin
     CWI_REQUIRE(err, source, desc);
     CWI_REQUIRE_VERSION(err, desc, 0);
     cwi_pipeline p = {.desc = desc, .slices = source};
-    return start(&p, CW_SOURCE_SLICES, sink, facts, err);
+    return start_pipeline(&p, CW_SOURCE_SLICES, sink, facts, err);
 }
 
 static cw_status take_mesh(void *user, cw_pipeline_surface *surface,

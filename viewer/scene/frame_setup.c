@@ -350,7 +350,8 @@ static cw_status set_clips(cwi_frame *f, cw_error *err)
         const double length = cwi_length(c->normal);
         if (!isnormal(length) || !isfinite(c->distance_mm))
             return cwi_fail(err, CW_ERR_ARGUMENT,
-                            "clip plane %zu: its normal is zero, or its distance is not finite", n);
+                            "clip plane %zu: its normal is zero, or its distance is not finite",
+                            n);
         for (int a = 0; a < 3; a++)
             f->clips[n][a] = cwi_dot(c->normal, f->axes[a]) / length;
         f->clips[n][3] = (c->distance_mm - cwi_dot(c->normal, f->eye_mm)) / length / f->unit_mm;

@@ -123,8 +123,8 @@ static void memory_has_a_limit(void **state)
     assert_true(left <= 3 * MIB && left == cwi_memory_left());
     cw_error err = {0};
     assert_int_equal(cwi_fail_memory(&err), CW_ERR_NO_MEMORY);
-    assert_non_null(strstr(
-        err.message, "no memory: 4 MiB were needed, and cw_memory_limit() leaves 3 MiB"));
+    assert_non_null(strstr(err.message,
+                           "no memory: 4 MiB were needed, and cw_memory_limit() leaves 3 MiB"));
     assert_int_equal(cwi_fail_memory(&err), CW_ERR_NO_MEMORY);
     assert_string_equal(err.message, "no memory");
     assert_false(cwi_memory_take(4 * (size_t)MIB));

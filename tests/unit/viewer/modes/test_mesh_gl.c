@@ -398,7 +398,8 @@ static void empty_meshes_are_no_trouble(void **state)
     }
     cw_picture picture;
     scene.mesh_look.color[0] = 2;
-    assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_ARGUMENT, "mesh_look.color[0] is 2", err);
+    assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_ARGUMENT,
+                 "mesh_look.color[0] is 2", err);
     scene.mesh_look.color[0] = 1;
     scene.mesh_look.tint = CW_TINT_COUNT;
     assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_ARGUMENT, "tint", err);

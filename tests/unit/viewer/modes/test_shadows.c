@@ -150,8 +150,7 @@ static void unusable_scenes_are_named(void **state)
                  "the mode projection has no shadows", err);
     scene.mode = CW_MODE_VBUFFER;
     scene.shadow = (cw_shadow)9;
-    assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_ARGUMENT,
-                 "shadow is 9", err);
+    assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_ARGUMENT, "shadow is 9", err);
     scene.shadow = CW_SHADOW_AMBIENT;
     for (int n = 0; n < SIDE; n++)
         places[n] = n * n;

@@ -289,8 +289,8 @@ static void unusable_settings_are_named(void **state)
     cw_scene scene = {.mode = CW_MODE_VBUFFER, .volume = &box, .transfer = &t, .lit = true};
     for (int n = 0; n < 3; n++) {
         scene.gradient_sigma = (double[]){-1, 17, NAN}[n];
-        assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_ARGUMENT,
-                     "gradient_sigma", err);
+        assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_ARGUMENT, "gradient_sigma",
+                     err);
     }
     const double places[9] = {0, 1, 2, 3, 4, 5, 6, 7, 9};
     scene.gradient_sigma = 1;
