@@ -1,18 +1,13 @@
 # Rooms and modules. tests/architecture/rooms.txt lists the rooms, and whom each may use.
 #
-# A room is an object library of a folder. The shared library is made of all but those of cli; it exports
-# the public functions alone (CW_API, core/cubewright.map). cubewright_internals is the same as a static
-# library with all functions: for the program, for modules and for tests; it is not installed.
+# A room is an object library of a folder. The shared library is made of all but those of cli. It exports
+# the public functions (cw_), and under a version that names this very release the internal ones (cwi_):
+# for the program, for modules and for tests, which are built with it (core/cubewright.map.in).
 #
 # With CUBEWRIGHT_ROOMS (preset `rooms`) each room is a shared object of its own instead, linked with
 # the rooms it may use and nothing else: a call through a wall is an undefined symbol.
 
 option(CUBEWRIGHT_ROOMS "link each room by itself, to prove its walls; builds no program" OFF)
-
-# CW_API exports. C++ stays visible: OpenVDB, for one, shares statics of templates with its users.
-if(NOT CUBEWRIGHT_ROOMS)
-  set(CMAKE_C_VISIBILITY_PRESET hidden)
-endif()
 
 set(rooms_file ${PROJECT_SOURCE_DIR}/tests/architecture/rooms.txt)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${rooms_file})
@@ -52,7 +47,6 @@ function(add_room_part room objects)
     target_sources(cli_objects INTERFACE $<TARGET_OBJECTS:${objects}>)
   else()
     target_link_libraries(cubewright PRIVATE ${objects})
-    target_link_libraries(cubewright_internals PRIVATE ${objects})
     if(CUBEWRIGHT_STATIC)
       target_sources(cubewright_static PRIVATE $<TARGET_OBJECTS:${objects}>)
     endif()
@@ -96,7 +90,7 @@ function(add_cubewright_module name folder sources)
   add_library(module_${name} MODULE ${sources} ${PROJECT_SOURCE_DIR}/core/base/module_entry.c)
   count_branches(module_${name} ${folder})
   set_target_properties(module_${name} PROPERTIES PREFIX "" OUTPUT_NAME cubewright-${name}
-    LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib/cubewright)
+    LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib/cubewright INSTALL_RPATH "$ORIGIN/..")
   if(NOT CUBEWRIGHT_SANITIZE) # whose runtime is in the program
     target_link_options(module_${name} PRIVATE LINKER:-z,defs)
   endif()
@@ -104,7 +98,7 @@ function(add_cubewright_module name folder sources)
     find_used_rooms(used ${folder})
     target_link_libraries(module_${name} PRIVATE $<TARGET_NAME_IF_EXISTS:${room}> ${used} cw_settings ${ARGN})
   else()
-    target_link_libraries(module_${name} PRIVATE cubewright_internals cw_settings ${ARGN})
+    target_link_libraries(module_${name} PRIVATE cubewright cw_settings ${ARGN})
   endif()
   install(TARGETS module_${name} DESTINATION ${CMAKE_INSTALL_LIBDIR}/cubewright OPTIONAL)
 endfunction()

@@ -152,7 +152,7 @@ make_packages() {
         cp -a /src /elsewhere
         cd /src && sh cli/make_packages.sh && mv build/packages /packages"
     say "the packages again"
-    must "the packages again" "$1" "cd /elsewhere && rm -rf build && sh cli/make_packages.sh"
+    must "the packages again" "$1" "cd /elsewhere && rm -rf build && DEB_BUILD_OPTIONS=nocheck sh cli/make_packages.sh"
     for package in "$1"/packages/*.deb; do
         cmp "$package" "$1/elsewhere/build/packages/${package##*/}" || fail "${package##*/} differs when it is built again"
     done

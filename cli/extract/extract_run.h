@@ -132,13 +132,13 @@ double cli_extract_shading(const cli_extract_args *args);
 void cli_extract_put_params(cli_json *j, const void *p, const cli_made *made);
 void cli_extract_put_series(cli_json *j, const void *p);
 
-/* Texts of a record. */
+/* Texts that the lines of a record point to. */
 typedef struct cli_making {
     char level[32], smooth[96], simplify[64];
 } cli_making;
 
-/* How the surface of level n was made, for the file's own record; how many lines. Not of what:
- * names of files may be names of patients. */
+/* Writes how the surface of level n was made, for the record in its file; returns the number of lines.
+ * Names of files are left out: they may be names of patients. */
 size_t cli_extract_provenance(const cli_extract_run *s, size_t n, cli_making *making,
                               cw_provenance lines[CLI_EXTRACT_PROVENANCE]);
 

@@ -43,7 +43,7 @@ CW_NODISCARD cw_status cli_find_statistics(cli_source *source, const cli_input *
                                            size_t step, size_t bins, cw_statistics *out,
                                            cw_error *err);
 
-/* Makes a sparse volume dense, which is said, so that it can be drawn. */
+/* Makes a sparse volume dense so that it can be drawn, and prints a note. */
 CW_NODISCARD cw_status cli_need_drawable(cli_source *source, const cli_input *input,
                                          cw_error *err);
 

@@ -88,7 +88,7 @@ static cw_status run_print(view *v, int count, char **args, cw_error *err)
     else if (view_find_option(v, what) || view_find_flag(v, what, &on))
         print_setting(v, what);
     else
-        return cwi_fail(err, CW_ERR_ARGUMENT, "print '%s': nothing has that name", what);
+        return cwi_fail(err, CW_ERR_ARGUMENT, "print: unknown name '%s'", what);
     return CW_OK;
 }
 

@@ -281,7 +281,7 @@ CW_NODISCARD cw_status view_open(view *v, const char *const *paths, size_t count
                                  cw_error *err);
 void view_close(view *v);
 CW_NODISCARD cw_status view_go_to_step(view *v, size_t step, cw_error *err);
-/* Of the world, low and high corner: what is left of all by the clip box in mm, else all. */
+/* Returns the low and high corner of the clip box in mm, or of the whole scene without one. */
 void view_clip_box(const view *v, double box[2][3]);
 /* Values from black to white in slices. */
 void view_grey_range(const view *v, double range[2]);

@@ -1,5 +1,6 @@
-/* The function that every module exports beside its struct of functions. A module has copies of
- * the internal functions that it calls; the memory account and the threads are the program's. */
+/* The function that every module exports beside its struct of functions. A program that links the static
+ * library has our functions twice, its own and those of the shared library that modules use; the memory
+ * account and the threads are the program's. */
 #include "core/base/memory.h"
 #include "core/base/module.h"
 #include "core/base/thread_pool.h"

@@ -19,7 +19,7 @@
 
 enum {
     PLACES = 1 << 14, /* vertices */
-    WORK = 4          /* one voxel takes as long as this number elsewhere */
+    WORK = 4          /* cost of a voxel, relative to those of other loops */
 };
 
 /* Tetrahedra of a cube that is not one point have vertices this far from the cube's middle to

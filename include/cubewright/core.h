@@ -95,7 +95,7 @@ CW_API void cw_memory_limit(size_t bytes);
 /* Returns the number of bytes that arrays take now. */
 CW_API size_t cw_memory_used(void);
 
-/* An allocator of the caller's, in place of malloc() and free(). Both functions are called from
+/* An allocator of the caller's, instead of malloc() and free(). Both functions are called from
  * any thread, also in the sandboxed processes that readers fork. */
 typedef struct cw_allocator {
     /* Allocates `bytes`, more than 0, at a multiple of 64. Returns NULL when memory is out. */

@@ -63,7 +63,7 @@ typedef struct cw_cut_facts {
  *          CW_ERR_LIMIT     beyond 2^32 / 3 triangles or vertices
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
  * Cost     about 30 ns for each triangle, and 6 us for each edge of the section; 500 bytes for each
- *          of these edges, and 2 for each vertex, beside the result
+ *          of these edges, and 2 for each vertex, besides the result
  * Threads  reentrant; works on the calling thread
  * Source   ears [Meisters1975]; holes joined to the loops around them [Eberly2008] */
 CW_NODISCARD CW_API cw_status cw_mesh_cut(const cw_mesh *mesh, const cw_cut_desc *desc,

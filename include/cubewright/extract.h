@@ -114,7 +114,7 @@ typedef struct cw_extract_counts {
  *          the rest; in noise five times that
  * Threads  reentrant; the mesh is the same to the bit for any number of threads
  * Source   [Lorensen1987]; faces [Nielson1991]; tunnels after [Chernyaev1995]; simple_topology
- *          [Montani1994]; tetrahedra [Doi1991]; snapping after [Moore1992]; ranks in place of
+ *          [Montani1994]; tetrahedra [Doi1991]; snapping after [Moore1992]; ranks instead of
  *          maps as in extract/dense-grids.md */
 CW_NODISCARD CW_API cw_status cw_extract(const cw_volume *volume, const cw_extract_desc *desc,
                                          cw_mesh *mesh, cw_extract_counts *counts,
@@ -176,7 +176,7 @@ CW_NODISCARD CW_API cw_status cw_extractor_predict(cw_extractor *extractor,
                                                    const cw_extract_desc *desc,
                                                    cw_extract_counts *counts, cw_error *err);
 
-/* Takes back a mesh of this extractor or any other, in place of cw_mesh_free(). The next
+/* Takes back a mesh of this extractor or any other, instead of cw_mesh_free(). The next
  * surface is written to its memory, so the system need not clear and hand out new pages. This
  * saves a fifth to an eighth of an extraction's time where surfaces are large. The memory is
  * held until then, or until the extractor is freed.

@@ -164,7 +164,7 @@ CW_NODISCARD CW_API cw_status cw_volume_mask(const cw_volume *volume, const cw_v
  * desc           borrowed; NULL means all defaults
  * out            set to a volume that owns its voxels; free with cw_volume_free()
  * Returns        as cw_volume_mask()
- * Cost           does not depend on the radius; 2 bytes a voxel beside the result
+ * Cost           does not depend on the radius; 2 bytes a voxel besides the result
  * Source         exact Euclidean distances [Felzenszwalb2012] */
 CW_NODISCARD CW_API cw_status cw_volume_open(const cw_volume *volume,
                                              const double radius_voxels[3],
@@ -210,7 +210,7 @@ CW_NODISCARD CW_API cw_status cw_volume_inside_box(const cw_volume *volume,
  * removed_mm3  set to the volume above -300 HU that was removed; may be NULL
  * Returns      CW_ERR_EMPTY: nothing above -300 HU is thicker than 10 mm; CW_ERR_UNSAFE: more than a
  *              third of the largest component would go, which then is no body; as cw_volume_gauss()
- * Cost         3 bytes a voxel beside the result, and the runs of voxels along x */
+ * Cost         3 bytes a voxel besides the result, and the runs of voxels along x */
 CW_NODISCARD CW_API cw_status cw_volume_remove_table(const cw_volume *volume,
                                                      const cw_filter_desc *desc, cw_volume *out,
                                                      double *removed_mm3, cw_error *err);

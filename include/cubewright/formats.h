@@ -93,7 +93,7 @@ typedef struct cw_read_desc {
     uint64_t max_voxels;      /* default 2^40 */
     uint64_t max_bytes;       /* of voxels in memory; for an irregular grid all memory of
                                  reading it; default: no limit */
-    double spacing_mm[3];     /* in place of the file's; default: all 0, the file's */
+    double spacing_mm[3];     /* instead of the file's; default: all 0, the file's */
     cw_claim claim;           /* on the file's coordinates; default: as the file states, else
                                  LPS mm */
     const char *array;        /* the name, where files have several; default: the array that the
@@ -402,7 +402,7 @@ typedef struct cw_part {
                      itself */
     double max_error_mm, rms_error_mm; /* for a level: its distance from the true surface;
                                           default: 0, not stated */
-    double time_s; /* animated: the time at which it appears, in place of the part before it */
+    double time_s; /* animated: the time at which it appears, instead of the part before it */
     const cw_mesh_spool
         *spool; /* borrowed: mesh is cw_mesh_spool_frame() of it; default: none. That of a team
                    (cw_mesh_spool_share) is written by all its processes together: PLY, STL and

@@ -98,7 +98,7 @@ CW_NODISCARD CW_API cw_status cw_quality_measure(const cw_mesh *mesh,
                                                  const cw_quality_desc *desc, cw_quality *out,
                                                  cw_error *err);
 
-/* Returns the bytes that measuring takes beside the mesh. One with open edges takes 12 more for
+/* Returns the bytes that measuring takes besides the mesh. One with open edges takes 12 more for
  * each triangle, and a vertex with more than 24 triangles 52 for each of them.
  * vertices, triangles  counts of the mesh */
 CW_API size_t cw_quality_bytes(size_t vertices, size_t triangles);

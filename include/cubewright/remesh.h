@@ -59,7 +59,7 @@ typedef struct cw_remesh_facts {
  * would leave the distance error_mm, turn a triangle by more than 60 degrees from the input
  * there, or change the topology: components, handles and border loops stay. Edges sharper than
  * feature_deg stay, and so do borders: vertices on them move along them only, and their ends and
- * bends stay at their place. Where error_mm is small beside the mesh's detail, edges stay shorter
+ * bends stay at their place. Where error_mm is small against the mesh's detail, edges stay shorter
  * than wanted.
  *
  * Afterwards the distance is proven both ways, and triangles that meet are looked for. If there

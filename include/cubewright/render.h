@@ -230,7 +230,7 @@ typedef struct cw_texture_look {
     bool material_table; /* shaded-texture: a value has the mean colour and opacity of its
                                material, the interval between two points of the opacities, as in
                                1996. The table has a column for each material and one for what is
-                               invisible, in place of 256 for values */
+                               invisible, instead of 256 for values */
     bool mark_boundary;  /* shaded-texture: draw only cells at material boundaries, and those
                                around them, so that no hole is left: between the values of their
                                samples lies a point of the opacities */
@@ -270,7 +270,7 @@ typedef struct cw_mesh_look {
     bool same_inside;           /* the inside of a mesh, seen through a cut or a clear surface,
                                    has the colour of the outside; default: a red shade of it */
     bool cap;                   /* fill the cut through a clipped mesh, which must be closed */
-    const cw_live_surface *live; /* drawn in place of a mesh, by OpenGL 4.3 alone, without
+    const cw_live_surface *live; /* drawn instead of a mesh, by OpenGL 4.3 alone, without
                                wireframe and in the scene's colour; default: none. Depths of a cue
                                are those of the volume's box */
 } cw_mesh_look;
@@ -301,7 +301,7 @@ typedef struct cw_scene {
     bool lit;              /* volumes are shaded by their gradient; meshes always are */
     bool one_sided;      /* light falls only on the side that faces lower values (n is minus the
                              gradient), of meshes on the side that their triangles face: n.l and
-                             n.h count where n.l is above 0, in place of their absolute values.
+                             n.h count where n.l is above 0, instead of their absolute values.
                              Things of low values in high ones, such as airways, are then lit
                              from inside of them. Default: both sides are lit */
     cw_shadow shadow;    /* default: none */

@@ -40,7 +40,7 @@ typedef struct cw_index_point {
  * pyramid as 1/3 and a tetrahedron as 1/6.
  *
  * With indices, surfaces are where the index changes [Drebin1988]: light, and the factor of
- * gradients, use the gradient of the index at voxels in place of that of the value. The strength
+ * gradients, use the gradient of the index at voxels instead of that of the value. The strength
  * of a surface is the length of that gradient times surface_mm, at most 1. Diffuse and specular
  * reflection are multiplied by it, so that the inside of a material has ambient light only. */
 typedef struct cw_transfer {
@@ -132,7 +132,7 @@ enum { CW_TRANSFER_TEXT = 20480 }; /* bytes that the text of one takes at most *
  *      "colors": [[-1000, "#000000"], [300, "#ffeedd"]],
  *      "opacities": [[100, 0], [300, 0.5]], "gradients": [[0, 0], [40, 1]],
  *      "indices": [[100, 0], [300, 1]], "surface_mm": 2}
- * In place of colours, opacities and indices a file may have classes of materials, as
+ * Instead of colours, opacities and indices a file may have classes of materials, as
  * cw_transfer_set_materials(); null is an open end:
  *     "materials": [{"name": "fat", "values": [-300, -150, -70, -10], "color": "#ffd27f",
  *                    "opacity": 0.02, "index": 1}, ...]

@@ -96,7 +96,7 @@ typedef struct cw_volume {
     double step_seconds;          /* time between steps; 0: unknown */
     double affine[3][4];          /* index to world, LPS millimetres; all 0: identity */
     const double *coordinates[3]; /* dim[0], dim[1], dim[2] rising values: places of planes of
-                                     samples, in place of their index. All three, or NULL */
+                                     samples, instead of their index. All three, or NULL */
     const cw_cells *cells;        /* an irregular grid's; else NULL */
     const cw_sparse *sparse;      /* a sparse grid's; else NULL */
     double slope, intercept;      /* value = slope * voxel + intercept; slope 0 means 1 */

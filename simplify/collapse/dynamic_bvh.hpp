@@ -109,7 +109,7 @@ private:
         return tree.nodes + tree.first[level] + slot / CWI_WIDTH;
     }
 
-    // Whether it had to.
+    // Widens the box of a child; returns true if it was too small.
     static bool grow(cwi_boxes_node *n, size_t slot, const float side[6])
     {
         bool grown = false;

@@ -94,7 +94,7 @@ static bool visit_triangle(void *context, size_t slot)
     return true;
 }
 
-/* Returns the way of a ray to the surface, up to `max_reach`, or INFINITY: where it meets none, or where
+/* Returns the length of a ray to the surface, up to `max_reach`, or INFINITY: where it meets none, or where
  * the surface does not face it. Looks near by first, as long rays meet many boxes.
  * side  1: the ray leaves the solid there; -1: it enters */
 static double cast_ray(const ray_field *f, size_t own, const double from[3],

@@ -12,10 +12,11 @@ soname_number() { # LIBRARY
     readelf -d "$1" | sed -n 's/.*SONAME.*\.so\.\([0-9]*\)\]$/\1/p'
 }
 
-# Writes the interface of a library: exported symbols, and the types of the public headers. Paths,
+# Writes the interface of a library: exported symbols without the internal ones (cwi_), and the types of the public headers. Paths,
 # lines, needed libraries and the processor are left out, so that builds give the same dump.
 dump_interface() { # LIBRARY HEADERS_FOLDER OUTPUT.abi
-    abidw --headers-dir "$2" --drop-private-types --exported-interfaces-only --no-corpus-path \
+    printf '[suppress_function]\n  symbol_name_regexp = ^cwi_\n  drop = yes\n[suppress_variable]\n  symbol_name_regexp = ^cwi_\n  drop = yes\n' >"$3.suppr"
+    abidw --suppressions "$3.suppr" --headers-dir "$2" --drop-private-types --exported-interfaces-only --no-corpus-path \
         --no-comp-dir-path --no-show-locs --no-elf-needed --no-architecture --no-parameter-names \
         --out-file "$3" "$1"
 }

@@ -19,7 +19,7 @@ enum {
     BLOCK = 8,
     MARGIN = 2,
     RADIUS = 12,
-    WORK = 32 /* one voxel takes as long as this number elsewhere */
+    WORK = 32 /* cost of a voxel, relative to those of other loops */
 };
 
 /* Optical depth of a shadow that is black to 1/255. */

@@ -237,7 +237,7 @@ static double ball(const double p[3], const double q[3])
     return 10 - hypot(hypot(p[0] - 13, p[1] - 13), p[2] - 13);
 }
 
-/* The boundary of a ball hides what is behind it everywhere, however short the way of a ray
+/* The boundary of a ball hides what is behind it everywhere, however short the path of a ray
  * through the cell that it enters by. */
 static void boundaries_have_no_holes(void **state)
 {
