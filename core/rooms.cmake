@@ -94,6 +94,8 @@ function(add_cubewright_module name folder sources)
   if(NOT CUBEWRIGHT_SANITIZE) # whose runtime is in the program
     target_link_options(module_${name} PRIVATE LINKER:-z,defs)
   endif()
+  # Each shared object names its C library, as Debian asks, even one that calls ours alone.
+  target_link_options(module_${name} PRIVATE "SHELL:-Wl,--push-state,--no-as-needed -lc -Wl,--pop-state")
   if(CUBEWRIGHT_ROOMS)
     find_used_rooms(used ${folder})
     target_link_libraries(module_${name} PRIVATE $<TARGET_NAME_IF_EXISTS:${room}> ${used} cw_settings ${ARGN})
