@@ -371,6 +371,17 @@ void *cwi_realloc_array(void *memory, size_t count, size_t size)
     return moved;
 }
 
+void *cwi_grow_array(void *array, size_t count, size_t *capacity, size_t size)
+{
+    if (count < *capacity)
+        return array;
+    const size_t more = 2 * *capacity + 256;
+    void *larger = cwi_realloc_array(array, more, size);
+    if (larger)
+        *capacity = more;
+    return larger;
+}
+
 void cwi_free(void *memory)
 {
     cwi_memory_give(capacity_of(memory));

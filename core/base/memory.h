@@ -21,6 +21,10 @@ void *cwi_alloc_zeroed(size_t count, size_t size);
 void *cwi_realloc_array(void *memory, size_t count, size_t size);
 void cwi_free(void *memory);
 
+/* Lengthens an array of count elements if it has no capacity for one more. Returns NULL, with the
+ * array untouched, when memory is out. */
+void *cwi_grow_array(void *array, size_t count, size_t *capacity, size_t size);
+
 /* Allocates as cwi_alloc_array(), for arrays that are written once from end to end. Large
  * arrays stand on large pages where the system has them. The system hands those out 512 times
  * faster than small pages. */

@@ -310,15 +310,12 @@ static bool is_on_side(const warping *g, const uint32_t at[3], bool inside)
 
 static void add_wish(warping *g, const uint32_t at[3], bool inside)
 {
-    if (g->wish_count == g->wish_capacity) {
-        const size_t capacity = 2 * g->wish_capacity + 64;
-        wish *more = cwi_realloc_array(g->wishes, capacity, sizeof *more);
-        g->out_of_memory |= !more;
-        if (!more)
-            return;
-        g->wishes = more;
-        g->wish_capacity = capacity;
-    }
+    void *grown =
+        cwi_grow_array(g->wishes, g->wish_count, &g->wish_capacity, sizeof *g->wishes);
+    g->out_of_memory |= !grown;
+    if (!grown)
+        return;
+    g->wishes = grown;
     g->wishes[g->wish_count++] = (wish){{at[0], at[1], at[2]}, inside};
 }
 

@@ -24,14 +24,10 @@ cwi_move *cwi_warp_find(const cwi_warp *w, const uint32_t at[3])
 
 bool cwi_warp_put(cwi_warp *w, const cwi_move *move)
 {
-    if (w->count == w->capacity) {
-        const size_t capacity = 2 * w->capacity + 256;
-        cwi_move *moves = cwi_realloc_array(w->moves, capacity, sizeof *moves);
-        if (!moves)
-            return false;
-        w->moves = moves;
-        w->capacity = capacity;
-    }
+    void *grown = cwi_grow_array(w->moves, w->count, &w->capacity, sizeof *w->moves);
+    if (!grown)
+        return false;
+    w->moves = grown;
     const uint32_t n = cwi_lattice_add(&w->numbers, cwi_lattice_key(move->at));
     if (n == CWI_NO_LATTICE_POINT)
         return false;

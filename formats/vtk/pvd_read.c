@@ -54,14 +54,10 @@ static cw_status add_entry(parsing *p, const char *name, double time, cw_error *
 {
     if (p->count == MAX_FILES)
         return cwi_fail(err, CW_ERR_LIMIT, "more than %d files are listed", MAX_FILES);
-    if (p->count == p->capacity) {
-        const size_t capacity = p->capacity ? 2 * p->capacity : 16;
-        cw_pvd_entry *entries = cwi_realloc_array(p->entries, capacity, sizeof *entries);
-        if (!entries)
-            return cwi_fail_memory(err);
-        p->entries = entries;
-        p->capacity = capacity;
-    }
+    void *grown = cwi_grow_array(p->entries, p->count, &p->capacity, sizeof *p->entries);
+    if (!grown)
+        return cwi_fail_memory(err);
+    p->entries = grown;
     char *path = path_of(p->in, name);
     if (!path)
         return cwi_fail_memory(err);

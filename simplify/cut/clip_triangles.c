@@ -41,27 +41,16 @@ typedef struct clip_work {
     uint32_t first_crossing; /* number of the first crossing in the result */
 } clip_work;
 
-void *cwi_cut_reserve(void *array, size_t count, size_t *capacity, size_t size)
-{
-    if (count < *capacity)
-        return array;
-    const size_t more = 2 * *capacity + 256;
-    void *larger = cwi_realloc_array(array, more, size);
-    if (larger)
-        *capacity = more;
-    return larger;
-}
-
 bool cwi_cut_add_triangle(cwi_cut *c, uint32_t a, uint32_t b, uint32_t d)
 {
     const uint32_t corners[3] = {a, b, d};
     void *grown =
-        cwi_cut_reserve(c->triangles, c->triangle_count, &c->triangle_capacity, sizeof corners);
+        cwi_grow_array(c->triangles, c->triangle_count, &c->triangle_capacity, sizeof corners);
     if (!grown)
         return false;
     c->triangles = grown;
     grown =
-        cwi_cut_reserve(c->parents, c->triangle_count, &c->parent_capacity, sizeof *c->parents);
+        cwi_grow_array(c->parents, c->triangle_count, &c->parent_capacity, sizeof *c->parents);
     if (!grown)
         return false;
     c->parents = grown;
@@ -73,7 +62,7 @@ bool cwi_cut_add_triangle(cwi_cut *c, uint32_t a, uint32_t b, uint32_t d)
 static bool add_source(cwi_cut *c, uint32_t a, uint32_t b, double t)
 {
     void *grown =
-        cwi_cut_reserve(c->sources, c->vertex_count, &c->vertex_capacity, sizeof *c->sources);
+        cwi_grow_array(c->sources, c->vertex_count, &c->vertex_capacity, sizeof *c->sources);
     if (!grown)
         return false;
     c->sources = grown;
@@ -85,7 +74,7 @@ static bool add_edge(cwi_cut *c, uint32_t start, uint32_t end)
 {
     if (start == end) /* of a triangle that names a vertex twice */
         return true;
-    void *grown = cwi_cut_reserve(c->edges, c->edge_count, &c->edge_capacity, sizeof *c->edges);
+    void *grown = cwi_grow_array(c->edges, c->edge_count, &c->edge_capacity, sizeof *c->edges);
     if (!grown)
         return false;
     c->edges = grown;
@@ -126,8 +115,8 @@ static bool gather_corner_edges(clip_work *w)
             const uint32_t v = corners[n / 2], end = corners[(n / 2 + 1 + n % 2) % 3];
             if (c->side[v] != CWI_CUT_ON)
                 continue;
-            void *grown = cwi_cut_reserve(w->corner_edges, w->corner_count, &w->corner_capacity,
-                                          sizeof *w->corner_edges);
+            void *grown = cwi_grow_array(w->corner_edges, w->corner_count, &w->corner_capacity,
+                                         sizeof *w->corner_edges);
             if (!grown)
                 return false;
             w->corner_edges = grown;
@@ -189,8 +178,8 @@ static bool gather_crossings(clip_work *w)
             w->numbers[v] = 0;
             if (c->side[v] * c->side[next] >= 0)
                 continue;
-            void *grown = cwi_cut_reserve(w->crossings, w->crossing_count,
-                                          &w->crossing_capacity, sizeof *w->crossings);
+            void *grown = cwi_grow_array(w->crossings, w->crossing_count, &w->crossing_capacity,
+                                         sizeof *w->crossings);
             if (!grown)
                 return false;
             w->crossings = grown;
@@ -296,8 +285,8 @@ static bool add_flat_edges(clip_work *w, const uint32_t *corners, const uint32_t
         const int next = (k + 1) % 3;
         if (c->side[corners[k]] != CWI_CUT_ON || c->side[corners[next]] != CWI_CUT_ON)
             continue;
-        void *grown = cwi_cut_reserve(w->flat_edges, w->flat_count, &w->flat_capacity,
-                                      sizeof *w->flat_edges);
+        void *grown = cwi_grow_array(w->flat_edges, w->flat_count, &w->flat_capacity,
+                                     sizeof *w->flat_edges);
         if (!grown)
             return false;
         w->flat_edges = grown;

@@ -50,11 +50,14 @@ typedef struct cwi_cut {
     cw_cut_facts facts;
 } cwi_cut;
 
-/* Makes room for one more element of an array. Returns NULL when memory is out. */
-void *cwi_cut_reserve(void *array, size_t count, size_t *capacity, size_t size);
-
 /* Returns the signed distance of vertex v of the mesh to the plane. */
-double cwi_cut_distance(const cwi_cut *c, size_t v);
+static inline double cwi_cut_distance(const cwi_cut *c, size_t v)
+{
+    double sum = -c->offset;
+    for (size_t a = 0; a < 3; a++)
+        sum += c->normal[a] * (double)c->mesh->positions[3 * v + a];
+    return sum;
+}
 
 /* Adds a triangle to the result. Returns false when memory is out. */
 bool cwi_cut_add_triangle(cwi_cut *c, uint32_t a, uint32_t b, uint32_t d);

@@ -2,23 +2,9 @@
  * then ears are cut off. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "core/geometry/exact_predicates.h"
 #include "simplify/cut/section.h"
 
 #include <math.h>
-
-int cwi_section_turn_vertices(const cwi_section *s, uint32_t a, uint32_t b, uint32_t c)
-{
-    const float *p = s->cut->positions;
-    return s->direction *
-           cwi_orient2d(p + 3 * (size_t)a, p + 3 * (size_t)b, p + 3 * (size_t)c, s->cut->axis);
-}
-
-int cwi_section_turn(const cwi_section *s, uint32_t a, uint32_t b, uint32_t c)
-{
-    const cwi_section_node *n = s->nodes;
-    return cwi_section_turn_vertices(s, n[a].vertex, n[b].vertex, n[c].vertex);
-}
 
 /* Chooses the coordinates, so that triangles against the clock face away from what is kept, or
  * toward it if the mesh is inside out. */

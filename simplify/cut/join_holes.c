@@ -53,7 +53,7 @@ static bool add_edge_to_rows(section_rows *r, uint32_t node)
     const size_t last = find_row(r, fmax(a, b));
     for (size_t row = find_row(r, fmin(a, b)); row <= last; row++) {
         void *grown =
-            cwi_cut_reserve(r->entries, r->entry_count, &r->entry_capacity, sizeof *r->entries);
+            cwi_grow_array(r->entries, r->entry_count, &r->entry_capacity, sizeof *r->entries);
         if (!grown)
             return false;
         r->entries = grown;

@@ -63,7 +63,7 @@ static bool gather_items(merge_work *w)
         if (!w->is_near[c->triangles[n]])
             continue;
         void *grown =
-            cwi_cut_reserve(w->items, w->item_count, &w->item_capacity, sizeof *w->items);
+            cwi_grow_array(w->items, w->item_count, &w->item_capacity, sizeof *w->items);
         if (!grown)
             return false;
         w->items = grown;

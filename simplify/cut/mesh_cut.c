@@ -32,14 +32,6 @@ static cw_status check_input(const cw_mesh *mesh, const cw_cut_desc *d, cw_error
     return cwi_mesh_check_size(mesh, "cut", err);
 }
 
-double cwi_cut_distance(const cwi_cut *c, size_t v)
-{
-    double sum = -c->offset;
-    for (size_t a = 0; a < 3; a++)
-        sum += c->normal[a] * (double)c->mesh->positions[3 * v + a];
-    return sum;
-}
-
 /* Turns percentages of the mesh's box into a world point. */
 static void place_point(cwi_cut *c)
 {

@@ -2,6 +2,7 @@
 #ifndef SIMPLIFY_CUT_SECTION_H
 #define SIMPLIFY_CUT_SECTION_H
 
+#include "core/geometry/exact_predicates.h"
 #include "simplify/cut/cut_state.h"
 
 /* A vertex of a ring. A vertex at which a hole is joined to a ring has two nodes. */
@@ -35,11 +36,21 @@ static inline const float *cwi_section_point(const cwi_section *s, uint32_t node
     return s->cut->positions + 3 * (size_t)s->nodes[node].vertex;
 }
 
-/* Returns 1 when three nodes turn against the clock, -1 with it, 0 when they are on one line. */
-int cwi_section_turn(const cwi_section *s, uint32_t a, uint32_t b, uint32_t c);
+/* Returns 1 when three vertices turn against the clock, -1 with it, 0 when they are on one line. */
+static inline int cwi_section_turn_vertices(const cwi_section *s, uint32_t a, uint32_t b,
+                                            uint32_t c)
+{
+    const float *p = s->cut->positions;
+    return s->direction *
+           cwi_orient2d(p + 3 * (size_t)a, p + 3 * (size_t)b, p + 3 * (size_t)c, s->cut->axis);
+}
 
-/* Returns the same of three vertices. */
-int cwi_section_turn_vertices(const cwi_section *s, uint32_t a, uint32_t b, uint32_t c);
+/* Returns the same of three nodes. */
+static inline int cwi_section_turn(const cwi_section *s, uint32_t a, uint32_t b, uint32_t c)
+{
+    const cwi_section_node *n = s->nodes;
+    return cwi_section_turn_vertices(s, n[a].vertex, n[b].vertex, n[c].vertex);
+}
 
 /* Joins each hole to the loop around it by a bridge: two edges along one line.
  * Returns  CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */

@@ -276,7 +276,7 @@ static bool gather_triangles(crossing_search *s)
     for (uint32_t t = 0; t < c->triangle_count; t++) {
         if (!has_section_corner(s, t))
             continue;
-        void *grown = cwi_cut_reserve(s->items, s->item_count, &capacity, sizeof *s->items);
+        void *grown = cwi_grow_array(s->items, s->item_count, &capacity, sizeof *s->items);
         if (!grown)
             return false;
         s->items = grown;

@@ -43,14 +43,10 @@ typedef struct entry_list {
 
 static bool push_entry(entry_list *l, uint32_t row, uint32_t column, double weight)
 {
-    if (l->count == l->capacity) {
-        const size_t capacity = 2 * l->capacity + 256;
-        row_entry *entries = cwi_realloc_array(l->entries, capacity, sizeof *entries);
-        if (!entries)
-            return false;
-        l->entries = entries;
-        l->capacity = capacity;
-    }
+    void *grown = cwi_grow_array(l->entries, l->count, &l->capacity, sizeof *l->entries);
+    if (!grown)
+        return false;
+    l->entries = grown;
     l->entries[l->count++] = (row_entry){row, column, weight};
     return true;
 }

@@ -176,16 +176,11 @@ static void add_hit(cwi_spans *s, uint32_t cell, int part, double from, double t
 {
     if (!(to > from))
         return;
-    if (s->hit_count == s->hit_capacity) {
-        const size_t more = 2 * s->hit_capacity + 64;
-        cwi_cell_hit *hits = cwi_realloc_array(s->hits, more, sizeof *hits);
-        if (!hits) {
-            s->is_starved = true;
-            return;
-        }
-        s->hits = hits;
-        s->hit_capacity = more;
-    }
+    void *grown = cwi_grow_array(s->hits, s->hit_count, &s->hit_capacity, sizeof *s->hits);
+    s->is_starved |= !grown;
+    if (!grown)
+        return;
+    s->hits = grown;
     s->hits[s->hit_count++] = (cwi_cell_hit){from, to, cell, part};
 }
 

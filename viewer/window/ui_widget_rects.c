@@ -15,14 +15,10 @@ void cwi_ui_label(char out[CWI_UI_NAME_SIZE], const char *label)
 void cwi_ui_places_add(cwi_ui *ui, const char *label, const cwi_ui_rect *rect)
 {
     cwi_ui_places *p = &ui->now;
-    if (p->count == p->capacity) {
-        const size_t capacity = p->capacity ? 2 * p->capacity : 64;
-        cwi_ui_place *items = cwi_realloc_array(p->items, capacity, sizeof *items);
-        if (!items)
-            return; /* then it is not found */
-        p->items = items;
-        p->capacity = capacity;
-    }
+    void *grown = cwi_grow_array(p->items, p->count, &p->capacity, sizeof *p->items);
+    if (!grown)
+        return; /* then it is not found */
+    p->items = grown;
     cwi_ui_place *place = &p->items[p->count++];
     snprintf(place->panel, sizeof place->panel, "%s",
              ui->depth > 0 ? ui->panel[cwi_ui_panel_at(ui)] : "");
