@@ -2,7 +2,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/bytes/file_pattern.h"
-#include "formats/format_registry.h"
+#include "formats/format_lookup.h"
 #include "formats/mesh/place_parts.h"
 #include "formats/volume/frame_claim.h"
 #include "formats/volume/volume_reader.h"
@@ -11,88 +11,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-static const char *reader_name(const cwi_format_driver *f)
-{
-    return f->mesh.read ? f->name : NULL;
-}
-
-static const char *list_readers(char list[CWI_FORMAT_LIST])
-{
-    return cwi_list_formats(reader_name, ", ", list);
-}
-
-static cw_status find_by_name(const char *name, const cwi_format_driver **found, cw_error *err)
-{
-    char names[CWI_FORMAT_LIST];
-    *found = cwi_find_format(name);
-    if (*found && (*found)->mesh.read)
-        return CW_OK;
-    return cwi_fail(err, CW_ERR_ARGUMENT, "there is no mesh reader '%s'; there are %s", name,
-                    list_readers(names));
-}
-
-static const cwi_format_driver *find_by_content(const unsigned char *head, size_t size,
-                                                uint64_t file_size)
-{
-    for (int last = 0; last < 2; last++)
-        for (size_t n = 0; cwi_format_at(n); n++) {
-            const cwi_mesh_reading *mesh = &cwi_format_at(n)->mesh;
-            if (mesh->sniff && mesh->sniffs_last == last && mesh->sniff(head, size, file_size))
-                return cwi_format_at(n);
-        }
-    return NULL;
-}
-
-static const cwi_format_driver *find_by_extension(const char *path)
-{
-    for (size_t n = 0; cwi_format_at(n); n++)
-        if (cwi_format_at(n)->mesh.read &&
-            cwi_has_extension(path, cwi_format_at(n)->extensions))
-            return cwi_format_at(n);
-    return NULL;
-}
-
-const char *cwi_mesh_format_by_content(const unsigned char *head, size_t size,
-                                       uint64_t file_size)
-{
-    const cwi_format_driver *found = find_by_content(head, size, file_size);
-    return found ? found->name : NULL;
-}
-
-const char *cwi_mesh_format_by_extension(const char *path)
-{
-    const cwi_format_driver *found = find_by_extension(path);
-    return found ? found->name : NULL;
-}
-
-static cw_status find_by_file(const cwi_input *in, const cwi_format_driver **found,
-                              cw_error *err)
-{
-    unsigned char head[CWI_SNIFF_BYTES];
-    char names[CWI_FORMAT_LIST];
-    size_t size;
-    cw_status st = cwi_input_read_at(in->fd, 0, head, sizeof head, &size, err);
-    if (st != CW_OK)
-        return st;
-    *found = find_by_content(head, size, in->size);
-    if (!*found)
-        *found = find_by_extension(in->path);
-    if (*found)
-        return CW_OK;
-    if (cwi_pvd_sniff(head, size))
-        return cwi_fail(err, CW_ERR_FORMAT,
-                        "this is a list of the files of a time series (pvd); here one of the "
-                        "meshes that it lists is expected");
-    const char *volume = cwi_volume_format_of(in);
-    if (volume)
-        return cwi_fail(err, CW_ERR_FORMAT,
-                        "this is a volume (%s), not a mesh; 'extract' makes a mesh of it",
-                        volume);
-    return cwi_fail(err, CW_ERR_FORMAT,
-                    "neither content nor extension is of a mesh format that is read (%s)",
-                    list_readers(names));
-}
 
 static cw_mesh_read_desc resolve_desc(const cw_mesh_read_desc *desc)
 {
@@ -126,8 +44,8 @@ static cw_status read_open_file(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file 
                                 cw_error *err)
 {
     const cwi_format_driver *found = NULL;
-    cw_status st = in->desc.reader ? find_by_name(in->desc.reader, &found, err)
-                                   : find_by_file(&in->file, &found, err);
+    cw_status st = in->desc.reader ? cwi_mesh_reader_by_name(in->desc.reader, &found, err)
+                                   : cwi_mesh_reader_of(&in->file, &found, err);
     if (st != CW_OK)
         return st;
     *said = (cw_mesh_file){.format = found->name, .parts = 1};

@@ -2,6 +2,7 @@
 #include <cubewright/formats.h>
 
 #include "core/base/status.h"
+#include "core/base/temporary_name.h"
 #include "formats/bytes/file_pattern.h"
 #include "formats/format_registry.h"
 #include "formats/mesh/place_parts.h"

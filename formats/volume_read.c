@@ -4,8 +4,7 @@
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 #include "formats/bytes/file_pattern.h"
-#include "formats/bytes/inflate_stream.h"
-#include "formats/format_registry.h"
+#include "formats/format_lookup.h"
 #include "formats/mesh/mesh_reader.h"
 #include "formats/volume/frame_claim.h"
 #include "formats/volume/named_arrays.h"
@@ -19,117 +18,6 @@
 #include <unistd.h>
 
 typedef cwi_format_driver driver;
-
-static const char *reader_name(const driver *f)
-{
-    return cwi_reads_volume(f) ? f->name : NULL;
-}
-
-static const char *list_readers(char list[CWI_FORMAT_LIST])
-{
-    return cwi_list_formats(reader_name, ", ", list);
-}
-
-static cw_status find_by_name(const char *name, const driver **found, cw_error *err)
-{
-    char names[CWI_FORMAT_LIST];
-    *found = cwi_find_format(name);
-    if (*found == &cwi_format_raw)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "the reader 'raw' needs a layout");
-    if (*found && cwi_reads_volume(*found))
-        return CW_OK;
-    return cwi_fail(err, CW_ERR_ARGUMENT, "there is no reader '%s'; there are %s", name,
-                    list_readers(names));
-}
-
-/* Reads the first bytes of a file. A gzip file that is damaged from the start has no content to
- * recognise. */
-static cw_status read_head(const cwi_input *in, unsigned char *head, size_t *size,
-                           bool *gzipped, cw_error *err)
-{
-    cw_status st = cwi_stream_head(in->fd, head, CWI_SNIFF_BYTES, size, gzipped, err);
-    if (st != CW_ERR_FORMAT)
-        return st;
-    *size = 0;
-    return CW_OK;
-}
-
-static bool sniffs_volume(const driver *f, const unsigned char *head, size_t size)
-{
-    return f->volume.sniff && f->volume.sniff(head, size);
-}
-
-/* Finds a reader by the content, or returns NULL. The meshes of VTK's XML are no volumes, nor
- * are lists. */
-static const driver *find_by_content(const unsigned char *head, size_t size, bool gzipped)
-{
-    if (cwi_vtp_sniff(head, size, 0) || cwi_pvd_sniff(head, size))
-        return NULL;
-    for (size_t n = 0; cwi_format_at(n); n++)
-        if ((cwi_format_at(n)->volume.gzipped || !gzipped) &&
-            sniffs_volume(cwi_format_at(n), head, size))
-            return cwi_format_at(n);
-    return NULL;
-}
-
-static const driver *find_by_extension(const char *path)
-{
-    for (size_t n = 0; cwi_format_at(n); n++)
-        if (cwi_reads_volume(cwi_format_at(n)) &&
-            cwi_has_extension(path, cwi_volume_extensions(cwi_format_at(n))))
-            return cwi_format_at(n);
-    return NULL;
-}
-
-const char *cwi_volume_format_of(const cwi_input *in)
-{
-    unsigned char head[CWI_SNIFF_BYTES];
-    size_t size;
-    bool gzipped;
-    const driver *found = NULL;
-    if (read_head(in, head, &size, &gzipped, NULL) == CW_OK)
-        found = find_by_content(head, size, gzipped);
-    if (!found)
-        found = find_by_extension(in->path);
-    return found ? found->name : NULL;
-}
-
-static cw_status fail_mesh(const char *format, cw_error *err)
-{
-    return cwi_fail(err, CW_ERR_FORMAT,
-                    "this is a mesh (%s), not a volume; use check, convert or simplify",
-                    format);
-}
-
-static cw_status find_by_file(const cwi_input *in, const driver **found, cw_error *err)
-{
-    unsigned char head[CWI_SNIFF_BYTES];
-    char names[CWI_FORMAT_LIST];
-    size_t size;
-    bool gzipped;
-    cw_status st = read_head(in, head, &size, &gzipped, err);
-    if (st != CW_OK)
-        return st;
-    *found = find_by_extension(in->path);
-    if (!*found || !(*found)->volume.is_store) /* files of stores are known by name alone */
-        *found = find_by_content(head, size, gzipped);
-    const char *mesh = *found ? NULL : cwi_mesh_format_by_content(head, size, in->size);
-    if (!*found && !mesh)
-        *found = find_by_extension(in->path);
-    if (*found)
-        return CW_OK;
-    if (cwi_pvd_sniff(head, size))
-        return cwi_fail(err, CW_ERR_FORMAT,
-                        "this is a list of the files of a time series (pvd); here one of the "
-                        "volumes that it lists is expected");
-    if (mesh || (mesh = cwi_mesh_format_by_extension(in->path)))
-        return fail_mesh(mesh, err);
-    return cwi_fail(
-        err, CW_ERR_FORMAT,
-        "neither content nor extension is of a format that is read (%s); a headerless "
-        "file needs its layout stated (desc->raw)",
-        list_readers(names));
-}
 
 /* --- files of a path -------------------------------------------------------------------- */
 
@@ -175,7 +63,7 @@ static bool is_of(const cwi_input *in, const char *name, const driver *r)
         return false;
     const bool read = cwi_input_read_at(fd, 0, head, sizeof head, &size, NULL) == CW_OK;
     close(fd);
-    return read && sniffs_volume(r, head, size);
+    return read && r->volume.sniff && r->volume.sniff(head, size);
 }
 
 /* Reports a folder without slices: says if it holds volumes, or links. */
@@ -235,9 +123,9 @@ static const driver *find_with_points(void)
 static cw_status find_reader(opened *o, const cw_read_desc *desc, cw_error *err)
 {
     const char *name = desc->reader || !desc->points ? desc->reader : find_with_points()->name;
-    cw_status st = name      ? find_by_name(name, &o->reader, err)
+    cw_status st = name      ? cwi_volume_reader_by_name(name, &o->reader, err)
                    : o->many ? find_by_files(o, err)
-                             : find_by_file(&o->in, &o->reader, err);
+                             : cwi_volume_reader_of(&o->in, &o->reader, err);
     if (st == CW_OK && o->many && !o->reader->volume.read_slices)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "the reader '%s' reads one file, and these are %zu", o->reader->name,
@@ -690,22 +578,6 @@ static cw_status list_folder(const char *folder, const cw_read_desc *desc, cwi_n
     return st;
 }
 
-/* Returns the format of a file, if it is a mesh; else NULL. */
-static const char *mesh_format_of(const char *path)
-{
-    unsigned char head[CWI_SNIFF_BYTES];
-    cwi_input in;
-    size_t size;
-    const char *format = NULL;
-    if (cwi_input_open(&in, path, NULL) != CW_OK)
-        return NULL;
-    if (cwi_input_read_at(in.fd, 0, head, sizeof head, &size, NULL) == CW_OK &&
-        !find_by_content(head, size, false))
-        format = cwi_mesh_format_by_content(head, size, in.size);
-    cwi_input_close(&in);
-    return format;
-}
-
 static cw_status list_pvd(const char *path, const cw_read_desc *desc, cwi_names *names,
                           cw_error *err)
 {
@@ -713,7 +585,7 @@ static cw_status list_pvd(const char *path, const cw_read_desc *desc, cwi_names 
     size_t count;
     cw_status st = cw_pvd_read(path, desc, &entries, &count, err);
     for (size_t n = 0; n < count && st == CW_OK; n++) {
-        const char *mesh = mesh_format_of(entries[n].path);
+        const char *mesh = cwi_mesh_format_of(entries[n].path);
         st = mesh ? cwi_fail(err, CW_ERR_FORMAT,
                              "%s: lists meshes, such as '%s' (%s), and not volumes: check, "
                              "convert and simplify take them, one at a time",

@@ -4,6 +4,7 @@
 #include "cli/framework/json_writer.h"
 
 #include "core/base/features.h"
+#include "core/base/module.h"
 
 #include <cubewright/formats.h>
 

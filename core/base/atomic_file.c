@@ -1,11 +1,12 @@
 /* Writes files through a hidden temporary beside the target, which a rename puts in place once
  * it is complete. */
-#define _GNU_SOURCE /* renameat2, getrandom, O_PATH */
+#define _GNU_SOURCE /* renameat2 */
 #include "core/base/atomic_file.h"
 
 #include "core/base/atomic_folder.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/base/temporary_name.h"
 #include "core/base/text.h"
 
 #include <errno.h>
@@ -16,7 +17,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -109,47 +109,6 @@ static cw_status inspect_target(const char *path, bool no_clobber, bool *exists,
         return cwi_fail(err, CW_ERR_OUTPUT, "it is a device, pipe or socket, not a file");
     *mode = info.st_mode & 0777;
     return CW_OK;
-}
-
-cw_status cwi_open_parent(const char *path, int *folder, char name[CWI_FILE_NAME_BYTES],
-                          cw_error *err)
-{
-    const char *slash = strrchr(path, '/');
-    const char *last = slash ? slash + 1 : path;
-    char parent[PATH_MAX] = ".";
-    if (!*last)
-        return cwi_fail(err, CW_ERR_OUTPUT, "it names no file");
-    if (strlen(last) >= CWI_FILE_NAME_BYTES)
-        return fail_system(err, "it cannot be made", ENAMETOOLONG);
-    strcpy(name, last);
-    const int length = (int)(slash == path) + (slash ? (int)(slash - path) : 0);
-    if (length >= PATH_MAX)
-        return fail_system(err, "its folder cannot be opened", ENAMETOOLONG);
-    if (slash) /* the root keeps its slash */
-        snprintf(parent, sizeof parent, "%.*s", length, path);
-    *folder = open(parent, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (*folder < 0 && errno == EACCES) /* a folder with write but no list permission */
-        *folder = open(parent, O_PATH | O_DIRECTORY | O_CLOEXEC);
-    if (*folder < 0 && errno == ENOENT)
-        return cwi_fail(err, CW_ERR_OUTPUT, "the folder '%s' does not exist", parent);
-    if (*folder < 0)
-        return cwi_fail(err, CW_ERR_OUTPUT, "the folder '%s' cannot be opened: %s", parent,
-                        strerror(errno));
-    return CW_OK;
-}
-
-void cwi_name_temporary(const char *name, char temporary[CWI_FILE_NAME_BYTES])
-{
-    static const char letters[] = "abcdefghijklmnopqrstuvwxyz012345";
-    unsigned char random[6] = {0};
-    char word[sizeof random + 1] = "";
-    if (getrandom(random, sizeof random, GRND_NONBLOCK) != (ssize_t)sizeof random)
-        for (size_t i = 0; i < sizeof random; i++) /* early in boot: O_EXCL still protects */
-            random[i] = (unsigned char)rand();
-    for (size_t i = 0; i < sizeof random; i++)
-        word[i] = letters[random[i] % 32];
-    const int capacity = CWI_FILE_NAME_BYTES - 1 - (int)(sizeof "..XXXXXX.part" - 1);
-    snprintf(temporary, CWI_FILE_NAME_BYTES, ".%.*s.%s.part", capacity, name, word);
 }
 
 /* Creates the temporary. The kernel applies the umask to a new file's 0666. The mode of a

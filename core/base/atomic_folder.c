@@ -3,9 +3,9 @@
 #define _GNU_SOURCE /* renameat2, SYS_getdents64 */
 #include "core/base/atomic_folder.h"
 
-#include "core/base/atomic_file.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/base/temporary_name.h"
 #include "core/base/text.h"
 
 #include <dirent.h>

@@ -46,11 +46,3 @@ const cw_feature *cwi_find_feature(const char *name)
             return &all[i];
     return NULL;
 }
-
-const cwi_feature_row *cwi_find_module_row(const char *module)
-{
-    for (size_t i = 0; i < cwi_feature_row_count; i++)
-        if (strcmp(cwi_feature_rows[i].module, module) == 0)
-            return &cwi_feature_rows[i];
-    return NULL;
-}

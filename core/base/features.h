@@ -19,9 +19,6 @@ extern const cwi_feature_row cwi_feature_rows[];
 extern const size_t cwi_feature_row_count;
 extern const char cwi_needed_licences[]; /* of the libraries that no build is without */
 
-/* Finds the row of the first feature of a module; NULL when the module is unknown. */
-const cwi_feature_row *cwi_find_module_row(const char *module);
-
 /* Finds a feature by its name, such as "gltf"; NULL when the name is unknown. */
 const cw_feature *cwi_find_feature(const char *name);
 

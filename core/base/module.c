@@ -57,6 +57,14 @@ bool cwi_module_present(const char *name)
     return module_path(name, path, sizeof path);
 }
 
+const cwi_feature_row *cwi_find_module_row(const char *module)
+{
+    for (size_t i = 0; i < cwi_feature_row_count; i++)
+        if (strcmp(cwi_feature_rows[i].module, module) == 0)
+            return &cwi_feature_rows[i];
+    return NULL;
+}
+
 /* Returns true if libraries may get fewer threads than they start while they are loaded:
  * log4cplus, which OpenVDB needs, starts four. */
 static bool threads_are_short(void)

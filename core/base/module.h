@@ -29,6 +29,9 @@ CW_NODISCARD cw_status cwi_module_find(const char *name, cw_error *err);
 /* Returns true if the file of a module exists; loads nothing. */
 bool cwi_module_present(const char *name);
 
+/* Finds the row of the first feature of a module; NULL when the module is unknown. */
+const struct cwi_feature_row *cwi_find_module_row(const char *module);
+
 /* Makes a loaded module use the program's memory account and threads. Every module exports it
  * (module_entry.c). */
 CW_API void cwi_module_attach(cwi_memory_account *account, cwi_thread_pool *pool);

@@ -52,16 +52,6 @@ cw_status cwi_mesh_copy(const cw_mesh *mesh, cw_mesh *copy, cw_error *err)
     return cwi_attributes_copy(mesh, copy, err);
 }
 
-void cw_mesh_free(cw_mesh *mesh)
-{
-    if (!mesh)
-        return;
-    cwi_free(mesh->positions);
-    cwi_free(mesh->triangles);
-    cwi_attributes_free(mesh);
-    memset(mesh, 0, sizeof *mesh);
-}
-
 void cw_label_surfaces_free(cw_label_surfaces *s)
 {
     if (!s)

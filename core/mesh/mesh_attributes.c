@@ -110,6 +110,27 @@ static bool make_arrays(const cw_mesh *like, cw_mesh *mesh, void *(*alloc)(size_
     return ok;
 }
 
+static void free_attributes(cw_mesh *mesh)
+{
+    for (size_t n = 0; n < cwi_attribute_count(mesh); n++) {
+        cwi_free(cwi_attribute_at(mesh, n).data);
+        set_data(mesh, n, NULL);
+    }
+    cwi_free(mesh->attributes);
+    mesh->attributes = NULL;
+    mesh->attribute_count = 0;
+}
+
+void cw_mesh_free(cw_mesh *mesh)
+{
+    if (!mesh)
+        return;
+    cwi_free(mesh->positions);
+    cwi_free(mesh->triangles);
+    free_attributes(mesh);
+    memset(mesh, 0, sizeof *mesh);
+}
+
 cw_status cwi_attributes_alloc(const cw_mesh *like, cw_mesh *mesh, cw_error *err)
 {
     if (make_arrays(like, mesh, cwi_alloc_zeroed))
@@ -133,17 +154,6 @@ cw_status cwi_attributes_copy(const cw_mesh *from, cw_mesh *to, cw_error *err)
             memcpy(copy.data, row.data, bytes);
     }
     return CW_OK;
-}
-
-void cwi_attributes_free(cw_mesh *mesh)
-{
-    for (size_t n = 0; n < cwi_attribute_count(mesh); n++) {
-        cwi_free(cwi_attribute_at(mesh, n).data);
-        set_data(mesh, n, NULL);
-    }
-    cwi_free(mesh->attributes);
-    mesh->attributes = NULL;
-    mesh->attribute_count = 0;
 }
 
 /* --- elements ----------------------------------------------------------------------------- */

@@ -27,8 +27,6 @@ CW_NODISCARD cw_status cwi_attributes_alloc(const cw_mesh *like, cw_mesh *mesh, 
 /* Copies the attributes of a mesh to one that has the same elements and no attributes. */
 CW_NODISCARD cw_status cwi_attributes_copy(const cw_mesh *from, cw_mesh *to, cw_error *err);
 
-void cwi_attributes_free(cw_mesh *mesh);
-
 /* The next four write to meshes that cwi_attributes_alloc() made like `from`. */
 
 /* Gives vertex n of `to` the attributes of vertex v. */

@@ -5,8 +5,6 @@
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/geometry/closest_point.h"
-#include "core/geometry/point_in_mesh.h"
-#include "core/geometry/vec3.h"
 #include "core/mesh/mesh_triangle.h"
 #include "extract/level_set/level_set.h"
 
@@ -15,27 +13,6 @@
 enum { CHUNK = 256 };
 
 /* ---- values ------------------------------------------------------------------------------ */
-
-void cwi_adaptive_from_mesh(const cwi_adaptive *a, const cw_mesh *m, uint32_t vertex,
-                            double position[3])
-{
-    const float *p = m->positions + 3 * (size_t)vertex;
-    for (int k = 0; k < 3; k++)
-        position[k] =
-            (m->origin[k] - a->mesh->origin[k] + (double)p[k] - a->corner[k]) / a->voxel;
-}
-
-void cwi_adaptive_to_mesh(const cwi_adaptive *a, const double position[3], double p[3])
-{
-    cwi_add_scaled(a->corner, a->voxel, position, p);
-}
-
-bool cwi_adaptive_is_inside(const cwi_adaptive *a, const double position[3])
-{
-    double p[3];
-    cwi_adaptive_to_mesh(a, position, p);
-    return cwi_is_inside(a->mesh, &a->tree, (const double(*)[3])a->normals, p);
-}
 
 static double distance_at(const cwi_adaptive *a, const double position[3])
 {

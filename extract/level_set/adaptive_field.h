@@ -14,6 +14,8 @@
 
 #include "core/geometry/bvh.h"
 #include "core/geometry/lattice_map.h"
+#include "core/geometry/point_in_mesh.h"
+#include "core/geometry/vec3.h"
 
 #include <cubewright/level_set.h>
 
@@ -82,11 +84,27 @@ bool cwi_adaptive_position(const cwi_adaptive *a, const uint32_t at[3], double p
 
 /* Converts a mesh's vertex to voxels, and a place in voxels to a position from the mesh's
  * origin. */
-void cwi_adaptive_from_mesh(const cwi_adaptive *a, const cw_mesh *m, uint32_t vertex,
-                            double position[3]);
-void cwi_adaptive_to_mesh(const cwi_adaptive *a, const double position[3], double p[3]);
+static inline void cwi_adaptive_from_mesh(const cwi_adaptive *a, const cw_mesh *m,
+                                          uint32_t vertex, double position[3])
+{
+    const float *p = m->positions + 3 * (size_t)vertex;
+    for (int k = 0; k < 3; k++)
+        position[k] =
+            (m->origin[k] - a->mesh->origin[k] + (double)p[k] - a->corner[k]) / a->voxel;
+}
 
-bool cwi_adaptive_is_inside(const cwi_adaptive *a, const double position[3]);
+static inline void cwi_adaptive_to_mesh(const cwi_adaptive *a, const double position[3],
+                                        double p[3])
+{
+    cwi_add_scaled(a->corner, a->voxel, position, p);
+}
+
+static inline bool cwi_adaptive_is_inside(const cwi_adaptive *a, const double position[3])
+{
+    double p[3];
+    cwi_adaptive_to_mesh(a, position, p);
+    return cwi_is_inside(a->mesh, &a->tree, (const double(*)[3])a->normals, p);
+}
 
 /* Divides a cell of a size: 0 is a voxel's. Returns false without memory. */
 bool cwi_adaptive_put(cwi_adaptive *a, int size, const uint32_t at[3]);

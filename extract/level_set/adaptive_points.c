@@ -4,8 +4,6 @@
 #include "core/geometry/polygon_clip.h"
 #include "extract/level_set/adaptive_field.h"
 
-#include "core/geometry/vec3.h"
-
 #include <math.h>
 #include <string.h>
 

@@ -2,6 +2,7 @@
 #include "formats/cells/grid_arrays.h"
 
 #include "core/volume/volume.h"
+#include "formats/bytes/byte_order.h"
 
 #include <math.h>
 #include <string.h>

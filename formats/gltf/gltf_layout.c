@@ -9,14 +9,6 @@
 #include <math.h>
 #include <string.h>
 
-enum {
-    BYTE = 5120,
-    UNSIGNED_BYTE = 5121,
-    UNSIGNED_SHORT = 5123,
-    UNSIGNED_INT = 5125,
-    FLOAT = 5126
-};
-
 /* The maximum of a buffer: GLB states lengths in 32 bits, and the JSON takes a part of that. */
 static const uint64_t MAX_BYTES = UINT32_MAX - (1 << 20);
 
@@ -32,65 +24,6 @@ void cwi_gltf_plan_free(cwi_gltf_plan *plan)
     cwi_free(plan->pieces);
     cwi_free(plan->parts.items);
     *plan = (cwi_gltf_plan){0};
-}
-
-/* --- arrays ------------------------------------------------------------------------------- */
-
-/* Returns the type of indices. 65535 in 16 bits means "restart" and must not be an index. */
-static int index_component(const cw_mesh *mesh)
-{
-    return mesh->vertex_count <= UINT16_MAX ? UNSIGNED_SHORT : UNSIGNED_INT;
-}
-
-static void add_array(cwi_gltf_piece *piece, cwi_gltf_array array)
-{
-    piece->arrays[piece->array_count++] = array;
-}
-
-static bool on_grid(const cwi_gltf_plan *plan)
-{
-    return plan->rounded && plan->grid.bits;
-}
-
-void cwi_gltf_plan_arrays(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
-{
-    const cw_mesh *m = &piece->part->mesh;
-    const bool rounded = plan->rounded, shorts = on_grid(plan) && !plan->grid.dyadic;
-    const int index = index_component(m);
-    piece->array_count = 0;
-    add_array(piece, (cwi_gltf_array){.use = CWI_GLTF_INDICES,
-                                      .component = index,
-                                      .numbers = 1,
-                                      .count = 3 * m->triangle_count,
-                                      .stride = index == UNSIGNED_SHORT ? 2 : 4});
-    add_array(piece, (cwi_gltf_array){.use = CWI_GLTF_POSITION,
-                                      .component = shorts ? UNSIGNED_SHORT : FLOAT,
-                                      .numbers = 3,
-                                      .exponential = on_grid(plan) && plan->grid.dyadic,
-                                      .count = m->vertex_count,
-                                      .stride = shorts ? 8 : 12});
-    if (piece->part->arrays & CW_KEEPS_NORMALS)
-        add_array(piece, (cwi_gltf_array){.use = CWI_GLTF_NORMAL,
-                                          .component = rounded ? BYTE : FLOAT,
-                                          .numbers = 3,
-                                          .normalized = rounded,
-                                          .count = m->vertex_count,
-                                          .stride = rounded ? 4 : 12});
-    if (m->colors)
-        add_array(piece, (cwi_gltf_array){.use = CWI_GLTF_COLOR,
-                                          .component = UNSIGNED_BYTE,
-                                          .numbers = 4,
-                                          .normalized = true,
-                                          .count = m->vertex_count,
-                                          .stride = 4});
-}
-
-double cwi_gltf_stored(const cwi_gltf_plan *plan, float coordinate, int axis)
-{
-    const cwi_quantization_grid *g = &plan->grid;
-    return !on_grid(plan) ? (double)coordinate
-           : g->dyadic    ? cwi_grid_round_signed(g, coordinate, axis) * g->step
-                          : cwi_grid_round(g, coordinate, axis);
 }
 
 /* Finds the box of the stored positions, exact to the bit in single precision. */
@@ -114,10 +47,10 @@ static void find_bounds(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
 static void place_piece(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
 {
     const cwi_quantization_grid *g = &plan->grid;
-    piece->step = on_grid(plan) && !g->dyadic ? g->step : 1;
+    piece->step = cwi_gltf_on_grid(plan) && !g->dyadic ? g->step : 1;
     for (int a = 0; a < 3; a++) {
         piece->translation[a] = piece->part->mesh.origin[a];
-        if (on_grid(plan))
+        if (cwi_gltf_on_grid(plan))
             piece->translation[a] += g->dyadic ? cwi_grid_middle(g, a) : (double)g->origin[a];
     }
 }
@@ -130,7 +63,7 @@ static bool is_translucent(const cw_mesh *mesh)
     return false;
 }
 
-/* --- bytes -------------------------------------------------------------------------------- */
+/* --- colours -------------------------------------------------------------------------------- */
 
 /* Fills the table from sRGB to linear colours, which glTF has; alpha is already linear. */
 static void fill_linear(unsigned char linear[256])
@@ -139,59 +72,6 @@ static void fill_linear(unsigned char linear[256])
         const double c = i / 255.0;
         linear[i] = (unsigned char)lround(
             255 * (c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4)));
-    }
-}
-
-static void put_position(const cwi_gltf_plan *plan, const cwi_gltf_array *a, const float *p,
-                         unsigned char *to)
-{
-    const cwi_quantization_grid *g = &plan->grid;
-    if (a->exponential) { /* 24 bits of mantissa, 8 of exponent, both signed */
-        for (int c = 0; c < 3; c++)
-            to = cwi_put_u32(to, ((uint32_t)cwi_grid_round_signed(g, p[c], c) & 0xffffff) |
-                                     (uint32_t)g->exponent << 24);
-        return;
-    }
-    if (a->component == FLOAT) {
-        cwi_put_f32x3(to, p);
-        return;
-    }
-    for (int c = 0; c < 3; c++)
-        to = cwi_put_u16(to, (uint16_t)cwi_grid_round(g, p[c], c));
-    cwi_put_u16(to, 0);
-}
-
-static void put_normal(const cwi_gltf_array *a, const float *n, unsigned char *to)
-{
-    if (a->component == FLOAT) {
-        cwi_put_f32x3(to, n);
-        return;
-    }
-    for (int c = 0; c < 3; c++)
-        to[c] = (unsigned char)lrint(127 * fmax(-1, fmin(1, (double)n[c])));
-    to[3] = 0;
-}
-
-void cwi_gltf_put(const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,
-                  const cwi_gltf_array *a, size_t i, unsigned char *to)
-{
-    const cw_mesh *m = &piece->part->mesh;
-    switch (a->use) {
-    case CWI_GLTF_INDICES:
-        if (a->component == UNSIGNED_SHORT)
-            cwi_put_u16(to, (uint16_t)m->triangles[i]);
-        else
-            cwi_put_u32(to, m->triangles[i]);
-        break;
-    case CWI_GLTF_POSITION:
-        put_position(plan, a, m->positions + 3 * i, to);
-        break;
-    case CWI_GLTF_NORMAL:
-        put_normal(a, m->normals + 3 * i, to);
-        break;
-    default:
-        for (size_t c = 0; c < 4; c++)
-            to[c] = c < 3 ? plan->linear[m->colors[4 * i + c]] : m->colors[4 * i + c];
     }
 }
 
@@ -224,7 +104,8 @@ static bool is_quantized(const cwi_gltf_piece *piece)
 {
     for (size_t n = 0; n < piece->array_count; n++) {
         const cwi_gltf_array *a = &piece->arrays[n];
-        if ((a->use == CWI_GLTF_POSITION || a->use == CWI_GLTF_NORMAL) && a->component != FLOAT)
+        if ((a->use == CWI_GLTF_POSITION || a->use == CWI_GLTF_NORMAL) &&
+            a->component != CWI_GLTF_FLOAT)
             return true;
     }
     return false;

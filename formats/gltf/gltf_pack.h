@@ -33,6 +33,15 @@ CW_NODISCARD cw_status cwi_gltf_plan_make(cwi_gltf_plan *plan, const cwi_parts *
                                           const cwi_mesh_output *out, cw_error *err);
 void cwi_gltf_plan_free(cwi_gltf_plan *plan);
 
+/* The component type of accessors of single precision. */
+enum { CWI_GLTF_FLOAT = 5126 };
+
+/* Returns true if positions are stored on the plan's grid. */
+static inline bool cwi_gltf_on_grid(const cwi_gltf_plan *plan)
+{
+    return plan->rounded && plan->grid.bits;
+}
+
 /* Plans arrays for a part, uncompressed: unchanged, or on the plan's grid. A dyadic grid gives
  * numbers for the exponential filter of EXT_meshopt_compression. */
 void cwi_gltf_plan_arrays(const cwi_gltf_plan *plan, cwi_gltf_piece *piece);

@@ -12,21 +12,6 @@
 
 enum { TRIANGLES_MODE = 4, GLB_HEADER = 12, CHUNK_HEADER = 8, FREE_COUNT = 1 << 24 };
 
-void cwi_gltf_scene_free(cwi_gltf_scene *scene)
-{
-    for (size_t i = 0; scene->buffers && i < scene->buffer_count; i++)
-        cwi_free(scene->buffers[i].uri);
-    cwi_free(scene->buffers);
-    cwi_free(scene->views);
-    cwi_free(scene->accessors);
-    cwi_free(scene->primitives);
-    cwi_free(scene->meshes);
-    cwi_free(scene->nodes);
-    cwi_free(scene->children);
-    cwi_free(scene->roots);
-    *scene = (cwi_gltf_scene){0};
-}
-
 /* --- the file ---------------------------------------------------------------------------- */
 
 bool cwi_glb_sniff(const unsigned char *head, size_t size, uint64_t file_size)

@@ -2,6 +2,7 @@
  * both sides see. The scene results from an untrusted file, so every size and range in it is
  * checked. */
 #include "core/base/memory.h"
+#include "core/base/module.h"
 #include "core/base/sandbox.h"
 #include "core/base/status.h"
 #include "formats/gltf/gltf_wrap.h"
@@ -11,6 +12,35 @@
 
 enum { LARGEST_ELEMENT = 256, MAX_JSON = 32 << 20, HEAD = 64 << 10 };
 static const uint64_t NO_URI = UINT64_MAX;
+
+void cwi_gltf_scene_free(cwi_gltf_scene *scene)
+{
+    for (size_t i = 0; scene->buffers && i < scene->buffer_count; i++)
+        cwi_free(scene->buffers[i].uri);
+    cwi_free(scene->buffers);
+    cwi_free(scene->views);
+    cwi_free(scene->accessors);
+    cwi_free(scene->primitives);
+    cwi_free(scene->meshes);
+    cwi_free(scene->nodes);
+    cwi_free(scene->children);
+    cwi_free(scene->roots);
+    *scene = (cwi_gltf_scene){0};
+}
+
+cw_status cwi_gltf_functions_load(const cwi_gltf_functions **functions, cw_error *err)
+{
+    const void *module;
+    cw_status st = cwi_module_load("gltf", &module, err);
+    if (st == CW_OK)
+        *functions = module;
+    return st;
+}
+
+cw_status cwi_gltf_prepare(cw_error *err)
+{
+    return cwi_module_find("gltf", err);
+}
 
 /* An array of a scene. */
 typedef struct column {

@@ -1,7 +1,6 @@
 /* Writes glTF: a module makes the JSON, and the bytes are written separately, piece by
  * piece. */
 #include "core/base/memory.h"
-#include "core/base/module.h"
 #include "core/base/status.h"
 #include "formats/bytes/base64.h"
 #include "formats/gltf/gltf_pack.h"
@@ -10,20 +9,6 @@
 #include <stdio.h>
 
 enum { CHUNK_BYTES = 3 << 14, GLB_HEADER = 12, CHUNK_HEADER = 8 };
-
-cw_status cwi_gltf_functions_load(const cwi_gltf_functions **functions, cw_error *err)
-{
-    const void *module;
-    cw_status st = cwi_module_load("gltf", &module, err);
-    if (st == CW_OK)
-        *functions = module;
-    return st;
-}
-
-cw_status cwi_gltf_prepare(cw_error *err)
-{
-    return cwi_module_find("gltf", err);
-}
 
 /* --- the buffer's bytes ------------------------------------------------------------------- */
 

@@ -39,11 +39,6 @@ typedef cw_status cwi_mesh_reader(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_fil
 /* Returns true if a file with such a head has the format; size is at most CWI_SNIFF_BYTES. */
 typedef bool cwi_mesh_sniffer(const unsigned char *head, size_t size, uint64_t file_size);
 
-/* Return the format of a mesh file with such a head, or such an extension; NULL: none. */
-const char *cwi_mesh_format_by_content(const unsigned char *head, size_t size,
-                                       uint64_t file_size);
-const char *cwi_mesh_format_by_extension(const char *path);
-
 cwi_mesh_sniffer cwi_stl_sniff;
 cwi_mesh_sniffer cwi_ply_sniff;
 cwi_mesh_sniffer cwi_off_sniff;

@@ -1,9 +1,9 @@
 /* Joins the spools of the processes of a team. No array is sent: each process opens the files of the
  * others. */
 #define _GNU_SOURCE /* linkat of an open file */
-#include "core/base/atomic_file.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/base/temporary_name.h"
 #include "core/geometry/box.h"
 #include "formats/mesh/mesh_spool.h"
 

@@ -1,6 +1,7 @@
 /* Reads NIfTI-1 and NIfTI-2: headers of fixed layout (nifti.nimh.nih.gov). */
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "formats/bytes/byte_order.h"
 #include "formats/bytes/file_pattern.h"
 #include "formats/bytes/inflate_stream.h"
 #include "formats/nifti/nifti.h"

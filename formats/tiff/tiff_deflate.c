@@ -1,14 +1,15 @@
 /* Decodes deflated strips and tiles of TIFF, and their predictors. libtiff does not do it, for
  * two reasons. It accepts partial data where a damaged stream needs more room than there is.
  * And it verifies no checksum of a strip that it reads by zlib. */
+#include "core/base/memory.h"
 #include "core/base/status.h"
+#include "formats/bytes/byte_order.h"
 #include "formats/bytes/inflate_stream.h"
 #include "formats/tiff/tiff_file.h"
-#include "formats/volume/voxel_source.h"
 
 #include <string.h>
 
-enum { NO_PREDICTOR = 1, DIFFERENCES = 2, FLOATS = 3 };
+enum { NO_PREDICTOR = 1, DIFFERENCES = 2, FLOATS = 3, MAX_AT_ONCE = 1 << 30 };
 
 /* Replaces numbers by their running sums, separately for each sample. */
 static void add_up(void *row, size_t count, size_t stride, size_t size)
@@ -79,6 +80,21 @@ static cw_status finish_stream(cwi_stream *s, size_t bytes, cw_error *err)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "the compressed data break off before their checksum");
     return st;
+}
+
+cw_status cwi_tiff_ensure_capacity(unsigned char **buffer, size_t *capacity, uint64_t bytes,
+                                   cw_error *err)
+{
+    if (bytes > MAX_AT_ONCE)
+        return cwi_fail(err, CW_ERR_LIMIT,
+                        "a strip or row of tiles takes %llu bytes; the most are %d",
+                        (unsigned long long)bytes, MAX_AT_ONCE);
+    if (bytes <= *capacity)
+        return CW_OK;
+    cwi_free(*buffer);
+    *buffer = cwi_alloc_array(bytes, 1);
+    *capacity = *buffer ? bytes : 0;
+    return *buffer ? CW_OK : cwi_fail_memory(err);
 }
 
 cw_status cwi_tiff_inflate(cwi_tiff_file *f, uint32_t strile, unsigned char *to, size_t bytes,

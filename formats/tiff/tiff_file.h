@@ -48,7 +48,11 @@ typedef struct cwi_tiff_file {
 CW_NODISCARD cw_status cwi_tiff_walk(cwi_tiff_file *f, cw_error *err);
 
 /* Clears libtiff's complaints so far. */
-void cwi_tiff_listen(cwi_tiff_file *f);
+static inline void cwi_tiff_listen(cwi_tiff_file *f)
+{
+    f->complained = 0;
+    f->complaint[0] = '\0';
+}
 
 /* Opens a page and finds its layout. */
 CW_NODISCARD cw_status cwi_tiff_turn_to(cwi_tiff_file *f, uint32_t page, cw_error *err);

@@ -9,27 +9,12 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { PIECE = 1 << 20, MAX_AT_ONCE = 1 << 30, MAX_PIXEL = 4 * 8 };
+enum { PIECE = 1 << 20, MAX_PIXEL = 4 * 8 };
 
 static cw_status fail_page(const cwi_tiff_file *f, const char *why, cw_error *err)
 {
     return cwi_fail(err, CW_ERR_FORMAT, "the pixels of page %u cannot be read: %s",
                     (uint32_t)f->page + 1, why);
-}
-
-cw_status cwi_tiff_ensure_capacity(unsigned char **buffer, size_t *capacity, uint64_t bytes,
-                                   cw_error *err)
-{
-    if (bytes > MAX_AT_ONCE)
-        return cwi_fail(err, CW_ERR_LIMIT,
-                        "a strip or row of tiles takes %llu bytes; the most are %d",
-                        (unsigned long long)bytes, MAX_AT_ONCE);
-    if (bytes <= *capacity)
-        return CW_OK;
-    cwi_free(*buffer);
-    *buffer = cwi_alloc_array(bytes, 1);
-    *capacity = *buffer ? bytes : 0;
-    return *buffer ? CW_OK : cwi_fail_memory(err);
 }
 
 /* --- uncompressed data -------------------------------------------------------------------- */

@@ -83,12 +83,6 @@ static int on_warning(TIFF *tiff, void *user, const char *module, const char *fo
                           format, arguments);
 }
 
-void cwi_tiff_listen(cwi_tiff_file *f)
-{
-    f->complained = 0;
-    f->complaint[0] = '\0';
-}
-
 static void close_file(cwi_tiff_file *f)
 {
     if (f->tiff)

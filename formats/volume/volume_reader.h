@@ -20,10 +20,6 @@ bool cwi_dicom_sniff(const unsigned char *head, size_t size);
 bool cwi_tiff_sniff(const unsigned char *head, size_t size);
 bool cwi_vdb_sniff(const unsigned char *head, size_t size);
 
-/* Returns the format of an open file, by content, then by its extension; NULL: it is no
- * volume. */
-const char *cwi_volume_format_of(const cwi_input *in);
-
 /* Stretches the axes to the spacing that a description states; directions and origin stay. */
 void cwi_set_spacing(cw_volume *v, const cw_read_desc *desc);
 

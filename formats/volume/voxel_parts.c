@@ -3,6 +3,7 @@
 #include "formats/volume/voxel_parts.h"
 
 #include "core/base/status.h"
+#include "formats/bytes/byte_order.h"
 #include "formats/bytes/bzip2.h"
 
 #include <unistd.h>

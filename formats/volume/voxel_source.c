@@ -25,12 +25,6 @@ cw_status cwi_fail_type(cw_error *err, const char *field, const char *name)
 #undef NAME
 }
 
-bool cwi_machine_is_big_endian(void)
-{
-    const uint16_t one = 1;
-    return *(const unsigned char *)&one == 0;
-}
-
 void cwi_flip_ras(double affine[3][4])
 {
     for (int r = 0; r < 2; r++)
@@ -57,19 +51,6 @@ void cwi_fill_columns(double affine[3][4])
         for (int r = 0; r < 3 && length > 0; r++)
             affine[r][c] = normal[r] / length;
     }
-}
-
-void cwi_swap_bytes(void *numbers, size_t count, size_t size)
-{
-    uint16_t *u16 = numbers;
-    uint32_t *u32 = numbers;
-    uint64_t *u64 = numbers;
-    for (size_t i = 0; size == 2 && i < count; i++)
-        u16[i] = __builtin_bswap16(u16[i]);
-    for (size_t i = 0; size == 4 && i < count; i++)
-        u32[i] = __builtin_bswap32(u32[i]);
-    for (size_t i = 0; size == 8 && i < count; i++)
-        u64[i] = __builtin_bswap64(u64[i]);
 }
 
 void cwi_source_free(cwi_source *src)

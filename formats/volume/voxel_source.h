@@ -75,12 +75,6 @@ void cwi_flip_ras(double affine[3][4]);
  * to the others. */
 void cwi_fill_columns(double affine[3][4]);
 
-/* Reverses the bytes of each of count numbers; for size 1 it does nothing. */
-void cwi_swap_bytes(void *numbers, size_t count, size_t size);
-
-/* Returns true if this machine stores the high byte first. */
-bool cwi_machine_is_big_endian(void);
-
 /* Refuses an affine with columns that are not finite, have no length or lie in one plane. */
 CW_NODISCARD cw_status cwi_check_frame(const cw_volume *shape, const char *field,
                                        cw_error *err);

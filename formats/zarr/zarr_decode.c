@@ -4,8 +4,8 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/bytes/block_reader.h"
+#include "formats/bytes/byte_order.h"
 #include "formats/bytes/isal.h"
-#include "formats/volume/voxel_source.h"
 
 #include <string.h>
 

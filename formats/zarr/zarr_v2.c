@@ -3,6 +3,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "formats/bytes/byte_order.h"
 #include "formats/volume/voxel_source.h"
 
 #include <stdio.h>

@@ -83,13 +83,6 @@ void cwi_passes_free(cwi_passes *p)
     cwi_views_free(&p->views);
 }
 
-static double limit_of(const cwi_passes *p, const cw_mesh *m, size_t t, double margin)
-{
-    const float *const corners[3] = {cwi_mesh_point(m, t, 0), cwi_mesh_point(m, t, 1),
-                                     cwi_mesh_point(m, t, 2)};
-    return cwi_views_limit(&p->views, corners, p->error, margin);
-}
-
 /* Normals of what a view sees, from the triangles around; the others stay 0. */
 static void add_normals(cwi_passes *p, const uint8_t *seen)
 {
@@ -124,27 +117,13 @@ static cw_status find_normals(cwi_passes *p, cw_error *err)
     p->normals = cwi_alloc_zeroed(3 * m->vertex_count, sizeof *p->normals);
     const bool ok = seen && p->normals;
     for (size_t t = 0; t < m->triangle_count && ok; t++)
-        if (isfinite(limit_of(p, m, t, p->error)))
+        if (isfinite(cwi_views_limit(&p->views, m, t, p->error, p->error)))
             for (size_t k = 0; k < 3; k++)
                 seen[m->triangles[3 * t + k]] = 1;
     if (ok)
         add_normals(p, seen);
     cwi_free(seen);
     return ok ? CW_OK : cwi_fail_memory(err);
-}
-
-cw_status cwi_passes_limits(const cwi_passes *p, const cw_mesh *m, double **limits,
-                            cw_error *err)
-{
-    *limits = NULL;
-    if (!p->views.count)
-        return CW_OK;
-    *limits = cwi_alloc_array(m->triangle_count, sizeof **limits);
-    if (!*limits)
-        return cwi_fail_memory(err);
-    for (size_t t = 0; t < m->triangle_count; t++)
-        (*limits)[t] = fmin(p->error, limit_of(p, m, t, 0));
-    return CW_OK;
 }
 
 /* At a point, what is allowed on all triangles around it. What is simplified may come into view
@@ -160,7 +139,8 @@ static cw_status allow_distances(cwi_passes *p, cw_error *err)
     for (size_t v = 0; v < m->vertex_count; v++)
         p->allowed[v] = (float)p->block_desc.error;
     for (size_t t = 0; t < m->triangle_count; t++) {
-        const float here = (float)(TIGHTER * limit_of(p, m, t, p->error));
+        const float here =
+            (float)(TIGHTER * cwi_views_limit(&p->views, m, t, p->error, p->error));
         for (size_t k = 0; k < 3; k++) {
             float *at = p->allowed + m->triangles[3 * t + k];
             *at = fminf(*at, here);

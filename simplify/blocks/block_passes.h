@@ -45,11 +45,6 @@ void cwi_passes_place(cwi_passes *passes, const double origin[3], double scale);
 CW_NODISCARD cw_status cwi_passes_remember(cwi_passes *passes, const cw_mesh *input,
                                            cw_error *err);
 
-/* Finds the distances that triangles of a mesh must keep; NULL where one holds for all. Free them
- * with cwi_free(). */
-CW_NODISCARD cw_status cwi_passes_limits(const cwi_passes *passes, const cw_mesh *mesh,
-                                         double **limits, cw_error *err);
-
 /* Puts every point of a block that is in no list yet into that of a triangle around it. The
  * block's vertices have the numbers that they have in the input. */
 CW_NODISCARD cw_status cwi_passes_list(cwi_passes *passes, cwi_mesh_block *block,

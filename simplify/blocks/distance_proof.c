@@ -175,6 +175,21 @@ static cw_status search_unproven(const cwi_passes *p, const walks *w, const cw_m
     return st;
 }
 
+/* Finds the distances that triangles of a mesh must keep; NULL where one holds for all. */
+static cw_status find_limits(const cwi_passes *p, const cw_mesh *m, double **limits,
+                             cw_error *err)
+{
+    *limits = NULL;
+    if (!p->views.count)
+        return CW_OK;
+    *limits = cwi_alloc_array(m->triangle_count, sizeof **limits);
+    if (!*limits)
+        return cwi_fail_memory(err);
+    for (size_t t = 0; t < m->triangle_count; t++)
+        (*limits)[t] = fmin(p->error, cwi_views_limit(&p->views, m, t, p->error, 0));
+    return CW_OK;
+}
+
 /* Sets beyond for the triangles of a mesh. The reference is all of the surface that is known to
  * be near, and some of it is in fans. */
 static cw_status find_beyond(const cwi_passes *p, const cw_mesh *mesh, const cwi_fans *fans,
@@ -182,7 +197,7 @@ static cw_status find_beyond(const cwi_passes *p, const cw_mesh *mesh, const cwi
                              uint8_t *beyond, cw_error *err)
 {
     double *limits = NULL;
-    cw_status st = cwi_passes_limits(p, mesh, &limits, err);
+    cw_status st = find_limits(p, mesh, &limits, err);
     const walks w = {mesh, fans, begin, p->error, limits, beyond};
     if (st == CW_OK)
         st =

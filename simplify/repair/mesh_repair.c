@@ -37,12 +37,6 @@ static cw_status check_input(const cw_mesh *mesh, const cw_repair_desc *d, cw_er
     return st;
 }
 
-cw_status cwi_repair_progress(cwi_repair *r, const char *step, double fraction, cw_error *err)
-{
-    const double done = r->done + fraction * (r->until - r->done);
-    return cwi_progress(&r->desc.progress, step, done, err);
-}
-
 /* Begins a step that ends when this fraction of the repair is done. */
 static cw_status begin_step(cwi_repair *r, double until, cw_error *err)
 {

@@ -2,6 +2,7 @@
 #ifndef SIMPLIFY_REPAIR_REPAIR_STATE_H
 #define SIMPLIFY_REPAIR_REPAIR_STATE_H
 
+#include "core/base/status.h"
 #include "core/mesh/corner_table.h"
 #include "core/mesh/mesh_triangle.h"
 
@@ -26,8 +27,12 @@ typedef struct cwi_repair {
 } cwi_repair;
 
 /* Reports progress: a fraction of the step at hand. */
-CW_NODISCARD cw_status cwi_repair_progress(cwi_repair *r, const char *step, double fraction,
-                                           cw_error *err);
+CW_NODISCARD static inline cw_status cwi_repair_progress(cwi_repair *r, const char *step,
+                                                         double fraction, cw_error *err)
+{
+    const double done = r->done + fraction * (r->until - r->done);
+    return cwi_progress(&r->desc.progress, step, done, err);
+}
 
 /* Welds vertices within a distance: each joins the nearest of those before it that stay.
  * welded  is increased by their number */

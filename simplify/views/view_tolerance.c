@@ -203,16 +203,18 @@ void cwi_views_place(cwi_views *views, const double origin[3], double scale)
     }
 }
 
-double cwi_views_limit(const cwi_views *views, const float *const corners[3], double max_error,
+double cwi_views_limit(const cwi_views *views, const cw_mesh *mesh, size_t t, double max_error,
                        double margin)
 {
-    double min_distance = INFINITY;
+    double corners[3][3], min_distance = INFINITY;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t a = 0; a < 3; a++)
+            corners[c][a] = (double)cwi_mesh_point(mesh, t, c)[a];
     for (size_t i = 0; i < views->count; i++) {
         const cwi_view_tolerance *v = &views->view[i];
         place p[3];
         for (int c = 0; c < 3; c++)
-            p[c] = place_of(v, (const double[3]){(double)corners[c][0], (double)corners[c][1],
-                                                 (double)corners[c][2]});
+            p[c] = place_of(v, corners[c]);
         min_distance = fmin(min_distance, limit_error(v, p, 3, max_error, margin));
     }
     return min_distance;
@@ -243,9 +245,7 @@ static void mark_unseen(const cwi_views *views, const cw_mesh *m, double margin,
 {
     *count = 0;
     for (size_t t = 0; t < m->triangle_count; t++) {
-        const float *const corners[3] = {cwi_mesh_point(m, t, 0), cwi_mesh_point(m, t, 1),
-                                         cwi_mesh_point(m, t, 2)};
-        unseen[t] = !isfinite(cwi_views_limit(views, corners, margin, margin));
+        unseen[t] = !isfinite(cwi_views_limit(views, m, t, margin, margin));
         *count += unseen[t];
     }
 }

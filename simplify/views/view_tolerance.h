@@ -43,9 +43,9 @@ void cwi_views_free(cwi_views *views);
 /* Into a frame around an origin, with a unit of 1 / scale. */
 void cwi_views_place(cwi_views *views, const double origin[3], double scale);
 
-/* The least of what views allow anywhere on a triangle; infinite where none sees it. What a
+/* The least of what views allow anywhere on triangle t; infinite where none sees it. What a
  * view sees is wider and deeper by `margin` than it is; surfaces move by `max_error` at most. */
-double cwi_views_limit(const cwi_views *views, const float *const corners[3], double max_error,
+double cwi_views_limit(const cwi_views *views, const cw_mesh *mesh, size_t t, double max_error,
                        double margin);
 
 #endif
