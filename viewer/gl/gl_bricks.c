@@ -54,13 +54,6 @@ bool cwi_gl_find_voxels(cwi_gl *gl)
     return true;
 }
 
-const char *cwi_gl_volume_defines(const cwi_gl_volume *g)
-{
-    return !g->in_place            ? ""
-           : g->key.type == CW_I16 ? "#define IN_PLACE\n#define SHORTS\n"
-                                   : "#define IN_PLACE\n";
-}
-
 /* Sets the steps from a voxel to the next along each axis; 0 where there is only one. */
 static void set_steps(GLuint program, const size_t dim[3])
 {

@@ -121,8 +121,14 @@ extern const cwi_gl_mode cwi_gl_composite, cwi_gl_mip, cwi_gl_minip, cwi_gl_aver
 
 /* Makes the context this thread's, until cwi_gl_leave() restores the previous one. Returns
  * false when it was lost. */
-bool cwi_gl_enter(cwi_gl *gl);
-void cwi_gl_leave(cwi_gl *gl);
+static inline bool cwi_gl_enter(cwi_gl *gl)
+{
+    return cwi_gl_context_enter(&gl->context);
+}
+static inline void cwi_gl_leave(cwi_gl *gl)
+{
+    cwi_gl_context_leave(&gl->context);
+}
 
 /* Starts asking the frame's progress again. */
 void cwi_gl_start_watch(cwi_gl *gl);
@@ -179,8 +185,6 @@ CW_NODISCARD cw_status cwi_gl_take_volume(cwi_gl *gl, bool as_textures, cw_error
 bool cwi_gl_find_voxels(cwi_gl *gl);
 /* Returns true if voxels lie x fastest, without gaps. */
 bool cwi_gl_is_packed(const cw_volume *volume);
-/* Returns the definitions that shaders of this volume need. */
-const char *cwi_gl_volume_defines(const cwi_gl_volume *volume);
 /* Finds the definitions that shaders need to compute gradients. Gradients of a small volume
  * become a texture. Those of a large one, which would then be five times as large, are
  * differences of interpolated values. */

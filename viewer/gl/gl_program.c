@@ -78,11 +78,19 @@ static cw_status build_program(const char *vertex, const char *fragment, const c
     return st;
 }
 
+/* Returns the definitions that shaders of this volume need. */
+static const char *volume_defines(const cwi_gl_volume *g)
+{
+    return !g->in_place            ? ""
+           : g->key.type == CW_I16 ? "#define IN_PLACE\n#define SHORTS\n"
+                                   : "#define IN_PLACE\n";
+}
+
 cw_status cwi_gl_use(cwi_gl *gl, const char *vertex, const char *fragment, const char *defines,
                      GLuint *program, cw_error *err)
 {
     char all[sizeof gl->programs->defines];
-    snprintf(all, sizeof all, "%s%s", cwi_gl_volume_defines(&gl->volume), defines);
+    snprintf(all, sizeof all, "%s%s", volume_defines(&gl->volume), defines);
     for (size_t n = 0; n < gl->program_count; n++) {
         const cwi_gl_program *p = &gl->programs[n];
         if (p->vertex == vertex && p->fragment == fragment && strcmp(p->defines, all) == 0) {

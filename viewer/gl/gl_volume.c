@@ -259,6 +259,13 @@ void cwi_gl_drop_volume(cwi_gl *gl)
     *g = (cwi_gl_volume){0};
 }
 
+void cwi_gl_drop_scene(cwi_gl *gl)
+{
+    gl->drop_states(gl);
+    cwi_gl_drop_volume(gl);
+    cwi_gl_drop_transfer(gl);
+}
+
 /* Returns the unit of gradients that is best for a frame: they are about 1 in it. */
 static double find_gradient_unit(const cwi_gl_volume *g, const cwi_frame *f)
 {

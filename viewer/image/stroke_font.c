@@ -3,6 +3,7 @@
  * y each; a space starts another line; a point alone is a dot. */
 #include "viewer/image/strokes.h"
 
+#include <math.h>
 #include <string.h>
 
 typedef struct glyph {
@@ -207,4 +208,17 @@ double cwi_text_width(double height, const char *text)
     while (*text)
         width += set_glyph(next_character(&text), 0, 0, height / 6, strokes, &count);
     return width > 0 ? width - GAP * height / 6 : 0;
+}
+
+void cwi_text_write(cw_image *image, const double at[2], double height, double anchor,
+                    const double color[4], const double halo[4], const char *text)
+{
+    const double left = at[0] - anchor * cwi_text_width(height, text);
+    const double width = fmax(height / 7, 1.1);
+    cwi_pen pen = {.image = image, .width = 2.6 * width};
+    memcpy(pen.color, halo, sizeof pen.color);
+    cwi_pen_text(&pen, left, at[1], height, text);
+    pen.width = width;
+    memcpy(pen.color, color, sizeof pen.color);
+    cwi_pen_text(&pen, left, at[1], height, text);
 }

@@ -5,7 +5,6 @@
 #include "core/base/status.h"
 
 #include <math.h>
-#include <string.h>
 
 static double clamp_number(double x, double low, double high)
 {
@@ -145,17 +144,4 @@ void cwi_pen_fill(const cwi_pen *pen, double left, double top, double right, dou
         for (size_t x = columns[0]; x < columns[1]; x++)
             blend_pixel(pen->image->pixels + 4 * (y * pen->image->width + x), pen->color,
                         overlap_pixel(x, left, right) * overlap_pixel(y, top, bottom));
-}
-
-void cwi_text_write(cw_image *image, const double at[2], double height, double anchor,
-                    const double color[4], const double halo[4], const char *text)
-{
-    const double left = at[0] - anchor * cwi_text_width(height, text);
-    const double width = fmax(height / 7, 1.1);
-    cwi_pen pen = {.image = image, .width = 2.6 * width};
-    memcpy(pen.color, halo, sizeof pen.color);
-    cwi_pen_text(&pen, left, at[1], height, text);
-    pen.width = width;
-    memcpy(pen.color, color, sizeof pen.color);
-    cwi_pen_text(&pen, left, at[1], height, text);
 }

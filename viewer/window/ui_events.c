@@ -1,4 +1,4 @@
-/* Queues input, and takes each frame's share of it. */
+/* Checks input, and takes each frame's share of it from the queue. */
 #include "core/base/memory.h"
 #include "viewer/window/ui_internal.h"
 
@@ -8,51 +8,11 @@
 /* A second press within this time and distance is one of a pair. */
 static const double twice_s = 0.35, twice_pixels = 6;
 
-static bool ensure_capacity(cwi_ui_queue *q)
-{
-    if (q->count < q->capacity)
-        return true;
-    const size_t capacity = q->capacity ? 2 * q->capacity : 32;
-    cwi_ui_event *items = cwi_realloc_array(q->items, capacity, sizeof *items);
-    if (items)
-        q->items = items;
-    double *times = items ? cwi_realloc_array(q->times, capacity, sizeof *times) : NULL;
-    if (!times)
-        return false;
-    q->times = times;
-    q->capacity = capacity;
-    return true;
-}
-
 /* Empties the queue when all of it was taken. */
 static void rewind_when_empty(cwi_ui_queue *q)
 {
     if (q->first == q->count)
         q->first = q->count = 0;
-}
-
-static bool has_to_wait(const cwi_ui_queue *q, const cwi_ui_event *event)
-{
-    for (size_t n = q->first; n < q->count; n++)
-        if (q->items[n].kind == event->kind && strcmp(q->items[n].text, event->text) == 0)
-            return true;
-    return false;
-}
-
-bool cwi_ui_queue_put(cwi_ui *ui, const cwi_ui_event *event, bool repeats)
-{
-    cwi_ui_queue *q = &ui->queue;
-    if (repeats && event->kind == CWI_UI_KEY && has_to_wait(q, event))
-        return true;
-    cwi_ui_event copy = *event;
-    copy.text = event->text ? cwi_strdup(event->text) : NULL;
-    if ((event->text && !copy.text) || !ensure_capacity(q)) {
-        cwi_free((char *)copy.text);
-        return false;
-    }
-    q->items[q->count] = copy;
-    q->times[q->count++] = cwi_ui_screen_seconds(ui);
-    return true;
 }
 
 static cw_status check_place(const cwi_ui_event *e, cw_error *err)
@@ -92,7 +52,7 @@ cw_status cwi_ui_feed(cwi_ui *ui, const cwi_ui_event *event, cw_error *err)
     cw_status st = check_place(event, err);
     if (st == CW_OK)
         st = check_text(event, err);
-    if (st == CW_OK && !cwi_ui_queue_put(ui, event, false))
+    if (st == CW_OK && !cwi_ui_queue_put(ui, event, cwi_ui_screen_seconds(ui), false))
         st = cwi_fail_memory(err);
     return st;
 }

@@ -57,7 +57,7 @@ static void put_event(GLFWwindow *w, cwi_ui_event event)
 {
     cwi_ui *ui = glfwGetWindowUserPointer(w);
     event.modifiers = held_modifiers(w);
-    cwi_ui_queue_put(ui, &event, ui->screen->repeats);
+    cwi_ui_queue_put(ui, &event, cwi_ui_screen_seconds(ui), ui->screen->repeats);
 }
 
 /* Reports a move. The window's own units may be larger than the framebuffer's pixels. */

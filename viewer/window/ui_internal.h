@@ -92,11 +92,11 @@ int cwi_ui_key_number(const char *name, unsigned *modifiers);
 /* "Ctrl+", "Alt+", "Shift+" and the key. */
 void cwi_ui_key_name(char name[CWI_UI_KEY_SIZE], unsigned modifiers, const char *key);
 
-/* The queue (ui_events.c) */
+/* The queue (ui_queue.c, ui_events.c) */
 CW_NODISCARD cw_status cwi_ui_feed(cwi_ui *ui, const cwi_ui_event *event, cw_error *err);
 /* Queues a checked event, as feed(); an event that does not fit into memory is lost. A key that
  * repeats is lost while it still waits to be taken: frames may be slower than fingers. */
-bool cwi_ui_queue_put(cwi_ui *ui, const cwi_ui_event *event, bool repeats);
+bool cwi_ui_queue_put(cwi_ui *ui, const cwi_ui_event *event, double seconds, bool repeats);
 void cwi_ui_queue_take(cwi_ui *ui); /* a frame's share, into ui->input and Dear ImGui */
 void cwi_ui_queue_free(cwi_ui *ui);
 
