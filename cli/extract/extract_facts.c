@@ -64,12 +64,6 @@ bool cli_extract_is_low(const cli_extract_run *s)
     return cli_inside_is_low(s->args->inside, &s->input.volume.whole);
 }
 
-bool cli_extract_is_simplified(const cli_extract_args *args)
-{
-    return args->simplify.error.given || args->simplify.triangles || args->pixel.pixels.given ||
-           args->pixel.most.given;
-}
-
 bool cli_extract_shades_levels(const cli_extract_run *s)
 {
     return cwi_volume_expect_dense(&s->input.volume.view, "normals", NULL) == CW_OK;

@@ -12,6 +12,12 @@
 static const char UNSTREAMED[] =
     "max-error profile=print snap animate prove-crop component=mag";
 
+bool cli_extract_is_simplified(const cli_extract_args *args)
+{
+    return args->simplify.error.given || args->simplify.triangles || args->pixel.pixels.given ||
+           args->pixel.most.given;
+}
+
 /* Returns the stages that options of their names ask for, as cw_pipeline_stages(). */
 static unsigned find_stages(const cli_extract_args *args)
 {

@@ -36,25 +36,6 @@ double cli_hounsfield_level(cli_level level)
     }
 }
 
-/* Returns the share of values from low to high, by bins. */
-static double share_between(const cw_statistics *s, double low, double high)
-{
-    uint64_t count = 0;
-    for (size_t b = 0; b < s->bin_count; b++) {
-        const double value = s->min + s->bin_width * ((double)b + 0.5);
-        count += value >= low && value <= high ? s->bins[b] : 0;
-    }
-    return s->finite ? (double)count / (double)s->finite : 0;
-}
-
-bool cli_is_hounsfield(const cw_volume *volume, const cw_statistics *values)
-{
-    if (volume->known & CW_KNOWN_HOUNSFIELD)
-        return true;
-    return values->min <= -900 && values->max >= 100 &&
-           share_between(values, -1100, -800) >= 0.01;
-}
-
 typedef struct stream_request {
     int threads;
     cw_statistics *out;
@@ -104,7 +85,7 @@ static cw_status find_tissue(const cli_volume *volume, const cw_statistics *s, c
                      "%g, and %.2g %% of them near -1000, as air is. Give a number: "
                      "'cubewright info' suggests some",
                      volume->path, cli_level_text(level, 0), s->min, s->max,
-                     100 * share_between(s, -1100, -800));
+                     100 * cli_share_between(s, -1100, -800));
 }
 
 static cw_status choose_level(const cli_volume *volume, const cw_statistics *s,

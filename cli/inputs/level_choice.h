@@ -30,9 +30,4 @@ double cli_round_level(double value);
  * level  CLI_LEVEL_BONE or behind it */
 double cli_hounsfield_level(cli_level level);
 
-/* Returns true if values are in Hounsfield units: as the file says, or as those of a CT are, with
- * air near -1000.
- * values  statistics of the volume, with bins */
-bool cli_is_hounsfield(const cw_volume *volume, const cw_statistics *values);
-
 #endif

@@ -1,12 +1,11 @@
 /* Reads the volume that the options describe: memory limit, crop, coarsening, component and
- * step; describes it for messages and reports. */
+ * step. */
 #define _GNU_SOURCE /* sysconf names */
 #include "cli/inputs/volume_input.h"
 
 #include "cli/inputs/volume_prepare.h"
 
 #include "cli/framework/console.h"
-#include "cli/framework/field_names.h"
 #include "cli/framework/quantity.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
@@ -14,8 +13,6 @@
 #include "core/volume/volume.h"
 
 #include <math.h>
-#include <sha2.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,56 +37,6 @@ static size_t default_memory(void)
 size_t cli_memory_limit(const cli_input *input)
 {
     return input->memory ? input->memory : default_memory();
-}
-
-static const char *shape_name(int shape, size_t count)
-{
-    static const char *const names[CW_SHAPE_COUNT][2] = {
-        [CW_TETRAHEDRON] = {"tetrahedra", "tetrahedron"},
-        [CW_PYRAMID] = {"pyramids", "pyramid"},
-        [CW_WEDGE] = {"wedges", "wedge"},
-        [CW_HEXAHEDRON] = {"hexahedra", "hexahedron"}};
-    return names[shape][count == 1];
-}
-
-static const char *unit_of(const cw_volume *v)
-{
-    return v->known & CW_KNOWN_UNIT ? "mm" : "(no unit given: taken as mm)";
-}
-
-static const char *describe_grid(const cli_volume *volume)
-{
-    static char text[256];
-    const cw_volume *v = &volume->whole;
-    int n = snprintf(text, sizeof text, "%s, %zu samples %s", volume->format, v->dim[0],
-                     cw_type_name(v->type));
-    if (v->components > 1)
-        n += snprintf(text + n, sizeof text - (size_t)n, ", %zu components", v->components);
-    for (int s = 0; s < CW_SHAPE_COUNT; s++)
-        if (volume->grid.cells[s])
-            n += snprintf(text + n, sizeof text - (size_t)n, ", %zu %s", volume->grid.cells[s],
-                          shape_name(s, volume->grid.cells[s]));
-    snprintf(text + n, sizeof text - (size_t)n, " %s", unit_of(v));
-    return text;
-}
-
-const char *cli_describe(const cli_volume *volume)
-{
-    static char text[256];
-    const cw_volume *v = &volume->whole;
-    const double *s = volume->spacing;
-    if (v->cells)
-        return describe_grid(volume);
-    int n = snprintf(text, sizeof text, "%s, %zu x %zu x %zu %s", volume->format, v->dim[0],
-                     v->dim[1], v->dim[2], cw_type_name(v->type));
-    if (v->components > 1)
-        n += snprintf(text + n, sizeof text - (size_t)n, ", %zu components", v->components);
-    if (v->steps > 1)
-        n += snprintf(text + n, sizeof text - (size_t)n, ", %zu time steps", v->steps);
-    snprintf(text + n, sizeof text - (size_t)n, ", %s%.6g x %.6g x %.6g %s",
-             cwi_is_rectilinear(v) ? "rectilinear, on average " : "", s[0], s[1], s[2],
-             unit_of(v));
-    return text;
 }
 
 /* From the first corner of cells to the second, on average. */
@@ -124,19 +71,6 @@ static void find_grid(const cw_volume *v, cli_volume *volume)
     }
     for (int a = 0; a < 3 && c->points; a++)
         volume->spacing[a] = mean_edge(c);
-}
-
-void cli_spacing_range(const cli_volume *volume, int axis, double mm[2])
-{
-    const cw_volume *v = &volume->whole;
-    const double *at = v->coordinates[axis], (*m)[4] = v->affine;
-    const double scale = hypot(hypot(m[0][axis], m[1][axis]), m[2][axis]);
-    mm[0] = v->dim[axis] > 1 ? INFINITY : volume->spacing[axis];
-    mm[1] = v->dim[axis] > 1 ? 0 : volume->spacing[axis];
-    for (size_t i = 1; i < v->dim[axis]; i++) {
-        mm[0] = fmin(mm[0], scale * (at[i] - at[i - 1]));
-        mm[1] = fmax(mm[1], scale * (at[i] - at[i - 1]));
-    }
 }
 
 static cw_status check_choice(const cli_input *input, const cw_volume *v, cw_error *err)
@@ -262,22 +196,6 @@ static cw_status read_shape(const char *path, const cw_read_desc *voxels, cw_vol
     return cw_volume_read(path, &desc, shape, format, err);
 }
 
-/* Says what the reader decided, and keeps it for reports. Irregular grids are known only once
- * they are read, and tell then what their header told, too. */
-static void take_note(void *user, const char *text)
-{
-    char note[CLI_MESSAGE];
-    cli_volume *volume = user;
-    text = cli_name_options(text, note);
-    for (size_t n = 0; n < volume->note_count; n++)
-        if (strcmp(volume->notes[n], text) == 0)
-            return;
-    if (!volume->is_quiet)
-        cli_say("%s: %s", volume->path, text);
-    if (volume->note_count < CLI_MAX_NOTES)
-        snprintf(volume->notes[volume->note_count++], sizeof *volume->notes, "%s", text);
-}
-
 /* Reports the component and the step that were chosen by default. */
 static void tell_choice(const cli_input *input, cli_volume *volume)
 {
@@ -287,11 +205,11 @@ static void tell_choice(const cli_input *input, cli_volume *volume)
         snprintf(text, sizeof text,
                  "component 0 of %zu is taken (--component N, or mag for their magnitude)",
                  v->components);
-        take_note(volume, text);
+        cli_take_note(volume, text);
     }
     if (v->steps > 1 && input->step == 0 && !input->step_chosen) {
         snprintf(text, sizeof text, "step 0 of %zu is taken (--step N)", v->steps);
-        take_note(volume, text);
+        cli_take_note(volume, text);
     }
 }
 
@@ -475,25 +393,6 @@ cw_read_desc cli_read_desc(const cli_input *input)
     return desc;
 }
 
-void cli_note_volume(cli_volume *volume, const char *format, ...)
-{
-    char text[256];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    take_note(volume, text);
-}
-
-void cli_free_volume(cli_volume *volume)
-{
-    cw_label_table_free(&volume->labels);
-    cw_volume_free(&volume->whole);
-    cw_volume_free(&volume->voxels);
-    cw_volume_free(&volume->magnitude);
-    cw_volume_free(&volume->prepared);
-}
-
 /* The layout that --raw states, if it does, for the description. */
 static cw_status set_raw(const cli_input *input, cw_raw_layout *raw, cw_read_desc *desc,
                          cw_error *err)
@@ -522,7 +421,7 @@ cw_status cli_read_volume(const char *path, const cli_input *input, bool header_
     memset(volume, 0, sizeof *volume);
     volume->path = path;
     volume->is_quiet = input->is_quiet;
-    desc.note = take_note;
+    desc.note = cli_take_note;
     desc.note_user = volume;
     desc.labels = &volume->labels;
     cw_status st = cli_check_inside_options(input, err);
@@ -615,13 +514,13 @@ cw_status cli_tell_labels(cli_volume *volume, const double *iso, size_t count,
             text, sizeof text,
             "%s: the surface at %.10g joins the %zu labels %s it; 'extract --labels' takes each",
             what, iso[n], inside, inside_is_low ? "below" : "above");
-        take_note(volume, text);
+        cli_take_note(volume, text);
     }
     if (!count && l.count > 2) {
         snprintf(text, sizeof text,
                  "%s: an isovalue joins all labels above it; 'extract --labels' takes each",
                  what);
-        take_note(volume, text);
+        cli_take_note(volume, text);
     }
     return CW_OK;
 }
@@ -639,89 +538,4 @@ bool cli_is_level_set(const char *path, const cli_input *input)
     const bool is = read && shape.known & CW_KNOWN_LEVEL_SET;
     cw_volume_free(&shape);
     return is;
-}
-
-const char *cli_shown_path(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return path[0] == '/' && slash ? slash + 1 : path;
-}
-
-static void json_coordinates(cli_json *j, const cli_volume *volume)
-{
-    const cw_volume *v = &volume->whole;
-    double range[2];
-    cli_json_open(j, "coordinates", '[');
-    for (int a = 0; a < 3; a++) {
-        const double *at = v->coordinates[a];
-        cli_json_numbers(j, NULL, (double[2]){at[0], at[v->dim[a] - 1]}, 2);
-    }
-    cli_json_close(j, ']');
-    cli_json_open(j, "spacing_ranges", '[');
-    for (int a = 0; a < 3; a++) {
-        cli_spacing_range(volume, a, range);
-        cli_json_numbers(j, NULL, range, 2);
-    }
-    cli_json_close(j, ']');
-}
-
-static void json_sparse(cli_json *j, const cw_volume *v)
-{
-    cli_json_open(j, "sparse", '{');
-    cli_json_count(j, "leaves", v->sparse->leaf_count);
-    cli_json_count(j, "tiles", v->sparse->tile_count);
-    cli_json_number(j, "background", v->sparse->background);
-    cli_json_bool(j, "level_set", v->known & CW_KNOWN_LEVEL_SET);
-    cli_json_close(j, '}');
-}
-
-static void json_grid(cli_json *j, const cli_grid *grid, double spacing)
-{
-    cli_json_open(j, "cells", '{');
-    for (int s = 0; s < CW_SHAPE_COUNT; s++)
-        cli_json_count(j, shape_name(s, 0), grid->cells[s]);
-    cli_json_close(j, '}');
-    if (!grid->has_box)
-        return;
-    cli_json_open(j, "box", '[');
-    cli_json_numbers(j, NULL, grid->low, 3);
-    cli_json_numbers(j, NULL, grid->high, 3);
-    cli_json_close(j, ']');
-    cli_json_number(j, "mean_edge", spacing);
-}
-
-void cli_json_input(cli_json *j, const char *key, const cli_volume *volume)
-{
-    const cw_volume *v = &volume->whole;
-    const double dims[3] = {(double)v->dim[0], (double)v->dim[1], (double)v->dim[2]};
-    char sum[SHA256_DIGEST_STRING_LENGTH];
-    cli_json_open(j, key, '{');
-    cli_json_text(j, "path", cli_shown_path(volume->path));
-    cli_json_text(j, "kind", volume->format);
-    cli_json_numbers(j, "dims", dims, 3);
-    cli_json_text(j, "type", cw_type_name(v->type));
-    cli_json_count(j, "components", v->components);
-    cli_json_count(j, "steps", v->steps);
-    if (v->cells)
-        json_grid(j, &volume->grid, volume->spacing[0]);
-    else
-        cli_json_numbers(j, "spacing", volume->spacing, 3);
-    cli_json_bool(j, "rectilinear", cwi_is_rectilinear(v));
-    if (v->sparse)
-        json_sparse(j, v);
-    if (cwi_is_rectilinear(v))
-        json_coordinates(j, volume);
-    cli_json_text(j, "unit", v->known & CW_KNOWN_UNIT ? "mm" : "unknown");
-    cli_json_text(j, "frame", v->known & CW_KNOWN_FRAME ? "LPS" : "unknown");
-    cli_json_open(j, "affine", '[');
-    for (int r = 0; r < 3; r++)
-        cli_json_numbers(j, NULL, v->affine[r], 4);
-    cli_json_close(j, ']');
-    cli_json_open(j, "notes", '[');
-    for (size_t n = 0; n < volume->note_count; n++)
-        cli_json_text(j, NULL, volume->notes[n]);
-    cli_json_close(j, ']');
-    if (SHA256File(volume->path, sum))
-        cli_json_text(j, "sha256", sum);
-    cli_json_close(j, '}');
 }

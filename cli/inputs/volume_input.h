@@ -312,8 +312,17 @@ CW_NODISCARD cw_status cli_read_shape(const char *path, const cli_input *input,
 
 void cli_free_volume(cli_volume *volume);
 
-/* Says something about a volume, and keeps it as a note for reports. */
+/* Says something about a volume, and keeps it as a note for reports. The second is for readers. */
 void cli_note_volume(cli_volume *volume, const char *format, ...) CW_PRINTF(2, 3);
+void cli_take_note(void *volume, const char *text);
+
+/* Returns true if values are in Hounsfield units: as the file says, or as those of a CT are, with
+ * air near -1000.
+ * values  statistics of the volume, with bins */
+bool cli_is_hounsfield(const cw_volume *volume, const cw_statistics *values);
+
+/* Returns the share of values from low to high, by bins. */
+double cli_share_between(const cw_statistics *values, double low, double high);
 
 /* Says, and keeps as a note, that a volume of labels has several of them inside a surface,
  * which it joins. No levels: that any would. */

@@ -34,7 +34,7 @@ const char *cli_find_unstreamed_preparation(const cli_input *input)
     return cli_find_preparation(&rest);
 }
 
-static cw_filter_desc filter_desc(const cli_input *input, const cli_volume *volume)
+cw_filter_desc cli_describe_filter(const cli_input *input, const cli_volume *volume)
 {
     const size_t *n = volume->view.dim;
     return (cw_filter_desc){
@@ -43,8 +43,7 @@ static cw_filter_desc filter_desc(const cli_input *input, const cli_volume *volu
         .progress = cli_progress((double)n[0] * (double)n[1] * (double)n[2] / 1e6, "Mvoxel")};
 }
 
-/* Makes a filtered volume the view, and frees the one before. */
-static void take_filtered(cli_volume *volume, cw_volume *made)
+void cli_take_filtered(cli_volume *volume, cw_volume *made)
 {
     const size_t bytes = made->dim[0] * made->dim[1] * made->dim[2] * cw_type_size(made->type);
     const cw_volume *old = &volume->prepared;
@@ -61,7 +60,7 @@ static void take_filtered(cli_volume *volume, cw_volume *made)
 static cw_status resample_view(const cli_input *input, cli_volume *volume, cw_error *err)
 {
     const cli_resample *r = &input->resample;
-    const cw_filter_desc desc = filter_desc(input, volume);
+    const cw_filter_desc desc = cli_describe_filter(input, volume);
     double old[3], mm[3];
     cw_volume made;
     cw_volume_spacing(&volume->view, old);
@@ -76,12 +75,11 @@ static cw_status resample_view(const cli_input *input, cli_volume *volume, cw_er
                     "voxels, %s",
                     old[0], old[1], old[2], mm[0], mm[1], mm[2], made.dim[0], made.dim[1],
                     made.dim[2], cw_kernel_name((cw_kernel)r->kernel));
-    take_filtered(volume, &made);
+    cli_take_filtered(volume, &made);
     return CW_OK;
 }
 
-/* Sets the width of a filter along each axis in voxels. */
-static void width_in_voxels(const cli_length *width, const cw_volume *v, double sigma[3])
+void cli_width_in_voxels(const cli_length *width, const cw_volume *v, double sigma[3])
 {
     double mm[3];
     cw_volume_spacing(v, mm);
@@ -120,7 +118,7 @@ void cli_tell_slice_filter(const cli_input *input, cli_volume *volume)
 {
     const size_t side = 2 * input->denoise.count + 1;
     double sigma[3];
-    width_in_voxels(&input->denoise.width, &volume->view, sigma);
+    cli_width_in_voxels(&input->denoise.width, &volume->view, sigma);
     if (input->denoise.given && input->denoise.filter == CLI_GAUSS)
         cli_note_volume(volume, "denoised by a Gaussian of %.3g x %.3g x %.3g voxels", sigma[0],
                         sigma[1], sigma[2]);
@@ -132,9 +130,9 @@ void cli_tell_slice_filter(const cli_input *input, cli_volume *volume)
 static cw_status smooth_view(const cli_input *input, cli_volume *volume, cw_volume *made,
                              cw_error *err)
 {
-    const cw_filter_desc desc = filter_desc(input, volume);
+    const cw_filter_desc desc = cli_describe_filter(input, volume);
     double sigma[3];
-    width_in_voxels(&input->denoise.width, &volume->view, sigma);
+    cli_width_in_voxels(&input->denoise.width, &volume->view, sigma);
     cw_status st = cw_volume_gauss(&volume->view, sigma, &desc, made, err);
     if (st == CW_OK)
         cli_tell_slice_filter(input, volume);
@@ -144,7 +142,7 @@ static cw_status smooth_view(const cli_input *input, cli_volume *volume, cw_volu
 static cw_status sort_view(const cli_input *input, cli_volume *volume, cw_volume *made,
                            cw_error *err)
 {
-    const cw_filter_desc desc = filter_desc(input, volume);
+    const cw_filter_desc desc = cli_describe_filter(input, volume);
     cw_status st = cw_volume_median(&volume->view, input->denoise.count, &desc, made, err);
     if (st == CW_OK)
         cli_tell_slice_filter(input, volume);
@@ -176,7 +174,7 @@ static cw_status visit_filtered(void *user, const cw_slice_source *source, cw_er
                                  .radius = denoise->count,
                                  .threads = (int)v->input->threads};
     cw_slice_filter *filter;
-    width_in_voxels(&denoise->width, &source->shape, desc.sigma_voxels);
+    cli_width_in_voxels(&denoise->width, &source->shape, desc.sigma_voxels);
     cw_status st = cw_slice_filter_new(source, &desc, &filter, err);
     if (st != CW_OK)
         return cwi_fail_in(err, st, "--denoise");
@@ -199,10 +197,10 @@ cw_status cli_visit_filtered(const cli_input *input, const cw_slice_visitor *vis
 static cw_status join_similar(const cli_input *input, cli_volume *volume, cw_volume *made,
                               cw_error *err)
 {
-    const cw_filter_desc desc = filter_desc(input, volume);
+    const cw_filter_desc desc = cli_describe_filter(input, volume);
     filter_value v;
     double sigma[3];
-    width_in_voxels(&input->denoise.width, &volume->view, sigma);
+    cli_width_in_voxels(&input->denoise.width, &volume->view, sigma);
     cw_status st = find_value(input, volume, 2.5, &v, err);
     if (st == CW_OK)
         st = cw_volume_bilateral(&volume->view, sigma, v.value, &desc, made, err);
@@ -217,7 +215,7 @@ static cw_status join_similar(const cli_input *input, cli_volume *volume, cw_vol
 static cw_status diffuse_view(const cli_input *input, cli_volume *volume, cw_volume *made,
                               cw_error *err)
 {
-    const cw_filter_desc desc = filter_desc(input, volume);
+    const cw_filter_desc desc = cli_describe_filter(input, volume);
     const size_t steps = input->denoise.count;
     filter_value v;
     cw_status st = find_value(input, volume, 0.5, &v, err);
@@ -233,7 +231,7 @@ static cw_status diffuse_view(const cli_input *input, cli_volume *volume, cw_vol
 static cw_status join_alike(const cli_input *input, cli_volume *volume, cw_volume *made,
                             cw_error *err)
 {
-    const cw_filter_desc desc = filter_desc(input, volume);
+    const cw_filter_desc desc = cli_describe_filter(input, volume);
     filter_value v;
     cw_status st = find_value(input, volume, 1, &v, err);
     if (st == CW_OK)
@@ -255,7 +253,7 @@ static cw_status denoise_view(const cli_input *input, cli_volume *volume, cw_err
     cw_status st = filters[input->denoise.filter](input, volume, &made, err);
     if (st != CW_OK)
         return cwi_fail_in(err, st, "--denoise");
-    take_filtered(volume, &made);
+    cli_take_filtered(volume, &made);
     return CW_OK;
 }
 
@@ -276,7 +274,7 @@ static cw_status expect_hounsfield(const cli_input *input, const cli_volume *vol
 
 static cw_status remove_table(const cli_input *input, cli_volume *volume, cw_error *err)
 {
-    const cw_filter_desc desc = filter_desc(input, volume);
+    const cw_filter_desc desc = cli_describe_filter(input, volume);
     double removed_mm3 = 0;
     cw_volume made;
     cw_status st = expect_hounsfield(input, volume, err);
@@ -286,7 +284,7 @@ static cw_status remove_table(const cli_input *input, cli_volume *volume, cw_err
         return cwi_fail_in(err, st, "--remove-table");
     cli_note_volume(volume, "all but the body made air: %.4g ml above -300 HU removed",
                     removed_mm3 / 1000);
-    take_filtered(volume, &made);
+    cli_take_filtered(volume, &made);
     return CW_OK;
 }
 
@@ -300,73 +298,6 @@ cw_status cli_prepare_volume(const cli_input *input, cli_volume *volume, cw_erro
     if (st == CW_OK && input->remove_table)
         st = remove_table(input, volume, err);
     return st;
-}
-
-static cw_status mask_view(const cli_input *input, cli_volume *volume, const cw_inside *inside,
-                           cw_error *err)
-{
-    const cw_filter_desc desc = filter_desc(input, volume);
-    const cli_input plain = {.threads = input->threads,
-                             .memory = volume->memory_left,
-                             .max_voxels = input->max_voxels,
-                             .timeout_s = input->timeout_s,
-                             .no_sandbox = input->no_sandbox,
-                             .allow_external = input->allow_external};
-    cli_volume mask;
-    cw_volume made;
-    cw_status st = cli_read_volume(input->mask, &plain, false, &mask, err);
-    if (st != CW_OK)
-        return st;
-    st = cw_volume_mask(&volume->view, &mask.view, inside, &desc, &made, err);
-    cli_free_volume(&mask);
-    if (st != CW_OK)
-        return cwi_fail_in(err, st, "--mask");
-    cli_note_volume(volume, "masked by %s", cli_shown_path(input->mask));
-    take_filtered(volume, &made);
-    return CW_OK;
-}
-
-static cw_status change_view(const cli_input *input, cli_volume *volume, bool closes,
-                             const cw_inside *inside, cw_error *err)
-{
-    const cw_filter_desc desc = filter_desc(input, volume);
-    double radius[3];
-    cw_volume made;
-    width_in_voxels(closes ? &input->mask_close : &input->mask_open, &volume->view, radius);
-    cw_status st = closes ? cw_volume_close(&volume->view, radius, inside, &desc, &made, err)
-                          : cw_volume_open(&volume->view, radius, inside, &desc, &made, err);
-    if (st != CW_OK)
-        return cwi_fail_in(err, st, closes ? "--mask-close" : "--mask-open");
-    cli_note_volume(volume, "%s by a ball of %.3g x %.3g x %.3g voxels",
-                    closes ? "closed" : "opened", radius[0], radius[1], radius[2]);
-    take_filtered(volume, &made);
-    return CW_OK;
-}
-
-static double voxel_count(const cw_volume *v)
-{
-    return (double)v->dim[0] * (double)v->dim[1] * (double)v->dim[2];
-}
-
-static cw_status crop_view(const cli_input *input, cli_volume *volume, const cw_inside *inside,
-                           cw_error *err)
-{
-    const cw_volume whole = volume->view;
-    cw_box box;
-    cw_status st = cw_volume_inside_box(&whole, inside, input->crop.margin, (int)input->threads,
-                                        &box, err);
-    if (st == CW_ERR_EMPTY) /* extraction says so, with the range of the values */
-        return CW_OK;
-    if (st == CW_OK)
-        st = cw_volume_crop(&whole, &box, &volume->view, err);
-    if (st != CW_OK)
-        return cwi_fail_in(err, st, "--crop auto");
-    cli_note_volume(volume, "cropped to voxels %zu:%zu,%zu:%zu,%zu:%zu, %.3g %% of all",
-                    box.first[0], box.first[0] + box.count[0] - 1, box.first[1],
-                    box.first[1] + box.count[1] - 1, box.first[2],
-                    box.first[2] + box.count[2] - 1,
-                    100 * voxel_count(&volume->view) / voxel_count(&whole));
-    return CW_OK;
 }
 
 cw_status cli_check_inside_options(const cli_input *input, cw_error *err)
@@ -384,28 +315,6 @@ cw_status cli_check_inside_options(const cli_input *input, cw_error *err)
             err, CW_ERR_ARGUMENT, "--mask-%s takes a length such as 1vox or 0.5mm",
             input->mask_open.given && input->mask_open.unit == CLI_PERCENT ? "open" : "close");
     return CW_OK;
-}
-
-cw_status cli_prepare_inside(const cli_input *input, cli_volume *volume, const double *levels,
-                             size_t count, bool inside_is_low, cw_error *err)
-{
-    cw_inside inside = {.level = levels[0], .inside_is_low = inside_is_low};
-    for (size_t n = 1; n < count; n++) /* the level that has most inside */
-        inside.level =
-            inside_is_low ? fmax(inside.level, levels[n]) : fmin(inside.level, levels[n]);
-    if (count > 1 && (input->mask_open.given || input->mask_close.given))
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--mask-%s takes one isovalue; there are %zu",
-                        input->mask_open.given ? "open" : "close", count);
-    cw_status st = CW_OK;
-    if (input->mask)
-        st = mask_view(input, volume, &inside, err);
-    if (st == CW_OK && input->mask_open.given)
-        st = change_view(input, volume, false, &inside, err);
-    if (st == CW_OK && input->mask_close.given)
-        st = change_view(input, volume, true, &inside, err);
-    if (st == CW_OK && input->crop.is_auto)
-        st = crop_view(input, volume, &inside, err);
-    return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
 }
 
 static const char *length_text(const cli_length *l)

@@ -5,6 +5,8 @@
 
 #include "cli/inputs/volume_input.h"
 
+#include <cubewright/filter.h>
+
 /* Returns the option that changes voxels, such as "--denoise"; NULL: none was given. */
 const char *cli_find_preparation(const cli_input *input);
 
@@ -21,6 +23,15 @@ typedef cw_status cli_visit_all(const void *user, const cw_slice_visitor *visito
 CW_NODISCARD cw_status cli_visit_filtered(const cli_input *input,
                                           const cw_slice_visitor *visitor, cli_visit_all *visit,
                                           const void *user, cw_error *err);
+
+/* Describes a filter of the view: threads, memory and progress. */
+cw_filter_desc cli_describe_filter(const cli_input *input, const cli_volume *volume);
+
+/* Sets the width of a filter along each axis in voxels. */
+void cli_width_in_voxels(const cli_length *width, const cw_volume *volume, double sigma[3]);
+
+/* Makes a filtered volume the view, and frees the one before. */
+void cli_take_filtered(cli_volume *volume, cw_volume *made);
 
 /* Prepares the view of a volume that was read, and says what it did. A view that was made before
  * is freed. Errors do not name the file. */

@@ -139,12 +139,31 @@ static cw_status check_outputs(const cli_report_args *args, cw_error *err)
     return st;
 }
 
-bool cli_report_given(const cli_report_args *args, const char *name)
+static bool is_given(const cli_report_args *args, const char *name)
 {
     size_t n = 0;
     while (strcmp(options[n].name, name) != 0)
         n++;
     return args->common.given[n];
+}
+
+/* Fails for an option of a list that was given. */
+static cw_status refuse_options(const cli_report_args *args, const char *const *names,
+                                const char *why, cw_error *err)
+{
+    for (; *names; names++)
+        if (is_given(args, *names))
+            return cwi_fail(err, CW_ERR_ARGUMENT, "--%s %s", *names, why);
+    return CW_OK;
+}
+
+/* Fails for options of settings, of labels and of names with the files of a series. */
+static cw_status check_mode(const cli_report_args *args, cw_error *err)
+{
+    static const char *const names[] = {"budget", "dims", "csv", "labels", "names", NULL};
+    return cli_report_is_series(args)
+               ? refuse_options(args, names, "cannot be combined with several files", err)
+               : CW_OK;
 }
 
 /* Fails for a name that is no file and nearly a field's name. For other names, the reader's own
@@ -163,7 +182,7 @@ static cw_status check_args(cli_report_run *s, cw_error *err)
     cli_report_args *args = s->args;
     cw_status st = parse_budget(args->budget, &s->study.budget_s, err);
     if (st == CW_OK)
-        st = cli_report_check_mode(args, err);
+        st = check_mode(args, err);
     if (st == CW_OK && !s->study.is_field)
         st = cli_report_check_kind(args, err);
     if (st != CW_OK)
@@ -208,8 +227,9 @@ static void put_reading(FILE *out, const cli_report_args *args)
     }
 }
 
-/* A name that begins with a dash would be taken for an option. */
-cw_status cli_report_tell_input(cli_report_run *s, const char *path, cw_error *err)
+/* Keeps the words of commands that name a file and how it was read. A name that begins with a dash
+ * would be taken for an option. */
+static cw_status tell_input(cli_report_run *s, const char *path, cw_error *err)
 {
     size_t size;
     char *text;
@@ -295,7 +315,7 @@ static cw_status open_input(cli_report_run *s, cw_error *err)
                                         : cw_volume_select(all, input->component.number,
                                                            input->step, &study->drawn, err);
     if (st == CW_OK)
-        st = cli_report_tell_input(s, s->volume.path, err);
+        st = tell_input(s, s->volume.path, err);
     if (st != CW_OK)
         return st;
     study->volume = &s->volume;
@@ -322,10 +342,14 @@ static void tell_result(const cli_study *study, const char *path)
 
 static cw_status run_pipeline(cli_report_run *s, cw_error *err)
 {
+    static const char *const of_settings[] = {"budget", "dims",    "csv",
+                                              "inside", "coarsen", NULL};
     const cli_report_args *args = s->args;
     cw_status st = check_args(s, err);
-    if (st == CW_OK && args->source)
-        return cli_report_mesh(s, err);
+    if (st == CW_OK && args->source) {
+        st = tell_input(s, args->source, err);
+        return st == CW_OK ? cli_report_mesh(s, err) : st;
+    }
     if (st == CW_OK && cli_report_is_series(args))
         return cli_report_series(s, err);
     const char *labels = NULL;
@@ -333,8 +357,12 @@ static cw_status run_pipeline(cli_report_run *s, cw_error *err)
         st = open_input(s, err);
     if (st == CW_OK)
         st = cli_report_find_labels(s, &labels, err);
-    if (st == CW_OK && labels)
-        return cli_report_labels(s, labels, err);
+    if (st == CW_OK && labels) {
+        st = refuse_options(
+            args, of_settings,
+            "does nothing for labels; with --iso a level of their numbers is studied", err);
+        return st == CW_OK ? cli_report_labels(s, labels, err) : st;
+    }
     if (st == CW_OK)
         st = find_level(s, err);
     if (st == CW_OK)

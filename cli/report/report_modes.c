@@ -13,25 +13,6 @@ bool cli_report_is_series(const cli_report_args *args)
     return args->steps.given || args->common.input_count > 1;
 }
 
-/* Fails for an option of a list that was given. */
-static cw_status refuse_options(const cli_report_args *args, const char *const *names,
-                                const char *why, cw_error *err)
-{
-    for (; *names; names++)
-        if (cli_report_given(args, *names))
-            return cwi_fail(err, CW_ERR_ARGUMENT, "--%s %s", *names, why);
-    return CW_OK;
-}
-
-/* Fails for options of settings, of labels and of names with the files of a series. */
-cw_status cli_report_check_mode(const cli_report_args *args, cw_error *err)
-{
-    static const char *const names[] = {"budget", "dims", "csv", "labels", "names", NULL};
-    return cli_report_is_series(args)
-               ? refuse_options(args, names, "cannot be combined with several files", err)
-               : CW_OK;
-}
-
 /* A mesh alone has nothing that it could be held against. */
 cw_status cli_report_check_kind(const cli_report_args *args, cw_error *err)
 {
@@ -59,8 +40,6 @@ static cw_status open_mesh(cli_report_run *s, cw_error *err)
     m->study.full = m->mesh.mesh;
     m->mesh.mesh = (cw_mesh){0};
     st = cli_read_volume(args->source, &source, false, &s->volume, err);
-    if (st == CW_OK)
-        st = cli_report_tell_input(s, args->source, err);
     if (st != CW_OK)
         return st;
     m->study.is_of_mesh = true;
@@ -121,13 +100,7 @@ cw_status cli_report_labels(cli_report_run *s, const char *labels, cw_error *err
     l->study.volume = &s->volume;
     l->study.threads = (int)args->input.threads;
     l->study.title = args->title ? args->title : cli_shown_path(s->volume.path);
-    static const char *const of_settings[] = {"budget", "dims",    "csv",
-                                              "inside", "coarsen", NULL};
-    cw_status st = refuse_options(
-        args, of_settings,
-        "does nothing for labels; with --iso a level of their numbers is studied", err);
-    if (st == CW_OK)
-        st = cli_study_labels(l, &look, &s->volume, err);
+    cw_status st = cli_study_labels(l, &look, &s->volume, err);
     if (st == CW_OK)
         st = cli_report_make(args->json, cli_put_label_json, l, err);
     if (st == CW_OK)

@@ -29,17 +29,6 @@ typedef struct cli_report_run {
     cli_series_study series; /* or of a series */
 } cli_report_run;
 
-/* Returns true if an option was given. */
-bool cli_report_given(const cli_report_args *args, const char *name);
-
-/* Keeps the words of commands that name a file and how it was read. CW_ERR_NO_MEMORY */
-CW_NODISCARD cw_status cli_report_tell_input(cli_report_run *run, const char *path,
-                                             cw_error *err);
-
-/* Fails for options that say something of a mesh, of labels or of a series, without them, or of
- * settings, with them. */
-CW_NODISCARD cw_status cli_report_check_mode(const cli_report_args *args, cw_error *err);
-
 /* Fails for a mesh without a source. */
 CW_NODISCARD cw_status cli_report_check_kind(const cli_report_args *args, cw_error *err);
 

@@ -229,7 +229,7 @@ typedef struct view_film {
     size_t bookmark_count;
     double seconds;        /* from bookmark to bookmark */
     bool is_running;       /* what runs is a film: it is not to be undone */
-    view_preview *preview; /* film.c's: the film that plays; NULL: none */
+    view_preview *preview; /* the film that plays; NULL: none */
 } view_film;
 
 /* Points that were measured, and those that a tool is picking. */
@@ -312,16 +312,17 @@ void view_label_at(const view *v, const double world[3], char *text, size_t size
 cli_slice_labels view_slice_labels(const view *v);
 bool view_shows_surfaces(const view *v); /* of labels */
 
-/* view_state.c: undo, settings by name, and what is saved. */
+/* view_history.c */
 void view_remember(view *v, const char *verb);
 void view_note_camera(view *v, const char *verb); /* for camera-back, after it has moved */
-void view_put_word(FILE *out, const char *word);  /* in quotes where it needs them */
-void view_join_lines(char *text);
 bool view_undo(view *v, int by);
+
+/* view_settings.c */
 const cli_option *view_find_option(const view *v, const char *name);
 CW_NODISCARD cw_status view_parse_split(const view *v, cli_split *split, cw_error *err);
 CW_NODISCARD cw_status view_set(view *v, const char *name, const char *value, cw_error *err);
-const char *view_keep_text(view *v, const char *text);
+
+/* view_state.c */
 CW_NODISCARD cw_status view_write_state(const view *v, const char *path, cw_error *err);
 char *view_command_line(const view *v); /* free() it */
 
@@ -348,7 +349,7 @@ CW_NODISCARD cw_status view_make_film(view *v, const char *name, const char *pat
 /* Plays the bookmarks in the window, or stops; a frame shows the moment that has come. */
 CW_NODISCARD cw_status view_start_preview(view *v, cw_error *err);
 void view_stop_preview(view *v); /* and brings back what was before it */
-void view_drop_preview(view *v); /* when the file is closed */
+void view_drop_preview(view *v); /* at the end */
 CW_NODISCARD cw_status view_run_preview(view *v, cw_error *err);
 
 /* verbs_scene.c: finds what a pixel of the scene shows; nothing where it is not drawn. */
@@ -364,10 +365,15 @@ CW_NODISCARD cw_status view_exec(view *v, const char *text, cw_error *err);
 CW_NODISCARD cw_status view_exec_file(view *v, const char *path, cw_error *err);
 /* Reads a text of up to 1 MiB; free() it. Returns CW_ERR_IO, CW_ERR_FORMAT, naming the file */
 CW_NODISCARD cw_status view_read_text(const char *path, char **text, cw_error *err);
+void view_run_asked(view *v);
+
+/* view_words.c */
+const char *view_keep_text(view *v, const char *text);
+void view_put_word(FILE *out, const char *word); /* in quotes where it needs them */
+void view_join_lines(char *text);
 /* To be run after this frame; errors become messages. */
 void view_ask(view *v, const char *format, ...) CW_PRINTF(2, 3);
 void view_ask_open(view *v, const char *path); /* whatever is in its name */
-void view_run_asked(view *v);
 void view_say(view *v, bool is_error, const char *text);
 
 /* view_keys.c: what keys and menus do. */
@@ -432,7 +438,7 @@ void view_place_parts(view *v, const cwi_ui_rect *area, bool is_quad);
 cwi_ui_rect view_picture_area(const view *v); /* of all parts, in the window */
 bool view_is_quad(const view *v);
 
-/* verbs_script.c: frames of the window, for commands that need what they show. */
+/* view_commands.c: frames of the window, for commands that need what they show. */
 CW_NODISCARD cw_status view_frame(view *v, double wait_s, cw_error *err);
 /* Frames until all that was fed has been taken in. */
 CW_NODISCARD cw_status view_take_in(view *v, cw_error *err);

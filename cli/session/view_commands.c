@@ -39,6 +39,32 @@ cw_status view_need_camera(view *v, cw_error *err)
     return st;
 }
 
+cw_status view_frame(view *v, double wait_s, cw_error *err)
+{
+    return v->show_frame(v, wait_s, err);
+}
+
+cw_status view_take_in(view *v, cw_error *err)
+{
+    cw_status st = view_frame(v, 0, err);
+    while (st == CW_OK && (v->ui->pending(v->window) || v->script.asked_count) && !v->quits)
+        st = view_frame(v, 0, err);
+    for (int n = 0; n < 3 && st == CW_OK && v->ui->focused(v->window); n++)
+        st = view_frame(v, 0, err); /* the widget that has the keys follows them */
+    return st;
+}
+
+/* Twice more in the end: widgets that show what has been drawn. */
+cw_status view_settle(view *v, cw_error *err)
+{
+    cw_status st = view_take_in(v, err);
+    while (st == CW_OK && !view_is_final(v) && !v->quits)
+        st = view_frame(v, 0, err);
+    for (int n = 0; n < 2 && st == CW_OK; n++)
+        st = view_frame(v, 0, err);
+    return st;
+}
+
 const view_verb *view_verb_at(size_t n)
 {
     static const view_verbs *const lists[] = {

@@ -1,14 +1,11 @@
 /* Parses commands of view from text and runs them. Blanks separate words; a ; or the end of
  * a line separates commands. */
-#define _GNU_SOURCE /* vasprintf, strdup */
 #include "cli/session/view.h"
 
-#include "cli/framework/field_names.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <ctype.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -108,34 +105,6 @@ cw_status view_exec_file(view *v, const char *path, cw_error *err)
     return st;
 }
 
-void view_ask(view *v, const char *format, ...)
-{
-    char *text;
-    va_list args;
-    va_start(args, format);
-    const int length = vasprintf(&text, format, args);
-    va_end(args);
-    char **asked = realloc(v->script.asked, (v->script.asked_count + 1) * sizeof *asked);
-    if (asked)
-        v->script.asked = asked;
-    if (length >= 0 && asked)
-        v->script.asked[v->script.asked_count++] = text;
-    else if (length >= 0)
-        free(text);
-}
-
-/* In single quotes, so that blanks are part of it. */
-void view_ask_open(view *v, const char *path)
-{
-    char quoted[8192];
-    size_t used = 0;
-    for (const char *c = path; *c && used + 8 < sizeof quoted; c++)
-        used += (size_t)snprintf(quoted + used, sizeof quoted - used,
-                                 *c == '\'' ? "'\\''" : "%c", *c);
-    quoted[used] = '\0';
-    view_ask(v, "open '%s'", quoted);
-}
-
 void view_run_asked(view *v)
 {
     char **asked = v->script.asked; /* what they ask for is for the next frame */
@@ -152,13 +121,4 @@ void view_run_asked(view *v)
     }
     v->script.is_asked = false;
     free(asked);
-}
-
-void view_say(view *v, bool is_error, const char *text)
-{
-    char message[CLI_MESSAGE];
-    const double reading_s = is_error ? 30 : 6;
-    snprintf(v->message.text, sizeof v->message.text, "%s", cli_name_options(text, message));
-    v->message.is_error = is_error;
-    v->message.until = v->ui->seconds(v->window) + reading_s;
 }

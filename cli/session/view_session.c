@@ -77,7 +77,6 @@ static void drop_surface(view *v)
 
 void view_close(view *v)
 {
-    view_drop_preview(v);
     drop_surface(v);
     view_forget_labels(v);
     v->document.labels.note[0] = '\0';

@@ -209,6 +209,7 @@ static cw_status run_session(view *v, const render_args *args, cw_error *err)
 
 static void end_session(view *v)
 {
+    view_drop_preview(v);
     view_close(v);
     view_close_browser(v);
     view_end_recent(v);

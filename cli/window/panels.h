@@ -89,10 +89,12 @@ void view_close_browser(view *v);
 void view_show_save_mesh(view *v);
 void view_show_save_picture(view *v);
 
-/* side_panel.c */
+/* mode_list.c */
 enum { VIEW_MODE_NAMES = CW_MODE_COUNT + 8 };
 /* Lists the modes that draw what is open, by groups with headings: how many names. */
 size_t view_list_modes(const view *v, bool with_mesh, const char **names);
+
+/* side_panel.c */
 void view_show_side(view *v);
 
 /* Sections of the side panel: curve_editor.c, the curve and its points in numbers;
