@@ -10,6 +10,7 @@
 #include "simplify/attribute_weights.h"
 #include "simplify/blocks/block_passes.h"
 #include "simplify/blocks/partition.h"
+#include "simplify/simplify_frame.h"
 
 #include <math.h>
 #include <string.h>

@@ -6,6 +6,7 @@
 #include "core/base/status.h"
 #include "core/geometry/triangle.h"
 #include "simplify/blocks/partition.h"
+#include "simplify/simplify_frame.h"
 
 #include <math.h>
 #include <string.h>

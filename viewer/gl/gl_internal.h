@@ -104,21 +104,6 @@ struct cwi_gl {
     void (*drop_states)(cwi_gl *gl);
 };
 
-/* A mode: draws into gl->target, which is bound, cleared or with the mesh in it. */
-typedef struct cwi_gl_mode {
-    cw_mode mode;
-    bool goes_along_rays; /* draws into target.rays */
-    /* Draws by the mode's state, which is made at the first call. The frame is gl->frame. */
-    cw_status (*draw)(cwi_gl *gl, void **state, cw_error *err);
-    /* Frees it, when another volume or mesh comes and at the end; NULL: there is none. */
-    void (*drop)(void *state);
-    bool needs_textures; /* its shaders read values by themselves, not by texel_at() alone */
-} cwi_gl_mode;
-
-extern const cwi_gl_mode cwi_gl_composite, cwi_gl_mip, cwi_gl_minip, cwi_gl_average,
-    cwi_gl_local_mip, cwi_gl_mesh_mode, cwi_gl_projection, cwi_gl_slices, cwi_gl_splat,
-    cwi_gl_splat_tree, cwi_gl_texture_mode, cwi_gl_shaded_texture;
-
 /* Makes the context this thread's, until cwi_gl_leave() restores the previous one. Returns
  * false when it was lost. */
 static inline bool cwi_gl_enter(cwi_gl *gl)
@@ -146,9 +131,6 @@ CW_NODISCARD cw_status cwi_gl_use(cwi_gl *gl, const char *vertex, const char *fr
 void cwi_gl_set(GLuint program, const char *name, float value);
 void cwi_gl_set3(GLuint program, const char *name, const double value[3]);
 extern const char cwi_glsl_common[], cwi_glsl_screen[];
-
-/* Draws the scene's mesh, opaque, with its depth. */
-CW_NODISCARD cw_status cwi_gl_draw_mesh(cwi_gl *gl, cw_error *err);
 
 /* Returns the definitions of shaders that go along rays. Unused code is not compiled, as
  * machines may run through it all the same. */

@@ -1,9 +1,9 @@
 /* Draws a volume by ray casting: emission and absorption along each ray, by a fragment
  * shader. */
-#include "viewer/gl/gl_internal.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "viewer/modes/gl_draw.h"
 
 #include <stdio.h>
 

@@ -11,6 +11,7 @@
 #include "viewer/scene/srgb.h"
 
 #include "core/base/status.h"
+#include "viewer/modes/gl_draw.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,8 +1,8 @@
 /* Projections of values along rays: maximum, minimum, mean, and local maximum [Sato1998]. */
-#include "viewer/gl/gl_internal.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "viewer/modes/gl_draw.h"
 
 #include <math.h>
 #include <stdio.h>

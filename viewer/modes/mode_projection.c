@@ -1,6 +1,5 @@
 /* Draws a volume by coherent projection: cells, and nodes of similar cells, as polygons from
  * back to front. */
-#include "viewer/gl/gl_internal.h"
 #include "viewer/proxy/projected_cells.h"
 #include "viewer/scene/cell_lattice.h"
 
@@ -8,6 +7,7 @@
 #include "core/base/status.h"
 #include "core/geometry/affine.h"
 #include "core/geometry/vec3.h"
+#include "viewer/modes/gl_draw.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -12,6 +12,7 @@
 #include "core/geometry/affine.h"
 #include "core/geometry/vec3.h"
 #include "core/volume/volume.h"
+#include "viewer/modes/gl_draw.h"
 
 #include <math.h>
 #include <stdio.h>

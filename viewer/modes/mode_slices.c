@@ -1,9 +1,9 @@
 /* Draws slices: the volume's values in a few planes, with a ray for each sample of the
  * picture. */
-#include "viewer/gl/gl_internal.h"
 
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
+#include "viewer/modes/gl_draw.h"
 #include "viewer/scene/slice.h"
 
 #include <stdio.h>

@@ -1,4 +1,5 @@
 /* Draws a volume by splatting every voxel's footprint, sheet by sheet. */
+#include "viewer/modes/gl_draw.h"
 #include "viewer/modes/splat_sheets.h"
 
 static cw_status draw_splat_mode(cwi_gl *gl, void **state, cw_error *err)

@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
+#include "viewer/modes/gl_draw.h"
 
 #include <math.h>
 #include <string.h>

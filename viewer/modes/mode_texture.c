@@ -6,6 +6,7 @@
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
+#include "viewer/modes/gl_draw.h"
 
 #include <math.h>
 #include <stdio.h>
