@@ -4,7 +4,9 @@
 #include "core/base/status.h"
 #include "formats/bytes/file_pattern.h"
 #include "formats/bytes/inflate_stream.h"
+#include "formats/raw/raw_format.h"
 #include "formats/vtk/pvd.h"
+#include "formats/vtk/vtk_formats.h"
 
 /* --- by content and extension ------------------------------------------------------------- */
 

@@ -2,6 +2,26 @@
 #include "formats/format_registry.h"
 
 #include "core/base/features.h"
+#include "formats/3mf/3mf_format.h"
+#include "formats/dicom/dicom_format.h"
+#include "formats/draco/drc_format.h"
+#include "formats/gltf/gltf_formats.h"
+#include "formats/inr/inr_format.h"
+#include "formats/metaimage/metaimage_format.h"
+#include "formats/mrc/mrc_format.h"
+#include "formats/neuroglancer/neuroglancer_format.h"
+#include "formats/nifti/nifti_format.h"
+#include "formats/nrrd/nrrd_format.h"
+#include "formats/obj/obj_format.h"
+#include "formats/off/off_format.h"
+#include "formats/plot3d/plot3d_format.h"
+#include "formats/ply/ply_format.h"
+#include "formats/raw/raw_format.h"
+#include "formats/stl/stl_format.h"
+#include "formats/tiff/tiff_format.h"
+#include "formats/vdb/vdb_format.h"
+#include "formats/vtk/vtk_formats.h"
+#include "formats/zarr/zarr_format.h"
 
 #include <pthread.h>
 #include <stdio.h>

@@ -5,6 +5,7 @@
 #include "core/base/temporary_name.h"
 #include "formats/bytes/file_pattern.h"
 #include "formats/format_registry.h"
+#include "formats/gltf/gltf_formats.h"
 #include "formats/mesh/place_parts.h"
 
 #include <stdio.h>

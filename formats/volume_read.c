@@ -6,6 +6,7 @@
 #include "formats/bytes/file_pattern.h"
 #include "formats/format_lookup.h"
 #include "formats/mesh/mesh_reader.h"
+#include "formats/raw/raw_format.h"
 #include "formats/volume/frame_claim.h"
 #include "formats/volume/named_arrays.h"
 #include "formats/volume/slice_visit.h"

@@ -1,5 +1,5 @@
 /* The driver of 3MF: its reader, its writer, and what the format keeps. */
-#include "formats/driver/format_driver.h"
+#include "formats/3mf/3mf_format.h"
 
 const cwi_format_driver cwi_format_3mf = {
     .name = "3mf",

@@ -3,6 +3,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/3mf/3mf.h"
+#include "formats/3mf/3mf_format.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,9 +1,9 @@
 /* Writes 3MF: a zip archive with one model in XML. Each part becomes an object, placed by its
  * build item; vertex colours use the materials extension, which slicers read. */
-#include "formats/mesh/mesh_writer.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "formats/3mf/3mf_format.h"
 #include "formats/bytes/zip_write.h"
 #include "formats/text/xml.h"
 

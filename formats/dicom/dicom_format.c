@@ -1,5 +1,5 @@
 /* The driver of DICOM: its reader and the list of series. */
-#include "formats/driver/format_driver.h"
+#include "formats/dicom/dicom_format.h"
 
 const cwi_format_driver cwi_format_dicom = {
     .name = "dicom",

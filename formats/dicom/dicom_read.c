@@ -2,10 +2,10 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/bytes/file_pattern.h"
+#include "formats/dicom/dicom_format.h"
 #include "formats/dicom/dicom_overlap.h"
 #include "formats/dicom/dicom_segments.h"
 #include "formats/dicom/dicom_stack.h"
-#include "formats/volume/volume_reader.h"
 #include "formats/volume/voxel_source.h"
 
 #include <stdio.h>

@@ -3,8 +3,8 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "formats/dicom/dicom_format.h"
 #include "formats/dicom/dicom_nesting.h"
-#include "formats/volume/volume_reader.h"
 
 #include <math.h>
 #include <stdio.h>

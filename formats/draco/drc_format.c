@@ -1,5 +1,5 @@
 /* The driver of Draco files: their reader, their writer, and what the format keeps. */
-#include "formats/driver/format_driver.h"
+#include "formats/draco/drc_format.h"
 
 const cwi_format_driver cwi_format_drc = {
     .name = "drc",

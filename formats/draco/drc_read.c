@@ -5,7 +5,7 @@
 #include "core/base/status.h"
 #include "core/mesh/mesh.h"
 #include "formats/codec/draco_wrap.h"
-#include "formats/mesh/mesh_reader.h"
+#include "formats/draco/drc_format.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,6 +3,7 @@
 #include "core/base/status.h"
 #include "core/mesh/mesh.h"
 #include "formats/codec/draco_pack.h"
+#include "formats/draco/drc_format.h"
 
 #include <stdio.h>
 #include <string.h>

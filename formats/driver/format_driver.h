@@ -10,31 +10,18 @@
 
 /* Reads volumes by one of parse, read_grid, read_file and read_slices; all NULL: it reads none. */
 typedef struct cwi_volume_reading {
-    const char *extensions; /* NULL: those of the format */
-    bool gzipped;           /* the whole file may be a gzip file */
-    /* Returns true if a file with such a head has the format; NULL: the content cannot
-     * decide. */
-    bool (*sniff)(const unsigned char *head, size_t size);
+    const char *extensions;    /* NULL: those of the format */
+    bool gzipped;              /* the whole file may be a gzip file */
+    cwi_volume_sniffer *sniff; /* NULL: the content cannot decide */
     /* Returns true if a folder is a volume of the format as a whole, not of slices. */
     bool (*is_store)(const cwi_input *folder);
-    /* Reads a header, from which voxels are then loaded. */
-    cw_status (*parse)(const cwi_input *in, cwi_source *src, cw_error *err);
-    /* Reads an irregular grid; *is_grid is false where the file holds something else. */
-    cw_status (*read_grid)(const cwi_input *in, const cw_read_desc *desc, bool *is_grid,
-                           cw_volume *volume, cw_error *err);
-    /* Reads one file as a whole. */
-    cw_status (*read_file)(const cwi_input *in, const cw_read_desc *desc, cw_volume *volume,
-                           cw_error *err);
-    /* Reads slices in files of their own. */
-    cw_status (*read_slices)(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,
-                             cw_volume *volume, cw_error *err);
-    /* Lists the series of a folder. */
-    cw_status (*list_series)(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,
-                             cw_series **series, size_t *count, cw_error *err);
-    /* Lists the sizes in which a file holds its volume; NULL: there is one alone. */
-    cw_status (*list_levels)(const cwi_input *in, const cw_read_desc *desc, cw_level **levels,
-                             size_t *count, cw_error *err);
-    bool holds_pages;  /* slices: a file with several pages is a volume */
+    cwi_header_parser *parse;
+    cwi_grid_reader *read_grid;
+    cwi_volume_reader *read_file;
+    cwi_slices_reader *read_slices;
+    cwi_series_lister *list_series;
+    cwi_level_lister *list_levels; /* NULL: there is one size alone */
+    bool holds_pages;              /* slices: a file with several pages is a volume */
     bool tells_arrays; /* its reader itself reports which of several arrays it took */
     bool needs_points; /* it is the format of files whose points are in another file */
 } cwi_volume_reading;
@@ -42,7 +29,7 @@ typedef struct cwi_volume_reading {
 typedef struct cwi_volume_writing {
     const char *extensions; /* extensions that are written */
     bool has_scaling;       /* slope and intercept have a place in the header */
-    cw_status (*save)(const cwi_save *save, cw_error *err); /* NULL: it writes no volume */
+    cwi_volume_saver *save; /* NULL: it writes no volume */
 } cwi_volume_writing;
 
 typedef struct cwi_mesh_reading {
@@ -82,12 +69,5 @@ typedef struct cwi_format_driver {
     cwi_mesh_reading mesh;
     cwi_mesh_writing write;
 } cwi_format_driver;
-
-extern const cwi_format_driver cwi_format_nrrd, cwi_format_nifti, cwi_format_metaimage,
-    cwi_format_vtk, cwi_format_vtu, cwi_format_vti, cwi_format_mrc, cwi_format_inr,
-    cwi_format_dicom, cwi_format_tiff, cwi_format_zarr, cwi_format_vdb, cwi_format_plot3d,
-    cwi_format_raw, cwi_format_glb, cwi_format_gltf, cwi_format_stl, cwi_format_ply,
-    cwi_format_obj, cwi_format_off, cwi_format_3mf, cwi_format_vtp, cwi_format_drc,
-    cwi_format_neuroglancer;
 
 #endif

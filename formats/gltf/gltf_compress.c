@@ -10,6 +10,7 @@
 #include "core/mesh/mesh.h"
 #include "formats/codec/draco_pack.h"
 #include "formats/codec/meshopt_wrap.h"
+#include "formats/gltf/gltf_formats.h"
 #include "formats/gltf/gltf_scene.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* The drivers of glTF, binary and as text: their readers, their writers, and what they keep. */
-#include "formats/driver/format_driver.h"
+#include "formats/gltf/gltf_formats.h"
 
 const cwi_format_driver cwi_format_glb = {
     .name = "glb",

@@ -5,6 +5,7 @@
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "formats/bytes/little_endian.h"
+#include "formats/gltf/gltf_formats.h"
 #include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/gltf_wrap.h"
 

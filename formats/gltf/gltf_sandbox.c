@@ -5,6 +5,7 @@
 #include "core/base/module.h"
 #include "core/base/sandbox.h"
 #include "core/base/status.h"
+#include "formats/gltf/gltf_formats.h"
 #include "formats/gltf/gltf_wrap.h"
 
 #include <stddef.h>

@@ -3,6 +3,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/bytes/base64.h"
+#include "formats/gltf/gltf_formats.h"
 #include "formats/gltf/gltf_pack.h"
 #include "formats/gltf/gltf_wrap.h"
 
@@ -13,14 +14,14 @@ enum { CHUNK_BYTES = 3 << 14, GLB_HEADER = 12, CHUNK_HEADER = 8 };
 /* --- the buffer's bytes ------------------------------------------------------------------- */
 
 /* A pipe of bytes to the file: unchanged, or (text) as base64. */
-typedef struct pipe {
+typedef struct byte_pipe {
     cwi_mesh_output *out;
     bool text;
     size_t held;
     unsigned char bytes[CHUNK_BYTES];
-} pipe;
+} byte_pipe;
 
-static cw_status flush_pipe(pipe *p, cw_error *err)
+static cw_status flush_pipe(byte_pipe *p, cw_error *err)
 {
     char text[CHUNK_BYTES / 3 * 4 + 4];
     const size_t size = p->text ? cwi_base64_encode(p->bytes, p->held, text) : p->held;
@@ -33,7 +34,8 @@ static cw_status flush_pipe(pipe *p, cw_error *err)
                        : st;
 }
 
-static cw_status push_bytes(pipe *p, const unsigned char *bytes, size_t size, cw_error *err)
+static cw_status push_bytes(byte_pipe *p, const unsigned char *bytes, size_t size,
+                            cw_error *err)
 {
     cw_status st = CW_OK;
     while (st == CW_OK && size > 0) {
@@ -48,14 +50,15 @@ static cw_status push_bytes(pipe *p, const unsigned char *bytes, size_t size, cw
     return st;
 }
 
-static cw_status push_zeros(pipe *p, size_t size, cw_error *err)
+static cw_status push_zeros(byte_pipe *p, size_t size, cw_error *err)
 {
     static const unsigned char zeros[8];
     return push_bytes(p, zeros, size, err);
 }
 
 /* Leaves a gap for the elements of other processes. */
-static cw_status skip_elements(pipe *p, const cwi_gltf_array *a, size_t count, cw_error *err)
+static cw_status skip_elements(byte_pipe *p, const cwi_gltf_array *a, size_t count,
+                               cw_error *err)
 {
     const size_t size = count * (size_t)a->stride;
     cw_status st = flush_pipe(p, err);
@@ -63,8 +66,9 @@ static cw_status skip_elements(pipe *p, const cwi_gltf_array *a, size_t count, c
     return st == CW_OK ? cwi_outfile_skip(p->out->file, size, err) : st;
 }
 
-static cw_status push_elements(pipe *p, const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,
-                               const cwi_gltf_array *a, size_t count, cw_error *err)
+static cw_status push_elements(byte_pipe *p, const cwi_gltf_plan *plan,
+                               const cwi_gltf_piece *piece, const cwi_gltf_array *a,
+                               size_t count, cw_error *err)
 {
     unsigned char element[16];
     cw_status st = CW_OK;
@@ -76,8 +80,9 @@ static cw_status push_elements(pipe *p, const cwi_gltf_plan *plan, const cwi_glt
 }
 
 /* Reads a spool piece by piece; of one that a team shares, the piece of this process. */
-static cw_status push_spooled(pipe *p, const cwi_gltf_plan *plan, const cwi_gltf_piece *whole,
-                              const cwi_gltf_array *a, cw_error *err)
+static cw_status push_spooled(byte_pipe *p, const cwi_gltf_plan *plan,
+                              const cwi_gltf_piece *whole, const cwi_gltf_array *a,
+                              cw_error *err)
 {
     const bool corners = a->use == CWI_GLTF_INDICES;
     cwi_spool_reader reader;
@@ -106,15 +111,15 @@ static cw_status push_spooled(pipe *p, const cwi_gltf_plan *plan, const cwi_gltf
     return st == CW_OK && p->out->shared ? skip_elements(p, a, each * after, err) : st;
 }
 
-static cw_status push_array(pipe *p, const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,
-                            const cwi_gltf_array *a, cw_error *err)
+static cw_status push_array(byte_pipe *p, const cwi_gltf_plan *plan,
+                            const cwi_gltf_piece *piece, const cwi_gltf_array *a, cw_error *err)
 {
     cw_status st = piece->part->spool ? push_spooled(p, plan, piece, a, err)
                                       : push_elements(p, plan, piece, a, a->count, err);
     return st == CW_OK ? push_zeros(p, (size_t)(-(a->count * a->stride) % 4), err) : st;
 }
 
-static cw_status push_buffer(pipe *p, const cwi_gltf_plan *plan, cw_error *err)
+static cw_status push_buffer(byte_pipe *p, const cwi_gltf_plan *plan, cw_error *err)
 {
     cw_status st = CW_OK;
     for (size_t b = 0; st == CW_OK && b < plan->block_count; b++) {
@@ -133,7 +138,7 @@ static cw_status push_buffer(pipe *p, const cwi_gltf_plan *plan, cw_error *err)
 static cw_status write_buffer(const cwi_gltf_plan *plan, cwi_mesh_output *out, bool text,
                               cw_error *err)
 {
-    pipe *p = cwi_alloc_zeroed(1, sizeof *p);
+    byte_pipe *p = cwi_alloc_zeroed(1, sizeof *p);
     if (!p)
         return cwi_fail_memory(err);
     p->out = out;

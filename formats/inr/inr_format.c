@@ -1,5 +1,5 @@
 /* The driver of INRIMAGE-4: its names and its reader. */
-#include "formats/driver/format_driver.h"
+#include "formats/inr/inr_format.h"
 
 const cwi_format_driver cwi_format_inr = {
     .name = "inr",

@@ -3,8 +3,8 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/bytes/inflate_stream.h"
+#include "formats/inr/inr_format.h"
 #include "formats/text/text_header.h"
-#include "formats/volume/volume_reader.h"
 
 #include <ctype.h>
 #include <math.h>

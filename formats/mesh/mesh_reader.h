@@ -39,25 +39,6 @@ typedef cw_status cwi_mesh_reader(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_fil
 /* Returns true if a file with such a head has the format; size is at most CWI_SNIFF_BYTES. */
 typedef bool cwi_mesh_sniffer(const unsigned char *head, size_t size, uint64_t file_size);
 
-cwi_mesh_sniffer cwi_stl_sniff;
-cwi_mesh_sniffer cwi_ply_sniff;
-cwi_mesh_sniffer cwi_off_sniff;
-cwi_mesh_sniffer cwi_glb_sniff;
-cwi_mesh_sniffer cwi_gltf_sniff;
-cwi_mesh_sniffer cwi_3mf_sniff;
-cwi_mesh_sniffer cwi_vtp_sniff;
-cwi_mesh_sniffer cwi_drc_sniff;
-
-cwi_mesh_reader cwi_stl_read;
-cwi_mesh_reader cwi_ply_read;
-cwi_mesh_reader cwi_obj_read;
-cwi_mesh_reader cwi_off_read;
-cwi_mesh_reader cwi_glb_read;
-cwi_mesh_reader cwi_gltf_read;
-cwi_mesh_reader cwi_3mf_read;
-cwi_mesh_reader cwi_vtp_read;
-cwi_mesh_reader cwi_drc_read;
-
 /* Makes an array (array is the address of its pointer) hold at least count elements of a size;
  * new elements are not initialised. room is its capacity.
  * Returns CW_ERR_LIMIT past desc.max_bytes, CW_ERR_NO_MEMORY; the array is then unchanged. */

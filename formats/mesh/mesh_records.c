@@ -1,6 +1,5 @@
 /* Writes the records of a mesh to a file: vertices, triangles, lines of text. */
 #include "core/base/status.h"
-#include "formats/mesh/mesh_writer.h"
 #include "formats/mesh/place_parts.h"
 #include "formats/text/number_format.h"
 

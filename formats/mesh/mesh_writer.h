@@ -72,28 +72,6 @@ typedef struct cwi_mesh_output {
 
 typedef cw_status cwi_mesh_writer(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err);
 
-cwi_mesh_writer cwi_stl_write;
-cwi_mesh_writer cwi_ply_write;
-cwi_mesh_writer cwi_obj_write;
-cwi_mesh_writer cwi_off_write;
-cwi_mesh_writer cwi_3mf_write;
-cwi_mesh_writer cwi_vtp_write;
-cwi_mesh_writer cwi_glb_write;
-cwi_mesh_writer cwi_gltf_write;
-cwi_mesh_writer cwi_drc_write;
-cwi_mesh_writer cwi_neuroglancer_write;
-
-/* Writes VTP with indices of 64 bits; cwi_vtp_write() calls it for meshes that need them. */
-cwi_mesh_writer cwi_vtp_write_wide;
-
-/* Loads the module that both glTF writers need. Returns CW_ERR_UNSUPPORTED if it is not in this
- * build. */
-CW_NODISCARD cw_status cwi_gltf_prepare(cw_error *err);
-
-/* Loads the module of the requested codec, before there is anything to compress.
- * Returns CW_ERR_ARGUMENT for bits that it does not support; CW_ERR_UNSUPPORTED. */
-CW_NODISCARD cw_status cwi_gltf_prepare_codec(const cw_write_desc *desc, cw_error *err);
-
 /* Puts record i of a part at `to`, with room for CWI_RECORD_BYTES; returns its end. */
 typedef unsigned char *cwi_record_encoder(const cwi_part *part, size_t i, unsigned char *to);
 

@@ -1,5 +1,5 @@
 /* The driver of MetaImage: its names, its reader and its writer. */
-#include "formats/driver/format_driver.h"
+#include "formats/metaimage/metaimage_format.h"
 
 const cwi_format_driver cwi_format_metaimage = {
     .name = "metaimage",

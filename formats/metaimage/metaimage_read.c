@@ -1,8 +1,8 @@
 /* Reads MetaImage: "Key = value" lines; the last one states the place of the voxels. Defined at
  * itk.org/Wiki/ITK/MetaIO/Documentation. */
 #include "core/base/status.h"
+#include "formats/metaimage/metaimage_format.h"
 #include "formats/text/text_header.h"
-#include "formats/volume/volume_reader.h"
 
 #include <ctype.h>
 #include <string.h>

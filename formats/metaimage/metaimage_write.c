@@ -1,6 +1,6 @@
 /* Writes MetaImage: one file, compressed by zlib. */
 #include "formats/bytes/byte_order.h"
-#include "formats/volume/volume_writer.h"
+#include "formats/metaimage/metaimage_format.h"
 
 static const char *const types[CW_TYPE_COUNT] = {
     [CW_U8] = "MET_UCHAR",  [CW_I8] = "MET_CHAR",    [CW_U16] = "MET_USHORT",

@@ -1,5 +1,5 @@
 /* The driver of MRC and CCP4: its names and its reader. */
-#include "formats/driver/format_driver.h"
+#include "formats/mrc/mrc_format.h"
 
 const cwi_format_driver cwi_format_mrc = {
     .name = "mrc",

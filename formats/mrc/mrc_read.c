@@ -3,7 +3,7 @@
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
 #include "formats/bytes/inflate_stream.h"
-#include "formats/volume/volume_reader.h"
+#include "formats/mrc/mrc_format.h"
 
 #include <math.h>
 #include <stdio.h>

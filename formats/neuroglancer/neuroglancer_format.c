@@ -1,8 +1,8 @@
 /* The driver of Neuroglancer's multi-resolution meshes: their writer, the requests that they have
  * no place for, and the folders that may be replaced. */
 #define _GNU_SOURCE /* fdopendir, openat */
+#include "formats/neuroglancer/neuroglancer_format.h"
 #include "core/base/status.h"
-#include "formats/driver/format_driver.h"
 
 #include <dirent.h>
 #include <fcntl.h>

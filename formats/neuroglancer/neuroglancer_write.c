@@ -4,6 +4,7 @@
 #include "core/base/status.h"
 #include "core/geometry/lattice_map.h"
 #include "formats/codec/draco_pack.h"
+#include "formats/neuroglancer/neuroglancer_format.h"
 #include "formats/neuroglancer/segment_facts.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* The driver of NIfTI-1 and NIfTI-2: its names, its reader and its writer. */
-#include "formats/driver/format_driver.h"
+#include "formats/nifti/nifti_format.h"
 
 const cwi_format_driver cwi_format_nifti = {
     .name = "nifti",

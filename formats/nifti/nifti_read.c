@@ -5,7 +5,7 @@
 #include "formats/bytes/file_pattern.h"
 #include "formats/bytes/inflate_stream.h"
 #include "formats/nifti/nifti.h"
-#include "formats/volume/volume_reader.h"
+#include "formats/nifti/nifti_format.h"
 
 #include <math.h>
 #include <stdio.h>

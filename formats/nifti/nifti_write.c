@@ -1,7 +1,7 @@
 /* Writes NIfTI-1, or NIfTI-2 when a size needs more than 16 bits. The frame goes into the
  * sform. */
 #include "formats/nifti/nifti.h"
-#include "formats/volume/volume_writer.h"
+#include "formats/nifti/nifti_format.h"
 #include "formats/volume/voxel_source.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
 /* The driver of NRRD: its names, its reader and its writer. */
-#include "formats/driver/format_driver.h"
+#include "formats/nrrd/nrrd_format.h"
 
 const cwi_format_driver cwi_format_nrrd = {
     .name = "nrrd",

@@ -4,7 +4,7 @@
 #include "core/base/status.h"
 #include "formats/bytes/bzip2.h"
 #include "formats/nrrd/nrrd.h"
-#include "formats/volume/volume_reader.h"
+#include "formats/nrrd/nrrd_format.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* Writes NRRD: one gzipped file; doubles are written so that they read back to the bit. */
 #include "formats/bytes/byte_order.h"
-#include "formats/volume/volume_writer.h"
+#include "formats/nrrd/nrrd_format.h"
 
 static const char *const types[CW_TYPE_COUNT] = {
     [CW_U8] = "uint8",   [CW_I8] = "int8",   [CW_U16] = "uint16", [CW_I16] = "int16",

@@ -1,5 +1,5 @@
 /* The driver of Wavefront OBJ: its reader, its writer, and what the format keeps. */
-#include "formats/driver/format_driver.h"
+#include "formats/obj/obj_format.h"
 
 const cwi_format_driver cwi_format_obj = {
     .name = "obj",

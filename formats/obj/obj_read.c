@@ -2,7 +2,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
-#include "formats/mesh/mesh_reader.h"
+#include "formats/obj/obj_format.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,9 +1,9 @@
 /* Writes Wavefront OBJ: text, so the only plain format that keeps places far from zero
  * exact. */
-#include "formats/mesh/mesh_writer.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "formats/obj/obj_format.h"
 
 #include <stdio.h>
 

@@ -1,5 +1,5 @@
 /* The driver of OFF: its reader, its writer, and what the format keeps. */
-#include "formats/driver/format_driver.h"
+#include "formats/off/off_format.h"
 
 const cwi_format_driver cwi_format_off = {
     .name = "off",

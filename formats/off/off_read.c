@@ -2,7 +2,7 @@
  * coordinates. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "formats/mesh/mesh_reader.h"
+#include "formats/off/off_format.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* Writes OFF as text; the keyword is COFF with colours, NOFF with normals, CNOFF with both. */
-#include "formats/mesh/mesh_writer.h"
+#include "formats/off/off_format.h"
 
 static unsigned char *encode_vertex(const cwi_part *part, size_t v, unsigned char *to)
 {

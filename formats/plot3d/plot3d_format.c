@@ -1,5 +1,5 @@
 /* The driver of PLOT3D: its names and its reader. */
-#include "formats/driver/format_driver.h"
+#include "formats/plot3d/plot3d_format.h"
 
 const cwi_format_driver cwi_format_plot3d = {
     .name = "plot3d",

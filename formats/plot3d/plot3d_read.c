@@ -3,8 +3,8 @@
 #define _DEFAULT_SOURCE /* realpath */
 #include "core/base/status.h"
 #include "formats/cells/irregular_grid.h"
+#include "formats/plot3d/plot3d_format.h"
 #include "formats/volume/named_arrays.h"
-#include "formats/volume/volume_reader.h"
 
 #include <stdlib.h>
 #include <string.h>

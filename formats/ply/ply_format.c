@@ -1,5 +1,5 @@
 /* The driver of PLY: its reader, its writer, and what the format keeps. */
-#include "formats/driver/format_driver.h"
+#include "formats/ply/ply_format.h"
 
 const cwi_format_driver cwi_format_ply = {
     .name = "ply",

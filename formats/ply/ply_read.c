@@ -3,6 +3,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "formats/ply/ply_format.h"
 
 #include <float.h>
 #include <math.h>

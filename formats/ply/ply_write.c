@@ -1,7 +1,7 @@
 /* Writes PLY, binary little-endian or text: everything of a mesh except its affine. */
-#include "formats/mesh/mesh_writer.h"
 
 #include "core/base/status.h"
+#include "formats/ply/ply_format.h"
 
 static unsigned char *encode_vertex(const cwi_part *part, size_t v, unsigned char *to)
 {

@@ -1,5 +1,5 @@
 /* The driver of voxels without a header, which are read by a given layout. */
-#include "formats/driver/format_driver.h"
+#include "formats/raw/raw_format.h"
 
 const cwi_format_driver cwi_format_raw = {
     .name = "raw",

@@ -1,8 +1,8 @@
 /* Parses the layout of voxels without a header, and makes a source from it. */
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "formats/raw/raw_format.h"
 #include "formats/text/text_header.h"
-#include "formats/volume/volume_reader.h"
 
 #include <math.h>
 #include <string.h>

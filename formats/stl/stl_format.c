@@ -1,5 +1,5 @@
 /* The driver of STL: its reader, its writer, and what the format keeps. */
-#include "formats/driver/format_driver.h"
+#include "formats/stl/stl_format.h"
 
 const cwi_format_driver cwi_format_stl = {
     .name = "stl",

@@ -6,7 +6,7 @@
 #include "core/mesh/weld.h"
 #include "formats/bytes/little_endian.h"
 #include "formats/mesh/mesh_axes.h"
-#include "formats/mesh/mesh_reader.h"
+#include "formats/stl/stl_format.h"
 
 #include <float.h>
 #include <math.h>

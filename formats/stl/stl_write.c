@@ -1,8 +1,8 @@
 /* Writes STL. Binary: an 80-byte header, a count, then 50 bytes per triangle. Text: one
  * solid. */
-#include "formats/mesh/mesh_writer.h"
 
 #include "core/base/status.h"
+#include "formats/stl/stl_format.h"
 
 #include <math.h>
 #include <stdio.h>

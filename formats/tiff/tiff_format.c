@@ -1,5 +1,5 @@
 /* The driver of TIFF: its names and its reader. */
-#include "formats/driver/format_driver.h"
+#include "formats/tiff/tiff_format.h"
 
 const cwi_format_driver cwi_format_tiff = {
     .name = "tiff",

@@ -4,9 +4,9 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/bytes/file_pattern.h"
+#include "formats/tiff/tiff_format.h"
 #include "formats/volume/slice_spacing.h"
 #include "formats/volume/slice_stack.h"
-#include "formats/volume/volume_reader.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* The driver of OpenVDB: its names and its reader. */
-#include "formats/driver/format_driver.h"
+#include "formats/vdb/vdb_format.h"
 
 const cwi_format_driver cwi_format_vdb = {
     .name = "vdb",

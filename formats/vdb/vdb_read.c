@@ -6,8 +6,8 @@
 #include "core/geometry/affine.h"
 #include "core/volume/volume.h"
 #include "formats/vdb/vdb.h"
+#include "formats/vdb/vdb_format.h"
 #include "formats/volume/named_arrays.h"
-#include "formats/volume/volume_reader.h"
 
 #include <math.h>
 #include <stdio.h>

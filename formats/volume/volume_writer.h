@@ -1,4 +1,4 @@
-/* The common parts of the writers of volumes, and the list of writers. */
+/* The common parts of the writers of volumes. */
 #ifndef FORMATS_VOLUME_VOLUME_WRITER_H
 #define FORMATS_VOLUME_VOLUME_WRITER_H
 
@@ -15,9 +15,7 @@ typedef struct cwi_save {
     const cw_progress *progress;
 } cwi_save;
 
-CW_NODISCARD cw_status cwi_nrrd_save(const cwi_save *save, cw_error *err);
-CW_NODISCARD cw_status cwi_nifti_save(const cwi_save *save, cw_error *err);
-CW_NODISCARD cw_status cwi_metaimage_save(const cwi_save *save, cw_error *err);
+typedef cw_status cwi_volume_saver(const cwi_save *save, cw_error *err);
 
 /* Passes the voxels to the sink and finishes it. Order: x fastest, then y, z, time; the
  * components interleaved in front of x, or one whole series after another. */

@@ -2,8 +2,8 @@
  * stream. The text of arrays only passes through. Reading stops where appended data start,
  * which need not be XML. */
 #include "core/base/status.h"
-#include "formats/volume/volume_reader.h"
 #include "formats/vtk/vti.h"
+#include "formats/vtk/vtk_formats.h"
 #include "formats/vtk/vtk_grid.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
 /* The drivers of VTK's formats (legacy, vtu, vti, vtp): their names, readers and writers. */
-#include "formats/driver/format_driver.h"
+#include "formats/vtk/vtk_formats.h"
 
 const cwi_format_driver cwi_format_vtk = {
     .name = "vtk",

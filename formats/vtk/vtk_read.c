@@ -4,8 +4,8 @@
 #include "core/base/status.h"
 #include "formats/cells/irregular_grid.h"
 #include "formats/volume/named_arrays.h"
-#include "formats/volume/volume_reader.h"
 #include "formats/vtk/vtk.h"
+#include "formats/vtk/vtk_formats.h"
 #include "formats/vtk/vtk_grid.h"
 
 #include <string.h>

@@ -3,7 +3,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/cells/grid_arrays.h"
-#include "formats/mesh/mesh_reader.h"
+#include "formats/vtk/vtk_formats.h"
 #include "formats/vtk/vtk_xml.h"
 
 #include <float.h>

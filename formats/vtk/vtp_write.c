@@ -1,6 +1,7 @@
 /* Writes VTK's XML PolyData: arrays as appended raw data, each in blocks compressed by zlib. */
 #include "formats/bytes/block_writer.h"
 #include "formats/mesh/place_parts.h"
+#include "formats/vtk/vtk_formats.h"
 
 #include <stdio.h>
 

@@ -4,8 +4,8 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/cells/irregular_grid.h"
-#include "formats/volume/volume_reader.h"
 #include "formats/vtk/vti.h"
+#include "formats/vtk/vtk_formats.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* The driver of Zarr: its names and its reader. */
-#include "formats/driver/format_driver.h"
+#include "formats/zarr/zarr_format.h"
 
 const cwi_format_driver cwi_format_zarr = {
     .name = "zarr",

@@ -4,7 +4,7 @@
 #include "core/volume/volume.h"
 #include "formats/volume/named_arrays.h"
 #include "formats/volume/slice_visit.h"
-#include "formats/volume/volume_reader.h"
+#include "formats/zarr/zarr_format.h"
 #include "formats/zarr/zarr_handle.h"
 
 #include <stdio.h>

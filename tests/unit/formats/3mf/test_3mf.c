@@ -1,5 +1,6 @@
 /* Tests the writer of 3MF: names in the archive, vertices, triangles, parts, colours and
  * limits. */
+#include "formats/3mf/3mf_format.h"
 #include "support/files/unzip.h"
 
 #include "formats/mesh/mesh_writer.h"

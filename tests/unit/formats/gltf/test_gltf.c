@@ -3,6 +3,7 @@
 #include "support/support.h"
 
 #include "core/base/module.h"
+#include "formats/gltf/gltf_formats.h"
 #include "formats/mesh/mesh_writer.h"
 
 #include <signal.h>

@@ -3,6 +3,7 @@
 
 #include "core/base/module.h"
 #include "formats/mesh/mesh_writer.h"
+#include "formats/ply/ply_format.h"
 
 #include <math.h>
 

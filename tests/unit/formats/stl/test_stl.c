@@ -2,6 +2,7 @@
 #include "support/support.h"
 
 #include "formats/mesh/mesh_writer.h"
+#include "formats/stl/stl_format.h"
 
 #include <math.h>
 #include <stdlib.h>

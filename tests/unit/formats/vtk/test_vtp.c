@@ -2,6 +2,7 @@
 #include "support/support.h"
 
 #include "formats/mesh/mesh_writer.h"
+#include "formats/vtk/vtk_formats.h"
 
 #include <math.h>
 #include <stdio.h>
