@@ -1,6 +1,14 @@
 /* The table of all commands, in the order of the help. */
 #include "cli/command_table.h"
 
+#include "cli/commands/command_rows.h"
+#include "cli/extract/extract_run.h"
+#include "cli/extract/part_join.h"
+#include "cli/help/help_search.h"
+#include "cli/render/render_run.h"
+#include "cli/report/report_run.h"
+#include "cli/window/panels.h"
+
 const cli_command *const cli_command_table[] = {
     &cli_extract, &cli_join,    &cli_simplify,       &cli_smooth, &cli_remesh,
     &cli_repair,  &cli_convert, &cli_hollow,         &cli_offset, &cli_check,

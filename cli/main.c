@@ -2,6 +2,7 @@
  * into an exit code. */
 #include "cli/command_table.h"
 #include "cli/framework/batch.h"
+#include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/framework/option_rules.h"
 #include "cli/framework/run_config.h"

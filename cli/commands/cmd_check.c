@@ -1,6 +1,6 @@
 /* The command check: measures the defects of a mesh and its distances to a field or another
  * mesh, and holds them against a profile. */
-#include "cli/framework/commands.h"
+#include "cli/commands/command_rows.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "cli/inputs/extract_surface.h"

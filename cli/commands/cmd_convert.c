@@ -1,6 +1,6 @@
 /* The command convert: writes a mesh in another format, merged or split into its parts. */
+#include "cli/commands/command_rows.h"
 #include "cli/commands/mesh_command.h"
-#include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/inputs/cut_options.h"
 #include "core/base/status.h"

@@ -1,5 +1,5 @@
 /* The commands formats and version: list what this build can read, write and use. */
-#include "cli/framework/commands.h"
+#include "cli/commands/command_rows.h"
 #include "cli/framework/console.h"
 #include "cli/framework/json_writer.h"
 

@@ -1,6 +1,6 @@
 /* The command hollow: its options; cli_run_hollow() in offset_hollow.c does the work. */
+#include "cli/commands/command_rows.h"
 #include "cli/commands/offset_hollow.h"
-#include "cli/framework/commands.h"
 
 static const cli_option options[] = {
     {"wall", 'w', CLI_LENGTH, "L", "Thickness of the wall: 2mm, or 1% of the box's diagonal",

@@ -1,10 +1,10 @@
 /* The command info: prints the facts of a volume or a series, such as its grid, range of
  * values and suggested isovalues. */
+#include "cli/commands/command_rows.h"
 #include "cli/commands/info_labels.h"
 #include "cli/commands/info_predict.h"
 #include "cli/commands/info_scales.h"
 #include "cli/framework/batch.h"
-#include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/framework/field_names.h"
 #include "cli/framework/quantity.h"

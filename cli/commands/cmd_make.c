@@ -1,5 +1,5 @@
 /* The command make: samples an analytic field or a hard case and writes the volume. */
-#include "cli/framework/commands.h"
+#include "cli/commands/command_rows.h"
 #include "cli/framework/console.h"
 #include "cli/inputs/synthetic_input.h"
 #include "core/base/status.h"

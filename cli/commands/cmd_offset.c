@@ -1,6 +1,6 @@
 /* The command offset: its options; cli_run_offset() in offset_hollow.c does the work. */
+#include "cli/commands/command_rows.h"
 #include "cli/commands/offset_hollow.h"
-#include "cli/framework/commands.h"
 
 static const cli_option options[] = {
     {"by", 'b', CLI_TEXT, "L",

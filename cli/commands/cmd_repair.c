@@ -1,7 +1,7 @@
 /* The command repair: its options, the work part by part, and what is printed and reported. */
+#include "cli/commands/command_rows.h"
 #include "cli/commands/mesh_command.h"
 #include "cli/commands/repair_facts.h"
-#include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "core/base/status.h"
 

@@ -1,6 +1,6 @@
 /* The command simplify: its options, the work on parts or levels of detail, and the error that is measured. */
+#include "cli/commands/command_rows.h"
 #include "cli/commands/mesh_command.h"
-#include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "cli/inputs/level_choice.h"

@@ -1,7 +1,7 @@
 /* The command smooth: its options, the work part by part, and what is printed and reported. */
+#include "cli/commands/command_rows.h"
 #include "cli/commands/mesh_command.h"
 #include "cli/commands/smooth_together.h"
-#include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "cli/results/smoothed.h"

@@ -9,6 +9,9 @@
 #include "cli/results/output_names.h"
 #include "cli/results/write_result.h"
 
+/* The command (cmd_extract.c). */
+extern const cli_command cli_extract;
+
 typedef struct cli_extract_args {
     cli_common common;
     cli_input input;

@@ -6,6 +6,9 @@
 
 #include <cubewright/spool.h>
 
+/* The command (cmd_join.c). */
+extern const cli_command cli_join;
+
 /* Appends the fragments of parts `first` to `end` - 1 of a folder to a spool. *sides: whether they
  * have samples on each side
  * Returns CW_ERR_IO for a part that is missing; CW_ERR_FORMAT for a damaged one or one of another

@@ -1,12 +1,8 @@
-/* The table of commands: one cmd_NAME.c a row. */
+/* Commands by name, and the pages of their help. */
 #ifndef CLI_FRAMEWORK_COMMANDS_H
 #define CLI_FRAMEWORK_COMMANDS_H
 
 #include "cli/framework/options.h"
-
-extern const cli_command cli_check, cli_convert, cli_extract, cli_formats, cli_help, cli_hollow,
-    cli_info, cli_join, cli_make, cli_offset, cli_remesh, cli_render, cli_repair,
-    cli_report_command, cli_simplify, cli_smooth, cli_version, cli_view;
 
 /* The long help of each command: help/NAME.txt, as core/embed.cmake puts it into
  * the program. */

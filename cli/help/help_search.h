@@ -2,7 +2,12 @@
 #ifndef CLI_HELP_SEARCH_H
 #define CLI_HELP_SEARCH_H
 
+#include "cli/framework/options.h"
+
 #include <cubewright/core.h>
+
+/* The command (cmd_help.c). */
+extern const cli_command cli_help;
 
 /* A row of the table of synonyms. Lists are parted by '|'. */
 typedef struct cli_synonym {

@@ -4,6 +4,7 @@
 
 #include "cli/framework/commands.h"
 #include "cli/framework/option_rules.h"
+#include "cli/help/help_search.h"
 #include "cli/help/roff_text.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"

@@ -10,6 +10,9 @@
 #include "cli/render/slice_labels.h"
 #include "cli/render/value_overlay.h"
 
+/* The command (cmd_render.c). */
+extern const cli_command cli_render;
+
 typedef struct render_args {
     cli_common common;
     cli_input input;

@@ -7,6 +7,9 @@
 #include "cli/study/mesh_study.h"
 #include "cli/study/series_study.h"
 
+/* The command (cmd_report.c). */
+extern const cli_command cli_report_command;
+
 typedef struct cli_report_args {
     cli_common common;
     cli_input input;

@@ -52,7 +52,7 @@ static void put_extract(FILE *out, const cli_study *s, const cli_tried *t, const
     fprintf(out, " -o %s", output);
 }
 
-char *cli_mesh_command(const cli_study *s, const cli_tried *tried, const char *output)
+char *cli_settings_command(const cli_study *s, const cli_tried *tried, const char *output)
 {
     char *text;
     size_t size;
@@ -87,7 +87,7 @@ char *cli_point_command(const cli_study *s, const cli_point *p)
     FILE *out;
     if (!cli_is_drawn(p->family)) {
         snprintf(name, sizeof name, "mesh%s", s->suffix);
-        return cli_mesh_command(s, &p->tried, name);
+        return cli_settings_command(s, &p->tried, name);
     }
     out = cwi_text_open(&text, &size);
     if (out)

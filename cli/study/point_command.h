@@ -8,6 +8,6 @@
 char *cli_point_command(const cli_study *study, const cli_point *point);
 
 /* The same of settings by themselves, for another output. NULL without memory; free(). */
-char *cli_mesh_command(const cli_study *study, const cli_tried *tried, const char *output);
+char *cli_settings_command(const cli_study *study, const cli_tried *tried, const char *output);
 
 #endif

@@ -154,7 +154,7 @@ static bool advise_print(const cli_study *s, cli_advice *a)
                  failed);
     else if (s->print.seen.count)
         add_text(a, " The plain surface passes the checks of a print.");
-    a->command = cli_mesh_command(s, &a->point->tried, "print.stl");
+    a->command = cli_settings_command(s, &a->point->tried, "print.stl");
     return true;
 }
 
@@ -179,7 +179,7 @@ static bool advise_web(const cli_study *s, cli_advice *a)
                  cli_part_ratio(s) * small->back.max_mm);
     }
     add_text(a, ". The file has about %s.", cli_bytes(bytes));
-    a->command = cli_mesh_command(s, &tried, "web.glb");
+    a->command = cli_settings_command(s, &tried, "web.glb");
     return true;
 }
 
@@ -198,7 +198,7 @@ static bool advise_analysis(const cli_study *s, cli_advice *a)
              : gap == &a->point->to_field ? "the surface of the field"
                                           : "the plain surface",
              cli_count((size_t)(count_whole(s, a->point) + 0.5)));
-    a->command = cli_mesh_command(s, &a->point->tried, "analysis.ply");
+    a->command = cli_settings_command(s, &a->point->tried, "analysis.ply");
     return true;
 }
 

@@ -6,6 +6,9 @@
 
 #include <time.h>
 
+/* The command (cmd_view.c). */
+extern const cli_command cli_view;
+
 /* Thumbnails of the presets of the transfer function: how many are drawn. */
 enum { VIEW_THUMBS = 40 };
 

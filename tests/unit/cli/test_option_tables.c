@@ -1,6 +1,7 @@
 /* Tests the tables of options of all commands: their names, letters, kinds and rules. */
 #define _DEFAULT_SOURCE /* strsep */
 #include "cli/command_table.h"
+#include "cli/framework/commands.h"
 #include "cli/framework/option_rules.h"
 #include "support/support.h"
 
