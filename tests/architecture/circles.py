@@ -72,4 +72,5 @@ def main():
     print(f"{len(circles)} circles, {sum(map(len, circles))} files")
 
 
-main()
+if __name__ == "__main__":
+    main()

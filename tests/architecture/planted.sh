@@ -62,4 +62,9 @@ expect_fault 'viewer/scene: 31 files'
 build_house
 echo 'static const char hint[] = "say --memory 8G";' >core/base/three.c
 expect_fault 'core/base/three.c:1:'
+
+build_house
+echo 'int cwi_one(void);' >core/mesh/seven.h
+python3 -B "$here/declarations.py" "$folder/house" >"$folder/out" && { echo "not found: seven.h"; bad=1; }
+grep -q 'core/mesh/seven.h declares cwi_one, which core/base defines' "$folder/out" || { cat "$folder/out"; bad=1; }
 exit $bad
