@@ -78,27 +78,26 @@ enum {
     CLOSED = CWI_CLOSED,
     SPOOL = CWI_SPOOL,
     NORMALS = CWI_FIELD_NORMALS,
-    DISTANCE = CWI_FIELD_DISTANCE,
     OPEN = CWI_CLOSEDNESS,
 };
 
 /* clang-format off */
 /* The recipe: stages run in this order. */
 static const cwi_stage STAGES[CW_STAGE_COUNT] = {
-    /*                        is wanted             needs                    spoils              finishes  function */
-    [CW_STAGE_VIEWS]      = {wants_views,          VOXELS | SINGLE,         0,                  false, cwi_draw_views},
-    [CW_STAGE_EXTRACT]    = {wants_surface,        0,                       0,                  false, cwi_extract_surface},
-    [CW_STAGE_MIN_VOLUME] = {wants_min_volume,     WHOLE | SPOOL | SINGLE,  0,                  false, cwi_drop_small},
-    [CW_STAGE_LARGEST]    = {wants_largest,        WHOLE | SINGLE,          0,                  false, cwi_keep_largest},
-    [CW_STAGE_FILL_VOIDS] = {wants_voids_filled,   WHOLE | SINGLE,          0,                  false, cwi_fill_voids},
-    [CW_STAGE_SMOOTH]     = {wants_smoothing,      WHOLE | SINGLE | CLOSED, NORMALS,            false, cwi_smooth},
-    [CW_STAGE_CUT]        = {wants_cut,            WHOLE | SINGLE | CLOSED, NORMALS | DISTANCE, false, cwi_cut_surface},
-    [CW_STAGE_SIMPLIFY]   = {wants_simplification, 0,                       0,                  false, cwi_simplify_surface},
-    [CW_STAGE_CULL]       = {wants_culling,        WHOLE | VOXELS | SINGLE, OPEN,               false, cwi_cull_surface},
-    [CW_STAGE_LOD]        = {wants_levels,         WHOLE,                   0,                  false, cwi_make_levels},
-    [CW_STAGE_NORMALS]    = {wants_normals,        0,                       0,                  true,  cwi_add_normals},
-    [CW_STAGE_COLOR]      = {wants_color,          WHOLE | SINGLE,          0,                  true,  cwi_color_surface},
-    [CW_STAGE_CHECK]      = {wants_check,          0,                       0,                  true,  cwi_check_surface},
+    /*                        is wanted             needs                    spoils   finishes  function */
+    [CW_STAGE_VIEWS]      = {wants_views,          VOXELS | SINGLE,         0,       false, cwi_draw_views},
+    [CW_STAGE_EXTRACT]    = {wants_surface,        0,                       0,       false, cwi_extract_surface},
+    [CW_STAGE_MIN_VOLUME] = {wants_min_volume,     WHOLE | SPOOL | SINGLE,  0,       false, cwi_drop_small},
+    [CW_STAGE_LARGEST]    = {wants_largest,        WHOLE | SINGLE,          0,       false, cwi_keep_largest},
+    [CW_STAGE_FILL_VOIDS] = {wants_voids_filled,   WHOLE | SINGLE,          0,       false, cwi_fill_voids},
+    [CW_STAGE_SMOOTH]     = {wants_smoothing,      WHOLE | SINGLE | CLOSED, NORMALS, false, cwi_smooth},
+    [CW_STAGE_CUT]        = {wants_cut,            WHOLE | SINGLE | CLOSED, NORMALS, false, cwi_cut_surface},
+    [CW_STAGE_SIMPLIFY]   = {wants_simplification, 0,                       0,       false, cwi_simplify_surface},
+    [CW_STAGE_CULL]       = {wants_culling,        WHOLE | VOXELS | SINGLE, OPEN,    false, cwi_cull_surface},
+    [CW_STAGE_LOD]        = {wants_levels,         WHOLE,                   0,       false, cwi_make_levels},
+    [CW_STAGE_NORMALS]    = {wants_normals,        0,                       0,       true,  cwi_add_normals},
+    [CW_STAGE_COLOR]      = {wants_color,          WHOLE | SINGLE,          0,       true,  cwi_color_surface},
+    [CW_STAGE_CHECK]      = {wants_check,          0,                       0,       true,  cwi_check_surface},
 };
 /* clang-format on */
 

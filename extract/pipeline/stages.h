@@ -15,9 +15,8 @@ enum {
 
 /* Properties of a surface that a stage spoils. */
 enum {
-    CWI_FIELD_NORMALS = 1,  /* normals of the field are no longer those of the surface */
-    CWI_FIELD_DISTANCE = 2, /* the surface is no longer near the isosurface, as it should be */
-    CWI_CLOSEDNESS = 4,     /* it is open */
+    CWI_FIELD_NORMALS = 1, /* normals of the field are no longer those of the surface */
+    CWI_CLOSEDNESS = 2,    /* it is open */
 };
 
 /* A run of the pipeline: the surface and what is known of it. */
