@@ -15,7 +15,7 @@ cw_status cli_extract_full(const cli_volume *volume, const cli_surface_settings 
                            cli_proof *proof, cw_mesh *full, cw_error *err)
 {
     const cw_pipeline_desc desc = cli_describe_full(settings);
-    cw_pipeline_facts facts;
+    cw_pipeline_facts facts = {0};
     const double start = cli_seconds();
     cw_status st = cli_make_surface(volume, NULL, &desc, full, &facts, err);
     if (st != CW_OK)

@@ -137,7 +137,7 @@ cw_status cli_make_surface(const cli_volume *volume, cw_extractor *extractor,
 cw_status cli_extract_surface(const cli_volume *volume, const cw_extract_desc *desc,
                               cw_mesh *mesh, cw_extract_counts *counts, cw_error *err)
 {
-    cw_pipeline_facts facts;
+    cw_pipeline_facts facts = {0};
     cw_status st = cli_make_surface(volume, NULL, &(cw_pipeline_desc){.extract = *desc}, mesh,
                                     &facts, err);
     if (counts)

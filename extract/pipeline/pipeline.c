@@ -1,8 +1,10 @@
-/* The recipe: runs the stages of the table, and gives the finished surfaces away. */
+/* Runs the stages of the recipe, and gives the finished surfaces away. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 #include "extract/pipeline/stages.h"
+
+#include <string.h>
 
 static size_t count_triangles(const cwi_pipeline *p, const cw_mesh *mesh)
 {
@@ -15,15 +17,14 @@ static cw_status run_stages(cwi_pipeline *p, cw_mesh *mesh, bool finishes, cw_er
     const unsigned stages = cw_pipeline_stages(p->desc);
     const cw_pipeline_watch *w = &p->desc->watch;
     cw_status st = CW_OK;
-    for (int s = 0; s < CW_STAGE_COUNT && st == CW_OK; s++) {
-        const cwi_stage *stage = cwi_stage_of((cw_stage)s);
-        if (!(stages >> s & 1) || stage->finishes != finishes)
+    for (const cwi_stage *s = cwi_recipe; s < cwi_recipe + CW_STAGE_COUNT && st == CW_OK; s++) {
+        if (!(stages >> s->stage & 1) || s->finishes != finishes)
             continue;
         const size_t before = count_triangles(p, mesh);
-        st = stage->run(p, mesh, err);
-        p->facts.ran |= 1u << s;
+        st = s->run(p, mesh, err);
+        p->facts.ran |= 1u << s->stage;
         if (st == CW_OK && w->end)
-            w->end(w->user, (cw_stage)s, before, count_triangles(p, mesh));
+            w->end(w->user, s->stage, before, count_triangles(p, mesh));
     }
     return st;
 }
@@ -66,19 +67,23 @@ static void free_pipeline(cwi_pipeline *p)
     cw_mesh_spool_free(p->spool);
 }
 
+/* Runs the stages of the surface itself: those that reduce it are left out, and those that finish it. */
 static cw_status make_full(const cwi_pipeline *p, const cw_volume *volume, bool no_normals,
                            cw_mesh *mesh, cw_error *err)
 {
     cw_pipeline_desc desc = *p->desc;
     desc.simplify = NULL;
-    desc.views = NULL;
-    desc.view_count = 0;
-    desc.cull = desc.check = false;
-    desc.color = NULL;
-    desc.lod_count = 0;
+    desc.view_count = desc.lod_count = 0;
+    desc.cull = false;
     desc.extract.no_normals = desc.extract.no_normals || no_normals;
     desc.watch.end = NULL;
-    return cw_pipeline_mesh(volume, NULL, &desc, mesh, NULL, err);
+    cwi_pipeline full = {.desc = &desc, .volume = volume, .part = *volume};
+    cw_status st = run_stages(&full, &full.mesh, false, err);
+    if (st == CW_OK)
+        *mesh = full.mesh;
+    else
+        free_pipeline(&full);
+    return st;
 }
 
 /* Returns true if finished surfaces get normals of the field. */
@@ -112,14 +117,23 @@ cw_status cwi_begin_pipeline(cwi_pipeline *p, cw_surface_source source, cw_pipel
     return cw_pipeline_check(source, cw_pipeline_stages(d), NULL, NULL, err);
 }
 
+void cwi_give_facts(const cwi_pipeline *p, cw_pipeline_facts *facts)
+{
+    static const size_t BYTES[] = {sizeof *facts}; /* of each version */
+    if (!facts)
+        return;
+    const uint32_t version = facts->version;
+    memcpy(facts, &p->facts, BYTES[version]);
+    facts->version = version;
+}
+
 static cw_status start_pipeline(cwi_pipeline *p, cw_surface_source source,
                                 cw_pipeline_sink sink, cw_pipeline_facts *facts, cw_error *err)
 {
     cw_status st = cwi_begin_pipeline(p, source, sink, err);
     if (st == CW_OK)
         st = run_pipeline(p, sink, err);
-    if (facts)
-        *facts = p->facts;
+    cwi_give_facts(p, facts);
     free_pipeline(p);
     return st;
 }
@@ -130,6 +144,7 @@ cw_status cw_pipeline_run(const cw_volume *volume, cw_extractor *extractor,
 {
     CWI_REQUIRE(err, volume, desc);
     CWI_REQUIRE_VERSION(err, desc, 0);
+    CWI_REQUIRE_VERSION(err, facts, 0);
     cwi_pipeline p = {.desc = desc, .volume = volume, .part = *volume, .extractor = extractor};
     return start_pipeline(&p, CW_SOURCE_MEMORY, sink, facts, err);
 }
@@ -139,6 +154,7 @@ cw_status cw_pipeline_run_slices(const cw_slice_source *source, const cw_pipelin
 {
     CWI_REQUIRE(err, source, desc);
     CWI_REQUIRE_VERSION(err, desc, 0);
+    CWI_REQUIRE_VERSION(err, facts, 0);
     cwi_pipeline p = {.desc = desc, .slices = source};
     return start_pipeline(&p, CW_SOURCE_SLICES, sink, facts, err);
 }
@@ -159,6 +175,7 @@ cw_status cw_pipeline_mesh(const cw_volume *volume, cw_extractor *extractor,
 {
     CWI_REQUIRE(err, volume, desc, mesh);
     CWI_REQUIRE_VERSION(err, desc, 0);
+    CWI_REQUIRE_VERSION(err, facts, 0);
     *mesh = (cw_mesh){0};
     if (desc->lod_count)
         return cwi_fail(err, CW_ERR_ARGUMENT, "lod_count is %zu; one surface has no levels",

@@ -139,13 +139,13 @@ cw_status cw_pipeline_run_labels(const cw_pipeline_labels *labels, const cw_pipe
 {
     CWI_REQUIRE(err, labels, desc);
     CWI_REQUIRE_VERSION(err, desc, 0);
+    CWI_REQUIRE_VERSION(err, facts, 0);
     cwi_pipeline p = {.desc = desc, .labels = labels};
     cw_status st = cwi_begin_pipeline(&p, CW_SOURCE_LABELS, sink, err);
     p.facts.extracted.triangles =
         labels->apart ? count_surfaces(labels) : count_interfaces(labels);
     if (st == CW_OK)
         st = run_levels(&p, sink, err);
-    if (facts)
-        *facts = p.facts;
+    cwi_give_facts(&p, facts);
     return st;
 }

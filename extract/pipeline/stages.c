@@ -1,5 +1,5 @@
-/* The table of stages, and which of them go together. A new stage is a row here, in
- * CW_STAGE_TABLE, and a function. */
+/* The recipe: the stages in the order in which they run, and which of them go together. A new stage
+ * is a row here, a row at the end of CW_STAGE_TABLE, and a function. */
 #include "extract/pipeline/stages.h"
 
 #include "core/base/status.h"
@@ -73,31 +73,31 @@ static bool wants_check(const cw_pipeline_desc *d)
 /* Short names for the table. */
 enum {
     WHOLE = CWI_WHOLE_MESH,
-    VOXELS = CWI_VOXELS,
-    SINGLE = CWI_ONE_SURFACE,
-    CLOSED = CWI_CLOSED,
     SPOOL = CWI_SPOOL,
+    VOXELS = CWI_VOXELS,
+    CLOSED = CWI_CLOSED,
+    LABELS = CWI_ON_LABELS,
+    PARTS = CWI_ON_PARTS,
     NORMALS = CWI_FIELD_NORMALS,
     OPEN = CWI_CLOSEDNESS,
 };
 
 /* clang-format off */
-/* The recipe: stages run in this order. */
-static const cwi_stage STAGES[CW_STAGE_COUNT] = {
-    /*                        is wanted             needs                    spoils   finishes  function */
-    [CW_STAGE_VIEWS]      = {wants_views,          VOXELS | SINGLE,         0,       false, cwi_draw_views},
-    [CW_STAGE_EXTRACT]    = {wants_surface,        0,                       0,       false, cwi_extract_surface},
-    [CW_STAGE_MIN_VOLUME] = {wants_min_volume,     WHOLE | SPOOL | SINGLE,  0,       false, cwi_drop_small},
-    [CW_STAGE_LARGEST]    = {wants_largest,        WHOLE | SINGLE,          0,       false, cwi_keep_largest},
-    [CW_STAGE_FILL_VOIDS] = {wants_voids_filled,   WHOLE | SINGLE,          0,       false, cwi_fill_voids},
-    [CW_STAGE_SMOOTH]     = {wants_smoothing,      WHOLE | SINGLE | CLOSED, NORMALS, false, cwi_smooth},
-    [CW_STAGE_CUT]        = {wants_cut,            WHOLE | SINGLE | CLOSED, NORMALS, false, cwi_cut_surface},
-    [CW_STAGE_SIMPLIFY]   = {wants_simplification, 0,                       0,       false, cwi_simplify_surface},
-    [CW_STAGE_CULL]       = {wants_culling,        WHOLE | VOXELS | SINGLE, OPEN,    false, cwi_cull_surface},
-    [CW_STAGE_LOD]        = {wants_levels,         WHOLE,                   0,       false, cwi_make_levels},
-    [CW_STAGE_NORMALS]    = {wants_normals,        0,                       0,       true,  cwi_add_normals},
-    [CW_STAGE_COLOR]      = {wants_color,          WHOLE | SINGLE,          0,       true,  cwi_color_surface},
-    [CW_STAGE_CHECK]      = {wants_check,          0,                       0,       true,  cwi_check_surface},
+const cwi_stage cwi_recipe[CW_STAGE_COUNT] = {
+    /* stage              is wanted             needs           spoils   finishes  function */
+    {CW_STAGE_VIEWS,      wants_views,          VOXELS,         0,       false, cwi_draw_views},
+    {CW_STAGE_EXTRACT,    wants_surface,        LABELS | PARTS, 0,       false, cwi_extract_surface},
+    {CW_STAGE_MIN_VOLUME, wants_min_volume,     SPOOL | PARTS,  0,       false, cwi_drop_small},
+    {CW_STAGE_LARGEST,    wants_largest,        WHOLE,          0,       false, cwi_keep_largest},
+    {CW_STAGE_FILL_VOIDS, wants_voids_filled,   WHOLE,          0,       false, cwi_fill_voids},
+    {CW_STAGE_SMOOTH,     wants_smoothing,      WHOLE | CLOSED, NORMALS, false, cwi_smooth},
+    {CW_STAGE_CUT,        wants_cut,            WHOLE | CLOSED, NORMALS, false, cwi_cut_surface},
+    {CW_STAGE_SIMPLIFY,   wants_simplification, LABELS,         0,       false, cwi_simplify_surface},
+    {CW_STAGE_CULL,       wants_culling,        WHOLE | VOXELS, OPEN,    false, cwi_cull_surface},
+    {CW_STAGE_LOD,        wants_levels,         WHOLE | LABELS, 0,       false, cwi_make_levels},
+    {CW_STAGE_NORMALS,    wants_normals,        LABELS | PARTS, 0,       true,  cwi_add_normals},
+    {CW_STAGE_COLOR,      wants_color,          WHOLE,          0,       true,  cwi_color_surface},
+    {CW_STAGE_CHECK,      wants_check,          LABELS | PARTS, 0,       true,  cwi_check_surface},
 };
 /* clang-format on */
 
@@ -112,25 +112,30 @@ const char *cw_stage_name(cw_stage stage)
     return (unsigned)stage < CW_STAGE_COUNT ? names[stage] : NULL;
 }
 
-const cwi_stage *cwi_stage_of(cw_stage stage)
-{
-    return &STAGES[stage];
-}
-
 unsigned cw_pipeline_stages(const cw_pipeline_desc *desc)
 {
     unsigned stages = 0;
-    for (int s = 0; desc && s < CW_STAGE_COUNT; s++)
-        stages |= STAGES[s].is_wanted(desc) ? 1u << s : 0;
+    for (const cwi_stage *s = cwi_recipe;
+         desc && desc->version == 0 && s < cwi_recipe + CW_STAGE_COUNT; s++)
+        stages |= s->is_wanted(desc) ? 1u << s->stage : 0;
     return stages;
+}
+
+/* Returns the row of a stage. */
+static const cwi_stage *find_row(cw_stage stage)
+{
+    const cwi_stage *s = cwi_recipe;
+    while (s->stage != stage)
+        s++;
+    return s;
 }
 
 unsigned cwi_spoils(const cw_pipeline_desc *desc)
 {
     const unsigned stages = cw_pipeline_stages(desc);
     unsigned spoils = 0;
-    for (int s = 0; s < CW_STAGE_COUNT; s++)
-        spoils |= stages >> s & 1 ? STAGES[s].spoils : 0;
+    for (const cwi_stage *s = cwi_recipe; s < cwi_recipe + CW_STAGE_COUNT; s++)
+        spoils |= stages >> s->stage & 1 ? s->spoils : 0;
     return spoils;
 }
 
@@ -138,8 +143,8 @@ bool cwi_needs_whole(const cw_pipeline_desc *desc)
 {
     const unsigned stages = cw_pipeline_stages(desc);
     bool needs = false;
-    for (int s = 0; s < CW_STAGE_SIMPLIFY; s++)
-        needs = needs || (stages >> s & 1 && STAGES[s].needs & CWI_WHOLE_MESH);
+    for (const cwi_stage *s = cwi_recipe; s->stage != CW_STAGE_SIMPLIFY; s++)
+        needs = needs || (stages >> s->stage & 1 && s->needs & (WHOLE | SPOOL));
     return needs;
 }
 
@@ -148,19 +153,19 @@ bool cwi_needs_whole(const cw_pipeline_desc *desc)
 /* Returns why a source excludes a stage; NULL: it does not. */
 static const char *find_objection(cw_surface_source source, cw_stage stage, unsigned stages)
 {
-    const unsigned needs = STAGES[stage].needs;
+    const unsigned needs = find_row(stage)->needs;
     const bool in_pieces = source == CW_SOURCE_SLICES || source == CW_SOURCE_PARTS;
-    if (source == CW_SOURCE_LABELS && needs & CWI_ONE_SURFACE)
+    if (source == CW_SOURCE_LABELS && !(needs & LABELS))
         return "is for a single surface; labels share their interfaces";
-    if (source == CW_SOURCE_PARTS && stage == CW_STAGE_SIMPLIFY)
-        return "is for the whole surface; join the parts before";
-    if (in_pieces && needs & CWI_SPOOL)
-        return source == CW_SOURCE_SLICES && stages & 1u << CW_STAGE_SIMPLIFY
-                   ? "beside simplify needs the whole surface in memory"
-                   : NULL;
-    if (in_pieces && needs & CWI_WHOLE_MESH)
+    if (source == CW_SOURCE_SLICES && needs & SPOOL && stages & 1u << CW_STAGE_SIMPLIFY)
+        return "beside simplify needs the whole surface in memory";
+    if (in_pieces && needs & WHOLE)
         return "needs the whole surface in memory";
-    return in_pieces && needs & CWI_VOXELS ? "needs all voxels in memory" : NULL;
+    if (in_pieces && needs & VOXELS)
+        return "needs all voxels in memory";
+    return source == CW_SOURCE_PARTS && !(needs & PARTS)
+               ? "is for the whole surface; join the parts before"
+               : NULL;
 }
 
 cw_status cw_pipeline_check(cw_surface_source source, unsigned stages, cw_stage *first,
@@ -173,20 +178,20 @@ cw_status cw_pipeline_check(cw_surface_source source, unsigned stages, cw_stage 
     for (int s = 0; s < CW_STAGE_COUNT; s++) {
         const char *why = stages >> s & 1 ? find_objection(source, (cw_stage)s, stages) : NULL;
         *first = *second = (cw_stage)s;
-        if (why && STAGES[s].needs & CWI_SPOOL && source == CW_SOURCE_SLICES)
+        if (why && find_row((cw_stage)s)->needs & SPOOL && source == CW_SOURCE_SLICES)
             *second = CW_STAGE_SIMPLIFY;
         if (why)
             return cwi_fail(err, CW_ERR_ARGUMENT, "%s %s", names[s], why);
     }
-    for (int s = 0; s < CW_STAGE_COUNT; s++)
-        for (int t = 0; t < CW_STAGE_COUNT; t++)
-            if (stages >> s & 1 && stages >> t & 1 && STAGES[s].needs & CWI_CLOSED &&
-                STAGES[t].spoils & CWI_CLOSEDNESS) {
-                *first = (cw_stage)t;
-                *second = (cw_stage)s;
+    for (const cwi_stage *s = cwi_recipe; s < cwi_recipe + CW_STAGE_COUNT; s++)
+        for (const cwi_stage *t = cwi_recipe; t < cwi_recipe + CW_STAGE_COUNT; t++)
+            if (stages >> s->stage & 1 && stages >> t->stage & 1 && s->needs & CLOSED &&
+                t->spoils & OPEN) {
+                *first = t->stage;
+                *second = s->stage;
                 return cwi_fail(err, CW_ERR_ARGUMENT,
                                 "%s cannot be combined with %s, which needs a closed surface",
-                                names[t], names[s]);
+                                names[*first], names[*second]);
             }
     if (stages & 1u << CW_STAGE_LOD &&
         stages & (1u << CW_STAGE_SIMPLIFY | 1u << CW_STAGE_VIEWS)) {

@@ -1,16 +1,18 @@
-/* Declares the stages of the pipeline: a stage is a row of the table in stages.c and a function. */
+/* Declares the stages of the pipeline: a stage is a row of the recipe in stages.c and a function. */
 #ifndef EXTRACT_PIPELINE_STAGES_H
 #define EXTRACT_PIPELINE_STAGES_H
 
 #include <cubewright/pipeline.h>
 
-/* Needs of a stage. */
+/* Needs of a stage, and sources beside a volume and its slices that it is made for. Without any, it
+ * takes a mesh in memory or, of slices, the spool of the run. */
 enum {
-    CWI_WHOLE_MESH = 1,  /* the surface in memory as a whole */
-    CWI_VOXELS = 2,      /* the volume that it came from, in memory */
-    CWI_ONE_SURFACE = 4, /* a surface without neighbours that share its triangles */
-    CWI_CLOSED = 8,      /* no part of it was left out that cameras do not see */
-    CWI_SPOOL = 16,      /* with CWI_WHOLE_MESH: a surface in a spool does as well */
+    CWI_WHOLE_MESH = 1, /* the whole surface in memory */
+    CWI_SPOOL = 2,      /* the whole surface: in memory or in the spool */
+    CWI_VOXELS = 4,     /* the volume that it came from, in memory */
+    CWI_CLOSED = 8,     /* no part of it was left out that cameras do not see */
+    CWI_ON_LABELS = 16, /* made for labels, which share their interfaces: see run_labels.c */
+    CWI_ON_PARTS = 32,  /* made for parts: they or what joins them do it, not the pipeline */
 };
 
 /* Properties of a surface that a stage spoils. */
@@ -43,6 +45,7 @@ typedef struct cwi_pipeline {
 
 /* A stage. */
 typedef struct cwi_stage {
+    cw_stage stage;
     bool (*is_wanted)(const cw_pipeline_desc *desc);
     unsigned needs, spoils;
     /* Works on each finished surface: those of levels of detail, too. */
@@ -50,8 +53,8 @@ typedef struct cwi_stage {
     cw_status (*run)(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 } cwi_stage;
 
-/* Returns the row of a stage. */
-const cwi_stage *cwi_stage_of(cw_stage stage);
+/* The stages in the order in which they run. */
+extern const cwi_stage cwi_recipe[CW_STAGE_COUNT];
 
 /* Returns what the wanted stages spoil. */
 unsigned cwi_spoils(const cw_pipeline_desc *desc);
@@ -74,6 +77,9 @@ CW_NODISCARD cw_status cwi_begin_pipeline(cwi_pipeline *p, cw_surface_source sou
 /* Finishes a surface by the stages that do, and gives it away. */
 CW_NODISCARD cw_status cwi_finish_surface(cwi_pipeline *p, cw_pipeline_surface *surface,
                                           cw_pipeline_sink sink, cw_error *err);
+
+/* Copies the facts that the version of the caller's struct has. facts: NULL: nothing is copied */
+void cwi_give_facts(const cwi_pipeline *p, cw_pipeline_facts *facts);
 
 /* Fails with CW_ERR_EMPTY if all components are small. */
 CW_NODISCARD cw_status cwi_expect_kept(const cwi_pipeline *p, cw_error *err);

@@ -15,7 +15,8 @@
 extern "C" {
 #endif
 
-/* The stages, in the order in which they run: constant, and name. */
+/* The stages: constant, and name. They run in this order. One that a later version adds gets the
+ * next number, wherever it runs. */
 #define CW_STAGE_TABLE(X)                                                                      \
     X(CW_STAGE_VIEWS, "camera")                                                                \
     X(CW_STAGE_EXTRACT, "extract")                                                             \
@@ -97,8 +98,10 @@ typedef struct cw_pipeline_desc {
     cw_pipeline_watch watch; /* default: none */
 } cw_pipeline_desc;
 
-/* Results of the stages that ran; those of others are zero. */
+/* Results of the stages that ran; those of others are zero. Zero-initialise the struct before it is
+ * filled. */
 typedef struct cw_pipeline_facts {
+    uint32_t version;             /* 0: the first version of this struct */
     unsigned ran;                 /* a bit 1u << stage for each stage that ran */
     cw_extract_counts extracted;  /* of the surface as it came from the volume */
     cw_drop_counts small;         /* CW_STAGE_MIN_VOLUME */
@@ -132,7 +135,7 @@ typedef struct cw_pipeline_sink {
 } cw_pipeline_sink;
 
 /* Returns the stages that the settings ask for, a bit 1u << stage for each.
- * desc  borrowed; NULL asks for none */
+ * desc  borrowed; NULL, and a version that this library does not know, ask for none */
 CW_API unsigned cw_pipeline_stages(const cw_pipeline_desc *desc);
 
 /* Finds out whether stages go together, on a source: some need the whole surface in memory, some
@@ -157,7 +160,7 @@ CW_NODISCARD CW_API cw_status cw_pipeline_check(cw_surface_source source, unsign
  * extractor  of this volume, for one of several surfaces; NULL: this one by itself
  * desc       borrowed
  * sink       takes the result; without it, use cw_pipeline_mesh()
- * facts      may be NULL
+ * facts      filled as far as its version goes; may be NULL
  *
  * Returns  CW_ERR_EMPTY  no surface at this isovalue, with the range of the values; or nothing is
  *                        left of it after a stage; or as cw_pipeline_check(), as the functions
@@ -171,7 +174,7 @@ CW_NODISCARD CW_API cw_status cw_pipeline_run(const cw_volume *volume, cw_extrac
 /* Does the same for one surface, and fills a mesh with it.
  * desc     borrowed; lod_count is 0
  * mesh     filled on success, emptied on failure; free it with cw_mesh_free()
- * facts    may be NULL
+ * facts    as in cw_pipeline_run()
  * Returns  as cw_pipeline_run() */
 CW_NODISCARD CW_API cw_status cw_pipeline_mesh(const cw_volume *volume, cw_extractor *extractor,
                                                const cw_pipeline_desc *desc, cw_mesh *mesh,
@@ -182,7 +185,7 @@ CW_NODISCARD CW_API cw_status cw_pipeline_mesh(const cw_volume *volume, cw_extra
  * source   borrowed; as in cw_extract_stream()
  * desc     extract.max_bytes limits the memory for slices, components and check together
  * sink     takes the result
- * facts    may be NULL
+ * facts    as in cw_pipeline_run()
  * Returns  as cw_pipeline_run(), cw_extract_stream(), cw_mesh_spool_new() */
 CW_NODISCARD CW_API cw_status cw_pipeline_run_slices(const cw_slice_source *source,
                                                      const cw_pipeline_desc *desc,
@@ -212,7 +215,7 @@ typedef struct cw_pipeline_labels {
  * labels   borrowed
  * desc     borrowed; of extract only no_normals, threads and progress count
  * sink     takes the surfaces, by level, layer and label
- * facts    may be NULL; extracted.triangles are those before simplification
+ * facts    as in cw_pipeline_run(); extracted.triangles are those before simplification
  * Returns  as cw_pipeline_check(), cw_label_simplify(), cw_simplify(), cw_label_mesh(), and as sink
  * Threads  reentrant; the same to the bit for any number of threads */
 CW_NODISCARD CW_API cw_status cw_pipeline_run_labels(const cw_pipeline_labels *labels,

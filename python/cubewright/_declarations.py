@@ -2897,6 +2897,7 @@ cw_pipeline_desc._fields_ = [
 
 
 class cw_pipeline_facts(Structure):
+    version: int
     ran: int
     extracted: Any
     small: Any
@@ -2914,6 +2915,7 @@ class cw_pipeline_facts(Structure):
 
 
 cw_pipeline_facts._fields_ = [
+    ("version", c_uint32),
     ("ran", c_uint),
     ("extracted", cw_extract_counts),
     ("small", cw_drop_counts),

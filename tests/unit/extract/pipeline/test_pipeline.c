@@ -112,7 +112,7 @@ static void stages_are_the_calls_one_after_the_other(void **state)
                                   bits & 32 && cw_simplify_available() ? &simplify : NULL,
                               .color = bits & 64 ? &color : NULL};
         const bool by_slabs = d.simplify && !(bits & 31);
-        cw_pipeline_facts facts;
+        cw_pipeline_facts facts = {0};
         cw_mesh mesh;
         cw_error err = {0};
         if (by_slabs || (test_is_short() && bits * 37 % 128 >= 32))
@@ -189,7 +189,7 @@ static void slices_give_the_surface_of_the_volume(void **state)
                                     .simplify = reduces ? &simplify : NULL,
                                     .check = true,
                                     .spool_path = test_path("surface")};
-        cw_pipeline_facts facts, whole;
+        cw_pipeline_facts facts = {0}, whole = {0};
         taken t = {0};
         cw_mesh mesh;
         cw_error err = {0};
@@ -266,7 +266,7 @@ static void note_stage(void *user, cw_stage stage, size_t before, size_t after)
     w->stages[w->count++] = stage;
 }
 
-static void stages_run_in_the_order_of_the_table(void **state)
+static void stages_run_in_the_order_of_the_recipe(void **state)
 {
     (void)state;
     cw_volume volume = make_noisy();
@@ -334,7 +334,7 @@ static void labels_are_simplified_together_and_given_away_apart(void **state)
     const cw_simplify_desc simplify = {.error_mm = 0.2};
     const cw_label_simplify_desc by_hand = {.error_mm = 0.2};
     const cw_pipeline_desc d = {.simplify = &simplify, .check = true};
-    cw_pipeline_facts facts;
+    cw_pipeline_facts facts = {0};
     cw_error err = {0};
     assert_ok(cw_extract_labels(&volume, NULL, &surfaces, &err), err);
     const size_t before = surfaces.mesh.triangle_count;
@@ -422,6 +422,23 @@ static void stages_exclude_each_other(void **state)
     }
 }
 
+static void later_versions_are_refused(void **state)
+{
+    (void)state;
+    cw_volume volume = make_noisy();
+    cw_mesh mesh;
+    cw_error err = {0};
+    cw_pipeline_desc d = {.extract = {.isovalue = ISO}, .largest = 1};
+    cw_pipeline_facts facts = {.version = 1, .culled = 7};
+    assert_fails(cw_pipeline_mesh(&volume, NULL, &d, &mesh, &facts, &err), CW_ERR_ARGUMENT,
+                 "facts->version is 1; this library knows up to 0", err);
+    assert_int_equal(facts.culled, 7);
+    assert_true(cw_pipeline_stages(&d) >> CW_STAGE_LARGEST & 1);
+    d.version = 1;
+    assert_int_equal(cw_pipeline_stages(&d), 0);
+    cw_volume_free(&volume);
+}
+
 static void an_empty_surface_tells_the_range(void **state)
 {
     (void)state;
@@ -447,10 +464,11 @@ int main(void)
         cmocka_unit_test_setup_teardown(slices_give_the_surface_of_the_volume, test_folder_make,
                                         test_folder_remove),
         cmocka_unit_test(levels_are_given_away_one_by_one),
-        cmocka_unit_test(stages_run_in_the_order_of_the_table),
+        cmocka_unit_test(stages_run_in_the_order_of_the_recipe),
         cmocka_unit_test(labels_are_simplified_together_and_given_away_apart),
         cmocka_unit_test(sources_exclude_what_they_cannot_give),
         cmocka_unit_test(stages_exclude_each_other),
+        cmocka_unit_test(later_versions_are_refused),
         cmocka_unit_test(an_empty_surface_tells_the_range),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
