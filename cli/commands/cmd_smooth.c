@@ -4,7 +4,7 @@
 #include "cli/commands/smooth_together.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
-#include "cli/results/smoothed.h"
+#include "cli/results/stage_facts.h"
 #include "core/base/status.h"
 #include "core/mesh/mesh.h"
 

@@ -50,10 +50,10 @@ double cli_extract_error_mm(const cli_extract_run *s)
     return cli_extract_length_mm(s, &s->args->simplify.error);
 }
 
-double cli_extract_least_mm3(const cli_extract_run *s)
+double cli_extract_least_mm3(const cli_extract_args *args, const cli_volume *volume)
 {
-    const cli_amount *least = &s->args->least;
-    const double voxel = cli_extract_voxel_mm(s);
+    const cli_amount *least = &args->least;
+    const double voxel = cli_volume_voxel_mm(volume);
     return !least->given   ? 0
            : least->voxels ? least->value * voxel * voxel * voxel
                            : least->value;
@@ -80,16 +80,16 @@ size_t cli_extract_largest(const cli_extract_args *args)
     return args->profile == CLI_PROFILE_PRINT && !chooses ? 1 : args->largest;
 }
 
-cw_smooth_desc cli_extract_smoothing(const cli_extract_run *s)
+cw_smooth_desc cli_extract_smoothing(const cli_extract_args *args, const cli_volume *volume)
 {
-    const cli_smoothing *smooth = &s->args->smooth;
-    const cli_length *most = &s->args->max_move;
+    const cli_smoothing *smooth = &args->smooth;
+    const cli_length *most = &args->max_move;
     return (cw_smooth_desc){
         .method = (cw_smooth_method)smooth->method,
         .iterations = smooth->iterations,
-        .width_mm = smooth->width.given ? cli_extract_length_mm(s, &smooth->width) : 0,
-        .max_move_mm = most->given ? cli_extract_length_mm(s, most)
-                                   : DEFAULT_MOVE * cli_extract_voxel_mm(s),
+        .width_mm = smooth->width.given ? cli_volume_length_mm(volume, &smooth->width) : 0,
+        .max_move_mm = most->given ? cli_volume_length_mm(volume, most)
+                                   : DEFAULT_MOVE * cli_volume_voxel_mm(volume),
     };
 }
 
@@ -129,7 +129,7 @@ void cli_extract_put_params(cli_json *j, const void *p, const cli_made *made)
     if (args->lod.count)
         cli_json_lod(j, &args->lod);
     if (args->least.given)
-        cli_json_number(j, "min_volume_mm3", cli_extract_least_mm3(s));
+        cli_json_number(j, "min_volume_mm3", cli_extract_least_mm3(args, &s->input.volume));
     if (cli_extract_largest(args))
         cli_json_count(j, "largest", cli_extract_largest(args));
     if (args->profile == CLI_PROFILE_PRINT) {
@@ -143,7 +143,8 @@ void cli_extract_put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_text(j, "cut_plane", cli_plane_text(&args->cut));
     if (args->smooth.given) {
         cli_json_text(j, "smooth", cli_smoothing_text(&args->smooth));
-        cli_json_number(j, "max_move_mm", cli_extract_smoothing(s).max_move_mm);
+        cli_json_number(j, "max_move_mm",
+                        cli_extract_smoothing(args, &s->input.volume).max_move_mm);
     }
     put_pixels(j, s);
     cli_json_color(j, &s->coloring);
@@ -184,7 +185,8 @@ size_t cli_extract_provenance(const cli_extract_run *s, size_t n, cli_making *ma
     lines[count++] = (cw_provenance){"placement", args->placement ? "cubic" : "linear"};
     if (args->smooth.given) {
         snprintf(making->smooth, sizeof making->smooth, "by %s, %.9g mm at most",
-                 cli_smoothing_text(&args->smooth), cli_extract_smoothing(s).max_move_mm);
+                 cli_smoothing_text(&args->smooth),
+                 cli_extract_smoothing(args, &s->input.volume).max_move_mm);
         lines[count++] = (cw_provenance){"smoothed", making->smooth};
     }
     if (args->cut.given)

@@ -117,10 +117,10 @@ double cli_extract_length_mm(const cli_extract_run *s, const cli_length *length)
 double cli_extract_error_mm(const cli_extract_run *s);
 
 /* Returns the settings of --smooth. */
-cw_smooth_desc cli_extract_smoothing(const cli_extract_run *s);
+cw_smooth_desc cli_extract_smoothing(const cli_extract_args *args, const cli_volume *volume);
 
 /* Returns the minimum volume that a component encloses; 0: no minimum. */
-double cli_extract_least_mm3(const cli_extract_run *s);
+double cli_extract_least_mm3(const cli_extract_args *args, const cli_volume *volume);
 
 bool cli_extract_is_low(const cli_extract_run *s);
 bool cli_extract_is_simplified(const cli_extract_args *args);
@@ -146,6 +146,13 @@ size_t cli_extract_provenance(const cli_extract_run *s, size_t n, cli_making *ma
                               cw_provenance lines[CLI_EXTRACT_PROVENANCE]);
 
 /* ---- a surface --------------------------------------------------------------------------- */
+
+/* Sets the stages that options ask for, of surfaces and of labels. Those that simplify follow. */
+void cli_extract_describe_stages(const cli_extract_args *args, const cli_volume *volume,
+                                 cli_surface_settings *settings);
+
+/* Says what the stages did. */
+void cli_extract_tell_stages(cli_extract_run *s, cli_made *made);
 
 /* Computes the settings of the surface at an isovalue. They point into each other. */
 CW_NODISCARD cw_status cli_extract_describe(const cli_extract_run *run, double iso,

@@ -2,12 +2,11 @@
 #include "cli/extract/extract_run.h"
 
 #include "cli/extract/extract_proof.h"
-#include "cli/extract/small_components.h"
 #include "cli/framework/console.h"
 #include "cli/inputs/cut_options.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/results/mesh_comparison.h"
-#include "cli/results/smoothed.h"
+#include "cli/results/stage_facts.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 
@@ -55,93 +54,65 @@ static cw_simplify_desc simplify_desc(const cli_extract_run *s, double error)
     };
 }
 
+void cli_extract_describe_stages(const cli_extract_args *args, const cli_volume *volume,
+                                 cli_surface_settings *set)
+{
+    set->smooth = cli_extract_smoothing(args, volume);
+    set->cut = cli_cut_desc(&args->cut);
+    set->desc = (cw_pipeline_desc){
+        .min_volume_mm3 = cli_extract_least_mm3(args, volume),
+        .largest = cli_extract_largest(args),
+        .fill_voids = args->fill_voids,
+        .smooth = args->smooth.given ? &set->smooth : NULL,
+        .cut = args->cut.given ? &set->cut : NULL,
+        .cull = args->pixel.cull,
+        .lod = args->lod.n,
+        .lod_count = args->lod.count,
+    };
+}
+
 cw_status cli_extract_describe(const cli_extract_run *s, double iso, cli_surface_settings *set,
                                cw_error *err)
 {
     const cli_extract_args *args = s->args;
-    const double least_mm3 = cli_extract_least_mm3(s);
-    const size_t largest = cli_extract_largest(args);
+    cw_pipeline_desc *d = &set->desc;
     double error;
     cw_status st = find_error(s, &error, err);
     if (st != CW_OK)
         return st;
-    set->smooth = args->smooth.given ? cli_extract_smoothing(s) : (cw_smooth_desc){0};
-    set->cut = cli_cut_desc(&args->cut);
+    cli_extract_describe_stages(args, &s->input.volume, set);
+    d->extract =
+        (cw_extract_desc){.isovalue = iso,
+                          .inside_is_low = cli_extract_is_low(s),
+                          .leave_open = args->open,
+                          .simple_topology = args->topology,
+                          .cubic_placement = args->placement,
+                          .snap = args->snap.value,
+                          .no_normals = args->normals,
+                          .threads = (int)args->input.threads,
+                          .max_triangles = args->max_triangles,
+                          .extra_bytes = args->check || args->fill_voids ? cli_check_bytes()
+                                         : d->min_volume_mm3 > 0 || d->largest ? DROP_BYTES
+                                                                               : 0};
     set->simplify = simplify_desc(s, error);
-    set->desc = (cw_pipeline_desc){
-        .extract = {.isovalue = iso,
-                    .inside_is_low = cli_extract_is_low(s),
-                    .leave_open = args->open,
-                    .simple_topology = args->topology,
-                    .cubic_placement = args->placement,
-                    .snap = args->snap.value,
-                    .no_normals = args->normals,
-                    .threads = (int)args->input.threads,
-                    .max_triangles = args->max_triangles,
-                    .extra_bytes = args->check || args->fill_voids ? cli_check_bytes()
-                                   : least_mm3 > 0 || largest      ? DROP_BYTES
-                                                                   : 0},
-        .min_volume_mm3 = least_mm3,
-        .largest = largest,
-        .fill_voids = args->fill_voids,
-        .smooth = args->smooth.given ? &set->smooth : NULL,
-        .cut = args->cut.given ? &set->cut : NULL,
-        .simplify = cli_extract_is_simplified(args) ? &set->simplify : NULL,
-        .views = (cw_simplify_view *)(uintptr_t)s->plan.views,
-        .view_count = s->plan.view_count,
-        .cull = args->pixel.cull,
-        .lod = args->lod.n,
-        .lod_count = args->lod.count,
-        .layers = args->slab,
-    };
+    d->simplify = cli_extract_is_simplified(args) ? &set->simplify : NULL;
+    d->views = (cw_simplify_view *)(uintptr_t)s->plan.views;
+    d->view_count = s->plan.view_count;
+    d->layers = args->slab;
     return CW_OK;
 }
 
 /* --- a run of the pipeline ------------------------------------------------------------------ */
 
-static void tell_smoothing(cli_extract_run *s, const cli_made *made)
+void cli_extract_tell_stages(cli_extract_run *s, cli_made *made)
 {
-    const cw_smooth_facts *f = &made->facts.smoothed;
-    char text[CLI_SMOOTHED_TEXT];
-    cli_smoothed_text(f, text);
-    cli_say("%s: smoothed by %s: %s", s->input.volume.path,
-            cli_smoothing_text(&s->args->smooth), text);
-    if (f->undecided)
-        cli_report_warn(&s->output.report, "too many triangles are in one place: new "
-                                           "intersections there were not looked for");
-}
-
-static bool has_run(const cli_made *made, cw_stage stage)
-{
-    return made->facts.ran >> stage & 1;
-}
-
-/* Says what the stages did. */
-static void tell_stages(cli_extract_run *s, cli_made *made, const cli_surface_settings *set)
-{
-    const cw_pipeline_facts *f = &made->facts;
-    const char *path = s->input.volume.path;
-    made->least_mm3 = set->desc.min_volume_mm3;
-    if (has_run(made, CW_STAGE_MIN_VOLUME))
-        cli_tell_components(path, set->desc.min_volume_mm3, &f->small);
-    if (has_run(made, CW_STAGE_LARGEST))
-        cli_say("%s: %s of %s components kept, of %.6g mm3 or more; the largest of the others "
-                "has %.6g mm3",
-                path, cli_count(f->others.kept), cli_count(f->others.kept + f->others.dropped),
-                f->others.least_kept_mm3, f->others.largest_mm3);
-    if (has_run(made, CW_STAGE_FILL_VOIDS))
-        cli_say("%s: %s void%s filled, %.6g mm3", path, cli_count(f->voids.dropped),
-                f->voids.dropped == 1 ? "" : "s", f->voids.dropped_mm3);
-    if (has_run(made, CW_STAGE_SMOOTH))
-        tell_smoothing(s, made);
-    if (has_run(made, CW_STAGE_CUT))
-        cli_tell_cut(path, &s->args->cut, &f->cut);
-    if (has_run(made, CW_STAGE_CULL))
-        cli_say("%s: %.3g %% of the voxels are in bricks that cameras see; %s triangles in "
-                "them that no camera sees are left out",
-                path, 100 * (double)f->seen_voxels / (double)f->voxels, cli_count(f->culled));
-    if (has_run(made, CW_STAGE_COLOR))
-        cli_tell_coloring(&s->coloring, f);
+    cli_tell_stages(&(cli_staged){.subject = s->input.volume.path,
+                                  .facts = &made->facts,
+                                  .least_mm3 = made->least_mm3,
+                                  .smooth = &s->args->smooth,
+                                  .cut = &s->args->cut,
+                                  .coloring = &s->coloring,
+                                  .report = &s->output.report});
 }
 
 /* A run, and what its callbacks need. */
@@ -212,7 +183,8 @@ cw_status cli_extract_run_pipeline(cli_extract_run *s, const cli_moment *moment,
     if (st != CW_OK)
         return st;
     report_extraction(&m);
-    tell_stages(s, made, &set);
+    made->least_mm3 = set.desc.min_volume_mm3;
+    cli_extract_tell_stages(s, made);
     return CW_OK;
 }
 
@@ -338,9 +310,10 @@ cw_status cli_extract_prove(cli_extract_run *s, cli_made *made, const cw_mesh *m
 {
     cli_surface_settings set;
     cli_proof *p = &made->proof;
+    const bool culls = made->facts.ran >> CW_STAGE_CULL & 1;
     p->culled = made->facts.culled;
-    p->voxels = has_run(made, CW_STAGE_CULL) ? made->facts.voxels : 0;
-    p->seen_voxels = has_run(made, CW_STAGE_CULL) ? made->facts.seen_voxels : 0;
+    p->voxels = culls ? made->facts.voxels : 0;
+    p->seen_voxels = culls ? made->facts.seen_voxels : 0;
     if (!s->args->check || !(s->plan.view_count || s->args->pixel.most.given))
         return CW_OK;
     cli_report_begin(&s->output.report);

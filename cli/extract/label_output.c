@@ -39,9 +39,9 @@ static size_t make_provenance(const cli_label_run *r, char smoothing[48], char s
 static void sum_quality(const cli_label_run *r, size_t first, size_t count, cli_made *made)
 {
     made->measured = r->args->check && !r->args->shared_faces; /* three may meet at an edge */
-    made->quality = r->items[first].quality;
+    made->quality = r->items[first].facts.quality;
     for (size_t n = first + 1; n < first + count; n++)
-        cli_add_quality(&made->quality, &r->items[n].quality);
+        cli_add_quality(&made->quality, &r->items[n].facts.quality);
 }
 
 /* Delivers parts, which are the surfaces of items, as a file. */

@@ -1,6 +1,7 @@
 /* Tells of labels: the table of --table, and their part of the JSON report. */
 #include "cli/extract/label_run.h"
 
+#include "cli/results/stage_facts.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "core/geometry/affine.h"
@@ -59,12 +60,12 @@ static void put_row(FILE *out, const cli_label_run *r, const cli_label_item *ite
             item->voxels);
     if (!isnan(voxel))
         fprintf(out, "%.9g", voxel * (double)item->voxels);
-    if (item->quality.open_edges)
+    if (item->facts.quality.open_edges)
         fputs(",,", out); /* an open surface encloses nothing */
     else
-        fprintf(out, ",%.9g,", item->quality.volume_mm3);
-    fprintf(out, "%.9g,%zu,%zu,", item->quality.area_mm2, item->quality.triangles,
-            item->quality.components);
+        fprintf(out, ",%.9g,", item->facts.quality.volume_mm3);
+    fprintf(out, "%.9g,%zu,%zu,", item->facts.quality.area_mm2, item->facts.quality.triangles,
+            item->facts.quality.components);
     for (size_t p = 0; p < s->patch_count; p++)
         if (find_neighbour(item, &s->patches[p], &other)) {
             fprintf(out, "%s%u:%.6g", separator, other, cw_label_patch_area(s, &s->patches[p]));
@@ -137,11 +138,12 @@ static void put_item(cli_json *j, const cli_label_run *r, const cli_label_item *
     cli_json_count(j, "voxels", item->voxels);
     cli_json_number(j, "voxel_volume", voxel_mm3(r) * (double)item->voxels);
     cli_json_number(j, "mesh_volume",
-                    item->quality.open_edges ? NAN : item->quality.volume_mm3);
-    cli_json_number(j, "area", item->quality.area_mm2);
-    cli_json_count(j, "triangles", item->quality.triangles);
-    cli_json_count(j, "components", item->quality.components);
+                    item->facts.quality.open_edges ? NAN : item->facts.quality.volume_mm3);
+    cli_json_number(j, "area", item->facts.quality.area_mm2);
+    cli_json_count(j, "triangles", item->facts.quality.triangles);
+    cli_json_count(j, "components", item->facts.quality.components);
     put_neighbours(j, item);
+    cli_json_stages(j, &item->facts, 0);
     cli_json_close(j, '}');
 }
 

@@ -1,10 +1,12 @@
 /* Runs `extract --labels`: reads a label map, finds names, extracts the interfaces, makes a mesh
  * a label, checks and writes. */
+#define _GNU_SOURCE /* asprintf */
 #include "cli/extract/label_run.h"
 
 #include "cli/framework/console.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/inputs/label_scene.h"
+#include "cli/results/stage_facts.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 
@@ -194,7 +196,7 @@ static cw_status hold_item(const cli_label_run *r, const cli_label_item *item, c
 {
     char what[32];
     snprintf(what, sizeof what, "of label %u", item->label.value);
-    return cli_hold_to_promise(r->volume.path, what, &item->quality, r->args->open, err);
+    return cli_hold_to_promise(r->volume.path, what, &item->facts.quality, r->args->open, err);
 }
 
 static bool needs_quality(const cli_extract_args *args)
@@ -242,13 +244,24 @@ static void end_stage(void *user, cw_stage stage, size_t before, size_t after)
     cli_report_begin(&r->report);
 }
 
+static void tell_stages(cli_label_run *r, const cli_label_item *item)
+{
+    char *subject = NULL;
+    if (asprintf(&subject, "%s: label %u", r->volume.path, item->label.value) < 0)
+        return;
+    cli_tell_stages(
+        &(cli_staged){.subject = subject, .facts = &item->facts, .report = &r->report});
+    free(subject);
+}
+
 /* Keeps the mesh of a label, and writes a level of detail that is complete. */
 static cw_status take_label(void *user, cw_pipeline_surface *surface,
                             const cw_pipeline_facts *facts, cw_error *err)
 {
     cli_label_run *r = user;
     cli_label_item *item = find_item(r, surface->layer, surface->label);
-    item->quality = facts->quality;
+    item->facts = *facts;
+    tell_stages(r, item);
     cw_status st = r->args->check ? hold_item(r, item, err) : CW_OK;
     if (!r->args->shared_faces) {
         item->mesh = *surface->mesh;
@@ -288,19 +301,19 @@ static cw_status make_meshes(cli_label_run *r, cw_error *err)
                                        .wants = wants_label,
                                        .user = r};
     const cw_simplify_desc simplify = {.error_mm = r->error_mm, .triangles = r->target};
-    const cw_pipeline_desc desc = {
-        .extract = {.no_normals = args->normals || args->shared_faces,
-                    .threads = (int)args->input.threads},
-        .simplify = r->error_mm > 0 || r->target ? &simplify : NULL,
-        .lod = args->lod.n,
-        .lod_count = args->lod.count,
-        .check = needs_quality(args),
-        .watch = {begin_stage, end_stage, r}};
+    cli_surface_settings set;
+    cli_extract_describe_stages(args, &r->volume, &set);
+    set.desc.extract = (cw_extract_desc){.no_normals = args->normals || args->shared_faces,
+                                         .threads = (int)args->input.threads};
+    set.desc.simplify = r->error_mm > 0 || r->target ? &simplify : NULL;
+    set.desc.check = needs_quality(args);
+    set.desc.watch = (cw_pipeline_watch){begin_stage, end_stage, r};
     cw_pipeline_facts facts = {0};
     cli_report_begin(&r->report);
-    cw_status st = layers ? cw_pipeline_run_labels(
-                                &labels, &desc, (cw_pipeline_sink){take_label, r}, &facts, err)
-                          : cwi_fail_memory(err);
+    cw_status st = layers
+                       ? cw_pipeline_run_labels(&labels, &set.desc,
+                                                (cw_pipeline_sink){take_label, r}, &facts, err)
+                       : cwi_fail_memory(err);
     r->triangles = count_triangles(r);
     if (args->per_label)
         r->extracted = facts.extracted.triangles;

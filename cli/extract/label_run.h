@@ -20,7 +20,7 @@ typedef struct cli_label_item {
     const cli_label_layer *layer;
     size_t voxels;
     cw_mesh mesh; /* closed, unless open; empty where only interfaces are written */
-    cw_quality quality;
+    cw_pipeline_facts facts;
 } cli_label_item;
 
 typedef struct cli_label_run {

@@ -14,8 +14,9 @@ typedef struct lod_run {
     cli_extract_run *run;
     cw_mesh full;
     cw_mesh *levels;
-    size_t triangles;  /* of all levels */
-    cli_pieces pieces; /* the full surface is the only one */
+    cw_pipeline_facts facts[CLI_MAX_COUNTS]; /* of each level */
+    size_t triangles;                        /* of all levels */
+    cli_pieces pieces;                       /* the full surface is the only one */
 } lod_run;
 
 /* Moves a level out of the pipeline; with the last, the surface that all were made of. */
@@ -23,8 +24,8 @@ static cw_status take_level(void *user, cw_pipeline_surface *surface,
                             const cw_pipeline_facts *facts, cw_error *err)
 {
     lod_run *r = user;
-    (void)facts;
     (void)err;
+    r->facts[surface->level] = *facts;
     r->levels[surface->level] = *surface->mesh;
     r->triangles += surface->mesh->triangle_count;
     *surface->mesh = (cw_mesh){0};
@@ -84,6 +85,8 @@ static cw_status finish_level(void *state, cli_made *made, cw_mesh *level, cw_er
 {
     lod_run *r = state;
     made->iso = r->run->args->iso.value[0];
+    made->facts = r->facts[level - r->levels];
+    made->least_mm3 = r->run->output.report.made->least_mm3;
     return r->run->args->check ? hold_level(r, made, level, err) : CW_OK;
 }
 

@@ -2,8 +2,7 @@
 #include "cli/extract/small_components.h"
 
 #include "cli/framework/console.h"
-#include "cli/framework/quantity.h"
-#include "cli/inputs/extract_surface.h"
+#include "cli/results/stage_facts.h"
 #include "core/base/status.h"
 
 /* A sink, and whether it failed: its errors are complete. */
@@ -18,14 +17,6 @@ static cw_status pass_chunk(void *user, const cw_mesh_chunk *chunk, cw_error *er
     cw_status st = w->to.take(w->to.user, chunk, err);
     w->failed = st != CW_OK;
     return st;
-}
-
-void cli_tell_components(const char *name, double least_mm3, const cw_drop_counts *c)
-{
-    cli_say("%s: %s component%s kept, the smallest of %.6g mm3; %s dropped (< %.6g mm3), the "
-            "largest of %.6g mm3; %s triangles fewer",
-            name, cli_count(c->kept), c->kept == 1 ? "" : "s", c->least_kept_mm3,
-            cli_count(c->dropped), least_mm3, c->largest_mm3, cli_count(c->triangles));
 }
 
 cw_status cli_drop_small_components(const char *name, const cw_mesh_spool *spool,

@@ -15,7 +15,4 @@ CW_NODISCARD cw_status cli_drop_small_components(const char *name, const cw_mesh
                                                  cw_chunk_sink kept, cw_drop_counts *counts,
                                                  cw_error *err);
 
-/* Prints how many components were kept and dropped. */
-void cli_tell_components(const char *name, double least_mm3, const cw_drop_counts *counts);
-
 #endif

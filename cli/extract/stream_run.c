@@ -2,7 +2,6 @@
  * surface goes to temporary files beside its own. */
 #include "cli/extract/stream_run.h"
 
-#include "cli/extract/small_components.h"
 #include "cli/framework/console.h"
 #include "cli/inputs/volume_prepare.h"
 #include "core/base/memory.h"
@@ -129,21 +128,19 @@ static cw_status extract_slices(void *user, const cw_slice_source *source, cw_er
     return cli_explain_stages(s->run->input.volume.path, explain_limit(s->run, st, err), err);
 }
 
-/* Says what was left out, and holds the surface to the promise. */
+/* Says what the stages did, and holds the surface to the promise. */
 static cw_status judge_surface(cli_extract_run *run, cli_made *made, const cw_mesh *mesh,
                                cw_error *err)
 {
-    const cw_pipeline_facts *f = &made->facts;
     const char *path = run->input.volume.path;
     char what[32];
-    if (f->ran >> CW_STAGE_MIN_VOLUME & 1)
-        cli_tell_components(path, made->least_mm3, &f->small);
+    cli_extract_tell_stages(run, made);
     if (cli_extract_is_simplified(run->args))
         return cli_extract_judge(run, made, mesh, err);
     if (!run->args->check)
         return CW_OK;
     snprintf(what, sizeof what, "at %g", made->iso);
-    made->quality = f->quality;
+    made->quality = made->facts.quality;
     made->measured = true;
     return cli_hold_to_promise(path, what, &made->quality, run->args->open, err);
 }

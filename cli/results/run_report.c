@@ -5,10 +5,9 @@
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "cli/framework/run_config.h"
-#include "cli/inputs/cut_options.h"
 #include "cli/results/check_verdicts.h"
 #include "cli/results/compress_options.h"
-#include "cli/results/smoothed.h"
+#include "cli/results/stage_facts.h"
 #include "core/base/atomic_file.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -189,20 +188,6 @@ static void put_views(cli_json *j, const cli_proof *p)
     cli_json_close(j, ']');
 }
 
-/* Which components were left out: none as large as was asked for, and all that are. */
-static void put_dropped_components(cli_json *j, double least_mm3, const cw_drop_counts *c)
-{
-    cli_json_open(j, "components_dropped", '{');
-    cli_json_number(j, "least_mm3", least_mm3);
-    cli_json_count(j, "dropped", c->dropped);
-    cli_json_count(j, "kept", c->kept);
-    cli_json_count(j, "dropped_triangles", c->triangles);
-    cli_json_number(j, "dropped_mm3", c->dropped_mm3);
-    cli_json_number(j, "largest_dropped_mm3", c->largest_mm3);
-    cli_json_number(j, "least_kept_mm3", c->least_kept_mm3);
-    cli_json_close(j, '}');
-}
-
 /* Writes the promise about the pictures of cameras, what was measured, and what it saved.
  * full_to_field  how far the full mesh is from the field; NULL: not measured */
 static void put_proof(cli_json *j, const cli_proof *p, const cw_distance *full_to_field)
@@ -245,25 +230,6 @@ static void put_crop(cli_json *j, const cli_crop_proof *p)
     cli_json_close(j, '}');
 }
 
-/* Writes what the stages of the pipeline did. */
-static void put_stages(cli_json *j, const cli_made *m)
-{
-    const cw_pipeline_facts *f = &m->facts;
-    if (f->ran >> CW_STAGE_MIN_VOLUME & 1)
-        put_dropped_components(j, m->least_mm3, &f->small);
-    if (f->ran >> CW_STAGE_FILL_VOIDS & 1) {
-        cli_json_open(j, "voids_filled", '{');
-        cli_json_count(j, "count", f->voids.dropped);
-        cli_json_count(j, "dropped_triangles", f->voids.triangles);
-        cli_json_number(j, "filled_mm3", f->voids.dropped_mm3);
-        cli_json_close(j, '}');
-    }
-    if (f->ran >> CW_STAGE_CUT & 1)
-        cli_json_cut(j, &f->cut);
-    if (f->ran >> CW_STAGE_SMOOTH & 1)
-        cli_json_smoothed(j, &f->smoothed);
-}
-
 static void put_facts(cli_json *j, const cli_made *m)
 {
     if (m->measured)
@@ -272,7 +238,7 @@ static void put_facts(cli_json *j, const cli_made *m)
         put_snap(j, &m->snap);
     if (m->compared.made || m->compared.has_field)
         put_comparison(j, &m->compared);
-    put_stages(j, m);
+    cli_json_stages(j, &m->facts, m->least_mm3);
     if (m->print.count)
         cli_json_verdicts(j, m->print.verdicts, m->print.count);
     if (m->print.facts.area_mm2 > 0)

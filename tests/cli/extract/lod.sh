@@ -31,3 +31,6 @@ cubewright extract s.nrrd --batch --iso 0 --lod 400,300 -o 'out/{stem}-b.stl' --
 ls out
 # --simplify is not measured either
 cubewright extract s.nrrd --iso 0 --simplify 500 -o plain.ply --no-measure
+# each level tells what was done to the surface
+cubewright extract s.nrrd --iso 0 --fill-voids --lod 400,300 -o v.stl --no-measure -q --json v.json
+grep -c '"voids_filled"' v.json

@@ -1,0 +1,167 @@
+/* The table of what stages tell: a row a stage, for people and for the report. */
+#include "cli/results/stage_facts.h"
+
+#include "cli/framework/console.h"
+#include "cli/framework/quantity.h"
+#include "cli/inputs/cut_options.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* Smaller changes of the volume are rounding to single precision. */
+static const double UNCHANGED_PERCENT = 1e-4;
+
+void cli_json_smoothed(cli_json *j, const cw_smooth_facts *f)
+{
+    cli_json_open(j, "smooth", '{');
+    cli_json_number(j, "max_mm", f->max_mm);
+    cli_json_number(j, "mean_mm", f->mean_mm);
+    cli_json_number(j, "volume_before_mm3", f->volume_before_mm3);
+    cli_json_number(j, "volume_after_mm3", f->volume_after_mm3);
+    cli_json_count(j, "flipped", f->flipped);
+    cli_json_count(j, "border_vertices", f->border);
+    cli_json_count(j, "junction_vertices", f->junction);
+    cli_json_count(j, "put_back", f->put_back);
+    cli_json_close(j, '}');
+}
+
+void cli_smoothed_text(const cw_smooth_facts *f, char text[CLI_SMOOTHED_TEXT])
+{
+    const double change = 100 * (f->volume_after_mm3 / f->volume_before_mm3 - 1);
+    size_t used = (size_t)snprintf(text, CLI_SMOOTHED_TEXT,
+                                   "vertices moved by at most %.3g mm, mean %.3g mm", f->max_mm,
+                                   f->mean_mm);
+    if (!f->border && f->volume_before_mm3 != 0)
+        used += (size_t)snprintf(text + used, CLI_SMOOTHED_TEXT - used,
+                                 "; volume %.6g mm3, changed by %.2g %%", f->volume_after_mm3,
+                                 fabs(change) < UNCHANGED_PERCENT ? 0 : change);
+    snprintf(text + used, CLI_SMOOTHED_TEXT - used, "; %s triangle%s flipped",
+             cli_count(f->flipped), f->flipped == 1 ? "" : "s");
+}
+
+/* --- components ----------------------------------------------------------------------------- */
+
+void cli_tell_components(const char *name, double least_mm3, const cw_drop_counts *c)
+{
+    cli_say("%s: %s component%s kept, the smallest of %.6g mm3; %s dropped (< %.6g mm3), the "
+            "largest of %.6g mm3; %s triangles fewer",
+            name, cli_count(c->kept), c->kept == 1 ? "" : "s", c->least_kept_mm3,
+            cli_count(c->dropped), least_mm3, c->largest_mm3, cli_count(c->triangles));
+}
+
+static void tell_dropped(const cli_staged *s)
+{
+    cli_tell_components(s->subject, s->least_mm3, &s->facts->small);
+}
+
+static void put_dropped(cli_json *j, const cw_pipeline_facts *f, double least_mm3)
+{
+    cli_json_open(j, "components_dropped", '{');
+    cli_json_number(j, "least_mm3", least_mm3);
+    cli_json_count(j, "dropped", f->small.dropped);
+    cli_json_count(j, "kept", f->small.kept);
+    cli_json_count(j, "dropped_triangles", f->small.triangles);
+    cli_json_number(j, "dropped_mm3", f->small.dropped_mm3);
+    cli_json_number(j, "largest_dropped_mm3", f->small.largest_mm3);
+    cli_json_number(j, "least_kept_mm3", f->small.least_kept_mm3);
+    cli_json_close(j, '}');
+}
+
+static void tell_largest(const cli_staged *s)
+{
+    const cw_drop_counts *c = &s->facts->others;
+    cli_say("%s: %s of %s components kept, of %.6g mm3 or more; the largest of the others "
+            "has %.6g mm3",
+            s->subject, cli_count(c->kept), cli_count(c->kept + c->dropped), c->least_kept_mm3,
+            c->largest_mm3);
+}
+
+static void tell_voids(const cli_staged *s)
+{
+    const cw_drop_counts *c = &s->facts->voids;
+    cli_say("%s: %s void%s filled, %.6g mm3", s->subject, cli_count(c->dropped),
+            c->dropped == 1 ? "" : "s", c->dropped_mm3);
+}
+
+static void put_voids(cli_json *j, const cw_pipeline_facts *f, double least_mm3)
+{
+    (void)least_mm3;
+    cli_json_open(j, "voids_filled", '{');
+    cli_json_count(j, "count", f->voids.dropped);
+    cli_json_count(j, "dropped_triangles", f->voids.triangles);
+    cli_json_number(j, "filled_mm3", f->voids.dropped_mm3);
+    cli_json_close(j, '}');
+}
+
+/* --- shape and colours ---------------------------------------------------------------------- */
+
+static void tell_smoothing(const cli_staged *s)
+{
+    char text[CLI_SMOOTHED_TEXT];
+    cli_smoothed_text(&s->facts->smoothed, text);
+    cli_say("%s: smoothed by %s: %s", s->subject, cli_smoothing_text(s->smooth), text);
+    if (s->facts->smoothed.undecided)
+        cli_report_warn(s->report, "too many triangles are in one place: new "
+                                   "intersections there were not looked for");
+}
+
+static void put_smoothing(cli_json *j, const cw_pipeline_facts *f, double least_mm3)
+{
+    (void)least_mm3;
+    cli_json_smoothed(j, &f->smoothed);
+}
+
+static void tell_cut(const cli_staged *s)
+{
+    cli_tell_cut(s->subject, s->cut, &s->facts->cut);
+}
+
+static void put_cut(cli_json *j, const cw_pipeline_facts *f, double least_mm3)
+{
+    (void)least_mm3;
+    cli_json_cut(j, &f->cut);
+}
+
+static void tell_culling(const cli_staged *s)
+{
+    const cw_pipeline_facts *f = s->facts;
+    cli_say("%s: %.3g %% of the voxels are in bricks that cameras see; %s triangles in "
+            "them that no camera sees are left out",
+            s->subject, 100 * (double)f->seen_voxels / (double)f->voxels, cli_count(f->culled));
+}
+
+static void tell_colors(const cli_staged *s)
+{
+    cli_tell_coloring(s->coloring, s->facts);
+}
+
+/* --- the table ------------------------------------------------------------------------------ */
+
+/* In the order in which keys stand in the report. put: NULL: nothing, or another part of it tells */
+static const struct row {
+    cw_stage stage;
+    void (*tell)(const cli_staged *surface);
+    void (*put)(cli_json *j, const cw_pipeline_facts *facts, double least_mm3);
+} ROWS[] = {
+    {CW_STAGE_MIN_VOLUME, tell_dropped, put_dropped},
+    {CW_STAGE_LARGEST, tell_largest, NULL},
+    {CW_STAGE_FILL_VOIDS, tell_voids, put_voids},
+    {CW_STAGE_SMOOTH, tell_smoothing, put_smoothing},
+    {CW_STAGE_CUT, tell_cut, put_cut},
+    {CW_STAGE_CULL, tell_culling, NULL},
+    {CW_STAGE_COLOR, tell_colors, NULL},
+};
+
+void cli_tell_stages(const cli_staged *s)
+{
+    for (const struct row *r = ROWS; r < ROWS + sizeof ROWS / sizeof *ROWS; r++)
+        if (s->facts->ran >> r->stage & 1)
+            r->tell(s);
+}
+
+void cli_json_stages(cli_json *j, const cw_pipeline_facts *f, double least_mm3)
+{
+    for (const struct row *r = ROWS; r < ROWS + sizeof ROWS / sizeof *ROWS; r++)
+        if (r->put && f->ran >> r->stage & 1)
+            r->put(j, f, least_mm3);
+}
