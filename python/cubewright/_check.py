@@ -15,6 +15,7 @@ from . import _declarations as c
 from ._errors import call, name_keywords
 from ._extract import AnyVolume, extract, take_inside
 from ._library import lib
+from ._memory import unpack
 from ._mesh import Mesh, take_mesh
 from ._options import take_choice, take_flag, take_length, take_number, take_numbers, take_threads
 from ._progress import Progress, Reporter
@@ -64,19 +65,6 @@ class Check:
     def __repr__(self) -> str:
         bad = [v.text for v in self.verdicts if v.grade in ("fail", "unknown")]
         return f"<cubewright.Check {self.profile}: {'holds' if self.holds else '; '.join(bad)}>"
-
-
-def unpack(struct: ctypes.Structure) -> dict[str, Any]:
-    """Returns the fields of a struct of numbers as a dict that JSON can hold."""
-    values: dict[str, Any] = {}
-    for field in struct._fields_:
-        value = getattr(struct, field[0])
-        if isinstance(value, ctypes.Structure):
-            value = unpack(value)
-        elif isinstance(value, ctypes.Array):
-            value = list(value)
-        values[field[0]] = value
-    return values
 
 
 def unpack_print(facts: c.cw_print_facts) -> dict[str, Any]:

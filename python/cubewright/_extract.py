@@ -16,7 +16,7 @@ from ._color import COLORMAPS
 from ._cut import describe_cut
 from ._errors import Error, Status, call
 from ._library import lib
-from ._memory import Owner
+from ._memory import Owner, unpack
 from ._mesh import Mesh
 from ._options import take_choice, take_count, take_flag, take_length, take_number, take_numbers, take_threads
 from ._progress import Progress, Reporter
@@ -149,6 +149,8 @@ def extract(
     max_triangles, max_bytes  fail beyond, before more memory is taken; 0: no limit
     threads     0: all; progress: see Progress
 
+    What the stages did is in the facts of the mesh: mesh.facts["voids"]["dropped"].
+
     A volume without a crossing gives a mesh without triangles. Raises Error: ARGUMENT, UNSUPPORTED,
     LIMIT, NO_MEMORY, CANCELLED.
     """
@@ -175,8 +177,9 @@ def extract_levels(
     desc = settings.describe(iso, source, reporter)
     desc.lod, desc.lod_count = (c_size_t * len(counts))(*counts), len(counts)
 
-    def take_level(_user: int | None, surface: Any, _facts: Any, _err: Any) -> int:
+    def take_level(_user: int | None, surface: Any, facts: Any, _err: Any) -> int:
         mesh = Mesh._from_c(c.cw_mesh())
+        mesh.facts = unpack_facts(facts.contents)
         memmove(byref(mesh._struct), surface.contents.mesh, sizeof(c.cw_mesh))
         memset(surface.contents.mesh, 0, sizeof(c.cw_mesh))
         levels.append(mesh)
@@ -196,12 +199,23 @@ def run_pipeline(
     reporter = Reporter(settings.progress)
     desc = settings.describe(iso, source, reporter)
     mesh = Mesh._from_c(c.cw_mesh())
+    facts = c.cw_pipeline_facts()
     try:
-        reporter.call(lib.cw_pipeline_mesh, byref(view), extractor, byref(desc), byref(mesh._struct), None)
+        reporter.call(lib.cw_pipeline_mesh, byref(view), extractor, byref(desc), byref(mesh._struct), byref(facts))
     except Error as error:
         if error.status != Status.EMPTY or settings.color_by is not None:
             raise
+    mesh.facts = unpack_facts(facts)
     return mesh
+
+
+def unpack_facts(facts: c.cw_pipeline_facts) -> dict[str, Any]:
+    """Returns what the stages found, with the names of those that ran."""
+    values = unpack(facts)
+    del values["version"]
+    ran = values["ran"]
+    values["ran"] = [lib.cw_stage_name(s).decode() for s in range(c.cw_stage.CW_STAGE_COUNT) if ran >> s & 1]
+    return values
 
 
 def describe_coloring(volume: AnyVolume, colormap: str, ends: tuple[float, float] | None) -> c.cw_pipeline_color:

@@ -71,3 +71,16 @@ def memory_limit(bytes: int) -> None:
     0 means no limit. Only Linux counts.
     """
     lib.cw_memory_limit(take_count("bytes", bytes))
+
+
+def unpack(struct: ctypes.Structure) -> dict[str, Any]:
+    """Returns the fields of a struct of numbers as a dict that JSON can hold."""
+    values: dict[str, Any] = {}
+    for field in struct._fields_:
+        value = getattr(struct, field[0])
+        if isinstance(value, ctypes.Structure):
+            value = unpack(value)
+        elif isinstance(value, ctypes.Array):
+            value = list(value)
+        values[field[0]] = value
+    return values

@@ -38,7 +38,12 @@ class Mesh:
     outside.
 
     The functions of this package make meshes; from_arrays() makes one of your own arrays.
+
+    facts  of extract() and extract_levels(): a dict with the names of the stages that "ran", and
+           the other fields of cw_pipeline_facts, such as "voids"; {} for other meshes
     """
+
+    facts: dict[str, Any]
 
     _struct: c.cw_mesh
     _owner: object
@@ -54,6 +59,7 @@ class Mesh:
         mesh._struct = struct
         mesh._owner = Owner(struct, lib.cw_mesh_free) if owner is None else owner
         mesh._attributes = None
+        mesh.facts = {}
         return mesh
 
     @classmethod

@@ -47,7 +47,12 @@ class Surfaces(Case):
         z, y, x = ball.shape
         hollow = ball.copy()
         hollow[z // 2, y // 2, x // 2] = -1
-        self.same_mesh(cw.extract(hollow, 0, fill_voids=True), cw.extract(ball, 0))
+        filled = cw.extract(hollow, 0, fill_voids=True)
+        self.same_mesh(filled, cw.extract(ball, 0))
+        self.assertEqual(filled.facts["ran"], ["extract", "fill_voids", "normals"])
+        self.assertEqual(filled.facts["voids"]["dropped"], 1)
+        self.assertEqual(filled.facts["voids"]["triangles"] + len(filled.triangles), filled.facts["extracted"]["triangles"])
+        self.assertEqual(filled.copy().facts, {})
         for more in ({"topology": "simple"}, {"placement": "cubic"}, {"inside": "below"}):
             self.assertTrue(cw.check(cw.extract(ball, 0, **more)).holds, more)
 
@@ -73,6 +78,7 @@ class Surfaces(Case):
         head = cw.make("ct-head", dims=32, type="i16")
         levels = cw.extract_levels(head, 300, [4000, 1000], largest=1)
         self.assertEqual([len(each.triangles) for each in levels], [4000, 1000])
+        self.assertEqual([each.facts["others"]["kept"] for each in levels], [1, 1])
         for wanted, level in zip(cw.simplify_levels(cw.extract(head, 300, largest=1), [4000, 1000]), levels):
             np.testing.assert_array_equal(wanted.vertices, level.vertices)
             np.testing.assert_array_equal(wanted.triangles, level.triangles)
