@@ -372,6 +372,22 @@ static unsigned find_dropped(const cw_part *parts, size_t count, const cwi_parts
     return had & ~has;
 }
 
+/* Prints the names of the attributes of all parts, each once: "uv, thickness". */
+static void name_attributes(const cw_part *parts, size_t count, char *text, size_t size)
+{
+    size_t used = 0;
+    for (size_t i = 0; i < count; i++)
+        for (size_t n = 0; parts[i].mesh && n < parts[i].mesh->attribute_count; n++) {
+            const char *name = parts[i].mesh->attributes[n].name;
+            size_t first = 0;
+            while (!parts[first].mesh || !cw_mesh_attribute_find(parts[first].mesh, name))
+                first++;
+            if (first == i && used < size)
+                used +=
+                    (size_t)snprintf(text + used, size - used, "%s%s", used ? ", " : "", name);
+        }
+}
+
 cw_status cw_parts_write_loss(const char *path, const cw_part *parts, size_t count,
                               const cw_write_desc *desc, cw_write_loss *loss, cw_error *err)
 {
@@ -391,6 +407,8 @@ cw_status cw_parts_write_loss(const char *path, const cw_part *parts, size_t cou
             st = cwi_measure_loss(&placed.items[i], loss, err);
     if (st == CW_OK)
         loss->dropped = find_dropped(parts, count, &placed, f->keeps, loss);
+    if (st == CW_OK && loss->dropped & CW_KEEPS_ATTRIBUTES)
+        name_attributes(parts, count, loss->attributes, sizeof loss->attributes);
     cwi_parts_free(&placed);
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }

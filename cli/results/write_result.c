@@ -139,7 +139,7 @@ static void warn_of_loss(cli_report *report, const cli_made *made, const cli_loa
             cli_count(l->vertices), cli_count(loss->flat_triangles), cli_count(l->triangles));
 }
 
-static void tell_dropped(const cli_made *made)
+static void tell_dropped(const cli_made *made, const cw_write_loss *loss)
 {
     char list[128] = "";
     size_t used = 0;
@@ -148,7 +148,8 @@ static void tell_dropped(const cli_made *made)
             used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "",
                                      cli_kept[i].name);
     if (used)
-        cli_say("%s: left out, because the format cannot hold them: %s", made->path, list);
+        cli_say("%s: left out, because the format cannot hold them: %s%s%s", made->path, list,
+                *loss->attributes ? " " : "", loss->attributes);
 }
 
 /* A mesh that is written, perhaps while another thread checks it. */
@@ -208,7 +209,7 @@ static cw_status end_writing(const writing *w, cw_error *err)
     memcpy(made->origin, l->parts->mesh->origin, sizeof made->origin);
     made->dropped = w->how->tell_dropped ? w->loss.dropped : 0;
     warn_of_loss(w->report, made, l, &w->loss);
-    tell_dropped(made);
+    tell_dropped(made, &w->loss);
     cli_report_end(w->report, "write", l->triangles, l->triangles);
     return CW_OK;
 }

@@ -84,7 +84,8 @@ unsigned cwi_arrays_of(const cw_mesh *mesh)
 {
     unsigned has =
         (mesh->normals ? CW_KEEPS_NORMALS : 0u) | (mesh->colors ? CW_KEEPS_COLORS : 0u) |
-        (mesh->scalars ? CW_KEEPS_SCALARS : 0u) | (mesh->labels ? CW_KEEPS_LABELS : 0u);
+        (mesh->scalars ? CW_KEEPS_SCALARS : 0u) | (mesh->labels ? CW_KEEPS_LABELS : 0u) |
+        (mesh->attribute_count ? CW_KEEPS_ATTRIBUTES : 0u);
     for (int i = 0; i < 12; i++)
         has |= mesh->affine[i / 4][i % 4] != 0 ? CW_KEEPS_AFFINE : 0u;
     return has;

@@ -576,6 +576,7 @@ typedef struct cw_write_loss {
     size_t flat_triangles;  /* triangles that had an area and lose it */
     unsigned dropped;       /* attributes that the meshes have and the file will not: cw_keeps
                                flags */
+    char attributes[256];   /* names of those of cw_mesh.attributes, such as "uv, thickness" */
 } cw_write_loss;
 
 /* Measures the loss for a reader with single precision of a file by cw_mesh_write() or
@@ -652,8 +653,9 @@ typedef enum cw_keeps {
     CW_KEEPS_SCALARS = 16,
     CW_KEEPS_LABELS = 32,
     CW_KEEPS_AFFINE = 64,
-    CW_KEEPS_PARTS = 128, /* several meshes, with names */
-    CW_KEEPS_ALL = 255
+    CW_KEEPS_PARTS = 128,      /* several meshes, with names */
+    CW_KEEPS_ATTRIBUTES = 256, /* those of cw_mesh.attributes: no format so far */
+    CW_KEEPS_ALL = 511
 } cw_keeps;
 
 /* A format that this build or another one reads or writes. */

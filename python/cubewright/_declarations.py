@@ -224,7 +224,8 @@ class cw_keeps(enum.IntEnum):
     CW_KEEPS_LABELS = 32
     CW_KEEPS_AFFINE = 64
     CW_KEEPS_PARTS = 128
-    CW_KEEPS_ALL = 255
+    CW_KEEPS_ATTRIBUTES = 256
+    CW_KEEPS_ALL = 511
 
 
 class cw_mode(enum.IntEnum):
@@ -1882,6 +1883,7 @@ class cw_write_loss(Structure):
     merged_vertices: int
     flat_triangles: int
     dropped: int
+    attributes: Any
 
 
 cw_write_loss._fields_ = [
@@ -1889,6 +1891,7 @@ cw_write_loss._fields_ = [
     ("merged_vertices", c_size_t),
     ("flat_triangles", c_size_t),
     ("dropped", c_uint),
+    ("attributes", c_char * 256),
 ]
 
 

@@ -85,6 +85,8 @@ def write(
                 of a vertex, mm (default 1/20,000 of the diagonal), bits a number in its place
     effort      effort of Draco, 1 to 10; 0: 7
 
+    No format holds mesh.attributes: they are left out.
+
     Raises Error: ARGUMENT, OUTPUT, UNSUPPORTED, LIMIT, CHECK, NO_MEMORY, CANCELLED.
     """
     options = {key: value for key, value in locals().items() if key not in ("path", "what", "progress")}

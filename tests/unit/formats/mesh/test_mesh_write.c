@@ -362,7 +362,8 @@ static void what_a_format_does_not_keep_is_told(void **state)
         {"a.off", CW_KEEPS_SCALARS | CW_KEEPS_LABELS | CW_KEEPS_AFFINE},
         {"a.obj", CW_KEEPS_COLORS | CW_KEEPS_SCALARS | CW_KEEPS_LABELS | CW_KEEPS_AFFINE},
         {"a.3mf", CW_KEEPS_NORMALS | CW_KEEPS_SCALARS | CW_KEEPS_LABELS | CW_KEEPS_AFFINE},
-        {"a.stl", CW_KEEPS_ALL & ~(unsigned)(CW_KEEPS_PLACES | CW_KEEPS_PARTS)},
+        {"a.stl",
+         CW_KEEPS_ALL & ~(unsigned)(CW_KEEPS_PLACES | CW_KEEPS_PARTS | CW_KEEPS_ATTRIBUTES)},
     };
     static uint8_t colors[32];
     static float scalars[8];
@@ -384,11 +385,37 @@ static void what_a_format_does_not_keep_is_told(void **state)
     mesh.origin[0] = 1e9;
     const cw_part parts[] = {{.mesh = &mesh, .name = "one"}, {.mesh = &mesh, .name = "two"}};
     assert_ok(cw_parts_write_loss("a.stl", parts, 2, NULL, &loss, &err), err);
-    assert_int_equal(loss.dropped, CW_KEEPS_ALL);
+    assert_int_equal(loss.dropped, CW_KEEPS_ALL & ~(unsigned)CW_KEEPS_ATTRIBUTES);
     mesh.colors = NULL;
     mesh.scalars = NULL;
     mesh.labels = NULL;
     cw_mesh_free(&mesh);
+}
+
+static void attributes_that_no_format_keeps_are_named(void **state)
+{
+    (void)state;
+    static const char *const paths[] = {"a.ply", "a.vtp", "a.off", "a.obj", "a.3mf", "a.stl"};
+    cw_mesh mesh = {0}, other = {0};
+    cw_error err = {0};
+    cw_write_loss loss;
+    cw_attribute like = {.name = "uv", .on = CW_ON_CORNERS, .type = CW_F32, .components = 2};
+    test_make_cube(&mesh);
+    test_make_cube(&other);
+    assert_ok(cw_mesh_attribute_add(&mesh, &like, NULL, &err), err);
+    assert_ok(cw_mesh_attribute_add(&other, &like, NULL, &err), err);
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        assert_ok(cw_mesh_write_loss(paths[i], &mesh, NULL, &loss, &err), err);
+        assert_true(loss.dropped & CW_KEEPS_ATTRIBUTES);
+        assert_string_equal(loss.attributes, "uv");
+    }
+    strcpy(like.name, "thickness");
+    assert_ok(cw_mesh_attribute_add(&other, &like, NULL, &err), err);
+    const cw_part parts[] = {{.mesh = &mesh, .name = "one"}, {.mesh = &other, .name = "two"}};
+    assert_ok(cw_parts_write_loss("a.obj", parts, 2, NULL, &loss, &err), err);
+    assert_string_equal(loss.attributes, "uv, thickness");
+    cw_mesh_free(&mesh);
+    cw_mesh_free(&other);
 }
 
 /* Vertices at one place, or flat triangles, before the rounding are no loss. */
@@ -504,6 +531,7 @@ int main(void)
         CASE(names_are_made_safe_for_every_format),
         CASE(loss_is_counted_where_the_format_has_it),
         CASE(what_a_format_does_not_keep_is_told),
+        CASE(attributes_that_no_format_keeps_are_named),
         CASE(what_was_not_there_cannot_be_lost),
         CASE(loss_fails_as_writing_does),
         CASE(a_file_appears_with_consent_only),
