@@ -81,6 +81,20 @@ static void print_names(const cli_option *options, size_t count)
             printf(" --%s", options[n].name);
 }
 
+/* Prints the letters of options, and the rules that exclude options: "labels:iso inside". */
+static void print_rules(const cli_command *c)
+{
+    fputs("        letters='", stdout);
+    for (size_t n = 0; n < c->option_count; n++)
+        if (c->options[n].letter)
+            printf(" %c=%s ", c->options[n].letter, c->options[n].name);
+    fputs("'\n        rules=(", stdout);
+    for (size_t n = 0; n < c->rule_count; n++)
+        if (c->rules[n].options && c->rules[n].relation == CLI_EXCLUDES)
+            printf(" '%s:%s'", c->rules[n].options, c->rules[n].others);
+    puts(" )\n        ;;");
+}
+
 static void print_command(const cli_command *c)
 {
     printf("\n_cubewright_command_%s()\n{\n    case $1 in\n    options)\n        words=(",
@@ -91,7 +105,8 @@ static void print_command(const cli_command *c)
     for (size_t n = 0; n < c->option_count; n++)
         if (cli_option_is_negated(&c->options[n]))
             printf(" --no-%s", c->options[n].name);
-    puts(" )\n        ;;");
+    puts(" )");
+    print_rules(c);
     if (c->max_inputs > 0)
         printf("    inputs) _cubewright_values %s ;;\n", cli_value_set_of(c->inputs)->name);
     for (size_t n = 0; n < c->option_count; n++)
