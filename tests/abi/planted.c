@@ -23,7 +23,25 @@ typedef struct cw_planted {
 #endif
 } cw_planted;
 
+typedef struct cw_planted_desc {
+    unsigned version;
+    double depth;
+    int width;
+#ifdef FILL /* what was padding */
+    int height;
+#endif
+#ifdef LENGTHEN
+    double height;
+#endif
+} cw_planted_desc;
+
 typedef struct cw_hidden cw_hidden;
+
+int cw_take(const cw_planted_desc *desc);
+int cw_take(const cw_planted_desc *desc)
+{
+    return desc->width;
+}
 
 int cw_first(const cw_planted *planted
 #ifdef ADD_PARAMETER

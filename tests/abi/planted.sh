@@ -16,6 +16,7 @@ build() { # SONAME_NUMBER CPPFLAG...: the library with a change, as -DCHANGE
     shift
     "$cc" "$@" -E -P -x c "$here/planted.c" | sed 's/^ *//' | grep -v '^#' >source || exit 1
     sed '/^typedef struct cw_hidden/q' source >include/planted.h
+    case $* in *RAISE*) echo '#define CW_PLANTED_DESC_VERSION 1' >>include/planted.h ;; esac
     { echo '#include "include/planted.h"'; sed '1,/^typedef struct cw_hidden/d' source; } >planted.c
     "$cc" -g -shared -fPIC -Wl,-soname,libplanted.so."$number" planted.c -o libplanted.so || exit 1
 }
@@ -36,6 +37,14 @@ build 0 -DADD_LAST
 passes "a new enumerator at the end"
 build 0 -DPRIVATE
 passes "a change of a struct that only the library knows"
+build 0 -DFILL -DRAISE
+passes "a new member in the padding of a struct whose version is raised"
+build 0 -DLENGTHEN -DRAISE
+passes "a new member behind a struct whose version is raised"
+build 0 -DFILL
+fails "a new member in padding" 'cw_planted_desc grew: #define CW_PLANTED_DESC_VERSION 1'
+build 0 -DLENGTHEN
+fails "a new member behind a struct with a version" 'cw_planted_desc grew: #define CW_PLANTED_DESC_VERSION 1'
 build 0 -DREMOVE_FUNCTION
 fails "a function less" cw_second
 build 0 -DADD_PARAMETER
@@ -51,5 +60,5 @@ passes "a function less, with a new number of the soname"
 build 0 -DREMOVE_FUNCTION
 sed -i "s/libplanted.so.0/libplanted.so.1/" planted.abi
 fails "a number of the soname that fell" cw_second
-[ $bad = 0 ] && echo "six changes were reported, and four additions passed"
+[ $bad = 0 ] && echo "eight changes were reported, and six additions passed"
 exit $bad
