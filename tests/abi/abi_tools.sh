@@ -69,6 +69,6 @@ compare_interface() { # DUMP.abi LIBRARY HEADERS_FOLDER FOLDER_FOR_FILES
     check_growth "$1" "$4/now.abi" "$4/suppressed" || status=1
     abidiff --no-added-syms --no-show-locs --suppr "$4/suppressed" "$1" "$4/now.abi" >"$4/report" 2>&1 && [ "$status" = 0 ] && return 0
     cat "$4/report"
-    echo "the interface broke: undo that, or raise SOVERSION in CMakeLists.txt, as CONTRIBUTING.md says"
+    echo "the interface broke: undo that, or do what CONTRIBUTING.md says under 'Versions and the interface'"
     return 1
 }

@@ -4,7 +4,8 @@
 set -u
 root=$(cd "$(dirname "$0")/../.." && pwd)
 files="include/cubewright/core.h CITATION.cff cli/debian/changelog cli/debian/control CHANGELOG.md README.md
-    cli/help/library.txt include/docs/README.md tests/examples/CMakeLists.txt CMakeLists.txt"
+    cli/help/library.txt include/docs/README.md tests/examples/CMakeLists.txt CMakeLists.txt
+    cli/debian/README.md core/add_feature.cmake"
 
 check_versions() { # ROOT: prints what differs
     version=$(sed -n 's/^#define CW_VERSION "\([0-9.]*\)"/\1/p' "$1/include/cubewright/core.h")
@@ -26,6 +27,10 @@ check_versions() { # ROOT: prints what differs
         { echo "CHANGELOG.md does not begin with $version"; wrong=1; }
     number=$(sed -n 's/.* SOVERSION \([0-9]*\)).*/\1/p' "$1/CMakeLists.txt")
     state "$1" "^Package: libcubewright$number\$" cli/debian/control
+    for file in cli/debian/control cli/debian/README.md core/add_feature.cmake; do
+        grep -o 'libcubewright[0-9][0-9]*' "$1/$file" | grep -q -v -x "libcubewright$number" &&
+            { echo "$file has another number than SOVERSION, $number"; wrong=1; }
+    done
     # a release has one date
     released=$(sed -n "s/^## $version, \([0-9-]*\)\$/\1/p" "$1/CHANGELOG.md")
     [ -z "$released" ] || state "$1" "^date-released: $released\$" CITATION.cff
@@ -38,6 +43,7 @@ done
 grep -q "^Copyright (c) [0-9-]* $(sed -n 's/^  - name: "\(.*\)"/\1/p' "$root/CITATION.cff")\$" "$root/LICENSE" ||
     { echo "CITATION.cff names other authors than LICENSE"; exit 1; }
 check_versions "$root" || exit 1
+[ -f "$root/cli/debian/libcubewright$number.install" ] || { echo "cli/debian lacks libcubewright$number.install"; exit 1; }
 stated=$version stated_minor=$minor
 
 folder=$(mktemp -d)
