@@ -32,8 +32,8 @@ from ctypes import (
 )
 from typing import Any
 
-CW_CAMERA_TEXT = 1024
 CW_LABELS_MAX = 255
+CW_CAMERA_TEXT = 1024
 CW_ANGLE_BINS = 18
 CW_ASPECT_BINS = 9
 CW_LENGTH_BINS = 20
@@ -117,6 +117,15 @@ class cw_interpolation(enum.IntEnum):
     CW_INTERPOLATE_COLOR = 2
     CW_INTERPOLATE_NEAREST = 3
     CW_INTERPOLATE_COUNT = 4
+
+
+class cw_boolean_op(enum.IntEnum):
+    CW_BOOLEAN_UNION = 0
+    CW_BOOLEAN_DIFFERENCE = 1
+    CW_BOOLEAN_INTERSECTION = 2
+    CW_BOOLEAN_XOR = 3
+    CW_BOOLEAN_SPLIT = 4
+    CW_BOOLEAN_COUNT = 5
 
 
 class cw_weld(enum.IntEnum):
@@ -389,48 +398,6 @@ cw_feature._fields_ = [
 ]
 
 
-class cw_camera(Structure):
-    eye: Any
-    target: Any
-    up: Any
-    fov_deg: float
-    height_mm: float
-
-
-cw_camera._fields_ = [
-    ("eye", c_double * 3),
-    ("target", c_double * 3),
-    ("up", c_double * 3),
-    ("fov_deg", c_double),
-    ("height_mm", c_double),
-]
-
-
-class cw_fit_desc(Structure):
-    version: int
-    view: bytes | None
-    min: Any
-    max: Any
-    aspect: float
-    fov_deg: float
-    margin: float
-    azimuth_deg: float
-    elevation_deg: float
-
-
-cw_fit_desc._fields_ = [
-    ("version", c_uint32),
-    ("view", c_char_p),
-    ("min", c_double * 3),
-    ("max", c_double * 3),
-    ("aspect", c_double),
-    ("fov_deg", c_double),
-    ("margin", c_double),
-    ("azimuth_deg", c_double),
-    ("elevation_deg", c_double),
-]
-
-
 class cw_cells(Structure):
     points: Any
     count: int
@@ -678,6 +645,90 @@ class cw_slab_sink(Structure):
 cw_slab_sink._fields_ = [
     ("take", CFUNCTYPE(c_int, c_void_p, POINTER(cw_slab), POINTER(cw_error))),
     ("user", c_void_p),
+]
+
+
+class cw_boolean_desc(Structure):
+    version: int
+    op: int
+    threads: int
+    progress: Any
+
+
+cw_boolean_desc._fields_ = [
+    ("version", c_uint32),
+    ("op", c_int),
+    ("threads", c_int),
+    ("progress", cw_progress),
+]
+
+
+class cw_boolean_facts(Structure):
+    version: int
+    split_triangles: int
+    new_points: int
+    contact_edges: int
+    contact_vertices: int
+    dropped: int
+    turned: int
+    rounds: int
+    moved_mm: float
+    volume_mm3: Any
+
+
+cw_boolean_facts._fields_ = [
+    ("version", c_uint32),
+    ("split_triangles", c_size_t),
+    ("new_points", c_size_t),
+    ("contact_edges", c_size_t),
+    ("contact_vertices", c_size_t),
+    ("dropped", c_size_t),
+    ("turned", c_size_t),
+    ("rounds", c_size_t),
+    ("moved_mm", c_double),
+    ("volume_mm3", c_double * 2),
+]
+
+
+class cw_camera(Structure):
+    eye: Any
+    target: Any
+    up: Any
+    fov_deg: float
+    height_mm: float
+
+
+cw_camera._fields_ = [
+    ("eye", c_double * 3),
+    ("target", c_double * 3),
+    ("up", c_double * 3),
+    ("fov_deg", c_double),
+    ("height_mm", c_double),
+]
+
+
+class cw_fit_desc(Structure):
+    version: int
+    view: bytes | None
+    min: Any
+    max: Any
+    aspect: float
+    fov_deg: float
+    margin: float
+    azimuth_deg: float
+    elevation_deg: float
+
+
+cw_fit_desc._fields_ = [
+    ("version", c_uint32),
+    ("view", c_char_p),
+    ("min", c_double * 3),
+    ("max", c_double * 3),
+    ("aspect", c_double),
+    ("fov_deg", c_double),
+    ("margin", c_double),
+    ("azimuth_deg", c_double),
+    ("elevation_deg", c_double),
 ]
 
 
@@ -3186,22 +3237,6 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_status_name": (c_char_p, [c_int]),
     "cw_status_text": (c_char_p, [c_int]),
     "cw_features": (POINTER(cw_feature), [POINTER(c_size_t)]),
-    "cw_view_name": (c_char_p, [c_size_t]),
-    "cw_camera_fit": (c_int, [POINTER(cw_fit_desc), POINTER(cw_camera), POINTER(cw_error)]),
-    "cw_camera_axes": (c_int, [POINTER(cw_camera), POINTER(c_double), POINTER(c_double), POINTER(c_double), POINTER(cw_error)]),
-    "cw_camera_turn": (c_int, [POINTER(cw_camera), POINTER(c_double), c_double, POINTER(cw_error)]),
-    "cw_camera_zoom": (c_int, [POINTER(cw_camera), c_double, POINTER(cw_error)]),
-    "cw_camera_dolly": (c_int, [POINTER(cw_camera), c_double, POINTER(cw_error)]),
-    "cw_camera_orbit": (c_int, [POINTER(cw_camera), c_double, c_double, POINTER(cw_error)]),
-    "cw_camera_roll": (c_int, [POINTER(cw_camera), c_double, POINTER(cw_error)]),
-    "cw_camera_pan": (c_int, [POINTER(cw_camera), c_size_t, c_double, c_double, POINTER(cw_error)]),
-    "cw_camera_project": (c_bool, [POINTER(cw_camera), c_size_t, c_size_t, POINTER(c_double), POINTER(c_double), POINTER(c_double)]),
-    "cw_camera_ray": (c_int, [POINTER(cw_camera), c_size_t, c_size_t, POINTER(c_double), POINTER(c_double), POINTER(c_double), POINTER(cw_error)]),
-    "cw_camera_path": (c_int, [POINTER(cw_camera), POINTER(c_double), c_size_t, c_double, POINTER(cw_camera), POINTER(cw_error)]),
-    "cw_camera_read": (c_int, [c_char_p, POINTER(cw_camera), POINTER(cw_error)]),
-    "cw_camera_write": (c_int, [c_char_p, POINTER(cw_camera), POINTER(cw_error)]),
-    "cw_camera_parse": (c_int, [c_char_p, POINTER(cw_camera), POINTER(cw_error)]),
-    "cw_camera_format": (c_int, [POINTER(cw_camera), POINTER(c_char), POINTER(cw_error)]),
     "cw_type_size": (c_size_t, [c_int]),
     "cw_type_name": (c_char_p, [c_int]),
     "cw_volume_alloc": (c_int, [POINTER(cw_volume), c_int, POINTER(c_size_t), c_size_t, c_size_t, POINTER(cw_error)]),
@@ -3236,6 +3271,23 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_mesh_drop_volumes": (c_int, [POINTER(cw_mesh), c_double, POINTER(cw_drop_counts), POINTER(cw_error)]),
     "cw_mesh_keep_largest": (c_int, [POINTER(cw_mesh), c_size_t, POINTER(cw_drop_counts), POINTER(cw_error)]),
     "cw_mesh_drop_distant": (c_int, [POINTER(cw_mesh), POINTER(c_float), c_double, POINTER(cw_drop_counts), POINTER(c_double), POINTER(cw_error)]),
+    "cw_mesh_boolean": (c_int, [POINTER(POINTER(cw_mesh)), c_size_t, POINTER(cw_boolean_desc), POINTER(cw_mesh), POINTER(cw_boolean_facts), POINTER(cw_error)]),
+    "cw_view_name": (c_char_p, [c_size_t]),
+    "cw_camera_fit": (c_int, [POINTER(cw_fit_desc), POINTER(cw_camera), POINTER(cw_error)]),
+    "cw_camera_axes": (c_int, [POINTER(cw_camera), POINTER(c_double), POINTER(c_double), POINTER(c_double), POINTER(cw_error)]),
+    "cw_camera_turn": (c_int, [POINTER(cw_camera), POINTER(c_double), c_double, POINTER(cw_error)]),
+    "cw_camera_zoom": (c_int, [POINTER(cw_camera), c_double, POINTER(cw_error)]),
+    "cw_camera_dolly": (c_int, [POINTER(cw_camera), c_double, POINTER(cw_error)]),
+    "cw_camera_orbit": (c_int, [POINTER(cw_camera), c_double, c_double, POINTER(cw_error)]),
+    "cw_camera_roll": (c_int, [POINTER(cw_camera), c_double, POINTER(cw_error)]),
+    "cw_camera_pan": (c_int, [POINTER(cw_camera), c_size_t, c_double, c_double, POINTER(cw_error)]),
+    "cw_camera_project": (c_bool, [POINTER(cw_camera), c_size_t, c_size_t, POINTER(c_double), POINTER(c_double), POINTER(c_double)]),
+    "cw_camera_ray": (c_int, [POINTER(cw_camera), c_size_t, c_size_t, POINTER(c_double), POINTER(c_double), POINTER(c_double), POINTER(cw_error)]),
+    "cw_camera_path": (c_int, [POINTER(cw_camera), POINTER(c_double), c_size_t, c_double, POINTER(cw_camera), POINTER(cw_error)]),
+    "cw_camera_read": (c_int, [c_char_p, POINTER(cw_camera), POINTER(cw_error)]),
+    "cw_camera_write": (c_int, [c_char_p, POINTER(cw_camera), POINTER(cw_error)]),
+    "cw_camera_parse": (c_int, [c_char_p, POINTER(cw_camera), POINTER(cw_error)]),
+    "cw_camera_format": (c_int, [POINTER(cw_camera), POINTER(c_char), POINTER(cw_error)]),
     "cw_distance_to_field": (c_int, [POINTER(cw_mesh), POINTER(cw_volume), POINTER(cw_field_distance_desc), POINTER(cw_distance), POINTER(c_float), POINTER(cw_error)]),
     "cw_distance_to_mesh": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), POINTER(cw_mesh_distance_desc), POINTER(cw_distance), POINTER(c_float), POINTER(cw_error)]),
     "cw_mesh_compare": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), POINTER(cw_mesh_distance_desc), POINTER(cw_mesh_comparison), POINTER(cw_error)]),

@@ -1,0 +1,479 @@
+/* Booleans of meshes: volumes known on paper, random pairs whose volumes must add up, contacts, and results that
+ * are sound after rounding. */
+#include "support/surface.h"
+
+#include "core/base/memory.h"
+#include "core/geometry/big_integer.h"
+#include "core/mesh/mesh.h"
+
+#include <cubewright/boolean.h>
+#include <cubewright/field.h>
+#include <cubewright/quality.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double random_number(void)
+{
+    return rand() / ((double)RAND_MAX + 1);
+}
+
+/* Adds a box to a mesh that has room for it; inside out if asked for. */
+static void add_box(cw_mesh *m, const double low[3], const double high[3], bool inward)
+{
+    static const uint32_t sides[6][4] = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1},
+                                         {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
+    const uint32_t base = (uint32_t)m->vertex_count;
+    for (uint32_t v = 0; v < 8; v++)
+        for (int k = 0; k < 3; k++)
+            m->positions[3 * (m->vertex_count + v) + (size_t)k] =
+                (float)(v >> (2 - k) & 1 ? high[k] : low[k]);
+    m->vertex_count += 8;
+    for (int s = 0; s < 6; s++)
+        for (int t = 0; t < 2; t++) {
+            uint32_t *c = m->triangles + 3 * m->triangle_count++;
+            c[0] = base + sides[s][0];
+            c[1] = base + sides[s][inward ? 2 + t : 1 + t];
+            c[2] = base + sides[s][inward ? 1 + t : 2 + t];
+        }
+}
+
+static cw_mesh make_empty(size_t boxes)
+{
+    cw_mesh m = {0};
+    m.positions = cwi_alloc_array(24 * boxes, sizeof *m.positions);
+    m.triangles = cwi_alloc_array(36 * boxes, sizeof *m.triangles);
+    assert_true(m.positions && m.triangles);
+    return m;
+}
+
+static cw_mesh make_box(double x, double y, double z, double size)
+{
+    cw_mesh m = make_empty(1);
+    add_box(&m, (const double[3]){x, y, z}, (const double[3]){x + size, y + size, z + size},
+            false);
+    return m;
+}
+
+/* A result must be closed, oriented, a manifold, and must not cross itself. */
+static void check_sound(const cw_mesh *m)
+{
+    cw_error err = {0};
+    cw_crossings crossings = {0};
+    if (!m->triangle_count)
+        return;
+    const cw_quality q = test_measure(m);
+    assert_int_equal(q.open_edges, 0);
+    assert_int_equal(q.nonmanifold_edges, 0);
+    assert_int_equal(q.nonmanifold_vertices, 0);
+    assert_int_equal(q.misoriented_edges, 0);
+    assert_int_equal(q.degenerate, 0);
+    assert_ok(
+        cw_self_intersections(m, &(cw_crossings_desc){.weld = CW_WELD_WORLD}, &crossings, &err),
+        err);
+    assert_int_equal(crossings.count, 0);
+    cw_crossings_free(&crossings);
+}
+
+/* Runs a boolean of two meshes, checks the result, and returns its volume before rounding. */
+static double check_boolean(const cw_mesh *a, const cw_mesh *b, cw_boolean_op op,
+                            cw_boolean_facts *facts)
+{
+    const cw_mesh *meshes[2] = {a, b};
+    cw_error err = {0};
+    cw_mesh out[2];
+    *facts = (cw_boolean_facts){0};
+    assert_ok(cw_mesh_boolean(meshes, 2, &(cw_boolean_desc){.op = op}, out, facts, &err), err);
+    for (int n = 0; n < (op == CW_BOOLEAN_SPLIT ? 2 : 1); n++) {
+        check_sound(&out[n]);
+        const double volume = out[n].triangle_count ? test_measure(&out[n]).volume_mm3 : 0;
+        const double slack =
+            1e-6 * (fabs(volume) + facts->volume_mm3[n]) +
+            8 * facts->moved_mm * (out[n].triangle_count ? test_measure(&out[n]).area_mm2 : 0);
+        assert_true(fabs(volume - facts->volume_mm3[n]) <= slack);
+        cw_mesh_free(&out[n]);
+    }
+    return facts->volume_mm3[0];
+}
+
+/* Boxes beside a cube of size 4 at 0: where they are, and the volumes that are known on paper. */
+static const struct box_row {
+    double at[3], size;
+    double both;            /* the volume of the intersection */
+    size_t edges, vertices; /* contacts of the union */
+} box_rows[] = {
+    {{2, 2, 2}, 4, 8, 0, 0},  /* corners in each other */
+    {{4, 0, 0}, 4, 0, 0, 0},  /* a whole face */
+    {{4, 1, 1}, 2, 0, 0, 0},  /* a part of a face */
+    {{4, 2, 2}, 4, 0, 0, 0},  /* faces that overlap */
+    {{4, 4, 0}, 4, 0, 1, 2},  /* an edge */
+    {{4, 4, 2}, 4, 0, 1, 2},  /* parts of edges */
+    {{4, 4, 4}, 4, 0, 0, 1},  /* a corner */
+    {{1, 1, 1}, 2, 8, 0, 0},  /* inside */
+    {{1, 1, 0}, 2, 8, 0, 0},  /* inside, at a face */
+    {{0, 0, 0}, 2, 8, 0, 0},  /* inside, at a corner */
+    {{2, 0, 0}, 4, 32, 0, 0}, /* four faces in common planes */
+    {{0, 0, 0}, 4, 64, 0, 0}, /* the same */
+    {{9, 9, 9}, 4, 0, 0, 0},  /* apart */
+};
+
+static void boxes_have_their_volumes(void **state)
+{
+    (void)state;
+    static const double scales[] = {1, 1e-6, 1e6, 0.3};
+    for (size_t i = 0; i < sizeof box_rows / sizeof *box_rows; i++)
+        for (int s = 0; s < 4; s++) {
+            const struct box_row *row = &box_rows[i];
+            const double k = scales[s], unit = k * k * k;
+            cw_mesh a = make_box(0, 0, 0, 4 * k);
+            cw_mesh b = make_box(k * row->at[0], k * row->at[1], k * row->at[2], k * row->size);
+            const double va = 64 * unit, vb = pow(k * row->size, 3), both = row->both * unit;
+            cw_boolean_facts f;
+            /* not all multiples of 1e-6 and 0.3 are floats */
+            const double slack = s == 0 ? 0 : 1e-5 * va;
+            assert_true(fabs(check_boolean(&a, &b, CW_BOOLEAN_UNION, &f) - (va + vb - both)) <=
+                        slack);
+            if (s == 0) {
+                assert_int_equal(f.contact_edges, row->edges);
+                assert_int_equal(f.contact_vertices, row->vertices);
+            }
+            assert_true(fabs(check_boolean(&a, &b, CW_BOOLEAN_DIFFERENCE, &f) - (va - both)) <=
+                        slack);
+            assert_true(fabs(check_boolean(&a, &b, CW_BOOLEAN_INTERSECTION, &f) - both) <=
+                        slack);
+            assert_true(fabs(check_boolean(&a, &b, CW_BOOLEAN_XOR, &f) -
+                             (va + vb - 2 * both)) <= slack);
+            assert_true(fabs(check_boolean(&a, &b, CW_BOOLEAN_SPLIT, &f) - (va - both)) <=
+                        slack);
+            assert_true(fabs(f.volume_mm3[1] - both) <= slack);
+            cw_mesh_free(&a);
+            cw_mesh_free(&b);
+        }
+}
+
+static cw_mesh extract_field(cw_field field, size_t n)
+{
+    cw_volume volume = test_sample(field, n, CW_F32);
+    cw_mesh mesh = test_extract(
+        &volume, &(cw_extract_desc){.isovalue = (float)cw_field_isovalue(field)}, NULL);
+    cw_volume_free(&volume);
+    return mesh;
+}
+
+/* Turns, scales and moves a mesh. */
+static void move_mesh(cw_mesh *m, double angle, double scale, const double by[3])
+{
+    for (size_t v = 0; v < m->vertex_count; v++) {
+        float *p = m->positions + 3 * v;
+        const double x = (double)p[0], y = (double)p[1], z = (double)p[2];
+        p[0] = (float)(scale * (x * cos(angle) - y * sin(angle) + by[0]));
+        p[1] = (float)(scale * (x * sin(angle) + y * cos(angle) + by[1]));
+        p[2] = (float)(scale * (z + by[2]));
+    }
+    cwi_free(m->normals);
+    m->normals = NULL;
+}
+
+/* The volumes of union and intersection add up to those of both, whatever the meshes are. */
+static void random_pairs_add_up(void **state)
+{
+    (void)state;
+    static const cw_field fields[] = {CW_FIELD_SPHERE, CW_FIELD_TORUS, CW_FIELD_GYROID};
+    const int count = test_some(40);
+    srand(test_seed(74));
+    for (int n = 0; n < count; n++) {
+        cw_mesh a = extract_field(fields[rand() % 3], 8 + (size_t)(rand() % 6));
+        cw_mesh b = extract_field(fields[rand() % 3], 8 + (size_t)(rand() % 6));
+        const double scale = n % 5 == 0 ? 1e-6 : n % 5 == 1 ? 1e6 : 1;
+        const double reach = n % 4 == 0 ? 0 : 30;
+        const double angle = n % 4 == 1 ? 1e-7 : 6.3 * random_number();
+        move_mesh(&a, 0, scale, (const double[3]){0, 0, 0});
+        move_mesh(&b, angle, scale,
+                  (const double[3]){reach * random_number(), reach * random_number(),
+                                    reach * random_number()});
+        const double volumes = test_measure(&a).volume_mm3 + test_measure(&b).volume_mm3;
+        cw_boolean_facts f;
+        const double one = check_boolean(&a, &b, CW_BOOLEAN_UNION, &f);
+        double moved = f.moved_mm;
+        const double both = check_boolean(&a, &b, CW_BOOLEAN_INTERSECTION, &f);
+        moved = fmax(moved, f.moved_mm);
+        const double left = check_boolean(&a, &b, CW_BOOLEAN_DIFFERENCE, &f);
+        const double right = check_boolean(&b, &a, CW_BOOLEAN_DIFFERENCE, &f);
+        if (fabs(one + both - volumes) > 1e-6 * volumes)
+            fail_msg("pair %d: %.12g + %.12g is not %.12g", n, one, both, volumes);
+        if (fabs(left + right + both - one) > 1e-6 * volumes)
+            fail_msg("pair %d: %.12g + %.12g + %.12g is not %.12g", n, left, right, both, one);
+        cw_mesh_free(&a);
+        cw_mesh_free(&b);
+    }
+}
+
+/* Copies that are turned by less than floats can tell, or by a little more. */
+static void copies_nearly_equal_leave_nothing_open(void **state)
+{
+    (void)state;
+    static const double angles[] = {0, 1e-15, 1e-8, 1e-7, 3e-7, 1e-6};
+    for (int n = 0; n < 6; n++) {
+        cw_mesh a = extract_field(CW_FIELD_SPHERE, 10), b = extract_field(CW_FIELD_SPHERE, 10);
+        const double none[3] = {0, 0, 0};
+        move_mesh(&a, 0, 1, none);
+        move_mesh(&b, angles[n], 1, none);
+        const double volume = test_measure(&a).volume_mm3;
+        cw_boolean_facts f;
+        assert_true(fabs(check_boolean(&a, &b, CW_BOOLEAN_UNION, &f) - volume) < 1e-4 * volume);
+        assert_true(check_boolean(&a, &b, CW_BOOLEAN_DIFFERENCE, &f) < 1e-4 * volume);
+        assert_true(check_boolean(&a, &b, CW_BOOLEAN_XOR, &f) < 1e-4 * volume);
+        cw_mesh_free(&a);
+        cw_mesh_free(&b);
+    }
+}
+
+/* One mesh of shells that overlap, are nested, doubled or inside out. */
+static void shells_of_one_mesh_are_united(void **state)
+{
+    (void)state;
+    static const struct shell_row {
+        double low[3][3], size[3];
+        bool inward[3];
+        int count;
+        double volume;
+    } rows[] = {
+        {{{0, 0, 0}, {2, 2, 2}}, {4, 4}, {0}, 2, 120},          /* overlap */
+        {{{0, 0, 0}, {1, 1, 1}}, {4, 2}, {0}, 2, 64},           /* nested: solid */
+        {{{0, 0, 0}, {1, 1, 1}}, {4, 2}, {false, true}, 2, 56}, /* nested: a cavity */
+        {{{0, 0, 0}, {0, 0, 0}}, {4, 4}, {0}, 2, 64},           /* doubled */
+        {{{0, 0, 0}, {4, 0, 0}}, {4, 4}, {0}, 2, 128},          /* share a face */
+        {{{0, 0, 0}}, {4}, {true}, 1, 64},                      /* inside out */
+        {{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, {6, 4, 2}, {false, true, false}, 3, 160},
+    };
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
+        cw_mesh m = make_empty(3), out;
+        const cw_mesh *meshes[1] = {&m};
+        cw_error err = {0};
+        cw_boolean_facts f = {0};
+        for (int i = 0; i < rows[n].count; i++) {
+            const double *low = rows[n].low[i], size = rows[n].size[i];
+            add_box(&m, low, (const double[3]){low[0] + size, low[1] + size, low[2] + size},
+                    rows[n].inward[i]);
+        }
+        assert_ok(cw_mesh_boolean(meshes, 1, NULL, &out, &f, &err), err);
+        check_sound(&out);
+        assert_true(f.volume_mm3[0] == rows[n].volume);
+        assert_int_equal(f.turned, rows[n].inward[0]);
+        cw_mesh_free(&m);
+        cw_mesh_free(&out);
+    }
+}
+
+/* A cube less a grid of spheres that do not touch: all volumes are known from the meshes. */
+static void many_holes_are_subtracted(void **state)
+{
+    (void)state;
+    enum { SIDE = 4, COUNT = SIDE * SIDE * SIDE };
+    cw_mesh meshes[COUNT + 1] = {make_box(0, 0, 0, 40 * SIDE)}, out;
+    const cw_mesh *all[COUNT + 1] = {&meshes[0]};
+    double removed = 0;
+    for (int n = 0; n < COUNT; n++) {
+        cw_mesh *m = &meshes[n + 1];
+        *m = extract_field(CW_FIELD_SPHERE, 8);
+        move_mesh(m, n, 0.25,
+                  (const double[3]){160 * (n % SIDE) + 80, 160 * (n / SIDE % SIDE) + 80,
+                                    160 * (n / SIDE / SIDE) + (n < SIDE * SIDE ? 0 : 80)});
+        all[n + 1] = m;
+    }
+    cw_error err = {0};
+    cw_boolean_facts f = {0}, g = {0};
+    assert_ok(cw_mesh_boolean(all, COUNT + 1, &(cw_boolean_desc){.op = CW_BOOLEAN_DIFFERENCE},
+                              &out, &f, &err),
+              err);
+    check_sound(&out);
+    for (int n = 1; n <= COUNT; n++) {
+        cw_mesh part;
+        const cw_mesh *pair[2] = {all[0], all[n]};
+        assert_ok(cw_mesh_boolean(pair, 2, &(cw_boolean_desc){.op = CW_BOOLEAN_INTERSECTION},
+                                  &part, &g, &err),
+                  err);
+        removed += g.volume_mm3[0];
+        cw_mesh_free(&part);
+    }
+    const double cube = pow(40 * SIDE, 3);
+    assert_true(fabs(f.volume_mm3[0] + removed - cube) < 1e-9 * cube);
+    for (int n = 0; n <= COUNT; n++)
+        cw_mesh_free(&meshes[n]);
+    cw_mesh_free(&out);
+}
+
+static void threads_give_the_same_mesh(void **state)
+{
+    (void)state;
+    cw_mesh a = extract_field(CW_FIELD_GYROID, 14), b = extract_field(CW_FIELD_TORUS, 14),
+            out[2];
+    const cw_mesh *meshes[2] = {&a, &b};
+    cw_error err = {0};
+    for (int n = 0; n < 2; n++)
+        assert_ok(cw_mesh_boolean(meshes, 2, &(cw_boolean_desc){.threads = 1 + 4 * n}, &out[n],
+                                  NULL, &err),
+                  err);
+    test_assert_same_mesh(&out[0], &out[1]);
+    for (int n = 0; n < 2; n++)
+        cw_mesh_free(&out[n]);
+    cw_mesh_free(&a);
+    cw_mesh_free(&b);
+}
+
+/* Values that are linear in space stay so; each triangle says which mesh it is from. */
+static void attributes_go_through(void **state)
+{
+    (void)state;
+    cw_mesh a = make_box(0, 0, 0, 4), b = make_box(1, 2, 3, 4), out;
+    const cw_mesh *meshes[2] = {&a, &b};
+    cw_error err = {0};
+    cw_attribute *row;
+    const cw_attribute like = {"place", CW_ON_CORNERS, CW_F32, 1, CW_INTERPOLATE_LINEAR, NULL};
+    a.scalars = cwi_alloc_zeroed(8, sizeof *a.scalars);
+    b.colors = cwi_alloc_zeroed(8, 4);
+    assert_true(a.scalars && b.colors);
+    for (size_t v = 0; v < 8; v++) {
+        a.scalars[v] = 2 * a.positions[3 * v] + a.positions[3 * v + 1];
+        b.colors[4 * v] = 100;
+    }
+    assert_ok(cw_mesh_attribute_add(&a, &like, &row, &err), err);
+    for (size_t c = 0; c < 3 * a.triangle_count; c++)
+        ((float *)row->data)[c] = a.positions[3 * (size_t)a.triangles[c] + 2];
+    assert_ok(cw_mesh_boolean(meshes, 2, &(cw_boolean_desc){.op = CW_BOOLEAN_DIFFERENCE}, &out,
+                              NULL, &err),
+              err);
+    const cw_attribute *input = cw_mesh_attribute_find(&out, "input");
+    const cw_attribute *place = cw_mesh_attribute_find(&out, "place");
+    assert_true(input && place && out.scalars && out.colors);
+    size_t of_b = 0;
+    for (size_t t = 0; t < out.triangle_count; t++) {
+        const bool from_b = ((const uint32_t *)input->data)[t];
+        of_b += from_b;
+        for (size_t k = 0; k < 3; k++) {
+            const float *p = out.positions + 3 * (size_t)out.triangles[3 * t + k];
+            const float wanted = from_b ? 0 : p[2];
+            assert_true(fabsf(((const float *)place->data)[3 * t + k] - wanted) < 1e-5f);
+        }
+    }
+    assert_true(of_b >= 6); /* three faces */
+    for (size_t v = 0; v < out.vertex_count; v++) {
+        const float *p = out.positions + 3 * v;
+        const bool on_a =
+            p[0] == 0 || p[0] == 4 || p[1] == 0 || p[1] == 4 || p[2] == 0 || p[2] == 4;
+        if (on_a)
+            assert_true(fabsf(out.scalars[v] - (2 * p[0] + p[1])) < 1e-5f);
+        assert_int_equal(out.colors[4 * v], on_a ? 255 : 100);
+    }
+    cw_mesh_free(&a);
+    cw_mesh_free(&b);
+    cw_mesh_free(&out);
+}
+
+/* Meshes relative to other origins meet in the world. */
+static void origins_are_taken_into_account(void **state)
+{
+    (void)state;
+    cw_mesh a = make_box(0, 0, 0, 4), b = make_box(0, 0, 0, 4);
+    cw_boolean_facts f;
+    a.origin[0] = 1000;
+    b.origin[0] = 1002;
+    assert_true(check_boolean(&a, &b, CW_BOOLEAN_UNION, &f) == 96);
+    cw_mesh_free(&a);
+    cw_mesh_free(&b);
+}
+
+static void bad_meshes_are_refused(void **state)
+{
+    (void)state;
+    cw_mesh a = make_box(0, 0, 0, 4), b = make_box(2, 0, 0, 4), out;
+    const cw_mesh *meshes[2] = {&a, &b};
+    cw_error err = {0};
+    assert_int_equal(cw_mesh_boolean(meshes, 0, NULL, &out, NULL, &err), CW_ERR_ARGUMENT);
+    assert_int_equal(cw_mesh_boolean(meshes, 2, &(cw_boolean_desc){.op = CW_BOOLEAN_COUNT},
+                                     &out, NULL, &err),
+                     CW_ERR_ARGUMENT);
+    b.triangle_count--;
+    assert_int_equal(cw_mesh_boolean(meshes, 2, NULL, &out, NULL, &err), CW_ERR_CHECK);
+    assert_non_null(strstr(err.message, "mesh 2 of 2 is open at 3 edges"));
+    assert_int_equal(out.triangle_count, 0);
+    b.triangle_count++;
+    meshes[1] = NULL;
+    assert_int_equal(cw_mesh_boolean(meshes, 2, NULL, &out, NULL, &err), CW_ERR_ARGUMENT);
+    cw_mesh_free(&a);
+    cw_mesh_free(&b);
+}
+
+static void failing_allocations_leave_nothing(void **state)
+{
+    (void)state;
+    cw_mesh a = make_box(0, 0, 0, 4), b = make_box(1, 2, 4, 4), out;
+    const cw_mesh *meshes[2] = {&a, &b};
+    cw_error err = {0};
+    bool failed = true;
+    for (long n = 0; failed; n++) {
+        cwi_alloc_fail_after(n);
+        const cw_status st =
+            cw_mesh_boolean(meshes, 2, &(cw_boolean_desc){.threads = 1}, &out, NULL, &err);
+        failed = cwi_alloc_fail_after(-1);
+        assert_int_equal(st, failed ? CW_ERR_NO_MEMORY : CW_OK);
+        assert_true(st == CW_OK || !out.positions);
+        cw_mesh_free(&out);
+    }
+    cw_mesh_free(&a);
+    cw_mesh_free(&b);
+}
+
+/* Random products and sums, checked by (a + b) (a - b) = a a - b b, and by those that fit 128 bits. */
+static void long_integers_obey_the_rules(void **state)
+{
+    (void)state;
+    srand(test_seed(75));
+    for (int n = 0; n < 20000; n++) {
+        cwi_big a, b, sum, difference, left, x, y, right;
+        const cwi_wide p = (cwi_wide)((random_number() - 0.5) * 0x1p62) >> rand() % 60;
+        const cwi_wide q = (cwi_wide)((random_number() - 0.5) * 0x1p62) >> rand() % 60;
+        cwi_big_set(&a, p);
+        cwi_big_set(&b, q);
+        cwi_big_mul(&a, &b, &x);
+        cwi_big_set(&y, p * q);
+        cwi_big_sub(&x, &y, &x);
+        assert_int_equal(cwi_big_sign(&x), 0);
+        for (int k = 0; k < n % 3; k++) { /* longer ones */
+            cwi_big_mul(&a, &b, &x);
+            cwi_big_add(&x, &b, &b);
+            cwi_big_sub(&x, &a, &a);
+        }
+        cwi_big_add(&a, &b, &sum);
+        cwi_big_sub(&a, &b, &difference);
+        cwi_big_mul(&sum, &difference, &left);
+        cwi_big_cross(&a, &a, &b, &b, &right);
+        cwi_big_sub(&left, &right, &x);
+        assert_int_equal(cwi_big_sign(&x), 0);
+        if (cwi_big_sign(&b)) {
+            cwi_big_mul(&a, &b, &x);
+            const double ratio = cwi_big_ratio(&x, &b),
+                         wanted = cwi_big_ratio(&a, &(cwi_big){1, false, {1}});
+            assert_true(fabs(ratio - wanted) <= 1e-15 * fabs(wanted));
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(boxes_have_their_volumes),
+        cmocka_unit_test(random_pairs_add_up),
+        cmocka_unit_test(copies_nearly_equal_leave_nothing_open),
+        cmocka_unit_test(shells_of_one_mesh_are_united),
+        cmocka_unit_test(many_holes_are_subtracted),
+        cmocka_unit_test(threads_give_the_same_mesh),
+        cmocka_unit_test(attributes_go_through),
+        cmocka_unit_test(origins_are_taken_into_account),
+        cmocka_unit_test(bad_meshes_are_refused),
+        cmocka_unit_test(failing_allocations_leave_nothing),
+        cmocka_unit_test(long_integers_obey_the_rules),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
