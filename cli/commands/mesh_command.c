@@ -10,19 +10,20 @@
 
 /* --- before the input is read ------------------------------------------------------------- */
 
-/* Lists the files that no output may be. Returns how many there are. */
-static size_t list_inputs(const cli_mesh_run *r, const char *inputs[2])
+/* Lists the files that no output may be, in `two` where they are no list yet. Returns how many there are. */
+static size_t list_inputs(const cli_mesh_run *r, const char *two[2], const char *const **inputs)
 {
-    inputs[0] = r->args->common.inputs[0];
-    inputs[1] = r->args->source;
-    return inputs[1] ? 2 : 1;
+    two[0] = r->args->common.inputs[0];
+    two[1] = r->args->source;
+    *inputs = two[1] ? two : r->args->common.inputs;
+    return two[1] ? 2 : r->args->common.input_count;
 }
 
 /* The report is an output, too: none is written when it is an input or a mesh. */
 cw_status cli_check_mesh_outputs(cli_mesh_run *r, cw_error *err)
 {
-    const char *inputs[2], *json = r->args->json;
-    const size_t count = list_inputs(r, inputs);
+    const char *two[2], *json = r->args->json, *const * inputs;
+    const size_t count = list_inputs(r, two, &inputs);
     const cw_write_desc desc =
         cli_written_desc(&r->args->written, &r->args->compress, &r->mesh);
     cw_status st = CW_OK;
@@ -45,8 +46,8 @@ static cw_status name_outputs(cli_mesh_run *r, cw_error *err)
 
 static cw_status check_args(cli_mesh_run *r, cw_error *err)
 {
-    const char *inputs[2];
-    const size_t count = list_inputs(r, inputs);
+    const char *two[2], *const *inputs;
+    const size_t count = list_inputs(r, two, &inputs);
     cw_status st = r->args->json ? cli_check_output(r->args->json, inputs, count, err) : CW_OK;
     if (st != CW_OK)
         return st;
@@ -108,7 +109,7 @@ static cw_status do_work(cli_mesh_run *r, cw_error *err)
     cli_report_begin(&r->report);
     cw_status st = r->command->work(r, err);
     if (st != CW_OK)
-        return cwi_fail_in(err, st, r->mesh.path);
+        return cwi_fail_in(err, st, r->blamed ? r->blamed : r->mesh.path);
     r->is_made = true;
     cli_report_end(&r->report, r->command->name, before,
                    r->outputs.count ? cli_made_triangles(r) : before);

@@ -66,6 +66,7 @@ typedef struct cli_mesh_run {
     cli_mesh mesh;      /* as it was read */
     cli_pieces pieces;  /* what work() turns into something */
     double promised_mm; /* the largest distance to the input; 0: none is promised */
+    const char *blamed; /* the file that an error of work() is about; NULL: the input */
     bool is_made;       /* work() is done */
     char found[320];    /* for the line */
     cli_outputs

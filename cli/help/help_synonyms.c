@@ -29,6 +29,9 @@ const cli_synonym cli_synonyms[] = {
     {"cavit|enclosed|hollow inside", "void", "--fill-voids|--min-volume", NULL},
     {"remesh|retriang|sliver|needle|fem|finite element|quality triangle", "remesh",
      "remesh|--fem|--edge|--adaptive|--snap", NULL},
+    {"union|merge solid|subtract|difference|intersect|csg|carve|unite", "boolean",
+     "boolean|--op|repair",
+     "'boolean' unites, subtracts and intersects closed meshes, and unites the shells of one."},
     {"hole|heal|fix|mend|broken", "repair", "repair|--fill|--wrap|--weld", NULL},
     {"watertight|leak", "closed", "closed|repair|--open|--orient|--by|--profile",
      "'repair' closes broken meshes. 'extract' makes closed meshes, 'check' finds open edges, and "

@@ -35,9 +35,10 @@ typedef struct cw_boolean_facts {
     size_t contact_vertices; /* vertices that were doubled, so that it is a manifold there */
     size_t dropped;          /* triangles of the inputs that have no area */
     size_t turned;           /* inputs that were inside out: they enclosed a negative volume */
+    size_t open_mesh;        /* the number of a mesh that is open, from 1; 0: none is */
     size_t rounds;   /* how often the result was rounded to floats; 0: nothing was to round */
-    double moved_mm; /* the largest movement of a point by rounding, up to half a float's last
-                                digit of the largest coordinate, or more where that made facets cross */
+    double moved_mm; /* the largest movement of a point: up to half a last digit of the largest
+                                coordinate, or more where rounding made facets cross */
     double volume_mm3[2]; /* of the results, before rounding */
 } cw_boolean_facts;
 

@@ -13,6 +13,7 @@ threads at once, as long as none writes to its arrays.
 """
 
 from ._about import Feature, Format, features, formats, make
+from ._boolean import Combined, boolean
 from ._check import Check, Verdict, check, report
 from ._color import color_by
 from ._cut import Cut, cut
@@ -34,6 +35,7 @@ __version__: str = _lib.cw_version().decode()
 
 __all__ = [
     "Check",
+    "Combined",
     "Cut",
     "Error",
     "Extractor",
@@ -53,6 +55,7 @@ __all__ = [
     "Verdict",
     "Volume",
     "Written",
+    "boolean",
     "check",
     "color_by",
     "cut",

@@ -671,6 +671,7 @@ class cw_boolean_facts(Structure):
     contact_vertices: int
     dropped: int
     turned: int
+    open_mesh: int
     rounds: int
     moved_mm: float
     volume_mm3: Any
@@ -684,6 +685,7 @@ cw_boolean_facts._fields_ = [
     ("contact_vertices", c_size_t),
     ("dropped", c_size_t),
     ("turned", c_size_t),
+    ("open_mesh", c_size_t),
     ("rounds", c_size_t),
     ("moved_mm", c_double),
     ("volume_mm3", c_double * 2),

@@ -14,7 +14,7 @@ typedef struct cwi_grid_solids {
     uint32_t *sources; /* of each triangle: its number among those of all meshes */
     size_t input_count;
     size_t flat_count; /* triangles without area, behind the others */
-    size_t dropped, turned;
+    size_t dropped, turned, open_mesh;
     double moved_mm;
 } cwi_grid_solids;
 

@@ -171,7 +171,7 @@ static size_t count_open(const cwi_grid_solids *s, half_edge *half, size_t *star
     return open;
 }
 
-static cw_status require_closed(const cwi_grid_solids *s, const double origin[3], cw_error *err)
+static cw_status require_closed(cwi_grid_solids *s, const double origin[3], cw_error *err)
 {
     half_edge *half = cwi_alloc_array(3 * s->soup.triangle_count, sizeof *half);
     size_t *start = cwi_alloc_zeroed(s->soup.vertex_count + 1, sizeof *start);
@@ -181,6 +181,7 @@ static cw_status require_closed(const cwi_grid_solids *s, const double origin[3]
     if (!half || !start)
         st = cwi_fail_memory(err);
     else if (open) {
+        s->open_mesh = first[2] + 1;
         double p[2][3];
         for (int i = 0; i < 2; i++)
             for (int k = 0; k < 3; k++)

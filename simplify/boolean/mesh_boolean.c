@@ -279,6 +279,7 @@ static cw_status try_boolean(boolean *b, double radius, cw_error *err)
         st = meet(&r, &b->desc, err);
     b->facts.dropped = r.solids.dropped;
     b->facts.turned = r.solids.turned;
+    b->facts.open_mesh = r.solids.open_mesh;
     b->facts.moved_mm = r.solids.moved_mm;
     for (size_t n = 0; n < r.seams.count && st == CW_OK; n++)
         b->facts.split_triangles +=

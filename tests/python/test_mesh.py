@@ -229,6 +229,34 @@ class Coordinates(Case):
         with self.fails(cw.Status.CANCELLED):
             cw.remesh(ball, size / 15, progress=lambda *_: False)
 
+    def test_boolean_adds_up(self):
+        ball = cw.extract(make_ball(), 0)
+        size = float(np.ptp(ball.vertices, axis=0).max())
+        other = cw.Mesh.from_arrays(ball.vertices, ball.triangles, origin=np.array(ball.origin) + (size / 3, 0, 0))
+        first = ball.triangles.copy()
+        one = cw.boolean([ball, other])
+        both = cw.boolean([ball, other], "intersection", threads=2)
+        parts = cw.boolean([ball, other], "split")
+        self.assertIsInstance(one, cw.Combined)
+        volume = cw.check(ball).quality["volume_mm3"]
+        self.assertAlmostEqual((one.volumes[0] + both.volumes[0]) / (2 * volume), 1, places=5)
+        self.assertAlmostEqual(sum(parts.volumes) / volume, 1, places=5)
+        self.assertEqual(len(parts.meshes), 2)
+        for mesh in (one.mesh, both.mesh, *parts.meshes):
+            self.assertTrue(cw.check(mesh, profile="print").holds)
+        self.assertEqual(set(one.mesh.attributes["input"].ravel()), {0, 1})
+        np.testing.assert_array_equal(ball.triangles, first)
+        far = cw.Mesh.from_arrays(ball.vertices, ball.triangles, origin=np.array(ball.origin) + (9 * size, 0, 0))
+        self.assertEqual(len(cw.boolean([ball, far], "intersection").mesh.triangles), 0)
+        self.assertRaises(ValueError, lambda: cw.boolean([ball, other], "minus"))
+        self.assertRaises(TypeError, lambda: cw.boolean([ball, 1]))
+        with self.fails(cw.Status.ARGUMENT):
+            cw.boolean([])
+        with self.fails(cw.Status.CHECK):
+            cw.boolean([cw.Mesh.from_arrays(ball.vertices, ball.triangles[:-1])])
+        with self.fails(cw.Status.CANCELLED):
+            cw.boolean([ball, other], progress=lambda *_: False)
+
     def test_weld_merges_corners(self):
         mesh = cw.extract(make_ball(), 0)
         corners = mesh.vertices[mesh.triangles.ravel()]

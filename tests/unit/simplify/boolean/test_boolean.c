@@ -395,7 +395,9 @@ static void bad_meshes_are_refused(void **state)
                                      &out, NULL, &err),
                      CW_ERR_ARGUMENT);
     b.triangle_count--;
-    assert_int_equal(cw_mesh_boolean(meshes, 2, NULL, &out, NULL, &err), CW_ERR_CHECK);
+    cw_boolean_facts f = {0};
+    assert_int_equal(cw_mesh_boolean(meshes, 2, NULL, &out, &f, &err), CW_ERR_CHECK);
+    assert_int_equal(f.open_mesh, 2);
     assert_non_null(strstr(err.message, "mesh 2 of 2 is open at 3 edges"));
     assert_int_equal(out.triangle_count, 0);
     b.triangle_count++;
