@@ -224,7 +224,7 @@ static cw_status resolve_lengths(cli_mesh_run *r, cw_error *err)
     if (args_of(r)->drop.given)
         st = cli_drop_from_pieces(&r->pieces, s->drop_mm, err);
     for (size_t n = 0; n < r->pieces.count && st == CW_OK && r->args->source; n++)
-        st = cli_check_place(&s->source, &r->pieces.piece[n].input, err);
+        st = cli_check_overlap(&s->source, &r->pieces.piece[n].input, err);
     return st == CW_OK ? check_attributes(r, err) : st;
 }
 

@@ -68,11 +68,11 @@ static size_t glb_arrays(size_t vertices, size_t triangles)
 static size_t write_sample(const char *folder, const char *name, const char *extension,
                            const cw_volume *volume)
 {
-    float places[4][3] = {
+    float points[4][3] = {
         {0.123456f, 0, 0}, {9.87654f, 0, 0}, {0, 7.65432f, 0}, {0, 0, 5.4321f}};
     float normals[4][3] = {{-1, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     uint32_t corners[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
-    cw_mesh mesh = {.positions = places[0],
+    cw_mesh mesh = {.positions = points[0],
                     .normals = normals[0],
                     .triangles = corners[0],
                     .vertex_count = 4,

@@ -129,23 +129,23 @@ static cw_status keep_single(cw_mesh *mesh, cw_error *err)
 /* Makes the mesh, and numbers its vertices in the order in which they come. */
 static cw_status join_pieces(const cli_pieces *p, joined *j, cw_error *err)
 {
-    size_t places = 0, begin = 0, done = 0, triangles = 0;
+    size_t vertices = 0, begin = 0, done = 0, triangles = 0;
     if (!weld_pieces(p, j))
         return cwi_fail_memory(err);
     for (size_t v = 0; v < j->count; v++)
-        places += j->map[v] == v;
+        vertices += j->map[v] == v;
     for (size_t n = 0; n < p->count; n++)
         triangles += p->piece[n].input.triangle_count;
-    cw_status st = cwi_mesh_alloc(&j->mesh, places, triangles, false, err);
+    cw_status st = cwi_mesh_alloc(&j->mesh, vertices, triangles, false, err);
     if (st != CW_OK)
         return st;
-    places = 0;
+    vertices = 0;
     for (size_t v = 0; v < j->count; v++) {
         const bool is_first = j->map[v] == v;
         if (is_first)
-            memcpy(j->mesh.positions + 3 * places, j->positions + 3 * v,
+            memcpy(j->mesh.positions + 3 * vertices, j->positions + 3 * v,
                    3 * sizeof *j->positions);
-        j->map[v] = is_first ? (uint32_t)places++ : j->map[j->map[v]];
+        j->map[v] = is_first ? (uint32_t)vertices++ : j->map[j->map[v]];
     }
     for (size_t n = 0; n < p->count; n++) {
         const cw_mesh *mesh = &p->piece[n].input;
@@ -157,7 +157,7 @@ static cw_status join_pieces(const cli_pieces *p, joined *j, cw_error *err)
     return keep_single(&j->mesh, err);
 }
 
-static cw_status take_places(cli_pieces *p, const joined *j, cw_error *err)
+static cw_status copy_positions(cli_pieces *p, const joined *j, cw_error *err)
 {
     size_t begin = 0;
     cw_status st = CW_OK;
@@ -181,7 +181,7 @@ cw_status cli_smooth_together(cli_pieces *pieces, const cw_smooth_desc *desc,
     if (st == CW_OK)
         st = cw_mesh_smooth(&j.mesh, desc, facts, err);
     if (st == CW_OK)
-        st = take_places(pieces, &j, err);
+        st = copy_positions(pieces, &j, err);
     free_joined(&j);
     return st;
 }

@@ -189,20 +189,20 @@ static bool parse_triple(const char **text, double out[3])
     return true;
 }
 
-/* Parses a place along an axis: in mm, or percent of the box. */
-static bool parse_place(const char *text, double *place, bool *is_percent)
+/* Parses an offset along an axis: in mm, or percent of the box. */
+static bool parse_offset(const char *text, double *offset, bool *is_percent)
 {
     static const struct {
         const char *name;
         double mm;
     } units[] = {{"", 1}, {"mm", 1}, {"um", 1e-3}, {"cm", 10}, {"m", 1e3}, {"in", 25.4}};
-    if (!cwi_parse_double(&text, place) || !isfinite(*place))
+    if (!cwi_parse_double(&text, offset) || !isfinite(*offset))
         return false;
     *is_percent = strcmp(text, "%") == 0;
     for (size_t u = 0; u < sizeof units / sizeof *units && !*is_percent; u++)
         if (strcmp(text, units[u].name) == 0) {
-            *place *= units[u].mm;
-            return isfinite(*place);
+            *offset *= units[u].mm;
+            return isfinite(*offset);
         }
     return *is_percent;
 }
@@ -220,7 +220,7 @@ static bool parse_plane(const cli_option *o, const char *text, void *field)
     if (*at >= 'x' && *at <= 'z') {
         const int axis = *at - 'x';
         out->normal[axis] = is_below ? -1 : 1;
-        out->given = at[1] == '=' && parse_place(at + 2, &out->point[axis], &out->is_percent);
+        out->given = at[1] == '=' && parse_offset(at + 2, &out->point[axis], &out->is_percent);
         return out->given;
     }
     out->given = parse_triple(&text, out->point) && *text++ == ':' &&

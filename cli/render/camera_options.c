@@ -85,12 +85,12 @@ static void round_numbers(double *numbers, size_t count)
 
 void cli_round_camera(cw_camera *camera)
 {
-    double places[6];
-    memcpy(places, camera->eye, sizeof camera->eye);
-    memcpy(places + 3, camera->target, sizeof camera->target);
-    round_numbers(places, 6);
-    memcpy(camera->eye, places, sizeof camera->eye);
-    memcpy(camera->target, places + 3, sizeof camera->target);
+    double coordinates[6];
+    memcpy(coordinates, camera->eye, sizeof camera->eye);
+    memcpy(coordinates + 3, camera->target, sizeof camera->target);
+    round_numbers(coordinates, 6);
+    memcpy(camera->eye, coordinates, sizeof camera->eye);
+    memcpy(camera->target, coordinates + 3, sizeof camera->target);
     round_numbers(camera->up, 3);
     round_numbers(&camera->fov_deg, 1);
     round_numbers(&camera->height_mm, 1);

@@ -18,14 +18,14 @@ bool cli_has_marks(const cli_marks *m)
 
 /* A label of the legend. */
 typedef struct entry {
-    size_t voxels, place; /* in the list of labels */
+    size_t voxels, index; /* in the list of labels */
 } entry;
 
 static int compare_entries(const void *a, const void *b)
 {
     const entry *x = a, *y = b;
     return x->voxels != y->voxels ? (x->voxels < y->voxels) - (x->voxels > y->voxels)
-                                  : (x->place > y->place) - (x->place < y->place);
+                                  : (x->index > y->index) - (x->index < y->index);
 }
 
 /* Lists the labels that the scene shows, the largest first. */
@@ -47,7 +47,7 @@ static cw_status list_legend(const cli_label_scene *s, const cw_scene *scene,
     }
     qsort(entries, *count, sizeof *entries, compare_entries);
     for (size_t n = 0; n < *count; n++) {
-        const cw_label *label = &s->shown.labels[entries[n].place];
+        const cw_label *label = &s->shown.labels[entries[n].index];
         (*items)[n].name = label->name;
         memcpy((*items)[n].color, label->color, 3);
     }

@@ -116,15 +116,15 @@ static cw_status change_gradients(const char *text, cw_transfer *t, cw_error *er
     const char *rest = text;
     t->gradient_count = 0;
     do {
-        double place, factor;
+        double gradient, factor;
         const char *at = item;
-        if (!cwi_next_item(&rest, &separator, item) || !cwi_parse_double(&at, &place) ||
+        if (!cwi_next_item(&rest, &separator, item) || !cwi_parse_double(&at, &gradient) ||
             *at++ != ':' || !cwi_parse_double(&at, &factor) || *at ||
             t->gradient_count == CW_TRANSFER_POINTS)
             return cwi_fail(err, CW_ERR_ARGUMENT,
                             "--gradient-opacity '%s': expected G:F,..., such as 0:0.1,1:1",
                             text);
-        t->gradients[t->gradient_count++] = (cw_opacity_point){place, (float)factor};
+        t->gradients[t->gradient_count++] = (cw_opacity_point){gradient, (float)factor};
     } while (separator);
     return CW_OK;
 }

@@ -189,14 +189,14 @@ static int count_collisions(const plot *p, size_t before, double x, double y)
 /* Numbers stand around their dots, in the first of these places with the fewest collisions. */
 static void place_numbers(plot *p)
 {
-    static const double places[][2] = {
+    static const double offsets[][2] = {
         {13, -9},  {-13, -9},  {13, 10}, {-13, 10}, {0, -14},  {0, 15},    {17, 0},  {-17, 0},
         {24, -12}, {-24, -12}, {24, 14}, {-24, 14}, {10, -24}, {-10, -24}, {10, 25}, {-10, 25}};
     for (size_t n = 0; n < p->count; n++) {
         dot *d = &p->dots[n];
         int least = -1;
-        for (size_t at = 0; at < sizeof places / sizeof *places; at++) {
-            const double x = d->x + places[at][0], y = d->y + places[at][1];
+        for (size_t at = 0; at < sizeof offsets / sizeof *offsets; at++) {
+            const double x = d->x + offsets[at][0], y = d->y + offsets[at][1];
             const int hits = count_collisions(p, n, x, y);
             if (least >= 0 && hits >= least)
                 continue;

@@ -36,7 +36,7 @@ cw_status cli_compare_with_field(const cw_mesh *mesh, const cli_volume *volume, 
     return st;
 }
 
-cw_status cli_check_place(const cli_volume *volume, const cw_mesh *mesh, cw_error *err)
+cw_status cli_check_overlap(const cli_volume *volume, const cw_mesh *mesh, cw_error *err)
 {
     double corners[8][3], low[3], high[3], from[3], to[3];
     cw_volume_corners(&volume->view, corners);

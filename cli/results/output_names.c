@@ -14,29 +14,29 @@
 #include <sys/stat.h>
 
 /* Identity of the file at a path. */
-typedef struct place {
+typedef struct identity {
     bool exists;
     dev_t device;
     ino_t inode;
-} place;
+} identity;
 
-static place find_place(const char *path)
+static identity identify_file(const char *path)
 {
     struct stat info;
     if (stat(path, &info) != 0)
-        return (place){0};
-    return (place){true, info.st_dev, info.st_ino};
+        return (identity){0};
+    return (identity){true, info.st_dev, info.st_ino};
 }
 
-static bool same_place(const place *a, const place *b)
+static bool same_identity(const identity *a, const identity *b)
 {
     return a->exists && b->exists && a->device == b->device && a->inode == b->inode;
 }
 
 static bool same_file(const char *a, const char *b)
 {
-    const place x = find_place(a), y = find_place(b);
-    return same_place(&x, &y);
+    const identity x = identify_file(a), y = identify_file(b);
+    return same_identity(&x, &y);
 }
 
 cw_status cli_check_output(const char *output, const char *const *inputs, size_t input_count,
@@ -296,17 +296,17 @@ void cli_free_outputs(cli_outputs *outputs)
 static cw_status check_all_apart(const cli_outputs *outputs, cw_error *err)
 {
     cw_status st = CW_OK;
-    place *places = calloc(outputs->count ? outputs->count : 1, sizeof *places);
-    if (!places)
+    identity *identities = calloc(outputs->count ? outputs->count : 1, sizeof *identities);
+    if (!identities)
         return cwi_fail_memory(err);
     for (size_t n = 0; n < outputs->count && st == CW_OK; n++) {
-        places[n] = find_place(outputs->path[n]);
+        identities[n] = identify_file(outputs->path[n]);
         for (size_t m = 0; m < n && st == CW_OK; m++)
-            if (same_place(&places[m], &places[n]) ||
+            if (same_identity(&identities[m], &identities[n]) ||
                 strcmp(outputs->path[m], outputs->path[n]) == 0)
                 st = fail_same(outputs->path[m], outputs->path[n], err);
     }
-    free(places);
+    free(identities);
     return st;
 }
 

@@ -63,7 +63,8 @@ static void blend_doubles(const view_key_frames *f, double time, size_t offset, 
             blend_double(f, 0, f->count, time, offset + n * sizeof(double));
 }
 
-static void blend_places(const view_key_frames *f, size_t at, double time, view_state *s)
+static void blend_slices_and_boxes(const view_key_frames *f, size_t at, double time,
+                                   view_state *s)
 {
     const view_state *a = &f->keys[at].state, *b = &f->keys[at + 1].state;
     const cli_ranges *boxes[2] = {&a->args.scene.clip_box, &b->args.scene.clip_box};
@@ -112,7 +113,7 @@ cw_status view_show_moment(view *v, const view_key_frames *f, double time, cw_er
     cw_status st = CW_OK;
     if (!is_end) {
         blend_options(v, f, at, time, &v->state);
-        blend_places(f, at, time, &v->state);
+        blend_slices_and_boxes(f, at, time, &v->state);
         st = blend_cameras(f, at, time, &v->state.camera, err);
         const double steps[2] = {(double)f->keys[at].state.step,
                                  (double)f->keys[at + 1].state.step};

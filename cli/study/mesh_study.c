@@ -167,7 +167,7 @@ cw_status cli_study_mesh(cli_mesh_study *m, cw_error *err)
     if (!s->full.triangle_count)
         return cwi_fail(err, CW_ERR_EMPTY, "%s: the mesh has no triangles", m->mesh.path);
     float *worst = cwi_alloc_zeroed(s->full.vertex_count, sizeof *worst);
-    cw_status st = worst ? cli_check_place(s->volume, &s->full, err) : cwi_fail_memory(err);
+    cw_status st = worst ? cli_check_overlap(s->volume, &s->full, err) : cwi_fail_memory(err);
     if (st == CW_OK)
         st = cli_scratch_make(&s->folder, err);
     if (st == CW_OK)

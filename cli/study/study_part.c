@@ -23,12 +23,12 @@ static cw_extract_desc desc_of(const cli_study *s)
 /* One of the boxes of 1/by of each side, on a lattice of half their size. */
 static cw_box box_at(const cw_volume *v, size_t by, size_t number)
 {
-    const size_t places = 2 * by - 1;
+    const size_t steps = 2 * by - 1;
     cw_box box;
     for (int a = 0; a < 3; a++) {
         box.count[a] = v->dim[a] / by;
-        box.first[a] = number % places * box.count[a] / 2;
-        number /= places;
+        box.first[a] = number % steps * box.count[a] / 2;
+        number /= steps;
     }
     return box;
 }
@@ -55,9 +55,9 @@ static double depth_of(const cw_volume *whole, const cw_volume *part)
 static bool find_box(const cli_study *s, const cw_volume *v, size_t by, cw_box *best)
 {
     const cw_extract_desc desc = desc_of(s);
-    const size_t places = (2 * by - 1) * (2 * by - 1) * (2 * by - 1);
+    const size_t boxes = (2 * by - 1) * (2 * by - 1) * (2 * by - 1);
     double least = INFINITY;
-    for (size_t n = 0; n < places; n++) {
+    for (size_t n = 0; n < boxes; n++) {
         const cw_box box = box_at(v, by, n);
         cw_volume part;
         cw_extract_counts counts;

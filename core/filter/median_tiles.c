@@ -190,8 +190,8 @@ static void filter_tile(void *context, size_t n)
 {
     work *k = context;
     const size_t whole[3] = {WIDE, HIGH, HIGH}, *dim = k->in->dim;
-    const size_t place[3] = {n % k->tiles[0], n / k->tiles[0] % k->tiles[1],
-                             n / k->tiles[0] / k->tiles[1]};
+    const size_t tile_index[3] = {n % k->tiles[0], n / k->tiles[0] % k->tiles[1],
+                                  n / k->tiles[0] / k->tiles[1]};
     size_t first[3], size[3];
     bench *b = cwi_alloc_array(1, sizeof *b);
     if (!b) {
@@ -199,7 +199,7 @@ static void filter_tile(void *context, size_t n)
         return;
     }
     for (int a = 0; a < 3; a++) {
-        first[a] = place[a] * whole[a];
+        first[a] = tile_index[a] * whole[a];
         size[a] = dim[a] - first[a] < whole[a] ? dim[a] - first[a] : whole[a];
     }
     load_tile(k, first, size, b);

@@ -85,8 +85,8 @@ static cw_status set_weights(cwi_axis_weights *w, const cw_volume *in, int a, co
     cw_status st = cwi_axis_weights_init(w, x->count, taps, err);
     for (size_t n = 0; n < x->count && st == CW_OK; n++) {
         const double at = x->first + (double)n * x->step;
-        const double place = samples < 2 ? 0 : cwi_coordinate_index(in, a, at);
-        cwi_axis_weights_set(w, n, place, samples, reach, k->weight, x->wider);
+        const double position = samples < 2 ? 0 : cwi_coordinate_index(in, a, at);
+        cwi_axis_weights_set(w, n, position, samples, reach, k->weight, x->wider);
     }
     return st;
 }

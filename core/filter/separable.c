@@ -40,16 +40,16 @@ static size_t clamp_index(double x, size_t samples)
     return x <= 0 ? 0 : x >= (double)(samples - 1) ? samples - 1 : (size_t)x;
 }
 
-void cwi_axis_weights_set(cwi_axis_weights *w, size_t n, double place, size_t samples,
+void cwi_axis_weights_set(cwi_axis_weights *w, size_t n, double position, size_t samples,
                           double reach, double (*kernel)(double x, double width), double width)
 {
-    const double begin = ceil(place - reach), end = floor(place + reach);
+    const double begin = ceil(position - reach), end = floor(position + reach);
     double *weights = w->weights + n * w->taps, sum = 0;
     const size_t first = clamp_index(begin, samples);
     w->first[n] = first;
-    w->nearest[n] = clamp_index(floor(place + 0.5), samples);
+    w->nearest[n] = clamp_index(floor(position + 0.5), samples);
     for (double x = begin; x <= end; x++) {
-        const double weight = kernel(x - place, width);
+        const double weight = kernel(x - position, width);
         weights[clamp_index(x, samples) - first] += weight;
         sum += weight;
     }

@@ -18,10 +18,10 @@ CW_NODISCARD cw_status cwi_axis_weights_init(cwi_axis_weights *w, size_t count, 
                                              cw_error *err);
 void cwi_axis_weights_free(cwi_axis_weights *w);
 
-/* Sets the weights of output sample n around a place, in input samples: those of a kernel, as wide
+/* Sets the weights of output sample n around a position, in input samples: those of a kernel, as wide
  * as its reach. Samples beyond the ends are those at the ends.
  * samples  of the input */
-void cwi_axis_weights_set(cwi_axis_weights *w, size_t n, double place, size_t samples,
+void cwi_axis_weights_set(cwi_axis_weights *w, size_t n, double position, size_t samples,
                           double reach, double (*kernel)(double x, double width), double width);
 
 /* Filters a volume. out is as large as the weights say, and has the input's kind of values.

@@ -141,8 +141,8 @@ static void filter_tile(void *context, size_t n)
     work *k = context;
     const cwi_tile_filter *f = k->filter;
     const size_t width = WHOLE[0] + 2 * f->halo[0];
-    const size_t place[3] = {n % k->tiles[0], n / k->tiles[0] % k->tiles[1],
-                             n / k->tiles[0] / k->tiles[1]};
+    const size_t tile_index[3] = {n % k->tiles[0], n / k->tiles[0] % k->tiles[1],
+                                  n / k->tiles[0] / k->tiles[1]};
     double *memory = cwi_alloc_zeroed(bench_bytes(f), 1);
     bench b = {.values = memory};
     cwi_filter_tile tile;
@@ -155,8 +155,8 @@ static void filter_tile(void *context, size_t n)
     b.corrections = b.loaded + padded_floats(f->halo);
     b.work = b.corrections + TILE_VOXELS;
     for (int a = 0; a < 3; a++) {
-        const size_t left = k->in->dim[a] - place[a] * WHOLE[a];
-        tile.first[a] = place[a] * WHOLE[a];
+        const size_t left = k->in->dim[a] - tile_index[a] * WHOLE[a];
+        tile.first[a] = tile_index[a] * WHOLE[a];
         tile.size[a] = left < WHOLE[a] ? left : WHOLE[a];
     }
     if (f->unit > 0) {

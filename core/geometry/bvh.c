@@ -63,20 +63,20 @@ static void make_curve(hilbert *h)
         }
 }
 
-static uint64_t find_rank(const hilbert *h, const uint32_t place[3])
+static uint64_t find_rank(const hilbert *h, const uint32_t cell[3])
 {
     unsigned cube = 0;
     uint64_t rank = 0;
     for (int bit = KEY_BITS - 1; bit >= 0; bit--) {
         const unsigned octant =
-            (place[0] >> bit & 1) | (place[1] >> bit & 1) << 1 | (place[2] >> bit & 1) << 2;
+            (cell[0] >> bit & 1) | (cell[1] >> bit & 1) << 1 | (cell[2] >> bit & 1) << 2;
         rank = rank << 3 | h->rank[cube][octant];
         cube = h->cube[cube][octant];
     }
     return rank;
 }
 
-/* Sets each key: the rank of the box's middle on the curve through a cube of 2^16 places an
+/* Sets each key: the rank of the box's middle on the curve through a cube of 2^16 cells an
  * edge. */
 static void set_keys(const float (*boxes)[6], size_t count, keyed *keys)
 {
@@ -91,12 +91,12 @@ static void set_keys(const float (*boxes)[6], size_t count, keyed *keys)
             high = fmax(high, (double)boxes[n][a] + (double)boxes[n][a + 3] - low[a]);
     const double scale = high > 0 ? ((1 << KEY_BITS) - 1) / high : 0;
     for (size_t n = 0; n < count; n++) {
-        uint32_t place[3];
+        uint32_t cell[3];
         for (int a = 0; a < 3; a++) {
             const double x = (double)boxes[n][a] + (double)boxes[n][a + 3] - low[a];
-            place[a] = (uint32_t)(x * scale);
+            cell[a] = (uint32_t)(x * scale);
         }
-        keys[n] = (keyed){find_rank(&curve, place), (uint32_t)n};
+        keys[n] = (keyed){find_rank(&curve, cell), (uint32_t)n};
     }
 }
 
@@ -106,25 +106,25 @@ static bool sort_keys(keyed **keys, size_t count)
 {
     enum { DIGITS = 1 << 16 };
     keyed *other = cwi_alloc_array(count, sizeof *other);
-    size_t *place = cwi_alloc_array(DIGITS, sizeof *place);
-    const bool ok = other && place;
+    size_t *starts = cwi_alloc_array(DIGITS, sizeof *starts);
+    const bool ok = other && starts;
     for (int shift = 0; shift < 48 && ok; shift += 16) {
-        memset(place, 0, DIGITS * sizeof *place);
+        memset(starts, 0, DIGITS * sizeof *starts);
         for (size_t n = 0; n < count; n++)
-            place[(*keys)[n].key >> shift & (DIGITS - 1)]++;
+            starts[(*keys)[n].key >> shift & (DIGITS - 1)]++;
         for (size_t d = 0, sum = 0; d < DIGITS; d++) {
-            const size_t here = place[d];
-            place[d] = sum;
+            const size_t here = starts[d];
+            starts[d] = sum;
             sum += here;
         }
         for (size_t n = 0; n < count; n++)
-            other[place[(*keys)[n].key >> shift & (DIGITS - 1)]++] = (*keys)[n];
+            other[starts[(*keys)[n].key >> shift & (DIGITS - 1)]++] = (*keys)[n];
         keyed *sorted = other;
         other = *keys;
         *keys = sorted;
     }
     cwi_free(other);
-    cwi_free(place);
+    cwi_free(starts);
     return ok;
 }
 

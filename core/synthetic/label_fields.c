@@ -26,16 +26,16 @@ typedef struct sampling {
     const cw_label_field_desc *desc;
     const cw_volume *volume;
     size_t side;         /* of the lattice, in cells */
-    double (*points)[4]; /* of all cells: place in cells, and radius */
+    double (*points)[4]; /* of all cells: position in cells, and radius */
 } sampling;
 
-/* Finds the nearest point of the cells around a place, and its distance squared. */
-static size_t find_nearest(const sampling *s, const double place[3], double *distance_sq)
+/* Finds the nearest point of the cells around a position, and its distance squared. */
+static size_t find_nearest(const sampling *s, const double position[3], double *distance_sq)
 {
     size_t low[3], high[3], nearest = 0;
     *distance_sq = INFINITY;
     for (int a = 0; a < 3; a++) {
-        const size_t cell = (size_t)place[a];
+        const size_t cell = (size_t)position[a];
         low[a] = cell > 0 ? cell - 1 : 0;
         high[a] = cell + 1 < s->side ? cell + 1 : s->side - 1;
     }
@@ -43,8 +43,9 @@ static size_t find_nearest(const sampling *s, const double place[3], double *dis
         for (size_t y = low[1]; y <= high[1]; y++)
             for (size_t x = low[0]; x <= high[0]; x++) {
                 const size_t n = (z * s->side + y) * s->side + x;
-                const double dx = s->points[n][0] - place[0], dy = s->points[n][1] - place[1],
-                             dz = s->points[n][2] - place[2];
+                const double dx = s->points[n][0] - position[0],
+                             dy = s->points[n][1] - position[1],
+                             dz = s->points[n][2] - position[2];
                 const double d = dx * dx + dy * dy + dz * dz;
                 if (d < *distance_sq) {
                     *distance_sq = d;
@@ -54,13 +55,13 @@ static size_t find_nearest(const sampling *s, const double place[3], double *dis
     return nearest;
 }
 
-static uint32_t label_at(const sampling *s, const double place[3])
+static uint32_t label_at(const sampling *s, const double position[3])
 {
     const double middle = 0.5 * (double)s->side;
     double distance_sq, from_middle = 0;
-    const size_t n = find_nearest(s, place, &distance_sq);
+    const size_t n = find_nearest(s, position, &distance_sq);
     for (int a = 0; a < 3; a++)
-        from_middle += (place[a] - middle) * (place[a] - middle);
+        from_middle += (position[a] - middle) * (position[a] - middle);
     const bool is_inside = s->desc->field == CW_LABEL_CELLS
                                ? from_middle < BALL * BALL * middle * middle
                                : distance_sq < s->points[n][3] * s->points[n][3];
@@ -88,11 +89,11 @@ static void sample_layer(void *context, size_t k)
     for (size_t j = 0; j < v->dim[1]; j++)
         for (size_t i = 0; i < v->dim[0]; i++) {
             const size_t index[3] = {i, j, k};
-            double place[3];
+            double position[3];
             for (int a = 0; a < 3; a++)
-                place[a] = (double)s->side * ((double)index[a] + 0.5) / (double)v->dim[a];
+                position[a] = (double)s->side * ((double)index[a] + 0.5) / (double)v->dim[a];
             store_label(v->type, v->owned, (k * v->dim[1] + j) * v->dim[0] + i,
-                        label_at(s, place));
+                        label_at(s, position));
         }
 }
 

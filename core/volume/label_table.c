@@ -157,15 +157,15 @@ cw_status cwi_label_table_append(cw_label_table *table, const cw_label *label, c
     return st;
 }
 
-/* The place of a label before sorting. */
-typedef struct label_place {
+/* The key of a label, and its index before sorting. */
+typedef struct label_key {
     uint64_t key;
     size_t index;
-} label_place;
+} label_key;
 
-static int compare_places(const void *a, const void *b)
+static int compare_keys(const void *a, const void *b)
 {
-    const label_place *p = a, *q = b;
+    const label_key *p = a, *q = b;
     return p->key != q->key ? (p->key > q->key) - (p->key < q->key)
                             : (p->index > q->index) - (p->index < q->index);
 }
@@ -180,23 +180,23 @@ static bool is_rising(const cw_label_table *table)
     return true;
 }
 
-static const cw_label *find_repeat(const cw_label_table *table, const label_place *places)
+static const cw_label *find_repeat(const cw_label_table *table, const label_key *keys)
 {
     for (size_t n = 1; n < table->count; n++)
-        if (places[n].key == places[n - 1].key)
-            return &table->labels[places[n].index];
+        if (keys[n].key == keys[n - 1].key)
+            return &table->labels[keys[n].index];
     return NULL;
 }
 
-/* Moves the labels to a new array in the order of their places, and frees those that a later
+/* Moves the labels to a new array in the order of their keys, and frees those that a later
  * one replaces. */
-static void move_labels(cw_label_table *table, const label_place *places, cw_label *to)
+static void move_labels(cw_label_table *table, const label_key *keys, cw_label *to)
 {
     size_t count = 0;
     for (size_t n = 0; n < table->count; n++) {
-        if (n > 0 && places[n].key == places[n - 1].key)
+        if (n > 0 && keys[n].key == keys[n - 1].key)
             free_label(&to[--count]);
-        to[count++] = table->labels[places[n].index];
+        to[count++] = table->labels[keys[n].index];
     }
     cwi_free(table->labels);
     *table = (cw_label_table){count, to};
@@ -209,21 +209,21 @@ cw_status cwi_label_table_sort(cw_label_table *table, bool refuse_repeats, cw_er
         return CW_OK;
     while (capacity < table->count)
         capacity *= 2;
-    label_place *places = cwi_alloc_array(table->count, sizeof *places);
+    label_key *keys = cwi_alloc_array(table->count, sizeof *keys);
     cw_label *labels = cwi_alloc_array(capacity, sizeof *labels);
-    cw_status st = places && labels ? CW_OK : cwi_fail_memory(err);
+    cw_status st = keys && labels ? CW_OK : cwi_fail_memory(err);
     for (size_t n = 0; st == CW_OK && n < table->count; n++)
-        places[n] = (label_place){key_of(table->labels[n].layer, table->labels[n].value), n};
+        keys[n] = (label_key){key_of(table->labels[n].layer, table->labels[n].value), n};
     if (st == CW_OK)
-        qsort(places, table->count, sizeof *places, compare_places);
-    const cw_label *repeat = st == CW_OK && refuse_repeats ? find_repeat(table, places) : NULL;
+        qsort(keys, table->count, sizeof *keys, compare_keys);
+    const cw_label *repeat = st == CW_OK && refuse_repeats ? find_repeat(table, keys) : NULL;
     if (repeat)
         st = cwi_fail(err, CW_ERR_FORMAT, "label %u is described twice", repeat->value);
     if (st == CW_OK)
-        move_labels(table, places, labels);
+        move_labels(table, keys, labels);
     else
         cwi_free(labels);
-    cwi_free(places);
+    cwi_free(keys);
     return st;
 }
 

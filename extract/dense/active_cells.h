@@ -73,18 +73,18 @@ static inline void load_edges(cell_list *l, size_t words, const cwi_bit_grid *g,
     }
 }
 
-/* Lists the places of the cells whose bits are set, `count` of them. */
+/* Lists the numbers of the cells whose bits are set, `count` of them. */
 static inline void list_bits(uint64_t bits, size_t count, size_t word, uint16_t *cell)
 {
 #if CWI_WIDE
-    const __m512i places = _mm512_maskz_compress_epi8(bits, _mm512_load_si512(cwi_iota)),
+    const __m512i bit_numbers = _mm512_maskz_compress_epi8(bits, _mm512_load_si512(cwi_iota)),
                   base = _mm512_set1_epi16((int16_t)(64 * word));
     _mm512_storeu_si512(
-        cell, _mm512_or_si512(base, _mm512_cvtepu8_epi16(_mm512_castsi512_si256(places))));
+        cell, _mm512_or_si512(base, _mm512_cvtepu8_epi16(_mm512_castsi512_si256(bit_numbers))));
     if (count > 32)
         _mm512_storeu_si512(
-            cell + 32,
-            _mm512_or_si512(base, _mm512_cvtepu8_epi16(_mm512_extracti64x4_epi64(places, 1))));
+            cell + 32, _mm512_or_si512(base, _mm512_cvtepu8_epi16(
+                                                 _mm512_extracti64x4_epi64(bit_numbers, 1))));
 #else
     for (size_t n = 0; n < count; n += 4) /* several at a time: see list_edges */
         for (size_t m = n; m < n + 4; m++, bits &= bits - 1)
@@ -116,20 +116,20 @@ static inline size_t list_cells(cell_list *l, size_t words, size_t n, const cwi_
 }
 
 /* Finds the numbers of the first vertices from a cell on, from their ranks. */
-static inline void rank_cell(const cell_list *l, size_t place, edge_lanes *lanes)
+static inline void rank_cell(const cell_list *l, size_t slot, edge_lanes *lanes)
 {
-    const uint64_t before = (UINT64_C(1) << place % 64) - 1;
+    const uint64_t before = (UINT64_C(1) << slot % 64) - 1;
 #if CWI_WIDE
-    const __m512i crossed = _mm512_load_si512((const void *)l->edges[place / 64].crossed);
+    const __m512i crossed = _mm512_load_si512((const void *)l->edges[slot / 64].crossed);
     const __m512i ranks =
         _mm512_popcnt_epi64(_mm512_and_si512(crossed, _mm512_set1_epi64((long long)before)));
-    memcpy(lanes, l->edges[place / 64].first, sizeof *lanes);
+    memcpy(lanes, l->edges[slot / 64].first, sizeof *lanes);
     *lanes += (edge_lanes)_mm512_cvtepi64_epi32(ranks);
 #else
     uint32_t first[CWI_EDGE_ROWS];
     for (int n = 0; n < CWI_EDGE_ROWS; n++)
-        first[n] = l->edges[place / 64].first[n] +
-                   (uint32_t)__builtin_popcountll(l->edges[place / 64].crossed[n] & before);
+        first[n] = l->edges[slot / 64].first[n] +
+                   (uint32_t)__builtin_popcountll(l->edges[slot / 64].crossed[n] & before);
     memcpy(lanes, first, sizeof *lanes);
 #endif
 }
@@ -137,12 +137,12 @@ static inline void rank_cell(const cell_list *l, size_t place, edge_lanes *lanes
 /* Goes on to the next cell of a list, whose numbers are counted on, see counts_on(), or are
  * ranks. crossed: the cell's case as in cwi_emission. No lane is named here and below: all may
  * stay in registers. */
-static inline void number_cell(const cell_list *l, bool count_on, size_t place,
+static inline void number_cell(const cell_list *l, bool count_on, size_t slot,
                                const uint8_t *crossed, cell_numbers *numbers)
 {
     numbers->here = numbers->next;
     if (!count_on)
-        rank_cell(l, place, &numbers->here);
+        rank_cell(l, slot, &numbers->here);
 #ifdef __AVX2__
     numbers->next = numbers->here + (edge_lanes)_mm256_cvtepu8_epi32(_mm_loadu_si64(crossed));
 #else

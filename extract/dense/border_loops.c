@@ -47,7 +47,7 @@ static size_t find_on_ring(const size_t dim[3], size_t x, size_t y)
     return y == back ? 2 * right + back - x : 2 * (right + back) - y;
 }
 
-static void find_ring_place(const size_t dim[3], size_t n, size_t *x, size_t *y)
+static void find_ring_position(const size_t dim[3], size_t n, size_t *x, size_t *y)
 {
     const size_t right = dim[0] - 1, back = dim[1] - 1;
     if (n <= right) {
@@ -179,7 +179,7 @@ static double find_value(const cwi_border_loops *b, const cwi_bit_grid *g,
 {
     size_t x = n, y = line->y;
     if (line->is_ring)
-        find_ring_place(b->dim, n, &x, &y);
+        find_ring_position(b->dim, n, &x, &y);
     return cwi_value_at(g, x + 1, y + 1, line->layer);
 }
 

@@ -66,17 +66,17 @@ __attribute__((noinline)) static void emit_cells(const cwi_bit_grid *g, size_t j
     const bool count_on = counts_on(g, j, k);
     cell_numbers numbers = l->numbers;
     for (size_t n = 0; n < count; n++) {
-        const size_t place = l->cell[n];
-        const unsigned cube = l->cases[place];
+        const size_t slot = l->cell[n];
+        const unsigned cube = l->cases[slot];
         const cwi_case_emission *of = &emission->of_case[cube];
         __builtin_prefetch(out + AHEAD, 1);
-        number_cell(l, count_on, place, of->crossed, &numbers);
+        number_cell(l, count_on, slot, of->crossed, &numbers);
         if (of->edges) {
             out = put_triangles(&numbers, of->edge, of->edges, out, end);
         } else {
             const cell_numbers copy = numbers; /* so that they may stay in registers */
             to->out = out;
-            emit_ambiguous(g, (const size_t[3]){64 * l->word[place / 64] + place % 64, j, k},
+            emit_ambiguous(g, (const size_t[3]){64 * l->word[slot / 64] + slot % 64, j, k},
                            &copy, cube, emission, sink, to);
             out = to->out;
         }

@@ -91,8 +91,9 @@ static inline void list_edges(cwi_edge_list *l, uint64_t bits, size_t i, size_t 
     l->count += (size_t)count;
 #if CWI_WIDE
     if (__builtin_expect(count <= 8, 1)) {
-        const __m512i places = _mm512_maskz_compress_epi8(bits, _mm512_load_si512(cwi_iota));
-        const __m256i wide = _mm256_cvtepu8_epi32(_mm512_castsi512_si128(places));
+        const __m512i bit_numbers =
+            _mm512_maskz_compress_epi8(bits, _mm512_load_si512(cwi_iota));
+        const __m256i wide = _mm256_cvtepu8_epi32(_mm512_castsi512_si128(bit_numbers));
         _mm256_storeu_si256((__m256i *)(void *)to_i,
                             _mm256_add_epi32(wide, _mm256_set1_epi32((int)i)));
         _mm256_storeu_si256((__m256i *)(void *)to_j, _mm256_set1_epi32((int)j));

@@ -213,17 +213,17 @@ static void write_normal(const writing *w, const cwi_element *e, const double we
 static void write_vertex(const writing *w, const cwi_element *e, const double weights[8],
                          size_t vertex)
 {
-    double place[3] = {0, 0, 0};
+    double position[3] = {0, 0, 0};
     for (int c = 0; c < cwi_shape_of(e)->corner_count; c++) {
         double p[3];
         if (weights[c] == 0)
             continue;
         cwi_place_of(w->g, e->corners[c], p);
         for (int a = 0; a < 3; a++)
-            place[a] += weights[c] * p[a];
+            position[a] += weights[c] * p[a];
     }
     for (size_t a = 0; a < 3; a++)
-        w->mesh->positions[3 * vertex + a] = (float)place[a];
+        w->mesh->positions[3 * vertex + a] = (float)position[a];
     if (w->mesh->normals)
         write_normal(w, e, weights, w->mesh->normals + 3 * vertex);
 }

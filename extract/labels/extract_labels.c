@@ -29,23 +29,23 @@ static const double NEAR_FRACTION = 0.5;
 /* Vertices stay at least this far inside of their cubes, in voxels. */
 #define MARGIN 1e-3
 
-/* Returns the coordinate of a place along an axis, from -1 to its number of voxels. */
-static double find_coordinate(const cw_volume *v, int axis, double place)
+/* Returns the coordinate of a fractional index along an axis, from -1 to its number of voxels. */
+static double find_coordinate(const cw_volume *v, int axis, double index)
 {
-    const double last = (double)v->dim[axis] - 1, low = fmin(floor(place), last);
+    const double last = (double)v->dim[axis] - 1, low = fmin(floor(index), last);
     if (v->dim[axis] > 1)
-        return cwi_grid_coordinate(v, axis, (ptrdiff_t)low, place - low);
-    return v->coordinates[axis] ? v->coordinates[axis][0] + place : place;
+        return cwi_grid_coordinate(v, axis, (ptrdiff_t)low, index - low);
+    return v->coordinates[axis] ? v->coordinates[axis][0] + index : index;
 }
 
-/* Converts a place to a world point, from the mesh's origin. */
-static void place_vertex(const void *context, const double place[3], double point[3])
+/* Converts voxel indices to a world point, from the mesh's origin. */
+static void index_to_point(const void *context, const double index[3], double point[3])
 {
     const cwi_label_job *j = context;
     const cw_volume *v = j->layers.volume;
     double at[3], world[3];
     for (int a = 0; a < 3; a++)
-        at[a] = find_coordinate(v, a, place[a]);
+        at[a] = find_coordinate(v, a, index[a]);
     cwi_affine_apply(v->affine[0], at, world);
     cwi_sub(world, j->out->mesh.origin, point);
 }
@@ -56,8 +56,8 @@ static void place_part(void *context, size_t n)
     const size_t count = j->out->mesh.vertex_count;
     for (size_t i = n * PLACES; i < (n + 1) * PLACES && i < count; i++) {
         float *p = j->out->mesh.positions + 3 * i;
-        double place[3] = {(double)p[0], (double)p[1], (double)p[2]}, point[3];
-        place_vertex(j, place, point);
+        double index[3] = {(double)p[0], (double)p[1], (double)p[2]}, point[3];
+        index_to_point(j, index, point);
         for (int a = 0; a < 3; a++)
             p[a] = (float)point[a];
     }
@@ -171,14 +171,14 @@ static cw_status ensure_capacity(cwi_label_job *j, const cw_labels_desc *desc, c
         return cwi_fail(err, CW_ERR_LIMIT, "the labels make %zu triangles, more than %zu",
                         mesh->triangle_count, desc->max_triangles);
     mesh->positions =
-        cwi_alloc_large(mesh->vertex_count + CWI_SPARE_PLACES, 3 * sizeof *mesh->positions);
+        cwi_alloc_large(mesh->vertex_count + CWI_SPARE_POSITIONS, 3 * sizeof *mesh->positions);
     mesh->triangles = cwi_alloc_large(mesh->triangle_count, 3 * sizeof *mesh->triangles);
     if (!desc->no_smoothing && mesh->vertex_count > 0) {
         net->neighbours = cwi_alloc_large(mesh->vertex_count, sizeof *net->neighbours);
         net->kinds = cwi_alloc_zeroed(mesh->vertex_count, 1);
         net->polygons = cwi_alloc_large(mesh->triangle_count, 1);
         j->originals =
-            cwi_alloc_large(mesh->vertex_count + CWI_SPARE_PLACES, 3 * sizeof *j->originals);
+            cwi_alloc_large(mesh->vertex_count + CWI_SPARE_POSITIONS, 3 * sizeof *j->originals);
         if (net->neighbours)
             memset(net->neighbours, 0xff, mesh->vertex_count * sizeof *net->neighbours);
     }
@@ -276,7 +276,7 @@ static cw_status run_job(cwi_label_job *j, const cw_labels_desc *desc,
         st = cwi_parallel_for((j->out->mesh.vertex_count + PLACES - 1) / PLACES, PLACES,
                               desc->threads, &desc->progress, "placing", place_part, j, err);
     if (st == CW_OK && j->originals)
-        st = cwi_labels_untangle(j->out, &j->net, j->originals, place_vertex, j, desc, err);
+        st = cwi_labels_untangle(j->out, &j->net, j->originals, index_to_point, j, desc, err);
     cwi_label_net_free(&j->net);
     cwi_free(j->originals);
     for (size_t c = 0; c < chunks; c++) {

@@ -76,10 +76,10 @@ static void shape_layer(scan *s)
 static uint32_t vertex_of(const scan *s, const cwi_label_ring *ring, int n, size_t x, size_t y)
 {
     const int8_t *cube = ring->cube[n];
-    const size_t place = (y - (cube[1] < 0)) * s->width + x - (cube[0] < 0);
+    const size_t index = (y - (cube[1] < 0)) * s->width + x - (cube[0] < 0);
     const int layer = cube[2] < 0 ? 0 : 1;
-    const uint8_t shape = s->shapes[layer][place];
-    const uint32_t first = s->firsts[layer][place];
+    const uint8_t shape = s->shapes[layer][index];
+    const uint32_t first = s->firsts[layer][index];
     return shape == CWI_CUBE_SIMPLE
                ? first
                : first + (uint32_t)cwi_count_bits(shape & ((1u << ring->tet[n]) - 1));
@@ -102,7 +102,7 @@ static int find_polygon(const scan *s, int edge, size_t x, size_t y, uint32_t po
 }
 
 /* Orders a pair of labels: the background is the second, of others the larger. Returns true if
- * they changed places. */
+ * they changed positions. */
 static bool order_pair(const cwi_label_job *j, uint32_t pair[2])
 {
     const uint32_t background = j->layers.background;
@@ -171,12 +171,12 @@ static bool take_layer(scan *s, size_t k)
     return true;
 }
 
-/* Puts a vertex at a place counted in voxels, from the first. */
-static void put_vertex(const cwi_label_job *j, const double place[3], uint32_t number)
+/* Puts a vertex at a position counted in voxels, from the first. */
+static void put_vertex(const cwi_label_job *j, const double position[3], uint32_t number)
 {
     float *to = j->out->mesh.positions + 3 * (size_t)number;
     for (int a = 0; a < 3; a++)
-        to[a] = (float)place[a];
+        to[a] = (float)position[a];
 }
 
 /* Sets a bit of a vertex's kind; another chunk may set another one. */

@@ -66,8 +66,8 @@ static void find_edge(const cwi_label_crossings *c, const uint32_t v[3], int axi
         low[a] = high[a] = (double)(x > y ? (x > z ? x : z) : (y > z ? y : z)) - 0.5;
     }
     high[axis] += 1;
-    c->place(c->context, low, p);
-    c->place(c->context, high, q);
+    c->to_point(c->context, low, p);
+    c->to_point(c->context, high, q);
 }
 
 /* Returns true if a polygon is sound, as above. */

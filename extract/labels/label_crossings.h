@@ -12,15 +12,15 @@ extern "C" {
 
 enum { CWI_POLYGON_QUEUED = 1, CWI_POLYGON_SOUND = 2 };
 
-/* Converts a place counted in voxels to a point of the mesh. */
-typedef void cwi_label_place(const void *context, const double place[3], double point[3]);
+/* Converts a position counted in voxels to a point of the mesh. */
+typedef void cwi_label_to_point(const void *context, const double index[3], double point[3]);
 
 /* Polygons, and which of them to look at. Set the first block and zero the rest. */
 typedef struct cwi_label_crossings {
     const cw_mesh *mesh;
-    const float *originals; /* vertex_count x 3: places before smoothing, counted in voxels */
+    const float *originals; /* vertex_count x 3: positions before smoothing, counted in voxels */
     cwi_label_net *net;     /* finished */
-    cwi_label_place *place;
+    cwi_label_to_point *to_point;
     const void *context;
 
     uint8_t *flags;  /* of polygons, CWI_POLYGON_QUEUED and _SOUND */

@@ -94,10 +94,10 @@ static void fill_row(uint32_t *row, size_t count, uint32_t label)
         row[i] = label;
 }
 
-/* Returns the voxel that stands at a place counted with the border, or beside it. */
-static size_t voxel_at(size_t place, size_t dim)
+/* Returns the voxel that stands at a position counted with the border, or beside it. */
+static size_t voxel_at(size_t position, size_t dim)
 {
-    return place == 0 ? 0 : place > dim ? dim - 1 : place - 1;
+    return position == 0 ? 0 : position > dim ? dim - 1 : position - 1;
 }
 
 bool cwi_label_layer_load(const cwi_label_layers *l, size_t k, uint32_t *out, size_t bad[3])

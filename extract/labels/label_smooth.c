@@ -25,7 +25,7 @@ typedef struct averager {
     const cw_labels_desc *desc;
     const size_t *dim;
     size_t count;     /* of vertices */
-    float *from, *to; /* (count + CWI_SPARE_PLACES) x 3. The place behind the last is 0: it
+    float *from, *to; /* (count + CWI_SPARE_POSITIONS) x 3. The position behind the last is 0: it
                          replaces missing neighbours */
 } averager;
 
@@ -34,15 +34,15 @@ static lanes select_lanes(mask where, lanes yes, lanes no)
     return (lanes)(((mask)yes & where) | ((mask)no & ~where));
 }
 
-/* Loads a place; the fourth number is the next place's first. */
-static lanes load_place(const float *places, size_t v)
+/* Loads a position; the fourth number is the next position's first. */
+static lanes load_position(const float *positions, size_t v)
 {
-    lanes place;
-    memcpy(&place, places + 3 * v, sizeof place);
-    return place;
+    lanes position;
+    memcpy(&position, positions + 3 * v, sizeof position);
+    return position;
 }
 
-/* Returns the neighbour with which a vertex is averaged, or the last place, which is 0. A vertex
+/* Returns the neighbour with which a vertex is averaged, or the last position, which is 0. A vertex
  * on a curve where labels meet has those on the curve; one that stays has none. */
 static uint32_t choose_neighbour(const averager *s, size_t v, int n)
 {
@@ -62,16 +62,16 @@ static void choose_part(void *context, size_t n)
             s->net->neighbours[v][i] = choose_neighbour(s, v, i);
 }
 
-/* Averages a vertex with its neighbours, in the box around its first place. */
+/* Averages a vertex with its neighbours, in the box around its first position. */
 static lanes average_vertex(const averager *s, size_t v)
 {
     const uint32_t *neighbours = s->net->neighbours[v];
-    const lanes here = load_place(s->from, v), original = load_place(s->originals, v);
+    const lanes here = load_position(s->from, v), original = load_position(s->originals, v);
     const lanes low = original - s->bound, high = original + s->bound;
     lanes sum = {0};
     int count = 0;
     for (int n = 0; n < 6; n++) {
-        sum += load_place(s->from, neighbours[n]);
+        sum += load_position(s->from, neighbours[n]);
         count += neighbours[n] != (uint32_t)s->count;
     }
     if (count < 2)
@@ -89,8 +89,8 @@ static void average_part(void *context, size_t n)
 {
     const averager *s = context;
     for (size_t v = n * PART; v < (n + 1) * PART && v < s->count; v++) {
-        const lanes place = average_vertex(s, v);
-        memcpy(s->to + 3 * v, &place, 3 * sizeof *s->to);
+        const lanes position = average_vertex(s, v);
+        memcpy(s->to + 3 * v, &position, 3 * sizeof *s->to);
     }
 }
 
@@ -100,10 +100,10 @@ static cw_status run_parts(averager *s, void (*work)(void *, size_t), cw_error *
                             &s->desc->progress, "smoothing", work, s, err);
 }
 
-/* Averages in rounds; after an even number places are where they were. */
+/* Averages in rounds; after an even number positions are where they were. */
 static cw_status average_all(averager *s, cw_error *err)
 {
-    const size_t spare = 3 * CWI_SPARE_PLACES * sizeof *s->from;
+    const size_t spare = 3 * CWI_SPARE_POSITIONS * sizeof *s->from;
     memset(s->from + 3 * s->count, 0, spare);
     memset(s->to + 3 * s->count, 0, spare);
     cw_status st = run_parts(s, choose_part, err);
@@ -121,7 +121,7 @@ cw_status cwi_labels_smooth(cwi_label_net *net, const float *originals,
                             const size_t dim[3], cw_error *err)
 {
     const size_t count = surfaces->mesh.vertex_count;
-    float *next = cwi_alloc_large(count + CWI_SPARE_PLACES, 3 * sizeof *next);
+    float *next = cwi_alloc_large(count + CWI_SPARE_POSITIONS, 3 * sizeof *next);
     averager s = {.net = net,
                   .originals = originals,
                   .bound = (float)desc->max_move,

@@ -11,7 +11,7 @@ extern "C" {
 #endif
 
 /* Places that arrays of originals and of the mesh have beyond those of its vertices. */
-enum { CWI_SPARE_PLACES = 2 };
+enum { CWI_SPARE_POSITIONS = 2 };
 
 /* Smooths places, counted in voxels, of the vertices of surfaces->mesh. Volumes of labels become
  * those of their voxels, unless borders are open; no vertex moves farther than desc->max_move

@@ -1,18 +1,18 @@
 /* Puts vertices of triangles that cross back, and looks again around them. */
 #include "extract/labels/label_untangle.h"
 
-/* Puts the vertices that were hit back to their places before smoothing. Returns false if there
+/* Puts the vertices that were hit back to their positions before smoothing. Returns false if there
  * are none. */
 static bool put_back(const cwi_label_crossings *c, cw_mesh *mesh)
 {
     bool is_any = false;
     for (size_t v = 0; v < mesh->vertex_count; v++) {
-        double place[3], point[3];
+        double index[3], point[3];
         if (!c->hits[v])
             continue;
         for (int a = 0; a < 3; a++)
-            place[a] = (double)c->originals[3 * v + (size_t)a];
-        c->place(c->context, place, point);
+            index[a] = (double)c->originals[3 * v + (size_t)a];
+        c->to_point(c->context, index, point);
         for (int a = 0; a < 3; a++)
             mesh->positions[3 * v + (size_t)a] = (float)point[a];
         c->net->kinds[v] |= CWI_NET_BACK;
@@ -22,13 +22,13 @@ static bool put_back(const cwi_label_crossings *c, cw_mesh *mesh)
 }
 
 cw_status cwi_labels_untangle(cw_label_surfaces *surfaces, cwi_label_net *net,
-                              const float *originals, cwi_label_place *place,
+                              const float *originals, cwi_label_to_point *to_point,
                               const void *context, const cw_labels_desc *desc, cw_error *err)
 {
     cwi_label_crossings crossings = {.mesh = &surfaces->mesh,
                                      .originals = originals,
                                      .net = net,
-                                     .place = place,
+                                     .to_point = to_point,
                                      .context = context};
     cw_status st = cwi_label_crossings_init(&crossings, desc, err);
     while (st == CW_OK && crossings.queued > 0) {

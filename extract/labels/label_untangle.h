@@ -11,10 +11,10 @@ extern "C" {
 /* Puts vertices back to where they were, until no triangles cross and none is without area; none
  * did before smoothing.
  * net        finished; kinds get CWI_NET_BACK
- * originals  places counted in voxels, which place() turns into points of the mesh
+ * originals  positions counted in voxels, which to_point() turns into points of the mesh
  * Returns    CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
 CW_NODISCARD cw_status cwi_labels_untangle(cw_label_surfaces *surfaces, cwi_label_net *net,
-                                           const float *originals, cwi_label_place *place,
+                                           const float *originals, cwi_label_to_point *to_point,
                                            const void *context, const cw_labels_desc *desc,
                                            cw_error *err);
 

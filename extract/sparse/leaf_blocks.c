@@ -297,7 +297,7 @@ static cw_status note_sides(sorting *s, size_t n, const reach along[3], const ui
     return CW_OK;
 }
 
-static int by_place(const void *a, const void *b)
+static int by_position(const void *a, const void *b)
 {
     const cwi_leaf_block *p = a, *q = b;
     for (int n = 2; n >= 0; n--)
@@ -320,7 +320,7 @@ static cw_status keep_crossed(sorting *s, cw_error *err)
     }
     b->count = kept;
     if (kept)
-        qsort(b->block, kept, sizeof *b->block, by_place);
+        qsort(b->block, kept, sizeof *b->block, by_position);
     return make_table(b, b->slots ? b->slots : 2) ? CW_OK : cwi_fail_memory(err);
 }
 

@@ -23,7 +23,7 @@ typedef struct slab_writer {
     cwi_layer_sums sums;
     cwi_border_loops loops;
     cwi_emission emission;
-    cwi_vertex_sink place; /* of the vertices of the slab at hand */
+    cwi_vertex_sink sink; /* of the vertices of the slab at hand */
     cw_mesh mesh;
     uint8_t *seam;
     size_t begin, end;          /* layers of the slab at hand */
@@ -89,7 +89,7 @@ static void write_layer(void *context, size_t n)
     const cwi_slice_window *w = s->window;
     const size_t layer = s->from + n, local = layer - w->first, rows = w->plan.grid.rows_y;
     const bool has_cells = layer < s->end;
-    cwi_vertex_sink sink = s->place;
+    cwi_vertex_sink sink = s->sink;
     /* numbers after the last row, which is padding, are not known without cells */
     const cwi_row_span span = {.begin = local,
                                .end = local + 1,
@@ -106,7 +106,7 @@ static cw_status write_layers(slab_writer *s, size_t begin, size_t end, cw_error
     cwi_slice_window *w = s->window;
     const size_t rows = w->plan.grid.rows_y, last = w->whole.dim[2] + 1;
     const bool has_seam = end == s->end && end < last;
-    const double centre = s->place.centre[2];
+    const double centre = s->sink.centre[2];
     cw_status st =
         cwi_progress(&w->desc.progress, "extracting", (double)begin / (double)last, err);
     if (st == CW_OK)
@@ -115,10 +115,10 @@ static cw_status write_layers(slab_writer *s, size_t begin, size_t end, cw_error
         return st;
     s->from = begin;
     if (!cwi_is_rectilinear(&w->whole))
-        s->place.centre[2] = centre - (double)w->first;
+        s->sink.centre[2] = centre - (double)w->first;
     st = cwi_parallel_for(end - begin + has_seam, rows * w->plan.grid.words * 64,
                           w->desc.threads, &(cw_progress){0}, "marching", write_layer, s, err);
-    s->place.centre[2] = centre;
+    s->sink.centre[2] = centre;
     if (begin == s->begin && begin)
         cwi_mark_seam(cwi_slice_window_layer(w, begin), rows, s->vertices, 1, s->seam);
     if (has_seam) {
@@ -139,7 +139,7 @@ static cw_status write_slab(slab_writer *s, cw_slab_sink sink, cw_error *err)
                     .triangles = sums->triangles,
                     .last = s->end + 1 == sums->count};
     cw_status st = CW_OK;
-    s->vertices = s->place.first = cwi_vertices_before(sums, s->begin);
+    s->vertices = s->sink.first = cwi_vertices_before(sums, s->begin);
     s->triangles = sums->layers[s->begin].triangles;
     mesh->vertex_count = cwi_vertices_before(sums, s->end + 1) - s->vertices;
     mesh->triangle_count = sums->layers[s->end].triangles - s->triangles;
@@ -150,7 +150,7 @@ static cw_status write_slab(slab_writer *s, cw_slab_sink sink, cw_error *err)
     }
     for (size_t c = 0; c < 3 * mesh->triangle_count && st == CW_OK; c++)
         mesh->triangles[c] -= (uint32_t)s->vertices;
-    cwi_set_slab_planes(&s->window->whole, s->place.centre, s->begin, s->end, &slab);
+    cwi_set_slab_planes(&s->window->whole, s->sink.centre, s->begin, s->end, &slab);
     return st == CW_OK ? sink.take(sink.user, &slab, err) : st;
 }
 
@@ -170,8 +170,8 @@ static cw_status ensure_capacity(slab_writer *s, const cw_extract_desc *d, size_
     if (st != CW_OK)
         return st;
     memcpy(mesh.affine, whole->affine, sizeof mesh.affine);
-    s->place = cwi_make_sink(whole, s->window->plan.grid.invert, &mesh);
-    s->place.grid = &s->window->plan.grid.volume;
+    s->sink = cwi_make_sink(whole, s->window->plan.grid.invert, &mesh);
+    s->sink.grid = &s->window->plan.grid.volume;
     s->mesh = mesh;
     s->seam = cwi_alloc_array(max.vertices, 1);
     return s->seam ? CW_OK : cwi_fail_memory(err);

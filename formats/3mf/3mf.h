@@ -25,7 +25,7 @@ typedef struct cwi_3mf_object {
 /* A placed object of a model: a component of another one, or an item of the build. */
 typedef struct cwi_3mf_component {
     uint32_t model, id;
-    double place[12]; /* an affine */
+    double transform[12]; /* an affine */
 } cwi_3mf_component;
 
 /* A resource of a model: an object, or a group of colours. */

@@ -14,7 +14,7 @@ enum { DEEPEST = 64, MAX_PLACINGS = 1 << 20, FREE_COUNT = 1 << 26 };
 /* A placed mesh of an object. */
 typedef struct instance {
     size_t object;
-    double place[12];
+    double transform[12];
     bool starts_part; /* it is the first of a build item */
     size_t name;
 } instance;
@@ -37,7 +37,7 @@ static void multiply_transforms(const double *a, const double *b, double *out)
                              a[4 * r + 2] * b[8 + c] + (c == 3 ? a[4 * r + 3] : 0);
 }
 
-static cw_status add_instance(placing *p, size_t index, const double *place, cw_error *err)
+static cw_status add_instance(placing *p, size_t index, const double *transform, cw_error *err)
 {
     const cwi_3mf_object *o = &p->m->objects[index];
     p->drawn += o->end_point - o->first_point + o->end_triangle - o->first_triangle;
@@ -52,7 +52,7 @@ static cw_status add_instance(placing *p, size_t index, const double *place, cw_
     if (st == CW_OK) {
         instance *i = &p->instances[p->count++];
         *i = (instance){.object = index};
-        memcpy(i->place, place, sizeof i->place);
+        memcpy(i->transform, transform, sizeof i->transform);
     }
     return st;
 }
@@ -74,7 +74,7 @@ static void count_left_out(const placing *p, cwi_3mf_type type, const cwi_3mf_ob
 static cw_status visit_component(placing *p, const cwi_3mf_component *c, const double *parent,
                                  int depth, cwi_3mf_type type, cw_error *err)
 {
-    double place[12];
+    double transform[12];
     const cwi_3mf_resource *r = cwi_3mf_find(p->m, c->model, c->id);
     if (!r || r->is_group)
         return cwi_fail(err, CW_ERR_FORMAT, "'%s' places object %u, which is not there",
@@ -85,9 +85,9 @@ static cw_status visit_component(placing *p, const cwi_3mf_component *c, const d
     if (p->visits++ == MAX_PLACINGS)
         return cwi_fail(err, CW_ERR_LIMIT, "objects are placed more than %d times",
                         MAX_PLACINGS);
-    multiply_transforms(parent, c->place, place);
+    multiply_transforms(parent, c->transform, transform);
     for (int i = 0; i < 12; i++)
-        if (!isfinite(place[i]))
+        if (!isfinite(transform[i]))
             return cwi_fail(err, CW_ERR_FORMAT, "a transform is not finite");
     const cwi_3mf_object *o = &p->m->objects[r->object];
     cw_status st = CW_OK;
@@ -99,9 +99,9 @@ static cw_status visit_component(placing *p, const cwi_3mf_component *c, const d
     if (type != CWI_3MF_SHAPE)
         count_left_out(p, type, o);
     else if (o->end_triangle > o->first_triangle)
-        st = add_instance(p, r->object, place, err);
+        st = add_instance(p, r->object, transform, err);
     for (size_t i = o->first_component; i < o->end_component && st == CW_OK; i++)
-        st = visit_component(p, &p->m->components[i], place, depth + 1, type, err);
+        st = visit_component(p, &p->m->components[i], transform, depth + 1, type, err);
     return st;
 }
 
@@ -138,25 +138,26 @@ static cw_status find_instances(placing *p, cw_error *err)
 
 /* --- placing ----------------------------------------------------------------------------- */
 
-/* Uses a common move as the mesh's origin, so that places keep their bits. Requires that all
+/* Uses a common move as the mesh's origin, so that positions keep their bits. Requires that all
  * objects are moved alike and not turned. */
 static bool take_origin(placing *p)
 {
     double *origin = p->m->mesh->origin;
     for (size_t i = 0; i < p->count; i++)
         for (int k = 0; k < 12; k++) {
-            const double *place = p->instances[i].place;
-            if (k % 4 == 3 ? place[k] != p->instances[0].place[k] : place[k] != (k % 5 == 0))
+            const double *transform = p->instances[i].transform;
+            if (k % 4 == 3 ? transform[k] != p->instances[0].transform[k]
+                           : transform[k] != (k % 5 == 0))
                 return false;
         }
     for (int a = 0; a < 3 && p->count; a++)
-        origin[a] += p->instances[0].place[4 * a + 3];
+        origin[a] += p->instances[0].transform[4 * a + 3];
     return p->count > 0;
 }
 
 static bool is_mirrored(const instance *i)
 {
-    return cwi_affine_determinant(i->place) < 0;
+    return cwi_affine_determinant(i->transform) < 0;
 }
 
 /* Returns true if the objects that are read are those that are built, each once and in that
@@ -181,13 +182,13 @@ static void swap_corners(uint32_t *triangle)
     triangle[2] = second;
 }
 
-/* Moves the object's points to their place. */
+/* Moves the object's points to their position. */
 static void move_object(cwi_mesh_build *b, const cwi_3mf_object *o, const instance *i,
                         bool origin_taken)
 {
     for (size_t v = o->first_point; v < o->end_point && !origin_taken; v++) {
         const double at[3] = {b->points[3 * v], b->points[3 * v + 1], b->points[3 * v + 2]};
-        cwi_affine_apply(i->place, at, b->points + 3 * v);
+        cwi_affine_apply(i->transform, at, b->points + 3 * v);
     }
     for (size_t t = o->first_triangle; t < o->end_triangle && is_mirrored(i); t++)
         swap_corners(b->triangles + 3 * t);

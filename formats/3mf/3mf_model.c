@@ -63,14 +63,14 @@ static cw_status read_whole(const parsing *p, const char *what, const char *valu
 }
 
 /* Reads twelve numbers, written for points as row vectors, into an affine. */
-static cw_status read_place(const parsing *p, const char *value, double place[12],
-                            cw_error *err)
+static cw_status read_transform(const parsing *p, const char *value, double transform[12],
+                                cw_error *err)
 {
     static const double unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     const char *at = value;
-    memcpy(place, unit, sizeof unit);
+    memcpy(transform, unit, sizeof unit);
     for (int i = 0; i < 12 && value; i++) {
-        double *to = &place[4 * (i % 3) + i / 3];
+        double *to = &transform[4 * (i % 3) + i / 3];
         if (!cwi_parse_double(&at, to) || !isfinite(*to))
             return fail_attribute(p, err, "'transform'", value);
     }
@@ -425,7 +425,7 @@ static cw_status add_component(parsing *p, cwi_attributes a, cwi_3mf_component *
     if (st == CW_OK)
         st = read_whole(p, "'objectid'", cwi_attribute(a, "objectid"), &c.id, err);
     if (st == CW_OK)
-        st = read_place(p, cwi_attribute(a, "transform"), c.place, err);
+        st = read_transform(p, cwi_attribute(a, "transform"), c.transform, err);
     if (st == CW_OK)
         st = cwi_mesh_grow(p->m->in, list, capacity, *count + 1, sizeof c, err);
     if (st == CW_OK)

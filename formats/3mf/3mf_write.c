@@ -190,11 +190,12 @@ static cw_status write_object(model *m, const cwi_part *given, size_t id, cw_err
 static cw_status write_item(model *m, const cwi_part *part, size_t id, cw_error *err)
 {
     double origin[3];
-    char place[CWI_POINT_BYTES], transform[CWI_POINT_BYTES + 64] = "";
+    char translation[CWI_POINT_BYTES], transform[CWI_POINT_BYTES + 64] = "";
     cwi_turn_point(&part->turn, part->mesh.origin, origin);
     if (origin[0] != 0 || origin[1] != 0 || origin[2] != 0) {
-        cwi_print_point(origin, place);
-        snprintf(transform, sizeof transform, " transform=\"1 0 0 0 1 0 0 0 1 %s\"", place);
+        cwi_print_point(origin, translation);
+        snprintf(transform, sizeof transform, " transform=\"1 0 0 0 1 0 0 0 1 %s\"",
+                 translation);
     }
     return print_model(m, err, "<item objectid=\"%zu\"%s/>\n", id, transform);
 }

@@ -49,12 +49,12 @@ static void take_padding(cwi_base64 *b)
 static size_t take_bits(cwi_base64 *b, unsigned char value, unsigned char *to)
 {
     b->bits = b->bits << 6 | (value & 63);
-    const unsigned place = b->in_group;
+    const unsigned position = b->in_group;
     b->wrong = b->padded;
-    b->in_group = (place + 1) & 3;
-    if (place == 0 || b->wrong)
+    b->in_group = (position + 1) & 3;
+    if (position == 0 || b->wrong)
         return 0;
-    *to = (unsigned char)(b->bits >> (6 - 2 * place));
+    *to = (unsigned char)(b->bits >> (6 - 2 * position));
     return 1;
 }
 

@@ -25,7 +25,7 @@ cw_status cwi_meshopt_functions_load(const cwi_meshopt_functions **functions, cw
 void cwi_arrays_free(cwi_arrays *arrays)
 {
     cwi_free(arrays->positions);
-    cwi_free(arrays->places);
+    cwi_free(arrays->grid_points);
     cwi_free(arrays->normals);
     cwi_free(arrays->colors);
     cwi_free(arrays->triangles);

@@ -46,7 +46,7 @@ static cw_status verify_decoded(const cw_mesh *mesh, const cwi_quantization_grid
 {
     const cwi_decoded decoded = {.vertex_count = a->vertex_count,
                                  .triangle_count = a->triangle_count,
-                                 .places = a->places,
+                                 .grid_points = a->grid_points,
                                  .normals = a->normals,
                                  .triangles = a->triangles};
     return cwi_verify(mesh, grid, &decoded, normal_degrees, err);
@@ -100,9 +100,9 @@ static cw_status verify_integers(const cw_mesh *mesh, int bits, cwi_arrays *deco
     double no_normals = 0;
     const cwi_quantization_grid grid = {
         .range = (float)((1u << bits) - 1), .bits = bits, .step = 1};
-    decoded->places = copy_integers(decoded->positions, decoded->vertex_count);
-    return decoded->places ? verify_decoded(mesh, &grid, decoded, &no_normals, err)
-                           : cwi_fail_memory(err);
+    decoded->grid_points = copy_integers(decoded->positions, decoded->vertex_count);
+    return decoded->grid_points ? verify_decoded(mesh, &grid, decoded, &no_normals, err)
+                                : cwi_fail_memory(err);
 }
 
 cw_status cwi_draco_pack_integers(const cw_mesh *mesh, int bits, const cw_write_desc *desc,
@@ -115,14 +115,15 @@ cw_status cwi_draco_pack_integers(const cw_mesh *mesh, int bits, const cw_write_
     cw_status st = cwi_draco_functions_load(&draco, err);
     const cwi_arrays arrays = {.vertex_count = mesh->vertex_count,
                                .triangle_count = mesh->triangle_count,
-                               .places = copy_integers(mesh->positions, mesh->vertex_count),
+                               .grid_points =
+                                   copy_integers(mesh->positions, mesh->vertex_count),
                                .triangles = mesh->triangles};
-    if (st == CW_OK && !arrays.places)
+    if (st == CW_OK && !arrays.grid_points)
         st = cwi_fail_memory(err);
     if (st == CW_OK)
         st =
             draco->encode(&arrays, &settings, &packed->bytes, &packed->size, &packed->ids, err);
-    cwi_free(arrays.places);
+    cwi_free(arrays.grid_points);
     const double encoded = cwi_now_s();
     if (st == CW_OK)
         st = draco->decode(packed->bytes, packed->size, &packed->ids, SIZE_MAX, NULL,

@@ -107,11 +107,12 @@ cw_status encode(const cwi_arrays *from, const cwi_draco_settings *settings,
         mesh.set_num_points(uint32_t(count));
         add_faces(mesh, *from);
         // Neuroglancer takes no other integers than signed ones of 32 bits.
-        ids->position = from->positions
-                            ? add_attribute(mesh, draco::GeometryAttribute::POSITION,
-                                            draco::DT_FLOAT32, 3, false, from->positions, count)
-                            : add_attribute(mesh, draco::GeometryAttribute::POSITION,
-                                            draco::DT_INT32, 3, false, from->places, count);
+        ids->position =
+            from->positions
+                ? add_attribute(mesh, draco::GeometryAttribute::POSITION, draco::DT_FLOAT32, 3,
+                                false, from->positions, count)
+                : add_attribute(mesh, draco::GeometryAttribute::POSITION, draco::DT_INT32, 3,
+                                false, from->grid_points, count);
         if (from->normals)
             ids->normal = add_attribute(mesh, draco::GeometryAttribute::NORMAL,
                                         draco::DT_FLOAT32, 3, false, from->normals, count);
@@ -241,12 +242,12 @@ cw_status copy_mesh(const draco::Mesh &mesh, const cwi_draco_ids &ids,
         snprintf(to.comment, sizeof to.comment, "%s", comment.c_str());
     to.vertex_count = count;
     to.triangle_count = mesh.num_faces();
-    if (!(grid ? allocate(to.places, count, 3) : allocate(to.positions, count, 3)) ||
+    if (!(grid ? allocate(to.grid_points, count, 3) : allocate(to.positions, count, 3)) ||
         !allocate(to.triangles, to.triangle_count, 3) ||
         (normals && !allocate(to.normals, count, 3)) ||
         (colors && !allocate(to.colors, count, 4)))
         return cwi_fail_memory(err);
-    if (!(grid ? copy_triples(*positions, count, to.places)
+    if (!(grid ? copy_triples(*positions, count, to.grid_points)
                : copy_triples(*positions, count, to.positions)) ||
         !copy_faces(mesh, to.triangles) ||
         (normals && !copy_triples(*normals, count, to.normals)) ||

@@ -14,7 +14,7 @@ enum { CWI_DRACO_COMMENT = 256 };
 typedef struct cwi_arrays {
     size_t vertex_count, triangle_count;
     float *positions;                /* vertex_count x 3 */
-    uint32_t *places;                /* vertex_count x 3: positions as places on a grid */
+    uint32_t *grid_points;           /* vertex_count x 3: positions as positions on a grid */
     float *normals;                  /* vertex_count x 3 */
     uint8_t *colors;                 /* vertex_count x 4, linear */
     uint32_t *triangles;             /* triangle_count x 3 */
@@ -37,14 +37,14 @@ typedef struct cwi_draco_settings {
 } cwi_draco_settings;
 
 typedef struct cwi_draco_functions {
-    /* Encodes by edgebreaker. The bytes are freed with cwi_free(). Arrays with places and no
+    /* Encodes by edgebreaker. The bytes are freed with cwi_free(). Arrays with positions and no
      * positions have them as integers of 32 bits, without a grid. */
     cw_status (*encode)(const cwi_arrays *arrays, const cwi_draco_settings *settings,
                         unsigned char **bytes, size_t *size, cwi_draco_ids *ids, cw_error *err);
 
     /* Decodes the attributes that ids name; NULL: the first of each kind. Indices are below the
      * vertex count for any input. More than `max` vertices or triangles are CW_ERR_LIMIT,
-     * damage is CW_ERR_FORMAT. grid: NULL gives positions as floats. Otherwise they stay places
+     * damage is CW_ERR_FORMAT. grid: NULL gives positions as floats. Otherwise they stay positions
      * on this grid, on which they were encoded; CW_ERR_CHECK: it was another grid. */
     cw_status (*decode)(const void *bytes, size_t size, const cwi_draco_ids *ids, size_t max,
                         const cwi_quantization_grid *grid, cwi_arrays *arrays, cw_error *err);

@@ -31,7 +31,7 @@ cwi_quantization_grid cwi_grid_around(const cwi_parts *parts)
 }
 
 /* Divides the box by a dyadic step. The box ends between multiples of the step, and range is
- * itself rounded; that takes up to three places. */
+ * itself rounded; that takes up to three positions. */
 static void lay_dyadic(cwi_quantization_grid *grid)
 {
     frexp((double)grid->range / (double)((1u << grid->bits) - 4), &grid->exponent);
@@ -59,21 +59,21 @@ double cwi_grid_error(const cwi_quantization_grid *grid)
 
 /* --- harm --------------------------------------------------------------------------------- */
 
-/* Rounds points to places, and to the decoded positions. Places of exact grids are below 2^24
+/* Rounds points to positions, and to the decoded positions. Places of exact grids are below 2^24
  * and serve as both. */
 static void round_points(const cwi_quantization_grid *grid, const cw_mesh *mesh,
-                         uint32_t *places, float *found)
+                         uint32_t *grid_points, float *found)
 {
     for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
-        places[i] = cwi_grid_round(grid, mesh->positions[i], (int)(i % 3));
-        found[i] = grid->single ? (float)cwi_grid_decode(grid, places[i], (int)(i % 3))
-                                : (float)places[i];
+        grid_points[i] = cwi_grid_round(grid, mesh->positions[i], (int)(i % 3));
+        found[i] = grid->single ? (float)cwi_grid_decode(grid, grid_points[i], (int)(i % 3))
+                                : (float)grid_points[i];
     }
 }
 
 /* Returns true if two corners' differences from the third are not parallel: exact, below
  * 2^62. */
-static bool spans_places(const uint32_t *points, const uint32_t *t)
+static bool spans_area(const uint32_t *points, const uint32_t *t)
 {
     const uint32_t *p = points + 3 * (size_t)t[0], *q = points + 3 * (size_t)t[1],
                    *r = points + 3 * (size_t)t[2];
@@ -92,14 +92,14 @@ static bool is_elsewhere(const float *points, size_t v, size_t u)
     return p[0] != q[0] || p[1] != q[1] || p[2] != q[2];
 }
 
-static void count_harm(const cw_mesh *mesh, const uint32_t *places, const float *found,
+static void count_harm(const cw_mesh *mesh, const uint32_t *grid_points, const float *found,
                        const uint32_t *map, cwi_grid_harm *harm)
 {
     for (size_t v = 0; v < mesh->vertex_count; v++)
         harm->merged += map[v] != v && is_elsewhere(mesh->positions, v, map[v]);
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         const uint32_t *triangle = mesh->triangles + 3 * t;
-        harm->flat += !(spans_places(places, triangle) && cwi_has_area(found, triangle)) &&
+        harm->flat += !(spans_area(grid_points, triangle) && cwi_has_area(found, triangle)) &&
                       cwi_has_area(mesh->positions, triangle);
     }
 }
@@ -108,17 +108,17 @@ static cw_status measure_part(const cwi_quantization_grid *grid, const cw_mesh *
                               cwi_grid_harm *harm, cw_error *err)
 {
     const size_t count = mesh->vertex_count;
-    uint32_t *places = cwi_alloc_array(count, 3 * sizeof *places);
+    uint32_t *grid_points = cwi_alloc_array(count, 3 * sizeof *grid_points);
     float *found = cwi_alloc_array(count, 3 * sizeof *found);
     uint32_t *map = cwi_alloc_array(count, sizeof *map);
-    bool ok = places && found && map;
+    bool ok = grid_points && found && map;
     if (ok) {
-        round_points(grid, mesh, places, found);
+        round_points(grid, mesh, grid_points, found);
         ok = cwi_weld(found, count, map);
     }
     if (ok)
-        count_harm(mesh, places, found, map, harm);
-    cwi_free(places);
+        count_harm(mesh, grid_points, found, map, harm);
+    cwi_free(grid_points);
     cwi_free(found);
     cwi_free(map);
     return ok ? CW_OK : cwi_fail_memory(err);

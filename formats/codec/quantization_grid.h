@@ -50,14 +50,14 @@ static inline uint32_t cwi_grid_round_even(const cwi_quantization_grid *grid, fl
     return at <= 0 ? 0 : (uint32_t)at;
 }
 
-/* Returns the decoded position of a place, relative to the parts' origin. It uses the
+/* Returns the decoded position of a position, relative to the parts' origin. It uses the
  * arithmetic of Draco's decoder, or is exact. */
-static inline double cwi_grid_decode(const cwi_quantization_grid *grid, uint32_t place,
+static inline double cwi_grid_decode(const cwi_quantization_grid *grid, uint32_t grid_point,
                                      int axis)
 {
     const float step = grid->range / (float)((1u << grid->bits) - 1);
-    return grid->single ? (double)((float)place * step + grid->origin[axis])
-                        : (double)grid->origin[axis] + grid->step * place;
+    return grid->single ? (double)((float)grid_point * step + grid->origin[axis])
+                        : (double)grid->origin[axis] + grid->step * grid_point;
 }
 
 /* Rounds a coordinate to a dyadic grid, in doubles: single precision has no digit left for 24
@@ -70,7 +70,7 @@ static inline uint32_t cwi_grid_round_dyadic(const cwi_quantization_grid *grid,
     return at <= 0 ? 0 : at >= max ? (uint32_t)max : (uint32_t)at;
 }
 
-/* Returns the place of a coordinate, counted from 0. */
+/* Returns the position of a coordinate, counted from 0. */
 static inline uint32_t cwi_grid_round(const cwi_quantization_grid *grid, float coordinate,
                                       int axis)
 {
@@ -78,7 +78,7 @@ static inline uint32_t cwi_grid_round(const cwi_quantization_grid *grid, float c
                         : cwi_grid_round_even(grid, coordinate, axis);
 }
 
-/* Returns the place counted from the middle of the places: a signed number of the same bits. */
+/* Returns the position counted from the grid's middle: a signed number of the same bits. */
 static inline int32_t cwi_grid_round_signed(const cwi_quantization_grid *grid, float coordinate,
                                             int axis)
 {

@@ -26,7 +26,7 @@ static uint64_t mix_bits(uint64_t x)
     return x ^ x >> 31;
 }
 
-/* Hashes a triangle. Corners are the first vertices at their places, the lowest of them first.
+/* Hashes a triangle. Corners are the first vertices at their positions, the lowest of them first.
  * Turning a triangle changes nothing; reversing it does, unless two of its corners are one. */
 static uint64_t hash_triangle(const uint32_t *triangle, const uint32_t *map)
 {
@@ -50,17 +50,17 @@ static sums sum_triangles(const uint32_t *triangles, size_t count, const uint32_
     return s;
 }
 
-/* Stores the places of the mesh, and after them those of the decoded one, as bits of floats:
+/* Stores the positions of the mesh, and after them those of the decoded one, as bits of floats:
  * below 2^30 they are finite. */
-static void put_places(const cw_mesh *mesh, const cwi_quantization_grid *grid,
-                       const cwi_decoded *d, float *places)
+static void put_points(const cw_mesh *mesh, const cwi_quantization_grid *grid,
+                       const cwi_decoded *d, float *grid_points)
 {
     const size_t count = 3 * mesh->vertex_count;
     for (size_t i = 0; i < count; i++) {
-        const uint32_t place = cwi_grid_round(grid, mesh->positions[i], (int)(i % 3));
-        memcpy(places + i, &place, sizeof place);
+        const uint32_t grid_point = cwi_grid_round(grid, mesh->positions[i], (int)(i % 3));
+        memcpy(grid_points + i, &grid_point, sizeof grid_point);
     }
-    memcpy(places + count, d->places, 3 * d->vertex_count * sizeof *d->places);
+    memcpy(grid_points + count, d->grid_points, 3 * d->vertex_count * sizeof *d->grid_points);
 }
 
 static double angle_between(const float *a, const float *b)
@@ -72,7 +72,7 @@ static double angle_between(const float *a, const float *b)
     return atan2(cwi_length(w), cwi_dot(u, v)) * DEGREES;
 }
 
-/* Marks places with several vertices of the mesh. There a decoded vertex cannot be assigned to
+/* Marks positions with several vertices of the mesh. There a decoded vertex cannot be assigned to
  * one of them. */
 static void mark_shared(const uint32_t *map, size_t count, bool *shared)
 {
@@ -108,20 +108,20 @@ cw_status cwi_verify(const cw_mesh *mesh, const cwi_quantization_grid *grid,
     if (decoded->triangle_count != mesh->triangle_count)
         return cwi_fail(err, CW_ERR_CHECK, "%zu triangles were encoded, and %zu decoded",
                         mesh->triangle_count, decoded->triangle_count);
-    float *places = cwi_alloc_array(count, 3 * sizeof *places);
+    float *grid_points = cwi_alloc_array(count, 3 * sizeof *grid_points);
     uint32_t *map = cwi_alloc_array(count, sizeof *map);
     bool *shared = cwi_alloc_zeroed(mesh->vertex_count, sizeof *shared);
-    if (places)
-        put_places(mesh, grid, decoded, places);
+    if (grid_points)
+        put_points(mesh, grid, decoded, grid_points);
     cw_status st = CW_OK;
-    if (places && map && shared && cwi_weld(places, count, map)) {
+    if (grid_points && map && shared && cwi_weld(grid_points, count, map)) {
         mark_shared(map, mesh->vertex_count, shared);
         st = compare_arrays(mesh, decoded, map, shared, normal_degrees, err);
     } else {
         st = cwi_fail_memory(err);
     }
     cwi_free(shared);
-    cwi_free(places);
+    cwi_free(grid_points);
     cwi_free(map);
     return st;
 }

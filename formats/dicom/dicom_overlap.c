@@ -17,22 +17,22 @@ typedef struct layering {
 } layering;
 
 /* Returns true if two slots have the same place: slots of a segment follow each other. */
-static bool shares_places(const cwi_stack *stack, uint8_t *seen)
+static bool shares_slices(const cwi_stack *stack, uint8_t *seen)
 {
     for (size_t n = 0; n < stack->slot_count; n++) {
-        if (seen[stack->slots[n].place])
+        if (seen[stack->slots[n].slice])
             return true;
-        seen[stack->slots[n].place] = 1;
+        seen[stack->slots[n].slice] = 1;
     }
     return false;
 }
 
 /* Marks the pixels of a plane, and finds the layers in which one of them is taken. */
-static void mark_plane(layering *l, size_t place, const unsigned char *pixels,
+static void mark_plane(layering *l, size_t slice, const unsigned char *pixels,
                        uint16_t *conflicts)
 {
-    const uint16_t *taken = l->taken + place * l->plane;
-    unsigned char *own = l->own + place * l->plane;
+    const uint16_t *taken = l->taken + slice * l->plane;
+    unsigned char *own = l->own + slice * l->plane;
     for (size_t i = 0; i < l->plane; i++)
         if (pixels[i]) {
             own[i] = 1;
@@ -45,12 +45,12 @@ static void take_layer(layering *l, size_t first, size_t end, size_t layer)
 {
     for (size_t n = first; n < end; n++) {
         cwi_slot *slot = &l->stack->slots[n];
-        uint16_t *taken = l->taken + slot->place * l->plane;
-        unsigned char *own = l->own + slot->place * l->plane;
+        uint16_t *taken = l->taken + slot->slice * l->plane;
+        unsigned char *own = l->own + slot->slice * l->plane;
         for (size_t i = 0; i < l->plane; i++)
             taken[i] = (uint16_t)(taken[i] | own[i] << layer);
         memset(own, 0, l->plane);
-        slot->place += layer * l->stack->shape.dim[2];
+        slot->slice += layer * l->stack->shape.dim[2];
     }
 }
 
@@ -66,7 +66,7 @@ static cw_status place_segment(layering *l, cwi_stack_reader *reader, size_t fir
         const cwi_slot *slot = &l->stack->slots[n];
         st = cwi_stack_read_plane(reader, slot->low, pixels, err);
         if (st == CW_OK)
-            mark_plane(l, slot->place, pixels, &conflicts);
+            mark_plane(l, slot->slice, pixels, &conflicts);
     }
     while (conflicts >> layer & 1)
         layer++;
@@ -112,7 +112,7 @@ cw_status cwi_dicom_find_layers(cwi_stack *stack, const cwi_input *in, cwi_plane
     uint8_t *seen = cwi_alloc_zeroed(v->dim[2], 1);
     if (!seen)
         return cwi_fail_memory(err);
-    const bool may_overlap = shares_places(stack, seen);
+    const bool may_overlap = shares_slices(stack, seen);
     cwi_free(seen);
     if (!may_overlap)
         return CW_OK;

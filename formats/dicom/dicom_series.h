@@ -12,7 +12,7 @@ typedef struct cwi_dicom_plane {
     uint32_t number;             /* of the frame in the file */
     size_t series;
     double distance; /* along the normal, mm: set by cwi_dicom_stack() */
-    size_t place, step;
+    size_t position_index, step;
     cwi_dicom_frame frame;
 } cwi_dicom_plane;
 

@@ -18,8 +18,8 @@
 typedef struct sorting {
     cwi_dicom_plane *planes;
     size_t count;
-    size_t places; /* number of different places */
-    size_t steps;  /* planes at each place */
+    size_t position_count; /* number of different positions */
+    size_t steps;          /* planes at each position */
     double normal[3];
     const cw_read_desc *desc;
     cwi_dicom_findings *findings;
@@ -82,11 +82,11 @@ static int by_distance(const void *x, const void *y)
     return (a->distance > b->distance) - (a->distance < b->distance);
 }
 
-static int by_place_and_step(const void *x, const void *y)
+static int by_position_and_step(const void *x, const void *y)
 {
     const cwi_dicom_plane *a = x, *b = y;
-    if (a->place != b->place)
-        return a->place < b->place ? -1 : 1;
+    if (a->position_index != b->position_index)
+        return a->position_index < b->position_index ? -1 : 1;
     return (a->step > b->step) - (a->step < b->step);
 }
 
@@ -95,17 +95,17 @@ static void sort_planes(sorting *s, int (*compare)(const void *, const void *))
     qsort(s->planes, s->count, sizeof *s->planes, compare);
 }
 
-static int by_place_and_number(const void *x, const void *y)
+static int by_position_and_number(const void *x, const void *y)
 {
     const cwi_dicom_plane *a = x, *b = y;
-    if (a->place != b->place)
-        return a->place < b->place ? -1 : 1;
+    if (a->position_index != b->position_index)
+        return a->position_index < b->position_index ? -1 : 1;
     const int64_t m = a->file->instance_number, n = b->file->instance_number;
     return m != n ? (m < n ? -1 : 1) : (a->number > b->number) - (a->number < b->number);
 }
 
-/* Finds the places; those that differ by less than a thousandth of a pixel are one. */
-static void find_places(sorting *s)
+/* Finds the positions; those that differ by less than a thousandth of a pixel are one. */
+static void find_positions(sorting *s)
 {
     const double *x = s->planes[0].frame.axes[0], *y = s->planes[0].frame.axes[1];
     const double same = 1e-3 * s->planes[0].frame.spacing[0];
@@ -113,25 +113,25 @@ static void find_places(sorting *s)
     for (size_t i = 0; i < s->count; i++)
         s->planes[i].distance = cwi_dot(s->planes[i].frame.position, s->normal);
     sort_planes(s, by_distance);
-    s->places = 0;
+    s->position_count = 0;
     for (size_t i = 0; i < s->count; i++) {
         const bool next = i > 0 && s->planes[i].distance - s->planes[i - 1].distance > same;
-        s->places += i == 0 || next;
-        s->planes[i].place = s->places - 1;
+        s->position_count += i == 0 || next;
+        s->planes[i].position_index = s->position_count - 1;
     }
-    sort_planes(s, by_place_and_number);
+    sort_planes(s, by_position_and_number);
 }
 
-/* Returns the number of planes at one place, from *first on. */
+/* Returns the number of planes at one position, from *first on. */
 static size_t planes_here(const sorting *s, size_t first)
 {
     size_t n = first;
-    while (n < s->count && s->planes[n].place == s->planes[first].place)
+    while (n < s->count && s->planes[n].position_index == s->planes[first].position_index)
         n++;
     return n - first;
 }
 
-/* Ranks the planes at one place by one key; returns false where two have the same value. */
+/* Ranks the planes at one position by one key; returns false where two have the same value. */
 static bool rank_here(cwi_dicom_plane *planes, size_t count, int key)
 {
     for (size_t i = 0; i < count; i++) {
@@ -157,31 +157,31 @@ static bool rank_all(sorting *s, int key)
 
 static cw_status fail_duplicates(const sorting *s, cw_error *err)
 {
-    size_t i = 0, places = 0, first = 0;
+    size_t i = 0, shared = 0, first = 0;
     for (size_t n; i < s->count; i += n) {
         n = planes_here(s, i);
-        first = n > 1 && places == 0 ? i : first;
-        places += n > 1;
+        first = n > 1 && shared == 0 ? i : first;
+        shared += n > 1;
     }
     return cwi_fail(
         err, CW_ERR_UNSAFE,
         "%zu of %zu places hold more than one image, the first at %.6g mm along the "
         "normal, and not as many as others do; desc->gaps = CW_GAPS_ALLOW takes the first of each",
-        places, s->places, s->planes[first].distance);
+        shared, s->position_count, s->planes[first].distance);
 }
 
 static void keep_first_of_each(sorting *s)
 {
     size_t kept = 0;
     for (size_t i = 0; i < s->count; i++)
-        if (kept == 0 || s->planes[i].place != s->planes[kept - 1].place)
+        if (kept == 0 || s->planes[i].position_index != s->planes[kept - 1].position_index)
             s->planes[kept++] = s->planes[i];
     cwi_note(s->desc, "left out, because others have the same position: %zu images",
              s->count - kept);
     s->count = kept;
 }
 
-/* Finds the steps: the same number of planes at every place is a series in time, of echoes, or
+/* Finds the steps: the same number of planes at every position is a series in time, of echoes, or
  * similar. */
 static cw_status find_steps(sorting *s, cw_error *err)
 {
@@ -206,21 +206,21 @@ static cw_status find_steps(sorting *s, cw_error *err)
     for (size_t i = 0; key == CWI_DICOM_KEYS && i < s->count; i++)
         s->planes[i].step = i % s->steps;
     cwi_note(s->desc, "%zu images at each of %zu places: taken as steps, in the order of %s",
-             s->steps, s->places, key < CWI_DICOM_KEYS ? names[key] : "InstanceNumber");
-    sort_planes(s, by_place_and_step);
+             s->steps, s->position_count, key < CWI_DICOM_KEYS ? names[key] : "InstanceNumber");
+    sort_planes(s, by_position_and_step);
     return CW_OK;
 }
 
 /* --- the row of slices -------------------------------------------------------------------- */
 
-/* Computes the way from the first to the last place per millimetre along the normal. */
+/* Computes the way from the first to the last position per millimetre along the normal. */
 static void find_row(const sorting *s, double along[3])
 {
     const cwi_dicom_plane *a = &s->planes[0], *b = &s->planes[s->count - 1];
     for (int r = 0; r < 3; r++)
-        along[r] = s->places > 1 ? (b->frame.position[r] - a->frame.position[r]) /
-                                       (b->distance - a->distance)
-                                 : s->normal[r];
+        along[r] = s->position_count > 1 ? (b->frame.position[r] - a->frame.position[r]) /
+                                               (b->distance - a->distance)
+                                         : s->normal[r];
 }
 
 /* Returns the distance of a plane from the row, in mm. */
@@ -240,7 +240,7 @@ static double smaller_spacing(const sorting *s)
 }
 
 /* Finds the tilt. Slices shifted evenly against each other make a sheared frame at their true
- * places. */
+ * positions. */
 static cw_status find_tilt(sorting *s, double along[3], cw_error *err)
 {
     double worst = 0;
@@ -261,14 +261,14 @@ static cw_status find_tilt(sorting *s, double along[3], cw_error *err)
 
 static cw_status lay_slices(const sorting *s, cwi_slices *slices, cw_error *err)
 {
-    double *places = cwi_alloc_array(s->places, sizeof *places);
-    if (!places)
+    double *positions = cwi_alloc_array(s->position_count, sizeof *positions);
+    if (!positions)
         return cwi_fail_memory(err);
-    for (size_t i = 0; i < s->places; i++)
-        places[i] = s->planes[i * s->steps].distance;
-    cw_status st =
-        cwi_slices_lay(places, s->places, "mm along the normal", s->desc->gaps, slices, err);
-    cwi_free(places);
+    for (size_t i = 0; i < s->position_count; i++)
+        positions[i] = s->planes[i * s->steps].distance;
+    cw_status st = cwi_slices_lay(positions, s->position_count, "mm along the normal",
+                                  s->desc->gaps, slices, err);
+    cwi_free(positions);
     memcpy(s->findings->gaps, slices->finding, sizeof slices->finding);
     s->findings->made = slices->made;
     return st;
@@ -381,7 +381,7 @@ static cw_status fill_slots(const sorting *s, const cwi_slices *slices, cwi_stac
     for (size_t k = 0; st == CW_OK && k < slices->count; k++)
         for (size_t t = 0; t < s->steps; t++) {
             const cwi_slice *from = &slices->items[k];
-            stack->slots[k * s->steps + t] = (cwi_slot){.place = t * slices->count + k,
+            stack->slots[k * s->steps + t] = (cwi_slot){.slice = t * slices->count + k,
                                                         .low = from->low * s->steps + t,
                                                         .high = from->high * s->steps + t,
                                                         .t = from->t};
@@ -405,7 +405,7 @@ static void note_findings(const sorting *s)
                                                 : "interpolated to even ones");
 }
 
-/* Stacks slices with a known place. */
+/* Stacks slices with a known position. */
 static cw_status stack_placed(sorting *s, cwi_stack *stack, cw_error *err)
 {
     cwi_slices slices = {0};
@@ -413,7 +413,7 @@ static cw_status stack_placed(sorting *s, cwi_stack *stack, cw_error *err)
     cw_status st = check_geometry(s, err);
     if (st != CW_OK)
         return st;
-    find_places(s);
+    find_positions(s);
     st = find_steps(s, err);
     if (st == CW_OK)
         st = find_tilt(s, along, err);
@@ -424,7 +424,7 @@ static cw_status stack_placed(sorting *s, cwi_stack *stack, cw_error *err)
         const double single = f->has & CWI_DICOM_BETWEEN && f->between > 0 ? f->between : 1;
         set_values(s, stack);
         set_sizes(s, slices.count, stack);
-        set_frame(s, along, s->places > 1 ? slices.step : single, stack);
+        set_frame(s, along, s->position_count > 1 ? slices.step : single, stack);
         st = fill_slots(s, &slices, stack, err);
     }
     if (st == CW_OK)
@@ -442,13 +442,13 @@ static double segment_step(const sorting *s)
     const cwi_dicom_frame *f = &s->planes[0].frame;
     double min = INFINITY;
     for (size_t i = 1; i < s->count; i++)
-        if (s->planes[i].place != s->planes[i - 1].place)
+        if (s->planes[i].position_index != s->planes[i - 1].position_index)
             min = fmin(min, s->planes[i].distance - s->planes[i - 1].distance);
     return f->has & CWI_DICOM_BETWEEN && f->between > 0 ? f->between : isfinite(min) ? min : 1;
 }
 
 /* Sets the index of each plane in the row; *slices is the row's length. */
-static cw_status find_segment_places(sorting *s, double step, size_t *slices, cw_error *err)
+static cw_status find_segment_positions(sorting *s, double step, size_t *slices, cw_error *err)
 {
     for (size_t i = 0; i < s->count; i++) {
         const double at = (s->planes[i].distance - s->planes[0].distance) / step;
@@ -458,8 +458,8 @@ static cw_status find_segment_places(sorting *s, double step, size_t *slices, cw
                             "the frame at %.6g mm along the normal is not on a row of slices "
                             "%.6g mm apart",
                             s->planes[i].distance, step);
-        s->planes[i].place = (size_t)nearest;
-        *slices = s->planes[i].place + 1;
+        s->planes[i].position_index = (size_t)nearest;
+        *slices = s->planes[i].position_index + 1;
     }
     return CW_OK;
 }
@@ -491,27 +491,27 @@ static cw_status fill_labels(const sorting *s, cwi_stack *stack, cw_error *err)
                 err, CW_ERR_FORMAT,
                 "'ReferencedSegmentNumber' of frame %u is %u; it must be 1 to 65535",
                 p->number + 1, p->frame.segment);
-        stack->slots[i] =
-            (cwi_slot){.place = p->place, .low = i, .high = i, .label = p->frame.segment};
+        stack->slots[i] = (cwi_slot){
+            .slice = p->position_index, .low = i, .high = i, .label = p->frame.segment};
     }
     if (st == CW_OK)
         qsort(stack->slots, stack->slot_count, sizeof *stack->slots, by_label);
     return st;
 }
 
-/* Fills label maps: a frame holds all segments of its place. */
+/* Fills label maps: a frame holds all segments of its position. */
 static cw_status fill_maps(const sorting *s, cwi_stack *stack, cw_error *err)
 {
     cw_status st = ensure_capacity(s, s->count, stack, err);
     for (size_t i = 0; st == CW_OK && i < s->count; i++) {
         const cwi_dicom_plane *p = &s->planes[i];
-        if (i > 0 && p->place == s->planes[i - 1].place)
+        if (i > 0 && p->position_index == s->planes[i - 1].position_index)
             return cwi_fail(
                 err, CW_ERR_UNSAFE,
                 "two frames of the label map stand at %.6g mm along the normal; one "
                 "was expected at each place",
                 p->distance);
-        stack->slots[i] = (cwi_slot){.place = p->place, .low = i, .high = i};
+        stack->slots[i] = (cwi_slot){.slice = p->position_index, .low = i, .high = i};
     }
     if (st == CW_OK)
         qsort_r(stack->slots, stack->slot_count, sizeof *stack->slots, by_file, stack->planes);
@@ -562,7 +562,7 @@ static cw_status fill_fractions(const sorting *s, cwi_stack *stack, cw_error *er
         const cwi_dicom_plane *p = &s->planes[i];
         const size_t component = find_segment(numbers, p->frame.segment);
         stack->slots[i] =
-            (cwi_slot){.place = component * v->dim[2] + p->place, .low = i, .high = i};
+            (cwi_slot){.slice = component * v->dim[2] + p->position_index, .low = i, .high = i};
     }
     v->components = count;
     v->component_stride = v->stride[2] * (ptrdiff_t)v->dim[2];
@@ -577,12 +577,12 @@ static cw_status stack_segments(sorting *s, cwi_stack *stack, cw_error *err)
     cw_status st = check_geometry(s, err);
     if (st != CW_OK)
         return st;
-    find_places(s);
+    find_positions(s);
     s->steps = 1;
     const double step = segment_step(s);
     st = find_tilt(s, along, err);
     if (st == CW_OK)
-        st = find_segment_places(s, step, &slices, err);
+        st = find_segment_positions(s, step, &slices, err);
     if (st != CW_OK)
         return st;
     const cwi_dicom_kind kind = s->planes[0].file->kind;
@@ -602,7 +602,7 @@ static cw_status stack_segments(sorting *s, cwi_stack *stack, cw_error *err)
     return kind == CWI_DICOM_LABELMAP ? fill_maps(s, stack, err) : fill_labels(s, stack, err);
 }
 
-/* --- images without a place --------------------------------------------------------------- */
+/* --- images without a position ------------------------------------------------------------- */
 
 /* Stacks slices whose distance the user stated, in the order of their numbers. */
 static cw_status stack_numbered(sorting *s, cwi_stack *stack, cw_error *err)
@@ -615,14 +615,14 @@ static cw_status stack_numbered(sorting *s, cwi_stack *stack, cw_error *err)
                 "images have neither place nor 'InstanceNumber': their order is not "
                 "known");
     s->steps = 1;
-    s->places = s->count;
+    s->position_count = s->count;
     set_values(s, stack);
     set_sizes(s, s->count, stack);
     for (int a = 0; a < 3; a++)
         stack->shape.affine[a][a] = 1;
     cw_status st = ensure_capacity(s, s->count, stack, err);
     for (size_t i = 0; st == CW_OK && i < s->count; i++)
-        stack->slots[i] = (cwi_slot){.place = i, .low = i, .high = i};
+        stack->slots[i] = (cwi_slot){.slice = i, .low = i, .high = i};
     cwi_note(s->desc, "where images lie is not said: taken in the order of their numbers");
     return st;
 }

@@ -10,13 +10,13 @@
 #include <strings.h>
 #include <unistd.h>
 
-/* The place of a buffer's bytes. */
-typedef struct place {
+/* The source of a buffer's bytes. */
+typedef struct byte_source {
     const char *digits; /* base64; NULL: in a file */
     int fd, own_fd;     /* own_fd: to be closed, or -1 */
     uint64_t start;     /* in the file */
     uint64_t held;      /* number of bytes that really exist */
-} place;
+} byte_source;
 
 /* --- data: URIs -------------------------------------------------------------------------- */
 
@@ -53,7 +53,7 @@ static cw_status decode_base64(const char *digits, uint64_t offset, uint64_t siz
 }
 
 /* Finds the digits of a data: URI, and the number of bytes that they encode. */
-static cw_status find_digits(const char *uri, uint64_t buffer, place *p, cw_error *err)
+static cw_status find_digits(const char *uri, uint64_t buffer, byte_source *p, cw_error *err)
 {
     static const char marker[] = ";base64,";
     const char *digits = strstr(uri, marker);
@@ -105,7 +105,7 @@ static cw_status decode_name(const char *uri, char name[1024], cw_error *err)
     return CW_OK;
 }
 
-static cw_status open_file(const cwi_input *in, const char *uri, place *p, cw_error *err)
+static cw_status open_file(const cwi_input *in, const char *uri, byte_source *p, cw_error *err)
 {
     char name[1024];
     cw_status st = decode_name(uri, name, err);
@@ -123,11 +123,11 @@ static bool range_fits(uint64_t offset, uint64_t size, uint64_t held)
     return offset <= held && size <= held - offset;
 }
 
-/* Finds the place of a buffer's bytes; the caller closes it in any case. */
+/* Finds the source of a buffer's bytes; the caller closes it in any case. */
 static cw_status find_place(const cwi_gltf_bytes *from, const cwi_gltf_buffer *b,
-                            uint64_t index, place *p, cw_error *err)
+                            uint64_t index, byte_source *p, cw_error *err)
 {
-    *p = (place){.fd = from->in->fd, .own_fd = -1};
+    *p = (byte_source){.fd = from->in->fd, .own_fd = -1};
     if (b->uri && is_data(b->uri))
         return find_digits(b->uri, index, p, err);
     if (b->uri)
@@ -142,7 +142,7 @@ static cw_status find_place(const cwi_gltf_bytes *from, const cwi_gltf_buffer *b
     return CW_OK;
 }
 
-static void close_place(place *p)
+static void close_source(byte_source *p)
 {
     if (p->own_fd >= 0)
         close(p->own_fd);
@@ -150,7 +150,7 @@ static void close_place(place *p)
 
 /* Loads a range of bytes. Memory is allocated only after the claimed bytes were found to
  * exist. */
-static cw_status load_range(const place *p, uint64_t offset, uint64_t size,
+static cw_status load_range(const byte_source *p, uint64_t offset, uint64_t size,
                             unsigned char **bytes, cw_error *err)
 {
     *bytes = cwi_alloc_array((size_t)size, 1);
@@ -169,7 +169,7 @@ cw_status cwi_gltf_load(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
                         uint64_t buffer, uint64_t offset, uint64_t size, unsigned char **bytes,
                         cw_error *err)
 {
-    place p;
+    byte_source p;
     if (buffer >= scene->buffer_count)
         return cwi_fail(err, CW_ERR_FORMAT, "a bufferView names buffer %lld; there are %zu",
                         (long long)buffer, scene->buffer_count);
@@ -187,16 +187,16 @@ cw_status cwi_gltf_load(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
                       (unsigned long long)size, (unsigned long long)offset);
     if (st == CW_OK)
         st = load_range(&p, offset, size, bytes, err);
-    close_place(&p);
+    close_source(&p);
     return st;
 }
 
 uint64_t cwi_gltf_file_bytes(const cwi_gltf_bytes *from, const cwi_gltf_buffer *buffer)
 {
-    place p = {.own_fd = -1};
+    byte_source p = {.own_fd = -1};
     if (buffer->uri && !is_data(buffer->uri))
         open_file(from->in, buffer->uri, &p, NULL);
-    close_place(&p);
+    close_source(&p);
     return p.held;
 }
 

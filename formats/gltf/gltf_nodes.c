@@ -1,4 +1,4 @@
-/* Walks over the nodes of a glTF scene, and finds the places of its meshes. */
+/* Walks over the nodes of a glTF scene, and finds the transforms of its meshes. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
@@ -20,10 +20,10 @@ static void multiply_matrices(const double *a, const double *b, double *out)
 
 static const double to_lps[12] = {1000, 0, 0, 0, 0, 0, -1000, 0, 0, 1000, 0, 0};
 
-static bool is_unturned(const double *place)
+static bool is_unturned(const double *transform)
 {
     for (int i = 0; i < 12; i++)
-        if (i % 4 != 3 && !(fabs(place[i] - (i % 5 == 0)) < 1e-9))
+        if (i % 4 != 3 && !(fabs(transform[i] - (i % 5 == 0)) < 1e-9))
             return false;
     return true;
 }
@@ -52,24 +52,25 @@ static double from_metres(double metres)
     return same ? found : millimetres;
 }
 
-/* Sets the place of a node's mesh. Where our writer left out the origin of a local file, it is
+/* Sets the transform of a node's mesh. Where our writer left out the origin of a local file, it is
  * added. */
-static cw_status set_place(cwi_gltf_instance *at, const double *world, cw_mesh_file *said,
-                           cw_error *err)
+static cw_status set_transform(cwi_gltf_instance *at, const double *world, cw_mesh_file *said,
+                               cw_error *err)
 {
-    double *place = at->place[0];
-    multiply_matrices(to_lps, world, place);
+    double *transform = at->transform[0];
+    multiply_matrices(to_lps, world, transform);
     for (int i = 0; i < 12; i++)
-        if (!isfinite(place[i]))
+        if (!isfinite(transform[i]))
             return cwi_fail(err, CW_ERR_FORMAT, "a node's matrix is not finite");
-    at->unturned = is_unturned(place);
+    at->unturned = is_unturned(transform);
     if (!at->unturned)
         return CW_OK;
-    at->place[0][3] = from_metres(world[3]);
-    at->place[1][3] = from_metres(-world[11]);
-    at->place[2][3] = from_metres(world[7]);
+    at->transform[0][3] = from_metres(world[3]);
+    at->transform[1][3] = from_metres(-world[11]);
+    at->transform[2][3] = from_metres(world[7]);
     for (int a = 0; at->node->has_origin && a < 3; a++)
-        at->place[a][3] += at->node->origin[a]; /* a local file: the scene is relative to it */
+        at->transform[a][3] +=
+            at->node->origin[a]; /* a local file: the scene is relative to it */
     said->local = said->local || at->node->has_origin;
     return CW_OK;
 }
@@ -117,7 +118,7 @@ static cw_status enter_node(cwi_gltf_reader *r, visit v, bool *visited, cw_mesh_
     }
     cwi_gltf_instance *at = &r->instances[r->instance_count++];
     *at = (cwi_gltf_instance){.mesh = n->mesh, .node = n};
-    return set_place(at, r->world[v.node], said, err);
+    return set_transform(at, r->world[v.node], said, err);
 }
 
 /* Walks depth first, in the order of the file. The stack cannot overflow: every node is pushed

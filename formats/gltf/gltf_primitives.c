@@ -49,7 +49,7 @@ static cw_status add_points(cwi_gltf_reader *r, const cwi_gltf_instance *at,
         double p[3], moved[3];
         for (int a = 0; a < 3; a++)
             p[a] = cwi_gltf_number(numbers, i, a);
-        cwi_affine_apply(at->place[0], p, moved);
+        cwi_affine_apply(at->transform[0], p, moved);
         st = cwi_build_point(&r->build, r->shifted ? p : moved, err);
     }
     return st;
@@ -84,8 +84,8 @@ static cw_status add_normals(cwi_gltf_reader *r, const cwi_gltf_instance *at, in
     if (st == CW_OK)
         st = cwi_mesh_grow(r->in, &r->normals, &r->normal_capacity, r->build.point_count,
                            3 * sizeof *r->normals, err);
-    cwi_affine_cofactor(at->place[0], cofactor);
-    const double sign = cwi_affine_determinant(at->place[0]) < 0 ? -1 : 1;
+    cwi_affine_cofactor(at->transform[0], cofactor);
+    const double sign = cwi_affine_determinant(at->transform[0]) < 0 ? -1 : 1;
     const bool exact = at->unturned && numbers.component == FLOAT; /* integers are rounded */
     for (size_t i = 0; i < numbers.count && st == CW_OK; i++) {
         double n[3];
@@ -257,7 +257,7 @@ static size_t count_skipped(const cwi_gltf_scene *scene, const cwi_gltf_primitiv
 static cw_status add_corners(cwi_gltf_reader *r, const cwi_gltf_instance *at,
                              const cwi_gltf_primitive *p, size_t first, cw_error *err)
 {
-    const bool mirrored = cwi_affine_determinant(at->place[0]) < 0;
+    const bool mirrored = cwi_affine_determinant(at->transform[0]) < 0;
     corners c;
     cw_status st = open_corners(r, p, first, &c, err);
     if (st == CW_OK && p->mode == TRIANGLES && c.count % 3)

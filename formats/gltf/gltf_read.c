@@ -135,7 +135,7 @@ static bool is_shifted(const cwi_gltf_reader *r)
     for (size_t i = 0; i < r->instance_count; i++)
         for (int a = 0; a < 3; a++)
             if (!r->instances[i].unturned ||
-                r->instances[i].place[a][3] != r->instances[0].place[a][3])
+                r->instances[i].transform[a][3] != r->instances[0].transform[a][3])
                 return false;
     return r->instance_count > 0;
 }
@@ -152,7 +152,7 @@ static void describe_mesh(const cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file 
     if (lps && r->instance_count == 1 && one->node->has_affine)
         memcpy(mesh->affine, one->node->affine, sizeof mesh->affine);
     for (int a = 0; a < 3 && r->shifted; a++)
-        mesh->origin[a] = one->place[a][3];
+        mesh->origin[a] = one->transform[a][3];
 }
 
 /* Returns the maximum number of elements, derived from the real number of bytes. A small file

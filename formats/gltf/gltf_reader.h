@@ -9,8 +9,8 @@
 typedef struct cwi_gltf_instance {
     int mesh;
     const cwi_gltf_node *node;
-    double place[3][4]; /* to LPS millimetres */
-    bool unturned;      /* its place is only a translation */
+    double transform[3][4]; /* to LPS millimetres */
+    bool unturned;          /* only a translation */
 } cwi_gltf_instance;
 
 typedef struct cwi_gltf_reader {
@@ -31,7 +31,7 @@ typedef struct cwi_gltf_reader {
     bool no_normals; /* some primitive has none: then none are kept */
 } cwi_gltf_reader;
 
-/* Walks over the scene's nodes, and finds those that have a mesh, and its place.
+/* Walks over the scene's nodes, and finds those that have a mesh, and its transform.
  * Returns CW_ERR_FORMAT for nodes that are no forest, or nest too deeply. */
 CW_NODISCARD cw_status cwi_gltf_find_instances(cwi_gltf_reader *r, cw_mesh_file *said,
                                                cw_error *err);

@@ -167,12 +167,12 @@ typedef struct walker {
     cw_error *err;
 } walker;
 
-/* A place in the JSON, for messages. */
-typedef struct place {
-    const struct place *up;
+/* The path to a value in the JSON, for messages. */
+typedef struct json_path {
+    const struct json_path *up;
     const char *key; /* NULL: an element of a list */
     size_t index;
-} place;
+} json_path;
 
 static cw_status fail_broken(const walker *w)
 {
@@ -244,7 +244,7 @@ static bool skip_value(walker *w)
 
 enum { PATH_BYTES = 256, SHOWN_BYTES = 48 };
 
-static size_t put_path(const place *p, char path[PATH_BYTES])
+static size_t put_path(const json_path *p, char path[PATH_BYTES])
 {
     if (!p)
         return 0;
@@ -272,7 +272,7 @@ static void show_value(const char *from, const char *end, char shown[SHOWN_BYTES
 
 /* Reports a wrong value: "nodes[3].mesh: -5 is not an index (0 to 7)". The value starts at byte
  * `start`. */
-static cw_status fail_value(walker *w, size_t start, const place *p, const char *expected)
+static cw_status fail_value(walker *w, size_t start, const json_path *p, const char *expected)
 {
     char path[PATH_BYTES] = "", shown[SHOWN_BYTES];
     w->at = start;
@@ -285,7 +285,7 @@ static cw_status fail_value(walker *w, size_t start, const place *p, const char 
     return cwi_fail(w->err, CW_ERR_FORMAT, "%s: %s is not %s", path, shown, expected);
 }
 
-static cw_status fail_index(walker *w, size_t start, const rule *r, const place *p)
+static cw_status fail_index(walker *w, size_t start, const rule *r, const json_path *p)
 {
     char expected[96];
     const size_t count = w->counts[r->list];
@@ -296,7 +296,7 @@ static cw_status fail_index(walker *w, size_t start, const rule *r, const place 
     return fail_value(w, start, p, expected);
 }
 
-static cw_status fail_whole(walker *w, size_t start, const rule *r, const place *p)
+static cw_status fail_whole(walker *w, size_t start, const rule *r, const json_path *p)
 {
     char expected[96];
     const char *kind = r->step ? "a multiple of 4" : "a whole number";
@@ -350,7 +350,7 @@ static const char *look_at_bare(walker *w, size_t *length)
     return text;
 }
 
-static cw_status check_index(walker *w, const rule *r, const place *p)
+static cw_status check_index(walker *w, const rule *r, const json_path *p)
 {
     size_t length;
     uint64_t value;
@@ -360,7 +360,7 @@ static cw_status check_index(walker *w, const rule *r, const place *p)
     return skip_value(w) ? CW_OK : fail_broken(w);
 }
 
-static cw_status check_whole(walker *w, const rule *r, const place *p)
+static cw_status check_whole(walker *w, const rule *r, const json_path *p)
 {
     size_t length;
     uint64_t value;
@@ -371,7 +371,7 @@ static cw_status check_whole(walker *w, const rule *r, const place *p)
     return skip_value(w) ? CW_OK : fail_broken(w);
 }
 
-static cw_status check_number(walker *w, const rule *r, const place *p)
+static cw_status check_number(walker *w, const rule *r, const json_path *p)
 {
     char digits[64];
     size_t length;
@@ -387,7 +387,7 @@ static cw_status check_number(walker *w, const rule *r, const place *p)
     return skip_value(w) ? CW_OK : fail_broken(w);
 }
 
-static cw_status check_word(walker *w, const rule *r, const place *p)
+static cw_status check_word(walker *w, const rule *r, const json_path *p)
 {
     char expected[128];
     const size_t start = w->at;
@@ -399,7 +399,7 @@ static cw_status check_word(walker *w, const rule *r, const place *p)
     return fail_value(w, start, p, expected);
 }
 
-static cw_status check_plain(walker *w, const rule *r, const place *p)
+static cw_status check_plain(walker *w, const rule *r, const json_path *p)
 {
     const size_t start = w->at;
     size_t length = 0;
@@ -411,14 +411,14 @@ static cw_status check_plain(walker *w, const rule *r, const place *p)
                : fail_value(w, start, p, "true or false");
 }
 
-static cw_status check_value(walker *w, const rule *r, const place *p);
+static cw_status check_value(walker *w, const rule *r, const json_path *p);
 
 /* Checks the elements of a list: each is of the kind `one`. */
-static cw_status check_list(walker *w, const rule *r, value_kind one, const place *p)
+static cw_status check_list(walker *w, const rule *r, value_kind one, const json_path *p)
 {
     const size_t start = w->at;
     rule element = *r;
-    place at = {p, NULL, 0};
+    json_path at = {p, NULL, 0};
     cw_status st = CW_OK;
     element.kind = one;
     if (!take_char(w, '['))
@@ -470,7 +470,7 @@ static size_t find_rule(const rule *rules, const char *key, size_t length)
 }
 
 static cw_status check_required(const walker *w, const rule *rules, unsigned seen,
-                                const place *p)
+                                const json_path *p)
 {
     char path[PATH_BYTES] = "the JSON";
     for (size_t i = 0; rules && rules[i].key; i++)
@@ -483,9 +483,9 @@ static cw_status check_required(const walker *w, const rule *rules, unsigned see
 
 /* Checks the value of one member. glTF requires that its own names are written without
  * escapes. */
-static cw_status check_member(walker *w, const rule *r, bool escaped, const place *p)
+static cw_status check_member(walker *w, const rule *r, bool escaped, const json_path *p)
 {
-    const place at = {p, r->key, 0};
+    const json_path at = {p, r->key, 0};
     char path[PATH_BYTES] = "";
     if (!take_char(w, ':'))
         return fail_broken(w);
@@ -497,7 +497,7 @@ static cw_status check_member(walker *w, const rule *r, bool escaped, const plac
     return check_value(w, r, &at);
 }
 
-static cw_status check_object(walker *w, const rule *rules, const place *p)
+static cw_status check_object(walker *w, const rule *rules, const json_path *p)
 {
     static const rule unknown = {0};
     const size_t start = w->at;
@@ -521,7 +521,7 @@ static cw_status check_object(walker *w, const rule *rules, const place *p)
     return st == CW_OK ? check_required(w, rules, seen, p) : st;
 }
 
-static cw_status check_value(walker *w, const rule *r, const place *p)
+static cw_status check_value(walker *w, const rule *r, const json_path *p)
 {
     next_char(w);
     switch (r->kind) {

@@ -135,13 +135,13 @@ static inline uint32_t cwi_vertex_label(const cwi_part *part, size_t v)
     return part->mesh.labels ? part->mesh.labels[v] : part->label->value;
 }
 
-/* Puts a vertex's place, or its normal, as text: three numbers each. */
+/* Puts a vertex's position, or its normal, as text: three numbers each. */
 static inline unsigned char *cwi_put_place(unsigned char *to, const cwi_part *part, size_t v)
 {
-    double place[3];
+    double position[3];
     for (int a = 0; a < 3; a++)
-        place[a] = cwi_file_coordinate(part, v, a);
-    return cwi_put_decimals(to, place, part->digits);
+        position[a] = cwi_file_coordinate(part, v, a);
+    return cwi_put_decimals(to, position, part->digits);
 }
 
 static inline unsigned char *cwi_put_normal(unsigned char *to, const cwi_part *part, size_t v)

@@ -189,7 +189,7 @@ static cw_status read_axes(mrc *m, cwi_source *src, cw_error *err)
     return st == CW_OK ? cwi_source_set_axes(src, axes, 4, err) : st;
 }
 
-static cw_status read_place(const mrc *m, cwi_source *src, cw_error *err)
+static cw_status find_voxels(const mrc *m, cwi_source *src, cw_error *err)
 {
     const int32_t extra = read_word(m, NSYMBT, 0);
     if (extra < 0)
@@ -247,16 +247,16 @@ static cw_status read_spacing(const mrc *m, double spacing[3], cw_error *err)
     return CW_OK;
 }
 
-/* Sets the place of the first voxel: ORIGIN in Angstrom, else the START words in voxels. Old
+/* Sets the origin: that of the first voxel: ORIGIN in Angstrom, else the START words in voxels. Old
  * versions of IMOD wrote the way back to zero instead. */
 static void set_origin(const mrc *m, double mm, cw_volume *shape)
 {
     const double sign = m->imod_flags & IMOD_ORIGIN ? mm : -mm;
     bool said = false;
     for (int r = 0; r < 3; r++) {
-        const double place = read_number(m, ORIGIN, r);
-        said |= place != 0;
-        shape->affine[r][3] = place == 0 ? 0 : sign * place;
+        const double origin = read_number(m, ORIGIN, r);
+        said |= origin != 0;
+        shape->affine[r][3] = origin == 0 ? 0 : sign * origin;
     }
     for (int a = 0; !said && a < 3; a++)
         for (int r = 0; r < 3; r++)
@@ -295,7 +295,7 @@ cw_status cwi_mrc_parse(const cwi_input *in, cwi_source *src, cw_error *err)
     if (st == CW_OK)
         st = read_axes(&m, src, err);
     if (st == CW_OK)
-        st = read_place(&m, src, err);
+        st = find_voxels(&m, src, err);
     if (st == CW_OK)
         st = read_frame(&m, src, err);
     return st;

@@ -1,4 +1,4 @@
-/* Cuts the triangles of a level at the planes of its octree. All places are integers, so that a
+/* Cuts the triangles of a level at the planes of its octree. All positions are integers, so that a
  * cut of an edge depends on the edge alone, and the parts of a closed mesh close again. */
 #include "formats/neuroglancer/lod_grid.h"
 
@@ -19,7 +19,7 @@ typedef struct cutter {
 
 void cwi_lod_free(cwi_lod_level *level)
 {
-    cwi_free(level->places);
+    cwi_free(level->positions);
     cwi_free(level->pieces);
     *level = (cwi_lod_level){0};
 }
@@ -52,14 +52,14 @@ static uint32_t find_plane(const cutter *c, uint32_t cell)
                          : cell / 2 * steps + (cell % 2 ? cwi_lod_middle(c->grid) : 0);
 }
 
-/* Returns the cell that a place is in; on a plane, the one above it. */
-static uint32_t find_cell(const cutter *c, uint32_t place)
+/* Returns the cell that a position is in; on a plane, the one above it. */
+static uint32_t find_cell(const cutter *c, uint32_t coordinate)
 {
-    const uint32_t steps = cwi_lod_steps(c->grid), node = place / steps;
-    return c->level == 0 ? node : 2 * node + (place % steps >= cwi_lod_middle(c->grid));
+    const uint32_t steps = cwi_lod_steps(c->grid), node = coordinate / steps;
+    return c->level == 0 ? node : 2 * node + (coordinate % steps >= cwi_lod_middle(c->grid));
 }
 
-/* Finds the cells that a range of places has more than a border in. */
+/* Finds the cells that a range of positions has more than a border in. */
 static void find_cells(const cutter *c, int axis, uint32_t low, uint32_t high, uint32_t *first,
                        uint32_t *last)
 {
@@ -81,13 +81,13 @@ static cw_status add_vertex(cutter *c, const uint32_t at[3], uint32_t *vertex, c
         return cwi_fail(err, CW_ERR_LIMIT, "cutting makes more than 4294967295 vertices");
     if (l->vertex_count == l->vertex_capacity) {
         const size_t capacity = l->vertex_capacity + l->vertex_capacity / 2 + 64;
-        uint32_t *places = cwi_realloc_array(l->places, capacity, 3 * sizeof *places);
-        if (!places)
+        uint32_t *positions = cwi_realloc_array(l->positions, capacity, 3 * sizeof *positions);
+        if (!positions)
             return cwi_fail_memory(err);
-        l->places = places;
+        l->positions = positions;
         l->vertex_capacity = capacity;
     }
-    memcpy(l->places + 3 * l->vertex_count, at, 3 * sizeof *at);
+    memcpy(l->positions + 3 * l->vertex_count, at, 3 * sizeof *at);
     *vertex = (uint32_t)l->vertex_count++;
     return CW_OK;
 }
@@ -118,7 +118,7 @@ static cw_status add_piece(cutter *c, const uint32_t vertex[3], const uint32_t c
 
 static const uint32_t *place_of(const cutter *c, uint32_t vertex)
 {
-    return c->out->places + 3 * (size_t)vertex;
+    return c->out->positions + 3 * (size_t)vertex;
 }
 
 static bool is_collapsed(const cutter *c, const uint32_t vertex[3])
@@ -219,18 +219,18 @@ static cw_status round_vertices(cutter *c, const cwi_part *part, cw_error *err)
     const double step = ldexp(c->grid->step_mm, (int)c->level);
     double worst = 0;
     l->vertex_capacity = part->mesh.vertex_count;
-    l->places = cwi_alloc_array(l->vertex_capacity, 3 * sizeof *l->places);
+    l->positions = cwi_alloc_array(l->vertex_capacity, 3 * sizeof *l->positions);
     l->piece_capacity = part->mesh.triangle_count;
     l->pieces = cwi_alloc_array(l->piece_capacity, sizeof *l->pieces);
-    if (!l->places || !l->pieces)
+    if (!l->positions || !l->pieces)
         return cwi_fail_memory(err);
     for (size_t v = 0; v < part->mesh.vertex_count; v++) {
         double diagonal_sq = 0;
         for (int a = 0; a < 3; a++) {
             const double at = (cwi_file_coordinate(part, v, a) - c->grid->origin[a]) / step;
-            const double place = floor(at + 0.5);
-            l->places[3 * v + (size_t)a] = place > 0 ? (uint32_t)place : 0;
-            diagonal_sq += (place - at) * (place - at);
+            const double rounded = floor(at + 0.5);
+            l->positions[3 * v + (size_t)a] = rounded > 0 ? (uint32_t)rounded : 0;
+            diagonal_sq += (rounded - at) * (rounded - at);
         }
         worst = diagonal_sq > worst ? diagonal_sq : worst;
     }

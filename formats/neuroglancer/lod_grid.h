@@ -5,8 +5,8 @@
 #include "formats/mesh/mesh_writer.h"
 
 /* The lattice of all positions, and the octree of cubes on it. All segments share both, so that
- * neighbours still meet. Along an axis a node has places 0 to 2^bits - 1, and its last place is
- * the first one of the next node. Level l has steps and nodes of 2^l times the size. */
+ * neighbours still meet. Along an axis a node has positions 0 to 2^bits - 1, and its last position
+ * is the first one of the next node. Level l has steps and nodes of 2^l times the size. */
 typedef struct cwi_lod_grid {
     double origin[3]; /* in the file's coordinates, a multiple of the step */
     double step_mm;   /* of level 0: a power of two */
@@ -21,7 +21,7 @@ typedef struct cwi_lod_grid {
 /* The maximum number of nodes along an axis: with 16 bits, as fine as single precision. */
 enum { CWI_LOD_NODES = 256 };
 
-/* Returns the steps of a node's edge, and the place at which viewers part a node in eight. */
+/* Returns the steps of a node's edge, and the position at which viewers part a node in eight. */
 static inline uint32_t cwi_lod_steps(const cwi_lod_grid *grid)
 {
     return (1u << grid->bits) - 1;
@@ -47,7 +47,7 @@ typedef struct cwi_lod_piece {
 
 /* A level of a segment. Free it with cwi_lod_free(). */
 typedef struct cwi_lod_level {
-    uint32_t *places; /* vertex_count x 3, on the lattice of the level */
+    uint32_t *positions; /* vertex_count x 3, on the lattice of the level */
     size_t vertex_count, vertex_capacity;
     cwi_lod_piece *pieces; /* in rising order of nodes; no corners coincide */
     size_t piece_count, piece_capacity;
@@ -57,15 +57,15 @@ typedef struct cwi_lod_level {
 } cwi_lod_level;
 
 /* Rounds a part to the lattice of its level, and cuts its triangles at the nodes' faces; above
- * level 0 at the planes between the eight parts of a node, too. An edge is cut at the same places
- * for both of its triangles. Returns CW_ERR_NO_MEMORY; CW_ERR_LIMIT for 2^32 vertices */
+ * level 0 at the planes between the eight parts of a node, too. An edge is cut at the same
+ * positions for both of its triangles. Returns CW_ERR_NO_MEMORY; CW_ERR_LIMIT for 2^32 vertices */
 CW_NODISCARD cw_status cwi_lod_cut(const cwi_lod_grid *grid, const cwi_part *part,
                                    cwi_lod_level *level, cw_error *err);
 void cwi_lod_free(cwi_lod_level *level);
 
 /* Leaves out pairs of needles with the same corners that face each other: rounding folds needles
  * flat. A closed mesh stays closed. Sheets with two sides stay, as their triangles are no needles.
- * keys: of the places that are the vertices.
+ * keys: of the positions that are the vertices.
  * Returns false without memory. */
 bool cwi_lod_cancel(cw_mesh *mesh, const uint64_t *keys);
 

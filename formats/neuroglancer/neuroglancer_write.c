@@ -35,32 +35,32 @@ typedef struct writer {
 
 /* --- fragments --------------------------------------------------------------------------- */
 
-/* Gives the corners of a node's triangles numbers of places, counted from the node's corner. */
+/* Gives the corners of a node's triangles numbers of lattice points, counted from the node's corner. */
 static cw_status number_corners(const writer *w, const cwi_lod_level *level, size_t first,
-                                cwi_lattice_map *places, cw_mesh *mesh, cw_error *err)
+                                cwi_lattice_map *points, cw_mesh *mesh, cw_error *err)
 {
     uint32_t node[3], at[3];
     cwi_lod_node(level->pieces[first].node, node);
     for (size_t i = 0; i < 3 * mesh->triangle_count; i++) {
         const uint32_t vertex = level->pieces[first + i / 3].vertex[i % 3];
         for (int a = 0; a < 3; a++)
-            at[a] = level->places[3 * (size_t)vertex + (size_t)a] -
+            at[a] = level->positions[3 * (size_t)vertex + (size_t)a] -
                     node[a] * cwi_lod_steps(&w->grid);
-        mesh->triangles[i] = cwi_lattice_add(places, cwi_lattice_key(at));
+        mesh->triangles[i] = cwi_lattice_add(points, cwi_lattice_key(at));
         if (mesh->triangles[i] == CWI_NO_LATTICE_POINT)
             return cwi_fail_memory(err);
     }
     return CW_OK;
 }
 
-/* Copies the places that triangles name as positions, and numbers them in the order in which
+/* Copies the points that triangles name as positions, and numbers them in the order in which
  * triangles name them. */
-static cw_status place_vertices(const cwi_lattice_map *places, cw_mesh *mesh, cw_error *err)
+static cw_status place_vertices(const cwi_lattice_map *points, cw_mesh *mesh, cw_error *err)
 {
     cwi_lattice_map used = {0};
     uint32_t at[3];
     for (size_t i = 0; i < 3 * mesh->triangle_count; i++) {
-        mesh->triangles[i] = cwi_lattice_add(&used, places->keys[mesh->triangles[i]]);
+        mesh->triangles[i] = cwi_lattice_add(&used, points->keys[mesh->triangles[i]]);
         if (mesh->triangles[i] == CWI_NO_LATTICE_POINT) {
             cwi_lattice_free(&used);
             return cwi_fail_memory(err);
@@ -81,16 +81,16 @@ static cw_status place_vertices(const cwi_lattice_map *places, cw_mesh *mesh, cw
 static cw_status make_fragment(const writer *w, const cwi_lod_level *level, size_t first,
                                size_t count, cw_mesh *mesh, cw_error *err)
 {
-    cwi_lattice_map places = {0};
+    cwi_lattice_map points = {0};
     mesh->triangle_count = count;
     mesh->triangles = cwi_alloc_array(count, 3 * sizeof *mesh->triangles);
-    cw_status st = mesh->triangles ? number_corners(w, level, first, &places, mesh, err)
+    cw_status st = mesh->triangles ? number_corners(w, level, first, &points, mesh, err)
                                    : cwi_fail_memory(err);
-    if (st == CW_OK && !cwi_lod_cancel(mesh, places.keys))
+    if (st == CW_OK && !cwi_lod_cancel(mesh, points.keys))
         st = cwi_fail_memory(err);
     if (st == CW_OK && mesh->triangle_count)
-        st = place_vertices(&places, mesh, err);
-    cwi_lattice_free(&places);
+        st = place_vertices(&points, mesh, err);
+    cwi_lattice_free(&points);
     return st;
 }
 

@@ -294,7 +294,8 @@ static cw_status name_image(const cwi_input *in, cwi_source *src, cw_error *err)
     return st;
 }
 
-static cw_status read_place(const cwi_input *in, const nifti *n, cwi_source *src, cw_error *err)
+static cw_status find_voxels(const cwi_input *in, const nifti *n, cwi_source *src,
+                             cw_error *err)
 {
     double offset = get_field(n, CWI_NIFTI_VOX_OFFSET, 0);
     const double min = n->is_pair ? 0 : (double)n->layout->voxels;
@@ -476,7 +477,7 @@ cw_status cwi_nifti_parse(const cwi_input *in, cwi_source *src, cw_error *err)
     if (st == CW_OK)
         st = read_dims(&n, src, colours, err);
     if (st == CW_OK)
-        st = read_place(in, &n, src, err);
+        st = find_voxels(in, &n, src, err);
     if (st == CW_OK)
         st = read_frame(&n, src, err);
     if (st == CW_OK)

@@ -46,10 +46,10 @@ static unsigned char *encode_text_face(const cwi_part *part, size_t t, unsigned 
 static unsigned char *encode_text_vertex(const cwi_part *part, size_t v, unsigned char *to)
 {
     const cw_mesh *mesh = &part->mesh;
-    float place[3];
+    float position[3];
     for (int a = 0; a < 3; a++)
-        place[a] = (float)cwi_file_coordinate(part, v, a);
-    to = cwi_put_singles(to, place);
+        position[a] = (float)cwi_file_coordinate(part, v, a);
+    to = cwi_put_singles(to, position);
     if (mesh->normals)
         to = cwi_put_normal(cwi_put_text(to, " "), part, v);
     for (size_t c = 0; part->arrays & CW_KEEPS_COLORS && c < 4; c++)

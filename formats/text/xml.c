@@ -240,14 +240,14 @@ cw_status cwi_xml_read(const cwi_xml_rules *rules, void *user, cwi_xml_source *s
     return st;
 }
 
-typedef struct place {
+typedef struct file_position {
     const cwi_input *in;
     uint64_t at;
-} place;
+} file_position;
 
 static cw_status read_on(void *from, void *to, size_t size, size_t *got, cw_error *err)
 {
-    place *p = from;
+    file_position *p = from;
     cw_status st = cwi_input_read_at(p->in->fd, p->at, to, size, got, err);
     p->at += *got;
     return st;
@@ -256,7 +256,7 @@ static cw_status read_on(void *from, void *to, size_t size, size_t *got, cw_erro
 cw_status cwi_xml_read_file(const cwi_xml_rules *rules, void *user, const cwi_input *in,
                             cw_error *err)
 {
-    return cwi_xml_read(rules, user, read_on, &(place){.in = in}, err);
+    return cwi_xml_read(rules, user, read_on, &(file_position){.in = in}, err);
 }
 
 /* --- text -------------------------------------------------------------------------------- */

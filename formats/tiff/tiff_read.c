@@ -185,7 +185,7 @@ static cw_status stack_pages(const cwi_tiff_facts *f, const uint32_t *order, cwi
     for (uint32_t p = 0; p < f->page_count; p++)
         stack->planes[p].number = p;
     for (size_t i = 0; i < count; i++)
-        stack->slots[i] = (cwi_slot){.place = i, .low = order[i], .high = order[i]};
+        stack->slots[i] = (cwi_slot){.slice = i, .low = order[i], .high = order[i]};
     qsort(stack->slots, count, sizeof *stack->slots, by_plane);
     return CW_OK;
 }
@@ -307,17 +307,17 @@ static cw_status look_into_all(slices *s, cw_error *err)
     return st;
 }
 
-/* Finds the places: the numbers in which names differ, else 0, 1, 2 ... */
-static cw_status find_places(const slices *s, double *places, cw_error *err)
+/* Finds the positions: the numbers in which names differ, else 0, 1, 2 ... */
+static cw_status find_positions(const slices *s, double *positions, cw_error *err)
 {
-    if (!cwi_files_numbers(&s->files, places)) {
+    if (!cwi_files_numbers(&s->files, positions)) {
         for (size_t i = 0; i < s->files.count; i++)
-            places[i] = (double)i;
+            positions[i] = (double)i;
         cwi_note(s->desc, "the files' names do not differ by one number alone: taken in their "
                           "order, and whether any is missing is not known");
     }
     for (size_t i = 1; i < s->files.count; i++)
-        if (places[i] == places[i - 1])
+        if (positions[i] == positions[i - 1])
             return cwi_fail(err, CW_ERR_UNSAFE, "'%.80s' and '%.80s' have the same number",
                             s->files.items[i - 1], s->files.items[i]);
     return CW_OK;
@@ -325,14 +325,14 @@ static cw_status find_places(const slices *s, double *places, cw_error *err)
 
 static cw_status lay_slices(const slices *s, cwi_slices *laid, cw_error *err)
 {
-    double *places = cwi_alloc_array(s->files.count, sizeof *places);
-    if (!places)
+    double *positions = cwi_alloc_array(s->files.count, sizeof *positions);
+    if (!positions)
         return cwi_fail_memory(err);
-    cw_status st = find_places(s, places, err);
+    cw_status st = find_positions(s, positions, err);
     if (st == CW_OK)
-        st = cwi_slices_lay(places, s->files.count, "in their numbers", s->desc->gaps, laid,
+        st = cwi_slices_lay(positions, s->files.count, "in their numbers", s->desc->gaps, laid,
                             err);
-    cwi_free(places);
+    cwi_free(positions);
     if (st == CW_OK && laid->finding[0])
         cwi_note(s->desc, "%s: %s", laid->finding,
                  s->desc->gaps == CW_GAPS_ALLOW ? "taken as if they were even"
@@ -351,7 +351,7 @@ static cw_status stack_files(slices *s, cwi_stack *stack, cw_error *err)
     for (size_t k = 0; st == CW_OK && k < laid.count; k++) {
         const cwi_slice *from = &laid.items[k];
         stack->slots[k] =
-            (cwi_slot){.place = k, .low = from->low, .high = from->high, .t = from->t};
+            (cwi_slot){.slice = k, .low = from->low, .high = from->high, .t = from->t};
     }
     if (st == CW_OK)
         set_sizes(&s->facts, laid.count, stack);

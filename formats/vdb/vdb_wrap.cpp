@@ -173,9 +173,9 @@ private:
         try {
             return held_grid(about.read(in));
         } catch (const openvdb::LookupError &) {
-            int64_t places[3]; // offsets of the grid, its voxels, its end
-            in.read(reinterpret_cast<char *>(places), sizeof places);
-            about.setEndPos(places[2]);
+            int64_t offsets[3]; // offsets of the grid, its voxels, its end
+            in.read(reinterpret_cast<char *>(offsets), sizeof offsets);
+            about.setEndPos(offsets[2]);
             if (!inputHasGridOffsets())
                 throw;
             return held_grid();

@@ -13,23 +13,23 @@ typedef struct cwi_slice {
 /* Slices at equal distances. A zeroed one is empty. */
 typedef struct cwi_slices {
     size_t count;
-    double step; /* in the unit of the places */
+    double step; /* in the unit of the positions */
     cwi_slice *items;
     size_t made;       /* number of items that are interpolated */
     char finding[192]; /* uneven distances, for people; empty: none */
 } cwi_slices;
 
-/* Lays out slices that stand at ascending places.
+/* Lays out slices that stand at ascending positions.
  *
  * They count as even when none is off by more than a twentieth of the step. Where some are
  * missing from an even row, CW_GAPS_INTERPOLATE interpolates those. Where distances vary, the
  * smallest distance decides the number of slices. The first and the last slice stay, and there
  * are no more than eight slices for a usual distance.
  *
- * unit     of places, for messages
+ * unit     of positions, for messages
  * Returns  CW_ERR_UNSAFE where they are uneven and gaps says to stop; CW_ERR_LIMIT for more
  *          than 65,536 slices; CW_ERR_NO_MEMORY */
-CW_NODISCARD cw_status cwi_slices_lay(const double *places, size_t count, const char *unit,
+CW_NODISCARD cw_status cwi_slices_lay(const double *positions, size_t count, const char *unit,
                                       cw_gaps gaps, cwi_slices *slices, cw_error *err);
 void cwi_slices_free(cwi_slices *slices);
 

@@ -152,11 +152,11 @@ static bool is_plain(const cwi_stack *s, const cwi_slot *slot)
 static cw_status read_slot(reading *r, const cwi_slot *slot, cw_error *err)
 {
     const cwi_stack *s = r->stack;
-    const size_t slices = s->shape.dim[2], z = slot->place % slices - r->box.first[2];
+    const size_t slices = s->shape.dim[2], z = slot->slice % slices - r->box.first[2];
     const size_t kept = (r->box.count[2] - 1) / r->every + 1;
     const size_t bytes = r->pixels * cw_type_size(s->shape.type);
     const bool plain = is_plain(s, slot);
-    const size_t in = slot->place / slices;
+    const size_t in = slot->slice / slices;
     if (z >= r->box.count[2] || z % r->every || /* also for slices before it */
         (r->only != SIZE_MAX && r->only != in))
         return CW_OK;

@@ -14,7 +14,7 @@ typedef struct cwi_plane {
 
 /* A plane of the result: (1 - t) low + t high. */
 typedef struct cwi_slot {
-    size_t place;     /* plane in the result, where planes are stored one after another: z
+    size_t slice;     /* plane in the result, where planes are stored one after another: z
                          varies fastest */
     size_t low, high; /* planes */
     double t;         /* 0: low unchanged */

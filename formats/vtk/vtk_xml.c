@@ -174,7 +174,7 @@ cw_status cwi_vtk_xml_find_appended(const cwi_input *in, cwi_vtk_xml *v, cw_erro
 
 /* --- to a source ------------------------------------------------------------------------- */
 
-static void set_place(const cwi_vtk_xml *v, const cwi_vtk_array *a, cwi_source *src)
+static void set_byte_range(const cwi_vtk_xml *v, const cwi_vtk_array *a, cwi_source *src)
 {
     static const cwi_codec codecs[] = {
         [CWI_VTK_ZLIB] = CWI_CODEC_ZLIB, [CWI_VTK_LZ4] = CWI_CODEC_LZ4};
@@ -232,7 +232,7 @@ cw_status cwi_vtk_xml_place(const cwi_vtk_xml *v, const cwi_vtk_array *array,
     if (array->form != CWI_VTK_ASCII && !v->has_order)
         return cwi_fail(err, CW_ERR_FORMAT, "'byte_order' is missing; the array '%s' needs it",
                         array->name);
-    set_place(v, array, src);
+    set_byte_range(v, array, src);
     return check_count(in, v, array, src, err);
 }
 

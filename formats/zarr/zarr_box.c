@@ -222,7 +222,7 @@ static cw_status read_chunk(boxing *b, const size_t at[CWI_ROLE_COUNT], cw_error
 {
     cwi_zarr *z = b->zarr;
     const cwi_zarr_array *a = &z->array;
-    size_t place[CWI_ZARR_RANK] = {0};
+    size_t chunk_index[CWI_ZARR_RANK] = {0};
     overlap o;
     bool missing = false;
     if (!find_overlap(b, at, &o))
@@ -234,9 +234,9 @@ static cw_status read_chunk(boxing *b, const size_t at[CWI_ROLE_COUNT], cw_error
     void **scratch = &b->scratch[cwi_thread_number()];
     for (int r = 0; r < CWI_ROLE_COUNT; r++)
         if (z->dimensions[r] >= 0)
-            place[z->dimensions[r]] = at[r];
+            chunk_index[z->dimensions[r]] = at[r];
     take_spare(z, scratch);
-    cw_status st = cwi_zarr_load_chunk(z, place, scratch, &missing, err);
+    cw_status st = cwi_zarr_load_chunk(z, chunk_index, scratch, &missing, err);
     if (st != CW_OK)
         return st;
     st = copy_overlap(b, &o, missing ? (const char *)&a->fill : *scratch, missing, err);

@@ -106,21 +106,21 @@ static cw_status read_index(const cwi_zarr_array *a, cwi_zarr_shard *shard, cw_e
     return st;
 }
 
-/* Finds the place of a shard: its own, an empty one, or that of the shard unused for longest. */
-static cwi_zarr_shard *find_place(cwi_zarr *z, uint64_t key)
+/* Finds the slot of a shard: its own, an empty one, or that of the shard unused for longest. */
+static cwi_zarr_shard *find_slot(cwi_zarr *z, uint64_t key)
 {
-    cwi_zarr_shard *place = NULL;
+    cwi_zarr_shard *slot = NULL;
     for (size_t n = 0; n < z->shard_slots; n++) {
         cwi_zarr_shard *s = &z->shards[n];
         if (s->key == key)
             return s;
-        if (s->users == 0 && (!place || s->used < place->used))
-            place = s;
+        if (s->users == 0 && (!slot || s->used < slot->used))
+            slot = s;
     }
-    return place;
+    return slot;
 }
 
-/* Opens a shard, or finds it open. There is a place for every thread. */
+/* Opens a shard, or finds it open. There is a slot for every thread. */
 static cw_status take_shard(cwi_zarr *z, const char *name, uint64_t key, cwi_zarr_shard **taken,
                             cw_error *err)
 {
@@ -128,7 +128,7 @@ static cw_status take_shard(cwi_zarr *z, const char *name, uint64_t key, cwi_zar
     pthread_mutex_lock(&z->lock);
     if (!z->shards)
         z->shards = cwi_alloc_zeroed(z->shard_slots, sizeof *z->shards);
-    cwi_zarr_shard *s = z->shards ? find_place(z, key) : NULL;
+    cwi_zarr_shard *s = z->shards ? find_slot(z, key) : NULL;
     if (!s)
         st = cwi_fail_memory(err);
     if (s && s->key != key) {

@@ -302,8 +302,8 @@ static cw_status make_caches(cwi_zarr *z, size_t bytes, cw_error *err)
     z->slots = cwi_alloc_zeroed(z->slot_count, sizeof *z->slots);
     const size_t threads = (size_t)cwi_threads(z->threads);
     const size_t index_bytes = z->array.is_sharded ? 16 * z->array.shard_count : 1;
-    const size_t places = CWI_ZARR_INDEX_BYTES / index_bytes;
-    z->shard_slots = (places < CWI_ZARR_SHARDS ? places : CWI_ZARR_SHARDS) + threads;
+    const size_t indices = CWI_ZARR_INDEX_BYTES / index_bytes;
+    z->shard_slots = (indices < CWI_ZARR_SHARDS ? indices : CWI_ZARR_SHARDS) + threads;
     z->spare = cwi_alloc_zeroed(z->slot_count, sizeof *z->spare);
     return z->slots && z->spare ? CW_OK : cwi_fail_memory(err);
 }

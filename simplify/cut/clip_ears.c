@@ -83,7 +83,7 @@ static bool make_grid(ear_work *w, uint32_t start)
     return true;
 }
 
-static bool is_same_place(const float *p, const float *q)
+static bool is_same_point(const float *p, const float *q)
 {
     return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
 }
@@ -111,7 +111,7 @@ static bool blocks_ear(const cwi_section *s, const uint32_t ear[3], uint32_t n)
 {
     const float *p = cwi_section_point(s, n);
     for (int k = 0; k < 3; k++)
-        if (n == ear[k] || is_same_place(p, cwi_section_point(s, ear[k])))
+        if (n == ear[k] || is_same_point(p, cwi_section_point(s, ear[k])))
             return false;
     for (int k = 0; k < 3; k++)
         if (cwi_section_turn(s, ear[k], ear[(k + 1) % 3], n) < 0)

@@ -8,19 +8,19 @@
 
 /* Moves a point into the plane along the axis nearest to its normal. Its other coordinates are
  * rounded before, so only the rounding of one is left. */
-static void round_into_plane(const cwi_cut *c, const double point[3], float place[3])
+static void round_into_plane(const cwi_cut *c, const double point[3], float position[3])
 {
     double height = c->offset;
     for (int a = 0; a < 3; a++) {
-        place[a] = (float)point[a];
+        position[a] = (float)point[a];
         if (a != c->axis)
-            height -= c->normal[a] * (double)place[a];
+            height -= c->normal[a] * (double)position[a];
     }
-    place[c->axis] = (float)(height / c->normal[c->axis]);
+    position[c->axis] = (float)(height / c->normal[c->axis]);
 }
 
-/* Finds the place of a vertex on its edge; above the plane, if the section passes around a vertex, and
- * then it is moved down along the normal. */
+/* Finds the position of a vertex on its edge; above the plane, if the section passes around a
+ * vertex, and then it is moved down along the normal. */
 static void find_point(const cwi_cut *c, size_t n, double point[3])
 {
     const cwi_cut_source *s = c->sources + n;
@@ -71,13 +71,13 @@ bool cwi_cut_place_vertices(cwi_cut *c)
 
 void cwi_cut_place_apart(cwi_cut *c, size_t n, const double shift[2], int lowered)
 {
-    float *place = c->positions + 3 * n;
+    float *position = c->positions + 3 * n;
     double point[3];
     find_point(c, n, point);
     for (int k = 0; k < 2; k++)
         point[(c->axis + k + 1) % 3] += shift[k] * c->step;
-    round_into_plane(c, point, place);
+    round_into_plane(c, point, position);
     if (lowered)
-        place[c->axis] =
-            (float)((double)place[c->axis] - copysign(lowered * c->step, c->normal[c->axis]));
+        position[c->axis] = (float)((double)position[c->axis] -
+                                    copysign(lowered * c->step, c->normal[c->axis]));
 }

@@ -67,7 +67,7 @@ static cw_status apply_move(collapser *w, cw_error *err)
 {
     const cwi_star *star = &w->star;
     const cwi_label_move *move = &star->move;
-    memcpy(w->c->points + 3 * (size_t)move->keep, move->place, sizeof move->place);
+    memcpy(w->c->points + 3 * (size_t)move->keep, move->position, sizeof move->position);
     cwi_complex_collapse(w->c, move->edge, move->keep, move->drop, &w->keep_ring,
                          &w->drop_ring);
     cwi_label_quadrics_join(w->quadrics, move->keep, move->drop);

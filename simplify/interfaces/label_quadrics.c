@@ -1,4 +1,4 @@
-/* Computes quadrics of planes and lines [Garland1997], and the places where they are least. */
+/* Computes quadrics of planes and lines [Garland1997], and the positions where they are least. */
 #include "simplify/interfaces/label_quadrics.h"
 
 #include "core/geometry/triangle.h"
@@ -102,13 +102,13 @@ static double find_error(const cwi_label_quadric *q, const double p[3])
     return cwi_greater(cwi_dot(ap, p) + 2 * cwi_dot(q->b, p) + q->c, 0);
 }
 
-/* Moves a place to where the quadric and the pull towards the place are least together. Solves
- * by L D L^T. */
-static void find_minimum(const cwi_label_quadric *q, double place[3])
+/* Moves a position to where the quadric and the pull towards the position are least together.
+ * Solves by L D L^T. */
+static void find_minimum(const cwi_label_quadric *q, double position[3])
 {
     const double pull = PULL * (q->a[0] + q->a[3] + q->a[5]) + 1e-300;
     double slope[3];
-    multiply_matrix(q->a, place, slope);
+    multiply_matrix(q->a, position, slope);
     for (int k = 0; k < 3; k++)
         slope[k] = -slope[k] - q->b[k];
     const double xx = q->a[0] + pull, xy = q->a[1], xz = q->a[2];
@@ -117,14 +117,14 @@ static void find_minimum(const cwi_label_quadric *q, double place[3])
     const double d2 = q->a[5] + pull - l20 * xz - l21 * e;
     const double y1 = slope[1] - l10 * slope[0], y2 = slope[2] - l20 * slope[0] - l21 * y1;
     const double z = y2 / d2, y = y1 / d1 - l21 * z;
-    place[0] += slope[0] / xx - l10 * y - l20 * z;
-    place[1] += y;
-    place[2] += z;
+    position[0] += slope[0] / xx - l10 * y - l20 * z;
+    position[1] += y;
+    position[2] += z;
 }
 
-/* Finds the best place on the edge from p along d. */
+/* Finds the best position on the edge from p along d. */
 static void find_minimum_along(const cwi_label_quadric *q, const double p[3], const double d[3],
-                               double place[3])
+                               double position[3])
 {
     double ap[3], ad[3];
     multiply_matrix(q->a, p, ap);
@@ -133,27 +133,27 @@ static void find_minimum_along(const cwi_label_quadric *q, const double p[3], co
     const double bend = cwi_dot(ad, d) + pull;
     const double fall = -cwi_dot(ap, d) - cwi_dot(q->b, d) + pull / 2;
     const double t = cwi_lesser(cwi_greater(fall / bend, 0), 1);
-    cwi_add_scaled(p, t, d, place);
+    cwi_add_scaled(p, t, d, position);
 }
 
-/* Finds the best place for two inner vertices. A place far from both is not used. */
+/* Finds the best position for two inner vertices. A position far from both is not used. */
 static void find_minimum_between(const cwi_label_quadric *q, const double p[3],
-                                 const double d[3], double place[3])
+                                 const double d[3], double position[3])
 {
     double middle[3], displacement[3];
     for (int k = 0; k < 3; k++)
-        place[k] = middle[k] = p[k] + d[k] / 2;
-    find_minimum(q, place);
-    cwi_sub(place, middle, displacement);
+        position[k] = middle[k] = p[k] + d[k] / 2;
+    find_minimum(q, position);
+    cwi_sub(position, middle, displacement);
     if (!(cwi_dot(displacement, displacement) <= 4 * cwi_dot(d, d)))
-        memcpy(place, middle, sizeof middle);
+        memcpy(position, middle, sizeof middle);
 }
 
 cwi_label_move cwi_label_move_plan(const cwi_complex *c, const cwi_label_quadric *quadrics,
                                    uint32_t edge)
 {
     cwi_label_move move = {.edge = edge, .cost = INFINITY};
-    double p[3], other[3], d[3], place[3];
+    double p[3], other[3], d[3], position[3];
     if (!cwi_complex_choose(c, edge, &move.keep, &move.drop))
         return move;
     cwi_label_quadric q = quadrics[move.keep];
@@ -166,16 +166,16 @@ cwi_label_move cwi_label_move_plan(const cwi_complex *c, const cwi_label_quadric
     get_point(c, move.keep, p);
     get_point(c, move.drop, other);
     cwi_sub(other, p, d);
-    memcpy(place, p, sizeof p);
+    memcpy(position, p, sizeof p);
     if (c->orders[move.keep] == CWI_ORDER_INNER)
-        find_minimum_between(&q, p, d, place);
+        find_minimum_between(&q, p, d, position);
     else if (c->orders[move.keep] == c->orders[move.drop])
-        find_minimum_along(&q, p, d, place);
+        find_minimum_along(&q, p, d, position);
     for (int k = 0; k < 3; k++) {
-        move.place[k] = (float)place[k];
-        place[k] = (double)move.place[k];
+        move.position[k] = (float)position[k];
+        position[k] = (double)move.position[k];
     }
     const double weight = q.a[0] + q.a[3] + q.a[5];
-    move.cost = (float)(find_error(&q, place) + COST_OF_LENGTH * weight * cwi_dot(d, d));
+    move.cost = (float)(find_error(&q, position) + COST_OF_LENGTH * weight * cwi_dot(d, d));
     return move;
 }

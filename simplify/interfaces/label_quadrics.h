@@ -1,4 +1,4 @@
-/* Quadrics of a label complex: the cost of a collapse, and the best place for its vertex. */
+/* Quadrics of a label complex: the cost of a collapse, and the best position for its vertex. */
 #ifndef SIMPLIFY_INTERFACES_LABEL_QUADRICS_H
 #define SIMPLIFY_INTERFACES_LABEL_QUADRICS_H
 
@@ -12,7 +12,7 @@ typedef struct cwi_label_quadric {
 /* A collapse that is planned: which vertex stays, where, and at which cost. */
 typedef struct cwi_label_move {
     uint32_t edge, keep, drop;
-    float place[3];
+    float position[3];
     float cost; /* INFINITY: no collapse is allowed */
 } cwi_label_move;
 
@@ -22,7 +22,7 @@ typedef struct cwi_label_move {
 void cwi_label_quadrics_build(const cwi_complex *c, cwi_label_quadric *quadrics);
 
 /* Plans the collapse of an edge. Inner vertices join where the sum of their quadrics is least;
- * vertices of a curve join on the edge. A vertex of higher order stays in its place. */
+ * vertices of a curve join on the edge. A vertex of higher order stays in its position. */
 cwi_label_move cwi_label_move_plan(const cwi_complex *c, const cwi_label_quadric *quadrics,
                                    uint32_t edge);
 

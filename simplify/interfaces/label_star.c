@@ -49,9 +49,9 @@ static void put_box(cwi_star *star, cwi_boxes_node *nodes, size_t n,
 }
 
 static void add_swept(cwi_star *star, const double w[3], const double a[3], const double b[3],
-                      const double place[3])
+                      const double position[3])
 {
-    const double *const points[4] = {w, a, b, place};
+    const double *const points[4] = {w, a, b, position};
     cwi_swept *swept = &star->swept[star->swept_count];
     for (int i = 0; i < 4; i++)
         memcpy(swept->p[i], points[i], sizeof swept->p[i]);
@@ -67,11 +67,11 @@ typedef struct star_shapes {
 static bool add_ring(cwi_star *star, const cwi_complex *c, const cwi_ring *ring,
                      uint32_t center, uint32_t other, star_shapes *shapes)
 {
-    double w[3], place[3];
+    double w[3], position[3];
     get_point(c, center, w);
     for (int k = 0; k < 3; k++)
-        place[k] = (double)star->move.place[k];
-    const bool is_moved = memcmp(w, place, sizeof w) != 0;
+        position[k] = (double)star->move.position[k];
+    const bool is_moved = memcmp(w, position, sizeof w) != 0;
     for (size_t i = 0; i < ring->spoke_count; i++) {
         const cwi_spoke *s = &ring->spokes[i];
         double a[3], b[3], before[3];
@@ -83,22 +83,22 @@ static bool add_ring(cwi_star *star, const cwi_complex *c, const cwi_ring *ring,
             if (center == star->move.keep)
                 continue; /* it comes with the other end */
             star->gone[star->gone_count++] = s->triangle;
-            add_swept(star, w, a, b, place);
+            add_swept(star, w, a, b, position);
             continue;
         }
         cwi_star_spoke *spoke = &star->spokes[star->spoke_count];
         *spoke = (cwi_star_spoke){s->triangle, s->a, s->b, c->patches[s->triangle], {0}, 0};
-        cwi_triangle_normal(place, a, b, spoke->normal);
+        cwi_triangle_normal(position, a, b, spoke->normal);
         const double now = cwi_dot(spoke->normal, spoke->normal), old = cwi_dot(before, before),
                      turn = cwi_dot(spoke->normal, before);
         if (old > 0 && !(turn > 0 && turn * turn >= MIN_COSINE * MIN_COSINE * now * old))
             return false;
-        shapes->after = cwi_lesser(shapes->after, find_shape(spoke->normal, place, a, b));
-        spoke->scale = sqrt(cwi_distance_sq(place, a) * cwi_distance_sq(place, b));
+        shapes->after = cwi_lesser(shapes->after, find_shape(spoke->normal, position, a, b));
+        spoke->scale = sqrt(cwi_distance_sq(position, a) * cwi_distance_sq(position, b));
         put_box(star, star->spoke_boxes, star->spoke_count++,
-                (const double *const[3]){place, a, b}, 3);
+                (const double *const[3]){position, a, b}, 3);
         if (is_moved)
-            add_swept(star, w, a, b, place);
+            add_swept(star, w, a, b, position);
     }
     return true;
 }

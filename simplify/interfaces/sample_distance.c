@@ -61,7 +61,7 @@ static double measure_spoke(const cwi_complex *c, const cwi_star *star, size_t n
                             const double p[3])
 {
     const cwi_star_spoke *spoke = &star->spokes[n];
-    return cwi_facet_distance_sq(star->move.place, c->points + 3 * (size_t)spoke->a,
+    return cwi_facet_distance_sq(star->move.position, c->points + 3 * (size_t)spoke->a,
                                  c->points + 3 * (size_t)spoke->b, p);
 }
 
@@ -220,7 +220,7 @@ static bool is_star_near(cwi_label_samples *s, const cwi_complex *c, const cwi_s
     input_walk walk = {.s = s, .patch = CWI_NO_INDEX, .distance_sq = distance_sq};
     cwi_cover cover = {.nearest = walk_nearest, .context = &walk, .distance_sq = distance_sq};
     double p[3][3];
-    widen_point(star->move.place, p[0]);
+    widen_point(star->move.position, p[0]);
     for (size_t i = 0; i < star->spoke_count; i++) {
         const cwi_star_spoke *spoke = &star->spokes[i];
         if (spoke->patch != walk.patch) {
@@ -289,7 +289,7 @@ static void list_facets(facet_list *list, const cwi_complex *c, const cwi_star *
     list->count = 0;
     for (size_t i = 0; i < star->spoke_count; i++) {
         const cwi_star_spoke *s = &star->spokes[i];
-        add_facet(list, star->move.place, c->points + 3 * (size_t)s->a,
+        add_facet(list, star->move.position, c->points + 3 * (size_t)s->a,
                   c->points + 3 * (size_t)s->b, s->patch);
     }
     for (size_t i = 0; i < star->spoke_count; i++)

@@ -85,9 +85,9 @@ static bool opens_like_a_fan(const cwi_star *star, const cwi_complex *c)
         const cwi_star_spoke *s = &star->spokes[i];
         double a = 0, b = 0;
         for (size_t k = 0; k < 3; k++) {
-            const double place = (double)star->move.place[k];
-            a += across[k] * ((double)c->points[3 * (size_t)s->a + k] - place);
-            b += across[k] * ((double)c->points[3 * (size_t)s->b + k] - place);
+            const double position = (double)star->move.position[k];
+            a += across[k] * ((double)c->points[3 * (size_t)s->a + k] - position);
+            b += across[k] * ((double)c->points[3 * (size_t)s->b + k] - position);
         }
         const double height = cwi_dot(s->normal, axis);
         if (!(height > DOUBT * s->scale * (fabs(axis[0]) + fabs(axis[1]) + fabs(axis[2]))))
@@ -157,7 +157,7 @@ static bool passes_triangle(const cwi_star *star, const corner_triple *other)
     return false;
 }
 
-/* Returns true if the star collides with a triangle. The vertex that stays is at its new place
+/* Returns true if the star collides with a triangle. The vertex that stays is at its new position
  * already. */
 static bool meets_triangle(void *context, uint32_t triangle, const float box[6])
 {
@@ -191,7 +191,7 @@ bool cwi_star_collides(const cwi_star *star, cwi_complex *c, const cwi_moving_bo
     for (size_t i = 0; i < star->gone_count; i++)
         marks[star->gone[i]] = mark;
     memcpy(before, point, sizeof before);
-    memcpy(point, star->move.place, sizeof before);
+    memcpy(point, star->move.position, sizeof before);
     const bool is_found =
         meets_itself(star, c) ||
         cwi_moving_boxes_any(boxes, star->box, meets_triangle, (void *)&search);

@@ -289,12 +289,12 @@ static cw_status weld_copy(const cw_mesh *mesh, cw_mesh *copy, uint32_t **map, c
 
 static void move_to_world(const cw_mesh *mesh, cw_print_facts *facts)
 {
-    double *const places[] = {facts->wall_at, facts->gap_at, facts->island_at, facts->center};
+    double *const points[] = {facts->wall_at, facts->gap_at, facts->island_at, facts->center};
     const bool made[] = {isfinite(facts->wall_mm), isfinite(facts->gap_mm), facts->islands > 0,
                          true};
-    for (size_t n = 0; n < sizeof places / sizeof *places; n++)
+    for (size_t n = 0; n < sizeof points / sizeof *points; n++)
         for (int a = 0; a < 3 && made[n]; a++)
-            places[n][a] += mesh->origin[a];
+            points[n][a] += mesh->origin[a];
 }
 
 cw_status cw_print_measure(const cw_mesh *mesh, const cw_print_desc *desc,

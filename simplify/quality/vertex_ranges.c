@@ -13,7 +13,7 @@ typedef struct work {
     size_t triangle_count, chunk; /* triangles of a share */
     uint32_t begin, size;         /* the vertices */
     cwi_vertex_ranges *ranges;
-    uint32_t *counts; /* of each share: triangles of each range, later the next one's place */
+    uint32_t *counts; /* of each share: triangles of each range, later the next one's index */
 } work;
 
 /* Finds the ranges of a triangle's corners, each once; returns how many. */
@@ -49,26 +49,26 @@ static void count_chunk(void *context, size_t k)
 static void file_chunk(void *context, size_t k)
 {
     const work *w = context;
-    uint32_t *place = w->counts + k * w->ranges->count, found[3];
+    uint32_t *next = w->counts + k * w->ranges->count, found[3];
     for (size_t t = k * w->chunk; t < end_of(w, k); t++)
         for (unsigned n = find_ranges(w, t, found); n > 0; n--)
-            w->ranges->triangle[place[found[n - 1]]++] = (uint32_t)t;
+            w->ranges->triangle[next[found[n - 1]]++] = (uint32_t)t;
 }
 
-/* Turns counts into places: by range, then by share. */
+/* Turns counts into start indices: by range, then by share. */
 static void sum_counts(const work *w, size_t chunks)
 {
-    uint32_t place = 0;
+    uint32_t start = 0;
     for (size_t r = 0; r < w->ranges->count; r++) {
-        w->ranges->begin[r] = place;
+        w->ranges->begin[r] = start;
         for (size_t k = 0; k < chunks; k++) {
             uint32_t *count = w->counts + k * w->ranges->count + r;
-            const uint32_t next = place + *count;
-            *count = place;
-            place = next;
+            const uint32_t next = start + *count;
+            *count = start;
+            start = next;
         }
     }
-    w->ranges->begin[w->ranges->count] = place;
+    w->ranges->begin[w->ranges->count] = start;
 }
 
 static bool run_chunks(work *w, size_t chunks, int threads, void (*run)(void *, size_t))

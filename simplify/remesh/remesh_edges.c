@@ -150,9 +150,9 @@ cw_status cwi_split_edge(cwi_remesh *r, uint32_t corner, bool *is_done, cw_error
                    b = r->triangles[cwi_corner_next(corner)];
     begin_patch(p);
     for (size_t k = 0; k < 3; k++)
-        p->place[k] = (float)(((double)r->positions[3 * (size_t)a + k] +
-                               (double)r->positions[3 * (size_t)b + k]) /
-                              2);
+        p->position[k] = (float)(((double)r->positions[3 * (size_t)a + k] +
+                                  (double)r->positions[3 * (size_t)b + k]) /
+                                 2);
     p->moved = middle;
     plan_halves(r, p, corner, middle, id);
     if (twin != CWI_NONE)
@@ -160,7 +160,7 @@ cw_status cwi_split_edge(cwi_remesh *r, uint32_t corner, bool *is_done, cw_error
     if (cwi_patch_cosine(r, p) > 1)
         return CW_OK;
     cwi_patch_assign(r, p);
-    memcpy(r->positions + 3 * (size_t)middle, p->place, sizeof p->place);
+    memcpy(r->positions + 3 * (size_t)middle, p->position, sizeof p->position);
     r->sizes[middle] = (r->sizes[a] + r->sizes[b]) / 2;
     r->freedom[middle] = cwi_is_sharp(r, corner) ? CWI_CURVE : CWI_FREE;
     r->vertex_count++;
@@ -474,7 +474,7 @@ bool cwi_flip_edge(cwi_remesh *r, uint32_t corner, bool by_angle)
 
 /* --- moves -------------------------------------------------------------------------------- */
 
-bool cwi_move_vertex(cwi_remesh *r, uint32_t vertex, const float place[3], float size,
+bool cwi_move_vertex(cwi_remesh *r, uint32_t vertex, const float position[3], float size,
                      double cosine)
 {
     uint32_t corners[CWI_MAX_STAR];
@@ -489,10 +489,10 @@ bool cwi_move_vertex(cwi_remesh *r, uint32_t vertex, const float place[3], float
                   r->triangles[cwi_corner_prev(c)], turned_bits(r, c));
     }
     p->moved = vertex;
-    memcpy(p->place, place, sizeof p->place);
+    memcpy(p->position, position, sizeof p->position);
     if (!count || !(cwi_patch_cosine(r, p) <= cwi_lesser(cosine, 1)) || !cwi_patch_fits(r, p))
         return false;
-    memcpy(r->positions + 3 * (size_t)vertex, place, sizeof p->place);
+    memcpy(r->positions + 3 * (size_t)vertex, position, sizeof p->position);
     r->sizes[vertex] = size;
     cwi_patch_attach(r, p);
     return true;

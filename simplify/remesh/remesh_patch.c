@@ -69,7 +69,7 @@ static bool is_near(const cwi_remesh *r, const cwi_target *target, const double 
 
 static const float *place_of(const cwi_remesh *r, const cwi_replacement *p, uint32_t v)
 {
-    return v == p->moved ? p->place : r->positions + 3 * (size_t)v;
+    return v == p->moved ? p->position : r->positions + 3 * (size_t)v;
 }
 
 static void mix_points(const float *a, const float *b, double fraction, double out[3])

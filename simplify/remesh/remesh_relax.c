@@ -1,4 +1,4 @@
-/* Moves vertices along the surface toward the centre of the triangles around them. The places are found
+/* Moves vertices along the surface toward the centre of the triangles around them. The targets are found
  * at once, from where all vertices are; then vertices move one after the other. */
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
@@ -19,7 +19,7 @@ static const double MOVE_COSINE = 0.866;
 
 typedef struct relaxation {
     const cwi_remesh *r;
-    float *places, *sizes;
+    float *targets, *sizes;
 } relaxation;
 
 void cwi_remesh_project(const cwi_remesh *r, const cwi_target *target, const double from[3],
@@ -95,16 +95,16 @@ static bool find_middle(const cwi_remesh *r, uint32_t v, double middle[3])
 static void find_place(const relaxation *x, uint32_t v)
 {
     const cwi_remesh *r = x->r;
-    float *place = x->places + 3 * (size_t)v;
+    float *target = x->targets + 3 * (size_t)v;
     double from[3];
-    memcpy(place, r->positions + 3 * (size_t)v, 3 * sizeof *place);
+    memcpy(target, r->positions + 3 * (size_t)v, 3 * sizeof *target);
     x->sizes[v] = r->sizes[v];
     if (r->corner[v] == CWI_NONE || r->freedom[v] == CWI_FIXED)
         return;
     if (r->freedom[v] == CWI_FREE && find_centre(r, v, from))
-        cwi_remesh_project(r, &r->surface, from, place, r->target_sizes ? &x->sizes[v] : NULL);
+        cwi_remesh_project(r, &r->surface, from, target, r->target_sizes ? &x->sizes[v] : NULL);
     else if (r->freedom[v] == CWI_CURVE && find_middle(r, v, from))
-        cwi_remesh_project(r, &r->curves, from, place, NULL);
+        cwi_remesh_project(r, &r->curves, from, target, NULL);
 }
 
 static void find_chunk(void *context, size_t chunk)
@@ -131,20 +131,20 @@ static double allowed_cosine(const cwi_remesh *r, uint32_t v)
     return largest;
 }
 
-/* Moves a vertex to its place, or half of the way if that is refused. */
-static void move_to_place(cwi_remesh *r, const relaxation *x, uint32_t v)
+/* Moves a vertex to its target, or half of the way if that is refused. */
+static void move_to_target(cwi_remesh *r, const relaxation *x, uint32_t v)
 {
-    const float *p = r->positions + 3 * (size_t)v, *place = x->places + 3 * (size_t)v;
+    const float *p = r->positions + 3 * (size_t)v, *target = x->targets + 3 * (size_t)v;
     const double min_move = MIN_MOVE * (double)r->sizes[v];
-    if (!(cwi_point_distance_sq(p, place) > min_move * min_move))
+    if (!(cwi_point_distance_sq(p, target) > min_move * min_move))
         return;
     const double cosine = allowed_cosine(r, v);
-    if (cwi_move_vertex(r, v, place, x->sizes[v], cosine))
+    if (cwi_move_vertex(r, v, target, x->sizes[v], cosine))
         return;
     double half[3];
     float to[3];
     for (int k = 0; k < 3; k++)
-        half[k] = ((double)p[k] + (double)place[k]) / 2;
+        half[k] = ((double)p[k] + (double)target[k]) / 2;
     cwi_remesh_project(r, r->freedom[v] == CWI_FREE ? &r->surface : &r->curves, half, to, NULL);
     cwi_move_vertex(r, v, to, (r->sizes[v] + x->sizes[v]) / 2, cosine);
 }
@@ -152,9 +152,9 @@ static void move_to_place(cwi_remesh *r, const relaxation *x, uint32_t v)
 cw_status cwi_relax_vertices(cwi_remesh *r, cw_error *err)
 {
     relaxation x = {.r = r};
-    x.places = cwi_alloc_array(r->vertex_count, 3 * sizeof *x.places);
+    x.targets = cwi_alloc_array(r->vertex_count, 3 * sizeof *x.targets);
     x.sizes = cwi_alloc_array(r->vertex_count, sizeof *x.sizes);
-    cw_status st = x.places && x.sizes ? CW_OK : cwi_fail_memory(err);
+    cw_status st = x.targets && x.sizes ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK)
         st =
             cwi_parallel_for((r->vertex_count + CHUNK - 1) / CHUNK, CHUNK * 64, r->desc.threads,
@@ -162,9 +162,9 @@ cw_status cwi_relax_vertices(cwi_remesh *r, cw_error *err)
     for (uint32_t v = 0; v < r->vertex_count && st == CW_OK; v++) {
         if (v % (16 * CHUNK) == 0)
             st = cwi_progress(&r->desc.progress, "remesh", r->done, err);
-        move_to_place(r, &x, v);
+        move_to_target(r, &x, v);
     }
-    cwi_free(x.places);
+    cwi_free(x.targets);
     cwi_free(x.sizes);
     return st;
 }

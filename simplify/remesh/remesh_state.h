@@ -38,8 +38,8 @@ typedef struct cwi_replacement {
     uint32_t ids[CWI_MAX_STAR];      /* triangles that become them */
     uint8_t sharp[CWI_MAX_STAR];     /* bits of their edges */
     size_t count;
-    uint32_t moved; /* a vertex with another place; or CWI_NONE */
-    float place[3];
+    uint32_t moved; /* a vertex with another position; or CWI_NONE */
+    float position[3];
     size_t samples; /* of the old triangles: the first ones of the scratch arrays */
 } cwi_replacement;
 
@@ -161,7 +161,7 @@ bool cwi_flip_edge(cwi_remesh *r, uint32_t corner, bool by_angle);
 /* Moves a vertex, if no angle around it becomes smaller than allowed.
  * size    wanted length of edges there
  * cosine  the largest that an angle may have; 2: any */
-bool cwi_move_vertex(cwi_remesh *r, uint32_t vertex, const float place[3], float size,
+bool cwi_move_vertex(cwi_remesh *r, uint32_t vertex, const float position[3], float size,
                      double cosine);
 
 /* --- passes over the whole mesh ------------------------------------------------------------ */

@@ -22,18 +22,18 @@ static void number_components(const cw_mesh *mesh, cwi_kept_volumes *v)
 }
 
 /* Returns six times the volume of the tetrahedron between a triangle and a point. */
-static double measure_sixfold(const double *places, const uint32_t *corners,
+static double measure_sixfold(const double *positions, const uint32_t *corners,
                               const double reference[3])
 {
     double from[3][3], area[3];
     for (int c = 0; c < 3; c++)
         for (size_t a = 0; a < 3; a++)
-            from[c][a] = places[3 * (size_t)corners[c] + a] - reference[a];
+            from[c][a] = positions[3 * (size_t)corners[c] + a] - reference[a];
     cwi_cross(from[1], from[2], area);
     return cwi_dot(from[0], area);
 }
 
-void cwi_volumes_measure(cwi_kept_volumes *volumes, const double *places)
+void cwi_volumes_measure(cwi_kept_volumes *volumes, const double *positions)
 {
     const cw_mesh *mesh = volumes->mesh;
     for (size_t n = 0; n < volumes->count; n++)
@@ -43,11 +43,11 @@ void cwi_volumes_measure(cwi_kept_volumes *volumes, const double *places)
         cwi_kept_volume *item = &volumes->items[volumes->component[corners[0]]];
         const float *first = mesh->positions + 3 * (size_t)item->reference;
         const double reference[3] = {(double)first[0], (double)first[1], (double)first[2]};
-        item->now += measure_sixfold(places, corners, reference) / 6;
+        item->now += measure_sixfold(positions, corners, reference) / 6;
     }
 }
 
-void cwi_volumes_gradients(cwi_kept_volumes *volumes, const double *places,
+void cwi_volumes_gradients(cwi_kept_volumes *volumes, const double *positions,
                            const uint8_t *borders, double *gradients)
 {
     const cw_mesh *mesh = volumes->mesh;
@@ -57,8 +57,9 @@ void cwi_volumes_gradients(cwi_kept_volumes *volumes, const double *places,
         gradients[n] = 0;
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         const uint32_t *corners = mesh->triangles + 3 * t;
-        const double *p = places + 3 * (size_t)corners[0], *q = places + 3 * (size_t)corners[1],
-                     *r = places + 3 * (size_t)corners[2];
+        const double *p = positions + 3 * (size_t)corners[0],
+                     *q = positions + 3 * (size_t)corners[1],
+                     *r = positions + 3 * (size_t)corners[2];
         const double pq[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]},
                      pr[3] = {r[0] - p[0], r[1] - p[1], r[2] - p[2]};
         cwi_kept_volume *item = &volumes->items[volumes->component[corners[0]]];
@@ -88,7 +89,7 @@ double cwi_volumes_sum(const cwi_kept_volumes *volumes, bool before)
     return sum;
 }
 
-cw_status cwi_volumes_find(const cw_mesh *mesh, const uint8_t *borders, const double *places,
+cw_status cwi_volumes_find(const cw_mesh *mesh, const uint8_t *borders, const double *positions,
                            cwi_kept_volumes *volumes, cw_error *err)
 {
     *volumes = (cwi_kept_volumes){.mesh = mesh};
@@ -104,7 +105,7 @@ cw_status cwi_volumes_find(const cw_mesh *mesh, const uint8_t *borders, const do
         item->is_open = item->is_open || borders[n] == CWI_BORDER_OPEN;
         item->is_branched = item->is_branched || borders[n] == CWI_BORDER_JUNCTION;
     }
-    cwi_volumes_measure(volumes, places);
+    cwi_volumes_measure(volumes, positions);
     for (size_t n = 0; n < volumes->count; n++)
         volumes->items[n].before = volumes->items[n].now;
     return CW_OK;

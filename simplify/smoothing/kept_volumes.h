@@ -21,23 +21,23 @@ typedef struct cwi_kept_volumes {
 } cwi_kept_volumes;
 
 /* Finds the components and their volumes before anything moved.
- * rims       of each vertex, a cwi_vertex_border
- * places     vertices x 3: the positions of the mesh, in double precision
+ * borders    of each vertex, a cwi_vertex_border
+ * positions  vertices x 3: the positions of the mesh, in double precision
  * volumes    filled; free it with cwi_volumes_free(), also after failure. It borrows the mesh
  * Returns    CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cwi_volumes_find(const cw_mesh *mesh, const uint8_t *borders,
-                                        const double *places, cwi_kept_volumes *volumes,
+                                        const double *positions, cwi_kept_volumes *volumes,
                                         cw_error *err);
 void cwi_volumes_free(cwi_kept_volumes *volumes);
 
 /* Measures the volume now of all components.
- * places  vertices x 3 */
-void cwi_volumes_measure(cwi_kept_volumes *volumes, const double *places);
+ * positions  vertices x 3 */
+void cwi_volumes_measure(cwi_kept_volumes *volumes, const double *positions);
 
 /* Measures the volumes, too, and finds their gradient at each vertex and the area of each component.
- * rims       of each vertex: those at a rim add to no area
+ * borders    of each vertex: those at a rim add to no area
  * gradients  vertices x 3: a normal that is as long as a third of the area around the vertex */
-void cwi_volumes_gradients(cwi_kept_volumes *volumes, const double *places,
+void cwi_volumes_gradients(cwi_kept_volumes *volumes, const double *positions,
                            const uint8_t *borders, double *gradients);
 
 /* Adds up the volumes of components that have one, those before or those now. */

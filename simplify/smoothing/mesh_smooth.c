@@ -1,5 +1,5 @@
-/* Smooths a mesh: its vertices move by one of the methods. Then they go back into a ball around their
- * first place, and components get their volumes back. */
+/* Smooths a mesh: its vertices move by one of the methods. Then they go back into a ball around
+ * their first position, and components get their volumes back. */
 #include "simplify/smoothing/mesh_smooth.h"
 
 #include "core/base/memory.h"
@@ -26,9 +26,9 @@ const char *cw_smooth_method_name(cw_smooth_method method)
     return (size_t)method < CW_SMOOTH_METHOD_COUNT ? names[method] : NULL;
 }
 
-static double measure_move(const float *place, const float *first)
+static double measure_move(const float *position, const float *first)
 {
-    return sqrt(cwi_point_distance_sq(place, first));
+    return sqrt(cwi_point_distance_sq(position, first));
 }
 
 /* Returns the mean over triangles of the mean length of their sides. */
@@ -74,7 +74,7 @@ static cw_status resolve_desc(const cw_mesh *mesh, const cw_smooth_desc *desc,
     return CW_OK;
 }
 
-static cw_status alloc_places(cwi_smoother *s, cw_error *err)
+static cw_status alloc_positions(cwi_smoother *s, cw_error *err)
 {
     const size_t numbers = 3 * s->mesh->vertex_count;
     s->from = cwi_alloc_large(numbers, sizeof *s->from);
@@ -87,16 +87,16 @@ static cw_status alloc_places(cwi_smoother *s, cw_error *err)
     return CW_OK;
 }
 
-/* Pulls a place into the ball around its first one. By averages vertices also move along the surface:
- * that part of a move is cut first, as the part along the normal is what removes noise. Fairing
- * hardly moves along the surface, and its moves are cut as they are.
+/* Pulls a position into the ball around its first one. By averages vertices also move along the
+ * surface: that part of a move is cut first, as the part along the normal is what removes noise.
+ * Fairing hardly moves along the surface, and its moves are cut as they are.
  * normal  of the surface there, or 0 */
 static void limit_move(const cwi_smoother *s, size_t v, const double normal[3])
 {
     const float *first = s->mesh->positions + 3 * v;
-    double *place = s->from + 3 * v, move[3], along[3];
+    double *position = s->from + 3 * v, move[3], along[3];
     for (int a = 0; a < 3; a++)
-        move[a] = place[a] - (double)first[a];
+        move[a] = position[a] - (double)first[a];
     if (!(cwi_length(move) > s->limit))
         return;
     double out = s->desc.method == CW_SMOOTH_FAIR ? 0 : cwi_dot(move, normal);
@@ -107,12 +107,12 @@ static void limit_move(const cwi_smoother *s, size_t v, const double normal[3])
     const double left = sqrt(cwi_greater(0, s->limit * s->limit - out * out));
     const double fraction = length > left ? left / length : 1;
     for (int a = 0; a < 3; a++)
-        place[a] = (double)first[a] + out * normal[a] + fraction * along[a];
+        position[a] = (double)first[a] + out * normal[a] + fraction * along[a];
 }
 
-/* Pulls all places into their balls, and moves each component along its normals to its first volume
- * by Newton's method: the gain for a move of 1 mm is the area. Each needs the other again, so both
- * take turns. Moving borders leave no volume to keep. */
+/* Pulls all positions into their balls, and moves each component along its normals to its first
+ * volume by Newton's method: the gain for a move of 1 mm is the area. Each needs the other again,
+ * so both take turns. Moving borders leave no volume to keep. */
 static void limit_and_keep_volumes(cwi_smoother *s)
 {
     cwi_kept_volumes *volumes = &s->volumes;
@@ -136,18 +136,19 @@ static void limit_and_keep_volumes(cwi_smoother *s)
     }
 }
 
-/* Rounds places to single precision. Where that leads out of the ball, the next numbers toward the
- * first place are taken: once or twice, or else the first place itself. */
+/* Rounds positions to single precision. Where that leads out of the ball, the next numbers toward
+ * the first position are taken: once or twice, or else the first position itself. */
 static void round_places(cwi_smoother *s)
 {
     for (size_t v = 0; v < s->mesh->vertex_count; v++) {
         const float *first = s->mesh->positions + 3 * v;
-        float *place = s->rounded + 3 * v;
+        float *position = s->rounded + 3 * v;
         for (size_t a = 0; a < 3; a++)
-            place[a] = (float)s->from[3 * v + a];
-        for (int step = 0; !(measure_move(place, first) <= s->limit); step++)
+            position[a] = (float)s->from[3 * v + a];
+        for (int step = 0; !(measure_move(position, first) <= s->limit); step++)
             for (int a = 0; a < 3; a++)
-                place[a] = step < ROUNDING_STEPS ? nextafterf(place[a], first[a]) : first[a];
+                position[a] =
+                    step < ROUNDING_STEPS ? nextafterf(position[a], first[a]) : first[a];
     }
 }
 
@@ -187,7 +188,7 @@ static void count_facts(cwi_smoother *s, cw_smooth_facts *facts)
 }
 
 /* Finds the new positions, and leaves the mesh as it is. */
-static cw_status smooth_places(cwi_smoother *s, cw_smooth_facts *facts, cw_error *err)
+static cw_status smooth_positions(cwi_smoother *s, cw_smooth_facts *facts, cw_error *err)
 {
     const cwi_part_progress first = {&s->desc.progress, 0, RINGS_FRACTION},
                             moves = {&s->desc.progress, RINGS_FRACTION, MOVES_FRACTION},
@@ -200,7 +201,7 @@ static cw_status smooth_places(cwi_smoother *s, cw_smooth_facts *facts, cw_error
     s->limit = s->desc.max_move_mm * (1 - 8 * DBL_EPSILON);
     cw_status st = cwi_rings_find(s->mesh, s->desc.threads, &first_progress, &s->rings, err);
     if (st == CW_OK)
-        st = alloc_places(s, err);
+        st = alloc_positions(s, err);
     if (st == CW_OK)
         st = cwi_volumes_find(s->mesh, s->rings.border, s->from, &s->volumes, err);
     if (st == CW_OK)
@@ -226,7 +227,7 @@ cw_status cw_mesh_smooth(cw_mesh *mesh, const cw_smooth_desc *desc, cw_smooth_fa
     cw_smooth_facts found = {0};
     cw_status st = resolve_desc(mesh, desc, &s.desc, err);
     if (st == CW_OK)
-        st = smooth_places(&s, &found, err);
+        st = smooth_positions(&s, &found, err);
     if (st == CW_OK && mesh->normals) {
         cw_mesh moved = *mesh; /* with the same normals, which are the last thing to fail */
         moved.positions = s.rounded;

@@ -12,7 +12,7 @@ typedef struct cwi_smoother {
     cw_smooth_desc desc; /* with its defaults */
     cwi_rings rings;
     cwi_kept_volumes volumes;
-    double *from, *to; /* vertices x 3; from has the places so far */
+    double *from, *to; /* vertices x 3; from has the positions so far */
     double limit;      /* max_move_mm, less what rounding may add to a distance */
     float *rounded;    /* vertices x 3: the result */
 } cwi_smoother;
@@ -21,16 +21,16 @@ typedef struct cwi_smoother {
  * neighbours. */
 bool cwi_smooth_is_fixed(const cwi_smoother *s, size_t v);
 
-/* Moves the places by CW_SMOOTH_TAUBIN or CW_SMOOTH_HC.
+/* Moves the positions by CW_SMOOTH_TAUBIN or CW_SMOOTH_HC.
  * Returns  CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
 CW_NODISCARD cw_status cwi_smooth_average(cwi_smoother *s, const cw_progress *progress,
                                           cw_error *err);
 
-/* Moves the places by CW_SMOOTH_FAIR. Returns the same */
+/* Moves the positions by CW_SMOOTH_FAIR. Returns the same */
 CW_NODISCARD cw_status cwi_smooth_fair(cwi_smoother *s, const cw_progress *progress,
                                        cw_error *err);
 
-/* Puts vertices back to their first places until no triangles meet that did not meet before, and
+/* Puts vertices back to their first positions until no triangles meet that did not meet before, and
  * none has lost its area.
  * Returns  CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
 CW_NODISCARD cw_status cwi_smooth_undo_crossings(cwi_smoother *s, cw_smooth_facts *facts,

@@ -66,15 +66,15 @@ cw_status cwi_view_init(cwi_view_tolerance *v, const cw_simplify_view *from, dou
     return CW_OK;
 }
 
-typedef struct place {
+typedef struct view_point {
     double across[2], depth;
-} place;
+} view_point;
 
-static place place_of(const cwi_view_tolerance *v, const double p[3])
+static view_point to_view(const cwi_view_tolerance *v, const double p[3])
 {
     const double from_eye[3] = {p[0] - v->eye[0], p[1] - v->eye[1], p[2] - v->eye[2]};
-    return (place){{cwi_dot(from_eye, v->axes[0]), cwi_dot(from_eye, v->axes[1])},
-                   cwi_dot(from_eye, v->axes[2])};
+    return (view_point){{cwi_dot(from_eye, v->axes[0]), cwi_dot(from_eye, v->axes[1])},
+                        cwi_dot(from_eye, v->axes[2])};
 }
 
 static double pixel_at(const cwi_view_tolerance *v, double depth)
@@ -85,7 +85,7 @@ static double pixel_at(const cwi_view_tolerance *v, double depth)
 bool cwi_view_project(const cwi_view_tolerance *v, const double point[3], double *x, double *y,
                       double *depth)
 {
-    const place p = place_of(v, point);
+    const view_point p = to_view(v, point);
     const double pixel = pixel_at(v, p.depth);
     *x = 0.5 * v->size[0] + p.across[0] / pixel;
     *y = 0.5 * v->size[1] - p.across[1] / pixel;
@@ -93,8 +93,8 @@ bool cwi_view_project(const cwi_view_tolerance *v, const double point[3], double
     return p.depth > v->nearest;
 }
 
-/* By how much a place is beyond one of the five planes that a view sees up to. */
-static double distance_beyond(const cwi_view_tolerance *v, const place *p, int plane)
+/* By how much a position is beyond one of the five planes that a view sees up to. */
+static double distance_beyond(const cwi_view_tolerance *v, const view_point *p, int plane)
 {
     if (plane == 4)
         return v->nearest > 0 ? -p->depth : -INFINITY;
@@ -104,7 +104,8 @@ static double distance_beyond(const cwi_view_tolerance *v, const place *p, int p
 }
 
 /* Decides whether a part is seen: it is not, when all of its corners are beyond one plane. */
-static bool is_seen(const cwi_view_tolerance *v, const place *p, int corners, double margin)
+static bool is_seen(const cwi_view_tolerance *v, const view_point *p, int corners,
+                    double margin)
 {
     for (int plane = 0; plane < 5; plane++) {
         double min_distance = INFINITY;
@@ -118,7 +119,7 @@ static bool is_seen(const cwi_view_tolerance *v, const place *p, int corners, do
 
 /* Decides whether a part is hidden: a surface is in front of it at all pixels around it. Each
  * of the two may move by `max_error`, and the other one's edge may be as far away in the picture. */
-static bool is_hidden(const cwi_view_tolerance *v, const place *p, int corners,
+static bool is_hidden(const cwi_view_tolerance *v, const view_point *p, int corners,
                       double max_error, double margin)
 {
     double nearest = INFINITY, low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
@@ -144,7 +145,7 @@ static bool is_hidden(const cwi_view_tolerance *v, const place *p, int corners,
     return true;
 }
 
-static double limit_error(const cwi_view_tolerance *v, const place *p, int corners,
+static double limit_error(const cwi_view_tolerance *v, const view_point *p, int corners,
                           double max_error, double margin)
 {
     double min_distance = INFINITY;
@@ -212,9 +213,9 @@ double cwi_views_limit(const cwi_views *views, const cw_mesh *mesh, size_t t, do
             corners[c][a] = (double)cwi_mesh_point(mesh, t, c)[a];
     for (size_t i = 0; i < views->count; i++) {
         const cwi_view_tolerance *v = &views->view[i];
-        place p[3];
+        view_point p[3];
         for (int c = 0; c < 3; c++)
-            p[c] = place_of(v, corners[c]);
+            p[c] = to_view(v, corners[c]);
         min_distance = fmin(min_distance, limit_error(v, p, 3, max_error, margin));
     }
     return min_distance;
@@ -227,7 +228,7 @@ cw_status cw_simplify_view_sees(const cw_simplify_view *view, double pixels,
     CWI_REQUIRE_ARRAY(err, points, count);
     CWI_REQUIRE_ARRAY(err, seen, count);
     cwi_view_tolerance v;
-    place p[CWI_VIEW_HULL];
+    view_point p[CWI_VIEW_HULL];
     cw_status st = cwi_view_init(&v, view, pixels, err);
     if (st == CW_OK && (count < 1 || count > CWI_VIEW_HULL))
         st = cwi_fail(err, CW_ERR_ARGUMENT, "a hull of %zu points; 1 to %d were expected",
@@ -235,7 +236,7 @@ cw_status cw_simplify_view_sees(const cw_simplify_view *view, double pixels,
     if (st != CW_OK)
         return st;
     for (size_t n = 0; n < count; n++)
-        p[n] = place_of(&v, points + 3 * n);
+        p[n] = to_view(&v, points + 3 * n);
     *seen = isfinite(limit_error(&v, p, (int)count, 0, 0));
     return CW_OK;
 }
@@ -287,7 +288,7 @@ cw_status cw_simplify_view_error(const cw_simplify_view *view, double pixels,
     *error_mm = 0;
     if (st != CW_OK)
         return st;
-    const place p = place_of(&v, point);
+    const view_point p = to_view(&v, point);
     *error_mm = limit_error(&v, &p, 1, 0, 0);
     return CW_OK;
 }

@@ -1,6 +1,6 @@
 /* Gathers light along beams. The V-buffer [Upson1988] projects a pixel's area on the cell; where
  * the cell is smaller, it takes the mean over the cell, weighted by the ratio of areas. Here a
- * pixel is cut into 4 x 4 beams, which take samples at different places of steps that are a part
+ * pixel is cut into 4 x 4 beams, which take samples at different positions of steps that are a part
  * of the pixel's width: the samples are spread over the area and along it. A beam that is much
  * wider than a cell meets mean cells, with the transfer function averaged over their values,
  * taken as evenly spread about the mean by the variance. Where a plane of the volume's box or a
@@ -25,7 +25,7 @@ enum { SIDES = 4 };
 static const double CELL_WIDTH = 0.25;
 
 /* The length of a beam's steps, over the pixel's width. Beams of a pixel take samples at
- * different places of their steps. */
+ * different positions of their steps. */
 static const double STEP = 0.3;
 
 /* The optical depth of a step above which it is halved, and the shortest part of a step. */
@@ -231,14 +231,14 @@ static void fill_area(beam *m, double area)
 
 /* --- samples ------------------------------------------------------------------------------- */
 
-/* A place among mean cells: the eight around it, and its weights between them. */
-typedef struct place {
+/* A position among mean cells: the eight around it, and its weights between them. */
+typedef struct cell_weights {
     size_t cell[8];
     float weight[8];
-} place;
+} cell_weights;
 
-static void find_place(const cwi_mean_level *l, const cw_volume *v, const double index[3],
-                       place *p)
+static void find_weights(const cwi_mean_level *l, const cw_volume *v, const double index[3],
+                         cell_weights *p)
 {
     size_t low[3], high[3];
     float at[3];
@@ -261,7 +261,7 @@ static void find_place(const cwi_mean_level *l, const cw_volume *v, const double
     }
 }
 
-static lanes interpolate(const float (*cells)[4], const place *p)
+static lanes interpolate(const float (*cells)[4], const cell_weights *p)
 {
     lanes sum = {0};
     for (int n = 0; n < 8; n++)
@@ -269,7 +269,7 @@ static lanes interpolate(const float (*cells)[4], const place *p)
     return sum;
 }
 
-/* Interpolates the field at a place, as a row of the table. Returns false where it has no
+/* Interpolates the field at a position, as a row of the table. Returns false where it has no
  * value. */
 static bool row_at(const cwi_cell_corners *corners, const double index[3], float *row)
 {
@@ -293,7 +293,7 @@ static bool row_at(const cwi_cell_corners *corners, const double index[3], float
     return true;
 }
 
-/* Takes the gradient of the field at a place, in rows per voxel: by the cells on both sides.
+/* Takes the gradient of the field at a position, in rows per voxel: by the cells on both sides.
  * Linear interpolation of central differences is the same. */
 static lanes gradient_at(const cwi_cell_corners *corners, const double index[3])
 {
@@ -326,7 +326,7 @@ static void sample_field(const beam *m, const double index[3], lanes *moments, l
         *gradient = scale * gradient_at(m->b->corners, index);
 }
 
-/* Takes moments and gradient at a place, between two levels. */
+/* Takes moments and gradient at a position, between two levels. */
 static void sample_levels(const beam *m, const double index[3], size_t level, float blend,
                           lanes *moments, lanes *gradient)
 {
@@ -334,14 +334,14 @@ static void sample_levels(const beam *m, const double index[3], size_t level, fl
     lanes found[2][2] = {0};
     for (size_t n = 0; n < 2; n++) {
         const cwi_mean_level *l = &cells->levels[level + n];
-        place p;
+        cell_weights p;
         if ((n ? blend : 1 - blend) == 0)
             continue;
         if (level + n == 0) {
             sample_field(m, index, &found[n][0], &found[n][1]);
             continue;
         }
-        find_place(l, m->b->corners->volume, index, &p);
+        find_weights(l, m->b->corners->volume, index, &p);
         found[n][0] = interpolate((const float(*)[4])l->moments, &p);
         if (l->gradients)
             found[n][1] = interpolate((const float(*)[4])l->gradients, &p);
@@ -467,7 +467,7 @@ static void choose_level(const cwi_beams *b, double wide, step *s)
     s->blend = (float)(level - (double)s->level);
 }
 
-/* Returns how far the beam may go from a place without meeting anything visible. level:
+/* Returns how far the beam may go from a position without meeting anything visible. level:
  * of the mean cells around it */
 static double empty_length(const beam *m, double t, size_t level)
 {

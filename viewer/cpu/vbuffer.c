@@ -92,7 +92,7 @@ typedef struct state {
     double shadow[4];      /* cubic; the constant 1 without shadows */
 } state;
 
-/* Returns the distance along the ray of a place in the cell, 0 to 1. */
+/* Returns the distance along the ray of a position in the cell, 0 to 1. */
 static inline double distance_at(const state *s, double x)
 {
     return s->walk.from + x * (s->walk.to - s->walk.from);
@@ -121,7 +121,7 @@ static void change_by_depth(const state *s, double x, lanes *glow)
 }
 
 /* Changes the glow of a point, as the transfer function gave it, by gradient and depth. x: its
- * place in the cell, 0 to 1; gradient: in eye space, if it is needed */
+ * position in the cell, 0 to 1; gradient: in eye space, if it is needed */
 static inline lanes finish_cell(const state *s, double x, const double gradient[3], lanes glow)
 {
     if (s->b->has_gradients)
@@ -140,10 +140,10 @@ static double shadow_at(state *s, double at)
     w->volume = v;
     w->shadows = s->b->frame->shadows;
     for (int a = 0; a < 3; a++) {
-        const double place = s->ray.index[a] + at * s->ray.slope[a];
+        const double position = s->ray.index[a] + at * s->ray.slope[a];
         w->index[a] = s->ray.index[a];
         w->slope[a] = s->ray.slope[a];
-        w->at[a] = (ptrdiff_t)fmin(fmax(place, 0), fmax((double)v->dim[a] - 2, 0));
+        w->at[a] = (ptrdiff_t)fmin(fmax(position, 0), fmax((double)v->dim[a] - 2, 0));
     }
     cwi_walk_shadows(w, shadows);
     cwi_walk_cubic(w, shadows, cubic);
@@ -327,7 +327,7 @@ static void pass_in_pieces(state *s)
     pass_cubic(s, value);
 }
 
-/* Adds the gradients and shadows at the two points of a cell to its place in the batch. */
+/* Adds the gradients and shadows at the two points of a cell to its position in the batch. */
 static void add_gradients(state *s, const lanes at[3], int cell)
 {
     lanes g[3][2], light[2] = {cwi_lanes_spread(1), cwi_lanes_spread(1)};
@@ -357,7 +357,7 @@ static inline const row_parts *parts_of(const vbuffer *b, float row)
 }
 
 /* Estimates the range of values of a cell along the ray. Where they turn, the cubic goes
- * farther than at the four places. For a parabola that is half the difference, and little if it
+ * farther than at the four positions. For a parabola that is half the difference, and little if it
  * turns close to an end; for a rough cubic it is more. */
 static inline void range_of(lanes rows, float *low, float *high)
 {

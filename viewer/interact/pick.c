@@ -12,14 +12,14 @@
 #include <math.h>
 #include <string.h>
 
-/* A place on the picture, in samples, and the ray through it in eye space. */
-typedef struct place {
+/* A point of the picture, in samples, and the ray through it in eye space. */
+typedef struct pixel_ray {
     const cwi_frame *frame;
     double x, y, origin[3], direction[3];
-} place;
+} pixel_ray;
 
 /* Takes the point at t along the ray. */
-static void take_point(const place *at, cw_pick_kind kind, double t, cw_picked *out)
+static void take_point(const pixel_ray *at, cw_pick_kind kind, double t, cw_picked *out)
 {
     double eye[3];
     cwi_add_scaled(at->origin, t, at->direction, eye);
@@ -27,7 +27,7 @@ static void take_point(const place *at, cw_pick_kind kind, double t, cw_picked *
     cwi_frame_to_world(at->frame, eye, out->point);
 }
 
-static void take_mesh(const place *at, const cwi_mesh_hit *hit, cw_picked *out)
+static void take_mesh(const pixel_ray *at, const cwi_mesh_hit *hit, cw_picked *out)
 {
     const cw_mesh *m = at->frame->scene.mesh;
     take_point(at, CW_PICK_MESH, hit->t, out);
@@ -52,7 +52,7 @@ static double value_of(const cwi_frame *f, const double point[3])
     return cw_volume_sample(&f->volume, inside);
 }
 
-static cw_status take_slice(const place *at, double mesh_t, cw_picked *out, cw_error *err)
+static cw_status take_slice(const pixel_ray *at, double mesh_t, cw_picked *out, cw_error *err)
 {
     cw_slice slices[CW_MAX_SLICES];
     size_t count, number = 0;
@@ -70,7 +70,7 @@ static cw_status take_slice(const place *at, double mesh_t, cw_picked *out, cw_e
 }
 
 /* Takes the volume's point, if it is in front of the mesh, which `out` has if it is met. */
-static cw_status take_volume(const place *at, double mesh_t, cw_picked *out, cw_error *err)
+static cw_status take_volume(const pixel_ray *at, double mesh_t, cw_picked *out, cw_error *err)
 {
     const cwi_frame *f = at->frame;
     const double depth = mesh_t < INFINITY ? out->depth_mm / f->unit_mm : INFINITY;
@@ -89,7 +89,7 @@ static cw_status take_volume(const place *at, double mesh_t, cw_picked *out, cw_
     return CW_OK;
 }
 
-static cw_status pick_nearest(const place *at, cw_picked *out, cw_error *err)
+static cw_status pick_nearest(const pixel_ray *at, cw_picked *out, cw_error *err)
 {
     const cwi_frame *f = at->frame;
     cwi_mesh_hit hit = {.t = INFINITY};
@@ -114,7 +114,7 @@ cw_status cw_pick(const cw_scene *scene, const double pixel[2], cw_picked *picke
         st = cwi_fail(err, CW_ERR_ARGUMENT, "there is no pixel %g, %g", pixel[0], pixel[1]);
     if (st != CW_OK)
         return st;
-    place at = {&f, pixel[0] * f.scene.samples, pixel[1] * f.scene.samples, {0}, {0}};
+    pixel_ray at = {&f, pixel[0] * f.scene.samples, pixel[1] * f.scene.samples, {0}, {0}};
     if (!(at.x >= 0 && at.x <= (double)f.scene.width && at.y >= 0 &&
           at.y <= (double)f.scene.height))
         return CW_OK;

@@ -139,12 +139,12 @@ cwi_volume_hit cwi_pick_blended(const cwi_frame *frame, double x, double y, doub
  * It compares the same numbers, to the bit, from which the value was found. */
 static double find_value(const double c[4], double value)
 {
-    double places[4] = {0};
-    const int turns = cwi_cubic_turns(c, places + 1);
-    places[turns + 1] = 1;
+    double breaks[4] = {0};
+    const int turns = cwi_cubic_turns(c, breaks + 1);
+    breaks[turns + 1] = 1;
     for (int n = 0; n <= turns + 1; n++)
-        if ((places[n] == 0 ? c[0] : cwi_cubic_at(c, places[n])) == value)
-            return places[n];
+        if ((breaks[n] == 0 ? c[0] : cwi_cubic_at(c, breaks[n])) == value)
+            return breaks[n];
     return INFINITY;
 }
 
@@ -167,18 +167,18 @@ static double find_crossing(const double c[4], double a, double b, double level)
 static double find_value_inside(const cw_scene *s, const double c[4], double value,
                                 bool *is_inside)
 {
-    double places[4] = {0}, before = c[0];
-    const int turns = cwi_cubic_turns(c, places + 1);
-    places[turns + 1] = 1;
+    double breaks[4] = {0}, before = c[0];
+    const int turns = cwi_cubic_turns(c, breaks + 1);
+    breaks[turns + 1] = 1;
     for (int n = 0; n <= turns + 1; n++) {
-        const double now = n == 0 ? c[0] : cwi_cubic_at(c, places[n]);
+        const double now = n == 0 ? c[0] : cwi_cubic_at(c, breaks[n]);
         const bool crosses =
             (before < s->intensity.threshold) != (now < s->intensity.threshold);
         *is_inside = *is_inside || crosses || now >= s->intensity.threshold;
         if (crosses && value == s->intensity.threshold)
-            return find_crossing(c, places[n - 1], places[n], value);
+            return find_crossing(c, breaks[n - 1], breaks[n], value);
         if (*is_inside && now == value)
-            return places[n];
+            return breaks[n];
         before = now;
     }
     return INFINITY;

@@ -24,7 +24,7 @@ enum {
 
 /* A vertex as shaders/projection.glsl reads it. */
 typedef struct vertex {
-    float place[4], values[3];
+    float position[4], values[3];
 } vertex;
 
 /* The pieces of one cell in an orthographic view; those of all cells are the same but for a
@@ -84,7 +84,7 @@ static void corner_weights(const double at[3], float w[8])
     }
 }
 
-/* Computes the place in a box of a point of the picture at a depth. */
+/* Computes the position in a box of a point of the picture at a depth. */
 static void place_in_box(const cwi_frame *f, const double at[2], double depth,
                          const double low[3], const double size[3], double fraction[3])
 {
@@ -119,10 +119,10 @@ static void put_vertex(const job *j, const double at[2], double front, double ba
     const cwi_frame *f = j->frame;
     const double a = f->perspective ? 1 / front : front;
     const double thick = f->perspective ? (back - front) / (front * back) : back - front;
-    to->place[0] = (float)(at[0] / f->half[0]);
-    to->place[1] = (float)(at[1] / f->half[1]);
-    to->place[2] = (float)a;
-    to->place[3] = (float)thick;
+    to->position[0] = (float)(at[0] / f->half[0]);
+    to->position[1] = (float)(at[1] / f->half[1]);
+    to->position[2] = (float)a;
+    to->position[3] = (float)thick;
     to->values[0] = (float)(f->perspective ? x / front : x);
     to->values[1] = (float)(f->perspective ? y / back : y);
 }
@@ -146,7 +146,7 @@ static bool is_outside(const job *j, size_t from)
     bool out[4] = {true, true, true, true};
     for (size_t n = from; n < j->vertex_count; n++)
         for (int c = 0; c < 4; c++)
-            out[c] = out[c] && (c & 2 ? -1 : 1) * j->vertices[n].place[c & 1] > 1;
+            out[c] = out[c] && (c & 2 ? -1 : 1) * j->vertices[n].position[c & 1] > 1;
     return out[0] || out[1] || out[2] || out[3];
 }
 

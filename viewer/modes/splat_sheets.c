@@ -303,10 +303,10 @@ void cwi_splats_voxel(cwi_splats *s, const size_t at[3])
     double eye[3], gradient[3];
     cwi_splat splat = {0};
     const cwi_frame *f = s->frame;
-    const double place[3] = {(double)at[0], (double)at[1], (double)at[2]};
+    const double index[3] = {(double)at[0], (double)at[1], (double)at[2]};
     cwi_lattice_load(&f->volume, &s->gl->transfer.table, at, (size_t[]){1, 1, 1}, &splat.value);
     if (!cwi_visible_any(&s->visible, splat.value, splat.value) ||
-        !cwi_splats_keep(s, place, eye))
+        !cwi_splats_keep(s, index, eye))
         return;
     splat.mass = (float)cwi_lattice_mass(&f->volume, at, s->has_gaps);
     if (!(splat.mass > 0))

@@ -7,7 +7,7 @@
 
 enum { SIDE = CWI_BLOCK_SIDE, WIDE = CWI_BLOCK_WIDE, EDGE = CWI_RANGE_EDGE };
 
-/* Rounding of projected places stays below this, in samples. */
+/* Rounding of projected positions stays below this, in samples. */
 static const float margin = 1 / 32.0f;
 
 /* A block that is being drawn. Corner (x, y, z) is number (z * SIDE + y) * SIDE + x. */
@@ -19,10 +19,10 @@ typedef struct block {
     double low[3]; /* its corner in index space */
     float values[CWI_BLOCK_CORNERS];
     cwi_lanes gradients[CWI_BLOCK_CORNERS];
-    cwi_lanes places[CWI_BLOCK_CORNERS]; /* homogeneous; if not cut: x, y, -x, -y */
-    bool is_cut;                         /* by the near plane */
-    float ranges[2][CWI_BLOCK_CELLS];    /* lowest and highest value of each cell */
-    uint64_t is_visible;                 /* a bit for each cell */
+    cwi_lanes projected[CWI_BLOCK_CORNERS]; /* homogeneous; if not cut: x, y, -x, -y */
+    bool is_cut;                            /* by the near plane */
+    float ranges[2][CWI_BLOCK_CELLS];       /* lowest and highest value of each cell */
+    uint64_t is_visible;                    /* a bit for each cell */
 } block;
 
 /* A node: cells from `first` to first + count of the block. */
@@ -50,20 +50,20 @@ static cwi_tile_box box_of_bounds(const cwi_tile *t, cwi_lanes max)
     return box;
 }
 
-static cwi_lanes project_place(cwi_lanes p)
+static cwi_lanes divide_depth(cwi_lanes p)
 {
     const float x = p[0] / p[2], y = p[1] / p[2];
     return (cwi_lanes){-x, -y, x, y};
 }
 
-/* Finds the samples that eight homogeneous places may cover, some of which are behind the near
+/* Finds the samples that eight homogeneous positions may cover, some of which are behind the near
  * plane: none if all are beyond one side of the tile, else all. */
-static cwi_tile_box box_of_cut(const cwi_tile *t, const cwi_lanes places[8])
+static cwi_tile_box box_of_cut(const cwi_tile *t, const cwi_lanes projected[8])
 {
     bool out[5] = {true, true, true, true, true};
     const float near_depth = (float)t->near_depth;
     for (int n = 0; n < 8; n++) {
-        const cwi_lanes p = places[n];
+        const cwi_lanes p = projected[n];
         out[0] = out[0] && p[0] < -margin * fabsf(p[2]);
         out[1] = out[1] && p[1] < -margin * fabsf(p[2]);
         out[2] = out[2] && p[0] - (float)t->width * p[2] > margin * fabsf(p[2]);
@@ -75,31 +75,31 @@ static cwi_tile_box box_of_cut(const cwi_tile *t, const cwi_lanes places[8])
                   : (cwi_tile_box){{0, 0}, {t->width - 1, t->height - 1}};
 }
 
-/* Computes the homogeneous place of a point of index space. */
-static cwi_lanes place_of(const cwi_tile *t, const double p[3])
+/* Computes the homogeneous position of a point of index space. */
+static cwi_lanes project_point(const cwi_tile *t, const double p[3])
 {
-    cwi_lanes place = {0};
+    cwi_lanes projected = {0};
     for (int r = 0; r < 3; r++) {
         const double *m = t->pixel_from_index[r];
-        place[r] = (float)(m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3]);
+        projected[r] = (float)(m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3]);
     }
-    return place;
+    return projected;
 }
 
 cwi_tile_box cwi_tile_project(const cwi_tile *t, const double low[3], const double high[3])
 {
-    cwi_lanes places[8], max = cwi_lanes_spread(-INFINITY);
+    cwi_lanes projected[8], max = cwi_lanes_spread(-INFINITY);
     bool is_cut = false;
     for (int n = 0; n < 8; n++) {
         const double p[3] = {n & 1 ? high[0] : low[0], n & 2 ? high[1] : low[1],
                              n & 4 ? high[2] : low[2]};
-        places[n] = place_of(t, p);
-        is_cut = is_cut || !(places[n][2] >= (float)t->near_depth);
+        projected[n] = project_point(t, p);
+        is_cut = is_cut || !(projected[n][2] >= (float)t->near_depth);
     }
     if (is_cut)
-        return box_of_cut(t, places);
+        return box_of_cut(t, projected);
     for (int n = 0; n < 8; n++)
-        max = cwi_lanes_max(max, project_place(places[n]));
+        max = cwi_lanes_max(max, divide_depth(projected[n]));
     return box_of_bounds(t, max);
 }
 
@@ -201,7 +201,7 @@ static void load_values(block *b)
 static void place_corners(block *b)
 {
     const cwi_tile *t = b->tile;
-    const cwi_lanes base = place_of(t, b->low);
+    const cwi_lanes base = project_point(t, b->low);
     cwi_lanes along[3];
     for (int a = 0; a < 3; a++)
         along[a] =
@@ -209,13 +209,13 @@ static void place_corners(block *b)
                         (float)t->pixel_from_index[2][a], 0};
     b->is_cut = false;
     for (int n = 0; n < CWI_BLOCK_CORNERS; n++) {
-        b->places[n] = base + (float)(n % SIDE) * along[0] +
-                       (float)(n / SIDE % SIDE) * along[1] +
-                       (float)(n / SIDE / SIDE) * along[2];
-        b->is_cut = b->is_cut || !(b->places[n][2] >= (float)t->near_depth);
+        b->projected[n] = base + (float)(n % SIDE) * along[0] +
+                          (float)(n / SIDE % SIDE) * along[1] +
+                          (float)(n / SIDE / SIDE) * along[2];
+        b->is_cut = b->is_cut || !(b->projected[n][2] >= (float)t->near_depth);
     }
     for (int n = 0; n < CWI_BLOCK_CORNERS && !b->is_cut; n++)
-        b->places[n] = project_place(b->places[n]);
+        b->projected[n] = divide_depth(b->projected[n]);
 }
 
 static float lesser(float a, float b)
@@ -301,14 +301,14 @@ static void make_cell(const block *b, const node *n, int corners[8], cwi_project
 
 static cwi_tile_box find_box(const block *b, const int corners[8])
 {
-    cwi_lanes places[8], max;
+    cwi_lanes projected[8], max;
     for (int n = 0; n < 8; n++)
-        places[n] = b->places[corners[n]];
+        projected[n] = b->projected[corners[n]];
     if (b->is_cut)
-        return box_of_cut(b->tile, places);
-    max = cwi_lanes_max(places[0], places[1]);
+        return box_of_cut(b->tile, projected);
+    max = cwi_lanes_max(projected[0], projected[1]);
     for (int n = 2; n < 8; n++)
-        max = cwi_lanes_max(max, places[n]);
+        max = cwi_lanes_max(max, projected[n]);
     return box_of_bounds(b->tile, max);
 }
 

@@ -6,20 +6,20 @@
 
 #include <math.h>
 
-/* Computes the place in a box, 0 to 1, of a point of the picture at a depth. */
-static cwi_lanes place_in_box(const cwi_frame *f, const double at[2], double depth,
-                              const double low[3], const cwi_projected_cell *c)
+/* Computes the position in a box, 0 to 1, of a point of the picture at a depth. */
+static cwi_lanes fractions_in_box(const cwi_frame *f, const double at[2], double depth,
+                                  const double low[3], const cwi_projected_cell *c)
 {
     const double scale = f->perspective ? depth : 1;
     const double p[3] = {at[0] * scale, at[1] * scale, -depth};
     double index[3];
-    cwi_lanes place = {0};
+    cwi_lanes fractions = {0};
     cwi_affine_apply(f->index_from_eye, p, index);
     for (int a = 0; a < 3; a++) {
         const double fraction = (index[a] - low[a]) / (double)c->size[a];
-        place[a] = (float)cwi_lesser(cwi_greater(fraction, 0), 1);
+        fractions[a] = (float)cwi_lesser(cwi_greater(fraction, 0), 1);
     }
-    return place;
+    return fractions;
 }
 
 /* Makes the pieces of a box of the cell's size. */
@@ -30,8 +30,8 @@ static void make_pieces(cwi_linear_cell *l, const double low[3], const cwi_proje
     cwi_pieces_make(l->frame, low, high, &l->pieces);
     for (size_t n = 0; n < l->pieces.vertex_count; n++) {
         const cwi_piece_vertex *v = &l->pieces.vertices[n];
-        l->front[n] = place_in_box(l->frame, v->at, v->front, low, c);
-        l->back[n] = place_in_box(l->frame, v->at, v->back, low, c);
+        l->front[n] = fractions_in_box(l->frame, v->at, v->front, low, c);
+        l->back[n] = fractions_in_box(l->frame, v->at, v->back, low, c);
     }
 }
 
@@ -69,7 +69,7 @@ void cwi_linear_make(cwi_linear_cell *l, const cwi_projected_cell *c)
 {
     const cwi_frame *f = l->frame;
     double low[3] = {(double)c->low[0], (double)c->low[1], (double)c->low[2]}, shift[2] = {0};
-    float places[CWI_PIECE_VERTICES][2];
+    float corners[CWI_PIECE_VERTICES][2];
     cwi_lanes colors[CWI_PIECE_VERTICES];
     if (!f->perspective) {
         for (int r = 0; r < 2; r++)
@@ -84,8 +84,8 @@ void cwi_linear_make(cwi_linear_cell *l, const cwi_projected_cell *c)
         const double *at = l->pieces.vertices[n].at;
         const double x = ((at[0] + shift[0]) / f->half[0] + 1) / 2 * (double)f->scene.width;
         const double y = (1 - (at[1] + shift[1]) / f->half[1]) / 2 * (double)f->scene.height;
-        places[n][0] = (float)(x - (double)l->tile[0]);
-        places[n][1] = (float)(y - (double)l->tile[1]);
+        corners[n][0] = (float)(x - (double)l->tile[0]);
+        corners[n][1] = (float)(y - (double)l->tile[1]);
         colors[n] = color_of_vertex(l, c, n);
     }
     l->count = 0;
@@ -93,13 +93,13 @@ void cwi_linear_make(cwi_linear_cell *l, const cwi_projected_cell *c)
         const uint8_t *i = l->pieces.indices + n;
         float at[3][2];
         for (int corner = 0; corner < 3; corner++)
-            memcpy(at[corner], places[i[corner]], sizeof at[corner]);
+            memcpy(at[corner], corners[i[corner]], sizeof at[corner]);
         add_triangle(l, (const float(*)[2])at,
                      (cwi_lanes[]){colors[i[0]], colors[i[1]], colors[i[2]]});
     }
 }
 
-/* A place in no triangle, by rounding, takes the nearest one's colour. */
+/* A position in no triangle, by rounding, takes the nearest one's colour. */
 cwi_lanes cwi_linear_at(const cwi_linear_cell *l, float x, float y)
 {
     cwi_lanes color = {0};

@@ -23,11 +23,11 @@ typedef struct cwi_linear_triangle {
 typedef struct cwi_linear_cell {
     const cwi_frame *frame;
     const cwi_cell_tables *tables;
-    size_t tile[2]; /* the sample of the picture where places begin */
+    size_t tile[2]; /* the sample of the picture where positions begin */
     bool is_made;
     cwi_lanes size; /* of the cell that pieces belong to, when they are the same for all */
     cwi_pieces pieces;
-    cwi_lanes front[CWI_PIECE_VERTICES], back[CWI_PIECE_VERTICES]; /* places in the cell */
+    cwi_lanes front[CWI_PIECE_VERTICES], back[CWI_PIECE_VERTICES]; /* positions in the cell */
     size_t count;
     cwi_linear_triangle triangles[CWI_LINEAR_TRIANGLES];
 } cwi_linear_cell;
@@ -35,7 +35,7 @@ typedef struct cwi_linear_cell {
 /* Makes the triangles of a cell. */
 void cwi_linear_make(cwi_linear_cell *linear, const cwi_projected_cell *cell);
 
-/* Returns the premultiplied colour of the whole way through the cell, at a place of the tile. */
+/* Returns the premultiplied colour of the whole way through the cell, at a position of the tile. */
 cwi_lanes cwi_linear_at(const cwi_linear_cell *linear, float x, float y);
 
 #ifdef __cplusplus

@@ -98,13 +98,13 @@ static double find_facing(const solid *s, const double low[3], const double high
     return side ? row[2] : -row[2];
 }
 
-static void find_plane(const solid *s, int axis, double place, double plane[3])
+static void find_plane(const solid *s, int axis, double offset, double plane[3])
 {
     const double *row = s->frame->index_from_eye + (ptrdiff_t)4 * axis;
-    const double scale = s->frame->perspective ? 1 / (place - row[3]) : 1 / row[2];
+    const double scale = s->frame->perspective ? 1 / (offset - row[3]) : 1 / row[2];
     plane[0] = row[0] * scale;
     plane[1] = row[1] * scale;
-    plane[2] = (s->frame->perspective ? -row[2] : row[3] - place) * scale;
+    plane[2] = (s->frame->perspective ? -row[2] : row[3] - offset) * scale;
 }
 
 /* Sorts the corners of a convex polygon in their order around its middle. */

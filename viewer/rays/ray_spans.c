@@ -203,8 +203,8 @@ static void point_at(const cwi_spans *s, double t, double point[3])
         point[a] = t * s->slope[a];
 }
 
-/* Sorts the few places where a ray may cross a cell's faces. */
-static void sort_places(double *t, int count)
+/* Sorts the few positions where a ray may cross a cell's faces. */
+static void sort_distances(double *t, int count)
 {
     for (int n = 1; n < count; n++) {
         const double x = t[n];
@@ -239,7 +239,7 @@ static void hit_curved(cwi_spans *s, const cwi_mapped_cell *mapped, uint32_t cel
     int count = cwi_cell_crossings(mapped, nowhere, s->slope, t);
     t[count++] = 0;
     t[count++] = length;
-    sort_places(t, count);
+    sort_distances(t, count);
     for (int n = 1; n < count; n++) {
         const double from = fmax(t[n - 1], 0), to = fmin(t[n], length);
         double u[3] = {0.4, 0.4, 0.4};
@@ -322,10 +322,10 @@ static void collect_cells(cwi_spans *s)
 /* --- irregular grids: the field in a cell ------------------------------------------------- */
 
 /* Places in a span where its cubic is fitted, and where it is checked. */
-enum { FITTED = 4, PLACES = 6 };
-static const double places[PLACES] = {0, 0.25, 0.75, 1, 0.5, 0.9};
+enum { FITTED = 4, FIT_POINT_COUNT = 6 };
+static const double FIT_POINTS[FIT_POINT_COUNT] = {0, 0.25, 0.75, 1, 0.5, 0.9};
 
-/* Fits a cubic through values at the first four places. */
+/* Fits a cubic through values at the first four positions. */
 static void fit_cubic(const double v[FITTED], double c[4])
 {
     c[0] = v[0];
@@ -334,7 +334,7 @@ static void fit_cubic(const double v[FITTED], double c[4])
     c[3] = (-16 * v[0] + 32 * v[1] - 32 * v[2] + 16 * v[3]) / 3;
 }
 
-/* Finds u at a place on the ray; guess: the last one found. */
+/* Finds u at a position on the ray; guess: the last one found. */
 static void place_in_cell(const cwi_spans *s, double t, double u[3])
 {
     double point[3], found[3] = {u[0], u[1], u[2]};
@@ -347,7 +347,7 @@ static void place_in_cell(const cwi_spans *s, double t, double u[3])
         memcpy(u, found, sizeof found);
 }
 
-/* Computes value and world gradient at a place of the ray. */
+/* Computes value and world gradient at a position of the ray. */
 static double sample_cell(const cwi_spans *s, const double u[3], double gradient[3])
 {
     double w[8], value = 0;
@@ -368,19 +368,20 @@ static double sample_cell(const cwi_spans *s, const double u[3], double gradient
 static bool fit_span(cwi_spans *s, double from, double to, cwi_span *span)
 {
     const bool is_exact = s->is_linear && s->mapped.shape != CW_PYRAMID;
-    double u[3] = {0.4, 0.4, 0.4}, values[PLACES], gradients[PLACES][3], cubics[3][4];
+    double u[3] = {0.4, 0.4, 0.4}, values[FIT_POINT_COUNT], gradients[FIT_POINT_COUNT][3],
+           cubics[3][4];
     double worst = 0, steepest = 0, first[2][3];
-    for (int n = 0; n < (is_exact ? FITTED : PLACES); n++) {
+    for (int n = 0; n < (is_exact ? FITTED : FIT_POINT_COUNT); n++) {
         for (int a = 0; a < 3 && n > 1; a++) /* a straight line is a good guess */
-            u[a] = first[0][a] + places[n] / places[1] * (first[1][a] - first[0][a]);
-        place_in_cell(s, from + places[n] * (to - from), u);
+            u[a] = first[0][a] + FIT_POINTS[n] / FIT_POINTS[1] * (first[1][a] - first[0][a]);
+        place_in_cell(s, from + FIT_POINTS[n] * (to - from), u);
         values[n] = sample_cell(s, u, gradients[n]);
         if (n < 2)
             memcpy(first[n], u, sizeof u);
     }
     fit_cubic(values, span->value);
-    for (int n = FITTED; n < PLACES && !is_exact; n++)
-        worst = fmax(worst, fabs(cwi_cubic_at(span->value, places[n]) - values[n]));
+    for (int n = FITTED; n < FIT_POINT_COUNT && !is_exact; n++)
+        worst = fmax(worst, fabs(cwi_cubic_at(span->value, FIT_POINTS[n]) - values[n]));
     if (!s->field->has_gradients)
         return worst <= s->tolerance;
     for (int a = 0; a < 3; a++) {
@@ -393,11 +394,11 @@ static bool fit_span(cwi_spans *s, double from, double to, cwi_span *span)
     if (is_exact)
         return true;
     double off = 0;
-    for (int n = 0; n < PLACES; n++)
+    for (int n = 0; n < FIT_POINT_COUNT; n++)
         for (int a = 0; a < 3; a++) {
             steepest = fmax(steepest, fabs(gradients[n][a]));
             if (n >= FITTED)
-                off = fmax(off, fabs(cwi_cubic_at(cubics[a], places[n]) - gradients[n][a]));
+                off = fmax(off, fabs(cwi_cubic_at(cubics[a], FIT_POINTS[n]) - gradients[n][a]));
         }
     return worst <= s->tolerance && off <= 10 * s->field->tolerance * steepest;
 }

@@ -15,12 +15,12 @@ void cwi_lattice_eye(const cwi_frame *frame, double eye[3])
     cwi_affine_apply(frame->index_from_eye, at, eye);
 }
 
-void cwi_lattice_order(size_t count, double first, double step, double place, size_t *order)
+void cwi_lattice_order(size_t count, double first, double step, double position, size_t *order)
 {
     size_t low = 0, high = count;
     while (low < high) {
-        const double below = fabs(first + step * (double)low - place);
-        const double above = fabs(first + step * (double)(high - 1) - place);
+        const double below = fabs(first + step * (double)low - position);
+        const double above = fabs(first + step * (double)(high - 1) - position);
         *order++ = below >= above ? low++ : --high;
     }
 }

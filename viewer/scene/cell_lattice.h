@@ -11,10 +11,10 @@ extern "C" {
 /* Finds the eye in index space; in orthographic views a point far away against the view. */
 void cwi_lattice_eye(const cwi_frame *frame, double eye[3]);
 
-/* Orders `count` things at first, first + step, ... from the farthest from a place to the
+/* Orders `count` things at first, first + step, ... from the farthest from a position to the
  * nearest. Orders along three axes, nested, make an order from back to front: a thing that
  * hides another is not farther along any axis. */
-void cwi_lattice_order(size_t count, double first, double step, double place, size_t *order);
+void cwi_lattice_order(size_t count, double first, double step, double position, size_t *order);
 
 /* A table that shows, in constant time, if anything in a range of values is visible. */
 typedef struct cwi_visible {

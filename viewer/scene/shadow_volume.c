@@ -49,8 +49,8 @@ static float classify(const job *w, float coordinate, const size_t at[3])
     double gradient[3], eye[3];
     if (coordinate != coordinate)
         return 0;
-    const float max = (float)(t->count - 1), place = coordinate * max;
-    const float row = place < 0 ? 0 : place > max ? max : place;
+    const float max = (float)(t->count - 1), position = coordinate * max;
+    const float row = position < 0 ? 0 : position > max ? max : position;
     const size_t n = (size_t)row < t->count - 2 ? (size_t)row : t->count - 2;
     const float low = t->rows[4 * n + 3], high = t->rows[4 * n + 7];
     const float extinction = low + (row - (float)n) * (high - low);
@@ -94,7 +94,7 @@ static void mark_layer(void *context, size_t bz)
     }
 }
 
-/* Interpolates the extinction at a place in the volume. */
+/* Interpolates the extinction at a position in the volume. */
 static inline float extinction_at(const job *w, const double p[3])
 {
     const size_t x = (size_t)p[0], y = (size_t)p[1], z = (size_t)p[2];
@@ -111,7 +111,7 @@ static inline float extinction_at(const job *w, const double p[3])
     return low + u * (high - low);
 }
 
-/* Returns true if clip planes leave a place visible: what is cut away casts no shadow. */
+/* Returns true if clip planes leave a position visible: what is cut away casts no shadow. */
 static bool is_kept(const cwi_shadow_key *key, const double p[3])
 {
     bool kept = true;
@@ -120,7 +120,7 @@ static bool is_kept(const cwi_shadow_key *key, const double p[3])
     return kept != (key->cut_away != 0);
 }
 
-/* Returns the number of steps from a place that stay in its empty block, at least 1. */
+/* Returns the number of steps from a position that stay in its empty block, at least 1. */
 static double steps_in_block(const double p[3], const double step[3])
 {
     double min = 1e9;
@@ -142,7 +142,7 @@ static double steps_in_volume(const job *w, const size_t at[3], const double ste
         if (step[a] != 0)
             min = fmin(min, distance / step[a]);
     }
-    return min - 1e-9; /* rounding may put the last place outside */
+    return min - 1e-9; /* rounding may put the last position outside */
 }
 
 /* Returns the light that comes to a voxel along a ray of a number of steps. The first step,

@@ -15,7 +15,7 @@ static void rewind_when_empty(cwi_ui_queue *q)
         q->first = q->count = 0;
 }
 
-static cw_status check_place(const cwi_ui_event *e, cw_error *err)
+static cw_status check_position(const cwi_ui_event *e, cw_error *err)
 {
     if (!isfinite(e->x) || !isfinite(e->y))
         return cwi_fail(err, CW_ERR_ARGUMENT, "an input has a position that is not a number");
@@ -49,7 +49,7 @@ cw_status cwi_ui_feed(cwi_ui *ui, const cwi_ui_event *event, cw_error *err)
     if (pressed && (event->button < 0 || event->button >= CWI_UI_BUTTONS))
         return cwi_fail(err, CW_ERR_ARGUMENT, "a mouse has no button %d; there are 0 to %d",
                         event->button, CWI_UI_BUTTONS - 1);
-    cw_status st = check_place(event, err);
+    cw_status st = check_position(event, err);
     if (st == CW_OK)
         st = check_text(event, err);
     if (st == CW_OK && !cwi_ui_queue_put(ui, event, cwi_ui_screen_seconds(ui), false))

@@ -115,7 +115,7 @@ const cwi_ui_input *cwi_ui_begin(cwi_ui *ui, double wait_s)
 cw_status cwi_ui_end(cwi_ui *ui, cw_error *err)
 {
     cwi_ui_imgui_layout(ui);
-    cwi_ui_places_turn(ui);
+    cwi_ui_widget_rects_turn(ui);
     if (!cwi_ui_screen_enter(ui))
         return cwi_fail(err, CW_ERR_BACKEND, "OpenGL's context cannot be made current");
     cwi_ui_target_begin(ui);

@@ -24,16 +24,16 @@ typedef struct cwi_ui_queue {
     size_t first, count, capacity;
 } cwi_ui_queue;
 
-/* The place of a widget. */
-typedef struct cwi_ui_place {
+/* The rectangle of a widget. */
+typedef struct cwi_ui_widget_rect {
     char panel[CWI_UI_NAME_SIZE], label[CWI_UI_NAME_SIZE];
     cwi_ui_rect rect;
-} cwi_ui_place;
+} cwi_ui_widget_rect;
 
-typedef struct cwi_ui_places {
-    cwi_ui_place *items;
+typedef struct cwi_ui_widget_rects {
+    cwi_ui_widget_rect *items;
     size_t count, capacity;
-} cwi_ui_places;
+} cwi_ui_widget_rects;
 
 /* A framebuffer to draw into: a window's own framebuffer does not keep what it showed. */
 typedef struct cwi_ui_target {
@@ -72,7 +72,7 @@ struct cwi_ui {
         double time, x, y;
     } press[CWI_UI_BUTTONS]; /* the last; time 0: none that a second one could follow */
 
-    cwi_ui_places now, last; /* of this frame and of the one before */
+    cwi_ui_widget_rects now, last; /* of this frame and of the one before */
     char panel[CWI_UI_DEPTH][CWI_UI_NAME_SIZE];
     unsigned panel_flags[CWI_UI_DEPTH];
     bool in_section[CWI_UI_DEPTH];
@@ -127,9 +127,9 @@ CW_NODISCARD cw_status cwi_ui_target_keep(cwi_ui *ui, int slot, const cw_image *
 
 /* Places (ui_widget_rects.c). Labels end before ##. */
 void cwi_ui_label(char out[CWI_UI_NAME_SIZE], const char *label);
-void cwi_ui_places_add(cwi_ui *ui, const char *label, const cwi_ui_rect *rect);
-void cwi_ui_places_turn(cwi_ui *ui); /* this frame's places become the last frame's */
-bool cwi_ui_places_find(const cwi_ui *ui, const char *label, cwi_ui_rect *rect);
+void cwi_ui_widget_rects_add(cwi_ui *ui, const char *label, const cwi_ui_rect *rect);
+void cwi_ui_widget_rects_turn(cwi_ui *ui); /* this frame's rectangles become the last frame's */
+bool cwi_ui_widget_rects_find(const cwi_ui *ui, const char *label, cwi_ui_rect *rect);
 void cwi_ui_panel_enter(cwi_ui *ui, const char *title, unsigned flags); /* labels are in it */
 void cwi_ui_panel_leave(cwi_ui *ui);
 int cwi_ui_panel_at(const cwi_ui *ui); /* index of the one at hand; -1: none */

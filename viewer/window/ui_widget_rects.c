@@ -12,37 +12,37 @@ void cwi_ui_label(char out[CWI_UI_NAME_SIZE], const char *label)
              (int)(length < CWI_UI_NAME_SIZE ? length : CWI_UI_NAME_SIZE - 1), label);
 }
 
-void cwi_ui_places_add(cwi_ui *ui, const char *label, const cwi_ui_rect *rect)
+void cwi_ui_widget_rects_add(cwi_ui *ui, const char *label, const cwi_ui_rect *rect)
 {
-    cwi_ui_places *p = &ui->now;
+    cwi_ui_widget_rects *p = &ui->now;
     void *grown = cwi_grow_array(p->items, p->count, &p->capacity, sizeof *p->items);
     if (!grown)
         return; /* then it is not found */
     p->items = grown;
-    cwi_ui_place *place = &p->items[p->count++];
-    snprintf(place->panel, sizeof place->panel, "%s",
+    cwi_ui_widget_rect *item = &p->items[p->count++];
+    snprintf(item->panel, sizeof item->panel, "%s",
              ui->depth > 0 ? ui->panel[cwi_ui_panel_at(ui)] : "");
-    cwi_ui_label(place->label, label);
-    place->rect = *rect;
+    cwi_ui_label(item->label, label);
+    item->rect = *rect;
 }
 
-void cwi_ui_places_turn(cwi_ui *ui)
+void cwi_ui_widget_rects_turn(cwi_ui *ui)
 {
-    const cwi_ui_places old = ui->last;
+    const cwi_ui_widget_rects old = ui->last;
     ui->last = ui->now;
     ui->now = old;
     ui->now.count = 0;
 }
 
-static bool is_named(const cwi_ui_place *place, const char *name)
+static bool is_named(const cwi_ui_widget_rect *item, const char *name)
 {
-    const size_t length = strlen(place->panel);
-    return strncmp(place->label, name, CWI_UI_NAME_SIZE - 1) == 0 ||
-           (strncmp(place->panel, name, length) == 0 && name[length] == '/' &&
-            strncmp(place->label, name + length + 1, CWI_UI_NAME_SIZE - 1) == 0);
+    const size_t length = strlen(item->panel);
+    return strncmp(item->label, name, CWI_UI_NAME_SIZE - 1) == 0 ||
+           (strncmp(item->panel, name, length) == 0 && name[length] == '/' &&
+            strncmp(item->label, name + length + 1, CWI_UI_NAME_SIZE - 1) == 0);
 }
 
-bool cwi_ui_places_find(const cwi_ui *ui, const char *label, cwi_ui_rect *rect)
+bool cwi_ui_widget_rects_find(const cwi_ui *ui, const char *label, cwi_ui_rect *rect)
 {
     for (size_t n = 0; n < ui->last.count; n++)
         if (is_named(&ui->last.items[n], label)) {

@@ -31,7 +31,7 @@ void note_rect(cwi_ui *ui, const char *label, ImRect r)
     if (r.Min.x >= r.Max.x || r.Min.y >= r.Max.y)
         return;
     const cwi_ui_rect rect = {r.Min.x, r.Min.y, r.GetWidth(), r.GetHeight()};
-    cwi_ui_places_add(ui, label, &rect);
+    cwi_ui_widget_rects_add(ui, label, &rect);
 }
 
 /* Notes the widget before, without the label at its side. */
@@ -276,7 +276,7 @@ void note_close(cwi_ui *ui, const ImGuiWindow *window)
     const ImRect bar = window->TitleBarRect();
     const float side = ImGui::GetFontSize();
     const cwi_ui_rect rect = {bar.Max.x - padding.x - side, bar.Min.y + padding.y, side, side};
-    cwi_ui_places_add(ui, "close", &rect);
+    cwi_ui_widget_rects_add(ui, "close", &rect);
 }
 
 void leave_section(cwi_ui *ui)
@@ -300,7 +300,7 @@ void panel_end(cwi_ui *ui)
         if (window->HasCloseButton)
             note_close(ui, window);
         cwi_ui_panel_leave(ui);
-        cwi_ui_places_add(ui, title, &rect);
+        cwi_ui_widget_rects_add(ui, title, &rect);
         if (flags & CWI_UI_MODAL)
             ImGui::EndPopup();
         else
@@ -611,6 +611,6 @@ const cwi_ui_functions cwi_module_window = {
     menu_begin,
     menu_end,
     item,
-    cwi_ui_places_find,
+    cwi_ui_widget_rects_find,
 };
 }

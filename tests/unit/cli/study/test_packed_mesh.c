@@ -9,7 +9,7 @@
 #include <string.h>
 
 typedef struct decoded {
-    double *places;
+    double *grid_points;
     uint8_t *bytes;
     uint32_t *corners;
 } decoded;
@@ -33,12 +33,12 @@ static decoded unpack(const cli_packed *p)
     uint32_t next = 0;
     decoded d = {calloc(3 * p->vertices + 1, sizeof(double)), calloc(p->vertices + 1, 1),
                  calloc(3 * p->triangles + 1, sizeof(uint32_t))};
-    assert_true(d.places && d.bytes && d.corners);
+    assert_true(d.grid_points && d.bytes && d.corners);
     for (size_t n = 0; n < 3 * p->vertices; n++) {
         const uint32_t code = read_integer(p, &at);
         here[n % 3] += code % 2 ? -(int32_t)(code / 2) - 1 : (int32_t)(code / 2);
         assert_in_range(here[n % 3], 0, CLI_PACKED_STEPS);
-        d.places[n] =
+        d.grid_points[n] =
             p->low[n % 3] + here[n % 3] * (p->high[n % 3] - p->low[n % 3]) / CLI_PACKED_STEPS;
     }
     for (size_t n = 0; n < p->vertices && p->has_bytes; n++)
@@ -56,7 +56,7 @@ static decoded unpack(const cli_packed *p)
 
 static void free_decoded(decoded *d)
 {
-    free(d->places);
+    free(d->grid_points);
     free(d->bytes);
     free(d->corners);
 }
@@ -71,7 +71,7 @@ static void assert_same(const cw_mesh *mesh, const uint8_t *values, const cli_pa
         for (size_t a = 0; a < 3; a++) {
             const double place = mesh->origin[a] + (double)mesh->positions[3 * was + a],
                          half = 0.5 * (p->high[a] - p->low[a]) / CLI_PACKED_STEPS;
-            assert_true(fabs(d.places[3 * is + a] - place) <= 1.001 * half + 1e-9);
+            assert_true(fabs(d.grid_points[3 * is + a] - place) <= 1.001 * half + 1e-9);
         }
         if (values)
             assert_int_equal(d.bytes[is], values[was]);
