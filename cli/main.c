@@ -29,8 +29,8 @@ static void limit_memory(const cli_command *command, const cli_common *args)
         if (o->kind == CLI_HEADING || strcmp(o->name, "memory") != 0)
             continue;
         memcpy(&input.memory, (const char *)args + o->offset, sizeof input.memory);
-        const size_t asked = cli_memory_limit(&input),
-                     limit = asked > CLI_MIN_MEMORY ? asked : CLI_MIN_MEMORY;
+        const size_t requested = cli_memory_limit(&input),
+                     limit = requested > CLI_MIN_MEMORY ? requested : CLI_MIN_MEMORY;
         const size_t spent = cli_peak_bytes() + STACKS_AND_BUFFERS;
         cw_memory_limit(limit > spent ? limit - spent : 1);
     }
@@ -54,16 +54,16 @@ static void share_memory(const cli_command *command, cli_common *args)
 /* Tells memory that ran out from memory that --memory does not allow. */
 static void explain_memory(cw_error *err)
 {
-    char asked_text[CWI_MEMORY_TEXT], left_text[CWI_MEMORY_TEXT];
+    char needed_text[CWI_MEMORY_TEXT], left_text[CWI_MEMORY_TEXT];
     size_t left;
-    const size_t asked = cwi_memory_refused(&left);
-    const cw_error said = *err;
-    if (!asked || strstr(said.message, "were needed"))
+    const size_t needed = cwi_memory_refused(&left);
+    const cw_error first_error = *err;
+    if (!needed || strstr(first_error.message, "were needed"))
         return;
-    cwi_print_memory(asked, asked_text);
+    cwi_print_memory(needed, needed_text);
     cwi_print_memory(left, left_text);
-    cwi_fail(err, said.status, "%.400s; %s were needed, and --memory leaves %s", said.message,
-             asked_text, left_text);
+    cwi_fail(err, first_error.status, "%.400s; %s were needed, and --memory leaves %s",
+             first_error.message, needed_text, left_text);
 }
 
 static cw_status run_parsed(const cli_command *command, cli_common *args, cw_error *err)
@@ -102,12 +102,13 @@ static bool names_output(const cli_option *o)
 }
 
 /* The file of --save-config is an output, too. */
-static cw_status check_save(const cli_common *args, const cli_said *said, cw_error *err)
+static cw_status check_save(const cli_common *args, const cli_given_option *options,
+                            cw_error *err)
 {
     cw_status st = cli_check_output(args->save_config, args->inputs, args->input_count, err);
-    for (size_t n = 0; n < args->said_count && st == CW_OK; n++)
-        if (names_output(said[n].option))
-            st = cli_check_apart(args->save_config, said[n].value, err);
+    for (size_t n = 0; n < args->given_count && st == CW_OK; n++)
+        if (names_output(options[n].option))
+            st = cli_check_apart(args->save_config, options[n].value, err);
     return st;
 }
 
@@ -120,20 +121,20 @@ static cw_status run_words(const cli_command *command, const cli_words *words, c
     size_t most = 1; /* letters of flags may be together in a word */
     for (int n = 0; n < words->count; n++)
         most += strlen(words->words[n]);
-    args->said = calloc(most, sizeof *args->said);
-    if (!args->said)
+    args->given_options = calloc(most, sizeof *args->given_options);
+    if (!args->given_options)
         return cwi_fail_memory(err);
-    cli_said *const said = args->said;
+    cli_given_option *const options = args->given_options;
     args->config_inputs = words->inputs;
     args->config_input_count = words->input_count;
     cw_status st = cli_parse(command, words->count, words->words, args, inputs, err);
-    args->said = NULL; /* the window parses more options later */
-    cli_keep_run(command, args, said);
+    args->given_options = NULL; /* the window parses more options later */
+    cli_keep_run(command, args, options);
     cli_console_start(args, CLI_PROGRESS_AUTO);
     if (st == CW_OK && !args->help)
         st = cli_check_rules(command, args, err);
     if (st == CW_OK && args->save_config)
-        st = check_save(args, said, err);
+        st = check_save(args, options, err);
     if (st == CW_OK && args->help)
         cli_print_help(command, false);
     else if (st == CW_OK && cli_is_batch(&args->batch))
@@ -142,7 +143,7 @@ static cw_status run_words(const cli_command *command, const cli_words *words, c
         st = run_parsed(command, args, err);
     if (st == CW_OK && args->save_config)
         st = cli_save_config(args->save_config, err);
-    free(said);
+    free(options);
     return st;
 }
 

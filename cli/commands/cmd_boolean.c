@@ -86,7 +86,7 @@ static void put_facts(cli_json *j, const cli_mesh_run *r)
     cli_json_close(j, '}');
 }
 
-static cw_status tell_facts(cli_mesh_run *r, cw_error *err)
+static cw_status report_facts(cli_mesh_run *r, cw_error *err)
 {
     const cw_boolean_facts *f = &((const boolean_state *)r->state)->facts;
     if (f->turned)
@@ -200,7 +200,7 @@ static const cli_mesh_command boolean = {
     .prepare = read_others,
     .resolve = make_pieces,
     .work = run_operation,
-    .tell = tell_facts,
+    .report = report_facts,
     .put_params = put_params,
     .put_facts = put_facts,
 };

@@ -263,12 +263,13 @@ static cw_status measure_mesh(run_state *s, cw_error *err)
         .threads = threads,
         .defects = s->defects,
         .progress = cli_progress((double)mesh->triangle_count / 1e6, "Mtriangle")};
-    const bool wanted = args->deep || cw_check_wants_crossings((cw_profile)args->profile);
+    const bool checks_crossings =
+        args->deep || cw_check_wants_crossings((cw_profile)args->profile);
     cli_report_begin(&s->report);
     cw_status st = cw_quality_measure(mesh, &desc, &s->quality, err);
     if (st == CW_OK)
         cli_report_end(&s->report, "check", mesh->triangle_count, 0);
-    if (st != CW_OK || !wanted)
+    if (st != CW_OK || !checks_crossings)
         return in_mesh(s, st, err);
     cli_report_begin(&s->report);
     st = cw_self_intersections(mesh, &crossings, &s->crossings, err);
@@ -541,8 +542,8 @@ static cw_status judge_mesh(run_state *s, cw_error *err)
         cli_print_shapes(&s->quality.shapes);
     cw_status st = args->defects ? paint_defects(s, err) : CW_OK;
     if (st == CW_OK)
-        st = cli_hold_verdicts(s->mesh.path, profiles[args->profile], s->verdicts,
-                               s->verdict_count, err);
+        st = cli_check_verdicts(s->mesh.path, profiles[args->profile], s->verdicts,
+                                s->verdict_count, err);
     if (st == CW_OK)
         cli_result("%s: meets profile %s; %.2f s\n", s->mesh.path, profiles[args->profile],
                    cli_seconds() - s->start);

@@ -148,7 +148,7 @@ static void add_facts(cw_remesh_facts *sum, const cw_remesh_facts *f, bool is_fi
     *sum = all;
 }
 
-static cw_status tell_facts(cli_mesh_run *r, cw_error *err)
+static cw_status report_facts(cli_mesh_run *r, cw_error *err)
 {
     const cw_remesh_facts *f = &((const remesh_state *)r->state)->facts;
     (void)err;
@@ -252,7 +252,7 @@ static const cli_mesh_command remesh = {
     .check = check_values,
     .resolve = resolve_desc,
     .work = remesh_pieces,
-    .tell = tell_facts,
+    .report = report_facts,
     .judge = judge_result,
     .put_params = put_params,
     .put_facts = put_facts,

@@ -143,11 +143,11 @@ static cw_status repair_pieces(cli_mesh_run *r, cw_error *err)
     return st;
 }
 
-static cw_status tell_facts(cli_mesh_run *r, cw_error *err)
+static cw_status report_facts(cli_mesh_run *r, cw_error *err)
 {
     const repair_state *s = r->state;
     const cw_repair_facts *f = &s->facts;
-    cli_tell_repair(r->mesh.path, f, s->desc.max_hole_mm, args_of(r)->report_only);
+    cli_print_repair(r->mesh.path, f, s->desc.max_hole_mm, args_of(r)->report_only);
     if (!r->pieces.count)
         return cwi_fail(
             err, CW_ERR_EMPTY,
@@ -199,7 +199,7 @@ static const cli_mesh_command repair = {
     .check = check_values,
     .resolve = resolve_lengths,
     .work = repair_pieces,
-    .tell = tell_facts,
+    .report = report_facts,
     .judge = judge_result,
     .put_params = put_params,
     .put_facts = put_facts,

@@ -252,7 +252,7 @@ static void tell_missed(cli_mesh_run *r, size_t target, size_t triangles)
         cli_say("%s: %s triangles, not %s: fewer would exceed the error limit of %.6g mm",
                 r->mesh.path, cli_count(triangles), cli_count(target), error_mm);
     else
-        cli_tell_missed(&r->report, &r->pieces, target, triangles, args_of(r)->keep_border);
+        cli_report_missed(&r->report, &r->pieces, target, triangles, args_of(r)->keep_border);
 }
 
 /* Returns the settings for a mesh of that number of triangles, without its target. */
@@ -301,7 +301,7 @@ static cw_status simplify_parts(cli_mesh_run *r, cw_error *err)
     return st;
 }
 
-static cw_status tell_result(cli_mesh_run *r, cw_error *err)
+static cw_status report_result(cli_mesh_run *r, cw_error *err)
 {
     (void)err;
     tell_missed(r, target_of(r), cli_made_triangles(r));
@@ -426,7 +426,7 @@ static const cli_mesh_command simplify = {
     .resolve = resolve_lengths,
     .make = make_result,
     .work = simplify_parts,
-    .tell = tell_result,
+    .report = report_result,
     .measure = finish_pieces,
     .put_params = put_params,
     .put_facts = put_facts,

@@ -101,7 +101,7 @@ static void put_facts(cli_json *j, const cli_mesh_run *r)
         cli_json_smoothed(j, &s->facts);
 }
 
-static cw_status tell_facts(cli_mesh_run *r, cw_error *err)
+static cw_status report_facts(cli_mesh_run *r, cw_error *err)
 {
     const cw_smooth_facts *f = &((const smooth_state *)r->state)->facts;
     const bool keeps = args_of(r)->keep_border;
@@ -223,7 +223,7 @@ static const cli_mesh_command smooth = {
     .check = check_values,
     .resolve = resolve_lengths,
     .work = smooth_pieces,
-    .tell = tell_facts,
+    .report = report_facts,
     .put_params = put_params,
     .put_facts = put_facts,
 };

@@ -113,7 +113,7 @@ static cw_status do_work(cli_mesh_run *r, cw_error *err)
     r->is_made = true;
     cli_report_end(&r->report, r->command->name, before,
                    r->outputs.count ? cli_made_triangles(r) : before);
-    return r->command->tell ? r->command->tell(r, err) : CW_OK;
+    return r->command->report ? r->command->report(r, err) : CW_OK;
 }
 
 cw_status cli_compare_made(cli_mesh_run *r, cli_made *made, cw_error *err)
@@ -139,7 +139,7 @@ cli_delivery cli_mesh_delivery(const cli_mesh_run *r)
                           .threads = r->threads,
                           .unpromised = true,
                           .found = r->found,
-                          .tell_dropped = true};
+                          .report_dropped = true};
 }
 
 static cw_status deliver_pieces(cli_mesh_run *r, cw_error *err)

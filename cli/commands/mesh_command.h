@@ -94,7 +94,7 @@ typedef struct cli_mesh_command {
     /* Makes `out` of each piece. Errors get the file's name. */
     cw_status (*work)(cli_mesh_run *run, cw_error *err);
     /* Tells the facts, and prints those for the line into `found`. Fails if nothing is left. */
-    cw_status (*tell)(cli_mesh_run *run, cw_error *err);
+    cw_status (*report)(cli_mesh_run *run, cw_error *err);
     /* Checks and measures the result; default: cli_compare_made(). */
     cw_status (*measure)(cli_mesh_run *run, cli_made *made, cw_error *err);
     /* Judges what was written, or a report alone. */

@@ -252,7 +252,7 @@ static cw_status hollow_mesh(cli_mesh_run *r, cw_error *err)
     return st;
 }
 
-static cw_status tell_hollow(cli_mesh_run *r, cw_error *err)
+static cw_status report_hollow(cli_mesh_run *r, cw_error *err)
 {
     const solid_state *s = r->state;
     const cw_hollow_facts *f = &s->facts;
@@ -278,7 +278,7 @@ static cw_status tell_hollow(cli_mesh_run *r, cw_error *err)
     return CW_OK;
 }
 
-static cw_status tell_offset(cli_mesh_run *r, cw_error *err)
+static cw_status report_offset(cli_mesh_run *r, cw_error *err)
 {
     const cw_offset_facts *f = &((const solid_state *)r->state)->offset;
     (void)err;
@@ -397,7 +397,7 @@ cw_status cli_run_hollow(void *args, cw_error *err)
         .check = check_values,
         .resolve = resolve_lengths,
         .work = hollow_mesh,
-        .tell = tell_hollow,
+        .report = report_hollow,
         .measure = measure_hollow,
         .put_params = put_hollow_params,
         .put_facts = put_hollow,
@@ -413,7 +413,7 @@ cw_status cli_run_offset(void *args, cw_error *err)
         .check = check_values,
         .resolve = resolve_lengths,
         .work = offset_mesh,
-        .tell = tell_offset,
+        .report = report_offset,
         .measure = measure_offset,
         .judge = judge_offset,
         .put_params = put_offset_params,

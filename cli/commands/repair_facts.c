@@ -114,8 +114,8 @@ static void put_crossings(const line_writer *w, const cw_repair_facts *f)
               "triangles around intersections", "replaced");
 }
 
-void cli_tell_repair(const char *path, const cw_repair_facts *f, double max_hole_mm,
-                     bool is_report)
+void cli_print_repair(const char *path, const cw_repair_facts *f, double max_hole_mm,
+                      bool is_report)
 {
     const line_writer w = {path, is_report};
     put_count(&w, f->duplicates, "triangle with the vertices of another one",

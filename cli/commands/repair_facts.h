@@ -12,8 +12,8 @@ void cli_add_repair(cw_repair_facts *sum, const cw_repair_facts *facts, bool is_
 /* Prints a line for each kind of defect that was found, and what is done about it. The lines go to
  * stdout for a report only, else to stderr.
  * max_hole_mm  0: all holes are filled */
-void cli_tell_repair(const char *path, const cw_repair_facts *facts, double max_hole_mm,
-                     bool is_report);
+void cli_print_repair(const char *path, const cw_repair_facts *facts, double max_hole_mm,
+                      bool is_report);
 
 /* Writes what is left of defects in words; the text is empty if nothing is. */
 void cli_name_left_defects(const cw_repair_facts *facts, char *text, size_t size);

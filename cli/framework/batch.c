@@ -26,7 +26,7 @@ typedef struct job {
     FILE *out, *err; /* of the child; NULL: those of this process */
     double start, seconds;
     int exit_code;
-    bool is_skipped, is_started, is_ended, is_told;
+    bool is_skipped, is_started, is_ended, is_reported;
 } job;
 
 typedef struct batch_run {
@@ -37,7 +37,7 @@ typedef struct batch_run {
     glob_t *globs; /* own the inputs that patterns stand for */
     size_t glob_count;
     job *jobs;
-    size_t count, capacity, next, told, running, failed;
+    size_t count, capacity, next, reported, running, failed;
     FILE *lines;
     char *folder; /* for reports on their way into the lines; NULL: none */
 } batch_run;
@@ -46,7 +46,7 @@ enum { REPORT_BYTES = 4096 };
 
 bool cli_is_batch(const cli_batch *b)
 {
-    return b->is_asked || b->jobs > 0 || b->skip_existing || b->keep_going || b->json_lines;
+    return b->is_batch || b->jobs > 0 || b->skip_existing || b->keep_going || b->json_lines;
 }
 
 /* Finds the field of an option by its name; NULL where the command does not have it. */
@@ -347,8 +347,8 @@ static void write_line(const batch_run *r, const job *j)
 /* Tells of the jobs that have ended, in order. */
 static void tell_jobs(batch_run *r)
 {
-    for (; r->told < r->count && r->jobs[r->told].is_ended; r->told++) {
-        job *j = &r->jobs[r->told];
+    for (; r->reported < r->count && r->jobs[r->reported].is_ended; r->reported++) {
+        job *j = &r->jobs[r->reported];
         if (j->out)
             copy_file(j->out, stdout);
         if (j->err)

@@ -12,7 +12,7 @@
          CLI_FLAG,                                                                             \
          NULL,                                                                                 \
          "Run the command for each input by itself; the options below imply it (off)",         \
-         CLI_BATCH_ROW(args, is_asked)},                                                       \
+         CLI_BATCH_ROW(args, is_batch)},                                                       \
         {"jobs",                                                                               \
          0,                                                                                    \
          CLI_COUNT,                                                                            \

@@ -45,19 +45,19 @@ void cli_console_listen(const cli_listener *listener)
     console.listener = listener ? *listener : (cli_listener){0};
 }
 
-CW_PRINTF(1, 0) static void tell(const char *format, va_list args)
+CW_PRINTF(1, 0) static void notify_listener(const char *format, va_list args)
 {
     char line[1024];
     vsnprintf(line, sizeof line, format, args);
-    console.listener.say(console.listener.user, line);
+    console.listener.print_line(console.listener.user, line);
 }
 
-CW_PRINTF(1, 0) static void say(const char *format, va_list args)
+CW_PRINTF(1, 0) static void print_line(const char *format, va_list args)
 {
-    if (console.listener.say) {
+    if (console.listener.print_line) {
         va_list copy;
         va_copy(copy, args);
-        tell(format, copy);
+        notify_listener(format, copy);
         va_end(copy);
     }
     cli_progress_end();
@@ -70,7 +70,7 @@ void cli_say(const char *format, ...)
     va_list args;
     va_start(args, format);
     if (!console.quiet)
-        say(format, args);
+        print_line(format, args);
     va_end(args);
 }
 
@@ -79,7 +79,7 @@ void cli_say_v(const char *format, ...)
     va_list args;
     va_start(args, format);
     if (!console.quiet && console.verbose > 0)
-        say(format, args);
+        print_line(format, args);
     va_end(args);
 }
 
@@ -88,7 +88,7 @@ void cli_say_vv(const char *format, ...)
     va_list args;
     va_start(args, format);
     if (!console.quiet && console.verbose > 1)
-        say(format, args);
+        print_line(format, args);
     va_end(args);
 }
 

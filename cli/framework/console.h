@@ -35,7 +35,7 @@ cw_progress cli_progress(double total, const char *unit);
 /* Somebody else who hears what is said and how far things are: a window. */
 typedef struct cli_listener {
     void *user;
-    void (*say)(void *user, const char *line);
+    void (*print_line)(void *user, const char *line);
     bool (*progress)(void *user, const char *step, double done); /* false: stop */
 } cli_listener;
 

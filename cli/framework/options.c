@@ -151,16 +151,18 @@ static cw_status take_option(parser *p, const cli_option *o, const char *value, 
         ++*(int *)field;
     if (o->kind == CLI_FLAG)
         *(bool *)field = !off;
-    if (o->kind == CLI_FLAG && p->args->said)
-        p->args->said[p->args->said_count++] = (cli_said){.option = o, .off = off};
+    if (o->kind == CLI_FLAG && p->args->given_options)
+        p->args->given_options[p->args->given_count++] =
+            (cli_given_option){.option = o, .off = off};
     if (!o->kind->parse)
         return value ? cwi_fail(err, CW_ERR_ARGUMENT, "--%s takes no value", o->name) : CW_OK;
     if (!value && p->next == p->count)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--%s needs a value: %s", o->name,
                         cli_expected(o));
     value = value ? value : p->words[p->next++];
-    if (p->args->said)
-        p->args->said[p->args->said_count++] = (cli_said){.option = o, .value = value};
+    if (p->args->given_options)
+        p->args->given_options[p->args->given_count++] =
+            (cli_given_option){.option = o, .value = value};
     if (!o->kind->parse(o, value, field))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--%s '%s': expected %s", o->name, value,
                         cli_expected(o));

@@ -224,17 +224,17 @@ enum { CLI_MAX_OPTIONS = 192 }; /* rows of a command's table */
 
 /* Options of commands that take each input by itself: see batch.h. */
 typedef struct cli_batch {
-    bool is_asked, skip_existing, keep_going;
+    bool is_batch, skip_existing, keep_going;
     size_t jobs;
     const char *json_lines;
 } cli_batch;
 
-/* An option as it was said. */
-typedef struct cli_said {
+/* An option as the command line gives it. */
+typedef struct cli_given_option {
     const struct cli_option *option;
     const char *value; /* NULL: a flag */
     bool off;          /* a flag as --no-NAME */
-} cli_said;
+} cli_given_option;
 
 /* First member of every command's struct. */
 typedef struct cli_common {
@@ -247,8 +247,9 @@ typedef struct cli_common {
     const char *config, *save_config; /* files of a run: see run_config.h */
     const char *const *config_inputs; /* of --config, which count if the words have none */
     size_t config_input_count;
-    struct cli_said *said; /* options are listed there as they are said; NULL: they are not */
-    size_t said_count;
+    struct cli_given_option
+        *given_options; /* lists the options of the run; NULL: it does not */
+    size_t given_count;
     size_t processes; /* of a batch, which share threads and memory; 0: this one alone */
     bool given[CLI_MAX_OPTIONS]; /* rows of the command's table that were */
 } cli_common;

@@ -230,21 +230,22 @@ void cli_free_words(cli_words *words)
 static struct {
     const cli_command *command;
     const cli_common *args;
-    const cli_said *said;
+    const cli_given_option *options;
 } kept;
 
-void cli_keep_run(const cli_command *command, const cli_common *args, const cli_said *said)
+void cli_keep_run(const cli_command *command, const cli_common *args,
+                  const cli_given_option *options)
 {
     kept.command = command;
     kept.args = args;
-    kept.said = said;
+    kept.options = options;
 }
 
-/* Returns true if an option was said again later, which counts. */
-static bool is_said_again(size_t n)
+/* Returns true if an option is given again later: the last one counts. */
+static bool is_given_again(size_t n)
 {
-    for (size_t later = n + 1; later < kept.args->said_count; later++)
-        if (kept.said[later].option == kept.said[n].option)
+    for (size_t later = n + 1; later < kept.args->given_count; later++)
+        if (kept.options[later].option == kept.options[n].option)
             return true;
     return false;
 }
@@ -258,14 +259,14 @@ static void put_run(cli_json *j, const char *key)
         cli_json_text(j, NULL, kept.args->inputs[n]);
     cli_json_close(j, ']');
     cli_json_open(j, "options", '{');
-    for (size_t n = 0; n < kept.args->said_count; n++) {
-        const cli_said *said = &kept.said[n];
-        if (!is_saved(said->option) || is_said_again(n))
+    for (size_t n = 0; n < kept.args->given_count; n++) {
+        const cli_given_option *option = &kept.options[n];
+        if (!is_saved(option->option) || is_given_again(n))
             continue;
-        if (said->value)
-            cli_json_text(j, said->option->name, said->value);
+        if (option->value)
+            cli_json_text(j, option->option->name, option->value);
         else
-            cli_json_bool(j, said->option->name, !said->off);
+            cli_json_bool(j, option->option->name, !option->off);
     }
     cli_json_close(j, '}');
     cli_json_close(j, '}');

@@ -34,8 +34,9 @@ CW_NODISCARD cw_status cli_read_config(const cli_command *command, int count, ch
                                        cli_words *out, cw_error *err);
 void cli_free_words(cli_words *words);
 
-/* Keeps what this process was asked for; all are borrowed. said: args->said_count options */
-void cli_keep_run(const cli_command *command, const cli_common *args, const cli_said *said);
+/* Keeps what this process was asked for; all are borrowed. options: args->given_count options */
+void cli_keep_run(const cli_command *command, const cli_common *args,
+                  const cli_given_option *options);
 
 /* Begins a report: opens its object, and writes the schema, the version and the run. */
 void cli_json_begin(cli_json *j, const char *schema);

@@ -16,13 +16,13 @@ static cw_status check_known(const cw_volume *first, const char *first_path,
                              const cw_volume *other, const char *other_path, unsigned flag,
                              const char *what, cw_error *err)
 {
-    const bool said = first->known & flag;
-    if (said == (bool)(other->known & flag))
+    const bool is_known = first->known & flag;
+    if (is_known == (bool)(other->known & flag))
         return CW_OK;
     return cwi_fail(err, CW_ERR_FORMAT,
                     "%s and %s are not of one series: the first names %s %s, the second %s",
-                    first_path, other_path, said ? "a" : "no", what,
-                    said ? "does not" : "does");
+                    first_path, other_path, is_known ? "a" : "no", what,
+                    is_known ? "does not" : "does");
 }
 
 cw_status cli_agree(const cw_volume *first, const char *first_path, const cw_volume *other,
@@ -65,10 +65,10 @@ static cw_status check_files(const cli_series *series, const cli_input *input, c
 }
 
 /* Lists every step that the rows name; `total` is the number of steps in the series. */
-static cw_status choose_steps(cli_series *series, const cli_steps *asked, size_t total,
+static cw_status choose_steps(cli_series *series, const cli_steps *requested, size_t total,
                               cw_error *err)
 {
-    cli_steps steps = *asked;
+    cli_steps steps = *requested;
     if (steps.all || !steps.given) {
         steps.count = 1;
         steps.rows[0].first = 0;

@@ -149,10 +149,12 @@ static size_t pick_coarsening(const cli_input *input)
 
 /* Chooses to keep one voxel in `asked` along each axis; a thin axis keeps its first
  * and last. */
-static void choose_coarsening(size_t asked, const cw_volume *part, size_t step[3])
+static void choose_coarsening(size_t requested, const cw_volume *part, size_t step[3])
 {
     for (int a = 0; a < 3; a++)
-        step[a] = asked < part->dim[a] ? asked : part->dim[a] > 2 ? part->dim[a] - 1 : 1;
+        step[a] = requested < part->dim[a] ? requested
+                  : part->dim[a] > 2       ? part->dim[a] - 1
+                                           : 1;
 }
 
 /* Chooses rows and slices that take 256 MiB, or half of the limit, at most. */
@@ -340,7 +342,7 @@ static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_inp
     if (needs_slices(input, &part, desc->max_bytes)) {
         st = view_shape(&part, volume, err);
         if (st == CW_OK)
-            cli_tell_slice_filter(input, volume);
+            cli_print_slice_filter(input, volume);
         return st;
     }
     if (!input->coarsen_view)
@@ -502,10 +504,10 @@ cw_status cli_tell_labels(cli_volume *volume, const double *iso, size_t count,
         return CW_OK;
     if (st != CW_OK || !l.found || !l.count)
         return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
-    const bool said = volume->view.known & CW_KNOWN_LABELS;
+    const bool is_stated = volume->view.known & CW_KNOWN_LABELS;
     snprintf(what, sizeof what, "%s (%s%zu values, %.10g to %.10g)",
-             said ? "is a label map" : "looks like a label map", l.more ? "more than " : "",
-             l.count, l.value[0], l.value[l.count - 1]);
+             is_stated ? "is a label map" : "looks like a label map",
+             l.more ? "more than " : "", l.count, l.value[0], l.value[l.count - 1]);
     for (size_t n = 0; n < count; n++) {
         const size_t inside = count_inside(&l, iso[n], inside_is_low);
         if (inside < 2)

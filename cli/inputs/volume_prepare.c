@@ -114,7 +114,7 @@ static cw_status find_value(const cli_input *input, const cli_volume *volume, do
     return st;
 }
 
-void cli_tell_slice_filter(const cli_input *input, cli_volume *volume)
+void cli_print_slice_filter(const cli_input *input, cli_volume *volume)
 {
     const size_t side = 2 * input->denoise.count + 1;
     double sigma[3];
@@ -135,7 +135,7 @@ static cw_status smooth_view(const cli_input *input, cli_volume *volume, cw_volu
     cli_width_in_voxels(&input->denoise.width, &volume->view, sigma);
     cw_status st = cw_volume_gauss(&volume->view, sigma, &desc, made, err);
     if (st == CW_OK)
-        cli_tell_slice_filter(input, volume);
+        cli_print_slice_filter(input, volume);
     return st;
 }
 
@@ -145,7 +145,7 @@ static cw_status sort_view(const cli_input *input, cli_volume *volume, cw_volume
     const cw_filter_desc desc = cli_describe_filter(input, volume);
     cw_status st = cw_volume_median(&volume->view, input->denoise.count, &desc, made, err);
     if (st == CW_OK)
-        cli_tell_slice_filter(input, volume);
+        cli_print_slice_filter(input, volume);
     return st;
 }
 

@@ -14,7 +14,7 @@ const char *cli_find_preparation(const cli_input *input);
 const char *cli_find_unstreamed_preparation(const cli_input *input);
 
 /* Says what is made slice by slice, of a volume that streams. */
-void cli_tell_slice_filter(const cli_input *input, cli_volume *volume);
+void cli_print_slice_filter(const cli_input *input, cli_volume *volume);
 
 /* Visits filtered slices, if a filter was given.
  * visit  hands a visitor the slices of the volume */

@@ -68,12 +68,12 @@ cw_status cli_check_label_look(const render_args *args, cw_error *err)
 static bool may_draw_labels(const cli_command *command, const render_args *args,
                             const cli_source *s, cw_mode *mode)
 {
-    const int asked = args->scene.mode;
-    *mode = asked == 1 + CW_MODE_SLICES ? CW_MODE_SLICES : CW_MODE_MESH;
+    const int requested = args->scene.mode;
+    *mode = requested == 1 + CW_MODE_SLICES ? CW_MODE_SLICES : CW_MODE_MESH;
     if (s->is_mesh || s->is_level_set || s->is_uneven || args->iso.given || args->mesh ||
         args->compare || args->scene.hide || args->scene.transfer || args->scene.color ||
         args->scene.cap || args->marks.histogram || args->marks.color_bar ||
-        args->input.component.magnitude || (asked && *mode != CW_MODE_SLICES))
+        args->input.component.magnitude || (requested && *mode != CW_MODE_SLICES))
         return false;
     return cli_check_scene(command, &args->common, *mode, true, NULL) == CW_OK;
 }

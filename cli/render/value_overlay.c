@@ -37,11 +37,11 @@ bool cli_overlay_is_labels(bool looks_like_labels, const cli_value_look *look,
 static double find_percentile(const cw_statistics *s, double share)
 {
     double below = 0;
-    const double wanted = share * (double)s->finite;
+    const double target = share * (double)s->finite;
     for (size_t b = 0; b < s->bin_count; b++) {
         const double count = (double)s->bins[b];
-        if (count > 0 && below + count >= wanted)
-            return s->min + s->bin_width * ((double)b + (wanted - below) / count);
+        if (count > 0 && below + count >= target)
+            return s->min + s->bin_width * ((double)b + (target - below) / count);
         below += count;
     }
     return s->max;

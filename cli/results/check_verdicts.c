@@ -22,8 +22,8 @@ void cli_print_verdicts(const cw_verdict *verdicts, size_t count)
     }
 }
 
-cw_status cli_hold_verdicts(const char *name, const char *profile, const cw_verdict *verdicts,
-                            size_t count, cw_error *err)
+cw_status cli_check_verdicts(const char *name, const char *profile, const cw_verdict *verdicts,
+                             size_t count, cw_error *err)
 {
     char names[256] = "";
     if (cw_check_holds(verdicts, count))

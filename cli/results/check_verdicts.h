@@ -10,9 +10,9 @@
 void cli_print_verdicts(const cw_verdict *verdicts, size_t count);
 
 /* Fails where verdicts do not hold, and names them. */
-CW_NODISCARD cw_status cli_hold_verdicts(const char *name, const char *profile,
-                                         const cw_verdict *verdicts, size_t count,
-                                         cw_error *err);
+CW_NODISCARD cw_status cli_check_verdicts(const char *name, const char *profile,
+                                          const cw_verdict *verdicts, size_t count,
+                                          cw_error *err);
 
 /* Angles, aspect ratios and lengths of edges, a bar a bin. */
 void cli_print_shapes(const cw_shapes *shapes);

@@ -48,27 +48,27 @@ static cw_status read_colors(cli_coloring *c, const char *path, const cli_input 
                              size_t step, cw_error *err)
 {
     static char name[4096]; /* the volume keeps it */
-    cli_input wanted = {.threads = input->threads,
-                        .memory = input->memory,
-                        .max_voxels = input->max_voxels,
-                        .no_sandbox = input->no_sandbox,
-                        .timeout_s = input->timeout_s,
-                        .allow_external = input->allow_external};
+    cli_input settings = {.threads = input->threads,
+                          .memory = input->memory,
+                          .max_voxels = input->max_voxels,
+                          .no_sandbox = input->no_sandbox,
+                          .timeout_s = input->timeout_s,
+                          .allow_external = input->allow_external};
     cli_component component = {0};
     part_name(c->args->by, name, sizeof name, &component);
     const bool is_file = access(name, F_OK) == 0;
     if (!is_file) {
-        wanted = *input;
-        wanted.array = name;
-        wanted.crop.given = wanted.resample.given = wanted.denoise.given = false;
-        wanted.preview = wanted.may_stream = wanted.remove_table = false;
-        wanted.coarsen = 0;
-        wanted.step = step;
-        wanted.step_chosen = true;
+        settings = *input;
+        settings.array = name;
+        settings.crop.given = settings.resample.given = settings.denoise.given = false;
+        settings.preview = settings.may_stream = settings.remove_table = false;
+        settings.coarsen = 0;
+        settings.step = step;
+        settings.step_chosen = true;
     }
-    wanted.component = component;
+    settings.component = component;
     cli_free_volume(&c->volume);
-    cw_status st = cli_read_volume(is_file ? name : path, &wanted, false, &c->volume, err);
+    cw_status st = cli_read_volume(is_file ? name : path, &settings, false, &c->volume, err);
     if (st != CW_OK && !is_file) {
         const cw_error why = *err;
         return cwi_fail(err, st, "--color-by %s: no file has this name, and as an array: %s",

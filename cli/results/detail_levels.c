@@ -26,8 +26,8 @@ cw_status cli_name_detail_levels(cli_outputs *files, const char *output, const c
                                 apart ? CLI_LOD_APART : CLI_LOD_BOTH, err);
 }
 
-void cli_tell_missed(cli_report *report, const cli_pieces *pieces, size_t target,
-                     size_t triangles, bool keeps_border)
+void cli_report_missed(cli_report *report, const cli_pieces *pieces, size_t target,
+                       size_t triangles, bool keeps_border)
 {
     if (target && pieces->triangles <= target)
         cli_say("%s: already has no more than the %s triangles requested", pieces->path,
@@ -68,7 +68,8 @@ static cw_status make_level(cli_detail_levels *d, size_t n, cli_made *made, cw_e
     cw_status st = n == 0 ? d->make(d->user, d->mesh, err) : CW_OK;
     if (st != CW_OK)
         return st;
-    cli_tell_missed(d->report, d->pieces, d->lod->n[n], level->triangle_count, d->keeps_border);
+    cli_report_missed(d->report, d->pieces, d->lod->n[n], level->triangle_count,
+                      d->keeps_border);
     st = d->finish(d->user, made, level, err);
     if (st == CW_OK)
         st = order_for_drawing(d, level, err);

@@ -40,8 +40,8 @@ CW_NODISCARD cw_status cli_make_detail_levels(cli_detail_levels *d, cw_error *er
 void cli_free_detail_levels(cli_detail_levels *d);
 
 /* Says that a mesh had no more triangles than it should get, or warns that more are left. */
-void cli_tell_missed(cli_report *report, const cli_pieces *pieces, size_t target,
-                     size_t triangles, bool keeps_border);
+void cli_report_missed(cli_report *report, const cli_pieces *pieces, size_t target,
+                       size_t triangles, bool keeps_border);
 
 /* Writes the key `lod`: the triangles asked for. */
 void cli_json_lod(cli_json *j, const cli_counts *lod);

@@ -79,7 +79,7 @@ cw_status cli_judge_print(const char *name, const cw_mesh *mesh, const cli_print
     cw_status st = cli_measure_printed(mesh, printer, threads, out, err);
     for (size_t n = 0; n < out->count && st == CW_OK; n++)
         say_verdict(name, &out->verdicts[n]);
-    return st == CW_OK ? cli_hold_verdicts(name, "print", out->verdicts, out->count, err) : st;
+    return st == CW_OK ? cli_check_verdicts(name, "print", out->verdicts, out->count, err) : st;
 }
 
 void cli_json_printer(cli_json *j, const cw_print_desc *limits)

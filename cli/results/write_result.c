@@ -139,7 +139,7 @@ static void warn_of_loss(cli_report *report, const cli_made *made, const cli_loa
             cli_count(l->vertices), cli_count(loss->flat_triangles), cli_count(l->triangles));
 }
 
-static void tell_dropped(const cli_made *made, const cw_write_loss *loss)
+static void report_dropped(const cli_made *made, const cw_write_loss *loss)
 {
     char list[128] = "";
     size_t used = 0;
@@ -207,9 +207,9 @@ static cw_status end_writing(const writing *w, cw_error *err)
                         : made->compressed.bits ? CW_COMPRESS_DRACO /* a format of that alone */
                                                 : CW_COMPRESS_NONE;
     memcpy(made->origin, l->parts->mesh->origin, sizeof made->origin);
-    made->dropped = w->how->tell_dropped ? w->loss.dropped : 0;
+    made->dropped = w->how->report_dropped ? w->loss.dropped : 0;
     warn_of_loss(w->report, made, l, &w->loss);
-    tell_dropped(made, &w->loss);
+    report_dropped(made, &w->loss);
     cli_report_end(w->report, "write", l->triangles, l->triangles);
     return CW_OK;
 }

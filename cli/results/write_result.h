@@ -9,15 +9,15 @@ typedef struct cli_delivery {
     const char *input;   /* named in errors */
     cw_write_desc write; /* but for the progress and compression */
     const cli_compress *compress;
-    double voxel_mm;   /* for a tolerance in voxels */
-    int threads;       /* to measure with; default: all */
-    bool unchecked;    /* default: measured, and refused when not as promised */
-    bool unpromised;   /* measured, and written whatever it is: the line says what */
-    bool tell_dropped; /* report the properties of the mesh that the file does not hold */
-    bool open;         /* the surface may end at the volume's border */
-    const char *parts; /* what the parts are: "levels" of detail, "steps"; default: "parts" */
-    const char *found; /* what else is said in the line, from "; " on; default: nothing */
-    bool preview;      /* not of all voxels: the line says so */
+    double voxel_mm;     /* for a tolerance in voxels */
+    int threads;         /* to measure with; default: all */
+    bool unchecked;      /* default: measured, and refused when not as promised */
+    bool unpromised;     /* measured, and written whatever it is: the line says what */
+    bool report_dropped; /* report the properties of the mesh that the file does not hold */
+    bool open;           /* the surface may end at the volume's border */
+    const char *parts;   /* what the parts are: "levels" of detail, "steps"; default: "parts" */
+    const char *found;   /* what else is said in the line, from "; " on; default: nothing */
+    bool preview;        /* not of all voxels: the line says so */
 } cli_delivery;
 
 /* Delivers the report's latest mesh, of one or several parts, to its path. The report gets the

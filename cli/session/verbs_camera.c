@@ -67,7 +67,7 @@ static cw_status go_to_camera(view *v, int by, cw_error *err)
     if (st != CW_OK)
         return st;
     const bool is_there = by < 0 ? c->at > 0 : c->at + 1 < c->count;
-    if (!is_there && v->script.is_asked) {
+    if (!is_there && v->script.is_queued) {
         view_say(v, false, by < 0 ? "no earlier view" : "no later view");
         return CW_OK;
     }

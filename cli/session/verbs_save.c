@@ -19,7 +19,7 @@ static cw_status go_back(view *v, int by, cw_error *err)
 {
     const char *none = by < 0 ? "nothing to undo" : "nothing to redo";
     const bool is_done = view_undo(v, by);
-    if (!is_done && v->script.is_asked) { /* a key was pressed once too often */
+    if (!is_done && v->script.is_queued) { /* a key was pressed once too often */
         view_say(v, false, none);
         return CW_OK;
     }
@@ -52,7 +52,7 @@ static void free_name(char *name, size_t size)
     }
 }
 
-static cw_status tell_written(view *v, cw_status st, const char *path)
+static cw_status report_written(view *v, cw_status st, const char *path)
 {
     char text[512];
     snprintf(text, sizeof text, "%.400s written", path);
@@ -103,7 +103,7 @@ static cw_status run_screenshot(view *v, int count, char **args, cw_error *err)
         st = parse_sheet(args[n], &sheet, err);
     if (st == CW_OK)
         st = view_frame(v, 0, err); /* lays out what came before */
-    return st == CW_OK ? tell_written(v, view_write_picture(v, &sheet, path, err), path) : st;
+    return st == CW_OK ? report_written(v, view_write_picture(v, &sheet, path, err), path) : st;
 }
 
 static cw_status parse_triangles(const char *word, size_t *triangles, cw_error *err)
@@ -217,13 +217,13 @@ static cw_status run_turntable(view *v, int count, char **args, cw_error *err)
     }
     v->state.camera = before;
     view_touch(v, 1 << VIEW_SPACE);
-    return tell_written(v, st, args[1]);
+    return report_written(v, st, args[1]);
 }
 
 static cw_status run_save_state(view *v, int count, char **args, cw_error *err)
 {
     const char *path = count ? args[0] : "cubewright-state.txt";
-    return tell_written(v, view_write_state(v, path, err), path);
+    return report_written(v, view_write_state(v, path, err), path);
 }
 
 static cw_status run_save_tf(view *v, int count, char **args, cw_error *err)
@@ -234,7 +234,7 @@ static cw_status run_save_tf(view *v, int count, char **args, cw_error *err)
         st = view_need_transfer(v, err);
     if (st == CW_OK)
         st = cw_transfer_write(args[0], &v->picture.transfer, err);
-    return tell_written(v, st, args[0]);
+    return report_written(v, st, args[0]);
 }
 
 static cw_status run_save_camera(view *v, int count, char **args, cw_error *err)
@@ -243,7 +243,7 @@ static cw_status run_save_camera(view *v, int count, char **args, cw_error *err)
     cw_status st = view_need_camera(v, err);
     if (st == CW_OK)
         st = cw_camera_write(args[0], &v->state.camera, err);
-    return tell_written(v, st, args[0]);
+    return report_written(v, st, args[0]);
 }
 
 static cw_status run_run(view *v, int count, char **args, cw_error *err)

@@ -73,12 +73,12 @@ static cw_status run_toggle(view *v, int count, char **args, cw_error *err)
                         args[0]);
     if (count == 2 && strcmp(args[1], "on") != 0 && strcmp(args[1], "off") != 0)
         return cwi_fail(err, CW_ERR_ARGUMENT, "toggle '%s': on or off was expected", args[1]);
-    const bool wanted = count == 2 ? strcmp(args[1], "on") == 0 : !on;
+    const bool turn_on = count == 2 ? strcmp(args[1], "on") == 0 : !on;
     if (strcmp(args[0], "quad") == 0)
-        return view_set(v, "layout", wanted ? "quad" : "single", err);
+        return view_set(v, "layout", turn_on ? "quad" : "single", err);
     if (!shown)
-        return view_set(v, args[0], wanted ? "on" : "off", err);
-    *shown = wanted;
+        return view_set(v, args[0], turn_on ? "on" : "off", err);
+    *shown = turn_on;
     return CW_OK;
 }
 
@@ -119,7 +119,8 @@ static cw_status run_focus(view *v, int count, char **args, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT, "focus '%s': next, menus or off was expected",
                         args[0]);
     }
-    return v->script.is_asked ? CW_OK : view_take_in(v, err); /* a script's keys come at once */
+    return v->script.is_queued ? CW_OK
+                               : view_take_in(v, err); /* a script's keys come at once */
 }
 
 /* cuts, the cross-hair, slices */

@@ -214,9 +214,9 @@ typedef struct view_input {
 typedef struct view_commands {
     char **words; /* texts that options point to */
     size_t word_count;
-    bool is_asked; /* what runs is out of this list, not of a script: */
-    char **asked;  /* commands to run after this frame */
-    size_t asked_count;
+    bool is_queued; /* the command that runs comes from this list, not from a script: */
+    char **queued;  /* commands to run after this frame */
+    size_t queued_count;
     bool is_configuring;
     int depth; /* of files of commands that run others */
 } view_commands;
@@ -365,7 +365,7 @@ CW_NODISCARD cw_status view_exec(view *v, const char *text, cw_error *err);
 CW_NODISCARD cw_status view_exec_file(view *v, const char *path, cw_error *err);
 /* Reads a text of up to 1 MiB; free() it. Returns CW_ERR_IO, CW_ERR_FORMAT, naming the file */
 CW_NODISCARD cw_status view_read_text(const char *path, char **text, cw_error *err);
-void view_run_asked(view *v);
+void view_run_queued(view *v);
 
 /* view_words.c */
 const char *view_keep_text(view *v, const char *text);
@@ -419,7 +419,7 @@ typedef struct view_sheet {
     view_layout layout;
 } view_sheet;
 /* Draws the session as asked for and writes it as a .png file. */
-CW_NODISCARD cw_status view_write_picture(view *v, const view_sheet *wanted, const char *path,
+CW_NODISCARD cw_status view_write_picture(view *v, const view_sheet *sheet, const char *path,
                                           cw_error *err);
 
 /* mesh_facts.c: the surface as it would be saved. */

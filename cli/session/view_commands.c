@@ -47,7 +47,7 @@ cw_status view_frame(view *v, double wait_s, cw_error *err)
 cw_status view_take_in(view *v, cw_error *err)
 {
     cw_status st = view_frame(v, 0, err);
-    while (st == CW_OK && (v->ui->pending(v->window) || v->script.asked_count) && !v->quits)
+    while (st == CW_OK && (v->ui->pending(v->window) || v->script.queued_count) && !v->quits)
         st = view_frame(v, 0, err);
     for (int n = 0; n < 3 && st == CW_OK && v->ui->focused(v->window); n++)
         st = view_frame(v, 0, err); /* the widget that has the keys follows them */

@@ -47,10 +47,10 @@ static cw_status check_points(view_measure_kind kind, const double (*points)[3],
                               cw_error *err)
 {
     const char *name = view_measure_name(kind);
-    const size_t wanted = kind == VIEW_MEASURE_DISTANCE ? 2 : 3;
-    if (count < wanted || (count > wanted && kind != VIEW_MEASURE_AREA))
+    const size_t needed = kind == VIEW_MEASURE_DISTANCE ? 2 : 3;
+    if (count < needed || (count > needed && kind != VIEW_MEASURE_AREA))
         return cwi_fail(err, CW_ERR_ARGUMENT, "measure %s: %s%zu points were expected, not %zu",
-                        name, kind == VIEW_MEASURE_AREA ? "at least " : "", wanted, count);
+                        name, kind == VIEW_MEASURE_AREA ? "at least " : "", needed, count);
     if (count > VIEW_POLYGON)
         return cwi_fail(err, CW_ERR_LIMIT, "measure %s: up to %d points were expected", name,
                         VIEW_POLYGON);
@@ -175,15 +175,15 @@ bool view_measure_key(view *v, const char *key)
 void view_tool_hint(const view *v, char *text, size_t size)
 {
     const view_measuring *measuring = &v->measuring;
-    const size_t wanted = points_of_tool(v);
+    const size_t needed = points_of_tool(v);
     if (measuring->tool == VIEW_MEASURE_NONE)
         *text = '\0';
-    else if (wanted == SIZE_MAX)
+    else if (needed == SIZE_MAX)
         snprintf(text, size, "   area: %zu points; Enter or a double click ends it",
                  measuring->tool_count);
     else
         snprintf(text, size, "   %s: click point %zu of %zu",
-                 view_measure_name(measuring->tool), measuring->tool_count + 1, wanted);
+                 view_measure_name(measuring->tool), measuring->tool_count + 1, needed);
 }
 
 /* --- over the pictures -------------------------------------------------------------------- */

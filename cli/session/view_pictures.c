@@ -27,18 +27,17 @@ static cw_status draw_sheet(view *v, size_t width, size_t height, cw_image *shee
     return st;
 }
 
-cw_status view_write_picture(view *v, const view_sheet *wanted, const char *path, cw_error *err)
+cw_status view_write_picture(view *v, const view_sheet *sheet, const char *path, cw_error *err)
 {
-    cw_image sheet = {0};
+    cw_image picture = {0};
     view_part before[VIEW_PARTS];
     if (!v->document.path)
         return cwi_fail(err, CW_ERR_ARGUMENT, "no file is open to draw");
     const cwi_ui_rect area = view_picture_area(v);
-    const size_t width = wanted->width ? wanted->width : (size_t)area.width;
-    const size_t height = wanted->height ? wanted->height : (size_t)area.height;
-    const bool is_quad = wanted->layout == VIEW_LAYOUT_SHOWN
-                             ? view_is_quad(v)
-                             : wanted->layout == VIEW_LAYOUT_QUAD;
+    const size_t width = sheet->width ? sheet->width : (size_t)area.width;
+    const size_t height = sheet->height ? sheet->height : (size_t)area.height;
+    const bool is_quad = sheet->layout == VIEW_LAYOUT_SHOWN ? view_is_quad(v)
+                                                            : sheet->layout == VIEW_LAYOUT_QUAD;
     if (is_quad && !(v->document.has_volume && view_fits_mode(v, CW_MODE_SLICES)))
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "the layout quad shows slices of a volume on an even grid, and this is "
@@ -48,7 +47,7 @@ cw_status view_write_picture(view *v, const view_sheet *wanted, const char *path
     memcpy(before, v->picture.parts, sizeof before);
     view_place_parts(v, &(cwi_ui_rect){0, 0, (double)width, (double)height}, is_quad);
     v->picture.is_saving = true;
-    cw_status st = draw_sheet(v, width, height, &sheet, err);
+    cw_status st = draw_sheet(v, width, height, &picture, err);
     v->picture.is_saving = false;
     for (int p = 0; p < VIEW_PARTS; p++) { /* pictures of the window are those it had */
         before[p].level =
@@ -56,7 +55,7 @@ cw_status view_write_picture(view *v, const view_sheet *wanted, const char *path
         v->picture.parts[p] = before[p];
     }
     if (st == CW_OK)
-        st = cw_image_write(path, &sheet, err);
-    cw_image_free(&sheet);
+        st = cw_image_write(path, &picture, err);
+    cw_image_free(&picture);
     return st;
 }

@@ -105,20 +105,20 @@ cw_status view_exec_file(view *v, const char *path, cw_error *err)
     return st;
 }
 
-void view_run_asked(view *v)
+void view_run_queued(view *v)
 {
-    char **asked = v->script.asked; /* what they ask for is for the next frame */
-    const size_t count = v->script.asked_count;
-    v->script.asked = NULL;
-    v->script.asked_count = 0;
-    v->script.is_asked = true;
+    char **queued = v->script.queued; /* what they ask for is for the next frame */
+    const size_t count = v->script.queued_count;
+    v->script.queued = NULL;
+    v->script.queued_count = 0;
+    v->script.is_queued = true;
     for (size_t n = 0; n < count; n++) {
         cw_error err = {0};
-        const cw_status st = view_exec(v, asked[n], &err);
+        const cw_status st = view_exec(v, queued[n], &err);
         if (st != CW_OK)
             view_say(v, st != CW_ERR_CANCELLED, err.message);
-        free(asked[n]);
+        free(queued[n]);
     }
-    v->script.is_asked = false;
-    free(asked);
+    v->script.is_queued = false;
+    free(queued);
 }

@@ -105,9 +105,9 @@ double view_suggest_iso(const view *v)
 cw_status view_choose_mode(view *v, cw_error *err)
 {
     render_args *args = &v->state.args;
-    const int asked = args->scene.mode;
+    const int requested = args->scene.mode;
     view_choose_labels(v);
-    v->picture.mode = asked                    ? (cw_mode)(asked - 1)
+    v->picture.mode = requested                ? (cw_mode)(requested - 1)
                       : view_shows_surfaces(v) ? CW_MODE_MESH
                       : v->document.has_volume && !v->document.source.is_level_set &&
                               (!args->iso.given || v->state.iso_is_ours)

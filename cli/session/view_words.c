@@ -55,11 +55,11 @@ void view_ask(view *v, const char *format, ...)
     va_start(args, format);
     const int length = vasprintf(&text, format, args);
     va_end(args);
-    char **asked = realloc(v->script.asked, (v->script.asked_count + 1) * sizeof *asked);
-    if (asked)
-        v->script.asked = asked;
-    if (length >= 0 && asked)
-        v->script.asked[v->script.asked_count++] = text;
+    char **queued = realloc(v->script.queued, (v->script.queued_count + 1) * sizeof *queued);
+    if (queued)
+        v->script.queued = queued;
+    if (length >= 0 && queued)
+        v->script.queued[v->script.queued_count++] = text;
     else if (length >= 0)
         free(text);
 }

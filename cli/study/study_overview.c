@@ -126,19 +126,19 @@ static cw_status study_slice(cli_study *s, cw_error *err)
     cli_overview *o = &s->overview;
     const cw_volume *v = &s->volume->view;
     cw_image image = {0};
-    slice seen;
+    slice shown;
     const char *kind = cwi_volume_kind(v);
-    if (kind || v->dim[0] < 2 || v->dim[1] < 2 || !choose_slice(s, &seen)) {
+    if (kind || v->dim[0] < 2 || v->dim[1] < 2 || !choose_slice(s, &shown)) {
         snprintf(o->why, sizeof o->why, "no slice is drawn of %s",
                  kind ? kind : "so flat a grid");
         return CW_OK;
     }
-    cw_status st = cw_image_alloc(&image, seen.width, seen.height, err);
+    cw_status st = cw_image_alloc(&image, shown.width, shown.height, err);
     if (st != CW_OK)
         return st;
-    draw_slice(&seen, s->iso, &image);
+    draw_slice(&shown, s->iso, &image);
     snprintf(o->slice_words, sizeof o->slice_words, "slice %zu of %zu along the third axis",
-             seen.number + 1, v->dim[2]);
+             shown.number + 1, v->dim[2]);
     st = cli_make_png(s, &image, &o->slice, err);
     cw_image_free(&image);
     return st;

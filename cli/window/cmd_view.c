@@ -218,11 +218,11 @@ static void end_session(view *v)
         v->ui->close(v->window);
     for (size_t n = 0; n < v->script.word_count; n++)
         free(v->script.words[n]);
-    for (size_t n = 0; n < v->script.asked_count; n++)
-        free(v->script.asked[n]);
+    for (size_t n = 0; n < v->script.queued_count; n++)
+        free(v->script.queued[n]);
     free(v->measuring.points);
     free(v->script.words);
-    free(v->script.asked);
+    free(v->script.queued);
     free(v->widgets);
     free(v);
 }

@@ -152,12 +152,12 @@ static void use_curve(view *v, const cwi_ui_area *a)
         view_ask(v, "add-point %.9g %.6g", at[0], at[1]);
     else if (a->right && point != CWI_TRANSFER_NONE && v->picture.transfer.opacity_count > 1)
         view_ask(v, "remove-point %zu", point);
-    else if (a->held && !a->pressed && curve->drag == POINT &&
+    else if (a->is_down && !a->pressed && curve->drag == POINT &&
              (a->x != curve->at[0] || a->y != curve->at[1]))
         view_ask(v, "point %d %.9g %.6g", curve->point, at[0], at[1]);
-    else if (a->held && curve->drag == ISO && a->x != curve->at[0])
+    else if (a->is_down && curve->drag == ISO && a->x != curve->at[0])
         view_ask(v, "iso %.9g", at[0]);
-    if (!a->held)
+    if (!a->is_down)
         curve->drag = NOTHING;
     curve->at[0] = a->x;
     curve->at[1] = a->y;
@@ -173,7 +173,8 @@ static void use_colors(view *v, const cwi_ui_area *a)
     cw_transfer_at(&v->picture.transfer, at[0], rgb, &opacity);
     if (a->pressed && n != CWI_TRANSFER_NONE)
         curve->color = n;
-    curve->drags_color = a->held && (a->pressed ? n != CWI_TRANSFER_NONE : curve->drags_color);
+    curve->drags_color =
+        a->is_down && (a->pressed ? n != CWI_TRANSFER_NONE : curve->drags_color);
     if (a->twice && n == CWI_TRANSFER_NONE)
         view_ask(v, "add-color %.9g #%02x%02x%02x", at[0], (unsigned)lround(255 * rgb[0]),
                  (unsigned)lround(255 * rgb[1]), (unsigned)lround(255 * rgb[2]));
@@ -242,7 +243,7 @@ void view_curve(view *v)
         show_colors(v, &colors.rect);
         use_colors(v, &colors);
         choose_color(v);
-    } else if (curve.held) {
+    } else if (curve.is_down) {
         view_ask(v, "iso %.9g", value_of(v, &curve.rect, curve.rect.x + curve.x));
     }
     snprintf(text, sizeof text, "%.5g to %.5g%s", v->document.statistics.min,

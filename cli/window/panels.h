@@ -15,7 +15,7 @@ enum { VIEW_THUMBS = 40 };
 /* Times of view_loop.c and cmd_view.c, in ui seconds but for start. */
 typedef struct view_clock {
     double start;          /* of the program, in cli_seconds() */
-    bool is_told;          /* the time to the first picture has been printed */
+    bool is_printed;       /* the time to the first picture has been printed */
     double progress_shown; /* the last time */
     double next_step;      /* of a series that plays */
 } view_clock;

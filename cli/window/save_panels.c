@@ -91,7 +91,7 @@ void view_show_save_mesh(view *v)
     if (v->document.path && !s->mesh_name[0])
         suggest_name(v, s->mesh_name, sizeof s->mesh_name, ".stl");
     if (v->ui->panel_begin(v->window, "Save mesh", &rect, 0, &v->shown.save_mesh)) {
-        bool is_asked = v->ui->input(v->window, "File", s->mesh_name, sizeof s->mesh_name);
+        bool is_entered = v->ui->input(v->window, "File", s->mesh_name, sizeof s->mesh_name);
         show_format(v, s);
         const size_t triangles = show_part_choice(v, s);
         warn_of_old(v, s->mesh_name);
@@ -107,11 +107,11 @@ void view_show_save_mesh(view *v)
             v->ui->text(v->window, text);
         }
         v->ui->text(v->window, "Cuts are for the picture alone: the whole surface is saved.");
-        is_asked |= v->ui->button(v->window, "Save");
+        is_entered |= v->ui->button(v->window, "Save");
         v->ui->same_line(v->window);
         if (v->ui->button(v->window, "Cancel"))
             v->shown.save_mesh = false;
-        if (is_asked && s->mesh_name[0] && !strchr(s->mesh_name, '\'')) {
+        if (is_entered && s->mesh_name[0] && !strchr(s->mesh_name, '\'')) {
             view_ask(v, "save-mesh '%s' %zu", s->mesh_name, triangles);
             v->shown.save_mesh = false;
         }
@@ -134,7 +134,7 @@ void view_show_save_picture(view *v)
         s->picture_size[1] = area.height;
     }
     if (v->ui->panel_begin(v->window, "Save picture", &rect, 0, &v->shown.save_picture)) {
-        bool is_asked =
+        bool is_entered =
             v->ui->input(v->window, "File", s->picture_name, sizeof s->picture_name);
         v->ui->number(v->window, "Width", &s->picture_size[0], 1, "%.0f pixels");
         v->ui->tip(v->window, "Drag, or double-click to type");
@@ -155,11 +155,11 @@ void view_show_save_picture(view *v)
         warn_of_old(v, s->picture_name);
         for (int a = 0; a < 2; a++)
             s->picture_size[a] = fmin(fmax(round(s->picture_size[a]), 1), 16384);
-        is_asked |= v->ui->button(v->window, "Save");
+        is_entered |= v->ui->button(v->window, "Save");
         v->ui->same_line(v->window);
         if (v->ui->button(v->window, "Cancel"))
             v->shown.save_picture = false;
-        if (is_asked && s->picture_name[0] && !strchr(s->picture_name, '\'')) {
+        if (is_entered && s->picture_name[0] && !strchr(s->picture_name, '\'')) {
             const char *now = v->state.args.scene.background;
             if (s->background)
                 view_ask(v, "background none");

@@ -41,7 +41,7 @@ static void play_steps(view *v)
 
 static double wait_for(const view *v, double wait_s)
 {
-    if (!view_is_final(v) || v->script.asked_count || v->film.preview || view_gallery_waits(v))
+    if (!view_is_final(v) || v->script.queued_count || v->film.preview || view_gallery_waits(v))
         return 0;
     return v->shown.playing && v->document.source.series.count > 1
                ? fmin(wait_s, fmax(0, v->widgets->clock.next_step - v->ui->seconds(v->window)))
@@ -72,10 +72,10 @@ static cw_status draw_session(view *v, cw_error *err)
 /* With -v: how long people waited for something to see. */
 static void tell_first(view *v)
 {
-    if (v->widgets->clock.is_told || v->picture.parts[VIEW_SPACE].level == VIEW_STALE ||
+    if (v->widgets->clock.is_printed || v->picture.parts[VIEW_SPACE].level == VIEW_STALE ||
         !v->document.path)
         return;
-    v->widgets->clock.is_told = true;
+    v->widgets->clock.is_printed = true;
     cli_say_v("first picture shown after %.2f s", cli_seconds() - v->widgets->clock.start);
 }
 
@@ -101,7 +101,7 @@ cw_status view_show_frame(view *v, double wait_s, cw_error *err)
     play_steps(v);
     cw_status st = ui->end(v->window, err);
     tell_first(v);
-    view_run_asked(v);
+    view_run_queued(v);
     view_draw_gallery(v);
     if (st == CW_OK)
         st = view_run_preview(v, err);

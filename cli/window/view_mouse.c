@@ -261,10 +261,10 @@ void view_mouse(view *v, const cwi_ui_input *in)
 {
     view_drag *mouse = &v->widgets->mouse;
     const int part = in->over_widget ? -1 : part_under(v, in->x, in->y);
-    bool pressed = false, held = false;
+    bool pressed = false, is_down = false;
     for (int b = 0; b < CWI_UI_BUTTONS; b++) {
         pressed |= in->pressed[b];
-        held |= in->down[b];
+        is_down |= in->down[b];
     }
     probe_part(v, in, part);
     if (pressed && part >= 0 && v->document.path && mouse->drag == NOTHING) {
@@ -277,7 +277,7 @@ void view_mouse(view *v, const cwi_ui_input *in)
     }
     if (v->measuring.tool && v->document.path)
         click_tool(v, in, part);
-    if (!held)
+    if (!is_down)
         mouse->drag = NOTHING;
     v->input.is_dragging = mouse->drag != NOTHING;
     if (in->twice[CWI_UI_LEFT] && part == VIEW_SPACE && v->document.path && !v->measuring.tool)

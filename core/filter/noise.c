@@ -103,13 +103,13 @@ static void count_slice(void *context, size_t z)
 /* Returns the median of what was counted; 0: nothing was. */
 static double find_median(const size_t *counts)
 {
-    size_t all = 0, seen = 0, bin = 0;
+    size_t all = 0, below = 0, bin = 0;
     for (size_t n = 0; n < BINS; n++)
         all += counts[n];
     if (!all)
         return 0;
-    while (seen + counts[bin] <= (all - 1) / 2)
-        seen += counts[bin++];
+    while (below + counts[bin] <= (all - 1) / 2)
+        below += counts[bin++];
     return bin_middle(bin);
 }
 

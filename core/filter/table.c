@@ -169,12 +169,12 @@ static cw_status find_solid(work *k, const uint8_t *from, cw_error *err)
 /* Returns true if `other` holds less than half of the tissue: the body is a shell. */
 static bool misses_tissue(const work *k)
 {
-    size_t all = 0, held = 0;
+    size_t all = 0, shared = 0;
     for (size_t n = 0; n < count_voxels(k); n++) {
         all += k->tissue[n];
-        held += k->tissue[n] && k->other[n];
+        shared += k->tissue[n] && k->other[n];
     }
-    return held < all / 2;
+    return shared < all / 2;
 }
 
 /* Leaves the largest component of the tissue. */

@@ -43,15 +43,16 @@ cw_status cw_team_agree(const cw_team *team, cw_status status, cw_error *err)
 {
     if (!team)
         return cwi_fail(err, CW_ERR_ARGUMENT, "cw_team_agree: 'team' is NULL");
-    cw_error told = {.status = status};
+    cw_error first_error = {.status = status};
     outcome all[CW_TEAM_MAX];
     int first = 0, alike = 0;
     if (team->size <= 1)
         return status;
     /* err holds the message of a failure before this call */
     if (status != CW_OK && err)
-        memcpy(told.message, err->message, sizeof told.message);
-    const outcome mine = {.status = (int32_t)status, .message = hash_message(told.message)};
+        memcpy(first_error.message, err->message, sizeof first_error.message);
+    const outcome mine = {.status = (int32_t)status,
+                          .message = hash_message(first_error.message)};
     cw_status st = cw_team_gather(team, &mine, sizeof mine, all, err);
     if (st != CW_OK)
         return st;
@@ -61,10 +62,10 @@ cw_status cw_team_agree(const cw_team *team, cw_status status, cw_error *err)
         return CW_OK;
     for (int r = 0; r < team->size; r++)
         alike += memcmp(&all[r], &all[first], sizeof *all) == 0;
-    st = cw_team_broadcast(team, first, &told, sizeof told, err);
+    st = cw_team_broadcast(team, first, &first_error, sizeof first_error, err);
     if (st != CW_OK)
         return st;
-    return alike == team->size
-               ? cwi_fail(err, told.status, "%s", told.message)
-               : cwi_fail(err, told.status, "rank %d: %.490s", first, told.message);
+    return alike == team->size ? cwi_fail(err, first_error.status, "%s", first_error.message)
+                               : cwi_fail(err, first_error.status, "rank %d: %.490s", first,
+                                          first_error.message);
 }

@@ -40,14 +40,14 @@ int live_close(void **state)
 }
 
 /* A vertex and its number. */
-typedef struct place {
+typedef struct vertex {
     float position[3], normal[3];
     size_t number;
-} place;
+} vertex;
 
 static int by_position(const void *a, const void *b)
 {
-    const place *p = a, *q = b;
+    const vertex *p = a, *q = b;
     for (int c = 0; c < 3; c++)
         if (p->position[c] != q->position[c])
             return p->position[c] < q->position[c] ? -1 : 1;
@@ -57,16 +57,16 @@ static int by_position(const void *a, const void *b)
     return 0;
 }
 
-static place *sort_vertices(const cw_mesh *mesh)
+static vertex *sort_vertices(const cw_mesh *mesh)
 {
-    place *places = malloc(mesh->vertex_count * sizeof *places);
+    vertex *vertices = malloc(mesh->vertex_count * sizeof *vertices);
     for (size_t v = 0; v < mesh->vertex_count; v++) {
-        memcpy(places[v].position, mesh->positions + 3 * v, sizeof places[v].position);
-        memcpy(places[v].normal, mesh->normals + 3 * v, sizeof places[v].normal);
-        places[v].number = v;
+        memcpy(vertices[v].position, mesh->positions + 3 * v, sizeof vertices[v].position);
+        memcpy(vertices[v].normal, mesh->normals + 3 * v, sizeof vertices[v].normal);
+        vertices[v].number = v;
     }
-    qsort(places, mesh->vertex_count, sizeof *places, by_position);
-    return places;
+    qsort(vertices, mesh->vertex_count, sizeof *vertices, by_position);
+    return vertices;
 }
 
 static int by_corners(const void *a, const void *b)
@@ -79,12 +79,12 @@ static int by_corners(const void *a, const void *b)
 }
 
 /* Triangles by the places of their vertices in order, the lowest first, sorted. */
-static uint32_t (*sort_triangles(const cw_mesh *mesh, const place *places))[3]
+static uint32_t (*sort_triangles(const cw_mesh *mesh, const vertex *vertices))[3]
 {
     uint32_t(*sorted)[3] = malloc(mesh->triangle_count * sizeof *sorted);
     uint32_t *rank = malloc(mesh->vertex_count * sizeof *rank);
     for (size_t v = 0; v < mesh->vertex_count; v++)
-        rank[places[v].number] = (uint32_t)v;
+        rank[vertices[v].number] = (uint32_t)v;
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         const uint32_t *corner = mesh->triangles + 3 * t;
         size_t first = 0;
@@ -109,7 +109,7 @@ live_difference live_compare(const cw_mesh *gpu, const cw_mesh *cpu)
     if (!gpu->vertex_count)
         return d;
     assert_memory_equal(gpu->origin, cpu->origin, sizeof gpu->origin);
-    place *a = sort_vertices(gpu), *b = sort_vertices(cpu);
+    vertex *a = sort_vertices(gpu), *b = sort_vertices(cpu);
     uint32_t(*t)[3] = sort_triangles(gpu, a), (*u)[3] = sort_triangles(cpu, b);
     for (size_t v = 0; v < gpu->vertex_count; v++) {
         if (memcmp(a[v].position, b[v].position, sizeof a[v].position) != 0 && d.positions < 9)

@@ -19,19 +19,19 @@ int main(int count, char **words)
     if (count != 2)
         return 2;
     for (int k = 0; k < SLICES; k++) {
-        char path[4096], place[32];
+        char path[4096], position[32];
         int16_t pixels[EDGE * EDGE];
         test_dicom d;
         for (int n = 0; n < EDGE * EDGE; n++)
             pixels[n] = sample(n % EDGE, n / EDGE, k);
         snprintf(path, sizeof path, "%s/%d.dcm", words[1], k);
-        snprintf(place, sizeof place, "-19.5\\-18.25\\%d", 4 * k);
+        snprintf(position, sizeof position, "-19.5\\-18.25\\%d", 4 * k);
         test_image_make(&(test_image){.number = 7,
                                       .instance = k + 1,
                                       .columns = EDGE,
                                       .rows = EDGE,
                                       .is_signed = true,
-                                      .position = place,
+                                      .position = position,
                                       .slope = "1",
                                       .intercept = "-1000",
                                       .pixels = pixels},

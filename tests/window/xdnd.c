@@ -77,7 +77,7 @@ static void answer(Display *x, const XSelectionRequestEvent *asked, const char *
 }
 
 /* Enter, move, and what the window answers: it is dropped when the window would take it. */
-static bool drop(Display *x, Window to, const long place, const char *list)
+static bool drop(Display *x, Window to, const long position, const char *list)
 {
     const Window own = XCreateSimpleWindow(x, DefaultRootWindow(x), 0, 0, 1, 1, 0, 0, 0);
     const Atom copy = atom(x, "XdndActionCopy");
@@ -85,7 +85,8 @@ static bool drop(Display *x, Window to, const long place, const char *list)
     XSetSelectionOwner(x, atom(x, "XdndSelection"), own, CurrentTime);
     send(x, to, "XdndEnter",
          (const long[5]){(long)own, VERSION << 24, (long)atom(x, "text/uri-list")});
-    send(x, to, "XdndPosition", (const long[5]){(long)own, 0, place, CurrentTime, (long)copy});
+    send(x, to, "XdndPosition",
+         (const long[5]){(long)own, 0, position, CurrentTime, (long)copy});
     while (wait_for_event(x, &e)) {
         if (e.type == SelectionRequest)
             answer(x, &e.xselectionrequest, list);

@@ -80,7 +80,7 @@ typedef struct cwi_ui_rect {
 typedef struct cwi_ui_area {
     cwi_ui_rect rect;
     bool over;                          /* the mouse is on it */
-    bool held;                          /* left button went down on it and still is */
+    bool is_down;                       /* left button went down on it and still is */
     bool pressed, lifted, twice, right; /* in this frame; right: a right click */
     double x, y;                        /* the mouse, from rect's corner */
 } cwi_ui_area;

@@ -452,7 +452,7 @@ void area(cwi_ui *ui, const char *label, double width, double height, cwi_ui_are
     a->x = ui->input.x - a->rect.x;
     a->y = ui->input.y - a->rect.y;
     a->over = ImGui::IsItemHovered();
-    a->held = ImGui::IsItemActive();
+    a->is_down = ImGui::IsItemActive();
     a->pressed = ImGui::IsItemActivated();
     a->lifted = ImGui::IsItemDeactivated();
     a->twice = a->pressed && ui->input.twice[CWI_UI_LEFT];

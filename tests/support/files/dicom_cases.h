@@ -55,7 +55,7 @@ static const slice_frame oblique = {{0, 0.6, -0.8}, {1, 0, 0}, {2, 3}};
 static inline void write_field_slice(const char *name, int instance, const slice_frame *f,
                                      const double position[3])
 {
-    char place[80], turn[120], spacing[40];
+    char origin[80], turn[120], spacing[40];
     int16_t pixels[PIXELS];
     for (int n = 0; n < PIXELS; n++) {
         double p[3];
@@ -64,12 +64,13 @@ static inline void write_field_slice(const char *name, int instance, const slice
                    n / COLUMNS * f->spacing[1] * f->y[r];
         pixels[n] = (int16_t)lrint(10 * field_at(p));
     }
-    snprintf(place, sizeof place, "%.10g\\%.10g\\%.10g", position[0], position[1], position[2]);
+    snprintf(origin, sizeof origin, "%.10g\\%.10g\\%.10g", position[0], position[1],
+             position[2]);
     snprintf(turn, sizeof turn, "%.10g\\%.10g\\%.10g\\%.10g\\%.10g\\%.10g", f->x[0], f->x[1],
              f->x[2], f->y[0], f->y[1], f->y[2]);
     snprintf(spacing, sizeof spacing, "%.10g\\%.10g", f->spacing[1], f->spacing[0]);
     test_image_write(&(test_image){.instance = instance,
-                                   .position = place,
+                                   .position = origin,
                                    .orientation = turn,
                                    .spacing = spacing,
                                    .is_signed = true,
@@ -110,11 +111,11 @@ static inline void write_row(const slice_frame *f, const double *distances, int 
 static inline void write_at(const char *name, int number, int instance, double z,
                             const char *series)
 {
-    char place[40];
-    snprintf(place, sizeof place, "0\\0\\%.6g", z);
+    char origin[40];
+    snprintf(origin, sizeof origin, "0\\0\\%.6g", z);
     test_image_write(
         &(test_image){
-            .number = number, .instance = instance, .position = place, .series = series},
+            .number = number, .instance = instance, .position = origin, .series = series},
         name);
 }
 

@@ -152,13 +152,13 @@ static int compare(const void *a, const void *b)
 static void put_directory(test_tiff *t, test_tag *tags, size_t count)
 {
     const size_t word = t->big ? 8 : 4, head = t->big ? 8 : 2, entry = t->big ? 20 : 12;
-    size_t places[MAX_TAGS];
+    size_t offsets[MAX_TAGS];
     qsort(tags, count, sizeof *tags, compare);
     for (size_t i = 0; i < count; i++) {
         const size_t size = size_of_type(tags[i].type), n = numbers_of(&tags[i]);
         if (t->size % 2)
             grow(t, 1);
-        places[i] = n * size > word ? test_tiff_put(t, tags[i].values, n, size) : 0;
+        offsets[i] = n * size > word ? test_tiff_put(t, tags[i].values, n, size) : 0;
     }
     if (t->size % 2)
         grow(t, 1);
@@ -171,9 +171,9 @@ static void put_directory(test_tiff *t, test_tag *tags, size_t count)
         put_number(t, e, tags[i].tag, 2);
         put_number(t, e + 2, tags[i].type, 2);
         put_number(t, e + 4, tags[i].count, word);
-        if (places[i])
-            put_number(t, e + 4 + word, places[i], word);
-        for (size_t n = 0; !places[i] && n < numbers_of(&tags[i]); n++)
+        if (offsets[i])
+            put_number(t, e + 4 + word, offsets[i], word);
+        for (size_t n = 0; !offsets[i] && n < numbers_of(&tags[i]); n++)
             put_number(t, e + 4 + word + n * size, number_at(tags[i].values, n, size), size);
     }
     t->link = at + head + count * entry;

@@ -186,13 +186,13 @@ static unsigned char *make_chunk(const zarr_made *m, const size_t index[ZARR_MAX
     unsigned char *numbers = malloc(count * number_bytes(m));
     assert_non_null(numbers);
     do {
-        size_t place[ZARR_MAX_RANK];
+        size_t voxel[ZARR_MAX_RANK];
         bool inside = true;
         for (size_t d = 0; d < m->rank; d++) {
-            place[d] = index[d] * inner_size(m)[d] + at[d];
-            inside &= place[d] < m->shape[d];
+            voxel[d] = index[d] * inner_size(m)[d] + at[d];
+            inside &= voxel[d] < m->shape[d];
         }
-        store_number(m, inside ? m->value(m, place) : 99, numbers + n++ * number_bytes(m));
+        store_number(m, inside ? m->value(m, voxel) : 99, numbers + n++ * number_bytes(m));
     } while (next_index(m->rank, inner_size(m), m->order, at));
     unsigned char *out =
         zarr_pack(m->codec, numbers, count * number_bytes(m), number_bytes(m), packed);
@@ -229,14 +229,14 @@ static void write_shard(const zarr_made *m, const size_t shard[ZARR_MAX_RANK])
     const size_t start = m->index_at_start ? index_size + (m->has_crc ? 4 : 0) : 0;
     unsigned char *index = malloc(index_size);
     do {
-        size_t place[ZARR_MAX_RANK], packed;
+        size_t chunk_index[ZARR_MAX_RANK], packed;
         for (size_t d = 0; d < m->rank; d++)
-            place[d] = shard[d] * along[d] + at[d];
-        if (is_left_out(m, place)) {
+            chunk_index[d] = shard[d] * along[d] + at[d];
+        if (is_left_out(m, chunk_index)) {
             memset(index + 16 * n++, 255, 16);
             continue;
         }
-        unsigned char *chunk = make_chunk(m, place, &packed);
+        unsigned char *chunk = make_chunk(m, chunk_index, &packed);
         put_word(index + 16 * n, start + size);
         put_word(index + 16 * n++ + 8, packed);
         body = realloc(body, size + packed);

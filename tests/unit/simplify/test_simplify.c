@@ -412,11 +412,11 @@ static double painted(const cw_mesh *mesh, size_t v, const char *how)
                          : asin((double)mesh->normals[3 * v]);
 }
 
-/* The share of a corner in a place of a flat triangle. */
-static double share_in(const float *place, const float *b, const float *c, const float *a)
+/* The barycentric weight of a corner at a point of a flat triangle. */
+static double weight_in(const float *p0, const float *b, const float *c, const float *a)
 {
-    const double u = (double)(b[0] - place[0]), v = (double)(b[1] - place[1]),
-                 w = (double)(c[0] - place[0]), z = (double)(c[1] - place[1]);
+    const double u = (double)(b[0] - p0[0]), v = (double)(b[1] - p0[1]),
+                 w = (double)(c[0] - p0[0]), z = (double)(c[1] - p0[1]);
     const double all = (double)(b[0] - a[0]) * (double)(c[1] - a[1]) -
                        (double)(b[1] - a[1]) * (double)(c[0] - a[0]);
     return (u * z - v * w) / all;
@@ -429,7 +429,7 @@ static double painted_wrong(const cw_mesh *mesh, const cw_mesh *out, const char 
     size_t seen = 0;
     const size_t step = test_is_short() ? 7 : 1;
     for (size_t v = 0; v < mesh->vertex_count; v += step) {
-        const float *place = mesh->positions + 3 * v;
+        const float *p0 = mesh->positions + 3 * v;
         for (size_t t = 0; t < out->triangle_count; t++) {
             const uint32_t *c = out->triangles + 3 * t;
             const float *p[3];
@@ -438,9 +438,9 @@ static double painted_wrong(const cw_mesh *mesh, const cw_mesh *out, const char 
             for (int k = 0; k < 3; k++)
                 p[k] = out->positions + 3 * (size_t)c[k];
             for (int k = 0; k < 3 && inside; k++) {
-                const double share = share_in(place, p[(k + 1) % 3], p[(k + 2) % 3], p[k]);
-                inside = share >= -1e-4;
-                at += share * painted(out, c[k], how);
+                const double weight = weight_in(p0, p[(k + 1) % 3], p[(k + 2) % 3], p[k]);
+                inside = weight >= -1e-4;
+                at += weight * painted(out, c[k], how);
             }
             if (!inside)
                 continue;

@@ -69,9 +69,9 @@ static void assert_same(const cw_mesh *mesh, const uint8_t *values, const cli_pa
     for (size_t c = 0; c < 3 * p->triangles; c++) {
         const size_t was = mesh->triangles[c], is = d.corners[c];
         for (size_t a = 0; a < 3; a++) {
-            const double place = mesh->origin[a] + (double)mesh->positions[3 * was + a],
+            const double coordinate = mesh->origin[a] + (double)mesh->positions[3 * was + a],
                          half = 0.5 * (p->high[a] - p->low[a]) / CLI_PACKED_STEPS;
-            assert_true(fabs(d.grid_points[3 * is + a] - place) <= 1.001 * half + 1e-9);
+            assert_true(fabs(d.grid_points[3 * is + a] - coordinate) <= 1.001 * half + 1e-9);
         }
         if (values)
             assert_int_equal(d.bytes[is], values[was]);

@@ -334,15 +334,15 @@ static void a_welder_numbers_places_as_they_come(void **state)
     assert_true(cwi_weld(points, COUNT, map));
     assert_true(cwi_welder_add(&welder, points, 1, indices));
     assert_true(cwi_welder_add(&welder, points + 3, COUNT - 1, indices + 1));
-    size_t places = 0;
+    size_t distinct = 0;
     for (size_t i = 0; i < COUNT; i++) {
         const uint32_t first = map[i];
-        assert_int_equal(indices[i], first == i ? places : indices[first]);
-        places += first == i;
+        assert_int_equal(indices[i], first == i ? distinct : indices[first]);
+        distinct += first == i;
         assert_memory_equal(welder.points + 3 * (size_t)indices[i], points + 3 * (size_t)first,
                             3 * sizeof *points);
     }
-    assert_int_equal(welder.count, places);
+    assert_int_equal(welder.count, distinct);
     cwi_welder_free(&welder);
     free(points);
     free(map);

@@ -10,7 +10,7 @@ static void versions_come_first(void **state)
 {
     (void)state;
 #define PLACE(type) offsetof(type, version), sizeof(((type *)0)->version)
-    static const size_t places[][2] = {
+    static const size_t offsets[][2] = {
         {PLACE(cw_mesh)},          {PLACE(cw_fit_desc)},        {PLACE(cw_sample_desc)},
         {PLACE(cw_cut_desc)},      {PLACE(cw_extract_desc)},    {PLACE(cw_field_distance_desc)},
         {PLACE(cw_field_desc)},    {PLACE(cw_normals_desc)},    {PLACE(cw_mesh_distance_desc)},
@@ -23,9 +23,9 @@ static void versions_come_first(void **state)
         {PLACE(cw_simplify_desc)}, {PLACE(cw_smooth_desc)},     {PLACE(cw_slice_filter_desc)},
         {PLACE(cw_stream_desc)},   {PLACE(cw_spool_drop_desc)}, {PLACE(cw_pipeline_desc)},
     };
-    for (size_t n = 0; n < sizeof places / sizeof *places; n++) {
-        assert_int_equal(places[n][0], 0);
-        assert_int_equal(places[n][1], sizeof(uint32_t));
+    for (size_t n = 0; n < sizeof offsets / sizeof *offsets; n++) {
+        assert_int_equal(offsets[n][0], 0);
+        assert_int_equal(offsets[n][1], sizeof(uint32_t));
     }
 }
 

@@ -39,7 +39,7 @@ static void load_point(const cw_mesh *m, size_t v, double p[3])
 /* The values of a point. Numbers of triangles begin with 1: 0 is that of no triangle. */
 static void set_values(cw_mesh *m)
 {
-    float *place = data_of(m, "place"), *frame = data_of(m, "frame");
+    float *position = data_of(m, "place"), *frame = data_of(m, "frame");
     int16_t *tenth = data_of(m, "tenth");
     double *away = data_of(m, "away"), *corner = data_of(m, "corner");
     uint8_t *tint = data_of(m, "tint");
@@ -47,7 +47,7 @@ static void set_values(cw_mesh *m)
     for (size_t v = 0; v < m->vertex_count; v++) {
         double p[3];
         load_point(m, v, p);
-        memcpy(place + 3 * v, m->positions + 3 * v, 3 * sizeof *place);
+        memcpy(position + 3 * v, m->positions + 3 * v, 3 * sizeof *position);
         tenth[v] = (int16_t)lround(100 * p[0]);
         memcpy(away + 3 * v, p, sizeof p);
         cwi_normalise(away + 3 * v);
@@ -88,7 +88,7 @@ static cw_mesh make_ball(void)
 
 static void check_vertex(const cw_mesh *m, const cw_mesh *first, size_t v, double margin)
 {
-    const float *place = (float *)data_of(m, "place") + 3 * v;
+    const float *position = (float *)data_of(m, "place") + 3 * v;
     const double *away = (double *)data_of(m, "away") + 3 * v;
     const uint8_t *tint = (uint8_t *)data_of(m, "tint") + 4 * v;
     const uint32_t source = ((uint32_t *)data_of(m, "vertex"))[v];
@@ -97,7 +97,7 @@ static void check_vertex(const cw_mesh *m, const cw_mesh *first, size_t v, doubl
     memcpy(unit, p, sizeof unit);
     cwi_normalise(unit);
     for (int a = 0; a < 3; a++)
-        assert_near((double)place[a], p[a], margin);
+        assert_near((double)position[a], p[a], margin);
     assert_near((double)((int16_t *)data_of(m, "tenth"))[v], 100 * p[0], 1.01 + 100 * margin);
     assert_near(cwi_dot(away, away), 1, 1e-9);
     assert_true(cwi_dot(away, unit) > 0.98);

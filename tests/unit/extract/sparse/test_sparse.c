@@ -398,10 +398,11 @@ static void what_a_type_cannot_hold_is_refused(void **state)
         {CW_F64, 1e300, true},
     };
     for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
-        for (int place = 0; place < 2; place++) {
-            const cw_tile tile = {{0, 0, 0}, {1, 1, 1}, place ? 0 : rows[n].value};
-            const cw_sparse s = {
-                .tile_count = 1, .tiles = &tile, .background = place ? rows[n].value : 0};
+        for (int in_background = 0; in_background < 2; in_background++) {
+            const cw_tile tile = {{0, 0, 0}, {1, 1, 1}, in_background ? 0 : rows[n].value};
+            const cw_sparse s = {.tile_count = 1,
+                                 .tiles = &tile,
+                                 .background = in_background ? rows[n].value : 0};
             const cw_volume v = {.type = rows[n].type, .dim = {16, 8, 8}, .sparse = &s};
             cw_error err = {0};
             cw_mesh m = {0};

@@ -155,11 +155,11 @@ static cw_volume make_noise(cw_type type, const size_t dim[3], unsigned values, 
 /* Uneven distances along all axes. */
 static void space_unevenly(cw_volume *v)
 {
-    static double places[3][160];
+    static double coordinates[3][160];
     for (int a = 0; a < 3; a++) {
         for (size_t i = 0; i < v->dim[a]; i++)
-            places[a][i] = (double)i + 0.3 * sin((double)i);
-        v->coordinates[a] = places[a];
+            coordinates[a][i] = (double)i + 0.3 * sin((double)i);
+        v->coordinates[a] = coordinates[a];
     }
 }
 

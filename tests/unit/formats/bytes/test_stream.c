@@ -346,10 +346,11 @@ static void only_zeros_may_follow_compressed_data(void **state)
     for (size_t i = 0; i < TAILS * 4 * 2; i++) {
         const size_t size = sizes[i / 2 % 4], tail = i / 8;
         size_t packed_size, unused = 0;
-        char place[40];
+        char expected[40];
         cw_error err = {0};
         unsigned char *packed = pack_bytes(plain, size, i % 2, &packed_size);
-        snprintf(place, sizeof place, "byte %zu of the file", packed_size + tails[tail].at);
+        snprintf(expected, sizeof expected, "byte %zu of the file",
+                 packed_size + tails[tail].at);
         packed = add_tail(packed, &packed_size, NULL, &unused, (uint32_t)tail);
         const int fd = make_file(packed, packed_size);
         const cw_status st = read_all(fd, 0, true, back, size, &err);
@@ -358,7 +359,7 @@ static void only_zeros_may_follow_compressed_data(void **state)
         else
             assert_fails(st, CW_ERR_FORMAT, tails[tail].told, err);
         if (tails[tail].told && strcmp(tails[tail].told, BEHIND) == 0)
-            assert_fails(st, CW_ERR_FORMAT, place, err);
+            assert_fails(st, CW_ERR_FORMAT, expected, err);
         close(fd);
         free(packed);
     }
@@ -370,18 +371,18 @@ static void zeros_may_go_on_but_end_with_the_file(void **state)
     enum { ZEROS = 200000 };
     unsigned char back[500];
     size_t size;
-    char place[40];
+    char expected[40];
     cw_error err = {0};
     unsigned char *packed = pack_bytes(plain, 500, true, &size);
     packed = realloc(packed, size + ZEROS + 1);
     assert_non_null(packed);
     memset(packed + size, 0, ZEROS);
     packed[size + ZEROS] = 'x';
-    snprintf(place, sizeof place, "byte %zu of the file", size + ZEROS);
+    snprintf(expected, sizeof expected, "byte %zu of the file", size + ZEROS);
     const int whole = make_file(packed, size + ZEROS),
               spoilt = make_file(packed, size + ZEROS + 1);
     assert_ok(read_all(whole, 0, true, back, 500, &err), err);
-    assert_fails(read_all(spoilt, 0, true, back, 500, &err), CW_ERR_FORMAT, place, err);
+    assert_fails(read_all(spoilt, 0, true, back, 500, &err), CW_ERR_FORMAT, expected, err);
     close(whole), close(spoilt);
     free(packed);
 }

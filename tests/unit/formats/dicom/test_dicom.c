@@ -280,13 +280,13 @@ static void regions_are_crops(void **state)
     test_folder_remove(NULL);
     test_folder_make(NULL);
     for (int n = 0; n < 6; n++) {
-        char name[16], place[16];
+        char name[16], position[16];
         snprintf(name, sizeof name, "%d", n);
-        snprintf(place, sizeof place, "0\\0\\%d", n % 3);
+        snprintf(position, sizeof position, "0\\0\\%d", n % 3);
         test_image_write(&(test_image){.instance = n,
                                        .samples = 3,
                                        .bits = 8,
-                                       .position = place,
+                                       .position = position,
                                        .slope = n ? "0.5" : "0.25"},
                          name);
     }

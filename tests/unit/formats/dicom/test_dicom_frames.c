@@ -36,8 +36,8 @@ static void segments_become_labels(void **state)
             int label = 0;
             for (int f = 0; f < 4; f++) { /* the higher one stays */
                 const size_t bit = (size_t)f * PIXELS + n;
-                const int place = frames[f].position[4] - '0';
-                if (place == 2 * (int)k && bits[bit / 8] >> bit % 8 & 1 &&
+                const int z = frames[f].position[4] - '0';
+                if (z == 2 * (int)k && bits[bit / 8] >> bit % 8 & 1 &&
                     frames[f].segment > label)
                     label = frames[f].segment;
             }
@@ -233,7 +233,7 @@ static void write_mosaic(const char *name, int instance, const csa *header, doub
     const slice_frame *f = &oblique; /* its normal is 0, -0.8, -0.6 */
     const double normal[3] = {0, -0.8 * up, -0.6 * up}, corner[3] = {7, -3, 11};
     int16_t pixels[WIDE * HIGH] = {0};
-    char place[80];
+    char position[80];
     double p[3];
     for (int n = 0; n < SLICES * PIXELS; n++) {
         const int k = n / PIXELS, i = n % COLUMNS, j = n / COLUMNS % ROWS;
@@ -246,7 +246,7 @@ static void write_mosaic(const char *name, int instance, const csa *header, doub
     for (int r = 0; r < 3; r++)
         p[r] = corner[r] - (WIDE - COLUMNS) / 2.0 * f->spacing[0] * f->x[r] -
                (HIGH - ROWS) / 2.0 * f->spacing[1] * f->y[r];
-    snprintf(place, sizeof place, "%.10g\\%.10g\\%.10g", p[0], p[1], p[2]);
+    snprintf(position, sizeof position, "%.10g\\%.10g\\%.10g", p[0], p[1], p[2]);
     test_image_write(&(test_image){.instance = instance,
                                    .columns = WIDE,
                                    .rows = HIGH,
@@ -254,7 +254,7 @@ static void write_mosaic(const char *name, int instance, const csa *header, doub
                                    .between = "2.5",
                                    .csa = header ? header->bytes : NULL,
                                    .csa_bytes = header ? header->size : 0,
-                                   .position = place,
+                                   .position = position,
                                    .orientation = "0\\0.6\\-0.8\\1\\0\\0",
                                    .spacing = "3\\2",
                                    .is_signed = true,

@@ -45,11 +45,11 @@ static void slices_with_a_scale_each_become_values(void **state)
     static const char *const slopes[] = {"0.5", "0.25", "2.125"};
     const double factor[] = {0.5, 0.25, 2.125};
     for (int n = 0; n < 3; n++) {
-        char name[16], place[16];
+        char name[16], position[16];
         snprintf(name, sizeof name, "%d", n);
-        snprintf(place, sizeof place, "0\\0\\%d", n);
+        snprintf(position, sizeof position, "0\\0\\%d", n);
         test_image_write(&(test_image){.instance = n,
-                                       .position = place,
+                                       .position = position,
                                        .slope = slopes[n],
                                        .intercept = "-3",
                                        .padding = "11"},
@@ -74,14 +74,14 @@ static void slices_between_scales_are_made_of_values(void **state)
     (void)state;
     static const char *const slopes[] = {"0.5", "0.25", "2.125"}, *const intercepts[] = {
                                                                       "-3", "8", "-100"};
-    static const int places[] = {0, 1, 4};
+    static const int positions[] = {0, 1, 4};
     const double factor[] = {0.5, 0.25, 2.125}, start[] = {-3, 8, -100};
     for (int n = 0; n < 3; n++) {
-        char name[16], place[16];
+        char name[16], position[16];
         snprintf(name, sizeof name, "%d", n);
-        snprintf(place, sizeof place, "0\\0\\%d", places[n]);
+        snprintf(position, sizeof position, "0\\0\\%d", positions[n]);
         test_image_write(&(test_image){.instance = n,
-                                       .position = place,
+                                       .position = position,
                                        .slope = slopes[n],
                                        .intercept = intercepts[n],
                                        .padding = "11"},
@@ -126,18 +126,18 @@ static void padding_is_no_data(void **state)
 static void padding_of_either_neighbour_is_no_data(void **state)
 {
     (void)state;
-    static const int places[] = {0, 1, 3, 4};
+    static const int positions[] = {0, 1, 3, 4};
     static const uint8_t padded[] = {99, 5, 6, 99}; /* the pixel; 99: none */
     for (int n = 0; n < 4; n++) {
-        char name[16], place[16];
+        char name[16], position[16];
         uint16_t pixels[PIXELS];
         for (unsigned i = 0; i < PIXELS; i++)
             pixels[i] = i == padded[n] ? 1000 : 10;
         snprintf(name, sizeof name, "%d", n);
-        snprintf(place, sizeof place, "0\\0\\%d", places[n]);
+        snprintf(position, sizeof position, "0\\0\\%d", positions[n]);
         test_image_write(
             &(test_image){
-                .instance = n, .position = place, .padding = "1000", .pixels = pixels},
+                .instance = n, .position = position, .padding = "1000", .pixels = pixels},
             name);
     }
     cw_volume v = read_all(&(cw_read_desc){.gaps = CW_GAPS_INTERPOLATE});
@@ -156,13 +156,14 @@ static void padding_of_either_neighbour_is_no_data(void **state)
 static void a_key_that_is_the_same_for_all_orders_nothing(void **state)
 {
     (void)state;
-    static const char *const places[] = {"0\\0\\0", "0\\0\\0.0004", "0\\0\\2.0004", "0\\0\\2"};
+    static const char *const positions[] = {"0\\0\\0", "0\\0\\0.0004", "0\\0\\2.0004",
+                                            "0\\0\\2"};
     char notes[512] = "";
     const cw_read_desc desc = {.note = notes_keep, .note_user = notes};
     for (int n = 0; n < 4; n++) {
         char name[16];
         snprintf(name, sizeof name, "%d", n);
-        test_image_write(&(test_image){.instance = n, .position = places[n], .trigger = "7"},
+        test_image_write(&(test_image){.instance = n, .position = positions[n], .trigger = "7"},
                          name);
     }
     cw_volume v = read_all(&desc);

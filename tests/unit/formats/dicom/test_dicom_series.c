@@ -87,11 +87,11 @@ static void the_smaller_spacing_says_what_is_uneven(void **state)
     static const char *const spacings[] = {"1\\4", "4\\1"};
     for (int way = 0; way < 2; way++) {
         for (int s = 0; s < 3; s++) {
-            char name[16], place[32];
+            char name[16], position[32];
             snprintf(name, sizeof name, "%d.dcm", s);
-            snprintf(place, sizeof place, "%s\\0\\%d", s == 1 ? "0.2" : "0", 2 * s);
+            snprintf(position, sizeof position, "%s\\0\\%d", s == 1 ? "0.2" : "0", 2 * s);
             test_image_write(
-                &(test_image){.instance = s, .position = place, .spacing = spacings[way]},
+                &(test_image){.instance = s, .position = position, .spacing = spacings[way]},
                 name);
         }
         assert_refused(NULL, CW_ERR_UNSAFE, "unevenly, by up to 0.2 mm");
@@ -231,15 +231,15 @@ static void as_many_images_everywhere_are_steps(void **state)
     (void)state;
     for (int keyed = 0; keyed < 2; keyed++) {
         for (int n = 0; n < 6; n++) {
-            char name[16], place[16], trigger[16];
+            char name[16], position[16], trigger[16];
             uint16_t pixels[PIXELS];
             for (int i = 0; i < PIXELS; i++)
                 pixels[i] = (uint16_t)(10 * n);
             snprintf(name, sizeof name, "%d", n);
-            snprintf(place, sizeof place, "0\\0\\%d", n % 3);
+            snprintf(position, sizeof position, "0\\0\\%d", n % 3);
             snprintf(trigger, sizeof trigger, "%d", 100 - n / 3);
             test_image_write(&(test_image){.instance = n + 1,
-                                           .position = place,
+                                           .position = position,
                                            .trigger = keyed ? trigger : NULL,
                                            .pixels = pixels},
                              name);

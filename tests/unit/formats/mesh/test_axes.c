@@ -28,7 +28,7 @@ static void files_hold_what_was_asked_for(void **state)
     (void)state;
     static const struct {
         cw_axes axes;
-        const char *head, *place;
+        const char *head, *vertex;
         float normal[3];
     } rows[] = {
         {{0}, "LPS, mm\no a\n", "v 1 2 3\n", {1, 2, 3}},
@@ -54,7 +54,7 @@ static void files_hold_what_was_asked_for(void **state)
         assert_ok(cw_mesh_write(test_path("a.obj"), &mesh, &desc, &err), err);
         char *text = test_file_read(test_path("a.obj"), &size);
         snprintf(wanted, sizeof wanted, "# cubewright " CW_VERSION ", %s%s", rows[i].head,
-                 rows[i].place);
+                 rows[i].vertex);
         if (strncmp(text, wanted, strlen(wanted)) != 0)
             fail_msg("row %zu: %.100s", i, text);
         snprintf(wanted, sizeof wanted, "\nvn %g %g %g\n", (double)rows[i].normal[0],

@@ -89,10 +89,10 @@ static void faces_name_vertices_and_normals_from_one(void **state)
     char *text = test_file_read(test_path("a.obj"), &size);
     for (const char *at = text; next_line(&at, "f"); count++)
         for (size_t c = 0; c < 3; c++) {
-            const unsigned long place = strtoul(at, (char **)&at, 10);
-            assert_int_equal(place, mesh.triangles[3 * count + c] + 1);
+            const unsigned long vertex = strtoul(at, (char **)&at, 10);
+            assert_int_equal(vertex, mesh.triangles[3 * count + c] + 1);
             assert_memory_equal(at, "//", 2);
-            assert_int_equal(strtoul(at + 2, (char **)&at, 10), place);
+            assert_int_equal(strtoul(at + 2, (char **)&at, 10), vertex);
         }
     assert_int_equal(count, 12);
     free(text);

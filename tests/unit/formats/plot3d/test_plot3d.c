@@ -69,7 +69,7 @@ static output start(dialect d, const int32_t dims[3])
     return o;
 }
 
-static double place(size_t n, int a)
+static double coordinate_of(size_t n, int a)
 {
     const size_t at[3] = {n % NX, n / NX % NY, n / (NX * NY)};
     return (double)at[a] + 0.1 * (double)at[(a + 1) % 3];
@@ -88,7 +88,7 @@ static output make_points(dialect d)
     begin(&o);
     for (int a = 0; a < 3; a++)
         for (size_t n = 0; n < POINTS; n++)
-            put_number(&o, place(n, a));
+            put_number(&o, coordinate_of(n, a));
     end(&o);
     return o;
 }
@@ -131,7 +131,7 @@ static void check(const cw_volume *v, int quantity)
     for (size_t n = 0; n < POINTS; n++) {
         assert_near(cw_volume_value(v, n, 0, 0), value(n, quantity), 1e-6);
         for (int a = 0; a < 3; a++)
-            assert_near(v->cells->points[3 * n + (size_t)a], place(n, a), 1e-6);
+            assert_near(v->cells->points[3 * n + (size_t)a], coordinate_of(n, a), 1e-6);
     }
 }
 

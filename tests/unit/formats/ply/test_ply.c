@@ -94,8 +94,9 @@ static void everything_a_mesh_holds_comes_back(void **state)
     for (size_t v = 0; v < 8; v++) {
         const unsigned char *b = p.vertices + v * p.stride;
         for (size_t a = 0; a < 3; a++) {
-            const float place = (float)(mesh.origin[a] + (double)mesh.positions[3 * v + a]);
-            assert_true(f32_at(b + 4 * a) == place);
+            const float coordinate =
+                (float)(mesh.origin[a] + (double)mesh.positions[3 * v + a]);
+            assert_true(f32_at(b + 4 * a) == coordinate);
             assert_true(f32_at(b + 12 + 4 * a) == mesh.normals[3 * v + a]);
         }
         assert_memory_equal(b + 24, mesh.colors + 4 * v, 4);

@@ -115,12 +115,12 @@ static void make_file(const dialect *d, const char *real, const char *whole, byt
         add_array(file, &appended, d, &arrays[i]);
     add_text(file, "</PointData><CellData><DataArray type='UInt8' Name='RGB' "
                    "NumberOfComponents='3'>1 2 3</DataArray></CellData><Points>");
-    const array place = real_array("DataArray", real, 3, points, 18);
+    const array positions = real_array("DataArray", real, 3, points, 18);
     const array corners = whole_array("DataArray Name='connectivity'", whole, polygons, 9);
     const array ends = whole_array("DataArray Name='offsets'", whole, polygon_ends, 3);
     const array strips = whole_array("DataArray Name='connectivity'", whole, strip, 4);
     const array strips_end = whole_array("DataArray Name='offsets'", whole, strip_ends, 1);
-    add_array(file, &appended, d, &place);
+    add_array(file, &appended, d, &positions);
     add_text(file, "</Points><Verts><DataArray Name='connectivity' type='Int32'>0</DataArray>"
                    "</Verts><Strips>");
     add_array(file, &appended, d, &strips);

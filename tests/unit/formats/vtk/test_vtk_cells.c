@@ -76,11 +76,12 @@ static void add_numbers(file *f, size_t bytes, size_t count, const int *numbers)
 static void make_binary(int version, file *f)
 {
     static const int one = 0x3f800000; /* 1 as a float */
-    const int places[18] = {0, 0, 0, one, 0, 0, 0, one, 0, 0, 0, one, one, 0, one, 0, one, one};
+    const int coordinates[18] = {0, 0, 0,   one, 0, 0,   0, one, 0,
+                                 0, 0, one, one, 0, one, 0, one, one};
     f->size = 0;
     add_text(f, version < 5 ? HEAD("4.2", "BINARY") : HEAD("5.1", "BINARY"));
     add_text(f, UNSTRUCTURED "POINTS 6 float\n");
-    add_numbers(f, 4, 18, places);
+    add_numbers(f, 4, 18, coordinates);
     if (version < 5) {
         add_text(f, "CELLS 3 16\n");
         add_numbers(f, 4, 16, (const int[]){6, 0, 1, 2, 3, 4, 5, 4, 0, 1, 2, 3, 3, 0, 1, 2});

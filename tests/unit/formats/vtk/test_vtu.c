@@ -577,9 +577,9 @@ static void progress_rises_and_may_stop_it(void **state)
     "<VTKFile type='StructuredGrid' byte_order='LittleEndian'><StructuredGrid "                \
     "WholeExtent='0 2 0 1 0 1'>"
 #define BENT_END "</StructuredGrid></VTKFile>\n"
-#define BENT(extent, values, places, data)                                                     \
+#define BENT(extent, values, positions, data)                                                  \
     "<Piece Extent='" extent "'>" POINT_DATA(ARRAY("Int16", "f", "", values) data)             \
-        PLACES(places) "</Piece>"
+        PLACES(positions) "</Piece>"
 
 static void cells_in_rows_are_hexahedra(void **state)
 {

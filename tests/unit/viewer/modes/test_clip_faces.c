@@ -36,15 +36,15 @@ static void faces_are_lit_by_their_plane(void **state)
     cw_volume box = {0};
     cw_renderer *r;
     cw_error err = {0};
-    double places[SIDE];
+    double coordinates[SIDE];
     (void)test_renderer(); /* skips without OpenGL */
     assert_ok(cw_renderer_new(CW_BACKEND_AUTO, &r, &err), err);
     test_field(&box, SIDE, SIDE, SIDE, cube, test_constant);
     for (int n = 0; n < SIDE; n++)
-        places[n] = n;
+        coordinates[n] = n;
     for (int n = 0; n < 8; n++) {
         for (int a = 0; a < 3; a++)
-            box.coordinates[a] = n & 4 ? places : NULL;
+            box.coordinates[a] = n & 4 ? coordinates : NULL;
         const double angle = n & 1 ? 40 * PI / 180 : 0;
         const double sign = n & 2 ? -1 : 1;
         cw_scene scene = {.volume = &box,

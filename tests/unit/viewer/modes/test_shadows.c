@@ -141,7 +141,7 @@ static void unusable_scenes_are_named(void **state)
     cw_renderer *r;
     cw_picture picture;
     cw_error err = {0};
-    double places[SIDE];
+    double coordinates[SIDE];
     assert_ok(cw_renderer_new(CW_BACKEND_CPU, &r, &err), err);
     test_field(&box, SIDE, SIDE, SIDE, cube, test_constant);
     cw_scene scene = scene_of(&box, CW_SHADOW_LIGHT);
@@ -153,9 +153,9 @@ static void unusable_scenes_are_named(void **state)
     assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_ARGUMENT, "shadow is 9", err);
     scene.shadow = CW_SHADOW_AMBIENT;
     for (int n = 0; n < SIDE; n++)
-        places[n] = n * n;
+        coordinates[n] = n * n;
     for (int a = 0; a < 3; a++)
-        box.coordinates[a] = places;
+        box.coordinates[a] = coordinates;
     assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_UNSUPPORTED,
                  "shadows fall in evenly spaced volumes", err);
     for (int a = 0; a < 3; a++)

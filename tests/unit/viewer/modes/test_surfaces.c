@@ -292,10 +292,10 @@ static void unusable_settings_are_named(void **state)
         assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_ARGUMENT, "gradient_sigma",
                      err);
     }
-    const double places[9] = {0, 1, 2, 3, 4, 5, 6, 7, 9};
+    const double coordinates[9] = {0, 1, 2, 3, 4, 5, 6, 7, 9};
     scene.gradient_sigma = 1;
     for (int a = 0; a < 3; a++)
-        box.coordinates[a] = places;
+        box.coordinates[a] = coordinates;
     assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_UNSUPPORTED,
                  "gradients are smoothed on evenly spaced volumes", err);
     for (int a = 0; a < 3; a++)

@@ -82,17 +82,17 @@ static void texture_matrix_is_right(void **state)
     cw_scene scene = scene_of(&v, &soft, looking(true, 0.4, 25));
     assert_ok(cwi_frame_init(&f, &scene, &err), err);
     for (int n = 0; n < 200; n++) {
-        double m[12], eye[3] = {0}, world[3], place[3];
+        double m[12], eye[3] = {0}, world[3], texel[3];
         const double index[3] = {n % 20, n % 12, n % 16};
         cw_volume_to_world(&v, index, world);
         for (int r = 0; r < 3; r++)
             for (int a = 0; a < 3; a++)
                 eye[r] += f.axes[r][a] * (world[a] - f.eye_mm[a]) / f.unit_mm;
         cwi_slabs_texture_matrix(&f, first, count, m);
-        cwi_affine_apply(m, eye, place);
+        cwi_affine_apply(m, eye, texel);
         for (int a = 0; a < 3; a++)
             assert_true(
-                fabs(place[a] - (index[a] - (double)first[a] + 0.5) / (double)count[a]) < 1e-9);
+                fabs(texel[a] - (index[a] - (double)first[a] + 0.5) / (double)count[a]) < 1e-9);
     }
     cw_volume_free(&v);
 }

@@ -95,12 +95,12 @@ static struct {
     size_t items;
 } used;
 
-static const cwi_ui_rect place = {10, 40, 220, 0};
+static const cwi_ui_rect panel_rect = {10, 40, 220, 0};
 
 static void lay_out_panel(void)
 {
     static const char *const names[] = {"first", "second", "third"};
-    used.is_open = u->panel_begin(ui, "Panel", &place, 0, NULL);
+    used.is_open = u->panel_begin(ui, "Panel", &panel_rect, 0, NULL);
     if (used.is_open) {
         if (used.is_disabled)
             u->disable(ui, true);
@@ -369,13 +369,13 @@ static void areas_say_what_the_mouse_does_to_them(void **state)
     assert_near(used.area.y, 9, 1e-6);
     feed_button(CWI_UI_PRESS, CWI_UI_LEFT);
     assert_true(frame().over_widget);
-    assert_true(used.area.pressed && used.area.held && !used.area.twice);
+    assert_true(used.area.pressed && used.area.is_down && !used.area.twice);
     feed_move(WIDTH - 1, HEIGHT - 1); /* what began there goes on */
     assert_true(frame().over_widget);
-    assert_true(used.area.held && !used.area.pressed && !used.area.over);
+    assert_true(used.area.is_down && !used.area.pressed && !used.area.over);
     feed_button(CWI_UI_LIFT, CWI_UI_LEFT);
     frame();
-    assert_true(used.area.lifted && !used.area.held);
+    assert_true(used.area.lifted && !used.area.is_down);
     feed_move(r.x + 7, r.y + 9);
     frame();
     feed_button(CWI_UI_PRESS, CWI_UI_RIGHT);

@@ -47,7 +47,7 @@ static int close_window(void **state)
 
 static void frame(void)
 {
-    static const cwi_ui_rect place = {20, 40, 300, 0};
+    static const cwi_ui_rect panel_rect = {20, 40, 300, 0};
     static const char *const names[] = {CWI_UI_HEADING "Group", "first", "second"};
     cw_error err = {0};
     used.keys += u->begin(ui, 0)->key_count;
@@ -57,7 +57,7 @@ static void frame(void)
         u->menu_end(ui);
     }
     u->bar_end(ui);
-    if (u->panel_begin(ui, "Panel", &place, 0, NULL)) {
+    if (u->panel_begin(ui, "Panel", &panel_rect, 0, NULL)) {
         used.pushed += u->button(ui, "Push it");
         u->check(ui, "Check it", &used.check);
         u->slider(ui, "Slide", &used.slider, 0, 10, "%.1f");
