@@ -80,7 +80,7 @@ cw_status cwi_parallel_for(size_t layers, size_t layer_size, int threads,
                            void (*work)(void *context, size_t k), void *context, cw_error *err)
 {
     enum { TURNS = 16, MAX_TURN = 8 };
-    static const double poll_s = 0.1;
+    static const double POLL_S = 0.1; /* between two reports of progress */
     threads = choose_threads(layers, layer_size, threads);
     size_t turn = layers / ((size_t)threads * TURNS);
     turn = turn < 1 ? 1 : turn > MAX_TURN ? MAX_TURN : turn;
@@ -102,7 +102,7 @@ cw_status cwi_parallel_for(size_t layers, size_t layer_size, int threads,
     run_items(&j, 0);
     cwi_job_close(&others);
     while (!cwi_job_is_lost(&others)) {
-        if (cwi_job_wait(&others, progress->report && j.status == CW_OK ? poll_s : -1))
+        if (cwi_job_wait(&others, progress->report && j.status == CW_OK ? POLL_S : -1))
             return j.status;
         report_layer(&j, layers);
     }

@@ -110,13 +110,13 @@ cw_status cw_camera_pan(cw_camera *camera, size_t height, double right_px, doubl
  * the picture is level, the axis is then z, so that heads stay up. */
 static void find_turning_axis(const cw_camera *c, const axes *a, double axis[3])
 {
-    static const double little = 1e-6;
+    static const double LEVEL_TOLERANCE = 1e-6; /* sine of an angle that is rounding */
     const double lean = cwi_dot(c->up, a->forward) / cwi_length(c->up);
     memcpy(axis, c->up, 3 * sizeof *axis);
-    if (fabs(lean) > little || fabs(a->right[2]) > little)
+    if (fabs(lean) > LEVEL_TOLERANCE || fabs(a->right[2]) > LEVEL_TOLERANCE)
         return;
     axis[0] = axis[1] = 0;
-    axis[2] = a->up[2] < -little ? -1 : 1;
+    axis[2] = a->up[2] < -LEVEL_TOLERANCE ? -1 : 1;
 }
 
 /* Limits the climb of the eye: it stops just before the pole, where up and line of sight would

@@ -116,7 +116,7 @@ static double find_median(const size_t *counts)
 cw_status cw_volume_noise(const cw_volume *volume, int threads, double *sigma, cw_error *err)
 {
     /* The median of |x| of a normal distribution is 0.6745 sigma. */
-    static const double normal = 1.4826022185;
+    static const double SIGMA_PER_MEDIAN = 1.4826022185;
     CWI_REQUIRE(err, volume, sigma);
     cw_volume in;
     *sigma = 0;
@@ -132,7 +132,7 @@ cw_status cw_volume_noise(const cw_volume *volume, int threads, double *sigma, c
     if (st == CW_OK && k.starved)
         st = cwi_fail_memory(err);
     if (st == CW_OK)
-        *sigma = normal * find_median(k.counts) * fabs(in.slope);
+        *sigma = SIGMA_PER_MEDIAN * find_median(k.counts) * fabs(in.slope);
     cwi_free(k.counts);
     return st;
 }

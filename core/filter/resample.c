@@ -1,6 +1,7 @@
 /* Samples a volume at other distances, by a kernel along each axis. */
 #include "core/base/status.h"
 #include "core/filter/separable.h"
+#include "core/geometry/vec3.h"
 #include "core/volume/volume.h"
 
 #include <math.h>
@@ -21,8 +22,7 @@ static double cubic_kernel(double x, double width)
 
 static double compute_sinc(double x)
 {
-    const double pi = 3.14159265358979323846;
-    return x == 0 ? 1 : sin(pi * x) / (pi * x);
+    return x == 0 ? 1 : sin(CWI_PI * x) / (CWI_PI * x);
 }
 
 static double lanczos_kernel(double x, double width)

@@ -93,7 +93,7 @@ static void spread_row(double *f, size_t stride, size_t count, double weight, co
 
 static void spread_slice(void *context, size_t z)
 {
-    static const double just = 1e-9; /* above 1: rounding */
+    static const double ROUNDING = 1e-9; /* of a distance in units of the radius */
     work *k = context;
     const size_t nx = k->dim[0], ny = k->dim[1], longest = nx > ny ? nx : ny;
     uint8_t *to = k->to + z * nx * ny;
@@ -110,14 +110,14 @@ static void spread_slice(void *context, size_t z)
         plane[n] = to[n] == 0                          ? 0
                    : to[n] == FAR || k->weight[2] == 0 ? 2
                                                        : k->weight[2] * d * d;
-        plane[n] = plane[n] > 1 && plane[n] <= 1 + just ? 1 : plane[n];
+        plane[n] = plane[n] > 1 && plane[n] <= 1 + ROUNDING ? 1 : plane[n];
     }
     for (size_t j = 0; j < ny; j++)
         spread_row(plane + j * nx, 1, nx, k->weight[0], &e);
     for (size_t i = 0; i < nx; i++)
         spread_row(plane + i, nx, ny, k->weight[1], &e);
     for (size_t n = 0; n < nx * ny; n++)
-        to[n] = plane[n] <= 1 + just;
+        to[n] = plane[n] <= 1 + ROUNDING;
     cwi_free(plane);
 }
 

@@ -66,12 +66,12 @@ void cw_label_surfaces_free(cw_label_surfaces *s)
  * several at a time. */
 static bool are_finite(const float *numbers, size_t count)
 {
-    const uint32_t exponent = 0x7f800000; /* all of its bits: infinite or not a number */
+    const uint32_t EXPONENT_BITS = 0x7f800000; /* all of its bits: infinite or not a number */
     uint32_t bad = 0;
     for (size_t i = 0; i < count; i++) {
         uint32_t bits;
         memcpy(&bits, &numbers[i], sizeof bits);
-        bad |= (bits & exponent) == exponent;
+        bad |= (bits & EXPONENT_BITS) == EXPONENT_BITS;
     }
     return !bad;
 }

@@ -7,9 +7,9 @@
  * point on a border beyond it. Returns false outside. */
 static bool find_cell(size_t dim, double index, size_t *cell, double *fraction)
 {
-    static const double rounding = 1e-9;
+    static const double ROUNDING = 1e-9; /* voxels */
     const double low = dim == 1 ? -0.5 : 0, high = dim == 1 ? 0.5 : (double)dim - 1;
-    if (!(index >= low - rounding && index <= high + rounding))
+    if (!(index >= low - ROUNDING && index <= high + ROUNDING))
         return false;
     if (dim == 1) {
         *cell = 0;

@@ -240,9 +240,9 @@ void cw_label_table_free(cw_label_table *table)
 void cw_label_color(uint32_t value, uint8_t color[4])
 {
     /* hues by the golden ratio: each falls into the largest gap that those before leave */
-    static const double golden = 0.61803398874989485;
+    static const double GOLDEN_RATIO = 0.61803398874989485;
     static const double brightness[] = {0.95, 0.75, 0.85}, saturation[] = {0.75, 0.55};
-    const double hue = 6 * fmod(golden * value, 1), v = brightness[value % 3];
+    const double hue = 6 * fmod(GOLDEN_RATIO * value, 1), v = brightness[value % 3];
     const double s = saturation[value % 2];
     for (int c = 0; c < 3; c++) {
         const double k = fmod((c == 0 ? 5 : c == 1 ? 3 : 1) + hue, 6);

@@ -34,7 +34,7 @@ enum {
 
 /* The edge passes through a sound polygon at least this fraction of its length from its ends. That
  * is far above the rounding errors of doubles. */
-static const double clearance = 1e-4;
+static const double MIN_CLEARANCE = 1e-4;
 
 static const uint32_t *corners_of(const cwi_label_crossings *c, size_t triangle)
 {
@@ -91,8 +91,10 @@ static bool is_sound(const cwi_label_crossings *c, size_t polygon)
     }
     cwi_cross(d[1], p, u);
     cwi_cross(d[1], q, w);
-    const double p1 = cwi_dot(d[0], u), q1 = cwi_dot(d[0], w), h1 = clearance * fabs(p1 - q1);
-    const double p2 = -cwi_dot(d[2], u), q2 = -cwi_dot(d[2], w), h2 = clearance * fabs(p2 - q2);
+    const double p1 = cwi_dot(d[0], u), q1 = cwi_dot(d[0], w),
+                 h1 = MIN_CLEARANCE * fabs(p1 - q1);
+    const double p2 = -cwi_dot(d[2], u), q2 = -cwi_dot(d[2], w),
+                 h2 = MIN_CLEARANCE * fabs(p2 - q2);
     return (p1 < -h1 && q1 > h1 && p2 < -h2 && q2 > h2) ||
            (p1 > h1 && q1 < -h1 && p2 > h2 && q2 < -h2);
 }

@@ -13,7 +13,7 @@
 enum { ROUND_PAIRS = 8, PART = 1 << 14 };
 
 /* The fraction of the way to the neighbours' mean. */
-static const float pull = 0.5f;
+static const float MEAN_WEIGHT = 0.5f;
 
 typedef float lanes __attribute__((vector_size(16)));
 typedef int32_t mask __attribute__((vector_size(16)));
@@ -24,9 +24,10 @@ typedef struct averager {
     float bound;
     const cw_labels_desc *desc;
     const size_t *dim;
-    size_t count;     /* of vertices */
-    float *from, *to; /* (count + CWI_SPARE_POSITIONS) x 3. The position behind the last is 0: it
-                         replaces missing neighbours */
+    size_t count; /* of vertices */
+    /* (count + CWI_SPARE_POSITIONS) x 3. The one behind the last is 0: it replaces missing
+     * neighbours */
+    float *from, *to;
 } averager;
 
 static lanes select_lanes(mask where, lanes yes, lanes no)
@@ -76,7 +77,7 @@ static lanes average_vertex(const averager *s, size_t v)
     }
     if (count < 2)
         return here;
-    lanes to = here + pull * (sum / (float)count - here);
+    lanes to = here + MEAN_WEIGHT * (sum / (float)count - here);
     to = select_lanes(to < low, low, to);
     to = select_lanes(to > high, high, to);
     for (int a = 0; a < 3 && s->desc->leave_open; a++) /* an open border stays */

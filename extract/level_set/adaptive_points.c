@@ -9,7 +9,7 @@
 
 /* Distances from a triangle, in voxels, tried one after the other. A point on the triangle may
  * be called inside or outside: the wall or gap it is in becomes as thick as CWI_THIN anyway. */
-static const double depths[] = {0.02, 0.005, 0.001, 0};
+static const double DEPTHS[] = {0.02, 0.005, 0.001, 0};
 
 /* Maximum distance that a point moves, as a fraction of the way from the middle to the end. */
 static const double MAX_REACH = 0.97;
@@ -64,14 +64,14 @@ static void step_in(star_box *r, const double x[3], const double normal[3])
         n[a] = r->reach[a] > 0 ? normal[a] : 0;
         length = hypot(length, n[a]);
     }
-    for (size_t k = 0; k < sizeof depths / sizeof *depths && length > 0; k++) {
+    for (size_t k = 0; k < sizeof DEPTHS / sizeof *DEPTHS && length > 0; k++) {
         double beside[3], p[3], distances_sq[2];
         for (int a = 0; a < 3; a++)
-            beside[a] = x[a] + depths[k] * (r->inside ? -1 : 1) * n[a] / length;
+            beside[a] = x[a] + DEPTHS[k] * (r->inside ? -1 : 1) * n[a] / length;
         keep_in(r, beside, p, distances_sq);
         if (distances_sq[1] >= r->distance_sq)
             return;
-        if (depths[k] > 0 ? cwi_adaptive_is_inside(r->a, p) != r->inside
+        if (DEPTHS[k] > 0 ? cwi_adaptive_is_inside(r->a, p) != r->inside
                           : distances_sq[0] > CWI_THIN * CWI_THIN)
             continue;
         r->distance_sq = distances_sq[1];

@@ -15,7 +15,7 @@ enum { CHUNK = 1024, ROUNDS = 5 };
 
 /* Fractions of a voxel: vertices nearer than this to the mesh stay; those farther than this are
  * tangled; triangles are flat below this height. */
-static const double near = 0.02, tangled = 0.15, low = 1e-4;
+static const double NEAR_VOXELS = 0.02, TANGLED_VOXELS = 0.15, FLAT_VOXELS = 1e-4;
 
 /* A vertex on its way: at `from` with share 0, at from + way with share 1. */
 typedef struct mover {
@@ -182,7 +182,7 @@ static bool is_flat(const motion *m, size_t triangle)
         longest = fmax(longest, cwi_dot(side[k], side[k]));
     }
     cwi_cross(side[0], side[1], n);
-    return !(cwi_dot(n, n) > longest * low * low * m->voxel * m->voxel);
+    return !(cwi_dot(n, n) > longest * FLAT_VOXELS * FLAT_VOXELS * m->voxel * m->voxel);
 }
 
 static void hold_back_all(settling *s)
@@ -340,7 +340,7 @@ static cw_status pull_vertices(motion *m, bool by_means, int threads,
 {
     const size_t count = m->surface->vertex_count;
     m->by_means = by_means;
-    m->far = by_means ? tangled : near;
+    m->far = by_means ? TANGLED_VOXELS : NEAR_VOXELS;
     find_means(m);
     cw_status st = cwi_parallel_for((count + CHUNK - 1) / CHUNK, 64 * CHUNK, threads, progress,
                                     "edges", find_displacements, m, err);

@@ -16,15 +16,15 @@
 #include <string.h>
 
 /* Fractions of the box's diagonal. */
-static const double usual = 1.0 / 256, finest = 1.0 / 512;
+static const double USUAL_VOXEL = 1.0 / 256, FINEST_VOXEL = 1.0 / 512;
 
 static double choose_voxel(const cw_offset_desc *d, const cw_quality *q)
 {
     const double diagonal = cwi_box_diagonal(q->min, q->max);
     const double reach = fabs(d->offset_mm);
-    double voxel = usual * diagonal;
+    double voxel = USUAL_VOXEL * diagonal;
     if (reach > 0)
-        voxel = fmin(voxel, fmax(reach / 4, finest * diagonal));
+        voxel = fmin(voxel, fmax(reach / 4, FINEST_VOXEL * diagonal));
     while (!cwi_level_set_fits(q, voxel, reach, d->max_bytes) && voxel < diagonal)
         voxel *= 1.05;
     return voxel;

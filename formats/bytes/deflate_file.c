@@ -14,10 +14,10 @@ cw_status cwi_sink_open(cwi_sink *s, cwi_outfile *file, cwi_packing packing, cw_
         return CW_OK;
     cwi_zlib_use_memory(&s->z);
     s->buffer = cwi_alloc_array(BUFFER_BYTES, 1);
-    const int memory_level = 8, bits = packing == CWI_DEFLATE ? -MAX_WBITS
+    const int MEMORY_LEVEL = 8, bits = packing == CWI_DEFLATE ? -MAX_WBITS
                                        : packing == CWI_GZIP  ? MAX_WBITS + 16
                                                               : MAX_WBITS;
-    s->deflates = s->buffer && deflateInit2(&s->z, LEVEL, Z_DEFLATED, bits, memory_level,
+    s->deflates = s->buffer && deflateInit2(&s->z, LEVEL, Z_DEFLATED, bits, MEMORY_LEVEL,
                                             Z_DEFAULT_STRATEGY) == Z_OK;
     if (s->deflates)
         return CW_OK;
@@ -55,12 +55,12 @@ static cw_status pump_deflate(cwi_sink *s, int flush, cw_error *err)
 
 cw_status cwi_sink_write(cwi_sink *s, const void *bytes, size_t size, cw_error *err)
 {
-    const size_t max = 1 << 30;
+    const size_t MAX_PIECE_BYTES = 1 << 30; /* zlib counts bytes in 32 bits */
     if (!s->deflates)
         return put_bytes(s, bytes, size, err);
     cw_status st = CW_OK;
     for (const unsigned char *p = bytes; st == CW_OK && size > 0;) {
-        const size_t n = size < max ? size : max;
+        const size_t n = size < MAX_PIECE_BYTES ? size : MAX_PIECE_BYTES;
         s->z.next_in = p;
         s->z.avail_in = (uInt)n;
         st = pump_deflate(s, Z_NO_FLUSH, err);

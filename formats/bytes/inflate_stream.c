@@ -39,9 +39,9 @@ cw_status cwi_stream_open(cwi_stream *s, int fd, uint64_t offset, bool deflated,
         return CW_OK;
     cwi_zlib_use_memory(&s->z);
     s->z.next_in = s->buffer = cwi_alloc_array(BUFFER_BYTES, 1);
-    const int either = 32; /* zlib or gzip, by the header found */
+    const int ZLIB_OR_GZIP = 32; /* zlib or gzip, by the header found */
     s->deflated = s->buffer && cwi_isal_open(&s->isal) &&
-                  (s->isal || inflateInit2(&s->z, MAX_WBITS + either) == Z_OK);
+                  (s->isal || inflateInit2(&s->z, MAX_WBITS + ZLIB_OR_GZIP) == Z_OK);
     if (s->deflated)
         return CW_OK;
     cwi_stream_close(s);

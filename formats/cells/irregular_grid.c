@@ -19,7 +19,7 @@
 enum { HIDDEN_POINT = 2, LEFT_OUT_CELL = 1 | 8 | 32 };
 
 /* The maximum number of samples; more could not be numbered. */
-static const size_t most_samples = UINT32_MAX - 1;
+static const size_t MAX_SAMPLES = UINT32_MAX - 1;
 
 /* The building of a volume from the arrays in two passes. The first checks all arrays and finds
  * the cells that stay. The second has room for exactly those. */
@@ -257,9 +257,9 @@ static cw_status count_pieces(building *b, cw_error *err)
     const cwi_irregular *g = b->g;
     for (size_t n = 0; n < g->piece_count; n++)
         if (!cwi_size_add(b->points, g->pieces[n].points, &b->points) ||
-            !cwi_size_add(b->cells, g->pieces[n].cells, &b->cells) || b->points > most_samples)
+            !cwi_size_add(b->cells, g->pieces[n].cells, &b->cells) || b->points > MAX_SAMPLES)
             return cwi_fail(err, CW_ERR_LIMIT, "'%s' asks for more than %zu points",
-                            g->point_field, most_samples);
+                            g->point_field, MAX_SAMPLES);
     if (b->points && b->cells)
         return CW_OK;
     return cwi_fail(err, CW_ERR_FORMAT, "the grid has %zu points and %zu cells: no volume",

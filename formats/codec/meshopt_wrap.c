@@ -104,9 +104,9 @@ static void undo_filter(void *vertices, size_t count, size_t stride, int kind)
 
 static size_t simplify_mesh(const cw_mesh *mesh, size_t triangles, uint32_t *left)
 {
-    const float no_limit = 1e10f; /* of the error */
+    const float NO_LIMIT = 1e10f; /* of the error */
     return meshopt_simplify(left, mesh->triangles, 3 * mesh->triangle_count, mesh->positions,
-                            mesh->vertex_count, 3 * sizeof(float), 3 * triangles, no_limit, 0,
+                            mesh->vertex_count, 3 * sizeof(float), 3 * triangles, NO_LIMIT, 0,
                             NULL) /
            3;
 }

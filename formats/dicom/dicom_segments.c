@@ -19,8 +19,8 @@ static const double WHITE_D50[3] = {0.96422, 1, 0.82521};
 /* The inverse of CIELab's curve. */
 static double lab_inverse(double f)
 {
-    const double knee = 6.0 / 29;
-    return f > knee ? f * f * f : 3 * knee * knee * (f - 4.0 / 29);
+    const double LAB_KNEE = 6.0 / 29;
+    return f > LAB_KNEE ? f * f * f : 3 * LAB_KNEE * LAB_KNEE * (f - 4.0 / 29);
 }
 
 static uint8_t to_srgb(double linear)

@@ -18,8 +18,8 @@ enum {
 };
 enum { STACK_GROUP = 401, LAST_STACK_GROUP = 630 }; /* space group + 400: a stack of volumes */
 
-static const double mm_per_angstrom = 1e-7;
-static const double radians = CWI_PI / 180;
+static const double MM_PER_ANGSTROM = 1e-7;
+static const double RADIANS_PER_DEGREE = CWI_PI / 180;
 
 /* Offsets of fields. Those with three values are for columns, rows, sections or for X, Y, Z. */
 typedef enum field {
@@ -208,7 +208,7 @@ static cw_status cell_edges(const double angle[3], double edges[3][3], cw_error 
 {
     double c[3];
     for (int a = 0; a < 3; a++) /* 0: not stated */
-        c[a] = angle[a] == 0 || angle[a] == 90 ? 0 : cos(angle[a] * radians);
+        c[a] = angle[a] == 0 || angle[a] == 90 ? 0 : cos(angle[a] * RADIANS_PER_DEGREE);
     const double sine = sqrt(1 - c[2] * c[2]), y = (c[0] - c[1] * c[2]) / sine;
     const double z = 1 - c[1] * c[1] - y * y;
     if (!(sine > 0 && z > 0))
@@ -242,7 +242,7 @@ static cw_status read_spacing(const mrc *m, double spacing[3], cw_error *err)
                 "'CELLA' and 'M%c' give axis %d %g Angstrom in %d intervals; both must "
                 "be above 0",
                 'X' + a, a, length, (int)intervals);
-        spacing[a] = length / intervals * mm_per_angstrom;
+        spacing[a] = length / intervals * MM_PER_ANGSTROM;
     }
     return CW_OK;
 }
@@ -278,8 +278,8 @@ static cw_status read_frame(const mrc *m, cwi_source *src, cw_error *err)
         for (int c = 0; c < 3; c++)
             src->shape.affine[r][c] = edges[r][c] * spacing[c];
     src->shape.known = known ? CW_KNOWN_UNIT : 0;
-    src->shape.said_unit_mm = known ? mm_per_angstrom : 0;
-    set_origin(m, known ? mm_per_angstrom : 1, &src->shape);
+    src->shape.said_unit_mm = known ? MM_PER_ANGSTROM : 0;
+    set_origin(m, known ? MM_PER_ANGSTROM : 1, &src->shape);
     return CW_OK;
 }
 

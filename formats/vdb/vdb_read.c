@@ -244,8 +244,10 @@ static cw_status read_chosen(cwi_planes *planes, const cwi_input *in, const cwi_
  * masks of 8 KiB, and up to 32,768 tiles of 40 bytes, kept twice while they grow. */
 static uint64_t max_memory(uint64_t file_bytes)
 {
-    const uint64_t base = (uint64_t)128 << 20, factor = 512;
-    return file_bytes < (UINT64_MAX - base) / factor ? base + factor * file_bytes : UINT64_MAX;
+    const uint64_t BASE_BYTES = (uint64_t)128 << 20, BYTES_PER_FILE_BYTE = 512;
+    return file_bytes < (UINT64_MAX - BASE_BYTES) / BYTES_PER_FILE_BYTE
+               ? BASE_BYTES + BYTES_PER_FILE_BYTE * file_bytes
+               : UINT64_MAX;
 }
 
 /* Reports a damaged file if the memory ran out only because of that limit. */

@@ -11,11 +11,11 @@ static pthread_once_t table_once = PTHREAD_ONCE_INIT;
 
 static void fill_table(void)
 {
-    const uint32_t polynomial = 0x82f63b78; /* 0x1edc6f41 with its bits reversed */
+    const uint32_t POLYNOMIAL = 0x82f63b78; /* 0x1edc6f41 with its bits reversed */
     for (uint32_t n = 0; n < 256; n++) {
         uint32_t value = n;
         for (int bit = 0; bit < 8; bit++)
-            value = value >> 1 ^ (value & 1 ? polynomial : 0);
+            value = value >> 1 ^ (value & 1 ? POLYNOMIAL : 0);
         table[0][n] = value;
     }
     for (uint32_t n = 0; n < 256; n++)

@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* The part of the error that is allowed at each level of care. */
-static const double allowed_parts[CWI_LABEL_MAX_CARE + 1] = {1, 0.75, 0.4, 0};
+static const double ALLOWED_FRACTIONS[CWI_LABEL_MAX_CARE + 1] = {1, 0.75, 0.4, 0};
 
 /* The part of the squared error at which no nearer triangle is looked for. */
 #define NEAR_ENOUGH (1.0 / 16)
@@ -43,7 +43,7 @@ static double find_allowed(const cwi_label_samples *s)
         const uint8_t its_care = s->cares[s->collected[n]];
         care = its_care > care ? its_care : care;
     }
-    return s->error * allowed_parts[care];
+    return s->error * ALLOWED_FRACTIONS[care];
 }
 
 static const float *get_original(const cwi_label_samples *s, uint32_t vertex)

@@ -15,7 +15,7 @@
  * pair kept 4: a sound mesh needs about 15 a triangle. When it is cut off, it is done again
  * with a share of what all such chunks have together. The result does not depend on threads. */
 enum { CHUNK_NODES = 512, COST_OF_PAIR = 4, MIN_WORK = 32, MAX_WORK = 96 };
-static const size_t work_of_all = (size_t)1 << 28, work_beyond = (size_t)1 << 25;
+static const size_t MAX_REPEATED_WORK = (size_t)1 << 28, MAX_EXTRA_WORK = (size_t)1 << 25;
 
 typedef struct pair {
     uint32_t a, b; /* a < b */
@@ -111,7 +111,7 @@ static void search_chunk(void *context, size_t k)
 
 static size_t first_allowance(const search *s)
 {
-    const size_t work_per_node = work_of_all / (s->tree.count + 1);
+    const size_t work_per_node = MAX_REPEATED_WORK / (s->tree.count + 1);
     const size_t a_triangle = work_per_node < MIN_WORK   ? MIN_WORK
                               : work_per_node > MAX_WORK ? MAX_WORK
                                                          : work_per_node;
@@ -136,7 +136,7 @@ static bool allow_more(search *s)
     size_t cut = 0;
     for (size_t k = 0; k < s->chunk_count; k++)
         cut += s->chunks[k].cut;
-    const size_t work_per_node = cut ? work_beyond / cut : 0;
+    const size_t work_per_node = cut ? MAX_EXTRA_WORK / cut : 0;
     if (work_per_node <= first_allowance(s))
         return false;
     for (size_t k = 0; k < s->chunk_count; k++)

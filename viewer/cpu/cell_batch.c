@@ -8,7 +8,7 @@
 typedef cwi_lanes lanes;
 
 /* The way to a point takes this fraction of the value at the other point: 1/4 -+ sqrt(3) / 6. */
-static const float to_first = -0.038675134594812866f, to_second = 0.53867513459481287f;
+static const float TO_FIRST = -0.038675134594812866f, TO_SECOND = 0.53867513459481287f;
 
 /* Looks up colours and extinctions of four rows. */
 static inline void glow_of_rows(const cwi_table *table, lanes rows, lanes glow[4])
@@ -100,8 +100,8 @@ cwi_batch_light cwi_cell_batch_light(const cwi_batch_scene *s, const cwi_cell_ba
     out.depth = (front[3] + back[3]) * 0.5f * length;
     const lanes a = cwi_lanes_min(front[3] * length, one),
                 b = cwi_lanes_min(back[3] * length, one);
-    const lanes p = a * cwi_lanes_fade(0.25f * a + to_first * b),
-                q = b * cwi_lanes_fade(to_second * a + 0.25f * b);
+    const lanes p = a * cwi_lanes_fade(0.25f * a + TO_FIRST * b),
+                q = b * cwi_lanes_fade(TO_SECOND * a + 0.25f * b);
     out.left = cwi_lanes_fade(0.5f * (a + b));
     const lanes sum = p + q;
     const lanes fraction = (1 - out.left) / cwi_lanes_choose(sum > 0, sum, one);

@@ -22,10 +22,10 @@
 
 /* Tolerances of a whole ray, and of a piece, whatever its length: at a jump in the gradients'
  * factor the estimate falls only as fast as pieces get shorter. */
-static const double tolerance = 1e-8, piece_tolerance = 1e-13;
+static const double RAY_TOLERANCE = 1e-8, PIECE_TOLERANCE = 1e-13;
 
 /* The light at which a ray ends. */
-static const double dark = 1e-10;
+static const double MIN_LIGHT = 1e-10;
 
 enum { MAX_HALVINGS = 40 };
 
@@ -181,7 +181,7 @@ static void add_passage(const medium *m, double from, double to, const passage *
     const passage front = pass_medium(m, from, middle), back = pass_medium(m, middle, to);
     const passage both = join_passages(&front, &back);
     const double error = s->light * passage_difference(whole, &both);
-    if (error > fmax(s->tolerance * (to - from) * m->length, piece_tolerance) &&
+    if (error > fmax(s->tolerance * (to - from) * m->length, PIECE_TOLERANCE) &&
         halvings < MAX_HALVINGS) {
         add_passage(m, from, middle, &front, halvings + 1, s);
         add_passage(m, middle, to, &back, halvings + 1, s);
@@ -296,7 +296,7 @@ static void add_spans(medium *m, cwi_spans *spans, const cwi_ray *ray, sum *s)
     cwi_span span;
     if (!cwi_spans_start(spans, &m->reference->field, ray))
         return;
-    while (s->light > dark && cwi_spans_next(spans, &span)) {
+    while (s->light > MIN_LIGHT && cwi_spans_next(spans, &span)) {
         memcpy(m->value, span.value, sizeof m->value);
         memcpy(m->gradient, span.gradient, sizeof m->gradient);
         add_part(m, span.from, span.to, ray, NULL, s);
@@ -324,19 +324,19 @@ double cwi_reference_ray(const cwi_reference *r, cwi_spans *spans, double x, dou
     cwi_ray_make(r->frame, x, y, depth, &ray);
     for (int n = 0; n < ray.part_count; n++)
         length += ray.parts[n][1] - ray.parts[n][0];
-    s.tolerance = tolerance / length;
+    s.tolerance = RAY_TOLERANCE / length;
     background_at(r->frame, y, background);
     cwi_lighting_make(r->frame, ray.origin, ray.direction, &lighting);
     if (cwi_volume_kind(&r->frame->volume))
         add_spans(&m, spans, &ray, &s);
     for (int n = 0; n < ray.part_count && !cwi_volume_kind(&r->frame->volume); n++) {
         cwi_walk_start(&walk, r->frame, &ray, n);
-        while (s.light > dark && cwi_walk_next(&walk))
+        while (s.light > MIN_LIGHT && cwi_walk_next(&walk))
             add_cell(&m, &walk, &ray, &s);
     }
     memcpy(out, s.color, sizeof s.color);
     out[3] = 1 - s.light;
-    return s.error + (s.light < dark ? dark : 0);
+    return s.error + (s.light < MIN_LIGHT ? MIN_LIGHT : 0);
 }
 
 typedef struct job {

@@ -31,17 +31,17 @@ typedef cwi_lanes lanes;
 
 /* The way to a point takes this fraction of the value at the other point:
  * 1/4 -+ sqrt(3) / 6. */
-static const float to_first = -0.038675134594812866f, to_second = 0.53867513459481287f;
+static const float TO_FIRST = -0.038675134594812866f, TO_SECOND = 0.53867513459481287f;
 
 /* Maximum optical depth for which two points are enough. */
-static const float max_depth = 0.5f;
+static const float MAX_DEPTH = 0.5f;
 
 /* The maximum difference of the extinction at two points of a piece, times the piece's
  * length. */
-static const float max_steepness = 0.1f;
+static const float MAX_STEEPNESS = 0.1f;
 
 /* The maximum difference of the two points, where gradients count. */
-static const float max_turn = 2e-3f;
+static const float MAX_TURN = 2e-3f;
 
 typedef struct vbuffer vbuffer;
 
@@ -166,7 +166,7 @@ static void shade_beam(void *context, double at, const double gradient[3], lanes
 static inline void pass_segment(state *s, lanes first, lanes second, float length)
 {
     const float a = first[3] * length, b = second[3] * length;
-    const lanes depths = {0.25f * a + to_first * b, to_second * a + 0.25f * b, 0.5f * (a + b),
+    const lanes depths = {0.25f * a + TO_FIRST * b, TO_SECOND * a + 0.25f * b, 0.5f * (a + b),
                           0};
     const lanes left = cwi_lanes_fade(depths);
     const float p = a * left[0], q = b * left[1];
@@ -214,14 +214,14 @@ static lanes glow_of_piece(const state *s, const cwi_linear *l, const double val
 static inline bool is_told(const state *s, lanes first, lanes second, float length)
 {
     const float depth = (first[3] + second[3]) * 0.5f * length;
-    if (depth > max_depth)
+    if (depth > MAX_DEPTH)
         return false;
     if (!s->b->has_gradients)
         return true;
     float max = fabsf(first[3] - second[3]) * length;
     for (int c = 0; c < 3; c++)
         max = fmaxf(max, depth * fabsf(first[c] - second[c]));
-    return s->light * max < max_turn;
+    return s->light * max < MAX_TURN;
 }
 
 /* Passes a piece, in parts where two points do not represent it. */
@@ -237,9 +237,9 @@ static void pass_piece(state *s, const cwi_transfer_segment *piece, const double
             glow_of_piece(s, piece->linear, value, from + CWI_SECOND_POINT * width);
         const float steepness = fabsf(first[3] - second[3]) * (float)width * length;
         if (parts == 1 &&
-            (steepness > max_steepness || !is_told(s, first, second, (float)width * length))) {
+            (steepness > MAX_STEEPNESS || !is_told(s, first, second, (float)width * length))) {
             const float depth = (first[3] + second[3]) * 0.5f * (float)width * length;
-            parts = (int)fminf(4 + 2 * depth / max_depth, 32);
+            parts = (int)fminf(4 + 2 * depth / MAX_DEPTH, 32);
             width /= parts;
             n = -1;
             continue;
@@ -411,8 +411,8 @@ static void pass_batch(state *s, float min_light)
     const cwi_batch_light light = cwi_cell_batch_light(&s->scene, batch);
     lanes fraction = {0};
     for (int n = 0; n < batch->count && s->light > min_light; n++) {
-        if (!batch->cells[n].is_cut && light.depth[n] <= max_depth &&
-            s->light * light.difference[n] < max_turn) {
+        if (!batch->cells[n].is_cut && light.depth[n] <= MAX_DEPTH &&
+            s->light * light.difference[n] < MAX_TURN) {
             fraction[n] = s->light;
             s->light *= light.left[n];
             continue;

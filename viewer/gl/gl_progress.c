@@ -7,7 +7,7 @@
 #include "core/base/status.h"
 
 /* Minimum and maximum seconds between two reports. */
-static const double soon = 0.005, late = 0.012;
+static const double MIN_INTERVAL_S = 0.005, MAX_INTERVAL_S = 0.012;
 
 enum { FIRST_ROWS = 8, MAX_ROWS = 16, MIN_ROWS = 4, FIRST_TRIANGLES = 4096 };
 
@@ -47,7 +47,7 @@ cw_status cwi_gl_report(cwi_gl *gl, const char *step, double done, cw_error *err
 
 cw_status cwi_gl_report_soon(cwi_gl *gl, const char *step, double done, cw_error *err)
 {
-    return is_watched(gl) && cwi_now_s() - gl->watch.last > soon
+    return is_watched(gl) && cwi_now_s() - gl->watch.last > MIN_INTERVAL_S
                ? cwi_gl_report(gl, step, done, err)
                : CW_OK;
 }
@@ -71,7 +71,9 @@ static size_t adapt_size(size_t drawn, double since, size_t min, size_t max)
 {
     glFinish();
     const double seconds = cwi_now_s() - since;
-    const size_t next = seconds < soon ? 2 * drawn : seconds > late ? drawn / 2 : drawn;
+    const size_t next = seconds < MIN_INTERVAL_S   ? 2 * drawn
+                        : seconds > MAX_INTERVAL_S ? drawn / 2
+                                                   : drawn;
     return next < min ? min : next > max ? max : next;
 }
 

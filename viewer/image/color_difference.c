@@ -12,17 +12,18 @@
 #include <string.h>
 
 /* Opacity above which the reference shows something. */
-static const float covered = 1e-4f;
+static const float MIN_OPACITY = 1e-4f;
 
-enum { WINDOW = 5 }; /* pixels on each side of the middle */
-static const double window_sigma = 1.5;
+enum { WINDOW = 5 };                    /* pixels on each side of the middle */
+static const double WINDOW_SIGMA = 1.5; /* pixels [Wang2004] */
 
 /* Returns the cube root, continued by a line near 0: CIE 15. */
 static double lightness_of(double fraction)
 {
-    const double edge = 6.0 / 29;
-    return fraction > edge * edge * edge ? cbrt(fraction)
-                                         : fraction / (3 * edge * edge) + 4.0 / 29;
+    const double LAB_KNEE = 6.0 / 29;
+    return fraction > LAB_KNEE * LAB_KNEE * LAB_KNEE
+               ? cbrt(fraction)
+               : fraction / (3 * LAB_KNEE * LAB_KNEE) + 4.0 / 29;
 }
 
 /* Converts by IEC 61966-2-1. White is the matrix's result for (1, 1, 1). */
@@ -144,7 +145,7 @@ static void measure_colors(const cw_picture *picture, const cw_picture *referenc
 {
     for (size_t n = 0; n < reference->width * reference->height; n++) {
         double a[3], b[3], lab[2][3];
-        if (!(reference->pixels[4 * n + 3] > covered))
+        if (!(reference->pixels[4 * n + 3] > MIN_OPACITY))
             continue;
         show_pixel(picture, n, background, a);
         show_pixel(reference, n, background, b);
@@ -211,7 +212,7 @@ static void blur_moments(const double (*in)[MOMENTS], size_t count, size_t step,
             const ptrdiff_t at = (ptrdiff_t)n + i;
             if (at < 0 || at >= (ptrdiff_t)count)
                 continue;
-            const double weight = exp(-i * i / (2 * window_sigma * window_sigma));
+            const double weight = exp(-i * i / (2 * WINDOW_SIGMA * WINDOW_SIGMA));
             total += weight;
             for (int m = 0; m < MOMENTS; m++)
                 sum[m] += weight * in[(size_t)at * step][m];
@@ -224,10 +225,10 @@ static void blur_moments(const double (*in)[MOMENTS], size_t count, size_t step,
 /* Returns the structural similarity of values from 0 to 1 [Wang2004]. */
 static double structural_similarity(const double m[MOMENTS])
 {
-    const double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;
+    const double C1 = 0.01 * 0.01, C2 = 0.03 * 0.03;
     const double xx = m[2] - m[0] * m[0], yy = m[3] - m[1] * m[1], xy = m[4] - m[0] * m[1];
-    return (2 * m[0] * m[1] + c1) * (2 * xy + c2) /
-           ((m[0] * m[0] + m[1] * m[1] + c1) * (xx + yy + c2));
+    return (2 * m[0] * m[1] + C1) * (2 * xy + C2) /
+           ((m[0] * m[0] + m[1] * m[1] + C1) * (xx + yy + C2));
 }
 
 static double mean_similarity(const cw_picture *picture, const cw_picture *reference,
@@ -243,7 +244,7 @@ static double mean_similarity(const cw_picture *picture, const cw_picture *refer
     for (size_t x = 0; x < w; x++)
         blur_moments((const double(*)[MOMENTS])blurred + x, h, w, m + x);
     for (size_t n = 0; n < w * h; n++)
-        if (reference->pixels[4 * n + 3] > covered) {
+        if (reference->pixels[4 * n + 3] > MIN_OPACITY) {
             sum += structural_similarity(m[n]);
             count++;
         }

@@ -108,12 +108,12 @@ static void pass_cell(passage *p, const cwi_walk *w)
 /* Returns the point that is seen after a whole ray. */
 static cwi_volume_hit find_hit(const passage *p)
 {
-    static const double seen = 1.0 / 512; /* half a step of what is displayed */
+    static const double MIN_SEEN = 1.0 / 512; /* half a step of what is displayed */
     const double opacity = 1 - p->light;
     const bool is_half = p->half < INFINITY;
-    return (cwi_volume_hit){is_half           ? p->half
-                            : opacity >= seen ? p->max_light_depth
-                                              : INFINITY,
+    return (cwi_volume_hit){is_half               ? p->half
+                            : opacity >= MIN_SEEN ? p->max_light_depth
+                                                  : INFINITY,
                             opacity, is_half ? p->half_value : p->max_light_value};
 }
 

@@ -63,18 +63,18 @@ static double distance_to_line(const double a[2], const double b[2])
 size_t cwi_transfer_near_segment(const cw_transfer *t, double value, double opacity,
                                  const double tolerance[2])
 {
-    static const double far = 1e100; /* tolerances: beyond the ends lines are level */
+    static const double FAR = 1e100; /* tolerances: beyond the ends lines are level */
     const cw_opacity_point *p = t->opacities;
     const size_t count = t->opacity_count;
     size_t found = CWI_TRANSFER_NONE;
-    double nearest = 1, ends[2][2] = {{-far, 0}, {0, 0}};
+    double nearest = 1, ends[2][2] = {{-FAR, 0}, {0, 0}};
     for (size_t n = 0; n <= count; n++) {
         const double end = n < count ? (double)p[n].opacity
                            : count   ? (double)p[n - 1].opacity
                                      : 0;
         ends[1][0] = n < count
-                         ? clamp_between(are_apart(p[n].value, value, tolerance[0]), -far, far)
-                         : far;
+                         ? clamp_between(are_apart(p[n].value, value, tolerance[0]), -FAR, FAR)
+                         : FAR;
         ends[1][1] = are_apart(end, opacity, tolerance[1]);
         if (n == 0)
             ends[0][1] = ends[1][1];

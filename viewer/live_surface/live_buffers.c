@@ -54,13 +54,13 @@ cw_status cwi_live_fit_slots(cwi_live *live, cw_error *err)
 /* Describes the buffers of vertices and triangles for drawing. */
 static void make_array(cwi_live *live)
 {
-    const size_t normal = 12;
+    const size_t NORMAL_OFFSET = 12; /* bytes: a position of three floats comes first */
     glGenVertexArrays(1, &live->array);
     glBindVertexArray(live->array);
     glBindBuffer(GL_ARRAY_BUFFER, live->buffers[CWI_LIVE_VERTICES]);
     for (GLuint n = 0; n < 2; n++) {
         glVertexAttribPointer(n, 3, GL_FLOAT, GL_FALSE, CWI_LIVE_VERTEX_BYTES,
-                              (const void *)(n * normal));
+                              (const void *)(n * NORMAL_OFFSET));
         glEnableVertexAttribArray(n);
     }
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, live->buffers[CWI_LIVE_INDICES]);

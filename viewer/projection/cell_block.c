@@ -8,7 +8,7 @@
 enum { SIDE = CWI_BLOCK_SIDE, WIDE = CWI_BLOCK_WIDE, EDGE = CWI_RANGE_EDGE };
 
 /* Rounding of projected positions stays below this, in samples. */
-static const float margin = 1 / 32.0f;
+static const float MARGIN = 1 / 32.0f;
 
 /* A block that is being drawn. Corner (x, y, z) is number (z * SIDE + y) * SIDE + x. */
 typedef struct block {
@@ -42,8 +42,8 @@ static cwi_tile_box box_of_bounds(const cwi_tile *t, cwi_lanes max)
     cwi_tile_box box;
     const int size[2] = {t->width, t->height};
     for (int a = 0; a < 2; a++) {
-        const int low = clamp_whole(-max[a] - margin - 0.5f, size[a]) + 1;
-        const int high = clamp_whole(max[a + 2] + margin - 0.5f, size[a]);
+        const int low = clamp_whole(-max[a] - MARGIN - 0.5f, size[a]) + 1;
+        const int high = clamp_whole(max[a + 2] + MARGIN - 0.5f, size[a]);
         box.low[a] = low > 0 ? low : 0;
         box.high[a] = high < size[a] ? high : size[a] - 1;
     }
@@ -64,10 +64,10 @@ static cwi_tile_box box_of_cut(const cwi_tile *t, const cwi_lanes projected[8])
     const float near_depth = (float)t->near_depth;
     for (int n = 0; n < 8; n++) {
         const cwi_lanes p = projected[n];
-        out[0] = out[0] && p[0] < -margin * fabsf(p[2]);
-        out[1] = out[1] && p[1] < -margin * fabsf(p[2]);
-        out[2] = out[2] && p[0] - (float)t->width * p[2] > margin * fabsf(p[2]);
-        out[3] = out[3] && p[1] - (float)t->height * p[2] > margin * fabsf(p[2]);
+        out[0] = out[0] && p[0] < -MARGIN * fabsf(p[2]);
+        out[1] = out[1] && p[1] < -MARGIN * fabsf(p[2]);
+        out[2] = out[2] && p[0] - (float)t->width * p[2] > MARGIN * fabsf(p[2]);
+        out[3] = out[3] && p[1] - (float)t->height * p[2] > MARGIN * fabsf(p[2]);
         out[4] = out[4] && p[2] < near_depth;
     }
     const bool is_out = out[0] || out[1] || out[2] || out[3] || out[4];

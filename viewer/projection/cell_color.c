@@ -10,7 +10,7 @@
 #include <math.h>
 
 /* The maximum opacity in a pre-integrated table: an optical depth of 16. */
-static const double max_opacity = 0.9999999;
+static const double MAX_OPACITY = 0.9999999;
 
 /* The colour that a part of a ray adds: premultiplied, and its optical depth. */
 typedef struct glow {
@@ -24,7 +24,7 @@ static void turn_to_depths(float *segments, size_t count)
 {
     for (size_t n = 0; n < count; n++) {
         float *s = segments + 4 * n;
-        const double opacity = fmin((double)s[3], max_opacity), depth = -log1p(-opacity);
+        const double opacity = fmin((double)s[3], MAX_OPACITY), depth = -log1p(-opacity);
         const double scale = s[3] > 0 ? depth / (double)s[3] : 0;
         for (int c = 0; c < 3; c++)
             s[c] = (float)((double)s[c] * scale);
@@ -336,7 +336,7 @@ static inline void add_part(const cwi_cell_model *m, const cwi_projected_cell *c
     glow g = {{0}, 0};
     if (linear) {
         g.color = (part[1] - part[0]) * *linear;
-        g.depth = (float)-log1p(-fmin((double)g.color[3], max_opacity));
+        g.depth = (float)-log1p(-fmin((double)g.color[3], MAX_OPACITY));
     } else
         g = glow_between(m, values[0] + part[0] * rise, values[0] + part[1] * rise,
                          (part[1] - part[0]) * way);

@@ -65,11 +65,11 @@ static void up_to_row(const cwi_integrals *r, double row, double out[4])
 
 void cwi_integrals_mean(const cwi_integrals *r, double from, double to, double mean[4])
 {
-    static const double same = 1e-3; /* rows, within which the middle stands for all */
+    static const double SAME_ROWS = 1e-3; /* rows, within which the middle stands for all */
     const double scale = ((double)r->table.count - 1) / (r->table.high - r->table.low);
     const double x = (from - r->table.low) * scale, y = (to - r->table.low) * scale;
     double a[4], b[4];
-    if (!(fabs(y - x) > same)) {
+    if (!(fabs(y - x) > SAME_ROWS)) {
         at_row(r, (x + y) / 2, mean);
         return;
     }

@@ -229,7 +229,7 @@ typedef struct blending {
 static void blend_segment(blending *b, const fragment *f, double near, double far, double along)
 {
     enum { MAX_PIECES = 16 };
-    static const double pieces_per_depth = 4;
+    static const double PIECES_PER_DEPTH = 4; /* per unit of optical depth */
     const projection *p = b->p;
     const cwi_frame *frame = p->frame;
     const double gradient[3] = {(double)f->gradient[0], (double)f->gradient[1],
@@ -251,7 +251,7 @@ static void blend_segment(blending *b, const fragment *f, double near, double fa
     }
     const double length = (far - near) * scale;
     const int count =
-        (int)fmin(fmax(ceil(pieces_per_depth * whole[3] * length), 1), MAX_PIECES);
+        (int)fmin(fmax(ceil(PIECES_PER_DEPTH * whole[3] * length), 1), MAX_PIECES);
     for (int n = 0; n < count && b->light > 0; n++) {
         const double from = (double)n / count, to = (double)(n + 1) / count;
         double mean[4];

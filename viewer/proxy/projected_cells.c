@@ -11,7 +11,7 @@
 enum { MAX_SIDES = 16, MAX_FACES = 7 };
 
 /* Faces seen more edge-on than this cover nothing: slopes, or distances in voxels. */
-static const double edge_on = 1e-9;
+static const double EDGE_ON = 1e-9;
 
 typedef struct polygon {
     int count;
@@ -150,7 +150,7 @@ static void find_faces(solid *s, const double low[3], const double high[3])
             faces *to = to_eye > 0 ? &s->front : &s->back;
             face *f = &to->all[to->count];
             draw_outline(s, axis, side, &f->outline);
-            if (fabs(to_eye) <= edge_on || f->outline.count < 3)
+            if (fabs(to_eye) <= EDGE_ON || f->outline.count < 3)
                 continue;
             find_plane(s, axis, side ? high[axis] : low[axis], f->plane);
             to->count++;

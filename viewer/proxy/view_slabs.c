@@ -113,13 +113,13 @@ static bool parts_of(double low, double high, double part, size_t count, size_t 
 
 void cwi_slabs_mark(cwi_slabs *s, const cwi_frame *f, const double low[3], const double high[3])
 {
-    const double slack = 1e-3; /* rays and corners are rounded */
+    const double ROUNDING = 1e-3; /* rays and corners are rounded */
     const bounds b = bounds_of(f, low, high);
     const double layer = s->thickness * (double)s->per_layer, tile = (double)s->tile;
     size_t x[2], y[2], z[2];
-    if (!parts_of(b.low[0] - slack, b.high[0] + slack, tile, CWI_SLAB_TILES, x) ||
-        !parts_of(b.low[1] - slack, b.high[1] + slack, tile, CWI_SLAB_TILES, y) ||
-        !parts_of(b.low[2] - s->first - slack, b.high[2] - s->first + slack, layer,
+    if (!parts_of(b.low[0] - ROUNDING, b.high[0] + ROUNDING, tile, CWI_SLAB_TILES, x) ||
+        !parts_of(b.low[1] - ROUNDING, b.high[1] + ROUNDING, tile, CWI_SLAB_TILES, y) ||
+        !parts_of(b.low[2] - s->first - ROUNDING, b.high[2] - s->first + ROUNDING, layer,
                   s->layer_count, z))
         return;
     const uint64_t mask = UINT64_MAX >> (CWI_SLAB_TILES - 1 - (x[1] - x[0])) << x[0];

@@ -131,8 +131,8 @@ static double deviation_of(const cwi_mapped_cell *cell)
 
 cwi_map_kind cwi_cell_map_of(const cwi_mapped_cell *cell)
 {
-    static const double flat = 1e-13; /* of the cube of the size */
-    const double size = size_of(cell), min_axis = flat * size * size * size;
+    static const double FLAT_VOLUME = 1e-13; /* of the cube of the size */
+    const double size = size_of(cell), min_axis = FLAT_VOLUME * size * size * size;
     bool is_left = false, is_right = false;
     if (!(size > 0))
         return CWI_MAP_EMPTY;
@@ -302,7 +302,7 @@ bool cwi_cell_line(const cwi_mapped_cell *cell, const double origin[3],
 /* --- faces ------------------------------------------------------------------------------- */
 
 /* How far beside a face, in parts of it, a crossing may be and still be listed. */
-static const double beside = 1e-3;
+static const double BORDER_TOLERANCE = 1e-3;
 
 /* Solves a x^2 + b x + c = 0; returns the number of roots. */
 static int solve_quadratic(double a, double b, double c, double x[2])
@@ -331,7 +331,7 @@ static double cross_2d(const double a[2], const double b[2])
 
 static bool is_beside(double x)
 {
-    return !(x >= -beside && x <= 1 + beside);
+    return !(x >= -BORDER_TOLERANCE && x <= 1 + BORDER_TOLERANCE);
 }
 
 /* Finds where the ray meets the bilinear patch p0 + x (p1 - p0) + y (p3 - p0) + x y (...), all

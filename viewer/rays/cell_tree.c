@@ -108,14 +108,14 @@ static cw_status fill_tree(job *work, const cwi_frame *f, cw_error *err)
 
 cwi_boxes_segment cwi_cell_tree_segment(const cwi_cell_tree *tree, const cwi_ray *ray)
 {
-    static const float slack = 1e-6f;
+    static const float ROUNDING = 1e-6f; /* of a fraction of the segment */
     const double begin = ray->parts[0][0], end = ray->parts[ray->part_count - 1][1];
     double from[3], vector[3];
     for (int a = 0; a < 3; a++) {
         from[a] = (ray->index[a] + begin * ray->slope[a] - tree->centre[a]) / tree->scale;
         vector[a] = (end - begin) * ray->slope[a] / tree->scale;
     }
-    return cwi_boxes_segment_of(from, vector, slack);
+    return cwi_boxes_segment_of(from, vector, ROUNDING);
 }
 
 cw_status cwi_cell_tree_make(const cwi_frame *f, const cwi_ray *only, cwi_cell_tree *tree,

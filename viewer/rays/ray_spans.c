@@ -13,7 +13,7 @@
 #include <string.h>
 
 /* A gap between spans that is more than rounding, in units of eye space. */
-static const double least_gap = 1e-6;
+static const double MIN_GAP = 1e-6;
 
 void cwi_field_make(const cwi_frame *frame, const cwi_cell_tree *tree, const cwi_knots *knots,
                     bool is_exact, cwi_field *field)
@@ -486,7 +486,7 @@ bool cwi_spans_next(cwi_spans *s, cwi_span *span)
         s->field->frame->volume.cells ? next_in_cells(s, span) : next_in_boxes(s, span);
     if (!is_there)
         return false;
-    span->follows = span->from - s->last <= least_gap;
+    span->follows = span->from - s->last <= MIN_GAP;
     s->last = span->to;
     return true;
 }

@@ -362,13 +362,13 @@ static cw_status set_clips(cwi_frame *f, cw_error *err)
 /* Finds the planes that leave some of the volume's box behind. Those in its sides do not count. */
 static void find_faces(cwi_frame *f)
 {
-    static const double slack = 1e-3;
+    static const double ROUNDING = 1e-3; /* in units of eye space */
     for (int c = 0; c < 8; c++) {
         double world[3], eye[3];
         box_corner(f, c, world);
         to_eye(f, world, eye);
         for (size_t n = 0; n < f->scene.clip_count; n++)
-            if (cwi_dot(f->clips[n], eye) < f->clips[n][3] - slack)
+            if (cwi_dot(f->clips[n], eye) < f->clips[n][3] - ROUNDING)
                 f->faces |= (uint32_t)1 << n;
     }
 }

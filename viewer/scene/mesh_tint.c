@@ -11,8 +11,8 @@
 /* Returns the inverse of CIE's f(t): a cube root, with a straight line below it. */
 static double inverse_f(double f)
 {
-    const double knee = 6.0 / 29;
-    return f > knee ? f * f * f : 3 * knee * knee * (f - 4.0 / 29);
+    const double LAB_KNEE = 6.0 / 29;
+    return f > LAB_KNEE ? f * f * f : 3 * LAB_KNEE * LAB_KNEE * (f - 4.0 / 29);
 }
 
 /* Converts CIELAB with the white of sRGB, D65; the matrix is IEC 61966-2-1's from XYZ. */

@@ -23,7 +23,7 @@ enum {
 };
 
 /* Optical depth of a shadow that is black to 1/255. */
-static const double deepest = 6;
+static const double BLACK_DEPTH = 6;
 
 typedef struct job {
     const cwi_frame *frame;
@@ -151,7 +151,7 @@ static double follow_ray(const job *w, const size_t at[3], const double step[3],
 {
     const double end = fmin(steps, steps_in_volume(w, at, step));
     double depth = 0;
-    for (double n = 1.5; n < end && depth < deepest;) {
+    for (double n = 1.5; n < end && depth < BLACK_DEPTH;) {
         double p[3];
         for (int a = 0; a < 3; a++)
             p[a] = fmax((double)at[a] + n * step[a], 0);

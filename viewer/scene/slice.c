@@ -108,7 +108,7 @@ cw_status cw_slice_camera(const cw_volume *volume, const cw_slice *slice, double
                           cw_camera *camera, cw_error *err)
 {
     CWI_REQUIRE(err, volume, slice, camera);
-    static const double margin = 0.02;
+    static const double VIEW_MARGIN = 0.02; /* of the height, above and below */
     cw_volume v;
     cw_slice s = *slice;
     double axes[3][3], extent[2][2];
@@ -131,7 +131,7 @@ cw_status cw_slice_camera(const cw_volume *volume, const cw_slice *slice, double
     if (!find_extent(&v, &s, (const double(*)[3])axes, extent))
         return cwi_fail(err, CW_ERR_ARGUMENT, "the slice misses the volume");
     const double wide = extent[0][1] - extent[0][0], tall = extent[1][1] - extent[1][0];
-    c.height_mm = fmax(fmax(tall, wide / aspect), 1e-6) / (1 - 2 * margin);
+    c.height_mm = fmax(fmax(tall, wide / aspect), 1e-6) / (1 - 2 * VIEW_MARGIN);
     for (int a = 0; a < 3; a++) {
         c.target[a] = s.distance_mm * s.normal[a] +
                       (extent[0][0] + extent[0][1]) / 2 * axes[0][a] +
@@ -146,18 +146,18 @@ cw_status cw_slice_camera(const cw_volume *volume, const cw_slice *slice, double
  * plane, are drawn: they get some tolerance. */
 static bool has_value(const cwi_frame *f, const double p[3])
 {
-    static const double slack = 1e-3;
+    static const double ROUNDING = 1e-3; /* voxels, or units of eye space */
     double index[3], world[3];
     bool kept = true;
     cwi_affine_apply(f->index_from_eye, p, index);
     for (int a = 0; a < 3; a++) {
-        if (!(index[a] >= f->low[a] - slack && index[a] <= f->high[a] + slack))
+        if (!(index[a] >= f->low[a] - ROUNDING && index[a] <= f->high[a] + ROUNDING))
             return false;
         index[a] = fmin(fmax(index[a], f->low[a]), f->high[a]);
     }
     for (size_t n = 0; n < f->scene.clip_count; n++)
-        kept = kept &&
-               cwi_dot(f->clips[n], p) >= f->clips[n][3] + (f->scene.cut_away ? slack : -slack);
+        kept = kept && cwi_dot(f->clips[n], p) >=
+                           f->clips[n][3] + (f->scene.cut_away ? ROUNDING : -ROUNDING);
     if (f->scene.clip_count > 0 && kept == f->scene.cut_away)
         return false;
     cw_volume_to_world(&f->volume, index, world);

@@ -168,8 +168,8 @@ static size_t piece_count(double depth, size_t span)
  * long. */
 static double find_escape(double depth)
 {
-    static const double end = 0.03;
-    if (depth > end)
+    static const double SERIES_END = 0.03; /* optical depth below which a series is exact */
+    if (depth > SERIES_END)
         return -expm1(-depth) / depth;
     return 1 -
            depth / 2 * (1 - depth / 3 * (1 - depth / 4 * (1 - depth / 5 * (1 - depth / 6))));

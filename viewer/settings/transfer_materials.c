@@ -135,12 +135,12 @@ static bool is_equal(const sample *a, const sample *b)
  * points. Returns the number of pieces. */
 static size_t halve_pieces(const mixture *m, piece *pieces, size_t count, size_t max)
 {
-    static const double tolerance = 1.0 / 512;
+    static const double TOLERANCE = 1.0 / 512; /* half a step of what is displayed */
     while (count < max) {
         size_t worst = 0;
         for (size_t n = 1; n < count; n++)
             worst = pieces[n].error > pieces[worst].error ? n : worst;
-        if (!(pieces[worst].error > tolerance))
+        if (!(pieces[worst].error > TOLERANCE))
             break;
         memmove(pieces + worst + 1, pieces + worst, (count - worst) * sizeof *pieces);
         piece *low = &pieces[worst], *high = low + 1;

@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* A second press within this time and distance is one of a pair. */
-static const double twice_s = 0.35, twice_pixels = 6;
+static const double DOUBLE_CLICK_S = 0.35, DOUBLE_CLICK_PIXELS = 6;
 
 /* Empties the queue when all of it was taken. */
 static void rewind_when_empty(cwi_ui_queue *q)
@@ -96,8 +96,8 @@ static void press_button(cwi_ui *ui, int button, double time)
     const double dx = in->x - ui->press[button].x, dy = in->y - ui->press[button].y;
     in->down[button] = in->pressed[button] = true;
     in->twice[button] = ui->press[button].time > 0 &&
-                        time - ui->press[button].time <= twice_s &&
-                        hypot(dx, dy) <= twice_pixels;
+                        time - ui->press[button].time <= DOUBLE_CLICK_S &&
+                        hypot(dx, dy) <= DOUBLE_CLICK_PIXELS;
     ui->press[button].time = in->twice[button] ? 0 : time;
     ui->press[button].x = in->x;
     ui->press[button].y = in->y;

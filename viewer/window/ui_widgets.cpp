@@ -493,13 +493,13 @@ void disable(cwi_ui *, bool on)
  * cover that. */
 void tip(cwi_ui *ui, const char *words)
 {
-    const double delay = 0.4;
+    const double TIP_DELAY_S = 0.4;
     if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) || ImGui::IsAnyMouseDown())
         return;
     const ImGuiContext *g = ImGui::GetCurrentContext();
-    const double stayed = g->HoveredId ? static_cast<double>(g->HoveredIdTimer) : delay;
-    if (stayed < delay) {
-        ui->wake = delay - stayed + 0.01;
+    const double stayed = g->HoveredId ? static_cast<double>(g->HoveredIdTimer) : TIP_DELAY_S;
+    if (stayed < TIP_DELAY_S) {
+        ui->wake = TIP_DELAY_S - stayed + 0.01;
         return;
     }
     ImGui::BeginTooltip();
