@@ -1,5 +1,6 @@
 /* Gives labels the volumes of their voxels. Directions of vertices in one patch are computed once,
- * and those of vertices on curves in each round. */
+ * and those of vertices on curves in each round.
+ * Source  conjugate gradients [Hestenes1952], on a graph of labels whose edges are interfaces */
 #include "extract/labels/label_pressures.h"
 
 #include "core/base/memory.h"

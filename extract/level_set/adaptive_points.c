@@ -15,16 +15,16 @@ static const double DEPTHS[] = {0.02, 0.005, 0.001, 0};
 static const double MAX_REACH = 0.97;
 
 /* The inside of an edge, a face or a cell, in which a point may be placed. */
-typedef struct star_box {
+typedef struct ring_box {
     const cwi_adaptive *a;
     double middle[3], reach[3]; /* voxels; a reach of 0: it stays on that plane */
     bool inside;                /* the side on which the point has to be */
     double distance_sq;         /* of the least way from the middle so far */
     double position[3];
-} star_box;
+} ring_box;
 
 /* Returns how many of a room's corners are inside; `of`: the number of corners. */
-static int count_inside(const star_box *r, int *of)
+static int count_inside(const ring_box *r, int *of)
 {
     int count = 0;
     *of = 0;
@@ -43,7 +43,7 @@ static int count_inside(const star_box *r, int *of)
 
 /* Finds the place in the room nearest to x, and the squares of its distances from x and from
  * the middle. */
-static void keep_in(const star_box *r, const double x[3], double position[3],
+static void keep_in(const ring_box *r, const double x[3], double position[3],
                     double distances_sq[2])
 {
     distances_sq[0] = distances_sq[1] = 0;
@@ -57,7 +57,7 @@ static void keep_in(const star_box *r, const double x[3], double position[3],
 }
 
 /* Tries a place beside x, a point of the mesh, along a triangle's normal. */
-static void step_in(star_box *r, const double x[3], const double normal[3])
+static void step_in(ring_box *r, const double x[3], const double normal[3])
 {
     double n[3], length = 0;
     for (int a = 0; a < 3; a++) {
@@ -80,7 +80,7 @@ static void step_in(star_box *r, const double x[3], const double normal[3])
     }
 }
 
-static void try_triangle(star_box *r, uint32_t t)
+static void try_triangle(ring_box *r, uint32_t t)
 {
     const cwi_adaptive *a = r->a;
     cwi_polygon p[2] = {{.count = 3}};
@@ -100,7 +100,7 @@ static void try_triangle(star_box *r, uint32_t t)
 
 static bool visit_node(void *context, size_t node)
 {
-    star_box *r = context;
+    ring_box *r = context;
     const cwi_boxes *tree = &r->a->tree;
     for (size_t s = CWI_WIDTH * node; s < CWI_WIDTH * (node + 1) && s < tree->count; s++)
         try_triangle(r, tree->order[s]);
@@ -108,7 +108,7 @@ static bool visit_node(void *context, size_t node)
 }
 
 /* Tries the triangles around the room, which is a little widened for rounding. */
-static void try_triangles(star_box *r)
+static void try_triangles(ring_box *r)
 {
     float box[6];
     double low[3], high[3];
@@ -128,7 +128,7 @@ static void try_triangles(star_box *r)
 bool cwi_adaptive_position(const cwi_adaptive *a, const uint32_t at[3], double position[3],
                            bool *inside)
 {
-    star_box r = {.a = a, .distance_sq = INFINITY};
+    ring_box r = {.a = a, .distance_sq = INFINITY};
     bool stays = true;
     int of = 0;
     for (int k = 0; k < 3; k++) {

@@ -1,4 +1,4 @@
-// Checks an edge collapse: the star of triangles around the edge must keep its shape, and must
+// Checks an edge collapse: the ring of triangles around the edge must keep its shape, and must
 // not meet other triangles.
 #include "simplify/collapse/collapse_checks.hpp"
 
@@ -33,13 +33,14 @@ int clear_side(const Vec &normal, float scale, const Vec &displacement)
 }
 
 // Triangles around a vertex but those at the edge to the other.
-void add_spokes(const Surface &surface, VertexHandle center, VertexHandle other, Star &star)
+void add_triangles(const Surface &surface, VertexHandle center, VertexHandle other,
+                   OneRing &ring)
 {
     const Vec old = surface.point(center);
     for (auto h = surface.cvoh_ccwiter(center); h.is_valid(); ++h) {
         const FaceHandle f = surface.face_handle(*h);
         if (!f.is_valid()) {
-            star.closed = false;
+            ring.closed = false;
             continue;
         }
         const VertexHandle a = surface.to_vertex_handle(*h),
@@ -47,14 +48,14 @@ void add_spokes(const Surface &surface, VertexHandle center, VertexHandle other,
         if (a == other || b == other)
             continue;
         const Vec pa = surface.point(a), pb = surface.point(b), side = pb - pa;
-        star.spokes.push_back({uint32_t(f.idx()), uint32_t(a.idx()), uint32_t(b.idx()), pa, pb,
-                               (pa - old) % side, (pa - star.position) % side});
+        ring.triangles.push_back({uint32_t(f.idx()), uint32_t(a.idx()), uint32_t(b.idx()), pa,
+                                  pb, (pa - old) % side, (pa - ring.position) % side});
     }
 }
 
 } // namespace
 
-bool Star::gather(const Surface &surface, HalfedgeHandle collapsed, const Vec &to)
+bool OneRing::gather(const Surface &surface, HalfedgeHandle collapsed, const Vec &to)
 {
     const VertexHandle u = surface.from_vertex_handle(collapsed),
                        v = surface.to_vertex_handle(collapsed);
@@ -64,22 +65,22 @@ bool Star::gather(const Surface &surface, HalfedgeHandle collapsed, const Vec &t
     old[0] = surface.point(u);
     old[1] = surface.point(v);
     closed = true;
-    spokes.clear();
+    triangles.clear();
     gone.clear();
     for (HalfedgeHandle h : {collapsed, back})
         if (surface.face_handle(h).is_valid())
             gone.push_back(uint32_t(surface.face_handle(h).idx()));
-    add_spokes(surface, u, v, *this);
-    add_spokes(surface, v, u, *this);
-    return spokes.size() >= (closed ? 3 : 1);
+    add_triangles(surface, u, v, *this);
+    add_triangles(surface, v, u, *this);
+    return triangles.size() >= (closed ? 3 : 1);
 }
 
-Box Star::box(const Spoke &spoke) const
+Box OneRing::box(const RingTriangle &ring_triangle) const
 {
     Box box;
     box.add(position);
-    box.add(spoke.pa);
-    box.add(spoke.pb);
+    box.add(ring_triangle.pa);
+    box.add(ring_triangle.pb);
     return box;
 }
 
@@ -92,16 +93,16 @@ bool Shape::is_inside(const Vec &position) const
     return height >= from && height <= to;
 }
 
-bool Shape::is_kept(const Star &star) const
+bool Shape::is_kept(const OneRing &ring) const
 {
-    for (const Spoke &s : star.spokes) {
+    for (const RingTriangle &s : ring.triangles) {
         const float now = s.normal.sqrnorm(), before = s.old_normal.sqrnorm(),
                     turn = s.normal | s.old_normal;
         if (!(turn > 0) || turn * turn < 0.04f * now * before)
             return false;
         const float longest =
-            std::max((s.pb - s.pa).sqrnorm(), std::max((s.pa - star.position).sqrnorm(),
-                                                       (s.pb - star.position).sqrnorm()));
+            std::max((s.pb - s.pa).sqrnorm(), std::max((s.pa - ring.position).sqrnorm(),
+                                                       (s.pb - ring.position).sqrnorm()));
         if (now < 1e-7f * longest * longest)
             return false;
     }
@@ -185,11 +186,11 @@ bool is_apart(const Corners &t, const Corners &other)
     return false;
 }
 
-void put(Eight &eight, size_t lane, const Star &star, const Spoke &s)
+void put(Eight &eight, size_t lane, const OneRing &ring, const RingTriangle &s)
 {
-    const Vec along = s.pb - s.pa, from_center = s.pa - star.position, out = along % s.normal;
+    const Vec along = s.pb - s.pa, from_center = s.pa - ring.position, out = along % s.normal;
     const float scale = 2e-6f * length(from_center) * length(along);
-    cwi_boxes_put(&eight.boxes, lane, star.box(s).side);
+    cwi_boxes_put(&eight.boxes, lane, ring.box(s).side);
     eight.a[lane] = s.a;
     eight.b[lane] = s.b;
     for (unsigned k = 0; k < 3; k++) {
@@ -212,7 +213,7 @@ inline __attribute__((always_inline)) void load(Vector &vector, const T (&from)[
     std::memcpy(&vector, from, sizeof vector);
 }
 
-// Which of the spokes may meet a triangle: it is not clearly on one side of their planes, nor
+// Which of the ring triangles may meet a triangle: it is not clearly on one side of their planes, nor
 // beyond their outer sides, but for corners that they share.
 inline __attribute__((always_inline)) unsigned candidates(const Eight &e, const Corners &other,
                                                           const Vec &center)
@@ -251,20 +252,20 @@ inline __attribute__((always_inline)) unsigned candidates(const Eight &e, const 
 
 // The moved vertex stands at its new place already.
 inline __attribute__((always_inline)) bool Contact::meets(const Surface &surface,
-                                                          const Star &star, uint32_t face,
+                                                          const OneRing &ring, uint32_t face,
                                                           const float box[6]) const
 {
     Corners other;
     std::memcpy(other.id, &corners[3 * size_t(face)], sizeof other.id);
     for (int k = 0; k < 3; k++)
         other.at[k] = point(surface, other.id[k]);
-    for (size_t n = 0; n < spokes.size(); n++) {
-        unsigned near = cwi_boxes_meeting(&spokes[n].boxes, box);
+    for (size_t n = 0; n < triangles.size(); n++) {
+        unsigned near = cwi_boxes_meeting(&triangles[n].boxes, box);
         if (near)
-            near &= candidates(spokes[n], other, star.position);
+            near &= candidates(triangles[n], other, ring.position);
         for (; near; near &= near - 1) {
-            const Spoke &s = star.spokes[8 * n + unsigned(__builtin_ctz(near))];
-            const Corners mine = {{star.vertex, s.a, s.b}, {star.position, s.pa, s.pb}};
+            const RingTriangle &s = ring.triangles[8 * n + unsigned(__builtin_ctz(near))];
+            const Corners mine = {{ring.vertex, s.a, s.b}, {ring.position, s.pa, s.pb}};
             if (!is_apart(other, mine) && !is_apart(mine, other) &&
                 cwi_triangles_meet(surface.points()->data(), mine.id, other.id))
                 return true;
@@ -273,30 +274,31 @@ inline __attribute__((always_inline)) bool Contact::meets(const Surface &surface
     return false;
 }
 
-// Seen along the sum of its normals a star opens like a fan if all triangles face that way and
+// Seen along the sum of its normals a ring opens like a fan if all triangles face that way and
 // go round once: then no two of them meet.
-bool Contact::opens_like_a_fan(const Star &star) const
+bool Contact::opens_like_a_fan(const OneRing &ring) const
 {
     Vec axis(0), x;
-    for (const Spoke &s : star.spokes)
+    for (const RingTriangle &s : ring.triangles)
         axis += s.normal;
     x = axis % (std::abs(axis[0]) < std::abs(axis[1]) ? Vec(1, 0, 0) : Vec(0, 1, 0));
     int rounds = 0;
-    for (const Spoke &s : star.spokes) {
-        const float scale = length(s.pa - star.position) * length(s.pb - s.pa);
+    for (const RingTriangle &s : ring.triangles) {
+        const float scale = length(s.pa - ring.position) * length(s.pb - s.pa);
         if (clear_side(s.normal, scale, axis) <= 0)
             return false;
-        rounds += (x | (s.pa - star.position)) < 0 && (x | (s.pb - star.position)) >= 0;
+        rounds += (x | (s.pa - ring.position)) < 0 && (x | (s.pb - ring.position)) >= 0;
     }
-    return rounds == 1 && star.closed;
+    return rounds == 1 && ring.closed;
 }
 
-bool Contact::star_meets_itself(const Surface &surface, const Star &star) const
+bool Contact::ring_meets_itself(const Surface &surface, const OneRing &ring) const
 {
-    for (const Spoke &s : star.spokes)
-        for (const Spoke *t = &s + 1; t < star.spokes.data() + star.spokes.size(); t++) {
-            const uint32_t mine[3] = {star.vertex, s.a, s.b},
-                           other[3] = {star.vertex, t->a, t->b};
+    for (const RingTriangle &s : ring.triangles)
+        for (const RingTriangle *t = &s + 1; t < ring.triangles.data() + ring.triangles.size();
+             t++) {
+            const uint32_t mine[3] = {ring.vertex, s.a, s.b},
+                           other[3] = {ring.vertex, t->a, t->b};
             if (cwi_triangles_meet(surface.points()->data(), mine, other))
                 return true;
         }
@@ -304,69 +306,69 @@ bool Contact::star_meets_itself(const Surface &surface, const Star &star) const
 }
 
 inline __attribute__((always_inline)) bool
-Contact::meets_others(const Surface &surface, const Star &star, const Box &around) const
+Contact::meets_others(const Surface &surface, const OneRing &ring, const Box &around) const
 {
     return nearby->any(
         around, [&](uint32_t face, const float box[6]) __attribute__((always_inline)) {
-            return marks[face] != mark && meets(surface, star, face, box);
+            return marks[face] != mark && meets(surface, ring, face, box);
         });
 }
 
 #ifdef __x86_64__
 __attribute__((target("avx2"))) bool
-Contact::meets_others_avx2(const Surface &surface, const Star &star, const Box &around) const
+Contact::meets_others_avx2(const Surface &surface, const OneRing &ring, const Box &around) const
 {
-    return meets_others(surface, star, around);
+    return meets_others(surface, ring, around);
 }
 #endif
 
-bool Contact::find_others(const Surface &surface, const Star &star, const Box &around) const
+bool Contact::find_others(const Surface &surface, const OneRing &ring, const Box &around) const
 {
 #ifdef __x86_64__
     if (has_avx2)
-        return meets_others_avx2(surface, star, around);
+        return meets_others_avx2(surface, ring, around);
 #endif
-    return meets_others(surface, star, around);
+    return meets_others(surface, ring, around);
 }
 
-bool Contact::arises(Surface &surface, const Star &star)
+bool Contact::arises(Surface &surface, const OneRing &ring)
 {
-    const VertexHandle moving(int(star.vertex));
+    const VertexHandle moving(int(ring.vertex));
     const Vec before = surface.point(moving);
     Box all;
-    all.add(star.position);
+    all.add(ring.position);
     mark++;
-    spokes.resize((star.spokes.size() + 7) / 8);
-    cwi_boxes_clear(&spokes.back().boxes);
-    for (size_t i = 0; i < star.spokes.size(); i++) {
-        const Spoke &s = star.spokes[i];
-        put(spokes[i / 8], i % 8, star, s);
+    triangles.resize((ring.triangles.size() + 7) / 8);
+    cwi_boxes_clear(&triangles.back().boxes);
+    for (size_t i = 0; i < ring.triangles.size(); i++) {
+        const RingTriangle &s = ring.triangles[i];
+        put(triangles[i / 8], i % 8, ring, s);
         all.add(s.pa);
         all.add(s.pb);
         marks[s.face] = mark;
     }
-    for (uint32_t f : star.gone)
+    for (uint32_t f : ring.gone)
         marks[f] = mark;
-    surface.set_point(moving, star.position);
-    const bool found = (!opens_like_a_fan(star) && star_meets_itself(surface, star)) ||
-                       find_others(surface, star, all);
+    surface.set_point(moving, ring.position);
+    const bool found = (!opens_like_a_fan(ring) && ring_meets_itself(surface, ring)) ||
+                       find_others(surface, ring, all);
     surface.set_point(moving, before);
     return found;
 }
 
-// Moves the triangles of a star in the tree, and builds the tree again when few of them are
+// Moves the triangles of a ring in the tree, and builds the tree again when few of them are
 // left: else most boxes would be empty.
-void Contact::change(const Surface &surface, const Star &star)
+void Contact::change(const Surface &surface, const OneRing &ring)
 {
-    for (uint32_t f : star.gone)
+    for (uint32_t f : ring.gone)
         nearby->remove(f);
-    for (size_t i = 0; i < star.spokes.size(); i++) {
-        const Spoke &s = star.spokes[i];
-        const uint32_t now[3] = {star.vertex, s.a, s.b};
+    for (size_t i = 0; i < ring.triangles.size(); i++) {
+        const RingTriangle &s = ring.triangles[i];
+        const uint32_t now[3] = {ring.vertex, s.a, s.b};
         std::memcpy(&corners[3 * size_t(s.face)], now, sizeof now);
-        nearby->move(s.face, star.box(s));
+        nearby->move(s.face, ring.box(s));
     }
-    live -= star.gone.size();
+    live -= ring.gone.size();
     if (2 * live < built && live > 1024)
         build(surface);
 }

@@ -1,4 +1,4 @@
-// Conditions that a collapse must not break. Each check looks at the star: the triangles around
+// Conditions that a collapse must not break. Each check looks at the one-ring: the triangles around
 // the edge as they are, and as they would be.
 #ifndef SIMPLIFY_COLLAPSE_COLLAPSE_CHECKS_HPP
 #define SIMPLIFY_COLLAPSE_COLLAPSE_CHECKS_HPP
@@ -13,24 +13,25 @@ namespace cw
 {
 
 // A triangle that stays, with the moved vertex for a corner and two others across from it.
-struct Spoke {
+struct RingTriangle {
     uint32_t face, a, b;
     Vec pa, pb;     // of a and b
     Vec old_normal; // these are not of unit length: twice the area
     Vec normal;
 };
 
-struct Star {
-    // Of the collapse of a halfedge's start into its end, moved to a place.
+struct OneRing {
+    // Collects the triangles around a halfedge whose start collapses into its end, which moves
+    // to `to`.
     bool gather(const Surface &surface, HalfedgeHandle collapsed, const Vec &to);
 
-    Box box(const Spoke &spoke) const;
+    Box box(const RingTriangle &ring_triangle) const;
 
     uint32_t vertex; // that stays
     Vec position;
-    Vec old[2];  // places of both ends of the edge
-    bool closed; // the triangles go all the way round
-    std::vector<Spoke> spokes;
+    Vec old[2];  // positions of both ends of the edge
+    bool closed; // the triangles form a closed ring
+    std::vector<RingTriangle> triangles;
     std::vector<uint32_t> gone; // triangles at the edge
 };
 
@@ -45,14 +46,14 @@ public:
     }
 
     bool is_inside(const Vec &position) const;
-    bool is_kept(const Star &star) const;
+    bool is_kept(const OneRing &ring) const;
 
 private:
     Vec low, high, along;
     float from, to;
 };
 
-// Eight spokes side by side, for arithmetic on several at a time: their boxes, planes through
+// Eight ring triangles side by side, for arithmetic on several at a time: their boxes, planes through
 // the moved vertex, and planes through the sides across from it, facing outward. Doubts are
 // what a point's height above a plane is wrong by at most, for a way of length 1.
 struct Eight {
@@ -68,25 +69,26 @@ class Contact
 public:
     Contact(const cwi_mesh_block &block, const Surface &surface);
 
-    bool arises(Surface &surface, const Star &star);
-    void change(const Surface &surface, const Star &star); // it has become so
+    bool arises(Surface &surface, const OneRing &ring);
+    void change(const Surface &surface, const OneRing &ring); // it has become so
 
 private:
     void build(const Surface &surface);
-    bool meets(const Surface &surface, const Star &star, uint32_t face,
+    bool meets(const Surface &surface, const OneRing &ring, uint32_t face,
                const float box[6]) const;
-    bool meets_others(const Surface &surface, const Star &star, const Box &around) const;
-    bool meets_others_avx2(const Surface &surface, const Star &star, const Box &around) const;
-    bool find_others(const Surface &surface, const Star &star, const Box &around) const;
-    bool star_meets_itself(const Surface &surface, const Star &star) const;
-    bool opens_like_a_fan(const Star &star) const;
+    bool meets_others(const Surface &surface, const OneRing &ring, const Box &around) const;
+    bool meets_others_avx2(const Surface &surface, const OneRing &ring,
+                           const Box &around) const;
+    bool find_others(const Surface &surface, const OneRing &ring, const Box &around) const;
+    bool ring_meets_itself(const Surface &surface, const OneRing &ring) const;
+    bool opens_like_a_fan(const OneRing &ring) const;
 
     size_t interior_count, live, built;
     std::vector<uint32_t> corners; // of triangles, x 3: faster than a walk
     std::unique_ptr<Nearby> nearby;
-    std::vector<uint32_t> marks; // faces of the star have the last number
+    std::vector<uint32_t> marks; // faces of the ring have the last number
     uint32_t mark = 0;
-    std::vector<Eight> spokes;
+    std::vector<Eight> triangles;
     bool has_avx2 = false;
 };
 

@@ -92,12 +92,12 @@ void Bound::collect(uint32_t face)
         points.push_back(p);
 }
 
-void Bound::collect(const Star &star)
+void Bound::collect(const OneRing &ring)
 {
     points.clear();
-    for (uint32_t f : star.gone)
+    for (uint32_t f : ring.gone)
         collect(f);
-    for (const Spoke &s : star.spokes)
+    for (const RingTriangle &s : ring.triangles)
         collect(s.face);
 }
 
@@ -116,7 +116,7 @@ float Bound::allowed() const
                                                  : -1;
 }
 
-// Whether what is seen of the star was about as even as one that is joined.
+// Whether what is seen of the ring was about as even as one that is joined.
 bool Bound::is_straight() const
 {
     Vec mean(0);
@@ -153,35 +153,35 @@ bool Bound::is_near(const Vec &position, float distance_sq)
     return nearest_sq <= distance_sq;
 }
 
-// Whether every point is near a spoke.
-bool Bound::are_listed(const Star &star, float distance)
+// Whether every point is near a ring triangle.
+bool Bound::are_listed(const OneRing &ring, float distance)
 {
     facets.clear(distance);
-    spoke_of.clear();
-    for (const Spoke &s : star.spokes)
-        facets.add(Vec(0), s.pa - star.position, s.pb - star.position);
+    triangle_of.clear();
+    for (const RingTriangle &s : ring.triangles)
+        facets.add(Vec(0), s.pa - ring.position, s.pb - ring.position);
     for (uint32_t p : points) {
         float distance_sq;
-        spoke_of.push_back(uint32_t(facets.nearest(point(p) - star.position, &distance_sq)));
+        triangle_of.push_back(uint32_t(facets.nearest(point(p) - ring.position, &distance_sq)));
         if (!(distance_sq <= distance * distance))
             return false;
     }
     return true;
 }
 
-// Whether the spokes are whose bits are set.
-bool Bound::is_star_near(const Star &star, uint32_t spokes, float distance)
+// Whether the ring triangles are whose bits are set.
+bool Bound::is_ring_near(const OneRing &ring, uint32_t triangles, float distance)
 {
     const double distance_sq = double(distance) * double(distance);
     Passage passage = {{&original->fans, distance_sq, nearest}, {}};
     cwi_cover cover = {find_passed, &passage, distance_sq, {}};
-    for (size_t n = 0; n < star.spokes.size(); n++) {
-        const Spoke &s = star.spokes[n];
-        if (n < 32 && !(spokes >> n & 1))
+    for (size_t n = 0; n < ring.triangles.size(); n++) {
+        const RingTriangle &s = ring.triangles[n];
+        if (n < 32 && !(triangles >> n & 1))
             continue;
         double corner[3][3];
         for (unsigned k = 0; k < 3; k++) {
-            corner[0][k] = double(star.position[k]);
+            corner[0][k] = double(ring.position[k]);
             corner[1][k] = double(s.pa[k]);
             corner[2][k] = double(s.pb[k]);
         }
@@ -195,14 +195,14 @@ bool Bound::is_star_near(const Star &star, uint32_t spokes, float distance)
     return true;
 }
 
-void Bound::add_around(const Surface &surface, const Star &star)
+void Bound::add_around(const Surface &surface, const OneRing &ring)
 {
     mark++;
-    for (uint32_t f : star.gone)
+    for (uint32_t f : ring.gone)
         marks[f] = mark;
-    for (const Spoke &s : star.spokes)
+    for (const RingTriangle &s : ring.triangles)
         marks[s.face] = mark;
-    for (const Spoke &s : star.spokes)
+    for (const RingTriangle &s : ring.triangles)
         for (uint32_t v : {s.a, s.b})
             for (auto f = surface.cvf_iter(VertexHandle(int(v))); f.is_valid(); ++f) {
                 uint32_t &last = marks[size_t(f->idx())];
@@ -212,7 +212,7 @@ void Bound::add_around(const Surface &surface, const Star &star)
                 Vec corner[3];
                 size_t n = 0;
                 for (auto c = surface.cfv_iter(*f); c.is_valid(); ++c)
-                    corner[n++] = surface.point(*c) - star.position;
+                    corner[n++] = surface.point(*c) - ring.position;
                 facets.add(corner[0], corner[1], corner[2]);
             }
 }
@@ -246,65 +246,65 @@ bool Bound::is_triangle_near(uint32_t triangle, uint32_t first, const Vec &posit
            facets.are_near(seen[n[0]], seen[n[1]], seen[n[2]]);
 }
 
-bool Bound::is_original_near(const Surface &surface, const Star &star)
+bool Bound::is_original_near(const Surface &surface, const OneRing &ring)
 {
-    add_around(surface, star);
-    see_points(star.position);
+    add_around(surface, ring);
+    see_points(ring.position);
     for (uint32_t n = 0; n < points.size(); n++)
         for (uint32_t i = original->fans.first[points[n]];
              i < original->fans.first[points[n] + 1]; i++)
-            if (!is_triangle_near(original->fans.around[i], n, star.position))
+            if (!is_triangle_near(original->fans.around[i], n, ring.position))
                 return false;
     for (uint32_t t : under)
-        if (!is_triangle_near(t, uint32_t(points.size()), star.position))
+        if (!is_triangle_near(t, uint32_t(points.size()), ring.position))
             return false;
     return true;
 }
 
-// Whether the original's triangles in doubt are, and those under spokes in doubt.
-bool Bound::are_doubts_near(const Surface &surface, const Star &star)
+// Whether the original's triangles in doubt are, and those under ring triangles in doubt.
+bool Bound::are_doubts_near(const Surface &surface, const OneRing &ring)
 {
-    add_around(surface, star);
+    add_around(surface, ring);
     numbers.clear(3 * (overlay.triangles_in_doubt.size() + under.size()));
     seen.clear();
     for (const std::vector<uint32_t> *triangles : {&overlay.triangles_in_doubt, &under})
         for (uint32_t t : *triangles)
-            if (!is_triangle_near(t, 0, star.position))
+            if (!is_triangle_near(t, 0, ring.position))
                 return false;
     return true;
 }
 
 // The exact bounds decide where crossing edges do not.
-bool Bound::is_covered(const Surface &surface, const Star &star, float distance)
+bool Bound::is_covered(const Surface &surface, const OneRing &ring, float distance)
 {
-    if (!overlay.lay(star))
-        return is_star_near(star, UINT32_MAX, distance) && is_original_near(surface, star);
+    if (!overlay.lay(ring))
+        return is_ring_near(ring, UINT32_MAX, distance) && is_original_near(surface, ring);
     return overlay.compare(points, distance) ||
-           (is_star_near(star, overlay.spokes_in_doubt, distance) &&
-            are_doubts_near(surface, star));
+           (is_ring_near(ring, overlay.ring_triangles_in_doubt, distance) &&
+            are_doubts_near(surface, ring));
 }
 
 // Runs the checks that refuse most for the least work first.
-bool Bound::is_kept(const Surface &surface, const Star &star)
+bool Bound::is_kept(const Surface &surface, const OneRing &ring)
 {
     if (!is_requested())
         return true;
-    collect(star);
+    collect(ring);
     const float distance = allowed();
-    return distance > 0 && is_straight() && is_near(star.position, distance * distance) &&
-           are_listed(star, distance) && is_covered(surface, star, distance);
+    return distance > 0 && is_straight() && is_near(ring.position, distance * distance) &&
+           are_listed(ring, distance) && is_covered(surface, ring, distance);
 }
 
-void Bound::change(const Star &star)
+void Bound::change(const OneRing &ring)
 {
     if (!is_requested())
         return;
-    for (uint32_t f : star.gone)
+    for (uint32_t f : ring.gone)
         heads[f] = UINT32_MAX;
-    for (const Spoke &s : star.spokes)
+    for (const RingTriangle &s : ring.triangles)
         heads[s.face] = UINT32_MAX;
     for (size_t i = 0; i < points.size(); i++) {
-        uint32_t &head = heads[star.spokes[spoke_of[i]].face];
+        uint32_t &head = heads[ring.triangles[triangle_of[i]].face];
         original->next[points[i]] = head;
         head = points[i];
     }

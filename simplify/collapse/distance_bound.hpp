@@ -2,7 +2,7 @@
 #ifndef SIMPLIFY_COLLAPSE_DISTANCE_BOUND_HPP
 #define SIMPLIFY_COLLAPSE_DISTANCE_BOUND_HPP
 
-#include "simplify/collapse/star_overlay.hpp"
+#include "simplify/collapse/ring_overlay.hpp"
 #include "simplify/collapse/triangle_packet.hpp"
 
 namespace cw
@@ -26,7 +26,7 @@ private:
     uint32_t count;
 };
 
-// Each point of the original is listed with the triangle nearest to it. When a star changes,
+// Each point of the original is listed with the triangle nearest to it. When a ring changes,
 // all of it must be near the original; and all triangles of the original at its points, or that
 // it was found to lie over, near it or what is around it. Bounds decide both [Tang2009].
 class Bound
@@ -44,8 +44,8 @@ public:
         return heads[face];
     }
 
-    bool is_kept(const Surface &surface, const Star &star);
-    void change(const Star &star);
+    bool is_kept(const Surface &surface, const OneRing &ring);
+    void change(const OneRing &ring);
 
 private:
     Vec point(uint32_t p) const
@@ -59,31 +59,31 @@ private:
     }
 
     void collect(uint32_t face);
-    void collect(const Star &star);
+    void collect(const OneRing &ring);
     float allowed() const;
     bool is_straight() const;
     bool is_near(const Vec &position, float distance_sq);
-    bool are_listed(const Star &star, float distance);
-    bool is_star_near(const Star &star, uint32_t spokes, float distance);
-    void add_around(const Surface &surface, const Star &star);
+    bool are_listed(const OneRing &ring, float distance);
+    bool is_ring_near(const OneRing &ring, uint32_t triangles, float distance);
+    void add_around(const Surface &surface, const OneRing &ring);
     void see_points(const Vec &position);
     bool is_triangle_near(uint32_t triangle, uint32_t first, const Vec &position);
-    bool is_original_near(const Surface &surface, const Star &star);
-    bool are_doubts_near(const Surface &surface, const Star &star);
-    bool is_covered(const Surface &surface, const Star &star, float distance);
+    bool is_original_near(const Surface &surface, const OneRing &ring);
+    bool are_doubts_near(const Surface &surface, const OneRing &ring);
+    bool is_covered(const Surface &surface, const OneRing &ring, float distance);
 
     const cwi_original *original;
     float error;
-    bool requested = false;                 // also of a block without triangles
-    std::vector<uint32_t> heads;            // first point of a face's list
-    std::vector<uint32_t> points, spoke_of; // of the star; the nearest spoke
+    bool requested = false;                    // also of a block without triangles
+    std::vector<uint32_t> heads;               // first point of a face's list
+    std::vector<uint32_t> points, triangle_of; // of the ring; the nearest ring triangle
     Overlay overlay;
-    std::vector<uint32_t> under;    // triangles of the original under the star
+    std::vector<uint32_t> under;    // triangles of the original under the ring
     uint32_t nearest;               // triangle of the original to the moved vertex
-    Facets facets;                  // the star's, then those around, from its vertex
+    Facets facets;                  // the ring's, then those around, from its vertex
     Numbers numbers;                // of the points, then of others at their triangles
     std::vector<Facets::Seen> seen; // all of these
-    std::vector<uint32_t> marks;    // faces of the star and around have the last number
+    std::vector<uint32_t> marks;    // faces of the ring and around have the last number
     uint32_t mark = 0;
 };
 

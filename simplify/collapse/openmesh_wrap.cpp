@@ -103,7 +103,7 @@ struct cwi_decimater {
     SmallShells shells;
     Bound bound;
     std::unique_ptr<Contact> contact;
-    Star star;
+    OneRing ring;
 
 private:
     // The caller may have asked to stop. A negative share repeats the last one.
@@ -276,24 +276,24 @@ private:
             return;
         }
         if (!surface.is_collapse_ok(p.halfedge) ||
-            !star.gather(surface, p.halfedge, p.position) || !shape.is_kept(star) ||
-            shells.turns(surface, star, &stays.open) || !bound.is_kept(surface, star) ||
-            shells.sweeps(surface, star) || (contact && contact->arises(surface, star)))
+            !ring.gather(surface, p.halfedge, p.position) || !shape.is_kept(ring) ||
+            shells.turns(surface, ring, &stays.open) || !bound.is_kept(surface, ring) ||
+            shells.sweeps(surface, ring) || (contact && contact->arises(surface, ring)))
             return;
-        bound.change(star);
-        shells.change(star);
+        bound.change(ring);
+        shells.change(ring);
         if (gradients.is_requested())
             store_gradients(p);
         surface.set_point(kept, p.position);
         surface.collapse(p.halfedge);
         if (contact)
-            contact->change(surface, star);
+            contact->change(surface, ring);
         stays.quadric = moved(p.quadric, p.position - gone.point);
         stays.point = p.position;
         stays.border |= gone.border;
         stays.open |= gone.open;
         stays.changed = ++tick;
-        live -= star.gone.size();
+        live -= ring.gone.size();
         for (auto e = surface.cve_iter(kept); e.is_valid(); ++e)
             wait_again(*e, kept, p.cost);
     }

@@ -1,5 +1,5 @@
 // Finds shells of few triangles: the sign of their volumes before and after a collapse, and
-// those between a star before and after.
+// those between a ring before and after.
 #include "simplify/collapse/small_shells.hpp"
 
 #include "core/geometry/union_find.h"
@@ -15,8 +15,8 @@ namespace cw
 namespace
 {
 
-const uint32_t SMALL = 64;   // faces: the sides of larger shells are more than a star
-const uint32_t LISTED = 128; // faces of shells that stars could jump over
+const uint32_t SMALL = 64;   // faces: the sides of larger shells are more than a ring
+const uint32_t LISTED = 128; // faces of shells that rings could jump over
 
 // Six times the volume between a triangle and the origin.
 double volume(const Vec &a, const Vec &b, const Vec &c)
@@ -52,19 +52,19 @@ bool is_inside(const Box &box, const Vec &p)
     return true;
 }
 
-// Returns true if a point is between a star as it is and as it would be: these two are closed.
-bool is_between(const Surface &surface, const Star &star, const Vec &point)
+// Returns true if a point is between a ring as it is and as it would be: these two are closed.
+bool is_between(const Surface &surface, const OneRing &ring, const Vec &point)
 {
     Vec corner[3];
     double angle = 0;
-    for (uint32_t f : star.gone) {
+    for (uint32_t f : ring.gone) {
         corners_of(surface, f, point, corner);
         angle += solid_angle(corner[0], corner[1], corner[2]);
     }
-    for (const Spoke &s : star.spokes) {
+    for (const RingTriangle &s : ring.triangles) {
         corners_of(surface, s.face, point, corner);
         angle += solid_angle(corner[0], corner[1], corner[2]) -
-                 solid_angle(star.position - point, s.pa - point, s.pb - point);
+                 solid_angle(ring.position - point, s.pa - point, s.pb - point);
     }
     return std::abs(angle) > CWI_PI * 2;
 }
@@ -131,10 +131,10 @@ SmallShells::End SmallShells::collect(const Surface &surface, uint32_t first)
     return End::CLOSED;
 }
 
-bool SmallShells::turns(const Surface &surface, const Star &star, bool *open)
+bool SmallShells::turns(const Surface &surface, const OneRing &ring, bool *open)
 {
-    const uint32_t first = star.spokes[0].face;
-    if (!star.closed || left[shell_of[first]] > SMALL)
+    const uint32_t first = ring.triangles[0].face;
+    if (!ring.closed || left[shell_of[first]] > SMALL)
         return false;
     const End end = collect(surface, first);
     *open = *open || end == End::SEAM;
@@ -143,45 +143,46 @@ bool SmallShells::turns(const Surface &surface, const Star &star, bool *open)
     double before = 0, after = 0;
     for (uint32_t f : faces) {
         Vec corner[3];
-        corners_of(surface, f, star.position, corner);
+        corners_of(surface, f, ring.position, corner);
         before += volume(corner[0], corner[1], corner[2]);
-        const auto is_of_star = [&](const Spoke &s) { return s.face == f; };
-        const bool moves = std::any_of(star.spokes.begin(), star.spokes.end(), is_of_star) ||
-                           std::find(star.gone.begin(), star.gone.end(), f) != star.gone.end();
+        const auto is_of_ring = [&](const RingTriangle &s) { return s.face == f; };
+        const bool moves =
+            std::any_of(ring.triangles.begin(), ring.triangles.end(), is_of_ring) ||
+            std::find(ring.gone.begin(), ring.gone.end(), f) != ring.gone.end();
         if (!moves) // the others have a corner at the origin then
             after += volume(corner[0], corner[1], corner[2]);
     }
     return before > 0 ? !(after > 0) : before < 0 ? !(after < 0) : false;
 }
 
-bool SmallShells::sweeps(const Surface &surface, const Star &star) const
+bool SmallShells::sweeps(const Surface &surface, const OneRing &ring) const
 {
-    if (!nearby || !star.closed)
+    if (!nearby || !ring.closed)
         return false;
-    const uint32_t own_shell = shell_of[star.spokes[0].face];
+    const uint32_t own_shell = shell_of[ring.triangles[0].face];
     Box around;
-    around.add(star.position);
-    for (const Spoke &s : star.spokes) {
+    around.add(ring.position);
+    for (const RingTriangle &s : ring.triangles) {
         around.add(s.pa);
         around.add(s.pb);
     }
-    around.add(star.old[0]);
-    around.add(star.old[1]);
+    around.add(ring.old[0]);
+    around.add(ring.old[1]);
     return nearby->any(around, [&](uint32_t shell, const float *) {
         const Vec at = surface.point(VertexHandle(int(vertex_of[shell])));
-        return shell != own_shell && is_inside(around, at) && is_between(surface, star, at);
+        return shell != own_shell && is_inside(around, at) && is_between(surface, ring, at);
     });
 }
 
-void SmallShells::change(const Star &star)
+void SmallShells::change(const OneRing &ring)
 {
-    const uint32_t shell = shell_of[star.spokes[0].face];
+    const uint32_t shell = shell_of[ring.triangles[0].face];
     const bool is_listed = boxes[shell].side[0] <= boxes[shell].side[3];
-    left[shell] -= uint32_t(star.gone.size());
-    vertex_of[shell] = star.vertex;
+    left[shell] -= uint32_t(ring.gone.size());
+    vertex_of[shell] = ring.vertex;
     if (!is_listed)
         return;
-    boxes[shell].add(star.position);
+    boxes[shell].add(ring.position);
     nearby->move(shell, boxes[shell]);
 }
 

@@ -8,7 +8,7 @@ namespace cw
 {
 
 // Surfaces that do not meet before and after a collapse can have passed through each other on the
-// way: a star jumps over a small shell, or one side of a thin shell, which is the star of one
+// way: a ring jumps over a small shell, or one side of a thin shell, which is the ring of one
 // vertex, passes through the other side. Normals may hardly change: only the sign of the shell's
 // volume tells.
 class SmallShells
@@ -16,14 +16,14 @@ class SmallShells
 public:
     explicit SmallShells(const cwi_mesh_block &block);
 
-    // Returns true if the shell of a star would change the sign of its volume, or lose it. While
+    // Returns true if the shell of a ring would change the sign of its volume, or lose it. While
     // the rest of a small shell is beyond a seam it may: then *open is set, too.
-    bool turns(const Surface &surface, const Star &star, bool *open);
+    bool turns(const Surface &surface, const OneRing &ring, bool *open);
 
-    // Returns true if a small shell is between the star as it is and as it would be.
-    bool sweeps(const Surface &surface, const Star &star) const;
+    // Returns true if a small shell is between the ring as it is and as it would be.
+    bool sweeps(const Surface &surface, const OneRing &ring) const;
 
-    void change(const Star &star); // it has become so
+    void change(const OneRing &ring); // it has become so
 
 private:
     void list_shells(const cwi_mesh_block &block);

@@ -20,9 +20,9 @@ typedef struct collapser {
     cwi_label_quadric *quadrics;
     cwi_edge_queue queue;
     cwi_moving_boxes boxes;
-    uint32_t *marks, mark; /* of triangles of the star that is looked at */
+    uint32_t *marks, mark; /* of triangles of the ring that is looked at */
     cwi_ring keep_ring, drop_ring;
-    cwi_star star;
+    cwi_collapse_ring ring;
 } collapser;
 
 /* Returns true if a neighbour of a ring is held, and so all triangles around it. */
@@ -39,13 +39,13 @@ static bool is_allowed(collapser *w, const cwi_label_move *move)
 {
     return cwi_ring_gather(w->c, move->keep, &w->keep_ring) &&
            cwi_ring_gather(w->c, move->drop, &w->drop_ring) &&
-           w->keep_ring.spoke_count + w->drop_ring.spoke_count <= CWI_RING_TRIANGLES &&
+           w->keep_ring.triangle_count + w->drop_ring.triangle_count <= CWI_RING_TRIANGLES &&
            cwi_complex_links_allow(w->c, move->edge, move->keep, move->drop, &w->keep_ring,
                                    &w->drop_ring) &&
            !is_ring_held(w->c, &w->keep_ring) && !is_ring_held(w->c, &w->drop_ring) &&
-           cwi_star_make(&w->star, w->c, move, &w->keep_ring, &w->drop_ring) &&
-           (!w->samples || cwi_label_samples_allow(w->samples, w->c, &w->star)) &&
-           !cwi_star_collides(&w->star, w->c, &w->boxes, w->marks, ++w->mark);
+           cwi_collapse_ring_make(&w->ring, w->c, move, &w->keep_ring, &w->drop_ring) &&
+           (!w->samples || cwi_label_samples_allow(w->samples, w->c, &w->ring)) &&
+           !cwi_collapse_ring_collides(&w->ring, w->c, &w->boxes, w->marks, ++w->mark);
 }
 
 /* Queues the edges around a vertex that are not queued, as they may be allowed now. */
@@ -65,18 +65,18 @@ static void queue_around(collapser *w, uint32_t vertex)
 
 static cw_status apply_move(collapser *w, cw_error *err)
 {
-    const cwi_star *star = &w->star;
-    const cwi_label_move *move = &star->move;
+    const cwi_collapse_ring *ring = &w->ring;
+    const cwi_label_move *move = &ring->move;
     memcpy(w->c->points + 3 * (size_t)move->keep, move->position, sizeof move->position);
     cwi_complex_collapse(w->c, move->edge, move->keep, move->drop, &w->keep_ring,
                          &w->drop_ring);
     cwi_label_quadrics_join(w->quadrics, move->keep, move->drop);
     if (w->samples)
-        cwi_label_samples_move(w->samples, star);
-    for (size_t i = 0; i < star->gone_count; i++)
-        cwi_moving_boxes_remove(&w->boxes, star->gone[i]);
-    for (size_t i = 0; i < star->spoke_count; i++)
-        cwi_moving_boxes_update(&w->boxes, w->c, star->spokes[i].triangle);
+        cwi_label_samples_move(w->samples, ring);
+    for (size_t i = 0; i < ring->gone_count; i++)
+        cwi_moving_boxes_remove(&w->boxes, ring->gone[i]);
+    for (size_t i = 0; i < ring->triangle_count; i++)
+        cwi_moving_boxes_update(&w->boxes, w->c, ring->triangles[i].triangle);
     queue_around(w, move->keep);
     return 2 * w->c->live < w->boxes.built && w->boxes.built > MIN_REBUILT
                ? cwi_moving_boxes_build(&w->boxes, w->c, err)

@@ -22,16 +22,16 @@ static void add_neighbour(cwi_ring *ring, uint32_t vertex, uint32_t edge, int ba
 
 bool cwi_ring_gather(const cwi_complex *c, uint32_t vertex, cwi_ring *ring)
 {
-    ring->spoke_count = ring->neighbour_count = 0;
+    ring->triangle_count = ring->neighbour_count = 0;
     for (uint32_t at = c->heads[vertex]; at != CWI_NO_INDEX; at = c->next[at]) {
         const uint32_t triangle = at / 3, second = at % 3 < 2 ? at + 1 : at - 2,
                        third = second % 3 < 2 ? second + 1 : second - 2;
-        if (ring->spoke_count == CWI_RING_TRIANGLES)
+        if (ring->triangle_count == CWI_RING_TRIANGLES)
             return false;
-        const cwi_spoke spoke = {triangle, c->corners[second], c->corners[third]};
-        ring->spokes[ring->spoke_count++] = spoke;
-        add_neighbour(ring, spoke.a, c->sides[third], 1);
-        add_neighbour(ring, spoke.b, c->sides[second], -1);
+        const cwi_ring_triangle moved = {triangle, c->corners[second], c->corners[third]};
+        ring->triangles[ring->triangle_count++] = moved;
+        add_neighbour(ring, moved.a, c->sides[third], 1);
+        add_neighbour(ring, moved.b, c->sides[second], -1);
     }
     return true;
 }
@@ -160,22 +160,22 @@ static size_t count_sectors(const cwi_ring *ring, const uint32_t curve[2], bool 
     uint32_t parents[CWI_RING_TRIANGLES];
     uint8_t ends[CWI_RING_TRIANGLES][2] = {{0}};
     size_t sectors = 0;
-    for (uint32_t i = 0; i < ring->spoke_count; i++)
+    for (uint32_t i = 0; i < ring->triangle_count; i++)
         parents[i] = i;
-    for (uint32_t i = 0; i < ring->spoke_count; i++)
+    for (uint32_t i = 0; i < ring->triangle_count; i++)
         for (uint32_t j = 0; j < i; j++) {
-            const cwi_spoke *s = &ring->spokes[i], *t = &ring->spokes[j];
+            const cwi_ring_triangle *s = &ring->triangles[i], *t = &ring->triangles[j];
             const uint32_t common = s->a == t->b ? s->a : s->b == t->a ? s->b : CWI_NO_INDEX;
             if (common != CWI_NO_INDEX && common != curve[0] && common != curve[1])
                 parents[find_root(parents, i)] = find_root(parents, j);
         }
-    for (uint32_t i = 0; i < ring->spoke_count; i++)
+    for (uint32_t i = 0; i < ring->triangle_count; i++)
         for (int k = 0; k < 2; k++) {
-            const cwi_spoke *s = &ring->spokes[i];
+            const cwi_ring_triangle *s = &ring->triangles[i];
             ends[find_root(parents, i)][k] += (s->a == curve[k]) + (s->b == curve[k]);
         }
     *are_spanning = true;
-    for (uint32_t i = 0; i < ring->spoke_count; i++)
+    for (uint32_t i = 0; i < ring->triangle_count; i++)
         if (parents[i] == i) {
             sectors++;
             *are_spanning &= ends[i][0] == 1 && ends[i][1] == 1;
@@ -186,9 +186,9 @@ static size_t count_sectors(const cwi_ring *ring, const uint32_t curve[2], bool 
 /* Returns true if a triangle of a ring has the same corners as another one. */
 static bool has_duplicates(const cwi_ring *ring)
 {
-    for (size_t i = 0; i < ring->spoke_count; i++)
+    for (size_t i = 0; i < ring->triangle_count; i++)
         for (size_t j = 0; j < i; j++) {
-            const cwi_spoke *s = &ring->spokes[i], *t = &ring->spokes[j];
+            const cwi_ring_triangle *s = &ring->triangles[i], *t = &ring->triangles[j];
             if ((s->a == t->a && s->b == t->b) || (s->a == t->b && s->b == t->a))
                 return true;
         }
@@ -265,10 +265,10 @@ bool cwi_complex_choose(const cwi_complex *c, uint32_t edge, uint32_t *keep, uin
 }
 
 /* Returns true if a ring has a triangle with both vertices. */
-static bool has_spoke(const cwi_ring *ring, uint32_t a, uint32_t b)
+static bool has_triangle(const cwi_ring *ring, uint32_t a, uint32_t b)
 {
-    for (size_t i = 0; i < ring->spoke_count; i++) {
-        const cwi_spoke *s = &ring->spokes[i];
+    for (size_t i = 0; i < ring->triangle_count; i++) {
+        const cwi_ring_triangle *s = &ring->triangles[i];
         if ((s->a == a && s->b == b) || (s->a == b && s->b == a))
             return true;
     }
@@ -301,8 +301,8 @@ bool cwi_complex_links_allow(const cwi_complex *c, uint32_t edge, uint32_t keep,
         return false;
     for (size_t i = 0; i < count; i++)
         for (size_t j = 0; j < i; j++)
-            if (has_spoke(drop_ring, common[i], common[j]) &&
-                has_spoke(keep_ring, common[i], common[j]))
+            if (has_triangle(drop_ring, common[i], common[j]) &&
+                has_triangle(keep_ring, common[i], common[j]))
                 return false;
     return keep != drop;
 }
@@ -317,7 +317,7 @@ static void unlink_corner(cwi_complex *c, uint32_t corner)
 }
 
 /* Removes a triangle, and gives the vertex across from the edge one edge in place of two. */
-static void remove_triangle(cwi_complex *c, const cwi_spoke *gone, uint32_t across,
+static void remove_triangle(cwi_complex *c, const cwi_ring_triangle *gone, uint32_t across,
                             const cwi_ring *keep_ring, const cwi_ring *drop_ring)
 {
     const uint32_t kept = cwi_ring_find(keep_ring, across)->edge,
@@ -327,9 +327,9 @@ static void remove_triangle(cwi_complex *c, const cwi_spoke *gone, uint32_t acro
     for (uint32_t k = 0; k < 3; k++)
         c->corners[3 * gone->triangle + k] = CWI_NO_INDEX;
     c->live--;
-    for (size_t i = 0; i < drop_ring->spoke_count; i++)
+    for (size_t i = 0; i < drop_ring->triangle_count; i++)
         for (uint32_t k = 0; k < 3; k++) {
-            uint32_t *side = &c->sides[3 * drop_ring->spokes[i].triangle + k];
+            uint32_t *side = &c->sides[3 * drop_ring->triangles[i].triangle + k];
             *side = *side == dropped ? kept : *side;
         }
     c->is_curve[kept] |= c->is_curve[dropped];
@@ -339,8 +339,8 @@ static void remove_triangle(cwi_complex *c, const cwi_spoke *gone, uint32_t acro
 void cwi_complex_collapse(cwi_complex *c, uint32_t edge, uint32_t keep, uint32_t drop,
                           const cwi_ring *keep_ring, const cwi_ring *drop_ring)
 {
-    for (size_t i = 0; i < drop_ring->spoke_count; i++) {
-        const cwi_spoke *s = &drop_ring->spokes[i];
+    for (size_t i = 0; i < drop_ring->triangle_count; i++) {
+        const cwi_ring_triangle *s = &drop_ring->triangles[i];
         if (s->a == keep || s->b == keep)
             remove_triangle(c, s, s->a == keep ? s->b : s->a, keep_ring, drop_ring);
     }

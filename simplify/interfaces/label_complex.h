@@ -34,9 +34,9 @@ typedef struct cwi_complex {
 } cwi_complex;
 
 /* A triangle around a vertex, whose corners follow each other as vertex, a, b. */
-typedef struct cwi_spoke {
+typedef struct cwi_ring_triangle {
     uint32_t triangle, a, b;
-} cwi_spoke;
+} cwi_ring_triangle;
 
 typedef struct cwi_neighbour {
     uint32_t vertex, edge;
@@ -46,8 +46,8 @@ typedef struct cwi_neighbour {
 
 /* The triangles around a vertex, and the vertices across its edges. */
 typedef struct cwi_ring {
-    size_t spoke_count, neighbour_count;
-    cwi_spoke spokes[CWI_RING_TRIANGLES];
+    size_t triangle_count, neighbour_count;
+    cwi_ring_triangle triangles[CWI_RING_TRIANGLES];
     cwi_neighbour neighbours[CWI_RING_NEIGHBOURS];
 } cwi_ring;
 

@@ -55,7 +55,7 @@ static bool alloc_samples(cwi_label_samples *s, const cwi_complex *c)
     s->patches = cwi_alloc_array(s->count, sizeof *s->patches);
     s->first_triangle = cwi_alloc_array(s->count + 1, sizeof *s->first_triangle);
     s->triangles = cwi_alloc_array(3 * c->triangle_count, sizeof *s->triangles);
-    s->cares = cwi_alloc_zeroed(s->count, sizeof *s->cares);
+    s->tighten_levels = cwi_alloc_zeroed(s->count, sizeof *s->tighten_levels);
     s->next = cwi_alloc_array(s->count, sizeof *s->next);
     s->heads = cwi_alloc_array(c->triangle_count, sizeof *s->heads);
     s->collected = cwi_alloc_array(s->count, sizeof *s->collected);
@@ -64,9 +64,9 @@ static bool alloc_samples(cwi_label_samples *s, const cwi_complex *c)
     s->sample_marks = cwi_alloc_zeroed(s->count, sizeof *s->sample_marks);
     s->triangle_marks = cwi_alloc_zeroed(c->triangle_count, sizeof *s->triangle_marks);
     s->met = cwi_alloc_array(c->triangle_count, sizeof *s->met);
-    return s->vertices && s->patches && s->first_triangle && s->triangles && s->cares &&
-           s->next && s->heads && s->collected && s->nearest && s->originals &&
-           s->sample_marks && s->triangle_marks && s->met;
+    return s->vertices && s->patches && s->first_triangle && s->triangles &&
+           s->tighten_levels && s->next && s->heads && s->collected && s->nearest &&
+           s->originals && s->sample_marks && s->triangle_marks && s->met;
 }
 
 cw_status cwi_label_samples_build(cwi_label_samples *s, const cwi_complex *c,
@@ -93,7 +93,7 @@ void cwi_label_samples_free(cwi_label_samples *s)
     cwi_free(s->patches);
     cwi_free(s->first_triangle);
     cwi_free(s->triangles);
-    cwi_free(s->cares);
+    cwi_free(s->tighten_levels);
     cwi_free(s->next);
     cwi_free(s->heads);
     cwi_free(s->collected);
@@ -115,7 +115,7 @@ void cwi_label_samples_restart(cwi_label_samples *s, cwi_complex *c)
     memset(s->heads, 0xff, c->triangle_count * sizeof *s->heads);
     for (size_t n = 0; n < s->count; n++) {
         list_sample(s, (uint32_t)n, s->triangles[s->first_triangle[n]]);
-        if (s->cares[n] >= CWI_LABEL_MAX_CARE)
+        if (s->tighten_levels[n] >= CWI_LABEL_MAX_TIGHTENING)
             c->orders[s->vertices[n]] = CWI_ORDER_HELD;
     }
 }
@@ -128,12 +128,12 @@ uint32_t cwi_label_samples_find(const cwi_label_samples *s, uint32_t vertex, uin
     return CWI_NO_INDEX;
 }
 
-void cwi_label_samples_move(cwi_label_samples *s, const cwi_star *star)
+void cwi_label_samples_move(cwi_label_samples *s, const cwi_collapse_ring *ring)
 {
-    for (size_t i = 0; i < star->spoke_count; i++)
-        s->heads[star->spokes[i].triangle] = CWI_NO_INDEX;
-    for (size_t i = 0; i < star->gone_count; i++)
-        s->heads[star->gone[i]] = CWI_NO_INDEX;
+    for (size_t i = 0; i < ring->triangle_count; i++)
+        s->heads[ring->triangles[i].triangle] = CWI_NO_INDEX;
+    for (size_t i = 0; i < ring->gone_count; i++)
+        s->heads[ring->gone[i]] = CWI_NO_INDEX;
     for (size_t n = 0; n < s->collected_count; n++)
-        list_sample(s, s->collected[n], star->spokes[s->nearest[s->collected[n]]].triangle);
+        list_sample(s, s->collected[n], ring->triangles[s->nearest[s->collected[n]]].triangle);
 }

@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Passes after which failing places get no more care by steps, but stay as they are. */
+/* Passes after which failing places are no longer tightened by steps, but stay as they are. */
 enum { GENTLE_PASSES = 4 };
 
 /* ---- checks ----------------------------------------------------------------------------- */
@@ -155,7 +155,7 @@ static cw_status make_result(const cwi_complex *c, double scale, const cw_label_
 
 /* ---- the promise ------------------------------------------------------------------------ */
 
-/* A job: the surfaces, and where they need more care than in the pass before. */
+/* A job: the surfaces, and where they need a tighter error than in the pass before. */
 typedef struct job {
     const cw_label_surfaces *in;
     const cw_label_simplify_desc *desc;
@@ -199,21 +199,21 @@ static void fail_corners(job *j, size_t triangle)
     }
 }
 
-/* Raises the care of marked samples. Returns true if any was raised. */
+/* Tightens the error at marked samples. Returns true if any was raised. */
 static bool raise_cares(job *j)
 {
     bool is_any = false;
     for (size_t n = 0; n < j->samples.count; n++) {
-        uint8_t *care = &j->samples.cares[n];
-        if (!j->is_failing[n] || *care >= CWI_LABEL_MAX_CARE)
+        uint8_t *level = &j->samples.tighten_levels[n];
+        if (!j->is_failing[n] || *level >= CWI_LABEL_MAX_TIGHTENING)
             continue;
-        *care = j->passes < GENTLE_PASSES ? (uint8_t)(*care + 1) : CWI_LABEL_MAX_CARE;
+        *level = j->passes < GENTLE_PASSES ? (uint8_t)(*level + 1) : CWI_LABEL_MAX_TIGHTENING;
         is_any = true;
     }
     return is_any;
 }
 
-/* Finds the places beyond the error, and raises the care there. If that changes nothing, all
+/* Finds the places beyond the error, and tightens it there. If that changes nothing, all
  * samples get the last level, and the surfaces stay as they are.
  * beyond  triangles of the input, then those of the result */
 static void take_care(job *j, const uint8_t *in_beyond, const uint8_t *out_beyond)
@@ -233,7 +233,7 @@ static void take_care(job *j, const uint8_t *in_beyond, const uint8_t *out_beyon
     }
 }
 
-/* Measures a result. Sets *is_kept if no place is beyond the error; else raises the care. */
+/* Measures a result. Sets *is_kept if no place is beyond the error; else tightens the error there. */
 static cw_status judge_result(job *j, const cw_label_surfaces *out, bool *is_kept,
                               cw_error *err)
 {
@@ -269,8 +269,7 @@ static cw_status prepare_samples(job *j, cw_error *err)
     return CW_OK;
 }
 
-/* Simplifies once. Sets *is_kept if the result is near enough; else the next pass takes more
- * care. */
+/* Simplifies once. Sets *is_kept if the result is near enough; else the next pass is tighter. */
 static cw_status run_pass(job *j, cw_label_surfaces *out, bool *is_kept, cw_error *err)
 {
     const bool has_error = j->desc->error_mm > 0;

@@ -7,13 +7,13 @@
 
 #include <string.h>
 
-/* The part of the error that is allowed at each level of care. */
-static const double ALLOWED_FRACTIONS[CWI_LABEL_MAX_CARE + 1] = {1, 0.75, 0.4, 0};
+/* The part of the error that is allowed at each tightening level. */
+static const double ALLOWED_FRACTIONS[CWI_LABEL_MAX_TIGHTENING + 1] = {1, 0.75, 0.4, 0};
 
 /* The part of the squared error at which no nearer triangle is looked for. */
 #define NEAR_ENOUGH (1.0 / 16)
 
-/* The most triangles beside a star that are looked at. */
+/* The most triangles beside a ring that are looked at. */
 enum { MAX_FACETS = 1024 };
 
 /* A triangle that may be near the input's, and its box. */
@@ -25,25 +25,25 @@ typedef struct near_facet {
 
 /* ---- samples ---------------------------------------------------------------------------- */
 
-/* Collects the samples of a triangle. spoke: its number in the star; CWI_NO_INDEX: it goes */
-static void collect_samples(cwi_label_samples *s, uint32_t triangle, uint32_t spoke)
+/* Collects the samples of a triangle. moved: its number in the ring; CWI_NO_INDEX: it goes */
+static void collect_samples(cwi_label_samples *s, uint32_t triangle, uint32_t moved)
 {
     for (uint32_t n = s->heads[triangle]; n != CWI_NO_INDEX; n = s->next[n]) {
         s->collected[s->collected_count++] = n;
         s->sample_marks[n] = s->mark;
-        s->nearest[n] = spoke;
+        s->nearest[n] = moved;
     }
 }
 
-/* Returns the distance that is allowed at all samples of a star; 0: it must not change. */
+/* Returns the distance that is allowed at all samples of a ring; 0: it must not change. */
 static double find_allowed(const cwi_label_samples *s)
 {
-    uint8_t care = 0;
+    uint8_t level = 0;
     for (size_t n = 0; n < s->collected_count; n++) {
-        const uint8_t its_care = s->cares[s->collected[n]];
-        care = its_care > care ? its_care : care;
+        const uint8_t other_level = s->tighten_levels[s->collected[n]];
+        level = other_level > level ? other_level : level;
     }
-    return s->error * ALLOWED_FRACTIONS[care];
+    return s->error * ALLOWED_FRACTIONS[level];
 }
 
 static const float *get_original(const cwi_label_samples *s, uint32_t vertex)
@@ -57,29 +57,30 @@ static void widen_point(const float *from, double p[3])
         p[k] = (double)from[k];
 }
 
-static double measure_spoke(const cwi_complex *c, const cwi_star *star, size_t n,
-                            const double p[3])
+static double measure_triangle(const cwi_complex *c, const cwi_collapse_ring *ring, size_t n,
+                               const double p[3])
 {
-    const cwi_star_spoke *spoke = &star->spokes[n];
-    return cwi_facet_distance_sq(star->move.position, c->points + 3 * (size_t)spoke->a,
-                                 c->points + 3 * (size_t)spoke->b, p);
+    const cwi_moved_triangle *moved = &ring->triangles[n];
+    return cwi_facet_distance_sq(ring->move.position, c->points + 3 * (size_t)moved->a,
+                                 c->points + 3 * (size_t)moved->b, p);
 }
 
-/* Finds the spoke nearest to a sample. One that it had before stays if it is near enough. */
-static double find_nearest_spoke(cwi_label_samples *s, const cwi_complex *c,
-                                 const cwi_star *star, uint32_t sample, double near_enough)
+/* Finds the ring triangle nearest to a sample. One that it had before stays if it is near enough. */
+static double find_nearest_moved(cwi_label_samples *s, const cwi_complex *c,
+                                 const cwi_collapse_ring *ring, uint32_t sample,
+                                 double near_enough)
 {
     const uint32_t before = s->nearest[sample];
     double p[3], min_sq = INFINITY;
     widen_point(get_original(s, s->vertices[sample]), p);
     if (before != CWI_NO_INDEX)
-        min_sq = measure_spoke(c, star, before, p);
+        min_sq = measure_triangle(c, ring, before, p);
     if (min_sq <= near_enough)
         return min_sq;
-    for (size_t i = 0; i < star->spoke_count; i++) {
-        if (star->spokes[i].patch != s->patches[sample] || i == before)
+    for (size_t i = 0; i < ring->triangle_count; i++) {
+        if (ring->triangles[i].patch != s->patches[sample] || i == before)
             continue;
-        const double distance = measure_spoke(c, star, i, p);
+        const double distance = measure_triangle(c, ring, i, p);
         if (distance < min_sq) {
             min_sq = distance;
             s->nearest[sample] = (uint32_t)i;
@@ -88,18 +89,18 @@ static double find_nearest_spoke(cwi_label_samples *s, const cwi_complex *c,
     return min_sq;
 }
 
-/* Finds the spokes near all samples. Returns false if one is too far. */
-static bool find_nearest_spokes(cwi_label_samples *s, const cwi_complex *c,
-                                const cwi_star *star, double distance_sq)
+/* Finds the ring triangles near all samples. Returns false if one is too far. */
+static bool find_nearest_moveds(cwi_label_samples *s, const cwi_complex *c,
+                                const cwi_collapse_ring *ring, double distance_sq)
 {
     for (size_t n = 0; n < s->collected_count; n++)
-        if (!(find_nearest_spoke(s, c, star, s->collected[n], NEAR_ENOUGH * distance_sq) <=
+        if (!(find_nearest_moved(s, c, ring, s->collected[n], NEAR_ENOUGH * distance_sq) <=
               distance_sq))
             return false;
     return true;
 }
 
-/* ---- from the star to the input --------------------------------------------------------- */
+/* ---- from the ring to the input --------------------------------------------------------- */
 
 /* A walk over the input's triangles of a patch, to the one nearest to a point. */
 typedef struct input_walk {
@@ -214,32 +215,32 @@ static uint32_t find_start(const cwi_label_samples *s, uint32_t patch, const dou
 }
 
 /* Returns true if all points of the new triangles are near the input. */
-static bool is_star_near(cwi_label_samples *s, const cwi_complex *c, const cwi_star *star,
-                         double distance_sq)
+static bool is_star_near(cwi_label_samples *s, const cwi_complex *c,
+                         const cwi_collapse_ring *ring, double distance_sq)
 {
     input_walk walk = {.s = s, .patch = CWI_NO_INDEX, .distance_sq = distance_sq};
     cwi_cover cover = {.nearest = walk_nearest, .context = &walk, .distance_sq = distance_sq};
     double p[3][3];
-    widen_point(star->move.position, p[0]);
-    for (size_t i = 0; i < star->spoke_count; i++) {
-        const cwi_star_spoke *spoke = &star->spokes[i];
-        if (spoke->patch != walk.patch) {
-            walk.patch = spoke->patch;
+    widen_point(ring->move.position, p[0]);
+    for (size_t i = 0; i < ring->triangle_count; i++) {
+        const cwi_moved_triangle *moved = &ring->triangles[i];
+        if (moved->patch != walk.patch) {
+            walk.patch = moved->patch;
             walk.at = find_start(s, walk.patch, p[0]);
             if (walk.at == CWI_NO_INDEX)
                 return false;
         }
-        widen_point(c->points + 3 * (size_t)spoke->a, p[1]);
-        widen_point(c->points + 3 * (size_t)spoke->b, p[2]);
+        widen_point(c->points + 3 * (size_t)moved->a, p[1]);
+        widen_point(c->points + 3 * (size_t)moved->b, p[2]);
         if (!cwi_is_covered(&cover, (const double(*)[3])p))
             return false;
     }
     return true;
 }
 
-/* ---- from the input to the star --------------------------------------------------------- */
+/* ---- from the input to the ring --------------------------------------------------------- */
 
-/* The triangles of the star and around it. */
+/* The triangles of the ring and around it. */
 typedef struct facet_list {
     size_t count;
     uint32_t patch; /* that is looked for */
@@ -271,31 +272,32 @@ static double measure_box(const near_facet *f, const double p[3])
     return distance_sq;
 }
 
-static bool has_star_triangle(const cwi_star *star, uint32_t triangle)
+static bool has_ring_triangle(const cwi_collapse_ring *ring, uint32_t triangle)
 {
-    for (size_t i = 0; i < star->spoke_count; i++)
-        if (star->spokes[i].triangle == triangle)
+    for (size_t i = 0; i < ring->triangle_count; i++)
+        if (ring->triangles[i].triangle == triangle)
             return true;
-    for (size_t i = 0; i < star->gone_count; i++)
-        if (star->gone[i] == triangle)
+    for (size_t i = 0; i < ring->gone_count; i++)
+        if (ring->gone[i] == triangle)
             return true;
     return false;
 }
 
-/* Lists the star's new triangles, and those around its outer vertices, of which some come
+/* Lists the ring's new triangles, and those around its outer vertices, of which some come
  * twice. */
-static void list_facets(facet_list *list, const cwi_complex *c, const cwi_star *star)
+static void list_facets(facet_list *list, const cwi_complex *c, const cwi_collapse_ring *ring)
 {
     list->count = 0;
-    for (size_t i = 0; i < star->spoke_count; i++) {
-        const cwi_star_spoke *s = &star->spokes[i];
-        add_facet(list, star->move.position, c->points + 3 * (size_t)s->a,
+    for (size_t i = 0; i < ring->triangle_count; i++) {
+        const cwi_moved_triangle *s = &ring->triangles[i];
+        add_facet(list, ring->move.position, c->points + 3 * (size_t)s->a,
                   c->points + 3 * (size_t)s->b, s->patch);
     }
-    for (size_t i = 0; i < star->spoke_count; i++)
-        for (uint32_t at = c->heads[star->spokes[i].a]; at != CWI_NO_INDEX; at = c->next[at]) {
+    for (size_t i = 0; i < ring->triangle_count; i++)
+        for (uint32_t at = c->heads[ring->triangles[i].a]; at != CWI_NO_INDEX;
+             at = c->next[at]) {
             const uint32_t *v = c->corners + 3 * (size_t)(at / 3);
-            if (!has_star_triangle(star, at / 3))
+            if (!has_ring_triangle(ring, at / 3))
                 add_facet(list, c->points + 3 * (size_t)v[0], c->points + 3 * (size_t)v[1],
                           c->points + 3 * (size_t)v[2], c->patches[at / 3]);
         }
@@ -319,19 +321,19 @@ static double list_nearest(void *context, const double p[3], const float *facet[
     return min_sq;
 }
 
-/* Returns true if one spoke is near all corners of a triangle of the input: one that is nearest
+/* Returns true if one ring triangle is near all corners of a triangle of the input: one that is nearest
  * to a corner. */
-static bool has_near_spoke(const cwi_label_samples *s, const cwi_complex *c,
-                           const cwi_star *star, const uint32_t v[3], uint32_t patch,
+static bool has_near_moved(const cwi_label_samples *s, const cwi_complex *c,
+                           const cwi_collapse_ring *ring, const uint32_t v[3], uint32_t patch,
                            const double p[3][3], double distance_sq)
 {
     for (int n = 0; n < 3; n++) {
         const uint32_t sample = cwi_label_samples_find(s, v[n], patch);
         if (s->sample_marks[sample] != s->mark)
             continue;
-        const uint32_t spoke = s->nearest[sample];
-        if (measure_spoke(c, star, spoke, p[(n + 1) % 3]) <= distance_sq &&
-            measure_spoke(c, star, spoke, p[(n + 2) % 3]) <= distance_sq)
+        const uint32_t moved = s->nearest[sample];
+        if (measure_triangle(c, ring, moved, p[(n + 1) % 3]) <= distance_sq &&
+            measure_triangle(c, ring, moved, p[(n + 2) % 3]) <= distance_sq)
             return true;
     }
     return false;
@@ -351,10 +353,10 @@ static void meet_around(cwi_label_samples *s)
     }
 }
 
-/* Returns true if the input's triangles around samples of the star, and those that the star lies
+/* Returns true if the input's triangles around samples of the ring, and those that the ring lies
  * over, are near it or what is beside it. */
-static bool is_input_near(cwi_label_samples *s, const cwi_complex *c, const cwi_star *star,
-                          double distance_sq)
+static bool is_input_near(cwi_label_samples *s, const cwi_complex *c,
+                          const cwi_collapse_ring *ring, double distance_sq)
 {
     facet_list list;
     list.count = 0;
@@ -366,10 +368,10 @@ static bool is_input_near(cwi_label_samples *s, const cwi_complex *c, const cwi_
         double p[3][3];
         for (int k = 0; k < 3; k++)
             widen_point(get_original(s, v[k]), p[k]);
-        if (has_near_spoke(s, c, star, v, patch, (const double(*)[3])p, distance_sq))
+        if (has_near_moved(s, c, ring, v, patch, (const double(*)[3])p, distance_sq))
             continue;
         if (list.count == 0)
-            list_facets(&list, c, star);
+            list_facets(&list, c, ring);
         list.patch = patch;
         if (!cwi_is_covered(&cover, (const double(*)[3])p))
             return false;
@@ -377,15 +379,16 @@ static bool is_input_near(cwi_label_samples *s, const cwi_complex *c, const cwi_
     return true;
 }
 
-bool cwi_label_samples_allow(cwi_label_samples *s, const cwi_complex *c, const cwi_star *star)
+bool cwi_label_samples_allow(cwi_label_samples *s, const cwi_complex *c,
+                             const cwi_collapse_ring *ring)
 {
     s->collected_count = s->met_count = 0;
     s->mark++;
-    for (size_t i = 0; i < star->spoke_count; i++)
-        collect_samples(s, star->spokes[i].triangle, (uint32_t)i);
-    for (size_t i = 0; i < star->gone_count; i++)
-        collect_samples(s, star->gone[i], CWI_NO_INDEX);
+    for (size_t i = 0; i < ring->triangle_count; i++)
+        collect_samples(s, ring->triangles[i].triangle, (uint32_t)i);
+    for (size_t i = 0; i < ring->gone_count; i++)
+        collect_samples(s, ring->gone[i], CWI_NO_INDEX);
     const double allowed = find_allowed(s), distance_sq = allowed * allowed;
-    return allowed > 0 && find_nearest_spokes(s, c, star, distance_sq) &&
-           is_star_near(s, c, star, distance_sq) && is_input_near(s, c, star, distance_sq);
+    return allowed > 0 && find_nearest_moveds(s, c, ring, distance_sq) &&
+           is_star_near(s, c, ring, distance_sq) && is_input_near(s, c, ring, distance_sq);
 }

@@ -10,8 +10,8 @@
 #include "core/geometry/union_find.h"
 #include "core/mesh/mesh.h"
 #include "simplify/quality/triangle_shapes.h"
+#include "simplify/quality/vertex_one_rings.h"
 #include "simplify/quality/vertex_ranges.h"
-#include "simplify/quality/vertex_stars.h"
 
 #include <math.h>
 #include <string.h>
@@ -143,15 +143,15 @@ static bool measure_next(cw_quality_stream *s, size_t count)
 {
     const uint32_t begin = (uint32_t)s->settled, end = (uint32_t)(s->settled + count);
     cwi_vertex_ranges ranges;
-    const cwi_stars stars = {.triangles = s->triangles,
-                             .count = s->held,
-                             .ranges = &ranges,
-                             .begin = begin,
-                             .end = end,
-                             .threads = s->desc.threads};
+    const cwi_one_rings rings = {.triangles = s->triangles,
+                                 .count = s->held,
+                                 .ranges = &ranges,
+                                 .begin = begin,
+                                 .end = end,
+                                 .threads = s->desc.threads};
     const bool ok =
         cwi_vertex_ranges_init(&ranges, s->triangles, s->held, begin, end, s->desc.threads) &&
-        cwi_measure_stars(&stars, &s->q, &s->border);
+        cwi_measure_one_rings(&rings, &s->q, &s->border);
     cwi_vertex_ranges_free(&ranges);
     return ok && cwi_border_join(&s->border);
 }

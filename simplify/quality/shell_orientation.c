@@ -8,7 +8,7 @@
 #include "core/geometry/union_find.h"
 #include "core/geometry/vec3.h"
 #include "simplify/quality/triangle_shapes.h"
-#include "simplify/quality/vertex_stars.h"
+#include "simplify/quality/vertex_one_rings.h"
 
 #include <math.h>
 #include <string.h>

@@ -8,8 +8,8 @@
 #include "core/geometry/union_find.h"
 #include "simplify/quality/shell_orientation.h"
 #include "simplify/quality/triangle_shapes.h"
+#include "simplify/quality/vertex_one_rings.h"
 #include "simplify/quality/vertex_ranges.h"
-#include "simplify/quality/vertex_stars.h"
 #include "simplify/quality/welded_mesh.h"
 
 #include <string.h>
@@ -62,19 +62,19 @@ static bool measure_topology(work *w, const cw_quality_desc *d, cw_quality *q)
 {
     if (!prepare_arrays(w, d))
         return false;
-    const cwi_stars stars = {.triangles = w->vertex,
-                             .count = w->triangles,
-                             .ranges = &w->ranges,
-                             .end = (uint32_t)w->vertices,
-                             .threads = d->threads,
-                             .progress = &d->progress,
-                             .defects = d->defects,
-                             .sets = w->part,
-                             .used = w->used,
-                             .unbounded = w->unbounded};
-    if (!cwi_measure_stars(&stars, q, NULL) || !count_used(w, q))
+    const cwi_one_rings rings = {.triangles = w->vertex,
+                                 .count = w->triangles,
+                                 .ranges = &w->ranges,
+                                 .end = (uint32_t)w->vertices,
+                                 .threads = d->threads,
+                                 .progress = &d->progress,
+                                 .defects = d->defects,
+                                 .sets = w->part,
+                                 .used = w->used,
+                                 .unbounded = w->unbounded};
+    if (!cwi_measure_one_rings(&rings, q, NULL) || !count_used(w, q))
         return false;
-    if (q->open_edges && !cwi_count_loops(&stars, q->open_edges, &q->border_loops))
+    if (q->open_edges && !cwi_count_loops(&rings, q->open_edges, &q->border_loops))
         return false;
     const bool oriented =
         !q->nonmanifold_edges && !q->misoriented_edges && !q->nonmanifold_vertices;

@@ -180,19 +180,19 @@ cw_status cwi_split_edge(cwi_remesh *r, uint32_t corner, bool *is_done, cw_error
 
 /* Visits the triangles at a vertex: sets `corner` to each of its corners in turn. A border is passed
  * by going back to the first one. */
-typedef struct star_walk {
+typedef struct ring_walk {
     uint32_t start, corner;
     bool is_back; /* walks clockwise, after a border was met */
     bool is_border;
-} star_walk;
+} ring_walk;
 
-static star_walk begin_walk(const cwi_remesh *r, uint32_t vertex)
+static ring_walk begin_walk(const cwi_remesh *r, uint32_t vertex)
 {
-    return (star_walk){.start = r->corner[vertex], .corner = r->corner[vertex]};
+    return (ring_walk){.start = r->corner[vertex], .corner = r->corner[vertex]};
 }
 
 /* Goes on to the next corner; false when all were visited. */
-static bool walk_on(const cwi_remesh *r, star_walk *w)
+static bool walk_on(const cwi_remesh *r, ring_walk *w)
 {
     if (!w->is_back) {
         const uint32_t across = r->twin[cwi_corner_prev(w->corner)];
@@ -211,9 +211,9 @@ static bool walk_on(const cwi_remesh *r, star_walk *w)
 }
 
 /* Counts the triangles at a vertex. */
-static size_t count_star(const cwi_remesh *r, uint32_t vertex, bool *is_border)
+static size_t count_triangles_around(const cwi_remesh *r, uint32_t vertex, bool *is_border)
 {
-    star_walk w = begin_walk(r, vertex);
+    ring_walk w = begin_walk(r, vertex);
     size_t count = 1;
     while (walk_on(r, &w))
         count++;
@@ -223,7 +223,7 @@ static size_t count_star(const cwi_remesh *r, uint32_t vertex, bool *is_border)
 
 static bool are_neighbours(const cwi_remesh *r, uint32_t a, uint32_t b)
 {
-    star_walk w = begin_walk(r, a);
+    ring_walk w = begin_walk(r, a);
     do {
         if (r->triangles[cwi_corner_next(w.corner)] == b ||
             r->triangles[cwi_corner_prev(w.corner)] == b)
@@ -232,16 +232,16 @@ static bool are_neighbours(const cwi_remesh *r, uint32_t a, uint32_t b)
     return false;
 }
 
-/* The star of the vertex that a collapse removes. */
-typedef struct collapse_star {
-    uint32_t corners[CWI_MAX_STAR], ring[CWI_MAX_STAR + 1];
+/* The ring of the vertex that a collapse removes. */
+typedef struct collapse_ring {
+    uint32_t corners[CWI_MAX_ONE_RING], ring[CWI_MAX_ONE_RING + 1];
     size_t count, ring_count, shared; /* shared: triangles of the edge */
     bool is_border, is_edge_sharp;
-} collapse_star;
+} collapse_ring;
 
-static bool read_star(const cwi_remesh *r, uint32_t vertex, uint32_t to, collapse_star *s)
+static bool read_one_ring(const cwi_remesh *r, uint32_t vertex, uint32_t to, collapse_ring *s)
 {
-    s->count = cwi_list_star(r, vertex, s->corners, &s->is_border);
+    s->count = cwi_list_one_ring(r, vertex, s->corners, &s->is_border);
     s->ring_count = s->shared = 0;
     s->is_edge_sharp = false;
     for (size_t n = 0; n < s->count; n++) {
@@ -257,7 +257,7 @@ static bool read_star(const cwi_remesh *r, uint32_t vertex, uint32_t to, collaps
     return s->shared > 0 && s->count > s->shared;
 }
 
-static bool is_in_ring(const collapse_star *s, uint32_t vertex)
+static bool is_in_ring(const collapse_ring *s, uint32_t vertex)
 {
     for (size_t n = 0; n < s->ring_count; n++)
         if (s->ring[n] == vertex)
@@ -267,10 +267,10 @@ static bool is_in_ring(const collapse_star *s, uint32_t vertex)
 
 /* Returns true if the vertices have no neighbours in common but those across the edge, those keep enough
  * triangles, and no border would touch another. */
-static bool is_collapse_simple(const cwi_remesh *r, uint32_t to, const collapse_star *s)
+static bool is_collapse_simple(const cwi_remesh *r, uint32_t to, const collapse_ring *s)
 {
     size_t common = 0;
-    star_walk w = begin_walk(r, to);
+    ring_walk w = begin_walk(r, to);
     do {
         common += is_in_ring(s, r->triangles[cwi_corner_next(w.corner)]);
         if (r->twin[cwi_corner_prev(w.corner)] == CWI_NONE)
@@ -284,7 +284,8 @@ static bool is_collapse_simple(const cwi_remesh *r, uint32_t to, const collapse_
                        last = r->triangles[cwi_corner_prev(c)];
         if (next != to && last != to)
             continue;
-        const size_t triangles = count_star(r, next == to ? last : next, &is_border);
+        const size_t triangles =
+            count_triangles_around(r, next == to ? last : next, &is_border);
         if (triangles < (is_border ? 2u : 4u))
             return false;
     }
@@ -293,7 +294,7 @@ static bool is_collapse_simple(const cwi_remesh *r, uint32_t to, const collapse_
 
 /* Returns true if an edge from the vertex to a neighbour lies on one from `to` that is sharp. */
 static bool is_merged_sharp(const cwi_remesh *r, uint32_t to, uint32_t neighbour,
-                            const collapse_star *s)
+                            const collapse_ring *s)
 {
     for (size_t n = 0; n < s->count; n++) {
         const uint32_t c = s->corners[n], next = r->triangles[cwi_corner_next(c)],
@@ -307,7 +308,7 @@ static bool is_merged_sharp(const cwi_remesh *r, uint32_t to, uint32_t neighbour
 /* Lists the triangles after a collapse.
  * merges   two sharp edges may become one
  * Returns  false where that would happen, and may not */
-static bool plan_collapse(const cwi_remesh *r, uint32_t to, const collapse_star *s, bool merges,
+static bool plan_collapse(const cwi_remesh *r, uint32_t to, const collapse_ring *s, bool merges,
                           cwi_replacement *p)
 {
     begin_patch(p);
@@ -360,10 +361,10 @@ static bool is_tiny(const cwi_remesh *r, uint32_t a, uint32_t b)
 bool cwi_collapse_edge(cwi_remesh *r, uint32_t vertex, uint32_t to, double longest,
                        double cosine)
 {
-    collapse_star s;
+    collapse_ring s;
     cwi_replacement *p = &r->patch;
     const bool is_small = is_tiny(r, vertex, to);
-    if ((r->freedom[vertex] == CWI_FIXED && !is_small) || !read_star(r, vertex, to, &s) ||
+    if ((r->freedom[vertex] == CWI_FIXED && !is_small) || !read_one_ring(r, vertex, to, &s) ||
         (r->freedom[vertex] != CWI_FREE && !s.is_edge_sharp && !is_small) ||
         !is_collapse_simple(r, to, &s))
         return false;
@@ -409,10 +410,10 @@ static bool evens_valences(const cwi_remesh *r, const uint32_t from[2], const ui
     int before = 0, after = 0;
     for (int k = 0; k < 2; k++) {
         bool is_border;
-        size_t count = count_star(r, from[k], &is_border);
+        size_t count = count_triangles_around(r, from[k], &is_border);
         before += square_off(count, is_border, 0);
         after += square_off(count, is_border, -1);
-        count = count_star(r, to[k], &is_border);
+        count = count_triangles_around(r, to[k], &is_border);
         before += square_off(count, is_border, 0);
         after += square_off(count, is_border, 1);
     }
@@ -477,10 +478,10 @@ bool cwi_flip_edge(cwi_remesh *r, uint32_t corner, bool by_angle)
 bool cwi_move_vertex(cwi_remesh *r, uint32_t vertex, const float position[3], float size,
                      double cosine)
 {
-    uint32_t corners[CWI_MAX_STAR];
+    uint32_t corners[CWI_MAX_ONE_RING];
     bool is_border;
     cwi_replacement *p = &r->patch;
-    const size_t count = cwi_list_star(r, vertex, corners, &is_border);
+    const size_t count = cwi_list_one_ring(r, vertex, corners, &is_border);
     begin_patch(p);
     for (size_t n = 0; n < count; n++) {
         const uint32_t c = corners[n];

@@ -114,9 +114,9 @@ static double cosine_of(const cwi_remesh *r, size_t t)
 /* Returns the largest cosine around a vertex; 2 if there are too many triangles. */
 static double cosine_around(const cwi_remesh *r, uint32_t v)
 {
-    uint32_t corners[CWI_MAX_STAR];
+    uint32_t corners[CWI_MAX_ONE_RING];
     bool is_border;
-    const size_t count = cwi_list_star(r, v, corners, &is_border);
+    const size_t count = cwi_list_one_ring(r, v, corners, &is_border);
     double largest = count ? -1 : 2;
     for (size_t n = 0; n < count; n++)
         largest = cwi_greater(largest, cosine_of(r, corners[n] / 3));
@@ -148,11 +148,11 @@ static bool flip_for_angle(cwi_remesh *r, size_t t)
 /* Tries places for a vertex: ever smaller steps along its edges, projected to what it may move on. */
 static bool move_for_angle(cwi_remesh *r, uint32_t v)
 {
-    uint32_t corners[CWI_MAX_STAR];
+    uint32_t corners[CWI_MAX_ONE_RING];
     bool is_border, has_moved = false;
     if (r->freedom[v] == CWI_FIXED)
         return false;
-    const size_t count = cwi_list_star(r, v, corners, &is_border);
+    const size_t count = cwi_list_one_ring(r, v, corners, &is_border);
     const cwi_target *target = r->freedom[v] == CWI_FREE ? &r->surface : &r->curves;
     for (double step = 0.4; step > 0.05; step /= 2)
         for (size_t n = 0; n < 2 * count; n++) {

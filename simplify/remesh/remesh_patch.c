@@ -219,8 +219,8 @@ double cwi_patch_cosine_before(const cwi_remesh *r, const cwi_replacement *p)
     return largest;
 }
 
-size_t cwi_list_star(const cwi_remesh *r, uint32_t vertex, uint32_t corners[CWI_MAX_STAR],
-                     bool *is_border)
+size_t cwi_list_one_ring(const cwi_remesh *r, uint32_t vertex,
+                         uint32_t corners[CWI_MAX_ONE_RING], bool *is_border)
 {
     uint32_t start = r->corner[vertex], c = start;
     *is_border = false;
@@ -234,7 +234,7 @@ size_t cwi_list_star(const cwi_remesh *r, uint32_t vertex, uint32_t corners[CWI_
     start = c;
     size_t count = 0;
     do {
-        if (count == CWI_MAX_STAR)
+        if (count == CWI_MAX_ONE_RING)
             return 0;
         corners[count++] = c;
         const uint32_t across = r->twin[cwi_corner_prev(c)];

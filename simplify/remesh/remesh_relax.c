@@ -41,9 +41,9 @@ void cwi_remesh_project(const cwi_remesh *r, const cwi_target *target, const dou
  * one, and moves the vertex there in the plane of their mean normal. */
 static bool find_centre(const cwi_remesh *r, uint32_t v, double centre[3])
 {
-    uint32_t corners[CWI_MAX_STAR];
+    uint32_t corners[CWI_MAX_ONE_RING];
     bool is_border;
-    const size_t count = cwi_list_star(r, v, corners, &is_border);
+    const size_t count = cwi_list_one_ring(r, v, corners, &is_border);
     double sum[3] = {0}, normal[3] = {0}, weights = 0;
     const float *p = r->positions + 3 * (size_t)v;
     for (size_t n = 0; n < count; n++) {
@@ -72,9 +72,9 @@ static bool find_centre(const cwi_remesh *r, uint32_t v, double centre[3])
 /* Computes the middle between the neighbours along a curve. */
 static bool find_middle(const cwi_remesh *r, uint32_t v, double middle[3])
 {
-    uint32_t corners[CWI_MAX_STAR];
+    uint32_t corners[CWI_MAX_ONE_RING];
     bool is_border;
-    const size_t count = cwi_list_star(r, v, corners, &is_border);
+    const size_t count = cwi_list_one_ring(r, v, corners, &is_border);
     int found = 0;
     memset(middle, 0, 3 * sizeof *middle);
     for (size_t n = 0; n < count; n++) {
@@ -117,9 +117,9 @@ static void find_chunk(void *context, size_t chunk)
 /* Returns the largest cosine at a vertex, or that of 30 degrees if it is less. */
 static double allowed_cosine(const cwi_remesh *r, uint32_t v)
 {
-    uint32_t corners[CWI_MAX_STAR];
+    uint32_t corners[CWI_MAX_ONE_RING];
     bool is_border;
-    const size_t count = cwi_list_star(r, v, corners, &is_border);
+    const size_t count = cwi_list_one_ring(r, v, corners, &is_border);
     double largest = MOVE_COSINE;
     for (size_t n = 0; n < count; n++) {
         const uint32_t *t = r->triangles + 3 * (size_t)(corners[n] / 3);

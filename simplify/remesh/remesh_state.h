@@ -11,7 +11,7 @@
 #define CWI_NONE UINT32_MAX /* no corner, no vertex, no sample */
 
 /* Maximum of triangles around a vertex that is moved or collapsed. */
-enum { CWI_MAX_STAR = 96 };
+enum { CWI_MAX_ONE_RING = 96 };
 
 /* Bits of a triangle: its edge k is sharp (a feature or a border); it is dead. */
 enum { CWI_SHARP = 1, CWI_DEAD = 8 };
@@ -32,11 +32,11 @@ typedef struct cwi_target {
 
 /* Triangles that take the place of others. All have a common first corner, the pivot. */
 typedef struct cwi_replacement {
-    uint32_t old[CWI_MAX_STAR]; /* triangles that go */
+    uint32_t old[CWI_MAX_ONE_RING]; /* triangles that go */
     size_t old_count;
-    uint32_t fresh[CWI_MAX_STAR][3]; /* corners of those that come */
-    uint32_t ids[CWI_MAX_STAR];      /* triangles that become them */
-    uint8_t sharp[CWI_MAX_STAR];     /* bits of their edges */
+    uint32_t fresh[CWI_MAX_ONE_RING][3]; /* corners of those that come */
+    uint32_t ids[CWI_MAX_ONE_RING];      /* triangles that become them */
+    uint8_t sharp[CWI_MAX_ONE_RING];     /* bits of their edges */
     size_t count;
     uint32_t moved; /* a vertex with another position; or CWI_NONE */
     float position[3];
@@ -121,9 +121,9 @@ void cwi_remesh_project(const cwi_remesh *r, const cwi_target *target, const dou
 /* --- patches ------------------------------------------------------------------------------ */
 
 /* Lists the corners at a vertex counter-clockwise, and returns their number; 0 if there are more
- * than CWI_MAX_STAR. At a border the first and the last corner have an open edge. */
-size_t cwi_list_star(const cwi_remesh *r, uint32_t vertex, uint32_t corners[CWI_MAX_STAR],
-                     bool *is_border);
+ * than CWI_MAX_ONE_RING. At a border the first and the last corner have an open edge. */
+size_t cwi_list_one_ring(const cwi_remesh *r, uint32_t vertex,
+                         uint32_t corners[CWI_MAX_ONE_RING], bool *is_border);
 
 /* Returns the largest cosine of the angles in the patch; 2 if a triangle has no area. */
 double cwi_patch_cosine(const cwi_remesh *r, const cwi_replacement *patch);

@@ -75,7 +75,7 @@ static void mark_vertices(const cw_mesh *m, const cw_crossings *found, bool *mee
 }
 
 /* Sums the normals around vertices that meet, and finds their shortest edges. */
-static void measure_stars(touching *t)
+static void measure_one_rings(touching *t)
 {
     const cw_mesh *m = &t->r->mesh;
     for (size_t n = 0; n < m->triangle_count; n++) {
@@ -134,7 +134,7 @@ static cw_status move_touching(cwi_repair *r, cw_crossings *found, cw_error *err
     cw_status st = init_touching(&t) ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK) {
         mark_vertices(&r->mesh, found, t.meets);
-        measure_stars(&t);
+        measure_one_rings(&t);
         for (size_t v = 0; v < r->mesh.vertex_count; v++)
             move_inward(&t, v);
         st = find_crossings(r, found, err);

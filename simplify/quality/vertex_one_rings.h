@@ -1,6 +1,6 @@
 /* Measures the topology of a surface around some of its vertices. */
-#ifndef SIMPLIFY_QUALITY_VERTEX_STARS_H
-#define SIMPLIFY_QUALITY_VERTEX_STARS_H
+#ifndef SIMPLIFY_QUALITY_VERTEX_ONE_RINGS_H
+#define SIMPLIFY_QUALITY_VERTEX_ONE_RINGS_H
 
 #include "simplify/quality/open_loops.h"
 
@@ -13,7 +13,7 @@ enum { CWI_OPEN = 1, CWI_UNORIENTED = 2 };
 
 /* Triangles that hold all those around each vertex of a range. The arrays that a whole mesh
  * wants are NULL for a part of one. */
-typedef struct cwi_stars {
+typedef struct cwi_one_rings {
     const uint32_t *triangles; /* count x 3 vertices */
     size_t count;
     const struct cwi_vertex_ranges *ranges; /* of the triangles */
@@ -25,18 +25,18 @@ typedef struct cwi_stars {
     uint8_t *used;      /* of vertices: set to 1 for those of triangles that name three */
     uint8_t *unbounded; /* of vertices: set to CWI_OPEN and CWI_UNORIENTED for the edges to
                            higher vertices; may be NULL */
-} cwi_stars;
+} cwi_one_rings;
 
 /* Adds to q the counts of the range's vertices, and of edges and duplicates whose lowest vertex
  * is in the range. The border gets the ends of open edges at these vertices; it may be NULL.
  * components is increased by the vertices of triangles that name three, euler by these less
  * edges. With sets, both are those of the whole mesh.
  * False when memory is out, or when the progress has cancelled. */
-bool cwi_measure_stars(const cwi_stars *stars, cw_quality *q, cwi_border *border);
+bool cwi_measure_one_rings(const cwi_one_rings *rings, cw_quality *q, cwi_border *border);
 
 /* Counts the loops of a mesh's open edges.
  * open_edges  their number
  * False when memory is out, or when the progress has cancelled. */
-bool cwi_count_loops(const cwi_stars *stars, size_t open_edges, size_t *loops);
+bool cwi_count_loops(const cwi_one_rings *rings, size_t open_edges, size_t *loops);
 
 #endif

@@ -1,5 +1,5 @@
-// Compares a star with the original where their edges cross.
-#include "simplify/collapse/star_overlay.hpp"
+// Compares a ring with the original where their edges cross.
+#include "simplify/collapse/ring_overlay.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -51,23 +51,23 @@ Overlay::Overlay(const cwi_original *original_)
 }
 
 // Where triangles differ much in size, normals of length 1 may see a fan where areas do not.
-bool Overlay::lay(const Star &star_)
+bool Overlay::lay(const OneRing &star_)
 {
     Vec by_area(0), even(0);
-    star = &star_;
-    center = star->position;
-    if (!star->closed || star->spokes.size() > MAX_SPOKES)
+    ring = &star_;
+    center = ring->position;
+    if (!ring->closed || ring->triangles.size() > MAX_TRIANGLES)
         return false;
-    for (const Spoke &s : star->spokes)
+    for (const RingTriangle &s : ring->triangles)
         by_area += s.normal;
-    if (lay_along(*star, by_area))
+    if (lay_along(*ring, by_area))
         return true;
-    for (const Spoke &s : star->spokes)
+    for (const RingTriangle &s : ring->triangles)
         even += s.normal / s.normal.norm();
-    return lay_along(*star, even);
+    return lay_along(*ring, even);
 }
 
-bool Overlay::lay_along(const Star &star_, Vec axis)
+bool Overlay::lay_along(const OneRing &star_, Vec axis)
 {
     const float length = axis.norm();
     if (!(length > 0))
@@ -79,17 +79,17 @@ bool Overlay::lay_along(const Star &star_, Vec axis)
     axes[1] = axes[2] % axes[0];
     corners_a.clear();
     corners_b.clear();
-    fours.assign((star_.spokes.size() + 3) / 4, Four{});
+    fours.assign((star_.triangles.size() + 3) / 4, Four{});
     int rounds = 0;
-    for (const Spoke &s : star_.spokes) {
-        if (!add_spoke(s))
+    for (const RingTriangle &s : star_.triangles) {
+        if (!add_triangle(s))
             return false;
         rounds += corners_a.back()[1] < 0 && corners_b.back()[1] >= 0;
     }
     return rounds == 1;
 }
 
-bool Overlay::add_spoke(const Spoke &s)
+bool Overlay::add_triangle(const RingTriangle &s)
 {
     const Vec to_a = s.pa - center, to_b = s.pb - center;
     const Vec a(to_a | axes[0], to_a | axes[1], to_a | axes[2]),
@@ -137,7 +137,7 @@ void Overlay::look(Corner &p) const
     }
 }
 
-// Of the planes of the spokes, less what rounding may make of heights above them.
+// Of the planes of the ring triangles, less what rounding may make of heights above them.
 void Overlay::set_thickness(float sure, float reach)
 {
     for (size_t n = 0; n < corners_a.size(); n++) {
@@ -181,11 +181,11 @@ bool Overlay::is_crossing_near(const Corner &p, const Corner &q, const Vec &a, c
 }
 
 // Those around a corner.
-void Overlay::doubt_spokes(uint32_t corner)
+void Overlay::doubt_ring_triangles(uint32_t corner)
 {
-    for (size_t n = 0; n < star->spokes.size(); n++)
-        if (star->spokes[n].a == corner || star->spokes[n].b == corner)
-            spokes_in_doubt |= 1u << n;
+    for (size_t n = 0; n < ring->triangles.size(); n++)
+        if (ring->triangles[n].a == corner || ring->triangles[n].b == corner)
+            ring_triangles_in_doubt |= 1u << n;
 }
 
 // Those on both sides of an edge.
@@ -212,7 +212,7 @@ bool Overlay::is_edge_near(uint32_t i, uint32_t j, bool *crosses)
         if (is_crossing_near(p, q, Vec(0), corners_a[n], crosses))
             continue;
         near = false;
-        doubt_spokes(star->spokes[n].a);
+        doubt_ring_triangles(ring->triangles[n].a);
     }
     for (uint32_t left = (p.beyond ^ q.beyond) & (p.left | q.left) & ~(p.near & q.near); left;
          left &= left - 1) {
@@ -220,7 +220,7 @@ bool Overlay::is_edge_near(uint32_t i, uint32_t j, bool *crosses)
         if (is_crossing_near(p, q, corners_a[n], corners_b[n], nullptr))
             continue;
         near = false;
-        spokes_in_doubt |= 1u << n;
+        ring_triangles_in_doubt |= 1u << n;
     }
     return near;
 }
@@ -296,7 +296,7 @@ bool Overlay::compare(const std::vector<uint32_t> &points, float distance)
     const float sure = std::max(0.0f, STRICTER * distance - 2e-6f * reach);
     set_thickness(sure, reach);
     distance_sq = sure * sure;
-    spokes_in_doubt = 0;
+    ring_triangles_in_doubt = 0;
     triangles_in_doubt.clear();
     vertices.clear();
     corners.clear();
