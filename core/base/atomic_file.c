@@ -302,12 +302,12 @@ static cw_status print_args(cwi_outfile *f, cw_error *err, const char *format, v
 {
     va_list again;
     va_copy(again, args);
-    const size_t capacity = BUFFER_BYTES - f->used;
-    const int length = vsnprintf((char *)f->buffer + f->used, capacity, format, args);
+    const size_t left = BUFFER_BYTES - f->used;
+    const int length = vsnprintf((char *)f->buffer + f->used, left, format, args);
     cw_status st = CW_OK;
     if (length < 0) {
         st = fail_system(err, "text cannot be formatted", errno);
-    } else if ((size_t)length < capacity) {
+    } else if ((size_t)length < left) {
         f->used += (size_t)length;
         f->size += (size_t)length;
     } else {

@@ -17,9 +17,9 @@ CW_NODISCARD cw_status cwi_find_inside(const cw_volume *in, const cw_inside *ins
 /* Makes a volume whose voxels are inside as `selected` says. Those that are on the other side become
  * their mirror image at the level, so that the surface passes midway between equal values. All
  * others keep their bytes.
- * wanted   a byte a voxel
- * work     bytes of memory beside the result, for desc->max_bytes
- * Returns  CW_ERR_ARGUMENT if the type has no number on the other side; as a filter */
+ * selected  a byte a voxel
+ * work      bytes of memory beside the result, for desc->max_bytes
+ * Returns   CW_ERR_ARGUMENT if the type has no number on the other side; as a filter */
 CW_NODISCARD cw_status cwi_change_inside(const cw_volume *in, const cw_inside *inside,
                                          const uint8_t *selected, size_t work,
                                          const cw_filter_desc *desc, cw_volume *out,

@@ -44,15 +44,15 @@ cwi_face_key cwi_face_key_of(const cwi_element *e, int face)
     uint32_t samples[4] = {0};
     uint8_t ring[4];
     const int count = cwi_face_ring(e, face, ring);
-    int min = 0;
+    int lowest = 0;
     for (int n = 0; n < count; n++) {
         samples[n] = e->corners[corners[ring[n]]];
-        if (samples[n] < samples[min])
-            min = n;
+        if (samples[n] < samples[lowest])
+            lowest = n;
     }
-    key.reversed = samples[(min + count - 1) % count] < samples[(min + 1) % count];
+    key.reversed = samples[(lowest + count - 1) % count] < samples[(lowest + 1) % count];
     for (int n = 0; n < count; n++)
-        key.samples[n] = samples[(min + (key.reversed ? count - n : n)) % count];
+        key.samples[n] = samples[(lowest + (key.reversed ? count - n : n)) % count];
     return key;
 }
 
@@ -106,8 +106,8 @@ static void count_faces(void *context, size_t chunk)
     for (size_t n = begin; n < end; n++)
         for (int face = 0; face < cwi_shape_of(&p->g->elements[n])->face_count; face++)
             if (cwi_face_matters(p->g, &p->g->elements[n], face)) {
-                const uint32_t min = cwi_face_key_of(&p->g->elements[n], face).samples[0];
-                __atomic_fetch_add(&p->ends[min], 1, __ATOMIC_RELAXED);
+                const uint32_t lowest = cwi_face_key_of(&p->g->elements[n], face).samples[0];
+                __atomic_fetch_add(&p->ends[lowest], 1, __ATOMIC_RELAXED);
             }
 }
 

@@ -121,10 +121,10 @@ static uint8_t sides_of(const sorting *s, const void *voxels, size_t count)
 static uint8_t sides_of_value(const sorting *s, double value)
 {
     const cw_type type = s->grid->volume.type;
-    double capacity[64]; /* of any type */
+    double storage[64]; /* of any type */
     for (size_t n = 0; n < 64; n++)
-        cwi_voxel_put(type, (char *)capacity + n * cw_type_size(type), value);
-    return sides_of(s, capacity, 64);
+        cwi_voxel_put(type, (char *)storage + n * cw_type_size(type), value);
+    return sides_of(s, storage, 64);
 }
 
 static void find_sides(void *context, size_t part)

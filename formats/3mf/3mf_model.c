@@ -587,8 +587,7 @@ static const cwi_xml_element elements[ELEMENT_COUNT] = {
 static cw_status take_text(void *user, int row, const char *text, size_t size, cw_error *err)
 {
     parsing *p = user;
-    const size_t capacity = TEXT_BYTES - 1 - p->text_bytes,
-                 n = size < capacity ? size : capacity;
+    const size_t left = TEXT_BYTES - 1 - p->text_bytes, n = size < left ? size : left;
     (void)err;
     if (row != E_METADATA || p->fact == NO_FACT)
         return CW_OK;

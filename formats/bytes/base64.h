@@ -13,7 +13,7 @@ typedef struct cwi_base64 {
     bool wrong;        /* at any other character */
 } cwi_base64;
 
-/* Decodes until the room is full, the text is used up, or an end is reached. Blanks are
+/* Decodes until `capacity` bytes are written, the text is used up, or an end is reached. Blanks are
  * skipped, and a new group starts behind padding. Returns the bytes written; *used counts
  * characters. */
 size_t cwi_base64_decode(cwi_base64 *b, const char *text, size_t size, size_t *used,

@@ -36,7 +36,7 @@ CW_NODISCARD cw_status cwi_blocks_open(cwi_packed_blocks *b, cwi_stream *stream,
                                        const cwi_block_form *form, uint64_t expected,
                                        uint64_t there, cw_error *err);
 
-/* Decodes the next bytes: a whole block if the room is enough for it, else a part of one. The
+/* Decodes the next bytes: a whole block if `capacity` is enough for it, else a part of one. The
  * rest of that block is kept until it is used up. The caller must not request more than
  * `expected` bytes in total. Returns CW_ERR_FORMAT, CW_ERR_NO_MEMORY, CW_ERR_IO */
 CW_NODISCARD cw_status cwi_blocks_some(cwi_packed_blocks *b, unsigned char *to, size_t capacity,

@@ -71,7 +71,7 @@ cw_status cwi_block_sink_put(void *sink, const void *bytes, size_t size, cw_erro
     cwi_block_sink *b = sink;
     cw_status st = CW_OK;
     for (const unsigned char *from = bytes; st == CW_OK && size > 0;) {
-        const size_t capacity = BLOCK_BYTES - b->held, n = size < capacity ? size : capacity;
+        const size_t left = BLOCK_BYTES - b->held, n = size < left ? size : left;
         memcpy(b->block + b->held, from, n);
         b->held += n;
         from += n;

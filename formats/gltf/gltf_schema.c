@@ -16,7 +16,7 @@ typedef enum value_kind {
     OBJECTS, /* a list of them */
     INDEX,   /* into a list of the outermost object */
     INDICES,
-    WHOLE,   /* a whole number from least to most, a multiple of step */
+    WHOLE,   /* a whole number from min to max, a multiple of step */
     NUMBERS, /* up to `max` numbers; none is larger than `largest`, unless that is 0 */
     BOOLEAN,
     STRING,
@@ -44,7 +44,7 @@ typedef struct rule {
     value_kind kind;
     bool required;
     list_name list;    /* of an index: the list it points into */
-    uint64_t min, max; /* of WHOLE; most 0: no limit */
+    uint64_t min, max; /* of WHOLE; max 0: no limit */
     uint64_t step;
     double largest;             /* of NUMBERS */
     const char *choices;        /* words separated by blanks */

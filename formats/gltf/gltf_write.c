@@ -39,7 +39,7 @@ static cw_status push_bytes(byte_pipe *p, const unsigned char *bytes, size_t siz
 {
     cw_status st = CW_OK;
     while (st == CW_OK && size > 0) {
-        const size_t capacity = CHUNK_BYTES - p->held, step = size < capacity ? size : capacity;
+        const size_t left = CHUNK_BYTES - p->held, step = size < left ? size : left;
         memcpy(p->bytes + p->held, bytes, step);
         p->held += step;
         bytes += step;

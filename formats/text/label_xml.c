@@ -122,8 +122,7 @@ static cw_status add_text(void *user, int row, const char *text, size_t size, cw
     (void)err;
     if (row != LABEL && row != CARET_LABEL && row != GIFTI_LABEL)
         return CW_OK;
-    const size_t capacity = NAME_BYTES - 1 - d->length,
-                 kept = size < capacity ? size : capacity;
+    const size_t left = NAME_BYTES - 1 - d->length, kept = size < left ? size : left;
     memcpy(d->name + d->length, text, kept);
     d->length += kept;
     return CW_OK;

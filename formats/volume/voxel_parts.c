@@ -61,15 +61,15 @@ static uint64_t bytes_of_text(const cwi_source *src, uint64_t encoded)
 static uint64_t max_bytes(const cwi_source *src, uint64_t encoded)
 {
     const uint64_t voxel = cw_type_size(src->shape.type);
-    const uint64_t max = src->encoding == CWI_ASCII   ? voxel
-                         : src->encoding == CWI_BZIP2 ? CWI_BZIP2_BLOCK / CWI_BZIP2_PACKED
-                                                      : 1032;
+    const uint64_t max_ratio = src->encoding == CWI_ASCII   ? voxel
+                               : src->encoding == CWI_BZIP2 ? CWI_BZIP2_BLOCK / CWI_BZIP2_PACKED
+                                                            : 1032;
     encoded = bytes_of_text(src, encoded);
     if (src->encoding == CWI_RAW || src->encoding == CWI_HEX)
         return src->encoding == CWI_HEX ? encoded / 2 : encoded;
     if (src->encoding == CWI_ASCII)
         encoded = encoded / 2 + 1;
-    return encoded > UINT64_MAX / max ? UINT64_MAX : encoded * max;
+    return encoded > UINT64_MAX / max_ratio ? UINT64_MAX : encoded * max_ratio;
 }
 
 static cw_status check_part_bytes(const cwi_source *src, cwi_part_file *p, cw_error *err)

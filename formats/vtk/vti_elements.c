@@ -71,12 +71,12 @@ void cwi_vti_data_start(cwi_vti_data *data, bool of_cells, cwi_attributes a)
 
 static void note_other(cwi_vti_choice *choice, const cwi_vtk_array *array)
 {
-    const size_t used = strlen(choice->others), capacity = sizeof choice->others - used;
+    const size_t used = strlen(choice->others), left = sizeof choice->others - used;
     char text[2 * CWI_WORD_BYTES + 40];
     snprintf(text, sizeof text, "'%s' (%zu %s)", array->name, array->components,
              *array->type_name ? array->type_name : "of no type");
     if (!strstr(choice->others, text)) /* other pieces have the same */
-        snprintf(choice->others + used, capacity, "%s%s", used ? ", " : "", text);
+        snprintf(choice->others + used, left, "%s%s", used ? ", " : "", text);
 }
 
 static cwi_vti_rank rank_of(const cwi_vti_choice *choice, const cwi_vti_data *data,

@@ -73,8 +73,8 @@ static bool make_rows(section_rows *r)
         high = fmax(high, v);
         length += fabs(coordinate_v(s, s->nodes[n].next) - v);
     }
-    const double max = MAX_MEAN_SPAN * (double)s->node_count * (high - low) / length;
-    const double rows = fmin(2 * sqrt((double)s->node_count), max);
+    const double max_rows = MAX_MEAN_SPAN * (double)s->node_count * (high - low) / length;
+    const double rows = fmin(2 * sqrt((double)s->node_count), max_rows);
     r->count = rows > 1 ? (size_t)rows : 1;
     r->low = low;
     r->height = high > low ? (high - low) / (double)r->count : 1;

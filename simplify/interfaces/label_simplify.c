@@ -200,7 +200,7 @@ static void fail_corners(job *j, size_t triangle)
 }
 
 /* Tightens the error at marked samples. Returns true if any was raised. */
-static bool raise_cares(job *j)
+static bool raise_levels(job *j)
 {
     bool is_any = false;
     for (size_t n = 0; n < j->samples.count; n++) {
@@ -213,10 +213,10 @@ static bool raise_cares(job *j)
     return is_any;
 }
 
-/* Finds the places beyond the error, and tightens it there. If that changes nothing, all
+/* Tightens the error where it was exceeded. If that changes nothing, all
  * samples get the last level, and the surfaces stay as they are.
- * beyond  triangles of the input, then those of the result */
-static void take_care(job *j, const uint8_t *in_beyond, const uint8_t *out_beyond)
+ * in_beyond, out_beyond  of each triangle of the input and of the result: 1 if it is beyond */
+static void tighten_beyond(job *j, const uint8_t *in_beyond, const uint8_t *out_beyond)
 {
     const cwi_complex *c = &j->complex;
     memset(j->is_failing, 0, j->samples.count * sizeof *j->is_failing);
@@ -226,14 +226,14 @@ static void take_care(job *j, const uint8_t *in_beyond, const uint8_t *out_beyon
         if (c->corners[3 * t] != CWI_NO_INDEX && out_beyond[of_out++])
             fail_around(j, t);
     }
-    if (!raise_cares(j)) {
+    if (!raise_levels(j)) {
         memset(j->is_failing, 1, j->samples.count * sizeof *j->is_failing);
         j->passes = GENTLE_PASSES;
-        (void)raise_cares(j);
+        (void)raise_levels(j);
     }
 }
 
-/* Measures a result. Sets *is_kept if no place is beyond the error; else tightens the error there. */
+/* Measures a result. Sets *is_kept if it is within the error everywhere; else tightens it. */
 static cw_status judge_result(job *j, const cw_label_surfaces *out, bool *is_kept,
                               cw_error *err)
 {
@@ -246,7 +246,7 @@ static cw_status judge_result(job *j, const cw_label_surfaces *out, bool *is_kep
     if (st == CW_OK) {
         *is_kept = !memchr(in_beyond, 1, before) && !memchr(out_beyond, 1, after);
         if (!*is_kept)
-            take_care(j, in_beyond, out_beyond);
+            tighten_beyond(j, in_beyond, out_beyond);
     }
     cwi_free(in_beyond);
     cwi_free(out_beyond);

@@ -137,10 +137,10 @@ static size_t find_outline(const plan_point *points, size_t count, plan_point *h
 {
     size_t corners = 0;
     for (int side = 0; side < 2; side++) {
-        const size_t min_mm = corners + 1;
+        const size_t min_corners = corners + 1;
         for (size_t n = 0; n < count; n++) {
             const plan_point *p = points + (side ? count - 1 - n : n);
-            while (corners > min_mm &&
+            while (corners > min_corners &&
                    turn_left(hull + corners - 2, hull + corners - 1, p) <= 0)
                 corners--;
             hull[corners++] = *p;

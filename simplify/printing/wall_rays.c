@@ -139,9 +139,9 @@ static double measure_point(const ray_field *f, size_t own, const double from[3]
                             const double direction[3], double side, double limit,
                             double max_reach)
 {
-    double min_mm = cast_ray(f, own, from, direction, side, REACH * limit, max_reach);
-    if (!(min_mm < REACH * limit))
-        return min_mm;
+    double length_mm = cast_ray(f, own, from, direction, side, REACH * limit, max_reach);
+    if (!(length_mm < REACH * limit))
+        return length_mm;
     double across[2][3];
     const double along = cos(OFF_DEG * CWI_PI / 180), off = sin(OFF_DEG * CWI_PI / 180);
     find_across(direction, across);
@@ -151,9 +151,10 @@ static double measure_point(const ray_field *f, size_t own, const double from[3]
         for (int a = 0; a < 3; a++)
             d[a] = along * direction[a] +
                    off * (cos(turn) * across[0][a] + sin(turn) * across[1][a]);
-        min_mm = cwi_lesser(min_mm, cast_ray(f, own, from, d, side, min_mm, min_mm));
+        length_mm =
+            cwi_lesser(length_mm, cast_ray(f, own, from, d, side, length_mm, length_mm));
     }
-    return min_mm;
+    return length_mm;
 }
 
 /* Finds the normal of a point of a triangle. Returns false where there is none that can be relied on.

@@ -96,9 +96,10 @@ typedef struct extreme {
 typedef struct search {
     const reference *r;
     const cw_mesh *mesh;
-    const uint32_t *slots;             /* of the facets nearest to vertices */
-    double floor, tolerance, fraction; /* known to be met; bound - max, in mm and of max */
-    extreme *extremes;                 /* one a chunk */
+    const uint32_t *slots;      /* of the facets nearest to vertices */
+    double floor;               /* a distance in mm that is known to be met */
+    double tolerance, fraction; /* allowed for bound - max: mm, and a fraction of max */
+    extreme *extremes;          /* one a chunk */
 } search;
 
 /* Facets that points of a triangle are nearest to, and the corners' squared distances. */

@@ -495,7 +495,8 @@ void cwi_beam_pass(const cwi_beams *b, const cwi_ray *ray, double depth, double 
                    cwi_beam_shade *shade, void *context, cwi_lanes *color, float *light)
 {
     const cwi_frame *f = b->frame;
-    const double forward = -ray->direction[2], min = 1 - (double)f->scene.sampling.stop_opacity;
+    const double forward = -ray->direction[2],
+                 min_light = 1 - (double)f->scene.sampling.stop_opacity;
     double t[2] = {fmax(b->start, f->perspective ? f->near : -INFINITY) / forward,
                    depth / forward};
     beam m = {.b = b,
@@ -507,7 +508,7 @@ void cwi_beam_pass(const cwi_beams *b, const cwi_ray *ray, double depth, double 
     cut_beam(&m, t);
     double part = 1, first = offset;
     bool is_visible = false;
-    for (double at = t[0]; at < t[1] && m.light + m.waiting_light + m.left_light > min;) {
+    for (double at = t[0]; at < t[1] && m.light + m.waiting_light + m.left_light > min_light;) {
         const double wide = m.width[0] + at * m.width[1];
         step s = {0};
         choose_level(b, wide, &s);

@@ -151,9 +151,9 @@ static passage pass_medium(const medium *m, double from, double to)
         double before = 0;
         for (int i = 0; i < CWI_NODES; i++)
             before += r->inner[n][i] * extinction[i];
-        const double fraction = r->weight[n] * extinction[n] * exp(-before);
+        const double emitted = r->weight[n] * extinction[n] * exp(-before);
         for (int c = 0; c < 3; c++)
-            p.color[c] += fraction * color[n][c];
+            p.color[c] += emitted * color[n][c];
     }
     return p;
 }

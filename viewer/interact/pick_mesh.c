@@ -21,10 +21,10 @@ typedef struct sight {
 static void find_across(double axes[3][3])
 {
     const double *d = axes[2];
-    const int min = fabs(d[0]) < fabs(d[1]) ? (fabs(d[0]) < fabs(d[2]) ? 0 : 2)
-                                            : (fabs(d[1]) < fabs(d[2]) ? 1 : 2);
+    const int axis = fabs(d[0]) < fabs(d[1]) ? (fabs(d[0]) < fabs(d[2]) ? 0 : 2)
+                                             : (fabs(d[1]) < fabs(d[2]) ? 1 : 2);
     double side[3] = {0};
-    side[min] = 1;
+    side[axis] = 1;
     cwi_cross(d, side, axes[0]);
     const double length = cwi_length(axes[0]);
     for (int a = 0; a < 3; a++)

@@ -24,8 +24,8 @@ cw_status cwi_live_need(cwi_live *live, cwi_live_buffer n, size_t bytes, cw_erro
 /* Returns a size with room to grow, but no more than fits. */
 static size_t with_room(const cwi_live *live, size_t bytes)
 {
-    const size_t max = live->capacity.buffer_bytes, roomy = bytes + bytes / 4;
-    return roomy <= max || bytes > max ? roomy : max;
+    const size_t max = live->capacity.buffer_bytes, padded = bytes + bytes / 4;
+    return padded <= max || bytes > max ? padded : max;
 }
 
 cw_status cwi_live_ensure_capacity(cwi_live *live, cwi_live_buffer n, size_t bytes,

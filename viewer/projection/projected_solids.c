@@ -202,15 +202,15 @@ static int cut_cell(const cwi_solids *s, const corners *c, cwi_solid out[CWI_SOL
     for (int f = 0; f < shape->face_count; f++) {
         const int size = shape->face_size[f];
         const uint8_t *face = shape->faces[f];
-        int min = 0;
+        int lowest = 0;
         bool has_tip = false;
         for (int n = 0; n < size; n++) {
             has_tip = has_tip || face[n] == tip;
-            min = c->samples[face[n]][0] < c->samples[face[min]][0] ? n : min;
+            lowest = c->samples[face[n]][0] < c->samples[face[lowest]][0] ? n : lowest;
         }
         for (int n = 2; n < size && !has_tip; n++) {
-            const int from[4] = {tip, face[min], face[(min + n - 1) % size],
-                                 face[(min + n) % size]};
+            const int from[4] = {tip, face[lowest], face[(lowest + n - 1) % size],
+                                 face[(lowest + n) % size]};
             count += make_tetrahedron(s, c, from, &out[count]);
         }
     }

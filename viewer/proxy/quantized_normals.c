@@ -97,9 +97,9 @@ static size_t put_candidates(const cwi_directions *d, size_t cell, uint16_t *to)
     double middle[3], radius;
     size_t count = 0;
     circle_of(d, cell, middle, &radius);
-    const double max = cos(fmin(nearest_angle(d, middle) + 2 * radius + 1e-9, acos(0)));
+    const double min_cosine = cos(fmin(nearest_angle(d, middle) + 2 * radius + 1e-9, acos(0)));
     for (size_t n = 0; n < d->count; n++)
-        if (fabs(cwi_dot(d->all[n], middle)) >= max) {
+        if (fabs(cwi_dot(d->all[n], middle)) >= min_cosine) {
             if (to)
                 to[count] = (uint16_t)n;
             count++;
@@ -158,14 +158,14 @@ cw_status cwi_directions_make(size_t count, cwi_directions *directions, cw_error
 size_t cwi_directions_nearest(const cwi_directions *d, const double v[3])
 {
     size_t cell, best;
-    double max = -1;
+    double max_cosine = -1;
     if (!cell_of(d, v, &cell))
         return d->count;
     best = d->candidates[d->first[cell]];
     for (uint32_t n = d->first[cell]; n < d->first[cell + 1]; n++) {
-        const double fraction = fabs(cwi_dot(d->all[d->candidates[n]], v));
-        if (fraction > max) {
-            max = fraction;
+        const double cosine = fabs(cwi_dot(d->all[d->candidates[n]], v));
+        if (cosine > max_cosine) {
+            max_cosine = cosine;
             best = d->candidates[n];
         }
     }

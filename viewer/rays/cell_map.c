@@ -132,7 +132,7 @@ static double deviation_of(const cwi_mapped_cell *cell)
 cwi_map_kind cwi_cell_map_of(const cwi_mapped_cell *cell)
 {
     static const double FLAT_VOLUME = 1e-13; /* of the cube of the size */
-    const double size = size_of(cell), min_axis = FLAT_VOLUME * size * size * size;
+    const double size = size_of(cell), min_volume = FLAT_VOLUME * size * size * size;
     bool is_left = false, is_right = false;
     if (!(size > 0))
         return CWI_MAP_EMPTY;
@@ -142,8 +142,8 @@ cwi_map_kind cwi_cell_map_of(const cwi_mapped_cell *cell)
         for (int k = 0; k < 3; k++)
             cwi_sub(cell->points[apex[k + 1]], cell->points[apex[0]], edges[k]);
         const double d = determinant_of(edges[0], edges[1], edges[2]);
-        is_right = is_right || d > min_axis;
-        is_left = is_left || d < -min_axis;
+        is_right = is_right || d > min_volume;
+        is_left = is_left || d < -min_volume;
     }
     if (is_left && is_right)
         return CWI_MAP_FOLDED;
@@ -389,11 +389,11 @@ static int cross_triangle(const double *const p[3], const double direction[3], d
 static void look_along(const double direction[3], across *view)
 {
     const double size[3] = {fabs(direction[0]), fabs(direction[1]), fabs(direction[2])};
-    const int min_axis = size[0] < size[1]   ? (size[0] < size[2] ? 0 : 2)
+    const int shortest = size[0] < size[1]   ? (size[0] < size[2] ? 0 : 2)
                          : size[1] < size[2] ? 1
                                              : 2;
     double axis[3] = {0};
-    axis[min_axis] = 1;
+    axis[shortest] = 1;
     cwi_cross(direction, axis, view->first);
     cwi_normalise(view->first);
     cwi_cross(direction, view->first, view->second);

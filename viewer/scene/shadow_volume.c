@@ -142,7 +142,7 @@ static double steps_in_volume(const job *w, const size_t at[3], const double ste
         if (step[a] != 0)
             min = fmin(min, distance / step[a]);
     }
-    return min - 1e-9; /* rounding may put the last position outside */
+    return min - 1e-9; /* rounding may put the last point outside */
 }
 
 /* Returns the light that comes to a voxel along a ray of a number of steps. The first step,

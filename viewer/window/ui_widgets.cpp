@@ -196,12 +196,12 @@ void place_panel(const cwi_ui *ui, const char *title, const cwi_ui_rect *r, bool
 void dock_panel(const cwi_ui *ui, const cwi_ui_rect *r)
 {
     const double min_width = CWI_UI_DOCKED_MIN * ui->scale,
-                 max_height = CWI_UI_DOCKED_MAX * static_cast<double>(ui->input.width);
-    const double narrowest = min_width < max_height ? min_width : max_height;
+                 max_width = CWI_UI_DOCKED_MAX * static_cast<double>(ui->input.width);
+    const double narrowest = min_width < max_width ? min_width : max_width;
     ImGui::SetNextWindowPos(point(r->x + r->width, r->y), ImGuiCond_Always, ImVec2(1, 0));
     ImGui::SetNextWindowSize(point(r->width, r->height), ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowSizeConstraints(point(narrowest, r->height),
-                                        point(max_height, r->height));
+                                        point(max_width, r->height));
 }
 
 /* Places a panel upon the lower border, as high as its content. */
