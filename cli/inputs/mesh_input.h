@@ -59,10 +59,10 @@ CW_NODISCARD cw_status cli_read_parts(const char *path, const char *reader,
 /* Turns shells round that face the wrong way, of each part by itself, and says how many. */
 CW_NODISCARD cw_status cli_orient_mesh(cli_mesh *mesh, int threads, cw_error *err);
 
-/* Of all parts. */
+/* Counts the triangles of all parts. */
 size_t cli_mesh_triangles(const cli_mesh *mesh);
 
-/* Harmless on a zeroed one. */
+/* Frees a mesh that was read; a zeroed one is allowed. */
 void cli_free_mesh(cli_mesh *mesh);
 
 /* An object of reports; sha256 of the file, when it can be read again. */

@@ -47,10 +47,10 @@ CW_NODISCARD cw_status cli_find_statistics(cli_source *source, const cli_input *
 CW_NODISCARD cw_status cli_need_drawable(cli_source *source, const cli_input *input,
                                          cw_error *err);
 
-/* The mode for a volume, unless one was requested: one that draws its kind of grid. */
+/* Returns the default mode for the kind of grid of the volume. */
 cw_mode cli_default_mode(const cli_source *source);
 
-/* The volume that is drawn. */
+/* Returns the volume that is drawn: of a sparse one, the dense copy. */
 const cw_volume *cli_drawn(const cli_source *source);
 
 /* Around what is seen: the volume that is drawn (NULL: none), a mesh (NULL: none). false:

@@ -306,7 +306,7 @@ CW_NODISCARD cw_status cli_read_whole(const cli_volume *part, const cli_input *i
 CW_NODISCARD cw_status cli_visit_slices(const cli_volume *volume, const cli_input *input,
                                         const cw_slice_visitor *visitor, cw_error *err);
 
-/* The header alone, without a word. */
+/* Reads the header alone, and prints nothing. */
 CW_NODISCARD cw_status cli_read_shape(const char *path, const cli_input *input,
                                       cw_volume *shape, cw_error *err);
 
@@ -351,7 +351,7 @@ const char *cli_describe(const cli_volume *volume);
 /* An object of reports, such as "input". sha256 of the file, when it can be read again. */
 void cli_json_input(cli_json *j, const char *key, const cli_volume *volume);
 
-/* In bytes: as asked for, or three quarters of the machine's. */
+/* Returns --memory in bytes; default: three quarters of the machine's. */
 size_t cli_memory_limit(const cli_input *input);
 
 /* Returns the bytes that extraction takes beside voxels in memory, without the mesh: planes of bits,

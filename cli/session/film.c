@@ -17,7 +17,7 @@ enum { MAX_FRAMES = 1000000 };
 
 /* --- key frames --------------------------------------------------------------------------- */
 
-/* "2.5 camera right; iso 300": runs the commands and keeps the state they lead to. */
+/* Reads a line such as "2.5 camera right; iso 300": runs the commands, keeps their state. */
 static cw_status add_key(view *v, view_key_frames *f, const char *line, cw_error *err)
 {
     double time;
@@ -70,7 +70,7 @@ static cw_status parse_film(view *v, const char *text, view_key_frames *f, cw_er
     return st;
 }
 
-/* The bookmarks as a film, one after another. */
+/* Makes a film of the bookmarks, one after another. */
 static cw_status write_bookmarks(const view *v, char **text, cw_error *err)
 {
     size_t size;
@@ -130,7 +130,7 @@ static cw_status write_frames(view *v, const view_key_frames *f, const char *pat
     return st;
 }
 
-/* Parses a film, with the session as it is afterwards. */
+/* Parses a film. The session then has the state of the last key frame. */
 static cw_status make_keys(view *v, const char *name, view_key_frames *f, cw_error *err)
 {
     const bool of_bookmarks = strcmp(name, "bookmarks") == 0;

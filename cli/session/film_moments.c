@@ -39,7 +39,7 @@ static double blend_number(const view_key_frames *f, size_t at, double time, siz
                          : blend_double(f, at, 2, time, value);
 }
 
-/* Options that are numbers in both keys around. */
+/* Blends the options that are numbers in both of the keys around. */
 static void blend_options(const view *v, const view_key_frames *f, size_t at, double time,
                           view_state *s)
 {

@@ -10,7 +10,7 @@ bool view_is_quad(const view *v)
            view_fits_mode(v, CW_MODE_SLICES);
 }
 
-/* The scene alone, or in the lower right of four. */
+/* Places the parts: the scene alone, or in the lower right of four. */
 void view_place_parts(view *v, const cwi_ui_rect *area, bool is_quad)
 {
     const double w = floor(area->width / 2), h = floor(area->height / 2);

@@ -44,7 +44,7 @@ static cw_status simplify_surface(const view *v, const cw_mesh *full, size_t tri
     return st;
 }
 
-/* Of grids that are not even it is not known. */
+/* Measures how far a mesh is from the field, on even grids. */
 static void measure_from_field(const view *v, const cw_mesh *mesh, view_mesh_facts *facts)
 {
     const render_args *args = &v->state.args;

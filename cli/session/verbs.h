@@ -4,16 +4,17 @@
 
 #include "cli/session/view.h"
 
-/* Numbers out of words. CW_ERR_ARGUMENT naming the verb and the word */
+/* Parses words as numbers. Returns CW_ERR_ARGUMENT, naming the verb and the word */
 CW_NODISCARD cw_status view_take(const char *verb, char **args, int count, double *numbers,
                                  cw_error *err);
 
-/* CW_ERR_ARGUMENT when nothing is open, no volume that can be drawn; a camera is placed. */
+/* Return CW_ERR_ARGUMENT when nothing is open, or no volume that can be drawn. The last one also
+ * places a camera. */
 CW_NODISCARD cw_status view_need_open(const view *v, cw_error *err);
 CW_NODISCARD cw_status view_need_volume(const view *v, cw_error *err);
 CW_NODISCARD cw_status view_need_camera(view *v, cw_error *err);
 
-/* The verbs of a file; EDIT: what undo brings back. */
+/* Rows of tables of commands. EDIT: undo reverts the command. */
 typedef struct view_verbs {
     const view_verb *rows;
     size_t count;

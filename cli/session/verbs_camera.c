@@ -58,7 +58,7 @@ static cw_status run_reset(view *v, int count, char **args, cw_error *err)
     return st == CW_OK ? view_set(v, "camera", "default", err) : st;
 }
 
-/* views that were seen before */
+/* Commands that go back and forth through the views seen before. */
 
 static cw_status go_to_camera(view *v, int by, cw_error *err)
 {
@@ -91,7 +91,7 @@ static cw_status run_camera_forward(view *v, int count, char **args, cw_error *e
     return go_to_camera(v, 1, err);
 }
 
-/* views by name */
+/* Commands that keep views by name. */
 
 static size_t find_bookmark(const view *v, const char *name)
 {
@@ -209,7 +209,7 @@ void view_put_bookmarks(const view *v, FILE *out, const char *end)
     }
 }
 
-/* films */
+/* Commands that make films. */
 
 static cw_status run_film(view *v, int count, char **args, cw_error *err)
 {

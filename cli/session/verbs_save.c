@@ -42,7 +42,7 @@ static cw_status run_redo(view *v, int count, char **args, cw_error *err)
     return go_back(v, 1, err);
 }
 
-/* The first cubewright-001.png that is not there. */
+/* Finds the first name such as cubewright-001.png that no file has. */
 static void free_name(char *name, size_t size)
 {
     for (int n = 1; n < 10000; n++) {
@@ -69,7 +69,7 @@ static cw_status need_png(const char *path, cw_error *err)
                : cwi_fail(err, CW_ERR_ARGUMENT, "%s: pictures are written as .png", path);
 }
 
-/* "1920x1080" or a layout */
+/* Parses a size such as "1920x1080", or a layout. */
 static cw_status parse_sheet(const char *word, view_sheet *sheet, cw_error *err)
 {
     static const char *const layouts[] = {"shown", "single", "quad"};
@@ -181,7 +181,7 @@ static cw_status run_capture(view *v, int count, char **args, cw_error *err)
     return st;
 }
 
-/* All round, and back to where it began. */
+/* Turns the camera once around, and back to where it began. */
 static cw_status run_turntable(view *v, int count, char **args, cw_error *err)
 {
     double turns;

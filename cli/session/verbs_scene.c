@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* how it is drawn */
+/* Commands that set how the scene is drawn. */
 
 static cw_status change_mode(view *v, int by, cw_error *err)
 {
@@ -123,7 +123,7 @@ static cw_status run_focus(view *v, int count, char **args, cw_error *err)
                                : view_take_in(v, err); /* a script's keys come at once */
 }
 
-/* cuts, the cross-hair, slices */
+/* Commands for cuts, the cross-hair and slices. */
 
 static void start_box(view *v)
 {
@@ -158,13 +158,13 @@ static cw_status run_face(view *v, int count, char **args, cw_error *err)
     return CW_OK;
 }
 
-/* 1, 2, 3 for x, y, z; else 0 */
+/* Returns 1, 2, 3 for x, y, z; else 0. */
 static int axis_of(const char *word)
 {
     return word[0] && !word[1] && word[0] >= 'x' && word[0] <= 'z' ? 1 + word[0] - 'x' : 0;
 }
 
-/* How far a voxel is along an axis of the world, about. */
+/* Returns about the length of a voxel along an axis of the world. */
 static double voxel_mm(const view *v)
 {
     double spacing[3];
@@ -268,7 +268,7 @@ cw_status view_pick_point(view *v, const double pixel[2], cw_picked *picked, cw_
                    err);
 }
 
-/* To what the mouse is on, in pixels of the 3D part. */
+/* Picks what is at a pixel of the 3D part, and puts the cross-hair there. */
 static cw_status run_pick(view *v, int count, char **args, cw_error *err)
 {
     double pixel[2];

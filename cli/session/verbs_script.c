@@ -118,7 +118,7 @@ static cw_status feed_event(view *v, const cwi_ui_event *event, cw_error *err)
     return st == CW_OK ? view_take_in(v, err) : st;
 }
 
-/* As if from outside; words behind what is needed name keys that are held. */
+/* Feeds input as if it came from outside. Further words name keys that are held down. */
 static cw_status feed_words(view *v, cwi_ui_kind kind, int least, int count, char **args,
                             cw_error *err)
 {
@@ -147,7 +147,7 @@ static cw_status run_lift(view *v, int count, char **args, cw_error *err)
     return feed_words(v, CWI_UI_LIFT, 0, count, args, err);
 }
 
-/* All at once: frames between them may take longer than people do. */
+/* Feeds a double click at once: with frames in between it could take too long. */
 static cw_status run_twice(view *v, int count, char **args, cw_error *err)
 {
     cw_status st = CW_OK;
@@ -222,7 +222,7 @@ static cw_status run_place(view *v, int count, char **args, cw_error *err)
     return st;
 }
 
-/* Goes to a place of a widget, told as shares of its size. */
+/* Moves the mouse to a point of a widget, stated in fractions of its size. */
 static cw_status go_to(view *v, const char *label, double x, double y, cw_error *err)
 {
     cwi_ui_rect r = {0};
@@ -284,7 +284,7 @@ static cw_status feed_random(view *v, uint64_t *seed, cw_error *err)
     return st == CW_OK ? view_frame(v, 0, err) : st;
 }
 
-/* Something like a person without an aim: for finding what breaks. */
+/* Feeds random input, to find what breaks. */
 static cw_status run_monkey(view *v, int count, char **args, cw_error *err)
 {
     double n[2] = {0};

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Width and level in Hounsfield units, as usual on consoles. */
+/* Windows by name: width and level in Hounsfield units, as usual on consoles. */
 static const struct {
     const char *name;
     double width, level;

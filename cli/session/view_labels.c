@@ -56,7 +56,7 @@ static bool is_same_text(const char *a, const char *b)
     return a == b || (a && b && strcmp(a, b) == 0);
 }
 
-/* Prepares to look for names elsewhere: the volume gets its own back. */
+/* Gives the volume its own names back, before others are looked for. */
 static void give_names_back(view *v)
 {
     view_label_map *labels = &v->document.labels;

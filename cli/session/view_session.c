@@ -95,7 +95,7 @@ void view_close(view *v)
     v->document.has_volume = false;
 }
 
-/* Between the two classes of values; of a level set 0. */
+/* Suggests an isovalue: between the two classes of values; for a level set 0. */
 double view_suggest_iso(const view *v)
 {
     return v->document.source.is_level_set ? 0 : v->document.level;
@@ -296,7 +296,7 @@ static cw_status expect_readable(const view *v, const char *path, cw_error *err)
     return st;
 }
 
-/* "head.nii.gz - cubewright" */
+/* Sets the title of the window, such as "head.nii.gz - cubewright". */
 static void name_window(view *v)
 {
     char title[256];

@@ -120,7 +120,7 @@ cw_status view_parse_split(const view *v, cli_split *split, cw_error *err)
     return cli_parse_split(v->command, &args, split, err);
 }
 
-/* Draws nothing yet: only whether it could be. */
+/* Checks settings: returns an error if they could not be drawn. Draws nothing. */
 static cw_status try_scene(view *v, cw_error *err)
 {
     static const cli_turns one = {0};

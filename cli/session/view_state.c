@@ -26,8 +26,8 @@ static void put_setting(FILE *out, bool shell, const char *name, const char *val
         fputc('\n', out);
 }
 
-/* Whether something else says it: the camera and the transfer function as they are now. */
-static bool is_outdone(const view_state *s, const char *name)
+/* Returns true for options that other commands state: camera and transfer function. */
+static bool is_overridden(const view_state *s, const char *name)
 {
     static const char *const of_camera[] = {"camera", "ortho", "fov", "zoom"};
     for (size_t n = 0; n < sizeof of_camera / sizeof *of_camera; n++)
@@ -51,7 +51,7 @@ static void put_option(const view *v, FILE *out, bool shell, const cli_option *o
         put_setting(out, shell, o->name, text);
 }
 
-/* Those of reading, which have to be said before a file is opened, or the others. */
+/* Writes the options of reading, which come before a file is opened, or the others. */
 static void put_options(const view *v, FILE *out, bool shell, bool of_reading)
 {
     bool is_reading = false;
@@ -60,7 +60,7 @@ static void put_options(const view *v, FILE *out, bool shell, bool of_reading)
         if (o->kind == CLI_HEADING)
             is_reading = strcmp(o->name, CLI_READING) == 0 || strcmp(o->name, CLI_LIMITS) == 0;
         else if (is_reading == of_reading && view_find_option(v, o->name) &&
-                 !is_default(v, o) && !is_outdone(&v->state, o->name))
+                 !is_default(v, o) && !is_overridden(&v->state, o->name))
             put_option(v, out, shell, o);
     }
 }

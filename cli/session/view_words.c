@@ -39,7 +39,7 @@ void view_put_word(FILE *out, const char *word)
     fputc('\'', out);
 }
 
-/* JSON has its lines for people; here it is one word of one line. */
+/* Joins the lines of a JSON text to one line, which is one word. */
 void view_join_lines(char *text)
 {
     for (size_t n = strlen(text); n > 0 && text[n - 1] == '\n'; n--)
@@ -64,7 +64,7 @@ void view_ask(view *v, const char *format, ...)
         free(text);
 }
 
-/* In single quotes, so that blanks are part of it. */
+/* Puts a word in single quotes, so that blanks are part of it. */
 void view_ask_open(view *v, const char *path)
 {
     char quoted[8192];

@@ -252,7 +252,7 @@ static cw_status run_view(void *p, cw_error *err)
     return st;
 }
 
-/* Keys and commands, out of their tables. */
+/* Prints keys and commands from their tables, for the help. */
 static void print_more(FILE *out)
 {
     fputs("\nKeys\n", out);

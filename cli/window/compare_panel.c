@@ -61,7 +61,7 @@ static void ask_sides(view *v, const side_text sides[2])
         view_ask(v, "compare '%s'", text);
 }
 
-/* true: another mode or other options were chosen. */
+/* Shows the widgets of one side. Returns true if another mode or options were chosen. */
 static bool show_side_choice(view *v, const char *name, side_text *side)
 {
     const char *names[VIEW_MODE_NAMES];

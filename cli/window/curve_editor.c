@@ -33,7 +33,7 @@ static double y_of(const cwi_ui_rect *r, double opacity)
     return r->y + (1 - opacity) * r->height;
 }
 
-/* Logarithmic, a column as high as its fullest bin. */
+/* Draws the histogram, logarithmic: a column is as high as its fullest bin. */
 static void show_histogram(view *v, const cwi_ui_rect *r)
 {
     const cw_statistics *s = &v->document.statistics;
@@ -199,7 +199,7 @@ static void choose_color(view *v)
                  (unsigned)lroundf(255 * rgb[2]));
 }
 
-/* The point that was used last, in numbers. */
+/* Shows the numbers of the point that was used last. */
 void view_show_point(view *v)
 {
     view_curve_drag *curve = &v->widgets->curve;

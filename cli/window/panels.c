@@ -50,7 +50,7 @@ static void show_bar(view *v)
     v->ui->bar_end(v->window);
 }
 
-/* In two columns. */
+/* Shows the keys of a row and what they do, in one of two columns. */
 static void show_key(view *v, size_t n)
 {
     static const cwi_ui_color color = {0.86f, 0.89f, 0.92f, 1}, strong = {1, 0.8f, 0.3f, 1};

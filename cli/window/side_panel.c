@@ -27,7 +27,7 @@ static void ask_setting(view *v, const char *name, const char *value)
     view_ask(v, "%s '%s'", name, *value && !strchr(value, '\'') ? value : "default");
 }
 
-/* Numbers that a slider suits. */
+/* Options for which a slider is shown: their ranges. */
 static const struct {
     const char *name;
     double low, high, usual;
@@ -301,7 +301,7 @@ static void show_windows(view *v, const double now[2])
         view_ask(v, "window %s", chosen ? names[chosen] : "auto");
 }
 
-/* Black and white, and the same as a window and its level. */
+/* Shows the values drawn black and white, and the same as a window and its level. */
 static void show_greys(view *v)
 {
     const cw_statistics *s = &v->document.statistics;

@@ -69,7 +69,7 @@ static cw_status draw_session(view *v, cw_error *err)
                                                       : CW_OK;
 }
 
-/* With -v: how long people waited for something to see. */
+/* Prints, with -v, the time to the first picture. */
 static void tell_first(view *v)
 {
     if (v->widgets->clock.is_printed || v->picture.parts[VIEW_SPACE].level == VIEW_STALE ||

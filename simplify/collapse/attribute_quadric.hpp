@@ -48,7 +48,7 @@ public:
         return &all[vertex * count];
     }
 
-    // A triangle, with the sides from its first corner; slivers tell nothing of slopes.
+    // Adds a triangle, by the sides from its first corner. Slivers have no gradients.
     template <typename Quadric>
     void add_face(const size_t corner[3], const Vec &ab, const Vec &ac, const float *values,
                   Quadric &&quadric_of)
@@ -75,7 +75,8 @@ public:
         }
     }
 
-    // Those of two vertices, about the first; the quadric gets what they differ by.
+    // Joins the gradients of two vertices about the first, and adds their difference to the
+    // quadric.
     void join(size_t at, size_t other, const Vec &displacement, cwi_quadric &quadric)
     {
         joined_area = areas[other];
@@ -84,7 +85,7 @@ public:
         cwi_attribute_gradients_join(&quadric, &joined_area, joined, areas[at], of(at), count);
     }
 
-    // A vertex, `displacement` from where they were joined, has what was joined.
+    // Stores what was joined at a vertex, `displacement` from where that was.
     void put(size_t vertex, const Vec &displacement)
     {
         move(displacement);

@@ -35,7 +35,7 @@ struct OneRing {
     std::vector<uint32_t> gone; // triangles at the edge
 };
 
-// Triangles keep facing where they did, and a shape; vertices stay in their box.
+// Checks that triangles keep their orientation and a good shape, and vertices their box.
 class Shape
 {
 public:
@@ -63,7 +63,7 @@ struct Eight {
     float side[3][8], side_height[8], side_doubt[8], reach[8];
 };
 
-// No triangles meet that are not neighbours.
+// Checks that triangles which are not neighbours do not intersect.
 class Contact
 {
 public:

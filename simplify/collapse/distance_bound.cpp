@@ -153,7 +153,7 @@ bool Bound::is_near(const Vec &position, float distance_sq)
     return nearest_sq <= distance_sq;
 }
 
-// Whether every point is near a ring triangle.
+// Returns true if every point is near a ring triangle.
 bool Bound::are_listed(const OneRing &ring, float distance)
 {
     facets.clear(distance);
@@ -169,7 +169,7 @@ bool Bound::are_listed(const OneRing &ring, float distance)
     return true;
 }
 
-// Whether the ring triangles are whose bits are set.
+// Returns true if the ring triangles whose bits are set are near the original.
 bool Bound::is_ring_near(const OneRing &ring, uint32_t triangles, float distance)
 {
     const double distance_sq = double(distance) * double(distance);

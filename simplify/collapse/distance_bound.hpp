@@ -8,13 +8,13 @@
 namespace cw
 {
 
-// Numbers for vertices, in the order in which they come.
+// Numbers vertices in the order in which they are met.
 class Numbers
 {
 public:
     void clear(size_t max_count);
 
-    // *fresh: it had none yet.
+    // Returns the number of a vertex. *fresh: set to true if it had none yet.
     uint32_t of(uint32_t vertex, bool *fresh);
 
 private:

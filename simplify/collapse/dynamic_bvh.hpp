@@ -1,4 +1,4 @@
-// Triangles that move, by place.
+// A bounding volume hierarchy of triangles that move.
 #ifndef SIMPLIFY_COLLAPSE_DYNAMIC_BVH_HPP
 #define SIMPLIFY_COLLAPSE_DYNAMIC_BVH_HPP
 
@@ -30,7 +30,7 @@ struct Box {
 class Nearby
 {
 public:
-    // Of some triangles; their numbers are below `max`.
+    // Builds the tree of some triangles, whose numbers are below `capacity`.
     Nearby(const std::vector<uint32_t> &triangles, const std::vector<Box> &boxes,
            size_t capacity)
         : slots(capacity)
@@ -72,8 +72,8 @@ public:
         cwi_boxes_put(tree.nodes, slot, Box().side);
     }
 
-    // Calls visit(triangle, its box) for those whose boxes share a point with the box, until it
-    // is true.
+    // Calls visit(triangle, its box) for triangles whose boxes share a point with `box`, until
+    // it returns true.
     template <typename Visit>
     __attribute__((always_inline)) bool any(const Box &box, Visit &&visit) const
     {

@@ -51,7 +51,7 @@ public:
         heap.reserve(count);
     }
 
-    // Without order, until build().
+    // Appends an entry; the heap has no order until build().
     void append(uint64_t e)
     {
         heap.push_back(e);

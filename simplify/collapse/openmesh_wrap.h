@@ -12,14 +12,14 @@ extern "C" {
 #endif
 
 /* Symmetric matrix, vector and number of a quadric about its vertex's own position:
- * error(d) = d A d + 2 b d + c, where d is the way from there. */
+ * error(d) = d A d + 2 b d + c, where d is the displacement from there. */
 typedef struct cwi_quadric {
     float a[6]; /* xx, xy, xz, yy, yz, zz */
     float b[3];
     float c;
 } cwi_quadric;
 
-/* Of two about one place, the sum. */
+/* Adds a quadric about the same position. */
 static inline void cwi_quadric_add(cwi_quadric *q, const cwi_quadric *other)
 {
     for (int k = 0; k < 6; k++)
@@ -36,8 +36,8 @@ typedef struct cwi_attribute_gradient {
 
 enum { CWI_MAX_ATTRIBUTES = 8 };
 
-/* The mean over an area of `count` trends, and those of another area about the same place,
- * become the mean over both; the quadric gets what they differ by, squared and times area. */
+/* Replaces the means of `count` gradients over an area by those over two areas, about the same
+ * position. Adds their squared differences times area to the quadric. */
 static inline void cwi_attribute_gradients_join(cwi_quadric *q, float *area,
                                                 cwi_attribute_gradient *mean, float other_area,
                                                 const cwi_attribute_gradient *other,
@@ -94,8 +94,8 @@ typedef struct cwi_mesh_block {
                               before. NULL: all are */
     cwi_quadric *quadrics; /* vertices; NULL: from the triangles */
     size_t attributes;     /* that count; 0: the next three are NULL */
-    float *values;         /* vertices x attributes; NULL where there are trends */
-    float *areas;          /* vertices: of the triangles whose mean the trends are */
+    float *values;         /* vertices x attributes; NULL where there are gradients */
+    float *areas;          /* vertices: of the triangles whose mean the gradients are */
     cwi_attribute_gradient *gradients; /* vertices x attributes; NULL: from the triangles */
     uint32_t *nearest_points; /* own: first point of a list; NULL without an original */
     size_t

@@ -43,7 +43,7 @@ inline void add_plane(cwi_quadric &q, const Vec &normal, float weight)
     q.a[5] += n[2] * normal[2];
 }
 
-// The same quadric about a place that is `displacement` from the old one.
+// Returns the quadric about a position that is `displacement` from the old one.
 inline cwi_quadric moved(const cwi_quadric &q, const Vec &displacement)
 {
     const Vec ad = times(q, displacement);
@@ -54,7 +54,7 @@ inline cwi_quadric moved(const cwi_quadric &q, const Vec &displacement)
     return r;
 }
 
-// Where the error is least, with a slight pull towards a place, so that there is always one.
+// Returns the position of least error, slightly pulled towards another, so that there is one.
 inline Vec minimizer(const cwi_quadric &q, const Vec &towards)
 {
     const float pull = 1e-5f * trace(q) + 1e-30f;

@@ -34,16 +34,17 @@ public:
     // The facet nearest to a point, and the square of its distance.
     size_t nearest(const Vec &p, float *distance_sq) const;
 
-    // Near is what is not farther than the distance, for certain.
+    // Finds the facets that are not farther than the distance for certain.
     Seen look(const Vec &p) const;
 
-    // Whether all of a triangle certainly is near facets.
+    // Returns true if all of a triangle is near facets for certain.
     bool are_near(const Seen &a, const Seen &b, const Seen &c, int cuts = 10) const;
 
 private:
     using Corners = std::array<Vec, 3>;
 
-    // Seen from corner a. Shares of b and c are what the way from there makes with these.
+    // Four facets, seen from corner a. The dot products of a displacement from there with
+    // b_weight and c_weight are the barycentric weights of b and c.
     struct Four {
         cwi_lanes a[3], ab[3], ac[3], bc[3], normal[3], b_weight[3], c_weight[3];
         cwi_lanes ab_inverse, ac_inverse, bc_inverse, max_sum;
