@@ -118,10 +118,10 @@ static cw_status run_words(const cli_command *command, const cli_words *words, c
 {
     if (command->defaults)
         memcpy(args, command->defaults, command->size);
-    size_t most = 1; /* letters of flags may be together in a word */
+    size_t max_count = 1; /* letters of flags may be together in a word */
     for (int n = 0; n < words->count; n++)
-        most += strlen(words->words[n]);
-    args->given_options = calloc(most, sizeof *args->given_options);
+        max_count += strlen(words->words[n]);
+    args->given_options = calloc(max_count, sizeof *args->given_options);
     if (!args->given_options)
         return cwi_fail_memory(err);
     cli_given_option *const options = args->given_options;

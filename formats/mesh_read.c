@@ -40,7 +40,7 @@ static size_t count_marks(const cwi_marks *marks, const cw_mesh *mesh)
     return n && marks->items[n - 1].triangle == mesh->triangle_count ? n - 1 : n;
 }
 
-static cw_status read_open_file(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said,
+static cw_status read_open_file(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata,
                                 cw_error *err)
 {
     const cwi_format_driver *found = NULL;
@@ -48,29 +48,29 @@ static cw_status read_open_file(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file 
                                    : cwi_mesh_reader_of(&in->file, &found, err);
     if (st != CW_OK)
         return st;
-    *said = (cw_mesh_file){.format = found->name, .parts = 1};
-    st = found->mesh.read(in, mesh, said, err);
+    *metadata = (cw_mesh_file){.format = found->name, .parts = 1};
+    st = found->mesh.read(in, mesh, metadata, err);
     if (st == CW_OK)
         drop_broken_normals(mesh);
     if (st == CW_OK)
-        st = cwi_claim_mesh(&in->desc.claim, said, mesh, err);
+        st = cwi_claim_mesh(&in->desc.claim, metadata, mesh, err);
     if (st == CW_OK)
-        st = cwi_turn_back(mesh, &said->axes, err);
+        st = cwi_turn_back(mesh, &metadata->axes, err);
     const size_t parts = count_marks(&in->marks, mesh);
-    if (said->parts < parts)
-        said->parts = parts;
+    if (metadata->parts < parts)
+        metadata->parts = parts;
     return st;
 }
 
 /* Reads the mesh, and leaves the marks of its parts for the caller to free. */
 static cw_status read_file(const char *path, cwi_mesh_input *in, cw_mesh *mesh,
-                           cw_mesh_file *said, cw_error *err)
+                           cw_mesh_file *metadata, cw_error *err)
 {
     memset(mesh, 0, sizeof *mesh);
     cw_status st = cwi_input_open(&in->file, path, err);
     in->file.allow_external = in->desc.allow_external;
     if (st == CW_OK)
-        st = read_open_file(in, mesh, said, err);
+        st = read_open_file(in, mesh, metadata, err);
     cwi_input_close(&in->file);
     if (st != CW_OK)
         cw_mesh_free(mesh);
@@ -89,11 +89,11 @@ cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc, cw_mesh 
     CWI_REQUIRE(err, path, mesh);
     CWI_REQUIRE_VERSION(err, desc, 0);
     cwi_mesh_input in = {.desc = resolve_desc(desc)};
-    cw_mesh_file said = {0};
-    cw_status st = read_file(path, &in, mesh, &said, err);
+    cw_mesh_file metadata = {0};
+    cw_status st = read_file(path, &in, mesh, &metadata, err);
     free_marks(&in.marks);
     if (file)
-        *file = said;
+        *file = metadata;
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }
 
@@ -103,16 +103,16 @@ cw_status cw_parts_read(const char *path, const cw_mesh_read_desc *desc, cw_part
     CWI_REQUIRE(err, path, parts, count);
     CWI_REQUIRE_VERSION(err, desc, 0);
     cwi_mesh_input in = {.desc = resolve_desc(desc)};
-    cw_mesh_file said = {0};
+    cw_mesh_file metadata = {0};
     cw_mesh mesh;
     *parts = NULL;
     *count = 0;
-    cw_status st = read_file(path, &in, &mesh, &said, err);
+    cw_status st = read_file(path, &in, &mesh, &metadata, err);
     if (st == CW_OK)
         st = cwi_parts_split(&in, &mesh, parts, count, err);
     cw_mesh_free(&mesh);
     free_marks(&in.marks);
     if (file)
-        *file = said;
+        *file = metadata;
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }

@@ -25,7 +25,7 @@ typedef struct check_args {
     const char *source, *reference, *defects, *json, *mesh_reader;
     cli_number iso;
     cli_length tolerance;
-    cli_amount least;
+    cli_amount min_volume;
     size_t largest;
     bool fill_voids;
     cli_printer printer;
@@ -63,7 +63,7 @@ static const cli_option options[] = {
      offsetof(check_args, open)},
     {"min-volume", 0, CLI_VOLUME, "V",
      "Leave out components of the source's surface that enclose less: 500mm3, 30vox (none)",
-     offsetof(check_args, least)},
+     offsetof(check_args, min_volume)},
     {"largest", 0, CLI_COUNT, "N",
      "Keep the N components of the source's surface that enclose the most (all)",
      offsetof(check_args, largest)},
@@ -116,11 +116,11 @@ typedef struct run_state {
 
 static double least_mm3(const run_state *s)
 {
-    const cli_amount *least = &s->args->least;
+    const cli_amount *min_volume = &s->args->min_volume;
     const double *spacing = s->volume.spacing;
-    return !least->given   ? 0
-           : least->voxels ? least->value * spacing[0] * spacing[1] * spacing[2]
-                           : least->value;
+    return !min_volume->given   ? 0
+           : min_volume->voxels ? min_volume->value * spacing[0] * spacing[1] * spacing[2]
+                                : min_volume->value;
 }
 
 static void put_params(cli_json *j, const void *p, const cli_made *made)
@@ -134,7 +134,7 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_number(j, "iso", s->iso.value);
         cli_json_text(j, "inside", args->inside ? "below" : "above");
         cli_json_bool(j, "open", args->open);
-        if (args->least.given)
+        if (args->min_volume.given)
             cli_json_number(j, "min_volume_mm3", least_mm3(s));
         if (args->largest)
             cli_json_count(j, "largest", args->largest);

@@ -263,11 +263,11 @@ static const char *axis_letters(const cw_volume *v)
 {
     static char text[8];
     for (int c = 0; c < 3; c++) {
-        int most = 0;
+        int largest = 0;
         for (int r = 1; r < 3; r++)
-            if (fabs(v->affine[r][c]) > fabs(v->affine[most][c]))
-                most = r;
-        text[c] = v->affine[most][c] >= 0 ? "LPS"[most] : "RAI"[most];
+            if (fabs(v->affine[r][c]) > fabs(v->affine[largest][c]))
+                largest = r;
+        text[c] = v->affine[largest][c] >= 0 ? "LPS"[largest] : "RAI"[largest];
     }
     return text;
 }

@@ -172,13 +172,13 @@ static cw_status report_facts(cli_mesh_run *r, cw_error *err)
 
 /* --- what is asked for -------------------------------------------------------------------- */
 
-static cw_status check_degrees(const char *option, const cli_number *number, double most,
+static cw_status check_degrees(const char *option, const cli_number *number, double max,
                                cw_error *err)
 {
-    return !number->given || (number->value > 0 && number->value <= most)
+    return !number->given || (number->value > 0 && number->value <= max)
                ? CW_OK
                : cwi_fail(err, CW_ERR_ARGUMENT, "%s %g: expected degrees, above 0 and up to %g",
-                          option, number->value, most);
+                          option, number->value, max);
 }
 
 static cw_status check_values(cli_mesh_run *r, cw_error *err)

@@ -233,8 +233,8 @@ static cw_status resolve_lengths(cli_mesh_run *r, cw_error *err)
 /* Parts share the triangles in proportion to what they have. */
 static size_t share_of(const cli_mesh_run *r, const cli_piece *p)
 {
-    const double share = (double)p->input.triangle_count / (double)r->pieces.triangles;
-    const size_t triangles = (size_t)(share * (double)args_of(r)->triangles);
+    const double fraction = (double)p->input.triangle_count / (double)r->pieces.triangles;
+    const size_t triangles = (size_t)(fraction * (double)args_of(r)->triangles);
     return args_of(r)->triangles && !triangles ? 1 : triangles;
 }
 
@@ -272,15 +272,15 @@ static cw_simplify_desc simplify_desc(const cli_mesh_run *r, size_t triangles)
 static void warn_of_large_error(cli_mesh_run *r)
 {
     const double error_mm = r->promised_mm;
-    const double share = error_mm / r->pieces.diagonal_mm;
-    if (!(share > LARGE_ERROR))
+    const double fraction = error_mm / r->pieces.diagonal_mm;
+    if (!(fraction > LARGE_ERROR))
         return;
     const bool known = r->mesh.file.known & CW_KNOWN_UNIT;
     cli_report_warn(
         &r->report,
         "--error %.6g mm is %.3g %% of the diagonal of the box, %.6g mm: little of the "
         "shape may be left%s",
-        error_mm, 100 * share, r->pieces.diagonal_mm,
+        error_mm, 100 * fraction, r->pieces.diagonal_mm,
         known || args_of(r)->error.unit != CLI_MM
             ? ""
             : "; the file names no unit and was taken as mm (--input-unit)");

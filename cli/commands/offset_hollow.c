@@ -329,10 +329,10 @@ static cw_status measure_distance(cli_mesh_run *r, cw_error *err)
     cw_status st = each ? cw_distance_to_mesh(&p->out, &p->input, &desc, &d, each, err)
                         : cwi_fail_memory(err);
     if (st == CW_OK) {
-        double least = d.max_mm;
+        double min_mm = d.max_mm;
         for (size_t n = 0; n < p->out.vertex_count; n++)
-            least = fmin(least, (double)each[n]);
-        s->off_max_mm = fmax(d.max_mm - by, by - least);
+            min_mm = fmin(min_mm, (double)each[n]);
+        s->off_max_mm = fmax(d.max_mm - by, by - min_mm);
         s->off_rms_mm = sqrt(fmax(d.rms_mm * d.rms_mm - 2 * by * d.mean_mm + by * by, 0));
         snprintf(r->found, sizeof r->found,
                  "; %.6g mm from the input, deviating by at most %.3g mm, RMS %.3g mm", by,

@@ -203,8 +203,9 @@ cw_status cli_read_config(const cli_command *command, int count, char **words, c
     *out = (cli_words){0};
     cw_status st = c.path ? read_root(&c, err) : CW_OK;
     json_t *run = json_object_get(out->root, "run"); /* of a report */
-    const size_t most = json_object_size(json_object_get(run ? run : out->root, "options"));
-    out->words = calloc((size_t)count + most + 1, sizeof *out->words);
+    const size_t max_count =
+        json_object_size(json_object_get(run ? run : out->root, "options"));
+    out->words = calloc((size_t)count + max_count + 1, sizeof *out->words);
     if (!out->words)
         return cwi_fail_memory(err);
     if (st == CW_OK && c.path)

@@ -160,13 +160,13 @@ static void choose_coarsening(size_t requested, const cw_volume *part, size_t st
 /* Chooses rows and slices that take 256 MiB, or half of the limit, at most. */
 static void choose_sample(const cw_volume *part, size_t limit, size_t step[3])
 {
-    const double most = fmin(256 << 20, 0.5 * (double)limit);
+    const double max_bytes = fmin(256 << 20, 0.5 * (double)limit);
     const double slice = (double)cw_type_size(part->type) * (double)part->components *
                          (double)part->steps * (double)part->dim[0];
     size_t n = 1;
     while (slice * ceil((double)part->dim[1] / (double)n) *
                    ceil((double)part->dim[2] / (double)n) >
-               most &&
+               max_bytes &&
            (n < part->dim[1] || n < part->dim[2]))
         n++;
     choose_coarsening(n, part, step);

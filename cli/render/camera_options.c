@@ -260,7 +260,7 @@ cw_status cli_check_camera(const cli_scene *args, const cli_turns *turns, cw_err
 static cw_status fit_all(const cli_turns *turns, const cw_fit_desc *first, size_t n,
                          cw_camera *camera, cw_error *err)
 {
-    double most[2] = {0}, away[3], far;
+    double max[2] = {0}, away[3], far;
     for (size_t m = 0; m <= turns->count; m++) {
         cw_fit_desc fit = *first;
         cw_camera c;
@@ -271,14 +271,14 @@ static cw_status fit_all(const cli_turns *turns, const cw_fit_desc *first, size_
         if (m == turns->count)
             break;
         cwi_sub(c.eye, c.target, away);
-        most[0] = fmax(most[0], hypot(hypot(away[0], away[1]), away[2]));
-        most[1] = fmax(most[1], c.height_mm);
+        max[0] = fmax(max[0], hypot(hypot(away[0], away[1]), away[2]));
+        max[1] = fmax(max[1], c.height_mm);
     }
     cwi_sub(camera->eye, camera->target, away);
     far = hypot(hypot(away[0], away[1]), away[2]);
     for (int a = 0; a < 3; a++)
-        camera->eye[a] = camera->target[a] + away[a] * (most[0] / far);
-    camera->height_mm = most[1];
+        camera->eye[a] = camera->target[a] + away[a] * (max[0] / far);
+    camera->height_mm = max[1];
     return CW_OK;
 }
 

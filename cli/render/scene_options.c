@@ -99,12 +99,12 @@ static void warn_of_units(const char *preset, const cw_statistics *s, const cli_
 /* Nothing to be seen is rarely what was meant. */
 static void warn_of_nothing(const cw_transfer *t, const cw_statistics *s)
 {
-    double color[3], opacity, most = 0;
+    double color[3], opacity, max = 0;
     for (size_t b = 0; b < s->bin_count; b++) {
         cw_transfer_at(t, s->min + s->bin_width * ((double)b + 0.5), color, &opacity);
-        most = s->bins[b] ? fmax(most, opacity) : most;
+        max = s->bins[b] ? fmax(max, opacity) : max;
     }
-    if (most < 1e-3)
+    if (max < 1e-3)
         cli_say("warning: the transfer function makes all values from %g to %g invisible",
                 s->min, s->max);
 }
@@ -210,13 +210,13 @@ cw_status cli_make_transfer(const cli_scene *args, const cw_volume *volume, cw_m
 
 /* Numbers by comma or 'x', up to a semicolon or the end; how many, or -1. Text moves behind
  * them. */
-static int parse_tuple(const char **text, double *numbers, int most)
+static int parse_tuple(const char **text, double *numbers, int max)
 {
     char item[CWI_ITEM_BYTES], separator = 0;
     int count = 0;
     do {
         const char *at = item;
-        if (count == most || !cwi_next_item(text, &separator, item) ||
+        if (count == max || !cwi_next_item(text, &separator, item) ||
             !cwi_parse_double(&at, &numbers[count]) || *at || !isfinite(numbers[count]))
             return -1;
         count++;
@@ -225,7 +225,7 @@ static int parse_tuple(const char **text, double *numbers, int most)
     return count;
 }
 
-static cw_status parse_planes(const char *option, const char *text, size_t most, cw_clip *out,
+static cw_status parse_planes(const char *option, const char *text, size_t max, cw_clip *out,
                               size_t *count, cw_error *err)
 {
     for (const char *at = text; at && *at;) {
@@ -235,10 +235,10 @@ static cw_status parse_planes(const char *option, const char *text, size_t most,
                             "--%s '%s': expected planes nx,ny,nz,d parted by ';': all points p "
                             "with n . p = d, in mm",
                             option, text);
-        if (*count == most)
+        if (*count == max)
             return cwi_fail(err, CW_ERR_ARGUMENT,
                             "--%s: %zu planes at most, with those of a --clip-box", option,
-                            most);
+                            max);
         const double length = cwi_length(p);
         out[(*count)++] =
             (cw_clip){{p[0] / length, p[1] / length, p[2] / length}, p[3] / length};
@@ -325,12 +325,12 @@ static cw_status add_lights(const char *text, cw_scene *s, cw_error *err)
     return CW_OK;
 }
 
-static cw_status take_share(const char *name, const cli_number *n, double most, float *out,
+static cw_status take_share(const char *name, const cli_number *n, double max, float *out,
                             cw_error *err)
 {
-    if (n->given && !(n->value >= 0 && n->value <= most))
+    if (n->given && !(n->value >= 0 && n->value <= max))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--%s %g: 0 to %g was expected", name, n->value,
-                        most);
+                        max);
     if (n->given)
         *out = (float)n->value;
     return CW_OK;

@@ -34,10 +34,10 @@ bool cli_overlay_is_labels(bool looks_like_labels, const cli_value_look *look,
 }
 
 /* Returns the value below which a share of all values is. */
-static double find_percentile(const cw_statistics *s, double share)
+static double find_percentile(const cw_statistics *s, double fraction)
 {
     double below = 0;
-    const double target = share * (double)s->finite;
+    const double target = fraction * (double)s->finite;
     for (size_t b = 0; b < s->bin_count; b++) {
         const double count = (double)s->bins[b];
         if (count > 0 && below + count >= target)

@@ -67,6 +67,6 @@ void cli_put_shapes(FILE *out, const cw_shapes *shapes);
 /* The histogram of values, with a line at the level. */
 void cli_put_histogram(FILE *out, const cw_statistics *values, double level);
 size_t cli_family_groups(const cli_study *study, cli_family family, const char **groups,
-                         size_t most);
+                         size_t max);
 
 #endif

@@ -29,7 +29,7 @@ static double position_along(double value, double low, double high)
 static void put_picks(FILE *out, const cli_study *s, cli_family family)
 {
     const cli_point *cheap = NULL, *close = NULL, *middle = NULL;
-    double least = INFINITY;
+    double min = INFINITY;
     for (size_t n = 0; n < s->point_count; n++) {
         const cli_point *p = &s->points[n];
         if (p->family != family || !p->front)
@@ -45,10 +45,9 @@ static void put_picks(FILE *out, const cli_study *s, cli_family family)
                                            cli_point_cost(close)),
                      error = position_along(cli_point_error(s, p), cli_point_error(s, close),
                                             cli_point_error(s, cheap));
-        if (p->family != family || !p->front || p == cheap || p == close ||
-            cost + error >= least)
+        if (p->family != family || !p->front || p == cheap || p == close || cost + error >= min)
             continue;
-        least = cost + error;
+        min = cost + error;
         middle = p;
     }
     if (!cheap || family == CLI_PROJECTIONS) /* these are not compared with each other */

@@ -11,16 +11,16 @@ enum { WIDTH = 300, HEIGHT = 120, BASE = 92 };
 static void put_bars(FILE *out, const char *title, const size_t *counts, size_t bins,
                      const char *const *ends)
 {
-    size_t sum = 0, most = 1;
+    size_t sum = 0, max = 1;
     for (size_t n = 0; n < bins; n++) {
         sum += counts[n];
-        most = counts[n] > most ? counts[n] : most;
+        max = counts[n] > max ? counts[n] : max;
     }
     const double width = (double)WIDTH / (double)bins;
     fprintf(out, "<svg class=\"bars\" viewBox=\"0 0 %d %d\" role=\"img\"><title>%s</title>",
             WIDTH, HEIGHT, title);
     for (size_t n = 0; n < bins; n++) {
-        const double height = (double)(BASE - 4) * (double)counts[n] / (double)most;
+        const double height = (double)(BASE - 4) * (double)counts[n] / (double)max;
         fprintf(out,
                 "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"><title>%s to %s: "
                 "%.2f %% (%s)</title></rect>",
@@ -59,26 +59,26 @@ void cli_put_shapes(FILE *out, const cw_shapes *shapes)
     put_bars(out, "aspect ratio (1: equal sides)", shapes->aspects, CW_ASPECT_BINS, aspects);
 }
 
-static double height_of(uint64_t count, uint64_t most)
+static double height_of(uint64_t count, uint64_t max)
 {
-    return count ? (BASE - 14) * fmax(log1p((double)count) / log1p((double)most), 0.02) : 0;
+    return count ? (BASE - 14) * fmax(log1p((double)count) / log1p((double)max), 0.02) : 0;
 }
 
 void cli_put_histogram(FILE *out, const cw_statistics *v, double level)
 {
-    uint64_t most = 1;
+    uint64_t max = 1;
     const double range = v->max > v->min ? v->max - v->min : 1,
                  width = (double)WIDTH / (double)v->bin_count,
                  at = fmin(fmax((level - v->min) / range, 0), 1) * WIDTH;
     for (size_t n = 0; n < v->bin_count; n++)
-        most = v->bins[n] > most ? v->bins[n] : most;
+        max = v->bins[n] > max ? v->bins[n] : max;
     fprintf(
         out,
         "<svg class=\"bars\" viewBox=\"0 0 %d %d\" role=\"img\"><title>Histogram of the values "
         "from %.6g to %.6g, by the logarithm of their number, with the level at %.6g</title>",
         WIDTH, HEIGHT - 10, v->min, v->max, level);
     for (size_t n = 0; n < v->bin_count; n++) {
-        const double height = height_of(v->bins[n], most);
+        const double height = height_of(v->bins[n], max);
         fprintf(out, "<rect%s x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\"/>",
                 ((double)n + 0.5) * width < at ? " class=\"low\"" : "", (double)n * width,
                 BASE - height, width * 0.92, height);

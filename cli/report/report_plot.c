@@ -56,13 +56,13 @@ static scale fit_scale(const double *values, size_t count, double from, double t
 /* Replaces zeros, which have no logarithm, by a tenth of the smallest positive value. */
 static void lift_zeros(double *values, size_t count)
 {
-    double least = INFINITY;
+    double min = INFINITY;
     for (size_t n = 0; n < count; n++)
         if (values[n] > 0)
-            least = fmin(least, values[n]);
+            min = fmin(min, values[n]);
     for (size_t n = 0; n < count; n++)
         if (!(values[n] > 0))
-            values[n] = isfinite(least) ? least / 10 : 1;
+            values[n] = isfinite(min) ? min / 10 : 1;
 }
 
 static const char *tick_text(double value, const char *unit)
@@ -141,8 +141,7 @@ static void put_labels(FILE *out, const cli_axis *axis)
             (TOP + HEIGHT - BOTTOM) / 2, axis->error, axis->error_unit);
 }
 
-size_t cli_family_groups(const cli_study *s, cli_family family, const char **groups,
-                         size_t most)
+size_t cli_family_groups(const cli_study *s, cli_family family, const char **groups, size_t max)
 {
     size_t count = 0;
     for (size_t n = 0; n < s->point_count; n++) {
@@ -150,7 +149,7 @@ size_t cli_family_groups(const cli_study *s, cli_family family, const char **gro
         bool known = p->family != family || !p->done;
         for (size_t g = 0; g < count && !known; g++)
             known = strcmp(groups[g], p->group) == 0;
-        if (!known && count < most)
+        if (!known && count < max)
             groups[count++] = p->group;
     }
     return count;
@@ -194,13 +193,13 @@ static void place_numbers(plot *p)
         {24, -12}, {-24, -12}, {24, 14}, {-24, 14}, {10, -24}, {-10, -24}, {10, 25}, {-10, 25}};
     for (size_t n = 0; n < p->count; n++) {
         dot *d = &p->dots[n];
-        int least = -1;
+        int min = -1;
         for (size_t at = 0; at < sizeof offsets / sizeof *offsets; at++) {
             const double x = d->x + offsets[at][0], y = d->y + offsets[at][1];
             const int hits = count_collisions(p, n, x, y);
-            if (least >= 0 && hits >= least)
+            if (min >= 0 && hits >= min)
                 continue;
-            least = hits;
+            min = hits;
             d->text_x = x;
             d->text_y = y;
         }

@@ -12,7 +12,7 @@ cw_status cli_frames_reserve(cli_frames *f, size_t count, cw_error *err)
 {
     f->frames = calloc(count, sizeof *f->frames);
     f->parts = calloc(count, sizeof *f->parts);
-    f->room = count;
+    f->capacity = count;
     return f->frames && f->parts ? CW_OK : cwi_fail_memory(err);
 }
 

@@ -11,7 +11,7 @@ typedef struct cli_frames {
         char name[32];
     } * frames;
     cw_part *parts; /* one a frame, in order, some without triangles */
-    size_t count, room;
+    size_t count, capacity;
     size_t empty;
     size_t bytes; /* that they take */
 } cli_frames;

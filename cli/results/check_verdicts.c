@@ -41,8 +41,9 @@ static void print_bar(const char *label, size_t count, size_t total)
 {
     enum { WIDTH = 40 };
     static const char bar[WIDTH + 1] = "########################################";
-    const double share = total ? (double)count / (double)total : 0;
-    cli_result("    %-20s%5.1f %%  %.*s\n", label, 100 * share, (int)ceil(WIDTH * share), bar);
+    const double fraction = total ? (double)count / (double)total : 0;
+    cli_result("    %-20s%5.1f %%  %.*s\n", label, 100 * fraction, (int)ceil(WIDTH * fraction),
+               bar);
 }
 
 static size_t sum_bins(const size_t *bins, size_t count)

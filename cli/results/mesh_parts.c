@@ -145,11 +145,11 @@ cw_status cli_compare_pieces(const cli_pieces *p, int threads, cli_comparison *c
     for (size_t n = 0; n < p->count && st == CW_OK; n++)
         st = cli_compare(&p->piece[n].out, &p->piece[n].input, c->promised_mm / 100, threads, c,
                          err);
-    const double most = cw_mesh_comparison_max(&c->with_input);
-    if (st == CW_OK && c->promised_mm > 0 && most > c->promised_mm)
+    const double max = cw_mesh_comparison_max(&c->with_input);
+    if (st == CW_OK && c->promised_mm > 0 && max > c->promised_mm)
         st = cwi_fail(err, CW_ERR_CHECK,
                       "not as promised: %.6g mm from the input, not %.6g; nothing is written",
-                      most, c->promised_mm);
+                      max, c->promised_mm);
     return in_file(p, st, err);
 }
 

@@ -92,12 +92,12 @@ void cli_json_printer(cli_json *j, const cw_print_desc *limits)
         cli_json_numbers(j, "plate_mm", limits->plate_mm, 3);
 }
 
-static void put_width(cli_json *j, const char *key, double least, const double at[3],
+static void put_width(cli_json *j, const char *key, double min_mm, const double at[3],
                       double below)
 {
     cli_json_open(j, key, '{');
-    if (isfinite(least)) {
-        cli_json_number(j, "least_mm", least);
+    if (isfinite(min_mm)) {
+        cli_json_number(j, "least_mm", min_mm);
         cli_json_numbers(j, "at", at, 3);
     }
     cli_json_number(j, "below_limit_mm2", below);

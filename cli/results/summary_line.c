@@ -117,11 +117,11 @@ static void print_distance(const cli_comparison *c)
 {
     const cw_distance *to = &c->with_input.to_reference, *from = &c->with_input.from_reference;
     const double percent = c->diagonal_mm > 0 ? 100 / c->diagonal_mm : 0;
-    const double most = fmax(to->max_mm, from->max_mm), p99 = fmax(to->p99_mm, from->p99_mm);
+    const double max = fmax(to->max_mm, from->max_mm), p99 = fmax(to->p99_mm, from->p99_mm);
     const double rms = cw_mesh_comparison_rms(&c->with_input);
     cli_result("; distance to %s, both ways, at most %.3g mm (%.2g %% of the diagonal), "
                "RMS %.3g mm (%.2g %%), 99 %% within %.3g mm (%.2g %%)",
-               c->other ? c->other : "the input", most, percent * most, rms, percent * rms, p99,
+               c->other ? c->other : "the input", max, percent * max, rms, percent * rms, p99,
                percent * p99);
     if (c->promised_mm > 0)
         cli_result(", within the limit of %.6g mm", c->promised_mm);

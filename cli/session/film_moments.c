@@ -70,7 +70,7 @@ static void blend_slices_and_boxes(const view_key_frames *f, size_t at, double t
     const cli_ranges *boxes[2] = {&a->args.scene.clip_box, &b->args.scene.clip_box};
     blend_doubles(f, time, offsetof(view_state, cross), 3, s);
     blend_doubles(f, time, offsetof(view_state, slice_zoom), 1, s);
-    blend_doubles(f, time, offsetof(view_state, share), 1, s);
+    blend_doubles(f, time, offsetof(view_state, left_fraction), 1, s);
     if (a->window[0] < a->window[1] && b->window[0] < b->window[1])
         for (int n = 0; n < 2; n++)
             s->window[n] = cwi_monotone_curve(

@@ -22,13 +22,13 @@ typedef struct view_verbs {
 extern const view_verbs view_files_verbs, view_scene_verbs, view_camera_verbs, view_curve_verbs,
     view_save_verbs, view_script_verbs, view_measure_verbs, view_window_verbs;
 
-#define VERB(name, takes, about, least, most, run)                                             \
+#define VERB(name, takes, about, min_count, max_count, run)                                    \
     {                                                                                          \
-        name, takes, about, least, most, false, run                                            \
+        name, takes, about, min_count, max_count, false, run                                   \
     }
-#define EDIT(name, takes, about, least, most, run)                                             \
+#define EDIT(name, takes, about, min_count, max_count, run)                                    \
     {                                                                                          \
-        name, takes, about, least, most, true, run                                             \
+        name, takes, about, min_count, max_count, true, run                                    \
     }
 
 #endif

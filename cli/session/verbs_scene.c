@@ -46,21 +46,21 @@ static cw_status run_next_preset(view *v, int count, char **args, cw_error *err)
 
 static cw_status run_iso_by(view *v, int count, char **args, cw_error *err)
 {
-    double share;
+    double fraction;
     char text[32];
     (void)count;
     cw_status st = view_need_open(v, err);
     if (st == CW_OK && v->document.source.is_mesh)
         st = cwi_fail(err, CW_ERR_ARGUMENT, "a mesh has no isovalue");
     if (st == CW_OK)
-        st = view_take("iso-by", args, 1, &share, err);
+        st = view_take("iso-by", args, 1, &fraction, err);
     if (st != CW_OK)
         return st;
     const cw_statistics *s = &v->document.statistics;
     const cli_number *iso = &v->state.args.iso;
     const double from = iso->given ? iso->value : view_suggest_iso(v);
     snprintf(text, sizeof text, "%.17g",
-             fmin(fmax(from + share * (s->max - s->min), s->min), s->max));
+             fmin(fmax(from + fraction * (s->max - s->min), s->min), s->max));
     return view_set(v, "iso", text, err);
 }
 
@@ -307,7 +307,7 @@ static cw_status run_split(view *v, int count, char **args, cw_error *err)
     if (st == CW_OK && !(n >= 0 && n <= 1))
         st = cwi_fail(err, CW_ERR_ARGUMENT, "split %s: 0 to 1 was expected", args[0]);
     if (st == CW_OK)
-        v->state.share = n;
+        v->state.left_fraction = n;
     if (st == CW_OK && v->state.args.compare)
         view_touch(v, 1 << VIEW_SPACE);
     return st;

@@ -51,7 +51,7 @@ static cw_status run_print(view *v, int count, char **args, cw_error *err)
     else if (strcmp(what, "window") == 0)
         printf("window %.6g %.6g\n", s->window[0], s->window[1]);
     else if (strcmp(what, "split") == 0)
-        printf("split %.6g\n", s->share);
+        printf("split %.6g\n", s->left_fraction);
     else if (strcmp(what, "step") == 0)
         printf("step %zu of %zu\n", s->step, v->document.source.series.count);
     else if (strcmp(what, "surface") == 0)
@@ -119,13 +119,13 @@ static cw_status feed_event(view *v, const cwi_ui_event *event, cw_error *err)
 }
 
 /* Feeds input as if it came from outside. Further words name keys that are held down. */
-static cw_status feed_words(view *v, cwi_ui_kind kind, int least, int count, char **args,
+static cw_status feed_words(view *v, cwi_ui_kind kind, int needed, int count, char **args,
                             cw_error *err)
 {
     double n[2] = {0};
     cwi_ui_event event = {.kind = kind, .button = button_of(count, args)};
-    cw_status st = view_take("input", args, least, n, err);
-    for (int i = least; i < count; i++)
+    cw_status st = view_take("input", args, needed, n, err);
+    for (int i = needed; i < count; i++)
         event.modifiers |= modifiers_of(args[i]);
     event.x = kind == CWI_UI_WHEEL ? 0 : n[0];
     event.y = kind == CWI_UI_WHEEL ? n[0] : n[1];

@@ -64,8 +64,8 @@ typedef struct view_state {
     double cross[3];  /* in the world */
     double window[2]; /* values from black to white in slices; both 0: all */
     double slice_zoom;
-    double share; /* of the left side of a comparison */
-    size_t step;  /* of the series */
+    double left_fraction; /* of the left side of a comparison */
+    size_t step;          /* of the series */
     view_measure measures[VIEW_MEASURES];
     size_t measure_count;
 } view_state;
@@ -329,8 +329,8 @@ char *view_command_line(const view *v); /* free() it */
 /* view_commands.c, and verbs_*.c, which have the verbs */
 typedef struct view_verb {
     const char *name, *takes, *about;
-    int least, most; /* arguments */
-    bool changes;    /* what undo brings back */
+    int min_count, max_count; /* arguments */
+    bool changes;             /* what undo brings back */
     cw_status (*run)(view *v, int count, char **args, cw_error *err);
 } view_verb;
 const view_verb *view_verb_at(size_t n); /* NULL after the last */

@@ -119,8 +119,8 @@ cw_status view_run(view *v, int count, char **words, cw_error *err)
     const bool is_setting = !verb && view_find_option(v, words[0]);
     if (!verb && !is_setting)
         return fail_unknown(v, words[0], err);
-    const int least = verb ? verb->least : 0, most = verb ? verb->most : 1;
-    if (count - 1 < least || count - 1 > most)
+    const int min_count = verb ? verb->min_count : 0, max_count = verb ? verb->max_count : 1;
+    if (count - 1 < min_count || count - 1 > max_count)
         return cwi_fail(err, CW_ERR_ARGUMENT, "%s takes %s, not %d words", words[0],
                         verb ? verb->takes : "one value", count - 1);
     if (!may_run(v, words[0]))

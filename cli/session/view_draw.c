@@ -330,7 +330,7 @@ static cw_status draw_split(view *v, view_level level, const cw_progress *progre
     if (st == CW_OK && args->difference.given)
         st = cw_picture_difference(&sides[0], &sides[1], args->difference.value, out, err);
     else if (st == CW_OK)
-        st = cw_picture_split(&sides[0], &sides[1], v->state.share, out, err);
+        st = cw_picture_split(&sides[0], &sides[1], v->state.left_fraction, out, err);
     v->picture.is_measured = false;
     if (st == CW_OK && level > VIEW_ROUGH) {
         st = cw_picture_compare(&sides[0], &sides[1], (const float(*)[3])scene->background,
@@ -495,13 +495,13 @@ static cw_status show_part(view *v, int part, cw_scene *scene, const cw_picture 
 /* Slower or faster than wanted: the next rough picture is smaller or larger. */
 static void adapt_level(view_part *part, cw_mode mode, double ms)
 {
-    const double least =
+    const double min_scale =
         mode == CW_MODE_VBUFFER ? 0.1 : 0.25; /* of a grid that GL does not draw */
     if (mode == CW_MODE_MESH)                 /* its cost is in its triangles */
         return;
     const double factor = sqrt(ROUGH_MS / fmax(ms, 1));
     if (factor < 0.8 || factor > 1.1)
-        part->scale = fmin(fmax(part->scale * factor, least), 0.5);
+        part->scale = fmin(fmax(part->scale * factor, min_scale), 0.5);
 }
 
 cw_status view_draw_part(view *v, int p, view_level level, bool may_stop, cw_image *image,

@@ -36,7 +36,7 @@ bool view_undo(view *v, int by)
     v->state.camera = now.camera;
     v->state.step = now.step;
     v->state.slice_zoom = now.slice_zoom;
-    v->state.share = now.share;
+    v->state.left_fraction = now.left_fraction;
     memcpy(v->state.cross, now.cross, sizeof now.cross);
     h->verb[0] = '\0';
     return true;

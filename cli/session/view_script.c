@@ -48,13 +48,14 @@ static bool next_word(const char **text, bool is_first, char *out, bool *bad)
 }
 
 /* Runs the first command of a text, and moves behind it. words, room: as large as the text. */
-static cw_status run_first(view *v, const char **text, char **words, char *room, cw_error *err)
+static cw_status run_first(view *v, const char **text, char **words, char *words_text,
+                           cw_error *err)
 {
     int count = 0;
     bool bad = false;
-    while (next_word(text, count == 0, room, &bad)) {
-        words[count++] = room;
-        room += strlen(room) + 1;
+    while (next_word(text, count == 0, words_text, &bad)) {
+        words[count++] = words_text;
+        words_text += strlen(words_text) + 1;
     }
     if (bad)
         return cwi_fail(err, CW_ERR_ARGUMENT, "a quote is not closed: %.60s", *text);
@@ -67,12 +68,12 @@ static cw_status run_first(view *v, const char **text, char **words, char *room,
 cw_status view_exec(view *v, const char *text, cw_error *err)
 {
     const size_t size = strlen(text) + 1;
-    char *room = malloc(2 * size), **words = malloc(size * sizeof *words);
-    cw_status st = room && words ? CW_OK : cwi_fail_memory(err);
+    char *words_text = malloc(2 * size), **words = malloc(size * sizeof *words);
+    cw_status st = words_text && words ? CW_OK : cwi_fail_memory(err);
     while (st == CW_OK && *text)
-        st = run_first(v, &text, words, room, err);
+        st = run_first(v, &text, words, words_text, err);
     free(words);
-    free(room);
+    free(words_text);
     return st;
 }
 

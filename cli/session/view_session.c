@@ -197,16 +197,16 @@ static void choose_series(view *v)
 {
     char text[256];
     cw_series *list = NULL;
-    size_t count = 0, most = 0;
+    size_t count = 0, max_count = 0;
     const cw_read_desc desc = cli_read_desc(&v->state.args.input);
     if (desc.series || cw_series_list(v->document.path, &desc, &list, &count, NULL) != CW_OK)
         return;
     for (size_t n = 0; n < count; n++)
-        most = list[n].images > list[most].images ? n : most;
+        max_count = list[n].images > list[max_count].images ? n : max_count;
     if (count > 1) {
-        v->state.args.input.series = view_keep_text(v, list[most].label);
+        v->state.args.input.series = view_keep_text(v, list[max_count].label);
         snprintf(text, sizeof text, "one of %zu series: %s, of %zu images; --series chooses",
-                 count, list[most].label, list[most].images);
+                 count, list[max_count].label, list[max_count].images);
         view_say(v, false, text);
     }
     cw_series_free(list);

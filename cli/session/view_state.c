@@ -105,7 +105,7 @@ static void put_rest(const view *v, FILE *out, const char *end)
     if (s->slice_zoom != 1)
         fprintf(out, "zoom-slices %.9g%s", s->slice_zoom, end);
     if (s->args.compare)
-        fprintf(out, "split %.6g%s", s->share, end);
+        fprintf(out, "split %.6g%s", s->left_fraction, end);
     view_put_measures(v, out, end);
 }
 

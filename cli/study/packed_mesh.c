@@ -76,12 +76,12 @@ cw_status cli_pack_mesh(const cw_mesh *mesh, const uint8_t *values, cli_packed *
 {
     uint32_t *number = cwi_alloc_array(mesh->vertex_count, sizeof *number),
              *order = cwi_alloc_array(mesh->vertex_count, sizeof *order);
-    const size_t room =
+    const size_t capacity =
         (3 * mesh->vertex_count + 3 * mesh->triangle_count) * MAX_BYTES_OF_INTEGER +
         mesh->vertex_count + 1;
     *p = (cli_packed){.triangles = mesh->triangle_count,
                       .has_bytes = values,
-                      .bytes = number && order ? malloc(room) : NULL};
+                      .bytes = number && order ? malloc(capacity) : NULL};
     if (p->bytes) {
         char *at = p->bytes;
         cw_mesh_bounds(mesh, p->low, p->high);

@@ -45,8 +45,8 @@ static void put_extract(FILE *out, const cli_study *s, const cli_tried *t, const
         fprintf(out, " --snap %g", t->snap);
     if (t->error_vox > 0)
         fprintf(out, " --simplify %gvox", t->error_vox);
-    if (t->share > 0)
-        fprintf(out, " --simplify %zu", cli_share_of(&s->full, t->share));
+    if (t->fraction > 0)
+        fprintf(out, " --simplify %zu", cli_share_of(&s->full, t->fraction));
     if (t->compression)
         fprintf(out, " --compress %s --bits %d", cli_compression_name(t->compression), t->bits);
     fprintf(out, " -o %s", output);

@@ -42,7 +42,7 @@ typedef struct cli_tried {
     bool cubic;
     double snap;
     double error_vox; /* simplification: to that error, */
-    double share;     /* or that share of the triangles */
+    double fraction;  /* or that share of the triangles */
     cw_compression compression;
     int bits;
     cw_mode mode; /* rendering */
@@ -253,8 +253,8 @@ CW_NODISCARD cw_status cli_study_overview(cli_study *study, cw_error *err);
  * budget is spent. */
 CW_NODISCARD cw_status cli_time_again(cli_study *study, cw_error *err);
 void cli_add_run(cli_point *point, double seconds);
-size_t cli_share_of(const cw_mesh *mesh, double share); /* of its triangles, at least 1 */
-void cli_error_color(double share, uint8_t rgb[3]);     /* 0 to 1 along that scale */
+size_t cli_share_of(const cw_mesh *mesh, double fraction); /* of its triangles, at least 1 */
+void cli_error_color(double fraction, uint8_t rgb[3]);     /* 0 to 1 along that scale */
 
 /* The most memory that was taken since. */
 typedef struct cli_watch {

@@ -18,12 +18,12 @@ enum { WIDTH = 400, HEIGHT = 400, SAMPLES = 2 };
 /* From a tenth of a percent of a voxel to a whole one. */
 static const double DECADES = 3;
 
-void cli_error_color(double share, uint8_t rgb[3])
+void cli_error_color(double fraction, uint8_t rgb[3])
 {
     static const uint8_t stops[][3] = {{24, 52, 110},  {30, 120, 160}, {70, 180, 140},
                                        {220, 210, 90}, {240, 140, 50}, {190, 30, 45}};
     enum { LAST = sizeof stops / sizeof *stops - 1 };
-    const double at = fmin(fmax(share, 0), 1) * LAST;
+    const double at = fmin(fmax(fraction, 0), 1) * LAST;
     const int n = at < LAST ? (int)at : LAST - 1;
     for (int c = 0; c < 3; c++)
         rgb[c] = (uint8_t)(stops[n][c] + (at - n) * (stops[n + 1][c] - stops[n][c]) + 0.5);
@@ -127,8 +127,8 @@ static cw_status pack_colored(const cli_study *s, const cw_mesh *mesh, const flo
     if (mm && !bytes)
         return cwi_fail_memory(err);
     for (size_t v = 0; v < mesh->vertex_count && mm; v++) {
-        const double share = cli_error_share((double)mm[v], s->voxel_mm);
-        bytes[v] = (uint8_t)(255 * fmin(fmax(share, 0), 1) + 0.5);
+        const double fraction = cli_error_share((double)mm[v], s->voxel_mm);
+        bytes[v] = (uint8_t)(255 * fmin(fmax(fraction, 0), 1) + 0.5);
     }
     cw_status st = cli_pack_mesh(mesh, bytes, packed, err);
     cwi_free(bytes);

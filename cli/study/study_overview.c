@@ -38,9 +38,9 @@ static bool runs_against(const cw_volume *v, int axis)
     return axis == 1 && main == 2 ? !falls : falls;
 }
 
-static double find_quantile(const cw_statistics *values, double share)
+static double find_quantile(const cw_statistics *values, double fraction)
 {
-    double left = share * (double)values->finite;
+    double left = fraction * (double)values->finite;
     size_t n = 0;
     while (n + 1 < values->bin_count && left > (double)values->bins[n])
         left -= (double)values->bins[n++];
@@ -100,8 +100,8 @@ static double value_at(const slice *s, size_t x, size_t y)
 
 static void put_gray(const slice *s, double value, uint8_t pixel[4])
 {
-    const double share = (value - s->black) / fmax(s->white - s->black, 1e-30);
-    memset(pixel, isfinite(value) ? (int)(255 * fmin(fmax(share, 0), 1) + 0.5) : 0, 3);
+    const double fraction = (value - s->black) / fmax(s->white - s->black, 1e-30);
+    memset(pixel, isfinite(value) ? (int)(255 * fmin(fmax(fraction, 0), 1) + 0.5) : 0, 3);
     pixel[3] = 255;
 }
 

@@ -56,7 +56,7 @@ static bool find_box(const cli_study *s, const cw_volume *v, size_t by, cw_box *
 {
     const cw_extract_desc desc = desc_of(s);
     const size_t boxes = (2 * by - 1) * (2 * by - 1) * (2 * by - 1);
-    double least = INFINITY;
+    double min = INFINITY;
     for (size_t n = 0; n < boxes; n++) {
         const cw_box box = box_at(v, by, n);
         cw_volume part;
@@ -65,12 +65,12 @@ static bool find_box(const cli_study *s, const cw_volume *v, size_t by, cw_box *
             cw_extract_predict(&part, &desc, &counts, NULL) != CW_OK)
             return false;
         if (counts.triangles > MAX_TRIANGLES || counts.triangles < MIN_TRIANGLES ||
-            !(depth_of(v, &part) < least))
+            !(depth_of(v, &part) < min))
             continue;
-        least = depth_of(v, &part);
+        min = depth_of(v, &part);
         *best = box;
     }
-    return isfinite(least);
+    return isfinite(min);
 }
 
 /* In voxels of the file, as --crop counts them. */

@@ -7,7 +7,7 @@ void cli_plan_simplification(cli_study *s)
 {
     static const struct {
         int rank;
-        double error_vox, share;
+        double error_vox, fraction;
         const char *name;
     } rows[] = {
         {1, 0.25, 0, "error 0.25 voxels"},
@@ -21,18 +21,18 @@ void cli_plan_simplification(cli_study *s)
     };
     for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
         cli_point *p = cli_add_point(s, CLI_SIMPLIFICATION, rows[n].rank,
-                                     rows[n].share > 0 ? "to a number" : "to an error", "%s",
+                                     rows[n].fraction > 0 ? "to a number" : "to an error", "%s",
                                      rows[n].name);
         p->tried.error_vox = rows[n].error_vox;
-        p->tried.share = rows[n].share;
+        p->tried.fraction = rows[n].fraction;
         p->shown = n < 3;
         p->turned = n < 2;
     }
 }
 
-size_t cli_share_of(const cw_mesh *mesh, double share)
+size_t cli_share_of(const cw_mesh *mesh, double fraction)
 {
-    const size_t count = (size_t)(share * (double)mesh->triangle_count);
+    const size_t count = (size_t)(fraction * (double)mesh->triangle_count);
     return count ? count : 1;
 }
 
@@ -41,7 +41,8 @@ cw_status cli_run_simplification(cli_study *s, cli_point *p, cw_mesh *mesh, cw_e
     cw_status st = cli_need_part(s, err);
     const cw_simplify_desc simplify = {
         .error_mm = p->tried.error_vox * s->voxel_mm,
-        .triangles = p->tried.share > 0 ? cli_share_of(cli_part_mesh(s), p->tried.share) : 0,
+        .triangles =
+            p->tried.fraction > 0 ? cli_share_of(cli_part_mesh(s), p->tried.fraction) : 0,
         .threads = s->threads};
     const cw_pipeline_desc pipeline = {.extract = {.isovalue = s->iso,
                                                    .inside_is_low = s->inside_is_low,

@@ -28,10 +28,11 @@ static uint32_t take_vertex(cli_sample *s, const cw_mesh *mesh, uint32_t *number
     return number[v];
 }
 
-static void take_triangles(cli_sample *s, const cw_mesh *mesh, uint32_t *number, size_t room)
+static void take_triangles(cli_sample *s, const cw_mesh *mesh, uint32_t *number,
+                           size_t capacity)
 {
     memset(number, 0xff, mesh->vertex_count * sizeof *number);
-    for (size_t t = 0; t < mesh->triangle_count && s->mesh.triangle_count < room; t++) {
+    for (size_t t = 0; t < mesh->triangle_count && s->mesh.triangle_count < capacity; t++) {
         if (!is_taken(t, s->one_of))
             continue;
         uint32_t *corners = s->mesh.triangles + 3 * s->mesh.triangle_count++;
@@ -54,31 +55,31 @@ static double area_of(const cw_mesh *m, size_t t)
 }
 
 /* Large triangles are measured at many points, and count as many. */
-static size_t choose_triangles(const cw_mesh *mesh, size_t most, double voxel_mm)
+static size_t choose_triangles(const cw_mesh *mesh, size_t max_count, double voxel_mm)
 {
     double area = 0;
     for (size_t t = 0; t < mesh->triangle_count; t++)
         area += area_of(mesh, t);
     const double voxels = area / (voxel_mm * voxel_mm),
                  triangles = (double)mesh->triangle_count;
-    const double one_of = fmin(fmax(voxels, triangles) / (double)most, triangles / 1000);
+    const double one_of = fmin(fmax(voxels, triangles) / (double)max_count, triangles / 1000);
     return one_of > 1 ? (size_t)ceil(one_of) : 1;
 }
 
-cw_status cli_take_sample(const cw_mesh *mesh, size_t most, double voxel_mm, cli_sample *s,
+cw_status cli_take_sample(const cw_mesh *mesh, size_t max_count, double voxel_mm, cli_sample *s,
                           cw_error *err)
 {
-    *s = (cli_sample){.one_of = choose_triangles(mesh, most, voxel_mm)};
+    *s = (cli_sample){.one_of = choose_triangles(mesh, max_count, voxel_mm)};
     memcpy(s->mesh.origin, mesh->origin, sizeof s->mesh.origin);
     if (s->one_of == 1)
         return CW_OK;
-    const size_t room = 2 * (mesh->triangle_count / s->one_of) + 100;
+    const size_t capacity = 2 * (mesh->triangle_count / s->one_of) + 100;
     uint32_t *number = cwi_alloc_array(mesh->vertex_count, sizeof *number);
-    s->mesh.triangles = cwi_alloc_array(3 * room, sizeof(uint32_t));
-    s->mesh.positions = cwi_alloc_array(9 * room, sizeof(float));
+    s->mesh.triangles = cwi_alloc_array(3 * capacity, sizeof(uint32_t));
+    s->mesh.positions = cwi_alloc_array(9 * capacity, sizeof(float));
     const bool good = number && s->mesh.triangles && s->mesh.positions;
     if (good)
-        take_triangles(s, mesh, number, room);
+        take_triangles(s, mesh, number, capacity);
     cwi_free(number);
     return good ? CW_OK : cwi_fail_memory(err);
 }

@@ -11,7 +11,7 @@ typedef struct cli_sample {
 
 /* Takes about `most` triangles, and fewer where they are larger than the face of a voxel.
  * The choice is random, but always the same. CW_ERR_NO_MEMORY */
-CW_NODISCARD cw_status cli_take_sample(const cw_mesh *mesh, size_t most, double voxel_mm,
+CW_NODISCARD cw_status cli_take_sample(const cw_mesh *mesh, size_t max_count, double voxel_mm,
                                        cli_sample *sample, cw_error *err);
 void cli_free_sample(cli_sample *sample);
 

@@ -184,7 +184,7 @@ static cw_status run_session(view *v, const render_args *args, cw_error *err)
     v->show_frame = view_show_frame;
     v->state.args = *args;
     v->state.slice_zoom = 1;
-    v->state.share = 0.5;
+    v->state.left_fraction = 0.5;
     v->film.seconds = 2;
     v->shown = shown;
     v->layout.width = args->size.n[0];

@@ -37,16 +37,16 @@ static double y_of(const cwi_ui_rect *r, double opacity)
 static void show_histogram(view *v, const cwi_ui_rect *r)
 {
     const cw_statistics *s = &v->document.statistics;
-    double counts[COLUMNS] = {0}, most = 1;
+    double counts[COLUMNS] = {0}, max = 1;
     for (size_t c = 0; c < COLUMNS && s->bin_count; c++) {
         const size_t end = ((c + 1) * s->bin_count - 1) / COLUMNS;
         for (size_t b = c * s->bin_count / COLUMNS; b <= end; b++)
             counts[c] = fmax(counts[c], log1p((double)s->bins[b]));
-        most = fmax(most, counts[c]);
+        max = fmax(max, counts[c]);
     }
     const double width = r->width / COLUMNS;
     for (int c = 0; c < COLUMNS; c++) {
-        const double high = counts[c] / most * r->height;
+        const double high = counts[c] / max * r->height;
         const cwi_ui_rect column = {r->x + c * width, r->y + r->height - high, width, high};
         if (high > 0)
             v->ui->box(v->window, CWI_UI_PANEL, &column, dim, true);

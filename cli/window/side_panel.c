@@ -50,11 +50,11 @@ static bool show_slider(view *v, const cli_option *o, const char *label)
     return false;
 }
 
-static size_t split_names(const char *choices, char *room, size_t size, const char **names)
+static size_t split_names(const char *choices, char *buffer, size_t size, const char **names)
 {
     size_t count = 0;
-    snprintf(room, size, "%s", choices);
-    for (char *c = room; c && count < MAX_NAMES;) {
+    snprintf(buffer, size, "%s", choices);
+    for (char *c = buffer; c && count < MAX_NAMES;) {
         names[count++] = c;
         c = strchr(c, '/');
         if (c)
@@ -65,9 +65,9 @@ static size_t split_names(const char *choices, char *room, size_t size, const ch
 
 static void show_choice(view *v, const cli_option *o, const char *label)
 {
-    char room[512];
+    char buffer[512];
     const char *names[MAX_NAMES];
-    const size_t count = split_names(o->value, room, sizeof room, names);
+    const size_t count = split_names(o->value, buffer, sizeof buffer, names);
     size_t chosen = (size_t) * (const int *)((const char *)&v->state.args + o->offset);
     if (v->ui->choice(v->window, label, names, count, &chosen))
         view_ask(v, "%s %s", o->name, names[chosen]);

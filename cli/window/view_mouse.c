@@ -59,7 +59,7 @@ static bool is_on_divider(const view *v, double x)
 {
     const cwi_ui_rect *r = &v->picture.parts[VIEW_SPACE].rect;
     return v->state.args.compare && !v->state.args.difference.given &&
-           fabs(x - v->state.share * r->width) <= DIVIDER_PX * v->ui->scale(v->window);
+           fabs(x - v->state.left_fraction * r->width) <= DIVIDER_PX * v->ui->scale(v->window);
 }
 
 /* Returns the drag that a button pressed on a part begins. */
@@ -345,7 +345,7 @@ static void show_divider(view *v, const cwi_ui_input *in)
 {
     static const cwi_ui_color white = {1, 1, 1, 0.9f};
     const cwi_ui_rect *r = &v->picture.parts[VIEW_SPACE].rect;
-    const double x = r->x + v->state.share * r->width;
+    const double x = r->x + v->state.left_fraction * r->width;
     const bool over = is_in(r, in->x, in->y) && is_on_divider(v, in->x - r->x);
     v->ui->line(v->window, CWI_UI_BEHIND, x, r->y, x, r->y + r->height, white,
                 (over ? 3 : 1) * v->ui->scale(v->window));

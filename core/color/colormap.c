@@ -31,10 +31,10 @@ const char *cw_colormap_name(cw_colormap map)
     return (size_t)map < CW_COLORMAP_COUNT ? maps[map].name : NULL;
 }
 
-void cw_colormap_color(cw_colormap map, double share, uint8_t rgb[3])
+void cw_colormap_color(cw_colormap map, double fraction, uint8_t rgb[3])
 {
     const cwi_colormap *m = &maps[(size_t)map < CW_COLORMAP_COUNT ? map : 0];
-    const double at = (share > 0 ? fmin(share, 1) : 0) * (double)(m->count - 1);
+    const double at = (fraction > 0 ? fmin(fraction, 1) : 0) * (double)(m->count - 1);
     const size_t first = at < (double)(m->count - 1) ? (size_t)at : m->count - 2;
     for (int a = 0; a < 3 && rgb; a++) {
         const int shift = 16 - 8 * a;

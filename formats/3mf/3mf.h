@@ -42,7 +42,7 @@ enum { CWI_3MF_MODELS = 1024, CWI_3MF_RESOURCES = 1 << 16 };
 typedef struct cwi_3mf {
     cwi_mesh_input *in;
     cw_mesh *mesh;
-    cw_mesh_file *said;
+    cw_mesh_file *metadata;
     cwi_unzip zip;
 
     /* The models: the package's own, and those that its relationships name. */

@@ -60,12 +60,12 @@ static cw_status add_instance(placing *p, size_t index, const double *transform,
 /* Counts the triangles of an object that is left out, or of its components. */
 static void count_left_out(const placing *p, cwi_3mf_type type, const cwi_3mf_object *o)
 {
-    cw_mesh_file *said = p->m->said;
+    cw_mesh_file *metadata = p->m->metadata;
     const size_t triangles = o->end_triangle - o->first_triangle;
     if (type == CWI_3MF_SUPPORT)
-        said->support_triangles += triangles;
+        metadata->support_triangles += triangles;
     if (type == CWI_3MF_OTHER)
-        said->other_triangles += triangles;
+        metadata->other_triangles += triangles;
 }
 
 /* Visits a component. Components nest no deeper than DEEPEST, so this recursion goes no deeper,
@@ -93,8 +93,8 @@ static cw_status visit_component(placing *p, const cwi_3mf_component *c, const d
     cw_status st = CW_OK;
     if (type == CWI_3MF_SHAPE) {
         type = o->type;
-        p->m->said->supports += type == CWI_3MF_SUPPORT;
-        p->m->said->others += type == CWI_3MF_OTHER;
+        p->m->metadata->supports += type == CWI_3MF_SUPPORT;
+        p->m->metadata->others += type == CWI_3MF_OTHER;
     }
     if (type != CWI_3MF_SHAPE)
         count_left_out(p, type, o);
@@ -109,14 +109,14 @@ static cw_status visit_component(placing *p, const cwi_3mf_component *c, const d
  * message. */
 static cw_status check_left_out(const placing *p, cw_error *err)
 {
-    const cw_mesh_file *said = p->m->said;
-    if (p->count || !(said->supports + said->others))
+    const cw_mesh_file *metadata = p->m->metadata;
+    if (p->count || !(metadata->supports + metadata->others))
         return CW_OK;
     return cwi_fail(err, CW_ERR_FORMAT,
                     "it builds only what is left out: %zu objects for support (%zu triangles) "
                     "and %zu of type 'other' (%zu triangles)",
-                    said->supports, said->support_triangles, said->others,
-                    said->other_triangles);
+                    metadata->supports, metadata->support_triangles, metadata->others,
+                    metadata->other_triangles);
 }
 
 static cw_status find_instances(placing *p, cw_error *err)

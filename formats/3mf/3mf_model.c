@@ -506,9 +506,9 @@ static cw_status start_model(void *user, cwi_xml *x, cwi_attributes a, cw_error 
     p->xml = x;
     for (size_t i = 0; i < sizeof units / sizeof *units && !known; i++) {
         known = strcmp(units[i].name, unit) == 0;
-        p->m->said->axes.unit = units[i].unit;
+        p->m->metadata->axes.unit = units[i].unit;
     }
-    p->m->said->known |= CW_KNOWN_UNIT;
+    p->m->metadata->known |= CW_KNOWN_UNIT;
     return known ? check_extensions(a, err) : fail_attribute(p, err, "'unit'", unit);
 }
 
@@ -534,11 +534,11 @@ static cw_status end_metadata(void *user, cwi_xml *x, cw_error *err)
     (void)x, (void)err;
     p->text[p->text_bytes] = '\0';
     if (p->fact == FRAME)
-        cwi_parse_frame(&text, p->m->said);
+        cwi_parse_frame(&text, p->m->metadata);
     if (p->fact == UP)
-        p->m->said->axes.y_up = strcmp(text, "Y") == 0;
+        p->m->metadata->axes.y_up = strcmp(text, "Y") == 0;
     if (p->fact == ORIGIN)
-        p->m->said->local = cwi_parse_origin(text, p->m->mesh->origin);
+        p->m->metadata->local = cwi_parse_origin(text, p->m->mesh->origin);
     p->fact = NO_FACT;
     return CW_OK;
 }

@@ -100,7 +100,7 @@ static void free_package(cwi_3mf *m)
     cwi_free(m);
 }
 
-cw_status cwi_3mf_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw_error *err)
+cw_status cwi_3mf_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata, cw_error *err)
 {
     const bool stated = in->desc.max_triangles < UINT32_MAX;
     cwi_3mf *m = cwi_alloc_zeroed(1, sizeof *m);
@@ -108,7 +108,7 @@ cw_status cwi_3mf_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
         return cwi_fail_memory(err);
     m->in = m->build.in = in;
     m->mesh = mesh;
-    m->said = said;
+    m->metadata = metadata;
     m->text_left = stated ? UINT64_MAX : FREE_TEXT + MAX_RATIO * in->file.size;
     cw_status st = cwi_unzip_open(&m->zip, &in->file, err);
     if (st == CW_OK)

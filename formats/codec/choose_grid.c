@@ -106,7 +106,7 @@ static cw_status find_grid(cwi_quantization_grid *grid, const cwi_parts *parts,
 }
 
 cw_status cwi_grid_choose(cwi_quantization_grid *grid, const cwi_parts *parts,
-                          const cw_write_desc *desc, cw_compressed *told, cw_error *err)
+                          const cw_write_desc *desc, cw_compressed *facts, cw_error *err)
 {
     cwi_grid_harm harm = {0};
     bool found = true;
@@ -127,11 +127,11 @@ cw_status cwi_grid_choose(cwi_quantization_grid *grid, const cwi_parts *parts,
     else if (st == CW_OK && !found)
         return fail_shape(grid, &harm, tolerance, err);
     if (st == CW_OK && found) {
-        told->merged = harm.merged;
-        told->flat = harm.flat;
-        told->step_mm = grid->step;
-        told->error_mm = measure_error(grid, parts);
+        facts->merged = harm.merged;
+        facts->flat = harm.flat;
+        facts->step_mm = grid->step;
+        facts->error_mm = measure_error(grid, parts);
     }
-    told->bits = grid->bits;
+    facts->bits = grid->bits;
     return st;
 }

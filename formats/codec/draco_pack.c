@@ -55,7 +55,7 @@ static cw_status verify_decoded(const cw_mesh *mesh, const cwi_quantization_grid
 cw_status cwi_draco_pack(const cw_mesh *mesh, const uint8_t *colors,
                          const cwi_quantization_grid *grid, const char *comment,
                          const cw_write_desc *desc, cwi_draco_packed *packed,
-                         cw_compressed *told, cw_error *err)
+                         cw_compressed *facts, cw_error *err)
 {
     const cwi_draco_functions *draco;
     const cwi_arrays arrays = {.vertex_count = mesh->vertex_count,
@@ -79,9 +79,9 @@ cw_status cwi_draco_pack(const cw_mesh *mesh, const uint8_t *colors,
         st = draco->decode(packed->bytes, packed->size, &packed->ids, SIZE_MAX, grid,
                            &packed->decoded, err);
     if (st == CW_OK)
-        st = verify_decoded(mesh, grid, &packed->decoded, &told->normal_degrees, err);
-    told->encode_s += encoded - start;
-    told->decode_s += cwi_now_s() - encoded;
+        st = verify_decoded(mesh, grid, &packed->decoded, &facts->normal_degrees, err);
+    facts->encode_s += encoded - start;
+    facts->decode_s += cwi_now_s() - encoded;
     return st;
 }
 
@@ -106,7 +106,7 @@ static cw_status verify_integers(const cw_mesh *mesh, int bits, cwi_arrays *deco
 }
 
 cw_status cwi_draco_pack_integers(const cw_mesh *mesh, int bits, const cw_write_desc *desc,
-                                  cwi_draco_packed *packed, cw_compressed *told, cw_error *err)
+                                  cwi_draco_packed *packed, cw_compressed *facts, cw_error *err)
 {
     const cwi_draco_functions *draco;
     const cwi_draco_settings settings = {.level = desc->level ? desc->level : LEVEL};
@@ -131,7 +131,7 @@ cw_status cwi_draco_pack_integers(const cw_mesh *mesh, int bits, const cw_write_
     if (st == CW_OK)
         st = verify_integers(mesh, bits, &packed->decoded, err);
     cwi_arrays_free(&packed->decoded);
-    told->encode_s += encoded - start;
-    told->decode_s += cwi_now_s() - encoded;
+    facts->encode_s += encoded - start;
+    facts->decode_s += cwi_now_s() - encoded;
     return st;
 }

@@ -16,19 +16,19 @@ typedef struct cwi_draco_packed {
  * colors   vertex_count x 4, in place of the mesh's; NULL: none
  * comment  of the file; NULL: none
  * desc     for its level
- * told     adds the seconds used, and raises the normals' error to the maximum
+ * facts    adds the seconds used, and raises the normals' error to the maximum
  * Returns  CW_ERR_CHECK when the decoded mesh is not the one that was encoded; CW_ERR_BACKEND;
  *          CW_ERR_UNSUPPORTED; CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cwi_draco_pack(const cw_mesh *mesh, const uint8_t *colors,
                                       const cwi_quantization_grid *grid, const char *comment,
                                       const cw_write_desc *desc, cwi_draco_packed *packed,
-                                      cw_compressed *told, cw_error *err);
+                                      cw_compressed *facts, cw_error *err);
 
 /* Encodes a mesh whose positions are integers from 0 to 2^bits - 1, as integers; bits is at most
  * 16. Otherwise as cwi_draco_pack(). packed has no decoded mesh. */
 CW_NODISCARD cw_status cwi_draco_pack_integers(const cw_mesh *mesh, int bits,
                                                const cw_write_desc *desc,
-                                               cwi_draco_packed *packed, cw_compressed *told,
+                                               cwi_draco_packed *packed, cw_compressed *facts,
                                                cw_error *err);
 void cwi_draco_packed_free(cwi_draco_packed *packed);
 

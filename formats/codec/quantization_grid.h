@@ -96,11 +96,11 @@ CW_NODISCARD cw_status cwi_grid_check_bits(const cw_write_desc *desc, cw_error *
 /* Lays the coarsest grid around the parts, of one origin, that keeps the tolerance and the
  * shape. With stated bits it lays that grid, whatever the effect on the shape.
  * grid     bits 0: meshopt has no such grid, positions stay unchanged
- * told     bits, step, error and harm are filled in
+ * facts    bits, step, error and harm are filled in
  * Returns  CW_ERR_CHECK when there is none; CW_ERR_LIMIT for a box too large;
  * CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cwi_grid_choose(cwi_quantization_grid *grid, const cwi_parts *parts,
-                                       const cw_write_desc *desc, cw_compressed *told,
+                                       const cw_write_desc *desc, cw_compressed *facts,
                                        cw_error *err);
 
 /* Counts the harm over all meshes together. Returns CW_ERR_NO_MEMORY. */

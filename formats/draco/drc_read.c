@@ -149,19 +149,19 @@ static cw_status check_arrays(const cw_mesh *m, cw_error *err)
 }
 
 /* Reads the comment: two lines, the second one in local files only. */
-static void take_comment(char *text, cw_mesh *mesh, cw_mesh_file *said)
+static void take_comment(char *text, cw_mesh *mesh, cw_mesh_file *metadata)
 {
     char *second = strchr(text, '\n');
     bool ours = false;
     if (second)
         *second++ = '\0';
-    cwi_take_comment(text, &ours, mesh, said);
+    cwi_take_comment(text, &ours, mesh, metadata);
     if (second)
-        cwi_take_comment(second, &ours, mesh, said);
+        cwi_take_comment(second, &ours, mesh, metadata);
 }
 
 static cw_status take_mesh(cwi_mesh_input *in, cwi_sandbox *box, cw_mesh *mesh,
-                           cw_mesh_file *said, cw_error *err)
+                           cw_mesh_file *metadata, cw_error *err)
 {
     counts c;
     memcpy(&c, box->shared, sizeof c);
@@ -170,7 +170,7 @@ static cw_status take_mesh(cwi_mesh_input *in, cwi_sandbox *box, cw_mesh *mesh,
     if (st == CW_OK)
         st = cwi_mesh_alloc(mesh, (size_t)c.vertices, (size_t)c.triangles, c.normals, err);
     if (st == CW_OK)
-        take_comment(c.comment, mesh, said);
+        take_comment(c.comment, mesh, metadata);
     if (st == CW_OK && c.colors && !(mesh->colors = cwi_alloc_array(mesh->vertex_count, 4)))
         st = cwi_fail_memory(err);
     if (st == CW_OK)
@@ -184,7 +184,7 @@ static cw_status take_mesh(cwi_mesh_input *in, cwi_sandbox *box, cw_mesh *mesh,
     return st == CW_OK ? check_arrays(mesh, err) : st;
 }
 
-cw_status cwi_drc_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw_error *err)
+cw_status cwi_drc_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata, cw_error *err)
 {
     decoder d = {0};
     cwi_sandbox box = {0};
@@ -212,7 +212,7 @@ cw_status cwi_drc_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
     if (st == CW_OK)
         st = cwi_sandbox_run(&box, -1, &r, sizeof r, err);
     if (st == CW_OK)
-        st = take_mesh(in, &box, mesh, said, err);
+        st = take_mesh(in, &box, mesh, metadata, err);
     in->bytes -= in->file.size < in->bytes ? in->file.size : in->bytes;
     cwi_sandbox_close(&box);
     cwi_arrays_free(&d.arrays);

@@ -52,7 +52,7 @@ cw_status cwi_drc_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *
     cwi_part whole = {.name = ""};
     const cwi_parts one = {.items = &whole, .count = 1};
     cwi_draco_packed packed = {0};
-    cw_compressed told = {0};
+    cw_compressed facts = {0};
     cwi_quantization_grid grid;
     char axes[CWI_AXES_BYTES], origin[CWI_ORIGIN_BYTES], comment[CWI_DRACO_COMMENT];
     cwi_print_axes(out->axes, axes);
@@ -62,20 +62,20 @@ cw_status cwi_drc_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *
     if (st == CW_OK)
         st = join_parts(parts, &whole.mesh, err);
     if (st == CW_OK) {
-        told.dropped = cwi_draco_count_degenerate(&whole.mesh);
+        facts.dropped = cwi_draco_count_degenerate(&whole.mesh);
         cwi_draco_drop_degenerate(&whole.mesh);
-        st = cwi_grid_choose(&grid, &one, desc, &told, err);
+        st = cwi_grid_choose(&grid, &one, desc, &facts, err);
     }
     if (st == CW_OK)
         st = cwi_draco_pack(&whole.mesh, whole.mesh.colors, &grid, comment, desc, &packed,
-                            &told, err);
+                            &facts, err);
     if (st == CW_OK) /* compressing is nearly all of the work */
         st = cwi_progress(out->progress, "writing", 0.95, err);
     if (st == CW_OK)
         st = cwi_outfile_write(out->file, packed.bytes, packed.size, err);
-    told.bytes = packed.size;
+    facts.bytes = packed.size;
     if (st == CW_OK && desc->compressed)
-        *desc->compressed = told;
+        *desc->compressed = facts;
     cwi_draco_packed_free(&packed);
     cw_mesh_free(&whole.mesh);
     return st;

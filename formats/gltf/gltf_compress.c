@@ -125,7 +125,7 @@ static void describe_draco(cwi_gltf_piece *piece, const cwi_quantization_grid *g
 }
 
 static cw_status compress_draco(cwi_gltf_plan *plan, cwi_gltf_piece *piece,
-                                const cw_write_desc *desc, cw_compressed *told, cw_error *err)
+                                const cw_write_desc *desc, cw_compressed *facts, cw_error *err)
 {
     const size_t count = piece->part->mesh.vertex_count;
     unsigned char *colors = NULL;
@@ -136,8 +136,8 @@ static cw_status compress_draco(cwi_gltf_plan *plan, cwi_gltf_piece *piece,
     for (size_t n = 0; n < piece->array_count; n++)
         for (size_t i = 0; piece->arrays[n].use == CWI_GLTF_COLOR && i < count; i++)
             cwi_gltf_put(plan, piece, &piece->arrays[n], i, colors + 4 * i);
-    cw_status st =
-        cwi_draco_pack(&piece->part->mesh, colors, &plan->grid, NULL, desc, &packed, told, err);
+    cw_status st = cwi_draco_pack(&piece->part->mesh, colors, &plan->grid, NULL, desc, &packed,
+                                  facts, err);
     cwi_free(colors);
     if (st == CW_OK) {
         describe_draco(piece, &plan->grid, &packed.decoded);
@@ -256,7 +256,7 @@ static cw_status compress_meshopt(cwi_gltf_plan *plan, size_t p,
 
 /* Measures the error of normals in bytes: besides positions, only they are moved by
  * quantising. */
-static void measure_normals(const cwi_gltf_plan *plan, cw_compressed *told)
+static void measure_normals(const cwi_gltf_plan *plan, cw_compressed *facts)
 {
     for (size_t p = 0; p < plan->parts.count; p++) {
         const cw_mesh *m = &plan->parts.items[p].mesh;
@@ -270,8 +270,8 @@ static void measure_normals(const cwi_gltf_plan *plan, cw_compressed *told)
                 lengths[1] += is[a] * is[a];
             }
             const double c = cosine / sqrt(lengths[0] * lengths[1]);
-            told->normal_degrees =
-                fmax(told->normal_degrees, c < 1 ? acos(c) * 180 / CWI_PI : 0);
+            facts->normal_degrees =
+                fmax(facts->normal_degrees, c < 1 ? acos(c) * 180 / CWI_PI : 0);
         }
     }
 }
@@ -279,42 +279,42 @@ static void measure_normals(const cwi_gltf_plan *plan, cw_compressed *told)
 /* --- all ---------------------------------------------------------------------------------- */
 
 static cw_status compress_pieces(cwi_gltf_plan *plan, const cw_write_desc *desc,
-                                 cw_compressed *told, cw_error *err)
+                                 cw_compressed *facts, cw_error *err)
 {
     const bool draco = desc->compression == CW_COMPRESS_DRACO;
     const cwi_meshopt_functions *by_meshopt = NULL;
     const double start = cwi_now_s();
     cw_status st = draco ? CW_OK : cwi_meshopt_functions_load(&by_meshopt, err);
     for (size_t p = 0; st == CW_OK && p < plan->parts.count; p++)
-        st = draco ? compress_draco(plan, &plan->pieces[p], desc, told, err)
+        st = draco ? compress_draco(plan, &plan->pieces[p], desc, facts, err)
                    : compress_meshopt(plan, p, by_meshopt, err);
     if (!draco)
-        told->encode_s = cwi_now_s() - start;
-    told->bytes = plan->document.bytes;
+        facts->encode_s = cwi_now_s() - start;
+    facts->bytes = plan->document.bytes;
     return st;
 }
 
 cw_status cwi_gltf_compress(cwi_gltf_plan *plan, const cw_write_desc *desc, cw_error *err)
 {
     const bool meshopt = desc->compression == CW_COMPRESS_MESHOPT;
-    cw_compressed told = {0};
+    cw_compressed facts = {0};
     cw_status st = CW_OK;
     for (size_t p = 0; desc->compression == CW_COMPRESS_DRACO && p < plan->parts.count; p++)
-        told.dropped += cwi_draco_count_degenerate(&plan->parts.items[p].mesh);
-    if (meshopt || told.dropped || !same_origin(&plan->parts))
+        facts.dropped += cwi_draco_count_degenerate(&plan->parts.items[p].mesh);
+    if (meshopt || facts.dropped || !same_origin(&plan->parts))
         st = own_parts(plan, meshopt, err);
-    for (size_t p = 0; st == CW_OK && told.dropped && p < plan->parts.count; p++)
+    for (size_t p = 0; st == CW_OK && facts.dropped && p < plan->parts.count; p++)
         cwi_draco_drop_degenerate(&plan->parts.items[p].mesh);
     if (st == CW_OK)
-        st = cwi_grid_choose(&plan->grid, &plan->parts, desc, &told, err);
+        st = cwi_grid_choose(&plan->grid, &plan->parts, desc, &facts, err);
     if (st != CW_OK)
         return st;
     plan->rounded = desc->compression != CW_COMPRESS_DRACO;
     if (plan->rounded)
-        measure_normals(plan, &told);
+        measure_normals(plan, &facts);
     if (desc->compression != CW_COMPRESS_QUANTIZE)
-        st = compress_pieces(plan, desc, &told, err);
+        st = compress_pieces(plan, desc, &facts, err);
     if (st == CW_OK && desc->compressed)
-        *desc->compressed = told;
+        *desc->compressed = facts;
     return st;
 }

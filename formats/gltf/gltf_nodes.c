@@ -54,8 +54,8 @@ static double from_metres(double metres)
 
 /* Sets the transform of a node's mesh. Where our writer left out the origin of a local file, it is
  * added. */
-static cw_status set_transform(cwi_gltf_instance *at, const double *world, cw_mesh_file *said,
-                               cw_error *err)
+static cw_status set_transform(cwi_gltf_instance *at, const double *world,
+                               cw_mesh_file *metadata, cw_error *err)
 {
     double *transform = at->transform[0];
     multiply_matrices(to_lps, world, transform);
@@ -71,7 +71,7 @@ static cw_status set_transform(cwi_gltf_instance *at, const double *world, cw_me
     for (int a = 0; at->node->has_origin && a < 3; a++)
         at->transform[a][3] +=
             at->node->origin[a]; /* a local file: the scene is relative to it */
-    said->local = said->local || at->node->has_origin;
+    metadata->local = metadata->local || at->node->has_origin;
     return CW_OK;
 }
 
@@ -90,7 +90,7 @@ typedef struct visit {
     size_t depth;
 } visit;
 
-static cw_status enter_node(cwi_gltf_reader *r, visit v, bool *visited, cw_mesh_file *said,
+static cw_status enter_node(cwi_gltf_reader *r, visit v, bool *visited, cw_mesh_file *metadata,
                             cw_error *err)
 {
     static const double unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
@@ -105,7 +105,7 @@ static cw_status enter_node(cwi_gltf_reader *r, visit v, bool *visited, cw_mesh_
         return cwi_fail(err, CW_ERR_FORMAT, "nodes are nested deeper than %d", DEEPEST_NODE);
     visited[v.node] = true;
     const cwi_gltf_node *n = &scene->nodes[v.node];
-    said->levels = n->levels > said->levels ? n->levels : said->levels;
+    metadata->levels = n->levels > metadata->levels ? n->levels : metadata->levels;
     multiply_matrices(v.parent < 0 ? unit : r->world[v.parent], n->local[0], r->world[v.node]);
     if (n->mesh < 0)
         return CW_OK;
@@ -113,18 +113,18 @@ static cw_status enter_node(cwi_gltf_reader *r, visit v, bool *visited, cw_mesh_
         return cwi_fail(err, CW_ERR_FORMAT, "node %d names mesh %d; there are %zu", v.node,
                         n->mesh, scene->mesh_count);
     if (is_hidden(r->world[v.node])) {
-        said->hidden++;
+        metadata->hidden++;
         return CW_OK;
     }
     cwi_gltf_instance *at = &r->instances[r->instance_count++];
     *at = (cwi_gltf_instance){.mesh = n->mesh, .node = n};
-    return set_transform(at, r->world[v.node], said, err);
+    return set_transform(at, r->world[v.node], metadata, err);
 }
 
 /* Walks depth first, in the order of the file. The stack cannot overflow: every node is pushed
  * by its only parent or is a root. A node that is reached in two ways is an error. */
 static cw_status walk_nodes(cwi_gltf_reader *r, visit *stack, size_t capacity, bool *visited,
-                            cw_mesh_file *said, cw_error *err)
+                            cw_mesh_file *metadata, cw_error *err)
 {
     const cwi_gltf_scene *scene = &r->scene;
     size_t count = 0;
@@ -133,7 +133,7 @@ static cw_status walk_nodes(cwi_gltf_reader *r, visit *stack, size_t capacity, b
     cw_status st = CW_OK;
     while (st == CW_OK && count > 0) {
         const visit v = stack[--count];
-        st = enter_node(r, v, visited, said, err);
+        st = enter_node(r, v, visited, metadata, err);
         if (st != CW_OK)
             break;
         const cwi_gltf_node *n = &scene->nodes[v.node];
@@ -145,7 +145,7 @@ static cw_status walk_nodes(cwi_gltf_reader *r, visit *stack, size_t capacity, b
     return st;
 }
 
-cw_status cwi_gltf_find_instances(cwi_gltf_reader *r, cw_mesh_file *said, cw_error *err)
+cw_status cwi_gltf_find_instances(cwi_gltf_reader *r, cw_mesh_file *metadata, cw_error *err)
 {
     const size_t count = r->scene.node_count,
                  capacity = r->scene.root_count + r->scene.child_count;
@@ -154,7 +154,7 @@ cw_status cwi_gltf_find_instances(cwi_gltf_reader *r, cw_mesh_file *said, cw_err
     r->world = cwi_alloc_array(count, sizeof *r->world);
     r->instances = cwi_alloc_array(count, sizeof *r->instances);
     cw_status st = stack && visited && r->world && r->instances
-                       ? walk_nodes(r, stack, capacity, visited, said, err)
+                       ? walk_nodes(r, stack, capacity, visited, metadata, err)
                        : cwi_fail_memory(err);
     cwi_free(stack);
     cwi_free(visited);

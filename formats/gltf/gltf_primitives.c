@@ -313,7 +313,7 @@ static cw_status unpack_primitive(cwi_gltf_reader *r, const cwi_gltf_primitive *
 /* Adds an instance of a mesh. The primitives of a mesh often share their vertices. Then the
  * vertices of the one before are used again, so that closed surfaces stay closed. */
 cw_status cwi_gltf_add_instance(cwi_gltf_reader *r, const cwi_gltf_instance *at,
-                                cw_mesh_file *said, cw_error *err)
+                                cw_mesh_file *metadata, cw_error *err)
 {
     const cwi_gltf_mesh *mesh = &r->scene.meshes[at->mesh];
     const cwi_gltf_primitive *before = NULL;
@@ -324,7 +324,7 @@ cw_status cwi_gltf_add_instance(cwi_gltf_reader *r, const cwi_gltf_instance *at,
         if (p->mode < POINTS || p->mode > FAN)
             return cwi_fail(err, CW_ERR_FORMAT, "a primitive has the mode %d", p->mode);
         if (p->mode < TRIANGLES) {
-            said->skipped += count_skipped(&r->scene, p);
+            metadata->skipped += count_skipped(&r->scene, p);
             continue;
         }
         if (p->position < 0)
@@ -336,7 +336,7 @@ cw_status cwi_gltf_add_instance(cwi_gltf_reader *r, const cwi_gltf_instance *at,
         }
         if (st == CW_OK)
             st = add_corners(r, at, p, first, err);
-        said->parts++;
+        metadata->parts++;
         before = p;
     }
     return st;

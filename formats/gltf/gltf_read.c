@@ -142,13 +142,13 @@ static bool is_shifted(const cwi_gltf_reader *r)
 
 /* Describes the mesh. The frame is known where each node states it and none has been turned
  * since. */
-static void describe_mesh(const cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *said)
+static void describe_mesh(const cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *metadata)
 {
     const cwi_gltf_instance *one = r->instances;
     bool lps = r->instance_count > 0;
     for (size_t i = 0; i < r->instance_count; i++)
         lps = lps && r->instances[i].unturned && r->instances[i].node->lps;
-    said->known = CW_KNOWN_UNIT | (lps ? CW_KNOWN_FRAME : 0u);
+    metadata->known = CW_KNOWN_UNIT | (lps ? CW_KNOWN_FRAME : 0u);
     if (lps && r->instance_count == 1 && one->node->has_affine)
         memcpy(mesh->affine, one->node->affine, sizeof mesh->affine);
     for (int a = 0; a < 3 && r->shifted; a++)
@@ -237,13 +237,13 @@ static cw_status check_repeats(const cwi_gltf_reader *r, cw_error *err)
     return st;
 }
 
-static cw_status build_scene(cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *said,
+static cw_status build_scene(cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *metadata,
                              cw_error *err)
 {
-    cw_status st = cwi_gltf_find_instances(r, said, err);
+    cw_status st = cwi_gltf_find_instances(r, metadata, err);
     r->shifted = st == CW_OK && is_shifted(r);
     r->max = max_elements(r);
-    said->parts = 0;
+    metadata->parts = 0;
     if (st == CW_OK)
         st = check_repeats(r, err);
     for (size_t i = 0; i < r->instance_count && st == CW_OK; i++) {
@@ -252,11 +252,11 @@ static cw_status build_scene(cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *sa
         if (st == CW_OK)
             st = cwi_mesh_begin_part(r->in, "", r->build.triangle_count, err);
         if (st == CW_OK)
-            st = cwi_gltf_add_instance(r, &r->instances[i], said, err);
+            st = cwi_gltf_add_instance(r, &r->instances[i], metadata, err);
     }
     if (st != CW_OK)
         return st;
-    describe_mesh(r, mesh, said);
+    describe_mesh(r, mesh, metadata);
     mesh->colors = r->colors;
     r->colors = NULL;
     if (!r->no_normals) {
@@ -266,8 +266,8 @@ static cw_status build_scene(cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *sa
     return cwi_build_finish(&r->build, mesh, err);
 }
 
-static cw_status read_scene(cwi_mesh_input *in, bool binary, cw_mesh *mesh, cw_mesh_file *said,
-                            cw_error *err)
+static cw_status read_scene(cwi_mesh_input *in, bool binary, cw_mesh *mesh,
+                            cw_mesh_file *metadata, cw_error *err)
 {
     cwi_gltf_reader r = {.in = in, .build = {.in = in}, .bytes = {.in = &in->file}};
     uint64_t json = 0, json_size = in->file.size;
@@ -280,7 +280,7 @@ static cw_status read_scene(cwi_mesh_input *in, bool binary, cw_mesh *mesh, cw_m
     if (st == CW_OK)
         st = parse_json(&r, json, json_size, err);
     if (st == CW_OK)
-        st = build_scene(&r, mesh, said, err);
+        st = build_scene(&r, mesh, metadata, err);
     cwi_build_free(&r.build);
     cwi_arrays_free(&r.arrays);
     cwi_gltf_unpacker_close(&r.unpacker);
@@ -292,12 +292,13 @@ static cw_status read_scene(cwi_mesh_input *in, bool binary, cw_mesh *mesh, cw_m
     return st;
 }
 
-cw_status cwi_glb_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw_error *err)
+cw_status cwi_glb_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata, cw_error *err)
 {
-    return read_scene(in, true, mesh, said, err);
+    return read_scene(in, true, mesh, metadata, err);
 }
 
-cw_status cwi_gltf_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw_error *err)
+cw_status cwi_gltf_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata,
+                        cw_error *err)
 {
-    return read_scene(in, false, mesh, said, err);
+    return read_scene(in, false, mesh, metadata, err);
 }

@@ -33,12 +33,12 @@ typedef struct cwi_gltf_reader {
 
 /* Walks over the scene's nodes, and finds those that have a mesh, and its transform.
  * Returns CW_ERR_FORMAT for nodes that are no forest, or nest too deeply. */
-CW_NODISCARD cw_status cwi_gltf_find_instances(cwi_gltf_reader *r, cw_mesh_file *said,
+CW_NODISCARD cw_status cwi_gltf_find_instances(cwi_gltf_reader *r, cw_mesh_file *metadata,
                                                cw_error *err);
 
 /* Adds the vertices and triangles of one instance. */
 CW_NODISCARD cw_status cwi_gltf_add_instance(cwi_gltf_reader *r, const cwi_gltf_instance *at,
-                                             cw_mesh_file *said, cw_error *err);
+                                             cw_mesh_file *metadata, cw_error *err);
 
 /* Returns CW_ERR_LIMIT for more vertices or triangles than r->most. */
 CW_NODISCARD cw_status cwi_gltf_limit(const cwi_gltf_reader *r, uint64_t count, cw_error *err);

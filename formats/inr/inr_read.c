@@ -146,10 +146,10 @@ static cw_status read_type(const inr *n, cwi_source *src, cw_error *err)
         st = require_key(n, K_PIXSIZE, err);
     if (st != CW_OK)
         return st;
-    const char *said = n->value[K_PIXSIZE];
-    cwi_next_text_word(&said, unit);
+    const char *text = n->value[K_PIXSIZE];
+    cwi_next_text_word(&text, unit);
     st = cwi_field_integer("PIXSIZE", unit, 1, 1024, &bits, err);
-    if (st == CW_OK && cwi_next_text_word(&said, unit) && strcmp(unit, "bits") != 0)
+    if (st == CW_OK && cwi_next_text_word(&text, unit) && strcmp(unit, "bits") != 0)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "'PIXSIZE' is '%.40s'; '8 bits' or the like was expected",
                         n->value[K_PIXSIZE]);

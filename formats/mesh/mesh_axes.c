@@ -44,42 +44,42 @@ static bool skip_word(const char **text, const char *word)
     return same;
 }
 
-bool cwi_parse_unit(const char **text, cw_mesh_file *said)
+bool cwi_parse_unit(const char **text, cw_mesh_file *metadata)
 {
     for (int u = 0; u < CW_UNIT_COUNT; u++)
         if (skip_word(text, cw_unit_name((cw_unit)u))) {
-            said->axes.unit = (cw_unit)u;
-            said->known |= CW_KNOWN_UNIT;
+            metadata->axes.unit = (cw_unit)u;
+            metadata->known |= CW_KNOWN_UNIT;
             return true;
         }
     return false;
 }
 
-bool cwi_parse_frame(const char **text, cw_mesh_file *said)
+bool cwi_parse_frame(const char **text, cw_mesh_file *metadata)
 {
     const bool ras = skip_word(text, "RAS");
     if (!ras && !skip_word(text, "LPS"))
         return false;
-    said->axes.ras = ras;
-    said->known |= CW_KNOWN_FRAME;
+    metadata->axes.ras = ras;
+    metadata->known |= CW_KNOWN_FRAME;
     return true;
 }
 
-bool cwi_parse_axes(const char **text, cw_mesh_file *said)
+bool cwi_parse_axes(const char **text, cw_mesh_file *metadata)
 {
-    const cw_mesh_file before = *said;
+    const cw_mesh_file before = *metadata;
     const char *at = *text;
-    bool ok = cwi_parse_frame(&at, said) && strncmp(at, ", ", 2) == 0;
+    bool ok = cwi_parse_frame(&at, metadata) && strncmp(at, ", ", 2) == 0;
     at += ok ? 2 : 0;
-    ok = ok && cwi_parse_unit(&at, said);
+    ok = ok && cwi_parse_unit(&at, metadata);
     if (!ok) {
-        *said = before;
+        *metadata = before;
         return false;
     }
     *text = at;
     at += strncmp(at, ", ", 2) == 0 ? 2 : 0;
-    said->axes.y_up = skip_word(&at, "Y up");
-    if (said->axes.y_up)
+    metadata->axes.y_up = skip_word(&at, "Y up");
+    if (metadata->axes.y_up)
         *text = at;
     return true;
 }

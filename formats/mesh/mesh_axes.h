@@ -30,10 +30,10 @@ enum { CWI_AXES_BYTES = 32 };
 void cwi_print_axes(const cw_axes *axes, char text[CWI_AXES_BYTES]);
 
 /* Reads this line back, or the name of a unit or frame alone, and moves *text behind it.
- * Returns false, with *said unchanged, for any other text. */
-bool cwi_parse_axes(const char **text, cw_mesh_file *said);
-bool cwi_parse_unit(const char **text, cw_mesh_file *said);
-bool cwi_parse_frame(const char **text, cw_mesh_file *said);
+ * Returns false, with *metadata unchanged, for any other text. */
+bool cwi_parse_axes(const char **text, cw_mesh_file *metadata);
+bool cwi_parse_unit(const char **text, cw_mesh_file *metadata);
+bool cwi_parse_frame(const char **text, cw_mesh_file *metadata);
 
 /* Turns a mesh from the file's coordinates to LPS millimetres.
  * Returns CW_ERR_FORMAT for places that single precision then cannot hold. */

@@ -157,10 +157,10 @@ cw_status cwi_build_corner(cwi_mesh_build *b, int64_t point, cw_error *err)
     return st;
 }
 
-void cwi_build_end_face(cwi_mesh_build *b, cw_mesh_file *said)
+void cwi_build_end_face(cwi_mesh_build *b, cw_mesh_file *metadata)
 {
-    said->skipped += b->corners < 3;
-    said->polygons += b->corners > 3;
+    metadata->skipped += b->corners < 3;
+    metadata->polygons += b->corners > 3;
     b->corners = 0;
 }
 
@@ -289,15 +289,16 @@ void cwi_build_free(cwi_mesh_build *b)
     *b = (cwi_mesh_build){0};
 }
 
-void cwi_take_comment(const char *text, bool *ours, cw_mesh *mesh, cw_mesh_file *said)
+void cwi_take_comment(const char *text, bool *ours, cw_mesh *mesh, cw_mesh_file *metadata)
 {
     static const char name[] = "cubewright ", origin[] = "origin ";
     if (strncmp(text, name, strlen(name)) == 0) {
         const char *comma = strchr(text, ',');
         const char *axes = comma ? comma + 1 + strspn(comma + 1, " ") : "";
-        *ours = cwi_parse_axes(&axes, said) || *ours;
+        *ours = cwi_parse_axes(&axes, metadata) || *ours;
     } else if (*ours && strncmp(text, origin, strlen(origin)) == 0) {
-        said->local = cwi_parse_origin(text + strlen(origin), mesh->origin) || said->local;
+        metadata->local =
+            cwi_parse_origin(text + strlen(origin), mesh->origin) || metadata->local;
     }
 }
 

@@ -33,7 +33,7 @@ typedef struct cwi_mesh_input {
 /* Fills a zeroed mesh and the facts that the file states (parts is 1 beforehand). Coordinates
  * stay as in the file, if said->axes tells their meaning. The caller turns them, frees the mesh
  * of a reader that failed, and puts the file's name in front of its message. */
-typedef cw_status cwi_mesh_reader(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said,
+typedef cw_status cwi_mesh_reader(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata,
                                   cw_error *err);
 
 /* Returns true if a file with such a head has the format; size is at most CWI_SNIFF_BYTES. */
@@ -84,7 +84,7 @@ CW_NODISCARD cw_status cwi_build_point(cwi_mesh_build *b, const double point[3],
 CW_NODISCARD cw_status cwi_build_corner(cwi_mesh_build *b, int64_t point, cw_error *err);
 
 /* Ends the face, and counts it if it is a polygon or is skipped. */
-void cwi_build_end_face(cwi_mesh_build *b, cw_mesh_file *said);
+void cwi_build_end_face(cwi_mesh_build *b, cw_mesh_file *metadata);
 
 /* Moves points and triangles into the mesh, and adds the origin chosen for them to its own.
  * Returns CW_ERR_FORMAT for a point that is not finite or an index that names no point. */
@@ -93,7 +93,7 @@ void cwi_build_free(cwi_mesh_build *b);
 
 /* Reads a comment that our writers leave in text files: "cubewright VERSION, LPS, mm", and
  * after it (*ours) "origin X Y Z" of a local file. */
-void cwi_take_comment(const char *text, bool *ours, cw_mesh *mesh, cw_mesh_file *said);
+void cwi_take_comment(const char *text, bool *ours, cw_mesh *mesh, cw_mesh_file *metadata);
 
 /* Reads three numbers, for the origin in a line of our writers. Returns false, with the origin
  * unchanged, when they are missing or not finite. */

@@ -177,13 +177,14 @@ static cw_status read_sizes(metaimage *m, cwi_source *src, cw_error *err)
 /* Reads "LIST", "LIST 2" and "LIST 2D": files with that number of axes each. */
 static cw_status read_list(metaimage *m, cwi_source *src, int64_t *depth, cw_error *err)
 {
-    const char *said = m->value[K_DATA_FILE] + 4;
-    said += strspn(said, " \t");
-    if (*said && (said[0] < '1' || said[0] > '4' || (said[1] && strcmp(said + 1, "D") != 0)))
+    const char *count = m->value[K_DATA_FILE] + 4;
+    count += strspn(count, " \t");
+    if (*count &&
+        (count[0] < '1' || count[0] > '4' || (count[1] && strcmp(count + 1, "D") != 0)))
         return cwi_fail(err, CW_ERR_FORMAT,
-                        "'ElementDataFile' is 'LIST %.20s'; 'LIST 2D' was expected", said);
-    if (*said)
-        *depth = said[0] - '0';
+                        "'ElementDataFile' is 'LIST %.20s'; 'LIST 2D' was expected", count);
+    if (*count)
+        *depth = count[0] - '0';
     return cwi_lines_names(&m->lines, &src->files, err);
 }
 

@@ -252,13 +252,13 @@ static cw_status read_spacing(const mrc *m, double spacing[3], cw_error *err)
 static void set_origin(const mrc *m, double mm, cw_volume *shape)
 {
     const double sign = m->imod_flags & IMOD_ORIGIN ? mm : -mm;
-    bool said = false;
+    bool has_origin = false;
     for (int r = 0; r < 3; r++) {
         const double origin = read_number(m, ORIGIN, r);
-        said |= origin != 0;
+        has_origin |= origin != 0;
         shape->affine[r][3] = origin == 0 ? 0 : sign * origin;
     }
-    for (int a = 0; !said && a < 3; a++)
+    for (int a = 0; !has_origin && a < 3; a++)
         for (int r = 0; r < 3; r++)
             shape->affine[r][3] += shape->affine[r][m->axis[a]] * read_word(m, NXSTART, a);
 }

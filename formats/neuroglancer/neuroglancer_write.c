@@ -29,7 +29,7 @@ typedef struct writer {
     const cwi_parts *parts;
     cwi_mesh_output *out;
     cwi_lod_grid grid;
-    cw_compressed told;
+    cw_compressed facts;
     uint64_t done; /* triangles, for progress */
 } writer;
 
@@ -106,13 +106,14 @@ static cw_status write_fragment(writer *w, const cwi_lod_level *level, size_t fi
     if (st == CW_OK)
         st = make_fragment(w, level, first, count, &mesh, err);
     if (st == CW_OK && mesh.triangle_count)
-        st = cwi_draco_pack_integers(&mesh, w->grid.bits, w->out->desc, &packed, &w->told, err);
+        st =
+            cwi_draco_pack_integers(&mesh, w->grid.bits, w->out->desc, &packed, &w->facts, err);
     if (st == CW_OK && packed.size > UINT32_MAX)
         st = cwi_fail(err, CW_ERR_LIMIT, "a fragment has more than 4 GiB");
     if (st == CW_OK && packed.size)
         st = cwi_outfolder_write(w->out->folder, packed.bytes, packed.size, err);
     *bytes = (uint32_t)packed.size;
-    w->told.fragments += packed.size > 0;
+    w->facts.fragments += packed.size > 0;
     cwi_draco_packed_free(&packed);
     cw_mesh_free(&mesh);
     return st;
@@ -177,8 +178,8 @@ static void tell_finest(writer *w, const cwi_lod_level *level)
 {
     const double cut_mm =
         level->is_cut ? (CWI_LOD_ERROR_STEPS - sqrt(3) / 2) * w->grid.step_mm : 0;
-    w->told.dropped += level->collapsed;
-    w->told.error_mm = fmax(w->told.error_mm, level->move_mm + cut_mm);
+    w->facts.dropped += level->collapsed;
+    w->facts.error_mm = fmax(w->facts.error_mm, level->move_mm + cut_mm);
 }
 
 /* Writes a level. Its nodes stay empty if the lattice leaves no triangle of it. */
@@ -282,8 +283,8 @@ cw_status cwi_neuroglancer_write(const cwi_parts *parts, cwi_mesh_output *out, c
     cw_status st = cwi_segments_list(parts, &segments, err);
     if (st == CW_OK)
         st = cwi_lod_choose(&w.grid, parts, segments.max_levels, out->desc, err);
-    w.told.bits = w.grid.bits;
-    w.told.step_mm = w.grid.step_mm;
+    w.facts.bits = w.grid.bits;
+    w.facts.step_mm = w.grid.step_mm;
     for (size_t n = 0; n < segments.count && st == CW_OK; n++)
         st = write_segment(&w, &segments.items[n], err);
     if (st == CW_OK)
@@ -291,8 +292,8 @@ cw_status cwi_neuroglancer_write(const cwi_parts *parts, cwi_mesh_output *out, c
     if (st == CW_OK)
         st = cwi_mesh_info_write(out->folder, &w.grid, err);
     cwi_segments_free(&segments);
-    w.told.bytes = out->folder ? cwi_outfolder_size(out->folder) : 0;
+    w.facts.bytes = out->folder ? cwi_outfolder_size(out->folder) : 0;
     if (st == CW_OK && out->desc->compressed)
-        *out->desc->compressed = w.told;
+        *out->desc->compressed = w.facts;
     return st;
 }

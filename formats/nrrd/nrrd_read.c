@@ -239,11 +239,11 @@ static cw_status check_file_count(const cwi_nrrd *n, const cwi_source *src, int6
 
 static cw_status read_list(cwi_nrrd *n, cwi_source *src, int64_t *depth, cw_error *err)
 {
-    const char *said = n->value[CWI_NRRD_DATA_FILE] + 4;
+    const char *count = n->value[CWI_NRRD_DATA_FILE] + 4;
     cw_status st = CW_OK;
-    said += strspn(said, " \t");
-    if (*said)
-        st = cwi_field_integer("data file: LIST", said, 1, CWI_NRRD_MAX_AXES, depth, err);
+    count += strspn(count, " \t");
+    if (*count)
+        st = cwi_field_integer("data file: LIST", count, 1, CWI_NRRD_MAX_AXES, depth, err);
     return st == CW_OK ? cwi_lines_names(&n->lines, &src->files, err) : st;
 }
 

@@ -129,7 +129,7 @@ static cw_status add_corner(obj *o, const cwi_scan *s, const cwi_word *word, cw_
     return st;
 }
 
-static cw_status read_face(obj *o, cwi_scan *s, cw_mesh_file *said, cw_error *err)
+static cw_status read_face(obj *o, cwi_scan *s, cw_mesh_file *metadata, cw_error *err)
 {
     cwi_word word;
     cw_status st = cwi_scan_word(s, &word, err);
@@ -139,7 +139,7 @@ static cw_status read_face(obj *o, cwi_scan *s, cw_mesh_file *said, cw_error *er
             st = cwi_scan_word(s, &word, err);
     }
     if (st == CW_OK)
-        cwi_build_end_face(&o->build, said);
+        cwi_build_end_face(&o->build, metadata);
     return st == CW_OK ? cwi_scan_end_line(s, err) : st;
 }
 
@@ -157,13 +157,13 @@ static cw_status read_vertex(obj *o, cwi_scan *s, cw_error *err)
     return st == CW_OK ? cwi_scan_end_line(s, err) : st;
 }
 
-static cw_status read_comment(obj *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
+static cw_status read_comment(obj *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *metadata,
                               cw_error *err)
 {
     char text[CWI_REST_BYTES];
     cw_status st = cwi_scan_rest(s, text, err);
     if (st == CW_OK)
-        cwi_take_comment(text, &o->ours, mesh, said);
+        cwi_take_comment(text, &o->ours, mesh, metadata);
     return st == CW_OK ? cwi_scan_end_line(s, err) : st;
 }
 
@@ -179,7 +179,7 @@ static cw_status read_part(obj *o, cwi_scan *s, bool is_object, cw_error *err)
     return st == CW_OK ? cwi_scan_end_line(s, err) : st;
 }
 
-static cw_status read_line(obj *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
+static cw_status read_line(obj *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *metadata,
                            cw_error *err)
 {
     cwi_word word;
@@ -191,37 +191,37 @@ static cw_status read_line(obj *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *sai
     if (cwi_word_is(&word, "vn"))
         st = read_normal(o, s, err);
     else if (cwi_word_is(&word, "f"))
-        return read_face(o, s, said, err);
+        return read_face(o, s, metadata, err);
     else if (cwi_word_is(&word, "#"))
-        return read_comment(o, s, mesh, said, err);
+        return read_comment(o, s, mesh, metadata, err);
     else if (cwi_word_is(&word, "o") || cwi_word_is(&word, "g"))
         return read_part(o, s, word.text[0] == 'o', err);
     else if (cwi_word_is(&word, "l") || cwi_word_is(&word, "p"))
-        said->skipped++;
+        metadata->skipped++;
     return st == CW_OK ? cwi_scan_end_line(s, err) : st;
 }
 
-static cw_status read_lines(obj *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
+static cw_status read_lines(obj *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *metadata,
                             cw_error *err)
 {
     bool found;
     cw_status st = cwi_scan_next_line(s, &found, err);
     while (st == CW_OK && found) {
-        st = read_line(o, s, mesh, said, err);
+        st = read_line(o, s, mesh, metadata, err);
         if (st == CW_OK)
             st = cwi_scan_next_line(s, &found, err);
     }
     return st;
 }
 
-cw_status cwi_obj_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw_error *err)
+cw_status cwi_obj_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata, cw_error *err)
 {
     obj o = {.build = {.in = in, .base = 1}};
     cwi_scan s = {0};
     cw_status st = cwi_scan_open_text(&s, &in->file, 0, &in->desc.progress, err);
     s.by_line = true;
     if (st == CW_OK)
-        st = read_lines(&o, &s, mesh, said, err);
+        st = read_lines(&o, &s, mesh, metadata, err);
     if (st == CW_OK)
         st = cwi_build_finish(&o.build, mesh, err);
     if (st == CW_OK)

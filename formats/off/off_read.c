@@ -81,7 +81,7 @@ static cw_status check_counts(const cwi_scan *s, int64_t vertices, int64_t faces
 }
 
 /* Reads the first word that is no comment; comments of our writer are parsed. */
-static cw_status first_word(cwi_scan *s, cwi_word *word, cw_mesh *mesh, cw_mesh_file *said,
+static cw_status first_word(cwi_scan *s, cwi_word *word, cw_mesh *mesh, cw_mesh_file *metadata,
                             cw_error *err)
 {
     char text[CWI_REST_BYTES];
@@ -97,7 +97,7 @@ static cw_status first_word(cwi_scan *s, cwi_word *word, cw_mesh *mesh, cw_mesh_
         const bool alone = word->size == 1;
         st = cwi_scan_rest(s, text, err);
         if (st == CW_OK && alone)
-            cwi_take_comment(text, &ours, mesh, said);
+            cwi_take_comment(text, &ours, mesh, metadata);
     }
     s->comments = true;
     return st;
@@ -105,12 +105,12 @@ static cw_status first_word(cwi_scan *s, cwi_word *word, cw_mesh *mesh, cw_mesh_
 
 /* Reads the counts of vertices, faces and edges (unused, sometimes missing), behind the keyword
  * or below. */
-static cw_status read_counts(off *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
+static cw_status read_counts(off *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *metadata,
                              cw_error *err)
 {
     int64_t vertices = 0, faces = 0;
     cwi_word word = {0};
-    cw_status st = first_word(s, &word, mesh, said, err);
+    cw_status st = first_word(s, &word, mesh, metadata, err);
     if (st == CW_OK && cwi_word_is(&word, "BINARY"))
         return cwi_fail(err, CW_ERR_FORMAT, "binary OFF is not read, only its text form");
     if (st == CW_OK && !cwi_word_integer(&word, &vertices))
@@ -175,7 +175,7 @@ static cw_status read_vertex(off *o, cwi_scan *s, cw_mesh *mesh, cw_error *err)
     return st == CW_OK ? cwi_build_point(&o->build, point, err) : st;
 }
 
-static cw_status read_face(off *o, cwi_scan *s, cw_mesh_file *said, cw_error *err)
+static cw_status read_face(off *o, cwi_scan *s, cw_mesh_file *metadata, cw_error *err)
 {
     int64_t corners, corner;
     cw_status st = cwi_scan_integer(s, "a face's number of corners", &corners, err);
@@ -188,7 +188,7 @@ static cw_status read_face(off *o, cwi_scan *s, cw_mesh_file *said, cw_error *er
             st = cwi_build_corner(&o->build, corner, err);
     }
     if (st == CW_OK)
-        cwi_build_end_face(&o->build, said);
+        cwi_build_end_face(&o->build, metadata);
     return st;
 }
 
@@ -204,7 +204,7 @@ static cw_status go_to_line(cwi_scan *s, const char *what, uint64_t i, uint64_t 
     return st;
 }
 
-static cw_status read_lines(off *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
+static cw_status read_lines(off *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *metadata,
                             cw_error *err)
 {
     cw_status st = CW_OK;
@@ -218,14 +218,14 @@ static cw_status read_lines(off *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *sa
     for (uint64_t i = 0; st == CW_OK && i < o->faces; i++) {
         st = go_to_line(s, "faces", i, o->faces, err);
         if (st == CW_OK)
-            st = read_face(o, s, said, err);
+            st = read_face(o, s, metadata, err);
         if (st == CW_OK)
             st = cwi_scan_end_line(s, err);
     }
     return st;
 }
 
-cw_status cwi_off_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw_error *err)
+cw_status cwi_off_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata, cw_error *err)
 {
     off o = {.build = {.in = in}};
     cwi_scan s = {0};
@@ -234,11 +234,11 @@ cw_status cwi_off_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
     if (st == CW_OK)
         st = read_keyword(&o, &s, err);
     if (st == CW_OK)
-        st = read_counts(&o, &s, mesh, said, err);
+        st = read_counts(&o, &s, mesh, metadata, err);
     if (st == CW_OK)
         st = ensure_capacity(&o, mesh, err);
     if (st == CW_OK)
-        st = read_lines(&o, &s, mesh, said, err);
+        st = read_lines(&o, &s, mesh, metadata, err);
     if (st == CW_OK)
         st = cwi_build_finish(&o.build, mesh, err);
     cwi_scan_close(&s);

@@ -64,8 +64,8 @@ typedef struct cwi_ply_header {
 size_t cwi_ply_type_size(cwi_ply_type type);
 
 /* Reads the header, and checks that the file is long enough for its counts. Sets known and
- * local of said. */
-CW_NODISCARD cw_status cwi_ply_parse(const cwi_input *in, cwi_ply_header *h, cw_mesh_file *said,
-                                     cw_error *err);
+ * local of metadata. */
+CW_NODISCARD cw_status cwi_ply_parse(const cwi_input *in, cwi_ply_header *h,
+                                     cw_mesh_file *metadata, cw_error *err);
 
 #endif

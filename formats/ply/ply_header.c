@@ -142,7 +142,8 @@ static cw_status parse_property(cwi_ply_header *h, const char *rest, const char 
 
 /* Parses a comment of our writer: unit, frame, up and origin. Up and origin are only accepted
  * from our own files, as they may mean something else in others. */
-static void parse_comment(cwi_ply_header *h, const char *rest, bool *ours, cw_mesh_file *said)
+static void parse_comment(cwi_ply_header *h, const char *rest, bool *ours,
+                          cw_mesh_file *metadata)
 {
     char word[CWI_WORD_BYTES] = "", value[CWI_WORD_BYTES] = "";
     cwi_next_text_word(&rest, word);
@@ -151,17 +152,17 @@ static void parse_comment(cwi_ply_header *h, const char *rest, bool *ours, cw_me
     if (strcmp(word, "cubewright") == 0)
         *ours = true;
     else if (strcmp(word, "unit") == 0)
-        cwi_parse_unit(&name, said);
+        cwi_parse_unit(&name, metadata);
     else if (strcmp(word, "frame") == 0)
-        cwi_parse_frame(&name, said);
+        cwi_parse_frame(&name, metadata);
     else if (strcmp(word, "up") == 0 && *ours)
-        said->axes.y_up = strcmp(value, "Y") == 0;
+        metadata->axes.y_up = strcmp(value, "Y") == 0;
     else if (strcmp(word, "origin") == 0 && *ours)
-        said->local = cwi_parse_origin(numbers, h->origin);
+        metadata->local = cwi_parse_origin(numbers, h->origin);
 }
 
 static cw_status parse_line(cwi_ply_header *h, const char *line, bool *ours, bool *done,
-                            cw_mesh_file *said, cw_error *err)
+                            cw_mesh_file *metadata, cw_error *err)
 {
     char word[CWI_WORD_BYTES] = "";
     const char *rest = line;
@@ -171,7 +172,7 @@ static cw_status parse_line(cwi_ply_header *h, const char *line, bool *ours, boo
     if (strcmp(word, "property") == 0)
         return parse_property(h, rest, line, err);
     if (strcmp(word, "comment") == 0)
-        parse_comment(h, rest, ours, said);
+        parse_comment(h, rest, ours, metadata);
     else if (strcmp(word, "end_header") == 0)
         *done = true;
     else if (*word && strcmp(word, "obj_info") != 0)
@@ -180,7 +181,7 @@ static cw_status parse_line(cwi_ply_header *h, const char *line, bool *ours, boo
     return CW_OK;
 }
 
-static cw_status parse_lines(cwi_ply_header *h, cwi_lines *lines, cw_mesh_file *said,
+static cw_status parse_lines(cwi_ply_header *h, cwi_lines *lines, cw_mesh_file *metadata,
                              cw_error *err)
 {
     char *line;
@@ -199,7 +200,7 @@ static cw_status parse_lines(cwi_ply_header *h, cwi_lines *lines, cw_mesh_file *
         if (st == CW_OK && !line)
             return cwi_fail(err, CW_ERR_FORMAT, "the header has no 'end_header'");
         if (st == CW_OK)
-            st = parse_line(h, line, &ours, &done, said, err);
+            st = parse_line(h, line, &ours, &done, metadata, err);
     }
     h->body = lines->next;
     h->lines = lines->number;
@@ -235,13 +236,13 @@ static cw_status check_counts(const cwi_ply_header *h, uint64_t left, cw_error *
     return CW_OK;
 }
 
-cw_status cwi_ply_parse(const cwi_input *in, cwi_ply_header *h, cw_mesh_file *said,
+cw_status cwi_ply_parse(const cwi_input *in, cwi_ply_header *h, cw_mesh_file *metadata,
                         cw_error *err)
 {
     cwi_lines lines = {0};
     cw_status st = cwi_lines_open(&lines, in, err);
     if (st == CW_OK)
-        st = parse_lines(h, &lines, said, err);
+        st = parse_lines(h, &lines, metadata, err);
     cwi_lines_close(&lines);
     return st == CW_OK ? check_counts(h, in->size - h->body, err) : st;
 }

@@ -80,7 +80,8 @@ static cw_status read_whole(const ply *p, cwi_scan *s, const cwi_ply_element *e,
 
 /* Reads a list of corners, or a list whose numbers are ignored. */
 static cw_status read_list(ply *p, cwi_scan *s, const cwi_ply_element *e,
-                           const cwi_ply_property *property, cw_mesh_file *said, cw_error *err)
+                           const cwi_ply_property *property, cw_mesh_file *metadata,
+                           cw_error *err)
 {
     int64_t count = 0, corner = 0;
     double number;
@@ -99,7 +100,7 @@ static cw_status read_list(ply *p, cwi_scan *s, const cwi_ply_element *e,
             st = cwi_build_corner(&p->build, corner, err);
     }
     if (st == CW_OK && is_face)
-        cwi_build_end_face(&p->build, said);
+        cwi_build_end_face(&p->build, metadata);
     return st;
 }
 
@@ -137,7 +138,7 @@ static void store_property(cw_mesh *mesh, size_t v, double point[3],
 }
 
 static cw_status read_element(ply *p, cwi_scan *s, const cwi_ply_element *e, bool is_vertex,
-                              cw_mesh *mesh, cw_mesh_file *said, cw_error *err)
+                              cw_mesh *mesh, cw_mesh_file *metadata, cw_error *err)
 {
     const size_t v = p->build.point_count;
     double point[3] = {0}, number = 0;
@@ -145,7 +146,7 @@ static cw_status read_element(ply *p, cwi_scan *s, const cwi_ply_element *e, boo
     for (size_t i = e->first; st == CW_OK && i < e->end; i++) {
         const cwi_ply_property *property = &p->header.properties[i];
         if (property->is_list) {
-            st = read_list(p, s, e, property, said, err);
+            st = read_list(p, s, e, property, metadata, err);
             continue;
         }
         st = read_number(p, s, e, property->type, &number, err);
@@ -155,7 +156,7 @@ static cw_status read_element(ply *p, cwi_scan *s, const cwi_ply_element *e, boo
     return st == CW_OK && is_vertex ? cwi_build_point(&p->build, point, err) : st;
 }
 
-static cw_status read_elements(ply *p, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
+static cw_status read_elements(ply *p, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *metadata,
                                cw_error *err)
 {
     cw_status st = CW_OK;
@@ -163,7 +164,7 @@ static cw_status read_elements(ply *p, cwi_scan *s, cw_mesh *mesh, cw_mesh_file 
         const cwi_ply_element *e = &p->header.elements[i];
         const bool is_vertex = strcmp(e->name, "vertex") == 0;
         for (uint64_t n = 0; st == CW_OK && n < e->count; n++)
-            st = read_element(p, s, e, is_vertex, mesh, said, err);
+            st = read_element(p, s, e, is_vertex, mesh, metadata, err);
     }
     return st;
 }
@@ -229,7 +230,7 @@ static cw_status ensure_capacity(ply *p, cw_mesh *mesh, uint64_t file_size, cw_e
     return st;
 }
 
-static cw_status read_body(ply *p, cw_mesh *mesh, cw_mesh_file *said, cw_error *err)
+static cw_status read_body(ply *p, cw_mesh *mesh, cw_mesh_file *metadata, cw_error *err)
 {
     cwi_mesh_input *in = p->build.in;
     cwi_scan s = {0};
@@ -240,25 +241,25 @@ static cw_status read_body(ply *p, cw_mesh *mesh, cw_mesh_file *said, cw_error *
                  : cwi_scan_open(&s, &in->file, p->header.body, &in->desc.progress, err);
     s.line = p->header.lines + 1;
     if (st == CW_OK)
-        st = read_elements(p, &s, mesh, said, err);
+        st = read_elements(p, &s, mesh, metadata, err);
     if (st == CW_OK)
         st = cwi_build_finish(&p->build, mesh, err);
     cwi_scan_close(&s);
     return st;
 }
 
-cw_status cwi_ply_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw_error *err)
+cw_status cwi_ply_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata, cw_error *err)
 {
     ply *p = cwi_alloc_zeroed(1, sizeof *p);
     if (!p)
         return cwi_fail_memory(err);
     p->build.in = in;
-    cw_status st = cwi_ply_parse(&in->file, &p->header, said, err);
+    cw_status st = cwi_ply_parse(&in->file, &p->header, metadata, err);
     if (st == CW_OK)
         st = find_roles(p, err);
     memcpy(mesh->origin, p->header.origin, sizeof mesh->origin);
     if (st == CW_OK)
-        st = read_body(p, mesh, said, err);
+        st = read_body(p, mesh, metadata, err);
     cwi_build_free(&p->build);
     cwi_free(p);
     return st;

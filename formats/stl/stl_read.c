@@ -93,15 +93,15 @@ static cw_status ensure_capacity(facets *f, uint64_t count, cw_error *err)
 
 /* Reads the words of our writer, "cubewright, LPS, mm from 1 2 3": frame and unit, and the
  * origin of a local file. */
-static void take_words(const char *text, cw_mesh *mesh, cw_mesh_file *said)
+static void take_words(const char *text, cw_mesh *mesh, cw_mesh_file *metadata)
 {
     static const char ours[] = "cubewright, ", from[] = " from ";
     const char *rest = text + strlen(ours);
-    if (strncmp(text, ours, strlen(ours)) != 0 || !cwi_parse_axes(&rest, said))
+    if (strncmp(text, ours, strlen(ours)) != 0 || !cwi_parse_axes(&rest, metadata))
         return;
-    said->local = strncmp(rest, from, strlen(from)) == 0;
-    if (said->local && !cwi_parse_origin(rest + strlen(from), mesh->origin))
-        said->known = CW_KNOWN_UNIT;
+    metadata->local = strncmp(rest, from, strlen(from)) == 0;
+    if (metadata->local && !cwi_parse_origin(rest + strlen(from), mesh->origin))
+        metadata->known = CW_KNOWN_UNIT;
 }
 
 /* --- binary ------------------------------------------------------------------------------ */
@@ -121,7 +121,7 @@ static cw_status read_binary_facets(facets *f, cwi_scan *s, size_t count, cw_err
     return st == CW_OK ? add_facets(f, corners, count, err) : st;
 }
 
-static cw_status read_binary(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
+static cw_status read_binary(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *metadata,
                              cw_error *err)
 {
     const unsigned char *head;
@@ -132,7 +132,7 @@ static cw_status read_binary(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file
     const uint32_t count = cwi_get_u32(head + HEADER);
     const uint64_t held = cwi_scan_left(s) / FACET;
     memcpy(text, head, HEADER);
-    take_words(text, mesh, said);
+    take_words(text, mesh, metadata);
     if (count > held)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "the header counts %u facets; the file has room for %llu", count,
@@ -202,28 +202,28 @@ static cw_status read_text_facet(facets *f, cwi_scan *s, cw_error *err)
 }
 
 /* Removes our words from the end of a solid's name. */
-static void take_name(char *name, cw_mesh *mesh, cw_mesh_file *said)
+static void take_name(char *name, cw_mesh *mesh, cw_mesh_file *metadata)
 {
     static const char ours[] = "cubewright, ";
     char *at = name + strlen(name);
     while (at > name && strncmp(at, ours, strlen(ours)) != 0)
         at--;
-    take_words(at, mesh, said);
-    while (said->known && at > name && at[-1] == ' ')
+    take_words(at, mesh, metadata);
+    while (metadata->known && at > name && at[-1] == ' ')
         at--;
-    if (said->known)
+    if (metadata->known)
         *at = '\0';
 }
 
 /* Reads a solid behind the word "solid"; its name may be any words. */
-static cw_status read_solid(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
+static cw_status read_solid(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *metadata,
                             cw_error *err)
 {
     char name[CWI_REST_BYTES];
     cwi_word word = {0};
     cw_status st = cwi_scan_rest(s, name, err);
     if (st == CW_OK && f->count == 0)
-        take_name(name, mesh, said);
+        take_name(name, mesh, metadata);
     if (st == CW_OK)
         st = cwi_mesh_begin_part(f->in, name, f->count, err);
     if (st == CW_OK)
@@ -240,7 +240,7 @@ static cw_status read_solid(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file 
     return st;
 }
 
-static cw_status read_text(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
+static cw_status read_text(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *metadata,
                            cw_error *err)
 {
     cwi_word word;
@@ -248,7 +248,7 @@ static cw_status read_text(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *
     while (st == CW_OK && word.size) {
         if (!is_keyword(&word, "solid"))
             return cwi_scan_fail(s, &word, "the next word", "solid", err);
-        st = read_solid(f, s, mesh, said, err);
+        st = read_solid(f, s, mesh, metadata, err);
         if (st == CW_OK)
             st = cwi_scan_word(s, &word, err);
     }
@@ -268,7 +268,7 @@ static cw_status move_arrays(facets *f, cw_mesh *mesh, cw_error *err)
     return cwi_mesh_shrink(mesh, err);
 }
 
-cw_status cwi_stl_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw_error *err)
+cw_status cwi_stl_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata, cw_error *err)
 {
     unsigned char head[START];
     size_t size;
@@ -280,7 +280,8 @@ cw_status cwi_stl_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
         st = text ? cwi_scan_open_text(&s, &in->file, 0, &in->desc.progress, err)
                   : cwi_scan_open(&s, &in->file, 0, &in->desc.progress, err);
     if (st == CW_OK)
-        st = text ? read_text(&f, &s, mesh, said, err) : read_binary(&f, &s, mesh, said, err);
+        st = text ? read_text(&f, &s, mesh, metadata, err)
+                  : read_binary(&f, &s, mesh, metadata, err);
     if (st == CW_OK)
         st = move_arrays(&f, mesh, err);
     cwi_scan_close(&s);

@@ -129,9 +129,9 @@ static void find_pixels(const cwi_tiff_file *f, const char *text, cwi_tiff_facts
                                                           : "";
     const double usual = cwi_tiff_length(name, strlen(name));
     for (int a = 0; a < 3; a++) {
-        const char *said = find_line(text, keys[a], &length);
-        said = said ? said : find_line(text, keys[0], &length);
-        facts->unit_mm[a] = said ? cwi_tiff_length(said, length) : usual;
+        const char *line = find_line(text, keys[a], &length);
+        line = line ? line : find_line(text, keys[0], &length);
+        facts->unit_mm[a] = line ? cwi_tiff_length(line, length) : usual;
     }
     for (int a = 0; a < 2; a++)
         if (cwi_tiff_rational(f, a ? TIFFTAG_YRESOLUTION : TIFFTAG_XRESOLUTION, &value) &&

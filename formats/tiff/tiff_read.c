@@ -140,9 +140,9 @@ static void set_frame(const cwi_tiff_facts *f, const cw_read_desc *desc, cw_volu
 {
     bool known = true, some = false;
     for (int a = 0; a < 3; a++) {
-        const bool said = f->spacing[a] > 0 && f->unit_mm[a] > 0;
-        known &= said || (v->dim[a] == 1 && a == 2);
-        some |= said;
+        const bool is_stated = f->spacing[a] > 0 && f->unit_mm[a] > 0;
+        known &= is_stated || (v->dim[a] == 1 && a == 2);
+        some |= is_stated;
     }
     for (int a = 0; a < 3; a++) {
         const double unit = known ? f->unit_mm[a] : 1;

@@ -127,18 +127,18 @@ cw_status cwi_claim_volume(const cw_claim *claim, cw_volume *v, cw_error *err)
 {
     const double unit = v->known & CW_KNOWN_UNIT && v->said_unit_mm > 0 ? v->said_unit_mm : 1;
     const bool framed = v->known & CW_KNOWN_FRAME;
-    const saying said = {.axes = {.unit_mm = unit, .ras = framed && v->said_ras},
-                         .has_unit = v->known & CW_KNOWN_UNIT,
-                         .has_frame = framed,
-                         .has_up = framed};
+    const saying metadata = {.axes = {.unit_mm = unit, .ras = framed && v->said_ras},
+                             .has_unit = v->known & CW_KNOWN_UNIT,
+                             .has_frame = framed,
+                             .has_up = framed};
     double m[3][3];
     if (is_silent(claim))
         return CW_OK;
-    cw_status st = check_agreement(claim, &said, err);
+    cw_status st = check_agreement(claim, &metadata, err);
     if (st != CW_OK)
         return st;
-    const axes x = choose_axes(claim, &said);
-    set_change(&said.axes, &x, m);
+    const axes x = choose_axes(claim, &metadata);
+    set_change(&metadata.axes, &x, m);
     if (v->cells && v->cells->points) /* owned by the volume */
         turn_points(m, (double *)(uintptr_t)v->cells->points, v->dim[0]);
     else if (!v->cells)
@@ -189,7 +189,7 @@ cw_status cwi_claim_mesh(const cw_claim *claim, cw_mesh_file *file, cw_mesh *mes
 {
     const bool gltf = strcmp(file->format, "glb") == 0 || strcmp(file->format, "gltf") == 0;
     const bool framed = file->known & CW_KNOWN_FRAME;
-    const saying said = {
+    const saying metadata = {
         .axes = {.unit_mm = gltf ? cw_unit_mm(CW_UNIT_M) : cw_unit_mm(file->axes.unit),
                  .ras = file->axes.ras,
                  .y_up = gltf || file->axes.y_up},
@@ -198,13 +198,13 @@ cw_status cwi_claim_mesh(const cw_claim *claim, cw_mesh_file *file, cw_mesh *mes
         .has_up = gltf || framed || file->axes.y_up};
     if (is_silent(claim))
         return CW_OK;
-    cw_status st = check_agreement(claim, &said, err);
+    cw_status st = check_agreement(claim, &metadata, err);
     if (st != CW_OK)
         return st;
-    const axes x = choose_axes(claim, &said);
+    const axes x = choose_axes(claim, &metadata);
     if (gltf)
-        return turn_mesh(&said.axes, &x, mesh, err);
-    if (claim->has_unit && x.unit_mm != said.axes.unit_mm)
+        return turn_mesh(&metadata.axes, &x, mesh, err);
+    if (claim->has_unit && x.unit_mm != metadata.axes.unit_mm)
         file->axes.unit = claim->axes.unit;
     file->axes.ras = x.ras;
     file->axes.y_up = x.y_up;

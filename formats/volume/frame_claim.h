@@ -11,7 +11,7 @@ CW_NODISCARD cw_status cwi_claim_volume(const cw_claim *claim, cw_volume *volume
 
 /* Applies the claim to the facts of a mesh file, before its mesh is turned. Formats with fixed
  * axes (glTF: metres, y up) were turned by their reader; then the mesh is turned here. */
-CW_NODISCARD cw_status cwi_claim_mesh(const cw_claim *claim, cw_mesh_file *said, cw_mesh *mesh,
-                                      cw_error *err);
+CW_NODISCARD cw_status cwi_claim_mesh(const cw_claim *claim, cw_mesh_file *metadata,
+                                      cw_mesh *mesh, cw_error *err);
 
 #endif

@@ -51,7 +51,7 @@ void cwi_array_list_choose(cwi_array_list *list, const char *name, bool of_cells
 bool cwi_array_list_tell(const cwi_array_list *list, char *text, size_t size)
 {
     const char *taken = NULL;
-    size_t others = 0, told = 0;
+    size_t others = 0, listed = 0;
     for (size_t n = 0; n < list->count; n++)
         if (list->items[n].is_default)
             taken = list->items[n].name;
@@ -66,11 +66,11 @@ bool cwi_array_list_tell(const cwi_array_list *list, char *text, size_t size)
         if (a->is_default || !a->is_read)
             continue;
         if (used + strlen(a->name) + sizeof " and 12345 more" > size) {
-            snprintf(text + used, size - used, " and %zu more", others - told);
+            snprintf(text + used, size - used, " and %zu more", others - listed);
             break;
         }
         used +=
-            (size_t)snprintf(text + used, size - used, "%s '%s'", told++ ? "," : "", a->name);
+            (size_t)snprintf(text + used, size - used, "%s '%s'", listed++ ? "," : "", a->name);
     }
     return true;
 }

@@ -168,33 +168,34 @@ static void note_other(cwi_vtk *v, const char *name, const char *type)
              type);
 }
 
-static cwi_vtk_rank rank_of(const cwi_vtk *v, const cwi_legacy_array *said,
+static cwi_vtk_rank rank_of(const cwi_vtk *v, const cwi_legacy_array *declared,
                             const vtk_type *type)
 {
-    if (type->type < 0 || said->components < 1 || said->components > 16)
+    if (type->type < 0 || declared->components < 1 || declared->components > 16)
         return CWI_VTK_NONE;
     if (v->expected)
-        return strcmp(said->name, v->expected) == 0 ? CWI_VTK_REQUESTED : CWI_VTK_NONE;
-    if (strcmp(said->name, "vtkGhostType") == 0)
+        return strcmp(declared->name, v->expected) == 0 ? CWI_VTK_REQUESTED : CWI_VTK_NONE;
+    if (strcmp(declared->name, "vtkGhostType") == 0)
         return CWI_VTK_NONE;
-    return said->rank == CWI_VTK_SCALARS || said->components == 1 ? said->rank
-                                                                  : CWI_VTK_SEVERAL;
+    return declared->rank == CWI_VTK_SCALARS || declared->components == 1 ? declared->rank
+                                                                          : CWI_VTK_SEVERAL;
 }
 
 /* Keeps an array that starts here when it is better than those before. */
-static void consider_array(cwi_vtk *v, const cwi_legacy_array *said, const vtk_type *type,
+static void consider_array(cwi_vtk *v, const cwi_legacy_array *declared, const vtk_type *type,
                            const char *type_name)
 {
-    const cwi_vtk_rank rank = rank_of(v, said, type);
-    if (strcmp(said->name, "vtkGhostType") != 0)
-        cwi_array_list_add(v->in->arrays, said->name, type_name, said->components,
+    const cwi_vtk_rank rank = rank_of(v, declared, type);
+    if (strcmp(declared->name, "vtkGhostType") != 0)
+        cwi_array_list_add(v->in->arrays, declared->name, type_name, declared->components,
                            v->best == &v->cells,
-                           type->type >= 0 && said->components >= 1 && said->components <= 16);
+                           type->type >= 0 && declared->components >= 1 &&
+                               declared->components <= 16);
     if (rank == CWI_VTK_NONE)
-        note_other(v, said->name, type_name);
+        note_other(v, declared->name, type_name);
     if (rank <= v->best->rank)
         return;
-    *v->best = *said;
+    *v->best = *declared;
     v->best->type = (cw_type)type->type;
     v->best->rank = rank;
     v->best->offset = v->offset;
@@ -207,34 +208,35 @@ static cw_status pass_numbers(cwi_vtk *v, const char *name, size_t count, size_t
 }
 
 /* Keeps marks, which tell the hidden points or cells. */
-static void keep_marks(cwi_vtk *v, const cwi_legacy_array *said, const vtk_type *type)
+static void keep_marks(cwi_vtk *v, const cwi_legacy_array *declared, const vtk_type *type)
 {
-    if (strcmp(said->name, "vtkGhostType") == 0 && said->components == 1 && type->type >= 0)
+    if (strcmp(declared->name, "vtkGhostType") == 0 && declared->components == 1 &&
+        type->type >= 0)
         v->grid.marks[v->best == &v->cells] =
             (cwi_vtk_row){.type = (cw_type)type->type, .count = v->count, .offset = v->offset};
 }
 
 /* Handles an array that starts here: keeps it if it is better, and skips it if reading goes
  * on. */
-static cw_status pass_array(cwi_vtk *v, const cwi_legacy_array *said, const char *type_name,
+static cw_status pass_array(cwi_vtk *v, const cwi_legacy_array *declared, const char *type_name,
                             size_t tuples, cw_error *err)
 {
     const vtk_type *type = find_type(type_name);
     size_t count;
     if (!type)
         return cwi_fail(err, CW_ERR_FORMAT,
-                        "the array '%s' is of type '%s', which is not known", said->name,
+                        "the array '%s' is of type '%s', which is not known", declared->name,
                         type_name);
     if (v->best && tuples == v->count) {
-        keep_marks(v, said, type);
-        consider_array(v, said, type, type_name);
+        keep_marks(v, declared, type);
+        consider_array(v, declared, type, type_name);
     }
     if (cwi_vtk_is_settled(v))
         return CW_OK;
-    if (!cwi_size_mul(tuples, said->components, &count))
+    if (!cwi_size_mul(tuples, declared->components, &count))
         return cwi_fail(err, CW_ERR_LIMIT, "the array '%s' is larger than an address space",
-                        said->name);
-    return pass_numbers(v, said->name, count, type->bits, err);
+                        declared->name);
+    return pass_numbers(v, declared->name, count, type->bits, err);
 }
 
 cw_status cwi_vtk_fail_cut_short(const cwi_vtk *v, cw_error *err)

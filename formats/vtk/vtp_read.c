@@ -30,7 +30,7 @@ typedef enum role {
 typedef struct vtp {
     cwi_mesh_input *in;
     cw_mesh *mesh;
-    cw_mesh_file *said;
+    cw_mesh_file *metadata;
     cwi_vtk_xml file;
     cwi_vtk_array arrays[ROLE_COUNT];
     bool has[ROLE_COUNT];
@@ -76,7 +76,7 @@ static cw_status start_piece(void *user, cwi_xml *x, cwi_attributes a, cw_error 
     cw_status st = CW_OK;
     for (size_t i = 0; i < sizeof counts / sizeof *counts && st == CW_OK; i++)
         st = cwi_vtk_xml_integer(a, counts[i].name, 0, INT64_MAX / 4, counts[i].count, err);
-    v->said->skipped = (size_t)(skipped[0] + skipped[1]);
+    v->metadata->skipped = (size_t)(skipped[0] + skipped[1]);
     return st;
 }
 
@@ -188,7 +188,7 @@ static cw_status take_comment(void *user, const char *text, cw_error *err)
 {
     vtp *v = user;
     (void)err;
-    cwi_take_comment(text + strspn(text, " "), &v->ours, v->mesh, v->said);
+    cwi_take_comment(text + strspn(text, " "), &v->ours, v->mesh, v->metadata);
     return CW_OK;
 }
 
@@ -314,7 +314,7 @@ static cw_status add_corners(vtp *v, const cwi_tuples *corners, size_t from, siz
     if (!strip) {
         for (size_t i = from; i < to && st == CW_OK; i++)
             st = cwi_build_corner(&v->build, cwi_tuples_whole(corners, i), err);
-        cwi_build_end_face(&v->build, v->said);
+        cwi_build_end_face(&v->build, v->metadata);
         return st;
     }
     for (size_t i = from; i + 2 < to && st == CW_OK; i++) {
@@ -383,14 +383,14 @@ static cw_status read_arrays(vtp *v, cw_error *err)
     return st == CW_OK ? cwi_build_finish(&v->build, v->mesh, err) : st;
 }
 
-cw_status cwi_vtp_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw_error *err)
+cw_status cwi_vtp_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata, cw_error *err)
 {
     vtp *v = cwi_alloc_zeroed(1, sizeof *v);
     if (!v)
         return cwi_fail_memory(err);
     v->in = v->build.in = in;
     v->mesh = mesh;
-    v->said = said;
+    v->metadata = metadata;
     cw_status st = cwi_xml_read_file(&rules, v, &in->file, err);
     if (st == CW_OK)
         st = cwi_vtk_xml_find_appended(&in->file, &v->file, err);

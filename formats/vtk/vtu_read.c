@@ -172,8 +172,8 @@ static cw_status keep_array(parsing *p, cwi_xml *x, cwi_attributes a, cwi_grid_r
 
 static bool is_named(cwi_attributes a, const char *name)
 {
-    const char *said = cwi_attribute(a, "Name");
-    return said && strcmp(said, name) == 0;
+    const char *array = cwi_attribute(a, "Name");
+    return array && strcmp(array, name) == 0;
 }
 
 /* Handles an array that may be the values, or the marks of hidden points or cells. */

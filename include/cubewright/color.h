@@ -23,10 +23,10 @@ typedef enum cw_colormap {
 CW_API const char *cw_colormap_name(cw_colormap map);
 
 /* Computes a colour of a map.
- * map    an unknown one counts as CW_COLORMAP_VIRIDIS
- * share  of the way from low to high; beyond 0 and 1 the ends, NaN: 0
- * rgb    sRGB */
-CW_API void cw_colormap_color(cw_colormap map, double share, uint8_t rgb[3]);
+ * map       an unknown one counts as CW_COLORMAP_VIRIDIS
+ * fraction  of the range, from low to high; beyond 0 and 1 the ends, NaN: 0
+ * rgb       sRGB */
+CW_API void cw_colormap_color(cw_colormap map, double fraction, uint8_t rgb[3]);
 
 /* Options of cw_mesh_sample(). Zero fields mean the default named beside them. */
 typedef struct cw_sample_desc {

@@ -81,12 +81,13 @@ CW_NODISCARD CW_API cw_status cw_picture_difference(const cw_picture *a, const c
 
 /* Makes a picture with one on the left, another on the right, and a thin white line between
  * them.
- * left, right  borrowed
- * share        fraction of the width for the left picture, 0 to 1
- * both         filled on success; free it with cw_picture_free()
- * Returns      CW_ERR_ARGUMENT as above; CW_ERR_NO_MEMORY */
+ * left, right    borrowed
+ * left_fraction  of the width for the left picture, 0 to 1
+ * both           filled on success; free it with cw_picture_free()
+ * Returns        CW_ERR_ARGUMENT as above; CW_ERR_NO_MEMORY */
 CW_NODISCARD CW_API cw_status cw_picture_split(const cw_picture *left, const cw_picture *right,
-                                               double share, cw_picture *both, cw_error *err);
+                                               double left_fraction, cw_picture *both,
+                                               cw_error *err);
 
 /* Counts the pixels whose red, green or blue differ by more than a tolerance, of 255.
  * a, b       borrowed

@@ -301,20 +301,20 @@ cw_status cw_picture_difference(const cw_picture *a, const cw_picture *b, double
     return st;
 }
 
-cw_status cw_picture_split(const cw_picture *left, const cw_picture *right, double share,
-                           cw_picture *both, cw_error *err)
+cw_status cw_picture_split(const cw_picture *left, const cw_picture *right,
+                           double left_fraction, cw_picture *both, cw_error *err)
 {
     CWI_REQUIRE(err, left, right, both);
     *both = (cw_picture){0};
     cw_status st = expect_same_size(left, right, err);
-    if (st == CW_OK && !(share >= 0 && share <= 1))
-        st = cwi_fail(err, CW_ERR_ARGUMENT, "%g of a picture: expected 0 to 1", share);
+    if (st == CW_OK && !(left_fraction >= 0 && left_fraction <= 1))
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "%g of a picture: expected 0 to 1", left_fraction);
     if (st == CW_OK)
         st = cw_picture_alloc(both, left->width, left->height, err);
     if (st != CW_OK)
         return st;
     const size_t w = left->width, line = 1 + w / 1024;
-    const size_t end = (size_t)lround(share * (double)w);
+    const size_t end = (size_t)lround(left_fraction * (double)w);
     const size_t first = end > line / 2 ? end - line / 2 : 0;
     for (size_t n = 0; n < w * left->height; n++) {
         const size_t x = n % w;

@@ -331,15 +331,15 @@ static inline void add_part(const cwi_cell_model *m, const cwi_projected_cell *c
                             const float t[2], const float values[2], const float part[2],
                             const cwi_lanes *linear, cwi_cell_ray *r)
 {
-    const float way = t[1] - t[0], rise = values[1] - values[0];
-    const float middle = t[0] + 0.5f * (part[0] + part[1]) * way;
+    const float length = t[1] - t[0], rise = values[1] - values[0];
+    const float middle = t[0] + 0.5f * (part[0] + part[1]) * length;
     glow g = {{0}, 0};
     if (linear) {
         g.color = (part[1] - part[0]) * *linear;
         g.depth = (float)-log1p(-fmin((double)g.color[3], MAX_OPACITY));
     } else
         g = glow_between(m, values[0] + part[0] * rise, values[0] + part[1] * rise,
-                         (part[1] - part[0]) * way);
+                         (part[1] - part[0]) * length);
     add_glow(m, c, middle, g, r);
 }
 

@@ -77,11 +77,11 @@ static cw_status take_opacities(const json_t *root, const char *key, cw_opacity_
         st = take_point(json_array_get(list, n), key, n, "0 to 1", &p->value, &opacity, err);
         if (st != CW_OK)
             return st;
-        const double share = json_is_number(opacity) ? json_number_value(opacity) : -1;
-        if (!(share >= 0 && share <= 1))
+        const double fraction = json_is_number(opacity) ? json_number_value(opacity) : -1;
+        if (!(fraction >= 0 && fraction <= 1))
             return cwi_fail(err, CW_ERR_FORMAT, "point %zu of '%s': 0 to 1 was expected", n,
                             key);
-        p->opacity = (float)share;
+        p->opacity = (float)fraction;
     }
     return st;
 }
