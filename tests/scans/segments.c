@@ -38,15 +38,15 @@ static double voxel_at(const cw_volume *v, size_t x, size_t y, size_t z)
 }
 
 /* How many voxels differ; all where the frames do. */
-static size_t count_differences(const cw_volume *v, const cw_volume *wanted, int wanted_count)
+static size_t count_differences(const cw_volume *v, const cw_volume *expected, int wanted_count)
 {
     size_t differ = 0;
     const size_t *n = v->dim;
     for (int a = 0; a < 3; a++) {
-        if (n[a] != wanted[0].dim[a])
+        if (n[a] != expected[0].dim[a])
             return SIZE_MAX;
         for (int c = 0; c < 4; c++)
-            if (fabs(v->affine[a][c] - wanted[0].affine[a][c]) > 1e-4)
+            if (fabs(v->affine[a][c] - expected[0].affine[a][c]) > 1e-4)
                 return SIZE_MAX;
     }
     if (v->components != (size_t)wanted_count)
@@ -57,7 +57,7 @@ static size_t count_differences(const cw_volume *v, const cw_volume *wanted, int
             return SIZE_MAX;
         for (size_t i = 0; i < n[0] * n[1] * n[2]; i++) {
             const size_t x = i % n[0], y = i / n[0] % n[1], z = i / n[0] / n[1];
-            differ += voxel_at(&layer, x, y, z) != voxel_at(&wanted[w], x, y, z);
+            differ += voxel_at(&layer, x, y, z) != voxel_at(&expected[w], x, y, z);
         }
     }
     return differ;
@@ -65,21 +65,21 @@ static size_t count_differences(const cw_volume *v, const cw_volume *wanted, int
 
 static int check_row(const char *folder, size_t row)
 {
-    cw_volume v = {0}, wanted[MAXIMUM] = {{0}};
+    cw_volume v = {0}, expected[MAXIMUM] = {{0}};
     cw_error err = {0};
     int count = 0, failed = 0;
     cw_status st = read_volume(folder, rows[row].dicom, &v, &err);
     for (; st == CW_OK && count < MAXIMUM && rows[row].nrrd[count]; count++)
-        st = read_volume(folder, rows[row].nrrd[count], &wanted[count], &err);
+        st = read_volume(folder, rows[row].nrrd[count], &expected[count], &err);
     if (st == CW_ERR_UNSUPPORTED)
         failed = SKIPPED;
     else if (st != CW_OK)
         failed = printf("%s: %s\n", rows[row].dicom, err.message) > 0;
-    else if (count_differences(&v, wanted, count) > 0)
+    else if (count_differences(&v, expected, count) > 0)
         failed = printf("%s: differs from %s\n", rows[row].dicom, rows[row].nrrd[0]) > 0;
     cw_volume_free(&v);
     for (int w = 0; w < MAXIMUM; w++)
-        cw_volume_free(&wanted[w]);
+        cw_volume_free(&expected[w]);
     return failed;
 }
 

@@ -29,22 +29,22 @@ static inline cw_status read_text(const char *name, const char *text, cw_mesh *m
         assert_ok(cw_mesh_check((mesh), &usable), usable);                                     \
     } while (0)
 
-static inline void check_triangles(const cw_mesh *mesh, size_t count, const uint32_t *wanted)
+static inline void check_triangles(const cw_mesh *mesh, size_t count, const uint32_t *expected)
 {
     assert_int_equal(mesh->triangle_count, count);
     for (size_t i = 0; i < 3 * count; i++)
-        if (mesh->triangles[i] != wanted[i])
-            fail_msg("corner %zu is vertex %u, not %u", i, mesh->triangles[i], wanted[i]);
+        if (mesh->triangles[i] != expected[i])
+            fail_msg("corner %zu is vertex %u, not %u", i, mesh->triangles[i], expected[i]);
 }
 
 /* Positions to the bit. */
-static inline void check_positions(const cw_mesh *mesh, size_t count, const float *wanted)
+static inline void check_positions(const cw_mesh *mesh, size_t count, const float *expected)
 {
     assert_int_equal(mesh->vertex_count, count);
     for (size_t i = 0; i < 3 * count; i++)
-        if (mesh->positions[i] != wanted[i])
+        if (mesh->positions[i] != expected[i])
             fail_msg("coordinate %zu is %.9g, not %.9g", i, (double)mesh->positions[i],
-                     (double)wanted[i]);
+                     (double)expected[i]);
 }
 
 /* A row of a table of files that must be refused. */

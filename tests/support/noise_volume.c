@@ -60,14 +60,14 @@ static bool is_float(const cw_volume *v)
 }
 
 void assert_filtered(const cw_volume *in, const cw_volume *out,
-                     double (*wanted)(const cw_volume *, const size_t[3], const void *),
+                     double (*expected)(const cw_volume *, const size_t[3], const void *),
                      const void *context)
 {
     for (size_t k = 0; k < in->dim[2]; k++)
         for (size_t j = 0; j < in->dim[1]; j++)
             for (size_t i = 0; i < in->dim[0]; i++) {
                 const double got = stored_at(out, i, j, k),
-                             right = wanted(in, (size_t[]){i, j, k}, context);
+                             right = expected(in, (size_t[]){i, j, k}, context);
                 assert_int_equal(is_gap(out, got), isnan(right));
                 if (!isnan(right)) /* what would become no data is moved away from it */
                     assert_true(fabs(got - right) <= (is_float(in)     ? 1e-3

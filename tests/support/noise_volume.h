@@ -26,7 +26,7 @@ double value_near(const cw_volume *v, const size_t at[3], long x, long y, long z
 
 /* Compares a filtered volume with the numbers that it should have; NaN: no value. */
 void assert_filtered(const cw_volume *in, const cw_volume *out,
-                     double (*wanted)(const cw_volume *, const size_t[3], const void *),
+                     double (*expected)(const cw_volume *, const size_t[3], const void *),
                      const void *context);
 
 #endif

@@ -24,13 +24,13 @@ __attribute__((constructor)) static void keep_memory(void)
     mallopt(M_TOP_PAD, 1 << 20);
 }
 
-void test_assert_fails(cw_status got, cw_status wanted, const char *words, const cw_error *err,
-                       const char *call, const char *file, int line)
+void test_assert_fails(cw_status got, cw_status expected, const char *words,
+                       const cw_error *err, const char *call, const char *file, int line)
 {
-    if (got == wanted && strstr(err->message, words))
+    if (got == expected && strstr(err->message, words))
         return;
     print_error("%s\n  gave %s: %s\n  not  %s: ...%s...\n", call, cw_status_name(got),
-                got == CW_OK ? "" : err->message, cw_status_name(wanted), words);
+                got == CW_OK ? "" : err->message, cw_status_name(expected), words);
     _fail(file, line);
 }
 

@@ -42,8 +42,8 @@ bool test_seed_is_other(void);
     } while (0)
 
 /* The call failed with this status and a message that holds these words. */
-#define assert_fails(call, wanted, words, err)                                                 \
-    test_assert_fails((call), (wanted), (words), &(err), #call, __FILE__, __LINE__)
+#define assert_fails(call, expected, words, err)                                               \
+    test_assert_fails((call), (expected), (words), &(err), #call, __FILE__, __LINE__)
 
 /* |value - truth| <= share * |truth|. */
 #define assert_within(value, truth, share)                                                     \
@@ -52,8 +52,8 @@ bool test_seed_is_other(void);
 #define assert_near(value, truth, margin)                                                      \
     test_assert_near((value), (truth), (margin), #value, __FILE__, __LINE__)
 
-void test_assert_fails(cw_status got, cw_status wanted, const char *words, const cw_error *err,
-                       const char *call, const char *file, int line);
+void test_assert_fails(cw_status got, cw_status expected, const char *words,
+                       const cw_error *err, const char *call, const char *file, int line);
 void test_assert_near(double value, double truth, double margin, const char *what,
                       const char *file, int line);
 

@@ -30,15 +30,16 @@ static EGLDisplay first_device(void)
 /* Makes a context of a version that reports its loss, where that is supported. */
 static EGLContext make_version(EGLDisplay display, EGLint major, EGLint minor)
 {
-    const EGLint wanted[] = {
+    const EGLint attributes[] = {
         EGL_CONTEXT_MAJOR_VERSION, major, EGL_CONTEXT_MINOR_VERSION, minor,
         EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
         /* left out when it is not known: */
         EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET, EGL_NONE};
     EGLint plain[7];
-    memcpy(plain, wanted, 6 * sizeof *plain);
+    memcpy(plain, attributes, 6 * sizeof *plain);
     plain[6] = EGL_NONE;
-    EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted);
+    EGLContext context =
+        eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
     return context != EGL_NO_CONTEXT
                ? context
                : eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, plain);

@@ -29,11 +29,12 @@ static inline cw_volume read_all(const cw_read_desc *desc)
     return v;
 }
 
-static inline void assert_refused(const cw_read_desc *desc, cw_status wanted, const char *words)
+static inline void assert_refused(const cw_read_desc *desc, cw_status expected,
+                                  const char *words)
 {
     cw_volume v;
     cw_error err = {0};
-    assert_fails(read_folder(desc, &v, &err), wanted, words, err);
+    assert_fails(read_folder(desc, &v, &err), expected, words, err);
     assert_null(v.data);
 }
 
@@ -119,7 +120,7 @@ static inline void write_at(const char *name, int number, int instance, double z
         name);
 }
 
-static inline void assert_pixels(const test_image *m, const double *wanted, cw_type type)
+static inline void assert_pixels(const test_image *m, const double *expected, cw_type type)
 {
     cw_volume v;
     cw_error err = {0};
@@ -131,7 +132,7 @@ static inline void assert_pixels(const test_image *m, const double *wanted, cw_t
             cw_volume one;
             assert_int_equal(cw_volume_select(&v, c, 0, &one, NULL), CW_OK);
             assert_near(cw_volume_value(&one, n % COLUMNS, n / COLUMNS, 0),
-                        wanted[n * v.components + c], 0);
+                        expected[n * v.components + c], 0);
         }
     cw_volume_free(&v);
 }

@@ -160,9 +160,9 @@ static inline cw_status read_nodes(const char *nodes, cw_mesh *mesh, cw_mesh_fil
 
 static inline void check_point(const cw_mesh *mesh, size_t v, double x, double y, double z)
 {
-    const double wanted[3] = {x, y, z};
+    const double expected[3] = {x, y, z};
     for (size_t a = 0; a < 3; a++)
-        assert_near(mesh->origin[a] + (double)mesh->positions[3 * v + a], wanted[a], 1e-4);
+        assert_near(mesh->origin[a] + (double)mesh->positions[3 * v + a], expected[a], 1e-4);
 }
 
 #endif

@@ -60,13 +60,13 @@ static inline void assert_place(const cw_volume *v, double i, double j, double k
 }
 
 /* The affine is these 12 numbers, row by row, to the bit. */
-static inline void check_affine(const cw_volume *volume, const double *wanted)
+static inline void check_affine(const cw_volume *volume, const double *expected)
 {
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 4; c++)
-            if (volume->affine[r][c] != wanted[4 * r + c])
+            if (volume->affine[r][c] != expected[4 * r + c])
                 fail_msg("affine[%d][%d] is %.17g, not %.17g", r, c, volume->affine[r][c],
-                         wanted[4 * r + c]);
+                         expected[4 * r + c]);
 }
 
 /* Checks a file that the header named, cut behind every `step`-th byte, from byte `from` on: it

@@ -136,9 +136,9 @@ static inline void check_pixels(const cw_volume *v, size_t kind, size_t samples)
         for (size_t i = 0; i < (size_t)WIDE * HIGH * PAGES; i++) {
             const double got =
                 cw_volume_value(&one, i % WIDE, i / WIDE % HIGH, i / WIDE / HIGH);
-            const double wanted = (float)number_of(kind, i * samples + c);
-            if ((float)got != (float)wanted)
-                fail_msg("voxel %zu of component %zu is %g, not %g", i, c, got, wanted);
+            const double expected = (float)number_of(kind, i * samples + c);
+            if ((float)got != (float)expected)
+                fail_msg("voxel %zu of component %zu is %g, not %g", i, c, got, expected);
         }
     }
 }

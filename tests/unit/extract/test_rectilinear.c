@@ -94,17 +94,17 @@ static void even_coordinates_change_nothing(void **state)
             even.affine[a][a] = 0.5;
             even.affine[a][3] = 4;
         }
-        cw_mesh m = test_extract(&v, &desc, NULL), wanted = test_extract(&even, &desc, NULL);
-        assert_int_equal(m.triangle_count, wanted.triangle_count);
-        assert_memory_equal(m.triangles, wanted.triangles, 12 * m.triangle_count);
+        cw_mesh m = test_extract(&v, &desc, NULL), expected = test_extract(&even, &desc, NULL);
+        assert_int_equal(m.triangle_count, expected.triangle_count);
+        assert_memory_equal(m.triangles, expected.triangles, 12 * m.triangle_count);
         for (size_t i = 0; i < 3 * m.vertex_count; i++)
             assert_near(m.origin[i % 3] + (double)m.positions[i],
-                        wanted.origin[i % 3] + (double)wanted.positions[i], 1e-5);
+                        expected.origin[i % 3] + (double)expected.positions[i], 1e-5);
         if (open) /* caps have normals of triangles */
             for (size_t i = 0; i < 3 * m.vertex_count; i++)
-                assert_near((double)m.normals[i], (double)wanted.normals[i], 1e-5);
+                assert_near((double)m.normals[i], (double)expected.normals[i], 1e-5);
         cw_mesh_free(&m);
-        cw_mesh_free(&wanted);
+        cw_mesh_free(&expected);
         cw_volume_free(&v);
     }
 }
@@ -135,11 +135,11 @@ static void places_and_indices_agree(void **state)
     double world[3], index[3], spacing[3];
     place_in_world(&v);
     for (double t = -0.5; t < 20; t += 0.37) {
-        const double wanted[3] = {t, t / 2, t + 3};
-        cw_volume_to_world(&v, wanted, world);
+        const double expected[3] = {t, t / 2, t + 3};
+        cw_volume_to_world(&v, expected, world);
         assert_ok(cw_volume_to_index(&v, world, index, &err), err);
         for (int a = 0; a < 3; a++)
-            assert_near(index[a], wanted[a], 1e-9);
+            assert_near(index[a], expected[a], 1e-9);
     }
     cw_volume_to_world(&v, (double[3]){4, 5, 6}, world);
     assert_near(world[0], 100 + 3 * coordinates[1][5], 1e-12);

@@ -675,13 +675,13 @@ static void weights_are_lengths_of_the_largest_difference(void **state)
                           .colors = colors,
                           .scalars = scalars};
     const cw_simplify_desc desc = {.normal_weight = 2, .color_weight = 3, .scalar_weight = 4};
-    const double wanted[2][8] = {{1, 0, 0, 0, 1.5, 0, 1.5, -0.5},
-                                 {0, 0, -1, 1.5, 1.5, 0.3, 1.5, 1.5}};
+    const double expected[2][8] = {{1, 0, 0, 0, 1.5, 0, 1.5, -0.5},
+                                   {0, 0, -1, 1.5, 1.5, 0.3, 1.5, 1.5}};
     float values[16];
     assert_int_equal(cwi_attributes_count(&desc), 8);
     cwi_attributes_weigh(&mesh, &desc, values);
     for (size_t n = 0; n < 16; n++)
-        assert_near((double)values[n], wanted[n / 8][n % 8], 1e-6);
+        assert_near((double)values[n], expected[n / 8][n % 8], 1e-6);
 }
 
 static void crossings_may_be_allowed(void **state)

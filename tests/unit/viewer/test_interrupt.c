@@ -82,7 +82,7 @@ static cw_renderer *new_renderer(void)
 }
 
 /* Cancels at report n, from nothing, and then draws; false: there are fewer reports. */
-static bool stop_at(int n, cw_scene scene, const cw_picture *wanted)
+static bool stop_at(int n, cw_scene scene, const cw_picture *expected)
 {
     cw_error err = {0};
     cw_picture picture;
@@ -97,7 +97,7 @@ static bool stop_at(int n, cw_scene scene, const cw_picture *wanted)
         assert_null(picture.pixels);
         picture = test_draw(r, &scene);
     }
-    assert_same(&picture, wanted);
+    assert_same(&picture, expected);
     cw_picture_free(&picture);
     cw_renderer_free(r);
     return st == CW_ERR_CANCELLED;
@@ -135,14 +135,14 @@ static void stopped_pictures_leave_a_whole_renderer(void **state)
         cw_scene scene = scene_of(modes[m], &t.blobs, &t.soft, &t.mesh);
         scene.threads = 1;
         cw_renderer *r = new_renderer();
-        cw_picture wanted = test_draw(r, &scene);
+        cw_picture expected = test_draw(r, &scene);
         int stops = 0;
-        for (int n = 0; n < 200 && stop_at(n, scene, &wanted);
+        for (int n = 0; n < 200 && stop_at(n, scene, &expected);
              n = n < 2 ? n + 1 : (test_is_short() ? 8 : 2) * n)
             stops++;
         if (stops < 2)
             fail_msg("%s asks %d times whether to go on", cw_mode_name(modes[m]), stops);
-        cw_picture_free(&wanted);
+        cw_picture_free(&expected);
         cw_renderer_free(r);
     }
     free_things(&t);
@@ -160,7 +160,7 @@ static void watched_pictures_are_the_same(void **state)
             cw_scene scene = scene_of(modes[m], &t.blobs, &t.soft, &t.mesh);
             scene.sampling.texture_edge = (size_t)edge;
             cw_renderer *r = new_renderer();
-            cw_picture wanted = test_draw(r, &scene);
+            cw_picture expected = test_draw(r, &scene);
             const cw_scene aside = {.mode = CW_MODE_SLICES,
                                     .volume = &t.blobs,
                                     .transfer = &t.soft,
@@ -171,11 +171,11 @@ static void watched_pictures_are_the_same(void **state)
             cw_renderer_forget(r);
             cw_picture first = test_draw(r, &scene), second = test_draw(r, &scene);
             assert_true(w.reports > 0);
-            assert_same(&first, &wanted);
-            assert_same(&second, &wanted);
+            assert_same(&first, &expected);
+            assert_same(&second, &expected);
             cw_picture_free(&first);
             cw_picture_free(&second);
-            cw_picture_free(&wanted);
+            cw_picture_free(&expected);
             cw_renderer_free(r);
         }
     cw_renderer_free(other);

@@ -69,11 +69,11 @@ static void depth_cues_start_and_end_where_asked(void **state)
     for (int n = 0; n < 6; n++) {
         const double *range = ranges[n / 2], end = range[1] == range[0] ? 1 : range[1];
         const double tau = -log(0.95) * 32 / 1000;
-        double wanted = 0;
+        double expected = 0;
         for (int i = 0; i < 1000; i++) {
             const double at = fmax((((double)i + 0.5) / 1000 - range[0]) / (end - range[0]), 0);
             const double kept = n & 1 ? pow(1 - 0.8, at) : 1 - 0.8 * fmin(at, 1);
-            wanted += (1 - exp(-tau)) * exp(-tau * i) * (0.8 * kept + 0.25 * (1 - kept));
+            expected += (1 - exp(-tau)) * exp(-tau * i) * (0.8 * kept + 0.25 * (1 - kept));
         }
         for (int m = 0; m < MODES; m++) {
             cw_scene s = scene_of(modes[m], &box, &flat);
@@ -84,7 +84,7 @@ static void depth_cues_start_and_end_where_asked(void **state)
             s.background[0][0] = s.background[1][0] = 0.25f;
             cw_picture p = draw(s);
             for (size_t i = 0; i < SIDE * SIDE; i++)
-                assert_near((double)p.pixels[4 * i], wanted, 1.5 / 255);
+                assert_near((double)p.pixels[4 * i], expected, 1.5 / 255);
             cw_picture_free(&p);
         }
     }
@@ -160,9 +160,9 @@ static void meshes_hide_what_is_behind(void **state)
         const bool is_splatted = modes[m] == CW_MODE_SPLAT || modes[m] == CW_MODE_SPLAT_TREE;
         cw_picture p = draw(scene);
         for (size_t n = 0; n < SIDE * SIDE; n++) {
-            const double wanted = 0.8 * alpha + (1 - alpha) * (double)alone.pixels[4 * n];
+            const double expected = 0.8 * alpha + (1 - alpha) * (double)alone.pixels[4 * n];
             assert_near((double)p.pixels[4 * n + 3], 1, 1e-3);
-            assert_near((double)p.pixels[4 * n], wanted, is_splatted ? 0.02 : 1.0 / 255);
+            assert_near((double)p.pixels[4 * n], expected, is_splatted ? 0.02 : 1.0 / 255);
         }
         cw_picture_free(&p);
     }

@@ -249,11 +249,11 @@ static void check_as_strtod(const char *number)
     const char *text = number;
     char *end;
     double value = -7;
-    const double wanted = strtod(number, &end);
+    const double expected = strtod(number, &end);
     const bool found = cwi_parse_double(&text, &value);
     if (found != (end != number) || text != end ||
-        (found && memcmp(&value, &wanted, sizeof value) != 0))
-        fail_msg("'%s' is read as %.17g up to '%s', not %.17g", number, value, text, wanted);
+        (found && memcmp(&value, &expected, sizeof value) != 0))
+        fail_msg("'%s' is read as %.17g up to '%s', not %.17g", number, value, text, expected);
 }
 
 /* Short numbers go a way of their own; the C library is the judge of it. */

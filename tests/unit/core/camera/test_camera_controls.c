@@ -205,15 +205,15 @@ static void orbits_keep_heads_up(void **state)
 {
     (void)state;
     cw_error err = {0};
-    const cw_camera wanted = fit("front", 50, 35), above = fit("top", 0, 0),
+    const cw_camera expected = fit("front", 50, 35), above = fit("top", 0, 0),
                     behind = fit("back", 0, 40);
     cw_camera c = fit("front", 0, 0);
     for (int n = 0; n < 10; n++)
         assert_ok(cw_camera_orbit(&c, 5, 3.5, &err), err);
-    assert_looks_alike(&c, &wanted, 1e-12);
+    assert_looks_alike(&c, &expected, 1e-12);
     c = fit("front", 20, 50);
     assert_ok(cw_camera_orbit(&c, 30, -15, &err), err);
-    assert_looks_alike(&c, &wanted, 1e-12);
+    assert_looks_alike(&c, &expected, 1e-12);
     c = above;
     assert_ok(cw_camera_orbit(&c, 0, -50, &err), err);
     assert_looks_alike(&c, &behind, 1e-5);

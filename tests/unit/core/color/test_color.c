@@ -219,8 +219,8 @@ static void scalars_become_colours(void **state)
     m.scalars = cwi_alloc_array(3, sizeof *m.scalars);
     memcpy(m.scalars, (const float[3]){-10, 5, 30}, 12);
     assert_ok(cw_mesh_color(&m, CW_COLORMAP_GRAY, 0, 10, &err), err);
-    static const uint8_t wanted[12] = {0, 0, 0, 255, 128, 128, 128, 255, 255, 255, 255, 255};
-    assert_memory_equal(m.colors, wanted, 12);
+    static const uint8_t expected[12] = {0, 0, 0, 255, 128, 128, 128, 255, 255, 255, 255, 255};
+    assert_memory_equal(m.colors, expected, 12);
     assert_ok(cw_mesh_color(&m, CW_COLORMAP_GRAY, 5, 5, &err), err);
     static const uint8_t step[12] = {0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255, 255};
     assert_memory_equal(m.colors, step, 12);

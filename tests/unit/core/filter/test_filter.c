@@ -43,15 +43,15 @@ static void assert_smoothed(const cw_volume *v, const cw_volume *out, const doub
     for (size_t k = 0; k < v->dim[2]; k++)
         for (size_t j = 0; j < v->dim[1]; j++)
             for (size_t i = 0; i < v->dim[0]; i++) {
-                const double wanted = mean_around(v, (size_t[]){i, j, k}, sigma),
+                const double expected = mean_around(v, (size_t[]){i, j, k}, sigma),
                              got = stored_at(out, i, j, k);
-                if (isnan(wanted))
+                if (isnan(expected))
                     assert_true(is_gap(out, got));
                 else /* what would become no data is moved away from it */
-                    assert_true(fabs(got - wanted) <= (is_float        ? 1e-4
-                                                       : v->has_nodata ? 1.0001
-                                                                       : 0.5001));
-                assert_true(isnan(wanted) || !is_gap(out, got));
+                    assert_true(fabs(got - expected) <= (is_float        ? 1e-4
+                                                         : v->has_nodata ? 1.0001
+                                                                         : 0.5001));
+                assert_true(isnan(expected) || !is_gap(out, got));
             }
 }
 

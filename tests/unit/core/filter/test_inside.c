@@ -53,7 +53,7 @@ static void spread_by_hand(const cw_volume *v, const bool *from, bool value,
 
 /* Holds a result against what should be inside: changed voxels are mirrored, others have their bytes. */
 static void assert_changed(const cw_volume *v, const cw_volume *out, const cw_inside *inside,
-                           const bool *wanted)
+                           const bool *expected)
 {
     const double mirror = (inside->level - v->intercept) / v->slope;
     for (size_t n = 0; n < voxel_count(v); n++) {
@@ -62,8 +62,8 @@ static void assert_changed(const cw_volume *v, const cw_volume *out, const cw_in
             assert_true(is_gap(out, is));
             continue;
         }
-        assert_int_equal(is_inside(out, inside, is), wanted[n]);
-        if (is_inside(v, inside, was) == wanted[n])
+        assert_int_equal(is_inside(out, inside, is), expected[n]);
+        if (is_inside(v, inside, was) == expected[n])
             assert_true(is == was);
         else if (v->type == CW_F32 || v->type == CW_F64)
             assert_true(fabs(is + was - 2 * mirror) < 1e-4);
@@ -80,7 +80,7 @@ static void opening_and_closing_are_those_of_balls(void **state)
         cw_volume v = make_noise_volume(noise_types[n % NOISE_TYPES], (size_t[]){12, 11, 10},
                                         n % 3 == 0),
                   out;
-        bool is[MOST_VOXELS], work[MOST_VOXELS], wanted[MOST_VOXELS];
+        bool is[MOST_VOXELS], work[MOST_VOXELS], expected[MOST_VOXELS];
         const double stored =
             v.type == CW_I8 || v.type == CW_I16 || v.type == CW_I32 ? -70 : 30;
         cw_error err = {0};
@@ -92,15 +92,15 @@ static void opening_and_closing_are_those_of_balls(void **state)
             for (size_t i = 0; i < voxel_count(&v); i++)
                 is[i] = is_inside(&v, &inside, stored_number(&v, i));
             spread_by_hand(&v, is, closes, radius, work);
-            spread_by_hand(&v, work, false, radius, wanted);
+            spread_by_hand(&v, work, false, radius, expected);
             for (size_t i = 0; i < voxel_count(&v); i++)
-                wanted[i] = wanted[i] ? !closes : closes;
+                expected[i] = expected[i] ? !closes : closes;
             assert_ok(closes ? cw_volume_close(&v, radius, &inside, NULL, &out, &err)
                              : cw_volume_open(&v, radius, &inside, NULL, &out, &err),
                       err);
             assert_int_equal(out.type, v.type);
             assert_memory_equal(out.affine, v.affine, sizeof v.affine);
-            assert_changed(&v, &out, &inside, wanted);
+            assert_changed(&v, &out, &inside, expected);
             cw_volume_free(&out);
         }
         cw_volume_free(&v);
@@ -116,7 +116,7 @@ static void masks_are_sampled_in_the_world(void **state)
         cw_volume v = make_noise_volume(noise_types[n], (size_t[]){12, 11, 10}, n % 2 == 0),
                   out,
                   mask = make_noise_volume(noise_types[n], (size_t[]){9, 5, 6}, n % 3 == 0);
-        bool wanted[MOST_VOXELS];
+        bool expected[MOST_VOXELS];
         cw_error err = {0};
         const cw_inside inside = {.level = n % 2 ? 40 : 25, .inside_is_low = n > 4};
         char *p = cw_volume_voxels(&mask);
@@ -141,11 +141,11 @@ static void masks_are_sampled_in_the_world(void **state)
             }
             const double m =
                 is_there ? stored_at(&mask, (size_t)at[0], (size_t)at[1], (size_t)at[2]) : 0;
-            wanted[i] =
+            expected[i] =
                 is_inside(&v, &inside, stored_number(&v, i)) && m != 0 && !is_gap(&mask, m);
         }
         assert_ok(cw_volume_mask(&v, &mask, &inside, NULL, &out, &err), err);
-        assert_changed(&v, &out, &inside, wanted);
+        assert_changed(&v, &out, &inside, expected);
         cw_volume_free(&out);
         cw_volume_free(&mask);
         cw_volume_free(&v);

@@ -157,7 +157,7 @@ static void normals_of_linear_fields_are_exact(void **state)
     test_seed(2);
     for (int round = 0; round < 4 * TEST_CUT_COUNT; round++) {
         test_grid g;
-        double wanted[3];
+        double expected[3];
         test_grid_make(&g, (test_cut)(round % TEST_CUT_COUNT), 10, 0.2);
         test_grid_fill(&g, slope);
         test_turn(&g.volume, round);
@@ -165,9 +165,9 @@ static void normals_of_linear_fields_are_exact(void **state)
         g.volume.slope = round & 2 ? -3 : 3;
         cw_mesh m = test_extract(&g.volume, &desc, NULL);
         test_check_promise(&m, true);
-        outward_slope(&g.volume, (round & 1) == (round >> 1 & 1) ? -1 : 1, wanted);
+        outward_slope(&g.volume, (round & 1) == (round >> 1 & 1) ? -1 : 1, expected);
         for (size_t i = 0; i < 3 * m.vertex_count; i++)
-            assert_near((double)m.normals[i], wanted[i % 3], 1e-6);
+            assert_near((double)m.normals[i], expected[i % 3], 1e-6);
         assert_true(test_normals_agree_but(&m, needle_share()));
         cw_mesh_free(&m);
         test_grid_free(&g);
@@ -283,20 +283,20 @@ static void a_lattice_of_hexahedra_is_a_dense_grid(void **state)
         const cw_extract_desc desc = {
             .leave_open = round & 2, .inside_is_low = round & 4, .simple_topology = round & 8};
         cw_mesh m = test_extract(&g.volume, &desc, &counts),
-                wanted = test_extract(&dense, &desc, &wanted_counts);
+                expected = test_extract(&dense, &desc, &wanted_counts);
         const cw_quality q = test_check_promise(&m, desc.leave_open),
-                         wanted_q = test_measure(&wanted);
+                         wanted_q = test_measure(&expected);
         assert_int_equal(q.euler, wanted_q.euler);
         assert_int_equal(q.components, wanted_q.components);
         assert_int_equal(counts.border_loops, wanted_counts.border_loops);
         if (desc.leave_open) {
-            assert_int_equal(m.triangle_count, wanted.triangle_count);
+            assert_int_equal(m.triangle_count, expected.triangle_count);
             /* one rule has no vertices inside cells, where a dense grid knows less */
-            assert_same_places(&m, &wanted, desc.simple_topology && round % 2);
+            assert_same_places(&m, &expected, desc.simple_topology && round % 2);
             assert_within(q.area_mm2, wanted_q.area_mm2, 1e-6);
         }
         cw_mesh_free(&m);
-        cw_mesh_free(&wanted);
+        cw_mesh_free(&expected);
         test_grid_free(&g);
     }
 }

@@ -88,22 +88,22 @@ static void primitives_are_merged(void **state)
 static void colors_are_turned_to_srgb(void **state)
 {
     (void)state;
-    static const uint8_t wanted[24] = {0,   255, 128, 255, 13,  223, 0,   0,
-                                       255, 255, 255, 128, 255, 255, 255, 255,
-                                       255, 255, 255, 255, 255, 255, 255, 255};
+    static const uint8_t expected[24] = {0,   255, 128, 255, 13,  223, 0,   0,
+                                         255, 255, 255, 128, 255, 255, 255, 255,
+                                         255, 255, 255, 255, 255, 255, 255, 255};
     cw_mesh mesh;
     cw_error err = {0};
     assert_ok(read_primitive("{\"attributes\":{\"POSITION\":0,\"COLOR_0\":3}}," BY_BYTES, &mesh,
                              NULL, &err),
               err);
     for (int i = 0; i < 24; i++)
-        assert_int_equal(mesh.colors[i], wanted[i]);
+        assert_int_equal(mesh.colors[i], expected[i]);
     cw_mesh_free(&mesh);
     assert_ok(read_primitive(BY_BYTES ",{\"attributes\":{\"POSITION\":0,\"COLOR_0\":3}}", &mesh,
                              NULL, &err),
               err);
     for (int i = 0; i < 24; i++)
-        assert_int_equal(mesh.colors[i], wanted[(i + 12) % 24]);
+        assert_int_equal(mesh.colors[i], expected[(i + 12) % 24]);
     cw_mesh_free(&mesh);
 }
 
@@ -205,7 +205,7 @@ static void normals_turn_with_their_node(void **state)
     static const char *const nodes[2] = {"\"rotation\":[0,0.7071067811865475,0,"
                                          "0.7071067811865475],\"scale\":[1,3,1]",
                                          "\"scale\":[1,1,-3]"};
-    static const float wanted[2][3] = {{1, 0, 0}, {0, 1, 0}};
+    static const float expected[2][3] = {{1, 0, 0}, {0, 1, 0}};
     for (size_t i = 0; i < 2; i++) {
         char json[8192];
         cw_mesh mesh;
@@ -216,7 +216,7 @@ static void normals_turn_with_their_node(void **state)
                  nodes[i]);
         assert_ok(read_glb(json, &mesh, NULL, &err), err);
         for (size_t k = 0; k < 9; k++)
-            assert_near((double)mesh.normals[k], (double)wanted[i][k % 3], 1e-6);
+            assert_near((double)mesh.normals[k], (double)expected[i][k % 3], 1e-6);
         cw_mesh_free(&mesh);
     }
 }

@@ -48,18 +48,18 @@ static void files_hold_what_was_asked_for(void **state)
         mesh.normals[a] = (float)(a + 1);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         const cw_write_desc desc = {.axes = rows[i].axes};
-        char wanted[200];
+        char expected[200];
         size_t size;
         cw_error err = {0};
         assert_ok(cw_mesh_write(test_path("a.obj"), &mesh, &desc, &err), err);
         char *text = test_file_read(test_path("a.obj"), &size);
-        snprintf(wanted, sizeof wanted, "# cubewright " CW_VERSION ", %s%s", rows[i].head,
+        snprintf(expected, sizeof expected, "# cubewright " CW_VERSION ", %s%s", rows[i].head,
                  rows[i].vertex);
-        if (strncmp(text, wanted, strlen(wanted)) != 0)
+        if (strncmp(text, expected, strlen(expected)) != 0)
             fail_msg("row %zu: %.100s", i, text);
-        snprintf(wanted, sizeof wanted, "\nvn %g %g %g\n", (double)rows[i].normal[0],
+        snprintf(expected, sizeof expected, "\nvn %g %g %g\n", (double)rows[i].normal[0],
                  (double)rows[i].normal[1], (double)rows[i].normal[2]);
-        assert_non_null(strstr(text, wanted));
+        assert_non_null(strstr(text, expected));
         free(text);
     }
     cw_mesh_free(&mesh);

@@ -264,7 +264,7 @@ static void running_out_of_memory_leaves_nothing(void **state)
 static void the_table_of_formats_is_whole_and_always_the_same(void **state)
 {
     (void)state;
-    static const char wanted[] =
+    static const char expected[] =
         "nrrd nifti metaimage vtk vtu vti mrc inr dicom tiff zarr vdb plot3d "
         "raw glb gltf stl ply obj off 3mf vtp drc neuroglancer ";
     char names[160] = "";
@@ -279,7 +279,7 @@ static void the_table_of_formats_is_whole_and_always_the_same(void **state)
         assert_non_null(formats[i].lost);
         assert_true(formats[i].reads_volume || formats[i].writes_mesh || formats[i].reads_mesh);
     }
-    assert_string_equal(names, wanted);
+    assert_string_equal(names, expected);
 }
 
 /* Names end up in JSON and in lines of text, so nothing but printable UTF-8 may pass. */

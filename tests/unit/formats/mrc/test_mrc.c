@@ -83,10 +83,10 @@ static void read_made(const map *m, cw_volume *v)
     assert_ok(read_back("a.map", v, &err), err);
 }
 
-static void check_near(const cw_volume *v, const double *wanted)
+static void check_near(const cw_volume *v, const double *expected)
 {
     for (int i = 0; i < 12; i++)
-        assert_near(v->affine[i / 4][i % 4], wanted[i], 1e-14);
+        assert_near(v->affine[i / 4][i % 4], expected[i], 1e-14);
 }
 
 static const struct {
@@ -117,8 +117,8 @@ static void modes_byte_orders_and_packings_give_the_same_numbers(void **state)
         assert_int_equal(v.known, CW_KNOWN_UNIT);
         check_near(&v, (const double[12]){2e-7, 0, 0, 0, 0, 3e-7, 0, 0, 0, 0, 4e-7, 0});
         for (size_t i = 0; i < 12; i++) {
-            const double wanted = (double)i - 3 + (v.type == CW_U16 && i < 3 ? 65536 : 0);
-            assert_true(cw_volume_value(&v, i % 2, i / 2 % 3, i / 6) == wanted);
+            const double expected = (double)i - 3 + (v.type == CW_U16 && i < 3 ? 65536 : 0);
+            assert_true(cw_volume_value(&v, i % 2, i / 2 % 3, i / 6) == expected);
         }
         check_regions("a.bin", NULL);
         cw_volume_free(&v);

@@ -254,7 +254,7 @@ static void time_is_told_in_seconds(void **state)
 static void encodings_and_byte_orders_give_the_same_numbers(void **state)
 {
     (void)state;
-    const int16_t wanted[4] = {1, -2, 300, -32768};
+    const int16_t expected[4] = {1, -2, 300, -32768};
     const uint8_t little[8] = {1, 0, 0xfe, 0xff, 0x2c, 1, 0, 0x80};
     const uint8_t big[8] = {0, 1, 0xff, 0xfe, 1, 0x2c, 0x80, 0};
     const char text[] = "1 -2\n300\t-32768";
@@ -288,7 +288,7 @@ static void encodings_and_byte_orders_give_the_same_numbers(void **state)
         put_file("a.nrrd", header, cases[i].bytes, cases[i].size);
         assert_ok(read_back("a.nrrd", &v, &err), err);
         assert_int_equal(v.type, CW_I16);
-        assert_memory_equal(v.data, wanted, sizeof wanted);
+        assert_memory_equal(v.data, expected, sizeof expected);
         check_regions("a.nrrd", NULL);
         cw_volume_free(&v);
     }

@@ -102,9 +102,9 @@ static void faces_name_vertices_and_normals_from_one(void **state)
 static void a_mesh_without_normals_is_plain(void **state)
 {
     (void)state;
-    static const char wanted[] = "# cubewright " CW_VERSION ", LPS, mm\no a\n"
-                                 "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
-                                 "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    static const char expected[] = "# cubewright " CW_VERSION ", LPS, mm\no a\n"
+                                   "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+                                   "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
     cw_mesh mesh = {0};
     cw_error err = {0};
     size_t size;
@@ -113,7 +113,7 @@ static void a_mesh_without_normals_is_plain(void **state)
     mesh.normals = NULL;
     assert_ok(cw_mesh_write(test_path("a.obj"), &mesh, NULL, &err), err);
     char *text = test_file_read(test_path("a.obj"), &size);
-    assert_string_equal(text, wanted);
+    assert_string_equal(text, expected);
     free(text);
     cw_mesh_free(&mesh);
 }

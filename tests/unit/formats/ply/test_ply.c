@@ -134,7 +134,7 @@ static void only_what_is_there_is_written(void **state)
 static void the_header_is_as_the_format_wants_it(void **state)
 {
     (void)state;
-    static const char wanted[] =
+    static const char expected[] =
         "ply\nformat binary_little_endian 1.0\n"
         "comment cubewright " CW_VERSION "\ncomment object skull\ncomment unit mm\n"
         "comment frame LPS\nelement vertex 4\n"
@@ -148,7 +148,7 @@ static void the_header_is_as_the_format_wants_it(void **state)
     const cw_write_desc desc = {.name = "skull"};
     assert_ok(cw_mesh_write(test_path("a.ply"), &mesh, &desc, &err), err);
     ply_read(&p, test_path("a.ply"));
-    assert_string_equal(p.header, wanted);
+    assert_string_equal(p.header, expected);
     free(p.bytes);
     cw_mesh_free(&mesh);
 }

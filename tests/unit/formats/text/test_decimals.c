@@ -24,9 +24,9 @@ static void numbers_look_as_printed(void **state)
         1.0 / 3, 2.0 / 3, 0.999999999, 9.99999e-4, 1e8 + 0.5,  4294967296.0};
     for (size_t i = 0; i < sizeof values / sizeof *values; i++)
         for (int digits = 6; digits <= 17; digits++) {
-            char wanted[32];
-            snprintf(wanted, sizeof wanted, "%.*g", digits, values[i]);
-            assert_string_equal(put(values[i], digits), wanted);
+            char expected[32];
+            snprintf(expected, sizeof expected, "%.*g", digits, values[i]);
+            assert_string_equal(put(values[i], digits), expected);
         }
     assert_string_equal(put(-0.0, 9), "0");
     assert_string_equal(put((double)NAN, 9), "nan");
@@ -65,9 +65,9 @@ static void most_numbers_are_those_of_printf(void **state)
     test_seed(5);
     for (int i = 0; i < 100000; i++) {
         const double value = ((double)rand() / RAND_MAX - 0.5) * pow(10, rand() % 12 - 3);
-        char wanted[32];
-        snprintf(wanted, sizeof wanted, "%.10g", value);
-        others += strcmp(put(value, 10), wanted) != 0;
+        char expected[32];
+        snprintf(expected, sizeof expected, "%.10g", value);
+        others += strcmp(put(value, 10), expected) != 0;
         assert_within(strtod(put(value, 10), NULL), value, 5.1e-10);
     }
     assert_true(others < 10);
@@ -79,10 +79,10 @@ static void whole_numbers_of_any_length(void **state)
     static const uint64_t values[] = {0, 9, 10, 4294967295u, UINT64_MAX};
     for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
         unsigned char text[32];
-        char wanted[32];
-        snprintf(wanted, sizeof wanted, "%ju", (uintmax_t)values[i]);
+        char expected[32];
+        snprintf(expected, sizeof expected, "%ju", (uintmax_t)values[i]);
         *cwi_put_integer(text, values[i]) = '\0';
-        assert_string_equal((char *)text, wanted);
+        assert_string_equal((char *)text, expected);
     }
 }
 

@@ -210,7 +210,7 @@ static void what_is_not_known_is_not_claimed(void **state)
 static void the_header_says_what_it_should(void **state)
 {
     (void)state;
-    static const char wanted[] =
+    static const char expected[] =
         "NRRD0005\ncontent: my name\ntype: uint8\ndimension: 5\nsizes: 2 5 4 3 2\n"
         "space: left-posterior-superior\n"
         "space directions: none (-0.5,0,0) (0,0,0.75) (0,2,0) none\n"
@@ -222,7 +222,7 @@ static void the_header_says_what_it_should(void **state)
     const cw_write_desc desc = {.name = "my\nname", .format = "nrrd"};
     assert_ok(cw_volume_write(test_path("a.anything"), &v, &desc, &err), err);
     char *bytes = test_file_read(test_path("a.anything"), &size);
-    assert_memory_equal(bytes, wanted, sizeof wanted - 1);
+    assert_memory_equal(bytes, expected, sizeof expected - 1);
     free(bytes);
     cw_volume_free(&v);
 }

@@ -37,7 +37,7 @@ static uint64_t word(const char *at, size_t index)
 }
 
 /* The bytes of an array, which must be of a type; free them. */
-static char *take_array(const vtp *f, const char *type, const char *name, size_t wanted)
+static char *take_array(const vtp *f, const char *type, const char *name, size_t expected)
 {
     char tag[200];
     snprintf(tag, sizeof tag, "<DataArray type=\"%s\" Name=\"%s\" ", type, name);
@@ -46,9 +46,9 @@ static char *take_array(const vtp *f, const char *type, const char *name, size_t
         fail_msg("no %s", tag);
     at = f->appended + strtoull(strstr(at, "offset=\"") + 8, NULL, 10);
     const size_t count = word(at, 0), block = word(at, 1), last = word(at, 2);
-    char *bytes = malloc(wanted + 1);
+    char *bytes = malloc(expected + 1);
     assert_true(bytes && count > 0);
-    assert_int_equal((last ? count - 1 : count) * block + last, wanted);
+    assert_int_equal((last ? count - 1 : count) * block + last, expected);
     const char *packed = at + 8 * (3 + count);
     for (size_t i = 0; i < count; packed += word(at, 3 + i), i++) {
         uLongf size = last && i + 1 == count ? last : block;
@@ -59,11 +59,11 @@ static char *take_array(const vtp *f, const char *type, const char *name, size_t
     return bytes;
 }
 
-static void check_array(const vtp *f, const char *type, const char *name, const void *wanted,
+static void check_array(const vtp *f, const char *type, const char *name, const void *expected,
                         size_t size)
 {
     char *bytes = take_array(f, type, name, size);
-    assert_memory_equal(bytes, wanted, size);
+    assert_memory_equal(bytes, expected, size);
     free(bytes);
 }
 
@@ -167,17 +167,17 @@ static void a_series_lists_its_files_from_its_own_folder(void **state)
     assert_int_equal(mkdir(test_path("sub/deep"), 0700), 0);
     assert_int_equal(mkdir(test_path("subway"), 0700), 0);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        char file[300], wanted[400];
+        char file[300], expected[400];
         cw_error err = {0};
         size_t size;
         snprintf(file, sizeof file, "%s", test_path(rows[i].file));
         const cw_pvd_entry entries[] = {{file, 0.1}};
         assert_ok(cw_pvd_write(test_path(rows[i].pvd), entries, 1, NULL, &err), err);
         char *text = test_file_read(test_path(rows[i].pvd), &size);
-        snprintf(wanted, sizeof wanted,
+        snprintf(expected, sizeof expected,
                  "\n<DataSet timestep=\"0.1\" group=\"\" part=\"0\" file=\"%s\"/>\n",
                  rows[i].listed);
-        if (!strstr(text, wanted))
+        if (!strstr(text, expected))
             fail_msg("row %zu: %s", i, text);
         free(text);
     }

@@ -273,21 +273,22 @@ static void every_planted_fault_is_marked_where_it_is(void **state)
     for (size_t n = 0; n < test_planted_count; n++) {
         const test_planted *row = &test_planted_meshes[n];
         known k;
-        unsigned marked = 0, wanted = 0;
+        unsigned marked = 0, expected = 0;
         learn(&k, row->name);
         for (size_t t = 0; t < k.mesh.triangle_count; t++)
             marked |= k.defects[t];
-        wanted |= row->open_edges ? CW_DEFECT_OPEN : 0;
-        wanted |=
+        expected |= row->open_edges ? CW_DEFECT_OPEN : 0;
+        expected |=
             row->nonmanifold_edges || row->nonmanifold_vertices ? CW_DEFECT_NONMANIFOLD : 0;
-        wanted |= row->misoriented_edges ? CW_DEFECT_MISORIENTED : 0;
-        wanted |= row->duplicates ? CW_DEFECT_DUPLICATE : 0;
-        wanted |= row->degenerate ? CW_DEFECT_DEGENERATE : 0;
-        wanted |= row->needles || row->caps ? CW_DEFECT_SLIVER : 0;
-        wanted |= row->inside_out || row->nested || row->open_inward ? CW_DEFECT_INSIDE_OUT : 0;
-        wanted |= row->meets_itself ? CW_DEFECT_INTERSECTING : 0;
-        if (marked != wanted)
-            fail_msg("%s: marked as %#x, not %#x", row->name, marked, wanted);
+        expected |= row->misoriented_edges ? CW_DEFECT_MISORIENTED : 0;
+        expected |= row->duplicates ? CW_DEFECT_DUPLICATE : 0;
+        expected |= row->degenerate ? CW_DEFECT_DEGENERATE : 0;
+        expected |= row->needles || row->caps ? CW_DEFECT_SLIVER : 0;
+        expected |=
+            row->inside_out || row->nested || row->open_inward ? CW_DEFECT_INSIDE_OUT : 0;
+        expected |= row->meets_itself ? CW_DEFECT_INTERSECTING : 0;
+        if (marked != expected)
+            fail_msg("%s: marked as %#x, not %#x", row->name, marked, expected);
         forget(&k);
     }
 }

@@ -3,10 +3,10 @@
 
 #include <math.h>
 
-static void expect(const char *mesh, const char *what, long long got, long long wanted)
+static void expect(const char *mesh, const char *what, long long got, long long expected)
 {
-    if (got != wanted)
-        fail_msg("%s: %s is %lld, not %lld", mesh, what, got, wanted);
+    if (got != expected)
+        fail_msg("%s: %s is %lld, not %lld", mesh, what, got, expected);
 }
 
 #define EXPECT(field) expect(row->name, #field, (long long)q.field, (long long)row->field)

@@ -124,14 +124,14 @@ static void check_told(const told_row *row, const cw_repair_facts *f)
         f->duplicates,        f->degenerate,       f->flipped_triangles,    f->flipped_shells,
         f->nonmanifold_edges, f->twisted_edges,    f->nonmanifold_vertices, f->sheets,
         f->holes_filled,      f->crossings_before, f->touching_vertices,    f->united_shells};
-    const size_t wanted[] = {row->duplicates, row->degenerate, row->flipped,  row->shells,
-                             row->edges,      row->twisted,    row->vertices, row->sheets,
-                             row->holes,      row->crossings,  row->touching, row->united};
+    const size_t expected[] = {row->duplicates, row->degenerate, row->flipped,  row->shells,
+                               row->edges,      row->twisted,    row->vertices, row->sheets,
+                               row->holes,      row->crossings,  row->touching, row->united};
     bool needed = false;
     for (size_t n = 0; n < sizeof told / sizeof *told; n++) {
-        if (told[n] != wanted[n])
-            fail_msg("%s: fact %zu is %zu, not %zu", row->name, n, told[n], wanted[n]);
-        needed = needed || wanted[n];
+        if (told[n] != expected[n])
+            fail_msg("%s: fact %zu is %zu, not %zu", row->name, n, told[n], expected[n]);
+        needed = needed || expected[n];
     }
     assert_int_equal(f->is_needed, needed);
     assert_true(f->is_sound && !f->is_wrapped && !f->is_undecided);
@@ -145,16 +145,16 @@ static void each_defect_is_told_apart_and_repaired(void **state)
     for (size_t n = 0; n < sizeof told_rows / sizeof *told_rows; n++) {
         const told_row *row = &told_rows[n];
         cw_mesh before = plant_mesh(row->name), m = plant_mesh(row->name);
-        told_row wanted = *row;
+        told_row expected = *row;
         const cw_repair_facts facts = repair_mesh(&m, NULL);
         if (!cw_repair_has_cgal()) { /* triangles go instead */
-            wanted.united = 0;
-            wanted.distance += row->united ? 10 : 0;
+            expected.united = 0;
+            expected.distance += row->united ? 10 : 0;
         }
-        check_told(&wanted, &facts);
+        check_told(&expected, &facts);
         assert_int_equal(facts.lacks_cgal, row->united && !cw_repair_has_cgal());
         assert_repaired(&m, row->name);
-        if (!(measure_distance(&m, &before) <= wanted.distance + 1e-5))
+        if (!(measure_distance(&m, &before) <= expected.distance + 1e-5))
             fail_msg("%s: distance %g mm", row->name, measure_distance(&m, &before));
         cw_mesh_free(&before);
         cw_mesh_free(&m);

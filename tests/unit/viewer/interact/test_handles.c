@@ -34,7 +34,7 @@ static void a_face_goes_to_the_point_under_the_mouse(void **state)
     (void)state;
     for (size_t v = 0; v < VIEWS; v++)
         for (int n = 0; n < CWI_HANDLES; n++) {
-            cwi_world_box b = box, wanted = box;
+            cwi_world_box b = box, expected = box;
             double point[3], pixel[2];
             find_middle(&box, n, point);
             point[n / 2] += n % 2 ? 7.25 : 5.5;
@@ -42,8 +42,8 @@ static void a_face_goes_to_the_point_under_the_mouse(void **state)
                                           point, pixel, NULL));
             assert_true(cwi_handles_drag(&views[v], &bounds, 1, n, pixel, &b));
             assert_near(face_of(&b, n), point[n / 2], 1e-9);
-            *(n % 2 ? &wanted.high[n / 2] : &wanted.low[n / 2]) = face_of(&b, n);
-            assert_memory_equal(&b, &wanted, sizeof b);
+            *(n % 2 ? &expected.high[n / 2] : &expected.low[n / 2]) = face_of(&b, n);
+            assert_memory_equal(&b, &expected, sizeof b);
         }
 }
 

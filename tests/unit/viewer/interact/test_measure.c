@@ -49,10 +49,10 @@ static void areas_are_those_of_polygons_anywhere(void **state)
         flat[n][2] = 4;
         move_point(flat[n], moved[n]);
     }
-    const double wanted = CORNERS * 100 * sin(2 * PI / CORNERS) / 2;
+    const double expected = CORNERS * 100 * sin(2 * PI / CORNERS) / 2;
     const double(*const all[2])[3] = {(const double(*)[3])flat, (const double(*)[3])moved};
     for (int n = 0; n < 2; n++) {
-        assert_near(cwi_measure_area(all[n], CORNERS), wanted, 1e-9);
+        assert_near(cwi_measure_area(all[n], CORNERS), expected, 1e-9);
         assert_near(cwi_measure_bend(all[n], CORNERS), 0, 1e-9);
         assert_false(cwi_measure_crosses(all[n], CORNERS));
     }

@@ -163,12 +163,12 @@ static void translucent_sheets_blend_in_any_order(void **state)
     static const uint8_t colors[3][4] = {
         {255, 0, 0, 102}, {0, 255, 0, 153}, {51, 102, 255, 204}};
     static const int orders[4][3] = {{0, 1, 2}, {2, 1, 0}, {1, 2, 0}, {0, 2, 1}};
-    double wanted[4] = {0};
+    double expected[4] = {0};
     for (int c = 0; c < 4; c++) { /* from the nearest on */
         double left = 1;
         for (int s = 0; s < 3; s++) {
             const double alpha = colors[s][3] / 255.0;
-            wanted[c] += left * alpha * (c < 3 ? colors[s][c] / 255.0 : 1);
+            expected[c] += left * alpha * (c < 3 ? colors[s][c] / 255.0 : 1);
             left *= 1 - alpha;
         }
     }
@@ -186,7 +186,7 @@ static void translucent_sheets_blend_in_any_order(void **state)
         cw_renderer_forget(r);
         cw_picture picture = test_draw(r, &scene);
         for (int c = 0; c < 4; c++) {
-            assert_near((double)pixel(&picture, 16, 16)[c], wanted[c], 1e-5);
+            assert_near((double)pixel(&picture, 16, 16)[c], expected[c], 1e-5);
             assert_near((double)pixel(&picture, 2, 2)[c], 0, 0);
         }
         cw_picture_free(&picture);
@@ -334,7 +334,7 @@ static void scalars_are_shown_by_the_ramp(void **state)
     mesh.scalars = calloc(4, sizeof(float));
     for (int n = 0; n < 6; n++) {
         const float value = (float)(n == 5 ? NAN : 10 + 2.5 * n);
-        double wanted[3] = {0};
+        double expected[3] = {0};
         for (int v = 0; v < 4; v++)
             mesh.scalars[v] = value;
         const cw_scene scene = {.mode = CW_MODE_MESH,
@@ -348,13 +348,13 @@ static void scalars_are_shown_by_the_ramp(void **state)
                                 .material = flat};
         cw_renderer_forget(r);
         cw_picture picture = test_draw(r, &scene);
-        cwi_ramp_color(n / 4.0, wanted);
+        cwi_ramp_color(n / 4.0, expected);
         for (int c = 0; c < 3; c++) {
             const double shown = (double)pixel(&picture, 4, 4)[c];
             if (n == 5)
                 assert_near(shown, (double)pixel(&picture, 4, 4)[0], 1e-6);
             else
-                assert_near(shown, wanted[c], 2e-3);
+                assert_near(shown, expected[c], 2e-3);
         }
         cw_picture_free(&picture);
     }
@@ -435,7 +435,7 @@ static void shape_of_triangles_is_shown(void **state)
     (void)state;
     cw_renderer *r = test_renderer();
     cw_mesh mesh;
-    double wanted[2][3];
+    double expected[2][3];
     make_arrays(&mesh, 6, 2);
     for (uint32_t n = 0; n < 6; n++)
         mesh.triangles[n] = n;
@@ -456,11 +456,11 @@ static void shape_of_triangles_is_shown(void **state)
                             .material = flat};
     cw_renderer_forget(r);
     cw_picture picture = test_draw(r, &scene);
-    cwi_ramp_color(1, wanted[0]);
-    cwi_ramp_color(sqrt(3) / 2, wanted[1]);
+    cwi_ramp_color(1, expected[0]);
+    cwi_ramp_color(sqrt(3) / 2, expected[1]);
     for (int c = 0; c < 3; c++) {
-        assert_near((double)pixel(&picture, 10, 24)[c], wanted[0][c], 2e-3);
-        assert_near((double)pixel(&picture, 25, 24)[c], wanted[1][c], 2e-3);
+        assert_near((double)pixel(&picture, 10, 24)[c], expected[0][c], 2e-3);
+        assert_near((double)pixel(&picture, 25, 24)[c], expected[1][c], 2e-3);
     }
     cw_picture_free(&picture);
     cw_mesh_free(&mesh);

@@ -305,15 +305,15 @@ static void materials_have_their_means(void **state)
             const double value = ((double)(n % 80) + 0.5) / 80;
             const size_t cell = n % 80 / 4;
             int m = 0;
-            double wanted[2];
+            double expected[2];
             while (value > ends[m + 1])
                 m++;
             if (cell == 2 || cell == 5 || cell == 10 || cell == 16) /* of two materials */
                 continue;
-            expected_material(ends[m], ends[m + 1], opacities[m], opacities[m + 1], wanted);
-            const double alpha = 1 - exp(-8 * wanted[1]);
+            expected_material(ends[m], ends[m + 1], opacities[m], opacities[m + 1], expected);
+            const double alpha = 1 - exp(-8 * expected[1]);
             assert_near((double)p.pixels[4 * n + 3], alpha, 2e-3);
-            assert_near((double)p.pixels[4 * n], alpha * wanted[0], 2e-3);
+            assert_near((double)p.pixels[4 * n], alpha * expected[0], 2e-3);
         }
         cw_picture_free(&p);
     }
