@@ -3,6 +3,7 @@
 #ifndef SIMPLIFY_BOOLEAN_ARRANGEMENT_H
 #define SIMPLIFY_BOOLEAN_ARRANGEMENT_H
 
+#include "core/geometry/bvh.h"
 #include "simplify/boolean/exact_points.h"
 
 enum { CWI_NOTHING = UINT32_MAX };
@@ -17,7 +18,10 @@ typedef struct cwi_meeting {
 typedef struct cwi_meetings {
     size_t count;
     cwi_meeting *pairs; /* ordered by a, then b */
+    cwi_boxes tree;     /* of all triangles; empty if only some were looked at */
 } cwi_meetings;
+
+void cwi_meetings_free(cwi_meetings *meetings);
 
 /* A line from p to q in a triangle, or a point of it when p and q are equal: part of the plane of triangle
  * `on[0]` if on[1] is CWI_NOTHING, of the edge between vertices on[0] and on[1] otherwise. */
@@ -35,8 +39,9 @@ typedef struct cwi_seams {
 } cwi_seams;
 
 /* Finds all pairs of triangles that meet.
+ * moved    of each triangle: only pairs with one that moved are looked for; NULL: all
  * Returns  CW_ERR_NO_MEMORY, CW_ERR_CANCELLED */
-CW_NODISCARD cw_status cwi_find_meetings(const cwi_soup *s, int threads,
+CW_NODISCARD cw_status cwi_find_meetings(const cwi_soup *s, const bool *moved, int threads,
                                          const cw_progress *progress, cwi_meetings *out,
                                          cw_error *err);
 

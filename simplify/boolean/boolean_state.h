@@ -13,6 +13,8 @@ typedef struct cwi_grid_solids {
     uint32_t *inputs;  /* of each triangle */
     uint32_t *sources; /* of each triangle: its number among those of all meshes */
     size_t input_count;
+    bool *
+        moved; /* of each triangle: a corner moved since the last arrangement; NULL: all are new */
     size_t flat_count; /* triangles without area, behind the others */
     size_t dropped, turned, open_mesh;
     double moved_mm;
@@ -33,9 +35,11 @@ CW_NODISCARD cw_status cwi_solids_gather(const cw_mesh *const *meshes, size_t co
                                          cwi_grid_solids *out, cw_error *err);
 
 /* Puts triangles of a former result on a grid.
- * positions  x, y, z of each vertex, mm */
+ * positions  x, y, z of each vertex, mm
+ * first_new  points from this number on are no vertices of the former solids: they moved */
 CW_NODISCARD cw_status cwi_solids_again(const float *positions, const cwi_sheets *sheets,
-                                        double scale, cwi_grid_solids *out, cw_error *err);
+                                        size_t first_new, double scale, cwi_grid_solids *out,
+                                        cw_error *err);
 
 /* Moves vertices of triangles that meet onto others within a radius, in grid units; *moved_mm grows to the
  * largest movement. Vertices of other triangles stay. */

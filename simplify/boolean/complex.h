@@ -63,12 +63,13 @@ typedef uint8_t (*cwi_keep_cell)(const void *context, const int32_t *windings, s
 
 /* Finds the windings of each cell, and sets kept[cell] to what `keep` returns. positive: inputs whose number is
  * above 0.
+ * tree    of the boxes of all triangles; or of others, which is no use
  * inputs  of each triangle of the soup: below input_count */
 CW_NODISCARD cw_status cwi_find_windings(const cwi_soup *s, const cwi_triangle_parts *parts,
                                          const cwi_facets *facets, const cwi_space_cells *cells,
-                                         const uint32_t *inputs, size_t input_count,
-                                         cwi_keep_cell keep, const void *context, uint8_t *kept,
-                                         cw_error *err);
+                                         const cwi_boxes *tree, const uint32_t *inputs,
+                                         size_t input_count, cwi_keep_cell keep,
+                                         const void *context, uint8_t *kept, cw_error *err);
 
 /* Lengthens an array, a pointer to which is given, to a capacity of `count` elements or more; returns false, with
  * the array untouched, when memory is out. */

@@ -84,12 +84,14 @@ static void move_triangle(cwi_grid_solids *s, size_t from, size_t to)
     memmove(s->soup.triangles[to], s->soup.triangles[from], sizeof *s->soup.triangles);
     s->inputs[to] = s->inputs[from];
     s->sources[to] = s->sources[from];
+    if (s->moved)
+        s->moved[to] = s->moved[from];
 }
 
 cw_status cwi_solids_set_flat_aside(cwi_grid_solids *s, cw_error *err)
 {
     const size_t all = s->soup.triangle_count + s->flat_count;
-    uint32_t(*flat)[5] = cwi_alloc_array(all, sizeof *flat);
+    uint32_t(*flat)[6] = cwi_alloc_array(all, sizeof *flat);
     size_t count = 0, flats = 0;
     if (!flat)
         return cwi_fail_memory(err);
@@ -98,7 +100,8 @@ cw_status cwi_solids_set_flat_aside(cwi_grid_solids *s, cw_error *err)
         if (has_area(&s->soup, t))
             move_triangle(s, t, count++);
         else if (!is_collapsed(v)) {
-            const uint32_t row[5] = {v[0], v[1], v[2], s->inputs[t], s->sources[t]};
+            const uint32_t row[6] = {v[0],         v[1],          v[2],
+                                     s->inputs[t], s->sources[t], s->moved && s->moved[t]};
             memcpy(flat[flats++], row, sizeof row);
         }
     }
@@ -109,6 +112,8 @@ cw_status cwi_solids_set_flat_aside(cwi_grid_solids *s, cw_error *err)
         memcpy(s->soup.triangles[count + n], flat[n], sizeof *s->soup.triangles);
         s->inputs[count + n] = flat[n][3];
         s->sources[count + n] = flat[n][4];
+        if (s->moved)
+            s->moved[count + n] = flat[n][5];
     }
     cwi_free(flat);
     return CW_OK;
@@ -295,12 +300,14 @@ cw_status cwi_solids_gather(const cw_mesh *const *meshes, size_t count, cwi_grid
     return st;
 }
 
-cw_status cwi_solids_again(const float *positions, const cwi_sheets *sheets, double scale,
-                           cwi_grid_solids *out, cw_error *err)
+cw_status cwi_solids_again(const float *positions, const cwi_sheets *sheets, size_t first_new,
+                           double scale, cwi_grid_solids *out, cw_error *err)
 {
     places p = {0};
     uint32_t *number = cwi_alloc_array(sheets->vertex_count, sizeof *number);
-    const bool done = number && alloc_places(&p, &out->soup, sheets->vertex_count) &&
+    out->moved = cwi_alloc_array(sheets->triangle_count, sizeof *out->moved);
+    const bool done = number && out->moved &&
+                      alloc_places(&p, &out->soup, sheets->vertex_count) &&
                       alloc_triangles(out, sheets->triangle_count);
     out->input_count = 1;
     out->scale = scale;
@@ -312,6 +319,8 @@ cw_status cwi_solids_again(const float *positions, const cwi_sheets *sheets, dou
     }
     for (size_t t = 0; t < sheets->triangle_count && done; t++) {
         const uint32_t *c = sheets->triangles + 3 * t;
+        out->moved[t] = sheets->points[c[0]] >= first_new ||
+                        sheets->points[c[1]] >= first_new || sheets->points[c[2]] >= first_new;
         add_triangle(out, (uint32_t[3]){number[c[0]], number[c[1]], number[c[2]]}, 0,
                      sheets->sources[t]);
     }
@@ -326,5 +335,6 @@ void cwi_solids_free(cwi_grid_solids *s)
     cwi_free(s->soup.triangles);
     cwi_free(s->inputs);
     cwi_free(s->sources);
+    cwi_free(s->moved);
     *s = (cwi_grid_solids){0};
 }

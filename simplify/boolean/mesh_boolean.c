@@ -40,7 +40,7 @@ typedef struct round_state {
 static void free_round(round_state *r)
 {
     cwi_solids_free(&r->solids);
-    cwi_free(r->meetings.pairs);
+    cwi_meetings_free(&r->meetings);
     cwi_free(r->seams.points);
     cwi_free(r->seams.seams);
     cwi_free(r->parts.parts);
@@ -90,8 +90,9 @@ static cw_status arrange(round_state *r, const choice *c, const cw_boolean_desc 
         st = cwi_find_cells(s, &r->parts, &r->facets, &r->cells, err);
     if (st == CW_OK) {
         r->kept = cwi_alloc_zeroed(r->cells.count, 1);
-        st = r->kept ? cwi_find_windings(s, &r->parts, &r->facets, &r->cells, r->solids.inputs,
-                                         r->solids.input_count, keep_cell, c, r->kept, err)
+        st = r->kept ? cwi_find_windings(s, &r->parts, &r->facets, &r->cells, &r->meetings.tree,
+                                         r->solids.inputs, r->solids.input_count, keep_cell, c,
+                                         r->kept, err)
                      : cwi_fail_memory(err);
     }
     return st;
@@ -141,13 +142,12 @@ static double volume_of(const round_state *r, const cwi_sheets *sheets)
 /* Finds where the triangles of a round meet. */
 static cw_status meet(round_state *r, const cw_boolean_desc *d, cw_error *err)
 {
-    cwi_free(r->meetings.pairs);
+    cwi_meetings_free(&r->meetings);
     cwi_free(r->seams.points);
     cwi_free(r->seams.seams);
-    r->meetings = (cwi_meetings){0};
     r->seams = (cwi_seams){0};
-    cw_status st =
-        cwi_find_meetings(&r->solids.soup, d->threads, &d->progress, &r->meetings, err);
+    cw_status st = cwi_find_meetings(&r->solids.soup, r->solids.moved, d->threads, &d->progress,
+                                     &r->meetings, err);
     if (st == CW_OK)
         st = cwi_find_seams(&r->solids.soup, &r->meetings, d->threads, &d->progress, &r->seams,
                             err);
@@ -198,13 +198,15 @@ static cw_status round_result(boolean *b, const round_state *first, cwi_sheets *
         round_state r = {0};
         const size_t vertices = sheets->vertex_count - sheets->contact_vertices;
         cwi_free(*positions);
-        *positions = round_vertices(round ? &last : first, sheets, &b->facts.moved_mm, &fresh);
+        const round_state *from = round ? &last : first;
+        *positions = round_vertices(from, sheets, &b->facts.moved_mm, &fresh);
         if (!*positions)
             return cwi_fail_memory(err);
         if (!fresh)
             break;
         b->facts.rounds += 1;
-        st = cwi_solids_again(*positions, sheets, first->solids.scale, &r.solids, err);
+        st = cwi_solids_again(*positions, sheets, from->solids.soup.vertex_count,
+                              first->solids.scale, &r.solids, err);
         if (st == CW_OK)
             st = meet(&r, &b->desc, err);
         const bool done = st == CW_OK && !has_meetings(&r) && !r.solids.dropped &&

@@ -107,8 +107,12 @@ cw_status cwi_solids_snap(cwi_grid_solids *s, const cwi_meetings *meetings,
             *moved_mm = fmax(*moved_mm, cwi_length(d) / s->scale);
         }
         for (size_t t = 0; t < s->soup.triangle_count + s->flat_count; t++)
-            for (int k = 0; k < 3; k++)
-                s->soup.triangles[t][k] = number[s->soup.triangles[t][k]];
+            for (int k = 0; k < 3; k++) {
+                uint32_t *v = &s->soup.triangles[t][k];
+                if (s->moved)
+                    s->moved[t] |= number[*v] != *v;
+                *v = number[*v];
+            }
     }
     cwi_free(a.heads);
     cwi_free(a.next);

@@ -29,7 +29,8 @@ typedef struct search {
         *island; /* of each cell: facets that hang together stand between cells of one island */
     size_t island_count;
     uint32_t *stack;
-    cwi_boxes tree; /* of triangles */
+    const cwi_boxes *tree; /* of triangles */
+    cwi_boxes own;         /* the same, where none is given */
 } search;
 
 /* --- passages and islands ----------------------------------------------------------------- */
@@ -122,11 +123,11 @@ static uint32_t island_of(const search *w, uint32_t triangle)
     return facet == CWI_NOTHING ? CWI_NOTHING : w->island[front_of(w, facet)];
 }
 
-static bool build_tree(search *w, cw_status *st, cw_error *err)
+static cw_status build_tree(search *w, cw_error *err)
 {
     float(*boxes)[6] = cwi_alloc_array(w->s->triangle_count, sizeof *boxes);
     if (!boxes)
-        return false;
+        return cwi_fail_memory(err);
     for (size_t t = 0; t < w->s->triangle_count; t++)
         for (int k = 0; k < 3; k++) {
             const uint32_t *v = w->s->triangles[t];
@@ -135,9 +136,11 @@ static bool build_tree(search *w, cw_status *st, cw_error *err)
             boxes[t][k] = nextafterf((float)fmin(fmin(x, y), z), -INFINITY);
             boxes[t][k + 3] = nextafterf((float)fmax(fmax(x, y), z), INFINITY);
         }
-    *st = cwi_boxes_build(&w->tree, (const float(*)[6])boxes, w->s->triangle_count, err);
+    const cw_status st =
+        cwi_boxes_build(&w->own, (const float(*)[6])boxes, w->s->triangle_count, err);
+    w->tree = &w->own;
     cwi_free(boxes);
-    return true;
+    return st;
 }
 
 /* --- lines along x ------------------------------------------------------------------------ */
@@ -229,7 +232,7 @@ typedef struct line_visit {
 static bool visit_node(void *context, size_t node)
 {
     const line_visit *v = context;
-    const cwi_boxes *tree = &v->h->w->tree;
+    const cwi_boxes *tree = v->h->w->tree;
     unsigned meeting = cwi_boxes_meeting(&tree->nodes[node], v->box);
     for (; meeting; meeting &= meeting - 1) {
         const size_t slot = node * CWI_WIDTH + (size_t)__builtin_ctz(meeting);
@@ -250,7 +253,7 @@ static void find_hits(hits *h)
     v.box[5] = nextafterf((float)z, INFINITY);
     h->count = 0;
     h->vague = false;
-    cwi_boxes_visit(&h->w->tree, v.box, 0, visit_node, &v);
+    cwi_boxes_visit(h->w->tree, v.box, 0, visit_node, &v);
 }
 
 static int compare_x(const hit *a, const hit *b)
@@ -478,21 +481,24 @@ static cw_status walk_islands(search *w, walk *k, cw_error *err)
 
 cw_status cwi_find_windings(const cwi_soup *s, const cwi_triangle_parts *parts,
                             const cwi_facets *facets, const cwi_space_cells *cells,
-                            const uint32_t *inputs, size_t input_count, cwi_keep_cell keep,
-                            const void *context, uint8_t *kept, cw_error *err)
+                            const cwi_boxes *tree, const uint32_t *inputs, size_t input_count,
+                            cwi_keep_cell keep, const void *context, uint8_t *kept,
+                            cw_error *err)
 {
-    search w = {.s = s, .parts = parts, .f = facets, .cells = cells, .inputs = inputs};
+    search w = {
+        .s = s, .parts = parts, .f = facets, .cells = cells, .inputs = inputs, .tree = tree};
     walk k = {.w = &w, .keep = keep, .context = context, .kept = kept};
     k.windings = cwi_alloc_zeroed(input_count, sizeof *k.windings);
     k.seen = cwi_alloc_zeroed(cells->count, sizeof *k.seen);
     k.next = cwi_alloc_array(cells->count, sizeof *k.next);
     cw_status st = CW_OK;
-    if (!k.windings || !k.seen || !k.next || !list_passages(&w) || !find_islands(&w) ||
-        !build_tree(&w, &st, err))
+    if (!k.windings || !k.seen || !k.next || !list_passages(&w) || !find_islands(&w))
         st = cwi_fail_memory(err);
+    if (st == CW_OK && tree->count != s->triangle_count)
+        st = build_tree(&w, err);
     if (st == CW_OK)
         st = walk_islands(&w, &k, err);
-    cwi_boxes_free(&w.tree);
+    cwi_boxes_free(&w.own);
     cwi_free(w.passages);
     cwi_free(w.first);
     cwi_free(w.island);
