@@ -3,13 +3,13 @@
 #include "cli/extract/extract_run.h"
 #include "cli/extract/label_run.h"
 #include "cli/extract/part_run.h"
+#include "cli/extract/pvd_list.h"
 #include "cli/extract/stream_run.h"
 #include "cli/framework/batch.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/inputs/level_choice.h"
 #include "cli/inputs/volume_prepare.h"
-#include "cli/results/pvd_list.h"
 #include "core/base/status.h"
 
 #ifdef __GLIBC__

@@ -2,8 +2,8 @@
 #include "cli/extract/extract_run.h"
 
 #include "cli/extract/label_run.h"
+#include "cli/extract/pvd_list.h"
 #include "cli/results/detail_levels.h"
-#include "cli/results/pvd_list.h"
 #include "core/base/status.h"
 
 cw_write_desc cli_extract_write_desc(const cli_extract_args *args)

@@ -17,7 +17,6 @@
 #include <cubewright/simplify.h>
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -66,19 +65,6 @@ void cli_report_end(cli_report *report, const char *name, size_t in, size_t out)
     if (report->step_count < report->step_room)
         report->steps[report->step_count++] = s;
     cli_say_v("%-8s %8.3f s, peak %s", s.name, s.seconds, cli_bytes((double)s.peak_bytes));
-}
-
-void cli_report_warn(cli_report *report, const char *format, ...)
-{
-    cli_made *made = &report->made[report->made_count - 1];
-    char text[sizeof *made->warning];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
-    va_end(args);
-    cli_say("cubewright: warning: %s", text);
-    if (made->warning_count < CLI_MAX_WARNINGS)
-        memcpy(made->warning[made->warning_count++], text, sizeof text);
 }
 
 static void put_features(cli_json *j)

@@ -1,6 +1,6 @@
 /* ParaView's list of the files of a time series, beside them. */
-#ifndef CLI_RESULTS_PVD_LIST_H
-#define CLI_RESULTS_PVD_LIST_H
+#ifndef CLI_EXTRACT_PVD_LIST_H
+#define CLI_EXTRACT_PVD_LIST_H
 
 #include "cli/results/output_names.h"
 #include "cli/results/run_report.h"

@@ -1,5 +1,5 @@
 /* Checks and writes the .pvd list of the files of a time series. */
-#include "cli/results/pvd_list.h"
+#include "cli/extract/pvd_list.h"
 
 #include "cli/framework/console.h"
 #include "core/base/memory.h"
