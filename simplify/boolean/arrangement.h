@@ -6,7 +6,7 @@
 #include "core/geometry/bvh.h"
 #include "simplify/boolean/exact_points.h"
 
-enum { CWI_NOTHING = UINT32_MAX };
+#define CWI_NOTHING UINT32_MAX /* no point, triangle, facet or line */
 
 /* Two triangles that meet in more than a vertex or an edge that both have. */
 typedef struct cwi_meeting {
