@@ -293,7 +293,7 @@ cw_status cwi_find_seams(const cwi_soup *s, const cwi_meetings *meetings, int th
     cw_status st = b.seams && b.seam_count
                        ? do_batches(&b, meetings, threads, progress, out, err)
                        : cwi_fail_memory(err);
-    if (st == CW_OK)
+    if (st == CW_OK && out->count)
         qsort(out->seams, out->count, sizeof *out->seams, compare_seams);
     cwi_free(b.seams);
     cwi_free(b.seam_count);

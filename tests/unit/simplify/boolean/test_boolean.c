@@ -384,6 +384,17 @@ static void origins_are_taken_into_account(void **state)
     cw_mesh_free(&b);
 }
 
+static void empty_meshes_are_nothing(void **state)
+{
+    (void)state;
+    cw_mesh a = make_box(0, 0, 0, 4), none = {0};
+    cw_boolean_facts f;
+    assert_true(check_boolean(&a, &none, CW_BOOLEAN_UNION, &f) == 64);
+    assert_true(check_boolean(&none, &a, CW_BOOLEAN_DIFFERENCE, &f) == 0);
+    assert_true(check_boolean(&none, &none, CW_BOOLEAN_UNION, &f) == 0);
+    cw_mesh_free(&a);
+}
+
 static void bad_meshes_are_refused(void **state)
 {
     (void)state;
@@ -473,6 +484,7 @@ int main(void)
         cmocka_unit_test(threads_give_the_same_mesh),
         cmocka_unit_test(attributes_go_through),
         cmocka_unit_test(origins_are_taken_into_account),
+        cmocka_unit_test(empty_meshes_are_nothing),
         cmocka_unit_test(bad_meshes_are_refused),
         cmocka_unit_test(failing_allocations_leave_nothing),
         cmocka_unit_test(long_integers_obey_the_rules),
