@@ -19,6 +19,6 @@ CW_NODISCARD cw_status cli_compare_with_field(const cw_mesh *mesh, const cli_vol
 
 /* Fails when the volume's box and that of the mesh have nothing in common. */
 CW_NODISCARD cw_status cli_check_overlap(const cli_volume *volume, const cw_mesh *mesh,
-                                       cw_error *err);
+                                         cw_error *err);
 
 #endif

@@ -18,8 +18,9 @@ typedef void cwi_label_to_point(const void *context, const double index[3], doub
 /* Polygons, and which of them to look at. Set the first block and zero the rest. */
 typedef struct cwi_label_crossings {
     const cw_mesh *mesh;
-    const float *originals; /* vertex_count x 3: positions before smoothing, counted in voxels */
-    cwi_label_net *net;     /* finished */
+    const float
+        *originals;     /* vertex_count x 3: positions before smoothing, counted in voxels */
+    cwi_label_net *net; /* finished */
     cwi_label_to_point *to_point;
     const void *context;
 
