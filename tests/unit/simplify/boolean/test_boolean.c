@@ -152,6 +152,73 @@ static void boxes_have_their_volumes(void **state)
         }
 }
 
+enum { GRID = 6, MAX_BOXES = 8 };
+
+/* Counts the cells of a grid that an operation keeps, by the boxes around each: bit n of box n. */
+static int count_cells(const unsigned cells[GRID][GRID][GRID], int boxes, cw_boolean_op op)
+{
+    int count = 0;
+    for (int c = 0; c < GRID * GRID * GRID; c++) {
+        const unsigned in = cells[c / GRID / GRID][c / GRID % GRID][c % GRID];
+        const int number = __builtin_popcount(in);
+        count += op == CW_BOOLEAN_UNION          ? number > 0
+                 : op == CW_BOOLEAN_DIFFERENCE   ? in == 1
+                 : op == CW_BOOLEAN_INTERSECTION ? number == boxes
+                                                 : number % 2;
+    }
+    return count;
+}
+
+/* Boxes between the points of a small grid: they touch and overlap in every way, and volumes are numbers of cells. */
+static void boxes_on_a_grid_have_whole_volumes(void **state)
+{
+    (void)state;
+    const int count = test_some(60);
+    srand(test_seed(76));
+    for (int n = 0; n < count; n++) {
+        unsigned cells[GRID][GRID][GRID] = {0};
+        cw_mesh boxes[MAX_BOXES];
+        const cw_mesh *meshes[MAX_BOXES];
+        const int number = 2 + rand() % (MAX_BOXES - 1);
+        for (int i = 0; i < number; i++) {
+            int low[3], high[3];
+            double from[3], to[3];
+            for (int k = 0; k < 3; k++) {
+                low[k] = rand() % (GRID - 1);
+                high[k] = low[k] + 1 + rand() % 3;
+                high[k] = high[k] < GRID ? high[k] : GRID;
+                from[k] = low[k];
+                to[k] = high[k];
+            }
+            for (int x = low[0]; x < high[0]; x++)
+                for (int y = low[1]; y < high[1]; y++)
+                    for (int z = low[2]; z < high[2]; z++)
+                        cells[x][y][z] |= 1u << i;
+            boxes[i] = make_empty(1);
+            add_box(&boxes[i], from, to, false);
+            meshes[i] = &boxes[i];
+        }
+        for (int op = 0; op < CW_BOOLEAN_SPLIT; op++) {
+            cw_mesh out;
+            cw_error err = {0};
+            cw_boolean_facts f = {0};
+            const int volume =
+                count_cells((const unsigned(*)[GRID][GRID])cells, number, (cw_boolean_op)op);
+            assert_ok(cw_mesh_boolean(meshes, (size_t)number,
+                                      &(cw_boolean_desc){.op = (cw_boolean_op)op}, &out, &f,
+                                      &err),
+                      err);
+            check_sound(&out);
+            if (fabs(f.volume_mm3[0] - volume) > 1e-9)
+                fail_msg("boxes %d, operation %d: the volume is %.12g, not %d", n, op,
+                         f.volume_mm3[0], volume);
+            cw_mesh_free(&out);
+        }
+        for (int i = 0; i < number; i++)
+            cw_mesh_free(&boxes[i]);
+    }
+}
+
 static cw_mesh extract_field(cw_field field, size_t n)
 {
     cw_volume volume = test_sample(field, n, CW_F32);
@@ -477,6 +544,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(boxes_have_their_volumes),
+        cmocka_unit_test(boxes_on_a_grid_have_whole_volumes),
         cmocka_unit_test(random_pairs_add_up),
         cmocka_unit_test(copies_nearly_equal_leave_nothing_open),
         cmocka_unit_test(shells_of_one_mesh_are_united),
