@@ -13,8 +13,8 @@
 
 enum {
     MAX_ROUNDS = 16,
-    MAX_TRIES = 10, /* the last one moves vertices by up to 2^8 last digits of a float */
-    MAX_GROWTH = 8  /* of what meets, from the smallest of the rounds before */
+    MAX_TRIES = 5,
+    MAX_GROWTH = 8 /* of what meets, from the smallest of the rounds before */
 };
 
 typedef struct boolean {
@@ -163,6 +163,13 @@ static bool has_meetings(const round_state *r)
     return r->seams.count;
 }
 
+/* Returns how far vertices move onto others in a round or try, from 1, in grid units: 1, 2, 4, 8 last digits of
+ * the largest coordinate, and no more. */
+static double reach_of(int n)
+{
+    return ldexp(1.0625, CWI_GRID_BITS - 24 + (n < 4 ? n - 1 : 3));
+}
+
 /* Unites the facets of a result with themselves, after its vertices were rounded. Later rounds move vertices
  * farther onto others. *sheets becomes the new result. */
 static cw_status unite_again(boolean *b, round_state *r, int round, cwi_sheets *sheets,
@@ -171,7 +178,7 @@ static cw_status unite_again(boolean *b, round_state *r, int round, cwi_sheets *
     const choice unite = {CW_BOOLEAN_UNION, 1};
     cw_status st = CW_OK;
     if (round > 0) {
-        const double radius = ldexp(1.0625, CWI_GRID_BITS - 24 + round - 1);
+        const double radius = reach_of(round);
         st = cwi_solids_snap(&r->solids, &r->meetings, &r->seams, radius, &b->facts.moved_mm,
                              err);
         if (st == CW_OK)
@@ -215,8 +222,11 @@ static cw_status round_result(boolean *b, const round_state *first, cwi_sheets *
             fewest = r.seams.count;
         if (st == CW_OK && !done &&
             (round == MAX_ROUNDS || r.seams.count / MAX_GROWTH > fewest + MAX_GROWTH * 8))
-            st = cwi_fail(err, CW_ERR_CHECK,
-                          "after %d rounds facets still meet when they are rounded", round + 1);
+            st = cwi_fail(
+                err, CW_ERR_CHECK,
+                "after %d rounds facets still meet when they are rounded: surfaces are closer than "
+                "floats can tell apart. Moving one mesh a little helps",
+                round + 1);
         if (st == CW_OK && !done)
             st = unite_again(b, &r, round, sheets, err);
         free_round(&last);
@@ -305,7 +315,7 @@ static cw_status run_boolean(boolean *b, cw_error *err)
 {
     cw_status st = CW_OK;
     for (int n = 0; n < MAX_TRIES; n++) {
-        st = try_boolean(b, n ? ldexp(1.0625, CWI_GRID_BITS - 24 + n - 1) : 0, err);
+        st = try_boolean(b, n ? reach_of(n) : 0, err);
         if (st != CW_ERR_CHECK || !b->facts.rounds)
             break;
         for (size_t i = 0; i < b->results; i++)
