@@ -38,6 +38,10 @@ typedef struct cwi_seams {
     cwi_triangle_seam *seams; /* ordered by triangle */
 } cwi_seams;
 
+/* Builds the tree of the boxes of `count` triangles: of a list, or of all, where list is NULL. */
+CW_NODISCARD cw_status cwi_soup_tree(const cwi_soup *s, const uint32_t *list, size_t count,
+                                     cwi_boxes *tree, cw_error *err);
+
 /* Finds all pairs of triangles that meet.
  * moved    of each triangle: only pairs with one that moved are looked for; NULL: all
  * Returns  CW_ERR_NO_MEMORY, CW_ERR_CANCELLED */

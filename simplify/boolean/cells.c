@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/triangle.h"
 #include "core/geometry/union_find.h"
 
 #include <math.h>
@@ -34,14 +35,9 @@ static uint32_t point_at_corner(const builder *b, uint32_t corner)
     return b->f->corners[corner / 3][corner % 3];
 }
 
-static uint32_t next_corner(uint32_t corner)
-{
-    return corner % 3 == 2 ? corner - 2 : corner + 1;
-}
-
 static bool is_rising(const builder *b, uint32_t corner)
 {
-    return point_at_corner(b, corner) < point_at_corner(b, next_corner(corner));
+    return point_at_corner(b, corner) < point_at_corner(b, cwi_corner_next(corner));
 }
 
 /* Returns the side of a facet that is met first by what turns counter-clockwise away from it; or the other. */
@@ -191,13 +187,13 @@ static void group_halves(builder *b, size_t points)
 {
     const uint32_t count = (uint32_t)(3 * b->f->count);
     for (uint32_t c = 0; c < count; c++) {
-        const uint32_t p = point_at_corner(b, c), q = point_at_corner(b, next_corner(c));
+        const uint32_t p = point_at_corner(b, c), q = point_at_corner(b, cwi_corner_next(c));
         b->start[(p < q ? p : q) + 1]++;
     }
     for (size_t p = 0; p < points; p++)
         b->start[p + 1] += b->start[p];
     for (uint32_t c = 0; c < count; c++) {
-        const uint32_t p = point_at_corner(b, c), q = point_at_corner(b, next_corner(c));
+        const uint32_t p = point_at_corner(b, c), q = point_at_corner(b, cwi_corner_next(c));
         b->half[b->start[p < q ? p : q]++] = (uint64_t)(p < q ? q : p) << 32 | c;
     }
     for (size_t p = points; p > 0; p--)

@@ -13,7 +13,7 @@ static cwi_wide to_wide(double x)
     return (cwi_wide)(int64_t)x;
 }
 
-static void subtract(const cwi_soup *s, uint32_t a, uint32_t b, int64_t out[3])
+static void subtract_vertices(const cwi_soup *s, uint32_t a, uint32_t b, int64_t out[3])
 {
     for (int k = 0; k < 3; k++)
         out[k] = (int64_t)s->vertices[a][k] - (int64_t)s->vertices[b][k];
@@ -23,8 +23,8 @@ void cwi_soup_normal(const cwi_soup *s, uint32_t t, cwi_wide normal[3])
 {
     const uint32_t *v = s->triangles[t];
     int64_t a[3], b[3];
-    subtract(s, v[1], v[0], a);
-    subtract(s, v[2], v[0], b);
+    subtract_vertices(s, v[1], v[0], a);
+    subtract_vertices(s, v[2], v[0], b);
     for (int k = 0; k < 3; k++) {
         const int i = (k + 1) % 3, j = (k + 2) % 3;
         normal[k] = (cwi_wide)a[i] * b[j] - (cwi_wide)a[j] * b[i];
@@ -64,7 +64,7 @@ int cwi_wide_dot_sign(const cwi_wide a[3], const cwi_wide b[3])
     return cwi_big_sign(&sum);
 }
 
-static void widen(const int64_t from[3], cwi_wide to[3])
+static void widen_vector(const int64_t from[3], cwi_wide to[3])
 {
     for (int k = 0; k < 3; k++)
         to[k] = from[k];
@@ -93,8 +93,8 @@ int cwi_soup_side(const cwi_soup *s, uint32_t t, uint32_t v)
     cwi_wide n[3], x[3];
     int64_t difference[3];
     cwi_soup_normal(s, t, n);
-    subtract(s, v, c[0], difference);
-    widen(difference, x);
+    subtract_vertices(s, v, c[0], difference);
+    widen_vector(difference, x);
     return cwi_wide_dot_sign(n, x);
 }
 
@@ -107,10 +107,10 @@ static void meet_line(const cwi_soup *s, uint32_t v0, uint32_t v1, const cwi_wid
     int64_t along[3], to_plane[3];
     cwi_wide d[3], e[3];
     cwi_big reach, factor, product;
-    subtract(s, v1, v0, along);
-    subtract(s, r, v0, to_plane);
-    widen(along, d);
-    widen(to_plane, e);
+    subtract_vertices(s, v1, v0, along);
+    subtract_vertices(s, r, v0, to_plane);
+    widen_vector(along, d);
+    widen_vector(to_plane, e);
     dot_wide(n, d, &out->w);
     dot_wide(n, e, &reach);
     for (int k = 0; k < 3; k++) {
@@ -158,7 +158,7 @@ static void meet_planes(const cwi_soup *s, const uint32_t t[3], cwi_homogeneous 
 static void upright_normal(const cwi_soup *s, uint32_t v0, uint32_t v1, int axis, cwi_wide n[3])
 {
     int64_t d[3];
-    subtract(s, v1, v0, d);
+    subtract_vertices(s, v1, v0, d);
     n[axis] = 0;
     n[(axis + 1) % 3] = d[(axis + 2) % 3];
     n[(axis + 2) % 3] = -(cwi_wide)d[(axis + 1) % 3];

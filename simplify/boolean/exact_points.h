@@ -39,6 +39,17 @@ typedef struct cwi_homogeneous {
     cwi_big x[3], w;
 } cwi_homogeneous;
 
+/* Hashes a cell of the grid, or of a coarser one, for tables of places. */
+static inline size_t cwi_hash_cell(const int64_t cell[3])
+{
+    uint64_t hash = 0;
+    for (int k = 0; k < 3; k++) {
+        hash = (hash ^ (uint64_t)cell[k]) * UINT64_C(0x9E3779B97F4A7C15);
+        hash ^= hash >> 31;
+    }
+    return (size_t)hash;
+}
+
 /* Make points. Lines and planes must meet in one point. */
 cwi_exact_point cwi_point_vertex(const cwi_soup *s, uint32_t v);
 cwi_exact_point cwi_point_line_plane(const cwi_soup *s, uint32_t v0, uint32_t v1,

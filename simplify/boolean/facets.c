@@ -171,7 +171,7 @@ static size_t find_first(pockets *p, size_t n)
 /* --- facets ------------------------------------------------------------------------------- */
 
 /* Returns 1 when two triangles of one plane face the same way, else -1. */
-static int facing(const cwi_soup *s, uint32_t t, uint32_t u)
+static int compare_facing(const cwi_soup *s, uint32_t t, uint32_t u)
 {
     cwi_wide a[3], b[3];
     cwi_soup_normal(s, t, a);
@@ -213,7 +213,7 @@ static bool place_pocket(pockets *p, size_t n, cwi_facets *f)
             part == CWI_NOTHING ? f->facet_of[other->triangle] : f->of_part[part];
         f->facet_of[t] = facet;
         f->covers[f->cover_count++] =
-            (cwi_facet_cover){facet, t, facing(p->s, t, other->triangle)};
+            (cwi_facet_cover){facet, t, compare_facing(p->s, t, other->triangle)};
     }
     return true;
 }

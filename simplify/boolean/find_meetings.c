@@ -338,9 +338,8 @@ static void find_box(const cwi_soup *soup, uint32_t t, float box[6])
     }
 }
 
-/* Builds a tree of the triangles of a list; NULL: of all. */
-static cw_status build_tree(const cwi_soup *soup, const uint32_t *list, size_t count,
-                            cwi_boxes *tree, cw_error *err)
+cw_status cwi_soup_tree(const cwi_soup *soup, const uint32_t *list, size_t count,
+                        cwi_boxes *tree, cw_error *err)
 {
     float(*boxes)[6] = cwi_alloc_array(count, sizeof *boxes);
     if (!boxes)
@@ -371,7 +370,7 @@ static cw_status build_near_tree(search *w, cw_error *err)
     for (uint32_t t = 0; t < count; t++)
         if (w->moved[t])
             w->near[n++] = t;
-    cw_status st = build_tree(w->s, w->near, n, &moved, err);
+    cw_status st = cwi_soup_tree(w->s, w->near, n, &moved, err);
     n = 0;
     for (uint32_t t = 0; t < count && st == CW_OK; t++) {
         float box[6];
@@ -383,7 +382,7 @@ static cw_status build_near_tree(search *w, cw_error *err)
             w->near[n++] = t;
     }
     cwi_boxes_free(&moved);
-    return st == CW_OK ? build_tree(w->s, w->near, n, &w->tree, err) : st;
+    return st == CW_OK ? cwi_soup_tree(w->s, w->near, n, &w->tree, err) : st;
 }
 
 void cwi_meetings_free(cwi_meetings *meetings)
@@ -397,8 +396,8 @@ cw_status cwi_find_meetings(const cwi_soup *s, const bool *moved, int threads,
                             const cw_progress *progress, cwi_meetings *out, cw_error *err)
 {
     search w = {.s = s, .moved = moved};
-    cw_status st =
-        moved ? build_near_tree(&w, err) : build_tree(s, NULL, s->triangle_count, &w.tree, err);
+    cw_status st = moved ? build_near_tree(&w, err)
+                         : cwi_soup_tree(s, NULL, s->triangle_count, &w.tree, err);
     if (st == CW_OK) {
         w.chunk_count = (cwi_boxes_nodes(&w.tree) + CHUNK_NODES - 1) / CHUNK_NODES;
         w.chunks = cwi_alloc_zeroed(w.chunk_count, sizeof *w.chunks);

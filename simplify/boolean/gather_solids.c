@@ -19,12 +19,8 @@ typedef struct places {
 
 static uint32_t number_place(places *p, const double x[3])
 {
-    uint64_t hash = 0;
-    for (int k = 0; k < 3; k++) {
-        hash = (hash ^ (uint64_t)(int64_t)x[k]) * UINT64_C(0x9E3779B97F4A7C15);
-        hash ^= hash >> 31;
-    }
-    size_t slot = hash & p->mask;
+    const int64_t cell[3] = {(int64_t)x[0], (int64_t)x[1], (int64_t)x[2]};
+    size_t slot = cwi_hash_cell(cell) & p->mask;
     for (; p->slots[slot]; slot = (slot + 1) & p->mask) {
         const double *y = p->soup->vertices[p->slots[slot] - 1];
         if (x[0] == y[0] && x[1] == y[1] && x[2] == y[2])

@@ -21,21 +21,12 @@ static cwi_exact_point point_of(const cell_table *t, uint32_t n)
                                   : t->parts->points[n - t->s->vertex_count];
 }
 
-static size_t hash_cell(const int64_t cell[3])
-{
-    uint64_t hash = 0;
-    for (int k = 0; k < 3; k++) {
-        hash = (hash ^ (uint64_t)cell[k]) * UINT64_C(0x9E3779B97F4A7C15);
-        hash ^= hash >> 31;
-    }
-    return hash;
-}
-
 /* Looks in a cell for a point at the place of p. *slot becomes the end of the cell's run. */
 static uint32_t find_in_cell(const cell_table *t, const int64_t cell[3],
                              const cwi_exact_point *p, size_t *slot)
 {
-    for (*slot = hash_cell(cell) & t->mask; t->slots[*slot]; *slot = (*slot + 1) & t->mask) {
+    for (*slot = cwi_hash_cell(cell) & t->mask; t->slots[*slot];
+         *slot = (*slot + 1) & t->mask) {
         const cwi_exact_point q = point_of(t, t->slots[*slot] - 1);
         if (fabs(p->x[0] - q.x[0]) < 0.25 && fabs(p->x[1] - q.x[1]) < 0.25 &&
             fabs(p->x[2] - q.x[2]) < 0.25 && cwi_point_order(t->s, p, &q) == 0)
@@ -66,7 +57,7 @@ static uint32_t find_same(cell_table *t, uint32_t n)
     }
     const int64_t own[3] = {(int64_t)floor(p.x[0]), (int64_t)floor(p.x[1]),
                             (int64_t)floor(p.x[2])};
-    for (slot = hash_cell(own) & t->mask; t->slots[slot]; slot = (slot + 1) & t->mask) {
+    for (slot = cwi_hash_cell(own) & t->mask; t->slots[slot]; slot = (slot + 1) & t->mask) {
     }
     t->slots[slot] = n + 1;
     return n;

@@ -77,8 +77,8 @@ static uint8_t keep_cell(const void *context, const int32_t *windings, size_t po
 }
 
 /* Builds the arrangement of the solids, and finds the cells that are kept. */
-static cw_status arrange(round_state *r, const choice *c, const cw_boolean_desc *d,
-                         cw_error *err)
+static cw_status arrange_solids(round_state *r, const choice *c, const cw_boolean_desc *d,
+                                cw_error *err)
 {
     const cwi_soup *s = &r->solids.soup;
     cw_status st = cwi_split_triangles(s, &r->seams, d->threads, &d->progress, &r->parts, err);
@@ -140,7 +140,7 @@ static double volume_of(const round_state *r, const cwi_sheets *sheets)
 }
 
 /* Finds where the triangles of a round meet. */
-static cw_status meet(round_state *r, const cw_boolean_desc *d, cw_error *err)
+static cw_status find_seams(round_state *r, const cw_boolean_desc *d, cw_error *err)
 {
     cwi_meetings_free(&r->meetings);
     cwi_free(r->seams.points);
@@ -182,10 +182,10 @@ static cw_status unite_again(boolean *b, round_state *r, int round, cwi_sheets *
         st = cwi_solids_snap(&r->solids, &r->meetings, &r->seams, radius, &b->facts.moved_mm,
                              err);
         if (st == CW_OK)
-            st = meet(r, &b->desc, err);
+            st = find_seams(r, &b->desc, err);
     }
     if (st == CW_OK)
-        st = arrange(r, &unite, &b->desc, err);
+        st = arrange_solids(r, &unite, &b->desc, err);
     if (st == CW_OK) {
         cwi_sheets_free(sheets);
         st = cwi_sew_sheets(&r->solids, &r->facets, &r->cells, r->kept, 1, sheets, err);
@@ -215,7 +215,7 @@ static cw_status round_result(boolean *b, const round_state *first, cwi_sheets *
         st = cwi_solids_again(*positions, sheets, from->solids.soup.vertex_count,
                               first->solids.scale, &r.solids, err);
         if (st == CW_OK)
-            st = meet(&r, &b->desc, err);
+            st = find_seams(&r, &b->desc, err);
         const bool done = st == CW_OK && !has_meetings(&r) && !r.solids.dropped &&
                           r.solids.soup.vertex_count == vertices;
         if (r.seams.count < fewest)
@@ -288,7 +288,7 @@ static cw_status try_boolean(boolean *b, double radius, cw_error *err)
     b->facts = (cw_boolean_facts){0};
     cw_status st = cwi_solids_gather(b->meshes, b->count, &r.solids, err);
     if (st == CW_OK)
-        st = meet(&r, &b->desc, err);
+        st = find_seams(&r, &b->desc, err);
     b->facts.dropped = r.solids.dropped;
     b->facts.turned = r.solids.turned;
     b->facts.open_mesh = r.solids.open_mesh;
@@ -299,10 +299,10 @@ static cw_status try_boolean(boolean *b, double radius, cw_error *err)
     if (st == CW_OK && radius > 0) {
         st = cwi_solids_snap(&r.solids, &r.meetings, &r.seams, radius, &b->facts.moved_mm, err);
         if (st == CW_OK)
-            st = meet(&r, &b->desc, err);
+            st = find_seams(&r, &b->desc, err);
     }
     if (st == CW_OK)
-        st = arrange(&r, &c, &b->desc, err);
+        st = arrange_solids(&r, &c, &b->desc, err);
     for (size_t n = 0; n < b->results && st == CW_OK; n++)
         st = make_result(b, &r, n, err);
     free_round(&r);

@@ -77,7 +77,16 @@ static int turn_of(const cwi_split *s, uint32_t a, uint32_t b, uint32_t c)
            cwi_point_turn(s->soup, &s->points[a], &s->points[b], &s->points[c], s->axis);
 }
 
-static void relink(cwi_split *s, uint32_t face, uint32_t from, uint32_t to)
+/* Returns the edge of a face beyond which another one is. */
+static int find_border(const cwi_split_face *face, uint32_t beyond)
+{
+    int m = 0;
+    while (face->beside[m] != beyond)
+        m++;
+    return m;
+}
+
+static void replace_beside(cwi_split *s, uint32_t face, uint32_t from, uint32_t to)
 {
     for (int k = 0; k < 3 && face != CWI_NOTHING; k++)
         if (s->faces[face].beside[k] == from) {
@@ -103,17 +112,15 @@ static void flip_edge(cwi_split *s, uint32_t f, int k)
     const cwi_split_face t = s->faces[f];
     const uint32_t g = t.beside[k];
     const cwi_split_face u = s->faces[g];
-    int m = 0;
-    while (u.beside[m] != f)
-        m++;
+    const int m = find_border(&u, f);
     const int k1 = (k + 1) % 3, k2 = (k + 2) % 3, m1 = (m + 1) % 3, m2 = (m + 2) % 3;
     const uint32_t a = t.corners[k], b = t.corners[k1], c = t.corners[k2], d = u.corners[m2];
     set_face(s, f, (uint32_t[3]){a, d, c}, (uint32_t[3]){u.beside[m1], g, t.beside[k2]},
              (uint32_t[3]){u.line[m1], CWI_NOTHING, t.line[k2]});
     set_face(s, g, (uint32_t[3]){d, b, c}, (uint32_t[3]){u.beside[m2], t.beside[k1], f},
              (uint32_t[3]){u.line[m2], t.line[k1], CWI_NOTHING});
-    relink(s, u.beside[m1], g, f);
-    relink(s, t.beside[k1], f, g);
+    replace_beside(s, u.beside[m1], g, f);
+    replace_beside(s, t.beside[k1], f, g);
 }
 
 /* Returns true if the two faces beside an edge have no corner that is flat or bent inwards at its ends. */
@@ -123,9 +130,7 @@ static bool may_flip(const cwi_split *s, uint32_t f, int k)
     if (t->beside[k] == CWI_NOTHING || t->line[k] != CWI_NOTHING)
         return false;
     const cwi_split_face *u = &s->faces[t->beside[k]];
-    int m = 0;
-    while (u->beside[m] != f)
-        m++;
+    const int m = find_border(u, f);
     const uint32_t c = t->corners[(k + 2) % 3], d = u->corners[(m + 2) % 3];
     return turn_of(s, t->corners[k], d, c) > 0 && turn_of(s, d, t->corners[(k + 1) % 3], c) > 0;
 }
@@ -135,9 +140,7 @@ static bool is_in_circle(const cwi_split *s, uint32_t f, int k)
 {
     const cwi_split_face *t = &s->faces[f], *u = &s->faces[t->beside[k]];
     const int i = (s->axis + 1) % 3, j = (s->axis + 2) % 3;
-    int m = 0;
-    while (u->beside[m] != f)
-        m++;
+    const int m = find_border(u, f);
     const double *d = s->points[u->corners[(m + 2) % 3]].x;
     double x[3], y[3], z[3];
     for (int n = 0; n < 3; n++) {
@@ -222,8 +225,8 @@ static bool split_face(cwi_split *s, uint32_t f, uint32_t p)
              (uint32_t[3]){t.line[1], CWI_NOTHING, CWI_NOTHING});
     set_face(s, h, (uint32_t[3]){c, a, p}, (uint32_t[3]){t.beside[2], f, g},
              (uint32_t[3]){t.line[2], CWI_NOTHING, CWI_NOTHING});
-    relink(s, t.beside[1], f, g);
-    relink(s, t.beside[2], f, h);
+    replace_beside(s, t.beside[1], f, g);
+    replace_beside(s, t.beside[2], f, h);
     s->last = f;
     size_t count = 0;
     return push_edge(s, &count, a, b) && push_edge(s, &count, b, c) &&
@@ -243,23 +246,21 @@ static bool split_edge(cwi_split *s, uint32_t f, int k, uint32_t p)
              (uint32_t[3]){line, CWI_NOTHING, t.line[k2]});
     set_face(s, h, (uint32_t[3]){p, b, c}, (uint32_t[3]){beyond, t.beside[k1], f},
              (uint32_t[3]){line, t.line[k1], CWI_NOTHING});
-    relink(s, t.beside[k1], f, h);
+    replace_beside(s, t.beside[k1], f, h);
     s->last = f;
     size_t count = 0;
     if (!push_edge(s, &count, c, a) || !push_edge(s, &count, b, c))
         return false;
     if (g != CWI_NOTHING) {
         const cwi_split_face u = s->faces[g];
-        int m = 0;
-        while (u.beside[m] != f)
-            m++;
+        const int m = find_border(&u, f);
         const int m1 = (m + 1) % 3, m2 = (m + 2) % 3;
         const uint32_t d = u.corners[m2];
         set_face(s, g, (uint32_t[3]){p, a, d}, (uint32_t[3]){f, u.beside[m1], beyond},
                  (uint32_t[3]){line, u.line[m1], CWI_NOTHING});
         set_face(s, beyond, (uint32_t[3]){b, p, d}, (uint32_t[3]){h, g, u.beside[m2]},
                  (uint32_t[3]){line, CWI_NOTHING, u.line[m2]});
-        relink(s, u.beside[m2], g, beyond);
+        replace_beside(s, u.beside[m2], g, beyond);
         if (!push_edge(s, &count, a, d) || !push_edge(s, &count, d, b))
             return false;
     }
@@ -448,9 +449,7 @@ static bool make_edge(cwi_split *s, uint32_t a, uint32_t b, uint32_t line, first
         if (g == CWI_NOTHING || !push_edge(s, &count, t->corners[k], t->corners[(k + 1) % 3]))
             return false;
         const cwi_split_face *u = &s->faces[g];
-        int m = 0;
-        while (u->beside[m] != f)
-            m++;
+        const int m = find_border(u, f);
         const uint32_t d = u->corners[(m + 2) % 3];
         const int side = d == b ? 0 : turn_of(s, a, b, d);
         if (side == 0)

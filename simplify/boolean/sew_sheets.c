@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/triangle.h"
 #include "core/geometry/union_find.h"
 
 typedef struct sewing {
@@ -30,16 +31,6 @@ static uint32_t point_of(const sewing *s, uint32_t corner)
     return s->f->corners[corner / 3][corner % 3];
 }
 
-static uint32_t next_corner(uint32_t corner)
-{
-    return corner % 3 == 2 ? corner - 2 : corner + 1;
-}
-
-static uint32_t previous_corner(uint32_t corner)
-{
-    return corner % 3 == 0 ? corner + 2 : corner - 1;
-}
-
 static void set_mates(const sewing *s, uint32_t c, uint32_t d)
 {
     s->mates[c] = d;
@@ -49,7 +40,7 @@ static void set_mates(const sewing *s, uint32_t c, uint32_t d)
 /* Returns the other edge that the facet of edge c has at a point. */
 static uint32_t other_edge(const sewing *s, uint32_t c, uint32_t point)
 {
-    return point_of(s, c) == point ? previous_corner(c) : next_corner(c);
+    return point_of(s, c) == point ? cwi_corner_prev(c) : cwi_corner_next(c);
 }
 
 /* Returns true if the facets around a point, from one to the next, lead from edge c to edge d or e. */
@@ -67,7 +58,7 @@ static bool leads_to(const sewing *s, uint32_t c, uint32_t d, uint32_t e, uint32
 /* Returns true if the inside of the result is behind a facet for what turns counter-clockwise about an edge. */
 static bool begins_wedge(const sewing *s, uint32_t c)
 {
-    const bool rising = point_of(s, c) < point_of(s, next_corner(c));
+    const bool rising = point_of(s, c) < point_of(s, cwi_corner_next(c));
     return is_inside(s, 2 * (c / 3) + !rising);
 }
 
@@ -100,7 +91,7 @@ static void part_sheets(const sewing *s, const uint32_t *corners, size_t count, 
 {
     const uint32_t c2 = s->mates[c], d2 = s->mates[d];
     if (!leads_to(s, c, d, d2, point_of(s, c)) ||
-        !leads_to(s, c, d, d2, point_of(s, next_corner(c))))
+        !leads_to(s, c, d, d2, point_of(s, cwi_corner_next(c))))
         return;
     set_mates(s, c, d2);
     set_mates(s, d, c2);
@@ -156,8 +147,8 @@ static void sew_all(const sewing *s, cwi_sheets *out)
         if (d == CWI_NOTHING || d < c || !is_kept(s, c / 3))
             continue;
         const bool same = point_of(s, c) == point_of(s, d);
-        cwi_sets_join(s->sets, c, same ? d : next_corner(d));
-        cwi_sets_join(s->sets, next_corner(c), same ? next_corner(d) : d);
+        cwi_sets_join(s->sets, c, same ? d : cwi_corner_next(d));
+        cwi_sets_join(s->sets, cwi_corner_next(c), same ? cwi_corner_next(d) : d);
     }
 }
 

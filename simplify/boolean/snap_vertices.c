@@ -19,12 +19,7 @@ typedef struct anchors {
 
 static size_t find_list(const anchors *a, const int64_t cell[3])
 {
-    uint64_t hash = 0;
-    for (int k = 0; k < 3; k++) {
-        hash = (hash ^ (uint64_t)cell[k]) * UINT64_C(0x9E3779B97F4A7C15);
-        hash ^= hash >> 31;
-    }
-    return hash & a->mask;
+    return cwi_hash_cell(cell) & a->mask;
 }
 
 static void find_cell(const anchors *a, const double x[3], int64_t cell[3])

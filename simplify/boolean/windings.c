@@ -123,26 +123,6 @@ static uint32_t island_of(const search *w, uint32_t triangle)
     return facet == CWI_NOTHING ? CWI_NOTHING : w->island[front_of(w, facet)];
 }
 
-static cw_status build_tree(search *w, cw_error *err)
-{
-    float(*boxes)[6] = cwi_alloc_array(w->s->triangle_count, sizeof *boxes);
-    if (!boxes)
-        return cwi_fail_memory(err);
-    for (size_t t = 0; t < w->s->triangle_count; t++)
-        for (int k = 0; k < 3; k++) {
-            const uint32_t *v = w->s->triangles[t];
-            const double x = w->s->vertices[v[0]][k], y = w->s->vertices[v[1]][k],
-                         z = w->s->vertices[v[2]][k];
-            boxes[t][k] = nextafterf((float)fmin(fmin(x, y), z), -INFINITY);
-            boxes[t][k + 3] = nextafterf((float)fmax(fmax(x, y), z), INFINITY);
-        }
-    const cw_status st =
-        cwi_boxes_build(&w->own, (const float(*)[6])boxes, w->s->triangle_count, err);
-    w->tree = &w->own;
-    cwi_free(boxes);
-    return st;
-}
-
 /* --- lines along x ------------------------------------------------------------------------ */
 
 /* A line along x through the point (y / w, z / w). */
@@ -494,8 +474,10 @@ cw_status cwi_find_windings(const cwi_soup *s, const cwi_triangle_parts *parts,
     cw_status st = CW_OK;
     if (!k.windings || !k.seen || !k.next || !list_passages(&w) || !find_islands(&w))
         st = cwi_fail_memory(err);
-    if (st == CW_OK && tree->count != s->triangle_count)
-        st = build_tree(&w, err);
+    if (st == CW_OK && tree->count != s->triangle_count) {
+        w.tree = &w.own;
+        st = cwi_soup_tree(s, NULL, s->triangle_count, &w.own, err);
+    }
     if (st == CW_OK)
         st = walk_islands(&w, &k, err);
     cwi_boxes_free(&w.own);
