@@ -6,6 +6,8 @@
 #include "cli/framework/console.h"
 #include "cli/framework/option_rules.h"
 #include "cli/framework/run_config.h"
+#include "cli/framework/stack_space.h"
+#include "cli/help/help_search.h"
 #include "cli/inputs/volume_input.h"
 #include "cli/results/output_names.h"
 #include "core/base/memory.h"
@@ -13,9 +15,21 @@
 #include "core/base/text.h"
 #include "core/base/thread_pool.h"
 
+#include <malloc.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Makes the allocator give back what is freed: arrays beyond a size go to the system at once, and
+ * small ones share one heap. Kept for later, they add a tenth to what is in use. */
+static void keep_no_freed_memory(void)
+{
+#ifdef __GLIBC__
+    enum { LARGE = 1 << 20 };
+    mallopt(M_MMAP_THRESHOLD, LARGE);
+    mallopt(M_ARENA_MAX, 1);
+#endif
+}
 
 /* Where a command has --memory, it is a limit to the whole process: what it has taken by now,
  * and what stacks and buffers will, comes off. Less than CLI_MIN_MEMORY is a limit to voxels and surface
@@ -29,6 +43,8 @@ static void limit_memory(const cli_command *command, const cli_common *args)
         if (o->kind == CLI_HEADING || strcmp(o->name, "memory") != 0)
             continue;
         memcpy(&input.memory, (const char *)args + o->offset, sizeof input.memory);
+        if (input.memory)
+            keep_no_freed_memory();
         const size_t requested = cli_memory_limit(&input),
                      limit = requested > CLI_MIN_MEMORY ? requested : CLI_MIN_MEMORY;
         const size_t spent = cli_peak_bytes() + STACKS_AND_BUFFERS;
@@ -187,6 +203,8 @@ int main(int argc, char **argv)
     cw_error err = {0};
     cw_status st = CW_ERR_ARGUMENT;
     cli_commands = cli_command_table;
+    cli_find_word = cli_search_word;
+    cli_reserve_stack();
     cli_catch_signals();
     read_default_threads();
     const cli_command *command =

@@ -22,6 +22,6 @@ done
 cp -a cli/debian "$source/debian"
 echo "== building in $source, ten minutes on two cores with the tests"
 (cd "$source" && DEB_BUILD_OPTIONS="${DEB_BUILD_OPTIONS:-} noautodbgsym parallel=$(nproc)" dpkg-buildpackage -b -us -uc) >"$folder/build.log" 2>&1 ||
-    { tail -n 40 "$folder/build.log" >&2; exit 1; }
+    { grep -A 30 '[*][*][*]' "$folder/build.log" >&2; tail -n 40 "$folder/build.log" >&2; exit 1; } # failed tests
 rm -rf "$source"
 ls -l "$folder"/*.deb | awk '{print $5, $NF}'

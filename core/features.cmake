@@ -58,8 +58,8 @@ int main()
 
 add_feature(wrap OPTION CUBEWRIGHT_CGAL PACKAGES libcgal-dev
   SHIPPED cubewright-cgal MODULE wrap
-  ABOUT "unions and wraps in repair, by CGAL (GPL)"
-  COST "unites no crossing solids and wraps no meshes in repair"
+  ABOUT "wraps in repair, by CGAL (GPL)"
+  COST "wraps no meshes in repair"
   LICENCES "CGAL (GPL-3.0-or-later), GMP (LGPL-3.0-or-later), MPFR (LGPL-3.0-or-later)"
   LIKE cgal)
 

@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/base/text.h"
 #include "core/geometry/triangle.h"
 #include "simplify/blocks/partition.h"
 #include "simplify/simplify_frame.h"
@@ -14,6 +15,10 @@
 /* Down to a number of triangles slabs go by themselves, to this many times their share: where
  * triangles are needed most is seen when all are there. */
 enum { SPARE = 3 };
+
+/* Bytes that a slab takes at least for a triangle, with an error to keep: its arrays, and their
+ * copies in blocks. */
+enum { TRIANGLE_BYTES = 120 };
 
 struct cw_simplifier {
     cw_simplify_desc desc;
@@ -185,6 +190,21 @@ static cw_status join_slabs(cw_simplifier *s, cwi_mesh_block *left, cw_error *er
     return st;
 }
 
+/* Fails before the work where a slab does not fit. */
+static cw_status expect_memory(const cw_slab *from, cw_error *err)
+{
+    char needed_text[CWI_MEMORY_TEXT], left_text[CWI_MEMORY_TEXT];
+    const size_t left = cwi_memory_left(), needed = TRIANGLE_BYTES * from->mesh->triangle_count;
+    if (needed <= left)
+        return CW_OK;
+    cwi_print_memory(needed, needed_text);
+    cwi_print_memory(left, left_text);
+    return cwi_fail(
+        err, CW_ERR_LIMIT,
+        "a slab of %zu triangles takes at least %s, and cw_memory_limit() leaves %s",
+        from->mesh->triangle_count, needed_text, left_text);
+}
+
 /* --- the public calls --------------------------------------------------------------------- */
 
 cw_status cw_simplifier_new(const cw_simplify_desc *desc, cw_simplifier **out, cw_error *err)
@@ -239,7 +259,10 @@ cw_status cw_simplifier_take(void *simplifier, const cw_slab *from, cw_error *er
         s->scale = cwi_simplify_scale(from->mesh);
         cwi_passes_place(&s->passes, s->frame.origin, s->scale);
     }
-    cw_status st = cwi_slab_block_init(&slab, from, s->scale, err);
+    cw_status st = s->desc.error_mm > 0 ? expect_memory(from, err) : CW_OK;
+    if (st != CW_OK)
+        return st;
+    st = cwi_slab_block_init(&slab, from, s->scale, err);
     if (st == CW_OK)
         st = s->desc.error_mm > 0 ? cwi_window_take(&s->window, &s->passes, &slab, err)
                                   : add_slab(s, &slab, err);

@@ -2,6 +2,7 @@
 #include "cli/commands/command_rows.h"
 #include "cli/commands/mesh_command.h"
 #include "cli/framework/console.h"
+#include "cli/framework/name_template.h"
 #include "cli/framework/quantity.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -19,7 +20,9 @@ typedef struct boolean_args {
 typedef struct boolean_state {
     cli_mesh *others; /* the meshes but the first */
     size_t count;
+    uint8_t *inputs; /* of each mesh: flags of cw_boolean_input */
     cw_boolean_facts facts;
+    char names[2][256]; /* of the parts of a split */
 } boolean_state;
 
 static const boolean_args defaults = {.op = CW_BOOLEAN_UNION};
@@ -53,6 +56,53 @@ static size_t results_of(const cli_mesh_run *r)
 
 /* --- the report --------------------------------------------------------------------------- */
 
+static const char *path_of(const cli_mesh_run *r, size_t n)
+{
+    return n ? ((const boolean_state *)r->state)->others[n - 1].path : r->mesh.path;
+}
+
+static size_t count_inputs(const cli_mesh_run *r, cw_boolean_input flag)
+{
+    const boolean_state *s = r->state;
+    size_t count = 0;
+    for (size_t n = 0; n <= s->count; n++)
+        count += (s->inputs[n] & flag) != 0;
+    return count;
+}
+
+/* Warns of the files that have a flag, by their names. */
+static void warn_of_inputs(cli_mesh_run *r, cw_boolean_input flag, const char *what)
+{
+    enum { MAX_NAMED = 3 };
+    const boolean_state *s = r->state;
+    const size_t count = count_inputs(r, flag);
+    size_t named = 0, used = 0;
+    char names[160] = "";
+    for (size_t n = 0; n <= s->count && named < MAX_NAMED && used < sizeof names; n++)
+        if (s->inputs[n] & flag)
+            used += (size_t)snprintf(names + used, sizeof names - used, "%s%s",
+                                     named++ ? ", " : "", path_of(r, n));
+    if (count > named)
+        cli_report_warn(&r->report, "%s and %s more: %s", names, cli_count(count - named),
+                        what);
+    else if (count)
+        cli_report_warn(&r->report, "%s: %s", names, what);
+}
+
+/* Warns of shells whose volume is lost; what is less than a millionth comes from surfaces that cross themselves. */
+static void warn_of_negative(cli_mesh_run *r, const cw_boolean_facts *f)
+{
+    char what[160];
+    if (f->negative_mm3 <= 1e-6 * (f->volume_mm3[0] + f->volume_mm3[1]))
+        return;
+    snprintf(what, sizeof what,
+             "%s shell%s inside out, with %.6g mm3 that count as outside; 'convert --orient' "
+             "turns %s",
+             cli_count(f->negative_regions), f->negative_regions == 1 ? " is" : "s are",
+             f->negative_mm3, f->negative_regions == 1 ? "it" : "them");
+    warn_of_inputs(r, CW_BOOLEAN_NEGATIVE, what);
+}
+
 static void put_params(cli_json *j, const cli_mesh_run *r, const cli_made *made)
 {
     cli_json_text(j, "op", operations[op_of(r)]);
@@ -81,20 +131,40 @@ static void put_facts(cli_json *j, const cli_mesh_run *r)
     cli_json_count(j, "contact_vertices", f->contact_vertices);
     cli_json_count(j, "triangles_without_area", f->dropped);
     cli_json_count(j, "turned_inputs", f->turned);
+    cli_json_count(j, "empty_inputs", count_inputs(r, CW_BOOLEAN_EMPTY));
+    cli_json_count(j, "negative_regions", f->negative_regions);
+    cli_json_number(j, "negative_mm3", f->negative_mm3);
     cli_json_count(j, "rounds", f->rounds);
     cli_json_number(j, "moved_mm", f->moved_mm);
     cli_json_close(j, '}');
 }
 
+/* Prints facts for the line: doubled vertices as well where the format cannot keep them apart. */
+static void print_found(cli_mesh_run *r, const cw_boolean_facts *f)
+{
+    const cw_format *format = cw_mesh_format(r->args->output, r->args->written.format);
+    size_t used = 0;
+    if (f->contact_vertices && format && !(format->keeps & CW_KEEPS_SHARING))
+        used = (size_t)snprintf(
+            r->found, sizeof r->found,
+            "; manifold but for contacts once read, as %s joins the doubled vertices",
+            format->name);
+    if (f->split_triangles)
+        snprintf(r->found + used, sizeof r->found - used,
+                 "; triangles split %s, points new %s, moved by up to %.2g mm",
+                 cli_count(f->split_triangles), cli_count(f->new_points), f->moved_mm);
+}
+
 static cw_status report_facts(cli_mesh_run *r, cw_error *err)
 {
     const cw_boolean_facts *f = &((const boolean_state *)r->state)->facts;
-    if (f->turned)
-        cli_report_warn(&r->report, "%s of the meshes are inside out, and were turned",
-                        cli_count(f->turned));
+    warn_of_inputs(r, CW_BOOLEAN_TURNED, "inside out, and turned");
+    warn_of_inputs(r, CW_BOOLEAN_EMPTY, "no triangle has an area: taken as empty");
+    warn_of_negative(r, f);
     if (f->contact_vertices)
         cli_say("%s: the result touches itself: contact edges %s, doubled vertices %s",
-                r->mesh.path, cli_count(f->contact_edges), cli_count(f->contact_vertices));
+                r->outputs.path[0], cli_count(f->contact_edges),
+                cli_count(f->contact_vertices));
     if (!cli_made_triangles(r))
         return cwi_fail(
             err, CW_ERR_EMPTY,
@@ -102,10 +172,7 @@ static cw_status report_facts(cli_mesh_run *r, cw_error *err)
                 ? "nothing is left: the meshes touch, and no volume is inside of the %s"
                 : "nothing is left: no volume is inside of the %s",
             operations[op_of(r)]);
-    if (f->split_triangles)
-        snprintf(r->found, sizeof r->found,
-                 "; triangles split %s, points new %s, moved by up to %.2g mm",
-                 cli_count(f->split_triangles), cli_count(f->new_points), f->moved_mm);
+    print_found(r, f);
     return CW_OK;
 }
 
@@ -129,7 +196,8 @@ static cw_status read_others(cli_mesh_run *r, cw_error *err)
     boolean_state *s = r->state;
     const size_t count = r->args->common.input_count - 1;
     s->others = calloc(count ? count : 1, sizeof *s->others);
-    if (!s->others)
+    s->inputs = calloc(count + 1, sizeof *s->inputs);
+    if (!s->others || !s->inputs)
         return cwi_fail_memory(err);
     for (; s->count < count; s->count++) {
         const char *path = r->args->common.inputs[s->count + 1];
@@ -143,17 +211,21 @@ static cw_status read_others(cli_mesh_run *r, cw_error *err)
 
 static cw_status make_pieces(cli_mesh_run *r, cw_error *err)
 {
-    static const char *const names[2] = {"outside", "inside"};
-    const boolean_state *s = r->state;
+    static const char *const places[2] = {"outside", "inside"};
+    boolean_state *s = r->state;
+    char *stem = cli_stem(r->mesh.path);
     r->pieces = (cli_pieces){.path = r->mesh.path, .piece = calloc(2, sizeof *r->pieces.piece)};
-    if (!r->pieces.piece)
+    for (int n = 0; n < 2 && stem; n++)
+        snprintf(s->names[n], sizeof s->names[n], "%s %s", stem, places[n]);
+    free(stem);
+    if (!r->pieces.piece || !stem)
         return cwi_fail_memory(err);
     r->pieces.count = results_of(r);
     r->pieces.triangles = cli_mesh_triangles(&r->mesh);
     for (size_t n = 0; n < s->count; n++)
         r->pieces.triangles += cli_mesh_triangles(&s->others[n]);
     for (size_t n = 0; n < 2 && r->pieces.count == 2; n++)
-        r->pieces.piece[n].name = names[n];
+        r->pieces.piece[n].name = s->names[n];
     return CW_OK;
 }
 
@@ -170,6 +242,7 @@ static cw_status run_operation(cli_mesh_run *r, cw_error *err)
     const cw_boolean_desc desc = {
         .op = (cw_boolean_op)op_of(r),
         .threads = r->threads,
+        .inputs = s->inputs,
         .progress = cli_progress((double)r->pieces.triangles / 1e6, "Mtriangle")};
     const cw_status st = cw_mesh_boolean(meshes, s->count + 1, &desc, out, &s->facts, err);
     free(meshes);
@@ -212,6 +285,7 @@ static cw_status run_boolean(void *args, cw_error *err)
     for (size_t n = 0; n < state.count; n++)
         cli_free_mesh(&state.others[n]);
     free(state.others);
+    free(state.inputs);
     return st;
 }
 

@@ -230,8 +230,11 @@ static cw_status read_inputs(run_state *s, cw_error *err)
                                 err);
     cli_input source = cli_source_input(&args->input);
     source.makes_surface = true;
-    if (st == CW_OK && args->source)
+    if (st == CW_OK && args->source) {
         st = cli_read_volume(args->source, &source, false, &s->volume, err);
+        if (st == CW_ERR_LIMIT)
+            st = cli_fail_whole(st, cli_find_unstreamed_preparation(&source), err);
+    }
     if (st == CW_OK && args->source)
         st = cli_choose_level(&s->volume, &source, &s->iso, err);
     if (st == CW_OK && args->source)
@@ -463,6 +466,7 @@ static cw_status measure_all(run_state *s, cw_error *err)
     s->findings.quality = &s->quality;
     s->findings.tolerance_mm = tolerance_mm(s);
     s->findings.has_normals = mesh->normals;
+    s->findings.file_fault = s->mesh.file.fault;
     cw_status st = measure_mesh(s, err);
     if (st == CW_OK && mesh->triangle_count)
         st = ask_cgal(s, err);

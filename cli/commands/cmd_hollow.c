@@ -3,9 +3,9 @@
 #include "cli/commands/offset_hollow.h"
 
 static const cli_option options[] = {
-    {"wall", 'w', CLI_LENGTH, "L", "Thickness of the wall: 2mm, or 1% of the box's diagonal",
-     offsetof(cli_solid_args, wall)},
-    {"drain", 0, CLI_TEXT, "D@AXIS[,...]",
+    {"wall", 'w', CLI_MESH_LENGTH, "L",
+     "Thickness of the wall: 2mm, or 1% of the box's diagonal", offsetof(cli_solid_args, wall)},
+    {"drain", 0, &cli_kind_drains, "D@AXIS[,...]",
      "Diameter and direction of drain holes out of the largest cavity: 4mm@-z, or "
      "4mm@-z,3mm@+x (none)",
      offsetof(cli_solid_args, drain)},

@@ -43,7 +43,7 @@ static const cli_option options[] = {
      "Table of the labels' names and colours (in the volume, else in a file beside it)",
      offsetof(info_args, names), CLI_VALUES_FILE},
     {"levels", 0, CLI_FLAG, NULL,
-     "Predict the number of triangles at each suggested isovalue (off)",
+     "Predict the number of triangles at each suggested isovalue, and the size of an STL file (off)",
      offsetof(info_args, levels)},
     {"deep", 0, CLI_FLAG, NULL,
      "Read all voxels (off: above 256 MiB a part of the rows, unless --levels needs all)",
@@ -62,7 +62,7 @@ enum { MAX_COMPONENTS = 16 };
 typedef struct level {
     const char *name;
     double value;
-    cw_extract_counts counts;
+    size_t triangles; /* of --levels */
 } level;
 
 typedef struct facts {
@@ -124,7 +124,9 @@ static cw_status predict_surface(facts *f, int threads, cw_error *err)
                                       .inside_is_low =
                                           cli_inside_is_low(CLI_INSIDE_AUTO, &f->volume.whole),
                                       .threads = threads};
-        st = cw_extractor_predict(extractor, &desc, &f->levels[n].counts, err);
+        cw_extract_counts counts = {0};
+        st = cw_extractor_predict(extractor, &desc, &counts, err);
+        f->levels[n].triangles = counts.triangles;
     }
     cw_extractor_free(extractor);
     return st;
@@ -249,7 +251,7 @@ static cw_status find_facts(const info_args *args, facts *f, cw_error *err)
         st = args->input.raw ? CW_OK
                              : cli_find_scales(args->common.inputs[0], &desc, &f->scales, err);
     }
-    if (st == CW_OK)
+    if (st == CW_OK && f->labels.is_label_map)
         st = cli_tell_labels(&f->volume, NULL, 0, false, err);
     if (st == CW_OK && args->levels && f->level_count)
         st = predict_surface(f, threads, err);
@@ -421,8 +423,8 @@ static void print_levels(const facts *f, bool predicted)
         const level *l = &f->levels[n];
         printf("  level    %-7s--iso %.6g", l->name, l->value);
         if (predicted)
-            printf("  %s triangles, %s", cli_count(l->counts.triangles),
-                   cli_bytes((double)l->counts.bytes));
+            printf("  %s triangles, STL %s", cli_count(l->triangles),
+                   cli_bytes((double)cli_stl_bytes(l->triangles)));
         puts("");
     }
 }
@@ -472,7 +474,7 @@ static void print_json(const facts *f, bool predicted)
         cli_json_text(&j, "name", f->levels[n].name);
         cli_json_number(&j, "iso", f->levels[n].value);
         if (predicted)
-            cli_json_count(&j, "triangles", f->levels[n].counts.triangles);
+            cli_json_count(&j, "triangles", f->levels[n].triangles);
         cli_json_close(&j, '}');
     }
     cli_json_close(&j, ']');
@@ -500,15 +502,17 @@ static const char *shape_of(const cw_series *s)
     return text;
 }
 
-static void print_series(const char *path, const cw_series *series, size_t count)
+static void print_series(const cli_volume *notes, const cw_series *series, size_t count)
 {
-    printf("%s\n", path);
+    printf("%s\n", notes->path);
     for (size_t n = 0; n < count; n++) {
         const cw_series *s = &series[n];
         printf("  series %-6s %-4s %4zu images  %s%s%s\n", s->label, s->modality, s->images,
                shape_of(s), s->finding[0] ? "\n    " : "",
                cli_name_options(s->finding, (char[CLI_MESSAGE]){0}));
     }
+    for (size_t n = 0; n < notes->note_count; n++)
+        printf("  note   %s\n", notes->notes[n]);
 }
 
 static void json_shape(cli_json *j, const cw_series *s)
@@ -527,11 +531,11 @@ static void json_shape(cli_json *j, const cw_series *s)
     cli_json_message(j, "finding", s->finding);
 }
 
-static void print_series_json(const char *path, const cw_series *series, size_t count)
+static void print_series_json(const cli_volume *notes, const cw_series *series, size_t count)
 {
     cli_json j = {.out = stdout};
     cli_json_begin(&j, "cubewright-series-1");
-    cli_json_text(&j, "path", cli_shown_path(path));
+    cli_json_text(&j, "path", cli_shown_path(notes->path));
     cli_json_open(&j, "series", '[');
     for (size_t n = 0; n < count; n++) {
         cli_json_open(&j, NULL, '{');
@@ -540,6 +544,7 @@ static void print_series_json(const char *path, const cw_series *series, size_t 
         cli_json_close(&j, '}');
     }
     cli_json_close(&j, ']');
+    cli_json_notes(&j, notes);
     cli_json_close(&j, '}');
 }
 
@@ -664,11 +669,14 @@ static bool is_named(const cw_series *s, const char *name)
 static cw_status list_series(const info_args *args, facts *f, bool *listed, cw_error *err)
 {
     const char *path = args->common.inputs[0];
-    const cw_read_desc desc = cli_read_desc(&args->input);
+    cli_volume notes = {.path = path, .is_quiet = true};
+    cw_read_desc desc = cli_read_desc(&args->input);
     cw_series *series;
     size_t count;
     if (args->input.raw)
         return CW_OK;
+    desc.note = cli_take_note;
+    desc.note_user = &notes;
     cw_status st = cw_series_list(path, &desc, &series, &count, err);
     for (size_t n = 0; n < count; n++)
         if (count == 1 || is_named(&series[n], args->input.series))
@@ -679,9 +687,9 @@ static cw_status list_series(const info_args *args, facts *f, bool *listed, cw_e
     }
     *listed = count > 1 || (count == 1 && series[0].status != CW_OK);
     if (*listed && args->json)
-        print_series_json(path, series, count);
+        print_series_json(&notes, series, count);
     else if (*listed)
-        print_series(path, series, count);
+        print_series(&notes, series, count);
     cw_series_free(series);
     return st;
 }

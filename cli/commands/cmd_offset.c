@@ -3,7 +3,7 @@
 #include "cli/commands/offset_hollow.h"
 
 static const cli_option options[] = {
-    {"by", 'b', CLI_TEXT, "L",
+    {"by", 'b', CLI_SHIFT, "L",
      "Distance to move the surface: 1mm, -0.5mm (inward), or 0; 1% is of the box's diagonal",
      offsetof(cli_solid_args, by)},
     {"sharp", 0, CLI_FLAG, NULL,

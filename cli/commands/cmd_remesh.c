@@ -234,16 +234,26 @@ static cw_status remesh_pieces(cli_mesh_run *r, cw_error *err)
     return CW_OK;
 }
 
-/* Fails if triangles meet that did not meet before. */
-static cw_status judge_result(cli_mesh_run *r, cw_error *err)
+/* Fails before anything is written if triangles meet that did not meet before, or the surfaces may be
+ * farther from each other than they may. */
+static cw_status measure_result(cli_mesh_run *r, cli_made *made, cw_error *err)
 {
     const cw_remesh_facts *f = &((const remesh_state *)r->state)->facts;
-    return f->crossings_after <= f->crossings_before
-               ? CW_OK
-               : cwi_fail(err, CW_ERR_CHECK,
-                          "%s: %zu pairs of triangles intersect, and %zu did before; a smaller "
-                          "--error or --edge helps",
-                          r->outputs.path[0], f->crossings_after, f->crossings_before);
+    if (f->crossings_after > f->crossings_before)
+        return cwi_fail(
+            err, CW_ERR_CHECK,
+            "%s: not as promised: %zu pairs of triangles intersect, and %zu did before; %s; "
+            "nothing is written",
+            r->mesh.path, f->crossings_after, f->crossings_before,
+            f->crossings_before ? "'repair' makes a surface that does not intersect itself"
+                                : "a smaller --edge helps");
+    if (f->beyond)
+        return cwi_fail(
+            err, CW_ERR_CHECK,
+            "%s: not as promised: %zu triangles may be farther than %.6g mm from the other "
+            "surface; a larger --error, or a smaller --edge, helps; nothing is written",
+            r->mesh.path, f->beyond, f->error_mm);
+    return cli_compare_made(r, made, err);
 }
 
 static const cli_mesh_command remesh = {
@@ -253,7 +263,7 @@ static const cli_mesh_command remesh = {
     .resolve = resolve_desc,
     .work = remesh_pieces,
     .report = report_facts,
-    .judge = judge_result,
+    .measure = measure_result,
     .put_params = put_params,
     .put_facts = put_facts,
 };

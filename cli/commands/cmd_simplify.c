@@ -39,7 +39,7 @@ static const simplify_args defaults = {.mesh.measure = true};
 static const cli_option options[] = {
     CLI_MESH_OUTPUT(", with --lod {lod}"),
     CLI_HEADED("Target"),
-    {"error", 'e', CLI_LENGTH, "L", "Error limit: 0.1mm, or 0.05% of the box's diagonal",
+    {"error", 'e', CLI_MESH_LENGTH, "L", "Error limit: 0.1mm, or 0.05% of the box's diagonal",
      offsetof(simplify_args, error)},
     {"triangles", 'n', CLI_COUNT, "N", "Triangle count to reach, such as 50k",
      offsetof(simplify_args, triangles)},
@@ -59,7 +59,7 @@ static const cli_option options[] = {
     {"keep-border", 0, CLI_FLAG, NULL,
      "Keep the borders of open surfaces as they are, so that tiles still fit (off)",
      offsetof(simplify_args, keep_border)},
-    {"drop-components", 0, CLI_LENGTH, "L",
+    {"drop-components", 0, CLI_MESH_LENGTH, "L",
      "Leave out components with a shorter box diagonal at the start, such as 2mm (none)",
      offsetof(simplify_args, drop)},
     CLI_MESH_MERGE,
@@ -75,6 +75,7 @@ static const cli_option options[] = {
      offsetof(simplify_args, inside)},
     CLI_MESH_MEASURE(
         "Measure the error, which takes longer than simplifying (on; --no-measure)"),
+    CLI_FORCE_OPTION(simplify_args, mesh.common),
     CLI_MESH_WRITING,
     CLI_HEADED("Reading the source"),
     CLI_CLAIM_OPTIONS("source", "the source", CLI_INPUT_ROW(cli_mesh_args, source_claim)),
@@ -96,9 +97,6 @@ static const cli_rule rules[] = {
     {"iso", CLI_EXCLUDES, "no-measure"},
     CLI_COMPRESS_RULES,
 };
-
-/* Of the box's diagonal. */
-static const double LARGE_ERROR = 0.05;
 
 static const char *const attribute_names[3] = {"normal", "color", "scalar"};
 
@@ -158,10 +156,6 @@ static cw_status check_values(cli_mesh_run *r, cw_error *err)
     r->reader = args->mesh_reader;
     r->reads_parts = r->reads_parts && !args->lod.count;
     r->report.several = args->lod.count ? "levels" : NULL;
-    if (args->error.unit == CLI_VOXELS || args->drop.unit == CLI_VOXELS)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--%s: a mesh has no voxels; give mm, or %% of its box's diagonal",
-                        args->error.unit == CLI_VOXELS ? "error" : "drop-components");
     if (args->ratio.given && !(args->ratio.value > 0 && args->ratio.value < 1))
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--ratio %g: a fraction above 0 and below 1 was expected",
@@ -213,15 +207,29 @@ static cw_status read_source(cli_mesh_run *r, cw_error *err)
     return st == CW_OK ? cli_choose_level(&s->source, &source, &s->iso, err) : st;
 }
 
+/* Refuses a large error limit: most often the file is in another unit than millimetres. */
+static cw_status check_error(const cli_mesh_run *r, double error_mm, cw_error *err)
+{
+    const bool known = r->mesh.file.known & CW_KNOWN_UNIT;
+    if (r->args->common.force)
+        return CW_OK;
+    return cli_check_error_limit(
+        "--error", error_mm, r->pieces.diagonal_mm,
+        known || args_of(r)->error.unit != CLI_MM
+            ? NULL
+            : "; the file names no unit and was taken as mm (--input-unit)",
+        err);
+}
+
 /* Shares are of the box of what was read. */
 static cw_status resolve_lengths(cli_mesh_run *r, cw_error *err)
 {
     simplify_state *s = r->state;
-    cw_status st = CW_OK;
     s->error_mm = length_mm(r, &args_of(r)->error);
     s->drop_mm = length_mm(r, &args_of(r)->drop);
     r->promised_mm = s->error_mm;
-    if (args_of(r)->drop.given)
+    cw_status st = check_error(r, s->error_mm, err);
+    if (st == CW_OK && args_of(r)->drop.given)
         st = cli_drop_from_pieces(&r->pieces, s->drop_mm, err);
     for (size_t n = 0; n < r->pieces.count && st == CW_OK && r->args->source; n++)
         st = cli_check_overlap(&s->source, &r->pieces.piece[n].input, err);
@@ -267,29 +275,9 @@ static cw_simplify_desc simplify_desc(const cli_mesh_run *r, size_t triangles)
                               .progress = cli_progress((double)triangles / 1e6, "Mtriangle")};
 }
 
-/* A bound as large as the details of the shape leaves little of it, most often because the file
- * is in another unit than millimetres. */
-static void warn_of_large_error(cli_mesh_run *r)
-{
-    const double error_mm = r->promised_mm;
-    const double fraction = error_mm / r->pieces.diagonal_mm;
-    if (!(fraction > LARGE_ERROR))
-        return;
-    const bool known = r->mesh.file.known & CW_KNOWN_UNIT;
-    cli_report_warn(
-        &r->report,
-        "--error %.6g mm is %.3g %% of the diagonal of the box, %.6g mm: little of the "
-        "shape may be left%s",
-        error_mm, 100 * fraction, r->pieces.diagonal_mm,
-        known || args_of(r)->error.unit != CLI_MM
-            ? ""
-            : "; the file names no unit and was taken as mm (--input-unit)");
-}
-
 static cw_status simplify_parts(cli_mesh_run *r, cw_error *err)
 {
     cw_status st = CW_OK;
-    warn_of_large_error(r);
     for (size_t n = 0; n < r->pieces.count && st == CW_OK; n++) {
         cli_piece *p = &r->pieces.piece[n];
         cw_simplify_desc desc = simplify_desc(r, p->input.triangle_count);

@@ -9,6 +9,7 @@
 #include "cli/framework/temp_folder.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/inputs/synthetic_input.h"
+#include "cli/inputs/volume_prepare.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
@@ -30,6 +31,7 @@ typedef struct predictor {
     double read_seconds;           /* time that reading the voxels took */
     double make_seconds;           /* for a triangle: made in memory */
     double check_seconds;          /* for a triangle: checked */
+    char stem[CLI_STEM_TEXT];      /* of the volume's name, which headers hold */
     size_t ply_header, glb_header; /* bytes of files beside their arrays; 0: not written */
 } predictor;
 
@@ -95,6 +97,7 @@ static cw_status measure_headers(predictor *p, cw_error *err)
     if (st == CW_OK && !name)
         st = cwi_fail_memory(err);
     if (st == CW_OK) {
+        snprintf(p->stem, sizeof p->stem, "%s", name);
         const size_t ply = write_sample(folder, name, "ply", &p->volume->whole),
                      glb = write_sample(folder, name, "glb", &p->volume->whole);
         p->ply_header = ply ? ply - ply_bytes(0, 4, 4) : 0;
@@ -105,11 +108,17 @@ static cw_status measure_headers(predictor *p, cw_error *err)
     return st;
 }
 
+size_t cli_stl_bytes(size_t triangles)
+{
+    return STL_HEADER + STL_FACET * triangles;
+}
+
 static void predict_files(const predictor *p, cli_prediction *out)
 {
     const size_t glb = p->glb_header + glb_arrays(out->vertices, out->triangles);
+    memcpy(out->stem, p->stem, sizeof out->stem);
     out->ply_bytes = ply_bytes(p->ply_header, out->vertices, out->triangles);
-    out->stl_bytes = STL_HEADER + STL_FACET * out->triangles;
+    out->stl_bytes = cli_stl_bytes(out->triangles);
     out->glb_bytes = p->glb_header && glb <= UINT32_MAX ? glb : 0;
 }
 
@@ -163,12 +172,15 @@ static double voxel_count(const cw_volume *v)
     return (double)v->dim[0] * (double)v->dim[1] * (double)v->dim[2];
 }
 
-/* Bytes of the voxels as extract reads them: all components and steps. */
+/* Bytes of the voxels as extract reads them, all components and steps, and of those that --resample
+ * and --denoise make of them. */
 static double voxel_bytes(const predictor *p)
 {
-    const cw_volume *v = &p->volume->whole;
-    return voxel_count(&p->volume->view) * (double)cw_type_size(v->type) *
-           (double)v->components * (double)v->steps;
+    const cw_volume *v = &p->volume->whole, *made = &p->volume->prepared,
+                    *shape = made->data ? &p->volume->voxels : &p->volume->view;
+    const double read = voxel_count(shape) * (double)cw_type_size(v->type) *
+                        (double)v->components * (double)v->steps;
+    return made->data ? read + voxel_count(made) * (double)cw_type_size(made->type) : read;
 }
 
 static void predict_memory(const predictor *p, double beside, cli_prediction *out)
@@ -177,7 +189,13 @@ static void predict_memory(const predictor *p, double beside, cli_prediction *ou
     const double bytes =
         voxel_bytes(p) + beside + (double)cli_check_bytes() * (double)out->triangles;
     out->memory_bytes = (size_t)bytes;
-    out->slices_bytes = cli_slices_bytes(&p->volume->view, &stream, p->program);
+    out->needs_all = cli_find_unstreamed_preparation(p->input);
+    if (out->needs_all)
+        return;
+    cw_volume source = p->volume->view;
+    source.type = p->volume->whole.type;
+    out->slices_bytes = cli_slices_bytes(&p->volume->view, &stream, p->program) +
+                        cli_slice_filter_bytes(p->input, &source);
     out->is_streamed = out->memory_bytes > cli_memory_limit(p->input);
 }
 
@@ -348,9 +366,12 @@ void cli_print_predictions(const cli_predictions *p)
                cli_bytes((double)m->stl_bytes));
         if (m->glb_bytes)
             printf(", GLB about %s", cli_bytes((double)m->glb_bytes));
-        printf("\n    memory   about %s; slice by slice at least %s%s\n",
-               cli_bytes((double)m->memory_bytes), cli_bytes((double)m->slices_bytes),
-               m->is_streamed ? ", as --memory is less" : "");
+        printf("\n    memory   about %s", cli_bytes((double)m->memory_bytes));
+        if (m->needs_all)
+            printf("; %s needs all voxels in memory\n", m->needs_all);
+        else
+            printf("; slice by slice at least %s%s\n", cli_bytes((double)m->slices_bytes),
+                   m->is_streamed ? ", as --memory is less" : "");
         printf("    time     about %.*f s, and writing\n", m->seconds < 10 ? 1 : 0, m->seconds);
     }
 }
@@ -367,12 +388,14 @@ void cli_json_predictions(cli_json *j, const cli_predictions *p)
         cli_json_count(j, "triangles", m->triangles);
         cli_json_count(j, "vertices", m->vertices);
         if (m->triangles) {
+            cli_json_text(j, "stem", m->stem);
             cli_json_count(j, "ply_bytes", m->ply_bytes);
             cli_json_count(j, "stl_bytes", m->stl_bytes);
             if (m->glb_bytes)
                 cli_json_count(j, "glb_bytes", m->glb_bytes);
             cli_json_count(j, "memory_bytes", m->memory_bytes);
-            cli_json_count(j, "slices_bytes", m->slices_bytes);
+            if (!m->needs_all)
+                cli_json_count(j, "slices_bytes", m->slices_bytes);
             cli_json_bool(j, "streamed", m->is_streamed);
             cli_json_number(j, "seconds", m->seconds);
         }

@@ -5,14 +5,18 @@
 
 #include "cli/inputs/volume_input.h"
 
+enum { CLI_STEM_TEXT = 256 };
+
 /* The surface of `extract --iso V -o FILE` without further options, which is capped, has normals and
  * is checked. */
 typedef struct cli_prediction {
     double iso;
-    size_t vertices, triangles;        /* exact */
-    size_t ply_bytes, stl_bytes;       /* exact for an output with the volume's stem */
-    size_t glb_bytes;                  /* about; 0: more than the format allows, or no module */
+    size_t vertices, triangles;  /* exact */
+    char stem[CLI_STEM_TEXT];    /* of the output whose size is ply_bytes: a PLY holds it */
+    size_t ply_bytes, stl_bytes; /* exact */
+    size_t glb_bytes;            /* about; 0: more than the format allows, or no module */
     size_t memory_bytes, slices_bytes; /* of the program: all in memory; slice by slice */
+    const char *needs_all;             /* option that keeps it from slices; NULL: none */
     bool is_streamed;                  /* --memory is too low for the first */
     double seconds;                    /* about; without waiting for the disk to write */
 } cli_prediction;
@@ -29,6 +33,9 @@ typedef struct cli_predict_desc {
     size_t program_bytes; /* peak of the process before it read the volume */
     double read_seconds;  /* time that reading took */
 } cli_predict_desc;
+
+/* Returns the size of an STL file. */
+size_t cli_stl_bytes(size_t triangles);
 
 /* Predicts the surfaces at some isovalues. They are counted in memory if info has read all voxels and
  * --memory allows that, and slice by slice if not.

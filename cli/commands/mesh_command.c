@@ -55,7 +55,7 @@ static cw_status check_args(cli_mesh_run *r, cw_error *err)
     if (r->command->check)
         st = r->command->check(r, err);
     if (st == CW_OK)
-        st = cli_check_compress(&r->args->compress, false, err);
+        st = cli_check_compress(&r->args->compress, err);
     if (st == CW_OK)
         st = name_outputs(r, err);
     return st == CW_OK ? cli_check_mesh_outputs(r, err) : st;

@@ -45,7 +45,7 @@ typedef struct cli_mesh_args {
     }
 #define CLI_MESH_WRITING                                                                       \
     CLI_JSON_OPTION(cli_mesh_args), CLI_WRITTEN_OPTIONS(cli_mesh_args),                        \
-        CLI_COMPRESS_OPTIONS(cli_mesh_args)
+        CLI_COMPRESS_OPTIONS(cli_mesh_args, CLI_MESH_LENGTH)
 #define CLI_MESH_COMMON                                                                        \
     CLI_MESH_WRITING, CLI_MESH_INPUT_OPTIONS(cli_mesh_args), CLI_PROGRESS_OPTION(cli_mesh_args)
 

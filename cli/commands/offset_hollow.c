@@ -1,12 +1,16 @@
 /* Moves the surface of a solid or turns the solid into a shell, for the commands offset and
  * hollow: arguments, work, measurements and report. */
+#define _GNU_SOURCE /* asprintf */
 #include "cli/commands/offset_hollow.h"
 #include "cli/framework/console.h"
+#include "cli/framework/name_template.h"
 #include "cli/framework/quantity.h"
 #include "cli/results/mesh_comparison.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/base/text.h"
 
+#include <cubewright/boolean.h>
 #include <cubewright/level_set.h>
 
 #include <math.h>
@@ -14,22 +18,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_DRAINS = 16 };
-
-/* As they are asked for: shares are not resolved before the mesh is read. */
-typedef struct wishes {
-    cli_length voxel, by, drain[MAX_DRAINS];
-    double sign; /* of by */
-    cw_drain drains[MAX_DRAINS];
-    size_t drain_count;
-} wishes;
-
 typedef struct solid_state {
-    wishes wishes;
+    cw_drain drains[CLI_MAX_DRAINS]; /* as many as were asked for */
     cw_hollow_facts facts;
     double voxel_mm, by_mm, wall_mm;
     double off_max_mm, off_rms_mm; /* of an offset */
     cw_offset_facts offset;
+    cw_mesh united; /* the input of hollow, where its triangles intersected */
 } solid_state;
 
 static const cli_solid_args *args_of(const cli_mesh_run *r)
@@ -41,13 +36,13 @@ const cli_solid_args cli_solid_defaults = {.mesh.measure = true, .sharp = true, 
 
 /* --- the report --------------------------------------------------------------------------- */
 
-static void put_drains(cli_json *j, const wishes *w)
+static void put_drains(cli_json *j, const cw_drain *drains, size_t count)
 {
     cli_json_open(j, "drains", '[');
-    for (size_t n = 0; n < w->drain_count; n++) {
+    for (size_t n = 0; n < count; n++) {
         cli_json_open(j, NULL, '{');
-        cli_json_number(j, "diameter_mm", w->drains[n].diameter_mm);
-        cli_json_numbers(j, "direction", w->drains[n].direction, 3);
+        cli_json_number(j, "diameter_mm", drains[n].diameter_mm);
+        cli_json_numbers(j, "direction", drains[n].direction, 3);
         cli_json_close(j, '}');
     }
     cli_json_close(j, ']');
@@ -67,7 +62,7 @@ static void put_hollow_params(cli_json *j, const cli_mesh_run *r, const cli_made
 {
     const solid_state *s = r->state;
     cli_json_number(j, "wall_mm", s->wall_mm);
-    put_drains(j, &s->wishes);
+    put_drains(j, s->drains, args_of(r)->drain.count);
     put_voxel(j, r, made);
 }
 
@@ -86,6 +81,8 @@ static void put_hollow(cli_json *j, const cli_mesh_run *r)
     cli_json_open(j, "hollow", '{');
     cli_json_count(j, "cavities", f->cavities);
     cli_json_count(j, "sealed", f->sealed);
+    cli_json_count(j, "filled", f->filled);
+    cli_json_number(j, "filled_mm3", f->filled_mm3);
     cli_json_number(j, "removed_mm3", f->removed_mm3);
     if (r->args->measure) {
         cli_json_number(j, "wall_min_mm", f->wall_min_mm);
@@ -121,95 +118,57 @@ static void put_offset(cli_json *j, const cli_mesh_run *r)
 
 /* --- what is asked for -------------------------------------------------------------------- */
 
-static cw_status parse_length(const char *option, const char *text, cli_length *out,
-                              cw_error *err)
-{
-    if (cli_parse_length(text, out) && out->unit != CLI_VOXELS)
-        return CW_OK;
-    return cwi_fail(err, CW_ERR_ARGUMENT,
-                    "%s '%s': expected a length above 0 such as 0.1mm, or 0.05%% of the box's "
-                    "diagonal",
-                    option, text);
-}
-
 /* "4mm@-z" */
-static cw_status parse_drain(const char *text, cli_length *wide, cw_drain *drain, cw_error *err)
+static bool parse_drain(char *text, cli_length *wide, double direction[3])
 {
-    char copy[64];
-    const char *at = strchr(text, '@');
-    if (at && (size_t)(at - text) < sizeof copy) {
-        const char *axis = at + 1 + (at[1] == '+' || at[1] == '-');
-        memcpy(copy, text, (size_t)(at - text));
-        copy[at - text] = '\0';
-        if (*axis >= 'x' && *axis <= 'z' && !axis[1]) {
-            drain->direction[*axis - 'x'] = at[1] == '-' ? -1 : 1;
-            return parse_length("--drain", copy, wide, err);
-        }
-    }
-    return cwi_fail(
-        err, CW_ERR_ARGUMENT,
-        "--drain '%s': expected a diameter and a direction, +x to -z, such as 4mm@-z", text);
+    char *at = strchr(text, '@');
+    if (!at)
+        return false;
+    const char *axis = at + 1 + (at[1] == '+' || at[1] == '-');
+    *at = '\0';
+    if (*axis < 'x' || *axis > 'z' || axis[1])
+        return false;
+    direction[*axis - 'x'] = at[1] == '-' ? -1 : 1;
+    return cli_parse_length(text, CLI_IN_MM | CLI_IN_PERCENT, wide);
 }
 
-static cw_status parse_drains(const char *text, wishes *w, cw_error *err)
+static bool parse_drains(const cli_option *o, const char *text, void *field)
 {
-    char *copy = malloc(strlen(text) + 1), *next = copy;
-    if (!copy)
-        return cwi_fail_memory(err);
-    strcpy(copy, text);
-    cw_status st = CW_OK;
-    while (next && st == CW_OK) {
-        char *here = next;
-        next = strchr(here, ',');
-        if (next)
-            *next++ = '\0';
-        st = w->drain_count < MAX_DRAINS
-                 ? parse_drain(here, &w->drain[w->drain_count], &w->drains[w->drain_count], err)
-                 : cwi_fail(err, CW_ERR_ARGUMENT, "--drain: more than %d", MAX_DRAINS);
-        w->drain_count++;
+    cli_drains *out = field;
+    char item[CWI_ITEM_BYTES];
+    (void)o;
+    *out = (cli_drains){0};
+    for (;; text++) {
+        const size_t length = strcspn(text, ","), n = out->count++;
+        if (n == CLI_MAX_DRAINS || length >= sizeof item)
+            return false;
+        memcpy(item, text, length);
+        item[length] = '\0';
+        if (!parse_drain(item, &out->wide[n], out->direction[n]))
+            return false;
+        text += length;
+        if (!*text)
+            return true;
     }
-    free(copy);
-    return st;
 }
 
-/* A length with a sign; 0 is one, too. */
-static cw_status parse_by(const char *text, wishes *w, cw_error *err)
-{
-    const char *rest = text + (*text == '+' || *text == '-');
-    const size_t zeros = strspn(rest, "0.");
-    w->sign = *text == '-' ? -1 : 1;
-    if (zeros && (!rest[zeros] || strcmp(rest + zeros, "mm") == 0))
-        return CW_OK;
-    if (*rest != '+' && *rest != '-' && cli_parse_length(rest, &w->by) &&
-        w->by.unit != CLI_VOXELS)
-        return CW_OK;
-    return cwi_fail(err, CW_ERR_ARGUMENT,
-                    "--by '%s': expected a length such as 1mm, -0.5mm, 0 or 0.5%% of the box's "
-                    "diagonal",
-                    text);
-}
+const cli_kind cli_kind_drains = {
+    .size = sizeof(cli_drains),
+    .parse = parse_drains,
+    .expected = "diameters and directions (+x to -z) of up to 16 holes, such as 4mm@-z or "
+                "4mm@-z,3mm@+x",
+    .unit_rule = CLI_UNITS_MM " or % of the box's diagonal",
+};
 
 static cw_status check_values(cli_mesh_run *r, cw_error *err)
 {
-    const cli_solid_args *args = args_of(r);
-    wishes *w = &((solid_state *)r->state)->wishes;
-    cw_status st = CW_OK;
     r->reads_parts = false;
-    if (args->wall.unit == CLI_VOXELS)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--wall: a mesh has no voxels; give mm, or %% of its box's diagonal");
-    if (args->drain)
-        st = parse_drains(args->drain, w, err);
-    if (st == CW_OK && args->by)
-        st = parse_by(args->by, w, err);
-    if (st == CW_OK && args->voxel && strcmp(args->voxel, "auto") != 0)
-        st = parse_length("--voxel", args->voxel, &w->voxel, err);
-    if (st == CW_OK && !cw_level_set_available())
-        st = cwi_fail(
-            err, CW_ERR_UNSUPPORTED,
-            "%s needs OpenVDB, which this build lacks: install libopenvdb-dev and build again",
-            r->command->name);
-    return st;
+    if (cw_level_set_available())
+        return CW_OK;
+    return cwi_fail(
+        err, CW_ERR_UNSUPPORTED,
+        "%s needs OpenVDB, which this build lacks: install libopenvdb-dev and build again",
+        r->command->name);
 }
 
 /* --- work --------------------------------------------------------------------------------- */
@@ -222,34 +181,106 @@ static double length_mm(const cli_mesh_run *r, const cli_length *length)
 static cw_status resolve_lengths(cli_mesh_run *r, cw_error *err)
 {
     solid_state *s = r->state;
-    wishes *w = &s->wishes;
+    const cli_solid_args *args = args_of(r);
     const cw_mesh *m = &r->pieces.piece->input;
     (void)err;
     if (m->colors || m->scalars || m->labels)
         cli_say("%s: colours, scalars and labels are not kept", r->mesh.path);
-    s->voxel_mm = length_mm(r, &w->voxel);
-    s->by_mm = w->sign * length_mm(r, &w->by);
-    s->wall_mm = length_mm(r, &args_of(r)->wall);
-    for (size_t n = 0; n < w->drain_count; n++)
-        w->drains[n].diameter_mm = length_mm(r, &w->drain[n]);
+    s->voxel_mm = length_mm(r, &args->voxel);
+    s->by_mm = length_mm(r, &args->by);
+    s->wall_mm = length_mm(r, &args->wall);
+    for (size_t n = 0; n < args->drain.count; n++) {
+        s->drains[n].diameter_mm = length_mm(r, &args->drain.wide[n]);
+        memcpy(s->drains[n].direction, args->drain.direction[n], sizeof s->drains[n].direction);
+    }
     return CW_OK;
+}
+
+/* Writes "cubewright COMMAND in.stl -o in-made.stl", to be typed; NULL without memory. */
+static char *make_command(const char *path, const char *command, const char *made)
+{
+    size_t size;
+    char *text = NULL, *name = NULL, *stem = cli_stem(path);
+    const cw_format *f = cw_mesh_format(path, NULL);
+    const bool is_writable = f && f->writes_mesh && f->in_this_build;
+    FILE *out = stem ? cwi_text_open(&text, &size) : NULL;
+    if (out &&
+        asprintf(&name, "%s-%s%s", stem, made, is_writable ? strrchr(path, '.') : ".ply") > 0) {
+        fprintf(out, "cubewright %s ", command);
+        cli_put_word(out, path);
+        fputs(" -o ", out);
+        cli_put_word(out, name);
+    }
+    free(stem);
+    free(name);
+    return cwi_text_close(out, &text) ? text : NULL;
+}
+
+/* Adds the command that turns the input into a solid. */
+static cw_status name_way(const cli_mesh_run *r, cw_status st, cw_error *err)
+{
+    const cw_mesh *m = &r->pieces.piece->input;
+    const cw_quality_desc desc = {.threads = r->threads};
+    const cw_error why = *err;
+    cw_quality q;
+    if (st != CW_ERR_ARGUMENT || cw_quality_measure(m, &desc, &q, NULL) != CW_OK)
+        return st;
+    const bool is_broken =
+        q.open_edges || q.nonmanifold_edges > q.contact_edges || q.misoriented_edges;
+    if (!q.triangles || (!is_broken && !(q.volume_mm3 < 0)))
+        return st;
+    char *command = is_broken ? make_command(r->mesh.path, "repair", "repaired")
+                              : make_command(r->mesh.path, "convert --orient", "oriented");
+    if (command)
+        cwi_fail(err, st, "%s: %s", why.message, command);
+    free(command);
+    return st;
+}
+
+/* Unites what crosses in the input: the surface of the union stays as the outer one. */
+static cw_status unite_input(cli_mesh_run *r, cw_error *err)
+{
+    solid_state *s = r->state;
+    const cli_piece *p = r->pieces.piece;
+    const cw_mesh *const meshes[] = {&p->input};
+    const cw_crossings_desc desc = {.weld = CW_WELD_LOCAL, .threads = r->threads};
+    const cw_boolean_desc unite = {.threads = r->threads};
+    cw_boolean_facts facts = {0};
+    cw_crossings found = {0};
+    cw_status st = cw_self_intersections(&p->input, &desc, &found, err);
+    const size_t count = found.count;
+    cw_crossings_free(&found);
+    if (st != CW_OK || !count)
+        return st;
+    st = cw_mesh_boolean(meshes, 1, &unite, &s->united, &facts, err);
+    if (st == CW_OK && (facts.negative_regions || facts.turned || !s->united.triangle_count))
+        st = cwi_fail(err, CW_ERR_CHECK,
+                      "shells that intersect are inside out: 'repair' makes one solid of them");
+    if (st == CW_OK)
+        cli_say("%s: %s pair%s of triangles intersect: the shells are united first",
+                r->mesh.path, cli_count(count), count == 1 ? "" : "s");
+    return st;
 }
 
 static cw_status hollow_mesh(cli_mesh_run *r, cw_error *err)
 {
+    cw_status st = unite_input(r, err);
+    if (st != CW_OK)
+        return st;
     solid_state *s = r->state;
     cli_piece *p = r->pieces.piece;
     const cw_hollow_desc desc = {.wall_mm = s->wall_mm,
-                                 .drains = s->wishes.drains,
-                                 .drain_count = s->wishes.drain_count,
+                                 .drains = s->drains,
+                                 .drain_count = args_of(r)->drain.count,
                                  .voxel_mm = s->voxel_mm,
                                  .no_measure = !r->args->measure,
                                  .threads = r->threads,
                                  .max_bytes = cli_memory_limit(&r->args->input),
                                  .progress = cli_progress(1, "solid")};
-    cw_status st = cw_mesh_hollow(&p->input, &desc, &p->out, &s->facts, err);
+    st = cw_mesh_hollow(s->united.triangle_count ? &s->united : &p->input, &desc, &p->out,
+                        &s->facts, err);
     s->voxel_mm = st == CW_OK ? s->facts.voxel_mm : s->voxel_mm;
-    return st;
+    return name_way(r, st, err);
 }
 
 static cw_status report_hollow(cli_mesh_run *r, cw_error *err)
@@ -257,21 +288,26 @@ static cw_status report_hollow(cli_mesh_run *r, cw_error *err)
     const solid_state *s = r->state;
     const cw_hollow_facts *f = &s->facts;
     const char *path = r->mesh.path;
-    const bool drains = s->wishes.drain_count > 0;
+    const bool drains = args_of(r)->drain.count > 0;
+    const double wide = fmin(4, r->pieces.diagonal_mm / 10); /* fits small solids, too */
+    char way[80] = "";
     (void)err;
     if (!drains)
-        cli_say("%s: the outer surface stays as it is; the cavities have voxels of %.4g mm",
-                path, s->voxel_mm);
-    else
-        cli_say("%s: rebuilt with voxels of %.4g mm", path, s->voxel_mm);
+        snprintf(way, sizeof way, ": print material stays inside (--drain %.2gmm@-z)", wide);
+    cli_say("%s: the outer surface stays as it is%s; the cavities have voxels of %.4g mm", path,
+            drains ? " around the drains" : "", s->voxel_mm);
     if (f->sealed)
         cli_say("%s: %s cavit%s sealed%s", path, cli_count(f->sealed),
-                f->sealed == 1 ? "y is" : "ies are",
-                drains ? "" : ": print material stays inside (--drain 4mm@-z)");
-    const int used =
-        snprintf(r->found, sizeof r->found, "; %s cavit%s, %s sealed; %.6g mm3 removed",
-                 cli_count(f->cavities), f->cavities == 1 ? "y" : "ies", cli_count(f->sealed),
-                 f->removed_mm3);
+                f->sealed == 1 ? "y is" : "ies are", way);
+    int used =
+        snprintf(r->found, sizeof r->found, "; %s cavit%s, %s sealed", cli_count(f->cavities),
+                 f->cavities == 1 ? "y" : "ies", cli_count(f->sealed));
+    if (f->filled)
+        used += snprintf(r->found + used, sizeof r->found - (size_t)used,
+                         ", %s too small left filled (%.3g mm3)", cli_count(f->filled),
+                         f->filled_mm3);
+    used += snprintf(r->found + used, sizeof r->found - (size_t)used, "; %.6g mm3 removed",
+                     f->removed_mm3);
     if (r->args->measure)
         snprintf(r->found + used, sizeof r->found - (size_t)used,
                  "; wall %.4g to %.4g mm thick", f->wall_min_mm, f->wall_max_mm);
@@ -312,7 +348,7 @@ static cw_status offset_mesh(cli_mesh_run *r, cw_error *err)
                                  .progress = cli_progress(1, "solid")};
     const cw_status st = cw_mesh_offset(&p->input, &desc, &p->out, &s->offset, err);
     s->voxel_mm = st == CW_OK ? s->offset.voxel_mm : s->voxel_mm;
-    return st;
+    return name_way(r, st, err);
 }
 
 /* How far the result's distance from the input is off: squares over the surface from the mean
@@ -343,17 +379,18 @@ static cw_status measure_distance(cli_mesh_run *r, cw_error *err)
 }
 
 /* Checks that the result is closed and oriented. Parts that were not moved may touch themselves
- * in a vertex, or have triangles without area. */
+ * in edges and vertices, or have triangles without area. */
 static cw_status hold_bound(const cli_mesh_run *r, cw_error *err)
 {
     const cw_quality_desc desc = {.threads = r->threads};
     cw_quality q;
     cw_status st = cw_quality_measure(&r->pieces.piece->out, &desc, &q, err);
-    if (st == CW_OK && (q.open_edges || q.nonmanifold_edges || q.misoriented_edges))
+    const size_t nonmanifold = q.nonmanifold_edges - q.contact_edges;
+    if (st == CW_OK && (q.open_edges || nonmanifold || q.misoriented_edges))
         st = cwi_fail(err, CW_ERR_CHECK,
                       "the result is not as promised: %zu open, %zu non-manifold, %zu "
                       "misoriented edges; nothing is written",
-                      q.open_edges, q.nonmanifold_edges, q.misoriented_edges);
+                      q.open_edges, nonmanifold, q.misoriented_edges);
     return st;
 }
 
@@ -403,7 +440,9 @@ cw_status cli_run_hollow(void *args, cw_error *err)
         .put_facts = put_hollow,
     };
     solid_state state = {0};
-    return cli_run_mesh_command(&hollow, args, &state, 1, err);
+    const cw_status st = cli_run_mesh_command(&hollow, args, &state, 1, err);
+    cw_mesh_free(&state.united);
+    return st;
 }
 
 cw_status cli_run_offset(void *args, cw_error *err)

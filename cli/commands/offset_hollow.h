@@ -5,11 +5,19 @@
 
 #include "cli/commands/mesh_command.h"
 
+enum { CLI_MAX_DRAINS = 16 };
+
+/* Holes to the outside. */
+typedef struct cli_drains {
+    size_t count;
+    cli_length wide[CLI_MAX_DRAINS];
+    double direction[CLI_MAX_DRAINS][3];
+} cli_drains;
+
 typedef struct cli_solid_args {
     cli_mesh_args mesh;
-    const char *voxel;
-    const char *drain, *by; /* of hollow, and of offset */
-    cli_length wall;        /* of hollow */
+    cli_length voxel, by, wall; /* by: of offset; wall and drain: of hollow */
+    cli_drains drain;
     bool sharp, refine;
 } cli_solid_args;
 
@@ -17,12 +25,13 @@ typedef struct cli_solid_args {
 #define CLI_SOLID_OPTIONS                                                                      \
     {"voxel",                                                                                  \
      0,                                                                                        \
-     CLI_TEXT,                                                                                 \
-     "L",                                                                                      \
-     "Voxel size of the level set: auto, 0.2mm or 0.1% of the box's diagonal (auto)",          \
+     CLI_MESH_LENGTH,                                                                          \
+     "auto/L",                                                                                 \
+     "Voxel size of the level set: 0.2mm or 0.1% of the box's diagonal (auto)",                \
      offsetof(cli_solid_args, voxel)},                                                         \
         CLI_MESH_OUTPUT(""), CLI_MESH_COMMON
 
+extern const cli_kind cli_kind_drains;
 extern const cli_solid_args cli_solid_defaults;
 
 CW_NODISCARD cw_status cli_run_hollow(void *args, cw_error *err);

@@ -41,7 +41,7 @@ static const cli_option options[] = {
     {"require-labels", 0, CLI_FLAG, NULL,
      "Fail if a label of the list has no voxels (off: it is skipped)",
      offsetof(cli_extract_args, require_labels)},
-    {"smooth-labels", 0, CLI_TEXT, "off/L",
+    {"smooth-labels", 0, CLI_VOXEL_LENGTH, "off/L",
      "Limit of smoothing along each axis: 0.3mm, or up to half a voxel (0.5vox)",
      offsetof(cli_extract_args, smooth_labels)},
     {"shared-faces", 0, CLI_FLAG, NULL,
@@ -109,7 +109,7 @@ static const cli_option options[] = {
     CLI_COLOR_OPTIONS(cli_extract_args),
     CLI_HEADED("Simplify while extracting"),
     {"simplify", 0, CLI_REDUCTION, "L|N",
-     "Error limit (0.1mm, 0.05%, 0.5vox) or triangle count (50k) to simplify to (off)",
+     "Error limit (0.1mm, 0.5vox) or triangle count (50k) to simplify to (off)",
      offsetof(cli_extract_args, simplify)},
     {"max-error", 0, CLI_LENGTH, "L",
      "Error limit as with --simplify, and measured both ways; with --camera out of sight "
@@ -122,6 +122,7 @@ static const cli_option options[] = {
     {"measure", 0, CLI_FLAG, NULL,
      "Measure the error of --simplify, --lod and --smooth, which takes a while (on; --no-measure)",
      offsetof(cli_extract_args, measure)},
+    CLI_FORCE_OPTION(cli_extract_args, common),
     CLI_HEADED("Only what cameras see"),
     {"camera", 0, CLI_TEXT, "FILE[,FILE...]",
      "Keep only the detail that these cameras need: .json files of 'render', or the text of "
@@ -179,7 +180,7 @@ static const cli_option options[] = {
      "Extract the whole volume as well, to prove that --crop changes nothing inside (off)",
      offsetof(cli_extract_args, prove_crop)},
     CLI_BATCH_OPTIONS(cli_extract_args),
-    CLI_COMPRESS_OPTIONS(cli_extract_args),
+    CLI_COMPRESS_OPTIONS(cli_extract_args, CLI_LENGTH),
     CLI_PREPARING_OPTIONS(cli_extract_args),
     CLI_INSIDE_OPTIONS(cli_extract_args),
     CLI_READING_OPTIONS(cli_extract_args),
@@ -369,15 +370,14 @@ static cw_status read_volume(cli_extract_run *s, const cli_moment *moment, cw_er
     s->input.turned = false;
     cli_report_begin(&s->output.report);
     cw_status st = cli_read_volume(moment->path, &input, false, &s->input.volume, err);
-    if (st == CW_ERR_LIMIT && cli_find_unstreamed(s->args, CW_SOURCE_SLICES)) {
-        const cw_error why = *err;
-        return cwi_fail(err, st, "%s; %s needs all voxels in memory", why.message,
-                        cli_find_unstreamed(s->args, CW_SOURCE_SLICES));
-    }
+    if (st == CW_ERR_LIMIT && !input.may_stream)
+        return cli_fail_whole(st, cli_find_unstreamed(s->args, CW_SOURCE_SLICES), err);
     if (st != CW_OK)
         return st;
     const cw_volume *v = &s->input.volume.view;
-    st = cli_choose_levels(&s->input.volume, &input, s->iso, err);
+    st = cli_extract_check_error(s->args, &s->input.volume, err);
+    if (st == CW_OK)
+        st = cli_choose_levels(&s->input.volume, &input, s->iso, err);
     if (st == CW_OK)
         st = prepare_inside(s, err);
     if (st == CW_OK && !s->output.report.input)

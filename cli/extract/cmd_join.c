@@ -51,6 +51,8 @@ static cw_status run_join(void *p, cw_error *err)
     if (st == CW_OK)
         st = cli_read_manifest(folder, &m, err);
     if (st == CW_OK)
+        st = cli_check_joined_output(args->output, folder, m.parts, err);
+    if (st == CW_OK)
         st = cli_join_parts(folder,
                             &(cli_joined){.output = args->output,
                                           .from = cli_count_parts(m.parts, text),

@@ -110,7 +110,7 @@ cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err)
     const char *const *input = args->common.inputs;
     cw_status st = check_report(s, input, args->common.input_count, err);
     if (st == CW_OK)
-        st = cli_check_compress(&args->compress, true, err);
+        st = cli_check_compress(&args->compress, err);
     if (st != CW_OK)
         return st;
     if (!args->output)

@@ -22,7 +22,7 @@ double cli_volume_voxel_mm(const cli_volume *volume)
     return cbrt(spacing[0] * spacing[1] * spacing[2]);
 }
 
-double cli_volume_length_mm(const cli_volume *volume, const cli_length *length)
+static double diagonal_mm(const cli_volume *volume)
 {
     const cli_grid *g = &volume->grid;
     double square = 0;
@@ -32,7 +32,24 @@ double cli_volume_length_mm(const cli_volume *volume, const cli_length *length)
                                 : volume->spacing[a] * (double)(volume->view.dim[a] - 1);
         square += side * side;
     }
-    return cli_length_mm(length, sqrt(square), cli_volume_voxel_mm(volume));
+    return sqrt(square);
+}
+
+double cli_volume_length_mm(const cli_volume *volume, const cli_length *length)
+{
+    return cli_length_mm(length, diagonal_mm(volume), cli_volume_voxel_mm(volume));
+}
+
+cw_status cli_extract_check_error(const cli_extract_args *args, const cli_volume *volume,
+                                  cw_error *err)
+{
+    const bool is_most = args->pixel.most.given && !args->pixel.pixels.given;
+    const cli_length *error = is_most ? &args->pixel.most : &args->simplify.error;
+    if (!error->given || args->common.force)
+        return CW_OK;
+    return cli_check_error_limit(is_most ? "--max-error" : "--simplify",
+                                 cli_volume_length_mm(volume, error), diagonal_mm(volume), NULL,
+                                 err);
 }
 
 double cli_extract_voxel_mm(const cli_extract_run *s)

@@ -17,7 +17,8 @@ typedef struct cli_extract_args {
     cli_input input;
     cli_compress compress;
     const char *output, *name, *format, *json, *pvd;
-    const char *labels, *names, *smooth_labels, *table;
+    const char *labels, *names, *table;
+    cli_length smooth_labels;
     bool require_labels, shared_faces, per_label;
     cli_numbers iso;
     cli_steps steps;
@@ -109,6 +110,11 @@ cw_write_desc cli_extract_write_desc(const cli_extract_args *args);
  * diagonal of the volume's box. */
 double cli_volume_voxel_mm(const cli_volume *volume);
 double cli_volume_length_mm(const cli_volume *volume, const cli_length *length);
+
+/* Refuses an error limit that leaves little of the shape, but with --force. Hidden parts of a camera's
+ * scene may be simplified as far as one likes. */
+CW_NODISCARD cw_status cli_extract_check_error(const cli_extract_args *args,
+                                               const cli_volume *volume, cw_error *err);
 
 double cli_extract_voxel_mm(const cli_extract_run *s);
 

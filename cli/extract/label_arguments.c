@@ -51,5 +51,5 @@ cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--shared-faces writes all interfaces into one file; the output holds "
                         "{label} or {name}");
-    return cli_check_compress(&args->compress, true, err);
+    return cli_check_compress(&args->compress, err);
 }

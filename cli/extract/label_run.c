@@ -23,6 +23,23 @@ static double find_error_mm(const cli_label_run *r)
     return error->given ? cli_volume_length_mm(&r->volume, error) : 0;
 }
 
+/* Refuses all values of a scan as labels, but with --force, or where something names labels. */
+static cw_status expect_labels(const cli_label_run *r, cw_error *err)
+{
+    cw_labels l;
+    if (!r->choice.all || r->args->common.force || r->names.table.count || r->volume.streams)
+        return CW_OK;
+    cw_status st = cw_volume_labels(&r->volume.view, &l, err);
+    if (st != CW_OK || !l.scattered)
+        return st;
+    return cwi_fail(
+        err, CW_ERR_ARGUMENT,
+        "%s: it looks like a scan, whose values are amounts and no labels: fewer than "
+        "half of neighbouring voxels are equal. --iso V makes a surface; --force "
+        "takes each value as a label",
+        r->volume.path);
+}
+
 static cw_status read_label_map(cli_label_run *r, cw_error *err)
 {
     const cli_extract_args *args = r->args;
@@ -46,11 +63,15 @@ static cw_status read_label_map(cli_label_run *r, cw_error *err)
                         v->cells ? "an irregular grid" : "a sparse one");
     r->error_mm = find_error_mm(r);
     r->target = args->simplify.triangles;
-    st = cli_find_label_names(args->names, &r->volume, &r->names, err);
+    st = cli_extract_check_error(args, &r->volume, err);
+    if (st == CW_OK)
+        st = cli_find_label_names(args->names, &r->volume, &r->names, err);
     if (st == CW_OK)
         st = cli_choose_labels("--labels", args->labels, &r->names.table, &r->choice, err);
+    if (st == CW_OK)
+        st = expect_labels(r, err);
     return st == CW_OK
-               ? cli_parse_label_move(args->smooth_labels, r->volume.spacing, &r->max_move, err)
+               ? cli_find_label_move(&args->smooth_labels, r->volume.spacing, &r->max_move, err)
                : st;
 }
 

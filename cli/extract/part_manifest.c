@@ -3,6 +3,7 @@
 #include "cli/extract/part_manifest.h"
 
 #include "cli/framework/json_writer.h"
+#include "cli/results/output_names.h"
 #include "core/base/atomic_file.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -171,8 +172,30 @@ cw_status cli_name_fragment(const char *folder, size_t part, size_t parts,
                : cwi_fail(err, CW_ERR_ARGUMENT, "the path of --manifest is too long");
 }
 
+cw_status cli_check_joined_output(const char *output, const char *folder, size_t parts,
+                                  cw_error *err)
+{
+    char path[CLI_FRAGMENT_PATH];
+    const char *const inputs[] = {path};
+    struct stat info;
+    if (stat(output, &info) != 0) /* nothing stands there yet */
+        return CW_OK;
+    cw_status st = name_manifest(folder, path, err);
+    if (st == CW_OK)
+        st = cli_check_output(output, inputs, 1, err);
+    for (size_t part = 0; part < parts && st == CW_OK; part++) {
+        st = cli_name_fragment(folder, part, parts, path, err);
+        if (st == CW_OK)
+            st = cli_check_output(output, inputs, 1, err);
+    }
+    return st;
+}
+
 static cw_status read_text(const char *path, char **text, cw_error *err)
 {
+    struct stat info;
+    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) /* reading a pipe may never end */
+        return cwi_fail(err, CW_ERR_IO, "%s: it is a folder, pipe or device, not a file", path);
     FILE *file = fopen(path, "rb");
     *text = file ? calloc(1, MAX_TEXT + 1) : NULL;
     if (!file || !*text) {

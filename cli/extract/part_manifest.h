@@ -30,6 +30,10 @@ CW_NODISCARD cw_status cli_read_manifest(const char *folder, cli_manifest *manif
                                          cw_error *err);
 void cli_free_manifest(cli_manifest *manifest);
 
+/* Fails when the output is the manifest or a part of a folder, by any name. */
+CW_NODISCARD cw_status cli_check_joined_output(const char *output, const char *folder,
+                                               size_t parts, cw_error *err);
+
 /* Prints a number of parts: "8 parts". Returns the text. */
 enum { CLI_PARTS_TEXT = 32 };
 const char *cli_count_parts(size_t parts, char text[CLI_PARTS_TEXT]);

@@ -43,6 +43,6 @@ cw_status cli_drop_small_components(const char *name, const cw_mesh_spool *spool
                       least_mm3, counts->dropped, counts->largest_mm3);
     if (st != CW_OK)
         return cwi_fail_in(err, st, name);
-    cli_tell_components(name, least_mm3, counts);
+    cli_tell_components(name, least_mm3, counts, false);
     return CW_OK;
 }

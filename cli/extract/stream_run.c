@@ -96,7 +96,7 @@ static cw_status explain_limit(const cli_extract_run *run, cw_status st, cw_erro
     const size_t needed = cwi_memory_refused(&left);
     if (st == CW_ERR_LIMIT && strncmp(why.message, "check: ", 7) == 0)
         return cwi_fail(err, st, "%s (--memory); --no-check leaves it out", why.message + 7);
-    if (st == CW_ERR_LIMIT)
+    if (st == CW_ERR_LIMIT && !strstr(why.message, "cw_memory_limit()"))
         return cwi_fail(err, st, "%s (--memory)", why.message);
     if (st != CW_ERR_NO_MEMORY || !needed || !cli_extract_is_simplified(run->args))
         return st;
@@ -105,7 +105,7 @@ static cw_status explain_limit(const cli_extract_run *run, cw_status st, cw_erro
     return cwi_fail(
         err, CW_ERR_LIMIT,
         "simplified slice by slice, the surface does not fit: %s more were needed, %s "
-        "are left (--memory)",
+        "are left (--memory); slabs take up to 300 MB beside the simplified surface",
         needed_text, left_text);
 }
 

@@ -470,8 +470,13 @@ cw_status cli_batch_run(const cli_command *command, cli_common *args,
     bool is_whole = !r.lines || !ferror(r.lines);
     if (r.lines && r.lines != stdout)
         is_whole = fclose(r.lines) == 0 && is_whole;
-    if (!is_whole && st == CW_OK)
-        st = cwi_fail(err, CW_ERR_OUTPUT, "%s: cannot be written", args->batch.json_lines);
+    if (!is_whole) {
+        const cw_error why = *err;
+        const bool failed = st != CW_OK;
+        st = cwi_fail(err, failed ? st : CW_ERR_OUTPUT,
+                      "%s%s%s: cannot be written, so the report is not whole",
+                      failed ? why.message : "", failed ? "; " : "", args->batch.json_lines);
+    }
     free_batch(&r);
     return st;
 }

@@ -52,6 +52,9 @@ void cli_progress_end(void);
  * partial files and ends the program. */
 void cli_catch_signals(void);
 
+/* Writes a word as a shell, and a script of the window, takes it: in quotes where needed. */
+void cli_put_word(FILE *out, const char *word);
+
 /* Seconds since some fixed moment; and the most memory the process has held so far. */
 double cli_seconds(void);
 size_t cli_peak_bytes(void);

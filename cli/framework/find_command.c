@@ -21,12 +21,8 @@ const cli_command *cli_find_command(const char *name, cw_error *err)
             return cli_commands[n];
         names[n] = cli_commands[n]->name;
     }
-    const char *nearest = cli_nearest(name, names);
-    if (nearest)
-        cwi_fail(err, CW_ERR_ARGUMENT, "'%s' is not a command; did you mean '%s'?", name,
-                 nearest);
-    else
-        cwi_fail(err, CW_ERR_ARGUMENT, "'%s' is not a command; 'cubewright help' lists them",
-                 name);
+    char hint[CLI_HINT_BYTES];
+    cli_hint(NULL, name, names, hint);
+    cwi_fail(err, CW_ERR_ARGUMENT, "'%s' is not a command; %s", name, hint);
     return NULL;
 }

@@ -96,12 +96,29 @@ cw_status cli_fill_template(const char *text, cli_part *parts, size_t part_count
     return st;
 }
 
+/* The end of a path without the slashes behind a folder's name. */
+static const char *end_of_path(const char *path)
+{
+    const char *end = path + strlen(path);
+    while (end > path + 1 && end[-1] == '/')
+        end--;
+    return end;
+}
+
+/* Where the last name of a path begins. */
+static const char *last_name(const char *path)
+{
+    const char *name = end_of_path(path);
+    while (name > path && name[-1] != '/')
+        name--;
+    return name;
+}
+
 char *cli_stem(const char *path)
 {
-    const char *slash = strrchr(path, '/');
-    const char *name = slash ? slash + 1 : path;
-    size_t length = strlen(name);
-    if (length > 3 && strcasecmp(name + length - 3, ".gz") == 0)
+    const char *name = last_name(path);
+    size_t length = (size_t)(end_of_path(path) - name);
+    if (length > 3 && strncasecmp(name + length - 3, ".gz", 3) == 0)
         length -= 3;
     for (size_t dot = length; dot > 1; dot--)
         if (name[dot - 1] == '.')
@@ -111,11 +128,11 @@ char *cli_stem(const char *path)
 
 char *cli_parent(const char *path)
 {
-    const char *end = strrchr(path, '/');
-    while (end && end > path && end[-1] == '/')
+    const char *end = last_name(path);
+    while (end > path && end[-1] == '/')
         end--;
     const char *start = end;
-    while (start && start > path && start[-1] != '/')
+    while (start > path && start[-1] != '/')
         start--;
-    return end && end > start ? strndup(start, (size_t)(end - start)) : strdup(".");
+    return end > start ? strndup(start, (size_t)(end - start)) : strdup(".");
 }

@@ -80,6 +80,23 @@ static bool parse_component(const cli_option *o, const char *text, void *field)
     return out->magnitude || cli_parse_count(text, 1000, &out->number);
 }
 
+/* "off/L": whether a text is the word before the slash. */
+static bool is_word(const cli_option *o, const char *text)
+{
+    const char *slash = o->value ? strchr(o->value, '/') : NULL;
+    const size_t length = slash ? (size_t)(slash - o->value) : 0;
+    return slash && strlen(text) == length && strncmp(text, o->value, length) == 0;
+}
+
+static bool parse_length(const cli_option *o, const char *text, void *field)
+{
+    cli_length *out = field;
+    if (!is_word(o, text))
+        return cli_parse_length(text, o->kind->units, out);
+    *out = (cli_length){.given = true, .is_word = true};
+    return true;
+}
+
 /* Defines parse_NAME(), which calls cli_parse_NAME(). */
 #define PARSER(name)                                                                           \
     static bool parse_##name(const cli_option *o, const char *text, void *field)               \
@@ -93,7 +110,6 @@ PARSER(level)
 PARSER(levels)
 PARSER(counts)
 PARSER(lengths)
-PARSER(length)
 PARSER(amount)
 PARSER(sizes)
 PARSER(ranges)
@@ -172,9 +188,19 @@ static void print_levels(const cli_option *o, const void *field, char *text, siz
 
 static void print_lengths(const cli_option *o, const void *field, char *text, size_t size)
 {
-    const cli_lengths *lengths = field;
+    const cli_lengths *l = field;
     (void)o;
-    print_list(lengths->mm, lengths->given ? 3 : 0, text, size);
+    if (l->given)
+        snprintf(text, size, "%.17gx%.17gx%.17gmm", l->mm[0], l->mm[1], l->mm[2]);
+}
+
+static void print_length(const cli_option *o, const void *field, char *text, size_t size)
+{
+    const cli_length *length = field;
+    if (length->given && length->is_word)
+        snprintf(text, size, "%.*s", (int)strcspn(o->value, "/"), o->value);
+    else if (length->given)
+        snprintf(text, size, "%s", cli_length_text(length));
 }
 
 static void print_count(const cli_option *o, const void *field, char *text, size_t size)
@@ -203,6 +229,12 @@ static void print_component(const cli_option *o, const void *field, char *text, 
         snprintf(text, size, "%zu", c->number);
 }
 
+/* Rules of units, for the manual page. */
+#define PERCENT "% of the box's diagonal"
+#define VOXELS  "vox"
+#define RANGES                                                                                 \
+    "places with " CLI_UNITS_MM " are of the world (LPS), others are numbers of voxels"
+
 /* --- the kinds ---------------------------------------------------------------------------- */
 
 /* clang-format off */
@@ -222,21 +254,32 @@ const cli_kind cli_kind_counts = {sizeof(cli_counts), parse_counts, NULL,
     "up to 16 whole numbers by comma such as 50k,12k,3k"};
 const cli_kind cli_kind_bytes = {sizeof(size_t), parse_count, print_count, "a size such as 512M or 8G"};
 const cli_kind cli_kind_lengths = {sizeof(cli_lengths), parse_lengths, print_lengths,
-    "a length above 0 such as 0.5mm or 12um, or three of them by comma or x"};
-const cli_kind cli_kind_length = {sizeof(cli_length), parse_length, NULL,
-    "a length above 0 such as 0.1mm, 0.05% (of the box's diagonal) or 0.5vox"};
+    "a length above 0 with its unit, such as 0.5mm or 12um, or three of them such as 1x1x2mm", CLI_UNITS_MM, CLI_IN_MM};
+const cli_kind cli_kind_length = {sizeof(cli_length), parse_length, print_length,
+    "a length above 0 with its unit, such as 0.1mm, 0.05% (of the box's diagonal) or 0.5vox",
+    CLI_UNITS_MM ", " PERCENT ", or " VOXELS, CLI_IN_MM | CLI_IN_PERCENT | CLI_IN_VOXELS};
+const cli_kind cli_kind_mesh_length = {sizeof(cli_length), parse_length, print_length,
+    "a length above 0 with its unit, such as 0.1mm or 0.05% (of the box's diagonal)", CLI_UNITS_MM " or " PERCENT,
+    CLI_IN_MM | CLI_IN_PERCENT};
+const cli_kind cli_kind_voxel_length = {sizeof(cli_length), parse_length, print_length,
+    "a length above 0 with its unit, such as 0.5mm or 1vox", CLI_UNITS_MM " or " VOXELS, CLI_IN_MM | CLI_IN_VOXELS};
+const cli_kind cli_kind_print_length = {sizeof(cli_length), parse_length, print_length,
+    "a length above 0 with its unit, such as 0.8mm", CLI_UNITS_MM, CLI_IN_MM};
+const cli_kind cli_kind_shift = {sizeof(cli_length), parse_length, print_length,
+    "a length with its unit, such as 1mm, -0.5mm or 0.5% (of the box's diagonal), or 0",
+    CLI_UNITS_MM " or " PERCENT "; 0 needs none", CLI_IN_MM | CLI_IN_PERCENT | CLI_SIGNED};
 const cli_kind cli_kind_volume = {sizeof(cli_amount), parse_amount, NULL,
-    "a volume above 0 such as 500mm3, 0.5ml or 30vox"};
+    "a volume above 0 with its unit, such as 500mm3, 0.5ml or 30vox", "um3, mm3, cm3, ml, m3 or vox"};
 const cli_kind cli_kind_sizes = {sizeof(cli_sizes), parse_sizes, NULL,
     "whole numbers above 0 joined by x or comma"};
 const cli_kind cli_kind_ranges = {sizeof(cli_ranges), parse_ranges, print_ranges,
-    "three ranges such as 10:50,0:99,20:40 (voxels) or -30mm:30mm,... (world)"};
+    "three ranges such as 10:50,0:99,20:40 (voxels) or -30mm:30mm,... (world)", RANGES};
 const cli_kind cli_kind_crop = {sizeof(cli_ranges), parse_crop, print_ranges,
     "three ranges such as 10:50,0:99,20:40 (voxels) or -30mm:30mm,... (world), auto, or auto with "
-    "a margin in voxels such as auto:3"};
+    "a margin in voxels such as auto:3", RANGES "; a margin counts voxels"};
 const cli_kind cli_kind_reduction = {sizeof(cli_reduction), parse_reduction, NULL,
-    "an error with its unit such as 0.1mm, 0.05% (of the box's diagonal) or 0.5vox, or a number of "
-    "triangles such as 50k"};
+    "an error limit with its unit, such as 0.1mm or 0.5vox, or a number of triangles such as 50k", CLI_UNITS_MM " or " VOXELS "; a number of triangles has none",
+    CLI_IN_MM | CLI_IN_VOXELS};
 const cli_kind cli_kind_steps = {sizeof(cli_steps), parse_steps, NULL,
     "steps in ascending order such as 0:20:2 (ends included), 0,3,7 or all"};
 const cli_kind cli_kind_weights = {sizeof(cli_weights), parse_weights, NULL,

@@ -2,7 +2,9 @@
 #include "cli/framework/options.h"
 
 #include "core/base/status.h"
+#include "core/base/text.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -64,6 +66,34 @@ const char *cli_nearest(const char *word, const char *const *names)
     return nearest;
 }
 
+cli_word_finder *cli_find_word;
+
+/* Returns true for a word that is one slip of the fingers away from the name, or its beginning. */
+static bool is_slip(const char *word, const char *name)
+{
+    return edit_distance(word, name) <= 1 || strncmp(word, name, strlen(word)) == 0;
+}
+
+void cli_hint(const cli_command *command, const char *word, const char *const *names,
+              char hint[CLI_HINT_BYTES])
+{
+    char found[CLI_HINT_BYTES / 2];
+    const char *nearest = cli_nearest(word, names);
+    const char *mark = command ? "--" : "'", *end = command ? "" : "'";
+    const bool is_found =
+        cli_find_word && !(nearest && is_slip(word, nearest)) &&
+        (cli_find_word(command, word, false, found, sizeof found) ||
+         (!nearest && cli_find_word(command, word, true, found, sizeof found)));
+    if (is_found)
+        snprintf(hint, CLI_HINT_BYTES, "'cubewright help --search %s' finds %s", word, found);
+    else if (nearest)
+        snprintf(hint, CLI_HINT_BYTES, "did you mean %s%s%s?", mark, nearest, end);
+    else if (command)
+        snprintf(hint, CLI_HINT_BYTES, "'cubewright %s -h' lists them", command->name);
+    else
+        snprintf(hint, CLI_HINT_BYTES, "'cubewright help' lists them");
+}
+
 /* Row n of a command's options, the common ones last; NULL behind the end. */
 const cli_option *cli_option_at(const cli_command *command, size_t n)
 {
@@ -95,7 +125,7 @@ static const cli_option *find_short(const cli_command *command, char letter)
 static cw_status unknown_option(const cli_command *command, const char *name, size_t length,
                                 cw_error *err)
 {
-    char word[64];
+    char word[64], hint[CLI_HINT_BYTES];
     const char *names[CLI_MAX_OPTIONS + 1] = {0};
     const cli_option *o;
     size_t count = 0;
@@ -103,13 +133,9 @@ static cw_status unknown_option(const cli_command *command, const char *name, si
     for (size_t n = 0; (o = cli_option_at(command, n)) && count < CLI_MAX_OPTIONS; n++)
         if (o->kind != CLI_HEADING)
             names[count++] = o->name;
-    const char *nearest = cli_nearest(word, names);
-    if (nearest)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "%s has no option --%s; did you mean --%s?",
-                        command->name, word, nearest);
-    return cwi_fail(err, CW_ERR_ARGUMENT,
-                    "%s has no option --%s; 'cubewright %s -h' lists them", command->name, word,
-                    command->name);
+    cli_hint(command, word, names, hint);
+    return cwi_fail(err, CW_ERR_ARGUMENT, "%s has no option --%s; %s", command->name, word,
+                    hint);
 }
 
 bool cli_is_given(const cli_command *command, const cli_common *args, const char *name)
@@ -129,7 +155,32 @@ bool cli_option_text(const cli_option *o, const void *args, char *text, size_t s
 
 const char *cli_expected(const cli_option *o)
 {
-    return o->kind->expected ? o->kind->expected : o->value;
+    static char text[256];
+    const size_t word = o->value ? strcspn(o->value, "/") : 0;
+    if (!o->kind->expected)
+        return o->value;
+    if (!o->kind->units || !word || !o->value[word])
+        return o->kind->expected;
+    snprintf(text, sizeof text, "%.*s, or %s", (int)word, o->value, o->kind->expected);
+    return text;
+}
+
+/* Says what an option expects, and why its value is not that: quantities without a unit, and % where
+ * it has two meanings, look right to people. */
+static cw_status refuse_value(const cli_option *o, const char *value, cw_error *err)
+{
+    const char *end = value, *why = "";
+    double number;
+    const bool is_range = o->kind == CLI_RANGES || o->kind == CLI_CROP; /* of voxels, too */
+    if (o->kind->unit_rule && !is_range && cwi_parse_double(&end, &number)) {
+        if (*end == '\0' && isfinite(number) && number != 0)
+            why = " names no unit";
+        else if (o->kind == CLI_REDUCTION && strcmp(end, "%") == 0)
+            why =
+                " could mean a part of the triangles, as 'simplify --ratio' takes it, or of the size";
+    }
+    return cwi_fail(err, CW_ERR_ARGUMENT, "--%s '%s'%s: expected %s", o->name, value, why,
+                    cli_expected(o));
 }
 
 typedef struct parser {
@@ -164,8 +215,7 @@ static cw_status take_option(parser *p, const cli_option *o, const char *value, 
         p->args->given_options[p->args->given_count++] =
             (cli_given_option){.option = o, .value = value};
     if (!o->kind->parse(o, value, field))
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--%s '%s': expected %s", o->name, value,
-                        cli_expected(o));
+        return refuse_value(o, value, err);
     return CW_OK;
 }
 

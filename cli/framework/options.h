@@ -16,36 +16,56 @@ typedef struct cli_kind {
     /* Prints a field as it would be typed, or nothing if it was not; NULL: nothing */
     void (*print)(const struct cli_option *option, const void *field, char *text, size_t size);
     const char *expected; /* for errors; NULL: the row's `value` */
+    /* How quantities name their unit, for the manual page; NULL: it is no length, area or volume */
+    const char *unit_rule;
+    unsigned units; /* of a length: which it may have, as CLI_IN_ bits */
 } cli_kind;
+
+#define CLI_UNITS_MM "a unit of length"
+
+/* Units of lengths. A bare number is no length. */
+enum {
+    CLI_IN_MM = 1,      /* mm, um, nm, cm, m, in, ft */
+    CLI_IN_PERCENT = 2, /* of a box's diagonal */
+    CLI_IN_VOXELS = 4,
+    CLI_SIGNED = 8, /* and may be negative, or 0 */
+};
 
 extern const cli_kind cli_kind_flag, cli_kind_text, cli_kind_choice, cli_kind_number,
     cli_kind_numbers, cli_kind_level, cli_kind_levels, cli_kind_count, cli_kind_counts,
-    cli_kind_bytes, cli_kind_lengths, cli_kind_length, cli_kind_volume, cli_kind_sizes,
-    cli_kind_ranges, cli_kind_crop, cli_kind_reduction, cli_kind_steps, cli_kind_weights,
-    cli_kind_component, cli_kind_louder, cli_kind_heading;
+    cli_kind_bytes, cli_kind_lengths, cli_kind_length, cli_kind_mesh_length,
+    cli_kind_voxel_length, cli_kind_print_length, cli_kind_shift, cli_kind_volume,
+    cli_kind_sizes, cli_kind_ranges, cli_kind_crop, cli_kind_reduction, cli_kind_steps,
+    cli_kind_weights, cli_kind_component, cli_kind_louder, cli_kind_heading;
 
-#define CLI_FLAG      (&cli_kind_flag)    /* bool; --x and --no-x */
-#define CLI_TEXT      (&cli_kind_text)    /* const char * */
-#define CLI_CHOICE    (&cli_kind_choice)  /* int: the position in value, names parted by '/' */
-#define CLI_NUMBER    (&cli_kind_number)  /* cli_number */
-#define CLI_NUMBERS   (&cli_kind_numbers) /* cli_numbers: 300 or 50,300 */
-#define CLI_LEVEL     (&cli_kind_level)   /* cli_number: 300, 40%, otsu; names need a volume */
-#define CLI_LEVELS    (&cli_kind_levels)  /* cli_numbers: several of them by comma */
-#define CLI_COUNT     (&cli_kind_count)   /* size_t: 50k, 100M */
-#define CLI_COUNTS    (&cli_kind_counts)  /* cli_counts: 50k,12k,3k */
-#define CLI_BYTES     (&cli_kind_bytes)   /* size_t: 512M, 8G (1024s) */
-#define CLI_LENGTHS   (&cli_kind_lengths) /* cli_lengths: 0.5mm, 1x1x2; a bare one is in mm */
-#define CLI_LENGTH    (&cli_kind_length)  /* cli_length: 0.1mm, 0.05% of a diagonal, 0.5vox */
-#define CLI_VOLUME    (&cli_kind_volume)  /* cli_amount: 500mm3, 0.5ml, 30vox; bare is mm3 */
-#define CLI_SIZES     (&cli_kind_sizes)   /* cli_sizes: 64, 1280x720 or 512x512x300 */
-#define CLI_RANGES    (&cli_kind_ranges)  /* cli_ranges: 10:50,0:99,20:40 in voxels, or in mm */
-#define CLI_CROP      (&cli_kind_crop)    /* cli_ranges: the same, or auto, auto:3 */
-#define CLI_REDUCTION (&cli_kind_reduction) /* cli_reduction */
-#define CLI_STEPS     (&cli_kind_steps)     /* cli_steps: 0:20:2, 0,3,7 or all */
-#define CLI_WEIGHTS   (&cli_kind_weights)   /* cli_weights: normal:0.5; value has the names */
-#define CLI_COMPONENT (&cli_kind_component) /* cli_component: its number from 0, or mag */
-#define CLI_LOUDER    (&cli_kind_louder)    /* int, counts up */
-#define CLI_HEADING   (&cli_kind_heading)   /* no option: the name of those below in the help */
+#define CLI_FLAG    (&cli_kind_flag)    /* bool; --x and --no-x */
+#define CLI_TEXT    (&cli_kind_text)    /* const char * */
+#define CLI_CHOICE  (&cli_kind_choice)  /* int: the position in value, names parted by '/' */
+#define CLI_NUMBER  (&cli_kind_number)  /* cli_number */
+#define CLI_NUMBERS (&cli_kind_numbers) /* cli_numbers: 300 or 50,300 */
+#define CLI_LEVEL   (&cli_kind_level)   /* cli_number: 300, 40%, otsu; names need a volume */
+#define CLI_LEVELS  (&cli_kind_levels)  /* cli_numbers: several of them by comma */
+#define CLI_COUNT   (&cli_kind_count)   /* size_t: 50k, 100M */
+#define CLI_COUNTS  (&cli_kind_counts)  /* cli_counts: 50k,12k,3k */
+#define CLI_BYTES   (&cli_kind_bytes)   /* size_t: 512M, 8G (1024s) */
+#define CLI_LENGTHS (&cli_kind_lengths) /* cli_lengths: 0.5mm, 1x1x2mm */
+/* cli_length: 0.1mm, 0.05% of a diagonal, 0.5vox. The word of a row's `value`, such as off of off/L,
+ * is one, too. */
+#define CLI_LENGTH       (&cli_kind_length)
+#define CLI_MESH_LENGTH  (&cli_kind_mesh_length)  /* the same without voxels */
+#define CLI_VOXEL_LENGTH (&cli_kind_voxel_length) /* without percent */
+#define CLI_PRINT_LENGTH (&cli_kind_print_length) /* with neither */
+#define CLI_SHIFT        (&cli_kind_shift)        /* cli_length: 1mm, -0.5%, 0 */
+#define CLI_VOLUME       (&cli_kind_volume)       /* cli_amount: 500mm3, 0.5ml, 30vox */
+#define CLI_SIZES        (&cli_kind_sizes)        /* cli_sizes: 64, 1280x720 or 512x512x300 */
+#define CLI_RANGES       (&cli_kind_ranges) /* cli_ranges: 10:50,0:99,20:40 in voxels, or in mm */
+#define CLI_CROP         (&cli_kind_crop)   /* cli_ranges: the same, or auto, auto:3 */
+#define CLI_REDUCTION    (&cli_kind_reduction) /* cli_reduction */
+#define CLI_STEPS        (&cli_kind_steps)     /* cli_steps: 0:20:2, 0,3,7 or all */
+#define CLI_WEIGHTS      (&cli_kind_weights) /* cli_weights: normal:0.5; value has the names */
+#define CLI_COMPONENT    (&cli_kind_component) /* cli_component: its number from 0, or mag */
+#define CLI_LOUDER       (&cli_kind_louder)    /* int, counts up */
+#define CLI_HEADING      (&cli_kind_heading) /* no option: the name of those below in the help */
 
 /* How an isovalue is named. All but numbers become one when a volume is read. */
 typedef enum cli_level {
@@ -93,6 +113,7 @@ typedef enum cli_length_unit { CLI_MM, CLI_PERCENT, CLI_VOXELS } cli_length_unit
 /* A length that may be told in proportion to something. */
 typedef struct cli_length {
     bool given;
+    bool is_word; /* the word of off/L or auto/L; else: */
     double value;
     cli_length_unit unit; /* millimetres, % of a box's diagonal, or voxels */
 } cli_length;
@@ -209,6 +230,14 @@ typedef struct cli_rule {
         "json", 0, CLI_TEXT, "FILE", "Write a report as JSON; - is the standard output",       \
             offsetof(args, json), CLI_VALUES_JSON                                              \
     }
+/* Of commands that refuse what is possible and most likely a mistake. common: the struct's member */
+#define CLI_FORCE_OPTION(args, common)                                                         \
+    {                                                                                          \
+        "force", 0, CLI_FLAG, NULL,                                                            \
+            "Do what is refused as a likely mistake, such as an error limit above 5 % of the " \
+            "box's diagonal (off)",                                                            \
+            offsetof(args, common.force)                                                       \
+    }
 #define CLI_PROGRESS_OPTION(args)                                                              \
     {                                                                                          \
         "progress", 0, CLI_CHOICE, "auto/plain/json/none",                                     \
@@ -240,6 +269,7 @@ typedef struct cli_given_option {
 typedef struct cli_common {
     bool help;
     bool quiet;
+    bool force; /* of commands with CLI_FORCE_OPTION */
     int verbose;
     const char **inputs; /* the arguments that are no options */
     size_t input_count;
@@ -305,6 +335,18 @@ void cli_print_wrapped(FILE *out, const char *text, size_t column);
 
 /* The candidate most like a word, or NULL when none is close; names end with a NULL. */
 const char *cli_nearest(const char *word, const char *const *names);
+
+/* Names what the help has for a word that is no option of the command, or no command where that is
+ * NULL: what is called so, or in_texts what mentions it. false: nothing. The program sets it. */
+typedef bool cli_word_finder(const cli_command *command, const char *word, bool in_texts,
+                             char *names, size_t size);
+extern cli_word_finder *cli_find_word;
+
+enum { CLI_HINT_BYTES = 400 };
+
+/* Writes a hint for an unknown word: the name that may be meant, or where to look. */
+void cli_hint(const cli_command *command, const char *word, const char *const *names,
+              char hint[CLI_HINT_BYTES]);
 
 extern const cli_option cli_common_options[];
 extern const size_t cli_common_option_count;

@@ -2,6 +2,7 @@
  * for messages. */
 #include "cli/framework/quantity.h"
 
+#include "core/base/status.h"
 #include "core/base/text.h"
 
 #include <cubewright/filter.h>
@@ -104,56 +105,25 @@ bool cli_parse_levels(const char *text, cli_numbers *out)
     return false;
 }
 
-/* A number and its unit, as millimetres; *text moves behind it. *unit: whether there
- * was one. */
-static bool parse_length(const char **text, double *mm, bool *unit)
-{
-    static const struct {
-        const char *name;
-        double mm;
-    } units[] = {{"mm", 1}, {"um", 1e-3}, {"nm", 1e-6}, {"cm", 10}, {"m", 1e3}, {"in", 25.4}};
-    *unit = false;
-    if (!cwi_parse_double(text, mm))
-        return false;
-    for (size_t u = 0; u < sizeof units / sizeof *units && !*unit; u++)
-        if (strncmp(*text, units[u].name, strlen(units[u].name)) == 0) {
-            *mm *= units[u].mm;
-            *text += strlen(units[u].name);
-            *unit = true;
-        }
-    return isfinite(*mm);
-}
-
 bool cli_parse_lengths(const char *text, cli_lengths *out)
 {
-    char item[CWI_ITEM_BYTES], separator = 0;
-    int count = 0;
-    do {
-        const char *at = item;
-        bool unit;
-        if (count == 3 || !cwi_next_item(&text, &separator, item) ||
-            !parse_length(&at, &out->mm[count], &unit) || *at || !(out->mm[count] > 0))
-            return false;
-        count++;
-    } while (separator);
-    if (*text != '\0' || count == 2)
-        return false;
-    for (int a = count; a < 3; a++)
-        out->mm[a] = out->mm[0];
-    return out->given = true;
+    return out->given = cwi_parse_lengths(text, out->mm);
 }
 
-bool cli_parse_length(const char *text, cli_length *out)
+bool cli_parse_length(const char *text, unsigned units, cli_length *out)
 {
-    bool unit;
-    if (!parse_length(&text, &out->value, &unit) || !(out->value > 0))
+    bool is_mm;
+    *out = (cli_length){0};
+    if (!cwi_parse_length(&text, &out->value, &is_mm))
         return false;
-    out->unit = CLI_MM;
-    if (!unit && strcmp(text, "%") == 0)
-        out->unit = CLI_PERCENT;
-    else if (!unit && strcmp(text, "vox") == 0)
-        out->unit = CLI_VOXELS;
-    return out->given = *text == '\0' || out->unit != CLI_MM;
+    out->unit = is_mm                      ? CLI_MM
+                : strcmp(text, "%") == 0   ? CLI_PERCENT
+                : strcmp(text, "vox") == 0 ? CLI_VOXELS
+                                           : CLI_MM;
+    const bool is_signed = units & CLI_SIGNED;
+    const bool is_whole =
+        *text == '\0' ? is_mm || (is_signed && out->value == 0) : out->unit != CLI_MM;
+    return out->given = is_whole && (units & 1u << out->unit) && (is_signed || out->value > 0);
 }
 
 bool cli_parse_amount(const char *text, cli_amount *out)
@@ -161,7 +131,7 @@ bool cli_parse_amount(const char *text, cli_amount *out)
     static const struct {
         const char *name;
         double mm3;
-    } units[] = {{"", 1}, {"mm3", 1}, {"um3", 1e-9}, {"cm3", 1e3}, {"ml", 1e3}, {"vox", 1}};
+    } units[] = {{"mm3", 1}, {"um3", 1e-9}, {"cm3", 1e3}, {"ml", 1e3}, {"m3", 1e9}, {"vox", 1}};
     if (!cwi_parse_double(&text, &out->value) || !(out->value > 0))
         return false;
     out->voxels = strcmp(text, "vox") == 0;
@@ -174,12 +144,10 @@ bool cli_parse_amount(const char *text, cli_amount *out)
 
 bool cli_parse_reduction(const char *text, cli_reduction *out)
 {
-    const char *end = text;
-    double value;
+    *out = (cli_reduction){0};
     if (cli_parse_count(text, 1000, &out->triangles))
         return out->triangles > 0;
-    return cwi_parse_double(&end, &value) && *end != '\0' &&
-           cli_parse_length(text, &out->error);
+    return cli_parse_length(text, CLI_IN_MM | CLI_IN_VOXELS, &out->error);
 }
 
 double cli_length_mm(const cli_length *length, double diagonal_mm, double voxel_mm)
@@ -187,6 +155,19 @@ double cli_length_mm(const cli_length *length, double diagonal_mm, double voxel_
     return length->value * (length->unit == CLI_PERCENT  ? diagonal_mm / 100
                             : length->unit == CLI_VOXELS ? voxel_mm
                                                          : 1);
+}
+
+cw_status cli_check_error_limit(const char *option, double error_mm, double diagonal_mm,
+                                const char *why, cw_error *err)
+{
+    static const double LARGE = 0.05; /* as large as details of the shape */
+    const double fraction = error_mm / diagonal_mm;
+    if (!(fraction > LARGE))
+        return CW_OK;
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "%s %.6g mm is %.3g %% of the diagonal of the box, %.6g mm: little of the "
+                    "shape would be left%s; --force does it all the same",
+                    option, error_mm, 100 * fraction, diagonal_mm, why ? why : "");
 }
 
 bool cli_parse_sizes(const char *text, cli_sizes *out)
@@ -208,8 +189,9 @@ bool cli_parse_sizes(const char *text, cli_sizes *out)
 static bool parse_range(const char *text, double *low, double *high, bool *world)
 {
     bool unit;
-    return parse_length(&text, low, world) && *text++ == ':' &&
-           parse_length(&text, high, &unit) && unit == *world && *text == '\0' && *low <= *high;
+    return cwi_parse_length(&text, low, world) && *text++ == ':' &&
+           cwi_parse_length(&text, high, &unit) && unit == *world && *text == '\0' &&
+           *low <= *high;
 }
 
 /* Three ranges, all with units or all bare. */
@@ -369,6 +351,14 @@ const char *cli_number_text(double value)
         if (cwi_parse_double(&end, &same) && same == value)
             break;
     }
+    return text;
+}
+
+const char *cli_length_text(const cli_length *length)
+{
+    static const char *const units[] = {"mm", "%", "vox"};
+    char *text = next_buffer();
+    snprintf(text, LONGEST, "%s%s", cli_number_text(length->value), units[length->unit]);
     return text;
 }
 

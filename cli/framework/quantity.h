@@ -14,15 +14,25 @@ bool cli_parse_levels(const char *text, cli_numbers *out);
 /* Returns a level as it is typed, in static memory as of cli_number_text(). */
 const char *cli_level_text(cli_level level, double value);
 bool cli_parse_lengths(const char *text, cli_lengths *out);
-bool cli_parse_length(const char *text, cli_length *out);
+
+/* A length in one of some units, as CLI_IN_ bits. */
+bool cli_parse_length(const char *text, unsigned units, cli_length *out);
 
 bool cli_parse_amount(const char *text, cli_amount *out);
 
-/* A length with a unit, or a count above 0 with k, M or G. */
+/* A length in mm or voxels, or a count above 0 with k, M or G. */
 bool cli_parse_reduction(const char *text, cli_reduction *out);
 
 /* In millimetres, shares of a diagonal and voxels resolved. */
 double cli_length_mm(const cli_length *length, double diagonal_mm, double voxel_mm);
+
+/* Fails for an error limit that leaves little of a shape: above 5 % of the diagonal of its box.
+ * option  for the message;  why  what may be wrong, or NULL
+ * Returns  CW_ERR_ARGUMENT, which names --force */
+CW_NODISCARD cw_status cli_check_error_limit(const char *option, double error_mm,
+                                             double diagonal_mm, const char *why,
+                                             cw_error *err);
+
 bool cli_parse_sizes(const char *text, cli_sizes *out);
 
 bool cli_parse_ranges(const char *text, cli_ranges *out);
@@ -36,6 +46,9 @@ bool cli_parse_steps(const char *text, cli_steps *out);
 bool cli_parse_count(const char *text, double thousand, size_t *out);
 
 bool cli_parse_counts(const char *text, cli_counts *out);
+
+/* Returns a length as it is typed, in static memory as of cli_number_text(). */
+const char *cli_length_text(const cli_length *length);
 
 /* "12.3 MB", "1 234 567", and a number as people would type it: the shortest text that reads
  * back the same, whole numbers without an exponent. In static memory; the last eight results

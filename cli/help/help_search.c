@@ -17,13 +17,15 @@ enum {
     MAX_TERMS = 16, /* of a word: itself, and those of its synonyms */
     MAX_TEXT = 128,
     SHOWN_COMMANDS = 4, /* more are counted */
+    SHOWN_HINTS = 3,    /* for a word that is no option or command */
     LONGER_BY = 5,      /* letters that a word may have more than a synonym of 4 or more */
 };
 
 /* A word of the query, and what it may stand for. */
 typedef struct wish {
-    char terms[MAX_TERMS][MAX_TEXT];
+    char terms[MAX_TERMS][MAX_TEXT]; /* the first is the word */
     size_t count;
+    const cli_synonym *synonym; /* NULL: none */
 } wish;
 
 typedef struct query {
@@ -74,18 +76,27 @@ static void add_term(wish *w, const char *term)
         snprintf(w->terms[w->count++], MAX_TEXT, "%s", term);
 }
 
-/* Adds a word with its synonyms, and says which were followed. */
+/* Adds a word with its synonyms. */
 static void add_wish(query *q, const char *word, const cli_synonym *s)
 {
     char item[MAX_TEXT];
     wish *w = &q->wishes[q->count++];
+    w->synonym = s;
     add_term(w, word);
     for (const char *list = s ? s->terms : NULL; next_item(&list, item);)
         add_term(w, item);
-    if (s && s->name && !stands_for(word, s->name))
-        printf("'%s' is called '%s' here.\n", word, s->name);
-    if (s && s->note)
-        cli_print_wrapped(stdout, s->note, 0);
+}
+
+/* Says which synonyms are followed. */
+static void print_synonyms(const query *q)
+{
+    for (const wish *w = q->wishes; w < q->wishes + q->count; w++) {
+        const cli_synonym *s = w->synonym;
+        if (s && s->name && !stands_for(w->terms[0], s->name))
+            printf("'%s' is called '%s' here.\n", w->terms[0], s->name);
+        if (s && s->note)
+            cli_print_wrapped(stdout, s->note, 0);
+    }
 }
 
 /* A phrase of the table stands as one; else every word is looked for. */
@@ -278,6 +289,7 @@ cw_status cli_search(const char *text, cw_error *err)
 {
     query q = {0};
     parse_query(text, &q);
+    print_synonyms(&q);
     size_t found = search_commands(&q);
     for (size_t n = 0; cli_commands[n]; n++)
         found += search_options(n, &q);
@@ -289,4 +301,91 @@ cw_status cli_search(const char *text, cw_error *err)
                             "nothing in the help mentions '%s'; 'cubewright help' lists the "
                             "commands",
                             text);
+}
+
+/* --- a word that is no option or command -------------------------------------------------- */
+
+/* Names that are found for a word, in a sentence: "--cut-plane, render --clip". */
+typedef struct hints {
+    const cli_command *own; /* whose options need no command before them; NULL: none */
+    char names[SHOWN_HINTS][MAX_TEXT];
+    const char *found[SHOWN_HINTS]; /* options and commands, by themselves */
+    size_t count;
+} hints;
+
+/* Adds a command, or the option of one. Options that several others have are named once. */
+static void add_hint(hints *h, const cli_command *c, const cli_option *o)
+{
+    const char *what = o ? o->name : c->name;
+    for (size_t n = 0; n < h->count; n++)
+        if (strcmp(h->found[n], what) == 0)
+            return;
+    if (h->count == SHOWN_HINTS)
+        return;
+    if (!o)
+        snprintf(h->names[h->count], MAX_TEXT, "'%s'", what);
+    else
+        snprintf(h->names[h->count], MAX_TEXT, "%s%s--%s", c == h->own ? "" : c->name,
+                 c == h->own ? "" : " ", what);
+    h->found[h->count++] = what;
+}
+
+/* Adds the options of a command whose name is the term. */
+static void add_named(hints *h, const cli_command *c, const char *term)
+{
+    const char *name = strncmp(term, "--", 2) == 0 ? term + 2 : term;
+    for (size_t n = 0; n < c->option_count; n++)
+        if (c->options[n].kind != CLI_HEADING && strcmp(c->options[n].name, name) == 0)
+            add_hint(h, c, &c->options[n]);
+}
+
+/* Adds what the terms of a word name: options of the own command, else commands, else options of
+ * others. */
+static void add_terms(hints *h, const wish *w)
+{
+    for (size_t t = 0; t < w->count && h->own; t++)
+        add_named(h, h->own, w->terms[t]);
+    for (size_t t = 0; t < w->count && !(h->own && h->count); t++)
+        for (size_t n = 0; cli_commands[n]; n++)
+            if (cli_commands[n] != h->own && strcmp(cli_commands[n]->name, w->terms[t]) == 0)
+                add_hint(h, cli_commands[n], NULL);
+    for (size_t t = 0; t < w->count && !h->count; t++)
+        for (size_t n = 0; cli_commands[n]; n++)
+            add_named(h, cli_commands[n], w->terms[t]);
+}
+
+/* Adds options and commands whose text has the word: the own ones, else those of others. */
+static void add_mentions(hints *h, const query *q)
+{
+    for (size_t n = 0; h->own && n < h->own->option_count; n++)
+        if (option_fits(&h->own->options[n], q))
+            add_hint(h, h->own, &h->own->options[n]);
+    for (size_t n = 0; cli_commands[n] && !h->own; n++)
+        if (fits_query(&(subject){NULL, {cli_commands[n]->name, cli_commands[n]->about}}, q))
+            add_hint(h, cli_commands[n], NULL);
+    for (size_t n = 0; cli_commands[n] && !h->count; n++)
+        for (size_t k = 0; k < cli_commands[n]->option_count; k++)
+            if (option_fits(&cli_commands[n]->options[k], q))
+                add_hint(h, cli_commands[n], &cli_commands[n]->options[k]);
+}
+
+bool cli_search_word(const cli_command *command, const char *word, bool in_texts, char *names,
+                     size_t size)
+{
+    query q = {0};
+    hints h = {.own = command};
+    size_t used = 0;
+    parse_query(word, &q);
+    if (q.count && !in_texts)
+        add_terms(&h, &q.wishes[0]);
+    else
+        add_mentions(&h, &q);
+    *names = '\0';
+    for (size_t n = 0; n < h.count && used < size; n++)
+        used += (size_t)snprintf(names + used, size - used, "%s%s",
+                                 n == 0            ? ""
+                                 : n + 1 < h.count ? ", "
+                                                   : " and ",
+                                 h.names[n]);
+    return h.count > 0;
 }

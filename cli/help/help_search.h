@@ -24,4 +24,9 @@ extern const cli_synonym cli_synonyms[];
  * query must occur, by itself or as a synonym. CW_ERR_ARGUMENT: nothing is found. */
 CW_NODISCARD cw_status cli_search(const char *query, cw_error *err);
 
+/* Names what the search finds for a word that is no command, or no option of a command: see
+ * cli_find_word. */
+bool cli_search_word(const cli_command *command, const char *word, bool in_texts, char *names,
+                     size_t size);
+
 #endif

@@ -66,7 +66,12 @@ const cli_synonym cli_synonyms[] = {
     {"video|movie|gif|mp4", NULL, "--turntable|--animate|--steps",
      "cubewright writes no videos. 'render --turntable' writes numbered pictures, 'extract "
      "--animate' an animated glTF file."},
-    {"animation|rotat|spin", NULL, "--turntable|--orbit|--animate|turntable", NULL},
+    {"animation|spin", NULL, "--turntable|--orbit|--animate|turntable", NULL},
+    {"rotat|turn", NULL, "--up|--input-up|--turntable|--orbit", NULL},
+    {"mirror|reflect", NULL, "mirror|--input-frame|--frame",
+     "A surface that comes out mirrored is in another frame than its reader expects: "
+     "--input-frame says what the input has, and --frame what to write."},
+    {"resum|continue|restart|checkpoint", NULL, "--skip-existing|--part|--config", NULL},
     {"quantiz|quantis|file size|smaller file|gzip|zip", "compress",
      "--compress|--tolerance|--bits|--effort", NULL},
     {"draco|meshopt", NULL, "--compress|--tolerance|--bits|--effort", NULL},

@@ -132,6 +132,28 @@ static bool has_flags(const cli_command *c)
     return false;
 }
 
+/* Prints which units the quantities of a command may have. */
+static void print_units(const cli_command *c)
+{
+    bool has_any = false;
+    for (size_t n = 0; n < c->option_count; n++) {
+        const cli_option *o = &c->options[n];
+        if (!o->kind->unit_rule)
+            continue;
+        if (!has_any)
+            puts(
+                ".SH UNITS\nUnits of length are mm, um, nm, cm, m, in and ft; vox stands for the side, or the volume, of a "
+                "voxel.\nA quantity without its unit is refused.");
+        has_any = true;
+        puts(".TP");
+        fputs("\\fB\\-\\-", stdout);
+        cli_roff_text(o->name, strlen(o->name), false);
+        puts("\\fP");
+        print_text(o->kind->unit_rule);
+        putchar('\n');
+    }
+}
+
 static cw_status print_command(const cli_command *c, cw_error *err)
 {
     print_title(c->name, 1);
@@ -149,6 +171,7 @@ static cw_status print_command(const cli_command *c, cw_error *err)
     for (size_t n = 0; n < cli_common_option_count; n++)
         print_option(c, &cli_common_options[n]);
     const cw_status st = print_more(c, err);
+    print_units(c);
     cli_roff_page(c->page, CLI_ROFF_EXAMPLES, true);
     print_exit_status();
     fputs(".SH SEE ALSO\n.BR cubewright (1)", stdout);

@@ -88,7 +88,8 @@ cw_status cli_explain_stages(const char *path, cw_status st, cw_error *err)
         cli_name_stage((cw_stage)s, option);
         cwi_fail(err, st, "%s%s", option, why.message + length);
     }
-    return st == CW_OK ? st : cwi_fail_in(err, st, path);
+    /* Errors of temporary files name their folder; the input has no part in them. */
+    return st == CW_OK || st == CW_ERR_OUTPUT ? st : cwi_fail_in(err, st, path);
 }
 
 static cw_status explain_error(const cli_volume *volume, cw_status st, cw_error *err)

@@ -62,7 +62,7 @@ static int split_fields(const char *text, char fields[FIELDS][FIELD_BYTES])
 
 static bool parse_width(const char *text, cli_length *out)
 {
-    return cli_parse_length(text, out) && out->unit != CLI_PERCENT;
+    return cli_parse_length(text, CLI_IN_MM | CLI_IN_VOXELS, out);
 }
 
 static bool parse_value(const char *text, double *out)
@@ -119,18 +119,16 @@ const char *cli_denoise_text(const cli_denoise *d)
 {
     static char text[128];
     const char *value = d->value > 0 ? cli_number_text(d->value) : "",
-               *colon = d->value > 0 ? ":" : "",
-               *unit = d->width.unit == CLI_VOXELS ? "vox" : "mm";
+               *colon = d->value > 0 ? ":" : "", *width = cli_length_text(&d->width);
     switch (d->filter) {
     case CLI_GAUSS:
-        snprintf(text, sizeof text, "gauss:%s%s", cli_number_text(d->width.value), unit);
+        snprintf(text, sizeof text, "gauss:%s", width);
         break;
     case CLI_MEDIAN:
         snprintf(text, sizeof text, "median:%zu", d->count);
         break;
     case CLI_BILATERAL:
-        snprintf(text, sizeof text, "bilateral:%s%s%s%s", cli_number_text(d->width.value), unit,
-                 colon, value);
+        snprintf(text, sizeof text, "bilateral:%s%s%s", width, colon, value);
         break;
     case CLI_ANISO:
         snprintf(text, sizeof text, "aniso:%zu%s%s", d->count, colon, value);
@@ -145,7 +143,6 @@ const char *cli_denoise_text(const cli_denoise *d)
 static bool parse_smoothing(const cli_option *o, const char *text, void *field)
 {
     cli_smoothing *out = field;
-    (void)o;
     *out = (cli_smoothing){0};
     for (int m = 0; m < CW_SMOOTH_METHOD_COUNT && !out->given; m++) {
         const char *name = cw_smooth_method_name((cw_smooth_method)m);
@@ -154,10 +151,11 @@ static bool parse_smoothing(const cli_option *o, const char *text, void *field)
         out->method = m;
         if (!out->given || *rest == '\0')
             continue;
-        out->given = m == CW_SMOOTH_FAIR ? cli_parse_length(rest + 1, &out->width)
-                                         : cli_parse_count(rest + 1, 1000, &out->iterations) &&
-                                               out->iterations >= 1 &&
-                                               out->iterations <= CW_SMOOTH_MAX_ITERATIONS;
+        out->given = m == CW_SMOOTH_FAIR
+                         ? cli_parse_length(rest + 1, o->kind->units, &out->width)
+                         : cli_parse_count(rest + 1, 1000, &out->iterations) &&
+                               out->iterations >= 1 &&
+                               out->iterations <= CW_SMOOTH_MAX_ITERATIONS;
     }
     return out->given;
 }
@@ -165,13 +163,11 @@ static bool parse_smoothing(const cli_option *o, const char *text, void *field)
 const char *cli_smoothing_text(const cli_smoothing *s)
 {
     static char text[64];
-    static const char *const units[] = {"mm", "%", "vox"};
     const char *method = cw_smooth_method_name((cw_smooth_method)s->method);
     if (s->iterations)
         snprintf(text, sizeof text, "%s:%zu", method, s->iterations);
     else if (s->width.given)
-        snprintf(text, sizeof text, "%s:%s%s", method, cli_number_text(s->width.value),
-                 units[s->width.unit]);
+        snprintf(text, sizeof text, "%s:%s", method, cli_length_text(&s->width));
     else
         snprintf(text, sizeof text, "%s", method);
     return text;
@@ -192,19 +188,12 @@ static bool parse_triple(const char **text, double out[3])
 /* Parses an offset along an axis: in mm, or percent of the box. */
 static bool parse_offset(const char *text, double *offset, bool *is_percent)
 {
-    static const struct {
-        const char *name;
-        double mm;
-    } units[] = {{"", 1}, {"mm", 1}, {"um", 1e-3}, {"cm", 10}, {"m", 1e3}, {"in", 25.4}};
-    if (!cwi_parse_double(&text, offset) || !isfinite(*offset))
+    cli_length length;
+    if (!cli_parse_length(text, CLI_IN_MM | CLI_IN_PERCENT | CLI_SIGNED, &length))
         return false;
-    *is_percent = strcmp(text, "%") == 0;
-    for (size_t u = 0; u < sizeof units / sizeof *units && !*is_percent; u++)
-        if (strcmp(text, units[u].name) == 0) {
-            *offset *= units[u].mm;
-            return isfinite(*offset);
-        }
-    return *is_percent;
+    *offset = length.value;
+    *is_percent = length.unit == CLI_PERCENT;
+    return true;
 }
 
 static bool parse_plane(const cli_option *o, const char *text, void *field)
@@ -252,15 +241,18 @@ PRINTER(plane)
 
 /* clang-format off */
 const cli_kind cli_kind_resample = {sizeof(cli_resample), parse_resample, print_resample,
-    "iso, or a length above 0 such as 0.5mm or 1x1x2mm; then a kernel, if not linear: 0.5mm:cubic, "
-    "iso:lanczos"};
+    "iso, or a length above 0 with its unit, such as 0.5mm or 1x1x2mm; then a kernel, if not linear: "
+    "0.5mm:cubic, iso:lanczos", CLI_UNITS_MM, CLI_IN_MM};
 const cli_kind cli_kind_denoise = {sizeof(cli_denoise), parse_denoise, print_denoise,
     "nlm or nlm:NOISE, aniso or aniso:STEPS (1 to 100) or aniso:STEPS:CONTRAST, gauss:L such as "
-    "gauss:0.7vox or gauss:0.5mm, bilateral:L or bilateral:L:VALUES, or median:N (1 to 3 voxels)"};
+    "gauss:0.7vox or gauss:0.5mm, bilateral:L or bilateral:L:VALUES, or median:N (1 to 3 voxels)",
+    "L has " CLI_UNITS_MM " or vox; N counts voxels", CLI_IN_MM | CLI_IN_VOXELS};
 const cli_kind cli_kind_smoothing = {sizeof(cli_smoothing), parse_smoothing, print_smoothing,
     "taubin or hc, with their iterations from 1 to 1000 such as taubin:10, or fair, with a length such "
-    "as fair:4vox or fair:2mm"};
+    "as fair:4vox or fair:2mm", CLI_UNITS_MM ", % of the box's diagonal, or vox",
+    CLI_IN_MM | CLI_IN_PERCENT | CLI_IN_VOXELS};
 const cli_kind cli_kind_plane = {sizeof(cli_plane), parse_plane, print_plane,
-    "an axis with a place, such as z=5mm, z=10% of the box, or -z=5mm to keep the other side; or a "
-    "point and a normal such as 0,0,5:0,0.1,1"};
+    "an axis with a place and its unit, such as z=5mm, z=10% of the box, or -z=5mm to keep the other side; or a "
+    "point and a normal such as 0,0,5:0,0.1,1",
+    "a place on an axis has " CLI_UNITS_MM " or % of the box; a point is in LPS mm", CLI_IN_MM | CLI_IN_PERCENT | CLI_SIGNED};
 /* clang-format on */

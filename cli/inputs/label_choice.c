@@ -176,23 +176,17 @@ size_t cli_list_missing(const cli_label_choice *choice, const cw_label_table *ta
     return missing;
 }
 
-cw_status cli_parse_label_move(const char *text, const double spacing[3], double *max_move,
-                               cw_error *err)
+cw_status cli_find_label_move(const cli_length *length, const double spacing[3],
+                              double *max_move, cw_error *err)
 {
     const double voxel = fmax(spacing[0], fmax(spacing[1], spacing[2]));
-    cli_length length;
-    *max_move = text ? 0 : 0.5;
-    if (!text || strcmp(text, "off") == 0)
+    *max_move = length->given ? 0 : 0.5;
+    if (!length->given || length->is_word)
         return CW_OK;
-    if (!cli_parse_length(text, &length) || length.unit == CLI_PERCENT)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--smooth-labels '%s': expected is 'off' or a length such as 0.3mm or "
-                        "0.5vox",
-                        text);
-    *max_move = length.unit == CLI_VOXELS ? length.value : length.value / voxel;
+    *max_move = length->unit == CLI_VOXELS ? length->value : length->value / voxel;
     if (!(*max_move > 0 && *max_move <= 0.5))
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--smooth-labels %s is %.3g voxels; above 0 and up to 0.5 was expected",
-                        text, *max_move);
+                        cli_length_text(length), *max_move);
     return CW_OK;
 }

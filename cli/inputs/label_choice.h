@@ -43,9 +43,9 @@ void cli_mark_found(cli_label_choice *choice, uint32_t layer, uint32_t value);
 size_t cli_list_missing(const cli_label_choice *choice, const cw_label_table *table, char *list,
                         size_t size);
 
-/* Converts --smooth-labels to the bound of the library, in voxels: 0 for "off", the default for
- * NULL. A length bounds the displacement along each axis of the grid. CW_ERR_ARGUMENT */
-CW_NODISCARD cw_status cli_parse_label_move(const char *text, const double spacing[3],
-                                            double *max_move, cw_error *err);
+/* Converts --smooth-labels to the bound of the library, in voxels: 0 for "off", the default if it was
+ * not given. A length bounds the displacement along each axis of the grid. CW_ERR_ARGUMENT */
+CW_NODISCARD cw_status cli_find_label_move(const cli_length *length, const double spacing[3],
+                                           double *max_move, cw_error *err);
 
 #endif

@@ -157,7 +157,7 @@ cw_status cli_find_shown_labels(const cli_label_look *look, const cli_input *inp
                         "%s: labels are those of dense grids of voxels; this is %s",
                         volume->path,
                         volume->view.cells ? "an irregular grid" : "a sparse one");
-    cw_status st = cli_parse_label_move(look->smooth, volume->spacing, &s->max_move, err);
+    cw_status st = cli_find_label_move(&look->smooth, volume->spacing, &s->max_move, err);
     if (st == CW_OK)
         st = find_names(look, volume, s, err);
     if (st == CW_OK)
@@ -333,7 +333,7 @@ bool cli_find_label_at(const cli_volume *volume, const cli_input *input, size_t 
     return false;
 }
 
-cw_status cli_looks_like_labels(const cli_volume *volume, char *what, size_t size,
+cw_status cli_looks_like_labels(const cli_volume *volume, char what[CLI_LABELS_TEXT],
                                 cw_error *err)
 {
     cw_labels l;
@@ -343,9 +343,6 @@ cw_status cli_looks_like_labels(const cli_volume *volume, char *what, size_t siz
     cw_status st = cw_volume_labels(&volume->view, &l, err);
     if (st != CW_OK || !l.found)
         return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
-    snprintf(what, size, "%s (%s%zu values, %.10g to %.10g)",
-             volume->view.known & CW_KNOWN_LABELS ? "is a label map" : "looks like a label map",
-             l.more ? "more than " : "", l.count, l.count ? l.value[0] : 0,
-             l.count ? l.value[l.count - 1] : 0);
+    cli_describe_labels(volume, &l, what);
     return CW_OK;
 }

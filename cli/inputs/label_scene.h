@@ -8,7 +8,8 @@
 
 /* Options that say which labels are shown, and how; each may be NULL. */
 typedef struct cli_label_look {
-    const char *labels, *names, *smooth, *opacity;
+    const char *labels, *names, *opacity;
+    cli_length smooth;
 } cli_label_look;
 
 /* Labels of one step. A zeroed scene has no labels. Free with cli_free_label_scene(). */
@@ -55,7 +56,7 @@ bool cli_find_label_at(const cli_volume *volume, const cli_input *input, size_t 
 
 /* Finds if a volume is drawn as labels when nobody asked for a way to draw it: the file says so,
  * or its values look like labels. `what` gets a line about it, "": it is not. */
-CW_NODISCARD cw_status cli_looks_like_labels(const cli_volume *volume, char *what, size_t size,
-                                             cw_error *err);
+CW_NODISCARD cw_status cli_looks_like_labels(const cli_volume *volume,
+                                             char what[CLI_LABELS_TEXT], cw_error *err);
 
 #endif

@@ -26,6 +26,17 @@ static void say_left_out(const cli_mesh *m, size_t objects, size_t triangles, co
                 objects == 1 ? "" : "s", which, cli_count(triangles));
 }
 
+static void say_truncated(const cli_mesh *m)
+{
+    if (!m->file.truncated)
+        return;
+    char of[64] = "";
+    if (m->file.expected_triangles)
+        snprintf(of, sizeof of, " of %s", cli_count(m->file.expected_triangles));
+    cli_say("%s: the file breaks off: took %s%s facets", m->path,
+            cli_count(cli_mesh_triangles(m)), of);
+}
+
 static void say_what_was_found(const cli_mesh *m)
 {
     size_t vertices = m->mesh.vertex_count;
@@ -34,6 +45,7 @@ static void say_what_was_found(const cli_mesh *m)
     cli_say("%s: %s, %s vertices, %s triangles%s", m->path, m->file.format, cli_count(vertices),
             cli_count(cli_mesh_triangles(m)),
             m->file.known & CW_KNOWN_UNIT ? "" : " (no unit given: taken as mm)");
+    say_truncated(m);
     if (m->part_count > 1)
         cli_say("%s: %zu parts", m->path, m->part_count);
     else if (!m->parts && m->file.parts > 1)
@@ -64,6 +76,7 @@ static cw_status read_file(const char *path, const char *reader, const cli_input
     cw_mesh_read_desc desc = {
         .reader = reader,
         .allow_external = input->allow_external,
+        .truncated = input->truncated,
         .max_triangles = input->max_triangles,
         .max_bytes = cli_memory_limit(input),
         .no_sandbox = input->no_sandbox,
@@ -138,6 +151,10 @@ void cli_json_mesh_file(cli_json *j, const char *key, const cli_mesh *mesh)
                   !(mesh->file.known & CW_KNOWN_FRAME) ? "unknown"
                   : axes->ras                          ? "RAS"
                                                        : "LPS");
+    if (mesh->file.truncated) {
+        cli_json_bool(j, "truncated", true);
+        cli_json_count(j, "expected_triangles", mesh->file.expected_triangles);
+    }
     if (axes->y_up)
         cli_json_text(j, "up", "y");
     if (SHA256File(mesh->path, sum))

@@ -23,6 +23,12 @@
          NULL,                                                                                 \
          "Follow a .gltf file to buffers outside its folder (off)",                            \
          CLI_INPUT_ROW(args, allow_external)},                                                 \
+        {"truncated",                                                                          \
+         0,                                                                                    \
+         CLI_FLAG,                                                                             \
+         NULL,                                                                                 \
+         "Take the whole facets of an STL file that breaks off (off: it is refused)",          \
+         CLI_INPUT_ROW(args, truncated)},                                                      \
         CLI_SANDBOX_OPTION(args), CLI_HEADED(CLI_LIMITS), CLI_TIME_OPTIONS(args),              \
         {"max-triangles",                                                                      \
          0,                                                                                    \

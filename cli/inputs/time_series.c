@@ -58,8 +58,11 @@ static cw_status check_files(const cli_series *series, const cli_input *input, c
         if (st != CW_OK)
             return st;
         first = n ? first : other; /* whose coordinates soon are gone */
-        st = cli_agree(&first, series->files.path[0], &other, path, err);
+        cw_error why = {0};
+        st = cli_agree(&first, series->files.path[0], &other, path, &why);
         cw_volume_free(&other);
+        if (st != CW_OK)
+            st = cwi_fail(err, st, "%s; --batch takes each by itself", why.message);
     }
     return st;
 }

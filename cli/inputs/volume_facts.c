@@ -54,9 +54,25 @@ static const char *shape_name(int shape, size_t count)
     return names[shape][count == 1];
 }
 
-static const char *unit_of(const cw_volume *v)
+/* Returns true for formats that can state the directions of axes. */
+static bool can_state_frame(const char *format)
 {
-    return v->known & CW_KNOWN_UNIT ? "mm" : "(no unit given: taken as mm)";
+    static const char *const formats[] = {"nrrd", "nifti", "metaimage", "dicom"};
+    for (size_t n = 0; n < sizeof formats / sizeof *formats; n++)
+        if (strcmp(format, formats[n]) == 0)
+            return true;
+    return false;
+}
+
+/* Says the unit, and what the file might have stated and does not. */
+static const char *unit_of(const cli_volume *volume)
+{
+    const unsigned known = volume->whole.known;
+    const bool lacks_frame = !(known & CW_KNOWN_FRAME) && can_state_frame(volume->format);
+    if (known & CW_KNOWN_UNIT)
+        return lacks_frame ? "mm (no frame given: taken as LPS)" : "mm";
+    return lacks_frame ? "(no unit and no frame given: taken as mm in LPS)"
+                       : "(no unit given: taken as mm)";
 }
 
 static const char *describe_grid(const cli_volume *volume)
@@ -71,7 +87,7 @@ static const char *describe_grid(const cli_volume *volume)
         if (volume->grid.cells[s])
             n += snprintf(text + n, sizeof text - (size_t)n, ", %zu %s", volume->grid.cells[s],
                           shape_name(s, volume->grid.cells[s]));
-    snprintf(text + n, sizeof text - (size_t)n, " %s", unit_of(v));
+    snprintf(text + n, sizeof text - (size_t)n, " %s", unit_of(volume));
     return text;
 }
 
@@ -90,7 +106,7 @@ const char *cli_describe(const cli_volume *volume)
         n += snprintf(text + n, sizeof text - (size_t)n, ", %zu time steps", v->steps);
     snprintf(text + n, sizeof text - (size_t)n, ", %s%.6g x %.6g x %.6g %s",
              cwi_is_rectilinear(v) ? "rectilinear, on average " : "", s[0], s[1], s[2],
-             unit_of(v));
+             unit_of(volume));
     return text;
 }
 
@@ -150,6 +166,14 @@ static void json_grid(cli_json *j, const cli_grid *grid, double spacing)
     cli_json_number(j, "mean_edge", spacing);
 }
 
+void cli_json_notes(cli_json *j, const cli_volume *volume)
+{
+    cli_json_open(j, "notes", '[');
+    for (size_t n = 0; n < volume->note_count; n++)
+        cli_json_text(j, NULL, volume->notes[n]);
+    cli_json_close(j, ']');
+}
+
 void cli_json_input(cli_json *j, const char *key, const cli_volume *volume)
 {
     const cw_volume *v = &volume->whole;
@@ -177,13 +201,25 @@ void cli_json_input(cli_json *j, const char *key, const cli_volume *volume)
     for (int r = 0; r < 3; r++)
         cli_json_numbers(j, NULL, v->affine[r], 4);
     cli_json_close(j, ']');
-    cli_json_open(j, "notes", '[');
-    for (size_t n = 0; n < volume->note_count; n++)
-        cli_json_text(j, NULL, volume->notes[n]);
-    cli_json_close(j, ']');
+    cli_json_notes(j, volume);
     if (SHA256File(volume->path, sum))
         cli_json_text(j, "sha256", sum);
     cli_json_close(j, '}');
+}
+
+void cli_describe_labels(const cli_volume *volume, const cw_labels *labels,
+                         char text[CLI_LABELS_TEXT])
+{
+    const cw_volume *v = &volume->voxels;
+    const size_t zeros = labels->count && labels->value[0] == 0, count = labels->count - zeros;
+    int n = snprintf(text, CLI_LABELS_TEXT, "%s label map (%s%zu label%s",
+                     v->known & CW_KNOWN_LABELS ? "is a" : "looks like a",
+                     labels->more ? "more than " : "", count, count == 1 ? "" : "s");
+    if (count && !labels->more)
+        n += snprintf(text + n, CLI_LABELS_TEXT - (size_t)n, ", %.10g to %.10g",
+                      labels->value[zeros], labels->value[labels->count - 1]);
+    snprintf(text + n, CLI_LABELS_TEXT - (size_t)n, "%s)",
+             v->components > 1 ? " in component 0" : "");
 }
 
 double cli_share_between(const cw_statistics *s, double low, double high)

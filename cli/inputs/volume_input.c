@@ -304,8 +304,10 @@ static bool needs_slices(const cli_input *input, const cw_volume *part, size_t l
     double voxels = (double)part->components * (double)part->steps;
     for (int a = 0; a < 3; a++)
         voxels *= (double)part->dim[a];
-    const double copies = input->denoise.given ? 2 : 1;
-    const double bytes = copies * voxels * (double)cw_type_size(part->type);
+    size_t voxel = cw_type_size(part->type);
+    if (input->denoise.given)
+        voxel += cw_type_size(cli_denoised_type(input, part));
+    const double bytes = voxels * (double)voxel;
     return input->may_stream && !cli_find_unstreamed_preparation(input) && !part->cells &&
            !part->sparse && input->stream != CLI_STREAM_NEVER &&
            (input->stream == CLI_STREAM_ALWAYS ||
@@ -343,6 +345,7 @@ static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_inp
         st = view_shape(&part, volume, err);
         if (st == CW_OK)
             cli_print_slice_filter(input, volume);
+        volume->view.type = cli_denoised_type(input, &volume->view);
         return st;
     }
     if (!input->coarsen_view)
@@ -385,6 +388,7 @@ cw_read_desc cli_read_desc(const cli_input *input)
                          .points = input->points,
                          .gaps = (cw_gaps)input->gaps,
                          .tilt = (cw_tilt)input->tilt,
+                         .skip_damaged = input->skip_damaged,
                          .no_sandbox = input->no_sandbox,
                          .timeout_s = (double)input->timeout_s,
                          .claim = cli_claim_of(&input->claim),
@@ -483,12 +487,13 @@ cw_status cli_read_whole(const cli_volume *part, const cli_input *input, cli_vol
     return st == CW_OK ? st : cwi_fail_in(err, st, part->path);
 }
 
-/* How many of the labels are inside the surface at a level. */
+/* How many of the labels are inside the surface at a level. 0 is the background. */
 static size_t count_inside(const cw_labels *labels, double iso, bool inside_is_low)
 {
     size_t inside = 0;
     for (size_t n = 0; n < labels->count; n++)
-        inside += inside_is_low ? labels->value[n] < iso : labels->value[n] >= iso;
+        inside += labels->value[n] != 0 &&
+                  (inside_is_low ? labels->value[n] < iso : labels->value[n] >= iso);
     return inside;
 }
 
@@ -496,7 +501,7 @@ cw_status cli_tell_labels(cli_volume *volume, const double *iso, size_t count,
                           bool inside_is_low, cw_error *err)
 {
     cw_labels l;
-    char text[256], what[128];
+    char text[256], what[CLI_LABELS_TEXT];
     if (volume->magnitude.data || volume->streams)
         return CW_OK;
     cw_status st = cw_volume_labels(&volume->voxels, &l, err); /* of a preview all of them */
@@ -504,18 +509,16 @@ cw_status cli_tell_labels(cli_volume *volume, const double *iso, size_t count,
         return CW_OK;
     if (st != CW_OK || !l.found || !l.count)
         return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
-    const bool is_stated = volume->view.known & CW_KNOWN_LABELS;
-    snprintf(what, sizeof what, "%s (%s%zu values, %.10g to %.10g)",
-             is_stated ? "is a label map" : "looks like a label map",
-             l.more ? "more than " : "", l.count, l.value[0], l.value[l.count - 1]);
+    cli_describe_labels(volume, &l, what);
     for (size_t n = 0; n < count; n++) {
         const size_t inside = count_inside(&l, iso[n], inside_is_low);
         if (inside < 2)
             continue;
         snprintf(
             text, sizeof text,
-            "%s: the surface at %.10g joins the %zu labels %s it; 'extract --labels' takes each",
-            what, iso[n], inside, inside_is_low ? "below" : "above");
+            "%s: the surface at %.10g joins %s%zu labels %s it; 'extract --labels' takes each",
+            what, iso[n], l.more ? "more than " : "the ", inside,
+            inside_is_low ? "below" : "above");
         cli_take_note(volume, text);
     }
     if (!count && l.count > 2) {

@@ -50,6 +50,7 @@ enum { CLI_MIN_MEMORY = 32 << 20 };
 typedef struct cli_input {
     const char *reader, *raw, *series, *array, *points;
     int gaps, tilt; /* cw_gaps, cw_tilt */
+    bool skip_damaged;
     bool no_sandbox;
     size_t timeout_s;
     cli_lengths spacing;
@@ -67,7 +68,7 @@ typedef struct cli_input {
     size_t step;
     bool step_chosen; /* by the command, of a series: nothing is to be said of it */
     size_t threads, memory, max_voxels, max_triangles;
-    bool allow_external, preview;
+    bool allow_external, preview, truncated;
     size_t coarsen;    /* 0: 4 for a preview, else 1 */
     bool coarsen_view; /* all voxels are read, and only the view is coarse */
     bool is_quiet;     /* prints no lines about the file */
@@ -138,12 +139,12 @@ typedef struct cli_input {
      CLI_VALUES_FILE},                                                                         \
         {"mask-open",                                                                          \
          0,                                                                                    \
-         CLI_LENGTH,                                                                           \
+         CLI_VOXEL_LENGTH,                                                                     \
          "L",                                                                                  \
          "Remove what is thinner than a ball of this radius: 1vox, 0.5mm (off)",               \
          CLI_INPUT_ROW(args, mask_open)},                                                      \
     {                                                                                          \
-        "mask-close", 0, CLI_LENGTH, "L",                                                      \
+        "mask-close", 0, CLI_VOXEL_LENGTH, "L",                                                \
             "Fill cracks and pores thinner than a ball of this radius: 1vox, 0.5mm (off)",     \
             CLI_INPUT_ROW(args, mask_close)                                                    \
     }
@@ -161,7 +162,7 @@ typedef struct cli_input {
          0,                                                                                    \
          CLI_TEXT,                                                                             \
          "LAYOUT",                                                                             \
-         "Layout of headerless voxels: dims=64x64x93,type=u16le,offset=0,spacing=1x1x2",       \
+         "Layout of headerless voxels: dims=64x64x93,type=u16le,offset=0,spacing=1x1x2mm",     \
          CLI_INPUT_ROW(args, raw)},                                                            \
         {"spacing",                                                                            \
          0,                                                                                    \
@@ -208,6 +209,12 @@ typedef struct cli_input {
          "stop/interpolate/allow",                                                             \
          "What to do where slices are missing or uneven (stop)",                               \
          CLI_INPUT_ROW(args, gaps)},                                                           \
+        {"skip-damaged",                                                                       \
+         0,                                                                                    \
+         CLI_FLAG,                                                                             \
+         NULL,                                                                                 \
+         "Leave out slices whose files are damaged; what they leave are gaps (off)",           \
+         CLI_INPUT_ROW(args, skip_damaged)},                                                   \
         {"tilt",                                                                               \
          0,                                                                                    \
          CLI_CHOICE,                                                                           \
@@ -315,6 +322,15 @@ void cli_free_volume(cli_volume *volume);
 /* Says something about a volume, and keeps it as a note for reports. The second is for readers. */
 void cli_note_volume(cli_volume *volume, const char *format, ...) CW_PRINTF(2, 3);
 void cli_take_note(void *volume, const char *text);
+
+/* Puts the notes as "notes". */
+void cli_json_notes(cli_json *j, const cli_volume *volume);
+
+enum { CLI_LABELS_TEXT = 128 };
+
+/* Describes the labels that cw_volume_labels() found: "is a label map (116 labels, 1 to 116)". */
+void cli_describe_labels(const cli_volume *volume, const cw_labels *labels,
+                         char text[CLI_LABELS_TEXT]);
 
 /* Returns true if values are in Hounsfield units: as the file says, or as those of a CT are, with
  * air near -1000.

@@ -13,6 +13,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 const char *cli_find_preparation(const cli_input *input)
 {
@@ -26,12 +27,33 @@ const char *cli_find_preparation(const cli_input *input)
                                      : NULL;
 }
 
+cw_type cli_denoised_type(const cli_input *input, const cw_volume *volume)
+{
+    const bool makes_means = input->denoise.given && input->denoise.filter != CLI_MEDIAN;
+    return makes_means ? cw_filter_type(volume) : volume->type;
+}
+
 const char *cli_find_unstreamed_preparation(const cli_input *input)
 {
     cli_input rest = *input;
     const cli_filter filter = input->denoise.filter;
     rest.denoise.given = input->denoise.given && filter != CLI_GAUSS && filter != CLI_MEDIAN;
     return cli_find_preparation(&rest);
+}
+
+cw_status cli_fail_whole(cw_status st, const char *option, cw_error *err)
+{
+    static const struct {
+        const char *option, *way;
+    } ways[] = {{"--denoise", "gauss:L and median:N go slice by slice"},
+                {"--resample", "larger distances or --coarsen N take less"},
+                {"--crop auto", "--crop with numbers goes slice by slice"}};
+    const cw_error why = *err;
+    const char *way = "--crop with numbers reads a part of them";
+    for (size_t n = 0; n < sizeof ways / sizeof *ways && option; n++)
+        way = strcmp(option, ways[n].option) == 0 ? ways[n].way : way;
+    return cwi_fail(err, st, "%s; %s needs all voxels in memory; %s", why.message,
+                    option ? option : "this command", way);
 }
 
 cw_filter_desc cli_describe_filter(const cli_input *input, const cli_volume *volume)
@@ -57,6 +79,15 @@ void cli_take_filtered(cli_volume *volume, cw_volume *made)
     volume->view.owned = volume->view.owned_grid = NULL;
 }
 
+/* Returns ", as f32" where means of the view's values have another type than these. */
+static const char *told_type(const cli_volume *volume)
+{
+    static char text[32];
+    const cw_type made = cw_filter_type(&volume->view);
+    snprintf(text, sizeof text, ", as %s", cw_type_name(made));
+    return made == volume->view.type ? "" : text;
+}
+
 static cw_status resample_view(const cli_input *input, cli_volume *volume, cw_error *err)
 {
     const cli_resample *r = &input->resample;
@@ -72,9 +103,9 @@ static cw_status resample_view(const cli_input *input, cli_volume *volume, cw_er
         return cwi_fail_in(err, st, "--resample");
     cli_note_volume(volume,
                     "resampled from %g x %g x %g mm to %g x %g x %g mm, %zu x %zu x %zu "
-                    "voxels, %s",
+                    "voxels, %s%s",
                     old[0], old[1], old[2], mm[0], mm[1], mm[2], made.dim[0], made.dim[1],
-                    made.dim[2], cw_kernel_name((cw_kernel)r->kernel));
+                    made.dim[2], cw_kernel_name((cw_kernel)r->kernel), told_type(volume));
     cli_take_filtered(volume, &made);
     return CW_OK;
 }
@@ -120,8 +151,8 @@ void cli_print_slice_filter(const cli_input *input, cli_volume *volume)
     double sigma[3];
     cli_width_in_voxels(&input->denoise.width, &volume->view, sigma);
     if (input->denoise.given && input->denoise.filter == CLI_GAUSS)
-        cli_note_volume(volume, "denoised by a Gaussian of %.3g x %.3g x %.3g voxels", sigma[0],
-                        sigma[1], sigma[2]);
+        cli_note_volume(volume, "denoised by a Gaussian of %.3g x %.3g x %.3g voxels%s",
+                        sigma[0], sigma[1], sigma[2], told_type(volume));
     if (input->denoise.given && input->denoise.filter == CLI_MEDIAN)
         cli_note_volume(volume, "denoised by the median of %zu x %zu x %zu voxels", side, side,
                         side);
@@ -149,6 +180,8 @@ static cw_status sort_view(const cli_input *input, cli_volume *volume, cw_volume
     return st;
 }
 
+enum { MOST_SLICES = 64 }; /* filtered together, where memory is short */
+
 /* A visitor of filtered slices. */
 typedef struct filtered_visit {
     const cli_input *input;
@@ -165,16 +198,34 @@ static cw_status take_first_slice(const cw_slice_source *source, cw_error *err)
     return st;
 }
 
-static cw_status visit_filtered(void *user, const cw_slice_source *source, cw_error *err)
+static cw_slice_filter_desc describe_slice_filter(const cli_input *input, const cw_volume *v)
 {
-    const filtered_visit *v = user;
-    const cli_denoise *denoise = &v->input->denoise;
+    const cli_denoise *denoise = &input->denoise;
     cw_slice_filter_desc desc = {.kind = denoise->filter == CLI_MEDIAN ? CW_SLICE_MEDIAN
                                                                        : CW_SLICE_GAUSS,
                                  .radius = denoise->count,
-                                 .threads = (int)v->input->threads};
+                                 .threads = (int)input->threads};
+    cli_width_in_voxels(&denoise->width, v, desc.sigma_voxels);
+    return desc;
+}
+
+size_t cli_slice_filter_bytes(const cli_input *input, const cw_volume *source)
+{
+    cw_slice_filter_desc desc = describe_slice_filter(input, source);
+    desc.slices = 1;
+    return input->denoise.given ? cw_slice_filter_bytes(source, &desc) : 0;
+}
+
+static cw_status visit_filtered(void *user, const cw_slice_source *source, cw_error *err)
+{
+    const filtered_visit *v = user;
+    cw_slice_filter_desc desc = describe_slice_filter(v->input, &source->shape);
     cw_slice_filter *filter;
-    cli_width_in_voxels(&denoise->width, &source->shape, desc.sigma_voxels);
+    const size_t share = cwi_memory_left() / 4; /* the rest is for the surface */
+    if (cw_slice_filter_bytes(&source->shape, &desc) > share)
+        for (desc.slices = MOST_SLICES;
+             desc.slices > 1 && cw_slice_filter_bytes(&source->shape, &desc) > share;)
+            desc.slices /= 2;
     cw_status st = cw_slice_filter_new(source, &desc, &filter, err);
     if (st != CW_OK)
         return cwi_fail_in(err, st, "--denoise");
@@ -207,8 +258,8 @@ static cw_status join_similar(const cli_input *input, cli_volume *volume, cw_vol
     if (st == CW_OK)
         cli_note_volume(volume,
                         "denoised by a bilateral filter of %.3g x %.3g x %.3g voxels, values "
-                        "within %.4g%s",
-                        sigma[0], sigma[1], sigma[2], v.value, v.source);
+                        "within %.4g%s%s",
+                        sigma[0], sigma[1], sigma[2], v.value, v.source, told_type(volume));
     return st;
 }
 
@@ -223,8 +274,8 @@ static cw_status diffuse_view(const cli_input *input, cli_volume *volume, cw_vol
         st = cw_volume_aniso(&volume->view, steps, v.value, &desc, made, err);
     if (st == CW_OK)
         cli_note_volume(volume,
-                        "denoised by %zu steps of diffusion along edges, contrast %.4g%s",
-                        steps, v.value, v.source);
+                        "denoised by %zu steps of diffusion along edges, contrast %.4g%s%s",
+                        steps, v.value, v.source, told_type(volume));
     return st;
 }
 
@@ -237,7 +288,8 @@ static cw_status join_alike(const cli_input *input, cli_volume *volume, cw_volum
     if (st == CW_OK)
         st = cw_volume_nlm(&volume->view, v.value, 0, &desc, made, err);
     if (st == CW_OK)
-        cli_note_volume(volume, "denoised by non-local means, noise %.4g%s", v.value, v.source);
+        cli_note_volume(volume, "denoised by non-local means, noise %.4g%s%s", v.value,
+                        v.source, told_type(volume));
     return st;
 }
 
@@ -309,20 +361,7 @@ cw_status cli_check_inside_options(const cli_input *input, cw_error *err)
                                                    : NULL;
     if (option && !input->makes_surface)
         return cwi_fail(err, CW_ERR_ARGUMENT, "%s is for extract and check", option);
-    if ((input->mask_open.given && input->mask_open.unit == CLI_PERCENT) ||
-        (input->mask_close.given && input->mask_close.unit == CLI_PERCENT))
-        return cwi_fail(
-            err, CW_ERR_ARGUMENT, "--mask-%s takes a length such as 1vox or 0.5mm",
-            input->mask_open.given && input->mask_open.unit == CLI_PERCENT ? "open" : "close");
     return CW_OK;
-}
-
-static const char *length_text(const cli_length *l)
-{
-    static char text[64];
-    snprintf(text, sizeof text, "%s%s", cli_number_text(l->value),
-             l->unit == CLI_VOXELS ? "vox" : "mm");
-    return text;
 }
 
 void cli_json_preparation(cli_json *j, const cli_input *input)
@@ -336,9 +375,9 @@ void cli_json_preparation(cli_json *j, const cli_input *input)
     if (input->mask)
         cli_json_text(j, "mask", cli_shown_path(input->mask));
     if (input->mask_open.given)
-        cli_json_text(j, "mask_open", length_text(&input->mask_open));
+        cli_json_text(j, "mask_open", cli_length_text(&input->mask_open));
     if (input->mask_close.given)
-        cli_json_text(j, "mask_close", length_text(&input->mask_close));
+        cli_json_text(j, "mask_close", cli_length_text(&input->mask_close));
     if (input->crop.is_auto)
         cli_json_count(j, "crop_auto", input->crop.margin);
 }

@@ -13,8 +13,19 @@ const char *cli_find_preparation(const cli_input *input);
 /* The same without those that are made slice by slice, too: a Gaussian, a median. */
 const char *cli_find_unstreamed_preparation(const cli_input *input);
 
+/* Adds to an error of too little memory that an option needs all voxels there, and the way on.
+ * option  such as "--denoise"; NULL: the command itself does */
+cw_status cli_fail_whole(cw_status st, const char *option, cw_error *err);
+
+/* Returns the type that --denoise gives to the values of a volume. */
+cw_type cli_denoised_type(const cli_input *input, const cw_volume *volume);
+
 /* Says what is made slice by slice, of a volume that streams. */
 void cli_print_slice_filter(const cli_input *input, cli_volume *volume);
+
+/* Returns the least bytes that --denoise takes slice by slice; 0: none was given.
+ * source  the slices before the filter */
+size_t cli_slice_filter_bytes(const cli_input *input, const cw_volume *source);
 
 /* Visits filtered slices, if a filter was given.
  * visit  hands a visitor the slices of the volume */

@@ -9,11 +9,11 @@
 /* Returns the first option given that says how labels are drawn; NULL for none. */
 static const char *find_hint(const render_args *args)
 {
-    return args->look.names     ? "names"
-           : args->look.opacity ? "label-opacity"
-           : args->look.smooth  ? "smooth-labels"
-           : args->marks.legend ? "legend"
-                                : NULL;
+    return args->look.names          ? "names"
+           : args->look.opacity      ? "label-opacity"
+           : args->look.smooth.given ? "smooth-labels"
+           : args->marks.legend      ? "legend"
+                                     : NULL;
 }
 
 /* Checks what is asked of labels over slices of another volume. */
@@ -81,12 +81,12 @@ static bool may_draw_labels(const cli_command *command, const render_args *args,
 /* Reads the first step, and finds if it is a label map. */
 static cw_status find_labels(cli_pictures *p, cw_mode mode, cw_error *err)
 {
-    char what[160];
+    char what[CLI_LABELS_TEXT];
     cli_source *s = &p->source;
     s->of_labels = s->is_label_map;
     cw_status st = cli_read_step(s, &p->args->input, 0, err);
     if (st == CW_OK)
-        st = cli_looks_like_labels(&s->volume, what, sizeof what, err);
+        st = cli_looks_like_labels(&s->volume, what, err);
     if (st != CW_OK || !*what)
         return st;
     cli_say("%s: %s: its labels are drawn; %s draws its numbers", s->volume.path, what,
@@ -142,7 +142,7 @@ static cw_status open_values(cli_pictures *p, cw_error *err)
     const render_args *args = p->args;
     double range[2] = {0};
     cw_status st = CW_OK;
-    if (args->marks.legend || args->look.smooth)
+    if (args->marks.legend || args->look.smooth.given)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--%s is for labels, and %s is drawn as values: --labels all",
                         args->marks.legend ? "legend" : "smooth-labels", p->overlay.path);
@@ -162,14 +162,14 @@ static cw_status open_overlay(cli_pictures *p, cw_error *err)
 {
     static const cli_input all;
     double opacity;
-    char what[160];
+    char what[CLI_LABELS_TEXT];
     if (p->overlay.path)
         return CW_OK;
     cw_status st = cli_overlay_opacity(&p->args->overlay_opacity, &opacity, err);
     if (st == CW_OK)
         st = cli_read_overlay(p->args->overlay, &p->args->input, &p->overlay, err);
     if (st == CW_OK)
-        st = cli_looks_like_labels(&p->overlay, what, sizeof what, err);
+        st = cli_looks_like_labels(&p->overlay, what, err);
     if (st == CW_OK && !cli_overlay_is_labels(*what, &p->args->values, &p->args->look))
         return open_values(p, err);
     if (st == CW_OK)

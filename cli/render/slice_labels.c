@@ -59,6 +59,7 @@ cw_status cli_read_overlay(const char *path, const cli_input *input, cli_volume 
                        .no_sandbox = input->no_sandbox,
                        .gaps = input->gaps,
                        .tilt = input->tilt,
+                       .skip_damaged = input->skip_damaged,
                        .allow_external = input->allow_external,
                        .step_chosen = true};
     plain.component.given = true; /* all are read */

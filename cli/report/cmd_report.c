@@ -20,6 +20,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 enum { DEFAULT_DIMS = 96, MAX_DIMS = 1024 };
@@ -118,6 +119,16 @@ static cw_status check_dims(cli_report_args *args, cw_error *err)
     return CW_OK;
 }
 
+/* Fails for names of another kind of file, such as .pdf. */
+static cw_status check_page_name(const char *path, cw_error *err)
+{
+    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+    if (!dot || strcasecmp(dot, ".html") == 0 || strcasecmp(dot, ".htm") == 0)
+        return CW_OK;
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "%s: a report is a page of HTML: give it a name that ends in .html", path);
+}
+
 static cw_status check_outputs(const cli_report_args *args, cw_error *err)
 {
     const char *const files[] = {args->output, args->json, args->csv};
@@ -132,6 +143,8 @@ static cw_status check_outputs(const cli_report_args *args, cw_error *err)
             if (files[before] && strcmp(files[before], "-") != 0)
                 st = cli_check_apart(files[before], files[n], err);
     }
+    if (st == CW_OK)
+        st = check_page_name(args->output, err);
     if (st == CW_OK && args->json && args->csv && strcmp(args->json, "-") == 0 &&
         strcmp(args->csv, "-") == 0)
         return cwi_fail(err, CW_ERR_ARGUMENT,

@@ -48,6 +48,12 @@ static void put_intro(FILE *out, const cli_mesh_study *m)
         "<p>No level was stated. This one is the median of the field at %s vertices, half "
         "of which have values from %.6g to %.6g: the narrower that is, the surer is the level.",
         cli_count(m->fit_count - m->fit_outside), m->fit_low, m->fit_high);
+    if (m->is_unsure)
+        fputs(
+            " They differ by more than rounding: <strong>the mesh was made from filtered voxels, "
+            "smoothed or simplified.</strong> The same filters (--denoise, --resample) find its "
+            "level; --iso states it.",
+            out);
     if (m->fit_outside)
         fprintf(out, " Another %s are outside of the volume.", cli_count(m->fit_outside));
     fputs("</p>\n", out);

@@ -71,18 +71,21 @@ cw_status cli_report_mesh(cli_report_run *s, cw_error *err)
     if (st == CW_OK)
         cli_result("%s: %s against %s at %s%s: 99 %% within %.3g mm; %.1f s\n", args->output,
                    m->mesh.path, s->volume.path, cli_number_text(m->study.iso),
-                   m->is_fitted ? " (fitted)" : "", m->to_field.p99_mm, m->study.seconds);
+                   m->is_unsure   ? " (fitted, unsure)"
+                   : m->is_fitted ? " (fitted)"
+                                  : "",
+                   m->to_field.p99_mm, m->study.seconds);
     return st;
 }
 
 cw_status cli_report_find_labels(cli_report_run *s, const char **labels, cw_error *err)
 {
     const cli_report_args *args = s->args;
-    char what[CLI_MESSAGE];
+    char what[CLI_LABELS_TEXT];
     *labels = args->labels;
     if (args->labels || args->iso.given || s->study.is_field || s->volume.streams)
         return CW_OK;
-    cw_status st = cli_looks_like_labels(&s->volume, what, sizeof what, err);
+    cw_status st = cli_looks_like_labels(&s->volume, what, err);
     if (st == CW_OK && *what) {
         cli_note_volume(&s->volume, "%s", what);
         *labels = "all";

@@ -13,16 +13,12 @@ const char *cli_compression_name(cw_compression kind)
     return names[kind];
 }
 
-cw_status cli_check_compress(const cli_compress *c, bool voxels, cw_error *err)
+cw_status cli_check_compress(const cli_compress *c, cw_error *err)
 {
     if (c->effort > 10)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--effort %zu: 1 to 10 was expected", c->effort);
     if (c->bits > 30)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--bits %zu: 1 to 30 was expected", c->bits);
-    if (c->tolerance.given && !(c->tolerance.value > 0))
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--tolerance: it must be above 0");
-    if (c->tolerance.unit == CLI_VOXELS && !voxels)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--tolerance: a mesh has no voxels");
     return CW_OK;
 }
 

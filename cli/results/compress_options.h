@@ -12,9 +12,10 @@ typedef struct cli_compress {
     size_t bits, effort; /* effort: Draco's, from 1 to 10; 0: its own */
 } cli_compress;
 
-/* Rows for a command whose struct has the field `compress`. */
+/* Rows for a command whose struct has the field `compress`. length: the kind of a tolerance, as voxels
+ * are known or not */
 #define CLI_COMPRESS_ROW(args, field) offsetof(args, compress) + offsetof(cli_compress, field)
-#define CLI_COMPRESS_OPTIONS(args)                                                             \
+#define CLI_COMPRESS_OPTIONS(args, length)                                                     \
     CLI_HEADED("Compression"),                                                                 \
         {"compress",                                                                           \
          0,                                                                                    \
@@ -25,7 +26,7 @@ typedef struct cli_compress {
          CLI_COMPRESS_ROW(args, kind)},                                                        \
         {"tolerance",                                                                          \
          0,                                                                                    \
-         CLI_LENGTH,                                                                           \
+         length,                                                                               \
          "L",                                                                                  \
          "Largest movement of a vertex by compression, such as 0.05mm (0.005% of the box's "   \
          "diagonal)",                                                                          \
@@ -34,8 +35,8 @@ typedef struct cli_compress {
          0,                                                                                    \
          CLI_COUNT,                                                                            \
          "N",                                                                                  \
-         "Bits of a coordinate in place of a tolerance: up to 16, meshopt 24, draco 30 (by "   \
-         "tolerance)",                                                                         \
+         "Bits of a coordinate in place of a tolerance: up to 16, meshopt 24, draco 30, "      \
+         "which takes 4 GiB (by tolerance)",                                                   \
          CLI_COMPRESS_ROW(args, bits)},                                                        \
     {                                                                                          \
         "effort", 0, CLI_COUNT, "N", "Effort of Draco, from 1 (fast) to 10 (small) (7)",       \
@@ -48,9 +49,8 @@ typedef struct cli_compress {
         "bits", CLI_EXCLUDES, "tolerance"                                                      \
     }
 
-/* Refuses values out of range. voxels: whether a tolerance may be told in them. */
-CW_NODISCARD cw_status cli_check_compress(const cli_compress *compress, bool voxels,
-                                          cw_error *err);
+/* Refuses values out of range. */
+CW_NODISCARD cw_status cli_check_compress(const cli_compress *compress, cw_error *err);
 
 /* Fills in what a mesh is to be written with. */
 void cli_set_compress(const cli_compress *compress, const cw_part *parts, size_t count,

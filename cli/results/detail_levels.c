@@ -12,6 +12,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 /* Names in the report, which outlives the levels. */
 static const char *const level_names[CLI_MAX_COUNTS] = {
@@ -100,6 +101,15 @@ static cw_status deliver_together(cli_detail_levels *d, const char *path, cw_err
     return st;
 }
 
+/* Removes the files of levels before the one that failed: they are no whole result. */
+static void remove_written(const cli_detail_levels *d, size_t count)
+{
+    for (size_t n = 0; n < count; n++) {
+        unlink(d->files->path[n]);
+        d->report->made[n].written = false;
+    }
+}
+
 cw_status cli_make_detail_levels(cli_detail_levels *d, cw_error *err)
 {
     const size_t count = d->lod->count;
@@ -109,8 +119,11 @@ cw_status cli_make_detail_levels(cli_detail_levels *d, cw_error *err)
         made->name = n < count ? level_names[n] : "all";
         st = n < count ? make_level(d, n, made, err)
                        : deliver_together(d, d->files->path[n], err);
-        if (st != CW_OK)
+        if (st != CW_OK) {
             made->error = *err;
+            if (!made->written) /* else it is whole, but less exact than asked for */
+                remove_written(d, n);
+        }
     }
     return st;
 }

@@ -10,15 +10,6 @@
 
 cw_status cli_check_printer(const cli_printer *printer, cw_error *err)
 {
-    const struct {
-        const char *option;
-        const cli_length *length;
-    } rows[] = {
-        {"--wall", &printer->wall}, {"--gap", &printer->gap}, {"--layer", &printer->layer}};
-    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
-        if (rows[n].length->given && rows[n].length->unit != CLI_MM)
-            return cwi_fail(err, CW_ERR_ARGUMENT, "%s is a length of the print: give mm",
-                            rows[n].option);
     const double lean = printer->overhang.value;
     if (printer->overhang.given && !(lean > 0 && lean < 90))
         return cwi_fail(err, CW_ERR_ARGUMENT,

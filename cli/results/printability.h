@@ -15,15 +15,16 @@ typedef struct cli_printer {
 
 /* Their rows; `type` has a cli_printer as `printer`. */
 #define CLI_PRINTER_OPTIONS(type)                                                              \
-    CLI_HEADED("Printing, with --profile print"), {"wall",                                     \
-                                                   0,                                          \
-                                                   CLI_LENGTH,                                 \
-                                                   "L",                                        \
-                                                   "Walls below this are thin (0.8mm)",        \
-                                                   offsetof(type, printer.wall)},              \
+    CLI_HEADED("Printing, with --profile print"),                                              \
+        {"wall",                                                                               \
+         0,                                                                                    \
+         CLI_PRINT_LENGTH,                                                                     \
+         "L",                                                                                  \
+         "Walls below this are thin (0.8mm)",                                                  \
+         offsetof(type, printer.wall)},                                                        \
         {"gap",                                                                                \
          0,                                                                                    \
-         CLI_LENGTH,                                                                           \
+         CLI_PRINT_LENGTH,                                                                     \
          "L",                                                                                  \
          "Gaps below this are narrow (0.4mm)",                                                 \
          offsetof(type, printer.gap)},                                                         \
@@ -35,7 +36,7 @@ typedef struct cli_printer {
          offsetof(type, printer.overhang)},                                                    \
         {"layer",                                                                              \
          0,                                                                                    \
-         CLI_LENGTH,                                                                           \
+         CLI_PRINT_LENGTH,                                                                     \
          "L",                                                                                  \
          "Height of a layer (0.2mm)",                                                          \
          offsetof(type, printer.layer)},                                                       \
@@ -57,7 +58,7 @@ typedef struct cli_printed {
     size_t count;
 } cli_printed;
 
-/* Fails for lengths in voxels or shares, and for values out of range. */
+/* Fails for values out of range. */
 CW_NODISCARD cw_status cli_check_printer(const cli_printer *printer, cw_error *err);
 
 /* Returns the limits. */

@@ -117,7 +117,9 @@ static void put_mesh(cli_json *j, const cli_made *made)
     cli_json_int(j, "euler", q->euler);
     cli_json_count(j, "open_edges", q->open_edges);
     cli_json_count(j, "nonmanifold_edges", q->nonmanifold_edges);
+    cli_json_count(j, "contact_edges", q->contact_edges);
     cli_json_count(j, "nonmanifold_vertices", q->nonmanifold_vertices);
+    cli_json_count(j, "contact_vertices", q->contact_vertices);
     cli_json_count(j, "misoriented_edges", q->misoriented_edges);
     cli_json_count(j, "border_loops", q->border_loops);
     cli_json_int(j, "genus", q->genus);
@@ -125,6 +127,7 @@ static void put_mesh(cli_json *j, const cli_made *made)
         cli_json_count(j, "cavities", q->cavities);
         cli_json_count(j, "inside_out", q->inside_out);
         cli_json_count(j, "nested", q->nested);
+        cli_json_count(j, "one_sided", q->one_sided);
         cli_json_count(j, "facing_wrong", q->to_turn);
     }
     if (made->crossings)

@@ -41,17 +41,38 @@ void cli_smoothed_text(const cw_smooth_facts *f, char text[CLI_SMOOTHED_TEXT])
 
 /* --- components ----------------------------------------------------------------------------- */
 
-void cli_tell_components(const char *name, double least_mm3, const cw_drop_counts *c)
+/* Writes how many of the components left out were cavities, and that a cut follows. */
+static const char *cavities_text(const cw_drop_counts *c, bool is_cut)
+{
+    static char text[96];
+    size_t used = 0;
+    *text = '\0';
+    if (c->cavities)
+        used = (size_t)snprintf(text, sizeof text, "; %s cavit%s among them filled",
+                                cli_count(c->cavities), c->cavities == 1 ? "y" : "ies");
+    if (is_cut)
+        snprintf(text + used, sizeof text - used, "; counted before the cut");
+    return text;
+}
+
+void cli_tell_components(const char *name, double least_mm3, const cw_drop_counts *c,
+                         bool is_cut)
 {
     cli_say("%s: %s component%s kept, the smallest of %.6g mm3; %s dropped (< %.6g mm3), the "
-            "largest of %.6g mm3; %s triangles fewer",
+            "largest of %.6g mm3%s; %s triangles fewer",
             name, cli_count(c->kept), c->kept == 1 ? "" : "s", c->least_kept_mm3,
-            cli_count(c->dropped), least_mm3, c->largest_mm3, cli_count(c->triangles));
+            cli_count(c->dropped), least_mm3, c->largest_mm3, cavities_text(c, is_cut),
+            cli_count(c->triangles));
+}
+
+static bool is_cut(const cw_pipeline_facts *f)
+{
+    return f->ran >> CW_STAGE_CUT & 1;
 }
 
 static void tell_dropped(const cli_staged *s)
 {
-    cli_tell_components(s->subject, s->least_mm3, &s->facts->small);
+    cli_tell_components(s->subject, s->least_mm3, &s->facts->small, is_cut(s->facts));
 }
 
 static void put_dropped(cli_json *j, const cw_pipeline_facts *f, double least_mm3)
@@ -59,6 +80,7 @@ static void put_dropped(cli_json *j, const cw_pipeline_facts *f, double least_mm
     cli_json_open(j, "components_dropped", '{');
     cli_json_number(j, "least_mm3", least_mm3);
     cli_json_count(j, "dropped", f->small.dropped);
+    cli_json_count(j, "dropped_cavities", f->small.cavities);
     cli_json_count(j, "kept", f->small.kept);
     cli_json_count(j, "dropped_triangles", f->small.triangles);
     cli_json_number(j, "dropped_mm3", f->small.dropped_mm3);
@@ -71,9 +93,9 @@ static void tell_largest(const cli_staged *s)
 {
     const cw_drop_counts *c = &s->facts->others;
     cli_say("%s: %s of %s components kept, of %.6g mm3 or more; the largest of the others "
-            "has %.6g mm3",
+            "has %.6g mm3%s",
             s->subject, cli_count(c->kept), cli_count(c->kept + c->dropped), c->least_kept_mm3,
-            c->largest_mm3);
+            c->largest_mm3, cavities_text(c, is_cut(s->facts)));
 }
 
 static void tell_voids(const cli_staged *s)

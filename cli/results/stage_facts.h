@@ -23,8 +23,9 @@ void cli_tell_stages(const cli_staged *surface);
 /* Writes what they did: a key for each stage that has one. */
 void cli_json_stages(cli_json *j, const cw_pipeline_facts *facts, double least_mm3);
 
-/* Says how many components were kept and dropped. */
-void cli_tell_components(const char *name, double least_mm3, const cw_drop_counts *counts);
+/* Says how many components were kept and dropped. is_cut: a cut followed, which may part them. */
+void cli_tell_components(const char *name, double least_mm3, const cw_drop_counts *counts,
+                         bool is_cut);
 
 enum { CLI_SMOOTHED_TEXT = 256 };
 

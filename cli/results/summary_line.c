@@ -15,13 +15,13 @@ static void print_count(size_t count, const char *noun)
 }
 
 /* " (2 non-manifold edges, 1 non-manifold vertex)", without the zero counts. */
-static void print_defects(size_t edges, const char *edge, size_t vertices)
+static void print_defects(const char *kind, size_t edges, size_t vertices)
 {
     cli_result(" (");
     if (edges)
-        print_count(edges, edge);
+        cli_result("%s %s edge%s", cli_count(edges), kind, edges == 1 ? "" : "s");
     if (vertices)
-        cli_result("%s%s non-manifold %s", edges ? ", " : "", cli_count(vertices),
+        cli_result("%s%s %s %s", edges ? ", " : "", cli_count(vertices), kind,
                    vertices == 1 ? "vertex" : "vertices");
     cli_result(")");
 }
@@ -40,16 +40,21 @@ static void print_findings(const cw_quality *q)
 {
     cli_result("%s", q->open_edges ? "open" : "closed");
     if (q->open_edges)
-        print_defects(q->open_edges, "open edge", 0);
-    if (q->nonmanifold_edges || q->nonmanifold_vertices) {
+        print_defects("open", q->open_edges, 0);
+    const size_t edges = q->nonmanifold_edges - q->contact_edges,
+                 vertices = q->nonmanifold_vertices - q->contact_vertices;
+    if (edges || vertices) {
         cli_result(", not manifold");
-        print_defects(q->nonmanifold_edges, "non-manifold edge", q->nonmanifold_vertices);
+        print_defects("non-manifold", edges, vertices);
+    } else if (q->contact_edges || q->contact_vertices) {
+        cli_result(", manifold but for contacts");
+        print_defects("contact", q->contact_edges, q->contact_vertices);
     } else {
         cli_result(", manifold");
     }
     if (q->misoriented_edges) {
         cli_result(", not consistently oriented");
-        print_defects(q->misoriented_edges, "misoriented edge", 0);
+        print_defects("misoriented", q->misoriented_edges, 0);
     }
     if (q->degenerate) {
         cli_result(", ");

@@ -59,6 +59,8 @@ void cli_add_quality(cw_quality *sum, const cw_quality *q)
                                     COUNT(open_edges),
                                     COUNT(border_loops),
                                     COUNT(nonmanifold_edges),
+                                    COUNT(contact_edges),
+                                    COUNT(contact_vertices),
                                     COUNT(misoriented_edges),
                                     COUNT(nonmanifold_vertices),
                                     COUNT(duplicates),
@@ -67,6 +69,7 @@ void cli_add_quality(cw_quality *sum, const cw_quality *q)
                                     COUNT(inside_out),
                                     COUNT(nested),
                                     COUNT(open_inward),
+                                    COUNT(one_sided),
                                     COUNT(to_turn),
                                     COUNT(needles),
                                     COUNT(caps)};
@@ -94,6 +97,7 @@ static cw_status find_facing(const cw_mesh *mesh, int threads, cw_quality *q, cw
     q->cavities = welded.cavities;
     q->inside_out = welded.inside_out;
     q->nested = welded.nested;
+    q->one_sided = welded.one_sided;
     q->to_turn = welded.to_turn;
     return CW_OK;
 }
@@ -203,9 +207,10 @@ static cw_status end_writing(const writing *w, cw_error *err)
     }
     made->written = true;
     made->local = w->desc.local;
-    made->compression = w->desc.compression     ? w->desc.compression
-                        : made->compressed.bits ? CW_COMPRESS_DRACO /* a format of that alone */
-                                                : CW_COMPRESS_NONE;
+    made->compression = w->desc.compression ? w->desc.compression
+                        : made->compressed.bytes
+                            ? CW_COMPRESS_DRACO /* a format of that alone */
+                            : CW_COMPRESS_NONE;
     memcpy(made->origin, l->parts->mesh->origin, sizeof made->origin);
     made->dropped = w->how->report_dropped ? w->loss.dropped : 0;
     warn_of_loss(w->report, made, l, &w->loss);

@@ -77,7 +77,7 @@ static cw_status write_bookmarks(const view *v, char **text, cw_error *err)
     FILE *out = cwi_text_open(text, &size);
     for (size_t n = 0; out && n < v->film.bookmark_count; n++) {
         fprintf(out, "%.9g go-to ", (double)n * v->film.seconds);
-        view_put_word(out, v->film.bookmarks[n].name);
+        cli_put_word(out, v->film.bookmarks[n].name);
         fputc('\n', out);
     }
     return out && cwi_text_close(out, text) ? CW_OK : cwi_fail_memory(err);

@@ -1,5 +1,6 @@
 /* Commands that move the camera, keep views of the scene by name, and make films of them. */
 #define _GNU_SOURCE /* strdup */
+#include "cli/framework/console.h"
 #include "cli/session/verbs.h"
 
 #include "core/base/atomic_file.h"
@@ -200,11 +201,11 @@ void view_put_bookmarks(const view *v, FILE *out, const char *end)
             continue;
         view_join_lines(text);
         fputs("bookmark ", out);
-        view_put_word(out, b->name);
+        cli_put_word(out, b->name);
         fputc(' ', out);
-        view_put_word(out, text);
+        cli_put_word(out, text);
         fputc(' ', out);
-        view_put_word(out, b->look);
+        cli_put_word(out, b->look);
         fputs(end, out);
     }
 }
@@ -243,7 +244,7 @@ static cw_status run_save_film(view *v, int count, char **args, cw_error *err)
             continue;
         view_join_lines(camera);
         fprintf(out, "%.6g camera ", (double)n * v->film.seconds);
-        view_put_word(out, camera);
+        cli_put_word(out, camera);
         fprintf(out, "%s%s\n", *b->look ? "; " : "", b->look);
     }
     if (!cwi_text_close(out, &text))

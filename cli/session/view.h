@@ -135,9 +135,9 @@ typedef struct view_surface {
 
 /* Labels of a label map, or of an overlay. */
 typedef struct view_label_map {
-    char note[160];       /* why the volume is taken for a label map; "": it is not */
-    cli_label_look look;  /* as it is drawn; labels: NULL for none */
-    cli_label_look found; /* that the scene is of */
+    char note[CLI_LABELS_TEXT]; /* why the volume is taken for a label map; "": it is not */
+    cli_label_look look;        /* as it is drawn; labels: NULL for none */
+    cli_label_look found;       /* that the scene is of */
     cli_label_scene scene;
     bool has_scene; /* and its surfaces: */
     bool has_mesh;
@@ -369,7 +369,6 @@ void view_run_queued(view *v);
 
 /* view_words.c */
 const char *view_keep_text(view *v, const char *text);
-void view_put_word(FILE *out, const char *word); /* in quotes where it needs them */
 void view_join_lines(char *text);
 /* To be run after this frame; errors become messages. */
 void view_ask(view *v, const char *format, ...) CW_PRINTF(2, 3);

@@ -35,8 +35,7 @@ bool view_shows_surfaces(const view *v)
 
 cw_status view_look_for_labels(view *v, cw_error *err)
 {
-    return cli_looks_like_labels(&v->document.source.volume, v->document.labels.note,
-                                 sizeof v->document.labels.note, err);
+    return cli_looks_like_labels(&v->document.source.volume, v->document.labels.note, err);
 }
 
 void view_forget_labels(view *v)
@@ -54,6 +53,12 @@ void view_forget_labels(view *v)
 static bool is_same_text(const char *a, const char *b)
 {
     return a == b || (a && b && strcmp(a, b) == 0);
+}
+
+static bool is_same_length(const cli_length *a, const cli_length *b)
+{
+    return a->given == b->given && a->is_word == b->is_word && a->value == b->value &&
+           a->unit == b->unit;
 }
 
 /* Gives the volume its own names back, before others are looked for. */
@@ -79,10 +84,10 @@ static cw_status need_overlay(view *v, cw_error *err)
     view_forget_labels(v);
     if (!path)
         return CW_OK;
-    char what[160] = "";
+    char what[CLI_LABELS_TEXT] = "";
     cw_status st = cli_read_overlay(path, &v->state.args.input, &overlay->volume, err);
     if (st == CW_OK)
-        st = cli_looks_like_labels(&overlay->volume, what, sizeof what, err);
+        st = cli_looks_like_labels(&overlay->volume, what, err);
     overlay->looks_like_labels = *what;
     overlay->path = st == CW_OK ? path : NULL;
     return st;
@@ -129,7 +134,7 @@ cw_status view_need_labels(view *v, cw_error *err)
     const bool has_names = is_same_text(a->names, b->names);
     if (st != CW_OK ||
         (labels->has_scene && has_names && is_same_text(a->labels, b->labels) &&
-         is_same_text(a->opacity, b->opacity) && is_same_text(a->smooth, b->smooth)))
+         is_same_text(a->opacity, b->opacity) && is_same_length(&a->smooth, &b->smooth)))
         return st;
     if (!has_names)
         give_names_back(v);

@@ -1,4 +1,5 @@
 /* Writes a session as a script or as a command line. */
+#include "cli/framework/console.h"
 #include "cli/session/view.h"
 #include "cli/session/view_measure.h"
 
@@ -21,7 +22,7 @@ static void put_setting(FILE *out, bool shell, const char *name, const char *val
 {
     fprintf(out, shell ? " --%s%s" : "%s%s", name, value ? " " : "");
     if (value)
-        view_put_word(out, value);
+        cli_put_word(out, value);
     if (!shell)
         fputc('\n', out);
 }
@@ -113,7 +114,7 @@ static void put_files(const view *v, FILE *out)
 {
     for (size_t n = 0; n < v->document.file_count; n++) {
         fputc(' ', out);
-        view_put_word(out, v->document.files[n]);
+        cli_put_word(out, v->document.files[n]);
     }
 }
 

@@ -22,23 +22,6 @@ const char *view_keep_text(view *v, const char *text)
     return words[v->script.word_count] ? words[v->script.word_count++] : NULL;
 }
 
-/* In quotes where a shell, or a script of ours, would part or read it otherwise. */
-void view_put_word(FILE *out, const char *word)
-{
-    if (*word && strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
-                              "-_=+:,./@%") == strlen(word)) {
-        fputs(word, out);
-        return;
-    }
-    fputc('\'', out);
-    for (const char *c = word; *c; c++)
-        if (*c == '\'')
-            fputs("'\\''", out);
-        else
-            fputc(*c, out);
-    fputc('\'', out);
-}
-
 /* Joins the lines of a JSON text to one line, which is one word. */
 void view_join_lines(char *text)
 {

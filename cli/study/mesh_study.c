@@ -22,6 +22,9 @@
 
 /* Vertices whose values are looked at to fit a level. */
 enum { FIT_VERTICES = 50000 };
+/* Values at the vertices of an extracted surface differ by rounding, less than this fraction of the
+ * range of all values. */
+static const double SURE_FRACTION = 1e-3;
 
 static int compare_values(const void *a, const void *b)
 {
@@ -41,6 +44,23 @@ static size_t sample_field(const cli_mesh_study *m, size_t every, double *values
         count += isfinite(values[count]);
     }
     return count;
+}
+
+/* Says when the vertices are at various values, as filters of voxels or of the mesh leave them. */
+static cw_status judge_fit(cli_mesh_study *m, cw_error *err)
+{
+    cw_statistics s;
+    cw_status st = cw_volume_statistics(&m->study.volume->view, 0, m->study.threads, &s, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, m->study.volume->path);
+    m->is_unsure = m->fit_high - m->fit_low > SURE_FRACTION * (s.max - s.min);
+    if (m->is_unsure)
+        cli_say(
+            "%s: the level %s is unsure: half of the vertices have values from %.6g to %.6g. "
+            "A mesh of filtered voxels needs the filters here, too (--denoise, --resample); "
+            "--iso V states the level of a smoothed or simplified one",
+            m->mesh.path, cli_number_text(m->study.iso), m->fit_low, m->fit_high);
+    return CW_OK;
 }
 
 cw_status cli_fit_level(cli_mesh_study *m, cw_error *err)
@@ -63,7 +83,7 @@ cw_status cli_fit_level(cli_mesh_study *m, cw_error *err)
     }
     cwi_free(values);
     return m->is_fitted
-               ? CW_OK
+               ? judge_fit(m, err)
                : cwi_fail(
                      err, CW_ERR_ARGUMENT,
                      "%s: no level can be fitted: of %zu vertices that were looked at only "
@@ -216,6 +236,7 @@ static void json_fit(cli_json *j, const cli_mesh_study *m)
     cli_json_count(j, "outside", m->fit_outside);
     cli_json_number(j, "quarter_below", m->fit_low);
     cli_json_number(j, "quarter_above", m->fit_high);
+    cli_json_bool(j, "unsure", m->is_unsure);
     cli_json_close(j, '}');
 }
 

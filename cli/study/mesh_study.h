@@ -14,6 +14,7 @@ typedef struct cli_mesh_study {
     bool is_fitted;                /* the level is the median of the field at vertices: */
     size_t fit_count, fit_outside; /* vertices looked at; of those outside the volume */
     double fit_low, fit_high;      /* a quarter of the values is below, a quarter above */
+    bool is_unsure;                /* these are too far apart for a surface of this volume */
     bool is_open; /* it has open edges, so the surface is left open where the volume ends */
     cw_quality quality;
     cw_distance to_field, from_field;
@@ -23,7 +24,8 @@ typedef struct cli_mesh_study {
 } cli_mesh_study;
 
 /* Finds the level whose surface is nearest to the vertices of study.full: the median of the
- * field's values there, rounded as printed.
+ * field's values there, rounded as printed. Warns if the values differ: then filters of the voxels
+ * or of the mesh made another surface.
  * Returns  CW_ERR_ARGUMENT  fewer than half of the vertices are in the volume;
  *          CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cli_fit_level(cli_mesh_study *study, cw_error *err);

@@ -1,33 +1,13 @@
 /* The command that does what a point does, to be copied: of the whole object, also where a part
  * of it was tried to save time. */
 #include "cli/study/point_command.h"
+#include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "cli/results/compress_options.h"
 #include "core/base/text.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-static bool is_plain(const char *word)
-{
-    return *word && word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                      "0123456789._/,:=+@%-")] == '\0';
-}
-
-void cli_put_word(FILE *out, const char *word)
-{
-    if (is_plain(word)) {
-        fputs(word, out);
-        return;
-    }
-    fputc('\'', out);
-    for (; *word; word++)
-        if (*word == '\'')
-            fputs("'\\''", out);
-        else
-            fputc(*word, out);
-    fputc('\'', out);
-}
 
 static void put_extract(FILE *out, const cli_study *s, const cli_tried *t, const char *output)
 {

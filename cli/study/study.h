@@ -271,9 +271,6 @@ const cli_gap *cli_main_gap(const cli_study *study, const cli_point *point);
 /* Whether the time is up, Ctrl-C aside. */
 bool cli_time_is_up(const cli_study *study);
 
-/* A word as a shell takes it, in quotes where needed. */
-void cli_put_word(FILE *out, const char *word);
-
 /* Advice: a setting for each purpose, by the measurements. */
 typedef struct cli_advice {
     const char *purpose;    /* "For print" */

@@ -5,6 +5,7 @@
 
 #include <errno.h>
 #include <locale.h>
+#include <math.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -120,6 +121,64 @@ bool cwi_next_item(const char **text, char *separator, char item[CWI_ITEM_BYTES]
     item[length] = '\0';
     *text = end + (found != '\0');
     *separator = found;
+    return true;
+}
+
+/* Returns the length of the unit that a text begins with, and what it is in mm; 0: none. */
+static size_t match_unit(const char *text, double *mm)
+{
+    static const struct {
+        const char *name;
+        double mm;
+    } units[] = {{"mm", 1},   {"um", 1e-3}, {"nm", 1e-6}, {"cm", 10},
+                 {"m", 1000}, {"in", 25.4}, {"ft", 304.8}};
+    for (size_t u = 0; u < sizeof units / sizeof *units; u++)
+        if (strncmp(text, units[u].name, strlen(units[u].name)) == 0) {
+            *mm = units[u].mm;
+            return strlen(units[u].name);
+        }
+    return 0;
+}
+
+bool cwi_parse_length(const char **text, double *mm, bool *unit)
+{
+    const char *end = *text;
+    double factor = 1;
+    if (!cwi_parse_double(&end, mm))
+        return false;
+    const size_t length = match_unit(end, &factor);
+    *unit = length > 0;
+    *mm *= factor;
+    if (!isfinite(*mm))
+        return false;
+    *text = end + length;
+    return true;
+}
+
+bool cwi_parse_lengths(const char *text, double mm[3])
+{
+    char item[CWI_ITEM_BYTES], separator = 0;
+    bool has_unit[3];
+    double last = 0; /* mm of the last unit */
+    int count = 0;
+    do {
+        const char *at = item;
+        if (count == 3 || !cwi_next_item(&text, &separator, item) ||
+            !cwi_parse_double(&at, &mm[count]))
+            return false;
+        const size_t length = match_unit(at, &last);
+        has_unit[count] = length > 0;
+        mm[count] *= has_unit[count] ? last : 1;
+        if (at[length] != '\0' || !isfinite(mm[count]) || !(mm[count] > 0))
+            return false;
+        count++;
+    } while (separator);
+    if (*text != '\0' || count == 2 || !has_unit[count - 1])
+        return false;
+    for (int a = 0; a < count; a++)
+        mm[a] *= has_unit[a] ? 1 : last;
+    for (int a = count; a < 3; a++)
+        mm[a] = mm[0];
     return true;
 }
 

@@ -25,6 +25,15 @@ bool cwi_parse_int(const char **text, int64_t *value);
 enum { CWI_ITEM_BYTES = 64 };
 bool cwi_next_item(const char **text, char *separator, char item[CWI_ITEM_BYTES]);
 
+/* Reads a length such as 0.5mm or 12um, in millimetres, and moves *text behind it; *unit: whether it
+ * has one of mm, um, nm, cm, m, in and ft. Without one the number stands as it is. Returns false, as
+ * cwi_parse_double() does, when there is no number, or one that is not finite. */
+bool cwi_parse_length(const char **text, double *mm, bool *unit);
+
+/* Reads a text of three lengths by comma or x, each above 0, or of one that stands for all. A unit counts for
+ * those before it that have none: 1x1x2mm. Returns false for other texts, and without a unit at the end. */
+bool cwi_parse_lengths(const char *text, double mm[3]);
+
 /* Makes printf and friends of this thread write points; pass the first result to the second
  * call. */
 void *cwi_locale_c(void);

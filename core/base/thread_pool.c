@@ -103,6 +103,15 @@ static void *serve_jobs(void *of)
     return NULL;
 }
 
+/* Stacks of threads are as large as the limit of the first one's, which may be too low. */
+static void ask_for_stack(pthread_attr_t *attributes)
+{
+    enum { LEAST_BYTES = 1 << 20 };
+    size_t bytes;
+    if (pthread_attr_getstacksize(attributes, &bytes) == 0 && bytes < LEAST_BYTES)
+        pthread_attr_setstacksize(attributes, LEAST_BYTES);
+}
+
 bool cwi_start_thread(pthread_t *thread, void *(*run)(void *context), void *context)
 {
     static const int faults[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS, SIGPROF};
@@ -112,7 +121,13 @@ bool cwi_start_thread(pthread_t *thread, void *(*run)(void *context), void *cont
         sigdelset(&blocked, faults[n]);
     if (pthread_sigmask(SIG_SETMASK, &blocked, &before) != 0)
         return false;
-    const bool is_started = pthread_create(thread, NULL, run, context) == 0;
+    pthread_attr_t attributes;
+    bool is_started = pthread_attr_init(&attributes) == 0;
+    if (is_started) {
+        ask_for_stack(&attributes);
+        is_started = pthread_create(thread, &attributes, run, context) == 0;
+        pthread_attr_destroy(&attributes);
+    }
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     return is_started;
 }

@@ -285,7 +285,7 @@ static cw_status set_base(work *k, cw_error *err)
 static size_t choose_threads(const work *k, const cw_filter_desc *d)
 {
     const size_t *dim = k->in->dim, threads = (size_t)cwi_threads(d->threads);
-    const size_t result = dim[0] * dim[1] * dim[2] * cw_type_size(k->in->type);
+    const size_t result = dim[0] * dim[1] * dim[2] * cw_type_size(cw_filter_type(k->in));
     const size_t left = d->max_bytes > result ? d->max_bytes - result : 0;
     const size_t fit = d->max_bytes ? left / bench_bytes(k) : threads;
     return fit < 1 ? 1 : fit < threads ? fit : threads;
@@ -301,7 +301,7 @@ static cw_status run_steps(work *k, const cw_filter_desc *d, cw_error *err)
                                           : chunk_layers;
     const size_t chunks = (dim[2] + k->chunk - 1) / k->chunk;
     const size_t bytes = bench_bytes(k) * (threads < chunks ? threads : chunks);
-    cw_status st = cwi_filter_result(k->in, dim, d, bytes, k->out, err);
+    cw_status st = cwi_filter_result(k->in, cw_filter_type(k->in), dim, d, bytes, k->out, err);
     if (st != CW_OK)
         return st;
     k->has_gaps = cwi_filter_has_gaps(k->in, d->threads);

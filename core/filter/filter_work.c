@@ -15,22 +15,43 @@ cw_status cwi_filter_input(const cw_volume *volume, const char *what, cw_volume 
     return st == CW_OK ? cwi_volume_expect_even(in, what, err) : st;
 }
 
-cw_status cwi_filter_result(const cw_volume *in, const size_t dim[3],
-                            const cw_filter_desc *desc, size_t work, cw_volume *out,
-                            cw_error *err)
+cw_type cw_filter_type(const cw_volume *volume)
+{
+    if (!volume || volume->known & CW_KNOWN_LABELS)
+        return volume ? volume->type : CW_F32;
+    const bool needs_double = cw_type_size(volume->type) > 2 && volume->type != CW_F32;
+    return needs_double ? CW_F64 : CW_F32;
+}
+
+cw_status cwi_filter_check_size(cw_type type, const size_t dim[3], const cw_filter_desc *desc,
+                                size_t work, cw_error *err)
 {
     const size_t limit = desc->max_bytes;
-    size_t bytes = cw_type_size(in->type);
+    size_t bytes = cw_type_size(type);
     bool fits = true;
     for (int a = 0; a < 3; a++)
         fits = fits && cwi_size_mul(bytes, dim[a], &bytes);
     fits = fits && cwi_size_add(bytes, work, &bytes);
-    if (limit && (!fits || bytes > limit))
-        return cwi_fail(
-            err, CW_ERR_LIMIT,
-            "%zu x %zu x %zu voxels and the work on them exceed the limit of %zu bytes", dim[0],
-            dim[1], dim[2], limit);
-    cw_status st = cw_volume_alloc(out, in->type, dim, 1, 1, err);
+    if (!limit || (fits && bytes <= limit))
+        return CW_OK;
+    if (!fits)
+        return cwi_fail(err, CW_ERR_LIMIT,
+                        "%zu x %zu x %zu voxels and the work on them exceed the limit of %zu "
+                        "bytes",
+                        dim[0], dim[1], dim[2], limit);
+    return cwi_fail(err, CW_ERR_LIMIT,
+                    "%zu x %zu x %zu voxels of %s and the work on them take %zu bytes, which "
+                    "exceed the limit of %zu bytes",
+                    dim[0], dim[1], dim[2], cw_type_name(type), bytes, limit);
+}
+
+cw_status cwi_filter_result(const cw_volume *in, cw_type type, const size_t dim[3],
+                            const cw_filter_desc *desc, size_t work, cw_volume *out,
+                            cw_error *err)
+{
+    cw_status st = cwi_filter_check_size(type, dim, desc, work, err);
+    if (st == CW_OK)
+        st = cw_volume_alloc(out, type, dim, 1, 1, err);
     if (st != CW_OK)
         return st;
     for (int a = 0; a < 3; a++)
@@ -114,9 +135,11 @@ void cwi_filter_store(const cw_volume *out, void *voxel, double value)
         value = fmin(fmax(rint(value), low), high);
         if (out->has_nodata && value == out->nodata)
             value += (exact >= value && value < high) || value <= low ? 1 : -1;
-    } else if (out->has_nodata && value == out->nodata) {
-        value = out->type == CW_F32 ? (double)nextafterf((float)value, INFINITY)
-                                    : nextafter(value, INFINITY);
+    } else if (out->has_nodata) {
+        value = out->type == CW_F32 ? (double)(float)value : value;
+        if (value == out->nodata)
+            value = out->type == CW_F32 ? (double)nextafterf((float)value, INFINITY)
+                                        : nextafter(value, INFINITY);
     }
     cwi_voxel_put(out->type, voxel, value);
 }

@@ -13,10 +13,18 @@ enum { CWI_GAUSS_MAX = 64, CWI_GAUSS_REACH = 4 };
 CW_NODISCARD cw_status cwi_filter_input(const cw_volume *volume, const char *what,
                                         cw_volume *in, cw_error *err);
 
-/* Makes the result, with the frame and the kind of values of the input.
+/* Fails if a result of this type and these dimensions is too large, before anything is allocated.
  * work     bytes for the work on it
  * Returns  CW_ERR_LIMIT when both exceed desc->max_bytes */
-CW_NODISCARD cw_status cwi_filter_result(const cw_volume *in, const size_t dim[3],
+CW_NODISCARD cw_status cwi_filter_check_size(cw_type type, const size_t dim[3],
+                                             const cw_filter_desc *desc, size_t work,
+                                             cw_error *err);
+
+/* Makes the result, with the frame and the scaling of the input.
+ * type     of its voxels: the input's, or cw_filter_type() of it where values become fractions
+ * work     bytes for the work on it
+ * Returns  CW_ERR_LIMIT when both exceed desc->max_bytes */
+CW_NODISCARD cw_status cwi_filter_result(const cw_volume *in, cw_type type, const size_t dim[3],
                                          const cw_filter_desc *desc, size_t work,
                                          cw_volume *out, cw_error *err);
 

@@ -140,7 +140,7 @@ cw_status cwi_change_inside(const cw_volume *in, const cw_inside *inside,
     work k = {.in = in, .out = out, .inside = inside, .selected = selected};
     k.mirror = (inside->level - in->intercept) / in->slope;
     set_limits(&k);
-    cw_status st = cwi_filter_result(in, in->dim, desc, bytes, out, err);
+    cw_status st = cwi_filter_result(in, in->type, in->dim, desc, bytes, out, err);
     if (st != CW_OK)
         return st;
     st = cwi_parallel_for(in->dim[2], in->dim[0] * in->dim[1], desc->threads, &desc->progress,

@@ -107,7 +107,7 @@ cw_status cw_volume_median(const cw_volume *volume, size_t radius, const cw_filt
                         MAX_RADIUS);
     cw_status st = cwi_filter_input(volume, "a median", &in, err);
     if (st == CW_OK)
-        st = cwi_filter_result(&in, in.dim, d, 0, out, err);
+        st = cwi_filter_result(&in, in.type, in.dim, d, 0, out, err);
     if (st != CW_OK)
         return st;
     if (radius > 1 || cwi_filter_has_gaps(&in, d->threads))

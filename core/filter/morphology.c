@@ -31,12 +31,10 @@ static cw_status change_volume(const cw_volume *volume, const double radius[3], 
         st = cwi_filter_input(volume, value ? "closing" : "opening", &in, err);
     if (st != CW_OK)
         return st;
-    const size_t count = in.dim[0] * in.dim[1] * in.dim[2], voxel = cw_type_size(in.type);
-    if (d->max_bytes && d->max_bytes / (voxel + 2) < count)
-        return cwi_fail(err, CW_ERR_LIMIT,
-                        "%zu x %zu x %zu voxels and the work on them exceed the limit of %zu "
-                        "bytes",
-                        in.dim[0], in.dim[1], in.dim[2], d->max_bytes);
+    const size_t count = in.dim[0] * in.dim[1] * in.dim[2];
+    st = cwi_filter_check_size(in.type, in.dim, d, 2 * count, err);
+    if (st != CW_OK)
+        return st;
     uint8_t *bytes = cwi_alloc_array(count, 2), *work = bytes ? bytes + count : NULL;
     if (!bytes)
         return cwi_fail_memory(err);

@@ -8,6 +8,9 @@
 
 static const double MAX_SAMPLES = 1e9; /* samples along an axis */
 
+/* The rounding of a number of steps. */
+static const double SLACK = 1e-6;
+
 static double linear_kernel(double x, double width)
 {
     return fmax(0, 1 - fabs(x) / width);
@@ -68,21 +71,45 @@ static cw_status plan_axis(const cw_volume *in, int a, double spacing, axis *out
         return cwi_fail(err, CW_ERR_LIMIT,
                         "spacing_mm[%d] of %g makes more than %g samples along an axis", a,
                         spacing, MAX_SAMPLES);
+    if (last && steps < 1 - SLACK)
+        return cwi_fail(
+            err, CW_ERR_ARGUMENT,
+            "spacing_mm[%d] of %g is more than the %g mm between the first and the last "
+            "voxel: at least two samples were expected",
+            a, spacing, (double)last * mm[a]);
     *out = (axis){.first = at ? at[0] : 0,
                   .step = step,
                   .wider = fmax(1, step / old),
-                  .count = (size_t)(steps + 1e-6) + 1};
+                  .count = (size_t)(steps + SLACK) + 1};
     return CW_OK;
+}
+
+/* Returns how many samples of the input an output sample is made of. */
+static size_t count_taps(const axis *x, const kernel *k, size_t samples)
+{
+    const double most = floor(2 * k->reach * x->wider) + 1;
+    return most < (double)samples ? (size_t)most : samples;
+}
+
+/* Fails if the result is too large, before anything is allocated. */
+static cw_status check_size(const cw_volume *in, const axis x[3], const kernel *k,
+                            const cw_filter_desc *desc, cw_error *err)
+{
+    size_t dim[3], weights = 0;
+    for (int a = 0; a < 3; a++) {
+        dim[a] = x[a].count;
+        weights += x[a].count *
+                   (count_taps(x + a, k, in->dim[a]) * sizeof(double) + 2 * sizeof(size_t));
+    }
+    return cwi_filter_check_size(cw_filter_type(in), dim, desc, weights, err);
 }
 
 static cw_status set_weights(cwi_axis_weights *w, const cw_volume *in, int a, const axis *x,
                              const kernel *k, cw_error *err)
 {
     const double reach = k->reach * x->wider;
-    const double max_taps = floor(2 * reach) + 1;
-    const size_t samples = in->dim[a],
-                 taps = max_taps < (double)samples ? (size_t)max_taps : samples;
-    cw_status st = cwi_axis_weights_init(w, x->count, taps, err);
+    const size_t samples = in->dim[a];
+    cw_status st = cwi_axis_weights_init(w, x->count, count_taps(x, k, samples), err);
     for (size_t n = 0; n < x->count && st == CW_OK; n++) {
         const double at = x->first + (double)n * x->step;
         const double position = samples < 2 ? 0 : cwi_coordinate_index(in, a, at);
@@ -133,6 +160,8 @@ cw_status cw_volume_resample(const cw_volume *volume, const double spacing[3], c
         st = check_desc(&in, spacing, k, err);
     for (int a = 0; a < 3 && st == CW_OK; a++)
         st = plan_axis(&in, a, spacing[a], x + a, err);
+    if (st == CW_OK)
+        st = check_size(&in, x, kernels + k, d, err);
     for (int a = 0; a < 3 && st == CW_OK; a++)
         st = set_weights(w + a, &in, a, x + a, kernels + k, err);
     if (st == CW_OK)

@@ -228,7 +228,7 @@ cw_status cwi_separable_filter(const cw_volume *in, const cwi_axis_weights w[3],
     const size_t threads = (size_t)cwi_threads(desc->threads),
                  bytes = bench_doubles(&k, sizes) * sizeof(double) *
                          (threads < chunks ? threads : chunks);
-    cw_status st = cwi_filter_result(in, dim, desc, bytes, out, err);
+    cw_status st = cwi_filter_result(in, cw_filter_type(in), dim, desc, bytes, out, err);
     if (st == CW_OK)
         st = cwi_parallel_for(chunks, CHUNK * dim[0] * dim[1], desc->threads, &desc->progress,
                               step, filter_chunk, &k, err);

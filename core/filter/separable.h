@@ -24,7 +24,7 @@ void cwi_axis_weights_free(cwi_axis_weights *w);
 void cwi_axis_weights_set(cwi_axis_weights *w, size_t n, double position, size_t samples,
                           double reach, double (*kernel)(double x, double width), double width);
 
-/* Filters a volume. out is as large as the weights say, and has the input's kind of values.
+/* Filters a volume. out is as large as the weights say, of cw_filter_type().
  * in       as of cwi_filter_input()
  * Returns  CW_ERR_LIMIT, CW_ERR_NO_MEMORY, CW_ERR_CANCELLED; then *out is zeroed */
 CW_NODISCARD cw_status cwi_separable_filter(const cw_volume *in, const cwi_axis_weights w[3],

@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/base/thread_pool.h"
 #include "core/filter/filter_work.h"
 #include "core/volume/volume.h"
 
@@ -16,24 +17,36 @@ enum { BLOCK_BYTES = 32 << 20, MAX_SLICES = 64 };
 struct cw_slice_filter {
     cw_slice_source source;
     cw_slice_filter_desc desc;
-    size_t ahead, slice_bytes;
-    char *raw; /* slices of the source from raw_first on, packed */
+    cw_type type; /* of filtered slices */
+    size_t ahead, raw_bytes,
+        slice_bytes; /* bytes of a slice of the source; of a filtered one */
+    char *raw;       /* slices of the source from raw_first on, packed */
     size_t raw_first, raw_count, capacity;
     cw_volume made;                /* filtered slices: */
     size_t made_first, made_count; /* of the volume; made has others before them: */
     size_t made_skip;
 };
 
+/* Returns the shape of packed slices of a type, of one component and step. */
+static cw_volume packed_shape(const cw_slice_filter *f, cw_type type)
+{
+    cw_volume shape = f->source.shape;
+    shape.type = type;
+    shape.stride[0] = (ptrdiff_t)cw_type_size(type);
+    shape.stride[1] = shape.stride[0] * (ptrdiff_t)shape.dim[0];
+    shape.stride[2] = shape.stride[1] * (ptrdiff_t)shape.dim[1];
+    shape.components = shape.steps = 1;
+    shape.component_stride = shape.step_stride = 0;
+    shape.owned = shape.owned_grid = NULL;
+    return shape;
+}
+
 /* The slab as a volume of its own. Its place in the world does not matter to the filter. */
 static cw_volume slab_of(const cw_slice_filter *f)
 {
-    cw_volume slab = f->source.shape;
+    cw_volume slab = packed_shape(f, f->source.shape.type);
     slab.data = f->raw;
     slab.dim[2] = f->raw_count;
-    memset(slab.stride, 0, sizeof slab.stride);
-    slab.components = slab.steps = 1;
-    slab.component_stride = slab.step_stride = 0;
-    slab.owned = slab.owned_grid = NULL;
     return slab;
 }
 
@@ -61,12 +74,12 @@ static cw_status make_block(cw_slice_filter *f, size_t first, cw_error *err)
         have = from;
     }
     const size_t gone = from - f->raw_first;
-    memmove(f->raw, f->raw + gone * f->slice_bytes, (f->raw_count - gone) * f->slice_bytes);
+    memmove(f->raw, f->raw + gone * f->raw_bytes, (f->raw_count - gone) * f->raw_bytes);
     f->raw_first = from;
     f->raw_count = have - from;
     f->made_count = 0;
     cw_status st = to > have ? f->source.read(f->source.user, have, to - have,
-                                              f->raw + f->raw_count * f->slice_bytes, err)
+                                              f->raw + f->raw_count * f->raw_bytes, err)
                              : CW_OK;
     if (st != CW_OK) {
         f->raw_count = 0;
@@ -125,6 +138,44 @@ static cw_status check_shape(const cw_volume *shape, cw_error *err)
     return CW_OK;
 }
 
+/* Sets how many slices are filtered together, and their bytes. */
+static void plan_slices(cw_slice_filter *f)
+{
+    const size_t *dim = f->source.shape.dim;
+    f->ahead = f->desc.kind == CW_SLICE_GAUSS
+                   ? (size_t)ceil(CWI_GAUSS_REACH * f->desc.sigma_voxels[2])
+                   : f->desc.radius;
+    f->type = f->desc.kind == CW_SLICE_GAUSS ? cw_filter_type(&f->source.shape)
+                                             : f->source.shape.type;
+    f->raw_bytes = dim[0] * dim[1] * cw_type_size(f->source.shape.type);
+    f->slice_bytes = dim[0] * dim[1] * cw_type_size(f->type);
+    if (!f->desc.slices)
+        f->desc.slices = BLOCK_BYTES / f->slice_bytes < MAX_SLICES
+                             ? BLOCK_BYTES / f->slice_bytes
+                             : MAX_SLICES;
+    /* as many as the filter looks at, so that its window is never cut but at the ends */
+    if (f->desc.slices <= f->ahead)
+        f->desc.slices = f->ahead + 1;
+    f->capacity = f->desc.slices + 2 * f->ahead;
+    f->capacity = f->capacity < dim[2] ? f->capacity : dim[2];
+}
+
+size_t cw_slice_filter_bytes(const cw_volume *shape, const cw_slice_filter_desc *desc)
+{
+    enum { LAYERS = 32 }; /* a thread's part of a Gaussian */
+    if (!shape || !desc || check_desc(desc, NULL) != CW_OK || check_shape(shape, NULL) != CW_OK)
+        return 0;
+    cw_slice_filter f = {.source = {.shape = *shape}, .desc = *desc};
+    plan_slices(&f);
+    const bool has_gaps = shape->has_nodata || shape->type == CW_F32 || shape->type == CW_F64;
+    const size_t window = 2 * f.ahead + 1, threads = (size_t)cwi_threads(desc->threads),
+                 parts = (f.capacity + LAYERS - 1) / LAYERS,
+                 rings = desc->kind == CW_SLICE_GAUSS ? (parts < threads ? parts : threads) : 0,
+                 ring = (window < f.capacity ? window : f.capacity) + 1;
+    return f.capacity * (f.raw_bytes + f.slice_bytes) +
+           rings * ring * (has_gaps ? 2 : 1) * shape->dim[0] * shape->dim[1] * sizeof(double);
+}
+
 cw_status cw_slice_filter_new(const cw_slice_source *source, const cw_slice_filter_desc *desc,
                               cw_slice_filter **out, cw_error *err)
 {
@@ -139,23 +190,10 @@ cw_status cw_slice_filter_new(const cw_slice_source *source, const cw_slice_filt
     cw_slice_filter *f = cwi_alloc_zeroed(1, sizeof *f);
     if (!f)
         return cwi_fail_memory(err);
-    const size_t *dim = source->shape.dim;
     f->source = *source;
     f->desc = *desc;
-    f->ahead = desc->kind == CW_SLICE_GAUSS
-                   ? (size_t)ceil(CWI_GAUSS_REACH * desc->sigma_voxels[2])
-                   : desc->radius;
-    f->slice_bytes = dim[0] * dim[1] * cw_type_size(source->shape.type);
-    if (!f->desc.slices)
-        f->desc.slices = BLOCK_BYTES / f->slice_bytes < MAX_SLICES
-                             ? BLOCK_BYTES / f->slice_bytes
-                             : MAX_SLICES;
-    /* as many as the filter looks at, so that its window is never cut but at the ends */
-    if (f->desc.slices <= f->ahead)
-        f->desc.slices = f->ahead + 1;
-    f->capacity = f->desc.slices + 2 * f->ahead;
-    f->capacity = f->capacity < dim[2] ? f->capacity : dim[2];
-    f->raw = cwi_alloc_large(f->capacity, f->slice_bytes);
+    plan_slices(f);
+    f->raw = cwi_alloc_large(f->capacity, f->raw_bytes);
     if (!f->raw) {
         cwi_free(f);
         return cwi_fail_memory(err);
@@ -163,10 +201,9 @@ cw_status cw_slice_filter_new(const cw_slice_source *source, const cw_slice_filt
     *out = f;
     return CW_OK;
 }
-
 cw_slice_source cw_slice_filter_source(cw_slice_filter *filter)
 {
-    return filter ? (cw_slice_source){.shape = filter->source.shape,
+    return filter ? (cw_slice_source){.shape = packed_shape(filter, filter->type),
                                       .read = read_filtered,
                                       .user = filter}
                   : (cw_slice_source){0};

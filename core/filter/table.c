@@ -263,7 +263,8 @@ static cw_status make_result(work *k, double *removed_mm3, cw_error *err)
 {
     const size_t *dim = k->in->dim;
     size_t removed = 0;
-    cw_status st = cwi_filter_result(k->in, dim, k->desc, 3 * count_voxels(k), k->out, err);
+    cw_status st =
+        cwi_filter_result(k->in, k->in->type, dim, k->desc, 3 * count_voxels(k), k->out, err);
     if (st == CW_OK)
         st = cwi_parallel_for(dim[2], dim[0] * dim[1], k->desc->threads, &k->desc->progress,
                               "removing the table", store_slice, k, err);

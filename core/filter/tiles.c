@@ -178,7 +178,7 @@ cw_status cwi_filter_tiles(const cw_volume *in, const cwi_tile_filter *filter,
     }
     const size_t threads = (size_t)cwi_threads(desc->threads);
     const size_t bytes = bench_bytes(filter) * (threads < count ? threads : count);
-    cw_status st = cwi_filter_result(in, in->dim, desc, bytes, out, err);
+    cw_status st = cwi_filter_result(in, cw_filter_type(in), in->dim, desc, bytes, out, err);
     if (st != CW_OK)
         return st;
     k.has_gaps = cwi_filter_has_gaps(in, desc->threads);

@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 
+#include <float.h>
 #include <string.h>
 
 typedef struct keyed {
@@ -76,6 +77,12 @@ static uint64_t find_rank(const hilbert *h, const uint32_t cell[3])
     return rank;
 }
 
+/* Returns twice the middle of a box along an axis; of a box that is endless, of its part within all numbers. */
+static double find_middle(const float box[6], int a)
+{
+    return fmax((double)box[a], (double)-FLT_MAX) + fmin((double)box[a + 3], (double)FLT_MAX);
+}
+
 /* Sets each key: the rank of the box's middle on the curve through a cube of 2^16 cells an
  * edge. */
 static void set_keys(const float (*boxes)[6], size_t count, keyed *keys)
@@ -85,16 +92,15 @@ static void set_keys(const float (*boxes)[6], size_t count, keyed *keys)
     make_curve(&curve);
     for (size_t n = 0; n < count; n++)
         for (int a = 0; a < 3; a++)
-            low[a] = fmin(low[a], (double)boxes[n][a] + (double)boxes[n][a + 3]);
+            low[a] = fmin(low[a], find_middle(boxes[n], a));
     for (size_t n = 0; n < count; n++)
         for (int a = 0; a < 3; a++)
-            high = fmax(high, (double)boxes[n][a] + (double)boxes[n][a + 3] - low[a]);
+            high = fmax(high, find_middle(boxes[n], a) - low[a]);
     const double scale = high > 0 ? ((1 << KEY_BITS) - 1) / high : 0;
     for (size_t n = 0; n < count; n++) {
         uint32_t cell[3];
         for (int a = 0; a < 3; a++) {
-            const double x = (double)boxes[n][a] + (double)boxes[n][a + 3] - low[a];
-            cell[a] = (uint32_t)(x * scale);
+            cell[a] = (uint32_t)((find_middle(boxes[n], a) - low[a]) * scale);
         }
         keys[n] = (keyed){find_rank(&curve, cell), (uint32_t)n};
     }

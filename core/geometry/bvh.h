@@ -35,7 +35,7 @@ typedef struct cwi_boxes {
 } cwi_boxes;
 
 /* Sorts boxes into a tree. They are not needed afterwards.
- * boxes    count x 6: low x, y, z, high x, y, z; finite; fewer than 2^32
+ * boxes    count x 6: low x, y, z, high x, y, z; no NaN; lows below infinity, highs above -infinity; fewer than 2^32
  * Returns  CW_ERR_NO_MEMORY; free with cwi_boxes_free()
  * Cost     28 bytes an item, 32 more meanwhile
  * Source   the curve's ranks [Hamilton2006] */

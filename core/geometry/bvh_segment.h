@@ -8,12 +8,13 @@
 typedef struct cwi_boxes_segment {
     float from[3], inverse[3]; /* of the vector, kept finite */
     float slack;               /* boxes are widened by it */
+    float reach;               /* the fraction of it that counts; a visitor may shorten it */
 } cwi_boxes_segment;
 
 static inline cwi_boxes_segment cwi_boxes_segment_of(const double from[3],
                                                      const double vector[3], float slack)
 {
-    cwi_boxes_segment s = {.slack = slack};
+    cwi_boxes_segment s = {.slack = slack, .reach = 1};
     for (int a = 0; a < 3; a++) {
         s.from[a] = (float)from[a];
         s.inverse[a] = fabs(vector[a]) > 1e-30 ? (float)(1 / vector[a])
@@ -27,7 +28,7 @@ static inline unsigned cwi_boxes_crossed(const cwi_boxes_node *n, const cwi_boxe
 {
     unsigned crossed = 0;
     for (int c = 0; c < CWI_WIDTH; c += 4) {
-        cwi_lanes enter = {0, 0, 0, 0}, leave = {1, 1, 1, 1};
+        cwi_lanes enter = {0, 0, 0, 0}, leave = {s->reach, s->reach, s->reach, s->reach};
         for (int a = 0; a < 3; a++) {
             const bool rises = s->inverse[a] > 0;
             cwi_lanes near, far;

@@ -5,7 +5,14 @@
 
 #include "core/geometry/vec3.h"
 
+#include <stdbool.h>
 #include <stdint.h>
+
+/* Returns true if a triangle names a vertex twice. v: its three vertices */
+static inline bool cwi_triangle_is_collapsed(const uint32_t *v)
+{
+    return v[0] == v[1] || v[1] == v[2] || v[2] == v[0];
+}
 
 /* Computes (b - a) x (c - a): along the normal, and as long as twice the area. */
 static inline void cwi_triangle_normal(const double a[3], const double b[3], const double c[3],

@@ -25,6 +25,13 @@ static inline double cwi_length(const double v[3])
 }
 
 /* Computes a - b. The output of this and the next three may be one of the inputs. */
+/* Returns the axis along which a vector is longest; of equal ones the first. */
+static inline int cwi_longest_axis(const double v[3])
+{
+    const int first = fabs(v[0]) >= fabs(v[1]) ? 0 : 1;
+    return fabs(v[first]) >= fabs(v[2]) ? first : 2;
+}
+
 static inline void cwi_sub(const double a[3], const double b[3], double out[3])
 {
     for (int k = 0; k < 3; k++)

@@ -219,6 +219,7 @@ static uint32_t judge_component(cwi_component_front *f, uint32_t slot)
     cwi_volume_sum sum = 2 * c->volume;
     for (int a = 0; a < 3; a++)
         sum -= c->area[a] * ((int64_t)c->low[a] + c->high[a]);
+    const bool is_cavity = cwi_volume_is_cavity(sum, c->area);
     sum = cwi_volume_abs(sum);
     release_slot(f, slot);
     const double size = cwi_volume_mm3(&f->unit, sum);
@@ -230,6 +231,7 @@ static uint32_t judge_component(cwi_component_front *f, uint32_t slot)
     f->dropped += sum;
     n->largest_mm3 = fmax(n->largest_mm3, size);
     n->dropped++;
+    n->cavities += is_cavity;
     return CWI_LINK_DROPPED;
 }
 

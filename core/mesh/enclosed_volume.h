@@ -4,6 +4,7 @@
 #define CORE_MESH_ENCLOSED_VOLUME_H
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 /* Coordinates are rounded to whole units of at most 2^28. A triangle then adds less than 2^91 to a
@@ -59,6 +60,14 @@ static inline cwi_volume_sum cwi_volume_dot(const int64_t a[3], const int64_t b[
 static inline cwi_volume_sum cwi_volume_abs(cwi_volume_sum x)
 {
     return x < 0 ? -x : x;
+}
+
+/* Returns true for a closed component whose triangles face inward.
+ * volume  any multiple of it
+ * area    any multiple of the area vector */
+static inline bool cwi_volume_is_cavity(cwi_volume_sum volume, const cwi_volume_sum area[3])
+{
+    return volume < 0 && area[0] == 0 && area[1] == 0 && area[2] == 0;
 }
 
 /* Converts twelve times a volume to cubic millimetres. */

@@ -83,6 +83,7 @@ typedef struct components {
     float (*boxes)[6];    /* low, high */
     cwi_volume_sum *sums; /* twelve times the volume; NULL: diagonals are the measure */
     cwi_volume_unit unit; /* of the sums */
+    bool *cavity;         /* a closed set that faces inward; NULL like sums */
     bool *dropped, *met;
 } components;
 
@@ -91,6 +92,7 @@ static void free_components(components *c)
     cwi_free(c->set);
     cwi_free(c->boxes);
     cwi_free(c->sums);
+    cwi_free(c->cavity);
     cwi_free(c->dropped);
     cwi_free(c->met);
 }
@@ -150,9 +152,13 @@ static float find_largest(const cw_mesh *m)
  * middle may be half a unit. */
 static cw_status measure_volumes(const cw_mesh *m, components *c, cw_error *err)
 {
+    cwi_volume_sum(*areas)[3] = cwi_alloc_zeroed(c->count, sizeof *areas);
     c->sums = cwi_alloc_zeroed(c->count, sizeof *c->sums);
-    if (!c->sums)
+    c->cavity = cwi_alloc_zeroed(c->count, sizeof *c->cavity);
+    if (!areas || !c->sums || !c->cavity) {
+        cwi_free(areas);
         return cwi_fail_memory(err);
+    }
     c->unit = cwi_volume_unit_for(find_largest(m));
     for (size_t t = 0; t < m->triangle_count; t++) {
         const uint32_t set = c->set[m->triangles[3 * t]];
@@ -166,9 +172,14 @@ static cw_status measure_volumes(const cw_mesh *m, components *c, cw_error *err)
                        cwi_volume_coordinate(c->unit.scale, box[3 + a]);
         cwi_volume_area(corner[0], corner[1], corner[2], area);
         c->sums[set] += cwi_volume_dot(twice, area);
+        for (size_t a = 0; a < 3; a++)
+            areas[set][a] += area[a];
     }
-    for (size_t n = 0; n < c->count; n++)
+    for (size_t n = 0; n < c->count; n++) {
+        c->cavity[n] = cwi_volume_is_cavity(c->sums[n], areas[n]);
         c->sums[n] = cwi_volume_abs(c->sums[n]);
+    }
+    cwi_free(areas);
     return CW_OK;
 }
 
@@ -208,6 +219,7 @@ static void drop_components(cw_mesh *mesh, components *c, cw_drop_counts *counts
         const bool keep = !c->dropped[set];
         if (!c->met[set]) {
             count_component(counts, measure_set(c, set), keep);
+            counts->cavities += !keep && c->cavity && c->cavity[set];
             dropped += keep || !c->sums ? 0 : c->sums[set];
         }
         c->met[set] = true;

@@ -12,12 +12,15 @@ enum { MAX_VOXELS = 1 << 22, MAX_CHANGES = 3 * (MAX_VOXELS / 10), FEWEST_LABELS 
 /* Limits of detection. Equal pairs are at least 0.8 in label maps, and at most 0.25 in scans
  * and photographs. */
 static const double EQUAL_FRACTION = 0.7, SKIPPING_FRACTION = 0.2;
+/* Scans have more values than FEW, and a smaller fraction of equal pairs than SCATTERED_FRACTION. */
+static const double SCATTERED_FRACTION = 0.5;
+enum { FEW = 32 };
 
 /* Whole numbers from LOW to HIGH are tallied in a table; all others are listed and sorted. */
 enum { LOW = INT16_MIN, HIGH = UINT16_MAX, SMALL_VALUES = HIGH - LOW + 1 };
 
-/* Voxels of a row that are converted at a time. */
-enum { PIECE = 256 };
+/* PIECE: voxels of a row that are converted at a time. MAX_LISTED: runs of the last list. */
+enum { PIECE = 256, MAX_LISTED = 4096 };
 
 /* Neighbours along x that are equal, one of each pair. */
 typedef struct run {
@@ -43,6 +46,7 @@ typedef struct census {
     bool is_starved;
     bool is_whole;  /* all values are whole numbers */
     bool must_list; /* values are needed even when some are not whole numbers */
+    bool is_last;   /* it is decided, and the values of all voxels are listed */
 } census;
 
 static bool is_small(double value)
@@ -55,9 +59,35 @@ static tally *tally_of(const census *c, double value)
     return c->small + ((int)value - LOW);
 }
 
-/* Lists a run; capacities are powers of two. */
+static int compare_runs(const void *a, const void *b)
+{
+    const double x = ((const run *)a)->value, y = ((const run *)b)->value;
+    return (x > y) - (x < y);
+}
+
+/* Joins the runs of each value, in rising order. */
+static void join_runs(census *c)
+{
+    size_t values = 0;
+    if (c->listed)
+        qsort(c->runs, c->listed, sizeof *c->runs, compare_runs);
+    for (size_t n = 0; n < c->listed; n++) {
+        if (values > 0 && c->runs[values - 1].value == c->runs[n].value)
+            c->runs[values - 1].pairs += c->runs[n].pairs;
+        else
+            c->runs[values++] = c->runs[n];
+    }
+    c->listed = values;
+}
+
+/* Lists a run; capacities are powers of two. Of the last list only the lowest values are kept:
+ * one more than are listed for the caller. */
 static void list_run(census *c, double value, size_t pairs)
 {
+    if (c->is_last && c->listed == MAX_LISTED) {
+        join_runs(c);
+        c->listed = c->listed > CW_LABELS_MAX ? CW_LABELS_MAX + 1 : c->listed;
+    }
     if (!(c->listed & (c->listed - 1))) {
         run *grown = cwi_realloc_array(c->runs, c->listed ? 2 * c->listed : 1, sizeof *c->runs);
         c->is_starved = c->is_starved || !grown;
@@ -71,7 +101,7 @@ static void add_run(census *c, double value, size_t pairs)
 {
     if (c->is_ranked)
         return;
-    c->too_many = c->too_many || c->run_count == MAX_CHANGES;
+    c->too_many = !c->is_last && (c->too_many || c->run_count == MAX_CHANGES);
     if (c->too_many)
         return;
     c->run_count++;
@@ -83,12 +113,6 @@ static void add_run(census *c, double value, size_t pairs)
     }
     c->is_whole = c->is_whole && value == floor(value);
     list_run(c, value, pairs);
-}
-
-static int compare_runs(const void *a, const void *b)
-{
-    const double x = ((const run *)a)->value, y = ((const run *)b)->value;
-    return (x > y) - (x < y);
 }
 
 static size_t rank_of(const census *c, double value)
@@ -131,7 +155,7 @@ static void load_piece(const cw_volume *v, size_t i, size_t j, size_t k, size_t 
 /* Whether further rows can matter. */
 static bool goes_on(const census *c)
 {
-    return !c->too_many && !c->is_starved && (c->is_whole || c->must_list);
+    return !c->is_starved && (c->is_last || (!c->too_many && (c->is_whole || c->must_list)));
 }
 
 /* Adds a row. Voxels without a value end a run, and are in no pair. */
@@ -160,12 +184,12 @@ static void count_row(const cw_volume *v, size_t j, size_t k, census *c)
         add_run(c, last, pairs);
 }
 
-/* Goes through at most MAX_VOXELS voxels, in rows spread evenly. */
+/* Goes through at most MAX_VOXELS voxels, in rows spread evenly; the last time through all. */
 static void count_rows(const cw_volume *v, census *c)
 {
     const size_t rows = v->dim[1] * v->dim[2], per_row = v->dim[0];
     const size_t max = MAX_VOXELS / per_row ? MAX_VOXELS / per_row : 1;
-    const size_t by = (rows + max - 1) / max;
+    const size_t by = c->is_last ? 1 : (rows + max - 1) / max;
     for (size_t row = 0; row < rows && goes_on(c); row += by)
         count_row(v, row % v->dim[1], row / v->dim[1], c);
 }
@@ -173,36 +197,46 @@ static void count_rows(const cw_volume *v, census *c)
 /* Joins the runs of each value, in rising order, and ranks the small ones. */
 static void rank_values(census *c)
 {
-    size_t values = 0;
     for (int n = LOW; n <= HIGH && !c->is_starved; n++)
         if (tally_of(c, n)->runs)
             list_run(c, n, tally_of(c, n)->pairs);
     if (c->is_starved || c->listed == 0)
         return;
-    qsort(c->runs, c->listed, sizeof *c->runs, compare_runs);
-    for (size_t n = 0; n < c->listed; n++) {
-        if (values > 0 && c->runs[values - 1].value == c->runs[n].value)
-            c->runs[values - 1].pairs += c->runs[n].pairs;
-        else
-            c->runs[values++] = c->runs[n];
-    }
-    c->listed = values;
-    for (size_t n = 0; n < values; n++)
+    join_runs(c);
+    for (size_t n = 0; n < c->listed; n++)
         if (is_small(c->runs[n].value))
             tally_of(c, c->runs[n].value)->runs = (uint32_t)n;
     c->is_ranked = true;
 }
 
-/* Returns true if neighbours are as in a label map. The value that most equal pairs have is the
- * background, and does not count. */
-static bool is_label_map(const cw_volume *v, census *c)
+/* Returns the number of equal pairs. The value that most of them have is the background, and does
+ * not count. */
+static size_t count_equal(const census *c)
 {
     size_t equal = 0, largest = 0;
     for (size_t n = 0; n < c->listed; n++) {
         equal += c->runs[n].pairs;
         largest = c->runs[n].pairs > largest ? c->runs[n].pairs : largest;
     }
-    equal -= largest;
+    return equal - largest;
+}
+
+/* Returns true if the values are amounts. Where changes were too many, nothing was listed. */
+static bool is_scattered(const census *c)
+{
+    size_t values = c->listed;
+    for (int n = LOW; n <= HIGH && !c->is_ranked; n++)
+        values += tally_of(c, n)->runs > 0;
+    if (values <= FEW || !c->is_whole)
+        return false;
+    const double equal = (double)count_equal(c), apart = (double)c->changes;
+    return c->too_many || equal < SCATTERED_FRACTION * (equal + apart);
+}
+
+/* Returns true if neighbours are as in a label map. */
+static bool is_label_map(const cw_volume *v, census *c)
+{
+    const size_t equal = count_equal(c);
     const double apart = (double)c->changes;
     if (equal == 0 || (double)equal < EQUAL_FRACTION * ((double)equal + apart))
         return false;
@@ -215,6 +249,17 @@ static bool is_found(const cw_volume *v, census *c)
 {
     return !c->too_many && c->is_whole && c->listed >= FEWEST_LABELS &&
            v->slope * c->runs[0].value + v->intercept >= 0 && is_label_map(v, c);
+}
+
+/* Lists the values of all voxels in place of those of the rows that were examined. */
+static void list_values(const cw_volume *v, census *c)
+{
+    memset(c->small, 0, SMALL_VALUES * sizeof *c->small);
+    c->listed = 0;
+    c->is_ranked = false;
+    c->is_last = true;
+    count_rows(v, c);
+    rank_values(c);
 }
 
 cw_status cw_volume_labels(const cw_volume *volume, cw_labels *out, cw_error *err)
@@ -231,13 +276,17 @@ cw_status cw_volume_labels(const cw_volume *volume, cw_labels *out, cw_error *er
     count_rows(&v, &c);
     if (c.must_list || (c.is_whole && !c.too_many))
         rank_values(&c);
+    const bool scattered = !c.is_starved && !c.must_list && is_scattered(&c);
+    const bool found = !c.is_starved && (c.must_list || is_found(&v, &c));
+    if (found)
+        list_values(&v, &c);
     if (c.is_starved)
         st = cwi_fail_memory(err);
-    if (st == CW_OK) {
-        out->found = c.must_list || is_found(&v, &c);
-        out->more = out->found && (c.too_many || c.listed > CW_LABELS_MAX);
-        out->count = !out->found ? 0 : c.listed < CW_LABELS_MAX ? c.listed : CW_LABELS_MAX;
-    }
+    out->scattered = st == CW_OK && scattered;
+    if (st == CW_OK && found)
+        *out = (cw_labels){.found = true,
+                           .more = c.listed > CW_LABELS_MAX,
+                           .count = c.listed < CW_LABELS_MAX ? c.listed : CW_LABELS_MAX};
     for (size_t n = 0; n < out->count; n++)
         out->value[n] = v.slope * c.runs[n].value + v.intercept;
     cwi_free(c.small);

@@ -1,22 +1,29 @@
-/* Hollows a solid: offsets its surface inward by the wall's thickness, and carves drains from
+/* Hollows a solid: offsets its surface inward by the wall's thickness, and drills drains from
  * the cavity outward. */
 #include "core/mesh/mesh_attributes.h"
 #include "core/mesh/mesh_triangle.h"
 #include "extract/level_set/level_set.h"
 
 #include "core/base/memory.h"
-#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/geometry/union_find.h"
 #include "core/geometry/vec3.h"
 #include "core/mesh/mesh.h"
 #include "core/volume/volume.h"
 
+#include <cubewright/boolean.h>
 #include <cubewright/distance.h>
 #include <cubewright/extract.h>
 
 #include <math.h>
 #include <string.h>
+
+/* Corners of a drain's rings, a multiple of 4: sides are 0.1 % of the radius inside of the circle. */
+enum { DRAIN_SIDES = 64 };
+
+/* How often drains are drilled with other corners, and the angle between tries. */
+enum { DRAIN_TRIES = 3 };
+static const double DRAIN_TURN = 0.03;
 
 /* A drain: all points within a radius of a ray. */
 typedef struct ray {
@@ -91,7 +98,10 @@ static cw_status take_surface(hollowing *h, double isovalue, bool normals, cw_me
                                   .threads = h->desc->threads,
                                   .max_bytes = h->desc->max_bytes,
                                   .progress = h->desc->progress};
-    return cw_extract(&h->volume, &desc, out, NULL, err);
+    const cw_status st = cw_extract(&h->volume, &desc, out, NULL, err);
+    if (st == CW_OK)
+        cwi_level_set_round(out, h->mesh->origin);
+    return st;
 }
 
 /* Returns the signed volume under a triangle; the mesh's origin is the tip. */
@@ -103,9 +113,8 @@ static double volume_under(const cw_mesh *m, size_t t)
     return cwi_dot(p[0], normal) / 6;
 }
 
-/* Finds the cavities. A component that faces outward encloses a cavity; one that faces inward
- * is a part of the wall inside a cavity. */
-static cw_status find_cavities(hollowing *h, cw_error *err)
+/* Finds the largest cavity: the component of the inner surface that encloses most. */
+static cw_status find_largest(hollowing *h, cw_error *err)
 {
     const cw_mesh *m = &h->inner;
     h->set = cwi_sets_alloc(m->vertex_count);
@@ -120,24 +129,36 @@ static cw_status find_cavities(hollowing *h, cw_error *err)
         h->size[cwi_sets_find(h->set, m->triangles[3 * t])] += volume_under(m, t);
     for (uint32_t v = 0; v < m->vertex_count; v++) {
         h->set[v] = cwi_sets_find(h->set, v);
-        h->facts.cavities += h->size[v] > 0;
         if (h->size[v] > h->size[h->largest])
             h->largest = v;
     }
-    h->facts.sealed = h->facts.cavities;
     return CW_OK;
 }
 
-/* --- drains ------------------------------------------------------------------------------- */
-
-static double distance_to_ray(const ray *r, const double p[3])
+/* Makes the surfaces of the cavities. Those smaller than a ball as wide as the wall is thick are
+ * filled: they save nothing, and no drain empties them. */
+static cw_status make_cavities(hollowing *h, cw_error *err)
 {
-    double to[3], off[3];
-    cwi_sub(p, r->from, to);
-    const double along = cwi_greater(cwi_dot(to, r->along), 0);
-    cwi_add_scaled(to, -along, r->along, off);
-    return cwi_length(off) - r->radius;
+    const double wall = h->desc->wall_mm;
+    cw_drop_counts dust = {0};
+    cw_status st = take_surface(h, -wall, h->mesh->normals, &h->inner, err);
+    if (st == CW_OK)
+        st = cw_mesh_drop_volumes(&h->inner, CWI_PI / 6 * wall * wall * wall, &dust, err);
+    h->facts.filled = dust.dropped;
+    h->facts.filled_mm3 = dust.dropped_mm3;
+    if (st != CW_OK || h->inner.triangle_count)
+        return st;
+    return dust.dropped
+               ? cwi_fail(err, CW_ERR_EMPTY,
+                          "a wall of %g mm leaves no cavity larger than a ball of that width: "
+                          "%zu smaller ones, %.3g mm3 together, would save nothing",
+                          wall, dust.dropped, dust.dropped_mm3)
+               : cwi_fail(err, CW_ERR_EMPTY,
+                          "a wall of %g mm leaves no cavity: no point is that deep inside",
+                          wall);
 }
+
+/* --- drains ------------------------------------------------------------------------------- */
 
 /* Returns how far a vertex of the largest cavity's surface is along a ray; other vertices do
  * not count. */
@@ -175,67 +196,15 @@ static void place_ray(const hollowing *h, const cw_drain *drain, ray *r)
         }
 }
 
-/* Counts the cavities that stay sealed. A drain opens the cavities whose surface it meets. */
-static void count_sealed(hollowing *h)
-{
-    for (size_t v = 0; v < h->inner.vertex_count; v++) {
-        double p[3], *size = &h->size[h->set[v]], nearest = INFINITY;
-        if (!(*size > 0))
-            continue;
-        cwi_mesh_world(&h->inner, v, p);
-        for (size_t n = 0; n < h->desc->drain_count; n++)
-            nearest = fmin(nearest, distance_to_ray(&h->rays[n], p));
-        if (nearest < 0) {
-            h->facts.sealed--;
-            *size = 0;
-        }
-    }
-}
-
-static float carve_sample(const hollowing *h, double distance, const double p[3])
-{
-    const double limit = h->volume.sparse->background;
-    double solid = fmax(distance, -h->desc->wall_mm - distance);
-    for (size_t n = 0; n < h->desc->drain_count; n++)
-        solid = fmax(solid, -distance_to_ray(&h->rays[n], p));
-    return (float)fmin(solid, limit);
-}
-
-/* Turns the level set into that of the wall. All of a wall is in leaves: tiles are in cavities,
- * as far from it as the background. */
-static void carve_leaf(void *context, size_t leaf)
-{
-    const hollowing *h = context;
-    const cw_volume *v = &h->volume;
-    const cw_sparse *sparse = v->owned_grid;
-    float *voxels = v->owned;
-    for (size_t n = 0; n < CWI_LEAF_VOXELS; n++) {
-        const size_t in[3] = {n % CWI_LEAF, n / CWI_LEAF % CWI_LEAF, n / (CWI_LEAF * CWI_LEAF)};
-        float *voxel = voxels + leaf * CWI_LEAF_VOXELS + n;
-        double p[3];
-        for (int a = 0; a < 3; a++)
-            p[a] = v->affine[a][3] +
-                   v->affine[a][a] * (double)(CWI_LEAF * sparse->leaves[leaf][a] + in[a]);
-        *voxel = carve_sample(h, (double)*voxel, p);
-    }
-}
-
-static void carve_all(hollowing *h)
-{
-    cw_sparse *sparse = h->volume.owned_grid;
-    sparse->tile_count = 0;
-    cwi_parallel_for_all(sparse->leaf_count, CWI_LEAF_VOXELS, h->desc->threads, carve_leaf, h);
-}
-
 static cw_status place_rays(hollowing *h, cw_error *err)
 {
     h->rays = cwi_alloc_array(h->desc->drain_count, sizeof *h->rays);
     if (!h->rays)
         return cwi_fail_memory(err);
-    for (size_t n = 0; n < h->desc->drain_count; n++)
+    const cw_status st = find_largest(h, err);
+    for (size_t n = 0; n < h->desc->drain_count && st == CW_OK; n++)
         place_ray(h, &h->desc->drains[n], &h->rays[n]);
-    count_sealed(h);
-    return CW_OK;
+    return st;
 }
 
 /* --- the result --------------------------------------------------------------------------- */
@@ -256,13 +225,13 @@ static cw_status join_surfaces(const hollowing *h, cw_mesh *out, cw_error *err)
     return CW_OK;
 }
 
-static cw_status measure_wall(hollowing *h, const cw_mesh *outer, cw_error *err)
+static cw_status measure_wall(hollowing *h, cw_error *err)
 {
     const cw_mesh_distance_desc desc = {.threads = h->desc->threads,
                                         .progress = h->desc->progress};
     cw_distance d;
     float *each = cwi_alloc_array(h->inner.vertex_count, sizeof *each);
-    cw_status st = each ? cw_distance_to_mesh(&h->inner, outer, &desc, &d, each, err)
+    cw_status st = each ? cw_distance_to_mesh(&h->inner, h->mesh, &desc, &d, each, err)
                         : cwi_fail_memory(err);
     if (st == CW_OK) {
         h->facts.wall_max_mm = d.max_mm;
@@ -274,23 +243,120 @@ static cw_status measure_wall(hollowing *h, const cw_mesh *outer, cw_error *err)
     return st;
 }
 
-/* Makes the surface with drains; the outer surface is then taken from the level set, too. */
-static cw_status drain_cavity(hollowing *h, cw_mesh *out, cw_error *err)
+/* --- the holes ---------------------------------------------------------------------------- */
+
+/* Returns how far a ray must go to leave the box of the mesh. */
+static double measure_way_out(const hollowing *h, const ray *r)
 {
-    cw_mesh outer = {0};
-    cw_status st = CW_OK;
-    if (!h->desc->no_measure)
-        st = take_surface(h, 0, false, &outer, err);
-    if (st == CW_OK && !h->desc->no_measure)
-        st = measure_wall(h, &outer, err);
-    cw_mesh_free(&outer);
-    if (st == CW_OK)
-        st = place_rays(h, err);
+    double length = 2 * r->radius;
+    for (int a = 0; a < 3; a++)
+        length += fmax((h->before.min[a] - r->from[a]) * r->along[a],
+                       (h->before.max[a] - r->from[a]) * r->along[a]);
+    return length;
+}
+
+/* Sets a vertex of a drain: at a distance along its ray, and at one from it. */
+static void set_drain_point(const ray *r, const double across[2][3], double along,
+                            double radius, double angle, cw_mesh *out, size_t v)
+{
+    for (size_t a = 0; a < 3; a++)
+        out->positions[3 * v + a] =
+            (float)(r->from[a] - out->origin[a] + along * r->along[a] +
+                    radius * (cos(angle) * across[0][a] + sin(angle) * across[1][a]));
+}
+
+/* Makes the solid of a drain: half a ball, and a cylinder from there out of the mesh. The first and the last
+ * vertex are its ends; rings are between them.
+ * turn  angle of the first corner of a ring */
+static cw_status make_drain(const hollowing *h, const ray *r, double turn, cw_mesh *out,
+                            cw_error *err)
+{
+    const size_t rings = DRAIN_SIDES / 4 + 1, last = rings * DRAIN_SIDES + 1;
+    const double end = measure_way_out(h, r);
+    double across[2][3], pick[3] = {0};
+    cw_status st = cwi_mesh_alloc(out, last + 1, 2 * rings * DRAIN_SIDES, false, err);
     if (st != CW_OK)
         return st;
-    carve_all(h);
-    st = take_surface(h, 0, h->mesh->normals, out, err);
-    memcpy(out->affine, h->mesh->affine, sizeof out->affine);
+    memcpy(out->origin, h->mesh->origin, sizeof out->origin);
+    pick[fabs(r->along[0]) < 0.6 ? 0 : 1] = 1;
+    cwi_cross(r->along, pick, across[0]);
+    cwi_normalise(across[0]);
+    cwi_cross(r->along, across[0], across[1]);
+    set_drain_point(r, (const double(*)[3])across, -r->radius, 0, 0, out, 0);
+    set_drain_point(r, (const double(*)[3])across, end, 0, 0, out, last);
+    uint32_t *c = out->triangles;
+    for (size_t n = 0; n < rings * DRAIN_SIDES; n++) {
+        const size_t ring = n / DRAIN_SIDES, side = n % DRAIN_SIDES, up = n + 1,
+                     next = ring * DRAIN_SIDES + (side + 1) % DRAIN_SIDES + 1;
+        const double angle = turn + 2 * CWI_PI * (double)side / DRAIN_SIDES,
+                     rise = CWI_PI / 2 * fmin((double)(ring + 1) / (double)(rings - 1), 1);
+        const bool is_last = ring + 1 == rings;
+        set_drain_point(r, (const double(*)[3])across, is_last ? end : -r->radius * cos(rise),
+                        r->radius * sin(rise), angle, out, up);
+        const size_t under = ring ? up - DRAIN_SIDES : 0,
+                     under_next = ring ? next - DRAIN_SIDES : 0;
+        const size_t made[2][3] = {{under, next, up}, {under, under_next, next}},
+                     lid[3] = {up, next, last};
+        for (size_t k = 0; k < (ring ? 6 : 3); k++)
+            *c++ = (uint32_t)made[k / 3][k % 3];
+        for (size_t k = 0; k < (is_last ? 3 : 0); k++)
+            *c++ = (uint32_t)lid[k];
+    }
+    return CW_OK;
+}
+
+/* Subtracts the drains, turned by an angle, from a solid. */
+static cw_status subtract_drains(const hollowing *h, const cw_mesh *solid, double turn,
+                                 cw_mesh *out, cw_error *err)
+{
+    const size_t count = h->desc->drain_count;
+    const cw_boolean_desc desc = {.op = CW_BOOLEAN_DIFFERENCE,
+                                  .threads = h->desc->threads,
+                                  .progress = h->desc->progress};
+    cw_mesh *drains = cwi_alloc_zeroed(count, sizeof *drains);
+    const cw_mesh **all = cwi_alloc_array(count + 1, sizeof *all);
+    cw_status st = drains && all ? CW_OK : cwi_fail_memory(err);
+    if (st == CW_OK)
+        all[0] = solid;
+    for (size_t n = 0; n < count && st == CW_OK; n++) {
+        all[n + 1] = &drains[n];
+        st = make_drain(h, &h->rays[n], turn, &drains[n], err);
+    }
+    if (st == CW_OK)
+        st = cw_mesh_boolean(all, count + 1, &desc, out, NULL, err);
+    if (st == CW_OK)
+        cw_mesh_attribute_remove(out, "input");
+    for (size_t n = 0; n < count && drains; n++)
+        cw_mesh_free(&drains[n]);
+    cwi_free(drains);
+    cwi_free(all);
+    return st;
+}
+
+/* Measures a result with its cavities, as checks count them. */
+static cw_status measure_cavities(const hollowing *h, const cw_mesh *mesh, cw_quality *q,
+                                  cw_error *err)
+{
+    const cw_quality_desc desc = {
+        .shells = true, .threads = h->desc->threads, .progress = h->desc->progress};
+    return cw_quality_measure(mesh, &desc, q, err);
+}
+
+/* Drills the drains into the mesh with its cavities. Where rounding finds no result, drains whose corners are
+ * elsewhere do. */
+static cw_status drain_cavity(hollowing *h, cw_mesh *out, cw_error *err)
+{
+    cw_mesh solid = {0};
+    cw_quality sealed = {0};
+    cw_status st = place_rays(h, err);
+    if (st == CW_OK)
+        st = join_surfaces(h, &solid, err);
+    if (st == CW_OK)
+        st = measure_cavities(h, &solid, &sealed, err);
+    h->facts.cavities = sealed.cavities;
+    for (int n = 0; n < DRAIN_TRIES && (n ? st == CW_ERR_CHECK : st == CW_OK); n++)
+        st = subtract_drains(h, &solid, n * DRAIN_TURN, out, err);
+    cw_mesh_free(&solid);
     if (st == CW_OK && !out->triangle_count)
         st = cwi_fail(err, CW_ERR_EMPTY, "nothing is left of the wall: the drains take it all");
     return st;
@@ -298,16 +364,16 @@ static cw_status drain_cavity(hollowing *h, cw_mesh *out, cw_error *err)
 
 static cw_status finish_hollow(hollowing *h, cw_mesh *out, cw_error *err)
 {
-    cw_quality after;
-    cw_status st =
-        h->desc->drain_count ? drain_cavity(h, out, err) : join_surfaces(h, out, err);
-    if (st == CW_OK && !h->desc->drain_count && !h->desc->no_measure)
-        st = measure_wall(h, h->mesh, err);
+    cw_quality after = {0};
+    cw_status st = h->desc->no_measure ? CW_OK : measure_wall(h, err);
     if (st == CW_OK)
-        st = cw_quality_measure(out, &(cw_quality_desc){.threads = h->desc->threads}, &after,
-                                err);
+        st = h->desc->drain_count ? drain_cavity(h, out, err) : join_surfaces(h, out, err);
     if (st == CW_OK)
-        h->facts.removed_mm3 = h->before.volume_mm3 - after.volume_mm3;
+        st = measure_cavities(h, out, &after, err);
+    h->facts.sealed = after.cavities;
+    if (!h->desc->drain_count)
+        h->facts.cavities = after.cavities;
+    h->facts.removed_mm3 = h->before.volume_mm3 - after.volume_mm3;
     return st;
 }
 
@@ -338,13 +404,9 @@ cw_status cw_mesh_hollow(const cw_mesh *mesh, const cw_hollow_desc *desc, cw_mes
     if (st == CW_OK)
         st = make_level_set(&h, err);
     if (st == CW_OK)
-        st = take_surface(&h, -desc->wall_mm, mesh->normals, &h.inner, err);
-    if (st == CW_OK && !h.inner.triangle_count)
-        st = cwi_fail(err, CW_ERR_EMPTY,
-                      "a wall of %g mm leaves no cavity: no point is that deep inside",
-                      desc->wall_mm);
+        st = make_cavities(&h, err);
     if (st == CW_OK)
-        st = find_cavities(&h, err);
+        st = cwi_level_set_prove(&h.inner, desc->threads, &desc->progress, err);
     if (st == CW_OK)
         st = finish_hollow(&h, out, err);
     if (facts)

@@ -34,12 +34,14 @@ cw_status cwi_level_set_check(const cw_mesh *mesh, int threads, cw_quality *q, c
         return st;
     if (!q->triangles)
         return cwi_fail(err, CW_ERR_ARGUMENT, "the mesh has no triangles");
-    if (q->open_edges || q->nonmanifold_edges || q->misoriented_edges)
+    const size_t nonmanifold = q->nonmanifold_edges - q->contact_edges;
+    if (q->open_edges || nonmanifold || q->misoriented_edges)
         return cwi_fail(
             err, CW_ERR_ARGUMENT,
             "the mesh does not enclose a solid: %zu open edges, %zu of more than two "
-            "triangles, %zu between triangles that face opposite ways",
-            q->open_edges, q->nonmanifold_edges, q->misoriented_edges);
+            "triangles, %zu between triangles that face opposite ways; see "
+            "cw_mesh_repair()",
+            q->open_edges, nonmanifold, q->misoriented_edges);
     if (!(q->volume_mm3 > 0))
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "the mesh encloses %g mm3: it faces inward, or is flat", q->volume_mm3);
@@ -52,6 +54,29 @@ static double count_samples(const cw_quality *q, int a, double voxel_mm, double 
 {
     const double around = 2 * (reach_mm / voxel_mm + CWI_BAND + 2 * CWI_LEAF);
     return (q->max[a] - q->min[a]) / voxel_mm + around;
+}
+
+void cwi_level_set_round(cw_mesh *mesh, const double origin[3])
+{
+    for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
+        mesh->positions[i] =
+            (float)((double)mesh->positions[i] + (mesh->origin[i % 3] - origin[i % 3]));
+    memcpy(mesh->origin, origin, sizeof mesh->origin);
+}
+
+cw_status cwi_level_set_prove(const cw_mesh *surface, int threads, const cw_progress *progress,
+                              cw_error *err)
+{
+    const cw_crossings_desc desc = {.threads = threads, .progress = *progress};
+    cw_crossings found = {0};
+    cw_status st = cw_self_intersections(surface, &desc, &found, err);
+    if (st == CW_OK && found.count)
+        st = cwi_fail(err, CW_ERR_CHECK,
+                      "rounding makes %zu pairs of triangles of the result intersect; another "
+                      "desc->voxel_mm helps",
+                      found.count);
+    cw_crossings_free(&found);
+    return st;
 }
 
 /* Estimates bytes. A band around a plane meets leaves as if it were 12 voxels thicker. A leaf

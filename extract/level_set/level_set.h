@@ -10,9 +10,18 @@
 /* Number of voxels by which distances reach farther than requested: enough for gradients. */
 enum { CWI_BAND = 3 };
 
-/* Measures a mesh; fails with CW_ERR_ARGUMENT for a mesh that encloses nothing. */
+/* Measures a mesh; fails with CW_ERR_ARGUMENT for a mesh that encloses nothing.
+ * Solids may touch in edges: winding numbers decide what is inside. */
 CW_NODISCARD cw_status cwi_level_set_check(const cw_mesh *mesh, int threads,
                                            cw_quality *quality, cw_error *err);
+
+/* Rounds a surface to another origin, that of the mesh it is made from: files then hold these very
+ * positions, and what is found out about the surface is true of the file. */
+void cwi_level_set_round(cw_mesh *mesh, const double origin[3]);
+
+/* Proves that a surface does not cross itself. Returns CW_ERR_CHECK, else as cw_self_intersections() */
+CW_NODISCARD cw_status cwi_level_set_prove(const cw_mesh *surface, int threads,
+                                           const cw_progress *progress, cw_error *err);
 
 /* Estimates the bytes for a level set of a mesh, by its area; with reach_mm beyond CWI_BAND
  * voxels. */

@@ -54,7 +54,10 @@ static cw_status take_surface(const making *m, const cw_volume *volume, bool sim
                                   .threads = d->threads,
                                   .max_bytes = d->max_bytes,
                                   .progress = d->progress};
-    return cw_extract(volume, &desc, out, NULL, err);
+    const cw_status st = cw_extract(volume, &desc, out, NULL, err);
+    if (st == CW_OK)
+        cwi_level_set_round(out, m->mesh->origin);
+    return st;
 }
 
 static cw_status make_samples(making *m, cw_error *err)
@@ -359,6 +362,8 @@ cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mes
     if (st == CW_OK && !out->triangle_count)
         st = cwi_fail(err, CW_ERR_EMPTY, "nothing is left: no point is %g mm inside",
                       desc->offset_mm < 0 ? -desc->offset_mm : sqrt(0.75) * m.voxel);
+    if (st == CW_OK)
+        st = cwi_level_set_prove(out, desc->threads, &desc->progress, err);
     if (st == CW_OK) /* not of the grid in between */
         memcpy(out->affine, mesh->affine, sizeof out->affine);
     found.voxel_mm = m.voxel;

@@ -42,7 +42,7 @@ typedef struct cut {
 typedef struct sharpener {
     const cw_mesh *from;
     cw_mesh *mesh, made;
-    double offset, voxel, shift[3]; /* from the mesh's origin to from's */
+    double offset, voxel;
     cwi_boxes tree;
     plane *planes;
     size_t side_count;
@@ -70,21 +70,11 @@ static bool scale_to_one(double n[3])
     return length > 0;
 }
 
-static cwi_closest find_closest(const sharpener *s, const double x[3])
-{
-    double p[3];
-    cwi_sub(x, s->shift, p);
-    cwi_closest c = cwi_closest_find(s->from, &s->tree, p);
-    for (int a = 0; a < 3; a++)
-        c.point[a] += s->shift[a];
-    return c;
-}
-
 /* Finds the plane of the surface near x. At distance 0 the normal is a triangle's; else it is
  * along the shortest way. */
 static plane plane_near(const sharpener *s, const double x[3])
 {
-    const cwi_closest c = find_closest(s, x);
+    const cwi_closest c = cwi_closest_find(s->from, &s->tree, x);
     plane p = {0};
     if (s->offset == 0)
         cwi_mesh_normal(s->from, c.triangle, p.n);
@@ -97,7 +87,7 @@ static plane plane_near(const sharpener *s, const double x[3])
 
 static bool is_on_surface(const sharpener *s, const double x[3])
 {
-    const cwi_closest c = find_closest(s, x);
+    const cwi_closest c = cwi_closest_find(s->from, &s->tree, x);
     return fabs(cwi_distance(x, c.point) - fabs(s->offset)) <= MAX_SURFACE_DISTANCE * s->voxel;
 }
 
@@ -646,7 +636,6 @@ cw_status cwi_sharpen(const cw_mesh *from, const cw_offset_desc *desc, double vo
 {
     sharpener s = {.from = from, .mesh = mesh, .offset = desc->offset_mm, .voxel = voxel_mm};
     bool is_clear = false;
-    cwi_sub(from->origin, mesh->origin, s.shift);
     cw_status st = CW_OK;
     if (!ensure_capacity(&s))
         st = cwi_fail_memory(err);

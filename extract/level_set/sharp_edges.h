@@ -9,8 +9,9 @@
  * across a corner get one at it. Vertices beside these, which are off the surface, are moved
  * onto it. Triangles that would fold, flatten or cross stay unchanged.
  *
- * mesh      at desc->offset_mm from `from`, closed, oriented, free of crossings; it has
- *           positions, triangles and normals alone. Vertices and triangles are added
+ * mesh      at desc->offset_mm from `from`, with its origin, closed, oriented, free of
+ *           crossings; it has positions, triangles and normals alone. Vertices and triangles
+ *           are added
  * voxel_mm  of the level set
  * Returns   CW_ERR_NO_MEMORY, CW_ERR_CANCELLED, as cw_self_intersections(): the mesh is then
  *           as it was

@@ -203,20 +203,38 @@ cw_status cwi_files_beside(const cwi_input *in, cwi_names *names, size_t *links,
 
 /* --- a pattern --------------------------------------------------------------------------- */
 
+/* Names the folders that match where no file does. */
+static cw_status fail_match(const glob_t *found, size_t folders, cw_error *err)
+{
+    if (folders == 0)
+        return cwi_fail(err, CW_ERR_IO, "no file matches");
+    if (folders == 1)
+        return cwi_fail(err, CW_ERR_IO, "no file matches, but a folder does: %.400s",
+                        found->gl_pathv[0]);
+    return cwi_fail(err, CW_ERR_IO,
+                    "no file matches, but %zu folders do: %.200s to %.200s; cw_volume_read() "
+                    "takes one of them",
+                    folders, found->gl_pathv[0], found->gl_pathv[found->gl_pathc - 1]);
+}
+
 static cw_status match_names(const char *pattern, cwi_names *names, cw_error *err)
 {
     glob_t found = {0};
     struct stat info;
-    const int code = glob(pattern, GLOB_NOSORT, NULL, &found);
+    const int code = glob(pattern, 0, NULL, &found);
     cw_status st = CW_OK;
+    size_t folders = 0;
     if (code == GLOB_NOSPACE)
         st = cwi_fail_memory(err);
-    for (size_t i = 0; st == CW_OK && code == 0 && i < found.gl_pathc; i++)
-        if (stat(found.gl_pathv[i], &info) == 0 && S_ISREG(info.st_mode))
+    for (size_t i = 0; st == CW_OK && code == 0 && i < found.gl_pathc; i++) {
+        const bool exists = stat(found.gl_pathv[i], &info) == 0;
+        folders += exists && S_ISDIR(info.st_mode);
+        if (exists && S_ISREG(info.st_mode))
             st = cwi_names_add(names, found.gl_pathv[i], err);
-    globfree(&found);
+    }
     if (st == CW_OK && names->count == 0)
-        return cwi_fail(err, CW_ERR_IO, "no file matches");
+        st = fail_match(&found, folders, err);
+    globfree(&found);
     cwi_files_sort(names);
     return st;
 }

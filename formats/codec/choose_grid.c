@@ -5,16 +5,17 @@
 
 #include <math.h>
 
-enum { SHORT_BITS = 16, EXPONENTIAL_BITS = 24 };
+/* FLOAT_BITS: as many as floats have digits. Draco's memory doubles with each bit: 64 MiB at these. */
+enum { SHORT_BITS = 16, FLOAT_BITS = 24 };
 static const double DIAGONALS = 20000; /* the default tolerance is the diagonal divided by
                                           this */
 
 static const struct {
     const char *name;
-    int max_bits;
-} kinds[] = {[CW_COMPRESS_QUANTIZE] = {"quantize", SHORT_BITS},
-             [CW_COMPRESS_DRACO] = {"Draco", CWI_MAX_GRID_BITS},
-             [CW_COMPRESS_MESHOPT] = {"meshopt", EXPONENTIAL_BITS}};
+    int max_bits, max_chosen; /* that may be stated; that are chosen */
+} kinds[] = {[CW_COMPRESS_QUANTIZE] = {"quantize", SHORT_BITS, SHORT_BITS},
+             [CW_COMPRESS_DRACO] = {"Draco", CWI_MAX_GRID_BITS, FLOAT_BITS},
+             [CW_COMPRESS_MESHOPT] = {"meshopt", FLOAT_BITS, FLOAT_BITS}};
 
 cw_status cwi_grid_check_bits(const cw_write_desc *desc, cw_error *err)
 {
@@ -53,9 +54,8 @@ static cw_status fail_shape(const cwi_quantization_grid *grid, const cwi_grid_ha
     return cwi_fail(
         err, CW_ERR_CHECK,
         "with %d bits a coordinate, the most there are, %zu vertices fall onto others "
-        "and %zu triangles lose their area%s",
-        grid->bits, harm->merged, harm->flat,
-        grid->bits < CWI_MAX_GRID_BITS ? "; meshopt has up to 24, Draco up to 30" : "");
+        "and %zu triangles lose their area; meshopt and Draco leave positions as they are",
+        grid->bits, harm->merged, harm->flat);
 }
 
 /* Divides the grid. Beyond integers of 16 bits, meshopt's exponential filter makes multiples of
@@ -91,7 +91,7 @@ static cw_status find_grid(cwi_quantization_grid *grid, const cwi_parts *parts,
                            cw_compression kind, double tolerance, bool *found,
                            cwi_grid_harm *harm, cw_error *err)
 {
-    const int max = kinds[kind].max_bits;
+    const int max = kinds[kind].max_chosen;
     cw_status st = CW_OK;
     *found = false;
     for (int bits = 1; bits <= max && st == CW_OK && !*found; bits++) {
@@ -122,7 +122,7 @@ cw_status cwi_grid_choose(cwi_quantization_grid *grid, const cwi_parts *parts,
     } else {
         st = find_grid(grid, parts, desc->compression, tolerance, &found, &harm, err);
     }
-    if (st == CW_OK && !found && desc->compression == CW_COMPRESS_MESHOPT)
+    if (st == CW_OK && !found && desc->compression != CW_COMPRESS_QUANTIZE)
         grid->bits = 0; /* positions then stay unchanged */
     else if (st == CW_OK && !found)
         return fail_shape(grid, &harm, tolerance, err);

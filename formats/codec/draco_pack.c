@@ -4,6 +4,7 @@
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/base/text.h"
 #include "formats/codec/verify_decoded.h"
 
 #include <string.h>
@@ -41,11 +42,31 @@ void cwi_draco_packed_free(cwi_draco_packed *packed)
     *packed = (cwi_draco_packed){0};
 }
 
+/* Fails where Draco's table of symbols, of 4 bytes for each number of these bits, exceeds the limit
+ * of memory. */
+static cw_status expect_memory(int bits, cw_error *err)
+{
+    char needed_text[CWI_MEMORY_TEXT], left_text[CWI_MEMORY_TEXT];
+    const size_t left = cwi_memory_left(), needed = sizeof(int32_t) << bits;
+    int fitting = bits;
+    if (needed <= left)
+        return CW_OK;
+    while (fitting > 0 && sizeof(int32_t) << fitting > left)
+        fitting--;
+    cwi_print_memory(needed, needed_text);
+    cwi_print_memory(left, left_text);
+    return cwi_fail(err, CW_ERR_LIMIT,
+                    "%d bits a coordinate take up to %s while Draco encodes, and "
+                    "cw_memory_limit() leaves %s; %d bits fit",
+                    bits, needed_text, left_text, fitting);
+}
+
 static cw_status verify_decoded(const cw_mesh *mesh, const cwi_quantization_grid *grid,
                                 const cwi_arrays *a, double *normal_degrees, cw_error *err)
 {
     const cwi_decoded decoded = {.vertex_count = a->vertex_count,
                                  .triangle_count = a->triangle_count,
+                                 .positions = a->positions,
                                  .grid_points = a->grid_points,
                                  .normals = a->normals,
                                  .triangles = a->triangles};
@@ -71,13 +92,15 @@ cw_status cwi_draco_pack(const cw_mesh *mesh, const uint8_t *colors,
     const double start = cwi_now_s();
     *packed = (cwi_draco_packed){0};
     cw_status st = cwi_draco_functions_load(&draco, err);
+    if (st == CW_OK && grid->bits)
+        st = expect_memory(grid->bits, err);
     if (st == CW_OK)
         st =
             draco->encode(&arrays, &settings, &packed->bytes, &packed->size, &packed->ids, err);
     const double encoded = cwi_now_s();
     if (st == CW_OK)
-        st = draco->decode(packed->bytes, packed->size, &packed->ids, SIZE_MAX, grid,
-                           &packed->decoded, err);
+        st = draco->decode(packed->bytes, packed->size, &packed->ids, SIZE_MAX,
+                           grid->bits ? grid : NULL, &packed->decoded, err);
     if (st == CW_OK)
         st = verify_decoded(mesh, grid, &packed->decoded, &facts->normal_degrees, err);
     facts->encode_s += encoded - start;

@@ -22,6 +22,13 @@ enum { TRIANGLE_BYTES = 100 };
 
 enum { COLOR_BITS = 8 };
 
+// Returns the maximum memory of its table of symbols, which has an entry for each number that a
+// coordinate can differ from its prediction.
+size_t table_bytes(const cwi_quantization_grid &grid)
+{
+    return grid.bits ? sizeof(int) << grid.bits : 0;
+}
+
 // The key of a comment in the metadata.
 const char COMMENT[] = "cubewright";
 
@@ -98,7 +105,8 @@ cw_status encode(const cwi_arrays *from, const cwi_draco_settings *settings,
                  cw_error *err) noexcept
 {
     return cw::guard(err, "Draco", [&] {
-        const cw::Taken taken(TRIANGLE_BYTES * from->triangle_count);
+        const cw::Taken taken(TRIANGLE_BYTES * from->triangle_count +
+                              table_bytes(settings->grid));
         draco::Mesh mesh;
         draco::Encoder encoder;
         draco::EncoderBuffer buffer;
@@ -124,7 +132,7 @@ cw_status encode(const cwi_arrays *from, const cwi_draco_settings *settings,
             metadata->AddEntryString(COMMENT, settings->comment);
             mesh.AddMetadata(std::move(metadata));
         }
-        set_options(encoder, *settings, from->positions != nullptr);
+        set_options(encoder, *settings, settings->grid.bits > 0);
         const draco::Status done = encoder.EncodeMeshToBuffer(mesh, &buffer);
         if (!done.ok())
             return fail_draco(err, CW_ERR_BACKEND, "encode the mesh", done);

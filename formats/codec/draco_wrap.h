@@ -30,7 +30,7 @@ typedef struct cwi_draco_ids {
 } cwi_draco_ids;
 
 typedef struct cwi_draco_settings {
-    cwi_quantization_grid grid; /* for positions */
+    cwi_quantization_grid grid; /* for positions; of 0 bits: they stay floats */
     int normal_bits;            /* of each of two octahedral coordinates */
     int level;                  /* 0 (fast) to 10 (small) */
     const char *comment;        /* of the file, kept as metadata; NULL: none */

@@ -95,7 +95,7 @@ CW_NODISCARD cw_status cwi_grid_check_bits(const cw_write_desc *desc, cw_error *
 
 /* Lays the coarsest grid around the parts, of one origin, that keeps the tolerance and the
  * shape. With stated bits it lays that grid, whatever the effect on the shape.
- * grid     bits 0: meshopt has no such grid, positions stay unchanged
+ * grid     bits 0: 24 bits are too few for meshopt and Draco, positions stay unchanged
  * facts    bits, step, error and harm are filled in
  * Returns  CW_ERR_CHECK when there is none; CW_ERR_LIMIT for a box too large;
  * CW_ERR_NO_MEMORY */

@@ -56,6 +56,11 @@ static void put_points(const cw_mesh *mesh, const cwi_quantization_grid *grid,
                        const cwi_decoded *d, float *grid_points)
 {
     const size_t count = 3 * mesh->vertex_count;
+    if (!grid->bits) {
+        memcpy(grid_points, mesh->positions, count * sizeof *grid_points);
+        memcpy(grid_points + count, d->positions, 3 * d->vertex_count * sizeof *grid_points);
+        return;
+    }
     for (size_t i = 0; i < count; i++) {
         const uint32_t grid_point = cwi_grid_round(grid, mesh->positions[i], (int)(i % 3));
         memcpy(grid_points + i, &grid_point, sizeof grid_point);

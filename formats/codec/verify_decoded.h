@@ -4,16 +4,17 @@
 
 #include "formats/codec/quantization_grid.h"
 
-/* A mesh as a decoder returns it: positions on the grid, in any order. */
+/* A mesh as a decoder returns it, in any order: positions, or numbers of the grid in their place. */
 typedef struct cwi_decoded {
     size_t vertex_count, triangle_count;
+    const float *positions;      /* vertex_count x 3; where the grid has no bits */
     const uint32_t *grid_points; /* vertex_count x 3 */
     const float *normals;        /* vertex_count x 3; NULL: none */
     const uint32_t *triangles;
 } cwi_decoded;
 
 /* Compares a decoded mesh with the one that was encoded. It must have the same triangles
- * between the same positions of the grid, each equally often and with the same winding.
+ * between the same positions, each equally often and with the same winding.
  * normal_degrees  set to the largest turn of a normal
  * Returns CW_ERR_CHECK, with the difference; CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cwi_verify(const cw_mesh *mesh, const cwi_quantization_grid *grid,

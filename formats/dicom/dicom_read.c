@@ -35,18 +35,18 @@ static cw_status facts_of_file(const cwi_input *in, cwi_planes *planes, cwi_dico
 }
 
 /* Scans all files of a folder, or those beside one file that are of its series. */
-static cw_status scan_files(const cwi_input *in, cwi_names *names, cwi_planes *planes,
-                            cwi_dicom_scan *found, cw_error *err)
+static cw_status scan_files(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,
+                            cwi_planes *planes, cwi_dicom_scan *found, cw_error *err)
 {
     cwi_dicom_facts facts;
     cwi_names beside = {0};
     if (names)
-        return cwi_dicom_scan_files(found, in, names, NULL, planes, err);
+        return cwi_dicom_scan_files(found, in, names, NULL, desc, planes, err);
     cw_status st = facts_of_file(in, planes, &facts, err);
     if (st == CW_OK)
         st = cwi_files_beside(in, &beside, &found->links, err);
     if (st == CW_OK)
-        st = cwi_dicom_scan_files(found, in, &beside, &facts, planes, err);
+        st = cwi_dicom_scan_files(found, in, &beside, &facts, desc, planes, err);
     cwi_names_free(&beside);
     return st;
 }
@@ -56,10 +56,7 @@ static cw_status scan_files(const cwi_input *in, cwi_names *names, cwi_planes *p
 static void note_scan(const cw_read_desc *desc, const cwi_dicom_scan *found, bool folder)
 {
     cwi_note_links(desc, found->links);
-    if (found->damaged)
-        cwi_note(desc,
-                 "left out, because they cannot be read: %zu files beside it, the first %s",
-                 found->damaged, found->damage);
+    cwi_damaged_note(&found->damaged, "left out, because they cannot be read", desc);
     if (folder && found->strangers)
         cwi_note(desc, "left out, because they are not DICOM images: %zu of its files",
                  found->strangers);
@@ -102,9 +99,11 @@ cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names, const cw_read_de
     size_t series = 0;
     cw_status st = open_library(&planes, desc, err);
     if (st == CW_OK)
-        st = scan_files(in, names, &planes, &found, err);
+        st = scan_files(in, names, desc, &planes, &found, err);
     if (st == CW_OK)
         st = cwi_dicom_choose(&found, desc->series, &series, err);
+    if (st == CW_OK && !desc->skip_damaged)
+        st = cwi_dicom_expect_whole(&found, series, desc->series || !names, err);
     if (st == CW_OK)
         note_scan(desc, &found, names != NULL);
     if (st == CW_OK)
@@ -127,18 +126,20 @@ cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names, const cw_read_de
 
 /* --- the list ----------------------------------------------------------------------------- */
 
-static void describe_series(cwi_dicom_scan *found, size_t n, const cw_read_desc *desc,
-                            cw_series *s)
+static void describe_series(cwi_dicom_scan *found, size_t n, bool chosen,
+                            const cw_read_desc *desc, cw_series *s)
 {
     cwi_stack stack = {0};
-    cwi_dicom_findings findings;
+    cwi_dicom_findings findings = {0};
     cw_error err = {0};
     const cw_read_desc quiet = {.gaps = desc->gaps, .tilt = desc->tilt};
     const cwi_dicom_series *from = &found->series[n];
     snprintf(s->label, sizeof s->label, "%s", from->label);
     snprintf(s->modality, sizeof s->modality, "%s", from->sample->file->modality);
     s->images = from->count;
-    s->status = cwi_dicom_stack(found, n, &quiet, &stack, &findings, &err);
+    s->status = desc->skip_damaged ? CW_OK : cwi_dicom_expect_whole(found, n, chosen, &err);
+    if (s->status == CW_OK)
+        s->status = cwi_dicom_stack(found, n, &quiet, &stack, &findings, &err);
     s->shape = stack.shape;
     s->tilt_degrees = findings.tilt_degrees;
     snprintf(s->finding, sizeof s->finding, "%s",
@@ -152,14 +153,16 @@ static void describe_series(cwi_dicom_scan *found, size_t n, const cw_read_desc 
     cwi_stack_free(&stack);
 }
 
-static cw_status list_found(cwi_dicom_scan *found, const cw_read_desc *desc, cw_series **series,
-                            size_t *count, cw_error *err)
+static cw_status list_found(cwi_dicom_scan *found, bool named, const cw_read_desc *desc,
+                            cw_series **series, size_t *count, cw_error *err)
 {
+    const bool chosen = named || desc->series || found->series_count > 1;
     cw_series *all = cwi_alloc_zeroed(found->series_count, sizeof *all);
     if (!all)
         return cwi_fail_memory(err);
     for (size_t n = 0; n < found->series_count; n++)
-        describe_series(found, n, desc, &all[n]);
+        describe_series(found, n, chosen, desc, &all[n]);
+    cwi_damaged_note(&found->damaged, "cannot be read", desc);
     *series = all;
     *count = found->series_count;
     return CW_OK;
@@ -172,9 +175,9 @@ cw_status cwi_dicom_list(const cwi_input *in, cwi_names *names, const cw_read_de
     cwi_dicom_scan found = {0};
     cw_status st = open_library(&planes, desc, err);
     if (st == CW_OK)
-        st = scan_files(in, names, &planes, &found, err);
+        st = scan_files(in, names, desc, &planes, &found, err);
     if (st == CW_OK)
-        st = list_found(&found, desc, series, count, err);
+        st = list_found(&found, !names, desc, series, count, err);
     cwi_dicom_scan_free(&found);
     cwi_planes_close(&planes);
     return st;

@@ -3,6 +3,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "formats/bytes/file_pattern.h"
 #include "formats/dicom/dicom_format.h"
 #include "formats/dicom/dicom_nesting.h"
 
@@ -65,6 +66,7 @@ void cwi_dicom_scan_free(cwi_dicom_scan *scan)
     for (size_t i = 0; scan->segments && i < scan->files.count; i++)
         cwi_free(scan->segments[i]);
     cwi_names_free(&scan->files);
+    cwi_damaged_free(&scan->damaged);
     cwi_free(scan->facts);
     cwi_free(scan->segments);
     cwi_free(scan->planes);
@@ -177,12 +179,14 @@ static bool same_images(const cwi_dicom_facts *f, const cwi_dicom_facts *g)
            f->kind == g->kind;
 }
 
-static cw_status is_dicom(int fd, bool *yes, cw_error *err)
+/* Returns true for DICOM, by name, else by content: a damaged image counts, too. */
+static cw_status is_dicom(const char *name, int fd, bool *yes, cw_error *err)
 {
     unsigned char head[CWI_SNIFF_BYTES];
     size_t got;
     cw_status st = cwi_input_read_at(fd, 0, head, sizeof head, &got, err);
-    *yes = st == CW_OK && cwi_dicom_sniff(head, got);
+    *yes = cwi_has_extension(name, cwi_format_dicom.extensions) ||
+           (st == CW_OK && cwi_dicom_sniff(head, got));
     return st;
 }
 
@@ -193,14 +197,14 @@ cw_status cwi_dicom_facts_of(cwi_planes *planes, int fd, uint64_t size, const vo
     return st == CW_OK ? cwi_planes_facts(planes, fd, size, shared, err) : st;
 }
 
+/* Keeps the facts of a file if it is a wanted image. Sets *f as far as it is known. */
 static cw_status take_file(cwi_dicom_scan *scan, const cwi_input *in, const char *name, int fd,
-                           uint64_t size, const cwi_dicom_facts *only, cwi_planes *planes,
-                           cw_error *err)
+                           uint64_t size, const cwi_dicom_facts *only, bool try,
+                           cwi_planes *planes, cwi_dicom_facts *f, cw_error *err)
 {
     const void *shared;
-    cwi_dicom_facts f;
     bool dicom = cwi_input_is_named(in, name);
-    cw_status st = dicom ? CW_OK : is_dicom(fd, &dicom, err);
+    cw_status st = dicom ? CW_OK : is_dicom(name, fd, &dicom, err);
     if (st != CW_OK || !dicom) {
         scan->strangers += !dicom;
         return st;
@@ -208,15 +212,23 @@ static cw_status take_file(cwi_dicom_scan *scan, const cwi_input *in, const char
     st = cwi_dicom_facts_of(planes, fd, size, &shared, err);
     if (st != CW_OK)
         return st;
-    memcpy(&f, shared, sizeof f);
-    st = check_facts(&f, size, err);
-    if (f.kind == CWI_DICOM_NO_IMAGE)
+    memcpy(f, shared, sizeof *f);
+    f->series[sizeof f->series - 1] = '\0';
+    st = check_facts(f, size, err);
+    if (f->kind == CWI_DICOM_NO_IMAGE)
         scan->strangers++;
-    if (f.kind == CWI_DICOM_NO_IMAGE || (only && !same_images(only, &f)))
+    if (f->kind == CWI_DICOM_NO_IMAGE || (only && (strcmp(only->series, f->series) != 0 ||
+                                                   (st == CW_OK && !same_images(only, f)))))
         return CW_OK; /* with any kind of damage */
-    clean_modality(&f);
+    clean_modality(f);
     if (st == CW_OK)
-        st = keep_file(scan, name, &f, (const char *)shared + sizeof f, err);
+        st = keep_file(scan, name, f, (const char *)shared + sizeof *f, err);
+    if (st != CW_OK || !try || f->pixel_bytes)
+        return st;
+    st = cwi_planes_try(planes, f->frame_count, f->rows,
+                        (size_t)f->columns * f->samples * cw_type_size(f->type), err);
+    if (st != CW_OK)
+        scan->plane_count -= f->frame_count;
     return st;
 }
 
@@ -329,25 +341,17 @@ static cw_status sort_into_series(cwi_dicom_scan *scan, const cwi_input *in, cw_
     return CW_OK;
 }
 
-/* Returns true if a file may be left out. A file that the user did not name must not block the
- * one that the user did name. */
-static bool may_be_left_out(const cwi_input *in, const char *name, cw_status st)
+/* Lists a file as damaged. Reading it may have ended the library's process. */
+static cw_status add_damaged(cwi_dicom_scan *scan, const char *name, const cwi_dicom_facts *f,
+                             const cw_error *reason, cwi_planes *planes, cw_error *err)
 {
-    return !cwi_input_is_named(in, name) && st != CW_ERR_CANCELLED && st != CW_ERR_NO_MEMORY;
-}
-
-/* Leaves a file out. Reading it may have ended the library's process. */
-static cw_status leave_out(cwi_dicom_scan *scan, const char *name, cwi_planes *planes,
-                           cw_error *err)
-{
-    if (scan->damaged++ == 0)
-        snprintf(scan->damage, sizeof scan->damage, "%.100s: %.200s", name,
-                 err ? err->message : "");
-    return planes->box.open ? CW_OK : cwi_planes_restart(planes, err);
+    cw_status st = cwi_damaged_add(&scan->damaged, name, f->series, reason, err);
+    return st == CW_OK && !planes->box.open ? cwi_planes_restart(planes, err) : st;
 }
 
 cw_status cwi_dicom_scan_files(cwi_dicom_scan *scan, const cwi_input *in, cwi_names *names,
-                               const cwi_dicom_facts *only, cwi_planes *planes, cw_error *err)
+                               const cwi_dicom_facts *only, const cw_read_desc *desc,
+                               cwi_planes *planes, cw_error *err)
 {
     cw_status st = CW_OK;
     scan->facts = cwi_alloc_zeroed(names->count, sizeof(cwi_dicom_facts *));
@@ -355,18 +359,21 @@ cw_status cwi_dicom_scan_files(cwi_dicom_scan *scan, const cwi_input *in, cwi_na
     if (!scan->facts || !scan->segments)
         return cwi_fail_memory(err);
     for (size_t i = 0; st == CW_OK && i < names->count; i++) {
+        cwi_dicom_facts f = {0};
+        cw_error why = {0};
         uint64_t size;
         int fd;
         planes->box.done = (double)i / (double)names->count;
-        st = cwi_input_open_side(in, names->items[i], &fd, &size, err);
+        st = cwi_input_open_side(in, names->items[i], &fd, &size, &why);
         if (st == CW_OK) {
-            st = take_file(scan, in, names->items[i], fd, size, only, planes, err);
+            st = take_file(scan, in, names->items[i], fd, size, only, desc->skip_damaged,
+                           planes, &f, &why);
             close(fd);
         }
-        if (st != CW_OK && only && may_be_left_out(in, names->items[i], st))
-            st = leave_out(scan, names->items[i], planes, err);
-        if (st != CW_OK && st != CW_ERR_CANCELLED && names->count > 1)
-            return cwi_fail_in(err, st, names->items[i]);
+        if (cwi_is_damage(st))
+            st = add_damaged(scan, names->items[i], &f, &why, planes, err);
+        else if (st != CW_OK)
+            return cwi_fail(err, st, "%s", why.message);
     }
     return st == CW_OK ? sort_into_series(scan, in, err) : st;
 }
@@ -389,6 +396,9 @@ cw_status cwi_dicom_choose(const cwi_dicom_scan *scan, const char *name, size_t 
                            cw_error *err)
 {
     size_t matches = 0;
+    if (scan->series_count == 0 && scan->damaged.count)
+        return cwi_fail(err, scan->damaged.items[0].status, "%s: %s",
+                        scan->damaged.items[0].name, scan->damaged.items[0].reason);
     if (scan->series_count == 0)
         return cwi_fail(err, CW_ERR_FORMAT, "it holds no DICOM image");
     for (size_t s = 0; s < scan->series_count; s++) {
@@ -402,4 +412,15 @@ cw_status cwi_dicom_choose(const cwi_dicom_scan *scan, const char *name, size_t 
         return cwi_fail(err, CW_ERR_ARGUMENT, "there is no series '%.64s'; 'info' lists them",
                         name);
     return matches == 1 ? CW_OK : fail_several(scan, err);
+}
+
+cw_status cwi_dicom_expect_whole(const cwi_dicom_scan *scan, size_t series, bool chosen,
+                                 cw_error *err)
+{
+    for (size_t n = 0; n < scan->damaged.count; n++) {
+        const cwi_damaged_file *d = &scan->damaged.items[n];
+        if (!chosen || strcmp(d->owner, scan->series[series].sample->file->series) == 0)
+            return cwi_damaged_fail(d, err);
+    }
+    return CW_OK;
 }

@@ -4,6 +4,7 @@
 
 #include "formats/bytes/input_file.h"
 #include "formats/dicom/dicom.h"
+#include "formats/volume/damaged_files.h"
 
 /* One frame of one file. */
 typedef struct cwi_dicom_plane {
@@ -35,8 +36,7 @@ typedef struct cwi_dicom_scan {
     size_t strangers; /* number of files that are no DICOM images */
     size_t copies;    /* number of copies of images */
     size_t links;     /* links beside the named file, left out */
-    size_t damaged;   /* damaged files beside the named file */
-    char damage[320]; /* of the first of them */
+    cwi_damaged damaged;
 } cwi_dicom_scan;
 
 /* Makes DCMTK read a file that has passed the checks. */
@@ -44,17 +44,24 @@ CW_NODISCARD cw_status cwi_dicom_facts_of(cwi_planes *planes, int fd, uint64_t s
                                           const void **shared, cw_error *err);
 
 /* Reads the facts of the files among names that are DICOM images, and sorts them into series.
+ * Damaged files are listed.
  * only  NULL, or the facts of the file that was named: only its series, and images like it,
- *       are wanted; damaged files beside it are left out, and counted
- * Returns  CW_ERR_FORMAT for a file that is damaged, or whose facts contradict each other */
+ *       are wanted
+ * desc  with skip_damaged, compressed frames are decoded once, to find the damaged ones */
 CW_NODISCARD cw_status cwi_dicom_scan_files(cwi_dicom_scan *scan, const cwi_input *in,
                                             cwi_names *names, const cwi_dicom_facts *only,
-                                            cwi_planes *planes, cw_error *err);
+                                            const cw_read_desc *desc, cwi_planes *planes,
+                                            cw_error *err);
 void cwi_dicom_scan_free(cwi_dicom_scan *scan);
 
 /* Finds a series by its label or UID; without a name the only one.
  * Returns CW_ERR_UNSAFE when there are several, CW_ERR_ARGUMENT when none has that name. */
 CW_NODISCARD cw_status cwi_dicom_choose(const cwi_dicom_scan *scan, const char *name,
                                         size_t *series, cw_error *err);
+
+/* Fails with a damaged file that may belong to the series.
+ * chosen  the user chose the series: files whose series is not known belong to another */
+CW_NODISCARD cw_status cwi_dicom_expect_whole(const cwi_dicom_scan *scan, size_t series,
+                                              bool chosen, cw_error *err);
 
 #endif

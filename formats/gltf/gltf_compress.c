@@ -115,7 +115,9 @@ static void describe_draco(cwi_gltf_piece *piece, const cwi_quantization_grid *g
 {
     cwi_box_clear(piece->low, piece->high);
     for (size_t i = 0; i < 3 * decoded->vertex_count; i++) {
-        const double at = cwi_grid_decode(grid, decoded->grid_points[i], (int)(i % 3));
+        const double at = grid->bits
+                              ? cwi_grid_decode(grid, decoded->grid_points[i], (int)(i % 3))
+                              : (double)decoded->positions[i];
         piece->low[i % 3] = fmin(piece->low[i % 3], at);
         piece->high[i % 3] = fmax(piece->high[i % 3], at);
     }

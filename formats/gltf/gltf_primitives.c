@@ -6,6 +6,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* --- vertices ---------------------------------------------------------------------------- */
@@ -148,8 +149,38 @@ static cw_status add_colors(cwi_gltf_reader *r, int accessor, size_t first, cw_e
     return st;
 }
 
+/* Compares the stated bounds of an accessor with its numbers, where they are as they were written.
+ * Bounds may have gone through single precision, or be written with as many digits. */
+static void check_bounds(const cwi_gltf_reader *r, const cwi_gltf_primitive *p,
+                         const cwi_gltf_numbers *numbers, cw_mesh_file *metadata)
+{
+    const cwi_gltf_accessor *stated = &r->scene.accessors[p->position];
+    const bool is_packed =
+        r->bytes.unpacked == p ||
+        (stated->view >= 0 && r->scene.views[stated->view].packed_buffer >= 0);
+    if (*metadata->fault || !stated->has_bounds || numbers->normalized || is_packed)
+        return;
+    for (int a = 0; a < 3; a++) {
+        double min = INFINITY, max = -INFINITY;
+        for (size_t i = 0; i < numbers->count; i++) {
+            min = fmin(min, cwi_gltf_number(numbers, i, a));
+            max = fmax(max, cwi_gltf_number(numbers, i, a));
+        }
+        const double rounding = 1e-6 * fmax(fabs(min), fabs(max));
+        const bool is_max = !(fabs(stated->max[a] - max) <= rounding);
+        if (!is_max && fabs(stated->min[a] - min) <= rounding)
+            continue;
+        snprintf(metadata->fault, sizeof metadata->fault,
+                 "accessors[%d].%s[%d] is %.9g; its positions %s %.9g", p->position,
+                 is_max ? "max" : "min", a, is_max ? stated->max[a] : stated->min[a],
+                 is_max ? "reach" : "begin at", is_max ? max : min);
+        return;
+    }
+}
+
 static cw_status add_vertices(cwi_gltf_reader *r, const cwi_gltf_instance *at,
-                              const cwi_gltf_primitive *p, cw_error *err)
+                              const cwi_gltf_primitive *p, cw_mesh_file *metadata,
+                              cw_error *err)
 {
     const size_t first = r->build.point_count;
     cwi_gltf_numbers numbers = {0};
@@ -160,6 +191,8 @@ static cw_status add_vertices(cwi_gltf_reader *r, const cwi_gltf_instance *at,
                       p->position, numbers.numbers);
     if (st == CW_OK)
         st = add_points(r, at, &numbers, err);
+    if (st == CW_OK)
+        check_bounds(r, p, &numbers, metadata);
     cwi_free(numbers.bytes);
     if (st == CW_OK)
         st = add_normals(r, at, p->normal, first, err);
@@ -332,7 +365,7 @@ cw_status cwi_gltf_add_instance(cwi_gltf_reader *r, const cwi_gltf_instance *at,
         st = unpack_primitive(r, p, err);
         if (st == CW_OK && (!before || p->draco >= 0 || !same_vertices(before, p))) {
             first = r->build.point_count;
-            st = add_vertices(r, at, p, err);
+            st = add_vertices(r, at, p, metadata, err);
         }
         if (st == CW_OK)
             st = add_corners(r, at, p, first, err);

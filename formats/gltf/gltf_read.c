@@ -9,6 +9,7 @@
 #include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/gltf_wrap.h"
 
+#include <stdio.h>
 #include <string.h>
 
 enum { TRIANGLES_MODE = 4, GLB_HEADER = 12, CHUNK_HEADER = 8, FREE_COUNT = 1 << 24 };
@@ -105,8 +106,10 @@ static cw_status check_views(const cwi_gltf_scene *scene, cw_error *err)
     return st;
 }
 
-static cw_status parse_json(cwi_gltf_reader *r, uint64_t at, uint64_t size, cw_error *err)
+static cw_status parse_json(cwi_gltf_reader *r, uint64_t at, uint64_t size,
+                            cw_mesh_file *metadata, cw_error *err)
 {
+    cw_error fault = {0};
     size_t got;
     if (size > UINT32_MAX)
         return cwi_fail(err, CW_ERR_LIMIT, "the JSON has more than 4 GiB");
@@ -116,6 +119,8 @@ static cw_status parse_json(cwi_gltf_reader *r, uint64_t at, uint64_t size, cw_e
     cw_status st = cwi_input_read_at(r->in->file.fd, at, json, (size_t)size, &got, err);
     if (st == CW_OK)
         st = cwi_gltf_check(json, got, err);
+    if (st == CW_OK && cwi_gltf_check_look(json, got, &fault) != CW_OK)
+        snprintf(metadata->fault, sizeof metadata->fault, "%.159s", fault.message);
     if (st == CW_OK)
         st = cwi_gltf_blind(json, got, err);
     if (st == CW_OK)
@@ -278,7 +283,7 @@ static cw_status read_scene(cwi_mesh_input *in, bool binary, cw_mesh *mesh,
     if (st == CW_OK && binary)
         st = find_chunks(&r, &json, &json_size, err);
     if (st == CW_OK)
-        st = parse_json(&r, json, json_size, err);
+        st = parse_json(&r, json, json_size, metadata, err);
     if (st == CW_OK)
         st = build_scene(&r, mesh, metadata, err);
     cwi_build_free(&r.build);

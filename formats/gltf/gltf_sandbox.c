@@ -197,6 +197,7 @@ static bool mend_scene(cwi_gltf_scene *s)
     for (size_t i = 0; i < s->accessor_count; i++) {
         cwi_gltf_accessor *a = &s->accessors[i];
         mend_bool(&a->normalized);
+        mend_bool(&a->has_bounds);
         if (a->numbers < 0 || a->numbers > 4)
             return false;
     }

@@ -43,6 +43,8 @@ typedef struct cwi_gltf_accessor {
     int numbers;   /* 1 to 4; 0: a matrix */
     bool normalized;
     cwi_gltf_sparse sparse;
+    bool has_bounds; /* of 3 numbers */
+    double min[3], max[3];
 } cwi_gltf_accessor;
 
 typedef struct cwi_gltf_primitive {
@@ -91,6 +93,10 @@ CW_NODISCARD cw_status cwi_gltf_take_scene(const void *from, size_t size, cwi_gl
  * Other members may hold anything.
  * Returns CW_ERR_FORMAT, which names the member as "meshes[0].primitives[1].indices". */
 CW_NODISCARD cw_status cwi_gltf_check(const char *json, size_t size, cw_error *err);
+
+/* Checks members that describe how a surface looks, which are not read.
+ * Returns CW_ERR_FORMAT as cwi_gltf_check() does. */
+CW_NODISCARD cw_status cwi_gltf_check_look(const char *json, size_t size, cw_error *err);
 
 #define CWI_GLTF_HIDDEN_LOD "MSFT_LOD"
 

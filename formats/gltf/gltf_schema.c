@@ -16,7 +16,9 @@ typedef enum value_kind {
     OBJECTS, /* a list of them */
     INDEX,   /* into a list of the outermost object */
     INDICES,
-    WHOLE,   /* a whole number from min to max, a multiple of step */
+    WHOLE,     /* a whole number from min to max, a multiple of step */
+    FRACTIONS, /* up to `max` numbers from 0 to 1 */
+    FRACTION,
     NUMBERS, /* up to `max` numbers; none is larger than `largest`, unless that is 0 */
     BOOLEAN,
     STRING,
@@ -155,6 +157,18 @@ static const rule outermost[] = {
     {.key = "buffers", .kind = OBJECTS, .members = buffer, .list = BUFFERS},
     {.key = "extensionsRequired", .kind = STRINGS},
     {0}};
+
+/* How surfaces look, which is not read. */
+static const rule roughness[] = {{.key = "baseColorFactor", .kind = FRACTIONS, .max = 4},
+                                 {.key = "metallicFactor", .kind = FRACTION},
+                                 {.key = "roughnessFactor", .kind = FRACTION},
+                                 {0}};
+static const rule material[] = {
+    {.key = "pbrMetallicRoughness", .kind = OBJECT, .members = roughness},
+    {.key = "emissiveFactor", .kind = FRACTIONS, .max = 3},
+    {.key = "alphaMode", .kind = WORD, .choices = "OPAQUE MASK BLEND"},
+    {0}};
+static const rule looks[] = {{.key = "materials", .kind = OBJECTS, .members = material}, {0}};
 
 /* --- walking through JSON ---------------------------------------------------------------- */
 
@@ -382,6 +396,8 @@ static cw_status check_number(walker *w, const rule *r, const json_path *p)
     snprintf(digits, sizeof digits, "%.*s", length < sizeof digits ? (int)length : 63, text);
     if (!cwi_parse_double(&at, &value) || !isfinite(value))
         return fail_value(w, w->at, p, "a finite number");
+    if (r->kind == FRACTION && !(value >= 0 && value <= 1))
+        return fail_value(w, w->at, p, "a number from 0 to 1");
     if (r->largest > 0 && fabs(value) > r->largest)
         return fail_value(w, w->at, p, "a number from -1 to 1");
     return skip_value(w) ? CW_OK : fail_broken(w);
@@ -430,7 +446,7 @@ static cw_status check_list(walker *w, const rule *r, value_kind one, const json
     }
     if (st == CW_OK && !take_char(w, ']'))
         return fail_broken(w);
-    if (st == CW_OK && r->kind == NUMBERS && at.index != r->max) {
+    if (st == CW_OK && (r->kind == NUMBERS || r->kind == FRACTIONS) && at.index != r->max) {
         char path[PATH_BYTES] = "";
         put_path(p, path);
         return cwi_fail(w->err, CW_ERR_FORMAT, "%s: %zu numbers; %llu were expected", path,
@@ -535,6 +551,10 @@ static cw_status check_value(walker *w, const rule *r, const json_path *p)
         return check_list(w, r, STRING, p);
     case NUMBERS:
         return p->key ? check_list(w, r, NUMBERS, p) : check_number(w, r, p);
+    case FRACTIONS:
+        return check_list(w, r, FRACTION, p);
+    case FRACTION:
+        return check_number(w, r, p);
     case INDEX:
         return check_index(w, r, p);
     case WHOLE:
@@ -596,4 +616,10 @@ cw_status cwi_gltf_check(const char *json, size_t size, cw_error *err)
         return fail_broken(&w);
     w.at = 0;
     return check_object(&w, outermost, NULL);
+}
+
+cw_status cwi_gltf_check_look(const char *json, size_t size, cw_error *err)
+{
+    walker w = {.json = json, .size = size, .err = err};
+    return check_object(&w, looks, NULL);
 }

@@ -132,9 +132,21 @@ cw_status copy_accessors(const tinygltf::Model &model, cwi_gltf_scene &scene, cw
         allocate(scene.accessors, scene.accessor_count, model.accessors.size(), err);
     for (size_t i = 0; i < scene.accessor_count; i++) {
         const tinygltf::Accessor &from = model.accessors[i];
-        scene.accessors[i] = {from.bufferView,    from.byteOffset,       from.count,
-                              from.componentType, numbers_of(from.type), from.normalized,
-                              copy_sparse(from)};
+        cwi_gltf_accessor &to = scene.accessors[i];
+        to = {from.bufferView,
+              from.byteOffset,
+              from.count,
+              from.componentType,
+              numbers_of(from.type),
+              from.normalized,
+              copy_sparse(from),
+              from.minValues.size() == 3 && from.maxValues.size() == 3,
+              {},
+              {}};
+        for (size_t a = 0; a < 3 && to.has_bounds; a++) {
+            to.min[a] = from.minValues[a];
+            to.max[a] = from.maxValues[a];
+        }
     }
     return st;
 }

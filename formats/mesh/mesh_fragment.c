@@ -9,6 +9,7 @@
 #include "formats/bytes/little_endian.h"
 #include "formats/mesh/mesh_spool.h"
 
+#include <math.h>
 #include <string.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -69,6 +70,7 @@ static cw_status put_array(checked_file *f, const cw_mesh_spool *spool, array wh
     cwi_spool_reader r;
     cw_status st =
         cwi_spool_open(&r, spool, which == TRIANGLES ? CWI_TRIANGLES : CWI_VERTICES, err);
+    r.is_part = true;
     if (st == CW_OK)
         st = cwi_spool_next(&r, err);
     while (st == CW_OK && r.count) {
@@ -183,6 +185,13 @@ static cw_status read_header(opened *o, cw_error *err)
                         "triangles) do not ask for",
                         (unsigned long long)o->in.size, (unsigned long long)numbers[3],
                         (unsigned long long)numbers[4]);
+    bool is_finite = true;
+    for (int n = 0; n < 12; n++)
+        is_finite = is_finite && isfinite(o->frame.affine[n / 4][n % 4]) &&
+                    isfinite(o->frame.origin[n % 3]);
+    if (!is_finite)
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the fragment's origin or affine has a number that is not finite");
     return CW_OK;
 }
 
@@ -241,6 +250,30 @@ static cw_status verify_sum(const opened *o, void *buffer, cw_error *err)
                : st;
 }
 
+/* Fails for a position that is not finite. */
+static cw_status check_positions(const float *positions, size_t first, size_t count,
+                                 cw_error *err)
+{
+    for (size_t n = 0; n < 3 * count; n++)
+        if (!isfinite(positions[n]))
+            return cwi_fail(err, CW_ERR_FORMAT, "the position of vertex %zu is not finite",
+                            first + n / 3);
+    return CW_OK;
+}
+
+/* Adds `base` to corners, each of which must be below `vertices`. */
+static cw_status shift_corners(uint32_t *corners, size_t first, size_t count, size_t vertices,
+                               uint32_t base, cw_error *err)
+{
+    for (size_t n = 0; n < 3 * count; n++) {
+        if (corners[n] >= vertices)
+            return cwi_fail(err, CW_ERR_FORMAT, "triangle %zu names vertex %u of %zu",
+                            first + n / 3, corners[n], vertices);
+        corners[n] += base;
+    }
+    return CW_OK;
+}
+
 /* Gives the vertices, and then the triangles, to the spool's sink. */
 static cw_status append_arrays(const opened *o, cw_mesh_spool *spool, cw_mesh *piece,
                                cw_error *err)
@@ -250,11 +283,16 @@ static cw_status append_arrays(const opened *o, cw_mesh_spool *spool, cw_mesh *p
     const uint64_t normals = o->has_normals ? vertices : 0;
     const cw_mesh *frame = cw_mesh_spool_frame(spool);
     const size_t base = frame->vertex_count;
+    /* Triangles on the seam name vertices of the next part, which the last part lacks. */
+    const bool is_last = o->facts.part + 1 == o->facts.parts;
+    const size_t named = is_last ? vertices : UINT32_MAX - base;
     cw_mesh_chunk chunk = {.mesh = *piece};
     cw_status st = CW_OK;
     for (size_t first = 0; first < vertices && st == CW_OK; first += PIECE) {
         const size_t count = vertices - first < PIECE ? vertices - first : PIECE;
         st = read_elements(o, 0, first, count, piece->positions, err);
+        if (st == CW_OK)
+            st = check_positions(piece->positions, first, count, err);
         if (st == CW_OK && piece->normals)
             st = read_elements(o, vertices, first, count, piece->normals, err);
         chunk.first_vertex = frame->vertex_count;
@@ -267,8 +305,8 @@ static cw_status append_arrays(const opened *o, cw_mesh_spool *spool, cw_mesh *p
     for (size_t first = 0; first < triangles && st == CW_OK; first += PIECE) {
         const size_t count = triangles - first < PIECE ? triangles - first : PIECE;
         st = read_elements(o, vertices + normals, first, count, piece->triangles, err);
-        for (size_t n = 0; n < 3 * count; n++)
-            piece->triangles[n] += (uint32_t)base;
+        if (st == CW_OK)
+            st = shift_corners(piece->triangles, first, count, named, (uint32_t)base, err);
         chunk.first_vertex = frame->vertex_count;
         chunk.first_triangle = frame->triangle_count;
         chunk.mesh.vertex_count = 0;
@@ -281,8 +319,14 @@ static cw_status append_arrays(const opened *o, cw_mesh_spool *spool, cw_mesh *p
 
 static cw_status append_opened(const opened *o, cw_mesh_spool *spool, cw_error *err)
 {
-    const size_t before = cw_mesh_spool_frame(spool)->vertex_count;
+    const cw_mesh *frame = cw_mesh_spool_frame(spool);
+    const size_t before = frame->vertex_count;
     cw_mesh piece = o->frame;
+    if (before && o->facts.counts.vertices &&
+        (memcmp(frame->origin, piece.origin, sizeof piece.origin) != 0 ||
+         memcmp(frame->affine, piece.affine, sizeof piece.affine) != 0))
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the fragment's origin or affine is not that of the parts before it");
     if (before + o->facts.counts.vertices > UINT32_MAX)
         return cwi_fail(err, CW_ERR_LIMIT,
                         "the surface has more than %u vertices, which is what a mesh holds",

@@ -66,11 +66,11 @@ void cw_mesh_spool_free(cw_mesh_spool *s)
     cwi_free(s);
 }
 
-cw_status cwi_write_elements(int file, size_t first, const void *from, size_t count,
-                             cw_error *err)
+cw_status cwi_write_elements(const char *folder, int file, size_t first, const void *from,
+                             size_t count, cw_error *err)
 {
-    return cwi_unnamed_write(file, first * CWI_SPOOL_ELEMENT, from, count * CWI_SPOOL_ELEMENT,
-                             err);
+    return cwi_unnamed_write(folder, file, first * CWI_SPOOL_ELEMENT, from,
+                             count * CWI_SPOOL_ELEMENT, err);
 }
 
 static cw_status take_chunk(void *user, const cw_mesh_chunk *chunk, cw_error *err)
@@ -94,14 +94,14 @@ static cw_status take_chunk(void *user, const cw_mesh_chunk *chunk, cw_error *er
     memcpy(all->origin, m->origin, sizeof all->origin);
     memcpy(all->affine, m->affine, sizeof all->affine);
     cwi_box_add_points(s->low, s->high, m->positions, m->vertex_count);
-    cw_status st = cwi_write_elements(s->mine.files[CWI_SPOOL_POSITIONS], all->vertex_count,
-                                      m->positions, m->vertex_count, err);
+    cw_status st = cwi_write_elements(s->folder, s->mine.files[CWI_SPOOL_POSITIONS],
+                                      all->vertex_count, m->positions, m->vertex_count, err);
     if (st == CW_OK && m->normals)
-        st = cwi_write_elements(s->mine.files[CWI_SPOOL_NORMALS], all->vertex_count, m->normals,
-                                m->vertex_count, err);
+        st = cwi_write_elements(s->folder, s->mine.files[CWI_SPOOL_NORMALS], all->vertex_count,
+                                m->normals, m->vertex_count, err);
     if (st == CW_OK)
-        st = cwi_write_elements(s->mine.files[CWI_SPOOL_TRIANGLES], all->triangle_count,
-                                m->triangles, m->triangle_count, err);
+        st = cwi_write_elements(s->folder, s->mine.files[CWI_SPOOL_TRIANGLES],
+                                all->triangle_count, m->triangles, m->triangle_count, err);
     s->mine.vertices = all->vertex_count += m->vertex_count;
     s->mine.triangles = all->triangle_count += m->triangle_count;
     return st;
@@ -247,6 +247,17 @@ void cwi_spool_read_own(cwi_spool_reader *r)
     r->end = r->first + (vertices ? g->vertices : g->triangles);
 }
 
+/* Fails for a triangle that names a vertex that is not there. */
+static cw_status check_corners(const cwi_spool_reader *r, cw_error *err)
+{
+    const size_t vertices = r->spool->frame.vertex_count;
+    for (size_t n = 0; n < 3 * r->count && !r->is_part; n++)
+        if (r->mesh.triangles[n] >= vertices)
+            return cwi_fail(err, CW_ERR_FORMAT, "triangle %zu names vertex %u of %zu",
+                            r->first + n / 3, r->mesh.triangles[n], vertices);
+    return CW_OK;
+}
+
 cw_status cwi_spool_next(cwi_spool_reader *r, cw_error *err)
 {
     const cw_mesh_spool *s = r->spool;
@@ -256,6 +267,8 @@ cw_status cwi_spool_next(cwi_spool_reader *r, cw_error *err)
     if (r->elements != CWI_VERTICES) {
         cw_status st =
             cwi_spool_read(s, CWI_SPOOL_TRIANGLES, r->first, r->count, m->triangles, err);
+        if (st == CW_OK)
+            st = check_corners(r, err);
         return st == CW_OK && r->elements == CWI_FACETS ? fetch_corners(r, err) : st;
     }
     cw_status st =

@@ -30,11 +30,11 @@ struct cw_mesh_spool {
     double low[3], high[3]; /* of the positions */
 };
 
-/* Reads or writes `count` elements of an array's file. */
+/* Reads or writes `count` elements of an array's file. folder: of the file, for messages */
 CW_NODISCARD cw_status cwi_read_elements(int file, size_t first, size_t count, void *to,
                                          cw_error *err);
-CW_NODISCARD cw_status cwi_write_elements(int file, size_t first, const void *from,
-                                          size_t count, cw_error *err);
+CW_NODISCARD cw_status cwi_write_elements(const char *folder, int file, size_t first,
+                                          const void *from, size_t count, cw_error *err);
 
 /* Reads elements of an array of the whole surface. Triangles name vertices by their numbers in it. */
 CW_NODISCARD cw_status cwi_spool_read(const cw_mesh_spool *spool, int array, size_t first,
@@ -62,6 +62,7 @@ typedef struct cwi_spool_reader {
     cwi_elements elements;
     size_t first, count; /* of the piece */
     size_t end;          /* of the elements that are read */
+    bool is_part;        /* triangles may name vertices of the next part */
     cw_mesh mesh;        /* the piece's arrays; those that it lacks are NULL */
     struct cwi_block_cache *cache;
 } cwi_spool_reader;
@@ -73,7 +74,7 @@ CW_NODISCARD cw_status cwi_spool_open(cwi_spool_reader *r, const cw_mesh_spool *
 void cwi_spool_read_own(cwi_spool_reader *r);
 
 /* Reads the next piece; count is 0 behind the last one.
- * Returns CW_ERR_IO, CW_ERR_NO_MEMORY */
+ * Returns CW_ERR_FORMAT for a triangle that names no vertex; CW_ERR_IO, CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cwi_spool_next(cwi_spool_reader *r, cw_error *err);
 void cwi_spool_close(cwi_spool_reader *r);
 

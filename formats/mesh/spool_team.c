@@ -43,7 +43,7 @@ static cw_status copy_file(int *file, const char *path, size_t elements, const c
         const size_t count = elements - n < PIECE ? elements - n : PIECE;
         st = cwi_read_elements(*file, n, count, piece, err);
         if (st == CW_OK)
-            st = cwi_write_elements(to, n, piece, count, err);
+            st = cwi_write_elements(folder, to, n, piece, count, err);
     }
     if (st == CW_OK && fsync(to) != 0) /* other machines read it */
         st = fail_file("a temporary file cannot be written", folder, err);

@@ -60,8 +60,7 @@ static size_t round_up(size_t number)
 
 /* --- first pass: the front's ends ----------------------------------------------------------- */
 
-static cw_status scan_piece(volume_pass *p, const cwi_spool_reader *r, uint32_t *lowest,
-                            uint32_t *highest, cw_error *err)
+static void scan_piece(const cwi_spool_reader *r, uint32_t *lowest, uint32_t *highest)
 {
     uint32_t low = UINT32_MAX, high = *highest;
     const uint32_t *corners = r->mesh.triangles;
@@ -71,11 +70,6 @@ static cw_status scan_piece(volume_pass *p, const cwi_spool_reader *r, uint32_t 
     }
     *lowest = low;
     *highest = high;
-    for (size_t n = 0; high >= p->vertices && n < 3 * r->count; n++)
-        if (corners[n] >= p->vertices)
-            return cwi_fail(err, CW_ERR_ARGUMENT, "triangle %zu names vertex %u of %zu",
-                            r->first + n / 3, corners[n], p->vertices);
-    return CW_OK;
 }
 
 /* Finds the lowest and the highest vertices of pieces. */
@@ -87,7 +81,7 @@ static cw_status find_ends(volume_pass *p, uint32_t *highest, cw_error *err)
     for (size_t n = 0; n < p->pieces && st == CW_OK; n++) {
         st = cwi_spool_next(&r, err);
         if (st == CW_OK)
-            st = scan_piece(p, &r, &p->lowest[n], &high, err);
+            scan_piece(&r, &p->lowest[n], &high);
         if (st == CW_OK)
             st = report_pass(p, 0, n, p->pieces, err);
         highest[n] = high;
@@ -122,8 +116,8 @@ static cw_status write_links(volume_pass *p, size_t final, cw_error *err)
     if (final <= f->begin)
         return CW_OK;
     cwi_front_settle(f, final);
-    cw_status st = cwi_unnamed_write(p->file, f->begin * LINK_BYTES, f->sets,
-                                     (final - f->begin) * LINK_BYTES, err);
+    cw_status st = cwi_unnamed_write(cwi_spool_folder(p->spool), p->file, f->begin * LINK_BYTES,
+                                     f->sets, (final - f->begin) * LINK_BYTES, err);
     cwi_front_drop(f, final);
     return st;
 }
@@ -223,7 +217,8 @@ static cw_status judge_vertices(volume_pass *p, cw_error *err)
         if (st != CW_OK)
             break;
         follow_links(links, end - count, count, ring, size - 1);
-        st = cwi_unnamed_write(p->file, at, links, count * LINK_BYTES, err);
+        st = cwi_unnamed_write(cwi_spool_folder(p->spool), p->file, at, links,
+                               count * LINK_BYTES, err);
         if (st == CW_OK)
             st = report_pass(p, 2, p->vertices - end, p->vertices, err);
     }

@@ -31,7 +31,8 @@ cw_status cwi_unnamed_open(const char *folder, int *file, cw_error *err)
                                  strerror(errno));
 }
 
-cw_status cwi_unnamed_write(int file, size_t at, const void *from, size_t bytes, cw_error *err)
+cw_status cwi_unnamed_write(const char *folder, int file, size_t at, const void *from,
+                            size_t bytes, cw_error *err)
 {
     const char *left = from;
     while (bytes) {
@@ -39,7 +40,8 @@ cw_status cwi_unnamed_write(int file, size_t at, const void *from, size_t bytes,
         if (n < 0 && errno == EINTR)
             continue;
         if (n <= 0)
-            return cwi_fail(err, CW_ERR_OUTPUT, "a temporary file cannot be written: %s",
+            return cwi_fail(err, CW_ERR_OUTPUT,
+                            "a temporary file in '%s' cannot be written: %s", folder,
                             strerror(n < 0 ? errno : ENOSPC));
         left += n;
         at += (size_t)n;

@@ -12,9 +12,10 @@ extern "C" {
  * Returns CW_ERR_OUTPUT, CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cwi_unnamed_open(const char *folder, int *file, cw_error *err);
 
-/* Writes bytes at an offset. Returns CW_ERR_OUTPUT when the disk is full. */
-CW_NODISCARD cw_status cwi_unnamed_write(int file, size_t at, const void *from, size_t bytes,
-                                         cw_error *err);
+/* Writes bytes at an offset. folder: of the file, for the message
+ * Returns CW_ERR_OUTPUT when the disk is full. */
+CW_NODISCARD cw_status cwi_unnamed_write(const char *folder, int file, size_t at,
+                                         const void *from, size_t bytes, cw_error *err);
 
 /* Reads bytes at an offset, all of which were written. Returns CW_ERR_IO. */
 CW_NODISCARD cw_status cwi_unnamed_read(int file, size_t at, void *to, size_t bytes,

@@ -30,26 +30,14 @@ static cw_status parse_dims(const char *text, cw_raw_layout *layout, cw_error *e
     return *rest ? fail_dims(text, err) : CW_OK;
 }
 
-static cw_status fail_spacing(const char *text, cw_error *err)
-{
-    return cwi_fail(err, CW_ERR_ARGUMENT,
-                    "'spacing' is '%.40s'; it must be three lengths in mm above 0, such as "
-                    "0.5x0.5x1",
-                    text);
-}
-
 static cw_status parse_spacing(const char *text, cw_raw_layout *layout, cw_error *err)
 {
-    char item[CWI_ITEM_BYTES], separator = 0;
-    const char *rest = text;
-    for (int a = 0; a < 3; a++) {
-        double *mm = &layout->spacing[a];
-        const char *at = item;
-        if (!cwi_next_item(&rest, &separator, item) || !cwi_parse_double(&at, mm) || *at ||
-            !(*mm > 0) || !isfinite(*mm) || (separator != 0) != (a < 2))
-            return fail_spacing(text, err);
-    }
-    return *rest ? fail_spacing(text, err) : CW_OK;
+    return cwi_parse_lengths(text, layout->spacing)
+               ? CW_OK
+               : cwi_fail(err, CW_ERR_ARGUMENT,
+                          "'spacing' is '%.40s'; it must be a length above 0 with its unit, or "
+                          "three of them, such as 0.5x0.5x1mm",
+                          text);
 }
 
 static cw_status parse_type(const char *text, cw_raw_layout *layout, cw_error *err)

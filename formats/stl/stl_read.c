@@ -28,7 +28,9 @@ static bool is_text(const unsigned char *head, size_t size)
     size_t i = 0;
     while (i < size && (head[i] == ' ' || (head[i] >= '\t' && head[i] <= '\r')))
         i++;
-    return size - i >= 5 && strncasecmp((const char *)head + i, "solid", 5) == 0;
+    /* a binary file that is cut off has another size than it should; its count of facets has a zero */
+    return size - i >= 5 && !memchr(head, 0, size < START ? size : START) &&
+           strncasecmp((const char *)head + i, "solid", 5) == 0;
 }
 
 bool cwi_stl_sniff(const unsigned char *head, size_t size, uint64_t file_size)
@@ -129,14 +131,19 @@ static cw_status read_binary(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file
     if (st != CW_OK)
         return st;
     char text[HEADER + 1] = "";
-    const uint32_t count = cwi_get_u32(head + HEADER);
+    size_t count = cwi_get_u32(head + HEADER);
     const uint64_t held = cwi_scan_left(s) / FACET;
     memcpy(text, head, HEADER);
     take_words(text, mesh, metadata);
-    if (count > held)
+    if (count > held && (!f->in->desc.truncated || !held))
         return cwi_fail(err, CW_ERR_FORMAT,
-                        "the header counts %u facets; the file has room for %llu", count,
-                        (unsigned long long)held);
+                        "the header counts %zu facets; the file has room for %llu%s", count,
+                        (unsigned long long)held, held ? "; desc->truncated takes those" : "");
+    if (count > held) {
+        metadata->truncated = true;
+        metadata->expected_triangles = count;
+        count = (size_t)held;
+    }
     st = ensure_capacity(f, count, err);
     while (st == CW_OK && f->count < count) {
         const size_t left = count - f->count;
@@ -255,6 +262,24 @@ static cw_status read_text(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *
     return st;
 }
 
+/* Judges an error: where the file ends in the middle of a facet, those before may be taken. */
+static cw_status judge_end(const facets *f, const cwi_scan *s, cw_status st,
+                           cw_mesh_file *metadata, cw_error *err)
+{
+    enum { LINE_END = 2 };
+    if (st != CW_ERR_FORMAT || cwi_scan_left(s) > LINE_END || !f->count)
+        return st;
+    metadata->truncated = f->in->desc.truncated;
+    if (metadata->truncated) {
+        if (err)
+            *err = (cw_error){0};
+        return CW_OK;
+    }
+    const cw_error cause = err ? *err : (cw_error){0};
+    return cwi_fail(err, st, "%.400s; desc->truncated takes the %zu facet%s before that",
+                    cause.message, f->count, f->count == 1 ? "" : "s");
+}
+
 /* --- either ------------------------------------------------------------------------------ */
 
 static cw_status move_arrays(facets *f, cw_mesh *mesh, cw_error *err)
@@ -282,6 +307,8 @@ cw_status cwi_stl_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata
     if (st == CW_OK)
         st = text ? read_text(&f, &s, mesh, metadata, err)
                   : read_binary(&f, &s, mesh, metadata, err);
+    if (text)
+        st = judge_end(&f, &s, st, metadata, err);
     if (st == CW_OK)
         st = move_arrays(&f, mesh, err);
     cwi_scan_close(&s);

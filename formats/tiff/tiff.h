@@ -15,8 +15,10 @@ typedef struct cwi_tiff_facts {
     uint32_t turned;     /* 0: no; else white was 0, and values are inverted */
     uint32_t page_count; /* of full resolution, in the file */
     uint32_t slices, channels, steps;
-    double spacing[3];   /* along x, y and z; 0: not stated */
-    double unit_mm[3];   /* millimetres of their unit; 0: not stated */
+    double spacing[3]; /* along x, y and z; 0: not stated */
+    double unit_mm[3]; /* millimetres of their unit; 0: not stated */
+    double pixel_mm
+        [2]; /* by the tags of resolution alone, which scans and screens state, too; 0: no */
     double step_seconds; /* 0: not stated */
     double slope, intercept;
     char note[160]; /* a decision to report; empty: none */

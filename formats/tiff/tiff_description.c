@@ -182,6 +182,25 @@ static cw_status describe_imagej(cwi_tiff_file *f, const char *text, cwi_tiff_fa
 
 /* --- kinds of descriptions ---------------------------------------------------------------- */
 
+/* Finds the size of pixels by the tags of resolution. Programs that know none write 72 or 96 per
+ * inch, or 1. */
+static void find_resolution(const cwi_tiff_file *f, cwi_tiff_facts *facts)
+{
+    enum { SCREEN = 72, OTHER_SCREEN = 96 };
+    uint16_t unit = RESUNIT_NONE;
+    double per_unit[2];
+    TIFFGetFieldDefaulted(f->tiff, TIFFTAG_RESOLUTIONUNIT, &unit);
+    const double unit_mm = unit == RESUNIT_INCH ? 25.4 : unit == RESUNIT_CENTIMETER ? 10 : 0;
+    for (int a = 0; a < 2; a++)
+        if (!cwi_tiff_rational(f, a ? TIFFTAG_YRESOLUTION : TIFFTAG_XRESOLUTION,
+                               &per_unit[a]) ||
+            !(per_unit[a] > 1) || !isfinite(per_unit[a]) ||
+            (unit == RESUNIT_INCH && (per_unit[a] == SCREEN || per_unit[a] == OTHER_SCREEN)))
+            return;
+    for (int a = 0; a < 2; a++)
+        facts->pixel_mm[a] = unit_mm / per_unit[a];
+}
+
 static bool is_ome(const char *text)
 {
     return *text == '<' && (strstr(text, "<OME") || strstr(text, ":OME "));
@@ -201,6 +220,7 @@ cw_status cwi_tiff_describe(cwi_tiff_file *f, const char *text, cwi_tiff_facts *
         return cwi_fail(err, CW_ERR_FORMAT,
                         "'ImageDescription' says that tifffile wrote one directory for several "
                         "pages; such files are not read");
+    find_resolution(f, facts);
     facts->slices = f->page_count;
     facts->channels = facts->steps = 1;
     for (uint32_t p = 0; p < f->page_count; p++)

@@ -5,6 +5,7 @@
 #include "core/base/status.h"
 #include "formats/bytes/file_pattern.h"
 #include "formats/tiff/tiff_format.h"
+#include "formats/volume/damaged_files.h"
 #include "formats/volume/slice_spacing.h"
 #include "formats/volume/slice_stack.h"
 
@@ -56,6 +57,9 @@ static cw_status check_numbers(const cwi_tiff_facts *f, cw_error *err)
             return cwi_fail(err, CW_ERR_FORMAT,
                             "'ImageDescription' or 'XResolution' gives axis %d a spacing of %g",
                             a, f->spacing[a]);
+    if (!is_said(f->pixel_mm[0]) || !is_said(f->pixel_mm[1]))
+        return cwi_fail(err, CW_ERR_FORMAT, "'XResolution' gives pixels of %g mm",
+                        f->pixel_mm[0]);
     if (!is_said(f->step_seconds) || !isfinite(f->slope) || !isfinite(f->intercept) ||
         f->slope == 0)
         return cwi_fail(err, CW_ERR_FORMAT,
@@ -156,6 +160,12 @@ static void set_frame(const cwi_tiff_facts *f, const cw_read_desc *desc, cw_volu
         cwi_note(desc,
                  "the file does not say all sizes of a voxel: what is missing is taken as "
                  "1, and no unit is known; desc->spacing_mm states them");
+    if (!some && f->pixel_mm[0] > 0 && !(desc->spacing_mm[0] > 0))
+        cwi_note(
+            desc,
+            "'XResolution' and 'YResolution' state pixels of %.6g x %.6g mm, which may be for "
+            "print: they are not used; desc->spacing_mm states what is so",
+            f->pixel_mm[0], f->pixel_mm[1]);
 }
 
 static cw_status ensure_capacity(cwi_stack *stack, size_t planes, size_t slots, cw_error *err)
@@ -201,7 +211,7 @@ typedef struct slices {
     uint32_t *order;
 } slices;
 
-/* Returns true for a TIFF file, by name, else by content: a damaged slice is not skipped. */
+/* Returns true for a TIFF file, by name, else by content: a damaged slice counts, too. */
 static bool is_tiff(const cwi_input *in, const char *name)
 {
     unsigned char head[4];
@@ -277,33 +287,69 @@ static cw_status check_alike(const cwi_tiff_facts *a, const cwi_tiff_facts *b, c
     return CW_OK;
 }
 
-static cw_status look_into(slices *s, size_t file, cw_error *err)
+/* Reads the facts of one of the files; those of the first one are kept. */
+static cw_status look_into(slices *s, const char *name, bool first, cwi_tiff_facts *f,
+                           cw_error *err)
 {
-    cwi_tiff_facts f;
     uint64_t size;
     int fd;
-    cw_status st = cwi_input_open_side(s->in, s->files.items[file], &fd, &size, err);
+    cw_status st = cwi_input_open_side(s->in, name, &fd, &size, err);
     if (st != CW_OK)
         return st;
-    st = take_facts(s->planes, fd, size, &f, file ? NULL : &s->order, err);
+    cwi_free(first ? s->order : NULL);
+    s->order = first ? NULL : s->order;
+    st = take_facts(s->planes, fd, size, f, first ? &s->order : NULL, err);
+    if (st == CW_OK && s->desc->skip_damaged && f->compressed)
+        st = cwi_planes_try(s->planes, f->page_count, f->rows,
+                            (size_t)f->columns * f->samples * cw_type_size(f->type), err);
     close(fd);
-    if (st == CW_OK && file == 0)
-        s->facts = f;
-    if (st == CW_OK && s->files.count > 1)
-        st = check_alike(&s->facts, &f, err);
+    if (st == CW_OK && first)
+        s->facts = *f;
     return st;
+}
+
+/* Leaves a damaged file out if that was asked for. Reading it may have ended the library's
+ * process. */
+static cw_status leave_out(slices *s, cwi_damaged *damaged, const char *name,
+                           const cw_error *reason, cw_error *err)
+{
+    cw_status st = cwi_damaged_add(damaged, name, "", reason, err);
+    if (st == CW_OK && !s->desc->skip_damaged && s->files.count > 1)
+        return cwi_damaged_fail(&damaged->items[0], err);
+    return st == CW_OK && !s->planes->box.open ? cwi_planes_restart(s->planes, err) : st;
 }
 
 /* Reads the facts of every file, before any pixels. */
 static cw_status look_into_all(slices *s, cw_error *err)
 {
+    cwi_damaged damaged = {0};
     cw_status st = CW_OK;
+    size_t kept = 0;
     for (size_t i = 0; st == CW_OK && i < s->files.count; i++) {
+        char *name = s->files.items[i];
+        cwi_tiff_facts f;
+        cw_error why = {0};
         s->planes->box.done = (double)i / (double)s->files.count;
-        st = look_into(s, i, err);
-        if (st != CW_OK && st != CW_ERR_CANCELLED)
-            cwi_fail_in(err, st, s->files.items[i]);
+        st = look_into(s, name, kept == 0, &f, &why);
+        if (cwi_is_damage(st)) {
+            st = leave_out(s, &damaged, name, &why, err);
+            continue;
+        }
+        if (st != CW_OK)
+            cwi_fail(err, st, "%s", why.message);
+        else if (s->files.count > 1 && (st = check_alike(&s->facts, &f, err)) != CW_OK)
+            cwi_fail_in(err, st, name);
+        s->files.items[i] = s->files.items[kept];
+        s->files.items[kept++] = name; /* those left out gather at the end */
     }
+    if (st == CW_OK && kept == 0)
+        st = cwi_fail(err, damaged.items[0].status, "%s: %s", damaged.items[0].name,
+                      damaged.items[0].reason);
+    if (st == CW_OK)
+        cwi_damaged_note(&damaged, "left out, because they cannot be read", s->desc);
+    cwi_damaged_free(&damaged);
+    while (st == CW_OK && s->files.count > kept)
+        cwi_free(s->files.items[--s->files.count]);
     return st;
 }
 

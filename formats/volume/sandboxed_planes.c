@@ -117,3 +117,14 @@ cw_status cwi_planes_read(cwi_planes *planes, uint32_t plane, size_t first_row,
     }
     return st;
 }
+
+cw_status cwi_planes_try(cwi_planes *planes, uint32_t count, size_t row_count, size_t row_bytes,
+                         cw_error *err)
+{
+    void *pixels = cwi_alloc_array(row_count, row_bytes);
+    cw_status st = pixels ? CW_OK : cwi_fail_memory(err);
+    for (uint32_t n = 0; st == CW_OK && n < count; n++)
+        st = cwi_planes_read(planes, n, 0, row_count, row_bytes, pixels, err);
+    cwi_free(pixels);
+    return st;
+}

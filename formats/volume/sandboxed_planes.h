@@ -60,6 +60,10 @@ CW_NODISCARD cw_status cwi_planes_read(cwi_planes *planes, uint32_t plane, size_
                                        size_t row_count, size_t row_bytes, void *to,
                                        cw_error *err);
 
+/* Reads the first planes of that file, and drops the pixels: a damaged one is an error. */
+CW_NODISCARD cw_status cwi_planes_try(cwi_planes *planes, uint32_t count, size_t row_count,
+                                      size_t row_bytes, cw_error *err);
+
 #ifdef __cplusplus
 }
 #endif

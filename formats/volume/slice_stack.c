@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
+#include "formats/volume/damaged_files.h"
 #include "formats/volume/slice_visit.h"
 #include "formats/volume/voxel_source.h"
 
@@ -112,9 +113,11 @@ static cw_status read_rows(cwi_stack_reader *r, size_t index, size_t first, size
     if (st == CW_OK)
         st = cwi_planes_read(r->planes, plane->number, first, count,
                              s->shape.dim[0] * s->samples * cw_type_size(s->type), to, err);
-    return st == CW_OK || st == CW_ERR_CANCELLED || !file_name(s, plane->file)
-               ? st
-               : cwi_fail_in(err, st, file_name(s, plane->file));
+    const char *name = file_name(s, plane->file);
+    if (st == CW_OK || st == CW_ERR_CANCELLED || !name)
+        return st;
+    return cwi_is_damage(st) && s->files.count > 1 ? cwi_fail_in_damaged(err, st, name)
+                                                   : cwi_fail_in(err, st, name);
 }
 
 cw_status cwi_stack_read_plane(cwi_stack_reader *r, size_t index, void *to, cw_error *err)

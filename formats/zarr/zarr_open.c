@@ -15,6 +15,9 @@
 
 enum { CACHE_BYTES = 256 << 20, MAX_SLOTS = 1 << 18 };
 
+/* Folders above a level's in which its image is looked for. */
+enum { MAX_ABOVE = 3 };
+
 /* --- from nodes to arrays ----------------------------------------------------------------- */
 
 /* Takes the array of a node by itself. */
@@ -127,6 +130,52 @@ static cw_status take_node(cwi_zarr *z, const cwi_zarr_node *node, size_t level,
     return take_array(z, node, err);
 }
 
+/* Finds the level of an image that a name is the path of. */
+static bool find_named_level(const cwi_zarr_node *root, const char *name, size_t *level)
+{
+    char path[CWI_ZARR_KEY_BYTES];
+    for (size_t n = 0; is_image(root) && n < cwi_zarr_level_count(root); n++)
+        if (cwi_zarr_level_path(root, n, path, NULL) == CW_OK && strcmp(path, name) == 0) {
+            *level = n;
+            return true;
+        }
+    return false;
+}
+
+/* Looks for an image above the array that a name leads to, which has it as a level, from the nearest group on. The node
+ * is left open if there is one. */
+static cw_status find_image_above(const cwi_zarr *z, const char *name, cwi_zarr_node *image,
+                                  size_t *level, cw_error *err)
+{
+    char path[CWI_ZARR_KEY_BYTES];
+    snprintf(path, sizeof path, "%s", name);
+    while (*path) {
+        char *slash = strrchr(path, '/');
+        *(slash ? slash : path) = '\0';
+        const cw_status st = cwi_zarr_node_open(image, &z->in, path, err);
+        if (st != CW_OK || find_named_level(image, name, level))
+            return st;
+        cwi_zarr_node_close(image);
+    }
+    return CW_OK;
+}
+
+/* Takes the array as a level of the image above it that lists it. is_taken: false where none does */
+static cw_status take_level(cwi_zarr *z, const char *name, cwi_zarr_found *found,
+                            bool *is_taken, cw_error *err)
+{
+    cwi_zarr_node image = {0};
+    size_t level = 0;
+    cw_status st = find_image_above(z, name, &image, &level, err);
+    *is_taken = st == CW_OK && is_image(&image);
+    if (*is_taken) {
+        st = take_image(z, &image, level, found, err);
+        z->level_count = 0; /* one was named */
+    }
+    cwi_zarr_node_close(&image);
+    return st;
+}
+
 /* --- groups ------------------------------------------------------------------------------- */
 
 /* Looks at an array or image of a group. An array that is not read has 0 dimensions. */
@@ -187,25 +236,17 @@ static cw_status take_group(cwi_zarr *z, const cwi_zarr_node *group, size_t leve
 {
     cwi_zarr_node node = {0};
     char path[CWI_ZARR_KEY_BYTES];
+    bool is_taken = false;
     cw_status st = choose_array(z, group, found, path, err);
-    if (st == CW_OK)
-        st = cwi_zarr_node_open(&node, &z->in, path, err);
+    if (st == CW_OK && !level)
+        st = take_level(z, path, found, &is_taken, err);
+    if (st != CW_OK || is_taken)
+        return st;
+    st = cwi_zarr_node_open(&node, &z->in, path, err);
     if (st == CW_OK)
         st = take_node(z, &node, level, found, err);
     cwi_zarr_node_close(&node);
     return st;
-}
-
-/* Finds the level of an image that a name is the path of. */
-static bool find_named_level(const cwi_zarr_node *root, const char *name, size_t *level)
-{
-    char path[CWI_ZARR_KEY_BYTES];
-    for (size_t n = 0; is_image(root) && n < cwi_zarr_level_count(root); n++)
-        if (cwi_zarr_level_path(root, n, path, NULL) == CW_OK && strcmp(path, name) == 0) {
-            *level = n;
-            return true;
-        }
-    return false;
 }
 
 /* Reports a name that leads to nothing, with as many of the store's arrays as fit. */
@@ -226,17 +267,16 @@ static cw_status fail_name(const cwi_zarr *z, const char *name, cw_error *err)
 }
 
 /* Takes the node that a name leads to, from the root. */
-static cw_status take_named(cwi_zarr *z, const cwi_zarr_node *root, const cwi_zarr_desc *desc,
-                            cwi_zarr_found *found, cw_error *err)
+static cw_status take_named(cwi_zarr *z, const cwi_zarr_desc *desc, cwi_zarr_found *found,
+                            cw_error *err)
 {
     cwi_zarr_node node = {0};
-    size_t level = desc->level;
-    if (find_named_level(root, desc->array, &level)) {
-        cw_status st = take_image(z, root, level, found, err);
-        z->level_count = 0; /* one was named */
+    const size_t level = desc->level;
+    bool is_taken;
+    cw_status st = take_level(z, desc->array, found, &is_taken, err);
+    if (st != CW_OK || is_taken)
         return st;
-    }
-    cw_status st = cwi_zarr_node_open(&node, &z->in, desc->array, err);
+    st = cwi_zarr_node_open(&node, &z->in, desc->array, err);
     if (st == CW_OK && node.kind == CWI_ZARR_NOTHING)
         st = fail_name(z, desc->array, err);
     else if (st == CW_OK && node.kind == CWI_ZARR_IS_GROUP && !is_image(&node))
@@ -245,6 +285,60 @@ static cw_status take_named(cwi_zarr *z, const cwi_zarr_node *root, const cwi_za
         st = take_node(z, &node, level, found, err);
     cwi_zarr_node_close(&node);
     return st;
+}
+
+/* Opens the folder above a level's, if it is an image that lists the level; else the level's, whose name is then empty.
+ * name  set to the level's path in the folder */
+static cw_status open_folder_above(cwi_zarr *z, const char *path, char name[CWI_ZARR_KEY_BYTES],
+                                   cw_error *err)
+{
+    char *above = cwi_strdup(path);
+    size_t end = strlen(path), level;
+    bool is_found = false;
+    cw_status st = above ? CW_OK : cwi_fail_memory(err);
+    while (st == CW_OK && end > 1 && above[end - 1] == '/')
+        above[--end] = '\0';
+    const size_t whole = end;
+    for (int n = 0; st == CW_OK && n < MAX_ABOVE && !is_found && end; n++) {
+        cwi_zarr_node image = {0};
+        cwi_input in = {0};
+        cw_error ignored;
+        while (end && above[end - 1] != '/')
+            end--;
+        if (whole - end >= CWI_ZARR_KEY_BYTES)
+            break;
+        snprintf(name, CWI_ZARR_KEY_BYTES, "%.*s", (int)(whole - end), path + end);
+        above[end > 1 ? end - 1 : end] = '\0';
+        if (cwi_input_open_folder(&in, *above ? above : ".", &ignored) == CW_OK &&
+            cwi_zarr_node_open(&image, &in, "", &ignored) == CW_OK)
+            is_found = find_named_level(&image, name, &level);
+        cwi_zarr_node_close(&image);
+        cwi_input_close(&in);
+        end -= end > 0;
+    }
+    if (is_found) {
+        const bool allow_external = z->in.allow_external;
+        cwi_input_close(&z->in);
+        st = cwi_input_open_folder(&z->in, *above ? above : ".", err);
+        z->in.allow_external = allow_external;
+    } else {
+        *name = '\0';
+    }
+    cwi_free(above);
+    return st;
+}
+
+/* Takes an array that is the store itself: as a level of the image above its folder, if one lists it. */
+static cw_status take_lone_array(cwi_zarr *z, const cwi_zarr_node *root, size_t level,
+                                 cwi_zarr_found *found, cw_error *err)
+{
+    char name[CWI_ZARR_KEY_BYTES] = "";
+    bool is_taken = false;
+    cw_status st =
+        !level && cwi_is_folder(z->path) ? open_folder_above(z, z->path, name, err) : CW_OK;
+    if (st == CW_OK && *name)
+        st = take_level(z, name, found, &is_taken, err);
+    return st != CW_OK || is_taken ? st : take_node(z, root, level, found, err);
 }
 
 static cw_status take_root(cwi_zarr *z, const cwi_zarr_desc *desc, cwi_zarr_found *found,
@@ -257,9 +351,11 @@ static cw_status take_root(cwi_zarr *z, const cwi_zarr_desc *desc, cwi_zarr_foun
                       "the folder has no metadata of Zarr; zarr.json, .zarray or .zgroup was "
                       "expected");
     else if (st == CW_OK && desc->array)
-        st = take_named(z, &root, desc, found, err);
+        st = take_named(z, desc, found, err);
     else if (st == CW_OK && root.kind == CWI_ZARR_IS_GROUP && !is_image(&root))
         st = take_group(z, &root, desc->level, found, err);
+    else if (st == CW_OK && root.kind == CWI_ZARR_IS_ARRAY)
+        st = take_lone_array(z, &root, desc->level, found, err);
     else if (st == CW_OK)
         st = take_node(z, &root, desc->level, found, err);
     cwi_zarr_node_close(&root);

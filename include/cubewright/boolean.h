@@ -18,12 +18,22 @@ typedef enum cw_boolean_op {
     CW_BOOLEAN_COUNT
 } cw_boolean_op;
 
+/* Facts on one of the meshes: flags. */
+typedef enum cw_boolean_input {
+    CW_BOOLEAN_EMPTY = 1,  /* it has no triangle with an area */
+    CW_BOOLEAN_TURNED = 2, /* it enclosed a negative volume as a whole, and was turned */
+    CW_BOOLEAN_NEGATIVE =
+        4 /* it winds around a region a negative number of times: a shell is inside out */
+} cw_boolean_input;
+
 /* Options of a boolean. Zero fields mean the default named beside them. */
 typedef struct cw_boolean_desc {
     uint32_t version;     /* 0: the first version of this struct */
     cw_boolean_op op;     /* default: union */
     int threads;          /* default: one per processor; the result does not depend on it */
     cw_progress progress; /* default: none */
+    uint8_t
+        *inputs; /* of each mesh: its flags of cw_boolean_input are stored; default: none are */
 } cw_boolean_desc;
 
 /* Facts on a boolean. */
@@ -40,13 +50,17 @@ typedef struct cw_boolean_facts {
     double moved_mm; /* the largest movement of a point: up to half a last digit of the largest
                                 coordinate, or more where rounding made facets cross */
     double volume_mm3[2]; /* of the results, before rounding */
+    size_t
+        negative_regions; /* around which a mesh winds a negative number of times: they count as outside */
+    double negative_mm3; /* their volume, of which the results have nothing by this mesh */
 } cw_boolean_facts;
 
 /* Unites, subtracts or intersects solids.
  *
  * A point is inside of a mesh if the mesh winds around it: a positive number of times. So meshes may touch,
  * overlap and cross themselves, have several shells, shells in shells and equal triangles. They must be
- * closed: at each edge as many triangles run one way as the other. The order of `meshes` matters to the
+ * closed: at each edge as many triangles run one way as the other. A shell that is inside out and in no other adds
+ * nothing: negative_regions counts what is lost, and cw_mesh_orient() turns it. The order of `meshes` matters to the
  * difference and to the split alone.
  *
  * All decisions are exact for the positions given, on a grid of 2^-46 of the largest coordinate. Points in
@@ -68,7 +82,7 @@ typedef struct cw_boolean_facts {
  *
  * Returns  CW_ERR_ARGUMENT  count is 0, or as cw_mesh_check()
  *          CW_ERR_CHECK     a mesh is open: the message tells where; see cw_mesh_repair(). Or rounding found no
- *                           result without crossings
+ *                           result without crossings: 1 of some 8,000 hard cases came near it
  *          CW_ERR_LIMIT     more than 2^31 / 3 triangles or facets
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
  * Cost     near-linear in triangles and intersections; about 150 bytes a triangle, 1 kB an intersection

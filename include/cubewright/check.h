@@ -41,8 +41,9 @@ typedef struct cw_findings {
     double missing_mm3, missing_mm; /* volume that the largest encloses; how far the mesh is
                                        from one */
     const cw_distance *to_reference, *from_reference; /* cw_distance_to_mesh() both ways */
-    double tolerance_mm; /* for the distances; 0: no limit, distances are only reported */
-    bool has_normals;    /* the mesh has normals */
+    double tolerance_mm;    /* for the distances; 0: no limit, distances are only reported */
+    bool has_normals;       /* the mesh has normals */
+    const char *file_fault; /* cw_mesh_file.fault of the file; NULL or "": none */
 } cw_findings;
 
 /* Grades, from the worst to the best. */

@@ -36,9 +36,12 @@ typedef struct cw_cut_facts {
 /* Cuts a mesh by a plane, keeps one side, and closes it flat. A closed, oriented manifold stays one.
  *
  * Vertices within 4e-7 of the largest coordinate move into the plane, and count as on the other
- * side. Triangles in the plane go, and the section is filled again. Edges that cross the plane get
- * one vertex, which both triangles share. All vertices of the section lie in the plane as exactly
- * as single precision allows: exactly, if the plane is normal to an axis. Where surfaces touch at a
+ * side. So do those within 1.5e-5 of it and 1/512 of their longest edge, and neighbours of the section as
+ * near as that merge, so that the cut makes no slivers; unless the volume would change by more than 1e-6
+ * of it, or the surface would cross itself: then as near as a sixteenth of that, or none. Triangles in the
+ * plane go, and the section is filled again. Edges that cross the plane get one vertex, which both
+ * triangles share. All vertices of the section lie in the plane as exactly as single precision allows:
+ * exactly, if the plane is normal to an axis. Where surfaces touch at a
  * vertex in the plane, it becomes one vertex for each. Where rounding would make the surface cross
  * itself, vertices of the section move by up to 1.2e-6 of the largest coordinate, and 3e-7 from the
  * plane. Crossings of the mesh itself stay.
@@ -62,7 +65,7 @@ typedef struct cw_cut_facts {
  *          CW_ERR_EMPTY     nothing of the mesh is above the plane
  *          CW_ERR_LIMIT     beyond 2^32 / 3 triangles or vertices
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
- * Cost     about 30 ns for each triangle, and 6 us for each edge of the section; 500 bytes for each
+ * Cost     about 60 ns for each triangle, and 6 us for each edge of the section; 500 bytes for each
  *          of these edges, and 2 for each vertex, besides the result
  * Threads  reentrant; works on the calling thread
  * Source   ears [Meisters1975]; holes joined to the loops around them [Eberly2008] */

@@ -28,9 +28,16 @@ typedef enum cw_kernel {
  * kernel  any number */
 CW_API const char *cw_kernel_name(cw_kernel kernel);
 
+/* Returns the type that means of a volume's values have: in cw_volume_gauss(), cw_volume_bilateral(),
+ * cw_volume_aniso(), cw_volume_nlm() and cw_volume_resample(). Integers of 8 and 16 bits become
+ * CW_F32, those of 32 bits CW_F64; floats keep their type, and so do labels (CW_KNOWN_LABELS), whose
+ * means are rounded. All other filters keep the type.
+ * volume  its type and what is known of it are read; borrowed. NULL: CW_F32 */
+CW_API cw_type cw_filter_type(const cw_volume *volume);
+
 /* Smooths the first component and step with a Gaussian. Voxels without a value (no data, not
  * finite) stay so, and the others are means of those that have one. Beyond the border values go
- * on as they are there. The type, the scaling and the frame are kept; integers are rounded.
+ * on as they are there. The scaling and the frame are kept; the type is cw_filter_type().
  * volume        an even grid; borrowed
  * sigma_voxels  standard deviation along each axis in voxels, 0 to 64; 0 leaves an axis as it is
  * desc          borrowed; NULL means all defaults

@@ -114,6 +114,10 @@ typedef struct cw_read_desc {
     const char *series; /* label or UID, as from cw_series_list(); default: the only one */
     cw_gaps gaps;       /* missing or uneven slices; default: CW_ERR_UNSAFE */
     cw_tilt tilt;       /* shifted slices; default: they stay where they are */
+    bool skip_damaged; /* leave out slices whose files are damaged, with a note; what they leave
+                           are gaps. To find them, compressed pixels are decoded once more.
+                           Default: the error of the file. Files that belong to another series
+                           than the chosen one, or may do so, are left out in any case */
 
     /* Libraries run in a sandboxed process without rights, so a file that breaks one breaks
      * nothing else. */
@@ -264,6 +268,7 @@ typedef struct cw_series {
 } cw_series;
 
 /* Lists the series in a folder, or in a file's folder. A path without DICOM images has none.
+ * Damaged files are noted; a series that such a file may belong to has its error as status.
  * Neither names nor dates of patients are read.
  *
  * series   an array of *count, to be freed with cw_series_free(); NULL when there is none
@@ -307,7 +312,7 @@ CW_NODISCARD CW_API cw_status cw_label_table_beside(const char *volume_path, cha
                                                     cw_error *err);
 
 /* Parses a layout written as on the command line, for example
- * "dims=512x512x300,type=u16le,offset=62,spacing=0.5x0.5x1,components=1,steps=1".
+ * "dims=512x512x300,type=u16le,offset=62,spacing=0.5x0.5x1mm,components=1,steps=1".
  * Type is one of the eight with an optional le or be; le when left out.
  * text     as above
  * layout   filled on success
@@ -326,9 +331,10 @@ typedef struct cw_mesh_read_desc {
                                limit */
     bool no_sandbox;        /* run libraries in this process, not in a sandboxed one */
     double timeout_s;       /* for a library; default 60 */
-    cw_claim claim;         /* on the file's coordinates; default: as the file states, else LPS
+    bool truncated; /* take the whole facets of an STL that breaks off; default: refused */
+    cw_claim claim; /* on the file's coordinates; default: as the file states, else LPS
                                mm */
-    cw_progress progress;   /* default: none */
+    cw_progress progress; /* default: none */
 } cw_mesh_read_desc;
 
 /* Facts that a mesh file states, and the reader's decisions. */
@@ -347,6 +353,10 @@ typedef struct cw_mesh_file {
                            animation shows later: left out */
     size_t supports, support_triangles; /* placed objects of 3MF for support: left out */
     size_t others, other_triangles;     /* placed objects of 3MF of type "other": left out */
+    bool truncated;                     /* an STL breaks off, and what came before was taken */
+    size_t expected_triangles; /* of that STL by its header; 0: a text, which does not say */
+    char fault[160]; /* of glTF: a value beyond its range, or bounds that are not those of the
+                        positions, neither of which changes the mesh; "": none found */
 } cw_mesh_file;
 
 /* Reads a mesh: all parts of the file, merged, in LPS millimetres.
@@ -470,9 +480,11 @@ typedef struct cw_write_desc {
     double tolerance_mm; /* for glTF: the largest move of a vertex; for neuroglancer: of a point
                             of the finest level; default: 1/20,000 of the diagonal */
     int bits;            /* for glTF: bits of a coordinate, 1 to 16 (quantize), 24 (meshopt) or
-                            30 (Draco), whatever the loss; default: as many as the tolerance and
-                            the shape require. For neuroglancer 10 or 16 in a node of an octree,
-                            which is as fine as the tolerance requires; default: 16 */
+                            30 (Draco, which takes up to 2^bits x 4 bytes for it), whatever the
+                            loss; default: as many as the tolerance and the shape require, and
+                            floats where 24 are too few (meshopt, Draco). For neuroglancer 10
+                            or 16 in a node of an octree, which is as fine as the tolerance
+                            requires; default: 16 */
     int level;           /* for Draco: 1 (fast) to 10 (small); default 7 */
     cw_compressed *compressed; /* filled in; default: none */
     bool animated; /* for glTF: parts are shown one after another, each at its time_s; default:

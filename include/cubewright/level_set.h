@@ -112,17 +112,18 @@ typedef struct cw_offset_facts {
  * out       filled on success, with normals; emptied on failure; free it with cw_mesh_free()
  * facts     may be NULL
  *
- * Returns  CW_ERR_EMPTY for an offset inward that leaves nothing; else as
- *          cw_level_set_from_mesh(), cw_extract(), cw_self_intersections()
+ * Returns  CW_ERR_EMPTY for an offset inward that leaves nothing; CW_ERR_CHECK: rounding makes the
+ *          result cross itself, and other voxels help; else as cw_level_set_from_mesh(),
+ *          cw_extract(), cw_self_intersections()
  * Threads  the same to the bit for any number
  * Source   edges after [Kobbelt2001], [Attene2005]; parts of voxels after [Frisken2000] */
 CW_NODISCARD CW_API cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc,
                                              cw_mesh *out, cw_offset_facts *facts,
                                              cw_error *err);
 
-/* A round hole from the largest cavity to the outside. It starts with a ball at the cavity's
- * farthest point in a direction; on a flat floor, in the middle of the floor. It goes straight
- * on through everything in its way. */
+/* A round hole from the largest cavity to the outside: a circle with 64 corners. It starts with half a
+ * ball at the cavity's farthest point in a direction; on a flat floor, in the middle of the floor. It
+ * goes straight on through everything in its way. */
 typedef struct cw_drain {
     double diameter_mm;  /* at least 2 voxels */
     double direction[3]; /* in the world; of any length but 0 */
@@ -145,7 +146,12 @@ typedef struct cw_hollow_desc {
 /* Facts on a finished hollowing. */
 typedef struct cw_hollow_facts {
     double voxel_mm;                 /* size of the voxels that were used */
-    size_t cavities, sealed;         /* cavities made; of these, cavities without a drain */
+    size_t cavities, sealed;         /* closed cavities before drains are made, and after: as
+                                        cw_quality_measure() counts them with shells, with those
+                                        of the mesh */
+    size_t filled;                   /* cavities smaller than a ball as wide as the wall is
+                                        thick: they are not made */
+    double filled_mm3;               /* volume of all of them together */
     double removed_mm3;              /* volume of the mesh minus volume of the result */
     double wall_min_mm, wall_max_mm; /* the smallest and largest distance of points of the
                                         cavities' surfaces from the outer surface; 0: not
@@ -157,10 +163,9 @@ typedef struct cw_hollow_facts {
  *
  * Without drains the mesh stays as it is, vertex for vertex and triangle for triangle, with its
  * normals, if any. After its arrays come the surfaces of the cavities, at wall_mm from it,
- * facing inward. With drains everything is rebuilt from the level set: edges and details lose
- * as much as cw_level_set_from_mesh() states. They are not restored as by cw_mesh_offset(),
- * which uses the mesh's own planes. Beside drains and around cavities those are not the planes
- * of the result. Other attributes are not kept.
+ * facing inward. Drains are subtracted from that as by cw_mesh_boolean(): vertices outside of
+ * them keep their place, and triangles that they do not meet stay whole. Shells that cross are united then, and
+ * normals, if any, are computed again by cw_mesh_normals(). Other attributes are not kept.
  *
  * out      filled on success, emptied on failure; free it with cw_mesh_free()
  * facts    may be NULL
@@ -168,6 +173,8 @@ typedef struct cw_hollow_facts {
  * Returns  CW_ERR_ARGUMENT  no wall; a wall or a drain thinner than 2 voxels; a direction of
  *                           length 0; or as cw_level_set_from_mesh()
  *          CW_ERR_EMPTY     no point is deep enough for a cavity inside the wall
+ *          CW_ERR_CHECK     rounding finds no surface without crossings around the drains, or
+ *                           makes those of the cavities cross themselves
  *          else as cw_level_set_from_mesh(), cw_extract(), cw_distance_to_mesh() */
 CW_NODISCARD CW_API cw_status cw_mesh_hollow(const cw_mesh *mesh, const cw_hollow_desc *desc,
                                              cw_mesh *out, cw_hollow_facts *facts,

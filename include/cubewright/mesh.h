@@ -125,6 +125,8 @@ typedef struct cw_drop_counts {
     double dropped_mm3;    /* volume enclosed by all dropped components together */
     double largest_mm3;    /* the largest volume of a dropped component; 0: none dropped */
     double least_kept_mm3; /* the smallest volume of a kept component; 0: none kept */
+    size_t cavities;       /* dropped components that are closed and face inward: what they left
+                              hollow is solid */
 } cw_drop_counts;
 
 /* Leaves out components that enclose less than least_mm3, and then vertices that no triangle

@@ -61,20 +61,25 @@ typedef struct cw_quality {
     size_t open_edges;                 /* in one triangle */
     size_t border_loops;               /* closed chains of open edges */
     size_t nonmanifold_edges;          /* in more than two triangles */
-    size_t misoriented_edges;          /* in two triangles that run through it the same way */
-    size_t nonmanifold_vertices;       /* their triangles form more than one fan */
-    size_t duplicates;                 /* triangles with the same vertices as an earlier one */
-    size_t degenerate;                 /* triangles of zero area in double precision */
-    size_t needles, caps;              /* triangles: see above */
-    size_t cavities;       /* closed, oriented components facing inward, inside one solid */
-    size_t inside_out;     /* closed, oriented components facing inward, other than cavities */
-    size_t nested;         /* closed, oriented components facing outward, inside another one */
-    size_t open_inward;    /* open, oriented components that seem to face inward */
-    size_t to_turn;        /* components that cw_mesh_orient() would turn round */
-    int64_t euler;         /* used vertices - edges + triangles */
-    int64_t genus;         /* handles of all components; -1 unless an oriented manifold */
-    double area_mm2;       /* of all triangles */
-    double volume_mm3;     /* of closed meshes; signed, positive when triangles wind outward */
+    size_t contact_edges; /* of these, those that as many triangles run through one way as the
+                                          other: where surfaces touch */
+    size_t misoriented_edges;    /* in two triangles that run through it the same way */
+    size_t nonmanifold_vertices; /* their triangles form more than one fan */
+    size_t contact_vertices; /* of these, those whose edges are in two triangles, or contacts */
+    size_t duplicates;       /* triangles with the same vertices as an earlier one */
+    size_t degenerate;       /* triangles of zero area in double precision */
+    size_t needles, caps;    /* triangles: see above */
+    size_t cavities;         /* closed, oriented components facing inward, inside one solid */
+    size_t inside_out;  /* closed, oriented components facing inward, other than cavities */
+    size_t nested;      /* closed, oriented components facing outward, inside another one */
+    size_t open_inward; /* open, oriented components that seem to face inward */
+    size_t one_sided;  /* components whose triangles cannot agree, as in a Moebius strip: joined
+                              along edges of two triangles */
+    size_t to_turn;    /* components that cw_mesh_orient() would turn round */
+    int64_t euler;     /* used vertices - edges + triangles */
+    int64_t genus;     /* handles of all components; -1 unless an oriented manifold */
+    double area_mm2;   /* of all triangles */
+    double volume_mm3; /* of closed meshes; signed, positive when triangles wind outward */
     double min[3], max[3]; /* world box, mm */
     cw_shapes shapes;      /* shapes of triangles */
 } cw_quality;
@@ -99,7 +104,7 @@ CW_NODISCARD CW_API cw_status cw_quality_measure(const cw_mesh *mesh,
                                                  cw_error *err);
 
 /* Returns the bytes that measuring takes besides the mesh. One with open edges takes 12 more for
- * each triangle, and a vertex with more than 24 triangles 52 for each of them.
+ * each triangle, one with shells and misoriented edges 59, and a vertex with more than 24 triangles 52 for each of them.
  * vertices, triangles  counts of the mesh */
 CW_API size_t cw_quality_bytes(size_t vertices, size_t triangles);
 

@@ -29,6 +29,12 @@ typedef struct cw_slice_filter_desc {
 /* A source whose slices are those of another one, filtered. */
 typedef struct cw_slice_filter cw_slice_filter;
 
+/* Returns the bytes that a filter takes at most, with the work on its slices: 0 for a shape or a
+ * description that cw_slice_filter_new() refuses.
+ * shape  of the source; borrowed
+ * desc   borrowed. Fewer `slices` take less: 1 tells the least */
+CW_API size_t cw_slice_filter_bytes(const cw_volume *shape, const cw_slice_filter_desc *desc);
+
 /* Makes one; free it with cw_slice_filter_free(). Its slices are those of the filter on the whole
  * volume, to the bit, for any number of slices and threads.
  * source   copied; what it reads from must outlive the filter. Its first component is used

@@ -79,8 +79,8 @@ typedef struct cw_spool_drop_desc {
  *         another spool
  * counts  may be NULL
  *
- * Returns CW_ERR_ARGUMENT  least_mm3 is negative or NaN; a triangle names a vertex that is not
- *                          there; a position is not finite
+ * Returns CW_ERR_ARGUMENT  least_mm3 is negative or NaN; a position is not finite
+ *         CW_ERR_FORMAT    a triangle names a vertex that is not there
  *         CW_ERR_LIMIT     the front needs more than max_bytes; CW_ERR_NO_MEMORY;
  *                          CW_ERR_OUTPUT; CW_ERR_IO; CW_ERR_CANCELLED; or what the sink returned
  * Cost    reads the triangles three times and the vertices twice
@@ -112,8 +112,9 @@ CW_NODISCARD CW_API cw_status cw_fragment_read(const char *path, cw_fragment *fr
                                                cw_error *err);
 
 /* Appends a fragment to the spool that holds all parts before it, and verifies the checksum.
- * Returns as cw_fragment_read(), also for a wrong checksum; CW_ERR_LIMIT: more than 2^32 - 1
- *         vertices; as the spool's sink */
+ * Returns as cw_fragment_read(), also for a wrong checksum, a position or an origin that is not
+ *         finite, another origin than the parts before have, and a triangle whose vertex can be in
+ *         no part; CW_ERR_LIMIT: more than 2^32 - 1 vertices; as the spool's sink */
 CW_NODISCARD CW_API cw_status cw_fragment_append(const char *path, cw_mesh_spool *spool,
                                                  cw_error *err);
 

@@ -171,14 +171,17 @@ enum { CW_LABELS_MAX = 255 }; /* maximum number of values that are listed */
 typedef struct cw_labels {
     bool found;                  /* CW_KNOWN_LABELS, or values that look like labels */
     bool more;                   /* more values exist than are listed */
+    bool scattered;              /* amounts rather than labels: more than 32 values, and fewer
+                                    than half of the neighbours that `found` looks at are equal */
     size_t count;                /* number of values; at most CW_LABELS_MAX */
-    double value[CW_LABELS_MAX]; /* rising */
+    double value[CW_LABELS_MAX]; /* rising: the lowest of all voxels' values */
 } cw_labels;
 
 /* Finds if the first component and step holds labels. A volume with CW_KNOWN_LABELS does. The
  * values of another one must meet three conditions. They are whole numbers from 0, in any type, and at least three. Of neighbours along x that are not both the most frequent value, 7 in 10 are equal.
  * Of those that differ, 2 in 10 skip a value that occurs. A smooth picture skips none, and a
- * noisy one has no equal neighbours. At most 2^22 voxels are examined, in rows spread evenly.
+ * noisy one has no equal neighbours. For this, at most 2^22 voxels are examined, in rows spread
+ * evenly. Of a label map, all voxels are then passed over for their values.
  * out      filled on success
  * Returns  CW_ERR_ARGUMENT as cw_volume_resolve(). */
 CW_NODISCARD CW_API cw_status cw_volume_labels(const cw_volume *volume, cw_labels *out,

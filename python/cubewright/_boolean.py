@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ctypes import POINTER, byref, pointer
+from ctypes import POINTER, byref, c_uint8, pointer
 from dataclasses import dataclass
 from typing import Sequence
 
@@ -25,7 +25,10 @@ class Combined:
     new_points: int
     contact_edges: int  # in which the result touches itself
     contact_vertices: int  # that were doubled, so that it is a manifold there
-    turned: int  # inputs that were inside out
+    turned: tuple[int, ...]  # meshes that were inside out, by number from 0
+    empty: tuple[int, ...]  # meshes without a triangle that has an area
+    inside_out: tuple[int, ...]  # meshes with shells that are inside out, and count as outside
+    inside_out_volume: float  # mm3 of such shells
     rounds: int  # how often the result was rounded
     moved: float  # the largest movement of a point by rounding
 
@@ -60,8 +63,15 @@ def boolean(
     out = tuple(Mesh._from_c(results[n]) for n in range(2 if op == "split" else 1))
     facts = c.cw_boolean_facts()
     reporter = Reporter(progress)
-    desc = c.cw_boolean_desc(op=number, threads=take_threads(threads), progress=reporter.struct)
+    flags = (c_uint8 * max(len(sources), 1))()
+    desc = c.cw_boolean_desc(
+        op=number, threads=take_threads(threads), progress=reporter.struct, inputs=flags
+    )
     reporter.call(lib.cw_mesh_boolean, pointers, len(sources), byref(desc), results, byref(facts))
+
+    def having(flag: int) -> tuple[int, ...]:
+        return tuple(n for n in range(len(sources)) if flags[n] & flag)
+
     return Combined(
         meshes=out,
         volumes=tuple(facts.volume_mm3[n] for n in range(len(out))),
@@ -69,7 +79,10 @@ def boolean(
         new_points=facts.new_points,
         contact_edges=facts.contact_edges,
         contact_vertices=facts.contact_vertices,
-        turned=facts.turned,
+        turned=having(c.cw_boolean_input.CW_BOOLEAN_TURNED),
+        empty=having(c.cw_boolean_input.CW_BOOLEAN_EMPTY),
+        inside_out=having(c.cw_boolean_input.CW_BOOLEAN_NEGATIVE),
+        inside_out_volume=facts.negative_mm3,
         rounds=facts.rounds,
         moved=facts.moved_mm,
     )

@@ -17,7 +17,7 @@ from ._extract import AnyVolume, extract, take_inside
 from ._library import lib
 from ._memory import unpack
 from ._mesh import Mesh, take_mesh
-from ._options import take_choice, take_flag, take_length, take_number, take_numbers, take_threads
+from ._options import take_choice, take_flag, take_length, take_lengths, take_number, take_threads
 from ._progress import Progress, Reporter
 from ._volume import Volume, take_volume
 
@@ -197,7 +197,11 @@ class Measurer:
 
 
 def take_printer(
-    wall: float, gap: float, overhang: float, layer: float, plate: Sequence[float] | None
+    wall: float | str,
+    gap: float | str,
+    overhang: float,
+    layer: float | str,
+    plate: Sequence[float | str] | None,
 ) -> c.cw_print_desc:
     desc = c.cw_print_desc(
         min_wall_mm=take_length("wall", wall),
@@ -206,7 +210,7 @@ def take_printer(
         layer_mm=take_length("layer", layer),
     )
     if plate is not None:
-        desc.plate_mm[:] = take_numbers("plate", plate, 3)
+        desc.plate_mm[:] = take_lengths("plate", plate)
     return desc
 
 
@@ -220,12 +224,12 @@ def check(
     inside: str = "auto",
     open: bool = False,
     reference: Mesh | None = None,
-    tolerance: float = 0.0,
-    wall: float = 0.0,
-    gap: float = 0.0,
+    tolerance: float | str = 0.0,
+    wall: float | str = 0.0,
+    gap: float | str = 0.0,
     overhang: float = 0.0,
-    layer: float = 0.0,
-    plate: Sequence[float] | None = None,
+    layer: float | str = 0.0,
+    plate: Sequence[float | str] | None = None,
     threads: int = 0,
     progress: Progress = None,
 ) -> Check:
@@ -235,12 +239,13 @@ def check(
     deep       look for self-intersections in every profile. CGAL is not asked; the command does
     source     a volume to measure the distance to; needs iso, as for extract()
     reference  a mesh to measure the distance to, both ways
-    tolerance  largest distance allowed, mm; 0: distances are reported only
-    wall       of 'print', mm: walls below are thin; 0: 0.8
+    tolerance  largest distance allowed; 0: distances are reported only. Lengths are in mm, or texts with a
+               unit: "0.1mm", and here "0.05%" of the diagonal of the mesh's box
+    wall       of 'print': walls below are thin; 0: 0.8
     gap        the same of gaps; 0: 0.4
     overhang   degrees from the vertical that need no support; 0: 45
-    layer      height of a layer, mm; 0: 0.2
-    plate      width, depth and height that can be printed, mm; None: not looked at
+    layer      height of a layer; 0: 0.2
+    plate      width, depth and height that can be printed; None: not looked at
 
     A mesh that is bad is no error: see Check.holds. Vertices at equal positions count as one.
     Raises Error: ARGUMENT, UNSUPPORTED, LIMIT, NO_MEMORY, CANCELLED.
@@ -250,7 +255,7 @@ def check(
     if (source is None) != (iso is None):
         raise TypeError("source and iso go together: give both or neither")
     m = Measurer(struct, take_threads(threads), progress)
-    m.findings.tolerance_mm = take_length("tolerance", tolerance)
+    m.findings.tolerance_mm = take_length("tolerance", tolerance, mesh)
     if tolerance and source is None and reference is None:
         raise TypeError("tolerance needs something to measure from: source or reference")
     printer = take_printer(wall, gap, overhang, layer, plate)

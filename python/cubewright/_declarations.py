@@ -128,6 +128,12 @@ class cw_boolean_op(enum.IntEnum):
     CW_BOOLEAN_COUNT = 5
 
 
+class cw_boolean_input(enum.IntEnum):
+    CW_BOOLEAN_EMPTY = 1
+    CW_BOOLEAN_TURNED = 2
+    CW_BOOLEAN_NEGATIVE = 4
+
+
 class cw_weld(enum.IntEnum):
     CW_WELD_NONE = 0
     CW_WELD_WORLD = 1
@@ -508,6 +514,7 @@ cw_box._fields_ = [
 class cw_labels(Structure):
     found: bool
     more: bool
+    scattered: bool
     count: int
     value: Any
 
@@ -515,6 +522,7 @@ class cw_labels(Structure):
 cw_labels._fields_ = [
     ("found", c_bool),
     ("more", c_bool),
+    ("scattered", c_bool),
     ("count", c_size_t),
     ("value", c_double * 255),
 ]
@@ -604,6 +612,7 @@ class cw_drop_counts(Structure):
     dropped_mm3: float
     largest_mm3: float
     least_kept_mm3: float
+    cavities: int
 
 
 cw_drop_counts._fields_ = [
@@ -613,6 +622,7 @@ cw_drop_counts._fields_ = [
     ("dropped_mm3", c_double),
     ("largest_mm3", c_double),
     ("least_kept_mm3", c_double),
+    ("cavities", c_size_t),
 ]
 
 
@@ -653,6 +663,7 @@ class cw_boolean_desc(Structure):
     op: int
     threads: int
     progress: Any
+    inputs: Any
 
 
 cw_boolean_desc._fields_ = [
@@ -660,6 +671,7 @@ cw_boolean_desc._fields_ = [
     ("op", c_int),
     ("threads", c_int),
     ("progress", cw_progress),
+    ("inputs", POINTER(c_uint8)),
 ]
 
 
@@ -675,6 +687,8 @@ class cw_boolean_facts(Structure):
     rounds: int
     moved_mm: float
     volume_mm3: Any
+    negative_regions: int
+    negative_mm3: float
 
 
 cw_boolean_facts._fields_ = [
@@ -689,6 +703,8 @@ cw_boolean_facts._fields_ = [
     ("rounds", c_size_t),
     ("moved_mm", c_double),
     ("volume_mm3", c_double * 2),
+    ("negative_regions", c_size_t),
+    ("negative_mm3", c_double),
 ]
 
 
@@ -1086,8 +1102,10 @@ class cw_quality(Structure):
     open_edges: int
     border_loops: int
     nonmanifold_edges: int
+    contact_edges: int
     misoriented_edges: int
     nonmanifold_vertices: int
+    contact_vertices: int
     duplicates: int
     degenerate: int
     needles: int
@@ -1096,6 +1114,7 @@ class cw_quality(Structure):
     inside_out: int
     nested: int
     open_inward: int
+    one_sided: int
     to_turn: int
     euler: int
     genus: int
@@ -1116,8 +1135,10 @@ cw_quality._fields_ = [
     ("open_edges", c_size_t),
     ("border_loops", c_size_t),
     ("nonmanifold_edges", c_size_t),
+    ("contact_edges", c_size_t),
     ("misoriented_edges", c_size_t),
     ("nonmanifold_vertices", c_size_t),
+    ("contact_vertices", c_size_t),
     ("duplicates", c_size_t),
     ("degenerate", c_size_t),
     ("needles", c_size_t),
@@ -1126,6 +1147,7 @@ cw_quality._fields_ = [
     ("inside_out", c_size_t),
     ("nested", c_size_t),
     ("open_inward", c_size_t),
+    ("one_sided", c_size_t),
     ("to_turn", c_size_t),
     ("euler", c_int64),
     ("genus", c_int64),
@@ -1262,6 +1284,7 @@ class cw_findings(Structure):
     from_reference: Any
     tolerance_mm: float
     has_normals: bool
+    file_fault: bytes | None
 
 
 cw_findings._fields_ = [
@@ -1279,6 +1302,7 @@ cw_findings._fields_ = [
     ("from_reference", POINTER(cw_distance)),
     ("tolerance_mm", c_double),
     ("has_normals", c_bool),
+    ("file_fault", c_char_p),
 ]
 
 
@@ -1660,6 +1684,7 @@ class cw_read_desc(Structure):
     series: bytes | None
     gaps: int
     tilt: int
+    skip_damaged: bool
     no_sandbox: bool
     timeout_s: float
     note: Any
@@ -1686,6 +1711,7 @@ cw_read_desc._fields_ = [
     ("series", c_char_p),
     ("gaps", c_int),
     ("tilt", c_int),
+    ("skip_damaged", c_bool),
     ("no_sandbox", c_bool),
     ("timeout_s", c_double),
     ("note", CFUNCTYPE(None, c_void_p, c_char_p)),
@@ -1766,6 +1792,7 @@ class cw_mesh_read_desc(Structure):
     max_bytes: int
     no_sandbox: bool
     timeout_s: float
+    truncated: bool
     claim: Any
     progress: Any
 
@@ -1778,6 +1805,7 @@ cw_mesh_read_desc._fields_ = [
     ("max_bytes", c_uint64),
     ("no_sandbox", c_bool),
     ("timeout_s", c_double),
+    ("truncated", c_bool),
     ("claim", cw_claim),
     ("progress", cw_progress),
 ]
@@ -1797,6 +1825,9 @@ class cw_mesh_file(Structure):
     support_triangles: int
     others: int
     other_triangles: int
+    truncated: bool
+    expected_triangles: int
+    fault: Any
 
 
 cw_mesh_file._fields_ = [
@@ -1813,6 +1844,9 @@ cw_mesh_file._fields_ = [
     ("support_triangles", c_size_t),
     ("others", c_size_t),
     ("other_triangles", c_size_t),
+    ("truncated", c_bool),
+    ("expected_triangles", c_size_t),
+    ("fault", c_char * 160),
 ]
 
 
@@ -2222,6 +2256,8 @@ class cw_hollow_facts(Structure):
     voxel_mm: float
     cavities: int
     sealed: int
+    filled: int
+    filled_mm3: float
     removed_mm3: float
     wall_min_mm: float
     wall_max_mm: float
@@ -2231,6 +2267,8 @@ cw_hollow_facts._fields_ = [
     ("voxel_mm", c_double),
     ("cavities", c_size_t),
     ("sealed", c_size_t),
+    ("filled", c_size_t),
+    ("filled_mm3", c_double),
     ("removed_mm3", c_double),
     ("wall_min_mm", c_double),
     ("wall_max_mm", c_double),
@@ -3125,8 +3163,11 @@ class cw_repair_desc(Structure):
     weld_mm: float
     max_hole_mm: float
     wrap_mm: float
+    max_move_mm: float
     flat_holes: bool
     keep_crossings: bool
+    keep_cracks: bool
+    outer_only: bool
     threads: int
     progress: Any
 
@@ -3136,8 +3177,11 @@ cw_repair_desc._fields_ = [
     ("weld_mm", c_double),
     ("max_hole_mm", c_double),
     ("wrap_mm", c_double),
+    ("max_move_mm", c_double),
     ("flat_holes", c_bool),
     ("keep_crossings", c_bool),
+    ("keep_cracks", c_bool),
+    ("outer_only", c_bool),
     ("threads", c_int),
     ("progress", cw_progress),
 ]
@@ -3145,12 +3189,15 @@ cw_repair_desc._fields_ = [
 
 class cw_repair_facts(Structure):
     welded: int
+    split_edges: int
+    weld_mm: float
     duplicates: int
     degenerate: int
     flipped_triangles: int
     flipped_shells: int
     nonmanifold_edges: int
     twisted_edges: int
+    one_sided: int
     nonmanifold_vertices: int
     parted_mm: float
     sheets: int
@@ -3166,21 +3213,35 @@ class cw_repair_facts(Structure):
     touching_vertices: int
     united_shells: int
     removed_triangles: int
+    inner_shells: int
+    inner_mm3: float
     is_wrapped: bool
-    lacks_cgal: bool
+    is_union_lacking: bool
     is_undecided: bool
+    volume_before_mm3: float
+    volume_after_mm3: float
+    volume_changed: float
+    moved_mm: float
+    beyond_mm: float
+    max_move_mm: float
+    changes_volume: bool
+    moves_far: bool
+    is_refused: bool
     is_needed: bool
     is_sound: bool
 
 
 cw_repair_facts._fields_ = [
     ("welded", c_size_t),
+    ("split_edges", c_size_t),
+    ("weld_mm", c_double),
     ("duplicates", c_size_t),
     ("degenerate", c_size_t),
     ("flipped_triangles", c_size_t),
     ("flipped_shells", c_size_t),
     ("nonmanifold_edges", c_size_t),
     ("twisted_edges", c_size_t),
+    ("one_sided", c_size_t),
     ("nonmanifold_vertices", c_size_t),
     ("parted_mm", c_double),
     ("sheets", c_size_t),
@@ -3196,9 +3257,20 @@ cw_repair_facts._fields_ = [
     ("touching_vertices", c_size_t),
     ("united_shells", c_size_t),
     ("removed_triangles", c_size_t),
+    ("inner_shells", c_size_t),
+    ("inner_mm3", c_double),
     ("is_wrapped", c_bool),
-    ("lacks_cgal", c_bool),
+    ("is_union_lacking", c_bool),
     ("is_undecided", c_bool),
+    ("volume_before_mm3", c_double),
+    ("volume_after_mm3", c_double),
+    ("volume_changed", c_double),
+    ("moved_mm", c_double),
+    ("beyond_mm", c_double),
+    ("max_move_mm", c_double),
+    ("changes_volume", c_bool),
+    ("moves_far", c_bool),
+    ("is_refused", c_bool),
     ("is_needed", c_bool),
     ("is_sound", c_bool),
 ]
@@ -3349,6 +3421,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_field_measure": (c_int, [c_int, c_double, c_double, POINTER(cw_mesh), POINTER(cw_field_error), POINTER(cw_error)]),
     "cw_field_measure_vertices": (c_int, [c_int, c_double, c_double, POINTER(cw_mesh), c_size_t, POINTER(cw_field_vertex_error), POINTER(cw_error)]),
     "cw_kernel_name": (c_char_p, [c_int]),
+    "cw_filter_type": (c_int, [POINTER(cw_volume)]),
     "cw_volume_gauss": (c_int, [POINTER(cw_volume), POINTER(c_double), POINTER(cw_filter_desc), POINTER(cw_volume), POINTER(cw_error)]),
     "cw_volume_median": (c_int, [POINTER(cw_volume), c_size_t, POINTER(cw_filter_desc), POINTER(cw_volume), POINTER(cw_error)]),
     "cw_volume_noise": (c_int, [POINTER(cw_volume), c_int, POINTER(c_double), POINTER(cw_error)]),
@@ -3505,6 +3578,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_mesh_remesh": (c_int, [POINTER(cw_mesh), POINTER(cw_remesh_desc), POINTER(cw_mesh), POINTER(cw_remesh_facts), POINTER(cw_error)]),
     "cw_repair_has_cgal": (c_bool, []),
     "cw_mesh_repair": (c_int, [POINTER(cw_mesh), POINTER(cw_repair_desc), POINTER(cw_mesh), POINTER(cw_repair_facts), POINTER(cw_error)]),
+    "cw_slice_filter_bytes": (c_size_t, [POINTER(cw_volume), POINTER(cw_slice_filter_desc)]),
     "cw_slice_filter_new": (c_int, [POINTER(cw_slice_source), POINTER(cw_slice_filter_desc), POINTER(POINTER(cw_slice_filter)), POINTER(cw_error)]),
     "cw_slice_filter_source": (cw_slice_source, [POINTER(cw_slice_filter)]),
     "cw_slice_filter_free": (None, [POINTER(cw_slice_filter)]),

@@ -57,6 +57,7 @@ KEYWORDS = {
     "desc->gaps = CW_GAPS_INTERPOLATE": "gaps='interpolate'",
     "desc->gaps = CW_GAPS_ALLOW": "gaps='allow'",
     "desc->tilt = CW_TILT_KEEP": "tilt='keep'",
+    "desc->skip_damaged": "skip_damaged=True",
     "desc->claim.rule = CW_CLAIM_OVERRIDE": "input_override=True",
     "desc->claim.unit": "input_unit=",
     "desc->spacing_mm": "spacing=",

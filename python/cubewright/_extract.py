@@ -18,7 +18,16 @@ from ._errors import Error, Status, call
 from ._library import lib
 from ._memory import Owner, unpack
 from ._mesh import Mesh
-from ._options import take_choice, take_count, take_flag, take_length, take_number, take_numbers, take_threads
+from ._options import (
+    take_choice,
+    take_count,
+    take_flag,
+    take_length,
+    take_number,
+    take_numbers,
+    take_space,
+    take_threads,
+)
 from ._progress import Progress, Reporter
 from ._simplify import describe_smoothing, take_counts
 from ._volume import Volume, take_volume
@@ -47,12 +56,12 @@ class Settings:
     placement: str = "linear"
     snap: float = 0.0
     normals: str = "field"
-    min_volume: float = 0.0
+    min_volume: float | str = 0.0
     largest: int = 0
     fill_voids: bool = False
     smooth: str | dict[str, Any] | None = None
     cut_plane: tuple[Sequence[float], Sequence[float]] | None = None
-    simplify: int | float | None = None
+    simplify: int | float | str | None = None
     color_by: AnyVolume | None = None
     colormap: str = "viridis"
     color_range: tuple[float, float] | None = None
@@ -78,18 +87,19 @@ class Settings:
                 max_bytes=take_count("max_bytes", self.max_bytes),
                 progress=reporter.struct,
             ),
-            min_volume_mm3=take_length("min_volume", self.min_volume),
+            min_volume_mm3=take_space("min_volume", self.min_volume),
             largest=take_count("largest", self.largest),
             fill_voids=take_flag("fill_voids", self.fill_voids),
         )
         if self.smooth is not None:
             how = {"method": self.smooth} if isinstance(self.smooth, str) else self.smooth
-            desc.smooth = pointer(describe_smoothing(**how))
+            desc.smooth = pointer(describe_smoothing(volume=source, **how))
         if self.cut_plane is not None:
             point, normal = self.cut_plane
             desc.cut = pointer(describe_cut(point, normal))
-        if isinstance(self.simplify, float):
-            desc.simplify = pointer(c.cw_simplify_desc(error_mm=take_length("simplify", self.simplify)))
+        if isinstance(self.simplify, (float, str)):
+            error = take_length("simplify", self.simplify, volume=source)
+            desc.simplify = pointer(c.cw_simplify_desc(error_mm=error))
         elif self.simplify is not None:
             desc.simplify = pointer(c.cw_simplify_desc(triangles=take_count("simplify", self.simplify, 1)))
         if self.color_by is not None:
@@ -107,12 +117,12 @@ def extract(
     placement: str = "linear",
     snap: float = 0.0,
     normals: str = "field",
-    min_volume: float = 0.0,
+    min_volume: float | str = 0.0,
     largest: int = 0,
     fill_voids: bool = False,
     smooth: str | dict[str, Any] | None = None,
     cut_plane: tuple[Sequence[float], Sequence[float]] | None = None,
-    simplify: int | float | None = None,
+    simplify: int | float | str | None = None,
     color_by: AnyVolume | None = None,
     colormap: str = "viridis",
     color_range: tuple[float, float] | None = None,
@@ -137,12 +147,13 @@ def extract(
     placement   'linear' or 'cubic' along edges
     snap        up to 0.5: merge vertices closer to a sample than this fraction of an edge
     normals     'field' for the gradient's, or 'none'
-    min_volume  leave out components that enclose less, in cubic millimetres
+    min_volume  leave out components that enclose less, in mm3, or as a text with a unit: "2ml"
     largest     number of components to keep, those that enclose the most; 0: all
     fill_voids  leave out the cavities of solids, and all inside them
     smooth      a method, or a dict of the keywords of smooth(): {"method": "hc", "iterations": 5}
     cut_plane   (point, normal) as of cut(): what is above stays, and is closed flat
-    simplify    a float: error limit in mm; an int: triangle count. See simplify()
+    simplify    a float: error limit in mm; a text: the same with its unit, "0.1mm" or "0.5vox"; an int:
+                triangle count. See simplify()
     color_by    another volume, whose values become scalars and colours. See color_by()
     colormap, color_range  the map, and the values of its ends; None: those of the vertices
     component, step  of volumes with several, from 0
@@ -307,7 +318,7 @@ class LabelSurfaces:
     def simplify(
         self,
         *,
-        error: float = 0.0,
+        error: float | str = 0.0,
         triangles: int = 0,
         ratio: float = 0.0,
         threads: int = 0,
@@ -315,7 +326,7 @@ class LabelSurfaces:
     ) -> LabelSurfaces:
         """Simplifies all interfaces together; neighbours stay without a gap.
 
-        error in mm, a number of triangles, or a ratio of them: the first reached ends the work.
+        error in mm or as a text with a unit, a number of triangles, or a ratio of them: the first reached ends the work.
         """
         reporter = Reporter(progress)
         desc = c.cw_label_simplify_desc(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import operator
 import os
+import re
 from collections.abc import Iterable, Sequence
 from typing import Any, TypeVar
 
@@ -30,11 +31,61 @@ def take_number(name: str, value: Any) -> float:
     return number
 
 
-def take_length(name: str, value: Any) -> float:
-    """Returns a length, in millimetres: 0 or more."""
-    number = take_number(name, value)
+MILLIMETRES = {"mm": 1.0, "um": 1e-3, "nm": 1e-6, "cm": 10.0, "m": 1000.0, "in": 25.4, "ft": 304.8}
+CUBIC_MILLIMETRES = {"mm3": 1.0, "um3": 1e-9, "cm3": 1e3, "ml": 1e3, "m3": 1e9}
+QUANTITY = re.compile(r"([-+]?[0-9.]+(?:e[-+]?[0-9]+)?)([a-z%]+3?)", re.IGNORECASE)
+
+
+def take_quantity(name: str, value: Any, units: dict[str, float], kind: str = "a length") -> float:
+    """Returns a number, or that of a text with a unit: "0.5mm". A text without one is a ValueError."""
+    if not isinstance(value, str):
+        return take_number(name, value)
+    found = QUANTITY.fullmatch(value)
+    try:
+        number = float(found[1]) * units[found[2]] if found else math.nan
+    except (KeyError, ValueError):
+        number = math.nan
+    if not math.isfinite(number):
+        raise ValueError(f"{name} is {value!r}; {kind} with one of the units {', '.join(units)} was expected")
+    return number
+
+
+def take_shift(name: str, value: Any, mesh: Any = None, volume: Any = None) -> float:
+    """Returns a length that may be negative, otherwise as take_length()."""
+    units = MILLIMETRES
+    if isinstance(value, str) and mesh is not None:
+        low, high = mesh.bounds
+        units = {**units, "%": float(np.linalg.norm(high - low)) / 100}
+    if isinstance(value, str) and volume is not None:
+        units = {**units, "vox": float(np.prod(volume.spacing)) ** (1 / 3)}
+    return take_quantity(name, value, units)
+
+
+def take_length(name: str, value: Any, mesh: Any = None, volume: Any = None) -> float:
+    """Returns a length, in millimetres: 0 or more. Texts name their unit: % is of the diagonal of a mesh's box,
+    vox is of a volume."""
+    number = take_shift(name, value, mesh, volume)
     if number < 0:
         raise ValueError(f"{name} is {number:g} mm; 0 or more was expected")
+    return number
+
+
+def take_lengths(name: str, values: Any) -> list[float]:
+    """Returns three lengths, as take_length() each; one stands for all."""
+    if isinstance(values, str) or np.ndim(values) == 0:
+        return [take_length(name, values)] * 3
+    if isinstance(values, Sequence) and any(isinstance(value, str) for value in values):
+        if len(values) != 3:
+            raise ValueError(f"{name} has {len(values)} lengths; 3 were expected")
+        return [take_length(name, value) for value in values]
+    return take_numbers(name, values, 3)
+
+
+def take_space(name: str, value: Any) -> float:
+    """Returns a volume, in cubic millimetres: 0 or more. Texts name their unit."""
+    number = take_quantity(name, value, CUBIC_MILLIMETRES, "a volume")
+    if number < 0:
+        raise ValueError(f"{name} is {number:g} mm3; 0 or more was expected")
     return number
 
 

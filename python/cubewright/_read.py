@@ -75,7 +75,7 @@ def read_volume(
     *,
     reader: str | None = None,
     raw: str | None = None,
-    spacing: float | Sequence[float] | None = None,
+    spacing: float | str | Sequence[float | str] | None = None,
     input_unit: str | None = None,
     input_frame: str | None = None,
     input_up: str | None = None,
@@ -86,6 +86,7 @@ def read_volume(
     points: Path | None = None,
     gaps: str = "stop",
     tilt: str = "correct",
+    skip_damaged: bool = False,
     crop: Sequence[Sequence[int]] | None = None,
     coarsen: int = 1,
     allow_external: bool = False,
@@ -100,13 +101,14 @@ def read_volume(
 
     Options are those of the command: `cubewright help extract` explains them.
 
-    raw         layout of headerless voxels: 'dims=64x64x93,type=u16le,offset=0,spacing=1x1x2'
-    spacing     millimetres between voxels, one number or x, y, z, in place of the file's
+    raw         layout of headerless voxels: 'dims=64x64x93,type=u16le,offset=0,spacing=1x1x2mm'
+    spacing     between voxels, in mm or as texts with a unit, one or x, y, z, in place of the file's
     input_unit, input_frame, input_up  'mm' and others; 'lps' or 'ras'; 'z' or 'y': what the file
                 does not say. An error if it says otherwise, unless input_override
     crop        ((x, x), (y, y), (z, z)): first and last voxels to read, ends included
     coarsen     every n-th voxel along each axis
     gaps, tilt  'stop', 'interpolate' or 'allow'; 'correct' or 'keep'
+    skip_damaged  leave out slices whose files are damaged; what they leave are gaps
     max_voxels, max_bytes  limits; 0: 2**40 voxels, any bytes
     note        called with one line for each finding and decision of the reader
     progress    see Progress
@@ -125,6 +127,7 @@ def read_volume(
         points=None if points is None else take_path("points", points),
         gaps=take_choice("gaps", gaps, ("stop", "interpolate", "allow")),
         tilt=take_choice("tilt", tilt, ("correct", "keep")),
+        skip_damaged=take_flag("skip_damaged", skip_damaged),
         allow_external=take_flag("allow_external", allow_external),
         no_sandbox=not take_flag("sandbox", sandbox),
         timeout_s=take_number("timeout", timeout),
@@ -166,6 +169,7 @@ def read_mesh(
     input_up: str | None = None,
     input_override: bool = False,
     allow_external: bool = False,
+    truncated: bool = False,
     sandbox: bool = True,
     timeout: float = 60.0,
     max_triangles: int = 0,
@@ -175,12 +179,14 @@ def read_mesh(
     """Reads a mesh: all parts of a file, merged, in LPS millimetres.
 
     mesh_reader  a name of formats(); default: by content
+    truncated    take the whole facets of an STL file that breaks off; else it is refused
     Other options are those of read_volume(). Raises the same errors.
     """
     reporter = Reporter(progress)
     desc = c.cw_mesh_read_desc(
         reader=take_text("mesh_reader", mesh_reader),
         allow_external=take_flag("allow_external", allow_external),
+        truncated=take_flag("truncated", truncated),
         max_triangles=take_count("max_triangles", max_triangles),
         max_bytes=take_count("max_bytes", max_bytes),
         no_sandbox=not take_flag("sandbox", sandbox),

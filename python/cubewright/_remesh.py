@@ -35,11 +35,11 @@ class Remeshed:
 
 def remesh(
     mesh: Mesh,
-    edge: float,
+    edge: float | str,
     *,
     adaptive: bool = False,
-    shortest: float = 0.0,
-    error: float = 0.0,
+    shortest: float | str = 0.0,
+    error: float | str = 0.0,
     features: float = 0.0,
     min_angle: float = 0.0,
     iterations: int = 0,
@@ -48,10 +48,11 @@ def remesh(
 ) -> Remeshed:
     """Returns a mesh of the same surface whose edges are about as long as wanted.
 
-    edge        mm: length of edges; with adaptive the longest one
+    edge        length of edges; with adaptive the longest one. Lengths are in mm, or texts with a unit:
+                "1mm", "0.5%" of the diagonal of the mesh's box
     adaptive    shorter edges where the surface is curved
-    shortest    mm, of adaptive: the shortest wanted length; 0: edge / 10
-    error       mm: how far the surfaces may be apart, both ways; 0: edge / 10
+    shortest    of adaptive: the shortest wanted length; 0: edge / 10
+    error       how far the surfaces may be apart, both ways; 0: edge / 10
     features    degrees: edges that turn by more are kept; 0: 40
     min_angle   degrees, up to 40: extra passes for triangles below it, such as 25 for finite
                 elements; 0: none
@@ -66,9 +67,9 @@ def remesh(
     facts = c.cw_remesh_facts()
     reporter = Reporter(progress)
     desc = c.cw_remesh_desc(
-        edge_mm=take_length("edge", edge),
-        shortest_mm=take_length("shortest", shortest),
-        error_mm=take_length("error", error),
+        edge_mm=take_length("edge", edge, mesh),
+        shortest_mm=take_length("shortest", shortest, mesh),
+        error_mm=take_length("error", error, mesh),
         feature_deg=take_number("features", features),
         min_angle_deg=take_number("min_angle", min_angle),
         iterations=take_count("iterations", iterations),

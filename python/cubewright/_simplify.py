@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from ctypes import byref, c_size_t
 from dataclasses import dataclass
+from typing import Any
 
 from . import _declarations as c
 from ._errors import call
@@ -18,6 +19,7 @@ from ._options import (
     take_length,
     take_number,
     take_numbers,
+    take_shift,
     take_threads,
 )
 from ._progress import Progress, Reporter
@@ -58,7 +60,7 @@ def take_counts(triangles: Sequence[int]) -> list[int]:
 def simplify(
     mesh: Mesh,
     *,
-    error: float = 0.0,
+    error: float | str = 0.0,
     triangles: int = 0,
     ratio: float = 0.0,
     normal_weight: float = 0.0,
@@ -71,7 +73,8 @@ def simplify(
 ) -> Mesh:
     """Returns a mesh with fewer triangles, by edge collapses.
 
-    error      mm: no point of the mesh or of the result is farther from the other
+    error      no point of the mesh or of the result is farther from the other. Lengths are in mm, or texts
+               with a unit: "0.1mm", "12um", "0.05%" of the diagonal of the mesh's box
     triangles  number to stop at
     ratio      the same as a fraction, above 0 and below 1. At least one of the three is needed;
                the first one reached ends the work
@@ -92,7 +95,7 @@ def simplify(
         threads,
         reporter,
     )
-    desc.error_mm = take_length("error", error)
+    desc.error_mm = take_length("error", error, mesh)
     desc.triangles = take_count("triangles", triangles)
     desc.ratio = take_number("ratio", ratio)
     out = Mesh._from_c(c.cw_mesh())
@@ -158,11 +161,13 @@ class Smoothed:
 
 
 def describe_smoothing(
+    mesh: Mesh | None = None,
+    volume: Any = None,
     *,
     method: str = "taubin",
     iterations: int | None = None,
-    width: float = 0.0,
-    max_move: float = 0.0,
+    width: float | str = 0.0,
+    max_move: float | str = 0.0,
     keep_border: bool = True,
     allow_intersections: bool = False,
 ) -> c.cw_smooth_desc:
@@ -172,8 +177,8 @@ def describe_smoothing(
     return c.cw_smooth_desc(
         method=kind,
         iterations=0 if iterations is None else take_count("iterations", iterations, 1, 1000),
-        width_mm=take_length("width", width),
-        max_move_mm=take_length("max_move", max_move),
+        width_mm=take_length("width", width, mesh, volume),
+        max_move_mm=take_length("max_move", max_move, mesh, volume),
         move_border=not take_flag("keep_border", keep_border),
         allow_crossings=take_flag("allow_intersections", allow_intersections),
     )
@@ -184,8 +189,8 @@ def smooth(
     *,
     method: str = "taubin",
     iterations: int | None = None,
-    width: float = 0.0,
-    max_move: float = 0.0,
+    width: float | str = 0.0,
+    max_move: float | str = 0.0,
     keep_border: bool = True,
     allow_intersections: bool = False,
     threads: int = 0,
@@ -196,8 +201,8 @@ def smooth(
     method      "taubin": keeps large shapes; "hc": a little more detail; "fair": waves fade by
                 their length, and vertices hardly move along the surface
     iterations  1 to 1000; more remove longer waves; default: 10, of "fair" 3
-    width       mm, of "fair": waves of this length keep half of their height; 0: 6 mean edges
-    max_move    mm: no vertex is farther from its first place; 0: half the mean edge
+    width       a length, of "fair": waves of this length keep half of their height; 0: 6 mean edges
+    max_move    a length: no vertex is farther from its first place; 0: half the mean edge
     keep_border keep open edges, and those of three or more triangles, as they are; else they
                 move along themselves
     allow_intersections  of triangles that did not meet before
@@ -210,6 +215,7 @@ def smooth(
     take_mesh("mesh", mesh)
     reporter = Reporter(progress)
     desc = describe_smoothing(
+        mesh,
         method=method,
         iterations=iterations,
         width=width,
@@ -238,9 +244,9 @@ def smooth(
 
 def offset(
     mesh: Mesh,
-    by: float,
+    by: float | str,
     *,
-    voxel: float = 0.0,
+    voxel: float | str = 0.0,
     sharp: bool = True,
     refine: bool = True,
     max_bytes: int = 0,
@@ -249,8 +255,8 @@ def offset(
 ) -> Mesh:
     """Returns the surface at a distance from a closed mesh.
 
-    by     mm outward; negative: inward; 0: the surface rebuilt, closed and without crossings
-    voxel  mm, of the level set; 0: chosen by the offset and the size
+    by     a length outward; negative: inward; 0: the surface rebuilt, closed and without crossings
+    voxel  a length, of the level set; 0: chosen by the offset and the size
     sharp  restore edges that voxels cut off; refine: use smaller voxels where they are needed
 
     Raises Error: ARGUMENT (the mesh is not closed), EMPTY, UNSUPPORTED (this build has no OpenVDB),
@@ -259,8 +265,8 @@ def offset(
     source = take_mesh("mesh", mesh)
     reporter = Reporter(progress)
     desc = c.cw_offset_desc(
-        offset_mm=take_number("by", by),
-        voxel_mm=take_length("voxel", voxel),
+        offset_mm=take_shift("by", by, mesh),
+        voxel_mm=take_length("voxel", voxel, mesh),
         no_sharpen=not take_flag("sharp", sharp),
         no_refine=not take_flag("refine", refine),
         threads=take_threads(threads),
@@ -274,30 +280,30 @@ def offset(
 
 def hollow(
     mesh: Mesh,
-    wall: float,
+    wall: float | str,
     *,
-    drains: Sequence[tuple[float, Sequence[float]]] = (),
-    voxel: float = 0.0,
+    drains: Sequence[tuple[float | str, Sequence[float]]] = (),
+    voxel: float | str = 0.0,
     max_bytes: int = 0,
     threads: int = 0,
     progress: Progress = None,
 ) -> Mesh:
     """Returns a solid with a cavity inside a wall, to save print material.
 
-    wall    mm; drains: pairs of a diameter (mm) and a direction (x, y, z) of holes to the outside
+    wall    a length; drains: pairs of a diameter and a direction (x, y, z) of holes to the outside
     Raises Error as offset(); EMPTY where no point is deep enough.
     """
     source = take_mesh("mesh", mesh)
     reporter = Reporter(progress)
     holes = (c.cw_drain * max(len(drains), 1))()
     for hole, (diameter, direction) in zip(holes, drains):
-        hole.diameter_mm = take_length("a drain's diameter", diameter)
+        hole.diameter_mm = take_length("a drain's diameter", diameter, mesh)
         hole.direction[:] = take_numbers("a drain's direction", direction, 3)
     desc = c.cw_hollow_desc(
-        wall_mm=take_length("wall", wall),
+        wall_mm=take_length("wall", wall, mesh),
         drains=holes,
         drain_count=len(drains),
-        voxel_mm=take_length("voxel", voxel),
+        voxel_mm=take_length("voxel", voxel, mesh),
         no_measure=True,
         threads=take_threads(threads),
         max_bytes=take_count("max_bytes", max_bytes),

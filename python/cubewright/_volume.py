@@ -14,7 +14,7 @@ from . import _declarations as c
 from ._errors import call
 from ._library import lib
 from ._memory import Owner, lend_array
-from ._options import take_choice, take_count, take_flag, take_number, take_numbers, take_threads
+from ._options import take_choice, take_count, take_flag, take_lengths, take_number, take_numbers, take_threads
 
 TYPES: dict[str, int] = {
     "u1": c.cw_type.CW_U8,
@@ -75,7 +75,7 @@ class Volume:
     copy         None: share the array's memory, with any strides. A copy is made only of arrays
                  in another byte order, not aligned, or that repeat memory (broadcast arrays).
                  False: such arrays are ValueErrors. True: always copy
-    spacing      distance between voxels, one number or x, y, z; default 1
+    spacing      distance between voxels in mm, or as a text with a unit ("12um"): one, or x, y, z; default 1
     origin       world point of the first voxel; default 0, 0, 0
     affine       3 x 4 or 4 x 4, (x, y, z, 1) of an index to the world; in place of both
     coordinates  three rising sequences of the places of planes along x, y, z, in place of
@@ -92,7 +92,7 @@ class Volume:
         self,
         array: Any,
         *,
-        spacing: float | Sequence[float] | None = None,
+        spacing: float | str | Sequence[float | str] | None = None,
         origin: Sequence[float] | None = None,
         affine: npt.ArrayLike | None = None,
         coordinates: Sequence[npt.ArrayLike] | None = None,
@@ -274,6 +274,8 @@ class Volume:
     def smooth(self, sigma: float | Sequence[float], *, threads: int = 0) -> Volume:
         """Smooths the first component and step with a Gaussian, into a new volume.
 
+        The result is of floats: of 64 bits if the voxels have 32 or more, and are no f4.
+
         sigma   standard deviation in voxels: of all axes, or of x, y and z
         Raises  Error: UNSUPPORTED for grids that are not even
         """
@@ -293,6 +295,8 @@ class Volume:
     ) -> Volume:
         """Smooths the first component and step, and keeps edges: similar values weigh more.
 
+        The result is of floats: of 64 bits if the voxels have 32 or more, and are no f4.
+
         sigma        standard deviation in voxels: of all axes, or of x, y and z; up to 4
         sigma_value  standard deviation of values; 0: 2.5 times the noise
         Raises       Error: UNSUPPORTED for grids that are not even
@@ -304,6 +308,8 @@ class Volume:
     def anisotropic(self, steps: int = 10, contrast: float = 0, *, threads: int = 0) -> Volume:
         """Smooths the first component and step by diffusion along edges and not across.
 
+        The result is of floats: of 64 bits if the voxels have 32 or more, and are no f4.
+
         steps     1 to 100
         contrast  edges are steeper, in values a voxel; 0: half of the noise
         Raises    Error: UNSUPPORTED for grids that are not even
@@ -313,6 +319,8 @@ class Volume:
 
     def nlm(self, noise: float = 0, radius: int = 3, *, threads: int = 0) -> Volume:
         """Smooths the first component and step by non-local means: of voxels with similar surroundings.
+
+        The result is of floats: of 64 bits if the voxels have 32 or more, and are no f4.
 
         noise   standard deviation of the noise; 0: as noise() estimates it
         radius  of the cube of voxels that are compared, 1 to 5
@@ -396,18 +404,20 @@ class Volume:
         return view
 
     def resample(
-        self, spacing: float | Sequence[float], kernel: str = "linear", *, threads: int = 0
+        self, spacing: float | str | Sequence[float | str], kernel: str = "linear", *, threads: int = 0
     ) -> Volume:
         """Samples the first component and step at other distances, into a new volume.
 
-        spacing  millimetres between voxels: of all axes, or of x, y and z; 0 leaves an axis
+        The result is of floats: of 64 bits if the voxels have 32 or more, and are no f4.
+
+        spacing  between voxels, in mm or as a text with a unit ("0.5mm"): of all axes, or of x, y and z; 0 leaves an axis
         kernel   linear, cubic or lanczos
         Raises   Error: UNSUPPORTED for irregular and sparse grids, and rectilinear ones if the
                  kernel is not linear
         """
         if kernel not in KERNELS:
             raise ValueError(f"kernel is {kernel!r}; one of {', '.join(KERNELS)} was expected")
-        distances = (c_double * 3)(*take_axes("spacing", spacing))
+        distances = (c_double * 3)(*take_lengths("spacing", spacing))
         return self._filter(
             lib.cw_volume_resample, distances, KERNELS.index(kernel), threads=threads
         )
@@ -508,7 +518,7 @@ def place_frame(struct: c.cw_volume, spacing: Any, origin: Any, affine: Any) -> 
 
 def take_spacing(spacing: Any) -> list[float]:
     """Returns three lengths above 0; one number stands for all."""
-    widths = [take_number("spacing", spacing)] * 3 if np.ndim(spacing) == 0 else take_numbers("spacing", spacing, 3)
+    widths = take_lengths("spacing", spacing)
     if min(widths) <= 0:
         raise ValueError(f"spacing is {widths}; lengths above 0 mm were expected")
     return widths

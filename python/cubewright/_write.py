@@ -67,7 +67,7 @@ def write(
     frame: str = "lps",
     up: str = "z",
     compress: str = "none",
-    tolerance: float = 0.0,
+    tolerance: float | str = 0.0,
     bits: int = 0,
     effort: int = 0,
     progress: Progress = None,

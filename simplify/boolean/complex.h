@@ -58,11 +58,15 @@ CW_NODISCARD cw_status cwi_find_cells(const cwi_soup *s, const cwi_triangle_part
                                       cw_error *err);
 void cwi_space_cells_free(cwi_space_cells *cells);
 
-/* Decides about a cell by how often each input winds around it: bit n is set if it is inside of result n. */
-typedef uint8_t (*cwi_keep_cell)(const void *context, const int32_t *windings, size_t positive);
+/* Bit for a cell around which an input winds a negative number of times; results have the bits below. */
+#define CWI_NEGATIVE 0x80u
 
-/* Finds the windings of each cell, and sets kept[cell] to what `keep` returns. positive: inputs whose number is
- * above 0.
+/* Decides about a cell by how often each input winds around it: bit n is set if it is inside of result n.
+ * positive, negative  inputs whose number is above 0, below 0 */
+typedef uint8_t (*cwi_keep_cell)(const void *context, const int32_t *windings, size_t positive,
+                                 size_t negative);
+
+/* Finds the windings of each cell, and sets kept[cell] to what `keep` returns.
  * tree    of the boxes of all triangles; or of others, which is no use
  * inputs  of each triangle of the soup: below input_count */
 CW_NODISCARD cw_status cwi_find_windings(const cwi_soup *s, const cwi_triangle_parts *parts,

@@ -4,9 +4,11 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/box.h"
+#include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -61,15 +63,10 @@ static void add_triangle(cwi_grid_solids *out, const uint32_t v[3], uint32_t inp
     out->sources[t] = source;
 }
 
-static bool is_collapsed(const uint32_t v[3])
-{
-    return v[0] == v[1] || v[1] == v[2] || v[2] == v[0];
-}
-
 static bool has_area(const cwi_soup *s, uint32_t t)
 {
     cwi_wide n[3];
-    if (is_collapsed(s->triangles[t]))
+    if (cwi_triangle_is_collapsed(s->triangles[t]))
         return false;
     cwi_soup_normal(s, t, n);
     return n[0] || n[1] || n[2];
@@ -95,7 +92,7 @@ cw_status cwi_solids_set_flat_aside(cwi_grid_solids *s, cw_error *err)
         const uint32_t *v = s->soup.triangles[t];
         if (has_area(&s->soup, t))
             move_triangle(s, t, count++);
-        else if (!is_collapsed(v)) {
+        else if (!cwi_triangle_is_collapsed(v)) {
             const uint32_t row[6] = {v[0],         v[1],          v[2],
                                      s->inputs[t], s->sources[t], s->moved && s->moved[t]};
             memcpy(flat[flats++], row, sizeof row);
@@ -131,12 +128,19 @@ static int compare_halves(const void *x, const void *y)
     return a->input < b->input ? -1 : a->input > b->input;
 }
 
-/* Looks for edges at which more triangles run one way than the other; returns their number. */
-static size_t count_open(const cwi_grid_solids *s, half_edge *half, size_t *start,
-                         uint32_t first[3])
+/* Edges at which more triangles run one way than the other, by what is wrong there. */
+enum { ONE_TRIANGLE, ODD_TRIANGLES, NOT_ALIKE, EDGE_FAULTS };
+
+typedef struct edge_faults {
+    size_t count[EDGE_FAULTS];
+    uint32_t first[EDGE_FAULTS][3]; /* the points and the input of one */
+} edge_faults;
+
+/* Looks for such edges. */
+static void find_faults(const cwi_grid_solids *s, half_edge *half, size_t *start,
+                        edge_faults *out)
 {
     const cwi_soup *soup = &s->soup;
-    size_t open = 0;
     for (int pass = 0; pass < 2; pass++) { /* count, then place */
         for (size_t t = 0; t < soup->triangle_count; t++)
             for (int k = 0; k < 3; k++) {
@@ -162,38 +166,95 @@ static size_t count_open(const cwi_grid_solids *s, half_edge *half, size_t *star
             int32_t sum = 0;
             for (j = i; j < count && compare_halves(&run[i], &run[j]) == 0; j++)
                 sum += run[j].direction;
-            if (sum && open++ == 0) {
-                first[0] = (uint32_t)v;
-                first[1] = run[i].high;
-                first[2] = run[i].input;
+            const int fault = j - i == 1 ? ONE_TRIANGLE : sum % 2 ? ODD_TRIANGLES : NOT_ALIKE;
+            if (sum && out->count[fault]++ == 0) {
+                out->first[fault][0] = (uint32_t)v;
+                out->first[fault][1] = run[i].high;
+                out->first[fault][2] = run[i].input;
             }
         }
     }
-    return open;
+}
+
+/* A triangle by its points, the lowest first, and its input. */
+typedef struct named_triangle {
+    uint32_t input, v[3];
+} named_triangle;
+
+static int compare_triangles(const void *x, const void *y)
+{
+    const named_triangle *a = x, *b = y;
+    int order = (a->input > b->input) - (a->input < b->input);
+    for (int k = 0; k < 3 && !order; k++)
+        order = (a->v[k] > b->v[k]) - (a->v[k] < b->v[k]);
+    return order;
+}
+
+/* Counts the triangles of an input that are there again. */
+static size_t count_repeated(const cwi_grid_solids *s, uint32_t input)
+{
+    size_t count = 0, repeated = 0;
+    named_triangle *list = cwi_alloc_array(s->soup.triangle_count, sizeof *list);
+    for (size_t t = 0; t < s->soup.triangle_count && list; t++) {
+        const uint32_t *v = s->soup.triangles[t];
+        int low = v[0] < v[1] ? 0 : 1;
+        low = v[low] < v[2] ? low : 2;
+        if (s->inputs[t] == input && !cwi_triangle_is_collapsed(v))
+            list[count++] =
+                (named_triangle){input, {v[low], v[(low + 1) % 3], v[(low + 2) % 3]}};
+    }
+    if (count)
+        qsort(list, count, sizeof *list, compare_triangles);
+    for (size_t n = 1; n < count; n++)
+        repeated += compare_triangles(&list[n - 1], &list[n]) == 0;
+    cwi_free(list);
+    return repeated;
+}
+
+/* Says what keeps an input from being a solid, and where. */
+static cw_status refuse_faults(cwi_grid_solids *s, const edge_faults *faults,
+                               const double origin[3], cw_error *err)
+{
+    const int fault = faults->count[ONE_TRIANGLE]    ? ONE_TRIANGLE
+                      : faults->count[ODD_TRIANGLES] ? ODD_TRIANGLES
+                                                     : NOT_ALIKE;
+    const uint32_t *first = faults->first[fault];
+    const size_t repeated = fault == ODD_TRIANGLES ? count_repeated(s, first[2]) : 0;
+    double p[2][3];
+    char what[128];
+    s->open_mesh = first[2] + 1;
+    for (int i = 0; i < 2; i++)
+        for (int k = 0; k < 3; k++)
+            p[i][k] = origin[k] + s->soup.vertices[first[i]][k] / s->scale;
+    if (repeated)
+        snprintf(what, sizeof what, "has %zu triangle%s twice, with an edge", repeated,
+                 repeated == 1 ? "" : "s");
+    else
+        snprintf(what, sizeof what,
+                 fault == ONE_TRIANGLE ? "is open at %zu edge%s, one"
+                 : fault == ODD_TRIANGLES
+                     ? "has an odd number of triangles at %zu edge%s, one"
+                     : "has triangles that do not face the same way at %zu "
+                       "edge%s, one",
+                 faults->count[fault], faults->count[fault] == 1 ? "" : "s");
+    return cwi_fail(err, CW_ERR_CHECK,
+                    "mesh %u of %zu %s from (%.6g %.6g %.6g) to (%.6g %.6g %.6g): a boolean "
+                    "needs closed meshes, see 'repair'",
+                    first[2] + 1, s->input_count, what, p[0][0], p[0][1], p[0][2], p[1][0],
+                    p[1][1], p[1][2]);
 }
 
 static cw_status require_closed(cwi_grid_solids *s, const double origin[3], cw_error *err)
 {
     half_edge *half = cwi_alloc_array(3 * s->soup.triangle_count, sizeof *half);
     size_t *start = cwi_alloc_zeroed(s->soup.vertex_count + 1, sizeof *start);
-    uint32_t first[3] = {0};
-    cw_status st = CW_OK;
-    const size_t open = half && start ? count_open(s, half, start, first) : 0;
-    if (!half || !start)
-        st = cwi_fail_memory(err);
-    else if (open) {
-        s->open_mesh = first[2] + 1;
-        double p[2][3];
-        for (int i = 0; i < 2; i++)
-            for (int k = 0; k < 3; k++)
-                p[i][k] = origin[k] + s->soup.vertices[first[i]][k] / s->scale;
-        st = cwi_fail(
-            err, CW_ERR_CHECK,
-            "mesh %u of %zu is open at %zu edges, one from (%.6g %.6g %.6g) to (%.6g %.6g "
-            "%.6g): a boolean needs closed meshes, see 'repair'",
-            first[2] + 1, s->input_count, open, p[0][0], p[0][1], p[0][2], p[1][0], p[1][1],
-            p[1][2]);
-    }
+    edge_faults faults = {0};
+    cw_status st = half && start ? CW_OK : cwi_fail_memory(err);
+    if (st == CW_OK)
+        find_faults(s, half, start, &faults);
+    for (int n = 0; n < EDGE_FAULTS && st == CW_OK; n++)
+        if (faults.count[n])
+            st = refuse_faults(s, &faults, origin, err);
     cwi_free(half);
     cwi_free(start);
     return st;

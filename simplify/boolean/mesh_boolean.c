@@ -13,16 +13,21 @@
 
 enum {
     MAX_ROUNDS = 16,
-    MAX_TRIES = 5,
+    MAX_TRIES = 20,
     MAX_GROWTH = 8 /* of what meets, from the smallest of the rounds before */
 };
+
+/* A cell is thin below this multiple of the reach. */
+static const double THIN_REACHES = 1.5;
 
 typedef struct boolean {
     const cw_mesh *const *meshes;
     size_t count;
     cw_boolean_desc desc;
     cw_boolean_facts facts;
-    size_t results; /* 1, or 2 of a split */
+    double reach;    /* how far vertices move onto others, in grid units */
+    bool edges_meet; /* edges that are so close get a vertex in common */
+    size_t results;  /* 1, or 2 of a split */
     cw_mesh *out;
 } boolean;
 
@@ -56,11 +61,11 @@ static void free_round(round_state *r)
 typedef struct choice {
     cw_boolean_op op;
     size_t count;
+    bool marks_negative; /* with CWI_NEGATIVE, for facts on the inputs */
 } choice;
 
-static uint8_t keep_cell(const void *context, const int32_t *windings, size_t positive)
+static uint8_t choose_results(const choice *c, const int32_t *windings, size_t positive)
 {
-    const choice *c = context;
     const bool first = windings[0] > 0;
     switch (c->op) {
     case CW_BOOLEAN_DIFFERENCE:
@@ -74,6 +79,14 @@ static uint8_t keep_cell(const void *context, const int32_t *windings, size_t po
     default:
         return positive > 0;
     }
+}
+
+static uint8_t keep_cell(const void *context, const int32_t *windings, size_t positive,
+                         size_t negative)
+{
+    const choice *c = context;
+    const uint8_t results = choose_results(c, windings, positive);
+    return c->marks_negative && negative ? results | CWI_NEGATIVE : results;
 }
 
 /* Builds the arrangement of the solids, and finds the cells that are kept. */
@@ -122,19 +135,17 @@ static float *round_vertices(const round_state *r, const cwi_sheets *sheets, dou
 
 static double volume_of(const round_state *r, const cwi_sheets *sheets)
 {
-    double sum = 0, origin[3] = {0};
+    const cwi_soup *soup = &r->solids.soup;
+    double sum = 0;
+    if (!sheets->triangle_count)
+        return 0;
+    const cwi_exact_point origin =
+        cwi_point_at(soup, &r->parts, sheets->points[sheets->triangles[0]]);
     for (size_t t = 0; t < sheets->triangle_count; t++) {
-        double p[3][3], cross[3];
-        for (int k = 0; k < 3; k++) {
-            const cwi_exact_point x =
-                cwi_point_at(&r->solids.soup, &r->parts,
-                             sheets->points[sheets->triangles[3 * t + (size_t)k]]);
-            if (t == 0 && k == 0)
-                memcpy(origin, x.x, sizeof origin);
-            cwi_sub(x.x, origin, p[k]);
-        }
-        cwi_cross(p[1], p[2], cross);
-        sum += cwi_dot(p[0], cross);
+        const uint32_t *v = sheets->triangles + 3 * t;
+        const uint32_t corners[3] = {sheets->points[v[0]], sheets->points[v[1]],
+                                     sheets->points[v[2]]};
+        sum += cwi_cone_volume(&r->solids, &r->parts, corners, origin.x);
     }
     return sum / 6 / pow(r->solids.scale, 3);
 }
@@ -163,29 +174,31 @@ static bool has_meetings(const round_state *r)
     return r->seams.count;
 }
 
-/* Returns how far vertices move onto others in a round or try, from 1, in grid units: 1, 2, 4, 8 last digits of
- * the largest coordinate, and no more. */
-static double reach_of(int n)
+/* Moves vertices that meet others onto what is close, and looks again for what meets. */
+static cw_status snap_round(boolean *b, round_state *r, cw_error *err)
 {
-    return ldexp(1.0625, CWI_GRID_BITS - 24 + (n < 4 ? n - 1 : 3));
+    const cw_status st = cwi_solids_snap(&r->solids, &r->meetings, &r->seams, b->reach,
+                                         b->edges_meet, &b->facts.moved_mm, err);
+    return st == CW_OK ? find_seams(r, &b->desc, err) : st;
 }
 
-/* Unites the facets of a result with themselves, after its vertices were rounded. Later rounds move vertices
- * farther onto others. *sheets becomes the new result. */
-static cw_status unite_again(boolean *b, round_state *r, int round, cwi_sheets *sheets,
-                             cw_error *err)
+/* Gives thin cells to what is around them. */
+static cw_status absorb_cells(boolean *b, round_state *r, cw_error *err)
 {
-    const choice unite = {CW_BOOLEAN_UNION, 1};
-    cw_status st = CW_OK;
-    if (round > 0) {
-        const double radius = reach_of(round);
-        st = cwi_solids_snap(&r->solids, &r->meetings, &r->seams, radius, &b->facts.moved_mm,
-                             err);
-        if (st == CW_OK)
-            st = find_seams(r, &b->desc, err);
-    }
+    return cwi_absorb_thin_cells(&r->solids, &r->parts, &r->facets, &r->cells,
+                                 THIN_REACHES * b->reach, r->kept, &b->facts.moved_mm, err);
+}
+
+/* Unites the facets of a result with themselves, after its vertices were rounded. *sheets becomes the new
+ * result. */
+static cw_status unite_again(boolean *b, round_state *r, cwi_sheets *sheets, cw_error *err)
+{
+    const choice unite = {CW_BOOLEAN_UNION, 1, false};
+    cw_status st = snap_round(b, r, err);
     if (st == CW_OK)
         st = arrange_solids(r, &unite, &b->desc, err);
+    if (st == CW_OK)
+        st = absorb_cells(b, r, err);
     if (st == CW_OK) {
         cwi_sheets_free(sheets);
         st = cwi_sew_sheets(&r->solids, &r->facets, &r->cells, r->kept, 1, sheets, err);
@@ -207,8 +220,10 @@ static cw_status round_result(boolean *b, const round_state *first, cwi_sheets *
         cwi_free(*positions);
         const round_state *from = round ? &last : first;
         *positions = round_vertices(from, sheets, &b->facts.moved_mm, &fresh);
-        if (!*positions)
-            return cwi_fail_memory(err);
+        if (!*positions) {
+            st = cwi_fail_memory(err);
+            break;
+        }
         if (!fresh)
             break;
         b->facts.rounds += 1;
@@ -228,7 +243,7 @@ static cw_status round_result(boolean *b, const round_state *first, cwi_sheets *
                 "floats can tell apart. Moving one mesh a little helps",
                 round + 1);
         if (st == CW_OK && !done)
-            st = unite_again(b, &r, round, sheets, err);
+            st = unite_again(b, &r, sheets, err);
         free_round(&last);
         last = r;
         if (done)
@@ -280,11 +295,12 @@ static cw_status make_result(boolean *b, round_state *r, size_t n, cw_error *err
     return st;
 }
 
-/* Runs the boolean with vertices that meet moved onto others within a radius, in grid units; 0: none is. */
-static cw_status try_boolean(boolean *b, double radius, cw_error *err)
+/* Runs the boolean.
+ * snap  vertices of inputs that meet are moved onto others, too */
+static cw_status try_boolean(boolean *b, bool snap, cw_error *err)
 {
     round_state r = {0};
-    const choice c = {b->desc.op, b->count};
+    const choice c = {b->desc.op, b->count, true};
     b->facts = (cw_boolean_facts){0};
     cw_status st = cwi_solids_gather(b->meshes, b->count, &r.solids, err);
     if (st == CW_OK)
@@ -296,26 +312,31 @@ static cw_status try_boolean(boolean *b, double radius, cw_error *err)
     for (size_t n = 0; n < r.seams.count && st == CW_OK; n++)
         b->facts.split_triangles +=
             n == 0 || r.seams.seams[n].triangle != r.seams.seams[n - 1].triangle;
-    if (st == CW_OK && radius > 0) {
-        st = cwi_solids_snap(&r.solids, &r.meetings, &r.seams, radius, &b->facts.moved_mm, err);
-        if (st == CW_OK)
-            st = find_seams(&r, &b->desc, err);
-    }
+    if (st == CW_OK && snap)
+        st = snap_round(b, &r, err);
     if (st == CW_OK)
         st = arrange_solids(&r, &c, &b->desc, err);
+    if (st == CW_OK)
+        st = cwi_find_input_facts(b->meshes, &r.solids, &r.parts, &r.facets, &r.cells, r.kept,
+                                  b->desc.inputs, &b->facts, err);
+    if (st == CW_OK && snap)
+        st = absorb_cells(b, &r, err);
     for (size_t n = 0; n < b->results && st == CW_OK; n++)
         st = make_result(b, &r, n, err);
     free_round(&r);
     return st;
 }
 
-/* Surfaces that are closer than floats can tell apart may cross again in each round: then vertices of the inputs
- * that meet are moved onto each other first. */
+/* Surfaces that are closer than floats can tell apart may cross again in each round: then the inputs are moved
+ * onto each other first, farther from try to try. The first tries reach 1.5 last digits of the largest
+ * coordinate; every other lets edges meet, too. */
 static cw_status run_boolean(boolean *b, cw_error *err)
 {
     cw_status st = CW_OK;
     for (int n = 0; n < MAX_TRIES; n++) {
-        st = try_boolean(b, n ? reach_of(n) : 0, err);
+        b->reach = ldexp(1.5, CWI_GRID_BITS - 24 + n / 2);
+        b->edges_meet = n < 2 || n % 2;
+        st = try_boolean(b, n > 0, err);
         if (st != CW_ERR_CHECK || !b->facts.rounds)
             break;
         for (size_t i = 0; i < b->results; i++)

@@ -318,7 +318,7 @@ typedef struct walk {
     cwi_keep_cell keep;
     const void *context;
     int32_t *windings;
-    size_t positive;
+    size_t positive, negative; /* inputs whose number is above 0, below 0 */
     uint8_t *kept;
     bool *seen;
     size_t *next; /* of each cell, the passage to try next */
@@ -328,8 +328,10 @@ static void add_winding(walk *k, uint32_t triangle, int by)
 {
     int32_t *n = &k->windings[k->w->inputs[triangle]];
     k->positive -= *n > 0;
+    k->negative -= *n < 0;
     *n += by;
     k->positive += *n > 0;
+    k->negative += *n < 0;
 }
 
 /* Changes the numbers as by a way through a facet: forwards from its front to its back. */
@@ -350,6 +352,11 @@ static void cross_facet(walk *k, uint32_t facet, bool forwards)
                     forwards ? f->covers[low].sign : -f->covers[low].sign);
 }
 
+static void judge_cell(walk *k, uint32_t cell)
+{
+    k->kept[cell] = k->keep(k->context, k->windings, k->positive, k->negative);
+}
+
 /* Visits all cells of an island, and comes back with the numbers that it began with. */
 static void walk_island(walk *k, uint32_t cell, uint32_t *stack, uint32_t *ways)
 {
@@ -358,7 +365,7 @@ static void walk_island(walk *k, uint32_t cell, uint32_t *stack, uint32_t *ways)
     stack[depth++] = cell;
     k->seen[cell] = true;
     k->next[cell] = w->first[cell];
-    k->kept[cell] = k->keep(k->context, k->windings, k->positive);
+    judge_cell(k, cell);
     while (depth) {
         const uint32_t at = stack[depth - 1];
         if (k->next[at] == w->first[at + 1]) {
@@ -372,7 +379,7 @@ static void walk_island(walk *k, uint32_t cell, uint32_t *stack, uint32_t *ways)
         cross_facet(k, p->facet, front_of(w, p->facet) == at);
         k->seen[p->to] = true;
         k->next[p->to] = w->first[p->to];
-        k->kept[p->to] = k->keep(k->context, k->windings, k->positive);
+        judge_cell(k, p->to);
         ways[depth] = p->facet;
         stack[depth++] = p->to;
     }

@@ -4,6 +4,8 @@
 
 #include "core/geometry/triangle.h"
 
+#include <algorithm>
+
 namespace cw
 {
 
@@ -25,6 +27,9 @@ public:
         std::vector<uint32_t> next_slot(first.begin(), first.end() - 1);
         for (size_t s = 0; s < count; s++)
             order[next_slot[corners[s]]++] = uint32_t(s);
+        for (size_t v = 0; v < block.vertices; v++)
+            std::sort(order.begin() + first[v], order.begin() + first[v + 1],
+                      [this](uint32_t s, uint32_t t) { return to(s) < to(t); });
     }
 
     uint32_t from(uint32_t side) const
@@ -42,22 +47,23 @@ public:
         return first[vertex + 1] - first[vertex];
     }
 
-    // How many run from one vertex to another; *side is one of them.
+    // How many run from one vertex to another: none, one, or 2 for more; *side is one of them.
     int between(uint32_t a, uint32_t b, uint32_t *side) const
     {
-        int found = 0;
-        for (uint32_t i = first[a]; i < first[a + 1]; i++)
-            if (to(order[i]) == b) {
-                *side = order[i];
-                found++;
-            }
-        return found;
+        const auto end = order.begin() + first[a + 1];
+        const auto found =
+            std::lower_bound(order.begin() + first[a], end, b,
+                             [this](uint32_t s, uint32_t v) { return to(s) < v; });
+        if (found == end || to(*found) != b)
+            return 0;
+        *side = *found;
+        return found + 1 != end && to(found[1]) == b ? 2 : 1;
     }
 
 private:
     const uint32_t *corners;
     size_t count;
-    std::vector<uint32_t> first, order;
+    std::vector<uint32_t> first, order; // sides of a vertex by the vertex they run to
 };
 
 // One edge for a pair of sides, or for a side alone.

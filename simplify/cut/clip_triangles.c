@@ -129,7 +129,8 @@ static bool gather_corner_edges(clip_work *w)
 }
 
 /* Lets vertices in the plane count as below it, unless their kept triangles are one fan between two
- * edges of the section. Returns true if there were some. */
+ * edges of the section. Those that would have to move there stay on their side instead. Returns true if
+ * there were some. */
 static bool part_vertices(clip_work *w)
 {
     const corner_edge *e = w->corner_edges;
@@ -148,7 +149,8 @@ static bool part_vertices(clip_work *w)
         }
         if (ends == 2 && !touches)
             continue;
-        w->cut->side[v] = CWI_CUT_BELOW;
+        w->cut->side[v] =
+            cwi_cut_distance(w->cut, v) > w->cut->tolerance ? CWI_CUT_ABOVE : CWI_CUT_BELOW;
         has_parted = true;
     }
     return has_parted;

@@ -25,6 +25,8 @@ typedef struct cwi_cut {
     double normal[3]; /* of length 1 */
     double offset;    /* positions x in the plane have normal . x = offset */
     double tolerance; /* vertices as near as this are in the plane */
+    double nearness;  /* factor of the distances in `near`; 0: no such distances */
+    double *near;     /* vertex_count: as near as this they move into the plane; or NULL */
     int axis;         /* along which the normal is longest */
     int8_t *side;     /* vertex_count */
 
@@ -47,6 +49,7 @@ typedef struct cwi_cut {
                                 runs through them */
     size_t *loop_ends;  /* loop_count: the end of each in loop_vertices */
     size_t loop_count;
+    size_t crossings; /* that filling the section left */
     cw_cut_facts facts;
 } cwi_cut;
 
@@ -61,6 +64,14 @@ static inline double cwi_cut_distance(const cwi_cut *c, size_t v)
 
 /* Adds a triangle to the result. Returns false when memory is out. */
 bool cwi_cut_add_triangle(cwi_cut *c, uint32_t a, uint32_t b, uint32_t d);
+
+/* Finds the sides of all vertices, and tells which of them triangles have. Returns false when memory is
+ * out.
+ * largest  coordinate of the mesh */
+bool cwi_cut_find_sides(cwi_cut *c, double largest, bool has[3]);
+
+/* Returns true if what is kept has the volume that the mesh has above the plane, but for a millionth. */
+bool cwi_cut_keeps_volume(const cwi_cut *c);
 
 /* Keeps what is above the plane: sets vertices, triangles, and edges of the section.
  * Returns  CW_ERR_NO_MEMORY; CW_ERR_CANCELLED; CW_ERR_LIMIT */

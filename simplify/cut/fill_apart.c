@@ -120,12 +120,14 @@ static cw_status part_triangles(apart_work *w, cw_error *err)
     for (int idle = 0;; idle++) {
         bool are_simple;
         cw_status st = part_edges(w, &are_simple, err);
+        w->cut->crossings = !are_simple;
         if (st == CW_OK)
             st = fill_again(w, err);
         if (st != CW_OK || !are_simple)
             return st;
         clear_marks(w);
         st = cwi_cut_find_triangle_crossings(w->cut, w->first_cap, w->marks, &count, err);
+        w->cut->crossings = count;
         if (st != CW_OK || !count || idle >= MAX_IDLE_ROUNDS || w->round >= MAX_ROUNDS)
             return st;
         if (count < fewest) {

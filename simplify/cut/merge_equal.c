@@ -1,10 +1,12 @@
-/* Merges neighbours of a section that rounding has put at the same place, so that no triangle there is
- * without area. The surface stays a manifold: two vertices merge only if the triangle between them
+/* Merges neighbours of a section that are at the same place or nearly so, so that no triangle there is
+ * without area, or a sliver. The surface stays a manifold: two vertices merge only if the triangle between them
  * has the only vertex that is next to both. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/vec3.h"
 #include "simplify/cut/cut_state.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,10 +28,15 @@ typedef struct merge_work {
     size_t merged; /* in this round */
 } merge_work;
 
-static bool is_equal(const cwi_cut *c, uint32_t a, uint32_t b)
+/* Returns true if two neighbours are at one place, or as near as vertices are to move into the plane. */
+static bool is_short(const cwi_cut *c, const cwi_cut_edge *edge)
 {
-    const float *p = c->positions + 3 * (size_t)a, *q = c->positions + 3 * (size_t)b;
-    return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
+    const double length_sq = cwi_point_distance_sq(c->positions + 3 * (size_t)edge->start,
+                                                   c->positions + 3 * (size_t)edge->end);
+    const double near =
+        c->near ? fmin(c->near[c->sources[edge->start].a], c->near[c->sources[edge->end].a])
+                : 0;
+    return length_sq <= near * near;
 }
 
 static int compare_items(const void *a, const void *b)
@@ -48,7 +55,7 @@ static bool mark_near(merge_work *w)
     memset(w->is_near, 0, c->vertex_count * sizeof *w->is_near);
     memset(w->is_busy, 0, c->vertex_count * sizeof *w->is_busy);
     for (size_t e = 0; e < c->edge_count; e++)
-        if (is_equal(c, c->edges[e].start, c->edges[e].end)) {
+        if (is_short(c, c->edges + e)) {
             w->is_near[c->edges[e].start] = w->is_near[c->edges[e].end] = true;
             any = true;
         }
@@ -179,7 +186,8 @@ cw_status cwi_cut_merge_equal(cwi_cut *c, cw_error *err)
         ok = gather_items(&w);
         for (size_t e = 0; e < c->edge_count && ok; e++) {
             const cwi_cut_edge *edge = c->edges + e;
-            if (is_equal(c, edge->start, edge->end))
+            if (c->sources[edge->start].a != NONE && c->sources[edge->end].a != NONE &&
+                is_short(c, edge))
                 merge_pair(&w, edge->start, edge->end);
         }
         drop_collapsed(c);

@@ -43,37 +43,21 @@ static void place_point(cwi_cut *c)
             d->point[a] = low[a] + (high[a] - low[a]) * d->point[a] / 100;
 }
 
-/* Sets the plane in the coordinates of the mesh's positions. */
-static void set_plane(cwi_cut *c)
+/* Sets the plane in the coordinates of the mesh's positions. Returns the largest of these. */
+static double set_plane(cwi_cut *c)
 {
     double largest = 0;
     place_point(c);
     memcpy(c->normal, c->desc.normal, sizeof c->normal);
     cwi_normalise(c->normal);
-    for (int a = 0; a < 3; a++) {
+    c->axis = cwi_longest_axis(c->normal);
+    for (int a = 0; a < 3; a++)
         c->offset += c->normal[a] * (c->desc.point[a] - c->mesh->origin[a]);
-        c->axis = fabs(c->normal[a]) > fabs(c->normal[c->axis]) ? a : c->axis;
-    }
     for (size_t n = 0; n < 3 * c->mesh->vertex_count; n++)
         largest = cwi_greater(largest, fabs((double)c->mesh->positions[n]));
     c->tolerance = NEARNESS * largest;
     c->step = STEP * largest;
-}
-
-/* Finds the sides of all vertices, and tells which of them triangles have. */
-static bool find_sides(cwi_cut *c, bool has[3])
-{
-    const cw_mesh *m = c->mesh;
-    c->side = cwi_alloc_array(m->vertex_count, sizeof *c->side);
-    if (!c->side)
-        return false;
-    for (size_t v = 0; v < m->vertex_count; v++) {
-        const double distance = cwi_cut_distance(c, v);
-        c->side[v] = (int8_t)((distance > c->tolerance) - (distance < -c->tolerance));
-    }
-    for (size_t n = 0; n < 3 * m->triangle_count; n++)
-        has[c->side[m->triangles[n]] + 1] = true;
-    return true;
+    return largest;
 }
 
 /* --- the result --------------------------------------------------------------------------- */
@@ -147,14 +131,17 @@ static cw_status cut_mesh(cwi_cut *c, cw_mesh *out, cw_error *err)
 {
     bool has[3] = {false, false, false};
     cw_status st = cwi_progress(&c->desc.progress, "cut", 0, err);
-    set_plane(c);
-    if (st == CW_OK && !find_sides(c, has))
+    const double largest = set_plane(c);
+    if (st == CW_OK && !cwi_cut_find_sides(c, largest, has))
         st = cwi_fail_memory(err);
     if (st == CW_OK && !has[CWI_CUT_ABOVE + 1])
         st = cwi_fail(err, CW_ERR_EMPTY,
                       "nothing is left: no triangle is above the plane of the cut");
     if (st == CW_OK && !has[CWI_CUT_BELOW + 1])
-        return cwi_mesh_copy(c->mesh, out, err);
+        return c->nearness && has[CWI_CUT_ON + 1]
+                   ? cwi_fail(err, CW_ERR_CHECK,
+                              "vertices may be below that are near the plane")
+                   : cwi_mesh_copy(c->mesh, out, err);
     if (st == CW_OK)
         st = cwi_cut_clip(c, err);
     if (st == CW_OK)
@@ -163,7 +150,23 @@ static cw_status cut_mesh(cwi_cut *c, cw_mesh *out, cw_error *err)
         st = cwi_cut_link(c, err);
     if (st == CW_OK)
         st = cwi_cut_fill_apart(c, err);
+    if (st == CW_OK && c->nearness && (c->crossings || !cwi_cut_keeps_volume(c)))
+        return cwi_fail(err, CW_ERR_CHECK, "vertices near the plane moved too far");
     return st == CW_OK ? make_result(c, out, err) : st;
+}
+
+static void free_cut(cwi_cut *c)
+{
+    cwi_free(c->side);
+    cwi_free(c->near);
+    cwi_free(c->sources);
+    cwi_free(c->positions);
+    cwi_free(c->is_section);
+    cwi_free(c->triangles);
+    cwi_free(c->parents);
+    cwi_free(c->edges);
+    cwi_free(c->loop_vertices);
+    cwi_free(c->loop_ends);
 }
 
 cw_status cw_mesh_cut(const cw_mesh *mesh, const cw_cut_desc *desc, cw_mesh *out,
@@ -171,23 +174,20 @@ cw_status cw_mesh_cut(const cw_mesh *mesh, const cw_cut_desc *desc, cw_mesh *out
 {
     CWI_REQUIRE(err, mesh, desc, out);
     CWI_REQUIRE_VERSION(err, desc, 0);
-    cwi_cut c = {.mesh = mesh, .desc = *desc};
+    static const double nearness[] = {1, 1.0 / 16, 0};
     *out = (cw_mesh){0};
     cw_status st = check_input(mesh, desc, err);
-    if (st == CW_OK)
+    const bool is_valid = st == CW_OK;
+    for (size_t n = 0; n < 3 && is_valid; n++) {
+        cwi_cut c = {.mesh = mesh, .desc = *desc, .nearness = nearness[n]};
         st = cut_mesh(&c, out, err);
+        if (facts)
+            *facts = st == CW_OK ? c.facts : (cw_cut_facts){0};
+        free_cut(&c);
+        if (st != CW_ERR_CHECK && st != CW_ERR_EMPTY)
+            break;
+    }
     if (st != CW_OK)
         cw_mesh_free(out);
-    if (facts)
-        *facts = st == CW_OK ? c.facts : (cw_cut_facts){0};
-    cwi_free(c.side);
-    cwi_free(c.sources);
-    cwi_free(c.positions);
-    cwi_free(c.is_section);
-    cwi_free(c.triangles);
-    cwi_free(c.parents);
-    cwi_free(c.edges);
-    cwi_free(c.loop_vertices);
-    cwi_free(c.loop_ends);
     return st;
 }

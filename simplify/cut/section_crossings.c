@@ -248,13 +248,55 @@ static void mark_triangles(crossing_search *s, uint32_t a, uint32_t b)
             mark_vertex(s, cap[n], CWI_CUT_LOWER);
 }
 
-/* a  a triangle at the section, or one above that is compared with those of the surface at it */
+/* Returns on which side of the line from a to b a point is, as the plane's axis shows them. */
+static int find_side(const crossing_search *s, uint32_t a, uint32_t b, uint32_t point)
+{
+    const float *p = s->cut->positions;
+    return cwi_orient2d(p + 3 * (size_t)a, p + 3 * (size_t)b, p + 3 * (size_t)point,
+                        s->cut->axis);
+}
+
+/* Returns true if an edge, or a point if both ends are one, has no point in a triangle, as the plane's axis shows them:
+ * a line along one of their sides parts them. */
+static bool is_apart(const crossing_search *s, uint32_t a, uint32_t b, const uint32_t v[3])
+{
+    const int turn = find_side(s, v[0], v[1], v[2]);
+    for (int n = 0; n < 3; n++)
+        if (find_side(s, v[n], v[(n + 1) % 3], a) * turn < 0 &&
+            find_side(s, v[n], v[(n + 1) % 3], b) * turn < 0)
+            return true;
+    const int first = find_side(s, a, b, v[0]);
+    return first && find_side(s, a, b, v[1]) == first && find_side(s, a, b, v[2]) == first;
+}
+
+/* Returns true if a triangle of the surface stands on a cap's triangle, away from its corners. Loops do not cross, so this
+ * one's lies inside of the other's: the shells are within each other, and no vertex that moves parts them. */
+static bool stands_on(const crossing_search *s, uint32_t above, uint32_t cap)
+{
+    const uint32_t *v = find_corners(s, above), *c = find_corners(s, cap);
+    uint32_t section[3];
+    int count = 0;
+    for (int n = 0; n < 3; n++) {
+        if (!s->cut->is_section[v[n]])
+            continue;
+        if (v[n] == c[0] || v[n] == c[1] || v[n] == c[2])
+            return false;
+        section[count++] = v[n];
+    }
+    return count && !is_apart(s, section[0], section[count > 1], c);
+}
+
+/* a  a triangle at the section, or one above that is compared with those of the surface at it. Those of caps do not meet,
+ *    unless one shell is within another. */
 static bool triangles_meet(crossing_search *s, uint32_t a, uint32_t b)
 {
     const float *p = s->cut->positions;
     const bool is_above = !is_cap(s, a) && !has_section_corner(s, a);
+    if (is_cap(s, a) && is_cap(s, b))
+        return false;
     if ((is_above ? is_cap(s, b) : a >= b) || !cwi_has_area(p, find_corners(s, a)) ||
-        !cwi_has_area(p, find_corners(s, b)) ||
+        !cwi_has_area(p, find_corners(s, b)) || (is_cap(s, a) && stands_on(s, b, a)) ||
+        (is_cap(s, b) && stands_on(s, a, b)) ||
         !cwi_triangles_meet(p, find_corners(s, a), find_corners(s, b)) || was_faulty(s, a, b))
         return false;
     mark_triangles(s, a, b);

@@ -16,6 +16,9 @@
 /* Points that large triangles are divided for, at least. */
 static const double POINTS = 200000;
 
+/* How many times as many, or as many as there are triangles, there may be for slivers. */
+static const double MAX_SLIVER_POINTS = 4;
+
 /* Rays around the first one, and how far they are off it. */
 enum { AROUND = 6 };
 static const double OFF_DEG = 5;
@@ -31,6 +34,9 @@ static const double SMOOTH_DEG = 30, THIN = 0.2;
 /* Triangles farther than this off the normals of all their vertices are not measured, either. */
 static const double ASTRAY_DEG = 60;
 
+/* Times the way to a hit: boxes up to there may hold one that is nearer, as rounding goes. */
+static const double BEYOND = 1 + 1e-5;
+
 /* In limits: the walls that get the rays around, and the widest gaps that are looked for. */
 static const double REACH = 4;
 
@@ -45,6 +51,7 @@ typedef struct ray_field {
     float *wall, *gap;
     cwi_wall_sum *walls, *gaps; /* of each part */
     double step;                /* between points, mm */
+    bool shares_points;         /* triangles lower than a step share points */
     double diagonal;
     float slack;
     size_t parts;
@@ -57,6 +64,7 @@ typedef struct ray {
     size_t own; /* the triangle that it starts on */
     double from[3], vector[3];
     double fraction; /* of the vector, to the first hit so far */
+    cwi_boxes_segment segment;
     size_t hit;
 } ray;
 
@@ -89,6 +97,7 @@ static bool visit_triangle(void *context, size_t slot)
     const double fraction = meet_triangle(r, triangle);
     if (fraction > 0 && fraction < r->fraction) {
         r->fraction = fraction;
+        r->segment.reach = (float)cwi_lesser(1, BEYOND * fraction);
         r->hit = triangle;
     }
     return true;
@@ -106,9 +115,9 @@ static double cast_ray(const ray_field *f, size_t own, const double from[3],
          reach = cwi_lesser(4 * reach, max_reach)) {
         for (int a = 0; a < 3; a++)
             r.vector[a] = reach * direction[a];
-        const cwi_boxes_segment segment = cwi_boxes_segment_of(r.from, r.vector, f->slack);
+        r.segment = cwi_boxes_segment_of(r.from, r.vector, f->slack);
         r.fraction = 1;
-        cwi_boxes_pierce(&f->tree, &segment, visit_triangle, &r);
+        cwi_boxes_pierce(&f->tree, &r.segment, visit_triangle, &r);
         if (r.hit != SIZE_MAX) {
             double p[3][3], normal[3];
             cwi_mesh_corners(f->mesh, r.hit, p);
@@ -200,8 +209,16 @@ static void add_measure(cwi_wall_sum *sum, double measured, double limit, const 
 typedef struct point_grid {
     size_t apex; /* corner opposite of the longest side */
     size_t columns, rows;
+    double start; /* of the first point, in columns */
     bool is_thin;
 } point_grid;
+
+/* Returns a place from 0 to 1 that spreads evenly over triangles that follow each other: multiples of the golden ratio. */
+static double spread_start(size_t triangle)
+{
+    const double x = (double)triangle * 0.6180339887498949;
+    return x - floor(x);
+}
 
 static size_t count_parts(double length, double step)
 {
@@ -209,8 +226,12 @@ static size_t count_parts(double length, double step)
     return parts > MAX_PARTS ? MAX_PARTS : parts > 1 ? (size_t)parts : 1;
 }
 
-static point_grid divide_triangle(const double p[3][3], double twice_area, double step)
+/* Where slivers would get far too many points, triangles lower than a step share them: each gets as many as its area is
+ * worth, at least one, at places of its own. */
+static point_grid divide_triangle(const ray_field *f, size_t triangle, const double p[3][3],
+                                  double twice_area)
 {
+    const double step = f->step;
     point_grid g = {0};
     double longest = -1;
     for (size_t c = 0; c < 3; c++) {
@@ -223,9 +244,12 @@ static point_grid divide_triangle(const double p[3][3], double twice_area, doubl
             g.apex = c;
         }
     }
-    g.columns = count_parts(longest, step);
-    g.rows = count_parts(twice_area / longest, step);
-    g.is_thin = twice_area / longest < THIN * longest;
+    const double height = twice_area / longest;
+    const bool shares = f->shares_points && height < step && longest > step;
+    g.columns = count_parts(shares ? height * longest / step : longest, step);
+    g.rows = count_parts(height, step);
+    g.start = shares ? spread_start(triangle) : 0.5;
+    g.is_thin = height < THIN * longest;
     return g;
 }
 
@@ -239,10 +263,10 @@ static void measure_triangle(ray_field *f, size_t triangle, cwi_wall_sum *walls,
     double min_mm[2] = {INFINITY, INFINITY};
     const cw_print_desc *limits = f->limits;
     if (twice > 0 && cwi_normalise(flat)) {
-        const point_grid g = divide_triangle((const double(*)[3])p, twice, f->step);
+        const point_grid g = divide_triangle(f, triangle, (const double(*)[3])p, twice);
         const double area = twice / 2 / (double)(g.columns * g.rows);
         for (size_t n = 0; n < g.columns * g.rows; n++) {
-            const double along = ((double)(n % g.columns) + 0.5) / (double)g.columns,
+            const double along = ((double)(n % g.columns) + g.start) / (double)g.columns,
                          up = 1 - sqrt(1 - ((double)(n / g.columns) + 0.5) / (double)g.rows);
             double weights[3], at[3], normal[3], inward[3];
             weights[g.apex] = up;
@@ -278,6 +302,23 @@ static void measure_part(void *context, size_t k)
 
 /* --- all ---------------------------------------------------------------------------------- */
 
+/* Returns how many points there are where each triangle has its own. */
+static double count_points(const ray_field *f)
+{
+    double sum = 0;
+    for (size_t t = 0; t < f->mesh->triangle_count; t++) {
+        double p[3][3], area[3];
+        cwi_mesh_corners(f->mesh, t, p);
+        cwi_triangle_normal(p[0], p[1], p[2], area);
+        const double twice = cwi_length(area);
+        if (!(twice > 0))
+            continue;
+        const point_grid g = divide_triangle(f, t, (const double(*)[3])p, twice);
+        sum += (double)(g.columns * g.rows);
+    }
+    return sum;
+}
+
 /* Finds the normals of vertices, weighted by area, and the step between points. */
 static void prepare_points(ray_field *f)
 {
@@ -305,6 +346,8 @@ static void prepare_points(ray_field *f)
     }
     f->diagonal = cwi_distance(low, high);
     f->step = sqrt(twice / 2 / POINTS);
+    f->shares_points =
+        count_points(f) > MAX_SLIVER_POINTS * fmax(POINTS, (double)mesh->triangle_count);
     f->slack = f->tree.max * 0x1p-20f;
 }
 

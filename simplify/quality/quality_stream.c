@@ -7,6 +7,7 @@
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "core/geometry/box.h"
+#include "core/geometry/triangle.h"
 #include "core/geometry/union_find.h"
 #include "core/mesh/mesh.h"
 #include "simplify/quality/triangle_shapes.h"
@@ -48,11 +49,6 @@ struct cw_quality_stream {
     bool finished;
 };
 
-static bool is_collapsed(const uint32_t *c)
-{
-    return c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
-}
-
 static uint32_t lowest_of(const uint32_t *c)
 {
     const uint32_t low = c[0] < c[1] ? c[0] : c[1];
@@ -86,7 +82,7 @@ static void sum_shapes(void *context, size_t k)
             for (int a = 0; a < 3; a++)
                 block.corner[n][a][block.count] =
                     (double)s->positions[3 * (c[n] - s->placed) + (size_t)a];
-        block.collapsed[block.count++] = is_collapsed(c);
+        block.collapsed[block.count++] = cwi_triangle_is_collapsed(c);
         if (block.count == CWI_SHAPE_BLOCK)
             cwi_shape_sum_add(&work->sums[k], &block);
     }
@@ -316,7 +312,7 @@ static void append_triangle(cw_quality_stream *s, const uint32_t *c)
 {
     memcpy(s->triangles + 3 * s->held++, c, TRIANGLE_BYTES);
     s->q.triangles++;
-    if (is_collapsed(c))
+    if (cwi_triangle_is_collapsed(c))
         return;
     s->q.euler++;
     for (int n = 1; n < 3; n++) {

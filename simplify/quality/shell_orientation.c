@@ -5,6 +5,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/bvh.h"
 #include "core/geometry/exact_predicates.h"
+#include "core/geometry/triangle.h"
 #include "core/geometry/union_find.h"
 #include "core/geometry/vec3.h"
 #include "simplify/quality/triangle_shapes.h"
@@ -33,11 +34,14 @@ typedef struct chunk_sums {
     bool failed;
 } chunk_sums;
 
-/* A ray from a vertex of a closed shell along +x. */
+/* A ray along +x from a closed shell: it starts infinitely close to a vertex, inside of a triangle there, so that
+ * it tells sides also where shells touch in vertices and edges. */
 typedef struct ray {
-    uint32_t shell; /* its root, where the ray starts */
-    int winding;    /* how often the other shells wind around the start */
-    uint32_t met;   /* triangles of other closed shells */
+    uint32_t shell; /* its root, near which the ray starts */
+    uint32_t towards
+        [2]; /* the triangle's other vertices: moved to the first, and far less to the second */
+    int winding;  /* how often the other shells wind around the start */
+    uint32_t met; /* triangles of other closed shells */
 } ray;
 
 typedef struct work {
@@ -157,26 +161,53 @@ static int sign_of(float x)
     return (x > 0) - (x < 0);
 }
 
-/* On which side of the edge a b, seen along x, the start is when moved by a little in z and far
- * less in y: then it is on none. */
-static int side_of(const float *a, const float *b, const float *start)
+/* A start, and the points to which it is moved: corner 0, 1, 2 of a triangle. */
+typedef struct moved_start {
+    const float *corner[3];
+} moved_start;
+
+/* Returns on which side of the edge a b, seen along x, the start is. What its triangle leaves open is decided by
+ * moving it by a little in z and far less in y: then it is on none. */
+static int side_of(const float *a, const float *b, const moved_start *start)
 {
-    const int side = cwi_orient2d(a, b, start, 0);
-    const int next = side ? side : sign_of(b[1] - a[1]);
+    for (int n = 0; n < 3; n++) {
+        const int side = cwi_orient2d(a, b, start->corner[n], 0);
+        if (side)
+            return side;
+    }
+    const int next = sign_of(b[1] - a[1]);
     return next ? next : -sign_of(b[2] - a[2]);
 }
 
-/* How often the triangle, seen along x, winds around the start: -1, 0 or 1. */
-static int winding_of(const float *const corner[3], const float *start)
+static bool is_above(const float *a, const moved_start *start)
+{
+    const float z = start->corner[0][2];
+    for (int n = 1; n < 3 && a[2] == z; n++)
+        if (start->corner[n][2] != z)
+            return start->corner[n][2] < z;
+    return a[2] > z;
+}
+
+/* Returns how often the triangle, seen along x, winds around the start: -1, 0 or 1. */
+static int winding_of(const float *const corner[3], const moved_start *start)
 {
     int winding = 0;
     for (int n = 0; n < 3; n++) {
         const float *a = corner[n], *b = corner[(n + 1) % 3];
-        const bool a_above = a[2] > start[2], b_above = b[2] > start[2];
+        const bool a_above = is_above(a, start), b_above = is_above(b, start);
         if (a_above != b_above && side_of(a, b, start) == (b_above ? 1 : -1))
             winding += b_above ? 1 : -1;
     }
     return winding;
+}
+
+/* Returns on which side of the triangle's plane the start is; 0: its own triangle lies in that plane. */
+static int side_of_plane(const float *const corner[3], const moved_start *start)
+{
+    int side = 0;
+    for (int n = 0; n < 3 && !side; n++)
+        side = cwi_orient3d(corner[0], corner[1], corner[2], start->corner[n]);
+    return side;
 }
 
 static const float *start_of(const work *w, uint32_t k)
@@ -194,13 +225,16 @@ static bool starts_in(const float start[3], const float box[6])
 static void meet_ray(work *w, uint32_t k, size_t triangle)
 {
     const uint32_t *v = w->welded->vertex + 3 * triangle;
-    const float *corner[3], *start = start_of(w, k);
+    const float *corner[3];
+    moved_start start = {{start_of(w, k)}};
     if (w->part[v[0]] == w->rays[k].shell)
         return;
+    for (int n = 0; n < 2; n++)
+        start.corner[n + 1] = w->welded->points + 3 * (size_t)w->rays[k].towards[n];
     for (int n = 0; n < 3; n++)
         corner[n] = w->welded->points + 3 * (size_t)v[n];
-    const int winding = winding_of(corner, start);
-    if (winding && winding * cwi_orient3d(corner[0], corner[1], corner[2], start) < 0) {
+    const int winding = winding_of(corner, &start);
+    if (winding && winding * side_of_plane(corner, &start) < 0) {
         __atomic_fetch_add(&w->rays[k].winding, winding, __ATOMIC_RELAXED);
         if (!w->shells->unbounded[w->part[v[0]]])
             __atomic_fetch_add(&w->rays[k].met, 1, __ATOMIC_RELAXED);
@@ -317,11 +351,52 @@ static bool start_rays(work *w)
     return ok;
 }
 
+static ray *find_ray(const work *w, uint32_t shell)
+{
+    size_t low = 0, high = w->ray_count;
+    while (low < high) {
+        const size_t middle = (low + high) / 2;
+        if (w->rays[middle].shell < shell)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < w->ray_count && w->rays[low].shell == shell ? &w->rays[low] : NULL;
+}
+
+static bool has_area(const work *w, const uint32_t v[3])
+{
+    const float *points = w->welded->points;
+    double normal[3];
+    cwi_facet_normal(points + 3 * (size_t)v[0], points + 3 * (size_t)v[1],
+                     points + 3 * (size_t)v[2], normal);
+    return normal[0] != 0 || normal[1] != 0 || normal[2] != 0;
+}
+
+/* Chooses the triangle into which each start is moved: the first one with an area at the vertex. */
+static void move_starts(work *w)
+{
+    for (size_t k = 0; k < w->ray_count; k++)
+        w->rays[k].towards[0] = w->rays[k].towards[1] = w->rays[k].shell;
+    for (size_t t = 0; t < w->welded->mesh->triangle_count; t++) {
+        const uint32_t *v = w->welded->vertex + 3 * t;
+        for (int n = 0; n < 3; n++) {
+            ray *r = w->part[v[n]] == v[n] ? find_ray(w, v[n]) : NULL;
+            if (!r || r->towards[0] != r->shell || !has_area(w, v))
+                continue;
+            r->towards[0] = v[(n + 1) % 3];
+            r->towards[1] = v[(n + 2) % 3];
+        }
+    }
+}
+
 /* Counts how often other shells wind around each closed shell. */
 static bool wind_around(work *w, const cw_quality_desc *d, const cw_quality *q)
 {
     if (!start_rays(w))
         return false;
+    if (w->ray_count && q->components > 1)
+        move_starts(w);
     return !w->ray_count || q->components < 2 ||
            cwi_parallel_for(chunk_count(w), CHUNK * 32, d->threads, &d->progress, "checking",
                             meet_chunk, w, NULL) == CW_OK;

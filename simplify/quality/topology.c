@@ -6,6 +6,7 @@
 #include "core/base/status.h"
 #include "core/base/stop.h"
 #include "core/geometry/union_find.h"
+#include "core/mesh/corner_table.h"
 #include "simplify/quality/shell_orientation.h"
 #include "simplify/quality/triangle_shapes.h"
 #include "simplify/quality/vertex_one_rings.h"
@@ -58,6 +59,84 @@ static bool prepare_arrays(work *w, const cw_quality_desc *d)
                                   d->threads);
 }
 
+/* --- one-sided components, such as Moebius strips ------------------------------------------ */
+
+/* Triangles joined along edges of two, by union-find that knows who faces as its parent does. */
+typedef struct sheet_sets {
+    uint32_t *parent;
+    bool *is_turned;    /* against its parent */
+    bool *is_one_sided; /* of a root */
+} sheet_sets;
+
+/* Returns the root, and sets whether the triangle faces against it. */
+static uint32_t find_root(const sheet_sets *s, uint32_t t, bool *is_turned)
+{
+    *is_turned = false;
+    while (s->parent[t] != t) {
+        const uint32_t up = s->parent[t];
+        s->is_turned[t] ^= s->is_turned[up];
+        s->parent[t] = s->parent[up]; /* is_turned of a root is false */
+        *is_turned ^= s->is_turned[t];
+        t = s->parent[t];
+    }
+    return t;
+}
+
+static void join_triangles(sheet_sets *s, uint32_t a, uint32_t b, bool disagrees)
+{
+    bool turned_a, turned_b;
+    const uint32_t x = find_root(s, a, &turned_a), y = find_root(s, b, &turned_b);
+    const uint32_t root = x < y ? x : y, child = x < y ? y : x;
+    const bool is_turned = turned_a ^ turned_b ^ disagrees;
+    if (x == y) {
+        s->is_one_sided[x] |= is_turned;
+        return;
+    }
+    s->parent[child] = root;
+    s->is_turned[child] = is_turned;
+    s->is_one_sided[root] |= s->is_one_sided[child];
+}
+
+static void join_sides(sheet_sets *s, const cwi_welded *welded, cwi_side *sides)
+{
+    const uint32_t *v = welded->vertex;
+    const size_t triangles = welded->mesh->triangle_count;
+    size_t count = 0;
+    for (uint32_t c = 0; c < 3 * triangles; c++)
+        if (!cwi_is_collapsed(welded, c / 3))
+            sides[count++] = (cwi_side){cwi_edge_key(v[c], v[c - c % 3 + (c + 1) % 3]), c};
+    cwi_sides_sort(sides, count);
+    for (size_t n = 0, along; n < count; n += along) {
+        along = cwi_sides_along(sides, count, n);
+        if (along == 2) {
+            const uint32_t a = sides[n].corner, b = sides[n + 1].corner;
+            join_triangles(s, a / 3, b / 3, v[a] == v[b]);
+        }
+    }
+}
+
+/* Counts components, joined along edges of two triangles, whose triangles cannot all agree with their neighbours. False
+ * when memory is out. */
+static bool count_one_sided(const cwi_welded *welded, size_t *count)
+{
+    const size_t triangles = welded->mesh->triangle_count;
+    sheet_sets s = {cwi_sets_alloc(triangles), cwi_alloc_zeroed(triangles, 1),
+                    cwi_alloc_zeroed(triangles, 1)};
+    cwi_side *sides = cwi_alloc_array(3 * triangles, sizeof *sides);
+    const bool ok = s.parent && s.is_turned && s.is_one_sided && sides;
+    if (ok)
+        join_sides(&s, welded, sides);
+    for (uint32_t t = 0; t < triangles && ok; t++)
+        *count += s.parent[t] == t && s.is_one_sided[t];
+    cwi_free(s.parent);
+    cwi_free(s.is_turned);
+    cwi_free(s.is_one_sided);
+    cwi_free(sides);
+    return ok;
+}
+
+/* --- the measurement ---------------------------------------------------------------------- */
+
 static bool measure_topology(work *w, const cw_quality_desc *d, cw_quality *q)
 {
     if (!prepare_arrays(w, d))
@@ -81,6 +160,8 @@ static bool measure_topology(work *w, const cw_quality_desc *d, cw_quality *q)
     q->genus =
         oriented ? (int64_t)q->components - (q->euler + (int64_t)q->border_loops) / 2 : -1;
     cwi_vertex_ranges_free(&w->ranges);
+    if (d->shells && q->misoriented_edges && !count_one_sided(&w->welded, &q->one_sided))
+        return false;
     const cwi_shells shells = {w->part, w->used, w->unbounded};
     return !d->shells || cwi_measure_shells(&w->welded, &shells, d, q);
 }

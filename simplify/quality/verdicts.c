@@ -27,6 +27,8 @@ static const severity for_fem = {{CW_GRADE_NOTE, CW_GRADE_NOTE, CW_GRADE_NOTE, C
 static const severity for_print = {
     {CW_GRADE_NOTE, CW_GRADE_WARN, CW_GRADE_NOTE, CW_GRADE_NOTE}};
 static const severity for_web = {{CW_GRADE_NOTE, CW_GRADE_NOTE, CW_GRADE_WARN, CW_GRADE_NOTE}};
+static const severity for_solver = {
+    {CW_GRADE_NOTE, CW_GRADE_NOTE, CW_GRADE_NOTE, CW_GRADE_WARN}};
 static const severity look = {{CW_GRADE_WARN, CW_GRADE_WARN, CW_GRADE_WARN, CW_GRADE_WARN}};
 static const severity overlap = {{CW_GRADE_WARN, CW_GRADE_WARN, CW_GRADE_NOTE, CW_GRADE_FAIL}};
 
@@ -85,18 +87,44 @@ static void judge_size(bench *b)
         v->advice = "printers make 5 to 400 mm: is the file's unit the millimetre?";
 }
 
+/* Solids that touch in edges or points are solids; elements of a solver cannot be. */
+static void judge_contacts(bench *b)
+{
+    const cw_quality *q = b->f->quality;
+    const size_t contacts = q->contact_edges + q->contact_vertices;
+    if (!contacts)
+        return;
+    char points[64] = "";
+    if (q->contact_vertices)
+        snprintf(points, sizeof points, "%s%zu point%s", q->contact_edges ? " and " : "",
+                 q->contact_vertices, plural_ending(q->contact_vertices));
+    cw_verdict *v = add_count(b, "contacts", &for_solver, contacts, "",
+                              "move the solids apart, or into each other and unite them");
+    if (q->contact_edges)
+        say_finding(v, "solids touch in %zu edge%s%s", q->contact_edges,
+                    plural_ending(q->contact_edges), points);
+    else
+        say_finding(v, "solids touch in %s", points);
+}
+
 static void judge_surface(bench *b)
 {
     const cw_quality *q = b->f->quality;
-    const size_t bad = q->nonmanifold_edges + q->nonmanifold_vertices;
-    cw_verdict *v = add_count(b, "manifold", &not_for_web, bad,
-                              "every edge has one or two triangles, every vertex one fan",
-                              "split the mesh where more than one surface meets");
+    const size_t edges = q->nonmanifold_edges - q->contact_edges,
+                 vertices = q->nonmanifold_vertices - q->contact_vertices,
+                 bad = edges + vertices;
+    cw_verdict *v =
+        add_count(b, "manifold", &not_for_web, bad,
+                  q->contact_edges + q->contact_vertices
+                      ? "every edge has one or two triangles, every vertex one fan, "
+                        "but for contacts"
+                      : "every edge has one or two triangles, every vertex one fan",
+                  "split the mesh where more than one surface meets");
     if (bad)
         say_finding(
             v, "%zu edge%s with more than two triangles, %zu vert%s with more than one fan",
-            q->nonmanifold_edges, plural_ending(q->nonmanifold_edges), q->nonmanifold_vertices,
-            q->nonmanifold_vertices == 1 ? "ex" : "ices");
+            edges, plural_ending(edges), vertices, vertices == 1 ? "ex" : "ices");
+    judge_contacts(b);
     v = add_count(b, "closed", &for_solids, q->open_edges, "no edge is open",
                   "fill the holes; a T-junction or a crack is closed by merging near vertices");
     if (q->open_edges)
@@ -108,6 +136,15 @@ static void judge_surface(bench *b)
     if (q->misoriented_edges)
         say_finding(v, "%zu edge%s between triangles that disagree on what is outside",
                     q->misoriented_edges, plural_ending(q->misoriented_edges));
+    if (!q->one_sided)
+        return;
+    say_finding(
+        v,
+        "%zu component%s one-sided, like a Moebius strip, and enclose%s no volume: %zu edge%s "
+        "between triangles that disagree",
+        q->one_sided, q->one_sided == 1 ? " is" : "s are", q->one_sided == 1 ? "s" : "",
+        q->misoriented_edges, plural_ending(q->misoriented_edges));
+    v->advice = "no orientation fits; cw_mesh_repair() with wrap_mm makes a solid around it";
 }
 
 static void judge_shells(bench *b)
@@ -125,8 +162,9 @@ static void judge_shells(bench *b)
     }
     if (!q->nested)
         return;
-    v = add_count(b, "nested", &overlap, q->nested, "",
-                  "drop the inner shells, or flip them where cavities are meant");
+    v = add_count(
+        b, "nested", &overlap, q->nested, "",
+        "cw_mesh_repair() makes cavities of them; cw_mesh_repair() with outer_only drops them");
     say_finding(v, "%zu shell%s inside another solid, not as a cavity", q->nested,
                 q->nested == 1 ? " lies" : "s lie");
 }
@@ -303,6 +341,11 @@ static void judge_look(bench *b)
     say_finding(v, "%zu triangles", q->triangles);
     if (many)
         v->advice = "more than a million is slow to load: reduce the mesh";
+    if (b->f->file_fault && *b->f->file_fault) {
+        v = add_verdict(b, "file", CW_GRADE_FAIL, 1);
+        say_finding(v, "%s", b->f->file_fault);
+        v->advice = "write it again: viewers may show it wrong, or not at all";
+    }
     v = add_verdict(b, "normals", b->f->has_normals ? CW_GRADE_OK : CW_GRADE_WARN, 0);
     say_finding(v,
                 b->f->has_normals ? "one at every vertex" : "none: viewers will shade it flat");

@@ -2,6 +2,7 @@
 #include "simplify/quality/vertex_one_rings.h"
 
 #include "core/base/parallel.h"
+#include "core/geometry/triangle.h"
 #include "core/geometry/union_find.h"
 #include "simplify/quality/vertex_ranges.h"
 
@@ -163,23 +164,33 @@ static void count_duplicates(const work *w, const one_ring *s, const ring_edge *
         }
 }
 
+/* Returns true if as many triangles run through an edge one way as the other. */
+static bool is_paired(const ring_edge *first, size_t along)
+{
+    size_t outgoing = 0;
+    for (size_t n = 0; n < along; n++)
+        outgoing += first[n].is_outgoing;
+    return 2 * outgoing == along;
+}
+
 /* Counts an edge at its lower vertex. */
 static void count_edge(const work *w, const one_ring *s, const ring_edge *first, size_t along,
                        cw_quality *q)
 {
-    const bool is_misoriented = along == 2 && first[0].is_outgoing == first[1].is_outgoing;
+    const bool paired = is_paired(first, along), is_misoriented = along == 2 && !paired;
     q->edges++;
     if (along == 1) {
         q->open_edges++;
         mark_edge(w, s, first, along, CW_DEFECT_OPEN);
     } else if (along > 2) {
         q->nonmanifold_edges++;
+        q->contact_edges += paired;
         mark_edge(w, s, first, along, CW_DEFECT_NONMANIFOLD);
     } else if (is_misoriented) {
         q->misoriented_edges++;
         mark_edge(w, s, first, along, CW_DEFECT_MISORIENTED);
     }
-    if (w->rings->unbounded && (along != 2 || is_misoriented))
+    if (w->rings->unbounded && !paired)
         w->rings->unbounded[s->vertex] |= along == 1 ? CWI_OPEN : CWI_UNORIENTED;
     count_duplicates(w, s, first, along, q);
 }
@@ -236,13 +247,14 @@ static void join_open_sides(const work *w, part *p, one_ring *s)
 static bool measure_edges(const work *w, part *p, one_ring *s, size_t *fans)
 {
     const size_t edges = 2 * s->count;
-    bool is_open = false;
+    bool is_open = false, paired = true;
     make_edges(s);
     *fans = s->count;
     for (size_t i = 0, along; i < edges; i += along) {
         const ring_edge *first = s->edges + i;
         along = count_along(first, edges - i);
         is_open = is_open || along == 1;
+        paired = paired && is_paired(first, along);
         if (other_of(first) > s->vertex && !w->loops)
             count_edge(w, s, first, along, &p->counts);
         for (size_t n = 1; n < along; n++) {
@@ -252,6 +264,7 @@ static bool measure_edges(const work *w, part *p, one_ring *s, size_t *fans)
             cwi_sets_join(s->fan, one, other);
         }
     }
+    p->counts.contact_vertices += *fans > 1 && paired;
     if (is_open && w->loops)
         join_open_sides(w, p, s);
     return !is_open || !w->keeps_border || keep_open_ends(p, s);
@@ -291,11 +304,6 @@ static size_t measure_ring(const work *w, part *p, one_ring *s)
 
 /* --- a range of vertices ------------------------------------------------------------------ */
 
-static bool is_collapsed(const uint32_t *c)
-{
-    return c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
-}
-
 /* Joins the corners of a triangle, and counts it, in the range of its first one. */
 static void join_corners(const work *w, part *p, const uint32_t *c)
 {
@@ -312,7 +320,7 @@ static void count_leaves(const work *w, part *p, range *r)
     memset(r->is_bad, 0, sizeof r->is_bad);
     for (size_t i = 0; i < r->triangle_count; i++) {
         const uint32_t *c = w->rings->triangles + 3 * (size_t)r->triangle[i];
-        const bool counts = !is_collapsed(c);
+        const bool counts = !cwi_triangle_is_collapsed(c);
         for (int n = 0; n < 3; n++) {
             const uint32_t slot = c[n] - r->first; /* wraps round below the range */
             if (slot < r->size) {
@@ -334,7 +342,7 @@ static bool file_leaves(const work *w, part *p, range *r)
     r->triangles = cwi_alloc_array(r->begin[r->size + 1], sizeof *r->triangles);
     for (size_t i = 0; i < r->triangle_count && r->triangles; i++) {
         const uint32_t *c = w->rings->triangles + 3 * (size_t)r->triangle[i];
-        if (is_collapsed(c))
+        if (cwi_triangle_is_collapsed(c))
             continue;
         for (int n = 0; n < 3; n++) {
             const uint32_t slot = c[n] - r->first;
@@ -403,8 +411,10 @@ static bool add_part(const part *p, cw_quality *q, cwi_border *border)
     q->unused_vertices += c->unused_vertices;
     q->open_edges += c->open_edges;
     q->nonmanifold_edges += c->nonmanifold_edges;
+    q->contact_edges += c->contact_edges;
     q->misoriented_edges += c->misoriented_edges;
     q->nonmanifold_vertices += c->nonmanifold_vertices;
+    q->contact_vertices += c->contact_vertices;
     q->duplicates += c->duplicates;
     q->euler += c->euler + (int64_t)c->components - (int64_t)c->edges;
     return !p->failed && (!border || cwi_border_append(border, &p->border));

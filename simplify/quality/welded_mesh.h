@@ -2,6 +2,8 @@
 #ifndef SIMPLIFY_QUALITY_WELDED_MESH_H
 #define SIMPLIFY_QUALITY_WELDED_MESH_H
 
+#include "core/geometry/triangle.h"
+
 #include <cubewright/quality.h>
 
 struct cwi_boxes;
@@ -27,8 +29,7 @@ bool cwi_welded_sort(const cwi_welded *welded, struct cwi_boxes *tree);
 /* A triangle that names a vertex twice has no edges to speak of. */
 static inline bool cwi_is_collapsed(const cwi_welded *welded, size_t triangle)
 {
-    const uint32_t *v = welded->vertex + 3 * triangle;
-    return v[0] == v[1] || v[1] == v[2] || v[2] == v[0];
+    return cwi_triangle_is_collapsed(welded->vertex + 3 * triangle);
 }
 
 #endif

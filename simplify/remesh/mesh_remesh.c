@@ -11,7 +11,7 @@
 #include <float.h>
 #include <string.h>
 
-enum { DEFAULT_ITERATIONS = 5, ATTEMPTS = 4 };
+enum { DEFAULT_ITERATIONS = 5, ATTEMPTS = 8 };
 
 static const double ERRORS = 10,
                     SHORTEST = 10; /* the edge is divided by these for the defaults */
@@ -251,16 +251,19 @@ static cw_status count_input(cwi_remesh *r, cw_remesh_facts *f, cw_error *err)
 
 static cw_status make_attempts(cwi_remesh *r, cw_mesh *out, cw_remesh_facts *f, cw_error *err)
 {
-    bool is_good = false;
+    bool is_good = false, is_stuck = false;
     double from = 0.1, fraction = 0.45;
     cw_status st = CW_OK;
-    for (int n = 0; n < ATTEMPTS && !is_good && st == CW_OK; n++) {
+    for (int n = 0; n < ATTEMPTS && !is_good && !is_stuck && st == CW_OK; n++) {
+        const size_t crossings = f->crossings_after;
         st = run_passes(r, from, fraction, err);
         if (st == CW_OK)
             st = make_result(r, out, err);
         if (st == CW_OK)
             st = cwi_remesh_prove(r, out, f, &is_good, err);
         f->attempts++;
+        /* triangles that met before are smaller now, and meet more of the others, whatever stays in place */
+        is_stuck = f->crossings_before && n > 0 && f->crossings_after >= crossings;
         from += fraction;
         fraction /= 2;
     }

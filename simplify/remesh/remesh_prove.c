@@ -11,6 +11,9 @@
 /* Reach around a triangle that is not as it should be, in wanted lengths. */
 static const double REACH = 2;
 
+/* Attempts after which half of the distance is allowed for the next one. */
+enum { HALVINGS = 3 };
+
 typedef struct tightening {
     cwi_remesh *r;
     const cwi_boxes *tree;
@@ -39,14 +42,16 @@ static void mark_around(tightening *x, const cw_mesh *mesh, size_t t)
     cwi_boxes_visit(x->tree, x->box, 0, mark_node, x);
 }
 
-/* Allows half of the distance at all marked triangles. */
-static void tighten_marked(cwi_remesh *r, const uint8_t *marks)
+/* Allows half of the distance at all marked triangles, or, when that was tried often enough, none: there the
+ * surface stays as it is. */
+static void tighten_marked(cwi_remesh *r, const uint8_t *marks, size_t attempts)
 {
+    const double kept = attempts < HALVINGS ? 0.5 : 0;
     for (size_t t = 0; t < r->input->triangle_count; t++) {
         if (!marks[t])
             continue;
         r->surface.limits[t] =
-            (float)cwi_greater(r->rounding_mm, (double)r->surface.limits[t] / 2);
+            (float)cwi_greater(r->rounding_mm, kept * (double)r->surface.limits[t]);
         for (size_t k = 0; k < 3; k++) {
             float *limit = &r->sample_limits[r->input->triangles[3 * t + k]];
             *limit = *limit < r->surface.limits[t] ? *limit : r->surface.limits[t];
@@ -90,8 +95,15 @@ static cw_status prove_apart(tightening *x, const cw_mesh *out, cw_remesh_facts 
     facts->crossings_after = found.count;
     facts->is_undecided = facts->is_undecided || found.undecided;
     *is_worse = found.count > facts->crossings_before;
-    for (size_t n = 0; n < 2 * found.count && *is_worse; n++)
-        mark_around(x, out, found.pairs[n]);
+    uint8_t *meets = *is_worse ? cwi_alloc_zeroed(out->triangle_count, 1) : NULL;
+    if (*is_worse && !meets && st == CW_OK)
+        st = cwi_fail_memory(err);
+    for (size_t n = 0; n < 2 * found.count && meets; n++) /* of many pairs each */
+        meets[found.pairs[n]] = 1;
+    for (size_t t = 0; t < out->triangle_count && meets; t++)
+        if (meets[t])
+            mark_around(x, out, t);
+    cwi_free(meets);
     cw_crossings_free(&found);
     return st;
 }
@@ -112,7 +124,7 @@ cw_status cwi_remesh_prove(cwi_remesh *r, const cw_mesh *out, cw_remesh_facts *f
         st = prove_distance(&x, r->input, out, &facts->beyond, err);
     *is_good = !is_worse && !facts->beyond;
     if (st == CW_OK && !*is_good)
-        tighten_marked(r, x.marks);
+        tighten_marked(r, x.marks, facts->attempts);
     cwi_free(x.marks);
     return st;
 }

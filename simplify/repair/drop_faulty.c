@@ -8,12 +8,16 @@
 #include "core/mesh/mesh.h"
 #include "simplify/repair/repair_state.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Rounds of flips; what is then left without area is dropped. */
 enum { FLIP_ROUNDS = 24 };
+
+/* Twice the area of a triangle that has one, as a fraction of the square of its longest edge. */
+static const double LEAST_AREA = 8 * DBL_EPSILON;
 
 /* An open component is a sheet if it would enclose less than this fraction of its area^(3/2). Of
  * a sphere it is 0.094, and of a spherical cap 1 % as high as wide 0.0014. Closed components are
@@ -52,11 +56,10 @@ static void sort_corners(vertex_triple *t)
 }
 
 /* Marks the later triangles of equal ones; with cancel also the first, where one faces it. */
-static size_t mark_duplicates(const vertex_triple *triples, size_t count, bool cancel,
-                              bool *marked)
+static void mark_duplicates(const vertex_triple *triples, size_t count, bool cancel,
+                            bool *marked)
 {
-    size_t found = 0, same;
-    for (size_t i = 0; i < count; i += same) {
+    for (size_t i = 0, same; i < count; i += same) {
         bool faces = false;
         for (same = 1;
              i + same < count && !memcmp(triples[i].v, triples[i + same].v, sizeof triples->v);
@@ -65,9 +68,57 @@ static size_t mark_duplicates(const vertex_triple *triples, size_t count, bool c
             faces = faces || triples[i + same].is_even != triples[i].is_even;
         }
         marked[triples[i].triangle] = cancel && faces;
-        found += same - 1 + (cancel && faces);
     }
-    return found;
+}
+
+static size_t count_marked(const bool *marked, size_t count)
+{
+    size_t sum = 0;
+    for (size_t t = 0; t < count; t++)
+        sum += marked[t];
+    return sum;
+}
+
+/* Adds the direction of each side of an edge: what is not 0 is open. */
+static void sum_sides(const cw_mesh *m, const cwi_side *sides, size_t count, const bool *marked,
+                      int *all, int *kept)
+{
+    *all = *kept = 0;
+    for (size_t n = 0; n < count; n++) {
+        const bool runs_up = m->triangles[sides[n].corner] == (uint32_t)(sides[n].key >> 32);
+        *all += runs_up ? 1 : -1;
+        *kept += marked[sides[n].corner / 3] ? 0 : runs_up ? 1 : -1;
+    }
+}
+
+/* Unmarks what closed solids share, as a wall between them: without it they would be open. */
+static bool keep_walls(const cw_mesh *m, bool *marked)
+{
+    enum { OPEN = 1, OPENED = 2 };
+    const size_t count = m->triangle_count;
+    cwi_side *sides = cwi_alloc_array(3 * count, sizeof *sides);
+    uint32_t *set = cwi_sets_alloc(count);
+    uint8_t *state = cwi_alloc_zeroed(count, 1);
+    const bool ok = sides && set && state;
+    if (ok)
+        cwi_sides_list(m->triangles, 3 * count, sides);
+    for (int pass = 0; pass < 2 && ok; pass++)
+        for (size_t i = 0, along; i < 3 * count; i += along) {
+            int all, kept;
+            along = cwi_sides_along(sides, 3 * count, i);
+            for (size_t n = 1; n < along && pass == 0; n++)
+                cwi_sets_join(set, sides[i].corner / 3, sides[i + n].corner / 3);
+            sum_sides(m, sides + i, along, marked, &all, &kept);
+            if (pass == 1)
+                state[cwi_sets_find(set, sides[i].corner / 3)] |=
+                    (all ? OPEN : 0) | (kept ? OPENED : 0);
+        }
+    for (uint32_t t = 0; t < count && ok; t++)
+        marked[t] = marked[t] && state[cwi_sets_find(set, t)] != OPENED;
+    cwi_free(sides);
+    cwi_free(set);
+    cwi_free(state);
+    return ok;
 }
 
 cw_status cwi_drop_duplicates(cwi_repair *r, bool cancel, size_t *dropped, cw_error *err)
@@ -84,9 +135,11 @@ cw_status cwi_drop_duplicates(cwi_repair *r, bool cancel, size_t *dropped, cw_er
     size_t found = 0;
     if (st == CW_OK) {
         qsort(triples, count, sizeof *triples, compare_triples);
-        found = mark_duplicates(triples, count, cancel, marked);
+        mark_duplicates(triples, count, cancel, marked);
     }
-    if (found)
+    if (st == CW_OK && count_marked(marked, count) && !keep_walls(&r->mesh, marked))
+        st = cwi_fail_memory(err);
+    if (st == CW_OK && (found = count_marked(marked, count)))
         st = cwi_mesh_drop_marked(&r->mesh, marked, err);
     if (st == CW_OK)
         *dropped += found;
@@ -96,6 +149,17 @@ cw_status cwi_drop_duplicates(cwi_repair *r, bool cancel, size_t *dropped, cw_er
 }
 
 /* --- triangles without area --------------------------------------------------------------- */
+
+/* Returns true if a triangle has an area that double precision can tell from none, as judges of meshes do. */
+static bool has_area(const cw_mesh *m, size_t t)
+{
+    double p[3][3], longest_sq = 0;
+    cwi_mesh_corners(m, t, p);
+    for (int k = 0; k < 3; k++)
+        longest_sq = fmax(longest_sq, cwi_distance_sq(p[k], p[(k + 1) % 3]));
+    return 2 * cwi_triangle_area(p[0], p[1], p[2]) > LEAST_AREA * longest_sq &&
+           cwi_has_area(m->positions, m->triangles + 3 * t);
+}
 
 /* Returns the corner at which the longest edge of a triangle begins. */
 static uint32_t longest_edge(const cw_mesh *m, uint32_t t)
@@ -150,7 +214,7 @@ static cw_status flip_round(cwi_repair *r, bool give_up, size_t *found, cw_error
     cw_status st = CW_OK;
     *found = 0;
     for (size_t t = 0; t < count; t++)
-        *found += !cwi_has_area(m->positions, m->triangles + 3 * t);
+        *found += !has_area(m, t);
     if (!*found)
         return CW_OK;
     touched = cwi_alloc_zeroed(count, sizeof *touched);
@@ -158,7 +222,7 @@ static cw_status flip_round(cwi_repair *r, bool give_up, size_t *found, cw_error
     if (!touched || !marked || !(edges = cwi_edge_keys(m->triangles, 3 * count)))
         st = cwi_fail_memory(err);
     for (uint32_t t = 0; t < count && st == CW_OK; t++) {
-        if (touched[t] || cwi_has_area(m->positions, m->triangles + 3 * (size_t)t))
+        if (touched[t] || has_area(m, t))
             continue;
         if (give_up)
             marked[t] = true;

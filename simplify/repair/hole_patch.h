@@ -13,6 +13,21 @@ typedef struct cwi_boundary_loop {
     size_t size;
 } cwi_boundary_loop;
 
+#define CWI_NO_RIM UINT32_MAX
+
+/* Rims of holes, one after the other. */
+typedef struct cwi_rims {
+    uint32_t *vertices, *beside; /* as of a cwi_boundary_loop */
+    size_t *end;                 /* of each rim, in vertices */
+    size_t count;
+} cwi_rims;
+
+/* Returns where a rim begins, in vertices. */
+static inline size_t cwi_rim_start(const cwi_rims *rims, size_t rim)
+{
+    return rim ? rims->end[rim - 1] : 0;
+}
+
 /* The mesh for all holes: its edges, and the triangles around vertices. */
 typedef struct cwi_hole_mesh {
     const cw_mesh *mesh;
@@ -45,6 +60,23 @@ bool cwi_patch_add_point(cwi_hole_patch *patch, const double point[3]);
  * triangulation would do without an edge that the mesh has. */
 bool cwi_patch_triangulate(cwi_hole_patch *patch, const cwi_boundary_loop *loop,
                            const cwi_hole_mesh *around);
+
+/* Finds rims in each other, in one plane within 5 % of the outer one's diagonal, that face opposite ways: what is
+ * missing is between them. The rim of an island in a hole has none around it.
+ * outer    of each rim: the one around it; CWI_NO_RIM: none
+ * Returns  CW_ERR_NO_MEMORY */
+CW_NODISCARD cw_status cwi_find_nested_rims(const cw_mesh *mesh, const cwi_rims *rims,
+                                            uint32_t *outer, cw_error *err);
+
+/* Returns true if the first rim lies in a plane, but for 1/1000 of its diagonal. */
+bool cwi_is_rim_flat(const cw_mesh *mesh, const cwi_rims *rims);
+
+/* Triangulates what is between the first rim and the others, whose points are in the patch.
+ * is_made  false: rims cross, as the first one's normal shows them, or edges of the mesh are in the way
+ * Returns  CW_ERR_NO_MEMORY */
+CW_NODISCARD cw_status cwi_patch_between_rims(cwi_hole_patch *patch, const cwi_rims *rims,
+                                              const cwi_hole_mesh *around, bool *is_made,
+                                              cw_error *err);
 
 /* Adds points until triangles are as large as those around the rim, times a factor. */
 bool cwi_patch_refine(cwi_hole_patch *patch, const cwi_boundary_loop *loop,

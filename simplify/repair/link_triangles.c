@@ -28,7 +28,8 @@ typedef struct link_work {
     uint32_t *patch; /* of triangles: union-find along edges of two triangles */
     uint32_t *queue; /* triangles in the order in which they were reached */
     uint8_t *state;  /* of triangles: 0, or REACHED, and TO_FLIP */
-    size_t parted, cut, flipped;
+    size_t parted, flipped;
+    bool is_full; /* memory is out */
 } link_work;
 
 enum { REACHED = 1, TO_FLIP = 2 };
@@ -56,12 +57,17 @@ static void measure_angles(const cw_mesh *m, uint64_t key, fin *fins, size_t cou
     }
 }
 
+/* Sorts by angles. Of two in one place, as in a wall that solids share, the one comes first that has its inside
+ * before it. Of those that agree, the same ones meet what is around at all edges. */
 static int compare_fins(const void *a, const void *b)
 {
     const fin *s = a, *t = b;
     if (s->angle != t->angle)
         return s->angle < t->angle ? -1 : 1;
-    return s->corner < t->corner ? -1 : s->corner > t->corner;
+    if (s->runs_forward != t->runs_forward)
+        return s->runs_forward ? -1 : 1;
+    const int order = s->corner < t->corner ? -1 : s->corner > t->corner;
+    return s->runs_forward ? -order : order;
 }
 
 /* Rates a pair. Best are the only two triangles of one patch: then others are attached to it. Next
@@ -133,14 +139,23 @@ static void join_edges(link_work *w)
 
 /* --- orientation -------------------------------------------------------------------------- */
 
-static void cut_edge(cwi_repair *r, uint32_t corner)
+/* Cuts an edge open, and keeps it as a seam. */
+static void cut_edge(link_work *w, uint32_t corner)
 {
+    cwi_repair *r = w->r;
     const uint32_t other = r->twin[corner];
     r->twin[corner] = r->twin[other] = CWI_NO_CORNER;
+    cwi_twist *seam = cwi_grow_array(r->seam, r->seam_count, &r->seam_capacity, sizeof *seam);
+    w->is_full = w->is_full || !seam;
+    if (!seam)
+        return;
+    r->seam = seam;
+    seam[r->seam_count++] = (cwi_twist){corner / 3, r->mesh.triangles[corner]};
 }
 
-/* Reaches the neighbours of a triangle; cuts edges at which one side would have to be both. */
-static size_t reach_neighbours(link_work *w, uint32_t t, size_t end)
+/* Reaches the neighbours of a triangle that agree with it, or those that disagree; cuts edges at which one side would
+ * have to be both. */
+static size_t reach_neighbours(link_work *w, uint32_t t, size_t end, bool disagreeing)
 {
     const cwi_repair *r = w->r;
     for (uint32_t c = 3 * t; c < 3 * t + 3; c++) {
@@ -149,14 +164,14 @@ static size_t reach_neighbours(link_work *w, uint32_t t, size_t end)
             continue;
         const uint32_t u = other / 3;
         const bool disagrees = r->mesh.triangles[c] == r->mesh.triangles[other];
+        if (disagrees != disagreeing)
+            continue;
         const uint8_t state = (w->state[t] ^ (disagrees ? TO_FLIP : 0)) | REACHED;
         if (!w->state[u]) {
             w->state[u] = state;
             w->queue[end++] = u;
-        } else if (w->state[u] != state) {
-            cut_edge(w->r, c);
-            w->cut++;
-        }
+        } else if (w->state[u] != state)
+            cut_edge(w, c);
     }
     return end;
 }
@@ -174,20 +189,24 @@ static void flip_triangle(cwi_repair *r, uint32_t t)
             r->twin[twin[c]] = 3 * t + c;
 }
 
-/* Makes the triangles of each component agree with most of them. */
+/* Makes the triangles of each component agree with most of them. Those that agree are reached first: so a one-sided
+ * surface is cut where its triangles disagree, and not all across it. */
 static void agree_triangles(link_work *w)
 {
     const size_t count = w->count / 3;
     for (uint32_t seed = 0; seed < count; seed++) {
         if (w->state[seed])
             continue;
-        size_t end = 1, against = 0;
+        size_t end = 1, agreeing = 0, disagreeing = 0, against = 0;
         w->state[seed] = REACHED;
         w->queue[0] = seed;
-        for (size_t n = 0; n < end; n++) {
-            against += (w->state[w->queue[n]] & TO_FLIP) != 0;
-            end = reach_neighbours(w, w->queue[n], end);
+        while (disagreeing < end) {
+            const bool is_late = agreeing == end;
+            size_t *next = is_late ? &disagreeing : &agreeing;
+            end = reach_neighbours(w, w->queue[(*next)++], end, is_late);
         }
+        for (size_t n = 0; n < end; n++)
+            against += (w->state[w->queue[n]] & TO_FLIP) != 0;
         const uint8_t to_flip = 2 * against > end ? 0 : TO_FLIP;
         for (size_t n = 0; n < end; n++)
             if ((w->state[w->queue[n]] & TO_FLIP) == to_flip) {
@@ -201,6 +220,7 @@ cw_status cwi_repair_link(cwi_repair *r, bool is_first, cw_error *err)
 {
     const size_t triangles = r->mesh.triangle_count, corners = 3 * triangles;
     link_work w = {.r = r, .count = corners};
+    r->seam_count = 0;
     cwi_free(r->twin);
     r->twin = cwi_alloc_array(corners, sizeof *r->twin);
     w.sides = cwi_alloc_array(corners, sizeof *w.sides);
@@ -215,10 +235,11 @@ cw_status cwi_repair_link(cwi_repair *r, bool is_first, cw_error *err)
         cwi_sides_list(r->mesh.triangles, corners, w.sides);
         join_edges(&w);
         agree_triangles(&w);
+        st = w.is_full ? cwi_fail_memory(err) : CW_OK;
     }
     if (st == CW_OK && is_first) {
         r->facts.nonmanifold_edges += w.parted;
-        r->facts.twisted_edges += w.cut;
+        r->facts.twisted_edges += r->seam_count;
         r->facts.flipped_triangles += w.flipped;
     }
     cwi_free(w.sides);

@@ -31,6 +31,8 @@ static cw_status check_input(const cw_mesh *mesh, const cw_repair_desc *d, cw_er
     if (st == CW_OK)
         st = check_length(d->wrap_mm, "wrap_mm", err);
     if (st == CW_OK)
+        st = check_length(d->max_move_mm, "max_move_mm", err);
+    if (st == CW_OK)
         st = cwi_mesh_check_size(mesh, "repaired", err);
     if (st == CW_OK && !mesh->triangle_count)
         st = cwi_fail(err, CW_ERR_EMPTY, "the mesh has no triangles to repair");
@@ -81,9 +83,13 @@ static cw_status copy_input(cwi_repair *r, const cw_mesh *mesh, cw_mesh *input, 
 static cw_status clean_mesh(cwi_repair *r, cw_error *err)
 {
     cw_repair_facts *f = &r->facts;
-    cw_status st = cwi_drop_duplicates(r, false, &f->duplicates, err);
+    cw_status st = r->desc.keep_cracks ? CW_OK : cwi_stitch_borders(r, err);
+    if (st == CW_OK)
+        st = cwi_drop_duplicates(r, false, &f->duplicates, err);
     if (st == CW_OK)
         st = cwi_repair_link(r, true, err);
+    if (st == CW_OK)
+        st = cwi_drop_one_sided(r, err);
     if (st == CW_OK)
         st = cwi_drop_degenerate(r, &f->degenerate, err);
     return st == CW_OK ? cwi_drop_sheets(r, &f->sheets, &f->sheet_triangles, err) : st;
@@ -112,7 +118,7 @@ static cw_status close_holes(cwi_repair *r, cwi_patch_kind kind, cw_error *err)
     return st;
 }
 
-/* Closes the mesh, and gives all fans their vertices. */
+/* Closes the mesh, and gives all fans their vertices, which may be at one place. */
 static cw_status close_mesh(cwi_repair *r, cwi_patch_kind kind, cw_error *err)
 {
     const bool is_later = r->is_later;
@@ -129,29 +135,59 @@ static cw_status close_mesh(cwi_repair *r, cwi_patch_kind kind, cw_error *err)
     return st;
 }
 
-static cw_status mend_mesh(cwi_repair *r, cw_error *err)
+/* Removes crossings and fills the holes that this leaves, round by round. Solids that touch in edges and points
+ * stay where they are; sheets at one place that repair made move apart. */
+static cw_status remove_crossings(cwi_repair *r, bool is_clear, cw_error *err)
 {
-    cw_status st = clean_mesh(r, err);
-    bool changed = true;
+    cw_status st = CW_OK;
+    bool changed = !(is_clear && !r->facts.holes_filled && !r->facts.twisted_edges);
     for (int round = 0; st == CW_OK && changed && r->mesh.triangle_count; round++) {
-        const cwi_patch_kind kind = round >= FLAT_ROUNDS              ? CWI_PATCH_PLAIN
-                                    : round > 0 || r->desc.flat_holes ? CWI_PATCH_FLAT
-                                                                      : CWI_PATCH_FAIR;
-        st = begin_step(r, 0.2 + 0.6 * (round + 1) / (CROSSING_ROUNDS + 1), err);
+        bool moved;
+        st = begin_step(r, 0.2 + 0.6 * (round + 2) / (CROSSING_ROUNDS + 2), err);
+        if (st == CW_OK && round > 0)
+            st = close_mesh(r, round >= FLAT_ROUNDS ? CWI_PATCH_PLAIN : CWI_PATCH_FLAT, err);
         if (st == CW_OK)
-            st = close_mesh(r, kind, err);
-        if (st != CW_OK || round == CROSSING_ROUNDS || !r->mesh.triangle_count)
+            st = cwi_part_vertices(r, &moved, err);
+        if (st != CW_OK || round == CROSSING_ROUNDS || !r->mesh.triangle_count ||
+            (is_clear && !moved))
             break;
-        st = cwi_remove_crossings(r, round, &changed, err);
+        st = cwi_remove_crossings(r, round, round == CROSSING_ROUNDS - 1, &changed, err);
         if (st == CW_OK && changed)
             st = cwi_repair_link(r, false, err);
-    }
-    if (st == CW_OK) {
-        cw_orient_counts turned;
-        st = cw_mesh_orient(&r->mesh, r->desc.threads, &turned, err);
-        r->facts.flipped_shells = turned.turned;
+        is_clear = false;
     }
     return st;
+}
+
+/* Orients shells. With outer_only those inside of others go. */
+static cw_status orient_shells(cwi_repair *r, cw_error *err)
+{
+    cw_orient_counts turned;
+    cw_drop_counts inner = {0};
+    cw_status st = cw_mesh_orient(&r->mesh, r->desc.threads, &turned, err);
+    if (st == CW_OK && r->desc.outer_only)
+        st = cw_mesh_fill_voids(&r->mesh, r->desc.threads, &inner, err);
+    r->facts.flipped_shells = turned.turned;
+    r->facts.inner_shells = inner.dropped;
+    r->facts.inner_mm3 = inner.dropped_mm3;
+    return st;
+}
+
+static cw_status mend_mesh(cwi_repair *r, cw_error *err)
+{
+    bool is_clear = true, is_united = false;
+    cw_status st = clean_mesh(r, err);
+    if (st == CW_OK)
+        st = begin_step(r, 0.2 + 0.6 / (CROSSING_ROUNDS + 2), err);
+    if (st == CW_OK && r->mesh.triangle_count)
+        st = close_mesh(r, r->desc.flat_holes ? CWI_PATCH_FLAT : CWI_PATCH_FAIR, err);
+    if (st == CW_OK && r->mesh.triangle_count)
+        st = cwi_unite_crossing(r, &is_clear, &is_united, err);
+    if (st == CW_OK && is_united)
+        st = cwi_repair_link(r, false, err);
+    if (st == CW_OK)
+        st = remove_crossings(r, is_clear, err);
+    return st == CW_OK ? orient_shells(r, err) : st;
 }
 
 /* --- the result --------------------------------------------------------------------------- */
@@ -160,7 +196,8 @@ static cw_status mend_mesh(cwi_repair *r, cw_error *err)
 static cw_status judge_mesh(cwi_repair *r, cw_error *err)
 {
     const cw_quality_desc desc = {.threads = r->desc.threads, .shells = true};
-    const cw_crossings_desc crossings_desc = {.threads = r->desc.threads};
+    const cw_crossings_desc crossings_desc = {.weld = CW_WELD_LOCAL,
+                                              .threads = r->desc.threads};
     cw_quality q = {0};
     cw_crossings found = {0};
     cw_status st = cw_quality_measure(&r->mesh, &desc, &q, err);
@@ -168,6 +205,7 @@ static cw_status judge_mesh(cwi_repair *r, cw_error *err)
         st = cw_self_intersections(&r->mesh, &crossings_desc, &found, err);
     r->facts.crossings_after = found.count;
     r->facts.is_undecided = r->facts.is_undecided || found.undecided;
+    r->facts.volume_after_mm3 = fabs(q.volume_mm3);
     r->facts.is_sound = st == CW_OK && r->mesh.triangle_count && !found.count &&
                         !found.undecided && !q.degenerate && !q.inside_out &&
                         cw_quality_is_closed_manifold(&q);
@@ -177,9 +215,10 @@ static cw_status judge_mesh(cwi_repair *r, cw_error *err)
 
 static bool is_repair_needed(const cw_repair_facts *f)
 {
-    return f->duplicates || f->degenerate || f->flipped_triangles || f->flipped_shells ||
-           f->nonmanifold_edges || f->twisted_edges || f->nonmanifold_vertices || f->sheets ||
-           f->holes_filled || f->holes_left || f->crossings_before || f->is_undecided;
+    return f->weld_mm > 0 || f->duplicates || f->degenerate || f->flipped_triangles ||
+           f->flipped_shells || f->nonmanifold_edges || f->twisted_edges ||
+           f->nonmanifold_vertices || f->sheets || f->holes_filled || f->holes_left ||
+           f->crossings_before || f->inner_shells || f->is_undecided;
 }
 
 static cw_status make_result(cwi_repair *r, const cw_mesh *mesh, cw_mesh *out, cw_error *err)
@@ -200,7 +239,7 @@ static cw_status make_result(cwi_repair *r, const cw_mesh *mesh, cw_mesh *out, c
     return st == CW_OK && mesh->normals ? cw_mesh_normals(out, err) : st;
 }
 
-/* Repairs the copy, and wraps it if it is not sound. */
+/* Repairs the copy, and wraps it if that is asked for. */
 static cw_status run_repair(cwi_repair *r, const cw_mesh *mesh, cw_mesh *input, cw_error *err)
 {
     cw_status st = begin_step(r, 0.1, err);
@@ -215,7 +254,8 @@ static cw_status run_repair(cwi_repair *r, const cw_mesh *mesh, cw_mesh *input, 
     if (st == CW_OK)
         st = judge_mesh(r, err);
     r->facts.is_needed = is_repair_needed(&r->facts);
-    if (st == CW_OK && !r->facts.is_sound && r->desc.wrap_mm > 0 && input->triangle_count) {
+    if (st == CW_OK && r->desc.wrap_mm > 0 && input->triangle_count) {
+        r->facts.volume_before_mm3 = r->facts.is_sound ? r->facts.volume_after_mm3 : 0;
         st = cwi_wrap_mesh(r, err);
         if (st == CW_OK)
             st = cw_mesh_orient(&r->mesh, r->desc.threads, NULL, err);
@@ -223,9 +263,13 @@ static cw_status run_repair(cwi_repair *r, const cw_mesh *mesh, cw_mesh *input, 
             st = judge_mesh(r, err);
     }
     if (st == CW_OK && !r->mesh.triangle_count)
-        st = cwi_fail(err, CW_ERR_EMPTY,
-                      "the mesh encloses no volume: nothing is left of its %zu triangles",
+        st = cwi_fail(err, CW_ERR_EMPTY, "the mesh %s: nothing is left of its %zu triangles",
+                      r->facts.one_sided
+                          ? "is one-sided (like a Moebius strip), and encloses no volume"
+                          : "encloses no volume",
                       mesh->triangle_count);
+    if (st == CW_OK && r->facts.is_needed && !r->facts.is_wrapped)
+        st = cwi_guard_repair(r, mesh, err);
     return st;
 }
 
@@ -248,12 +292,14 @@ cw_status cw_mesh_repair(const cw_mesh *mesh, const cw_repair_desc *desc, cw_mes
         st = differs ? make_result(&r, mesh, made, err) : cwi_mesh_copy(mesh, made, err);
     if (st == CW_OK)
         st = cwi_progress(&r.desc.progress, "repair", 1, err);
-    if (facts && (st == CW_OK || st == CW_ERR_EMPTY))
+    if (facts && (st == CW_OK || st == CW_ERR_EMPTY || r.facts.is_refused))
         *facts = r.facts;
     if (st != CW_OK)
         cw_mesh_free(made);
     cw_mesh_free(&r.mesh);
     cw_mesh_free(&input);
     cwi_free(r.twin);
+    cwi_free(r.seam);
+    cwi_free(r.unjudged);
     return st;
 }

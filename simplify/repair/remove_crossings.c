@@ -1,5 +1,5 @@
-/* Removes crossings: moves surfaces apart that only touch, unites solids that cross each other, and
- * drops triangles around all other crossings [Attene2010]. */
+/* Removes crossings: unites solids, moves other surfaces apart that only touch, and drops triangles around all
+ * other crossings [Attene2010]. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/union_find.h"
@@ -16,9 +16,6 @@
  * precision at least. */
 static const double APART_FRACTION = 1e-3, APART_STEPS = 8, APART_MAX = 0.1;
 
-/* The first rounds unite solids; what still crosses then loses triangles. */
-enum { UNITE_ROUNDS = 2 };
-
 /* Triangles are not dropped when more than this fraction of all area would go. */
 static const double MAX_DROPPED = 0.95;
 
@@ -26,9 +23,11 @@ static const double MAX_DROPPED = 0.95;
  * part that is left of it. */
 static const double MIN_FRAGMENT = 0.05;
 
-static cw_status find_crossings(cwi_repair *r, cw_crossings *found, cw_error *err)
+/* Finds pairs of triangles that meet. Those that share positions of corners or edges alone do not when
+ * welded. */
+static cw_status find_crossings(cwi_repair *r, cw_weld weld, cw_crossings *found, cw_error *err)
 {
-    const cw_crossings_desc desc = {.threads = r->desc.threads};
+    const cw_crossings_desc desc = {.weld = weld, .threads = r->desc.threads};
     cw_crossings_free(found);
     cw_status st = cw_self_intersections(&r->mesh, &desc, found, err);
     r->facts.is_undecided = r->facts.is_undecided || found->undecided;
@@ -137,7 +136,7 @@ static cw_status move_touching(cwi_repair *r, cw_crossings *found, cw_error *err
         measure_one_rings(&t);
         for (size_t v = 0; v < r->mesh.vertex_count; v++)
             move_inward(&t, v);
-        st = find_crossings(r, found, err);
+        st = find_crossings(r, CW_WELD_NONE, found, err);
     }
     if (st == CW_OK && found->count) {
         memset(t.meets, 0, r->mesh.vertex_count * sizeof *t.meets);
@@ -145,88 +144,15 @@ static cw_status move_touching(cwi_repair *r, cw_crossings *found, cw_error *err
         for (size_t v = 0; v < r->mesh.vertex_count; v++)
             if (t.meets[v])
                 memcpy(r->mesh.positions + 3 * v, t.before + 3 * v, 3 * sizeof *t.before);
-        st = find_crossings(r, found, err);
+        st = find_crossings(r, CW_WELD_NONE, found, err);
     }
     if (st == CW_OK && found->count >= count) { /* nothing gained */
         memcpy(r->mesh.positions, t.before, 3 * r->mesh.vertex_count * sizeof *t.before);
-        st = find_crossings(r, found, err);
+        st = find_crossings(r, CW_WELD_NONE, found, err);
     }
     if (st == CW_OK)
         count_moves(&t);
     free_touching(&t);
-    return st;
-}
-
-/* --- solids that cross -------------------------------------------------------------------- */
-
-/* Components joined by edges. Arrays of triangle_count. */
-typedef struct shell_list {
-    uint32_t *root;   /* of a triangle */
-    uint32_t *number; /* of a triangle: that of its component among those that are united */
-    bool *is_bad;     /* of a root: open, or crosses itself */
-    bool *crosses;    /* of a root: another one that is not bad */
-    bool *marked;     /* of a triangle: its component is united */
-    uint32_t count;
-} shell_list;
-
-static void free_shells(shell_list *s)
-{
-    cwi_free(s->root);
-    cwi_free(s->number);
-    cwi_free(s->is_bad);
-    cwi_free(s->crosses);
-    cwi_free(s->marked);
-}
-
-static bool list_shells(const cwi_repair *r, const cw_crossings *found, shell_list *s)
-{
-    const size_t count = r->mesh.triangle_count;
-    s->root = cwi_sets_alloc(count);
-    s->number = cwi_alloc_zeroed(count, sizeof *s->number);
-    s->is_bad = cwi_alloc_zeroed(count, sizeof *s->is_bad);
-    s->crosses = cwi_alloc_zeroed(count, sizeof *s->crosses);
-    s->marked = cwi_alloc_zeroed(count, sizeof *s->marked);
-    if (!s->root || !s->number || !s->is_bad || !s->crosses || !s->marked)
-        return false;
-    for (uint32_t c = 0; c < 3 * count; c++)
-        if (r->twin[c] != CWI_NO_CORNER)
-            cwi_sets_join(s->root, c / 3, r->twin[c] / 3);
-    for (uint32_t t = 0; t < count; t++)
-        s->root[t] = cwi_sets_find(s->root, t);
-    for (uint32_t c = 0; c < 3 * count; c++)
-        if (r->twin[c] == CWI_NO_CORNER)
-            s->is_bad[s->root[c / 3]] = true;
-    for (size_t n = 0; n < found->count; n++) {
-        const uint32_t a = s->root[found->pairs[2 * n]], b = s->root[found->pairs[2 * n + 1]];
-        if (a == b)
-            s->is_bad[a] = true;
-    }
-    for (size_t n = 0; n < found->count; n++) {
-        const uint32_t a = s->root[found->pairs[2 * n]], b = s->root[found->pairs[2 * n + 1]];
-        if (!s->is_bad[a] && !s->is_bad[b])
-            s->crosses[a] = s->crosses[b] = true;
-    }
-    for (uint32_t t = 0; t < count; t++) { /* roots come first */
-        s->marked[t] = s->crosses[s->root[t]];
-        if (s->marked[t])
-            s->number[t] = s->root[t] == t ? s->count++ : s->number[s->root[t]];
-    }
-    return true;
-}
-
-static cw_status unite_crossing(cwi_repair *r, const cw_crossings *found, bool *is_done,
-                                cw_error *err)
-{
-    shell_list s = {0};
-    cw_status st = list_shells(r, found, &s) ? CW_OK : cwi_fail_memory(err);
-    *is_done = false;
-    if (st == CW_OK && s.count > 1) {
-        r->facts.lacks_cgal = !cw_repair_has_cgal();
-        if (!r->facts.lacks_cgal)
-            st = cwi_unite_shells(r, s.number, s.count, s.marked, is_done, err);
-        r->facts.united_shells += *is_done ? s.count : 0;
-    }
-    free_shells(&s);
     return st;
 }
 
@@ -317,23 +243,33 @@ static cw_status drop_crossing(cwi_repair *r, const cw_crossings *found, int rou
     return st;
 }
 
-cw_status cwi_remove_crossings(cwi_repair *r, int round, bool *changed, cw_error *err)
+cw_status cwi_unite_crossing(cwi_repair *r, bool *is_clear, bool *changed, cw_error *err)
 {
     cw_crossings found = {0};
-    bool is_united = false;
-    cw_status st = find_crossings(r, &found, err);
+    cw_status st = find_crossings(r, CW_WELD_LOCAL, &found, err);
     *changed = false;
-    if (round == 0)
-        r->facts.crossings_before = found.count;
-    if (st == CW_OK && found.count && !r->desc.keep_crossings) {
-        if (round == 0)
-            st = move_touching(r, &found, err);
-        if (st == CW_OK && found.count && round < UNITE_ROUNDS)
-            st = unite_crossing(r, &found, &is_united, err);
-        *changed = is_united;
-        if (st == CW_OK && found.count && !is_united)
-            st = drop_crossing(r, &found, round, changed, err);
-    }
+    *is_clear = !found.count && !found.undecided;
+    r->facts.crossings_before = found.count;
+    if (st == CW_OK && found.count && !r->desc.keep_crossings)
+        st = cwi_unite_solids(r, &found, false, changed, err);
+    cw_crossings_free(&found);
+    return st;
+}
+
+cw_status cwi_remove_crossings(cwi_repair *r, int round, bool is_last, bool *changed,
+                               cw_error *err)
+{
+    cw_crossings found = {0};
+    *changed = false;
+    if (r->desc.keep_crossings)
+        return CW_OK;
+    cw_status st = find_crossings(r, CW_WELD_NONE, &found, err);
+    if (st == CW_OK && found.count && round == 0)
+        st = move_touching(r, &found, err);
+    if (st == CW_OK && found.count && !is_last)
+        st = drop_crossing(r, &found, round, changed, err);
+    if (st == CW_OK && found.count && !*changed)
+        st = cwi_unite_solids(r, &found, true, changed, err);
     cw_crossings_free(&found);
     return st;
 }

@@ -12,7 +12,7 @@
 
 /* How far parted vertices move: this fraction of their shortest edge, but at least as many steps of
  * single precision, and never more than a quarter of the edge. */
-static const double PART_FRACTION = 0.01, PART_STEPS = 8, PART_MAX = 0.25;
+static const double PART_FRACTION = 1e-3, PART_STEPS = 8, PART_MAX = 0.25;
 
 /* Directions shorter than this fraction of the edge do not tell where to go. */
 static const double FLAT = 1e-3;
@@ -138,8 +138,10 @@ static size_t list_edges(const cwi_repair *r, cwi_side *edges)
     return count;
 }
 
-/* Divides the triangles on both sides of an edge at its middle. The new vertex is `middle`. */
-static size_t divide_sides(cwi_repair *r, uint32_t corner, uint32_t middle, uint32_t *added)
+/* Divides the triangles on both sides of an edge at its middle. The new vertex is `middle`.
+ * parents  triangles that those added are parts of */
+static size_t divide_sides(cwi_repair *r, uint32_t corner, uint32_t middle, uint32_t *added,
+                           uint32_t *parents)
 {
     const uint32_t sides[2] = {corner, r->twin[corner]};
     size_t count = 0;
@@ -147,7 +149,8 @@ static size_t divide_sides(cwi_repair *r, uint32_t corner, uint32_t middle, uint
         if (sides[n] == CWI_NO_CORNER)
             continue;
         const uint32_t next = cwi_corner_next(sides[n]), last = cwi_corner_next(next);
-        uint32_t *v = r->mesh.triangles, *to = added + 3 * count++;
+        uint32_t *v = r->mesh.triangles, *to = added + 3 * count;
+        parents[count++] = sides[n] / 3;
         to[0] = middle;
         to[1] = v[next];
         to[2] = v[last];
@@ -164,7 +167,7 @@ static cw_status divide_shared_edges(cwi_repair *r, size_t *divided, cw_error *e
     cwi_side *edges = cwi_alloc_array(corners, sizeof *edges);
     bool *is_used = cwi_alloc_zeroed(m->triangle_count, sizeof *is_used);
     float *points = NULL;
-    uint32_t *added = NULL;
+    uint32_t *added = NULL, *parents = NULL;
     size_t shared = 0, vertices = 0, triangles = 0;
     const size_t count = edges && is_used ? list_edges(r, edges) : 0;
     for (size_t n = 0; n < count; n++)
@@ -172,7 +175,9 @@ static cw_status divide_shared_edges(cwi_repair *r, size_t *divided, cw_error *e
                   (n + 1 < count && edges[n].key == edges[n + 1].key);
     points = cwi_alloc_array(shared, 3 * sizeof *points);
     added = cwi_alloc_array(shared, 6 * sizeof *added);
-    cw_status st = edges && is_used && points && added ? CW_OK : cwi_fail_memory(err);
+    parents = cwi_alloc_array(shared, 2 * sizeof *parents);
+    cw_status st =
+        edges && is_used && points && added && parents ? CW_OK : cwi_fail_memory(err);
     for (size_t n = 0; n < count && st == CW_OK && shared; n++) {
         const uint32_t corner = edges[n].corner, other = r->twin[corner];
         const bool is_shared = (n > 0 && edges[n].key == edges[n - 1].key) ||
@@ -187,16 +192,20 @@ static cw_status divide_shared_edges(cwi_repair *r, size_t *divided, cw_error *e
         if (other != CWI_NO_CORNER)
             is_used[other / 3] = true;
         triangles += divide_sides(r, corner, (uint32_t)(m->vertex_count + vertices),
-                                  added + 3 * triangles);
+                                  added + 3 * triangles, parents + triangles);
         vertices++;
     }
     if (st == CW_OK && vertices)
         st = cwi_repair_append(r, points, vertices, added, triangles, err);
+    uint32_t *source = m->attributes->data;
+    for (size_t n = 0; n < triangles && st == CW_OK; n++)
+        source[m->triangle_count - triangles + n] = source[parents[n]];
     *divided = vertices;
     cwi_free(edges);
     cwi_free(is_used);
     cwi_free(points);
     cwi_free(added);
+    cwi_free(parents);
     return st;
 }
 
@@ -243,11 +252,12 @@ static double move_inward(float *p, const surroundings *s)
     return cwi_length(moved);
 }
 
-static cw_status move_apart(cwi_repair *r, cw_error *err)
+cw_status cwi_part_vertices(cwi_repair *r, bool *moved, cw_error *err)
 {
     cw_mesh *m = &r->mesh;
     uint32_t *map = cwi_alloc_array(m->vertex_count, sizeof *map);
     bool *shares = cwi_alloc_zeroed(m->vertex_count, sizeof *shares);
+    *moved = false;
     surroundings *around = cwi_alloc_zeroed(m->vertex_count, sizeof *around);
     cw_status st = map && shares && around && cwi_weld(m->positions, m->vertex_count, map)
                        ? CW_OK
@@ -255,9 +265,9 @@ static cw_status move_apart(cwi_repair *r, cw_error *err)
     for (size_t v = 0; v < m->vertex_count && st == CW_OK; v++) {
         around[v].shortest_sq = INFINITY;
         if (map[v] != v)
-            shares[v] = shares[map[v]] = true;
+            shares[v] = shares[map[v]] = *moved = true;
     }
-    for (uint32_t c = 0; c < 3 * m->triangle_count && st == CW_OK; c++) {
+    for (uint32_t c = 0; c < 3 * m->triangle_count && st == CW_OK && *moved; c++) {
         const uint32_t v = m->triangles[c], next = m->triangles[cwi_corner_next(c)];
         if (shares[v])
             add_neighbour(m->positions + 3 * (size_t)v, m->positions + 3 * (size_t)next,
@@ -292,5 +302,5 @@ cw_status cwi_repair_split(cwi_repair *r, cw_error *err)
     }
     if (!r->is_later)
         r->facts.nonmanifold_vertices += copies;
-    return st == CW_OK && copies ? move_apart(r, err) : st;
+    return st;
 }

@@ -4,16 +4,12 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/geometry/triangle.h"
 
 #include <stdlib.h>
 
 /* Longer lists are sorted by qsort(), to keep hostile meshes from quadratic time. */
 enum { SHORT_LIST = 64 };
-
-static bool is_collapsed(const uint32_t *corners)
-{
-    return corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
-}
 
 /* Counts the sides at each vertex, two for each triangle, and places the lists one after the
  * other. */
@@ -21,7 +17,7 @@ static void place_lists(const cw_mesh *mesh, cwi_rings *r)
 {
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         const uint32_t *corners = mesh->triangles + 3 * t;
-        for (int c = 0; c < 3 && !is_collapsed(corners); c++)
+        for (int c = 0; c < 3 && !cwi_triangle_is_collapsed(corners); c++)
             r->begin[corners[c] + (size_t)1] += 2;
     }
     for (size_t v = 0; v < r->vertices; v++)
@@ -32,7 +28,7 @@ static void fill_lists(const cw_mesh *mesh, cwi_rings *r)
 {
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         const uint32_t *corners = mesh->triangles + 3 * t;
-        for (int c = 0; c < 3 && !is_collapsed(corners); c++) {
+        for (int c = 0; c < 3 && !cwi_triangle_is_collapsed(corners); c++) {
             const uint32_t v = corners[c];
             uint32_t *list = r->neighbours + r->begin[v] + r->count[v];
             list[0] = corners[(c + 1) % 3];

@@ -1,7 +1,10 @@
-// Times CGAL's self_intersections() on a mesh, with TBB where CGAL has it.
+// Times CGAL's self_intersections() on a mesh, with TBB where CGAL has it, and its booleans.
 #include "cgal_bench.h"
+#include "bench.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/corefinement.h>
+#include <CGAL/Polygon_mesh_processing/measure.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
 
@@ -61,4 +64,23 @@ double bench_cgal_intersections(const cw_mesh *mesh, int threads, size_t *pairs)
         return -1;
 #endif
     return measure<CGAL::Sequential_tag>(surface, pairs);
+}
+
+double bench_cgal_boolean(const cw_mesh *a, const cw_mesh *b, int op, double *volume)
+{
+    namespace pmp = CGAL::Polygon_mesh_processing;
+    Surface first = to_surface(*a), second = to_surface(*b), out;
+    const auto check = CGAL::parameters::throw_on_self_intersection(true);
+    const double start = bench_cpu_ms();
+    bool done;
+    try {
+        done = op == 0   ? pmp::corefine_and_compute_union(first, second, out, check)
+               : op == 1 ? pmp::corefine_and_compute_difference(first, second, out, check)
+                         : pmp::corefine_and_compute_intersection(first, second, out, check);
+    } catch (const pmp::Corefinement::Self_intersection_exception &) {
+        done = false;
+    }
+    const double spent = bench_cpu_ms() - start;
+    *volume = done ? CGAL::to_double(pmp::volume(out)) : 0;
+    return done ? spent : -1;
 }

@@ -13,6 +13,11 @@ extern "C" {
  * not in this build. */
 double bench_cgal_intersections(const cw_mesh *mesh, int threads, size_t *pairs);
 
+/* Makes the union, difference or intersection (0, 1, 2) of closed meshes by corefinement, on one
+ * thread, their data structures being made already. Returns its processor time in ms; negative: not in
+ * this build, or it found no result. volume: of the result */
+double bench_cgal_boolean(const cw_mesh *a, const cw_mesh *b, int op, double *volume);
+
 #ifdef __cplusplus
 }
 #endif

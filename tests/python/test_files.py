@@ -22,6 +22,15 @@ class Meshes(Case):
                 self.assertTrue(np.array_equal(again.triangles, mesh.triangles))
                 self.assertLess(np.abs(again.world_vertices() - mesh.world_vertices()).max(), 1e-5)
 
+    def test_an_stl_that_breaks_off(self):
+        mesh = cw.extract(make_ball(), 0)
+        path = self.folder / "ball.stl"
+        cw.write(path, mesh)
+        path.write_bytes(path.read_bytes()[:-120])
+        with self.fails(cw.Status.FORMAT):
+            cw.read_mesh(path)
+        self.assertEqual(len(cw.read_mesh(path, truncated=True).triangles), len(mesh.triangles) - 3)
+
     def test_options(self):
         mesh = cw.extract(make_ball(), 0)
         path = self.folder / "ball.ply"
@@ -128,7 +137,7 @@ class Volumes(Case):
         path.write_bytes(path.read_bytes()[:-100])
         with self.fails(cw.Status.FORMAT):
             cw.read_volume(path)
-        for wrong in ({"crop": 3}, {"spacing": "1"}, {"sandbox": 1}, {"note": 1}, {"series": 1}, {"level": "0"}):
+        for wrong in ({"crop": 3}, {"spacing": b"1"}, {"sandbox": 1}, {"note": 1}, {"series": 1}, {"level": "0"}):
             with self.subTest(wrong), self.assertRaises(TypeError):
                 cw.read_volume(path, **wrong)
         with self.assertRaises(TypeError):

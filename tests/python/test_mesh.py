@@ -201,7 +201,12 @@ class Coordinates(Case):
         told = cw.repair(broken, report_only=True)
         self.assertIsNone(told.mesh)
         self.assertEqual(told.holes_filled, found.holes_filled)
+        self.assertFalse(told.refused)
         self.assertEqual(cw.repair(broken, fill=0.01).holes_filled, 0)
+        hollow = cw.hollow(ball, wall=2)
+        full = cw.repair(hollow, outer=True)
+        self.assertEqual((full.inner_shells, cw.repair(hollow).inner_shells), (1, 0))
+        self.assertAlmostEqual(full.inner, full.volume_after - cw.repair(hollow).volume_after, delta=1e-3)
         for wrong in (lambda: cw.repair(broken, weld=-1), lambda: cw.repair(broken, wrap=float("inf"))):
             self.assertRaises(ValueError, wrong)
         self.assertRaises(TypeError, lambda: cw.repair(first))
@@ -247,6 +252,11 @@ class Coordinates(Case):
         self.assertEqual(set(one.mesh.attributes["input"].ravel()), {0, 1})
         np.testing.assert_array_equal(ball.triangles, first)
         far = cw.Mesh.from_arrays(ball.vertices, ball.triangles, origin=np.array(ball.origin) + (9 * size, 0, 0))
+        back = np.concatenate((ball.triangles, ball.triangles[:, ::-1] + len(ball.vertices)))
+        beside = np.concatenate((ball.vertices, ball.vertices / 2 + (9 * size, 0, 0)))
+        lost = cw.boolean([cw.Mesh.from_arrays(ball.vertices, ball.triangles[:, ::-1]), cw.Mesh.from_arrays(beside, back)])
+        self.assertEqual((lost.turned, lost.empty, lost.inside_out), ((0,), (), (1,)))
+        self.assertAlmostEqual(lost.inside_out_volume / volume, 1 / 8, places=5)
         self.assertEqual(len(cw.boolean([ball, far], "intersection").mesh.triangles), 0)
         self.assertRaises(ValueError, lambda: cw.boolean([ball, other], "minus"))
         self.assertRaises(TypeError, lambda: cw.boolean([ball, 1]))
@@ -266,6 +276,38 @@ class Coordinates(Case):
         self.assertEqual(len(joined.triangles), len(mesh.triangles))
         self.assertTrue(np.array_equal(joined.origin, [1, 2, 3]))
         self.assertEqual(len(loose.vertices), len(corners))
+
+
+class Units(Case):
+    def same(self, a, b):
+        self.assertTrue(np.array_equal(a.vertices, b.vertices))
+
+    def test_texts_name_their_unit_and_numbers_are_millimetres(self):
+        volume = cw.Volume(make_ball(), spacing=["2mm", "0.2cm", "2000um"])
+        self.assertEqual(volume.spacing, (2.0, 2.0, 2.0))
+        mesh = cw.extract(volume, 0)
+        low, high = mesh.bounds
+        diagonal = float(np.linalg.norm(high - low))
+        self.same(cw.simplify(mesh, error="0.25mm"), cw.simplify(mesh, error=0.25))
+        self.same(cw.simplify(mesh, error="1%"), cw.simplify(mesh, error=diagonal / 100))
+        self.same(cw.extract(volume, 0, simplify="0.5vox"), cw.extract(volume, 0, simplify=1.0))
+        self.same(cw.smooth(mesh, max_move="0.1mm").mesh, cw.smooth(mesh, max_move=0.1).mesh)
+        self.same(cw.extract(volume, 0, min_volume="1ml"), cw.extract(volume, 0, min_volume=1000))
+        self.assertEqual(volume.resample("1mm").spacing, (1.0, 1.0, 1.0))
+        print_facts = cw.check(mesh, profile="print", wall="100mm", plate=["20cm"] * 3).print
+        self.assertEqual(print_facts, cw.check(mesh, profile="print", wall=100, plate=[200] * 3).print)
+
+    def test_texts_without_a_unit_or_with_a_wrong_one_are_refused(self):
+        volume = cw.Volume(make_ball())
+        mesh = cw.extract(volume, 0)
+        for text in ("1", "", "1kg", "1vox", "mm", "nanmm", "1 mm", "1mm2"):
+            with self.assertRaisesRegex(ValueError, "error is .*a length with one of the units mm"):
+                cw.simplify(mesh, error=text)
+        for text in ("1", "1mm", "1%"):
+            with self.assertRaisesRegex(ValueError, "min_volume is .*a volume with one of the units mm3"):
+                cw.extract(volume, 0, min_volume=text)
+        with self.assertRaisesRegex(ValueError, "0 or more was expected"):
+            cw.repair(mesh, fill="-1mm")
 
 
 class Mistakes(Case):

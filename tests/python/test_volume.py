@@ -63,6 +63,15 @@ class Filters(Case):
         with self.assertRaisesRegex(cw.Error, "no voxel is at or above 1e"):
             volume.crop_to(1e9)
 
+    def test_means_are_floats(self):
+        for dtype, means in (("u1", "f4"), ("i2", "f4"), ("i4", "f8"), ("f4", "f4"), ("f8", "f8")):
+            volume = cw.Volume(np.random.default_rng(5).integers(0, 99, (8, 8, 8)).astype(dtype))
+            for made in (volume.smooth(1), volume.bilateral(), volume.anisotropic(), volume.nlm(),
+                         volume.resample(0.5)):  # fmt: skip
+                self.assertEqual((made.dtype, (made.array % 1 != 0).any()), (np.dtype(means), True))
+            for kept in (volume.median(), volume.open(1, 3), volume.mask(volume, 3)):
+                self.assertEqual(kept.dtype, np.dtype(dtype))
+
     def test_slopes_stay_when_voxels_become_smaller(self):
         voxels = np.arange(20, dtype="f8") + np.zeros((4, 5, 1))
         for kernel in ("linear", "cubic"):
@@ -279,7 +288,7 @@ class Mistakes(Case):
         with self.assertRaises(TypeError):
             cw.Volume(make_ball(), spacings=1)
         with self.assertRaises(TypeError):
-            cw.Volume(make_ball(), spacing="1mm")
+            cw.Volume(make_ball(), spacing=b"1mm")
         with self.assertRaises(TypeError):
             cw.Volume(make_ball(), spacing=1, affine=np.eye(4))
 

@@ -426,8 +426,8 @@ def row(reader, path, options, volume, levels):
 
 
 # Reader, path, options, levels of the data's README, and how it is read here.
-SPACING = "--spacing 0.1411,0.1411,0.1409"
-HEADER = "--raw dims=128x128x84,type=u8,offset=62,spacing=1x1x1.5"
+SPACING = "--spacing 0.1411,0.1411,0.1409mm"
+HEADER = "--raw dims=128x128x84,type=u8,offset=62,spacing=1x1x1.5mm"
 TABLE = [
     ("nifti", "ch2-mri/ch2.nii.gz", "", [50, 100], nifti),
     ("nifti", "ch2-mri/aal.nii.gz", "", [0.5], nifti),

@@ -10,9 +10,9 @@ typedef struct test_planted {
     const char *name; /* also a file's stem */
     void (*build)(test_builder *b);
     /* The truth with equal points as one vertex. */
-    size_t components, open_edges, border_loops, nonmanifold_edges, misoriented_edges,
-        nonmanifold_vertices, duplicates, degenerate, needles, caps, cavities, inside_out,
-        nested, open_inward, unused_vertices;
+    size_t components, open_edges, border_loops, nonmanifold_edges, contact_edges,
+        contact_vertices, misoriented_edges, nonmanifold_vertices, duplicates, degenerate,
+        needles, caps, cavities, inside_out, nested, open_inward, unused_vertices;
     int genus; /* -1: not an oriented manifold */
     bool meets_itself;
 } test_planted;

@@ -1,6 +1,7 @@
 /* Extracts surfaces for tests, compares them, and looks for faults in them. */
 #include "support/surface.h"
 
+#include "core/base/memory.h"
 #include "core/geometry/vec3.h"
 
 #include <math.h>
@@ -254,6 +255,24 @@ void test_assert_sound(const cw_mesh *before, const cw_mesh *after)
     const char *fault = test_reduced_fault(before, after);
     if (fault)
         fail_msg("the result %s", fault);
+}
+
+void test_repair_without_memory(const cw_mesh *mesh, const cw_repair_desc *desc, long least)
+{
+    cw_mesh out;
+    cw_error err = {0};
+    for (long n = 0;; n++) {
+        cwi_alloc_fail_after(n);
+        const cw_status st = cw_mesh_repair(mesh, desc, &out, NULL, &err);
+        if (!cwi_alloc_fail_after(-1)) {
+            assert_ok(st, err);
+            assert_true(n > least);
+            break;
+        }
+        assert_int_equal(st, CW_ERR_NO_MEMORY);
+        assert_true(!out.positions && !out.triangles);
+    }
+    cw_mesh_free(&out);
 }
 
 void test_bound_is_measured(const cw_mesh *a, const cw_mesh *b, double error)

@@ -43,6 +43,9 @@ size_t test_count_crossings(const cw_mesh *mesh);
 const char *test_reduced_fault(const cw_mesh *before, const cw_mesh *after);
 void test_assert_sound(const cw_mesh *before, const cw_mesh *after);
 
+/* Fails each allocation of a repair in turn: it says so, and leaves nothing. There are more than `least`. */
+void test_repair_without_memory(const cw_mesh *mesh, const cw_repair_desc *desc, long least);
+
 /* No point of a is farther than so much from b: by our measure; and where it is there by CGAL's,
  * which takes minutes for 100,000 triangles. */
 void test_bound_is_measured(const cw_mesh *a, const cw_mesh *b, double error_mm);

@@ -20,6 +20,9 @@ for bits in 16 19 22; do
     draco_encoder -i g.ply -o theirs.drc -qp $bits >/dev/null
     cubewright check theirs.drc --reference g.ply --tolerance 0.05% -q >/dev/null || fail "we read Draco's of $bits bits wrongly"
 done
+cubewright convert g.ply -o ours.drc -q --compress draco --tolerance 1e-9mm # positions as they are
+draco_decoder -i ours.drc -o decoded.ply >/dev/null || fail "Draco does not read our floats"
+cubewright check decoded.ply --reference g.ply --tolerance 0.000001mm -q >/dev/null || fail "Draco reads our floats wrongly"
 # a fragment of Neuroglancer's meshes has integers as positions
 cubewright convert g.ply -o folder --format neuroglancer --compress draco --tolerance 0.1mm -q
 draco_decoder -i folder/1 -o fragment.obj >/dev/null || fail "Draco does not read our fragment"

@@ -20,7 +20,7 @@ done
 cubewright boolean a.obj b.obj c.obj --op intersection -o three.obj --json - -q | volume three
 cubewright boolean a.obj face.obj -o face.ply -q
 cubewright boolean a.obj edge.obj -o edge.ply
-cubewright boolean a.obj b.obj --op split -o split.obj -q
+cubewright boolean a.obj b.obj --op split -o split.obj -q && grep '^o ' split.obj
 cubewright boolean a.obj far.obj --op split -o one.obj -q
 # one mesh of two shells becomes one shell
 cat a.obj >two.obj && sed '/^f/d' b.obj >>two.obj && sed -n '/^f/p' b.obj | awk '{print "f", $2 + 8, $3 + 8, $4 + 8, $5 + 8}' >>two.obj
@@ -28,3 +28,5 @@ cubewright boolean two.obj -o united.stl -q
 cmp union.stl united.stl || cubewright check union.stl united.stl -q
 cubewright boolean a.obj b.obj --op difference --threads 4 -o threads.stl -q && cmp difference.stl threads.stl && echo same
 cubewright boolean a.obj b.obj --op difference -o d.stl --json - -q | sed -n '/"boolean": {/,/}/p'
+# STL cannot hold doubled vertices, and the line tells
+cubewright boolean a.obj edge.obj -o edge.stl 2>/dev/null

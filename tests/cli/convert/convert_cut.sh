@@ -3,7 +3,7 @@ cubewright make sphere -o s.nrrd --dims 24 -q
 cubewright extract s.nrrd --iso 0 -o s.stl -q
 cubewright convert s.stl -o up.stl --cut-plane z=0
 cubewright convert s.stl -o down.obj --cut-plane=-z=25%
-cubewright convert s.stl -o none.stl --cut-plane z=100
+cubewright convert s.stl -o none.stl --cut-plane z=100mm
 echo "$?"
 cat >two.obj <<'E2'
 o low
@@ -25,7 +25,7 @@ f 5 6 8
 f 6 7 8
 f 7 5 8
 E2
-cubewright convert two.obj -o half.obj --cut-plane z=2 && grep -c '^f' half.obj
-cubewright convert two.obj -o top.obj --cut-plane z=6 && grep -c '^f' top.obj
-cubewright convert two.obj -o top.glb --cut-plane z=6
+cubewright convert two.obj -o half.obj --cut-plane z=2mm && grep -c '^f' half.obj
+cubewright convert two.obj -o top.obj --cut-plane z=6mm && grep -c '^f' top.obj
+cubewright convert two.obj -o top.glb --cut-plane z=6mm
 exit 0

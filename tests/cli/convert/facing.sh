@@ -51,8 +51,9 @@ sed 's/^4 4/4 3/;$d' in.off >open.off
 cubewright convert open.off -o x.ply --orient | line
 
 for error in 10mm 7% 4%; do
-    cubewright simplify big.off -o x.ply --error $error 2>&1 >y | grep -e warning || echo "no word of $error"
+    cubewright simplify big.off -o x.ply --error $error 2>&1 >y | grep -e diagonal || echo "no word of $error"
+    cubewright simplify big.off -o x.ply --error $error --force 2>&1 >y | grep -e diagonal
 done
 sed 2,3d big.off >bare.off
-cubewright simplify bare.off -o x.ply --error 10mm --json r.json 2>&1 >y | grep -e warning
-sed -n '/"warnings"/,/]/p' r.json
+cubewright simplify bare.off -o x.ply --error 10mm --json r.json 2>&1 >y
+sed -n '/"exit"/p' r.json

@@ -10,6 +10,6 @@ cmp room.stl tight.stl && echo same
 cubewright extract v.nrrd --iso 0 -o no.stl --crop $box --memory 100k -q
 echo $?
 # Where a spacing is asked for, the part stands where it was in the stretched volume.
-cubewright extract v.nrrd --iso 0 -o part.stl --spacing 2,3,4 --crop 10:40,20:50,60:95 -vv 2>&1 |
+cubewright extract v.nrrd --iso 0 -o part.stl --spacing 2,3,4mm --crop 10:40,20:50,60:95 -vv 2>&1 |
     grep affine
 ls

@@ -4,7 +4,7 @@ cubewright extract s.nrrd --iso 0 -o a.ply --cut-plane z=5mm --json r.json
 sed -n -e '/"cut_plane"/p' -e '/"cut": {/,/}/p' r.json
 cubewright extract s.nrrd --iso 0 -o b.ply --cut-plane=-z=10%
 cubewright extract s.nrrd --iso 0 -o c.ply --cut-plane 0,0,0:1,1,1 --smooth taubin
-for t in 1 3; do cubewright extract s.nrrd --iso 0 -o t$t.ply --cut-plane x=1 -t $t --name t -q; done
+for t in 1 3; do cubewright extract s.nrrd --iso 0 -o t$t.ply --cut-plane x=1mm -t $t --name t -q; done
 cmp t1.ply t3.ply && echo "same"
 bad() {
     cubewright extract "$@" -q

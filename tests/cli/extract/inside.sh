@@ -30,6 +30,9 @@ cubewright check auto.stl --reference whole.stl --tolerance 0.00001mm -q && echo
 cubewright make sphere -o noisy.nrrd --dims 24x24x12 --type i16 --noise 4 --seed 3 -q
 cubewright extract noisy.nrrd --iso 0 -o largest.stl --largest 1 --json r.json
 cubewright extract noisy.nrrd --iso 0 -o three.stl --largest 3 --min-volume 20mm3 -q
+# A cut that follows may part what was kept.
+cubewright make gyroid -o g.nrrd --dims 40 -q
+cubewright extract g.nrrd --iso 0 -o parted.stl --largest 1 --cut-plane z=97% | grep -o '[0-9]* component[s]*'
 cubewright check largest.stl --source noisy.nrrd --iso 0 --largest 1 2>&1 | grep topology
 grep '"largest"' r.json
 

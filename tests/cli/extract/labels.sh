@@ -73,3 +73,8 @@ bad --labels all -o 'bad-{labels}.ply'
 bad --iso 1 --names names.csv
 bad --labels all --table map.nrrd
 ls bad* 2>/dev/null || echo none
+# a scan: all of its values are labels only if that is insisted on
+cubewright make gyroid -o grey.nrrd --dims 12 --noise 1 --type u8 -q
+cubewright extract grey.nrrd --labels all -o bad.ply || echo "exit $?"
+cubewright extract grey.nrrd --labels all --force -o grey.ply -q && echo forced
+cubewright extract grey.nrrd --labels 3,4 -o grey.ply -q && echo chosen

@@ -1,7 +1,7 @@
 # Labels that are read slice by slice: the same bytes as in memory.
 set -e
 cubewright make labels/cells -o cells.nrrd --dims 60x50x90 --labels 40 --type u16 -q
-for options in "" "--smooth-labels off" "--open" "--crop 5:40,3:44,10:70" "--coarsen 2" "--simplify 30%" "--shared-faces"; do
+for options in "" "--smooth-labels off" "--open" "--crop 5:40,3:44,10:70" "--coarsen 2" "--simplify 2vox" "--shared-faces"; do
     # shellcheck disable=SC2086
     cubewright extract cells.nrrd --labels all $options -o whole.ply --name a --stream never -q
     for threads in 1 2; do

@@ -6,7 +6,7 @@ cubewright extract ct.nrrd --iso 300 -o small.ply --normals none --min-volume 1e
 cmp all.ply small.ply && echo same
 cubewright extract ct.nrrd --iso 300 -o one.ply --min-volume 500ml --json - | sed -n -e '/"min_volume_mm3"/p' -e '/"components_dropped"/,/}/p'
 # the same volume in other units
-for volume in 5e14um3 500cm3 500000mm3 500000; do
+for volume in 5e14um3 500cm3 500000mm3 0.0005m3; do
     cubewright extract ct.nrrd --iso 300 -o unit.ply --normals none --no-check --min-volume $volume --json - -q |
         sed -n 's/.*"min_volume_mm3": //p'
 done
@@ -39,3 +39,14 @@ cubewright check filled.ply --source ball.nrrd --iso 0 --fill-voids | grep -o -e
 cubewright check filled.ply --fill-voids || echo "exit $?"
 bad ct.nrrd --iso 300 -o bad.ply --fill-voids --stream always
 bad ct.nrrd --labels all -o bad.ply --fill-voids
+# at the volume's border: cavities in solids that are capped are filled, one that the border cuts open is none
+shell() {
+    printf 'NRRD0005\ntype: uint8\ndimension: 3\nsizes: 10 10 %d\nencoding: ascii\n\n' "$1"
+    awk -v n="$1" 'function out(a) { return a < 1 || a > 8 } function in_cavity(a) { return a > 3 && a < 6 }
+        BEGIN { for (z = 0; z < n; z++) for (y = 0; y < 10; y++) for (x = 0; x < 10; x++)
+            print out(x) || out(y) || out(z) || in_cavity(x) && in_cavity(y) && in_cavity(z) ? 0 : 9 }'
+}
+for slices in 10 8 6 5; do
+    shell $slices >shell.nrrd
+    cubewright extract shell.nrrd --iso 4.5 --spacing 1x1x1mm -o shell.ply --fill-voids 2>&1 | grep -o -e '[0-9]* void.*' -e '[0-9]* components*' -e 'capped.*border'
+done

@@ -45,7 +45,7 @@ try cubewright extract g.nrrd --iso 100 --part 2/4 --manifest m3
 try cubewright extract g.nrrd --iso 100 --part 4/3 --manifest m3
 try cubewright extract g.nrrd --iso 100 --part 1/3
 try cubewright extract g.nrrd --iso 100 --part 1/3 --manifest m3 -o a.ply
-try cubewright extract g.nrrd --iso 100 --part 1/3 --manifest m3 --simplify 50%
+try cubewright extract g.nrrd --iso 100 --part 1/3 --manifest m3 --simplify 0.5vox
 try cubewright extract g.nrrd --iso 100,200 --part 1/3 --manifest m3
 try cubewright extract g.nrrd --iso 100 --parts 3 --part 1/3 --manifest m3
 printf 'x' | dd of=m3/part-2-of-3.cwpart bs=1 seek=5000 conv=notrunc 2>/dev/null
@@ -71,3 +71,15 @@ echo old >old.ply
 try cubewright join one -o old.ply --no-clobber
 cat old.ply
 cubewright join one -o old.ply -q && cmp -n 3 old.ply whole.ply && echo "replaced"
+# outputs over a part, and a manifest that is a pipe
+cubewright extract g.nrrd --iso 100 --part 1/1 --manifest two -q
+cp two/part-1-of-1.cwpart kept
+ln two/part-1-of-1.cwpart linked.ply
+try cubewright join two -o two/part-1-of-1.cwpart --format ply
+try cubewright join two -o linked.ply
+try cubewright join two -o two/manifest.json --format ply
+cmp kept two/part-1-of-1.cwpart && echo "the part is kept"
+rm two/manifest.json
+mkfifo two/manifest.json
+try timeout 20 cubewright join two -o no.ply
+try timeout 20 cubewright extract g.nrrd --iso 100 --part 1/1 --manifest two

@@ -47,3 +47,10 @@ cubewright extract noise.raw --raw dims=400x500x5,type=u8 --iso 128 --memory 24M
 cubewright extract g.nrrd --iso 100 --stream always --snap 0.3 -o no.ply || echo "exit $?"
 cubewright extract g.nrrd --iso 1e6 --stream always -o no.ply || echo "exit $?"
 ls no.* .cubewright* 2>/dev/null || echo "nothing is left behind"
+# the folder of temporary files is named where they do not fit; a limit of 512-byte blocks stands for a full disk
+mkdir full
+for o in "" "--min-volume 5mm3"; do
+    sh -c 'trap "" XFSZ; ulimit -f 400; cubewright extract g.nrrd --iso 100 --stream always -o full/x.ply -q $1' sh "$o" ||
+        echo "exit $?"
+done
+ls full

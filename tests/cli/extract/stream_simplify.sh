@@ -10,7 +10,7 @@ compare() { # FILE OPTIONS...
     cmp memory.ply slices.ply
     echo "$*: the same"
 }
-for goal in 0.3mm 0.5% 0.2vox 2k; do
+for goal in 0.3mm 0.5vox 0.2vox 2k; do
     compare g.nrrd --simplify $goal
 done
 compare g.nrrd --simplify 0.3mm --open
@@ -42,7 +42,7 @@ head -c 3000000 /dev/urandom >noise.raw
 cubewright extract noise.raw --raw dims=100x100x300,type=u8 --iso 128 --memory 60M --stream always --simplify 0.1mm -o no.ply ||
     echo "exit $?"
 # what slices cannot do
-cubewright extract g.nrrd --iso 100 --stream always --simplify 50% --min-volume 5mm3 -o no.ply || echo "exit $?"
+cubewright extract g.nrrd --iso 100 --stream always --simplify 1vox --min-volume 5mm3 -o no.ply || echo "exit $?"
 cubewright extract g.nrrd --iso 100 --stream always --max-error 50% -o no.ply || echo "exit $?"
 cubewright extract g.nrrd --iso 1e6 --stream always --simplify 1k -o no.ply || echo "exit $?"
 ls no.* .cubewright* 2>/dev/null || echo "nothing is left behind"

@@ -76,3 +76,28 @@ cubewright make hard/noise -d 8 -o n.nrrd
 cubewright extract n.nrrd --iso 0 -o n.ply -q
 cubewright offset n.ply -o n.glb --by 0 --voxel 1.7mm --json n.json | sed 's/; at most.*//'
 sed -n '/"anew"/,/}/p' n.json
+cubewright make sphere -d 12 -o ball.nrrd -q
+cubewright extract ball.nrrd --iso 0 -o ball.off -q
+two() { # the ball and a copy of it, moved and perhaps turned inside out
+    grep -v '#' ball.off | awk -v by="$1" -v turn="$2" '
+        NR == 2 { v = $1; t = $2; print "OFF"; print 2 * v, 2 * t, 0 }
+        NR > 2 { line[NR] = $0 }
+        END {
+            for (copy = 0; copy < 2; copy++)
+                for (n = 3; n < 3 + v; n++) {
+                    split(line[n], x, " ")
+                    print x[1] + copy * by, x[2], x[3]
+                }
+            for (copy = 0; copy < 2; copy++)
+                for (n = 3 + v; n < 3 + v + t; n++) {
+                    split(line[n], c, " ")
+                    if (copy && turn) { k = c[2]; c[2] = c[3]; c[3] = k }
+                    print 3, c[2] + copy * v, c[3] + copy * v, c[4] + copy * v
+                }
+        }'
+}
+two 4 0 >two.off
+cubewright hollow two.off --wall 4mm -o shell.obj | sed 's/; box.*//'
+cubewright check shell.obj --profile print | grep -e self -e profile | sed 's/;.*//'
+two 4 1 >turned.off
+cubewright hollow turned.off --wall 4mm -o turned.obj -q || echo "exit $?"

@@ -23,7 +23,20 @@ cubewright info empty
 echo $?
 cubewright info 'ct/*.nothing'
 echo $?
-head -c 700 ct/4.dcm > ct/5.dcm
+slices ct
+head -c -9 ct/3.dcm > cut && mv cut ct/3.dcm
+cubewright info ct
+cubewright info ct --json | sed -n '/"finding"/,$p'
 cubewright extract ct --iso -800 -o no.stl -q
 echo $?
+cubewright extract ct --iso -800 -o no.stl --skip-damaged
+echo $?
+cubewright extract ct --iso -800 -o mended.stl --skip-damaged --gaps interpolate
 ls
+# folders in a batch: {stem} is the name, with or without a slash behind it
+mkdir sets sets/a.1 sets/b.2
+slices sets/a.1
+slices sets/b.2
+cubewright extract 'sets/*/' --iso -800 -o '{parent}-{stem}.stl' --batch -q
+cubewright extract 'sets/*' --iso -800 -o '{stem}.stl' --batch -q
+ls -- *[ab].stl

@@ -9,7 +9,7 @@ cubewright info f.nrrd
 # Of a file larger than the memory allowed some rows are read, and by --preview, too.
 truncate -s 400M z.raw
 printf '\377' | dd of=z.raw bs=1 seek=200M conv=notrunc 2>/dev/null # row 0 of slice 200
-layout=dims=1024x1024x400,type=u8,spacing=1x1x1
+layout=dims=1024x1024x400,type=u8,spacing=1x1x1mm
 cubewright info z.raw --raw $layout --memory 64M | grep values
 cubewright info z.raw --raw $layout --memory 64M --json | grep -A1 -e sampled
 cubewright info z.raw --raw $layout --deep --memory 64M -q 2>&1

@@ -23,6 +23,16 @@ compare() { # NAME VOLUME OPTIONS...
 compare "in memory" g.nrrd --iso 100
 compare "a crop" g.nrrd --iso 100 --crop 5:60,3:50,10:40
 compare "slice by slice" big.raw --raw dims=400x400x400,type=u8 --iso 100 --memory 40M
+# a PLY holds its name, so a longer one takes as many bytes more
+cubewright info g.nrrd --iso 100 --json >info.json
+cubewright extract g.nrrd --iso 100 -o "$(sed -n 's/.*"stem": "\(.*\)".*/\1/p' info.json)longer.ply" -q
+[ "$(($(take ply_bytes info.json) + 6))" = "$(($(wc -c <glonger.ply)))" ] && echo "6 bytes more"
+# --levels gives the size of the STL that extract makes at a level
+cubewright info g.nrrd --levels >levels.txt
+cubewright extract g.nrrd --iso otsu -o otsu.stl -q
+grep -c "otsu .*STL $(wc -c <otsu.stl | awk '{ printf "%.1f MB", $1 / 1e6 }')" levels.txt
+compare "denoised" g.nrrd --iso 100 --denoise gauss:1vox
+cubewright info g.nrrd --iso 100 --denoise aniso | grep memory
 # several isovalues, one of them without a surface
 cubewright info g.nrrd --iso 100,-2000 | grep -A3 extract
 cubewright info g.nrrd --iso 100,99999 >two.txt || echo "exit $?"

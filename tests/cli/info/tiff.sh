@@ -21,10 +21,10 @@ mkdir scan
 for k in $(seq 0 23); do
     slice "$k" "scan/cut$((k + 1)).tif"
 done
-cubewright extract ball.nii --spacing 2,2,2 --iso 1 -o ball.stl --local -q
+cubewright extract ball.nii --spacing 2,2,2mm --iso 1 -o ball.stl --local -q
 cubewright info scan
 for path in scan 'scan/*.tif' 'scan/cut?*'; do
-    cubewright extract "$path" --spacing 2,2,2 --iso 1 -o scan.stl --local -q &&
+    cubewright extract "$path" --spacing 2,2,2mm --iso 1 -o scan.stl --local -q &&
         tail -c +85 ball.stl >a && tail -c +85 scan.stl >b && cmp a b && echo same
 done
 cubewright info scan/cut9.tif | sed 2q

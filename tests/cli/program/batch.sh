@@ -20,6 +20,10 @@ cubewright extract a/cells.nrrd --labels all -o 'out/{stem}-{label}.ply' --skip-
 cubewright info a/x.nrrd b/x.nrrd --batch | grep -e nrrd -e values
 cubewright info '?/x.nrrd' --jobs 2 --json-lines - 2>/dev/null | sed 's/,"seconds.*schema/ schema/; s/,.*//'
 cubewright report a/x.nrrd b/x.nrrd -o 'out/{parent}.html' --batch --budget 1s -q && ls out/*.html
+# a pattern that folders alone match; a report that is named as if it were no page
+cubewright extract '[ab]' --iso 0 -o 'out/{stem}.stl' -q || echo "exit $?"
+cubewright extract '[a]' --iso 0 -o 'out/{stem}.stl' -q || echo "exit $?"
+cubewright report a/x.nrrd -o out/x.pdf --budget 1s -q || echo "exit $?"
 # the same bytes as one by one
 cubewright extract a/x.nrrd --iso 0 -o one.stl -q && cmp one.stl out/a-x.stl && echo same
 bad() { cubewright extract "$@" || echo "exit $?"; }
@@ -30,3 +34,6 @@ bad a/x.nrrd --iso 0 --skip-existing
 bad a/x.nrrd --iso 0 -o out/z.stl --json-lines none/log.jsonl
 cubewright report a/x.nrrd b/x.nrrd -o out/r.html --source a/x.nrrd || echo "exit $?"
 cubewright extract a/x.nrrd --iso 0 -o out/z.stl --json-lines a/x.nrrd || echo "exit $?"
+# a report that is lost is told beside inputs that failed, and alone
+bad a/x.nrrd --iso 0 -o 'out/{stem}.stl' --json-lines /dev/full -q
+bad b/y.nrrd --iso 0 -o 'out/{stem}.stl' --json-lines /dev/full -q

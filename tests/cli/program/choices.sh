@@ -30,7 +30,7 @@ awk 'BEGIN { print "NRRD0004\ntype: uint8\nencoding: ascii\ndimension: 3\nsizes:
     for (n = 0; n < 1024; n++) print substr("0295", 1 + int(n % 16 / 4), 1) }' >l.nrrd
 cubewright extract l.nrrd --iso 0.5 --open -o a.ply | sed 's/:.*//'
 cubewright extract l.nrrd --iso 3,8 --open -o 'a{level}.ply' | sed 's/:.*//'
-cubewright extract l.nrrd --iso 4 --inside below --open -o a.ply | sed 's/:.*//'
+cubewright extract l.nrrd --iso 6 --inside below --open -o a.ply | sed 's/:.*//'
 cubewright info l.nrrd | grep note
 sed 's/[59]$/2/;s/^encoding.*/&\nSegment0_LabelValue:=2/' l.nrrd >s.nrrd
 cubewright info s.nrrd | grep note || echo "one label"

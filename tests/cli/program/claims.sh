@@ -21,6 +21,13 @@ frame v.vti --input-frame ras --crop 0:1,0:1,0:1
 cubewright info v.vti --json --input-unit m --input-frame ras | grep -e '"unit"' -e '"frame"'
 cubewright extract v.vti --iso 0.5 --input-unit m -o m.stl -q --json - | sed -n '/"box"/p'
 cubewright render v.vti --mode mip --input-unit m -o m.png -q --json - | grep -c schema
+# a format that can state a frame, and does not
+head='type: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: ascii\n'
+printf "NRRD0005\n${head}space dimension: 3\nspace units: \"mm\" \"mm\" \"mm\"\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n\n0 0 0 0 1 1 1 1\n" >u.nrrd
+printf "NRRD0005\n${head}space: left-posterior-superior\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n\n0 0 0 0 1 1 1 1\n" >f.nrrd
+cubewright extract u.nrrd --iso 0.5 -o u.stl 2>&1 | sed -n 's/.*u8, //p'
+cubewright extract u.nrrd --iso 0.5 -o u.stl --input-frame ras 2>&1 | sed -n 's/.*u8, //p'
+cubewright extract f.nrrd --iso 0.5 -o u.stl 2>&1 | sed -n 's/.*u8, //p'
 # an irregular grid has its points turned
 cat >g.vtk <<'END'
 # vtk DataFile Version 3.0

@@ -30,6 +30,18 @@ done
 cubewright help --search xyzzy || echo "exit $?"
 cubewright help --search 'threshold xyzzy' || echo "exit $?"
 cubewright help --search ' ' || echo "exit $?"
+# unknown options and commands ask the same index: what they name is in the results
+for words in 'extract --threshold' 'convert --scale' 'convert --rotate' 'convert --mirror' 'extract --resume' \
+    'render --decimate' 'extract --isovalue' 'extract --lables' 'extract --xyzzy' subtract decimate segment resume cut; do
+    cubewright $words 2>error && echo "$words: accepted"
+    cat error >&2
+    word=$(sed -n "s/.*help --search \([a-z]*\)' finds.*/\1/p" error)
+    [ -z "$word" ] || cubewright help --search "$word" >results
+    for name in $(sed -n "s/.*' finds //p" error | grep -o -e "--[a-z-]*" -e "'[a-z]*'"); do
+        name=${name#\'}
+        grep -q -e "${name%\'}[: ]" results || echo "$words: the search has no $name"
+    done
+done
 # every option that the table of synonyms leads to is there
 for command in $(cubewright help | sed -n '/^Commands/,/^$/s/^  \([a-z]*\) .*/\1/p'); do cubewright "$command" -h; done >all
 grep -o -e '--[a-z][a-z-]*' "$TESTS/../cli/help/help_synonyms.c" | sort -u >options

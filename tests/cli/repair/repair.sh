@@ -46,8 +46,25 @@ cubewright repair parts.obj -o apart.obj -q && grep '^o' apart.obj
 sed -n '/^o sheet/,$p' parts.obj | sed 's/f 9 10 11/f 1 2 3/' >sheet.obj
 cubewright repair sheet.obj -o none.obj
 echo "exit $?"
-# corners of neighbours are nearly equal
+# corners of neighbours are nearly equal: the distance is found, or given, or not looked for
 awk '/vertex/ { printf "vertex %.5f %.5f %.5f\n", $2 + n % 3 * 1e-4, $3, $4; n++; next } { print }' s.stl >loose.stl
 cubewright repair loose.stl --weld 0.001mm -o welded.stl -q && cubewright check welded.stl --profile print -q && echo "welded"
+cubewright repair loose.stl -o found.stl --no-measure 2>&1 | grep -e welded -e volume
+cubewright repair loose.stl --report-only --weld off 2>&1 | grep without
+# one side of the cube is finer than the other: a vertex on an edge
+cat >joint.obj <<'E2'
+v 0 0 0
+v 9 0 0
+v 0 9 0
+v 0 0 9
+v 4 0 0
+f 1 3 2
+f 1 5 4
+f 5 2 4
+f 1 4 3
+f 2 3 4
+E2
+cubewright repair joint.obj -o joined.obj --no-measure 2>&1 | grep -e split -e volume
+cubewright repair joint.obj -o joined.obj --json - -q | grep -e weld -e split_edges -e '"sound'
 # a file for the web
 cubewright repair broken.stl -o '{stem}-fixed.off' -q && ls broken-fixed.off

@@ -28,6 +28,16 @@ if python3 -c 'import xml.dom.minidom' 2>/dev/null; then
 fi
 sh -c "$(sed -n 's/^  "command": "\(.*\)",$/\1/p' ball.json) -q" && echo "its command runs"
 
+# A mesh of filtered voxels has no level of these: that is said, unless the filter is named.
+cubewright make gyroid -o noisy.nrrd --dims 40 --noise 0.3 --seed 2 -q
+cubewright extract noisy.nrrd --iso 0.2 --denoise gauss:1vox -o filtered.stl -q
+for filter in none gauss:1vox; do
+    [ $filter = none ] && set -- || set -- --denoise $filter
+    cubewright report filtered.stl --source noisy.nrrd -o filtered.html --json filtered.json "$@" | sed 's/: 99 .*//'
+    sed -n 's/^ *"unsure": //p' filtered.json
+    grep -c 'the mesh was made from filtered voxels' filtered.html
+done
+
 # An open mesh is held against an open surface.
 cubewright extract torus.nrrd --iso -12 --open -o open.stl -q
 cubewright report open.stl --source torus.nrrd -o open.html --json open.json -q

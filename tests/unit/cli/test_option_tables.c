@@ -175,6 +175,59 @@ static void help_tells_the_rules(void **state)
                         "Height (1); needs --mode high; not with --fast");
 }
 
+/* Texts with a bare number where a length, an area or a volume is due. */
+static void no_quantity_takes_a_bare_number(void **state)
+{
+    static const char *const bare[] = {"2",       "0.5",         "1x1x2",       "1mm,1mm,2",
+                                       "gauss:1", "bilateral:1", "fair:4",      "z=10",
+                                       "-x=0.5",  "4@-z",        "4mm@-z,3@+x", "iso:1",
+                                       "1:cubic", "-1",          "10%x"};
+    const cli_option *options[ROWS];
+    size_t count_of_quantities = 0;
+    (void)state;
+    for (size_t n = 0; cli_commands[n]; n++) {
+        const size_t count = list_options(cli_commands[n], options);
+        for (size_t o = 0; o < count; o++) {
+            const cli_kind *kind = options[o]->kind;
+            if (!kind->unit_rule || kind == CLI_RANGES || kind == CLI_CROP)
+                continue; /* numbers of voxels */
+            count_of_quantities++;
+            for (size_t b = 0; b < sizeof bare / sizeof *bare; b++)
+                if (cli_value_fits(options[o], bare[b]) && !(kind == CLI_REDUCTION && b == 0))
+                    fail_msg("%s --%s takes '%s'", cli_commands[n]->name, options[o]->name,
+                             bare[b]);
+        }
+    }
+    assert_true(count_of_quantities > 50);
+}
+
+static void lengths_take_their_units_alone(void **state)
+{
+    static const struct {
+        const cli_kind *kind;
+        bool mm, percent, voxels, negative;
+    } rows[] = {
+        {CLI_LENGTH, true, true, true, false},
+        {CLI_MESH_LENGTH, true, true, false, false},
+        {CLI_VOXEL_LENGTH, true, false, true, false},
+        {CLI_PRINT_LENGTH, true, false, false, false},
+        {CLI_SHIFT, true, true, false, true},
+        {CLI_REDUCTION, true, false, true, false},
+    };
+    (void)state;
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
+        const cli_option o = {"length", 0, rows[n].kind, "off/L", "", 0};
+        assert_int_equal(cli_value_fits(&o, "12um"), rows[n].mm);
+        assert_int_equal(cli_value_fits(&o, "1%"), rows[n].percent);
+        assert_int_equal(cli_value_fits(&o, "0.5vox"), rows[n].voxels);
+        assert_int_equal(cli_value_fits(&o, "-2mm"), rows[n].negative);
+        assert_int_equal(cli_value_fits(&o, "0mm"), rows[n].negative);
+        assert_int_equal(cli_value_fits(&o, "off"), rows[n].kind != CLI_REDUCTION);
+        assert_false(cli_value_fits(&o, "1mm3"));
+        assert_false(cli_value_fits(&o, "1 mm x"));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -182,6 +235,8 @@ int main(void)
         cmocka_unit_test(rules_name_options_that_exist),
         cmocka_unit_test(rules_are_checked_and_told),
         cmocka_unit_test(help_tells_the_rules),
+        cmocka_unit_test(no_quantity_takes_a_bare_number),
+        cmocka_unit_test(lengths_take_their_units_alone),
     };
     cli_commands = cli_command_table;
     return cmocka_run_group_tests(tests, NULL, NULL);

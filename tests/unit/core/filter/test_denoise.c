@@ -69,7 +69,7 @@ static void bilateral_is_the_mean_of_similar_values(void **state)
         v.slope = n % 5 == 0 ? -2 : 1;
         v.intercept = 5;
         assert_ok(cw_volume_bilateral(&v, w->space, w->value, NULL, &out, &err), err);
-        assert_int_equal(out.type, v.type);
+        assert_int_equal(out.type, cw_filter_type(&v));
         assert_memory_equal(out.affine, v.affine, sizeof v.affine);
         assert_filtered(&v, &out, mean_of_similar, w);
         cw_volume_free(&out);
@@ -195,7 +195,8 @@ static void without_noise_nothing_changes(void **state)
                        : filter == 2 ? cw_volume_nlm(&v, 7, 0, NULL, &out, &err)
                                      : cw_volume_aniso(&v, 5, 7, NULL, &out, &err);
         assert_ok(st, err);
-        assert_memory_equal(out.data, v.data, 70 * 20 * 3 * sizeof(int16_t));
+        for (int i = 0; i < 70 * 20 * 3; i++)
+            assert_true(((const float *)cw_volume_voxels(&out))[i] == 300.0f);
         cw_volume_free(&out);
     }
     cw_volume_free(&v);

@@ -74,21 +74,42 @@ static void expect_slices(const cw_volume *v, const cw_volume *whole,
 {
     memory_source m = {.volume = v};
     const cw_slice_source source = source_of(&m);
-    const size_t bytes = NX * NY * cw_type_size(v->type);
+    const size_t bytes = NX * NY * cw_type_size(whole->type);
     char *slices = malloc(step * bytes);
     cw_slice_filter *filter;
     cw_error err = {0};
     assert_ok(cw_slice_filter_new(&source, desc, &filter, &err), err);
     const cw_slice_source filtered = cw_slice_filter_source(filter);
     assert_int_equal(filtered.shape.dim[2], NZ);
+    assert_int_equal(filtered.shape.type, whole->type);
+    assert_int_equal(filtered.shape.stride[2], bytes);
     for (int pass = 0; pass < 2; pass++)
         for (size_t k = 0; k < NZ; k += step) {
             const size_t count = k + step < NZ ? step : NZ - k;
             assert_ok(filtered.read(filtered.user, k, count, slices, &err), err);
             assert_memory_equal(slices, (const char *)whole->data + k * bytes, count * bytes);
         }
+    assert_true(cw_slice_filter_bytes(v, desc) >= bytes);
     cw_slice_filter_free(filter);
     free(slices);
+}
+
+/* A Gaussian of bytes takes them, floats of them and sums of a thread; few slices take less. */
+static void memory_is_told(void **state)
+{
+    (void)state;
+    cw_slice_filter_desc desc = {.sigma_voxels = {1, 1, 1}, .slices = 30, .threads = 1};
+    cw_volume v = make_noise(CW_U8, false);
+    const size_t slice = NX * NY;
+    assert_int_equal(cw_slice_filter_bytes(&v, &desc), 38 * slice * 5 + 10 * slice * 8);
+    desc.slices = 1; /* as many as it looks ahead */
+    assert_int_equal(cw_slice_filter_bytes(&v, &desc), 13 * slice * 5 + 10 * slice * 8);
+    desc.kind = CW_SLICE_MEDIAN;
+    assert_int_equal(cw_slice_filter_bytes(&v, &desc), 0); /* no radius */
+    desc.radius = 2;
+    assert_int_equal(cw_slice_filter_bytes(&v, &desc), 7 * slice * 2);
+    assert_int_equal(cw_slice_filter_bytes(NULL, &desc), 0);
+    cw_volume_free(&v);
 }
 
 static void slices_are_those_of_the_whole_volume(void **state)
@@ -204,6 +225,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slices_are_those_of_the_whole_volume),
         cmocka_unit_test(slices_may_begin_anywhere),
+        cmocka_unit_test(memory_is_told),
         cmocka_unit_test(failures_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

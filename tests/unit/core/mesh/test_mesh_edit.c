@@ -138,9 +138,9 @@ static void components_that_enclose_little_go(void **state)
     static const struct {
         double least;
         cw_drop_counts counts;
-    } rows[] = {{0, {0, 3, 0, 0, 0, 0}},    {1e-9, {1, 2, 1, 0, 0, 1}},
-                {1, {1, 2, 1, 0, 0, 1}},    {1.001, {2, 1, 13, 1, 1, 27}},
-                {27, {2, 1, 13, 1, 1, 27}}, {27.001, {3, 0, 25, 28, 27, 0}}};
+    } rows[] = {{0, {0, 3, 0, 0, 0, 0, 0}},    {1e-9, {1, 2, 1, 0, 0, 1, 0}},
+                {1, {1, 2, 1, 0, 0, 1, 0}},    {1.001, {2, 1, 13, 1, 1, 27, 0}},
+                {27, {2, 1, 13, 1, 1, 27, 0}}, {27.001, {3, 0, 25, 28, 27, 0, 0}}};
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
         cw_mesh mesh;
         cw_error err = {0};
@@ -164,11 +164,13 @@ static void small_cavities_are_filled(void **state)
     (void)state;
     static const struct {
         double least;
-        size_t triangles;
-    } rows[] = {{1, 24}, {1.5, 12}, {28, 0}};
+        size_t triangles, cavities;
+        bool is_open; /* then it is no cavity */
+    } rows[] = {{1, 24, 0, false}, {1.5, 12, 1, false}, {28, 0, 1, false}, {28, 0, 0, true}};
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
         cw_mesh mesh;
         cw_error err = {0};
+        cw_drop_counts counts;
         make_three(&mesh);
         mesh.triangle_count = 24;
         for (size_t n = 0; n < 24; n++) /* the small cube into the large one, inside out */
@@ -178,8 +180,10 @@ static void small_cavities_are_filled(void **state)
             mesh.triangles[3 * t] = mesh.triangles[3 * t + 1];
             mesh.triangles[3 * t + 1] = first;
         }
-        assert_ok(cw_mesh_drop_volumes(&mesh, rows[r].least, NULL, &err), err);
+        mesh.triangle_count -= rows[r].is_open;
+        assert_ok(cw_mesh_drop_volumes(&mesh, rows[r].least, &counts, &err), err);
         assert_int_equal(mesh.triangle_count, rows[r].triangles);
+        assert_int_equal(counts.cavities, rows[r].cavities);
         cw_mesh_free(&mesh);
     }
 }

@@ -657,9 +657,67 @@ static void label_maps_are_told_from_pictures(void **state)
     assert_true(labels.found && labels.count == 2 && labels.value[1] == 1);
 }
 
+/* Noise of many values is no label map; noise of few may be one, and many flat blocks are. */
+static void amounts_are_told_from_labels(void **state)
+{
+    (void)state;
+    static const struct {
+        uint32_t values, block; /* block: voxels in a run of one value */
+        bool scattered;
+    } rows[] = {{200, 1, true}, {20, 1, false}, {200, 8, false}, {33, 1, true}};
+    static uint8_t voxels[SIDE * SIDE * SIDE];
+    cw_volume v = {.data = voxels, .type = CW_U8, .dim = {SIDE, SIDE, SIDE}};
+    cw_labels labels;
+    cw_error err = {0};
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+        for (uint32_t n = 0; n < sizeof voxels; n++)
+            voxels[n] = (uint8_t)((n / rows[r].block * 2654435761u >> 8) % rows[r].values);
+        v.known = 0;
+        assert_ok(cw_volume_labels(&v, &labels, &err), err);
+        assert_int_equal(labels.scattered, rows[r].scattered);
+        v.known = CW_KNOWN_LABELS;
+        assert_ok(cw_volume_labels(&v, &labels, &err), err);
+        assert_false(labels.scattered);
+    }
+}
+
+/* Some rows decide; a label that is in none of them is listed like the others. Of many labels
+ * the lowest are listed, whatever their order and size. */
+static void labels_of_all_voxels_are_listed(void **state)
+{
+    (void)state;
+    enum { EDGE = 200, COUNT = EDGE * EDGE * EDGE };
+    float *voxels = calloc(COUNT, sizeof *voxels);
+    cw_volume v = {.data = voxels, .type = CW_F32, .dim = {EDGE, EDGE, EDGE}};
+    cw_labels labels;
+    cw_error err = {0};
+    assert_non_null(voxels);
+    for (size_t n = 0; n < COUNT; n++)
+        voxels[n] = (float)(n % EDGE < 50 ? 0 : 2 + 3 * (n / 7 % EDGE / 30));
+    for (int many = 0; many < 2; many++) {
+        for (size_t n = 0; n < 300; n++) /* each in one voxel, of rows far apart */
+            if (many || n == 0)
+                voxels[25000 * n + 25] = (float)(many ? 1000000 - 100 * n : 1);
+        assert_ok(cw_volume_labels(&v, &labels, &err), err);
+        assert_true(labels.found);
+        assert_int_equal(labels.more, many);
+        for (size_t n = 1; n < labels.count; n++)
+            assert_true(labels.value[n] > labels.value[n - 1]);
+        if (many)
+            assert_true(labels.count == CW_LABELS_MAX && labels.value[0] == 0 &&
+                        labels.value[1] == 2 &&
+                        labels.value[CW_LABELS_MAX - 1] == 1000000 - 100 * (300 - 247));
+        else
+            assert_true(labels.count == 9 && labels.value[1] == 1);
+    }
+    free(voxels);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(labels_of_all_voxels_are_listed),
+        cmocka_unit_test(amounts_are_told_from_labels),
         cmocka_unit_test(the_magnitude_is_the_length_of_all_components),
         cmocka_unit_test(label_maps_are_told_from_pictures),
         cmocka_unit_test(a_zeroed_volume_resolves_to_its_defaults),

@@ -432,6 +432,43 @@ static void a_drain_opens_the_cavity_where_it_should(void **state)
     cw_mesh_free(&ball);
 }
 
+/* A cube's corners stay, and the rim of a drain is a regular polygon of 64 corners in the cube's floor. */
+static void a_drain_is_round_and_leaves_the_rest(void **state)
+{
+    (void)state;
+    const cw_drain drain = {6, {0, 0, -2}};
+    cw_mesh cube;
+    test_make_cube(&cube);
+    for (size_t c = 0; c < 3 * cube.vertex_count; c++)
+        cube.positions[c] = 40 * cube.positions[c] - 20;
+    const cw_hollow_desc desc = {.wall_mm = 4, .drains = &drain, .drain_count = 1};
+    cw_mesh out = hollow(&cube, &desc, NULL);
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    size_t corners = 0, rim = 0;
+    for (int pass = 0; pass < 2; pass++)
+        for (size_t v = 0; v < out.vertex_count; v++) {
+            const float *p = out.positions + 3 * v;
+            if (pass == 0 && fabsf(p[0]) == 20 && fabsf(p[1]) == 20 && fabsf(p[2]) == 20)
+                corners++;
+            if (p[2] != -20 || fabsf(p[0]) > 19)
+                continue;
+            for (int a = 0; a < 2 && pass == 0; a++) {
+                low[a] = fmin(low[a], (double)p[a]);
+                high[a] = fmax(high[a], (double)p[a]);
+            }
+            const double radius = hypot((double)p[0] - (low[0] + high[0]) / 2,
+                                        (double)p[1] - (low[1] + high[1]) / 2);
+            if (pass == 1)
+                assert_true(radius > 3 * cos(PI / 64) - 1e-5 && radius < 3 + 1e-5);
+            rim += pass == 1;
+        }
+    assert_true(corners == 8 && rim >= 64);
+    assert_int_equal(out.attribute_count, 0);
+    assert_int_equal(test_count_crossings(&out), 0);
+    cw_mesh_free(&out);
+    cw_mesh_free(&cube);
+}
+
 /* A floor that leans by less than a voxel is flat: the drain is in its middle, not at the side
  * that is a little lower. */
 static void a_flat_floor_is_drained_in_its_middle(void **state)
@@ -662,6 +699,7 @@ int main(void)
         cmocka_unit_test(a_sphere_gets_a_wall),
         cmocka_unit_test(a_mesh_far_from_zero_gets_the_same_wall),
         cmocka_unit_test(a_drain_opens_the_cavity_where_it_should),
+        cmocka_unit_test(a_drain_is_round_and_leaves_the_rest),
         cmocka_unit_test(a_flat_floor_is_drained_in_its_middle),
         cmocka_unit_test(cavities_that_stay_sealed_are_counted),
         cmocka_unit_test(threads_change_nothing),

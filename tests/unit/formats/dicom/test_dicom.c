@@ -160,27 +160,76 @@ static void files_without_a_preamble_are_read(void **state)
     assert_refused(NULL, CW_ERR_FORMAT, "none of its 1 files is a slice");
 }
 
-/* Somebody else's file beside it is no reason to refuse the one that was named. */
-static void damaged_neighbours_are_left_out(void **state)
+/* Writes five slices of a series, of which the first `kept` bytes of the middle one stay; from
+ * the end if that is below 0. */
+static void write_damaged_row(long kept)
+{
+    const double even[] = {0, 2.5, 5, 7.5, 10};
+    write_row(&upright, even, 5, 0);
+    size_t size;
+    char *bytes = test_file_read(test_path("88.dcm"), &size);
+    test_file_write(test_path("88.dcm"), bytes, kept < 0 ? size - (size_t)-kept : (size_t)kept);
+    free(bytes);
+}
+
+/* Cut within the pixels or within the head, where the series is not known, or empty. */
+static void a_damaged_slice_is_left_out_if_that_is_asked_for(void **state)
 {
     (void)state;
-    const double even[] = {0, 2.5, 5};
-    char notes[512] = "";
-    const cw_read_desc desc = {.note = notes_keep, .note_user = notes};
-    write_row(&upright, even, 3, 0);
-    size_t size;
-    char *bytes = test_file_read(test_path("90.dcm"), &size);
-    test_file_write(test_path("10.dcm"), bytes, size / 2);
-    free(bytes);
-    cw_volume v;
+    const long kept[] = {-5, 300, 0};
+    for (size_t n = 0; n < sizeof kept / sizeof *kept; n++) {
+        char notes[512] = "";
+        cw_read_desc desc = {.skip_damaged = true, .note = notes_keep, .note_user = notes};
+        write_damaged_row(kept[n]);
+        assert_refused(NULL, kept[n] ? CW_ERR_FORMAT : CW_ERR_IO, "88.dcm: ");
+        assert_refused(NULL, kept[n] ? CW_ERR_FORMAT : CW_ERR_IO,
+                       "; desc->skip_damaged leaves such files out");
+        assert_refused(&desc, CW_ERR_UNSAFE, "1 slice is missing; the first gap is from 9.5");
+        desc.gaps = CW_GAPS_INTERPOLATE;
+        *notes = '\0';
+        cw_volume v = read_all(&desc);
+        assert_int_equal(v.dim[2], 5);
+        assert_is_field(&v);
+        cw_volume_free(&v);
+        assert_non_null(strstr(notes, "left out, because they cannot be read: 88.dcm; "));
+    }
+}
+
+/* A damaged file counts where it is known to be of the chosen series, or none was chosen. */
+static void a_damaged_file_of_another_series_blocks_nothing(void **state)
+{
+    (void)state;
+    cw_series *series;
+    size_t count;
     cw_error err = {0};
-    assert_ok(cw_volume_read(test_path("89.dcm"), &desc, &v, NULL, &err), err);
-    assert_int_equal(v.dim[2], 3);
-    cw_volume_free(&v);
-    assert_non_null(strstr(
-        notes, "left out, because they cannot be read: 1 files beside it, the first 10.dcm: "));
-    assert_refused(NULL, CW_ERR_FORMAT, "10.dcm: its elements are damaged or cut off");
-    assert_fails(read_back("10.dcm", &v, &err), CW_ERR_FORMAT, "damaged or cut off", err);
+    for (int known = 0; known < 2; known++) {
+        char notes[512] = "";
+        const cw_read_desc desc = {.series = "7", .note = notes_keep, .note_user = notes};
+        write_damaged_row(known ? -5 : 300);
+        for (int n = 0; n < 3; n++) {
+            char name[16];
+            snprintf(name, sizeof name, "b%d", n);
+            write_at(name, 7, n, 2 * n, "1.7");
+        }
+        cw_volume v = read_all(&desc);
+        assert_int_equal(v.dim[2], 3);
+        cw_volume_free(&v);
+        assert_non_null(strstr(notes, "left out, because they cannot be read: 88.dcm; "));
+        assert_refused(&(cw_read_desc){.series = "1.2.3"},
+                       known ? CW_ERR_FORMAT : CW_ERR_UNSAFE,
+                       known ? "88.dcm: " : "1 slice is missing");
+        assert_fails(read_back("89.dcm", &v, &err), known ? CW_ERR_FORMAT : CW_ERR_UNSAFE,
+                     known ? "88.dcm: " : "1 slice is missing", err);
+        *notes = '\0';
+        assert_ok(cw_series_list(test_path(""), &desc, &series, &count, &err), err);
+        assert_int_equal(count, 2);
+        for (size_t n = 0; n < count; n++)
+            assert_int_equal(series[n].status, strcmp(series[n].label, "7") == 0 ? CW_OK
+                                               : known                           ? CW_ERR_FORMAT
+                                                       : CW_ERR_UNSAFE);
+        cw_series_free(series);
+        assert_non_null(strstr(notes, "cannot be read: 88.dcm; "));
+    }
 }
 
 static void folders_without_slices_tell_what_they_hold(void **state)
@@ -318,7 +367,8 @@ int main(void)
         TEST(unknown_syntaxes_are_named),
         TEST(frames_are_counted_from_one),
         TEST(files_without_a_preamble_are_read),
-        TEST(damaged_neighbours_are_left_out),
+        TEST(a_damaged_slice_is_left_out_if_that_is_asked_for),
+        TEST(a_damaged_file_of_another_series_blocks_nothing),
         TEST(folders_without_slices_tell_what_they_hold),
         TEST(what_is_no_image_is_told),
         TEST(links_are_left_out),

@@ -218,6 +218,42 @@ static void runs_are_read(void **state)
     cw_volume_free(&v);
 }
 
+/* Writes a slice of runs, with too many segments if it is damaged. */
+static void write_runs(int instance, bool damaged)
+{
+    test_dicom d;
+    unsigned char rle[64 + 2] = {1, 0, 0, 0, 64, [64] = 257 - PIXELS, 9};
+    char name[16], position[32];
+    snprintf(name, sizeof name, "%d.dcm", instance);
+    snprintf(position, sizeof position, "0\\0\\%d", instance);
+    test_image_make(
+        &(test_image){
+            .syntax = TEST_DICOM_RLE, .bits = 8, .instance = instance, .position = position},
+        &d);
+    if (damaged)
+        rle[0] = 20;
+    test_dicom_open_fragments(&d);
+    test_dicom_fragment(&d, rle, sizeof rle);
+    test_dicom_close_sequence(&d);
+    test_file_write(test_path(name), d.bytes, d.size);
+    test_dicom_free(&d);
+}
+
+/* The head of a file says nothing of damage within compressed pixels. */
+static void damaged_runs_are_left_out_if_that_is_asked_for(void **state)
+{
+    (void)state;
+    for (int n = 0; n < 5; n++)
+        write_runs(n, n == 2);
+    assert_refused(NULL, CW_ERR_FORMAT, "2.dcm: ");
+    assert_refused(NULL, CW_ERR_FORMAT, "; desc->skip_damaged leaves such files out");
+    assert_refused(&(cw_read_desc){.skip_damaged = true}, CW_ERR_UNSAFE, "1 slice is missing");
+    cw_volume v = read_all(&(cw_read_desc){.skip_damaged = true, .gaps = CW_GAPS_INTERPOLATE});
+    assert_int_equal(v.dim[2], 5);
+    assert_near(cw_volume_value(&v, 3, 2, 2), 9, 0);
+    cw_volume_free(&v);
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
@@ -230,6 +266,7 @@ int main(void)
         TEST(a_key_that_is_the_same_for_all_orders_nothing),
         TEST(values_of_long_pixels_are_doubles),
         TEST(runs_are_read),
+        TEST(damaged_runs_are_left_out_if_that_is_asked_for),
     };
     if (!cwi_module_present("dicom")) {
         print_message("this build reads no DICOM\n");

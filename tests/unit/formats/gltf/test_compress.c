@@ -431,13 +431,56 @@ static void what_cannot_be_kept_is_not_promised(void **state)
                                &(cw_write_desc){.compression = CW_COMPRESS_QUANTIZE}, &err),
                  CW_ERR_LIMIT, "a.glb: the box is too large", err);
     put_sliver(&mesh, 1e5f, positions, triangles);
-    if (!is_there(CW_COMPRESS_MESHOPT))
+    static const struct {
+        cw_compression kind;
+        const char *name;
+    } unchanged[] = {{CW_COMPRESS_MESHOPT, "a.glb"},
+                     {CW_COMPRESS_DRACO, "a.glb"},
+                     {CW_COMPRESS_DRACO, "a.drc"}};
+    for (size_t n = 0; n < sizeof unchanged / sizeof *unchanged; n++) {
+        if (!is_there(unchanged[n].kind))
+            continue;
+        back = write_and_read(&mesh, (cw_write_desc){.compression = unchanged[n].kind}, &told,
+                              unchanged[n].name);
+        assert_int_equal(told.bits, 0); /* as they were */
+        assert_true(distance_between(&mesh, &back) < 1e-6);
+        cw_mesh_free(&back);
+    }
+}
+
+/* Draco's table of symbols doubles with each bit: more bits than memory has room for are refused
+ * before it is made, and no bits are chosen that take more than 64 MiB. */
+static void bits_are_bounded_by_memory(void **state)
+{
+    (void)state;
+    enum { MIB = 1 << 20 };
+    cw_mesh mesh;
+    float positions[18];
+    uint32_t triangles[12];
+    cw_compressed told = {0};
+    cw_error err = {0};
+    if (!is_there(CW_COMPRESS_DRACO))
         return;
-    back = write_and_read(&mesh, (cw_write_desc){.compression = CW_COMPRESS_MESHOPT}, &told,
-                          "a.glb");
-    assert_int_equal(told.bits, 0); /* as they were */
-    assert_true(distance_between(&mesh, &back) < 1e-6);
-    cw_mesh_free(&back);
+    put_sliver(&mesh, 100, positions, triangles);
+    for (int n = 0; n < 2; n++) {
+        cw_memory_limit(cw_memory_used() + 100 * (size_t)MIB);
+        const cw_status st =
+            cw_mesh_write(test_path(n ? "a.drc" : "a.glb"), &mesh,
+                          &(cw_write_desc){.compression = CW_COMPRESS_DRACO, .bits = 30}, &err);
+        cw_memory_limit(0);
+        assert_fails(st, CW_ERR_LIMIT, "30 bits a coordinate take up to 4 GiB", err);
+        assert_non_null(strstr(err.message, "; 24 bits fit"));
+        assert_int_equal(test_folder_entries(), 0);
+    }
+    for (double tolerance = 1; tolerance > 1e-9; tolerance /= 4) {
+        cw_mesh back = write_and_read(
+            &mesh, (cw_write_desc){.compression = CW_COMPRESS_DRACO, .tolerance_mm = tolerance},
+            &told, "a.glb");
+        assert_true(told.bits <= 24 && told.error_mm <= tolerance);
+        assert_true(distance_between(&mesh, &back) <= told.error_mm + 1e-6);
+        cw_mesh_free(&back);
+    }
+    assert_int_equal(told.bits, 0);
 }
 
 static void read_three(const char *json, const char *key, double numbers[3])
@@ -637,6 +680,7 @@ int main(void)
         TEST(draco_attributes_are_found_by_their_numbers),
         TEST(damaged_draco_files_are_an_error_or_a_mesh),
         TEST(what_cannot_be_kept_is_not_promised),
+        TEST(bits_are_bounded_by_memory),
         TEST(meshopt_has_more_than_16_bits),
         TEST(what_makes_no_sense_is_refused),
         TEST(parts_share_a_grid),

@@ -8,6 +8,7 @@
 
 #include <cubewright/formats.h>
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -221,12 +222,98 @@ static void what_a_spool_cannot_do_is_refused(void **state)
     cw_mesh_free(&mesh);
 }
 
+/* Computes the CRC-32 that ends a fragment. */
+static uint32_t sum_bytes(const unsigned char *bytes, size_t size)
+{
+    uint32_t sum = UINT32_MAX;
+    for (size_t n = 0; n < size; n++) {
+        sum ^= bytes[n];
+        for (int bit = 0; bit < 8; bit++)
+            sum = sum >> 1 ^ (sum & 1 ? 0xedb88320u : 0);
+    }
+    return ~sum;
+}
+
+/* Writes a fragment with some of its bytes replaced, and the checksum of what it is then. */
+static void write_damaged(const char *path, const char *bytes, size_t size, size_t at,
+                          const void *by, size_t by_size)
+{
+    char *copy = malloc(size);
+    assert_true(copy && at + by_size < size);
+    memcpy(copy, bytes, size);
+    memcpy(copy + at, by, by_size);
+    const uint32_t sum = sum_bytes((unsigned char *)copy, size - sizeof sum);
+    memcpy(copy + size - sizeof sum, &sum, sizeof sum);
+    test_file_write(path, copy, size);
+    free(copy);
+}
+
+static void fragments_that_do_not_fit_are_refused(void **state)
+{
+    (void)state;
+    enum { ORIGIN_AT = 56, AFFINE_AT = 80, ARRAYS_AT = 192 };
+    cw_mesh mesh = make_mesh(true);
+    cw_mesh_spool *spool = fill_spool(&mesh, SIZE_MAX, SIZE_MAX), *joined;
+    const cw_fragment parts[] = {{.part = 0, .parts = 2}, {.part = 1, .parts = 2}};
+    char good[256], bad[256];
+    snprintf(good, sizeof good, "%s/a.cwpart", folder);
+    snprintf(bad, sizeof bad, "%s/b.cwpart", folder);
+    cw_error err = {0};
+    size_t size;
+    assert_ok(cw_fragment_write(bad, &parts[1], spool, &err), err);
+    char *bytes = test_file_read(bad, &size);
+    assert_ok(cw_fragment_write(good, &parts[0], spool, &err), err);
+    const size_t corners_at = ARRAYS_AT + 2 * 12 * mesh.vertex_count;
+    const double infinite = INFINITY, other = mesh.origin[0] + 1;
+    const float nan = NAN;
+    const uint32_t behind = (uint32_t)mesh.vertex_count, most = UINT32_MAX;
+    const struct {
+        size_t at;
+        const void *by;
+        size_t size;
+        const char *why;
+    } damage[] = {
+        {ORIGIN_AT, &infinite, 8, "not finite"},
+        {AFFINE_AT + 8 * 11, &infinite, 8, "not finite"},
+        {ORIGIN_AT, &other, 8, "not that of the parts before"},
+        {AFFINE_AT + 8 * 5, &other, 8, "not that of the parts before"},
+        {ARRAYS_AT + 12 * 700 + 4, &nan, 4, "vertex 700 is not finite"},
+        {corners_at + 12 * 20000, &behind, 4, "triangle 20000 names vertex"},
+        {corners_at + 8, &most, 4, "triangle 0 names vertex 4294967295"},
+    };
+    for (size_t n = 0; n < sizeof damage / sizeof *damage; n++) {
+        write_damaged(bad, bytes, size, damage[n].at, damage[n].by, damage[n].size);
+        assert_ok(cw_mesh_spool_new(path_of("any"), &joined, &err), err);
+        assert_ok(cw_fragment_append(good, joined, &err), err);
+        assert_fails(cw_fragment_append(bad, joined, &err), CW_ERR_FORMAT, damage[n].why, err);
+        cw_mesh_spool_free(joined);
+    }
+    /* A first part may name vertices of the next, which may lack them in the end. */
+    const uint32_t far = 2 * behind;
+    bytes[16] = 0; /* the number of the part */
+    write_damaged(bad, bytes, size, corners_at, &far, sizeof far);
+    assert_ok(cw_mesh_spool_new(path_of("any"), &joined, &err), err);
+    assert_ok(cw_fragment_append(bad, joined, &err), err);
+    assert_ok(cw_fragment_append(good, joined, &err), err);
+    const cw_part part = {.mesh = cw_mesh_spool_frame(joined), .spool = joined};
+    for (int n = 0; n < 2; n++)
+        assert_fails(cw_parts_write(path_of(n ? "a.stl" : "a.ply"), &part, 1, NULL, &err),
+                     CW_ERR_FORMAT, "triangle 0 names vertex", err);
+    cw_mesh_spool_free(joined);
+    cw_mesh_spool_free(spool);
+    unlink(good);
+    unlink(bad);
+    free(bytes);
+    cw_mesh_free(&mesh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_format_is_the_same_from_a_spool),
         cmocka_unit_test(a_spool_has_the_frame_and_the_box_of_its_mesh),
         cmocka_unit_test(a_spool_is_read_back_in_chunks),
+        cmocka_unit_test(fragments_that_do_not_fit_are_refused),
         cmocka_unit_test(what_a_spool_cannot_do_is_refused),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -287,7 +287,7 @@ static void failures_are_told(void **state)
     cw_mesh_spool_free(spool);
     mesh.triangles[700] = (uint32_t)mesh.vertex_count;
     spool = fill_spool(&mesh);
-    assert_fails(cw_mesh_spool_drop_volumes(spool, NULL, sink, NULL, &err), CW_ERR_ARGUMENT,
+    assert_fails(cw_mesh_spool_drop_volumes(spool, NULL, sink, NULL, &err), CW_ERR_FORMAT,
                  "triangle 233 names vertex", err);
     cw_mesh_spool_free(spool);
     mesh.triangles[700] = 0;

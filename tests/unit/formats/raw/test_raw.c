@@ -13,7 +13,7 @@ static void a_layout_is_read_from_text(void **state)
     (void)state;
     cw_raw_layout l;
     cw_error err = {0};
-    assert_ok(cw_raw_layout_parse("dims=512x256x3,type=u16be,offset=62,spacing=0.5x0.25x1,"
+    assert_ok(cw_raw_layout_parse("dims=512x256x3,type=u16be,offset=62,spacing=0.5x0.25x1mm,"
                                   "components=2,steps=4",
                                   &l, &err),
               err);
@@ -31,9 +31,9 @@ static void a_layout_is_read_from_text(void **state)
 static void triples_are_parted_by_either(void **state)
 {
     (void)state;
-    static const char *const texts[] = {"dims=4x5x6,type=u8,spacing=0.5x0.25x1",
-                                        "dims=4,5,6,type=u8,spacing=0.5,0.25,1",
-                                        "spacing=0.5,0.25,1,dims=4x5x6,type=u8,"};
+    static const char *const texts[] = {"dims=4x5x6,type=u8,spacing=0.5x0.25x1mm",
+                                        "dims=4,5,6,type=u8,spacing=0.5,0.25,1mm",
+                                        "spacing=0.5,0.25,1mm,dims=4x5x6,type=u8,"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         cw_raw_layout l;
         cw_error err = {0};
@@ -72,7 +72,7 @@ static void wrong_keys_are_named(void **state)
         {"dims=1,1,type=u8", "'dims' is '1,1'"},
         {"dims=1x1,1,type=u8", "'dims' is '1x1,1'"},
         {"dims=0x10x10,type=u8", "'dims' is '0x10x10'"},
-        {"dims=1,1,1,type=u8,spacing=1,1,1,1", "'spacing' is '1,1,1,1'"},
+        {"dims=1,1,1,type=u8,spacing=1,1,1,1mm", "'spacing' is '1,1,1,1mm'"},
         {"dims=1x1x1,type=u8,offset", "'offset' needs a value"},
         {"dims=1x1x0,type=u8", "'dims' is '1x1x0'"},
         {"dims=1x1x1x1,type=u8", "'dims' is '1x1x1x1'"},
@@ -80,8 +80,8 @@ static void wrong_keys_are_named(void **state)
         {"dims=1x1x1,type=u64", "'type' is u64; the types that are read are u8"},
         {"dims=1x1x1,type=u8x", "'type' is u8x"},
         {"dims=1x1x1,type=u8,offset=-1", "'offset' is '-1'"},
-        {"dims=1x1x1,type=u8,spacing=1x0x1", "'spacing' is '1x0x1'"},
-        {"dims=1x1x1,type=u8,spacing=1xnanx1", "'spacing' is '1xnanx1'"},
+        {"dims=1x1x1,type=u8,spacing=1x0x1mm", "'spacing' is '1x0x1mm'"},
+        {"dims=1x1x1,type=u8,spacing=1xnanx1mm", "'spacing' is '1xnanx1mm'"},
         {"dims=1x1x1,type=u8,components=17", "'components' is '17'"},
         {"dims=1x1x1,type=u8,steps=0", "'steps' is '0'"},
         {"dims=1x1x1,type=u8,size=3", "'size' is not a key of a layout"},

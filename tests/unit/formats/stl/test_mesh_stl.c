@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /* A facet's 50 bytes: its corners, and a normal that is wrong. */
 static void put_facet(char *to, const float corners[9])
@@ -90,6 +91,85 @@ static void binary_files_must_hold_what_they_count(void **state)
                  "'y' of corner 1 of facet 1 is -inf", err);
 }
 
+/* Reads a file with `truncated`, and checks the facets and what the file tells. */
+static void check_cut(const char *bytes, size_t size, size_t facets, size_t expected)
+{
+    const cw_mesh_read_desc desc = {.truncated = true};
+    cw_mesh mesh;
+    cw_mesh_file file;
+    cw_error err = {0};
+    test_file_write(test_path("a.stl"), bytes, size);
+    assert_ok(cw_mesh_read(test_path("a.stl"), &desc, &mesh, &file, &err), err);
+    assert_int_equal(mesh.triangle_count, facets);
+    assert_true(file.truncated == (expected != facets));
+    assert_int_equal(file.expected_triangles, file.truncated ? expected : 0);
+    cw_mesh_free(&mesh);
+}
+
+static void whole_facets_of_a_binary_file_that_breaks_off_are_taken(void **state)
+{
+    (void)state;
+    char bytes[200];
+    cw_mesh mesh;
+    cw_error err = {0};
+    static const char *const headers[] = {"cut", "solid cut"};
+    for (int n = 0; n < 2; n++) {
+        const size_t size = make_binary(bytes, headers[n], 2);
+        check_cut(bytes, size, 2, 2);
+        check_cut(bytes, size - 1, 1, 2);
+        check_cut(bytes, size - 50, 1, 2);
+        assert_fails(read_bytes("a.stl", bytes, size - 1, &mesh, NULL, &err), CW_ERR_FORMAT,
+                     "room for 1; desc->truncated takes those", err);
+        assert_fails(read_bytes("a.stl", bytes, size - 51, &mesh, NULL, &err), CW_ERR_FORMAT,
+                     "room for 0", err);
+        assert_null(strstr(err.message, "truncated"));
+    }
+}
+
+/* Wherever a text ends. */
+static void whole_facets_of_a_text_that_breaks_off_are_taken(void **state)
+{
+    (void)state;
+    static const char facet[] =
+        "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n"
+        "  vertex 0 1 0\n endloop\nendfacet\n";
+    const size_t length = sizeof facet - 1, first = strlen("solid a\n");
+    char text[1024];
+    cw_error err = {0};
+    const size_t size =
+        (size_t)snprintf(text, sizeof text, "solid a\n%s%s%sendsolid a\n", facet, facet, facet);
+    for (size_t cut = first; cut < size; cut++) {
+        const cw_mesh_read_desc desc = {.truncated = true};
+        /* a facet is whole with its last word, though its line does not end */
+        const size_t whole = (cut - first + 1) / length;
+        const bool ends = cut >= first + 3 * length + strlen("endsolid");
+        cw_mesh mesh;
+        cw_mesh_file file;
+        test_file_write(test_path("a.stl"), text, cut);
+        if (whole == 0) {
+            assert_fails(cw_mesh_read(test_path("a.stl"), &desc, &mesh, NULL, &err),
+                         CW_ERR_FORMAT, "line", err);
+            continue;
+        }
+        assert_ok(cw_mesh_read(test_path("a.stl"), &desc, &mesh, &file, &err), err);
+        if (mesh.triangle_count != (whole < 3 ? whole : 3) || file.truncated == ends)
+            fail_msg("cut at %zu: %zu facets, truncated %d", cut, mesh.triangle_count,
+                     file.truncated);
+        cw_mesh_free(&mesh);
+        if (!ends)
+            assert_fails(cw_mesh_read(test_path("a.stl"), NULL, &mesh, NULL, &err),
+                         CW_ERR_FORMAT, "desc->truncated takes the", err);
+    }
+    text[first + length + 2] =
+        'x'; /* takes a word that is wrong in the middle, which is refused all the same */
+    test_file_write(test_path("a.stl"), text, size);
+    cw_mesh mesh;
+    assert_fails(cw_mesh_read(test_path("a.stl"), &(cw_mesh_read_desc){.truncated = true},
+                              &mesh, NULL, &err),
+                 CW_ERR_FORMAT, "facet or endsolid", err);
+    assert_null(strstr(err.message, "truncated"));
+}
+
 /* Bytes behind the last facet, which some programs leave, are left alone. */
 static void no_facets_and_a_tail_are_allowed(void **state)
 {
@@ -170,6 +250,8 @@ int main(void)
         TEST(corners_at_one_place_become_one_vertex),
         TEST(flat_facets_are_kept),
         TEST(binary_files_must_hold_what_they_count),
+        TEST(whole_facets_of_a_binary_file_that_breaks_off_are_taken),
+        TEST(whole_facets_of_a_text_that_breaks_off_are_taken),
         TEST(no_facets_and_a_tail_are_allowed),
         TEST(text_is_read_in_every_shape),
         TEST(broken_text_is_told_by_line),

@@ -140,10 +140,13 @@ static void resolution_alone_says_nothing_of_a_scan(void **state)
     read_good("a.tif", &v);
     assert_int_equal(v.known, 0);
     check_affine(&v, (const double[12]){1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0});
+    assert_non_null(strstr(notes, "state pixels of 5.08 x 6.35 mm")); /* 5 and 4 per inch */
     cw_volume_free(&v);
+    notes[0] = '\0';
     assert_ok(read_with("a.tif", (cw_read_desc){.spacing_mm = {0.5, 0.5, 2}}, &v, &err), err);
     assert_int_equal(v.known, CW_KNOWN_UNIT);
     check_affine(&v, (const double[12]){0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 2, 0});
+    assert_null(strstr(notes, "state pixels"));
     cw_volume_free(&v);
 }
 

@@ -139,6 +139,36 @@ static void slices_are_one_volume_and_stacks_are_steps(void **state)
     assert_int_equal(count, 0);
 }
 
+/* The first file too: its facts are those of the stack. */
+static void damaged_slices_are_left_out_if_that_is_asked_for(void **state)
+{
+    (void)state;
+    static const unsigned char broken[] = {'I', 'I', '*', 0, 255, 255, 0, 0};
+    const cw_read_desc skip = {.skip_damaged = true};
+    const cw_read_desc both = {.skip_damaged = true, .gaps = CW_GAPS_INTERPOLATE};
+    cw_volume v;
+    cw_error err = {0};
+    make_folder("s");
+    for (int n = 1; n <= 7; n++) {
+        char name[32];
+        snprintf(name, sizeof name, "s/cut_%d.tif", n);
+        if (n == 1 || n == 4)
+            put_file(name, "", broken, sizeof broken);
+        else
+            save_slice(name, (unsigned char)(10 * n));
+    }
+    assert_fails(read_with("s", (cw_read_desc){0}, &v, &err), CW_ERR_FORMAT,
+                 "cut_1.tif: ", err);
+    assert_non_null(strstr(err.message, "; desc->skip_damaged leaves such files out"));
+    assert_fails(read_with("s", skip, &v, &err), CW_ERR_UNSAFE,
+                 "1 slice is missing; the first gap is from 3 to 5 in their numbers", err);
+    assert_ok(read_with("s", both, &v, &err), err);
+    assert_int_equal(v.dim[2], 6);
+    for (size_t z = 0; z < 6; z++)
+        assert_true(cw_volume_value(&v, 0, 0, z) == 10 * (double)(z + 2));
+    cw_volume_free(&v);
+}
+
 static void missing_slices_are_for_gaps_to_decide(void **state)
 {
     (void)state;
@@ -250,6 +280,7 @@ int main(void)
         TEST(regions_may_cross_rows_of_tiles),
         TEST(numbers_in_names_count_as_numbers),
         TEST(slices_are_one_volume_and_stacks_are_steps),
+        TEST(damaged_slices_are_left_out_if_that_is_asked_for),
         TEST(missing_slices_are_for_gaps_to_decide),
         TEST(names_that_are_no_row_are_taken_in_their_order),
         TEST(slices_that_do_not_belong_together_are_named),

@@ -136,6 +136,47 @@ static void a_level_has_its_size_and_frame(void **state)
     }
 }
 
+/* However a level is named, the image above it says where it lies; an array that no image lists has no frame. */
+static void a_path_to_a_level_has_its_frame(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *path, *array;
+        double x; /* of voxel 1, 1, 1 */
+    } cases[] = {{"top/image/small/1", NULL, 6.25}, {"top/image/small/1/", NULL, 6.25},
+                 {"top/image/0", NULL, 2.5},        {"top/image/small", "1", 1},
+                 {"top/image", "small", 6.25},      {"top", "image/small/1", 6.25},
+                 {"top", "image/0", 2.5},           {"top/image", "loose", 1},
+                 {"top/image/loose", NULL, 1}};
+    for (int version = 2; version <= 3; version++) {
+        put_group("top", version, "{}");
+        put_group("top/image", version, image);
+        put_group("top/image/small", version, "{}");
+        put_array("top/image/0", version, 5, (const size_t[5]){2, 3, 4, 6, 8});
+        put_array("top/image/small/1", version, 5, (const size_t[5]){2, 3, 2, 3, 4});
+        put_array("top/image/loose", version, 3, (const size_t[3]){2, 2, 2});
+        for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+            const cw_read_desc desc = {.array = cases[n].array};
+            cw_volume v;
+            cw_error err = {0};
+            assert_ok(cw_volume_read(test_path(cases[n].path), &desc, &v, NULL, &err), err);
+            const double x = v.affine[0][0] + v.affine[0][3];
+            if (fabs(x - cases[n].x) > 1e-12)
+                fail_msg("%s %s: x is %g, not %g", cases[n].path,
+                         cases[n].array ? cases[n].array : "", x, cases[n].x);
+            cw_volume_free(&v);
+        }
+        cw_volume v;
+        cw_error err = {0};
+        assert_fails(cw_volume_read(test_path("top/image/small/1"), &(cw_read_desc){.level = 1},
+                                    &v, NULL, &err),
+                     CW_ERR_ARGUMENT, "level 1 was asked for; the array '.' has no levels",
+                     err);
+        test_folder_remove(NULL);
+        test_folder_make(NULL);
+    }
+}
+
 static void levels_are_listed(void **state)
 {
     (void)state;
@@ -338,6 +379,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_level_has_its_size_and_frame, test_folder_make,
                                         test_folder_remove),
         cmocka_unit_test_setup_teardown(each_unit_has_its_length, test_folder_make,
+                                        test_folder_remove),
+        cmocka_unit_test_setup_teardown(a_path_to_a_level_has_its_frame, test_folder_make,
                                         test_folder_remove),
         cmocka_unit_test_setup_teardown(levels_are_listed, test_folder_make,
                                         test_folder_remove),

@@ -7,6 +7,7 @@
 #include <cubewright/cut.h>
 #include <cubewright/field.h>
 #include <cubewright/hard.h>
+#include <cubewright/remesh.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -93,9 +94,10 @@ static cw_cut_facts check_cut(const cw_mesh *m, const cw_cut_desc *d, const char
     assert_near(up + down, whole, 1e-6 * fabs(whole));
     const size_t flat = facts.dropped_triangles + other.dropped_triangles +
                         facts.cut_triangles - m->triangle_count;
-    /* triangles in the plane, and loops around vertices at which surfaces touch, are of one half alone */
+    /* triangles in the plane, and loops around vertices at which surfaces touch, are of one half alone; where the surface
+     * is nearly along the plane, a vertex that moves into it moves the loop farther */
     if (flat == 0 && facts.loops_closed == other.loops_closed)
-        assert_near(facts.area_mm2, other.area_mm2, 1e-4 * facts.area_mm2 + 1e-9);
+        assert_near(facts.area_mm2, other.area_mm2, 1e-3 * facts.area_mm2 + 1e-9);
     cw_mesh_free(&above);
     cw_mesh_free(&below);
     return facts;
@@ -289,6 +291,30 @@ static void islands_in_holes_are_filled(void **state)
     const cw_cut_desc d = describe_plane(0, 0, 0, 1, -1, 0);
     cut_once(&m, &d, &half);
     check_half(&half, &d, "a lone cavity");
+    cw_mesh_free(&half);
+    cw_mesh_free(&m);
+}
+
+/* Shells within each other that all face outward: their caps lie on each other. Moving vertices would not help, and none
+ * moves. */
+static void shells_within_each_other_stay_in_place(void **state)
+{
+    (void)state;
+    enum { SHELLS = 30 };
+    cw_mesh m = make_empty(8 * SHELLS, 12 * SHELLS), half;
+    double area = 0;
+    for (int n = 0; n < SHELLS; n++) {
+        add_box(&m, n - 40, 40 - n, false);
+        area += 4 * (40 - n) * (40 - n);
+    }
+    const cw_cut_desc d = describe_plane(0, 0, 0.5, 0, 0, 1);
+    const cw_cut_facts f = cut_once(&m, &d, &half);
+    assert_within(f.area_mm2, area, 1e-9);
+    assert_true(f.loops_closed == SHELLS);
+    for (size_t v = 0; v < half.vertex_count; v++) {
+        const float *p = half.positions + 3 * v;
+        assert_true(p[0] == floorf(p[0]) || p[1] == floorf(p[1]));
+    }
     cw_mesh_free(&half);
     cw_mesh_free(&m);
 }
@@ -551,13 +577,80 @@ static void failing_allocations_leave_nothing(void **state)
     cw_mesh_free(&m);
 }
 
+static double find_shortest_edge(const cw_mesh *m, double *largest)
+{
+    double shortest_sq = INFINITY;
+    for (size_t n = 0; n < 3 * m->triangle_count; n++) {
+        const float *a = m->positions + 3 * (size_t)m->triangles[n],
+                    *b = m->positions + 3 * (size_t)m->triangles[n % 3 == 2 ? n - 2 : n + 1];
+        double length_sq = 0;
+        for (int k = 0; k < 3; k++) {
+            length_sq += ((double)a[k] - (double)b[k]) * ((double)a[k] - (double)b[k]);
+            *largest = fmax(*largest, fabs((double)a[k]));
+        }
+        shortest_sq = fmin(shortest_sq, length_sq);
+    }
+    return sqrt(shortest_sq);
+}
+
+/* Planes that pass vertices as near as extraction leaves them to samples. */
+static void planes_near_vertices_make_no_slivers(void **state)
+{
+    (void)state;
+    cw_mesh rough = extract_field(CW_FIELD_SPHERE, 24), ball;
+    cw_error err = {0};
+    double largest = 0;
+    test_seed(18);
+    assert_ok(cw_mesh_remesh(&rough, &(cw_remesh_desc){.edge_mm = 4}, &ball, NULL, &err), err);
+    assert_true(find_shortest_edge(&ball, &largest) > 1);
+    const double near = 0x1p-16 * largest;
+    for (int n = 0; n < test_some(24); n++) {
+        const float *p =
+            ball.positions + 3 * (size_t)(random_number() * (double)ball.vertex_count);
+        cw_cut_desc d = {.normal = {random_number() - 0.5, random_number() - 0.5, 1}};
+        const double off = (n % 3 - 1) * 0.7 * near; /* above it, at it, below it */
+        for (int a = 0; a < 3; a++)
+            d.point[a] = ball.origin[a] + (double)p[a];
+        d.point[2] += off;
+        const cw_cut_facts facts = check_cut(&ball, &d, "near a vertex");
+        cw_mesh out;
+        assert_ok(cw_mesh_cut(&ball, &d, &out, NULL, &err), err);
+        assert_true(find_shortest_edge(&out, &largest) > near);
+        assert_true(facts.moved_mm <= near);
+        cw_mesh_free(&out);
+    }
+    cw_mesh_free(&ball);
+    cw_mesh_free(&rough);
+}
+
+/* A slab thinner than vertices may be near to the plane is kept: nothing may be lost. */
+static void thin_slabs_stay(void **state)
+{
+    (void)state;
+    cw_mesh cube, out;
+    cw_error err = {0};
+    test_make_cube(&cube);
+    cw_cut_desc d = {.point = {0, 0, 0.99999}, .normal = {0, 0, 1}};
+    assert_ok(cw_mesh_cut(&cube, &d, &out, NULL, &err), err);
+    assert_within(test_measure(&out).volume_mm3, 1e-5, 0.01);
+    cw_mesh_free(&out);
+    d.normal[2] = -1;
+    assert_ok(cw_mesh_cut(&cube, &d, &out, NULL, &err), err);
+    assert_within(test_measure(&out).volume_mm3, 0.99999, 1e-6);
+    cw_mesh_free(&out);
+    cw_mesh_free(&cube);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_planes_leave_two_solids),
         cmocka_unit_test(planes_through_vertices_leave_two_solids),
+        cmocka_unit_test(planes_near_vertices_make_no_slivers),
+        cmocka_unit_test(thin_slabs_stay),
         cmocka_unit_test(sections_have_the_areas_of_circles),
         cmocka_unit_test(islands_in_holes_are_filled),
+        cmocka_unit_test(shells_within_each_other_stay_in_place),
         cmocka_unit_test(planes_along_faces_are_clear),
         cmocka_unit_test(hard_surfaces_leave_two_solids),
         cmocka_unit_test(rounded_sections_do_not_cross),

@@ -45,6 +45,8 @@ static void what_was_planted_is_found(void **state)
         EXPECT(nonmanifold_edges);
         EXPECT(misoriented_edges);
         EXPECT(nonmanifold_vertices);
+        EXPECT(contact_edges);
+        EXPECT(contact_vertices);
         EXPECT(duplicates);
         EXPECT(degenerate);
         EXPECT(needles);

@@ -400,10 +400,57 @@ static void shells_are_turned_by_where_they_are(void **state)
     }
 }
 
+/* Adds a tetrahedron at a corner of the cube from 0 to 10: inside of it or outside, and wound as asked for. */
+static void add_tip(cw_mesh *m, uint32_t corner, bool inside, bool inward)
+{
+    static const uint32_t faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+    const uint32_t first = (uint32_t)m->vertex_count;
+    bool mirrored = inward;
+    for (uint32_t a = 0; a < 3; a++) {
+        const bool high = corner >> a & 1;
+        mirrored ^= high == inside;
+        for (uint32_t v = 0; v < 4; v++)
+            m->positions[3 * (first + v) + a] =
+                (high ? 10.0f : 0) + (high == inside ? -1.0f : 1.0f) * (v == 0       ? 0
+                                                                        : v == a + 1 ? 3
+                                                                                     : 1);
+    }
+    m->vertex_count += 4;
+    for (size_t t = 0; t < 4; t++, m->triangle_count++)
+        for (size_t c = 0; c < 3; c++)
+            m->triangles[3 * m->triangle_count + c] =
+                first + faces[t][c && mirrored ? 3 - c : c];
+}
+
+/* A cube whose corners are also those of cavities in it, and of solids beside it. */
+static void shells_that_touch_in_a_vertex_are_told_apart(void **state)
+{
+    (void)state;
+    for (int wrong = 0; wrong < 2; wrong++) {
+        float positions[3 * 72], normals[24];
+        uint32_t triangles[3 * 76];
+        cw_mesh m = {.positions = positions, .normals = normals, .triangles = triangles};
+        cw_quality q;
+        cw_error err = {0};
+        add_cube(&m, 0, 10, wrong);
+        m.normals = NULL;
+        for (uint32_t corner = 0; corner < 8; corner++) {
+            add_tip(&m, corner, true, !wrong);
+            add_tip(&m, corner, false, wrong);
+        }
+        assert_ok(cw_quality_measure(&m, &(cw_quality_desc){.shells = true}, &q, &err), err);
+        assert_true(wrong ? q.volume_mm3 < -1000 + 1e-3 : q.volume_mm3 > 1000 - 1e-3);
+        assert_int_equal(q.to_turn, wrong ? 17 : 0);
+        assert_int_equal(q.cavities, wrong ? 0 : 8);
+        assert_int_equal(q.nested, wrong ? 8 : 0);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shells_are_turned_by_where_they_are),
+        cmocka_unit_test(shells_that_touch_in_a_vertex_are_told_apart),
         cmocka_unit_test(a_cube_is_all_it_should_be),
         cmocka_unit_test(a_missing_triangle_opens_three_edges),
         cmocka_unit_test(a_flipped_triangle_misorients_three_edges),

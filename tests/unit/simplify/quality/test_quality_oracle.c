@@ -86,6 +86,7 @@ static void count_edges(list *l, cw_quality *q)
             q->edges += around > 0;
             q->open_edges += around == 1;
             q->nonmanifold_edges += around > 2;
+            q->contact_edges += around > 2 && 2 * up == around;
             q->misoriented_edges += around == 2 && up != 1;
             for (size_t t = 0; t < l->count; t++)
                 l->marks[t] |= has_edge(l, t, a, b) ? (uint8_t)mark : 0;
@@ -108,6 +109,22 @@ static void count_duplicates(list *l, cw_quality *q)
     }
 }
 
+/* Returns true if as many triangles run through each edge at a vertex one way as the other. */
+static bool has_pairs_around(const list *l, uint32_t v)
+{
+    for (uint32_t b = 0; b < CORNERS; b++) {
+        int sum = 0;
+        for (size_t t = 0; t < l->count; t++)
+            for (int c = 0; c < 3 && b != v && !is_collapsed(l->corner[t]); c++) {
+                const uint32_t from = l->corner[t][c], to = l->corner[t][(c + 1) % 3];
+                sum += (from == v && to == b) - (from == b && to == v);
+            }
+        if (sum)
+            return false;
+    }
+    return true;
+}
+
 static void count_vertices(list *l, fans fan, cw_quality *q)
 {
     uint32_t part[CORNERS];
@@ -127,6 +144,7 @@ static void count_vertices(list *l, fans fan, cw_quality *q)
         used += around > 0;
         q->components += around > 0 && part[v] == v;
         q->nonmanifold_vertices += own > 1;
+        q->contact_vertices += own > 1 && has_pairs_around(l, v);
         for (size_t t = 0; t < l->count && own > 1; t++)
             for (int c = 0; c < 3; c++)
                 l->marks[t] |= l->corner[t][c] == v ? CW_DEFECT_NONMANIFOLD : 0;
@@ -185,6 +203,8 @@ static void hold_counts(const cw_quality *q, const cw_quality *expected)
     assert_int_equal(q->nonmanifold_edges, expected->nonmanifold_edges);
     assert_int_equal(q->misoriented_edges, expected->misoriented_edges);
     assert_int_equal(q->nonmanifold_vertices, expected->nonmanifold_vertices);
+    assert_int_equal(q->contact_edges, expected->contact_edges);
+    assert_int_equal(q->contact_vertices, expected->contact_vertices);
     assert_int_equal(q->duplicates, expected->duplicates);
 }
 
