@@ -572,7 +572,7 @@ cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t capacity, cw_error
     *f = cwi_dicom_facts();
     const cwi_dicom_kind kind = kind_of(data);
     const Stored s = find_pixels(data, d.layout, kind, is_compressed(d));
-    if (!s.element)
+    if (!s.element && !(d.layout.columns > 0 && d.layout.rows > 0))
         return CW_OK; // no image: ignored
     const char *unreadable = why_unreadable(d);
     if (unreadable)
@@ -590,9 +590,9 @@ cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t capacity, cw_error
     f->rows = l.rows;
     f->samples = l.samples;
     f->type = l.type;
-    f->pixel_bytes = is_compressed(d) ? 0 : s.element->getLengthField();
+    f->pixel_bytes = is_compressed(d) || !s.element ? 0 : s.element->getLengthField();
     f->deflated = d.data()->getOriginalXfer() == EXS_DeflatedLittleEndianExplicit;
-    refuse(f, s.why_not);
+    refuse(f, s.element ? s.why_not : "it has Rows and Columns, and no pixels");
     refuse(f, check_sizes(l));
     if (l.frames > (capacity - sizeof *f) / sizeof(cwi_dicom_frame))
         return cwi_fail(err, CW_ERR_LIMIT, "'NumberOfFrames' is %u; at most %zu are read",
@@ -603,6 +603,22 @@ cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t capacity, cw_error
     take_segments(data, f, capacity);
     scale_fractions(data, f);
     unfold(d, f);
+    return CW_OK;
+}
+
+// Takes the series of a file that is damaged behind that; it is refused as damaged.
+cw_status take_series(DicomFile &d, cwi_dicom_facts *f, cw_status st, cw_error *err)
+{
+    *f = cwi_dicom_facts();
+    f->kind = CWI_DICOM_IMAGE;
+    DcmElement *series = nullptr;
+    // A damaged file may state any length, and DCMTK allocates it; a UID has at most 64 bytes.
+    if (d.data()->findAndGetElement(DCM_SeriesInstanceUID, series).good() &&
+        series->getLengthField() <= 64)
+        copy_text(f->series, text_of(d.data(), DCM_SeriesInstanceUID));
+    if (st != CW_ERR_FORMAT || !f->series[0])
+        return st;
+    copy_text(f->refusal, err ? err->message : "its elements are damaged or cut off");
     return CW_OK;
 }
 
@@ -636,10 +652,10 @@ cw_status work(void *state, int fd, const void *request, void *shared, cw_error 
     return guard(err, "DCMTK", [&] {
         if (q.op == CWI_PLANE_PIXELS)
             return copy_rows(d, &q, shared, err);
+        cwi_dicom_facts *f = static_cast<cwi_dicom_facts *>(shared);
         cw_status st = open_dicom(d, fd, q.file_bytes, err);
-        return st == CW_OK ? take_facts(d, static_cast<cwi_dicom_facts *>(shared),
-                                        CWI_PLANES_SHARED, err)
-                           : st;
+        return st == CW_OK ? take_facts(d, f, CWI_PLANES_SHARED, err)
+                           : take_series(d, f, st, err);
     });
 }
 
