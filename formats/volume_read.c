@@ -9,6 +9,7 @@
 #include "formats/raw/raw_format.h"
 #include "formats/volume/frame_claim.h"
 #include "formats/volume/named_arrays.h"
+#include "formats/volume/no_data.h"
 #include "formats/volume/slice_visit.h"
 #include "formats/volume/volume_reader.h"
 #include "formats/vtk/pvd.h"
@@ -298,7 +299,8 @@ cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *
     o.in.labels = d.labels;
     if (st == CW_OK)
         st = read_opened(&o, &d, volume, err);
-    if (st == CW_OK && (st = cwi_claim_volume(&d.claim, volume, err)) != CW_OK)
+    if (st == CW_OK && ((st = cwi_claim_volume(&d.claim, volume, err)) != CW_OK ||
+                        (st = cwi_set_nodata(&d, volume, err)) != CW_OK))
         cw_volume_free(volume);
     if (st == CW_OK)
         st = expect_thin(&d, volume, err);
@@ -313,10 +315,10 @@ cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }
 
-/* A visit whose slices have the axes that the caller claims. */
+/* A visit whose slices have the axes and the no-data value that the caller claims. */
 typedef struct claimed_visit {
     const char *path;
-    const cw_claim *claim;
+    const cw_read_desc *desc;
     const cw_slice_visitor *visitor;
     const cw_slice_source *source; /* of the reader */
 } claimed_visit;
@@ -333,7 +335,9 @@ static cw_status visit_claimed(void *user, const cw_slice_source *source, cw_err
     claimed_visit *c = user;
     cw_slice_source claimed = {.shape = source->shape, .read = read_named, .user = c};
     c->source = source;
-    cw_status st = cwi_claim_volume(c->claim, &claimed.shape, err);
+    cw_status st = cwi_claim_volume(&c->desc->claim, &claimed.shape, err);
+    if (st == CW_OK)
+        st = cwi_set_nodata(c->desc, &claimed.shape, err);
     return st == CW_OK ? c->visitor->visit(c->visitor->user, &claimed, err) : st;
 }
 
@@ -344,7 +348,7 @@ cw_status cw_volume_visit(const char *path, const cw_read_desc *desc, size_t com
     CWI_REQUIRE(err, path, visitor);
     CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_read_desc d = desc ? *desc : (cw_read_desc){0};
-    claimed_visit claimed = {.path = path, .claim = &d.claim, .visitor = visitor};
+    claimed_visit claimed = {.path = path, .desc = &d, .visitor = visitor};
     cwi_slice_visit visit = {
         .component = component, .step = step, .visit = visit_claimed, .user = &claimed};
     opened o = {0};

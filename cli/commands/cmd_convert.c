@@ -3,10 +3,14 @@
 #include "cli/commands/mesh_command.h"
 #include "cli/framework/console.h"
 #include "cli/inputs/cut_options.h"
+#include "cli/inputs/place_options.h"
 #include "core/base/status.h"
+
+#include <stdlib.h>
 
 typedef struct convert_args {
     cli_mesh_args mesh;
+    cli_placing placing;
     cli_plane cut;
     bool split, check;
 } convert_args;
@@ -24,7 +28,8 @@ static const cli_option options[] = {
     {"merge", 0, CLI_FLAG, NULL,
      "Join all parts to one mesh (off: keep parts where the format has them)",
      offsetof(cli_mesh_args, merge)},
-    {"split", 0, CLI_FLAG, NULL, "Write a file for each part (off)",
+    {"split", 0, CLI_FLAG, NULL,
+     "Write a file for each part; of a mesh that is one, for each component (off)",
      offsetof(convert_args, split)},
     CLI_MESH_ORIENT,
     {"cut-plane", 0, CLI_PLANE, "PLANE",
@@ -33,6 +38,7 @@ static const cli_option options[] = {
      offsetof(convert_args, cut)},
     {"check", 0, CLI_FLAG, NULL, "Measure the mesh: closed, manifold, size (on; --no-check)",
      offsetof(convert_args, check)},
+    CLI_PLACING_OPTIONS(offsetof(convert_args, placing)),
     CLI_MESH_COMMON,
 };
 
@@ -49,6 +55,7 @@ static void put_params(cli_json *j, const cli_mesh_run *r, const cli_made *made)
     cli_json_bool(j, "merge", r->args->merge);
     cli_json_bool(j, "split", args->split);
     cli_json_bool(j, "orient", r->args->orient);
+    cli_json_placing(j, &args->placing);
     if (args->cut.given)
         cli_json_text(j, "cut_plane", cli_plane_text(&args->cut));
 }
@@ -61,10 +68,9 @@ static void put_facts(cli_json *j, const cli_mesh_run *r)
 
 static cw_status check_values(cli_mesh_run *r, cw_error *err)
 {
-    (void)err;
     r->reads_parts = r->reads_parts || args_of(r)->split;
     r->report.several = args_of(r)->split ? "parts" : NULL;
-    return CW_OK;
+    return cli_check_placing(&args_of(r)->placing, err);
 }
 
 /* The names of --split are known only after reading. */
@@ -75,10 +81,15 @@ static cw_status name_outputs(cli_mesh_run *r, cw_error *err)
                : cli_name_output(&r->outputs, r->args->output, r->args->common.inputs[0], err);
 }
 
-static cw_status cut_mesh(cli_mesh_run *r, cw_error *err)
+/* Places the mesh, then cuts it there. */
+static cw_status change_mesh(cli_mesh_run *r, cw_error *err)
 {
-    const cli_plane *cut = &args_of(r)->cut;
-    return cut->given ? cli_cut_parts(cut, &r->mesh, r->state, err) : CW_OK;
+    const convert_args *args = args_of(r);
+    cw_status st = CW_OK;
+    if (cli_places(&args->placing))
+        st = cli_place_parts(&args->placing, &r->mesh, err);
+    return st == CW_OK && args->cut.given ? cli_cut_parts(&args->cut, &r->mesh, r->state, err)
+                                          : st;
 }
 
 static cw_status convert_file(cli_mesh_run *r, size_t n, const cw_part *parts, size_t count,
@@ -95,17 +106,35 @@ static cw_status convert_file(cli_mesh_run *r, size_t n, const cw_part *parts, s
     return st;
 }
 
-static cw_status convert_parts(cli_mesh_run *r, cw_error *err)
+static cw_status convert_parts(cli_mesh_run *r, const cw_part *parts, size_t count,
+                               cw_error *err)
 {
-    const cli_mesh *m = &r->mesh;
-    cw_status st = cli_report_reserve(&r->report, m->part_count, err);
+    cw_status st = cli_report_reserve(&r->report, count, err);
     if (st == CW_OK)
-        st = cli_name_part_outputs(&r->outputs, r->args->output, m->path, m->parts,
-                                   m->part_count, err);
+        st = cli_name_part_outputs(&r->outputs, r->args->output, r->mesh.path, parts, count,
+                                   err);
     if (st == CW_OK)
         st = cli_check_mesh_outputs(r, err);
-    for (size_t n = 0; n < m->part_count && st == CW_OK; n++)
-        st = convert_file(r, n, &m->parts[n], 1, err);
+    for (size_t n = 0; n < count && st == CW_OK; n++)
+        st = convert_file(r, n, &parts[n], 1, err);
+    return st;
+}
+
+/* Splits a mesh that is one part into its solids. */
+static cw_status convert_solids(cli_mesh_run *r, const cw_mesh *mesh, cw_error *err)
+{
+    cw_mesh *solids = NULL;
+    size_t count = 0;
+    cw_status st = cw_mesh_split(mesh, &solids, &count, err);
+    cw_part *parts = st == CW_OK ? calloc(count, sizeof *parts) : NULL;
+    if (st == CW_OK && !parts)
+        st = cwi_fail(err, CW_ERR_NO_MEMORY, "out of memory");
+    for (size_t n = 0; n < count && parts; n++)
+        parts[n].mesh = &solids[n];
+    if (st == CW_OK)
+        st = convert_parts(r, parts, count, err);
+    free(parts);
+    cw_meshes_free(solids, count);
     return st;
 }
 
@@ -114,8 +143,10 @@ static cw_status convert_mesh(cli_mesh_run *r, cw_error *err)
     const cli_mesh *m = &r->mesh;
     if (!cli_mesh_triangles(m))
         return cwi_fail(err, CW_ERR_EMPTY, "%s: it has no triangles", m->path);
+    if (args_of(r)->split && m->part_count > 1)
+        return convert_parts(r, m->parts, m->part_count, err);
     if (args_of(r)->split)
-        return convert_parts(r, err);
+        return convert_solids(r, m->parts ? m->parts[0].mesh : &m->mesh, err);
     return m->parts ? convert_file(r, 0, m->parts, m->part_count, err)
                     : convert_file(r, 0, &(cw_part){.mesh = &m->mesh}, 1, err);
 }
@@ -126,7 +157,7 @@ static const cli_mesh_command convert = {
     .piecing = CLI_PIECES_NONE,
     .check = check_values,
     .name_outputs = name_outputs,
-    .prepare = cut_mesh,
+    .prepare = change_mesh,
     .make = convert_mesh,
     .put_params = put_params,
     .put_facts = put_facts,

@@ -239,6 +239,8 @@ static cw_status find_facts(const info_args *args, facts *f, cw_error *err)
     f->read_seconds = cli_seconds() - start;
     if (st != CW_OK)
         return st;
+    double step = start;
+    cli_end_step("read", &step);
     st = cw_volume_statistics(&f->volume.view, args->histogram, threads, &f->range, err);
     if (st == CW_OK)
         st = cli_find_label_facts(args->names, &f->volume, &f->labels, err);
@@ -255,8 +257,12 @@ static cw_status find_facts(const info_args *args, facts *f, cw_error *err)
         st = cli_tell_labels(&f->volume, NULL, 0, false, err);
     if (st == CW_OK && args->levels && f->level_count)
         st = predict_surface(f, threads, err);
-    return st == CW_OK ? predict_extract(args, program_bytes, f, err)
-                       : cwi_fail_in(err, st, f->volume.path);
+    cli_end_step("count", &step);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, f->volume.path);
+    st = predict_extract(args, program_bytes, f, err);
+    cli_end_step("predict", &step);
+    return st;
 }
 
 /* "left 0.00, posterior -1.00, ..." : the world direction that each index axis mostly

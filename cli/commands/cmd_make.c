@@ -150,6 +150,7 @@ static double stored_level(const cli_made_field *s, cw_type type)
 static cw_status make_field(const make_args *args, const cli_made_field *s, cw_error *err)
 {
     cw_volume volume;
+    double start = cli_seconds();
     if (args->labels && !s->is_label_map)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--labels is for label maps: labels/cells and "
@@ -159,9 +160,12 @@ static cw_status make_field(const make_args *args, const cli_made_field *s, cw_e
                                      : sample_field(args, (cw_field)s->number, &volume, err);
     if (st != CW_OK)
         return st;
+    cli_end_step("make", &start);
     const cw_write_desc write = {.no_clobber = args->no_clobber,
                                  .progress = cli_progress(mega_voxels(args), "Mvoxel")};
     st = cw_volume_write(args->output, &volume, &write, err);
+    if (st == CW_OK)
+        cli_end_step("write", &start);
     if (st == CW_OK && s->is_label_map)
         cli_result("%s: %s, %zu x %zu x %zu %s; its surfaces: --labels all\n", args->output,
                    s->name, volume.dim[0], volume.dim[1], volume.dim[2],

@@ -330,8 +330,8 @@ cw_status cli_predict(const cli_predict_desc *desc, cli_volume *volume, cli_pred
         st = predict_surfaces(&p, desc->iso, out, err);
     if (is_part ? st == CW_OK : st == CW_ERR_LIMIT || st == CW_ERR_NO_MEMORY) {
         free_voxels(volume);
-        st = p.input->component.magnitude ? CW_ERR_UNSUPPORTED
-                                          : predict_again(&p, desc->iso, true, out, err);
+        st = p.input->array.component.magnitude ? CW_ERR_UNSUPPORTED
+                                                : predict_again(&p, desc->iso, true, out, err);
         if (st == CW_ERR_UNSUPPORTED) /* in slices */
             st = predict_again(&p, desc->iso, false, out, err);
     }

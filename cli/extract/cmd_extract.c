@@ -389,7 +389,7 @@ static cw_status read_volume(cli_extract_run *s, const cli_moment *moment, cw_er
         s->input.first = s->input.volume; /* without its label table, which has one owner */
     s->input.first.labels = (cw_label_table){0};
     s->output.report.input = &s->input.first;
-    cli_report_end(&s->output.report, "read", 1, v->dim[0] * v->dim[1] * v->dim[2]);
+    cli_report_read(&s->output.report, &s->input.volume);
     for (int r = 0; r < 3; r++)
         cli_say_vv("affine   %12.6g %12.6g %12.6g %12.6g", v->affine[r][0], v->affine[r][1],
                    v->affine[r][2], v->affine[r][3]);

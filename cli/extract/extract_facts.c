@@ -168,10 +168,10 @@ void cli_extract_put_params(cli_json *j, const void *p, const cli_made *made)
     cli_json_text(j, "normals", args->normals ? "none" : "field");
     if (args->iso.count > 1)
         cli_json_text(j, "accel", args->accel ? "none" : "octree");
-    if (args->input.component.magnitude)
+    if (args->input.array.component.magnitude)
         cli_json_text(j, "component", "mag");
     else
-        cli_json_count(j, "component", args->input.component.number);
+        cli_json_count(j, "component", args->input.array.component.number);
     cli_json_count(j, "step", made->moment ? made->moment->number : args->input.step);
     if (cli_is_preview(&s->input.volume))
         cli_json_numbers(j, "coarsen",

@@ -119,38 +119,21 @@ void cli_extract_tell_stages(cli_extract_run *s, cli_made *made)
 typedef struct making {
     cli_extract_run *run;
     const cli_moment *moment; /* of a series; NULL: the only step */
-    size_t triangles;         /* of the surface so far */
-    size_t vertices;          /* to colour */
-    bool is_reported;         /* the step "extract" is in the report */
+    bool has_levels;          /* of detail: they and all behind them are one step */
 } making;
 
-/* Ends the step "extract", which reaches to the levels of detail, and to the colours. */
-static void report_extraction(making *m)
-{
-    if (!m->is_reported)
-        cli_report_end(&m->run->output.report, "extract",
-                       voxel_count(&m->run->input.volume.view), m->triangles);
-    m->is_reported = true;
-    cli_report_begin(&m->run->output.report);
-}
-
-static cw_progress begin_stage(void *user, cw_stage stage, size_t count, const char *unit)
-{
-    making *m = user;
-    if (stage == CW_STAGE_LOD || (stage == CW_STAGE_COLOR && !m->run->args->lod.count)) {
-        report_extraction(m);
-        m->vertices = count;
-    }
-    return cli_stage_progress(NULL, stage, count, unit);
-}
-
+/* Each stage is a step. */
 static void end_stage(void *user, cw_stage stage, size_t before, size_t after)
 {
     making *m = user;
-    (void)before;
-    m->triangles = after;
-    if (stage == CW_STAGE_COLOR && !m->run->args->lod.count)
-        cli_report_end(&m->run->output.report, "color", m->vertices, m->vertices);
+    cli_report *report = &m->run->output.report;
+    m->has_levels = m->has_levels || stage == CW_STAGE_LOD;
+    if (m->has_levels)
+        return;
+    cli_report_end(report, stage == CW_STAGE_COLOR ? "color" : cw_stage_name(stage),
+                   stage == CW_STAGE_EXTRACT ? voxel_count(&m->run->input.volume.view) : before,
+                   after);
+    cli_report_begin(report);
 }
 
 static cw_status open_colors(void *user, const cw_volume **volume, cw_error *err)
@@ -176,13 +159,12 @@ cw_status cli_extract_run_pipeline(cli_extract_run *s, const cli_moment *moment,
     color.open = open_colors;
     color.user = &m;
     set.desc.color = s->args->color.by ? &color : NULL;
-    set.desc.watch = (cw_pipeline_watch){begin_stage, end_stage, &m};
+    set.desc.watch = (cw_pipeline_watch){cli_stage_progress, end_stage, &m};
     cli_report_begin(&s->output.report);
     st = cli_run_pipeline(&s->input.volume, s->plan.view_count ? NULL : s->input.extractor,
                           &set.desc, sink, &made->facts, err);
     if (st != CW_OK)
         return st;
-    report_extraction(&m);
     made->least_mm3 = set.desc.min_volume_mm3;
     cli_extract_tell_stages(s, made);
     return CW_OK;

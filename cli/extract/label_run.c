@@ -44,7 +44,7 @@ static cw_status read_label_map(cli_label_run *r, cw_error *err)
 {
     const cli_extract_args *args = r->args;
     cli_input input = args->input;
-    input.component.given = true; /* all are taken, unless one was stated */
+    input.array.component.given = true; /* all are taken, unless one was stated */
     input.stream = args->stream;
     input.may_stream = true;
     cli_report_begin(&r->report);
@@ -56,7 +56,7 @@ static cw_status read_label_map(cli_label_run *r, cw_error *err)
         cli_say("%s: voxels exceed --memory: read and extracted slice by slice",
                 r->volume.path);
     r->report.input = &r->volume;
-    cli_report_end(&r->report, "read", 1, v->dim[0] * v->dim[1] * v->dim[2]);
+    cli_report_read(&r->report, &r->volume);
     if (v->cells || v->sparse)
         return cwi_fail(err, CW_ERR_UNSUPPORTED,
                         "%s: --labels is for dense grids of voxels; this is %s", r->volume.path,
@@ -96,7 +96,7 @@ static cw_status extract_component(const cli_label_run *r, uint32_t number,
     label_slices slices = {desc, surfaces};
     const cw_slice_visitor visitor = {extract_slices, &slices};
     cw_volume view;
-    input.component.number = number;
+    input.array.component.number = number;
     if (r->volume.streams)
         return cli_visit_slices(&r->volume, &input, &visitor, err);
     cw_status st = cw_volume_select(&r->volume.voxels, number, input.step, &view, err);

@@ -3,6 +3,7 @@
 #include "cli/framework/console.h"
 
 #include "cli/framework/field_names.h"
+#include "cli/framework/quantity.h"
 #include "core/base/atomic_file.h"
 #include "core/base/clock.h"
 
@@ -90,6 +91,22 @@ void cli_say_vv(const char *format, ...)
     if (!console.quiet && console.verbose > 1)
         print_line(format, args);
     va_end(args);
+}
+
+void cli_say_step(const char *name, double seconds)
+{
+    if (console.verbose < 1)
+        return;
+    cli_progress_end();
+    fprintf(stderr, "%-10s %8.3f s, peak %s\n", name, seconds,
+            cli_bytes((double)cli_peak_bytes()));
+}
+
+void cli_end_step(const char *name, double *start)
+{
+    const double now = cli_seconds();
+    cli_say_step(name, now - *start);
+    *start = now;
 }
 
 /* Names of files come from outside: nothing in them may move the terminal's cursor. */

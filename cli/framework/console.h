@@ -56,6 +56,13 @@ void cli_catch_signals(void);
 void cli_put_word(FILE *out, const char *word);
 
 /* Seconds since some fixed moment; and the most memory the process has held so far. */
+/* With --verbose, says how long a step took and the peak of memory, on a line of its own, also where the
+ * command itself is quiet. */
+void cli_say_step(const char *name, double seconds);
+
+/* Says it of the step since *start, and sets that to now. */
+void cli_end_step(const char *name, double *start);
+
 double cli_seconds(void);
 size_t cli_peak_bytes(void);
 

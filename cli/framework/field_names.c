@@ -9,6 +9,8 @@ static const struct {
     {"desc->gaps = CW_GAPS_INTERPOLATE", "--gaps interpolate"},
     {"desc->gaps = CW_GAPS_ALLOW", "--gaps allow"},
     {"desc->tilt = CW_TILT_KEEP", "--tilt keep"},
+    {"desc->nodata = CW_NODATA_NONE", "--nodata none"},
+    {"desc->nodata", "--nodata"},
     {"desc->skip_damaged", "--skip-damaged"},
     {"desc->claim.rule = CW_CLAIM_OVERRIDE", "--input-override"},
     {"desc->claim.unit", "--input-unit"},

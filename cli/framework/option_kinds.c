@@ -72,14 +72,6 @@ static bool parse_count(const cli_option *o, const char *text, void *field)
     return cli_parse_count(text, o->kind == CLI_BYTES ? 1024 : 1000, field);
 }
 
-static bool parse_component(const cli_option *o, const char *text, void *field)
-{
-    cli_component *out = field;
-    (void)o;
-    *out = (cli_component){.given = true, .magnitude = strcmp(text, "mag") == 0};
-    return out->magnitude || cli_parse_count(text, 1000, &out->number);
-}
-
 /* "off/L": whether a text is the word before the slash. */
 static bool is_word(const cli_option *o, const char *text)
 {
@@ -97,6 +89,15 @@ static bool parse_length(const cli_option *o, const char *text, void *field)
     return true;
 }
 
+static bool parse_number(const cli_option *o, const char *text, void *field)
+{
+    cli_number *out = field;
+    if (!is_word(o, text))
+        return cli_parse_number(text, out);
+    *out = (cli_number){.given = true, .is_word = true};
+    return true;
+}
+
 /* Defines parse_NAME(), which calls cli_parse_NAME(). */
 #define PARSER(name)                                                                           \
     static bool parse_##name(const cli_option *o, const char *text, void *field)               \
@@ -104,13 +105,14 @@ static bool parse_length(const cli_option *o, const char *text, void *field)
         (void)o;                                                                               \
         return cli_parse_##name(text, field);                                                  \
     }
-PARSER(number)
 PARSER(numbers)
 PARSER(level)
 PARSER(levels)
 PARSER(counts)
 PARSER(lengths)
 PARSER(amount)
+PARSER(array)
+PARSER(component)
 PARSER(sizes)
 PARSER(ranges)
 PARSER(crop)
@@ -136,6 +138,12 @@ static void print_box(const cli_ranges *r, char *text, size_t size)
                                  r->low[a], unit, r->high[a], unit);
 }
 
+/* Prints the word of "off/L". */
+static void print_word(const cli_option *o, char *text, size_t size)
+{
+    snprintf(text, size, "%.*s", (int)strcspn(o->value, "/"), o->value);
+}
+
 static void print_text(const cli_option *o, const void *field, char *text, size_t size)
 {
     const char *value = *(const char *const *)field;
@@ -157,8 +165,10 @@ static void print_choice(const cli_option *o, const void *field, char *text, siz
 static void print_number(const cli_option *o, const void *field, char *text, size_t size)
 {
     const cli_number *n = field;
-    (void)o;
-    print_list(&n->value, n->given, text, size);
+    if (n->given && n->is_word)
+        print_word(o, text, size);
+    else
+        print_list(&n->value, n->given, text, size);
 }
 
 static void print_numbers(const cli_option *o, const void *field, char *text, size_t size)
@@ -198,7 +208,7 @@ static void print_length(const cli_option *o, const void *field, char *text, siz
 {
     const cli_length *length = field;
     if (length->given && length->is_word)
-        snprintf(text, size, "%.*s", (int)strcspn(o->value, "/"), o->value);
+        print_word(o, text, size);
     else if (length->given)
         snprintf(text, size, "%s", cli_length_text(length));
 }
@@ -227,6 +237,14 @@ static void print_component(const cli_option *o, const void *field, char *text, 
         snprintf(text, size, "mag");
     else
         snprintf(text, size, "%zu", c->number);
+}
+
+/* The component that was chosen with an array is printed as one chosen by itself. */
+static void print_array(const cli_option *o, const void *field, char *text, size_t size)
+{
+    const cli_array *array = field;
+    (void)o;
+    snprintf(text, size, "%s", array->name);
 }
 
 /* Rules of units, for the manual page. */
@@ -284,6 +302,8 @@ const cli_kind cli_kind_steps = {sizeof(cli_steps), parse_steps, NULL,
     "steps in ascending order such as 0:20:2 (ends included), 0,3,7 or all"};
 const cli_kind cli_kind_weights = {sizeof(cli_weights), parse_weights, NULL,
     "weights above 0, each once, such as normal:0.5,color:1,scalar:1"};
+const cli_kind cli_kind_array = {sizeof(cli_array), parse_array, print_array,
+    "a name, also with a component of it such as velocity:mag or velocity:1"};
 const cli_kind cli_kind_component = {sizeof(cli_component), parse_component, print_component,
     "a whole number from 0, or mag"};
 const cli_kind cli_kind_louder = {sizeof(int), NULL, NULL, NULL};

@@ -1,6 +1,7 @@
 /* Parses the words of the command line by a command's table of options, and prints its help. */
 #include "cli/framework/options.h"
 
+#include "cli/framework/commands.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 
@@ -122,10 +123,25 @@ static const cli_option *find_short(const cli_command *command, char letter)
     return NULL;
 }
 
+/* Names the commands that have an option, such as "'convert' and 'simplify'"; false: none has. */
+static bool name_owners(const char *option, char *text, size_t size)
+{
+    const char *owners[3];
+    size_t count = 0;
+    for (size_t n = 0; cli_commands && cli_commands[n] && count < 3; n++)
+        if (find_long(cli_commands[n], option, strlen(option)))
+            owners[count++] = cli_commands[n]->name;
+    if (count == 1)
+        snprintf(text, size, "'%s'", owners[0]);
+    else if (count == 2)
+        snprintf(text, size, "'%s' and '%s'", owners[0], owners[1]);
+    return count == 1 || count == 2;
+}
+
 static cw_status unknown_option(const cli_command *command, const char *name, size_t length,
                                 cw_error *err)
 {
-    char word[64], hint[CLI_HINT_BYTES];
+    char word[64], itself[68], hint[CLI_HINT_BYTES], owners[96];
     const char *names[CLI_MAX_OPTIONS + 1] = {0};
     const cli_option *o;
     size_t count = 0;
@@ -134,8 +150,13 @@ static cw_status unknown_option(const cli_command *command, const char *name, si
         if (o->kind != CLI_HEADING)
             names[count++] = o->name;
     cli_hint(command, word, names, hint);
-    return cwi_fail(err, CW_ERR_ARGUMENT, "%s has no option --%s; %s", command->name, word,
-                    hint);
+    snprintf(itself, sizeof itself, "--%s", word);
+    const bool is_elsewhere = !strstr(hint, itself) && name_owners(word, owners, sizeof owners);
+    return cwi_fail(err, CW_ERR_ARGUMENT, "%s has no option %s; %s%s%s%s", command->name,
+                    itself, hint, is_elsewhere ? "; " : "", is_elsewhere ? owners : "",
+                    !is_elsewhere             ? ""
+                    : strstr(owners, " and ") ? " have it"
+                                              : " has it");
 }
 
 bool cli_is_given(const cli_command *command, const cli_common *args, const char *name)
@@ -159,7 +180,7 @@ const char *cli_expected(const cli_option *o)
     const size_t word = o->value ? strcspn(o->value, "/") : 0;
     if (!o->kind->expected)
         return o->value;
-    if (!o->kind->units || !word || !o->value[word])
+    if ((!o->kind->units && o->kind != CLI_NUMBER) || !word || !o->value[word])
         return o->kind->expected;
     snprintf(text, sizeof text, "%.*s, or %s", (int)word, o->value, o->kind->expected);
     return text;

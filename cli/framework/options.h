@@ -36,12 +36,13 @@ extern const cli_kind cli_kind_flag, cli_kind_text, cli_kind_choice, cli_kind_nu
     cli_kind_bytes, cli_kind_lengths, cli_kind_length, cli_kind_mesh_length,
     cli_kind_voxel_length, cli_kind_print_length, cli_kind_shift, cli_kind_volume,
     cli_kind_sizes, cli_kind_ranges, cli_kind_crop, cli_kind_reduction, cli_kind_steps,
-    cli_kind_weights, cli_kind_component, cli_kind_louder, cli_kind_heading;
+    cli_kind_weights, cli_kind_array, cli_kind_component, cli_kind_louder, cli_kind_heading;
 
-#define CLI_FLAG    (&cli_kind_flag)    /* bool; --x and --no-x */
-#define CLI_TEXT    (&cli_kind_text)    /* const char * */
-#define CLI_CHOICE  (&cli_kind_choice)  /* int: the position in value, names parted by '/' */
-#define CLI_NUMBER  (&cli_kind_number)  /* cli_number */
+#define CLI_FLAG   (&cli_kind_flag)   /* bool; --x and --no-x */
+#define CLI_TEXT   (&cli_kind_text)   /* const char * */
+#define CLI_CHOICE (&cli_kind_choice) /* int: the position in value, names parted by '/' */
+#define CLI_NUMBER                                                                             \
+    (&cli_kind_number) /* cli_number; the word of a row's `value`, such as none/V, too */
 #define CLI_NUMBERS (&cli_kind_numbers) /* cli_numbers: 300 or 50,300 */
 #define CLI_LEVEL   (&cli_kind_level)   /* cli_number: 300, 40%, otsu; names need a volume */
 #define CLI_LEVELS  (&cli_kind_levels)  /* cli_numbers: several of them by comma */
@@ -63,6 +64,7 @@ extern const cli_kind cli_kind_flag, cli_kind_text, cli_kind_choice, cli_kind_nu
 #define CLI_REDUCTION    (&cli_kind_reduction) /* cli_reduction */
 #define CLI_STEPS        (&cli_kind_steps)     /* cli_steps: 0:20:2, 0,3,7 or all */
 #define CLI_WEIGHTS      (&cli_kind_weights) /* cli_weights: normal:0.5; value has the names */
+#define CLI_ARRAY        (&cli_kind_array)   /* cli_array: a name, NAME:1 or NAME:mag */
 #define CLI_COMPONENT    (&cli_kind_component) /* cli_component: its number from 0, or mag */
 #define CLI_LOUDER       (&cli_kind_louder)    /* int, counts up */
 #define CLI_HEADING      (&cli_kind_heading) /* no option: the name of those below in the help */
@@ -84,6 +86,7 @@ typedef enum cli_level {
 
 typedef struct cli_number {
     bool given;
+    bool is_word; /* the word of none/V; else: */
     double value;
     cli_level level;
 } cli_number;
@@ -142,6 +145,12 @@ typedef struct cli_component {
     bool given, magnitude; /* of the vector that they all are; else: */
     size_t number;
 } cli_component;
+
+/* Selects an array of a file and a component of it, which may also be given without the array. */
+typedef struct cli_array {
+    char name[4096]; /* empty: none was named */
+    cli_component component;
+} cli_array;
 
 typedef struct cli_sizes {
     int count; /* 1 to 3 given, 0: none */

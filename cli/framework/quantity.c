@@ -142,6 +142,27 @@ bool cli_parse_amount(const char *text, cli_amount *out)
     return out->given && isfinite(out->value) && out->value > 0;
 }
 
+bool cli_parse_component(const char *text, cli_component *out)
+{
+    *out = (cli_component){.given = true, .magnitude = strcmp(text, "mag") == 0};
+    return out->magnitude || cli_parse_count(text, 1000, &out->number);
+}
+
+bool cli_parse_array(const char *text, cli_array *out)
+{
+    const char *colon = strrchr(text, ':');
+    cli_component component;
+    const bool has_component = colon && cli_parse_component(colon + 1, &component);
+    const size_t length = has_component ? (size_t)(colon - text) : strlen(text);
+    if (length == 0 || length >= sizeof out->name)
+        return false;
+    memcpy(out->name, text, length);
+    out->name[length] = '\0';
+    if (has_component)
+        out->component = component;
+    return true;
+}
+
 bool cli_parse_reduction(const char *text, cli_reduction *out)
 {
     *out = (cli_reduction){0};

@@ -45,6 +45,12 @@ bool cli_parse_steps(const char *text, cli_steps *out);
 /* A count with an optional k, M, G or T of the given thousand: 1000, or 1024 for bytes. */
 bool cli_parse_count(const char *text, double thousand, size_t *out);
 
+/* A number from 0, or mag. */
+bool cli_parse_component(const char *text, cli_component *out);
+
+/* A name, also with a component behind a colon; without one out->component stays as it is. */
+bool cli_parse_array(const char *text, cli_array *out);
+
 bool cli_parse_counts(const char *text, cli_counts *out);
 
 /* Returns a length as it is typed, in static memory as of cli_number_text(). */

@@ -67,8 +67,8 @@ const cli_synonym cli_synonyms[] = {
      "cubewright writes no videos. 'render --turntable' writes numbered pictures, 'extract "
      "--animate' an animated glTF file."},
     {"animation|spin", NULL, "--turntable|--orbit|--animate|turntable", NULL},
-    {"rotat|turn", NULL, "--up|--input-up|--turntable|--orbit", NULL},
-    {"mirror|reflect", NULL, "mirror|--input-frame|--frame",
+    {"rotat|turn", NULL, "--rotate|--up|--input-up|--turntable|--orbit", NULL},
+    {"mirror|reflect", NULL, "--mirror|--input-frame|--frame",
      "A surface that comes out mirrored is in another frame than its reader expects: "
      "--input-frame says what the input has, and --frame what to write."},
     {"resum|continue|restart|checkpoint", NULL, "--skip-existing|--part|--config", NULL},

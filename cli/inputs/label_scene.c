@@ -33,8 +33,8 @@ void cli_free_label_scene(cli_label_scene *scene)
 void cli_label_layers(const cli_volume *volume, const cli_input *input, size_t *first,
                       size_t *end)
 {
-    const bool is_one = input->component.given && !input->component.magnitude;
-    *first = is_one ? input->component.number : 0;
+    const bool is_one = input->array.component.given && !input->array.component.magnitude;
+    *first = is_one ? input->array.component.number : 0;
     *end = is_one            ? *first + 1
            : volume->streams ? volume->whole.components
                              : volume->voxels.components;

@@ -63,7 +63,7 @@ cw_status cli_read_step(cli_source *source, const cli_input *input, size_t step,
     cli_input at = *input;
     at.step = moment->step;
     at.step_chosen = source->series.given;
-    at.component.given |= source->of_labels;
+    at.array.component.given |= source->of_labels;
     cw_volume_free(&source->dense);
     if (source->volume.voxels.data && source->volume.path == moment->path)
         return cli_choose_step(&at, moment->step, &source->volume, err);

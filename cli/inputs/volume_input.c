@@ -75,7 +75,7 @@ static void find_grid(const cw_volume *v, cli_volume *volume)
 
 static cw_status check_choice(const cli_input *input, const cw_volume *v, cw_error *err)
 {
-    const cli_component *c = &input->component;
+    const cli_component *c = &input->array.component;
     if (c->magnitude && v->components < 2)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--component mag needs vectors; the volume has one value a voxel");
@@ -203,7 +203,7 @@ static void tell_choice(const cli_input *input, cli_volume *volume)
 {
     const cw_volume *v = &volume->whole;
     char text[160];
-    if (v->components > 1 && !input->component.given) {
+    if (v->components > 1 && !input->array.component.given) {
         snprintf(text, sizeof text,
                  "component 0 of %zu is taken (--component N, or mag for their magnitude)",
                  v->components);
@@ -273,7 +273,7 @@ static cw_status make_magnitude(const cli_input *input, size_t step, cli_volume 
 static cw_status select_view(const cli_input *input, size_t step, cli_volume *volume,
                              cw_error *err)
 {
-    const cli_component *c = &input->component;
+    const cli_component *c = &input->array.component;
     if (!c->magnitude)
         return cw_volume_select(&volume->voxels, c->number, step, &volume->view, err);
     cw_status st = make_magnitude(input, step, volume, err);
@@ -383,7 +383,7 @@ cw_read_desc cli_read_desc(const cli_input *input)
     cw_read_desc desc = {.reader = input->reader,
                          .allow_external = input->allow_external,
                          .series = input->series,
-                         .array = input->array,
+                         .array = input->array.name[0] ? input->array.name : NULL,
                          .level = input->level,
                          .points = input->points,
                          .gaps = (cw_gaps)input->gaps,
@@ -394,6 +394,10 @@ cw_read_desc cli_read_desc(const cli_input *input)
                          .claim = cli_claim_of(&input->claim),
                          .max_voxels = input->max_voxels,
                          .max_bytes = cli_memory_limit(input)};
+    if (input->nodata.given) {
+        desc.nodata = input->nodata.is_word ? CW_NODATA_NONE : CW_NODATA_VALUE;
+        desc.nodata_value = input->nodata.value;
+    }
     if (input->spacing.given)
         memcpy(desc.spacing_mm, input->spacing.mm, sizeof desc.spacing_mm);
     return desc;
@@ -461,7 +465,7 @@ static cw_status visit_volume(const void *user, const cw_slice_visitor *visitor,
         st = find_box(input, &volume->whole, true, &box, err);
     }
     memcpy(desc.every, volume->coarsen, sizeof desc.every);
-    return st == CW_OK ? cw_volume_visit(volume->path, &desc, input->component.number,
+    return st == CW_OK ? cw_volume_visit(volume->path, &desc, input->array.component.number,
                                          input->step, visitor, NULL, err)
                        : cwi_fail_in(err, st, volume->path);
 }

@@ -48,9 +48,11 @@ enum { CLI_STREAM_AUTO, CLI_STREAM_ALWAYS, CLI_STREAM_NEVER };
 enum { CLI_MIN_MEMORY = 32 << 20 };
 
 typedef struct cli_input {
-    const char *reader, *raw, *series, *array, *points;
+    const char *reader, *raw, *series, *points;
+    cli_array array;
     int gaps, tilt; /* cw_gaps, cw_tilt */
     bool skip_damaged;
+    cli_number nodata;
     bool no_sandbox;
     size_t timeout_s;
     cli_lengths spacing;
@@ -63,8 +65,7 @@ typedef struct cli_input {
     const char *mask;
     cli_length mask_open, mask_close;
     bool makes_surface; /* the command calls cli_prepare_inside() */
-    cli_component component;
-    size_t level; /* of an image in several sizes */
+    size_t level;       /* of an image in several sizes */
     size_t step;
     bool step_chosen; /* by the command, of a series: nothing is to be said of it */
     size_t threads, memory, max_voxels, max_triangles;
@@ -179,15 +180,15 @@ typedef struct cli_input {
          CLI_INPUT_ROW(args, series)},                                                         \
         {"array",                                                                              \
          0,                                                                                    \
-         CLI_TEXT,                                                                             \
-         "NAME",                                                                               \
-         "Array to read, of files with several (the file's choice, else the first with one "   \
-         "value)",                                                                             \
+         CLI_ARRAY,                                                                            \
+         "NAME[:N|:mag]",                                                                      \
+         "Array to read, of files with several, and its --component, such as velocity:mag "    \
+         "(the file's choice, else the first with one value)",                                 \
          CLI_INPUT_ROW(args, array)},                                                          \
         {"grid",                                                                               \
          0,                                                                                    \
-         CLI_TEXT,                                                                             \
-         "NAME",                                                                               \
+         CLI_ARRAY,                                                                            \
+         "NAME[:N|:mag]",                                                                      \
          "OpenVDB grid to read (the first level set, else the first with one value)",          \
          CLI_INPUT_ROW(args, array)},                                                          \
         {"level",                                                                              \
@@ -215,6 +216,12 @@ typedef struct cli_input {
          NULL,                                                                                 \
          "Leave out slices whose files are damaged; what they leave are gaps (off)",           \
          CLI_INPUT_ROW(args, skip_damaged)},                                                   \
+        {"nodata",                                                                             \
+         0,                                                                                    \
+         CLI_NUMBER,                                                                           \
+         "none/V",                                                                             \
+         "Value of voxels that have none, such as -1000; none: all have one (the file's)",     \
+         CLI_INPUT_ROW(args, nodata)},                                                         \
         {"tilt",                                                                               \
          0,                                                                                    \
          CLI_CHOICE,                                                                           \
@@ -233,7 +240,7 @@ typedef struct cli_input {
          CLI_COMPONENT,                                                                        \
          "N/mag",                                                                              \
          "Component of voxels with several values; mag is the length of their vector (0)",     \
-         CLI_INPUT_ROW(args, component)},                                                      \
+         CLI_INPUT_ROW(args, array.component)},                                                \
         {"step",                                                                               \
          0,                                                                                    \
          CLI_COUNT,                                                                            \
@@ -257,7 +264,13 @@ typedef struct cli_input {
 
 #define CLI_INPUT_OPTIONS(args) CLI_PREPARING_OPTIONS(args), CLI_READING_OPTIONS(args)
 
-enum { CLI_MAX_NOTES = 8 };
+enum { CLI_MAX_NOTES = 8, CLI_MAX_CHANGES = 4 };
+
+/* A change to the voxels that were read, by its option. */
+typedef struct cli_change {
+    const char *name;
+    double seconds;
+} cli_change;
 
 /* Facts of an irregular grid: the number of cells of each shape and, once it was read, the
  * box of its points. */
@@ -270,15 +283,17 @@ typedef struct cli_grid {
 /* A volume as a command uses it. */
 typedef struct cli_volume {
     const char *path, *format;
-    cw_volume whole;       /* as the file has it, spacing applied; without the voxels */
-    cw_volume voxels;      /* what was read of it: all, or what --crop leaves */
-    cw_volume magnitude;   /* of the chosen step, where --component mag asks for it */
-    cw_volume prepared;    /* of the view, as --resample and --denoise left it; else empty */
-    cw_volume view;        /* of that the chosen component, step and samples */
-    double spacing[3];     /* of an irregular grid the mean length of cells' edges */
-    cli_grid grid;         /* zeroed for other volumes */
-    size_t memory_left;    /* of the limit, after the voxels */
-    size_t coarsen[3];     /* the view's step along each axis */
+    cw_volume whole;     /* as the file has it, spacing applied; without the voxels */
+    cw_volume voxels;    /* what was read of it: all, or what --crop leaves */
+    cw_volume magnitude; /* of the chosen step, where --component mag asks for it */
+    cw_volume prepared;  /* of the view, as --resample and --denoise left it; else empty */
+    cw_volume view;      /* of that the chosen component, step and samples */
+    double spacing[3];   /* of an irregular grid the mean length of cells' edges */
+    cli_grid grid;       /* zeroed for other volumes */
+    size_t memory_left;  /* of the limit, after the voxels */
+    size_t coarsen[3];   /* the view's step along each axis */
+    cli_change changes[CLI_MAX_CHANGES]; /* of the view, with the time they took */
+    int change_count;
     bool streams;          /* voxels are not read: they do not fit, and come slice by slice */
     bool is_quiet;         /* prints no lines about the file */
     cw_label_table labels; /* names and colours of labels that the file holds */

@@ -1,6 +1,7 @@
 /* Changes what is inside a volume by a mask and by balls, and crops it to that. */
 #include "cli/inputs/volume_prepare.h"
 
+#include "cli/framework/console.h"
 #include "core/base/status.h"
 
 #include <math.h>
@@ -82,6 +83,7 @@ cw_status cli_prepare_inside(const cli_input *input, cli_volume *volume, const d
     if (count > 1 && (input->mask_open.given || input->mask_close.given))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--mask-%s takes one isovalue; there are %zu",
                         input->mask_open.given ? "open" : "close", count);
+    const double start = cli_seconds();
     cw_status st = CW_OK;
     if (input->mask)
         st = mask_view(input, volume, &inside, err);
@@ -91,5 +93,7 @@ cw_status cli_prepare_inside(const cli_input *input, cli_volume *volume, const d
         st = change_view(input, volume, true, &inside, err);
     if (st == CW_OK && input->crop.is_auto)
         st = crop_view(input, volume, &inside, err);
+    if (input->mask || input->mask_open.given || input->mask_close.given || input->crop.is_auto)
+        cli_note_change(volume, "mask", start);
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
 }

@@ -340,15 +340,30 @@ static cw_status remove_table(const cli_input *input, cli_volume *volume, cw_err
     return CW_OK;
 }
 
+void cli_note_change(cli_volume *volume, const char *name, double start)
+{
+    if (volume->change_count < CLI_MAX_CHANGES)
+        volume->changes[volume->change_count++] =
+            (cli_change){.name = name, .seconds = cli_seconds() - start};
+}
+
 cw_status cli_prepare_volume(const cli_input *input, cli_volume *volume, cw_error *err)
 {
+    static const struct {
+        const char *name;
+        cw_status (*change)(const cli_input *input, cli_volume *volume, cw_error *err);
+    } changes[] = {
+        {"resample", resample_view}, {"denoise", denoise_view}, {"remove-table", remove_table}};
+    const bool wanted[] = {input->resample.given, input->denoise.given, input->remove_table};
     cw_status st = CW_OK;
-    if (input->resample.given)
-        st = resample_view(input, volume, err);
-    if (st == CW_OK && input->denoise.given)
-        st = denoise_view(input, volume, err);
-    if (st == CW_OK && input->remove_table)
-        st = remove_table(input, volume, err);
+    volume->change_count = 0;
+    for (int n = 0; n < 3 && st == CW_OK; n++) {
+        const double start = cli_seconds();
+        if (!wanted[n])
+            continue;
+        st = changes[n].change(input, volume, err);
+        cli_note_change(volume, changes[n].name, start);
+    }
     return st;
 }
 

@@ -41,6 +41,9 @@ cw_filter_desc cli_describe_filter(const cli_input *input, const cli_volume *vol
 /* Sets the width of a filter along each axis in voxels. */
 void cli_width_in_voxels(const cli_length *width, const cw_volume *volume, double sigma[3]);
 
+/* Keeps how long a change to the view took, for the report. start: cli_seconds() before */
+void cli_note_change(cli_volume *volume, const char *name, double start);
+
 /* Makes a filtered volume the view, and frees the one before. */
 void cli_take_filtered(cli_volume *volume, cw_volume *made);
 

@@ -26,6 +26,7 @@ static const cli_option options[] = {
     CLI_JSON_OPTION(render_args),
     {"save-tf", 0, CLI_TEXT, "FILE", "File to write the transfer function to, as .json",
      offsetof(render_args, save_transfer), CLI_VALUES_JSON},
+    CLI_COLOR_OPTIONS(render_args),
     CLI_HEADED("Camera"),
 #include "cli/render/options_camera.inc"
     {"save-camera", 0, CLI_TEXT, "FILE", "File to write the camera to, as .json",
@@ -45,6 +46,8 @@ static const cli_rule rules[] = {
     {"mesh", CLI_EXCLUDES, "iso"},
     {"difference", CLI_NEEDS, "compare"},
     {"compare", CLI_EXCLUDES, "layout=quad overlay"},
+    {"colormap range", CLI_NEEDS, "color-by"},
+    {"color-by", CLI_EXCLUDES, "color overlay"},
     {"isolines", CLI_NEEDS, "iso"},
     {"isolines", CLI_NEEDS, "mode=slices layout=quad"},
     {"overlay-opacity overlay-map overlay-range", CLI_NEEDS, "overlay"},
@@ -57,7 +60,8 @@ static cw_status run_render(void *p, cw_error *err)
 {
     const render_args *args = p;
     const double start = cli_seconds();
-    cli_pictures pictures = {.command = &cli_render, .args = args, .start = start};
+    cli_pictures pictures = {
+        .command = &cli_render, .args = args, .coloring.args = &args->color, .start = start};
     cli_console_reserve_stdout(args->json);
     cw_status st = cli_check_pictures(args, err);
     const bool writable = st == CW_OK; /* a report, too, is checked before it is written */

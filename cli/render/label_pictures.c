@@ -48,7 +48,7 @@ cw_status cli_check_label_look(const render_args *args, cw_error *err)
         {args->scene.cap, "--cap, which fills cuts in one colour"},
         {args->scene.transfer != NULL, "--tf"},
         {args->save_transfer != NULL, "--save-tf"},
-        {args->input.component.magnitude, "--component mag"},
+        {args->input.array.component.magnitude, "--component mag"},
     };
     const bool has_labels = args->look.labels && !args->overlay;
     const int mode = args->scene.mode - 1;
@@ -73,7 +73,7 @@ static bool may_draw_labels(const cli_command *command, const render_args *args,
     if (s->is_mesh || s->is_level_set || s->is_uneven || args->iso.given || args->mesh ||
         args->compare || args->scene.hide || args->scene.transfer || args->scene.color ||
         args->scene.cap || args->marks.histogram || args->marks.color_bar ||
-        args->input.component.magnitude || (requested && *mode != CW_MODE_SLICES))
+        args->input.array.component.magnitude || (requested && *mode != CW_MODE_SLICES))
         return false;
     return cli_check_scene(command, &args->common, *mode, true, NULL) == CW_OK;
 }

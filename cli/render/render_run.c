@@ -60,6 +60,8 @@ cw_status cli_check_pictures(const render_args *args, cw_error *err)
                         args->difference.value);
     cw_status st = check_isolines(args, err);
     if (st == CW_OK)
+        st = cli_check_color(&args->color, err);
+    if (st == CW_OK)
         st = cli_check_camera(&args->scene, &args->turns, err);
     if (st == CW_OK)
         st = cli_check_label_look(args, err);
@@ -160,6 +162,11 @@ static cw_status check_mode(cli_pictures *p, cw_error *err)
     if (p->mode == CW_MODE_MESH && args->backend == CW_BACKEND_CPU && gl)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--%s is drawn by OpenGL alone: --backend auto or egl", gl);
+    if (args->color.by && (!has_mesh(p) || (p->look.labels && !args->overlay)))
+        return cwi_fail(
+            err, CW_ERR_ARGUMENT,
+            "--color-by colours a surface, and none is drawn: --iso V, --mesh FILE or "
+            "a mesh as the input makes one");
     return cli_check_scene(p->command, &args->common, p->mode, has_mesh(p), err);
 }
 
@@ -284,13 +291,38 @@ static cw_status make_transfer(cli_pictures *p, size_t step, cw_error *err)
     return st;
 }
 
+/* Makes or reads the mesh of a step, and colours it. */
+static cw_status open_mesh(cli_pictures *p, size_t step, cw_error *err)
+{
+    const render_args *args = p->args;
+    const cw_volume *colors;
+    double start = cli_seconds();
+    cw_status st = p->source.is_mesh ? CW_OK
+                   : args->mesh      ? read_beside(p, err)
+                                     : extract_shown(p, err);
+    if (st == CW_OK && !p->source.is_mesh)
+        cli_end_step(args->mesh ? "read mesh" : "extract", &start);
+    if (st != CW_OK || !args->color.by)
+        return st;
+    st = cli_open_coloring(&p->coloring, p->source.series.moments[step].path, &args->input,
+                           p->source.series.moments[step].step, &colors, err);
+    if (st == CW_OK)
+        st = cli_color_mesh(&p->coloring, &p->source.mesh, (int)args->input.threads, err);
+    if (st == CW_OK)
+        cli_end_step("color", &start);
+    return st;
+}
+
 /* Everything that a step shows. */
 static cw_status open_step(cli_pictures *p, size_t step, cw_error *err)
 {
     const render_args *args = p->args;
     if (p->source.is_mesh)
-        return CW_OK;
+        return open_mesh(p, step, err);
+    double start = cli_seconds();
     cw_status st = cli_read_step(&p->source, &args->input, step, err);
+    if (st == CW_OK)
+        cli_end_step("read", &start);
     if (st == CW_OK && draws_volume(p) && !p->has_transfer)
         st = make_transfer(p, step, err);
     if (st == CW_OK && draws_volume(p))
@@ -303,9 +335,7 @@ static cw_status open_step(cli_pictures *p, size_t step, cw_error *err)
     }
     if (st != CW_OK || (p->look.labels && !args->overlay))
         return st;
-    if (args->mesh)
-        return read_beside(p, err);
-    return has_mesh(p) ? extract_shown(p, err) : CW_OK;
+    return has_mesh(p) ? open_mesh(p, step, err) : CW_OK;
 }
 
 static cw_status make_scene(cli_pictures *p, size_t turn, cw_error *err)
@@ -465,6 +495,7 @@ static cw_status take_picture(cli_pictures *p, size_t turn, cli_shot *shot, cw_e
     marks.isolines = marks.isolines && is_slices;
     marks.values = is_slices && p->on_slices.has_values ? &p->on_slices.values : NULL;
     marks.isovalue = p->iso.value;
+    double start = cli_seconds();
     cw_status st = make_scene(p, turn, err);
     if (st == CW_OK)
         st = cli_background(&p->args->scene, background, err);
@@ -477,10 +508,13 @@ static cw_status take_picture(cli_pictures *p, size_t turn, cli_shot *shot, cw_e
     if (st == CW_OK && p->args->marks.layout == CLI_LAYOUT_QUAD)
         st = add_slices(p, &image, err);
     if (st == CW_OK)
+        cli_end_step("draw", &start);
+    if (st == CW_OK)
         st = cw_image_write(shot->path, &image, err);
     cw_image_free(&image);
     if (st != CW_OK)
         return st;
+    cli_end_step("write", &start);
     shot->camera = p->scene.camera;
     shot->seconds = cli_seconds() - p->start;
     shot->written = true;
@@ -528,6 +562,7 @@ void cli_end_pictures(cli_pictures *p)
     free(p->shots);
     cli_free_label_scene(&p->labels);
     cli_free_volume(&p->overlay);
+    cli_free_coloring(&p->coloring);
     cli_close_source(&p->source);
 }
 

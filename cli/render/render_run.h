@@ -9,6 +9,7 @@
 #include "cli/render/render_report.h"
 #include "cli/render/slice_labels.h"
 #include "cli/render/value_overlay.h"
+#include "cli/results/color_by.h"
 
 /* The command (cmd_render.c). */
 extern const cli_command cli_render;
@@ -20,7 +21,8 @@ typedef struct render_args {
     cli_turns turns;
     cli_marks marks;
     cli_label_look look;
-    cli_value_look values;                           /* of overlay */
+    cli_value_look values; /* of overlay */
+    cli_color_args color;
     const char *exec, *run, *config, *recent, *film; /* of view alone, */
     bool hidden, light_theme;                        /* and these, */
     cli_number fps;                                  /* and these */
@@ -68,6 +70,7 @@ typedef struct cli_pictures {
     cli_label_scene labels;
     cli_volume overlay; /* another volume, with labels */
     cli_slice_labels on_slices;
+    cli_coloring coloring;
     cw_transfer transfer;
     double level;      /* between two classes of values */
     bool has_transfer; /* of all steps */

@@ -62,7 +62,7 @@ cw_status cli_read_overlay(const char *path, const cli_input *input, cli_volume 
                        .skip_damaged = input->skip_damaged,
                        .allow_external = input->allow_external,
                        .step_chosen = true};
-    plain.component.given = true; /* all are read */
+    plain.array.component.given = true; /* all are read */
     return cli_read_volume(path, &plain, false, volume, err);
 }
 

@@ -322,11 +322,12 @@ static cw_status open_input(cli_report_run *s, cw_error *err)
     const cli_input *input = &s->args->input;
     cw_status st = study->is_field ? make_field(s, err) : read_file(s, err);
     const cw_volume *all =
-        input->component.magnitude ? &s->volume.magnitude : &s->volume.voxels;
+        input->array.component.magnitude ? &s->volume.magnitude : &s->volume.voxels;
     if (st == CW_OK)
-        st = input->component.magnitude ? cw_volume_select(all, 0, 0, &study->drawn, err)
-                                        : cw_volume_select(all, input->component.number,
-                                                           input->step, &study->drawn, err);
+        st = input->array.component.magnitude
+                 ? cw_volume_select(all, 0, 0, &study->drawn, err)
+                 : cw_volume_select(all, input->array.component.number, input->step,
+                                    &study->drawn, err);
     if (st == CW_OK)
         st = tell_input(s, s->volume.path, err);
     if (st != CW_OK)
@@ -366,8 +367,11 @@ static cw_status run_pipeline(cli_report_run *s, cw_error *err)
     if (st == CW_OK && cli_report_is_series(args))
         return cli_report_series(s, err);
     const char *labels = NULL;
+    double start = cli_seconds();
     if (st == CW_OK)
         st = open_input(s, err);
+    if (st == CW_OK)
+        cli_end_step("read", &start);
     if (st == CW_OK)
         st = cli_report_find_labels(s, &labels, err);
     if (st == CW_OK && labels) {
@@ -381,11 +385,15 @@ static cw_status run_pipeline(cli_report_run *s, cw_error *err)
     if (st == CW_OK)
         st = cli_study_run(&s->study, err);
     if (st == CW_OK)
+        cli_end_step("try", &start);
+    if (st == CW_OK)
         st = cli_report_make(args->json, cli_put_study_json, &s->study, err);
     if (st == CW_OK)
         st = cli_report_make(args->csv, cli_put_study_csv, &s->study, err);
     if (st == CW_OK)
         st = cli_report_make(args->output, cli_put_page, &s->study, err);
+    if (st == CW_OK)
+        cli_end_step("write", &start);
     if (st == CW_OK)
         tell_result(&s->study, args->output);
     return st;

@@ -27,46 +27,33 @@ cw_status cli_check_color(const cli_color_args *args, cw_error *err)
     return CW_OK;
 }
 
-/* Parts NAME:mag and NAME:2 from a file or array of that name. */
-static void part_name(const char *by, char *name, size_t size, cli_component *component)
-{
-    const char *colon = strrchr(by, ':');
-    size_t number = 0;
-    snprintf(name, size, "%s", by);
-    if (!colon || access(by, F_OK) == 0)
-        return;
-    const bool is_magnitude = strcmp(colon + 1, "mag") == 0;
-    if (!is_magnitude && !cli_parse_count(colon + 1, 1000, &number))
-        return;
-    *component = (cli_component){.given = true, .magnitude = is_magnitude, .number = number};
-    if ((size_t)(colon - by) < size)
-        name[colon - by] = '\0';
-}
-
 /* Reads a file of that name, or else that array of the input. */
 static cw_status read_colors(cli_coloring *c, const char *path, const cli_input *input,
                              size_t step, cw_error *err)
 {
-    static char name[4096]; /* the volume keeps it */
+    static cli_array array; /* the volume keeps the name */
     cli_input settings = {.threads = input->threads,
                           .memory = input->memory,
                           .max_voxels = input->max_voxels,
                           .no_sandbox = input->no_sandbox,
                           .timeout_s = input->timeout_s,
                           .allow_external = input->allow_external};
-    cli_component component = {0};
-    part_name(c->args->by, name, sizeof name, &component);
+    const char *by = c->args->by, *name = by;
+    array = (cli_array){0};
+    if (access(by, F_OK) != 0 && cli_parse_array(by, &array))
+        name = array.name;
     const bool is_file = access(name, F_OK) == 0;
     if (!is_file) {
         settings = *input;
-        settings.array = name;
         settings.crop.given = settings.resample.given = settings.denoise.given = false;
         settings.preview = settings.may_stream = settings.remove_table = false;
         settings.coarsen = 0;
         settings.step = step;
         settings.step_chosen = true;
     }
-    settings.component = component;
+    settings.array = array;
+    if (is_file)
+        settings.array.name[0] = '\0';
     cli_free_volume(&c->volume);
     cw_status st = cli_read_volume(is_file ? name : path, &settings, false, &c->volume, err);
     if (st != CW_OK && !is_file) {
@@ -100,17 +87,35 @@ cw_pipeline_color cli_describe_coloring(const cli_coloring *c)
     return color;
 }
 
-void cli_tell_coloring(cli_coloring *c, const cw_pipeline_facts *f)
+static void tell_range(cli_coloring *c, const cw_sample_facts *f, double low, double high)
 {
     c->has_range = true;
-    c->low = f->color_low;
-    c->high = f->color_high;
-    cli_say("%s: values %.6g to %.6g; colours from %.6g to %.6g by %s", c->args->by,
-            f->color.low, f->color.high, c->low, c->high,
-            cw_colormap_name((cw_colormap)c->args->map));
-    if (f->color.missing)
+    c->low = low;
+    c->high = high;
+    cli_say("%s: values %.6g to %.6g; colours from %.6g to %.6g by %s", c->args->by, f->low,
+            f->high, low, high, cw_colormap_name((cw_colormap)c->args->map));
+    if (f->missing)
         cli_say("%s: %s vertices are outside of it, and get the lowest value", c->args->by,
-                cli_count(f->color.missing));
+                cli_count(f->missing));
+}
+
+void cli_tell_coloring(cli_coloring *c, const cw_pipeline_facts *f)
+{
+    tell_range(c, &f->color, f->color_low, f->color_high);
+}
+
+cw_status cli_color_mesh(cli_coloring *c, cw_mesh *mesh, int threads, cw_error *err)
+{
+    const cw_sample_desc desc = {.threads = threads};
+    const cw_pipeline_color color = cli_describe_coloring(c);
+    cw_sample_facts facts;
+    cw_status st = cw_mesh_sample(mesh, &c->volume.view, &desc, &facts, err);
+    if (st != CW_OK)
+        return st;
+    const double low = color.has_range ? color.low : facts.low;
+    const double high = color.has_range ? color.high : facts.high;
+    tell_range(c, &facts, low, high);
+    return cw_mesh_color(mesh, color.map, low, high, err);
 }
 
 void cli_json_color(cli_json *j, const cli_coloring *c)

@@ -57,6 +57,10 @@ CW_NODISCARD cw_status cli_open_coloring(cli_coloring *coloring, const char *pat
 /* Returns the settings of the pipeline, without its callback: the map, and its range if it is known. */
 cw_pipeline_color cli_describe_coloring(const cli_coloring *coloring);
 
+/* Gives a mesh the values and colours of the volume that cli_open_coloring() read, and says so. */
+CW_NODISCARD cw_status cli_color_mesh(cli_coloring *coloring, cw_mesh *mesh, int threads,
+                                      cw_error *err);
+
 /* Says what the pipeline did, and keeps the range for the next surface. */
 void cli_tell_coloring(cli_coloring *coloring, const cw_pipeline_facts *facts);
 

@@ -64,7 +64,20 @@ void cli_report_end(cli_report *report, const char *name, size_t in, size_t out)
                         .out = out};
     if (report->step_count < report->step_room)
         report->steps[report->step_count++] = s;
-    cli_say_v("%-8s %8.3f s, peak %s", s.name, s.seconds, cli_bytes((double)s.peak_bytes));
+    cli_say_step(s.name, s.seconds);
+}
+
+void cli_report_read(cli_report *report, const cli_volume *volume)
+{
+    const cw_volume *v = &volume->view;
+    const size_t voxels = v->dim[0] * v->dim[1] * v->dim[2];
+    for (int n = 0; n < volume->change_count; n++)
+        report->step_start += volume->changes[n].seconds;
+    cli_report_end(report, "read", 1, voxels);
+    for (int n = 0; n < volume->change_count; n++) {
+        report->step_start = cli_seconds() - volume->changes[n].seconds;
+        cli_report_end(report, volume->changes[n].name, voxels, voxels);
+    }
 }
 
 static void put_features(cli_json *j)

@@ -106,7 +106,7 @@ typedef struct cli_report {
     double step_start;
 } cli_report;
 
-enum { CLI_STEPS_PER_MESH = 8 }; /* of one mesh */
+enum { CLI_STEPS_PER_MESH = 24 }; /* of one mesh */
 
 /* Grows the capacity to that many meshes, before their first step. CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cli_report_reserve(cli_report *report, size_t meshes, cw_error *err);
@@ -125,6 +125,9 @@ cli_made *cli_report_next(cli_report *report, const char *path, double iso);
 /* Times a step, from one call to the other. -v prints it. */
 void cli_report_begin(cli_report *report);
 void cli_report_end(cli_report *report, const char *name, size_t in, size_t out);
+
+/* Ends the step in which a volume was read and changed: as "read", and each change by itself. */
+void cli_report_read(cli_report *report, const cli_volume *volume);
 
 /* Says it of the latest mesh on stderr, unless quiet, and keeps it for the report. */
 void cli_report_warn(cli_report *report, const char *format, ...) CW_PRINTF(2, 3);

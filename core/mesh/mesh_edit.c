@@ -2,8 +2,7 @@
  * volume. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "core/geometry/union_find.h"
-#include "core/mesh/enclosed_volume.h"
+#include "core/mesh/components.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/mesh_attributes.h"
 #include "core/mesh/weld.h"
@@ -75,116 +74,8 @@ cw_status cw_mesh_weld(cw_mesh *mesh, size_t *merged, cw_error *err)
 
 /* --- components -------------------------------------------------------------------------- */
 
-/* Sets of vertices that triangles join, each with its box and, if that is the measure, its
- * volume. A vertex without triangles is a set, too. */
-typedef struct components {
-    uint32_t *set; /* number of a vertex' set; sets have the order of their first vertices */
-    size_t count;
-    float (*boxes)[6];    /* low, high */
-    cwi_volume_sum *sums; /* twelve times the volume; NULL: diagonals are the measure */
-    cwi_volume_unit unit; /* of the sums */
-    bool *cavity;         /* a closed set that faces inward; NULL like sums */
-    bool *dropped, *met;
-} components;
-
-static void free_components(components *c)
-{
-    cwi_free(c->set);
-    cwi_free(c->boxes);
-    cwi_free(c->sums);
-    cwi_free(c->cavity);
-    cwi_free(c->dropped);
-    cwi_free(c->met);
-}
-
-/* Joins vertices to sets and numbers them. Returns false when memory is out. */
-static bool number_sets(const cw_mesh *m, components *c)
-{
-    uint32_t *sets = c->set = cwi_sets_alloc(m->vertex_count), count = 0;
-    if (!sets)
-        return false;
-    for (size_t t = 0; t < m->triangle_count; t++)
-        for (size_t k = 1; k < 3; k++)
-            cwi_sets_join(sets, m->triangles[3 * t], m->triangles[3 * t + k]);
-    for (uint32_t v = 0; v < m->vertex_count; v++)
-        sets[v] = cwi_sets_find(sets, v);
-    for (uint32_t v = 0; v < m->vertex_count; v++) /* the first of a set is its root */
-        sets[v] = sets[v] == v ? count++ : sets[sets[v]];
-    c->count = count;
-    return true;
-}
-
-static cw_status find_components(const cw_mesh *m, components *c, cw_error *err)
-{
-    const bool numbered = number_sets(m, c);
-    c->boxes = cwi_alloc_array(c->count, sizeof *c->boxes);
-    c->dropped = cwi_alloc_zeroed(c->count, sizeof *c->dropped);
-    c->met = cwi_alloc_zeroed(c->count, sizeof *c->met);
-    if (!numbered || !c->boxes || !c->dropped || !c->met)
-        return cwi_fail_memory(err);
-    for (size_t n = 0; n < c->count; n++)
-        for (size_t a = 0; a < 3; a++) {
-            c->boxes[n][a] = INFINITY;
-            c->boxes[n][3 + a] = -INFINITY;
-        }
-    for (size_t v = 0; v < m->vertex_count; v++) {
-        float *box = c->boxes[c->set[v]];
-        for (size_t a = 0; a < 3; a++) {
-            const float p = m->positions[3 * v + a];
-            box[a] = p < box[a] ? p : box[a];
-            box[3 + a] = p > box[3 + a] ? p : box[3 + a];
-        }
-    }
-    return CW_OK;
-}
-
-static float find_largest(const cw_mesh *m)
-{
-    float largest = 0;
-    for (size_t n = 0; n < 3 * m->vertex_count; n++) {
-        const float size = fabsf(m->positions[n]);
-        largest = size > largest ? size : largest;
-    }
-    return largest;
-}
-
-/* Sums the tetrahedra up to the middle of the box. Corners are taken twice from there, as the
- * middle may be half a unit. */
-static cw_status measure_volumes(const cw_mesh *m, components *c, cw_error *err)
-{
-    cwi_volume_sum(*areas)[3] = cwi_alloc_zeroed(c->count, sizeof *areas);
-    c->sums = cwi_alloc_zeroed(c->count, sizeof *c->sums);
-    c->cavity = cwi_alloc_zeroed(c->count, sizeof *c->cavity);
-    if (!areas || !c->sums || !c->cavity) {
-        cwi_free(areas);
-        return cwi_fail_memory(err);
-    }
-    c->unit = cwi_volume_unit_for(find_largest(m));
-    for (size_t t = 0; t < m->triangle_count; t++) {
-        const uint32_t set = c->set[m->triangles[3 * t]];
-        const float *box = c->boxes[set];
-        int64_t corner[3][3], area[3], twice[3];
-        for (size_t n = 0; n < 9; n++)
-            corner[n / 3][n % 3] = cwi_volume_coordinate(
-                c->unit.scale, m->positions[3 * (size_t)m->triangles[3 * t + n / 3] + n % 3]);
-        for (size_t a = 0; a < 3; a++)
-            twice[a] = 2 * corner[0][a] - cwi_volume_coordinate(c->unit.scale, box[a]) -
-                       cwi_volume_coordinate(c->unit.scale, box[3 + a]);
-        cwi_volume_area(corner[0], corner[1], corner[2], area);
-        c->sums[set] += cwi_volume_dot(twice, area);
-        for (size_t a = 0; a < 3; a++)
-            areas[set][a] += area[a];
-    }
-    for (size_t n = 0; n < c->count; n++) {
-        c->cavity[n] = cwi_volume_is_cavity(c->sums[n], areas[n]);
-        c->sums[n] = cwi_volume_abs(c->sums[n]);
-    }
-    cwi_free(areas);
-    return CW_OK;
-}
-
 /* Returns the volume of a set, or the diagonal of its box. */
-static double measure_set(const components *c, size_t set)
+static double measure_set(const cwi_components *c, size_t set)
 {
     const float *box = c->boxes[set];
     double length_sq = 0;
@@ -208,7 +99,7 @@ static void count_component(cw_drop_counts *n, double size, bool keep)
     n->largest_mm3 = fmax(n->largest_mm3, size);
 }
 
-static void drop_components(cw_mesh *mesh, components *c, cw_drop_counts *counts)
+static void drop_components(cw_mesh *mesh, cwi_components *c, cw_drop_counts *counts)
 {
     size_t triangles = 0;
     cwi_volume_sum dropped = 0;
@@ -236,16 +127,16 @@ static void drop_components(cw_mesh *mesh, components *c, cw_drop_counts *counts
 static cw_status drop_smaller(cw_mesh *mesh, double min_value, bool by_volume,
                               cw_drop_counts *counts, cw_error *err)
 {
-    components c = {0};
-    cw_status st = find_components(mesh, &c, err);
+    cwi_components c = {0};
+    cw_status st = cwi_components_find(mesh, NULL, &c, err);
     if (st == CW_OK && by_volume)
-        st = measure_volumes(mesh, &c, err);
+        st = cwi_components_measure(mesh, &c, err);
     if (st == CW_OK) {
         for (size_t n = 0; n < c.count; n++)
             c.dropped[n] = !(measure_set(&c, n) >= min_value);
         drop_components(mesh, &c, counts);
     }
-    free_components(&c);
+    cwi_components_free(&c);
     return st;
 }
 
@@ -293,7 +184,8 @@ static int compare_ranks(const void *a, const void *b)
 }
 
 /* Marks all components but the largest. */
-static cw_status mark_smaller(const cw_mesh *mesh, components *c, size_t kept, cw_error *err)
+static cw_status mark_smaller(const cw_mesh *mesh, cwi_components *c, size_t kept,
+                              cw_error *err)
 {
     size_t count = 0;
     ranked_set *ranks = cwi_alloc_array(c->count, sizeof *ranks);
@@ -316,20 +208,20 @@ cw_status cw_mesh_keep_largest(cw_mesh *mesh, size_t count, cw_drop_counts *coun
                                cw_error *err)
 {
     CWI_REQUIRE(err, mesh);
-    components c = {0};
+    cwi_components c = {0};
     cw_drop_counts own;
     cw_status st = cw_mesh_check(mesh, err);
     if (st == CW_OK && count < 1)
         st = cwi_fail(err, CW_ERR_ARGUMENT, "count is 0; 1 or more was expected");
     if (st == CW_OK)
-        st = find_components(mesh, &c, err);
+        st = cwi_components_find(mesh, NULL, &c, err);
     if (st == CW_OK)
-        st = measure_volumes(mesh, &c, err);
+        st = cwi_components_measure(mesh, &c, err);
     if (st == CW_OK)
         st = mark_smaller(mesh, &c, count, err);
     if (st == CW_OK)
         drop_components(mesh, &c, counts ? counts : &own);
-    free_components(&c);
+    cwi_components_free(&c);
     return st;
 }
 
@@ -337,16 +229,16 @@ cw_status cw_mesh_drop_distant(cw_mesh *mesh, const float *distance_mm, double l
                                cw_drop_counts *counts, double *farthest_mm, cw_error *err)
 {
     CWI_REQUIRE(err, mesh, distance_mm);
-    components c = {0};
+    cwi_components c = {0};
     cw_drop_counts own;
     double farthest = 0;
     cw_status st = cw_mesh_check(mesh, err);
     if (st == CW_OK && !(limit_mm >= 0))
         st = cwi_fail(err, CW_ERR_ARGUMENT, "limit_mm is %g; it must be 0 or more", limit_mm);
     if (st == CW_OK)
-        st = find_components(mesh, &c, err);
+        st = cwi_components_find(mesh, NULL, &c, err);
     if (st == CW_OK)
-        st = measure_volumes(mesh, &c, err);
+        st = cwi_components_measure(mesh, &c, err);
     if (st == CW_OK) {
         memset(c.dropped, true, c.count * sizeof *c.dropped);
         for (uint32_t v = 0; v < mesh->vertex_count; v++)
@@ -361,6 +253,6 @@ cw_status cw_mesh_drop_distant(cw_mesh *mesh, const float *distance_mm, double l
     }
     if (st == CW_OK && farthest_mm)
         *farthest_mm = farthest;
-    free_components(&c);
+    cwi_components_free(&c);
     return st;
 }

@@ -309,9 +309,9 @@ static void set_values(const sorting *s, cwi_stack *stack)
     v->intercept = stack->scaled ? 0 : s->planes[0].frame.intercept;
     if (stack->scaled)
         v->type = cw_type_size(f->type) > 2 ? CW_F64 : CW_F32;
-    stack->has_padding = f->has_padding;
+    stack->has_padding = f->has_padding && s->desc->nodata == CW_NODATA_FILE;
     memcpy(stack->padding, f->padding, sizeof f->padding);
-    v->has_nodata = f->has_padding && !stack->scaled;
+    v->has_nodata = stack->has_padding && !stack->scaled;
     v->nodata = v->has_nodata ? f->padding[0] : 0;
 }
 

@@ -78,6 +78,13 @@ typedef struct cw_claim {
     cw_claim_rule rule;               /* where the file says something else */
 } cw_claim;
 
+/* Voxels that have no value. They are no part of a surface, nor of what borders it. */
+typedef enum cw_nodata {
+    CW_NODATA_FILE,  /* those that the file names, as DICOM's padding */
+    CW_NODATA_NONE,  /* none but NaN: the file's padding counts as values */
+    CW_NODATA_VALUE, /* those of one value, in place of the file's */
+} cw_nodata;
+
 /* Options of reading a volume. Zero-initialise the struct; a zero field means the default named
  * beside it. */
 typedef struct cw_read_desc {
@@ -129,6 +136,11 @@ typedef struct cw_read_desc {
     void (*note)(void *user, const char *text);
     void *note_user;      /* passed to note */
     cw_progress progress; /* default: none */
+
+    cw_nodata nodata; /* default: as the file says */
+    double
+        nodata_value; /* for CW_NODATA_VALUE: a value as the volume has it, slope and intercept
+                            applied; CW_ERR_ARGUMENT if voxels of its type cannot have it */
 } cw_read_desc;
 
 /* Reads a volume: the whole file or a region of it, every component and time step.

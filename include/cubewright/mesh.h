@@ -97,6 +97,34 @@ CW_API bool cw_mesh_bounds(const cw_mesh *mesh, double min[3], double max[3]);
  * Source   weights of corners [Max1999] */
 CW_NODISCARD CW_API cw_status cw_mesh_normals(cw_mesh *mesh, cw_error *err);
 
+/* Moves a mesh by an affine map of the world: scales, turns, mirrors and shifts it. Normals stay upright
+ * on the surface; other attributes that are directions turn along. A map that mirrors turns the
+ * triangles round, so that the outside stays outside.
+ *
+ * mesh     in place, with its affine, if it has one; unchanged on failure
+ * matrix   3 x 4, row by row: y = A x + t, LPS millimetres
+ * Returns  CW_ERR_ARGUMENT  a number is not finite, the determinant of A is 0, vertices would leave
+ *                           single precision, or as cw_mesh_check() */
+CW_NODISCARD CW_API cw_status cw_mesh_transform(cw_mesh *mesh, const double matrix[12],
+                                                cw_error *err);
+
+/* Parts a mesh into its solids: the sets of triangles that are joined by vertices at equal positions. A
+ * closed set that faces inward is the cavity of the smallest solid around it, and goes with
+ * that. Solids within cavities stay solids of their own.
+ *
+ * mesh     unchanged
+ * solids   set to an array of meshes, with the order of vertices and triangles, the origin, affine and
+ *          attributes of the mesh; larger enclosed volumes come first, an open set counting as in
+ *          cw_mesh_drop_volumes(). Free it with cw_meshes_free()
+ * count    set to their number; 0 for a mesh without triangles
+ * Returns  CW_ERR_ARGUMENT as cw_mesh_check(); CW_ERR_LIMIT: more than 2^32 / 3 triangles;
+ *          CW_ERR_NO_MEMORY */
+CW_NODISCARD CW_API cw_status cw_mesh_split(const cw_mesh *mesh, cw_mesh **solids,
+                                            size_t *count, cw_error *err);
+
+/* Frees an array of meshes with all that they hold. NULL is allowed. */
+CW_API void cw_meshes_free(cw_mesh *meshes, size_t count);
+
 /* Merges vertices at equal positions (0 equals -0) into the first of them, with its normal,
  * colour and other attributes. Triangles that name a vertex twice are left out, and then
  * vertices that no triangle names.

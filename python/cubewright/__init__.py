@@ -22,6 +22,7 @@ from ._extract import Extractor, LabelSurfaces, Patch, Settings, extract, extrac
 from ._library import lib as _lib
 from ._memory import memory_limit, memory_used
 from ._mesh import Mesh
+from ._place import split, transform
 from ._progress import Progress
 from ._read import read_mesh, read_volume
 from ._remesh import Remeshed, remesh
@@ -78,6 +79,8 @@ __all__ = [
     "simplify",
     "simplify_levels",
     "smooth",
+    "split",
+    "transform",
     "weld",
     "write",
     "write_png",

@@ -223,6 +223,12 @@ class cw_claim_rule(enum.IntEnum):
     CW_CLAIM_OVERRIDE = 2
 
 
+class cw_nodata(enum.IntEnum):
+    CW_NODATA_FILE = 0
+    CW_NODATA_NONE = 1
+    CW_NODATA_VALUE = 2
+
+
 class cw_compression(enum.IntEnum):
     CW_COMPRESS_NONE = 0
     CW_COMPRESS_QUANTIZE = 1
@@ -1690,6 +1696,8 @@ class cw_read_desc(Structure):
     note: Any
     note_user: Any
     progress: Any
+    nodata: int
+    nodata_value: float
 
 
 cw_read_desc._fields_ = [
@@ -1717,6 +1725,8 @@ cw_read_desc._fields_ = [
     ("note", CFUNCTYPE(None, c_void_p, c_char_p)),
     ("note_user", c_void_p),
     ("progress", cw_progress),
+    ("nodata", c_int),
+    ("nodata_value", c_double),
 ]
 
 
@@ -3340,6 +3350,9 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_mesh_check": (c_int, [POINTER(cw_mesh), POINTER(cw_error)]),
     "cw_mesh_bounds": (c_bool, [POINTER(cw_mesh), POINTER(c_double), POINTER(c_double)]),
     "cw_mesh_normals": (c_int, [POINTER(cw_mesh), POINTER(cw_error)]),
+    "cw_mesh_transform": (c_int, [POINTER(cw_mesh), POINTER(c_double), POINTER(cw_error)]),
+    "cw_mesh_split": (c_int, [POINTER(cw_mesh), POINTER(POINTER(cw_mesh)), POINTER(c_size_t), POINTER(cw_error)]),
+    "cw_meshes_free": (None, [POINTER(cw_mesh), c_size_t]),
     "cw_mesh_weld": (c_int, [POINTER(cw_mesh), POINTER(c_size_t), POINTER(cw_error)]),
     "cw_mesh_drop_components": (c_int, [POINTER(cw_mesh), c_double, POINTER(c_size_t), POINTER(c_size_t), POINTER(cw_error)]),
     "cw_mesh_drop_volumes": (c_int, [POINTER(cw_mesh), c_double, POINTER(cw_drop_counts), POINTER(cw_error)]),

@@ -57,6 +57,8 @@ KEYWORDS = {
     "desc->gaps = CW_GAPS_INTERPOLATE": "gaps='interpolate'",
     "desc->gaps = CW_GAPS_ALLOW": "gaps='allow'",
     "desc->tilt = CW_TILT_KEEP": "tilt='keep'",
+    "desc->nodata = CW_NODATA_NONE": "nodata='none'",
+    "desc->nodata": "nodata",
     "desc->skip_damaged": "skip_damaged=True",
     "desc->claim.rule = CW_CLAIM_OVERRIDE": "input_override=True",
     "desc->claim.unit": "input_unit=",

@@ -87,6 +87,7 @@ def read_volume(
     gaps: str = "stop",
     tilt: str = "correct",
     skip_damaged: bool = False,
+    nodata: float | str | None = None,
     crop: Sequence[Sequence[int]] | None = None,
     coarsen: int = 1,
     allow_external: bool = False,
@@ -109,6 +110,7 @@ def read_volume(
     coarsen     every n-th voxel along each axis
     gaps, tilt  'stop', 'interpolate' or 'allow'; 'correct' or 'keep'
     skip_damaged  leave out slices whose files are damaged; what they leave are gaps
+    nodata      value of voxels that have none; 'none': each has one, but NaN (as the file says)
     max_voxels, max_bytes  limits; 0: 2**40 voxels, any bytes
     note        called with one line for each finding and decision of the reader
     progress    see Progress
@@ -137,6 +139,10 @@ def read_volume(
         labels=pointer(table),
         progress=reporter.struct,
     )
+    if nodata is not None and nodata != "none":
+        desc.nodata, desc.nodata_value = c.cw_nodata.CW_NODATA_VALUE, take_number("nodata", nodata)
+    elif nodata is not None:
+        desc.nodata = c.cw_nodata.CW_NODATA_NONE
     if raw is not None:
         layout = c.cw_raw_layout()
         call(lib.cw_raw_layout_parse, take_text("raw", raw), byref(layout))

@@ -267,6 +267,40 @@ class Coordinates(Case):
         with self.fails(cw.Status.CANCELLED):
             cw.boolean([ball, other], progress=lambda *_: False)
 
+    def test_transform_moves_and_keeps_the_outside(self):
+        mesh = cw.extract(cw.Volume(make_ball(), origin=(5, 6, 7)), 0)
+        volume = cw.check(mesh).quality["volume_mm3"]
+        for matrix, factor in (
+            ([[2, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]], 2),
+            (np.diag([-1.0, 1, 1, 1]), 1),
+            ([[0, -1, 0, 5], [1, 0, 0, 0], [0, 0, 3, 0]], 3),
+        ):
+            moved = cw.transform(mesh, matrix)
+            self.assertAlmostEqual(cw.check(moved).quality["volume_mm3"] / volume, factor, 4)
+            full = np.asarray(matrix)[:3]
+            points = mesh.world_vertices() @ full[:, :3].T + full[:, 3]
+            self.assertTrue(np.allclose(moved.world_vertices(), points, atol=1e-4))
+        with self.fails(cw.Status.ARGUMENT):
+            cw.transform(mesh, np.zeros((3, 4)))
+        for wrong in (np.eye(3), np.ones((4, 4)), [1, 2]):
+            with self.assertRaises(ValueError):
+                cw.transform(mesh, wrong)
+
+    def test_split_parts_solids_with_their_cavities(self):
+        field = make_ball()
+        small = cw.extract(cw.Volume(field, spacing=(0.1, 0.1, 0.1)), 0)
+        large = cw.extract(field, 0)
+        (low, high), (a, b) = small.bounds, large.bounds
+        inner = cw.transform(small, np.c_[np.eye(3), (a + b - low - high) / 2])
+        n = len(large.vertices)
+        vertices = np.r_[inner.world_vertices(), large.world_vertices(), small.world_vertices() + 500].astype("f4")
+        m = len(inner.vertices)
+        triangles = np.r_[inner.triangles[:, ::-1], large.triangles + m, small.triangles + m + n]
+        solids = cw.split(cw.Mesh.from_arrays(vertices, triangles))
+        self.assertEqual([len(s.triangles) for s in solids], [len(triangles) - len(small.triangles), len(small.triangles)])
+        self.assertEqual(cw.check(solids[0]).quality["cavities"], 1)
+        self.assertEqual(cw.split(cw.Mesh.from_arrays(np.zeros((0, 3)), [])), [])
+
     def test_weld_merges_corners(self):
         mesh = cw.extract(make_ball(), 0)
         corners = mesh.vertices[mesh.triangles.ravel()]

@@ -31,13 +31,13 @@ cubewright help --search xyzzy || echo "exit $?"
 cubewright help --search 'threshold xyzzy' || echo "exit $?"
 cubewright help --search ' ' || echo "exit $?"
 # unknown options and commands ask the same index: what they name is in the results
-for words in 'extract --threshold' 'convert --scale' 'convert --rotate' 'convert --mirror' 'extract --resume' \
+for words in 'extract --threshold' 'extract --scale' 'extract --rotate' 'extract --mirror' 'extract --resume' \
     'render --decimate' 'extract --isovalue' 'extract --lables' 'extract --xyzzy' subtract decimate segment resume cut; do
     cubewright $words 2>error && echo "$words: accepted"
     cat error >&2
     word=$(sed -n "s/.*help --search \([a-z]*\)' finds.*/\1/p" error)
     [ -z "$word" ] || cubewright help --search "$word" >results
-    for name in $(sed -n "s/.*' finds //p" error | grep -o -e "--[a-z-]*" -e "'[a-z]*'"); do
+    for name in $(sed -n "s/.*' finds \([^;]*\).*/\1/p" error | grep -o -e "--[a-z-]*" -e "'[a-z]*'"); do
         name=${name#\'}
         grep -q -e "${name%\'}[: ]" results || echo "$words: the search has no $name"
     done
