@@ -1,4 +1,5 @@
-/* Reads NIfTI-1 and NIfTI-2: headers of fixed layout (nifti.nimh.nih.gov). */
+/* Reads NIfTI-1 and NIfTI-2: headers of fixed layout (nifti.nimh.nih.gov); and Analyze 7.5, from which
+ * the first one came: it has no magic, and no frame. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/bytes/byte_order.h"
@@ -152,7 +153,8 @@ typedef struct nifti {
     unsigned char bytes[MAX_HEADER];
     const cwi_nifti_layout *layout;
     bool swapped;
-    bool is_pair; /* the voxels are in a separate file */
+    bool is_pair;    /* the voxels are in a separate file */
+    bool is_analyze; /* Analyze 7.5 */
     bool gzipped;
     int used; /* number of dimensions: dim[0] */
 } nifti;
@@ -198,19 +200,26 @@ static cw_status read_header(const cwi_input *in, nifti *n, cw_error *err)
     const char *inside = n->gzipped ? "inside the gzip file, " : "";
     if (got < 4 || !find_layout(n)) {
         n->swapped = false;
-        return cwi_fail(err, CW_ERR_FORMAT,
-                        "%s'sizeof_hdr' is %.0f; a NIfTI header starts with 348 or 540", inside,
-                        got < 4 ? 0.0 : get_field(n, CWI_NIFTI_SIZEOF_HDR, 0));
+        return cwi_fail(
+            err, CW_ERR_FORMAT,
+            "%s'sizeof_hdr' is %.0f; a header of NIfTI or Analyze starts with 348 or 540",
+            inside, got < 4 ? 0.0 : get_field(n, CWI_NIFTI_SIZEOF_HDR, 0));
     }
     if (got < n->layout->bytes)
         return cwi_fail(err, CW_ERR_FORMAT, "%sthe header ends after %zu of %zu bytes", inside,
                         got, n->layout->bytes);
-    n->is_pair = has_magic(n, n->layout->pair);
-    if (!n->is_pair && !has_magic(n, n->layout->one_file))
+    const bool is_one_file = has_magic(n, n->layout->one_file);
+    const bool is_first = n->layout == &cwi_nifti_layouts[0];
+    n->is_analyze = !is_one_file && !has_magic(n, n->layout->pair) && is_first;
+    n->is_pair = has_magic(n, n->layout->pair) || n->is_analyze;
+    if (!n->is_pair && !is_one_file)
+        return cwi_fail(err, CW_ERR_FORMAT, "%s'magic' is neither '%s' nor '%s'", inside,
+                        n->layout->one_file, n->layout->pair);
+    if (n->is_analyze && !cwi_has_extension(in->path, ".hdr .hdr.gz"))
         return cwi_fail(
             err, CW_ERR_FORMAT,
-            "%s'magic' is neither '%s' nor '%s'; Analyze 7.5 files, which have none, "
-            "are not read",
+            "%s'magic' is neither '%s' nor '%s', and the header of an Analyze 7.5 pair "
+            "would be named .hdr",
             inside, n->layout->one_file, n->layout->pair);
     return CW_OK;
 }
@@ -443,8 +452,26 @@ static cw_status read_labels(const cwi_input *in, const nifti *n, cwi_source *sr
     return st;
 }
 
+/* Analyze has spacings alone. Its own fields in the places of NIfTI's codes are left out: sides are
+ * not stated reliably by any of them. */
+static cw_status read_analyze_frame(const nifti *n, cwi_source *src, cw_error *err)
+{
+    enum { UNIT = 56 };
+    const bool is_mm = strncmp((const char *)n->bytes + UNIT, "mm", 4) == 0;
+    src->frame_field = "pixdim";
+    snprintf(src->note, sizeof src->note,
+             "Analyze 7.5 does not state the frame: left and right may be exchanged");
+    if (is_mm) {
+        src->shape.known |= CW_KNOWN_UNIT;
+        src->shape.said_unit_mm = 1;
+    }
+    return read_pixdim(n, &src->shape, err);
+}
+
 static cw_status read_frame(const nifti *n, cwi_source *src, cw_error *err)
 {
+    if (n->is_analyze)
+        return read_analyze_frame(n, src, err);
     const bool sform = get_field(n, CWI_NIFTI_SFORM_CODE, 0) > 0;
     const bool qform = get_field(n, CWI_NIFTI_QFORM_CODE, 0) > 0;
     cw_status st = CW_OK;
@@ -480,9 +507,9 @@ cw_status cwi_nifti_parse(const cwi_input *in, cwi_source *src, cw_error *err)
         st = find_voxels(in, &n, src, err);
     if (st == CW_OK)
         st = read_frame(&n, src, err);
-    if (st == CW_OK)
+    if (st == CW_OK && !n.is_analyze)
         read_intent(&n, &src->shape);
-    if (st == CW_OK)
+    if (st == CW_OK && !n.is_analyze)
         st = read_labels(in, &n, src, err);
     if (st == CW_OK)
         read_scaling(&n, colours, &src->shape);

@@ -389,7 +389,7 @@ static void impossible_fields_are_named(void **state)
         {CWI_NIFTI_SROW, 0, NAN, "'srow' has numbers that are not finite"},
         {CWI_NIFTI_SROW, 3, INFINITY, "'srow' has numbers that are not finite"},
         {CWI_NIFTI_SIZEOF_HDR, 0, 347,
-         "'sizeof_hdr' is 347; a NIfTI header starts with 348 or 540"},
+         "'sizeof_hdr' is 347; a header of NIfTI or Analyze starts with 348 or 540"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         nifti_file f = make_nifti(1);
@@ -445,6 +445,33 @@ static void impossible_spacings_and_quaternions_are_named(void **state)
     assert_fails(read_back("a.nii", &v, &err), CW_ERR_FORMAT, "'quatern_b'", err);
 }
 
+/* Fields in the places of NIfTI's codes mean something else in Analyze, and are not looked at. */
+static void analyze_has_spacings_and_no_sides(void **state)
+{
+    (void)state;
+    for (int swapped = 0; swapped < 2; swapped++) {
+        nifti_file f = make_nifti(1);
+        cw_volume v;
+        cw_error err = {0};
+        put(&f, CWI_NIFTI_PIXDIM, 3, 4);
+        put(&f, CWI_NIFTI_QFORM_CODE, 0, 1);
+        put(&f, CWI_NIFTI_INTENT_CODE, 0, 1002);
+        put(&f, CWI_NIFTI_VOX_OFFSET, 0, 0);
+        if (swapped)
+            turn_bytes(&f);
+        memset(f.bytes + f.layout->magic, 0, 4);
+        memcpy(f.bytes + 56, "mm\0", 4);
+        put_file("a.img", "", f.bytes + f.layout->voxels, 24);
+        f.size = 348;
+        save(&f, "a.hdr");
+        assert_ok(read_back("a.hdr", &v, &err), err);
+        assert_int_equal(v.known, CW_KNOWN_UNIT);
+        assert_true(v.affine[0][0] == 1 && v.affine[2][2] == 4);
+        assert_true(cw_volume_value(&v, 1, 0, 0) == 1);
+        cw_volume_free(&v);
+    }
+}
+
 static void what_only_looks_like_nifti_is_told_apart(void **state)
 {
     (void)state;
@@ -454,8 +481,8 @@ static void what_only_looks_like_nifti_is_told_apart(void **state)
     put_file("text.nii", "This is no NIfTI file.", NULL, 0);
     assert_fails(read_back("text.nii", &v, &err), CW_ERR_FORMAT, "'sizeof_hdr' is", err);
     memset(f.bytes + f.layout->magic, 0, 4);
-    save(&f, "analyze.hdr");
-    assert_fails(read_back("analyze.hdr", &v, &err), CW_ERR_FORMAT, "Analyze 7.5", err);
+    save(&f, "analyze.nii");
+    assert_fails(read_back("analyze.nii", &v, &err), CW_ERR_FORMAT, "Analyze 7.5", err);
     save_gzipped(&f, "a.nii.gz");
     assert_fails(read_back("a.nii.gz", &v, &err), CW_ERR_FORMAT,
                  "inside the gzip file, 'magic'", err);
@@ -537,6 +564,7 @@ int main(void)
         TEST(directions_in_one_plane_are_refused),
         TEST(sizes_beyond_memory_are_refused),
         TEST(impossible_spacings_and_quaternions_are_named),
+        TEST(analyze_has_spacings_and_no_sides),
         TEST(what_only_looks_like_nifti_is_told_apart),
         TEST(a_cut_is_never_a_volume),
         TEST(broken_gzip_is_an_error),
