@@ -37,22 +37,49 @@ typedef struct cwi_vti_choice {
     char others[400];     /* names and types of arrays that are not read, for messages */
 } cwi_vti_choice;
 
-/* The content of the elements read so far. */
+/* The content of a piece, as far as its elements were read. */
 typedef struct cwi_vti {
     cwi_vtk_xml file;
-    cwi_vti_choice choice;
     int64_t extent[6]; /* of the piece: first and last index along x, y, z */
     double origin[3], spacing[3], direction[9];
     bool rectilinear;
     cwi_vtk_array coordinates[3];
-    size_t pieces, coordinate_arrays;
+    size_t coordinate_arrays;
     cwi_vti_data points, cells;
 } cwi_vti;
 
+/* A file of one piece or several, or one that lists the files of pieces. Zeroed but for the choice, it
+ * is closed. */
+typedef struct cwi_vti_file {
+    cwi_vti_choice choice;
+    cwi_vti common;    /* what all pieces have in common */
+    int64_t extent[6]; /* of the whole; has_extent: it was stated */
+    bool has_extent;
+    cwi_vti *pieces; /* count of them */
+    size_t count, capacity;
+    bool is_list; /* it lists files: */
+    cwi_names sources;
+} cwi_vti_file;
+
+/* Returns true for a list of files, and where the first piece is a part of the whole. Reads no further. */
+bool cwi_vti_may_have_pieces(const cwi_input *in);
+
+/* Reads the elements of a file. Close it, also after failure, with cwi_vti_close(). */
+CW_NODISCARD cw_status cwi_vti_open(const cwi_input *in, cwi_vti_file *file, cw_error *err);
+void cwi_vti_close(cwi_vti_file *file);
+
+/* Describes the voxels of a piece. */
+CW_NODISCARD cw_status cwi_vti_describe(const cwi_vti *v, const cwi_vti_choice *choice,
+                                        const cwi_input *in, cwi_source *src, cw_error *err);
+
+/* Returns the array that is the volume. of_cells: set to whether it has values of cells */
+const cwi_vti_array *cwi_vti_chosen(const cwi_vti *v, bool *of_cells);
+
 /* Parses the attributes of one element each. */
 CW_NODISCARD cw_status cwi_vti_image(cwi_vti *v, cwi_attributes a, cw_error *err);
-CW_NODISCARD cw_status cwi_vti_extent(cwi_attributes a, int64_t extent[6], cw_error *err);
-CW_NODISCARD cw_status cwi_vti_piece(cwi_vti *v, cwi_attributes a, cw_error *err);
+CW_NODISCARD cw_status cwi_vti_extent(cwi_attributes a, const char *name, int64_t extent[6],
+                                      cw_error *err);
+CW_NODISCARD cw_status cwi_vti_piece(cwi_vti_file *file, cwi_attributes a, cw_error *err);
 void cwi_vti_data_start(cwi_vti_data *data, bool of_cells, cwi_attributes a);
 
 /* Handles one array; *kept when it is the best so far, and is now data->best. */

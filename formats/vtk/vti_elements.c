@@ -1,4 +1,5 @@
 /* Parses the attributes of .vti and .vtr elements, and ranks their arrays. */
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "formats/vtk/vti.h"
@@ -37,29 +38,39 @@ cw_status cwi_vti_image(cwi_vti *v, cwi_attributes a, cw_error *err)
     return st == CW_OK ? parse_numbers(a, "Direction", 9, v->direction, err) : st;
 }
 
-cw_status cwi_vti_extent(cwi_attributes a, int64_t extent[6], cw_error *err)
+cw_status cwi_vti_extent(cwi_attributes a, const char *name, int64_t extent[6], cw_error *err)
 {
-    const char *text = cwi_attribute(a, "Extent"), *s = text ? text : "";
+    const char *text = cwi_attribute(a, name), *s = text ? text : "";
     for (int i = 0; i < 6; i++)
         if (!cwi_parse_int(&s, &extent[i]) || extent[i] > INT32_MAX || extent[i] < INT32_MIN)
             return cwi_fail(err, CW_ERR_FORMAT,
-                            "'Extent' is '%.60s'; six whole numbers were expected",
+                            "'%s' is '%.60s'; six whole numbers were expected", name,
                             text ? text : "");
     for (int i = 0; i < 6; i += 2)
         if (extent[i + 1] < extent[i] || extent[i + 1] - extent[i] >= INT32_MAX)
-            return cwi_fail(err, CW_ERR_FORMAT,
-                            "'Extent' is '%.60s'; it must hold 1 to 2147483647 points along "
-                            "each axis",
-                            text);
+            return cwi_fail(
+                err, CW_ERR_FORMAT,
+                "'%s' is '%.60s'; it must hold 1 to 2147483647 points along each axis", name,
+                text);
     return CW_OK;
 }
 
-cw_status cwi_vti_piece(cwi_vti *v, cwi_attributes a, cw_error *err)
+/* Adds a piece. Arrays are listed of the first one: all have the same. */
+cw_status cwi_vti_piece(cwi_vti_file *f, cwi_attributes a, cw_error *err)
 {
-    if (v->pieces++)
-        return cwi_fail(err, CW_ERR_FORMAT,
-                        "the file has several Piece elements; files of one are read");
-    return cwi_vti_extent(a, v->extent, err);
+    cwi_vti *pieces = cwi_grow_array(f->pieces, f->count, &f->capacity, sizeof *pieces);
+    if (!pieces)
+        return cwi_fail_memory(err);
+    f->pieces = pieces;
+    if (f->count && f->common.rectilinear)
+        return cwi_fail(
+            err, CW_ERR_FORMAT,
+            "the file has several Piece elements; rectilinear grids of one are read");
+    if (f->count)
+        f->choice.list = NULL;
+    cwi_vti *v = &f->pieces[f->count++];
+    *v = f->common;
+    return cwi_vti_extent(a, "Extent", v->extent, err);
 }
 
 void cwi_vti_data_start(cwi_vti_data *data, bool of_cells, cwi_attributes a)

@@ -1,6 +1,7 @@
 /* Reads VTK's XML image data (.vti) and rectilinear grids (.vtr). The elements are read as a
  * stream. The text of arrays only passes through. Reading stops where appended data start,
  * which need not be XML. */
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/vtk/vti.h"
 #include "formats/vtk/vtk_formats.h"
@@ -8,7 +9,7 @@
 
 #include <string.h>
 
-enum { MAX_ELEMENTS = 10000 };
+enum { MAX_ELEMENTS = 100000 };
 
 /* Recognises the first element VTKFile, of image data or of another kind, which is then
  * refused. */
@@ -20,50 +21,71 @@ bool cwi_vti_sniff(const unsigned char *head, size_t size)
 /* --- elements ---------------------------------------------------------------------------- */
 
 typedef struct parsing {
-    cwi_vti vti;
+    cwi_vti_file *file;
     cwi_vtk_array *open; /* the next tag ends its text; NULL: no wanted array */
 } parsing;
 
+/* Returns the piece at hand; before the first one what all have in common. */
+static cwi_vti *current(void *user)
+{
+    cwi_vti_file *f = ((parsing *)user)->file;
+    return f->count ? &f->pieces[f->count - 1] : &f->common;
+}
+
 static cw_status start_file(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
-    static const char *const kinds[3][2] = {
+    static const char *const kinds[4][2] = {
         {"ImageData", "a volume"},
         {"RectilinearGrid", "a volume"},
-        {"ImageData, RectilinearGrid (vti), StructuredGrid or UnstructuredGrid (vtu)",
+        {"PImageData", "a volume in files"},
+        {"ImageData, PImageData, RectilinearGrid (vti), StructuredGrid or UnstructuredGrid (vtu)",
          "a volume"}};
-    parsing *p = user;
+    cwi_vti_file *f = ((parsing *)user)->file;
     const char *type = cwi_attribute(a, "type");
     int kind = 0;
     (void)x;
-    while (kind < 2 && !(type && strcmp(type, kinds[kind][0]) == 0))
+    while (kind < 3 && !(type && strcmp(type, kinds[kind][0]) == 0))
         kind++;
-    p->vti.rectilinear = kind == 1;
-    return cwi_vtk_xml_file(&p->vti.file, a, kinds[kind], err);
+    f->common.rectilinear = kind == 1;
+    f->is_list = kind == 2;
+    return cwi_vtk_xml_file(&f->common.file, a, kinds[kind], err);
 }
 
 static cw_status start_image(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
+    cwi_vti_file *f = ((parsing *)user)->file;
     (void)x;
-    return cwi_vti_image(&((parsing *)user)->vti, a, err);
+    f->has_extent = cwi_vti_extent(a, "WholeExtent", f->extent, NULL) == CW_OK;
+    return cwi_vti_image(&f->common, a, err);
 }
 
 static cw_status start_piece(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
     (void)x;
-    return cwi_vti_piece(&((parsing *)user)->vti, a, err);
+    return cwi_vti_piece(((parsing *)user)->file, a, err);
+}
+
+/* Keeps the file of a piece; its own extent is in there. */
+static cw_status start_list_piece(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
+{
+    const char *name = cwi_attribute(a, "Source");
+    (void)x;
+    if (!name || !*name)
+        return cwi_fail(err, CW_ERR_FORMAT, "a Piece has no 'Source', the file that holds it");
+    return cwi_names_add(&((parsing *)user)->file->sources, name, err);
 }
 
 static cw_status start_points(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
     (void)x, (void)err;
-    cwi_vti_data_start(&((parsing *)user)->vti.points, false, a);
+    cwi_vti_data_start(&current(user)->points, false, a);
     return CW_OK;
 }
 
 static cw_status start_cells(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
     (void)x, (void)err;
-    cwi_vti_data_start(&((parsing *)user)->vti.cells, true, a);
+    cwi_vti_data_start(&current(user)->cells, true, a);
     return CW_OK;
 }
 
@@ -77,7 +99,7 @@ static cw_status start_data_array(parsing *p, cwi_vti_data *data, cwi_xml *x, cw
                                   cw_error *err)
 {
     bool kept;
-    cw_status st = cwi_vti_data_array(&p->vti.choice, data, a, &kept, err);
+    cw_status st = cwi_vti_data_array(&p->file->choice, data, a, &kept, err);
     if (kept)
         open_text(p, x, &data->best.data);
     return st;
@@ -85,32 +107,29 @@ static cw_status start_data_array(parsing *p, cwi_vti_data *data, cwi_xml *x, cw
 
 static cw_status start_array(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
-    parsing *p = user;
-    return start_data_array(p, &p->vti.points, x, a, err);
+    return start_data_array(user, &current(user)->points, x, a, err);
 }
 
 static cw_status start_cell_array(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
-    parsing *p = user;
-    return start_data_array(p, &p->vti.cells, x, a, err);
+    return start_data_array(user, &current(user)->cells, x, a, err);
 }
 
 static cw_status start_coordinates(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
-    parsing *p = user;
     size_t n;
-    cw_status st = cwi_vti_coordinates(&p->vti, a, &n, err);
+    cw_status st = cwi_vti_coordinates(current(user), a, &n, err);
     if (st == CW_OK)
-        open_text(p, x, &p->vti.coordinates[n]);
+        open_text(user, x, &current(user)->coordinates[n]);
     return st;
 }
 
 static cw_status start_appended(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
-    parsing *p = user;
-    p->vti.file.appended = cwi_xml_tag_end(x);
+    cwi_vtk_xml *file = &((parsing *)user)->file->common.file;
+    file->appended = cwi_xml_tag_end(x);
     cwi_xml_stop(x);
-    return cwi_vtk_xml_appended(&p->vti.file, a, err);
+    return cwi_vtk_xml_appended(file, a, err);
 }
 
 static cw_status end_text(void *user, cwi_xml *x, cw_error *err)
@@ -129,6 +148,8 @@ typedef enum element {
     E_IMAGE_PIECE,
     E_IMAGE_POINTS,
     E_IMAGE_CELLS,
+    E_LIST,
+    E_LIST_PIECE,
     E_GRID,
     E_GRID_PIECE,
     E_GRID_POINTS,
@@ -149,6 +170,8 @@ static const cwi_xml_element elements[ELEMENT_COUNT] = {
     [E_IMAGE_PIECE] = {"Piece", E_IMAGE, start_piece, NULL},
     [E_IMAGE_POINTS] = {"PointData", E_IMAGE_PIECE, start_points, NULL},
     [E_IMAGE_CELLS] = {"CellData", E_IMAGE_PIECE, start_cells, NULL},
+    [E_LIST] = {"PImageData", E_FILE, start_image, NULL},
+    [E_LIST_PIECE] = {"Piece", E_LIST, start_list_piece, NULL},
     [E_GRID] = {"RectilinearGrid", E_FILE, start_image, NULL},
     [E_GRID_PIECE] = {"Piece", E_GRID, start_piece, NULL},
     [E_GRID_POINTS] = {"PointData", E_GRID_PIECE, start_points, NULL},
@@ -167,6 +190,42 @@ static const cwi_xml_rules rules = {.elements = elements,
                                     .max_elements = MAX_ELEMENTS,
                                     .tag = end_text};
 
+/* --- several pieces ----------------------------------------------------------------------- */
+
+/* Stops at the first piece. */
+static cw_status look_at_piece(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
+{
+    cwi_xml_stop(x);
+    return cwi_vti_piece(((parsing *)user)->file, a, err);
+}
+
+static cw_status look_at_list(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
+{
+    cwi_xml_stop(x);
+    return start_image(user, x, a, err);
+}
+
+bool cwi_vti_may_have_pieces(const cwi_input *in)
+{
+    static const cwi_xml_element first[] = {
+        {"VTKFile", CWI_XML_ROOT, start_file, NULL},
+        {"ImageData", 0, start_image, NULL},
+        {"Piece", 1, look_at_piece, NULL},
+        {"PImageData", 0, look_at_list, NULL},
+    };
+    static const cwi_xml_rules looking = {
+        .elements = first, .element_count = 4, .max_elements = 100};
+    cwi_vti_file file = {0};
+    parsing p = {.file = &file};
+    const bool is_read = cwi_xml_read_file(&looking, &p, in, NULL) == CW_OK;
+    const bool may =
+        is_read &&
+        (file.is_list || (file.count && file.has_extent &&
+                          memcmp(file.pieces->extent, file.extent, sizeof file.extent) != 0));
+    cwi_vti_close(&file);
+    return may;
+}
+
 /* --- the array ---------------------------------------------------------------------------- */
 
 /* Chooses the array that is the volume: at points, unless only cells have one. */
@@ -180,13 +239,13 @@ static bool is_of_cells(const cwi_vti *v)
     return choose_array(v) == &v->cells.best;
 }
 
-static cw_status check_found(const cwi_vti *v, cw_error *err)
+static cw_status check_found(const cwi_vti *v, const cwi_vti_choice *choice, cw_error *err)
 {
     if (v->rectilinear && v->coordinate_arrays != 3)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "Coordinates has %zu arrays; one for x, y and z each was expected",
                         v->coordinate_arrays);
-    return choose_array(v)->rank != CWI_VTI_NONE ? CW_OK : cwi_vti_fail_choice(&v->choice, err);
+    return choose_array(v)->rank != CWI_VTI_NONE ? CW_OK : cwi_vti_fail_choice(choice, err);
 }
 
 /* --- coordinates -------------------------------------------------------------------------- */
@@ -243,25 +302,58 @@ static void set_frame(const cwi_vti *v, cw_volume *shape)
     }
 }
 
-cw_status cwi_vti_parse(const cwi_input *in, cwi_source *src, cw_error *err)
+cw_status cwi_vti_open(const cwi_input *in, cwi_vti_file *file, cw_error *err)
 {
-    parsing p = {.vti = {.choice = {.expected = in->array, .list = in->arrays}}};
-    cwi_vti *v = &p.vti;
-    src->size_field = "Extent";
-    src->frame_field = "Direction, Spacing, Origin";
+    parsing p = {.file = file};
     cw_status st = cwi_xml_read_file(&rules, &p, in, err);
     if (st == CW_OK)
-        st = cwi_vtk_xml_find_appended(in, &v->file, err);
-    if (st == CW_OK)
-        st = check_found(v, err);
+        st = cwi_vtk_xml_find_appended(in, &file->common.file, err);
+    for (size_t n = 0; n < file->count; n++)
+        file->pieces[n].file = file->common.file; /* the place of appended data comes last */
+    return st;
+}
+
+void cwi_vti_close(cwi_vti_file *file)
+{
+    cwi_free(file->pieces);
+    cwi_names_free(&file->sources);
+    *file = (cwi_vti_file){0};
+}
+
+cw_status cwi_vti_describe(const cwi_vti *v, const cwi_vti_choice *choice, const cwi_input *in,
+                           cwi_source *src, cw_error *err)
+{
+    src->size_field = "Extent";
+    src->frame_field = "Direction, Spacing, Origin";
+    cw_status st = check_found(v, choice, err);
     if (st == CW_OK)
         st = set_sizes(v, src, err);
     if (st != CW_OK)
         return st;
-    cwi_array_list_choose(in->arrays, choose_array(v)->data.name, is_of_cells(v));
     if (v->rectilinear)
         st = set_coordinates(v, in, &src->shape, err);
     else
         set_frame(v, &src->shape);
     return st == CW_OK ? cwi_vtk_xml_place(&v->file, &choose_array(v)->data, in, src, err) : st;
+}
+
+const cwi_vti_array *cwi_vti_chosen(const cwi_vti *v, bool *of_cells)
+{
+    *of_cells = is_of_cells(v);
+    return choose_array(v);
+}
+
+cw_status cwi_vti_parse(const cwi_input *in, cwi_source *src, cw_error *err)
+{
+    cwi_vti_file file = {.choice = {.expected = in->array, .list = in->arrays}};
+    bool of_cells;
+    cw_status st = cwi_vti_open(in, &file, err);
+    const cwi_vti *v = file.count ? &file.pieces[0] : &file.common;
+    if (st == CW_OK)
+        st = cwi_vti_describe(v, &file.choice, in, src, err);
+    if (st == CW_OK)
+        cwi_array_list_choose(in->arrays, cwi_vti_chosen(v, &of_cells)->data.name,
+                              is_of_cells(v));
+    cwi_vti_close(&file);
+    return st;
 }

@@ -17,9 +17,11 @@ const cwi_format_driver cwi_format_vtu = {
 
 const cwi_format_driver cwi_format_vti = {
     .name = "vti",
-    .extensions = ".vti .vtr",
+    .extensions = ".vti .pvti .vtr",
     .about = "VTK image data or rectilinear grid as XML",
-    .volume = {.sniff = cwi_vti_sniff, .parse = cwi_vti_parse},
+    .volume = {.sniff = cwi_vti_sniff,
+               .parse = cwi_vti_parse,
+               .read_grid = cwi_vti_read_pieces},
 };
 
 const cwi_format_driver cwi_format_vtp = {

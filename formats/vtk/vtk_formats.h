@@ -8,7 +8,7 @@ extern const cwi_format_driver cwi_format_vtk, cwi_format_vtu, cwi_format_vti, c
 
 cwi_volume_sniffer cwi_vtk_sniff, cwi_vtu_sniff, cwi_vti_sniff;
 cwi_header_parser cwi_vtk_parse, cwi_vti_parse;
-cwi_grid_reader cwi_vtk_read_grid, cwi_vtu_read;
+cwi_grid_reader cwi_vtk_read_grid, cwi_vtu_read, cwi_vti_read_pieces;
 cwi_mesh_sniffer cwi_vtp_sniff;
 cwi_mesh_reader cwi_vtp_read;
 cwi_mesh_writer cwi_vtp_write;

@@ -53,6 +53,12 @@ cw_status cwi_vtk_xml_file(cwi_vtk_xml *v, cwi_attributes a, const char *const k
     int order = 0, word = 0, compressor = 0;
     const char *type = cwi_attribute(a, "type");
     v->has_order = cwi_attribute(a, "byte_order");
+    if (type &&
+        (strncmp(type, "vtk", 3) == 0 || (*type == 'P' && strcmp(type, "PolyData") != 0)) &&
+        strcmp(type, kind[0]) != 0)
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the VTK file is '%.40s', a list of other files; name one of them",
+                        type);
     if (!type || strcmp(type, kind[0]) != 0)
         return cwi_fail(err, CW_ERR_FORMAT, "the VTK file is '%.40s'; only %s is %s",
                         type ? type : "", kind[0], kind[1]);

@@ -93,7 +93,7 @@ static cw_status grow_pieces(parsing *p, cw_error *err)
 static cw_status set_extent(cwi_grid_piece *g, cwi_attributes a, cw_error *err)
 {
     int64_t extent[6];
-    cw_status st = cwi_vti_extent(a, extent, err);
+    cw_status st = cwi_vti_extent(a, "Extent", extent, err);
     for (int i = 0; i < 3 && st == CW_OK; i++)
         g->along[i] = (size_t)(extent[2 * i + 1] - extent[2 * i] + 1);
     return st == CW_OK ? cwi_grid_along(g, "Extent", err) : st;
