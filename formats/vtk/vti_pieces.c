@@ -44,7 +44,7 @@ static cw_status with_file(joining *j, size_t n,
     side.arrays = n == 0 ? j->in->arrays : NULL;
     cw_status st = cwi_input_open_side(j->in, name, &side.fd, &side.size, err);
     if (st != CW_OK)
-        return st;
+        return cwi_fail_in(err, st, name);
     st = read(j, n, &side, err);
     close(side.fd);
     return st == CW_OK ? st : cwi_fail_in(err, st, name);
