@@ -2,10 +2,8 @@
 #ifndef FORMATS_DICOM_DICOM_FILE_HPP
 #define FORMATS_DICOM_DICOM_FILE_HPP
 
-#include "formats/dicom/dicom.h"
 #include "formats/dicom/dicom_stream.hpp"
-
-#include <dcmtk/dcmdata/dctk.h>
+#include "formats/dicom/dicom_values.hpp"
 
 #include <memory>
 #include <vector>
@@ -58,12 +56,6 @@ struct DicomFile {
         fd = -1;
     }
 };
-
-// Returns the text of a value; empty where there is none.
-OFString text_of(DcmItem *item, const DcmTagKey &tag, unsigned long at = 0);
-
-// Reads a number in any representation; returns false where there is none that is finite.
-bool number_of(DcmItem *item, const DcmTagKey &tag, unsigned long at, double *out);
 
 // Tells whether frames of a transfer syntax are compressed. DCMTK 3.6.9 asks in two parts what
 // 3.6.7 answers in one.

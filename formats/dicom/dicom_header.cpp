@@ -1,8 +1,8 @@
 // Reads the facts of a file by DCMTK, behind plain C: the first half of the module "dicom".
 #include "core/base/guard.hpp"
-#include "core/base/text.h"
-#include "formats/dicom/dicom_csa.h"
 #include "formats/dicom/dicom_file.hpp"
+#include "formats/dicom/dicom_frames.hpp"
+#include "formats/dicom/dicom_mosaic.hpp"
 
 #include <dcmtk/dcmdata/dccodec.h>
 #include <dcmtk/dcmdata/dcrledrg.h>
@@ -14,53 +14,10 @@
 #include <cstdio>
 #include <cstring>
 
-namespace cw
-{
-
-OFString text_of(DcmItem *item, const DcmTagKey &tag, unsigned long at)
-{
-    OFString text;
-    if (!item || item->findAndGetOFString(tag, text, at).bad())
-        text.clear();
-    return text;
-}
-
-bool number_of(DcmItem *item, const DcmTagKey &tag, unsigned long at, double *out)
-{
-    Float64 value = 0;
-    if (!item)
-        return false;
-    if (item->findAndGetFloat64(tag, value, at).bad()) { // not one of the real representations
-        const OFString text = text_of(item, tag, at);
-        const char *s = text.c_str();
-        if (!cwi_parse_double(&s, &value))
-            return false;
-    }
-    *out = value;
-    return std::isfinite(value);
-}
-
-} // namespace cw
-
 using namespace cw;
 
 namespace
 {
-
-uint32_t count_of(DcmItem *item, const DcmTagKey &tag, uint32_t otherwise)
-{
-    double value;
-    return number_of(item, tag, 0, &value) && value >= 0 && value <= UINT32_MAX
-               ? uint32_t(value)
-               : otherwise;
-}
-
-int64_t integer_of(DcmItem *item, const DcmTagKey &tag)
-{
-    double value;
-    return number_of(item, tag, 0, &value) && std::fabs(value) < 1e15 ? int64_t(value)
-                                                                      : INT64_MIN;
-}
 
 // Returns the number of frames; 0 where it is stated, but is no whole number above 0.
 uint32_t frames_of(DcmItem *data)
@@ -72,33 +29,6 @@ uint32_t frames_of(DcmItem *data)
                    value <= UINT32_MAX && value == std::floor(value)
                ? uint32_t(value)
                : 0;
-}
-
-bool numbers_of(DcmItem *item, const DcmTagKey &tag, unsigned count, double *out)
-{
-    for (unsigned n = 0; n < count; n++)
-        if (!number_of(item, tag, n, out + n))
-            return false;
-    return true;
-}
-
-template <size_t size> void copy_text(char (&to)[size], const OFString &text)
-{
-    std::snprintf(to, size, "%s", text.c_str());
-}
-
-void refuse(cwi_dicom_facts *f, const char *why)
-{
-    if (why && !f->refusal[0])
-        copy_text(f->refusal, why);
-}
-
-DcmItem *first_item(DcmItem *item, const DcmTagKey &sequence)
-{
-    DcmItem *found = nullptr;
-    if (item && item->findAndGetSequenceItem(sequence, found, 0).good())
-        return found;
-    return nullptr;
 }
 
 // Finds the kind of object. DCMTK 3.6.7 does not know the class of label maps.
@@ -209,217 +139,6 @@ void take_padding(DcmItem *data, const PixelLayout &l, cwi_dicom_facts *f)
     f->padding[0] = a < b ? a : b;
     f->padding[1] = a < b ? b : a;
 }
-
-// --- the frames
-// --------------------------------------------------------------------------------
-
-void take_keys(DcmItem *item, cwi_dicom_frame *f)
-{
-    static const struct {
-        int key;
-        DcmTagKey tag;
-    } rows[] = {{CWI_DICOM_TEMPORAL, DCM_TemporalPositionIdentifier},
-                {CWI_DICOM_TEMPORAL, DCM_TemporalPositionIndex},
-                {CWI_DICOM_REFERENCE, DCM_FrameReferenceTime},
-                {CWI_DICOM_TRIGGER, DCM_TriggerTime},
-                {CWI_DICOM_ECHO, DCM_EchoTime},
-                {CWI_DICOM_ECHO, DCM_EffectiveEchoTime},
-                {CWI_DICOM_B_VALUE, DCM_DiffusionBValue},
-                {CWI_DICOM_ACQUISITION, DCM_AcquisitionNumber}};
-    double value;
-    for (const auto &row : rows)
-        if (number_of(item, row.tag, 0, &value))
-            f->keys[row.key] = value;
-}
-
-// Reads geometry and scaling, where an item has them.
-void take_plane(DcmItem *item, cwi_dicom_frame *f)
-{
-    double spacing[2], value;
-    if (numbers_of(item, DCM_ImagePositionPatient, 3, f->position))
-        f->has |= CWI_DICOM_POSITION;
-    if (numbers_of(item, DCM_ImageOrientationPatient, 6, &f->axes[0][0]))
-        f->has |= CWI_DICOM_ORIENTATION;
-    if (numbers_of(item, DCM_PixelSpacing, 2, spacing)) {
-        f->spacing[0] = spacing[1]; // "row spacing" comes first: the spacing between rows
-        f->spacing[1] = spacing[0];
-        f->has |= CWI_DICOM_SPACING;
-    }
-    if (number_of(item, DCM_SpacingBetweenSlices, 0, &value) ||
-        (!(f->has & CWI_DICOM_BETWEEN) && number_of(item, DCM_SliceThickness, 0, &value))) {
-        f->between = std::fabs(value);
-        f->has |= CWI_DICOM_BETWEEN;
-    }
-    if (number_of(item, DCM_RescaleSlope, 0, &value))
-        f->slope = value;
-    if (number_of(item, DCM_RescaleIntercept, 0, &value)) {
-        const OFString type = text_of(item, DCM_RescaleType);
-        f->intercept = value;
-        if (type.empty() || type == "HU")
-            f->has |= CWI_DICOM_RESCALED;
-    }
-}
-
-cwi_dicom_frame plain_frame(DcmItem *data)
-{
-    cwi_dicom_frame f = {};
-    f.slope = 1;
-    for (double &key : f.keys)
-        key = NAN;
-    take_plane(first_item(data, DCM_DetectorInformationSequence), &f); // nuclear medicine
-    take_plane(data, &f);
-    take_keys(data, &f);
-    double scaling;
-    if (number_of(data, DCM_DoseGridScaling, 0, &scaling))
-        f.slope = scaling;
-    return f;
-}
-
-// Reads the functional groups of a multi-frame object: those of all frames, then those of one.
-void take_groups(DcmItem *groups, cwi_dicom_frame *f)
-{
-    static const DcmTagKey planes[] = {DCM_PixelMeasuresSequence, DCM_PlaneOrientationSequence,
-                                       DCM_PlanePositionSequence,
-                                       DCM_PixelValueTransformationSequence};
-    static const DcmTagKey keys[] = {DCM_FrameContentSequence, DCM_MREchoSequence,
-                                     DCM_MRDiffusionSequence};
-    for (const DcmTagKey &tag : planes)
-        take_plane(first_item(groups, tag), f);
-    for (const DcmTagKey &tag : keys)
-        take_keys(first_item(groups, tag), f);
-    DcmItem *segment = first_item(groups, DCM_SegmentIdentificationSequence);
-    if (segment)
-        f->segment = count_of(segment, DCM_ReferencedSegmentNumber, 0);
-}
-
-// Places frames at equal distances from the first, or at stated ones, along the normal.
-void take_offset(DcmItem *data, uint32_t n, cwi_dicom_frame *f)
-{
-    const double(&a)[2][3] = f->axes;
-    double offset = n * f->between;
-    const bool stated = number_of(data, DCM_GridFrameOffsetVector, n, &offset);
-    if (!stated && !(n == 0 || text_of(data, DCM_Modality) == "NM"))
-        f->has &= ~unsigned(CWI_DICOM_POSITION);
-    for (int c = 0; c < 3; c++) {
-        const int d = (c + 1) % 3, e = (c + 2) % 3;
-        f->position[c] += offset * (a[0][d] * a[1][e] - a[0][e] * a[1][d]);
-    }
-}
-
-void take_frames(DcmItem *data, cwi_dicom_facts *facts)
-{
-    DcmSequenceOfItems *each = nullptr;
-    cwi_dicom_frame *frames = reinterpret_cast<cwi_dicom_frame *>(facts + 1);
-    cwi_dicom_frame common = plain_frame(data);
-    take_groups(first_item(data, DCM_SharedFunctionalGroupsSequence), &common);
-    if (data->findAndGetSequence(DCM_PerFrameFunctionalGroupsSequence, each).bad())
-        each = nullptr;
-    for (uint32_t n = 0; n < facts->frame_count; n++) {
-        cwi_dicom_frame *f = frames + n;
-        *f = common;
-        if (each)
-            take_groups(each->getItem(n), f);
-        else if (facts->frame_count > 1)
-            take_offset(data, n, f);
-    }
-}
-
-// --- mosaics
-// -----------------------------------------------------------------------------------
-
-// Returns true for a mosaic: Siemens scanners show the slices of one moment side by side.
-bool is_mosaic(DcmItem *data, const PixelLayout &l)
-{
-    for (unsigned long n = 0; n < 16; n++)
-        if (text_of(data, DCM_ImageType, n) == "MOSAIC")
-            return l.frames == 1;
-    return false;
-}
-
-// Finds the element of a private group that a name has reserved; NULL where there is none.
-const Uint8 *private_bytes(DcmItem *data, Uint16 group, const char *name, Uint16 number,
-                           size_t *size)
-{
-    for (unsigned block = 0x10; block < 0x100; block++) {
-        DcmElement *element = nullptr;
-        Uint8 *bytes = nullptr;
-        if (text_of(data, DcmTagKey(group, Uint16(block))) != name ||
-            data->findAndGetElement(DcmTagKey(group, Uint16(block << 8 | number)), element)
-                .bad() ||
-            element->getUint8Array(bytes).bad() || !bytes)
-            continue;
-        *size = element->getLength();
-        return bytes;
-    }
-    return nullptr;
-}
-
-// Reads the number and the direction of the slices; returns the error, or NULL.
-const char *read_mosaic(DcmItem *data, const PixelLayout &l, Mosaic &m)
-{
-    size_t size = 0;
-    double count = 0;
-    const Uint8 *csa = private_bytes(data, 0x0029, "SIEMENS CSA HEADER", 0x10, &size);
-    if (!csa)
-        return "it is a mosaic of slices, and has no CSA header (0029,1010) that says where "
-               "they lie";
-    if (!cwi_csa_numbers(csa, size, "NumberOfImagesInMosaic", 1, &count) ||
-        !cwi_csa_numbers(csa, size, "SliceNormalVector", 3, m.normal))
-        return "it is a mosaic of slices, and its CSA header (0029,1010) is damaged or has no "
-               "NumberOfImagesInMosaic or SliceNormalVector";
-    if (!(count >= 1 && count <= 4096) || count != std::floor(count))
-        return "NumberOfImagesInMosaic of its CSA header is not from 1 to 4096";
-    m.count = uint32_t(count);
-    m.across = uint32_t(std::ceil(std::sqrt(count)));
-    if (l.columns % m.across || l.rows % m.across)
-        return "it is a mosaic of slices, and Rows and Columns are no multiples of a slice's";
-    return nullptr;
-}
-
-// Computes the place of the first slice. The stated place is that of a slice as large as the
-// mosaic, around the same middle.
-const char *place_slices(const Mosaic &m, cwi_dicom_facts *f)
-{
-    cwi_dicom_frame *frames = reinterpret_cast<cwi_dicom_frame *>(f + 1), first = frames[0];
-    const unsigned needed =
-        CWI_DICOM_POSITION | CWI_DICOM_ORIENTATION | CWI_DICOM_SPACING | CWI_DICOM_BETWEEN;
-    const double(&a)[2][3] = first.axes;
-    double along = 0;
-    if ((first.has & needed) != needed || !(first.between > 0))
-        return "it is a mosaic of slices without one of ImagePositionPatient, "
-               "ImageOrientationPatient, PixelSpacing and SpacingBetweenSlices";
-    for (int c = 0; c < 3; c++) {
-        const int d = (c + 1) % 3, e = (c + 2) % 3;
-        along += m.normal[c] * (a[0][d] * a[1][e] - a[0][e] * a[1][d]);
-        first.position[c] +=
-            (m.across - 1) / 2.0 *
-            (a[0][c] * first.spacing[0] * f->columns + a[1][c] * first.spacing[1] * f->rows);
-    }
-    if (!(std::fabs(std::fabs(along) - 1) < 1e-2))
-        return "SliceNormalVector of its CSA header is not normal to ImageOrientationPatient";
-    for (uint32_t n = 0; n < f->frame_count; n++) {
-        frames[n] = first;
-        for (int c = 0; c < 3; c++)
-            frames[n].position[c] += n * first.between * m.normal[c];
-    }
-    return nullptr;
-}
-
-void unfold(DicomFile &d, cwi_dicom_facts *f)
-{
-    d.mosaic = Mosaic();
-    if (!is_mosaic(d.data(), d.layout))
-        return;
-    const char *why = read_mosaic(d.data(), d.layout, d.mosaic);
-    if (!why) {
-        f->columns /= d.mosaic.across;
-        f->rows /= d.mosaic.across;
-        f->frame_count = d.mosaic.count;
-        why = place_slices(d.mosaic, f);
-    }
-    refuse(f, why);
-}
-
 // --- the file
 // ----------------------------------------------------------------------------------
 
@@ -602,7 +321,7 @@ cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t capacity, cw_error
     take_frames(data, f);
     take_segments(data, f, capacity);
     scale_fractions(data, f);
-    unfold(d, f);
+    unfold_mosaic(d, f);
     return CW_OK;
 }
 
