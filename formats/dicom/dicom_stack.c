@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
+#include "formats/dicom/dicom_order.h"
 #include "formats/volume/slice_spacing.h"
 #include "formats/volume/volume_reader.h"
 
@@ -14,17 +15,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The planes of the series while they are sorted. */
-typedef struct sorting {
-    cwi_dicom_plane *planes;
-    size_t count;
-    size_t position_count; /* number of different positions */
-    size_t steps;          /* planes at each position */
-    double normal[3];
-    const cw_read_desc *desc;
-    cwi_dicom_findings *findings;
-} sorting;
-
 /* --- checks of the geometry --------------------------------------------------------------- */
 
 static bool states_spacing(const cw_read_desc *desc)
@@ -32,7 +22,8 @@ static bool states_spacing(const cw_read_desc *desc)
     return desc->spacing_mm[0] > 0;
 }
 
-static cw_status check_has(const sorting *s, unsigned flag, const char *field, cw_error *err)
+static cw_status check_has(const cwi_dicom_sorting *s, unsigned flag, const char *field,
+                           cw_error *err)
 {
     size_t missing = 0;
     for (size_t i = 0; i < s->count; i++)
@@ -46,7 +37,7 @@ static cw_status check_has(const sorting *s, unsigned flag, const char *field, c
         missing, s->count, field);
 }
 
-static bool is_placed(const sorting *s)
+static bool is_placed(const cwi_dicom_sorting *s)
 {
     const unsigned both = CWI_DICOM_POSITION | CWI_DICOM_ORIENTATION;
     for (size_t i = 0; i < s->count; i++)
@@ -55,7 +46,7 @@ static bool is_placed(const sorting *s)
     return true;
 }
 
-static cw_status check_geometry(const sorting *s, cw_error *err)
+static cw_status check_geometry(const cwi_dicom_sorting *s, cw_error *err)
 {
     const double *x = s->planes[0].frame.axes[0], *y = s->planes[0].frame.axes[1];
     cw_status st = check_has(s, CWI_DICOM_POSITION, "ImagePositionPatient", err);
@@ -74,147 +65,10 @@ static cw_status check_geometry(const sorting *s, cw_error *err)
     return CW_OK;
 }
 
-/* --- order -------------------------------------------------------------------------------- */
-
-static int by_distance(const void *x, const void *y)
-{
-    const cwi_dicom_plane *a = x, *b = y;
-    return (a->distance > b->distance) - (a->distance < b->distance);
-}
-
-static int by_position_and_step(const void *x, const void *y)
-{
-    const cwi_dicom_plane *a = x, *b = y;
-    if (a->position_index != b->position_index)
-        return a->position_index < b->position_index ? -1 : 1;
-    return (a->step > b->step) - (a->step < b->step);
-}
-
-static void sort_planes(sorting *s, int (*compare)(const void *, const void *))
-{
-    qsort(s->planes, s->count, sizeof *s->planes, compare);
-}
-
-static int by_position_and_number(const void *x, const void *y)
-{
-    const cwi_dicom_plane *a = x, *b = y;
-    if (a->position_index != b->position_index)
-        return a->position_index < b->position_index ? -1 : 1;
-    const int64_t m = a->file->instance_number, n = b->file->instance_number;
-    return m != n ? (m < n ? -1 : 1) : (a->number > b->number) - (a->number < b->number);
-}
-
-/* Finds the positions; those that differ by less than a thousandth of a pixel are one. */
-static void find_positions(sorting *s)
-{
-    const double *x = s->planes[0].frame.axes[0], *y = s->planes[0].frame.axes[1];
-    const double same = 1e-3 * s->planes[0].frame.spacing[0];
-    cwi_cross(x, y, s->normal);
-    for (size_t i = 0; i < s->count; i++)
-        s->planes[i].distance = cwi_dot(s->planes[i].frame.position, s->normal);
-    sort_planes(s, by_distance);
-    s->position_count = 0;
-    for (size_t i = 0; i < s->count; i++) {
-        const bool next = i > 0 && s->planes[i].distance - s->planes[i - 1].distance > same;
-        s->position_count += i == 0 || next;
-        s->planes[i].position_index = s->position_count - 1;
-    }
-    sort_planes(s, by_position_and_number);
-}
-
-/* Returns the number of planes at one position, from *first on. */
-static size_t planes_here(const sorting *s, size_t first)
-{
-    size_t n = first;
-    while (n < s->count && s->planes[n].position_index == s->planes[first].position_index)
-        n++;
-    return n - first;
-}
-
-/* Ranks the planes at one position by one key; returns false where two have the same value. */
-static bool rank_here(cwi_dicom_plane *planes, size_t count, int key)
-{
-    for (size_t i = 0; i < count; i++) {
-        const double mine = planes[i].frame.keys[key];
-        planes[i].step = 0;
-        for (size_t o = 0; o < count; o++) {
-            const double other = planes[o].frame.keys[key];
-            if (o != i && !(other < mine || other > mine)) /* NaN too */
-                return false;
-            planes[i].step += other < mine;
-        }
-    }
-    return true;
-}
-
-static bool rank_all(sorting *s, int key)
-{
-    for (size_t i = 0; i < s->count; i += s->steps)
-        if (!rank_here(s->planes + i, s->steps, key))
-            return false;
-    return true;
-}
-
-static cw_status fail_duplicates(const sorting *s, cw_error *err)
-{
-    size_t i = 0, shared = 0, first = 0;
-    for (size_t n; i < s->count; i += n) {
-        n = planes_here(s, i);
-        first = n > 1 && shared == 0 ? i : first;
-        shared += n > 1;
-    }
-    return cwi_fail(
-        err, CW_ERR_UNSAFE,
-        "%zu of %zu places hold more than one image, the first at %.6g mm along the "
-        "normal, and not as many as others do; desc->gaps = CW_GAPS_ALLOW takes the first of each",
-        shared, s->position_count, s->planes[first].distance);
-}
-
-static void keep_first_of_each(sorting *s)
-{
-    size_t kept = 0;
-    for (size_t i = 0; i < s->count; i++)
-        if (kept == 0 || s->planes[i].position_index != s->planes[kept - 1].position_index)
-            s->planes[kept++] = s->planes[i];
-    cwi_note(s->desc, "left out, because others have the same position: %zu images",
-             s->count - kept);
-    s->count = kept;
-}
-
-/* Finds the steps: the same number of planes at every position is a series in time, of echoes, or
- * similar. */
-static cw_status find_steps(sorting *s, cw_error *err)
-{
-    static const char *const names[] = {"TemporalPosition", "FrameReferenceTime",
-                                        "TriggerTime",      "EchoTime",
-                                        "DiffusionBValue",  "AcquisitionNumber"};
-    s->steps = planes_here(s, 0);
-    for (size_t i = 0; i < s->count; i += s->steps)
-        if (planes_here(s, i) != s->steps) {
-            if (s->desc->gaps != CW_GAPS_ALLOW)
-                return fail_duplicates(s, err);
-            keep_first_of_each(s);
-            s->steps = 1;
-        }
-    int key = 0;
-    for (size_t i = 0; i < s->count; i++)
-        s->planes[i].step = i % s->steps; /* in the order of instance numbers */
-    if (s->steps == 1)
-        return CW_OK;
-    while (key < CWI_DICOM_KEYS && !rank_all(s, key))
-        key++;
-    for (size_t i = 0; key == CWI_DICOM_KEYS && i < s->count; i++)
-        s->planes[i].step = i % s->steps;
-    cwi_note(s->desc, "%zu images at each of %zu places: taken as steps, in the order of %s",
-             s->steps, s->position_count, key < CWI_DICOM_KEYS ? names[key] : "InstanceNumber");
-    sort_planes(s, by_position_and_step);
-    return CW_OK;
-}
-
 /* --- the row of slices -------------------------------------------------------------------- */
 
 /* Computes the way from the first to the last position per millimetre along the normal. */
-static void find_row(const sorting *s, double along[3])
+static void find_row(const cwi_dicom_sorting *s, double along[3])
 {
     const cwi_dicom_plane *a = &s->planes[0], *b = &s->planes[s->count - 1];
     for (int r = 0; r < 3; r++)
@@ -224,7 +78,8 @@ static void find_row(const sorting *s, double along[3])
 }
 
 /* Returns the distance of a plane from the row, in mm. */
-static double off_row(const sorting *s, const cwi_dicom_plane *p, const double along[3])
+static double off_row(const cwi_dicom_sorting *s, const cwi_dicom_plane *p,
+                      const double along[3])
 {
     const cwi_dicom_plane *first = &s->planes[0];
     double off[3];
@@ -234,14 +89,14 @@ static double off_row(const sorting *s, const cwi_dicom_plane *p, const double a
     return cwi_length(off);
 }
 
-static double smaller_spacing(const sorting *s)
+static double smaller_spacing(const cwi_dicom_sorting *s)
 {
     return cwi_lesser(s->planes[0].frame.spacing[0], s->planes[0].frame.spacing[1]);
 }
 
 /* Finds the tilt. Slices shifted evenly against each other make a sheared frame at their true
  * positions. */
-static cw_status find_tilt(sorting *s, double along[3], cw_error *err)
+static cw_status find_tilt(cwi_dicom_sorting *s, double along[3], cw_error *err)
 {
     double worst = 0;
     find_row(s, along);
@@ -259,7 +114,7 @@ static cw_status find_tilt(sorting *s, double along[3], cw_error *err)
     return CW_OK;
 }
 
-static cw_status lay_slices(const sorting *s, cwi_slices *slices, cw_error *err)
+static cw_status lay_slices(const cwi_dicom_sorting *s, cwi_slices *slices, cw_error *err)
 {
     double *positions = cwi_alloc_array(s->position_count, sizeof *positions);
     if (!positions)
@@ -276,7 +131,7 @@ static cw_status lay_slices(const sorting *s, cwi_slices *slices, cw_error *err)
 
 /* --- the stack ---------------------------------------------------------------------------- */
 
-static bool same_scaling(const sorting *s)
+static bool same_scaling(const cwi_dicom_sorting *s)
 {
     const cwi_dicom_frame *first = &s->planes[0].frame;
     for (size_t i = 1; i < s->count; i++)
@@ -286,7 +141,7 @@ static bool same_scaling(const sorting *s)
     return true;
 }
 
-static cw_status check_scaling(const sorting *s, cw_error *err)
+static cw_status check_scaling(const cwi_dicom_sorting *s, cw_error *err)
 {
     for (size_t i = 0; i < s->count; i++) {
         const cwi_dicom_frame *f = &s->planes[i].frame;
@@ -299,7 +154,7 @@ static cw_status check_scaling(const sorting *s, cw_error *err)
 
 /* Sets the kind of values. PET scanners scale each slice by itself: then values are stored, not
  * pixels. */
-static void set_values(const sorting *s, cwi_stack *stack)
+static void set_values(const cwi_dicom_sorting *s, cwi_stack *stack)
 {
     const cwi_dicom_facts *f = s->planes[0].file;
     cw_volume *v = &stack->shape;
@@ -315,7 +170,7 @@ static void set_values(const sorting *s, cwi_stack *stack)
     v->nodata = v->has_nodata ? f->padding[0] : 0;
 }
 
-static void set_sizes(const sorting *s, size_t slices, cwi_stack *stack)
+static void set_sizes(const cwi_dicom_sorting *s, size_t slices, cwi_stack *stack)
 {
     const cwi_dicom_facts *f = s->planes[0].file;
     cw_volume *v = &stack->shape;
@@ -333,7 +188,8 @@ static void set_sizes(const sorting *s, size_t slices, cwi_stack *stack)
     v->step_stride = v->stride[2] * (ptrdiff_t)slices;
 }
 
-static void set_frame(const sorting *s, const double along[3], double step, cwi_stack *stack)
+static void set_frame(const cwi_dicom_sorting *s, const double along[3], double step,
+                      cwi_stack *stack)
 {
     const cwi_dicom_frame *f = &s->planes[0].frame;
     cw_volume *v = &stack->shape;
@@ -348,7 +204,7 @@ static void set_frame(const sorting *s, const double along[3], double step, cwi_
         v->known |= CW_KNOWN_HOUNSFIELD;
 }
 
-static cw_status ensure_capacity(const sorting *s, size_t slots, cwi_stack *stack,
+static cw_status ensure_capacity(const cwi_dicom_sorting *s, size_t slots, cwi_stack *stack,
                                  cw_error *err)
 {
     stack->planes = cwi_alloc_array(s->count, sizeof *stack->planes);
@@ -374,8 +230,8 @@ static int by_file(const void *x, const void *y, void *planes)
     return (a->number > b->number) - (a->number < b->number);
 }
 
-static cw_status fill_slots(const sorting *s, const cwi_slices *slices, cwi_stack *stack,
-                            cw_error *err)
+static cw_status fill_slots(const cwi_dicom_sorting *s, const cwi_slices *slices,
+                            cwi_stack *stack, cw_error *err)
 {
     cw_status st = ensure_capacity(s, slices->count * s->steps, stack, err);
     for (size_t k = 0; st == CW_OK && k < slices->count; k++)
@@ -391,7 +247,7 @@ static cw_status fill_slots(const sorting *s, const cwi_slices *slices, cwi_stac
     return st;
 }
 
-static void note_findings(const sorting *s)
+static void note_findings(const cwi_dicom_sorting *s)
 {
     const cwi_dicom_findings *f = s->findings;
     if (f->tilt_degrees > 0.05)
@@ -406,15 +262,15 @@ static void note_findings(const sorting *s)
 }
 
 /* Stacks slices with a known position. */
-static cw_status stack_placed(sorting *s, cwi_stack *stack, cw_error *err)
+static cw_status stack_placed(cwi_dicom_sorting *s, cwi_stack *stack, cw_error *err)
 {
     cwi_slices slices = {0};
     double along[3];
     cw_status st = check_geometry(s, err);
     if (st != CW_OK)
         return st;
-    find_positions(s);
-    st = find_steps(s, err);
+    cwi_dicom_find_positions(s);
+    st = cwi_dicom_find_steps(s, err);
     if (st == CW_OK)
         st = find_tilt(s, along, err);
     if (st == CW_OK)
@@ -437,7 +293,7 @@ static cw_status stack_placed(sorting *s, cwi_stack *stack, cw_error *err)
 
 /* Returns the distance of slices: stated, or the smallest found. Slices in which a segment is
  * empty may be left out, so gaps are no error. */
-static double segment_step(const sorting *s)
+static double segment_step(const cwi_dicom_sorting *s)
 {
     const cwi_dicom_frame *f = &s->planes[0].frame;
     double min = INFINITY;
@@ -448,7 +304,8 @@ static double segment_step(const sorting *s)
 }
 
 /* Sets the index of each plane in the row; *slices is the row's length. */
-static cw_status find_segment_positions(sorting *s, double step, size_t *slices, cw_error *err)
+static cw_status find_segment_positions(cwi_dicom_sorting *s, double step, size_t *slices,
+                                        cw_error *err)
 {
     for (size_t i = 0; i < s->count; i++) {
         const double at = (s->planes[i].distance - s->planes[0].distance) / step;
@@ -464,7 +321,7 @@ static cw_status find_segment_positions(sorting *s, double step, size_t *slices,
     return CW_OK;
 }
 
-static uint32_t highest_segment(const sorting *s)
+static uint32_t highest_segment(const cwi_dicom_sorting *s)
 {
     uint32_t max = 0;
     for (size_t i = 0; i < s->count; i++)
@@ -481,7 +338,7 @@ static int by_label(const void *x, const void *y)
     return (a->low > b->low) - (a->low < b->low);
 }
 
-static cw_status fill_labels(const sorting *s, cwi_stack *stack, cw_error *err)
+static cw_status fill_labels(const cwi_dicom_sorting *s, cwi_stack *stack, cw_error *err)
 {
     cw_status st = ensure_capacity(s, s->count, stack, err);
     for (size_t i = 0; st == CW_OK && i < s->count; i++) {
@@ -500,7 +357,7 @@ static cw_status fill_labels(const sorting *s, cwi_stack *stack, cw_error *err)
 }
 
 /* Fills label maps: a frame holds all segments of its position. */
-static cw_status fill_maps(const sorting *s, cwi_stack *stack, cw_error *err)
+static cw_status fill_maps(const cwi_dicom_sorting *s, cwi_stack *stack, cw_error *err)
 {
     cw_status st = ensure_capacity(s, s->count, stack, err);
     for (size_t i = 0; st == CW_OK && i < s->count; i++) {
@@ -519,7 +376,7 @@ static cw_status fill_maps(const sorting *s, cwi_stack *stack, cw_error *err)
 }
 
 /* Lists the numbers of segments that occur, rising; *count of them. */
-static void list_segments(const sorting *s, uint32_t *numbers, size_t *count)
+static void list_segments(const cwi_dicom_sorting *s, uint32_t *numbers, size_t *count)
 {
     *count = 0;
     for (size_t i = 0; i < s->count; i++) {
@@ -544,7 +401,7 @@ static size_t find_segment(const uint32_t *numbers, uint32_t number)
 }
 
 /* Fills fractions: each segment is a component, in the order of their numbers. */
-static cw_status fill_fractions(const sorting *s, cwi_stack *stack, cw_error *err)
+static cw_status fill_fractions(const cwi_dicom_sorting *s, cwi_stack *stack, cw_error *err)
 {
     enum { MAX_SEGMENTS = 16 };
     cw_volume *v = &stack->shape;
@@ -570,14 +427,14 @@ static cw_status fill_fractions(const sorting *s, cwi_stack *stack, cw_error *er
     return st;
 }
 
-static cw_status stack_segments(sorting *s, cwi_stack *stack, cw_error *err)
+static cw_status stack_segments(cwi_dicom_sorting *s, cwi_stack *stack, cw_error *err)
 {
     double along[3];
     size_t slices = 1;
     cw_status st = check_geometry(s, err);
     if (st != CW_OK)
         return st;
-    find_positions(s);
+    cwi_dicom_find_positions(s);
     s->steps = 1;
     const double step = segment_step(s);
     st = find_tilt(s, along, err);
@@ -605,7 +462,7 @@ static cw_status stack_segments(sorting *s, cwi_stack *stack, cw_error *err)
 /* --- images without a position ------------------------------------------------------------- */
 
 /* Stacks slices whose distance the user stated, in the order of their numbers. */
-static cw_status stack_numbered(sorting *s, cwi_stack *stack, cw_error *err)
+static cw_status stack_numbered(cwi_dicom_sorting *s, cwi_stack *stack, cw_error *err)
 {
     for (size_t i = 1; i < s->count; i++) /* the scan has sorted the planes */
         if (s->planes[i].file->instance_number == s->planes[i - 1].file->instance_number &&
@@ -627,7 +484,8 @@ static cw_status stack_numbered(sorting *s, cwi_stack *stack, cw_error *err)
     return st;
 }
 
-static cw_status gather_planes(cwi_dicom_scan *scan, size_t series, sorting *s, cw_error *err)
+static cw_status gather_planes(cwi_dicom_scan *scan, size_t series, cwi_dicom_sorting *s,
+                               cw_error *err)
 {
     s->planes = cwi_alloc_array(scan->series[series].count, sizeof *s->planes);
     if (!s->planes)
@@ -645,7 +503,7 @@ static cw_status gather_planes(cwi_dicom_scan *scan, size_t series, sorting *s, 
 cw_status cwi_dicom_stack(cwi_dicom_scan *scan, size_t series, const cw_read_desc *desc,
                           cwi_stack *stack, cwi_dicom_findings *findings, cw_error *err)
 {
-    sorting s = {.desc = desc, .findings = findings};
+    cwi_dicom_sorting s = {.desc = desc, .findings = findings};
     *findings = (cwi_dicom_findings){0};
     cw_status st = gather_planes(scan, series, &s, err);
     if (st == CW_OK)
