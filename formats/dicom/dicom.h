@@ -12,9 +12,11 @@ extern "C" {
 
 /* Attributes that may distinguish frames at one place, the most reliable first. */
 enum {
+    CWI_DICOM_INCREMENT, /* rank by the vectors of FrameIncrementPointer, or by DimensionIndexValues */
     CWI_DICOM_TEMPORAL,  /* TemporalPositionIdentifier, TemporalPositionIndex */
     CWI_DICOM_REFERENCE, /* FrameReferenceTime */
-    CWI_DICOM_TRIGGER,   /* TriggerTime */
+    CWI_DICOM_TRIGGER,   /* TriggerTime, NominalCardiacTriggerDelayTime */
+    CWI_DICOM_PHASE,     /* NominalPercentageOfCardiacPhase, ...OfRespiratoryPhase */
     CWI_DICOM_ECHO,      /* EchoTime */
     CWI_DICOM_B_VALUE,   /* DiffusionBValue */
     CWI_DICOM_ACQUISITION,
@@ -26,18 +28,25 @@ typedef enum cwi_dicom_has {
     CWI_DICOM_ORIENTATION = 2,
     CWI_DICOM_SPACING = 4,
     CWI_DICOM_BETWEEN = 8,
-    CWI_DICOM_RESCALED = 16 /* to Hounsfield units, if it is a CT */
+    CWI_DICOM_RESCALED = 16,  /* to Hounsfield units, if it is a CT */
+    CWI_DICOM_OWN_FRAME = 32, /* places are those of a volume, not of the patient */
+    CWI_DICOM_NUMBERED =
+        64 /* position is that of slice 0: this one stands slice * between mm along the
+                                 normal from it; between is 0 where that is not known */
 } cwi_dicom_has;
 
 typedef struct cwi_dicom_frame {
     double position[3]; /* of the first pixel's centre, mm, LPS */
     double axes[2][3];  /* directions along a row (to the next column) and along a column */
     double spacing[2];  /* mm between columns, between rows */
-    double between;     /* SpacingBetweenSlices, else SliceThickness */
+    double
+        between; /* SpacingBetweenSlices, with the sign that is stated, else SliceThickness */
     double slope, intercept;
     double keys[CWI_DICOM_KEYS]; /* NaN: not stated */
     uint32_t has;                /* cwi_dicom_has */
+    int32_t slice;               /* with CWI_DICOM_NUMBERED */
     uint32_t segment;            /* of a segmentation: the segment's number */
+    char stack[20];              /* StackID: frames of different ones make no volume together */
 } cwi_dicom_frame;
 
 typedef enum cwi_dicom_kind {
@@ -51,8 +60,11 @@ typedef enum cwi_dicom_kind {
 typedef struct cwi_dicom_facts {
     cwi_dicom_kind kind;
     char series[72], instance[72], modality[20];
-    char refusal[160];               /* the reason why its pixels are not read; empty: they
+    char refusal[160];   /* the reason why its pixels are not read; empty: they
                                         are */
+    char no_volume[160]; /* the reason why several frames of its kind make no
+                                        volume; empty: they may */
+    char order[96];      /* names of the vectors that CWI_DICOM_INCREMENT ranks by */
     int64_t number, instance_number; /* SeriesNumber; INT64_MIN: none */
     uint32_t columns, rows, samples, frame_count;
     cw_type type;         /* of the returned pixels */

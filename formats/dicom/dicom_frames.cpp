@@ -1,6 +1,8 @@
 // Reads where the frames of a file lie, what sets them apart, and how their pixels are scaled.
 #include "formats/dicom/dicom_frames.hpp"
 
+#include "formats/dicom/dicom_increments.hpp"
+
 #include <cmath>
 
 using namespace cw;
@@ -17,6 +19,9 @@ void take_keys(DcmItem *item, cwi_dicom_frame *f)
                 {CWI_DICOM_TEMPORAL, DCM_TemporalPositionIndex},
                 {CWI_DICOM_REFERENCE, DCM_FrameReferenceTime},
                 {CWI_DICOM_TRIGGER, DCM_TriggerTime},
+                {CWI_DICOM_TRIGGER, DCM_NominalCardiacTriggerDelayTime},
+                {CWI_DICOM_PHASE, DCM_NominalPercentageOfCardiacPhase},
+                {CWI_DICOM_PHASE, DCM_NominalPercentageOfRespiratoryPhase},
                 {CWI_DICOM_ECHO, DCM_EchoTime},
                 {CWI_DICOM_ECHO, DCM_EffectiveEchoTime},
                 {CWI_DICOM_B_VALUE, DCM_DiffusionBValue},
@@ -35,14 +40,18 @@ void take_plane(DcmItem *item, cwi_dicom_frame *f)
         f->has |= CWI_DICOM_POSITION;
     if (numbers_of(item, DCM_ImageOrientationPatient, 6, &f->axes[0][0]))
         f->has |= CWI_DICOM_ORIENTATION;
+    if (numbers_of(item, DCM_ImagePositionVolume, 3, f->position))
+        f->has |= CWI_DICOM_POSITION | CWI_DICOM_OWN_FRAME;
+    if (numbers_of(item, DCM_ImageOrientationVolume, 6, &f->axes[0][0]))
+        f->has |= CWI_DICOM_ORIENTATION | CWI_DICOM_OWN_FRAME;
     if (numbers_of(item, DCM_PixelSpacing, 2, spacing)) {
         f->spacing[0] = spacing[1]; // "row spacing" comes first: the spacing between rows
         f->spacing[1] = spacing[0];
         f->has |= CWI_DICOM_SPACING;
     }
-    if (number_of(item, DCM_SpacingBetweenSlices, 0, &value) ||
+    if ((number_of(item, DCM_SpacingBetweenSlices, 0, &value) && value != 0) ||
         (!(f->has & CWI_DICOM_BETWEEN) && number_of(item, DCM_SliceThickness, 0, &value))) {
-        f->between = std::fabs(value);
+        f->between = value;
         f->has |= CWI_DICOM_BETWEEN;
     }
     if (number_of(item, DCM_RescaleSlope, 0, &value))
@@ -73,50 +82,41 @@ cwi_dicom_frame plain_frame(DcmItem *data)
 // Reads the functional groups of a multi-frame object: those of all frames, then those of one.
 void take_groups(DcmItem *groups, cwi_dicom_frame *f)
 {
-    static const DcmTagKey planes[] = {DCM_PixelMeasuresSequence, DCM_PlaneOrientationSequence,
-                                       DCM_PlanePositionSequence,
-                                       DCM_PixelValueTransformationSequence};
-    static const DcmTagKey keys[] = {DCM_FrameContentSequence, DCM_MREchoSequence,
-                                     DCM_MRDiffusionSequence};
+    static const DcmTagKey planes[] = {
+        DCM_PixelMeasuresSequence,       DCM_PlaneOrientationSequence,
+        DCM_PlanePositionSequence,       DCM_PlaneOrientationVolumeSequence,
+        DCM_PlanePositionVolumeSequence, DCM_PixelValueTransformationSequence};
+    static const DcmTagKey keys[] = {
+        DCM_FrameContentSequence, DCM_MREchoSequence, DCM_MRDiffusionSequence,
+        DCM_CardiacSynchronizationSequence, DCM_RespiratorySynchronizationSequence};
     for (const DcmTagKey &tag : planes)
         take_plane(first_item(groups, tag), f);
     for (const DcmTagKey &tag : keys)
         take_keys(first_item(groups, tag), f);
+    DcmItem *content = first_item(groups, DCM_FrameContentSequence);
+    if (content)
+        copy_text(f->stack, text_of(content, DCM_StackID));
     DcmItem *segment = first_item(groups, DCM_SegmentIdentificationSequence);
     if (segment)
         f->segment = count_of(segment, DCM_ReferencedSegmentNumber, 0);
-}
-
-// Places frames at equal distances from the first, or at stated ones, along the normal.
-void take_offset(DcmItem *data, uint32_t n, cwi_dicom_frame *f)
-{
-    const double(&a)[2][3] = f->axes;
-    double offset = n * f->between;
-    const bool stated = number_of(data, DCM_GridFrameOffsetVector, n, &offset);
-    if (!stated && !(n == 0 || text_of(data, DCM_Modality) == "NM"))
-        f->has &= ~unsigned(CWI_DICOM_POSITION);
-    for (int c = 0; c < 3; c++) {
-        const int d = (c + 1) % 3, e = (c + 2) % 3;
-        f->position[c] += offset * (a[0][d] * a[1][e] - a[0][e] * a[1][d]);
-    }
 }
 
 } // namespace
 
 void cw::take_frames(DcmItem *data, cwi_dicom_facts *facts)
 {
-    DcmSequenceOfItems *each = nullptr;
     cwi_dicom_frame *frames = reinterpret_cast<cwi_dicom_frame *>(facts + 1);
+    const std::vector<DcmItem *> each = items_of(data, DCM_PerFrameFunctionalGroupsSequence);
     cwi_dicom_frame common = plain_frame(data);
     take_groups(first_item(data, DCM_SharedFunctionalGroupsSequence), &common);
-    if (data->findAndGetSequence(DCM_PerFrameFunctionalGroupsSequence, each).bad())
-        each = nullptr;
     for (uint32_t n = 0; n < facts->frame_count; n++) {
-        cwi_dicom_frame *f = frames + n;
-        *f = common;
-        if (each)
-            take_groups(each->getItem(n), f);
-        else if (facts->frame_count > 1)
-            take_offset(data, n, f);
+        frames[n] = common;
+        if (n < each.size())
+            take_groups(each[n], frames + n);
     }
+    if (!each.empty())
+        order_by_dimensions(data, each, facts);
+    else if (facts->frame_count > 1)
+        order_by_vectors(data, facts);
+    tell_projections(data, facts);
 }

@@ -68,6 +68,7 @@ const char *place_slices(const Mosaic &m, cwi_dicom_facts *f)
         CWI_DICOM_POSITION | CWI_DICOM_ORIENTATION | CWI_DICOM_SPACING | CWI_DICOM_BETWEEN;
     const double(&a)[2][3] = first.axes;
     double along = 0;
+    first.between = std::fabs(first.between);
     if ((first.has & needed) != needed || !(first.between > 0))
         return "it is a mosaic of slices without one of ImagePositionPatient, "
                "ImageOrientationPatient, PixelSpacing and SpacingBetweenSlices";

@@ -1,24 +1,18 @@
 /* Orders the planes of a DICOM series: by their positions, and by what sets those apart that share one. */
+#define _GNU_SOURCE /* qsort_r */
 #include "formats/dicom/dicom_order.h"
 
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
 #include "formats/volume/volume_reader.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 static int by_distance(const void *x, const void *y)
 {
     const cwi_dicom_plane *a = x, *b = y;
     return (a->distance > b->distance) - (a->distance < b->distance);
-}
-
-static int by_position_and_step(const void *x, const void *y)
-{
-    const cwi_dicom_plane *a = x, *b = y;
-    if (a->position_index != b->position_index)
-        return a->position_index < b->position_index ? -1 : 1;
-    return (a->step > b->step) - (a->step < b->step);
 }
 
 static void sort_planes(cwi_dicom_sorting *s, int (*compare)(const void *, const void *))
@@ -61,28 +55,58 @@ static size_t planes_here(const cwi_dicom_sorting *s, size_t first)
     return n - first;
 }
 
-/* Ranks the planes at one position by one key; returns false where two have the same value. */
-static bool rank_here(cwi_dicom_plane *planes, size_t count, int key)
+/* Compares one key; NaN is that of a plane that does not state it. */
+static int compare_key(const cwi_dicom_plane *a, const cwi_dicom_plane *b, int key)
 {
-    for (size_t i = 0; i < count; i++) {
-        const double mine = planes[i].frame.keys[key];
-        planes[i].step = 0;
-        for (size_t o = 0; o < count; o++) {
-            const double other = planes[o].frame.keys[key];
-            if (o != i && !(other < mine || other > mine)) /* NaN too */
-                return false;
-            planes[i].step += other < mine;
-        }
-    }
-    return true;
+    const double x = a->frame.keys[key], y = b->frame.keys[key];
+    const int stated[2] = {!isnan(x), !isnan(y)};
+    return stated[0] && stated[1] ? (x > y) - (x < y) : stated[0] - stated[1];
 }
 
+/* Compares by position, then by a key, or by all of them where it is CWI_DICOM_KEYS. */
+static int by_position_and_key(const void *x, const void *y, void *user)
+{
+    const cwi_dicom_plane *a = x, *b = y;
+    const int key = *(const int *)user;
+    int order =
+        (a->position_index > b->position_index) - (a->position_index < b->position_index);
+    for (int k = 0; order == 0 && k < CWI_DICOM_KEYS; k++)
+        if (key == k || key == CWI_DICOM_KEYS)
+            order = compare_key(a, b, k);
+    return order;
+}
+
+/* Ranks the planes at each position by a key, or by all; returns false, and leaves their order as it was,
+ * where two are equal. */
 static bool rank_all(cwi_dicom_sorting *s, int key)
 {
-    for (size_t i = 0; i < s->count; i += s->steps)
-        if (!rank_here(s->planes + i, s->steps, key))
-            return false;
-    return true;
+    qsort_r(s->planes, s->count, sizeof *s->planes, by_position_and_key, &key);
+    bool differ = true;
+    for (size_t i = 0; differ && i < s->count; i++)
+        differ = (i == 0 || by_position_and_key(&s->planes[i - 1], &s->planes[i], &key) != 0) &&
+                 (key == CWI_DICOM_KEYS || !isnan(s->planes[i].frame.keys[key]));
+    if (!differ)
+        sort_planes(s, by_position_and_number);
+    return differ;
+}
+
+/* Ranks by the first key that tells all planes at a position apart. Returns CWI_DICOM_KEYS where only all
+ * together do, and one more where they do not. */
+static int rank_by_keys(cwi_dicom_sorting *s)
+{
+    int key = 0;
+    while (key <= CWI_DICOM_KEYS && !rank_all(s, key))
+        key++;
+    return key;
+}
+
+bool cwi_dicom_are_moments(cwi_dicom_sorting *s)
+{
+    int key = 0;
+    cwi_dicom_find_positions(s);
+    while (key < CWI_DICOM_ACQUISITION && !rank_all(s, key))
+        key++;
+    return s->position_count > 1 || key < CWI_DICOM_ACQUISITION;
 }
 
 static cw_status fail_duplicates(const cwi_dicom_sorting *s, cw_error *err)
@@ -113,9 +137,15 @@ static void keep_first_of_each(cwi_dicom_sorting *s)
 
 cw_status cwi_dicom_find_steps(cwi_dicom_sorting *s, cw_error *err)
 {
-    static const char *const names[] = {"TemporalPosition", "FrameReferenceTime",
-                                        "TriggerTime",      "EchoTime",
-                                        "DiffusionBValue",  "AcquisitionNumber"};
+    static const char *const names[] = {[CWI_DICOM_TEMPORAL] = "TemporalPosition",
+                                        [CWI_DICOM_REFERENCE] = "FrameReferenceTime",
+                                        [CWI_DICOM_TRIGGER] = "TriggerTime",
+                                        [CWI_DICOM_PHASE] = "NominalPercentageOfCardiacPhase",
+                                        [CWI_DICOM_ECHO] = "EchoTime",
+                                        [CWI_DICOM_B_VALUE] = "DiffusionBValue",
+                                        [CWI_DICOM_ACQUISITION] = "AcquisitionNumber",
+                                        [CWI_DICOM_KEYS] = "several attributes",
+                                        [CWI_DICOM_KEYS + 1] = "InstanceNumber"};
     s->steps = planes_here(s, 0);
     for (size_t i = 0; i < s->count; i += s->steps)
         if (planes_here(s, i) != s->steps) {
@@ -124,17 +154,14 @@ cw_status cwi_dicom_find_steps(cwi_dicom_sorting *s, cw_error *err)
             keep_first_of_each(s);
             s->steps = 1;
         }
-    int key = 0;
+    const int key = s->steps > 1 ? rank_by_keys(s) : 0;
     for (size_t i = 0; i < s->count; i++)
-        s->planes[i].step = i % s->steps; /* in the order of instance numbers */
+        s->planes[i].step = i % s->steps;
     if (s->steps == 1)
         return CW_OK;
-    while (key < CWI_DICOM_KEYS && !rank_all(s, key))
-        key++;
-    for (size_t i = 0; key == CWI_DICOM_KEYS && i < s->count; i++)
-        s->planes[i].step = i % s->steps;
-    cwi_note(s->desc, "%zu images at each of %zu places: taken as steps, in the order of %s",
-             s->steps, s->position_count, key < CWI_DICOM_KEYS ? names[key] : "InstanceNumber");
-    sort_planes(s, by_position_and_step);
+    cwi_note(s->desc,
+             "%zu images at each of %zu places: taken as %zu steps, in the order of %s",
+             s->steps, s->position_count, s->steps,
+             key == CWI_DICOM_INCREMENT ? s->planes[0].file->order : names[key]);
     return CW_OK;
 }

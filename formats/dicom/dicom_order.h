@@ -11,6 +11,7 @@ typedef struct cwi_dicom_sorting {
     size_t position_count; /* number of different positions */
     size_t steps;          /* planes at each position */
     double normal[3];
+    bool is_turned; /* directions are stated, not made up */
     const cw_read_desc *desc;
     cwi_dicom_findings *findings;
 } cwi_dicom_sorting;
@@ -18,6 +19,10 @@ typedef struct cwi_dicom_sorting {
 /* Finds the positions along the normal, and sorts the planes by them; those that differ by less than a
  * thousandth of a pixel are one. */
 void cwi_dicom_find_positions(cwi_dicom_sorting *s);
+
+/* Returns true where planes at one position are moments, echoes or similar of one slice, as an attribute other than
+ * AcquisitionNumber tells, and where planes have several positions. Sorts as cwi_dicom_find_positions(). */
+bool cwi_dicom_are_moments(cwi_dicom_sorting *s);
 
 /* Finds the steps, and sorts the planes by position and step: the same number of planes at every position is a
  * series in time, of echoes, or similar.

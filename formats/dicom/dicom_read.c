@@ -132,7 +132,8 @@ static void describe_series(cwi_dicom_scan *found, size_t n, bool chosen,
     cwi_stack stack = {0};
     cwi_dicom_findings findings = {0};
     cw_error err = {0};
-    const cw_read_desc quiet = {.gaps = desc->gaps, .tilt = desc->tilt};
+    cw_read_desc quiet = *desc;
+    quiet.note = NULL;
     const cwi_dicom_series *from = &found->series[n];
     snprintf(s->label, sizeof s->label, "%s", from->label);
     snprintf(s->modality, sizeof s->modality, "%s", from->sample->file->modality);
@@ -140,6 +141,8 @@ static void describe_series(cwi_dicom_scan *found, size_t n, bool chosen,
     s->status = desc->skip_damaged ? CW_OK : cwi_dicom_expect_whole(found, n, chosen, &err);
     if (s->status == CW_OK)
         s->status = cwi_dicom_stack(found, n, &quiet, &stack, &findings, &err);
+    if (s->status == CW_OK)
+        cwi_set_spacing(&stack.shape, desc);
     s->shape = stack.shape;
     s->tilt_degrees = findings.tilt_degrees;
     snprintf(s->finding, sizeof s->finding, "%s",

@@ -101,7 +101,8 @@ static cw_status check_claim(const cwi_dicom_facts *f, uint64_t file_bytes, cw_e
 static cw_status check_facts(const cwi_dicom_facts *f, uint64_t file_bytes, cw_error *err)
 {
     if (!IS_TERMINATED(f->series) || !IS_TERMINATED(f->instance) ||
-        !IS_TERMINATED(f->modality) || !IS_TERMINATED(f->refusal))
+        !IS_TERMINATED(f->modality) || !IS_TERMINATED(f->refusal) ||
+        !IS_TERMINATED(f->no_volume) || !IS_TERMINATED(f->order))
         return cwi_fail(err, CW_ERR_BACKEND, "DCMTK's answer is not valid");
     if (f->kind == CWI_DICOM_NO_IMAGE)
         return CW_OK;
@@ -237,6 +238,7 @@ static cw_status take_file(cwi_dicom_scan *scan, const cwi_input *in, const char
 static bool are_alike(const cwi_dicom_plane *a, const cwi_dicom_plane *b)
 {
     if (!same_images(a->file, b->file) ||
+        strncmp(a->frame.stack, b->frame.stack, sizeof a->frame.stack) != 0 ||
         (a->frame.has & CWI_DICOM_ORIENTATION) != (b->frame.has & CWI_DICOM_ORIENTATION))
         return false;
     for (int i = 0; i < 6; i++)

@@ -6,7 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
-#include "formats/dicom/dicom_order.h"
+#include "formats/dicom/dicom_places.h"
 #include "formats/volume/slice_spacing.h"
 #include "formats/volume/volume_reader.h"
 
@@ -37,13 +37,19 @@ static cw_status check_has(const cwi_dicom_sorting *s, unsigned flag, const char
         missing, s->count, field);
 }
 
-static bool is_placed(const cwi_dicom_sorting *s)
+/* Expects that the distance of numbered slices is known. */
+static cw_status check_distance(const cwi_dicom_sorting *s, cw_error *err)
 {
-    const unsigned both = CWI_DICOM_POSITION | CWI_DICOM_ORIENTATION;
-    for (size_t i = 0; i < s->count; i++)
-        if ((s->planes[i].frame.has & both) != both)
-            return false;
-    return true;
+    for (size_t i = 0; i < s->count; i++) {
+        const cwi_dicom_frame *f = &s->planes[i].frame;
+        if (f->has & CWI_DICOM_NUMBERED && f->slice && f->between == 0 &&
+            !states_spacing(s->desc))
+            return cwi_fail(
+                err, CW_ERR_UNSAFE,
+                "'SpacingBetweenSlices' is missing, so the distance of slices is not "
+                "known; desc->spacing_mm states it");
+    }
+    return CW_OK;
 }
 
 static cw_status check_geometry(const cwi_dicom_sorting *s, cw_error *err)
@@ -54,6 +60,8 @@ static cw_status check_geometry(const cwi_dicom_sorting *s, cw_error *err)
         st = check_has(s, CWI_DICOM_ORIENTATION, "ImageOrientationPatient", err);
     if (st == CW_OK && !states_spacing(s->desc))
         st = check_has(s, CWI_DICOM_SPACING, "PixelSpacing", err);
+    if (st == CW_OK)
+        st = check_distance(s, err);
     if (st != CW_OK)
         return st;
     if (fabs(cwi_dot(x, x) - 1) > 1e-2 || fabs(cwi_dot(y, y) - 1) > 1e-2 ||
@@ -199,7 +207,9 @@ static void set_frame(const cwi_dicom_sorting *s, const double along[3], double 
         v->affine[r][2] = along[r] * step;
         v->affine[r][3] = f->position[r];
     }
-    v->known = CW_KNOWN_UNIT | CW_KNOWN_FRAME;
+    v->known = CW_KNOWN_UNIT;
+    if (s->is_turned && !(f->has & CWI_DICOM_OWN_FRAME))
+        v->known |= CW_KNOWN_FRAME;
     if (f->has & CWI_DICOM_RESCALED && strcmp(s->planes[0].file->modality, "CT") == 0)
         v->known |= CW_KNOWN_HOUNSFIELD;
 }
@@ -250,6 +260,11 @@ static cw_status fill_slots(const cwi_dicom_sorting *s, const cwi_slices *slices
 static void note_findings(const cwi_dicom_sorting *s)
 {
     const cwi_dicom_findings *f = s->findings;
+    if (s->planes[0].frame.has & CWI_DICOM_OWN_FRAME)
+        cwi_note(
+            s->desc,
+            "places are in the frame of the ultrasound volume: how the patient lies in it is "
+            "not read");
     if (f->tilt_degrees > 0.05)
         cwi_note(s->desc, "slices are tilted by %.4g degrees: %s", f->tilt_degrees,
                  s->desc->tilt == CW_TILT_KEEP
@@ -277,7 +292,8 @@ static cw_status stack_placed(cwi_dicom_sorting *s, cwi_stack *stack, cw_error *
         st = lay_slices(s, &slices, err);
     if (st == CW_OK) {
         const cwi_dicom_frame *f = &s->planes[0].frame;
-        const double single = f->has & CWI_DICOM_BETWEEN && f->between > 0 ? f->between : 1;
+        const double single =
+            f->has & CWI_DICOM_BETWEEN && f->between != 0 ? fabs(f->between) : 1;
         set_values(s, stack);
         set_sizes(s, slices.count, stack);
         set_frame(s, along, s->position_count > 1 ? slices.step : single, stack);
@@ -300,7 +316,9 @@ static double segment_step(const cwi_dicom_sorting *s)
     for (size_t i = 1; i < s->count; i++)
         if (s->planes[i].position_index != s->planes[i - 1].position_index)
             min = fmin(min, s->planes[i].distance - s->planes[i - 1].distance);
-    return f->has & CWI_DICOM_BETWEEN && f->between > 0 ? f->between : isfinite(min) ? min : 1;
+    return f->has & CWI_DICOM_BETWEEN && f->between != 0 ? fabs(f->between)
+           : isfinite(min)                               ? min
+                                                         : 1;
 }
 
 /* Sets the index of each plane in the row; *slices is the row's length. */
@@ -459,29 +477,19 @@ static cw_status stack_segments(cwi_dicom_sorting *s, cwi_stack *stack, cw_error
     return kind == CWI_DICOM_LABELMAP ? fill_maps(s, stack, err) : fill_labels(s, stack, err);
 }
 
-/* --- images without a position ------------------------------------------------------------- */
+/* --- the series --------------------------------------------------------------------------- */
 
-/* Stacks slices whose distance the user stated, in the order of their numbers. */
-static cw_status stack_numbered(cwi_dicom_sorting *s, cwi_stack *stack, cw_error *err)
+/* Expects that the images are slices: one that is none may still be looked at alone. */
+static cw_status expect_slices(const cwi_dicom_sorting *s, cw_error *err)
 {
-    for (size_t i = 1; i < s->count; i++) /* the scan has sorted the planes */
-        if (s->planes[i].file->instance_number == s->planes[i - 1].file->instance_number &&
-            s->planes[i].number == s->planes[i - 1].number)
+    for (size_t i = 0; s->count > 1 && i < s->count; i++)
+        if (s->planes[i].file->no_volume[0])
             return cwi_fail(
-                err, CW_ERR_UNSAFE,
-                "images have neither place nor 'InstanceNumber': their order is not "
-                "known");
-    s->steps = 1;
-    s->position_count = s->count;
-    set_values(s, stack);
-    set_sizes(s, s->count, stack);
-    for (int a = 0; a < 3; a++)
-        stack->shape.affine[a][a] = 1;
-    cw_status st = ensure_capacity(s, s->count, stack, err);
-    for (size_t i = 0; st == CW_OK && i < s->count; i++)
-        stack->slots[i] = (cwi_slot){.slice = i, .low = i, .high = i};
-    cwi_note(s->desc, "where images lie is not said: taken in the order of their numbers");
-    return st;
+                err, CW_ERR_FORMAT,
+                "its %zu images make no volume: %s; a surface needs slices, such as those "
+                "of CT, MR or a reconstructed series",
+                s->count, s->planes[i].file->no_volume);
+    return CW_OK;
 }
 
 static cw_status gather_planes(cwi_dicom_scan *scan, size_t series, cwi_dicom_sorting *s,
@@ -494,8 +502,11 @@ static cw_status gather_planes(cwi_dicom_scan *scan, size_t series, cwi_dicom_so
         if (scan->planes[i].series == series) {
             cwi_dicom_frame *f = &s->planes[s->count].frame;
             s->planes[s->count++] = scan->planes[i];
-            if (!(f->has & CWI_DICOM_SPACING))
-                f->spacing[0] = f->spacing[1] = 1;
+            for (int a = 0; a < 2; a++)
+                if (states_spacing(s->desc))
+                    f->spacing[a] = s->desc->spacing_mm[a];
+                else if (!(f->has & CWI_DICOM_SPACING))
+                    f->spacing[a] = 1;
         }
     return CW_OK;
 }
@@ -507,11 +518,13 @@ cw_status cwi_dicom_stack(cwi_dicom_scan *scan, size_t series, const cw_read_des
     *findings = (cwi_dicom_findings){0};
     cw_status st = gather_planes(scan, series, &s, err);
     if (st == CW_OK)
+        st = expect_slices(&s, err);
+    if (st == CW_OK)
         st = check_scaling(&s, err);
+    if (st == CW_OK)
+        st = cwi_dicom_place(&s, err);
     if (st == CW_OK && s.planes[0].file->kind != CWI_DICOM_IMAGE)
         st = stack_segments(&s, stack, err);
-    else if (st == CW_OK && !is_placed(&s) && states_spacing(desc))
-        st = stack_numbered(&s, stack, err);
     else if (st == CW_OK)
         st = stack_placed(&s, stack, err);
     cwi_free(s.planes);

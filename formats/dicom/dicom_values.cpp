@@ -30,6 +30,51 @@ bool number_of(DcmItem *item, const DcmTagKey &tag, unsigned long at, double *ou
     *out = value;
     return std::isfinite(value);
 }
+// Parts the text once, since DCMTK searches it from the start for each number.
+static std::vector<double> parse_list(const OFString &text)
+{
+    std::vector<double> list;
+    const char *s = text.c_str();
+    for (double value; cwi_parse_double(&s, &value) && std::isfinite(value); s++) {
+        list.push_back(value);
+        while (*s == ' ')
+            s++;
+        if (*s != '\\')
+            break;
+    }
+    return *s ? std::vector<double>() : list;
+}
+
+std::vector<double> list_of(DcmItem *item, const DcmTagKey &tag)
+{
+    std::vector<double> list;
+    DcmElement *element = nullptr;
+    OFString text;
+    if (!item || item->findAndGetElement(tag, element).bad())
+        return list;
+    if (element->ident() == EVR_DS || element->ident() == EVR_IS)
+        return element->getOFStringArray(text).good() ? parse_list(text) : list;
+    const unsigned long count = element->getVM();
+    list.resize(count);
+    for (unsigned long n = 0; n < count; n++)
+        if (!number_of(item, tag, n, &list[n]))
+            return std::vector<double>();
+    return list;
+}
+
+std::vector<DcmTagKey> tags_of(DcmItem *item, const DcmTagKey &tag)
+{
+    std::vector<DcmTagKey> tags;
+    DcmElement *element = nullptr;
+    if (!item || item->findAndGetElement(tag, element).bad())
+        return tags;
+    DcmAttributeTag *list = dynamic_cast<DcmAttributeTag *>(element);
+    DcmTagKey key;
+    for (unsigned long n = 0; list && list->getTagVal(key, n).good(); n++)
+        tags.push_back(key);
+    return tags;
+}
+
 uint32_t count_of(DcmItem *item, const DcmTagKey &tag, uint32_t otherwise)
 {
     double value;
@@ -58,4 +103,16 @@ DcmItem *first_item(DcmItem *item, const DcmTagKey &sequence)
         return found;
     return nullptr;
 }
+
+std::vector<DcmItem *> items_of(DcmItem *item, const DcmTagKey &sequence)
+{
+    std::vector<DcmItem *> items;
+    DcmSequenceOfItems *list = nullptr;
+    if (!item || item->findAndGetSequence(sequence, list).bad())
+        return items;
+    for (DcmObject *o = list->nextInContainer(nullptr); o; o = list->nextInContainer(o))
+        items.push_back(static_cast<DcmItem *>(o));
+    return items;
+}
+
 } // namespace cw

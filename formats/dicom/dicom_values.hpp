@@ -7,6 +7,7 @@
 #include <dcmtk/dcmdata/dctk.h>
 
 #include <cstdio>
+#include <vector>
 
 namespace cw
 {
@@ -20,6 +21,12 @@ bool number_of(DcmItem *item, const DcmTagKey &tag, unsigned long at, double *ou
 // Reads the first numbers of an element; returns false where it has fewer.
 bool numbers_of(DcmItem *item, const DcmTagKey &tag, unsigned count, double *out);
 
+// Reads all numbers of an element; none where one of them is no finite number.
+std::vector<double> list_of(DcmItem *item, const DcmTagKey &tag);
+
+// Reads the tags that an element points to.
+std::vector<DcmTagKey> tags_of(DcmItem *item, const DcmTagKey &tag);
+
 uint32_t count_of(DcmItem *item, const DcmTagKey &tag, uint32_t otherwise);
 
 // Returns a whole number; INT64_MIN where there is none.
@@ -27,6 +34,9 @@ int64_t integer_of(DcmItem *item, const DcmTagKey &tag);
 
 // Returns the first item of a sequence; NULL where there is none.
 DcmItem *first_item(DcmItem *item, const DcmTagKey &sequence);
+
+// Returns all items of a sequence.
+std::vector<DcmItem *> items_of(DcmItem *item, const DcmTagKey &sequence);
 
 // Copies a text as far as there is room for it.
 template <size_t size> void copy_text(char (&to)[size], const OFString &text)
