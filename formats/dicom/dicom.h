@@ -68,6 +68,8 @@ typedef struct cwi_dicom_facts {
     int64_t number, instance_number; /* SeriesNumber; INT64_MIN: none */
     uint32_t columns, rows, samples, frame_count;
     cw_type type;         /* of the returned pixels */
+    uint32_t value_bits;  /* bits that their values take, the sign counted */
+    cw_type stored_type;  /* of the pixels in the file */
     uint64_t pixel_bytes; /* of the stored pixels; 0: compressed */
     bool deflated;        /* the whole file is deflated */
     bool has_padding;

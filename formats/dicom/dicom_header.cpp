@@ -308,7 +308,8 @@ cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t capacity, cw_error
     f->columns = l.columns;
     f->rows = l.rows;
     f->samples = l.samples;
-    f->type = l.type;
+    f->type = f->stored_type = l.type;
+    f->value_bits = is_real(l) ? unsigned(8 * cw_type_size(l.type)) : l.stored;
     f->pixel_bytes = is_compressed(d) || !s.element ? 0 : s.element->getLengthField();
     f->deflated = d.data()->getOriginalXfer() == EXS_DeflatedLittleEndianExplicit;
     refuse(f, s.element ? s.why_not : "it has Rows and Columns, and no pixels");

@@ -81,7 +81,8 @@ void cwi_dicom_scan_free(cwi_dicom_scan *scan)
 /* Checks the claims of a file against its size, before anything is allocated for them. */
 static cw_status check_claim(const cwi_dicom_facts *f, uint64_t file_bytes, cw_error *err)
 {
-    const uint64_t bits = f->kind == CWI_DICOM_SEGMENTATION ? 1 : 8 * cw_type_size(f->type);
+    const uint64_t bits =
+        f->kind == CWI_DICOM_SEGMENTATION ? 1 : 8 * cw_type_size(f->stored_type);
     const uint64_t frame = (uint64_t)f->columns * f->rows * f->samples * bits; /* below 2^43 */
     const uint64_t have = f->pixel_bytes ? f->pixel_bytes : file_bytes;
     const uint64_t max = f->pixel_bytes ? have : have * MAX_COMPRESSION;
@@ -111,7 +112,8 @@ static cw_status check_facts(const cwi_dicom_facts *f, uint64_t file_bytes, cw_e
     const size_t capacity = (CWI_PLANES_SHARED - sizeof *f) / sizeof(cwi_dicom_frame);
     if (f->columns < 1 || f->columns > UINT16_MAX || f->rows < 1 || f->rows > UINT16_MAX ||
         f->samples < 1 || f->samples > 16 || f->frame_count < 1 || f->frame_count > capacity ||
-        !cw_type_size(f->type))
+        !cw_type_size(f->type) || !cw_type_size(f->stored_type) || f->value_bits < 1 ||
+        f->value_bits > 64)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "'Columns' %u, 'Rows' %u, 'SamplesPerPixel' %u and 'NumberOfFrames' %u "
                         "are not valid image sizes",
@@ -173,10 +175,16 @@ static void clean_modality(cwi_dicom_facts *f)
         f->modality[0] = '\0';
 }
 
+static bool is_real(const cwi_dicom_facts *f)
+{
+    return f->type == CW_F32 || f->type == CW_F64;
+}
+
+/* Whole numbers of any size and sign are alike: their values are what they are. */
 static bool same_images(const cwi_dicom_facts *f, const cwi_dicom_facts *g)
 {
     return strcmp(f->series, g->series) == 0 && f->columns == g->columns &&
-           f->rows == g->rows && f->samples == g->samples && f->type == g->type &&
+           f->rows == g->rows && f->samples == g->samples && is_real(f) == is_real(g) &&
            f->kind == g->kind;
 }
 

@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
+#include "formats/dicom/dicom_pixel_types.h"
 #include "formats/dicom/dicom_places.h"
 #include "formats/volume/slice_spacing.h"
 #include "formats/volume/volume_reader.h"
@@ -161,17 +162,20 @@ static cw_status check_scaling(const cwi_dicom_sorting *s, cw_error *err)
 }
 
 /* Sets the kind of values. PET scanners scale each slice by itself: then values are stored, not
- * pixels. */
+ * pixels, as they are where the padding of files differs. */
 static void set_values(const cwi_dicom_sorting *s, cwi_stack *stack)
 {
-    const cwi_dicom_facts *f = s->planes[0].file;
+    const cwi_dicom_pixels pixels = cwi_dicom_join_pixels(s);
+    const cwi_dicom_facts *f = pixels.padded;
     cw_volume *v = &stack->shape;
-    stack->type = v->type = f->type;
-    stack->scaled = !same_scaling(s);
+    stack->type = v->type = pixels.type;
+    stack->mixed = pixels.mixed;
+    stack->scaled = !same_scaling(s) ||
+                    (!pixels.same_padding && s->desc->nodata == CW_NODATA_FILE);
     v->slope = stack->scaled ? 1 : s->planes[0].frame.slope;
     v->intercept = stack->scaled ? 0 : s->planes[0].frame.intercept;
     if (stack->scaled)
-        v->type = cw_type_size(f->type) > 2 ? CW_F64 : CW_F32;
+        v->type = pixels.is_long ? CW_F64 : CW_F32;
     stack->has_padding = f->has_padding && s->desc->nodata == CW_NODATA_FILE;
     memcpy(stack->padding, f->padding, sizeof f->padding);
     v->has_nodata = stack->has_padding && !stack->scaled;
@@ -225,7 +229,14 @@ static cw_status ensure_capacity(const cwi_dicom_sorting *s, size_t slots, cwi_s
     stack->slot_count = slots;
     for (size_t i = 0; i < s->count; i++) {
         const cwi_dicom_plane *p = &s->planes[i];
-        stack->planes[i] = (cwi_plane){p->index, p->number, p->frame.slope, p->frame.intercept};
+        const cwi_dicom_facts *f = p->file;
+        stack->planes[i] = (cwi_plane){.file = p->index,
+                                       .number = p->number,
+                                       .slope = p->frame.slope,
+                                       .intercept = p->frame.intercept,
+                                       .type = f->type,
+                                       .padding = {f->has_padding ? f->padding[0] : 1,
+                                                   f->has_padding ? f->padding[1] : 0}};
     }
     return CW_OK;
 }

@@ -37,9 +37,16 @@ typedef struct reading {
 
 /* --- from pixels to voxels ---------------------------------------------------------------- */
 
-static bool is_padding(const cwi_stack *s, double pixel)
+/* Returns the type of a plane's pixels, as the module returns them. */
+static cw_type type_of(const cwi_stack *s, const cwi_plane *plane)
 {
-    return s->has_padding && pixel >= s->padding[0] && pixel <= s->padding[1];
+    return s->mixed ? plane->type : s->type;
+}
+
+static bool is_padding(const cwi_stack *s, const cwi_plane *plane, double pixel)
+{
+    const double *padding = s->mixed ? plane->padding : s->padding;
+    return s->has_padding && pixel >= padding[0] && pixel <= padding[1];
 }
 
 /* Returns the value of a plane's pixel in the result; sets *nodata where it is padding. */
@@ -47,8 +54,9 @@ static double value_of(const reading *r, const cwi_plane *plane, const unsigned 
                        size_t i, bool *nodata)
 {
     const cwi_stack *s = r->stack;
-    const double pixel = cwi_voxel_at(s->type, pixels + i * cw_type_size(s->type));
-    *nodata = is_padding(s, pixel);
+    const cw_type type = type_of(s, plane);
+    const double pixel = cwi_voxel_at(type, pixels + i * cw_type_size(type));
+    *nodata = is_padding(s, plane, pixel);
     return s->scaled ? plane->slope * pixel + plane->intercept : pixel;
 }
 
@@ -112,7 +120,8 @@ static cw_status read_rows(cwi_stack_reader *r, size_t index, size_t first, size
     cw_status st = hand_over(r, plane->file, err);
     if (st == CW_OK)
         st = cwi_planes_read(r->planes, plane->number, first, count,
-                             s->shape.dim[0] * s->samples * cw_type_size(s->type), to, err);
+                             s->shape.dim[0] * s->samples * cw_type_size(type_of(s, plane)), to,
+                             err);
     const char *name = file_name(s, plane->file);
     if (st == CW_OK || st == CW_ERR_CANCELLED || !name)
         return st;
@@ -126,10 +135,10 @@ cw_status cwi_stack_read_plane(cwi_stack_reader *r, size_t index, void *to, cw_e
 }
 
 /* Keeps the wanted columns of rows, one row after another. */
-static void keep_columns(const reading *r, char *rows)
+static void keep_columns(const reading *r, size_t plane, char *rows)
 {
     const cwi_stack *s = r->stack;
-    const size_t pixel = s->samples * cw_type_size(s->type);
+    const size_t pixel = s->samples * cw_type_size(type_of(s, &s->planes[plane]));
     const size_t row = s->shape.dim[0] * pixel, kept = r->box.count[0] * pixel;
     for (size_t j = 0; kept < row && j < r->box.count[1]; j++)
         memmove(rows + j * kept, rows + j * row + r->box.first[0] * pixel, kept);
@@ -140,16 +149,17 @@ static cw_status read_plane(reading *r, size_t index, void *to, cw_error *err)
 {
     cw_status st = read_rows(&r->reader, index, r->box.first[1], r->box.count[1], to, err);
     if (st == CW_OK)
-        keep_columns(r, to);
+        keep_columns(r, index, to);
     return st;
 }
 
 /* Returns true if voxels are the module's pixels without any conversion. */
 static bool is_plain(const cwi_stack *s, const cwi_slot *slot)
 {
-    const bool ranged =
-        s->has_padding && (s->padding[0] != s->padding[1] || s->padding[0] != s->shape.nodata);
-    return !s->scaled && !slot->label && slot->t == 0 && !ranged && s->shape.type == s->type;
+    const bool ranged = s->has_padding && !s->mixed &&
+                        (s->padding[0] != s->padding[1] || s->padding[0] != s->shape.nodata);
+    return !s->scaled && !slot->label && slot->t == 0 && !ranged &&
+           s->shape.type == type_of(s, &s->planes[slot->low]);
 }
 
 static cw_status read_slot(reading *r, const cwi_slot *slot, cw_error *err)
@@ -213,7 +223,8 @@ static void fill_voxels(const cwi_stack *s, char *voxels, size_t bytes)
 static cw_status alloc_planes(reading *r, cw_error *err)
 {
     const cwi_stack *s = r->stack;
-    const size_t row = s->shape.dim[0] * s->samples * cw_type_size(s->type);
+    const size_t size = s->mixed ? sizeof(double) : cw_type_size(s->type);
+    const size_t row = s->shape.dim[0] * s->samples * size;
     r->pixels = r->box.count[0] * r->box.count[1] * s->samples;
     r->low = cwi_alloc_array(r->box.count[1], row);
     r->high = cwi_alloc_array(r->box.count[1], row);

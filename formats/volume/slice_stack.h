@@ -10,6 +10,9 @@ typedef struct cwi_plane {
     size_t file; /* index in the stack's files */
     uint32_t number;
     double slope, intercept; /* of its pixels, where the stack is scaled */
+    cw_type type;      /* of its pixels, and those that are padding, from low to high, where the
+                                stack is mixed */
+    double padding[2]; /* low above high: none */
 } cwi_plane;
 
 /* A plane of the result: (1 - t) low + t high. */
@@ -26,6 +29,7 @@ typedef struct cwi_stack {
     cw_volume shape;   /* everything but the voxels; planes of dim[0] x dim[1] one after
                           another, then the planes' own steps and components */
     cw_type type;      /* of pixels as the module returns them */
+    bool mixed;        /* planes have types and padding of their own */
     size_t samples;    /* ... and the number of them per pixel */
     bool scaled;       /* the result is slope * pixel + intercept of each plane */
     bool has_padding;  /* pixels from low to high stand for no data */

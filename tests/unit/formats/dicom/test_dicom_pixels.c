@@ -254,6 +254,105 @@ static void damaged_runs_are_left_out_if_that_is_asked_for(void **state)
     cw_volume_free(&v);
 }
 
+/* --- slices whose pixels have other types ------------------------------------------------- */
+
+typedef struct typed_slice {
+    unsigned bits, stored;
+    bool is_signed;
+    long first; /* pixel n is first + n */
+    const char *slope, *padding;
+} typed_slice;
+
+static void write_typed(int n, const typed_slice *t)
+{
+    char name[16], position[16];
+    unsigned char pixels[4 * PIXELS];
+    for (int i = 0; i < PIXELS; i++) {
+        const uint32_t value = (uint32_t)(t->first + i);
+        memcpy(pixels + (size_t)i * t->bits / 8, &value, t->bits / 8);
+    }
+    snprintf(name, sizeof name, "%d", n);
+    snprintf(position, sizeof position, "0\\0\\%d", 2 * n);
+    test_image_write(&(test_image){.instance = n,
+                                   .position = position,
+                                   .bits = t->bits,
+                                   .stored = t->stored,
+                                   .is_signed = t->is_signed,
+                                   .slope = t->slope,
+                                   .padding = t->padding,
+                                   .pixels = pixels},
+                     name);
+}
+
+/* Sign, bits and padding may change from slice to slice: numbers are what they are. */
+static void slices_of_other_types_are_one_series(void **state)
+{
+    (void)state;
+    static const struct {
+        typed_slice slices[3];
+        cw_type type;
+    } rows[] = {
+        {{{16, 16, false, 10, 0, 0}, {16, 16, true, -7, 0, 0}, {16, 16, false, 65000, 0, 0}},
+         CW_I32},
+        {{{16, 12, false, 4000, 0, 0}, {16, 16, true, -3000, 0, 0}, {16, 12, false, 0, 0, 0}},
+         CW_I16},
+        {{{8, 8, false, 200, 0, 0}, {16, 10, false, 900, 0, 0}, {8, 8, false, 3, 0, 0}},
+         CW_U16},
+        {{{8, 8, false, 200, 0, 0}, {8, 8, true, -100, 0, 0}, {8, 8, false, 3, 0, 0}}, CW_I16},
+        {{{8, 7, false, 100, 0, 0}, {8, 8, true, -100, 0, 0}, {8, 7, false, 3, 0, 0}}, CW_I8},
+        {{{32, 32, false, 4000000000, 0, 0},
+          {16, 16, true, -5, 0, 0},
+          {32, 32, false, 1, 0, 0}},
+         CW_F64},
+        {{{16, 16, false, 10, "2", 0}, {16, 16, true, -7, "0.5", 0}, {8, 8, false, 3, "1", 0}},
+         CW_F32},
+        {{{16, 16, false, 10, 0, "12"}, {16, 16, true, -7, 0, "-3"}, {16, 16, false, 9, 0, 0}},
+         CW_F32},
+        {{{16, 16, true, 10, 0, "12"}, {16, 16, true, -7, 0, 0}, {16, 16, true, 5, 0, "12"}},
+         CW_F32},
+        {{{16, 16, true, 10, 0, "12"}, {8, 8, true, -7, 0, "12"}, {16, 16, true, 5, 0, "12"}},
+         CW_I16},
+    };
+    for (size_t row = 0; row < sizeof rows / sizeof *rows; row++) {
+        for (int n = 0; n < 3; n++)
+            write_typed(n, &rows[row].slices[n]);
+        cw_volume v = read_all(NULL);
+        if (v.type != rows[row].type || v.dim[2] != 3)
+            fail_msg("row %zu: %zu slices of %s, not 3 of %s", row, v.dim[2],
+                     cw_type_name(v.type), cw_type_name(rows[row].type));
+        for (size_t k = 0; k < 3; k++)
+            for (size_t n = 0; n < PIXELS; n++) {
+                const typed_slice *t = &rows[row].slices[k];
+                const double value = cw_volume_value(&v, n % COLUMNS, n / COLUMNS, k);
+                const long pixel = t->first + (long)n;
+                if (!t->padding || atol(t->padding) != pixel)
+                    assert_near(value, (double)pixel * (t->slope ? atof(t->slope) : 1), 0);
+                else if (v.type == CW_F32)
+                    assert_true(isnan(value));
+                else
+                    assert_true(v.has_nodata && value == v.nodata);
+            }
+        cw_volume_free(&v);
+        check_regions("", NULL);
+    }
+}
+
+/* A slice made between others of other types is a blend of their numbers. */
+static void slices_between_types_are_made_of_values(void **state)
+{
+    (void)state;
+    write_typed(0, &(typed_slice){16, 12, false, 4000, 0, 0});
+    write_typed(1, &(typed_slice){16, 16, true, -4000, 0, 0});
+    write_typed(3, &(typed_slice){8, 8, false, 0, 0, 0});
+    const cw_read_desc desc = {.gaps = CW_GAPS_INTERPOLATE};
+    cw_volume v = read_all(&desc);
+    assert_int_equal(v.dim[2], 4);
+    for (size_t n = 0; n < PIXELS; n++)
+        assert_near(cw_volume_value(&v, n % COLUMNS, n / COLUMNS, 2), -2000 + (double)n, 0.5);
+    cw_volume_free(&v);
+    check_regions("", &desc);
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
@@ -265,6 +364,8 @@ int main(void)
         TEST(padding_of_either_neighbour_is_no_data),
         TEST(a_key_that_is_the_same_for_all_orders_nothing),
         TEST(values_of_long_pixels_are_doubles),
+        TEST(slices_of_other_types_are_one_series),
+        TEST(slices_between_types_are_made_of_values),
         TEST(runs_are_read),
         TEST(damaged_runs_are_left_out_if_that_is_asked_for),
     };
