@@ -35,7 +35,13 @@ struct DicomFile {
     std::unique_ptr<DcmFileFormat> file;
     PixelLayout layout;
     Mosaic mosaic;
-    std::vector<unsigned char> pixels; // of the frame decoded last
+    std::vector<DcmItem *>
+        tables; // the Modality LUT of each frame, which may have none; empty:
+                // no frame has one. Then:
+    bool has_padding = false;
+    double padding[2] = {0, 0}, nowhere = 0; // stored pixels that are padding, and their value
+    cw_type type = CW_U8;                    // of the returned pixels
+    std::vector<unsigned char> pixels;       // of the frame decoded last
     int64_t decoded = -1;
     ~DicomFile()
     {
@@ -48,6 +54,7 @@ struct DicomFile {
     }
     void close_file()
     {
+        tables.clear();
         file.reset();
         stream.reset();
         decoded = -1;

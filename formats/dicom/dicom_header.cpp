@@ -2,6 +2,7 @@
 #include "core/base/guard.hpp"
 #include "formats/dicom/dicom_file.hpp"
 #include "formats/dicom/dicom_frames.hpp"
+#include "formats/dicom/dicom_lookup.hpp"
 #include "formats/dicom/dicom_mosaic.hpp"
 
 #include <dcmtk/dcmdata/dccodec.h>
@@ -291,6 +292,8 @@ cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t capacity, cw_error
     *f = cwi_dicom_facts();
     const cwi_dicom_kind kind = kind_of(data);
     const Stored s = find_pixels(data, d.layout, kind, is_compressed(d));
+    d.tables.clear();
+    d.type = d.layout.type;
     if (!s.element && !(d.layout.columns > 0 && d.layout.rows > 0))
         return CW_OK; // no image: ignored
     const char *unreadable = why_unreadable(d);
@@ -322,6 +325,7 @@ cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t capacity, cw_error
     take_frames(data, f);
     take_segments(data, f, capacity);
     scale_fractions(data, f);
+    take_lookups(d, f);
     unfold_mosaic(d, f);
     return CW_OK;
 }
@@ -355,7 +359,7 @@ cw_status copy_rows(DicomFile &d, const cwi_plane_request *q, void *shared, cw_e
     cw_status st = frame == d.decoded ? CW_OK : decode_frame(d, frame, err);
     if (st != CW_OK)
         return st;
-    const size_t all = size_t(l.columns) * l.samples * cw_type_size(l.type);
+    const size_t all = size_t(l.columns) * l.samples * cw_type_size(d.type);
     const size_t row = all / m.across, tile = unfolded ? q->plane : 0;
     const unsigned char *from =
         d.pixels.data() + tile % m.across * row + (tile / m.across * rows + q->first_row) * all;

@@ -2,7 +2,7 @@
 // "dicom".
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "formats/dicom/dicom_file.hpp"
+#include "formats/dicom/dicom_lookup.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -262,6 +262,7 @@ cw_status cw::decode_frame(DicomFile &d, uint32_t frame, cw_error *err)
         interleave(l, d.pixels);
     if (l.allocated > 1)
         mend(l, d.pixels.data());
-    d.decoded = frame;
-    return CW_OK;
+    st = apply_lookup(d, frame, err);
+    d.decoded = st == CW_OK ? int64_t(frame) : -1;
+    return st;
 }

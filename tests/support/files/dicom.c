@@ -150,6 +150,20 @@ void test_dicom_free(test_dicom *d)
     *d = (test_dicom){0};
 }
 
+void test_dicom_put_lookup(test_dicom *d, const test_lookup *l)
+{
+    test_dicom_open_sequence(d, 0x00283000);
+    test_dicom_open_item(d);
+    put_head(d, 0x00283002, "US", 6);
+    for (int n = 0; n < 3; n++)
+        put_number(d, l->descriptor[n], 2);
+    if (l->type)
+        test_dicom_text(d, 0x00283004, "LO", l->type);
+    test_dicom_bytes(d, 0x00283006, l->vr, l->data, l->bytes);
+    test_dicom_close_item(d);
+    test_dicom_close_sequence(d);
+}
+
 static const char *or_else(const char *text, const char *otherwise)
 {
     return text ? text : otherwise;
@@ -235,6 +249,8 @@ void test_image_make(const test_image *m, test_dicom *d)
         test_dicom_u16(d, 0x00280121, (unsigned)atoi(m->padding_limit) & 0xffff);
     put_text_unless(d, 0x00281052, "DS", m->intercept);
     put_text_unless(d, 0x00281053, "DS", m->slope);
+    if (m->lookup)
+        test_dicom_put_lookup(d, m->lookup);
     if (m->csa) {
         test_dicom_text(d, 0x00290011, "LO", "SIEMENS CSA HEADER");
         test_dicom_bytes(d, 0x00291110, "OB", m->csa, m->csa_bytes);

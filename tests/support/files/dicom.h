@@ -47,6 +47,18 @@ void test_dicom_close_sequence(test_dicom *d);
 void test_dicom_open_fragments(test_dicom *d);
 void test_dicom_fragment(test_dicom *d, const void *bytes, size_t size);
 
+/* A Modality LUT. */
+typedef struct test_lookup {
+    uint16_t descriptor[3]; /* number of entries, first pixel, bits of an entry */
+    const char *type;       /* ModalityLUTType; NULL: left out */
+    const char *vr;         /* of the data: "US" or "OW" */
+    const void *data;       /* as they lie in the file */
+    size_t bytes;
+} test_lookup;
+
+/* Puts its sequence. */
+void test_dicom_put_lookup(test_dicom *d, const test_lookup *lookup);
+
 /* An image as scanners write them; zero fields are the defaults named beside them, NULL texts
  * leave an element out where it says so. */
 typedef struct test_image {
@@ -64,10 +76,11 @@ typedef struct test_image {
     const char *spacing;           /* between rows, between columns: "1\\1"; "" leaves it out */
     const char *slope, *intercept; /* NULL: left out */
     const char *padding, *padding_limit;
-    const char *trigger; /* TriggerTime, NULL: left out */
-    const char *type;    /* ImageType, NULL: left out */
-    const char *between; /* SpacingBetweenSlices, NULL: left out */
-    const void *csa;     /* Siemens' CSA header, NULL: left out */
+    const char *trigger;       /* TriggerTime, NULL: left out */
+    const char *type;          /* ImageType, NULL: left out */
+    const char *between;       /* SpacingBetweenSlices, NULL: left out */
+    const test_lookup *lookup; /* NULL: left out */
+    const void *csa;           /* Siemens' CSA header, NULL: left out */
     size_t csa_bytes;
     const void *pixels; /* columns x rows x samples; NULL: counting from 0 */
     size_t pixel_bytes; /* 0: as many as the sizes ask for */
