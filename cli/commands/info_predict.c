@@ -12,6 +12,7 @@
 #include "cli/inputs/volume_prepare.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/volume/missing_values.h"
 #include "core/volume/volume.h"
 
 #include <cubewright/quality.h>
@@ -340,13 +341,15 @@ cw_status cli_predict(const cli_predict_desc *desc, cli_volume *volume, cli_pred
 
 cw_status cli_expect_surfaces(const cli_volume *volume, const cli_predictions *p, cw_error *err)
 {
+    char missing[CWI_MISSING_TEXT];
+    cwi_tell_missing(&volume->whole, NULL, missing);
     for (size_t n = 0; n < p->count; n++)
         if (!p->items[n].triangles)
             return cwi_fail(
                 err, CW_ERR_EMPTY,
                 "%s: no surface at isovalue %g: it must be above the lowest value and "
-                "at most the highest",
-                volume->path, p->items[n].iso);
+                "at most the highest%s",
+                volume->path, p->items[n].iso, missing);
     return CW_OK;
 }
 

@@ -1,6 +1,7 @@
 /* Extracts the surface of a volume in memory: as a whole, or simplified slab by slab. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/volume/missing_values.h"
 #include "core/volume/volume.h"
 #include "extract/pipeline/stages.h"
 
@@ -8,15 +9,17 @@ static cw_status explain_empty(const cwi_pipeline *p, cw_error *err)
 {
     const cw_extract_desc *d = &p->desc->extract;
     cw_statistics range;
+    char missing[CWI_MISSING_TEXT];
     cw_status st = cw_volume_statistics(&p->part, 0, d->threads, &range, err);
     if (st != CW_OK)
         return st;
+    cwi_tell_missing(&p->part, &range, missing);
     if (!range.finite)
-        return cwi_fail(err, CW_ERR_EMPTY, "no voxel has a finite value");
+        return cwi_fail(err, CW_ERR_EMPTY, "no voxel has a finite value%s", missing);
     return cwi_fail(err, CW_ERR_EMPTY,
                     "no surface at isovalue %g: values are %g to %g, and it must be above the "
-                    "lowest and at most the highest",
-                    d->isovalue, range.min, range.max);
+                    "lowest and at most the highest%s",
+                    d->isovalue, range.min, range.max, missing);
 }
 
 /* Returns the settings of the extraction: its limit is also that of the process. */

@@ -1,6 +1,7 @@
 /* Extracts the surface of slices into a spool, measured on its way, or simplified slab by slab. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/volume/missing_values.h"
 #include "extract/pipeline/stages.h"
 
 /* Memory beside the slices that writers, threads and buffers take; half of it is for the check. */
@@ -79,11 +80,13 @@ static cw_status drop_small(cwi_pipeline *p, streaming *s, size_t left, cw_error
 
 static cw_status expect_surface(const cwi_pipeline *p, size_t triangles, cw_error *err)
 {
+    char missing[CWI_MISSING_TEXT];
+    cwi_tell_missing(&p->slices->shape, NULL, missing);
     return triangles ? CW_OK
                      : cwi_fail(err, CW_ERR_EMPTY,
                                 "no surface at isovalue %g: it must be above the lowest value "
-                                "and at most the highest",
-                                p->desc->extract.isovalue);
+                                "and at most the highest%s",
+                                p->desc->extract.isovalue, missing);
 }
 
 static cw_status fill_spool(cwi_pipeline *p, streaming *s, cw_stream_desc *d, cw_error *err)

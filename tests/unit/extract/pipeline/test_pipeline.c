@@ -5,6 +5,7 @@
 
 #include <cubewright/pipeline.h>
 
+#include <math.h>
 #include <string.h>
 
 enum { SIDE = 32 };
@@ -457,6 +458,45 @@ static void an_empty_surface_tells_the_range(void **state)
     cw_volume_free(&volume);
 }
 
+/* Voxels without a value may hide a surface: the message counts them. */
+static void an_empty_surface_tells_of_missing_values(void **state)
+{
+    (void)state;
+    static const struct {
+        double background, nodata, slope, intercept, box;
+        bool has_nodata;
+        const char *words;
+    } rows[] = {
+        {0, 0, 1, 0, 100, true,
+         "; 992 voxels have no value, since 0 stands for none (desc->nodata = CW_NODATA_NONE"},
+        {-3, -3, 2, 1000, 100, true, "; 992 voxels have no value, since 994 stands for none"},
+        {NAN, 0, 1, 0, 100, false, "; 992 voxels are NaN or infinite"},
+        {NAN, 100, 1, 0, 100, true,
+         "no voxel has a finite value; 8 voxels have no value, since 100 stands"},
+        {NAN, 100, 1, 0, 100, true, "makes a value of it); 992 voxels are NaN or infinite"},
+    };
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
+        cw_volume v;
+        cw_mesh mesh;
+        cw_error err = {0};
+        const cw_pipeline_desc d = {.extract = {.isovalue = 50}};
+        assert_int_equal(cw_volume_alloc(&v, CW_F32, (const size_t[3]){10, 10, 10}, 1, 1, NULL),
+                         CW_OK);
+        float *voxels = cw_volume_voxels(&v);
+        for (int i = 0; i < 1000; i++) {
+            const bool in = i / 100 % 5 == 2 && i / 10 % 10 / 2 == 2 && i % 10 / 2 == 2;
+            voxels[i] = (float)(in ? rows[n].box : rows[n].background);
+        }
+        v.slope = rows[n].slope;
+        v.intercept = rows[n].intercept;
+        v.has_nodata = rows[n].has_nodata;
+        v.nodata = rows[n].nodata;
+        assert_fails(cw_pipeline_mesh(&v, NULL, &d, &mesh, NULL, &err), CW_ERR_EMPTY,
+                     rows[n].words, err);
+        cw_volume_free(&v);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -470,6 +510,7 @@ int main(void)
         cmocka_unit_test(stages_exclude_each_other),
         cmocka_unit_test(later_versions_are_refused),
         cmocka_unit_test(an_empty_surface_tells_the_range),
+        cmocka_unit_test(an_empty_surface_tells_of_missing_values),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
