@@ -269,7 +269,7 @@ CW_API void cw_levels_free(cw_level *levels);
 /* A series of images in a folder of DICOM files. */
 typedef struct cw_series {
     char label[32];    /* value for cw_read_desc.series: its number, and .1, .2 ... when images
-                          of several sizes, types or directions have that number */
+                          of several sizes, directions or stacks have that number */
     char modality[20]; /* "CT"; may be empty */
     size_t images;     /* number of images */
     cw_volume shape;   /* as it would be read, without voxels; with a status other than CW_OK
