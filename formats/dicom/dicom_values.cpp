@@ -45,6 +45,22 @@ static std::vector<double> parse_list(const OFString &text)
     return *s ? std::vector<double>() : list;
 }
 
+// Reads numbers that are too many for their own representation, and so are stored as unknown (PS3.5 6.2.2).
+static std::vector<double> parse_unknown(DcmElement *element)
+{
+    std::vector<double> list;
+    const DcmEVR usual = DcmTag(element->getTag().getXTag()).getEVR();
+    Uint8 *bytes = nullptr;
+    const size_t size = element->getLengthField();
+    if (element->getUint8Array(bytes).bad() || !bytes)
+        return list;
+    if (usual == EVR_DS || usual == EVR_IS)
+        return parse_list(OFString(reinterpret_cast<char *>(bytes), size));
+    for (size_t n = 0; usual == EVR_US && n + 1 < size; n += 2)
+        list.push_back(bytes[n] | bytes[n + 1] << 8);
+    return list;
+}
+
 std::vector<double> list_of(DcmItem *item, const DcmTagKey &tag)
 {
     std::vector<double> list;
@@ -54,6 +70,8 @@ std::vector<double> list_of(DcmItem *item, const DcmTagKey &tag)
         return list;
     if (element->ident() == EVR_DS || element->ident() == EVR_IS)
         return element->getOFStringArray(text).good() ? parse_list(text) : list;
+    if (element->ident() == EVR_UN)
+        return parse_unknown(element);
     const unsigned long count = element->getVM();
     list.resize(count);
     for (unsigned long n = 0; n < count; n++)

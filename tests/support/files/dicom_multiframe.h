@@ -30,6 +30,7 @@ typedef struct test_counted {
     int vector_length;                /* default: frames */
     const char *offsets;              /* GridFrameOffsetVector */
     const char *frame_time;
+    bool is_unknown; /* vectors and offsets are stored as UN, as long ones have to be */
 } test_counted;
 
 static inline void put_optional(test_dicom *d, uint32_t tag, const char *vr, const char *text)
@@ -109,7 +110,7 @@ static inline void put_counted(test_dicom *d, const test_counted *c)
         put_place(d, c->position, c->orientation);
     put_sizes(d, frames, c->pointers, "3\\2");
     for (int v = 0; v < MAX_VECTORS && c->vectors[v].tag && c->vectors[v].tag < 0x00540022; v++)
-        put_words(d, c->vectors[v].tag, "US", c->vectors[v].numbers,
+        put_words(d, c->vectors[v].tag, c->is_unknown ? "UN" : "US", c->vectors[v].numbers,
                   c->vector_length ? c->vector_length : c->frames);
     if (c->by_detector) {
         test_dicom_open_sequence(d, 0x00540022); /* DetectorInformationSequence */
@@ -120,9 +121,9 @@ static inline void put_counted(test_dicom *d, const test_counted *c)
     }
     for (int v = 0; v < MAX_VECTORS; v++)
         if (c->vectors[v].tag > 0x00540022)
-            put_words(d, c->vectors[v].tag, "US", c->vectors[v].numbers,
+            put_words(d, c->vectors[v].tag, c->is_unknown ? "UN" : "US", c->vectors[v].numbers,
                       c->vector_length ? c->vector_length : c->frames);
-    put_optional(d, 0x3004000c, "DS", c->offsets);
+    put_optional(d, 0x3004000c, c->is_unknown ? "UN" : "DS", c->offsets);
     put_numbered_pixels(d, c->frames);
 }
 

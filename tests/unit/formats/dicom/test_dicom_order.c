@@ -218,6 +218,32 @@ static void moments_of_slices_are_steps(void **state)
     }
 }
 
+/* Vectors of more than 64 kB have to be stored without their representation. */
+static void vectors_of_unknown_representation_are_read(void **state)
+{
+    (void)state;
+    test_counted c = reconstructed("4", 4);
+    c.is_unknown = true;
+    c.pointers[1] = TIME_SLOT;
+    c.vectors[0] = (test_vector){TIME_SLOT, {1, 2, 1, 2}};
+    c.vectors[1] = (test_vector){SLICE, {300, 300, 301, 301}};
+    write_counted("nm.dcm", &c);
+    cw_volume v = read_all(NULL);
+    assert_frames(&v, 2, 2, (const int[]){0, 2, 1, 3});
+    cw_volume_free(&v);
+    write_counted("nm.dcm", &(test_counted){.sop_class = DOSE,
+                                            .position = "10\\20\\30",
+                                            .orientation = UPRIGHT,
+                                            .frames = 3,
+                                            .is_unknown = true,
+                                            .pointers = {OFFSETS},
+                                            .offsets = "0\\ -2.5 \\-5"});
+    v = read_all(NULL);
+    assert_frames(&v, 3, 1, (const int[]){2, 1, 0});
+    assert_column(&v, 2, 0, 0, 2.5);
+    cw_volume_free(&v);
+}
+
 /* Without a place there are still slices and moments. */
 static void numbered_slices_need_a_spacing_alone(void **state)
 {
@@ -488,6 +514,7 @@ int main(void)
         TEST(offsets_of_dose_are_relative_or_absolute),
         TEST(offsets_that_mean_nothing_are_refused),
         TEST(moments_of_slices_are_steps),
+        TEST(vectors_of_unknown_representation_are_read),
         TEST(numbered_slices_need_a_spacing_alone),
         TEST(frames_that_are_no_slices_are_refused),
         TEST(projections_are_not_stacked),
