@@ -184,7 +184,7 @@ cw_status open_dicom(DicomFile &d, int fd, uint64_t size, cw_error *err)
 {
     d.close_file();
     d.fd = fd;
-    d.stream.reset(new FileStream(fd, int64_t(size)));
+    d.stream.reset(new FileStream(Source{fd, int64_t(size), 0, nullptr}));
     d.file.reset(new DcmFileFormat);
     d.file->transferInit();
     const OFCondition read = d.file->read(*d.stream, EXS_Unknown, EGL_noChange, 1 << 16);

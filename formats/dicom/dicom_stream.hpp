@@ -2,6 +2,8 @@
 #ifndef FORMATS_DICOM_DICOM_STREAM_HPP
 #define FORMATS_DICOM_DICOM_STREAM_HPP
 
+#include "formats/dicom/dicom_inflated.hpp"
+
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dcerror.h>
 #include <dcmtk/dcmdata/dcistrma.h>
@@ -13,12 +15,31 @@
 namespace cw
 {
 
+// The bytes of a file. Behind the meta header of a deflated one, those are the inflated ones.
+struct Source {
+    int fd;
+    int64_t size;
+    int64_t inflated_from = 0;          // of a deflated file: the place of
+    std::shared_ptr<Inflated> inflated; // its inflated bytes, else NULL
+};
+
 class FileProducer : public DcmProducer
 {
 public:
-    FileProducer(int file, int64_t bytes, int64_t start_at)
-        : fd(file), size(bytes), at(start_at)
+    FileProducer(const Source &of, int64_t start_at) : source(of), at(start_at)
     {
+    }
+    // Continues with inflated bytes.
+    void inflate()
+    {
+        source.inflated.reset(new Inflated(source.fd, at, source.size));
+        source.inflated_from = at;
+        source.size = at + source.inflated->size();
+        filled = 0;
+    }
+    const Source &from() const
+    {
+        return source;
     }
     OFBool good() const override
     {
@@ -30,15 +51,15 @@ public:
     }
     OFBool eos() override
     {
-        return at >= size;
+        return at >= source.size;
     }
     offile_off_t avail() override
     {
-        return size - at;
+        return source.size - at;
     }
     offile_off_t skip(offile_off_t expected) override
     {
-        const int64_t step = expected < size - at ? expected : size - at;
+        const int64_t step = expected < source.size - at ? expected : source.size - at;
         at += step;
         return step;
     }
@@ -49,7 +70,12 @@ public:
     offile_off_t read(void *to, offile_off_t expected) override
     {
         offile_off_t got = 0;
-        while (got < expected && at < size) {
+        if (source.inflated) {
+            got = source.inflated->read(at - source.inflated_from, to, expected);
+            at += got;
+            return got;
+        }
+        while (got < expected && at < source.size) {
             if (at < start || at >= start + filled)
                 fill();
             if (filled <= 0)
@@ -67,13 +93,13 @@ private:
     void fill()
     {
         start = at;
-        filled = pread(fd, buffer, sizeof buffer, at);
+        filled = pread(source.fd, buffer, sizeof buffer, at);
         if (filled <= 0)
             condition = EC_InvalidStream; // the file has become shorter
     }
 
-    int fd;
-    int64_t size, at;
+    Source source;
+    int64_t at;
     int64_t start = 0, filled = 0;
     OFCondition condition = EC_Normal;
     char buffer[16384];
@@ -82,29 +108,34 @@ private:
 class FileStream : public DcmInputStream
 {
 public:
-    FileStream(int file, int64_t bytes, int64_t start = 0)
-        : DcmInputStream(&producer), producer(file, bytes, start), fd(file), size(bytes),
-          base(start)
+    FileStream(const Source &source, int64_t start = 0)
+        : DcmInputStream(&producer), producer(source, start), base(start)
     {
+    }
+    OFCondition installCompressionFilter(E_StreamCompression kind) override
+    {
+        if (kind != ESC_zlib)
+            return DcmInputStream::installCompressionFilter(kind);
+        producer.inflate();
+        return EC_Normal;
     }
     // Lets DCMTK leave pixels in the file until they are needed.
     DcmInputStreamFactory *newFactory() const override;
 
 private:
     FileProducer producer;
-    int fd;
-    int64_t size, base;
+    int64_t base;
 };
 
 class FileFactory : public DcmInputStreamFactory
 {
 public:
-    FileFactory(int file, int64_t bytes, int64_t start) : fd(file), size(bytes), at(start)
+    FileFactory(const Source &of, int64_t start) : source(of), at(start)
     {
     }
     DcmInputStream *create() const override
     {
-        return new FileStream(fd, size, at);
+        return new FileStream(source, at);
     }
     DcmInputStreamFactory *clone() const override
     {
@@ -116,13 +147,14 @@ public:
     }
 
 private:
-    int fd;
-    int64_t size, at;
+    Source source;
+    int64_t at;
 };
 
 inline DcmInputStreamFactory *FileStream::newFactory() const
 {
-    return currentProducer() == &producer ? new FileFactory(fd, size, base + tell()) : nullptr;
+    return currentProducer() == &producer ? new FileFactory(producer.from(), base + tell())
+                                          : nullptr;
 }
 
 } // namespace cw

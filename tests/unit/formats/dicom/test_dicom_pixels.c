@@ -254,6 +254,39 @@ static void damaged_runs_are_left_out_if_that_is_asked_for(void **state)
     cw_volume_free(&v);
 }
 
+/* Deflated pixels, from less than a block of a megabyte to several, dull ones and noise. */
+static void deflated_pixels_of_any_size_are_read(void **state)
+{
+    (void)state;
+    static const unsigned sides[] = {5, 1023, 1024, 1500};
+    for (size_t n = 0; n < sizeof sides / sizeof *sides; n++)
+        for (int noisy = 0; noisy < 2; noisy++) {
+            const size_t count = (size_t)sides[n] * sides[n];
+            uint16_t *pixels = malloc(count * sizeof *pixels);
+            uint32_t seed = 1;
+            test_dicom d;
+            cw_error err = {0};
+            cw_volume v;
+            assert_non_null(pixels);
+            for (size_t i = 0; i < count; i++) {
+                seed = seed * 1664525 + 1013904223;
+                pixels[i] = (uint16_t)(noisy ? seed >> 16 : i >> 10);
+            }
+            test_image_make(&(test_image){.syntax = TEST_DICOM_DEFLATED,
+                                          .columns = sides[n],
+                                          .rows = sides[n],
+                                          .pixels = pixels},
+                            &d);
+            test_dicom_deflate(&d);
+            test_file_write(test_path("d.dcm"), d.bytes, d.size);
+            test_dicom_free(&d);
+            assert_ok(read_back("d.dcm", &v, &err), err);
+            assert_memory_equal(v.data, pixels, count * sizeof *pixels);
+            cw_volume_free(&v);
+            free(pixels);
+        }
+}
+
 /* --- slices whose pixels have other types ------------------------------------------------- */
 
 typedef struct typed_slice {
@@ -366,6 +399,7 @@ int main(void)
         TEST(values_of_long_pixels_are_doubles),
         TEST(slices_of_other_types_are_one_series),
         TEST(slices_between_types_are_made_of_values),
+        TEST(deflated_pixels_of_any_size_are_read),
         TEST(runs_are_read),
         TEST(damaged_runs_are_left_out_if_that_is_asked_for),
     };
