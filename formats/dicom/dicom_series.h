@@ -3,7 +3,7 @@
 #define FORMATS_DICOM_DICOM_SERIES_H
 
 #include "formats/bytes/input_file.h"
-#include "formats/dicom/dicom.h"
+#include "formats/dcmtk/dicom.h"
 #include "formats/volume/damaged_files.h"
 
 /* One frame of one file. */

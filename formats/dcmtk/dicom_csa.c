@@ -1,5 +1,5 @@
 /* Reads numbers from the CSA header of Siemens scanners. */
-#include "formats/dicom/dicom_csa.h"
+#include "formats/dcmtk/dicom_csa.h"
 
 #include "core/base/text.h"
 

@@ -1,7 +1,7 @@
 /* Reading of the CSA header that Siemens scanners put into a DICOM file. It has named tags,
  * whose items are texts. Two versions are in use; the newer one begins with "SV10". */
-#ifndef FORMATS_DICOM_DICOM_CSA_H
-#define FORMATS_DICOM_DICOM_CSA_H
+#ifndef FORMATS_DCMTK_DICOM_CSA_H
+#define FORMATS_DCMTK_DICOM_CSA_H
 
 #include <stdbool.h>
 #include <stddef.h>

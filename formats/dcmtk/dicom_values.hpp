@@ -1,8 +1,8 @@
 // Values of a dataset of DCMTK: texts, numbers, items.
-#ifndef FORMATS_DICOM_DICOM_VALUES_HPP
-#define FORMATS_DICOM_DICOM_VALUES_HPP
+#ifndef FORMATS_DCMTK_DICOM_VALUES_HPP
+#define FORMATS_DCMTK_DICOM_VALUES_HPP
 
-#include "formats/dicom/dicom.h"
+#include "formats/dcmtk/dicom.h"
 
 #include <dcmtk/dcmdata/dctk.h>
 

@@ -1,5 +1,5 @@
 // Orders the frames of a file by the vectors that count them: slices, offsets, moments, views.
-#include "formats/dicom/dicom_increments.hpp"
+#include "formats/dcmtk/dicom_increments.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // Order of the frames of a file: slices, and the moments, echoes or views of each.
-#ifndef FORMATS_DICOM_DICOM_INCREMENTS_HPP
-#define FORMATS_DICOM_DICOM_INCREMENTS_HPP
+#ifndef FORMATS_DCMTK_DICOM_INCREMENTS_HPP
+#define FORMATS_DCMTK_DICOM_INCREMENTS_HPP
 
-#include "formats/dicom/dicom_values.hpp"
+#include "formats/dcmtk/dicom_values.hpp"
 
 namespace cw
 {

@@ -1,8 +1,8 @@
 // The input stream by which DCMTK reads an open descriptor; DCMTK itself opens files by name.
-#ifndef FORMATS_DICOM_DICOM_STREAM_HPP
-#define FORMATS_DICOM_DICOM_STREAM_HPP
+#ifndef FORMATS_DCMTK_DICOM_STREAM_HPP
+#define FORMATS_DCMTK_DICOM_STREAM_HPP
 
-#include "formats/dicom/dicom_inflated.hpp"
+#include "formats/dcmtk/dicom_inflated.hpp"
 
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dcerror.h>

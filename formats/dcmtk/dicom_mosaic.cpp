@@ -1,7 +1,7 @@
 // Finds the slices of a mosaic, which Siemens scanners show side by side in one image.
-#include "formats/dicom/dicom_mosaic.hpp"
+#include "formats/dcmtk/dicom_mosaic.hpp"
 
-#include "formats/dicom/dicom_csa.h"
+#include "formats/dcmtk/dicom_csa.h"
 
 #include <cmath>
 

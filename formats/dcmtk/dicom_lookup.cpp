@@ -1,5 +1,5 @@
 // Reads Modality LUTs, and turns pixels into values by them.
-#include "formats/dicom/dicom_lookup.hpp"
+#include "formats/dcmtk/dicom_lookup.hpp"
 
 #include "core/base/status.h"
 #include "core/volume/volume.h"

@@ -1,6 +1,6 @@
 // The inflated data of a deflated DICOM file, in memory.
-#ifndef FORMATS_DICOM_DICOM_INFLATED_HPP
-#define FORMATS_DICOM_DICOM_INFLATED_HPP
+#ifndef FORMATS_DCMTK_DICOM_INFLATED_HPP
+#define FORMATS_DCMTK_DICOM_INFLATED_HPP
 
 #include <cstdint>
 #include <memory>

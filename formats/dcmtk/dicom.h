@@ -1,8 +1,8 @@
 /* Facts of a DICOM file, which the module "dicom" (DCMTK, in a sandboxed process) puts into the
  * shared memory. Nothing in here has been checked. Nothing identifies a patient: neither name
  * nor number nor date is ever taken out of a file. */
-#ifndef FORMATS_DICOM_DICOM_H
-#define FORMATS_DICOM_DICOM_H
+#ifndef FORMATS_DCMTK_DICOM_H
+#define FORMATS_DCMTK_DICOM_H
 
 #include "formats/volume/sandboxed_planes.h"
 

@@ -1,5 +1,5 @@
 // Tells images that are no slices: projections, photographs, planar views.
-#include "formats/dicom/dicom_increments.hpp"
+#include "formats/dcmtk/dicom_increments.hpp"
 
 #include <cstring>
 

@@ -1,6 +1,6 @@
 /* Replaces dicom_jpeg2000.c in builds without OpenJPEG. */
 #include "core/base/status.h"
-#include "formats/dicom/dicom.h"
+#include "formats/dcmtk/dicom.h"
 
 cw_status cwi_dicom_jpeg2000(const void *data, size_t size, const cwi_dicom_image *image,
                              void *pixels, cw_error *err)

@@ -1,5 +1,5 @@
 // Reads texts, numbers, lists of numbers and items out of a dataset of DCMTK.
-#include "formats/dicom/dicom_values.hpp"
+#include "formats/dcmtk/dicom_values.hpp"
 
 #include "core/base/text.h"
 

@@ -1,8 +1,8 @@
 // Frames of a file: where they lie, what sets them apart, and how their pixels are scaled.
-#ifndef FORMATS_DICOM_DICOM_FRAMES_HPP
-#define FORMATS_DICOM_DICOM_FRAMES_HPP
+#ifndef FORMATS_DCMTK_DICOM_FRAMES_HPP
+#define FORMATS_DCMTK_DICOM_FRAMES_HPP
 
-#include "formats/dicom/dicom_values.hpp"
+#include "formats/dcmtk/dicom_values.hpp"
 
 namespace cw
 {

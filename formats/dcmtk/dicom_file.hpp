@@ -1,9 +1,9 @@
 // The open file of the module "dicom", and the state that its two halves share.
-#ifndef FORMATS_DICOM_DICOM_FILE_HPP
-#define FORMATS_DICOM_DICOM_FILE_HPP
+#ifndef FORMATS_DCMTK_DICOM_FILE_HPP
+#define FORMATS_DCMTK_DICOM_FILE_HPP
 
-#include "formats/dicom/dicom_stream.hpp"
-#include "formats/dicom/dicom_values.hpp"
+#include "formats/dcmtk/dicom_stream.hpp"
+#include "formats/dcmtk/dicom_values.hpp"
 
 #include <memory>
 #include <vector>

@@ -1,8 +1,8 @@
 // Mosaics: slices side by side in one image.
-#ifndef FORMATS_DICOM_DICOM_MOSAIC_HPP
-#define FORMATS_DICOM_DICOM_MOSAIC_HPP
+#ifndef FORMATS_DCMTK_DICOM_MOSAIC_HPP
+#define FORMATS_DCMTK_DICOM_MOSAIC_HPP
 
-#include "formats/dicom/dicom_file.hpp"
+#include "formats/dcmtk/dicom_file.hpp"
 
 namespace cw
 {

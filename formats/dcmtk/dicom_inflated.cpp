@@ -1,5 +1,5 @@
 // Inflates DICOM files ahead of DCMTK, which would allocate any length that an element of a deflated file states.
-#include "formats/dicom/dicom_inflated.hpp"
+#include "formats/dcmtk/dicom_inflated.hpp"
 
 #include <algorithm>
 #include <cstring>

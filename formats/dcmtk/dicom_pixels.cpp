@@ -2,7 +2,7 @@
 // "dicom".
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "formats/dicom/dicom_lookup.hpp"
+#include "formats/dcmtk/dicom_lookup.hpp"
 
 #include <algorithm>
 #include <cstring>

@@ -1,8 +1,8 @@
 // Modality LUTs: tables that turn stored pixels into values, in place of slope and intercept.
-#ifndef FORMATS_DICOM_DICOM_LOOKUP_HPP
-#define FORMATS_DICOM_DICOM_LOOKUP_HPP
+#ifndef FORMATS_DCMTK_DICOM_LOOKUP_HPP
+#define FORMATS_DCMTK_DICOM_LOOKUP_HPP
 
-#include "formats/dicom/dicom_file.hpp"
+#include "formats/dcmtk/dicom_file.hpp"
 
 namespace cw
 {

@@ -1,7 +1,7 @@
 // Reads where the frames of a file lie, what sets them apart, and how their pixels are scaled.
-#include "formats/dicom/dicom_frames.hpp"
+#include "formats/dcmtk/dicom_frames.hpp"
 
-#include "formats/dicom/dicom_increments.hpp"
+#include "formats/dcmtk/dicom_increments.hpp"
 
 #include <cmath>
 

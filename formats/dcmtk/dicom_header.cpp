@@ -1,9 +1,9 @@
 // Reads the facts of a file by DCMTK, behind plain C: the first half of the module "dicom".
 #include "core/base/guard.hpp"
-#include "formats/dicom/dicom_file.hpp"
-#include "formats/dicom/dicom_frames.hpp"
-#include "formats/dicom/dicom_lookup.hpp"
-#include "formats/dicom/dicom_mosaic.hpp"
+#include "formats/dcmtk/dicom_file.hpp"
+#include "formats/dcmtk/dicom_frames.hpp"
+#include "formats/dcmtk/dicom_lookup.hpp"
+#include "formats/dcmtk/dicom_mosaic.hpp"
 
 #include <dcmtk/dcmdata/dccodec.h>
 #include <dcmtk/dcmdata/dcrledrg.h>

@@ -1,7 +1,7 @@
 /* Decodes JPEG 2000 images in DICOM by OpenJPEG, since Debian's DCMTK does not. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "formats/dicom/dicom.h"
+#include "formats/dcmtk/dicom.h"
 
 #include <openjpeg.h>
 #include <string.h>
