@@ -64,14 +64,13 @@ bool layout_type(PixelLayout &l, const char **why)
     return true;
 }
 
-// Checks the colour model. Plain colours are read as stored; DCMTK converts compressed ones to
-// RGB.
-const char *check_colour(DcmItem *data, uint32_t samples, bool compressed)
+// Checks the colour model. Plain colours are read as stored; decoders of JPEG convert theirs to RGB.
+const char *check_colour(DcmItem *data, uint32_t samples, bool makes_rgb)
 {
     const OFString model = text_of(data, DCM_PhotometricInterpretation);
     if (samples == 1 && model != "PALETTE COLOR")
         return nullptr;
-    if (samples == 3 && (model == "RGB" || (compressed && model.substr(0, 3) == "YBR")))
+    if (samples == 3 && (model == "RGB" || (makes_rgb && model.substr(0, 3) == "YBR")))
         return nullptr;
     return samples == 1 ? "its pixels are colours of a palette"
                         : "its colours are not stored as RGB";
@@ -91,7 +90,7 @@ struct Stored {
     const char *why_not = nullptr;
 };
 
-Stored find_pixels(DcmItem *data, PixelLayout &l, cwi_dicom_kind kind, bool compressed)
+Stored find_pixels(DcmItem *data, PixelLayout &l, cwi_dicom_kind kind, bool makes_rgb)
 {
     Stored s;
     l.columns = count_of(data, DCM_Columns, 0);
@@ -110,7 +109,7 @@ Stored find_pixels(DcmItem *data, PixelLayout &l, cwi_dicom_kind kind, bool comp
     else if (data->findAndGetElement(DCM_PixelData, s.element).good() &&
              layout_type(l, &s.why_not))
         s.why_not = kind == CWI_DICOM_LABELMAP ? check_labels(l)
-                                               : check_colour(data, l.samples, compressed);
+                                               : check_colour(data, l.samples, makes_rgb);
     return s;
 }
 
@@ -291,7 +290,8 @@ cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t capacity, cw_error
     d.layout = PixelLayout();
     *f = cwi_dicom_facts();
     const cwi_dicom_kind kind = kind_of(data);
-    const Stored s = find_pixels(data, d.layout, kind, is_compressed(d));
+    const Stored s = find_pixels(
+        data, d.layout, kind, is_compressed(d) && data->getOriginalXfer() != EXS_RLELossless);
     d.tables.clear();
     d.type = d.layout.type;
     if (!s.element && !(d.layout.columns > 0 && d.layout.rows > 0))

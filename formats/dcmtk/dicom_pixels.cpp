@@ -155,23 +155,54 @@ size_t unpack_runs(const unsigned char *from, size_t size, unsigned char *to, si
     return filled;
 }
 
-// Decodes runs of bytes that hold eight pixels each, since DCMTK decodes whole bytes only. The
-// head counts segments and states their starts; here there is only one.
-cw_status read_runs_of_bits(DicomFile &d, uint32_t frame, cw_error *err)
+// Finds the segments of a frame of runs (PS3.5 G.5): its head counts them, and states where each starts. Returns
+// false where their number is not the expected one, or one lies outside of the frame.
+bool find_segments(const std::vector<unsigned char> &bytes, size_t count,
+                   std::vector<size_t> &starts)
 {
     enum { HEAD = 64 };
-    std::vector<unsigned char> bytes;
-    cw_status st = read_fragments(d, frame, bytes, err);
+    if (bytes.size() < HEAD || count > HEAD / 4 - 1)
+        return false;
+    for (size_t n = 0; n <= count; n++) {
+        const unsigned char *b = &bytes[4 * n];
+        const size_t number =
+            b[0] | size_t(b[1]) << 8 | size_t(b[2]) << 16 | size_t(b[3]) << 24;
+        const size_t least = starts.empty() ? size_t(HEAD) : starts.back();
+        if (n == 0 ? number != count : number < least || number > bytes.size())
+            return false;
+        if (n > 0)
+            starts.push_back(number);
+    }
+    starts.push_back(bytes.size());
+    return true;
+}
+
+// Decodes runs. Each byte of a sample has a segment of its own, the highest first; pixels of one bit have one
+// segment, eight to a byte. DCMTK returns memory that it did not fill where runs end early.
+cw_status read_runs(DicomFile &d, uint32_t frame, cw_error *err)
+{
+    const PixelLayout &l = d.layout;
+    const size_t bytes = l.allocated / 8, segments = bytes ? bytes * l.samples : 1;
+    const size_t count = l.count() / l.samples;
+    std::vector<unsigned char> runs, plane(bytes ? count : (count + 7) / 8);
+    std::vector<size_t> starts;
+    cw_status st = read_fragments(d, frame, runs, err);
     if (st != CW_OK)
         return st;
-    if (bytes.size() < HEAD || bytes[0] != 1 || bytes[1] || bytes[2] || bytes[3] ||
-        bytes[4] != HEAD || bytes[5] || bytes[6] || bytes[7])
-        return fail_frame(frame, "its head of run lengths does not count one segment", err);
-    std::vector<unsigned char> bits((d.layout.count() + 7) / 8);
-    if (unpack_runs(bytes.data() + HEAD, bytes.size() - HEAD, bits.data(), bits.size()) <
-        bits.size())
-        return fail_frame(frame, "its run lengths end early", err);
-    spread_bits(d, bits.data(), 0);
+    if (!find_segments(runs, segments, starts))
+        return fail_frame(frame,
+                          "its head of run lengths does not count and place its segments", err);
+    d.pixels.resize(l.count() * cw_type_size(l.type));
+    for (size_t s = 0; s < segments; s++) {
+        if (unpack_runs(runs.data() + starts[s], starts[s + 1] - starts[s], plane.data(),
+                        plane.size()) < plane.size())
+            return fail_frame(frame, "its run lengths end early", err);
+        if (!bytes)
+            spread_bits(d, plane.data(), 0);
+        const size_t at = bytes ? s / bytes * bytes + bytes - 1 - s % bytes : 0;
+        for (size_t i = 0; bytes && i < count; i++)
+            d.pixels[i * segments + at] = plane[i];
+    }
     return CW_OK;
 }
 
@@ -254,7 +285,7 @@ cw_status cw::decode_frame(DicomFile &d, uint32_t frame, cw_error *err)
     cw_status st = real                              ? read_reals(d, frame, err)
                    : l.allocated == 1 && !compressed ? read_bits(d, frame, err)
                    : is_jpeg2000(syntax)             ? read_jpeg2000(d, frame, err)
-                   : l.allocated == 1                ? read_runs_of_bits(d, frame, err)
+                   : syntax == EXS_RLELossless       ? read_runs(d, frame, err)
                                                      : read_integers(d, frame, compressed, err);
     if (st != CW_OK)
         return st;

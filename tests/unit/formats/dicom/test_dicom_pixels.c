@@ -218,6 +218,78 @@ static void runs_are_read(void **state)
     cw_volume_free(&v);
 }
 
+/* Encodes the bytes of a frame: a segment for each byte of a sample, the highest first. Returns the size. */
+static size_t encode_runs(const unsigned char *pixels, size_t segments, size_t bytes,
+                          unsigned char *rle)
+{
+    size_t size = 64;
+    memset(rle, 0, 64);
+    rle[0] = (unsigned char)segments;
+    for (size_t s = 0; s < segments; s++) {
+        const size_t at = s / bytes * bytes + bytes - 1 - s % bytes;
+        rle[4 * (s + 1)] = (unsigned char)size;
+        rle[4 * (s + 1) + 1] = (unsigned char)(size >> 8);
+        rle[size++] = PIXELS - 3; /* as they are, all but two */
+        for (size_t n = 0; n < PIXELS - 2; n++)
+            rle[size++] = pixels[n * segments + at];
+        rle[size++] = 128;                             /* nothing */
+        for (size_t n = PIXELS - 2; n < PIXELS; n++) { /* one byte once */
+            rle[size++] = 0;
+            rle[size++] = pixels[n * segments + at];
+        }
+        size += size % 2;
+    }
+    return size;
+}
+
+static void write_encoded(unsigned bits, unsigned samples, const unsigned char *rle,
+                          size_t size)
+{
+    test_dicom d;
+    test_image_make(&(test_image){.syntax = TEST_DICOM_RLE, .bits = bits, .samples = samples},
+                    &d);
+    test_dicom_open_fragments(&d);
+    test_dicom_fragment(&d, rle, size);
+    test_dicom_close_sequence(&d);
+    test_file_write(test_path("rle.dcm"), d.bytes, d.size);
+    test_dicom_free(&d);
+}
+
+static void runs_of_every_layout_are_read(void **state)
+{
+    (void)state;
+    static const unsigned layouts[][2] = {{8, 1}, {16, 1}, {32, 1}, {8, 3}, {16, 3}};
+    for (size_t row = 0; row < sizeof layouts / sizeof *layouts; row++) {
+        const unsigned bits = layouts[row][0], samples = layouts[row][1];
+        const size_t bytes = bits / 8, segments = bytes * samples;
+        unsigned char pixels[12 * PIXELS], rle[1024] = {0};
+        cw_volume v;
+        cw_error err = {0};
+        for (size_t n = 0; n < segments * PIXELS; n++)
+            pixels[n] = (unsigned char)(37 * n + 11);
+        const size_t size = encode_runs(pixels, segments, bytes, rle);
+        write_encoded(bits, samples, rle, size);
+        assert_ok(read_back("rle.dcm", &v, &err), err);
+        assert_memory_equal(v.data, pixels, segments * PIXELS);
+        cw_volume_free(&v);
+        for (int way = 0; way < 4; way++) { /* a head that lies, and runs that end early */
+            unsigned char bad[1024];
+            memcpy(bad, rle, sizeof bad);
+            if (way == 0)
+                bad[0]++;
+            else if (way == 1)
+                bad[4 * segments] = bad[4 * segments + 1] = 0xff;
+            else if (way == 2)
+                bad[4] = 60;
+            write_encoded(bits, samples, bad, way == 3 ? size - 6 : size);
+            assert_fails(read_back("rle.dcm", &v, &err), CW_ERR_FORMAT,
+                         way == 3 ? "its run lengths end early"
+                                  : "does not count and place its segments",
+                         err);
+        }
+    }
+}
+
 /* Writes a slice of runs, with too many segments if it is damaged. */
 static void write_runs(int instance, bool damaged)
 {
@@ -401,6 +473,7 @@ int main(void)
         TEST(slices_between_types_are_made_of_values),
         TEST(deflated_pixels_of_any_size_are_read),
         TEST(runs_are_read),
+        TEST(runs_of_every_layout_are_read),
         TEST(damaged_runs_are_left_out_if_that_is_asked_for),
     };
     if (!cwi_module_present("dicom")) {
