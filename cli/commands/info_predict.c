@@ -347,8 +347,8 @@ cw_status cli_expect_surfaces(const cli_volume *volume, const cli_predictions *p
         if (!p->items[n].triangles)
             return cwi_fail(
                 err, CW_ERR_EMPTY,
-                "%s: no surface at isovalue %g: it must be above the lowest value and "
-                "at most the highest%s",
+                "%s: no surface at isovalue %g%s: it must be above the lowest value and "
+                "at most the highest",
                 volume->path, p->items[n].iso, missing);
     return CW_OK;
 }

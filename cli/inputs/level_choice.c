@@ -6,6 +6,7 @@
 #include "cli/framework/quantity.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/volume/missing_values.h"
 
 #include <cubewright/stream.h>
 
@@ -55,8 +56,12 @@ static cw_status find_statistics(const cli_volume *volume, const cli_input *inpu
     cw_status st = volume->streams ? cli_visit_slices(volume, input, &visitor, err)
                                    : cw_volume_statistics(&volume->view, CLI_LEVEL_BINS,
                                                           (int)input->threads, s, err);
-    if (st == CW_OK && !s->finite)
-        st = cwi_fail(err, CW_ERR_EMPTY, "%s: no voxel has a finite value", volume->path);
+    char missing[CWI_MISSING_TEXT];
+    if (st == CW_OK && !s->finite) {
+        cwi_tell_missing(&volume->whole, s, missing);
+        st = cwi_fail(err, CW_ERR_EMPTY, "%s: no voxel has a finite value%s", volume->path,
+                      missing);
+    }
     return st;
 }
 
@@ -64,11 +69,13 @@ static cw_status find_otsu(const cli_volume *volume, const cw_statistics *s, cli
                            double *value, cw_error *err)
 {
     double values[3];
+    char missing[CWI_MISSING_TEXT];
     const int count = level == CLI_LEVEL_OTSU ? 1 : 3;
+    cwi_tell_missing(&volume->whole, s, missing);
     if (!cw_statistics_otsu(s, count, values))
         return cwi_fail(err, CW_ERR_EMPTY,
-                        "%s: --iso %s: the values are too few to be parted into %d classes",
-                        volume->path, cli_level_text(level, 0), count + 1);
+                        "%s: --iso %s: the values are too few to be parted into %d classes%s",
+                        volume->path, cli_level_text(level, 0), count + 1, missing);
     *value = values[level == CLI_LEVEL_MEDIUM ? 1 : level == CLI_LEVEL_BRIGHT ? 2 : 0];
     return CW_OK;
 }

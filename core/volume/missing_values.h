@@ -8,7 +8,7 @@ enum { CWI_MISSING_TEXT = 192 };
 
 /* Prints how many voxels have no value, why, and what makes values of them, as the end of a sentence that says
  * why nothing was found. Prints an empty text where all have one.
- * counts  of the volume; NULL: not counted, only the no-data value is told */
+ * Without counts (NULL) it tells the no-data value alone. */
 void cwi_tell_missing(const cw_volume *volume, const cw_statistics *counts,
                       char text[CWI_MISSING_TEXT]);
 

@@ -82,11 +82,12 @@ static cw_status expect_surface(const cwi_pipeline *p, size_t triangles, cw_erro
 {
     char missing[CWI_MISSING_TEXT];
     cwi_tell_missing(&p->slices->shape, NULL, missing);
-    return triangles ? CW_OK
-                     : cwi_fail(err, CW_ERR_EMPTY,
-                                "no surface at isovalue %g: it must be above the lowest value "
-                                "and at most the highest%s",
-                                p->desc->extract.isovalue, missing);
+    return triangles
+               ? CW_OK
+               : cwi_fail(err, CW_ERR_EMPTY,
+                          "no surface at isovalue %g%s: it must be above the lowest value "
+                          "and at most the highest",
+                          p->desc->extract.isovalue, missing);
 }
 
 static cw_status fill_spool(cwi_pipeline *p, streaming *s, cw_stream_desc *d, cw_error *err)
