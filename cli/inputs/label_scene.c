@@ -327,7 +327,7 @@ bool cli_find_label_at(const cli_volume *volume, const cli_input *input, size_t 
         if (!(found >= 1 && found <= UINT32_MAX))
             continue;
         *layer = (uint32_t)c;
-        *value = (uint32_t)found;
+        *value = (uint32_t)rint(found);
         return true;
     }
     return false;

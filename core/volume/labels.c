@@ -150,6 +150,9 @@ static void load_piece(const cw_volume *v, size_t i, size_t j, size_t k, size_t 
     default:
         memset(piece, 0, count * sizeof *piece);
     }
+    const bool is_real = v->type == CW_F32 || v->type == CW_F64;
+    for (size_t n = 0; is_real && n < count; n++)
+        piece[n] = cwi_whole_value(piece[n]);
 }
 
 /* Whether further rows can matter. */
@@ -288,7 +291,7 @@ cw_status cw_volume_labels(const cw_volume *volume, cw_labels *out, cw_error *er
                            .more = c.listed > CW_LABELS_MAX,
                            .count = c.listed < CW_LABELS_MAX ? c.listed : CW_LABELS_MAX};
     for (size_t n = 0; n < out->count; n++)
-        out->value[n] = v.slope * c.runs[n].value + v.intercept;
+        out->value[n] = cwi_whole_value(v.slope * c.runs[n].value + v.intercept);
     cwi_free(c.small);
     cwi_free(c.runs);
     return st;

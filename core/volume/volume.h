@@ -50,6 +50,15 @@ static inline void cwi_voxel_put(cw_type type, void *p, double value)
     }
 }
 
+/* Returns the whole number that a value stands for: it may differ by the rounding of a scale or of a
+ * float. Other values, and those that are not finite, are returned as they are. */
+static inline double cwi_whole_value(double value)
+{
+    const double whole = rint(value), size = fabs(value);
+    const double rounding = fmin(fmax(1e-4, 1e-6 * size), 0.01);
+    return fabs(value - whole) <= rounding ? whole : value;
+}
+
 /* Keeps every step-th voxel: changes sizes and affine; strides stay.
  * Returns CW_ERR_ARGUMENT as cw_volume_coarsen(). */
 CW_NODISCARD cw_status cwi_volume_thin(cw_volume *volume, const size_t step[3], cw_error *err);

@@ -36,7 +36,7 @@ static size_t load_checked(const cwi_label_layers *l, const char *from, size_t c
     const cw_volume *v = l->volume;
     for (size_t i = 0; i < count; i++, from += v->stride[0]) {
         const double stored = cwi_voxel_at(v->type, from);
-        const double value = v->slope * stored + v->intercept;
+        const double value = cwi_whole_value(v->slope * stored + v->intercept);
         out[i] = l->background;
         if ((v->has_nodata && stored == v->nodata) || isnan(value))
             continue;
@@ -141,7 +141,7 @@ cw_status cwi_label_fail_voxel(const cwi_label_layers *l, const size_t bad[3], c
 {
     const double value = cw_volume_value(l->volume, bad[0], bad[1], bad[2] - l->first_slice);
     return cwi_fail(err, CW_ERR_ARGUMENT,
-                    "voxel %zu, %zu, %zu is %g: labels are whole numbers, 0 to 4294967295",
+                    "voxel %zu, %zu, %zu is %.10g: labels are whole numbers, 0 to 4294967295",
                     bad[0], bad[1], bad[2], value);
 }
 

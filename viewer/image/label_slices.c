@@ -26,7 +26,7 @@ static const cw_label *label_at(const label_source *p, const double world[3])
             return NULL;
         at[a] = (size_t)nearest;
     }
-    const double value = cw_volume_value(&p->labels, at[0], at[1], at[2]);
+    const double value = cwi_whole_value(cw_volume_value(&p->labels, at[0], at[1], at[2]));
     if (!(value >= 0 && value <= UINT32_MAX && value == floor(value)))
         return NULL;
     return cw_label_find(p->o->table, p->o->layer, (uint32_t)value);

@@ -96,6 +96,46 @@ static void areas_of_patches_add_up(void **state)
     cw_label_surfaces_free(&s);
 }
 
+/* Labels that were scaled or rounded on their way are the whole numbers next to them; others are
+ * refused. */
+static void labels_within_rounding_are_whole(void **state)
+{
+    (void)state;
+    static int16_t scaled[24];
+    static float rounded[24];
+    static const double others[] = {2.5, 2.99, 0.02, -1, 4294967296.0};
+    cw_volume volumes[] = {
+        {.data = scaled, .type = CW_I16, .dim = {4, 3, 2}, .slope = (double)0.001f},
+        {.data = scaled, .type = CW_I16, .dim = {4, 3, 2}, .slope = 0.001, .intercept = 1e-9},
+        {.data = rounded, .type = CW_F32, .dim = {4, 3, 2}}};
+    cw_label_count *counts;
+    size_t count;
+    cw_labels labels;
+    cw_error err = {0};
+    for (int i = 0; i < 24; i++) {
+        scaled[i] = (int16_t)(i < 5 ? 3000 : i < 7 ? 32000 : i < 20 ? 7000 : 0);
+        rounded[i] = i < 5 ? 2.9999998f : i < 7 ? 32.000004f : i < 20 ? 7 : 1e-7f;
+    }
+    for (size_t n = 0; n < 3; n++) {
+        volumes[n].known = CW_KNOWN_LABELS;
+        assert_ok(cw_label_counts(&volumes[n], 0, &counts, &count, &err), err);
+        assert_int_equal(count, 3);
+        assert_true(counts[0].label == 3 && counts[0].voxels == 5);
+        assert_true(counts[1].label == 7 && counts[1].voxels == 13);
+        assert_true(counts[2].label == 32 && counts[2].voxels == 2);
+        cw_label_counts_free(counts);
+        assert_ok(cw_volume_labels(&volumes[n], &labels, &err), err);
+        assert_int_equal(labels.count, 4);
+        assert_true(labels.value[0] == 0 && labels.value[1] == 3 && labels.value[2] == 7 &&
+                    labels.value[3] == 32);
+    }
+    for (size_t n = 0; n < sizeof others / sizeof *others; n++) {
+        rounded[9] = (float)others[n];
+        assert_fails(cw_label_counts(&volumes[2], 0, &counts, &count, &err), CW_ERR_ARGUMENT,
+                     "labels are whole numbers", err);
+    }
+}
+
 static void voxels_are_counted(void **state)
 {
     (void)state;
@@ -209,6 +249,7 @@ int main(void)
         cmocka_unit_test(both_labels_have_a_patch),
         cmocka_unit_test(areas_of_patches_add_up),
         cmocka_unit_test(voxels_are_counted),
+        cmocka_unit_test(labels_within_rounding_are_whole),
         cmocka_unit_test(a_picture_has_each_interface_once),
         cmocka_unit_test(memory_that_is_out_is_an_error),
     };
