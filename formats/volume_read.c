@@ -203,6 +203,7 @@ static cw_status read_source(opened *o, const cw_read_desc *desc, cw_volume *vol
         cwi_note(desc, "%s", src.note);
     if (st == CW_OK && o->many)
         st = check_part_bytes(&src.shape, o->names.count, err);
+    src.may_widen = true;
     if (o->many) {
         src.files = o->names;
         o->names = (cwi_names){0};

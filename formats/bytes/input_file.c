@@ -113,18 +113,26 @@ static bool has_parent_step(const char *name)
     return false;
 }
 
+/* Returns true for a path such as "C:/scans/a.raw". */
+static bool is_windows_path(const char *name)
+{
+    const char letter = (char)(name[0] | 0x20);
+    return letter >= 'a' && letter <= 'z' && name[1] == ':' && name[2] == '/';
+}
+
 static cw_status check_name(const char *name, cw_error *err)
 {
     const char *why = name[0] == '/'                ? "an absolute path"
                       : has_parent_step(name)       ? "a path with '..'"
                       : strstr(name, "://")         ? "an address"
-                      : strpbrk(name, "\\%")        ? "a name with '\\' or '%'"
+                      : is_windows_path(name)       ? "an absolute path of Windows"
+                      : strchr(name, '%')           ? "a name with '%'"
                       : strlen(name) > LONGEST_NAME ? "a name of more than 1023 bytes"
                                                     : NULL;
     if (why)
         return cwi_fail(err, CW_ERR_UNSAFE,
-                        "%s; a data file must lie in its header's folder unless external files "
-                        "are allowed",
+                        "%s; a data file must lie in its header's folder, unless "
+                        "desc->allow_external is set",
                         why);
     return CW_OK;
 }
@@ -159,6 +167,27 @@ bool cwi_input_is_named(const cwi_input *in, const char *name)
     return strcmp(slash ? slash + 1 : in->path, name) == 0;
 }
 
+/* Turns the backslashes of a name that was written on Windows. Longer names are left alone, as they are
+ * refused. */
+static const char *with_slashes(const char *name, char text[LONGEST_NAME + 2])
+{
+    if (!strchr(name, '\\') || strlen(name) > LONGEST_NAME)
+        return name;
+    strcpy(text, name);
+    for (char *c = text; (c = strchr(c, '\\'));)
+        *c = '/';
+    return text;
+}
+
+static cw_status open_named(const cwi_input *in, const char *name, int *fd, uint64_t *size,
+                            cw_error *err)
+{
+    if (in->allow_external)
+        return open_regular(in->folder, name, 0, fd, size, err);
+    cw_status st = check_name(name, err);
+    return st == CW_OK ? open_below(in->folder, name, fd, size, err) : st;
+}
+
 cw_status cwi_input_open_side(const cwi_input *in, const char *name, int *fd, uint64_t *size,
                               cw_error *err)
 {
@@ -167,10 +196,11 @@ cw_status cwi_input_open_side(const cwi_input *in, const char *name, int *fd, ui
         *size = in->size;
         return *fd < 0 ? fail_system(err, "cannot be opened") : CW_OK;
     }
-    if (in->allow_external)
-        return open_regular(in->folder, name, 0, fd, size, err);
-    cw_status st = check_name(name, err);
-    return st == CW_OK ? open_below(in->folder, name, fd, size, err) : st;
+    char slashes[LONGEST_NAME + 2];
+    cw_status st = open_named(in, with_slashes(name, slashes), fd, size, err);
+    if (in->allow_external && st == CW_ERR_IO && errno == ENOENT && strchr(name, '\\'))
+        st = open_named(in, name, fd, size, err); /* a backslash may be a part of the name */
+    return st;
 }
 
 cw_status cwi_input_find_side(const cwi_input *in, const char *name, int *fd, uint64_t *size,
@@ -282,16 +312,16 @@ cw_status cwi_names_expand(cwi_names *names, const char *text, int64_t *depth, c
         return cwi_fail(err, CW_ERR_FORMAT,
                         "the pattern '%.64s' needs three numbers behind it: first, last, step",
                         text);
-    if (step < 1 || first < 0 || last < first)
+    if (step == 0 || first < 0 || last < 0 || (step > 0 ? last < first : last > first))
         return cwi_fail(
             err, CW_ERR_FORMAT,
-            "the pattern counts from %lld to %lld by %lld; it must count up from 0 or "
-            "more",
+            "the pattern counts from %lld to %lld by %lld; it must reach its end, and all "
+            "numbers must be 0 or more",
             (long long)first, (long long)last, (long long)step);
     cw_status st = CW_OK;
-    for (int64_t n = first; st == CW_OK && n <= last; n += step) {
+    for (int64_t n = first; st == CW_OK; n += step) {
         st = add_number(names, text, &p, n, err);
-        if (step > last - n)
+        if (step > 0 ? step > last - n : step < last - n)
             break;
     }
     return st;

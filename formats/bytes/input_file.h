@@ -33,8 +33,8 @@ bool cwi_input_is_named(const cwi_input *in, const char *name);
 
 /* Opens a file that the header names; the header itself is not opened again. Unless
  * in->allow_external it must lie in the header's folder or below. No absolute path, "..",
- * scheme, backslash or percent sign, and no link on the way is allowed. The caller closes the
- * file.
+ * scheme or percent sign, and no link on the way is allowed. A backslash, as Windows writes it, is
+ * taken as a slash. The caller closes the file.
  * Returns CW_ERR_UNSAFE for a name that leaves the folder, else as cwi_input_open(). */
 CW_NODISCARD cw_status cwi_input_open_side(const cwi_input *in, const char *name, int *fd,
                                            uint64_t *size, cw_error *err);
@@ -57,7 +57,7 @@ typedef struct cwi_names {
 CW_NODISCARD cw_status cwi_names_add(cwi_names *names, const char *name, cw_error *err);
 
 /* Adds the names of the pattern "PATTERN FIRST LAST STEP [DEPTH]": one %d, %3d or %03d, a step
- * above 0. *depth gets the last number, or stays unchanged when there is none. */
+ * that leads to the last number, up or down. *depth gets the last number, or stays unchanged when there is none. */
 CW_NODISCARD cw_status cwi_names_expand(cwi_names *names, const char *text, int64_t *depth,
                                         cw_error *err);
 void cwi_names_free(cwi_names *names);

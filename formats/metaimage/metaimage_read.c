@@ -5,6 +5,7 @@
 #include "formats/text/text_header.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <string.h>
 
 enum { MAX_AXES = 4 };
@@ -26,6 +27,8 @@ typedef enum key {
     K_COMPRESSED_SIZE,
     K_HEADER_SIZE,
     K_DATA_FILE,
+    K_VALUE_SLOPE,
+    K_VALUE_OFFSET,
     K_IGNORED,
     KEY_COUNT
 } key;
@@ -47,18 +50,29 @@ static const char *const key_names[KEY_COUNT] = {
     [K_COMPRESSED_SIZE] = "compresseddatasize",
     [K_HEADER_SIZE] = "headersize",
     [K_DATA_FILE] = "elementdatafile",
+    [K_VALUE_SLOPE] = "elementtointensityfunctionslope",
+    [K_VALUE_OFFSET] = "elementtointensityfunctionoffset",
     [K_IGNORED] = "comment|objectsubtype|transformtype|name|id|parentid|color|modality",
 };
 
-/* The element types. MetaIO's LONG has 32 bits everywhere. */
+/* The element types. MetaIO's LONG has 32 bits everywhere, LONG_LONG has 64. */
 static const struct {
     const char *name;
     cw_type type;
+    cwi_stored stored;
 } types[] = {
-    {"MET_UCHAR", CW_U8},   {"MET_CHAR", CW_I8},  {"MET_USHORT", CW_U16},
-    {"MET_SHORT", CW_I16},  {"MET_UINT", CW_U32}, {"MET_INT", CW_I32},
-    {"MET_ULONG", CW_U32},  {"MET_LONG", CW_I32}, {"MET_FLOAT", CW_F32},
-    {"MET_DOUBLE", CW_F64},
+    {"MET_UCHAR", CW_U8, 0},
+    {"MET_CHAR", CW_I8, 0},
+    {"MET_USHORT", CW_U16, 0},
+    {"MET_SHORT", CW_I16, 0},
+    {"MET_UINT", CW_U32, 0},
+    {"MET_INT", CW_I32, 0},
+    {"MET_ULONG", CW_U32, 0},
+    {"MET_LONG", CW_I32, 0},
+    {"MET_ULONG_LONG", CW_U32, CWI_STORED_U64},
+    {"MET_LONG_LONG", CW_I32, CWI_STORED_I64},
+    {"MET_FLOAT", CW_F32, 0},
+    {"MET_DOUBLE", CW_F64, 0},
 };
 
 typedef struct metaimage {
@@ -142,6 +156,7 @@ static cw_status read_type(const metaimage *m, cwi_source *src, cw_error *err)
         if (strncmp(name, types[i].name, length) == 0 &&
             (name[length] == '\0' || strcmp(name + length, "_ARRAY") == 0)) {
             src->shape.type = types[i].type;
+            src->stored = types[i].stored;
             return CW_OK;
         }
     }
@@ -332,10 +347,34 @@ static cw_status read_frame(const metaimage *m, cwi_source *src, cw_error *err)
     return st;
 }
 
+/* Reads the line that turns stored numbers into values. */
+static cw_status read_scaling(const metaimage *m, cw_volume *shape, cw_error *err)
+{
+    static const char *const names[] = {"ElementToIntensityFunctionSlope",
+                                        "ElementToIntensityFunctionOffset"};
+    double line[2] = {1, 0};
+    cw_status st = CW_OK;
+    for (int i = 0; st == CW_OK && i < 2; i++) {
+        const char *text = m->value[i ? K_VALUE_OFFSET : K_VALUE_SLOPE];
+        if (text)
+            st = cwi_field_doubles(names[i], text, 1, names[i], &line[i], err);
+        if (st == CW_OK && !isfinite(line[i]))
+            st = cwi_fail(err, CW_ERR_FORMAT, "'%s' is %g; it must be finite", names[i],
+                          line[i]);
+    }
+    if (st == CW_OK && line[0] == 0)
+        return cwi_fail(err, CW_ERR_FORMAT, "'%s' is 0, which gives all voxels one value",
+                        names[0]);
+    shape->slope = line[0];
+    shape->intercept = line[1];
+    return st;
+}
+
 cw_status cwi_metaimage_parse(const cwi_input *in, cwi_source *src, cw_error *err)
 {
     metaimage m = {0};
     src->size_field = "DimSize";
+    src->is_last = true;
     src->shape.slope = 1;
     cw_status st = cwi_lines_open(&m.lines, in, err);
     if (st == CW_OK)
@@ -354,6 +393,8 @@ cw_status cwi_metaimage_parse(const cwi_input *in, cwi_source *src, cw_error *er
         st = read_compressed_size(&m, src, err);
     if (st == CW_OK)
         st = read_frame(&m, src, err);
+    if (st == CW_OK)
+        st = read_scaling(&m, &src->shape, err);
     cwi_lines_close(&m.lines);
     return st;
 }

@@ -21,12 +21,14 @@ enum {
     HEADER_BYTES = 284
 };
 
+enum { LONG = 2 }; /* a type: integers of 64 bits */
+
 static const struct {
     int32_t code;
     int type; /* cw_type, or -1: refused */
     const char *name;
 } types[] = {{0, CW_U8, "uchar"},  {1, CW_I32, "int"},     {3, CW_F32, "float"},
-             {4, CW_I16, "short"}, {10, CW_U16, "ushort"}, {2, -1, "long"},
+             {4, CW_I16, "short"}, {10, CW_U16, "ushort"}, {LONG, CW_I32, "long"},
              {5, -1, "bitmap"},    {6, -1, "tensor"}};
 
 static int32_t get_integer(const unsigned char *header, size_t at)
@@ -87,6 +89,7 @@ static cw_status read_type(const unsigned char *header, cwi_source *src, cw_erro
             continue;
         if (types[n].type >= 0) {
             src->shape.type = (cw_type)types[n].type;
+            src->stored = code == LONG ? CWI_STORED_I64 : CWI_STORED_PLAIN;
             return CW_OK;
         }
         snprintf(name, sizeof name, "%d (%s)", (int)code, types[n].name);

@@ -16,6 +16,7 @@ enum {
     IMOD_ORIGIN = 4,
     IMOD_NIBBLES = 16
 };
+enum { FLOAT16 = 12 };                              /* a mode */
 enum { STACK_GROUP = 401, LAST_STACK_GROUP = 630 }; /* space group + 400: a stack of volumes */
 
 static const double MM_PER_ANGSTROM = 1e-7;
@@ -44,9 +45,9 @@ static const struct {
     int type; /* cw_type, or -1: refused */
     const char *name;
 } modes[] = {
-    {0, CW_I8, "bytes"},      {1, CW_I16, "int16"},       {2, CW_F32, "float32"},
-    {3, -1, "complex int16"}, {4, -1, "complex float32"}, {6, CW_U16, "uint16"},
-    {12, -1, "float16"},      {16, -1, "RGB bytes"},      {101, -1, "4 bits"},
+    {0, CW_I8, "bytes"},          {1, CW_I16, "int16"},       {2, CW_F32, "float32"},
+    {3, -1, "complex int16"},     {4, -1, "complex float32"}, {6, CW_U16, "uint16"},
+    {FLOAT16, CW_F32, "float16"}, {16, -1, "RGB bytes"},      {101, -1, "4 bits"},
 };
 
 typedef struct mrc {
@@ -148,6 +149,7 @@ static cw_status read_type(const mrc *m, cwi_source *src, cw_error *err)
         if (modes[i].type < 0)
             break;
         src->shape.type = (cw_type)modes[i].type;
+        src->stored = mode == FLOAT16 ? CWI_STORED_F16 : CWI_STORED_PLAIN;
         if (mode == 0 && !(m->imod_flags & IMOD_SIGNED))
             src->shape.type = CW_U8;
         return CW_OK;
@@ -195,6 +197,7 @@ static cw_status find_voxels(const mrc *m, cwi_source *src, cw_error *err)
     if (extra < 0)
         return cwi_fail(err, CW_ERR_FORMAT, "'NSYMBT' is %d; it must be 0 or more", (int)extra);
     src->skip = HEADER + (uint64_t)extra;
+    src->is_last = true;
     src->encoding = m->gzipped ? CWI_DEFLATED : CWI_RAW;
     src->big_endian = m->big;
     return CW_OK;

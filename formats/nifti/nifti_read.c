@@ -1,5 +1,6 @@
 /* Reads NIfTI-1 and NIfTI-2: headers of fixed layout (nifti.nimh.nih.gov); and Analyze 7.5, from which
  * the first one came: it has no magic, and no frame. */
+#define _GNU_SOURCE /* close */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/bytes/byte_order.h"
@@ -11,6 +12,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { MAX_HEADER = 540 };
 
@@ -71,9 +73,15 @@ static const struct {
     {16, CW_F32, 1, "float32"},  {64, CW_F64, 1, "float64"},  {256, CW_I8, 1, "int8"},
     {512, CW_U16, 1, "uint16"},  {768, CW_U32, 1, "uint32"},  {128, CW_U8, 3, "RGB24"},
     {2304, CW_U8, 4, "RGBA32"},  {1, -1, 1, "1-bit binary"},  {32, -1, 1, "complex64"},
-    {1024, -1, 1, "int64"},      {1280, -1, 1, "uint64"},     {1536, -1, 1, "float128"},
+    {1024, CW_I32, 1, "int64"},  {1280, CW_U32, 1, "uint64"}, {1536, -1, 1, "float128"},
     {1792, -1, 1, "complex128"}, {2048, -1, 1, "complex256"},
 };
+
+/* Returns the form of numbers that voxels do not have. */
+static cwi_stored stored_of(int code)
+{
+    return code == 1024 ? CWI_STORED_I64 : code == 1280 ? CWI_STORED_U64 : CWI_STORED_PLAIN;
+}
 
 int cwi_nifti_datatype(cw_type type)
 {
@@ -156,7 +164,8 @@ typedef struct nifti {
     bool is_pair;    /* the voxels are in a separate file */
     bool is_analyze; /* Analyze 7.5 */
     bool gzipped;
-    int used; /* number of dimensions: dim[0] */
+    const char *image; /* name of the file of voxels, where it was the one that was named */
+    int used;          /* number of dimensions: dim[0] */
 } nifti;
 
 static double get_field(const nifti *n, cwi_nifti_field field, int index)
@@ -239,8 +248,10 @@ static cw_status read_type(const nifti *n, cwi_source *src, size_t *components, 
         if (datatypes[i].type < 0)
             break;
         src->shape.type = (cw_type)datatypes[i].type;
+        src->stored = stored_of(code);
         *components = datatypes[i].components;
-        const int expected = (int)(8 * *components * cw_type_size(src->shape.type));
+        const int expected =
+            (int)(8 * *components * cwi_stored_size(src->stored, src->shape.type));
         if (bits == 0 || bits == expected)
             return CW_OK;
         return cwi_fail(err, CW_ERR_FORMAT, "'bitpix' is %d; 'datatype' %s has %d", bits, name,
@@ -279,8 +290,10 @@ static cw_status read_dims(nifti *n, cwi_source *src, size_t colours, cw_error *
 }
 
 /* Names the file of voxels: "head.hdr.gz" belongs to "head.img.gz". */
-static cw_status name_image(const cwi_input *in, cwi_source *src, cw_error *err)
+static cw_status name_image(const cwi_input *in, const nifti *n, cwi_source *src, cw_error *err)
 {
+    if (n->image)
+        return cwi_names_add(&src->files, n->image, err);
     const char *slash = strrchr(in->path, '/');
     char *name = cwi_strdup(slash ? slash + 1 : in->path);
     if (!name)
@@ -303,6 +316,12 @@ static cw_status name_image(const cwi_input *in, cwi_source *src, cw_error *err)
     return st;
 }
 
+/* Returns true if the voxels are gzip data, as their header is, or as their name tells. */
+static bool is_packed(const nifti *n)
+{
+    return n->image ? cwi_has_extension(n->image, ".gz") : n->gzipped;
+}
+
 static cw_status find_voxels(const cwi_input *in, const nifti *n, cwi_source *src,
                              cw_error *err)
 {
@@ -315,9 +334,10 @@ static cw_status find_voxels(const cwi_input *in, const nifti *n, cwi_source *sr
                         "'vox_offset' is %g; it must be a whole number of at least %.0f",
                         offset, min);
     src->skip = (uint64_t)offset;
-    src->encoding = n->gzipped ? CWI_DEFLATED : CWI_RAW;
+    src->is_last = true;
+    src->encoding = is_packed(n) ? CWI_DEFLATED : CWI_RAW;
     src->big_endian = n->swapped != cwi_machine_is_big_endian();
-    return n->is_pair ? name_image(in, src, err) : CW_OK;
+    return n->is_pair ? name_image(in, n, src, err) : CW_OK;
 }
 
 /* Reads slope and intercept. A slope that is 0 or not finite means no scaling. Colours are
@@ -442,7 +462,10 @@ static cw_status read_labels(const cwi_input *in, const nifti *n, cwi_source *sr
     const cwi_nifti_span span = {n->layout->bytes, n->is_pair ? whole : src->skip, n->gzipped,
                                  n->swapped};
     cw_label_table table = {0};
-    cw_status st = cwi_nifti_labels(in, &span, &table, src->note, err);
+    char note[200] = "";
+    cw_status st = cwi_nifti_labels(in, &span, &table, note, err);
+    if (*note)
+        cwi_source_note(src, "%s", note);
     if (table.count)
         src->shape.known |= CW_KNOWN_LABELS;
     if (in->labels)
@@ -459,8 +482,8 @@ static cw_status read_analyze_frame(const nifti *n, cwi_source *src, cw_error *e
     enum { UNIT = 56 };
     const bool is_mm = strncmp((const char *)n->bytes + UNIT, "mm", 4) == 0;
     src->frame_field = "pixdim";
-    snprintf(src->note, sizeof src->note,
-             "Analyze 7.5 does not state the frame: left and right may be exchanged");
+    cwi_source_note(src,
+                    "Analyze 7.5 does not state the frame: left and right may be exchanged");
     if (is_mm) {
         src->shape.known |= CW_KNOWN_UNIT;
         src->shape.said_unit_mm = 1;
@@ -484,6 +507,9 @@ static cw_status read_frame(const nifti *n, cwi_source *src, cw_error *err)
         st = read_pixdim(n, &src->shape, err);
     if (st != CW_OK)
         return st;
+    if (!sform && !qform)
+        cwi_source_note(src, "neither 'sform_code' nor 'qform_code' states the frame: left and "
+                             "right may be exchanged");
     if (sform || qform) {
         cwi_flip_ras(src->shape.affine);
         src->shape.known |= CW_KNOWN_FRAME;
@@ -493,9 +519,11 @@ static cw_status read_frame(const nifti *n, cwi_source *src, cw_error *err)
     return CW_OK;
 }
 
-cw_status cwi_nifti_parse(const cwi_input *in, cwi_source *src, cw_error *err)
+/* Parses a header. image: name of the file of voxels, if that was the one that was named */
+static cw_status parse_header(const cwi_input *in, const char *image, cwi_source *src,
+                              cw_error *err)
 {
-    nifti n = {0};
+    nifti n = {.image = image};
     size_t colours = 1;
     src->size_field = "dim";
     cw_status st = read_header(in, &n, err);
@@ -513,5 +541,60 @@ cw_status cwi_nifti_parse(const cwi_input *in, cwi_source *src, cw_error *err)
         st = read_labels(in, &n, src, err);
     if (st == CW_OK)
         read_scaling(&n, colours, &src->shape);
+    return st;
+}
+
+/* Returns true for the file of voxels of a pair: named so, and without a header of its own. */
+static bool is_image(const cwi_input *in)
+{
+    unsigned char head[MAX_HEADER];
+    size_t got;
+    bool gzipped;
+    return cwi_has_extension(in->path, ".img .img.gz") &&
+           cwi_stream_head(in->fd, head, sizeof head, &got, &gzipped, NULL) == CW_OK &&
+           !cwi_nifti_sniff(head, got);
+}
+
+/* Opens the header beside the voxels: "head.hdr", or "head.hdr.gz". name: room for both */
+static cw_status open_header(const cwi_input *in, char *name, cwi_input *header, cw_error *err)
+{
+    static const char *const endings[] = {".hdr", ".hdr.gz"};
+    const char *slash = strrchr(in->path, '/'), *image = slash ? slash + 1 : in->path;
+    const size_t stem = strlen(image) - (cwi_has_extension(image, ".gz") ? 7 : 4);
+    cw_status st = CW_OK;
+    *header = *in;
+    header->path = name;
+    header->fd = -1;
+    for (int i = 0; st == CW_OK && header->fd < 0 && i < 2; i++) {
+        memcpy(name, image, stem);
+        strcpy(name + stem, endings[i]);
+        st = cwi_input_find_side(in, name, &header->fd, &header->size, err);
+    }
+    if (st == CW_OK && header->fd < 0)
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "an .img file has its header beside it, and '%.*s.hdr' is not there; "
+                        "voxels without a header need their layout stated (desc->raw)",
+                        (int)(stem < 200 ? stem : 200), image);
+    return st;
+}
+
+cw_status cwi_nifti_parse(const cwi_input *in, cwi_source *src, cw_error *err)
+{
+    cwi_input header;
+    if (!is_image(in))
+        return parse_header(in, NULL, src, err);
+    const char *slash = strrchr(in->path, '/'), *image = slash ? slash + 1 : in->path;
+    char *name = cwi_alloc_array(strlen(image) + 8, 1);
+    if (!name)
+        return cwi_fail_memory(err);
+    cw_status st = open_header(in, name, &header, err);
+    if (st == CW_OK) {
+        cwi_source_note(src, "the header is '%s', beside it", name);
+        st = parse_header(&header, image, src, err);
+        close(header.fd);
+        if (st != CW_OK)
+            cwi_fail_in(err, st, name);
+    }
+    cwi_free(name);
     return st;
 }

@@ -82,8 +82,19 @@ static cw_status read_type(const npy *n, cwi_source *src, cw_error *err)
     static const struct {
         const char *name;
         cw_type type;
-    } types[] = {{"u1", CW_U8},  {"i1", CW_I8},  {"b1", CW_U8},  {"u2", CW_U16}, {"i2", CW_I16},
-                 {"u4", CW_U32}, {"i4", CW_I32}, {"f4", CW_F32}, {"f8", CW_F64}};
+        cwi_stored stored;
+    } types[] = {{"u1", CW_U8, 0},
+                 {"i1", CW_I8, 0},
+                 {"b1", CW_U8, 0},
+                 {"u2", CW_U16, 0},
+                 {"i2", CW_I16, 0},
+                 {"u4", CW_U32, 0},
+                 {"i4", CW_I32, 0},
+                 {"f4", CW_F32, 0},
+                 {"f8", CW_F64, 0},
+                 {"i8", CW_I32, CWI_STORED_I64},
+                 {"u8", CW_U32, CWI_STORED_U64},
+                 {"f2", CW_F32, CWI_STORED_F16}};
     char name[24] = "";
     const char *text = find_value(n, "descr");
     if (!text)
@@ -97,6 +108,7 @@ static cw_status read_type(const npy *n, cwi_source *src, cw_error *err)
     for (size_t i = 0; i < sizeof types / sizeof *types; i++)
         if (strcmp(name + has_order, types[i].name) == 0) {
             src->shape.type = types[i].type;
+            src->stored = types[i].stored;
             return CW_OK;
         }
     return cwi_fail_type(err, "descr", name);
@@ -178,6 +190,7 @@ cw_status cwi_npy_parse(const cwi_input *in, cwi_source *src, cw_error *err)
     if (st == CW_OK) {
         src->shape.slope = 1;
         src->skip = n.voxels;
+        src->is_last = true;
         for (int a = 0; a < 3; a++)
             src->shape.affine[a][a] = 1;
     }

@@ -6,7 +6,7 @@
 #include "formats/text/text_header.h"
 #include "formats/volume/voxel_source.h"
 
-enum { CWI_NRRD_MAX_AXES = 16 };
+enum { CWI_NRRD_MAX_AXES = 16, CWI_NRRD_MAX_VALUES = 16 /* of a voxel */ };
 
 /* The fields that are used, and one for all others that NRRD defines. */
 typedef enum cwi_nrrd_field {

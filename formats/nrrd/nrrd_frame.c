@@ -253,11 +253,31 @@ static bool is_spatial(const cwi_nrrd *n, size_t index)
  * entries than a voxel may have values are taken as steps, as are slow axes without a kind. */
 static cwi_role other_role(const cwi_nrrd_axis *a, bool is_fastest)
 {
-    if (a->kind == CWI_NRRD_KIND_VALUES || (a->kind == CWI_NRRD_KIND_LIST && a->size <= 16))
+    if (a->kind == CWI_NRRD_KIND_VALUES ||
+        (a->kind == CWI_NRRD_KIND_LIST && a->size <= CWI_NRRD_MAX_VALUES))
         return CWI_AXIS_COMPONENT;
     if (a->kind == CWI_NRRD_KIND_UNKNOWN && is_fastest && !a->has_vector)
         return CWI_AXIS_COMPONENT;
     return CWI_AXIS_STEP;
+}
+
+/* Takes axes of unknown spacing and kind as axes of space, too, as long as there are fewer than three:
+ * joined slices have such an axis. The fastest one may hold the values of a voxel instead. */
+static void find_spatial(const cwi_nrrd *n, bool spatial[CWI_NRRD_MAX_AXES])
+{
+    size_t count = 0;
+    for (size_t i = 0; i < n->dimension; i++)
+        count += spatial[i] = is_spatial(n, i);
+    if (n->value[CWI_NRRD_SPACE_DIRECTIONS])
+        return;
+    for (size_t i = 0; i < n->dimension && count < 3; i++) {
+        const cwi_nrrd_axis *a = &n->axis[i];
+        if (spatial[i] || a->kind != CWI_NRRD_KIND_UNKNOWN || a->seconds != 0 ||
+            (i == 0 && a->size <= CWI_NRRD_MAX_VALUES))
+            continue;
+        spatial[i] = true;
+        count++;
+    }
 }
 
 static cw_status assign_roles(const cwi_nrrd *n, cwi_axis roles[CWI_NRRD_MAX_AXES],
@@ -265,9 +285,11 @@ static cw_status assign_roles(const cwi_nrrd *n, cwi_axis roles[CWI_NRRD_MAX_AXE
 {
     unsigned seen = 0;
     int spatial = 0;
+    bool of_space[CWI_NRRD_MAX_AXES];
+    find_spatial(n, of_space);
     for (size_t i = 0; i < n->dimension; i++) {
         const cwi_nrrd_axis *a = &n->axis[i];
-        const bool is_space = is_spatial(n, i);
+        const bool is_space = of_space[i];
         const bool is_fourth = is_space && spatial == 3 && a->kind == CWI_NRRD_KIND_UNKNOWN &&
                                !n->value[CWI_NRRD_SPACE_DIRECTIONS];
         roles[i].size = a->size;
@@ -389,6 +411,17 @@ static void add_missing_axes(const cwi_axis *roles, size_t count, bool has_direc
         cwi_fill_columns(affine);
 }
 
+/* Tells of axes without a spacing where others have one. */
+static void note_spacings(const cwi_nrrd *n, const cwi_axis *roles, cwi_source *src)
+{
+    if (n->value[CWI_NRRD_SPACE_DIRECTIONS] || !any_spacing(n))
+        return;
+    for (size_t i = 0; i < n->dimension; i++)
+        if (roles[i].role <= CWI_AXIS_Z && isnan(n->spacing[i]) &&
+            !isfinite(n->max[i] - n->min[i]))
+            cwi_source_note(src, "'spacings' does not state that of axis %zu: 1 is taken", i);
+}
+
 cw_status cwi_nrrd_describe(cwi_nrrd *n, cwi_source *src, cw_error *err)
 {
     cwi_axis roles[CWI_NRRD_MAX_AXES];
@@ -402,6 +435,7 @@ cw_status cwi_nrrd_describe(cwi_nrrd *n, cwi_source *src, cw_error *err)
     if (st != CW_OK)
         return st;
     set_frame(n, roles, &src->shape);
+    note_spacings(n, roles, src);
     add_missing_axes(roles, n->dimension, n->value[CWI_NRRD_SPACE_DIRECTIONS] != NULL,
                      src->shape.affine);
     return CW_OK;

@@ -39,15 +39,20 @@ static const char *const field_names[CWI_NRRD_FIELD_COUNT] = {
 static const struct {
     const char *names;
     cw_type type;
+    cwi_stored stored;
 } types[] = {
-    {"signedchar|int8|int8_t", CW_I8},
-    {"uchar|unsignedchar|uint8|uint8_t", CW_U8},
-    {"short|shortint|signedshort|signedshortint|int16|int16_t", CW_I16},
-    {"ushort|unsignedshort|unsignedshortint|uint16|uint16_t", CW_U16},
-    {"int|signedint|int32|int32_t", CW_I32},
-    {"uint|unsignedint|uint32|uint32_t", CW_U32},
-    {"float", CW_F32},
-    {"double", CW_F64},
+    {"signedchar|int8|int8_t", CW_I8, 0},
+    {"uchar|unsignedchar|uint8|uint8_t", CW_U8, 0},
+    {"short|shortint|signedshort|signedshortint|int16|int16_t", CW_I16, 0},
+    {"ushort|unsignedshort|unsignedshortint|uint16|uint16_t", CW_U16, 0},
+    {"int|signedint|int32|int32_t", CW_I32, 0},
+    {"uint|unsignedint|uint32|uint32_t", CW_U32, 0},
+    {("longlong|longlongint|signedlonglong|signedlonglongint|int64|int64_t"), CW_I32,
+     CWI_STORED_I64},
+    {"ulonglong|unsignedlonglong|unsignedlonglongint|uint64|uint64_t", CW_U32, CWI_STORED_U64},
+    {"float", CW_F32, 0},
+    {"double", CW_F64, 0},
+    {"half|float16", CW_F32, CWI_STORED_F16},
 };
 
 bool cwi_nrrd_sniff(const unsigned char *head, size_t size)
@@ -152,6 +157,7 @@ static cw_status read_type(const cwi_nrrd *n, cwi_source *src, cw_error *err)
     for (size_t i = 0; i < sizeof types / sizeof *types; i++)
         if (cwi_field_find(&types[i].names, 1, name, strlen(name)) == 0) {
             src->shape.type = types[i].type;
+            src->stored = types[i].stored;
             return CW_OK;
         }
     return cwi_fail_type(err, "type", name);
@@ -214,6 +220,7 @@ static cw_status read_skips(const cwi_nrrd *n, cwi_source *src, cw_error *err)
     if (st == CW_OK && bytes < 0 && src->encoding != CWI_RAW)
         return cwi_fail(err, CW_ERR_FORMAT, "'byte skip' is -1; that needs the raw encoding");
     src->lines = (uint64_t)lines;
+    src->is_last = true;
     src->at_end = bytes < 0;
     src->skip = bytes > 0 ? (uint64_t)bytes : 0;
     return st;

@@ -224,10 +224,11 @@ cw_status cwi_nrrd_read_segments(cwi_nrrd *n, cwi_source *src, cw_label_table *t
     if (count == 0)
         return CW_OK;
     if (has_layers_as_steps(n, &src->shape)) {
-        snprintf(src->note, sizeof src->note,
-                 "left out: the names of segments; their voxels are in %zu layers, and 16 are "
-                 "read as layers",
-                 src->shape.steps);
+        cwi_source_note(
+            src,
+            "left out: the names of segments; their voxels are in %zu layers, and 16 "
+            "are read as layers",
+            src->shape.steps);
         return CW_OK;
     }
     qsort(n->segment_keys, count, sizeof *n->segment_keys, compare_keys);

@@ -1,11 +1,13 @@
 /* Parses the layout of voxels without a header, and makes a source from it. */
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "formats/bytes/byte_order.h"
 #include "formats/raw/raw_format.h"
 #include "formats/text/text_header.h"
 
 #include <math.h>
 #include <string.h>
+#include <strings.h>
 
 /* --- a layout written on the command line ------------------------------------------------ */
 
@@ -40,21 +42,68 @@ static cw_status parse_spacing(const char *text, cw_raw_layout *layout, cw_error
                           text);
 }
 
+/* The names of types: here, in C, in NRRD and in NumPy. NumPy's i8 and u8, which have 8 bytes, count
+ * as such only behind its sign of a byte order. */
+static const struct {
+    const char *names;
+    cw_type type;
+    size_t stored_bytes;
+    bool is_numpy;
+} types[] = {
+    {"i8", CW_I32, 8, true},
+    {"u8", CW_U32, 8, true},
+    {"u8|uint8|uint8_t|u1|uchar|unsignedchar|ubyte|byte|bool|b1", CW_U8, 0, false},
+    {"i8|int8|int8_t|i1|schar|signedchar|char|sbyte", CW_I8, 0, false},
+    {"u16|uint16|uint16_t|u2|ushort|unsignedshort", CW_U16, 0, false},
+    {"i16|int16|int16_t|i2|short|signedshort", CW_I16, 0, false},
+    {"u32|uint32|uint32_t|u4|uint|unsignedint", CW_U32, 0, false},
+    {"i32|int32|int32_t|i4|int|signedint", CW_I32, 0, false},
+    {"u64|uint64|uint64_t", CW_U32, 8, false},
+    {"i64|int64|int64_t", CW_I32, 8, false},
+    {"f16|float16|f2|half", CW_F32, 2, false},
+    {"f32|float32|f4|float|single", CW_F32, 0, false},
+    {"f64|float64|f8|double", CW_F64, 0, false},
+};
+
+static bool find_type(const char *name, size_t length, bool is_numpy, cw_raw_layout *layout)
+{
+    for (size_t i = 0; i < sizeof types / sizeof *types; i++)
+        if (types[i].is_numpy <= is_numpy &&
+            cwi_field_find(&types[i].names, 1, name, length) == 0) {
+            layout->type = types[i].type;
+            layout->stored_bytes = types[i].stored_bytes;
+            return true;
+        }
+    return false;
+}
+
+/* Parses a name, with "le" or "be" behind it, or NumPy's "<", ">", "|" or "=" in front. */
 static cw_status parse_type(const char *text, cw_raw_layout *layout, cw_error *err)
 {
-    for (int type = 0; type < CW_TYPE_COUNT; type++) {
-        const char *name = cw_type_name((cw_type)type);
-        const size_t length = strlen(name);
-        const char *order = text + length;
-        if (strncmp(text, name, length) != 0 ||
-            (*order && strcmp(order, "le") != 0 && strcmp(order, "be") != 0))
-            continue;
-        layout->type = (cw_type)type;
-        layout->big_endian = *order == 'b';
+    const bool is_numpy = *text && strchr("<>|=", *text);
+    const char *name = text + is_numpy;
+    const size_t length = strlen(name);
+    layout->big_endian = *text == '>' || (*text == '=' && cwi_machine_is_big_endian());
+    if (find_type(name, length, is_numpy, layout))
+        return CW_OK;
+    const bool is_big = length > 2 && strcasecmp(name + length - 2, "be") == 0;
+    if (!is_numpy && length > 2 && (is_big || strcasecmp(name + length - 2, "le") == 0) &&
+        find_type(name, length - 2, false, layout)) {
+        layout->big_endian = is_big;
         return CW_OK;
     }
     cwi_fail_type(err, "type", text);
     return CW_ERR_ARGUMENT;
+}
+
+static cw_status check_stored(const cw_raw_layout *layout, cw_error *err)
+{
+    const size_t n = layout->stored_bytes;
+    const cw_type type = layout->type;
+    if (n == 0 || (n == 8 && (type == CW_I32 || type == CW_U32)) || (n == 2 && type == CW_F32))
+        return CW_OK;
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "'stored_bytes' is %zu; 8 for i32 and u32, or 2 for f32 was expected", n);
 }
 
 static cw_status parse_count(const char *key, const char *text, int64_t low, int64_t high,
@@ -170,6 +219,9 @@ static cw_status check_layout(const cw_raw_layout *layout, cw_error *err)
     if (!cw_type_size(layout->type))
         return cwi_fail(err, CW_ERR_ARGUMENT, "'type' is %d, which is not a voxel type",
                         (int)layout->type);
+    cw_status st = check_stored(layout, err);
+    if (st != CW_OK)
+        return st;
     for (int a = 0; a < 3; a++)
         if (layout->dim[a] < 1 || layout->dim[a] > INT32_MAX)
             return cwi_fail(err, CW_ERR_ARGUMENT, "'dims' holds %zu; sizes are 1 to 2147483647",
@@ -190,9 +242,14 @@ cw_status cwi_raw_describe(const cw_raw_layout *layout, cwi_source *src, cw_erro
     src->size_field = "dims";
     src->frame_field = "spacing";
     src->shape.type = layout->type;
+    if (layout->stored_bytes)
+        src->stored = layout->type == CW_F32   ? CWI_STORED_F16
+                      : layout->type == CW_I32 ? CWI_STORED_I64
+                                               : CWI_STORED_U64;
     src->shape.slope = 1;
     src->big_endian = layout->big_endian;
     src->skip = layout->offset;
+    src->is_last = true;
     set_frame(layout, &src->shape);
     return cwi_source_set_axes(src, axes, sizeof axes / sizeof *axes, err);
 }

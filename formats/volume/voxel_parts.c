@@ -5,7 +5,9 @@
 #include "core/base/status.h"
 #include "formats/bytes/byte_order.h"
 #include "formats/bytes/bzip2.h"
+#include "formats/volume/volume_reader.h"
 
+#include <stdio.h>
 #include <unistd.h>
 
 enum { SLAB_BYTES = 1 << 20 };
@@ -18,6 +20,15 @@ const char *cwi_source_noun(const cwi_source *src)
 size_t cwi_source_part_bytes(const cwi_source *src)
 {
     return src->files.count ? src->bytes / src->files.count : src->bytes;
+}
+
+/* Returns the bytes of voxels in each file, before they are converted to the type in memory. */
+static uint64_t stored_part_bytes(const cwi_source *src)
+{
+    const uint64_t size = cw_type_size(src->shape.type);
+    const uint64_t stored =
+        src->encoding == CWI_ASCII ? size : cwi_stored_size(src->stored, src->shape.type);
+    return cwi_source_part_bytes(src) / size * stored; /* valid: the first factor is < 2^62 */
 }
 
 /* Moves *start behind the lines to leave out. */
@@ -74,18 +85,20 @@ static uint64_t max_bytes(const cwi_source *src, uint64_t encoded)
 
 static cw_status check_part_bytes(const cwi_source *src, cwi_part_file *p, cw_error *err)
 {
-    const size_t part_bytes = cwi_source_part_bytes(src);
+    const uint64_t part_bytes = stored_part_bytes(src);
     uint64_t selected;
     if (src->at_end)
         p->start = p->size > part_bytes ? p->size - part_bytes : 0;
     const uint64_t encoded = p->size > p->start ? p->size - p->start : 0;
     if (!__builtin_add_overflow(decoded_skip(src), part_bytes, &selected) &&
-        selected <= max_bytes(src, encoded))
+        selected <= max_bytes(src, encoded)) {
+        p->left = src->is_last && src->encoding == CWI_RAW ? encoded - part_bytes : 0;
         return CW_OK;
+    }
     return cwi_fail(err, CW_ERR_FORMAT,
-                    "'%s' asks for %zu bytes of %s%s%s; the file holds %llu bytes behind the "
+                    "'%s' asks for %llu bytes of %s%s%s; the file holds %llu bytes behind the "
                     "first %llu",
-                    src->size_field, part_bytes, cwi_source_noun(src),
+                    src->size_field, (unsigned long long)part_bytes, cwi_source_noun(src),
                     src->encoding == CWI_RAW ? "" : ", encoded",
                     src->files.count > 1 ? " in each file" : "", (unsigned long long)encoded,
                     (unsigned long long)p->start);
@@ -110,7 +123,7 @@ cw_status cwi_part_open_stream(const cwi_source *src, const cwi_part_file *p,
     if (st == CW_OK)
         st = cwi_stream_skip(stream, decoded_skip(src), err);
     if (st == CW_OK && src->encoding == CWI_BLOCKS)
-        st = cwi_blocks_open(blocks, stream, &src->blocks, cwi_source_part_bytes(src),
+        st = cwi_blocks_open(blocks, stream, &src->blocks, stored_part_bytes(src),
                              bytes_of_text(src, p->size - p->start), err);
     return st;
 }
@@ -178,6 +191,45 @@ static cw_status take_blocks(cwi_part_reading *r, size_t max, size_t *got, cw_er
     return st;
 }
 
+/* Reads decoded bytes, as many as asked for. */
+static cw_status read_decoded(cwi_part_reading *r, unsigned char *to, size_t bytes,
+                              cw_error *err)
+{
+    size_t n = 0;
+    cw_status st = CW_OK;
+    if (r->src->encoding != CWI_BLOCKS)
+        return cwi_stream_read(&r->stream, to, bytes, err);
+    for (size_t got = 0; st == CW_OK && got < bytes; got += n)
+        st = cwi_blocks_some(&r->blocks, to + got, bytes - got, &n, err);
+    return st;
+}
+
+/* Reads the next voxels, which have a form of their own in the file, and converts them. */
+static cw_status take_stored(cwi_part_reading *r, size_t count, cw_error *err)
+{
+    enum { AT_ONCE = 4096 };
+    uint64_t numbers[AT_ONCE];
+    const cwi_source *src = r->src;
+    const cw_type type = src->shape.type;
+    const size_t size = cwi_stored_size(src->stored, type), voxel = cw_type_size(type);
+    cw_status st = CW_OK;
+    for (size_t at = 0, n; st == CW_OK && at < count; at += n) {
+        n = count - at < AT_ONCE ? count - at : AT_ONCE;
+        st = read_decoded(r, (unsigned char *)numbers, n * size, err);
+        if (st != CW_OK)
+            return st;
+        if (src->big_endian != cwi_machine_is_big_endian())
+            cwi_swap_bytes(numbers, n, size);
+        const size_t good =
+            cwi_stored_convert(src->stored, type, numbers, size, n, r->to + at * voxel);
+        if (good < n) {
+            r->needs_u32 = cwi_stored_needs_u32(src->stored, &numbers[good]);
+            st = cwi_stored_fail(src->stored, type, &numbers[good], err);
+        }
+    }
+    return st;
+}
+
 /* Reads the next voxels to their place: a portion of at most `max` bytes. */
 static cw_status take_bytes(cwi_part_reading *r, size_t max, size_t *got, cw_error *err)
 {
@@ -187,6 +239,8 @@ static cw_status take_bytes(cwi_part_reading *r, size_t max, size_t *got, cw_err
     *got = max < SLAB_BYTES ? max : SLAB_BYTES;
     if (src->encoding == CWI_ASCII)
         return cwi_numbers_read(&r->numbers, src->shape.type, r->to, *got / voxel, err);
+    if (src->stored != CWI_STORED_PLAIN)
+        return take_stored(r, *got / voxel, err);
     if (src->encoding == CWI_BLOCKS)
         st = take_blocks(r, max, got, err);
     else
@@ -201,11 +255,13 @@ static cw_status drop_bytes(cwi_part_reading *r, uint64_t max, size_t *got, cw_e
 {
     const cw_type type = r->src->shape.type;
     *got = max < SLAB_BYTES ? (size_t)max : SLAB_BYTES;
+    const size_t count = *got / cw_type_size(type);
+    const size_t stored = count * cwi_stored_size(r->src->stored, type);
     if (r->src->encoding == CWI_ASCII)
-        return cwi_numbers_read(&r->numbers, type, NULL, *got / cw_type_size(type), err);
+        return cwi_numbers_read(&r->numbers, type, NULL, count, err);
     if (r->src->encoding != CWI_BLOCKS)
-        return cwi_stream_skip(&r->stream, *got, err);
-    cwi_blocks_skip(&r->blocks, *got);
+        return cwi_stream_skip(&r->stream, stored, err);
+    cwi_blocks_skip(&r->blocks, stored);
     return CW_OK;
 }
 
@@ -241,6 +297,33 @@ cw_status cwi_part_check_packed(const cwi_part_reading *r, uint64_t start, cw_er
         (unsigned long long)r->src->packed, (unsigned long long)(s->packed_end - start));
 }
 
+/* Reads compressed data to their end, and counts the decoded bytes behind the voxels. */
+static cw_status finish_part(cwi_part_reading *r, cw_error *err)
+{
+    const uint64_t given = r->stream.given;
+    cw_status st = cwi_stream_finish(&r->stream, err);
+    if (r->src->is_last)
+        r->left += r->stream.given - given;
+    return st;
+}
+
+void cwi_part_note_left(const cwi_source *src, uint64_t left, const cw_read_desc *desc)
+{
+    const uint64_t all = stored_part_bytes(src) * (src->files.count ? src->files.count : 1);
+    char times[80] = "";
+    if (left == 0)
+        return;
+    if (left % all == 0)
+        snprintf(times, sizeof times, ", which makes %llu times as many in all",
+                 (unsigned long long)(left / all + 1));
+    cwi_note(desc,
+             "'%s' and the type %s ask for %llu bytes of %s; behind them %llu more are left "
+             "over%s",
+             src->size_field,
+             src->stored ? cwi_stored_name(src->stored) : cw_type_name(src->shape.type),
+             (unsigned long long)all, cwi_source_noun(src), (unsigned long long)left, times);
+}
+
 /* Reads the wanted bytes of a part that ends at this offset of all. Bytes behind the last
  * wanted one are not read, so the checksum is verified only where the part was read to its
  * end. */
@@ -255,5 +338,5 @@ cw_status cwi_part_read_runs(cwi_part_reading *r, uint64_t end, cw_error *err)
             st = pass_bytes(r, bytes, true, err);
         cwi_runs_take(&r->runs, bytes);
     }
-    return st == CW_OK && r->at == end ? cwi_stream_finish(&r->stream, err) : st;
+    return st == CW_OK && r->at == end ? finish_part(r, err) : st;
 }

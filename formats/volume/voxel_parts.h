@@ -10,6 +10,7 @@ typedef struct cwi_part_file {
     int fd;
     uint64_t size;  /* of the file; less where the voxels end earlier */
     uint64_t start; /* of the (encoded) voxels in it */
+    uint64_t left;  /* bytes behind the voxels, where none belong there */
     bool own;       /* fd is closed together with the part */
 } cwi_part_file;
 
@@ -23,7 +24,12 @@ typedef struct cwi_part_reading {
     cwi_stream stream;
     cwi_packed_blocks blocks;
     cwi_numbers numbers;
+    uint64_t left;  /* decoded bytes behind the voxels, where none belong there */
+    bool needs_u32; /* reading failed at an integer that fits CW_U32, but not CW_I32 */
 } cwi_part_reading;
+
+/* Reports bytes behind the voxels. */
+void cwi_part_note_left(const cwi_source *src, uint64_t left, const cw_read_desc *desc);
 
 /* Returns the name of what is stored, for messages. */
 const char *cwi_source_noun(const cwi_source *src);

@@ -12,6 +12,8 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { MAX_COMPONENTS = 16 };
@@ -20,9 +22,28 @@ cw_status cwi_fail_type(cw_error *err, const char *field, const char *name)
 {
 #define NAME(constant, ctype, text) " " text
     return cwi_fail(err, CW_ERR_FORMAT,
-                    "'%s' is %.60s; the types that are read are" CW_TYPE_TABLE(NAME), field,
-                    name);
+                    "'%s' is %.60s; the types that are read are" CW_TYPE_TABLE(
+                        NAME) ", integers of 64 bits that fit 32, and floats of 16 bits",
+                    field, name);
 #undef NAME
+}
+
+void cwi_source_set_stored(cwi_source *src, cwi_stored stored)
+{
+    src->stored = stored;
+    src->shape.type = cwi_stored_type(stored);
+}
+
+void cwi_source_note(cwi_source *src, const char *format, ...)
+{
+    const size_t used = strlen(src->note);
+    const size_t start = used && used + 3 < sizeof src->note ? used + 2 : used;
+    va_list arguments;
+    if (start > used)
+        memcpy(src->note + used, "; ", 2);
+    va_start(arguments, format);
+    vsnprintf(src->note + start, sizeof src->note - start, format, arguments);
+    va_end(arguments);
 }
 
 void cwi_flip_ras(double affine[3][4])
@@ -146,19 +167,22 @@ static bool has_selected(const cwi_part_reading *r, size_t index)
     return r->runs.left > 0 && r->runs.next / cwi_source_part_bytes(r->src) == index;
 }
 
-/* Opens every part and checks it, or opens the parts with wanted voxels, and reads them. A
+/* Opens every part and checks it, or opens the parts with wanted voxels, and reads them. *left is set
+ * to the bytes behind the voxels. A
  * header may name more files than a program may keep open. So they are opened again for
  * reading, and checked again. */
 static cw_status walk_parts(const cwi_source *src, const cwi_input *in, cwi_part_reading *r,
-                            cw_error *err)
+                            uint64_t *left, cw_error *err)
 {
     const size_t count = src->files.count ? src->files.count : 1;
     cw_status st = CW_OK;
+    *left = 0;
     for (size_t i = 0; st == CW_OK && i < count; i++) {
         cwi_part_file p;
         if (r && !has_selected(r, i))
             continue;
         st = cwi_part_open(src, in, i, &p, err);
+        *left += p.left;
         if (st == CW_OK && r)
             st = read_part(r, &p, i, err);
         cwi_part_close(&p);
@@ -168,15 +192,20 @@ static cw_status walk_parts(const cwi_source *src, const cwi_input *in, cwi_part
     return st;
 }
 
-static cw_status check_files(const cwi_source *src, const cwi_input *in, cw_error *err)
+static cw_status check_files(const cwi_source *src, const cwi_input *in,
+                             const cw_read_desc *desc, cw_error *err)
 {
+    uint64_t left;
     const size_t count = src->files.count;
     if (count &&
         (src->bytes % count || cwi_source_part_bytes(src) % cw_type_size(src->shape.type)))
         return cwi_fail(err, CW_ERR_FORMAT,
                         "'%s' asks for %zu bytes, which %zu files cannot share",
                         src->size_field, src->bytes, count);
-    return walk_parts(src, in, NULL, err);
+    cw_status st = walk_parts(src, in, NULL, &left, err);
+    if (st == CW_OK)
+        cwi_part_note_left(src, left, desc);
+    return st;
 }
 
 cw_status cwi_check_limits(const cw_volume *v, size_t bytes, const char *field,
@@ -253,24 +282,45 @@ static cw_status thin_source(const cw_read_desc *desc, cwi_source *out, cw_error
     return st;
 }
 
+/* Reads the wanted voxels to memory. Integers of 64 bits are read again where some of them are too
+ * large for the type, and fit the one without a sign. */
+static cw_status fill_voxels(const cwi_source *src, const cwi_input *in,
+                             const cw_read_desc *desc, cw_volume *v, cw_error *err)
+{
+    cwi_source typed = *src; /* its files are borrowed */
+    cw_error why = {0};
+    size_t step[3];
+    int fastest;
+    uint64_t left;
+    choose_steps(src, desc, step, &fastest);
+    cwi_part_reading r = {.src = &typed, .progress = &desc->progress, .to = v->owned};
+    cwi_runs_plan(&r.runs, src, desc->region, step);
+    cw_status st = walk_parts(&typed, in, &r, &left, &why);
+    if (st != CW_OK && r.needs_u32 && src->may_widen) {
+        typed.shape.type = v->type = CW_U32;
+        r = (cwi_part_reading){.src = &typed, .progress = &desc->progress, .to = v->owned};
+        cwi_runs_plan(&r.runs, src, desc->region, step);
+        st = walk_parts(&typed, in, &r, &left, &why);
+    }
+    if (st != CW_OK)
+        return cwi_fail(err, st, "%s", why.message);
+    cwi_part_note_left(&typed, r.left, desc);
+    return CW_OK;
+}
+
 /* Loads the voxels. `selected` is the source or, narrowed and thinned, a part of it. */
 static cw_status load_voxels(const cwi_source *src, const cwi_source *selected,
                              const cwi_input *in, const cw_read_desc *desc, cw_volume *volume,
                              cw_error *err)
 {
-    size_t step[3];
-    int fastest;
     cw_volume v = selected->shape;
     v.owned = cwi_alloc_large(selected->bytes, 1);
     if (!v.owned)
         return cwi_fail_memory(err);
     v.data = v.owned;
-    cwi_part_reading r = {.src = src, .progress = &desc->progress, .to = v.owned};
-    choose_steps(src, desc, step, &fastest);
-    cwi_runs_plan(&r.runs, src, desc->region, step);
     cw_status st = cwi_volume_own_coordinates(&v, err);
     if (st == CW_OK)
-        st = walk_parts(src, in, &r, err);
+        st = fill_voxels(src, in, desc, &v, err);
     if (st == CW_OK)
         st = cwi_progress(&desc->progress, "reading", 1, err);
     if (st == CW_OK)
@@ -382,7 +432,7 @@ static cw_status want_part(const cwi_source *src, const cwi_input *in, const cw_
                            cwi_source *selected, cw_error *err)
 {
     *selected = *src; /* its files are borrowed */
-    cw_status st = check_files(src, in, err);
+    cw_status st = check_files(src, in, desc, err);
     if (st == CW_OK && desc->region)
         st = narrow_to_region(src, desc->region, selected, err);
     if (st == CW_OK)

@@ -5,8 +5,7 @@
 
 #include "formats/bytes/block_reader.h"
 #include "formats/bytes/input_file.h"
-
-#include <cubewright/volume.h>
+#include "formats/bytes/stored_numbers.h"
 
 /* The encoding of voxels in a file. */
 typedef enum cwi_encoding {
@@ -37,11 +36,13 @@ typedef struct cwi_axis {
  * cwi_source_free(). */
 typedef struct cwi_source {
     cw_volume shape;               /* everything but the voxels; strides as in the file */
-    size_t bytes;                  /* of all voxels */
+    cwi_stored stored;             /* the form of numbers in the file, if not shape.type */
+    size_t bytes;                  /* of all voxels in memory */
     cwi_axis axes[CWI_ROLE_COUNT]; /* the fastest first; each role occurs at most once */
     size_t axis_count;
     const char *size_field;  /* the header's name for the sizes, for messages */
     const char *frame_field; /* ... and for directions, spacing and origin */
+    bool may_widen;          /* shape.type may become CW_U32 where CW_I32 is too small */
     const char *noun;        /* name of the stored items, in messages; NULL: voxels */
 
     cwi_names files; /* data files, each with an equal share; none: the header's own file */
@@ -55,8 +56,9 @@ typedef struct cwi_source {
     uint64_t skip;   /* decoded bytes in front of the first voxel */
     uint64_t packed; /* compressed bytes, as stated by "CompressedDataSize"; 0: unknown */
     bool at_end;     /* raw: the voxels are the last bytes of the file instead */
+    bool is_last;    /* the file ends with the voxels; a note reports bytes behind them */
     bool has_arrays; /* with names: it is the requested one, if any was requested */
-    char note[200];  /* information for the user; empty: nothing */
+    char note[400];  /* information for the user; empty: nothing */
 } cwi_source;
 
 /* Sets axes, sizes, strides and bytes from the file's axes, the fastest first; roles left out
@@ -64,6 +66,12 @@ typedef struct cwi_source {
  * Returns CW_ERR_FORMAT for more than 16 components, CW_ERR_LIMIT when the size overflows. */
 CW_NODISCARD cw_status cwi_source_set_axes(cwi_source *src, const cwi_axis *axes, size_t count,
                                            cw_error *err);
+
+/* Sets the type of voxels whose numbers have a form of their own in the file. */
+void cwi_source_set_stored(cwi_source *src, cwi_stored stored);
+
+/* Adds to the source's note. */
+void cwi_source_note(cwi_source *src, const char *format, ...) CW_PRINTF(2, 3);
 
 /* Refuses a voxel type by its name in the file, and lists those that are read. */
 cw_status cwi_fail_type(cw_error *err, const char *field, const char *name);

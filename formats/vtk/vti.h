@@ -8,9 +8,10 @@
 
 /* The preference of an array as the volume: first the requested array, then the one that
  * PointData or CellData names as its scalars, then others of one value, then arrays of several
- * values. */
+ * values. Integers of 64 bits, which are mostly the numbers of points or cells, come last. */
 typedef enum cwi_vti_rank {
     CWI_VTI_NONE,
+    CWI_VTI_WIDE,
     CWI_VTI_SEVERAL,
     CWI_VTI_ONE,
     CWI_VTI_SCALARS,
@@ -74,6 +75,13 @@ CW_NODISCARD cw_status cwi_vti_describe(const cwi_vti *v, const cwi_vti_choice *
 
 /* Returns the array that is the volume. of_cells: set to whether it has values of cells */
 const cwi_vti_array *cwi_vti_chosen(const cwi_vti *v, bool *of_cells);
+
+/* Returns true if the best array of points goes before that of cells, which may be missing. */
+static inline bool cwi_vti_is_of_points(const cwi_vti_data *points, const cwi_vti_data *cells)
+{
+    return points->best.rank > CWI_VTI_WIDE ||
+           (points->best.rank == CWI_VTI_WIDE && cells->best.rank <= CWI_VTI_WIDE);
+}
 
 /* Parses the attributes of one element each. */
 CW_NODISCARD cw_status cwi_vti_image(cwi_vti *v, cwi_attributes a, cw_error *err);

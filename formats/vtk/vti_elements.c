@@ -97,7 +97,9 @@ static cwi_vti_rank rank_of(const cwi_vti_choice *choice, const cwi_vti_data *da
         return strcmp(array->name, choice->expected) == 0 ? CWI_VTI_REQUESTED : CWI_VTI_NONE;
     if (*array->name && strcmp(array->name, data->scalars) == 0)
         return CWI_VTI_SCALARS;
-    return array->components == 1 ? CWI_VTI_ONE : CWI_VTI_SEVERAL;
+    return array->stored            ? CWI_VTI_WIDE
+           : array->components == 1 ? CWI_VTI_ONE
+                                    : CWI_VTI_SEVERAL;
 }
 
 cw_status cwi_vti_data_array(cwi_vti_choice *choice, cwi_vti_data *data, cwi_attributes a,
@@ -108,7 +110,7 @@ cw_status cwi_vti_data_array(cwi_vti_choice *choice, cwi_vti_data *data, cwi_att
     *kept = false;
     if (st != CW_OK)
         return st;
-    const bool is_read = array.data.is_known && !array.data.wide && array.data.components <= 16;
+    const bool is_read = array.data.is_known && array.data.components <= 16;
     array.rank = is_read ? rank_of(choice, data, &array.data) : CWI_VTI_NONE;
     cwi_array_list_add(choice->list, array.data.name, array.data.type_name,
                        array.data.components, data->of_cells, is_read && *array.data.name);
@@ -137,7 +139,7 @@ cw_status cwi_vti_coordinates(cwi_vti *v, cwi_attributes a, size_t *n, cw_error 
         return cwi_fail(err, CW_ERR_FORMAT, "Coordinates has more than three arrays");
     cwi_vtk_array *array = &v->coordinates[*n];
     cw_status st = cwi_vtk_xml_array(array, a, err);
-    if (st == CW_OK && (!array->is_known || array->wide || array->components != 1))
+    if (st == CW_OK && (!array->is_known || array->stored || array->components != 1))
         return cwi_fail(
             err, CW_ERR_FORMAT,
             "coordinates along %c are %zu of type '%s' each; one number of a type of "

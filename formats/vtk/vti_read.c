@@ -228,10 +228,10 @@ bool cwi_vti_may_have_pieces(const cwi_input *in)
 
 /* --- the array ---------------------------------------------------------------------------- */
 
-/* Chooses the array that is the volume: at points, unless only cells have one. */
+/* Chooses the array that is the volume: at points, unless only cells have a good one. */
 static const cwi_vti_array *choose_array(const cwi_vti *v)
 {
-    return v->points.best.rank != CWI_VTI_NONE ? &v->points.best : &v->cells.best;
+    return cwi_vti_is_of_points(&v->points, &v->cells) ? &v->points.best : &v->cells.best;
 }
 
 static bool is_of_cells(const cwi_vti *v)
@@ -281,6 +281,7 @@ static cw_status set_sizes(const cwi_vti *v, cwi_source *src, cw_error *err)
                              {CWI_AXIS_Y, dim[1]},
                              {CWI_AXIS_Z, dim[2]}};
     src->shape.type = array->type;
+    src->stored = array->stored;
     src->shape.slope = 1;
     src->has_arrays = true;
     return st == CW_OK ? cwi_source_set_axes(src, axes, 4, err) : st;

@@ -8,9 +8,11 @@
 enum { CWI_VTK_LINE_BYTES = 1024 };
 
 /* The preference of an array as the volume: first the requested array, then attributes called
- * SCALARS, then other arrays of one value, then arrays of several values. */
+ * SCALARS, then other arrays of one value, then arrays of several values. Integers of 64 bits, which are
+ * mostly the numbers of points or cells, come last. */
 typedef enum cwi_vtk_rank {
     CWI_VTK_NONE,
+    CWI_VTK_WIDE,
     CWI_VTK_SEVERAL,
     CWI_VTK_ONE,
     CWI_VTK_SCALARS,
@@ -20,6 +22,7 @@ typedef enum cwi_vtk_rank {
 typedef struct cwi_legacy_array {
     char name[CWI_WORD_BYTES];
     cw_type type;
+    cwi_stored stored;
     size_t components;
     uint64_t offset; /* of its numbers in the file */
     cwi_vtk_rank rank;

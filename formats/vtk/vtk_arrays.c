@@ -18,19 +18,21 @@ typedef struct vtk_type {
     const char *names;
     int type;
     size_t bits;
+    cwi_stored stored;
 } vtk_type;
 
 static const vtk_type types[] = {
-    {"unsigned_char", CW_U8, 8},
-    {"char|signed_char", CW_I8, 8},
-    {"unsigned_short", CW_U16, 16},
-    {"short", CW_I16, 16},
-    {"unsigned_int", CW_U32, 32},
-    {"int|vtkidtype", CW_I32, 32},
-    {"float", CW_F32, 32},
-    {"double", CW_F64, 64},
-    {"bit", -1, 1},
-    {"long|unsigned_long|vtktypeint64|vtktypeuint64", -1, 64},
+    {"unsigned_char", CW_U8, 8, 0},
+    {"char|signed_char", CW_I8, 8, 0},
+    {"unsigned_short", CW_U16, 16, 0},
+    {"short", CW_I16, 16, 0},
+    {"unsigned_int", CW_U32, 32, 0},
+    {"int|vtkidtype", CW_I32, 32, 0},
+    {"float", CW_F32, 32, 0},
+    {"double", CW_F64, 64, 0},
+    {"bit", -1, 1, 0},
+    {"long|vtktypeint64", CW_I32, 64, CWI_STORED_I64},
+    {"unsigned_long|vtktypeuint64", CW_U32, 64, CWI_STORED_U64},
 };
 
 /* The lines of attributes: the keyword, the words behind the name (c: count of components,
@@ -177,8 +179,11 @@ static cwi_vtk_rank rank_of(const cwi_vtk *v, const cwi_legacy_array *declared,
         return strcmp(declared->name, v->expected) == 0 ? CWI_VTK_REQUESTED : CWI_VTK_NONE;
     if (strcmp(declared->name, "vtkGhostType") == 0)
         return CWI_VTK_NONE;
-    return declared->rank == CWI_VTK_SCALARS || declared->components == 1 ? declared->rank
-                                                                          : CWI_VTK_SEVERAL;
+    if (declared->rank == CWI_VTK_SCALARS)
+        return CWI_VTK_SCALARS;
+    return type->stored                ? CWI_VTK_WIDE
+           : declared->components == 1 ? declared->rank
+                                       : CWI_VTK_SEVERAL;
 }
 
 /* Keeps an array that starts here when it is better than those before. */
@@ -197,6 +202,7 @@ static void consider_array(cwi_vtk *v, const cwi_legacy_array *declared, const v
         return;
     *v->best = *declared;
     v->best->type = (cw_type)type->type;
+    v->best->stored = type->stored;
     v->best->rank = rank;
     v->best->offset = v->offset;
 }
@@ -211,7 +217,7 @@ static cw_status pass_numbers(cwi_vtk *v, const char *name, size_t count, size_t
 static void keep_marks(cwi_vtk *v, const cwi_legacy_array *declared, const vtk_type *type)
 {
     if (strcmp(declared->name, "vtkGhostType") == 0 && declared->components == 1 &&
-        type->type >= 0)
+        type->type >= 0 && !type->stored)
         v->grid.marks[v->best == &v->cells] =
             (cwi_vtk_row){.type = (cw_type)type->type, .count = v->count, .offset = v->offset};
 }
@@ -253,8 +259,8 @@ cw_status cwi_vtk_row_pass(cwi_vtk *v, const char *field, const char *type_name,
                         "'%s' is of type '%s'; whole or real numbers were expected", field,
                         type_name);
     cw_status st = pass_numbers(v, field, skipped, type->bits, err);
-    row->wide = type->type < 0 && v->binary; /* in text they are ordinary numbers */
-    row->type = type->type >= 0 ? (cw_type)type->type : v->binary ? CW_U32 : CW_F64;
+    row->wide = type->stored && v->binary; /* in text they are ordinary numbers */
+    row->type = !type->stored ? (cw_type)type->type : v->binary ? CW_U32 : CW_F64;
     row->count = count;
     row->offset = v->offset;
     return st == CW_OK ? pass_numbers(v, field, count, type->bits, err) : st;
@@ -272,7 +278,7 @@ cw_status cwi_vtk_coordinates(cwi_vtk *v, int axis, cw_error *err)
     if (st != CW_OK)
         return st;
     const vtk_type *type = find_type(type_name);
-    if (!type || type->type < 0)
+    if (!type || type->type < 0 || type->stored)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "'%s' is of type '%s'; numbers of up to 32 bits, or double, were "
                         "expected",

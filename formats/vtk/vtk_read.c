@@ -246,10 +246,12 @@ static cw_status read_lines(cwi_vtk *v, grid *g, cw_error *err)
     return cwi_fail(err, st, "%s", why.message);
 }
 
-/* Chooses the array that is the volume: at points, unless only cells have one. */
+/* Chooses the array that is the volume: at points, unless only cells have a good one. */
 static const cwi_legacy_array *choose_array(const cwi_vtk *v)
 {
-    return v->points.rank != CWI_VTK_NONE ? &v->points : &v->cells;
+    const bool is_of_points = v->points.rank > CWI_VTK_WIDE ||
+                              (v->points.rank == CWI_VTK_WIDE && v->cells.rank <= CWI_VTK_WIDE);
+    return is_of_points ? &v->points : &v->cells;
 }
 
 static cw_status check_found(const cwi_vtk *v, cw_error *err)
@@ -279,6 +281,7 @@ static cw_status describe_grid(const cwi_vtk *v, const grid *g, cwi_source *src,
                              {CWI_AXIS_Y, dim[1]},
                              {CWI_AXIS_Z, dim[2]}};
     src->shape.type = array->type;
+    src->stored = array->stored;
     src->shape.slope = 1;
     src->has_arrays = true;
     src->encoding = v->binary ? CWI_RAW : CWI_ASCII;
@@ -325,6 +328,7 @@ static cw_status describe_array(const void *file, size_t piece, cwi_grid_role ro
     const cwi_vtk *v = file;
     const cwi_legacy_array *array = choose_array(v);
     const cwi_vtk_row values = {.type = array->type, .count = count, .offset = array->offset};
+    cw_status st;
     (void)piece;
     switch (role) {
     case CWI_GRID_POINTS:
@@ -341,8 +345,10 @@ static cw_status describe_array(const void *file, size_t piece, cwi_grid_role ro
         return cwi_vtk_describe(v, &v->grid.marks[role == CWI_GRID_CELL_MARKS], "vtkGhostType",
                                 1, count, src, wide, err);
     default:
-        return cwi_vtk_describe(v, &values, array->name, array->components, count, src, wide,
-                                err);
+        st =
+            cwi_vtk_describe(v, &values, array->name, array->components, count, src, wide, err);
+        src->stored = array->stored;
+        return st;
     }
 }
 

@@ -87,12 +87,18 @@ cw_status cwi_vtk_xml_integer(cwi_attributes a, const char *name, int64_t low, i
 static const struct {
     const char *name;
     cw_type type;
-    bool wide;
+    cwi_stored stored;
 } types[] = {
-    {"Int8", CW_I8, false},     {"UInt8", CW_U8, false},    {"Int16", CW_I16, false},
-    {"UInt16", CW_U16, false},  {"Int32", CW_I32, false},   {"UInt32", CW_U32, false},
-    {"Float32", CW_F32, false}, {"Float64", CW_F64, false}, {"Int64", CW_U32, true},
-    {"UInt64", CW_U32, true},
+    {"Int8", CW_I8, 0},
+    {"UInt8", CW_U8, 0},
+    {"Int16", CW_I16, 0},
+    {"UInt16", CW_U16, 0},
+    {"Int32", CW_I32, 0},
+    {"UInt32", CW_U32, 0},
+    {"Float32", CW_F32, 0},
+    {"Float64", CW_F64, 0},
+    {"Int64", CW_I32, CWI_STORED_I64},
+    {"UInt64", CW_U32, CWI_STORED_U64},
 };
 
 static void find_type(cwi_vtk_array *array)
@@ -101,7 +107,7 @@ static void find_type(cwi_vtk_array *array)
         if (strcmp(types[i].name, array->type_name) == 0) {
             array->is_known = true;
             array->type = types[i].type;
-            array->wide = types[i].wide;
+            array->stored = types[i].stored;
         }
 }
 
@@ -222,11 +228,13 @@ static cw_status check_count(const cwi_input *in, const cwi_vtk_xml *v,
         return st;
     for (size_t i = 0; i < v->word_bytes; i++)
         count = count << 8 | word[v->big_endian ? i : v->word_bytes - 1 - i];
-    if (count == src->bytes)
+    const size_t bytes = src->bytes / cw_type_size(src->shape.type) *
+                         cwi_stored_size(src->stored, src->shape.type);
+    if (count == bytes)
         return CW_OK;
     return cwi_fail(err, CW_ERR_FORMAT,
                     "the array '%s' has %llu bytes; '%s' and 'type' ask for %zu", array->name,
-                    (unsigned long long)count, src->size_field, src->bytes);
+                    (unsigned long long)count, src->size_field, bytes);
 }
 
 cw_status cwi_vtk_xml_place(const cwi_vtk_xml *v, const cwi_vtk_array *array,
@@ -250,8 +258,18 @@ cw_status cwi_vtk_xml_tuples(const cwi_vtk_xml *v, const cwi_vtk_array *array,
     if (!array)
         return cwi_fail(err, CW_ERR_FORMAT, "'%s' is %zu; the array for them is missing", field,
                         count);
-    *wide = array->wide && array->form != CWI_VTK_ASCII;
-    const cw_type type = array->wide && !*wide ? CW_F64 : array->type;
+    *wide = array->stored && array->form != CWI_VTK_ASCII;
+    const cw_type type = *wide ? CW_U32 : array->stored ? CW_F64 : array->type;
     cw_status st = cwi_tuples_describe(src, field, type, *wide, array->components, count, err);
+    return st == CW_OK ? cwi_vtk_xml_place(v, array, in, src, err) : st;
+}
+
+cw_status cwi_vtk_xml_values(const cwi_vtk_xml *v, const cwi_vtk_array *array,
+                             const char *field, size_t count, const cwi_input *in,
+                             cwi_source *src, cw_error *err)
+{
+    cw_status st =
+        cwi_tuples_describe(src, field, array->type, false, array->components, count, err);
+    src->stored = array->stored;
     return st == CW_OK ? cwi_vtk_xml_place(v, array, in, src, err) : st;
 }

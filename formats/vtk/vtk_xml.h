@@ -29,7 +29,7 @@ typedef struct cwi_vtk_array {
     char name[CWI_WORD_BYTES], type_name[CWI_WORD_BYTES];
     bool is_known; /* its type can be read */
     cw_type type;
-    bool wide; /* of whole numbers of 64 bits: type is that of their halves */
+    cwi_stored stored;
     size_t components;
     cwi_vtk_form form;
     uint64_t offset;     /* in the appended data */
@@ -63,5 +63,10 @@ CW_NODISCARD cw_status cwi_vtk_xml_place(const cwi_vtk_xml *v, const cwi_vtk_arr
 CW_NODISCARD cw_status cwi_vtk_xml_tuples(const cwi_vtk_xml *v, const cwi_vtk_array *array,
                                           const char *field, size_t count, const cwi_input *in,
                                           cwi_source *src, bool *wide, cw_error *err);
+
+/* Describes an array of `count` tuples whose numbers become those of voxels. */
+CW_NODISCARD cw_status cwi_vtk_xml_values(const cwi_vtk_xml *v, const cwi_vtk_array *array,
+                                          const char *field, size_t count, const cwi_input *in,
+                                          cwi_source *src, cw_error *err);
 
 #endif

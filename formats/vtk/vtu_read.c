@@ -307,7 +307,7 @@ static cw_status choose_array(parsing *p, cw_error *err)
 {
     if (p->count == 0)
         return cwi_fail(err, CW_ERR_FORMAT, "the grid has no Piece");
-    p->of_cells = p->pieces[0].points.best.rank == CWI_VTI_NONE;
+    p->of_cells = !cwi_vti_is_of_points(&p->pieces[0].points, &p->pieces[0].cells);
     const cwi_vti_array *first = values_of(p, 0);
     if (first->rank == CWI_VTI_NONE)
         return cwi_vti_fail_choice(&p->choice, err);
@@ -338,7 +338,9 @@ static cw_status describe_array(const void *file, size_t n, cwi_grid_role role, 
     const char *field = role == CWI_GRID_CORNERS ? "offsets"
                         : of_points              ? point_field(p)
                                                  : cell_field(p);
-    return cwi_vtk_xml_tuples(&p->file, array, field, count, p->in, src, wide, err);
+    *wide = false;
+    return values ? cwi_vtk_xml_values(&p->file, array, field, count, p->in, src, err)
+                  : cwi_vtk_xml_tuples(&p->file, array, field, count, p->in, src, wide, err);
 }
 
 static cw_status read_grid(parsing *p, const cw_read_desc *desc, cw_volume *volume,

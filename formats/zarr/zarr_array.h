@@ -2,6 +2,7 @@
 #ifndef FORMATS_ZARR_ZARR_ARRAY_H
 #define FORMATS_ZARR_ZARR_ARRAY_H
 
+#include "formats/bytes/stored_numbers.h"
 #include "formats/zarr/zarr_json.h"
 
 enum {
@@ -44,7 +45,7 @@ typedef struct cwi_zarr_array {
     cw_type type;        /* of the voxels that are read */
     char type_name[32];  /* as the metadata say */
     size_t stored_bytes; /* of a stored number: 8 for the integers of 64 bits */
-    bool is_wide;        /* those; the type is then one of 32 bits */
+    cwi_stored stored;   /* of those, and of floats of 16 bits; the type has 32 bits */
     bool is_signed, is_bool;
     uint64_t fill; /* of missing chunks: begins with a stored number in this machine's order */
 

@@ -73,38 +73,13 @@ static void copy_numbers(const char *from, size_t stride, size_t size, char *to,
         ((uint64_t *)(void *)to)[i] = *(const uint64_t *)(const void *)(from + i * stride);
 }
 
-/* Makes numbers of 64 bits ones of 32; returns false for one that does not fit, and the number.
- * Those without a sign count as negative from 2^63 on, and so never fit. */
-static bool narrow_numbers(cw_type type, const char *from, size_t stride, uint32_t *to,
-                           size_t count, int64_t *bad)
+static cw_status fail_number(const cwi_zarr_array *a, const void *number, cw_error *err)
 {
-    const int64_t low = type == CW_I32 ? INT32_MIN : 0;
-    const int64_t high = type == CW_I32 ? INT32_MAX : (int64_t)UINT32_MAX;
-    for (size_t i = 0; i < count; i++) {
-        int64_t value;
-        memcpy(&value, from + i * stride, sizeof value);
-        if (value < low || value > high) {
-            *bad = value;
-            return false;
-        }
-        to[i] = (uint32_t)value;
-    }
-    return true;
-}
-
-static cw_status fail_number(const cwi_zarr_array *a, int64_t bad, cw_error *err)
-{
-    char number[24];
-    if (a->is_signed)
-        snprintf(number, sizeof number, "%lld", (long long)bad);
-    else
-        snprintf(number, sizeof number, "%llu", (unsigned long long)bad);
-    return cwi_fail(err, CW_ERR_FORMAT,
-                    "%s%s%s: '%s' is %s, and a number is %s; of integers of 64 bits those that "
-                    "fit %s are read",
-                    a->path, *a->path ? "/" : "", a->version == 2 ? ".zarray" : "zarr.json",
-                    a->version == 2 ? "dtype" : "data_type", a->type_name, number,
-                    cw_type_name(a->type));
+    cw_error why = {0};
+    cw_status st = cwi_stored_fail(a->stored, a->type, number, &why);
+    return cwi_fail(err, st, "%s%s%s: '%s' is %s, and %s", a->path, *a->path ? "/" : "",
+                    a->version == 2 ? ".zarray" : "zarr.json",
+                    a->version == 2 ? "dtype" : "data_type", a->type_name, why.message);
 }
 
 /* Copies the overlap of a chunk; its numbers all have one value where missing. */
@@ -115,7 +90,6 @@ static cw_status copy_overlap(const boxing *b, const overlap *o, const char *chu
     const size_t size = cw_type_size(a->type), rows = o->count[CWI_AXIS_Y];
     size_t strides[CWI_ZARR_RANK], step[CWI_ROLE_COUNT] = {0}, at[CWI_ROLE_COUNT] = {0};
     size_t stride = a->stored_bytes, base = 0, to_base = 0;
-    int64_t bad = 0;
     for (size_t n = a->rank; n > 0; n--) {
         strides[a->order[n - 1]] = missing ? 0 : stride;
         stride *= a->inner[a->order[n - 1]];
@@ -138,13 +112,15 @@ static cw_status copy_overlap(const boxing *b, const overlap *o, const char *chu
                     from += at[r] * step[r];
                     to += at[r] * b->strides[r];
                 }
-                if (!a->is_wide)
-                    copy_numbers(chunk + from, step[CWI_AXIS_X], size, b->to + to,
-                                 o->count[CWI_AXIS_X]);
-                else if (!narrow_numbers(a->type, chunk + from, step[CWI_AXIS_X],
-                                         (uint32_t *)(void *)(b->to + to), o->count[CWI_AXIS_X],
-                                         &bad))
-                    return fail_number(a, bad, err);
+                const size_t count = o->count[CWI_AXIS_X];
+                if (!a->stored) {
+                    copy_numbers(chunk + from, step[CWI_AXIS_X], size, b->to + to, count);
+                    continue;
+                }
+                const size_t good = cwi_stored_convert(a->stored, a->type, chunk + from,
+                                                       step[CWI_AXIS_X], count, b->to + to);
+                if (good < count)
+                    return fail_number(a, chunk + from + good * step[CWI_AXIS_X], err);
             }
     return CW_OK;
 }

@@ -40,7 +40,7 @@ static cw_status take_labels(cwi_zarr *z, const cwi_zarr_node *node, cwi_zarr_fo
     if (!json_is_object(image))
         return CW_OK;
     z->shape.known |= CW_KNOWN_LABELS;
-    if (z->array.is_wide)
+    if (z->array.stored == CWI_STORED_I64)
         z->array.type = CW_U32;
     cw_status st = found->labels ? cwi_label_ome_read(image, found->labels, err) : CW_OK;
     return st == CW_OK ? CW_OK : cwi_zarr_fail_in(err, st, node, true);

@@ -32,7 +32,7 @@ bool cwi_zarr_set_type(cwi_zarr_array *array, char kind, size_t bytes)
     } types[] = {
         {'b', 1, CW_U8},  {'u', 1, CW_U8},  {'i', 1, CW_I8},  {'u', 2, CW_U16},
         {'i', 2, CW_I16}, {'u', 4, CW_U32}, {'i', 4, CW_I32}, {'f', 4, CW_F32},
-        {'f', 8, CW_F64}, {'u', 8, CW_U32}, {'i', 8, CW_I32},
+        {'f', 8, CW_F64}, {'u', 8, CW_U32}, {'i', 8, CW_I32}, {'f', 2, CW_F32},
     };
     for (size_t n = 0; n < sizeof types / sizeof *types; n++)
         if (types[n].kind == kind && types[n].bytes == bytes) {
@@ -40,7 +40,10 @@ bool cwi_zarr_set_type(cwi_zarr_array *array, char kind, size_t bytes)
             array->stored_bytes = bytes;
             array->is_bool = kind == 'b';
             array->is_signed = kind == 'i';
-            array->is_wide = cw_type_size(array->type) < bytes;
+            array->stored = bytes == cw_type_size(array->type) ? CWI_STORED_PLAIN
+                            : kind == 'f'                      ? CWI_STORED_F16
+                            : kind == 'i'                      ? CWI_STORED_I64
+                                                               : CWI_STORED_U64;
             return true;
         }
     return false;
@@ -68,7 +71,10 @@ static bool is_real(const cwi_zarr_array *array)
 static void store_real(cwi_zarr_array *array, double value)
 {
     const float single = (float)value;
-    if (array->type == CW_F32)
+    const uint16_t half = cwi_stored_half(value);
+    if (array->stored)
+        memcpy(&array->fill, &half, sizeof half);
+    else if (array->type == CW_F32)
         memcpy(&array->fill, &single, sizeof single);
     else
         memcpy(&array->fill, &value, sizeof value);

@@ -19,7 +19,7 @@ static cw_status read_data_type(const json_t *meta, cwi_zarr_array *array, cw_er
     } types[] = {
         {"bool", 'b', 1},   {"int8", 'i', 1},    {"uint8", 'u', 1},   {"int16", 'i', 2},
         {"uint16", 'u', 2}, {"int32", 'i', 4},   {"uint32", 'u', 4},  {"int64", 'i', 8},
-        {"uint64", 'u', 8}, {"float32", 'f', 4}, {"float64", 'f', 8},
+        {"uint64", 'u', 8}, {"float32", 'f', 4}, {"float64", 'f', 8}, {"float16", 'f', 2},
     };
     const char *text = cwi_zarr_text(meta, "data_type");
     if (!text)

@@ -20,6 +20,9 @@ typedef struct cw_raw_layout {
     bool big_endian;   /* default: little-endian */
     uint64_t offset;   /* number of bytes before the first voxel */
     double spacing[3]; /* mm; all 0 means 1 each, and the unit is then unknown */
+    size_t
+        stored_bytes; /* of a number in the file: 8 for integers of 64 bits that fit CW_I32 or
+                            CW_U32, 2 for floats of 16 bits (CW_F32); default: as the type */
 } cw_raw_layout;
 
 /* The policy for slices that are missing or not at equal distances. */
@@ -325,7 +328,8 @@ CW_NODISCARD CW_API cw_status cw_label_table_beside(const char *volume_path, cha
 
 /* Parses a layout written as on the command line, for example
  * "dims=512x512x300,type=u16le,offset=62,spacing=0.5x0.5x1mm,components=1,steps=1".
- * Type is one of the eight with an optional le or be; le when left out.
+ * Type is one of the eight, i64, u64 or f16, with an optional le or be; le when left out. Names of C,
+ * NRRD and NumPy are known, too: uint8, int16, unsigned short, float, u1, <i2, >f4.
  * text     as above
  * layout   filled on success
  * Returns  CW_ERR_ARGUMENT naming the key that is wrong. */

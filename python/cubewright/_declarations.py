@@ -1628,6 +1628,7 @@ class cw_raw_layout(Structure):
     big_endian: bool
     offset: int
     spacing: Any
+    stored_bytes: int
 
 
 cw_raw_layout._fields_ = [
@@ -1638,6 +1639,7 @@ cw_raw_layout._fields_ = [
     ("big_endian", c_bool),
     ("offset", c_uint64),
     ("spacing", c_double * 3),
+    ("stored_bytes", c_size_t),
 ]
 
 

@@ -1,6 +1,7 @@
 /* Writes stores of Zarr for tests, chunk by chunk, in the plainest way. */
 #include "support/files/zarr_store.h"
 
+#include "formats/bytes/stored_numbers.h"
 #include "support/files/reading.h"
 
 #include <errno.h>
@@ -113,7 +114,9 @@ static void store_number(const zarr_made *m, double value, unsigned char *to)
 {
     const size_t size = number_bytes(m);
     uint64_t bits = (uint64_t)(int64_t)value;
-    if (m->kind[0] == 'f' && size == 8) {
+    if (m->kind[0] == 'f' && size == 2) {
+        bits = cwi_stored_half(value);
+    } else if (m->kind[0] == 'f' && size == 8) {
         memcpy(&bits, &value, 8);
     } else if (m->kind[0] == 'f') {
         const float single = (float)value;

@@ -60,6 +60,30 @@ static void frames_are_columns_of_direction_times_spacing(void **state)
     }
 }
 
+static void values_are_those_of_the_line_that_is_stated(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *keys;
+        double slope, intercept;
+    } cases[] = {
+        {"", 1, 0},
+        {"ElementToIntensityFunctionSlope = 2\nElementToIntensityFunctionOffset = -100\n", 2,
+         -100},
+        {"ElementToIntensityFunctionOffset = 5\n", 1, 5},
+        {"ElementToIntensityFunctionSlope = -0.25\n", -0.25, 0}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char header[300];
+        cw_volume v;
+        cw_error err = {0};
+        snprintf(header, sizeof header, U8_3D "%s" LOCAL, cases[i].keys);
+        put_file("a.mha", header, counting, sizeof counting);
+        assert_ok(read_back("a.mha", &v, &err), err);
+        assert_true(cw_volume_value(&v, 1, 2, 1) == 11 * cases[i].slope + cases[i].intercept);
+        cw_volume_free(&v);
+    }
+}
+
 static void two_and_four_dimensions_are_read(void **state)
 {
     (void)state;
@@ -205,7 +229,12 @@ static void damaged_headers_are_told_key_by_key(void **state)
         {"ElementType = MET_UCHAR\nNDims = 5\n" LOCAL, "'NDims' is '5'"},
         {"ElementType = MET_UCHAR\nNDims = 3\nDimSize = 2 3\n" LOCAL,
          "'DimSize' lists 2 numbers; 'NDims' says 3"},
-        {"ElementType = MET_LONG_LONG\n" LOCAL, "'ElementType' is MET_LONG_LONG; the types"},
+        {U8_3D "ElementToIntensityFunctionSlope = 0\n" LOCAL "123456789012",
+         "'ElementToIntensityFunctionSlope' is 0"},
+        {U8_3D "ElementToIntensityFunctionOffset = nan\n" LOCAL "123456789012",
+         "must be finite"},
+        {U8_3D "ElementToIntensityFunctionSlope = two\n" LOCAL "123456789012", "holds 'two'"},
+        {"ElementType = MET_STRING\n" LOCAL, "'ElementType' is MET_STRING; the types"},
         {U8_3D "NDims = 3\n" LOCAL, "'NDims' was given before"},
         {U8_3D "ElementSpacing = 1 1\n" LOCAL,
          "'ElementSpacing' lists 2 numbers; 'NDims' says 3"},
@@ -397,6 +426,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(a_plain_header_gives_its_voxels),
         TEST(frames_are_columns_of_direction_times_spacing),
+        TEST(values_are_those_of_the_line_that_is_stated),
         TEST(two_and_four_dimensions_are_read),
         TEST(channels_are_interleaved),
         TEST(byte_orders_and_encodings_give_the_same_numbers),

@@ -311,7 +311,7 @@ static void damaged_headers_are_told_field_by_field(void **state)
         {212, 0x1111, "are those of no MRC file"},
         {12, 3, "'MODE' is 3 (complex int16); the types"},
         {12, 4, "'MODE' is 4 (complex float32); the types"},
-        {12, 12, "'MODE' is 12 (float16); the types"},
+        {12, 16, "'MODE' is 16 (RGB bytes); the types"},
         {12, 101, "'MODE' is 101 (4 bits); the types"},
         {12, 7, "'MODE' is 7; the types"},
         {88, 402, "'ISPG' is 402, a stack of volumes; 'NZ' is 2, which is no multiple of 'MZ'"},

@@ -347,6 +347,16 @@ static void a_pair_of_files_is_one_volume(void **state)
     assert_ok(read_back("head.hdr", &v, &err), err);
     assert_true(cw_volume_value(&v, 1, 2, 1) == 11);
     cw_volume_free(&v);
+    assert_ok(read_back("head.img", &v, &err), err);
+    assert_true(cw_volume_value(&v, 1, 2, 1) == 11);
+    cw_volume_free(&v);
+    check_regions("head.img", NULL);
+    put_file("alone.img", "", f.bytes + 352, 24);
+    assert_fails(read_back("alone.img", &v, &err), CW_ERR_FORMAT,
+                 "has its header beside it, and 'alone.hdr' is not there", err);
+    put_file("alone.hdr", "short", NULL, 0);
+    assert_fails(read_back("alone.img", &v, &err), CW_ERR_FORMAT, "alone.hdr: 'sizeof_hdr' is",
+                 err);
     put_file("head.hdr.hdr", "", f.bytes, 348); /* the last one is the extension */
     put_file("head.hdr.img", "", f.bytes + 352, 24);
     assert_ok(read_back("head.hdr.hdr", &v, &err), err);
@@ -375,8 +385,8 @@ static void impossible_fields_are_named(void **state)
         {CWI_NIFTI_DIM, 2, 0, "'dim[2]' is 0"},
         {CWI_NIFTI_DIM, 2, -3, "'dim[2]' is -3"},
         {CWI_NIFTI_DIM, 3, 32767, "'dim' asks for 393204 bytes"},
-        {CWI_NIFTI_DATATYPE, 0, 1024,
-         "'datatype' is 1024 (int64); the types that are read are u8"},
+        {CWI_NIFTI_DATATYPE, 0, 1536,
+         "'datatype' is 1536 (float128); the types that are read are u8"},
         {CWI_NIFTI_DATATYPE, 0, 1792, "1792 (complex128)"},
         {CWI_NIFTI_DATATYPE, 0, 77, "'datatype' is 77"},
         {CWI_NIFTI_BITPIX, 0, 8, "'bitpix' is 8; 'datatype' 4 (int16) has 16"},

@@ -172,7 +172,7 @@ static void expect_nothing(const label_file *f, const char *words)
         assert_int_equal(table.count, 0);
         if (words && !strstr(note, words))
             fail_msg("'%s' does not hold '%s'", note, words);
-        assert_true(words || !*note);
+        assert_true(words || !strstr(note, "left out"));
         cw_volume_free(&v);
     }
 }

@@ -63,6 +63,11 @@ static void slicer_says_that_its_values_are_labels(void **state)
     cw_volume_free(&v);
 }
 
+static void keep_note(void *user, const char *text)
+{
+    snprintf(user, 300, "%s", text);
+}
+
 /* Headers with place and direction, and the affine on paper. */
 static void frames_are_turned_to_lps_millimetres(void **state)
 {
@@ -328,15 +333,93 @@ static void voxels_may_lie_in_files_of_their_own(void **state)
     }
 }
 
+/* Patterns may count down, and Windows writes backslashes. */
+static void names_of_data_files_come_from_everywhere(void **state)
+{
+    (void)state;
+    static const char *const headers[] = {
+        DETACHED "up%d.raw 7 1 -6\n", DETACHED "up%02d.raw 9 8 -1\n",
+        DETACHED "sub\\whole.raw\n", DETACHED ".\\sub\\whole.raw\n",
+        DETACHED "LIST\nsub\\first.raw\nsub\\second.raw\n"};
+    mkdir(test_path("sub"), 0777);
+    put_file("up7.raw", "", counting, 6);
+    put_file("up1.raw", "", counting + 6, 6);
+    put_file("up09.raw", "", counting, 6);
+    put_file("up08.raw", "", counting + 6, 6);
+    put_file("sub/whole.raw", "", counting, 12);
+    put_file("sub/first.raw", "", counting, 6);
+    put_file("sub/second.raw", "", counting + 6, 6);
+    cw_read_desc trusting = {.allow_external = false};
+    cw_volume v;
+    cw_error err = {0};
+    for (size_t i = 0; i < 2 * sizeof headers / sizeof *headers; i++) {
+        trusting.allow_external = i % 2;
+        put_file("a.nhdr", headers[i / 2], NULL, 0);
+        assert_ok(cw_volume_read(test_path("a.nhdr"), &trusting, &v, NULL, &err), err);
+        assert_memory_equal(v.data, counting, sizeof counting);
+        cw_volume_free(&v);
+    }
+    put_file("odd\\name.raw", "", counting, 12); /* as a name may be here */
+    put_file("a.nhdr", DETACHED "odd\\name.raw\n", NULL, 0);
+    assert_ok(cw_volume_read(test_path("a.nhdr"), &trusting, &v, NULL, &err), err);
+    cw_volume_free(&v);
+}
+
+/* Axes without a spacing are axes of space where fewer than three are. */
+static void axes_of_unknown_spacing_may_be_of_space(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *axes;
+        size_t components, steps, dim[3];
+        bool is_told;
+    } cases[] = {
+        {"dimension: 3\nsizes: 2 3 2\nspacings: 2 3 nan\n", 1, 1, {2, 3, 2}, true},
+        {"dimension: 3\nsizes: 2 3 2\nspacings: 2 nan 4\n", 1, 1, {2, 3, 2}, true},
+        {"dimension: 3\nsizes: 2 3 2\nspacings: nan 3 4\n", 2, 1, {3, 2, 1}, false},
+        {"dimension: 4\nsizes: 2 3 1 2\nspacings: 2 3 4 nan\n", 1, 2, {2, 3, 1}, false},
+        {"dimension: 4\nsizes: 3 1 2 2\nspacings: nan 3 4 nan\n", 3, 1, {1, 2, 2}, true},
+        {"dimension: 3\nsizes: 2 3 2\nspacings: 2 3 nan\nkinds: space space time\n",
+         1,
+         2,
+         {2, 3, 1},
+         false},
+        {"dimension: 3\nsizes: 2 3 2\nspacings: 2 3 nan\nkinds: space space space\n",
+         1,
+         1,
+         {2, 3, 2},
+         true}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char header[300], note[300] = "";
+        const cw_read_desc desc = {.note = keep_note, .note_user = note};
+        cw_volume v;
+        cw_error err = {0};
+        snprintf(header, sizeof header, U8 "%s\n", cases[i].axes);
+        put_file("a.nrrd", header, counting, 12);
+        assert_ok(cw_volume_read(test_path("a.nrrd"), &desc, &v, NULL, &err), err);
+        if (v.components != cases[i].components || v.steps != cases[i].steps ||
+            memcmp(v.dim, cases[i].dim, sizeof v.dim) != 0)
+            fail_msg("case %zu: %zu x %zu x %zu, %zu components, %zu steps", i, v.dim[0],
+                     v.dim[1], v.dim[2], v.components, v.steps);
+        assert_true((strstr(note, "1 is taken") != NULL) == cases[i].is_told);
+        cw_volume_free(&v);
+    }
+}
+
 static void data_files_stay_in_the_headers_folder(void **state)
 {
     (void)state;
     const struct {
         const char *name, *words;
     } cases[] = {
-        {"/etc/passwd", "an absolute path"},      {"../x.raw", "a path with '..'"},
-        {"sub/../../x.raw", "a path with '..'"},  {"http://example.org/x.raw", "an address"},
-        {"c:\\x.raw", "a name with '\\' or '%'"}, {"link.raw", "a symbolic link"},
+        {"/etc/passwd", "an absolute path"},
+        {"../x.raw", "a path with '..'"},
+        {"sub/../../x.raw", "a path with '..'"},
+        {"http://example.org/x.raw", "an address"},
+        {"c:\\x.raw", "an absolute path of Windows"},
+        {"link.raw", "a symbolic link"},
+        {"..\\x.raw", "a path with '..'"},
+        {"\\\\host\\x.raw", "an absolute path"},
     };
     cw_volume v;
     cw_error err = {0};
@@ -403,7 +486,7 @@ static void damaged_headers_are_told_field_by_field(void **state)
         {U8_3D "sizes: 1 1 1\n\n", "appears a second time"},
         {U8_3D "space direction: none\n\n", "'space direction' is not a field of NRRD"},
         {U8_3D "nonsense\n\n", "line 6 holds no 'field: value'"},
-        {"NRRD0004\ntype: int64\ndimension: 1\nsizes: 1\n\n", "'type' is int64; the types"},
+        {"NRRD0004\ntype: block\ndimension: 1\nsizes: 1\n\n", "'type' is block; the types"},
         {"NRRD0004\ntype: short\ndimension: 1\nsizes: 1\nencoding: raw\n\n",
          "'endian' is missing"},
         {"NRRD0004\ntype: int8\ndimension: 1\nsizes: 1\nencoding: zstd\n\n",
@@ -439,7 +522,9 @@ static void damaged_headers_are_told_field_by_field(void **state)
         {U8_3D "data file: LIST\na\nb\nc\n", "names 3 files; 'sizes' needs 2"},
         {U8_3D "data file: x%s.raw 1 2 1\n", "needs one %d"},
         {U8_3D "data file: x%d%d.raw 1 2 1\n", "needs one %d"},
-        {U8_3D "data file: x%d.raw 1 2 0\n", "must count up"},
+        {U8_3D "data file: x%d.raw 1 2 0\n", "counts from 1 to 2 by 0; it must reach its end"},
+        {U8_3D "data file: x%d.raw 1 2 -1\n", "counts from 1 to 2 by -1"},
+        {U8_3D "data file: x%d.raw 1 -2 -1\n", "counts from 1 to -2 by -1"},
         {U8_3D "data file: x%d.raw 1 2\n", "three numbers"},
         {U8_3D "data file: x%d.raw 1 2000000000 1\n", "more than 65536"},
         {U8_3D, "the file ends with its header"},
@@ -685,6 +770,8 @@ int main(void)
         TEST(only_short_lists_are_values),
         TEST(encodings_and_byte_orders_give_the_same_numbers),
         TEST(voxels_may_lie_in_files_of_their_own),
+        TEST(names_of_data_files_come_from_everywhere),
+        TEST(axes_of_unknown_spacing_may_be_of_space),
         TEST(data_files_stay_in_the_headers_folder),
         TEST(only_files_are_opened),
         TEST(damaged_headers_are_told_field_by_field),

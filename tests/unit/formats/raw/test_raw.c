@@ -77,7 +77,7 @@ static void wrong_keys_are_named(void **state)
         {"dims=1x1x0,type=u8", "'dims' is '1x1x0'"},
         {"dims=1x1x1x1,type=u8", "'dims' is '1x1x1x1'"},
         {"dims=1x1x2147483648,type=u8", "'dims' is '1x1x2147483648'"},
-        {"dims=1x1x1,type=u64", "'type' is u64; the types that are read are u8"},
+        {"dims=1x1x1,type=u128", "'type' is u128; the types that are read are u8"},
         {"dims=1x1x1,type=u8x", "'type' is u8x"},
         {"dims=1x1x1,type=u8,offset=-1", "'offset' is '-1'"},
         {"dims=1x1x1,type=u8,spacing=1x0x1mm", "'spacing' is '1x0x1mm'"},

@@ -8,7 +8,7 @@
 #include <math.h>
 
 static const char *const kinds[] = {"u1", "i1", "u2", "i2", "u4", "i4",
-                                    "f4", "f8", "b1", "u8", "i8"};
+                                    "f4", "f8", "b1", "u8", "i8", "f2"};
 static const char *const codecs[] = {NULL, "zlib", "gzip", "zstd", "lz4", "blosc"};
 enum { KINDS = sizeof kinds / sizeof *kinds, CODECS = sizeof codecs / sizeof *codecs };
 
@@ -298,6 +298,9 @@ static const struct {
     {"u2", "\"7\"", 1e300},
     {"f4", "[1]", 1e300},
     {"f8", "-0.25", -0.25},
+    {"f2", "-0.25", -0.25},
+    {"f2", "\"NaN\"", NAN},
+    {"f2", "\"0x3e00\"", 1.5},
 };
 
 static void missing_chunks_have_the_fill_value(void **state)

@@ -52,7 +52,7 @@ static const struct {
         {"[2, 4, 4]", "[4000000000, 4, 4]", CW_ERR_FORMAT, "0.0.0: a chunk has 32 bytes"},
         {"[2, 4, 4]", "[2, 4, 5]", CW_ERR_FORMAT,
          "0.0.0: a chunk has 32 bytes; 40 were expected"},
-        {"\"|u1\"", "\"<f2\"", CW_ERR_FORMAT, "'dtype' is <f2; the types that are read are"},
+        {"\"|u1\"", "\"<f1\"", CW_ERR_FORMAT, "'dtype' is <f1; the types that are read are"},
         {"\"|u1\"", "[[\"a\", \"<u2\"]]", CW_ERR_FORMAT, "'dtype' is [["},
         {"\"C\"", "\"K\"", CW_ERR_FORMAT, "'order' is \"K\"; \"C\" or \"F\" was expected"},
         {"\"filters\": null", "\"filters\": [{\"id\": \"delta\"}]", CW_ERR_FORMAT,
@@ -77,7 +77,7 @@ static const struct {
   changes_v3[] = {
       {"\"array\"", "\"arrow\"", CW_ERR_FORMAT, "zarr.json: 'node_type' is \"arrow\""},
       {"\"zarr_format\": 3", "\"zarr_format\": 4", CW_ERR_FORMAT, "'zarr_format' is 4.0"},
-      {"\"uint8\"", "\"float16\"", CW_ERR_FORMAT, "'data_type' is float16"},
+      {"\"uint8\"", "\"bfloat16\"", CW_ERR_FORMAT, "'data_type' is bfloat16"},
       {"\"uint8\"", "{\"name\": \"fixed\"}", CW_ERR_FORMAT, "'data_type' is {"},
       {"\"regular\"", "\"rectangular\"", CW_ERR_FORMAT, "'chunk_grid' is"},
       {"[4, 4, 4]}}", "[4, 4]}}", CW_ERR_FORMAT, "'chunk_shape' lists 2"},
